@@ -1,0 +1,2 @@
+//! Stillbase.
+pub mod scene;

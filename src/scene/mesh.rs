@@ -1,0 +1,1 @@
+//! Meshes of bars, discs and rings, built once per machine.

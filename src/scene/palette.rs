@@ -1,0 +1,81 @@
+//! The colours of Stillbase, and what they mean; the same in scene, plots, recordings and figures.
+
+use super::Rgba;
+
+/// Light or dark.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Theme {
+    /// Light ink on dark.
+    #[default]
+    Dark,
+    /// Dark ink on white.
+    Light,
+}
+
+/// Colour by meaning.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Palette {
+    /// Behind the scene.
+    pub background: Rgba,
+    /// Behind the panels.
+    pub panel: Rgba,
+    /// Hairlines and the grid.
+    pub line: Rgba,
+    /// Text.
+    pub ink: Rgba,
+    /// Quiet text.
+    pub dim: Rgba,
+    /// Drives 1, 2, 3; further drives repeat them.
+    pub drives: [Rgba; 3],
+    /// b, its workspace, the time cursor.
+    pub amber: Rgba,
+    /// A reaction that is zero.
+    pub zero: Rgba,
+    /// A reaction that is not.
+    pub reaction: Rgba,
+}
+
+/// The colours of a theme.
+pub const fn palette(theme: Theme) -> Palette {
+    match theme {
+        Theme::Dark => Palette {
+            background: hex(0x111317),
+            panel: hex(0x1b1e25),
+            line: hex(0x2a2e38),
+            ink: hex(0xe6e8ec),
+            dim: hex(0x8b93a1),
+            drives: [hex(0x5cb3ea), hex(0xf08a5d), hex(0x4cc9a0)],
+            amber: hex(0xe8b84a),
+            zero: hex(0x4cc9a0),
+            reaction: hex(0xff5d5d),
+        },
+        Theme::Light => Palette {
+            background: hex(0xffffff),
+            panel: hex(0xfbfbfc),
+            line: hex(0xdfe2e7),
+            ink: hex(0x1d2129),
+            dim: hex(0x6b7280),
+            drives: [hex(0x0072b2), hex(0xc2410c), hex(0x047857)],
+            amber: hex(0xa86d00),
+            zero: hex(0x047857),
+            reaction: hex(0xc81e1e),
+        },
+    }
+}
+
+impl Palette {
+    /// The colour of drive `k`, counted from 0.
+    pub fn drive(&self, k: usize) -> Rgba {
+        self.drives[k % self.drives.len()]
+    }
+}
+
+/// The same colour, more transparent: `alpha` 0..1 multiplies.
+pub fn faded([r, g, b, a]: Rgba, alpha: f32) -> Rgba {
+    [r, g, b, a * alpha]
+}
+
+const fn hex(rgb: u32) -> Rgba {
+    [((rgb >> 16) & 0xff) as f32 / 255.0, ((rgb >> 8) & 0xff) as f32 / 255.0, (rgb & 0xff) as f32 / 255.0, 1.0]
+}
