@@ -1,2 +1,8 @@
 //! Stillbase.
+#![warn(missing_docs)]
+
+pub mod dynamics;
+pub mod kinematics;
+pub mod machine;
+pub mod planar;
 pub mod scene;

@@ -1,0 +1,121 @@
+//! One setting of a machine by key, as `--set` and edits name it.
+
+use super::{Length, Machine, MachineError, MachineSpec, Place};
+
+const KEYS: &str = "link.NAME.(com|com_normal|mass|inertia|length), length.NAME, payload.mass, payload.inertia, \
+                    gravity, limits.ANGLE, drive.NAME.torque_limit";
+
+impl Machine {
+    /// A machine with one setting changed; `value` is one number, or two parted by a comma.
+    ///
+    /// # Errors
+    /// If there is no such key, the value cannot be read, or the machine would no longer be valid.
+    pub fn set(&self, key: &str, value: &str) -> Result<Self, MachineError> {
+        self.set_all([(key, value)])
+    }
+
+    /// A machine with several settings changed together, checked once at the end.
+    ///
+    /// # Errors
+    /// As [`set`](Self::set).
+    pub fn set_all<'a>(&self, pairs: impl IntoIterator<Item = (&'a str, &'a str)>) -> Result<Self, MachineError> {
+        let mut spec = self.spec().clone();
+        for (key, value) in pairs {
+            assign(&mut spec, key, value)?;
+        }
+        Self::new(spec)
+    }
+}
+
+fn assign(spec: &mut MachineSpec, key: &str, value: &str) -> Result<(), MachineError> {
+    let one = || number(key, value);
+    let two = || pair(key, value);
+    let unknown = || MachineError::UnknownKey { key: key.into(), known: KEYS.into() };
+    let nobody = |what: &'static str, name: &str, known: Vec<&str>| MachineError::Unknown {
+        place: Place::new(&[&key]),
+        what,
+        name: name.into(),
+        known: super::quoted(known.into_iter()),
+    };
+    match *key.split('.').collect::<Vec<_>>() {
+        ["link", name, field] => {
+            let Some(j) = spec.links.iter().position(|l| l.name == name) else {
+                return Err(nobody("link", name, spec.links.iter().map(|l| l.name.as_str()).collect()));
+            };
+            if field == "length" {
+                return set_link_length(spec, j, one()?);
+            }
+            let link = &mut spec.links[j];
+            *match field {
+                "com" => &mut link.com,
+                "com_normal" => &mut link.com_normal,
+                "mass" => &mut link.mass,
+                "inertia" => &mut link.inertia,
+                _ => return Err(unknown()),
+            } = one()?;
+        }
+        ["length", name] => {
+            let known = spec.lengths.keys().map(String::as_str).collect();
+            let missing = nobody("length", name, known);
+            *spec.lengths.get_mut(name).ok_or(missing)? = one()?;
+        }
+        ["payload", "mass"] => spec.payload.mass = one()?,
+        ["payload", "inertia"] => spec.payload.inertia = one()?,
+        ["gravity"] => spec.gravity = two()?,
+        ["limits", name] => {
+            let known = spec.angles.iter().map(|a| a.name.as_str()).collect();
+            let missing = nobody("angle", name, known);
+            let angle = spec.angles.iter_mut().find(|a| a.name == name).ok_or(missing)?;
+            [angle.min, angle.max] = two()?;
+        }
+        ["drive", name, "torque_limit"] => {
+            let known = spec.drives.iter().map(|d| d.name.as_str()).collect();
+            let missing = nobody("drive", name, known);
+            spec.drives.iter_mut().find(|d| d.name == name).ok_or(missing)?.torque_limit = Some(one()?);
+        }
+        _ => return Err(unknown()),
+    }
+    Ok(())
+}
+
+/// A length may be set through its only bar; one that others share, or that a point is named by, may not.
+fn set_link_length(spec: &mut MachineSpec, j: usize, metres: f64) -> Result<(), MachineError> {
+    let name = match &mut spec.links[j].length {
+        Length::Metres(l) => {
+            *l = metres;
+            return Ok(());
+        }
+        Length::Named(name) => name.clone(),
+    };
+    let others: Vec<&str> = spec
+        .links
+        .iter()
+        .enumerate()
+        .filter(|(i, l)| *i != j && l.length == Length::Named(name.clone()))
+        .map(|(_, l)| l.name.as_str())
+        .collect();
+    if !others.is_empty() {
+        let plural = if others.len() > 1 { "links" } else { "link" };
+        return Err(MachineError::SharedLength {
+            link: spec.links[j].name.clone(),
+            length: name,
+            sharers: format!("{plural} {}", others.join(", ")),
+        });
+    }
+    spec.lengths.insert(name, metres);
+    Ok(())
+}
+
+fn number(key: &str, value: &str) -> Result<f64, MachineError> {
+    value.trim().parse().map_err(|_| MachineError::BadValue {
+        key: key.into(),
+        value: value.into(),
+        want: "one number",
+    })
+}
+
+fn pair(key: &str, value: &str) -> Result<[f64; 2], MachineError> {
+    let bad = || MachineError::BadValue { key: key.into(), value: value.into(), want: "two numbers, A,B" };
+    let (a, b) = value.split_once(',').ok_or_else(bad)?;
+    Ok([a.trim().parse().map_err(|_| bad())?, b.trim().parse().map_err(|_| bad())?])
+}

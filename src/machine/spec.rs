@@ -1,0 +1,182 @@
+//! A machine as a file states it: plain data, not yet checked.
+
+use serde::{Deserialize, Serialize};
+
+/// The content of a machine file. [`Machine::new`](super::Machine::new) checks it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MachineSpec {
+    /// Short name, as used on the command line.
+    pub name: String,
+    /// One line about it.
+    #[serde(default)]
+    pub summary: String,
+    /// Acceleration of gravity in base axes, m/s².
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub gravity: [f64; 2],
+    /// Named lengths, m: bars that must stay equal share one.
+    #[serde(default)]
+    pub lengths: std::collections::BTreeMap<String, f64>,
+    /// A mass held at the end effector.
+    #[serde(default, skip_serializing_if = "Payload::is_none")]
+    pub payload: Payload,
+    /// The actuators, all at B on one axis.
+    #[serde(default, rename = "drive")]
+    pub drives: Vec<Drive>,
+    /// The bars.
+    #[serde(default, rename = "link")]
+    pub links: Vec<Link>,
+    /// Pins that close loops.
+    #[serde(default, rename = "closure", skip_serializing_if = "Vec::is_empty")]
+    pub closures: Vec<Closure>,
+    /// The point that works.
+    pub end_effector: Option<Point>,
+    /// Relative joint angles, which carry the joint limits.
+    #[serde(default, rename = "angle", skip_serializing_if = "Vec::is_empty")]
+    pub angles: Vec<Angle>,
+}
+
+fn is_zero(v: &[f64; 2]) -> bool {
+    *v == [0.0; 2]
+}
+
+/// A rigid mass held at the end effector, turning with its link.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Payload {
+    /// kg.
+    #[serde(default)]
+    pub mass: f64,
+    /// About its own centre of mass, kg m².
+    #[serde(default)]
+    pub inertia: f64,
+}
+
+impl Payload {
+    fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+/// An actuator at B.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Drive {
+    /// Its name.
+    pub name: String,
+    /// The greatest torque it gives either way, N m; none: unlimited.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub torque_limit: Option<f64>,
+}
+
+/// A rigid bar, always parallel to the arm of one drive.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Link {
+    /// Its name.
+    pub name: String,
+    /// The drive whose orientation it has.
+    pub drive: String,
+    /// Where its root is pinned.
+    pub attach: Attach,
+    /// 1: it runs along e(q); −1: along −e(q).
+    #[serde(default = "forwards", skip_serializing_if = "is_forwards")]
+    pub direction: i8,
+    /// From root to tip, m.
+    pub length: Length,
+    /// kg.
+    pub mass: f64,
+    /// About its own centre of mass, kg m².
+    pub inertia: f64,
+    /// l_c: centre of mass along the link, from the root towards the tip, m.
+    pub com: f64,
+    /// Centre of mass off the link's axis, to the left of the direction root to tip, m.
+    #[serde(default, skip_serializing_if = "is_nought")]
+    pub com_normal: f64,
+}
+
+fn forwards() -> i8 {
+    1
+}
+fn is_forwards(d: &i8) -> bool {
+    *d == 1
+}
+fn is_nought(x: &f64) -> bool {
+    *x == 0.0
+}
+
+/// Where a link hangs: at B, or on a point of another link.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Attach {
+    /// A point of another link.
+    On(Point),
+    /// `"base"`.
+    Base(String),
+}
+
+/// A point of a link.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Point {
+    /// The link's name.
+    pub link: String,
+    /// How far from its root.
+    #[serde(default)]
+    pub at: Station,
+}
+
+/// A place along a link, from its root towards its tip.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Station {
+    /// m.
+    Metres(f64),
+    /// `"tip"`, `"root"`, a named length, or `"-name"` for backwards.
+    Named(String),
+}
+
+impl Default for Station {
+    fn default() -> Self {
+        Self::Named("tip".into())
+    }
+}
+
+/// A length: a number or a name under `[lengths]`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Length {
+    /// m.
+    Metres(f64),
+    /// A shared length.
+    Named(String),
+}
+
+/// Two descriptions of one point: a pin that closes a loop.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Closure {
+    /// The point as one link has it.
+    pub a: Point,
+    /// The same point as another has it.
+    pub b: Point,
+}
+
+/// A relative joint angle a = q_to − q_from + offset.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Angle {
+    /// Its name.
+    pub name: String,
+    /// A drive's name.
+    pub to: String,
+    /// A drive's name.
+    pub from: String,
+    /// rad.
+    #[serde(default, skip_serializing_if = "is_nought")]
+    pub offset: f64,
+    /// Least value, rad.
+    pub min: f64,
+    /// Greatest value, rad.
+    pub max: f64,
+}
