@@ -1,1 +1,4 @@
 //! All tests, one binary.
+
+#[path = "suite/nine_body.rs"]
+mod nine_body;
