@@ -5,4 +5,5 @@ pub mod dynamics;
 pub mod kinematics;
 pub mod machine;
 pub mod planar;
+pub mod reactionless;
 pub mod scene;
