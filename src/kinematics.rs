@@ -61,26 +61,6 @@ pub fn minimum_norm(tip: &Chain, e: &Units, n: usize, v: Vector, vd: Vector) -> 
     Some((qd, qdd))
 }
 
-/// Angles (q_k, q_l) with c_k e(q_k) + c_l e(q_l) = r, the solution nearest to `near`, unwrapped; both elbows count.
-/// `None` where r is too far or too near.
-pub fn two_link(ck: f64, cl: f64, r: Vector, near: (f64, f64)) -> Option<(f64, f64)> {
-    let rr = r.norm_sqr();
-    let cos = (rr - ck * ck - cl * cl) / (2.0 * ck * cl);
-    if !(-1.0..=1.0).contains(&cos) {
-        return None;
-    }
-    let bend = cos.acos();
-    let solution = |bend: f64| {
-        // r = e(q_k) (c_k + c_l e(bend))
-        let qk = (r * (ck + cl * crate::planar::unit(bend)).conj()).arg();
-        let qk = closest_turn(qk, near.0);
-        (qk, closest_turn(qk + bend, near.1))
-    };
-    let (a, b) = (solution(bend), solution(-bend));
-    let distance = |s: (f64, f64)| (s.0 - near.0).abs().max((s.1 - near.1).abs());
-    Some(if distance(a) <= distance(b) { a } else { b })
-}
-
 /// The angle equal to `angle` modulo 2π that lies nearest to `near`.
 pub fn closest_turn(angle: f64, near: f64) -> f64 {
     let turn = std::f64::consts::TAU;

@@ -1,9 +1,18 @@
 //! Stillbase.
 #![warn(missing_docs)]
 
+pub mod balance;
+pub mod control;
 pub mod dynamics;
+pub mod frame;
 pub mod kinematics;
 pub mod machine;
+pub mod plan;
 pub mod planar;
+pub mod pose_constant;
 pub mod reactionless;
+pub mod scenario;
 pub mod scene;
+pub mod session;
+pub mod signals;
+pub mod simulation;

@@ -25,6 +25,36 @@ impl Machine {
         }
         Self::new(spec)
     }
+
+    /// The value of a setting, as [`set`](Self::set) would take it; `None` if there is no such key.
+    pub fn get(&self, key: &str) -> Option<String> {
+        let spec = self.spec();
+        let named = |name: &str| spec.links.iter().position(|l| l.name == name);
+        let two = |[a, b]: [f64; 2]| format!("{a},{b}");
+        match *key.split('.').collect::<Vec<_>>() {
+            ["link", name, field] => {
+                let (link, part) = (&spec.links[named(name)?], &self.parts()[named(name)?]);
+                Some(match field {
+                    "com" => link.com,
+                    "com_normal" => link.com_normal,
+                    "mass" => link.mass,
+                    "inertia" => link.inertia,
+                    "length" => part.length,
+                    _ => return None,
+                })
+                .map(|x| x.to_string())
+            }
+            ["length", name] => spec.lengths.get(name).map(f64::to_string),
+            ["payload", "mass"] => Some(spec.payload.mass.to_string()),
+            ["payload", "inertia"] => Some(spec.payload.inertia.to_string()),
+            ["gravity"] => Some(two(spec.gravity)),
+            ["limits", name] => spec.angles.iter().find(|a| a.name == name).map(|a| two([a.min, a.max])),
+            ["drive", name, "torque_limit"] => {
+                spec.drives.iter().find(|d| d.name == name)?.torque_limit.map(|t| t.to_string())
+            }
+            _ => None,
+        }
+    }
 }
 
 fn assign(spec: &mut MachineSpec, key: &str, value: &str) -> Result<(), MachineError> {

@@ -107,7 +107,7 @@ fn is_nought(x: &f64) -> bool {
 
 /// Where a link hangs: at B, or on a point of another link.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "want \"base\", or a point of another link: { link = \"…\", at = \"tip\" }")]
 pub enum Attach {
     /// A point of another link.
     On(Point),
@@ -128,7 +128,7 @@ pub struct Point {
 
 /// A place along a link, from its root towards its tip.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "want a place along the link: \"tip\", \"root\", a number in m, or a named length")]
 pub enum Station {
     /// m.
     Metres(f64),
@@ -144,7 +144,7 @@ impl Default for Station {
 
 /// A length: a number or a name under `[lengths]`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "want a length: a number in m, or a name under [lengths]")]
 pub enum Length {
     /// m.
     Metres(f64),

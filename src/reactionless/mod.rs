@@ -12,6 +12,12 @@
 //! | b* | b/Σλ: turns the whole workspace, (15) | rad |
 //! | u_k, v_k | q_k = b* + u_k · a + v_k | 1, rad |
 
+mod boundary;
 mod plane;
+mod poses;
+mod reach;
 
+
+pub use boundary::{Boundary, Nearest};
+pub use reach::{BSet, NoReach};
 pub use plane::{AngleDefinition, Limit, NotAPlaneMap, PlaneMap, PlanePoint, SLACK};

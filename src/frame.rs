@@ -1,0 +1,157 @@
+//! A [`Frame`]: everything that is true at one instant. Plots, scene and recording read it and compute nothing.
+
+use serde::{Deserialize, Serialize};
+
+use crate::dynamics::BaseWrench;
+use crate::planar::{DriveAngles, PerDrive, Pose2, Vector};
+
+/// Peaks below this part of what moves count as zero.
+pub const REACTIONLESS: f64 = 1e-6;
+
+/// One instant of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Steps since the start.
+    pub step: u64,
+    /// Time since the start, s.
+    pub time: f64,
+    /// Drive angles q, rad.
+    pub q: DriveAngles,
+    /// q̇, rad/s.
+    pub qd: PerDrive,
+    /// q̈, rad/s².
+    pub qdd: PerDrive,
+    /// Motor torques τ, N m.
+    pub torque: PerDrive,
+    /// Drive angles that control aims at, rad.
+    pub q_reference: DriveAngles,
+    /// Pose constant b = Σ λ_k q_k of the model, rad, (13).
+    pub b: f64,
+    /// b that control aims at, rad.
+    pub b_reference: f64,
+    /// Relative joint angles a_1, a_2 …, rad, in the machine's order.
+    pub a: PerDrive,
+    /// Pose of the base; a fixed base stays at the origin.
+    pub base: Pose2,
+    /// What the plant transmits to its base.
+    pub wrench: BaseWrench,
+    /// Linear momentum, kg m/s.
+    pub momentum: Vector,
+    /// Angular momentum about B, kg m²/s.
+    pub angular_momentum: f64,
+    /// Centre of mass of manipulator and payload, m.
+    pub com: Vector,
+    /// End effector, m.
+    pub tip: Vector,
+    /// What the end effector is sent to.
+    pub target: Target,
+    /// Kinetic energy, J.
+    pub kinetic: f64,
+    /// Kinetic and potential energy gained less the work of the motors since the start, J: 0 in exact arithmetic.
+    pub energy_balance: f64,
+    /// min |sin(q_k − q_l)|: 0 at a change point, where pin forces grow without bound.
+    pub transmission: f64,
+    /// What the run is doing.
+    pub phase: Phase,
+    /// The largest values so far.
+    pub peaks: Peaks,
+}
+
+/// What the run is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Phase {
+    /// On its planned motion.
+    Motion,
+    /// Following the pointer or the slider.
+    Follow,
+    /// At rest.
+    Rest,
+}
+
+impl Phase {
+    /// One word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Motion => "motion",
+            Self::Follow => "follow",
+            Self::Rest => "rest",
+        }
+    }
+}
+
+/// Where the end effector is sent, and whether it can go there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target {
+    /// m.
+    pub at: Vector,
+    /// Verdict.
+    pub reach: Reach,
+}
+
+/// Whether a target can be reached on the present plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reach {
+    /// It can.
+    Inside,
+    /// It cannot; the machine waits at the nearest point that it can reach without leaving the plane.
+    Outside {
+        /// Where it waits, m.
+        nearest: Vector,
+        /// The b nearest to the present one that would reach the target, rad; none if no b does.
+        mending_b: Option<f64>,
+    },
+    /// It cannot any more since b was changed, so the machine keeps a_1 and a_2 and turns with its workspace.
+    Carried,
+}
+
+/// Largest values over a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Peaks {
+    /// |τ_k|, N m.
+    pub torque: PerDrive,
+    /// Σ_k |τ_k|, N m.
+    pub torque_sum: f64,
+    /// Dynamic |f_B|, N.
+    pub force: f64,
+    /// |n_B|, N m.
+    pub moment: f64,
+    /// Σ_j m_j |a_cj|, N: the force that the links would transmit if nothing cancelled.
+    pub inertial_pull: f64,
+}
+
+impl Peaks {
+    /// Nothing yet.
+    pub fn zero(drives: usize) -> Self {
+        Self { torque: PerDrive::zeros(drives), torque_sum: 0.0, force: 0.0, moment: 0.0, inertial_pull: 0.0 }
+    }
+
+    /// Takes in one more instant.
+    pub fn include(&mut self, torque: &PerDrive, wrench: &BaseWrench, inertial_pull: f64) {
+        for (peak, t) in self.torque.iter_mut().zip(torque.iter()) {
+            *peak = peak.max(t.abs());
+        }
+        self.torque_sum = self.torque_sum.max(torque.iter().map(|t| t.abs()).sum());
+        self.force = self.force.max(wrench.dynamic.force.norm());
+        self.moment = self.moment.max(wrench.total().moment.abs());
+        self.inertial_pull = self.inertial_pull.max(inertial_pull);
+    }
+
+    /// Peak |n_B| at most 1e-6 of peak Σ|τ_k|, and peak dynamic |f_B| at most 1e-6 of peak Σ m_j |a_cj|.
+    pub fn is_reactionless(&self) -> bool {
+        self.moment <= REACTIONLESS * self.torque_sum && self.force <= REACTIONLESS * self.inertial_pull
+    }
+}
+
+impl Frame {
+    /// n_B, N m, positive counter-clockwise.
+    pub fn base_moment(&self) -> f64 {
+        self.wrench.total().moment
+    }
+
+    /// Whether the base feels nothing at this instant, by the measure of the run's peaks.
+    pub fn is_quiet(&self) -> bool {
+        self.base_moment().abs() <= REACTIONLESS * self.peaks.torque_sum.max(1e-9)
+            && self.wrench.dynamic.force.norm() <= REACTIONLESS * self.peaks.inertial_pull.max(1e-9)
+    }
+}

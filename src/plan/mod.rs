@@ -1,0 +1,56 @@
+//! Plans: a path and a time law make the reference that control follows.
+
+pub mod follow;
+pub mod law;
+pub mod path;
+
+pub use follow::Follower;
+pub use law::TimeLaw;
+pub use path::{Path, PathError};
+
+use crate::planar::{DriveAngles, PerDrive};
+
+/// Where the machine should be, and how it should move there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reference {
+    /// rad.
+    pub q: DriveAngles,
+    /// rad/s.
+    pub qd: PerDrive,
+    /// rad/s².
+    pub qdd: PerDrive,
+}
+
+impl Reference {
+    /// At rest.
+    pub fn at_rest(q: DriveAngles) -> Self {
+        let still = PerDrive::zeros(q.len());
+        Self { q, qd: still, qdd: still }
+    }
+}
+
+/// A path run through once, from rest to rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// Where.
+    pub path: Path,
+    /// When.
+    pub law: TimeLaw,
+    /// T, s.
+    pub duration: f64,
+}
+
+impl Motion {
+    /// The reference t seconds after the start; at rest before it and after T.
+    pub fn at(&self, t: f64) -> Reference {
+        let p = self.law.at(t, self.duration);
+        let point = self.path.at(p.s);
+        Reference {
+            q: point.q,
+            qd: PerDrive::from_fn(point.q.len(), |k| point.first[k] * p.rate),
+            qdd: PerDrive::from_fn(point.q.len(), |k| {
+                point.second[k] * p.rate * p.rate + point.first[k] * p.acceleration
+            }),
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! Paths: poses q(s) for s from 0 to 1, with exact derivatives.
+
+use thiserror::Error;
+
+use crate::kinematics::{acceleration, closest_turn, end_effector, minimum_norm, two_link_rates, velocity};
+use crate::machine::Chain;
+use crate::planar::{DriveAngles, PerDrive, Vector, unit};
+
+/// A pose on a path and how it changes with s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathPoint {
+    /// q, rad.
+    pub q: DriveAngles,
+    /// dq/ds, rad.
+    pub first: PerDrive,
+    /// d²q/ds², rad.
+    pub second: PerDrive,
+}
+
+/// A path of the drives.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Path {
+    /// Stays where it is.
+    Rest(DriveAngles),
+    /// A straight line in joint space; from a pose to another of the same b it is reactionless (case 3).
+    JointLine {
+        /// At s = 0.
+        from: DriveAngles,
+        /// At s = 1.
+        to: DriveAngles,
+    },
+    /// The end effector on a straight line, minimum-norm rates dq/ds = J⁺ dp/ds (case 1).
+    TipLine(TipLine),
+    /// The end effector where a joint line has it, drive 1 on a course of its own (case 2).
+    SameTip(SameTip),
+}
+
+/// Why there is no such path.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum PathError {
+    /// The Jacobian loses rank on the way.
+    #[error("the arm is stretched or folded at s = {s:.3} of the line, where the end effector cannot follow it")]
+    Singular {
+        /// How far along.
+        s: f64,
+    },
+    /// Drives 2 and 3 cannot reach where drive 1 leaves the end effector.
+    #[error("with drive 1 on that course, links 5 and 9 cannot reach the end effector's path at s = {s:.3}")]
+    Unreachable {
+        /// How far along.
+        s: f64,
+    },
+}
+
+impl Path {
+    /// The pose at s, clamped to 0..1.
+    pub fn at(&self, s: f64) -> PathPoint {
+        let s = s.clamp(0.0, 1.0);
+        match self {
+            Self::Rest(q) => {
+                let still = PerDrive::zeros(q.len());
+                PathPoint { q: *q, first: still, second: still }
+            }
+            Self::JointLine { from, to } => joint_line(from, to, s),
+            Self::TipLine(line) => line.at(s),
+            Self::SameTip(path) => path.at(s),
+        }
+    }
+}
+
+fn joint_line(from: &DriveAngles, to: &DriveAngles, s: f64) -> PathPoint {
+    let n = from.len();
+    let step = PerDrive::from_fn(n, |k| to[k] - from[k]);
+    PathPoint { q: DriveAngles(from.0.plus(s, &step)), first: step, second: PerDrive::zeros(n) }
+}
+
+/// Nodes of a minimum-norm line, spaced evenly in s and joined by quintics that keep q, q′ and q″.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TipLine {
+    nodes: Vec<PathPoint>,
+}
+
+/// Spaces between nodes; the quintic's error falls with the sixth power and is below 1e-13 rad here.
+const SPACES: usize = 256;
+
+impl TipLine {
+    /// Integrates q′ = J⁺ (to − from) along the line with the fourth-order rule, from a pose at its start.
+    ///
+    /// # Errors
+    /// If the Jacobian loses rank on the way.
+    pub fn new(tip: &Chain, start: DriveAngles, to: Vector) -> Result<Self, PathError> {
+        let way = to - end_effector(tip, &start.units());
+        let n = start.len();
+        let slope = |q: &DriveAngles, s: f64| {
+            minimum_norm(tip, &q.units(), n, way, Vector::default()).ok_or(PathError::Singular { s })
+        };
+        // Each space takes several steps, so that the integration is as exact as the quintics.
+        const STEPS: usize = 4;
+        let h = 1.0 / (SPACES * STEPS) as f64;
+        let mut q = start;
+        let mut nodes = Vec::with_capacity(SPACES + 1);
+        for i in 0..=SPACES {
+            let s = i as f64 / SPACES as f64;
+            let (first, second) = slope(&q, s)?;
+            nodes.push(PathPoint { q, first, second });
+            if i == SPACES {
+                break;
+            }
+            for _ in 0..STEPS {
+                let (k1, _) = slope(&q, s)?;
+                let (k2, _) = slope(&DriveAngles(q.0.plus(h / 2.0, &k1)), s)?;
+                let (k3, _) = slope(&DriveAngles(q.0.plus(h / 2.0, &k2)), s)?;
+                let (k4, _) = slope(&DriveAngles(q.0.plus(h, &k3)), s)?;
+                q = DriveAngles(
+                    q.0.plus(h / 6.0, &k1).plus(h / 3.0, &k2).plus(h / 3.0, &k3).plus(h / 6.0, &k4),
+                );
+            }
+        }
+        Ok(Self { nodes })
+    }
+
+    fn at(&self, s: f64) -> PathPoint {
+        let x = s * SPACES as f64;
+        let i = (x as usize).min(SPACES - 1);
+        let (a, b, u) = (&self.nodes[i], &self.nodes[i + 1], x - i as f64);
+        let h = 1.0 / SPACES as f64;
+        let n = a.q.len();
+        let mut p = PathPoint { q: a.q, first: a.first, second: a.second };
+        for k in 0..n {
+            // Quintic through (q, q′, q″) at both ends, in u.
+            let (c0, c1, c2) = (a.q[k], a.first[k] * h, a.second[k] * h * h / 2.0);
+            let (v, v1, v2) = (b.q[k] - c0 - c1 - c2, b.first[k] * h - c1 - 2.0 * c2, b.second[k] * h * h - 2.0 * c2);
+            let (c3, c4, c5) =
+                (10.0 * v - 4.0 * v1 + v2 / 2.0, -15.0 * v + 7.0 * v1 - v2, 6.0 * v - 3.0 * v1 + v2 / 2.0);
+            p.q.0[k] = c0 + u * (c1 + u * (c2 + u * (c3 + u * (c4 + u * c5))));
+            p.first[k] = (c1 + u * (2.0 * c2 + u * (3.0 * c3 + u * (4.0 * c4 + u * 5.0 * c5)))) / h;
+            p.second[k] = (2.0 * c2 + u * (6.0 * c3 + u * (12.0 * c4 + u * 20.0 * c5))) / (h * h);
+        }
+        p
+    }
+}
+
+/// The end effector of a joint line, reached with drive 1 elsewhere and drives 2 and 3 following on one elbow.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SameTip {
+    tip: Chain,
+    from: DriveAngles,
+    to: DriveAngles,
+    first_to: f64,
+    elbow: f64,
+}
+
+impl SameTip {
+    /// Follows the end effector of the joint line `from`–`to` while drive 1 goes straight to `first_to`, rad.
+    ///
+    /// # Errors
+    /// If links 5 and 9 cannot reach it somewhere.
+    pub fn new(tip: &Chain, from: DriveAngles, to: DriveAngles, first_to: f64) -> Result<Self, PathError> {
+        let elbow = (from[2] - from[1]).sin();
+        let path = Self { tip: *tip, from, to, first_to, elbow };
+        let steps = 256;
+        match (0..=steps).map(|i| f64::from(i) / f64::from(steps)).find(|s| path.solve(*s).is_none()) {
+            Some(s) => Err(PathError::Unreachable { s }),
+            None => Ok(path),
+        }
+    }
+
+    fn at(&self, s: f64) -> PathPoint {
+        // `new` has walked the path; between its samples a miss falls back to the line it follows.
+        self.solve(s).unwrap_or_else(|| joint_line(&self.from, &self.to, s))
+    }
+
+    fn solve(&self, s: f64) -> Option<PathPoint> {
+        let tip = &self.tip;
+        let line = joint_line(&self.from, &self.to, s);
+        let e = line.q.units();
+        let (v, a) = (velocity(tip, &e, &line.first), acceleration(tip, &e, &line.first, &line.second));
+        let q1 = self.from[0] + s * (self.first_to - self.from[0]);
+        let q1_rate = self.first_to - self.from[0];
+        let (c2, c3) = (tip[1], tip[2]);
+        let r = end_effector(tip, &e) - tip[0] * unit(q1);
+        let cos = (r.norm_sqr() - c2 * c2 - c3 * c3) / (2.0 * c2 * c3);
+        if !(-1.0..=1.0).contains(&cos) {
+            return None;
+        }
+        let bend = cos.acos().copysign(self.elbow);
+        let q2 = closest_turn((r * (c2 + c3 * unit(bend)).conj()).arg(), line.q[1]);
+        let q3 = closest_turn(q2 + bend, line.q[2]);
+        let q = DriveAngles::from([q1, q2, q3]);
+        let e = q.units();
+        let zero = PerDrive::zeros(3);
+        let own = velocity(tip, &e, &PerDrive::from([q1_rate, 0.0, 0.0]));
+        let (d2, d3) = two_link_rates(c2, c3, e[1], e[2], v - own)?;
+        let first = PerDrive::from([q1_rate, d2, d3]);
+        // p̈ = J q″ + J̇ q′, and q_1 has no second derivative.
+        let (dd2, dd3) = two_link_rates(c2, c3, e[1], e[2], a - acceleration(tip, &e, &first, &zero))?;
+        Some(PathPoint { q, first, second: PerDrive::from([0.0, dd2, dd3]) })
+    }
+}

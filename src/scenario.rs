@@ -1,0 +1,316 @@
+//! Scenarios: a machine, what it is to do, and what is done to it meanwhile; TOML files.
+//!
+//! A saved session is a scenario with `[[edit]]` entries, each with the step at which it applies.
+
+use std::path::Path as FilePath;
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use crate::control::Gains;
+use crate::machine::{self, FileError, Machine, MachineError, MachineSpec, Payload};
+use crate::plan::TimeLaw;
+use crate::session::TimedEdit;
+
+/// What a run starts from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scenario {
+    /// Short name: `case-3`.
+    pub name: String,
+    /// A line about it.
+    pub title: String,
+    /// The machine that control believes in.
+    pub machine: Machine,
+    /// What differs in the machine that moves.
+    pub plant: Plant,
+    /// The task.
+    pub task: Task,
+    /// Feedback.
+    pub gains: Gains,
+    /// Fixed step, s.
+    pub step: f64,
+    /// Bound on |b̈| while b is slid, rad/s².
+    pub pose_acceleration: f64,
+    /// Pose constant of a second workspace to compare with, rad.
+    pub compare_b: Option<f64>,
+    /// Time that a headless run covers, s.
+    pub duration: f64,
+    /// What was done, in the order of steps.
+    pub edits: Vec<TimedEdit>,
+}
+
+/// How the plant differs from the model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Plant {
+    /// A payload that control does not know of; it adds to the machine's own.
+    #[serde(default)]
+    pub payload: Payload,
+}
+
+/// What the machine is to do.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Task {
+    /// How it gets from A to B.
+    pub kind: TaskKind,
+    /// A, m.
+    pub from: [f64; 2],
+    /// B, m.
+    pub to: [f64; 2],
+    /// Pose constant at A, rad.
+    pub b: f64,
+    /// Where drive 1 ends, rad; for `same-tip`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first_drive_to: Option<f64>,
+    /// T, s.
+    #[serde(default = "one_second")]
+    pub time: f64,
+    /// Time law.
+    #[serde(default)]
+    pub law: TimeLaw,
+}
+
+fn one_second() -> f64 {
+    1.0
+}
+
+/// The ways from A to B of the paper's section 6.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TaskKind {
+    /// Case 1: a straight line of the end effector, minimum-norm joint rates.
+    TipLine,
+    /// Case 2: the end effector as in case 3, drive 1 on a course of its own.
+    SameTip,
+    /// Case 3: a straight line in joint space on the plane b.
+    Reactionless,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    name: Option<String>,
+    #[serde(default)]
+    title: String,
+    machine: MachineRef,
+    #[serde(default = "one_millisecond")]
+    step: f64,
+    duration: Option<f64>,
+    #[serde(default = "default_pose_acceleration")]
+    pose_acceleration: f64,
+    compare_b: Option<f64>,
+    task: Task,
+    #[serde(default)]
+    control: Gains,
+    #[serde(default)]
+    plant: Plant,
+    #[serde(default, rename = "edit", skip_serializing_if = "Vec::is_empty")]
+    edits: Vec<TimedEdit>,
+}
+
+fn one_millisecond() -> f64 {
+    0.001
+}
+fn default_pose_acceleration() -> f64 {
+    2.0
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum MachineRef {
+    Name(String),
+    Inline(Box<MachineSpec>),
+}
+
+/// Why a file is not a scenario.
+#[derive(Debug, Error)]
+pub enum ScenarioError {
+    /// The file itself.
+    #[error("{file}: {source}")]
+    Unreadable {
+        /// The file.
+        file: String,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// Not TOML, or not of a scenario.
+    #[error("{file}{}: {message}", line.map(|l| format!(":{l}")).unwrap_or_default())]
+    Syntax {
+        /// The file.
+        file: String,
+        /// Line, counted from 1.
+        line: Option<usize>,
+        /// What.
+        message: String,
+    },
+    /// A number out of range.
+    #[error("{file}: {key} is {value}: want {want}")]
+    OutOfRange {
+        /// The file.
+        file: String,
+        /// Which.
+        key: &'static str,
+        /// What stands there.
+        value: f64,
+        /// What would be right.
+        want: &'static str,
+    },
+    /// Its machine.
+    #[error("{file}: machine: {error}")]
+    Machine {
+        /// The file.
+        file: String,
+        /// What.
+        error: MachineError,
+    },
+    /// Its machine's file.
+    #[error(transparent)]
+    MachineFile(#[from] FileError),
+}
+
+/// The scenarios that come along: the paper's three cases.
+const BUILTIN: [(&str, &str); 3] = [
+    ("case-1", include_str!("../assets/scenarios/case-1.toml")),
+    ("case-2", include_str!("../assets/scenarios/case-2.toml")),
+    ("case-3", include_str!("../assets/scenarios/case-3.toml")),
+];
+
+impl Scenario {
+    /// The names of the built-in scenarios.
+    pub fn builtin_names() -> [&'static str; 3] {
+        BUILTIN.map(|(name, _)| name)
+    }
+
+    /// A built-in scenario.
+    pub fn builtin(name: &str) -> Option<Self> {
+        let (name, text) = BUILTIN.iter().find(|(n, _)| *n == name)?;
+        Some(Self::parse(text, name, None).expect("the scenarios that come along are valid"))
+    }
+
+    /// A scenario by built-in name or by file.
+    ///
+    /// # Errors
+    /// If it is neither, or the file is not a scenario.
+    pub fn find(name: &str) -> Result<Self, ScenarioError> {
+        if let Some(scenario) = Self::builtin(name) {
+            return Ok(scenario);
+        }
+        let file = FilePath::new(name);
+        let text = std::fs::read_to_string(file).map_err(|source| match source.kind() {
+            std::io::ErrorKind::NotFound if !name.ends_with(".toml") => ScenarioError::Syntax {
+                file: name.into(),
+                line: None,
+                message: format!("no such scenario: want {}, or a TOML file", Self::builtin_names().join(", ")),
+            },
+            _ => ScenarioError::Unreadable { file: name.into(), source },
+        })?;
+        Self::parse(&text, name, file.parent())
+    }
+
+    /// Reads a scenario from text; `label` is what errors call it, `folder` where its machine file is looked up.
+    ///
+    /// # Errors
+    /// If it is not a scenario.
+    pub fn parse(text: &str, label: &str, folder: Option<&FilePath>) -> Result<Self, ScenarioError> {
+        let file: File = toml::from_str(text).map_err(|e| ScenarioError::Syntax {
+            file: label.into(),
+            line: e.span().map(|s| text[..s.start.min(text.len())].matches('\n').count() + 1),
+            message: e.message().to_owned(),
+        })?;
+        let machine = match file.machine {
+            MachineRef::Name(name) => machine::find(&name, folder)?,
+            MachineRef::Inline(spec) => Machine::new(*spec)
+                .map_err(|error| ScenarioError::Machine { file: label.into(), error })?,
+        };
+        let stem = FilePath::new(label).file_stem().map_or_else(|| label.into(), |s| s.to_string_lossy().into_owned());
+        let scenario = Self {
+            name: file.name.unwrap_or(stem),
+            title: file.title,
+            machine,
+            plant: file.plant,
+            gains: file.control,
+            step: file.step,
+            pose_acceleration: file.pose_acceleration,
+            compare_b: file.compare_b,
+            duration: file.duration.unwrap_or(file.task.time),
+            task: file.task,
+            edits: file.edits,
+        };
+        scenario.check(label)?;
+        Ok(scenario)
+    }
+
+    fn check(&self, file: &str) -> Result<(), ScenarioError> {
+        let t = &self.task;
+        let positive = [
+            ("step", self.step, "a step above 0 s, at most 0.01 s", self.step > 0.0 && self.step <= 0.01),
+            ("task.time", t.time, "a time of at least one step, s", t.time >= self.step && t.time <= MAX_TIME),
+            ("duration", self.duration, "0 to 3600 s", (0.0..=MAX_TIME).contains(&self.duration)),
+            ("pose_acceleration", self.pose_acceleration, "above 0 rad/s²", self.pose_acceleration > 0.0),
+            ("control.kp", self.gains.kp, "0 s⁻² or more", self.gains.kp >= 0.0),
+            ("control.kd", self.gains.kd, "0 s⁻¹ or more", self.gains.kd >= 0.0),
+            ("plant.payload.mass", self.plant.payload.mass, "0 kg or more", self.plant.payload.mass >= 0.0),
+            ("plant.payload.inertia", self.plant.payload.inertia, "0 kg m² or more", self.plant.payload.inertia >= 0.0),
+        ];
+        let finite = [
+            ("task.from", t.from[0]),
+            ("task.from", t.from[1]),
+            ("task.to", t.to[0]),
+            ("task.to", t.to[1]),
+            ("task.b", t.b),
+            ("task.first_drive_to", t.first_drive_to.unwrap_or(0.0)),
+            ("compare_b", self.compare_b.unwrap_or(0.0)),
+        ]
+        .map(|(key, value)| (key, value, "a finite number", true));
+        for (key, value, want, ok) in positive.into_iter().chain(finite) {
+            if !ok || !value.is_finite() {
+                return Err(ScenarioError::OutOfRange { file: file.into(), key, value, want });
+            }
+        }
+        Ok(())
+    }
+
+    /// The scenario as TOML, so that [`parse`](Self::parse) gives an equal one. A built-in machine is named, any
+    /// other is written out.
+    ///
+    /// # Panics
+    /// Never: every scenario can be written.
+    pub fn to_toml(&self) -> String {
+        let machine = match machine::builtin(self.machine.name()) {
+            Some(known) if *known == self.machine => MachineRef::Name(self.machine.name().into()),
+            _ => MachineRef::Inline(Box::new(self.machine.spec().clone())),
+        };
+        let Self {
+            name, title, machine: _, plant, task, gains, step, pose_acceleration, compare_b, duration, edits,
+        } = self.clone();
+        let file = File {
+            name: Some(name),
+            title,
+            machine,
+            step,
+            duration: Some(duration),
+            pose_acceleration,
+            compare_b,
+            task,
+            control: gains,
+            plant,
+            edits,
+        };
+        toml::to_string(&file).expect("a scenario is plain data")
+    }
+
+    /// The machine that moves: the model with what differs in the plant.
+    ///
+    /// # Errors
+    /// If the difference leaves no valid machine.
+    pub fn plant_machine(&self) -> Result<Machine, MachineError> {
+        let mut spec = self.machine.spec().clone();
+        spec.payload.mass += self.plant.payload.mass;
+        spec.payload.inertia += self.plant.payload.inertia;
+        Machine::new(spec)
+    }
+}
+
+/// The longest run, s.
+pub const MAX_TIME: f64 = 3600.0;

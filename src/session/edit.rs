@@ -1,0 +1,96 @@
+//! [`Edit`]: every change a person can make, as data. A session is its scenario and its edits, nothing else.
+
+use serde::{Deserialize, Serialize};
+
+/// One change. It can be saved, replayed and undone.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "do", rename_all = "kebab-case")]
+pub enum Edit {
+    /// Sends the end effector to a point, m; the machine follows on its plane.
+    DragTarget {
+        /// m.
+        x: f64,
+        /// m.
+        y: f64,
+    },
+    /// Sends the pose constant to b, rad, in motion: the base feels n_B = −D_1 b̈.
+    SlideB {
+        /// rad.
+        b: f64,
+    },
+    /// Puts the machine on the plane b, rad, without a motion between.
+    PoseB {
+        /// rad.
+        b: f64,
+    },
+    /// Feedback gains.
+    SetGains {
+        /// s⁻².
+        kp: f64,
+        /// s⁻¹.
+        kd: f64,
+    },
+    /// A payload that control does not know of.
+    SetPayload {
+        /// kg.
+        mass: f64,
+    },
+    /// One setting of the machine, by the keys of `--set`.
+    SetMachine {
+        /// Such as `limits.a1`.
+        key: String,
+        /// Such as `0,3.14`.
+        value: String,
+    },
+    /// Duration T of the planned motion, s.
+    SetTime {
+        /// s.
+        time: f64,
+    },
+    /// The workspace to compare with; none hides it.
+    CompareB {
+        /// rad.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        b: Option<f64>,
+    },
+}
+
+/// An edit and the step at which it applies.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TimedEdit {
+    /// Steps since the start.
+    pub step: u64,
+    /// What.
+    #[serde(flatten)]
+    pub edit: Edit,
+}
+
+impl Edit {
+    /// Whether a later edit makes this one void, so that a drag keeps only its last word.
+    pub fn is_replaced_by(&self, later: &Self) -> bool {
+        match (self, later) {
+            (Self::SetMachine { key: a, .. }, Self::SetMachine { key: b, .. }) => a == b,
+            _ => std::mem::discriminant(self) == std::mem::discriminant(later),
+        }
+    }
+
+    /// Whether it leads the machine rather than setting a parameter.
+    pub fn is_live(&self) -> bool {
+        matches!(self, Self::DragTarget { .. } | Self::SlideB { .. } | Self::PoseB { .. })
+    }
+
+    /// What it does, for menus and the event log.
+    pub fn title(&self) -> String {
+        match self {
+            Self::DragTarget { x, y } => format!("drag target to {x:.3}, {y:.3} m"),
+            Self::SlideB { b } => format!("slide b to {b:.3} rad"),
+            Self::PoseB { b } => format!("pose at b = {b:.3} rad"),
+            Self::SetGains { kp, kd } => format!("set gains to {kp:.0} s⁻², {kd:.0} s⁻¹"),
+            Self::SetPayload { mass } => format!("set unknown payload to {mass:.3} kg"),
+            Self::SetMachine { key, value } => format!("set {key} to {value}"),
+            Self::SetTime { time } => format!("set motion time to {time:.3} s"),
+            Self::CompareB { b: Some(b) } => format!("compare with b = {b:.3} rad"),
+            Self::CompareB { b: None } => "stop comparing".into(),
+        }
+    }
+}

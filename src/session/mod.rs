@@ -1,0 +1,407 @@
+//! A [`Session`]: a scenario, what was done to it, and every frame so far.
+//!
+//! The window owns one and only sends it [`Edit`]s and transport commands; headless replays the same edits
+//! ([`replay`]). Because a run is a function of scenario and edits, undo, scrubbing and saving need no snapshots of
+//! state: the run is made again.
+
+mod edit;
+mod run;
+
+pub use edit::{Edit, TimedEdit};
+pub use run::{Refusal, Run, replay};
+
+use crate::frame::Frame;
+use crate::scenario::Scenario;
+
+/// The most frames a session keeps: ten minutes at 1 kHz.
+const MAX_FRAMES: usize = 600_000;
+
+/// Everything that makes a run: what undo restores and what is saved.
+#[derive(Clone, Debug, PartialEq)]
+struct Document {
+    /// Its edits are empty; they stand in `script`.
+    scenario: Scenario,
+    script: Vec<TimedEdit>,
+    /// Steps done.
+    end: u64,
+}
+
+/// One step of history.
+#[derive(Clone, Debug)]
+struct Change {
+    before: Document,
+    edit: Option<TimedEdit>,
+    /// What takes it back while the machine moves.
+    inverse: Option<Edit>,
+    title: String,
+}
+
+/// A run under somebody's hands.
+#[derive(Clone, Debug)]
+pub struct Session {
+    document: Document,
+    run: Run,
+    frames: Vec<Frame>,
+    cursor: usize,
+    playing: bool,
+    undo: Vec<Change>,
+    redo: Vec<Change>,
+    /// Edits of one kind join into one undo while a gesture lasts.
+    gesture: bool,
+}
+
+impl Session {
+    /// Opens a scenario; its saved edits are replayed up to its duration, and the cursor stands at the start.
+    ///
+    /// # Errors
+    /// If it cannot start, or one of its edits cannot apply.
+    pub fn open(scenario: Scenario) -> Result<Self, Refusal> {
+        let mut ground = scenario;
+        let script = std::mem::take(&mut ground.edits);
+        let end = if script.iter().any(|e| e.step > 0) { (ground.duration / ground.step).round() as u64 } else { 0 };
+        let mut session = Self::of(Document { scenario: ground, script, end })?;
+        session.cursor = 0;
+        Ok(session)
+    }
+
+    fn of(document: Document) -> Result<Self, Refusal> {
+        let (run, frames) = perform(&document)?;
+        let cursor = frames.len() - 1;
+        Ok(Self {
+            document,
+            run,
+            frames,
+            cursor,
+            playing: false,
+            undo: Vec::new(),
+            redo: Vec::new(),
+            gesture: false,
+        })
+    }
+
+    /// The instant on display.
+    pub fn frame(&self) -> &Frame {
+        &self.frames[self.cursor]
+    }
+
+    /// Every frame so far, one a step.
+    pub fn frames(&self) -> &[Frame] {
+        &self.frames
+    }
+
+    /// The scenario with everything that edits have set.
+    pub fn scenario(&self) -> &Scenario {
+        self.run.scenario()
+    }
+
+    /// The run at its newest step.
+    pub fn run(&self) -> &Run {
+        &self.run
+    }
+
+    /// Edits so far.
+    pub fn script(&self) -> &[TimedEdit] {
+        &self.document.script
+    }
+
+    /// Whether time is to pass.
+    pub fn is_playing(&self) -> bool {
+        self.playing
+    }
+
+    /// Whether the display will change by itself.
+    pub fn is_moving(&self) -> bool {
+        self.playing && !(self.is_at_end() && self.is_settled())
+    }
+
+    /// Whether the newest frame is on display.
+    pub fn is_at_end(&self) -> bool {
+        self.cursor + 1 == self.frames.len()
+    }
+
+    fn is_settled(&self) -> bool {
+        self.run.simulation().is_settled()
+    }
+
+    /// Length of the time line, s: the planned motion, or as far as the run has got.
+    pub fn length(&self) -> f64 {
+        let done = self.run.simulation().time();
+        if self.is_live() { done } else { done.max(self.scenario().task.time) }
+    }
+
+    /// Whether somebody has led the machine off its planned motion.
+    pub fn is_live(&self) -> bool {
+        self.document.script.iter().any(|e| e.step > 0 && e.edit.is_live())
+    }
+
+    /// Lets time pass. At the end of a finished motion it starts over.
+    pub fn play(&mut self) {
+        if self.is_at_end() && self.is_settled() {
+            self.cursor = 0;
+        }
+        self.playing = true;
+    }
+
+    /// Stops time.
+    pub fn pause(&mut self) {
+        self.playing = false;
+    }
+
+    /// Shows an instant, s, as far as the run has got or the planned motion goes.
+    pub fn seek(&mut self, time: f64) {
+        let step = (time / self.scenario().step).round().max(0.0) as usize;
+        if !self.is_live() {
+            let planned = (self.scenario().task.time / self.scenario().step).round() as usize;
+            while self.frames.len() <= step.min(planned) {
+                self.advance_run();
+            }
+        }
+        self.cursor = step.min(self.frames.len() - 1);
+    }
+
+    /// Moves the display by steps, either way; past the newest frame the run goes on.
+    pub fn step_by(&mut self, steps: i64) {
+        self.playing = false;
+        let to = self.cursor as i64 + steps;
+        for _ in self.frames.len() as i64..=to {
+            self.advance_run();
+        }
+        self.cursor = to.clamp(0, self.frames.len() as i64 - 1) as usize;
+    }
+
+    /// Lets `steps` steps pass, if time passes. Nothing happens once everything is at rest.
+    pub fn tick(&mut self, steps: u64) {
+        for _ in 0..steps {
+            if !self.is_moving() {
+                return;
+            }
+            if self.is_at_end() {
+                if self.frames.len() >= MAX_FRAMES {
+                    self.playing = false;
+                    return;
+                }
+                self.advance_run();
+            }
+            self.cursor += 1;
+        }
+    }
+
+    fn advance_run(&mut self) {
+        self.run.advance();
+        self.frames.push(self.run.frame());
+        self.document.end = self.run.simulation().step_count();
+    }
+
+    /// Applies an edit: to the machine in motion at the present step; at rest, parameters and poses change the start,
+    /// and the run so far is made again.
+    ///
+    /// # Errors
+    /// If it cannot apply; then nothing has changed.
+    pub fn apply(&mut self, edit: Edit) -> Result<(), Refusal> {
+        let moving = self.is_moving() && self.is_at_end();
+        let leads = matches!(edit, Edit::DragTarget { .. } | Edit::SlideB { .. });
+        let poses_live = matches!(edit, Edit::PoseB { .. }) && self.is_live();
+        if leads || poses_live || (moving && !matches!(edit, Edit::PoseB { .. })) {
+            self.apply_now(edit)
+        } else {
+            self.amend(edit)
+        }
+    }
+
+    /// At the present step; later frames, if the display was scrubbed back, are replaced.
+    fn apply_now(&mut self, edit: Edit) -> Result<(), Refusal> {
+        let before = self.document.clone();
+        let inverse = self.inverse_of(&edit);
+        if !self.is_at_end() {
+            let mut document = self.document.clone();
+            document.end = self.cursor as u64;
+            document.script.retain(|e| e.step < document.end || e.step == 0);
+            let (run, frames) = perform(&document)?;
+            (self.document, self.run, self.frames) = (document, run, frames);
+            self.cursor = self.frames.len() - 1;
+        }
+        self.run.apply(&edit)?;
+        let timed = TimedEdit { step: self.run.simulation().step_count(), edit };
+        let script = &mut self.document.script;
+        match script.last_mut() {
+            Some(last) if self.gesture && last.step == timed.step && last.edit.is_replaced_by(&timed.edit) => {
+                *last = timed.clone();
+            }
+            _ => script.push(timed.clone()),
+        }
+        if let Some(last) = self.frames.last_mut() {
+            *last = self.run.frame();
+        }
+        if matches!(timed.edit, Edit::DragTarget { .. } | Edit::SlideB { .. }) {
+            self.playing = true;
+        }
+        self.remember(before, timed, inverse);
+        Ok(())
+    }
+
+    /// Before the first step, whatever has happened since.
+    fn amend(&mut self, edit: Edit) -> Result<(), Refusal> {
+        let before = self.document.clone();
+        let inverse = self.inverse_of(&edit);
+        let mut document = self.document.clone();
+        document.script.retain(|e| e.step > 0 || !e.edit.is_replaced_by(&edit));
+        let place = document.script.iter().position(|e| e.step > 0).unwrap_or(document.script.len());
+        let timed = TimedEdit { step: 0, edit };
+        document.script.insert(place, timed.clone());
+        let (run, frames) = perform(&document)?;
+        (self.document, self.run, self.frames) = (document, run, frames);
+        self.cursor = self.cursor.min(self.frames.len() - 1);
+        self.remember(before, timed, inverse);
+        Ok(())
+    }
+
+    fn remember(&mut self, before: Document, timed: TimedEdit, inverse: Option<Edit>) {
+        self.redo.clear();
+        let joins = self.gesture
+            && self.undo.last().is_some_and(|c| c.edit.as_ref().is_some_and(|e| e.edit.is_replaced_by(&timed.edit)));
+        match self.undo.last_mut() {
+            Some(last) if joins => {
+                last.title = timed.edit.title();
+                last.edit = Some(timed);
+            }
+            _ => {
+                let title = timed.edit.title();
+                self.undo.push(Change { before, edit: Some(timed), inverse, title });
+            }
+        }
+        self.gesture = true;
+    }
+
+    /// Ends a drag: the next edit is an undo of its own.
+    pub fn end_gesture(&mut self) {
+        self.gesture = false;
+    }
+
+    /// What takes an edit back while the machine moves.
+    fn inverse_of(&self, edit: &Edit) -> Option<Edit> {
+        let (scenario, frame) = (self.run.scenario(), self.frames.last()?);
+        let b_now = || match self.run.simulation().guide() {
+            crate::simulation::Guide::Follow(f) => f.b_aim(),
+            crate::simulation::Guide::Motion { .. } => frame.b_reference,
+        };
+        Some(match edit {
+            Edit::DragTarget { .. } => Edit::DragTarget { x: frame.target.at.re, y: frame.target.at.im },
+            Edit::SlideB { .. } => Edit::SlideB { b: b_now() },
+            Edit::PoseB { .. } => Edit::PoseB { b: b_now() },
+            Edit::SetGains { .. } => Edit::SetGains { kp: scenario.gains.kp, kd: scenario.gains.kd },
+            Edit::SetPayload { .. } => Edit::SetPayload { mass: scenario.plant.payload.mass },
+            Edit::SetMachine { key, .. } => {
+                Edit::SetMachine { key: key.clone(), value: scenario.machine.get(key)? }
+            }
+            Edit::SetTime { .. } => Edit::SetTime { time: scenario.task.time },
+            Edit::CompareB { .. } => Edit::CompareB { b: scenario.compare_b },
+        })
+    }
+
+    /// What undo would take back.
+    pub fn undo_title(&self) -> Option<&str> {
+        self.undo.last().map(|c| c.title.as_str())
+    }
+
+    /// What redo would bring back.
+    pub fn redo_title(&self) -> Option<&str> {
+        self.redo.last().map(|c| c.title.as_str())
+    }
+
+    /// Takes the last edit back: in motion by its inverse at the present step, at rest by restoring what was.
+    ///
+    /// # Errors
+    /// If what was cannot be restored; then nothing has changed.
+    pub fn undo(&mut self) -> Result<(), Refusal> {
+        self.end_gesture();
+        let Some(change) = self.undo.last().cloned() else { return Ok(()) };
+        let after = self.document.clone();
+        let done = match &change.inverse {
+            Some(inverse) if self.is_moving() && self.is_at_end() => self.append(inverse.clone()),
+            _ => self.restore(&change.before),
+        };
+        done?;
+        self.undo.pop();
+        self.redo.push(Change { before: after, ..change });
+        Ok(())
+    }
+
+    /// Brings back what undo took.
+    ///
+    /// # Errors
+    /// If it cannot apply; then nothing has changed.
+    pub fn redo(&mut self) -> Result<(), Refusal> {
+        self.end_gesture();
+        let Some(change) = self.redo.last().cloned() else { return Ok(()) };
+        let before = self.document.clone();
+        let done = match &change.edit {
+            Some(timed) if self.is_moving() && self.is_at_end() => self.append(timed.edit.clone()),
+            _ => self.restore(&change.before),
+        };
+        done?;
+        self.redo.pop();
+        self.undo.push(Change { before, ..change });
+        Ok(())
+    }
+
+    /// Applies at the present step without touching history.
+    fn append(&mut self, edit: Edit) -> Result<(), Refusal> {
+        self.run.apply(&edit)?;
+        self.document.script.push(TimedEdit { step: self.run.simulation().step_count(), edit });
+        if let Some(last) = self.frames.last_mut() {
+            *last = self.run.frame();
+        }
+        Ok(())
+    }
+
+    fn restore(&mut self, document: &Document) -> Result<(), Refusal> {
+        let (run, frames) = perform(document)?;
+        (self.document, self.run, self.frames) = (document.clone(), run, frames);
+        self.cursor = self.cursor.min(self.frames.len() - 1);
+        if self.is_live() {
+            self.cursor = self.frames.len() - 1;
+        }
+        Ok(())
+    }
+
+    /// Replaces everything by another scenario; undo brings this one back.
+    ///
+    /// # Errors
+    /// If it cannot start; then nothing has changed.
+    pub fn switch(&mut self, scenario: Scenario) -> Result<(), Refusal> {
+        let title = format!("open {}", scenario.title);
+        let mut next = Self::open(scenario)?;
+        next.undo = std::mem::take(&mut self.undo);
+        next.undo.push(Change { before: self.document.clone(), edit: None, inverse: None, title });
+        *self = next;
+        Ok(())
+    }
+
+    /// The session as a scenario: opened again, it gives equal frames.
+    pub fn to_scenario(&self) -> Scenario {
+        let mut scenario = self.document.scenario.clone();
+        scenario.edits.clone_from(&self.document.script);
+        if self.document.end > 0 {
+            scenario.duration = self.document.end as f64 * scenario.step;
+        }
+        scenario
+    }
+}
+
+/// Runs a document from its start to its end.
+fn perform(document: &Document) -> Result<(Run, Vec<Frame>), Refusal> {
+    let mut run = Run::new(&document.scenario)?;
+    let mut frames = Vec::with_capacity(document.end as usize + 1);
+    let mut edits = document.script.iter().peekable();
+    loop {
+        let step = run.simulation().step_count();
+        while let Some(timed) = edits.next_if(|e| e.step <= step) {
+            run.apply(&timed.edit)?;
+        }
+        frames.push(run.frame());
+        if step >= document.end {
+            return Ok((run, frames));
+        }
+        run.advance();
+    }
+}

@@ -1,0 +1,292 @@
+//! A [`Run`]: a scenario in motion. Window and headless advance the same one, so they cannot differ.
+
+use std::sync::Arc;
+
+use thiserror::Error;
+
+use super::Edit;
+use crate::frame::Frame;
+use crate::machine::MachineError;
+use crate::plan::follow::Bounds;
+use crate::plan::path::{SameTip, TipLine};
+use crate::plan::{Follower, Motion, Path, PathError};
+use crate::planar::{DriveAngles, Vector};
+use crate::pose_constant::{PlaneError, Planes, Unreachable};
+use crate::scenario::{MAX_TIME, Scenario, TaskKind};
+use crate::simulation::{Guide, Simulation};
+
+/// Why a scenario cannot start or an edit cannot apply; nothing has changed then.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum Refusal {
+    /// The machine has no reactionless planes of the kind the task needs.
+    #[error(transparent)]
+    NoPlanes(#[from] PlaneError),
+    /// A or B cannot be reached there.
+    #[error("{point} {unreachable}")]
+    Unreachable {
+        /// `A` or `B`.
+        point: char,
+        /// Why, and what would do.
+        unreachable: Unreachable,
+    },
+    /// The path.
+    #[error(transparent)]
+    Path(#[from] PathError),
+    /// The machine.
+    #[error(transparent)]
+    Machine(#[from] MachineError),
+    /// A number out of range.
+    #[error("{what} {value}: want {want}")]
+    OutOfRange {
+        /// Which.
+        what: &'static str,
+        /// What was given.
+        value: f64,
+        /// What would be right.
+        want: &'static str,
+    },
+}
+
+/// A scenario in motion.
+#[derive(Clone, Debug)]
+pub struct Run {
+    scenario: Scenario,
+    planes: Option<Arc<Planes>>,
+    simulation: Simulation,
+}
+
+impl Run {
+    /// At rest at the start of the scenario's task; its edits are left to the caller.
+    ///
+    /// # Errors
+    /// If the task cannot be planned.
+    pub fn new(scenario: &Scenario) -> Result<Self, Refusal> {
+        Self::with_planes(scenario, None)
+    }
+
+    fn with_planes(scenario: &Scenario, known: Option<Arc<Planes>>) -> Result<Self, Refusal> {
+        let planes = match known {
+            Some(planes) => planes,
+            None => Arc::new(Planes::of(&scenario.machine)?),
+        };
+        let motion = plan(scenario, &planes)?;
+        let guide = Guide::Motion { motion, start: 0.0 };
+        let plant = scenario.plant_machine()?;
+        let simulation = Simulation::new(&scenario.machine, &plant, scenario.gains, scenario.step, guide);
+        Ok(Self { scenario: scenario.clone(), planes: Some(planes), simulation })
+    }
+
+    /// The scenario with everything that edits have set.
+    pub fn scenario(&self) -> &Scenario {
+        &self.scenario
+    }
+
+    /// The machine's reactionless planes.
+    pub fn planes(&self) -> Option<&Arc<Planes>> {
+        self.planes.as_ref()
+    }
+
+    /// The simulation.
+    pub fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    /// The planned motion, while it leads.
+    pub fn motion(&self) -> Option<&Motion> {
+        match self.simulation.guide() {
+            Guide::Motion { motion, .. } => Some(motion),
+            Guide::Follow(_) => None,
+        }
+    }
+
+    /// Everything that is true now.
+    pub fn frame(&self) -> Frame {
+        self.simulation.frame()
+    }
+
+    /// One step.
+    pub fn advance(&mut self) {
+        self.simulation.advance();
+    }
+
+    /// Applies an edit at the present step.
+    ///
+    /// # Errors
+    /// If it cannot apply; then nothing has changed.
+    pub fn apply(&mut self, edit: &Edit) -> Result<(), Refusal> {
+        check(edit)?;
+        match edit {
+            Edit::DragTarget { x, y } => {
+                let mut follower = self.follower()?;
+                follower.set_target(Vector::new(*x, *y));
+                self.simulation.lead(Guide::Follow(follower));
+            }
+            Edit::SlideB { b } => {
+                let mut follower = self.follower()?;
+                follower.set_b(*b);
+                self.simulation.lead(Guide::Follow(follower));
+            }
+            Edit::PoseB { b } if self.simulation.step_count() == 0 => {
+                self.pose_task(*b)?;
+            }
+            Edit::PoseB { b } => {
+                let mut follower = self.follower()?;
+                follower.pose_at(*b);
+                self.simulation.place(Guide::Follow(follower));
+            }
+            Edit::CompareB { b } => self.scenario.compare_b = *b,
+            Edit::SetGains { .. } | Edit::SetPayload { .. } | Edit::SetMachine { .. } | Edit::SetTime { .. } => {
+                self.set(edit)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Parameters: before the first step the task is planned anew, later the motion keeps its path.
+    fn set(&mut self, edit: &Edit) -> Result<(), Refusal> {
+        let mut scenario = self.scenario.clone();
+        match edit {
+            Edit::SetGains { kp, kd } => (scenario.gains.kp, scenario.gains.kd) = (*kp, *kd),
+            Edit::SetPayload { mass } => scenario.plant.payload.mass = *mass,
+            Edit::SetMachine { key, value } => scenario.machine = scenario.machine.set(key, value)?,
+            Edit::SetTime { time } => {
+                // A headless run covers the motion as before.
+                if scenario.duration == scenario.task.time {
+                    scenario.duration = *time;
+                }
+                scenario.task.time = *time;
+            }
+            _ => {}
+        }
+        if self.simulation.step_count() == 0 {
+            return self.restart(scenario);
+        }
+        let plant = scenario.plant_machine()?;
+        if scenario.machine != self.scenario.machine {
+            let planes = Arc::new(Planes::of(&scenario.machine)?);
+            if matches!(self.simulation.guide(), Guide::Follow(_)) {
+                let follower = Follower::new(planes.clone(), bounds(&scenario, &planes), self.simulation.reference());
+                self.simulation.lead(Guide::Follow(follower));
+            }
+            self.planes = Some(planes);
+        }
+        self.simulation.change(&scenario.machine, &plant, scenario.gains);
+        self.scenario = scenario;
+        Ok(())
+    }
+
+    /// The task on another plane: A and B keep their places while one plane serves both; beyond that they turn with
+    /// the workspace.
+    fn pose_task(&mut self, b: f64) -> Result<(), Refusal> {
+        let mut scenario = self.scenario.clone();
+        scenario.task.b = b;
+        if let Some(planes) = &self.planes {
+            let points = [scenario.task.from, scenario.task.to].map(|p| Vector::new(p[0], p[1]));
+            if let (Err(_), Some(turned)) = (planes.serve(points, b), planes.serve_turned(points, b)) {
+                [scenario.task.from, scenario.task.to] = turned.map(|at| {
+                    let p = planes.map().forward(at.a, at.b);
+                    [p.re, p.im]
+                });
+            }
+        }
+        self.restart(scenario)
+    }
+
+    fn restart(&mut self, scenario: Scenario) -> Result<(), Refusal> {
+        let known = (scenario.machine == self.scenario.machine).then(|| self.planes.clone()).flatten();
+        *self = Self::with_planes(&scenario, known)?;
+        Ok(())
+    }
+
+    /// The follower that leads, or one that takes over from the motion.
+    fn follower(&self) -> Result<Follower, Refusal> {
+        match self.simulation.guide() {
+            Guide::Follow(follower) => Ok(follower.clone()),
+            Guide::Motion { .. } => {
+                let planes = match &self.planes {
+                    Some(planes) => planes.clone(),
+                    None => Arc::new(Planes::of(&self.scenario.machine)?),
+                };
+                let bounds = bounds(&self.scenario, &planes);
+                Ok(Follower::new(planes, bounds, self.simulation.reference()))
+            }
+        }
+    }
+}
+
+fn check(edit: &Edit) -> Result<(), Refusal> {
+    let out = |what, value, want| Err(Refusal::OutOfRange { what, value, want });
+    match *edit {
+        Edit::DragTarget { x, y } if !(x.is_finite() && y.is_finite()) => {
+            out("target", if x.is_finite() { y } else { x }, "finite coordinates, m")
+        }
+        Edit::SlideB { b } | Edit::PoseB { b } | Edit::CompareB { b: Some(b) } if !(b.abs() <= 1e3) => {
+            out("b", b, "a number between -1000 and 1000 rad")
+        }
+        Edit::SetGains { kp, kd } if !(kp >= 0.0 && kd >= 0.0 && kp.is_finite() && kd.is_finite()) => {
+            out("gain", if kp >= 0.0 && kp.is_finite() { kd } else { kp }, "0 or more")
+        }
+        Edit::SetPayload { mass } if !(mass >= 0.0 && mass.is_finite()) => out("payload", mass, "0 kg or more"),
+        Edit::SetTime { time } if !(0.01..=MAX_TIME).contains(&time) => out("motion time", time, "0.01 to 3600 s"),
+        _ => Ok(()),
+    }
+}
+
+/// Bounds of the follower: no torque limit of any drive is passed in any direction of (ä_1, ä_2).
+fn bounds(scenario: &Scenario, planes: &Planes) -> Bounds {
+    const UNLIMITED: f64 = 30.0;
+    let machine = &scenario.machine;
+    let inertia = crate::machine::Inertia::of(machine);
+    let joint = (0..machine.drives())
+        .filter_map(|k| {
+            let limit = machine.spec().drives[k].torque_limit?;
+            let [u, v] = planes.map().u()[k];
+            Some(limit / (inertia.diagonal(k) * u.hypot(v).max(1e-9)))
+        })
+        .fold(UNLIMITED, f64::min);
+    Bounds { joint, pose: scenario.pose_acceleration }
+}
+
+/// The motion that a scenario's task asks for.
+fn plan(scenario: &Scenario, planes: &Planes) -> Result<Motion, Refusal> {
+    let task = &scenario.task;
+    let at = |p: [f64; 2]| Vector::new(p[0], p[1]);
+    let [from, to] = planes.serve([at(task.from), at(task.to)], task.b).map_err(|(i, unreachable)| {
+        Refusal::Unreachable { point: ['A', 'B'][i], unreachable }
+    })?;
+    let lift = |p| DriveAngles::from(planes.map().lift(p));
+    let (from, to) = (lift(from), lift(to));
+    let tip = scenario.machine.tip();
+    let path = match task.kind {
+        TaskKind::Reactionless => Path::JointLine { from, to },
+        TaskKind::TipLine => {
+            let end = crate::kinematics::end_effector(tip, &to.units());
+            Path::TipLine(TipLine::new(tip, from, end)?)
+        }
+        TaskKind::SameTip => {
+            Path::SameTip(SameTip::new(tip, from, to, task.first_drive_to.unwrap_or(from[0]))?)
+        }
+    };
+    Ok(Motion { path, law: task.law, duration: task.time })
+}
+
+/// Frames of a scenario with its edits, from the first to the last step, one at a time.
+///
+/// # Errors
+/// If it cannot start, or an edit cannot apply.
+pub fn replay(scenario: &Scenario, mut see: impl FnMut(&Run, &Frame)) -> Result<Run, Refusal> {
+    let mut run = Run::new(scenario)?;
+    let mut edits = scenario.edits.iter().peekable();
+    let last = (scenario.duration / scenario.step).round() as u64;
+    loop {
+        let step = run.simulation().step_count();
+        while let Some(timed) = edits.next_if(|e| e.step <= step) {
+            run.apply(&timed.edit)?;
+        }
+        see(&run, &run.frame());
+        if step >= last {
+            return Ok(run);
+        }
+        run.advance();
+    }
+}

@@ -1,0 +1,124 @@
+//! The one table of signals: a row is a plot, a series of the recording and a column of the CSV.
+
+use crate::frame::Frame;
+use crate::machine::Machine;
+
+/// A number that a [`Frame`] holds, with its name and unit.
+#[derive(Clone, Debug)]
+pub struct Signal {
+    /// Unique, with `/` between its parts: `torque/1`.
+    pub path: String,
+    /// As the paper writes it: `τ₁`.
+    pub symbol: String,
+    /// What it is, in words.
+    pub label: String,
+    /// SI unit, `1` for none.
+    pub unit: &'static str,
+    /// Drive or angle whose colour it has, counted from 0.
+    pub drive: Option<usize>,
+    quantity: Quantity,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Quantity {
+    PerDrive(usize, fn(&Frame, usize) -> f64),
+    Whole(fn(&Frame) -> f64),
+}
+
+impl Signal {
+    /// Its value at one instant.
+    #[inline]
+    pub fn value(&self, frame: &Frame) -> f64 {
+        match self.quantity {
+            Quantity::PerDrive(k, f) => f(frame, k),
+            Quantity::Whole(f) => f(frame),
+        }
+    }
+
+    /// The first part of the path: signals of one group share a plot and a unit.
+    pub fn group(&self) -> &str {
+        self.path.split('/').next().unwrap_or(&self.path)
+    }
+}
+
+/// Every signal of a machine, in a fixed order.
+pub fn signals(machine: &Machine) -> Vec<Signal> {
+    let mut table = Vec::new();
+    let n = machine.drives();
+    type Row = (&'static str, &'static str, &'static str, &'static str, fn(&Frame, usize) -> f64);
+    let per_drive: [Row; 6] = [
+        ("torque", "τ", "torque of drive", "N m", |f, k| f.torque[k]),
+        ("angle", "q", "angle of drive", "rad", |f, k| f.q[k]),
+        ("rate", "q̇", "rate of drive", "rad/s", |f, k| f.qd[k]),
+        ("acceleration", "q̈", "acceleration of drive", "rad/s²", |f, k| f.qdd[k]),
+        ("reference", "q ref", "reference of drive", "rad", |f, k| f.q_reference[k]),
+        ("error", "e", "tracking error of drive", "rad", |f, k| f.q_reference[k] - f.q[k]),
+    ];
+    for (path, symbol, label, unit, value) in per_drive {
+        for k in 0..n {
+            let name = &machine.spec().drives[k].name;
+            table.push(Signal {
+                path: format!("{path}/{name}"),
+                symbol: format!("{symbol}{}", subscript(k + 1)),
+                label: format!("{label} {name}"),
+                unit,
+                drive: Some(k),
+                quantity: Quantity::PerDrive(k, value),
+            });
+        }
+    }
+    for (i, angle) in machine.angles().iter().enumerate() {
+        table.push(Signal {
+            path: format!("joint/{}", angle.name),
+            symbol: format!("a{}", subscript(i + 1)),
+            label: format!("relative joint angle {}", angle.name),
+            unit: "rad",
+            drive: Some(angle.to),
+            quantity: Quantity::PerDrive(i, |f, i| f.a[i]),
+        });
+    }
+    type Single = (&'static str, &'static str, &'static str, &'static str, fn(&Frame) -> f64);
+    let whole: [Single; 26] = [
+        ("pose/b", "b", "pose constant", "rad", |f| f.b),
+        ("pose/b_reference", "b ref", "pose constant aimed at", "rad", |f| f.b_reference),
+        ("moment/total", "n_B", "base moment", "N m", |f| f.base_moment()),
+        ("moment/dynamic", "n_B dyn", "base moment, from motion", "N m", |f| f.wrench.dynamic.moment),
+        ("moment/static", "n_B stat", "base moment, from weight", "N m", |f| f.wrench.statical.moment),
+        ("force/dynamic", "|f_B|", "base force, from motion", "N", |f| f.wrench.dynamic.force.norm()),
+        ("force/dynamic_x", "f_Bx", "base force along x, from motion", "N", |f| f.wrench.dynamic.force.re),
+        ("force/dynamic_y", "f_By", "base force along y, from motion", "N", |f| f.wrench.dynamic.force.im),
+        ("force/static_x", "f_Bx stat", "base force along x, from weight", "N", |f| f.wrench.statical.force.re),
+        ("force/static_y", "f_By stat", "base force along y, from weight", "N", |f| f.wrench.statical.force.im),
+        ("momentum/x", "p_x", "linear momentum along x", "kg m/s", |f| f.momentum.re),
+        ("momentum/y", "p_y", "linear momentum along y", "kg m/s", |f| f.momentum.im),
+        ("angular_momentum/about_b", "h_B", "angular momentum about B", "kg m²/s", |f| f.angular_momentum),
+        ("com/x", "x_CM", "centre of mass, x", "m", |f| f.com.re),
+        ("com/y", "y_CM", "centre of mass, y", "m", |f| f.com.im),
+        ("tip/x", "x", "end effector, x", "m", |f| f.tip.re),
+        ("tip/y", "y", "end effector, y", "m", |f| f.tip.im),
+        ("target/x", "x target", "target, x", "m", |f| f.target.at.re),
+        ("target/y", "y target", "target, y", "m", |f| f.target.at.im),
+        ("base/x", "x_B", "base, x", "m", |f| f.base.at.re),
+        ("base/y", "y_B", "base, y", "m", |f| f.base.at.im),
+        ("attitude/base", "θ", "attitude of the base", "rad", |f| f.base.angle),
+        ("energy/kinetic", "T", "kinetic energy", "J", |f| f.kinetic),
+        ("energy/balance", "ΔE − W", "energy gained less work done", "J", |f| f.energy_balance),
+        ("transmission/least", "min |sin|", "least |sin(q_k − q_l)|, 0 at a change point", "1", |f| f.transmission),
+        ("reactionless/now", "quiet", "1 while the base feels nothing", "1", |f| f64::from(u8::from(f.is_quiet()))),
+    ];
+    for (path, symbol, label, unit, value) in whole {
+        table.push(Signal {
+            path: path.into(),
+            symbol: symbol.into(),
+            label: label.into(),
+            unit,
+            drive: None,
+            quantity: Quantity::Whole(value),
+        });
+    }
+    table
+}
+
+fn subscript(number: usize) -> String {
+    number.to_string().chars().filter_map(|c| char::from_u32(c as u32 - '0' as u32 + '₀' as u32)).collect()
+}
