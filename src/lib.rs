@@ -1,2 +1,4 @@
 //! Stillbase.
+#[cfg(feature = "render")]
+pub mod render;
 pub mod scene;
