@@ -12,6 +12,8 @@ pub mod planar;
 pub mod pose_constant;
 pub mod reactionless;
 pub mod scenario;
+#[cfg(feature = "render")]
+pub mod render;
 pub mod scene;
 pub mod session;
 pub mod signals;

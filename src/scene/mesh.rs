@@ -1,1 +1,141 @@
 //! Meshes of bars, discs and rings, built once per machine.
+//!
+//! Every mesh is a profile in (offset, z) swept around a convex outline in the xy plane, so it is closed by
+//! construction: strips of one normal a strip across, smooth along the outline, and flat caps. Lengths are metres, z
+//! runs from 0 to the height. Computed in `f64`, stored in `f32`.
+//!
+//! Sizes from outside are never trusted: negative and non-finite ones count as zero, a bevel takes at most half of the
+//! radius and a third of the height. A mesh without volume has no triangles.
+
+use super::Mesh;
+use std::f64::consts::{PI, TAU};
+
+/// Chords in a full turn; the polygon's area falls short of the circle's by [`polygon_factor`].
+pub const SEGMENTS: usize = 96;
+
+/// Area of the inscribed polygon of [`SEGMENTS`] chords over that of its circle, `(N / 2π) sin(2π / N)`.
+pub fn polygon_factor() -> f64 {
+    (TAU / SEGMENTS as f64).sin() * SEGMENTS as f64 / TAU
+}
+
+/// A bar with round ends: the points within `radius` of the segment from `(length_from, 0)` to `(length_to, 0)`,
+/// from z = 0 to `height`, its top and bottom edges bevelled by `bevel` so that shading shows them.
+pub fn bar(length_from: f64, length_to: f64, radius: f64, height: f64, bevel: f64) -> Mesh {
+    let [from, to] = [length_from, length_to].map(|x| if x.is_finite() { x } else { 0.0 });
+    prism(&stadium(from.min(to), from.max(to)), radius, height, bevel)
+}
+
+/// A disc around the z axis with bevelled edges.
+pub fn cylinder(radius: f64, height: f64, bevel: f64) -> Mesh {
+    prism(&stadium(0.0, 0.0), radius, height, bevel)
+}
+
+/// A flat ring around the z axis, of rectangular section.
+pub fn ring(outer: f64, inner: f64, height: f64) -> Mesh {
+    let [outer, inner, height] = [outer, inner, height].map(size);
+    let (outer, inner) = (outer.max(inner), outer.min(inner));
+    if inner == 0.0 {
+        return prism(&stadium(0.0, 0.0), outer, height, 0.0);
+    }
+    if outer == inner || height == 0.0 {
+        return Mesh::default();
+    }
+    let outline = stadium(0.0, 0.0);
+    let corners = [[inner, 0.0], [outer, 0.0], [outer, height], [inner, height], [inner, 0.0]];
+    let mut mesh = Mesh::default();
+    for side in corners.windows(2) {
+        strip(&mut mesh, &outline, side[0], side[1]);
+    }
+    mesh
+}
+
+/// A vertex of an outline: the centre it is offset from, and the outward direction.
+struct Spoke {
+    centre: f64,
+    out: [f64; 2],
+}
+
+/// Directions of a circle, cut in two and pulled apart from `from` to `to`; counter-clockwise from (0, -1).
+fn stadium(from: f64, to: f64) -> Vec<Spoke> {
+    let half = SEGMENTS / 2;
+    let spoke = |centre, k: usize| {
+        // Exact at the quarter turns, so that sides are straight and ends meet them.
+        let out = match 4 * k {
+            0 => [0.0, -1.0],
+            x if x == SEGMENTS => [1.0, 0.0],
+            x if x == 2 * SEGMENTS => [0.0, 1.0],
+            x if x == 3 * SEGMENTS => [-1.0, 0.0],
+            _ => {
+                let angle = TAU * k as f64 / SEGMENTS as f64 - 0.5 * PI;
+                [angle.cos(), angle.sin()]
+            }
+        };
+        Spoke { centre, out }
+    };
+    if from == to {
+        return (0..SEGMENTS).map(|k| spoke(from, k)).collect();
+    }
+    let right = (0..=half).map(|k| spoke(to, k));
+    let left = (half..=SEGMENTS).map(|k| spoke(from, k % SEGMENTS));
+    right.chain(left).collect()
+}
+
+fn size(x: f64) -> f64 {
+    if x.is_finite() { x.max(0.0) } else { 0.0 }
+}
+
+fn prism(outline: &[Spoke], radius: f64, height: f64, bevel: f64) -> Mesh {
+    let (radius, height) = (size(radius), size(height));
+    if radius == 0.0 || height == 0.0 {
+        return Mesh::default();
+    }
+    let bevel = size(bevel).min(radius / 2.0).min(height / 3.0);
+    let profile = [[radius - bevel, 0.0], [radius, bevel], [radius, height - bevel], [radius - bevel, height]];
+    let mut mesh = Mesh::default();
+    for side in profile.windows(2) {
+        strip(&mut mesh, outline, side[0], side[1]);
+    }
+    cap(&mut mesh, outline, profile[0], -1.0);
+    cap(&mut mesh, outline, profile[3], 1.0);
+    mesh
+}
+
+/// Sweeps the side from `a` to `b`, each (offset, z), around the outline; outside is to the right of a → b.
+fn strip(mesh: &mut Mesh, outline: &[Spoke], a: [f64; 2], b: [f64; 2]) {
+    let (along, up) = (b[0] - a[0], b[1] - a[1]);
+    let length = along.hypot(up);
+    if length == 0.0 {
+        return;
+    }
+    let (out, z) = (up / length, -along / length);
+    let first = mesh.positions.len() as u32;
+    for spoke in outline {
+        let normal = [spoke.out[0] * out, spoke.out[1] * out, z];
+        push(mesh, spoke, a, normal);
+        push(mesh, spoke, b, normal);
+    }
+    let n = outline.len() as u32;
+    for k in 0..n {
+        let [a0, b0] = [first + 2 * k, first + 2 * k + 1];
+        let [a1, b1] = [first + 2 * ((k + 1) % n), first + 2 * ((k + 1) % n) + 1];
+        mesh.triangles.extend([[a0, a1, b1], [a0, b1, b0]]);
+    }
+}
+
+/// Closes the outline at (offset, z) with a flat fan that looks up (`up` = 1) or down (-1).
+fn cap(mesh: &mut Mesh, outline: &[Spoke], at: [f64; 2], up: f64) {
+    let first = mesh.positions.len() as u32;
+    for spoke in outline {
+        push(mesh, spoke, at, [0.0, 0.0, up]);
+    }
+    for k in 1..outline.len() as u32 - 1 {
+        let (b, c) = if up > 0.0 { (k, k + 1) } else { (k + 1, k) };
+        mesh.triangles.push([first, first + b, first + c]);
+    }
+}
+
+fn push(mesh: &mut Mesh, spoke: &Spoke, [offset, z]: [f64; 2], normal: [f64; 3]) {
+    let position = [spoke.centre + offset * spoke.out[0], offset * spoke.out[1], z];
+    mesh.positions.push(position.map(|x| x as f32));
+    mesh.normals.push(normal.map(|x| x as f32));
+}

@@ -1,0 +1,60 @@
+// Bars, joints and base: instanced meshes in a calm light. A face that looks straight up at an eye straight above
+// keeps its colour exactly.
+
+struct Frame {
+    clip_from_world: mat4x4<f32>,
+    eye_direction: vec3<f32>,
+    pixels_per_point: f32,
+    size_px: vec2<f32>,
+};
+
+struct Instance {
+    world_from_mesh: mat4x4<f32>,
+    colour: vec4<f32>,
+};
+
+struct Vertex {
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+};
+
+struct Varying {
+    // Invariant: the two passes over translucent solids must agree on depth to the last bit.
+    @builtin(position) @invariant clip: vec4<f32>,
+    @location(0) normal: vec3<f32>,
+    @location(1) @interpolate(flat) colour: vec4<f32>,
+};
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+@group(1) @binding(0) var<storage, read> instances: array<Instance>;
+
+@vertex
+fn vertex(v: Vertex, @builtin(instance_index) i: u32) -> Varying {
+    let m = instances[i].world_from_mesh;
+    var out: Varying;
+    out.clip = frame.clip_from_world * (m * vec4<f32>(v.position, 1.0));
+    // The cofactors of m: normals stay normal under any scaling.
+    let cofactor = mat3x3<f32>(cross(m[1].xyz, m[2].xyz), cross(m[2].xyz, m[0].xyz), cross(m[0].xyz, m[1].xyz));
+    out.normal = cofactor * v.normal;
+    out.colour = instances[i].colour;
+    return out;
+}
+
+const KEY = vec3<f32>(-0.36, 0.48, 0.8); // towards the light: above left, unit
+
+// Sky from above, a key light, and a faint lamp at the eye.
+fn light(normal: vec3<f32>, eye: vec3<f32>) -> f32 {
+    let sky = mix(0.34, 0.56, 0.5 + 0.5 * normal.z);
+    let key = 0.30 * max(dot(normal, KEY), 0.0);
+    let lamp = 0.20 * max(dot(normal, eye), 0.0);
+    return sky + key + lamp;
+}
+
+@fragment
+fn fragment(in: Varying) -> @location(0) vec4<f32> {
+    let up = vec3<f32>(0.0, 0.0, 1.0);
+    let level = light(normalize(in.normal), frame.eye_direction) / light(up, up);
+    // Past full light, towards white rather than into clipping.
+    let lit = mix(in.colour.rgb * min(level, 1.0), vec3<f32>(1.0), clamp(level - 1.0, 0.0, 1.0));
+    return vec4<f32>(lit, in.colour.a);
+}

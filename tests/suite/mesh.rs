@@ -1,0 +1,126 @@
+//! Meshes are closed, oriented outwards and of the right volume.
+
+use std::collections::HashMap;
+use std::f64::consts::PI;
+use stillbase::scene::Mesh;
+use stillbase::scene::mesh::{bar, cylinder, polygon_factor, ring};
+
+fn vector(p: [f32; 3]) -> nalgebra::Vector3<f64> {
+    nalgebra::Vector3::from(p.map(f64::from))
+}
+
+/// Volume by the divergence theorem.
+fn volume(mesh: &Mesh) -> f64 {
+    let corner = |k: u32| vector(mesh.positions[k as usize]);
+    mesh.triangles.iter().map(|&[a, b, c]| corner(a).dot(&corner(b).cross(&corner(c))) / 6.0).sum()
+}
+
+/// Every directed edge between places occurs once, and so does its opposite.
+fn assert_closed(mesh: &Mesh) {
+    let place = |k: u32| mesh.positions[k as usize].map(|x| (x + 0.0).to_bits());
+    let mut edges = HashMap::new();
+    for &[a, b, c] in &mesh.triangles {
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            assert_ne!(place(from), place(to), "an edge without length");
+            *edges.entry((place(from), place(to))).or_insert(0) += 1;
+        }
+    }
+    for (&(from, to), &count) in &edges {
+        assert_eq!((count, edges.get(&(to, from))), (1, Some(&1)), "edge {from:?} {to:?}");
+    }
+}
+
+/// Normals are of unit length and lean to the side their triangles face.
+fn assert_normals(mesh: &Mesh) {
+    assert_eq!(mesh.positions.len(), mesh.normals.len());
+    for &normal in &mesh.normals {
+        assert!((vector(normal).norm() - 1.0).abs() < 1e-6);
+    }
+    for &triangle in &mesh.triangles {
+        let [a, b, c] = triangle.map(|k| vector(mesh.positions[k as usize]));
+        let face = (b - a).cross(&(c - a));
+        assert!(face.norm() > 0.0, "a triangle without area");
+        for k in triangle {
+            // Smooth along the outline only: half a chord's angle away at most.
+            assert!(vector(mesh.normals[k as usize]).dot(&face.normalize()) > 0.99);
+        }
+    }
+}
+
+/// Volume of a bevelled bar: the area of the outline at offset r is 2 r L + π r², the circle taken as its polygon.
+fn bar_volume(length: f64, radius: f64, height: f64, bevel: f64) -> f64 {
+    let area_integral = |r: f64| length * r * r + polygon_factor() * PI * r.powi(3) / 3.0;
+    let area = 2.0 * radius * length + polygon_factor() * PI * radius * radius;
+    area * (height - 2.0 * bevel) + 2.0 * (area_integral(radius) - area_integral(radius - bevel))
+}
+
+#[test]
+fn bars_are_closed_solids() {
+    for (from, to, radius, height, bevel) in [
+        (0.0, 0.5, 0.02, 0.015, 0.003),
+        (-0.3, 0.46, 0.012, 0.02, 0.0),
+        (0.2, -0.2, 0.05, 0.01, 0.002),
+        (1.0, 1.0, 0.1, 0.1, 0.01),
+    ] {
+        let mesh = bar(from, to, radius, height, bevel);
+        assert_closed(&mesh);
+        assert_normals(&mesh);
+        let expected = bar_volume(f64::abs(to - from), radius, height, bevel);
+        assert!((volume(&mesh) / expected - 1.0).abs() < 1e-5, "{} {expected}", volume(&mesh));
+    }
+}
+
+#[test]
+fn a_bar_reaches_exactly_its_ends() {
+    let mesh = bar(-0.2, 0.5, 0.03, 0.02, 0.004);
+    let range = |axis: usize| {
+        let of = mesh.positions.iter().map(|p| p[axis]);
+        [of.clone().fold(f32::INFINITY, f32::min), of.fold(f32::NEG_INFINITY, f32::max)]
+    };
+    assert_eq!(range(0), [-0.23, 0.53]);
+    assert_eq!(range(1), [-0.03, 0.03]);
+    assert_eq!(range(2), [0.0, 0.02]);
+}
+
+#[test]
+fn cylinders_and_rings_are_closed_solids() {
+    let disc = cylinder(0.06, 0.03, 0.005);
+    assert_closed(&disc);
+    assert_normals(&disc);
+    assert!((volume(&disc) / bar_volume(0.0, 0.06, 0.03, 0.005) - 1.0).abs() < 1e-5);
+
+    let hoop = ring(0.08, 0.05, 0.01);
+    assert_closed(&hoop);
+    assert_normals(&hoop);
+    let expected = polygon_factor() * PI * (0.08f64.powi(2) - 0.05f64.powi(2)) * 0.01;
+    assert!((volume(&hoop) / expected - 1.0).abs() < 1e-5);
+}
+
+#[test]
+fn tessellation_takes_less_than_a_permille() {
+    assert!(polygon_factor() < 1.0 && polygon_factor() > 0.999);
+}
+
+#[test]
+fn too_large_a_bevel_leaves_a_solid() {
+    let mesh = bar(0.0, 0.1, 0.01, 0.01, 5.0);
+    assert_closed(&mesh);
+    assert_normals(&mesh);
+    let bevel = 0.01 / 3.0;
+    assert!((volume(&mesh) / bar_volume(0.1, 0.01, 0.01, bevel) - 1.0).abs() < 1e-5);
+}
+
+#[test]
+fn no_size_no_solid() {
+    for mesh in [
+        bar(0.0, 1.0, 0.0, 0.1, 0.0),
+        bar(0.0, 1.0, f64::NAN, 0.1, 0.0),
+        cylinder(0.1, -1.0, 0.0),
+        ring(0.1, 0.1, 0.1),
+        ring(0.1, 0.05, f64::INFINITY),
+    ] {
+        assert_eq!(mesh, Mesh::default());
+    }
+    assert_closed(&bar(f64::NAN, 1.0, 0.1, 0.1, f64::NAN));
+    assert_closed(&ring(0.1, 0.0, 0.1));
+}
