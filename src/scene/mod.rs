@@ -4,8 +4,11 @@
 //! motion, z along the drive axis, towards the viewer of the flat view). Numbers turn from `f64` into `f32` here and
 //! nowhere else. Colours are sRGB with straight alpha, as in the palette, and sizes called `px` are logical pixels.
 
+pub mod camera;
+pub mod linkage;
 pub mod mesh;
 pub mod palette;
+pub mod stage;
 
 use std::sync::Arc;
 

@@ -1,0 +1,182 @@
+//! From where the scene is seen: a flat view from above, or an orbit around a point. Pure values that know no window.
+
+use nalgebra::{Matrix4, Point3, Vector3};
+
+/// A flat or a spatial view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Camera {
+    /// Straight down on the plane of motion.
+    Flat(Flat),
+    /// In perspective, around a point.
+    Orbit(Orbit),
+}
+
+/// Straight down on the plane of motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flat {
+    /// Middle of the picture, m.
+    pub centre: [f64; 2],
+    /// Half the height of the picture, m.
+    pub half_height: f64,
+}
+
+/// In perspective, around a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Orbit {
+    /// Middle of the picture, m.
+    pub centre: [f64; 3],
+    /// Distance of the eye, m.
+    pub distance: f64,
+    /// Direction of the eye about z from −y, rad.
+    pub yaw: f64,
+    /// Height of the eye over the plane, rad; π/2 is straight above.
+    pub pitch: f64,
+}
+
+/// Vertical field of view, rad.
+const FIELD: f64 = 0.6;
+
+/// A line of sight: a point and a direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// m.
+    pub from: [f64; 3],
+    /// Unit vector away from the eye.
+    pub along: [f64; 3],
+}
+
+impl Ray {
+    /// Where it meets the plane at height z, m; `None` if it runs along it or away from it.
+    pub fn at_height(&self, z: f64) -> Option<[f64; 2]> {
+        let t = (z - self.from[2]) / self.along[2];
+        (t.is_finite() && t > 0.0).then(|| [0, 1].map(|i| self.from[i] + t * self.along[i]))
+    }
+}
+
+impl Camera {
+    /// A flat view that shows a circle about B, a little more to where the arm works.
+    pub fn flat(reach: f64) -> Self {
+        Self::Flat(Flat { centre: [0.12 * reach, 0.28 * reach], half_height: 0.82 * reach })
+    }
+
+    /// A view from the front and above.
+    pub fn orbit(reach: f64) -> Self {
+        Self::Orbit(Orbit { centre: [0.1 * reach, 0.2 * reach, 0.0], distance: 2.7 * reach, yaw: 0.45, pitch: 0.75 })
+    }
+
+    /// Whether it looks straight down.
+    pub fn is_flat(&self) -> bool {
+        matches!(self, Self::Flat(_))
+    }
+
+    fn view(&self) -> Matrix4<f64> {
+        match self {
+            Self::Flat(f) => Matrix4::new_translation(&Vector3::new(-f.centre[0], -f.centre[1], 0.0)),
+            Self::Orbit(o) => {
+                let back = o.back();
+                let centre = Point3::from(o.centre);
+                let up = if o.pitch.cos() > 1e-6 { Vector3::z() } else { Vector3::new(-o.yaw.sin(), o.yaw.cos(), 0.0) };
+                Matrix4::look_at_rh(&(centre + back * o.distance), &centre, &up)
+            }
+        }
+    }
+
+    /// Clip space from world space, depth 0..1, for a picture of the given width over height.
+    pub fn clip_from_world(&self, aspect: f64) -> [[f32; 4]; 4] {
+        self.matrix(aspect).map(|x| x as f32).into()
+    }
+
+    fn matrix(&self, aspect: f64) -> Matrix4<f64> {
+        let aspect = if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 };
+        let projection = match self {
+            Self::Flat(f) => {
+                let (h, w) = (f.half_height, f.half_height * aspect);
+                Matrix4::new_orthographic(-w, w, -h, h, -10.0 * h, 10.0 * h)
+            }
+            Self::Orbit(o) => Matrix4::new_perspective(aspect, FIELD, 0.02 * o.distance, 20.0 * o.distance),
+        };
+        // nalgebra's depth runs from −1 to 1, the GPU's from 0 to 1.
+        let mut half = Matrix4::identity();
+        half[(2, 2)] = 0.5;
+        half[(2, 3)] = 0.5;
+        half * projection * self.view()
+    }
+
+    /// Unit vector from the scene towards the eye.
+    pub fn eye_direction(&self) -> [f32; 3] {
+        match self {
+            Self::Flat(_) => [0.0, 0.0, 1.0],
+            Self::Orbit(o) => o.back().map(|x| x as f32).into(),
+        }
+    }
+
+    /// Where a point lies in the picture: 0..1 from the left and from the top; `None` behind the eye.
+    pub fn project(&self, point: [f64; 3], aspect: f64) -> Option<[f64; 2]> {
+        let clip = self.matrix(aspect) * Point3::from(point).to_homogeneous();
+        (clip.w > 0.0).then(|| [0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w])
+    }
+
+    /// The line of sight through a place in the picture, 0..1 from the left and from the top.
+    pub fn ray(&self, place: [f64; 2], aspect: f64) -> Option<Ray> {
+        let inverse = self.matrix(aspect).try_inverse()?;
+        let unproject = |depth: f64| {
+            let p = inverse * nalgebra::Vector4::new(2.0 * place[0] - 1.0, 1.0 - 2.0 * place[1], depth, 1.0);
+            Point3::from_homogeneous(p)
+        };
+        let (near, far) = (unproject(0.0)?, unproject(1.0)?);
+        let along = (far - near).try_normalize(0.0)?;
+        Some(Ray { from: near.into(), along: along.into() })
+    }
+
+    /// Size of a metre at the middle of the picture, as a share of the picture's height.
+    pub fn scale(&self) -> f64 {
+        match self {
+            Self::Flat(f) => 0.5 / f.half_height,
+            Self::Orbit(o) => 0.5 / (o.distance * (0.5 * FIELD).tan()),
+        }
+    }
+
+    /// Turns around the middle by angles, rad; a flat view does not turn.
+    pub fn turn(&mut self, yaw: f64, pitch: f64) {
+        if let Self::Orbit(o) = self {
+            o.yaw = (o.yaw + yaw).rem_euclid(std::f64::consts::TAU);
+            o.pitch = (o.pitch + pitch).clamp(-1.55, 1.55);
+        }
+    }
+
+    /// Shifts the picture by shares of its height, to the right and down.
+    pub fn pan(&mut self, right: f64, down: f64) {
+        let metres = 1.0 / self.scale();
+        match self {
+            Self::Flat(f) => {
+                f.centre[0] -= right * metres;
+                f.centre[1] += down * metres;
+            }
+            Self::Orbit(o) => {
+                let view = Self::Orbit(*o).view();
+                for i in 0..3 {
+                    o.centre[i] += (-right * view[(0, i)] + down * view[(1, i)]) * metres;
+                }
+            }
+        }
+    }
+
+    /// Brings everything nearer by a factor, keeping the place (0..1 from left and top) where it is.
+    pub fn zoom(&mut self, factor: f64, place: [f64; 2], aspect: f64) {
+        let (x, y) = ((place[0] - 0.5) * aspect, place[1] - 0.5);
+        self.pan(-x, -y);
+        match self {
+            Self::Flat(f) => f.half_height = (f.half_height / factor).clamp(1e-3, 1e3),
+            Self::Orbit(o) => o.distance = (o.distance / factor).clamp(1e-2, 1e3),
+        }
+        self.pan(x, y);
+    }
+}
+
+impl Orbit {
+    /// Unit vector from the middle towards the eye.
+    fn back(&self) -> Vector3<f64> {
+        let (c, s) = (self.pitch.cos(), self.pitch.sin());
+        Vector3::new(self.yaw.sin() * c, -self.yaw.cos() * c, s)
+    }
+}

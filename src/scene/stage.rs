@@ -1,0 +1,459 @@
+//! From a run and a frame to a [`Scene`]. A [`Stage`] holds what does not change from frame to frame.
+
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use super::linkage::Linkage;
+use super::palette::{Palette, Theme, faded, palette};
+use super::{Anchor, Area, Label, Line, Marker, Rgba, Scene};
+use crate::frame::{Frame, Reach};
+use crate::machine::Chain;
+use crate::planar::{DriveAngles, Units, Vector, unit};
+use crate::pose_constant::Planes;
+use crate::session::Run;
+use std::sync::Arc;
+
+/// What a person has chosen to see.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewOptions {
+    /// Light or dark.
+    pub theme: Theme,
+    /// Seen from straight above.
+    pub flat: bool,
+    /// The pointer is on this handle, or drags it.
+    pub hot: Option<Handle>,
+    /// Where the pointer holds the target while it drags, m.
+    pub held: Option<[f64; 2]>,
+}
+
+impl Default for ViewOptions {
+    fn default() -> Self {
+        Self { theme: Theme::Dark, flat: true, hot: None, held: None }
+    }
+}
+
+/// What can be dragged in the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Handle {
+    /// The end effector's target.
+    Target,
+    /// The knob of the b ring.
+    Ring,
+}
+
+/// What stays the same from frame to frame.
+#[derive(Clone, Debug)]
+pub struct Stage {
+    linkage: Linkage,
+    planes: Option<Arc<Planes>>,
+    boundary: Vec<Vec<Vector>>,
+    tip: Chain,
+    compare_b: Option<f64>,
+    motion: Option<Course>,
+}
+
+/// A planned motion as seen.
+#[derive(Clone, Debug)]
+struct Course {
+    points: Vec<Vector>,
+    start: Units,
+}
+
+impl Stage {
+    /// Prepares a run for drawing; to be made again when its machine or plan changes.
+    pub fn of(run: &Run) -> Self {
+        let machine = &run.scenario().machine;
+        let planes = run.planes().cloned();
+        let boundary = planes.as_ref().map_or_else(Vec::new, |p| {
+            let loops = p.boundary().turned(0.0);
+            loops.into_iter().map(|l| l.into_iter().map(|[x, y]| Vector::new(x, y)).collect()).collect()
+        });
+        let tip = *machine.tip();
+        let motion = run.motion().map(|motion| Course {
+            points: (0..=96)
+                .map(|i| place(&tip, &motion.path.at(f64::from(i) / 96.0).q))
+                .collect(),
+            start: motion.path.at(0.0).q.units(),
+        });
+        Self {
+            linkage: Linkage::of(machine),
+            planes,
+            boundary,
+            tip,
+            compare_b: run.scenario().compare_b,
+            motion,
+        }
+    }
+
+    /// The machine's body.
+    pub fn linkage(&self) -> &Linkage {
+        &self.linkage
+    }
+
+    /// Radius of the b ring, m.
+    pub fn ring_radius(&self) -> f64 {
+        0.118 * self.linkage.reach()
+    }
+
+    /// Height of the plane in which handles lie, m.
+    pub fn handle_height(&self) -> f64 {
+        self.linkage.top()
+    }
+
+    /// Where a handle is, m.
+    pub fn handle(&self, handle: Handle, frame: &Frame) -> Option<[f64; 3]> {
+        let z = self.handle_height();
+        match handle {
+            Handle::Target => Some([frame.target.at.re, frame.target.at.im, z]),
+            Handle::Ring => {
+                let p = unit(self.planes.as_ref()?.map().turn(frame.b_reference)) * self.ring_radius();
+                Some([p.re, p.im, z])
+            }
+        }
+    }
+
+    /// The b that a place of the ring's knob stands for, nearest to the present one, rad.
+    pub fn ring_b(&self, at: [f64; 2], near: f64) -> Option<f64> {
+        let map = self.planes.as_ref()?.map();
+        let turn = crate::kinematics::closest_turn(at[1].atan2(at[0]), map.turn(near));
+        Some(turn * map.lambda_sum())
+    }
+
+    /// Everything there is to draw.
+    pub fn scene(&self, frame: &Frame, options: &ViewOptions) -> Scene {
+        let palette = palette(options.theme);
+        let e = frame.q.units();
+        let mut solids = Vec::new();
+        if let Some(course) = &self.motion {
+            solids.extend(self.linkage.ghost(&course.start, &palette, 0.16));
+        }
+        solids.extend(self.linkage.solids(&e, &palette));
+        let mut scene = Scene {
+            background: palette.background,
+            model: self.linkage.model.clone(),
+            areas: Vec::new(),
+            solids,
+            lines: Vec::new(),
+            markers: Vec::new(),
+            labels: Vec::new(),
+        };
+        self.grid(&mut scene, &palette);
+        if let Some(planes) = &self.planes {
+            if let Some(b) = self.compare_b {
+                self.workspace(&mut scene, &palette, planes, b, true);
+            }
+            self.workspace(&mut scene, &palette, planes, frame.b_reference, false);
+            self.ring(&mut scene, &palette, planes, frame, options);
+        }
+        self.course(&mut scene, &palette);
+        self.reaction(&mut scene, &palette, frame);
+        self.target(&mut scene, &palette, frame, options);
+        scene
+    }
+
+    fn grid(&self, scene: &mut Scene, palette: &Palette) {
+        let (step, z) = (0.1, self.linkage.floor() - 0.004 * self.linkage.reach());
+        let n = (1.7 * self.linkage.reach() / step).ceil().min(60.0) as i32;
+        let far = f64::from(n) * step;
+        let colour = faded(palette.line, 0.55);
+        for i in -n..=n {
+            let at = f64::from(i) * step;
+            let strong = if i == 0 { palette.line } else { colour };
+            for ends in [[[at, -far], [at, far]], [[-far, at], [far, at]]] {
+                scene.lines.push(Line {
+                    name: "grid".into(),
+                    points: ends.map(|[x, y]| point(Vector::new(x, y), z)).to_vec(),
+                    width: 1.0,
+                    colour: strong,
+                    dash: None,
+                    on_top: false,
+                });
+            }
+        }
+    }
+
+    fn workspace(&self, scene: &mut Scene, palette: &Palette, planes: &Planes, b: f64, compared: bool) {
+        let map = planes.map();
+        let (colour, edge, dash, lift) = match compared {
+            false => (faded(palette.amber, 0.13), palette.amber, None, 0.0),
+            true => (faded(palette.dim, 0.08), faded(palette.dim, 0.55), Some([5.0, 4.0]), -0.002),
+        };
+        let z = self.linkage.floor() + lift * self.linkage.reach();
+        let limits = map.limits();
+        let name = if compared { "workspace/compared" } else { "workspace" };
+        let turn = map.turn(b);
+        scene.areas.push(Area {
+            name: name.into(),
+            c: map.c().map(|x| x as f32),
+            u: map.u().map(|u| u.map(|x| x as f32)),
+            v: map.v().map(|x| x as f32),
+            a_min: limits.map(|l| l.min as f32),
+            a_max: limits.map(|l| l.max as f32),
+            // Whole turns are taken off in f64, where they cost nothing.
+            turn: turn.rem_euclid(TAU) as f32,
+            z: z as f32,
+            colour,
+        });
+        let r = unit(turn);
+        for outline in &self.boundary {
+            let mut points: Vec<_> = outline.iter().map(|p| point(p * r, z)).collect();
+            if points.len() > 2 && points.first() != points.last() {
+                points.push(points[0]);
+            }
+            scene.lines.push(Line {
+                name: format!("{name}/boundary"),
+                points,
+                width: if compared { 1.2 } else { 1.8 },
+                colour: edge,
+                dash,
+                on_top: false,
+            });
+        }
+        if let Some((at, text)) = self.workspace_label(planes, b, compared) {
+            scene.labels.push(Label {
+                at: point(at * r, z),
+                offset: [0.0, 0.0],
+                text,
+                colour: if compared { palette.dim } else { palette.amber },
+                size: 12.0,
+                anchor: Anchor::Centre,
+            });
+        }
+    }
+
+    /// The label sits in the broad part of the area, where the arm rarely is.
+    fn workspace_label(&self, planes: &Planes, b: f64, compared: bool) -> Option<(Vector, String)> {
+        let map = planes.map();
+        let [l1, l2] = map.limits();
+        let mid = |l: crate::reactionless::Limit, s: f64| l.min + s * (l.max - l.min);
+        let at = map.forward_unturned([mid(l1, 0.86), mid(l2, 0.88)]);
+        let text = match compared {
+            false => format!("reactionless workspace\nb = {b:.3} rad · {:.3} m²", planes.boundary().area()),
+            true => format!("b = {b:.3} rad"),
+        };
+        at.re.is_finite().then_some((at, text))
+    }
+
+    fn ring(&self, scene: &mut Scene, palette: &Palette, planes: &Planes, frame: &Frame, options: &ViewOptions) {
+        let (radius, z) = (self.ring_radius(), self.handle_height());
+        let turn = planes.map().turn(frame.b_reference);
+        let circle = |from: f64, to: f64| -> Vec<[f32; 3]> {
+            let n = (((to - from).abs() / TAU * 96.0).ceil() as usize).max(2);
+            (0..=n).map(|i| point(unit(from + (to - from) * i as f64 / n as f64) * radius, z)).collect()
+        };
+        let line = |name: &str, points, width, colour| Line {
+            name: name.into(),
+            points,
+            width,
+            colour,
+            dash: None,
+            on_top: true,
+        };
+        scene.lines.push(line("ring", circle(0.0, TAU), 3.0, faded(palette.line, 0.9)));
+        let shown = turn.rem_euclid(TAU);
+        scene.lines.push(line("ring/b", circle(0.0, shown), 3.5, palette.amber));
+        let knob = unit(turn) * radius;
+        let hot = options.hot == Some(Handle::Ring);
+        scene.markers.push(Marker {
+            name: "ring/knob".into(),
+            at: point(knob, z),
+            radius: if hot { 9.0 } else { 7.0 },
+            fill: palette.amber,
+            stroke: palette.background,
+            stroke_width: 2.0,
+        });
+        let beside = unit(turn) * (radius * 1.28);
+        scene.labels.push(label(beside, z, [0.0, 0.0], "b", palette.amber, 14.0, Anchor::Centre));
+    }
+
+    fn course(&self, scene: &mut Scene, palette: &Palette) {
+        let Some(course) = &self.motion else { return };
+        let z = self.handle_height();
+        scene.lines.push(Line {
+            name: "path".into(),
+            points: course.points.iter().map(|p| point(*p, z)).collect(),
+            width: 1.6,
+            colour: faded(palette.ink, 0.75),
+            dash: Some([2.0, 4.0]),
+            on_top: true,
+        });
+        let ends = [("A", course.points.first()), ("B", course.points.last())];
+        for (name, at) in ends.into_iter().filter_map(|(n, p)| Some((n, *p?))) {
+            scene.markers.push(Marker {
+                name: format!("waypoint/{name}"),
+                at: point(at, z),
+                radius: 4.5,
+                fill: palette.background,
+                stroke: palette.ink,
+                stroke_width: 1.6,
+            });
+            scene.labels.push(label(at, z, [-12.0, 0.0], name, palette.ink, 13.0, Anchor::Right));
+        }
+    }
+
+    /// A force arrow and a moment arc at B, in proportion, with their scale in words.
+    fn reaction(&self, scene: &mut Scene, palette: &Palette, frame: &Frame) {
+        let (z, reach) = (self.handle_height(), self.linkage.reach());
+        let (force, moment) = (frame.wrench.total().force, frame.base_moment());
+        let quiet = frame.is_quiet();
+        let colour = if quiet { palette.zero } else { palette.reaction };
+        let line = |name: &str, points: Vec<[f32; 3]>| Line {
+            name: name.into(),
+            points,
+            width: 3.0,
+            colour: palette.reaction,
+            dash: None,
+            on_top: true,
+        };
+        let per_newton = 0.25 * reach / round_up(frame.peaks.force.max(force.norm()).max(1e-3));
+        let arrow = force * per_newton;
+        if arrow.norm() > 0.004 * reach {
+            scene.lines.push(line("reaction/force", vec![point(Vector::default(), z), point(arrow, z)]));
+            scene.lines.push(line("reaction/force", head(arrow, force / force.norm(), 0.025 * reach, z)));
+        }
+        let full = round_up(frame.peaks.moment.max(1e-3));
+        let sweep = moment / full * 1.5 * FRAC_PI_2;
+        let radius = 0.17 * reach;
+        if sweep.abs() > 0.02 {
+            let n = ((sweep.abs() * 24.0).ceil() as usize).max(2);
+            let from = -FRAC_PI_2;
+            let arc: Vec<_> =
+                (0..=n).map(|i| point(unit(from + sweep * i as f64 / n as f64) * radius, z)).collect();
+            scene.lines.push(line("reaction/moment", arc));
+            let end = unit(from + sweep);
+            let along = end * Vector::new(0.0, sweep.signum());
+            scene.lines.push(line("reaction/moment", head(end * radius, along, 0.025 * reach, z)));
+        }
+        let com = frame.com;
+        let arm = 0.014 * reach;
+        for d in [Vector::new(arm, 0.0), Vector::new(0.0, arm)] {
+            scene.lines.push(Line {
+                name: "com".into(),
+                points: vec![point(com - d, z), point(com + d, z)],
+                width: 1.8,
+                colour: palette.ink,
+                dash: None,
+                on_top: true,
+            });
+        }
+        let at = Vector::new(0.15 * reach, -0.1 * reach);
+        let still = com.norm() < 1e-6 * reach;
+        let com_words = if still { "centre of mass at rest in B".into() } else { format!("centre of mass {:.1} mm off B", 1e3 * com.norm()) };
+        let scale = match (arrow.norm() > 0.004 * reach, sweep.abs() > 0.02) {
+            (false, false) => String::new(),
+            (true, false) => format!("arrow: {:.3} m = {} N", 0.25 * reach, brief(0.25 * reach / per_newton)),
+            (false, true) => format!("arc: 135° = {} N m", brief(full)),
+            (true, true) => {
+                format!("arrow: {:.3} m = {} N · arc: 135° = {} N m", 0.25 * reach, brief(0.25 * reach / per_newton), brief(full))
+            }
+        };
+        let rows = [
+            (format!("f_B {:.3} N", frame.wrench.dynamic.force.norm()), colour, 13.0),
+            (format!("n_B {} N m", signed(moment, 3)), colour, 13.0),
+            (com_words, palette.dim, 11.5),
+            (scale, palette.dim, 11.5),
+        ];
+        let mut down = 0.0;
+        for (text, colour, size) in rows.into_iter().filter(|(t, ..)| !t.is_empty()) {
+            scene.labels.push(label(at, z, [0.0, down], &text, colour, size, Anchor::Left));
+            down += 17.0;
+        }
+    }
+
+    fn target(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, options: &ViewOptions) {
+        let z = self.handle_height();
+        let tip = frame.tip;
+        let hot = options.hot == Some(Handle::Target);
+        let held = options.held.map_or(frame.target.at, |[x, y]| Vector::new(x, y));
+        let outside = matches!(frame.target.reach, Reach::Outside { .. });
+        let at = if outside { held } else { tip };
+        scene.markers.push(Marker {
+            name: "end-effector".into(),
+            at: point(tip, z),
+            radius: 4.0,
+            fill: palette.ink,
+            stroke: palette.ink,
+            stroke_width: 0.0,
+        });
+        scene.markers.push(Marker {
+            name: "target".into(),
+            at: point(at, z),
+            radius: if hot { 15.0 } else { 12.5 },
+            fill: faded(palette.ink, if hot && !outside { 0.12 } else { 0.0 }),
+            stroke: palette.ink,
+            stroke_width: 2.2,
+        });
+        let ink = palette.ink;
+        match frame.target.reach {
+            Reach::Outside { nearest, mending_b } => {
+                scene.lines.push(Line {
+                    name: "target/gap".into(),
+                    points: vec![point(nearest, z), point(at, z)],
+                    width: 1.4,
+                    colour: palette.dim,
+                    dash: Some([4.0, 4.0]),
+                    on_top: true,
+                });
+                scene.markers.push(Marker {
+                    name: "target/nearest".into(),
+                    at: point(nearest, z),
+                    radius: 4.5,
+                    fill: palette.background,
+                    stroke: palette.amber,
+                    stroke_width: 2.0,
+                });
+                let why = "outside the reactionless workspace";
+                let would = match mending_b {
+                    Some(b) => format!("nearest point {} m · b = {b:.3} rad would reach it", brief_point(nearest)),
+                    None => format!("nearest point {} m · no b reaches it", brief_point(nearest)),
+                };
+                scene.labels.push(label(at, z, [20.0, -7.0], why, ink, 13.0, Anchor::Left));
+                scene.labels.push(label(at, z, [20.0, 9.0], &would, palette.dim, 11.5, Anchor::Left));
+            }
+            reach => {
+                let words = if reach == Reach::Carried { "turns with its workspace" } else { "drag me" };
+                let text = format!("{} m", brief_point(tip));
+                scene.labels.push(label(at, z, [20.0, -7.0], &text, ink, 13.0, Anchor::Left));
+                scene.labels.push(label(at, z, [20.0, 9.0], words, palette.dim, 11.5, Anchor::Left));
+            }
+        }
+    }
+}
+
+fn place(tip: &Chain, q: &DriveAngles) -> Vector {
+    crate::machine::place_of(tip, &q.units())
+}
+
+fn point(p: Vector, z: f64) -> [f32; 3] {
+    [p.re as f32, p.im as f32, z as f32]
+}
+
+fn label(at: Vector, z: f64, offset: [f32; 2], text: &str, colour: Rgba, size: f32, anchor: Anchor) -> Label {
+    Label { at: point(at, z), offset, text: text.into(), colour, size, anchor }
+}
+
+/// The two barbs of an arrow head at a point, along a unit vector.
+fn head(at: Vector, along: Vector, size: f64, z: f64) -> Vec<[f32; 3]> {
+    let barb = |turn: f64| at - along * unit(turn) * size;
+    vec![point(barb(0.5), z), point(at, z), point(barb(-0.5), z)]
+}
+
+/// The next of 1, 2, 5 times a power of ten.
+pub fn round_up(x: f64) -> f64 {
+    let decade = 10f64.powf(x.log10().floor());
+    [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * decade).find(|v| *v >= x * (1.0 - 1e-12)).unwrap_or(10.0 * decade)
+}
+
+fn brief(x: f64) -> String {
+    format!("{x:.6}").trim_end_matches('0').trim_end_matches('.').into()
+}
+
+fn brief_point(p: Vector) -> String {
+    format!("{:.3}, {:.3}", p.re, p.im)
+}
+
+/// Fixed decimals with a real minus sign, and no minus on zero.
+pub fn signed(x: f64, decimals: usize) -> String {
+    let text = format!("{:.decimals$}", x.abs());
+    let zero = text.chars().all(|c| c == '0' || c == '.');
+    if x < 0.0 && !zero { format!("−{text}") } else { text }
+}
