@@ -428,6 +428,7 @@ fn a_steady_state_allocates_nothing_on_the_gpu() {
         allocated();
     }
     let before = allocated();
+    assert!(before.is_some_and(|(count, bytes)| count > 0 && bytes > 0), "the driver keeps no books: {before:?}");
     for _ in 0..20 {
         assert_eq!(allocated(), before);
     }
@@ -473,6 +474,12 @@ fn the_picture_reaches_any_target_unchanged() {
         let worst = got.rgba.iter().zip(&expected.rgba).map(|(a, b)| a.abs_diff(*b)).max();
         assert!(worst <= Some(u8::from(format.is_srgb())), "{format:?}: {worst:?}");
     }
+}
+
+#[test]
+fn a_renderer_may_live_in_a_windows_callbacks() {
+    fn shared<T: Send + Sync + 'static>() {}
+    shared::<Renderer>();
 }
 
 #[test]
