@@ -5,6 +5,7 @@ struct Frame {
     eye_direction: vec3<f32>,
     pixels_per_point: f32,
     size_px: vec2<f32>,
+    background: vec4<f32>,
 };
 
 struct Marker {

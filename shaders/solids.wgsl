@@ -6,6 +6,7 @@ struct Frame {
     eye_direction: vec3<f32>,
     pixels_per_point: f32,
     size_px: vec2<f32>,
+    background: vec4<f32>,
 };
 
 struct Instance {
@@ -28,14 +29,17 @@ struct Varying {
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(1) @binding(0) var<storage, read> instances: array<Instance>;
 
+// Normals stay normal under any scaling when these turn them.
+fn cofactors(m: mat4x4<f32>) -> mat3x3<f32> {
+    return mat3x3<f32>(cross(m[1].xyz, m[2].xyz), cross(m[2].xyz, m[0].xyz), cross(m[0].xyz, m[1].xyz));
+}
+
 @vertex
 fn vertex(v: Vertex, @builtin(instance_index) i: u32) -> Varying {
     let m = instances[i].world_from_mesh;
     var out: Varying;
     out.clip = frame.clip_from_world * (m * vec4<f32>(v.position, 1.0));
-    // The cofactors of m: normals stay normal under any scaling.
-    let cofactor = mat3x3<f32>(cross(m[1].xyz, m[2].xyz), cross(m[2].xyz, m[0].xyz), cross(m[0].xyz, m[1].xyz));
-    out.normal = cofactor * v.normal;
+    out.normal = cofactors(m) * v.normal;
     out.colour = instances[i].colour;
     return out;
 }
@@ -44,9 +48,9 @@ const KEY = vec3<f32>(-0.36, 0.48, 0.8); // towards the light: above left, unit
 
 // Sky from above, a key light, and a faint lamp at the eye.
 fn light(normal: vec3<f32>, eye: vec3<f32>) -> f32 {
-    let sky = mix(0.34, 0.56, 0.5 + 0.5 * normal.z);
+    let sky = mix(0.46, 0.62, 0.5 + 0.5 * normal.z);
     let key = 0.30 * max(dot(normal, KEY), 0.0);
-    let lamp = 0.20 * max(dot(normal, eye), 0.0);
+    let lamp = 0.14 * max(dot(normal, eye), 0.0);
     return sky + key + lamp;
 }
 
@@ -57,4 +61,26 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     // Past full light, towards white rather than into clipping.
     let lit = mix(in.colour.rgb * min(level, 1.0), vec3<f32>(1.0), clamp(level - 1.0, 0.0, 1.0));
     return vec4<f32>(lit, in.colour.a);
+}
+
+const CASING = 1.25; // px
+
+// The far side of the solid, a little wider on the screen: what shows of it sets a solid off from those below it.
+@vertex
+fn casing_vertex(v: Vertex, @builtin(instance_index) i: u32) -> @builtin(position) vec4<f32> {
+    let m = instances[i].world_from_mesh;
+    var clip = frame.clip_from_world * (m * vec4<f32>(v.position, 1.0));
+    let normal = frame.clip_from_world * vec4<f32>(cofactors(m) * v.normal, 0.0);
+    // How the point moves on the screen when it moves along its normal.
+    let out = (normal.xy * clip.w - clip.xy * normal.w) * frame.size_px;
+    if length(out) > 1e-12 {
+        let shift = normalize(out) * CASING * frame.pixels_per_point;
+        clip += vec4<f32>(2.0 * shift / frame.size_px * clip.w, 0.0, 0.0);
+    }
+    return clip;
+}
+
+@fragment
+fn casing_fragment() -> @location(0) vec4<f32> {
+    return vec4<f32>(frame.background.rgb * frame.background.a, frame.background.a);
 }

@@ -6,6 +6,7 @@ struct Frame {
     eye_direction: vec3<f32>,
     pixels_per_point: f32,
     size_px: vec2<f32>,
+    background: vec4<f32>,
 };
 
 struct Area {
@@ -28,7 +29,7 @@ struct Varying {
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(1) @binding(0) var<storage, read> areas: array<Area>;
 
-const CELLS = 96u; // a side; the index buffer counts on it
+const CELLS = 64u; // a side; the index buffer counts on it
 
 @vertex
 fn vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) i: u32) -> Varying {

@@ -2,6 +2,7 @@
 
 use super::View;
 use super::shader::twin;
+use crate::scene::Rgba;
 use bytemuck::{Pod, Zeroable as _};
 use std::num::NonZeroU64;
 use wgpu::util::StagingBelt;
@@ -19,6 +20,7 @@ twin! {
         pixels_per_point: f32,
         size_px: [f32; 2],
         _pad: [f32; 2],
+        background: [f32; 4],
     }
 }
 
@@ -45,10 +47,15 @@ pub(super) struct Kit {
     pub(super) frame_group: wgpu::BindGroup,
 }
 
+/// The usual entry points.
+pub(super) const ENTRIES: [&str; 2] = ["vertex", "fragment"];
+
 /// What makes one pipeline differ from the others.
 pub(super) struct Recipe<'a> {
     pub(super) label: &'a str,
     pub(super) module: &'a wgpu::ShaderModule,
+    /// Entry points of the vertex and the fragment stage.
+    pub(super) entries: [&'a str; 2],
     pub(super) vertices: Option<wgpu::VertexBufferLayout<'a>>,
     pub(super) topology: wgpu::PrimitiveTopology,
     pub(super) cull: Option<wgpu::Face>,
@@ -93,10 +100,10 @@ impl Kit {
         Self { pipeline_layout, list_layout, frame, frame_group }
     }
 
-    pub(super) fn write_frame(&self, upload: &mut Upload, view: &View) {
+    pub(super) fn write_frame(&self, upload: &mut Upload, view: &View, background: Rgba) {
         let View { clip_from_world, eye_direction, size_px: [width, height], pixels_per_point } = *view;
         let size_px = [width as f32, height as f32];
-        let frame = Frame { clip_from_world, eye_direction, pixels_per_point, size_px, ..Frame::zeroed() };
+        let frame = Frame { clip_from_world, eye_direction, pixels_per_point, size_px, background, ..Frame::zeroed() };
         upload.write(&self.frame, bytemuck::bytes_of(&frame));
     }
 
@@ -104,13 +111,23 @@ impl Kit {
     pub(super) fn pipelines(&self) -> impl Fn(&wgpu::Device, Recipe) -> wgpu::RenderPipeline + Send + Sync + 'static {
         let layout = self.pipeline_layout.clone();
         move |device, recipe| {
-            let Recipe { label, module, vertices, topology, cull, depth_write, depth_compare, blend } = recipe;
+            let Recipe {
+                label,
+                module,
+                entries: [vertex, fragment],
+                vertices,
+                topology,
+                cull,
+                depth_write,
+                depth_compare,
+                blend,
+            } = recipe;
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some(label),
                 layout: Some(&layout),
                 vertex: wgpu::VertexState {
                     module,
-                    entry_point: Some("vertex"),
+                    entry_point: Some(vertex),
                     compilation_options: Default::default(),
                     buffers: if vertices.is_some() { std::slice::from_ref(&vertices) } else { &[] },
                 },
@@ -125,7 +142,7 @@ impl Kit {
                 multisample: wgpu::MultisampleState { count: SAMPLES, ..Default::default() },
                 fragment: Some(wgpu::FragmentState {
                     module,
-                    entry_point: Some("fragment"),
+                    entry_point: Some(fragment),
                     compilation_options: Default::default(),
                     targets: &[Some(wgpu::ColorTargetState {
                         format: COLOUR,

@@ -1,7 +1,7 @@
 //! Polylines as antialiased ribbons of constant width on the screen.
 
 use super::View;
-use super::kit::{Kit, List, Recipe, Upload};
+use super::kit::{ENTRIES, Kit, List, Recipe, Upload};
 use super::shader::{Shader, embedded, twin};
 use crate::scene::{Line, Scene};
 
@@ -42,6 +42,7 @@ impl Lines {
                 let recipe = Recipe {
                     label,
                     module,
+                    entries: ENTRIES,
                     vertices: None,
                     topology: wgpu::PrimitiveTopology::TriangleStrip,
                     cull: None,

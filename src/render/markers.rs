@@ -1,6 +1,6 @@
 //! Discs and rings of constant size on the screen, over everything.
 
-use super::kit::{Kit, List, Recipe, Upload};
+use super::kit::{ENTRIES, Kit, List, Recipe, Upload};
 use super::shader::{Shader, embedded, twin};
 use crate::scene::{self, Scene};
 use bytemuck::Zeroable as _;
@@ -29,6 +29,7 @@ impl Markers {
             let recipe = Recipe {
                 label: "markers",
                 module,
+                entries: ENTRIES,
                 vertices: None,
                 topology: wgpu::PrimitiveTopology::TriangleStrip,
                 cull: None,

@@ -101,7 +101,7 @@ impl Renderer {
         let target = self.target.insert(target);
 
         let upload = &mut Upload { device, encoder, belt: &mut self.belt };
-        self.kit.write_frame(upload, view);
+        self.kit.write_frame(upload, view, scene.background);
         self.solids.prepare(queue, &self.kit, upload, scene);
         self.workspace.prepare(&self.kit, upload, scene);
         self.lines.prepare(&self.kit, upload, scene, view);

@@ -10,8 +10,8 @@ use std::path::Path;
 pub enum NoAdapter {
     /// No driver offers a GPU, or software in its place.
     #[error(
-        "no GPU adapter: {0}; a software one is enough and comes, on Debian and its kin, with `apt-get install \
-         mesa-vulkan-drivers`"
+        "no GPU adapter found; one in software is enough and comes, on Debian and its kin, with `apt-get install \
+         mesa-vulkan-drivers` ({0})"
     )]
     Missing(String),
     /// There is one, but it cannot do what is needed.
@@ -102,7 +102,12 @@ pub struct Gpu {
 impl Gpu {
     /// Takes the adapter that the system prefers.
     pub fn new() -> Result<Self, NoAdapter> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+        // Vulkan, Metal or DirectX 12: pictures are held to the byte, so no fallback that draws a little differently.
+        let backends = wgpu::Backends::PRIMARY;
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends,
+            ..wgpu::InstanceDescriptor::new_without_display_handle()
+        });
         let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))
             .map_err(|error| NoAdapter::Missing(error.to_string()))?;
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))

@@ -1,6 +1,6 @@
 //! Bars, joints and base: instanced meshes in a calm light.
 
-use super::kit::{Kit, List, Recipe, Upload};
+use super::kit::{ENTRIES, Kit, List, Recipe, Upload};
 use super::shader::{Shader, embedded, twin};
 use crate::scene::{Model, Scene};
 use bytemuck::Zeroable as _;
@@ -41,6 +41,8 @@ const ATTRIBUTES: [wgpu::VertexAttribute; 2] = [
 
 struct Pipelines {
     opaque: wgpu::RenderPipeline,
+    /// A hairline of background around each opaque solid.
+    casing: wgpu::RenderPipeline,
     /// Depth of the foremost translucent surface, so that a ghost shows one layer and not its own inside.
     front: wgpu::RenderPipeline,
     translucent: wgpu::RenderPipeline,
@@ -76,33 +78,33 @@ impl Solids {
     pub(super) fn new(device: &wgpu::Device, kit: &Kit) -> Self {
         let pipeline = kit.pipelines();
         let build = move |device: &wgpu::Device, module: &wgpu::ShaderModule| {
-            let recipe = |label, depth_write, depth_compare, blend| {
+            let recipe = |label, entries, cull, depth_write, depth_compare, blend| {
                 let recipe = Recipe {
                     label,
                     module,
+                    entries,
                     vertices: Some(wgpu::VertexBufferLayout {
                         array_stride: size_of::<Vertex>() as u64,
                         step_mode: wgpu::VertexStepMode::Vertex,
                         attributes: &ATTRIBUTES,
                     }),
                     topology: wgpu::PrimitiveTopology::TriangleList,
-                    cull: Some(wgpu::Face::Back),
+                    cull: Some(cull),
                     depth_write,
                     depth_compare,
                     blend,
                 };
                 pipeline(device, recipe)
             };
-            use wgpu::{BlendState, CompareFunction};
+            use wgpu::{BlendState, CompareFunction, Face::*};
+            let plain = Some(BlendState::REPLACE);
+            let blend = Some(BlendState::ALPHA_BLENDING);
+            let casing = ["casing_vertex", "casing_fragment"];
             Pipelines {
-                opaque: recipe("opaque solids", true, CompareFunction::Less, Some(BlendState::REPLACE)),
-                front: recipe("front of translucent solids", true, CompareFunction::Less, None),
-                translucent: recipe(
-                    "translucent solids",
-                    false,
-                    CompareFunction::Equal,
-                    Some(BlendState::ALPHA_BLENDING),
-                ),
+                opaque: recipe("opaque solids", ENTRIES, Back, true, CompareFunction::Less, plain),
+                casing: recipe("casing of solids", casing, Front, true, CompareFunction::Less, plain),
+                front: recipe("front of translucent solids", ENTRIES, Back, true, CompareFunction::Less, None),
+                translucent: recipe("translucent solids", ENTRIES, Back, false, CompareFunction::Equal, blend),
             }
         };
         Self {
@@ -148,7 +150,9 @@ impl Solids {
     }
 
     pub(super) fn draw_opaque(&self, pass: &mut wgpu::RenderPass) {
-        self.draw(pass, &self.shader.opaque, &self.runs[..self.opaque_runs]);
+        let runs = &self.runs[..self.opaque_runs];
+        self.draw(pass, &self.shader.opaque, runs);
+        self.draw(pass, &self.shader.casing, runs);
     }
 
     pub(super) fn draw_translucent(&self, pass: &mut wgpu::RenderPass) {

@@ -1,6 +1,6 @@
 //! Reactionless workspaces, evaluated on the GPU over a grid of (a_1, a_2).
 
-use super::kit::{Kit, List, Recipe, Upload};
+use super::kit::{ENTRIES, Kit, List, Recipe, Upload};
 use super::shader::{Shader, embedded, twin};
 use crate::scene::{self, Scene};
 use bytemuck::Zeroable as _;
@@ -24,7 +24,7 @@ twin! {
 }
 
 /// Cells a side; the shader counts on the same.
-const CELLS: u16 = 96;
+const CELLS: u16 = 64;
 
 pub(super) struct Workspace {
     shader: Shader<wgpu::RenderPipeline>,
@@ -41,6 +41,7 @@ impl Workspace {
             let recipe = Recipe {
                 label: "workspace",
                 module,
+                entries: ENTRIES,
                 vertices: None,
                 topology: wgpu::PrimitiveTopology::TriangleList,
                 cull: None,

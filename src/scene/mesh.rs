@@ -11,7 +11,7 @@ use super::Mesh;
 use std::f64::consts::{PI, TAU};
 
 /// Chords in a full turn; the polygon's area falls short of the circle's by [`polygon_factor`].
-pub const SEGMENTS: usize = 96;
+pub const SEGMENTS: usize = 64;
 
 /// Area of the inscribed polygon of [`SEGMENTS`] chords over that of its circle, `(N / 2π) sin(2π / N)`.
 pub fn polygon_factor() -> f64 {

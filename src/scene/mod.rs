@@ -139,7 +139,7 @@ pub struct Scene {
     pub background: Rgba,
     /// Meshes that the solids refer to.
     pub model: Arc<Model>,
-    /// Drawn first to last: lines marked `under` and areas, then solids, then lines and markers on top.
+    /// Fills, under all lines; solids in front of them hide them. Later ones blend over earlier ones.
     pub areas: Vec<Area>,
     /// Bars, joints, base.
     pub solids: Vec<Solid>,

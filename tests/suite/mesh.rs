@@ -97,8 +97,8 @@ fn cylinders_and_rings_are_closed_solids() {
 }
 
 #[test]
-fn tessellation_takes_less_than_a_permille() {
-    assert!(polygon_factor() < 1.0 && polygon_factor() > 0.999);
+fn tessellation_takes_less_than_two_permille() {
+    assert!(polygon_factor() < 1.0 && polygon_factor() > 0.998);
 }
 
 #[test]

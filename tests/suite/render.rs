@@ -3,8 +3,8 @@
 use crate::gpu::{fresh, gpu};
 use std::f32::consts::PI;
 use std::sync::Arc;
-use stillbase::render::View;
 use stillbase::render::offscreen::{NoPicture, Picture};
+use stillbase::render::{Renderer, View};
 use stillbase::scene::palette::{Theme, faded, palette};
 use stillbase::scene::{Area, Line, Marker, Mesh, Model, Rgba, Scene, Solid, mesh};
 
@@ -64,7 +64,7 @@ fn disc(at: [f32; 3], radius: f32, fill: Rgba, stroke: Rgba, stroke_width: f32) 
 
 /// Eq. (16) with Table I's lengths and λ: the end effector is c_1 e(q_1) + c_2 e(q_2) + c_3 e(q_3) at b* + the rest.
 fn nine_link(b: f32) -> Area {
-    let (l2, l3) = (0.116746264, 0.127920111);
+    let (l2, l3) = (0.116746264f64 as f32, 0.127920111f64 as f32);
     let sum = 1.0 + l2 + l3;
     // q_1 = b* + (λ_3 (π - a_2) - a_1 (λ_2 + λ_3)) / Σλ, q_2 = q_1 + a_1, q_3 = q_2 + a_2 - π.
     let (q1_a1, q1_a2, q1_0) = (-(l2 + l3) / sum, -l3 / sum, l3 * PI / sum);
@@ -152,6 +152,34 @@ fn the_nearer_solid_hides_the_other_whatever_the_order() {
         let picture = gpu.picture(&scene, &flat([0.0; 2], 1.0, 65)).unwrap();
         assert_close(picture.pixel(32, 32).unwrap(), WHITE, 1);
         assert_close(picture.pixel(32, 50).unwrap(), RED, 1);
+    }
+}
+
+#[test]
+fn a_hairline_of_background_sets_solids_off() {
+    let Some(mut gpu) = gpu() else { return };
+    let mut scene = empty(BLACK);
+    scene.model = Arc::new(Model { meshes: vec![mesh::cylinder(0.9, 0.1, 0.0), mesh::cylinder(0.4, 0.1, 0.02)] });
+    scene.solids = vec![solid(0, placed(0.0, [0.0; 3]), WHITE), solid(1, placed(0.0, [0.0, 0.0, 0.2]), WHITE)];
+    let picture = gpu.picture(&scene, &flat([0.0; 2], 1.0, 200)).unwrap();
+    // Leaving the upper disc of 40 px to the right: 1.25 px of background, then the lower disc.
+    let row: Vec<_> = (100..200).map(|x| picture.pixel(x, 100).unwrap()[0]).collect();
+    assert!(row[..36].iter().all(|&level| level > 250));
+    let dark: f64 = row[40..60].iter().map(|&level| 1.0 - f64::from(level) / 255.0).sum();
+    assert!((dark - 1.25).abs() < 0.3, "{dark} px");
+    assert!(row[44..85].iter().all(|&level| level > 250));
+}
+
+#[test]
+fn an_area_lies_over_what_is_behind_it() {
+    let Some(mut gpu) = gpu() else { return };
+    let mut scene = empty(BLACK);
+    scene.model = Arc::new(Model { meshes: vec![mesh::cylinder(2.0, 0.1, 0.0)] });
+    scene.solids = vec![solid(0, placed(0.0, [0.0; 3]), RED)];
+    for (z, seen) in [(-0.5, RED), (0.5, [0.9, 0.6, 0.55, 1.0])] {
+        scene.areas = vec![Area { z, colour: faded(WHITE, 0.5), ..nine_link(2.4) }];
+        let picture = gpu.picture(&scene, &flat([0.6, 0.6], 0.05, 20)).unwrap();
+        assert_close(picture.pixel(10, 10).unwrap(), seen, 2);
     }
 }
 
@@ -400,9 +428,58 @@ fn a_steady_state_allocates_nothing_on_the_gpu() {
         allocated();
     }
     let before = allocated();
+    assert!(before.is_some_and(|(count, bytes)| count > 0 && bytes > 0), "the driver keeps no books: {before:?}");
     for _ in 0..20 {
         assert_eq!(allocated(), before);
     }
+}
+
+#[test]
+fn the_picture_reaches_any_target_unchanged() {
+    let Some(mut gpu) = gpu() else { return };
+    let (scene, view) = demo().remove(2);
+    let expected = gpu.picture(&scene, &view).unwrap();
+    use wgpu::TextureFormat::{Bgra8Unorm, Bgra8UnormSrgb, Rgba8Unorm, Rgba8UnormSrgb};
+    for format in [Rgba8Unorm, Bgra8Unorm, Rgba8UnormSrgb, Bgra8UnormSrgb] {
+        let (device, queue) = (gpu.device().clone(), gpu.queue().clone());
+        let mut renderer = Renderer::new(&device, format);
+        let [width, height] = view.size_px;
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let mut encoder = device.create_command_encoder(&Default::default());
+        renderer.prepare(&device, &queue, &mut encoder, &scene, &view);
+        let mut pass = encoder
+            .begin_render_pass(&wgpu::RenderPassDescriptor {
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &texture.create_view(&Default::default()),
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::RED), store: wgpu::StoreOp::Store },
+                })],
+                ..Default::default()
+            })
+            .forget_lifetime();
+        renderer.paint(&mut pass);
+        drop(pass);
+        queue.submit([encoder.finish()]);
+        let got = gpu.readback(&texture).unwrap();
+        let worst = got.rgba.iter().zip(&expected.rgba).map(|(a, b)| a.abs_diff(*b)).max();
+        assert!(worst <= Some(u8::from(format.is_srgb())), "{format:?}: {worst:?}");
+    }
+}
+
+#[test]
+fn a_renderer_may_live_in_a_windows_callbacks() {
+    fn shared<T: Send + Sync + 'static>() {}
+    shared::<Renderer>();
 }
 
 #[test]
