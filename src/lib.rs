@@ -4,6 +4,7 @@
 pub mod balance;
 pub mod control;
 pub mod dynamics;
+pub mod files;
 pub mod frame;
 pub mod kinematics;
 pub mod machine;
@@ -18,3 +19,7 @@ pub mod scene;
 pub mod session;
 pub mod signals;
 pub mod simulation;
+#[cfg(feature = "ui")]
+pub mod ui;
+#[cfg(feature = "window")]
+pub mod window;

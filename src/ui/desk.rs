@@ -1,0 +1,222 @@
+//! The [`Desk`]: a session, how it is shown, and what carries out commands. Every window, test and figure has one.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::{Command, FileDialog, Look, Purpose, keys, plots, side, status, theme, top, viewport};
+use crate::machine::Machine;
+use crate::scenario::Scenario;
+use crate::scene::camera::Camera;
+use crate::scene::palette::Theme;
+use crate::scene::stage::Stage;
+use crate::session::{Refusal, Session};
+use crate::signals::{Signal, signals};
+
+/// A session on display.
+pub struct Desk {
+    session: Session,
+    stage: Arc<Stage>,
+    signals: Vec<Signal>,
+    stage_of: (Machine, String),
+    look: Look,
+    /// Wall time not yet turned into steps, s.
+    owed: f64,
+    dressed: Option<Theme>,
+    fonts: bool,
+}
+
+/// The most wall time that one repaint makes up for, s: after a pause of the program time does not jump.
+const MOST_OWED: f64 = 0.1;
+
+impl Desk {
+    /// Opens a scenario.
+    ///
+    /// # Errors
+    /// If it cannot start.
+    pub fn new(scenario: Scenario, theme: Theme) -> Result<Self, Refusal> {
+        let session = Session::open(scenario)?;
+        let stage = Stage::of(session.run());
+        let look = Look::new(theme, stage.linkage().reach());
+        Ok(Self {
+            signals: signals(&session.scenario().machine),
+            stage_of: stage_key(&session),
+            stage: Arc::new(stage),
+            session,
+            look,
+            owed: 0.0,
+            dressed: None,
+            fonts: false,
+        })
+    }
+
+    /// The session.
+    pub fn session(&self) -> &Session {
+        &self.session
+    }
+
+    /// How it is shown.
+    pub fn look(&self) -> &Look {
+        &self.look
+    }
+
+    /// What scenes are made from.
+    pub fn stage(&self) -> &Stage {
+        &self.stage
+    }
+
+    /// Lets wall time pass, s.
+    pub fn pass(&mut self, wall: f64) {
+        if !self.session.is_moving() {
+            self.owed = 0.0;
+            return;
+        }
+        let dt = self.session.scenario().step;
+        self.owed += wall.clamp(0.0, MOST_OWED) * self.look.speed;
+        let steps = (self.owed / dt).floor();
+        self.owed -= steps * dt;
+        self.session.tick(steps as u64);
+    }
+
+    /// One pass of the user interface; commands are carried out at its end.
+    pub fn ui(&mut self, ui: &mut egui::Ui) {
+        self.dress(ui.ctx());
+        let mut commands = Vec::new();
+        keys::read(ui.ctx(), &self.session, &self.look, &mut commands);
+        top::show(ui, &self.session, &self.look, &mut commands);
+        status::show(ui, &self.session, &self.look);
+        side::show(ui, &self.session, &self.look, &mut commands);
+        plots::show(ui, &self.session, &self.signals, &self.look, &mut commands);
+        viewport::show(ui, &self.session, &self.stage, &mut self.look, &mut commands);
+        keys::help(ui.ctx(), &self.look, &mut commands);
+        top::dialog(ui.ctx(), &mut self.look, &mut commands);
+        if !commands.is_empty() {
+            self.look.message = None;
+            ui.ctx().request_repaint();
+        }
+        for command in commands {
+            self.carry_out(command);
+        }
+        if self.session.is_moving() {
+            ui.ctx().request_repaint();
+        }
+    }
+
+    fn dress(&mut self, ctx: &egui::Context) {
+        if !self.fonts {
+            theme::install_fonts(ctx);
+            self.fonts = true;
+        }
+        if self.dressed != Some(self.look.theme) {
+            theme::apply(ctx, self.look.theme);
+            self.dressed = Some(self.look.theme);
+        }
+    }
+
+    /// Carries out one command. What cannot be done is said and changes nothing.
+    pub fn carry_out(&mut self, command: Command) {
+        match self.attempt(command) {
+            Ok(None) => {}
+            Ok(Some(news)) => self.look.message = Some((news, false)),
+            Err(problem) => self.look.message = Some((problem, true)),
+        }
+        self.refresh();
+    }
+
+    fn attempt(&mut self, command: Command) -> Result<Option<String>, String> {
+        let refused = |r: Refusal| r.to_string();
+        match command {
+            Command::Edit(edit) => self.session.apply(edit).map_err(refused)?,
+            Command::EndGesture => self.session.end_gesture(),
+            Command::TogglePlay if self.session.is_moving() => self.session.pause(),
+            Command::TogglePlay => self.session.play(),
+            Command::Seek(time) => {
+                self.session.pause();
+                self.session.seek(time);
+            }
+            Command::Step(steps) => self.session.step_by(steps),
+            Command::Speed(speed) => self.look.speed = speed,
+            Command::Open(scenario) => {
+                self.session.switch(*scenario).map_err(refused)?;
+                self.session.play();
+            }
+            Command::OpenFile(path) => return self.open(&path).map(Some),
+            Command::SaveFile(path) => return self.save(&path).map(Some),
+            Command::Record(path) => return self.record(&path).map(Some),
+            Command::Undo => {
+                let title = self.session.undo_title().map(|t| format!("took back: {t}"));
+                self.session.undo().map_err(refused)?;
+                return Ok(title);
+            }
+            Command::Redo => {
+                let title = self.session.redo_title().map(|t| format!("brought back: {t}"));
+                self.session.redo().map_err(refused)?;
+                return Ok(title);
+            }
+            Command::Flat(flat) => self.look.flat = flat,
+            Command::Fit => {
+                let reach = self.stage.linkage().reach();
+                *self.look.camera_mut() = if self.look.flat { Camera::flat(reach) } else { Camera::orbit(reach) };
+            }
+            Command::Theme(theme) => self.look.theme = theme,
+            Command::Help(help) => self.look.help = help,
+            Command::Dialog(dialog) => self.look.dialog = dialog,
+        }
+        Ok(None)
+    }
+
+    fn open(&mut self, path: &Path) -> Result<String, String> {
+        let scenario = Scenario::find(&path.display().to_string()).map_err(|e| e.to_string())?;
+        self.session.switch(scenario).map_err(|e| e.to_string())?;
+        self.look.dialog = None;
+        Ok(format!("opened {}", path.display()))
+    }
+
+    fn save(&mut self, path: &Path) -> Result<String, String> {
+        crate::files::write_new(path, self.session.to_scenario().to_toml().as_bytes(), false)
+            .map_err(|e| e.to_string())?;
+        self.look.dialog = None;
+        Ok(format!("saved {}", path.display()))
+    }
+
+    #[cfg(feature = "record")]
+    fn record(&mut self, path: &Path) -> Result<String, String> {
+        let options = crate::headless::Options { pictures: None, force: false };
+        let mut scenario = self.session.to_scenario();
+        scenario.duration = self.session.length();
+        let done = crate::headless::record(&[scenario], path, &options, &mut |_| {}).map_err(|e| e.to_string())?;
+        self.look.dialog = None;
+        let verdict = if done.iter().all(|r| r.reactionless) { "reactionless" } else { "with reactions" };
+        Ok(format!("recorded {} ({verdict}); open it with the Rerun viewer", path.display()))
+    }
+
+    #[cfg(not(feature = "record"))]
+    fn record(&mut self, _path: &Path) -> Result<String, String> {
+        Err("this build cannot record: build it with the feature `record`".into())
+    }
+
+    /// Makes the stage again when what it shows has changed.
+    fn refresh(&mut self) {
+        let key = stage_key(&self.session);
+        if key != self.stage_of {
+            self.stage = Arc::new(Stage::of(self.session.run()));
+            self.signals = signals(&self.session.scenario().machine);
+            self.stage_of = key;
+        }
+    }
+
+    /// A file name that is free, for a dialog to start from.
+    pub fn suggest(session: &Session, purpose: Purpose) -> FileDialog {
+        let ending = if purpose == Purpose::Record { "rrd" } else { "toml" };
+        let name = match purpose {
+            Purpose::Open => String::new(),
+            _ => crate::files::free_name(&session.scenario().name, ending).display().to_string(),
+        };
+        FileDialog { purpose, path: name }
+    }
+}
+
+/// What a stage depends on.
+fn stage_key(session: &Session) -> (Machine, String) {
+    let s = session.scenario();
+    (s.machine.clone(), format!("{:?} {:?} {}", s.task, s.compare_b, session.run().motion().is_some()))
+}

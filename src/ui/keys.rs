@@ -1,0 +1,104 @@
+//! The keyboard, and the card that shows it.
+
+use egui::{Context, Key, KeyboardShortcut, Modifiers};
+
+use super::theme::{bold, colour};
+use super::{Command, Desk, Look, Purpose};
+use crate::scenario::Scenario;
+use crate::session::Session;
+
+const KEYS: [(&str, &str); 16] = [
+    ("Space", "play, pause, start over"),
+    ("← →", "one step back, one step on"),
+    ("Shift ← →", "ten steps"),
+    ("Home  End", "start, newest instant"),
+    ("1  2  3", "the paper's cases"),
+    ("V", "2D or 3D"),
+    ("F", "show everything"),
+    ("L", "light or dark"),
+    ("R", "record for the Rerun viewer"),
+    ("Ctrl Z  Ctrl Y", "take back, bring back"),
+    ("Ctrl S  Ctrl O", "save, open a session"),
+    ("drag target", "the machine follows on its plane"),
+    ("drag b ring", "the workspace turns"),
+    ("drag elsewhere", "pan in 2D, orbit in 3D; Shift pans"),
+    ("wheel", "zoom"),
+    ("F1  Esc", "this card; close, let go"),
+];
+
+/// Turns keys into commands; while text is typed only shortcuts with Ctrl count.
+pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Command>) {
+    let typing = ctx.egui_wants_keyboard_input() || look.dialog.is_some();
+    let chord = |modifiers: Modifiers, key| ctx.input_mut(|i| i.consume_shortcut(&KeyboardShortcut::new(modifiers, key)));
+    let ctrl = Modifiers::COMMAND;
+    if chord(ctrl | Modifiers::SHIFT, Key::Z) || chord(ctrl, Key::Y) {
+        commands.push(Command::Redo);
+    }
+    if chord(ctrl, Key::Z) {
+        commands.push(Command::Undo);
+    }
+    for (key, purpose) in [(Key::S, Purpose::Save), (Key::O, Purpose::Open)] {
+        if chord(ctrl, key) {
+            commands.push(Command::Dialog(Some(Desk::suggest(session, purpose))));
+        }
+    }
+    if chord(Modifiers::NONE, Key::F1) {
+        commands.push(Command::Help(!look.help));
+    }
+    if chord(Modifiers::NONE, Key::Escape) {
+        commands.push(if look.dialog.is_some() { Command::Dialog(None) } else { Command::Help(false) });
+    }
+    if typing {
+        return;
+    }
+    let shift = Modifiers::SHIFT;
+    let plain = Modifiers::NONE;
+    for (modifiers, key, command) in [
+        (plain, Key::Space, Command::TogglePlay),
+        (shift, Key::ArrowLeft, Command::Step(-10)),
+        (shift, Key::ArrowRight, Command::Step(10)),
+        (plain, Key::ArrowLeft, Command::Step(-1)),
+        (plain, Key::ArrowRight, Command::Step(1)),
+        (plain, Key::Home, Command::Seek(0.0)),
+        (plain, Key::End, Command::Seek(session.length())),
+        (plain, Key::V, Command::Flat(!look.flat)),
+        (plain, Key::F, Command::Fit),
+        (plain, Key::L, Command::Theme(super::top::other(look.theme))),
+        (plain, Key::R, Command::Dialog(Some(Desk::suggest(session, Purpose::Record)))),
+    ] {
+        if chord(modifiers, key) {
+            commands.push(command);
+        }
+    }
+    for (key, name) in [Key::Num1, Key::Num2, Key::Num3].into_iter().zip(Scenario::builtin_names()) {
+        if chord(plain, key) {
+            commands.extend(Scenario::builtin(name).map(|s| Command::Open(Box::new(s))));
+        }
+    }
+}
+
+/// The card of keys.
+pub fn help(ctx: &Context, look: &Look, commands: &mut Vec<Command>) {
+    if !look.help {
+        return;
+    }
+    let p = look.palette();
+    let mut open = true;
+    egui::Window::new("Keys")
+        .open(&mut open)
+        .collapsible(false)
+        .resizable(false)
+        .anchor(egui::Align2::CENTER_CENTER, [0.0, 0.0])
+        .show(ctx, |ui| {
+            egui::Grid::new("keys").num_columns(2).spacing([24.0, 7.0]).show(ui, |ui| {
+                for (key, does) in KEYS {
+                    ui.label(egui::RichText::new(key).font(bold(13.0)));
+                    ui.label(egui::RichText::new(does).color(colour(p.dim)));
+                    ui.end_row();
+                }
+            });
+        });
+    if !open {
+        commands.push(Command::Help(false));
+    }
+}

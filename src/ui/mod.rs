@@ -1,0 +1,146 @@
+//! Panels, plots and the viewport: the same pixels in a window, in a test and in a figure.
+//!
+//! Everything here reads a [`Session`] and gives back [`Command`]s; the [`Desk`] carries them out. Nothing is computed
+//! and nothing is changed in between.
+
+mod desk;
+mod keys;
+pub mod picture;
+mod plots;
+mod side;
+mod status;
+mod theme;
+mod top;
+mod viewport;
+
+pub use desk::Desk;
+
+use crate::scenario::Scenario;
+use crate::scene::camera::Camera;
+use crate::scene::palette::{Palette, Theme, palette};
+use crate::scene::stage::Handle;
+use crate::session::{Edit, Session};
+
+/// What a person can ask for.
+#[derive(Clone, Debug)]
+pub enum Command {
+    /// Change the machine, the run or its parameters.
+    Edit(Edit),
+    /// The drag is over: the next edit is an undo of its own.
+    EndGesture,
+    /// Let time pass, or stop it.
+    TogglePlay,
+    /// Show an instant, s.
+    Seek(f64),
+    /// Move by steps; time stops.
+    Step(i64),
+    /// Play faster or slower: simulated seconds a second.
+    Speed(f64),
+    /// Replace everything by another scenario.
+    Open(Box<Scenario>),
+    /// Open a saved session or scenario.
+    OpenFile(std::path::PathBuf),
+    /// Save the session.
+    SaveFile(std::path::PathBuf),
+    /// Write a recording for the Rerun viewer.
+    Record(std::path::PathBuf),
+    /// Take back.
+    Undo,
+    /// Bring back.
+    Redo,
+    /// 2D or 3D.
+    Flat(bool),
+    /// Show everything.
+    Fit,
+    /// Light or dark.
+    Theme(Theme),
+    /// Show or hide the keys.
+    Help(bool),
+    /// Show or hide the dialog for a file.
+    Dialog(Option<FileDialog>),
+}
+
+/// Asking for a file name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FileDialog {
+    /// Why.
+    pub purpose: Purpose,
+    /// What is typed so far.
+    pub path: String,
+}
+
+/// What a file name is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// Read a session.
+    Open,
+    /// Write the session.
+    Save,
+    /// Write a recording.
+    Record,
+}
+
+/// How things are shown: no part of the session.
+#[derive(Clone, Debug)]
+pub struct Look {
+    /// Light or dark.
+    pub theme: Theme,
+    /// Straight from above, or in perspective.
+    pub flat: bool,
+    /// The flat view.
+    pub flat_camera: Camera,
+    /// The spatial view.
+    pub orbit_camera: Camera,
+    /// Simulated seconds a second.
+    pub speed: f64,
+    /// Under the pointer.
+    pub hot: Option<Handle>,
+    /// Being dragged.
+    pub grabbed: Option<Handle>,
+    /// Where the pointer holds the target, m.
+    pub held: Option<[f64; 2]>,
+    /// The keys are on display.
+    pub help: bool,
+    /// A file is being asked for.
+    pub dialog: Option<FileDialog>,
+    /// The last thing to say, and whether it is bad news.
+    pub message: Option<(String, bool)>,
+}
+
+impl Look {
+    /// A flat view of everything.
+    pub fn new(theme: Theme, reach: f64) -> Self {
+        Self {
+            theme,
+            flat: true,
+            flat_camera: Camera::flat(reach),
+            orbit_camera: Camera::orbit(reach),
+            speed: 1.0,
+            hot: None,
+            grabbed: None,
+            held: None,
+            help: false,
+            dialog: None,
+            message: None,
+        }
+    }
+
+    /// Colours.
+    pub fn palette(&self) -> Palette {
+        palette(self.theme)
+    }
+
+    /// The view in use.
+    pub fn camera(&self) -> &Camera {
+        if self.flat { &self.flat_camera } else { &self.orbit_camera }
+    }
+
+    fn camera_mut(&mut self) -> &mut Camera {
+        if self.flat { &mut self.flat_camera } else { &mut self.orbit_camera }
+    }
+}
+
+/// What a slider of b does: with time running the machine follows, at rest it is posed.
+fn set_b(session: &Session, b: f64) -> Edit {
+    if session.is_playing() && session.is_at_end() { Edit::SlideB { b } } else { Edit::PoseB { b } }
+}

@@ -1,0 +1,289 @@
+//! The panel on the right: signals over time with one cursor, and which b serves a target.
+
+use egui::{Align, Color32, Frame, Layout, Margin, Panel, RichText, Ui};
+use egui_plot::{GridMark, Line, LineStyle, Plot, PlotPoint, PlotPoints, Points, Span, VLine};
+
+use super::theme::{bold, colour, plain};
+use super::top::name;
+use super::{Command, Look, set_b};
+use crate::frame::Frame as Instant;
+use crate::planar::Vector;
+use crate::scene::palette::{Palette, faded};
+use crate::scene::stage::{round_up, signed};
+use crate::session::Session;
+use crate::signals::Signal;
+
+/// A plot: title, unit, the signals it holds by path, and the least half-range of its axis.
+struct Chart {
+    title: &'static str,
+    unit: &'static str,
+    groups: &'static [&'static str],
+    least: f64,
+    centred: bool,
+}
+
+const CHARTS: [Chart; 5] = [
+    Chart { title: "Torque", unit: "N m", groups: &["torque"], least: 0.1, centred: true },
+    Chart { title: "Base moment", unit: "N m", groups: &["moment/total"], least: 0.5, centred: true },
+    Chart { title: "Base force", unit: "N, from motion", groups: &["force/dynamic"], least: 0.5, centred: true },
+    Chart { title: "Drive angles", unit: "rad", groups: &["angle"], least: 0.5, centred: false },
+    Chart { title: "Pose constant", unit: "rad", groups: &["pose/b"], least: 0.1, centred: false },
+];
+
+/// The longest stretch of time shown at once, s.
+const WINDOW: f64 = 12.0;
+/// The most points of a line.
+const POINTS: usize = 600;
+
+/// Draws it.
+pub fn show(ui: &mut Ui, session: &Session, signals: &[Signal], look: &Look, commands: &mut Vec<Command>) {
+    let p = look.palette();
+    let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 14, right: 14, top: 10, bottom: 8 });
+    Panel::right("plots").exact_size(376.0).resizable(false).frame(frame).show(ui, |ui| {
+        let rows = CHARTS.len() as f32 + 1.6;
+        let height = ((ui.available_height() - 34.0 * rows) / rows).max(40.0);
+        let end = session.frames().last().map_or(0.0, |f| f.time).max(session.length());
+        let end = if session.is_live() { end.max(1.0) } else { end };
+        let shown = (end - WINDOW).max(0.0)..=end;
+        for chart in &CHARTS {
+            let lines: Vec<&Signal> = signals.iter().filter(|s| belongs(s, chart)).collect();
+            header(ui, &p, chart, &lines, session.frame());
+            time_plot(ui, &p, chart, &lines, session, &shown, height, commands);
+        }
+        which_b(ui, &p, session, height * 1.6, commands);
+    });
+}
+
+fn belongs(signal: &Signal, chart: &Chart) -> bool {
+    chart.groups.iter().any(|g| signal.path == *g || signal.group() == *g)
+}
+
+/// Title and unit on the left; symbols in their colours with their values at the cursor on the right.
+fn header(ui: &mut Ui, p: &Palette, chart: &Chart, lines: &[&Signal], now: &Instant) {
+    ui.horizontal(|ui| {
+        ui.set_height(16.0);
+        ui.label(RichText::new(chart.title).font(bold(12.5)));
+        ui.label(RichText::new(chart.unit).font(plain(11.5)).color(colour(p.dim)));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            for signal in lines.iter().rev() {
+                let text = format!("{} {}", signal.symbol, signed(signal.value(now), 3));
+                let label = RichText::new(text).font(plain(11.5)).color(tone(p, signal, now));
+                ui.label(label).on_hover_text(format!("{}, {}", signal.label, signal.unit));
+            }
+        });
+    });
+}
+
+fn tone(p: &Palette, signal: &Signal, now: &Instant) -> Color32 {
+    colour(match (signal.drive, signal.group()) {
+        (Some(k), _) => p.drive(k),
+        (None, "pose") => p.amber,
+        (None, "moment" | "force") if now.peaks.is_reactionless() => p.zero,
+        (None, "moment" | "force") => p.reaction,
+        _ => p.ink,
+    })
+}
+
+#[allow(clippy::too_many_arguments, reason = "each is one thing the plot shows")]
+fn time_plot(
+    ui: &mut Ui,
+    p: &Palette,
+    chart: &Chart,
+    lines: &[&Signal],
+    session: &Session,
+    shown: &std::ops::RangeInclusive<f64>,
+    height: f32,
+    commands: &mut Vec<Command>,
+) {
+    let frames = visible(session, shown);
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    let mut drawn = Vec::new();
+    for signal in lines {
+        let points = thinned(frames, signal);
+        for [_, y] in &points {
+            (low, high) = (low.min(*y), high.max(*y));
+        }
+        drawn.push((signal, points));
+    }
+    let (low, high) = range(chart, low, high);
+    let (amber, ink) = (colour(p.amber), colour(p.dim));
+    let decimals = if high - low < 0.05 { 3 } else if high - low < 0.5 { 2 } else { 1 };
+    let middle = 0.5 * (low + high);
+    let response = base_plot(chart.title, p, height)
+        .y_grid_spacer(move |_| marks(&[low, middle, high], high - low))
+        .x_grid_spacer(|_| Vec::new())
+        .y_axis_formatter(move |mark, _| signed(mark.value, decimals))
+        .show(ui, |plot| {
+            plot.set_plot_bounds_x(shown.clone());
+            let margin = 0.06 * (high - low);
+            plot.set_plot_bounds_y(low - margin..=high + margin);
+            let now = session.frame();
+            for (signal, points) in drawn {
+                let line = Line::new(signal.symbol.clone(), PlotPoints::from(points)).width(1.8);
+                plot.line(line.color(tone(p, signal, now)).allow_hover(false));
+            }
+            plot.vline(VLine::new("now", now.time).color(amber).width(1.0).allow_hover(false));
+            pointer_time(plot)
+        });
+    let _ = ink;
+    name(&response.response, &format!("{} over time, {}", chart.title, chart.unit));
+    let held = response.response.dragged() || response.response.clicked();
+    if let (true, Some(time)) = (held, response.inner) {
+        commands.push(Command::Seek(time));
+    }
+    ui.add_space(2.0);
+}
+
+fn pointer_time(plot: &egui_plot::PlotUi<'_>) -> Option<f64> {
+    plot.pointer_coordinate().map(|c: PlotPoint| c.x.max(0.0))
+}
+
+fn base_plot<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
+    Plot::new(id.to_owned())
+        .height(height)
+        .show_background(false)
+        .show_axes([false, true])
+        .show_grid([false, true])
+        .grid_color(colour(faded(p.line, 0.9)))
+        .grid_fade(0.0)
+        .show_x(false)
+        .show_y(false)
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .allow_double_click_reset(false)
+        .sense(egui::Sense::click_and_drag())
+        .y_axis_min_width(34.0)
+        .set_margin_fraction(egui::Vec2::ZERO)
+}
+
+fn marks(values: &[f64], step: f64) -> Vec<GridMark> {
+    values.iter().map(|v| GridMark { value: *v, step_size: step }).collect()
+}
+
+/// Bounds that hold still: rounded outwards, and never so tight that rounding noise looks like a signal.
+fn range(chart: &Chart, low: f64, high: f64) -> (f64, f64) {
+    if chart.centred {
+        let most = round_up(low.abs().max(high.abs()).max(chart.least));
+        let most = if most.is_finite() { most } else { chart.least };
+        return (-most, most);
+    }
+    if !(low.is_finite() && high.is_finite()) {
+        return (0.0, 1.0);
+    }
+    let step = round_up((high - low).max(chart.least) / 2.0);
+    let bottom = (low / step).floor() * step;
+    let count = ((high - bottom) / step).ceil().max(1.0);
+    (bottom, bottom + count * step)
+}
+
+fn visible<'a>(session: &'a Session, shown: &std::ops::RangeInclusive<f64>) -> &'a [Instant] {
+    let frames = session.frames();
+    let from = frames.partition_point(|f| f.time < *shown.start());
+    &frames[from..]
+}
+
+/// At most [`POINTS`] points; of each bucket the least and the greatest, so that no peak is lost.
+fn thinned(frames: &[Instant], signal: &Signal) -> Vec<[f64; 2]> {
+    let point = |f: &Instant| [f.time, signal.value(f)];
+    if frames.len() <= POINTS {
+        return frames.iter().map(point).collect();
+    }
+    let bucket = (2 * frames.len()).div_ceil(POINTS);
+    let mut points = Vec::with_capacity(POINTS + 2);
+    for chunk in frames.chunks(bucket) {
+        let values = chunk.iter().map(point);
+        let least = values.clone().min_by(|a, b| a[1].total_cmp(&b[1]));
+        let greatest = values.max_by(|a, b| a[1].total_cmp(&b[1]));
+        if let (Some(a), Some(b)) = (least, greatest) {
+            points.extend(if a[0] <= b[0] { [a, b] } else { [b, a] });
+        }
+    }
+    points.extend(frames.last().map(point));
+    points
+}
+
+/// Fig. 3: q_1 against b for A and B, or for the target; a click chooses b.
+fn which_b(ui: &mut Ui, p: &Palette, session: &Session, height: f32, commands: &mut Vec<Command>) {
+    let Some(planes) = session.run().planes() else { return };
+    let (task, now) = (&session.scenario().task, session.frame());
+    let at = |x: [f64; 2]| Vector::new(x[0], x[1]);
+    let points: Vec<(&str, Vector)> = match session.is_live() {
+        true => vec![("target", now.target.at)],
+        false => vec![("A", at(task.from)), ("B", at(task.to))],
+    };
+    ui.horizontal(|ui| {
+        ui.set_height(16.0);
+        ui.label(RichText::new("Which b?").font(bold(12.5)));
+        let words = "q₁ against b, rad; click to choose";
+        ui.label(RichText::new(words).font(plain(11.5)).color(colour(p.dim)));
+    });
+    let map = planes.map();
+    let sets: Vec<_> = points.iter().filter_map(|(_, x)| map.reach(*x).ok()).collect();
+    let curves: Vec<_> = points.iter().map(|(name, x)| (*name, map.self_motion(*x, 96))).collect();
+    let common = (sets.len() == points.len()).then(|| crate::reactionless::BSet::overlap(&sets));
+    let mut bounds = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
+    let lines: Vec<(&str, Vec<[f64; 2]>)> = curves
+        .iter()
+        .flat_map(|(name, branches)| branches.iter().map(move |branch| (*name, branch)))
+        .map(|(name, branch)| (name, branch.iter().map(|x| [x.b, map.lift(*x)[0]]).collect::<Vec<_>>()))
+        .collect();
+    for [b, q] in lines.iter().flat_map(|(_, l)| l) {
+        bounds = [bounds[0].min(*b), bounds[1].max(*b), bounds[2].min(*q), bounds[3].max(*q)];
+    }
+    if lines.is_empty() {
+        bounds = [0.0, map.period(), -1.0, 1.0];
+    }
+    let b_now = now.b_reference;
+    let [b_low, b_high] = [bounds[0].min(b_now) - 0.15, bounds[1].max(b_now) + 0.15];
+    let [q_low, q_high] = [bounds[2] - 0.15, bounds[3] + 0.15];
+    let response = base_plot("which b", p, height - 16.0)
+        .show_axes([true, true])
+        .y_grid_spacer(move |_| marks(&spaced(q_low, q_high), 1.0))
+        .x_grid_spacer(move |_| marks(&spaced(b_low, b_high), 1.0))
+        .x_axis_formatter(|mark, _| signed(mark.value, 1))
+        .y_axis_formatter(|mark, _| signed(mark.value, 1))
+        .show(ui, |plot| {
+            plot.set_plot_bounds_x(b_low..=b_high);
+            plot.set_plot_bounds_y(q_low..=q_high);
+            for [from, to] in common.iter().flat_map(|c| &c.intervals) {
+                let fill = colour(faded(p.amber, 0.16));
+                let clear = egui::Stroke::NONE;
+                plot.span(Span::new("overlap", *from..=*to).fill(fill).border(clear));
+            }
+            for (name, line) in lines {
+                if let Some(end) = line.last() {
+                    let text = RichText::new(name).font(plain(11.5));
+                    let place = PlotPoint::new(end[0], end[1]);
+                    let text = egui_plot::Text::new("name", place, text).color(colour(p.ink));
+                    plot.text(text.anchor(egui::Align2::LEFT_BOTTOM).allow_hover(false));
+                }
+                let line = Line::new(name.to_owned(), PlotPoints::from(line)).width(1.8).color(colour(p.ink));
+                plot.line(line.style(LineStyle::Solid).allow_hover(false));
+            }
+            plot.vline(VLine::new("b", b_now).color(colour(p.amber)).width(1.6).allow_hover(false));
+            for (_, x) in &points {
+                for pose in map.poses(*x, b_now).iter() {
+                    let dot = vec![[b_now, map.lift(*pose)[0]]];
+                    plot.points(Points::new("pose", dot).radius(4.0).color(colour(p.amber)).allow_hover(false));
+                }
+            }
+            plot.pointer_coordinate().map(|c| c.x)
+        });
+    name(&response.response, "Which b: q1 against b of each point");
+    let held = response.response.dragged() || response.response.clicked();
+    if let (true, Some(b)) = (held, response.inner) {
+        commands.push(Command::Edit(set_b(session, b)));
+    }
+    if response.response.drag_stopped() || response.response.clicked() {
+        commands.push(Command::EndGesture);
+    }
+}
+
+/// Some three to five round values between bounds.
+fn spaced(low: f64, high: f64) -> Vec<f64> {
+    let step = round_up((high - low) / 5.0);
+    let first = (low / step).ceil() as i64;
+    (first..first + 12).map(|i| i as f64 * step).take_while(|v| *v <= high).collect()
+}

@@ -1,0 +1,250 @@
+//! The panel on the left: pose constant, limits, motion, plant, control, balance.
+
+use egui::{Align, DragValue, Frame, Layout, Margin, Panel, Response, RichText, ScrollArea, Slider, Ui};
+
+use super::theme::{bold, colour, plain};
+use super::top::name;
+use super::{Command, Look, set_b};
+use crate::machine::Inertia;
+use crate::planar::Vector;
+use crate::pose_constant::in_words;
+use crate::scene::palette::Palette;
+use crate::session::{Edit, Session};
+
+/// Draws it.
+pub fn show(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Command>) {
+    let p = look.palette();
+    let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 16, right: 10, top: 12, bottom: 8 });
+    Panel::left("side").exact_size(262.0).resizable(false).frame(frame).show(ui, |ui| {
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            ui.set_width(ui.available_width() - 6.0);
+            pose_constant(ui, session, &p, commands);
+            limits(ui, session, &p, commands);
+            motion(ui, session, &p, commands);
+            plant(ui, session, &p, commands);
+            control(ui, session, &p, commands);
+            balance(ui, session, &p);
+        });
+    });
+}
+
+fn section(ui: &mut Ui, p: &Palette, title: &str) {
+    ui.add_space(10.0);
+    ui.label(RichText::new(title.to_uppercase()).font(bold(11.0)).color(colour(p.dim)));
+}
+
+/// A name on the left, a number that can be dragged or typed and its unit on the right.
+struct Row<'a> {
+    label: &'a str,
+    unit: &'a str,
+    tip: &'a str,
+    decimals: usize,
+    speed: f64,
+    range: std::ops::RangeInclusive<f64>,
+}
+
+impl Row<'_> {
+    fn show(&self, ui: &mut Ui, p: &Palette, value: &mut f64) -> Response {
+        ui.horizontal(|ui| {
+            ui.label(self.label).on_hover_text(self.tip);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                unit(ui, p, self.unit);
+                self.number(ui, value)
+            })
+            .inner
+        })
+        .inner
+    }
+
+    fn number(&self, ui: &mut Ui, value: &mut f64) -> Response {
+        let drag = DragValue::new(value)
+            .speed(self.speed)
+            .range(self.range.clone())
+            .fixed_decimals(self.decimals)
+            .update_while_editing(false);
+        let response = ui.add(drag).on_hover_text(self.tip);
+        name(&response, &format!("{} {}", self.label, self.unit));
+        response
+    }
+
+    /// The same with a slider below.
+    fn with_slider(&self, ui: &mut Ui, p: &Palette, value: &mut f64) -> [Response; 2] {
+        let number = self.show(ui, p, value);
+        ui.spacing_mut().slider_width = ui.available_width();
+        let slider = ui.add(Slider::new(value, self.range.clone()).show_value(false).smart_aim(false));
+        name(&slider, &format!("{} slider", self.label));
+        [number, slider.on_hover_text(self.tip)]
+    }
+}
+
+fn unit(ui: &mut Ui, p: &Palette, text: &str) {
+    let text = RichText::new(text).font(plain(11.5)).color(colour(p.dim));
+    ui.add_sized([38.0, 18.0], egui::Label::new(text).halign(Align::LEFT));
+}
+
+fn note(ui: &mut Ui, p: &Palette, text: &str) {
+    ui.add(egui::Label::new(RichText::new(text).font(plain(11.5)).color(colour(p.dim))).wrap());
+}
+
+/// Sends an edit when a widget has changed, and ends the gesture when it is let go.
+fn send(commands: &mut Vec<Command>, responses: &[Response], edit: impl FnOnce() -> Edit) {
+    if responses.iter().any(Response::changed) {
+        commands.push(Command::Edit(edit()));
+    }
+    if responses.iter().any(|r| r.drag_stopped() || r.lost_focus()) {
+        commands.push(Command::EndGesture);
+    }
+}
+
+fn pose_constant(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
+    let scenario = session.scenario();
+    let period = session.run().planes().map_or(std::f64::consts::TAU, |p| p.map().period());
+    ui.label(RichText::new("POSE CONSTANT").font(bold(11.0)).color(colour(p.dim)));
+    let mut b = match session.run().simulation().guide() {
+        crate::simulation::Guide::Follow(follower) if session.is_at_end() => follower.b_aim(),
+        _ => session.frame().b_reference,
+    };
+    let low = (b / period).floor().min(0.0) * period;
+    let high = low.max(0.0) + period.max(b);
+    let row = Row {
+        label: "b",
+        unit: "rad",
+        tip: "b = q₁ + λ₂ q₂ + λ₃ q₃, Eq. (13). Changing it turns the reactionless workspace.",
+        decimals: 3,
+        speed: 0.005,
+        range: low..=high,
+    };
+    let responses = row.with_slider(ui, p, &mut b);
+    send(commands, &responses, || set_b(session, b));
+    if let Some(planes) = session.run().planes() {
+        let at = |x: [f64; 2]| Vector::new(x[0], x[1]);
+        let text = match planes.common([at(scenario.task.from), at(scenario.task.to)]) {
+            Some(common) => format!("A and B share {}", in_words(&common)),
+            None => "A and B share no b".into(),
+        };
+        note(ui, p, &text);
+        let inertia = Inertia::of(&scenario.machine);
+        let price = inertia.diagonal(0) * scenario.pose_acceleration;
+        note(ui, p, &format!("sliding it in motion costs at most {price:.2} N m"));
+    }
+    let mut shown = scenario.compare_b.is_some();
+    let mut other = scenario.compare_b.unwrap_or(b + 0.5 * period);
+    ui.horizontal(|ui| {
+        let tick = ui.checkbox(&mut shown, "compare").on_hover_text("A second workspace, as in Fig. 4");
+        if tick.changed() {
+            commands.push(Command::Edit(Edit::CompareB { b: shown.then_some(other) }));
+            commands.push(Command::EndGesture);
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            unit(ui, p, "rad");
+            if shown {
+                let row = Row { label: "compare b", unit: "rad", tip: "Its pose constant", decimals: 3, speed: 0.005, range: -50.0..=50.0 };
+                let response = row.number(ui, &mut other);
+                send(commands, &[response], || Edit::CompareB { b: Some(other) });
+            }
+        });
+    });
+}
+
+fn limits(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
+    section(ui, p, "Joint limits");
+    for (i, angle) in session.scenario().machine.angles().iter().enumerate() {
+        let mut ends = [angle.limits.start().to_degrees(), angle.limits.end().to_degrees()];
+        let old = ends;
+        ui.horizontal(|ui| {
+            let symbol = ["a₁", "a₂"].get(i).copied().unwrap_or("a");
+            ui.label(symbol).on_hover_text("Relative joint angle: a₁ = q₂ − q₁, a₂ = q₃ − q₂ + π");
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                unit(ui, p, "°");
+                let mut changed = Vec::new();
+                for (end, word) in [(1, "greatest"), (0, "least")] {
+                    let range = if end == 1 { ends[0]..=ends[0].max(0.0) + 720.0 } else { -720.0..=ends[1] };
+                    let row = Row {
+                        label: &format!("{symbol} {word}"),
+                        unit: "°",
+                        tip: "Joint limit; the workspace is what (a₁, a₂) within them reach",
+                        decimals: 1,
+                        speed: 0.5,
+                        range,
+                    };
+                    changed.push(row.number(ui, &mut ends[end]));
+                    if end == 1 {
+                        ui.label(RichText::new("…").color(colour(p.dim)));
+                    }
+                }
+                send(commands, &changed, || {
+                    // An end that was not touched keeps its last bit.
+                    let rad = |k: usize, was: f64| if ends[k] == old[k] { was } else { ends[k].to_radians() };
+                    let value = format!("{},{}", rad(0, *angle.limits.start()), rad(1, *angle.limits.end()));
+                    Edit::SetMachine { key: format!("limits.{}", angle.name), value }
+                });
+            });
+        });
+    }
+}
+
+fn motion(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
+    section(ui, p, "Motion");
+    let mut time = session.scenario().task.time;
+    let tip = "Duration T from A to B, quintic in time: peaks go with 1/T²";
+    let row = Row { label: "time T", unit: "s", tip, decimals: 2, speed: 0.01, range: 0.1..=10.0 };
+    let responses = row.with_slider(ui, p, &mut time);
+    send(commands, &responses, || Edit::SetTime { time });
+}
+
+fn plant(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
+    section(ui, p, "Plant");
+    let scenario = session.scenario();
+    let mut mass = scenario.plant.payload.mass;
+    let tip = "A mass at the end effector that control does not know of: it unbalances the machine";
+    let row = Row { label: "payload", unit: "kg", tip, decimals: 2, speed: 0.01, range: 0.0..=2.0 };
+    let responses = row.with_slider(ui, p, &mut mass);
+    send(commands, &responses, || Edit::SetPayload { mass });
+    let gravity = scenario.machine.gravity();
+    let mut down = -gravity.im;
+    let tip = "Acceleration of gravity along −y; known to control";
+    let row = Row { label: "gravity", unit: "m/s²", tip, decimals: 2, speed: 0.05, range: 0.0..=20.0 };
+    let responses = row.with_slider(ui, p, &mut down);
+    send(commands, &responses, || Edit::SetMachine { key: "gravity".into(), value: format!("{},{}", gravity.re, -down) });
+}
+
+fn control(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
+    section(ui, p, "Control");
+    let gains = session.scenario().gains;
+    let (mut kp, mut kd) = (gains.kp, gains.kd);
+    let tip = "Computed torque: position gain, the same on all drives";
+    let first = Row { label: "Kp", unit: "s⁻²", tip, decimals: 0, speed: 1.0, range: 0.0..=10_000.0 }.show(ui, p, &mut kp);
+    let tip = "Computed torque: velocity gain, the same on all drives";
+    let second = Row { label: "Kd", unit: "s⁻¹", tip, decimals: 0, speed: 0.2, range: 0.0..=1_000.0 }.show(ui, p, &mut kd);
+    send(commands, &[first, second], || Edit::SetGains { kp, kd });
+}
+
+fn balance(ui: &mut Ui, session: &Session, p: &Palette) {
+    section(ui, p, "Balance");
+    let machine = &session.scenario().machine;
+    let inertia = Inertia::of(machine);
+    let rows = [
+        ("γ", "kg m", inertia.force_residual(), inertia.is_force_balanced(), "Force balance, Eq. (7): largest |g_k|; zero means the centre of mass never moves"),
+        ("coupling", "kg m²", inertia.invariance_residual(), inertia.is_invariant(), "Invariance, Eq. (8): largest |C_kl|; zero means a constant mass matrix"),
+    ];
+    for (label, in_unit, value, good, tip) in rows {
+        let tone = if good { p.zero } else { p.reaction };
+        fact(ui, p, label, &format!("{value:.1e}"), in_unit, tone, tip);
+    }
+    for k in 0..machine.drives() {
+        let tip = "Inertia of the drive, D = H in Eq. (11)";
+        let label = format!("D{}", ['₁', '₂', '₃', '₄', '₅', '₆', '₇', '₈'][k]);
+        fact(ui, p, &label, &format!("{:.4}", inertia.diagonal(k)), "kg m²", p.drive(k), tip);
+    }
+    fact(ui, p, "mass", &format!("{:.2}", machine.mass()), "kg", p.ink, "All links, without the unknown payload");
+}
+
+fn fact(ui: &mut Ui, p: &Palette, label: &str, value: &str, in_unit: &str, tone: crate::scene::Rgba, tip: &str) {
+    ui.horizontal(|ui| {
+        ui.label(label).on_hover_text(tip);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            unit(ui, p, in_unit);
+            ui.label(RichText::new(value).color(colour(tone))).on_hover_text(tip);
+        });
+    });
+}

@@ -1,0 +1,43 @@
+//! The line at the bottom: the verdict, and what to do next.
+
+use egui::{Align, Frame, Layout, Margin, Panel, RichText, Ui};
+
+use super::theme::{bold, colour, plain};
+use super::Look;
+use crate::frame::Reach;
+use crate::scene::stage::signed;
+use crate::session::Session;
+
+/// Draws it.
+pub fn show(ui: &mut Ui, session: &Session, look: &Look) {
+    let p = look.palette();
+    let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin::symmetric(16, 0));
+    Panel::bottom("status").exact_size(30.0).resizable(false).frame(frame).show(ui, |ui| {
+        ui.horizontal_centered(|ui| {
+            let f = session.frame();
+            let quiet = f.is_quiet();
+            let tone = colour(if quiet { p.zero } else { p.reaction });
+            let (dot, _) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), egui::Sense::hover());
+            ui.painter().circle_filled(dot.center(), 4.5, tone);
+            let word = if quiet { "reactionless" } else { "reacts on its base" };
+            ui.label(RichText::new(word).font(bold(13.0)).color(tone));
+            let facts = format!(
+                "n_B {} N m  ·  b {:.3} rad  ·  angular momentum {} kg m²/s  ·  energy balance {:.0e} J",
+                signed(f.base_moment(), 3),
+                f.b,
+                signed(f.angular_momentum, 3),
+                f.energy_balance.abs()
+            );
+            ui.label(RichText::new(facts).font(plain(12.0)).color(colour(p.dim)));
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                let (text, tone) = match (&look.message, f.target.reach) {
+                    (Some((text, true)), _) => (text.clone(), p.reaction),
+                    (Some((text, false)), _) => (text.clone(), p.ink),
+                    (None, Reach::Outside { .. }) => ("the target is outside; slide b or drag it back".into(), p.ink),
+                    (None, _) => ("drag the target or the b ring  ·  Space plays  ·  F1 keys".into(), p.dim),
+                };
+                ui.add(egui::Label::new(RichText::new(text).font(plain(12.0)).color(colour(tone))).truncate());
+            });
+        });
+    });
+}

@@ -1,0 +1,120 @@
+//! A real window around a [`Desk`], in a winit event loop of our own.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use thiserror::Error;
+use winit::event_loop::{ControlFlow, EventLoop};
+
+use crate::render::Renderer;
+use crate::scenario::Scenario;
+use crate::scene::palette::Theme;
+use crate::session::Refusal;
+use crate::ui::{Command, Desk};
+
+/// Why there is no window.
+#[derive(Debug, Error)]
+pub enum WindowError {
+    /// No display server answers.
+    #[error("no display: {0}")]
+    NoDisplay(String),
+    /// A library that the window system needs.
+    #[error("the window needs {library}: install it with `{install}`")]
+    MissingLibrary {
+        /// File name of the library.
+        library: &'static str,
+        /// What installs it on Debian.
+        install: &'static str,
+    },
+    /// The scenario cannot start.
+    #[error(transparent)]
+    Refused(#[from] Refusal),
+    /// No graphics adapter, or the window system failed.
+    #[error("the window could not be opened: {0} (on Debian, `apt-get install mesa-vulkan-drivers` gives a software adapter)")]
+    Failed(String),
+}
+
+/// Opens a window on a scenario and returns when it is closed.
+///
+/// # Errors
+/// If there is no display, library or adapter, or the scenario cannot start.
+pub fn run(scenario: Scenario, theme: Theme) -> Result<(), WindowError> {
+    check_libraries()?;
+    let mut desk = Desk::new(scenario, theme)?;
+    desk.carry_out(Command::TogglePlay);
+    let event_loop = EventLoop::<eframe::UserEvent>::with_user_event()
+        .build()
+        .map_err(|e| WindowError::NoDisplay(e.to_string()))?;
+    event_loop.set_control_flow(ControlFlow::Wait);
+    let options = eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("Stillbase")
+            .with_app_id("stillbase")
+            .with_inner_size([1440.0, 900.0])
+            .with_min_inner_size([960.0, 600.0]),
+        renderer: eframe::Renderer::Wgpu,
+        ..Default::default()
+    };
+    let create: eframe::AppCreator<'_> = Box::new(move |cc| {
+        let state = cc.wgpu_render_state.as_ref().ok_or("no graphics adapter")?;
+        let renderer = Renderer::new(&state.device, state.target_format);
+        state.renderer.write().callback_resources.insert(renderer);
+        Ok(Box::new(App::new(desk)))
+    });
+    let mut app = eframe::create_native("stillbase", options, create, &event_loop);
+    event_loop.run_app(&mut app).map_err(|e| WindowError::Failed(e.to_string()))
+}
+
+/// On X11 a missing library would end the program deep inside; name it before.
+fn check_libraries() -> Result<(), WindowError> {
+    let x11 = cfg!(target_os = "linux")
+        && std::env::var_os("WAYLAND_DISPLAY").is_none()
+        && std::env::var_os("DISPLAY").is_some();
+    if !x11 {
+        return Ok(());
+    }
+    for (library, install) in [
+        ("libxkbcommon-x11.so.0", "apt-get install libxkbcommon-x11-0"),
+        ("libXcursor.so.1", "apt-get install libxcursor1"),
+        ("libXi.so.6", "apt-get install libxi6"),
+    ] {
+        // SAFETY: these are system libraries that the window system loads a moment later in the same way; their
+        // initialisers do nothing but set up their own state.
+        if unsafe { libloading::Library::new(library) }.is_err() {
+            return Err(WindowError::MissingLibrary { library, install });
+        }
+    }
+    Ok(())
+}
+
+/// The desk as eframe wants it; tests drive it without a window.
+pub struct App {
+    desk: Desk,
+    last: Option<Instant>,
+}
+
+impl App {
+    /// Around a desk.
+    pub fn new(desk: Desk) -> Self {
+        Self { desk, last: None }
+    }
+
+    /// What it shows.
+    pub fn desk(&self) -> &Desk {
+        &self.desk
+    }
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        let now = Instant::now();
+        let wall = self.last.replace(now).map_or(0.0, |last| (now - last).as_secs_f64());
+        // A moment in which nothing moved is not made up for.
+        self.desk.pass(wall);
+        let dropped: Option<PathBuf> = ui.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_path_buf()));
+        if let Some(path) = dropped {
+            self.desk.carry_out(Command::OpenFile(path));
+        }
+        self.desk.ui(ui);
+    }
+}
