@@ -1,2 +1,0 @@
-use super::*; use crate::planar::Vector;
-impl PlaneMap { pub fn poses(&self, p: Vector, b: f64) -> Vec<PlanePoint> { let mut v: Vec<PlanePoint> = vec![]; for i in 0..12 { for j in 0..12 { let f=|k:usize,t:f64| self.limits()[k].min + (self.limits()[k].max-self.limits()[k].min)*(t+0.5)/12.0; if let Some(a)=self.follow(p,b,[f(0,i as f64),f(1,j as f64)]) { if v.iter().all(|x| (x.a[0]-a[0]).hypot(x.a[1]-a[1])>1e-6) { v.push(PlanePoint{a,b}); } } } } v } }
