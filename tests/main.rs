@@ -2,3 +2,5 @@
 
 #[path = "suite/nine_body.rs"]
 mod nine_body;
+#[path = "suite/reach.rs"]
+mod reach;

@@ -13,5 +13,10 @@
 //! | u_k, v_k | q_k = b* + u_k · a + v_k | 1, rad |
 
 mod plane;
+mod poses;
+mod quadrilateral;
+mod reach;
 
 pub use plane::{AngleDefinition, Limit, NotAPlaneMap, PlaneMap, PlanePoint, SLACK};
+pub use poses::{MAX_POSES, Poses};
+pub use reach::{BSet, NoReach};
