@@ -40,11 +40,18 @@ pub(super) struct Site {
 pub(super) struct Arc {
     pub from: Site,
     pub to: Site,
-    /// Where it lies on its graph: the parameter at the two ends, in [0, π].
+    /// Its parameter at the two ends, in [0, π].
     pub s: [f64; 2],
-    graph: Graph,
-    /// 2π times the turns of arm y against the graph, and what they add to b.
-    turns: [f64; 2],
+    path: Path,
+}
+
+/// What an arc is part of.
+#[derive(Clone, Copy, Debug)]
+enum Path {
+    /// A graph, arm y turned by these angles against it: whole turns.
+    Graph(Graph, f64),
+    /// Linear in s between the ends.
+    Line,
 }
 
 /// One elbow over one interval of feasible α. The parameter s in [0, π] runs through it as α = mid − half cos s, so that
@@ -319,8 +326,23 @@ impl Quadrilateral {
 
     /// A point of an arc by its parameter s.
     pub fn on(&self, arc: &Arc, s: f64) -> Site {
-        let Site { alpha, beta, b } = self.at(arc.graph.piece.alpha(s), arc.graph.sigma, None);
-        Site { alpha, beta: beta + arc.turns[0], b: b + arc.turns[1] }
+        match arc.path {
+            Path::Graph(Graph { sigma, piece }, turns) => self.turned(self.at(piece.alpha(s), sigma, None), turns),
+            Path::Line => {
+                let t = (s - arc.s[0]) / (arc.s[1] - arc.s[0]);
+                let mix = |from: f64, to: f64| from + t * (to - from);
+                Site {
+                    alpha: mix(arc.from.alpha, arc.to.alpha),
+                    beta: mix(arc.from.beta, arc.to.beta),
+                    b: mix(arc.from.b, arc.to.b),
+                }
+            }
+        }
+    }
+
+    /// The same point with arm y turned by whole turns.
+    fn turned(&self, site: Site, turns: f64) -> Site {
+        Site { beta: site.beta + turns, b: site.b + self.lambda[2] * turns, ..site }
     }
 
     /// The point of an arc with this b, which lies between those of the ends: bracketing with inverse quadratic
@@ -360,6 +382,9 @@ impl Quadrilateral {
 
     /// Visits the whole curve within the limits, arc by arc. Arcs that continue each other share an end.
     pub fn arcs(&self, mut visit: impl FnMut(&Arc)) {
+        if self.is_rhombus() {
+            return self.lines(visit);
+        }
         let Some((pieces, count)) = self.pieces() else { return };
         let cuts = self.cuts();
         let Limit { min, max } = self.limits[0];
@@ -383,7 +408,7 @@ impl Quadrilateral {
     fn pieces(&self) -> Option<([Piece; 2], usize)> {
         let Self { m, x, y, r, .. } = *self;
         let (inner, outer) = (r + y, (r - y).abs());
-        // In the same order of operations as `new` clamps r, so that full stretch is not lost to rounding.
+        // Full stretch is not to be lost to rounding.
         let rounding = ROUNDING * self.size();
         let closes = y > 0.0 && inner >= (m - x).abs() - rounding && outer <= m + x + rounding;
         if !closes {
@@ -444,28 +469,51 @@ impl Quadrilateral {
                 _ => self.at(piece.alpha(0.5 * (s[0] + s[1])), sigma, None).beta,
             };
             for beta in lifts(middle, bound) {
-                visit(&self.lifted(Arc { from, to, s, graph, turns: [0.0; 2] }, beta - middle));
+                visit(&self.arc([from, to], s, graph, beta - middle));
             }
             // A bound that the curve touches from outside, or that leaves no room, is met in a point.
             if let Some(edge) = pair[0].1 {
                 let turns = TAU * ((edge - from.beta) / TAU).round();
                 let misses = |middle: f64| !bound.contains(middle + turns, 0.0);
                 if before.is_none_or(misses) && misses(middle) {
-                    visit(&self.lifted(Arc { from, to: from, s: [s[0]; 2], graph, turns: [0.0; 2] }, turns));
+                    visit(&self.arc([from; 2], [s[0]; 2], graph, turns));
                 }
             }
             before = Some(middle);
         }
     }
 
-    /// The same arc with arm y turned by whole turns.
-    fn lifted(&self, mut arc: Arc, turns: f64) -> Arc {
-        arc.turns = [turns, turns * self.lambda[2]];
-        for site in [&mut arc.from, &mut arc.to] {
-            site.beta += arc.turns[0];
-            site.b += arc.turns[1];
+    fn arc(&self, [from, to]: [Site; 2], s: [f64; 2], graph: Graph, turns: f64) -> Arc {
+        Arc { from: self.turned(from, turns), to: self.turned(to, turns), s, path: Path::Graph(graph, turns) }
+    }
+
+    /// Whether all four sides are equal. Then the curve falls apart into lines, on which one pair of arms cancels.
+    fn is_rhombus(&self) -> bool {
+        [self.x, self.y, self.r].iter().all(|side| (side - self.m).abs() <= ROUNDING * self.size())
+    }
+
+    /// The curve of a rhombus: α = π, β = π, α − β = π, modulo 2π.
+    fn lines(&self, mut visit: impl FnMut(&Arc)) {
+        let [first, second] = self.limits;
+        let [by_turn, by_alpha, by_beta] = [-self.lambda_sum, self.lambda[1], self.lambda[2]];
+        let mut line = |[from, to]: [[f64; 2]; 2], arg_w: [f64; 2]| {
+            let b =
+                |i: usize, [alpha, beta]: [f64; 2]| self.b_0 + by_turn * arg_w[i] + by_alpha * alpha + by_beta * beta;
+            let site = |i: usize, at: [f64; 2]| Site { alpha: at[0], beta: at[1], b: b(i, at) };
+            let s = [0.0, if from == to { 0.0 } else { PI }];
+            visit(&Arc { from: site(0, from), to: site(1, to), s, path: Path::Line });
+        };
+        for alpha in lifts(PI, first) {
+            line([[alpha, second.min], [alpha, second.max]], [second.min, second.max]);
         }
-        arc
+        for beta in lifts(PI, second) {
+            line([[first.min, beta], [first.max, beta]], [first.min, first.max]);
+        }
+        let difference = Limit { min: first.min - second.max, max: first.max - second.min };
+        for difference in lifts(PI, difference) {
+            let [from, to] = [first.min.max(second.min + difference), first.max.min(second.max + difference)];
+            line([[from, from - difference], [to, to - difference]], [0.0; 2]);
+        }
     }
 
     fn cuts(&self) -> Few<Cut, CUTS> {

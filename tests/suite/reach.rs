@@ -339,6 +339,49 @@ proptest! {
     }
 }
 
+/// Lengths in equal steps and points at such distances: rhombi, kites and flat quadrilaterals among them.
+fn even_map(c: [i32; 3], template: PlaneMap, narrow: [bool; 2]) -> PlaneMap {
+    let l = template.limits();
+    let limits = [0, 1].map(|i| if narrow[i] { l[i] } else { Limit { min: l[i].min, max: l[i].min + TAU } });
+    PlaneMap::new(c.map(|c| 0.25 * f64::from(c)), template.lambda(), template.angles(), limits).unwrap()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(150))]
+
+    #[test]
+    fn reach_of_degenerate_quadrilaterals_is_that_of_brute_force(
+        template in any_map(),
+        c in prop::array::uniform3(1..4i32),
+        r in 1..9i32,
+        turn in -3.0..3.0f64,
+        narrow in any::<[bool; 2]>(),
+        rhombus in 0..4usize,
+    ) {
+        let map = if rhombus == 0 { even_map([r; 3], template, narrow) } else { even_map(c, template, narrow) };
+        let p = Vector::from_polar(0.25 * f64::from(r), turn);
+        let found = brute_force_b(&map, p, 150);
+        let Ok(set) = map.reach(p) else {
+            prop_assert!(found.is_empty());
+            return Ok(());
+        };
+        for b in &found {
+            // Flat quadrilaterals amplify rounding to its root.
+            let nearest = set.nearest(*b).unwrap();
+            prop_assert!(is_near(nearest, *b, 1e-6), "{b} {set:?}");
+            let poses = map.poses(p, nearest);
+            prop_assert!(!poses.is_empty(), "{b} {set:?}");
+            prop_assert!(poses.iter().all(|f| (map.forward(f.a, nearest) - p).norm() < 1e-8));
+        }
+        for end in set.intervals.iter().flatten() {
+            prop_assert!(found.is_empty() || !map.poses(p, *end).is_empty(), "{end} {set:?}");
+        }
+        for at in map.self_motion(p, 30).iter().flatten() {
+            prop_assert!((map.forward(at.a, at.b) - p).norm() < 1e-7, "{at:?}");
+        }
+    }
+}
+
 #[test]
 fn unreachable_points_say_why() {
     let map = nine_link();
