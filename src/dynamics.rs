@@ -70,7 +70,6 @@ impl MassMatrix {
     }
 }
 
-
 #[inline]
 fn times<const N: usize>(h: &MassMatrix, x: &PerDrive) -> PerDrive {
     let x = x.padded();
@@ -154,22 +153,13 @@ pub struct BaseWrench {
 impl BaseWrench {
     /// The sum of both parts.
     pub fn total(&self) -> Wrench {
-        Wrench {
-            force: self.statical.force + self.dynamic.force,
-            moment: self.statical.moment + self.dynamic.moment,
-        }
+        Wrench { force: self.statical.force + self.dynamic.force, moment: self.statical.moment + self.dynamic.moment }
     }
 }
 
 /// f_B and n_B, (1) and (5).
 #[inline]
-pub fn base_wrench(
-    inertia: &Inertia,
-    e: &Units,
-    qd: &PerDrive,
-    qdd: &PerDrive,
-    around: &Surroundings,
-) -> BaseWrench {
+pub fn base_wrench(inertia: &Inertia, e: &Units, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> BaseWrench {
     let (h, v) = mass_matrix(inertia, e, qd);
     let rate = h.times(qdd).iter().zip(v.iter()).map(|(a, b)| a + b).sum::<f64>();
     wrench_with(inertia, e, qd, qdd, around, rate)

@@ -99,7 +99,8 @@ impl From<PerDrive> for Vec<f64> {
 impl TryFrom<Vec<f64>> for PerDrive {
     type Error = String;
     fn try_from(v: Vec<f64>) -> Result<Self, String> {
-        Self::from_slice(&v).ok_or_else(|| format!("{} numbers, where a machine has at most {MAX_DRIVES} drives", v.len()))
+        Self::from_slice(&v)
+            .ok_or_else(|| format!("{} numbers, where a machine has at most {MAX_DRIVES} drives", v.len()))
     }
 }
 

@@ -2,14 +2,5 @@
 
 #[path = "suite/nine_body.rs"]
 mod nine_body;
-#[cfg(feature = "render")]
-#[path = "suite/gpu.rs"]
-mod gpu;
-#[path = "suite/mesh.rs"]
-mod mesh;
-#[cfg(feature = "render")]
-#[path = "suite/render.rs"]
-mod render;
-#[cfg(feature = "render")]
-#[path = "suite/shaders.rs"]
-mod shaders;
+#[path = "suite/reach.rs"]
+mod reach;

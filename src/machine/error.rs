@@ -122,7 +122,9 @@ pub enum MachineError {
         chain: String,
     },
     /// A closure whose two points are not one.
-    #[error("{place}: {a} and {b} are not one point in every pose, they differ by {gap}: want a parallelogram that closes")]
+    #[error(
+        "{place}: {a} and {b} are not one point in every pose, they differ by {gap}: want a parallelogram that closes"
+    )]
     OpenLoop {
         /// Where.
         place: Place,
@@ -143,7 +145,9 @@ pub enum MachineError {
         drive: String,
     },
     /// One bar of a shared length.
-    #[error("link {link} shares its length {length} with {sharers}: changing it alone would break a parallelogram; set length.{length} instead")]
+    #[error(
+        "link {link} shares its length {length} with {sharers}: changing it alone would break a parallelogram; set length.{length} instead"
+    )]
     SharedLength {
         /// The link.
         link: String,

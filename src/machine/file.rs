@@ -35,8 +35,7 @@ pub enum FileError {
 /// # Errors
 /// If it cannot be read or is not a machine.
 pub fn read(file: &Path) -> Result<Machine, FileError> {
-    let text =
-        std::fs::read_to_string(file).map_err(|source| FileError::Unreadable { file: file.into(), source })?;
+    let text = std::fs::read_to_string(file).map_err(|source| FileError::Unreadable { file: file.into(), source })?;
     parse(&text, &file.display().to_string())
 }
 

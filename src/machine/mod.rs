@@ -219,12 +219,7 @@ fn unique<'a>(what: &'static str, names: impl Iterator<Item = &'a str>) -> Resul
     Ok(seen)
 }
 
-fn look_up(
-    what: &'static str,
-    names: &[&str],
-    name: &str,
-    place: impl Fn() -> Place,
-) -> Result<usize, MachineError> {
+fn look_up(what: &'static str, names: &[&str], name: &str, place: impl Fn() -> Place) -> Result<usize, MachineError> {
     names.iter().position(|n| *n == name).ok_or_else(|| MachineError::Unknown {
         place: place(),
         what,

@@ -15,9 +15,12 @@
 mod boundary;
 mod plane;
 mod poses;
+mod quadrilateral;
 mod reach;
 
 
 pub use boundary::{Boundary, Nearest};
 pub use reach::{BSet, NoReach};
 pub use plane::{AngleDefinition, Limit, NotAPlaneMap, PlaneMap, PlanePoint, SLACK};
+pub use poses::{MAX_POSES, Poses};
+pub use reach::{BSet, NoReach};

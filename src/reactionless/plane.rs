@@ -59,7 +59,9 @@ pub struct PlaneMap {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NotAPlaneMap {
     /// The two relative angles do not tell all three drives apart.
-    #[error("the relative joint angles do not determine the pose on a plane: want two angles that join all three drives")]
+    #[error(
+        "the relative joint angles do not determine the pose on a plane: want two angles that join all three drives"
+    )]
     Dependent,
     /// A number is not finite, or Σλ is zero.
     #[error("λ, lengths, offsets and limits must be finite, with Σλ above 0 and min ≤ max")]
