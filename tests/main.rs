@@ -1,4 +1,6 @@
 //! All tests, one binary.
 
+#[path = "suite/boundary.rs"]
+mod boundary;
 #[path = "suite/nine_body.rs"]
 mod nine_body;

@@ -12,6 +12,8 @@
 //! | b* | b/Σλ: turns the whole workspace, (15) | rad |
 //! | u_k, v_k | q_k = b* + u_k · a + v_k | 1, rad |
 
+mod boundary;
 mod plane;
 
+pub use boundary::{Boundary, Curve, Extent, Loop, Nearest, Vertex};
 pub use plane::{AngleDefinition, Limit, NotAPlaneMap, PlaneMap, PlanePoint, SLACK};
