@@ -18,9 +18,7 @@ mod poses;
 mod quadrilateral;
 mod reach;
 
-
-pub use boundary::{Boundary, Nearest};
-pub use reach::{BSet, NoReach};
+pub use boundary::{Boundary, Curve, Extent, Loop, Nearest, Vertex};
 pub use plane::{AngleDefinition, Limit, NotAPlaneMap, PlaneMap, PlanePoint, SLACK};
 pub use poses::{MAX_POSES, Poses};
 pub use reach::{BSet, NoReach};

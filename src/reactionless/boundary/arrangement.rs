@@ -1,0 +1,317 @@
+//! Spans cut where they cross each other, and the parts that have the workspace on one side only, joined into loops.
+
+use std::collections::VecDeque;
+
+use super::span::{Span, Surface};
+use crate::planar::{Vector, cross, dot};
+
+/// Parts of a span this near to each other, as a part of the span, are one cut.
+const SAME: f64 = 1e-11;
+/// Ends this near to each other are joined, m.
+const JOINT: f64 = 1e-9;
+/// Curves still entangled at this length touch without crossing, m.
+const SHORTEST: f64 = 1e-9;
+/// Pairs of parts looked at before two spans count as running along each other.
+const PATIENCE: usize = 3000;
+
+/// A part of a span.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Portion {
+    pub span: usize,
+    pub from: f64,
+    pub to: f64,
+}
+
+pub(super) struct Arrangement<'a> {
+    on: &'a Surface,
+    spans: &'a [Span],
+    boxes: Vec<Box>,
+}
+
+/// Axis-parallel bounds of a span.
+#[derive(Clone, Copy)]
+struct Box {
+    low: Vector,
+    high: Vector,
+}
+
+#[derive(Clone, Copy)]
+struct Part {
+    range: [f64; 2],
+    at: [Vector; 2],
+}
+
+impl Part {
+    fn of(span: &Span) -> Self {
+        Self { range: [0.0, 1.0], at: span.at }
+    }
+
+    fn deviation(&self, span: &Span) -> f64 {
+        span.deviation * (self.range[1] - self.range[0]).powi(2) + 1e-16
+    }
+
+    fn halves(&self, on: &Surface, span: &Span) -> [Self; 2] {
+        let middle = 0.5 * (self.range[0] + self.range[1]);
+        let at = on.at(span, middle);
+        [
+            Self { range: [self.range[0], middle], at: [self.at[0], at] },
+            Self { range: [middle, self.range[1]], at: [at, self.at[1]] },
+        ]
+    }
+}
+
+impl<'a> Arrangement<'a> {
+    pub fn of(on: &'a Surface, spans: &'a [Span]) -> Self {
+        let bounds = |s: &Span| {
+            let slack = s.deviation + 1e-12;
+            let [a, b] = s.at;
+            Box {
+                low: Vector::new(a.re.min(b.re) - slack, a.im.min(b.im) - slack),
+                high: Vector::new(a.re.max(b.re) + slack, a.im.max(b.im) + slack),
+            }
+        };
+        Self { on, spans, boxes: spans.iter().map(bounds).collect() }
+    }
+
+    /// How many poses reach p: the winding number of the weighted cycle. On a curve, the number is that of a side.
+    pub fn poses_at(&self, p: Vector) -> i32 {
+        let mut count = 0;
+        for (span, b) in self.spans.iter().zip(&self.boxes) {
+            if p.im >= b.low.im && p.im <= b.high.im && p.re <= b.high.re {
+                let ends = [(0.0, span.at[0]), (1.0, span.at[1])];
+                count += span.weight() * span.crossings(self.on, ends[0], ends[1], p).unwrap_or(0);
+            }
+        }
+        count
+    }
+
+    /// The parts of all spans that bound the workspace.
+    pub fn boundary(&self) -> Vec<Portion> {
+        let mut portions = Vec::new();
+        for (i, mut cuts) in self.cuts().into_iter().enumerate() {
+            cuts.push(0.0);
+            cuts.push(1.0);
+            cuts.sort_by(f64::total_cmp);
+            cuts.dedup_by(|next, last| *next - *last < SAME);
+            // The exact ends survive the merging.
+            if let Some(last) = cuts.last_mut() {
+                *last = 1.0;
+            }
+            for w in cuts.windows(2) {
+                let portion = Portion { span: i, from: w[0], to: w[1] };
+                if self.bounds(&portion) {
+                    portions.push(portion);
+                }
+            }
+        }
+        self.without_doubles(portions)
+    }
+
+    /// Whether poses reach the left side of a part, but not its right.
+    fn bounds(&self, portion: &Portion) -> bool {
+        let span = &self.spans[portion.span];
+        let mut verdict = false;
+        for share in [0.5, 0.31, 0.77, 0.13, 0.91] {
+            let jet = self.on.jet(span, portion.from + share * (portion.to - portion.from));
+            let length = jet.rate.norm() * (portion.to - portion.from);
+            let reach = (1e-3 * length).min(1e-7);
+            let normal = Vector::new(-jet.rate.im, jet.rate.re) / jet.rate.norm();
+            if !normal.is_finite() {
+                continue;
+            }
+            let (left, right) = (self.poses_at(jet.at + reach * normal), self.poses_at(jet.at - reach * normal));
+            verdict = left > 0 && right == 0;
+            // Another curve in between spoils the sample.
+            if left - right == span.weight() {
+                break;
+            }
+        }
+        verdict
+    }
+
+    /// Curves that coincide bound the workspace once.
+    fn without_doubles(&self, portions: Vec<Portion>) -> Vec<Portion> {
+        let ends = |p: &Portion| [p.from, p.to].map(|t| self.on.at(&self.spans[p.span], t));
+        let near = |a: Vector, b: Vector| (a - b).norm() < JOINT;
+        let mut kept: Vec<(Portion, [Vector; 2])> = Vec::with_capacity(portions.len());
+        for portion in portions {
+            let [from, to] = ends(&portion);
+            let middle = |p: &Portion| self.on.at(&self.spans[p.span], 0.5 * (p.from + p.to));
+            let double = kept.iter().any(|(other, [f, t])| {
+                near(*f, from) && near(*t, to) && near(middle(other), middle(&portion)) && !near(from, to)
+            });
+            if !double {
+                kept.push((portion, [from, to]));
+            }
+        }
+        kept.into_iter().map(|(portion, _)| portion).collect()
+    }
+
+    /// For each span, where it is crossed.
+    fn cuts(&self) -> Vec<Vec<f64>> {
+        let mut cuts = vec![Vec::new(); self.spans.len()];
+        let mut order: Vec<usize> = (0..self.spans.len()).collect();
+        order.sort_by(|&i, &j| self.boxes[i].low.re.total_cmp(&self.boxes[j].low.re));
+        let mut work = VecDeque::new();
+        for (n, &i) in order.iter().enumerate() {
+            let a = &self.boxes[i];
+            for &j in &order[n + 1..] {
+                let b = &self.boxes[j];
+                if b.low.re > a.high.re {
+                    break;
+                }
+                if b.low.im > a.high.im || b.high.im < a.low.im || self.continues(i, j) {
+                    continue;
+                }
+                self.cross(i, j, &mut cuts, &mut work);
+            }
+        }
+        cuts
+    }
+
+    /// Whether one span goes on where the other ends, on the same curve, without turning back: they do not cross.
+    fn continues(&self, i: usize, j: usize) -> bool {
+        let (a, b) = (&self.spans[i], &self.spans[j]);
+        let joined = a.ends[1] == b.ends[0] || b.ends[1] == a.ends[0];
+        joined && a.curve == b.curve && {
+            let (along_a, along_b) = (a.at[1] - a.at[0], b.at[1] - b.at[0]);
+            dot(along_a, along_b) > 0.5 * along_a.norm() * along_b.norm()
+                && a.deviation < 0.1 * along_a.norm()
+                && b.deviation < 0.1 * along_b.norm()
+        }
+    }
+
+    fn cross(&self, i: usize, j: usize, cuts: &mut [Vec<f64>], work: &mut VecDeque<(Part, Part)>) {
+        let (a, b) = (&self.spans[i], &self.spans[j]);
+        work.clear();
+        work.push_back((Part::of(a), Part::of(b)));
+        let mut patience = PATIENCE;
+        while let Some((pa, pb)) = work.pop_front() {
+            patience -= 1;
+            if patience == 0 {
+                self.overlap(i, j, cuts);
+                return;
+            }
+            let (da, db) = (pa.deviation(a), pb.deviation(b));
+            if apart(pa.at, pb.at, da + db) {
+                continue;
+            }
+            let (va, vb) = (pa.at[1] - pa.at[0], pb.at[1] - pb.at[0]);
+            let (la, lb) = (va.norm(), vb.norm());
+            // Straight enough to cross once at most?
+            let bend = 5.0 * (da / la + db / lb);
+            if bend < 0.5 && cross(va, vb).abs() > bend * la * lb {
+                if let Some([t, s]) = self.meet(a, b, &pa, &pb) {
+                    cuts[i].push(t);
+                    cuts[j].push(s);
+                }
+            } else if la.max(lb) > SHORTEST || da + db > SHORTEST {
+                if la + da > lb + db {
+                    pa.halves(self.on, a).into_iter().for_each(|half| work.push_back((half, pb)));
+                } else {
+                    pb.halves(self.on, b).into_iter().for_each(|half| work.push_back((pa, half)));
+                }
+            }
+        }
+    }
+
+    /// Newton's iteration for P_A(t) = P_B(s) from where the chords meet; within both parts or not at all.
+    fn meet(&self, a: &Span, b: &Span, pa: &Part, pb: &Part) -> Option<[f64; 2]> {
+        let (va, vb) = (pa.at[1] - pa.at[0], pb.at[1] - pb.at[0]);
+        let (ta, tb) = (pa.range[1] - pa.range[0], pb.range[1] - pb.range[0]);
+        let gap = pb.at[0] - pa.at[0];
+        let n = cross(va, vb);
+        let mut t = pa.range[0] + (cross(gap, vb) / n).clamp(0.0, 1.0) * ta;
+        let mut s = pb.range[0] + (cross(gap, va) / n).clamp(0.0, 1.0) * tb;
+        for _ in 0..12 {
+            let (ja, jb) = (self.on.jet(a, t), self.on.jet(b, s));
+            let gap = jb.at - ja.at;
+            let n = cross(ja.rate, jb.rate);
+            let step = [cross(gap, jb.rate) / n, cross(gap, ja.rate) / n];
+            if !(step[0].is_finite() && step[1].is_finite()) {
+                return None;
+            }
+            // Both parts are nearly straight: a solution outside is none.
+            t = (t + step[0]).clamp(pa.range[0] - 0.1 * ta, pa.range[1] + 0.1 * ta);
+            s = (s + step[1]).clamp(pb.range[0] - 0.1 * tb, pb.range[1] + 0.1 * tb);
+            if step[0].abs() < 1e-13 && step[1].abs() < 1e-13 {
+                break;
+            }
+        }
+        let within = |x: f64, r: [f64; 2]| x >= r[0] - SAME && x <= r[1] + SAME;
+        (within(t, pa.range) && within(s, pb.range)).then(|| [t.clamp(0.0, 1.0), s.clamp(0.0, 1.0)])
+    }
+
+    /// Cuts of two spans that run along each other: each where the other begins or ends.
+    fn overlap(&self, i: usize, j: usize, cuts: &mut [Vec<f64>]) {
+        for (one, other) in [(i, j), (j, i)] {
+            for end in self.spans[one].at {
+                let span = &self.spans[other];
+                let mut t = 0.5;
+                for _ in 0..40 {
+                    let jet = self.on.jet(span, t);
+                    let step = dot(end - jet.at, jet.rate) / jet.rate.norm_sqr();
+                    if !step.is_finite() {
+                        break;
+                    }
+                    t = (t + step).clamp(0.0, 1.0);
+                    if step.abs() < 1e-14 {
+                        break;
+                    }
+                }
+                if (self.on.at(span, t) - end).norm() < JOINT {
+                    cuts[other].push(t);
+                }
+            }
+        }
+    }
+
+    /// Joins parts end to start; where there is a choice, the leftmost turn keeps loops from crossing themselves.
+    pub fn chain(&self, portions: Vec<Portion>) -> Vec<Vec<Portion>> {
+        let at = |p: &Portion, share: f64| self.on.at(&self.spans[p.span], p.from + share * (p.to - p.from));
+        let starts: Vec<Vector> = portions.iter().map(|p| at(p, 0.0)).collect();
+        let ends: Vec<Vector> = portions.iter().map(|p| at(p, 1.0)).collect();
+        let mut used = vec![false; portions.len()];
+        let mut loops = Vec::new();
+        for first in 0..portions.len() {
+            if used[first] {
+                continue;
+            }
+            let mut chain = vec![portions[first]];
+            used[first] = true;
+            let mut last = first;
+            while (ends[last] - starts[first]).norm() > JOINT {
+                let along = ends[last] - at(&portions[last], 0.95);
+                let turn = |k: usize| {
+                    let next = at(&portions[k], 0.05) - starts[k];
+                    cross(along, next).atan2(dot(along, next))
+                };
+                let gap = |k: usize| (starts[k] - ends[last]).norm();
+                let free = || (0..portions.len()).filter(|&k| !used[k]);
+                let joined = free().filter(|&k| gap(k) <= JOINT).max_by(|&i, &j| turn(i).total_cmp(&turn(j)));
+                // Only rounding near a tangency leaves a gap; the nearest start closes it.
+                let near = || free().filter(|&k| gap(k) < 1e-5).min_by(|&i, &j| gap(i).total_cmp(&gap(j)));
+                let Some(next) = joined.or_else(near) else { break };
+                used[next] = true;
+                chain.push(portions[next]);
+                last = next;
+            }
+            loops.push(chain);
+        }
+        loops
+    }
+}
+
+/// Whether two chords, each thickened by its share of `slack`, keep apart.
+fn apart(a: [Vector; 2], b: [Vector; 2], slack: f64) -> bool {
+    let out = |p: f64, q: f64, r: f64, s: f64| p.min(q) > r.max(s) + slack || r.min(s) > p.max(q) + slack;
+    if out(a[0].re, a[1].re, b[0].re, b[1].re) || out(a[0].im, a[1].im, b[0].im, b[1].im) {
+        return true;
+    }
+    let one_side = |a: [Vector; 2], b: [Vector; 2]| {
+        let along = a[1] - a[0];
+        let [first, second] = b.map(|p| cross(along, p - a[0]));
+        first * second > 0.0 && first.abs().min(second.abs()) > slack * along.norm()
+    };
+    one_side(a, b) || one_side(b, a)
+}

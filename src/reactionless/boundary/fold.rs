@@ -1,0 +1,175 @@
+//! The curves det = 0 within the limits, in spans.
+//!
+//! A quadtree over (a_1, a_2): where the curve crosses the sides of a cell is known in closed form. A cell crossed
+//! twice holds one span. No closed curve hides inside a cell: each passes through two of the points where all arms
+//! are in line, which are π apart.
+
+use std::f64::consts::TAU;
+
+use super::span::{Curve, Span, Surface};
+
+/// Cells and spans are no longer than this, rad.
+const STEP: f64 = 0.35;
+/// Zeros this near to a corner of the limits, rad, are the corner's.
+const CORNER: f64 = 1e-10;
+/// Halvings of a cell before what is left of a node counts as straight.
+const DEPTH: usize = 24;
+
+/// A side of a cell: where det = 0 crosses it, in the coordinate that varies.
+#[derive(Clone, Debug, Default)]
+struct Side(Vec<f64>);
+
+/// Sides: a_2 least, a_2 greatest, a_1 least, a_1 greatest.
+#[derive(Clone, Debug)]
+struct Cell {
+    low: [f64; 2],
+    high: [f64; 2],
+    sides: [Side; 4],
+}
+
+/// Zeros of det on the line where angle `fixed` is `x`, with the other angle within `range`, ascending.
+pub(super) fn zeros(on: &Surface, fixed: usize, x: f64, range: [f64; 2]) -> Vec<f64> {
+    let [least, most] = [range[0] + CORNER, range[1] - CORNER];
+    let mut found = Vec::new();
+    for zero in on.det.zeros(fixed, x).into_iter().flatten() {
+        let mut y = zero + TAU * ((least - zero) / TAU).ceil();
+        while y <= most {
+            found.push(y);
+            y += TAU;
+        }
+    }
+    found.sort_by(f64::total_cmp);
+    found
+}
+
+/// The lines of the grid. Away from simple fractions, which are where degenerate folds are straight lines.
+fn lines(range: [f64; 2]) -> Vec<f64> {
+    let width = range[1] - range[0];
+    let n = (width / STEP).ceil().max(1.0);
+    let mut lines = vec![range[0]];
+    lines.extend((1..n as usize).map(|i| range[0] + width * (i as f64 - 0.381_966) / n));
+    lines.push(range[1]);
+    lines
+}
+
+/// All of det = 0 inside the limits.
+pub(super) fn spans(on: &Surface) -> Vec<Span> {
+    let range = on.map.limits().map(|l| [l.min, l.max]);
+    let grid = range.map(lines);
+    // crossings[axis][line]: zeros on the line where that axis is fixed
+    let crossings: [Vec<Vec<f64>>; 2] =
+        [0, 1].map(|axis| grid[axis].iter().map(|&x| zeros(on, axis, x, range[1 - axis])).collect());
+    let between =
+        |list: &[f64], low: f64, high: f64| Side(list.iter().copied().filter(|y| (low..high).contains(y)).collect());
+    let mut spans = Vec::new();
+    for (i, a1) in grid[0].windows(2).enumerate() {
+        for (j, a2) in grid[1].windows(2).enumerate() {
+            let mut cell = Cell {
+                low: [a1[0], a2[0]],
+                high: [a1[1], a2[1]],
+                sides: [
+                    between(&crossings[1][j], a1[0], a1[1]),
+                    between(&crossings[1][j + 1], a1[0], a1[1]),
+                    between(&crossings[0][i], a2[0], a2[1]),
+                    between(&crossings[0][i + 1], a2[0], a2[1]),
+                ],
+            };
+            cell.mend_corner(on, range);
+            cell.trace(on, DEPTH, &mut spans);
+        }
+    }
+    spans
+}
+
+impl Cell {
+    fn count(&self) -> usize {
+        self.sides.iter().map(|s| s.0.len()).sum()
+    }
+
+    /// A curve that runs into the very corner of the limits was left out: what goes in must come out.
+    fn mend_corner(&mut self, on: &Surface, range: [[f64; 2]; 2]) {
+        if self.count() % 2 == 0 {
+            return;
+        }
+        for (i, x) in [self.low[0], self.high[0]].into_iter().enumerate() {
+            for (j, y) in [self.low[1], self.high[1]].into_iter().enumerate() {
+                let corner = x == range[0][i] && y == range[1][j];
+                if corner && on.det.value([x, y]).abs() < 1e-8 * on.det.scale() {
+                    self.sides[j].0.push(x);
+                    return;
+                }
+            }
+        }
+    }
+
+    fn points(&self) -> impl Iterator<Item = [f64; 2]> {
+        let [bottom, top, left, right] = &self.sides;
+        let (low, high) = (self.low, self.high);
+        let level = |side: &Side, y: f64| side.0.clone().into_iter().map(move |x| [x, y]);
+        let upright = |side: &Side, x: f64| side.0.clone().into_iter().map(move |y| [x, y]);
+        level(bottom, low[1]).chain(level(top, high[1])).chain(upright(left, low[0])).chain(upright(right, high[0]))
+    }
+
+    fn trace(&self, on: &Surface, depth: usize, spans: &mut Vec<Span>) {
+        let count = self.count();
+        if count == 0 {
+            return;
+        }
+        if count == 2 {
+            let mut points = self.points();
+            let ends = [points.next(), points.next()].map(Option::unwrap_or_default);
+            if let Some(span) = on.fold(ends) {
+                spans.push(span);
+                return;
+            }
+        }
+        if depth == 0 {
+            self.join(on, spans);
+        } else {
+            self.quarters(on).iter().for_each(|q| q.trace(on, depth - 1, spans));
+        }
+    }
+
+    /// A cell so small that any pairing will do: each way in with a way out.
+    fn join(&self, on: &Surface, spans: &mut Vec<Span>) {
+        let middle = [0, 1].map(|j| 0.5 * (self.low[j] + self.high[j]));
+        let inward = |a: &[f64; 2]| {
+            let [g1, g2] = on.det.gradient(*a);
+            g2 * (middle[0] - a[0]) - g1 * (middle[1] - a[1]) > 0.0
+        };
+        let (ways_in, ways_out): (Vec<_>, Vec<_>) = self.points().partition(inward);
+        spans.extend(ways_in.into_iter().zip(ways_out).map(|(from, to)| on.straight(Curve::Fold, [from, to])));
+    }
+
+    fn quarters(&self, on: &Surface) -> [Self; 4] {
+        let middle = [0, 1].map(|j| 0.5 * (self.low[j] + self.high[j]));
+        let inside = |axis: usize| {
+            let other = 1 - axis;
+            let all = zeros(on, axis, middle[axis], [self.low[other] - CORNER, self.high[other] + CORNER]);
+            halves(&Side(all), middle[other])
+        };
+        // The two inner lines, each cut in half; then the outer sides, each cut in half.
+        let (upright, level) = (inside(0), inside(1));
+        let [bottom, top] = [&self.sides[0], &self.sides[1]].map(|s| halves(s, middle[0]));
+        let [left, right] = [&self.sides[2], &self.sides[3]].map(|s| halves(s, middle[1]));
+        let (low, high) = (self.low, self.high);
+        let cell = |low, high, sides| Self { low, high, sides };
+        let [bottom_0, bottom_1] = bottom;
+        let [top_0, top_1] = top;
+        let [left_0, left_1] = left;
+        let [right_0, right_1] = right;
+        let [upright_0, upright_1] = upright;
+        let [level_0, level_1] = level;
+        [
+            cell(low, middle, [bottom_0, level_0.clone(), left_0, upright_0.clone()]),
+            cell([middle[0], low[1]], [high[0], middle[1]], [bottom_1, level_1.clone(), upright_0, right_0]),
+            cell([low[0], middle[1]], [middle[0], high[1]], [level_0, top_0, left_1, upright_1.clone()]),
+            cell(middle, high, [level_1, top_1, upright_1, right_1]),
+        ]
+    }
+}
+
+fn halves(side: &Side, middle: f64) -> [Side; 2] {
+    let (first, second): (Vec<f64>, Vec<f64>) = side.0.iter().partition(|&&y| y < middle);
+    [Side(first), Side(second)]
+}

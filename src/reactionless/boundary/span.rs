@@ -1,0 +1,244 @@
+//! Short pieces of the curves that can bound a workspace: images of limits, and folds where det = 0.
+//!
+//! A span is a graph in (a_1, a_2): one coordinate runs straight from end to end, the other follows the curve.
+//! It is oriented so that more poses reach the points on its left than those on its right: one more for a limit, two
+//! more for a fold. So the spans together are a weighted cycle whose winding number about p counts the poses at p.
+
+use super::determinant::Determinant;
+use crate::planar::{Vector, cross};
+use crate::reactionless::PlaneMap;
+
+/// A curve in (a_1, a_2) whose image can bound the workspace.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Curve {
+    /// An angle at its limit.
+    Limit {
+        /// Which angle: 0 for a_1, 1 for a_2.
+        angle: usize,
+        /// At its greatest value, else at its least.
+        upper: bool,
+    },
+    /// det = 0.
+    Fold,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Span {
+    pub curve: Curve,
+    /// The coordinate that runs straight.
+    chart: usize,
+    pub ends: [[f64; 2]; 2],
+    pub at: [Vector; 2],
+    /// d other / d chart at the ends.
+    slopes: [f64; 2],
+    /// Whether the other coordinate solves det = 0, else it runs straight too.
+    solved: bool,
+    /// The chord is never farther than this from the curve, m; a part τ of the span is within τ² times this.
+    pub deviation: f64,
+}
+
+/// A point of a span: plane coordinates, position, derivative of the position.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Jet {
+    pub a: [f64; 2],
+    pub at: Vector,
+    pub rate: Vector,
+}
+
+/// What the spans live on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Surface {
+    pub map: PlaneMap,
+    pub det: Determinant,
+}
+
+impl Surface {
+    pub fn of(map: &PlaneMap) -> Self {
+        Self { map: *map, det: Determinant::of(map) }
+    }
+
+    /// A straight piece along one coordinate.
+    pub fn straight(&self, curve: Curve, ends: [[f64; 2]; 2]) -> Span {
+        let [from, to] = ends;
+        let chart = usize::from((to[1] - from[1]).abs() > (to[0] - from[0]).abs());
+        let run = to[chart] - from[chart];
+        let slope = if run == 0.0 { 0.0 } else { (to[1 - chart] - from[1 - chart]) / run };
+        let step = [to[0] - from[0], to[1] - from[1]];
+        // sup |P''| from its value in the middle and a bound on P'''.
+        let arms = self.map.arms([0, 1].map(|j| 0.5 * (from[j] + to[j])));
+        let rates = self.map.u().map(|u| u[0] * step[0] + u[1] * step[1]);
+        let bend: Vector = (0..3).map(|k| arms[k] * rates[k] * rates[k]).sum();
+        let jerk: f64 = (0..3).map(|k| arms[k].norm() * rates[k].abs().powi(3)).sum();
+        Span {
+            curve,
+            chart,
+            ends,
+            at: ends.map(|a| self.map.forward_unturned(a)),
+            slopes: [slope; 2],
+            solved: false,
+            deviation: (bend.norm() + 0.5 * jerk) / 8.0,
+        }
+    }
+
+    /// The piece of det = 0 between two of its points, det > 0 on its left; `None` if it is not plainly a graph.
+    pub fn fold(&self, ends: [[f64; 2]; 2]) -> Option<Span> {
+        let [from, to] = ends;
+        let chart = usize::from((to[1] - from[1]).abs() > (to[0] - from[0]).abs());
+        let run = (to[chart] - from[chart]).abs();
+        let gradients = ends.map(|a| self.det.gradient(a));
+        let steep = |g: [f64; 2]| g[1 - chart].abs() > 0.3 * g[chart].abs();
+        if !(gradients.iter().all(|&g| steep(g)) && gradients[0][1 - chart] * gradients[1][1 - chart] > 0.0) {
+            return None;
+        }
+        let slopes = gradients.map(|g| -g[chart] / g[1 - chart]);
+        let at = ends.map(|a| self.map.forward_unturned(a));
+        let mut span = Span { curve: Curve::Fold, chart, ends, at, slopes, solved: true, deviation: 0.0 };
+        let middle = self.jet(&span, 0.5).a;
+        let gradient = self.det.gradient(middle);
+        let smooth = (slopes[1] - slopes[0]).abs() < 0.5
+            && steep(gradient)
+            && gradient[1 - chart] * gradients[0][1 - chart] > 0.0
+            && (middle[1 - chart] - span.guess(0.5)).abs() < 2e-3 * run;
+        if !smooth {
+            return None;
+        }
+        let along = [to[0] - from[0], to[1] - from[1]];
+        if along[0] * gradient[1] - along[1] * gradient[0] < 0.0 {
+            span.ends.reverse();
+            span.at.reverse();
+            span.slopes.reverse();
+        }
+        let p = [0.0, 0.25, 0.5, 0.75, 1.0].map(|t| self.jet(&span, t).at);
+        let bend = (0..3).map(|i| 16.0 * (p[i] - 2.0 * p[i + 1] + p[i + 2]).norm()).fold(0.0, f64::max);
+        span.deviation = 1.5 * bend / 8.0;
+        Some(span)
+    }
+
+    /// Plane coordinates along a span, t from 0 to 1.
+    pub fn point(&self, span: &Span, t: f64) -> [f64; 2] {
+        if t <= 0.0 {
+            return span.ends[0];
+        }
+        if t >= 1.0 {
+            return span.ends[1];
+        }
+        let (chart, other) = (span.chart, 1 - span.chart);
+        let mut a = [0.0; 2];
+        a[chart] = span.ends[0][chart] + t * (span.ends[1][chart] - span.ends[0][chart]);
+        a[other] = span.guess(t);
+        if span.solved {
+            for _ in 0..4 {
+                let step = self.det.value(a) / self.det.gradient(a)[other];
+                if !step.is_finite() {
+                    break;
+                }
+                a[other] -= step;
+                if step.abs() < 1e-9 {
+                    break;
+                }
+            }
+        }
+        a
+    }
+
+    /// Position along a span.
+    pub fn at(&self, span: &Span, t: f64) -> Vector {
+        if t <= 0.0 {
+            span.at[0]
+        } else if t >= 1.0 {
+            span.at[1]
+        } else {
+            self.map.forward_unturned(self.point(span, t))
+        }
+    }
+
+    /// Position and its derivative along a span.
+    pub fn jet(&self, span: &Span, t: f64) -> Jet {
+        let a = self.point(span, t);
+        let (chart, other) = (span.chart, 1 - span.chart);
+        let arms = self.map.arms(a);
+        let columns = self.map.columns(&arms);
+        let run = span.ends[1][chart] - span.ends[0][chart];
+        let slope = if span.solved {
+            let g = self.det.gradient(a);
+            -g[chart] / g[other]
+        } else {
+            span.slopes[0]
+        };
+        Jet { a, at: arms.iter().sum(), rate: run * (columns[chart] + slope * columns[other]) }
+    }
+
+    /// ½ ∮ p × dp over a part of a span, m².
+    pub fn swept(&self, span: &Span, from: f64, to: f64) -> f64 {
+        let whole = self.gauss(span, from, to);
+        match span.curve {
+            Curve::Limit { .. } => whole,
+            Curve::Fold => self.refined(span, from, to, whole, 8),
+        }
+    }
+
+    fn refined(&self, span: &Span, from: f64, to: f64, whole: f64, depth: usize) -> f64 {
+        let middle = 0.5 * (from + to);
+        let (first, second) = (self.gauss(span, from, middle), self.gauss(span, middle, to));
+        if depth == 0 || (first + second - whole).abs() < 1e-16 {
+            return first + second;
+        }
+        self.refined(span, from, middle, first, depth - 1) + self.refined(span, middle, to, second, depth - 1)
+    }
+
+    fn gauss(&self, span: &Span, from: f64, to: f64) -> f64 {
+        const NODES: [(f64, f64); 4] = [
+            (0.183_434_642_495_649_8, 0.362_683_783_378_362_0),
+            (0.525_532_409_916_329_0, 0.313_706_645_877_887_3),
+            (0.796_666_477_413_626_7, 0.222_381_034_453_374_5),
+            (0.960_289_856_497_536_3, 0.101_228_536_290_376_3),
+        ];
+        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+        let value = |t: f64| {
+            let jet = self.jet(span, t);
+            0.5 * cross(jet.at, jet.rate)
+        };
+        half * NODES.iter().map(|&(x, w)| w * (value(middle - half * x) + value(middle + half * x))).sum::<f64>()
+    }
+}
+
+impl Span {
+    /// How many more poses reach the left side than the right.
+    pub fn weight(&self) -> i32 {
+        match self.curve {
+            Curve::Limit { .. } => 1,
+            Curve::Fold => 2,
+        }
+    }
+
+    /// The other coordinate, by the cubic through the ends with their slopes.
+    fn guess(&self, t: f64) -> f64 {
+        let other = 1 - self.chart;
+        let run = self.ends[1][self.chart] - self.ends[0][self.chart];
+        // Written so that a straight span keeps its other coordinate to the bit.
+        let (rise, s) = (self.ends[1][other] - self.ends[0][other], 1.0 - t);
+        let bulge = (self.slopes[0] * run - rise) * s - (self.slopes[1] * run - rise) * t;
+        self.ends[0][other] + rise * t + t * s * bulge
+    }
+
+    /// Winding number about p of the part from `from` to `to`, as crossings of the ray from p towards +x;
+    /// `None` if p lies on it.
+    pub fn crossings(&self, on: &Surface, from: (f64, Vector), to: (f64, Vector), p: Vector) -> Option<i32> {
+        let (a, b) = (from.1, to.1);
+        let slack = self.deviation * (to.0 - from.0).powi(2) + 1e-15;
+        let (low, high) = (a.im.min(b.im) - slack, a.im.max(b.im) + slack);
+        let (left, right) = (a.re.min(b.re) - slack, a.re.max(b.re) + slack);
+        if p.im < low || p.im > high || p.re > right {
+            return Some(0);
+        }
+        if p.re < left {
+            return Some(i32::from(a.im <= p.im && p.im < b.im) - i32::from(b.im <= p.im && p.im < a.im));
+        }
+        if (high - low).max(right - left) < 1e-13 || to.0 - from.0 < 1e-12 {
+            return None;
+        }
+        let middle = 0.5 * (from.0 + to.0);
+        let middle = (middle, on.at(self, middle));
+        Some(self.crossings(on, from, middle, p)? + self.crossings(on, middle, to, p)?)
+    }
+}
