@@ -2,7 +2,18 @@
 
 #[path = "suite/boundary.rs"]
 mod boundary;
+#[cfg(feature = "render")]
+#[path = "suite/gpu.rs"]
+mod gpu;
+#[path = "suite/mesh.rs"]
+mod mesh;
 #[path = "suite/nine_body.rs"]
 mod nine_body;
 #[path = "suite/reach.rs"]
 mod reach;
+#[cfg(feature = "render")]
+#[path = "suite/render.rs"]
+mod render;
+#[cfg(feature = "render")]
+#[path = "suite/shaders.rs"]
+mod shaders;
