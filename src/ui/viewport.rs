@@ -71,24 +71,26 @@ fn point_at(
 ) {
     let frame = session.frame();
     let z = stage.handle_height();
-    if let Some(pos) = response.hover_pos().filter(|_| look.grabbed.is_none()) {
+    let held = look.held;
+    let under = |pos: Pos2| {
         let distance = |h: Handle| {
-            let held = look.held.filter(|_| h == Handle::Target).map(|[x, y]| [x, y, z]);
+            let held = held.filter(|_| h == Handle::Target).map(|[x, y]| [x, y, z]);
             let at = held.or_else(|| stage.handle(h, frame));
             at.and_then(|p| spot.screen(p)).map(|p| p.distance(pos))
         };
-        look.hot = [Handle::Target, Handle::Ring]
+        [Handle::Target, Handle::Ring]
             .into_iter()
             .filter_map(|h| Some((h, distance(h)?)))
             .filter(|(_, d)| *d < GRIP)
             .min_by(|a, b| a.1.total_cmp(&b.1))
-            .map(|(h, _)| h);
-    } else if look.grabbed.is_none() {
-        look.hot = None;
+            .map(|(h, _)| h)
+    };
+    if look.grabbed.is_none() {
+        look.hot = response.hover_pos().and_then(under);
     }
     if response.drag_started_by(PointerButton::Primary) {
         // A drag begins where the button went down, not where it was noticed.
-        look.grabbed = look.hot;
+        look.grabbed = ui.input(|i| i.pointer.press_origin()).and_then(under);
     }
     if let Some(handle) = look.grabbed {
         ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
@@ -198,12 +200,17 @@ fn words(ui: &Ui, spot: &Spot, scene: &Scene) {
     let painter = ui.painter().with_clip_rect(spot.rect);
     for label in &scene.labels {
         let Some(at) = spot.screen(label.at.map(f64::from)) else { continue };
-        let align = match label.anchor {
-            Anchor::Left => Align2::LEFT_CENTER,
-            Anchor::Centre => Align2::CENTER_CENTER,
-            Anchor::Right => Align2::RIGHT_CENTER,
+        let galley = painter.layout_no_wrap(label.text.clone(), plain(label.size), colour(label.colour));
+        let [x, y] = label.offset;
+        let (align, shift) = match label.anchor {
+            // A word that would be cut off moves to the other side of its point.
+            Anchor::Left if at.x + x + galley.size().x > spot.rect.right() - 8.0 => (Align2::RIGHT_CENTER, vec2(-x, y)),
+            Anchor::Left => (Align2::LEFT_CENTER, vec2(x, y)),
+            Anchor::Centre => (Align2::CENTER_CENTER, vec2(x, y)),
+            Anchor::Right => (Align2::RIGHT_CENTER, vec2(x, y)),
         };
-        painter.text(at + Vec2::from(label.offset), align, &label.text, plain(label.size), colour(label.colour));
+        let place = align.anchor_size(at + shift, galley.size());
+        painter.galley(place.min, galley, colour(label.colour));
     }
 }
 
