@@ -2,9 +2,14 @@
 
 #[path = "suite/boundary.rs"]
 mod boundary;
+#[cfg(feature = "cli")]
+#[path = "suite/cli.rs"]
+mod cli;
 #[cfg(feature = "render")]
 #[path = "suite/gpu.rs"]
 mod gpu;
+#[path = "suite/machine_file.rs"]
+mod machine_file;
 #[path = "suite/mesh.rs"]
 mod mesh;
 #[path = "suite/nine_body.rs"]
