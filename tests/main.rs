@@ -22,3 +22,6 @@ mod render;
 #[cfg(feature = "render")]
 #[path = "suite/shaders.rs"]
 mod shaders;
+#[cfg(feature = "window")]
+#[path = "suite/window.rs"]
+mod window;

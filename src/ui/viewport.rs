@@ -195,6 +195,15 @@ pub fn paint(ui: &Ui, rect: Rect, scene: &Arc<Scene>, camera: &Camera) {
     ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, paint));
 }
 
+/// A scene with its words, filling everything, that nobody can touch.
+pub fn still(ui: &mut Ui, scene: &Arc<Scene>, camera: &Camera) {
+    CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+        let rect = ui.max_rect();
+        paint(ui, rect, scene, camera);
+        words(ui, &Spot { rect, camera: *camera }, scene);
+    });
+}
+
 /// The scene's labels.
 fn words(ui: &Ui, spot: &Spot, scene: &Scene) {
     let painter = ui.painter().with_clip_rect(spot.rect);
