@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use super::linkage::Linkage;
 use super::palette::{Palette, Theme, faded, palette};
 use super::{Anchor, Area, Label, Line, Marker, Rgba, Scene};
-use crate::frame::{Frame, Reach};
+use crate::frame::{Frame, REACTIONLESS, Reach};
 use crate::machine::Chain;
 use crate::planar::{DriveAngles, Units, Vector, unit};
 use crate::pose_constant::Planes;
@@ -283,8 +283,9 @@ impl Stage {
     fn reaction(&self, scene: &mut Scene, palette: &Palette, frame: &Frame) {
         let (z, reach) = (self.handle_height(), self.linkage.reach());
         let (force, moment) = (frame.wrench.total().force, frame.base_moment());
-        let quiet = frame.is_quiet();
-        let colour = if quiet { palette.zero } else { palette.reaction };
+        let tone = |still: bool| if still { palette.zero } else { palette.reaction };
+        let pulls = frame.wrench.dynamic.force.norm() > REACTIONLESS * frame.peaks.inertial_pull.max(1e-9);
+        let turns = moment.abs() > REACTIONLESS * frame.peaks.torque_sum.max(1e-9);
         let line = |name: &str, points: Vec<[f32; 3]>| Line {
             name: name.into(),
             points,
@@ -336,8 +337,8 @@ impl Stage {
             }
         };
         let rows = [
-            (format!("f_B {:.3} N", frame.wrench.dynamic.force.norm()), colour, 13.0),
-            (format!("n_B {} N m", signed(moment, 3)), colour, 13.0),
+            (format!("f_B {:.3} N", frame.wrench.dynamic.force.norm()), tone(!pulls), 13.0),
+            (format!("n_B {} N m", signed(moment, 3)), tone(!turns), 13.0),
             (com_words, palette.dim, 11.5),
             (scale, palette.dim, 11.5),
         ];
@@ -390,13 +391,19 @@ impl Stage {
                     stroke: palette.amber,
                     stroke_width: 2.0,
                 });
-                let why = "outside the reactionless workspace";
                 let would = match mending_b {
-                    Some(b) => format!("nearest point {} m · b = {b:.3} rad would reach it", brief_point(nearest)),
-                    None => format!("nearest point {} m · no b reaches it", brief_point(nearest)),
+                    Some(b) => format!("b = {b:.3} rad would reach it"),
+                    None => "no b reaches it".into(),
                 };
-                scene.labels.push(label(at, z, [20.0, -7.0], why, ink, 13.0, Anchor::Left));
-                scene.labels.push(label(at, z, [20.0, 9.0], &would, palette.dim, 11.5, Anchor::Left));
+                let rows = [
+                    ("outside the reactionless workspace".into(), ink, 13.0),
+                    (format!("nearest point {} m", brief_point(nearest)), palette.dim, 11.5),
+                    (would, palette.dim, 11.5),
+                ];
+                for (i, (text, colour, size)) in rows.into_iter().enumerate() {
+                    let down = 26.0 + 16.0 * i as f32;
+                    scene.labels.push(label(at, z, [0.0, down], &text, colour, size, Anchor::Centre));
+                }
             }
             reach => {
                 let words = if reach == Reach::Carried { "turns with its workspace" } else { "drag me" };

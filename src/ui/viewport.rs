@@ -10,7 +10,7 @@ use super::{Command, Look, set_b};
 use crate::render::{Renderer, View};
 use crate::scene::camera::Camera;
 use crate::scene::stage::{Handle, Stage, ViewOptions};
-use crate::scene::{Anchor, Scene};
+use crate::scene::{Anchor, Label, Scene};
 use crate::session::{Edit, Session};
 
 /// How near the pointer must be to take hold of a handle, px.
@@ -207,18 +207,27 @@ pub fn still(ui: &mut Ui, scene: &Arc<Scene>, camera: &Camera) {
 /// The scene's labels.
 fn words(ui: &Ui, spot: &Spot, scene: &Scene) {
     let painter = ui.painter().with_clip_rect(spot.rect);
+    let galley = |l: &Label| painter.layout_no_wrap(l.text.clone(), plain(l.size), colour(l.colour));
     for label in &scene.labels {
         let Some(at) = spot.screen(label.at.map(f64::from)) else { continue };
-        let galley = painter.layout_no_wrap(label.text.clone(), plain(label.size), colour(label.colour));
+        // Words about one point stay together.
+        let together = scene.labels.iter().filter(|l| l.at == label.at);
+        let widest = together.map(|l| galley(l).size().x).fold(0.0, f32::max);
+        let galley = galley(label);
         let [x, y] = label.offset;
         let (align, shift) = match label.anchor {
             // A word that would be cut off moves to the other side of its point.
-            Anchor::Left if at.x + x + galley.size().x > spot.rect.right() - 8.0 => (Align2::RIGHT_CENTER, vec2(-x, y)),
+            Anchor::Left if at.x + x + widest > spot.rect.right() - 8.0 => (Align2::RIGHT_CENTER, vec2(-x, y)),
             Anchor::Left => (Align2::LEFT_CENTER, vec2(x, y)),
             Anchor::Centre => (Align2::CENTER_CENTER, vec2(x, y)),
             Anchor::Right => (Align2::RIGHT_CENTER, vec2(x, y)),
         };
-        let place = align.anchor_size(at + shift, galley.size());
+        let mut place = align.anchor_size(at + shift, galley.size());
+        if label.anchor == Anchor::Centre && spot.rect.contains(at) {
+            let room = spot.rect.shrink(8.0);
+            let over = (place.right() - room.right()).max(0.0) - (room.left() - place.left()).max(0.0);
+            place = place.translate(vec2(-over, 0.0));
+        }
         painter.galley(place.min, galley, colour(label.colour));
     }
 }
