@@ -347,7 +347,7 @@ fn simulate_writes_a_whole_file_or_none() {
     let with_json = object(&["simulate", "case-1", "-o", &file]);
     let written = fs::read_to_string(&file).expect("file");
     assert_eq!(written.lines().count(), 1 + numbers(&with_json["time"]).len());
-    fails(&["simulate", "case-3", "-o", &file], 2, &["case.csv", "exists", "--force"]);
+    fails(&["simulate", "case-3", "-o", &file], 2, &["case.csv exists", "--force"]);
     assert_eq!(fs::read_to_string(&file).expect("file"), written);
     // Nothing is left of a run that is refused half-way.
     fails(&["simulate", "case-1", "--set", "limits.a1=0,0.1", "-o", &folder.path("new.csv")], 1, &["case-1"]);
@@ -357,6 +357,22 @@ fn simulate_writes_a_whole_file_or_none() {
     prints(&["simulate", "case-3", "--every", "500", "-o", &file, "--force"]);
     assert_eq!(fs::read_to_string(&file).expect("file").lines().count(), 4);
     assert_eq!(folder.names(), ["case.csv"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_is_written_through() {
+    let folder = Folder::new();
+    let real = folder.file("real.csv", "old");
+    let (link, dangling) = (folder.path("link.csv"), folder.path("dangling.csv"));
+    std::os::unix::fs::symlink(&real, &link).expect("a link");
+    std::os::unix::fs::symlink(folder.path("nothing"), &dangling).expect("a link");
+    fails(&["simulate", "-o", &link], 2, &["link.csv exists"]);
+    fails(&["simulate", "-o", &dangling], 2, &["dangling.csv exists"]);
+    prints(&["simulate", "-o", &link, "--force"]);
+    assert!(fs::symlink_metadata(&link).expect("link").is_symlink());
+    assert!(fs::read_to_string(&real).expect("file").starts_with("time s,"));
+    assert_eq!(folder.names(), ["dangling.csv", "link.csv", "real.csv"]);
 }
 
 #[cfg(unix)]
