@@ -16,6 +16,9 @@ pub enum WriteError {
     /// The name is that of a folder.
     #[error("{} is a folder: want the name of a file", .0.display())]
     IsFolder(PathBuf),
+    /// A device or a pipe, which another file must not replace.
+    #[error("{} is no plain file: want the name of a new one", .0.display())]
+    NotPlain(PathBuf),
     /// Its folder is not there.
     #[error("{}: no folder {}: want one that exists", file.display(), folder.display())]
     NoFolder {
@@ -34,15 +37,14 @@ pub enum WriteError {
     },
 }
 
-/// Refuses a file that exists, unless forced; a folder; and a file in a folder that does not exist.
+/// Refuses a file that exists, unless forced; folders and devices; and a file in a folder that does not exist.
 ///
 /// # Errors
 /// If it is refused.
 pub fn check_new(file: &Path, force: bool) -> Result<(), WriteError> {
     match fs::metadata(file) {
         Ok(there) if there.is_dir() => return Err(WriteError::IsFolder(file.into())),
-        // A device or a pipe takes what comes; nothing is lost in it.
-        Ok(there) if !there.is_file() => return Ok(()),
+        Ok(there) if !there.is_file() => return Err(WriteError::NotPlain(file.into())),
         // A link to nowhere is something too.
         _ if !force && fs::symlink_metadata(file).is_ok() => return Err(WriteError::Exists(file.into())),
         _ => {}
@@ -77,8 +79,7 @@ pub struct NewFile {
     asked: PathBuf,
     force: bool,
     out: BufWriter<File>,
-    /// None for a device, which is written directly.
-    draft: Option<Draft>,
+    draft: Draft,
 }
 
 /// A file beside the one that it is to become.
@@ -103,15 +104,11 @@ impl NewFile {
     pub fn create(file: &Path, force: bool) -> Result<Self, WriteError> {
         check_new(file, force)?;
         let failed = |source| WriteError::Failed { file: file.into(), source };
-        if fs::metadata(file).is_ok_and(|there| !there.is_file()) {
-            let out = OpenOptions::new().write(true).open(file).map_err(failed)?;
-            return Ok(Self { asked: file.into(), force, out: BufWriter::new(out), draft: None });
-        }
         // Through a link, so that the link stays.
         let target = fs::canonicalize(file).unwrap_or_else(|_| file.into());
         let part = beside(&target);
         let out = OpenOptions::new().write(true).create_new(true).open(&part).map_err(failed)?;
-        let draft = Some(Draft { part, file: target });
+        let draft = Draft { part, file: target };
         Ok(Self { asked: file.into(), force, out: BufWriter::new(out), draft })
     }
 
@@ -127,10 +124,9 @@ impl NewFile {
     pub fn finish(mut self) -> Result<(), WriteError> {
         let failed = |source| WriteError::Failed { file: self.asked.clone(), source };
         self.out.flush().map_err(failed)?;
-        let Some(Draft { part, file }) = &self.draft else { return Ok(()) };
         self.out.get_ref().sync_all().map_err(failed)?;
-        check_new(file, self.force)?;
-        fs::rename(part, file).map_err(failed)
+        check_new(&self.draft.file, self.force)?;
+        fs::rename(&self.draft.part, &self.draft.file).map_err(failed)
     }
 }
 

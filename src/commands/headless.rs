@@ -132,9 +132,9 @@ pub fn record_with_bar(scenarios: &[Scenario], file: &Path, options: &Options) -
     });
     bar.finish_and_clear();
     let recordings = recordings?;
-    for recording in &recordings {
-        recording.notes.iter().for_each(|note| say(format!("{}: {note}", recording.scenario)));
-    }
+    let mut notes: Vec<&String> = recordings.iter().flat_map(|r| &r.notes).collect();
+    notes.dedup();
+    notes.into_iter().for_each(say);
     Ok(recordings)
 }
 

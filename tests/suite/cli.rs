@@ -383,8 +383,16 @@ fn a_full_disk_and_a_closed_pipe_are_no_panic() {
         let out = Command::new(env!("CARGO_BIN_EXE_stillbase")).arg("machines").stdout(full).output().expect("starts");
         let said = text(&out.stderr);
         assert!(out.status.code() == Some(2) && said.starts_with("stillbase: standard output"), "{said}");
-        fails(&["simulate", "-o", "/dev/full"], 2, &["/dev/full"]);
+        fails(&["simulate", "-o", "/dev/full", "--force"], 2, &["/dev/full is no plain file"]);
     }
+    // No file may grow beyond four kilobytes here, and to try is an error and not the end.
+    let folder = Folder::new();
+    let limited = "trap '' XFSZ; ulimit -f 8; exec \"$0\" simulate -o x.csv";
+    let mut shell = Command::new("sh");
+    let out = shell.args(["-c", limited, env!("CARGO_BIN_EXE_stillbase")]).current_dir(&folder.0).output().expect("sh");
+    let said = text(&out.stderr);
+    assert!(out.status.code() == Some(2) && said.starts_with("stillbase: x.csv: "), "{said}");
+    assert!(folder.names().is_empty(), "{:?}", folder.names());
     let mut child = Command::new(env!("CARGO_BIN_EXE_stillbase"))
         .arg("simulate")
         .stdout(Stdio::piped())
