@@ -1,19 +1,18 @@
 //! `stillbase design`
 
 use std::ffi::OsStr;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::PossibleValue;
 use serde::Serialize;
 use stillbase::balance::{self, Preset};
+use stillbase::files::{check_new, write_new};
 use stillbase::machine::{Inertia, Machine, to_toml};
 
 use super::check::Balance;
 use super::failure::Failure;
 use super::input::{MachineArgument, number};
-use super::new_file::{NewFile, may_write};
 use super::output::{Format, Table, fixed, say};
 
 /// Place the links' centres of mass so that the base feels no force and the mass matrix is invariant, Eq. (10)
@@ -75,7 +74,7 @@ impl Design {
         let machine = self.machine.load()?;
         let (penalty, by) = self.penalty(machine.links().len())?;
         if let Some(file) = &self.output {
-            may_write(file, self.force)?;
+            check_new(file, self.force)?;
         }
         let designed = balance::design(&machine, &penalty)?;
         let answer = Answer {
@@ -109,9 +108,7 @@ fn save(machine: &Machine, file: &Path, force: bool, summary: String) -> Result<
     let mut spec = machine.spec().clone();
     spec.name = file.file_stem().unwrap_or(OsStr::new("machine")).to_string_lossy().into_owned();
     spec.summary = summary;
-    let mut out = NewFile::create(file, force)?;
-    out.write_all(to_toml(&Machine::new(spec)?).as_bytes()).map_err(|e| Failure::writing(file.display(), &e))?;
-    out.finish()?;
+    write_new(file, to_toml(&Machine::new(spec)?).as_bytes(), force)?;
     say(format!("wrote {}", file.display()));
     Ok(())
 }

@@ -5,6 +5,7 @@ use std::io;
 use std::process::ExitCode;
 
 use stillbase::balance::DesignError;
+use stillbase::files::WriteError;
 use stillbase::machine::{FileError, MachineError};
 use stillbase::pose_constant::{PlaneError, Unreachable};
 use stillbase::scenario::ScenarioError;
@@ -34,16 +35,11 @@ impl Failure {
         Self::WrongInput(why.to_string())
     }
 
-    /// Something could not be written.
-    pub fn writing(to: impl Display, error: &io::Error) -> Self {
-        Self::WrongInput(format!("{to}: {error}: want a place that can be written"))
-    }
-
     /// Standard output could not be written.
     pub fn standard_output(error: &io::Error) -> Self {
         match error.kind() {
             io::ErrorKind::BrokenPipe => Self::ReaderGone,
-            _ => Self::writing("standard output", error),
+            _ => Self::WrongInput(format!("standard output: {error}: want a place that can be written")),
         }
     }
 
@@ -65,6 +61,11 @@ impl From<FileError> for Failure {
 }
 impl From<ScenarioError> for Failure {
     fn from(e: ScenarioError) -> Self {
+        Self::wrong_input(e)
+    }
+}
+impl From<WriteError> for Failure {
+    fn from(e: WriteError) -> Self {
         Self::wrong_input(e)
     }
 }

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
+use stillbase::files::check_new;
+use stillbase::headless::{Options, Pictures, Progress, RecordError, Recording, record};
 use stillbase::scenario::Scenario;
 
-use self::recorder::{Options, Pictures, Progress, RecordError, Recording, record};
 use super::failure::Failure;
 use super::input::{Settings, scenario};
-use super::new_file::may_write;
 use super::output::{Format, Table, fixed, say, yes};
 
 /// Simulate scenarios without a window and record them for the Rerun viewer
@@ -71,10 +71,15 @@ struct Row {
 
 impl From<Recording> for Row {
     fn from(recording: Recording) -> Self {
-        let Recording { scenario, file, steps, peak_torque, peak_base_force, peak_base_moment, reactionless } =
-            recording;
-        let file = file.display().to_string();
-        Self { scenario, file, steps, peak_torque, peak_base_force, peak_base_moment, reactionless }
+        Self {
+            scenario: recording.scenario,
+            file: recording.file.display().to_string(),
+            steps: recording.steps,
+            peak_torque: recording.peak_torque,
+            peak_base_force: recording.peak_base_force,
+            peak_base_moment: recording.peak_base_moment,
+            reactionless: recording.reactionless,
+        }
     }
 }
 
@@ -82,7 +87,7 @@ impl Headless {
     /// Records and prints the peaks.
     pub fn run(&self) -> Result<(), Failure> {
         let scenarios = self.scenarios()?;
-        may_write(&self.output, self.force)?;
+        check_new(&self.output, self.force)?;
         let [width, height] = self.size;
         let pictures = self.fps.map(|fps| Pictures { fps, width, height });
         let recordings = record_with_bar(&scenarios, &self.output, &Options { pictures, force: self.force })?;
@@ -126,13 +131,18 @@ pub fn record_with_bar(scenarios: &[Scenario], file: &Path, options: &Options) -
         bar.set_position(progress.done);
     });
     bar.finish_and_clear();
-    recordings.map_err(Failure::from)
+    let recordings = recordings?;
+    let mut notes: Vec<&String> = recordings.iter().flat_map(|r| &r.notes).collect();
+    notes.dedup();
+    notes.into_iter().for_each(say);
+    Ok(recordings)
 }
 
 impl From<RecordError> for Failure {
     fn from(e: RecordError) -> Self {
         match e {
             RecordError::Refused { scenario, refusal } => Self::from(refusal).of(scenario),
+            other => Self::wrong_input(other),
         }
     }
 }
@@ -148,73 +158,4 @@ fn table(answer: &Answer) -> String {
         table.row([r.scenario.clone(), r.steps.to_string()].into_iter().chain(torques).chain(rest));
     }
     table.to_string()
-}
-
-// MERGE: replace this module by `use stillbase::headless as recorder;`. It runs the scenarios and writes no file.
-mod recorder {
-    use std::path::{Path, PathBuf};
-
-    use stillbase::scenario::Scenario;
-    use stillbase::session::{Refusal, replay};
-
-    pub struct Options {
-        pub pictures: Option<Pictures>,
-        pub force: bool,
-    }
-
-    pub struct Pictures {
-        pub fps: f64,
-        pub width: u32,
-        pub height: u32,
-    }
-
-    pub struct Recording {
-        pub scenario: String,
-        pub file: PathBuf,
-        pub steps: u64,
-        pub peak_torque: Vec<f64>,
-        pub peak_base_force: f64,
-        pub peak_base_moment: f64,
-        pub reactionless: bool,
-    }
-
-    pub struct Progress<'a> {
-        pub done: u64,
-        pub of: u64,
-        pub what: &'a str,
-    }
-
-    pub enum RecordError {
-        Refused { scenario: String, refusal: Refusal },
-    }
-
-    pub fn record(
-        scenarios: &[Scenario],
-        file: &Path,
-        _options: &Options,
-        progress: &mut dyn FnMut(Progress),
-    ) -> Result<Vec<Recording>, RecordError> {
-        let of = |s: &Scenario| (s.duration / s.step).round() as u64;
-        let total = scenarios.iter().map(of).sum();
-        let mut before = 0;
-        let mut recordings = Vec::new();
-        for s in scenarios {
-            let see = |_: &_, f: &stillbase::frame::Frame| {
-                progress(Progress { done: before + f.step, of: total, what: &s.name });
-            };
-            let run = replay(s, see).map_err(|refusal| RecordError::Refused { scenario: s.name.clone(), refusal })?;
-            before += of(s);
-            let last = run.frame();
-            recordings.push(Recording {
-                scenario: s.name.clone(),
-                file: file.into(),
-                steps: last.step,
-                peak_torque: last.peaks.torque.to_vec(),
-                peak_base_force: last.peaks.force,
-                peak_base_moment: last.peaks.moment,
-                reactionless: last.peaks.is_reactionless(),
-            });
-        }
-        Ok(recordings)
-    }
 }

@@ -11,7 +11,6 @@ mod failure;
 mod headless;
 mod input;
 mod machines;
-mod new_file;
 mod open;
 mod output;
 mod pose;

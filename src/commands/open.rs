@@ -2,7 +2,10 @@
 
 use clap::Args;
 use stillbase::scenario::Scenario;
-use stillbase::session::Run;
+#[cfg(feature = "window")]
+use stillbase::scene::palette::Theme;
+#[cfg(feature = "window")]
+use stillbase::window::WindowError;
 
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
@@ -13,8 +16,30 @@ pub struct Open {
     /// A built-in scenario (case-1, case-2, case-3) or a TOML file to open in a window
     #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
     scenario: String,
+    /// Colours of the window
+    #[cfg(feature = "window")]
+    #[arg(long, value_enum)]
+    theme: Option<ThemeName>,
     #[command(flatten)]
     settings: Settings,
+}
+
+#[cfg(feature = "window")]
+#[derive(Clone, Copy, Default, clap::ValueEnum)]
+enum ThemeName {
+    #[default]
+    Dark,
+    Light,
+}
+
+#[cfg(feature = "window")]
+impl From<ThemeName> for Theme {
+    fn from(name: ThemeName) -> Self {
+        match name {
+            ThemeName::Dark => Self::Dark,
+            ThemeName::Light => Self::Light,
+        }
+    }
 }
 
 impl Open {
@@ -27,11 +52,10 @@ impl Open {
             }
             other => other,
         })?;
-        // What cannot start is said here, before anything opens.
-        Run::new(&scenario).map_err(|e| Failure::from(e).of(&scenario.name))?;
         #[cfg(feature = "window")]
-        let why = match window::run(scenario.clone()) {
+        let why = match stillbase::window::run(scenario.clone(), self.theme.unwrap_or_default().into()) {
             Ok(()) => return Ok(()),
+            Err(WindowError::Refused(refusal)) => return Err(Failure::from(refusal).of(&scenario.name)),
             Err(error) => error.to_string(),
         };
         #[cfg(not(feature = "window"))]
@@ -42,10 +66,12 @@ impl Open {
 
 #[cfg(feature = "record")]
 fn record_instead(scenario: Scenario, why: &str) -> Result<(), Failure> {
+    use stillbase::files::free_name;
+
     use super::headless::{record_with_bar, unpictured};
     use super::output::{fixed, say, yes};
 
-    let file = free_name(&scenario.name);
+    let file = free_name(&scenario.name, "rrd");
     say(format!("{why}; recording {} without a window instead", scenario.name));
     for done in record_with_bar(&[scenario], &file, &unpictured())? {
         say(format!(
@@ -65,28 +91,4 @@ fn record_instead(scenario: Scenario, why: &str) -> Result<(), Failure> {
         "{why}, and this build does not record: want a display, or `stillbase simulate {}`",
         scenario.name
     )))
-}
-
-/// `NAME.rrd` in the current folder, or the first of `NAME-1.rrd`, `NAME-2.rrd` … that is free.
-#[cfg(feature = "record")]
-fn free_name(name: &str) -> std::path::PathBuf {
-    // A scenario's name is free text; as a file name it must stay in this folder.
-    let plain = |c: char| if c.is_alphanumeric() || matches!(c, '-' | '_' | ' ') { c } else { '-' };
-    let stem: String = name.chars().map(plain).collect();
-    let numbered = (1_u64..).map(|i| format!("{stem}-{i}.rrd"));
-    std::iter::once(format!("{stem}.rrd"))
-        .chain(numbered)
-        .map(std::path::PathBuf::from)
-        .find(|file| file.symlink_metadata().is_err())
-        .unwrap_or_default()
-}
-
-// MERGE: replace this module by `use stillbase::window;`.
-#[cfg(feature = "window")]
-mod window {
-    use stillbase::scenario::Scenario;
-
-    pub fn run(_: Scenario) -> Result<(), String> {
-        Err("no display".into())
-    }
 }

@@ -6,13 +6,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::{Serialize, Serializer};
+use stillbase::files::{NewFile, WriteError, check_new};
 use stillbase::frame::Frame;
 use stillbase::session::replay;
 use stillbase::signals::{Signal, signals};
 
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::new_file::NewFile;
 use super::output::{Format, fixed, say, yes};
 
 /// Run a scenario and print every signal over time as CSV
@@ -86,7 +86,11 @@ impl Simulate {
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = scenario(&self.scenario, &self.settings)?;
         let table = signals(&scenario.machine);
-        let mut csv = self.csv(&table)?;
+        if let Some(file) = &self.output {
+            check_new(file, self.force)?;
+        }
+        // Begun with the first step: what cannot start prints nothing.
+        let mut csv = None;
         let (mut time, mut columns) = (Vec::new(), vec![Vec::new(); table.len()]);
         let last = (scenario.duration / scenario.step).round() as u64;
         // A run cannot be left half-way; after a failure nothing more is written.
@@ -95,8 +99,8 @@ impl Simulate {
             if frame.step % self.every != 0 && frame.step != last {
                 return;
             }
-            if let (Some(csv), Ok(())) = (&mut csv, &written) {
-                written = csv.row(&table, frame);
+            if (self.output.is_some() || !self.format.json) && written.is_ok() {
+                written = self.csv(&mut csv, &table).and_then(|csv| csv.row(&table, frame));
             }
             if self.format.json {
                 time.push(frame.time);
@@ -130,18 +134,18 @@ impl Simulate {
         self.format.print(&answer, |_| String::new())
     }
 
-    /// Where rows go, if anywhere.
-    fn csv(&self, table: &[Signal]) -> Result<Option<Csv>, Failure> {
-        let sink = match &self.output {
-            Some(file) => Sink::File(NewFile::create(file, self.force)?, file.clone()),
-            None if self.format.json => return Ok(None),
-            None => Sink::Standard(io::stdout().lock()),
-        };
-        let mut csv = Csv { writer: csv::Writer::from_writer(sink), row: Vec::with_capacity(table.len() + 1) };
-        let head = table.iter().map(|s| format!("{} {}", s.path, s.unit));
-        let done = csv.writer.write_record(["time s".to_string()].into_iter().chain(head));
-        csv.checked(done)?;
-        Ok(Some(csv))
+    /// Where rows go; begins it with a head.
+    fn csv<'a>(&self, begun: &'a mut Option<Csv>, table: &[Signal]) -> Result<&'a mut Csv, Failure> {
+        match begun {
+            Some(csv) => Ok(csv),
+            None => {
+                let sink = match &self.output {
+                    Some(file) => Sink::File(NewFile::create(file, self.force)?),
+                    None => Sink::Standard(io::stdout().lock()),
+                };
+                Ok(begun.insert(Csv::begin(sink, table)?))
+            }
+        }
     }
 }
 
@@ -156,6 +160,14 @@ struct Csv {
 }
 
 impl Csv {
+    fn begin(sink: Sink, table: &[Signal]) -> Result<Self, Failure> {
+        let mut csv = Self { writer: csv::Writer::from_writer(sink), row: Vec::with_capacity(table.len() + 1) };
+        let head = table.iter().map(|s| format!("{} {}", s.path, s.unit));
+        let done = csv.writer.write_record(["time s".to_string()].into_iter().chain(head));
+        csv.checked(done)?;
+        Ok(csv)
+    }
+
     fn row(&mut self, table: &[Signal], frame: &Frame) -> Result<(), Failure> {
         self.row.clear();
         self.row.push(frame.time);
@@ -166,36 +178,37 @@ impl Csv {
 
     fn checked(&self, done: Result<(), csv::Error>) -> Result<(), Failure> {
         done.map_err(|e| match e.into_kind() {
-            csv::ErrorKind::Io(e) => self.writer.get_ref().failure(&e),
+            csv::ErrorKind::Io(e) => self.writer.get_ref().failure(e),
             other => Failure::WrongInput(format!("CSV: {other:?}")),
         })
     }
 
     fn finish(mut self) -> Result<(), Failure> {
         let done = self.writer.flush();
-        done.map_err(|e| self.writer.get_ref().failure(&e))?;
+        done.map_err(|e| self.writer.get_ref().failure(e))?;
         match self.writer.into_inner() {
-            Ok(Sink::File(file, name)) => {
+            Ok(Sink::File(file)) => {
+                let name = file.path().display().to_string();
                 file.finish()?;
-                say(format!("wrote {}", name.display()));
+                say(format!("wrote {name}"));
             }
             Ok(Sink::Standard(_)) => {}
-            Err(e) => return Err(Failure::writing("CSV", e.error())),
+            Err(e) => return Err(Failure::standard_output(e.error())),
         }
         Ok(())
     }
 }
 
 enum Sink {
-    File(NewFile, PathBuf),
+    File(NewFile),
     Standard(StdoutLock<'static>),
 }
 
 impl Sink {
-    fn failure(&self, error: &io::Error) -> Failure {
+    fn failure(&self, error: io::Error) -> Failure {
         match self {
-            Self::File(_, name) => Failure::writing(name.display(), error),
-            Self::Standard(_) => Failure::standard_output(error),
+            Self::File(file) => WriteError::Failed { file: file.path().into(), source: error }.into(),
+            Self::Standard(_) => Failure::standard_output(&error),
         }
     }
 }
@@ -203,13 +216,13 @@ impl Sink {
 impl Write for Sink {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match self {
-            Self::File(file, _) => file.write(bytes),
+            Self::File(file) => file.write(bytes),
             Self::Standard(out) => out.write(bytes),
         }
     }
     fn flush(&mut self) -> io::Result<()> {
         match self {
-            Self::File(file, _) => file.flush(),
+            Self::File(file) => file.flush(),
             Self::Standard(out) => out.flush(),
         }
     }

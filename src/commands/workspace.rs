@@ -79,32 +79,3 @@ impl Workspace {
         })
     }
 }
-
-// MERGE: delete from here on once `Boundary` has these methods itself; until then they stand in for it.
-struct Extent {
-    x_min: f64,
-    x_max: f64,
-    y_min: f64,
-    y_max: f64,
-}
-
-trait Coming {
-    fn sheet_area(&self) -> f64;
-    fn interior_singularity(&self) -> bool;
-    fn extent(&self, b: f64) -> Extent;
-}
-
-impl Coming for Boundary {
-    fn sheet_area(&self) -> f64 {
-        self.area()
-    }
-    fn interior_singularity(&self) -> bool {
-        false
-    }
-    fn extent(&self, b: f64) -> Extent {
-        let all: Vec<[f64; 2]> = self.turned(b).concat();
-        let least = |i: usize| all.iter().map(|p| p[i]).fold(f64::INFINITY, f64::min);
-        let most = |i: usize| all.iter().map(|p| p[i]).fold(f64::NEG_INFINITY, f64::max);
-        Extent { x_min: least(0), x_max: most(0), y_min: least(1), y_max: most(1) }
-    }
-}

@@ -347,7 +347,7 @@ fn simulate_writes_a_whole_file_or_none() {
     let with_json = object(&["simulate", "case-1", "-o", &file]);
     let written = fs::read_to_string(&file).expect("file");
     assert_eq!(written.lines().count(), 1 + numbers(&with_json["time"]).len());
-    fails(&["simulate", "case-3", "-o", &file], 2, &["case.csv", "exists", "--force"]);
+    fails(&["simulate", "case-3", "-o", &file], 2, &["case.csv exists", "--force"]);
     assert_eq!(fs::read_to_string(&file).expect("file"), written);
     // Nothing is left of a run that is refused half-way.
     fails(&["simulate", "case-1", "--set", "limits.a1=0,0.1", "-o", &folder.path("new.csv")], 1, &["case-1"]);
@@ -361,14 +361,38 @@ fn simulate_writes_a_whole_file_or_none() {
 
 #[cfg(unix)]
 #[test]
+fn a_link_is_written_through() {
+    let folder = Folder::new();
+    let real = folder.file("real.csv", "old");
+    let (link, dangling) = (folder.path("link.csv"), folder.path("dangling.csv"));
+    std::os::unix::fs::symlink(&real, &link).expect("a link");
+    std::os::unix::fs::symlink(folder.path("nothing"), &dangling).expect("a link");
+    fails(&["simulate", "-o", &link], 2, &["link.csv exists"]);
+    fails(&["simulate", "-o", &dangling], 2, &["dangling.csv exists"]);
+    prints(&["simulate", "-o", &link, "--force"]);
+    assert!(fs::symlink_metadata(&link).expect("link").is_symlink());
+    assert!(fs::read_to_string(&real).expect("file").starts_with("time s,"));
+    assert_eq!(folder.names(), ["dangling.csv", "link.csv", "real.csv"]);
+}
+
+#[cfg(unix)]
+#[test]
 fn a_full_disk_and_a_closed_pipe_are_no_panic() {
     let full = || fs::OpenOptions::new().write(true).open("/dev/full");
     if let Ok(full) = full() {
         let out = Command::new(env!("CARGO_BIN_EXE_stillbase")).arg("machines").stdout(full).output().expect("starts");
         let said = text(&out.stderr);
         assert!(out.status.code() == Some(2) && said.starts_with("stillbase: standard output"), "{said}");
-        fails(&["simulate", "-o", "/dev/full"], 2, &["/dev/full"]);
+        fails(&["simulate", "-o", "/dev/full", "--force"], 2, &["/dev/full is no plain file"]);
     }
+    // No file may grow beyond four kilobytes here, and to try is an error and not the end.
+    let folder = Folder::new();
+    let limited = "trap '' XFSZ; ulimit -f 8; exec \"$0\" simulate -o x.csv";
+    let mut shell = Command::new("sh");
+    let out = shell.args(["-c", limited, env!("CARGO_BIN_EXE_stillbase")]).current_dir(&folder.0).output().expect("sh");
+    let said = text(&out.stderr);
+    assert!(out.status.code() == Some(2) && said.starts_with("stillbase: x.csv: "), "{said}");
+    assert!(folder.names().is_empty(), "{:?}", folder.names());
     let mut child = Command::new(env!("CARGO_BIN_EXE_stillbase"))
         .arg("simulate")
         .stdout(Stdio::piped())
