@@ -30,6 +30,8 @@ enum Command {
     Reach(commands::Reach),
     Pose(commands::Pose),
     Workspace(commands::Workspace),
+    #[cfg(feature = "ui")]
+    Figures(commands::Figures),
 }
 
 const EXAMPLES: &str = "\
@@ -58,6 +60,8 @@ fn main() -> ExitCode {
         Some(Command::Reach(command)) => command.run(),
         Some(Command::Pose(command)) => command.run(),
         Some(Command::Workspace(command)) => command.run(),
+        #[cfg(feature = "ui")]
+        Some(Command::Figures(command)) => command.run(),
     };
     commands::exit_code(done)
 }

@@ -7,6 +7,8 @@ mod check;
 mod design;
 mod dynamics;
 mod failure;
+#[cfg(feature = "ui")]
+mod figures;
 #[cfg(feature = "record")]
 mod headless;
 mod input;
@@ -22,6 +24,8 @@ pub use check::Check;
 pub use design::Design;
 pub use dynamics::Dynamics;
 pub use failure::{exit_code, usage};
+#[cfg(feature = "ui")]
+pub use figures::Figures;
 #[cfg(feature = "record")]
 pub use headless::Headless;
 pub use input::words;
