@@ -12,7 +12,7 @@ use stillbase::machine::{Inertia, Machine, to_toml};
 
 use super::check::Balance;
 use super::failure::Failure;
-use super::input::{MachineArgument, number};
+use super::input::MachineArgument;
 use super::output::{Format, Table, fixed, say};
 
 /// Place the links' centres of mass so that the base feels no force and the mass matrix is invariant, Eq. (10)
@@ -28,8 +28,8 @@ Examples:
 pub struct Design {
     #[command(flatten)]
     machine: MachineArgument,
-    /// Penalty p_j on the centre of mass of each link, above 0
-    #[arg(long, value_name = "P1,P2,…", value_delimiter = ',', value_parser = number)]
+    /// Penalty p_j on the centre of mass of each link, 1e-6 to 1e6
+    #[arg(long, value_name = "P1,P2,…", value_delimiter = ',', value_parser = penalty)]
     penalty: Vec<f64>,
     /// Penalties by name. table-1: those that give Table I (the default for nine links); as-printed: those printed
     /// beside Eq. (10); minimum-norm: 1 for every link (the default otherwise)
@@ -43,6 +43,12 @@ pub struct Design {
     force: bool,
     #[command(flatten)]
     format: Format,
+}
+
+/// Penalties further apart than these would drown in rounding.
+fn penalty(text: &str) -> Result<f64, String> {
+    let within = text.trim().parse().ok().filter(|p| (1e-6..=1e6).contains(p));
+    within.ok_or_else(|| "want a number from 1e-6 to 1e6".into())
 }
 
 #[derive(Clone, Copy)]

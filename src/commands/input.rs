@@ -111,14 +111,18 @@ fn padded(word: OsString) -> OsString {
 
 /// A point X,Y, m.
 pub fn point(text: &str) -> Result<Vector, String> {
-    let want = || "want X,Y in m, such as 0.5,-0.25".to_string();
-    let (x, y) = text.split_once(',').ok_or_else(want)?;
-    Ok(Vector::new(number(x).map_err(|_| want())?, number(y).map_err(|_| want())?))
+    let both = text.split_once(',').and_then(|(x, y)| Some(Vector::new(number(x)?, number(y)?)));
+    both.ok_or_else(|| "want X,Y in m, such as 0.5,-0.25, up to 1e6".into())
 }
 
-/// A finite number.
-pub fn number(text: &str) -> Result<f64, String> {
-    text.trim().parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(|| "want a finite number".into())
+/// A pose constant, rad.
+pub fn pose_constant(text: &str) -> Result<f64, String> {
+    number(text).ok_or_else(|| "want a number in rad, such as 2.4, up to 1e6".into())
+}
+
+/// A number whose digits still mean something beside metres and turns.
+fn number(text: &str) -> Option<f64> {
+    text.trim().parse().ok().filter(|x: &f64| x.abs() <= 1e6)
 }
 
 /// A text file.

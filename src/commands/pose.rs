@@ -7,7 +7,7 @@ use stillbase::pose_constant::{Unreachable, in_words};
 use stillbase::reactionless::{PlaneMap, PlanePoint};
 
 use super::failure::Failure;
-use super::input::{MachineArgument, number, planes_of, point};
+use super::input::{MachineArgument, planes_of, point, pose_constant};
 use super::output::{Format, Table, fixed};
 
 /// The poses that put the end effector on a point without leaving the plane b = const
@@ -24,7 +24,7 @@ pub struct Pose {
     #[arg(value_name = "X,Y", value_parser = point)]
     point: Vector,
     /// Pose constant b, rad
-    #[arg(long, value_name = "B", value_parser = number)]
+    #[arg(long, value_name = "B", value_parser = pose_constant)]
     b: f64,
     #[command(flatten)]
     format: Format,

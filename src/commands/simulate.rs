@@ -33,12 +33,16 @@ pub struct Simulate {
     #[arg(long)]
     force: bool,
     /// Print every N-th step only, and the last
-    #[arg(long, value_name = "N", default_value = "1")]
+    #[arg(long, value_name = "N", default_value = "1", value_parser = every)]
     every: NonZeroU64,
     #[command(flatten)]
     settings: Settings,
     #[command(flatten)]
     format: Format,
+}
+
+fn every(text: &str) -> Result<NonZeroU64, String> {
+    text.trim().parse().map_err(|_| "want a whole number of steps, 1 or more".into())
 }
 
 /// What a run comes to.

@@ -5,7 +5,7 @@ use serde::Serialize;
 use stillbase::reactionless::Boundary;
 
 use super::failure::Failure;
-use super::input::{MachineArgument, number, planes_of};
+use super::input::{MachineArgument, planes_of, pose_constant};
 use super::output::{Format, Table, fixed, yes};
 
 /// The reactionless workspace of b: its exact boundary and area, Eqs (15), (16)
@@ -21,7 +21,7 @@ pub struct Workspace {
     #[command(flatten)]
     machine: MachineArgument,
     /// Pose constant b, rad
-    #[arg(long, value_name = "B", value_parser = number)]
+    #[arg(long, value_name = "B", value_parser = pose_constant)]
     b: f64,
     #[command(flatten)]
     format: Format,

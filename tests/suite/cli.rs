@@ -291,6 +291,17 @@ fn pose_gives_unwrapped_angles_on_the_plane_as_asked() {
 }
 
 #[test]
+fn numbers_that_mean_nothing_are_refused() {
+    fails(&["reach", "nine-link", "1e300,0"], 2, &["want X,Y in m"]);
+    fails(&["pose", "nine-link", "0.5,nan", "--b", "2.4"], 2, &["want X,Y in m"]);
+    for b in ["inf", "1e300", "two", "-"] {
+        fails(&["workspace", "nine-link", "--b", b], 2, &["--b"]);
+    }
+    fails(&["simulate", "--every", "0"], 2, &["whole number of steps"]);
+    fails(&["check", "nine-link", "--set", "length.l1=1e300"], 2, &["not a finite number"]);
+}
+
+#[test]
 fn a_point_outside_the_plane_is_told_which_b_would_do() {
     fails(&["pose", "nine-link", "0.5,0.5", "--b", "5"], 1, &["b = 5.000 rad", "want b from 1.650 to 2.901 rad"]);
 }
@@ -535,7 +546,7 @@ fn a_machine_of_two_drives_is_checked_but_has_no_planes() {
     let designed = object(&["design", &file]);
     assert_eq!(numbers(&designed["com"]).len(), 2);
     fails(&["design", &file, "--preset", "table-1"], 2, &["9 penalties for 2 links"]);
-    fails(&["design", &file, "--penalty", "1,-1"], 2, &["penalty -1 of link forearm", "above 0"]);
+    fails(&["design", &file, "--penalty", "1,-1"], 2, &["'-1'", "1e-6 to 1e6"]);
     fails(&["reach", &file, "0.5,0.5"], 1, &["2 drives", "want three"]);
     fails(&["pose", &file, "0.5,0.5", "--b", "1"], 1, &["2 drives"]);
     fails(&["workspace", &file, "--b", "1"], 1, &["2 drives"]);
