@@ -56,6 +56,8 @@ impl Open {
         let why = match stillbase::window::run(scenario.clone(), self.theme.unwrap_or_default().into()) {
             Ok(()) => return Ok(()),
             Err(WindowError::Refused(refusal)) => return Err(Failure::from(refusal).of(&scenario.name)),
+            // The window system says where in its source it gave up before it says why.
+            Err(WindowError::NoDisplay(why)) => format!("no display: {}", why.rsplit(": ").next().unwrap_or(&why)),
             Err(error) => error.to_string(),
         };
         #[cfg(not(feature = "window"))]
@@ -72,7 +74,7 @@ fn record_instead(scenario: Scenario, why: &str) -> Result<(), Failure> {
     use super::output::{fixed, say, yes};
 
     let file = free_name(&scenario.name, "rrd");
-    say(format!("{why}; recording {} without a window instead", scenario.name));
+    say(format!("{}; recording {} without a window instead", why.trim_end_matches('.'), scenario.name));
     for done in record_with_bar(&[scenario], &file, &unpictured())? {
         say(format!(
             "wrote {}: {} steps, peak |n_B| {} N m, reactionless: {}",
