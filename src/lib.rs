@@ -72,6 +72,8 @@ pub mod control;
 pub mod dynamics;
 pub mod files;
 pub mod frame;
+#[cfg(feature = "record")]
+pub mod headless;
 pub mod kinematics;
 pub mod machine;
 pub mod plan;

@@ -140,6 +140,11 @@ impl Linkage {
         &self.bars
     }
 
+    /// Where the tops of the pins are, m.
+    pub fn pins(&self, e: &Units) -> impl Iterator<Item = (Vector, f64)> {
+        self.pins.iter().map(|pin| (place_of(&pin.at, e), pin.hole_z))
+    }
+
     /// Everything, in the colours of the palette.
     pub fn solids(&self, e: &Units, palette: &Palette) -> Vec<Solid> {
         let mut solids = Vec::with_capacity(self.bars.len() + 2 * self.pins.len() + self.motors.len() + 2);

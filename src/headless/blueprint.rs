@@ -1,0 +1,307 @@
+//! The layout that a recording opens with: scene left, plots by unit right, events below; several cases side by side
+//! first, and each in a tab of its own.
+//!
+//! Views are rows of a store of their own. The SDK's builders reach neither the eye of a 3D view, nor axis ranges, nor
+//! backgrounds, so the rows are written here.
+
+use std::io::Write;
+
+use rerun::blueprint::components::{
+    ActiveTab, BackgroundKind, ColumnShare, ContainerKind, Corner2D, Eye3DKind, GridSpacing, IncludedContent, LinkAxis,
+    LoopMode, PanelState, PlayState, QueryExpression, RootContainer, RowShare, ViewClass,
+};
+use rerun::blueprint::datatypes::{TextLogColumn, TextLogColumnKind, TimelineColumn};
+use rerun::components::{Plane3D, Range1D};
+use rerun::external::re_sdk_types::blueprint::archetypes as view;
+use rerun::external::re_sdk_types::blueprint::components::VisualizerInstructionId;
+use rerun::external::uuid::Uuid;
+use rerun::{AsComponents, EntityPath, SeriesLines};
+
+use super::recorder::{Case, colour, series_name, under};
+use super::store::{Store, StoreError, TIME};
+use crate::scene::camera::{Camera, Orbit};
+use crate::scene::linkage::mix;
+use crate::scene::Rgba;
+use crate::scene::palette::{Palette, Theme, palette};
+use crate::scene::stage::round_up;
+
+/// Writes the layout and has the viewer open with it.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn lay_out<W: Write>(store: &mut Store<W>, cases: &[Case]) -> Result<(), StoreError> {
+    let mut layout = Layout { store, palette: palette(Theme::Dark), made: 0, axes: Axes::of(cases) };
+    let mut tabs = Vec::new();
+    if cases.len() > 1 {
+        tabs.push(layout.comparison(cases)?);
+    }
+    for case in cases {
+        tabs.push(layout.case(case)?);
+    }
+    let root = layout.container(ContainerKind::Tabs, "", &tabs, &[])?;
+    let viewport = view::ViewportBlueprint::new()
+        .with_root_container(RootContainer(root.id.into()))
+        .with_auto_layout(false)
+        .with_auto_views(false);
+    layout.store.layout(&"viewport".into(), &viewport)?;
+    for panel in ["selection_panel", "blueprint_panel"] {
+        layout.store.layout(&panel.into(), &view::PanelBlueprint::new().with_state(PanelState::Collapsed))?;
+    }
+    let time = view::TimePanelBlueprint::new()
+        .with_state(PanelState::Collapsed)
+        .with_timeline(TIME)
+        .with_loop_mode(LoopMode::All)
+        .with_play_state(PlayState::Paused);
+    layout.store.layout(&"time_panel".into(), &time)?;
+    layout.store.activate_layout()
+}
+
+/// Ranges that plots of all cases share, so that they can be compared, and so that noise is not shown as if it were
+/// something.
+struct Axes {
+    /// |n_B|, N m.
+    moment: f64,
+    /// |f_B|, N.
+    force: f64,
+    /// b, rad.
+    b: [f64; 2],
+}
+
+impl Axes {
+    fn of(cases: &[Case]) -> Self {
+        let largest = |of: fn(&Case) -> f64| cases.iter().map(of).fold(0.0, f64::max);
+        // Where nothing reaches the base, what would if nothing cancelled gives the scale.
+        let scale = |peak: f64, whole: f64| match peak > 1e-6 * whole {
+            true => round_up(peak),
+            false if whole > 0.0 => round_up(whole),
+            false => 1.0,
+        };
+        let low = cases.iter().map(|c| c.b[0]).fold(f64::INFINITY, f64::min);
+        let high = cases.iter().map(|c| c.b[1]).fold(f64::NEG_INFINITY, f64::max);
+        let margin = (0.1 * (high - low)).max(0.05);
+        Self {
+            moment: scale(largest(|c| c.peaks.moment), largest(|c| c.peaks.torque_sum)),
+            force: scale(largest(|c| c.peaks.force), largest(|c| c.peaks.inertial_pull)),
+            b: [low - margin, high + margin],
+        }
+    }
+}
+
+/// A view or container.
+struct Part {
+    path: EntityPath,
+    id: Uuid,
+}
+
+struct Layout<'a, W: Write> {
+    store: &'a mut Store<W>,
+    palette: Palette,
+    made: u128,
+    axes: Axes,
+}
+
+/// Identifiers of views only have to differ within one layout.
+const FIRST_ID: u128 = 0x5eed_0000_0000_4000_8000_0000_0000_0000;
+
+impl<W: Write> Layout<'_, W> {
+    fn id(&mut self) -> Uuid {
+        self.made += 1;
+        Uuid::from_u128(FIRST_ID + self.made)
+    }
+
+    fn container(
+        &mut self,
+        kind: ContainerKind,
+        name: &str,
+        parts: &[Part],
+        shares: &[f32],
+    ) -> Result<Part, StoreError> {
+        let id = self.id();
+        let path = EntityPath::from(format!("container/{id}"));
+        let mut container = view::ContainerBlueprint::new(kind)
+            .with_contents(parts.iter().map(|p| IncludedContent(p.path.to_string().into())));
+        if !name.is_empty() {
+            container = container.with_display_name(name);
+        }
+        container = match kind {
+            ContainerKind::Horizontal => container.with_col_shares(shares.iter().map(|s| ColumnShare((*s).into()))),
+            ContainerKind::Vertical => container.with_row_shares(shares.iter().map(|s| RowShare((*s).into()))),
+            ContainerKind::Tabs | ContainerKind::Grid => match parts.first() {
+                Some(first) => container.with_active_tab(ActiveTab(first.path.to_string().into())),
+                None => container,
+            },
+        };
+        self.store.layout(&path, &container)?;
+        Ok(Part { path, id })
+    }
+
+    fn view(
+        &mut self,
+        class: &str,
+        name: &str,
+        origin: &EntityPath,
+        contents: &[String],
+        properties: &[(&str, &dyn AsComponents)],
+    ) -> Result<Part, StoreError> {
+        let id = self.id();
+        let path = EntityPath::from(format!("view/{id}"));
+        let query = view::ViewContents::new(contents.iter().map(|q| QueryExpression(q.as_str().into())));
+        self.store.layout(&under(&path, "ViewContents"), &query)?;
+        let view = view::ViewBlueprint::new(ViewClass(class.into()))
+            .with_display_name(name)
+            .with_space_origin(origin.to_string());
+        self.store.layout(&path, &view)?;
+        for (property, value) in properties {
+            self.store.layout(&under(&path, property), *value)?;
+        }
+        Ok(Part { path, id })
+    }
+
+    /// Several cases side by side: scenes above, what differs below.
+    fn comparison(&mut self, cases: &[Case]) -> Result<Part, StoreError> {
+        let scenes = cases.iter().map(|case| self.scene(case, &case.title)).collect::<Result<Vec<_>, _>>()?;
+        let top = self.container(ContainerKind::Horizontal, "", &scenes, &vec![1.0; scenes.len()])?;
+        let axes = [-self.axes.moment, self.axes.moment];
+        let moment = self.compared(cases, "Base moment n_B  N m", "moment/total", Some(axes))?;
+        let b = self.compared(cases, "Pose constant b  rad", "pose/b", Some(self.axes.b))?;
+        let events = self.events(cases)?;
+        let bottom = self.container(ContainerKind::Horizontal, "", &[moment, b, events], &[1.2, 1.0, 1.0])?;
+        self.container(ContainerKind::Vertical, "All cases", &[top, bottom], &[1.25, 1.0])
+    }
+
+    /// One case: scene left, plots right, events below.
+    fn case(&mut self, case: &Case) -> Result<Part, StoreError> {
+        let mut scenes = vec![self.scene(case, "Scene")?];
+        if case.pictured {
+            let origin = under(&case.root, "view");
+            scenes.push(self.view("2D", "Pictures", &origin, &["$origin/**".into()], &[])?);
+        }
+        let scene = self.container(ContainerKind::Tabs, "", &scenes, &[])?;
+        let Axes { moment, force, b } = self.axes;
+        let moment = Some([-1.1 * moment, 1.1 * moment]);
+        let plots = [
+            self.plot(case, "Torque  N m", &["torque/**"], None)?,
+            self.plot(case, "Base moment  N m", &["moment/total"], moment)?,
+            self.plot(case, "Base force  N", &["force/dynamic"], Some([-0.05 * force, 1.1 * force]))?,
+            self.plot(case, "Drive angles  rad", &["angle/**"], None)?,
+            self.plot(case, "Pose constant  rad", &["pose/**"], Some(b))?,
+        ];
+        let plots = self.container(ContainerKind::Vertical, "", &plots, &[1.2, 1.0, 1.0, 1.0, 1.0])?;
+        let top = self.container(ContainerKind::Horizontal, "", &[scene, plots], &[1.25, 1.0])?;
+        let events = self.events(std::slice::from_ref(case))?;
+        let phase = self.view("StateTimeline", "Phase", &under(&case.root, "phase"), &["$origin/**".into()], &[])?;
+        let bottom = self.container(ContainerKind::Horizontal, "", &[events, phase], &[1.25, 1.0])?;
+        self.container(ContainerKind::Vertical, &case.title, &[top, bottom], &[4.2, 1.0])
+    }
+
+    fn scene(&mut self, case: &Case, name: &str) -> Result<Part, StoreError> {
+        let background = view::Background::new(BackgroundKind::SolidColor).with_color(colour(self.palette.background));
+        let grid = view::LineGrid3D::new()
+            .with_visible(true)
+            .with_spacing(GridSpacing(0.1.into()))
+            .with_plane(Plane3D::new([0.0, 0.0, 1.0], -0.02 * case.reach as f32))
+            .with_stroke_width(0.8)
+            .with_color(colour(self.palette.line));
+        let mut properties: Vec<(&str, &dyn AsComponents)> = vec![("Background", &background), ("LineGrid3D", &grid)];
+        let eye = eye(case.reach);
+        properties.extend(eye.as_ref().map(|eye| ("EyeControls3D", eye as &dyn AsComponents)));
+        let information = view::SpatialInformation::update_fields().with_show_axes(false).with_show_bounding_box(false);
+        properties.push(("SpatialInformation", &information));
+        let contents = ["machine", "com", "end_effector", "target", "workspace", "reaction"];
+        let contents: Vec<_> = contents.iter().map(|part| format!("$origin/{part}/**")).collect();
+        self.view("3D", name, &case.root, &contents, &properties)
+    }
+
+    fn plot(
+        &mut self,
+        case: &Case,
+        name: &str,
+        signals: &[&str],
+        range: Option<[f64; 2]>,
+    ) -> Result<Part, StoreError> {
+        let contents: Vec<_> = signals.iter().map(|s| format!("$origin/{s}")).collect();
+        self.time_series(name, &under(&case.root, "signals"), &contents, range)
+    }
+
+    fn time_series(
+        &mut self,
+        name: &str,
+        origin: &EntityPath,
+        contents: &[String],
+        range: Option<[f64; 2]>,
+    ) -> Result<Part, StoreError> {
+        let legend = view::PlotLegend::new().with_corner(Corner2D::RightTop);
+        let time = view::TimeAxis::new().with_link(LinkAxis::LinkToGlobal);
+        let background = view::PlotBackground::new().with_color(colour(self.palette.panel)).with_show_grid(true);
+        let mut properties: Vec<(&str, &dyn AsComponents)> =
+            vec![("PlotLegend", &legend), ("TimeAxis", &time), ("PlotBackground", &background)];
+        let scalar = range.map(|[low, high]| view::ScalarAxis::new().with_range(Range1D::new(low, high)));
+        properties.extend(scalar.as_ref().map(|s| ("ScalarAxis", s as &dyn AsComponents)));
+        self.view("TimeSeries", name, origin, contents, &properties)
+    }
+
+    /// The same signal of every case in one plot, each named by its case.
+    fn compared(
+        &mut self,
+        cases: &[Case],
+        name: &str,
+        signal: &str,
+        range: Option<[f64; 2]>,
+    ) -> Result<Part, StoreError> {
+        let paths: Vec<_> = cases.iter().map(|case| under(&case.root, &format!("signals/{signal}"))).collect();
+        let contents: Vec<_> = paths.iter().map(|p| p.to_string()).collect();
+        let plot = self.time_series(name, &EntityPath::root(), &contents, range)?;
+        for (i, (case, path)) in cases.iter().zip(&paths).enumerate() {
+            let rgba = case_colour(i, case.peaks.is_reactionless(), &self.palette);
+            let unit = case.signals.iter().find(|s| s.path == signal).map_or(String::new(), series_name);
+            let style = SeriesLines::new()
+                .with_names([format!("{} · {unit}", case.name)])
+                .with_colors([colour(rgba)])
+                .with_widths([1.8]);
+            let base = view::ViewContents::blueprint_base_visualizer_path_for_entity(plot.id, path);
+            let id = VisualizerInstructionId::new_deterministic(path, i);
+            let instruction = under(&base, &id.0.to_string());
+            self.store.layout(&instruction, &view::VisualizerInstruction::new("SeriesLines"))?;
+            self.store.layout(&instruction, &style)?;
+            self.store.layout(&base, &view::ActiveVisualizers::new([id]))?;
+        }
+        Ok(plot)
+    }
+
+    fn events(&mut self, cases: &[Case]) -> Result<Part, StoreError> {
+        let shown = |kind, visible: bool| TextLogColumn { visible: visible.into(), kind };
+        let columns = view::TextLogColumns::new()
+            .with_timeline_columns([TimelineColumn { visible: true.into(), timeline: TIME.into() }])
+            .with_text_log_columns([
+                shown(TextLogColumnKind::EntityPath, cases.len() > 1),
+                shown(TextLogColumnKind::LogLevel, false),
+                shown(TextLogColumnKind::Body, true),
+            ]);
+        let contents: Vec<_> = cases.iter().map(|case| under(&case.root, "events").to_string()).collect();
+        self.view("TextLog", "Events", &EntityPath::root(), &contents, &[("TextLogColumns", &columns)])
+    }
+}
+
+/// Where nothing is felt, the green of zero; else reds that can be told apart.
+fn case_colour(i: usize, quiet: bool, palette: &Palette) -> Rgba {
+    match quiet {
+        true => palette.zero,
+        false => mix(palette.reaction, palette.amber, 0.9 * (i % 3) as f32 / 2.0),
+    }
+}
+
+/// From the front and above, the arm and its workspaces filling the view.
+fn eye(reach: f64) -> Option<view::EyeControls3D> {
+    let Camera::Orbit(Orbit { centre, distance, yaw, pitch }) = Camera::orbit(reach) else { return None };
+    // The viewer's field of view is wider than that of the scene's own camera.
+    let (back, distance) = (pitch.cos(), 0.72 * distance);
+    let towards = [yaw.sin() * back, -yaw.cos() * back, pitch.sin()];
+    let position = [0, 1, 2].map(|i| (centre[i] + distance * towards[i]) as f32);
+    Some(
+        view::EyeControls3D::new()
+            .with_kind(Eye3DKind::Orbital)
+            .with_position(position)
+            .with_look_target(centre.map(|x| x as f32))
+            .with_eye_up([0.0, 0.0, 1.0]),
+    )
+}

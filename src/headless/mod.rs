@@ -1,0 +1,241 @@
+//! Recordings: scenarios run without a window and written to a Rerun file, with the layout to look at them.
+//!
+//! One file holds all cases, each under `/<case>/`, on the shared time lines `sim_time` and `step`:
+//!
+//! | entity | what |
+//! |---|---|
+//! | `machine/base`, `machine/link/<name>` | meshes that never change; transforms |
+//! | `machine/joints`, `com`, `end_effector`, `target` | points; `end_effector/path` is the whole trail |
+//! | `workspace/<b>` | a reactionless workspace and its boundary; b turns it |
+//! | `reaction/force`, `reaction/moment` | what reaches the base, in proportion; the scale stands beside it |
+//! | `signals/<path>` | every row of the table of [`signals`](crate::signals), at every step |
+//! | `events`, `phase` | what happened |
+//! | `view` | offscreen pictures |
+//!
+//! Signals have a row at every step, bodies and points at most 200 a second. Machine, scenario, version and verdict are
+//! properties of the recording. The same scenarios give the same recording, whenever and wherever it is made.
+
+mod blueprint;
+mod film;
+mod recorder;
+mod store;
+
+use std::fs::File;
+use std::io::{self, BufWriter};
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::files::{self, WriteError};
+use crate::scenario::Scenario;
+use crate::session::Refusal;
+use store::{Store, StoreError};
+
+/// Offscreen pictures to take on the way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pictures {
+    /// Pictures a second of simulated time.
+    pub fps: f64,
+    /// Pixels a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+/// What to record, and over what.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Options {
+    /// Pictures, if any. Where there is nothing to draw with, the recording goes without and says so in its
+    /// [`notes`](Recording::notes).
+    pub pictures: Option<Pictures>,
+    /// Replace a file that is there.
+    pub force: bool,
+}
+
+/// A scenario that was recorded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    /// Its name.
+    pub scenario: String,
+    /// Where it is.
+    pub file: PathBuf,
+    /// Steps done; there is one more frame.
+    pub steps: u64,
+    /// Largest |τ_k|, N m.
+    pub peak_torque: Vec<f64>,
+    /// Largest dynamic |f_B|, N.
+    pub peak_base_force: f64,
+    /// Largest |n_B|, N m.
+    pub peak_base_moment: f64,
+    /// Whether nothing reached the base.
+    pub reactionless: bool,
+    /// What somebody should know: why there are no pictures.
+    pub notes: Vec<String>,
+}
+
+/// How far the recording has got.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress<'a> {
+    /// Steps done, of all scenarios.
+    pub done: u64,
+    /// Steps to do.
+    pub of: u64,
+    /// The scenario at hand.
+    pub what: &'a str,
+}
+
+/// Why nothing was recorded. No file is left then, and none was touched.
+#[derive(Debug, Error)]
+pub enum RecordError {
+    /// Nothing to record.
+    #[error("no scenario: want at least one")]
+    Nothing,
+    /// Cases of one recording go by their names.
+    #[error("two scenarios are called {0:?}: want different names in one recording")]
+    SameName(String),
+    /// A scenario cannot start, or one of its edits cannot apply.
+    #[error("{scenario}: {refusal}")]
+    Refused {
+        /// Which.
+        scenario: String,
+        /// Why.
+        refusal: Refusal,
+    },
+    /// The pictures asked for cannot be.
+    #[error("pictures: {0}")]
+    Pictures(String),
+    /// The file.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// Rerun refuses the data.
+    #[error("{}: {why}", file.display())]
+    Data {
+        /// The file.
+        file: PathBuf,
+        /// What it says.
+        why: String,
+    },
+}
+
+/// Runs scenarios and records all of them in one file, which appears when it is complete.
+///
+/// # Errors
+/// If a scenario cannot run, or the file exists and is not to be replaced, or cannot be written; no file is left then.
+pub fn record(
+    scenarios: &[Scenario],
+    file: &Path,
+    options: &Options,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Vec<Recording>, RecordError> {
+    check(scenarios, options)?;
+    files::check_new(file, options.force)?;
+    let failed = |source| WriteError::Failed { file: file.into(), source };
+    if file.is_dir() {
+        return Err(failed(io::Error::from(io::ErrorKind::IsADirectory)).into());
+    }
+    let part = files::beside(file);
+    let to = File::create(&part).map_err(failed)?;
+    let done = write(scenarios, to, file, options, progress).and_then(|recordings| {
+        files::check_new(file, options.force)?;
+        std::fs::rename(&part, file).map_err(failed)?;
+        Ok(recordings)
+    });
+    if done.is_err() {
+        // What could not be finished is not left behind; that it could not is what matters.
+        let _ = std::fs::remove_file(&part);
+    }
+    done
+}
+
+fn check(scenarios: &[Scenario], options: &Options) -> Result<(), RecordError> {
+    if scenarios.is_empty() {
+        return Err(RecordError::Nothing);
+    }
+    for (i, scenario) in scenarios.iter().enumerate() {
+        if scenarios[..i].iter().any(|s| s.name == scenario.name) {
+            return Err(RecordError::SameName(scenario.name.clone()));
+        }
+    }
+    match options.pictures {
+        Some(p) if !(p.fps > 0.0 && p.fps.is_finite()) => {
+            Err(RecordError::Pictures(format!("{} a second: want a number above 0", p.fps)))
+        }
+        Some(p) if p.width == 0 || p.height == 0 => {
+            Err(RecordError::Pictures(format!("{} x {} pixels: want at least 1 x 1", p.width, p.height)))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Steps of a run.
+fn steps(scenario: &Scenario) -> u64 {
+    (scenario.duration / scenario.step).round() as u64
+}
+
+/// What tells this recording from others: FNV-1a of everything that goes into it.
+fn digest(scenarios: &[Scenario], options: &Options) -> u128 {
+    let mut hash = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d_u128;
+    let mut add = |text: &str| {
+        for byte in text.bytes().chain([0]) {
+            hash = (hash ^ u128::from(byte)).wrapping_mul(0x0100_0000_0000_0000_0000_013b);
+        }
+    };
+    add(env!("CARGO_PKG_VERSION"));
+    for scenario in scenarios {
+        add(&scenario.to_toml());
+        add(&crate::machine::to_toml(&scenario.machine));
+    }
+    if let Some(p) = options.pictures {
+        add(&format!("{} {} {}", p.fps, p.width, p.height));
+    }
+    hash
+}
+
+fn write(
+    scenarios: &[Scenario],
+    to: File,
+    file: &Path,
+    options: &Options,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Vec<Recording>, RecordError> {
+    let because = |error| match error {
+        StoreError::Write(source) => WriteError::Failed { file: file.into(), source }.into(),
+        StoreError::Data(why) => RecordError::Data { file: file.into(), why },
+    };
+    let mut store = Store::open(BufWriter::with_capacity(1 << 20, to), digest(scenarios, options)).map_err(because)?;
+    let mut film = film::Film::of(options.pictures);
+    let of = scenarios.iter().map(steps).sum();
+    let (mut before, mut cases) = (0, Vec::new());
+    let done = scenarios.iter().try_for_each(|scenario| {
+        let mut tick = |step| progress(Progress { done: before + step, of, what: &scenario.name });
+        cases.push(recorder::record(&mut store, scenario, &mut film, &mut tick)?);
+        before += steps(scenario);
+        Ok(())
+    });
+    let laid_out = done.and_then(|()| blueprint::lay_out(&mut store, &cases).map_err(recorder::Stop::from));
+    let closed = match laid_out {
+        Ok(()) => store.close().map_err(because)?,
+        Err(stop) => {
+            store.abandon();
+            return Err(match stop {
+                recorder::Stop::Refused { scenario, refusal } => RecordError::Refused { scenario, refusal },
+                recorder::Stop::Pictures(why) => RecordError::Pictures(why),
+                recorder::Stop::Store(error) => because(error),
+            });
+        }
+    };
+    // A disk that is full may say so only now.
+    closed.get_ref().sync_all().map_err(|source| WriteError::Failed { file: file.into(), source })?;
+    let notes = film.notes();
+    let finished = |case: recorder::Case| Recording {
+        scenario: case.name,
+        file: file.into(),
+        steps: case.steps,
+        peak_torque: case.peaks.torque.to_vec(),
+        peak_base_force: case.peaks.force,
+        peak_base_moment: case.peaks.moment,
+        reactionless: case.peaks.is_reactionless(),
+        notes: notes.clone(),
+    };
+    Ok(cases.into_iter().map(finished).collect())
+}

@@ -1,0 +1,212 @@
+//! A [`Store`]: rows and columns of a recording and of its layout, encoded one chunk at a time.
+//!
+//! Chunks are written as they come and in this thread, so that a full disk is an error here and now; the stream of the
+//! SDK encodes in threads of its own, which can only say so on standard error. Identifiers count up from the recording's
+//! own, so that the same data give the same chunks.
+
+use std::io::Write;
+
+use rerun::external::re_log_encoding::{EncodeError, Encoder, EncodingOptions};
+use rerun::external::re_log_types::{BlueprintActivationCommand, SetStoreInfo, StoreInfo, StoreSource};
+use rerun::external::{re_build_info::CrateVersion, re_log_types::StoreId};
+use rerun::log::{Chunk, ChunkError, ChunkId, LogMsg, RowId, TimeColumn};
+use rerun::time::{TimeInt, TimePoint, Timeline};
+use rerun::{AsComponents, EntityPath, SerializedComponentColumn, StoreKind};
+use thiserror::Error;
+
+/// What the viewer files layouts under.
+pub const APPLICATION: &str = "stillbase";
+
+/// Time line of simulated time.
+pub const TIME: &str = "sim_time";
+
+/// Time line of steps.
+pub const STEP: &str = "step";
+
+/// Why a row was not written.
+#[derive(Debug, Error)]
+pub enum StoreError {
+    /// The file system.
+    #[error(transparent)]
+    Write(#[from] std::io::Error),
+    /// Rerun refuses the data.
+    #[error("{0}")]
+    Data(String),
+}
+
+impl From<EncodeError> for StoreError {
+    fn from(error: EncodeError) -> Self {
+        match error {
+            EncodeError::Write(error) => Self::Write(error),
+            other => Self::Data(other.to_string()),
+        }
+    }
+}
+
+impl From<ChunkError> for StoreError {
+    fn from(error: ChunkError) -> Self {
+        Self::Data(error.to_string())
+    }
+}
+
+impl From<rerun::SerializationError> for StoreError {
+    fn from(error: rerun::SerializationError) -> Self {
+        Self::Data(error.to_string())
+    }
+}
+
+/// One instant on both time lines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Instant {
+    /// Steps since the start.
+    pub step: u64,
+    /// Time since the start, ns.
+    pub nanos: i64,
+}
+
+/// Instants of the rows of some columns.
+#[derive(Clone, Debug, Default)]
+pub struct Clock {
+    steps: Vec<i64>,
+    nanos: Vec<i64>,
+}
+
+impl Clock {
+    /// One more row.
+    pub fn push(&mut self, at: Instant) {
+        self.steps.push(at.step as i64);
+        self.nanos.push(at.nanos);
+    }
+
+    /// Rows.
+    pub fn len(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// No row.
+    pub fn clear(&mut self) {
+        self.steps.clear();
+        self.nanos.clear();
+    }
+
+    /// Both time lines; to be cloned for each entity, which costs nothing.
+    pub fn columns(&self) -> [TimeColumn; 2] {
+        let sorted = Some(true);
+        [
+            TimeColumn::new(sorted, Timeline::new_sequence(STEP), self.steps.clone().into()),
+            TimeColumn::new(sorted, Timeline::new_duration(TIME), self.nanos.clone().into()),
+        ]
+    }
+}
+
+/// Where the rows go.
+pub struct Store<W: Write> {
+    encoder: Encoder<W>,
+    recording: StoreId,
+    layout: StoreId,
+    /// Identifier of the next chunk.
+    next: u128,
+}
+
+/// Rows of a chunk have identifiers that count up from the chunk's: chunks keep this far apart.
+const APART: u128 = 1 << 64;
+
+impl<W: Write> Store<W> {
+    /// Begins a recording and its layout; `digest` is all that tells it from other recordings.
+    pub fn open(to: W, digest: u128) -> Result<Self, StoreError> {
+        let mut encoder = Encoder::new_eager(CrateVersion::LOCAL, EncodingOptions::PROTOBUF_COMPRESSED, to)?;
+        let id = format!("{digest:032x}");
+        let recording = StoreId::new(StoreKind::Recording, APPLICATION, id.as_str());
+        let layout = StoreId::new(StoreKind::Blueprint, APPLICATION, format!("{id}-layout"));
+        // The upper half counts chunks, from a place that depends on the digest so that recordings do not share them;
+        // its top bits stay clear, because readers take it for nanoseconds.
+        let mut next = (digest >> 90 << 24) << 64;
+        for store_id in [&recording, &layout] {
+            next += APART;
+            encoder.append(&LogMsg::SetStoreInfo(SetStoreInfo {
+                row_id: ChunkId::from_u128(next).as_tuid(),
+                info: StoreInfo::new(
+                    store_id.clone(),
+                    StoreSource::Other(format!("stillbase {}", env!("CARGO_PKG_VERSION"))),
+                ),
+            }))?;
+        }
+        Ok(Self { encoder, recording, layout, next })
+    }
+
+    fn id(&mut self) -> ChunkId {
+        self.next += APART;
+        ChunkId::from_u128(self.next)
+    }
+
+    fn append(&mut self, to: StoreId, chunk: &Chunk) -> Result<(), StoreError> {
+        self.encoder.append(&LogMsg::ArrowMsg(to, chunk.to_arrow_msg()?))?;
+        Ok(())
+    }
+
+    fn row(&mut self, at: impl Into<TimePoint>, path: &EntityPath, what: &dyn AsComponents) -> Result<Chunk, StoreError> {
+        let id = self.id();
+        let row = RowId::from_tuid(id.as_tuid()).next();
+        Ok(Chunk::builder_with_id(id, path.clone()).with_archetype(row, at, what).build()?)
+    }
+
+    /// Something that is true at all times.
+    pub fn fixed(&mut self, path: &EntityPath, what: &dyn AsComponents) -> Result<(), StoreError> {
+        let chunk = self.row(TimePoint::default(), path, what)?;
+        self.append(self.recording.clone(), &chunk)
+    }
+
+    /// Something that is true from an instant on.
+    pub fn since(&mut self, at: Instant, path: &EntityPath, what: &dyn AsComponents) -> Result<(), StoreError> {
+        let at = [
+            (Timeline::new_sequence(STEP), TimeInt::new_temporal(at.step as i64)),
+            (Timeline::new_duration(TIME), TimeInt::new_temporal(at.nanos)),
+        ];
+        let chunk = self.row(TimePoint::from(at), path, what)?;
+        self.append(self.recording.clone(), &chunk)
+    }
+
+    /// Many rows at once.
+    pub fn columns(
+        &mut self,
+        clock: &[TimeColumn; 2],
+        path: &EntityPath,
+        columns: impl IntoIterator<Item = SerializedComponentColumn>,
+    ) -> Result<(), StoreError> {
+        let timelines = clock.iter().map(|c| (*c.timeline().name(), c.clone())).collect();
+        let components = columns.into_iter().collect();
+        let chunk = Chunk::from_auto_row_ids(self.id(), path.clone(), timelines, components)?;
+        if chunk.is_empty() {
+            return Ok(());
+        }
+        self.append(self.recording.clone(), &chunk)
+    }
+
+    /// A part of the layout.
+    pub fn layout(&mut self, path: &EntityPath, what: &dyn AsComponents) -> Result<(), StoreError> {
+        let at = TimePoint::from([(Timeline::new_sequence("blueprint"), TimeInt::ZERO)]);
+        let chunk = self.row(at, path, what)?;
+        self.append(self.layout.clone(), &chunk)
+    }
+
+    /// Has the viewer open with the layout.
+    pub fn activate_layout(&mut self) -> Result<(), StoreError> {
+        let command =
+            BlueprintActivationCommand { blueprint_id: self.layout.clone(), make_active: true, make_default: true };
+        self.encoder.append(&command.into())?;
+        Ok(())
+    }
+
+    /// Gives up, without a word about what cannot be written any more.
+    pub fn abandon(self) {
+        let _ = self.encoder.into_inner();
+    }
+
+    /// Writes the table of contents.
+    pub fn close(mut self) -> Result<W, StoreError> {
+        self.encoder.finish()?;
+        let mut to = self.encoder.into_inner()?;
+        to.flush()?;
+        Ok(to)
+    }
+}
