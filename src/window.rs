@@ -44,7 +44,7 @@ pub fn run(scenario: Scenario, theme: Theme) -> Result<(), WindowError> {
     desk.carry_out(Command::TogglePlay);
     let event_loop = EventLoop::<eframe::UserEvent>::with_user_event()
         .build()
-        .map_err(|e| WindowError::NoDisplay(e.to_string()))?;
+        .map_err(|e| WindowError::NoDisplay(last_clause(&e.to_string())))?;
     event_loop.set_control_flow(ControlFlow::Wait);
     let options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
@@ -60,6 +60,11 @@ pub fn run(scenario: Scenario, theme: Theme) -> Result<(), WindowError> {
     });
     let mut app = eframe::create_native("stillbase", options, create, &event_loop);
     event_loop.run_app(&mut app).map_err(|e| WindowError::Failed(e.to_string()))
+}
+
+/// winit puts the place in its own source before what is wrong.
+fn last_clause(text: &str) -> String {
+    text.rsplit(": ").next().unwrap_or(text).to_owned()
 }
 
 /// On X11 a missing library would end the program deep inside; name it before.

@@ -57,7 +57,6 @@ impl Open {
             Ok(()) => return Ok(()),
             Err(WindowError::Refused(refusal)) => return Err(Failure::from(refusal).of(&scenario.name)),
             // The window system says where in its source it gave up before it says why.
-            Err(WindowError::NoDisplay(why)) => format!("no display: {}", why.rsplit(": ").next().unwrap_or(&why)),
             Err(error) => error.to_string(),
         };
         #[cfg(not(feature = "window"))]

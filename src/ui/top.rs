@@ -179,8 +179,8 @@ pub fn name(response: &Response, label: &str) {
 pub fn dialog(ctx: &egui::Context, look: &mut Look, commands: &mut Vec<Command>) {
     let Some(mut dialog) = look.dialog.clone() else { return };
     let (title, verb) = match dialog.purpose {
-        Purpose::Open => ("Open a session or scenario", "Open"),
-        Purpose::Save => ("Save the session as a scenario", "Save"),
+        Purpose::Open => ("Open a session", "Open"),
+        Purpose::Save => ("Save the session", "Save"),
         Purpose::Record => ("Record for the Rerun viewer", "Record"),
     };
     let mut open = true;
