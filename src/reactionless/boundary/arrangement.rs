@@ -111,19 +111,20 @@ impl<'a> Arrangement<'a> {
     fn bounds(&self, portion: &Portion) -> bool {
         let span = &self.spans[portion.span];
         let mut verdict = false;
-        for share in [0.5, 0.31, 0.77, 0.13, 0.91] {
-            let jet = self.on.jet(span, portion.from + share * (portion.to - portion.from));
-            let length = jet.rate.norm() * (portion.to - portion.from);
-            let reach = (1e-3 * length).min(1e-7);
-            let normal = Vector::new(-jet.rate.im, jet.rate.re) / jet.rate.norm();
-            if !normal.is_finite() {
-                continue;
-            }
-            let (left, right) = (self.poses_at(jet.at + reach * normal), self.poses_at(jet.at - reach * normal));
-            verdict = left > 0 && right == 0;
-            // Another curve in between spoils the sample.
-            if left - right == span.weight() {
-                break;
+        // Close enough that even where curves touch, no other is in between; and if one is, elsewhere there is none.
+        for reach in [1e-11, 1e-12, 1e-9] {
+            for share in [0.5, 0.31, 0.77, 0.13, 0.91] {
+                let jet = self.on.jet(span, portion.from + share * (portion.to - portion.from));
+                let speed = jet.rate.norm();
+                let aside = Vector::new(-jet.rate.im, jet.rate.re) * (reach / speed);
+                if !(aside.is_finite() && reach < 0.1 * speed * (portion.to - portion.from)) {
+                    continue;
+                }
+                let (left, right) = (self.poses_at(jet.at + aside), self.poses_at(jet.at - aside));
+                verdict = left > 0 && right == 0;
+                if left - right == span.weight() {
+                    return verdict;
+                }
             }
         }
         verdict
