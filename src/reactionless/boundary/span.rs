@@ -108,9 +108,11 @@ impl Surface {
             span.at.reverse();
             span.slopes.reverse();
         }
-        let p = [0.0, 0.25, 0.5, 0.75, 1.0].map(|t| self.jet(&span, t).at);
-        let bend = (0..3).map(|i| 16.0 * (p[i] - 2.0 * p[i + 1] + p[i + 2]).norm()).fold(0.0, f64::max);
-        span.deviation = 1.5 * bend / 8.0;
+        // sup |P''| from second differences, carried on to the ends, with a margin.
+        let p: [Vector; 9] = std::array::from_fn(|i| self.at(&span, i as f64 / 8.0));
+        let bend: [Vector; 7] = std::array::from_fn(|i| 64.0 * (p[i] - 2.0 * p[i + 1] + p[i + 2]));
+        let ends = [2.0 * bend[0] - bend[1], 2.0 * bend[6] - bend[5]];
+        span.deviation = 1.3 / 8.0 * bend.iter().chain(&ends).map(|b| b.norm()).fold(0.0, f64::max);
         Some(span)
     }
 
