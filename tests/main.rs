@@ -16,6 +16,9 @@ mod mesh;
 mod nine_body;
 #[path = "suite/reach.rs"]
 mod reach;
+#[cfg(feature = "record")]
+#[path = "suite/recording.rs"]
+mod recording;
 #[cfg(feature = "render")]
 #[path = "suite/render.rs"]
 mod render;

@@ -19,11 +19,9 @@ use rerun::{AsComponents, EntityPath, SeriesLines};
 
 use super::recorder::{Case, colour, series_name, under};
 use super::store::{Store, StoreError, TIME};
-use crate::scene::camera::{Camera, Orbit};
 use crate::scene::linkage::mix;
 use crate::scene::Rgba;
-use crate::scene::palette::{Palette, Theme, palette};
-use crate::scene::stage::round_up;
+use crate::scene::palette::{Palette, Theme, faded, palette};
 
 /// Writes the layout and has the viewer open with it.
 ///
@@ -51,7 +49,8 @@ pub fn lay_out<W: Write>(store: &mut Store<W>, cases: &[Case]) -> Result<(), Sto
         .with_state(PanelState::Collapsed)
         .with_timeline(TIME)
         .with_loop_mode(LoopMode::All)
-        .with_play_state(PlayState::Paused);
+        // A layout cannot say at what instant to stop; in motion, the first look shows more than the start.
+        .with_play_state(PlayState::Playing);
     layout.store.layout(&"time_panel".into(), &time)?;
     layout.store.activate_layout()
 }
@@ -72,8 +71,8 @@ impl Axes {
         let largest = |of: fn(&Case) -> f64| cases.iter().map(of).fold(0.0, f64::max);
         // Where nothing reaches the base, what would if nothing cancelled gives the scale.
         let scale = |peak: f64, whole: f64| match peak > 1e-6 * whole {
-            true => round_up(peak),
-            false if whole > 0.0 => round_up(whole),
+            true => 1.15 * peak,
+            false if whole > 0.0 => whole,
             false => 1.0,
         };
         let low = cases.iter().map(|c| c.b[0]).fold(f64::INFINITY, f64::min);
@@ -178,11 +177,11 @@ impl<W: Write> Layout<'_, W> {
         }
         let scene = self.container(ContainerKind::Tabs, "", &scenes, &[])?;
         let Axes { moment, force, b } = self.axes;
-        let moment = Some([-1.1 * moment, 1.1 * moment]);
+        let moment = Some([-moment, moment]);
         let plots = [
             self.plot(case, "Torque  N m", &["torque/**"], None)?,
-            self.plot(case, "Base moment  N m", &["moment/total"], moment)?,
-            self.plot(case, "Base force  N", &["force/dynamic"], Some([-0.05 * force, 1.1 * force]))?,
+            self.plot(case, "Base moment n_B  N m", &["moment/total"], moment)?,
+            self.plot(case, "Base force |f_B|  N", &["force/dynamic"], Some([-0.05 * force, force]))?,
             self.plot(case, "Drive angles  rad", &["angle/**"], None)?,
             self.plot(case, "Pose constant  rad", &["pose/**"], Some(b))?,
         ];
@@ -190,7 +189,7 @@ impl<W: Write> Layout<'_, W> {
         let top = self.container(ContainerKind::Horizontal, "", &[scene, plots], &[1.25, 1.0])?;
         let events = self.events(std::slice::from_ref(case))?;
         let phase = self.view("StateTimeline", "Phase", &under(&case.root, "phase"), &["$origin/**".into()], &[])?;
-        let bottom = self.container(ContainerKind::Horizontal, "", &[events, phase], &[1.25, 1.0])?;
+        let bottom = self.container(ContainerKind::Horizontal, "", &[events, phase], &[1.6, 1.0])?;
         self.container(ContainerKind::Vertical, &case.title, &[top, bottom], &[4.2, 1.0])
     }
 
@@ -200,13 +199,16 @@ impl<W: Write> Layout<'_, W> {
             .with_visible(true)
             .with_spacing(GridSpacing(0.1.into()))
             .with_plane(Plane3D::new([0.0, 0.0, 1.0], -0.02 * case.reach as f32))
-            .with_stroke_width(0.8)
-            .with_color(colour(self.palette.line));
-        let mut properties: Vec<(&str, &dyn AsComponents)> = vec![("Background", &background), ("LineGrid3D", &grid)];
-        let eye = eye(case.reach);
-        properties.extend(eye.as_ref().map(|eye| ("EyeControls3D", eye as &dyn AsComponents)));
+            .with_stroke_width(0.7)
+            .with_color(colour(faded(self.palette.line, 0.6)));
         let information = view::SpatialInformation::update_fields().with_show_axes(false).with_show_bounding_box(false);
-        properties.push(("SpatialInformation", &information));
+        let eye = eye(case.reach);
+        let properties: [(&str, &dyn AsComponents); 4] = [
+            ("Background", &background),
+            ("LineGrid3D", &grid),
+            ("SpatialInformation", &information),
+            ("EyeControls3D", &eye),
+        ];
         let contents = ["machine", "com", "end_effector", "target", "workspace", "reaction"];
         let contents: Vec<_> = contents.iter().map(|part| format!("$origin/{part}/**")).collect();
         self.view("3D", name, &case.root, &contents, &properties)
@@ -223,6 +225,12 @@ impl<W: Write> Layout<'_, W> {
         self.time_series(name, &under(&case.root, "signals"), &contents, range)
     }
 
+    /// Of one series the title says everything.
+    fn legend(contents: &[String]) -> view::PlotLegend {
+        let alone = contents.len() == 1 && !contents[0].ends_with('*');
+        view::PlotLegend::new().with_corner(Corner2D::RightTop).with_visible(!alone)
+    }
+
     fn time_series(
         &mut self,
         name: &str,
@@ -230,7 +238,7 @@ impl<W: Write> Layout<'_, W> {
         contents: &[String],
         range: Option<[f64; 2]>,
     ) -> Result<Part, StoreError> {
-        let legend = view::PlotLegend::new().with_corner(Corner2D::RightTop);
+        let legend = Self::legend(contents);
         let time = view::TimeAxis::new().with_link(LinkAxis::LinkToGlobal);
         let background = view::PlotBackground::new().with_color(colour(self.palette.panel)).with_show_grid(true);
         let mut properties: Vec<(&str, &dyn AsComponents)> =
@@ -273,7 +281,7 @@ impl<W: Write> Layout<'_, W> {
         let columns = view::TextLogColumns::new()
             .with_timeline_columns([TimelineColumn { visible: true.into(), timeline: TIME.into() }])
             .with_text_log_columns([
-                shown(TextLogColumnKind::EntityPath, cases.len() > 1),
+                shown(TextLogColumnKind::EntityPath, false),
                 shown(TextLogColumnKind::LogLevel, false),
                 shown(TextLogColumnKind::Body, true),
             ]);
@@ -290,18 +298,15 @@ fn case_colour(i: usize, quiet: bool, palette: &Palette) -> Rgba {
     }
 }
 
-/// From the front and above, the arm and its workspaces filling the view.
-fn eye(reach: f64) -> Option<view::EyeControls3D> {
-    let Camera::Orbit(Orbit { centre, distance, yaw, pitch }) = Camera::orbit(reach) else { return None };
-    // The viewer's field of view is wider than that of the scene's own camera.
-    let (back, distance) = (pitch.cos(), 0.72 * distance);
-    let towards = [yaw.sin() * back, -yaw.cos() * back, pitch.sin()];
+/// From the front and above, so near that the arm and its workspaces fill the view.
+fn eye(reach: f64) -> view::EyeControls3D {
+    let (yaw, pitch) = (0.3_f64, 0.95_f64);
+    let (centre, distance) = ([-0.12 * reach, 0.06 * reach, 0.0], 1.6 * reach);
+    let towards = [yaw.sin() * pitch.cos(), -yaw.cos() * pitch.cos(), pitch.sin()];
     let position = [0, 1, 2].map(|i| (centre[i] + distance * towards[i]) as f32);
-    Some(
-        view::EyeControls3D::new()
-            .with_kind(Eye3DKind::Orbital)
-            .with_position(position)
-            .with_look_target(centre.map(|x| x as f32))
-            .with_eye_up([0.0, 0.0, 1.0]),
-    )
+    view::EyeControls3D::new()
+        .with_kind(Eye3DKind::Orbital)
+        .with_position(position)
+        .with_look_target(centre.map(|x| x as f32))
+        .with_eye_up([0.0, 0.0, 1.0])
 }

@@ -17,6 +17,7 @@
 
 mod blueprint;
 mod film;
+mod reaction;
 mod recorder;
 mod store;
 
@@ -208,12 +209,15 @@ fn write(
     let (mut before, mut cases) = (0, Vec::new());
     let done = scenarios.iter().try_for_each(|scenario| {
         let mut tick = |step| progress(Progress { done: before + step, of, what: &scenario.name });
-        cases.push(recorder::record(&mut store, scenario, &mut film, &mut tick)?);
+        cases.push(recorder::record(&mut store, scenario, scenarios.len() > 1, &mut film, &mut tick)?);
         before += steps(scenario);
         Ok(())
     });
-    let laid_out = done.and_then(|()| blueprint::lay_out(&mut store, &cases).map_err(recorder::Stop::from));
-    let closed = match laid_out {
+    let finished = done.and_then(|()| {
+        reaction::draw(&mut store, &cases)?;
+        Ok(blueprint::lay_out(&mut store, &cases)?)
+    });
+    let closed = match finished {
         Ok(()) => store.close().map_err(because)?,
         Err(stop) => {
             store.abandon();

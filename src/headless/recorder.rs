@@ -7,12 +7,13 @@ use std::sync::Arc;
 use rerun::components::{Scalar, Text};
 use rerun::external::re_log_types::EntityPathPart;
 use rerun::{
-    AnyValues, Arrows3D, Clear, Color, EntityPath, LineStrips3D, Mesh3D, Points3D, Radius, Scalars,
+    AnyValues, Clear, Color, EntityPath, LineStrips3D, Mesh3D, Points3D, Radius, Scalars,
     SerializedComponentColumn, SeriesLines, StateChange, StateConfiguration, TextLog, TextLogLevel, Transform3D,
     ViewCoordinates,
 };
 
 use super::film::Film;
+use super::reaction::Reaction;
 use super::store::{Clock, Instant, Store, StoreError};
 use crate::frame::{Frame, Peaks, Phase, Reach};
 use crate::planar::{Vector, unit};
@@ -20,7 +21,7 @@ use crate::pose_constant::Planes;
 use crate::scenario::Scenario;
 use crate::scene::linkage::{Linkage, mix};
 use crate::scene::palette::{Palette, Theme, faded, palette};
-use crate::scene::stage::{Stage, round_up, signed};
+use crate::scene::stage::Stage;
 use crate::scene::{Mesh, Rgba};
 use crate::session::{Edit, Refusal, Run, replay};
 use crate::signals::{Signal, signals};
@@ -69,6 +70,9 @@ pub struct Case {
     pub b: [f64; 2],
     /// The farthest the end effector gets from B, m.
     pub reach: f64,
+    /// Height above every link, m.
+    pub top: f64,
+    pub reactions: Vec<Reaction>,
     pub signals: Vec<Signal>,
     pub pictured: bool,
 }
@@ -125,18 +129,20 @@ fn brief(x: f64) -> String {
 
 /// Rows of something that changes rarely: equal ones are left out.
 #[derive(Debug)]
-struct Track<T> {
+pub struct Track<T> {
     clock: Clock,
     rows: Vec<T>,
     last: Option<T>,
 }
 
 impl<T: Clone + PartialEq> Track<T> {
-    fn new() -> Self {
+    /// No row.
+    pub fn new() -> Self {
         Self { clock: Clock::default(), rows: Vec::new(), last: None }
     }
 
-    fn push(&mut self, at: Instant, row: T) {
+    /// From an instant on.
+    pub fn push(&mut self, at: Instant, row: T) {
         if self.last.as_ref() != Some(&row) {
             self.clock.push(at);
             self.rows.push(row.clone());
@@ -144,7 +150,8 @@ impl<T: Clone + PartialEq> Track<T> {
         }
     }
 
-    fn take(&mut self) -> (Clock, Vec<T>) {
+    /// The rows since the last time.
+    pub fn take(&mut self) -> (Clock, Vec<T>) {
         (std::mem::take(&mut self.clock), std::mem::take(&mut self.rows))
     }
 }
@@ -180,7 +187,7 @@ impl<T> Thinned<T> {
 }
 
 /// A point of the scene, where `f64` turns into `f32`.
-fn point(p: Vector, z: f64) -> [f32; 3] {
+pub fn point(p: Vector, z: f64) -> [f32; 3] {
     [p.re as f32, p.im as f32, z as f32]
 }
 
@@ -195,16 +202,6 @@ fn mesh_of(mesh: &Mesh, rgba: Rgba) -> Mesh3D {
         .with_vertex_normals(mesh.normals.iter().copied())
         .with_triangle_indices(mesh.triangles.iter().copied())
         .with_albedo_factor(colour(rgba).0)
-}
-
-/// What a reaction was.
-#[derive(Clone, Copy, Debug)]
-struct Reaction {
-    at: Instant,
-    from: Vector,
-    force: Vector,
-    moment: f64,
-    quiet: bool,
 }
 
 /// A workspace on show.
@@ -228,6 +225,8 @@ struct Recorder<'a, W: Write> {
     film: &'a mut Film,
     scenario: &'a Scenario,
     root: EntityPath,
+    /// Tells the events of several cases apart.
+    prefix: String,
     palette: Palette,
     last: u64,
     table: Vec<Signal>,
@@ -259,17 +258,18 @@ struct Recorder<'a, W: Write> {
     pictured: bool,
 }
 
-/// Runs a scenario and writes its entities.
+/// Runs a scenario, alone or among others, and writes its entities.
 ///
 /// # Errors
 /// If it cannot run, be drawn or be written.
 pub fn record<W: Write>(
     store: &mut Store<W>,
     scenario: &Scenario,
+    among: bool,
     film: &mut Film,
     tick: &mut dyn FnMut(u64),
 ) -> Result<Case, Stop> {
-    let mut recorder = Recorder::new(store, film, scenario)?;
+    let mut recorder = Recorder::new(store, film, scenario, among)?;
     let mut failure = None;
     let run = replay(scenario, |run, frame| {
         if failure.is_none() {
@@ -287,7 +287,7 @@ pub fn record<W: Write>(
 }
 
 impl<'a, W: Write> Recorder<'a, W> {
-    fn new(store: &'a mut Store<W>, film: &'a mut Film, scenario: &'a Scenario) -> Result<Self, Stop> {
+    fn new(store: &'a mut Store<W>, film: &'a mut Film, scenario: &'a Scenario, among: bool) -> Result<Self, Stop> {
         let palette = palette(Theme::Dark);
         let root = EntityPath::new(vec![EntityPathPart::new(scenario.name.as_str())]);
         let table = signals(&scenario.machine);
@@ -300,7 +300,7 @@ impl<'a, W: Write> Recorder<'a, W> {
             let style = SeriesLines::new()
                 .with_names([series_name(signal)])
                 .with_colors([colour(signal_colour(signal, &palette))])
-                .with_widths([1.6]);
+                .with_widths([if signal.path.contains("reference") { 0.8 } else { 1.6 }]);
             store.fixed(&under(&root, &format!("signals/{}", signal.path)), &style)?;
         }
         let dot = |radius: f32, rgba| {
@@ -325,6 +325,7 @@ impl<'a, W: Write> Recorder<'a, W> {
             store,
             film,
             scenario,
+            prefix: if among { format!("{} · ", scenario.name) } else { String::new() },
             root,
             palette,
             table,
@@ -638,8 +639,7 @@ impl<'a, W: Write> Recorder<'a, W> {
     /// What is known only at the end.
     fn finish(mut self, frame: &Frame) -> Result<Case, Stop> {
         self.flush()?;
-        let reach = self.body.as_ref().map_or(1.0, |b| b.linkage.reach());
-        self.write_reactions(reach)?;
+        let (reach, top) = self.body.as_ref().map_or((1.0, 0.0), |b| (b.linkage.reach(), b.linkage.top()));
         let trail = std::mem::take(&mut self.trail.items);
         let path = LineStrips3D::new([trail])
             .with_radii([Radius::new_ui_points(0.9)])
@@ -658,55 +658,11 @@ impl<'a, W: Write> Recorder<'a, W> {
             peaks: frame.peaks,
             b: self.b,
             reach,
+            top,
+            reactions: self.reactions.items,
             signals: self.table,
             pictured: self.pictured,
         })
-    }
-
-    /// Arrow and arc in proportion to the largest of the run.
-    fn write_reactions(&mut self, reach: f64) -> Result<(), Stop> {
-        let (palette, reactions) = (self.palette, std::mem::take(&mut self.reactions.items));
-        let z = self.body.as_ref().map_or(0.0, |b| b.linkage.top());
-        let largest = |of: fn(&Reaction) -> f64| reactions.iter().map(of).fold(1e-3, f64::max);
-        let (newtons, moment) = (round_up(largest(|r| r.force.norm())), round_up(largest(|r| r.moment.abs())));
-        let (length, radius) = (0.25 * reach, 0.17 * reach);
-        let (mut arrows, mut arcs) = (Track::new(), Track::new());
-        for r in &reactions {
-            let arrow = r.force * (length / newtons);
-            let visible = arrow.norm() > 0.004 * reach;
-            let words = format!("f_B {:.2} N · {length:.2} m = {newtons} N", r.force.norm());
-            arrows.push(r.at, visible.then(|| (point(r.from, z), point(arrow, 0.0), words)));
-            let sweep = r.moment / moment * 1.5 * FRAC_PI_2;
-            let visible = sweep.abs() > 0.02 && !r.quiet;
-            let words = format!("n_B {} N m · 135° = {moment} N m", signed(r.moment, 2));
-            arcs.push(r.at, visible.then(|| (arc(r.from, sweep, radius, z), words)));
-        }
-        let red = [colour(palette.reaction)];
-        let style = Arrows3D::update_fields()
-            .with_radii([Radius::new_ui_points(2.0)])
-            .with_colors(red)
-            .with_show_labels(true);
-        self.store.fixed(&under(&self.root, "reaction/force"), &style)?;
-        let (clock, rows) = arrows.take();
-        let lengths: Vec<usize> = rows.iter().map(|r| usize::from(r.is_some())).collect();
-        let shown = || rows.iter().flatten();
-        let columns = Arrows3D::update_fields()
-            .with_vectors(shown().map(|r| r.1))
-            .with_origins(shown().map(|r| r.0))
-            .with_labels(shown().map(|r| r.2.as_str()));
-        self.write(&clock, "reaction/force", columns.columns(lengths)?)?;
-        let style = LineStrips3D::update_fields()
-            .with_radii([Radius::new_ui_points(1.8)])
-            .with_colors(red)
-            .with_show_labels(true);
-        self.store.fixed(&under(&self.root, "reaction/moment"), &style)?;
-        let (clock, rows) = arcs.take();
-        let lengths: Vec<usize> = rows.iter().map(|r| usize::from(r.is_some())).collect();
-        let shown = || rows.iter().flatten();
-        let columns = LineStrips3D::update_fields()
-            .with_strips(shown().map(|r| r.0.clone()))
-            .with_labels(shown().map(|r| r.1.as_str()));
-        self.write(&clock, "reaction/moment", columns.columns(lengths)?)
     }
 
     fn write_events(&mut self, frame: &Frame) -> Result<(), Stop> {
@@ -728,7 +684,7 @@ impl<'a, W: Write> Recorder<'a, W> {
         let mut clock = Clock::default();
         events.iter().for_each(|(at, ..)| clock.push(*at));
         let columns = TextLog::update_fields()
-            .with_many_text(events.iter().map(|e| e.1.as_str()))
+            .with_many_text(events.iter().map(|e| format!("{}{}", self.prefix, e.1)))
             .with_many_level(events.iter().map(|e| e.2))
             .with_many_color(events.iter().map(|e| colour(e.3)));
         self.write(&clock, "events", columns.columns_of_unit_batches()?)
@@ -756,17 +712,6 @@ impl<'a, W: Write> Recorder<'a, W> {
 fn verdict(peaks: &Peaks) -> String {
     let word = if peaks.is_reactionless() { "reactionless" } else { "not reactionless" };
     format!("{word}: peak |n_B| {} N m, peak |f_B| {} N", brief(peaks.moment), brief(peaks.force))
-}
-
-/// An arc about a point with a head, in one line.
-fn arc(centre: Vector, sweep: f64, radius: f64, z: f64) -> Vec<[f32; 3]> {
-    let n = ((sweep.abs() * 10.0).ceil() as usize).max(2);
-    let on = |i: usize| centre + unit(-FRAC_PI_2 + sweep * i as f64 / n as f64) * radius;
-    let end = unit(-FRAC_PI_2 + sweep);
-    let along = end * Vector::new(0.0, sweep.signum());
-    let barb = |turn: f64| on(n) - along * unit(turn) * (0.15 * radius);
-    let head = [on(n), barb(0.5), on(n), barb(-0.5)];
-    (0..n).map(on).chain(head).map(|p| point(p, z)).collect()
 }
 
 impl Area {

@@ -1,0 +1,414 @@
+//! Recordings, read back with Rerun's own decoder and compared with the frames of the run.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use rerun::external::arrow::array::{Array, Float64Array, StringArray};
+use rerun::external::re_log_encoding::DecoderApp;
+use rerun::external::re_log_types::StoreId;
+use rerun::log::{Chunk, LogMsg};
+use rerun::{EntityPath, StoreKind, TimelineName};
+use stillbase::files::WriteError;
+use stillbase::frame::Frame;
+use stillbase::headless::{Options, Pictures, Progress, RecordError, Recording, record};
+use stillbase::scenario::Scenario;
+use stillbase::session::{Edit, TimedEdit, replay};
+use stillbase::signals::signals;
+
+/// A folder that goes when the test ends.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("stillbase-{name}-{}", std::process::id()));
+        let _ = std::fs::remove_dir_all(&path);
+        std::fs::create_dir_all(&path).expect("a temporary folder");
+        Self(path)
+    }
+
+    fn file(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    fn names(&self) -> Vec<String> {
+        let entries = std::fs::read_dir(&self.0).expect("the folder");
+        entries.map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned()).collect()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Everything in a file, store by store.
+struct Contents {
+    stores: BTreeMap<StoreId, Vec<Chunk>>,
+    activated: usize,
+}
+
+impl Contents {
+    fn of(file: &std::path::Path) -> Self {
+        let reader = std::io::BufReader::new(std::fs::File::open(file).expect("the recording"));
+        let mut contents = Self { stores: BTreeMap::new(), activated: 0 };
+        for message in DecoderApp::decode_lazy(reader) {
+            match message.expect("a message") {
+                LogMsg::SetStoreInfo(info) => _ = contents.stores.insert(info.info.store_id, Vec::new()),
+                LogMsg::ArrowMsg(store, message) => {
+                    let chunk = Chunk::from_arrow_msg(&message).expect("a chunk");
+                    contents.stores.get_mut(&store).expect("a store that was announced").push(chunk);
+                }
+                LogMsg::BlueprintActivationCommand(_) => contents.activated += 1,
+            }
+        }
+        contents
+    }
+
+    fn recording(&self) -> &[Chunk] {
+        let mut recordings = self.stores.iter().filter(|(id, _)| id.kind() == StoreKind::Recording);
+        let (id, chunks) = recordings.next().expect("a recording");
+        assert!(recordings.next().is_none(), "one recording");
+        assert_eq!(id.application_id().as_str(), "stillbase");
+        chunks
+    }
+
+    fn at(&self, path: &str) -> Vec<&Chunk> {
+        let path = EntityPath::from(path);
+        self.recording().iter().filter(|c| *c.entity_path() == path).collect()
+    }
+
+    /// The only column of a component at an entity, row by row, and the steps.
+    fn scalars(&self, path: &str) -> (Vec<i64>, Vec<i64>, Vec<f64>) {
+        let moving = self.at(path).into_iter().filter(|c| !c.is_static());
+        let (mut steps, mut nanos, mut values) = (Vec::new(), Vec::new(), Vec::new());
+        for chunk in moving {
+            steps.extend_from_slice(chunk.timelines()[&TimelineName::from("step")].times_raw());
+            nanos.extend_from_slice(chunk.timelines()[&TimelineName::from("sim_time")].times_raw());
+            let column = chunk.components().get_array("Scalars:scalars".into()).expect("scalars");
+            let flat = column.values().as_any().downcast_ref::<Float64Array>().expect("numbers");
+            assert_eq!(flat.len(), chunk.num_rows(), "one number a row");
+            values.extend_from_slice(flat.values());
+        }
+        (steps, nanos, values)
+    }
+
+    /// All text in a component of an entity.
+    fn texts(&self, path: &str, component: &'static str) -> Vec<String> {
+        let columns = self.at(path).into_iter().filter_map(|c| c.components().get_array(component.into()));
+        let texts = columns.flat_map(|column| {
+            let flat = column.values().as_any().downcast_ref::<StringArray>().expect("text");
+            flat.iter().flatten().map(str::to_owned).collect::<Vec<_>>()
+        });
+        texts.collect()
+    }
+}
+
+fn cases() -> Vec<Scenario> {
+    Scenario::builtin_names().map(|name| Scenario::builtin(name).expect("built in")).to_vec()
+}
+
+fn short(name: &str) -> Scenario {
+    let mut scenario = Scenario::builtin(name).expect("built in");
+    scenario.duration = 0.1;
+    scenario
+}
+
+fn quietly(_: Progress) {}
+
+fn record_in(folder: &Folder, name: &str, scenarios: &[Scenario]) -> Result<Vec<Recording>, RecordError> {
+    record(scenarios, &folder.file(name), &Options::default(), &mut quietly)
+}
+
+#[test]
+fn signals_are_the_frames_at_every_step() {
+    let folder = Folder::new("signals");
+    let mut heard = Vec::new();
+    let recordings = record(&cases(), &folder.file("cases.rrd"), &Options::default(), &mut |p| {
+        heard.push((p.done, p.of, p.what.to_owned()));
+    })
+    .expect("three cases");
+    let contents = Contents::of(&folder.file("cases.rrd"));
+    for (scenario, recording) in cases().iter().zip(&recordings) {
+        let mut frames: Vec<Frame> = Vec::new();
+        replay(scenario, |_, frame| frames.push(*frame)).expect("it runs");
+        assert_eq!(frames.len(), 1001);
+        for signal in signals(&scenario.machine) {
+            let (steps, nanos, values) = contents.scalars(&format!("/{}/signals/{}", scenario.name, signal.path));
+            assert!(steps.iter().copied().eq(0..=1000), "{}: a row at every step", signal.path);
+            assert!(nanos.iter().copied().eq((0..=1000).map(|i| i * 1_000_000)), "{}: and its time", signal.path);
+            let expected: Vec<f64> = frames.iter().map(|f| signal.value(f)).collect();
+            assert_eq!(values, expected, "{} of {}", signal.path, scenario.name);
+            let name = contents.texts(&format!("/{}/signals/{}", scenario.name, signal.path), "SeriesLines:names");
+            assert!(signal.unit == "1" || name[0].ends_with(signal.unit), "{name:?} names {}", signal.unit);
+        }
+        let last = frames.last().expect("frames").peaks;
+        assert_eq!(recording.scenario, scenario.name);
+        assert_eq!(recording.file, folder.file("cases.rrd"));
+        assert_eq!(recording.steps, 1000);
+        assert_eq!(recording.peak_torque, last.torque.to_vec());
+        assert_eq!(recording.peak_base_moment, last.moment);
+        assert_eq!(recording.peak_base_force, last.force);
+        assert_eq!(recording.reactionless, scenario.name == "case-3");
+        assert!(recording.notes.is_empty());
+    }
+    assert!(heard.windows(2).all(|w| w[0].0 <= w[1].0), "progress only grows");
+    assert_eq!(heard.last(), Some(&(3000, 3000, "case-3".to_owned())));
+}
+
+#[test]
+fn geometry_is_static_and_bodies_move_under_their_case() {
+    let folder = Folder::new("entities");
+    record_in(&folder, "one.rrd", &[short("case-3")]).expect("a case");
+    let contents = Contents::of(&folder.file("one.rrd"));
+    let has = |path: &str, component: &'static str, fixed: bool| {
+        let chunks = contents.at(path);
+        let with = chunks.iter().filter(|c| c.components().contains_component(component.into()));
+        let rows: usize = with.filter(|c| c.is_static() == fixed).map(|c| c.num_rows()).sum();
+        rows
+    };
+    let machine = Scenario::builtin("case-3").expect("built in").machine;
+    for link in machine.links() {
+        let path = format!("/case-3/machine/link/{}", link.name);
+        assert_eq!(has(&path, "Mesh3D:vertex_positions", true), 1, "{path}");
+        assert_eq!(has(&path, "Mesh3D:albedo_factor", true), 1, "{path}");
+        // Every fifth of 101 frames.
+        assert_eq!(has(&path, "Transform3D:translation", false), 21, "{path}");
+        assert_eq!(has(&path, "Transform3D:quaternion", false), 21, "{path}");
+    }
+    assert_eq!(has("/case-3/machine/base/plate", "Mesh3D:vertex_positions", true), 1);
+    assert_eq!(has("/case-3/machine/base", "Transform3D:translation", false), 1, "a fixed base stays");
+    for path in ["machine/joints", "com", "end_effector"] {
+        assert_eq!(has(&format!("/case-3/{path}"), "Points3D:positions", false), 21, "{path}");
+    }
+    assert_eq!(has("/case-3/end_effector/path", "LineStrips3D:strips", true), 1);
+    assert_eq!(has("/case-3/target", "LineStrips3D:strips", true), 1);
+    for b in ["2.400", "5.000"] {
+        let path = format!("/case-3/workspace/{b}");
+        assert_eq!(has(&path, "Mesh3D:vertex_positions", true), 1, "{path}");
+        assert!(has(&path, "Transform3D:quaternion", false) >= 1, "{path}");
+        assert_eq!(has(&format!("{path}/boundary"), "LineStrips3D:strips", true), 1, "{path}");
+    }
+    // Nothing to draw of a reaction that is nothing; that it is nothing is said once.
+    assert_eq!(has("/case-3/reaction/force", "Arrows3D:vectors", false), 1);
+    assert_eq!(has("/case-3/reaction/moment", "LineStrips3D:strips", false), 1);
+    let timelines: std::collections::BTreeSet<String> =
+        contents.recording().iter().flat_map(|c| c.timelines().keys().map(|name| name.to_string())).collect();
+    assert!(timelines.into_iter().eq(["sim_time", "step"]), "no other time lines");
+}
+
+#[test]
+fn links_stand_where_the_machine_is() {
+    let folder = Folder::new("links");
+    let scenario = short("case-2");
+    record_in(&folder, "one.rrd", std::slice::from_ref(&scenario)).expect("a case");
+    let contents = Contents::of(&folder.file("one.rrd"));
+    let mut frames = Vec::new();
+    replay(&scenario, |_, frame| frames.push(*frame)).expect("it runs");
+    for (j, part) in scenario.machine.parts().iter().enumerate() {
+        let path = format!("/case-2/machine/link/{}", scenario.machine.links()[j].name);
+        let chunks = contents.at(&path);
+        let moving = chunks.iter().find(|c| !c.is_static()).expect("transforms");
+        let steps = moving.timelines()[&TimelineName::from("step")].times_raw();
+        let floats = |component: &'static str| -> Vec<f32> {
+            let list = moving.components().get_array(component.into()).expect("a column");
+            let rows = list.values();
+            let rows = rows.as_any().downcast_ref::<rerun::external::arrow::array::FixedSizeListArray>();
+            let flat = rows.expect("vectors").values().clone();
+            let flat = flat.as_any().downcast_ref::<rerun::external::arrow::array::Float32Array>();
+            flat.expect("numbers").values().to_vec()
+        };
+        let (places, turns) = (floats("Transform3D:translation"), floats("Transform3D:quaternion"));
+        for (i, step) in steps.iter().enumerate() {
+            let e = frames[*step as usize].q.units();
+            let root = stillbase::machine::place_of(&part.root, &e);
+            assert!((f64::from(places[3 * i]) - root.re).abs() < 1e-6, "{path} x");
+            assert!((f64::from(places[3 * i + 1]) - root.im).abs() < 1e-6, "{path} y");
+            let half = f64::from(turns[4 * i + 2]).atan2(f64::from(turns[4 * i + 3]));
+            let along = stillbase::planar::unit(2.0 * half) - e[part.drive] * part.sign;
+            assert!(along.norm() < 1e-6, "{path} turn");
+        }
+    }
+}
+
+#[test]
+fn what_happened_and_what_was_run_is_told() {
+    let folder = Folder::new("told");
+    let scenario = Scenario::builtin("case-1").expect("built in");
+    record_in(&folder, "one.rrd", std::slice::from_ref(&scenario)).expect("a case");
+    let contents = Contents::of(&folder.file("one.rrd"));
+    let property = |name: &'static str| contents.texts("/__properties/case-1", name);
+    let [text] = &property("scenario")[..] else { panic!("one scenario") };
+    assert_eq!(Scenario::parse(text, "recorded", None).expect("a scenario"), scenario);
+    let [text] = &property("machine")[..] else { panic!("one machine") };
+    assert_eq!(stillbase::machine::parse(text, "recorded").expect("a machine"), scenario.machine);
+    assert_eq!(property("version"), [env!("CARGO_PKG_VERSION")]);
+    assert!(property("verdict")[0].starts_with("not reactionless: peak |n_B| 1.0891 N m"), "{:?}", property("verdict"));
+    let events = contents.texts("/case-1/events", "TextLog:text");
+    for part in ["start: Case 1", "peak |n_B| 1.0891 N m", "end of motion", "peak |τ| 2.42", "not reactionless"] {
+        assert!(events.iter().any(|e| e.starts_with(part)), "{part} in {events:?}");
+    }
+    assert_eq!(contents.texts("/case-1/phase", "StateChange:state"), ["motion", "rest"]);
+}
+
+#[test]
+fn the_layout_comes_along_and_is_activated() {
+    let folder = Folder::new("layout");
+    record_in(&folder, "two.rrd", &[short("case-1"), short("case-3")]).expect("two cases");
+    let contents = Contents::of(&folder.file("two.rrd"));
+    assert_eq!(contents.activated, 1);
+    let layouts: Vec<_> = contents.stores.iter().filter(|(id, _)| id.kind() == StoreKind::Blueprint).collect();
+    let [(_, chunks)] = layouts[..] else { panic!("one layout") };
+    let views = chunks.iter().filter(|c| c.components().contains_component("ViewBlueprint:class_identifier".into()));
+    // Side by side: two scenes, two plots, events; each case: scene, five plots, events, phase.
+    assert_eq!(views.count(), 5 + 2 * 8);
+    assert!(chunks.iter().any(|c| *c.entity_path() == EntityPath::from("/viewport")));
+}
+
+/// Chunks without their identifiers.
+fn data(file: &std::path::Path) -> Vec<(String, Vec<String>)> {
+    let contents = Contents::of(file);
+    contents
+        .stores
+        .iter()
+        .map(|(id, chunks)| {
+            let rows = chunks.iter().map(|c| {
+                let mut columns: Vec<String> =
+                    c.components().values().map(|x| format!("{} {:?}", x.descriptor, x.list_array)).collect();
+                columns.sort();
+                format!("{} {:?} {columns:?}", c.entity_path(), c.row_ids().collect::<Vec<_>>())
+            });
+            (id.to_string(), rows.collect())
+        })
+        .collect()
+}
+
+#[test]
+fn recording_again_gives_the_same_recording() {
+    let folder = Folder::new("again");
+    let scenarios = [short("case-1"), short("case-2")];
+    for name in ["a.rrd", "b.rrd"] {
+        record_in(&folder, name, &scenarios).expect("two cases");
+    }
+    assert_eq!(data(&folder.file("a.rrd")), data(&folder.file("b.rrd")));
+    let mut other = short("case-2");
+    other.gains.kp = 100.0;
+    record_in(&folder, "c.rrd", &[short("case-1"), other]).expect("two cases");
+    let ids = |name: &str| Contents::of(&folder.file(name)).stores.into_keys().collect::<Vec<_>>();
+    assert_ne!(ids("a.rrd"), ids("c.rrd"), "another recording has another name");
+}
+
+#[test]
+fn edits_on_the_way_are_recorded() {
+    let folder = Folder::new("edits");
+    let mut scenario = short("case-3");
+    let edit = |step, edit| TimedEdit { step, edit };
+    scenario.edits = vec![
+        edit(20, Edit::DragTarget { x: 3.0, y: 0.0 }),
+        edit(40, Edit::CompareB { b: Some(1.0) }),
+        edit(60, Edit::SetMachine { key: "limits.a1".into(), value: "0.4,2.7".into() }),
+    ];
+    record_in(&folder, "edited.rrd", &[scenario]).expect("an edited case");
+    let contents = Contents::of(&folder.file("edited.rrd"));
+    let events = contents.texts("/case-3/events", "TextLog:text");
+    for part in ["drag target to 3.000", "compare with b = 1.000 rad", "set limits.a1", "the target is outside"] {
+        assert!(events.iter().any(|e| e.starts_with(part)), "{part} in {events:?}");
+    }
+    let steps = |path: &str, component: &'static str| -> Vec<i64> {
+        let chunks = contents.at(path).into_iter().filter(|c| c.components().contains_component(component.into()));
+        chunks.flat_map(|c| c.timelines()[&TimelineName::from("step")].times_raw().to_vec()).collect()
+    };
+    // What changes on the way is not static: the machine and its workspace are there anew from step 60 on.
+    assert_eq!(steps("/case-3/machine/link/1", "Mesh3D:vertex_positions"), [0, 60]);
+    assert_eq!(steps("/case-3/workspace/2.400", "Mesh3D:vertex_positions"), [0, 60]);
+    assert_eq!(steps("/case-3/workspace/5.000", "Mesh3D:vertex_positions"), [0]);
+    assert_eq!(steps("/case-3/workspace/5.000", "Clear:is_recursive"), [40]);
+    assert_eq!(steps("/case-3/workspace/1.000", "Mesh3D:vertex_positions"), [40, 60]);
+    assert_eq!(contents.texts("/case-3/phase", "StateChange:state"), ["motion", "follow"]);
+}
+
+#[test]
+fn a_file_is_never_replaced_unasked_and_never_left_half() {
+    let folder = Folder::new("refused");
+    let file = folder.file("there.rrd");
+    std::fs::write(&file, "mine").expect("a file");
+    let refused = record_in(&folder, "there.rrd", &[short("case-3")]);
+    assert!(matches!(refused, Err(RecordError::Write(WriteError::Exists(f))) if f == file));
+    assert_eq!(std::fs::read(&file).expect("the file"), b"mine");
+
+    let unplannable = Scenario { task: stillbase::scenario::Task { b: 9.0, ..short("case-3").task }, ..short("case-3") };
+    let force = Options { force: true, ..Options::default() };
+    let refused = record(&[short("case-1"), unplannable], &file, &force, &mut quietly);
+    assert!(matches!(&refused, Err(RecordError::Refused { scenario, .. }) if scenario == "case-3"), "{refused:?}");
+    assert_eq!(std::fs::read(&file).expect("the file"), b"mine", "what was there is there still");
+    assert_eq!(folder.names(), ["there.rrd"], "nothing half written beside");
+
+    record(&[short("case-3")], &file, &force, &mut quietly).expect("it may replace it");
+    assert!(!Contents::of(&file).recording().is_empty());
+    assert_eq!(folder.names(), ["there.rrd"]);
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_named() {
+    let folder = Folder::new("unwritable");
+    std::fs::write(folder.file("plain"), "").expect("a file");
+    for name in ["no/such/folder.rrd", "plain/inside.rrd"] {
+        let error = record_in(&folder, name, &[short("case-3")]).expect_err("nowhere to write");
+        assert!(matches!(&error, RecordError::Write(WriteError::Failed { file, .. }) if *file == folder.file(name)));
+        assert!(error.to_string().contains(name), "{error}");
+    }
+    let error = record(&[short("case-3")], &folder.0, &Options { force: true, pictures: None }, &mut quietly);
+    assert!(matches!(error, Err(RecordError::Write(WriteError::Failed { .. }))), "a folder is no file");
+    assert_eq!(folder.names(), ["plain"]);
+}
+
+#[test]
+fn what_cannot_be_recorded_is_said() {
+    let folder = Folder::new("said");
+    assert!(matches!(record_in(&folder, "x.rrd", &[]), Err(RecordError::Nothing)));
+    let twice = record_in(&folder, "x.rrd", &[short("case-1"), short("case-1")]);
+    assert!(matches!(twice, Err(RecordError::SameName(name)) if name == "case-1"));
+    for pictures in [
+        Pictures { fps: 0.0, width: 10, height: 10 },
+        Pictures { fps: f64::NAN, width: 10, height: 10 },
+        Pictures { fps: 30.0, width: 0, height: 10 },
+    ] {
+        let options = Options { pictures: Some(pictures), force: false };
+        let refused = record(&[short("case-1")], &folder.file("x.rrd"), &options, &mut quietly);
+        assert!(matches!(refused, Err(RecordError::Pictures(_))), "{pictures:?}");
+    }
+    assert!(folder.names().is_empty());
+}
+
+#[test]
+fn names_with_slashes_and_blanks_stay_one_case() {
+    let folder = Folder::new("names");
+    let scenario = Scenario { name: "a/b c".into(), ..short("case-3") };
+    record_in(&folder, "x.rrd", &[scenario]).expect("a case");
+    let contents = Contents::of(&folder.file("x.rrd"));
+    let of_case = contents.recording().iter().filter(|c| !c.entity_path().is_property());
+    assert!(of_case.into_iter().all(|c| c.entity_path().iter().next().is_some_and(|p| p.unescaped_str() == "a/b c")));
+}
+
+#[cfg(feature = "render")]
+#[test]
+fn pictures_come_at_their_times_or_it_is_said_why_not() {
+    let folder = Folder::new("pictures");
+    let options = Options { pictures: Some(Pictures { fps: 30.0, width: 64, height: 40 }), force: false };
+    let recordings = record(&[short("case-3")], &folder.file("x.rrd"), &options, &mut quietly).expect("a case");
+    let contents = Contents::of(&folder.file("x.rrd"));
+    let chunks = contents.at("/case-3/view");
+    if stillbase::render::offscreen::Gpu::new().is_err() {
+        assert!(chunks.is_empty() && recordings[0].notes[0].starts_with("recorded without pictures"));
+        return;
+    }
+    assert!(recordings[0].notes.is_empty());
+    let steps: Vec<i64> =
+        chunks.iter().flat_map(|c| c.timelines()[&TimelineName::from("step")].times_raw().to_vec()).collect();
+    assert_eq!(steps, [0, 33, 67, 100]);
+    assert_eq!(contents.texts("/case-3/view", "EncodedImage:media_type"), vec!["image/png"; 4]);
+    let huge = Options { pictures: Some(Pictures { fps: 30.0, width: u32::MAX, height: 1 }), force: false };
+    let refused = record(&[short("case-3")], &folder.file("y.rrd"), &huge, &mut quietly);
+    assert!(matches!(refused, Err(RecordError::Pictures(_))));
+    assert_eq!(folder.names(), ["x.rrd"]);
+}
