@@ -22,3 +22,9 @@ mod render;
 #[cfg(feature = "render")]
 #[path = "suite/shaders.rs"]
 mod shaders;
+#[path = "suite/support.rs"]
+mod support;
+#[path = "suite/dynamics.rs"]
+mod dynamics;
+#[path = "suite/balance.rs"]
+mod balance;
