@@ -28,3 +28,7 @@ mod support;
 mod dynamics;
 #[path = "suite/balance.rs"]
 mod balance;
+#[path = "suite/cases.rs"]
+mod cases;
+#[path = "suite/convergence.rs"]
+mod convergence;
