@@ -83,7 +83,7 @@ pub struct TipLine {
 /// Spaces between nodes; the quintic's error falls with the sixth power and is below 1e-13 rad here.
 const SPACES: usize = 256;
 /// How far off its line the integration may end up, as a part of the arm; 1e-13 where the Jacobian is regular.
-const OFF_LINE: f64 = 1e-9;
+const OFF_LINE: f64 = 1e-8;
 
 impl TipLine {
     /// Integrates q′ = J⁺ (to − from) along the line with the fourth-order rule, from a pose at its start.

@@ -228,7 +228,7 @@ fn impossible_paths_are_refused() {
         let from = end_effector(tip(), &DriveAngles::from(Q_A).units());
         let Err(PathError::Singular { s }) = TipLine::new(tip(), Q_A.into(), to) else { panic!("{to} is too far") };
         let radius = (from + s * (to - from)).norm();
-        assert!((radius - 1.26).abs() < 0.02, "to {to}: stretched at {radius} m, s = {s}");
+        assert!((radius - 1.26).abs() < 0.03, "to {to}: stretched at {radius} m, s = {s}");
     }
     // A line of no length, or of next to none, is a line.
     for way in [0.0, 1e-15] {
