@@ -28,3 +28,13 @@ mod shaders;
 #[cfg(feature = "window")]
 #[path = "suite/window.rs"]
 mod window;
+#[path = "suite/support.rs"]
+mod support;
+#[path = "suite/dynamics.rs"]
+mod dynamics;
+#[path = "suite/balance.rs"]
+mod balance;
+#[path = "suite/cases.rs"]
+mod cases;
+#[path = "suite/convergence.rs"]
+mod convergence;
