@@ -25,13 +25,12 @@ pub fn show(ui: &mut Ui, session: &Session, look: &Look) {
                 (false, true) => "has reacted on its base",
             };
             ui.label(RichText::new(word).font(bold(13.0)).color(tone));
-            let facts = format!(
-                "peak |n_B| {:.3} N m  ·  b {:.3} rad  ·  angular momentum {} kg m²/s  ·  energy balance {:.0e} J",
-                f.peaks.moment,
-                f.b,
-                signed(f.angular_momentum, 3),
-                f.energy_balance.abs()
-            );
+            let mut facts = format!("peak |n_B| {:.3} N m  ·  b {:.3} rad", f.peaks.moment, f.b);
+            // A narrow window keeps its room for what to do next.
+            if ui.available_width() > 900.0 {
+                let momentum = signed(f.angular_momentum, 3);
+                facts += &format!("  ·  angular momentum {momentum} kg m²/s  ·  energy balance {:.0e} J", f.energy_balance.abs());
+            }
             ui.label(RichText::new(facts).font(plain(12.0)).color(colour(p.dim)));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let (text, tone) = match (&look.message, f.target.reach) {
