@@ -13,8 +13,8 @@ pub use run::{Refusal, Run, replay};
 use crate::frame::Frame;
 use crate::scenario::Scenario;
 
-/// The most frames a session keeps: ten minutes at 1 kHz.
-const MAX_FRAMES: usize = 600_000;
+/// The most frames a session keeps: three minutes of motion at 1 kHz, some 150 MB.
+const MAX_FRAMES: usize = 180_000;
 
 /// Everything that makes a run: what undo restores and what is saved.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,6 +114,11 @@ impl Session {
         self.playing && !(self.is_at_end() && self.is_settled())
     }
 
+    /// Whether it holds as many frames as it can: time stands still until it starts over.
+    pub fn is_full(&self) -> bool {
+        self.frames.len() >= MAX_FRAMES
+    }
+
     /// Whether the newest frame is on display.
     pub fn is_at_end(&self) -> bool {
         self.cursor + 1 == self.frames.len()
@@ -176,7 +181,7 @@ impl Session {
                 return;
             }
             if self.is_at_end() {
-                if self.frames.len() >= MAX_FRAMES {
+                if self.is_full() {
                     self.playing = false;
                     return;
                 }
@@ -215,7 +220,7 @@ impl Session {
         if !self.is_at_end() {
             let mut document = self.document.clone();
             document.end = self.cursor as u64;
-            document.script.retain(|e| e.step < document.end || e.step == 0);
+            document.script.retain(|e| e.step <= document.end);
             let (run, frames) = perform(&document)?;
             (self.document, self.run, self.frames) = (document, run, frames);
             self.cursor = self.frames.len() - 1;

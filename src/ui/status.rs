@@ -36,6 +36,9 @@ pub fn show(ui: &mut Ui, session: &Session, look: &Look) {
                 let (text, tone) = match (&look.message, f.target.reach) {
                     (Some((text, true)), _) => (text.clone(), p.reaction),
                     (Some((text, false)), _) => (text.clone(), p.ink),
+                    (None, _) if session.is_full() => {
+                        ("three minutes are full: save or record them, then start over".into(), p.reaction)
+                    }
                     (None, Reach::Outside { .. }) => ("the target is outside; slide b or drag it back".into(), p.ink),
                     (None, _) => ("drag the target or the b ring  ·  Space plays  ·  F1 keys".into(), p.dim),
                 };
