@@ -153,7 +153,7 @@ fn signals_are_the_frames_at_every_step() {
         assert!(recording.notes.is_empty());
     }
     assert!(heard.windows(2).all(|w| w[0].0 <= w[1].0), "progress only grows");
-    assert_eq!(heard.last(), Some(&(3000, 3000, "case-3".to_owned())));
+    assert_eq!(heard.last(), Some(&(6000, 6000, "case-3".to_owned())));
 }
 
 #[test]
