@@ -89,14 +89,6 @@ pub fn conditions(machine: &Machine) -> (DMatrix<f64>, DVector<f64>) {
     let (n, links) = (machine.drives(), machine.links());
     let pairs: Vec<_> = Inertia::pairs(n).collect();
     let mut a = DMatrix::zeros(n + pairs.len(), links.len());
-    let mut centred = machine.spec().clone();
-    centred.links.iter_mut().for_each(|l| l.com = 0.0);
-    // With every l_c at 0, what remains of the conditions is −k.
-    let rest = Machine::new(centred).map_or_else(|_| Inertia::of(machine), |m| Inertia::of(&m));
-    let k = DVector::from_iterator(
-        n + pairs.len(),
-        (0..n).map(|k| -rest.first_moment(k).re).chain(pairs.iter().map(|&(k, l)| -rest.coupling(k, l).re)),
-    );
     for (j, (link, part)) in links.iter().zip(machine.parts()).enumerate() {
         let moment = link.mass * part.sign;
         a[(part.drive, j)] = moment;
@@ -108,6 +100,11 @@ pub fn conditions(machine: &Machine) -> (DMatrix<f64>, DVector<f64>) {
             };
         }
     }
+    // What the present l_c leave is A l_c − k.
+    let inertia = Inertia::of(machine);
+    let left = (0..n).map(|k| inertia.first_moment(k)).chain(pairs.iter().map(|&(k, l)| inertia.coupling(k, l)));
+    let com = DVector::from_iterator(links.len(), links.iter().map(|l| l.com));
+    let k = &a * com - DVector::from_iterator(a.nrows(), left.map(|z| z.re));
     (a, k)
 }
 

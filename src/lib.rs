@@ -1,4 +1,70 @@
-//! Stillbase.
+//! Zero reaction manipulators, from Papadopoulos & Abu-Abed, *On the Design of Zero Reaction Manipulators*: design,
+//! plan, simulate, see and record what a robot arm does to the base it stands on.
+//!
+//! Balance the arm so that its centre of mass never moves, and no force reaches the base. Make its mass matrix
+//! constant, and move only on the planes q₁ + λ₂ q₂ + λ₃ q₃ = b of joint space, and no moment does either. Each *pose
+//! constant* b has its *reactionless workspace*; changing b only turns it.
+//!
+//! # A tour
+//! A [`Machine`](machine::Machine) is data, checked. It collapses into a few constants, its
+//! [`Inertia`](machine::Inertia), and these say whether it is balanced:
+//! ```
+//! use stillbase::machine::{self, Inertia};
+//! let machine = machine::builtin("nine-link").expect("built in");
+//! let inertia = Inertia::of(machine);
+//! assert!(inertia.is_force_balanced() && inertia.is_invariant());
+//! ```
+//! [`balance::design`] finds the centres of mass that make a machine so, Eqs (7)–(10):
+//! ```
+//! # use stillbase::{balance::{design, Preset}, machine};
+//! let rounded = machine::builtin("nine-link-table-1").expect("built in");
+//! let exact = design(rounded, &Preset::Table1.penalty(9)?)?;
+//! assert!((exact.links()[0].com - -0.2214384).abs() < 1e-7);
+//! # Ok::<(), stillbase::balance::DesignError>(())
+//! ```
+//! Its planes ([`pose_constant::Planes`]) know which b reach a point, where, and how far the workspace goes:
+//! ```
+//! # use stillbase::{machine, planar::Vector, pose_constant::Planes};
+//! # let machine = machine::builtin("nine-link").expect("built in");
+//! let planes = Planes::of(machine).expect("three drives, two angles");
+//! let a = planes.map().reach(Vector::new(0.50, 0.50)).expect("within reach");
+//! assert!((a.intervals[0][0] - 1.6495370969).abs() < 1e-9);
+//! assert!((planes.boundary().area() - 0.8451448471).abs() < 1e-9);
+//! ```
+//! A [`Scenario`](scenario::Scenario) sets a task; a [`Run`](session::Run) carries it out step by step and gives a
+//! [`Frame`](frame::Frame) of everything true at each instant:
+//! ```
+//! # use stillbase::{scenario::Scenario, session::replay};
+//! let case_3 = Scenario::builtin("case-3").expect("built in");
+//! let run = replay(&case_3, |_run, frame| assert!(frame.base_moment().abs() < 1e-9))?;
+//! assert!(run.frame().peaks.is_reactionless());
+//! # Ok::<(), stillbase::session::Refusal>(())
+//! ```
+//! A [`Session`](session::Session) is a run under somebody's hands: every change is an [`Edit`](session::Edit), so it
+//! can be saved, undone and replayed to the very same frames.
+//!
+//! # What flows
+//! ```text
+//! assets/*.toml ─→ Machine ─→ Inertia (g, C, J) ─┐
+//! slider · drag · key · script ─→ Edit ─→ Session ┴─→ Motion ─→ Simulation ─→ Frame
+//! Frame ─→ signals ─→ plots │ Rerun scalars │ CSV
+//! Frame + Machine ─→ Stage ─→ Scene ─→ render ─→ window │ picture      Scene ─→ Rerun entities
+//! pointer ─→ camera ray ─→ Handle ─→ Edit
+//! ```
+//!
+//! # Source map
+//! | layer | modules | knows |
+//! |---|---|---|
+//! | words | [`planar`] | vectors as x + iy, values per drive |
+//! | machine | [`machine`], [`kinematics`], [`dynamics`] | links, constants g, C, J, Eqs (1)–(6) |
+//! | methods | [`balance`], [`reactionless`], [`pose_constant`], [`plan`], [`control`] | Eqs (7)–(16), paths, feedback |
+//! | motion | [`frame`], [`simulation`], [`signals`] | one instant, one step, one table |
+//! | path | [`scenario`], [`session`] | files, edits, undo, replay |
+//! | picture | [`scene`] | plain data to draw, cameras, palette |
+//! | devices | `render` (feature `render`), `ui` (feature `ui`) | wgpu; egui |
+//! | edges | `window`, `headless` (feature `record`), [`files`], the program's `commands` | displays, Rerun, disks |
+//!
+//! The core builds without any feature: no GPU, no window, no Rerun, and it reads no clock.
 #![warn(missing_docs)]
 
 pub mod balance;
@@ -14,9 +80,9 @@ pub mod plan;
 pub mod planar;
 pub mod pose_constant;
 pub mod reactionless;
-pub mod scenario;
 #[cfg(feature = "render")]
 pub mod render;
+pub mod scenario;
 pub mod scene;
 pub mod session;
 pub mod signals;

@@ -1,5 +1,67 @@
-fn main() {
-    let name = std::env::args().nth(1).unwrap_or("case-3".into());
-    let theme = if std::env::args().nth(2).as_deref() == Some("light") { stillbase::scene::palette::Theme::Light } else { Default::default() };
-    if let Err(e) = stillbase::window::run(stillbase::scenario::Scenario::find(&name).unwrap(), theme) { eprintln!("{e}"); }
+//! The program: a window on a scenario, and a command for everything else.
+
+mod commands;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Zero reaction manipulators: design, plan, simulate, see and record what a robot arm does to its base.
+///
+/// Without a command, opens a window on a scenario; without a display, records it instead.
+#[derive(Parser)]
+#[command(name = "stillbase", version, args_conflicts_with_subcommands = true, after_help = EXAMPLES)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    open: commands::Open,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    #[cfg(feature = "record")]
+    Headless(commands::Headless),
+    Simulate(commands::Simulate),
+    Machines(commands::Machines),
+    Check(commands::Check),
+    Design(commands::Design),
+    Dynamics(commands::Dynamics),
+    Reach(commands::Reach),
+    Pose(commands::Pose),
+    Workspace(commands::Workspace),
+    #[cfg(feature = "ui")]
+    Figures(commands::Figures),
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  stillbase                                      the paper's case 3, in a window
+  stillbase headless -o cases.rrd                the three cases, recorded for the Rerun viewer
+  stillbase check nine-link --set link.5.com=0   what one misplaced centre of mass does
+  stillbase reach nine-link 0.5,0.5 0.55,0.9     which b reach both points
+
+Units are SI and angles are radians. Exit status: 0 done, 1 the question has no answer, 2 wrong input.";
+
+fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse_from(commands::words(std::env::args_os())) {
+        Ok(arguments) => arguments,
+        Err(error) => return commands::usage(&error),
+    };
+    let done = match arguments.command {
+        None => arguments.open.run(),
+        #[cfg(feature = "record")]
+        Some(Command::Headless(command)) => command.run(),
+        Some(Command::Simulate(command)) => command.run(),
+        Some(Command::Machines(command)) => command.run(),
+        Some(Command::Check(command)) => command.run(),
+        Some(Command::Design(command)) => command.run(),
+        Some(Command::Dynamics(command)) => command.run(),
+        Some(Command::Reach(command)) => command.run(),
+        Some(Command::Pose(command)) => command.run(),
+        Some(Command::Workspace(command)) => command.run(),
+        #[cfg(feature = "ui")]
+        Some(Command::Figures(command)) => command.run(),
+    };
+    commands::exit_code(done)
 }

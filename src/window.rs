@@ -44,7 +44,7 @@ pub fn run(scenario: Scenario, theme: Theme) -> Result<(), WindowError> {
     desk.carry_out(Command::TogglePlay);
     let event_loop = EventLoop::<eframe::UserEvent>::with_user_event()
         .build()
-        .map_err(|e| WindowError::NoDisplay(e.to_string()))?;
+        .map_err(|e| WindowError::NoDisplay(last_clause(&e.to_string())))?;
     event_loop.set_control_flow(ControlFlow::Wait);
     let options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
@@ -56,13 +56,15 @@ pub fn run(scenario: Scenario, theme: Theme) -> Result<(), WindowError> {
         ..Default::default()
     };
     let create: eframe::AppCreator<'_> = Box::new(move |cc| {
-        let state = cc.wgpu_render_state.as_ref().ok_or("no graphics adapter")?;
-        let renderer = Renderer::new(&state.device, state.target_format);
-        state.renderer.write().callback_resources.insert(renderer);
-        Ok(Box::new(App::new(desk)))
+        Ok(Box::new(App::new(cc, desk, Clock::Wall(None)).ok_or("no graphics adapter")?))
     });
     let mut app = eframe::create_native("stillbase", options, create, &event_loop);
     event_loop.run_app(&mut app).map_err(|e| WindowError::Failed(e.to_string()))
+}
+
+/// winit puts the place in its own source before what is wrong.
+fn last_clause(text: &str) -> String {
+    text.rsplit(": ").next().unwrap_or(text).to_owned()
 }
 
 /// On X11 a missing library would end the program deep inside; name it before.
@@ -90,13 +92,25 @@ fn check_libraries() -> Result<(), WindowError> {
 /// The desk as eframe wants it; tests drive it without a window.
 pub struct App {
     desk: Desk,
-    last: Option<Instant>,
+    clock: Clock,
+}
+
+/// Where wall time comes from.
+#[derive(Clone, Copy, Debug)]
+pub enum Clock {
+    /// The machine's clock, and what it last said.
+    Wall(Option<Instant>),
+    /// The same time for each repaint, s: for tests.
+    Fixed(f64),
 }
 
 impl App {
-    /// Around a desk.
-    pub fn new(desk: Desk) -> Self {
-        Self { desk, last: None }
+    /// Around a desk; `None` if eframe has no graphics adapter.
+    pub fn new(cc: &eframe::CreationContext<'_>, desk: Desk, clock: Clock) -> Option<Self> {
+        let state = cc.wgpu_render_state.as_ref()?;
+        let renderer = Renderer::new(&state.device, state.target_format);
+        state.renderer.write().callback_resources.insert(renderer);
+        Some(Self { desk, clock })
     }
 
     /// What it shows.
@@ -107,9 +121,13 @@ impl App {
 
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
-        let now = Instant::now();
-        let wall = self.last.replace(now).map_or(0.0, |last| (now - last).as_secs_f64());
-        // A moment in which nothing moved is not made up for.
+        let wall = match &mut self.clock {
+            Clock::Fixed(wall) => *wall,
+            Clock::Wall(last) => {
+                let now = Instant::now();
+                last.replace(now).map_or(0.0, |last| (now - last).as_secs_f64())
+            }
+        };
         self.desk.pass(wall);
         let dropped: Option<PathBuf> = ui.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_path_buf()));
         if let Some(path) = dropped {

@@ -2,9 +2,14 @@
 
 #[path = "suite/boundary.rs"]
 mod boundary;
+#[cfg(feature = "cli")]
+#[path = "suite/cli.rs"]
+mod cli;
 #[cfg(feature = "render")]
 #[path = "suite/gpu.rs"]
 mod gpu;
+#[path = "suite/machine_file.rs"]
+mod machine_file;
 #[path = "suite/mesh.rs"]
 mod mesh;
 #[path = "suite/nine_body.rs"]
@@ -20,3 +25,16 @@ mod render;
 #[cfg(feature = "render")]
 #[path = "suite/shaders.rs"]
 mod shaders;
+#[cfg(feature = "window")]
+#[path = "suite/window.rs"]
+mod window;
+#[path = "suite/support.rs"]
+mod support;
+#[path = "suite/dynamics.rs"]
+mod dynamics;
+#[path = "suite/balance.rs"]
+mod balance;
+#[path = "suite/cases.rs"]
+mod cases;
+#[path = "suite/convergence.rs"]
+mod convergence;

@@ -31,6 +31,9 @@ use crate::planar::{MAX_DRIVES, Units, Vector};
 /// A point as a sum of unit vectors: weight w_k, m, on e(q_k).
 pub type Chain = [f64; MAX_DRIVES];
 
+/// The largest joint limit either way, rad: each further turn is one more winding of the same workspace.
+pub const MAX_ANGLE: f64 = 25.2;
+
 /// How far, m, the two points of a closure may lie apart.
 pub const CLOSURE_TOLERANCE: f64 = 1e-9;
 
@@ -283,7 +286,9 @@ fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {
     }
     for (i, angle) in spec.angles.iter().enumerate() {
         for (key, value) in [("offset", angle.offset), ("min", angle.min), ("max", angle.max)] {
-            finite(value, ", rad", &|| Place::new(&[&"angle", &i, &key]))?;
+            let place = || Place::new(&[&"angle", &i, &key]);
+            finite(value, ", rad", &place)?;
+            ranged(value.abs() <= MAX_ANGLE, value, "at most four turns either way: -25.2 to 25.2 rad", &place)?;
         }
         ranged(angle.min <= angle.max, angle.max, "a limit not below min", &|| Place::new(&[&"angle", &i, &"max"]))?;
     }

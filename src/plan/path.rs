@@ -82,6 +82,8 @@ pub struct TipLine {
 
 /// Spaces between nodes; the quintic's error falls with the sixth power and is below 1e-13 rad here.
 const SPACES: usize = 256;
+/// How far off its line the integration may end up, as a part of the arm; 1e-13 where the Jacobian is regular.
+const OFF_LINE: f64 = 1e-8;
 
 impl TipLine {
     /// Integrates q′ = J⁺ (to − from) along the line with the fourth-order rule, from a pose at its start.
@@ -89,7 +91,9 @@ impl TipLine {
     /// # Errors
     /// If the Jacobian loses rank on the way.
     pub fn new(tip: &Chain, start: DriveAngles, to: Vector) -> Result<Self, PathError> {
-        let way = to - end_effector(tip, &start.units());
+        let from = end_effector(tip, &start.units());
+        let way = to - from;
+        let off_line = OFF_LINE * tip.iter().map(|c| c.abs()).sum::<f64>();
         let n = start.len();
         let slope = |q: &DriveAngles, s: f64| {
             minimum_norm(tip, &q.units(), n, way, Vector::default()).ok_or(PathError::Singular { s })
@@ -101,6 +105,10 @@ impl TipLine {
         let mut nodes = Vec::with_capacity(SPACES + 1);
         for i in 0..=SPACES {
             let s = i as f64 / SPACES as f64;
+            // A step may jump over the place where the rank is lost, but not without leaving the line.
+            if (end_effector(tip, &q.units()) - (from + s * way)).norm() > off_line {
+                return Err(PathError::Singular { s });
+            }
             let (first, second) = slope(&q, s)?;
             nodes.push(PathPoint { q, first, second });
             if i == SPACES {

@@ -3,6 +3,7 @@
 //! Source: (13)–(16). The curve of poses that keep the end effector on the point is cut into arcs along which b is
 //! monotone, so each pose is bracketed before it is polished, and none is missed.
 
+use std::fmt;
 use std::ops::Deref;
 
 use super::plane::{PlaneMap, PlanePoint, SLACK};
@@ -22,7 +23,7 @@ const CLAMPED: f64 = 10.0 * SLACK;
 const SAME: f64 = 1e-7;
 
 /// All poses of a point on a plane, in order of a_1. Reads as a slice.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub struct Poses {
     len: usize,
     poses: [PlanePoint; MAX_POSES],
@@ -32,6 +33,20 @@ impl Deref for Poses {
     type Target = [PlanePoint];
     fn deref(&self) -> &[PlanePoint] {
         &self.poses[..self.len]
+    }
+}
+
+impl fmt::Debug for Poses {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list().entries(self.iter()).finish()
+    }
+}
+
+impl<'a> IntoIterator for &'a Poses {
+    type Item = &'a PlanePoint;
+    type IntoIter = std::slice::Iter<'a, PlanePoint>;
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
     }
 }
 

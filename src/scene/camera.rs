@@ -61,7 +61,7 @@ impl Camera {
 
     /// A view from the front and above.
     pub fn orbit(reach: f64) -> Self {
-        Self::Orbit(Orbit { centre: [0.1 * reach, 0.2 * reach, 0.0], distance: 2.7 * reach, yaw: 0.45, pitch: 0.75 })
+        Self::Orbit(Orbit { centre: [0.1 * reach, 0.2 * reach, 0.0], distance: 2.3 * reach, yaw: 0.45, pitch: 0.75 })
     }
 
     /// Whether it looks straight down.

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use super::linkage::Linkage;
 use super::palette::{Palette, Theme, faded, palette};
 use super::{Anchor, Area, Label, Line, Marker, Rgba, Scene};
-use crate::frame::{Frame, Reach};
+use crate::frame::{Frame, REACTIONLESS, Reach};
 use crate::machine::Chain;
 use crate::planar::{DriveAngles, Units, Vector, unit};
 use crate::pose_constant::Planes;
@@ -46,7 +46,8 @@ pub struct Stage {
     linkage: Linkage,
     planes: Option<Arc<Planes>>,
     boundary: Vec<Vec<Vector>>,
-    tip: Chain,
+    /// Where words about the workspace have the most room, before it is turned.
+    middle: Option<Vector>,
     compare_b: Option<f64>,
     motion: Option<Course>,
 }
@@ -76,9 +77,9 @@ impl Stage {
         });
         Self {
             linkage: Linkage::of(machine),
+            middle: planes.as_ref().and_then(|p| roomiest(p, &boundary)),
             planes,
             boundary,
-            tip,
             compare_b: run.scenario().compare_b,
             motion,
         }
@@ -208,29 +209,17 @@ impl Stage {
                 on_top: false,
             });
         }
-        if let Some((at, text)) = self.workspace_label(planes, b, compared) {
-            scene.labels.push(Label {
-                at: point(at * r, z),
-                offset: [0.0, 0.0],
-                text,
-                colour: if compared { palette.dim } else { palette.amber },
-                size: 12.0,
-                anchor: Anchor::Centre,
-            });
-        }
-    }
-
-    /// The label sits in the broad part of the area, where the arm rarely is.
-    fn workspace_label(&self, planes: &Planes, b: f64, compared: bool) -> Option<(Vector, String)> {
-        let map = planes.map();
-        let [l1, l2] = map.limits();
-        let mid = |l: crate::reactionless::Limit, s: f64| l.min + s * (l.max - l.min);
-        let at = map.forward_unturned([mid(l1, 0.86), mid(l2, 0.88)]);
-        let text = match compared {
-            false => format!("reactionless workspace\nb = {b:.3} rad · {:.3} m²", planes.boundary().area()),
-            true => format!("b = {b:.3} rad"),
+        let rows = match compared {
+            true => vec![(format!("b = {b:.3} rad"), palette.dim, 11.5)],
+            false => vec![
+                ("reactionless workspace".into(), palette.amber, 12.5),
+                (format!("b = {b:.3} rad · {:.3} m²", planes.boundary().area()), palette.dim, 11.5),
+            ],
         };
-        at.re.is_finite().then_some((at, text))
+        for (i, (text, colour, size)) in rows.into_iter().enumerate().filter(|_| self.middle.is_some()) {
+            let at = self.middle.unwrap_or_default() * r;
+            scene.labels.push(label(at, z, [0.0, 17.0 * i as f32], &text, colour, size, Anchor::Centre));
+        }
     }
 
     fn ring(&self, scene: &mut Scene, palette: &Palette, planes: &Planes, frame: &Frame, options: &ViewOptions) {
@@ -294,8 +283,9 @@ impl Stage {
     fn reaction(&self, scene: &mut Scene, palette: &Palette, frame: &Frame) {
         let (z, reach) = (self.handle_height(), self.linkage.reach());
         let (force, moment) = (frame.wrench.total().force, frame.base_moment());
-        let quiet = frame.is_quiet();
-        let colour = if quiet { palette.zero } else { palette.reaction };
+        let tone = |still: bool| if still { palette.zero } else { palette.reaction };
+        let pulls = frame.wrench.dynamic.force.norm() > REACTIONLESS * frame.peaks.inertial_pull.max(1e-9);
+        let turns = moment.abs() > REACTIONLESS * frame.peaks.torque_sum.max(1e-9);
         let line = |name: &str, points: Vec<[f32; 3]>| Line {
             name: name.into(),
             points,
@@ -335,7 +325,7 @@ impl Stage {
                 on_top: true,
             });
         }
-        let at = Vector::new(0.15 * reach, -0.1 * reach);
+        let at = Vector::new(0.2 * reach, -0.11 * reach);
         let still = com.norm() < 1e-6 * reach;
         let com_words = if still { "centre of mass at rest in B".into() } else { format!("centre of mass {:.1} mm off B", 1e3 * com.norm()) };
         let scale = match (arrow.norm() > 0.004 * reach, sweep.abs() > 0.02) {
@@ -347,8 +337,8 @@ impl Stage {
             }
         };
         let rows = [
-            (format!("f_B {:.3} N", frame.wrench.dynamic.force.norm()), colour, 13.0),
-            (format!("n_B {} N m", signed(moment, 3)), colour, 13.0),
+            (format!("f_B {:.3} N", frame.wrench.dynamic.force.norm()), tone(!pulls), 13.0),
+            (format!("n_B {} N m", signed(moment, 3)), tone(!turns), 13.0),
             (com_words, palette.dim, 11.5),
             (scale, palette.dim, 11.5),
         ];
@@ -401,13 +391,19 @@ impl Stage {
                     stroke: palette.amber,
                     stroke_width: 2.0,
                 });
-                let why = "outside the reactionless workspace";
                 let would = match mending_b {
-                    Some(b) => format!("nearest point {} m · b = {b:.3} rad would reach it", brief_point(nearest)),
-                    None => format!("nearest point {} m · no b reaches it", brief_point(nearest)),
+                    Some(b) => format!("b = {b:.3} rad would reach it"),
+                    None => "no b reaches it".into(),
                 };
-                scene.labels.push(label(at, z, [20.0, -7.0], why, ink, 13.0, Anchor::Left));
-                scene.labels.push(label(at, z, [20.0, 9.0], &would, palette.dim, 11.5, Anchor::Left));
+                let rows = [
+                    ("outside the reactionless workspace".into(), ink, 13.0),
+                    (format!("nearest point {} m", brief_point(nearest)), palette.dim, 11.5),
+                    (would, palette.dim, 11.5),
+                ];
+                for (i, (text, colour, size)) in rows.into_iter().enumerate() {
+                    let down = 26.0 + 16.0 * i as f32;
+                    scene.labels.push(label(at, z, [0.0, down], &text, colour, size, Anchor::Centre));
+                }
             }
             reach => {
                 let words = if reach == Reach::Carried { "turns with its workspace" } else { "drag me" };
@@ -417,6 +413,22 @@ impl Stage {
             }
         }
     }
+}
+
+/// The point of the workspace that is farthest from its boundary, of those that the arm's root does not cover.
+fn roomiest(planes: &Planes, boundary: &[Vec<Vector>]) -> Option<Vector> {
+    let map = planes.map();
+    let [l1, l2] = map.limits();
+    let at = |l: crate::reactionless::Limit, i: i32| l.min + (f64::from(i) + 0.5) / 20.0 * (l.max - l.min);
+    let far = 0.35 * map.c().iter().map(|c| c.abs()).sum::<f64>();
+    let outline: Vec<Vector> = boundary.iter().flat_map(|l| l.iter().step_by(4).copied()).collect();
+    let room = |p: &Vector| outline.iter().fold(f64::INFINITY, |m, q| m.min((p - q).norm_sqr()));
+    (0..400)
+        .map(|i| map.forward_unturned([at(l1, i / 20), at(l2, i % 20)]))
+        .filter(|p| p.norm() > far)
+        .map(|p| (room(&p), p))
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, p)| p)
 }
 
 fn place(tip: &Chain, q: &DriveAngles) -> Vector {

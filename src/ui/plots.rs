@@ -6,7 +6,7 @@ use egui_plot::{GridMark, Line, LineStyle, Plot, PlotPoint, PlotPoints, Points, 
 use super::theme::{bold, colour, plain};
 use super::top::name;
 use super::{Command, Look, set_b};
-use crate::frame::Frame as Instant;
+use crate::frame::{Frame as Instant, REACTIONLESS};
 use crate::planar::Vector;
 use crate::scene::palette::{Palette, faded};
 use crate::scene::stage::{round_up, signed};
@@ -41,7 +41,7 @@ pub fn show(ui: &mut Ui, session: &Session, signals: &[Signal], look: &Look, com
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 14, right: 14, top: 10, bottom: 8 });
     Panel::right("plots").exact_size(376.0).resizable(false).frame(frame).show(ui, |ui| {
         let rows = CHARTS.len() as f32 + 1.6;
-        let height = ((ui.available_height() - 34.0 * rows) / rows).max(40.0);
+        let height = ((ui.available_height() - 32.0 * (CHARTS.len() as f32 + 1.0)) / rows).max(40.0);
         let end = session.frames().last().map_or(0.0, |f| f.time).max(session.length());
         let end = if session.is_live() { end.max(1.0) } else { end };
         let shown = (end - WINDOW).max(0.0)..=end;
@@ -50,7 +50,7 @@ pub fn show(ui: &mut Ui, session: &Session, signals: &[Signal], look: &Look, com
             header(ui, &p, chart, &lines, session.frame());
             time_plot(ui, &p, chart, &lines, session, &shown, height, commands);
         }
-        which_b(ui, &p, session, height * 1.6, commands);
+        which_b(ui, &p, session, height * 1.6 + 14.0, commands);
     });
 }
 
@@ -78,7 +78,8 @@ fn tone(p: &Palette, signal: &Signal, now: &Instant) -> Color32 {
     colour(match (signal.drive, signal.group()) {
         (Some(k), _) => p.drive(k),
         (None, "pose") => p.amber,
-        (None, "moment" | "force") if now.peaks.is_reactionless() => p.zero,
+        (None, "moment") if now.peaks.moment <= REACTIONLESS * now.peaks.torque_sum => p.zero,
+        (None, "force") if now.peaks.force <= REACTIONLESS * now.peaks.inertial_pull => p.zero,
         (None, "moment" | "force") => p.reaction,
         _ => p.ink,
     })
@@ -106,7 +107,7 @@ fn time_plot(
         drawn.push((signal, points));
     }
     let (low, high) = range(chart, low, high);
-    let (amber, ink) = (colour(p.amber), colour(p.dim));
+    let amber = colour(p.amber);
     let decimals = if high - low < 0.05 { 3 } else if high - low < 0.5 { 2 } else { 1 };
     let middle = 0.5 * (low + high);
     let response = base_plot(chart.title, p, height)
@@ -125,7 +126,6 @@ fn time_plot(
             plot.vline(VLine::new("now", now.time).color(amber).width(1.0).allow_hover(false));
             pointer_time(plot)
         });
-    let _ = ink;
     name(&response.response, &format!("{} over time, {}", chart.title, chart.unit));
     let held = response.response.dragged() || response.response.clicked();
     if let (true, Some(time)) = (held, response.inner) {
@@ -154,7 +154,7 @@ fn base_plot<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
         .allow_boxed_zoom(false)
         .allow_double_click_reset(false)
         .sense(egui::Sense::click_and_drag())
-        .y_axis_min_width(34.0)
+        .y_axis_min_width(40.0)
         .set_margin_fraction(egui::Vec2::ZERO)
 }
 
@@ -250,7 +250,7 @@ fn which_b(ui: &mut Ui, p: &Palette, session: &Session, height: f32, commands: &
             for [from, to] in common.iter().flat_map(|c| &c.intervals) {
                 let fill = colour(faded(p.amber, 0.16));
                 let clear = egui::Stroke::NONE;
-                plot.span(Span::new("overlap", *from..=*to).fill(fill).border(clear));
+                plot.span(Span::new("", *from..=*to).fill(fill).border(clear));
             }
             for (name, line) in lines {
                 if let Some(end) = line.last() {

@@ -71,7 +71,10 @@ impl Row<'_> {
     fn with_slider(&self, ui: &mut Ui, p: &Palette, value: &mut f64) -> [Response; 2] {
         let number = self.show(ui, p, value);
         ui.spacing_mut().slider_width = ui.available_width();
+        // The knob's size follows the row's height.
+        ui.spacing_mut().interact_size.y = 15.0;
         let slider = ui.add(Slider::new(value, self.range.clone()).show_value(false).smart_aim(false));
+        ui.spacing_mut().interact_size.y = 22.0;
         name(&slider, &format!("{} slider", self.label));
         [number, slider.on_hover_text(self.tip)]
     }
@@ -83,7 +86,7 @@ fn unit(ui: &mut Ui, p: &Palette, text: &str) {
 }
 
 fn note(ui: &mut Ui, p: &Palette, text: &str) {
-    ui.add(egui::Label::new(RichText::new(text).font(plain(11.5)).color(colour(p.dim))).wrap());
+    ui.add(egui::Label::new(RichText::new(text).font(plain(11.0)).color(colour(p.dim))).wrap());
 }
 
 /// Sends an edit when a widget has changed, and ends the gesture when it is let go.
@@ -125,7 +128,7 @@ fn pose_constant(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec
         note(ui, p, &text);
         let inertia = Inertia::of(&scenario.machine);
         let price = inertia.diagonal(0) * scenario.pose_acceleration;
-        note(ui, p, &format!("sliding it in motion costs at most {price:.2} N m"));
+        note(ui, p, &format!("in motion it costs up to {price:.2} N m"));
     }
     let mut shown = scenario.compare_b.is_some();
     let mut other = scenario.compare_b.unwrap_or(b + 0.5 * period);

@@ -15,15 +15,19 @@ pub fn show(ui: &mut Ui, session: &Session, look: &Look) {
     Panel::bottom("status").exact_size(30.0).resizable(false).frame(frame).show(ui, |ui| {
         ui.horizontal_centered(|ui| {
             let f = session.frame();
-            let quiet = f.is_quiet();
-            let tone = colour(if quiet { p.zero } else { p.reaction });
+            let clean = f.peaks.is_reactionless();
+            let tone = colour(if clean { p.zero } else { p.reaction });
             let (dot, _) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), egui::Sense::hover());
             ui.painter().circle_filled(dot.center(), 4.5, tone);
-            let word = if quiet { "reactionless" } else { "reacts on its base" };
+            let word = match (clean, f.is_quiet()) {
+                (true, _) => "reactionless",
+                (false, false) => "reacts on its base",
+                (false, true) => "has reacted on its base",
+            };
             ui.label(RichText::new(word).font(bold(13.0)).color(tone));
             let facts = format!(
-                "n_B {} N m  ·  b {:.3} rad  ·  angular momentum {} kg m²/s  ·  energy balance {:.0e} J",
-                signed(f.base_moment(), 3),
+                "peak |n_B| {:.3} N m  ·  b {:.3} rad  ·  angular momentum {} kg m²/s  ·  energy balance {:.0e} J",
+                f.peaks.moment,
                 f.b,
                 signed(f.angular_momentum, 3),
                 f.energy_balance.abs()

@@ -96,6 +96,8 @@ pub fn apply(ctx: &egui::Context, theme: Theme) {
     style.spacing.slider_rail_height = 3.0;
     style.spacing.interact_size = vec2(28.0, 22.0);
     style.spacing.menu_margin = Margin::same(6);
+    style.spacing.window_margin = Margin::same(14);
+    style.spacing.scroll.floating = true;
     style.interaction.selectable_labels = false;
     ctx.set_style_of(egui_theme, style);
 }

@@ -103,6 +103,7 @@ fn timeline(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Comm
     let text = format!("{time:.3} / {length:.3} s");
     ui.label(RichText::new(text).font(plain(12.5)).color(colour(p.dim)));
     ui.spacing_mut().slider_width = (ui.available_width() - 16.0).max(60.0);
+    ui.spacing_mut().interact_size.y = 15.0;
     let slider = egui::Slider::new(&mut time, 0.0..=length).show_value(false).step_by(session.scenario().step);
     let response = ui.add(slider).on_hover_text("Time, s");
     name(&response, "Time");
@@ -178,8 +179,8 @@ pub fn name(response: &Response, label: &str) {
 pub fn dialog(ctx: &egui::Context, look: &mut Look, commands: &mut Vec<Command>) {
     let Some(mut dialog) = look.dialog.clone() else { return };
     let (title, verb) = match dialog.purpose {
-        Purpose::Open => ("Open a session or scenario", "Open"),
-        Purpose::Save => ("Save the session as a scenario", "Save"),
+        Purpose::Open => ("Open a session", "Open"),
+        Purpose::Save => ("Save the session", "Save"),
         Purpose::Record => ("Record for the Rerun viewer", "Record"),
     };
     let mut open = true;

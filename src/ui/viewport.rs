@@ -10,7 +10,7 @@ use super::{Command, Look, set_b};
 use crate::render::{Renderer, View};
 use crate::scene::camera::Camera;
 use crate::scene::stage::{Handle, Stage, ViewOptions};
-use crate::scene::{Anchor, Scene};
+use crate::scene::{Anchor, Label, Scene};
 use crate::session::{Edit, Session};
 
 /// How near the pointer must be to take hold of a handle, px.
@@ -71,24 +71,26 @@ fn point_at(
 ) {
     let frame = session.frame();
     let z = stage.handle_height();
-    if let Some(pos) = response.hover_pos().filter(|_| look.grabbed.is_none()) {
+    let held = look.held;
+    let under = |pos: Pos2| {
         let distance = |h: Handle| {
-            let held = look.held.filter(|_| h == Handle::Target).map(|[x, y]| [x, y, z]);
+            let held = held.filter(|_| h == Handle::Target).map(|[x, y]| [x, y, z]);
             let at = held.or_else(|| stage.handle(h, frame));
             at.and_then(|p| spot.screen(p)).map(|p| p.distance(pos))
         };
-        look.hot = [Handle::Target, Handle::Ring]
+        [Handle::Target, Handle::Ring]
             .into_iter()
             .filter_map(|h| Some((h, distance(h)?)))
             .filter(|(_, d)| *d < GRIP)
             .min_by(|a, b| a.1.total_cmp(&b.1))
-            .map(|(h, _)| h);
-    } else if look.grabbed.is_none() {
-        look.hot = None;
+            .map(|(h, _)| h)
+    };
+    if look.grabbed.is_none() {
+        look.hot = response.hover_pos().and_then(under);
     }
     if response.drag_started_by(PointerButton::Primary) {
         // A drag begins where the button went down, not where it was noticed.
-        look.grabbed = look.hot;
+        look.grabbed = ui.input(|i| i.pointer.press_origin()).and_then(under);
     }
     if let Some(handle) = look.grabbed {
         ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
@@ -193,17 +195,40 @@ pub fn paint(ui: &Ui, rect: Rect, scene: &Arc<Scene>, camera: &Camera) {
     ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, paint));
 }
 
+/// A scene with its words, filling everything, that nobody can touch.
+pub fn still(ui: &mut Ui, scene: &Arc<Scene>, camera: &Camera) {
+    CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+        let rect = ui.max_rect();
+        paint(ui, rect, scene, camera);
+        words(ui, &Spot { rect, camera: *camera }, scene);
+    });
+}
+
 /// The scene's labels.
 fn words(ui: &Ui, spot: &Spot, scene: &Scene) {
     let painter = ui.painter().with_clip_rect(spot.rect);
+    let galley = |l: &Label| painter.layout_no_wrap(l.text.clone(), plain(l.size), colour(l.colour));
     for label in &scene.labels {
         let Some(at) = spot.screen(label.at.map(f64::from)) else { continue };
-        let align = match label.anchor {
-            Anchor::Left => Align2::LEFT_CENTER,
-            Anchor::Centre => Align2::CENTER_CENTER,
-            Anchor::Right => Align2::RIGHT_CENTER,
+        // Words about one point stay together.
+        let together = scene.labels.iter().filter(|l| l.at == label.at);
+        let widest = together.map(|l| galley(l).size().x).fold(0.0, f32::max);
+        let galley = galley(label);
+        let [x, y] = label.offset;
+        let (align, shift) = match label.anchor {
+            // A word that would be cut off moves to the other side of its point.
+            Anchor::Left if at.x + x + widest > spot.rect.right() - 8.0 => (Align2::RIGHT_CENTER, vec2(-x, y)),
+            Anchor::Left => (Align2::LEFT_CENTER, vec2(x, y)),
+            Anchor::Centre => (Align2::CENTER_CENTER, vec2(x, y)),
+            Anchor::Right => (Align2::RIGHT_CENTER, vec2(x, y)),
         };
-        painter.text(at + Vec2::from(label.offset), align, &label.text, plain(label.size), colour(label.colour));
+        let mut place = align.anchor_size(at + shift, galley.size());
+        if label.anchor == Anchor::Centre && spot.rect.contains(at) {
+            let room = spot.rect.shrink(8.0);
+            let over = (place.right() - room.right()).max(0.0) - (room.left() - place.left()).max(0.0);
+            place = place.translate(vec2(-over, 0.0));
+        }
+        painter.galley(place.min, galley, colour(label.colour));
     }
 }
 

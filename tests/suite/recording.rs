@@ -358,7 +358,7 @@ fn a_folder_that_cannot_be_written_is_named() {
         assert!(error.to_string().contains(name), "{error}");
     }
     let error = record(&[short("case-3")], &folder.0, &Options { force: true, pictures: None }, &mut quietly);
-    assert!(matches!(error, Err(RecordError::Write(WriteError::Failed { .. }))), "a folder is no file");
+    assert!(matches!(error, Err(RecordError::Write(WriteError::IsFolder(_)))), "a folder is no file");
     assert_eq!(folder.names(), ["plain"]);
 }
 

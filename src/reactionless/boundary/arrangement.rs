@@ -111,19 +111,20 @@ impl<'a> Arrangement<'a> {
     fn bounds(&self, portion: &Portion) -> bool {
         let span = &self.spans[portion.span];
         let mut verdict = false;
-        for share in [0.5, 0.31, 0.77, 0.13, 0.91] {
-            let jet = self.on.jet(span, portion.from + share * (portion.to - portion.from));
-            let length = jet.rate.norm() * (portion.to - portion.from);
-            let reach = (1e-3 * length).min(1e-7);
-            let normal = Vector::new(-jet.rate.im, jet.rate.re) / jet.rate.norm();
-            if !normal.is_finite() {
-                continue;
-            }
-            let (left, right) = (self.poses_at(jet.at + reach * normal), self.poses_at(jet.at - reach * normal));
-            verdict = left > 0 && right == 0;
-            // Another curve in between spoils the sample.
-            if left - right == span.weight() {
-                break;
+        // Close enough that even where curves touch, no other is in between; and if one is, elsewhere there is none.
+        for reach in [1e-11, 1e-12, 1e-9] {
+            for share in [0.5, 0.31, 0.77, 0.13, 0.91] {
+                let jet = self.on.jet(span, portion.from + share * (portion.to - portion.from));
+                let speed = jet.rate.norm();
+                let aside = Vector::new(-jet.rate.im, jet.rate.re) * (reach / speed);
+                if !(aside.is_finite() && reach < 0.1 * speed * (portion.to - portion.from)) {
+                    continue;
+                }
+                let (left, right) = (self.poses_at(jet.at + aside), self.poses_at(jet.at - aside));
+                verdict = left > 0 && right == 0;
+                if left - right == span.weight() {
+                    return verdict;
+                }
             }
         }
         verdict
@@ -223,23 +224,27 @@ impl<'a> Arrangement<'a> {
         let n = cross(va, vb);
         let mut t = pa.range[0] + (cross(gap, vb) / n).clamp(0.0, 1.0) * ta;
         let mut s = pb.range[0] + (cross(gap, va) / n).clamp(0.0, 1.0) * tb;
-        for _ in 0..12 {
+        // Both parts are nearly straight: a solution well outside is none.
+        let near = |x: f64, [low, high]: [f64; 2]| {
+            let margin = 0.1 * (high - low);
+            x.clamp((low - margin).max(0.0), (high + margin).min(1.0))
+        };
+        let within = |x: f64, r: [f64; 2]| x >= r[0] - SAME && x <= r[1] + SAME;
+        for _ in 0..16 {
             let (ja, jb) = (self.on.jet(a, t), self.on.jet(b, s));
             let gap = jb.at - ja.at;
             let n = cross(ja.rate, jb.rate);
             let step = [cross(gap, jb.rate) / n, cross(gap, ja.rate) / n];
-            if !(step[0].is_finite() && step[1].is_finite()) {
-                return None;
-            }
-            // Both parts are nearly straight: a solution outside is none.
-            t = (t + step[0]).clamp(pa.range[0] - 0.1 * ta, pa.range[1] + 0.1 * ta);
-            s = (s + step[1]).clamp(pb.range[0] - 0.1 * tb, pb.range[1] + 0.1 * tb);
             if step[0].abs() < 1e-13 && step[1].abs() < 1e-13 {
                 break;
             }
+            if !(step[0].is_finite() && step[1].is_finite()) {
+                return None;
+            }
+            (t, s) = (near(t + step[0], pa.range), near(s + step[1], pb.range));
         }
-        let within = |x: f64, r: [f64; 2]| x >= r[0] - SAME && x <= r[1] + SAME;
-        (within(t, pa.range) && within(s, pb.range)).then(|| [t.clamp(0.0, 1.0), s.clamp(0.0, 1.0)])
+        let meets = (self.on.at(a, t) - self.on.at(b, s)).norm() < 1e-12;
+        (meets && within(t, pa.range) && within(s, pb.range)).then_some([t, s])
     }
 
     /// Cuts of two spans that run along each other: each where the other begins or ends.

@@ -119,7 +119,10 @@ impl Cell {
             let mut points = self.points();
             let ends = [points.next(), points.next()].map(Option::unwrap_or_default);
             if let Some(span) = on.fold(ends) {
-                spans.push(span);
+                match between_cusps(on, &span) {
+                    Some(pieces) => spans.extend(pieces),
+                    None => spans.push(span),
+                }
                 return;
             }
         }
@@ -172,4 +175,16 @@ impl Cell {
 fn halves(side: &Side, middle: f64) -> [Side; 2] {
     let (first, second): (Vec<f64>, Vec<f64>) = side.0.iter().partition(|&&y| y < middle);
     [Side(first), Side(second)]
+}
+
+/// A span cut at its cusps, so that no piece turns back; `None` if it has none.
+fn between_cusps(on: &Surface, span: &Span) -> Option<Vec<Span>> {
+    let cusps = on.cusps(span);
+    if cusps.is_empty() {
+        return None;
+    }
+    let mut stops = vec![span.ends[0]];
+    stops.extend(cusps.into_iter().map(|t| on.point(span, t)));
+    stops.push(span.ends[1]);
+    stops.windows(2).map(|w| on.fold([w[0], w[1]])).collect()
 }

@@ -5,7 +5,7 @@
 //! more for a fold. So the spans together are a weighted cycle whose winding number about p counts the poses at p.
 
 use super::determinant::Determinant;
-use crate::planar::{Vector, cross};
+use crate::planar::{Vector, cross, dot};
 use crate::reactionless::PlaneMap;
 
 /// A curve in (a_1, a_2) whose image can bound the workspace.
@@ -108,10 +108,58 @@ impl Surface {
             span.at.reverse();
             span.slopes.reverse();
         }
-        let p = [0.0, 0.25, 0.5, 0.75, 1.0].map(|t| self.jet(&span, t).at);
-        let bend = (0..3).map(|i| 16.0 * (p[i] - 2.0 * p[i + 1] + p[i + 2]).norm()).fold(0.0, f64::max);
-        span.deviation = 1.5 * bend / 8.0;
+        // sup |P''| from second differences, carried on to the ends, with a margin.
+        let p: [Vector; 9] = std::array::from_fn(|i| self.at(&span, i as f64 / 8.0));
+        let bend: [Vector; 7] = std::array::from_fn(|i| 64.0 * (p[i] - 2.0 * p[i + 1] + p[i + 2]));
+        let ends = [2.0 * bend[0] - bend[1], 2.0 * bend[6] - bend[5]];
+        span.deviation = 1.3 / 8.0 * bend.iter().chain(&ends).map(|b| b.norm()).fold(0.0, f64::max);
         Some(span)
+    }
+
+    /// Where the image of a fold turns back: its cusps, where the direction that det = 0 loses runs along the curve.
+    pub fn cusps(&self, span: &Span) -> Vec<f64> {
+        // On the fold both columns are parallel, so that one of them tells the two senses apart.
+        let columns = |t: f64| self.map.columns(&self.map.arms(self.point(span, t)));
+        let [start, end] = [columns(0.0), columns(1.0)];
+        let least = |j: usize| start[j].norm().min(end[j].norm());
+        let j = usize::from(least(1) > least(0));
+        let speed = |t: f64| dot(self.jet(span, t).rate, columns(t)[j]);
+        const N: usize = 8;
+        let t = |i: usize| i as f64 / N as f64;
+        let mut stops: Vec<(f64, f64)> = (0..=N).map(|i| (t(i), speed(t(i)))).collect();
+        // Two cusps close to each other show as a dip towards 0.
+        for i in (1..N).rev() {
+            let [before, here, after] = [stops[i - 1].1, stops[i].1, stops[i + 1].1];
+            let dip =
+                here.abs() < before.abs() && here.abs() <= after.abs() && here * before > 0.0 && here * after > 0.0;
+            if dip {
+                let sign = here.signum();
+                let (mut low, mut high) = (stops[i - 1].0, stops[i + 1].0);
+                for _ in 0..40 {
+                    let (a, b) = (low + 0.381_966 * (high - low), low + 0.618_034 * (high - low));
+                    if sign * speed(a) < sign * speed(b) { high = b } else { low = a }
+                }
+                let bottom = 0.5 * (low + high);
+                let value = speed(bottom);
+                if value * here < 0.0 {
+                    stops.push((bottom, value));
+                }
+            }
+        }
+        stops.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let crossing = |w: &[(f64, f64)]| {
+            let (mut low, mut high) = (w[0], w[1].0);
+            if low.1 * w[1].1 >= 0.0 {
+                return None;
+            }
+            for _ in 0..50 {
+                let middle = 0.5 * (low.0 + high);
+                let value = speed(middle);
+                if value * low.1 > 0.0 { low = (middle, value) } else { high = middle }
+            }
+            Some(0.5 * (low.0 + high))
+        };
+        stops.windows(2).filter_map(crossing).filter(|t| (1e-9..1.0 - 1e-9).contains(t)).collect()
     }
 
     /// Plane coordinates along a span, t from 0 to 1.

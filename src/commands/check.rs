@@ -1,0 +1,103 @@
+//! `stillbase check`
+
+use clap::Args;
+use serde::Serialize;
+use stillbase::machine::{Inertia, Machine};
+
+use super::failure::Failure;
+use super::input::MachineArgument;
+use super::output::{Format, Table, fixed, yes};
+
+/// Say whether a machine is force balanced and its mass matrix invariant, Eqs (7), (8)
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  stillbase check nine-link
+  stillbase check nine-link --set payload.mass=0.4     what 0.4 kg at the end effector does
+  stillbase check arm.toml --json")]
+pub struct Check {
+    #[command(flatten)]
+    machine: MachineArgument,
+    #[command(flatten)]
+    format: Format,
+}
+
+/// The constants of balance. Coefficients are real parts; pairs in the order (1,2), (1,3), (2,3) …
+#[derive(Serialize)]
+pub struct Balance {
+    /// g_k, kg m.
+    pub gamma_coefficients: Vec<f64>,
+    /// C_kl, kg m².
+    pub coupling_coefficients: Vec<f64>,
+    /// H_kk, kg m².
+    pub h: Vec<f64>,
+    /// λ_k.
+    pub lambda: Vec<f64>,
+}
+
+impl Balance {
+    /// Of a machine.
+    pub fn of(inertia: &Inertia) -> Self {
+        let n = inertia.drives();
+        Self {
+            gamma_coefficients: (0..n).map(|k| inertia.first_moment(k).re).collect(),
+            coupling_coefficients: Inertia::pairs(n).map(|(k, l)| inertia.coupling(k, l).re).collect(),
+            h: inertia.diagonals().to_vec(),
+            lambda: inertia.lambda().to_vec(),
+        }
+    }
+
+    /// One row a drive, then one a pair of drives.
+    pub fn tables(&self, machine: &Machine) -> String {
+        let drives = &machine.spec().drives;
+        let mut by_drive = Table::new(["drive", "g kg m", "H kg m²", "λ"]);
+        for (k, drive) in drives.iter().enumerate() {
+            let row = [fixed(self.gamma_coefficients[k], 9), fixed(self.h[k], 9), fixed(self.lambda[k], 9)];
+            by_drive.row([drive.name.clone()].into_iter().chain(row));
+        }
+        if drives.len() < 2 {
+            return by_drive.to_string();
+        }
+        let mut by_pair = Table::new(["pair", "C kg m²"]);
+        for ((k, l), c) in Inertia::pairs(drives.len()).zip(&self.coupling_coefficients) {
+            by_pair.row([format!("{}, {}", drives[k].name, drives[l].name), fixed(*c, 9)]);
+        }
+        format!("{by_drive}\n{by_pair}")
+    }
+}
+
+#[derive(Serialize)]
+struct Answer {
+    mass: f64,
+    #[serde(flatten)]
+    balance: Balance,
+    force_balanced: bool,
+    invariant: bool,
+}
+
+impl Check {
+    /// Prints the verdict; a valid machine that is not balanced is an answer too.
+    pub fn run(&self) -> Result<(), Failure> {
+        let machine = self.machine.load()?;
+        let inertia = Inertia::of(&machine);
+        let answer = Answer {
+            mass: inertia.mass(),
+            balance: Balance::of(&inertia),
+            force_balanced: inertia.is_force_balanced(),
+            invariant: inertia.is_invariant(),
+        };
+        self.format.print(&answer, |answer| {
+            let (force, coupling) = (inertia.force_residual(), inertia.invariance_residual());
+            format!(
+                "{} · {}\n\nmass             {} kg\nforce balanced   {}, largest |g_k| {force:.1e} kg m\n\
+                 invariant        {}, largest |C_kl| {coupling:.1e} kg m²\n\n{}",
+                machine.name(),
+                machine.spec().summary,
+                fixed(answer.mass, 3),
+                yes(answer.force_balanced),
+                yes(answer.invariant),
+                answer.balance.tables(&machine),
+            )
+        })
+    }
+}

@@ -1,0 +1,127 @@
+//! `stillbase dynamics`
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde::{Deserialize, Serialize};
+use stillbase::dynamics::{Surroundings, angular_momentum, centre_of_mass, inverse_with_wrench, mass_matrix};
+use stillbase::machine::{Inertia, Machine};
+use stillbase::planar::{DriveAngles, PerDrive};
+
+use super::failure::Failure;
+use super::input::{MachineArgument, read};
+use super::output::{Format, Table, fixed};
+
+/// Torques, and what the base feels, of given states of motion, Eqs (1) to (6)
+///
+/// Force and moment are what the manipulator transmits to its base, weight included; the moment is about B, positive
+/// counter-clockwise.
+#[derive(Args)]
+#[command(after_help = "\
+Example:
+  echo '[{\"q\": [0.1, 0.2, 0.3], \"qd\": [0, 0, 1], \"qdd\": [0, 1, 0]}]' > states.json
+  stillbase dynamics nine-link --states states.json --set gravity=0,-9.81")]
+pub struct Dynamics {
+    #[command(flatten)]
+    machine: MachineArgument,
+    /// JSON: a list of states {"q": [rad], "qd": [rad/s], "qdd": [rad/s²]}, absolute angles, one number a drive
+    #[arg(long, value_name = "FILE.json")]
+    states: PathBuf,
+    #[command(flatten)]
+    format: Format,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct State {
+    q: Vec<f64>,
+    qd: Vec<f64>,
+    qdd: Vec<f64>,
+}
+
+#[derive(Serialize)]
+struct Answer {
+    results: Vec<Outcome>,
+}
+
+#[derive(Serialize)]
+struct Outcome {
+    mass_matrix: Vec<Vec<f64>>,
+    torque: Vec<f64>,
+    base_force: [f64; 2],
+    base_moment: f64,
+    com: [f64; 2],
+    angular_momentum_about_base: f64,
+}
+
+impl Dynamics {
+    /// Prints one result a state.
+    pub fn run(&self) -> Result<(), Failure> {
+        let machine = self.machine.load()?;
+        let inertia = Inertia::of(&machine);
+        let around = Surroundings { gravity: machine.gravity(), ..Surroundings::default() };
+        let states = states(&self.states, &machine)?;
+        let results = states.iter().map(|[q, qd, qdd]| outcome(&inertia, &around, q, qd, qdd)).collect();
+        self.format.print(&Answer { results }, |answer| tables(answer, inertia.drives()))
+    }
+}
+
+fn outcome(inertia: &Inertia, around: &Surroundings, q: &PerDrive, qd: &PerDrive, qdd: &PerDrive) -> Outcome {
+    let e = DriveAngles(*q).units();
+    let (h, _) = mass_matrix(inertia, &e, qd);
+    let (torque, wrench) = inverse_with_wrench(inertia, &e, qd, qdd, around);
+    let (total, com) = (wrench.total(), centre_of_mass(inertia, &e));
+    let n = inertia.drives();
+    Outcome {
+        mass_matrix: (0..n).map(|k| (0..n).map(|l| h.get(k, l)).collect()).collect(),
+        torque: torque.to_vec(),
+        base_force: [total.force.re, total.force.im],
+        base_moment: total.moment,
+        com: [com.re, com.im],
+        angular_momentum_about_base: angular_momentum(inertia, &e, qd),
+    }
+}
+
+/// Reads states, each as q, q̇, q̈.
+fn states(file: &Path, machine: &Machine) -> Result<Vec<[PerDrive; 3]>, Failure> {
+    let text = read(file)?;
+    let wrong = |line: usize, what: String| Failure::WrongInput(format!("{}:{line}: {what}", file.display()));
+    let states: Vec<State> = serde_json::from_str(&text).map_err(|e| {
+        let said = e.to_string();
+        let what = said.rsplit_once(" at line ").map_or(said.as_str(), |(what, _)| what);
+        wrong(e.line(), format!(r#"{what}: want [{{"q": [rad], "qd": [rad/s], "qdd": [rad/s²]}}, …]"#))
+    })?;
+    let n = machine.drives();
+    // States hold no strings or objects of their own, so the i-th brace opens the i-th state.
+    let starts = text.match_indices('{').map(|(at, _)| text[..at].matches('\n').count() + 1);
+    states
+        .iter()
+        .zip(starts)
+        .enumerate()
+        .map(|(i, (state, line))| {
+            let take = |name: &str, values: &[f64]| {
+                PerDrive::from_slice(values).filter(|v| v.len() == n).ok_or_else(|| {
+                    wrong(line, format!("state {}: {name} has {} numbers: want {n}, one a drive", i + 1, values.len()))
+                })
+            };
+            Ok([take("q", &state.q)?, take("qd", &state.qd)?, take("qdd", &state.qdd)?])
+        })
+        .collect()
+}
+
+fn tables(answer: &Answer, n: usize) -> String {
+    let torques = (1..=n).map(|k| format!("τ_{k} N m"));
+    let rest = ["f_Bx N", "f_By N", "n_B N m", "x_CM m", "y_CM m", "h_B kg m²/s"].map(String::from);
+    let mut motion = Table::new(["state".to_string()].into_iter().chain(torques).chain(rest));
+    let upper = || (0..n).flat_map(|k| (k..n).map(move |l| (k, l)));
+    let entries = upper().map(|(k, l)| format!("H_{}{} kg m²", k + 1, l + 1));
+    let mut matrix = Table::new(["state".to_string()].into_iter().chain(entries));
+    for (i, r) in answer.results.iter().enumerate() {
+        let name = || [(i + 1).to_string()].into_iter();
+        let after =
+            [r.base_force[0], r.base_force[1], r.base_moment, r.com[0], r.com[1], r.angular_momentum_about_base];
+        motion.row(name().chain(r.torque.iter().chain(&after).map(|x| fixed(*x, 6))));
+        matrix.row(name().chain(upper().map(|(k, l)| fixed(r.mass_matrix[k][l], 6))));
+    }
+    format!("{motion}\n{matrix}")
+}

@@ -1,0 +1,142 @@
+//! What ends a command early, and with which exit status.
+
+use std::fmt::Display;
+use std::io;
+use std::process::ExitCode;
+
+use stillbase::balance::DesignError;
+use stillbase::files::WriteError;
+use stillbase::machine::{FileError, MachineError};
+use stillbase::pose_constant::{PlaneError, Unreachable};
+use stillbase::scenario::ScenarioError;
+use stillbase::session::Refusal;
+
+use super::output::say;
+
+/// Why a command did not finish.
+#[derive(Debug)]
+pub enum Failure {
+    /// Whoever read standard output has enough, as `head` does: not an error.
+    ReaderGone,
+    /// The question has no answer: why, and what would have one.
+    NoAnswer(String),
+    /// The input is wrong: where, and what was expected.
+    WrongInput(String),
+}
+
+impl Failure {
+    /// There is no answer.
+    pub fn no_answer(why: impl Display) -> Self {
+        Self::NoAnswer(why.to_string())
+    }
+
+    /// The input is wrong.
+    pub fn wrong_input(why: impl Display) -> Self {
+        Self::WrongInput(why.to_string())
+    }
+
+    /// Standard output could not be written.
+    pub fn standard_output(error: &io::Error) -> Self {
+        match error.kind() {
+            io::ErrorKind::BrokenPipe => Self::ReaderGone,
+            _ => Self::WrongInput(format!("standard output: {error}: want a place that can be written")),
+        }
+    }
+
+    /// The same failure of one thing among several.
+    #[must_use]
+    pub fn of(self, what: impl Display) -> Self {
+        match self {
+            Self::ReaderGone => Self::ReaderGone,
+            Self::NoAnswer(why) => Self::NoAnswer(format!("{what}: {why}")),
+            Self::WrongInput(why) => Self::WrongInput(format!("{what}: {why}")),
+        }
+    }
+}
+
+impl From<FileError> for Failure {
+    fn from(e: FileError) -> Self {
+        Self::wrong_input(e)
+    }
+}
+impl From<ScenarioError> for Failure {
+    fn from(e: ScenarioError) -> Self {
+        Self::wrong_input(e)
+    }
+}
+impl From<WriteError> for Failure {
+    fn from(e: WriteError) -> Self {
+        Self::wrong_input(e)
+    }
+}
+impl From<MachineError> for Failure {
+    fn from(e: MachineError) -> Self {
+        Self::wrong_input(e)
+    }
+}
+impl From<PlaneError> for Failure {
+    fn from(e: PlaneError) -> Self {
+        Self::no_answer(e)
+    }
+}
+impl From<Unreachable> for Failure {
+    fn from(e: Unreachable) -> Self {
+        Self::no_answer(e)
+    }
+}
+impl From<DesignError> for Failure {
+    fn from(e: DesignError) -> Self {
+        match e {
+            DesignError::Inconsistent { .. } | DesignError::Machine(_) => Self::no_answer(e),
+            DesignError::Penalties { .. } | DesignError::Penalty { .. } => Self::wrong_input(e),
+        }
+    }
+}
+impl From<Refusal> for Failure {
+    fn from(e: Refusal) -> Self {
+        match e {
+            Refusal::NoPlanes(_) | Refusal::Unreachable { .. } | Refusal::Path(_) => Self::no_answer(e),
+            Refusal::Machine(_) | Refusal::OutOfRange { .. } => Self::wrong_input(e),
+        }
+    }
+}
+
+/// Says why, in one line, and gives the exit status.
+pub fn exit_code(done: Result<(), Failure>) -> ExitCode {
+    match done {
+        Ok(()) | Err(Failure::ReaderGone) => ExitCode::SUCCESS,
+        Err(Failure::NoAnswer(why)) => {
+            say(why);
+            ExitCode::from(1)
+        }
+        Err(Failure::WrongInput(why)) => {
+            say(why);
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Answers a command line that asks for help or cannot be read.
+pub fn usage(error: &clap::Error) -> ExitCode {
+    if !error.use_stderr() {
+        // Nobody is left to tell when help cannot be printed.
+        let _ = error.print();
+        return ExitCode::SUCCESS;
+    }
+    exit_code(Err(Failure::WrongInput(in_one_line(&error.render().to_string()))))
+}
+
+/// What is wrong and the tips, without the usage that follows.
+fn in_one_line(rendered: &str) -> String {
+    let parts = rendered.split("\n\n").filter(|p| !p.starts_with("Usage:") && !p.starts_with("For more information"));
+    let mut line = String::new();
+    for part in parts {
+        let words: Vec<&str> = part.split_whitespace().collect();
+        if !line.is_empty() {
+            line.push_str("; ");
+        }
+        line.push_str(&words.join(" "));
+    }
+    // Negative numbers have been padded with a space, see `words`.
+    format!("{}; see --help", line.strip_prefix("error: ").unwrap_or(&line).replace("' -", "'-"))
+}

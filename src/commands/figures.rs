@@ -1,0 +1,54 @@
+//! `stillbase figures`
+
+use std::path::PathBuf;
+
+use clap::Args;
+use stillbase::files::write_new;
+use stillbase::scenario::Scenario;
+use stillbase::scene::palette::Theme;
+use stillbase::ui::picture::Canvas;
+use stillbase::ui::{Command, Desk};
+
+use super::failure::Failure;
+use super::output::say;
+
+/// Draw the pictures of the documentation: the window in both themes and both views, without a display
+#[derive(Args)]
+#[command(after_help = "Example:\n  stillbase figures -o assets/pictures --force")]
+pub struct Figures {
+    /// The folder to write to
+    #[arg(short, long, value_name = "FOLDER", default_value = ".")]
+    output: PathBuf,
+    /// Replace pictures that exist
+    #[arg(long)]
+    force: bool,
+}
+
+/// Name, scenario, theme, flat, instant in s.
+const FIGURES: [(&str, &str, Theme, bool, f64); 4] = [
+    ("window-dark.png", "case-3", Theme::Dark, true, 0.62),
+    ("window-light.png", "case-3", Theme::Light, true, 0.62),
+    ("case-1-dark.png", "case-1", Theme::Dark, true, 0.25),
+    ("space-dark.png", "case-3", Theme::Dark, false, 0.62),
+];
+
+impl Figures {
+    /// Draws them all.
+    pub fn run(&self) -> Result<(), Failure> {
+        for (name, scenario, theme, flat, time) in FIGURES {
+            let scenario = Scenario::find(scenario)?;
+            let task_time = scenario.task.time;
+            let mut desk = Desk::new(scenario, theme)?;
+            for command in [Command::Seek(task_time), Command::Seek(time), Command::Flat(flat)] {
+                desk.carry_out(command);
+            }
+            let mut canvas = Canvas::new([1440, 900], 1.0).map_err(Failure::no_answer)?;
+            let picture = canvas.desk(&mut desk).map_err(Failure::no_answer)?;
+            let png = picture.to_png().map_err(Failure::no_answer)?;
+            let file = self.output.join(name);
+            write_new(&file, &png, self.force)?;
+            say(format!("wrote {}", file.display()));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,161 @@
+//! `stillbase headless`
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+use stillbase::files::check_new;
+use stillbase::headless::{Options, Pictures, Progress, RecordError, Recording, record};
+use stillbase::scenario::Scenario;
+
+use super::failure::Failure;
+use super::input::{Settings, scenario};
+use super::output::{Format, Table, fixed, say, yes};
+
+/// Simulate scenarios without a window and record them for the Rerun viewer
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  stillbase headless -o cases.rrd                             the paper's three cases
+  stillbase headless case-1 my.toml -o both.rrd --fps 30      with pictures
+  stillbase headless case-3 -o loaded.rrd --set payload.mass=0.1")]
+pub struct Headless {
+    /// Built-in scenarios (case-1, case-2, case-3) or TOML files; none: the three cases
+    #[arg(value_name = "SCENARIO")]
+    scenarios: Vec<String>,
+    /// The recording to write
+    #[arg(short, long, value_name = "FILE.rrd")]
+    output: PathBuf,
+    /// Record offscreen pictures, so many per simulated second, if a graphics adapter exists
+    #[arg(long, value_name = "N", value_parser = frames_per_second)]
+    fps: Option<f64>,
+    /// Width and height of the pictures, pixels
+    #[arg(long, value_name = "WxH", default_value = "1280x800", requires = "fps", value_parser = size)]
+    size: [u32; 2],
+    /// Replace the file if it exists
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    settings: Settings,
+    #[command(flatten)]
+    format: Format,
+}
+
+fn frames_per_second(text: &str) -> Result<f64, String> {
+    let fps = text.parse().ok().filter(|fps| *fps > 0.0 && *fps <= 1000.0);
+    fps.ok_or_else(|| "want pictures per simulated second, above 0 and at most 1000".into())
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let side = |s: &str| s.parse().ok().filter(|n| (16..=8192).contains(n));
+    let both = text.split_once('x').and_then(|(w, h)| Some([side(w)?, side(h)?]));
+    both.ok_or_else(|| "want WIDTHxHEIGHT in pixels, 16 to 8192, such as 1280x800".into())
+}
+
+#[derive(Serialize)]
+struct Answer {
+    recordings: Vec<Row>,
+}
+
+#[derive(Serialize)]
+struct Row {
+    scenario: String,
+    file: String,
+    steps: u64,
+    peak_torque: Vec<f64>,
+    peak_base_force: f64,
+    peak_base_moment: f64,
+    reactionless: bool,
+}
+
+impl From<Recording> for Row {
+    fn from(recording: Recording) -> Self {
+        Self {
+            scenario: recording.scenario,
+            file: recording.file.display().to_string(),
+            steps: recording.steps,
+            peak_torque: recording.peak_torque,
+            peak_base_force: recording.peak_base_force,
+            peak_base_moment: recording.peak_base_moment,
+            reactionless: recording.reactionless,
+        }
+    }
+}
+
+impl Headless {
+    /// Records and prints the peaks.
+    pub fn run(&self) -> Result<(), Failure> {
+        let scenarios = self.scenarios()?;
+        check_new(&self.output, self.force)?;
+        let [width, height] = self.size;
+        let pictures = self.fps.map(|fps| Pictures { fps, width, height });
+        let recordings = record_with_bar(&scenarios, &self.output, &Options { pictures, force: self.force })?;
+        say(format!("wrote {}", self.output.display()));
+        let answer = Answer { recordings: recordings.into_iter().map(Row::from).collect() };
+        self.format.print(&answer, table)
+    }
+
+    fn scenarios(&self) -> Result<Vec<Scenario>, Failure> {
+        let builtin = Scenario::builtin_names().map(String::from);
+        let names = if self.scenarios.is_empty() { &builtin[..] } else { &self.scenarios };
+        let mut scenarios: Vec<Scenario> = Vec::with_capacity(names.len());
+        for name in names {
+            let next = scenario(name, &self.settings)?;
+            if scenarios.iter().any(|s| s.name == next.name) {
+                let why = format!("a second scenario called {:?}: want different names in one recording", next.name);
+                return Err(Failure::wrong_input(why).of(name));
+            }
+            scenarios.push(next);
+        }
+        Ok(scenarios)
+    }
+}
+
+/// A recording without pictures that replaces nothing.
+pub fn unpictured() -> Options {
+    Options { pictures: None, force: false }
+}
+
+/// Records with a progress bar on standard error, where that is a terminal.
+pub fn record_with_bar(scenarios: &[Scenario], file: &Path, options: &Options) -> Result<Vec<Recording>, Failure> {
+    let bar = ProgressBar::new(0);
+    if let Ok(style) = ProgressStyle::with_template("{msg:12} {wide_bar} {percent:>3} %  {eta:>4}") {
+        bar.set_style(style);
+    }
+    let recordings = record(scenarios, file, options, &mut |progress: Progress| {
+        if bar.message() != progress.what {
+            bar.set_message(progress.what.to_owned());
+        }
+        bar.set_length(progress.of);
+        bar.set_position(progress.done);
+    });
+    bar.finish_and_clear();
+    let recordings = recordings?;
+    let mut notes: Vec<&String> = recordings.iter().flat_map(|r| &r.notes).collect();
+    notes.dedup();
+    notes.into_iter().for_each(say);
+    Ok(recordings)
+}
+
+impl From<RecordError> for Failure {
+    fn from(e: RecordError) -> Self {
+        match e {
+            RecordError::Refused { scenario, refusal } => Self::from(refusal).of(scenario),
+            other => Self::wrong_input(other),
+        }
+    }
+}
+
+fn table(answer: &Answer) -> String {
+    let drives = answer.recordings.iter().map(|r| r.peak_torque.len()).max().unwrap_or(0);
+    let torques = (1..=drives).map(|k| format!("peak |τ_{k}| N m"));
+    let rest = ["peak |f_B| N", "peak |n_B| N m", "reactionless"].map(String::from);
+    let mut table = Table::new(["scenario", "steps"].map(String::from).into_iter().chain(torques).chain(rest));
+    for r in &answer.recordings {
+        let torques = (0..drives).map(|k| r.peak_torque.get(k).map_or_else(String::new, |t| fixed(*t, 6)));
+        let rest = [fixed(r.peak_base_force, 6), fixed(r.peak_base_moment, 6), yes(r.reactionless).into()];
+        table.row([r.scenario.clone(), r.steps.to_string()].into_iter().chain(torques).chain(rest));
+    }
+    table.to_string()
+}

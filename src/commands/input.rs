@@ -1,0 +1,134 @@
+//! What commands share of their input: machines, scenarios, settings, points.
+
+use std::ffi::OsString;
+use std::path::Path;
+
+use clap::Args;
+use stillbase::machine::{self, Inertia, Machine};
+use stillbase::planar::Vector;
+use stillbase::pose_constant::plane_map;
+use stillbase::reactionless::PlaneMap;
+use stillbase::scenario::Scenario;
+
+use super::failure::Failure;
+use super::output::say;
+
+/// The scenario of a command that is given none: the paper's reactionless case.
+pub const DEFAULT_SCENARIO: &str = "case-3";
+
+/// Changes of the machine.
+#[derive(Args)]
+pub struct Settings {
+    /// Change the machine, as often as needed: link.5.com=-0.02 (m), link.9.mass=0.3 (kg), length.l1=0.6 (m),
+    /// payload.mass=0.4 (kg), gravity=0,-9.81 (m/s²), limits.a1=0.4,2.7 (rad), drive.1.torque_limit=20 (N m)
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
+    pairs: Vec<(String, String)>,
+}
+
+fn setting(text: &str) -> Result<(String, String), String> {
+    let (key, value) = text.split_once('=').ok_or("want KEY=VALUE, such as link.5.com=-0.02")?;
+    Ok((key.trim().into(), value.trim().into()))
+}
+
+impl Settings {
+    /// The machine with all changes made together.
+    ///
+    /// # Errors
+    /// If there is no such setting, or the machine would not be valid.
+    pub fn apply(&self, machine: Machine) -> Result<Machine, Failure> {
+        if self.pairs.is_empty() {
+            return Ok(machine);
+        }
+        machine
+            .set_all(self.pairs.iter().map(|(k, v)| (k.as_str(), v.as_str())))
+            .map_err(|e| Failure::wrong_input(e).of("--set"))
+    }
+}
+
+/// The machine that a command is about.
+#[derive(Args)]
+pub struct MachineArgument {
+    /// A built-in machine (`stillbase machines` lists them) or a TOML file
+    #[arg(value_name = "MACHINE")]
+    name: String,
+    #[command(flatten)]
+    settings: Settings,
+}
+
+impl MachineArgument {
+    /// The machine with its changes.
+    ///
+    /// # Errors
+    /// If there is no such machine, or it is not valid.
+    pub fn load(&self) -> Result<Machine, Failure> {
+        self.settings.apply(machine::find(&self.name, None)?)
+    }
+}
+
+/// A scenario by name or file, its machine changed before anything is planned.
+///
+/// # Errors
+/// If there is no such scenario, or its machine is not valid.
+pub fn scenario(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
+    let mut scenario = Scenario::find(name)?;
+    scenario.machine = settings.apply(scenario.machine)?;
+    Ok(scenario)
+}
+
+/// The reactionless planes of a machine; says so if b is only nearly constant.
+///
+/// # Errors
+/// If it has none.
+pub fn planes_of(machine: &Machine) -> Result<PlaneMap, Failure> {
+    let map = plane_map(machine)?;
+    let inertia = Inertia::of(machine);
+    if !inertia.is_invariant() {
+        say(format!(
+            "note: couplings of up to {:.1e} kg m² remain in {}, so holding b is not exactly reactionless; \
+             `stillbase design` removes them",
+            inertia.invariance_residual(),
+            machine.name(),
+        ));
+    }
+    Ok(map)
+}
+
+/// The command line with a space before negative numbers and points, such as `-0.5,0.25`, so that they are not taken
+/// for options; no option begins with a digit.
+pub fn words(words: impl Iterator<Item = OsString>) -> impl Iterator<Item = OsString> {
+    words.map(|word| match word.to_str().map(str::as_bytes) {
+        Some([b'-', b'0'..=b'9' | b'.', .., last]) if !last.is_ascii_alphabetic() => padded(word),
+        Some([b'-', b'0'..=b'9']) => padded(word),
+        _ => word,
+    })
+}
+
+fn padded(word: OsString) -> OsString {
+    let mut padded = OsString::from(" ");
+    padded.push(word);
+    padded
+}
+
+/// A point X,Y, m.
+pub fn point(text: &str) -> Result<Vector, String> {
+    let both = text.split_once(',').and_then(|(x, y)| Some(Vector::new(number(x)?, number(y)?)));
+    both.ok_or_else(|| "want X,Y in m, such as 0.5,-0.25, up to 1e6".into())
+}
+
+/// A pose constant, rad.
+pub fn pose_constant(text: &str) -> Result<f64, String> {
+    number(text).ok_or_else(|| "want a number in rad, such as 2.4, up to 1e6".into())
+}
+
+/// A number whose digits still mean something beside metres and turns.
+fn number(text: &str) -> Option<f64> {
+    text.trim().parse().ok().filter(|x: &f64| x.abs() <= 1e6)
+}
+
+/// A text file.
+///
+/// # Errors
+/// If it cannot be read.
+pub fn read(file: &Path) -> Result<String, Failure> {
+    std::fs::read_to_string(file).map_err(|e| Failure::wrong_input(e).of(file.display()))
+}

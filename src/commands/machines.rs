@@ -1,0 +1,54 @@
+//! `stillbase machines`
+
+use clap::Args;
+use serde::Serialize;
+use stillbase::machine::builtins;
+
+use super::failure::Failure;
+use super::input::Settings;
+use super::output::{Format, Table};
+
+/// List the built-in machines
+#[derive(Args)]
+pub struct Machines {
+    #[command(flatten)]
+    settings: Settings,
+    #[command(flatten)]
+    format: Format,
+}
+
+#[derive(Serialize)]
+struct Answer {
+    machines: Vec<Row>,
+}
+
+#[derive(Serialize)]
+struct Row {
+    name: String,
+    drives: usize,
+    links: usize,
+    summary: String,
+}
+
+impl Machines {
+    /// Prints them.
+    pub fn run(&self) -> Result<(), Failure> {
+        let mut machines = Vec::new();
+        for machine in builtins() {
+            let machine = self.settings.apply(machine.clone()).map_err(|e| e.of(machine.name()))?;
+            machines.push(Row {
+                name: machine.name().into(),
+                drives: machine.drives(),
+                links: machine.links().len(),
+                summary: machine.spec().summary.clone(),
+            });
+        }
+        self.format.print(&Answer { machines }, |answer| {
+            let mut table = Table::new(["machine", "drives", "links", ""]).with_words(3);
+            for m in &answer.machines {
+                table.row([m.name.clone(), m.drives.to_string(), m.links.to_string(), m.summary.clone()]);
+            }
+            table.to_string()
+        })
+    }
+}

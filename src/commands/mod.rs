@@ -1,0 +1,37 @@
+//! The command line, one file a subcommand: each reads its input, asks the library, prints.
+//!
+//! Names and JSON keys are a contract that scripts depend on. Results go to standard output, messages and the progress
+//! bar to standard error. Exit status: 0 done, 1 the question has no answer, 2 wrong input.
+
+mod check;
+mod design;
+mod dynamics;
+mod failure;
+#[cfg(feature = "ui")]
+mod figures;
+#[cfg(feature = "record")]
+mod headless;
+mod input;
+mod machines;
+mod open;
+mod output;
+mod pose;
+mod reach;
+mod simulate;
+mod workspace;
+
+pub use check::Check;
+pub use design::Design;
+pub use dynamics::Dynamics;
+pub use failure::{exit_code, usage};
+#[cfg(feature = "ui")]
+pub use figures::Figures;
+#[cfg(feature = "record")]
+pub use headless::Headless;
+pub use input::words;
+pub use machines::Machines;
+pub use open::Open;
+pub use pose::Pose;
+pub use reach::Reach;
+pub use simulate::Simulate;
+pub use workspace::Workspace;

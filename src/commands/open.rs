@@ -1,0 +1,95 @@
+//! `stillbase [SCENARIO]`: the window, or a recording where there is no display.
+
+use clap::Args;
+use stillbase::scenario::Scenario;
+#[cfg(feature = "window")]
+use stillbase::scene::palette::Theme;
+#[cfg(feature = "window")]
+use stillbase::window::WindowError;
+
+use super::failure::Failure;
+use super::input::{DEFAULT_SCENARIO, Settings, scenario};
+
+/// What to open.
+#[derive(Args)]
+pub struct Open {
+    /// A built-in scenario (case-1, case-2, case-3) or a TOML file to open in a window
+    #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
+    scenario: String,
+    /// Colours of the window
+    #[cfg(feature = "window")]
+    #[arg(long, value_enum)]
+    theme: Option<ThemeName>,
+    #[command(flatten)]
+    settings: Settings,
+}
+
+#[cfg(feature = "window")]
+#[derive(Clone, Copy, Default, clap::ValueEnum)]
+enum ThemeName {
+    #[default]
+    Dark,
+    Light,
+}
+
+#[cfg(feature = "window")]
+impl From<ThemeName> for Theme {
+    fn from(name: ThemeName) -> Self {
+        match name {
+            ThemeName::Dark => Self::Dark,
+            ThemeName::Light => Self::Light,
+        }
+    }
+}
+
+impl Open {
+    /// Shows the scenario, or records it beside the reader.
+    pub fn run(&self) -> Result<(), Failure> {
+        let scenario = scenario(&self.scenario, &self.settings).map_err(|failure| match failure {
+            // Most likely a command mistyped.
+            Failure::WrongInput(why) if !self.scenario.ends_with(".toml") => {
+                Failure::WrongInput(format!("{why}; `stillbase --help` lists the commands"))
+            }
+            other => other,
+        })?;
+        #[cfg(feature = "window")]
+        let why = match stillbase::window::run(scenario.clone(), self.theme.unwrap_or_default().into()) {
+            Ok(()) => return Ok(()),
+            Err(WindowError::Refused(refusal)) => return Err(Failure::from(refusal).of(&scenario.name)),
+            // The window system says where in its source it gave up before it says why.
+            Err(error) => error.to_string(),
+        };
+        #[cfg(not(feature = "window"))]
+        let why = "this build has no window".to_string();
+        record_instead(scenario, &why)
+    }
+}
+
+#[cfg(feature = "record")]
+fn record_instead(scenario: Scenario, why: &str) -> Result<(), Failure> {
+    use stillbase::files::free_name;
+
+    use super::headless::{record_with_bar, unpictured};
+    use super::output::{fixed, say, yes};
+
+    let file = free_name(&scenario.name, "rrd");
+    say(format!("{}; recording {} without a window instead", why.trim_end_matches('.'), scenario.name));
+    for done in record_with_bar(&[scenario], &file, &unpictured())? {
+        say(format!(
+            "wrote {}: {} steps, peak |n_B| {} N m, reactionless: {}",
+            done.file.display(),
+            done.steps,
+            fixed(done.peak_base_moment, 6),
+            yes(done.reactionless),
+        ));
+    }
+    Ok(())
+}
+
+#[cfg(not(feature = "record"))]
+fn record_instead(scenario: Scenario, why: &str) -> Result<(), Failure> {
+    Err(Failure::WrongInput(format!(
+        "{why}, and this build does not record: want a display, or `stillbase simulate {}`",
+        scenario.name
+    )))
+}

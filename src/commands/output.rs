@@ -1,0 +1,117 @@
+//! Standard output: one JSON object, or a calm table. Standard error: messages.
+
+use std::fmt::{self, Display};
+use std::io::{self, Write};
+
+use serde::Serialize;
+use serde_json::ser::Formatter;
+
+use super::failure::Failure;
+
+/// How a command answers.
+#[derive(clap::Args)]
+pub struct Format {
+    /// Print one JSON object, in SI units and radians, instead of a table
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl Format {
+    /// Prints an answer as JSON or as the text that `human` makes of it.
+    ///
+    /// # Errors
+    /// If it cannot be written, or holds a number that is not finite.
+    pub fn print<T: Serialize>(&self, answer: &T, human: impl FnOnce(&T) -> String) -> Result<(), Failure> {
+        // Made in both cases, because it finds numbers that are not finite.
+        let json = json(answer)?;
+        let text = if self.json { json } else { human(answer).into_bytes() };
+        let mut out = io::stdout().lock();
+        out.write_all(&text).and_then(|()| out.flush()).map_err(|e| Failure::standard_output(&e))
+    }
+}
+
+/// JSON has no word for infinity or NaN, and `null` would go unnoticed.
+struct FiniteOnly;
+
+impl Formatter for FiniteOnly {
+    fn write_null<W: ?Sized + Write>(&mut self, _: &mut W) -> io::Result<()> {
+        Err(io::Error::other("a result is not a finite number: want smaller input"))
+    }
+}
+
+fn json(answer: &impl Serialize) -> Result<Vec<u8>, Failure> {
+    let mut text = Vec::new();
+    let mut serializer = serde_json::Serializer::with_formatter(&mut text, FiniteOnly);
+    answer.serialize(&mut serializer).map_err(Failure::wrong_input)?;
+    text.push(b'\n');
+    Ok(text)
+}
+
+/// A message on standard error, in one line.
+pub fn say(message: impl Display) {
+    let message = message.to_string();
+    let line = message.lines().map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join(" ");
+    // Nobody is left to tell when standard error is closed.
+    let _ = writeln!(io::stderr(), "stillbase: {line}");
+}
+
+/// A number with fixed decimals, without a sign on zero; powers of ten where decimals would run away.
+pub fn fixed(x: f64, decimals: usize) -> String {
+    if x.abs() >= 1e9 {
+        return format!("{x:.3e}");
+    }
+    let text = format!("{x:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(rest) if rest.bytes().all(|b| matches!(b, b'0' | b'.')) => rest.into(),
+        _ => text,
+    }
+}
+
+/// `yes` or `no`.
+pub fn yes(is_so: bool) -> &'static str {
+    if is_so { "yes" } else { "no" }
+}
+
+/// Aligned columns: the first to the left, numbers to the right.
+pub struct Table {
+    rows: Vec<Vec<String>>,
+    /// A further column that is set to the left.
+    words: Option<usize>,
+}
+
+impl Table {
+    /// A table with a head; each column's unit stands behind its name.
+    pub fn new<S: Into<String>>(head: impl IntoIterator<Item = S>) -> Self {
+        Self { rows: vec![head.into_iter().map(Into::into).collect()], words: None }
+    }
+
+    /// Sets a column of words to the left.
+    #[must_use]
+    pub fn with_words(self, column: usize) -> Self {
+        Self { words: Some(column), ..self }
+    }
+
+    /// One more row.
+    pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
+        self.rows.push(cells.into_iter().collect());
+    }
+}
+
+impl Display for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let width = |c: usize| self.rows.iter().filter_map(|r| r.get(c)).map(|s| s.chars().count()).max().unwrap_or(0);
+        let widths: Vec<usize> = (0..self.rows.iter().map(Vec::len).max().unwrap_or(0)).map(width).collect();
+        for row in &self.rows {
+            let mut line = String::new();
+            for (c, (cell, &width)) in row.iter().zip(&widths).enumerate() {
+                match c {
+                    0 => line.push_str(&format!("{cell:<width$}")),
+                    _ if self.words == Some(c) => line.push_str(&format!("   {cell:<width$}")),
+                    _ => line.push_str(&format!("   {cell:>width$}")),
+                }
+            }
+            writeln!(f, "{}", line.trim_end())?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,78 @@
+//! `stillbase reach`
+
+use clap::Args;
+use serde::Serialize;
+use stillbase::planar::Vector;
+use stillbase::pose_constant::Unreachable;
+use stillbase::reactionless::BSet;
+
+use super::failure::Failure;
+use super::input::{MachineArgument, planes_of, point};
+use super::output::{Format, Table, fixed, say};
+
+/// The pose constants b whose reactionless workspace holds a point, and those that hold all points
+///
+/// Two points are joined by a reactionless path if and only if some b holds both. b counts on a circle: turning every
+/// drive once adds the period. b_min lies in [0, period), b_max may exceed it, [0, period] is the whole circle.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  stillbase reach nine-link 0.5,0.5 0.55,0.9
+  stillbase reach nine-link -0.6,-0.2 --set limits.a1=0.4,2.7")]
+pub struct Reach {
+    #[command(flatten)]
+    machine: MachineArgument,
+    /// Points of the end effector in base axes, m
+    #[arg(value_name = "X,Y", required = true, value_parser = point)]
+    points: Vec<Vector>,
+    #[command(flatten)]
+    format: Format,
+}
+
+#[derive(Serialize)]
+struct Answer {
+    points: Vec<OfPoint>,
+    overlap: Vec<[f64; 2]>,
+    period: f64,
+}
+
+#[derive(Serialize)]
+struct OfPoint {
+    point: [f64; 2],
+    intervals: Vec<[f64; 2]>,
+}
+
+impl Reach {
+    /// Prints the b of each point and of all.
+    pub fn run(&self) -> Result<(), Failure> {
+        let map = planes_of(&self.machine.load()?)?;
+        let mut sets = Vec::with_capacity(self.points.len());
+        for p in &self.points {
+            let none = |reason| Unreachable::Anywhere { x: p.re, y: p.im, reason };
+            sets.push(map.reach(*p).map_err(none)?);
+        }
+        let overlap = BSet::overlap(&sets).intervals;
+        if overlap.is_empty() {
+            say("no b serves all points: no reactionless path joins them");
+        }
+        let of_point = |(p, set): (&Vector, BSet)| OfPoint { point: [p.re, p.im], intervals: set.intervals };
+        let answer =
+            Answer { points: self.points.iter().zip(sets).map(of_point).collect(), overlap, period: map.period() };
+        self.format.print(&answer, table)
+    }
+}
+
+fn table(answer: &Answer) -> String {
+    let mut table = Table::new(["point m", "b_min rad", "b_max rad"]);
+    let mut rows = |name: String, intervals: &[[f64; 2]]| {
+        let first = [name].into_iter().chain(std::iter::repeat(String::new()));
+        for (name, [from, to]) in first.zip(intervals) {
+            table.row([name, fixed(*from, 9), fixed(*to, 9)]);
+        }
+    };
+    for p in &answer.points {
+        rows(format!("{}, {}", p.point[0], p.point[1]), &p.intervals);
+    }
+    rows("all".into(), &answer.overlap);
+    format!("{table}\nperiod {} rad\n", fixed(answer.period, 9))
+}

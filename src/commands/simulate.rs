@@ -1,0 +1,233 @@
+//! `stillbase simulate`
+
+use std::io::{self, StdoutLock, Write};
+use std::num::NonZeroU64;
+use std::path::PathBuf;
+
+use clap::Args;
+use serde::{Serialize, Serializer};
+use stillbase::files::{NewFile, WriteError, check_new};
+use stillbase::frame::Frame;
+use stillbase::session::replay;
+use stillbase::signals::{Signal, signals};
+
+use super::failure::Failure;
+use super::input::{DEFAULT_SCENARIO, Settings, scenario};
+use super::output::{Format, fixed, say, yes};
+
+/// Run a scenario and print every signal over time as CSV
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  stillbase simulate case-1 -o case-1.csv
+  stillbase simulate --every 10 --set payload.mass=0.1 | head
+  stillbase simulate case-3 --json")]
+pub struct Simulate {
+    /// A built-in scenario (case-1, case-2, case-3) or a TOML file
+    #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
+    scenario: String,
+    /// Write the CSV to this file instead of standard output
+    #[arg(short, long, value_name = "FILE.csv")]
+    output: Option<PathBuf>,
+    /// Replace the file if it exists
+    #[arg(long)]
+    force: bool,
+    /// Print every N-th step only, and the last
+    #[arg(long, value_name = "N", default_value = "1", value_parser = every)]
+    every: NonZeroU64,
+    #[command(flatten)]
+    settings: Settings,
+    #[command(flatten)]
+    format: Format,
+}
+
+fn every(text: &str) -> Result<NonZeroU64, String> {
+    text.trim().parse().map_err(|_| "want a whole number of steps, 1 or more".into())
+}
+
+/// What a run comes to.
+#[derive(Serialize)]
+struct Verdict {
+    steps: u64,
+    peak_torque: Vec<f64>,
+    peak_base_force: f64,
+    peak_base_moment: f64,
+    reactionless: bool,
+}
+
+impl Verdict {
+    fn of(last: &Frame) -> Self {
+        Self {
+            steps: last.step,
+            peak_torque: last.peaks.torque.to_vec(),
+            peak_base_force: last.peaks.force,
+            peak_base_moment: last.peaks.moment,
+            reactionless: last.peaks.is_reactionless(),
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct Answer {
+    scenario: String,
+    units: Columns<&'static str>,
+    time: Vec<f64>,
+    signals: Columns<Vec<f64>>,
+    verdict: Verdict,
+}
+
+/// A JSON object whose keys keep their order.
+struct Columns<T>(Vec<(String, T)>);
+
+impl<T: Serialize> Serialize for Columns<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(path, value)| (path, value)))
+    }
+}
+
+impl Simulate {
+    /// Runs it.
+    pub fn run(&self) -> Result<(), Failure> {
+        let scenario = scenario(&self.scenario, &self.settings)?;
+        let table = signals(&scenario.machine);
+        if let Some(file) = &self.output {
+            check_new(file, self.force)?;
+        }
+        // Begun with the first step: what cannot start prints nothing.
+        let mut csv = None;
+        let (mut time, mut columns) = (Vec::new(), vec![Vec::new(); table.len()]);
+        let last = (scenario.duration / scenario.step).round() as u64;
+        // A run cannot be left half-way; after a failure nothing more is written.
+        let mut written = Ok(());
+        let run = replay(&scenario, |_, frame| {
+            if frame.step % self.every != 0 && frame.step != last {
+                return;
+            }
+            if (self.output.is_some() || !self.format.json) && written.is_ok() {
+                written = self.csv(&mut csv, &table).and_then(|csv| csv.row(&table, frame));
+            }
+            if self.format.json {
+                time.push(frame.time);
+                columns.iter_mut().zip(&table).for_each(|(column, signal)| column.push(value(signal, frame)));
+            }
+        })
+        .map_err(|e| Failure::from(e).of(&scenario.name))?;
+        written?;
+        if let Some(csv) = csv {
+            csv.finish()?;
+        }
+        let verdict = Verdict::of(&run.frame());
+        if !self.format.json {
+            say(format!(
+                "{}: {} steps, peak |n_B| {} N m, peak |f_B| {} N, reactionless: {}",
+                scenario.name,
+                verdict.steps,
+                fixed(verdict.peak_base_moment, 6),
+                fixed(verdict.peak_base_force, 6),
+                yes(verdict.reactionless),
+            ));
+            return Ok(());
+        }
+        let answer = Answer {
+            scenario: scenario.name,
+            units: Columns(table.iter().map(|s| (s.path.clone(), s.unit)).collect()),
+            time,
+            signals: Columns(table.iter().map(|s| s.path.clone()).zip(columns).collect()),
+            verdict,
+        };
+        self.format.print(&answer, |_| String::new())
+    }
+
+    /// Where rows go; begins it with a head.
+    fn csv<'a>(&self, begun: &'a mut Option<Csv>, table: &[Signal]) -> Result<&'a mut Csv, Failure> {
+        match begun {
+            Some(csv) => Ok(csv),
+            None => {
+                let sink = match &self.output {
+                    Some(file) => Sink::File(NewFile::create(file, self.force)?),
+                    None => Sink::Standard(io::stdout().lock()),
+                };
+                Ok(begun.insert(Csv::begin(sink, table)?))
+            }
+        }
+    }
+}
+
+/// The value of a signal, zero without a sign.
+fn value(signal: &Signal, frame: &Frame) -> f64 {
+    signal.value(frame) + 0.0
+}
+
+struct Csv {
+    writer: csv::Writer<Sink>,
+    row: Vec<f64>,
+}
+
+impl Csv {
+    fn begin(sink: Sink, table: &[Signal]) -> Result<Self, Failure> {
+        let mut csv = Self { writer: csv::Writer::from_writer(sink), row: Vec::with_capacity(table.len() + 1) };
+        let head = table.iter().map(|s| format!("{} {}", s.path, s.unit));
+        let done = csv.writer.write_record(["time s".to_string()].into_iter().chain(head));
+        csv.checked(done)?;
+        Ok(csv)
+    }
+
+    fn row(&mut self, table: &[Signal], frame: &Frame) -> Result<(), Failure> {
+        self.row.clear();
+        self.row.push(frame.time);
+        self.row.extend(table.iter().map(|s| value(s, frame)));
+        let done = self.writer.serialize(&self.row);
+        self.checked(done)
+    }
+
+    fn checked(&self, done: Result<(), csv::Error>) -> Result<(), Failure> {
+        done.map_err(|e| match e.into_kind() {
+            csv::ErrorKind::Io(e) => self.writer.get_ref().failure(e),
+            other => Failure::WrongInput(format!("CSV: {other:?}")),
+        })
+    }
+
+    fn finish(mut self) -> Result<(), Failure> {
+        let done = self.writer.flush();
+        done.map_err(|e| self.writer.get_ref().failure(e))?;
+        match self.writer.into_inner() {
+            Ok(Sink::File(file)) => {
+                let name = file.path().display().to_string();
+                file.finish()?;
+                say(format!("wrote {name}"));
+            }
+            Ok(Sink::Standard(_)) => {}
+            Err(e) => return Err(Failure::standard_output(e.error())),
+        }
+        Ok(())
+    }
+}
+
+enum Sink {
+    File(NewFile),
+    Standard(StdoutLock<'static>),
+}
+
+impl Sink {
+    fn failure(&self, error: io::Error) -> Failure {
+        match self {
+            Self::File(file) => WriteError::Failed { file: file.path().into(), source: error }.into(),
+            Self::Standard(_) => Failure::standard_output(&error),
+        }
+    }
+}
+
+impl Write for Sink {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self {
+            Self::File(file) => file.write(bytes),
+            Self::Standard(out) => out.write(bytes),
+        }
+    }
+    fn flush(&mut self) -> io::Result<()> {
+        match self {
+            Self::File(file) => file.flush(),
+            Self::Standard(out) => out.flush(),
+        }
+    }
+}

@@ -1,0 +1,623 @@
+//! The command line as scripts see it: JSON keys, known numbers, exit statuses, files.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use serde_json::{Value, json};
+
+fn stillbase_in(folder: &Path, args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_stillbase"))
+        .args(args)
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .output()
+        .expect("the program starts")
+}
+
+fn stillbase(args: &[&str]) -> Output {
+    stillbase_in(Path::new(env!("CARGO_TARGET_TMPDIR")), args)
+}
+
+fn text(bytes: &[u8]) -> &str {
+    std::str::from_utf8(bytes).expect("UTF-8")
+}
+
+/// What a command that succeeds prints.
+fn prints(args: &[&str]) -> String {
+    let out = stillbase(args);
+    assert_eq!(out.status.code(), Some(0), "{args:?}: {}", text(&out.stderr));
+    text(&out.stdout).to_owned()
+}
+
+/// The one object that a command prints.
+fn object(args: &[&str]) -> Value {
+    let printed = prints(&[args, &["--json"]].concat());
+    let value: Value = serde_json::from_str(&printed).unwrap_or_else(|e| panic!("{args:?}: {e}"));
+    assert!(value.is_object(), "{args:?}: {printed}");
+    value
+}
+
+/// A command that fails says why in one line and prints no result.
+fn fails(args: &[&str], status: i32, words: &[&str]) {
+    let out = stillbase(args);
+    let said = text(&out.stderr);
+    assert_eq!(out.status.code(), Some(status), "{args:?}: {said}");
+    assert!(said.starts_with("stillbase: ") && said.trim_end().lines().count() == 1, "{args:?}: {said}");
+    for word in words {
+        assert!(said.contains(word), "{args:?}: {said:?} lacks {word:?}");
+    }
+    assert!(out.stdout.is_empty(), "{args:?}: {}", text(&out.stdout));
+}
+
+/// The keys of an object, in alphabetical order.
+fn keys(value: &Value) -> Vec<&str> {
+    value.as_object().expect("an object").keys().map(String::as_str).collect()
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    match value {
+        Value::Array(all) => all.iter().flat_map(numbers).collect(),
+        other => vec![other.as_f64().expect("a number")],
+    }
+}
+
+/// Every number within `tolerance` of the largest wanted one.
+fn near(got: &Value, want: &Value, tolerance: f64, what: &str) {
+    let (got, want) = (numbers(got), numbers(want));
+    assert_eq!(got.len(), want.len(), "{what}");
+    let scale = want.iter().fold(1e-3, |m: f64, x| m.max(x.abs()));
+    for (g, w) in got.iter().zip(&want) {
+        assert!((g - w).abs() <= tolerance * scale, "{what}: {g} for {w}");
+    }
+}
+
+fn planning() -> Value {
+    serde_json::from_str(include_str!("../reference/planning.json")).expect("reference")
+}
+
+/// `x,y` with every digit.
+fn joined(values: &Value) -> String {
+    numbers(values).iter().map(f64::to_string).collect::<Vec<_>>().join(",")
+}
+
+/// A folder of one test.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new() -> Self {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let name = format!("cli-{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        fs::create_dir_all(&path).expect("a folder");
+        Self(path)
+    }
+    fn file(&self, name: &str, content: &str) -> String {
+        let path = self.0.join(name);
+        fs::write(&path, content).expect("a file");
+        path.display().to_string()
+    }
+    fn path(&self, name: &str) -> String {
+        self.0.join(name).display().to_string()
+    }
+    fn names(&self) -> Vec<String> {
+        let name = |e: std::io::Result<fs::DirEntry>| e.expect("entry").file_name().to_string_lossy().into_owned();
+        let mut names: Vec<String> = fs::read_dir(&self.0).expect("folder").map(name).collect();
+        names.sort();
+        names
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+const NINE_LINK: &str = include_str!("../../assets/machines/nine-link.toml");
+
+#[test]
+fn machines_are_listed() {
+    let all = object(&["machines"]);
+    assert_eq!(keys(&all), ["machines"]);
+    let first = &all["machines"][0];
+    assert_eq!(keys(first), ["drives", "links", "name", "summary"]);
+    assert_eq!(first["name"], "nine-link");
+    assert_eq!((&first["drives"], &first["links"]), (&json!(3), &json!(9)));
+    let names: Vec<&str> =
+        all["machines"].as_array().expect("list").iter().filter_map(|m| m["name"].as_str()).collect();
+    let table = prints(&["machines"]);
+    assert!(names.contains(&"nine-link-table-1") && names.iter().all(|n| table.contains(n)));
+}
+
+#[test]
+fn check_reports_table_1_as_printed_and_re_solved() {
+    let (printed, want) = (object(&["check", "nine-link-table-1"]), &planning()["table_1"]);
+    assert_eq!(
+        keys(&printed),
+        ["coupling_coefficients", "force_balanced", "gamma_coefficients", "h", "invariant", "lambda", "mass"]
+    );
+    for (key, reference) in [
+        ("gamma_coefficients", "gamma_coefficients"),
+        ("coupling_coefficients", "coupling_coefficients"),
+        ("h", "h"),
+        ("lambda", "lambda_"),
+    ] {
+        near(&printed[key], &want[reference], 1e-8, key);
+    }
+    assert_eq!((&printed["force_balanced"], &printed["invariant"]), (&json!(false), &json!(false)));
+    let solved = object(&["check", "nine-link"]);
+    assert_eq!((&solved["force_balanced"], &solved["invariant"]), (&json!(true), &json!(true)));
+    near(&solved["mass"], &json!(16.05), 1e-14, "mass");
+}
+
+#[test]
+fn design_gives_the_known_centres_of_mass() {
+    let known = planning()["design"].clone();
+    for (preset, i) in [("as-printed", 0), ("table-1", 1), ("minimum-norm", 2)] {
+        let by_name = object(&["design", "nine-link-table-1", "--preset", preset]);
+        assert_eq!(keys(&by_name), ["com", "coupling_coefficients", "gamma_coefficients", "h", "lambda"]);
+        near(&by_name["com"], &known[i]["com"], 5e-9, preset);
+        let penalty = joined(&known[i]["penalty"]);
+        near(&object(&["design", "nine-link-table-1", "--penalty", &penalty])["com"], &known[i]["com"], 5e-9, preset);
+    }
+    let usual = object(&["design", "nine-link-table-1"]);
+    near(&usual["h"], &known[1]["h"], 5e-9, "H");
+    near(&usual["lambda"], &known[1]["lambda_"], 5e-9, "λ");
+}
+
+#[test]
+fn a_designed_machine_can_be_checked_and_is_not_overwritten() {
+    let folder = Folder::new();
+    let file = folder.path("still.toml");
+    prints(&["design", "nine-link-table-1", "--set", "link.9.mass=0.4", "-o", &file]);
+    let (made, check) = (fs::read_to_string(&file).expect("file"), object(&["check", &file]));
+    assert_eq!((&check["force_balanced"], &check["invariant"]), (&json!(true), &json!(true)));
+    assert!(made.contains("name = \"still\""), "a machine of its own name: {made}");
+    fails(&["design", "nine-link", "-o", &file], 2, &[&file, "--force"]);
+    assert_eq!(fs::read_to_string(&file).expect("file"), made);
+    prints(&["design", "nine-link", "-o", &file, "--force"]);
+    assert_ne!(fs::read_to_string(&file).expect("file"), made);
+    assert_eq!(folder.names(), ["still.toml"]);
+}
+
+#[test]
+fn dynamics_agrees_with_independent_software() {
+    let folder = Folder::new();
+    let reference: Value = serde_json::from_str(include_str!("../reference/dynamics.json")).expect("reference");
+    for case in reference["cases"].as_array().expect("cases") {
+        let mut settings = vec![format!("gravity={}", joined(&case["gravity"]))];
+        for (key, field) in [("mass", "mass"), ("inertia", "inertia"), ("com", "com")] {
+            settings.extend((0..9).map(|j| format!("link.{}.{key}={}", j + 1, case[field][j])));
+        }
+        settings.extend([1, 2, 3, 5, 9].map(|i| format!("length.l{i}={}", case["length"][i - 1])));
+        settings.push(format!("payload.mass={}", case["payload"]));
+        let samples = case["samples"].as_array().expect("samples");
+        let state = |s: &Value| json!({"q": s["q"], "qd": s["qd"], "qdd": s["qdd"]});
+        let states = folder.file("states.json", &Value::from_iter(samples.iter().map(state)).to_string());
+        let mut args = vec!["dynamics", "nine-link-table-1", "--states", &states];
+        args.extend(settings.iter().flat_map(|s| ["--set", s.as_str()]));
+        let results = object(&args)["results"].clone();
+        assert_eq!(results.as_array().map(Vec::len), Some(samples.len()));
+        for (i, want) in samples.iter().enumerate() {
+            for key in ["mass_matrix", "torque", "base_force", "base_moment", "com", "angular_momentum_about_base"] {
+                near(&results[i][key], &want[key], 1e-9, &format!("{}: {key}", case["name"]));
+            }
+        }
+    }
+}
+
+#[test]
+fn states_that_do_not_fit_are_named_by_line() {
+    let folder = Folder::new();
+    let refused = |content: &str, words: &[&str]| {
+        let file = folder.file("states.json", content);
+        fails(&["dynamics", "nine-link", "--states", &file], 2, words);
+    };
+    refused(
+        "[\n{\"q\": [0, 1, 2], \"qd\": [0, 0, 0], \"qdd\": [0, 0, 0]},\n{\"q\": [0, 1], \"qd\": [0], \"qdd\": [0]}]",
+        &["states.json:3", "state 2: q has 2 numbers", "want 3"],
+    );
+    refused("[\n{\"q\": [0, 1, 2],\n \"qd\": [0, 0, 0]}]", &["states.json:3", "missing field `qdd`", "want"]);
+    refused("[{\"q\": [0, 1, NaN]}]", &["states.json:1"]);
+    refused("{}", &["states.json:1", "want [{"]);
+    refused("[{\"q\": [0, 1, 2], \"qd\": [1e200, 0, 0], \"qdd\": [0, 0, 0]}]", &["not a finite number"]);
+    fails(&["dynamics", "nine-link", "--states", &folder.path("none.json")], 2, &["none.json"]);
+}
+
+#[test]
+fn reach_finds_the_known_intervals() {
+    for known in planning()["reach"].as_array().expect("list") {
+        let point = joined(&known["point"]);
+        let got = object(&["reach", known["machine"].as_str().expect("name"), &point]);
+        assert_eq!(keys(&got), ["overlap", "period", "points"]);
+        assert_eq!(keys(&got["points"][0]), ["intervals", "point"]);
+        near(&got["points"][0]["point"], &known["point"], 0.0, "point");
+        near(&got["points"][0]["intervals"], &known["intervals"], 1e-9, &point);
+        near(&got["overlap"], &known["intervals"], 1e-9, "overlap of one");
+        near(&got["period"], &known["period"], 1e-9, "period");
+    }
+    let both = object(&["reach", "nine-link", "0.5,0.5", "0.55,0.9"]);
+    near(&both["overlap"], &json!([[2.2157496581863496, 2.6610727211193312]]), 1e-9, "overlap");
+}
+
+#[test]
+fn points_that_share_no_b_are_an_answer_and_a_point_beyond_all_is_none() {
+    let out = stillbase(&["reach", "nine-link", "0.5,0.5", "-0.5,-0.5", "--json"]);
+    assert_eq!(out.status.code(), Some(0));
+    let got: Value = serde_json::from_slice(&out.stdout).expect("JSON");
+    assert_eq!(got["overlap"], json!([]));
+    assert!(text(&out.stderr).contains("no reactionless path"), "{}", text(&out.stderr));
+    fails(&["reach", "nine-link", "0.5,0.5", "9,9"], 1, &["(9.000, 9.000) m"]);
+}
+
+#[test]
+fn coordinates_and_b_may_be_negative() {
+    // Half a turn of all drives takes p to −p and adds half a period to b.
+    let here = object(&["reach", "nine-link", "0.5,0.5"]);
+    let there = object(&["reach", "nine-link", "-0.5,-0.5"]);
+    let half = here["period"].as_f64().expect("period") / 2.0;
+    let shifted: Vec<f64> = numbers(&here["points"][0]["intervals"]).iter().map(|b| b + half).collect();
+    near(&there["points"][0]["intervals"], &json!(shifted), 1e-9, "half a turn");
+    let pose = |b: &str| object(&["pose", "nine-link", "--b", b, "-.5,-.5"]);
+    let (up, down) = (pose(&(2.4 + half).to_string()), pose(&(2.4 - half).to_string()));
+    near(&up["poses"][0]["a"], &down["poses"][0]["a"], 1e-9, "the same pose a turn apart");
+    fails(&["pose", "nine-link", "-5,-5", "--b", "-2.4"], 1, &["(-5.000, -5.000) m"]);
+    fails(&["reach", "nine-link", "-0.5;0.5"], 2, &["'-0.5;0.5'", "want X,Y in m"]);
+}
+
+#[test]
+fn pose_gives_unwrapped_angles_on_the_plane_as_asked() {
+    for known in planning()["plane_ik"].as_array().expect("list") {
+        let (machine, b) = (known["machine"].as_str().expect("name"), known["b"].as_f64().expect("b"));
+        let point = joined(&known["point"]);
+        let got = object(&["pose", machine, &point, "--b", &b.to_string()]);
+        assert_eq!(keys(&got["poses"][0]), ["a", "q"]);
+        let row = |p: &Value| [numbers(&p["q"]), numbers(&p["a"])].concat();
+        let mut rows: Vec<Vec<f64>> = got["poses"].as_array().expect("poses").iter().map(row).collect();
+        rows.sort_by(|x, y| x[0].total_cmp(&y[0]));
+        let wanted = known["solutions_q1_q2_q3_a1_a2"].as_array().expect("solutions").iter();
+        let mut wanted: Vec<Vec<f64>> = wanted.map(|s| numbers(s)[..5].to_vec()).collect();
+        wanted.sort_by(|x, y| x[0].total_cmp(&y[0]));
+        near(&json!(rows), &json!(wanted), 1e-9, &point);
+    }
+    let lambda = numbers(&object(&["check", "nine-link"])["lambda"]);
+    let period = object(&["reach", "nine-link", "0.5,0.5"])["period"].as_f64().expect("period");
+    let b = 2.4 + 3.0 * period;
+    let far = object(&["pose", "nine-link", "0.5,0.5", "--b", &b.to_string()]);
+    let held: f64 = lambda.iter().zip(numbers(&far["poses"][0]["q"])).map(|(l, q)| l * q).sum();
+    assert!((held - b).abs() < 1e-12, "{held} for {b}");
+}
+
+#[test]
+fn numbers_that_mean_nothing_are_refused() {
+    fails(&["reach", "nine-link", "1e300,0"], 2, &["want X,Y in m"]);
+    fails(&["pose", "nine-link", "0.5,nan", "--b", "2.4"], 2, &["want X,Y in m"]);
+    for b in ["inf", "1e300", "two", "-"] {
+        fails(&["workspace", "nine-link", "--b", b], 2, &["--b"]);
+    }
+    fails(&["simulate", "--every", "0"], 2, &["whole number of steps"]);
+    fails(&["check", "nine-link", "--set", "length.l1=1e300"], 2, &["not a finite number"]);
+}
+
+#[test]
+fn a_point_outside_the_plane_is_told_which_b_would_do() {
+    fails(&["pose", "nine-link", "0.5,0.5", "--b", "5"], 1, &["b = 5.000 rad", "want b from 1.650 to 2.901 rad"]);
+}
+
+#[test]
+fn workspace_is_measured() {
+    let (got, known) = (object(&["workspace", "nine-link-table-1", "--b", "2.4"]), &planning()["workspace"][0]);
+    assert_eq!(keys(&got), ["area", "interior_singularity", "loops", "sheet_area", "x_max", "x_min", "y_max", "y_min"]);
+    near(&got["area"], &known["sheet_area"], 1e-9, "area");
+    for key in ["sheet_area", "x_min", "x_max", "y_min", "y_max"] {
+        near(&got[key], &known[key], 1e-8, key);
+    }
+    assert_eq!(got["interior_singularity"], json!(false));
+    // The outer loop runs counter-clockwise around that area, less what its chords cut off.
+    let ring: Vec<Vec<f64>> = got["loops"][0].as_array().expect("loop").iter().map(numbers).collect();
+    let twice: f64 =
+        (0..ring.len()).map(|i| (&ring[i], &ring[(i + 1) % ring.len()])).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum();
+    near(&json!(twice / 2.0), &known["sheet_area"], 1e-4, "area of the polygon");
+}
+
+#[test]
+fn simulate_prints_every_signal() {
+    let got = object(&["simulate", "case-3", "--every", "7"]);
+    assert_eq!(keys(&got), ["scenario", "signals", "time", "units", "verdict"]);
+    assert_eq!(keys(&got["verdict"]), ["peak_base_force", "peak_base_moment", "peak_torque", "reactionless", "steps"]);
+    assert_eq!(keys(&got["signals"]), keys(&got["units"]));
+    let time = numbers(&got["time"]);
+    // Steps 0, 7 … 994 and the last, 1000.
+    assert_eq!((time.len(), time[1], time[143]), (144, 0.007, 1.0));
+    assert!(got["signals"].as_object().expect("signals").values().all(|s| numbers(s).len() == time.len()));
+    assert_eq!(got["units"]["moment/total"], "N m");
+    assert_eq!(got["verdict"]["reactionless"], true);
+    near(&got["verdict"]["peak_torque"], &planning()["motion"]["nine-link"]["case_3_peak_torque"], 1e-5, "torque");
+
+    let csv = prints(&["simulate", "case-3", "--every", "7"]);
+    let mut reader = csv::Reader::from_reader(csv.as_bytes());
+    let head: Vec<String> = reader.headers().expect("head").iter().map(String::from).collect();
+    assert_eq!(&head[..2], ["time s", "torque/1 N m"]);
+    let rows: Vec<Vec<f64>> = reader.deserialize().collect::<Result<_, _>>().expect("numbers");
+    assert_eq!(rows.len(), time.len());
+    for (path, unit) in got["units"].as_object().expect("units") {
+        let name = format!("{path} {}", unit.as_str().expect("unit"));
+        let column = head.iter().position(|h| *h == name).unwrap_or_else(|| panic!("no column {name}"));
+        let values: Vec<f64> = rows.iter().map(|r| r[column]).collect();
+        // The same to the last digit; JSON is read with an error of one.
+        near(&json!(values), &got["signals"][path], 1e-15, &name);
+    }
+}
+
+#[test]
+fn simulate_writes_a_whole_file_or_none() {
+    let folder = Folder::new();
+    let file = folder.path("case.csv");
+    let with_json = object(&["simulate", "case-1", "-o", &file]);
+    let written = fs::read_to_string(&file).expect("file");
+    assert_eq!(written.lines().count(), 1 + numbers(&with_json["time"]).len());
+    fails(&["simulate", "case-3", "-o", &file], 2, &["case.csv exists", "--force"]);
+    assert_eq!(fs::read_to_string(&file).expect("file"), written);
+    // Nothing is left of a run that is refused half-way.
+    fails(&["simulate", "case-1", "--set", "limits.a1=0,0.1", "-o", &folder.path("new.csv")], 1, &["case-1"]);
+    fails(&["simulate", "-o", &folder.path("no/folder.csv")], 2, &["no folder"]);
+    fails(&["simulate", "-o", &folder.path(".")], 2, &["is a folder"]);
+    assert_eq!(folder.names(), ["case.csv"]);
+    prints(&["simulate", "case-3", "--every", "500", "-o", &file, "--force"]);
+    assert_eq!(fs::read_to_string(&file).expect("file").lines().count(), 4);
+    assert_eq!(folder.names(), ["case.csv"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_is_written_through() {
+    let folder = Folder::new();
+    let real = folder.file("real.csv", "old");
+    let (link, dangling) = (folder.path("link.csv"), folder.path("dangling.csv"));
+    std::os::unix::fs::symlink(&real, &link).expect("a link");
+    std::os::unix::fs::symlink(folder.path("nothing"), &dangling).expect("a link");
+    fails(&["simulate", "-o", &link], 2, &["link.csv exists"]);
+    fails(&["simulate", "-o", &dangling], 2, &["dangling.csv exists"]);
+    prints(&["simulate", "-o", &link, "--force"]);
+    assert!(fs::symlink_metadata(&link).expect("link").is_symlink());
+    assert!(fs::read_to_string(&real).expect("file").starts_with("time s,"));
+    assert_eq!(folder.names(), ["dangling.csv", "link.csv", "real.csv"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_full_disk_and_a_closed_pipe_are_no_panic() {
+    let full = || fs::OpenOptions::new().write(true).open("/dev/full");
+    if let Ok(full) = full() {
+        let out = Command::new(env!("CARGO_BIN_EXE_stillbase")).arg("machines").stdout(full).output().expect("starts");
+        let said = text(&out.stderr);
+        assert!(out.status.code() == Some(2) && said.starts_with("stillbase: standard output"), "{said}");
+        fails(&["simulate", "-o", "/dev/full", "--force"], 2, &["/dev/full is no plain file"]);
+    }
+    // No file may grow beyond four kilobytes here, and to try is an error and not the end.
+    let folder = Folder::new();
+    let limited = "trap '' XFSZ; ulimit -f 8; exec \"$0\" simulate -o x.csv";
+    let mut shell = Command::new("sh");
+    let out = shell.args(["-c", limited, env!("CARGO_BIN_EXE_stillbase")]).current_dir(&folder.0).output().expect("sh");
+    let said = text(&out.stderr);
+    assert!(out.status.code() == Some(2) && said.starts_with("stillbase: x.csv: "), "{said}");
+    assert!(folder.names().is_empty(), "{:?}", folder.names());
+    let mut child = Command::new(env!("CARGO_BIN_EXE_stillbase"))
+        .arg("simulate")
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("starts");
+    drop(child.stdout.take());
+    let out = child.wait_with_output().expect("ends");
+    assert_eq!((out.status.code(), text(&out.stderr)), (Some(0), ""));
+}
+
+#[test]
+fn settings_change_the_machine_before_anything_is_planned() {
+    let checked = |set: &[&str]| object(&[&["check", "nine-link"], set].concat());
+    near(&checked(&["--set", "payload.mass=0.4"])["mass"], &json!(16.45), 1e-14, "mass");
+    let moved = checked(&["--set", "link.5.com=-0.02", "--set", "link.9.mass=0.3"]);
+    assert_eq!((&moved["force_balanced"], &moved["invariant"]), (&json!(false), &json!(false)));
+    // Two settings that are wrong alone are right together: they are checked once, at the end.
+    checked(&["--set", "limits.a1=4,5", "--set", "limits.a1=0.4,2.7"]);
+    let run = |set: &[&str]| object(&[&["simulate", "case-3", "--every", "1000"], set].concat());
+    // Control knows the payload, so the torques change; and the machine is balanced no longer.
+    let loaded = run(&["--set", "payload.mass=0.1"]);
+    assert_eq!(loaded["verdict"]["reactionless"], false);
+    assert!(loaded["verdict"]["peak_base_force"].as_f64() > Some(0.1), "{}", loaded["verdict"]);
+    let narrow = ["simulate", "case-3", "--set", "limits.a1=0.4,2.7"];
+    fails(&narrow, 1, &["case-3", "B (0.550, 0.900) m"]);
+}
+
+#[test]
+fn wrong_settings_say_what_would_be_right() {
+    let refused = |set: &str, words: &[&str]| fails(&["check", "nine-link", "--set", set], 2, words);
+    refused("link.5.mass=NaN", &["link[5].mass is NaN", "want a finite number, kg"]);
+    refused("link.5.mass=-1", &["link[5].mass is -1", "want a mass above 0 kg"]);
+    refused("link.5.mass=much", &["link.5.mass=\"much\"", "want one number"]);
+    refused("link.5.length=0.7", &["l5", "link 8", "parallelogram", "length.l5"]);
+    refused("link.99.mass=1", &["\"99\"", "want one of \"1\""]);
+    refused("link.5.colour=1", &["link.5.colour", "want one of"]);
+    refused("gravity=9.81", &["want two numbers"]);
+    refused("limits.a1=2,1", &["max", "not below min"]);
+    refused("mass", &["want KEY=VALUE"]);
+    fails(&["check", "no-such-machine"], 2, &["no-such-machine", "nine-link-table-1", "TOML"]);
+    fails(&["check", "no-such-file.toml"], 2, &["no-such-file.toml"]);
+}
+
+/// Damages to the nine-link machine's file, and what is said of each.
+#[test]
+fn a_damaged_machine_file_is_named_with_its_line() {
+    let folder = Folder::new();
+    let check = |text: &str, words: &[&str]| {
+        fails(&["check", &folder.file("arm.toml", text)], 2, words);
+    };
+    let damage = |from: &str, to: &str, words: &[&str]| {
+        let at = NINE_LINK.find(from).unwrap_or_else(|| panic!("{from}"));
+        let line = format!("arm.toml:{}:", NINE_LINK[..at].matches('\n').count() + 1);
+        check(&NINE_LINK.replacen(from, to, 1), &[&[line.as_str()], words].concat());
+    };
+    damage("mass = 1.45", "mass = nan", &["link[2].mass is NaN"]);
+    damage("mass = 1.45", "mass = -1.45", &["link[2].mass is -1.45", "above 0 kg"]);
+    damage("mass = 1.45", "weight = 1.45", &["unknown field `weight`"]);
+    damage("mass = 1.45", "mass = ", &[]);
+    damage(
+        "[[closure]]\na = { link = \"4\"",
+        "[[closure]]\na = { link = \"6\"",
+        &["closure[1]", "parallelogram that closes"],
+    );
+    damage("attach = { link = \"3\"", "attach = { link = \"6\"", &["link[6].attach", "hangs on itself"]);
+    damage(
+        "drive = \"3\"\nattach = \"base\"",
+        "drive = \"4\"\nattach = \"base\"",
+        &["drive \"4\"", "\"1\", \"2\", \"3\""],
+    );
+    let end = NINE_LINK.find("[end_effector]").expect("end effector");
+    let angles = NINE_LINK.find("# Relative joint angles").expect("angles");
+    check(&[&NINE_LINK[..end], &NINE_LINK[angles..]].concat(), &["arm.toml: no end effector", "want [end_effector]"]);
+    check(&NINE_LINK.replacen("com = 0.20158885517910255\n", "", 1), &["arm.toml:", "missing field `com`"]);
+    check("\u{0}", &["arm.toml:1:"]);
+}
+
+#[cfg(feature = "record")]
+#[test]
+fn headless_reports_the_three_cases() {
+    let folder = Folder::new();
+    let file = folder.path("cases.rrd");
+    let got = object(&["headless", "-o", &file])["recordings"].clone();
+    let rows = got.as_array().expect("list");
+    let names: Vec<&str> = rows.iter().filter_map(|r| r["scenario"].as_str()).collect();
+    assert_eq!(names, ["case-1", "case-2", "case-3"]);
+    for row in rows {
+        assert_eq!(
+            keys(row),
+            ["file", "peak_base_force", "peak_base_moment", "peak_torque", "reactionless", "scenario", "steps"]
+        );
+        assert_eq!((&row["file"], &row["steps"]), (&json!(file), &json!(1000)));
+        assert_eq!(row["reactionless"], json!(row["scenario"] == "case-3"));
+    }
+    let known = planning()["motion"]["nine-link"].clone();
+    near(&rows[0]["peak_base_moment"], &known["case_1_peak_base_moment"], 1e-5, "case 1");
+    near(&rows[1]["peak_base_moment"], &json!(0.4853), 1e-4, "case 2");
+    near(&rows[2]["peak_torque"], &known["case_3_peak_torque"], 1e-5, "case 3");
+    near(&rows[2]["peak_base_moment"], &json!(0.0), 1e-9, "case 3");
+}
+
+#[cfg(feature = "record")]
+#[test]
+fn headless_refuses_wrong_input_before_it_runs() {
+    let folder = Folder::new();
+    let taken = folder.file("taken.rrd", "mine");
+    let free = folder.path("free.rrd");
+    fails(&["headless", "-o", &taken], 2, &["taken.rrd", "exists", "--force"]);
+    assert_eq!(fs::read_to_string(&taken).expect("file"), "mine");
+    fails(&["headless", "/nonexistent.toml", "-o", &free], 2, &["/nonexistent.toml"]);
+    fails(&["headless", "case-1", "case-1", "-o", &free], 2, &["case-1", "different names"]);
+    fails(&["headless", "-o", &free, "--fps", "0"], 2, &["--fps", "above 0"]);
+    fails(&["headless", "-o", &free, "--fps", "30", "--size", "0x800"], 2, &["--size", "16 to 8192"]);
+    fails(&["headless", "-o", &folder.path("none/x.rrd")], 2, &["no folder"]);
+    fails(&["headless", "case-3", "-o", &free, "--set", "limits.a1=0,0.1"], 1, &["case-3", "A (0.500, 0.500) m"]);
+    fails(&["headless"], 2, &["--output <FILE.rrd>"]);
+    assert_eq!(folder.names(), ["taken.rrd"]);
+}
+
+#[test]
+fn a_scenario_file_is_named_with_its_line() {
+    let folder = Folder::new();
+    let case = include_str!("../../assets/scenarios/case-3.toml");
+    let refused = |text: &str, words: &[&str]| fails(&["simulate", &folder.file("my.toml", text)], 2, words);
+    refused(&case.replace("time = 1.0", "tiem = 1.0"), &["my.toml:12:", "unknown field `tiem`"]);
+    refused(&case.replace("time = 1.0", "time = -1.0"), &["my.toml", "task.time is -1"]);
+    refused(&case.replace("nine-link", "ten-link"), &["ten-link", "no such machine"]);
+    fails(&["simulate", "case-9"], 2, &["case-9", "case-1, case-2, case-3"]);
+    fails(&["chek"], 2, &["chek", "--help"]);
+}
+
+/// Two drives have no plane of (a1, a2): the questions about planes have no answer, the others do.
+#[test]
+fn a_machine_of_two_drives_is_checked_but_has_no_planes() {
+    let folder = Folder::new();
+    let file = folder.file("two.toml", TWO_LINK);
+    let balance = object(&["check", &file]);
+    assert_eq!(balance["coupling_coefficients"].as_array().map(Vec::len), Some(1));
+    let designed = object(&["design", &file]);
+    assert_eq!(numbers(&designed["com"]).len(), 2);
+    fails(&["design", &file, "--preset", "table-1"], 2, &["9 penalties for 2 links"]);
+    fails(&["design", &file, "--penalty", "1,-1"], 2, &["'-1'", "1e-6 to 1e6"]);
+    fails(&["reach", &file, "0.5,0.5"], 1, &["2 drives", "want three"]);
+    fails(&["pose", &file, "0.5,0.5", "--b", "1"], 1, &["2 drives"]);
+    fails(&["workspace", &file, "--b", "1"], 1, &["2 drives"]);
+}
+
+const TWO_LINK: &str = r#"
+name = "two"
+[[drive]]
+name = "shoulder"
+[[drive]]
+name = "elbow"
+[[link]]
+name = "upper"
+drive = "shoulder"
+attach = "base"
+length = 0.4
+mass = 2.0
+inertia = 0.03
+com = 0.2
+[[link]]
+name = "forearm"
+drive = "elbow"
+attach = { link = "upper", at = "tip" }
+length = 0.3
+mass = 1.0
+inertia = 0.01
+com = 0.15
+[end_effector]
+link = "forearm"
+at = "tip"
+"#;
+
+/// Without a display the window gives way to a recording, which replaces nothing.
+#[cfg(all(target_os = "linux", feature = "record", feature = "window"))]
+#[test]
+fn without_a_display_it_records_and_names_the_file() {
+    let folder = Folder::new();
+    let taken = folder.file("case-3.rrd", "mine");
+    let out = Command::new(env!("CARGO_BIN_EXE_stillbase"))
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        .env_remove("WAYLAND_SOCKET")
+        .current_dir(&folder.0)
+        .stdin(Stdio::null())
+        .output()
+        .expect("starts");
+    let said = text(&out.stderr);
+    assert_eq!(out.status.code(), Some(0), "{said}");
+    assert!(said.contains("case-3-1.rrd") && said.contains("display"), "{said}");
+    assert_eq!(fs::read_to_string(&taken).expect("file"), "mine");
+}
+
+#[test]
+fn help_names_every_command_with_units_and_examples() {
+    let all = prints(&["--help"]);
+    for command in ["simulate", "machines", "check", "design", "dynamics", "reach", "pose", "workspace"] {
+        assert!(all.contains(&format!("\n  {command} ")), "{command}");
+        let help = prints(&[command, "--help"]);
+        assert!(help.contains("--set <KEY=VALUE>") && help.contains("--json"), "{command}");
+        assert!(command == "machines" || help.contains("Example"), "{command}");
+    }
+    assert!(prints(&["--version"]).starts_with("stillbase "));
+}
+
+#[test]
+fn tables_show_units_and_the_same_numbers() {
+    let table = prints(&["reach", "nine-link", "0.5,0.5"]);
+    assert!(table.contains("b_min rad") && table.contains("0.5, 0.5"), "{table}");
+    let check = prints(&["check", "nine-link-table-1"]);
+    for part in ["16.050 kg", "1.367816575", "0.127920111", "-0.000105000", "force balanced   no"] {
+        assert!(check.contains(part), "{part} in {check}");
+    }
+    assert!(!prints(&["check", "nine-link"]).contains("-0.000000000"), "zero has no sign");
+}

@@ -1,0 +1,87 @@
+//! What several tests share: reference files, the twin of a machine, comparison by scale.
+
+use serde_json::Value;
+use stillbase::machine::{Machine, Station, builtin};
+use stillbase::planar::{DriveAngles, PerDrive, Vector};
+
+use crate::nine_body::NineBody;
+
+pub fn dynamics() -> Value {
+    serde_json::from_str(include_str!("../reference/dynamics.json")).expect("valid JSON")
+}
+
+pub fn planning() -> Value {
+    serde_json::from_str(include_str!("../reference/planning.json")).expect("valid JSON")
+}
+
+/// Every number of a value, row by row.
+pub fn numbers(v: &Value) -> Vec<f64> {
+    match v {
+        Value::Array(items) => items.iter().flat_map(numbers).collect(),
+        v => vec![v.as_f64().expect("a number")],
+    }
+}
+
+pub fn array<const N: usize>(v: &Value) -> [f64; N] {
+    numbers(v).try_into().expect("the length of the array")
+}
+
+/// Largest error over max(1e-3, largest wanted).
+pub fn error(got: &[f64], want: &[f64]) -> f64 {
+    assert_eq!(got.len(), want.len());
+    let scale = want.iter().fold(1e-3_f64, |m, w| m.max(w.abs()));
+    // NaN must not pass as small.
+    got.iter().zip(want).fold(0.0, |m, (g, w)| if ((g - w).abs() / scale) <= m { m } else { (g - w).abs() / scale })
+}
+
+#[track_caller]
+pub fn close(what: &str, got: &[f64], want: &[f64], tolerance: f64) {
+    let error = error(got, want);
+    assert!(error <= tolerance, "{what}: got {got:?}, want {want:?}, error {error:e} above {tolerance:e}");
+}
+
+pub fn xy(v: Vector) -> [f64; 2] {
+    [v.re, v.im]
+}
+
+pub fn three(v: &PerDrive) -> [f64; 3] {
+    [v[0], v[1], v[2]]
+}
+
+pub fn angles(q: &DriveAngles) -> [f64; 3] {
+    three(&q.0)
+}
+
+/// The library's machine with the numbers of a twin, all set by key.
+pub fn machine_of(body: &NineBody) -> Machine {
+    let mut settings: Vec<(String, String)> = Vec::new();
+    for j in 0..9 {
+        for (field, value) in [("mass", body.mass[j]), ("inertia", body.inertia[j]), ("com", body.com[j])] {
+            settings.push((format!("link.{}.{field}", j + 1), value.to_string()));
+        }
+    }
+    for (name, j) in [("l1", 0), ("l2", 1), ("l3", 2), ("l5", 4), ("l9", 8)] {
+        settings.push((format!("length.{name}"), body.length[j].to_string()));
+    }
+    settings.push(("gravity".into(), format!("{},{}", body.gravity[0], body.gravity[1])));
+    settings.push(("payload.mass".into(), body.payload.to_string()));
+    let table_1 = builtin("nine-link-table-1").expect("built in");
+    table_1.set_all(settings.iter().map(|(k, v)| (k.as_str(), v.as_str()))).expect("a valid machine")
+}
+
+/// The twin of a machine of nine links.
+pub fn body_of(machine: &Machine) -> NineBody {
+    let spec = machine.spec();
+    assert_eq!(spec.links.len(), 9);
+    assert!(spec.links.iter().all(|l| l.com_normal == 0.0) && spec.payload.inertia == 0.0, "the twin has neither");
+    assert!(matches!(&spec.end_effector.as_ref().expect("one").at, Station::Named(n) if n == "tip"));
+    let of = |f: &dyn Fn(usize) -> f64| std::array::from_fn(f);
+    NineBody {
+        length: of(&|j| machine.parts()[j].length),
+        mass: of(&|j| spec.links[j].mass),
+        inertia: of(&|j| spec.links[j].inertia),
+        com: of(&|j| spec.links[j].com),
+        gravity: spec.gravity,
+        payload: spec.payload.mass,
+    }
+}

@@ -1,0 +1,171 @@
+//! The desk as a person meets it: widgets by label, the pointer in the scene, keys, and what it looks like.
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, pos2};
+use egui_kittest::{Harness, kittest::Queryable as _};
+use stillbase::frame::Reach;
+use stillbase::scenario::Scenario;
+use stillbase::scene::palette::Theme;
+use stillbase::session::Edit;
+use stillbase::ui::Desk;
+use stillbase::window::{App, Clock};
+
+use super::gpu::gpu;
+
+type Desktop = Harness<'static, App>;
+
+/// A desk of 1280 by 800 on which every repaint lasts 20 ms; `None`, with the reason said, without an adapter.
+fn desk(case: &str, theme: Theme) -> Option<Desktop> {
+    drop(gpu()?);
+    let desk = Desk::new(Scenario::builtin(case).expect("built in"), theme).expect("it starts");
+    Some(Harness::builder().with_size([1280.0, 800.0]).with_step_dt(0.02).wgpu().build_eframe(move |cc| {
+        App::new(cc, desk, Clock::Fixed(0.02)).expect("kittest draws with wgpu")
+    }))
+}
+
+fn session(h: &Desktop) -> &stillbase::session::Session {
+    h.state().desk().session()
+}
+
+/// Where a point of the plane of handles is on the screen.
+fn on_screen(h: &Desktop, x: f64, y: f64) -> egui::Pos2 {
+    let rect = h.get_by_label_contains("Scene:").rect();
+    let desk = h.state().desk();
+    let z = desk.stage().handle_height();
+    let aspect = f64::from(rect.width() / rect.height());
+    let [u, v] = desk.look().camera().project([x, y, z], aspect).expect("in front of the eye");
+    rect.min + egui::vec2(u as f32 * rect.width(), v as f32 * rect.height())
+}
+
+fn drag(h: &mut Desktop, from: egui::Pos2, to: egui::Pos2) {
+    h.hover_at(from);
+    h.step();
+    h.drag_at(from);
+    h.step();
+    for i in 1..=10 {
+        h.hover_at(from + (to - from) * (i as f32 / 10.0));
+        h.step();
+    }
+    h.drop_at(to);
+    h.step();
+}
+
+#[test]
+fn playing_case_3_ends_at_b_without_a_reaction() {
+    let Some(mut h) = desk("case-3", Theme::Dark) else { return };
+    h.get_by_label("Play").click();
+    h.run_steps(70);
+    let f = session(&h).frame();
+    assert_eq!(f.step, 1000, "the run stops by itself where the motion ends");
+    assert!((f.tip.re - 0.55).abs() < 1e-6 && (f.tip.im - 0.9).abs() < 1e-6, "{:?}", f.tip);
+    assert!(f.peaks.is_reactionless());
+    assert!(h.query_by_label("reactionless").is_some());
+    assert!(h.query_by_label("Play").is_some(), "at rest the button offers to play again");
+}
+
+#[test]
+fn dragging_the_target_moves_the_machine_on_its_plane() {
+    let Some(mut h) = desk("case-3", Theme::Dark) else { return };
+    h.step();
+    let (from, to) = (on_screen(&h, 0.55, 0.9), on_screen(&h, 0.62, 0.55));
+    h.get_by_label("Play").click();
+    h.run_steps(70);
+    drag(&mut h, from, to);
+    h.run_steps(120);
+    let f = session(&h).frame();
+    assert_eq!(f.target.reach, Reach::Inside);
+    assert!((f.tip.re - 0.62).abs() < 2e-3 && (f.tip.im - 0.55).abs() < 2e-3, "{:?}", f.tip);
+    assert!(f.peaks.is_reactionless(), "n_B stays at zero: {:?}", f.peaks);
+    assert!((f.b - 2.4).abs() < 1e-11);
+}
+
+#[test]
+fn a_target_outside_says_why_and_what_b_would_do() {
+    let Some(mut h) = desk("case-3", Theme::Light) else { return };
+    h.get_by_label("Play").click();
+    h.run_steps(70);
+    let (from, to) = (on_screen(&h, 0.55, 0.9), on_screen(&h, 0.9, 0.85));
+    drag(&mut h, from, to);
+    h.run_steps(120);
+    let f = *session(&h).frame();
+    let Reach::Outside { nearest, mending_b } = f.target.reach else { panic!("{:?}", f.target) };
+    assert!((nearest - f.tip).norm() < 1e-6, "the machine waits at the nearest point");
+    let b = mending_b.expect("another plane reaches it");
+    let planes = session(&h).run().planes().expect("three drives").clone();
+    assert!(!planes.map().poses(f.target.at, b + 1e-9).is_empty() || !planes.map().poses(f.target.at, b - 1e-9).is_empty());
+    assert!(h.query_by_label_contains("outside").is_some());
+    h.snapshot("outside-light");
+}
+
+#[test]
+fn sliding_b_poses_at_rest_and_costs_a_moment_in_motion() {
+    let Some(mut h) = desk("case-3", Theme::Dark) else { return };
+    h.step();
+    h.get_by_role_and_label(Role::Slider, "b slider").set_value_accesskit(2.6);
+    h.run_steps(2);
+    assert!((session(&h).frame().b - 2.6).abs() < 1e-9);
+    assert_eq!(session(&h).frame().step, 0, "at rest it is posed");
+    h.get_by_label("Play").click();
+    h.run_steps(70);
+    assert!(session(&h).frame().peaks.is_reactionless());
+    // The motion is over but time runs: now the machine follows.
+    h.get_by_role_and_label(Role::Slider, "b slider").set_value_accesskit(2.4);
+    h.run_steps(100);
+    let f = session(&h).frame();
+    assert!((f.b - 2.4).abs() < 1e-6, "{}", f.b);
+    assert!(f.peaks.moment > 1.0, "the price of b: {}", f.peaks.moment);
+    assert!(matches!(session(&h).script().last().map(|e| &e.edit), Some(Edit::SlideB { .. })));
+}
+
+#[test]
+fn keys_play_step_and_take_back() {
+    let Some(mut h) = desk("case-3", Theme::Dark) else { return };
+    h.step();
+    h.key_press(Key::ArrowRight);
+    h.step();
+    assert_eq!(session(&h).frame().step, 1);
+    h.key_press_modifiers(Modifiers::SHIFT, Key::ArrowRight);
+    h.step();
+    assert_eq!(session(&h).frame().step, 11);
+    h.key_press(Key::Home);
+    h.step();
+    assert_eq!(session(&h).frame().step, 0);
+    h.get_by_role_and_label(Role::Slider, "payload slider").set_value_accesskit(0.5);
+    h.run_steps(2);
+    assert!(session(&h).scenario().plant.payload.mass > 0.49);
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    h.run_steps(2);
+    assert_eq!(session(&h).scenario().plant.payload.mass, 0.0);
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Y);
+    h.run_steps(2);
+    assert!(session(&h).scenario().plant.payload.mass > 0.49);
+    h.key_press(Key::Num1);
+    h.run_steps(2);
+    assert_eq!(session(&h).scenario().name, "case-1");
+    h.key_press(Key::F1);
+    h.run_steps(2);
+    assert!(h.query_by_label("play, pause, start over").is_some());
+}
+
+#[test]
+fn nothing_is_repainted_at_rest() {
+    let Some(mut h) = desk("case-3", Theme::Dark) else { return };
+    // `run` fails if the desk keeps asking for another repaint.
+    h.run();
+    h.hover_at(pos2(640.0, 400.0));
+    h.run();
+}
+
+#[test]
+fn case_1_in_motion_looks_as_it_should() {
+    let Some(mut h) = desk("case-1", Theme::Dark) else { return };
+    h.get_by_label("Play").click();
+    h.run_steps(32);
+    h.key_press(Key::Space);
+    h.run_steps(4);
+    assert!(h.query_by_label("reacts on its base").is_some());
+    h.snapshot("case-1-dark");
+    h.get_by_label("3D").click();
+    h.run_steps(4);
+    h.snapshot("case-1-dark-3d");
+}
