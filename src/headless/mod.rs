@@ -22,13 +22,12 @@ mod recorder;
 mod rehearsal;
 mod store;
 
-use std::fs::File;
-use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
+use rerun::{EntityPath, RecordingInfo};
 use thiserror::Error;
 
-use crate::files::{self, WriteError};
+use crate::files::{NewFile, WriteError};
 use crate::scenario::Scenario;
 use crate::session::Refusal;
 use film::Film;
@@ -134,23 +133,8 @@ pub fn record(
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Vec<Recording>, RecordError> {
     check(scenarios, options)?;
-    files::check_new(file, options.force)?;
-    let failed = |source| WriteError::Failed { file: file.into(), source };
-    if file.is_dir() {
-        return Err(failed(io::Error::from(io::ErrorKind::IsADirectory)).into());
-    }
-    let part = files::beside(file);
-    let to = File::create(&part).map_err(failed)?;
-    let done = write(scenarios, to, file, options, progress).and_then(|recordings| {
-        files::check_new(file, options.force)?;
-        std::fs::rename(&part, file).map_err(failed)?;
-        Ok(recordings)
-    });
-    if done.is_err() {
-        // What could not be finished is not left behind; that it could not is what matters.
-        let _ = std::fs::remove_file(&part);
-    }
-    done
+    let to = NewFile::create(file, options.force)?;
+    write(scenarios, to, file, options, progress)
 }
 
 fn check(scenarios: &[Scenario], options: &Options) -> Result<(), RecordError> {
@@ -199,7 +183,7 @@ fn digest(scenarios: &[Scenario], options: &Options) -> u128 {
 
 fn write(
     scenarios: &[Scenario],
-    to: File,
+    to: NewFile,
     file: &Path,
     options: &Options,
     progress: &mut dyn FnMut(Progress),
@@ -217,7 +201,7 @@ fn write(
         cases.push(Rehearsal::of(scenario, &mut tick).map_err(refused)?);
         before += steps(scenario);
     }
-    let mut store = Store::open(BufWriter::with_capacity(1 << 20, to), digest(scenarios, options)).map_err(because)?;
+    let mut store = Store::open(to, digest(scenarios, options)).map_err(because)?;
     let mut film = Film::of(options.pictures);
     let pictured = film.is_loaded();
     let mut set =
@@ -226,6 +210,9 @@ fn write(
     // The layout stands first, so that no viewer begins with one of its own.
     let laid_out = blueprint::lay_out(set.store, &cases, pictured).map_err(Stop::from);
     let done = laid_out.and_then(|()| {
+        let names: Vec<_> = scenarios.iter().map(|s| s.name.as_str()).collect();
+        let info = RecordingInfo::update_fields().with_name(names.join(", "));
+        set.store.fixed(&EntityPath::properties(), &info)?;
         for (scenario, case) in scenarios.iter().zip(&cases) {
             let mut tick = |step| progress(Progress { done: before + step, of: 2 * total, what: &scenario.name });
             let peaks = recorder::record(&mut set, scenario, case, &mut tick)?;
@@ -245,9 +232,7 @@ fn write(
     });
     match done {
         Ok(()) => {
-            let to = store.close().map_err(because)?;
-            // A disk that is full may say so only now.
-            to.get_ref().sync_all().map_err(|source| WriteError::Failed { file: file.into(), source })?;
+            store.close().map_err(because)?.finish()?;
             Ok(recordings)
         }
         Err(stop) => {

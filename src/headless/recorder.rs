@@ -103,7 +103,7 @@ pub fn series_name(signal: &Signal) -> String {
 /// A number with the digits that matter: tiny ones in powers of ten.
 fn brief(x: f64) -> String {
     match x.abs() {
-        a if a == 0.0 => "0".into(),
+        0.0 => "0".into(),
         a if a < 1e-3 => format!("{x:.1e}"),
         _ => format!("{x:.4}"),
     }
@@ -422,7 +422,11 @@ impl<'a, W: Write> Recorder<'a, W> {
     }
 
     fn log(&mut self, at: Instant, path: &EntityPath, what: &dyn rerun::AsComponents) -> Result<(), Stop> {
-        Ok(if self.lasting { self.store.fixed(path, what)? } else { self.store.since(at, path, what)? })
+        match self.lasting {
+            true => self.store.fixed(path, what)?,
+            false => self.store.since(at, path, what)?,
+        }
+        Ok(())
     }
 
     fn show_machine(&mut self, at: Instant, linkage: &Linkage, frame: &Frame) -> Result<(), Stop> {
@@ -569,8 +573,7 @@ impl<'a, W: Write> Recorder<'a, W> {
             self.store.columns(&times, path, pose.columns_of_unit_batches()?)?;
         }
         let joints = std::mem::take(&mut self.joints);
-        if rows > 0 {
-            let pins = joints.len() / rows;
+        if let Some(pins) = joints.len().checked_div(rows) {
             let columns = Points3D::update_fields().with_positions(joints).columns(std::iter::repeat_n(pins, rows))?;
             self.store.columns(&times, &under(&self.root, "machine/joints"), columns)?;
         }
