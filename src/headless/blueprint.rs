@@ -17,7 +17,8 @@ use rerun::external::re_sdk_types::blueprint::components::VisualizerInstructionI
 use rerun::external::uuid::Uuid;
 use rerun::{AsComponents, EntityPath, SeriesLines};
 
-use super::recorder::{Case, colour, series_name, under};
+use super::recorder::{colour, series_name, under};
+use super::rehearsal::Rehearsal;
 use super::store::{Store, StoreError, TIME};
 use crate::scene::linkage::mix;
 use crate::scene::Rgba;
@@ -27,8 +28,8 @@ use crate::scene::palette::{Palette, Theme, faded, palette};
 ///
 /// # Errors
 /// If it cannot be written.
-pub fn lay_out<W: Write>(store: &mut Store<W>, cases: &[Case]) -> Result<(), StoreError> {
-    let mut layout = Layout { store, palette: palette(Theme::Dark), made: 0, axes: Axes::of(cases) };
+pub fn lay_out<W: Write>(store: &mut Store<W>, cases: &[Rehearsal], pictured: bool) -> Result<(), StoreError> {
+    let mut layout = Layout { store, palette: palette(Theme::Dark), made: 0, axes: Axes::of(cases), pictured };
     let mut tabs = Vec::new();
     if cases.len() > 1 {
         tabs.push(layout.comparison(cases)?);
@@ -67,12 +68,12 @@ struct Axes {
 }
 
 impl Axes {
-    fn of(cases: &[Case]) -> Self {
-        let largest = |of: fn(&Case) -> f64| cases.iter().map(of).fold(0.0, f64::max);
+    fn of(cases: &[Rehearsal]) -> Self {
+        let largest = |of: fn(&Rehearsal) -> f64| cases.iter().map(of).fold(0.0, f64::max);
         // Where nothing reaches the base, what would if nothing cancelled gives the scale.
         let scale = |peak: f64, whole: f64| match peak > 1e-6 * whole {
-            true => 1.15 * peak,
-            false if whole > 0.0 => whole,
+            true => marked(peak),
+            false if whole > 0.0 => marked(whole),
             false => 1.0,
         };
         let low = cases.iter().map(|c| c.b[0]).fold(f64::INFINITY, f64::min);
@@ -86,6 +87,12 @@ impl Axes {
     }
 }
 
+/// The next bound at which a low plot still has room for its marks: they stand at powers of ten.
+fn marked(x: f64) -> f64 {
+    let decade = 10f64.powf(x.log10().floor());
+    [1.0, 2.0].map(|m| m * decade).into_iter().find(|bound| *bound > x).unwrap_or(10.0 * decade)
+}
+
 /// A view or container.
 struct Part {
     path: EntityPath,
@@ -97,6 +104,7 @@ struct Layout<'a, W: Write> {
     palette: Palette,
     made: u128,
     axes: Axes,
+    pictured: bool,
 }
 
 /// Identifiers of views only have to differ within one layout.
@@ -157,7 +165,7 @@ impl<W: Write> Layout<'_, W> {
     }
 
     /// Several cases side by side: scenes above, what differs below.
-    fn comparison(&mut self, cases: &[Case]) -> Result<Part, StoreError> {
+    fn comparison(&mut self, cases: &[Rehearsal]) -> Result<Part, StoreError> {
         let scenes = cases.iter().map(|case| self.scene(case, &case.title)).collect::<Result<Vec<_>, _>>()?;
         let top = self.container(ContainerKind::Horizontal, "", &scenes, &vec![1.0; scenes.len()])?;
         let axes = [-self.axes.moment, self.axes.moment];
@@ -169,9 +177,9 @@ impl<W: Write> Layout<'_, W> {
     }
 
     /// One case: scene left, plots right, events below.
-    fn case(&mut self, case: &Case) -> Result<Part, StoreError> {
+    fn case(&mut self, case: &Rehearsal) -> Result<Part, StoreError> {
         let mut scenes = vec![self.scene(case, "Scene")?];
-        if case.pictured {
+        if self.pictured {
             let origin = under(&case.root, "view");
             scenes.push(self.view("2D", "Pictures", &origin, &["$origin/**".into()], &[])?);
         }
@@ -193,7 +201,7 @@ impl<W: Write> Layout<'_, W> {
         self.container(ContainerKind::Vertical, &case.title, &[top, bottom], &[4.2, 1.0])
     }
 
-    fn scene(&mut self, case: &Case, name: &str) -> Result<Part, StoreError> {
+    fn scene(&mut self, case: &Rehearsal, name: &str) -> Result<Part, StoreError> {
         let background = view::Background::new(BackgroundKind::SolidColor).with_color(colour(self.palette.background));
         let grid = view::LineGrid3D::new()
             .with_visible(true)
@@ -216,7 +224,7 @@ impl<W: Write> Layout<'_, W> {
 
     fn plot(
         &mut self,
-        case: &Case,
+        case: &Rehearsal,
         name: &str,
         signals: &[&str],
         range: Option<[f64; 2]>,
@@ -251,7 +259,7 @@ impl<W: Write> Layout<'_, W> {
     /// The same signal of every case in one plot, each named by its case.
     fn compared(
         &mut self,
-        cases: &[Case],
+        cases: &[Rehearsal],
         name: &str,
         signal: &str,
         range: Option<[f64; 2]>,
@@ -276,7 +284,7 @@ impl<W: Write> Layout<'_, W> {
         Ok(plot)
     }
 
-    fn events(&mut self, cases: &[Case]) -> Result<Part, StoreError> {
+    fn events(&mut self, cases: &[Rehearsal]) -> Result<Part, StoreError> {
         let shown = |kind, visible: bool| TextLogColumn { visible: visible.into(), kind };
         let columns = view::TextLogColumns::new()
             .with_timeline_columns([TimelineColumn { visible: true.into(), timeline: TIME.into() }])

@@ -63,6 +63,11 @@ impl Film {
         self.note = Some(format!("recorded without pictures: {why}"));
     }
 
+    /// Whether there will be pictures.
+    pub fn is_loaded(&self) -> bool {
+        self.wanted.is_some()
+    }
+
     /// Why there are no pictures, if some were wanted.
     pub fn notes(&self) -> Vec<String> {
         self.note.iter().cloned().collect()

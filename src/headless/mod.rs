@@ -19,17 +19,21 @@ mod blueprint;
 mod film;
 mod reaction;
 mod recorder;
+mod rehearsal;
 mod store;
 
-use std::fs::File;
-use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
+use rerun::{EntityPath, RecordingInfo};
 use thiserror::Error;
 
-use crate::files::{self, WriteError};
+use crate::files::{NewFile, WriteError};
 use crate::scenario::Scenario;
 use crate::session::Refusal;
+use film::Film;
+use reaction::Scale;
+use recorder::{Set, Stop};
+use rehearsal::Rehearsal;
 use store::{Store, StoreError};
 
 /// Offscreen pictures to take on the way.
@@ -77,7 +81,7 @@ pub struct Recording {
 /// How far the recording has got.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress<'a> {
-    /// Steps done, of all scenarios.
+    /// Steps done, of all scenarios. Each counts twice: it is rehearsed, for the scales, and recorded.
     pub done: u64,
     /// Steps to do.
     pub of: u64,
@@ -129,23 +133,8 @@ pub fn record(
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Vec<Recording>, RecordError> {
     check(scenarios, options)?;
-    files::check_new(file, options.force)?;
-    let failed = |source| WriteError::Failed { file: file.into(), source };
-    if file.is_dir() {
-        return Err(failed(io::Error::from(io::ErrorKind::IsADirectory)).into());
-    }
-    let part = files::beside(file);
-    let to = File::create(&part).map_err(failed)?;
-    let done = write(scenarios, to, file, options, progress).and_then(|recordings| {
-        files::check_new(file, options.force)?;
-        std::fs::rename(&part, file).map_err(failed)?;
-        Ok(recordings)
-    });
-    if done.is_err() {
-        // What could not be finished is not left behind; that it could not is what matters.
-        let _ = std::fs::remove_file(&part);
-    }
-    done
+    let to = NewFile::create(file, options.force)?;
+    write(scenarios, to, file, options, progress)
 }
 
 fn check(scenarios: &[Scenario], options: &Options) -> Result<(), RecordError> {
@@ -194,7 +183,7 @@ fn digest(scenarios: &[Scenario], options: &Options) -> u128 {
 
 fn write(
     scenarios: &[Scenario],
-    to: File,
+    to: NewFile,
     file: &Path,
     options: &Options,
     progress: &mut dyn FnMut(Progress),
@@ -203,43 +192,56 @@ fn write(
         StoreError::Write(source) => WriteError::Failed { file: file.into(), source }.into(),
         StoreError::Data(why) => RecordError::Data { file: file.into(), why },
     };
-    let mut store = Store::open(BufWriter::with_capacity(1 << 20, to), digest(scenarios, options)).map_err(because)?;
-    let mut film = film::Film::of(options.pictures);
-    let of = scenarios.iter().map(steps).sum();
-    let (mut before, mut cases) = (0, Vec::new());
-    let done = scenarios.iter().try_for_each(|scenario| {
-        let mut tick = |step| progress(Progress { done: before + step, of, what: &scenario.name });
-        cases.push(recorder::record(&mut store, scenario, scenarios.len() > 1, &mut film, &mut tick)?);
+    let total: u64 = scenarios.iter().map(steps).sum();
+    let mut before = 0;
+    let mut cases = Vec::with_capacity(scenarios.len());
+    for scenario in scenarios {
+        let mut tick = |step| progress(Progress { done: before + step, of: 2 * total, what: &scenario.name });
+        let refused = |refusal| RecordError::Refused { scenario: scenario.name.clone(), refusal };
+        cases.push(Rehearsal::of(scenario, &mut tick).map_err(refused)?);
         before += steps(scenario);
-        Ok(())
-    });
-    let finished = done.and_then(|()| {
-        reaction::draw(&mut store, &cases)?;
-        Ok(blueprint::lay_out(&mut store, &cases)?)
-    });
-    let closed = match finished {
-        Ok(()) => store.close().map_err(because)?,
-        Err(stop) => {
-            store.abandon();
-            return Err(match stop {
-                recorder::Stop::Refused { scenario, refusal } => RecordError::Refused { scenario, refusal },
-                recorder::Stop::Pictures(why) => RecordError::Pictures(why),
-                recorder::Stop::Store(error) => because(error),
+    }
+    let mut store = Store::open(to, digest(scenarios, options)).map_err(because)?;
+    let mut film = Film::of(options.pictures);
+    let pictured = film.is_loaded();
+    let mut set =
+        Set { store: &mut store, film: &mut film, scale: Scale::of(&cases), several: scenarios.len() > 1 };
+    let mut recordings = Vec::with_capacity(scenarios.len());
+    // The layout stands first, so that no viewer begins with one of its own.
+    let laid_out = blueprint::lay_out(set.store, &cases, pictured).map_err(Stop::from);
+    let done = laid_out.and_then(|()| {
+        let names: Vec<_> = scenarios.iter().map(|s| s.name.as_str()).collect();
+        let info = RecordingInfo::update_fields().with_name(names.join(", "));
+        set.store.fixed(&EntityPath::properties(), &info)?;
+        for (scenario, case) in scenarios.iter().zip(&cases) {
+            let mut tick = |step| progress(Progress { done: before + step, of: 2 * total, what: &scenario.name });
+            let peaks = recorder::record(&mut set, scenario, case, &mut tick)?;
+            before += steps(scenario);
+            recordings.push(Recording {
+                scenario: scenario.name.clone(),
+                file: file.into(),
+                steps: case.steps,
+                peak_torque: peaks.torque.to_vec(),
+                peak_base_force: peaks.force,
+                peak_base_moment: peaks.moment,
+                reactionless: peaks.is_reactionless(),
+                notes: set.film.notes(),
             });
         }
-    };
-    // A disk that is full may say so only now.
-    closed.get_ref().sync_all().map_err(|source| WriteError::Failed { file: file.into(), source })?;
-    let notes = film.notes();
-    let finished = |case: recorder::Case| Recording {
-        scenario: case.name,
-        file: file.into(),
-        steps: case.steps,
-        peak_torque: case.peaks.torque.to_vec(),
-        peak_base_force: case.peaks.force,
-        peak_base_moment: case.peaks.moment,
-        reactionless: case.peaks.is_reactionless(),
-        notes: notes.clone(),
-    };
-    Ok(cases.into_iter().map(finished).collect())
+        Ok(())
+    });
+    match done {
+        Ok(()) => {
+            store.close().map_err(because)?.finish()?;
+            Ok(recordings)
+        }
+        Err(stop) => {
+            store.abandon();
+            Err(match stop {
+                Stop::Refused { scenario, refusal } => RecordError::Refused { scenario, refusal },
+                Stop::Pictures(why) => RecordError::Pictures(why),
+                Stop::Store(error) => because(error),
+            })
+        }
+    }
 }

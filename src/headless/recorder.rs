@@ -13,7 +13,8 @@ use rerun::{
 };
 
 use super::film::Film;
-use super::reaction::Reaction;
+use super::reaction::{Drawing, Scale};
+use super::rehearsal::Rehearsal;
 use super::store::{Clock, Instant, Store, StoreError};
 use crate::frame::{Frame, Peaks, Phase, Reach};
 use crate::planar::{Vector, unit};
@@ -24,7 +25,7 @@ use crate::scene::palette::{Palette, Theme, faded, palette};
 use crate::scene::stage::Stage;
 use crate::scene::{Mesh, Rgba};
 use crate::session::{Edit, Refusal, Run, replay};
-use crate::signals::{Signal, signals};
+use crate::signals::Signal;
 
 /// Rows that are gathered before they are written.
 const BATCH: usize = 8192;
@@ -56,25 +57,6 @@ impl<E: Into<StoreError>> From<E> for Stop {
     fn from(error: E) -> Self {
         Self::Store(error.into())
     }
-}
-
-/// What is known of a case once it is recorded; the layout is made of it.
-#[derive(Debug)]
-pub struct Case {
-    pub name: String,
-    pub title: String,
-    pub root: EntityPath,
-    pub steps: u64,
-    pub peaks: Peaks,
-    /// Least and greatest b, rad.
-    pub b: [f64; 2],
-    /// The farthest the end effector gets from B, m.
-    pub reach: f64,
-    /// Height above every link, m.
-    pub top: f64,
-    pub reactions: Vec<Reaction>,
-    pub signals: Vec<Signal>,
-    pub pictured: bool,
 }
 
 /// The path of an entity under another; slashes in the name are part of the path.
@@ -121,7 +103,7 @@ pub fn series_name(signal: &Signal) -> String {
 /// A number with the digits that matter: tiny ones in powers of ten.
 fn brief(x: f64) -> String {
     match x.abs() {
-        a if a == 0.0 => "0".into(),
+        0.0 => "0".into(),
         a if a < 1e-3 => format!("{x:.1e}"),
         _ => format!("{x:.4}"),
     }
@@ -229,7 +211,7 @@ struct Recorder<'a, W: Write> {
     prefix: String,
     palette: Palette,
     last: u64,
-    table: Vec<Signal>,
+    table: &'a [Signal],
     /// Machine and workspaces stay what they are: their geometry is static.
     lasting: bool,
     body: Option<Body>,
@@ -248,28 +230,38 @@ struct Recorder<'a, W: Write> {
     target: Track<[f32; 3]>,
     gap: Track<Option<[f32; 3]>>,
     trail: Thinned<[f32; 3]>,
-    reactions: Thinned<Reaction>,
+    reaction_every: u64,
+    reactions: Drawing,
     events: Vec<(Instant, String, &'static str, Rgba)>,
     reach: Option<&'static str>,
     phases: Track<Phase>,
     moment_peak: (Instant, f64),
-    b: [f64; 2],
     stage: Option<Stage>,
-    pictured: bool,
 }
 
-/// Runs a scenario, alone or among others, and writes its entities.
+/// What the cases of one recording share.
+pub struct Set<'a, W: Write> {
+    /// Where everything goes.
+    pub store: &'a mut Store<W>,
+    /// Pictures on the way.
+    pub film: &'a mut Film,
+    /// Of reactions.
+    pub scale: Scale,
+    /// More than one case: events say of which they are.
+    pub several: bool,
+}
+
+/// Runs a scenario and writes its entities; its peaks.
 ///
 /// # Errors
 /// If it cannot run, be drawn or be written.
 pub fn record<W: Write>(
-    store: &mut Store<W>,
+    set: &mut Set<'_, W>,
     scenario: &Scenario,
-    among: bool,
-    film: &mut Film,
+    rehearsal: &Rehearsal,
     tick: &mut dyn FnMut(u64),
-) -> Result<Case, Stop> {
-    let mut recorder = Recorder::new(store, film, scenario, among)?;
+) -> Result<Peaks, Stop> {
+    let mut recorder = Recorder::new(set, scenario, rehearsal)?;
     let mut failure = None;
     let run = replay(scenario, |run, frame| {
         if failure.is_none() {
@@ -287,16 +279,16 @@ pub fn record<W: Write>(
 }
 
 impl<'a, W: Write> Recorder<'a, W> {
-    fn new(store: &'a mut Store<W>, film: &'a mut Film, scenario: &'a Scenario, among: bool) -> Result<Self, Stop> {
+    fn new(set: &'a mut Set<'_, W>, scenario: &'a Scenario, rehearsal: &'a Rehearsal) -> Result<Self, Stop> {
         let palette = palette(Theme::Dark);
-        let root = EntityPath::new(vec![EntityPathPart::new(scenario.name.as_str())]);
-        let table = signals(&scenario.machine);
+        let Set { store, film, scale, several } = set;
+        let (root, table) = (rehearsal.root.clone(), rehearsal.signals.as_slice());
         let every = |time: f64| (time / scenario.step).round().max(1.0) as u64;
         let live = |e: &crate::session::TimedEdit| {
             e.step > 0 && matches!(e.edit, Edit::SetMachine { .. } | Edit::CompareB { .. })
         };
         store.fixed(&root, &ViewCoordinates::RIGHT_HAND_Z_UP())?;
-        for signal in &table {
+        for signal in table {
             let style = SeriesLines::new()
                 .with_names([series_name(signal)])
                 .with_colors([colour(signal_colour(signal, &palette))])
@@ -315,17 +307,20 @@ impl<'a, W: Write> Recorder<'a, W> {
             .with_labels(states.map(Phase::name))
             .with_colors([palette.amber, palette.drive(0), palette.line].map(colour));
         store.fixed(&under(&root, "phase"), &lanes)?;
+        let reactions = Drawing::new(*scale, palette);
+        reactions.style(store, &root)?;
         Ok(Self {
             series: vec![Vec::new(); table.len()],
-            last: super::steps(scenario),
+            last: rehearsal.steps,
             lasting: !scenario.edits.iter().any(live),
             body_every: every(BODY_TIME),
             trail: Thinned::new(every(BODY_TIME), TRAIL),
-            reactions: Thinned::new(every(REACTION_TIME), TRAIL),
+            reaction_every: every(REACTION_TIME),
+            reactions,
             store,
             film,
             scenario,
-            prefix: if among { format!("{} · ", scenario.name) } else { String::new() },
+            prefix: if *several { format!("{} · ", scenario.name) } else { String::new() },
             root,
             palette,
             table,
@@ -346,9 +341,7 @@ impl<'a, W: Write> Recorder<'a, W> {
             reach: None,
             phases: Track::new(),
             moment_peak: (Instant { step: 0, nanos: 0 }, 0.0),
-            b: [f64::INFINITY, f64::NEG_INFINITY],
             stage: None,
-            pictured: false,
         })
     }
 
@@ -361,7 +354,7 @@ impl<'a, W: Write> Recorder<'a, W> {
         }
         self.note(at, frame);
         self.steps.push(at);
-        for (series, signal) in self.series.iter_mut().zip(&self.table) {
+        for (series, signal) in self.series.iter_mut().zip(self.table) {
             series.push(signal.value(frame));
         }
         if frame.step.is_multiple_of(self.body_every) || frame.step == self.last {
@@ -429,7 +422,11 @@ impl<'a, W: Write> Recorder<'a, W> {
     }
 
     fn log(&mut self, at: Instant, path: &EntityPath, what: &dyn rerun::AsComponents) -> Result<(), Stop> {
-        Ok(if self.lasting { self.store.fixed(path, what)? } else { self.store.since(at, path, what)? })
+        match self.lasting {
+            true => self.store.fixed(path, what)?,
+            false => self.store.since(at, path, what)?,
+        }
+        Ok(())
     }
 
     fn show_machine(&mut self, at: Instant, linkage: &Linkage, frame: &Frame) -> Result<(), Stop> {
@@ -530,17 +527,11 @@ impl<'a, W: Write> Recorder<'a, W> {
     /// What has happened.
     fn note(&mut self, at: Instant, frame: &Frame) {
         let ending = frame.step == self.last;
-        let z = self.body.as_ref().map_or(0.0, |b| b.linkage.top());
+        let (reach, z) = self.body.as_ref().map_or((1.0, 0.0), |b| (b.linkage.reach(), b.linkage.top()));
         self.trail.push(|| point(frame.tip, z), ending);
-        let reaction = || Reaction {
-            at,
-            from: frame.base.at,
-            force: frame.wrench.total().force,
-            moment: frame.base_moment(),
-            quiet: frame.is_quiet(),
-        };
-        self.reactions.push(reaction, ending);
-        self.b = [self.b[0].min(frame.b), self.b[1].max(frame.b)];
+        if ending || frame.step.is_multiple_of(self.reaction_every) {
+            self.reactions.draw(at, frame, reach, z);
+        }
         if frame.peaks.moment > self.moment_peak.1 {
             self.moment_peak = (at, frame.peaks.moment);
         }
@@ -568,7 +559,7 @@ impl<'a, W: Write> Recorder<'a, W> {
     fn flush(&mut self) -> Result<(), Stop> {
         let times = self.steps.columns();
         self.steps.clear();
-        for (series, signal) in self.series.iter_mut().zip(&self.table) {
+        for (series, signal) in self.series.iter_mut().zip(self.table) {
             let columns = Scalars::new(std::mem::take(series)).columns_of_unit_batches()?;
             self.store.columns(&times, &under(&self.root, &format!("signals/{}", signal.path)), columns)?;
         }
@@ -582,8 +573,7 @@ impl<'a, W: Write> Recorder<'a, W> {
             self.store.columns(&times, path, pose.columns_of_unit_batches()?)?;
         }
         let joints = std::mem::take(&mut self.joints);
-        if rows > 0 {
-            let pins = joints.len() / rows;
+        if let Some(pins) = joints.len().checked_div(rows) {
             let columns = Points3D::update_fields().with_positions(joints).columns(std::iter::repeat_n(pins, rows))?;
             self.store.columns(&times, &under(&self.root, "machine/joints"), columns)?;
         }
@@ -607,6 +597,7 @@ impl<'a, W: Write> Recorder<'a, W> {
         for area in [&mut self.area, &mut self.compared].into_iter().flatten() {
             area.write(self.store)?;
         }
+        self.reactions.write(self.store, &self.root)?;
         self.film.write(self.store, &under(&self.root, "view"))
     }
 
@@ -629,7 +620,6 @@ impl<'a, W: Write> Recorder<'a, W> {
         }
         let stage = self.stage.get_or_insert_with(|| Stage::of(run));
         self.film.take(at, stage, frame)?;
-        self.pictured = true;
         if self.film.is_full() {
             self.film.write(self.store, &under(&self.root, "view"))?;
         }
@@ -637,9 +627,8 @@ impl<'a, W: Write> Recorder<'a, W> {
     }
 
     /// What is known only at the end.
-    fn finish(mut self, frame: &Frame) -> Result<Case, Stop> {
+    fn finish(mut self, frame: &Frame) -> Result<Peaks, Stop> {
         self.flush()?;
-        let (reach, top) = self.body.as_ref().map_or((1.0, 0.0), |b| (b.linkage.reach(), b.linkage.top()));
         let trail = std::mem::take(&mut self.trail.items);
         let path = LineStrips3D::new([trail])
             .with_radii([Radius::new_ui_points(0.9)])
@@ -650,19 +639,7 @@ impl<'a, W: Write> Recorder<'a, W> {
         self.write(&clock, "phase", states.columns_of_unit_batches()?)?;
         self.write_events(frame)?;
         self.write_properties(frame)?;
-        Ok(Case {
-            name: self.scenario.name.clone(),
-            title: if self.scenario.title.is_empty() { self.scenario.name.clone() } else { self.scenario.title.clone() },
-            root: self.root,
-            steps: frame.step,
-            peaks: frame.peaks,
-            b: self.b,
-            reach,
-            top,
-            reactions: self.reactions.items,
-            signals: self.table,
-            pictured: self.pictured,
-        })
+        Ok(frame.peaks)
     }
 
     fn write_events(&mut self, frame: &Frame) -> Result<(), Stop> {

@@ -153,7 +153,7 @@ fn signals_are_the_frames_at_every_step() {
         assert!(recording.notes.is_empty());
     }
     assert!(heard.windows(2).all(|w| w[0].0 <= w[1].0), "progress only grows");
-    assert_eq!(heard.last(), Some(&(3000, 3000, "case-3".to_owned())));
+    assert_eq!(heard.last(), Some(&(6000, 6000, "case-3".to_owned())));
 }
 
 #[test]
@@ -354,12 +354,19 @@ fn a_folder_that_cannot_be_written_is_named() {
     std::fs::write(folder.file("plain"), "").expect("a file");
     for name in ["no/such/folder.rrd", "plain/inside.rrd"] {
         let error = record_in(&folder, name, &[short("case-3")]).expect_err("nowhere to write");
-        assert!(matches!(&error, RecordError::Write(WriteError::Failed { file, .. }) if *file == folder.file(name)));
+        assert!(matches!(&error, RecordError::Write(WriteError::NoFolder { file, .. }) if *file == folder.file(name)));
         assert!(error.to_string().contains(name), "{error}");
     }
     let error = record(&[short("case-3")], &folder.0, &Options { force: true, pictures: None }, &mut quietly);
     assert!(matches!(error, Err(RecordError::Write(WriteError::IsFolder(_)))), "a folder is no file");
     assert_eq!(folder.names(), ["plain"]);
+    // Where not even root can write.
+    #[cfg(target_os = "linux")]
+    {
+        let file = PathBuf::from("/proc/case.rrd");
+        let error = record(&[short("case-3")], &file, &Options::default(), &mut quietly).expect_err("nowhere to write");
+        assert!(matches!(&error, RecordError::Write(WriteError::Failed { file: named, .. }) if *named == file));
+    }
 }
 
 #[test]

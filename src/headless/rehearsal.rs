@@ -1,0 +1,63 @@
+//! A run before it is recorded: its extremes decide the layout and the scales, which stand at the head of the file, and
+//! a scenario that cannot run is refused before anything is written.
+
+use rerun::EntityPath;
+use rerun::external::re_log_types::EntityPathPart;
+
+use crate::frame::Peaks;
+use crate::scenario::Scenario;
+use crate::scene::linkage::Linkage;
+use crate::session::{Refusal, replay};
+use crate::signals::{Signal, signals};
+
+/// What a run will come to.
+#[derive(Debug)]
+pub struct Rehearsal {
+    /// Name of the scenario.
+    pub name: String,
+    /// A line about it.
+    pub title: String,
+    /// Where its entities are.
+    pub root: EntityPath,
+    /// Steps.
+    pub steps: u64,
+    /// The largest of everything.
+    pub peaks: Peaks,
+    /// The largest |f_B|, static and dynamic, N.
+    pub force: f64,
+    /// Least and greatest b, rad.
+    pub b: [f64; 2],
+    /// The farthest the end effector gets from B, m.
+    pub reach: f64,
+    /// What it records.
+    pub signals: Vec<Signal>,
+}
+
+impl Rehearsal {
+    /// Runs a scenario.
+    ///
+    /// # Errors
+    /// If it cannot start, or one of its edits cannot apply.
+    pub fn of(scenario: &Scenario, tick: &mut dyn FnMut(u64)) -> Result<Self, Refusal> {
+        let (mut force, mut b) = (0.0_f64, [f64::INFINITY, f64::NEG_INFINITY]);
+        let run = replay(scenario, |_, frame| {
+            force = force.max(frame.wrench.total().force.norm());
+            b = [b[0].min(frame.b), b[1].max(frame.b)];
+            if frame.step.is_multiple_of(1024) {
+                tick(frame.step);
+            }
+        })?;
+        let last = run.frame();
+        Ok(Self {
+            name: scenario.name.clone(),
+            title: if scenario.title.is_empty() { scenario.name.clone() } else { scenario.title.clone() },
+            root: EntityPath::new(vec![EntityPathPart::new(scenario.name.as_str())]),
+            steps: last.step,
+            peaks: last.peaks,
+            force,
+            b,
+            reach: Linkage::of(&scenario.machine).reach(),
+            signals: signals(&scenario.machine),
+        })
+    }
+}
