@@ -165,7 +165,7 @@ impl Run {
         if scenario.machine != self.scenario.machine {
             let planes = Arc::new(Planes::of(&scenario.machine)?);
             if matches!(self.simulation.guide(), Guide::Follow(_)) {
-                let follower = Follower::new(planes.clone(), bounds(&scenario, &planes), self.simulation.reference());
+                let follower = Follower::new(planes.clone(), bounds(&scenario, &planes), scenario.step, self.simulation.reference());
                 self.simulation.lead(Guide::Follow(follower));
             }
             self.planes = Some(planes);
@@ -208,7 +208,7 @@ impl Run {
                     None => Arc::new(Planes::of(&self.scenario.machine)?),
                 };
                 let bounds = bounds(&self.scenario, &planes);
-                Ok(Follower::new(planes, bounds, self.simulation.reference()))
+                Ok(Follower::new(planes, bounds, self.scenario.step, self.simulation.reference()))
             }
         }
     }
