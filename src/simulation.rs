@@ -241,7 +241,7 @@ impl Simulation {
         };
         self.step += 1;
         if let Guide::Follow(follower) = &mut self.guide {
-            follower.advance(h);
+            follower.advance();
         }
         self.slope = self.evaluate(&self.state, 0.0);
         self.note_peaks();
