@@ -130,7 +130,7 @@ impl Session {
 
     /// Whether it holds as many frames as it can: time stands still until it starts over.
     pub fn is_full(&self) -> bool {
-        self.frames.len() >= MAX_FRAMES
+        self.frames.len() >= MAX_FRAMES || self.run.simulation().time() >= MAX_TIME
     }
 
     /// Whether the newest frame is on display.
@@ -151,11 +151,6 @@ impl Session {
     /// Whether somebody has led the machine off its planned motion.
     pub fn is_live(&self) -> bool {
         is_led(&self.document.script)
-    }
-
-    /// Whether there is no room for another frame.
-    fn is_full(&self) -> bool {
-        self.frames.len() >= MAX_FRAMES || self.run.simulation().time() >= MAX_TIME
     }
 
     /// Lets time pass. At the end of a finished motion it starts over.
