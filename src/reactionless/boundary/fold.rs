@@ -12,8 +12,12 @@ use super::span::{Curve, Span, Surface};
 const STEP: f64 = 0.35;
 /// Zeros this near to a corner of the limits, rad, are the corner's.
 const CORNER: f64 = 1e-10;
-/// Halvings of a cell before what is left of a node counts as straight.
-const DEPTH: usize = 24;
+/// Halvings of a cell before what is left of a node counts as straight: 1e-5 rad off a fold moves the image by 1e-10 m.
+const DEPTH: usize = 15;
+
+/// Where cells begin and where they are cut, for each angle.
+const OFFSET: [f64; 2] = [0.381_966, 0.276_393];
+const CUT: [f64; 2] = [0.471_404, 0.524_579];
 
 /// A side of a cell: where det = 0 crosses it, in the coordinate that varies.
 #[derive(Clone, Debug, Default)]
@@ -42,12 +46,13 @@ pub(super) fn zeros(on: &Surface, fixed: usize, x: f64, range: [f64; 2]) -> Vec<
     found
 }
 
-/// The lines of the grid. Away from simple fractions, which are where degenerate folds are straight lines.
-fn lines(range: [f64; 2]) -> Vec<f64> {
+/// The lines of the grid. Their places, and where cells are cut, are no simple fractions and differ for both angles:
+/// folds that are straight lines, as degenerate ones are, then never run along a line or through a corner.
+fn lines(axis: usize, range: [f64; 2]) -> Vec<f64> {
     let width = range[1] - range[0];
     let n = (width / STEP).ceil().max(1.0);
     let mut lines = vec![range[0]];
-    lines.extend((1..n as usize).map(|i| range[0] + width * (i as f64 - 0.381_966) / n));
+    lines.extend((1..n as usize).map(|i| range[0] + width * (i as f64 - OFFSET[axis]) / n));
     lines.push(range[1]);
     lines
 }
@@ -55,7 +60,7 @@ fn lines(range: [f64; 2]) -> Vec<f64> {
 /// All of det = 0 inside the limits.
 pub(super) fn spans(on: &Surface) -> Vec<Span> {
     let range = on.map.limits().map(|l| [l.min, l.max]);
-    let grid = range.map(lines);
+    let grid = [0, 1].map(|axis| lines(axis, range[axis]));
     // crossings[axis][line]: zeros on the line where that axis is fixed
     let crossings: [Vec<Vec<f64>>; 2] =
         [0, 1].map(|axis| grid[axis].iter().map(|&x| zeros(on, axis, x, range[1 - axis])).collect());
@@ -145,10 +150,12 @@ impl Cell {
     }
 
     fn quarters(&self, on: &Surface) -> [Self; 4] {
-        let middle = [0, 1].map(|j| 0.5 * (self.low[j] + self.high[j]));
+        let middle = [0, 1].map(|j| self.low[j] + CUT[j] * (self.high[j] - self.low[j]));
         let inside = |axis: usize| {
             let other = 1 - axis;
-            let all = zeros(on, axis, middle[axis], [self.low[other] - CORNER, self.high[other] + CORNER]);
+            let limit = on.map.limits()[other];
+            let range = [(self.low[other] - CORNER).max(limit.min), (self.high[other] + CORNER).min(limit.max)];
+            let all = zeros(on, axis, middle[axis], range);
             halves(&Side(all), middle[other])
         };
         // The two inner lines, each cut in half; then the outer sides, each cut in half.

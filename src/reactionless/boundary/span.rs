@@ -68,7 +68,14 @@ impl Surface {
         let arms = self.map.arms([0, 1].map(|j| 0.5 * (from[j] + to[j])));
         let rates = self.map.u().map(|u| u[0] * step[0] + u[1] * step[1]);
         let bend: Vector = (0..3).map(|k| arms[k] * rates[k] * rates[k]).sum();
-        let jerk: f64 = (0..3).map(|k| arms[k].norm() * rates[k].abs().powi(3)).sum();
+        // Arms that turn together move as one.
+        let (mut jerk, mut seen) = (0.0, [false; 3]);
+        for k in 0..3 {
+            let together = |l: &usize| (rates[*l] - rates[k]).abs() < 1e-9;
+            let arm: Vector = (k..3).filter(|l| !seen[*l] && together(l)).map(|l| arms[l]).sum();
+            (k..3).filter(together).for_each(|l| seen[l] = true);
+            jerk += arm.norm() * rates[k].abs().powi(3);
+        }
         Span {
             curve,
             chart,
