@@ -140,12 +140,20 @@ impl Cell {
 
     /// A cell so small that any pairing will do: each way in with a way out.
     fn join(&self, on: &Surface, spans: &mut Vec<Span>) {
-        let middle = [0, 1].map(|j| 0.5 * (self.low[j] + self.high[j]));
-        let inward = |a: &[f64; 2]| {
-            let [g1, g2] = on.det.gradient(*a);
-            g2 * (middle[0] - a[0]) - g1 * (middle[1] - a[1]) > 0.0
+        // det > 0 on the left of the way from a to b, as seen halfway between a and b or at a.
+        let forward = |a: [f64; 2], b: [f64; 2], at: [f64; 2]| {
+            let [g1, g2] = on.det.gradient(at);
+            g2 * (b[0] - a[0]) - g1 * (b[1] - a[1]) > 0.0
         };
-        let (ways_in, ways_out): (Vec<_>, Vec<_>) = self.points().partition(inward);
+        let halfway = |a: [f64; 2], b: [f64; 2]| [0, 1].map(|j| 0.5 * (a[j] + b[j]));
+        let points: Vec<_> = self.points().collect();
+        if let [a, b] = points[..] {
+            let ends = if forward(a, b, halfway(a, b)) { [a, b] } else { [b, a] };
+            spans.push(on.straight(Curve::Fold, ends));
+            return;
+        }
+        let middle = halfway(self.low, self.high);
+        let (ways_in, ways_out): (Vec<_>, Vec<_>) = points.into_iter().partition(|&a| forward(a, middle, a));
         spans.extend(ways_in.into_iter().zip(ways_out).map(|(from, to)| on.straight(Curve::Fold, [from, to])));
     }
 

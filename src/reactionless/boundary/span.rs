@@ -4,9 +4,9 @@
 //! It is oriented so that more poses reach the points on its left than those on its right: one more for a limit, two
 //! more for a fold. So the spans together are a weighted cycle whose winding number about p counts the poses at p.
 
-use super::determinant::Determinant;
+use super::determinant::{Determinant, INSET};
 use crate::planar::{Vector, cross, dot};
-use crate::reactionless::PlaneMap;
+use crate::reactionless::{Limit, PlaneMap};
 
 /// A curve in (a_1, a_2) whose image can bound the workspace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,7 +54,15 @@ pub(super) struct Surface {
 
 impl Surface {
     pub fn of(map: &PlaneMap) -> Self {
-        Self { map: *map, det: Determinant::of(map) }
+        let det = Determinant::of(map);
+        let mut limits = map.limits();
+        for (i, limit) in limits.iter_mut().enumerate() {
+            let [low, high] = [limit.min, limit.max].map(|x| if det.vanishes(i, x) { INSET } else { 0.0 });
+            if limit.max - limit.min > 4.0 * INSET {
+                *limit = Limit { min: limit.min + low, max: limit.max - high };
+            }
+        }
+        Self { map: map.with_limits(limits), det }
     }
 
     /// A straight piece along one coordinate.
