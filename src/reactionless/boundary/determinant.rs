@@ -8,6 +8,9 @@ use std::f64::consts::TAU;
 use crate::planar::{Vector, cross};
 use crate::reactionless::PlaneMap;
 
+/// Limits that coincide with a straight fold are drawn in by this, rad: they then have a sheet beside them.
+pub(super) const INSET: f64 = 4e-10;
+
 #[derive(Clone, Copy, Debug)]
 struct Sine {
     k: f64,
@@ -50,25 +53,35 @@ impl Determinant {
         g
     }
 
-    /// The values of the other angle, in one turn, at which the determinant is 0 where angle `fixed` is `x`.
-    pub fn zeros(&self, fixed: usize, x: f64) -> Option<[f64; 2]> {
-        // C + S sin y + Q cos y = 0
-        let (mut constant, mut s, mut q) = (0.0, 0.0, 0.0);
+    /// (C, S, Q) with det = C + S sin y + Q cos y along the line where angle `fixed` is `x` and the other is y.
+    fn along(&self, fixed: usize, x: f64) -> [f64; 3] {
+        let mut sum = [0.0; 3];
         for t in &self.terms {
             let (sin, cos) = (t.n[fixed] * x + t.offset).sin_cos();
             let n = t.n[1 - fixed];
             if n == 0.0 {
-                constant += t.k * sin;
+                sum[0] += t.k * sin;
             } else {
-                s += t.k * n * cos;
-                q += t.k * sin;
+                sum[1] += t.k * n * cos;
+                sum[2] += t.k * sin;
             }
         }
+        sum
+    }
+
+    /// The values of the other angle, in one turn, at which the determinant is 0 where angle `fixed` is `x`.
+    pub fn zeros(&self, fixed: usize, x: f64) -> Option<[f64; 2]> {
+        let [c, s, q] = self.along(fixed, x);
         let radius = s.hypot(q);
-        if constant.abs() > radius || radius <= 1e-14 * self.scale() {
+        if c.abs() > radius || radius <= 1e-14 * self.scale() {
             return None;
         }
-        let (middle, half) = (s.atan2(q), (-constant / radius).acos());
+        let (middle, half) = (s.atan2(q), (-c / radius).acos());
         Some([(middle - half).rem_euclid(TAU), (middle + half).rem_euclid(TAU)])
+    }
+
+    /// Whether the determinant is 0 all along the line where angle `fixed` is `x`.
+    pub fn vanishes(&self, fixed: usize, x: f64) -> bool {
+        self.along(fixed, x).iter().all(|x| x.abs() < INSET * self.scale())
     }
 }

@@ -12,8 +12,12 @@ use super::span::{Curve, Span, Surface};
 const STEP: f64 = 0.35;
 /// Zeros this near to a corner of the limits, rad, are the corner's.
 const CORNER: f64 = 1e-10;
-/// Halvings of a cell before what is left of a node counts as straight.
-const DEPTH: usize = 24;
+/// Halvings of a cell before what is left of a node counts as straight: 1e-5 rad off a fold moves the image by 1e-10 m.
+const DEPTH: usize = 15;
+
+/// Where cells begin and where they are cut, for each angle.
+const OFFSET: [f64; 2] = [0.381_966, 0.276_393];
+const CUT: [f64; 2] = [0.471_404, 0.524_579];
 
 /// A side of a cell: where det = 0 crosses it, in the coordinate that varies.
 #[derive(Clone, Debug, Default)]
@@ -42,12 +46,13 @@ pub(super) fn zeros(on: &Surface, fixed: usize, x: f64, range: [f64; 2]) -> Vec<
     found
 }
 
-/// The lines of the grid. Away from simple fractions, which are where degenerate folds are straight lines.
-fn lines(range: [f64; 2]) -> Vec<f64> {
+/// The lines of the grid. Their places, and where cells are cut, are no simple fractions and differ for both angles:
+/// folds that are straight lines, as degenerate ones are, then never run along a line or through a corner.
+fn lines(axis: usize, range: [f64; 2]) -> Vec<f64> {
     let width = range[1] - range[0];
     let n = (width / STEP).ceil().max(1.0);
     let mut lines = vec![range[0]];
-    lines.extend((1..n as usize).map(|i| range[0] + width * (i as f64 - 0.381_966) / n));
+    lines.extend((1..n as usize).map(|i| range[0] + width * (i as f64 - OFFSET[axis]) / n));
     lines.push(range[1]);
     lines
 }
@@ -55,7 +60,7 @@ fn lines(range: [f64; 2]) -> Vec<f64> {
 /// All of det = 0 inside the limits.
 pub(super) fn spans(on: &Surface) -> Vec<Span> {
     let range = on.map.limits().map(|l| [l.min, l.max]);
-    let grid = range.map(lines);
+    let grid = [0, 1].map(|axis| lines(axis, range[axis]));
     // crossings[axis][line]: zeros on the line where that axis is fixed
     let crossings: [Vec<Vec<f64>>; 2] =
         [0, 1].map(|axis| grid[axis].iter().map(|&x| zeros(on, axis, x, range[1 - axis])).collect());
@@ -135,20 +140,30 @@ impl Cell {
 
     /// A cell so small that any pairing will do: each way in with a way out.
     fn join(&self, on: &Surface, spans: &mut Vec<Span>) {
-        let middle = [0, 1].map(|j| 0.5 * (self.low[j] + self.high[j]));
-        let inward = |a: &[f64; 2]| {
-            let [g1, g2] = on.det.gradient(*a);
-            g2 * (middle[0] - a[0]) - g1 * (middle[1] - a[1]) > 0.0
+        // det > 0 on the left of the way from a to b, as seen halfway between a and b or at a.
+        let forward = |a: [f64; 2], b: [f64; 2], at: [f64; 2]| {
+            let [g1, g2] = on.det.gradient(at);
+            g2 * (b[0] - a[0]) - g1 * (b[1] - a[1]) > 0.0
         };
-        let (ways_in, ways_out): (Vec<_>, Vec<_>) = self.points().partition(inward);
+        let halfway = |a: [f64; 2], b: [f64; 2]| [0, 1].map(|j| 0.5 * (a[j] + b[j]));
+        let points: Vec<_> = self.points().collect();
+        if let [a, b] = points[..] {
+            let ends = if forward(a, b, halfway(a, b)) { [a, b] } else { [b, a] };
+            spans.push(on.straight(Curve::Fold, ends));
+            return;
+        }
+        let middle = halfway(self.low, self.high);
+        let (ways_in, ways_out): (Vec<_>, Vec<_>) = points.into_iter().partition(|&a| forward(a, middle, a));
         spans.extend(ways_in.into_iter().zip(ways_out).map(|(from, to)| on.straight(Curve::Fold, [from, to])));
     }
 
     fn quarters(&self, on: &Surface) -> [Self; 4] {
-        let middle = [0, 1].map(|j| 0.5 * (self.low[j] + self.high[j]));
+        let middle = [0, 1].map(|j| self.low[j] + CUT[j] * (self.high[j] - self.low[j]));
         let inside = |axis: usize| {
             let other = 1 - axis;
-            let all = zeros(on, axis, middle[axis], [self.low[other] - CORNER, self.high[other] + CORNER]);
+            let limit = on.map.limits()[other];
+            let range = [(self.low[other] - CORNER).max(limit.min), (self.high[other] + CORNER).min(limit.max)];
+            let all = zeros(on, axis, middle[axis], range);
             halves(&Side(all), middle[other])
         };
         // The two inner lines, each cut in half; then the outer sides, each cut in half.

@@ -4,9 +4,9 @@
 //! It is oriented so that more poses reach the points on its left than those on its right: one more for a limit, two
 //! more for a fold. So the spans together are a weighted cycle whose winding number about p counts the poses at p.
 
-use super::determinant::Determinant;
+use super::determinant::{Determinant, INSET};
 use crate::planar::{Vector, cross, dot};
-use crate::reactionless::PlaneMap;
+use crate::reactionless::{Limit, PlaneMap};
 
 /// A curve in (a_1, a_2) whose image can bound the workspace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,7 +54,15 @@ pub(super) struct Surface {
 
 impl Surface {
     pub fn of(map: &PlaneMap) -> Self {
-        Self { map: *map, det: Determinant::of(map) }
+        let det = Determinant::of(map);
+        let mut limits = map.limits();
+        for (i, limit) in limits.iter_mut().enumerate() {
+            let [low, high] = [limit.min, limit.max].map(|x| if det.vanishes(i, x) { INSET } else { 0.0 });
+            if limit.max - limit.min > 4.0 * INSET {
+                *limit = Limit { min: limit.min + low, max: limit.max - high };
+            }
+        }
+        Self { map: map.with_limits(limits), det }
     }
 
     /// A straight piece along one coordinate.
@@ -68,7 +76,14 @@ impl Surface {
         let arms = self.map.arms([0, 1].map(|j| 0.5 * (from[j] + to[j])));
         let rates = self.map.u().map(|u| u[0] * step[0] + u[1] * step[1]);
         let bend: Vector = (0..3).map(|k| arms[k] * rates[k] * rates[k]).sum();
-        let jerk: f64 = (0..3).map(|k| arms[k].norm() * rates[k].abs().powi(3)).sum();
+        // Arms that turn together move as one.
+        let (mut jerk, mut seen) = (0.0, [false; 3]);
+        for k in 0..3 {
+            let together = |l: &usize| (rates[*l] - rates[k]).abs() < 1e-9;
+            let arm: Vector = (k..3).filter(|l| !seen[*l] && together(l)).map(|l| arms[l]).sum();
+            (k..3).filter(together).for_each(|l| seen[l] = true);
+            jerk += arm.norm() * rates[k].abs().powi(3);
+        }
         Span {
             curve,
             chart,
