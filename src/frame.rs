@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 use crate::dynamics::BaseWrench;
 use crate::planar::{DriveAngles, PerDrive, Pose2, Vector};
 
+pub use crate::plan::follow::Target;
+pub use crate::pose_constant::Reach;
+
 /// Peaks below this part of what moves count as zero.
 pub const REACTIONLESS: f64 = 1e-6;
 
@@ -78,31 +81,6 @@ impl Phase {
             Self::Rest => "rest",
         }
     }
-}
-
-/// Where the end effector is sent, and whether it can go there.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Target {
-    /// m.
-    pub at: Vector,
-    /// Verdict.
-    pub reach: Reach,
-}
-
-/// Whether a target can be reached on the present plane.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Reach {
-    /// It can.
-    Inside,
-    /// It cannot; the machine waits at the nearest point that it can reach without leaving the plane.
-    Outside {
-        /// Where it waits, m.
-        nearest: Vector,
-        /// The b nearest to the present one that would reach the target, rad; none if no b does.
-        mending_b: Option<f64>,
-    },
-    /// It cannot any more since b was changed, so the machine keeps a_1 and a_2 and turns with its workspace.
-    Carried,
 }
 
 /// Largest values over a run.

@@ -2,7 +2,6 @@
 
 use thiserror::Error;
 
-use crate::frame::Reach;
 use crate::machine::{Inertia, Machine};
 use crate::planar::Vector;
 use crate::reactionless::{AngleDefinition, BSet, Boundary, Limit, NoReach, NotAPlaneMap, PlaneMap, PlanePoint};
@@ -12,6 +11,22 @@ use crate::reactionless::{AngleDefinition, BSet, Boundary, Limit, NoReach, NotAP
 pub struct Planes {
     map: PlaneMap,
     boundary: Boundary,
+}
+
+/// Whether a target can be reached on the present plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reach {
+    /// It can.
+    Inside,
+    /// It cannot; the machine waits at the nearest point that it can reach without leaving the plane.
+    Outside {
+        /// Where it waits, m.
+        nearest: Vector,
+        /// The b nearest to the present one that would reach the target, rad; none if no b does.
+        mending_b: Option<f64>,
+    },
+    /// It cannot any more since b was changed, so the machine keeps a_1 and a_2 and turns with its workspace.
+    Carried,
 }
 
 /// Why a machine has no reactionless planes that can be drawn.

@@ -40,3 +40,7 @@ mod cases;
 mod convergence;
 #[path = "suite/session.rs"]
 mod session;
+#[path = "suite/layers.rs"]
+mod layers;
+#[path = "suite/signals.rs"]
+mod signals;

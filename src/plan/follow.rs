@@ -6,11 +6,19 @@
 
 use std::sync::Arc;
 
-use crate::frame::{Reach, Target};
 use crate::plan::Reference;
 use crate::planar::{DriveAngles, PerDrive, Vector};
-use crate::pose_constant::Planes;
+use crate::pose_constant::{Planes, Reach};
 use crate::reactionless::PlanePoint;
+
+/// Where the end effector is sent, and whether it can go there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target {
+    /// m.
+    pub at: Vector,
+    /// Verdict.
+    pub reach: Reach,
+}
 
 /// Bounds on how fast the reference may change.
 #[derive(Clone, Copy, Debug, PartialEq)]
