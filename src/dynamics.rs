@@ -103,7 +103,7 @@ pub fn mass_matrix(inertia: &Inertia, e: &Units, qd: &PerDrive) -> (MassMatrix, 
 #[inline]
 fn assemble<const N: usize>(inertia: &Inertia, e: &Units, qd: &PerDrive) -> (MassMatrix, PerDrive) {
     let mut h = [[0.0; MAX_DRIVES]; MAX_DRIVES];
-    let mut v = PerDrive::zeros(N);
+    let mut v = [0.0; N];
     let qd = qd.padded();
     for k in 0..N {
         h[k][k] = inertia.c[k][k].re + inertia.spin[k];
@@ -115,14 +115,19 @@ fn assemble<const N: usize>(inertia: &Inertia, e: &Units, qd: &PerDrive) -> (Mas
             v[l] += z.im * qd[k] * qd[k];
         }
     }
-    (MassMatrix { n: N, h }, v)
+    (MassMatrix { n: N, h }, PerDrive::from(v))
 }
 
 /// −γᵀ g − Jᵀ F, the part of the torque that holds still, N m.
 #[inline]
 pub fn holding_torque(inertia: &Inertia, e: &Units, around: &Surroundings) -> PerDrive {
+    by_drives!(inertia.drives, hold(inertia, e, around))
+}
+
+#[inline]
+fn hold<const N: usize>(inertia: &Inertia, e: &Units, around: &Surroundings) -> PerDrive {
     // (i e) · a = e × a for a unit vector e turned by a right angle
-    PerDrive::from_fn(inertia.drives, |k| {
+    PerDrive::from_fn(N, |k| {
         -cross(inertia.g[k] * e[k], around.gravity) - inertia.tip[k] * cross(e[k], around.force)
     })
 }
@@ -130,15 +135,39 @@ pub fn holding_torque(inertia: &Inertia, e: &Units, around: &Surroundings) -> Pe
 /// Motor torques for given accelerations, (4), N m.
 #[inline]
 pub fn inverse(inertia: &Inertia, e: &Units, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> PerDrive {
-    let (h, v) = mass_matrix(inertia, e, qd);
-    h.times(qdd).plus(1.0, &v).plus(1.0, &holding_torque(inertia, e, around))
+    by_drives!(inertia.drives, inverse_of(inertia, e, qd, qdd, around))
+}
+
+#[inline]
+fn inverse_of<const N: usize>(
+    inertia: &Inertia,
+    e: &Units,
+    qd: &PerDrive,
+    qdd: &PerDrive,
+    around: &Surroundings,
+) -> PerDrive {
+    let (h, v) = assemble::<N>(inertia, e, qd);
+    let (moving, holding) = (times::<N>(&h, qdd), hold::<N>(inertia, e, around));
+    PerDrive::from_fn(N, |k| moving[k] + v[k] + holding[k])
 }
 
 /// Accelerations for given motor torques, rad/s².
 #[inline]
 pub fn forward(inertia: &Inertia, e: &Units, qd: &PerDrive, torque: &PerDrive, around: &Surroundings) -> PerDrive {
-    let (h, v) = mass_matrix(inertia, e, qd);
-    h.solve(&torque.plus(-1.0, &v).plus(-1.0, &holding_torque(inertia, e, around)))
+    by_drives!(inertia.drives, forward_of(inertia, e, qd, torque, around))
+}
+
+#[inline]
+fn forward_of<const N: usize>(
+    inertia: &Inertia,
+    e: &Units,
+    qd: &PerDrive,
+    torque: &PerDrive,
+    around: &Surroundings,
+) -> PerDrive {
+    let (h, v) = assemble::<N>(inertia, e, qd);
+    let holding = hold::<N>(inertia, e, around);
+    solve::<N>(&h, &PerDrive::from_fn(N, |k| torque[k] - v[k] - holding[k]))
 }
 
 /// What the manipulator transmits to its base, in its two parts.
@@ -160,13 +189,11 @@ impl BaseWrench {
 /// f_B and n_B, (1) and (5).
 #[inline]
 pub fn base_wrench(inertia: &Inertia, e: &Units, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> BaseWrench {
-    let (h, v) = mass_matrix(inertia, e, qd);
-    let rate = h.times(qdd).iter().zip(v.iter()).map(|(a, b)| a + b).sum::<f64>();
-    wrench_with(inertia, e, qd, qdd, around, rate)
+    inverse_with_wrench(inertia, e, qd, qdd, around).1
 }
 
 #[inline]
-fn wrench_with(
+fn wrench_with<const N: usize>(
     inertia: &Inertia,
     e: &Units,
     qd: &PerDrive,
@@ -174,9 +201,8 @@ fn wrench_with(
     around: &Surroundings,
     momentum_rate: f64,
 ) -> BaseWrench {
-    let n = inertia.drives;
     let (mut pull, mut tip, mut first) = (Vector::default(), Vector::default(), Vector::default());
-    for k in 0..n {
+    for k in 0..N {
         let ge = inertia.g[k] * e[k];
         first += ge;
         pull -= ge * Vector::new(-qd[k] * qd[k], qdd[k]);
@@ -200,10 +226,22 @@ pub fn inverse_with_wrench(
     qdd: &PerDrive,
     around: &Surroundings,
 ) -> (PerDrive, BaseWrench) {
-    let (h, v) = mass_matrix(inertia, e, qd);
-    let moving = h.times(qdd).plus(1.0, &v);
-    let wrench = wrench_with(inertia, e, qd, qdd, around, moving.iter().sum());
-    (moving.plus(1.0, &holding_torque(inertia, e, around)), wrench)
+    by_drives!(inertia.drives, inverse_with_wrench_of(inertia, e, qd, qdd, around))
+}
+
+#[inline]
+fn inverse_with_wrench_of<const N: usize>(
+    inertia: &Inertia,
+    e: &Units,
+    qd: &PerDrive,
+    qdd: &PerDrive,
+    around: &Surroundings,
+) -> (PerDrive, BaseWrench) {
+    let (h, v) = assemble::<N>(inertia, e, qd);
+    let (inertial, holding) = (times::<N>(&h, qdd), hold::<N>(inertia, e, around));
+    let rate = (0..N).map(|k| inertial[k] + v[k]).sum();
+    let wrench = wrench_with::<N>(inertia, e, qd, qdd, around, rate);
+    (PerDrive::from_fn(N, |k| inertial[k] + v[k] + holding[k]), wrench)
 }
 
 /// Σ_k g_k e_k = M r_CM, kg m.

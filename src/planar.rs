@@ -48,6 +48,7 @@ impl PerDrive {
     }
 
     /// The value of `f` for each of `n` drives, counted from 0.
+    #[inline]
     pub fn from_fn(n: usize, f: impl FnMut(usize) -> f64) -> Self {
         let mut v = Self::zeros(n);
         v.iter_mut().zip((0..n).map(f)).for_each(|(v, x)| *v = x);

@@ -84,6 +84,7 @@ pub struct Simulation {
     guide: Guide,
     state: State,
     slope: Slope,
+    wrench: BaseWrench,
     start_energy: f64,
     peaks: Peaks,
 }
@@ -123,6 +124,7 @@ impl Simulation {
                 reference,
                 e: state.q.units(),
             },
+            wrench: BaseWrench::default(),
             start_energy: 0.0,
             peaks: Peaks::zero(n),
         };
@@ -239,20 +241,18 @@ impl Simulation {
         };
         self.step += 1;
         if let Guide::Follow(follower) = &mut self.guide {
-            follower.advance(h);
+            follower.advance();
         }
         self.slope = self.evaluate(&self.state, 0.0);
         self.note_peaks();
     }
 
-    fn wrench(&self) -> BaseWrench {
-        let s = &self.slope;
-        base_wrench(&self.plant.inertia, &s.e, &s.qd, &s.qdd, &self.plant.around)
-    }
-
+    /// The wrench of the plant's own motion at the present instant, and the peaks so far.
     fn note_peaks(&mut self) {
-        let (wrench, pull) = (self.wrench(), self.inertial_pull());
-        self.peaks.include(&self.slope.torque, &wrench, pull);
+        let s = &self.slope;
+        self.wrench = base_wrench(&self.plant.inertia, &s.e, &s.qd, &s.qdd, &self.plant.around);
+        let pull = self.inertial_pull();
+        self.peaks.include(&self.slope.torque, &self.wrench, pull);
     }
 
     /// Σ_j m_j |a_cj|, N.
@@ -301,7 +301,7 @@ impl Simulation {
                 q[a.to] - q[a.from] + a.offset
             }),
             base: Pose2::default(),
-            wrench: self.wrench(),
+            wrench: self.wrench,
             momentum: linear_momentum(inertia, &s.e, &qd),
             angular_momentum: angular_momentum(inertia, &s.e, &qd),
             com: centre_of_mass(inertia, &s.e),

@@ -38,3 +38,5 @@ mod balance;
 mod cases;
 #[path = "suite/convergence.rs"]
 mod convergence;
+#[path = "suite/session.rs"]
+mod session;

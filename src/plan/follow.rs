@@ -9,8 +9,8 @@ use std::sync::Arc;
 use crate::frame::{Reach, Target};
 use crate::plan::Reference;
 use crate::planar::{DriveAngles, PerDrive, Vector};
-use crate::reactionless::PlanePoint;
 use crate::pose_constant::Planes;
+use crate::reactionless::PlanePoint;
 
 /// Bounds on how fast the reference may change.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,6 +31,7 @@ const ARRIVED: f64 = 1e-11;
 pub struct Follower {
     planes: Arc<Planes>,
     bounds: Bounds,
+    step: f64,
     a: [Course; 2],
     b: Course,
     aim: [f64; 2],
@@ -54,13 +55,15 @@ impl Course {
 }
 
 impl Follower {
-    /// Takes over from a reference: keeps its pose and rates, then slows to rest on the plane it is on.
-    pub fn new(planes: Arc<Planes>, bounds: Bounds, from: &Reference) -> Self {
+    /// Takes over from a reference: keeps its pose and rates, then slows to rest on the plane it is on. `step` is the
+    /// time between calls of [`advance`](Self::advance), s.
+    pub fn new(planes: Arc<Planes>, bounds: Bounds, step: f64, from: &Reference) -> Self {
         let map = planes.map();
         let at = map.project(&from.q);
         let (ad, bd) = map.project_rates(&from.qd);
         let mut follower = Self {
             bounds,
+            step,
             a: [0, 1].map(|i| Course { x: at.a[i], v: ad[i], acc: 0.0 }),
             b: Course { x: at.b, v: bd, acc: 0.0 },
             aim: at.a,
@@ -75,12 +78,6 @@ impl Follower {
         follower.target.at = follower.aim_point();
         follower.steer();
         follower
-    }
-
-    /// Stands at a point of joint space.
-    pub fn at_rest(planes: Arc<Planes>, bounds: Bounds, at: PlanePoint) -> Self {
-        let q = DriveAngles::from(planes.map().lift(at));
-        Self::new(planes, bounds, &Reference::at_rest(q))
     }
 
     /// Sends the end effector to a point, m.
@@ -112,6 +109,11 @@ impl Follower {
         self.b_aim
     }
 
+    /// The planes it moves on.
+    pub fn planes(&self) -> &Planes {
+        &self.planes
+    }
+
     /// The bounds it keeps.
     pub fn bounds(&self) -> Bounds {
         self.bounds
@@ -133,8 +135,9 @@ impl Follower {
         }
     }
 
-    /// Ends the present step of h seconds and begins the next.
-    pub fn advance(&mut self, h: f64) {
+    /// Ends the present step and begins the next.
+    pub fn advance(&mut self) {
+        let h = self.step;
         let turning = self.b.v != 0.0 || self.b.acc != 0.0;
         self.a = self.a.map(|c| c.after(h));
         self.b = self.b.after(h);
@@ -183,6 +186,34 @@ impl Follower {
         self.target.reach = reach;
     }
 
+    /// The accelerations nearest to the wanted ones after which either angle can still stop before its limit, with
+    /// half of the bound's square each, so that stopping both at once is within the bound.
+    fn within_limits(&self, want: [f64; 2]) -> [f64; 2] {
+        let (h, brake) = (self.step, self.bounds.joint * std::f64::consts::FRAC_1_SQRT_2);
+        let limits = self.planes.map().limits();
+        let mut acc = [0, 1].map(|i| {
+            let Course { x, v, .. } = self.a[i];
+            // The greatest acceleration towards a wall at distance d, nearing it at v. The speed s after this step has
+            // h (v + s)/2 + s²/(2 brake) = d; nearer than that, the rest of the way just stops it.
+            let most = |d: f64, v: f64| {
+                let room = d - 0.5 * h * v;
+                let s = 0.5 * (((brake * h).powi(2) + 8.0 * brake * room.max(0.0)).sqrt() - brake * h);
+                let most = if room < 0.0 && d > 0.0 { -0.5 * v * v / d } else { (s - v) / h };
+                most.max(-brake)
+            };
+            let (up, down) = (most(limits[i].max - x, v), most(x - limits[i].min, -v));
+            want[i].min(up).max(-down)
+        });
+        // Where one angle must brake harder than wanted, the other one leaves it the share it needs.
+        for (i, j) in [(0, 1), (1, 0)] {
+            let left = (self.bounds.joint.powi(2) - acc[i] * acc[i]).max(0.0).sqrt();
+            if acc[i].abs() > want[i].abs() && acc[j].abs() > left {
+                acc[j] = left.copysign(acc[j]);
+            }
+        }
+        acc
+    }
+
     /// Chooses the accelerations of the coming step.
     fn steer(&mut self) {
         let [x, y] = [0, 1].map(|i| self.aim[i] - self.a[i].x);
@@ -197,8 +228,9 @@ impl Follower {
             let gain = if distance > 0.0 { speed / distance } else { 0.0 };
             let want = [(gain * x - v[0]) / LAG, (gain * y - v[1]) / LAG];
             let scale = (self.bounds.joint / want[0].hypot(want[1])).min(1.0);
+            let acc = self.within_limits(want.map(|w| w * scale));
             for i in 0..2 {
-                self.a[i].acc = want[i] * scale;
+                self.a[i].acc = acc[i];
             }
         }
         let left = self.b_aim - self.b.x;

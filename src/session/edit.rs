@@ -74,9 +74,9 @@ impl Edit {
         }
     }
 
-    /// Whether it leads the machine rather than setting a parameter.
-    pub fn is_live(&self) -> bool {
-        matches!(self, Self::DragTarget { .. } | Self::SlideB { .. } | Self::PoseB { .. })
+    /// Whether it sends the machine somewhere: the pointer or the slider.
+    pub fn leads(&self) -> bool {
+        matches!(self, Self::DragTarget { .. } | Self::SlideB { .. })
     }
 
     /// What it does, for menus and the event log.

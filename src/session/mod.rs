@@ -10,17 +10,20 @@ mod run;
 pub use edit::{Edit, TimedEdit};
 pub use run::{Refusal, Run, replay};
 
-use crate::frame::Frame;
-use crate::scenario::Scenario;
+use run::{in_order, last_step};
 
-/// The most frames a session keeps: ten minutes at 1 kHz.
-const MAX_FRAMES: usize = 600_000;
+use crate::frame::Frame;
+use crate::scenario::{MAX_TIME, Scenario};
+
+/// The most frames a session keeps: three minutes of motion at 1 kHz, some 150 MB.
+const MAX_FRAMES: usize = 180_000;
 
 /// Everything that makes a run: what undo restores and what is saved.
 #[derive(Clone, Debug, PartialEq)]
 struct Document {
     /// Its edits are empty; they stand in `script`.
     scenario: Scenario,
+    /// In the order of steps, none beyond `end`.
     script: Vec<TimedEdit>,
     /// Steps done.
     end: u64,
@@ -48,6 +51,14 @@ pub struct Session {
     redo: Vec<Change>,
     /// Edits of one kind join into one undo while a gesture lasts.
     gesture: bool,
+    /// The run as it was before the last edit of the script, until the next step: where the gesture's next word in
+    /// the same step starts from.
+    unedited: Option<Run>,
+}
+
+/// Whether somebody leads the machine off its planned motion.
+fn is_led(script: &[TimedEdit]) -> bool {
+    script.iter().any(|e| e.edit.leads() || (e.step > 0 && matches!(e.edit, Edit::PoseB { .. })))
 }
 
 impl Session {
@@ -57,8 +68,10 @@ impl Session {
     /// If it cannot start, or one of its edits cannot apply.
     pub fn open(scenario: Scenario) -> Result<Self, Refusal> {
         let mut ground = scenario;
-        let script = std::mem::take(&mut ground.edits);
-        let end = if script.iter().any(|e| e.step > 0) { (ground.duration / ground.step).round() as u64 } else { 0 };
+        let mut script = in_order(&std::mem::take(&mut ground.edits));
+        let runs = is_led(&script) || script.iter().any(|e| e.step > 0);
+        let end = if runs { last_step(&ground).min(MAX_FRAMES as u64 - 1) } else { 0 };
+        script.retain(|e| e.step <= end);
         let mut session = Self::of(Document { scenario: ground, script, end })?;
         session.cursor = 0;
         Ok(session)
@@ -76,6 +89,7 @@ impl Session {
             undo: Vec::new(),
             redo: Vec::new(),
             gesture: false,
+            unedited: None,
         })
     }
 
@@ -114,6 +128,11 @@ impl Session {
         self.playing && !(self.is_at_end() && self.is_settled())
     }
 
+    /// Whether it holds as many frames as it can: time stands still until it starts over.
+    pub fn is_full(&self) -> bool {
+        self.frames.len() >= MAX_FRAMES || self.run.simulation().time() >= MAX_TIME
+    }
+
     /// Whether the newest frame is on display.
     pub fn is_at_end(&self) -> bool {
         self.cursor + 1 == self.frames.len()
@@ -131,7 +150,7 @@ impl Session {
 
     /// Whether somebody has led the machine off its planned motion.
     pub fn is_live(&self) -> bool {
-        self.document.script.iter().any(|e| e.step > 0 && e.edit.is_live())
+        is_led(&self.document.script)
     }
 
     /// Lets time pass. At the end of a finished motion it starts over.
@@ -152,7 +171,7 @@ impl Session {
         let step = (time / self.scenario().step).round().max(0.0) as usize;
         if !self.is_live() {
             let planned = (self.scenario().task.time / self.scenario().step).round() as usize;
-            while self.frames.len() <= step.min(planned) {
+            while self.frames.len() <= step.min(planned) && !self.is_full() {
                 self.advance_run();
             }
         }
@@ -162,11 +181,11 @@ impl Session {
     /// Moves the display by steps, either way; past the newest frame the run goes on.
     pub fn step_by(&mut self, steps: i64) {
         self.playing = false;
-        let to = self.cursor as i64 + steps;
-        for _ in self.frames.len() as i64..=to {
+        let to = (self.cursor as i64).saturating_add(steps).max(0) as usize;
+        while self.frames.len() <= to && !self.is_full() {
             self.advance_run();
         }
-        self.cursor = to.clamp(0, self.frames.len() as i64 - 1) as usize;
+        self.cursor = to.min(self.frames.len() - 1);
     }
 
     /// Lets `steps` steps pass, if time passes. Nothing happens once everything is at rest.
@@ -176,7 +195,7 @@ impl Session {
                 return;
             }
             if self.is_at_end() {
-                if self.frames.len() >= MAX_FRAMES {
+                if self.is_full() {
                     self.playing = false;
                     return;
                 }
@@ -187,6 +206,7 @@ impl Session {
     }
 
     fn advance_run(&mut self) {
+        self.unedited = None;
         self.run.advance();
         self.frames.push(self.run.frame());
         self.document.end = self.run.simulation().step_count();
@@ -198,61 +218,89 @@ impl Session {
     /// # Errors
     /// If it cannot apply; then nothing has changed.
     pub fn apply(&mut self, edit: Edit) -> Result<(), Refusal> {
-        let moving = self.is_moving() && self.is_at_end();
-        let leads = matches!(edit, Edit::DragTarget { .. } | Edit::SlideB { .. });
-        let poses_live = matches!(edit, Edit::PoseB { .. }) && self.is_live();
-        if leads || poses_live || (moving && !matches!(edit, Edit::PoseB { .. })) {
-            self.apply_now(edit)
-        } else {
-            self.amend(edit)
+        if self.concerns_now(&edit) { self.apply_now(edit) } else { self.amend(edit) }
+    }
+
+    /// Whether an edit applies at the present step rather than to the run as a whole.
+    fn concerns_now(&self, edit: &Edit) -> bool {
+        match edit {
+            Edit::DragTarget { .. } | Edit::SlideB { .. } => true,
+            Edit::PoseB { .. } => self.is_live(),
+            // The path that the machine is on cannot change its time.
+            Edit::SetTime { .. } => false,
+            _ => self.is_running(),
         }
+    }
+
+    /// Whether the newest frame is on display and time passes.
+    fn is_running(&self) -> bool {
+        self.is_moving() && self.is_at_end()
     }
 
     /// At the present step; later frames, if the display was scrubbed back, are replaced.
     fn apply_now(&mut self, edit: Edit) -> Result<(), Refusal> {
         let before = self.document.clone();
-        let inverse = self.inverse_of(&edit);
+        let mut document = before.clone();
+        let mut remade = None;
         if !self.is_at_end() {
-            let mut document = self.document.clone();
             document.end = self.cursor as u64;
-            document.script.retain(|e| e.step < document.end || e.step == 0);
-            let (run, frames) = perform(&document)?;
-            (self.document, self.run, self.frames) = (document, run, frames);
-            self.cursor = self.frames.len() - 1;
+            document.script.retain(|e| e.step <= document.end);
+            remade = Some(perform(&document)?);
         }
-        self.run.apply(&edit)?;
-        let timed = TimedEdit { step: self.run.simulation().step_count(), edit };
-        let script = &mut self.document.script;
-        match script.last_mut() {
-            Some(last) if self.gesture && last.step == timed.step && last.edit.is_replaced_by(&timed.edit) => {
-                *last = timed.clone();
+        let timed = TimedEdit { step: document.end, edit };
+        let joins = self.gesture
+            && remade.is_none()
+            && document.script.last().is_some_and(|e| e.step == timed.step && e.edit.is_replaced_by(&timed.edit));
+        // What is replaced must leave no trace, so the next word starts from where the last one started.
+        let unedited = match (&remade, &self.unedited) {
+            (Some((run, _)), _) => run.clone(),
+            (None, Some(run)) if joins => {
+                document.script.pop();
+                run.clone()
             }
-            _ => script.push(timed.clone()),
+            _ => self.run.clone(),
+        };
+        let inverse = unedited.inverse_of(&timed.edit);
+        let mut run = unedited.clone();
+        run.apply(&timed.edit)?;
+        document.script.push(timed.clone());
+        if let Some((_, frames)) = remade {
+            self.frames = frames;
         }
-        if let Some(last) = self.frames.last_mut() {
-            *last = self.run.frame();
-        }
-        if matches!(timed.edit, Edit::DragTarget { .. } | Edit::SlideB { .. }) {
+        (self.document, self.run, self.unedited) = (document, run, Some(unedited));
+        self.show_present();
+        self.cursor = self.frames.len() - 1;
+        if timed.edit.leads() {
             self.playing = true;
         }
         self.remember(before, timed, inverse);
         Ok(())
     }
 
-    /// Before the first step, whatever has happened since.
+    /// Before the first step, whatever has happened since: for a parameter, during the whole run.
     fn amend(&mut self, edit: Edit) -> Result<(), Refusal> {
-        let before = self.document.clone();
-        let inverse = self.inverse_of(&edit);
-        let mut document = self.document.clone();
-        document.script.retain(|e| e.step > 0 || !e.edit.is_replaced_by(&edit));
-        let place = document.script.iter().position(|e| e.step > 0).unwrap_or(document.script.len());
+        let (before, inverse) = (self.document.clone(), self.run.inverse_of(&edit));
         let timed = TimedEdit { step: 0, edit };
-        document.script.insert(place, timed.clone());
-        let (run, frames) = perform(&document)?;
-        (self.document, self.run, self.frames) = (document, run, frames);
-        self.cursor = self.cursor.min(self.frames.len() - 1);
+        self.restore(self.amended(&timed))?;
         self.remember(before, timed, inverse);
         Ok(())
+    }
+
+    /// The document with an edit before the first step.
+    fn amended(&self, timed: &TimedEdit) -> Document {
+        let mut document = self.document.clone();
+        document.script.retain(|e| !e.edit.is_replaced_by(&timed.edit));
+        // Who leads the machine from the start does so from where this puts it.
+        let place = document.script.iter().position(|e| e.step > 0 || e.edit.leads());
+        document.script.insert(place.unwrap_or(document.script.len()), timed.clone());
+        document
+    }
+
+    /// The newest frame once more, after an edit.
+    fn show_present(&mut self) {
+        if let Some(last) = self.frames.last_mut() {
+            *last = self.run.frame();
+        }
     }
 
     fn remember(&mut self, before: Document, timed: TimedEdit, inverse: Option<Edit>) {
@@ -275,27 +323,7 @@ impl Session {
     /// Ends a drag: the next edit is an undo of its own.
     pub fn end_gesture(&mut self) {
         self.gesture = false;
-    }
-
-    /// What takes an edit back while the machine moves.
-    fn inverse_of(&self, edit: &Edit) -> Option<Edit> {
-        let (scenario, frame) = (self.run.scenario(), self.frames.last()?);
-        let b_now = || match self.run.simulation().guide() {
-            crate::simulation::Guide::Follow(f) => f.b_aim(),
-            crate::simulation::Guide::Motion { .. } => frame.b_reference,
-        };
-        Some(match edit {
-            Edit::DragTarget { .. } => Edit::DragTarget { x: frame.target.at.re, y: frame.target.at.im },
-            Edit::SlideB { .. } => Edit::SlideB { b: b_now() },
-            Edit::PoseB { .. } => Edit::PoseB { b: b_now() },
-            Edit::SetGains { .. } => Edit::SetGains { kp: scenario.gains.kp, kd: scenario.gains.kd },
-            Edit::SetPayload { .. } => Edit::SetPayload { mass: scenario.plant.payload.mass },
-            Edit::SetMachine { key, .. } => {
-                Edit::SetMachine { key: key.clone(), value: scenario.machine.get(key)? }
-            }
-            Edit::SetTime { .. } => Edit::SetTime { time: scenario.task.time },
-            Edit::CompareB { .. } => Edit::CompareB { b: scenario.compare_b },
-        })
+        self.unedited = None;
     }
 
     /// What undo would take back.
@@ -308,7 +336,7 @@ impl Session {
         self.redo.last().map(|c| c.title.as_str())
     }
 
-    /// Takes the last edit back: in motion by its inverse at the present step, at rest by restoring what was.
+    /// Takes the last edit back: in motion by its inverse at the present step, paused or at rest by restoring what was.
     ///
     /// # Errors
     /// If what was cannot be restored; then nothing has changed.
@@ -317,8 +345,8 @@ impl Session {
         let Some(change) = self.undo.last().cloned() else { return Ok(()) };
         let after = self.document.clone();
         let done = match &change.inverse {
-            Some(inverse) if self.is_moving() && self.is_at_end() => self.append(inverse.clone()),
-            _ => self.restore(&change.before),
+            Some(inverse) if self.is_running() => self.append(inverse.clone()),
+            _ => self.return_to(&change.before),
         };
         done?;
         self.undo.pop();
@@ -335,8 +363,8 @@ impl Session {
         let Some(change) = self.redo.last().cloned() else { return Ok(()) };
         let before = self.document.clone();
         let done = match &change.edit {
-            Some(timed) if self.is_moving() && self.is_at_end() => self.append(timed.edit.clone()),
-            _ => self.restore(&change.before),
+            Some(timed) if self.is_running() => self.append(timed.edit.clone()),
+            _ => self.return_to(&change.before),
         };
         done?;
         self.redo.pop();
@@ -344,23 +372,32 @@ impl Session {
         Ok(())
     }
 
-    /// Applies at the present step without touching history.
+    /// Applies while time passes, without touching history.
     fn append(&mut self, edit: Edit) -> Result<(), Refusal> {
+        if !self.concerns_now(&edit) {
+            return self.restore(self.amended(&TimedEdit { step: 0, edit }));
+        }
         self.run.apply(&edit)?;
-        self.document.script.push(TimedEdit { step: self.run.simulation().step_count(), edit });
-        if let Some(last) = self.frames.last_mut() {
-            *last = self.run.frame();
+        self.document.script.push(TimedEdit { step: self.document.end, edit });
+        self.show_present();
+        Ok(())
+    }
+
+    /// What was, with time standing still.
+    fn return_to(&mut self, document: &Document) -> Result<(), Refusal> {
+        self.restore(document.clone())?;
+        self.playing = false;
+        if self.is_live() {
+            self.cursor = self.frames.len() - 1;
         }
         Ok(())
     }
 
-    fn restore(&mut self, document: &Document) -> Result<(), Refusal> {
-        let (run, frames) = perform(document)?;
-        (self.document, self.run, self.frames) = (document.clone(), run, frames);
+    /// Makes the run of a document; the display stays where it is, if there is a frame.
+    fn restore(&mut self, document: Document) -> Result<(), Refusal> {
+        let (run, frames) = perform(&document)?;
+        (self.document, self.run, self.frames, self.unedited) = (document, run, frames, None);
         self.cursor = self.cursor.min(self.frames.len() - 1);
-        if self.is_live() {
-            self.cursor = self.frames.len() - 1;
-        }
         Ok(())
     }
 
@@ -377,31 +414,22 @@ impl Session {
         Ok(())
     }
 
-    /// The session as a scenario: opened again, it gives equal frames.
+    /// The session as a scenario: replayed or opened again, it gives equal frames. One that has not begun covers its
+    /// motion.
     pub fn to_scenario(&self) -> Scenario {
         let mut scenario = self.document.scenario.clone();
         scenario.edits.clone_from(&self.document.script);
-        if self.document.end > 0 {
-            scenario.duration = self.document.end as f64 * scenario.step;
-        }
+        scenario.duration = match self.document.end {
+            0 => self.scenario().duration,
+            end => end as f64 * scenario.step,
+        };
         scenario
     }
 }
 
 /// Runs a document from its start to its end.
 fn perform(document: &Document) -> Result<(Run, Vec<Frame>), Refusal> {
-    let mut run = Run::new(&document.scenario)?;
     let mut frames = Vec::with_capacity(document.end as usize + 1);
-    let mut edits = document.script.iter().peekable();
-    loop {
-        let step = run.simulation().step_count();
-        while let Some(timed) = edits.next_if(|e| e.step <= step) {
-            run.apply(&timed.edit)?;
-        }
-        frames.push(run.frame());
-        if step >= document.end {
-            return Ok((run, frames));
-        }
-        run.advance();
-    }
+    let run = run::perform(&document.scenario, &document.script, document.end, |_, frame| frames.push(*frame))?;
+    Ok((run, frames))
 }

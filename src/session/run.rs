@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use super::Edit;
+use super::{Edit, TimedEdit};
 use crate::frame::Frame;
 use crate::machine::MachineError;
 use crate::plan::follow::Bounds;
@@ -126,9 +126,7 @@ impl Run {
                 follower.set_b(*b);
                 self.simulation.lead(Guide::Follow(follower));
             }
-            Edit::PoseB { b } if self.simulation.step_count() == 0 => {
-                self.pose_task(*b)?;
-            }
+            Edit::PoseB { b } if self.is_untouched() => self.pose_task(*b)?,
             Edit::PoseB { b } => {
                 let mut follower = self.follower()?;
                 follower.pose_at(*b);
@@ -142,7 +140,12 @@ impl Run {
         Ok(())
     }
 
-    /// Parameters: before the first step the task is planned anew, later the motion keeps its path.
+    /// Whether the planned motion still lies ahead as a whole.
+    fn is_untouched(&self) -> bool {
+        self.simulation.step_count() == 0 && matches!(self.simulation.guide(), Guide::Motion { .. })
+    }
+
+    /// Parameters: while the task lies ahead it is planned anew, later the motion keeps its path.
     fn set(&mut self, edit: &Edit) -> Result<(), Refusal> {
         let mut scenario = self.scenario.clone();
         match edit {
@@ -150,7 +153,7 @@ impl Run {
             Edit::SetPayload { mass } => scenario.plant.payload.mass = *mass,
             Edit::SetMachine { key, value } => scenario.machine = scenario.machine.set(key, value)?,
             Edit::SetTime { time } => {
-                // A headless run covers the motion as before.
+                // A run that covers the motion does so as before.
                 if scenario.duration == scenario.task.time {
                     scenario.duration = *time;
                 }
@@ -158,14 +161,20 @@ impl Run {
             }
             _ => {}
         }
-        if self.simulation.step_count() == 0 {
+        if self.is_untouched() {
             return self.restart(scenario);
         }
         let plant = scenario.plant_machine()?;
         if scenario.machine != self.scenario.machine {
             let planes = Arc::new(Planes::of(&scenario.machine)?);
-            if matches!(self.simulation.guide(), Guide::Follow(_)) {
-                let follower = Follower::new(planes.clone(), bounds(&scenario, &planes), self.simulation.reference());
+            if let Guide::Follow(old) = self.simulation.guide() {
+                let bounds = bounds(&scenario, &planes);
+                let mut follower = Follower::new(planes.clone(), bounds, scenario.step, self.simulation.reference());
+                follower.set_target(old.target().at);
+                // Another λ makes b another quantity.
+                if planes.map().lambda() == old.planes().map().lambda() {
+                    follower.set_b(old.b_aim());
+                }
                 self.simulation.lead(Guide::Follow(follower));
             }
             self.planes = Some(planes);
@@ -208,9 +217,31 @@ impl Run {
                     None => Arc::new(Planes::of(&self.scenario.machine)?),
                 };
                 let bounds = bounds(&self.scenario, &planes);
-                Ok(Follower::new(planes, bounds, self.simulation.reference()))
+                Ok(Follower::new(planes, bounds, self.scenario.step, self.simulation.reference()))
             }
         }
+    }
+}
+
+impl Run {
+    /// What takes an edit back if applied after it; `None` if only what was before can.
+    pub fn inverse_of(&self, edit: &Edit) -> Option<Edit> {
+        let scenario = &self.scenario;
+        let frame = self.frame();
+        let b_aim = || match self.simulation.guide() {
+            Guide::Follow(follower) => follower.b_aim(),
+            Guide::Motion { .. } => frame.b_reference,
+        };
+        Some(match edit {
+            Edit::DragTarget { .. } => Edit::DragTarget { x: frame.target.at.re, y: frame.target.at.im },
+            Edit::SlideB { .. } => Edit::SlideB { b: b_aim() },
+            Edit::PoseB { .. } => Edit::PoseB { b: b_aim() },
+            Edit::SetGains { .. } => Edit::SetGains { kp: scenario.gains.kp, kd: scenario.gains.kd },
+            Edit::SetPayload { .. } => Edit::SetPayload { mass: scenario.plant.payload.mass },
+            Edit::SetMachine { key, .. } => Edit::SetMachine { key: key.clone(), value: scenario.machine.get(key)? },
+            Edit::SetTime { .. } => Edit::SetTime { time: scenario.task.time },
+            Edit::CompareB { .. } => Edit::CompareB { b: scenario.compare_b },
+        })
     }
 }
 
@@ -251,9 +282,9 @@ fn bounds(scenario: &Scenario, planes: &Planes) -> Bounds {
 fn plan(scenario: &Scenario, planes: &Planes) -> Result<Motion, Refusal> {
     let task = &scenario.task;
     let at = |p: [f64; 2]| Vector::new(p[0], p[1]);
-    let [from, to] = planes.serve([at(task.from), at(task.to)], task.b).map_err(|(i, unreachable)| {
-        Refusal::Unreachable { point: ['A', 'B'][i], unreachable }
-    })?;
+    let [from, to] = planes
+        .serve([at(task.from), at(task.to)], task.b)
+        .map_err(|(i, unreachable)| Refusal::Unreachable { point: ['A', 'B'][i], unreachable })?;
     let lift = |p| DriveAngles::from(planes.map().lift(p));
     let (from, to) = (lift(from), lift(to));
     let tip = scenario.machine.tip();
@@ -263,9 +294,7 @@ fn plan(scenario: &Scenario, planes: &Planes) -> Result<Motion, Refusal> {
             let end = crate::kinematics::end_effector(tip, &to.units());
             Path::TipLine(TipLine::new(tip, from, end)?)
         }
-        TaskKind::SameTip => {
-            Path::SameTip(SameTip::new(tip, from, to, task.first_drive_to.unwrap_or(from[0]))?)
-        }
+        TaskKind::SameTip => Path::SameTip(SameTip::new(tip, from, to, task.first_drive_to.unwrap_or(from[0]))?),
     };
     Ok(Motion { path, law: task.law, duration: task.time })
 }
@@ -274,17 +303,38 @@ fn plan(scenario: &Scenario, planes: &Planes) -> Result<Motion, Refusal> {
 ///
 /// # Errors
 /// If it cannot start, or an edit cannot apply.
-pub fn replay(scenario: &Scenario, mut see: impl FnMut(&Run, &Frame)) -> Result<Run, Refusal> {
+pub fn replay(scenario: &Scenario, see: impl FnMut(&Run, &Frame)) -> Result<Run, Refusal> {
+    perform(scenario, &in_order(&scenario.edits), last_step(scenario), see)
+}
+
+/// The step at which a scenario's duration is over.
+pub(super) fn last_step(scenario: &Scenario) -> u64 {
+    (scenario.duration / scenario.step).round() as u64
+}
+
+/// Edits in the order of their steps; those of one step stay in theirs.
+pub(super) fn in_order(edits: &[TimedEdit]) -> Vec<TimedEdit> {
+    let mut script = edits.to_vec();
+    script.sort_by_key(|e| e.step);
+    script
+}
+
+/// Runs a scenario to a step, with a script in order, and shows every frame.
+pub(super) fn perform(
+    scenario: &Scenario,
+    script: &[TimedEdit],
+    end: u64,
+    mut see: impl FnMut(&Run, &Frame),
+) -> Result<Run, Refusal> {
     let mut run = Run::new(scenario)?;
-    let mut edits = scenario.edits.iter().peekable();
-    let last = (scenario.duration / scenario.step).round() as u64;
+    let mut edits = script.iter().peekable();
     loop {
         let step = run.simulation().step_count();
         while let Some(timed) = edits.next_if(|e| e.step <= step) {
             run.apply(&timed.edit)?;
         }
         see(&run, &run.frame());
-        if step >= last {
+        if step >= end {
             return Ok(run);
         }
         run.advance();

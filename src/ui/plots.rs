@@ -39,7 +39,8 @@ const POINTS: usize = 600;
 pub fn show(ui: &mut Ui, session: &Session, signals: &[Signal], look: &Look, commands: &mut Vec<Command>) {
     let p = look.palette();
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 14, right: 14, top: 10, bottom: 8 });
-    Panel::right("plots").exact_size(376.0).resizable(false).frame(frame).show(ui, |ui| {
+    let width = (0.27 * ui.available_width()).clamp(336.0, 376.0);
+    Panel::right("plots").exact_size(width).resizable(false).frame(frame).show(ui, |ui| {
         let rows = CHARTS.len() as f32 + 1.6;
         let height = ((ui.available_height() - 32.0 * (CHARTS.len() as f32 + 1.0)) / rows).max(40.0);
         let end = session.frames().last().map_or(0.0, |f| f.time).max(session.length());
@@ -237,7 +238,8 @@ fn which_b(ui: &mut Ui, p: &Palette, session: &Session, height: f32, commands: &
     }
     let b_now = now.b_reference;
     let [b_low, b_high] = [bounds[0].min(b_now) - 0.15, bounds[1].max(b_now) + 0.15];
-    let [q_low, q_high] = [bounds[2] - 0.15, bounds[3] + 0.15];
+    let room = 0.18 * (bounds[3] - bounds[2]).max(0.5);
+    let [q_low, q_high] = [bounds[2] - room, bounds[3] + room];
     let response = base_plot("which b", p, height - 16.0)
         .show_axes([true, true])
         .y_grid_spacer(move |_| marks(&spaced(q_low, q_high), 1.0))

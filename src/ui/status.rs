@@ -25,18 +25,20 @@ pub fn show(ui: &mut Ui, session: &Session, look: &Look) {
                 (false, true) => "has reacted on its base",
             };
             ui.label(RichText::new(word).font(bold(13.0)).color(tone));
-            let facts = format!(
-                "peak |n_B| {:.3} N m  ·  b {:.3} rad  ·  angular momentum {} kg m²/s  ·  energy balance {:.0e} J",
-                f.peaks.moment,
-                f.b,
-                signed(f.angular_momentum, 3),
-                f.energy_balance.abs()
-            );
+            let mut facts = format!("peak |n_B| {:.3} N m  ·  b {:.3} rad", f.peaks.moment, f.b);
+            // A narrow window keeps its room for what to do next.
+            if ui.available_width() > 900.0 {
+                let momentum = signed(f.angular_momentum, 3);
+                facts += &format!("  ·  angular momentum {momentum} kg m²/s  ·  energy balance {:.0e} J", f.energy_balance.abs());
+            }
             ui.label(RichText::new(facts).font(plain(12.0)).color(colour(p.dim)));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let (text, tone) = match (&look.message, f.target.reach) {
                     (Some((text, true)), _) => (text.clone(), p.reaction),
                     (Some((text, false)), _) => (text.clone(), p.ink),
+                    (None, _) if session.is_full() => {
+                        ("three minutes are full: save or record them, then start over".into(), p.reaction)
+                    }
                     (None, Reach::Outside { .. }) => ("the target is outside; slide b or drag it back".into(), p.ink),
                     (None, _) => ("drag the target or the b ring  ·  Space plays  ·  F1 keys".into(), p.dim),
                 };

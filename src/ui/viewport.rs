@@ -215,9 +215,12 @@ fn words(ui: &Ui, spot: &Spot, scene: &Scene) {
         let widest = together.map(|l| galley(l).size().x).fold(0.0, f32::max);
         let galley = galley(label);
         let [x, y] = label.offset;
+        let over = at.x + x + widest - (spot.rect.right() - 10.0);
         let (align, shift) = match label.anchor {
-            // A word that would be cut off moves to the other side of its point.
-            Anchor::Left if at.x + x + widest > spot.rect.right() - 8.0 => (Align2::RIGHT_CENTER, vec2(-x, y)),
+            // Words that would be cut off move back into view, below what they would cover.
+            Anchor::Left if over > 0.0 && spot.rect.contains(at) => {
+                (Align2::LEFT_CENTER, vec2(x - over, if over > x { y + 30.0 } else { y }))
+            }
             Anchor::Left => (Align2::LEFT_CENTER, vec2(x, y)),
             Anchor::Centre => (Align2::CENTER_CENTER, vec2(x, y)),
             Anchor::Right => (Align2::RIGHT_CENTER, vec2(x, y)),
