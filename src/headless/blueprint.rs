@@ -72,8 +72,8 @@ impl Axes {
         let largest = |of: fn(&Rehearsal) -> f64| cases.iter().map(of).fold(0.0, f64::max);
         // Where nothing reaches the base, what would if nothing cancelled gives the scale.
         let scale = |peak: f64, whole: f64| match peak > 1e-6 * whole {
-            true => marked(peak),
-            false if whole > 0.0 => marked(whole),
+            true => 1.08 * marked(peak),
+            false if whole > 0.0 => 1.08 * marked(whole),
             false => 1.0,
         };
         let low = cases.iter().map(|c| c.b[0]).fold(f64::INFINITY, f64::min);
@@ -90,7 +90,7 @@ impl Axes {
 /// The next bound at which a low plot still has room for its marks: they stand at powers of ten.
 fn marked(x: f64) -> f64 {
     let decade = 10f64.powf(x.log10().floor());
-    [1.0, 2.0].map(|m| m * decade).into_iter().find(|bound| *bound > x).unwrap_or(10.0 * decade)
+    [1.0, 2.0, 3.0].map(|m| m * decade).into_iter().find(|bound| *bound > x).unwrap_or(10.0 * decade)
 }
 
 /// A view or container.
