@@ -104,7 +104,10 @@ impl Stage {
     pub fn handle(&self, handle: Handle, frame: &Frame) -> Option<[f64; 3]> {
         let z = self.handle_height();
         match handle {
-            Handle::Target => Some([frame.target.at.re, frame.target.at.im, z]),
+            Handle::Target => {
+                let p = target_handle(frame);
+                Some([p.re, p.im, z])
+            }
             Handle::Ring => {
                 let p = unit(self.planes.as_ref()?.map().turn(frame.b_reference)) * self.ring_radius();
                 Some([p.re, p.im, z])
@@ -353,9 +356,9 @@ impl Stage {
         let z = self.handle_height();
         let tip = frame.tip;
         let hot = options.hot == Some(Handle::Target);
-        let held = options.held.map_or(frame.target.at, |[x, y]| Vector::new(x, y));
         let outside = matches!(frame.target.reach, Reach::Outside { .. });
-        let at = if outside { held } else { tip };
+        let held = options.held.filter(|_| outside).map(|[x, y]| Vector::new(x, y));
+        let at = held.unwrap_or_else(|| target_handle(frame));
         scene.markers.push(Marker {
             name: "end-effector".into(),
             at: point(tip, z),
@@ -412,6 +415,14 @@ impl Stage {
                 scene.labels.push(label(at, z, [20.0, 9.0], words, palette.dim, 11.5, Anchor::Left));
             }
         }
+    }
+}
+
+/// Where the target's handle is: out of reach it stays where it was sent, else it goes with the end effector.
+fn target_handle(frame: &Frame) -> Vector {
+    match frame.target.reach {
+        Reach::Outside { .. } => frame.target.at,
+        Reach::Inside | Reach::Carried => frame.tip,
     }
 }
 
