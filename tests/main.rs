@@ -44,3 +44,5 @@ mod session;
 mod layers;
 #[path = "suite/signals.rs"]
 mod signals;
+#[path = "suite/scene.rs"]
+mod scene;

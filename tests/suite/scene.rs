@@ -1,0 +1,398 @@
+//! The picture as text, and that what is drawn is where the mechanics has it.
+
+use std::fmt::Write;
+
+use proptest::prelude::*;
+use stillbase::frame::Reach;
+use stillbase::machine::{builtins, place_of};
+use stillbase::planar::{DriveAngles, Vector, unit};
+use stillbase::scenario::Scenario;
+use stillbase::scene::camera::{Camera, Flat, Orbit};
+use stillbase::scene::linkage::Linkage;
+use stillbase::scene::palette::{Theme, palette};
+use stillbase::scene::stage::{Handle, Stage, ViewOptions};
+use stillbase::scene::{Scene, Solid};
+use stillbase::session::{Edit, Session};
+
+fn open(case: &str) -> Session {
+    Session::open(Scenario::builtin(case).expect("built in")).expect("it can start")
+}
+
+/// Case 3 after its target was dragged out of the workspace and the machine has come to rest.
+fn dragged_outside() -> Session {
+    let mut session = open("case-3");
+    session.apply(Edit::DragTarget { x: 0.2, y: 1.15 }).expect("any place");
+    session.tick(60_000);
+    assert!(!session.is_moving());
+    session
+}
+
+/// Millimetres, with no minus on zero.
+fn mm(p: [f32; 3]) -> String {
+    let [x, y] = [p[0], p[1]].map(|x| format!("{:.3}", (f64::from(x) * 1e3).round() / 1e3 + 0.0));
+    format!("({x}, {y})")
+}
+
+/// One line a thing: what it is and where, without grid, holes of pins, colours and sizes.
+fn as_text(scene: &Scene) -> String {
+    let mut text = String::new();
+    for s in scene.solids.iter().filter(|s| !s.name.ends_with("/hole")) {
+        let [along, .., at] = s.world_from_mesh;
+        let angle = f64::from(along[1].atan2(along[0])).to_degrees();
+        let _ = writeln!(text, "solid {} at {} turned {:.1}°", s.name, mm([at[0], at[1], at[2]]), angle + 0.0);
+    }
+    for a in &scene.areas {
+        let _ = writeln!(text, "area {} turned {:.3}", a.name, a.turn);
+    }
+    for l in scene.lines.iter().filter(|l| l.name != "grid") {
+        let (first, last) = (l.points[0], l.points[l.points.len() - 1]);
+        let ends = if first == last { "closed".into() } else { format!("{} to {}", mm(first), mm(last)) };
+        let _ = writeln!(text, "line {} {ends}", l.name);
+    }
+    for m in &scene.markers {
+        let _ = writeln!(text, "marker {} at {}", m.name, mm(m.at));
+    }
+    for l in &scene.labels {
+        let _ = writeln!(text, "label {:?} at {}", l.text, mm(l.at));
+    }
+    text
+}
+
+fn scene_of(session: &Session) -> Scene {
+    Stage::of(session.run()).scene(session.frame(), &ViewOptions::default())
+}
+
+/// Two pictures in words.
+#[test]
+fn case_3_at_its_start() {
+    let want = r#"solid ghost/1 at (0.000, 0.000) turned 96.7°
+solid ghost/5 at (-0.058, 0.497) turned 32.8°
+solid ghost/9 at (0.328, 0.746) turned -55.1°
+solid base/plate at (0.000, 0.000) turned 0.0°
+solid base/drive/1 at (0.000, 0.000) turned 0.0°
+solid base/drive/2 at (0.000, 0.000) turned 0.0°
+solid base/drive/3 at (0.000, 0.000) turned 0.0°
+solid link/1 at (0.000, 0.000) turned 96.7°
+solid link/2 at (0.000, 0.000) turned -147.2°
+solid link/3 at (0.000, 0.000) turned 124.9°
+solid link/4 at (-0.151, -0.098) turned 96.7°
+solid link/5 at (-0.058, 0.497) turned 32.8°
+solid link/6 at (-0.114, 0.164) turned 96.7°
+solid link/7 at (-0.058, 0.497) turned 124.9°
+solid link/8 at (-0.173, 0.661) turned 32.8°
+solid link/9 at (0.328, 0.746) turned -55.1°
+solid joint/1 at (-0.058, 0.497) turned 0.0°
+solid joint/2 at (-0.151, -0.098) turned 0.0°
+solid joint/3 at (-0.114, 0.164) turned 0.0°
+solid joint/4 at (-0.209, 0.399) turned 0.0°
+solid joint/5 at (0.328, 0.746) turned 0.0°
+solid joint/6 at (-0.173, 0.661) turned 0.0°
+solid joint/7 at (0.214, 0.910) turned 0.0°
+solid base/cap at (0.000, 0.000) turned 0.0°
+area workspace/compared turned 4.017
+area workspace turned 1.928
+line workspace/compared/boundary closed
+line workspace/boundary closed
+line ring (0.149, 0.000) to (0.149, 0.000)
+line ring/b (0.149, 0.000) to (-0.052, 0.139)
+line path (0.500, 0.500) to (0.550, 0.900)
+line com (-0.018, 0.000) to (0.018, 0.000)
+line com (0.000, -0.018) to (0.000, 0.018)
+marker ring/knob at (-0.052, 0.139)
+marker waypoint/A at (0.500, 0.500)
+marker waypoint/B at (0.550, 0.900)
+marker end-effector at (0.500, 0.500)
+marker target at (0.500, 0.500)
+label "b = 5.000 rad" at (-0.498, 0.095)
+label "reactionless workspace" at (0.329, 0.386)
+label "b = 2.400 rad · 0.845 m²" at (0.329, 0.386)
+label "b" at (-0.067, 0.178)
+label "A" at (0.500, 0.500)
+label "B" at (0.550, 0.900)
+label "f_B 0.000 N" at (0.252, -0.139)
+label "n_B 0.000 N m" at (0.252, -0.139)
+label "centre of mass at rest in B" at (0.252, -0.139)
+label "0.500, 0.500 m" at (0.500, 0.500)
+label "drag me" at (0.500, 0.500)
+"#;
+    assert_eq!(as_text(&scene_of(&open("case-3"))), want);
+}
+
+#[test]
+fn a_target_outside() {
+    let want = r#"line target/gap (0.324, 1.218) to (0.200, 1.150)
+marker ring/knob at (-0.052, 0.139)
+marker end-effector at (0.324, 1.218)
+marker target at (0.200, 1.150)
+marker target/nearest at (0.324, 1.218)
+label "b = 5.000 rad" at (-0.498, 0.095)
+label "reactionless workspace" at (0.329, 0.386)
+label "b = 2.400 rad · 0.845 m²" at (0.329, 0.386)
+label "b" at (-0.067, 0.178)
+label "f_B 0.000 N" at (0.252, -0.139)
+label "n_B 0.000 N m" at (0.252, -0.139)
+label "centre of mass at rest in B" at (0.252, -0.139)
+label "outside the reactionless workspace" at (0.200, 1.150)
+label "nearest point 0.324, 1.218 m" at (0.200, 1.150)
+label "b = 2.648 rad would reach it" at (0.200, 1.150)
+"#;
+    let text: String = as_text(&scene_of(&dragged_outside()))
+        .lines()
+        .filter(|l| ["line target", "marker", "label", "line path", "line reaction"].iter().any(|w| l.starts_with(w)))
+        .map(|l| format!("{l}\n"))
+        .collect();
+    assert_eq!(text, want);
+}
+
+fn count(scene: &Scene, what: impl Fn(&Solid) -> bool) -> usize {
+    scene.solids.iter().filter(|s| what(s)).count()
+}
+
+#[test]
+fn a_picture_has_every_part_of_the_machine() {
+    let scene = scene_of(&open("case-3"));
+    assert_eq!(count(&scene, |s| s.name.starts_with("link/")), 9);
+    // 1-5-7, 2-4, 3-6, 4-5, 6-7-8, 5-9 and 8-9; the three drives share B.
+    assert_eq!(count(&scene, |s| s.name.starts_with("joint/") && !s.name.ends_with("/hole")), 7);
+    assert_eq!(count(&scene, |s| s.name.starts_with("base/drive/")), 3);
+    assert_eq!(count(&scene, |s| s.name.starts_with("ghost/")), 3, "the arms at the start of the motion");
+    assert!(scene.solids.iter().all(|s| s.mesh < scene.model.meshes.len()));
+    assert!(scene.model.meshes.iter().all(|m| !m.triangles.is_empty()));
+    // The workspace of the task and the one to compare with.
+    let turns: Vec<_> = scene.areas.iter().map(|a| (a.name.as_str(), a.turn)).collect();
+    let session = open("case-3");
+    let map = *session.run().planes().expect("three drives").map();
+    let turn = |b: f64| map.turn(b) as f32;
+    assert_eq!(turns, [("workspace/compared", turn(5.0)), ("workspace", turn(2.4))]);
+    // Led by hand, there is no ghost and no path of a plan.
+    let led = scene_of(&dragged_outside());
+    assert_eq!(count(&led, |s| s.name.starts_with("ghost/")), 0);
+    assert!(led.lines.iter().all(|l| l.name != "path"));
+}
+
+/// Handles are where their markers are, in every state of the target.
+#[test]
+fn handles_are_under_their_markers() {
+    let mut moving = open("case-3");
+    moving.play();
+    moving.tick(400);
+    let mut following = open("case-3");
+    following.apply(Edit::DragTarget { x: 0.3, y: 0.8 }).expect("any place");
+    following.tick(50);
+    let mut carried = open("case-3");
+    carried.apply(Edit::SlideB { b: 3.4 }).expect("any b");
+    carried.tick(60_000);
+    assert_eq!(carried.frame().target.reach, Reach::Carried);
+    for session in [open("case-1"), open("case-3"), moving, following, carried, dragged_outside()] {
+        let (stage, frame) = (Stage::of(session.run()), session.frame());
+        let scene = stage.scene(frame, &ViewOptions::default());
+        for (handle, name) in [(Handle::Target, "target"), (Handle::Ring, "ring/knob")] {
+            let marker = scene.markers.iter().find(|m| m.name == name).expect("a marker");
+            let at = stage.handle(handle, frame).expect("three drives");
+            assert_eq!(at.map(|x| x as f32), marker.at, "{name} at {} s", frame.time);
+        }
+        // The knob stands for b, and for one turn of everything more or less.
+        let [x, y, _] = stage.handle(Handle::Ring, frame).expect("three drives");
+        let b = stage.ring_b([x, y], frame.b_reference).expect("three drives");
+        assert!((b - frame.b_reference).abs() < 1e-12);
+        let period = session.run().planes().expect("three drives").map().period();
+        let next = stage.ring_b([x, y], frame.b_reference + 1.1 * period).expect("three drives");
+        assert!((next - b - period).abs() < 1e-12);
+        // The end effector is marked where it is.
+        let marker = scene.markers.iter().find(|m| m.name == "end-effector").expect("a marker");
+        assert_eq!([marker.at[0], marker.at[1]], [frame.tip.re as f32, frame.tip.im as f32]);
+    }
+}
+
+/// While the pointer holds the target, the handle is under it, even if the frame lags behind.
+#[test]
+fn a_held_target_is_drawn_under_the_pointer() {
+    let session = dragged_outside();
+    let stage = Stage::of(session.run());
+    let options = ViewOptions { held: Some([0.1, 1.2]), hot: Some(Handle::Target), ..ViewOptions::default() };
+    let scene = stage.scene(session.frame(), &options);
+    let target = scene.markers.iter().find(|m| m.name == "target").expect("a marker");
+    assert_eq!([target.at[0], target.at[1]], [0.1, 1.2]);
+    let gap = scene.lines.iter().find(|l| l.name == "target/gap").expect("a line");
+    assert_eq!(gap.points[1], target.at);
+}
+
+/// The words about the reaction: green and zero on the reactionless path, red with its number off it.
+#[test]
+fn reactions_are_said() {
+    let p = palette(Theme::Dark);
+    for (case, still) in [("case-3", true), ("case-1", false)] {
+        let mut session = open(case);
+        session.play();
+        session.tick(250);
+        let scene = scene_of(&session);
+        let said = scene.labels.iter().find(|l| l.text.starts_with("n_B")).expect("the moment");
+        assert_eq!(said.colour, if still { p.zero } else { p.reaction });
+        let moment = session.frame().base_moment();
+        let sign = if moment < 0.0 { "−" } else { "" };
+        assert_eq!(said.text == "n_B 0.000 N m", still);
+        assert!(still || said.text == format!("n_B {sign}{:.3} N m", moment.abs()), "{}", said.text);
+        assert_eq!(scene.lines.iter().any(|l| l.name == "reaction/moment"), !still);
+        assert!(scene.lines.iter().all(|l| l.name != "reaction/force"), "balanced: no force");
+        assert!(scene.labels.iter().any(|l| l.text == "centre of mass at rest in B"));
+    }
+}
+
+/// Everything drawn is finite, on both themes and in both views, whatever the state.
+#[test]
+fn nothing_drawn_is_lost() {
+    for session in [open("case-1"), open("case-2"), dragged_outside()] {
+        for theme in [Theme::Dark, Theme::Light] {
+            for flat in [true, false] {
+                let options = ViewOptions { theme, flat, ..ViewOptions::default() };
+                let scene = Stage::of(session.run()).scene(session.frame(), &options);
+                let points = scene.lines.iter().flat_map(|l| &l.points).chain(scene.markers.iter().map(|m| &m.at));
+                let points = points.chain(scene.labels.iter().map(|l| &l.at)).copied();
+                assert!(points.flatten().all(f32::is_finite));
+                assert!(scene.solids.iter().all(|s| s.world_from_mesh.iter().flatten().all(|x| x.is_finite())));
+                assert!(scene.lines.iter().all(|l| l.points.len() > 1), "a line has two ends");
+                assert!(scene.labels.iter().all(|l| !l.text.is_empty()));
+            }
+        }
+    }
+}
+
+fn placed(solid: &Solid, s: f64) -> Vector {
+    let [x, _, _, at] = solid.world_from_mesh.map(|c| [f64::from(c[0]), f64::from(c[1])]);
+    Vector::new(at[0] + s * x[0], at[1] + s * x[1])
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Every bar's root, tip and pins lie where the machine has them, and its mesh is long enough for all of them.
+    #[test]
+    fn bars_are_where_the_machine_has_them(q in prop::array::uniform3(-7.0..7.0), which in 0..builtins().len()) {
+        let machine = &builtins()[which];
+        let linkage = Linkage::of(machine);
+        let e = DriveAngles::from(q).units();
+        let solids = linkage.solids(&e, &palette(Theme::Dark));
+        for (part, link) in machine.parts().iter().zip(machine.links()) {
+            let solid = solids.iter().find(|s| s.name == format!("link/{}", link.name)).expect("every link");
+            let mesh = &linkage.model.meshes[solid.mesh];
+            let xs = || mesh.positions.iter().map(|p| f64::from(p[0]));
+            let (from, to) = (xs().fold(f64::INFINITY, f64::min), xs().fold(f64::NEG_INFINITY, f64::max));
+            for s in part.pins.iter().copied().chain([0.0, part.length, link.com]) {
+                let gap = placed(solid, s) - place_of(&part.point(s), &e);
+                prop_assert!(gap.norm() < 1e-6, "link {}: {:e} m off at {}", link.name, gap.norm(), s);
+                prop_assert!(from <= s && s <= to, "link {}: {} outside {}..{}", link.name, s, from, to);
+            }
+        }
+        // The arm that carries the end effector ends in it.
+        let last = &machine.links()[machine.tip_link()].name;
+        let solid = solids.iter().find(|s| s.name == format!("link/{last}")).expect("the last arm");
+        let tip = placed(solid, machine.parts()[machine.tip_link()].length);
+        prop_assert!((tip - place_of(machine.tip(), &e)).norm() < 1e-6);
+        // A joint is drawn on every pin off B: each lies on a joint, and each joint on a pin.
+        let pins: Vec<Vector> = machine.parts().iter()
+            .flat_map(|p| p.pins.iter().map(|s| place_of(&p.point(*s), &e)))
+            .filter(|p| p.norm() > 1e-9)
+            .collect();
+        let joints: Vec<Vector> = solids.iter()
+            .filter(|s| s.name.starts_with("joint/"))
+            .map(|s| placed(s, 0.0))
+            .collect();
+        for (some, others) in [(&pins, &joints), (&joints, &pins)] {
+            for p in some {
+                prop_assert!(others.iter().any(|o| (o - p).norm() < 1e-6), "{} has no counterpart", p);
+            }
+        }
+    }
+
+    /// What is seen at a place of the picture is what lies there.
+    #[test]
+    fn a_ray_meets_the_point_that_is_seen(
+        camera in any_camera(),
+        place in prop::array::uniform2(0.02..0.98),
+        aspect in 0.4..3.0,
+        height in -0.1..0.3,
+    ) {
+        let ray = camera.ray(place, aspect).expect("a regular view");
+        let length: f64 = ray.along.iter().map(|x| x * x).sum();
+        prop_assert!((length - 1.0).abs() < 1e-9);
+        if let Some([x, y]) = ray.at_height(height) {
+            let seen = camera.project([x, y, height], aspect).expect("in front of the eye");
+            prop_assert!((seen[0] - place[0]).abs() + (seen[1] - place[1]).abs() < 1e-6, "{:?} and {:?}", seen, place);
+        } else {
+            // Only above the horizon is there nothing to meet.
+            prop_assert!(!camera.is_flat() && ray.along[2] * (height - ray.from[2]) <= 0.0);
+        }
+    }
+
+    /// The other way round: from a point of the plane to the picture and back.
+    #[test]
+    fn a_point_is_found_where_it_is_seen(camera in any_camera(), x in -0.8..0.8, y in -0.8..0.8, aspect in 0.4..3.0) {
+        let seen = camera.project([x, y, 0.05], aspect).expect("in front of the eye");
+        let [u, v] = camera.ray(seen, aspect).and_then(|r| r.at_height(0.05)).expect("the plane is in sight");
+        prop_assert!((u - x).abs() + (v - y).abs() < 1e-6, "({}, {}) came back as ({}, {})", x, y, u, v);
+    }
+
+    /// The matrix for the GPU and the projection for the pointer are one.
+    #[test]
+    fn clip_space_is_the_projection(camera in any_camera(), p in prop::array::uniform3(-0.5..0.5), aspect in 0.4..3.0) {
+        let m = camera.clip_from_world(aspect).map(|c| c.map(f64::from));
+        let clip: [f64; 4] = std::array::from_fn(|r| m[0][r] * p[0] + m[1][r] * p[1] + m[2][r] * p[2] + m[3][r]);
+        let [u, v] = camera.project(p, aspect).expect("in front of the eye");
+        prop_assert!((0.5 + 0.5 * clip[0] / clip[3] - u).abs() < 1e-4);
+        prop_assert!((0.5 - 0.5 * clip[1] / clip[3] - v).abs() < 1e-4);
+        prop_assert!((0.0..=1.0).contains(&(clip[2] / clip[3])), "depth {}", clip[2] / clip[3]);
+    }
+
+    /// Zooming keeps the place under the pointer; panning moves the picture with it.
+    #[test]
+    fn the_place_under_the_pointer_stays(
+        centre in prop::array::uniform2(-0.5..0.5),
+        half_height in 0.2..3.0,
+        place in prop::array::uniform2(0.0..1.0),
+        factor in 0.5..2.0,
+        aspect in 0.4..3.0,
+    ) {
+        let before = Camera::Flat(Flat { centre, half_height });
+        let world = |c: &Camera, place| c.ray(place, aspect).and_then(|r| r.at_height(0.0)).expect("flat");
+        let mut zoomed = before;
+        zoomed.zoom(factor, place, aspect);
+        let ([x, y], [u, v]) = (world(&before, place), world(&zoomed, place));
+        prop_assert!((x - u).abs() + (y - v).abs() < 1e-9, "({}, {}) and ({}, {})", x, y, u, v);
+        prop_assert!((zoomed.scale() / before.scale() - factor).abs() < 1e-9);
+        let mut panned = before;
+        panned.pan(0.1, 0.2);
+        let to = [place[0] + 0.1 / aspect, place[1] + 0.2];
+        let ([x, y], [u, v]) = (world(&before, place), world(&panned, to));
+        prop_assert!((x - u).abs() + (y - v).abs() < 1e-9, "({}, {}) and ({}, {})", x, y, u, v);
+    }
+}
+
+fn any_camera() -> impl Strategy<Value = Camera> {
+    let flat = (prop::array::uniform2(-0.5..0.5), 0.2..3.0)
+        .prop_map(|(centre, half_height)| Camera::Flat(Flat { centre, half_height }));
+    // The eye stays above the plane and outside the machine.
+    let orbit = (prop::array::uniform2(-0.3..0.3), 2.5..6.0, -3.0..6.0, 0.3..1.55)
+        .prop_map(|([x, y], distance, yaw, pitch)| Camera::Orbit(Orbit { centre: [x, y, 0.0], distance, yaw, pitch }));
+    prop_oneof![flat, orbit]
+}
+
+#[test]
+fn views_look_where_they_say() {
+    let flat = Camera::flat(1.26);
+    assert_eq!(flat.eye_direction(), [0.0, 0.0, 1.0]);
+    // From the front: x to the right, y away, so that it is farther up.
+    let mut orbit = Camera::orbit(1.26);
+    orbit.turn(-0.45, 0.0);
+    let [a, b] = [[0.0, 0.0, 0.0], [0.3, 0.2, 0.0]].map(|p| orbit.project(p, 1.5).expect("in sight"));
+    assert!(b[0] > a[0] && b[1] < a[1], "{a:?} {b:?}");
+    // Straight above and edge on are views too.
+    for pitch in [-10.0, 10.0] {
+        orbit.turn(0.3, pitch);
+        assert!(orbit.project([0.1, 0.1, 0.0], 1.5).is_some_and(|p| p.iter().all(|x| x.is_finite())));
+    }
+    // A picture without width does not break it.
+    for aspect in [0.0, f64::NAN, f64::INFINITY, -1.0] {
+        assert!(flat.clip_from_world(aspect).iter().flatten().all(|x| x.is_finite()));
+    }
+    assert!(unit(0.0).re == 1.0);
+}
