@@ -237,9 +237,7 @@ impl Follower {
             let want = [(gain * x - v[0]) / LAG, (gain * y - v[1]) / LAG];
             let scale = (self.bounds.joint / want[0].hypot(want[1])).min(1.0);
             let acc = self.within_limits(want.map(|w| w * scale));
-            for i in 0..2 {
-                self.a[i].acc = acc[i];
-            }
+            self.a.iter_mut().zip(acc).for_each(|(a, acc)| a.acc = acc);
         }
         let left = self.b_aim - self.b.x;
         if left.abs() < ARRIVED && self.b.v.abs() < ARRIVED {

@@ -251,7 +251,7 @@ fn check(edit: &Edit) -> Result<(), Refusal> {
         Edit::DragTarget { x, y } if !(x.is_finite() && y.is_finite()) => {
             out("target", if x.is_finite() { y } else { x }, "finite coordinates, m")
         }
-        Edit::SlideB { b } | Edit::PoseB { b } | Edit::CompareB { b: Some(b) } if !(b.abs() <= 1e3) => {
+        Edit::SlideB { b } | Edit::PoseB { b } | Edit::CompareB { b: Some(b) } if !(-1e3..=1e3).contains(&b) => {
             out("b", b, "a number between -1000 and 1000 rad")
         }
         Edit::SetGains { kp, kd } if !(kp >= 0.0 && kd >= 0.0 && kp.is_finite() && kd.is_finite()) => {

@@ -229,7 +229,7 @@ proptest! {
         let mut session = open(coarse());
         for act in &acts {
             act.perform(&mut session);
-            prop_assert!(session.script().iter().all(|e| e.step <= session.frames().len() as u64 - 1));
+            prop_assert!(session.script().iter().all(|e| e.step < session.frames().len() as u64));
         }
         one_path(&session);
     }
