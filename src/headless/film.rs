@@ -8,19 +8,67 @@ use super::Pictures;
 use super::recorder::Stop;
 use super::store::{Clock, Instant, Store};
 use crate::frame::Frame;
-#[cfg(feature = "render")]
+#[cfg(all(feature = "render", not(feature = "ui")))]
 use crate::render::{View, offscreen::Gpu};
-use crate::scene::stage::Stage;
+use crate::session::Run;
+#[cfg(feature = "render")]
+use crate::{
+    render::offscreen::{NoAdapter, NoPicture, Picture},
+    scene::{Scene, camera::Camera, stage::Stage, stage::ViewOptions},
+};
 
 /// Bytes that are gathered before they are written.
 const ROLL: usize = 4 << 20;
+
+/// Draws scenes: with their words, where there is a font.
+#[cfg(feature = "ui")]
+struct Easel(crate::ui::picture::Canvas);
+
+#[cfg(all(feature = "render", not(feature = "ui")))]
+struct Easel(Gpu, View);
+
+#[cfg(feature = "render")]
+impl Easel {
+    fn new(wanted: Pictures) -> Result<Self, NoAdapter> {
+        let size = [wanted.width, wanted.height];
+        // As large as in a window of this height, down to what is still read.
+        let scale = (wanted.height as f32 / 800.0).max(0.5);
+        #[cfg(feature = "ui")]
+        return Ok(Self(crate::ui::picture::Canvas::new(size, scale)?));
+        #[cfg(not(feature = "ui"))]
+        Ok(Self(
+            Gpu::new()?,
+            View {
+                clip_from_world: Default::default(),
+                eye_direction: Default::default(),
+                size_px: size,
+                pixels_per_point: scale,
+            },
+        ))
+    }
+
+    fn draw(&mut self, scene: Scene, camera: &Camera) -> Result<Picture, NoPicture> {
+        #[cfg(feature = "ui")]
+        return self.0.scene(&std::sync::Arc::new(scene), camera);
+        #[cfg(not(feature = "ui"))]
+        {
+            let Self(gpu, view) = self;
+            let [width, height] = view.size_px.map(f64::from);
+            view.clip_from_world = camera.clip_from_world(width / height);
+            view.eye_direction = camera.eye_direction();
+            gpu.picture(&scene, view)
+        }
+    }
+}
 
 /// Takes pictures, if any are wanted and there is something to draw with.
 pub struct Film {
     wanted: Option<Pictures>,
     note: Option<String>,
     #[cfg(feature = "render")]
-    gpu: Option<Gpu>,
+    easel: Option<Easel>,
+    #[cfg(feature = "render")]
+    stage: Option<Stage>,
     /// Pictures of the case at hand.
     taken: u64,
     clock: Clock,
@@ -34,27 +82,29 @@ impl Film {
             wanted,
             note: None,
             #[cfg(feature = "render")]
-            gpu: None,
+            easel: None,
+            #[cfg(feature = "render")]
+            stage: None,
             taken: 0,
             clock: Clock::default(),
             pictures: Vec::new(),
         };
-        if film.wanted.is_some() {
-            film.load();
+        if let Some(wanted) = wanted {
+            film.load(wanted);
         }
         film
     }
 
     #[cfg(feature = "render")]
-    fn load(&mut self) {
-        match Gpu::new() {
-            Ok(gpu) => self.gpu = Some(gpu),
+    fn load(&mut self, wanted: Pictures) {
+        match Easel::new(wanted) {
+            Ok(easel) => self.easel = Some(easel),
             Err(why) => self.go_without(&why.to_string()),
         }
     }
 
     #[cfg(not(feature = "render"))]
-    fn load(&mut self) {
+    fn load(&mut self, _: Pictures) {
         self.go_without("built without the feature `render`");
     }
 
@@ -81,32 +131,35 @@ impl Film {
         self.wanted.is_some_and(|p| frame.time + 0.5 * step >= self.taken as f64 / p.fps)
     }
 
+    /// Something has changed that stays the same from picture to picture: machine, plan, workspaces.
+    pub fn cut(&mut self) {
+        #[cfg(feature = "render")]
+        {
+            self.stage = None;
+        }
+    }
+
     /// Takes one.
     #[cfg(feature = "render")]
-    pub fn take(&mut self, at: Instant, stage: &Stage, frame: &Frame) -> Result<(), Stop> {
-        use crate::scene::camera::Camera;
-        use crate::scene::stage::ViewOptions;
-
-        let (Some(wanted), Some(gpu)) = (self.wanted, &mut self.gpu) else { return Ok(()) };
-        let camera = Camera::flat(stage.linkage().reach());
-        let view = View {
-            clip_from_world: camera.clip_from_world(f64::from(wanted.width) / f64::from(wanted.height)),
-            eye_direction: camera.eye_direction(),
-            size_px: [wanted.width, wanted.height],
-            pixels_per_point: (wanted.height as f32 / 800.0).max(0.5),
-        };
+    pub fn take(&mut self, at: Instant, run: &Run, frame: &Frame) -> Result<(), Stop> {
+        let (Some(wanted), Some(easel)) = (self.wanted, &mut self.easel) else { return Ok(()) };
+        let stage = self.stage.get_or_insert_with(|| Stage::of(run));
         let scene = stage.scene(frame, &ViewOptions::default());
-        let picture = gpu.picture(&scene, &view).map_err(|why| Stop::Pictures(why.to_string()))?;
-        let png = picture.to_png().map_err(|why| Stop::Pictures(why.to_string()))?;
+        let failed = |why: &dyn std::fmt::Display| Stop::Pictures(why.to_string());
+        let picture = easel.draw(scene, &Camera::flat(stage.linkage().reach())).map_err(|why| failed(&why))?;
+        if [picture.width, picture.height] != [wanted.width, wanted.height] {
+            let most = picture.width.max(picture.height);
+            return Err(failed(&NoPicture::Size { width: wanted.width, height: wanted.height, most }));
+        }
+        self.pictures.push(picture.to_png().map_err(|why| failed(&why))?);
         self.clock.push(at);
-        self.pictures.push(png);
         // Where steps are longer than the time between pictures, one a step.
         self.taken = self.taken.max((frame.time * wanted.fps).floor() as u64) + 1;
         Ok(())
     }
 
     #[cfg(not(feature = "render"))]
-    pub fn take(&mut self, _: Instant, _: &Stage, _: &Frame) -> Result<(), Stop> {
+    pub fn take(&mut self, _: Instant, _: &Run, _: &Frame) -> Result<(), Stop> {
         Ok(())
     }
 

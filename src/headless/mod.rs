@@ -15,12 +15,18 @@
 //! Signals have a row at every step, bodies and points at most 200 a second. Machine, scenario, version and verdict are
 //! properties of the recording. The same scenarios give the same recording, whenever and wherever it is made.
 
+mod areas;
 mod blueprint;
+mod body;
 mod film;
 mod reaction;
 mod recorder;
 mod rehearsal;
+mod rows;
 mod store;
+mod story;
+mod style;
+mod tip;
 
 use std::path::{Path, PathBuf};
 
@@ -204,8 +210,7 @@ fn write(
     let mut store = Store::open(to, digest(scenarios, options)).map_err(because)?;
     let mut film = Film::of(options.pictures);
     let pictured = film.is_loaded();
-    let mut set =
-        Set { store: &mut store, film: &mut film, scale: Scale::of(&cases), several: scenarios.len() > 1 };
+    let mut set = Set { store: &mut store, film: &mut film, scale: Scale::of(&cases), several: scenarios.len() > 1 };
     let mut recordings = Vec::with_capacity(scenarios.len());
     // The layout stands first, so that no viewer begins with one of its own.
     let laid_out = blueprint::lay_out(set.store, &cases, pictured).map_err(Stop::from);

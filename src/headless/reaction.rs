@@ -5,9 +5,10 @@ use std::io::Write;
 
 use rerun::{Arrows3D, Color, EntityPath, LineStrips3D, Points3D, Radius};
 
-use super::recorder::{Track, colour, point, under};
 use super::rehearsal::Rehearsal;
+use super::rows::Track;
 use super::store::{Instant, Store, StoreError};
+use super::style::{colour, point, under};
 use crate::frame::Frame;
 use crate::planar::{Vector, unit};
 use crate::scene::palette::Palette;
@@ -42,27 +43,28 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// Nothing yet.
-    pub fn new(scale: Scale, palette: Palette) -> Self {
-        Self { scale, palette, arrows: Track::new(), arcs: Track::new(), words: Track::new() }
-    }
-
-    /// How everything looks.
+    /// Nothing yet, but how it looks.
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn style<W: Write>(&self, store: &mut Store<W>, root: &EntityPath) -> Result<(), StoreError> {
-        let red = [colour(self.palette.reaction)];
+    pub fn show<W: Write>(
+        store: &mut Store<W>,
+        root: &EntityPath,
+        scale: Scale,
+        palette: Palette,
+    ) -> Result<Self, StoreError> {
+        let red = [colour(palette.reaction)];
         let force = Arrows3D::update_fields().with_radii([Radius::new_ui_points(2.0)]).with_colors(red);
         store.fixed(&under(root, "reaction/force"), &force)?;
         let moment = LineStrips3D::update_fields().with_radii([Radius::new_ui_points(1.8)]).with_colors(red);
         store.fixed(&under(root, "reaction/moment"), &moment)?;
         let words = Points3D::update_fields().with_radii([Radius::ZERO]).with_show_labels(true);
-        store.fixed(&under(root, "reaction/words"), &words)
+        store.fixed(&under(root, "reaction/words"), &words)?;
+        Ok(Self { scale, palette, arrows: Track::new(), arcs: Track::new(), words: Track::new() })
     }
 
     /// One instant, at a height above a machine of a reach, m.
-    pub fn draw(&mut self, at: Instant, frame: &Frame, reach: f64, z: f64) {
+    pub fn place(&mut self, at: Instant, frame: &Frame, reach: f64, z: f64) {
         let (force, moment, quiet) = (frame.wrench.total().force, frame.base_moment(), frame.is_quiet());
         let (from, length, radius) = (frame.base.at, 0.25 * reach, 0.17 * reach);
         let arrow = force * (length / self.scale.newtons);
@@ -82,7 +84,7 @@ impl Drawing {
         self.words.push(at, (point(from + Vector::new(0.0, -0.44 * reach), z), text, colour(rgba)));
     }
 
-    /// Writes what was drawn since the last time.
+    /// Writes the rows since the last time.
     ///
     /// # Errors
     /// If it cannot be written.

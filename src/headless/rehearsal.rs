@@ -56,7 +56,7 @@ impl Rehearsal {
             peaks: last.peaks,
             force,
             b,
-            reach: Linkage::of(&scenario.machine).reach(),
+            reach: Linkage::of(&run.scenario().machine).reach(),
             signals: signals(&scenario.machine),
         })
     }

@@ -144,7 +144,12 @@ impl<W: Write> Store<W> {
         Ok(())
     }
 
-    fn row(&mut self, at: impl Into<TimePoint>, path: &EntityPath, what: &dyn AsComponents) -> Result<Chunk, StoreError> {
+    fn row(
+        &mut self,
+        at: impl Into<TimePoint>,
+        path: &EntityPath,
+        what: &dyn AsComponents,
+    ) -> Result<Chunk, StoreError> {
         let id = self.id();
         let row = RowId::from_tuid(id.as_tuid()).next();
         Ok(Chunk::builder_with_id(id, path.clone()).with_archetype(row, at, what).build()?)
@@ -156,14 +161,26 @@ impl<W: Write> Store<W> {
         self.append(self.recording.clone(), &chunk)
     }
 
-    /// Something that is true from an instant on.
-    pub fn since(&mut self, at: Instant, path: &EntityPath, what: &dyn AsComponents) -> Result<(), StoreError> {
+    fn since(&mut self, at: Instant, path: &EntityPath, what: &dyn AsComponents) -> Result<(), StoreError> {
         let at = [
             (Timeline::new_sequence(STEP), TimeInt::new_temporal(at.step as i64)),
             (Timeline::new_duration(TIME), TimeInt::new_temporal(at.nanos)),
         ];
         let chunk = self.row(TimePoint::from(at), path, what)?;
         self.append(self.recording.clone(), &chunk)
+    }
+
+    /// Something that holds from an instant on, or for good.
+    pub fn shape(
+        &mut self,
+        since: Option<Instant>,
+        path: &EntityPath,
+        what: &dyn AsComponents,
+    ) -> Result<(), StoreError> {
+        match since {
+            Some(at) => self.since(at, path, what),
+            None => self.fixed(path, what),
+        }
     }
 
     /// Many rows at once.

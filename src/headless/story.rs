@@ -1,0 +1,131 @@
+//! What happened: events, phases and the verdict, in words.
+
+use std::io::Write;
+use std::mem::discriminant;
+
+use rerun::{EntityPath, StateChange, StateConfiguration, TextLog, TextLogLevel};
+
+use super::rows::Track;
+use super::store::{Clock, Instant, Store, StoreError};
+use super::style::{brief, colour, under};
+use crate::frame::{Frame, Peaks, Phase, Reach};
+use crate::scene::Rgba;
+use crate::scene::palette::Palette;
+
+/// Events and phases of a case.
+#[derive(Debug)]
+pub struct Story {
+    /// Tells the events of several cases apart.
+    prefix: String,
+    palette: Palette,
+    events: Vec<Event>,
+    phases: Track<Phase>,
+    reach: Option<Reach>,
+    peak: (Instant, f64),
+}
+
+#[derive(Debug)]
+struct Event {
+    at: Instant,
+    text: String,
+    level: &'static str,
+    rgba: Rgba,
+}
+
+impl Story {
+    /// Nothing has happened yet.
+    pub fn new(prefix: String, palette: Palette) -> Self {
+        let peak = (Instant { step: 0, nanos: 0 }, 0.0);
+        Self { prefix, palette, events: Vec::new(), phases: Track::new(), reach: None, peak }
+    }
+
+    fn add(&mut self, at: Instant, text: String, level: &'static str, rgba: Rgba) {
+        self.events.push(Event { at, text, level, rgba });
+    }
+
+    /// It begins.
+    pub fn start(&mut self, at: Instant, title: &str, machine: &str) {
+        self.add(at, format!("start: {title}, machine {machine}"), TextLogLevel::INFO, self.palette.ink);
+    }
+
+    /// Somebody changed something.
+    pub fn edit(&mut self, at: Instant, title: String) {
+        self.add(at, title, TextLogLevel::INFO, self.palette.drive(0));
+    }
+
+    /// What an instant brings.
+    pub fn note(&mut self, at: Instant, frame: &Frame) {
+        if frame.peaks.moment > self.peak.1 {
+            self.peak = (at, frame.peaks.moment);
+        }
+        match (self.phases.last(), frame.phase) {
+            (Some(Phase::Motion), Phase::Rest) => {
+                self.add(at, "end of motion".into(), TextLogLevel::INFO, self.palette.ink);
+            }
+            (Some(Phase::Follow), Phase::Rest) => self.add(at, "at rest".into(), TextLogLevel::INFO, self.palette.ink),
+            _ => {}
+        }
+        self.phases.push(at, frame.phase);
+        let reach = frame.target.reach;
+        let before = self.reach.replace(reach);
+        if before.is_some_and(|before| discriminant(&before) != discriminant(&reach)) {
+            let (text, level) = match reach {
+                Reach::Inside => ("the target is inside the reactionless workspace".into(), TextLogLevel::INFO),
+                Reach::Carried => ("the target turns with the workspace".into(), TextLogLevel::INFO),
+                Reach::Outside { mending_b, .. } => {
+                    let mend = mending_b.map_or("no b reaches it".into(), |b| format!("b = {b:.3} rad would reach it"));
+                    (format!("the target is outside the reactionless workspace: {mend}"), TextLogLevel::WARN)
+                }
+            };
+            self.add(at, text, level, self.palette.amber);
+        }
+    }
+
+    /// Writes everything, with the verdict.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn write<W: Write>(
+        mut self,
+        store: &mut Store<W>,
+        root: &EntityPath,
+        (end, peaks): (Instant, &Peaks),
+    ) -> Result<(), StoreError> {
+        let states = [Phase::Motion, Phase::Follow, Phase::Rest];
+        let lanes = StateConfiguration::new()
+            .with_values(states.map(Phase::name))
+            .with_labels(states.map(Phase::name))
+            .with_colors([self.palette.amber, self.palette.drive(0), self.palette.line].map(colour));
+        store.fixed(&under(root, "phase"), &lanes)?;
+        let (clock, phases) = self.phases.take();
+        let states = StateChange::new().with_state(phases.into_iter().map(Phase::name));
+        store.columns(&clock.columns(), &under(root, "phase"), states.columns_of_unit_batches()?)?;
+
+        let quiet = peaks.is_reactionless();
+        if !quiet {
+            let (at, moment) = self.peak;
+            self.add(at, format!("peak |n_B| {} N m", brief(moment)), TextLogLevel::WARN, self.palette.reaction);
+        }
+        let torques: Vec<String> = peaks.torque.iter().map(|t| brief(*t)).collect();
+        self.add(end, format!("peak |τ| {} N m", torques.join(", ")), TextLogLevel::INFO, self.palette.ink);
+        let (level, rgba) = match quiet {
+            true => (TextLogLevel::INFO, self.palette.zero),
+            false => (TextLogLevel::WARN, self.palette.reaction),
+        };
+        self.add(end, verdict(peaks), level, rgba);
+        self.events.sort_by_key(|event| event.at.step);
+        let mut clock = Clock::default();
+        self.events.iter().for_each(|event| clock.push(event.at));
+        let log = TextLog::update_fields()
+            .with_many_text(self.events.iter().map(|event| format!("{}{}", self.prefix, event.text)))
+            .with_many_level(self.events.iter().map(|event| event.level))
+            .with_many_color(self.events.iter().map(|event| colour(event.rgba)));
+        store.columns(&clock.columns(), &under(root, "events"), log.columns_of_unit_batches()?)
+    }
+}
+
+/// `reactionless: peak |n_B| 1.2e-15 N m, peak |f_B| 3.1e-14 N`.
+pub fn verdict(peaks: &Peaks) -> String {
+    let word = if peaks.is_reactionless() { "reactionless" } else { "not reactionless" };
+    format!("{word}: peak |n_B| {} N m, peak |f_B| {} N", brief(peaks.moment), brief(peaks.force))
+}
