@@ -127,9 +127,7 @@ pub fn holding_torque(inertia: &Inertia, e: &Units, around: &Surroundings) -> Pe
 #[inline]
 fn hold<const N: usize>(inertia: &Inertia, e: &Units, around: &Surroundings) -> PerDrive {
     // (i e) · a = e × a for a unit vector e turned by a right angle
-    PerDrive::from_fn(N, |k| {
-        -cross(inertia.g[k] * e[k], around.gravity) - inertia.tip[k] * cross(e[k], around.force)
-    })
+    PerDrive::from_fn(N, |k| -cross(inertia.g[k] * e[k], around.gravity) - inertia.tip[k] * cross(e[k], around.force))
 }
 
 /// Motor torques for given accelerations, (4), N m.

@@ -222,7 +222,7 @@ fn states_that_do_not_fit_are_named_by_line() {
     refused("[\n{\"q\": [0, 1, 2],\n \"qd\": [0, 0, 0]}]", &["states.json:3", "missing field `qdd`", "want"]);
     refused("[{\"q\": [0, 1, NaN]}]", &["states.json:1"]);
     refused("{}", &["states.json:1", "want [{"]);
-    refused("[{\"q\": [0, 1, 2], \"qd\": [1e200, 0, 0], \"qdd\": [0, 0, 0]}]", &["not a finite number"]);
+    refused("[{\"q\": [0, 1, 2], \"qd\": [1e200, 0, 0], \"qdd\": [0, 0, 0]}]", &["at most 1000000"]);
     fails(&["dynamics", "nine-link", "--states", &folder.path("none.json")], 2, &["none.json"]);
 }
 
@@ -298,7 +298,7 @@ fn numbers_that_mean_nothing_are_refused() {
         fails(&["workspace", "nine-link", "--b", b], 2, &["--b"]);
     }
     fails(&["simulate", "--every", "0"], 2, &["whole number of steps"]);
-    fails(&["check", "nine-link", "--set", "length.l1=1e300"], 2, &["not a finite number"]);
+    fails(&["check", "nine-link", "--set", "length.l1=1e300"], 2, &["at most 1000000"]);
 }
 
 #[test]
