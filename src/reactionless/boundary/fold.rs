@@ -114,7 +114,7 @@ impl Cell {
 
     /// A curve that runs into the very corner of the limits was left out: what goes in must come out.
     fn mend_corner(&mut self, on: &Surface, range: [[f64; 2]; 2]) {
-        if self.count() % 2 == 0 {
+        if self.count().is_multiple_of(2) {
             return;
         }
         for (i, x) in [self.low[0], self.high[0]].into_iter().enumerate() {
