@@ -14,7 +14,8 @@ use crate::session::Run;
 #[cfg(feature = "render")]
 use crate::{
     render::offscreen::{NoAdapter, NoPicture, Picture},
-    scene::{Scene, camera::Camera, stage::Stage, stage::ViewOptions},
+    scene::stage::{INVITATION, Stage, ViewOptions},
+    scene::{Scene, camera::Camera},
 };
 
 /// Bytes that are gathered before they are written.
@@ -144,7 +145,8 @@ impl Film {
     pub fn take(&mut self, at: Instant, run: &Run, frame: &Frame) -> Result<(), Stop> {
         let (Some(wanted), Some(easel)) = (self.wanted, &mut self.easel) else { return Ok(()) };
         let stage = self.stage.get_or_insert_with(|| Stage::of(run));
-        let scene = stage.scene(frame, &ViewOptions::default());
+        let mut scene = stage.scene(frame, &ViewOptions::default());
+        scene.labels.retain(|label| label.text != INVITATION);
         let failed = |why: &dyn std::fmt::Display| Stop::Pictures(why.to_string());
         let picture = easel.draw(scene, &Camera::flat(stage.linkage().reach())).map_err(|why| failed(&why))?;
         if [picture.width, picture.height] != [wanted.width, wanted.height] {

@@ -31,6 +31,9 @@ impl Default for ViewOptions {
     }
 }
 
+/// What the target's label says while it can be dragged; a picture that nobody can touch goes without.
+pub const INVITATION: &str = "drag me";
+
 /// What can be dragged in the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Handle {
@@ -417,7 +420,7 @@ impl Stage {
                 }
             }
             reach => {
-                let words = if reach == Reach::Carried { "turns with its workspace" } else { "drag me" };
+                let words = if reach == Reach::Carried { "turns with its workspace" } else { INVITATION };
                 let text = format!("{} m", brief_point(tip));
                 scene.labels.push(label(at, z, [20.0, -7.0], &text, ink, 13.0, Anchor::Left));
                 scene.labels.push(label(at, z, [20.0, 9.0], words, palette.dim, 11.5, Anchor::Left));
