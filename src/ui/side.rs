@@ -214,13 +214,14 @@ fn plant(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command
     let responses = row.with_slider(ui, p, &mut mass);
     send(commands, &responses, || Edit::SetPayload { mass });
     let gravity = scenario.machine.gravity();
-    let mut down = -gravity.im;
+    // From zero, so that no gravity reads 0.00 and not −0.00.
+    let mut down = 0.0 - gravity.im;
     let tip = "Acceleration of gravity along −y; known to control";
     let row = Row { label: "gravity", unit: "m/s²", tip, decimals: 2, speed: 0.05, range: 0.0..=20.0 };
     let responses = row.with_slider(ui, p, &mut down);
     send(commands, &responses, || Edit::SetMachine {
         key: "gravity".into(),
-        value: format!("{},{}", gravity.re, -down),
+        value: format!("{},{}", gravity.re, 0.0 - down),
     });
 }
 
