@@ -220,8 +220,9 @@ impl Scenario {
         })?;
         let machine = match file.machine {
             MachineRef::Name(name) => machine::find(&name, folder)?,
-            MachineRef::Inline(spec) => Machine::new(*spec)
-                .map_err(|error| ScenarioError::Machine { file: label.into(), error })?,
+            MachineRef::Inline(spec) => {
+                Machine::new(*spec).map_err(|error| ScenarioError::Machine { file: label.into(), error })?
+            }
         };
         let stem = FilePath::new(label).file_stem().map_or_else(|| label.into(), |s| s.to_string_lossy().into_owned());
         let scenario = Self {
@@ -281,9 +282,8 @@ impl Scenario {
             Some(known) if *known == self.machine => MachineRef::Name(self.machine.name().into()),
             _ => MachineRef::Inline(Box::new(self.machine.spec().clone())),
         };
-        let Self {
-            name, title, machine: _, plant, task, gains, step, pose_acceleration, compare_b, duration, edits,
-        } = self.clone();
+        let Self { name, title, machine: _, plant, task, gains, step, pose_acceleration, compare_b, duration, edits } =
+            self.clone();
         let file = File {
             name: Some(name),
             title,

@@ -230,9 +230,7 @@ impl Simulation {
         let k3 = self.evaluate(&along(&k2, h / 2.0), h / 2.0);
         let k4 = self.evaluate(&along(&k3, h), h);
         let sum = |a: &PerDrive, f: fn(&Slope) -> &PerDrive| {
-            PerDrive::from_fn(a.len(), |k| {
-                a[k] + h / 6.0 * (f(&k1)[k] + 2.0 * f(&k2)[k] + 2.0 * f(&k3)[k] + f(&k4)[k])
-            })
+            PerDrive::from_fn(a.len(), |k| a[k] + h / 6.0 * (f(&k1)[k] + 2.0 * f(&k2)[k] + 2.0 * f(&k3)[k] + f(&k4)[k]))
         };
         self.state = State {
             q: DriveAngles(sum(&from.q.0, |s| &s.qd)),
@@ -263,10 +261,7 @@ impl Simulation {
         for k in 0..n {
             turn[k] = Vector::new(-s.qd[k] * s.qd[k], s.qdd[k]) * s.e[k];
         }
-        self.link_masses
-            .iter()
-            .map(|(m, a)| m * (0..n).map(|k| a[k] * turn[k]).sum::<Vector>().norm_sqr().sqrt())
-            .sum()
+        self.link_masses.iter().map(|(m, a)| m * (0..n).map(|k| a[k] * turn[k]).sum::<Vector>().norm_sqr().sqrt()).sum()
     }
 
     /// Everything that is true now.

@@ -20,8 +20,8 @@ use rerun::{AsComponents, EntityPath, SeriesLines};
 use super::recorder::{colour, series_name, under};
 use super::rehearsal::Rehearsal;
 use super::store::{Store, StoreError, TIME};
-use crate::scene::linkage::mix;
 use crate::scene::Rgba;
+use crate::scene::linkage::mix;
 use crate::scene::palette::{Palette, Theme, faded, palette};
 
 /// Writes the layout and has the viewer open with it.

@@ -204,8 +204,7 @@ fn write(
     let mut store = Store::open(to, digest(scenarios, options)).map_err(because)?;
     let mut film = Film::of(options.pictures);
     let pictured = film.is_loaded();
-    let mut set =
-        Set { store: &mut store, film: &mut film, scale: Scale::of(&cases), several: scenarios.len() > 1 };
+    let mut set = Set { store: &mut store, film: &mut film, scale: Scale::of(&cases), several: scenarios.len() > 1 };
     let mut recordings = Vec::with_capacity(scenarios.len());
     // The layout stands first, so that no viewer begins with one of its own.
     let laid_out = blueprint::lay_out(set.store, &cases, pictured).map_err(Stop::from);

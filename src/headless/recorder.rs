@@ -7,9 +7,8 @@ use std::sync::Arc;
 use rerun::components::{Scalar, Text};
 use rerun::external::re_log_types::EntityPathPart;
 use rerun::{
-    AnyValues, Clear, Color, EntityPath, LineStrips3D, Mesh3D, Points3D, Radius, Scalars,
-    SerializedComponentColumn, SeriesLines, StateChange, StateConfiguration, TextLog, TextLogLevel, Transform3D,
-    ViewCoordinates,
+    AnyValues, Clear, Color, EntityPath, LineStrips3D, Mesh3D, Points3D, Radius, Scalars, SerializedComponentColumn,
+    SeriesLines, StateChange, StateConfiguration, TextLog, TextLogLevel, Transform3D, ViewCoordinates,
 };
 
 use super::film::Film;
@@ -448,9 +447,8 @@ impl<'a, W: Write> Recorder<'a, W> {
             self.log(at, &path, &mesh)?;
             self.links.push((path, Vec::new(), Vec::new()));
         }
-        let ring: Vec<_> = (0..=48)
-            .map(|i| point(unit(f64::from(i) * FRAC_PI_2 / 12.0) * (0.019 * linkage.reach()), 0.0))
-            .collect();
+        let ring: Vec<_> =
+            (0..=48).map(|i| point(unit(f64::from(i) * FRAC_PI_2 / 12.0) * (0.019 * linkage.reach()), 0.0)).collect();
         let line = |points: Vec<[f32; 3]>, width: f32, rgba| {
             LineStrips3D::new([points]).with_radii([Radius::new_ui_points(width)]).with_colors([colour(rgba)])
         };
@@ -459,7 +457,14 @@ impl<'a, W: Write> Recorder<'a, W> {
         Ok(())
     }
 
-    fn show_area(&mut self, at: Instant, area: &Area, planes: &Arc<Planes>, linkage: &Linkage, compared: bool) -> Result<(), Stop> {
+    fn show_area(
+        &mut self,
+        at: Instant,
+        area: &Area,
+        planes: &Arc<Planes>,
+        linkage: &Linkage,
+        compared: bool,
+    ) -> Result<(), Stop> {
         let palette = self.palette;
         let (fill, edge, width, lift) = match compared {
             false => (faded(palette.amber, 0.14), palette.amber, 0.9, 0.0),
@@ -478,9 +483,7 @@ impl<'a, W: Write> Recorder<'a, W> {
             outline.extend(outline.first().copied());
             outline.into_iter().map(|[x, y]| point(Vector::new(x, y), z)).collect::<Vec<_>>()
         });
-        let boundary = LineStrips3D::new(loops)
-            .with_radii([Radius::new_ui_points(width)])
-            .with_colors([colour(edge)]);
+        let boundary = LineStrips3D::new(loops).with_radii([Radius::new_ui_points(width)]).with_colors([colour(edge)]);
         self.log(at, &area.path, &mesh)?;
         self.log(at, &under(&area.path, "boundary"), &boundary)?;
         let mid = |l: crate::reactionless::Limit, s: f64| l.min + s * (l.max - l.min);
@@ -630,9 +633,11 @@ impl<'a, W: Write> Recorder<'a, W> {
     fn finish(mut self, frame: &Frame) -> Result<Peaks, Stop> {
         self.flush()?;
         let trail = std::mem::take(&mut self.trail.items);
-        let path = LineStrips3D::new([trail])
-            .with_radii([Radius::new_ui_points(0.9)])
-            .with_colors([colour(mix(self.palette.ink, self.palette.dim, 0.5))]);
+        let path = LineStrips3D::new([trail]).with_radii([Radius::new_ui_points(0.9)]).with_colors([colour(mix(
+            self.palette.ink,
+            self.palette.dim,
+            0.5,
+        ))]);
         self.store.fixed(&under(&self.root, "end_effector/path"), &path)?;
         let (clock, phases) = self.phases.take();
         let states = StateChange::new().with_state(phases.into_iter().map(Phase::name));

@@ -144,7 +144,12 @@ impl<W: Write> Store<W> {
         Ok(())
     }
 
-    fn row(&mut self, at: impl Into<TimePoint>, path: &EntityPath, what: &dyn AsComponents) -> Result<Chunk, StoreError> {
+    fn row(
+        &mut self,
+        at: impl Into<TimePoint>,
+        path: &EntityPath,
+        what: &dyn AsComponents,
+    ) -> Result<Chunk, StoreError> {
         let id = self.id();
         let row = RowId::from_tuid(id.as_tuid()).next();
         Ok(Chunk::builder_with_id(id, path.clone()).with_archetype(row, at, what).build()?)

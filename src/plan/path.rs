@@ -119,9 +119,7 @@ impl TipLine {
                 let (k2, _) = slope(&DriveAngles(q.0.plus(h / 2.0, &k1)), s)?;
                 let (k3, _) = slope(&DriveAngles(q.0.plus(h / 2.0, &k2)), s)?;
                 let (k4, _) = slope(&DriveAngles(q.0.plus(h, &k3)), s)?;
-                q = DriveAngles(
-                    q.0.plus(h / 6.0, &k1).plus(h / 3.0, &k2).plus(h / 3.0, &k3).plus(h / 6.0, &k4),
-                );
+                q = DriveAngles(q.0.plus(h / 6.0, &k1).plus(h / 3.0, &k2).plus(h / 3.0, &k3).plus(h / 6.0, &k4));
             }
         }
         Ok(Self { nodes })

@@ -70,9 +70,7 @@ impl Stage {
         });
         let tip = *machine.tip();
         let motion = run.motion().map(|motion| Course {
-            points: (0..=96)
-                .map(|i| place(&tip, &motion.path.at(f64::from(i) / 96.0).q))
-                .collect(),
+            points: (0..=96).map(|i| place(&tip, &motion.path.at(f64::from(i) / 96.0).q)).collect(),
             start: motion.path.at(0.0).q.units(),
         });
         Self {
@@ -306,8 +304,7 @@ impl Stage {
         if sweep.abs() > 0.02 {
             let n = ((sweep.abs() * 24.0).ceil() as usize).max(2);
             let from = -FRAC_PI_2;
-            let arc: Vec<_> =
-                (0..=n).map(|i| point(unit(from + sweep * i as f64 / n as f64) * radius, z)).collect();
+            let arc: Vec<_> = (0..=n).map(|i| point(unit(from + sweep * i as f64 / n as f64) * radius, z)).collect();
             scene.lines.push(line("reaction/moment", arc));
             let end = unit(from + sweep);
             let along = end * Vector::new(0.0, sweep.signum());
@@ -327,13 +324,22 @@ impl Stage {
         }
         let at = Vector::new(0.2 * reach, -0.11 * reach);
         let still = com.norm() < 1e-6 * reach;
-        let com_words = if still { "centre of mass at rest in B".into() } else { format!("centre of mass {:.1} mm off B", 1e3 * com.norm()) };
+        let com_words = if still {
+            "centre of mass at rest in B".into()
+        } else {
+            format!("centre of mass {:.1} mm off B", 1e3 * com.norm())
+        };
         let scale = match (arrow.norm() > 0.004 * reach, sweep.abs() > 0.02) {
             (false, false) => String::new(),
             (true, false) => format!("arrow: {:.3} m = {} N", 0.25 * reach, brief(0.25 * reach / per_newton)),
             (false, true) => format!("arc: 135° = {} N m", brief(full)),
             (true, true) => {
-                format!("arrow: {:.3} m = {} N · arc: 135° = {} N m", 0.25 * reach, brief(0.25 * reach / per_newton), brief(full))
+                format!(
+                    "arrow: {:.3} m = {} N · arc: 135° = {} N m",
+                    0.25 * reach,
+                    brief(0.25 * reach / per_newton),
+                    brief(full)
+                )
             }
         };
         let rows = [

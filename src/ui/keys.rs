@@ -29,7 +29,8 @@ const KEYS: [(&str, &str); 16] = [
 /// Turns keys into commands; while text is typed only shortcuts with Ctrl count.
 pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Command>) {
     let typing = ctx.egui_wants_keyboard_input() || look.dialog.is_some();
-    let chord = |modifiers: Modifiers, key| ctx.input_mut(|i| i.consume_shortcut(&KeyboardShortcut::new(modifiers, key)));
+    let chord =
+        |modifiers: Modifiers, key| ctx.input_mut(|i| i.consume_shortcut(&KeyboardShortcut::new(modifiers, key)));
     let ctrl = Modifiers::COMMAND;
     if chord(ctrl | Modifiers::SHIFT, Key::Z) || chord(ctrl, Key::Y) {
         commands.push(Command::Redo);

@@ -109,7 +109,13 @@ fn time_plot(
     }
     let (low, high) = range(chart, low, high);
     let amber = colour(p.amber);
-    let decimals = if high - low < 0.05 { 3 } else if high - low < 0.5 { 2 } else { 1 };
+    let decimals = if high - low < 0.05 {
+        3
+    } else if high - low < 0.5 {
+        2
+    } else {
+        1
+    };
     let middle = 0.5 * (low + high);
     let response = base_plot(chart.title, p, height)
         .y_grid_spacer(move |_| marks(&[low, middle, high], high - low))

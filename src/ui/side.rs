@@ -141,7 +141,14 @@ fn pose_constant(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             unit(ui, p, "rad");
             if shown {
-                let row = Row { label: "compare b", unit: "rad", tip: "Its pose constant", decimals: 3, speed: 0.005, range: -50.0..=50.0 };
+                let row = Row {
+                    label: "compare b",
+                    unit: "rad",
+                    tip: "Its pose constant",
+                    decimals: 3,
+                    speed: 0.005,
+                    range: -50.0..=50.0,
+                };
                 let response = row.number(ui, &mut other);
                 send(commands, &[response], || Edit::CompareB { b: Some(other) });
             }
@@ -208,7 +215,10 @@ fn plant(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command
     let tip = "Acceleration of gravity along −y; known to control";
     let row = Row { label: "gravity", unit: "m/s²", tip, decimals: 2, speed: 0.05, range: 0.0..=20.0 };
     let responses = row.with_slider(ui, p, &mut down);
-    send(commands, &responses, || Edit::SetMachine { key: "gravity".into(), value: format!("{},{}", gravity.re, -down) });
+    send(commands, &responses, || Edit::SetMachine {
+        key: "gravity".into(),
+        value: format!("{},{}", gravity.re, -down),
+    });
 }
 
 fn control(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
@@ -216,9 +226,11 @@ fn control(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comma
     let gains = session.scenario().gains;
     let (mut kp, mut kd) = (gains.kp, gains.kd);
     let tip = "Computed torque: position gain, the same on all drives";
-    let first = Row { label: "Kp", unit: "s⁻²", tip, decimals: 0, speed: 1.0, range: 0.0..=10_000.0 }.show(ui, p, &mut kp);
+    let first =
+        Row { label: "Kp", unit: "s⁻²", tip, decimals: 0, speed: 1.0, range: 0.0..=10_000.0 }.show(ui, p, &mut kp);
     let tip = "Computed torque: velocity gain, the same on all drives";
-    let second = Row { label: "Kd", unit: "s⁻¹", tip, decimals: 0, speed: 0.2, range: 0.0..=1_000.0 }.show(ui, p, &mut kd);
+    let second =
+        Row { label: "Kd", unit: "s⁻¹", tip, decimals: 0, speed: 0.2, range: 0.0..=1_000.0 }.show(ui, p, &mut kd);
     send(commands, &[first, second], || Edit::SetGains { kp, kd });
 }
 
@@ -227,8 +239,20 @@ fn balance(ui: &mut Ui, session: &Session, p: &Palette) {
     let machine = &session.scenario().machine;
     let inertia = Inertia::of(machine);
     let rows = [
-        ("γ", "kg m", inertia.force_residual(), inertia.is_force_balanced(), "Force balance, Eq. (7): largest |g_k|; zero means the centre of mass never moves"),
-        ("coupling", "kg m²", inertia.invariance_residual(), inertia.is_invariant(), "Invariance, Eq. (8): largest |C_kl|; zero means a constant mass matrix"),
+        (
+            "γ",
+            "kg m",
+            inertia.force_residual(),
+            inertia.is_force_balanced(),
+            "Force balance, Eq. (7): largest |g_k|; zero means the centre of mass never moves",
+        ),
+        (
+            "coupling",
+            "kg m²",
+            inertia.invariance_residual(),
+            inertia.is_invariant(),
+            "Invariance, Eq. (8): largest |C_kl|; zero means a constant mass matrix",
+        ),
     ];
     for (label, in_unit, value, good, tip) in rows {
         let tone = if good { p.zero } else { p.reaction };

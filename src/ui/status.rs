@@ -2,8 +2,8 @@
 
 use egui::{Align, Frame, Layout, Margin, Panel, RichText, Ui};
 
-use super::theme::{bold, colour, plain};
 use super::Look;
+use super::theme::{bold, colour, plain};
 use crate::frame::Reach;
 use crate::scene::stage::signed;
 use crate::session::Session;
@@ -29,7 +29,10 @@ pub fn show(ui: &mut Ui, session: &Session, look: &Look) {
             // A narrow window keeps its room for what to do next.
             if ui.available_width() > 900.0 {
                 let momentum = signed(f.angular_momentum, 3);
-                facts += &format!("  ·  angular momentum {momentum} kg m²/s  ·  energy balance {:.0e} J", f.energy_balance.abs());
+                facts += &format!(
+                    "  ·  angular momentum {momentum} kg m²/s  ·  energy balance {:.0e} J",
+                    f.energy_balance.abs()
+                );
             }
             ui.label(RichText::new(facts).font(plain(12.0)).color(colour(p.dim)));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

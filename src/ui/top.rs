@@ -160,7 +160,9 @@ fn icon(ui: &mut Ui, look: &Look, label: &str, tip: &str, parts: &[Icon]) -> Res
             Shape::convex_polygon(points, ink, Stroke::NONE)
         };
         ui.painter().add(match part {
-            Icon::Bar(x) => Shape::line_segment([pos2(c.x + x, c.y - 6.0), pos2(c.x + x, c.y + 6.0)], Stroke::new(2.5, ink)),
+            Icon::Bar(x) => {
+                Shape::line_segment([pos2(c.x + x, c.y - 6.0), pos2(c.x + x, c.y + 6.0)], Stroke::new(2.5, ink))
+            }
             Icon::Left(x) => triangle(c.x + x, c.x + x + 9.5),
             Icon::Right(x) => triangle(c.x + x + 9.5, c.x + x),
         });

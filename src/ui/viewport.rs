@@ -25,7 +25,8 @@ pub fn show(ui: &mut Ui, session: &Session, stage: &Stage, look: &mut Look, comm
         let spot = Spot { rect, camera: *look.camera() };
         point_at(ui, &response, &spot, session, stage, look, commands);
         move_camera(ui, &response, rect, look);
-        let options = ViewOptions { theme: look.theme, flat: look.flat, hot: look.grabbed.or(look.hot), held: look.held };
+        let options =
+            ViewOptions { theme: look.theme, flat: look.flat, hot: look.grabbed.or(look.hot), held: look.held };
         let scene = Arc::new(stage.scene(frame, &options));
         paint(ui, rect, &scene, look.camera());
         words(ui, &Spot { rect, camera: *look.camera() }, &scene);

@@ -336,7 +336,8 @@ fn a_file_is_never_replaced_unasked_and_never_left_half() {
     assert!(matches!(refused, Err(RecordError::Write(WriteError::Exists(f))) if f == file));
     assert_eq!(std::fs::read(&file).expect("the file"), b"mine");
 
-    let unplannable = Scenario { task: stillbase::scenario::Task { b: 9.0, ..short("case-3").task }, ..short("case-3") };
+    let unplannable =
+        Scenario { task: stillbase::scenario::Task { b: 9.0, ..short("case-3").task }, ..short("case-3") };
     let force = Options { force: true, ..Options::default() };
     let refused = record(&[short("case-1"), unplannable], &file, &force, &mut quietly);
     assert!(matches!(&refused, Err(RecordError::Refused { scenario, .. }) if scenario == "case-3"), "{refused:?}");

@@ -18,9 +18,13 @@ type Desktop = Harness<'static, App>;
 fn desk(case: &str, theme: Theme) -> Option<Desktop> {
     drop(gpu()?);
     let desk = Desk::new(Scenario::builtin(case).expect("built in"), theme).expect("it starts");
-    Some(Harness::builder().with_size([1280.0, 800.0]).with_step_dt(0.02).wgpu().build_eframe(move |cc| {
-        App::new(cc, desk, Clock::Fixed(0.02)).expect("kittest draws with wgpu")
-    }))
+    Some(
+        Harness::builder()
+            .with_size([1280.0, 800.0])
+            .with_step_dt(0.02)
+            .wgpu()
+            .build_eframe(move |cc| App::new(cc, desk, Clock::Fixed(0.02)).expect("kittest draws with wgpu")),
+    )
 }
 
 fn session(h: &Desktop) -> &stillbase::session::Session {
@@ -92,7 +96,9 @@ fn a_target_outside_says_why_and_what_b_would_do() {
     assert!((nearest - f.tip).norm() < 1e-6, "the machine waits at the nearest point");
     let b = mending_b.expect("another plane reaches it");
     let planes = session(&h).run().planes().expect("three drives").clone();
-    assert!(!planes.map().poses(f.target.at, b + 1e-9).is_empty() || !planes.map().poses(f.target.at, b - 1e-9).is_empty());
+    assert!(
+        !planes.map().poses(f.target.at, b + 1e-9).is_empty() || !planes.map().poses(f.target.at, b - 1e-9).is_empty()
+    );
     assert!(h.query_by_label_contains("outside").is_some());
     h.snapshot("outside-light");
 }
