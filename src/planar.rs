@@ -66,6 +66,7 @@ impl PerDrive {
     }
 
     /// self + factor · other.
+    #[inline]
     #[must_use]
     pub fn plus(&self, factor: f64, other: &Self) -> Self {
         let mut v = *self;
@@ -79,15 +80,19 @@ impl PerDrive {
     }
 
     /// The padded array: zero beyond the last drive.
+    #[inline]
     pub fn padded(&self) -> &[f64; MAX_DRIVES] {
         &self.values
     }
 }
 
 impl<const N: usize> From<[f64; N]> for PerDrive {
+    #[inline]
     fn from(values: [f64; N]) -> Self {
         const { assert!(N <= MAX_DRIVES) }
-        Self::from_fn(N, |k| values[k])
+        let mut padded = [0.0; MAX_DRIVES];
+        padded[..N].copy_from_slice(&values);
+        Self { len: N, values: padded }
     }
 }
 
@@ -107,12 +112,14 @@ impl TryFrom<Vec<f64>> for PerDrive {
 
 impl Deref for PerDrive {
     type Target = [f64];
+    #[inline]
     fn deref(&self) -> &[f64] {
         &self.values[..self.len]
     }
 }
 
 impl DerefMut for PerDrive {
+    #[inline]
     fn deref_mut(&mut self) -> &mut [f64] {
         &mut self.values[..self.len]
     }
@@ -149,6 +156,7 @@ impl<const N: usize> From<[f64; N]> for DriveAngles {
 
 impl Deref for DriveAngles {
     type Target = [f64];
+    #[inline]
     fn deref(&self) -> &[f64] {
         &self.0
     }
