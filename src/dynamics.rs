@@ -81,7 +81,8 @@ type Square<const N: usize> = [[f64; N]; N];
 /// The first N of a padded array.
 #[inline]
 fn first<const N: usize, T>(padded: &[T; MAX_DRIVES]) -> &[T; N] {
-    padded.first_chunk().expect("at most MAX_DRIVES drives")
+    const { assert!(N <= MAX_DRIVES) }
+    &padded.as_chunks().0[0]
 }
 
 fn times_padded<const N: usize>(h: &MassMatrix, x: &PerDrive) -> PerDrive {

@@ -2,6 +2,8 @@
 //!
 //! A vector (x, y) of the plane of motion is the complex number x + iy, in base axes, with B as origin.
 
+mod sincos;
+
 use std::ops::{Deref, DerefMut};
 
 use nalgebra::Complex;
@@ -14,9 +16,9 @@ pub type Vector = Complex<f64>;
 pub const MAX_DRIVES: usize = 8;
 
 /// e(q) = (cos q, sin q).
+#[inline]
 pub fn unit(q: f64) -> Vector {
-    let (s, c) = q.sin_cos();
-    Vector::new(c, s)
+    sincos::unit(q)
 }
 
 /// a × b, the component out of the plane.
@@ -42,6 +44,7 @@ impl PerDrive {
     ///
     /// # Panics
     /// If `n` exceeds [`MAX_DRIVES`]; a [`Machine`](crate::machine::Machine) never does.
+    #[inline]
     pub fn zeros(n: usize) -> Self {
         assert!(n <= MAX_DRIVES, "at most {MAX_DRIVES} drives");
         Self { len: n, values: [0.0; MAX_DRIVES] }
@@ -61,6 +64,7 @@ impl PerDrive {
     }
 
     /// Σ_k a_k b_k.
+    #[inline]
     pub fn dot(&self, other: &[f64]) -> f64 {
         self.iter().zip(other).map(|(a, b)| a * b).sum()
     }

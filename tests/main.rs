@@ -41,6 +41,8 @@ mod session;
 mod shaders;
 #[path = "suite/signals.rs"]
 mod signals;
+#[path = "suite/sincos.rs"]
+mod sincos;
 #[path = "suite/support.rs"]
 mod support;
 #[cfg(feature = "window")]
