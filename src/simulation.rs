@@ -258,8 +258,8 @@ impl Simulation {
         let s = &self.slope;
         let n = s.qd.len();
         let mut turn = [Vector::default(); MAX_DRIVES];
-        for k in 0..n {
-            turn[k] = Vector::new(-s.qd[k] * s.qd[k], s.qdd[k]) * s.e[k];
+        for (k, turn) in turn.iter_mut().enumerate().take(n) {
+            *turn = Vector::new(-s.qd[k] * s.qd[k], s.qdd[k]) * s.e[k];
         }
         self.link_masses.iter().map(|(m, a)| m * (0..n).map(|k| a[k] * turn[k]).sum::<Vector>().norm_sqr().sqrt()).sum()
     }
