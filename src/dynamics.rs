@@ -308,6 +308,21 @@ fn forward_with_wrench_of<const N: usize>(
     (qdd.into(), wrench_with(inertia, e, qd, &qdd, around, rate))
 }
 
+/// Σ_j m_j |a_cj|, N: what the links would transmit if nothing cancelled. `moments` holds m_j a_jk, kg m, all drives
+/// of a link side by side.
+#[inline]
+pub fn inertial_pull(moments: &[Vector], e: &Units, qd: &PerDrive, qdd: &PerDrive) -> f64 {
+    by_drives!(qd.len(), inertial_pull_of(moments, e, qd, qdd))
+}
+
+#[inline]
+fn inertial_pull_of<const N: usize>(moments: &[Vector], e: &Units, qd: &PerDrive, qdd: &PerDrive) -> f64 {
+    let (e, qd, qdd) = (first::<N, _>(e), first::<N, _>(qd.padded()), first::<N, _>(qdd.padded()));
+    let turn: [_; N] = std::array::from_fn(|k| Vector::new(-qd[k] * qd[k], qdd[k]) * e[k]);
+    let pull = |moment: &[Vector; N]| (0..N).map(|k| moment[k] * turn[k]).sum::<Vector>().norm_sqr().sqrt();
+    moments.as_chunks().0.iter().map(pull).sum()
+}
+
 /// Σ_k g_k e_k = M r_CM, kg m.
 pub fn first_moment(inertia: &Inertia, e: &Units) -> Vector {
     (0..inertia.drives).map(|k| inertia.g[k] * e[k]).sum()

@@ -78,6 +78,22 @@ impl PerDrive {
         v
     }
 
+    /// factor · self.
+    #[inline]
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self { len: self.len, values: self.values.map(|v| factor * v) }
+    }
+
+    /// self − other.
+    #[inline]
+    #[must_use]
+    pub fn minus(&self, other: &Self) -> Self {
+        let mut v = *self;
+        v.values.iter_mut().zip(&other.values).for_each(|(v, x)| *v -= x);
+        v
+    }
+
     /// The largest magnitude, 0 for no drives.
     pub fn max_abs(&self) -> f64 {
         self.iter().fold(0.0, |m, x| m.max(x.abs()))
