@@ -1,6 +1,5 @@
 //! The reactionless workspaces: area and boundary once, and how b turns them.
 
-use std::io::Write;
 use std::sync::Arc;
 
 use rerun::{Clear, EntityPath, Mesh3D, Points3D, Transform3D};
@@ -59,9 +58,9 @@ impl Areas {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn show<W: Write>(
+    pub fn show(
         &mut self,
-        store: &mut Store<W>,
+        store: &mut Store,
         (at, since): (Instant, Option<Instant>),
         planes: &Arc<Planes>,
         linkage: &Linkage,
@@ -121,7 +120,7 @@ impl Areas {
     ///
     /// # Errors
     /// If they cannot be written.
-    pub fn write<W: Write>(&mut self, store: &mut Store<W>) -> Result<(), StoreError> {
+    pub fn write(&mut self, store: &mut Store) -> Result<(), StoreError> {
         [&mut self.own, &mut self.compared].into_iter().flatten().try_for_each(|area| area.write(store))
     }
 }
@@ -131,13 +130,7 @@ impl Area {
         Self { path, b, turn: Track::new(), label: Track::new() }
     }
 
-    fn show<W: Write>(
-        &self,
-        store: &mut Store<W>,
-        since: Option<Instant>,
-        planes: &Planes,
-        look: &Look,
-    ) -> Result<(), StoreError> {
+    fn show(&self, store: &mut Store, since: Option<Instant>, planes: &Planes, look: &Look) -> Result<(), StoreError> {
         let map = planes.map();
         let [first, second] = map.limits();
         let between = |l: Limit, share: f64| l.min + (l.max - l.min) * share;
@@ -163,7 +156,7 @@ impl Area {
         self.label.push(at, format!("b = {b:.3} rad"));
     }
 
-    fn write<W: Write>(&mut self, store: &mut Store<W>) -> Result<(), StoreError> {
+    fn write(&mut self, store: &mut Store) -> Result<(), StoreError> {
         let (clock, turns) = self.turn.take();
         let turns = turns.into_iter().map(|turn| turned(unit(turn)));
         let pose = Transform3D::update_fields().with_many_quaternion(turns);

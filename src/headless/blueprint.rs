@@ -4,11 +4,9 @@
 //! Views are rows of a store of their own. The SDK's builders reach neither the eye of a 3D view, nor axis ranges, nor
 //! backgrounds, so the rows are written here.
 
-use std::io::Write;
-
 use rerun::blueprint::components::{
-    ActiveTab, BackgroundKind, ColumnShare, ContainerKind, Corner2D, Eye3DKind, GridSpacing, IncludedContent, LinkAxis,
-    LoopMode, PanelState, PlayState, QueryExpression, RootContainer, RowShare, ViewClass,
+    ActiveTab, BackgroundKind, ColumnShare, ContainerKind, Eye3DKind, GridSpacing, IncludedContent, LinkAxis, LoopMode,
+    PanelState, PlayState, QueryExpression, RootContainer, RowShare, ViewClass,
 };
 use rerun::blueprint::datatypes::{TextLogColumn, TextLogColumnKind, TimelineColumn};
 use rerun::components::{Plane3D, Range1D};
@@ -28,7 +26,7 @@ use crate::scene::palette::{Palette, Theme, faded, palette};
 ///
 /// # Errors
 /// If it cannot be written.
-pub fn lay_out<W: Write>(store: &mut Store<W>, cases: &[Rehearsal], pictured: bool) -> Result<(), StoreError> {
+pub fn lay_out(store: &mut Store, cases: &[Rehearsal], pictured: bool) -> Result<(), StoreError> {
     let mut layout = Layout { store, palette: palette(Theme::Dark), made: 0, axes: Axes::of(cases), pictured };
     let mut tabs = Vec::new();
     if cases.len() > 1 {
@@ -99,8 +97,8 @@ struct Part {
     id: Uuid,
 }
 
-struct Layout<'a, W: Write> {
-    store: &'a mut Store<W>,
+struct Layout<'a> {
+    store: &'a mut Store,
     palette: Palette,
     made: u128,
     axes: Axes,
@@ -110,7 +108,7 @@ struct Layout<'a, W: Write> {
 /// Identifiers of views only have to differ within one layout.
 const FIRST_ID: u128 = 0x5eed_0000_0000_4000_8000_0000_0000_0000;
 
-impl<W: Write> Layout<'_, W> {
+impl Layout<'_> {
     fn id(&mut self) -> Uuid {
         self.made += 1;
         Uuid::from_u128(FIRST_ID + self.made)
@@ -209,14 +207,9 @@ impl<W: Write> Layout<'_, W> {
             .with_plane(Plane3D::new([0.0, 0.0, 1.0], -0.02 * case.reach as f32))
             .with_stroke_width(0.7)
             .with_color(colour(faded(self.palette.line, 0.6)));
-        let information = view::SpatialInformation::update_fields().with_show_axes(false).with_show_bounding_box(false);
         let eye = eye(case.reach);
-        let properties: [(&str, &dyn AsComponents); 4] = [
-            ("Background", &background),
-            ("LineGrid3D", &grid),
-            ("SpatialInformation", &information),
-            ("EyeControls3D", &eye),
-        ];
+        let properties: [(&str, &dyn AsComponents); 3] =
+            [("Background", &background), ("LineGrid3D", &grid), ("EyeControls3D", &eye)];
         let contents = ["machine", "com", "end_effector", "target", "workspace", "reaction"];
         let contents: Vec<_> = contents.iter().map(|part| format!("$origin/{part}/**")).collect();
         self.view("3D", name, &case.root, &contents, &properties)
@@ -233,12 +226,6 @@ impl<W: Write> Layout<'_, W> {
         self.time_series(name, &under(&case.root, "signals"), &contents, range)
     }
 
-    /// Of one series the title says everything.
-    fn legend(contents: &[String]) -> view::PlotLegend {
-        let alone = contents.len() == 1 && !contents[0].ends_with('*');
-        view::PlotLegend::new().with_corner(Corner2D::RightTop).with_visible(!alone)
-    }
-
     fn time_series(
         &mut self,
         name: &str,
@@ -246,11 +233,13 @@ impl<W: Write> Layout<'_, W> {
         contents: &[String],
         range: Option<[f64; 2]>,
     ) -> Result<Part, StoreError> {
-        let legend = Self::legend(contents);
         let time = view::TimeAxis::new().with_link(LinkAxis::LinkToGlobal);
-        let background = view::PlotBackground::new().with_color(colour(self.palette.panel)).with_show_grid(true);
-        let mut properties: Vec<(&str, &dyn AsComponents)> =
-            vec![("PlotLegend", &legend), ("TimeAxis", &time), ("PlotBackground", &background)];
+        let mut properties: Vec<(&str, &dyn AsComponents)> = vec![("TimeAxis", &time)];
+        // Of one series the title says everything.
+        let legend = view::PlotLegend::new().with_visible(false);
+        if contents.len() == 1 && !contents[0].ends_with('*') {
+            properties.push(("PlotLegend", &legend));
+        }
         let scalar = range.map(|[low, high]| view::ScalarAxis::new().with_range(Range1D::new(low, high)));
         properties.extend(scalar.as_ref().map(|s| ("ScalarAxis", s as &dyn AsComponents)));
         self.view("TimeSeries", name, origin, contents, &properties)

@@ -1,8 +1,6 @@
 //! The machine: meshes that never change while it moves, and where they are.
 
-use std::io::Write;
-
-use rerun::{EntityPath, Points3D, Quaternion, Transform3D};
+use rerun::{AsComponents, EntityPath, Points3D, Quaternion, SerializedComponentBatch, Transform3D};
 
 use super::rows::Track;
 use super::store::{Clock, Instant, Store, StoreError};
@@ -32,13 +30,22 @@ struct Link {
     turns: Vec<Quaternion>,
 }
 
+/// Two archetypes in one row.
+struct Both<'a>(&'a dyn AsComponents, &'a dyn AsComponents);
+
+impl AsComponents for Both<'_> {
+    fn as_serialized_batches(&self) -> Vec<SerializedComponentBatch> {
+        [self.0, self.1].map(|a| a.as_serialized_batches()).concat()
+    }
+}
+
 impl Body {
     /// Writes the meshes of a machine: for good, or from an instant on.
     ///
     /// # Errors
     /// If they cannot be written.
-    pub fn show<W: Write>(
-        store: &mut Store<W>,
+    pub fn show(
+        store: &mut Store,
         root: &EntityPath,
         since: Option<Instant>,
         machine: &Machine,
@@ -51,8 +58,8 @@ impl Body {
             if let Some(name) = part.name.strip_prefix("base/") {
                 let path = under(root, &format!("machine/base/{name}"));
                 let [.., [x, y, z, _]] = part.world_from_mesh;
-                store.shape(since, &path, &mesh(part.mesh, part.colour))?;
-                store.shape(since, &path, &Transform3D::from_translation([x, y, z]))?;
+                let place = Transform3D::from_translation([x, y, z]);
+                store.shape(since, &path, &Both(&mesh(part.mesh, part.colour), &place))?;
             }
         }
         let mut links = Vec::with_capacity(linkage.bars().len());
@@ -95,7 +102,7 @@ impl Body {
     ///
     /// # Errors
     /// If they cannot be written.
-    pub fn write<W: Write>(&mut self, store: &mut Store<W>, root: &EntityPath) -> Result<(), StoreError> {
+    pub fn write(&mut self, store: &mut Store, root: &EntityPath) -> Result<(), StoreError> {
         let (clock, rows) = (self.clock.columns(), self.clock.len());
         self.clock.clear();
         for Link { path, places, turns } in &mut self.links {

@@ -1,7 +1,5 @@
 //! Offscreen pictures on the way, as PNG.
 
-use std::io::Write;
-
 use rerun::{EncodedImage, EntityPath};
 
 use super::Pictures;
@@ -171,7 +169,7 @@ impl Film {
     }
 
     /// Writes what was taken.
-    pub fn write<W: Write>(&mut self, store: &mut Store<W>, path: &EntityPath) -> Result<(), Stop> {
+    pub fn write(&mut self, store: &mut Store, path: &EntityPath) -> Result<(), Stop> {
         if self.pictures.is_empty() {
             return Ok(());
         }

@@ -1,9 +1,7 @@
 //! What reaches the base, drawn: an arrow and an arc in true proportion, with numbers and scale beside them.
 
-use std::f64::consts::FRAC_PI_2;
-use std::io::Write;
-
 use rerun::{Arrows3D, Color, EntityPath, LineStrips3D, Points3D, Radius};
+use std::f64::consts::FRAC_PI_2;
 
 use super::rehearsal::Rehearsal;
 use super::rows::Track;
@@ -47,12 +45,7 @@ impl Drawing {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn show<W: Write>(
-        store: &mut Store<W>,
-        root: &EntityPath,
-        scale: Scale,
-        palette: Palette,
-    ) -> Result<Self, StoreError> {
+    pub fn show(store: &mut Store, root: &EntityPath, scale: Scale, palette: Palette) -> Result<Self, StoreError> {
         let red = [colour(palette.reaction)];
         let force = Arrows3D::update_fields().with_radii([Radius::new_ui_points(2.0)]).with_colors(red);
         store.fixed(&under(root, "reaction/force"), &force)?;
@@ -88,7 +81,7 @@ impl Drawing {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn write<W: Write>(&mut self, store: &mut Store<W>, root: &EntityPath) -> Result<(), StoreError> {
+    pub fn write(&mut self, store: &mut Store, root: &EntityPath) -> Result<(), StoreError> {
         let (clock, rows) = self.arrows.take();
         let lengths: Vec<_> = rows.iter().map(|r| usize::from(r.is_some())).collect();
         let (origins, vectors): (Vec<_>, Vec<_>) = rows.into_iter().flatten().unzip();

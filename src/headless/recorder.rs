@@ -1,7 +1,5 @@
 //! One case: from the frames of a run to the entities of a recording.
 
-use std::io::Write;
-
 use rerun::components::{Scalar, Text};
 use rerun::external::re_log_types::EntityPathPart;
 use rerun::{AnyValues, EntityPath, Scalars, SeriesLines, ViewCoordinates};
@@ -54,9 +52,9 @@ impl<E: Into<StoreError>> From<E> for Stop {
 }
 
 /// What the cases of one recording share.
-pub struct Set<'a, W: Write> {
+pub struct Set<'a> {
     /// Where everything goes.
-    pub store: &'a mut Store<W>,
+    pub store: &'a mut Store,
     /// Pictures on the way.
     pub film: &'a mut Film,
     /// Of reactions.
@@ -69,8 +67,8 @@ pub struct Set<'a, W: Write> {
 ///
 /// # Errors
 /// If it cannot run, be drawn or be written.
-pub fn record<W: Write>(
-    set: &mut Set<'_, W>,
+pub fn record(
+    set: &mut Set<'_>,
     scenario: &Scenario,
     rehearsal: &Rehearsal,
     tick: &mut dyn FnMut(u64),
@@ -92,8 +90,8 @@ pub fn record<W: Write>(
     }
 }
 
-struct Recorder<'a, W: Write> {
-    store: &'a mut Store<W>,
+struct Recorder<'a> {
+    store: &'a mut Store,
     film: &'a mut Film,
     scenario: &'a Scenario,
     rehearsal: &'a Rehearsal,
@@ -120,8 +118,8 @@ impl Instant {
     }
 }
 
-impl<'a, W: Write> Recorder<'a, W> {
-    fn new(set: &'a mut Set<'_, W>, scenario: &'a Scenario, rehearsal: &'a Rehearsal) -> Result<Self, Stop> {
+impl<'a> Recorder<'a> {
+    fn new(set: &'a mut Set<'_>, scenario: &'a Scenario, rehearsal: &'a Rehearsal) -> Result<Self, Stop> {
         let Set { store, film, scale, several } = set;
         let (palette, root) = (palette(Theme::Dark), &rehearsal.root);
         store.fixed(root, &ViewCoordinates::RIGHT_HAND_Z_UP())?;

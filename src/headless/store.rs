@@ -1,10 +1,12 @@
 //! A [`Store`]: rows and columns of a recording and of its layout, encoded one chunk at a time.
 //!
-//! Chunks are written as they come and in this thread, so that a full disk is an error here and now; the stream of the
-//! SDK encodes in threads of its own, which can only say so on standard error. Identifiers count up from the recording's
-//! own, so that the same data give the same chunks.
+//! A thread of its own encodes and writes while the next chunk is made, in the order of the chunks. It hands its error
+//! over, so that a full disk is said to whoever records; the stream of the SDK can only say so on standard error.
+//! Identifiers count up from the recording's own, so that the same data give the same chunks.
 
 use std::io::Write;
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread::{self, JoinHandle};
 
 use rerun::external::re_log_encoding::{EncodeError, Encoder, EncodingOptions};
 use rerun::external::re_log_types::{BlueprintActivationCommand, SetStoreInfo, StoreInfo, StoreSource};
@@ -13,6 +15,8 @@ use rerun::log::{Chunk, ChunkError, ChunkId, LogMsg, RowId, TimeColumn};
 use rerun::time::{TimeInt, TimePoint, Timeline};
 use rerun::{AsComponents, EntityPath, SerializedComponentColumn, StoreKind};
 use thiserror::Error;
+
+use crate::files::NewFile;
 
 /// What the viewer files layouts under.
 pub const APPLICATION: &str = "stillbase";
@@ -100,38 +104,65 @@ impl Clock {
 }
 
 /// Where the rows go.
-pub struct Store<W: Write> {
-    encoder: Encoder<W>,
+pub struct Store {
+    to: SyncSender<Message>,
+    /// Gone once it has been asked why it stopped.
+    writer: Option<JoinHandle<Result<NewFile, StoreError>>>,
     recording: StoreId,
     layout: StoreId,
     /// Identifier of the next chunk.
     next: u128,
 }
 
+/// What the writer is told; without a last word it leaves nothing behind.
+enum Message {
+    Row(Box<LogMsg>),
+    Close,
+}
+
+/// Messages that may wait for the writer.
+const QUEUE: usize = 256;
+
 /// Rows of a chunk have identifiers that count up from the chunk's: chunks keep this far apart.
 const APART: u128 = 1 << 64;
 
-impl<W: Write> Store<W> {
+impl Store {
     /// Begins a recording and its layout; `digest` is all that tells it from other recordings.
-    pub fn open(to: W, digest: u128) -> Result<Self, StoreError> {
-        let mut encoder = Encoder::new_eager(CrateVersion::LOCAL, EncodingOptions::PROTOBUF_COMPRESSED, to)?;
+    pub fn open(to: NewFile, digest: u128) -> Result<Self, StoreError> {
+        let (sender, receiver) = sync_channel(QUEUE);
+        let writer = thread::Builder::new().name("recording".into()).spawn(move || write(to, &receiver))?;
         let id = format!("{digest:032x}");
-        let recording = StoreId::new(StoreKind::Recording, APPLICATION, id.as_str());
-        let layout = StoreId::new(StoreKind::Blueprint, APPLICATION, format!("{id}-layout"));
-        // The upper half counts chunks, from a place that depends on the digest so that recordings do not share them;
-        // its top bits stay clear, because readers take it for nanoseconds.
-        let mut next = (digest >> 90 << 24) << 64;
-        for store_id in [&recording, &layout] {
-            next += APART;
-            encoder.append(&LogMsg::SetStoreInfo(SetStoreInfo {
-                row_id: ChunkId::from_u128(next).as_tuid(),
-                info: StoreInfo::new(
-                    store_id.clone(),
-                    StoreSource::Other(format!("stillbase {}", env!("CARGO_PKG_VERSION"))),
-                ),
-            }))?;
+        let mut store = Self {
+            to: sender,
+            writer: Some(writer),
+            recording: StoreId::new(StoreKind::Recording, APPLICATION, id.as_str()),
+            layout: StoreId::new(StoreKind::Blueprint, APPLICATION, format!("{id}-layout")),
+            // The upper half counts chunks, from a place that depends on the digest so that recordings do not share
+            // them; its top bits stay clear, because readers take it for nanoseconds.
+            next: (digest >> 90 << 24) << 64,
+        };
+        let source = StoreSource::Other(format!("stillbase {}", env!("CARGO_PKG_VERSION")));
+        for store_id in [store.recording.clone(), store.layout.clone()] {
+            let info = StoreInfo::new(store_id, source.clone());
+            let row_id = store.id().as_tuid();
+            store.send(LogMsg::SetStoreInfo(SetStoreInfo { row_id, info }))?;
         }
-        Ok(Self { encoder, recording, layout, next })
+        Ok(store)
+    }
+
+    fn send(&mut self, message: LogMsg) -> Result<(), StoreError> {
+        match self.to.send(Message::Row(Box::new(message))) {
+            Ok(()) => Ok(()),
+            Err(_) => Err(self.why()),
+        }
+    }
+
+    /// Why the writer has stopped.
+    fn why(&mut self) -> StoreError {
+        match self.writer.take().map(JoinHandle::join) {
+            Some(Ok(Err(error))) => error,
+            _ => StoreError::Data("the writer has stopped".into()),
+        }
     }
 
     fn id(&mut self) -> ChunkId {
@@ -140,8 +171,8 @@ impl<W: Write> Store<W> {
     }
 
     fn append(&mut self, to: StoreId, chunk: &Chunk) -> Result<(), StoreError> {
-        self.encoder.append(&LogMsg::ArrowMsg(to, chunk.to_arrow_msg()?))?;
-        Ok(())
+        let message = chunk.to_arrow_msg()?;
+        self.send(LogMsg::ArrowMsg(to, message))
     }
 
     fn row(
@@ -210,20 +241,45 @@ impl<W: Write> Store<W> {
     pub fn activate_layout(&mut self) -> Result<(), StoreError> {
         let command =
             BlueprintActivationCommand { blueprint_id: self.layout.clone(), make_active: true, make_default: true };
-        self.encoder.append(&command.into())?;
-        Ok(())
+        self.send(command.into())
     }
 
-    /// Gives up, without a word about what cannot be written any more.
-    pub fn abandon(self) {
-        let _ = self.encoder.into_inner();
+    /// Gives up.
+    pub fn abandon(mut self) {
+        drop(self.to);
+        // The file is gone when the writer is; why it gave up is known already.
+        let _ = self.writer.take().map(JoinHandle::join);
     }
 
     /// Writes the table of contents.
-    pub fn close(mut self) -> Result<W, StoreError> {
-        self.encoder.finish()?;
-        let mut to = self.encoder.into_inner()?;
-        to.flush()?;
-        Ok(to)
+    pub fn close(mut self) -> Result<NewFile, StoreError> {
+        if self.to.send(Message::Close).is_err() {
+            return Err(self.why());
+        }
+        match self.writer.take().map(JoinHandle::join) {
+            Some(Ok(written)) => written,
+            _ => Err(StoreError::Data("the writer has stopped".into())),
+        }
     }
+}
+
+/// Encodes and writes messages until the last.
+fn write(to: NewFile, messages: &Receiver<Message>) -> Result<NewFile, StoreError> {
+    let mut encoder = Encoder::new_eager(CrateVersion::LOCAL, EncodingOptions::PROTOBUF_COMPRESSED, to)?;
+    let written = loop {
+        match messages.recv() {
+            Ok(Message::Row(message)) => {
+                if let Err(error) = encoder.append(&message) {
+                    break Err(error.into());
+                }
+            }
+            Ok(Message::Close) => break encoder.finish().map_err(StoreError::from),
+            Err(_) => break Err(StoreError::Data("given up".into())),
+        }
+    };
+    // Taken out, so that the encoder does not try to finish what failed.
+    let mut to = encoder.into_inner()?;
+    written?;
+    to.flush()?;
+    Ok(to)
 }

@@ -1,6 +1,5 @@
 //! What happened: events, phases and the verdict, in words.
 
-use std::io::Write;
 use std::mem::discriminant;
 
 use rerun::{EntityPath, StateChange, StateConfiguration, TextLog, TextLogLevel};
@@ -85,9 +84,9 @@ impl Story {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn write<W: Write>(
+    pub fn write(
         mut self,
-        store: &mut Store<W>,
+        store: &mut Store,
         root: &EntityPath,
         (end, peaks): (Instant, &Peaks),
     ) -> Result<(), StoreError> {

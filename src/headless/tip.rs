@@ -1,9 +1,7 @@
 //! The end effector: where it is, where it has been, and where it is sent.
 
-use std::f64::consts::TAU;
-use std::io::Write;
-
 use rerun::{EntityPath, LineStrips3D, Points3D, Transform3D};
+use std::f64::consts::TAU;
 
 use super::rows::{Thinned, Track};
 use super::store::{Clock, Instant, Store, StoreError};
@@ -31,12 +29,7 @@ impl Tip {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn show<W: Write>(
-        store: &mut Store<W>,
-        root: &EntityPath,
-        reach: f64,
-        palette: &Palette,
-    ) -> Result<Self, StoreError> {
+    pub fn show(store: &mut Store, root: &EntityPath, reach: f64, palette: &Palette) -> Result<Self, StoreError> {
         store.fixed(&under(root, "end_effector"), &dots(4.5, palette.ink))?;
         let ring = (0..=48).map(|i| point(unit(TAU * f64::from(i) / 48.0) * (0.019 * reach), 0.0)).collect();
         store.fixed(&under(root, "target"), &lines([ring], 2.2, palette.ink))?;
@@ -67,7 +60,7 @@ impl Tip {
     ///
     /// # Errors
     /// If they cannot be written.
-    pub fn write<W: Write>(&mut self, store: &mut Store<W>, root: &EntityPath) -> Result<(), StoreError> {
+    pub fn write(&mut self, store: &mut Store, root: &EntityPath) -> Result<(), StoreError> {
         let (clock, places) = (self.clock.columns(), std::mem::take(&mut self.places));
         self.clock.clear();
         let places = Points3D::update_fields().with_positions(places).columns_of_unit_batches()?;
@@ -85,12 +78,7 @@ impl Tip {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn write_trail<W: Write>(
-        &mut self,
-        store: &mut Store<W>,
-        root: &EntityPath,
-        palette: &Palette,
-    ) -> Result<(), StoreError> {
+    pub fn write_trail(&mut self, store: &mut Store, root: &EntityPath, palette: &Palette) -> Result<(), StoreError> {
         let trail = lines([self.trail.take()], 1.8, mix(palette.ink, palette.dim, 0.5));
         store.fixed(&under(root, "end_effector/path"), &trail)
     }
