@@ -71,8 +71,10 @@ pub enum DesignError {
         link: String,
     },
     /// The conditions contradict each other, or no l_c appears in one that is not met.
-    #[error("no centres of mass along the links balance this machine: {left} remain at best in {condition}; \
-             counterweights need a link that follows that drive and hangs on the base")]
+    #[error(
+        "no centres of mass along the links balance this machine: {left} remain at best in {condition}; \
+             counterweights need a link that follows that drive and hangs on the base"
+    )]
     Inconsistent {
         /// The condition that stays furthest from zero.
         condition: String,

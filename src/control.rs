@@ -37,8 +37,7 @@ pub fn computed_torque(
     qd: &PerDrive,
     around: &Surroundings,
 ) -> PerDrive {
-    let commanded = PerDrive::from_fn(q.len(), |k| {
-        reference.qdd[k] + gains.kd * (reference.qd[k] - qd[k]) + gains.kp * (reference.q[k] - q[k])
-    });
+    let (rate_error, error) = (reference.qd.minus(qd), reference.q.0.minus(&q.0));
+    let commanded = reference.qdd.plus(gains.kd, &rate_error).plus(gains.kp, &error);
     inverse(model, e, qd, &commanded, around)
 }

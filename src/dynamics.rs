@@ -60,76 +60,107 @@ impl MassMatrix {
     /// H x.
     #[inline]
     pub fn times(&self, x: &PerDrive) -> PerDrive {
-        by_drives!(self.n, times(self, x))
+        by_drives!(self.n, times_padded(self, x))
     }
 
-    /// H⁻¹ x by Cholesky's factors; H is positive definite for every machine whose links have mass.
+    /// H⁻¹ x by the factors L D Lᵀ; H is positive definite for every machine whose links have mass.
     #[inline]
     pub fn solve(&self, x: &PerDrive) -> PerDrive {
-        by_drives!(self.n, solve(self, x))
+        by_drives!(self.n, solve_padded(self, x))
+    }
+
+    fn trimmed<const N: usize>(&self) -> Square<N> {
+        std::array::from_fn(|k| *first(&self.h[k]))
     }
 }
 
+// What follows works on arrays of the machine's own size: padding to MAX_DRIVES at every step would cost more than
+// the arithmetic.
+type Square<const N: usize> = [[f64; N]; N];
+
+/// The first N of a padded array.
 #[inline]
-fn times<const N: usize>(h: &MassMatrix, x: &PerDrive) -> PerDrive {
-    let x = x.padded();
-    PerDrive::from_fn(N, |k| (0..N).map(|l| h.h[k][l] * x[l]).sum())
+fn first<const N: usize, T>(padded: &[T; MAX_DRIVES]) -> &[T; N] {
+    const { assert!(N <= MAX_DRIVES) }
+    &padded.as_chunks().0[0]
+}
+
+fn times_padded<const N: usize>(h: &MassMatrix, x: &PerDrive) -> PerDrive {
+    times(&h.trimmed::<N>(), first(x.padded())).into()
+}
+
+fn solve_padded<const N: usize>(h: &MassMatrix, x: &PerDrive) -> PerDrive {
+    solve(&h.trimmed::<N>(), *first(x.padded())).into()
 }
 
 #[inline]
-fn solve<const N: usize>(h: &MassMatrix, x: &PerDrive) -> PerDrive {
-    let mut l = [[0.0; N]; N];
-    let mut y = [0.0; N];
-    let x = x.padded();
+fn times<const N: usize>(h: &Square<N>, x: &[f64; N]) -> [f64; N] {
+    std::array::from_fn(|k| (0..N).map(|l| h[k][l] * x[l]).sum())
+}
+
+#[inline]
+fn solve<const N: usize>(h: &Square<N>, mut x: [f64; N]) -> [f64; N] {
+    // H = L D Lᵀ needs no root; `l` holds L below its diagonal, `ld` L D, `inverse` 1/D.
+    let (mut l, mut ld, mut inverse) = ([[0.0; N]; N], [[0.0; N]; N], [0.0; N]);
     for i in 0..N {
-        for j in 0..=i {
-            let s: f64 = h.h[i][j] - (0..j).map(|m| l[i][m] * l[j][m]).sum::<f64>();
-            l[i][j] = if i == j { s.sqrt() } else { s / l[j][j] };
+        for j in 0..i {
+            ld[i][j] = h[i][j] - (0..j).map(|m| ld[i][m] * l[j][m]).sum::<f64>();
+            l[i][j] = ld[i][j] * inverse[j];
         }
-        y[i] = (x[i] - (0..i).map(|m| l[i][m] * y[m]).sum::<f64>()) / l[i][i];
+        inverse[i] = 1.0 / (h[i][i] - (0..i).map(|m| ld[i][m] * l[i][m]).sum::<f64>());
+        x[i] -= (0..i).map(|m| l[i][m] * x[m]).sum::<f64>();
     }
     for i in (0..N).rev() {
-        y[i] = (y[i] - (i + 1..N).map(|m| l[m][i] * y[m]).sum::<f64>()) / l[i][i];
+        x[i] = x[i] * inverse[i] - (i + 1..N).map(|m| l[m][i] * x[m]).sum::<f64>();
     }
-    PerDrive::from(y)
+    x
 }
 
 /// H and V, (4).
 #[inline]
 pub fn mass_matrix(inertia: &Inertia, e: &Units, qd: &PerDrive) -> (MassMatrix, PerDrive) {
-    by_drives!(inertia.drives, assemble(inertia, e, qd))
+    by_drives!(inertia.drives, mass_matrix_of(inertia, e, qd))
+}
+
+fn mass_matrix_of<const N: usize>(inertia: &Inertia, e: &Units, qd: &PerDrive) -> (MassMatrix, PerDrive) {
+    let (small, v) = assemble::<N>(inertia, first(e), first(qd.padded()));
+    let mut h = [[0.0; MAX_DRIVES]; MAX_DRIVES];
+    h.iter_mut().zip(small).for_each(|(to, from)| to[..N].copy_from_slice(&from));
+    (MassMatrix { n: N, h }, v.into())
 }
 
 #[inline]
-fn assemble<const N: usize>(inertia: &Inertia, e: &Units, qd: &PerDrive) -> (MassMatrix, PerDrive) {
-    let mut h = [[0.0; MAX_DRIVES]; MAX_DRIVES];
+fn assemble<const N: usize>(inertia: &Inertia, e: &[Vector; N], qd: &[f64; N]) -> (Square<N>, [f64; N]) {
+    let mut h = [[0.0; N]; N];
     let mut v = [0.0; N];
-    let qd = qd.padded();
     for k in 0..N {
         h[k][k] = inertia.c[k][k].re + inertia.spin[k];
         for l in k + 1..N {
-            let z = inertia.c[k][l] * e[k].conj() * e[l];
+            let z = inertia.c[k][l] * (e[k].conj() * e[l]);
             h[k][l] = z.re;
             h[l][k] = z.re;
-            v[k] -= z.im * qd[l] * qd[l];
-            v[l] += z.im * qd[k] * qd[k];
+            v[k] -= z.im * (qd[l] * qd[l]);
+            v[l] += z.im * (qd[k] * qd[k]);
         }
     }
-    (MassMatrix { n: N, h }, PerDrive::from(v))
+    (h, v)
 }
 
 /// −γᵀ g − Jᵀ F, the part of the torque that holds still, N m.
 #[inline]
 pub fn holding_torque(inertia: &Inertia, e: &Units, around: &Surroundings) -> PerDrive {
-    by_drives!(inertia.drives, hold(inertia, e, around))
+    by_drives!(inertia.drives, holding_torque_of(inertia, e, around))
 }
 
 #[inline]
-fn hold<const N: usize>(inertia: &Inertia, e: &Units, around: &Surroundings) -> PerDrive {
+fn holding_torque_of<const N: usize>(inertia: &Inertia, e: &Units, around: &Surroundings) -> PerDrive {
+    hold::<N>(inertia, first(e), around).into()
+}
+
+#[inline]
+fn hold<const N: usize>(inertia: &Inertia, e: &[Vector; N], around: &Surroundings) -> [f64; N] {
     // (i e) · a = e × a for a unit vector e turned by a right angle
-    PerDrive::from_fn(N, |k| {
-        -cross(inertia.g[k] * e[k], around.gravity) - inertia.tip[k] * cross(e[k], around.force)
-    })
+    std::array::from_fn(|k| -cross(inertia.g[k] * e[k], around.gravity) - inertia.tip[k] * cross(e[k], around.force))
 }
 
 /// Motor torques for given accelerations, (4), N m.
@@ -146,9 +177,10 @@ fn inverse_of<const N: usize>(
     qdd: &PerDrive,
     around: &Surroundings,
 ) -> PerDrive {
-    let (h, v) = assemble::<N>(inertia, e, qd);
-    let (moving, holding) = (times::<N>(&h, qdd), hold::<N>(inertia, e, around));
-    PerDrive::from_fn(N, |k| moving[k] + v[k] + holding[k])
+    let (e, qd, qdd) = (first::<N, _>(e), first(qd.padded()), first(qdd.padded()));
+    let (h, v) = assemble(inertia, e, qd);
+    let (inertial, holding) = (times(&h, qdd), hold(inertia, e, around));
+    PerDrive::from(std::array::from_fn::<_, N, _>(|k| inertial[k] + v[k] + holding[k]))
 }
 
 /// Accelerations for given motor torques, rad/s².
@@ -165,9 +197,10 @@ fn forward_of<const N: usize>(
     torque: &PerDrive,
     around: &Surroundings,
 ) -> PerDrive {
-    let (h, v) = assemble::<N>(inertia, e, qd);
-    let holding = hold::<N>(inertia, e, around);
-    solve::<N>(&h, &PerDrive::from_fn(N, |k| torque[k] - v[k] - holding[k]))
+    let (e, qd, torque) = (first::<N, _>(e), first(qd.padded()), first::<N, _>(torque.padded()));
+    let (h, v) = assemble(inertia, e, qd);
+    let holding = hold(inertia, e, around);
+    solve(&h, std::array::from_fn(|k| torque[k] - v[k] - holding[k])).into()
 }
 
 /// What the manipulator transmits to its base, in its two parts.
@@ -195,9 +228,9 @@ pub fn base_wrench(inertia: &Inertia, e: &Units, qd: &PerDrive, qdd: &PerDrive, 
 #[inline]
 fn wrench_with<const N: usize>(
     inertia: &Inertia,
-    e: &Units,
-    qd: &PerDrive,
-    qdd: &PerDrive,
+    e: &[Vector; N],
+    qd: &[f64; N],
+    qdd: &[f64; N],
     around: &Surroundings,
     momentum_rate: f64,
 ) -> BaseWrench {
@@ -237,11 +270,57 @@ fn inverse_with_wrench_of<const N: usize>(
     qdd: &PerDrive,
     around: &Surroundings,
 ) -> (PerDrive, BaseWrench) {
-    let (h, v) = assemble::<N>(inertia, e, qd);
-    let (inertial, holding) = (times::<N>(&h, qdd), hold::<N>(inertia, e, around));
+    let (e, qd, qdd) = (first::<N, _>(e), first(qd.padded()), first(qdd.padded()));
+    let (h, v) = assemble(inertia, e, qd);
+    let (inertial, holding) = (times(&h, qdd), hold(inertia, e, around));
     let rate = (0..N).map(|k| inertial[k] + v[k]).sum();
-    let wrench = wrench_with::<N>(inertia, e, qd, qdd, around, rate);
-    (PerDrive::from_fn(N, |k| inertial[k] + v[k] + holding[k]), wrench)
+    let wrench = wrench_with(inertia, e, qd, qdd, around, rate);
+    (PerDrive::from(std::array::from_fn::<_, N, _>(|k| inertial[k] + v[k] + holding[k])), wrench)
+}
+
+/// Accelerations for given motor torques, and the base wrench of the motion they make, in one evaluation.
+#[inline]
+pub fn forward_with_wrench(
+    inertia: &Inertia,
+    e: &Units,
+    qd: &PerDrive,
+    torque: &PerDrive,
+    around: &Surroundings,
+) -> (PerDrive, BaseWrench) {
+    by_drives!(inertia.drives, forward_with_wrench_of(inertia, e, qd, torque, around))
+}
+
+#[inline]
+fn forward_with_wrench_of<const N: usize>(
+    inertia: &Inertia,
+    e: &Units,
+    qd: &PerDrive,
+    torque: &PerDrive,
+    around: &Surroundings,
+) -> (PerDrive, BaseWrench) {
+    let (e, qd, torque) = (first::<N, _>(e), first(qd.padded()), first::<N, _>(torque.padded()));
+    let (h, v) = assemble(inertia, e, qd);
+    let holding = hold(inertia, e, around);
+    let qdd = solve(&h, std::array::from_fn(|k| torque[k] - v[k] - holding[k]));
+    // From the accelerations and not from the torques, so that the wrench is that of the motion.
+    let inertial = times(&h, &qdd);
+    let rate = (0..N).map(|k| inertial[k] + v[k]).sum();
+    (qdd.into(), wrench_with(inertia, e, qd, &qdd, around, rate))
+}
+
+/// Σ_j m_j |a_cj|, N: what the links would transmit if nothing cancelled. `moments` holds m_j a_jk, kg m, all drives
+/// of a link side by side.
+#[inline]
+pub fn inertial_pull(moments: &[Vector], e: &Units, qd: &PerDrive, qdd: &PerDrive) -> f64 {
+    by_drives!(qd.len(), inertial_pull_of(moments, e, qd, qdd))
+}
+
+#[inline]
+fn inertial_pull_of<const N: usize>(moments: &[Vector], e: &Units, qd: &PerDrive, qdd: &PerDrive) -> f64 {
+    let (e, qd, qdd) = (first::<N, _>(e), first::<N, _>(qd.padded()), first::<N, _>(qdd.padded()));
+    let turn: [_; N] = std::array::from_fn(|k| Vector::new(-qd[k] * qd[k], qdd[k]) * e[k]);
+    let pull = |moment: &[Vector; N]| (0..N).map(|k| moment[k] * turn[k]).sum::<Vector>().norm_sqr().sqrt();
+    moments.as_chunks().0.iter().map(pull).sum()
 }
 
 /// Σ_k g_k e_k = M r_CM, kg m.

@@ -107,12 +107,12 @@ impl Peaks {
     /// Takes in one more instant.
     pub fn include(&mut self, torque: &PerDrive, wrench: &BaseWrench, inertial_pull: f64) {
         for (peak, t) in self.torque.iter_mut().zip(torque.iter()) {
-            *peak = peak.max(t.abs());
+            *peak = worse(*peak, t.abs());
         }
-        self.torque_sum = self.torque_sum.max(torque.iter().map(|t| t.abs()).sum());
-        self.force = self.force.max(wrench.dynamic.force.norm());
-        self.moment = self.moment.max(wrench.total().moment.abs());
-        self.inertial_pull = self.inertial_pull.max(inertial_pull);
+        self.torque_sum = worse(self.torque_sum, torque.iter().map(|t| t.abs()).sum());
+        self.force = worse(self.force, wrench.dynamic.force.norm());
+        self.moment = worse(self.moment, wrench.total().moment.abs());
+        self.inertial_pull = worse(self.inertial_pull, inertial_pull);
     }
 
     /// Peak |n_B| at most 1e-6 of peak Σ|τ_k|, and peak dynamic |f_B| at most 1e-6 of peak Σ m_j |a_cj|.
@@ -121,7 +121,18 @@ impl Peaks {
     }
 }
 
+/// The larger of two, and not a number if either is not: a run that has blown up is never called reactionless.
+#[inline]
+fn worse(a: f64, b: f64) -> f64 {
+    if b > a || b.is_nan() { b } else { a }
+}
+
 impl Frame {
+    /// Whether the machine is anywhere at all: a run that has blown up is not.
+    pub fn is_finite(&self) -> bool {
+        self.q.iter().chain(self.qd.iter()).chain(self.torque.iter()).all(|x| x.is_finite())
+    }
+
     /// n_B, N m, positive counter-clockwise.
     pub fn base_moment(&self) -> f64 {
         self.wrench.total().moment

@@ -2,6 +2,8 @@
 //!
 //! A vector (x, y) of the plane of motion is the complex number x + iy, in base axes, with B as origin.
 
+mod sincos;
+
 use std::ops::{Deref, DerefMut};
 
 use nalgebra::Complex;
@@ -14,9 +16,9 @@ pub type Vector = Complex<f64>;
 pub const MAX_DRIVES: usize = 8;
 
 /// e(q) = (cos q, sin q).
+#[inline]
 pub fn unit(q: f64) -> Vector {
-    let (s, c) = q.sin_cos();
-    Vector::new(c, s)
+    sincos::unit(q)
 }
 
 /// a × b, the component out of the plane.
@@ -42,6 +44,7 @@ impl PerDrive {
     ///
     /// # Panics
     /// If `n` exceeds [`MAX_DRIVES`]; a [`Machine`](crate::machine::Machine) never does.
+    #[inline]
     pub fn zeros(n: usize) -> Self {
         assert!(n <= MAX_DRIVES, "at most {MAX_DRIVES} drives");
         Self { len: n, values: [0.0; MAX_DRIVES] }
@@ -61,15 +64,33 @@ impl PerDrive {
     }
 
     /// Σ_k a_k b_k.
+    #[inline]
     pub fn dot(&self, other: &[f64]) -> f64 {
         self.iter().zip(other).map(|(a, b)| a * b).sum()
     }
 
     /// self + factor · other.
+    #[inline]
     #[must_use]
     pub fn plus(&self, factor: f64, other: &Self) -> Self {
         let mut v = *self;
         v.values.iter_mut().zip(&other.values).for_each(|(v, x)| *v += factor * x);
+        v
+    }
+
+    /// factor · self.
+    #[inline]
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self { len: self.len, values: self.values.map(|v| factor * v) }
+    }
+
+    /// self − other.
+    #[inline]
+    #[must_use]
+    pub fn minus(&self, other: &Self) -> Self {
+        let mut v = *self;
+        v.values.iter_mut().zip(&other.values).for_each(|(v, x)| *v -= x);
         v
     }
 
@@ -79,15 +100,19 @@ impl PerDrive {
     }
 
     /// The padded array: zero beyond the last drive.
+    #[inline]
     pub fn padded(&self) -> &[f64; MAX_DRIVES] {
         &self.values
     }
 }
 
 impl<const N: usize> From<[f64; N]> for PerDrive {
+    #[inline]
     fn from(values: [f64; N]) -> Self {
         const { assert!(N <= MAX_DRIVES) }
-        Self::from_fn(N, |k| values[k])
+        let mut padded = [0.0; MAX_DRIVES];
+        padded[..N].copy_from_slice(&values);
+        Self { len: N, values: padded }
     }
 }
 
@@ -107,12 +132,14 @@ impl TryFrom<Vec<f64>> for PerDrive {
 
 impl Deref for PerDrive {
     type Target = [f64];
+    #[inline]
     fn deref(&self) -> &[f64] {
         &self.values[..self.len]
     }
 }
 
 impl DerefMut for PerDrive {
+    #[inline]
     fn deref_mut(&mut self) -> &mut [f64] {
         &mut self.values[..self.len]
     }
@@ -149,6 +176,7 @@ impl<const N: usize> From<[f64; N]> for DriveAngles {
 
 impl Deref for DriveAngles {
     type Target = [f64];
+    #[inline]
     fn deref(&self) -> &[f64] {
         &self.0
     }

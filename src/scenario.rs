@@ -117,7 +117,7 @@ fn default_pose_acceleration() -> f64 {
 }
 
 #[derive(Serialize, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "want the name of a machine, a file, or a whole machine as a table")]
 enum MachineRef {
     Name(String),
     Inline(Box<MachineSpec>),
@@ -127,7 +127,7 @@ enum MachineRef {
 #[derive(Debug, Error)]
 pub enum ScenarioError {
     /// The file itself.
-    #[error("{file}: {source}")]
+    #[error("{file}: {source}: want a file that can be read")]
     Unreadable {
         /// The file.
         file: String,
@@ -220,8 +220,9 @@ impl Scenario {
         })?;
         let machine = match file.machine {
             MachineRef::Name(name) => machine::find(&name, folder)?,
-            MachineRef::Inline(spec) => Machine::new(*spec)
-                .map_err(|error| ScenarioError::Machine { file: label.into(), error })?,
+            MachineRef::Inline(spec) => {
+                Machine::new(*spec).map_err(|error| ScenarioError::Machine { file: label.into(), error })?
+            }
         };
         let stem = FilePath::new(label).file_stem().map_or_else(|| label.into(), |s| s.to_string_lossy().into_owned());
         let scenario = Self {
@@ -244,14 +245,24 @@ impl Scenario {
     fn check(&self, file: &str) -> Result<(), ScenarioError> {
         let t = &self.task;
         let positive = [
-            ("step", self.step, "a step above 0 s, at most 0.01 s", self.step > 0.0 && self.step <= 0.01),
+            ("step", self.step, "a step of 0.00001 to 0.01 s", (1e-5..=0.01).contains(&self.step)),
             ("task.time", t.time, "a time of at least one step, s", t.time >= self.step && t.time <= MAX_TIME),
             ("duration", self.duration, "0 to 3600 s", (0.0..=MAX_TIME).contains(&self.duration)),
             ("pose_acceleration", self.pose_acceleration, "above 0 rad/s²", self.pose_acceleration > 0.0),
-            ("control.kp", self.gains.kp, "0 s⁻² or more", self.gains.kp >= 0.0),
-            ("control.kd", self.gains.kd, "0 s⁻¹ or more", self.gains.kd >= 0.0),
-            ("plant.payload.mass", self.plant.payload.mass, "0 kg or more", self.plant.payload.mass >= 0.0),
-            ("plant.payload.inertia", self.plant.payload.inertia, "0 kg m² or more", self.plant.payload.inertia >= 0.0),
+            ("control.kp", self.gains.kp, "0 to 1/step² s⁻²", (0.0..=1.0 / self.step.powi(2)).contains(&self.gains.kp)),
+            ("control.kd", self.gains.kd, "0 to 2/step s⁻¹", (0.0..=2.0 / self.step).contains(&self.gains.kd)),
+            (
+                "plant.payload.mass",
+                self.plant.payload.mass,
+                "0 to 10000 kg",
+                (0.0..=MAX_PAYLOAD).contains(&self.plant.payload.mass),
+            ),
+            (
+                "plant.payload.inertia",
+                self.plant.payload.inertia,
+                "0 to 10000 kg m²",
+                (0.0..=MAX_PAYLOAD).contains(&self.plant.payload.inertia),
+            ),
         ];
         let finite = [
             ("task.from", t.from[0]),
@@ -281,9 +292,8 @@ impl Scenario {
             Some(known) if *known == self.machine => MachineRef::Name(self.machine.name().into()),
             _ => MachineRef::Inline(Box::new(self.machine.spec().clone())),
         };
-        let Self {
-            name, title, machine: _, plant, task, gains, step, pose_acceleration, compare_b, duration, edits,
-        } = self.clone();
+        let Self { name, title, machine: _, plant, task, gains, step, pose_acceleration, compare_b, duration, edits } =
+            self.clone();
         let file = File {
             name: Some(name),
             title,
@@ -311,6 +321,9 @@ impl Scenario {
         Machine::new(spec)
     }
 }
+
+/// The heaviest unknown payload, kg; also the bound on its inertia, kg m².
+pub const MAX_PAYLOAD: f64 = 1e4;
 
 /// The longest run, s.
 pub const MAX_TIME: f64 = 3600.0;

@@ -4,9 +4,7 @@
 //! accelerations, never from the planned motion, so that a zero is found and not assumed.
 
 use crate::control::{Gains, computed_torque};
-use crate::dynamics::{
-    self, BaseWrench, Surroundings, angular_momentum, base_wrench, centre_of_mass, energy, linear_momentum,
-};
+use crate::dynamics::{self, BaseWrench, Surroundings, angular_momentum, centre_of_mass, energy, linear_momentum};
 use crate::frame::{Frame, Peaks, Phase, Reach, Target};
 use crate::kinematics::{end_effector, transmission};
 use crate::machine::{Inertia, Machine, RelativeAngle};
@@ -29,6 +27,7 @@ pub enum Guide {
 
 impl Guide {
     /// The reference at a time, s; `dt` is the time since the present step began, s.
+    #[inline]
     fn at(&self, time: f64, dt: f64) -> Reference {
         match self {
             Self::Motion { motion, start } => motion.at(time + dt - start),
@@ -70,12 +69,21 @@ struct Slope {
     e: Units,
 }
 
+/// As much of a slope as the stages within a step need.
+#[derive(Clone, Copy)]
+struct Rates {
+    qd: PerDrive,
+    qdd: PerDrive,
+    power: f64,
+}
+
 /// A run in progress.
 #[derive(Clone, Debug)]
 pub struct Simulation {
     model: Body,
     plant: Body,
-    link_masses: Vec<(f64, [Vector; MAX_DRIVES])>,
+    /// m_j a_jk of each link and of the payload, `drives` after `drives`, kg m.
+    link_moments: Vec<Vector>,
     lambda: PerDrive,
     angles: Vec<RelativeAngle>,
     gains: Gains,
@@ -100,16 +108,18 @@ impl Simulation {
         let reference = guide.at(0.0, 0.0);
         let state = State { q: reference.q, qd: reference.qd, work: 0.0 };
         let n = plant.drives();
-        let mut link_masses: Vec<_> =
-            plant.links().iter().enumerate().map(|(j, l)| (l.mass, plant.com_chain(j))).collect();
-        if plant.spec().payload.mass > 0.0 {
-            link_masses.push((plant.spec().payload.mass, plant.tip().map(|w| Vector::new(w, 0.0))));
-        }
+        let payload = (plant.spec().payload.mass, plant.tip().map(|w| Vector::new(w, 0.0)));
+        let links = plant.links().iter().enumerate().map(|(j, l)| (l.mass, plant.com_chain(j)));
+        let link_moments = links
+            .chain([payload])
+            .filter(|(m, _)| *m > 0.0)
+            .flat_map(|(m, a)| a.into_iter().take(n).map(move |a| m * a))
+            .collect();
         let mut sim = Self {
             lambda: model_body.inertia.lambda(),
             model: model_body,
             plant: body,
-            link_masses,
+            link_moments,
             angles: model.angles().to_vec(),
             gains,
             dt,
@@ -133,11 +143,10 @@ impl Simulation {
     }
 
     fn begin(&mut self) {
-        self.slope = self.evaluate(&self.state, 0.0);
+        self.look();
         let (kinetic, potential) =
             energy(&self.plant.inertia, &self.slope.e, &self.state.qd, self.plant.around.gravity);
         self.start_energy = kinetic + potential - self.state.work;
-        self.note_peaks();
     }
 
     /// Steps done.
@@ -168,8 +177,7 @@ impl Simulation {
     /// Lets something else lead from now on. The machine keeps its state and control takes up the difference.
     pub fn lead(&mut self, guide: Guide) {
         self.guide = guide;
-        self.slope = self.evaluate(&self.state, 0.0);
-        self.note_peaks();
+        self.look();
     }
 
     /// Changes what moves and what control believes, in motion: positions and rates stay.
@@ -206,33 +214,38 @@ impl Simulation {
         }
     }
 
-    #[inline]
-    fn evaluate(&self, state: &State, dt: f64) -> Slope {
+    /// Unit vectors, reference and motor torques of a state, `dt` after the present step began, s.
+    #[inline(always)]
+    fn control(&self, state: &State, dt: f64) -> (Units, Reference, PerDrive) {
         let e = state.q.units();
         let reference = self.guide.at(self.time(), dt);
         let torque =
             computed_torque(&self.model.inertia, self.gains, &reference, &state.q, &e, &state.qd, &self.model.around);
+        (e, reference, torque)
+    }
+
+    #[inline(always)]
+    fn rates(&self, state: &State, dt: f64) -> Rates {
+        let (e, _, torque) = self.control(state, dt);
         let qdd = dynamics::forward(&self.plant.inertia, &e, &state.qd, &torque, &self.plant.around);
-        Slope { qd: state.qd, qdd, power: torque.dot(&state.qd), torque, reference, e }
+        Rates { qd: state.qd, qdd, power: torque.dot(&state.qd) }
     }
 
     /// Advances by one step.
     pub fn advance(&mut self) {
         let h = self.dt;
         let from = self.state;
-        let along = |s: &Slope, dt: f64| State {
+        let along = |s: &Rates, dt: f64| State {
             q: DriveAngles(from.q.0.plus(dt, &s.qd)),
             qd: from.qd.plus(dt, &s.qdd),
             work: from.work,
         };
-        let k1 = self.slope;
-        let k2 = self.evaluate(&along(&k1, h / 2.0), h / 2.0);
-        let k3 = self.evaluate(&along(&k2, h / 2.0), h / 2.0);
-        let k4 = self.evaluate(&along(&k3, h), h);
-        let sum = |a: &PerDrive, f: fn(&Slope) -> &PerDrive| {
-            PerDrive::from_fn(a.len(), |k| {
-                a[k] + h / 6.0 * (f(&k1)[k] + 2.0 * f(&k2)[k] + 2.0 * f(&k3)[k] + f(&k4)[k])
-            })
+        let k1 = Rates { qd: self.slope.qd, qdd: self.slope.qdd, power: self.slope.power };
+        let k2 = self.rates(&along(&k1, h / 2.0), h / 2.0);
+        let k3 = self.rates(&along(&k2, h / 2.0), h / 2.0);
+        let k4 = self.rates(&along(&k3, h), h);
+        let sum = |a: &PerDrive, f: fn(&Rates) -> &PerDrive| {
+            a.plus(h / 6.0, &f(&k1).plus(2.0, &f(&k2).plus(1.0, f(&k3))).plus(1.0, f(&k4)))
         };
         self.state = State {
             q: DriveAngles(sum(&from.q.0, |s| &s.qd)),
@@ -243,30 +256,19 @@ impl Simulation {
         if let Guide::Follow(follower) = &mut self.guide {
             follower.advance();
         }
-        self.slope = self.evaluate(&self.state, 0.0);
-        self.note_peaks();
+        self.look();
     }
 
-    /// The wrench of the plant's own motion at the present instant, and the peaks so far.
-    fn note_peaks(&mut self) {
-        let s = &self.slope;
-        self.wrench = base_wrench(&self.plant.inertia, &s.e, &s.qd, &s.qdd, &self.plant.around);
-        let pull = self.inertial_pull();
+    /// Takes in the present instant: slope, wrench of the plant's own motion, and peaks.
+    fn look(&mut self) {
+        let state = &self.state;
+        let (e, reference, torque) = self.control(state, 0.0);
+        let (qdd, wrench) =
+            dynamics::forward_with_wrench(&self.plant.inertia, &e, &state.qd, &torque, &self.plant.around);
+        self.slope = Slope { qd: state.qd, qdd, power: torque.dot(&state.qd), torque, reference, e };
+        self.wrench = wrench;
+        let pull = dynamics::inertial_pull(&self.link_moments, &e, &state.qd, &qdd);
         self.peaks.include(&self.slope.torque, &self.wrench, pull);
-    }
-
-    /// Σ_j m_j |a_cj|, N.
-    fn inertial_pull(&self) -> f64 {
-        let s = &self.slope;
-        let n = s.qd.len();
-        let mut turn = [Vector::default(); MAX_DRIVES];
-        for k in 0..n {
-            turn[k] = Vector::new(-s.qd[k] * s.qd[k], s.qdd[k]) * s.e[k];
-        }
-        self.link_masses
-            .iter()
-            .map(|(m, a)| m * (0..n).map(|k| a[k] * turn[k]).sum::<Vector>().norm_sqr().sqrt())
-            .sum()
     }
 
     /// Everything that is true now.

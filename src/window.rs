@@ -30,7 +30,9 @@ pub enum WindowError {
     #[error(transparent)]
     Refused(#[from] Refusal),
     /// No graphics adapter, or the window system failed.
-    #[error("the window could not be opened: {0} (on Debian, `apt-get install mesa-vulkan-drivers` gives a software adapter)")]
+    #[error(
+        "the window could not be opened: {0} (on Debian, `apt-get install mesa-vulkan-drivers` gives a software adapter)"
+    )]
     Failed(String),
 }
 
@@ -55,9 +57,8 @@ pub fn run(scenario: Scenario, theme: Theme) -> Result<(), WindowError> {
         renderer: eframe::Renderer::Wgpu,
         ..Default::default()
     };
-    let create: eframe::AppCreator<'_> = Box::new(move |cc| {
-        Ok(Box::new(App::new(cc, desk, Clock::Wall(None)).ok_or("no graphics adapter")?))
-    });
+    let create: eframe::AppCreator<'_> =
+        Box::new(move |cc| Ok(Box::new(App::new(cc, desk, Clock::Wall(None)).ok_or("no graphics adapter")?)));
     let mut app = eframe::create_native("stillbase", options, create, &event_loop);
     event_loop.run_app(&mut app).map_err(|e| WindowError::Failed(e.to_string()))
 }

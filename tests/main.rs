@@ -1,13 +1,23 @@
 //! All tests, one binary.
 
+#[path = "suite/balance.rs"]
+mod balance;
 #[path = "suite/boundary.rs"]
 mod boundary;
+#[path = "suite/cases.rs"]
+mod cases;
 #[cfg(feature = "cli")]
 #[path = "suite/cli.rs"]
 mod cli;
+#[path = "suite/convergence.rs"]
+mod convergence;
+#[path = "suite/dynamics.rs"]
+mod dynamics;
 #[cfg(feature = "render")]
 #[path = "suite/gpu.rs"]
 mod gpu;
+#[path = "suite/layers.rs"]
+mod layers;
 #[path = "suite/machine_file.rs"]
 mod machine_file;
 #[path = "suite/mesh.rs"]
@@ -22,27 +32,19 @@ mod recording;
 #[cfg(feature = "render")]
 #[path = "suite/render.rs"]
 mod render;
+#[path = "suite/scene.rs"]
+mod scene;
+#[path = "suite/session.rs"]
+mod session;
 #[cfg(feature = "render")]
 #[path = "suite/shaders.rs"]
 mod shaders;
+#[path = "suite/signals.rs"]
+mod signals;
+#[path = "suite/sincos.rs"]
+mod sincos;
+#[path = "suite/support.rs"]
+mod support;
 #[cfg(feature = "window")]
 #[path = "suite/window.rs"]
 mod window;
-#[path = "suite/support.rs"]
-mod support;
-#[path = "suite/dynamics.rs"]
-mod dynamics;
-#[path = "suite/balance.rs"]
-mod balance;
-#[path = "suite/cases.rs"]
-mod cases;
-#[path = "suite/convergence.rs"]
-mod convergence;
-#[path = "suite/session.rs"]
-mod session;
-#[path = "suite/layers.rs"]
-mod layers;
-#[path = "suite/signals.rs"]
-mod signals;
-#[path = "suite/scene.rs"]
-mod scene;

@@ -95,8 +95,10 @@ impl From<DesignError> for Failure {
 impl From<Refusal> for Failure {
     fn from(e: Refusal) -> Self {
         match e {
-            Refusal::NoPlanes(_) | Refusal::Unreachable { .. } | Refusal::Path(_) => Self::no_answer(e),
-            Refusal::Machine(_) | Refusal::OutOfRange { .. } => Self::wrong_input(e),
+            Refusal::NoPlanes(_) | Refusal::Unreachable { .. } | Refusal::Path(_) | Refusal::Diverged { .. } => {
+                Self::no_answer(e)
+            }
+            Refusal::Machine(_) | Refusal::OutOfRange { .. } | Refusal::LeavesLimits { .. } => Self::wrong_input(e),
         }
     }
 }

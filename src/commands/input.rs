@@ -8,7 +8,7 @@ use stillbase::machine::{self, Inertia, Machine};
 use stillbase::planar::Vector;
 use stillbase::pose_constant::plane_map;
 use stillbase::reactionless::PlaneMap;
-use stillbase::scenario::Scenario;
+use stillbase::scenario::{MAX_PAYLOAD, Scenario};
 
 use super::failure::Failure;
 use super::output::say;
@@ -20,7 +20,7 @@ pub const DEFAULT_SCENARIO: &str = "case-3";
 #[derive(Args)]
 pub struct Settings {
     /// Change the machine, as often as needed: link.5.com=-0.02 (m), link.9.mass=0.3 (kg), length.l1=0.6 (m),
-    /// payload.mass=0.4 (kg), gravity=0,-9.81 (m/s²), limits.a1=0.4,2.7 (rad), drive.1.torque_limit=20 (N m)
+    /// payload.mass=0.1 (kg, known to control), plant.payload.mass=0.1 (unknown to it; scenarios only), gravity=0,-9.81 (m/s²), limits.a1=0.4,2.7 (rad), drive.1.torque_limit=20 (N m)
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
     pairs: Vec<(String, String)>,
 }
@@ -65,13 +65,29 @@ impl MachineArgument {
     }
 }
 
-/// A scenario by name or file, its machine changed before anything is planned.
+/// A scenario by name or file, its machine and plant changed before anything is planned.
 ///
 /// # Errors
 /// If there is no such scenario, or its machine is not valid.
 pub fn scenario(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
     let mut scenario = Scenario::find(name)?;
-    scenario.machine = settings.apply(scenario.machine)?;
+    let (plant, model): (Vec<_>, Vec<_>) =
+        settings.pairs.iter().cloned().partition(|(key, _)| key.starts_with("plant."));
+    scenario.machine = Settings { pairs: model }.apply(scenario.machine)?;
+    for (key, value) in plant {
+        let amount = value.trim().parse().ok().filter(|x| (0.0..=MAX_PAYLOAD).contains(x));
+        let slot = match key.as_str() {
+            "plant.payload.mass" => &mut scenario.plant.payload.mass,
+            "plant.payload.inertia" => &mut scenario.plant.payload.inertia,
+            _ => {
+                let why = format!("no setting {key:?}: want plant.payload.mass or plant.payload.inertia");
+                return Err(Failure::wrong_input(why).of("--set"));
+            }
+        };
+        let why =
+            || Failure::wrong_input(format!("{key}={value:?}: want a number from 0 to {MAX_PAYLOAD}")).of("--set");
+        *slot = amount.ok_or_else(why)?;
+    }
     Ok(scenario)
 }
 

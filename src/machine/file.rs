@@ -11,7 +11,7 @@ use super::{Machine, MachineError, MachineSpec, Place, Step};
 #[derive(Debug, Error)]
 pub enum FileError {
     /// It cannot be read.
-    #[error("{}: {source}", file.display())]
+    #[error("{}: {source}: want a file that can be read", file.display())]
     Unreadable {
         /// The file.
         file: PathBuf,

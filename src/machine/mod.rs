@@ -31,6 +31,9 @@ use crate::planar::{MAX_DRIVES, Units, Vector};
 /// A point as a sum of unit vectors: weight w_k, m, on e(q_k).
 pub type Chain = [f64; MAX_DRIVES];
 
+/// The largest number of a machine, in SI units: beyond it, products of them would not be finite.
+const MOST: f64 = 1e6;
+
 /// The largest joint limit either way, rad: each further turn is one more winding of the same workspace.
 pub const MAX_ANGLE: f64 = 25.2;
 
@@ -237,7 +240,8 @@ fn quoted<'a>(names: impl Iterator<Item = &'a str>) -> String {
 
 fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {
     let finite = |value: f64, unit, place: &dyn Fn() -> Place| match value.is_finite() {
-        true => Ok(()),
+        true if value.abs() <= MOST => Ok(()),
+        true => Err(MachineError::OutOfRange { place: place(), value, want: "a size of at most 1000000" }),
         false => Err(MachineError::NotFinite { place: place(), value, unit }),
     };
     let ranged = |ok: bool, value: f64, want, place: &dyn Fn() -> Place| match ok {

@@ -24,6 +24,7 @@ pub enum TimeLaw {
 
 impl TimeLaw {
     /// Progress at time t, s, of a motion that takes T, s.
+    #[inline]
     pub fn at(self, t: f64, duration: f64) -> Progress {
         let u = (t / duration).clamp(0.0, 1.0);
         match self {

@@ -42,15 +42,14 @@ pub struct Motion {
 
 impl Motion {
     /// The reference t seconds after the start; at rest before it and after T.
+    #[inline]
     pub fn at(&self, t: f64) -> Reference {
         let p = self.law.at(t, self.duration);
         let point = self.path.at(p.s);
         Reference {
             q: point.q,
-            qd: PerDrive::from_fn(point.q.len(), |k| point.first[k] * p.rate),
-            qdd: PerDrive::from_fn(point.q.len(), |k| {
-                point.second[k] * p.rate * p.rate + point.first[k] * p.acceleration
-            }),
+            qd: point.first.scaled(p.rate),
+            qdd: point.second.scaled(p.rate * p.rate).plus(p.acceleration, &point.first),
         }
     }
 }

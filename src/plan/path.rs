@@ -54,6 +54,7 @@ pub enum PathError {
 
 impl Path {
     /// The pose at s, clamped to 0..1.
+    #[inline]
     pub fn at(&self, s: f64) -> PathPoint {
         let s = s.clamp(0.0, 1.0);
         match self {
@@ -68,9 +69,10 @@ impl Path {
     }
 }
 
+#[inline]
 fn joint_line(from: &DriveAngles, to: &DriveAngles, s: f64) -> PathPoint {
     let n = from.len();
-    let step = PerDrive::from_fn(n, |k| to[k] - from[k]);
+    let step = to.0.minus(&from.0);
     PathPoint { q: DriveAngles(from.0.plus(s, &step)), first: step, second: PerDrive::zeros(n) }
 }
 
@@ -119,9 +121,7 @@ impl TipLine {
                 let (k2, _) = slope(&DriveAngles(q.0.plus(h / 2.0, &k1)), s)?;
                 let (k3, _) = slope(&DriveAngles(q.0.plus(h / 2.0, &k2)), s)?;
                 let (k4, _) = slope(&DriveAngles(q.0.plus(h, &k3)), s)?;
-                q = DriveAngles(
-                    q.0.plus(h / 6.0, &k1).plus(h / 3.0, &k2).plus(h / 3.0, &k3).plus(h / 6.0, &k4),
-                );
+                q = DriveAngles(q.0.plus(h / 6.0, &k1).plus(h / 3.0, &k2).plus(h / 3.0, &k3).plus(h / 6.0, &k4));
             }
         }
         Ok(Self { nodes })

@@ -123,6 +123,10 @@ impl Loop {
 
 impl Boundary {
     /// The boundary of the workspace within the map's limits.
+    ///
+    /// Limits further apart than five turns are cut to five about their middle. Where they coincide with a straight
+    /// fold they are drawn in by 4e-10 rad. Nodes of folds, which only machines of special proportions have, are exact
+    /// to 1e-10 m; where such proportions make whole curves coincide, loops may be incomplete.
     pub fn of(map: &PlaneMap) -> Self {
         let on = Surface::of(map);
         let thin = map.limits().iter().any(|l| l.max - l.min < THIN);

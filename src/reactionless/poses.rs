@@ -55,11 +55,17 @@ impl Poses {
         Self { len: 0, poses: [PlanePoint { a: [0.0; 2], b }; MAX_POSES] }
     }
 
-    fn push(&mut self, a: [f64; 2]) {
-        let known = self.iter().any(|pose| (pose.a[0] - a[0]).abs() < SAME && (pose.a[1] - a[1]).abs() < SAME);
-        if !known && self.len < MAX_POSES {
-            self.poses[self.len].a = a;
-            self.len += 1;
+    /// Takes in a pose; of two that are the same, the one with the smaller miss.
+    fn push(&mut self, a: [f64; 2], miss: impl Fn([f64; 2]) -> f64) {
+        let same = |pose: &&mut PlanePoint| (pose.a[0] - a[0]).abs() < SAME && (pose.a[1] - a[1]).abs() < SAME;
+        match self.poses[..self.len].iter_mut().find(same) {
+            Some(pose) if miss(a) < miss(pose.a) => pose.a = a,
+            Some(_) => {}
+            None if self.len < MAX_POSES => {
+                self.poses[self.len].a = a;
+                self.len += 1;
+            }
+            None => {}
         }
     }
 
@@ -87,8 +93,9 @@ impl PlaneMap {
         let farthest: f64 = self.c().iter().map(|c| c.abs()).sum();
         let mut push = |a: [f64; 2], tolerance: f64| {
             let a = self.clamp(a);
-            if (self.forward(a, b) - p).norm() <= tolerance * farthest {
-                poses.push(a);
+            let miss = |a: [f64; 2]| (self.forward(a, b) - p).norm();
+            if miss(a) <= tolerance * farthest {
+                poses.push(a, miss);
             }
         };
         if curve.is_at_base() {

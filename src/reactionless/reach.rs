@@ -115,6 +115,16 @@ impl BSet {
         })
     }
 
+    /// The same set with each interval lifted by whole periods to where it is nearest to b.
+    #[must_use]
+    pub fn near(&self, b: f64) -> Self {
+        let lift = |[low, high]: [f64; 2]| {
+            let turns = self.period * ((b - 0.5 * (low + high)) / self.period).round();
+            [low + turns, high + turns]
+        };
+        Self { intervals: self.intervals.iter().map(|i| lift(*i)).collect(), period: self.period }
+    }
+
     /// The b of the set, lifted by whole turns, that is nearest on the real line; `b` itself if it lies in the set.
     pub fn nearest(&self, b: f64) -> Option<f64> {
         let step = |[low, high]: &[f64; 2]| {

@@ -176,7 +176,10 @@ impl Linkage {
     pub fn ghost(&self, e: &Units, palette: &Palette, alpha: f32) -> Vec<Solid> {
         let carriers = self.bars.iter().filter(|b| b.carries_tip);
         carriers
-            .map(|bar| Solid { name: format!("ghost/{}", bar.name), ..bar.solid(e, faded(palette.drive(bar.drive), alpha)) })
+            .map(|bar| Solid {
+                name: format!("ghost/{}", bar.name),
+                ..bar.solid(e, faded(palette.drive(bar.drive), alpha))
+            })
             .collect()
     }
 }

@@ -73,9 +73,7 @@ impl Stage {
         });
         let tip = *machine.tip();
         let motion = run.motion().map(|motion| Course {
-            points: (0..=96)
-                .map(|i| place(&tip, &motion.path.at(f64::from(i) / 96.0).q))
-                .collect(),
+            points: (0..=96).map(|i| place(&tip, &motion.path.at(f64::from(i) / 96.0).q)).collect(),
             start: motion.path.at(0.0).q.units(),
         });
         Self {
@@ -288,7 +286,8 @@ impl Stage {
     /// A force arrow and a moment arc at B, in proportion, with their scale in words.
     fn reaction(&self, scene: &mut Scene, palette: &Palette, frame: &Frame) {
         let (z, reach) = (self.handle_height(), self.linkage.reach());
-        let (force, moment) = (frame.wrench.total().force, frame.base_moment());
+        let (force, moment) = (frame.wrench.dynamic.force, frame.base_moment());
+        let weight = frame.wrench.statical.force.norm();
         let tone = |still: bool| if still { palette.zero } else { palette.reaction };
         let pulls = frame.wrench.dynamic.force.norm() > REACTIONLESS * frame.peaks.inertial_pull.max(1e-9);
         let turns = moment.abs() > REACTIONLESS * frame.peaks.torque_sum.max(1e-9);
@@ -312,8 +311,7 @@ impl Stage {
         if sweep.abs() > 0.02 {
             let n = ((sweep.abs() * 24.0).ceil() as usize).max(2);
             let from = -FRAC_PI_2;
-            let arc: Vec<_> =
-                (0..=n).map(|i| point(unit(from + sweep * i as f64 / n as f64) * radius, z)).collect();
+            let arc: Vec<_> = (0..=n).map(|i| point(unit(from + sweep * i as f64 / n as f64) * radius, z)).collect();
             scene.lines.push(line("reaction/moment", arc));
             let end = unit(from + sweep);
             let along = end * Vector::new(0.0, sweep.signum());
@@ -333,18 +331,28 @@ impl Stage {
         }
         let at = Vector::new(0.2 * reach, -0.11 * reach);
         let still = com.norm() < 1e-6 * reach;
-        let com_words = if still { "centre of mass at rest in B".into() } else { format!("centre of mass {:.1} mm off B", 1e3 * com.norm()) };
+        let com_words = if still {
+            "centre of mass at rest in B".into()
+        } else {
+            format!("centre of mass {:.2} mm off B", 1e3 * com.norm())
+        };
         let scale = match (arrow.norm() > 0.004 * reach, sweep.abs() > 0.02) {
             (false, false) => String::new(),
             (true, false) => format!("arrow: {:.3} m = {} N", 0.25 * reach, brief(0.25 * reach / per_newton)),
             (false, true) => format!("arc: 135° = {} N m", brief(full)),
             (true, true) => {
-                format!("arrow: {:.3} m = {} N · arc: 135° = {} N m", 0.25 * reach, brief(0.25 * reach / per_newton), brief(full))
+                format!(
+                    "arrow: {:.3} m = {} N · arc: 135° = {} N m",
+                    0.25 * reach,
+                    brief(0.25 * reach / per_newton),
+                    brief(full)
+                )
             }
         };
         let rows = [
-            (format!("f_B {:.3} N", frame.wrench.dynamic.force.norm()), tone(!pulls), 13.0),
-            (format!("n_B {} N m", signed(moment, 3)), tone(!turns), 13.0),
+            (format!("f_B {} N", reading(force.norm(), pulls)), tone(!pulls), 13.0),
+            (format!("n_B {} N m", reading(moment, turns)), tone(!turns), 13.0),
+            (if weight > 0.0 { format!("and its weight, {weight:.1} N") } else { String::new() }, palette.dim, 11.5),
             (com_words, palette.dim, 11.5),
             (scale, palette.dim, 11.5),
         ];
@@ -467,6 +475,11 @@ fn head(at: Vector, along: Vector, size: f64, z: f64) -> Vec<[f32; 3]> {
 pub fn round_up(x: f64) -> f64 {
     let decade = 10f64.powf(x.log10().floor());
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * decade).find(|v| *v >= x * (1.0 - 1e-12)).unwrap_or(10.0 * decade)
+}
+
+/// A reaction: three decimals, or its order of magnitude where they would hide it.
+fn reading(x: f64, real: bool) -> String {
+    if real && x.abs() < 5e-4 { format!("{x:.1e}").replace('-', "−") } else { signed(x, 3) }
 }
 
 fn brief(x: f64) -> String {

@@ -1,10 +1,11 @@
 //! [`Edit`]: every change a person can make, as data. A session is its scenario and its edits, nothing else.
 
+use serde::de::Error as _;
 use serde::{Deserialize, Serialize};
 
 /// One change. It can be saved, replayed and undone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "do", rename_all = "kebab-case")]
+#[serde(tag = "do", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Edit {
     /// Sends the end effector to a point, m; the machine follows on its plane.
     DragTarget {
@@ -56,13 +57,25 @@ pub enum Edit {
 }
 
 /// An edit and the step at which it applies.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TimedEdit {
     /// Steps since the start.
     pub step: u64,
     /// What.
     #[serde(flatten)]
     pub edit: Edit,
+}
+
+impl<'de> Deserialize<'de> for TimedEdit {
+    /// By hand, because a flattened enum would accept keys that it does not know.
+    fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let mut table = toml::Table::deserialize(from)?;
+        let step = table.remove("step").ok_or_else(|| D::Error::missing_field("step"))?;
+        let step = step.as_integer().and_then(|n| u64::try_from(n).ok());
+        let step = step.ok_or_else(|| D::Error::custom("step: want a whole number of steps, 0 or more"))?;
+        let edit = Edit::deserialize(table).map_err(|e| D::Error::custom(e.message()))?;
+        Ok(Self { step, edit })
+    }
 }
 
 impl Edit {

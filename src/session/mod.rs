@@ -51,6 +51,8 @@ pub struct Session {
     redo: Vec<Change>,
     /// Edits of one kind join into one undo while a gesture lasts.
     gesture: bool,
+    /// Whether the gesture's parameter edits apply at the present step; the first one decides.
+    gesture_now: Option<bool>,
     /// The run as it was before the last edit of the script, until the next step: where the gesture's next word in
     /// the same step starts from.
     unedited: Option<Run>,
@@ -89,6 +91,7 @@ impl Session {
             undo: Vec::new(),
             redo: Vec::new(),
             gesture: false,
+            gesture_now: None,
             unedited: None,
         })
     }
@@ -148,6 +151,14 @@ impl Session {
         if self.is_live() { done } else { done.max(self.scenario().task.time) }
     }
 
+    /// The pose constant that the machine is sent to, rad; on display, if it was scrubbed back, what it was then.
+    pub fn b_aim(&self) -> f64 {
+        match self.run.simulation().guide() {
+            crate::simulation::Guide::Follow(follower) if self.is_at_end() => follower.b_aim(),
+            _ => self.frame().b_reference,
+        }
+    }
+
     /// Whether somebody has led the machine off its planned motion.
     pub fn is_live(&self) -> bool {
         is_led(&self.document.script)
@@ -202,6 +213,10 @@ impl Session {
                 self.advance_run();
             }
             self.cursor += 1;
+            if !self.frame().is_finite() {
+                self.playing = false;
+                return;
+            }
         }
     }
 
@@ -218,7 +233,10 @@ impl Session {
     /// # Errors
     /// If it cannot apply; then nothing has changed.
     pub fn apply(&mut self, edit: Edit) -> Result<(), Refusal> {
-        if self.concerns_now(&edit) { self.apply_now(edit) } else { self.amend(edit) }
+        let now = self.concerns_now(&edit);
+        if now { self.apply_now(edit) } else { self.amend(edit) }?;
+        self.gesture_now = Some(now);
+        Ok(())
     }
 
     /// Whether an edit applies at the present step rather than to the run as a whole.
@@ -228,7 +246,8 @@ impl Session {
             Edit::PoseB { .. } => self.is_live(),
             // The path that the machine is on cannot change its time.
             Edit::SetTime { .. } => false,
-            _ => self.is_running(),
+            // A slider that set the machine in motion goes on as it began.
+            _ => self.gesture_now.unwrap_or_else(|| self.is_running()),
         }
     }
 
@@ -323,6 +342,7 @@ impl Session {
     /// Ends a drag: the next edit is an undo of its own.
     pub fn end_gesture(&mut self) {
         self.gesture = false;
+        self.gesture_now = None;
         self.unedited = None;
     }
 
@@ -430,6 +450,6 @@ impl Session {
 /// Runs a document from its start to its end.
 fn perform(document: &Document) -> Result<(Run, Vec<Frame>), Refusal> {
     let mut frames = Vec::with_capacity(document.end as usize + 1);
-    let run = run::perform(&document.scenario, &document.script, document.end, |_, frame| frames.push(*frame))?;
+    let run = run::perform(&document.scenario, &document.script, Some(document.end), |_, frame| frames.push(*frame))?;
     Ok((run, frames))
 }

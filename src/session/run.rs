@@ -12,7 +12,7 @@ use crate::plan::path::{SameTip, TipLine};
 use crate::plan::{Follower, Motion, Path, PathError};
 use crate::planar::{DriveAngles, Vector};
 use crate::pose_constant::{PlaneError, Planes, Unreachable};
-use crate::scenario::{MAX_TIME, Scenario, TaskKind};
+use crate::scenario::{MAX_PAYLOAD, MAX_TIME, Scenario, TaskKind};
 use crate::simulation::{Guide, Simulation};
 
 /// Why a scenario cannot start or an edit cannot apply; nothing has changed then.
@@ -35,6 +35,20 @@ pub enum Refusal {
     /// The machine.
     #[error(transparent)]
     Machine(#[from] MachineError),
+    /// The numbers have blown up.
+    #[error("the simulation diverges at {time:.3} s: want smaller gains, a smaller step or a lighter payload")]
+    Diverged {
+        /// s.
+        time: f64,
+    },
+    /// The motion in progress does not fit into new limits.
+    #[error("the motion in progress would leave {key} = {value}: want wider limits, or set them at its start")]
+    LeavesLimits {
+        /// Which.
+        key: String,
+        /// What was given.
+        value: String,
+    },
     /// A number out of range.
     #[error("{what} {value}: want {want}")]
     OutOfRange {
@@ -114,7 +128,7 @@ impl Run {
     /// # Errors
     /// If it cannot apply; then nothing has changed.
     pub fn apply(&mut self, edit: &Edit) -> Result<(), Refusal> {
-        check(edit)?;
+        check(edit, self.scenario.step)?;
         match edit {
             Edit::DragTarget { x, y } => {
                 let mut follower = self.follower()?;
@@ -164,6 +178,9 @@ impl Run {
         if self.is_untouched() {
             return self.restart(scenario);
         }
+        if let (Edit::SetMachine { key, value }, true) = (edit, self.leaves_limits(&scenario)) {
+            return Err(Refusal::LeavesLimits { key: key.clone(), value: value.clone() });
+        }
         let plant = scenario.plant_machine()?;
         if scenario.machine != self.scenario.machine {
             let planes = Arc::new(Planes::of(&scenario.machine)?);
@@ -199,6 +216,22 @@ impl Run {
             }
         }
         self.restart(scenario)
+    }
+
+    /// Whether the planned motion, where it leads, has yet to pass limits that it kept before.
+    fn leaves_limits(&self, changed: &Scenario) -> bool {
+        let Guide::Motion { motion, start } = self.simulation.guide() else { return false };
+        let done = motion.law.at(self.simulation.time() - start, motion.duration).s;
+        (0..=64).map(|i| done + (1.0 - done) * f64::from(i) / 64.0).any(|s| {
+            let q = motion.path.at(s).q;
+            let keeps = |scenario: &Scenario| {
+                scenario.machine.angles().iter().all(|a| {
+                    let angle = q[a.to] - q[a.from] + a.offset;
+                    angle >= a.limits.start() - 1e-9 && angle <= a.limits.end() + 1e-9
+                })
+            };
+            keeps(&self.scenario) && !keeps(changed)
+        })
     }
 
     fn restart(&mut self, scenario: Scenario) -> Result<(), Refusal> {
@@ -245,7 +278,9 @@ impl Run {
     }
 }
 
-fn check(edit: &Edit) -> Result<(), Refusal> {
+const GAIN_WANTED: &str = "0 or more, K_p at most 1/h² and K_d at most 2/h for a step h";
+
+fn check(edit: &Edit, step: f64) -> Result<(), Refusal> {
     let out = |what, value, want| Err(Refusal::OutOfRange { what, value, want });
     match *edit {
         Edit::DragTarget { x, y } if !(x.is_finite() && y.is_finite()) => {
@@ -254,10 +289,9 @@ fn check(edit: &Edit) -> Result<(), Refusal> {
         Edit::SlideB { b } | Edit::PoseB { b } | Edit::CompareB { b: Some(b) } if !(-1e3..=1e3).contains(&b) => {
             out("b", b, "a number between -1000 and 1000 rad")
         }
-        Edit::SetGains { kp, kd } if !(kp >= 0.0 && kd >= 0.0 && kp.is_finite() && kd.is_finite()) => {
-            out("gain", if kp >= 0.0 && kp.is_finite() { kd } else { kp }, "0 or more")
-        }
-        Edit::SetPayload { mass } if !(mass >= 0.0 && mass.is_finite()) => out("payload", mass, "0 kg or more"),
+        Edit::SetGains { kp, .. } if !(0.0..=1.0 / (step * step)).contains(&kp) => out("K_p", kp, GAIN_WANTED),
+        Edit::SetGains { kd, .. } if !(0.0..=2.0 / step).contains(&kd) => out("K_d", kd, GAIN_WANTED),
+        Edit::SetPayload { mass } if !(0.0..=MAX_PAYLOAD).contains(&mass) => out("payload", mass, "0 to 10000 kg"),
         Edit::SetTime { time } if !(0.01..=MAX_TIME).contains(&time) => out("motion time", time, "0.01 to 3600 s"),
         _ => Ok(()),
     }
@@ -304,7 +338,7 @@ fn plan(scenario: &Scenario, planes: &Planes) -> Result<Motion, Refusal> {
 /// # Errors
 /// If it cannot start, or an edit cannot apply.
 pub fn replay(scenario: &Scenario, see: impl FnMut(&Run, &Frame)) -> Result<Run, Refusal> {
-    perform(scenario, &in_order(&scenario.edits), last_step(scenario), see)
+    perform(scenario, &in_order(&scenario.edits), None, see)
 }
 
 /// The step at which a scenario's duration is over.
@@ -319,11 +353,12 @@ pub(super) fn in_order(edits: &[TimedEdit]) -> Vec<TimedEdit> {
     script
 }
 
-/// Runs a scenario to a step, with a script in order, and shows every frame.
+/// Runs a scenario to a step, or else through its duration as edits at the start leave it, with a script in order, and
+/// shows every frame.
 pub(super) fn perform(
     scenario: &Scenario,
     script: &[TimedEdit],
-    end: u64,
+    mut end: Option<u64>,
     mut see: impl FnMut(&Run, &Frame),
 ) -> Result<Run, Refusal> {
     let mut run = Run::new(scenario)?;
@@ -333,8 +368,12 @@ pub(super) fn perform(
         while let Some(timed) = edits.next_if(|e| e.step <= step) {
             run.apply(&timed.edit)?;
         }
-        see(&run, &run.frame());
-        if step >= end {
+        let frame = run.frame();
+        if !frame.is_finite() {
+            return Err(Refusal::Diverged { time: frame.time });
+        }
+        see(&run, &frame);
+        if step >= *end.get_or_insert_with(|| last_step(run.scenario())) {
             return Ok(run);
         }
         run.advance();

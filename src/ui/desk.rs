@@ -83,14 +83,16 @@ impl Desk {
         let mut commands = Vec::new();
         keys::read(ui.ctx(), &self.session, &self.look, &mut commands);
         top::show(ui, &self.session, &self.look, &mut commands);
-        status::show(ui, &self.session, &self.look);
+        status::show(ui, &self.session, &self.look, &mut commands);
         side::show(ui, &self.session, &self.look, &mut commands);
         plots::show(ui, &self.session, &self.signals, &self.look, &mut commands);
         viewport::show(ui, &self.session, &self.stage, &mut self.look, &mut commands);
         keys::help(ui.ctx(), &self.look, &mut commands);
         top::dialog(ui.ctx(), &mut self.look, &mut commands);
-        if !commands.is_empty() {
+        if commands.iter().any(|c| !matches!(c, Command::EndGesture)) {
             self.look.message = None;
+        }
+        if !commands.is_empty() {
             ui.ctx().request_repaint();
         }
         for command in commands {
@@ -127,7 +129,7 @@ impl Desk {
         match command {
             Command::Edit(edit) => self.session.apply(edit).map_err(refused)?,
             Command::EndGesture => self.session.end_gesture(),
-            Command::TogglePlay if self.session.is_moving() => self.session.pause(),
+            Command::TogglePlay if self.session.is_playing() => self.session.pause(),
             Command::TogglePlay => self.session.play(),
             Command::Seek(time) => {
                 self.session.pause();
@@ -172,21 +174,23 @@ impl Desk {
     }
 
     fn save(&mut self, path: &Path) -> Result<String, String> {
+        check_name(path)?;
         crate::files::write_new(path, self.session.to_scenario().to_toml().as_bytes(), false)
             .map_err(|e| e.to_string())?;
         self.look.dialog = None;
-        Ok(format!("saved {}", path.display()))
+        Ok(format!("saved {}", whole(path)))
     }
 
     #[cfg(feature = "record")]
     fn record(&mut self, path: &Path) -> Result<String, String> {
+        check_name(path)?;
         let options = crate::headless::Options { pictures: None, force: false };
         let mut scenario = self.session.to_scenario();
         scenario.duration = self.session.length();
         let done = crate::headless::record(&[scenario], path, &options, &mut |_| {}).map_err(|e| e.to_string())?;
         self.look.dialog = None;
         let verdict = if done.iter().all(|r| r.reactionless) { "reactionless" } else { "with reactions" };
-        Ok(format!("recorded {} ({verdict}); open it with the Rerun viewer", path.display()))
+        Ok(format!("recorded {} ({verdict}); open it with the Rerun viewer", whole(path)))
     }
 
     #[cfg(not(feature = "record"))]
@@ -213,6 +217,19 @@ impl Desk {
         };
         FileDialog { purpose, path: name }
     }
+}
+
+/// A file that exists is not replaced from a window.
+fn check_name(path: &Path) -> Result<(), String> {
+    match path.exists() {
+        true => Err(format!("{} exists: want another name", path.display())),
+        false => Ok(()),
+    }
+}
+
+/// The whole name of a file, so that it can be found again.
+fn whole(path: &Path) -> String {
+    path.canonicalize().unwrap_or_else(|_| path.into()).display().to_string()
 }
 
 /// What a stage depends on.

@@ -3,7 +3,7 @@
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use super::theme::{bold, colour};
-use super::{Command, Desk, Look, Purpose};
+use super::{Command, Desk, Look, Purpose, case};
 use crate::scenario::Scenario;
 use crate::session::Session;
 
@@ -23,18 +23,19 @@ const KEYS: [(&str, &str); 16] = [
     ("drag b ring", "the workspace turns"),
     ("drag elsewhere", "pan in 2D, orbit in 3D; Shift pans"),
     ("wheel", "zoom"),
-    ("F1  Esc", "this card; close, let go"),
+    ("F1  Esc", "this card; close, cancel a drag"),
 ];
 
 /// Turns keys into commands; while text is typed only shortcuts with Ctrl count.
 pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Command>) {
     let typing = ctx.egui_wants_keyboard_input() || look.dialog.is_some();
-    let chord = |modifiers: Modifiers, key| ctx.input_mut(|i| i.consume_shortcut(&KeyboardShortcut::new(modifiers, key)));
+    let chord =
+        |modifiers: Modifiers, key| ctx.input_mut(|i| i.consume_shortcut(&KeyboardShortcut::new(modifiers, key)));
     let ctrl = Modifiers::COMMAND;
-    if chord(ctrl | Modifiers::SHIFT, Key::Z) || chord(ctrl, Key::Y) {
+    if !typing && (chord(ctrl | Modifiers::SHIFT, Key::Z) || chord(ctrl, Key::Y)) {
         commands.push(Command::Redo);
     }
-    if chord(ctrl, Key::Z) {
+    if !typing && chord(ctrl, Key::Z) {
         commands.push(Command::Undo);
     }
     for (key, purpose) in [(Key::S, Purpose::Save), (Key::O, Purpose::Open)] {
@@ -45,7 +46,8 @@ pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Co
     if chord(Modifiers::NONE, Key::F1) {
         commands.push(Command::Help(!look.help));
     }
-    if chord(Modifiers::NONE, Key::Escape) {
+    // While something is dragged, Esc belongs to the drag.
+    if look.grabbed.is_none() && chord(Modifiers::NONE, Key::Escape) {
         commands.push(if look.dialog.is_some() { Command::Dialog(None) } else { Command::Help(false) });
     }
     if typing {
@@ -72,7 +74,7 @@ pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Co
     }
     for (key, name) in [Key::Num1, Key::Num2, Key::Num3].into_iter().zip(Scenario::builtin_names()) {
         if chord(plain, key) {
-            commands.extend(Scenario::builtin(name).map(|s| Command::Open(Box::new(s))));
+            commands.extend(case(session, name));
         }
     }
 }

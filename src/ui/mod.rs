@@ -103,6 +103,8 @@ pub struct Look {
     pub help: bool,
     /// A file is being asked for.
     pub dialog: Option<FileDialog>,
+    /// The present drag has changed something.
+    pub dragged: bool,
     /// The last thing to say, and whether it is bad news.
     pub message: Option<(String, bool)>,
 }
@@ -121,6 +123,7 @@ impl Look {
             held: None,
             help: false,
             dialog: None,
+            dragged: false,
             message: None,
         }
     }
@@ -140,7 +143,13 @@ impl Look {
     }
 }
 
-/// What a slider of b does: with time running the machine follows, at rest it is posed.
+/// What a slider of b does: while time runs the machine follows, paused it is posed.
 fn set_b(session: &Session, b: f64) -> Edit {
     if session.is_playing() && session.is_at_end() { Edit::SlideB { b } } else { Edit::PoseB { b } }
+}
+
+/// One of the paper's cases, with the machine that is on display.
+fn case(session: &Session, name: &str) -> Option<Command> {
+    let scenario = Scenario::builtin(name)?;
+    Some(Command::Open(Box::new(Scenario { machine: session.scenario().machine.clone(), ..scenario })))
 }

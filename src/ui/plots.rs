@@ -8,6 +8,7 @@ use super::top::name;
 use super::{Command, Look, set_b};
 use crate::frame::{Frame as Instant, REACTIONLESS};
 use crate::planar::Vector;
+use crate::reactionless::PlanePoint;
 use crate::scene::palette::{Palette, faded};
 use crate::scene::stage::{round_up, signed};
 use crate::session::Session;
@@ -45,6 +46,8 @@ pub fn show(ui: &mut Ui, session: &Session, signals: &[Signal], look: &Look, com
         let height = ((ui.available_height() - 32.0 * (CHARTS.len() as f32 + 1.0)) / rows).max(40.0);
         let end = session.frames().last().map_or(0.0, |f| f.time).max(session.length());
         let end = if session.is_live() { end.max(1.0) } else { end };
+        // Scrubbed far back, the plots go along.
+        let end = end.min((session.frame().time + 0.5 * WINDOW).max(WINDOW));
         let shown = (end - WINDOW).max(0.0)..=end;
         for chart in &CHARTS {
             let lines: Vec<&Signal> = signals.iter().filter(|s| belongs(s, chart)).collect();
@@ -75,6 +78,7 @@ fn header(ui: &mut Ui, p: &Palette, chart: &Chart, lines: &[&Signal], now: &Inst
     });
 }
 
+/// A signal's colour; a reaction is red where it is one, by the peaks up to the instant that is asked about.
 fn tone(p: &Palette, signal: &Signal, now: &Instant) -> Color32 {
     colour(match (signal.drive, signal.group()) {
         (Some(k), _) => p.drive(k),
@@ -109,7 +113,13 @@ fn time_plot(
     }
     let (low, high) = range(chart, low, high);
     let amber = colour(p.amber);
-    let decimals = if high - low < 0.05 { 3 } else if high - low < 0.5 { 2 } else { 1 };
+    let decimals = if high - low < 0.05 {
+        3
+    } else if high - low < 0.5 {
+        2
+    } else {
+        1
+    };
     let middle = 0.5 * (low + high);
     let response = base_plot(chart.title, p, height)
         .y_grid_spacer(move |_| marks(&[low, middle, high], high - low))
@@ -119,10 +129,10 @@ fn time_plot(
             plot.set_plot_bounds_x(shown.clone());
             let margin = 0.06 * (high - low);
             plot.set_plot_bounds_y(low - margin..=high + margin);
-            let now = session.frame();
+            let (now, newest) = (session.frame(), session.frames().last().unwrap_or(session.frame()));
             for (signal, points) in drawn {
                 let line = Line::new(signal.symbol.clone(), PlotPoints::from(points)).width(1.8);
-                plot.line(line.color(tone(p, signal, now)).allow_hover(false));
+                plot.line(line.color(tone(p, signal, newest)).allow_hover(false));
             }
             plot.vline(VLine::new("now", now.time).color(amber).width(1.0).allow_hover(false));
             pointer_time(plot)
@@ -182,7 +192,8 @@ fn range(chart: &Chart, low: f64, high: f64) -> (f64, f64) {
 fn visible<'a>(session: &'a Session, shown: &std::ops::RangeInclusive<f64>) -> &'a [Instant] {
     let frames = session.frames();
     let from = frames.partition_point(|f| f.time < *shown.start());
-    &frames[from..]
+    let to = frames.partition_point(|f| f.time <= *shown.end());
+    &frames[from..to.max(from)]
 }
 
 /// At most [`POINTS`] points; of each bucket the least and the greatest, so that no peak is lost.
@@ -223,12 +234,21 @@ fn which_b(ui: &mut Ui, p: &Palette, session: &Session, height: f32, commands: &
     let map = planes.map();
     let sets: Vec<_> = points.iter().filter_map(|(_, x)| map.reach(*x).ok()).collect();
     let curves: Vec<_> = points.iter().map(|(name, x)| (*name, map.self_motion(*x, 96))).collect();
-    let common = (sets.len() == points.len()).then(|| crate::reactionless::BSet::overlap(&sets));
+    let common = (sets.len() == points.len()).then(|| crate::reactionless::BSet::overlap(&sets).near(now.b_reference));
     let mut bounds = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
     let lines: Vec<(&str, Vec<[f64; 2]>)> = curves
         .iter()
         .flat_map(|(name, branches)| branches.iter().map(move |branch| (*name, branch)))
-        .map(|(name, branch)| (name, branch.iter().map(|x| [x.b, map.lift(*x)[0]]).collect::<Vec<_>>()))
+        .map(|(name, branch)| {
+            // The whole turn nearest to the present b.
+            let middle = branch.get(branch.len() / 2).map_or(0.0, |x| x.b);
+            let lift = map.period() * ((now.b_reference - middle) / map.period()).round();
+            let point = |x: &PlanePoint| {
+                let x = PlanePoint { b: x.b + lift, ..*x };
+                [x.b, map.lift(x)[0]]
+            };
+            (name, branch.iter().map(point).collect::<Vec<_>>())
+        })
         .collect();
     for [b, q] in lines.iter().flat_map(|(_, l)| l) {
         bounds = [bounds[0].min(*b), bounds[1].max(*b), bounds[2].min(*q), bounds[3].max(*q)];
@@ -236,6 +256,7 @@ fn which_b(ui: &mut Ui, p: &Palette, session: &Session, height: f32, commands: &
     if lines.is_empty() {
         bounds = [0.0, map.period(), -1.0, 1.0];
     }
+    let empty = lines.is_empty();
     let b_now = now.b_reference;
     let [b_low, b_high] = [bounds[0].min(b_now) - 0.15, bounds[1].max(b_now) + 0.15];
     let room = 0.18 * (bounds[3] - bounds[2]).max(0.5);
@@ -259,10 +280,15 @@ fn which_b(ui: &mut Ui, p: &Palette, session: &Session, height: f32, commands: &
                     let text = RichText::new(name).font(plain(11.5));
                     let place = PlotPoint::new(end[0], end[1]);
                     let text = egui_plot::Text::new("name", place, text).color(colour(p.ink));
-                    plot.text(text.anchor(egui::Align2::LEFT_BOTTOM).allow_hover(false));
+                    plot.text(text.anchor(egui::Align2::RIGHT_BOTTOM).allow_hover(false));
                 }
                 let line = Line::new(name.to_owned(), PlotPoints::from(line)).width(1.8).color(colour(p.ink));
                 plot.line(line.style(LineStyle::Solid).allow_hover(false));
+            }
+            if empty {
+                let place = PlotPoint::new(0.5 * (b_low + b_high), 0.5 * (q_low + q_high));
+                let text = RichText::new("no b reaches it").font(plain(12.0));
+                plot.text(egui_plot::Text::new("none", place, text).color(colour(p.dim)).allow_hover(false));
             }
             plot.vline(VLine::new("b", b_now).color(colour(p.amber)).width(1.6).allow_hover(false));
             for (_, x) in &points {

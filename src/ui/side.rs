@@ -1,6 +1,8 @@
 //! The panel on the left: pose constant, limits, motion, plant, control, balance.
 
-use egui::{Align, DragValue, Frame, Layout, Margin, Panel, Response, RichText, ScrollArea, Slider, Ui};
+use egui::{
+    Align, DragValue, Frame, Layout, Margin, Panel, Response, RichText, ScrollArea, Slider, SliderClamping, Ui,
+};
 
 use super::theme::{bold, colour, plain};
 use super::top::name;
@@ -60,6 +62,8 @@ impl Row<'_> {
         let drag = DragValue::new(value)
             .speed(self.speed)
             .range(self.range.clone())
+            // What a file says stays as it is until somebody changes it.
+            .clamp_existing_to_range(false)
             .fixed_decimals(self.decimals)
             .update_while_editing(false);
         let response = ui.add(drag).on_hover_text(self.tip);
@@ -73,7 +77,9 @@ impl Row<'_> {
         ui.spacing_mut().slider_width = ui.available_width();
         // The knob's size follows the row's height.
         ui.spacing_mut().interact_size.y = 15.0;
-        let slider = ui.add(Slider::new(value, self.range.clone()).show_value(false).smart_aim(false));
+        let slider = ui.add(
+            Slider::new(value, self.range.clone()).clamping(SliderClamping::Edits).show_value(false).smart_aim(false),
+        );
         ui.spacing_mut().interact_size.y = 22.0;
         name(&slider, &format!("{} slider", self.label));
         [number, slider.on_hover_text(self.tip)]
@@ -103,12 +109,9 @@ fn pose_constant(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec
     let scenario = session.scenario();
     let period = session.run().planes().map_or(std::f64::consts::TAU, |p| p.map().period());
     ui.label(RichText::new("POSE CONSTANT").font(bold(11.0)).color(colour(p.dim)));
-    let mut b = match session.run().simulation().guide() {
-        crate::simulation::Guide::Follow(follower) if session.is_at_end() => follower.b_aim(),
-        _ => session.frame().b_reference,
-    };
-    let low = (b / period).floor().min(0.0) * period;
-    let high = low.max(0.0) + period.max(b);
+    let mut b = session.b_aim();
+    let low = (b / period).floor() * period;
+    let high = low + period;
     let row = Row {
         label: "b",
         unit: "rad",
@@ -122,7 +125,7 @@ fn pose_constant(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec
     if let Some(planes) = session.run().planes() {
         let at = |x: [f64; 2]| Vector::new(x[0], x[1]);
         let text = match planes.common([at(scenario.task.from), at(scenario.task.to)]) {
-            Some(common) => format!("A and B share {}", in_words(&common)),
+            Some(common) => format!("A and B share {}", in_words(&common.near(b))),
             None => "A and B share no b".into(),
         };
         note(ui, p, &text);
@@ -141,7 +144,14 @@ fn pose_constant(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             unit(ui, p, "rad");
             if shown {
-                let row = Row { label: "compare b", unit: "rad", tip: "Its pose constant", decimals: 3, speed: 0.005, range: -50.0..=50.0 };
+                let row = Row {
+                    label: "compare b",
+                    unit: "rad",
+                    tip: "Its pose constant",
+                    decimals: 3,
+                    speed: 0.005,
+                    range: -50.0..=50.0,
+                };
                 let response = row.number(ui, &mut other);
                 send(commands, &[response], || Edit::CompareB { b: Some(other) });
             }
@@ -204,11 +214,15 @@ fn plant(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command
     let responses = row.with_slider(ui, p, &mut mass);
     send(commands, &responses, || Edit::SetPayload { mass });
     let gravity = scenario.machine.gravity();
-    let mut down = -gravity.im;
+    // From zero, so that no gravity reads 0.00 and not −0.00.
+    let mut down = 0.0 - gravity.im;
     let tip = "Acceleration of gravity along −y; known to control";
     let row = Row { label: "gravity", unit: "m/s²", tip, decimals: 2, speed: 0.05, range: 0.0..=20.0 };
     let responses = row.with_slider(ui, p, &mut down);
-    send(commands, &responses, || Edit::SetMachine { key: "gravity".into(), value: format!("{},{}", gravity.re, -down) });
+    send(commands, &responses, || Edit::SetMachine {
+        key: "gravity".into(),
+        value: format!("{},{}", gravity.re, 0.0 - down),
+    });
 }
 
 fn control(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
@@ -216,9 +230,11 @@ fn control(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comma
     let gains = session.scenario().gains;
     let (mut kp, mut kd) = (gains.kp, gains.kd);
     let tip = "Computed torque: position gain, the same on all drives";
-    let first = Row { label: "Kp", unit: "s⁻²", tip, decimals: 0, speed: 1.0, range: 0.0..=10_000.0 }.show(ui, p, &mut kp);
+    let first =
+        Row { label: "Kp", unit: "s⁻²", tip, decimals: 0, speed: 1.0, range: 0.0..=10_000.0 }.show(ui, p, &mut kp);
     let tip = "Computed torque: velocity gain, the same on all drives";
-    let second = Row { label: "Kd", unit: "s⁻¹", tip, decimals: 0, speed: 0.2, range: 0.0..=1_000.0 }.show(ui, p, &mut kd);
+    let second =
+        Row { label: "Kd", unit: "s⁻¹", tip, decimals: 0, speed: 0.2, range: 0.0..=1_000.0 }.show(ui, p, &mut kd);
     send(commands, &[first, second], || Edit::SetGains { kp, kd });
 }
 
@@ -227,8 +243,20 @@ fn balance(ui: &mut Ui, session: &Session, p: &Palette) {
     let machine = &session.scenario().machine;
     let inertia = Inertia::of(machine);
     let rows = [
-        ("γ", "kg m", inertia.force_residual(), inertia.is_force_balanced(), "Force balance, Eq. (7): largest |g_k|; zero means the centre of mass never moves"),
-        ("coupling", "kg m²", inertia.invariance_residual(), inertia.is_invariant(), "Invariance, Eq. (8): largest |C_kl|; zero means a constant mass matrix"),
+        (
+            "γ",
+            "kg m",
+            inertia.force_residual(),
+            inertia.is_force_balanced(),
+            "Force balance, Eq. (7): largest |g_k|; zero means the centre of mass never moves",
+        ),
+        (
+            "coupling",
+            "kg m²",
+            inertia.invariance_residual(),
+            inertia.is_invariant(),
+            "Invariance, Eq. (8): largest |C_kl|; zero means a constant mass matrix",
+        ),
     ];
     for (label, in_unit, value, good, tip) in rows {
         let tone = if good { p.zero } else { p.reaction };

@@ -3,13 +3,13 @@
 use egui::{Align, Frame, Layout, Margin, Panel, RichText, Ui};
 
 use super::theme::{bold, colour, plain};
-use super::Look;
+use super::{Command, Look};
 use crate::frame::Reach;
 use crate::scene::stage::signed;
-use crate::session::Session;
+use crate::session::{Edit, Session};
 
 /// Draws it.
-pub fn show(ui: &mut Ui, session: &Session, look: &Look) {
+pub fn show(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Command>) {
     let p = look.palette();
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin::symmetric(16, 0));
     Panel::bottom("status").exact_size(30.0).resizable(false).frame(frame).show(ui, |ui| {
@@ -29,7 +29,10 @@ pub fn show(ui: &mut Ui, session: &Session, look: &Look) {
             // A narrow window keeps its room for what to do next.
             if ui.available_width() > 900.0 {
                 let momentum = signed(f.angular_momentum, 3);
-                facts += &format!("  ·  angular momentum {momentum} kg m²/s  ·  energy balance {:.0e} J", f.energy_balance.abs());
+                facts += &format!(
+                    "  ·  angular momentum {momentum} kg m²/s  ·  energy balance {:.0e} J",
+                    f.energy_balance.abs()
+                );
             }
             ui.label(RichText::new(facts).font(plain(12.0)).color(colour(p.dim)));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -39,7 +42,18 @@ pub fn show(ui: &mut Ui, session: &Session, look: &Look) {
                     (None, _) if session.is_full() => {
                         ("three minutes are full: save or record them, then start over".into(), p.reaction)
                     }
-                    (None, Reach::Outside { .. }) => ("the target is outside; slide b or drag it back".into(), p.ink),
+                    (None, Reach::Outside { mending_b: Some(b), .. }) => {
+                        let way_out = ui.button(format!("go to b = {b:.3} rad"));
+                        if way_out
+                            .on_hover_text("Another plane reaches the target; getting there costs a moment")
+                            .clicked()
+                        {
+                            commands.push(Command::Edit(Edit::SlideB { b }));
+                            commands.push(Command::EndGesture);
+                        }
+                        ("the target is outside".into(), p.ink)
+                    }
+                    (None, Reach::Outside { .. }) => ("the target is outside, whatever b".into(), p.ink),
                     (None, _) => ("drag the target or the b ring  ·  Space plays  ·  F1 keys".into(), p.dim),
                 };
                 ui.add(egui::Label::new(RichText::new(text).font(plain(12.0)).color(colour(tone))).truncate());

@@ -3,7 +3,7 @@
 use egui::{Align, ComboBox, Frame, Layout, Margin, Panel, Response, RichText, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use super::theme::{bold, colour, plain};
-use super::{Command, Desk, Look, Purpose};
+use super::{Command, Desk, Look, Purpose, case};
 use crate::machine;
 use crate::scenario::Scenario;
 use crate::scene::palette::Theme;
@@ -38,9 +38,8 @@ fn machines(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
         for machine in machine::builtins() {
             let chosen = machine.name() == current;
             if ui.selectable_label(chosen, machine.name()).on_hover_text(&machine.spec().summary).clicked() && !chosen {
-                let mut scenario = session.to_scenario();
-                scenario.machine = machine.clone();
-                scenario.edits.clear();
+                // Everything that was set stays; what was done to the other machine does not.
+                let scenario = Scenario { machine: machine.clone(), edits: Vec::new(), ..session.scenario().clone() };
                 commands.push(Command::Open(Box::new(scenario)));
             }
         }
@@ -57,7 +56,7 @@ fn scenarios(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
             let chosen = builtin.name == current.name;
             let label = format!("{}   {}", i + 1, builtin.title);
             if ui.selectable_label(chosen, label).clicked() {
-                commands.push(Command::Open(Box::new(Scenario { machine: current.machine.clone(), ..builtin })));
+                commands.extend(case(session, &builtin.name));
             }
         }
         ui.separator();
@@ -75,7 +74,7 @@ fn transport(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Com
     if icon(ui, look, "Start", "To the start (Home)", &start).clicked() {
         commands.push(Command::Seek(0.0));
     }
-    let (label, shape): (_, &[Icon]) = match session.is_moving() {
+    let (label, shape): (_, &[Icon]) = match session.is_playing() {
         true => ("Pause", &[Icon::Bar(-3.0), Icon::Bar(3.0)]),
         false => ("Play", &[Icon::Right(-4.0)]),
     };
@@ -160,7 +159,9 @@ fn icon(ui: &mut Ui, look: &Look, label: &str, tip: &str, parts: &[Icon]) -> Res
             Shape::convex_polygon(points, ink, Stroke::NONE)
         };
         ui.painter().add(match part {
-            Icon::Bar(x) => Shape::line_segment([pos2(c.x + x, c.y - 6.0), pos2(c.x + x, c.y + 6.0)], Stroke::new(2.5, ink)),
+            Icon::Bar(x) => {
+                Shape::line_segment([pos2(c.x + x, c.y - 6.0), pos2(c.x + x, c.y + 6.0)], Stroke::new(2.5, ink))
+            }
             Icon::Left(x) => triangle(c.x + x, c.x + x + 9.5),
             Icon::Right(x) => triangle(c.x + x + 9.5, c.x + x),
         });

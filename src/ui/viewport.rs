@@ -9,6 +9,7 @@ use super::top::name;
 use super::{Command, Look, set_b};
 use crate::render::{Renderer, View};
 use crate::scene::camera::Camera;
+use crate::scene::palette::faded;
 use crate::scene::stage::{Handle, Stage, ViewOptions};
 use crate::scene::{Anchor, Label, Scene};
 use crate::session::{Edit, Session};
@@ -25,7 +26,8 @@ pub fn show(ui: &mut Ui, session: &Session, stage: &Stage, look: &mut Look, comm
         let spot = Spot { rect, camera: *look.camera() };
         point_at(ui, &response, &spot, session, stage, look, commands);
         move_camera(ui, &response, rect, look);
-        let options = ViewOptions { theme: look.theme, flat: look.flat, hot: look.grabbed.or(look.hot), held: look.held };
+        let options =
+            ViewOptions { theme: look.theme, flat: look.flat, hot: look.grabbed.or(look.hot), held: look.held };
         let scene = Arc::new(stage.scene(frame, &options));
         paint(ui, rect, &scene, look.camera());
         words(ui, &Spot { rect, camera: *look.camera() }, &scene);
@@ -94,15 +96,18 @@ fn point_at(
     }
     if let Some(handle) = look.grabbed {
         ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
-        let moved = response.drag_delta() != Vec2::ZERO;
+        // The last movement may come together with the release.
+        let moved = response.drag_delta() != Vec2::ZERO || (look.dragged && response.drag_stopped());
         let at = response.interact_pointer_pos().and_then(|pos| spot.world(pos, z));
         match (handle, at) {
             (Handle::Target, Some([x, y])) if moved => {
                 look.held = Some([x, y]);
+                look.dragged = true;
                 commands.push(Command::Edit(Edit::DragTarget { x, y }));
             }
             (Handle::Ring, Some(at)) if moved => {
-                if let Some(b) = stage.ring_b(at, frame.b_reference) {
+                if let Some(b) = stage.ring_b(at, session.b_aim()) {
+                    look.dragged = true;
                     commands.push(Command::Edit(set_b(session, b)));
                 }
             }
@@ -112,14 +117,15 @@ fn point_at(
         if response.drag_stopped() || let_go {
             look.grabbed = None;
             commands.push(Command::EndGesture);
-            if let_go {
+            if let_go && look.dragged {
                 commands.push(Command::Undo);
             }
+            look.dragged = false;
         }
     } else if look.hot.is_some() {
         ui.ctx().set_cursor_icon(CursorIcon::Grab);
     }
-    if !matches!(frame.target.reach, crate::frame::Reach::Outside { .. }) && look.grabbed.is_none() {
+    if look.grabbed.is_none() {
         look.held = None;
     }
 }
@@ -231,6 +237,8 @@ fn words(ui: &Ui, spot: &Spot, scene: &Scene) {
             let over = (place.right() - room.right()).max(0.0) - (room.left() - place.left()).max(0.0);
             place = place.translate(vec2(-over, 0.0));
         }
+        // A faint plate keeps words legible over bars and curves.
+        painter.rect_filled(place.expand2(vec2(3.0, 0.0)), 3.0, colour(faded(scene.background, 0.55)));
         painter.galley(place.min, galley, colour(label.colour));
     }
 }

@@ -23,8 +23,8 @@ const LAYERS: &[&[&str]] = &[
     &["scene"],
     &["render"],
     &["files"],
-    &["headless"],
-    &["ui"],
+    // The desk records, and the pictures of a recording are drawn as the desk draws.
+    &["headless", "ui"],
     &["window"],
     // The program around the library.
     &["commands", "main"],
@@ -66,7 +66,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("indicatif", &["commands"]),
     ("csv", &["commands"]),
     ("serde_json", &["commands"]),
-    ("toml", &["machine", "scenario"]),
+    ("toml", &["machine", "scenario", "session"]),
 ];
 
 /// Parts of the standard library that reach outside, and the files that are edges.

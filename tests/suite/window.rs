@@ -18,9 +18,13 @@ type Desktop = Harness<'static, App>;
 fn desk(case: &str, theme: Theme) -> Option<Desktop> {
     drop(gpu()?);
     let desk = Desk::new(Scenario::builtin(case).expect("built in"), theme).expect("it starts");
-    Some(Harness::builder().with_size([1280.0, 800.0]).with_step_dt(0.02).wgpu().build_eframe(move |cc| {
-        App::new(cc, desk, Clock::Fixed(0.02)).expect("kittest draws with wgpu")
-    }))
+    Some(
+        Harness::builder()
+            .with_size([1280.0, 800.0])
+            .with_step_dt(0.02)
+            .wgpu()
+            .build_eframe(move |cc| App::new(cc, desk, Clock::Fixed(0.02)).expect("kittest draws with wgpu")),
+    )
 }
 
 fn session(h: &Desktop) -> &stillbase::session::Session {
@@ -60,7 +64,12 @@ fn playing_case_3_ends_at_b_without_a_reaction() {
     assert!((f.tip.re - 0.55).abs() < 1e-6 && (f.tip.im - 0.9).abs() < 1e-6, "{:?}", f.tip);
     assert!(f.peaks.is_reactionless());
     assert!(h.query_by_label("reactionless").is_some());
-    assert!(h.query_by_label("Play").is_some(), "at rest the button offers to play again");
+    assert!(h.query_by_label("Pause").is_some(), "time still runs: sliding b now would move the machine");
+    h.key_press(Key::Space);
+    h.run_steps(2);
+    h.key_press(Key::Space);
+    h.run_steps(3);
+    assert!(session(&h).frame().step < 200, "paused and played again, it starts over");
 }
 
 #[test]
@@ -92,9 +101,16 @@ fn a_target_outside_says_why_and_what_b_would_do() {
     assert!((nearest - f.tip).norm() < 1e-6, "the machine waits at the nearest point");
     let b = mending_b.expect("another plane reaches it");
     let planes = session(&h).run().planes().expect("three drives").clone();
-    assert!(!planes.map().poses(f.target.at, b + 1e-9).is_empty() || !planes.map().poses(f.target.at, b - 1e-9).is_empty());
+    assert!(
+        !planes.map().poses(f.target.at, b + 1e-9).is_empty() || !planes.map().poses(f.target.at, b - 1e-9).is_empty()
+    );
     assert!(h.query_by_label_contains("outside").is_some());
     h.snapshot("outside-light");
+    h.get_by_label_contains("go to b").click();
+    h.run_steps(150);
+    let f = session(&h).frame();
+    assert_eq!(f.target.reach, Reach::Inside, "the way out leads there");
+    assert!((f.b - b).abs() < 1e-6);
 }
 
 #[test]
@@ -168,4 +184,47 @@ fn case_1_in_motion_looks_as_it_should() {
     h.get_by_label("3D").click();
     h.run_steps(4);
     h.snapshot("case-1-dark-3d");
+}
+
+#[test]
+fn opening_an_odd_scenario_changes_nothing_in_it() {
+    let text = include_str!("../../assets/scenarios/case-3.toml")
+        .replace("time = 1.0", "time = 20.0")
+        .replace("[task]", "[control]\nkp = 20000.0\nkd = 1500.0\n\n[plant.payload]\nmass = 3.0\n\n[task]")
+        .replace("compare_b = 5.0", "compare_b = 77.0");
+    let scenario = Scenario::parse(&text, "odd", None).expect("odd but right");
+    if gpu().is_none() {
+        return;
+    }
+    let desk = Desk::new(scenario.clone(), Theme::Dark).expect("it starts");
+    let mut h: Desktop = Harness::builder()
+        .with_size([1280.0, 800.0])
+        .wgpu()
+        .build_eframe(move |cc| App::new(cc, desk, Clock::Fixed(0.02)).expect("kittest draws with wgpu"));
+    h.run_steps(5);
+    assert!(session(&h).script().is_empty(), "{:?}", session(&h).script());
+    assert_eq!(session(&h).to_scenario(), scenario);
+}
+
+#[test]
+fn escape_cancels_a_drag_and_takes_it_back() {
+    let Some(mut h) = desk("case-3", Theme::Dark) else { return };
+    h.step();
+    // The handle is where it is drawn: on the end effector, at A.
+    let (from, to) = (on_screen(&h, 0.5, 0.5), on_screen(&h, 0.6, 0.3));
+    h.hover_at(from);
+    h.step();
+    h.drag_at(from);
+    h.step();
+    for i in 1..=5 {
+        h.hover_at(from + (to - from) * (i as f32 / 5.0));
+        h.step();
+    }
+    assert!(matches!(session(&h).script().last().map(|e| &e.edit), Some(Edit::DragTarget { .. })));
+    h.key_press(Key::Escape);
+    h.step();
+    h.drop_at(to);
+    h.run_steps(100);
+    let f = session(&h).frame();
+    assert!((f.tip - nalgebra::Complex::new(0.6, 0.3)).norm() > 0.1, "{}", f.tip);
 }

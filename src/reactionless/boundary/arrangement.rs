@@ -87,8 +87,34 @@ impl<'a> Arrangement<'a> {
 
     /// The parts of all spans that bound the workspace.
     pub fn boundary(&self) -> Vec<Portion> {
-        let mut portions = Vec::new();
+        let chord = |p: &Portion| {
+            let span = &self.spans[p.span];
+            (self.on.at(span, p.to) - self.on.at(span, p.from)).norm()
+        };
+        let bounding = self.strands().into_iter().filter(|strand| {
+            // The longest parts first: the shortest may lie in a sliver too narrow to tell its sides apart.
+            let mut parts: Vec<(f64, &Portion)> = strand.iter().map(|p| (chord(p), p)).collect();
+            parts.sort_by(|a, b| b.0.total_cmp(&a.0));
+            let mut verdicts = parts.iter().take(5).map(|(_, portion)| self.bounds(portion));
+            let first = verdicts.next().unwrap_or(Err(false));
+            // Where curves coincide no sample is clean, and the first must do.
+            first.or_else(|unclean| verdicts.find_map(Result::ok).ok_or(unclean)).unwrap_or_else(|unclean| unclean)
+        });
+        self.without_doubles(bounding.flatten().collect())
+    }
+
+    /// All curves from crossing to crossing: the same number of poses along each side.
+    fn strands(&self) -> Vec<Vec<Portion>> {
+        let mut strands: Vec<Vec<Portion>> = Vec::new();
+        let mut open = false;
         for (i, mut cuts) in self.cuts().into_iter().enumerate() {
+            let span = &self.spans[i];
+            let free = |end: f64| !cuts.iter().any(|t| (t - end).abs() < 1e-7);
+            let follows = i > 0 && {
+                let last = &self.spans[i - 1];
+                last.ends[1] == span.ends[0] && last.curve == span.curve
+            };
+            let (joined, open_after) = (open && follows && free(0.0), free(1.0));
             cuts.push(0.0);
             cuts.push(1.0);
             cuts.sort_by(f64::total_cmp);
@@ -97,20 +123,23 @@ impl<'a> Arrangement<'a> {
             if let Some(last) = cuts.last_mut() {
                 *last = 1.0;
             }
-            for w in cuts.windows(2) {
+            for (n, w) in cuts.windows(2).enumerate() {
                 let portion = Portion { span: i, from: w[0], to: w[1] };
-                if self.bounds(&portion) {
-                    portions.push(portion);
+                match strands.last_mut() {
+                    Some(strand) if n == 0 && joined => strand.push(portion),
+                    _ => strands.push(vec![portion]),
                 }
             }
+            open = open_after;
         }
-        self.without_doubles(portions)
+        strands
     }
 
-    /// Whether poses reach the left side of a part, but not its right.
-    fn bounds(&self, portion: &Portion) -> bool {
+    /// Whether poses reach the left side of a part, but not its right; an error where another curve is too close to
+    /// be sure.
+    fn bounds(&self, portion: &Portion) -> Result<bool, bool> {
         let span = &self.spans[portion.span];
-        let mut verdict = false;
+        let mut unclean = false;
         // Close enough that even where curves touch, no other is in between; and if one is, elsewhere there is none.
         for reach in [1e-11, 1e-12, 1e-9] {
             for share in [0.5, 0.31, 0.77, 0.13, 0.91] {
@@ -121,13 +150,13 @@ impl<'a> Arrangement<'a> {
                     continue;
                 }
                 let (left, right) = (self.poses_at(jet.at + aside), self.poses_at(jet.at - aside));
-                verdict = left > 0 && right == 0;
+                unclean = left > 0 && right == 0;
                 if left - right == span.weight() {
-                    return verdict;
+                    return Ok(unclean);
                 }
             }
         }
-        verdict
+        Err(unclean)
     }
 
     /// Curves that coincide bound the workspace once.

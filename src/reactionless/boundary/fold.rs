@@ -4,6 +4,7 @@
 //! twice holds one span. No closed curve hides inside a cell: each passes through two of the points where all arms
 //! are in line, which are π apart.
 
+use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
 use super::span::{Curve, Span, Surface};
@@ -83,7 +84,27 @@ pub(super) fn spans(on: &Surface) -> Vec<Span> {
             cell.trace(on, DEPTH, &mut spans);
         }
     }
-    spans
+    in_order(&spans)
+}
+
+/// Each span before the one that begins where it ends.
+fn in_order(spans: &[Span]) -> Vec<Span> {
+    let key = |a: [f64; 2]| a.map(f64::to_bits);
+    let begins: HashMap<_, usize> = spans.iter().enumerate().map(|(i, s)| (key(s.ends[0]), i)).collect();
+    let ends: HashSet<_> = spans.iter().map(|s| key(s.ends[1])).collect();
+    let mut used = vec![false; spans.len()];
+    let mut ordered = Vec::with_capacity(spans.len());
+    // Open curves from their beginnings, then closed ones from anywhere.
+    let (inner, first): (Vec<_>, Vec<_>) = (0..spans.len()).partition(|&i| ends.contains(&key(spans[i].ends[0])));
+    for start in first.into_iter().chain(inner) {
+        let mut next = Some(start);
+        while let Some(i) = next.filter(|&i| !used[i]) {
+            used[i] = true;
+            ordered.push(spans[i]);
+            next = begins.get(&key(spans[i].ends[1])).copied();
+        }
+    }
+    ordered
 }
 
 impl Cell {
@@ -93,7 +114,7 @@ impl Cell {
 
     /// A curve that runs into the very corner of the limits was left out: what goes in must come out.
     fn mend_corner(&mut self, on: &Surface, range: [[f64; 2]; 2]) {
-        if self.count() % 2 == 0 {
+        if self.count().is_multiple_of(2) {
             return;
         }
         for (i, x) in [self.low[0], self.high[0]].into_iter().enumerate() {

@@ -4,9 +4,14 @@
 //! It is oriented so that more poses reach the points on its left than those on its right: one more for a limit, two
 //! more for a fold. So the spans together are a weighted cycle whose winding number about p counts the poses at p.
 
+use std::f64::consts::TAU;
+
 use super::determinant::{Determinant, INSET};
 use crate::planar::{Vector, cross, dot};
 use crate::reactionless::{Limit, PlaneMap};
+
+/// Wider limits are cut to so many turns.
+const TURNS: f64 = 5.0;
 
 /// A curve in (a_1, a_2) whose image can bound the workspace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,6 +62,8 @@ impl Surface {
         let det = Determinant::of(map);
         let mut limits = map.limits();
         for (i, limit) in limits.iter_mut().enumerate() {
+            let excess = 0.5 * (limit.max - limit.min - TURNS * TAU).max(0.0);
+            *limit = Limit { min: limit.min + excess, max: limit.max - excess };
             let [low, high] = [limit.min, limit.max].map(|x| if det.vanishes(i, x) { INSET } else { 0.0 });
             if limit.max - limit.min > 4.0 * INSET {
                 *limit = Limit { min: limit.min + low, max: limit.max - high };
@@ -251,8 +258,8 @@ impl Surface {
 
     fn gauss(&self, span: &Span, from: f64, to: f64) -> f64 {
         const NODES: [(f64, f64); 4] = [
-            (0.183_434_642_495_649_8, 0.362_683_783_378_362_0),
-            (0.525_532_409_916_329_0, 0.313_706_645_877_887_3),
+            (0.183_434_642_495_649_8, 0.362_683_783_378_362),
+            (0.525_532_409_916_329, 0.313_706_645_877_887_3),
             (0.796_666_477_413_626_7, 0.222_381_034_453_374_5),
             (0.960_289_856_497_536_3, 0.101_228_536_290_376_3),
         ];
