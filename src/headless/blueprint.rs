@@ -17,7 +17,7 @@ use rerun::{AsComponents, EntityPath, SeriesLines};
 
 use super::rehearsal::Rehearsal;
 use super::store::{Store, StoreError, TIME};
-use super::style::{colour, series_name, under};
+use super::style::{Both, colour, series_name, under};
 use crate::scene::Rgba;
 use crate::scene::linkage::mix;
 use crate::scene::palette::{Palette, Theme, faded, palette};
@@ -266,8 +266,7 @@ impl Layout<'_> {
             let base = view::ViewContents::blueprint_base_visualizer_path_for_entity(plot.id, path);
             let id = VisualizerInstructionId::new_deterministic(path, i);
             let instruction = under(&base, &id.0.to_string());
-            self.store.layout(&instruction, &view::VisualizerInstruction::new("SeriesLines"))?;
-            self.store.layout(&instruction, &style)?;
+            self.store.layout(&instruction, &Both(&view::VisualizerInstruction::new("SeriesLines"), &style))?;
             self.store.layout(&base, &view::ActiveVisualizers::new([id]))?;
         }
         Ok(plot)

@@ -1,10 +1,10 @@
 //! The machine: meshes that never change while it moves, and where they are.
 
-use rerun::{AsComponents, EntityPath, Points3D, Quaternion, SerializedComponentBatch, Transform3D};
+use rerun::{EntityPath, Points3D, Quaternion, Transform3D};
 
 use super::rows::Track;
 use super::store::{Clock, Instant, Store, StoreError};
-use super::style::{dots, named, point, solid, turned, under};
+use super::style::{Both, dots, named, point, solid, turned, under};
 use crate::frame::Frame;
 use crate::machine::Machine;
 use crate::planar::unit;
@@ -28,15 +28,6 @@ struct Link {
     path: EntityPath,
     places: Vec<[f32; 3]>,
     turns: Vec<Quaternion>,
-}
-
-/// Two archetypes in one row.
-struct Both<'a>(&'a dyn AsComponents, &'a dyn AsComponents);
-
-impl AsComponents for Both<'_> {
-    fn as_serialized_batches(&self) -> Vec<SerializedComponentBatch> {
-        [self.0, self.1].map(|a| a.as_serialized_batches()).concat()
-    }
 }
 
 impl Body {

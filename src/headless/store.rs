@@ -121,7 +121,7 @@ enum Message {
 }
 
 /// Messages that may wait for the writer.
-const QUEUE: usize = 256;
+const QUEUE: usize = 64;
 
 /// Rows of a chunk have identifiers that count up from the chunk's: chunks keep this far apart.
 const APART: u128 = 1 << 64;

@@ -1,7 +1,9 @@
 //! How entities are named and how they look: the palette's colours with their meanings, as the viewer wants them.
 
 use rerun::external::re_log_types::EntityPathPart;
-use rerun::{Color, EntityPath, LineStrips3D, Mesh3D, Points3D, Quaternion, Radius};
+use rerun::{
+    AsComponents, Color, EntityPath, LineStrips3D, Mesh3D, Points3D, Quaternion, Radius, SerializedComponentBatch,
+};
 
 use crate::planar::Vector;
 use crate::scene::linkage::mix;
@@ -86,4 +88,13 @@ pub fn lines(strips: impl IntoIterator<Item = Vec<[f32; 3]>>, width: f32, rgba: 
 /// How dots look whose places come later; their radius in points on the screen.
 pub fn dots(radius: f32, rgba: Rgba) -> Points3D {
     Points3D::update_fields().with_radii([Radius::new_ui_points(radius)]).with_colors([colour(rgba)])
+}
+
+/// Two archetypes in one row.
+pub struct Both<'a>(pub &'a dyn AsComponents, pub &'a dyn AsComponents);
+
+impl AsComponents for Both<'_> {
+    fn as_serialized_batches(&self) -> Vec<SerializedComponentBatch> {
+        [self.0, self.1].map(|a| a.as_serialized_batches()).concat()
+    }
 }
