@@ -1,12 +1,16 @@
 //! Plans: a path and a time law make the reference that control follows.
 
+pub mod curve;
 pub mod follow;
 pub mod law;
 pub mod path;
+pub mod table;
 
+pub use curve::CurvePoint;
 pub use follow::Follower;
 pub use law::TimeLaw;
 pub use path::{Path, PathError};
+pub use table::Table;
 
 use crate::planar::{DriveAngles, PerDrive};
 

@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use super::curve::CurvePoint;
+use super::table::Table;
 use crate::kinematics::{acceleration, closest_turn, end_effector, minimum_norm, two_link_rates, velocity};
 use crate::machine::Chain;
 use crate::planar::{DriveAngles, PerDrive, Vector, unit};
@@ -29,8 +31,8 @@ pub enum Path {
         /// At s = 1.
         to: DriveAngles,
     },
-    /// The end effector on a straight line, minimum-norm rates dq/ds = J⁺ dp/ds (case 1).
-    TipLine(TipLine),
+    /// By its nodes: integrated, or followed on a plane.
+    Table(Table),
     /// The end effector where a joint line has it, drive 1 on a course of its own (case 2).
     SameTip(SameTip),
 }
@@ -63,7 +65,7 @@ impl Path {
                 PathPoint { q: *q, first: still, second: still }
             }
             Self::JointLine { from, to } => joint_line(from, to, s),
-            Self::TipLine(line) => line.at(s),
+            Self::Table(table) => table.at(s),
             Self::SameTip(path) => path.at(s),
         }
     }
@@ -76,76 +78,63 @@ fn joint_line(from: &DriveAngles, to: &DriveAngles, s: f64) -> PathPoint {
     PathPoint { q: DriveAngles(from.0.plus(s, &step)), first: step, second: PerDrive::zeros(n) }
 }
 
-/// Nodes of a minimum-norm line, spaced evenly in s and joined by quintics that keep q, q′ and q″.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TipLine {
-    nodes: Vec<PathPoint>,
-}
-
-/// Spaces between nodes; the quintic's error falls with the sixth power and is below 1e-13 rad here.
+/// Spaces between the nodes of an integrated path; the quintic's error is below 1e-13 rad here.
 const SPACES: usize = 256;
-/// How far off its line the integration may end up, as a part of the arm; 1e-13 where the Jacobian is regular.
+/// How far off its curve the integration may end up, as a part of the arm; 1e-13 where the Jacobian is regular.
 const OFF_LINE: f64 = 1e-8;
 
-impl TipLine {
-    /// Integrates q′ = J⁺ (to − from) along the line with the fourth-order rule, from a pose at its start.
-    ///
-    /// # Errors
-    /// If the Jacobian loses rank on the way.
-    pub fn new(tip: &Chain, start: DriveAngles, to: Vector) -> Result<Self, PathError> {
-        let from = end_effector(tip, &start.units());
-        let way = to - from;
-        let off_line = OFF_LINE * tip.iter().map(|c| c.abs()).sum::<f64>();
-        let n = start.len();
-        let slope = |q: &DriveAngles, s: f64| {
-            minimum_norm(tip, &q.units(), n, way, Vector::default()).ok_or(PathError::Singular { s })
-        };
-        // Each space takes several steps, so that the integration is as exact as the quintics.
-        const STEPS: usize = 4;
-        let h = 1.0 / (SPACES * STEPS) as f64;
-        let mut q = start;
-        let mut nodes = Vec::with_capacity(SPACES + 1);
-        for i in 0..=SPACES {
-            let s = i as f64 / SPACES as f64;
-            // A step may jump over the place where the rank is lost, but not without leaving the line.
-            if (end_effector(tip, &q.units()) - (from + s * way)).norm() > off_line {
-                return Err(PathError::Singular { s });
-            }
-            let (first, second) = slope(&q, s)?;
-            nodes.push(PathPoint { q, first, second });
-            if i == SPACES {
-                break;
-            }
-            for _ in 0..STEPS {
-                let (k1, _) = slope(&q, s)?;
-                let (k2, _) = slope(&DriveAngles(q.0.plus(h / 2.0, &k1)), s)?;
-                let (k3, _) = slope(&DriveAngles(q.0.plus(h / 2.0, &k2)), s)?;
-                let (k4, _) = slope(&DriveAngles(q.0.plus(h, &k3)), s)?;
-                q = DriveAngles(q.0.plus(h / 6.0, &k1).plus(h / 3.0, &k2).plus(h / 3.0, &k3).plus(h / 6.0, &k4));
-            }
+/// Follows a curve of the end effector with minimum-norm rates, q′ = J⁺ p′, by the fourth-order rule from a pose at its
+/// start.
+///
+/// # Errors
+/// If the Jacobian loses rank on the way.
+pub fn minimum_norm_path(
+    tip: &Chain,
+    start: DriveAngles,
+    curve: impl Fn(f64) -> CurvePoint,
+) -> Result<Table, PathError> {
+    let off_line = OFF_LINE * tip.iter().map(|c| c.abs()).sum::<f64>();
+    let n = start.len();
+    let slope = |q: &DriveAngles, s: f64| {
+        let way = curve(s);
+        minimum_norm(tip, &q.units(), n, way.first, way.second).ok_or(PathError::Singular { s })
+    };
+    // Each space takes several steps, so that the integration is as exact as the quintics.
+    const STEPS: usize = 4;
+    let h = 1.0 / (SPACES * STEPS) as f64;
+    let mut q = start;
+    let mut nodes = Vec::with_capacity(SPACES + 1);
+    for i in 0..=SPACES {
+        let s = i as f64 / SPACES as f64;
+        // A step may jump over the place where the rank is lost, but not without leaving the curve.
+        if (end_effector(tip, &q.units()) - curve(s).p).norm() > off_line {
+            return Err(PathError::Singular { s });
         }
-        Ok(Self { nodes })
+        let (first, second) = slope(&q, s)?;
+        nodes.push(PathPoint { q, first, second });
+        if i == SPACES {
+            break;
+        }
+        for j in 0..STEPS {
+            let s = (i * STEPS + j) as f64 * h;
+            let (k1, _) = slope(&q, s)?;
+            let (k2, _) = slope(&DriveAngles(q.0.plus(h / 2.0, &k1)), s + h / 2.0)?;
+            let (k3, _) = slope(&DriveAngles(q.0.plus(h / 2.0, &k2)), s + h / 2.0)?;
+            let (k4, _) = slope(&DriveAngles(q.0.plus(h, &k3)), s + h)?;
+            q = DriveAngles(q.0.plus(h / 6.0, &k1).plus(h / 3.0, &k2).plus(h / 3.0, &k3).plus(h / 6.0, &k4));
+        }
     }
+    Table::even(nodes).ok_or(PathError::Singular { s: 0.0 })
+}
 
-    fn at(&self, s: f64) -> PathPoint {
-        let x = s * SPACES as f64;
-        let i = (x as usize).min(SPACES - 1);
-        let (a, b, u) = (&self.nodes[i], &self.nodes[i + 1], x - i as f64);
-        let h = 1.0 / SPACES as f64;
-        let n = a.q.len();
-        let mut p = PathPoint { q: a.q, first: a.first, second: a.second };
-        for k in 0..n {
-            // Quintic through (q, q′, q″) at both ends, in u.
-            let (c0, c1, c2) = (a.q[k], a.first[k] * h, a.second[k] * h * h / 2.0);
-            let (v, v1, v2) = (b.q[k] - c0 - c1 - c2, b.first[k] * h - c1 - 2.0 * c2, b.second[k] * h * h - 2.0 * c2);
-            let (c3, c4, c5) =
-                (10.0 * v - 4.0 * v1 + v2 / 2.0, -15.0 * v + 7.0 * v1 - v2, 6.0 * v - 3.0 * v1 + v2 / 2.0);
-            p.q.0[k] = c0 + u * (c1 + u * (c2 + u * (c3 + u * (c4 + u * c5))));
-            p.first[k] = (c1 + u * (2.0 * c2 + u * (3.0 * c3 + u * (4.0 * c4 + u * 5.0 * c5)))) / h;
-            p.second[k] = (2.0 * c2 + u * (6.0 * c3 + u * (12.0 * c4 + u * 20.0 * c5))) / (h * h);
-        }
-        p
-    }
+/// The straight line of the end effector from where a pose has it, with minimum-norm rates (case 1).
+///
+/// # Errors
+/// If the Jacobian loses rank on the way.
+pub fn tip_line(tip: &Chain, start: DriveAngles, to: Vector) -> Result<Table, PathError> {
+    let from = end_effector(tip, &start.units());
+    let way = to - from;
+    minimum_norm_path(tip, start, |s| CurvePoint { p: from + s * way, first: way, second: Vector::default() })
 }
 
 /// The end effector of a joint line, reached with drive 1 elsewhere and drives 2 and 3 following on one elbow.

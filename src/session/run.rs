@@ -8,7 +8,7 @@ use super::{Edit, TimedEdit};
 use crate::frame::Frame;
 use crate::machine::MachineError;
 use crate::plan::follow::Bounds;
-use crate::plan::path::{SameTip, TipLine};
+use crate::plan::path::{SameTip, tip_line};
 use crate::plan::{Follower, Motion, Path, PathError};
 use crate::planar::{DriveAngles, Vector};
 use crate::pose_constant::{PlaneError, Planes, Unreachable};
@@ -326,7 +326,7 @@ fn plan(scenario: &Scenario, planes: &Planes) -> Result<Motion, Refusal> {
         TaskKind::Reactionless => Path::JointLine { from, to },
         TaskKind::TipLine => {
             let end = crate::kinematics::end_effector(tip, &to.units());
-            Path::TipLine(TipLine::new(tip, from, end)?)
+            Path::Table(tip_line(tip, from, end)?)
         }
         TaskKind::SameTip => Path::SameTip(SameTip::new(tip, from, to, task.first_drive_to.unwrap_or(from[0]))?),
     };

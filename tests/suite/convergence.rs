@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use stillbase::control::Gains;
 use stillbase::kinematics::{end_effector, minimum_norm};
 use stillbase::machine::{Machine, builtin};
-use stillbase::plan::path::{PathPoint, SameTip, TipLine};
+use stillbase::plan::path::{PathPoint, SameTip, tip_line};
 use stillbase::plan::{Motion, Path, PathError, TimeLaw};
 use stillbase::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::simulation::{Guide, Simulation};
@@ -29,12 +29,12 @@ fn line() -> Path {
 
 /// Every kind of path, from q_A.
 fn paths() -> [(&'static str, Path); 4] {
-    let way = TipLine::new(tip(), Q_A.into(), Vector::new(0.55, 0.90)).expect("regular");
+    let way = tip_line(tip(), Q_A.into(), Vector::new(0.55, 0.90)).expect("regular");
     let same = SameTip::new(tip(), Q_A.into(), Q_B.into(), 1.45).expect("in reach");
     [
         ("rest", Path::Rest(Q_A.into())),
         ("joint line", line()),
-        ("tip line", Path::TipLine(way)),
+        ("tip line", Path::Table(way)),
         ("same tip", Path::SameTip(same)),
     ]
 }
@@ -226,15 +226,15 @@ fn impossible_paths_are_refused() {
     // The arm reaches 1.26 m; on the way to 2 m it is stretched where the line leaves that circle.
     for to in [Vector::new(1.4, 1.4), Vector::new(-2.0, 0.1), Vector::new(0.0, 2.0)] {
         let from = end_effector(tip(), &DriveAngles::from(Q_A).units());
-        let Err(PathError::Singular { s }) = TipLine::new(tip(), Q_A.into(), to) else { panic!("{to} is too far") };
+        let Err(PathError::Singular { s }) = tip_line(tip(), Q_A.into(), to) else { panic!("{to} is too far") };
         let radius = (from + s * (to - from)).norm();
         assert!((radius - 1.26).abs() < 0.03, "to {to}: stretched at {radius} m, s = {s}");
     }
     // A line of no length, or of next to none, is a line.
     for way in [0.0, 1e-15] {
         let from = end_effector(tip(), &DriveAngles::from(Q_A).units());
-        let line = TipLine::new(tip(), Q_A.into(), from + way).expect("regular");
-        assert!(distance(&Path::TipLine(line).at(1.0).q, &Q_A) < 1e-14);
+        let line = tip_line(tip(), Q_A.into(), from + way).expect("regular");
+        assert!(distance(&Path::Table(line).at(1.0).q, &Q_A) < 1e-14);
     }
     let error = SameTip::new(tip(), Q_A.into(), Q_B.into(), 5.0).expect_err("too far round").to_string();
     assert!(error.contains("links 5 and 9 cannot reach the end effector's path at s = 0."), "{error}");
