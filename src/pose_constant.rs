@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use crate::machine::{Inertia, Machine};
 use crate::planar::Vector;
-use crate::reactionless::{AngleDefinition, BSet, Boundary, Limit, NoReach, NotAPlaneMap, PlaneMap, PlanePoint};
+use crate::reactionless::{AngleDefinition, BSet, Boundary, Limit, NoReach, NotAPlaneMap, PlaneMap, PlanePoint, Poses};
 
 /// The reactionless planes of a machine, with the boundary of their workspace.
 #[derive(Clone, Debug)]
@@ -70,14 +70,50 @@ pub enum Unreachable {
         /// The b that would do, in words.
         would_do: String,
     },
-    /// Each point on some plane, but no plane serves both.
-    #[error("({x:.3}, {y:.3}) m shares no b with the other point: no reactionless path joins them")]
+    /// Each point on some plane, but no plane serves all.
+    #[error("{}", no_common_words(*x, *y, *other, mend))]
     NoCommonPlane {
         /// m.
         x: f64,
         /// m.
         y: f64,
+        /// Number of the first point that shares no b with this one; none if all do in pairs, but not together.
+        other: Option<usize>,
+        /// The least move of one point that would mend it.
+        mend: Option<Mend>,
     },
+}
+
+/// A move of one point after which all points have a b in common.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mend {
+    /// Number of the point.
+    pub point: usize,
+    /// Where it would go, m.
+    pub to: Vector,
+    /// How far, m.
+    pub distance: f64,
+    /// The b that then serves all, rad.
+    pub b: f64,
+}
+
+fn no_common_words(x: f64, y: f64, other: Option<usize>, mend: &Option<Mend>) -> String {
+    let with = match other {
+        Some(i) => format!("shares no b with point {}", i + 1),
+        None => "shares a b with each other point, but not with all at once".into(),
+    };
+    let remedy = match mend {
+        Some(m) => format!(
+            "moving point {} by {:.3} m to ({:.3}, {:.3}) m would do, at b = {:.4} rad",
+            m.point + 1,
+            m.distance,
+            m.to.re,
+            m.to.im,
+            m.b
+        ),
+        None => "want points nearer to each other".into(),
+    };
+    format!("({x:.3}, {y:.3}) m {with}: no reactionless path joins them; {remedy}")
 }
 
 impl Planes {
@@ -122,47 +158,112 @@ impl Planes {
         (self.map.clamp(nearest.a), Reach::Outside { nearest: nearest.at, mending_b })
     }
 
-    /// One pose for each of two points on the plane b, on one sheet.
+    /// One pose for each of some points on the plane b: all on one sheet if possible, else each near the one before.
     ///
     /// # Errors
-    /// Which point (0 or 1) cannot be reached, and what b would do.
-    pub fn serve(&self, points: [Vector; 2], b: f64) -> Result<[PlanePoint; 2], (usize, Unreachable)> {
-        let [first, second] = points.map(|p| self.map.poses(p, b));
-        for x in first.iter() {
-            let sheet = self.map.det(x.a);
-            if let Some(y) = second.iter().find(|y| self.map.det(y.a) * sheet >= 0.0) {
-                return Ok([*x, *y]);
-            }
+    /// Which point (counted from 0) cannot be reached, and what b would do.
+    pub fn serve(&self, points: &[Vector], b: f64) -> Result<Vec<PlanePoint>, (usize, Unreachable)> {
+        let poses: Vec<Poses> = points.iter().map(|p| self.map.poses(*p, b)).collect();
+        if let Some(i) = poses.iter().position(|p| p.is_empty()) {
+            return Err((i, self.why_not(points, i, b)));
         }
-        let i = usize::from(!first.is_empty());
-        Err((i, self.why_not(points, i, b)))
+        let Some((first, others)) = poses.split_first() else { return Ok(Vec::new()) };
+        let far = |x: &PlanePoint, y: &PlanePoint| (x.a[0] - y.a[0]).hypot(x.a[1] - y.a[1]);
+        // The nearest pose to the last one, of those that a filter lets pass.
+        let chain = |start: &PlanePoint, one_sheet: bool| {
+            let sheet = self.map.det(start.a);
+            let mut served = vec![*start];
+            for poses in others {
+                let last = served[served.len() - 1];
+                let fit = poses.iter().filter(|y| !one_sheet || self.map.det(y.a) * sheet >= 0.0);
+                served.push(*fit.min_by(|x, y| far(x, &last).total_cmp(&far(y, &last)))?);
+            }
+            Some(served)
+        };
+        let on_one_sheet = first.iter().find_map(|start| chain(start, true));
+        Ok(on_one_sheet.or_else(|| first.iter().find_map(|start| chain(start, false))).unwrap_or_default())
     }
 
-    /// The poses of two points at the b nearest to the given one that serves both, turned rigidly to that b: the
-    /// points move along with the workspace.
-    pub fn serve_turned(&self, points: [Vector; 2], b: f64) -> Option<[PlanePoint; 2]> {
+    /// The poses of points at the b nearest to the given one that serves all, turned rigidly to that b: the points move
+    /// along with the workspace.
+    pub fn serve_turned(&self, points: &[Vector], b: f64) -> Option<Vec<PlanePoint>> {
         let common = self.common(points)?;
         // A hair inside, so that rounding does not put the pose outside again.
         let nearest = common.nearest(b)?;
         let served = self.serve(points, nearest).or_else(|_| self.serve(points, inwards(&common, nearest))).ok()?;
-        Some(served.map(|x| PlanePoint { a: x.a, b }))
+        Some(served.into_iter().map(|x| PlanePoint { a: x.a, b }).collect())
     }
 
-    /// The b that serve all points.
-    pub fn common(&self, points: [Vector; 2]) -> Option<BSet> {
-        let [a, b] = points.map(|p| self.map.reach(p).ok());
-        let common = BSet::overlap(&[a?, b?]);
+    /// The b that serve all points; `None` if none does.
+    pub fn common(&self, points: &[Vector]) -> Option<BSet> {
+        let sets: Option<Vec<BSet>> = points.iter().map(|p| self.map.reach(*p).ok()).collect();
+        let common = BSet::overlap(&sets?);
         (!common.intervals.is_empty()).then_some(common)
     }
 
-    fn why_not(&self, points: [Vector; 2], i: usize, b: f64) -> Unreachable {
+    /// Why points have no b in common: the first pair that has none (counted from 0), or none if each pair has one, and
+    /// the least move of one point that would mend it. `None` if some b serves all, or a point is out of every reach.
+    pub fn no_common(&self, points: &[Vector]) -> Option<(Option<[usize; 2]>, Option<Mend>)> {
+        let sets: Vec<BSet> = points.iter().map(|p| self.map.reach(*p).ok()).collect::<Option<_>>()?;
+        if !BSet::overlap(&sets).is_empty() {
+            return None;
+        }
+        let apart = |&[i, j]: &[usize; 2]| BSet::overlap(&[sets[i].clone(), sets[j].clone()]).is_empty();
+        let pair = (0..points.len()).flat_map(|i| (i + 1..points.len()).map(move |j| [i, j])).find(apart);
+        let others = |i: usize| {
+            let rest: Vec<BSet> = sets.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, s)| s.clone()).collect();
+            BSet::overlap(&rest)
+        };
+        let mends = (0..points.len()).filter_map(|i| self.mend(points[i], i, &others(i)));
+        Some((pair, mends.min_by(|x, y| x.distance.total_cmp(&y.distance))))
+    }
+
+    /// The nearest point to p that some b of a set reaches.
+    fn mend(&self, p: Vector, point: usize, others: &BSet) -> Option<Mend> {
+        const TRIES: usize = 48;
+        let at = |b: f64| self.boundary.nearest(p, b, p);
+        let gap = |b: f64| at(b).distance;
+        let mut best: Option<(f64, f64)> = None;
+        for [low, high] in &others.intervals {
+            let step = (high - low) / TRIES as f64;
+            let tries = (0..=TRIES).map(|i| low + step * i as f64);
+            let Some(b) = tries.min_by(|x, y| gap(*x).total_cmp(&gap(*y))) else { continue };
+            let (mut from, mut to) = ((b - step).max(*low), (b + step).min(*high));
+            // Golden section.
+            for _ in 0..40 {
+                let (s, t) = (from + 0.381_966 * (to - from), from + 0.618_034 * (to - from));
+                if gap(s) < gap(t) { to = t } else { from = s }
+            }
+            let middle = 0.5 * (from + to);
+            let b = [b, middle, from, to].into_iter().min_by(|x, y| gap(*x).total_cmp(&gap(*y))).unwrap_or(b);
+            if best.is_none_or(|(least, _)| gap(b) < least) {
+                best = Some((gap(b), b));
+            }
+        }
+        let (_, b) = best?;
+        let nearest = at(b);
+        Some(Mend { point, to: nearest.at, distance: nearest.distance, b })
+    }
+
+    fn why_not(&self, points: &[Vector], i: usize, b: f64) -> Unreachable {
         let (x, y) = (points[i].re, points[i].im);
         if let Err(reason) = self.map.reach(points[i]) {
             return Unreachable::Anywhere { x, y, reason };
         }
-        match self.common(points) {
-            Some(common) => Unreachable::OnThisPlane { x, y, b, would_do: in_words(&common) },
-            None => Unreachable::NoCommonPlane { x, y },
+        match (self.common(points), self.no_common(points)) {
+            (Some(common), _) => Unreachable::OnThisPlane { x, y, b, would_do: in_words(&common) },
+            (None, Some((pair, mend))) => match pair {
+                Some([first, second]) => {
+                    let p = points[second];
+                    Unreachable::NoCommonPlane { x: p.re, y: p.im, other: Some(first), mend }
+                }
+                None => Unreachable::NoCommonPlane { x, y, other: None, mend },
+            },
+            // Another point is out of every reach.
+            (None, None) => {
+                let own = self.map.reach(points[i]).map(|set| in_words(&set)).unwrap_or_default();
+                Unreachable::OnThisPlane { x, y, b, would_do: own }
+            }
         }
     }
 }

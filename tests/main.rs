@@ -11,6 +11,8 @@ mod cases;
 mod cli;
 #[path = "suite/convergence.rs"]
 mod convergence;
+#[path = "suite/curve.rs"]
+mod curve;
 #[path = "suite/dynamics.rs"]
 mod dynamics;
 #[cfg(feature = "render")]
@@ -45,6 +47,8 @@ mod signals;
 mod sincos;
 #[path = "suite/support.rs"]
 mod support;
+#[path = "suite/trace.rs"]
+mod trace;
 #[cfg(feature = "window")]
 #[path = "suite/window.rs"]
 mod window;

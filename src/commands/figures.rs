@@ -37,8 +37,8 @@ impl Figures {
     pub fn run(&self) -> Result<(), Failure> {
         for (name, scenario, theme, flat, time) in FIGURES {
             let scenario = Scenario::find(scenario)?;
-            let task_time = scenario.task.time;
             let mut desk = Desk::new(scenario, theme)?;
+            let task_time = desk.session().length();
             for command in [Command::Seek(task_time), Command::Seek(time), Command::Flat(flat)] {
                 desk.carry_out(command);
             }

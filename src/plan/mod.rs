@@ -5,12 +5,14 @@ pub mod follow;
 pub mod law;
 pub mod path;
 pub mod table;
+pub mod trace;
 
-pub use curve::CurvePoint;
+pub use curve::{Curve, CurveError, CurvePoint};
 pub use follow::Follower;
 pub use law::TimeLaw;
 pub use path::{Path, PathError};
 pub use table::Table;
+pub use trace::{Blocked, Rule, Stop};
 
 use crate::planar::{DriveAngles, PerDrive};
 

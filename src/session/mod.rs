@@ -5,12 +5,14 @@
 //! state: the run is made again.
 
 mod edit;
+mod planning;
 mod run;
 
 pub use edit::{Edit, TimedEdit};
+pub use planning::{Plan, curves};
 pub use run::{Refusal, Run, replay};
 
-use run::{in_order, last_step};
+use run::in_order;
 
 use crate::frame::Frame;
 use crate::scenario::{MAX_TIME, Scenario};
@@ -72,7 +74,7 @@ impl Session {
         let mut ground = scenario;
         let mut script = in_order(&std::mem::take(&mut ground.edits));
         let runs = is_led(&script) || script.iter().any(|e| e.step > 0);
-        let end = if runs { last_step(&ground).min(MAX_FRAMES as u64 - 1) } else { 0 };
+        let end = if runs { Run::new(&ground)?.last_step().min(MAX_FRAMES as u64 - 1) } else { 0 };
         script.retain(|e| e.step <= end);
         let mut session = Self::of(Document { scenario: ground, script, end })?;
         session.cursor = 0;
@@ -148,7 +150,7 @@ impl Session {
     /// Length of the time line, s: the planned motion, or as far as the run has got.
     pub fn length(&self) -> f64 {
         let done = self.run.simulation().time();
-        if self.is_live() { done } else { done.max(self.scenario().task.time) }
+        if self.is_live() { done } else { done.max(self.run.planned_time()) }
     }
 
     /// The pose constant that the machine is sent to, rad; on display, if it was scrubbed back, what it was then.
@@ -181,7 +183,7 @@ impl Session {
     pub fn seek(&mut self, time: f64) {
         let step = (time / self.scenario().step).round().max(0.0) as usize;
         if !self.is_live() {
-            let planned = (self.scenario().task.time / self.scenario().step).round() as usize;
+            let planned = (self.run.planned_time() / self.scenario().step - 1e-6).ceil() as usize;
             while self.frames.len() <= step.min(planned) && !self.is_full() {
                 self.advance_run();
             }
@@ -245,7 +247,7 @@ impl Session {
             Edit::DragTarget { .. } | Edit::SlideB { .. } => true,
             Edit::PoseB { .. } => self.is_live(),
             // The path that the machine is on cannot change its time.
-            Edit::SetTime { .. } => false,
+            Edit::SetTime { .. } | Edit::SetTask { .. } => false,
             // A slider that set the machine in motion goes on as it began.
             _ => self.gesture_now.unwrap_or_else(|| self.is_running()),
         }
@@ -441,7 +443,7 @@ impl Session {
         scenario.edits.clone_from(&self.document.script);
         scenario.duration = match self.document.end {
             0 => self.scenario().duration,
-            end => end as f64 * scenario.step,
+            end => Some(end as f64 * scenario.step),
         };
         scenario
     }

@@ -8,7 +8,6 @@ use super::theme::{bold, colour, plain};
 use super::top::name;
 use super::{Command, Look, set_b};
 use crate::machine::Inertia;
-use crate::planar::Vector;
 use crate::pose_constant::in_words;
 use crate::scene::palette::Palette;
 use crate::session::{Edit, Session};
@@ -123,10 +122,11 @@ fn pose_constant(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec
     let responses = row.with_slider(ui, p, &mut b);
     send(commands, &responses, || set_b(session, b));
     if let Some(planes) = session.run().planes() {
-        let at = |x: [f64; 2]| Vector::new(x[0], x[1]);
-        let text = match planes.common([at(scenario.task.from), at(scenario.task.to)]) {
-            Some(common) => format!("A and B share {}", in_words(&common.near(b))),
-            None => "A and B share no b".into(),
+        let points = scenario.task.points();
+        let all = if points.len() == 2 { "A and B".into() } else { format!("all {} points", points.len()) };
+        let text = match planes.common(&points) {
+            Some(common) => format!("{all} share {}", in_words(&common.near(b))),
+            None => format!("{all} share no b"),
         };
         note(ui, p, &text);
         let inertia = Inertia::of(&scenario.machine);

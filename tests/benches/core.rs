@@ -75,7 +75,7 @@ fn frame(bencher: Bencher) {
 /// A minute at 1 kHz, every frame looked at.
 #[divan::bench]
 fn a_minute_at_1_khz() -> f64 {
-    let scenario = Scenario { duration: 60.0, ..Scenario::builtin("case-3").expect("built in") };
+    let scenario = Scenario { duration: Some(60.0), ..Scenario::builtin("case-3").expect("built in") };
     let mut sum = 0.0;
     replay(&scenario, |_, frame| sum += frame.base_moment()).expect("it runs");
     sum
