@@ -71,17 +71,39 @@ pub enum Unreachable {
         would_do: String,
     },
     /// Each point on some plane, but no plane serves all.
-    #[error("{}", no_common_words(*x, *y, *other, mend))]
-    NoCommonPlane {
-        /// m.
-        x: f64,
-        /// m.
-        y: f64,
-        /// Number of the first point that shares no b with this one; none if all do in pairs, but not together.
-        other: Option<usize>,
-        /// The least move of one point that would mend it.
-        mend: Option<Mend>,
-    },
+    #[error("{}", .0.in_words(&|i| format!("point {}", i + 1)))]
+    NoCommonPlane(NoCommon),
+}
+
+/// Why points have no b in common, and what would mend it. Points are counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NoCommon {
+    /// The first two that share no b; none if all do in pairs, but not all at once.
+    pub pair: Option<[usize; 2]>,
+    /// The least move of one point that would mend it.
+    pub mend: Option<Mend>,
+}
+
+impl NoCommon {
+    /// In words, with a name for each point.
+    pub fn in_words(&self, name: &dyn Fn(usize) -> String) -> String {
+        let who = match self.pair {
+            Some([i, j]) => format!("no b serves both {} and {}", name(i), name(j)),
+            None => "each two points share some b, but no b serves all".into(),
+        };
+        let remedy = match self.mend {
+            Some(m) => format!(
+                "moving {} by {:.3} m to ({:.3}, {:.3}) m would do, at b = {:.4} rad",
+                name(m.point),
+                m.distance,
+                m.to.re,
+                m.to.im,
+                m.b
+            ),
+            None => "want points nearer to each other".into(),
+        };
+        format!("{who}, so no reactionless path joins them; {remedy}")
+    }
 }
 
 /// A move of one point after which all points have a b in common.
@@ -95,25 +117,6 @@ pub struct Mend {
     pub distance: f64,
     /// The b that then serves all, rad.
     pub b: f64,
-}
-
-fn no_common_words(x: f64, y: f64, other: Option<usize>, mend: &Option<Mend>) -> String {
-    let with = match other {
-        Some(i) => format!("shares no b with point {}", i + 1),
-        None => "shares a b with each other point, but not with all at once".into(),
-    };
-    let remedy = match mend {
-        Some(m) => format!(
-            "moving point {} by {:.3} m to ({:.3}, {:.3}) m would do, at b = {:.4} rad",
-            m.point + 1,
-            m.distance,
-            m.to.re,
-            m.to.im,
-            m.b
-        ),
-        None => "want points nearer to each other".into(),
-    };
-    format!("({x:.3}, {y:.3}) m {with}: no reactionless path joins them; {remedy}")
 }
 
 impl Planes {
@@ -201,9 +204,8 @@ impl Planes {
         (!common.intervals.is_empty()).then_some(common)
     }
 
-    /// Why points have no b in common: the first pair that has none (counted from 0), or none if each pair has one, and
-    /// the least move of one point that would mend it. `None` if some b serves all, or a point is out of every reach.
-    pub fn no_common(&self, points: &[Vector]) -> Option<(Option<[usize; 2]>, Option<Mend>)> {
+    /// Why points have no b in common; `None` if some b serves all, or a point is out of every reach.
+    pub fn no_common(&self, points: &[Vector]) -> Option<NoCommon> {
         let sets: Vec<BSet> = points.iter().map(|p| self.map.reach(*p).ok()).collect::<Option<_>>()?;
         if !BSet::overlap(&sets).is_empty() {
             return None;
@@ -215,7 +217,7 @@ impl Planes {
             BSet::overlap(&rest)
         };
         let mends = (0..points.len()).filter_map(|i| self.mend(points[i], i, &others(i)));
-        Some((pair, mends.min_by(|x, y| x.distance.total_cmp(&y.distance))))
+        Some(NoCommon { pair, mend: mends.min_by(|x, y| x.distance.total_cmp(&y.distance)) })
     }
 
     /// The nearest point to p that some b of a set reaches.
@@ -252,13 +254,7 @@ impl Planes {
         }
         match (self.common(points), self.no_common(points)) {
             (Some(common), _) => Unreachable::OnThisPlane { x, y, b, would_do: in_words(&common) },
-            (None, Some((pair, mend))) => match pair {
-                Some([first, second]) => {
-                    let p = points[second];
-                    Unreachable::NoCommonPlane { x: p.re, y: p.im, other: Some(first), mend }
-                }
-                None => Unreachable::NoCommonPlane { x, y, other: None, mend },
-            },
+            (None, Some(why)) => Unreachable::NoCommonPlane(why),
             // Another point is out of every reach.
             (None, None) => {
                 let own = self.map.reach(points[i]).map(|set| in_words(&set)).unwrap_or_default();

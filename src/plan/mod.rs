@@ -2,6 +2,7 @@
 
 pub mod curve;
 pub mod follow;
+pub mod forecast;
 pub mod law;
 pub mod path;
 pub mod table;
@@ -9,6 +10,7 @@ pub mod trace;
 
 pub use curve::{Curve, CurveError, CurvePoint};
 pub use follow::Follower;
+pub use forecast::Forecast;
 pub use law::TimeLaw;
 pub use path::{Path, PathError};
 pub use table::Table;

@@ -54,17 +54,17 @@ pub struct Blocked {
     pub longest: Option<[f64; 2]>,
 }
 
-impl Stop {
-    fn in_words(self) -> String {
+impl std::fmt::Display for Stop {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Limit { angle, upper } => {
-                format!("a{} at its {} limit", angle + 1, if upper { "upper" } else { "lower" })
+                write!(f, "a{} at its {} limit", angle + 1, if *upper { "upper" } else { "lower" })
             }
-            Self::Fold => "a fold, det = 0".into(),
+            Self::Fold => f.write_str("a fold, det = 0"),
             Self::ChangePoint { drives: [k, l] } => {
-                format!("a change point, drives {} and {} parallel", k + 1, l + 1)
+                write!(f, "a change point, drives {} and {} parallel", k + 1, l + 1)
             }
-            Self::Start => "no pose at its first point".into(),
+            Self::Start => f.write_str("no pose at its first point"),
         }
     }
 }
@@ -89,7 +89,7 @@ impl Blocked {
             self.at.im,
             100.0 * self.s,
             self.b,
-            self.stop.in_words(),
+            self.stop,
         )
     }
 }

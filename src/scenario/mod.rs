@@ -210,7 +210,7 @@ impl Scenario {
     ///
     /// # Errors
     /// The first that is not.
-    pub(crate) fn check(&self, file: &str) -> Result<(), ScenarioError> {
+    pub fn check(&self, file: &str) -> Result<(), ScenarioError> {
         let t = &self.task;
         let positive = [
             ("step", self.step, "a step of 0.00001 to 0.01 s", (1e-5..=0.01).contains(&self.step)),

@@ -311,6 +311,11 @@ impl Session {
     fn amended(&self, timed: &TimedEdit) -> Document {
         let mut document = self.document.clone();
         document.script.retain(|e| !e.edit.is_replaced_by(&timed.edit));
+        if matches!(timed.edit, Edit::SetTask { .. }) && self.is_live() {
+            // To plan is to take the machine back from the hand that led it.
+            document.script.retain(|e| e.step == 0 && !e.edit.leads());
+            document.end = 0;
+        }
         // Who leads the machine from the start does so from where this puts it.
         let place = document.script.iter().position(|e| e.step > 0 || e.edit.leads());
         document.script.insert(place.unwrap_or(document.script.len()), timed.clone());

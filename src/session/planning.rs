@@ -2,9 +2,11 @@
 
 use super::Refusal;
 use crate::plan::path::{Chained, SameTip, minimum_norm_path};
-use crate::plan::{Curve, Motion, Path, Rule, trace};
+use crate::dynamics::Surroundings;
+use crate::machine::Inertia;
+use crate::plan::{Curve, Forecast, Motion, Path, Rule, trace};
 use crate::planar::{DriveAngles, Vector};
-use crate::pose_constant::Planes;
+use crate::pose_constant::{Planes, Unreachable};
 use crate::reactionless::PlanePoint;
 use crate::scenario::{Corners, Scenario, Shape, Task, TaskKind};
 
@@ -13,6 +15,8 @@ use crate::scenario::{Corners, Scenario, Shape, Task, TaskKind};
 pub struct Plan {
     /// What the machine is to do.
     pub motion: Motion,
+    /// What it will cost.
+    pub forecast: Forecast,
 }
 
 /// Plans the task of a scenario.
@@ -37,7 +41,10 @@ pub fn plan(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
             return Err(Refusal::Task("not yet".into()));
         }
     };
-    Ok(Plan { motion: timed(parts, task)? })
+    let motion = timed(parts, task)?;
+    let model = Inertia::of(&scenario.machine);
+    let around = Surroundings { gravity: scenario.machine.gravity(), force: Vector::default() };
+    Ok(Plan { forecast: Forecast::of(&motion, &model, &around), motion })
 }
 
 fn timed(mut parts: Vec<(Path, f64)>, task: &Task) -> Result<Motion, Refusal> {
@@ -50,8 +57,14 @@ fn timed(mut parts: Vec<(Path, f64)>, task: &Task) -> Result<Motion, Refusal> {
 
 /// Poses of the points on the plane of the task.
 fn serve(task: &Task, planes: &Planes, points: &[Vector]) -> Result<Vec<PlanePoint>, Refusal> {
-    let name = |(i, unreachable)| Refusal::Unreachable { point: task.name_of(i), unreachable };
-    planes.serve(points, task.b).map_err(name)
+    planes.serve(points, task.b).map_err(|(i, unreachable)| refusal(task, i, unreachable))
+}
+
+fn refusal(task: &Task, i: usize, unreachable: Unreachable) -> Refusal {
+    match unreachable {
+        Unreachable::NoCommonPlane(why) => Refusal::NoCommonPlane(why.in_words(&|i| task.name_of(i))),
+        unreachable => Refusal::Unreachable { point: task.name_of(i), unreachable },
+    }
 }
 
 fn lifted(planes: &Planes, poses: &[PlanePoint]) -> Vec<DriveAngles> {
@@ -146,7 +159,7 @@ fn minimum_norm(scenario: &Scenario, planes: &Planes, points: &[Vector]) -> Resu
     // A and B on one sheet, as for the reactionless motion to compare with, or else A alone.
     let ends = [points[0], points[points.len() - 1]];
     let start = planes.serve(&ends, task.b).or_else(|_| planes.serve(&ends[..1], task.b));
-    let start = start.map_err(|(i, unreachable)| Refusal::Unreachable { point: task.name_of(i), unreachable })?;
+    let start = start.map_err(|(i, unreachable)| refusal(task, i, unreachable))?;
     let mut q = DriveAngles::from(planes.map().lift(start[0]));
     let mut parts = Vec::new();
     for curve in curves(task, points)? {

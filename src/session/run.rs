@@ -30,6 +30,9 @@ pub enum Refusal {
         /// Why, and what would do.
         unreachable: Unreachable,
     },
+    /// No plane serves all points.
+    #[error("{0}")]
+    NoCommonPlane(String),
     /// The path.
     #[error(transparent)]
     Path(#[from] PathError),
@@ -190,6 +193,9 @@ impl Run {
             Edit::SetPayload { mass } => scenario.plant.payload.mass = *mass,
             Edit::SetMachine { key, value } => scenario.machine = scenario.machine.set(key, value)?,
             Edit::SetTime { time } => scenario.task.time = *time,
+            Edit::SetTask { .. } if !self.is_untouched() => {
+                return Err(Refusal::Task("the task can change only before its first step".into()));
+            }
             Edit::SetTask { change } => {
                 scenario.task = scenario.task.with(change).map_err(|why| Refusal::Task(format!("task: {why}")))?;
                 scenario.check("task").map_err(|why| Refusal::Task(why.to_string()))?;
