@@ -26,6 +26,8 @@ mod machine_file;
 mod mesh;
 #[path = "suite/nine_body.rs"]
 mod nine_body;
+#[path = "suite/planning.rs"]
+mod planning;
 #[path = "suite/reach.rs"]
 mod reach;
 #[cfg(feature = "record")]

@@ -8,7 +8,7 @@ use stillbase::machine::{self, Inertia, Machine};
 use stillbase::planar::Vector;
 use stillbase::pose_constant::plane_map;
 use stillbase::reactionless::PlaneMap;
-use stillbase::scenario::{MAX_PAYLOAD, Scenario};
+use stillbase::scenario::{Change, MAX_PAYLOAD, Scenario};
 
 use super::failure::Failure;
 use super::output::say;
@@ -97,7 +97,7 @@ pub fn set(mut scenario: Scenario, settings: &Settings) -> Result<Scenario, Fail
             || Failure::wrong_input(format!("{key}={value:?}: want a number from 0 to {MAX_PAYLOAD}")).of("--set");
         *slot = amount.ok_or_else(why)?;
     }
-    let mut change = toml::Table::new();
+    let mut change = Change::new();
     for (key, value) in task {
         change.insert(key.trim_start_matches("task.").to_owned(), toml_value(&value));
     }
@@ -109,7 +109,7 @@ pub fn set(mut scenario: Scenario, settings: &Settings) -> Result<Scenario, Fail
 ///
 /// # Errors
 /// If there is no such key, or its value is out of range.
-pub fn change_task(scenario: &mut Scenario, change: &toml::Table) -> Result<(), Failure> {
+pub fn change_task(scenario: &mut Scenario, change: &Change) -> Result<(), Failure> {
     if !change.is_empty() {
         scenario.task = scenario.task.with(change).map_err(|why| Failure::wrong_input(format!("task: {why}")))?;
         scenario.check("task")?;
@@ -119,7 +119,7 @@ pub fn change_task(scenario: &mut Scenario, change: &toml::Table) -> Result<(), 
 
 /// A value as it would stand in a file; what is none there is text.
 fn toml_value(text: &str) -> toml::Value {
-    let read = format!("x = {text}").parse::<toml::Table>().ok().and_then(|mut table| table.remove("x"));
+    let read = format!("x = {text}").parse::<Change>().ok().and_then(|mut table| table.remove("x"));
     read.unwrap_or_else(|| toml::Value::String(text.into()))
 }
 

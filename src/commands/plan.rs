@@ -10,7 +10,7 @@ use stillbase::plan::Blocked;
 use stillbase::planar::Vector;
 use stillbase::pose_constant::Planes;
 use stillbase::reactionless::BSet;
-use stillbase::scenario::Scenario;
+use stillbase::scenario::{Change, Scenario};
 use stillbase::session::{Refusal, Run};
 
 use super::failure::Failure;
@@ -225,7 +225,7 @@ impl Plan {
             // What is wrong with a file is said by whoever it was meant for.
             _ => scenario(&self.name, &self.settings)?,
         };
-        let mut change = toml::Table::new();
+        let mut change = Change::new();
         if let [from, via @ .., to] = &self.points[..] {
             let pair = |p: &Vector| toml::Value::Array(vec![p.re.into(), p.im.into()]);
             change.insert("from".into(), pair(from));

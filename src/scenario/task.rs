@@ -55,6 +55,9 @@ pub struct Task {
     pub law: TimeLaw,
 }
 
+/// Some keys of a task, as they stand in a file.
+pub type Change = toml::Table;
+
 /// How the redundancy of three drives over two coordinates is resolved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -149,6 +152,66 @@ impl Task {
         }
     }
 
+    /// The change that makes these the points; `None` for fewer than two.
+    fn visiting(points: &[Vector]) -> Option<Change> {
+        let [from, via @ .., to] = points else { return None };
+        let pair = |p: &Vector| toml::Value::Array(vec![p.re.into(), p.im.into()]);
+        let via = via.iter().map(pair).collect();
+        Some(
+            [("from", pair(from)), ("via", toml::Value::Array(via)), ("to", pair(to))].map(keyed).into_iter().collect(),
+        )
+    }
+
+    /// The change that moves a point, m.
+    pub fn moving(&self, point: usize, to: Vector) -> Option<Change> {
+        let mut points = self.points();
+        *points.get_mut(point)? = to;
+        Self::visiting(&points)
+    }
+
+    /// The change that visits one more point, m, where the least way is added.
+    pub fn adding(&self, p: Vector) -> Option<Change> {
+        let mut points = self.points();
+        let detour = |i: &usize| {
+            let (a, b) = (points[*i], points[i + 1]);
+            (p - a).norm() + (b - p).norm() - (b - a).norm()
+        };
+        let place = (0..points.len() - 1).min_by(|i, j| detour(i).total_cmp(&detour(j)))?;
+        points.insert(place + 1, p);
+        Self::visiting(&points)
+    }
+
+    /// The change that leaves a point out; `None` if only two are left.
+    pub fn removing(&self, point: usize) -> Option<Change> {
+        let mut points = self.points();
+        if points.len() <= 2 || point >= points.len() {
+            return None;
+        }
+        points.remove(point);
+        Self::visiting(&points)
+    }
+
+    /// The change that visits a point one place earlier.
+    pub fn advancing(&self, point: usize) -> Option<Change> {
+        let mut points = self.points();
+        if point == 0 || point >= points.len() {
+            return None;
+        }
+        points.swap(point - 1, point);
+        Self::visiting(&points)
+    }
+
+    /// The change that visits the points of a curve drawn by hand, m.
+    pub fn drawing(points: &[Vector]) -> Option<Change> {
+        // Few enough to be kept in a file; the shape of the hand's line is all that counts.
+        let every = points.len().div_ceil(400).max(1);
+        let mut thin: Vec<Vector> = points.iter().step_by(every).copied().collect();
+        thin.extend(points.last().filter(|last| thin.last() != Some(last)));
+        let mut change = Self::visiting(&thin)?;
+        change.insert("shape".into(), "freehand".into());
+        Some(change)
+    }
+
     /// What joins the points.
     pub fn shape(&self) -> Shape {
         self.shape.unwrap_or(match self.kind {
@@ -161,8 +224,8 @@ impl Task {
     ///
     /// # Errors
     /// What key or value is wrong, and what would be right.
-    pub fn with(&self, change: &toml::Table) -> Result<Self, String> {
-        let mut table = toml::Table::try_from(self).map_err(|e| e.to_string())?;
+    pub fn with(&self, change: &Change) -> Result<Self, String> {
+        let mut table = Change::try_from(self).map_err(|e| e.to_string())?;
         for (key, value) in change {
             if value.as_str() == Some("default") {
                 table.remove(key);
@@ -174,9 +237,13 @@ impl Task {
     }
 
     /// What these keys hold now, so that [`with`](Self::with) brings it back.
-    pub fn only(&self, change: &toml::Table) -> toml::Table {
-        let table = toml::Table::try_from(self).unwrap_or_default();
+    pub fn only(&self, change: &Change) -> Change {
+        let table = Change::try_from(self).unwrap_or_default();
         let absent = || toml::Value::String("default".into());
         change.keys().map(|key| (key.clone(), table.get(key).cloned().unwrap_or_else(absent))).collect()
     }
+}
+
+fn keyed((key, value): (&str, toml::Value)) -> (String, toml::Value) {
+    (key.into(), value)
 }

@@ -84,6 +84,11 @@ impl<'de> Deserialize<'de> for TimedEdit {
 }
 
 impl Edit {
+    /// One key of the task.
+    pub fn task(key: &str, value: impl Into<toml::Value>) -> Self {
+        Self::SetTask { change: toml::Table::from_iter([(key.to_owned(), value.into())]) }
+    }
+
     /// Whether a later edit makes this one void, so that a drag keeps only its last word.
     pub fn is_replaced_by(&self, later: &Self) -> bool {
         match (self, later) {

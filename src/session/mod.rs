@@ -41,6 +41,13 @@ struct Change {
     title: String,
 }
 
+impl Change {
+    /// Whether it is of the task: that has no meaning at a later step.
+    fn plans(&self) -> bool {
+        self.edit.as_ref().is_some_and(|e| matches!(e.edit, Edit::SetTask { .. }))
+    }
+}
+
 /// A run under somebody's hands.
 #[derive(Clone, Debug)]
 pub struct Session {
@@ -372,7 +379,7 @@ impl Session {
         let Some(change) = self.undo.last().cloned() else { return Ok(()) };
         let after = self.document.clone();
         let done = match &change.inverse {
-            Some(inverse) if self.is_running() => self.append(inverse.clone()),
+            Some(inverse) if self.is_running() && !change.plans() => self.append(inverse.clone()),
             _ => self.return_to(&change.before),
         };
         done?;
@@ -390,7 +397,7 @@ impl Session {
         let Some(change) = self.redo.last().cloned() else { return Ok(()) };
         let before = self.document.clone();
         let done = match &change.edit {
-            Some(timed) if self.is_running() => self.append(timed.edit.clone()),
+            Some(timed) if self.is_running() && !change.plans() => self.append(timed.edit.clone()),
             _ => self.return_to(&change.before),
         };
         done?;

@@ -1,9 +1,9 @@
 //! From a task to a motion: poses for its points, a path through them, and when to be where.
 
 use super::Refusal;
-use crate::plan::path::{Chained, SameTip, minimum_norm_path};
 use crate::dynamics::Surroundings;
 use crate::machine::Inertia;
+use crate::plan::path::{Chained, SameTip, minimum_norm_path};
 use crate::plan::{Curve, Forecast, Motion, Path, Rule, trace};
 use crate::planar::{DriveAngles, Vector};
 use crate::pose_constant::{Planes, Unreachable};

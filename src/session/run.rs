@@ -10,7 +10,7 @@ use crate::frame::Frame;
 use crate::machine::MachineError;
 use crate::plan::follow::Bounds;
 use crate::plan::{Blocked, CurveError, Follower, Motion, PathError};
-use crate::planar::Vector;
+use crate::planar::{DriveAngles, Vector};
 use crate::pose_constant::{PlaneError, Planes, Unreachable};
 use crate::reactionless::PlanePoint;
 use crate::scenario::{MAX_PAYLOAD, MAX_TIME, Scenario};
@@ -127,6 +127,11 @@ impl Run {
     /// How long the planned motion takes, s.
     pub fn planned_time(&self) -> f64 {
         self.plan.motion.duration
+    }
+
+    /// Where a pose has the end effector, m.
+    pub fn place(&self, q: &DriveAngles) -> Vector {
+        crate::kinematics::end_effector(self.scenario.machine.tip(), &q.units())
     }
 
     /// The planned motion, while it leads.

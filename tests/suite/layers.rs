@@ -66,7 +66,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("indicatif", &["commands"]),
     ("csv", &["commands"]),
     ("serde_json", &["commands"]),
-    ("toml", &["machine", "scenario", "session", "commands"]),
+    ("toml", &["machine", "scenario", "session", "ui", "commands"]),
 ];
 
 /// Parts of the standard library that reach outside, and the files that are edges.
