@@ -18,6 +18,8 @@ mod dynamics;
 #[cfg(feature = "render")]
 #[path = "suite/gpu.rs"]
 mod gpu;
+#[path = "suite/inside.rs"]
+mod inside;
 #[path = "suite/layers.rs"]
 mod layers;
 #[path = "suite/machine_file.rs"]

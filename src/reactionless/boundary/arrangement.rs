@@ -1,7 +1,8 @@
-//! Spans cut where they cross each other, and the parts that have the workspace on one side only, joined into loops.
+//! Spans cut where they cross each other, the number of poses on both sides of each part, and parts joined into loops.
 
 use std::collections::VecDeque;
 
+use super::cycle::Cycle;
 use super::span::{Span, Surface};
 use crate::planar::{Vector, cross, dot};
 
@@ -22,17 +23,27 @@ pub(super) struct Portion {
     pub to: f64,
 }
 
-pub(super) struct Arrangement<'a> {
-    on: &'a Surface,
-    spans: &'a [Span],
-    boxes: Vec<Box>,
+/// A curve from crossing to crossing: the same number of poses all along each side.
+#[derive(Clone, Debug)]
+pub(super) struct Strand {
+    pub parts: Vec<Portion>,
+    /// Poses that reach the points on its left.
+    pub left: i32,
+    /// Poses that reach the points on its right.
+    pub right: i32,
 }
 
-/// Axis-parallel bounds of a span.
-#[derive(Clone, Copy)]
-struct Box {
-    low: Vector,
-    high: Vector,
+impl Strand {
+    /// Whether it bounds the points that at least `n` poses reach.
+    pub fn bounds(&self, n: i32) -> bool {
+        self.left >= n && self.right < n
+    }
+}
+
+pub(super) struct Arrangement<'a> {
+    on: &'a Surface,
+    cycle: &'a Cycle,
+    spans: &'a [Span],
 }
 
 #[derive(Clone, Copy)]
@@ -61,50 +72,32 @@ impl Part {
 }
 
 impl<'a> Arrangement<'a> {
-    pub fn of(on: &'a Surface, spans: &'a [Span]) -> Self {
-        let bounds = |s: &Span| {
-            let slack = s.deviation + 1e-12;
-            let [a, b] = s.at;
-            Box {
-                low: Vector::new(a.re.min(b.re) - slack, a.im.min(b.im) - slack),
-                high: Vector::new(a.re.max(b.re) + slack, a.im.max(b.im) + slack),
-            }
-        };
-        Self { on, spans, boxes: spans.iter().map(bounds).collect() }
+    pub fn of(on: &'a Surface, cycle: &'a Cycle) -> Self {
+        Self { on, cycle, spans: &cycle.spans }
     }
 
-    /// How many poses reach p: the winding number of the weighted cycle. On a curve, the number is that of a side.
-    pub fn poses_at(&self, p: Vector) -> i32 {
-        let mut count = 0;
-        for (span, b) in self.spans.iter().zip(&self.boxes) {
-            if p.im >= b.low.im && p.im <= b.high.im && p.re <= b.high.re {
-                let ends = [(0.0, span.at[0]), (1.0, span.at[1])];
-                count += span.weight() * span.crossings(self.on, ends[0], ends[1], p).unwrap_or(0);
-            }
-        }
-        count
-    }
-
-    /// The parts of all spans that bound the workspace.
-    pub fn boundary(&self) -> Vec<Portion> {
+    /// All curves, cut where they cross each other.
+    pub fn strands(&self) -> Vec<Strand> {
         let chord = |p: &Portion| {
             let span = &self.spans[p.span];
             (self.on.at(span, p.to) - self.on.at(span, p.from)).norm()
         };
-        let bounding = self.strands().into_iter().filter(|strand| {
+        let strand = |parts: Vec<Portion>| {
             // The longest parts first: the shortest may lie in a sliver too narrow to tell its sides apart.
-            let mut parts: Vec<(f64, &Portion)> = strand.iter().map(|p| (chord(p), p)).collect();
-            parts.sort_by(|a, b| b.0.total_cmp(&a.0));
-            let mut verdicts = parts.iter().take(5).map(|(_, portion)| self.bounds(portion));
-            let first = verdicts.next().unwrap_or(Err(false));
+            let mut order: Vec<(f64, &Portion)> = parts.iter().map(|p| (chord(p), p)).collect();
+            order.sort_by(|a, b| b.0.total_cmp(&a.0));
+            let mut verdicts = order.iter().take(5).map(|(_, portion)| self.sides(portion));
+            let first = verdicts.next().unwrap_or(Err([0; 2]));
             // Where curves coincide no sample is clean, and the first must do.
-            first.or_else(|unclean| verdicts.find_map(Result::ok).ok_or(unclean)).unwrap_or_else(|unclean| unclean)
-        });
-        self.without_doubles(bounding.flatten().collect())
+            let [left, right] =
+                first.or_else(|unclean| verdicts.find_map(Result::ok).ok_or(unclean)).unwrap_or_else(|unclean| unclean);
+            Strand { parts, left, right }
+        };
+        self.uncrossed().into_iter().map(strand).collect()
     }
 
-    /// All curves from crossing to crossing: the same number of poses along each side.
-    fn strands(&self) -> Vec<Vec<Portion>> {
+    /// All curves from crossing to crossing.
+    fn uncrossed(&self) -> Vec<Vec<Portion>> {
         let mut strands: Vec<Vec<Portion>> = Vec::new();
         let mut open = false;
         for (i, mut cuts) in self.cuts().into_iter().enumerate() {
@@ -135,11 +128,11 @@ impl<'a> Arrangement<'a> {
         strands
     }
 
-    /// Whether poses reach the left side of a part, but not its right; an error where another curve is too close to
-    /// be sure.
-    fn bounds(&self, portion: &Portion) -> Result<bool, bool> {
+    /// How many poses reach the left side of a part, and how many its right; an error where another curve is too close
+    /// to be sure.
+    fn sides(&self, portion: &Portion) -> Result<[i32; 2], [i32; 2]> {
         let span = &self.spans[portion.span];
-        let mut unclean = false;
+        let mut unclean = [0; 2];
         // Close enough that even where curves touch, no other is in between; and if one is, elsewhere there is none.
         for reach in [1e-11, 1e-12, 1e-9] {
             for share in [0.5, 0.31, 0.77, 0.13, 0.91] {
@@ -149,9 +142,8 @@ impl<'a> Arrangement<'a> {
                 if !(aside.is_finite() && reach < 0.1 * speed * (portion.to - portion.from)) {
                     continue;
                 }
-                let (left, right) = (self.poses_at(jet.at + aside), self.poses_at(jet.at - aside));
-                unclean = left > 0 && right == 0;
-                if left - right == span.weight() {
+                unclean = [jet.at + aside, jet.at - aside].map(|p| self.cycle.poses_at(self.on, p));
+                if unclean[0] - unclean[1] == span.weight() {
                     return Ok(unclean);
                 }
             }
@@ -159,12 +151,17 @@ impl<'a> Arrangement<'a> {
         Err(unclean)
     }
 
+    /// The parts of strands that bound the points which at least `n` poses reach.
+    pub fn level(&self, strands: &[Strand], n: i32) -> Vec<Portion> {
+        self.without_doubles(strands.iter().filter(|s| s.bounds(n)).flat_map(|s| &s.parts))
+    }
+
     /// Curves that coincide bound the workspace once.
-    fn without_doubles(&self, portions: Vec<Portion>) -> Vec<Portion> {
+    fn without_doubles<'b>(&self, portions: impl Iterator<Item = &'b Portion>) -> Vec<Portion> {
         let ends = |p: &Portion| [p.from, p.to].map(|t| self.on.at(&self.spans[p.span], t));
         let near = |a: Vector, b: Vector| (a - b).norm() < JOINT;
-        let mut kept: Vec<(Portion, [Vector; 2])> = Vec::with_capacity(portions.len());
-        for portion in portions {
+        let mut kept: Vec<(Portion, [Vector; 2])> = Vec::new();
+        for &portion in portions {
             let [from, to] = ends(&portion);
             let middle = |p: &Portion| self.on.at(&self.spans[p.span], 0.5 * (p.from + p.to));
             let double = kept.iter().any(|(other, [f, t])| {
@@ -181,12 +178,12 @@ impl<'a> Arrangement<'a> {
     fn cuts(&self) -> Vec<Vec<f64>> {
         let mut cuts = vec![Vec::new(); self.spans.len()];
         let mut order: Vec<usize> = (0..self.spans.len()).collect();
-        order.sort_by(|&i, &j| self.boxes[i].low.re.total_cmp(&self.boxes[j].low.re));
+        order.sort_by(|&i, &j| self.cycle.bounds[i].low.re.total_cmp(&self.cycle.bounds[j].low.re));
         let mut work = VecDeque::new();
         for (n, &i) in order.iter().enumerate() {
-            let a = &self.boxes[i];
+            let a = &self.cycle.bounds[i];
             for &j in &order[n + 1..] {
-                let b = &self.boxes[j];
+                let b = &self.cycle.bounds[j];
                 if b.low.re > a.high.re {
                     break;
                 }
