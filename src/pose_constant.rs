@@ -24,6 +24,8 @@ pub enum Reach {
         nearest: Vector,
         /// The b nearest to the present one that would reach the target, rad; none if no b does.
         mending_b: Option<f64>,
+        /// A pose of this plane reaches it, but beyond a fold: on another sheet.
+        other_sheet: bool,
     },
     /// It cannot any more since b was changed, so the machine keeps a_1 and a_2 and turns with its workspace.
     Carried,
@@ -146,19 +148,51 @@ impl Planes {
 
     /// Where to go for a target: its pose on the plane b and the sheet of `from`, or the nearest that can be reached.
     pub fn reach(&self, p: Vector, b: f64, from: [f64; 2]) -> ([f64; 2], Reach) {
-        if let Some(a) = self.follow(p, b, from) {
+        if let Some(a) = self.follow(p, b, from).filter(|a| self.is_one_sheet(from, *a)) {
             return (a, Reach::Inside);
         }
-        let sheet = self.map.det(from);
         let far = |a: &[f64; 2]| (a[0] - from[0]).hypot(a[1] - from[1]);
         let poses = self.map.poses(p, b);
-        let same = poses.iter().map(|x| x.a).filter(|a| self.map.det(*a) * sheet >= 0.0);
+        let same = poses.iter().map(|x| x.a).filter(|a| self.is_one_sheet(from, *a));
         if let Some(a) = same.min_by(|x, y| far(x).total_cmp(&far(y))) {
             return (a, Reach::Inside);
         }
+        let other_sheet = !poses.is_empty();
+        let mending_b = self.map.reach(p).ok().and_then(|set| set.nearest(b)).filter(|_| !other_sheet);
         let nearest = self.boundary.nearest(p, b, self.map.forward(from, b));
-        let mending_b = self.map.reach(p).ok().and_then(|set| set.nearest(b));
-        (self.map.clamp(nearest.a), Reach::Outside { nearest: nearest.at, mending_b })
+        let edge = self.map.clamp(nearest.a);
+        if !other_sheet && self.is_one_sheet(from, edge) {
+            return (edge, Reach::Outside { nearest: nearest.at, mending_b, other_sheet });
+        }
+        // A fold lies between: as near as the straight way goes.
+        let a = self.towards(p, b, from);
+        (a, Reach::Outside { nearest: self.map.forward(a, b), mending_b, other_sheet })
+    }
+
+    /// The last pose on the straight way of the end effector to p that continues a pose of the plane b.
+    fn towards(&self, p: Vector, b: f64, from: [f64; 2]) -> [f64; 2] {
+        let start = self.map.forward(from, b);
+        let (mut a, mut t, mut step) = (from, 0.0, 0.125);
+        while step > 1e-6 && t < 1.0 {
+            let next = self.follow(start + (t + step) * (p - start), b, a);
+            let near = |x: &[f64; 2]| (x[0] - a[0]).hypot(x[1] - a[1]) < 0.5 && self.is_one_sheet(from, *x);
+            match next.filter(near) {
+                Some(x) => (a, t) = (x, t + step),
+                None => step *= 0.5,
+            }
+        }
+        a
+    }
+
+    /// Whether the straight way of joint space between two poses of one plane keeps to a sheet, where det has one sign.
+    pub fn is_one_sheet(&self, from: [f64; 2], to: [f64; 2]) -> bool {
+        const LOOKS: i32 = 32;
+        if !self.boundary.interior_singularity() {
+            return true;
+        }
+        let sheet = self.map.det(from);
+        let at = |t: f64| [0, 1].map(|i| from[i] + t * (to[i] - from[i]));
+        (1..=LOOKS).all(|i| self.map.det(at(f64::from(i) / f64::from(LOOKS))) * sheet >= 0.0)
     }
 
     /// One pose for each of some points on the plane b: all on one sheet if possible, else each near the one before.

@@ -221,3 +221,37 @@ fn what_is_drawn_is_followed() {
     let end = run.plan().motion.at(run.planned_time()).q;
     assert!((run.place(&end) - Vector::new(0.55, 0.9)).norm() < 1e-10);
 }
+
+/// However fast the pointer jumps about within folded limits, the machine stays on its plane, keeps its bounds and does
+/// not pass a fold.
+#[test]
+fn dragging_never_jumps_sheets() {
+    let base = scenario();
+    let machine = base.machine.set_all([("limits.a1", "-3.1,3.1"), ("limits.a2", "-3.1,3.1")]).expect("valid");
+    let mut session = Session::open(Scenario { machine, step: 0.002, ..base }).expect("it starts");
+    let map = *session.run().planes().expect("planes").map();
+    let sheet = map.det([session.frame().a[0], session.frame().a[1]]);
+    let mut seed = 7_u64;
+    let mut random = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let mut other_sheets = 0;
+    for _ in 0..60 {
+        let (x, y) = (2.4 * random() - 1.2, 2.4 * random() - 1.2);
+        session.apply(Edit::DragTarget { x, y }).expect("follows");
+        session.tick(60);
+        let target = session.frame().target.reach;
+        other_sheets += usize::from(matches!(target, stillbase::frame::Reach::Outside { other_sheet: true, .. }));
+    }
+    assert!(other_sheets > 3, "{other_sheets} targets were beyond a fold");
+    let frames = session.frames();
+    let least = frames.iter().map(|f| map.det([f.a[0], f.a[1]]) * sheet.signum()).fold(f64::INFINITY, f64::min);
+    assert!(least > -1e-6, "{least}");
+    assert!(frames.iter().all(|f| (f.b_reference - 2.4).abs() < 1e-12));
+    assert!(frames[frames.len() - 1].peaks.is_reactionless());
+    let limit = session.scenario().machine.spec().drives[0].torque_limit;
+    if let Some(limit) = limit {
+        assert!(frames.iter().all(|f| f.torque[0].abs() < limit));
+    }
+}

@@ -737,7 +737,7 @@ fn outside_the_machine_waits_at_the_nearest_point_and_b_mends_it() {
     session.end_gesture();
     settle(&mut session);
     let f = *session.frame();
-    let Reach::Outside { nearest, mending_b } = f.target.reach else { panic!("{:?}", f.target) };
+    let Reach::Outside { nearest, mending_b, .. } = f.target.reach else { panic!("{:?}", f.target) };
     assert_eq!(f.target.at, target, "the handle stays under the pointer");
     assert!((f.tip - nearest).norm() < 1e-9, "the machine waits at the nearest point");
     let planes = session.run().planes().expect("three drives").clone();

@@ -97,7 +97,7 @@ fn a_target_outside_says_why_and_what_b_would_do() {
     drag(&mut h, from, to);
     h.run_steps(120);
     let f = *session(&h).frame();
-    let Reach::Outside { nearest, mending_b } = f.target.reach else { panic!("{:?}", f.target) };
+    let Reach::Outside { nearest, mending_b, .. } = f.target.reach else { panic!("{:?}", f.target) };
     assert!((nearest - f.tip).norm() < 1e-6, "the machine waits at the nearest point");
     let b = mending_b.expect("another plane reaches it");
     let planes = session(&h).run().planes().expect("three drives").clone();
