@@ -6,6 +6,8 @@ mod balance;
 mod boundary;
 #[path = "suite/cases.rs"]
 mod cases;
+#[path = "suite/change_points.rs"]
+mod change_points;
 #[cfg(feature = "cli")]
 #[path = "suite/cli.rs"]
 mod cli;

@@ -11,7 +11,7 @@ use stillbase::dynamics::{Surroundings, inverse_with_wrench};
 use stillbase::machine::{Inertia, builtin};
 use stillbase::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::pose_constant::plane_map;
-use stillbase::reactionless::Boundary;
+use stillbase::reactionless::{AngleDefinition, Boundary, Limit, PlaneMap};
 use stillbase::scenario::Scenario;
 use stillbase::session::{Run, replay};
 
@@ -119,4 +119,57 @@ fn record_three_cases(bencher: Bencher) {
     let options = stillbase::headless::Options { pictures: None, force: true };
     bencher.bench_local(|| stillbase::headless::record(&scenarios, &file, &options, &mut |_| {}).expect("it records"));
     std::fs::remove_file(&file).expect("the recording is there");
+}
+
+/// The nine-link machine within other limits.
+fn folded(limits: [[f64; 2]; 2]) -> PlaneMap {
+    let map = plane_map(builtin("nine-link").expect("built in")).expect("three drives");
+    map.with_limits(limits.map(|[min, max]| Limit { min, max }))
+}
+
+/// The boundary where the map folds: up to six poses a point.
+#[divan::bench(args = [0.0, -std::f64::consts::PI])]
+fn folded_boundary_of_a_turn(bencher: Bencher, from: f64) {
+    let map = folded([[from, from + std::f64::consts::TAU]; 2]);
+    bencher.bench_local(|| Boundary::of(black_box(&map)));
+}
+
+/// The boundary within limits as a person may set them, from a sequence that fills their range.
+#[divan::bench]
+fn folded_boundary_of_any_limits(bencher: Bencher) {
+    let share = |i: usize, g: f64| (i as f64 * g).fract();
+    let limit = |i: usize, g: f64, h: f64| {
+        let least = 8.0 * share(i, g) - 4.0;
+        [least, least + 0.3 + 5.9 * share(i, h)]
+    };
+    let maps: Vec<PlaneMap> = (1..200).map(|i| folded([limit(i, 0.8191, 0.6710), limit(i, 0.5497, 0.4503)])).collect();
+    let mut next = 0;
+    bencher.bench_local(|| {
+        next = (next + 1) % maps.len();
+        Boundary::of(black_box(&maps[next]))
+    });
+}
+
+/// The boundary of a machine with three equal arms: its folds cross each other.
+#[divan::bench]
+fn folded_boundary_of_equal_arms(bencher: Bencher) {
+    let angles = [(1, 0, 0.0), (2, 1, std::f64::consts::PI)];
+    let angles = angles.map(|(to, from, offset)| AngleDefinition { to, from, offset });
+    let turn = Limit { min: 0.0, max: std::f64::consts::TAU };
+    let map = PlaneMap::new([0.5, -0.5, -0.5], [1.0, 0.117, 0.128], angles, [turn; 2]).expect("a map");
+    bencher.bench_local(|| Boundary::of(black_box(&map)));
+}
+
+/// How many poses reach a point, by winding number.
+#[divan::bench]
+fn folded_pose_count(bencher: Bencher) {
+    let boundary = Boundary::of(&folded([[0.0, std::f64::consts::TAU]; 2]));
+    bencher.bench_local(|| boundary.pose_count(black_box(Vector::new(0.2, 0.4)), black_box(2.4)));
+}
+
+/// The distance of a point from the boundary, along the true curves.
+#[divan::bench]
+fn folded_distance(bencher: Bencher) {
+    let boundary = Boundary::of(&folded([[0.0, std::f64::consts::TAU]; 2]));
+    bencher.bench_local(|| boundary.distance(black_box(Vector::new(0.2, 0.4)), black_box(2.4)));
 }

@@ -10,8 +10,9 @@ impl Boundary {
     /// How many poses within the limits put the end effector on p, m, on the plane b, rad: the winding number of all
     /// limits and folds about p, without any pose being solved for.
     ///
-    /// On a fold or a limit, to 1e-12 m, it is the number on one of its sides. Agrees with
-    /// [`PlaneMap::poses`](crate::reactionless::PlaneMap::poses) elsewhere.
+    /// On a fold or a limit, to 1e-12 m, it is the number on one of its sides. Elsewhere it is how many
+    /// [`PlaneMap::poses`](crate::reactionless::PlaneMap::poses) lists, unless limits are wider than five turns: then
+    /// five are counted, and more poses than fit may be left out there.
     pub fn pose_count(&self, p: Vector, b: f64) -> usize {
         if !(p.re.is_finite() && p.im.is_finite() && b.is_finite()) {
             return 0;
