@@ -45,6 +45,8 @@ mod signals;
 mod sincos;
 #[path = "suite/support.rs"]
 mod support;
+#[path = "suite/timing.rs"]
+mod timing;
 #[cfg(feature = "window")]
 #[path = "suite/window.rs"]
 mod window;

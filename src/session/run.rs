@@ -5,11 +5,12 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use super::{Edit, TimedEdit};
+use crate::dynamics::Surroundings;
 use crate::frame::Frame;
 use crate::machine::MachineError;
 use crate::plan::follow::Bounds;
 use crate::plan::path::{SameTip, tip_line};
-use crate::plan::{Follower, Motion, Path, PathError};
+use crate::plan::{Follower, Limits, Motion, Path, PathError, TimeError, TimeLaw, fastest};
 use crate::planar::{DriveAngles, Vector};
 use crate::pose_constant::{PlaneError, Planes, Unreachable};
 use crate::scenario::{MAX_PAYLOAD, MAX_TIME, Scenario, TaskKind};
@@ -32,6 +33,9 @@ pub enum Refusal {
     /// The path.
     #[error(transparent)]
     Path(#[from] PathError),
+    /// The fastest law.
+    #[error(transparent)]
+    Time(#[from] TimeError),
     /// The machine.
     #[error(transparent)]
     Machine(#[from] MachineError),
@@ -221,7 +225,7 @@ impl Run {
     /// Whether the planned motion, where it leads, has yet to pass limits that it kept before.
     fn leaves_limits(&self, changed: &Scenario) -> bool {
         let Guide::Motion { motion, start } = self.simulation.guide() else { return false };
-        let done = motion.law.at(self.simulation.time() - start, motion.duration).s;
+        let done = motion.profile.at(self.simulation.time() - start).s;
         (0..=64).map(|i| done + (1.0 - done) * f64::from(i) / 64.0).any(|s| {
             let q = motion.path.at(s).q;
             let keeps = |scenario: &Scenario| {
@@ -330,7 +334,14 @@ fn plan(scenario: &Scenario, planes: &Planes) -> Result<Motion, Refusal> {
         }
         TaskKind::SameTip => Path::SameTip(SameTip::new(tip, from, to, task.first_drive_to.unwrap_or(from[0]))?),
     };
-    Ok(Motion { path, law: task.law, duration: task.time })
+    if task.law.is_fastest() {
+        let model = crate::machine::Inertia::of(&scenario.machine);
+        let around = Surroundings { gravity: scenario.machine.gravity(), force: Vector::default() };
+        let smooth = task.law == TimeLaw::FastestSmooth;
+        let profile = fastest(&path, &model, &around, &Limits::of(&scenario.machine), smooth)?.profile;
+        return Ok(Motion { path, profile });
+    }
+    Ok(Motion::new(path, task.law, task.time))
 }
 
 /// Frames of a scenario with its edits, from the first to the last step, one at a time.
