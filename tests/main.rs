@@ -53,6 +53,8 @@ mod signals;
 mod sincos;
 #[path = "suite/support.rs"]
 mod support;
+#[path = "suite/timing.rs"]
+mod timing;
 #[path = "suite/trace.rs"]
 mod trace;
 #[cfg(feature = "window")]

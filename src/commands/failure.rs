@@ -98,6 +98,7 @@ impl From<Refusal> for Failure {
             Refusal::NoPlanes(_)
             | Refusal::Unreachable { .. }
             | Refusal::Path(_)
+            | Refusal::Time(_)
             | Refusal::NoCommonPlane(_)
             | Refusal::Blocked(_)
             | Refusal::Diverged { .. } => Self::no_answer(e),

@@ -30,7 +30,7 @@ const INSTANTS: usize = 2000;
 impl Forecast {
     /// Of a motion of a model.
     pub fn of(motion: &Motion, model: &Inertia, around: &Surroundings) -> Self {
-        let (time, lambda) = (motion.duration, model.lambda());
+        let (time, lambda) = (motion.duration(), model.lambda());
         let n = model.drives();
         let mut sum = Self {
             time,

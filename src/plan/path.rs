@@ -2,7 +2,9 @@
 
 use thiserror::Error;
 
+use super::Reference;
 use super::curve::{Curve, CurvePoint};
+use super::law::Progress;
 use super::table::Table;
 use crate::kinematics::{acceleration, closest_turn, end_effector, minimum_norm, two_link_rates, velocity};
 use crate::machine::Chain;
@@ -18,6 +20,18 @@ pub struct PathPoint {
     pub first: PerDrive,
     /// d²q/ds², rad.
     pub second: PerDrive,
+}
+
+impl PathPoint {
+    /// The reference where the path is passed with given rates of s: q̇ = q′ ṡ, q̈ = q″ ṡ² + q′ s̈.
+    #[inline]
+    pub fn timed(&self, p: &Progress) -> Reference {
+        Reference {
+            q: self.q,
+            qd: self.first.scaled(p.rate),
+            qdd: self.second.scaled(p.rate * p.rate).plus(p.acceleration, &self.first),
+        }
+    }
 }
 
 /// A path of the drives.
@@ -83,6 +97,15 @@ impl Path {
             Self::SameTip(path) => path.at(s),
         }
     }
+
+    /// d³q/ds³ at s, rad: zero on straight lines, else from differences of q″ over [`THIRD_OVER`] either way.
+    pub fn third(&self, s: f64) -> PerDrive {
+        let (before, after) = ((s - THIRD_OVER).max(0.0), (s + THIRD_OVER).min(1.0));
+        match self {
+            Self::Rest(q) | Self::JointLine { from: q, .. } => PerDrive::zeros(q.len()),
+            _ => self.at(after).second.minus(&self.at(before).second).scaled(1.0 / (after - before)),
+        }
+    }
 }
 
 fn on_plane(map: &PlaneMap, b: f64, curve: &Curve, s: f64) -> PathPoint {
@@ -136,6 +159,8 @@ impl Chained {
         PathPoint { q: point.q, first: point.first.scaled(1.0 / run), second: point.second.scaled(1.0 / (run * run)) }
     }
 }
+/// Difference quotients lose as much by rounding as by their length.
+const THIRD_OVER: f64 = 1e-5;
 
 #[inline]
 fn joint_line(from: &DriveAngles, to: &DriveAngles, s: f64) -> PathPoint {

@@ -3,8 +3,9 @@
 use super::Refusal;
 use crate::dynamics::Surroundings;
 use crate::machine::Inertia;
+use crate::plan::limits::Limit;
 use crate::plan::path::{Chained, SameTip, minimum_norm_path};
-use crate::plan::{Curve, Forecast, Motion, Path, Rule, trace};
+use crate::plan::{Curve, Forecast, Limits, Motion, Path, Profile, Rule, TimeLaw, fastest, trace};
 use crate::planar::{DriveAngles, Vector};
 use crate::pose_constant::{Planes, Unreachable};
 use crate::reactionless::PlanePoint;
@@ -17,6 +18,19 @@ pub struct Plan {
     pub motion: Motion,
     /// What it will cost.
     pub forecast: Forecast,
+    /// For the fastest motion: what holds it back.
+    pub pace: Option<Pace>,
+}
+
+/// What holds the fastest motion back.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pace {
+    /// T, s.
+    pub taken: f64,
+    /// The least time without limits on jerk, s.
+    pub unlimited: f64,
+    /// The limit that leads for the greatest share of the first part.
+    pub leading: Option<Limit>,
 }
 
 /// Plans the task of a scenario.
@@ -41,18 +55,47 @@ pub fn plan(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
             return Err(Refusal::Task("not yet".into()));
         }
     };
-    let motion = timed(parts, task)?;
+    let (motion, pace) = timed(scenario, parts)?;
     let model = Inertia::of(&scenario.machine);
     let around = Surroundings { gravity: scenario.machine.gravity(), force: Vector::default() };
-    Ok(Plan { forecast: Forecast::of(&motion, &model, &around), motion })
+    Ok(Plan { forecast: Forecast::of(&motion, &model, &around), motion, pace })
 }
 
-fn timed(mut parts: Vec<(Path, f64)>, task: &Task) -> Result<Motion, Refusal> {
-    let path = match parts.len() {
-        1 => parts.remove(0).0,
-        _ => Path::Chain(Chained::new(parts).ok_or_else(|| Refusal::Task("want at least two points".into()))?),
+/// The parts of a path, each from rest to rest: by a law in their share of the time, or as fast as they can.
+fn timed(scenario: &Scenario, parts: Vec<(Path, f64)>) -> Result<(Motion, Option<Pace>), Refusal> {
+    let task = &scenario.task;
+    let total: f64 = parts.iter().map(|(_, length)| length).sum();
+    let model = Inertia::of(&scenario.machine);
+    let around = Surroundings { gravity: scenario.machine.gravity(), force: Vector::default() };
+    let limits = Limits::of(&scenario.machine);
+    let mut timings = Vec::with_capacity(parts.len());
+    let mut pace: Option<Pace> = None;
+    for (path, length) in &parts {
+        let profile = if task.law.is_fastest() {
+            let fastest = fastest(path, &model, &around, &limits, task.law == TimeLaw::FastestSmooth)?;
+            let time = fastest.profile.duration();
+            let pace = pace.get_or_insert_default();
+            pace.unlimited += time / (1.0 + fastest.gap.unwrap_or(0.0));
+            pace.taken += time;
+            if pace.leading.is_none() {
+                pace.leading = fastest.limiting.first().map(|(limit, _)| *limit);
+            }
+            fastest.profile
+        } else {
+            Profile::of(task.law, task.time * length / total)
+        };
+        timings.push((profile, length / total));
+    }
+    let mut parts = parts;
+    let motion = match parts.len() {
+        1 => Motion { path: parts.remove(0).0, profile: timings.remove(0).0 },
+        _ => {
+            let nowhere = || Refusal::Task("want at least two points that are apart".into());
+            let path = Path::Chain(Chained::new(parts).ok_or_else(nowhere)?);
+            Motion { path, profile: Profile::sequence(timings) }
+        }
     };
-    Ok(Motion { path, law: task.law, duration: task.time })
+    Ok((motion, pace))
 }
 
 /// Poses of the points on the plane of the task.

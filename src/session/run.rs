@@ -9,7 +9,7 @@ use super::{Edit, TimedEdit};
 use crate::frame::Frame;
 use crate::machine::MachineError;
 use crate::plan::follow::Bounds;
-use crate::plan::{Blocked, CurveError, Follower, Motion, PathError};
+use crate::plan::{Blocked, CurveError, Follower, Motion, PathError, TimeError};
 use crate::planar::{DriveAngles, Vector};
 use crate::pose_constant::{PlaneError, Planes, Unreachable};
 use crate::reactionless::PlanePoint;
@@ -45,6 +45,9 @@ pub enum Refusal {
     /// The task asks for something that does not fit together.
     #[error("{0}")]
     Task(String),
+    /// The fastest law.
+    #[error(transparent)]
+    Time(#[from] TimeError),
     /// The machine.
     #[error(transparent)]
     Machine(#[from] MachineError),
@@ -126,7 +129,7 @@ impl Run {
 
     /// How long the planned motion takes, s.
     pub fn planned_time(&self) -> f64 {
-        self.plan.motion.duration
+        self.plan.motion.duration()
     }
 
     /// Where a pose has the end effector, m.
@@ -257,7 +260,7 @@ impl Run {
     /// Whether the planned motion, where it leads, has yet to pass limits that it kept before.
     fn leaves_limits(&self, changed: &Scenario) -> bool {
         let Guide::Motion { motion, start } = self.simulation.guide() else { return false };
-        let done = motion.law.at(self.simulation.time() - start, motion.duration).s;
+        let done = motion.profile.at(self.simulation.time() - start).s;
         (0..=64).map(|i| done + (1.0 - done) * f64::from(i) / 64.0).any(|s| {
             let q = motion.path.at(s).q;
             let keeps = |scenario: &Scenario| {

@@ -30,8 +30,13 @@ const SHAPES: [Choice<Shape>; 5] = [
     (Shape::Freehand, "freehand", "Freehand", "As drawn with the pointer: D, then drag"),
 ];
 
-const LAWS: [Choice<TimeLaw>; 1] =
-    [(TimeLaw::Quintic, "quintic", "Quintic", "Acceleration begins and ends at zero; peaks 5.7735/T²")];
+const LAWS: [Choice<TimeLaw>; 5] = [
+    (TimeLaw::Quintic, "quintic", "Quintic", "Acceleration begins and ends at zero; peaks 5.7735/T²"),
+    (TimeLaw::Septic, "septic", "Septic", "Jerk begins and ends at zero too; peaks 7.5132/T²"),
+    (TimeLaw::Trapezoidal, "trapezoidal", "Trapezoidal", "A third speeding up, a third cruising, a third braking"),
+    (TimeLaw::Fastest, "fastest", "Fastest", "As fast as torque, speed and acceleration limits allow"),
+    (TimeLaw::FastestSmooth, "fastest-smooth", "Fastest, smooth", "The same with limits on jerk"),
+];
 
 /// The most points that are listed.
 const LISTED: usize = 8;
@@ -75,6 +80,15 @@ fn choose<T: Copy + PartialEq>(
 }
 
 fn time(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
+    if session.scenario().task.law.is_fastest() {
+        let pace = session.run().plan().pace;
+        let leads = pace.and_then(|p| p.leading).map_or(String::new(), |limit| format!(", {limit} leads"));
+        let gap = pace.filter(|p| p.taken > 1.0005 * p.unlimited);
+        let gap = gap
+            .map_or(String::new(), |p| format!(", {:.1} % over unlimited jerk", 100.0 * (p.taken / p.unlimited - 1.0)));
+        note(ui, p, &format!("T = {} s{leads}{gap}", signed(session.run().planned_time(), 3)));
+        return;
+    }
     let mut time = session.scenario().task.time;
     let tip = "Duration T from A to B: peaks of torque go with 1/T²";
     let row = Row { label: "time T", unit: "s", tip, decimals: 2, speed: 0.01, range: 0.1..=10.0 };
@@ -147,7 +161,7 @@ fn points(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &m
         let last = all.len() - 1;
         let middle = 0.5 * (all[last - 1] + all[last]);
         // Where the machine can go for certain: on the path, if it is known there.
-        let on_path = session.run().motion().map(|motion| motion.at(0.5 * motion.duration));
+        let on_path = session.run().motion().map(|motion| motion.at(0.5 * motion.duration()));
         let at = on_path.filter(|_| all.len() == 2).map_or(middle, |r| session.run().place(&r.q));
         change(commands, task.adding(at), false);
     }

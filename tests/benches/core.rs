@@ -9,6 +9,8 @@ mod nine_body;
 use divan::{Bencher, black_box};
 use stillbase::dynamics::{Surroundings, inverse_with_wrench};
 use stillbase::machine::{Inertia, builtin};
+use stillbase::plan::path::tip_line;
+use stillbase::plan::{Limits, Path, fastest};
 use stillbase::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::pose_constant::plane_map;
 use stillbase::reactionless::{AngleDefinition, Boundary, Limit, PlaneMap};
@@ -172,4 +174,40 @@ fn folded_pose_count(bencher: Bencher) {
 fn folded_distance(bencher: Bencher) {
     let boundary = Boundary::of(&folded([[0.0, std::f64::consts::TAU]; 2]));
     bencher.bench_local(|| boundary.distance(black_box(Vector::new(0.2, 0.4)), black_box(2.4)));
+}
+/// The line of the end effector in case 1.
+fn tip_path() -> Path {
+    let start = DriveAngles::from([1.6875182179, 3.7146223682, 2.1801769897]);
+    let tip = builtin("nine-link").expect("built in").tip();
+    Path::Table(tip_line(tip, start, Vector::new(0.55, 0.90)).expect("regular"))
+}
+
+/// The fastest motion along a curve under limits on torque, on a grid of 1000 spaces.
+#[divan::bench]
+fn fastest_of_1000_points(bencher: Bencher) {
+    let machine = builtin("nine-link").expect("built in");
+    let (model, limits, path) = (Inertia::of(machine), Limits::of(machine), tip_path());
+    bencher.bench_local(|| fastest(black_box(&path), &model, &Surroundings::default(), &limits, false));
+}
+
+/// The same with limits on jerk, searched for and checked.
+#[divan::bench]
+fn fastest_smooth_of_1000_points(bencher: Bencher) {
+    let machine = builtin("nine-link").expect("built in");
+    let limits = Limits { jerk: PerDrive::from([2000.0; 3]), ..Limits::of(machine) };
+    let (model, path) = (Inertia::of(machine), tip_path());
+    bencher.bench_local(|| fastest(black_box(&path), &model, &Surroundings::default(), &limits, true));
+}
+
+/// Looking up such a motion at an instant.
+#[divan::bench]
+fn profile_at(bencher: Bencher) {
+    let machine = builtin("nine-link").expect("built in");
+    let (model, limits) = (Inertia::of(machine), Limits::of(machine));
+    let found = fastest(&tip_path(), &model, &Surroundings::default(), &limits, false).expect("limits");
+    let (profile, mut t) = (found.profile, 0.0);
+    bencher.bench_local(|| {
+        t = (t + 0.377 * profile.duration()) % profile.duration();
+        black_box(&profile).at(black_box(t))
+    });
 }

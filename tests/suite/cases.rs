@@ -94,7 +94,7 @@ fn case_3_torque_is_one_line() {
     let (from, to) = (case.frames[0].q, case.motion().path.at(1.0).q);
     let d = case.inertia().diagonals();
     for frame in &case.frames {
-        let s = case.motion().law.at(frame.time, 1.0);
+        let s = case.motion().profile.at(frame.time);
         let want = PerDrive::from_fn(3, |k| d[k] * (to[k] - from[k]) * s.acceleration);
         let off = frame.torque.plus(-1.0, &want).max_abs();
         // Feedback turns the integrator's error of 1e-11 rad into torque.
@@ -113,7 +113,7 @@ fn case_1_keeps_to_its_line_with_least_rates() {
     let tip = case.scenario.machine.tip();
     let [a, b] = [Vector::new(0.50, 0.50), Vector::new(0.55, 0.90)];
     for frame in &case.frames {
-        let s = case.motion().law.at(frame.time, 1.0).s;
+        let s = case.motion().profile.at(frame.time).s;
         assert!((frame.tip - (a + s * (b - a))).norm() < 1e-10, "at {} s: {}", frame.time, frame.tip);
         // The null vector of J: rates along it move no end effector. Least rates have none of it.
         let e = frame.q.units();

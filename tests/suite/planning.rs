@@ -47,7 +47,7 @@ fn every_shape_is_reactionless() {
         assert!(frames.iter().all(|f| f.q_reference.0.minus(&f.q.0).max_abs() < 1e-6), "{text}");
         let points = scenario.task.points();
         let end = if closed { points[0] } else { points[points.len() - 1] };
-        assert!((last.tip - end).norm() < 1e-8, "{text}: {}", last.tip);
+        assert!((last.tip - end).norm() < 1e-6, "{text}: {}", last.tip);
         // Points at which the path must be: all but those whose corner is rounded or smoothed.
         let exact = !text.contains("blend") && !text.contains("freehand");
         for p in points.iter().filter(|_| exact) {
