@@ -1,15 +1,25 @@
 //! Plans: a path and a time law make the reference that control follows.
 
+mod convex;
+pub mod corridor;
 pub mod curve;
 pub mod follow;
+pub mod inverse;
 pub mod law;
+pub mod least_reaction;
+pub mod null_space;
 pub mod path;
+pub mod pose_integral;
+pub mod price;
 pub mod table;
 
+pub use corridor::Corridor;
 pub use curve::CurvePoint;
 pub use follow::Follower;
 pub use law::TimeLaw;
+pub use least_reaction::LeastReaction;
 pub use path::{Path, PathError};
+pub use price::Price;
 pub use table::Table;
 
 use crate::planar::{DriveAngles, PerDrive};

@@ -66,6 +66,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("indicatif", &["commands"]),
     ("csv", &["commands"]),
     ("serde_json", &["commands"]),
+    ("clarabel", &["plan"]),
     ("toml", &["machine", "scenario", "session"]),
 ];
 
