@@ -11,7 +11,7 @@ use crate::planar::Vector;
 use crate::reactionless::{NoReach, PlaneMap, PlanePoint, SLACK};
 
 /// Points of a self-motion that tell its parts from each other.
-const SAMPLES: usize = 9;
+const SAMPLES: usize = 25;
 /// From one station to the next a pose may move by this much, rad; further away is another branch.
 const JUMP: f64 = 0.2;
 /// Steps of b below this are rounding, rad.
@@ -30,7 +30,7 @@ pub struct Station {
     pub high: f64,
     /// Poses from b_min to b_max; never none.
     line: Vec<PlanePoint>,
-    /// The sign of det ∂(x, y)/∂(a_1, a_2) on the sheet.
+    /// As det ∂(x, y)/∂(a_1, a_2) on the sheet, in sign.
     det: f64,
 }
 
@@ -79,7 +79,9 @@ pub enum CorridorError {
         reason: NoReach,
     },
     /// Other poses only.
-    #[error("at u = {u:.3} the sheet of the start pose ends: the rest of the motion wants another elbow")]
+    #[error(
+        "at u = {u:.3} the sheet of the start pose ends: the rest of the motion wants another elbow, or wider joint limits"
+    )]
     Ends {
         /// t/T.
         u: f64,
@@ -200,16 +202,18 @@ fn station(map: &PlaneMap, u: f64, point: CurvePoint, near: PlanePoint, det: f64
     for branch in map.self_motion(p, SAMPLES) {
         for mut line in sheets(map, branch) {
             let (low, high) = (line[0].b, line[line.len() - 1].b);
+            // Folds end a part, so that inside it det has one sign; a sheet may have shrunk to a point, where it is anything.
+            let dets = line.iter().map(|at| map.det(at.a));
+            let own = dets.fold(0.0, |most: f64, det| if det.abs() > most.abs() { det } else { most });
+            if own * det < 0.0 && high - low > FLAT {
+                continue;
+            }
             let endless = high - low >= map.period() - 1e-9;
             let turns = map.period() * ((near.b - 0.5 * (low + high)) / map.period()).round();
             line.iter_mut().for_each(|at| at.b += turns);
             let (low, high) = if endless { (f64::NEG_INFINITY, f64::INFINITY) } else { (low + turns, high + turns) };
-            let candidate = Station { u, point, low, high, line, det };
+            let candidate = Station { u, point, low, high, line, det: own };
             let Some(at) = candidate.pose(map, near.b.clamp(low, high)) else { continue };
-            // A sheet may have shrunk to a point, where det is anything.
-            if map.det(at.a) * det < 0.0 && high - low > FLAT {
-                continue;
-            }
             let moved = (at.a[0] - near.a[0]).hypot(at.a[1] - near.a[1]);
             if moved < JUMP && best.as_ref().is_none_or(|(least, _)| moved < *least) {
                 best = Some((moved, candidate));

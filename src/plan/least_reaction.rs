@@ -11,16 +11,17 @@
 //! | b, b′, b″ | pose constant and derivatives by u | rad |
 //! | n_B | −D_1 b″/T² | N m |
 //!
-//! b″ is continuous, linear between even nodes, so that n_B has no jumps between start and end; b′ = 0 at both.
+//! b′ = 0 at both ends; n_B is continuous in between, linear between even nodes.
 
 use thiserror::Error;
 
-use super::convex::Program;
 use super::corridor::{Corridor, CorridorError};
 use super::curve::CurvePoint;
 use super::inverse::pose_along;
 use super::path::{PathError, minimum_norm_path};
-use super::price::PriceError;
+use super::pose_course::{PoseCourse, Reaction};
+use super::pose_program::{KEPT, STATIONS, least_course};
+use super::price::{Price, PriceError};
 use super::table::Table;
 use crate::machine::{Chain, Inertia};
 use crate::planar::DriveAngles;
@@ -30,16 +31,6 @@ use crate::reactionless::{PlaneMap, PlanePoint, SLACK};
 pub const SPACES: usize = 96;
 /// The most pieces.
 pub const MAX_SPACES: usize = 512;
-/// Stations of the corridor in each piece; the program keeps every second one, and all are checked.
-const STATIONS: usize = 8;
-/// Between two stations that the program keeps.
-const KEPT: usize = 2;
-/// b keeps this far from the corridor's ends, rad, or a tenth of its width: at a fold the joints would be infinitely fast.
-const MARGIN: f64 = 1e-3;
-/// Where the start pose is nearer to an end than that, the margin grows over this part of the motion.
-const GROWING: f64 = 0.1;
-/// How often the margin is widened where the course passes the corridor's end between kept stations.
-const ROUNDS: usize = 4;
 
 /// What is to be least.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,22 +39,6 @@ pub enum Goal {
     Rms,
     /// The peak of |n_B|, and of all motions with that peak the least ∫ n_B² dt.
     Peak,
-}
-
-/// b over u = t/T: cubic pieces, b″ continuous.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PoseCourse {
-    /// b, b′, b″ at even u.
-    nodes: Vec<[f64; 3]>,
-}
-
-/// What the base feels of a motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reaction {
-    /// Largest |n_B|, N m.
-    pub peak: f64,
-    /// Root of the mean of n_B², N m.
-    pub rms: f64,
 }
 
 /// A motion of the end effector with the least reaction.
@@ -114,71 +89,6 @@ pub enum LeastReactionError {
     },
 }
 
-impl PoseCourse {
-    /// The same b throughout.
-    pub fn constant(b: f64) -> Self {
-        Self { nodes: vec![[b, 0.0, 0.0]; 2] }
-    }
-
-    /// From b″ at even nodes, from rest; changed by what is linear in u so that it ends at rest, and at `end` if given.
-    fn integrated(start: f64, mut second: Vec<f64>, end: Option<f64>) -> Self {
-        let spaces = second.len() - 1;
-        let h = 1.0 / spaces as f64;
-        let sum = |second: &[f64]| {
-            let (mut at, mut nodes) = ([start, 0.0, second[0]], Vec::with_capacity(spaces + 1));
-            nodes.push(at);
-            for w in second.windows(2) {
-                at = [at[0] + h * at[1] + h * h * (2.0 * w[0] + w[1]) / 6.0, at[1] + h * (w[0] + w[1]) / 2.0, w[1]];
-                nodes.push(at);
-            }
-            (nodes, at)
-        };
-        let (_, last) = sum(&second);
-        // ∫ (α + γ (u − ½)) du = α, and ∫ (1 − u) (α + γ (u − ½)) du = α/2 − γ/12.
-        let alpha = -last[1];
-        let gamma = end.map_or(0.0, |end| 12.0 * (last[0] - end + alpha / 2.0));
-        for (i, x) in second.iter_mut().enumerate() {
-            *x += alpha + gamma * (i as f64 * h - 0.5);
-        }
-        Self { nodes: sum(&second).0 }
-    }
-
-    /// b, b′, b″ at even u from 0 to 1.
-    pub fn nodes(&self) -> &[[f64; 3]] {
-        &self.nodes
-    }
-
-    /// b, b′, b″ at u, 0..1.
-    pub fn at(&self, u: f64) -> [f64; 3] {
-        let spaces = self.nodes.len() - 1;
-        let x = u.clamp(0.0, 1.0) * spaces as f64;
-        let i = (x as usize).min(spaces - 1);
-        let (h, [b, first, second]) = (1.0 / spaces as f64, self.nodes[i]);
-        let (d, third) = (u.clamp(0.0, 1.0) - i as f64 * h, (self.nodes[i + 1][2] - second) / h);
-        [
-            b + d * (first + d * (second / 2.0 + d * third / 6.0)),
-            first + d * (second + d * third / 2.0),
-            second + d * third,
-        ]
-    }
-
-    /// Whether b never changes.
-    pub fn is_constant(&self) -> bool {
-        self.nodes.iter().all(|node| node[1] == 0.0 && node[2] == 0.0)
-    }
-
-    /// What the base feels of it on a machine of D_1, kg m², in a motion of `duration`, s: exact, as b″ is linear
-    /// between nodes.
-    pub fn reaction(&self, inertia: f64, duration: f64) -> Reaction {
-        let spaces = (self.nodes.len() - 1) as f64;
-        let peak = self.nodes.iter().fold(0.0_f64, |m, node| m.max(node[2].abs()));
-        let squares: f64 =
-            self.nodes.windows(2).map(|w| (w[0][2] * w[0][2] + w[0][2] * w[1][2] + w[1][2] * w[1][2]) / 3.0).sum();
-        let scale = inertia / (duration * duration);
-        Reaction { peak: scale * peak, rms: scale * (squares / spaces).sqrt() }
-    }
-}
-
 impl LeastReaction {
     /// Plans b along a motion of the end effector p(u), u = t/T, that starts from a pose and rests at both ends; `end` is
     /// b at the end, rad, if it is not free.
@@ -209,7 +119,7 @@ impl LeastReaction {
         goal: Goal,
         spaces: usize,
     ) -> Result<Self, LeastReactionError> {
-        let inertia = super::price::Price::of(model, 0.0)?.inertia();
+        let inertia = Price::of(model, 0.0)?.inertia();
         let spaces = spaces.clamp(2, MAX_SPACES);
         let corridor = Corridor::along(map, curve, start, spaces * STATIONS)?;
         let stations = corridor.stations();
@@ -230,7 +140,8 @@ impl LeastReaction {
                 return Ok(Self { corridor, course, path, inertia });
             }
         }
-        let course = planned(&corridor, end, goal, spaces)?;
+        let course = least_course(&corridor, end, goal == Goal::Peak, spaces)
+            .map_err(|solver| LeastReactionError::NoCourse { solver })?;
         let path = followed(&corridor, &course)?;
         Ok(Self { corridor, course, path, inertia })
     }
@@ -343,120 +254,4 @@ fn followed(corridor: &Corridor, course: &PoseCourse) -> Result<Table, LeastReac
         nodes.push(node);
     }
     Table::even(nodes).ok_or(LeastReactionError::NotFollowed { u: 0.0 })
-}
-
-/// The program, with the margin widened until the course stays within the corridor at every station.
-fn planned(corridor: &Corridor, end: Option<f64>, goal: Goal, spaces: usize) -> Result<PoseCourse, LeastReactionError> {
-    let mut margin = MARGIN;
-    let mut rounds = 0;
-    loop {
-        let course = solved(corridor, end, goal, spaces, margin)?;
-        let past = corridor.stations().iter().fold(0.0_f64, |most, station| {
-            let b = course.at(station.u)[0];
-            most.max(station.low - b).max(b - station.high)
-        });
-        // At the ends b is given, and may lie on the corridor's own end.
-        if past <= SLACK {
-            return Ok(course);
-        }
-        rounds += 1;
-        if rounds > ROUNDS {
-            return Err(LeastReactionError::NoCourse { solver: format!("{past:.1e} rad past its end between nodes") });
-        }
-        margin += 2.0 * past;
-    }
-}
-
-/// Unknowns b − b_0, b′, b″ of each node, side by side, so that every row has few of them.
-fn solved(
-    corridor: &Corridor,
-    end: Option<f64>,
-    goal: Goal,
-    spaces: usize,
-    margin: f64,
-) -> Result<PoseCourse, LeastReactionError> {
-    let none = |solver: String| LeastReactionError::NoCourse { solver };
-    let start = corridor.start().b;
-    let rows = |more: usize| program(corridor, end, spaces, margin, more);
-    let second = |x: &[f64]| (0..=spaces).map(|i| x[3 * i + 2]).collect::<Vec<f64>>();
-    let x = match goal {
-        Goal::Rms => squared(rows(0), spaces).solve().map_err(none)?,
-        Goal::Peak => {
-            let top = 3 * (spaces + 1);
-            let mut linear = rows(1);
-            linear.add_linear(top, 1.0);
-            for i in 0..=spaces {
-                linear.at_most([(3 * i + 2, 1.0), (top, -1.0)], 0.0);
-                linear.at_most([(3 * i + 2, -1.0), (top, -1.0)], 0.0);
-            }
-            let peak = linear.solve().map_err(none)?[top];
-            let bound = peak * (1.0 + 1e-7);
-            let mut bounded = rows(0);
-            for i in 0..=spaces {
-                bounded.at_most([(3 * i + 2, 1.0)], bound);
-                bounded.at_most([(3 * i + 2, -1.0)], bound);
-            }
-            squared(bounded, spaces).solve().map_err(none)?
-        }
-    };
-    Ok(PoseCourse::integrated(start, second(&x), end))
-}
-
-/// ∫ b″² du.
-fn squared(mut program: Program, spaces: usize) -> Program {
-    let third = 1.0 / (3.0 * spaces as f64);
-    for i in 0..spaces {
-        let (x, y) = (3 * i + 2, 3 * i + 5);
-        program.add_product(x, x, third);
-        program.add_product(x, y, third);
-        program.add_product(y, y, third);
-    }
-    program
-}
-
-/// What holds of every course, with room for more unknowns behind.
-fn program(corridor: &Corridor, end: Option<f64>, spaces: usize, margin: f64, more: usize) -> Program {
-    let start = corridor.start().b;
-    let h = 1.0 / spaces as f64;
-    let mut program = Program::over(3 * (spaces + 1) + more);
-    program.equal([(0, 1.0)], 0.0);
-    program.equal([(1, 1.0)], 0.0);
-    program.equal([(3 * spaces + 1, 1.0)], 0.0);
-    if let Some(end) = end {
-        program.equal([(3 * spaces, 1.0)], end - start);
-    }
-    for i in 0..spaces {
-        let [b, v, w] = [3 * i, 3 * i + 1, 3 * i + 2];
-        program.equal([(v + 3, 1.0), (v, -1.0), (w, -h / 2.0), (w + 3, -h / 2.0)], 0.0);
-        program.equal([(b + 3, 1.0), (b, -1.0), (v, -h), (w, -h * h / 3.0), (w + 3, -h * h / 6.0)], 0.0);
-    }
-    for (k, station) in corridor.stations().iter().enumerate().skip(KEPT).step_by(KEPT) {
-        let i = (k / STATIONS).min(spaces - 1);
-        let d = (k - i * STATIONS) as f64 / STATIONS as f64 * h;
-        let cubic = d * d * d / (6.0 * h);
-        let [b, v, w] = [3 * i, 3 * i + 1, 3 * i + 2];
-        let row = |s: f64| [(b, s), (v, s * d), (w, s * (d * d / 2.0 - cubic)), (w + 3, s * cubic)];
-        let [low, high] = narrowed(corridor, k, end, margin);
-        if station.u < 1.0 || end.is_none() {
-            program.at_most(row(1.0), high - start);
-            program.at_most(row(-1.0), start - low);
-        }
-    }
-    program
-}
-
-/// The corridor at a station less the margin. Where a given end of the course lies within the margin, it grows from there.
-fn narrowed(corridor: &Corridor, k: usize, end: Option<f64>, margin: f64) -> [f64; 2] {
-    let stations = corridor.stations();
-    let (station, last) = (&stations[k], &stations[stations.len() - 1]);
-    let from = |gap: f64, u: f64| margin.min(gap.max(0.0) + margin * (u / GROWING).powi(3));
-    let inner = |gap: [f64; 2]| {
-        let tail = if end.is_some() { from(gap[1], 1.0 - station.u) } else { margin };
-        from(gap[0], station.u).min(tail).min(0.1 * (station.high - station.low))
-    };
-    let (b_0, b_1) = (corridor.start().b, end.unwrap_or(0.0));
-    [
-        station.low + inner([b_0 - stations[0].low, b_1 - last.low]),
-        station.high - inner([stations[0].high - b_0, last.high - b_1]),
-    ]
 }

@@ -3,13 +3,16 @@
 mod convex;
 pub mod corridor;
 pub mod curve;
+pub mod drift;
 pub mod follow;
 pub mod inverse;
 pub mod law;
 pub mod least_reaction;
 pub mod null_space;
 pub mod path;
+pub mod pose_course;
 pub mod pose_integral;
+mod pose_program;
 pub mod price;
 pub mod table;
 

@@ -5,7 +5,8 @@ use stillbase::kinematics::end_effector;
 use stillbase::machine::{Inertia, Machine, builtin};
 use stillbase::plan::corridor::CorridorError;
 use stillbase::plan::inverse::pose_along;
-use stillbase::plan::least_reaction::{FixedB, Goal, LeastReactionError, PoseCourse};
+use stillbase::plan::least_reaction::{FixedB, Goal, LeastReactionError};
+use stillbase::plan::pose_course::PoseCourse;
 use stillbase::plan::{Corridor, CurvePoint, LeastReaction, TimeLaw};
 use stillbase::planar::{DriveAngles, Vector, unit};
 use stillbase::pose_constant::plane_map;
@@ -166,7 +167,7 @@ fn the_course_keeps_its_corridor() {
             assert!(!plan.course().is_constant());
             let felt = plan.reaction(1.0);
             let (mut peak, mut square) = (0.0_f64, 0.0);
-            let n = 3000;
+            let n = 600;
             for i in 0..=n {
                 let u = f64::from(i) / f64::from(n);
                 let [on, first, second] = plan.course().at(u);
@@ -185,7 +186,7 @@ fn the_course_keeps_its_corridor() {
                 peak = peak.max(n_b.abs());
                 square += n_b * n_b / f64::from(n) * if i == 0 || i == n { 0.5 } else { 1.0 };
             }
-            assert!(peak <= felt.peak + 1e-8 && (square.sqrt() - felt.rms).abs() < 2e-3 * felt.rms);
+            assert!(peak <= felt.peak + 1e-8 && (square.sqrt() - felt.rms).abs() < 5e-3 * felt.rms);
             let ends = [plan.course().at(0.0), plan.course().at(1.0)];
             assert_eq!((ends[0][0], ends[0][1]), (b, 0.0));
             assert!(ends[1][1].abs() < 1e-14 && end.is_none_or(|end| (ends[1][0] - end).abs() < 1e-14));
@@ -336,4 +337,50 @@ fn what_cannot_be_planned_says_why() {
     let plan = plan(A, B, 1.75, None, goal);
     let q = DriveAngles::from(map.lift(pose(&map, A, 1.75)));
     assert!(plan.path().at(0.0).q.0.minus(&q.0).max_abs() < 1e-12);
+}
+
+/// Lines anywhere, from any pose, on either sheet: planned and kept, or refused with a reason.
+#[test]
+fn any_line_is_planned_or_refused() {
+    let (map, model) = parts();
+    let wide = map.with_limits([Limit { min: -0.6, max: 4.5 }; 2]);
+    let mut noise = 1u64;
+    let mut next = |low: f64, high: f64| {
+        noise = noise.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        low + (high - low) * (noise >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let mut planned = 0;
+    for k in 0..40 {
+        let map = if k % 2 == 0 { map } else { wide };
+        let [a1, a2] = map.limits();
+        let start = PlanePoint { a: [next(a1.min, a1.max), next(a2.min, a2.max)], b: next(-3.0, 9.0) };
+        let from = map.forward(start.a, start.b);
+        let curve = line(from, from + Vector::new(next(-0.3, 0.3), next(-0.3, 0.3)));
+        let goal = if k % 3 == 0 { Goal::Peak } else { Goal::Rms };
+        match LeastReaction::plan_in(&map, &model, &curve, start, None, goal, 24) {
+            Err(error) => {
+                let far = matches!(error, LeastReactionError::Corridor(CorridorError::Unreachable { .. }));
+                let ends = matches!(error, LeastReactionError::Corridor(CorridorError::Ends { .. }));
+                // Within [0, π]² there is one sheet, which ends where the arms do.
+                assert!(far || (ends && k % 2 == 1), "line {k}: {error}");
+            }
+            Ok(plan) => {
+                planned += 1;
+                let det = map.det(start.a);
+                for i in 0..=100 {
+                    let u = f64::from(i) / 100.0;
+                    let at = plan.path().at(u);
+                    let on = map.project(&at.q);
+                    let off = (end_effector(nine_link().tip(), &at.q.units()) - curve(u).p).norm();
+                    assert!(off < 1e-5, "line {k}, u = {u}: {off:e} m");
+                    assert!(map.det(on.a) * det > 0.0, "line {k}, u = {u}");
+                    assert!(
+                        map.limits().iter().zip(on.a).all(|(l, a)| l.contains(a, 1e-6)),
+                        "line {k}, u = {u}: {on:?}"
+                    );
+                }
+            }
+        }
+    }
+    assert!(planned >= 34, "{planned} of 40");
 }

@@ -5,10 +5,8 @@ use proptest::prelude::*;
 use stillbase::dynamics::{Surroundings, angular_momentum, base_wrench, mass_matrix};
 use stillbase::kinematics::{end_effector, velocity};
 use stillbase::machine::{Inertia, Machine, builtin, parse};
-use stillbase::plan::null_space::{
-    NullSpace, NullSpaceError, circle, drift, drift_in, is_integrable, momentum_row, momentum_row_rate, rates, twist,
-    zero_momentum_path,
-};
+use stillbase::plan::drift::{DriftError, circle, drift, drift_in, zero_momentum_path};
+use stillbase::plan::null_space::{NullSpace, is_integrable, momentum_row, momentum_row_rate, rates, twist};
 use stillbase::plan::pose_integral::PoseIntegral;
 use stillbase::planar::{DriveAngles, PerDrive, Vector};
 
@@ -324,11 +322,11 @@ fn a_cycle_is_a_path_of_zero_moment() {
 #[test]
 fn what_cannot_be_followed_is_refused() {
     let model = unbalanced(0.1, 0.6);
-    assert_eq!(drift(&serial(2, 0.0), [0.0; 2].into(), round(0.1), 1), Err(NullSpaceError::Drives { drives: 2 }));
+    assert_eq!(drift(&serial(2, 0.0), [0.0; 2].into(), round(0.1), 1), Err(DriftError::Drives { drives: 2 }));
     let away = circle(Vector::new(0.5, 0.5), Vector::new(0.7, 0.5));
-    assert!(matches!(drift(&model, Q.into(), away, 1), Err(NullSpaceError::Start { miss }) if miss > 0.1));
+    assert!(matches!(drift(&model, Q.into(), away, 1), Err(DriftError::Start { miss }) if miss > 0.1));
     let half = |s: f64| round(0.08)(0.5 * s);
-    assert!(matches!(drift(&model, Q.into(), half, 1), Err(NullSpaceError::Open { gap }) if (gap - 0.16).abs() < 1e-9));
+    assert!(matches!(drift(&model, Q.into(), half, 1), Err(DriftError::Open { gap }) if (gap - 0.16).abs() < 1e-9));
     // A circle that leaves the arm's reach.
     let error = drift(&model, Q.into(), round(1.0), 1).expect_err("too large").to_string();
     assert!(error.contains("no rates of zero momentum follow it") && error.contains("time 1 round"), "{error}");
