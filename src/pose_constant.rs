@@ -227,7 +227,7 @@ impl Planes {
         let common = self.common(points)?;
         // A hair inside, so that rounding does not put the pose outside again.
         let nearest = common.nearest(b)?;
-        let served = self.serve(points, nearest).or_else(|_| self.serve(points, inwards(&common, nearest))).ok()?;
+        let served = self.serve(points, nearest).or_else(|_| self.serve(points, common.inwards(nearest, 1e-9))).ok()?;
         Some(served.into_iter().map(|x| PlanePoint { a: x.a, b }).collect())
     }
 
@@ -296,13 +296,6 @@ impl Planes {
             }
         }
     }
-}
-
-/// A b a hair further inside the interval that it is an end of.
-fn inwards(set: &BSet, b: f64) -> f64 {
-    let lifted = |x: f64| x + set.period * ((b - x) / set.period).round();
-    let middles = set.intervals.iter().map(|[low, high]| lifted(0.5 * (low + high)));
-    middles.min_by(|x, y| (x - b).abs().total_cmp(&(y - b).abs())).map_or(b, |middle| b + (middle - b) * 1e-9)
 }
 
 /// `b from 2.216 to 2.661 rad`.

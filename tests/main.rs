@@ -24,14 +24,20 @@ mod gpu;
 mod inside;
 #[path = "suite/layers.rs"]
 mod layers;
+#[path = "suite/least_reaction.rs"]
+mod least_reaction;
 #[path = "suite/machine_file.rs"]
 mod machine_file;
 #[path = "suite/mesh.rs"]
 mod mesh;
 #[path = "suite/nine_body.rs"]
 mod nine_body;
+#[path = "suite/null_space.rs"]
+mod null_space;
 #[path = "suite/planning.rs"]
 mod planning;
+#[path = "suite/price.rs"]
+mod price;
 #[path = "suite/reach.rs"]
 mod reach;
 #[cfg(feature = "record")]

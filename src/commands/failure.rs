@@ -99,6 +99,9 @@ impl From<Refusal> for Failure {
             | Refusal::Unreachable { .. }
             | Refusal::Path(_)
             | Refusal::Time(_)
+            | Refusal::Price(_)
+            | Refusal::LeastReaction(_)
+            | Refusal::Drift(_)
             | Refusal::NoCommonPlane(_)
             | Refusal::Blocked(_)
             | Refusal::Diverged { .. } => Self::no_answer(e),

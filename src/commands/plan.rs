@@ -5,12 +5,14 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use stillbase::files::write_new;
-use stillbase::machine;
+use stillbase::machine::{self, Inertia};
 use stillbase::plan::Blocked;
+use stillbase::plan::least_reaction::{FixedB, Verdicts};
+use stillbase::plan::price::FloatingBase;
 use stillbase::planar::Vector;
 use stillbase::pose_constant::Planes;
 use stillbase::reactionless::BSet;
-use stillbase::scenario::{Change, Scenario};
+use stillbase::scenario::{Change, Scenario, TaskKind};
 use stillbase::session::{Refusal, Run};
 
 use super::failure::Failure;
@@ -57,6 +59,18 @@ pub struct Plan {
     /// Time, s, for the laws that do not find it themselves
     #[arg(long, value_name = "T")]
     time: Option<f64>,
+    /// How often a closed path is run through, for zero-momentum
+    #[arg(long, value_name = "N")]
+    cycles: Option<u32>,
+    /// Pose constant at the last point, rad, for change-b and least-reaction; by default the nearest that serves it
+    #[arg(long, value_name = "B", value_parser = pose_constant)]
+    b_to: Option<f64>,
+    /// Bound on |n_B| while b changes, N m, for change-b: it sets the time
+    #[arg(long, value_name = "N_B")]
+    moment_limit: Option<f64>,
+    /// A base that floats freely, with its mass, kg, and inertia, kg m²: by how much would change-b turn it
+    #[arg(long, value_name = "MASS,INERTIA", value_parser = floating_base)]
+    base: Option<FloatingBase>,
     /// Write the plan as a scenario
     #[arg(short, long, value_name = "FILE.toml")]
     output: Option<PathBuf>,
@@ -69,6 +83,14 @@ pub struct Plan {
     format: Format,
 }
 
+fn floating_base(text: &str) -> Result<FloatingBase, String> {
+    let numbers: Vec<f64> = text.split(',').filter_map(|x| x.trim().parse().ok()).collect();
+    match numbers[..] {
+        [mass, inertia] => Ok(FloatingBase { mass, inertia, com: Vector::default() }),
+        _ => Err("want MASS,INERTIA, such as 40,3".into()),
+    }
+}
+
 #[derive(Clone, Copy, ValueEnum)]
 enum Kind {
     /// b is held: nothing reaches the base
@@ -79,6 +101,8 @@ enum Kind {
     LeastReaction,
     /// From one plane to another, at a price
     ChangeB,
+    /// At zero momentum, whatever the machine
+    ZeroMomentum,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -125,8 +149,68 @@ struct Answer {
     moment_impulse: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     peak_base_force: Option<f64>,
+    /// For the fastest motion: the limit that leads.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    limiting: Option<String>,
+    /// For the fastest smooth motion: T/T* − 1, T* without limits on jerk.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gap: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    price: Option<OfPrice>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    alternatives: Option<OfVerdicts>,
+    /// The drives at the start and after each cycle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cycles: Option<Vec<Vec<f64>>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     blocked: Option<OfBlocked>,
+}
+
+/// What a change of b costs.
+#[derive(Serialize)]
+struct OfPrice {
+    delta_b: f64,
+    /// Of any motion in this time.
+    least_peak: f64,
+    /// How much a base given by --base turns.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    base_turn: Option<f64>,
+}
+
+/// Three ways to make the same motion of the end effector.
+#[derive(Serialize)]
+struct OfVerdicts {
+    fixed_b_serves: bool,
+    /// t/T from which on it does not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fixed_b_until: Option<f64>,
+    least_peak: f64,
+    least_rms: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    minimum_norm_peak: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    minimum_norm_rms: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    minimum_norm_keeps_limits: Option<bool>,
+}
+
+impl From<&Verdicts> for OfVerdicts {
+    fn from(verdicts: &Verdicts) -> Self {
+        let until = match verdicts.fixed {
+            FixedB::Serves => None,
+            FixedB::Leaves { u, .. } => Some(u),
+        };
+        let norm = verdicts.minimum_norm.as_ref().ok();
+        Self {
+            fixed_b_serves: until.is_none(),
+            fixed_b_until: until,
+            least_peak: verdicts.least.peak,
+            least_rms: verdicts.least.rms,
+            minimum_norm_peak: norm.map(|n| n.reaction.peak),
+            minimum_norm_rms: norm.map(|n| n.reaction.rms),
+            minimum_norm_keeps_limits: norm.map(|n| n.keeps_limits),
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -174,6 +258,11 @@ impl Plan {
             peak_base_moment: None,
             moment_impulse: None,
             peak_base_force: None,
+            limiting: None,
+            gap: None,
+            price: None,
+            alternatives: None,
+            cycles: None,
             blocked: None,
         };
         match Run::new(&scenario) {
@@ -189,6 +278,23 @@ impl Plan {
                 answer.peak_base_moment = Some(forecast.moment);
                 answer.moment_impulse = Some(forecast.impulse);
                 answer.peak_base_force = Some(forecast.force);
+                answer.limiting = plan.pace.and_then(|pace| pace.leading).map(|limit| limit.to_string());
+                answer.alternatives = plan.verdicts.as_ref().map(OfVerdicts::from);
+                answer.cycles = (!plan.cycles.is_empty()).then(|| plan.cycles.iter().map(|q| q.to_vec()).collect());
+                if let Some(price) = plan.price {
+                    let model = Inertia::of(&run.scenario().machine);
+                    let base_turn = self.base.map(|base| price.base_turn(&model, &base)).transpose();
+                    answer.price = Some(OfPrice {
+                        delta_b: price.delta_b(),
+                        least_peak: price.least_peak(forecast.time),
+                        base_turn: base_turn.map_err(|e| Failure::wrong_input(e).of("--base"))?,
+                    });
+                } else if self.base.is_some() {
+                    return Err(Failure::wrong_input(
+                        "--base: want --kind change-b, only a change of b turns the base",
+                    ));
+                }
+                answer.gap = plan.pace.map(|pace| pace.taken / pace.unlimited - 1.0);
                 self.format.print(&answer, table)?;
                 if let Some(file) = &self.output {
                     write_new(file, scenario.to_toml().as_bytes(), self.force)?;
@@ -243,7 +349,15 @@ impl Plan {
         for (key, value) in words.into_iter().filter_map(|(key, value)| Some((key, value?))) {
             change.insert(key.into(), value.into());
         }
-        for (key, value) in [("blend", self.blend), ("time", self.time), ("b", self.b)] {
+        let numbers = [
+            ("blend", self.blend),
+            ("time", self.time),
+            ("b", self.b),
+            ("b_to", self.b_to),
+            ("moment_limit", self.moment_limit),
+        ];
+        change.extend(self.cycles.map(|n| ("cycles".to_owned(), i64::from(n).into())));
+        for (key, value) in numbers {
             change.extend(value.map(|value| (key.to_owned(), value.into())));
         }
         if self.blend.is_some() {
@@ -253,7 +367,13 @@ impl Plan {
             change.insert("closed".into(), true.into());
         }
         change_task(&mut scenario, &change)?;
-        if self.b.is_none() && !self.points.is_empty() {
+        let common_wanted = scenario.task.kind == TaskKind::Reactionless;
+        if self.b.is_none() && !self.points.is_empty() && !common_wanted {
+            // The middle of what serves the first point.
+            let planes = Planes::of(&scenario.machine)?;
+            let sets = planes.common(&scenario.task.points()[..1]).map_or(Vec::new(), |set| set.intervals);
+            scenario.task.b = sets.first().map_or(scenario.task.b, |[low, high]| 0.5 * (low + high));
+        } else if self.b.is_none() && !self.points.is_empty() {
             // The middle of the widest range that serves all points, as far from every edge as it gets.
             let planes = Planes::of(&scenario.machine)?;
             let sets = planes.common(&scenario.task.points()).map_or(Vec::new(), |set| set.intervals);
@@ -286,5 +406,34 @@ fn table(answer: &Answer) -> String {
     row("peak |n_B|".into(), answer.peak_base_moment, 9, "N m");
     row("∫ |n_B| dt".into(), answer.moment_impulse, 9, "N m s");
     row("peak |f_B|".into(), answer.peak_base_force, 9, "N");
-    table.to_string().trim_start().to_owned()
+    let mut row = |name: String, value: Option<f64>, unit: &str| {
+        if let Some(value) = value {
+            table.row([name, fixed(value, 6), unit.into()]);
+        }
+    };
+    if let Some(price) = &answer.price {
+        row("Δb".into(), Some(price.delta_b), "rad");
+        row("least peak |n_B| of any motion".into(), Some(price.least_peak), "N m");
+        row("the base turns by".into(), price.base_turn, "rad");
+    }
+    if let Some(ways) = &answer.alternatives {
+        row("least reaction: peak |n_B|".into(), Some(ways.least_peak), "N m");
+        row("                root mean square".into(), Some(ways.least_rms), "N m");
+        row("minimum norm: peak |n_B|".into(), ways.minimum_norm_peak, "N m");
+        row("              root mean square".into(), ways.minimum_norm_rms, "N m");
+        row("fixed b: serves until".into(), ways.fixed_b_until, "of T");
+    }
+    if let Some((first, others)) = answer.cycles.iter().flatten().collect::<Vec<_>>().split_first() {
+        for (i, q) in others.iter().enumerate() {
+            let drift = q.iter().zip(first.iter()).map(|(q, start)| (q - start).abs()).fold(0.0, f64::max);
+            row(format!("drift after cycle {}", i + 1), Some(drift), "rad");
+        }
+    }
+    let held = answer.limiting.iter().map(|limit| {
+        let gap = answer.gap.filter(|gap| *gap > 5e-4);
+        let gap =
+            gap.map_or(String::new(), |gap| format!(", {:.1} % over the motion with unlimited jerk", 100.0 * gap));
+        format!("\nheld back by the {limit}{gap}\n")
+    });
+    format!("{}{}", table.to_string().trim_start(), held.collect::<String>())
 }

@@ -23,7 +23,7 @@ use std::ops::RangeInclusive;
 pub use catalog::{builtin, builtins, find};
 pub use error::{MachineError, Place, Step};
 pub use file::{FileError, parse, read, to_toml};
-pub use inertia::Inertia;
+pub use inertia::{BALANCED, Inertia};
 pub use spec::{Angle, Attach, Closure, Drive, Length, Link, MachineSpec, Payload, Point, Station};
 
 use crate::planar::{MAX_DRIVES, Units, Vector};

@@ -1,12 +1,22 @@
 //! Plans: a path and a timing make the reference that control follows.
 
+mod convex;
+pub mod corridor;
 pub mod curve;
+pub mod drift;
 pub mod fastest;
 pub mod follow;
 pub mod forecast;
+pub mod inverse;
 pub mod law;
+pub mod least_reaction;
 pub mod limits;
+pub mod null_space;
 pub mod path;
+pub mod pose_course;
+pub mod pose_integral;
+mod pose_program;
+pub mod price;
 pub mod profile;
 mod smooth;
 pub mod table;
@@ -14,13 +24,16 @@ mod topp;
 pub mod trace;
 pub mod usage;
 
+pub use corridor::Corridor;
 pub use curve::{Curve, CurveError, CurvePoint};
 pub use fastest::{Fastest, TimeError, fastest};
 pub use follow::Follower;
 pub use forecast::Forecast;
 pub use law::{Progress, TimeLaw};
+pub use least_reaction::LeastReaction;
 pub use limits::Limits;
 pub use path::{Path, PathError};
+pub use price::Price;
 pub use profile::Profile;
 pub use table::Table;
 pub use trace::{Blocked, Rule, Stop};

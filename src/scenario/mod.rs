@@ -221,6 +221,7 @@ impl Scenario {
                 "0 to 3600 s",
                 (0.0..=MAX_TIME).contains(&self.duration.unwrap_or(0.0)),
             ),
+            ("task.cycles", f64::from(t.cycles), "1 to 100", (1..=100).contains(&t.cycles)),
             ("task.blend", t.blend, "0 to 1", (0.0..=1.0).contains(&t.blend)),
             (
                 "task.moment_limit",

@@ -41,6 +41,9 @@ pub struct Task {
     /// Bound on |n_B| while b changes, N m; for `change-b`: the time follows from it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub moment_limit: Option<f64>,
+    /// How often a closed path is run through; for `zero-momentum`.
+    #[serde(default = "once", skip_serializing_if = "is_once")]
+    pub cycles: u32,
     /// What to keep small; for `least-reaction`.
     #[serde(default, skip_serializing_if = "is_default")]
     pub least: Least,
@@ -73,6 +76,9 @@ pub enum TaskKind {
     LeastReaction,
     /// From A on one plane to B on another: the price of b.
     ChangeB,
+    /// Any path of the end effector at zero momentum, on machines whose mass matrix changes with the pose too; a closed
+    /// one again and again, with the drift of the joints.
+    ZeroMomentum,
 }
 
 /// What joins the points of a task.
@@ -123,6 +129,14 @@ fn default_blend() -> f64 {
 
 fn is_default_blend(blend: &f64) -> bool {
     *blend == default_blend()
+}
+
+fn once() -> u32 {
+    1
+}
+
+fn is_once(cycles: &u32) -> bool {
+    *cycles == 1
 }
 
 fn is_false(flag: &bool) -> bool {
@@ -216,7 +230,7 @@ impl Task {
     pub fn shape(&self) -> Shape {
         self.shape.unwrap_or(match self.kind {
             TaskKind::Reactionless | TaskKind::SameTip | TaskKind::ChangeB => Shape::JointLine,
-            TaskKind::MinimumNorm | TaskKind::LeastReaction => Shape::Line,
+            TaskKind::MinimumNorm | TaskKind::LeastReaction | TaskKind::ZeroMomentum => Shape::Line,
         })
     }
 

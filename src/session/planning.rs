@@ -1,11 +1,14 @@
 //! From a task to a motion: poses for its points, a path through them, and when to be where.
 
+mod off_plane;
+
 use super::Refusal;
 use crate::dynamics::Surroundings;
 use crate::machine::Inertia;
+use crate::plan::least_reaction::Verdicts;
 use crate::plan::limits::Limit;
 use crate::plan::path::{Chained, SameTip, minimum_norm_path};
-use crate::plan::{Curve, Forecast, Limits, Motion, Path, Profile, Rule, TimeLaw, fastest, trace};
+use crate::plan::{Curve, Forecast, Limits, Motion, Path, Price, Profile, Rule, TimeLaw, fastest, trace};
 use crate::planar::{DriveAngles, Vector};
 use crate::pose_constant::{Planes, Unreachable};
 use crate::reactionless::PlanePoint;
@@ -20,6 +23,26 @@ pub struct Plan {
     pub forecast: Forecast,
     /// For the fastest motion: what holds it back.
     pub pace: Option<Pace>,
+    /// For a change of b: its price.
+    pub price: Option<Price>,
+    /// For the least reaction: what other ways would cost.
+    pub verdicts: Option<Verdicts>,
+    /// For motions of zero momentum: the drives at the start and after each cycle, rad.
+    pub cycles: Vec<DriveAngles>,
+}
+
+impl Plan {
+    fn of(scenario: &Scenario, motion: Motion) -> Self {
+        let (model, around) = dynamics_of(scenario);
+        let forecast = Forecast::of(&motion, &model, &around);
+        Self { motion, forecast, pace: None, price: None, verdicts: None, cycles: Vec::new() }
+    }
+}
+
+/// What control believes in.
+fn dynamics_of(scenario: &Scenario) -> (Inertia, Surroundings) {
+    let around = Surroundings { gravity: scenario.machine.gravity(), force: Vector::default() };
+    (Inertia::of(&scenario.machine), around)
 }
 
 /// What holds the fastest motion back.
@@ -40,33 +63,33 @@ pub struct Pace {
 pub fn plan(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
     let task = &scenario.task;
     let points = task.points();
+    match task.kind {
+        TaskKind::ChangeB => return off_plane::change_b(scenario, planes),
+        TaskKind::LeastReaction => return off_plane::least_reaction(scenario, planes),
+        TaskKind::ZeroMomentum => return off_plane::zero_momentum(scenario, planes),
+        TaskKind::Reactionless | TaskKind::MinimumNorm | TaskKind::SameTip => {}
+    }
     let parts = match (task.kind, task.shape()) {
         (TaskKind::Reactionless, Shape::JointLine) => joint_lines(task, planes, &points)?,
         (TaskKind::Reactionless, _) => on_plane(task, planes, &points)?,
         (TaskKind::MinimumNorm, _) => minimum_norm(scenario, planes, &points)?,
-        (TaskKind::SameTip, _) => {
+        _ => {
             let [from, to] = lifted(planes, &serve(task, planes, &[points[0], points[points.len() - 1]])?)[..] else {
                 return Err(Refusal::Task("same-tip: want two points".into()));
             };
             let first_to = task.first_drive_to.unwrap_or(from[0]);
             vec![(Path::SameTip(SameTip::new(scenario.machine.tip(), from, to, first_to)?), 1.0)]
         }
-        (TaskKind::LeastReaction | TaskKind::ChangeB, _) => {
-            return Err(Refusal::Task("not yet".into()));
-        }
     };
     let (motion, pace) = timed(scenario, parts)?;
-    let model = Inertia::of(&scenario.machine);
-    let around = Surroundings { gravity: scenario.machine.gravity(), force: Vector::default() };
-    Ok(Plan { forecast: Forecast::of(&motion, &model, &around), motion, pace })
+    Ok(Plan { pace, ..Plan::of(scenario, motion) })
 }
 
 /// The parts of a path, each from rest to rest: by a law in their share of the time, or as fast as they can.
 fn timed(scenario: &Scenario, parts: Vec<(Path, f64)>) -> Result<(Motion, Option<Pace>), Refusal> {
     let task = &scenario.task;
     let total: f64 = parts.iter().map(|(_, length)| length).sum();
-    let model = Inertia::of(&scenario.machine);
-    let around = Surroundings { gravity: scenario.machine.gravity(), force: Vector::default() };
+    let (model, around) = dynamics_of(scenario);
     let limits = Limits::of(&scenario.machine);
     let mut timings = Vec::with_capacity(parts.len());
     let mut pace: Option<Pace> = None;

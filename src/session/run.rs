@@ -8,7 +8,10 @@ use super::planning::{Plan, plan};
 use super::{Edit, TimedEdit};
 use crate::frame::Frame;
 use crate::machine::MachineError;
+use crate::plan::drift::DriftError;
 use crate::plan::follow::Bounds;
+use crate::plan::least_reaction::LeastReactionError;
+use crate::plan::price::PriceError;
 use crate::plan::{Blocked, CurveError, Follower, Motion, PathError, TimeError};
 use crate::planar::{DriveAngles, Vector};
 use crate::pose_constant::{PlaneError, Planes, Unreachable};
@@ -45,6 +48,15 @@ pub enum Refusal {
     /// The task asks for something that does not fit together.
     #[error("{0}")]
     Task(String),
+    /// b has no price here.
+    #[error(transparent)]
+    Price(#[from] PriceError),
+    /// The redundancy cannot be resolved so.
+    #[error(transparent)]
+    LeastReaction(#[from] LeastReactionError),
+    /// The end effector's curve cannot be followed at zero momentum.
+    #[error(transparent)]
+    Drift(#[from] DriftError),
     /// The fastest law.
     #[error(transparent)]
     Time(#[from] TimeError),

@@ -9,7 +9,9 @@ mod nine_body;
 use divan::{Bencher, black_box};
 use stillbase::dynamics::{Surroundings, inverse_with_wrench};
 use stillbase::machine::{Inertia, builtin};
+use stillbase::plan::least_reaction::Goal;
 use stillbase::plan::path::tip_line;
+use stillbase::plan::{CurvePoint, LeastReaction, TimeLaw};
 use stillbase::plan::{Limits, Path, fastest};
 use stillbase::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::pose_constant::plane_map;
@@ -210,4 +212,19 @@ fn profile_at(bencher: Bencher) {
         t = (t + 0.377 * profile.duration()) % profile.duration();
         black_box(&profile).at(black_box(t))
     });
+}
+
+/// A path of least reaction where no b serves the whole of it, corridor, program and nodes.
+#[divan::bench]
+fn least_reaction_path(bencher: Bencher) {
+    let machine = builtin("nine-link").expect("built in");
+    let (map, model) = (plane_map(machine).expect("three drives"), Inertia::of(machine));
+    let [from, to] = [Vector::new(0.50, 0.50), Vector::new(0.55, 0.90)];
+    let curve = |u: f64| {
+        let (law, way) = (TimeLaw::Quintic.at(u, 1.0), to - from);
+        CurvePoint { p: from + law.s * way, first: law.rate * way, second: law.acceleration * way }
+    };
+    let start = map.poses(from, 1.75)[0];
+    bencher
+        .bench_local(|| LeastReaction::plan(&map, &model, curve, black_box(start), None, Goal::Rms).expect("it can"));
 }

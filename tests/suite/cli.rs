@@ -716,3 +716,52 @@ fn tables_show_units_and_the_same_numbers() {
     }
     assert!(!prints(&["check", "nine-link"]).contains("-0.000000000"), "zero has no sign");
 }
+
+/// A plan says what it takes, its scenario does just that, and the fastest straight line is the closed form.
+#[test]
+fn plan_says_what_its_scenario_then_does() {
+    let folder = Folder::new();
+    let file = folder.0.join("plan.toml");
+    let name = file.to_str().expect("UTF-8");
+    let arguments = ["plan", "nine-link", "0.5,0.5", "0.6,0.7", "0.55,0.9", "--shape", "spline", "--b", "2.4"];
+    let plan = object(&[&arguments[..], &["--time", "0.8", "-o", name]].concat());
+    assert_eq!((&plan["feasible"], &plan["duration"]), (&json!(true), &json!(0.8)));
+    let done = object(&["simulate", name]);
+    assert_eq!(done["verdict"]["reactionless"], json!(true));
+    near(&plan["peak_torque"], &done["verdict"]["peak_torque"], 1e-3, "peak torque");
+    fails(&[&arguments[..], &["-o", name]].concat(), 2, &["exists"]);
+
+    let straight = object(&["plan", "nine-link", "0.5,0.5", "0.55,0.9", "--b", "2.4", "--law", "fastest"]);
+    let (start, end) = (numbers(&straight["q_start"]), numbers(&straight["q_end"]));
+    let h = numbers(&object(&["check", "nine-link"])["h"]);
+    let limits = [20.0, 5.0, 5.0];
+    let pace = (0..3).map(|k| limits[k] / (h[k] * (end[k] - start[k]).abs())).fold(f64::INFINITY, f64::min);
+    near(&straight["duration"], &json!(2.0 / pace.sqrt()), 1e-12, "2/√s̈");
+    assert_eq!(straight["limiting"], json!("torque of drive 3"));
+
+    // No b given: the middle of what serves all.
+    let free = object(&["plan", "nine-link", "0.5,0.5", "0.55,0.9"]);
+    let common = numbers(&free["b_common"]);
+    near(&free["b"], &json!(0.5 * (common[0] + common[1])), 1e-12, "b");
+}
+
+#[test]
+fn plan_refuses_with_where_why_and_what_would_do() {
+    let arguments = ["plan", "nine-link", "0.42,1.12", "0,0.5", "--shape", "line", "--b", "2.4"];
+    let said = ["the path stops at (0.417, 1.117) m", "a1 at its upper limit", "b = 2.5440 rad would do", "76.3"];
+    fails(&arguments, 1, &said);
+    let out = stillbase(&[&arguments[..], &["--json"]].concat());
+    assert_eq!(out.status.code(), Some(1));
+    let answer: Value = serde_json::from_slice(&out.stdout).expect("JSON");
+    assert_eq!(answer["feasible"], json!(false));
+    assert_eq!(answer["blocked"]["leaves_workspace"], json!(true));
+    // What is said to do, does.
+    let b = answer["blocked"]["nearest_b"].as_f64().expect("a b").to_string();
+    let line = ["plan", "nine-link", "0.42,1.12", "0,0.5", "--shape", "line", "--b", &b];
+    assert_eq!(object(&line)["feasible"], json!(true));
+    fails(&["plan", "nine-link", "0.5,0.5", "-0.6,-0.2"], 1, &["no b serves both A and B", "moving B by 0.309 m"]);
+    fails(&["plan", "nine-link"], 2, &["want points"]);
+    fails(&["plan", "nine-link", "0.5,0.5"], 2, &["at least two"]);
+    fails(&["plan", "case-3", "--set", "task.shape=square"], 2, &["square", "spline"]);
+    fails(&["plan", "case-3", "--set", "task.blend=-1"], 2, &["task.blend", "0 to 1"]);
+}

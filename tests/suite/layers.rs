@@ -66,7 +66,8 @@ const CRATES: &[(&str, &[&str])] = &[
     ("indicatif", &["commands"]),
     ("csv", &["commands"]),
     ("serde_json", &["commands"]),
-    ("toml", &["machine", "scenario", "session", "ui", "commands"]),
+    ("toml", &["machine", "scenario", "session", "commands"]),
+    ("clarabel", &["plan"]),
 ];
 
 /// Parts of the standard library that reach outside, and the files that are edges.
