@@ -14,6 +14,13 @@ const JOINT: f64 = 1e-9;
 const SHORTEST: f64 = 1e-9;
 /// Pairs of parts looked at before two spans count as running along each other.
 const PATIENCE: usize = 3000;
+/// What is left of [`PATIENCE`] when it is time to see whether they do.
+const WONDER: usize = PATIENCE - 100;
+/// Curves that end in the same point touch there, or leave a sliver too thin to matter: this near to it, as a share of
+/// the reach, they do not cross.
+const TIP: f64 = 1e-4;
+/// Points this near to a curve lie on it, m.
+const ON_CURVE: f64 = 1e-11;
 
 /// A part of a span.
 #[derive(Clone, Copy, Debug)]
@@ -44,6 +51,8 @@ pub(super) struct Arrangement<'a> {
     on: &'a Surface,
     cycle: &'a Cycle,
     spans: &'a [Span],
+    /// m.
+    tip: f64,
 }
 
 #[derive(Clone, Copy)]
@@ -73,7 +82,8 @@ impl Part {
 
 impl<'a> Arrangement<'a> {
     pub fn of(on: &'a Surface, cycle: &'a Cycle) -> Self {
-        Self { on, cycle, spans: &cycle.spans }
+        let reach: f64 = on.map.c().iter().map(|c| c.abs()).sum();
+        Self { on, cycle, spans: &cycle.spans, tip: TIP * reach }
     }
 
     /// All curves, cut where they cross each other.
@@ -132,7 +142,7 @@ impl<'a> Arrangement<'a> {
     /// to be sure.
     fn sides(&self, portion: &Portion) -> Result<[i32; 2], [i32; 2]> {
         let span = &self.spans[portion.span];
-        let mut unclean = [0; 2];
+        let (mut unclean, mut alike) = ([0; 2], 0);
         // Close enough that even where curves touch, no other is in between; and if one is, elsewhere there is none.
         for reach in [1e-11, 1e-12, 1e-9] {
             for share in [0.5, 0.31, 0.77, 0.13, 0.91] {
@@ -142,9 +152,15 @@ impl<'a> Arrangement<'a> {
                 if !(aside.is_finite() && reach < 0.1 * speed * (portion.to - portion.from)) {
                     continue;
                 }
-                unclean = [jet.at + aside, jet.at - aside].map(|p| self.cycle.poses_at(self.on, p));
-                if unclean[0] - unclean[1] == span.weight() {
-                    return Ok(unclean);
+                let sides = [jet.at + aside, jet.at - aside].map(|p| self.cycle.poses_at(self.on, p));
+                if sides[0] - sides[1] == span.weight() {
+                    return Ok(sides);
+                }
+                // The same all along: another curve coincides.
+                alike = if sides == unclean { alike + 1 } else { 0 };
+                unclean = sides;
+                if alike == 3 {
+                    return Err(unclean);
                 }
             }
         }
@@ -212,12 +228,17 @@ impl<'a> Arrangement<'a> {
         let (a, b) = (&self.spans[i], &self.spans[j]);
         work.clear();
         work.push_back((Part::of(a), Part::of(b)));
+        let tip = a.ends.into_iter().zip(a.at).find(|(end, _)| b.ends.contains(end)).map(|(_, at)| at);
         let mut patience = PATIENCE;
         while let Some((pa, pb)) = work.pop_front() {
             patience -= 1;
-            if patience == 0 {
+            if patience == 0 || (patience == WONDER && self.run_along(i, j)) {
                 self.overlap(i, j, cuts);
                 return;
+            }
+            let at_tip = |tip: Vector| pa.at.iter().chain(&pb.at).all(|p| (p - tip).norm_sqr() < self.tip * self.tip);
+            if tip.is_some_and(at_tip) {
+                continue;
             }
             let (da, db) = (pa.deviation(a), pb.deviation(b));
             if apart(pa.at, pb.at, da + db) {
@@ -277,24 +298,40 @@ impl<'a> Arrangement<'a> {
     fn overlap(&self, i: usize, j: usize, cuts: &mut [Vec<f64>]) {
         for (one, other) in [(i, j), (j, i)] {
             for end in self.spans[one].at {
-                let span = &self.spans[other];
-                let mut t = 0.5;
-                for _ in 0..40 {
-                    let jet = self.on.jet(span, t);
-                    let step = dot(end - jet.at, jet.rate) / jet.rate.norm_sqr();
-                    if !step.is_finite() {
-                        break;
-                    }
-                    t = (t + step).clamp(0.0, 1.0);
-                    if step.abs() < 1e-14 {
-                        break;
-                    }
-                }
-                if (self.on.at(span, t) - end).norm() < JOINT {
+                let (t, gap) = self.foot(&self.spans[other], end);
+                if gap < JOINT {
                     cuts[other].push(t);
                 }
             }
         }
+    }
+
+    /// Whether two spans share a stretch: two points, and those between.
+    fn run_along(&self, i: usize, j: usize) -> bool {
+        let (a, b) = (&self.spans[i], &self.spans[j]);
+        let on_both = |t: f64| self.foot(b, self.on.at(a, t)).1 < ON_CURVE;
+        let ends = [0.0, 1.0].into_iter().filter(|&t| on_both(t));
+        let others = b.at.into_iter().map(|end| self.foot(a, end)).filter(|(_, gap)| *gap < ON_CURVE).map(|(t, _)| t);
+        let (low, high) = ends.chain(others).fold((1.0_f64, 0.0_f64), |(low, high), t| (low.min(t), high.max(t)));
+        high - low > 1e-6 && [0.5, 0.3, 0.8].into_iter().all(|share| on_both(low + share * (high - low)))
+    }
+
+    /// The parameter of the point of a span that is nearest to another, and their distance.
+    fn foot(&self, span: &Span, p: Vector) -> (f64, f64) {
+        let mut t = 0.5;
+        for _ in 0..40 {
+            let jet = self.on.jet(span, t);
+            let step = dot(p - jet.at, jet.rate) / jet.rate.norm_sqr();
+            if !step.is_finite() {
+                break;
+            }
+            let before = t;
+            t = (t + step).clamp(0.0, 1.0);
+            if (t - before).abs() < 1e-14 {
+                break;
+            }
+        }
+        (t, (self.on.at(span, t) - p).norm())
     }
 
     /// Joins parts end to start; where there is a choice, the leftmost turn keeps loops from crossing themselves.
