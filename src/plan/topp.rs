@@ -138,8 +138,8 @@ struct Strip {
     slope: f64,
 }
 
-/// Strips of one space: the rows of both its ends, one more for each, and the interval to arrive in.
-const MAX_STRIPS: usize = 2 * MAX_ROWS + 3;
+/// Strips of one space: the rows of both its ends, one more for each, the interval to arrive in, and the middle.
+const MAX_STRIPS: usize = 2 * MAX_ROWS + 4;
 /// Each step of a search leaves at least one pair of lines behind; far fewer are ever met.
 const MAX_SEARCH: usize = 4 * MAX_STRIPS;
 /// A row in which u counts less than this beside another bounds x alone.
@@ -171,6 +171,14 @@ impl Space {
         let floor = NO_PART * all().fold(0.0, |m: f64, r| m.max(r.a.abs()));
         self.strips[0] = Strip { low: arrive[0] / twice, high: arrive[1] / twice, slope: -1.0 / twice };
         self.len = 1;
+        // The bound by speeds, 1/(q′)², is curved: kept in the middle of the space too, where q′ is nearly the mean.
+        let slow = 0.5 * (grid.cap[i].sqrt().recip() + grid.cap[i + 1].sqrt().recip());
+        let middle = 1.0 / (slow * slow);
+        if middle < UNLIMITED {
+            let (per, high) = (2.0 / twice, middle + 0.125 * twice * rise);
+            self.strips[1] = Strip { low: f64::NEG_INFINITY, high: per * high, slope: -per };
+            self.len = 2;
+        }
         for r in all() {
             if r.a.abs() > floor {
                 let per = 1.0 / r.a;
