@@ -45,6 +45,8 @@ mod signals;
 mod sincos;
 #[path = "suite/support.rs"]
 mod support;
+#[path = "suite/views.rs"]
+mod views;
 #[cfg(feature = "window")]
 #[path = "suite/window.rs"]
 mod window;
