@@ -63,6 +63,17 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     return vec4<f32>(lit, in.colour.a);
 }
 
+// An open surface: lit on the side that is seen, and denser where it turns away from the eye, as glass is.
+@fragment
+fn shell_fragment(in: Varying) -> @location(0) vec4<f32> {
+    let normal = normalize(in.normal);
+    let facing = dot(normal, frame.eye_direction);
+    let level = light(select(-normal, normal, facing >= 0.0), frame.eye_direction) / light(KEY, KEY);
+    let rim = 1.0 - abs(facing);
+    let alpha = in.colour.a * (1.0 + 1.2 * rim * rim * rim);
+    return vec4<f32>(in.colour.rgb * mix(level, 1.0, 0.4), min(alpha, 1.0));
+}
+
 const CASING = 1.25; // px
 
 // The far side of the solid, a little wider on the screen: what shows of it sets a solid off from those below it.

@@ -1,5 +1,6 @@
 // A reactionless workspace, Eq. (16), evaluated at each vertex of a grid over (a_1, a_2). The turn b* is one number of
-// the area, so turning it costs nothing. Sheets that overlap blend, and the colour gathers.
+// the area, so turning it costs nothing. Sheets that overlap blend, and the colour gathers. The colour goes from one to
+// another with |det d(x, y)/d(a_1, a_2)|, which the turn does not change.
 
 struct Frame {
     clip_from_world: mat4x4<f32>,
@@ -18,12 +19,16 @@ struct Area {
     v: vec3<f32>,   // v_k, rad
     a_min: vec2<f32>,
     a_max: vec2<f32>,
-    colour: vec4<f32>,
+    colour: vec4<f32>, // where det = 0
+    shade: vec4<f32>,  // where |det| is full or more
+    full: f32,         // m^2
 };
 
 struct Varying {
     @builtin(position) clip: vec4<f32>,
     @location(0) @interpolate(flat) colour: vec4<f32>,
+    @location(1) @interpolate(flat) shade: vec4<f32>,
+    @location(2) det: f32, // as a share of full; its sign tells sheets apart
 };
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -37,14 +42,21 @@ fn vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) i: u32) -
     let cell = vec2<f32>(f32(vertex % (CELLS + 1u)), f32(vertex / (CELLS + 1u))) / f32(CELLS);
     let a = mix(area.a_min, area.a_max, cell);
     let angle = area.u1 * a.x + area.u2 * a.y + area.v + area.turn;
-    let at = vec3<f32>(dot(area.c, cos(angle)), dot(area.c, sin(angle)), area.z);
+    let x = area.c * cos(angle);
+    let y = area.c * sin(angle);
+    let one = vec3<f32>(1.0);
+    let at = vec3<f32>(dot(x, one), dot(y, one), area.z);
+    // d(x + iy)/da_j = i sum_k u_kj (x_k + i y_k), and a quarter turn of both columns leaves det alone.
+    let det = dot(x, area.u1) * dot(y, area.u2) - dot(y, area.u1) * dot(x, area.u2);
     var out: Varying;
     out.clip = frame.clip_from_world * vec4<f32>(at, 1.0);
     out.colour = area.colour;
+    out.shade = area.shade;
+    out.det = det / area.full;
     return out;
 }
 
 @fragment
 fn fragment(in: Varying) -> @location(0) vec4<f32> {
-    return in.colour;
+    return mix(in.colour, in.shade, clamp(abs(in.det), 0.0, 1.0));
 }

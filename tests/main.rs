@@ -63,6 +63,8 @@ mod support;
 mod timing;
 #[path = "suite/trace.rs"]
 mod trace;
+#[path = "suite/views.rs"]
+mod views;
 #[cfg(feature = "window")]
 #[path = "suite/window.rs"]
 mod window;

@@ -1,8 +1,8 @@
 //! Draws a [`Scene`] on the GPU: in a window's pass, or into a picture ([`offscreen`]).
 //!
 //! The renderer knows scenes and no mechanics. It draws into its own multisampled target and hands the result on pixel
-//! for pixel, so a window, a test and a recording show the same picture. Order: background, opaque solids, areas,
-//! depth-tested lines, translucent solids, lines on top, markers. Labels belong to whoever owns a font.
+//! for pixel, so a window, a test and a recording show the same picture. Order: background, opaque solids,
+//! depth-tested lines, areas, shells, translucent solids, lines on top, markers. Labels belong to whoever owns a font.
 //!
 //! Depth runs from 0 (near) to 1; colours are sRGB values with straight alpha, blended as they are.
 
@@ -126,8 +126,9 @@ impl Renderer {
         });
         pass.set_bind_group(0, &self.kit.frame_group, &[]);
         self.solids.draw_opaque(&mut pass);
-        self.workspace.draw(&mut pass);
         self.lines.draw_tested(&mut pass);
+        self.workspace.draw(&mut pass);
+        self.solids.draw_shells(&mut pass);
         self.solids.draw_translucent(&mut pass);
         self.lines.draw_on_top(&mut pass);
         self.markers.draw(&mut pass);

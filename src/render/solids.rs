@@ -46,6 +46,8 @@ struct Pipelines {
     /// Depth of the foremost translucent surface, so that a ghost shows one layer and not its own inside.
     front: wgpu::RenderPipeline,
     translucent: wgpu::RenderPipeline,
+    /// Every layer of open surfaces, from both sides; they write no depth.
+    shell: wgpu::RenderPipeline,
 }
 
 /// The meshes of a model in one pair of buffers.
@@ -68,10 +70,19 @@ pub(super) struct Solids {
     shader: Shader<Pipelines>,
     meshes: Option<Meshes>,
     list: List<Instance>,
-    /// Numbers of the solids to draw: opaque before translucent, and by mesh.
+    /// Numbers of the solids to draw: opaque ones, shells, translucent ones, and by mesh.
     order: Vec<usize>,
     runs: Vec<Run>,
     opaque_runs: usize,
+    shell_runs: usize,
+}
+
+/// In which pass a solid is drawn.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Layer {
+    Opaque,
+    Shell,
+    Translucent,
 }
 
 impl Solids {
@@ -89,7 +100,7 @@ impl Solids {
                         attributes: &ATTRIBUTES,
                     }),
                     topology: wgpu::PrimitiveTopology::TriangleList,
-                    cull: Some(cull),
+                    cull,
                     depth_write,
                     depth_compare,
                     blend,
@@ -99,12 +110,15 @@ impl Solids {
             use wgpu::{BlendState, CompareFunction, Face::*};
             let plain = Some(BlendState::REPLACE);
             let blend = Some(BlendState::ALPHA_BLENDING);
+            let (back, front) = (Some(Back), Some(Front));
+            let shell = ["vertex", "shell_fragment"];
             let casing = ["casing_vertex", "casing_fragment"];
             Pipelines {
-                opaque: recipe("opaque solids", ENTRIES, Back, true, CompareFunction::Less, plain),
-                casing: recipe("casing of solids", casing, Front, true, CompareFunction::Less, plain),
-                front: recipe("front of translucent solids", ENTRIES, Back, true, CompareFunction::Less, None),
-                translucent: recipe("translucent solids", ENTRIES, Back, false, CompareFunction::Equal, blend),
+                opaque: recipe("opaque solids", ENTRIES, back, true, CompareFunction::Less, plain),
+                casing: recipe("casing of solids", casing, front, true, CompareFunction::Less, plain),
+                front: recipe("front of translucent solids", ENTRIES, back, true, CompareFunction::Less, None),
+                translucent: recipe("translucent solids", ENTRIES, back, false, CompareFunction::Equal, blend),
+                shell: recipe("shells", shell, None, false, CompareFunction::LessEqual, blend),
             }
         };
         Self {
@@ -114,6 +128,7 @@ impl Solids {
             order: Vec::new(),
             runs: Vec::new(),
             opaque_runs: 0,
+            shell_runs: 0,
         }
     }
 
@@ -123,27 +138,33 @@ impl Solids {
             self.meshes = Some(Meshes::new(upload.device, queue, &scene.model, self.meshes.take()));
         }
         let solids = &scene.solids;
-        let translucent = |k: &usize| solids[*k].colour[3] < 1.0;
+        let layer = |k: &usize| match (&scene.model.meshes[solids[*k].mesh], solids[*k].colour[3] < 1.0) {
+            (mesh, _) if mesh.shell => Layer::Shell,
+            (_, true) => Layer::Translucent,
+            (_, false) => Layer::Opaque,
+        };
         self.order.clear();
         self.order.extend(
             (0..solids.len()).filter(|&k| solids[k].mesh < scene.model.meshes.len() && solids[k].colour[3] > 0.0),
         );
-        self.order.sort_unstable_by_key(|k| (translucent(k), solids[*k].mesh, *k));
+        self.order.sort_unstable_by_key(|k| (layer(k), solids[*k].mesh, *k));
 
         self.list.items.clear();
         self.runs.clear();
-        self.opaque_runs = 0;
+        (self.opaque_runs, self.shell_runs) = (0, 0);
         let mut last = None;
         for k in &self.order {
             let (mesh, at) = (solids[*k].mesh, self.list.items.len() as u32);
             self.list.items.push(Instance { world_from_mesh: solids[*k].world_from_mesh, colour: solids[*k].colour });
             match self.runs.last_mut() {
-                Some(run) if last == Some((translucent(k), mesh)) => run.instances.end = at + 1,
+                Some(run) if last == Some((layer(k), mesh)) => run.instances.end = at + 1,
                 _ => self.runs.push(Run { mesh, instances: at..at + 1 }),
             }
-            last = Some((translucent(k), mesh));
-            if !translucent(k) {
-                self.opaque_runs = self.runs.len();
+            last = Some((layer(k), mesh));
+            match layer(k) {
+                Layer::Opaque => (self.opaque_runs, self.shell_runs) = (self.runs.len(), self.runs.len()),
+                Layer::Shell => self.shell_runs = self.runs.len(),
+                Layer::Translucent => {}
             }
         }
         self.list.upload(kit, upload);
@@ -155,8 +176,12 @@ impl Solids {
         self.draw(pass, &self.shader.casing, runs);
     }
 
+    pub(super) fn draw_shells(&self, pass: &mut wgpu::RenderPass) {
+        self.draw(pass, &self.shader.shell, &self.runs[self.opaque_runs..self.shell_runs]);
+    }
+
     pub(super) fn draw_translucent(&self, pass: &mut wgpu::RenderPass) {
-        let runs = &self.runs[self.opaque_runs..];
+        let runs = &self.runs[self.shell_runs..];
         self.draw(pass, &self.shader.front, runs);
         self.draw(pass, &self.shader.translucent, runs);
     }

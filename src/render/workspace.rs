@@ -20,6 +20,9 @@ twin! {
         a_min: [f32; 2],
         a_max: [f32; 2],
         colour: [f32; 4],
+        shade: [f32; 4],
+        full: f32,
+        _pad2: [f32; 3],
     }
 }
 
@@ -75,9 +78,11 @@ impl Workspace {
         self.shader.reload(upload.device);
         self.list.items.clear();
         self.list.items.extend(scene.areas.iter().map(|area| {
-            let &scene::Area { name: _, c, u, v, a_min, a_max, turn, z, colour } = area;
+            let &scene::Area { name: _, c, u, v, a_min, a_max, turn, z, colour, shade } = area;
             let [u1, u2] = [0, 1].map(|i| u.map(|u_k| u_k[i]));
-            Area { c, turn, u1, z, u2, v, a_min, a_max, colour, ..Area::zeroed() }
+            // Without a shade the fill turns into itself.
+            let (shade, full) = shade.map_or((colour, 1.0), |s| (s.colour, s.full));
+            Area { c, turn, u1, z, u2, v, a_min, a_max, colour, shade, full, ..Area::zeroed() }
         }));
         self.list.upload(kit, upload);
     }

@@ -33,7 +33,7 @@ pub struct Orbit {
     pub pitch: f64,
 }
 
-/// Vertical field of view, rad.
+/// Field of view across the shorter side of the picture, rad.
 const FIELD: f64 = 0.6;
 
 /// A line of sight: a point and a direction.
@@ -87,13 +87,16 @@ impl Camera {
     }
 
     fn matrix(&self, aspect: f64) -> Matrix4<f64> {
-        let aspect = if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 };
+        let aspect = sound(aspect);
         let projection = match self {
             Self::Flat(f) => {
                 let (h, w) = (f.half_height, f.half_height * aspect);
                 Matrix4::new_orthographic(-w, w, -h, h, -10.0 * h, 10.0 * h)
             }
-            Self::Orbit(o) => Matrix4::new_perspective(aspect, FIELD, 0.02 * o.distance, 20.0 * o.distance),
+            Self::Orbit(o) => {
+                let field = 2.0 * ((0.5 * FIELD).tan() / aspect.min(1.0)).atan();
+                Matrix4::new_perspective(aspect, field, 0.02 * o.distance, 20.0 * o.distance)
+            }
         };
         // nalgebra's depth runs from −1 to 1, the GPU's from 0 to 1.
         let mut half = Matrix4::identity();
@@ -129,10 +132,10 @@ impl Camera {
     }
 
     /// Size of a metre at the middle of the picture, as a share of the picture's height.
-    pub fn scale(&self) -> f64 {
+    pub fn scale(&self, aspect: f64) -> f64 {
         match self {
             Self::Flat(f) => 0.5 / f.half_height,
-            Self::Orbit(o) => 0.5 / (o.distance * (0.5 * FIELD).tan()),
+            Self::Orbit(o) => 0.5 * sound(aspect).min(1.0) / (o.distance * (0.5 * FIELD).tan()),
         }
     }
 
@@ -145,8 +148,8 @@ impl Camera {
     }
 
     /// Shifts the picture by shares of its height, to the right and down.
-    pub fn pan(&mut self, right: f64, down: f64) {
-        let metres = 1.0 / self.scale();
+    pub fn pan(&mut self, right: f64, down: f64, aspect: f64) {
+        let metres = 1.0 / self.scale(aspect);
         match self {
             Self::Flat(f) => {
                 f.centre[0] -= right * metres;
@@ -164,13 +167,18 @@ impl Camera {
     /// Brings everything nearer by a factor, keeping the place (0..1 from left and top) where it is.
     pub fn zoom(&mut self, factor: f64, place: [f64; 2], aspect: f64) {
         let (x, y) = ((place[0] - 0.5) * aspect, place[1] - 0.5);
-        self.pan(-x, -y);
+        self.pan(-x, -y, aspect);
         match self {
             Self::Flat(f) => f.half_height = (f.half_height / factor).clamp(1e-3, 1e3),
             Self::Orbit(o) => o.distance = (o.distance / factor).clamp(1e-2, 1e3),
         }
-        self.pan(x, y);
+        self.pan(x, y, aspect);
     }
+}
+
+/// Width over height, whatever came in.
+fn sound(aspect: f64) -> f64 {
+    if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 }
 }
 
 impl Orbit {

@@ -4,18 +4,25 @@
 //! motion, z along the drive axis, towards the viewer of the flat view). Numbers turn from `f64` into `f32` here and
 //! nowhere else. Colours are sRGB with straight alpha, as in the palette, and sizes called `px` are logical pixels.
 
+pub mod axes;
 pub mod camera;
+pub mod dexterity;
+pub mod joint_space;
 pub mod linkage;
 pub mod mesh;
 pub mod palette;
+pub mod pointer;
 pub mod stage;
+pub mod tower;
+pub mod views;
+pub mod wall;
 
 use std::sync::Arc;
 
 /// sRGB red, green, blue and straight alpha, each 0..1.
 pub type Rgba = [f32; 4];
 
-/// A closed triangle mesh with one normal a vertex; counter-clockwise triangles face outwards.
+/// A triangle mesh with one normal a vertex; counter-clockwise triangles face outwards. Closed, unless it is a shell.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Vertices, m.
@@ -24,6 +31,8 @@ pub struct Mesh {
     pub normals: Vec<[f32; 3]>,
     /// Triangles, as vertex numbers.
     pub triangles: Vec<[u32; 3]>,
+    /// An open surface that is seen from both sides; being translucent, it hides nothing and every layer of it counts.
+    pub shell: bool,
 }
 
 /// The meshes of one machine. They never change while it moves, so they are uploaded once.
@@ -85,6 +94,17 @@ pub struct Area {
     pub z: f32,
     /// Fill of one sheet; where sheets overlap, the colour gathers.
     pub colour: Rgba,
+    /// Shades the fill by |det ∂(x, y)/∂(a_1, a_2)|.
+    pub shade: Option<Shade>,
+}
+
+/// A colour that a fill turns into as |det| grows from 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shade {
+    /// The fill where |det| is [`full`](Self::full) or more.
+    pub colour: Rgba,
+    /// |det|, m².
+    pub full: f32,
 }
 
 /// A disc or ring of constant size on the screen: a joint dot, a handle, the end effector.
@@ -139,7 +159,7 @@ pub struct Scene {
     pub background: Rgba,
     /// Meshes that the solids refer to.
     pub model: Arc<Model>,
-    /// Fills, under all lines; solids in front of them hide them. Later ones blend over earlier ones.
+    /// Fills, over lines that are not on top; solids in front of them hide them. Later ones blend over earlier ones.
     pub areas: Vec<Area>,
     /// Bars, joints, base.
     pub solids: Vec<Solid>,

@@ -4,11 +4,12 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::linkage::Linkage;
 use super::palette::{Palette, Theme, faded, palette};
-use super::{Anchor, Area, Label, Line, Marker, Rgba, Scene};
+use super::{Anchor, Area, Label, Line, Marker, Rgba, Scene, Shade, dexterity};
 use crate::frame::{Frame, REACTIONLESS, Reach};
 use crate::machine::Chain;
 use crate::planar::{DriveAngles, Units, Vector, unit};
 use crate::pose_constant::Planes;
+use crate::reactionless::PlaneMap;
 use crate::session::Run;
 use std::sync::Arc;
 
@@ -17,8 +18,8 @@ use std::sync::Arc;
 pub struct ViewOptions {
     /// Light or dark.
     pub theme: Theme,
-    /// Seen from straight above.
-    pub flat: bool,
+    /// The workspace is shaded by |det ∂(x, y)/∂(a_1, a_2)|.
+    pub dexterity: bool,
     /// The pointer is on this handle, or drags it.
     pub hot: Option<Handle>,
     /// Where the pointer holds the target while it drags, m.
@@ -27,7 +28,7 @@ pub struct ViewOptions {
 
 impl Default for ViewOptions {
     fn default() -> Self {
-        Self { theme: Theme::Dark, flat: true, hot: None, held: None }
+        Self { theme: Theme::Dark, dexterity: false, hot: None, held: None }
     }
 }
 
@@ -41,6 +42,10 @@ pub enum Handle {
     Target,
     /// The knob of the b ring.
     Ring,
+    /// The plane b = const, in joint space or as a slice of the tower.
+    Plane,
+    /// A bar of the tower: the b that reach a point.
+    Bar,
 }
 
 /// What stays the same from frame to frame.
@@ -53,6 +58,8 @@ pub struct Stage {
     middle: Option<Vector>,
     compare_b: Option<f64>,
     motion: Option<Course>,
+    /// The greatest |det| within the limits, m².
+    most_det: f64,
 }
 
 /// A planned motion as seen.
@@ -79,6 +86,7 @@ impl Stage {
         Self {
             linkage: Linkage::of(machine),
             middle: planes.as_ref().and_then(|p| roomiest(p, &boundary)),
+            most_det: planes.as_ref().map_or(0.0, |p| dexterity::greatest(p.map())),
             planes,
             boundary,
             compare_b: run.scenario().compare_b,
@@ -89,6 +97,11 @@ impl Stage {
     /// The machine's body.
     pub fn linkage(&self) -> &Linkage {
         &self.linkage
+    }
+
+    /// The greatest |det ∂(x, y)/∂(a_1, a_2)| within the limits, m².
+    pub fn greatest_det(&self) -> f64 {
+        self.most_det
     }
 
     /// Radius of the b ring, m.
@@ -113,6 +126,7 @@ impl Stage {
                 let p = unit(self.planes.as_ref()?.map().turn(frame.b_reference)) * self.ring_radius();
                 Some([p.re, p.im, z])
             }
+            Handle::Plane | Handle::Bar => None,
         }
     }
 
@@ -147,6 +161,13 @@ impl Stage {
                 self.workspace(&mut scene, &palette, planes, b, true);
             }
             self.workspace(&mut scene, &palette, planes, frame.b_reference, false);
+            scene
+                .areas
+                .iter_mut()
+                .rev()
+                .take(1)
+                .filter(|_| options.dexterity)
+                .for_each(|area| self.shade(area, &palette));
             self.ring(&mut scene, &palette, planes, frame, options);
         }
         self.course(&mut scene, &palette);
@@ -177,28 +198,14 @@ impl Stage {
     }
 
     fn workspace(&self, scene: &mut Scene, palette: &Palette, planes: &Planes, b: f64, compared: bool) {
-        let map = planes.map();
         let (colour, edge, dash, lift) = match compared {
             false => (faded(palette.amber, 0.13), palette.amber, None, 0.0),
             true => (faded(palette.dim, 0.08), faded(palette.dim, 0.55), Some([5.0, 4.0]), -0.002),
         };
         let z = self.linkage.floor() + lift * self.linkage.reach();
-        let limits = map.limits();
         let name = if compared { "workspace/compared" } else { "workspace" };
-        let turn = map.turn(b);
-        scene.areas.push(Area {
-            name: name.into(),
-            c: map.c().map(|x| x as f32),
-            u: map.u().map(|u| u.map(|x| x as f32)),
-            v: map.v().map(|x| x as f32),
-            a_min: limits.map(|l| l.min as f32),
-            a_max: limits.map(|l| l.max as f32),
-            // Whole turns are taken off in f64, where they cost nothing.
-            turn: turn.rem_euclid(TAU) as f32,
-            z: z as f32,
-            colour,
-        });
-        let r = unit(turn);
+        scene.areas.push(area_of(planes.map(), b, name, z, colour));
+        let r = unit(planes.map().turn(b));
         for outline in &self.boundary {
             let mut points: Vec<_> = outline.iter().map(|p| point(p * r, z)).collect();
             if points.len() > 2 && points.first() != points.last() {
@@ -224,6 +231,12 @@ impl Stage {
             let at = self.middle.unwrap_or_default() * r;
             scene.labels.push(label(at, z, [0.0, 17.0 * i as f32], &text, colour, size, Anchor::Centre));
         }
+    }
+
+    /// By |det|, from 0 to its greatest.
+    fn shade(&self, area: &mut Area, palette: &Palette) {
+        let [low, high] = dexterity::colours(palette);
+        (area.colour, area.shade) = (low, Some(Shade { colour: high, full: self.most_det as f32 }));
     }
 
     fn ring(&self, scene: &mut Scene, palette: &Palette, planes: &Planes, frame: &Frame, options: &ViewOptions) {
@@ -434,8 +447,26 @@ impl Stage {
     }
 }
 
+/// The workspace of a pose constant at a height, m.
+pub(super) fn area_of(map: &PlaneMap, b: f64, name: &str, z: f64, colour: Rgba) -> Area {
+    let limits = map.limits();
+    Area {
+        name: name.into(),
+        c: map.c().map(|x| x as f32),
+        u: map.u().map(|u| u.map(|x| x as f32)),
+        v: map.v().map(|x| x as f32),
+        a_min: limits.map(|l| l.min as f32),
+        a_max: limits.map(|l| l.max as f32),
+        // Whole turns are taken off in f64, where they cost nothing.
+        turn: map.turn(b).rem_euclid(TAU) as f32,
+        z: z as f32,
+        colour,
+        shade: None,
+    }
+}
+
 /// Where the target's handle is: out of reach it stays where it was sent, else it goes with the end effector.
-fn target_handle(frame: &Frame) -> Vector {
+pub(super) fn target_handle(frame: &Frame) -> Vector {
     match frame.target.reach {
         Reach::Outside { .. } => frame.target.at,
         Reach::Inside | Reach::Carried => frame.tip,

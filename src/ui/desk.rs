@@ -6,16 +6,16 @@ use std::sync::Arc;
 use super::{Command, FileDialog, Look, Purpose, keys, plots, side, status, theme, top, viewport};
 use crate::machine::Machine;
 use crate::scenario::Scenario;
-use crate::scene::camera::Camera;
 use crate::scene::palette::Theme;
 use crate::scene::stage::Stage;
+use crate::scene::views::Views;
 use crate::session::{Refusal, Session};
 use crate::signals::{Signal, signals};
 
 /// A session on display.
 pub struct Desk {
     session: Session,
-    stage: Arc<Stage>,
+    views: Arc<Views>,
     signals: Vec<Signal>,
     stage_of: (Machine, String),
     look: Look,
@@ -35,12 +35,12 @@ impl Desk {
     /// If it cannot start.
     pub fn new(scenario: Scenario, theme: Theme) -> Result<Self, Refusal> {
         let session = Session::open(scenario)?;
-        let stage = Stage::of(session.run());
-        let look = Look::new(theme, stage.linkage().reach());
+        let views = Views::of(session.run());
+        let look = Look::new(theme, &views);
         Ok(Self {
             signals: signals(&session.scenario().machine),
             stage_of: stage_key(&session),
-            stage: Arc::new(stage),
+            views: Arc::new(views),
             session,
             look,
             owed: 0.0,
@@ -61,7 +61,12 @@ impl Desk {
 
     /// What scenes are made from.
     pub fn stage(&self) -> &Stage {
-        &self.stage
+        self.views.stage()
+    }
+
+    /// The linked views.
+    pub fn views(&self) -> &Views {
+        &self.views
     }
 
     /// Lets wall time pass, s.
@@ -86,7 +91,7 @@ impl Desk {
         status::show(ui, &self.session, &self.look, &mut commands);
         side::show(ui, &self.session, &self.look, &mut commands);
         plots::show(ui, &self.session, &self.signals, &self.look, &mut commands);
-        viewport::show(ui, &self.session, &self.stage, &mut self.look, &mut commands);
+        viewport::show(ui, &self.session, &self.views, &mut self.look, &mut commands);
         keys::help(ui.ctx(), &self.look, &mut commands);
         top::dialog(ui.ctx(), &mut self.look, &mut commands);
         if commands.iter().any(|c| !matches!(c, Command::EndGesture)) {
@@ -154,11 +159,9 @@ impl Desk {
                 self.session.redo().map_err(refused)?;
                 return Ok(title);
             }
-            Command::Flat(flat) => self.look.flat = flat,
-            Command::Fit => {
-                let reach = self.stage.linkage().reach();
-                *self.look.camera_mut() = if self.look.flat { Camera::flat(reach) } else { Camera::orbit(reach) };
-            }
+            Command::View(view) => self.look.view = view,
+            Command::Dexterity(shown) => self.look.dexterity = shown,
+            Command::Fit => *self.look.camera_mut() = self.views.camera(self.look.view),
             Command::Theme(theme) => self.look.theme = theme,
             Command::Help(help) => self.look.help = help,
             Command::Dialog(dialog) => self.look.dialog = dialog,
@@ -202,7 +205,7 @@ impl Desk {
     fn refresh(&mut self) {
         let key = stage_key(&self.session);
         if key != self.stage_of {
-            self.stage = Arc::new(Stage::of(self.session.run()));
+            self.views = Arc::new(Views::of(self.session.run()));
             self.signals = signals(&self.session.scenario().machine);
             self.stage_of = key;
         }

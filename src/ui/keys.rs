@@ -7,13 +7,14 @@ use super::{Command, Desk, Look, Purpose, case};
 use crate::scenario::Scenario;
 use crate::session::Session;
 
-const KEYS: [(&str, &str); 16] = [
+const KEYS: [(&str, &str); 18] = [
     ("Space", "play, pause, start over"),
     ("← →", "one step back, one step on"),
     ("Shift ← →", "ten steps"),
     ("Home  End", "start, newest instant"),
     ("1  2  3", "the paper's cases"),
-    ("V", "2D or 3D"),
+    ("V", "2D, 3D, joint space, tower of workspaces"),
+    ("D", "shade the workspace by dexterity"),
     ("F", "show everything"),
     ("L", "light or dark"),
     ("R", "record for the Rerun viewer"),
@@ -21,7 +22,8 @@ const KEYS: [(&str, &str); 16] = [
     ("Ctrl S  Ctrl O", "save, open a session"),
     ("drag target", "the machine follows on its plane"),
     ("drag b ring", "the workspace turns"),
-    ("drag elsewhere", "pan in 2D, orbit in 3D; Shift pans"),
+    ("drag plane, slice", "b, in joint space and in the tower"),
+    ("drag elsewhere", "pan in 2D, else orbit; Shift pans"),
     ("wheel", "zoom"),
     ("F1  Esc", "this card; close, cancel a drag"),
 ];
@@ -63,7 +65,8 @@ pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Co
         (plain, Key::ArrowRight, Command::Step(1)),
         (plain, Key::Home, Command::Seek(0.0)),
         (plain, Key::End, Command::Seek(session.length())),
-        (plain, Key::V, Command::Flat(!look.flat)),
+        (plain, Key::V, Command::View(look.view.next())),
+        (plain, Key::D, Command::Dexterity(!look.dexterity)),
         (plain, Key::F, Command::Fit),
         (plain, Key::L, Command::Theme(super::top::other(look.theme))),
         (plain, Key::R, Command::Dialog(Some(Desk::suggest(session, Purpose::Record)))),

@@ -10,6 +10,7 @@ pub mod picture;
 mod plots;
 mod side;
 mod status;
+mod switch;
 mod theme;
 mod top;
 mod viewport;
@@ -20,6 +21,7 @@ use crate::scenario::Scenario;
 use crate::scene::camera::Camera;
 use crate::scene::palette::{Palette, Theme, palette};
 use crate::scene::stage::Handle;
+use crate::scene::views::{Grip, ViewKind, Views};
 use crate::session::{Edit, Session};
 
 /// What a person can ask for.
@@ -49,8 +51,10 @@ pub enum Command {
     Undo,
     /// Bring back.
     Redo,
-    /// 2D or 3D.
-    Flat(bool),
+    /// One of the linked views.
+    View(ViewKind),
+    /// Shade the workspace by |det|, or not.
+    Dexterity(bool),
     /// Show everything.
     Fit,
     /// Light or dark.
@@ -86,18 +90,18 @@ pub enum Purpose {
 pub struct Look {
     /// Light or dark.
     pub theme: Theme,
-    /// Straight from above, or in perspective.
-    pub flat: bool,
-    /// The flat view.
-    pub flat_camera: Camera,
-    /// The spatial view.
-    pub orbit_camera: Camera,
+    /// Which of the linked views.
+    pub view: ViewKind,
+    /// From where each view is seen, in the order of [`ViewKind::ALL`].
+    pub cameras: [Camera; 4],
+    /// The workspace is shaded by |det|.
+    pub dexterity: bool,
     /// Simulated seconds a second.
     pub speed: f64,
     /// Under the pointer.
     pub hot: Option<Handle>,
     /// Being dragged.
-    pub grabbed: Option<Handle>,
+    pub grabbed: Option<Grip>,
     /// Where the pointer holds the target, m.
     pub held: Option<[f64; 2]>,
     /// The keys are on display.
@@ -112,12 +116,12 @@ pub struct Look {
 
 impl Look {
     /// A flat view of everything.
-    pub fn new(theme: Theme, reach: f64) -> Self {
+    pub fn new(theme: Theme, views: &Views) -> Self {
         Self {
             theme,
-            flat: true,
-            flat_camera: Camera::flat(reach),
-            orbit_camera: Camera::orbit(reach),
+            view: ViewKind::default(),
+            cameras: ViewKind::ALL.map(|kind| views.camera(kind)),
+            dexterity: false,
             speed: 1.0,
             hot: None,
             grabbed: None,
@@ -136,11 +140,11 @@ impl Look {
 
     /// The view in use.
     pub fn camera(&self) -> &Camera {
-        if self.flat { &self.flat_camera } else { &self.orbit_camera }
+        &self.cameras[self.view as usize]
     }
 
     fn camera_mut(&mut self) -> &mut Camera {
-        if self.flat { &mut self.flat_camera } else { &mut self.orbit_camera }
+        &mut self.cameras[self.view as usize]
     }
 }
 

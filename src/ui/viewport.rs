@@ -2,37 +2,39 @@
 
 use std::sync::Arc;
 
-use egui::{Align2, CentralPanel, CursorIcon, Frame, PointerButton, Pos2, Rect, Sense, Ui, Vec2, pos2, vec2};
+use egui::{Align2, CentralPanel, CursorIcon, Frame, PointerButton, Pos2, Rect, Sense, Ui, Vec2, vec2};
 
 use super::theme::{colour, plain};
 use super::top::name;
-use super::{Command, Look, set_b};
+use super::{Command, Look, set_b, switch};
 use crate::render::{Renderer, View};
 use crate::scene::camera::Camera;
 use crate::scene::palette::faded;
-use crate::scene::stage::{Handle, Stage, ViewOptions};
+use crate::scene::pointer::Pointer;
+use crate::scene::stage::{Handle, ViewOptions};
+use crate::scene::views::{Aim, ViewKind, Views};
 use crate::scene::{Anchor, Label, Scene};
 use crate::session::{Edit, Session};
 
-/// How near the pointer must be to take hold of a handle, px.
-const GRIP: f32 = 20.0;
-
 /// Draws it and reads the pointer.
-pub fn show(ui: &mut Ui, session: &Session, stage: &Stage, look: &mut Look, commands: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &mut Look, commands: &mut Vec<Command>) {
     CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         name(&response, "Scene: the machine, its reactionless workspace and its target");
         let frame = session.frame();
         let spot = Spot { rect, camera: *look.camera() };
-        point_at(ui, &response, &spot, session, stage, look, commands);
+        point_at(ui, &response, &spot, session, views, look, commands);
         move_camera(ui, &response, rect, look);
-        let options =
-            ViewOptions { theme: look.theme, flat: look.flat, hot: look.grabbed.or(look.hot), held: look.held };
-        let scene = Arc::new(stage.scene(frame, &options));
+        let options = ViewOptions {
+            theme: look.theme,
+            dexterity: look.dexterity,
+            hot: look.grabbed.map(|grip| grip.handle).or(look.hot),
+            held: look.held,
+        };
+        let scene = Arc::new(views.scene(look.view, frame, &options, look.camera()));
         paint(ui, rect, &scene, look.camera());
         words(ui, &Spot { rect, camera: *look.camera() }, &scene);
-        views(ui, rect, look, commands);
-        scale(ui, rect, look);
+        switch::show(ui, rect, look, views, commands);
     });
 }
 
@@ -43,22 +45,15 @@ struct Spot {
 }
 
 impl Spot {
-    fn aspect(&self) -> f64 {
-        f64::from(self.rect.width() / self.rect.height().max(1.0))
-    }
-
-    fn share(&self, pos: Pos2) -> [f64; 2] {
-        let d = pos - self.rect.min;
-        [f64::from(d.x / self.rect.width().max(1.0)), f64::from(d.y / self.rect.height().max(1.0))]
+    fn pointer(&self, pos: Pos2) -> Pointer {
+        let at = pos - self.rect.min;
+        let pair = |v: Vec2| [f64::from(v.x), f64::from(v.y)];
+        Pointer { camera: self.camera, size: pair(self.rect.size()), at: pair(at) }
     }
 
     fn screen(&self, point: [f64; 3]) -> Option<Pos2> {
-        let [x, y] = self.camera.project(point, self.aspect())?;
-        Some(self.rect.min + vec2(x as f32 * self.rect.width(), y as f32 * self.rect.height()))
-    }
-
-    fn world(&self, pos: Pos2, z: f64) -> Option<[f64; 2]> {
-        self.camera.ray(self.share(pos), self.aspect())?.at_height(z)
+        let [x, y] = self.pointer(self.rect.min).seen(point)?;
+        Some(self.rect.min + vec2(x as f32, y as f32))
     }
 }
 
@@ -67,51 +62,37 @@ fn point_at(
     response: &egui::Response,
     spot: &Spot,
     session: &Session,
-    stage: &Stage,
+    views: &Views,
     look: &mut Look,
     commands: &mut Vec<Command>,
 ) {
-    let frame = session.frame();
-    let z = stage.handle_height();
-    let held = look.held;
-    let under = |pos: Pos2| {
-        let distance = |h: Handle| {
-            let held = held.filter(|_| h == Handle::Target).map(|[x, y]| [x, y, z]);
-            let at = held.or_else(|| stage.handle(h, frame));
-            at.and_then(|p| spot.screen(p)).map(|p| p.distance(pos))
-        };
-        [Handle::Target, Handle::Ring]
-            .into_iter()
-            .filter_map(|h| Some((h, distance(h)?)))
-            .filter(|(_, d)| *d < GRIP)
-            .min_by(|a, b| a.1.total_cmp(&b.1))
-            .map(|(h, _)| h)
-    };
+    let (frame, view) = (session.frame(), look.view);
+    let under = |pos: Pos2| views.pick(view, frame, &spot.pointer(pos));
     if look.grabbed.is_none() {
-        look.hot = response.hover_pos().and_then(under);
+        look.hot = response.hover_pos().and_then(under).map(|grip| grip.handle);
     }
     if response.drag_started_by(PointerButton::Primary) {
         // A drag begins where the button went down, not where it was noticed.
         look.grabbed = ui.input(|i| i.pointer.press_origin()).and_then(under);
     }
-    if let Some(handle) = look.grabbed {
-        ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
+    let ask = |grip, pos: Pos2, look: &mut Look| {
+        let edit = match views.aim(view, &grip, frame, &spot.pointer(pos), session.b_aim())? {
+            Aim::Target([x, y]) => {
+                look.held = Some([x, y]);
+                Edit::DragTarget { x, y }
+            }
+            Aim::B(b) => set_b(session, b),
+        };
+        Some(Command::Edit(edit))
+    };
+    if let Some(grip) = look.grabbed {
+        ui.ctx().set_cursor_icon(cursor(grip.handle, true));
         // The last movement may come together with the release.
         let moved = response.drag_delta() != Vec2::ZERO || (look.dragged && response.drag_stopped());
-        let at = response.interact_pointer_pos().and_then(|pos| spot.world(pos, z));
-        match (handle, at) {
-            (Handle::Target, Some([x, y])) if moved => {
-                look.held = Some([x, y]);
-                look.dragged = true;
-                commands.push(Command::Edit(Edit::DragTarget { x, y }));
-            }
-            (Handle::Ring, Some(at)) if moved => {
-                if let Some(b) = stage.ring_b(at, session.b_aim()) {
-                    look.dragged = true;
-                    commands.push(Command::Edit(set_b(session, b)));
-                }
-            }
-            _ => {}
+        if let Some(pos) = response.interact_pointer_pos().filter(|_| moved) {
+            let edit = ask(grip, pos, look);
+            look.dragged |= edit.is_some();
+            commands.extend(edit);
         }
         let let_go = ui.input(|i| i.key_pressed(egui::Key::Escape));
         if response.drag_stopped() || let_go {
@@ -122,11 +103,27 @@ fn point_at(
             }
             look.dragged = false;
         }
-    } else if look.hot.is_some() {
-        ui.ctx().set_cursor_icon(CursorIcon::Grab);
+    } else if let Some(hot) = look.hot {
+        ui.ctx().set_cursor_icon(cursor(hot, false));
+    }
+    // A bar needs no dragging: a click chooses.
+    if let Some(pos) = response.interact_pointer_pos().filter(|_| response.clicked_by(PointerButton::Primary))
+        && let Some(grip) = under(pos).filter(|grip| grip.handle == Handle::Bar)
+        && let Some(edit) = ask(grip, pos, look)
+    {
+        commands.extend([edit, Command::EndGesture]);
     }
     if look.grabbed.is_none() {
         look.held = None;
+    }
+}
+
+fn cursor(handle: Handle, held: bool) -> CursorIcon {
+    match (handle, held) {
+        (Handle::Bar, _) => CursorIcon::PointingHand,
+        (Handle::Plane, _) => CursorIcon::ResizeVertical,
+        (Handle::Target | Handle::Ring, true) => CursorIcon::Grabbing,
+        (Handle::Target | Handle::Ring, false) => CursorIcon::Grab,
     }
 }
 
@@ -135,10 +132,13 @@ fn move_camera(ui: &Ui, response: &egui::Response, rect: Rect, look: &mut Look) 
     let delta = response.drag_delta();
     if look.grabbed.is_none() && delta != Vec2::ZERO {
         let (x, y) = (f64::from(delta.x) / height, f64::from(delta.y) / height);
-        let pans = look.flat || !response.dragged_by(PointerButton::Primary) || ui.input(|i| i.modifiers.shift);
+        let aspect = f64::from(rect.width()) / height;
+        let pans = look.view == ViewKind::Flat
+            || !response.dragged_by(PointerButton::Primary)
+            || ui.input(|i| i.modifiers.shift);
         let camera = look.camera_mut();
         if pans {
-            camera.pan(x, y);
+            camera.pan(x, y, aspect);
         } else {
             camera.turn(-4.0 * x, 4.0 * y);
         }
@@ -241,36 +241,4 @@ fn words(ui: &Ui, spot: &Spot, scene: &Scene) {
         painter.rect_filled(place.expand2(vec2(3.0, 0.0)), 3.0, colour(faded(scene.background, 0.55)));
         painter.galley(place.min, galley, colour(label.colour));
     }
-}
-
-/// 2D and 3D, at the top left.
-fn views(ui: &mut Ui, rect: Rect, look: &Look, commands: &mut Vec<Command>) {
-    let p = look.palette();
-    let area = Rect::from_min_size(rect.min + vec2(14.0, 12.0), vec2(110.0, 30.0));
-    let mut child = ui.new_child(egui::UiBuilder::new().max_rect(area));
-    let frame = Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.line))).corner_radius(8).inner_margin(3);
-    frame.show(&mut child, |ui| {
-        ui.spacing_mut().item_spacing.x = 2.0;
-        ui.horizontal(|ui| {
-            for (flat, text) in [(true, "2D"), (false, "3D")] {
-                let chosen = look.flat == flat;
-                let ink = if chosen { p.ink } else { p.dim };
-                let fill = if chosen { colour(p.line) } else { egui::Color32::TRANSPARENT };
-                let button = egui::Button::new(egui::RichText::new(text).color(colour(ink)))
-                    .fill(fill)
-                    .stroke(egui::Stroke::NONE)
-                    .min_size(vec2(40.0, 22.0));
-                let response = ui.add(button).on_hover_text("Seen from above, or in perspective (V)");
-                if response.clicked() {
-                    commands.push(Command::Flat(flat));
-                }
-            }
-        });
-    });
-}
-
-fn scale(ui: &Ui, rect: Rect, look: &Look) {
-    let p = look.palette();
-    let at = pos2(rect.right() - 14.0, rect.bottom() - 16.0);
-    ui.painter().text(at, Align2::RIGHT_CENTER, "0.1 m grid", plain(11.5), colour(p.dim));
 }

@@ -78,6 +78,7 @@ fn nine_link(b: f32) -> Area {
         turn: b / sum,
         z: 0.0,
         colour: WHITE,
+        shade: None,
     }
 }
 
@@ -487,7 +488,12 @@ fn nonsense_is_survived() {
     let Some(mut gpu) = gpu() else { return };
     let mut scene = empty(BLACK);
     let nan = [f32::NAN; 3];
-    let bad = Mesh { positions: vec![nan; 3], normals: vec![[0.0; 3]; 2], triangles: vec![[0, 1, 2], [7, 8, 9]] };
+    let bad = Mesh {
+        positions: vec![nan; 3],
+        normals: vec![[0.0; 3]; 2],
+        triangles: vec![[0, 1, 2], [7, 8, 9]],
+        shell: false,
+    };
     scene.model = Arc::new(Model { meshes: vec![bad, Mesh::default()] });
     scene.solids = (0..4).map(|k| solid(k, [[f32::NAN; 4]; 4], RED)).collect();
     scene.lines = vec![

@@ -243,8 +243,8 @@ fn reactions_are_said() {
 fn nothing_drawn_is_lost() {
     for session in [open("case-1"), open("case-2"), dragged_outside()] {
         for theme in [Theme::Dark, Theme::Light] {
-            for flat in [true, false] {
-                let options = ViewOptions { theme, flat, ..ViewOptions::default() };
+            for dexterity in [true, false] {
+                let options = ViewOptions { theme, dexterity, ..ViewOptions::default() };
                 let scene = Stage::of(session.run()).scene(session.frame(), &options);
                 let points = scene.lines.iter().flat_map(|l| &l.points).chain(scene.markers.iter().map(|m| &m.at));
                 let points = points.chain(scene.labels.iter().map(|l| &l.at)).copied();
@@ -358,9 +358,9 @@ proptest! {
         zoomed.zoom(factor, place, aspect);
         let ([x, y], [u, v]) = (world(&before, place), world(&zoomed, place));
         prop_assert!((x - u).abs() + (y - v).abs() < 1e-9, "({}, {}) and ({}, {})", x, y, u, v);
-        prop_assert!((zoomed.scale() / before.scale() - factor).abs() < 1e-9);
+        prop_assert!((zoomed.scale(aspect) / before.scale(aspect) - factor).abs() < 1e-9);
         let mut panned = before;
-        panned.pan(0.1, 0.2);
+        panned.pan(0.1, 0.2, aspect);
         let to = [place[0] + 0.1 / aspect, place[1] + 0.2];
         let ([x, y], [u, v]) = (world(&before, place), world(&panned, to));
         prop_assert!((x - u).abs() + (y - v).abs() < 1e-9, "({}, {}) and ({}, {})", x, y, u, v);

@@ -4,8 +4,10 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers, pos2};
 use egui_kittest::{Harness, kittest::Queryable as _};
 use stillbase::frame::Reach;
+use stillbase::reactionless::PlanePoint;
 use stillbase::scenario::Scenario;
 use stillbase::scene::palette::Theme;
+use stillbase::scene::views::ViewKind;
 use stillbase::session::Edit;
 use stillbase::ui::Desk;
 use stillbase::window::{App, Clock};
@@ -33,11 +35,15 @@ fn session(h: &Desktop) -> &stillbase::session::Session {
 
 /// Where a point of the plane of handles is on the screen.
 fn on_screen(h: &Desktop, x: f64, y: f64) -> egui::Pos2 {
+    seen(h, [x, y, h.state().desk().stage().handle_height()])
+}
+
+/// Where a point of the scene is on the screen.
+fn seen(h: &Desktop, point: [f64; 3]) -> egui::Pos2 {
     let rect = h.get_by_label_contains("Scene:").rect();
     let desk = h.state().desk();
-    let z = desk.stage().handle_height();
     let aspect = f64::from(rect.width() / rect.height());
-    let [u, v] = desk.look().camera().project([x, y, z], aspect).expect("in front of the eye");
+    let [u, v] = desk.look().camera().project(point, aspect).expect("in front of the eye");
     rect.min + egui::vec2(u as f32 * rect.width(), v as f32 * rect.height())
 }
 
@@ -227,4 +233,70 @@ fn escape_cancels_a_drag_and_takes_it_back() {
     h.run_steps(100);
     let f = session(&h).frame();
     assert!((f.tip - nalgebra::Complex::new(0.6, 0.3)).norm() > 0.1, "{}", f.tip);
+}
+
+/// Pulling in one view moves the session, so all of them follow.
+#[test]
+fn views_are_linked() {
+    let Some(mut h) = desk("case-3", Theme::Dark) else { return };
+    h.step();
+    // The slice of the tower, pulled up by 0.2 rad at rest: posed there.
+    h.get_by_label("Tower").click();
+    h.run_steps(3);
+    let tower = h.state().desk().views().tower().expect("three drives").clone();
+    let up = |x: f64, y: f64, b: f64| [x, y, b * tower.rise()];
+    let (from, to) = (seen(&h, up(0.1, -0.1, 2.4)), seen(&h, up(0.1, -0.1, 2.6)));
+    drag(&mut h, from, to);
+    h.run_steps(2);
+    let f = *session(&h).frame();
+    assert!((f.b - 2.6).abs() < 0.01 && f.step == 0, "{} rad at step {}", f.b, f.step);
+    // A click on the bar of A chooses that b; a single undo takes it back.
+    let bar = seen(&h, up(0.5, 0.5, 2.25));
+    h.hover_at(bar);
+    h.step();
+    h.drag_at(bar);
+    h.step();
+    h.drop_at(bar);
+    h.run_steps(2);
+    let chosen = session(&h).frame().b;
+    assert!((chosen - 2.25).abs() < 0.01, "{chosen}");
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    h.run_steps(2);
+    assert!((session(&h).frame().b - f.b).abs() < 1e-9);
+    // V goes back around to the machine by way of 2D and 3D; joint space comes third.
+    for _ in 0..3 {
+        h.key_press(Key::V);
+        h.run_steps(2);
+    }
+    assert_eq!(h.state().desk().look().view, ViewKind::Joints);
+    // The dot in its plane: the end effector goes where that pose has it, without a reaction.
+    let (frame, map) = (*session(&h).frame(), *session(&h).run().planes().expect("three drives").map());
+    let space = h.state().desk().views().joints().expect("three drives").clone();
+    let at = |q: [f64; 3]| space.point(q, frame.b_reference);
+    let a = [frame.a[0] + 0.4, frame.a[1] + 0.3];
+    let (from, to) = (at([frame.q[0], frame.q[1], frame.q[2]]), at(map.lift(PlanePoint { a, b: frame.b_reference })));
+    let (from, to) = (seen(&h, from), seen(&h, to));
+    drag(&mut h, from, to);
+    h.run_steps(120);
+    let f = session(&h).frame();
+    assert!((f.a[0] - a[0]).hypot(f.a[1] - a[1]) < 0.03, "{:?} for {a:?}", f.a);
+    assert!(f.peaks.is_reactionless() && (f.b - frame.b).abs() < 1e-11);
+}
+
+#[test]
+fn dexterity_is_shown_with_its_key_where_there_is_a_workspace() {
+    let Some(mut h) = desk("case-3", Theme::Light) else { return };
+    h.step();
+    assert!(h.query_by_label("|det| 0").is_none());
+    h.get_by_label("dexterity").click();
+    h.run_steps(3);
+    assert!(h.query_by_label("|det| 0").is_some() && h.query_by_label("0.139 m²").is_some());
+    h.get_by_label("Tower").click();
+    h.run_steps(3);
+    assert!(h.query_by_label("dexterity").is_none());
+    h.get_by_label("3D").click();
+    h.run_steps(3);
+    h.key_press(Key::D);
+    h.run_steps(3);
+    assert!(h.query_by_label("dexterity").is_some() && h.query_by_label("|det| 0").is_none());
 }

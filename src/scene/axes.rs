@@ -1,0 +1,193 @@
+//! A box with three labelled axes: a quiet grid on the walls that are behind, ticks on the edges that are in front.
+
+use super::palette::{Palette, faded};
+use super::stage::signed;
+use super::{Anchor, Label, Line, Rgba, Scene};
+
+/// One direction of the box: what it shows and over which range.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// Quantity and unit: `b, rad`.
+    pub title: &'static str,
+    /// Colour of the title.
+    pub colour: Rgba,
+    /// Where the box begins and ends, in the units of the scene.
+    pub ends: [f64; 2],
+    /// The values that these ends stand for.
+    pub values: [f64; 2],
+    /// Values are marked at multiples of this.
+    pub step: f64,
+    /// Digits after the point.
+    pub decimals: usize,
+    /// A value that is set off, and its colour.
+    pub now: Option<(f64, Rgba)>,
+}
+
+/// The most marks on one axis.
+const MARKS: usize = 40;
+
+impl Axis {
+    /// Where a value lies.
+    pub fn place(&self, value: f64) -> f64 {
+        let share = (value - self.values[0]) / (self.values[1] - self.values[0]);
+        self.ends[0] + share * (self.ends[1] - self.ends[0])
+    }
+
+    /// The values to mark.
+    pub fn marks(&self) -> impl Iterator<Item = f64> + use<> {
+        let ([low, high], step) = (self.values, self.step);
+        let slack = 1e-9 * step;
+        let first = ((low - slack) / step).ceil();
+        (0..MARKS).map(move |i| (first + i as f64) * step).take_while(move |v| *v <= high + slack)
+    }
+
+    fn length(&self) -> f64 {
+        self.ends[1] - self.ends[0]
+    }
+}
+
+/// A box as an eye in a direction sees it.
+struct Sight<'a> {
+    axes: &'a [Axis; 3],
+    /// Sides of the walls whose grids are seen: behind, behind, and floor or ceiling.
+    back: [f64; 3],
+    /// The sides opposite.
+    front: [f64; 3],
+    right: [f64; 3],
+    up: [f64; 3],
+}
+
+impl<'a> Sight<'a> {
+    fn new(axes: &'a [Axis; 3], eye: [f64; 3]) -> Self {
+        let [x, y, z] = eye;
+        let level = x.hypot(y);
+        let right = if level > 1e-9 { [-y / level, x / level, 0.0] } else { [1.0, 0.0, 0.0] };
+        // eye × right
+        let up = [y * right[2] - z * right[1], z * right[0] - x * right[2], x * right[1] - y * right[0]];
+        let side = |i: usize, behind: bool| axes[i].ends[usize::from((eye[i] >= 0.0) != behind)];
+        Self { axes, back: [0, 1, 2].map(|i| side(i, true)), front: [0, 1, 2].map(|i| side(i, false)), right, up }
+    }
+
+    /// How far to the right on the screen.
+    fn rightwards(&self, p: [f64; 3]) -> f64 {
+        super::pointer::dot(self.right, p)
+    }
+
+    /// The edge on which axis k is marked, with 0 for its own coordinate, and the way off the box.
+    fn edge(&self, k: usize) -> ([f64; 3], [f64; 3]) {
+        let middle = [0, 1, 2].map(|i| 0.5 * (self.axes[i].ends[0] + self.axes[i].ends[1]));
+        let mut at = match k {
+            0 => [0.0, self.front[1], self.back[2]],
+            1 => [self.front[0], 0.0, self.back[2]],
+            _ => {
+                let (one, other) = ([self.front[0], self.back[1], 0.0], [self.back[0], self.front[1], 0.0]);
+                if self.rightwards(one) >= self.rightwards(other) { one } else { other }
+            }
+        };
+        at[k] = 0.0;
+        let mut out = [0, 1, 2].map(|i| if i == k { 0.0 } else { (at[i] - middle[i]) / self.axes[i].length() });
+        // Words stand beside the floor, not below it.
+        out[2] *= if k == 2 { 0.0 } else { 0.6 };
+        (at, out)
+    }
+
+    /// A direction as a unit vector of the screen, y down.
+    fn on_screen(&self, out: [f64; 3]) -> [f64; 2] {
+        let (x, y) = (super::pointer::dot(self.right, out), -super::pointer::dot(self.up, out));
+        let length = x.hypot(y).max(1e-9);
+        [x / length, y / length]
+    }
+}
+
+/// Draws a box as seen from a direction, a unit vector from the scene towards the eye.
+pub fn draw(scene: &mut Scene, palette: &Palette, axes: &[Axis; 3], eye: [f64; 3]) {
+    let sight = Sight::new(axes, eye);
+    let at = |p: [f64; 3]| p.map(|x| x as f32);
+    let line = |name: &str, ends: [[f64; 3]; 2], width, colour| Line {
+        name: name.into(),
+        points: ends.map(at).to_vec(),
+        width,
+        colour,
+        dash: None,
+        on_top: false,
+    };
+    // Each wall by the axis it stands across: lines along one of its axes at the marks of the other.
+    for wall in 0..3 {
+        for (across, along) in [((wall + 1) % 3, (wall + 2) % 3), ((wall + 2) % 3, (wall + 1) % 3)] {
+            let [from, to] = axes[along].ends;
+            let grid = axes[across].marks().map(|v| (axes[across].place(v), faded(palette.line, 0.7)));
+            for (place, colour) in grid.chain(axes[across].ends.map(|e| (e, palette.line))) {
+                let mut ends = [sight.back; 2];
+                for (end, x) in ends.iter_mut().zip([from, to]) {
+                    (end[across], end[along]) = (place, x);
+                }
+                scene.lines.push(line("grid", ends, 1.0, colour));
+            }
+        }
+    }
+    for (k, axis) in axes.iter().enumerate() {
+        mark(scene, palette, &sight, k, axis);
+    }
+}
+
+/// Marks, their values, the title and the value of now on the edge of axis k.
+fn mark(scene: &mut Scene, palette: &Palette, sight: &Sight, k: usize, axis: &Axis) {
+    let (edge, out) = sight.edge(k);
+    let [dx, dy] = sight.on_screen(out);
+    let longest = sight.axes.iter().map(Axis::length).fold(0.0, f64::max);
+    let size = super::pointer::dot(out, out).sqrt().max(1e-9);
+    let place = |value: f64, off: f64| {
+        let mut p = edge;
+        p[k] = axis.place(value);
+        [0, 1, 2].map(|i| (p[i] + off * longest * out[i] / size) as f32)
+    };
+    let tick = |value: f64, length: f64, colour, width| Line {
+        name: "axis/tick".into(),
+        points: vec![place(value, 0.0), place(value, length)],
+        width,
+        colour,
+        dash: None,
+        on_top: false,
+    };
+    let beside = |distance: f64| [(distance * dx) as f32, (0.8 * distance * dy) as f32];
+    let anchor = if k == 2 { Anchor::Left } else { Anchor::Centre };
+    let label = |at, offset, text, colour, size| Label { at, offset, text, colour, size, anchor };
+    let upright = k == 2;
+    for value in axis.marks() {
+        scene.lines.push(tick(value, 0.012, palette.dim, 1.0));
+        // The value of now takes the place of a mark.
+        let room = if upright { 0.07 } else { 0.11 };
+        if axis.now.is_some_and(|(now, _)| (now - value).abs() < room * (axis.values[1] - axis.values[0])) {
+            continue;
+        }
+        let offset = if upright { [9.0, 0.0] } else { beside(19.0) };
+        scene.labels.push(label(place(value, 0.012), offset, signed(value, axis.decimals), palette.dim, 11.5));
+    }
+    if let Some((now, colour)) = axis.now {
+        scene.lines.push(tick(now, 0.022, colour, 2.0));
+        let offset = if upright { [9.0, 0.0] } else { beside(19.0) };
+        scene.labels.push(label(place(now, 0.022), offset, signed(now, 3), colour, 12.5));
+    }
+    // The title stands over the upright axis, and beyond the far ends of the others.
+    let (at, offset) = match upright {
+        true => (place(axis.values[1], 0.0), [0.0, -18.0]),
+        false => {
+            let far = usize::from(sight.back[k] == axis.ends[1]);
+            let beyond = axis.values[far] + 0.08 * (axis.values[far] - axis.values[1 - far]);
+            // Where the upright axis begins, its own marks need the room.
+            let shared = sight.edge(2).0[k] == sight.back[k];
+            (place(beyond, 0.012), beside(if shared { 48.0 } else { 19.0 }))
+        }
+    };
+    let anchor = Anchor::Centre;
+    scene.labels.push(Label { at, offset, text: axis.title.into(), colour: axis.colour, size: 12.5, anchor });
+}
+
+/// The range of `width` in which a value is shown: about `home` while the value keeps `margin` from its ends, else
+/// moved along with it, so that nothing ever jumps.
+pub fn sliding(value: f64, home: f64, width: f64, margin: f64) -> [f64; 2] {
+    let free = (0.5 * width - margin).max(0.0);
+    let off = value - home;
+    let middle = home + (off - off.clamp(-free, free));
+    [middle - 0.5 * width, middle + 0.5 * width]
+}

@@ -1,0 +1,181 @@
+//! The linked views of one run: the machine from above and in space, joint space, and the tower of workspaces. What is
+//! pulled at in one of them is asked of the session, so all of them follow.
+
+use super::Scene;
+use super::camera::Camera;
+use super::joint_space::JointSpace;
+use super::pointer::Pointer;
+use super::stage::{Handle, Stage, ViewOptions};
+use super::tower::Tower;
+use crate::frame::Frame;
+use crate::session::Run;
+
+/// How near to a handle the pointer takes hold of it, px.
+pub const GRIP: f64 = 20.0;
+
+/// One of the views.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ViewKind {
+    /// The machine from straight above.
+    #[default]
+    Flat,
+    /// The machine in perspective.
+    Space,
+    /// Joint space with its planes.
+    Joints,
+    /// All reactionless workspaces, b as height.
+    Tower,
+}
+
+impl ViewKind {
+    /// In the order of the switch.
+    pub const ALL: [Self; 4] = [Self::Flat, Self::Space, Self::Joints, Self::Tower];
+
+    /// What the switch says.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Flat => "2D",
+            Self::Space => "3D",
+            Self::Joints => "Joints",
+            Self::Tower => "Tower",
+        }
+    }
+
+    /// The next one, around.
+    #[must_use]
+    pub fn next(self) -> Self {
+        Self::ALL[(self as usize + 1) % Self::ALL.len()]
+    }
+
+    /// What it shows, in a sentence.
+    pub fn explanation(self) -> &'static str {
+        match self {
+            Self::Flat => "The machine and its reactionless workspace from above",
+            Self::Space => "The machine and its reactionless workspace in perspective",
+            Self::Joints => "Joint space: drive angles q₁, q₂, q₃, and the plane Σ λq = b within the joint limits",
+            Self::Tower => "All reactionless workspaces: b as height over the plane of motion",
+        }
+    }
+
+    /// What can be done in it with the pointer.
+    pub fn invitation(self) -> &'static str {
+        match self {
+            Self::Flat | Self::Space => "",
+            Self::Joints => "drag the dot in its plane  ·  drag the plane to change b",
+            Self::Tower => "drag the dot  ·  drag the slice to change b  ·  click a green bar to choose b",
+        }
+    }
+
+    /// The grid's width.
+    pub fn grid(self) -> &'static str {
+        match self {
+            Self::Flat | Self::Space => "0.1 m grid",
+            Self::Joints | Self::Tower => "",
+        }
+    }
+
+    /// Whether it shows the machine and its workspace.
+    pub fn shows_machine(self) -> bool {
+        matches!(self, Self::Flat | Self::Space)
+    }
+}
+
+/// What the pointer has taken hold of, and where.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grip {
+    /// What.
+    pub handle: Handle,
+    /// In the scene.
+    pub at: [f64; 3],
+}
+
+/// What pulling at a grip asks of the session.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Aim {
+    /// The end effector at a point, m.
+    Target([f64; 2]),
+    /// The pose constant, rad.
+    B(f64),
+}
+
+/// What stays the same from frame to frame in all views.
+#[derive(Clone, Debug)]
+pub struct Views {
+    stage: Stage,
+    joints: Option<JointSpace>,
+    tower: Option<Tower>,
+}
+
+impl Views {
+    /// Prepares a run for drawing; to be made again when its machine or plan changes.
+    pub fn of(run: &Run) -> Self {
+        Self { stage: Stage::of(run), joints: JointSpace::of(run), tower: Tower::of(run) }
+    }
+
+    /// The machine's view.
+    pub fn stage(&self) -> &Stage {
+        &self.stage
+    }
+
+    /// Joint space, if the machine has planes.
+    pub fn joints(&self) -> Option<&JointSpace> {
+        self.joints.as_ref()
+    }
+
+    /// The tower, if the machine has planes.
+    pub fn tower(&self) -> Option<&Tower> {
+        self.tower.as_ref()
+    }
+
+    /// The camera that shows everything.
+    pub fn camera(&self, kind: ViewKind) -> Camera {
+        let reach = self.stage.linkage().reach();
+        match (kind, &self.joints, &self.tower) {
+            (ViewKind::Joints, Some(joints), _) => joints.camera(),
+            (ViewKind::Tower, _, Some(tower)) => tower.camera(),
+            (ViewKind::Flat, ..) => Camera::flat(reach),
+            _ => Camera::orbit(reach),
+        }
+    }
+
+    /// Everything there is to draw.
+    pub fn scene(&self, kind: ViewKind, frame: &Frame, options: &ViewOptions, camera: &Camera) -> Scene {
+        match (kind, &self.joints, &self.tower) {
+            (ViewKind::Joints, Some(joints), _) => joints.scene(frame, options, camera),
+            (ViewKind::Tower, _, Some(tower)) => tower.scene(frame, options, camera),
+            _ => self.stage.scene(frame, options),
+        }
+    }
+
+    /// What is under the pointer and can be pulled at.
+    pub fn pick(&self, kind: ViewKind, frame: &Frame, pointer: &Pointer) -> Option<Grip> {
+        match (kind, &self.joints, &self.tower) {
+            (ViewKind::Joints, Some(joints), _) => joints.pick(frame, pointer),
+            (ViewKind::Tower, _, Some(tower)) => tower.pick(frame, pointer),
+            _ => {
+                let grips = [Handle::Target, Handle::Ring].into_iter().filter_map(|handle| {
+                    let at = self.stage.handle(handle, frame)?;
+                    Some((Grip { handle, at }, pointer.distance(at)?))
+                });
+                let near = grips.filter(|(_, d)| *d < GRIP);
+                near.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(grip, _)| grip)
+            }
+        }
+    }
+
+    /// What pulling at a grip asks for; `b` is the pose constant that the machine is sent to, rad.
+    pub fn aim(&self, kind: ViewKind, grip: &Grip, frame: &Frame, pointer: &Pointer, b: f64) -> Option<Aim> {
+        match (kind, &self.joints, &self.tower) {
+            (ViewKind::Joints, Some(joints), _) => joints.aim(grip, frame, pointer),
+            (ViewKind::Tower, _, Some(tower)) => tower.aim(grip, frame, pointer),
+            _ => {
+                let at = pointer.ray()?.at_height(self.stage.handle_height())?;
+                match grip.handle {
+                    Handle::Target => Some(Aim::Target(at)),
+                    Handle::Ring => self.stage.ring_b(at, b).map(Aim::B),
+                    Handle::Plane | Handle::Bar => None,
+                }
+            }
+        }
+    }
+}

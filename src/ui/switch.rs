@@ -1,0 +1,77 @@
+//! What lies over the viewport's corners: the switch between views, the shade of the workspace with its key, the grid's
+//! width, and what can be done.
+
+use egui::epaint::{Mesh, Vertex, WHITE_UV};
+use egui::{Align2, Button, Color32, Frame, Rect, RichText, Stroke, Ui, pos2, vec2};
+
+use super::theme::{colour, plain};
+use super::{Command, Look};
+use crate::scene::dexterity;
+use crate::scene::palette::Palette;
+use crate::scene::views::{ViewKind, Views};
+
+/// Draws it.
+pub fn show(ui: &mut Ui, rect: Rect, look: &Look, views: &Views, commands: &mut Vec<Command>) {
+    let p = look.palette();
+    let area = Rect::from_min_size(rect.min + vec2(14.0, 12.0), vec2(260.0, 64.0));
+    let mut child = ui.new_child(egui::UiBuilder::new().max_rect(area));
+    let frame = Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.line))).corner_radius(8).inner_margin(3);
+    frame.show(&mut child, |ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        ui.horizontal(|ui| {
+            for view in ViewKind::ALL {
+                let words = format!("{} (V)", view.explanation());
+                if segment(ui, &p, view.name(), look.view == view).on_hover_text(words).clicked() {
+                    commands.push(Command::View(view));
+                }
+            }
+        });
+    });
+    if look.view.shows_machine() {
+        shade(&mut child, &p, look, views.stage().greatest_det(), commands);
+    }
+    let text = |at, align, words: &str| {
+        ui.painter().text(at, align, words, plain(11.5), colour(p.dim));
+    };
+    let low = rect.bottom() - 16.0;
+    text(pos2(rect.right() - 14.0, low), Align2::RIGHT_CENTER, look.view.grid());
+    text(pos2(rect.left() + 16.0, low), Align2::LEFT_CENTER, look.view.invitation());
+}
+
+fn segment(ui: &mut Ui, p: &Palette, text: &str, chosen: bool) -> egui::Response {
+    let ink = if chosen { p.ink } else { p.dim };
+    let fill = if chosen { colour(p.line) } else { Color32::TRANSPARENT };
+    let words = RichText::new(text).color(colour(ink));
+    ui.add(Button::new(words).fill(fill).stroke(Stroke::NONE).min_size(vec2(40.0, 22.0)))
+}
+
+/// The toggle, and once it is on the key to its colours.
+fn shade(ui: &mut Ui, p: &Palette, look: &Look, most: f64, commands: &mut Vec<Command>) {
+    ui.add_space(2.0);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        let ink = colour(if look.dexterity { p.ink } else { p.dim });
+        let words = RichText::new("dexterity").font(plain(11.5)).color(ink);
+        let help = "Shade the workspace by |det ∂(x, y)/∂(a₁, a₂)|: how far the end effector moves for a motion of the \
+                    joints on its plane; 0 where it is singular (D)";
+        let mut shown = look.dexterity;
+        if ui.checkbox(&mut shown, words).on_hover_text(help).clicked() {
+            commands.push(Command::Dexterity(shown));
+        }
+        if !look.dexterity {
+            return;
+        }
+        ui.label(RichText::new("|det| 0").font(plain(11.5)).color(colour(p.dim)));
+        let (bar, _) = ui.allocate_exact_size(vec2(56.0, 8.0), egui::Sense::hover());
+        let [low, high] = dexterity::colours(p).map(colour);
+        let mut mesh = Mesh::default();
+        for (pos, color) in
+            [(bar.left_top(), low), (bar.right_top(), high), (bar.right_bottom(), high), (bar.left_bottom(), low)]
+        {
+            mesh.vertices.push(Vertex { pos, uv: WHITE_UV, color });
+        }
+        mesh.indices = vec![0, 1, 2, 0, 2, 3];
+        ui.painter().add(mesh);
+        ui.label(RichText::new(format!("{most:.3} m²")).font(plain(11.5)).color(colour(p.dim)));
+    });
+}
