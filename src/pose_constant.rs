@@ -71,6 +71,8 @@ pub enum Unreachable {
         b: f64,
         /// The b that would do, in words.
         would_do: String,
+        /// The nearest of them to b, rad.
+        nearest_b: Option<f64>,
     },
     /// Each point on some plane, but no plane serves all.
     #[error("{}", .0.in_words(&|i| format!("point {}", i + 1)))]
@@ -287,12 +289,15 @@ impl Planes {
             return Unreachable::Anywhere { x, y, reason };
         }
         match (self.common(points), self.no_common(points)) {
-            (Some(common), _) => Unreachable::OnThisPlane { x, y, b, would_do: in_words(&common) },
+            (Some(common), _) => {
+                let nearest_b = common.nearest(b).map(|nearest| common.inwards(nearest, 1e-6));
+                Unreachable::OnThisPlane { x, y, b, would_do: in_words(&common), nearest_b }
+            }
             (None, Some(why)) => Unreachable::NoCommonPlane(why),
             // Another point is out of every reach.
             (None, None) => {
                 let own = self.map.reach(points[i]).map(|set| in_words(&set)).unwrap_or_default();
-                Unreachable::OnThisPlane { x, y, b, would_do: own }
+                Unreachable::OnThisPlane { x, y, b, would_do: own, nearest_b: None }
             }
         }
     }

@@ -99,7 +99,7 @@ impl Pose {
         let (x, y, b) = (self.point.re, self.point.im, self.b);
         match map.reach(self.point) {
             Err(reason) => Unreachable::Anywhere { x, y, reason },
-            Ok(set) => Unreachable::OnThisPlane { x, y, b, would_do: in_words(&set) },
+            Ok(set) => Unreachable::OnThisPlane { x, y, b, would_do: in_words(&set), nearest_b: set.nearest(self.b) },
         }
     }
 }

@@ -52,6 +52,8 @@ pub struct Blocked {
     pub some_b_reaches_all: bool,
     /// From where to where the longest part runs that can be followed on this plane, 0 to 1 by length.
     pub longest: Option<[f64; 2]>,
+    /// The whole curve, m, to be drawn.
+    pub curve: Vec<Vector>,
 }
 
 impl std::fmt::Display for Stop {
@@ -111,6 +113,9 @@ const MISS: f64 = 2e-11;
 const MOST_SPACES: usize = 512;
 /// Stations at which a curve is tried for other b, or for its longest part.
 const STATIONS: usize = 96;
+
+/// Parts of a curve that is drawn.
+const DRAWN: i32 = 160;
 
 /// A curve on a plane.
 #[derive(Clone, Copy)]
@@ -395,6 +400,7 @@ fn blocked(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, s: f64, stop: S
         nearest_b: nearest_b(map, curves, b, rule, &common),
         some_b_reaches_all: !common.is_empty(),
         longest: longest(map, curves, b, rule),
+        curve: (0..=DRAWN).map(|i| at(curves, f64::from(i) / f64::from(DRAWN))).collect(),
     }
 }
 

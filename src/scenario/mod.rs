@@ -13,7 +13,7 @@ use crate::control::Gains;
 use crate::machine::{self, FileError, Machine, MachineError, MachineSpec, Payload};
 use crate::session::TimedEdit;
 
-pub use task::{Change, Corners, Least, MAX_POINTS, Shape, Task, TaskKind};
+pub use task::{Change, Corners, Least, MAX_POINTS, Shape, Task, TaskKind, Value};
 
 /// What a run starts from.
 #[derive(Clone, Debug, PartialEq)]

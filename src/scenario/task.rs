@@ -61,6 +61,9 @@ pub struct Task {
 /// Some keys of a task, as they stand in a file.
 pub type Change = toml::Table;
 
+/// What a key of a task holds.
+pub type Value = toml::Value;
+
 /// How the redundancy of three drives over two coordinates is resolved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

@@ -171,7 +171,7 @@ impl JointSpace {
                 let [low, high] = self.window(b);
                 Some(Aim::B(self.b_at(at, b).clamp(low, high)))
             }
-            Handle::Ring | Handle::Bar => None,
+            Handle::Ring | Handle::Bar | Handle::Waypoint(_) => None,
         }
     }
 

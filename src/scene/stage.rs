@@ -10,11 +10,12 @@ use crate::machine::Chain;
 use crate::planar::{DriveAngles, Units, Vector, unit};
 use crate::pose_constant::Planes;
 use crate::reactionless::PlaneMap;
+use crate::scenario::{Shape, Task};
 use crate::session::Run;
 use std::sync::Arc;
 
 /// What a person has chosen to see.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ViewOptions {
     /// Light or dark.
     pub theme: Theme,
@@ -22,13 +23,17 @@ pub struct ViewOptions {
     pub dexterity: bool,
     /// The pointer is on this handle, or drags it.
     pub hot: Option<Handle>,
-    /// Where the pointer holds the target while it drags, m.
+    /// Where the pointer holds what it drags, m.
     pub held: Option<[f64; 2]>,
+    /// What the pointer has drawn so far, m.
+    pub stroke: Vec<[f64; 2]>,
+    /// What was asked for last and refused.
+    pub refused: Option<Arc<Refused>>,
 }
 
 impl Default for ViewOptions {
     fn default() -> Self {
-        Self { theme: Theme::Dark, dexterity: false, hot: None, held: None }
+        Self { theme: Theme::Dark, dexterity: false, hot: None, held: None, stroke: Vec::new(), refused: None }
     }
 }
 
@@ -46,6 +51,17 @@ pub enum Handle {
     Plane,
     /// A bar of the tower: the b that reach a point.
     Bar,
+    /// A point of the planned path, counted from A.
+    Waypoint(usize),
+}
+
+/// What somebody asked for and did not get: a curve, m, and where it cannot be followed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refused {
+    /// m.
+    pub curve: Vec<Vector>,
+    /// m.
+    pub at: Vector,
 }
 
 /// What stays the same from frame to frame.
@@ -60,6 +76,43 @@ pub struct Stage {
     motion: Option<Course>,
     /// The greatest |det| within the limits, m².
     most_det: f64,
+    /// Curves in the workspace, and where folds turn back, before it is turned, m.
+    inside: Vec<(Inside, Vec<Vector>)>,
+    cusps: Vec<Vector>,
+}
+
+/// What a curve in the workspace is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Inside {
+    /// det = 0: two poses meet.
+    Fold,
+    /// A limit that some pose meets there.
+    Limit,
+    /// Two drives are parallel.
+    Change,
+}
+
+impl Inside {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Fold => "fold",
+            Self::Limit => "inner-limit",
+            Self::Change => "change-point",
+        }
+    }
+}
+
+fn inside(planes: &Planes) -> Vec<(Inside, Vec<Vector>)> {
+    let b = planes.boundary();
+    let drawn = |line: &crate::reactionless::Line| -> Vec<Vector> {
+        let mut points: Vec<Vector> = line.turned(0.0).iter().map(|[x, y]| Vector::new(*x, *y)).collect();
+        points.extend(points.first().copied().filter(|_| line.is_closed()));
+        points
+    };
+    let folds = b.fold_curves().iter().map(|line| (Inside::Fold, drawn(line))).collect::<Vec<_>>();
+    let limits = b.inner_limits().iter().map(|line| (Inside::Limit, drawn(line))).collect::<Vec<_>>();
+    let changes = b.change_curves().iter().map(|curve| (Inside::Change, drawn(&curve.line))).collect::<Vec<_>>();
+    [folds, limits, changes].concat()
 }
 
 /// A planned motion as seen.
@@ -67,6 +120,24 @@ pub struct Stage {
 struct Course {
     points: Vec<Vector>,
     start: Units,
+    /// Points of the task: their numbers, names and places, m.
+    waypoints: Vec<(usize, String, Vector)>,
+}
+
+/// Parts of a path that is drawn.
+const LOOKS: i32 = 256;
+
+/// The most points of a task that are drawn one by one; more are a curve drawn by hand.
+const NAMED: usize = 24;
+
+fn waypoints(task: &Task) -> Vec<(usize, String, Vector)> {
+    let named = |(i, p)| (i, task.name_of(i), p);
+    let all: Vec<_> = task.points().into_iter().enumerate().map(named).collect();
+    if all.len() <= NAMED && task.shape() != Shape::Freehand {
+        all
+    } else {
+        [&all[..1], &all[all.len() - 1..]].concat()
+    }
 }
 
 impl Stage {
@@ -80,12 +151,15 @@ impl Stage {
         });
         let tip = *machine.tip();
         let motion = run.motion().map(|motion| Course {
-            points: (0..=96).map(|i| place(&tip, &motion.path.at(f64::from(i) / 96.0).q)).collect(),
+            points: (0..=LOOKS).map(|i| place(&tip, &motion.path.at(f64::from(i) / f64::from(LOOKS)).q)).collect(),
             start: motion.path.at(0.0).q.units(),
+            waypoints: waypoints(&run.scenario().task),
         });
         Self {
             linkage: Linkage::of(machine),
             middle: planes.as_ref().and_then(|p| roomiest(p, &boundary)),
+            inside: planes.as_ref().map_or_else(Vec::new, |p| inside(p)),
+            cusps: planes.as_ref().map_or_else(Vec::new, |p| p.boundary().cusps().iter().map(|v| v.at).collect()),
             most_det: planes.as_ref().map_or(0.0, |p| dexterity::greatest(p.map())),
             planes,
             boundary,
@@ -124,6 +198,11 @@ impl Stage {
             }
             Handle::Ring => {
                 let p = unit(self.planes.as_ref()?.map().turn(frame.b_reference)) * self.ring_radius();
+                Some([p.re, p.im, z])
+            }
+            Handle::Waypoint(i) => {
+                let course = self.motion.as_ref()?;
+                let (.., p) = course.waypoints.iter().find(|(number, ..)| *number == i)?;
                 Some([p.re, p.im, z])
             }
             Handle::Plane | Handle::Bar => None,
@@ -170,7 +249,8 @@ impl Stage {
                 .for_each(|area| self.shade(area, &palette));
             self.ring(&mut scene, &palette, planes, frame, options);
         }
-        self.course(&mut scene, &palette);
+        self.course(&mut scene, &palette, options);
+        self.wishes(&mut scene, &palette, options);
         self.reaction(&mut scene, &palette, frame);
         self.target(&mut scene, &palette, frame, options);
         scene
@@ -218,6 +298,31 @@ impl Stage {
                 colour: edge,
                 dash,
                 on_top: false,
+            });
+        }
+        for (kind, line) in self.inside.iter().filter(|_| !compared) {
+            let (colour, dash) = match kind {
+                Inside::Fold => (palette.amber, None),
+                Inside::Limit => (faded(palette.amber, 0.55), None),
+                Inside::Change => (faded(palette.dim, 0.8), Some([2.0, 4.0])),
+            };
+            scene.lines.push(Line {
+                name: format!("workspace/{}", kind.name()),
+                points: line.iter().map(|p| point(p * r, z)).collect(),
+                width: 1.2,
+                colour,
+                dash,
+                on_top: false,
+            });
+        }
+        for cusp in self.cusps.iter().filter(|_| !compared) {
+            scene.markers.push(Marker {
+                name: "workspace/cusp".into(),
+                at: point(cusp * r, z),
+                radius: 2.5,
+                fill: palette.amber,
+                stroke: palette.amber,
+                stroke_width: 0.0,
             });
         }
         let rows = match compared {
@@ -271,7 +376,7 @@ impl Stage {
         scene.labels.push(label(beside, z, [0.0, 0.0], "b", palette.amber, 14.0, Anchor::Centre));
     }
 
-    fn course(&self, scene: &mut Scene, palette: &Palette) {
+    fn course(&self, scene: &mut Scene, palette: &Palette, options: &ViewOptions) {
         let Some(course) = &self.motion else { return };
         let z = self.handle_height();
         scene.lines.push(Line {
@@ -282,18 +387,56 @@ impl Stage {
             dash: Some([2.0, 4.0]),
             on_top: true,
         });
-        let ends = [("A", course.points.first()), ("B", course.points.last())];
-        for (name, at) in ends.into_iter().filter_map(|(n, p)| Some((n, *p?))) {
+        for (i, name, at) in &course.waypoints {
+            let hot = options.hot == Some(Handle::Waypoint(*i));
+            let at = match (hot, options.held) {
+                (true, Some([x, y])) => Vector::new(x, y),
+                _ => *at,
+            };
             scene.markers.push(Marker {
                 name: format!("waypoint/{name}"),
                 at: point(at, z),
-                radius: 4.5,
+                radius: if hot { 6.5 } else { 4.5 },
                 fill: palette.background,
                 stroke: palette.ink,
-                stroke_width: 1.6,
+                stroke_width: if hot { 2.2 } else { 1.6 },
             });
             scene.labels.push(label(at, z, [-12.0, 0.0], name, palette.ink, 13.0, Anchor::Right));
         }
+    }
+
+    /// What is being drawn by hand, and what was refused.
+    fn wishes(&self, scene: &mut Scene, palette: &Palette, options: &ViewOptions) {
+        let z = self.handle_height();
+        let line = |name: &str, points: &[Vector], colour, dash| Line {
+            name: name.into(),
+            points: points.iter().map(|p| point(*p, z)).collect(),
+            width: 1.8,
+            colour,
+            dash,
+            on_top: true,
+        };
+        if options.stroke.len() > 1 {
+            let drawn: Vec<Vector> = options.stroke.iter().map(|[x, y]| Vector::new(*x, *y)).collect();
+            scene.lines.push(line("stroke", &drawn, palette.ink, None));
+        }
+        if let Some(refused) = &options.refused {
+            scene.lines.push(line("refused", &refused.curve, palette.reaction, Some([4.0, 4.0])));
+            scene.markers.push(Marker {
+                name: "refused/at".into(),
+                at: point(refused.at, z),
+                radius: 5.5,
+                fill: palette.background,
+                stroke: palette.reaction,
+                stroke_width: 2.2,
+            });
+            scene.labels.push(label(refused.at, z, [12.0, 0.0], "stops here", palette.reaction, 12.0, Anchor::Left));
+        }
+    }
+
+    /// Points of the planned path that can be dragged: their numbers, A first.
+    pub fn waypoints(&self) -> impl Iterator<Item = usize> + '_ {
+        self.motion.iter().flat_map(|course| course.waypoints.iter().map(|(i, ..)| *i))
     }
 
     /// A force arrow and a moment arc at B, in proportion, with their scale in words.

@@ -13,6 +13,12 @@ use crate::session::Run;
 /// How near to a handle the pointer takes hold of it, px.
 pub const GRIP: f64 = 20.0;
 
+/// The same for a point of the path, px.
+const POINT_GRIP: f64 = 9.0;
+
+/// How far to the left of a point its name stands, px.
+const NAME: f64 = 17.0;
+
 /// One of the views.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ViewKind {
@@ -96,6 +102,8 @@ pub enum Aim {
     Target([f64; 2]),
     /// The pose constant, rad.
     B(f64),
+    /// A point of the path, counted from A, at a place, m.
+    Waypoint(usize, [f64; 2]),
 }
 
 /// What stays the same from frame to frame in all views.
@@ -158,7 +166,18 @@ impl Views {
                     Some((Grip { handle, at }, pointer.distance(at)?))
                 });
                 let near = grips.filter(|(_, d)| *d < GRIP);
-                near.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(grip, _)| grip)
+                let first = near.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(grip, _)| grip);
+                // Where the target covers a point of the path, the point is held by its name, to the left of it.
+                let points = self.stage.waypoints().filter_map(|i| {
+                    let handle = Handle::Waypoint(i);
+                    let at = self.stage.handle(handle, frame)?;
+                    let [x, y] = pointer.seen(at)?;
+                    let name = (pointer.at[0] - x + NAME).hypot(pointer.at[1] - y);
+                    let own = (pointer.at[0] - x).hypot(pointer.at[1] - y);
+                    let off = if first.is_some() { name } else { own.min(name) };
+                    (off < POINT_GRIP).then_some((Grip { handle, at }, off))
+                });
+                points.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(grip, _)| grip).or(first)
             }
         }
     }
@@ -173,6 +192,7 @@ impl Views {
                 match grip.handle {
                     Handle::Target => Some(Aim::Target(at)),
                     Handle::Ring => self.stage.ring_b(at, b).map(Aim::B),
+                    Handle::Waypoint(i) => Some(Aim::Waypoint(i, at)),
                     Handle::Plane | Handle::Bar => None,
                 }
             }

@@ -89,6 +89,17 @@ pub enum Refusal {
     },
 }
 
+impl Refusal {
+    /// The pose constant nearest to the present one that would do, rad, if another b is all it takes.
+    pub fn mending_b(&self) -> Option<f64> {
+        match self {
+            Self::Blocked(blocked) => blocked.nearest_b,
+            Self::Unreachable { unreachable: Unreachable::OnThisPlane { nearest_b, .. }, .. } => *nearest_b,
+            _ => None,
+        }
+    }
+}
+
 /// A scenario in motion.
 #[derive(Clone, Debug)]
 pub struct Run {

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::{Command, FileDialog, Look, Purpose, keys, plots, side, status, theme, top, viewport};
+use super::{Command, FileDialog, Look, Purpose, Wish, keys, plots, side, status, theme, top, viewport};
 use crate::machine::Machine;
 use crate::scenario::Scenario;
 use crate::scene::palette::Theme;
@@ -96,6 +96,7 @@ impl Desk {
         top::dialog(ui.ctx(), &mut self.look, &mut commands);
         if commands.iter().any(|c| !matches!(c, Command::EndGesture)) {
             self.look.message = None;
+            self.look.refused = None;
         }
         if !commands.is_empty() {
             ui.ctx().request_repaint();
@@ -132,7 +133,14 @@ impl Desk {
     fn attempt(&mut self, command: Command) -> Result<Option<String>, String> {
         let refused = |r: Refusal| r.to_string();
         match command {
-            Command::Edit(edit) => self.session.apply(edit).map_err(refused)?,
+            Command::Edit(edit) => {
+                if let Err(refusal) = self.session.apply(edit.clone()) {
+                    self.look.refused = Some(Wish::of(&edit, &refusal));
+                    return Err(refusal.to_string());
+                }
+                self.look.refused = None;
+            }
+            Command::Draw(draw) => self.look.stroke = draw.then(Vec::new),
             Command::EndGesture => self.session.end_gesture(),
             Command::TogglePlay if self.session.is_playing() => self.session.pause(),
             Command::TogglePlay => self.session.play(),

@@ -7,7 +7,7 @@ use super::{Command, Desk, Look, Purpose, case};
 use crate::scenario::Scenario;
 use crate::session::Session;
 
-const KEYS: [(&str, &str); 18] = [
+const KEYS: [(&str, &str); 22] = [
     ("Space", "play, pause, start over"),
     ("← →", "one step back, one step on"),
     ("Shift ← →", "ten steps"),
@@ -21,6 +21,10 @@ const KEYS: [(&str, &str); 18] = [
     ("Ctrl Z  Ctrl Y", "take back, bring back"),
     ("Ctrl S  Ctrl O", "save, open a session"),
     ("drag target", "the machine follows on its plane"),
+    ("drag A, B, 1 …", "the path goes elsewhere; by the name where the target covers it"),
+    ("double click", "one more point of the path"),
+    ("Delete", "leave out the point under the pointer"),
+    ("P, then drag", "draw a path"),
     ("drag b ring", "the workspace turns"),
     ("drag plane, slice", "b, in joint space and in the tower"),
     ("drag elsewhere", "pan in 2D, else orbit; Shift pans"),
@@ -50,7 +54,11 @@ pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Co
     }
     // While something is dragged, Esc belongs to the drag.
     if look.grabbed.is_none() && chord(Modifiers::NONE, Key::Escape) {
-        commands.push(if look.dialog.is_some() { Command::Dialog(None) } else { Command::Help(false) });
+        commands.push(match (&look.dialog, &look.stroke) {
+            (Some(_), _) => Command::Dialog(None),
+            (None, Some(_)) => Command::Draw(false),
+            (None, None) => Command::Help(false),
+        });
     }
     if typing {
         return;
@@ -68,6 +76,7 @@ pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Co
         (plain, Key::V, Command::View(look.view.next())),
         (plain, Key::D, Command::Dexterity(!look.dexterity)),
         (plain, Key::F, Command::Fit),
+        (plain, Key::P, Command::Draw(look.stroke.is_none())),
         (plain, Key::L, Command::Theme(super::top::other(look.theme))),
         (plain, Key::R, Command::Dialog(Some(Desk::suggest(session, Purpose::Record)))),
     ] {

@@ -20,9 +20,10 @@ pub use desk::Desk;
 use crate::scenario::Scenario;
 use crate::scene::camera::Camera;
 use crate::scene::palette::{Palette, Theme, palette};
-use crate::scene::stage::Handle;
+use crate::scene::stage::{Handle, Refused};
 use crate::scene::views::{Grip, ViewKind, Views};
-use crate::session::{Edit, Session};
+use crate::session::{Edit, Refusal, Session};
+use std::sync::Arc;
 
 /// What a person can ask for.
 #[derive(Clone, Debug)]
@@ -59,6 +60,8 @@ pub enum Command {
     Fit,
     /// Light or dark.
     Theme(Theme),
+    /// Take up the pencil, or lay it down.
+    Draw(bool),
     /// Show or hide the keys.
     Help(bool),
     /// Show or hide the dialog for a file.
@@ -83,6 +86,33 @@ pub enum Purpose {
     Save,
     /// Write a recording.
     Record,
+}
+
+/// Something that was refused.
+#[derive(Clone, Debug)]
+pub struct Wish {
+    /// The curve that was asked for, and where it stops.
+    pub curve: Option<Arc<Refused>>,
+    /// The same with another b, rad, that would do.
+    pub remedy: Option<(Edit, f64)>,
+}
+
+impl Wish {
+    fn of(edit: &Edit, refusal: &Refusal) -> Self {
+        let curve = match refusal {
+            Refusal::Blocked(blocked) => Some(Refused { curve: blocked.curve.clone(), at: blocked.at }),
+            _ => None,
+        };
+        let remedy = match (edit, refusal.mending_b()) {
+            (Edit::SetTask { change }, Some(b)) => {
+                let mut change = change.clone();
+                change.insert("b".into(), b.into());
+                Some((Edit::SetTask { change }, b))
+            }
+            _ => None,
+        };
+        Self { curve: curve.map(Arc::new), remedy }
+    }
 }
 
 /// How things are shown: no part of the session.
@@ -110,6 +140,10 @@ pub struct Look {
     pub dialog: Option<FileDialog>,
     /// The present drag has changed something.
     pub dragged: bool,
+    /// What the pencil has drawn so far, m; none while it lies down.
+    pub stroke: Option<Vec<[f64; 2]>>,
+    /// What was asked for last and refused.
+    pub refused: Option<Wish>,
     /// The last thing to say, and whether it is bad news.
     pub message: Option<(String, bool)>,
 }
@@ -129,6 +163,8 @@ impl Look {
             help: false,
             dialog: None,
             dragged: false,
+            stroke: None,
+            refused: None,
             message: None,
         }
     }

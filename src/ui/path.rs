@@ -7,8 +7,9 @@ use super::side::{Row, note, section, send, unit};
 use super::theme::{colour, plain};
 use super::top::name;
 use crate::plan::TimeLaw;
+use crate::plan::least_reaction::FixedB;
 use crate::planar::Vector;
-use crate::scenario::{Change, Corners, Shape, Task, TaskKind};
+use crate::scenario::{Change, Corners, Least, Shape, Task, TaskKind, Value};
 use crate::scene::palette::Palette;
 use crate::scene::stage::signed;
 use crate::session::{Edit, Session};
@@ -16,9 +17,12 @@ use crate::session::{Edit, Session};
 /// A choice: what stands in a file, what stands on the screen, and what it means.
 type Choice<T> = (T, &'static str, &'static str, &'static str);
 
-const KINDS: [Choice<TaskKind>; 3] = [
+const KINDS: [Choice<TaskKind>; 6] = [
     (TaskKind::Reactionless, "reactionless", "Stay reactionless", "Hold b: nothing reaches the base (case 3)"),
     (TaskKind::MinimumNorm, "minimum-norm", "Minimum-norm rates", "The usual inverse, q̇ = J⁺ẋ (case 1)"),
+    (TaskKind::LeastReaction, "least-reaction", "Least reaction", "Any path, b changing as little as it must"),
+    (TaskKind::ChangeB, "change-b", "Change b, at a price", "From A on one plane to B on another: n_B = −D₁ b̈"),
+    (TaskKind::ZeroMomentum, "zero-momentum", "Zero momentum", "Reactionless on any machine; closed paths may drift"),
     (TaskKind::SameTip, "same-tip", "Drive 1 apart", "The end effector as in case 3, drive 1 elsewhere (case 2)"),
 ];
 
@@ -27,7 +31,7 @@ const SHAPES: [Choice<Shape>; 5] = [
     (Shape::Line, "line", "Straight lines", "The end effector on straight lines"),
     (Shape::Arc, "arc", "Arc", "One arc through three points"),
     (Shape::Spline, "spline", "Spline", "A smooth curve through all points"),
-    (Shape::Freehand, "freehand", "Freehand", "As drawn with the pointer: D, then drag"),
+    (Shape::Freehand, "freehand", "Freehand", "As drawn with the pointer: P, then drag"),
 ];
 
 const LAWS: [Choice<TimeLaw>; 5] = [
@@ -54,6 +58,7 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
     time(ui, session, p, commands);
     points(ui, session, task, p, commands);
     corners(ui, task, p, commands);
+    off_plane(ui, session, task, p, commands);
     costs(ui, session, p);
 }
 
@@ -208,6 +213,84 @@ fn corners(ui: &mut Ui, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
                 });
             }
         });
+    }
+}
+
+/// What only some kinds of task have.
+fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
+    let plan = session.run().plan();
+    match task.kind {
+        TaskKind::ChangeB => {
+            let end =
+                session.run().planes().map(|planes| planes.map().project(&plan.motion.at(plan.forecast.time).q).b);
+            let mut b_to = task.b_to.or(end).unwrap_or(task.b);
+            let tip = "Pose constant at B; by default the one that changes b least";
+            let row = Row { label: "b at B", unit: "rad", tip, decimals: 3, speed: 0.005, range: -50.0..=50.0 };
+            let response = row.show(ui, p, &mut b_to);
+            send(commands, &[response], || Edit::task("b_to", b_to));
+            let mut limited = task.moment_limit.is_some();
+            let mut limit = task.moment_limit.unwrap_or((0.5 * plan.forecast.moment).max(0.1));
+            ui.horizontal(|ui| {
+                let tip = "A bound on |n_B| while b changes: it sets the time";
+                if ui.checkbox(&mut limited, "n_B at most").on_hover_text(tip).changed() {
+                    let value = if limited { Value::Float(limit) } else { Value::String("default".into()) };
+                    commands.extend([Command::Edit(Edit::task("moment_limit", value)), Command::EndGesture]);
+                }
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    unit(ui, p, "N m");
+                    if limited {
+                        let row = Row {
+                            label: "n_B at most",
+                            unit: "N m",
+                            tip,
+                            decimals: 2,
+                            speed: 0.02,
+                            range: 0.01..=100.0,
+                        };
+                        let response = row.number(ui, &mut limit);
+                        send(commands, &[response], || Edit::task("moment_limit", limit));
+                    }
+                });
+            });
+            if let Some(price) = plan.price {
+                let words = format!(
+                    "Δb {} rad; no motion of this time gets below {} N m",
+                    signed(price.delta_b(), 3),
+                    signed(price.least_peak(plan.forecast.time), 3)
+                );
+                note(ui, p, &words);
+            }
+        }
+        TaskKind::LeastReaction => {
+            let least = [
+                (Least::MeanSquare, "mean-square", "Least mean square", "∫ n_B² dt as small as can be"),
+                (Least::Peak, "peak", "Least peak", "The greatest |n_B| as small as can be"),
+            ];
+            let width = ui.available_width() - 10.0;
+            choose(ui, "What to keep small", "least", &least, task.least, width, commands);
+            if let Some(verdicts) = &plan.verdicts {
+                let fixed = match verdicts.fixed {
+                    FixedB::Serves => "b can stay: no reaction at all".into(),
+                    FixedB::Leaves { u, .. } => format!("b could stay until {:.0} % of T", 100.0 * u),
+                };
+                let norm = verdicts.minimum_norm.as_ref().ok();
+                let norm =
+                    norm.map_or(String::new(), |n| format!("; minimum-norm rates: {} N m", signed(n.reaction.peak, 3)));
+                note(ui, p, &format!("{fixed}{norm}"));
+            }
+        }
+        TaskKind::ZeroMomentum => {
+            let mut cycles = f64::from(task.cycles);
+            let tip = "How often a closed path is run through";
+            let row = Row { label: "cycles", unit: "", tip, decimals: 0, speed: 0.05, range: 1.0..=100.0 };
+            let response = row.show(ui, p, &mut cycles);
+            send(commands, &[response], || Edit::task("cycles", cycles.round() as i64));
+            if let (Some(first), Some(last), true) = (plan.cycles.first(), plan.cycles.last(), task.closed) {
+                let drift: Vec<String> = last.0.minus(&first.0).iter().map(|d| signed(*d, 4)).collect();
+                note(ui, p, &format!("in the end the joints have drifted by {} rad", drift.join(", ")));
+            }
+        }
+        TaskKind::Reactionless | TaskKind::MinimumNorm | TaskKind::SameTip => {}
     }
 }
 

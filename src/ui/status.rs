@@ -37,7 +37,15 @@ pub fn show(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Comm
             ui.label(RichText::new(facts).font(plain(12.0)).color(colour(p.dim)));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let (text, tone) = match (&look.message, f.target.reach) {
-                    (Some((text, true)), _) => (text.clone(), p.reaction),
+                    (Some((text, true)), _) => {
+                        if let Some((edit, b)) = look.refused.as_ref().and_then(|wish| wish.remedy.clone()) {
+                            let way_out = ui.button(format!("take b = {b:.3} rad"));
+                            if way_out.on_hover_text("The same on the nearest plane that allows it").clicked() {
+                                commands.extend([Command::Edit(edit), Command::EndGesture]);
+                            }
+                        }
+                        (text.clone(), p.reaction)
+                    }
                     (Some((text, false)), _) => (text.clone(), p.ink),
                     (None, _) if session.is_full() => {
                         ("three minutes are full: save or record them, then start over".into(), p.reaction)

@@ -13,7 +13,7 @@ use crate::scene::views::{ViewKind, Views};
 /// Draws it.
 pub fn show(ui: &mut Ui, rect: Rect, look: &Look, views: &Views, commands: &mut Vec<Command>) {
     let p = look.palette();
-    let area = Rect::from_min_size(rect.min + vec2(14.0, 12.0), vec2(260.0, 64.0));
+    let area = Rect::from_min_size(rect.min + vec2(14.0, 12.0), vec2(360.0, 64.0));
     let mut child = ui.new_child(egui::UiBuilder::new().max_rect(area));
     let frame = Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.line))).corner_radius(8).inner_margin(3);
     frame.show(&mut child, |ui| {
@@ -57,6 +57,13 @@ fn shade(ui: &mut Ui, p: &Palette, look: &Look, most: f64, commands: &mut Vec<Co
         let mut shown = look.dexterity;
         if ui.checkbox(&mut shown, words).on_hover_text(help).clicked() {
             commands.push(Command::Dexterity(shown));
+        }
+        let ink = colour(if look.stroke.is_some() { p.ink } else { p.dim });
+        let mut drawing = look.stroke.is_some();
+        let help = "Draw the end effector's path with the pointer (P)";
+        let words = RichText::new("draw a path").font(plain(11.5)).color(ink);
+        if ui.checkbox(&mut drawing, words).on_hover_text(help).clicked() {
+            commands.push(Command::Draw(drawing));
         }
         if !look.dexterity {
             return;

@@ -7,7 +7,9 @@ use egui::{Align2, CentralPanel, CursorIcon, Frame, PointerButton, Pos2, Rect, S
 use super::theme::{colour, plain};
 use super::top::name;
 use super::{Command, Look, set_b, switch};
+use crate::planar::Vector;
 use crate::render::{Renderer, View};
+use crate::scenario::Task;
 use crate::scene::camera::Camera;
 use crate::scene::palette::faded;
 use crate::scene::pointer::Pointer;
@@ -23,13 +25,19 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &mut Look, comm
         name(&response, "Scene: the machine, its reactionless workspace and its target");
         let frame = session.frame();
         let spot = Spot { rect, camera: *look.camera() };
-        point_at(ui, &response, &spot, session, views, look, commands);
-        move_camera(ui, &response, rect, look);
+        if look.stroke.is_some() && look.view.shows_machine() {
+            draw(ui, &response, &spot, views, look, commands);
+        } else {
+            point_at(ui, &response, &spot, session, views, look, commands);
+            move_camera(ui, &response, rect, look);
+        }
         let options = ViewOptions {
             theme: look.theme,
             dexterity: look.dexterity,
             hot: look.grabbed.map(|grip| grip.handle).or(look.hot),
             held: look.held,
+            stroke: look.stroke.clone().unwrap_or_default(),
+            refused: look.refused.as_ref().and_then(|r| r.curve.clone()),
         };
         let scene = Arc::new(views.scene(look.view, frame, &options, look.camera()));
         paint(ui, rect, &scene, look.camera());
@@ -82,6 +90,10 @@ fn point_at(
                 Edit::DragTarget { x, y }
             }
             Aim::B(b) => set_b(session, b),
+            Aim::Waypoint(i, [x, y]) => {
+                look.held = Some([x, y]);
+                Edit::SetTask { change: session.scenario().task.moving(i, Vector::new(x, y))? }
+            }
         };
         Some(Command::Edit(edit))
     };
@@ -113,8 +125,46 @@ fn point_at(
     {
         commands.extend([edit, Command::EndGesture]);
     }
+    let task = &session.scenario().task;
+    // Twice in the open: one more point of the path.
+    let twice = response.double_clicked_by(PointerButton::Primary) && look.hot.is_none() && view.shows_machine();
+    if let Some(pos) = response.interact_pointer_pos().filter(|_| twice)
+        && let Some([x, y]) = spot.pointer(pos).ray().and_then(|ray| ray.at_height(views.stage().handle_height()))
+        && let Some(change) = task.adding(Vector::new(x, y))
+    {
+        commands.extend([Command::Edit(Edit::SetTask { change }), Command::EndGesture]);
+    }
+    let out = ui.input(|i| i.key_pressed(egui::Key::Delete) || i.key_pressed(egui::Key::Backspace));
+    if let (Some(Handle::Waypoint(i)), None, true) = (look.hot, look.grabbed, out)
+        && let Some(change) = task.removing(i)
+    {
+        commands.extend([Command::Edit(Edit::SetTask { change }), Command::EndGesture]);
+        look.hot = None;
+    }
     if look.grabbed.is_none() {
         look.held = None;
+    }
+}
+
+/// A path drawn by hand: from where the button goes down to where it comes up.
+fn draw(ui: &Ui, response: &egui::Response, spot: &Spot, views: &Views, look: &mut Look, commands: &mut Vec<Command>) {
+    ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
+    let Some(stroke) = &mut look.stroke else { return };
+    let place = |pos| spot.pointer(pos).ray()?.at_height(views.stage().handle_height());
+    if response.drag_started_by(PointerButton::Primary) {
+        stroke.clear();
+        stroke.extend(ui.input(|i| i.pointer.press_origin()).and_then(place));
+    }
+    if response.dragged_by(PointerButton::Primary) || response.drag_stopped() {
+        let at = response.interact_pointer_pos().and_then(place);
+        stroke.extend(at.filter(|at| stroke.last() != Some(at)));
+    }
+    if response.drag_stopped() {
+        let points: Vec<Vector> = stroke.iter().map(|[x, y]| Vector::new(*x, *y)).collect();
+        commands.push(Command::Draw(false));
+        if let Some(change) = Task::drawing(&points) {
+            commands.extend([Command::Edit(Edit::SetTask { change }), Command::EndGesture]);
+        }
     }
 }
 
@@ -122,8 +172,8 @@ fn cursor(handle: Handle, held: bool) -> CursorIcon {
     match (handle, held) {
         (Handle::Bar, _) => CursorIcon::PointingHand,
         (Handle::Plane, _) => CursorIcon::ResizeVertical,
-        (Handle::Target | Handle::Ring, true) => CursorIcon::Grabbing,
-        (Handle::Target | Handle::Ring, false) => CursorIcon::Grab,
+        (Handle::Target | Handle::Ring | Handle::Waypoint(_), true) => CursorIcon::Grabbing,
+        (Handle::Target | Handle::Ring | Handle::Waypoint(_), false) => CursorIcon::Grab,
     }
 }
 
