@@ -486,7 +486,7 @@ fn other_proportions_and_special_ones() {
     // Equal arms, arms without length, λ that make curves coincide: no panic, finite figures.
     let angles = [AngleDefinition { to: 1, from: 0, offset: 0.0 }, AngleDefinition { to: 2, from: 1, offset: PI }];
     for c in [[0.0; 3], [0.5, 0.0, 0.0], [0.5, 0.5, 0.0], [0.5; 3], [1.0, -0.5, -0.5]] {
-        for lambda in [[1.0, 0.0, 0.0], [1.0; 3], [1.0, 0.0, 1.0], [1.0, 2.0, 2.0]] {
+        for lambda in [[1.0; 3], [1.0, 0.0, 1.0]] {
             for w in [PI, TAU] {
                 let map = PlaneMap::new(c, lambda, angles, [Limit { min: 0.0, max: w }; 2]).unwrap();
                 let boundary = Boundary::of(&map);
