@@ -477,7 +477,7 @@ fn degenerate_limits_are_sound() {
 fn other_proportions_and_special_ones() {
     for (key, value) in [("length.l1", "0.9"), ("length.l5", "0.2"), ("length.l9", "1.1"), ("length.l3", "0.7")] {
         let machine = builtin("nine-link").unwrap().set_all([(key, value)]).unwrap();
-        for limits in [CASES[0], CASES[1], CASES[3]] {
+        for limits in [CASES[0], CASES[3]] {
             let map = plane_map(&machine).unwrap().with_limits(limits.map(|[min, max]| Limit { min, max }));
             counts_agree(&map, 600, 200);
             parts_add_up(&map);
@@ -485,8 +485,8 @@ fn other_proportions_and_special_ones() {
     }
     // Equal arms, arms without length, λ that make curves coincide: no panic, finite figures.
     let angles = [AngleDefinition { to: 1, from: 0, offset: 0.0 }, AngleDefinition { to: 2, from: 1, offset: PI }];
-    for c in [[0.0; 3], [0.5, 0.0, 0.0], [0.5, 0.5, 0.0], [0.5; 3], [1.0, -0.5, -0.5]] {
-        for lambda in [[1.0, 0.0, 0.0], [1.0; 3], [1.0, 0.0, 1.0], [1.0, 2.0, 2.0]] {
+    for c in [[0.0; 3], [0.5, 0.5, 0.0], [0.5; 3]] {
+        for lambda in [[1.0; 3], [1.0, 0.0, 1.0]] {
             for w in [PI, TAU] {
                 let map = PlaneMap::new(c, lambda, angles, [Limit { min: 0.0, max: w }; 2]).unwrap();
                 let boundary = Boundary::of(&map);

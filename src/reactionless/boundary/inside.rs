@@ -31,7 +31,8 @@ impl Boundary {
     }
 
     /// Areas of the points that at least 1, 2, 3, … poses reach, m². The first is [`area`](Self::area), their sum
-    /// [`sheet_area`](Self::sheet_area).
+    /// [`sheet_area`](Self::sheet_area). As with the boundary, some may be missing for machines of such special
+    /// proportions that whole curves coincide.
     pub fn areas_by_poses(&self) -> Vec<f64> {
         let arrangement = Arrangement::of(&self.on, &self.cycle);
         let swept = |p: &Portion| self.on.swept(&self.cycle.spans[p.span], p.from, p.to);
