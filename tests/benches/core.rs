@@ -13,7 +13,9 @@ use stillbase::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::pose_constant::plane_map;
 use stillbase::reactionless::Boundary;
 use stillbase::scenario::Scenario;
-use stillbase::session::{Run, replay};
+use stillbase::scene::stage::ViewOptions;
+use stillbase::scene::views::{ViewKind, Views};
+use stillbase::session::{Run, Session, replay};
 
 fn main() {
     divan::main();
@@ -119,4 +121,21 @@ fn record_three_cases(bencher: Bencher) {
     let options = stillbase::headless::Options { pictures: None, force: true };
     bencher.bench_local(|| stillbase::headless::record(&scenarios, &file, &options, &mut |_| {}).expect("it records"));
     std::fs::remove_file(&file).expect("the recording is there");
+}
+
+/// Everything that the linked views keep from frame to frame.
+#[divan::bench]
+fn views_of_a_run(bencher: Bencher) {
+    let session = Session::open(Scenario::builtin("case-3").expect("built in")).expect("it can start");
+    bencher.bench_local(|| Views::of(black_box(session.run())));
+}
+
+/// One scene of each view.
+#[divan::bench(args = ViewKind::ALL.map(ViewKind::name))]
+fn scene_of_a_view(bencher: Bencher, name: &str) {
+    let kind = ViewKind::ALL.into_iter().find(|k| k.name() == name).expect("a view");
+    let session = Session::open(Scenario::builtin("case-3").expect("built in")).expect("it can start");
+    let views = Views::of(session.run());
+    let (camera, options) = (views.camera(kind), ViewOptions::default());
+    bencher.bench_local(|| views.scene(kind, black_box(session.frame()), &options, &camera));
 }
