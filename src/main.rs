@@ -29,6 +29,7 @@ enum Command {
     Dynamics(commands::Dynamics),
     Reach(commands::Reach),
     Pose(commands::Pose),
+    Plan(commands::Plan),
     Workspace(commands::Workspace),
     #[cfg(feature = "ui")]
     Figures(commands::Figures),
@@ -59,6 +60,7 @@ fn main() -> ExitCode {
         Some(Command::Dynamics(command)) => command.run(),
         Some(Command::Reach(command)) => command.run(),
         Some(Command::Pose(command)) => command.run(),
+        Some(Command::Plan(command)) => command.run(),
         Some(Command::Workspace(command)) => command.run(),
         #[cfg(feature = "ui")]
         Some(Command::Figures(command)) => command.run(),

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use crate::machine::{Inertia, Machine};
 use crate::planar::Vector;
-use crate::reactionless::{AngleDefinition, BSet, Boundary, Limit, NoReach, NotAPlaneMap, PlaneMap, PlanePoint};
+use crate::reactionless::{AngleDefinition, BSet, Boundary, Limit, NoReach, NotAPlaneMap, PlaneMap, PlanePoint, Poses};
 
 /// The reactionless planes of a machine, with the boundary of their workspace.
 #[derive(Clone, Debug)]
@@ -24,6 +24,8 @@ pub enum Reach {
         nearest: Vector,
         /// The b nearest to the present one that would reach the target, rad; none if no b does.
         mending_b: Option<f64>,
+        /// A pose of this plane reaches it, but beyond a fold: on another sheet.
+        other_sheet: bool,
     },
     /// It cannot any more since b was changed, so the machine keeps a_1 and a_2 and turns with its workspace.
     Carried,
@@ -70,14 +72,53 @@ pub enum Unreachable {
         /// The b that would do, in words.
         would_do: String,
     },
-    /// Each point on some plane, but no plane serves both.
-    #[error("({x:.3}, {y:.3}) m shares no b with the other point: no reactionless path joins them")]
-    NoCommonPlane {
-        /// m.
-        x: f64,
-        /// m.
-        y: f64,
-    },
+    /// Each point on some plane, but no plane serves all.
+    #[error("{}", .0.in_words(&|i| format!("point {}", i + 1)))]
+    NoCommonPlane(NoCommon),
+}
+
+/// Why points have no b in common, and what would mend it. Points are counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NoCommon {
+    /// The first two that share no b; none if all do in pairs, but not all at once.
+    pub pair: Option<[usize; 2]>,
+    /// The least move of one point that would mend it.
+    pub mend: Option<Mend>,
+}
+
+impl NoCommon {
+    /// In words, with a name for each point.
+    pub fn in_words(&self, name: &dyn Fn(usize) -> String) -> String {
+        let who = match self.pair {
+            Some([i, j]) => format!("no b serves both {} and {}", name(i), name(j)),
+            None => "each two points share some b, but no b serves all".into(),
+        };
+        let remedy = match self.mend {
+            Some(m) => format!(
+                "moving {} by {:.3} m to ({:.3}, {:.3}) m would do, at b = {:.4} rad",
+                name(m.point),
+                m.distance,
+                m.to.re,
+                m.to.im,
+                m.b
+            ),
+            None => "want points nearer to each other".into(),
+        };
+        format!("{who}, so no reactionless path joins them; {remedy}")
+    }
+}
+
+/// A move of one point after which all points have a b in common.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mend {
+    /// Number of the point.
+    pub point: usize,
+    /// Where it would go, m.
+    pub to: Vector,
+    /// How far, m.
+    pub distance: f64,
+    /// The b that then serves all, rad.
+    pub b: f64,
 }
 
 impl Planes {
@@ -107,71 +148,154 @@ impl Planes {
 
     /// Where to go for a target: its pose on the plane b and the sheet of `from`, or the nearest that can be reached.
     pub fn reach(&self, p: Vector, b: f64, from: [f64; 2]) -> ([f64; 2], Reach) {
-        if let Some(a) = self.follow(p, b, from) {
+        if let Some(a) = self.follow(p, b, from).filter(|a| self.is_one_sheet(from, *a)) {
             return (a, Reach::Inside);
         }
-        let sheet = self.map.det(from);
         let far = |a: &[f64; 2]| (a[0] - from[0]).hypot(a[1] - from[1]);
         let poses = self.map.poses(p, b);
-        let same = poses.iter().map(|x| x.a).filter(|a| self.map.det(*a) * sheet >= 0.0);
+        let same = poses.iter().map(|x| x.a).filter(|a| self.is_one_sheet(from, *a));
         if let Some(a) = same.min_by(|x, y| far(x).total_cmp(&far(y))) {
             return (a, Reach::Inside);
         }
+        let other_sheet = !poses.is_empty();
+        let mending_b = self.map.reach(p).ok().and_then(|set| set.nearest(b)).filter(|_| !other_sheet);
         let nearest = self.boundary.nearest(p, b, self.map.forward(from, b));
-        let mending_b = self.map.reach(p).ok().and_then(|set| set.nearest(b));
-        (self.map.clamp(nearest.a), Reach::Outside { nearest: nearest.at, mending_b })
+        let edge = self.map.clamp(nearest.a);
+        if !other_sheet && self.is_one_sheet(from, edge) {
+            return (edge, Reach::Outside { nearest: nearest.at, mending_b, other_sheet });
+        }
+        // A fold lies between: as near as the straight way goes.
+        let a = self.towards(p, b, from);
+        (a, Reach::Outside { nearest: self.map.forward(a, b), mending_b, other_sheet })
     }
 
-    /// One pose for each of two points on the plane b, on one sheet.
-    ///
-    /// # Errors
-    /// Which point (0 or 1) cannot be reached, and what b would do.
-    pub fn serve(&self, points: [Vector; 2], b: f64) -> Result<[PlanePoint; 2], (usize, Unreachable)> {
-        let [first, second] = points.map(|p| self.map.poses(p, b));
-        for x in first.iter() {
-            let sheet = self.map.det(x.a);
-            if let Some(y) = second.iter().find(|y| self.map.det(y.a) * sheet >= 0.0) {
-                return Ok([*x, *y]);
+    /// The last pose on the straight way of the end effector to p that continues a pose of the plane b.
+    fn towards(&self, p: Vector, b: f64, from: [f64; 2]) -> [f64; 2] {
+        let start = self.map.forward(from, b);
+        let (mut a, mut t, mut step) = (from, 0.0, 0.125);
+        while step > 1e-6 && t < 1.0 {
+            let next = self.follow(start + (t + step) * (p - start), b, a);
+            let near = |x: &[f64; 2]| (x[0] - a[0]).hypot(x[1] - a[1]) < 0.5 && self.is_one_sheet(from, *x);
+            match next.filter(near) {
+                Some(x) => (a, t) = (x, t + step),
+                None => step *= 0.5,
             }
         }
-        let i = usize::from(!first.is_empty());
-        Err((i, self.why_not(points, i, b)))
+        a
     }
 
-    /// The poses of two points at the b nearest to the given one that serves both, turned rigidly to that b: the
-    /// points move along with the workspace.
-    pub fn serve_turned(&self, points: [Vector; 2], b: f64) -> Option<[PlanePoint; 2]> {
+    /// Whether the straight way of joint space between two poses of one plane keeps to a sheet, where det has one sign.
+    pub fn is_one_sheet(&self, from: [f64; 2], to: [f64; 2]) -> bool {
+        const LOOKS: i32 = 32;
+        if !self.boundary.interior_singularity() {
+            return true;
+        }
+        let sheet = self.map.det(from);
+        let at = |t: f64| [0, 1].map(|i| from[i] + t * (to[i] - from[i]));
+        (1..=LOOKS).all(|i| self.map.det(at(f64::from(i) / f64::from(LOOKS))) * sheet >= 0.0)
+    }
+
+    /// One pose for each of some points on the plane b: all on one sheet if possible, else each near the one before.
+    ///
+    /// # Errors
+    /// Which point (counted from 0) cannot be reached, and what b would do.
+    pub fn serve(&self, points: &[Vector], b: f64) -> Result<Vec<PlanePoint>, (usize, Unreachable)> {
+        let poses: Vec<Poses> = points.iter().map(|p| self.map.poses(*p, b)).collect();
+        if let Some(i) = poses.iter().position(|p| p.is_empty()) {
+            return Err((i, self.why_not(points, i, b)));
+        }
+        let Some((first, others)) = poses.split_first() else { return Ok(Vec::new()) };
+        let far = |x: &PlanePoint, y: &PlanePoint| (x.a[0] - y.a[0]).hypot(x.a[1] - y.a[1]);
+        // The nearest pose to the last one, of those that a filter lets pass.
+        let chain = |start: &PlanePoint, one_sheet: bool| {
+            let sheet = self.map.det(start.a);
+            let mut served = vec![*start];
+            for poses in others {
+                let last = served[served.len() - 1];
+                let fit = poses.iter().filter(|y| !one_sheet || self.map.det(y.a) * sheet >= 0.0);
+                served.push(*fit.min_by(|x, y| far(x, &last).total_cmp(&far(y, &last)))?);
+            }
+            Some(served)
+        };
+        let on_one_sheet = first.iter().find_map(|start| chain(start, true));
+        Ok(on_one_sheet.or_else(|| first.iter().find_map(|start| chain(start, false))).unwrap_or_default())
+    }
+
+    /// The poses of points at the b nearest to the given one that serves all, turned rigidly to that b: the points move
+    /// along with the workspace.
+    pub fn serve_turned(&self, points: &[Vector], b: f64) -> Option<Vec<PlanePoint>> {
         let common = self.common(points)?;
         // A hair inside, so that rounding does not put the pose outside again.
         let nearest = common.nearest(b)?;
-        let served = self.serve(points, nearest).or_else(|_| self.serve(points, inwards(&common, nearest))).ok()?;
-        Some(served.map(|x| PlanePoint { a: x.a, b }))
+        let served = self.serve(points, nearest).or_else(|_| self.serve(points, common.inwards(nearest, 1e-9))).ok()?;
+        Some(served.into_iter().map(|x| PlanePoint { a: x.a, b }).collect())
     }
 
-    /// The b that serve all points.
-    pub fn common(&self, points: [Vector; 2]) -> Option<BSet> {
-        let [a, b] = points.map(|p| self.map.reach(p).ok());
-        let common = BSet::overlap(&[a?, b?]);
+    /// The b that serve all points; `None` if none does.
+    pub fn common(&self, points: &[Vector]) -> Option<BSet> {
+        let sets: Option<Vec<BSet>> = points.iter().map(|p| self.map.reach(*p).ok()).collect();
+        let common = BSet::overlap(&sets?);
         (!common.intervals.is_empty()).then_some(common)
     }
 
-    fn why_not(&self, points: [Vector; 2], i: usize, b: f64) -> Unreachable {
+    /// Why points have no b in common; `None` if some b serves all, or a point is out of every reach.
+    pub fn no_common(&self, points: &[Vector]) -> Option<NoCommon> {
+        let sets: Vec<BSet> = points.iter().map(|p| self.map.reach(*p).ok()).collect::<Option<_>>()?;
+        if !BSet::overlap(&sets).is_empty() {
+            return None;
+        }
+        let apart = |&[i, j]: &[usize; 2]| BSet::overlap(&[sets[i].clone(), sets[j].clone()]).is_empty();
+        let pair = (0..points.len()).flat_map(|i| (i + 1..points.len()).map(move |j| [i, j])).find(apart);
+        let others = |i: usize| {
+            let rest: Vec<BSet> = sets.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, s)| s.clone()).collect();
+            BSet::overlap(&rest)
+        };
+        let mends = (0..points.len()).filter_map(|i| self.mend(points[i], i, &others(i)));
+        Some(NoCommon { pair, mend: mends.min_by(|x, y| x.distance.total_cmp(&y.distance)) })
+    }
+
+    /// The nearest point to p that some b of a set reaches.
+    fn mend(&self, p: Vector, point: usize, others: &BSet) -> Option<Mend> {
+        const TRIES: usize = 48;
+        let at = |b: f64| self.boundary.nearest(p, b, p);
+        let gap = |b: f64| at(b).distance;
+        let mut best: Option<(f64, f64)> = None;
+        for [low, high] in &others.intervals {
+            let step = (high - low) / TRIES as f64;
+            let tries = (0..=TRIES).map(|i| low + step * i as f64);
+            let Some(b) = tries.min_by(|x, y| gap(*x).total_cmp(&gap(*y))) else { continue };
+            let (mut from, mut to) = ((b - step).max(*low), (b + step).min(*high));
+            // Golden section.
+            for _ in 0..40 {
+                let (s, t) = (from + 0.381_966 * (to - from), from + 0.618_034 * (to - from));
+                if gap(s) < gap(t) { to = t } else { from = s }
+            }
+            let middle = 0.5 * (from + to);
+            let b = [b, middle, from, to].into_iter().min_by(|x, y| gap(*x).total_cmp(&gap(*y))).unwrap_or(b);
+            if best.is_none_or(|(least, _)| gap(b) < least) {
+                best = Some((gap(b), b));
+            }
+        }
+        let (_, b) = best?;
+        let nearest = at(b);
+        Some(Mend { point, to: nearest.at, distance: nearest.distance, b })
+    }
+
+    fn why_not(&self, points: &[Vector], i: usize, b: f64) -> Unreachable {
         let (x, y) = (points[i].re, points[i].im);
         if let Err(reason) = self.map.reach(points[i]) {
             return Unreachable::Anywhere { x, y, reason };
         }
-        match self.common(points) {
-            Some(common) => Unreachable::OnThisPlane { x, y, b, would_do: in_words(&common) },
-            None => Unreachable::NoCommonPlane { x, y },
+        match (self.common(points), self.no_common(points)) {
+            (Some(common), _) => Unreachable::OnThisPlane { x, y, b, would_do: in_words(&common) },
+            (None, Some(why)) => Unreachable::NoCommonPlane(why),
+            // Another point is out of every reach.
+            (None, None) => {
+                let own = self.map.reach(points[i]).map(|set| in_words(&set)).unwrap_or_default();
+                Unreachable::OnThisPlane { x, y, b, would_do: own }
+            }
         }
     }
-}
-
-/// A b a hair further inside the interval that it is an end of.
-fn inwards(set: &BSet, b: f64) -> f64 {
-    let lifted = |x: f64| x + set.period * ((b - x) / set.period).round();
-    let middles = set.intervals.iter().map(|[low, high]| lifted(0.5 * (low + high)));
-    middles.min_by(|x, y| (x - b).abs().total_cmp(&(y - b).abs())).map_or(b, |middle| b + (middle - b) * 1e-9)
 }
 
 /// `b from 2.216 to 2.661 rad`.

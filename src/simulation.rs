@@ -199,7 +199,7 @@ impl Simulation {
     /// Whether nothing will change any more: the guide has arrived and the machine stands still on it.
     pub fn is_settled(&self) -> bool {
         let arrived = match &self.guide {
-            Guide::Motion { motion, start } => self.time() >= start + motion.duration - 0.5 * self.dt,
+            Guide::Motion { motion, start } => self.time() >= start + motion.duration() - 0.5 * self.dt,
             Guide::Follow(follower) => follower.is_at_rest(),
         };
         let e = PerDrive::from_fn(self.state.q.len(), |k| self.state.q[k] - self.slope.reference.q[k]);
@@ -209,7 +209,7 @@ impl Simulation {
     /// Whether the guide has come to its end, even if the machine still moves.
     pub fn has_arrived(&self) -> bool {
         match &self.guide {
-            Guide::Motion { motion, start } => self.time() >= start + motion.duration - 0.5 * self.dt,
+            Guide::Motion { motion, start } => self.time() >= start + motion.duration() - 0.5 * self.dt,
             Guide::Follow(follower) => follower.is_at_rest(),
         }
     }

@@ -6,24 +6,38 @@ mod balance;
 mod boundary;
 #[path = "suite/cases.rs"]
 mod cases;
+#[path = "suite/change_points.rs"]
+mod change_points;
 #[cfg(feature = "cli")]
 #[path = "suite/cli.rs"]
 mod cli;
 #[path = "suite/convergence.rs"]
 mod convergence;
+#[path = "suite/curve.rs"]
+mod curve;
 #[path = "suite/dynamics.rs"]
 mod dynamics;
 #[cfg(feature = "render")]
 #[path = "suite/gpu.rs"]
 mod gpu;
+#[path = "suite/inside.rs"]
+mod inside;
 #[path = "suite/layers.rs"]
 mod layers;
+#[path = "suite/least_reaction.rs"]
+mod least_reaction;
 #[path = "suite/machine_file.rs"]
 mod machine_file;
 #[path = "suite/mesh.rs"]
 mod mesh;
 #[path = "suite/nine_body.rs"]
 mod nine_body;
+#[path = "suite/null_space.rs"]
+mod null_space;
+#[path = "suite/planning.rs"]
+mod planning;
+#[path = "suite/price.rs"]
+mod price;
 #[path = "suite/reach.rs"]
 mod reach;
 #[cfg(feature = "record")]
@@ -45,6 +59,10 @@ mod signals;
 mod sincos;
 #[path = "suite/support.rs"]
 mod support;
+#[path = "suite/timing.rs"]
+mod timing;
+#[path = "suite/trace.rs"]
+mod trace;
 #[path = "suite/views.rs"]
 mod views;
 #[cfg(feature = "window")]

@@ -95,10 +95,21 @@ impl From<DesignError> for Failure {
 impl From<Refusal> for Failure {
     fn from(e: Refusal) -> Self {
         match e {
-            Refusal::NoPlanes(_) | Refusal::Unreachable { .. } | Refusal::Path(_) | Refusal::Diverged { .. } => {
-                Self::no_answer(e)
-            }
-            Refusal::Machine(_) | Refusal::OutOfRange { .. } | Refusal::LeavesLimits { .. } => Self::wrong_input(e),
+            Refusal::NoPlanes(_)
+            | Refusal::Unreachable { .. }
+            | Refusal::Path(_)
+            | Refusal::Time(_)
+            | Refusal::Price(_)
+            | Refusal::LeastReaction(_)
+            | Refusal::Drift(_)
+            | Refusal::NoCommonPlane(_)
+            | Refusal::Blocked(_)
+            | Refusal::Diverged { .. } => Self::no_answer(e),
+            Refusal::Machine(_)
+            | Refusal::OutOfRange { .. }
+            | Refusal::LeavesLimits { .. }
+            | Refusal::Curve(_)
+            | Refusal::Task(_) => Self::wrong_input(e),
         }
     }
 }

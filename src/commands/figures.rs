@@ -73,8 +73,8 @@ impl Figures {
 /// A scenario run through once, shown at an instant.
 fn desk(scenario: &str, theme: Theme, view: ViewKind, time: f64) -> Result<Desk, Failure> {
     let scenario = Scenario::find(scenario)?;
-    let task_time = scenario.task.time;
     let mut desk = Desk::new(scenario, theme)?;
+    let task_time = desk.session().length();
     for command in [Command::Seek(task_time), Command::Seek(time), Command::View(view)] {
         desk.carry_out(command);
     }

@@ -8,7 +8,7 @@ use stillbase::machine::{self, Inertia, Machine};
 use stillbase::planar::Vector;
 use stillbase::pose_constant::plane_map;
 use stillbase::reactionless::PlaneMap;
-use stillbase::scenario::{MAX_PAYLOAD, Scenario};
+use stillbase::scenario::{Change, MAX_PAYLOAD, Scenario};
 
 use super::failure::Failure;
 use super::output::say;
@@ -17,10 +17,11 @@ use super::output::say;
 pub const DEFAULT_SCENARIO: &str = "case-3";
 
 /// Changes of the machine.
-#[derive(Args)]
+#[derive(Args, Default)]
 pub struct Settings {
     /// Change the machine, as often as needed: link.5.com=-0.02 (m), link.9.mass=0.3 (kg), length.l1=0.6 (m),
-    /// payload.mass=0.1 (kg, known to control), plant.payload.mass=0.1 (unknown to it; scenarios only), gravity=0,-9.81 (m/s²), limits.a1=0.4,2.7 (rad), drive.1.torque_limit=20 (N m)
+    /// payload.mass=0.1 (kg, known to control), plant.payload.mass=0.1 (unknown to it; scenarios only), gravity=0,-9.81 (m/s²), limits.a1=0.4,2.7 (rad), drive.1.torque_limit=20 (N m), drive.1.speed_limit=3 (rad/s), drive.1.acceleration_limit=40 (rad/s²), drive.1.jerk_limit=900 (rad/s³),
+    /// task.shape=spline, task.time=2 (s) and so on (scenarios only)
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
     pairs: Vec<(String, String)>,
 }
@@ -70,9 +71,17 @@ impl MachineArgument {
 /// # Errors
 /// If there is no such scenario, or its machine is not valid.
 pub fn scenario(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
-    let mut scenario = Scenario::find(name)?;
-    let (plant, model): (Vec<_>, Vec<_>) =
-        settings.pairs.iter().cloned().partition(|(key, _)| key.starts_with("plant."));
+    set(Scenario::find(name)?, settings)
+}
+
+/// A scenario with its machine, plant and task changed.
+///
+/// # Errors
+/// If there is no such setting, or its machine is not valid.
+pub fn set(mut scenario: Scenario, settings: &Settings) -> Result<Scenario, Failure> {
+    let (task, others): (Vec<_>, Vec<_>) =
+        settings.pairs.iter().cloned().partition(|(key, _)| key.starts_with("task."));
+    let (plant, model): (Vec<_>, Vec<_>) = others.into_iter().partition(|(key, _)| key.starts_with("plant."));
     scenario.machine = Settings { pairs: model }.apply(scenario.machine)?;
     for (key, value) in plant {
         let amount = value.trim().parse().ok().filter(|x| (0.0..=MAX_PAYLOAD).contains(x));
@@ -88,7 +97,30 @@ pub fn scenario(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
             || Failure::wrong_input(format!("{key}={value:?}: want a number from 0 to {MAX_PAYLOAD}")).of("--set");
         *slot = amount.ok_or_else(why)?;
     }
+    let mut change = Change::new();
+    for (key, value) in task {
+        change.insert(key.trim_start_matches("task.").to_owned(), toml_value(&value));
+    }
+    change_task(&mut scenario, &change).map_err(|e| e.of("--set"))?;
     Ok(scenario)
+}
+
+/// Changes keys of a scenario's task.
+///
+/// # Errors
+/// If there is no such key, or its value is out of range.
+pub fn change_task(scenario: &mut Scenario, change: &Change) -> Result<(), Failure> {
+    if !change.is_empty() {
+        scenario.task = scenario.task.with(change).map_err(|why| Failure::wrong_input(format!("task: {why}")))?;
+        scenario.check("task")?;
+    }
+    Ok(())
+}
+
+/// A value as it would stand in a file; what is none there is text.
+fn toml_value(text: &str) -> toml::Value {
+    let read = format!("x = {text}").parse::<Change>().ok().and_then(|mut table| table.remove("x"));
+    read.unwrap_or_else(|| toml::Value::String(text.into()))
 }
 
 /// The reactionless planes of a machine; says so if b is only nearly constant.

@@ -10,9 +10,12 @@ use super::failure::Failure;
 use super::input::{MachineArgument, planes_of, point, pose_constant};
 use super::output::{Format, Table, fixed};
 
-/// The poses that put the end effector on a point without leaving the plane b = const
+/// The poses that put the end effector on a point without leaving the plane b = const, and what each is good for
 ///
-/// Drive angles q are absolute and unwrapped: Σ λ_k q_k is b exactly as given.
+/// Drive angles q are absolute and unwrapped: Σ λ_k q_k is b exactly as given. With --json each pose also has
+/// det = |det ∂(x, y)/∂(a_1, a_2)| (m²), 0 on a fold; manipulability = √det(J Jᵀ) of the Jacobian in absolute drive
+/// angles (m²); worst_torque_per_force, the largest singular value of J (N m/N); transmission = min |sin(q_k − q_l)|,
+/// 0 at a change point; and side, the signs of sin(q_2 − q_1), sin(q_3 − q_2) and sin(q_3 − q_1).
 #[derive(Args)]
 #[command(after_help = "\
 Example:
@@ -35,10 +38,40 @@ struct Answer {
     poses: Vec<Row>,
 }
 
+/// A pose and its measures.
 #[derive(Serialize)]
-struct Row {
+pub struct Row {
     q: [f64; 3],
-    a: [f64; 2],
+    pub a: [f64; 2],
+    pub det: f64,
+    pub manipulability: f64,
+    pub worst_torque_per_force: f64,
+    pub transmission: f64,
+    side: [i8; 3],
+}
+
+/// Sines below this are a change point's.
+const AT_CHANGE: f64 = 1e-9;
+
+impl Row {
+    /// All poses of a point, with their measures.
+    pub fn all(map: &PlaneMap, p: Vector, b: f64) -> Vec<Self> {
+        map.poses(p, b).iter().map(|pose| Self::of(map, *pose)).collect()
+    }
+
+    fn of(map: &PlaneMap, pose: PlanePoint) -> Self {
+        let dexterity = map.dexterity(pose.a);
+        let sign = |sine: f64| if sine.abs() < AT_CHANGE { 0 } else { sine.signum() as i8 };
+        Self {
+            q: map.lift(pose),
+            a: pose.a,
+            det: dexterity.det,
+            manipulability: dexterity.manipulability,
+            worst_torque_per_force: dexterity.worst_torque_per_force,
+            transmission: map.transmission(pose.a),
+            side: map.sines(pose.a).map(sign),
+        }
+    }
 }
 
 impl Pose {
@@ -46,8 +79,7 @@ impl Pose {
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
         let map = planes_of(&machine)?;
-        let row = |p: &PlanePoint| Row { q: map.lift(*p), a: p.a };
-        let poses: Vec<Row> = map.poses(self.point, self.b).iter().map(row).collect();
+        let poses = Row::all(&map, self.point, self.b);
         if poses.is_empty() {
             return Err(self.why_not(&map).into());
         }

@@ -3,7 +3,7 @@
 use clap::Args;
 use serde::Serialize;
 use stillbase::planar::Vector;
-use stillbase::pose_constant::Unreachable;
+use stillbase::pose_constant::{Planes, Unreachable};
 use stillbase::reactionless::BSet;
 
 use super::failure::Failure;
@@ -45,7 +45,8 @@ struct OfPoint {
 impl Reach {
     /// Prints the b of each point and of all.
     pub fn run(&self) -> Result<(), Failure> {
-        let map = planes_of(&self.machine.load()?)?;
+        let machine = self.machine.load()?;
+        let map = planes_of(&machine)?;
         let mut sets = Vec::with_capacity(self.points.len());
         for p in &self.points {
             let none = |reason| Unreachable::Anywhere { x: p.re, y: p.im, reason };
@@ -53,7 +54,8 @@ impl Reach {
         }
         let overlap = BSet::overlap(&sets).intervals;
         if overlap.is_empty() {
-            say("no b serves all points: no reactionless path joins them");
+            let why = Planes::of(&machine)?.no_common(&self.points);
+            say(why.map_or("no b serves all points".into(), |w| w.in_words(&|i| format!("point {}", i + 1))));
         }
         let of_point = |(p, set): (&Vector, BSet)| OfPoint { point: [p.re, p.im], intervals: set.intervals };
         let answer =

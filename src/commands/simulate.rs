@@ -96,11 +96,10 @@ impl Simulate {
         // Begun with the first step: what cannot start prints nothing.
         let mut csv = None;
         let (mut time, mut columns) = (Vec::new(), vec![Vec::new(); table.len()]);
-        let last = (scenario.duration / scenario.step).round() as u64;
         // A run cannot be left half-way; after a failure nothing more is written.
         let mut written = Ok(());
-        let run = replay(&scenario, |_, frame| {
-            if frame.step % self.every != 0 && frame.step != last {
+        let run = replay(&scenario, |run, frame| {
+            if frame.step % self.every != 0 && frame.step != run.last_step() {
                 return;
             }
             if (self.output.is_some() || !self.format.json) && written.is_ok() {

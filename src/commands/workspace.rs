@@ -2,27 +2,33 @@
 
 use clap::Args;
 use serde::Serialize;
-use stillbase::reactionless::Boundary;
+use stillbase::planar::{Vector, unit};
+use stillbase::reactionless::{Boundary, ChangeCurve, PAIRS, PlaneMap};
 
 use super::failure::Failure;
-use super::input::{MachineArgument, planes_of, pose_constant};
+use super::input::{MachineArgument, planes_of, point, pose_constant};
 use super::output::{Format, Table, fixed, yes};
+use super::pose::Row;
 
-/// The reactionless workspace of b: its exact boundary and area, Eqs (15), (16)
+/// The reactionless workspace of b: its exact boundary and area, what lies inside, Eqs (15), (16)
 ///
 /// It is the region that the end effector reaches while b is held; b only turns it. Vertices lie on the boundary to 1e-9 m and chords to 1e-5 m; outer loops run counter-clockwise.
-/// The area of all sheets, ∫|det|, exceeds the region's where several poses reach one point.
+/// The area of all sheets, ∫|det|, exceeds the region's where several poses reach one point. Folds, where two poses meet, turn back at cusps; at change points sin(q_k − q_l) = 0 and the linkage goes flat.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   stillbase workspace nine-link --b 2.4
-  stillbase workspace nine-link --b 2.4 --set limits.a1=0.4,2.7 --json")]
+  stillbase workspace nine-link --b 2.4 --set limits.a1=0.4,2.7 --json
+  stillbase workspace nine-link --b 2.4 --at 0.5,0.5 --at 0.55,0.9")]
 pub struct Workspace {
     #[command(flatten)]
     machine: MachineArgument,
     /// Pose constant b, rad
     #[arg(long, value_name = "B", value_parser = pose_constant)]
     b: f64,
+    /// Also tell of a point, m, as often as needed: its poses, its distance from the boundary (negative outside), the dexterity of each pose
+    #[arg(long, value_name = "X,Y", value_parser = point)]
+    at: Vec<Vector>,
     #[command(flatten)]
     format: Format,
 }
@@ -37,14 +43,77 @@ struct Answer {
     y_max: f64,
     loops: Vec<Vec<[f64; 2]>>,
     interior_singularity: bool,
+    sheets: usize,
+    areas_by_poses: Vec<f64>,
+    fold_curves: Vec<Vec<[f64; 2]>>,
+    cusps: Vec<[f64; 2]>,
+    inner_limits: Vec<Vec<[f64; 2]>>,
+    change_point_curves: Vec<OfChange>,
+    areas_by_side: Vec<OfSide>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    points: Vec<OfPoint>,
+}
+
+/// Change points of two drives, counted from 1.
+#[derive(Serialize)]
+struct OfChange {
+    pair: [usize; 2],
+    half_turns: i32,
+    line: Vec<[f64; 2]>,
+}
+
+/// What poses with `half_turns` π ≤ q_l − q_k ≤ (`half_turns` + 1) π reach.
+#[derive(Serialize)]
+struct OfSide {
+    pair: [usize; 2],
+    half_turns: i32,
+    area: f64,
+    sheet_area: f64,
+}
+
+#[derive(Serialize)]
+struct OfPoint {
+    point: [f64; 2],
+    distance: f64,
+    poses: Vec<Row>,
+}
+
+/// Drives as people count them.
+fn drives(pair: usize) -> [usize; 2] {
+    PAIRS[pair].map(|k| k + 1)
 }
 
 impl Workspace {
-    /// Prints area, extent and boundary.
+    /// Prints area, extent and boundary, what lies inside, and what is asked of points.
     pub fn run(&self) -> Result<(), Failure> {
-        let boundary = Boundary::of(&planes_of(&self.machine.load()?)?);
+        let machine = self.machine.load()?;
+        let map = planes_of(&machine)?;
+        let answer = self.answer(&map);
+        self.format.print(&answer, |a| {
+            let mut text = format!("{}\n{}", table(a).to_string().trim_start(), remarks(a));
+            if !a.points.is_empty() {
+                let names: Vec<String> = machine.angles().iter().map(|a| format!("{} rad", a.name)).collect();
+                text.push_str(&format!("\n{}", points(a, &names)));
+            }
+            text
+        })
+    }
+
+    fn answer(&self, map: &PlaneMap) -> Answer {
+        let boundary = Boundary::of(map);
         let extent = boundary.extent(self.b);
-        let answer = Answer {
+        let turn = map.turn(self.b);
+        let changes = boundary.change_curves();
+        let of_point = |p: &Vector| OfPoint {
+            point: [p.re, p.im],
+            distance: boundary.distance(*p, self.b),
+            poses: Row::all(map, *p, self.b),
+        };
+        let cusp = |at: Vector| {
+            let p = at * unit(turn);
+            [p.re, p.im]
+        };
+        Answer {
             area: boundary.area(),
             sheet_area: boundary.sheet_area(),
             x_min: extent.x_min,
@@ -53,29 +122,108 @@ impl Workspace {
             y_max: extent.y_max,
             loops: boundary.turned(self.b),
             interior_singularity: boundary.interior_singularity(),
-        };
-        self.format.print(&answer, |a| {
-            let mut table = Table::new(["", "", ""]).with_words(2);
-            for (name, value, unit) in [
-                ("area", a.area, "m²"),
-                ("area of all sheets", a.sheet_area, "m²"),
-                ("x from", a.x_min, "m"),
-                ("x to", a.x_max, "m"),
-                ("y from", a.y_min, "m"),
-                ("y to", a.y_max, "m"),
-            ] {
-                table.row([name.into(), fixed(value, 9), unit.into()]);
-            }
-            let vertices: usize = a.loops.iter().map(Vec::len).sum();
-            format!(
-                "{}\nsingular inside: {}; boundary: {} of {vertices} vertices (--json lists them)\n",
-                table.to_string().trim_start(),
-                yes(a.interior_singularity),
-                match a.loops.len() {
-                    1 => "one loop".into(),
-                    n => format!("{n} loops"),
-                },
-            )
-        })
+            sheets: boundary.sheets(),
+            areas_by_poses: boundary.areas_by_poses(),
+            fold_curves: boundary.fold_curves().iter().map(|l| l.turned(turn)).collect(),
+            cusps: boundary.cusps().iter().map(|c| cusp(c.at)).collect(),
+            inner_limits: boundary.inner_limits().iter().map(|l| l.turned(turn)).collect(),
+            areas_by_side: sides(map, &boundary, &changes),
+            change_point_curves: changes
+                .iter()
+                .map(|c| OfChange { pair: drives(c.pair), half_turns: c.half_turns, line: c.line.turned(turn) })
+                .collect(),
+            points: self.at.iter().map(of_point).collect(),
+        }
     }
+}
+
+/// The parts on the sides of each pair that has change points inside.
+fn sides(map: &PlaneMap, boundary: &Boundary, changes: &[ChangeCurve]) -> Vec<OfSide> {
+    let divided = (0..PAIRS.len()).filter(|&pair| changes.iter().any(|c| c.pair == pair));
+    let part = |(pair, half_turns): (usize, i32)| {
+        let mut sides = [None; 3];
+        sides[pair] = Some(half_turns);
+        let part = Boundary::on_sides(map, sides)?;
+        Some(OfSide { pair: drives(pair), half_turns, area: part.area(), sheet_area: part.sheet_area() })
+    };
+    divided.flat_map(|pair| boundary.sides(pair).map(move |m| (pair, m))).filter_map(part).collect()
+}
+
+fn table(a: &Answer) -> Table {
+    let mut table = Table::new(["", "", ""]).with_words(2);
+    for (name, value, unit) in [
+        ("area", a.area, "m²"),
+        ("area of all sheets", a.sheet_area, "m²"),
+        ("x from", a.x_min, "m"),
+        ("x to", a.x_max, "m"),
+        ("y from", a.y_min, "m"),
+        ("y to", a.y_max, "m"),
+    ] {
+        table.row([name.into(), fixed(value, 9), unit.into()]);
+    }
+    // One change curve makes two parts; where there are many, the table would no longer be calm.
+    if let [first, second] = &a.areas_by_side[..] {
+        for part in [first, second] {
+            let [k, l] = part.pair;
+            let turns = |m: i32| match m {
+                0 => "0".into(),
+                1 => "π".into(),
+                -1 => "−π".into(),
+                m if m < 0 => format!("−{}π", m.unsigned_abs()),
+                m => format!("{m}π"),
+            };
+            let name = format!(
+                "area, q_{l} − q_{k} from {} to {}",
+                turns(part.half_turns),
+                turns(part.half_turns.saturating_add(1))
+            );
+            table.row([name, fixed(part.area, 9), "m²".into()]);
+        }
+    }
+    table
+}
+
+fn remarks(a: &Answer) -> String {
+    let vertices: usize = a.loops.iter().map(Vec::len).sum();
+    let count = |n: usize, one: &str, many: &str| match n {
+        1 => format!("one {one}"),
+        n => format!("{n} {many}"),
+    };
+    let mut inside = vec![format!(
+        "{} a point",
+        if a.sheets == 1 { "one pose".into() } else { format!("up to {} poses", a.sheets) }
+    )];
+    for (n, one, many) in [
+        (a.fold_curves.len(), "fold", "folds"),
+        (a.cusps.len(), "cusp", "cusps"),
+        (a.change_point_curves.len(), "curve of change points", "curves of change points"),
+    ] {
+        if n > 0 {
+            inside.push(count(n, one, many));
+        }
+    }
+    format!(
+        "singular inside: {}; boundary: {} of {vertices} vertices (--json lists them)\ninside: {}\n",
+        yes(a.interior_singularity),
+        count(a.loops.len(), "loop", "loops"),
+        inside.join(", "),
+    )
+}
+
+fn points(a: &Answer, angles: &[String]) -> Table {
+    let head = ["point m", "from boundary m"].map(String::from).into_iter().chain(angles.iter().cloned());
+    let measures = ["det m²", "√det(J Jᵀ) m²", "worst N m/N", "least |sin|"].map(String::from);
+    let mut table = Table::new(head.chain(measures));
+    for p in &a.points {
+        let mut first = [format!("{}, {}", p.point[0], p.point[1]), fixed(p.distance, 9)];
+        if p.poses.is_empty() {
+            table.row(first.clone().into_iter().chain(["no pose".into()]));
+        }
+        for pose in &p.poses {
+            let numbers =
+                [pose.a[0], pose.a[1], pose.det, pose.manipulability, pose.worst_torque_per_force, pose.transmission];
+            table.row(std::mem::take(&mut first).into_iter().chain(numbers.map(|x| fixed(x, 6))));
+        }
+    }
+    table
 }

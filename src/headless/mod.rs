@@ -163,9 +163,9 @@ fn check(scenarios: &[Scenario], options: &Options) -> Result<(), RecordError> {
     }
 }
 
-/// Steps of a run.
+/// About how many steps a run has.
 fn steps(scenario: &Scenario) -> u64 {
-    (scenario.duration / scenario.step).round() as u64
+    (scenario.duration.unwrap_or(scenario.task.time) / scenario.step).round() as u64
 }
 
 /// What tells this recording from others: FNV-1a of everything that goes into it.
@@ -207,6 +207,9 @@ fn write(
         cases.push(Rehearsal::of(scenario, &mut tick).map_err(refused)?);
         before += steps(scenario);
     }
+    // Now it is known.
+    let total: u64 = cases.iter().map(|case| case.steps).sum();
+    before = total;
     let mut store = Store::open(to, digest(scenarios, options)).map_err(because)?;
     let mut film = Film::of(options.pictures);
     let pictured = film.is_loaded();
@@ -221,7 +224,7 @@ fn write(
         for (scenario, case) in scenarios.iter().zip(&cases) {
             let mut tick = |step| progress(Progress { done: before + step, of: 2 * total, what: &scenario.name });
             let peaks = recorder::record(&mut set, scenario, case, &mut tick)?;
-            before += steps(scenario);
+            before += case.steps;
             recordings.push(Recording {
                 scenario: scenario.name.clone(),
                 file: file.into(),

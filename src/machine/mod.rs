@@ -23,7 +23,7 @@ use std::ops::RangeInclusive;
 pub use catalog::{builtin, builtins, find};
 pub use error::{MachineError, Place, Step};
 pub use file::{FileError, parse, read, to_toml};
-pub use inertia::Inertia;
+pub use inertia::{BALANCED, Inertia};
 pub use spec::{Angle, Attach, Closure, Drive, Length, Link, MachineSpec, Payload, Point, Station};
 
 use crate::planar::{MAX_DRIVES, Units, Vector};
@@ -265,10 +265,21 @@ fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {
         ranged(value >= 0.0, value, want, &place)?;
     }
     for (i, drive) in spec.drives.iter().enumerate() {
-        if let Some(value) = drive.torque_limit {
-            let place = || Place::new(&[&"drive", &i, &"torque_limit"]);
-            finite(value, ", N m", &place)?;
-            ranged(value > 0.0, value, "a torque above 0 N m, or no key for none", &place)?;
+        for (key, value, unit, want) in [
+            ("torque_limit", drive.torque_limit, ", N m", "a torque above 0 N m, or no key for none"),
+            ("speed_limit", drive.speed_limit, ", rad/s", "a speed above 0 rad/s, or no key for none"),
+            (
+                "acceleration_limit",
+                drive.acceleration_limit,
+                ", rad/s²",
+                "an acceleration above 0 rad/s², or no key for none",
+            ),
+            ("jerk_limit", drive.jerk_limit, ", rad/s³", "a jerk above 0 rad/s³, or no key for none"),
+        ] {
+            let Some(value) = value else { continue };
+            let place = || Place::new(&[&"drive", &i, &key]);
+            finite(value, unit, &place)?;
+            ranged(value > 0.0, value, want, &place)?;
         }
     }
     for (i, link) in spec.links.iter().enumerate() {

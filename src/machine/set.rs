@@ -3,7 +3,7 @@
 use super::{Length, Machine, MachineError, MachineSpec, Place};
 
 const KEYS: &str = "link.NAME.(com|com_normal|mass|inertia|length), length.NAME, payload.mass, payload.inertia, \
-                    gravity, limits.ANGLE, drive.NAME.torque_limit";
+                    gravity, limits.ANGLE, drive.NAME.(torque|speed|acceleration|jerk)_limit";
 
 impl Machine {
     /// A machine with one setting changed; `value` is one number, or two parted by a comma.
@@ -49,8 +49,16 @@ impl Machine {
             ["payload", "inertia"] => Some(spec.payload.inertia.to_string()),
             ["gravity"] => Some(two(spec.gravity)),
             ["limits", name] => spec.angles.iter().find(|a| a.name == name).map(|a| two([a.min, a.max])),
-            ["drive", name, "torque_limit"] => {
-                spec.drives.iter().find(|d| d.name == name)?.torque_limit.map(|t| t.to_string())
+            ["drive", name, field] => {
+                let drive = spec.drives.iter().find(|d| d.name == name)?;
+                match field {
+                    "torque_limit" => drive.torque_limit,
+                    "speed_limit" => drive.speed_limit,
+                    "acceleration_limit" => drive.acceleration_limit,
+                    "jerk_limit" => drive.jerk_limit,
+                    _ => None,
+                }
+                .map(|x| x.to_string())
             }
             _ => None,
         }
@@ -98,10 +106,17 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &str) -> Result<(), MachineE
             let angle = spec.angles.iter_mut().find(|a| a.name == name).ok_or(missing)?;
             [angle.min, angle.max] = two()?;
         }
-        ["drive", name, "torque_limit"] => {
+        ["drive", name, field] => {
             let known = spec.drives.iter().map(|d| d.name.as_str()).collect();
             let missing = nobody("drive", name, known);
-            spec.drives.iter_mut().find(|d| d.name == name).ok_or(missing)?.torque_limit = Some(one()?);
+            let drive = spec.drives.iter_mut().find(|d| d.name == name).ok_or(missing)?;
+            *match field {
+                "torque_limit" => &mut drive.torque_limit,
+                "speed_limit" => &mut drive.speed_limit,
+                "acceleration_limit" => &mut drive.acceleration_limit,
+                "jerk_limit" => &mut drive.jerk_limit,
+                _ => return Err(unknown()),
+            } = Some(one()?);
         }
         _ => return Err(unknown()),
     }

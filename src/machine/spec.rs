@@ -67,6 +67,15 @@ pub struct Drive {
     /// The greatest torque it gives either way, N m; none: unlimited.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub torque_limit: Option<f64>,
+    /// The greatest |q̇| it turns at, rad/s; none: unlimited.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_limit: Option<f64>,
+    /// The greatest |q̈| asked of it, rad/s²; none: unlimited.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub acceleration_limit: Option<f64>,
+    /// The greatest |q⃛| asked of it, rad/s³, by laws that keep jerk in bounds; none: unlimited.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub jerk_limit: Option<f64>,
 }
 
 /// A rigid bar, always parallel to the arm of one drive.

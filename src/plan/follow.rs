@@ -189,7 +189,8 @@ impl Follower {
 
     /// Finds the pose for the target on the present plane and sheet, or the nearest one.
     fn aim_at_target(&mut self) {
-        let (aim, reach) = self.planes.reach(self.target.at, self.b.x, self.aim);
+        // From where it is, not from where it was going: what it can go to straight.
+        let (aim, reach) = self.planes.reach(self.target.at, self.b.x, self.a.map(|c| c.x));
         self.aim = aim;
         self.target.reach = reach;
     }
@@ -222,6 +223,24 @@ impl Follower {
         acc
     }
 
+    /// The wanted accelerations, or full braking where after them a fold could not be avoided any more. So there is
+    /// always a straight way on which to stop that keeps to the sheet.
+    fn before_folds(&self, want: [f64; 2]) -> [f64; 2] {
+        if !self.planes.boundary().interior_singularity() {
+            return want;
+        }
+        let [x, y] = [0, 1].map(|i| Course { acc: want[i], ..self.a[i] }.after(self.step));
+        let speed = x.v.hypot(y.v);
+        let stop = [x, y].map(|c| c.x + 0.5 * speed * c.v / self.bounds.joint);
+        let (now, next) = (self.a.map(|c| c.x), [x.x, y.x]);
+        if self.planes.is_one_sheet(now, next) && self.planes.is_one_sheet(next, stop) {
+            return want;
+        }
+        let speed = self.a[0].v.hypot(self.a[1].v);
+        let brake = self.bounds.joint.min(speed / self.step);
+        self.a.map(|c| if speed > 0.0 { -brake * c.v / speed } else { 0.0 })
+    }
+
     /// Chooses the accelerations of the coming step.
     fn steer(&mut self) {
         let [x, y] = [0, 1].map(|i| self.aim[i] - self.a[i].x);
@@ -236,7 +255,7 @@ impl Follower {
             let gain = if distance > 0.0 { speed / distance } else { 0.0 };
             let want = [(gain * x - v[0]) / LAG, (gain * y - v[1]) / LAG];
             let scale = (self.bounds.joint / want[0].hypot(want[1])).min(1.0);
-            let acc = self.within_limits(want.map(|w| w * scale));
+            let acc = self.within_limits(self.before_folds(want.map(|w| w * scale)));
             self.a.iter_mut().zip(acc).for_each(|(a, acc)| a.acc = acc);
         }
         let left = self.b_aim - self.b.x;

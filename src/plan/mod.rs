@@ -1,16 +1,43 @@
-//! Plans: a path and a time law make the reference that control follows.
+//! Plans: a path and a timing make the reference that control follows.
 
+mod convex;
+pub mod corridor;
 pub mod curve;
+pub mod drift;
+pub mod fastest;
 pub mod follow;
+pub mod forecast;
+pub mod inverse;
 pub mod law;
+pub mod least_reaction;
+pub mod limits;
+pub mod null_space;
 pub mod path;
+pub mod pose_course;
+pub mod pose_integral;
+mod pose_program;
+pub mod price;
+pub mod profile;
+mod smooth;
 pub mod table;
+mod topp;
+pub mod trace;
+pub mod usage;
 
-pub use curve::CurvePoint;
+pub use corridor::Corridor;
+pub use curve::{Curve, CurveError, CurvePoint};
+pub use fastest::{Fastest, TimeError, fastest};
 pub use follow::Follower;
-pub use law::TimeLaw;
+pub use forecast::Forecast;
+pub use law::{Progress, TimeLaw};
+pub use least_reaction::LeastReaction;
+pub use limits::Limits;
 pub use path::{Path, PathError};
+pub use price::Price;
+pub use profile::Profile;
 pub use table::Table;
+pub use trace::{Blocked, Rule, Stop};
+pub use usage::Usage;
 
 use crate::planar::{DriveAngles, PerDrive};
 
@@ -39,21 +66,25 @@ pub struct Motion {
     /// Where.
     pub path: Path,
     /// When.
-    pub law: TimeLaw,
-    /// T, s.
-    pub duration: f64,
+    pub profile: Profile,
 }
 
 impl Motion {
+    /// A path by a law in a time T, s.
+    pub fn new(path: Path, law: TimeLaw, duration: f64) -> Self {
+        Self { path, profile: Profile::of(law, duration) }
+    }
+
+    /// T, s.
+    #[inline]
+    pub fn duration(&self) -> f64 {
+        self.profile.duration()
+    }
+
     /// The reference t seconds after the start; at rest before it and after T.
     #[inline]
     pub fn at(&self, t: f64) -> Reference {
-        let p = self.law.at(t, self.duration);
-        let point = self.path.at(p.s);
-        Reference {
-            q: point.q,
-            qd: point.first.scaled(p.rate),
-            qdd: point.second.scaled(p.rate * p.rate).plus(p.acceleration, &point.first),
-        }
+        let p = self.profile.at(t);
+        self.path.at(p.s).timed(&p)
     }
 }

@@ -2,11 +2,14 @@
 
 use thiserror::Error;
 
-use super::curve::CurvePoint;
+use super::Reference;
+use super::curve::{Curve, CurvePoint};
+use super::law::Progress;
 use super::table::Table;
 use crate::kinematics::{acceleration, closest_turn, end_effector, minimum_norm, two_link_rates, velocity};
 use crate::machine::Chain;
 use crate::planar::{DriveAngles, PerDrive, Vector, unit};
+use crate::reactionless::{PlaneMap, PlanePoint};
 
 /// A pose on a path and how it changes with s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,6 +20,18 @@ pub struct PathPoint {
     pub first: PerDrive,
     /// d²q/ds², rad.
     pub second: PerDrive,
+}
+
+impl PathPoint {
+    /// The reference where the path is passed with given rates of s: q̇ = q′ ṡ, q̈ = q″ ṡ² + q′ s̈.
+    #[inline]
+    pub fn timed(&self, p: &Progress) -> Reference {
+        Reference {
+            q: self.q,
+            qd: self.first.scaled(p.rate),
+            qdd: self.second.scaled(p.rate * p.rate).plus(p.acceleration, &self.first),
+        }
+    }
 }
 
 /// A path of the drives.
@@ -33,6 +48,17 @@ pub enum Path {
     },
     /// By its nodes: integrated, or followed on a plane.
     Table(Table),
+    /// A curve of (a_1, a_2) on the plane of a pose constant: reactionless.
+    OnPlane {
+        /// Lifts it.
+        map: PlaneMap,
+        /// rad.
+        b: f64,
+        /// a_1 + i a_2, rad.
+        curve: Curve,
+    },
+    /// Paths end to end; where two meet the motion must rest.
+    Chain(Chained),
     /// The end effector where a joint line has it, drive 1 on a course of its own (case 2).
     SameTip(SameTip),
 }
@@ -66,10 +92,75 @@ impl Path {
             }
             Self::JointLine { from, to } => joint_line(from, to, s),
             Self::Table(table) => table.at(s),
+            Self::OnPlane { map, b, curve } => on_plane(map, *b, curve, s),
+            Self::Chain(chain) => chain.at(s),
             Self::SameTip(path) => path.at(s),
         }
     }
+
+    /// d³q/ds³ at s, rad: zero on straight lines, else from differences of q″ over [`THIRD_OVER`] either way.
+    pub fn third(&self, s: f64) -> PerDrive {
+        let (before, after) = ((s - THIRD_OVER).max(0.0), (s + THIRD_OVER).min(1.0));
+        match self {
+            Self::Rest(q) | Self::JointLine { from: q, .. } => PerDrive::zeros(q.len()),
+            _ => self.at(after).second.minus(&self.at(before).second).scaled(1.0 / (after - before)),
+        }
+    }
 }
+
+fn on_plane(map: &PlaneMap, b: f64, curve: &Curve, s: f64) -> PathPoint {
+    let CurvePoint { p, first, second } = curve.at(s);
+    PathPoint {
+        q: DriveAngles::from(map.lift(PlanePoint { a: [p.re, p.im], b })),
+        first: PerDrive::from(map.lift_rates([first.re, first.im], 0.0)),
+        second: PerDrive::from(map.lift_rates([second.re, second.im], 0.0)),
+    }
+}
+
+/// Paths end to end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chained {
+    paths: Vec<Path>,
+    /// s at which each ends; the last is 1.
+    ends: Vec<f64>,
+}
+
+impl Chained {
+    /// Paths, each with its share of s; `None` if there is none, or a share is not above 0.
+    pub fn new(parts: Vec<(Path, f64)>) -> Option<Self> {
+        let total: f64 = parts.iter().map(|(_, share)| share).sum();
+        let sound = total.is_finite() && parts.iter().all(|(_, share)| *share > 0.0);
+        if parts.is_empty() || !sound {
+            return None;
+        }
+        let mut sum = 0.0;
+        let mut ends: Vec<f64> = Vec::with_capacity(parts.len());
+        for (_, share) in &parts {
+            sum += share;
+            ends.push(sum / total);
+        }
+        if let Some(last) = ends.last_mut() {
+            *last = 1.0;
+        }
+        Some(Self { paths: parts.into_iter().map(|(path, _)| path).collect(), ends })
+    }
+
+    /// The parts, each with where it begins and ends.
+    pub fn parts(&self) -> impl Iterator<Item = (&Path, [f64; 2])> {
+        let begins = std::iter::once(0.0).chain(self.ends.iter().copied());
+        self.paths.iter().zip(begins.zip(&self.ends).map(|(from, to)| [from, *to]))
+    }
+
+    fn at(&self, s: f64) -> PathPoint {
+        let i = self.ends.partition_point(|end| *end < s).min(self.paths.len() - 1);
+        let from = if i == 0 { 0.0 } else { self.ends[i - 1] };
+        let run = self.ends[i] - from;
+        let point = self.paths[i].at((s - from) / run);
+        PathPoint { q: point.q, first: point.first.scaled(1.0 / run), second: point.second.scaled(1.0 / (run * run)) }
+    }
+}
+/// Difference quotients lose as much by rounding as by their length.
+const THIRD_OVER: f64 = 1e-5;
 
 #[inline]
 fn joint_line(from: &DriveAngles, to: &DriveAngles, s: f64) -> PathPoint {

@@ -15,53 +15,43 @@
 //! | areas | m² |
 
 mod arrangement;
+mod cycle;
 mod determinant;
+mod distance;
 mod fold;
+mod inside;
+mod line;
+mod region;
+mod sides;
 mod span;
 
-use arrangement::{Arrangement, Portion};
+use arrangement::{Arrangement, Portion, Strand};
+use cycle::Cycle;
+pub use line::{Line, Loop, Vertex};
+use region::Region;
+pub use sides::ChangeCurve;
 pub use span::Curve;
-use span::{Span, Surface};
+use span::Surface;
 
 use super::PlaneMap;
 use crate::planar::{Vector, cross, dot, unit};
 
-/// Chords between vertices keep this near to the curve, m.
-const CHORD: f64 = 0.8e-5;
 /// Limits this near to each other leave a curve, not an area, rad.
 const THIN: f64 = 1e-9;
-/// Longest span along a limit, rad.
-const STEP: f64 = 0.35;
 
 /// The boundary of a reactionless workspace, computed once for all b.
 #[derive(Clone, Debug)]
 pub struct Boundary {
     on: Surface,
-    spans: Vec<Span>,
+    cycle: Cycle,
+    strands: Vec<Strand>,
     loops: Vec<Loop>,
+    cusps: Vec<Vertex>,
     area: f64,
     sheet_area: f64,
     interior_singularity: bool,
-}
-
-/// A closed curve, the workspace on its left. The last vertex is joined to the first.
-#[derive(Clone, Debug)]
-pub struct Loop {
-    vertices: Vec<Vertex>,
-    /// From each vertex to the next.
-    portions: Vec<Portion>,
-    area: f64,
-}
-
-/// A point of the boundary; the curve and a are those of the piece that begins here.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Vertex {
-    /// (a_1, a_2), rad.
-    pub a: [f64; 2],
-    /// Before the workspace is turned, m.
-    pub at: Vector,
-    /// Where it lies.
-    pub curve: Curve,
+    /// Without area: its outline is all there is.
+    flat: bool,
 }
 
 /// Bounds of a workspace, m.
@@ -87,40 +77,6 @@ pub struct Nearest {
     pub distance: f64,
 }
 
-impl Loop {
-    /// Points of the curve, each chord within 1e-5 m of it.
-    pub fn vertices(&self) -> &[Vertex] {
-        &self.vertices
-    }
-
-    /// Signed: negative for a hole, m².
-    pub fn area(&self) -> f64 {
-        self.area
-    }
-
-    fn of(on: &Surface, spans: &[Span], chain: &[Portion]) -> Self {
-        let (mut vertices, mut portions) = (Vec::new(), Vec::new());
-        for part in chain {
-            let span = &spans[part.span];
-            let length = part.to - part.from;
-            let n = (length * (span.deviation / CHORD).sqrt()).ceil().clamp(1.0, 1e5) as usize;
-            let t = |i: usize| if i == n { part.to } else { part.from + length * i as f64 / n as f64 };
-            for i in 0..n {
-                let a = on.point(span, t(i));
-                let at = if t(i) <= 0.0 { span.at[0] } else { on.map.forward_unturned(a) };
-                vertices.push(Vertex { a, at, curve: span.curve });
-                portions.push(Portion { span: part.span, from: t(i), to: t(i + 1) });
-            }
-        }
-        let area = chain.iter().map(|p| on.swept(&spans[p.span], p.from, p.to)).sum();
-        Self { vertices, portions, area }
-    }
-
-    fn chord(&self, i: usize) -> [Vector; 2] {
-        [self.vertices[i].at, self.vertices[(i + 1) % self.vertices.len()].at]
-    }
-}
-
 impl Boundary {
     /// The boundary of the workspace within the map's limits.
     ///
@@ -129,42 +85,52 @@ impl Boundary {
     /// to 1e-10 m; where such proportions make whole curves coincide, loops may be incomplete.
     pub fn of(map: &PlaneMap) -> Self {
         let on = Surface::of(map);
-        let thin = map.limits().iter().any(|l| l.max - l.min < THIN);
-        let size: f64 = map.c().iter().map(|c| c.abs()).sum();
-        if thin || on.det.scale() <= 1e-14 * size * size {
-            return Self::curve(on);
-        }
-        let mut spans = limits(&on);
-        let folds = fold::spans(&on);
-        let interior_singularity = !folds.is_empty();
-        spans.extend(folds);
-        let sheet_area = spans.iter().map(|s| f64::from(s.weight()) * on.swept(s, 0.0, 1.0)).sum();
-        let arrangement = Arrangement::of(&on, &spans);
-        let chains = arrangement.chain(arrangement.boundary());
-        let mut loops: Vec<Loop> = chains.iter().map(|chain| Loop::of(&on, &spans, chain)).collect();
-        loops.sort_by(|a, b| b.area.total_cmp(&a.area));
-        if loops.is_empty() {
-            return Self::curve(on);
-        }
-        let area = loops.iter().map(|l| l.area).sum();
-        Self { on, spans, loops, area, sheet_area, interior_singularity }
+        let region = Region::limits(&on);
+        Self::over(on, &region)
     }
 
-    /// A workspace without area: there and back along the limits.
-    fn curve(on: Surface) -> Self {
-        let [a1, a2] = on.map.limits();
-        let corners = [[a1.min, a2.min], [a1.max, a2.min], [a1.max, a2.max], [a1.min, a2.max]];
-        let mut spans = Vec::new();
-        for (edge, from) in corners.into_iter().enumerate() {
-            spans.extend(along(&on, edge, [from, corners[(edge + 1) % 4]]));
+    /// The boundary of what the poses of a region reach.
+    fn over(on: Surface, region: &Region) -> Self {
+        let size: f64 = on.map.c().iter().map(|c| c.abs()).sum();
+        if region.is_thin(THIN) || on.det.scale() <= 1e-14 * size * size {
+            return Self::curve(on, region);
         }
-        if spans.is_empty() {
-            spans.push(on.straight(side(0), [corners[0]; 2]));
+        let mut spans = region.edge_spans(&on);
+        let folds = region.keep(&on, fold::spans(&on));
+        let interior_singularity = !folds.spans.is_empty();
+        spans.extend(folds.spans);
+        let sheet_area = spans.iter().map(|s| f64::from(s.weight()) * on.swept(s, 0.0, 1.0)).sum();
+        let cycle = Cycle::of(spans);
+        let arrangement = Arrangement::of(&on, &cycle);
+        let strands = arrangement.strands();
+        let chains = arrangement.chain(arrangement.level(&strands, 1));
+        let mut loops: Vec<Loop> = chains.iter().map(|chain| Loop::of(&on, &cycle.spans, chain)).collect();
+        loops.sort_by(|a, b| b.area().total_cmp(&a.area()));
+        if loops.is_empty() {
+            return Self::curve(on, region);
         }
+        let area = loops.iter().map(Loop::area).sum();
+        let cusp = |a: [f64; 2]| Vertex { a, at: on.map.forward_unturned(a), curve: Curve::Fold };
+        let cusps = folds.cusps.into_iter().map(cusp).collect();
+        Self { on, cycle, strands, loops, cusps, area, sheet_area, interior_singularity, flat: false }
+    }
+
+    /// A workspace without area: there and back along the edges.
+    fn curve(on: Surface, region: &Region) -> Self {
+        let spans = region.outline(&on);
         let chain: Vec<Portion> = (0..spans.len()).map(|span| Portion { span, from: 0.0, to: 1.0 }).collect();
-        let mut outline = Loop::of(&on, &spans, &chain);
-        outline.area = 0.0;
-        Self { loops: vec![outline], on, spans, area: 0.0, sheet_area: 0.0, interior_singularity: false }
+        let outline = Loop::of(&on, &spans, &chain).without_area();
+        Self {
+            loops: vec![outline],
+            on,
+            cycle: Cycle::of(spans),
+            strands: Vec::new(),
+            cusps: Vec::new(),
+            area: 0.0,
+            sheet_area: 0.0,
+            interior_singularity: false,
+            flat: true,
+        }
     }
 
     /// The closed curves that bound the workspace, the largest first, never none.
@@ -194,7 +160,7 @@ impl Boundary {
             let p = v.at * turn;
             [p.re, p.im]
         };
-        self.loops.iter().map(|l| l.vertices.iter().map(point).collect()).collect()
+        self.loops.iter().map(|l| l.vertices().iter().map(point).collect()).collect()
     }
 
     /// Bounds in x and y of the workspace turned by b.
@@ -207,16 +173,16 @@ impl Boundary {
 
     /// Largest component along a unit vector.
     fn support(&self, w: Vector) -> f64 {
-        let vertices = || self.loops.iter().flat_map(|l| &l.vertices);
+        let vertices = || self.loops.iter().flat_map(|l| l.vertices());
         let mut best = vertices().map(|v| dot(v.at, w)).fold(f64::NEG_INFINITY, f64::max);
         let bar = best - 2e-5;
         for l in &self.loops {
-            for (i, part) in l.portions.iter().enumerate() {
+            for (i, part) in l.portions().iter().enumerate() {
                 let [from, to] = l.chord(i);
                 if dot(from, w).max(dot(to, w)) < bar {
                     continue;
                 }
-                let span = &self.spans[part.span];
+                let span = &self.cycle.spans[part.span];
                 if let Some(t) = falling_zero(|t| dot(self.on.jet(span, t).rate, w), part.from, part.to) {
                     best = best.max(dot(self.on.at(span, t), w));
                 }
@@ -236,9 +202,9 @@ impl Boundary {
         }
         let mut winding = 0;
         for l in &self.loops {
-            for (i, part) in l.portions.iter().enumerate() {
+            for (i, part) in l.portions().iter().enumerate() {
                 let [from, to] = l.chord(i);
-                let span = &self.spans[part.span];
+                let span = &self.cycle.spans[part.span];
                 match span.crossings(&self.on, (part.from, from), (part.to, to), p) {
                     Some(n) => winding += n,
                     None => return true,
@@ -257,8 +223,8 @@ impl Boundary {
         let (p, from) = (p * turn.conj(), from * turn.conj());
         let (which, start) = self.exit(from, p).unwrap_or_else(|| self.closest(from));
         let l = &self.loops[which];
-        let n = l.vertices.len();
-        let distance = |i: usize| (l.vertices[i % n].at - p).norm_sqr();
+        let n = l.vertices().len();
+        let distance = |i: usize| (l.vertices()[i % n].at - p).norm_sqr();
         let mut i = if distance(start + 1) < distance(start) { (start + 1) % n } else { start };
         for _ in 0..n {
             let (next, last) = ((i + 1) % n, (i + n - 1) % n);
@@ -268,10 +234,10 @@ impl Boundary {
             }
             i = lower;
         }
-        let vertex = l.vertices[i];
+        let vertex = l.vertices()[i];
         let (mut a, mut at, mut curve) = (vertex.a, vertex.at, vertex.curve);
-        for part in [l.portions[(i + n - 1) % n], l.portions[i]] {
-            let span = &self.spans[part.span];
+        for part in [l.portions()[(i + n - 1) % n], l.portions()[i]] {
+            let span = &self.cycle.spans[part.span];
             let towards = |t: f64| {
                 let jet = self.on.jet(span, t);
                 dot(p - jet.at, jet.rate)
@@ -290,7 +256,7 @@ impl Boundary {
     fn closest(&self, p: Vector) -> (usize, usize) {
         let mut best = (f64::INFINITY, (0, 0));
         for (k, l) in self.loops.iter().enumerate() {
-            for i in 0..l.vertices.len() {
+            for i in 0..l.vertices().len() {
                 let gap = from_chord(l.chord(i), p);
                 if gap < best.0 {
                     best = (gap, (k, i));
@@ -308,7 +274,7 @@ impl Boundary {
         let way = p - from;
         let mut best: Option<(f64, (usize, usize))> = None;
         for (k, l) in self.loops.iter().enumerate() {
-            for i in 0..l.vertices.len() {
+            for i in 0..l.vertices().len() {
                 let [a, b] = l.chord(i);
                 if from_chord([a, b], from) < 1e-10 {
                     return None;
@@ -364,66 +330,4 @@ fn falling_zero(f: impl Fn(f64) -> f64, from: f64, to: f64) -> Option<f64> {
         }
     }
     Some(0.5 * (low + high))
-}
-
-/// The curve of an edge of the limits, counter-clockwise from a_2 at its least.
-fn side(edge: usize) -> Curve {
-    [
-        Curve::Limit { angle: 1, upper: false },
-        Curve::Limit { angle: 0, upper: true },
-        Curve::Limit { angle: 1, upper: true },
-        Curve::Limit { angle: 0, upper: false },
-    ][edge % 4]
-}
-
-/// Spans along a straight part of an edge of the limits.
-fn along(on: &Surface, edge: usize, [from, to]: [[f64; 2]; 2]) -> impl Iterator<Item = Span> {
-    let run = (to[0] - from[0]).abs() + (to[1] - from[1]).abs();
-    let n = (run / STEP).ceil() as usize;
-    let point = move |i: usize| match i {
-        0 => from,
-        i if i == n => to,
-        i => [0, 1].map(|j| if from[j] == to[j] { from[j] } else { from[j] + (to[j] - from[j]) * i as f64 / n as f64 }),
-    };
-    (0..n).map(move |i| on.straight(side(edge), [point(i), point(i + 1)]))
-}
-
-/// All limits, each piece with the side of more poses on its left.
-fn limits(on: &Surface) -> Vec<Span> {
-    let range = on.map.limits().map(|l| [l.min, l.max]);
-    let mut spans = Vec::new();
-    for edge in 0..4 {
-        let Curve::Limit { angle: fixed, upper } = side(edge) else { continue };
-        let other = 1 - fixed;
-        let [least, most] = range[other];
-        let level = range[fixed][usize::from(upper)];
-        let mut stops = vec![least];
-        stops.extend(fold::zeros(on, fixed, level, range[other]));
-        stops.push(most);
-        for w in stops.windows(2) {
-            let mut ends = [[level; 2]; 2];
-            ends[0][other] = w[0];
-            ends[1][other] = w[1];
-            // Counter-clockwise about the limits where det > 0, which keeps orientation, else clockwise.
-            let forward = edge < 2;
-            let inwards = if upper { -1.0 } else { 1.0 };
-            if forward != (sheet(on, fixed, ends, inwards) > 0.0) {
-                ends.reverse();
-            }
-            spans.extend(along(on, edge, ends));
-        }
-    }
-    spans
-}
-
-/// det beside the middle of a part of an edge: just inside where the edge itself is singular.
-fn sheet(on: &Surface, fixed: usize, ends: [[f64; 2]; 2], inwards: f64) -> f64 {
-    let middle = [0, 1].map(|j| 0.5 * (ends[0][j] + ends[1][j]));
-    let limit = on.map.limits()[fixed];
-    let values = [0.0, 1e-8, 1e-6, 1e-4, 1e-2, 0.3].map(|depth| {
-        let mut a = middle;
-        a[fixed] += inwards * depth * (limit.max - limit.min);
-        on.det.value(a)
-    });
-    values.into_iter().find(|v| v.abs() > 1e-12 * on.det.scale()).unwrap_or(0.0)
 }

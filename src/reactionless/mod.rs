@@ -13,12 +13,16 @@
 //! | u_k, v_k | q_k = b* + u_k · a + v_k | 1, rad |
 
 mod boundary;
+mod change;
+mod dexterity;
 mod plane;
 mod poses;
 mod quadrilateral;
 mod reach;
 
-pub use boundary::{Boundary, Curve, Extent, Loop, Nearest, Vertex};
+pub use boundary::{Boundary, ChangeCurve, Curve, Extent, Line, Loop, Nearest, Vertex};
+pub use change::{ChangePoint, PAIRS};
+pub use dexterity::Dexterity;
 pub use plane::{AngleDefinition, Limit, NotAPlaneMap, PlaneMap, PlanePoint, SLACK};
 pub use poses::{MAX_POSES, Poses};
 pub use reach::{BSet, NoReach};

@@ -125,6 +125,14 @@ impl BSet {
         Self { intervals: self.intervals.iter().map(|i| lift(*i)).collect(), period: self.period }
     }
 
+    /// b moved towards the middle of the interval of the set that it lies in or beside, by a share of the way: what a
+    /// pose at an end of an interval needs where rounding takes it away.
+    pub fn inwards(&self, b: f64, share: f64) -> f64 {
+        let middles = self.near(b).intervals.into_iter().map(|[low, high]| (0.5 * (low + high), 0.5 * (high - low)));
+        let nearest = middles.min_by(|x, y| ((x.0 - b).abs() - x.1).total_cmp(&((y.0 - b).abs() - y.1)));
+        nearest.map_or(b, |(middle, _)| b + share * (middle - b))
+    }
+
     /// The b of the set, lifted by whole turns, that is nearest on the real line; `b` itself if it lies in the set.
     pub fn nearest(&self, b: f64) -> Option<f64> {
         let step = |[low, high]: &[f64; 2]| {

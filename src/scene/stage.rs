@@ -401,7 +401,7 @@ impl Stage {
         });
         let ink = palette.ink;
         match frame.target.reach {
-            Reach::Outside { nearest, mending_b } => {
+            Reach::Outside { nearest, mending_b, other_sheet } => {
                 scene.lines.push(Line {
                     name: "target/gap".into(),
                     points: vec![point(nearest, z), point(at, z)],
@@ -420,10 +420,15 @@ impl Stage {
                 });
                 let would = match mending_b {
                     Some(b) => format!("b = {b:.3} rad would reach it"),
+                    None if other_sheet => "drag it round the fold, or change b".into(),
                     None => "no b reaches it".into(),
                 };
+                let title = match other_sheet {
+                    true => "beyond a fold, on another sheet",
+                    false => "outside the reactionless workspace",
+                };
                 let rows = [
-                    ("outside the reactionless workspace".into(), ink, 13.0),
+                    (title.into(), ink, 13.0),
                     (format!("nearest point {} m", brief_point(nearest)), palette.dim, 11.5),
                     (would, palette.dim, 11.5),
                 ];

@@ -48,6 +48,11 @@ pub enum Edit {
         /// s.
         time: f64,
     },
+    /// Keys of the task, as in a scenario file: points, shape, law and so on; `default` takes a key out.
+    SetTask {
+        /// Such as `{ shape = "spline", via = [[0.6, 0.7]] }`.
+        change: toml::Table,
+    },
     /// The workspace to compare with; none hides it.
     CompareB {
         /// rad.
@@ -79,10 +84,16 @@ impl<'de> Deserialize<'de> for TimedEdit {
 }
 
 impl Edit {
+    /// One key of the task.
+    pub fn task(key: &str, value: impl Into<toml::Value>) -> Self {
+        Self::SetTask { change: toml::Table::from_iter([(key.to_owned(), value.into())]) }
+    }
+
     /// Whether a later edit makes this one void, so that a drag keeps only its last word.
     pub fn is_replaced_by(&self, later: &Self) -> bool {
         match (self, later) {
             (Self::SetMachine { key: a, .. }, Self::SetMachine { key: b, .. }) => a == b,
+            (Self::SetTask { change: a }, Self::SetTask { change: b }) => a.keys().all(|key| b.contains_key(key)),
             _ => std::mem::discriminant(self) == std::mem::discriminant(later),
         }
     }
@@ -102,8 +113,21 @@ impl Edit {
             Self::SetPayload { mass } => format!("set unknown payload to {mass:.3} kg"),
             Self::SetMachine { key, value } => format!("set {key} to {value}"),
             Self::SetTime { time } => format!("set motion time to {time:.3} s"),
+            Self::SetTask { change } => task_title(change),
             Self::CompareB { b: Some(b) } => format!("compare with b = {b:.3} rad"),
             Self::CompareB { b: None } => "stop comparing".into(),
         }
     }
+}
+
+/// What a change of the task does.
+fn task_title(change: &toml::Table) -> String {
+    if ["from", "via", "to"].iter().any(|key| change.contains_key(*key)) {
+        return "move waypoints".into();
+    }
+    let say = |(key, value): (&String, &toml::Value)| {
+        let value = value.as_str().map_or_else(|| value.to_string(), Into::into);
+        format!("{} to {value}", key.replace('_', " "))
+    };
+    format!("set {}", change.iter().map(say).collect::<Vec<_>>().join(", "))
 }

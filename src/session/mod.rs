@@ -5,12 +5,14 @@
 //! state: the run is made again.
 
 mod edit;
+mod planning;
 mod run;
 
 pub use edit::{Edit, TimedEdit};
+pub use planning::{Plan, curves};
 pub use run::{Refusal, Run, replay};
 
-use run::{in_order, last_step};
+use run::in_order;
 
 use crate::frame::Frame;
 use crate::scenario::{MAX_TIME, Scenario};
@@ -37,6 +39,13 @@ struct Change {
     /// What takes it back while the machine moves.
     inverse: Option<Edit>,
     title: String,
+}
+
+impl Change {
+    /// Whether it is of the task: that has no meaning at a later step.
+    fn plans(&self) -> bool {
+        self.edit.as_ref().is_some_and(|e| matches!(e.edit, Edit::SetTask { .. }))
+    }
 }
 
 /// A run under somebody's hands.
@@ -72,7 +81,7 @@ impl Session {
         let mut ground = scenario;
         let mut script = in_order(&std::mem::take(&mut ground.edits));
         let runs = is_led(&script) || script.iter().any(|e| e.step > 0);
-        let end = if runs { last_step(&ground).min(MAX_FRAMES as u64 - 1) } else { 0 };
+        let end = if runs { Run::new(&ground)?.last_step().min(MAX_FRAMES as u64 - 1) } else { 0 };
         script.retain(|e| e.step <= end);
         let mut session = Self::of(Document { scenario: ground, script, end })?;
         session.cursor = 0;
@@ -148,7 +157,7 @@ impl Session {
     /// Length of the time line, s: the planned motion, or as far as the run has got.
     pub fn length(&self) -> f64 {
         let done = self.run.simulation().time();
-        if self.is_live() { done } else { done.max(self.scenario().task.time) }
+        if self.is_live() { done } else { done.max(self.run.planned_time()) }
     }
 
     /// The pose constant that the machine is sent to, rad; on display, if it was scrubbed back, what it was then.
@@ -181,7 +190,7 @@ impl Session {
     pub fn seek(&mut self, time: f64) {
         let step = (time / self.scenario().step).round().max(0.0) as usize;
         if !self.is_live() {
-            let planned = (self.scenario().task.time / self.scenario().step).round() as usize;
+            let planned = (self.run.planned_time() / self.scenario().step - 1e-6).ceil() as usize;
             while self.frames.len() <= step.min(planned) && !self.is_full() {
                 self.advance_run();
             }
@@ -245,7 +254,7 @@ impl Session {
             Edit::DragTarget { .. } | Edit::SlideB { .. } => true,
             Edit::PoseB { .. } => self.is_live(),
             // The path that the machine is on cannot change its time.
-            Edit::SetTime { .. } => false,
+            Edit::SetTime { .. } | Edit::SetTask { .. } => false,
             // A slider that set the machine in motion goes on as it began.
             _ => self.gesture_now.unwrap_or_else(|| self.is_running()),
         }
@@ -309,6 +318,11 @@ impl Session {
     fn amended(&self, timed: &TimedEdit) -> Document {
         let mut document = self.document.clone();
         document.script.retain(|e| !e.edit.is_replaced_by(&timed.edit));
+        if matches!(timed.edit, Edit::SetTask { .. }) && self.is_live() {
+            // To plan is to take the machine back from the hand that led it.
+            document.script.retain(|e| e.step == 0 && !e.edit.leads());
+            document.end = 0;
+        }
         // Who leads the machine from the start does so from where this puts it.
         let place = document.script.iter().position(|e| e.step > 0 || e.edit.leads());
         document.script.insert(place.unwrap_or(document.script.len()), timed.clone());
@@ -365,7 +379,7 @@ impl Session {
         let Some(change) = self.undo.last().cloned() else { return Ok(()) };
         let after = self.document.clone();
         let done = match &change.inverse {
-            Some(inverse) if self.is_running() => self.append(inverse.clone()),
+            Some(inverse) if self.is_running() && !change.plans() => self.append(inverse.clone()),
             _ => self.return_to(&change.before),
         };
         done?;
@@ -383,7 +397,7 @@ impl Session {
         let Some(change) = self.redo.last().cloned() else { return Ok(()) };
         let before = self.document.clone();
         let done = match &change.edit {
-            Some(timed) if self.is_running() => self.append(timed.edit.clone()),
+            Some(timed) if self.is_running() && !change.plans() => self.append(timed.edit.clone()),
             _ => self.return_to(&change.before),
         };
         done?;
@@ -441,7 +455,7 @@ impl Session {
         scenario.edits.clone_from(&self.document.script);
         scenario.duration = match self.document.end {
             0 => self.scenario().duration,
-            end => end as f64 * scenario.step,
+            end => Some(end as f64 * scenario.step),
         };
         scenario
     }

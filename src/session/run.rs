@@ -4,15 +4,19 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
+use super::planning::{Plan, plan};
 use super::{Edit, TimedEdit};
 use crate::frame::Frame;
 use crate::machine::MachineError;
+use crate::plan::drift::DriftError;
 use crate::plan::follow::Bounds;
-use crate::plan::path::{SameTip, tip_line};
-use crate::plan::{Follower, Motion, Path, PathError};
+use crate::plan::least_reaction::LeastReactionError;
+use crate::plan::price::PriceError;
+use crate::plan::{Blocked, CurveError, Follower, Motion, PathError, TimeError};
 use crate::planar::{DriveAngles, Vector};
 use crate::pose_constant::{PlaneError, Planes, Unreachable};
-use crate::scenario::{MAX_PAYLOAD, MAX_TIME, Scenario, TaskKind};
+use crate::reactionless::PlanePoint;
+use crate::scenario::{MAX_PAYLOAD, MAX_TIME, Scenario};
 use crate::simulation::{Guide, Simulation};
 
 /// Why a scenario cannot start or an edit cannot apply; nothing has changed then.
@@ -24,14 +28,38 @@ pub enum Refusal {
     /// A or B cannot be reached there.
     #[error("{point} {unreachable}")]
     Unreachable {
-        /// `A` or `B`.
-        point: char,
+        /// `A`, `1`, `2` … `B`.
+        point: String,
         /// Why, and what would do.
         unreachable: Unreachable,
     },
+    /// No plane serves all points.
+    #[error("{0}")]
+    NoCommonPlane(String),
     /// The path.
     #[error(transparent)]
     Path(#[from] PathError),
+    /// The points give no curve.
+    #[error(transparent)]
+    Curve(#[from] CurveError),
+    /// The curve cannot be followed on the plane.
+    #[error(transparent)]
+    Blocked(#[from] Box<Blocked>),
+    /// The task asks for something that does not fit together.
+    #[error("{0}")]
+    Task(String),
+    /// b has no price here.
+    #[error(transparent)]
+    Price(#[from] PriceError),
+    /// The redundancy cannot be resolved so.
+    #[error(transparent)]
+    LeastReaction(#[from] LeastReactionError),
+    /// The end effector's curve cannot be followed at zero momentum.
+    #[error(transparent)]
+    Drift(#[from] DriftError),
+    /// The fastest law.
+    #[error(transparent)]
+    Time(#[from] TimeError),
     /// The machine.
     #[error(transparent)]
     Machine(#[from] MachineError),
@@ -66,6 +94,7 @@ pub enum Refusal {
 pub struct Run {
     scenario: Scenario,
     planes: Option<Arc<Planes>>,
+    plan: Plan,
     simulation: Simulation,
 }
 
@@ -83,11 +112,11 @@ impl Run {
             Some(planes) => planes,
             None => Arc::new(Planes::of(&scenario.machine)?),
         };
-        let motion = plan(scenario, &planes)?;
-        let guide = Guide::Motion { motion, start: 0.0 };
+        let plan = plan(scenario, &planes)?;
+        let guide = Guide::Motion { motion: plan.motion.clone(), start: 0.0 };
         let plant = scenario.plant_machine()?;
         let simulation = Simulation::new(&scenario.machine, &plant, scenario.gains, scenario.step, guide);
-        Ok(Self { scenario: scenario.clone(), planes: Some(planes), simulation })
+        Ok(Self { scenario: scenario.clone(), planes: Some(planes), plan, simulation })
     }
 
     /// The scenario with everything that edits have set.
@@ -103,6 +132,21 @@ impl Run {
     /// The simulation.
     pub fn simulation(&self) -> &Simulation {
         &self.simulation
+    }
+
+    /// The plan of the task.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// How long the planned motion takes, s.
+    pub fn planned_time(&self) -> f64 {
+        self.plan.motion.duration()
+    }
+
+    /// Where a pose has the end effector, m.
+    pub fn place(&self, q: &DriveAngles) -> Vector {
+        crate::kinematics::end_effector(self.scenario.machine.tip(), &q.units())
     }
 
     /// The planned motion, while it leads.
@@ -147,9 +191,11 @@ impl Run {
                 self.simulation.place(Guide::Follow(follower));
             }
             Edit::CompareB { b } => self.scenario.compare_b = *b,
-            Edit::SetGains { .. } | Edit::SetPayload { .. } | Edit::SetMachine { .. } | Edit::SetTime { .. } => {
-                self.set(edit)?;
-            }
+            Edit::SetGains { .. }
+            | Edit::SetPayload { .. }
+            | Edit::SetMachine { .. }
+            | Edit::SetTime { .. }
+            | Edit::SetTask { .. } => self.set(edit)?,
         }
         Ok(())
     }
@@ -166,12 +212,13 @@ impl Run {
             Edit::SetGains { kp, kd } => (scenario.gains.kp, scenario.gains.kd) = (*kp, *kd),
             Edit::SetPayload { mass } => scenario.plant.payload.mass = *mass,
             Edit::SetMachine { key, value } => scenario.machine = scenario.machine.set(key, value)?,
-            Edit::SetTime { time } => {
-                // A run that covers the motion does so as before.
-                if scenario.duration == scenario.task.time {
-                    scenario.duration = *time;
-                }
-                scenario.task.time = *time;
+            Edit::SetTime { time } => scenario.task.time = *time,
+            Edit::SetTask { .. } if !self.is_untouched() => {
+                return Err(Refusal::Task("the task can change only before its first step".into()));
+            }
+            Edit::SetTask { change } => {
+                scenario.task = scenario.task.with(change).map_err(|why| Refusal::Task(format!("task: {why}")))?;
+                scenario.check("task").map_err(|why| Refusal::Task(why.to_string()))?;
             }
             _ => {}
         }
@@ -207,12 +254,16 @@ impl Run {
         let mut scenario = self.scenario.clone();
         scenario.task.b = b;
         if let Some(planes) = &self.planes {
-            let points = [scenario.task.from, scenario.task.to].map(|p| Vector::new(p[0], p[1]));
-            if let (Err(_), Some(turned)) = (planes.serve(points, b), planes.serve_turned(points, b)) {
-                [scenario.task.from, scenario.task.to] = turned.map(|at| {
+            let points = scenario.task.points();
+            if let (Err(_), Some(turned)) = (planes.serve(&points, b), planes.serve_turned(&points, b)) {
+                let place = |at: &PlanePoint| {
                     let p = planes.map().forward(at.a, at.b);
                     [p.re, p.im]
-                });
+                };
+                if let [from, via @ .., to] = &turned[..] {
+                    (scenario.task.from, scenario.task.to) = (place(from), place(to));
+                    scenario.task.via = via.iter().map(place).collect();
+                }
             }
         }
         self.restart(scenario)
@@ -221,7 +272,7 @@ impl Run {
     /// Whether the planned motion, where it leads, has yet to pass limits that it kept before.
     fn leaves_limits(&self, changed: &Scenario) -> bool {
         let Guide::Motion { motion, start } = self.simulation.guide() else { return false };
-        let done = motion.law.at(self.simulation.time() - start, motion.duration).s;
+        let done = motion.profile.at(self.simulation.time() - start).s;
         (0..=64).map(|i| done + (1.0 - done) * f64::from(i) / 64.0).any(|s| {
             let q = motion.path.at(s).q;
             let keeps = |scenario: &Scenario| {
@@ -273,6 +324,7 @@ impl Run {
             Edit::SetPayload { .. } => Edit::SetPayload { mass: scenario.plant.payload.mass },
             Edit::SetMachine { key, .. } => Edit::SetMachine { key: key.clone(), value: scenario.machine.get(key)? },
             Edit::SetTime { .. } => Edit::SetTime { time: scenario.task.time },
+            Edit::SetTask { change } => Edit::SetTask { change: scenario.task.only(change) },
             Edit::CompareB { .. } => Edit::CompareB { b: scenario.compare_b },
         })
     }
@@ -312,27 +364,6 @@ fn bounds(scenario: &Scenario, planes: &Planes) -> Bounds {
     Bounds { joint, pose: scenario.pose_acceleration }
 }
 
-/// The motion that a scenario's task asks for.
-fn plan(scenario: &Scenario, planes: &Planes) -> Result<Motion, Refusal> {
-    let task = &scenario.task;
-    let at = |p: [f64; 2]| Vector::new(p[0], p[1]);
-    let [from, to] = planes
-        .serve([at(task.from), at(task.to)], task.b)
-        .map_err(|(i, unreachable)| Refusal::Unreachable { point: ['A', 'B'][i], unreachable })?;
-    let lift = |p| DriveAngles::from(planes.map().lift(p));
-    let (from, to) = (lift(from), lift(to));
-    let tip = scenario.machine.tip();
-    let path = match task.kind {
-        TaskKind::Reactionless => Path::JointLine { from, to },
-        TaskKind::TipLine => {
-            let end = crate::kinematics::end_effector(tip, &to.units());
-            Path::Table(tip_line(tip, from, end)?)
-        }
-        TaskKind::SameTip => Path::SameTip(SameTip::new(tip, from, to, task.first_drive_to.unwrap_or(from[0]))?),
-    };
-    Ok(Motion { path, law: task.law, duration: task.time })
-}
-
 /// Frames of a scenario with its edits, from the first to the last step, one at a time.
 ///
 /// # Errors
@@ -341,9 +372,16 @@ pub fn replay(scenario: &Scenario, see: impl FnMut(&Run, &Frame)) -> Result<Run,
     perform(scenario, &in_order(&scenario.edits), None, see)
 }
 
-/// The step at which a scenario's duration is over.
-pub(super) fn last_step(scenario: &Scenario) -> u64 {
-    (scenario.duration / scenario.step).round() as u64
+impl Run {
+    /// The step at which the scenario's duration is over, or else its planned motion.
+    pub fn last_step(&self) -> u64 {
+        let step = self.scenario.step;
+        match self.scenario.duration {
+            Some(duration) => (duration / step).round() as u64,
+            // A motion that ends between two steps is seen to its end.
+            None => (self.planned_time() / step - 1e-6).ceil() as u64,
+        }
+    }
 }
 
 /// Edits in the order of their steps; those of one step stay in theirs.
@@ -373,7 +411,7 @@ pub(super) fn perform(
             return Err(Refusal::Diverged { time: frame.time });
         }
         see(&run, &frame);
-        if step >= *end.get_or_insert_with(|| last_step(run.scenario())) {
+        if step >= *end.get_or_insert_with(|| run.last_step()) {
             return Ok(run);
         }
         run.advance();

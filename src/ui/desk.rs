@@ -189,7 +189,7 @@ impl Desk {
         check_name(path)?;
         let options = crate::headless::Options { pictures: None, force: false };
         let mut scenario = self.session.to_scenario();
-        scenario.duration = self.session.length();
+        scenario.duration = Some(self.session.length());
         let done = crate::headless::record(&[scenario], path, &options, &mut |_| {}).map_err(|e| e.to_string())?;
         self.look.dialog = None;
         let verdict = if done.iter().all(|r| r.reactionless) { "reactionless" } else { "with reactions" };

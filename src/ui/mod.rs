@@ -5,6 +5,7 @@
 
 mod desk;
 mod keys;
+mod path;
 pub mod picture;
 mod plots;
 mod side;

@@ -220,10 +220,10 @@ fn thinned(frames: &[Instant], signal: &Signal) -> Vec<[f64; 2]> {
 fn which_b(ui: &mut Ui, p: &Palette, session: &Session, height: f32, commands: &mut Vec<Command>) {
     let Some(planes) = session.run().planes() else { return };
     let (task, now) = (&session.scenario().task, session.frame());
-    let at = |x: [f64; 2]| Vector::new(x[0], x[1]);
+    let named: Vec<String> = (0..task.via.len() + 2).map(|i| task.name_of(i)).collect();
     let points: Vec<(&str, Vector)> = match session.is_live() {
         true => vec![("target", now.target.at)],
-        false => vec![("A", at(task.from)), ("B", at(task.to))],
+        false => named.iter().map(String::as_str).zip(task.points()).collect(),
     };
     ui.horizontal(|ui| {
         ui.set_height(16.0);

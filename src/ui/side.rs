@@ -6,9 +6,8 @@ use egui::{
 
 use super::theme::{bold, colour, plain};
 use super::top::name;
-use super::{Command, Look, set_b};
+use super::{Command, Look, path, set_b};
 use crate::machine::Inertia;
-use crate::planar::Vector;
 use crate::pose_constant::in_words;
 use crate::scene::palette::Palette;
 use crate::session::{Edit, Session};
@@ -22,7 +21,7 @@ pub fn show(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Comm
             ui.set_width(ui.available_width() - 6.0);
             pose_constant(ui, session, &p, commands);
             limits(ui, session, &p, commands);
-            motion(ui, session, &p, commands);
+            path::show(ui, session, &p, commands);
             plant(ui, session, &p, commands);
             control(ui, session, &p, commands);
             balance(ui, session, &p);
@@ -30,23 +29,23 @@ pub fn show(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Comm
     });
 }
 
-fn section(ui: &mut Ui, p: &Palette, title: &str) {
+pub(super) fn section(ui: &mut Ui, p: &Palette, title: &str) {
     ui.add_space(10.0);
     ui.label(RichText::new(title.to_uppercase()).font(bold(11.0)).color(colour(p.dim)));
 }
 
 /// A name on the left, a number that can be dragged or typed and its unit on the right.
-struct Row<'a> {
-    label: &'a str,
-    unit: &'a str,
-    tip: &'a str,
-    decimals: usize,
-    speed: f64,
-    range: std::ops::RangeInclusive<f64>,
+pub(super) struct Row<'a> {
+    pub label: &'a str,
+    pub unit: &'a str,
+    pub tip: &'a str,
+    pub decimals: usize,
+    pub speed: f64,
+    pub range: std::ops::RangeInclusive<f64>,
 }
 
 impl Row<'_> {
-    fn show(&self, ui: &mut Ui, p: &Palette, value: &mut f64) -> Response {
+    pub fn show(&self, ui: &mut Ui, p: &Palette, value: &mut f64) -> Response {
         ui.horizontal(|ui| {
             ui.label(self.label).on_hover_text(self.tip);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -58,7 +57,7 @@ impl Row<'_> {
         .inner
     }
 
-    fn number(&self, ui: &mut Ui, value: &mut f64) -> Response {
+    pub fn number(&self, ui: &mut Ui, value: &mut f64) -> Response {
         let drag = DragValue::new(value)
             .speed(self.speed)
             .range(self.range.clone())
@@ -72,7 +71,7 @@ impl Row<'_> {
     }
 
     /// The same with a slider below.
-    fn with_slider(&self, ui: &mut Ui, p: &Palette, value: &mut f64) -> [Response; 2] {
+    pub fn with_slider(&self, ui: &mut Ui, p: &Palette, value: &mut f64) -> [Response; 2] {
         let number = self.show(ui, p, value);
         ui.spacing_mut().slider_width = ui.available_width();
         // The knob's size follows the row's height.
@@ -86,17 +85,17 @@ impl Row<'_> {
     }
 }
 
-fn unit(ui: &mut Ui, p: &Palette, text: &str) {
+pub(super) fn unit(ui: &mut Ui, p: &Palette, text: &str) {
     let text = RichText::new(text).font(plain(11.5)).color(colour(p.dim));
     ui.add_sized([38.0, 18.0], egui::Label::new(text).halign(Align::LEFT));
 }
 
-fn note(ui: &mut Ui, p: &Palette, text: &str) {
+pub(super) fn note(ui: &mut Ui, p: &Palette, text: &str) {
     ui.add(egui::Label::new(RichText::new(text).font(plain(11.0)).color(colour(p.dim))).wrap());
 }
 
 /// Sends an edit when a widget has changed, and ends the gesture when it is let go.
-fn send(commands: &mut Vec<Command>, responses: &[Response], edit: impl FnOnce() -> Edit) {
+pub(super) fn send(commands: &mut Vec<Command>, responses: &[Response], edit: impl FnOnce() -> Edit) {
     if responses.iter().any(Response::changed) {
         commands.push(Command::Edit(edit()));
     }
@@ -123,10 +122,11 @@ fn pose_constant(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec
     let responses = row.with_slider(ui, p, &mut b);
     send(commands, &responses, || set_b(session, b));
     if let Some(planes) = session.run().planes() {
-        let at = |x: [f64; 2]| Vector::new(x[0], x[1]);
-        let text = match planes.common([at(scenario.task.from), at(scenario.task.to)]) {
-            Some(common) => format!("A and B share {}", in_words(&common.near(b))),
-            None => "A and B share no b".into(),
+        let points = scenario.task.points();
+        let all = if points.len() == 2 { "A and B".into() } else { format!("all {} points", points.len()) };
+        let text = match planes.common(&points) {
+            Some(common) => format!("{all} share {}", in_words(&common.near(b))),
+            None => format!("{all} share no b"),
         };
         note(ui, p, &text);
         let inertia = Inertia::of(&scenario.machine);
@@ -194,15 +194,6 @@ fn limits(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comman
             });
         });
     }
-}
-
-fn motion(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
-    section(ui, p, "Motion");
-    let mut time = session.scenario().task.time;
-    let tip = "Duration T from A to B, quintic in time: peaks go with 1/T²";
-    let row = Row { label: "time T", unit: "s", tip, decimals: 2, speed: 0.01, range: 0.1..=10.0 };
-    let responses = row.with_slider(ui, p, &mut time);
-    send(commands, &responses, || Edit::SetTime { time });
 }
 
 fn plant(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {

@@ -53,6 +53,9 @@ pub fn show(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Comm
                         }
                         ("the target is outside".into(), p.ink)
                     }
+                    (None, Reach::Outside { other_sheet: true, .. }) => {
+                        ("the target is beyond a fold, on another sheet".into(), p.ink)
+                    }
                     (None, Reach::Outside { .. }) => ("the target is outside, whatever b".into(), p.ink),
                     (None, _) => ("drag the target or the b ring  ·  Space plays  ·  F1 keys".into(), p.dim),
                 };

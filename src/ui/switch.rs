@@ -62,7 +62,7 @@ fn shade(ui: &mut Ui, p: &Palette, look: &Look, most: f64, commands: &mut Vec<Co
         let ink = colour(if look.dexterity { p.ink } else { p.dim });
         let words = RichText::new("dexterity").font(plain(11.5)).color(ink);
         let help = "Shade the workspace by |det ∂(x, y)/∂(a₁, a₂)|: how far the end effector moves for a motion of the \
-                    joints on its plane; 0 where it is singular (D)";
+                    joints on its plane; 0 where it is singular (J)";
         let mut shown = look.dexterity;
         if ui.checkbox(&mut shown, words).on_hover_text(help).clicked() {
             commands.push(Command::Dexterity(shown));

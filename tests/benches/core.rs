@@ -9,9 +9,13 @@ mod nine_body;
 use divan::{Bencher, black_box};
 use stillbase::dynamics::{Surroundings, inverse_with_wrench};
 use stillbase::machine::{Inertia, builtin};
+use stillbase::plan::least_reaction::Goal;
+use stillbase::plan::path::tip_line;
+use stillbase::plan::{CurvePoint, LeastReaction, TimeLaw};
+use stillbase::plan::{Limits, Path, fastest};
 use stillbase::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::pose_constant::plane_map;
-use stillbase::reactionless::Boundary;
+use stillbase::reactionless::{AngleDefinition, Boundary, Limit, PlaneMap};
 use stillbase::scenario::Scenario;
 use stillbase::scene::stage::ViewOptions;
 use stillbase::scene::views::{ViewKind, Views};
@@ -77,7 +81,7 @@ fn frame(bencher: Bencher) {
 /// A minute at 1 kHz, every frame looked at.
 #[divan::bench]
 fn a_minute_at_1_khz() -> f64 {
-    let scenario = Scenario { duration: 60.0, ..Scenario::builtin("case-3").expect("built in") };
+    let scenario = Scenario { duration: Some(60.0), ..Scenario::builtin("case-3").expect("built in") };
     let mut sum = 0.0;
     replay(&scenario, |_, frame| sum += frame.base_moment()).expect("it runs");
     sum
@@ -121,6 +125,110 @@ fn record_three_cases(bencher: Bencher) {
     let options = stillbase::headless::Options { pictures: None, force: true };
     bencher.bench_local(|| stillbase::headless::record(&scenarios, &file, &options, &mut |_| {}).expect("it records"));
     std::fs::remove_file(&file).expect("the recording is there");
+}
+
+/// The nine-link machine within other limits.
+fn folded(limits: [[f64; 2]; 2]) -> PlaneMap {
+    let map = plane_map(builtin("nine-link").expect("built in")).expect("three drives");
+    map.with_limits(limits.map(|[min, max]| Limit { min, max }))
+}
+
+/// The boundary where the map folds: up to six poses a point.
+#[divan::bench(args = [0.0, -std::f64::consts::PI])]
+fn folded_boundary_of_a_turn(bencher: Bencher, from: f64) {
+    let map = folded([[from, from + std::f64::consts::TAU]; 2]);
+    bencher.bench_local(|| Boundary::of(black_box(&map)));
+}
+
+/// The boundary within limits as a person may set them, from a sequence that fills their range.
+#[divan::bench]
+fn folded_boundary_of_any_limits(bencher: Bencher) {
+    let share = |i: usize, g: f64| (i as f64 * g).fract();
+    let limit = |i: usize, g: f64, h: f64| {
+        let least = 8.0 * share(i, g) - 4.0;
+        [least, least + 0.3 + 5.9 * share(i, h)]
+    };
+    let maps: Vec<PlaneMap> = (1..200).map(|i| folded([limit(i, 0.8191, 0.6710), limit(i, 0.5497, 0.4503)])).collect();
+    let mut next = 0;
+    bencher.bench_local(|| {
+        next = (next + 1) % maps.len();
+        Boundary::of(black_box(&maps[next]))
+    });
+}
+
+/// The boundary of a machine with three equal arms: its folds cross each other.
+#[divan::bench]
+fn folded_boundary_of_equal_arms(bencher: Bencher) {
+    let angles = [(1, 0, 0.0), (2, 1, std::f64::consts::PI)];
+    let angles = angles.map(|(to, from, offset)| AngleDefinition { to, from, offset });
+    let turn = Limit { min: 0.0, max: std::f64::consts::TAU };
+    let map = PlaneMap::new([0.5, -0.5, -0.5], [1.0, 0.117, 0.128], angles, [turn; 2]).expect("a map");
+    bencher.bench_local(|| Boundary::of(black_box(&map)));
+}
+
+/// How many poses reach a point, by winding number.
+#[divan::bench]
+fn folded_pose_count(bencher: Bencher) {
+    let boundary = Boundary::of(&folded([[0.0, std::f64::consts::TAU]; 2]));
+    bencher.bench_local(|| boundary.pose_count(black_box(Vector::new(0.2, 0.4)), black_box(2.4)));
+}
+
+/// The distance of a point from the boundary, along the true curves.
+#[divan::bench]
+fn folded_distance(bencher: Bencher) {
+    let boundary = Boundary::of(&folded([[0.0, std::f64::consts::TAU]; 2]));
+    bencher.bench_local(|| boundary.distance(black_box(Vector::new(0.2, 0.4)), black_box(2.4)));
+}
+/// The line of the end effector in case 1.
+fn tip_path() -> Path {
+    let start = DriveAngles::from([1.6875182179, 3.7146223682, 2.1801769897]);
+    let tip = builtin("nine-link").expect("built in").tip();
+    Path::Table(tip_line(tip, start, Vector::new(0.55, 0.90)).expect("regular"))
+}
+
+/// The fastest motion along a curve under limits on torque, on a grid of 1000 spaces.
+#[divan::bench]
+fn fastest_of_1000_points(bencher: Bencher) {
+    let machine = builtin("nine-link").expect("built in");
+    let (model, limits, path) = (Inertia::of(machine), Limits::of(machine), tip_path());
+    bencher.bench_local(|| fastest(black_box(&path), &model, &Surroundings::default(), &limits, false));
+}
+
+/// The same with limits on jerk, searched for and checked.
+#[divan::bench]
+fn fastest_smooth_of_1000_points(bencher: Bencher) {
+    let machine = builtin("nine-link").expect("built in");
+    let limits = Limits { jerk: PerDrive::from([2000.0; 3]), ..Limits::of(machine) };
+    let (model, path) = (Inertia::of(machine), tip_path());
+    bencher.bench_local(|| fastest(black_box(&path), &model, &Surroundings::default(), &limits, true));
+}
+
+/// Looking up such a motion at an instant.
+#[divan::bench]
+fn profile_at(bencher: Bencher) {
+    let machine = builtin("nine-link").expect("built in");
+    let (model, limits) = (Inertia::of(machine), Limits::of(machine));
+    let found = fastest(&tip_path(), &model, &Surroundings::default(), &limits, false).expect("limits");
+    let (profile, mut t) = (found.profile, 0.0);
+    bencher.bench_local(|| {
+        t = (t + 0.377 * profile.duration()) % profile.duration();
+        black_box(&profile).at(black_box(t))
+    });
+}
+
+/// A path of least reaction where no b serves the whole of it, corridor, program and nodes.
+#[divan::bench]
+fn least_reaction_path(bencher: Bencher) {
+    let machine = builtin("nine-link").expect("built in");
+    let (map, model) = (plane_map(machine).expect("three drives"), Inertia::of(machine));
+    let [from, to] = [Vector::new(0.50, 0.50), Vector::new(0.55, 0.90)];
+    let curve = |u: f64| {
+        let (law, way) = (TimeLaw::Quintic.at(u, 1.0), to - from);
+        CurvePoint { p: from + law.s * way, first: law.rate * way, second: law.acceleration * way }
+    };
+    let start = map.poses(from, 1.75)[0];
+    bencher
+        .bench_local(|| LeastReaction::plan(&map, &model, curve, black_box(start), None, Goal::Rms).expect("it can"));
 }
 
 /// Everything that the linked views keep from frame to frame.

@@ -193,6 +193,7 @@ fn check_loops(map: &PlaneMap, boundary: &Boundary) {
                     assert!((vertex.a[angle] - at).abs() < 1e-9, "{vertex:?}");
                 }
                 Curve::Fold => assert!(map.det(vertex.a).abs() < 1e-9 * scale, "{vertex:?}"),
+                Curve::Change { .. } => panic!("the whole workspace ends at no change point: {vertex:?}"),
             }
             assert!((0..2).all(|i| map.limits()[i].contains(vertex.a[i], 1e-9)), "{vertex:?}");
         }

@@ -273,7 +273,26 @@ fn pose_gives_unwrapped_angles_on_the_plane_as_asked() {
         let (machine, b) = (known["machine"].as_str().expect("name"), known["b"].as_f64().expect("b"));
         let point = joined(&known["point"]);
         let got = object(&["pose", machine, &point, "--b", &b.to_string()]);
-        assert_eq!(keys(&got["poses"][0]), ["a", "q"]);
+        let all = ["a", "det", "manipulability", "q", "side", "transmission", "worst_torque_per_force"];
+        assert_eq!(keys(&got["poses"][0]), all);
+        for pose in got["poses"].as_array().expect("poses") {
+            let number = |key: &str| pose[key].as_f64().expect("a number");
+            let (a, q) = (numbers(&pose["a"]), numbers(&pose["q"]));
+            let sines = [q[1] - q[0], q[2] - q[1], q[2] - q[0]].map(f64::sin);
+            near(&json!(sines.map(f64::signum)), &pose["side"], 0.0, "side");
+            let least = sines.iter().fold(1.0, |m: f64, s| m.min(s.abs()));
+            assert!((number("transmission") - least).abs() < 1e-12 && a.iter().all(|a| a.is_finite()));
+            // J of the nine-link machine, arms 0.5, −0.46 and −0.3 m.
+            let arms = [0.5, -0.46, -0.3];
+            let crossed = |k: usize, l: usize| arms[k] * arms[l] * (q[l] - q[k]).sin();
+            let rank: f64 = [crossed(0, 1), crossed(1, 2), crossed(0, 2)].iter().map(|x| x * x).sum();
+            assert!((number("manipulability") - rank.sqrt()).abs() < 1e-12);
+            let worst = number("worst_torque_per_force");
+            let least = number("manipulability") / worst;
+            let lengths: f64 = arms.iter().map(|c| c * c).sum();
+            assert!((worst * worst + least * least - lengths).abs() < 1e-12 && worst >= least);
+            assert!(number("det") > 0.0);
+        }
         let row = |p: &Value| [numbers(&p["q"]), numbers(&p["a"])].concat();
         let mut rows: Vec<Vec<f64>> = got["poses"].as_array().expect("poses").iter().map(row).collect();
         rows.sort_by(|x, y| x[0].total_cmp(&y[0]));
@@ -309,7 +328,26 @@ fn a_point_outside_the_plane_is_told_which_b_would_do() {
 #[test]
 fn workspace_is_measured() {
     let (got, known) = (object(&["workspace", "nine-link-table-1", "--b", "2.4"]), &planning()["workspace"][0]);
-    assert_eq!(keys(&got), ["area", "interior_singularity", "loops", "sheet_area", "x_max", "x_min", "y_max", "y_min"]);
+    assert_eq!(
+        keys(&got),
+        [
+            "area",
+            "areas_by_poses",
+            "areas_by_side",
+            "change_point_curves",
+            "cusps",
+            "fold_curves",
+            "inner_limits",
+            "interior_singularity",
+            "loops",
+            "sheet_area",
+            "sheets",
+            "x_max",
+            "x_min",
+            "y_max",
+            "y_min"
+        ]
+    );
     near(&got["area"], &known["sheet_area"], 1e-9, "area");
     for key in ["sheet_area", "x_min", "x_max", "y_min", "y_max"] {
         near(&got[key], &known[key], 1e-8, key);
@@ -320,6 +358,63 @@ fn workspace_is_measured() {
     let twice: f64 =
         (0..ring.len()).map(|i| (&ring[i], &ring[(i + 1) % ring.len()])).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum();
     near(&json!(twice / 2.0), &known["sheet_area"], 1e-4, "area of the polygon");
+}
+
+#[test]
+fn workspace_tells_what_lies_inside() {
+    let got = object(&["workspace", "nine-link", "--b", "2.4"]);
+    assert_eq!((&got["sheets"], &got["fold_curves"], &got["cusps"]), (&json!(1), &json!([]), &json!([])));
+    near(&got["areas_by_poses"], &json!([got["area"]]), 1e-12, "one pose everywhere");
+    // q_3 = q_1 divides it.
+    let parts = got["areas_by_side"].as_array().expect("parts");
+    assert_eq!(parts.len(), 2);
+    assert!(parts.iter().all(|p| p["pair"] == json!([1, 3])));
+    near(&json!([parts[0]["area"], parts[1]["area"]]), &json!([0.467, 0.378]), 2e-3, "areas by side");
+    assert_eq!(got["change_point_curves"].as_array().expect("curves").len(), 1);
+    let line = &got["change_point_curves"][0]["line"];
+    assert!(line.as_array().expect("a line").len() > 50 && numbers(line).iter().all(|x| x.abs() < 1.3));
+    let table = prints(&["workspace", "nine-link", "--b", "2.4"]);
+    for part in ["q_3 − q_1 from −π to 0", "inside: one pose a point, one curve of change points"] {
+        assert!(table.contains(part), "{part} in {table}");
+    }
+
+    let turn = "6.283185307179586";
+    let wide = [&format!("limits.a1=0,{turn}"), &format!("limits.a2=0,{turn}")];
+    let got = object(&["workspace", "nine-link", "--b", "2.4", "--set", wide[0], "--set", wide[1]]);
+    assert_eq!(got["sheets"], json!(6));
+    let sum: f64 = numbers(&got["areas_by_poses"]).iter().sum();
+    near(&json!(sum), &got["sheet_area"], 1e-9, "areas by poses");
+    assert_eq!(
+        (got["fold_curves"].as_array().map(Vec::len), got["cusps"].as_array().map(Vec::len)),
+        (Some(3), Some(2))
+    );
+}
+
+#[test]
+fn workspace_answers_about_points() {
+    let base = ["workspace", "nine-link", "--b", "2.4", "--set", "limits.a1=-1,4", "--set", "limits.a2=-2,5"];
+    let asked = ["--at", "0.5,0.5", "--at", "-0.5,-0.9", "--at", "-3,0"];
+    let got = object(&[&base[..], &asked].concat());
+    let points = got["points"].as_array().expect("points");
+    assert_eq!(points.len(), 3);
+    for (p, text) in points.iter().zip(["0.5,0.5", "-0.5,-0.9"]) {
+        assert_eq!(keys(p), ["distance", "point", "poses"]);
+        assert_eq!(joined(&p["point"]), text);
+        let out = stillbase(&["pose", "nine-link", text, "--b", "2.4", "--set", base[5], "--set", base[7], "--json"]);
+        let poses: Value = serde_json::from_slice(&out.stdout).unwrap_or(json!({ "poses": [] }));
+        assert_eq!(p["poses"], poses["poses"]);
+        assert_eq!(p["distance"].as_f64().expect("a distance") > 0.0, poses["poses"] != json!([]));
+    }
+    assert_eq!(points[2]["poses"], json!([]));
+    assert!(points[2]["distance"].as_f64().expect("a distance") < -1.5);
+    let table = prints(&[&base[..], &asked].concat());
+    assert!(table.contains("from boundary m") && table.contains("no pose") && table.contains("0.5, 0.5"), "{table}");
+    fails(&["workspace", "nine-link", "--b", "2.4", "--at", "here"], 2, &["want X,Y in m"]);
+    // Limits that leave a line or a point.
+    for limits in ["limits.a1=0,0", "limits.a1=1,1"] {
+        let got = object(&["workspace", "nine-link", "--b", "2.4", "--set", limits, "--at", "0.1,0.1"]);
+        assert_eq!((&got["area"], &got["sheets"]), (&json!(0.0), &json!(1)));
+    }
 }
 
 #[test]
@@ -620,4 +715,53 @@ fn tables_show_units_and_the_same_numbers() {
         assert!(check.contains(part), "{part} in {check}");
     }
     assert!(!prints(&["check", "nine-link"]).contains("-0.000000000"), "zero has no sign");
+}
+
+/// A plan says what it takes, its scenario does just that, and the fastest straight line is the closed form.
+#[test]
+fn plan_says_what_its_scenario_then_does() {
+    let folder = Folder::new();
+    let file = folder.0.join("plan.toml");
+    let name = file.to_str().expect("UTF-8");
+    let arguments = ["plan", "nine-link", "0.5,0.5", "0.6,0.7", "0.55,0.9", "--shape", "spline", "--b", "2.4"];
+    let plan = object(&[&arguments[..], &["--time", "0.8", "-o", name]].concat());
+    assert_eq!((&plan["feasible"], &plan["duration"]), (&json!(true), &json!(0.8)));
+    let done = object(&["simulate", name]);
+    assert_eq!(done["verdict"]["reactionless"], json!(true));
+    near(&plan["peak_torque"], &done["verdict"]["peak_torque"], 1e-3, "peak torque");
+    fails(&[&arguments[..], &["-o", name]].concat(), 2, &["exists"]);
+
+    let straight = object(&["plan", "nine-link", "0.5,0.5", "0.55,0.9", "--b", "2.4", "--law", "fastest"]);
+    let (start, end) = (numbers(&straight["q_start"]), numbers(&straight["q_end"]));
+    let h = numbers(&object(&["check", "nine-link"])["h"]);
+    let limits = [20.0, 5.0, 5.0];
+    let pace = (0..3).map(|k| limits[k] / (h[k] * (end[k] - start[k]).abs())).fold(f64::INFINITY, f64::min);
+    near(&straight["duration"], &json!(2.0 / pace.sqrt()), 1e-12, "2/√s̈");
+    assert_eq!(straight["limiting"], json!("torque of drive 3"));
+
+    // No b given: the middle of what serves all.
+    let free = object(&["plan", "nine-link", "0.5,0.5", "0.55,0.9"]);
+    let common = numbers(&free["b_common"]);
+    near(&free["b"], &json!(0.5 * (common[0] + common[1])), 1e-12, "b");
+}
+
+#[test]
+fn plan_refuses_with_where_why_and_what_would_do() {
+    let arguments = ["plan", "nine-link", "0.42,1.12", "0,0.5", "--shape", "line", "--b", "2.4"];
+    let said = ["the path stops at (0.417, 1.117) m", "a1 at its upper limit", "b = 2.5440 rad would do", "76.3"];
+    fails(&arguments, 1, &said);
+    let out = stillbase(&[&arguments[..], &["--json"]].concat());
+    assert_eq!(out.status.code(), Some(1));
+    let answer: Value = serde_json::from_slice(&out.stdout).expect("JSON");
+    assert_eq!(answer["feasible"], json!(false));
+    assert_eq!(answer["blocked"]["leaves_workspace"], json!(true));
+    // What is said to do, does.
+    let b = answer["blocked"]["nearest_b"].as_f64().expect("a b").to_string();
+    let line = ["plan", "nine-link", "0.42,1.12", "0,0.5", "--shape", "line", "--b", &b];
+    assert_eq!(object(&line)["feasible"], json!(true));
+    fails(&["plan", "nine-link", "0.5,0.5", "-0.6,-0.2"], 1, &["no b serves both A and B", "moving B by 0.309 m"]);
+    fails(&["plan", "nine-link"], 2, &["want points"]);
+    fails(&["plan", "nine-link", "0.5,0.5"], 2, &["at least two"]);
+    fails(&["plan", "case-3", "--set", "task.shape=square"], 2, &["square", "spline"]);
+    fails(&["plan", "case-3", "--set", "task.blend=-1"], 2, &["task.blend", "0 to 1"]);
 }

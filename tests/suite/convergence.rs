@@ -60,7 +60,7 @@ fn state_after(dt: f64) -> [f64; 6] {
     let model = builtin("nine-link-table-1").expect("built in").set_all(settings).expect("valid");
     let plant = model.set_all([("payload.mass", "0.4"), ("link.2.com", "0.05")]).expect("valid");
     assert!(!stillbase::machine::Inertia::of(&model).is_invariant());
-    let motion = Motion { path: line(), law: TimeLaw::Quintic, duration: 1.0 };
+    let motion = Motion::new(line(), TimeLaw::Quintic, 1.0);
     let guide = Guide::Motion { motion, start: 0.0 };
     let mut simulation = Simulation::new(&model, &plant, Gains::default(), dt, guide);
     for _ in 0..(0.6 / dt).round() as u64 {
@@ -91,7 +91,7 @@ fn energy_balance_is_of_order_four() {
     let off = |dt: f64| {
         let model = nine_link().set("gravity", "0,-9.81").expect("valid");
         let plant = model.set("payload.mass", "0.5").expect("valid");
-        let motion = Motion { path: line(), law: TimeLaw::Quintic, duration: 1.0 };
+        let motion = Motion::new(line(), TimeLaw::Quintic, 1.0);
         let mut simulation =
             Simulation::new(&model, &plant, Gains::default(), dt, Guide::Motion { motion, start: 0.0 });
         for _ in 0..(0.6 / dt).round() as u64 {
@@ -166,7 +166,7 @@ proptest! {
     #[test]
     fn derivatives_of_motions_are_their_own(u in 0.005..0.995, duration in 0.2..5.0) {
         for (name, path) in paths() {
-            let motion = Motion { path, law: TimeLaw::Quintic, duration };
+            let motion = Motion::new(path, TimeLaw::Quintic, duration);
             let (t, h) = (u * duration, 5e-4 * duration);
             let r = motion.at(t);
             close(name, &r.qd, &slope(|t| motion.at(t).q.0, t, h), 1e-7);
@@ -184,7 +184,7 @@ proptest! {
             for (x, y) in before.iter().zip(&after) {
                 prop_assert!(x.plus(-1.0, y).max_abs() < 1e-6, "{name} at {s}: {x:?} and {y:?}");
             }
-            let motion = Motion { path, law: TimeLaw::Quintic, duration: 1.0 };
+            let motion = Motion::new(path, TimeLaw::Quintic, 1.0);
             let (before, after) = (motion.at(s - hair), motion.at(s + hair));
             for (x, y) in [(before.q.0, after.q.0), (before.qd, after.qd), (before.qdd, after.qdd)] {
                 prop_assert!(x.plus(-1.0, &y).max_abs() < 1e-6, "{name} at {s} s: {x:?} and {y:?}");
@@ -196,7 +196,7 @@ proptest! {
 #[test]
 fn motions_begin_and_end_at_rest() {
     for (name, path) in paths() {
-        let motion = Motion { path: path.clone(), law: TimeLaw::Quintic, duration: 2.0 };
+        let motion = Motion::new(path.clone(), TimeLaw::Quintic, 2.0);
         for (t, s) in [(-1.0, 0.0), (0.0, 0.0), (2.0, 1.0), (7.0, 1.0)] {
             let r = motion.at(t);
             assert_eq!(r.q, path.at(s).q, "{name} at {t} s");

@@ -20,7 +20,8 @@ fn setting() -> impl Strategy<Value = (String, String)> {
         (-20.0..20.0, -20.0..20.0).prop_map(|(x, y): (f64, f64)| ("gravity".into(), format!("{x},{y}"))),
         (select(vec!["a1", "a2"]), -7.0..0.0, 0.0..7.0)
             .prop_map(|(a, min, max): (&str, f64, f64)| (format!("limits.{a}"), format!("{min},{max}"))),
-        (1..=3, number(1e-3..1e3)).prop_map(|(k, v)| (format!("drive.{k}.torque_limit"), v)),
+        (1..=3, select(vec!["torque", "speed", "acceleration", "jerk"]), number(1e-3..1e3))
+            .prop_map(|(k, what, v)| (format!("drive.{k}.{what}_limit"), v)),
     ]
 }
 
@@ -84,6 +85,9 @@ fn a_number_that_is_none_is_named() {
         ("com = -0.11113242634709285", "com = -inf"),
         ("com = -0.11113242634709285", "com = 0.0\ncom_normal = nan"),
         ("torque_limit = 20.0", "torque_limit = inf"),
+        ("torque_limit = 20.0", "speed_limit = inf"),
+        ("torque_limit = 20.0", "acceleration_limit = nan"),
+        ("torque_limit = 20.0", "jerk_limit = inf"),
         ("offset = 3.141592653589793", "offset = nan"),
     ] {
         // The key added below its line is the only one that is not where the text was.
@@ -104,6 +108,9 @@ fn a_number_out_of_range_is_named() {
         ("inertia = 0.0025", "inertia = -0.0025"),
         ("direction = -1", "direction = 2"),
         ("torque_limit = 5.0", "torque_limit = -5.0"),
+        ("torque_limit = 5.0", "speed_limit = 0.0"),
+        ("torque_limit = 5.0", "acceleration_limit = -1.0"),
+        ("torque_limit = 5.0", "jerk_limit = -5e3"),
         ("max = 3.141592653589793", "max = -1.0"),
         ("length = \"l9\"", "length = -0.3"),
     ] {

@@ -110,7 +110,7 @@ fn cases() -> Vec<Scenario> {
 
 fn short(name: &str) -> Scenario {
     let mut scenario = Scenario::builtin(name).expect("built in");
-    scenario.duration = 0.1;
+    scenario.duration = Some(0.1);
     scenario
 }
 

@@ -472,7 +472,7 @@ fn a_task_that_cannot_be_is_refused_by_its_point() {
     let mut session = open(coarse());
     let before = state(&session);
     let refusal = session.apply(set("limits.a1", "0,0.5")).expect_err("A needs a1 = 2.03");
-    assert!(matches!(refusal, Refusal::Unreachable { point: 'A', .. }), "{refusal}");
+    assert!(matches!(refusal, Refusal::Unreachable { ref point, .. } if point == "A"), "{refusal}");
     let refusal = session.apply(set("limits.a2", "0.8,2.0")).expect_err("B needs a2 = 2.05");
     let words = refusal.to_string();
     assert!(words.contains("B (0.550, 0.900) m is outside") && words.contains("want b from 2.216 to 2.374"), "{words}");
@@ -737,7 +737,7 @@ fn outside_the_machine_waits_at_the_nearest_point_and_b_mends_it() {
     session.end_gesture();
     settle(&mut session);
     let f = *session.frame();
-    let Reach::Outside { nearest, mending_b } = f.target.reach else { panic!("{:?}", f.target) };
+    let Reach::Outside { nearest, mending_b, .. } = f.target.reach else { panic!("{:?}", f.target) };
     assert_eq!(f.target.at, target, "the handle stays under the pointer");
     assert!((f.tip - nearest).norm() < 1e-9, "the machine waits at the nearest point");
     let planes = session.run().planes().expect("three drives").clone();

@@ -103,7 +103,7 @@ fn a_target_outside_says_why_and_what_b_would_do() {
     drag(&mut h, from, to);
     h.run_steps(120);
     let f = *session(&h).frame();
-    let Reach::Outside { nearest, mending_b } = f.target.reach else { panic!("{:?}", f.target) };
+    let Reach::Outside { nearest, mending_b, .. } = f.target.reach else { panic!("{:?}", f.target) };
     assert!((nearest - f.tip).norm() < 1e-6, "the machine waits at the nearest point");
     let b = mending_b.expect("another plane reaches it");
     let planes = session(&h).run().planes().expect("three drives").clone();
@@ -296,7 +296,7 @@ fn dexterity_is_shown_with_its_key_where_there_is_a_workspace() {
     assert!(h.query_by_label("dexterity").is_none());
     h.get_by_label("3D").click();
     h.run_steps(3);
-    h.key_press(Key::D);
+    h.key_press(Key::J);
     h.run_steps(3);
     assert!(h.query_by_label("dexterity").is_some() && h.query_by_label("|det| 0").is_none());
 }

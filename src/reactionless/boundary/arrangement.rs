@@ -1,7 +1,8 @@
-//! Spans cut where they cross each other, and the parts that have the workspace on one side only, joined into loops.
+//! Spans cut where they cross each other, the number of poses on both sides of each part, and parts joined into loops.
 
 use std::collections::VecDeque;
 
+use super::cycle::Cycle;
 use super::span::{Span, Surface};
 use crate::planar::{Vector, cross, dot};
 
@@ -13,6 +14,13 @@ const JOINT: f64 = 1e-9;
 const SHORTEST: f64 = 1e-9;
 /// Pairs of parts looked at before two spans count as running along each other.
 const PATIENCE: usize = 3000;
+/// What is left of [`PATIENCE`] when it is time to see whether they do.
+const WONDER: usize = PATIENCE - 100;
+/// Curves that end in the same point touch there, or leave a sliver too thin to matter: this near to it, as a share of
+/// the reach, they do not cross.
+const TIP: f64 = 1e-4;
+/// Points this near to a curve lie on it, m.
+const ON_CURVE: f64 = 1e-11;
 
 /// A part of a span.
 #[derive(Clone, Copy, Debug)]
@@ -22,17 +30,29 @@ pub(super) struct Portion {
     pub to: f64,
 }
 
-pub(super) struct Arrangement<'a> {
-    on: &'a Surface,
-    spans: &'a [Span],
-    boxes: Vec<Box>,
+/// A curve from crossing to crossing: the same number of poses all along each side.
+#[derive(Clone, Debug)]
+pub(super) struct Strand {
+    pub parts: Vec<Portion>,
+    /// Poses that reach the points on its left.
+    pub left: i32,
+    /// Poses that reach the points on its right.
+    pub right: i32,
 }
 
-/// Axis-parallel bounds of a span.
-#[derive(Clone, Copy)]
-struct Box {
-    low: Vector,
-    high: Vector,
+impl Strand {
+    /// Whether it bounds the points that at least `n` poses reach.
+    pub fn bounds(&self, n: i32) -> bool {
+        self.left >= n && self.right < n
+    }
+}
+
+pub(super) struct Arrangement<'a> {
+    on: &'a Surface,
+    cycle: &'a Cycle,
+    spans: &'a [Span],
+    /// m.
+    tip: f64,
 }
 
 #[derive(Clone, Copy)]
@@ -61,50 +81,33 @@ impl Part {
 }
 
 impl<'a> Arrangement<'a> {
-    pub fn of(on: &'a Surface, spans: &'a [Span]) -> Self {
-        let bounds = |s: &Span| {
-            let slack = s.deviation + 1e-12;
-            let [a, b] = s.at;
-            Box {
-                low: Vector::new(a.re.min(b.re) - slack, a.im.min(b.im) - slack),
-                high: Vector::new(a.re.max(b.re) + slack, a.im.max(b.im) + slack),
-            }
-        };
-        Self { on, spans, boxes: spans.iter().map(bounds).collect() }
+    pub fn of(on: &'a Surface, cycle: &'a Cycle) -> Self {
+        let reach: f64 = on.map.c().iter().map(|c| c.abs()).sum();
+        Self { on, cycle, spans: &cycle.spans, tip: TIP * reach }
     }
 
-    /// How many poses reach p: the winding number of the weighted cycle. On a curve, the number is that of a side.
-    pub fn poses_at(&self, p: Vector) -> i32 {
-        let mut count = 0;
-        for (span, b) in self.spans.iter().zip(&self.boxes) {
-            if p.im >= b.low.im && p.im <= b.high.im && p.re <= b.high.re {
-                let ends = [(0.0, span.at[0]), (1.0, span.at[1])];
-                count += span.weight() * span.crossings(self.on, ends[0], ends[1], p).unwrap_or(0);
-            }
-        }
-        count
-    }
-
-    /// The parts of all spans that bound the workspace.
-    pub fn boundary(&self) -> Vec<Portion> {
+    /// All curves, cut where they cross each other.
+    pub fn strands(&self) -> Vec<Strand> {
         let chord = |p: &Portion| {
             let span = &self.spans[p.span];
             (self.on.at(span, p.to) - self.on.at(span, p.from)).norm()
         };
-        let bounding = self.strands().into_iter().filter(|strand| {
+        let strand = |parts: Vec<Portion>| {
             // The longest parts first: the shortest may lie in a sliver too narrow to tell its sides apart.
-            let mut parts: Vec<(f64, &Portion)> = strand.iter().map(|p| (chord(p), p)).collect();
-            parts.sort_by(|a, b| b.0.total_cmp(&a.0));
-            let mut verdicts = parts.iter().take(5).map(|(_, portion)| self.bounds(portion));
-            let first = verdicts.next().unwrap_or(Err(false));
+            let mut order: Vec<(f64, &Portion)> = parts.iter().map(|p| (chord(p), p)).collect();
+            order.sort_by(|a, b| b.0.total_cmp(&a.0));
+            let mut verdicts = order.iter().take(5).map(|(_, portion)| self.sides(portion));
+            let first = verdicts.next().unwrap_or(Err([0; 2]));
             // Where curves coincide no sample is clean, and the first must do.
-            first.or_else(|unclean| verdicts.find_map(Result::ok).ok_or(unclean)).unwrap_or_else(|unclean| unclean)
-        });
-        self.without_doubles(bounding.flatten().collect())
+            let [left, right] =
+                first.or_else(|unclean| verdicts.find_map(Result::ok).ok_or(unclean)).unwrap_or_else(|unclean| unclean);
+            Strand { parts, left, right }
+        };
+        self.uncrossed().into_iter().map(strand).collect()
     }
 
-    /// All curves from crossing to crossing: the same number of poses along each side.
-    fn strands(&self) -> Vec<Vec<Portion>> {
+    /// All curves from crossing to crossing.
+    fn uncrossed(&self) -> Vec<Vec<Portion>> {
         let mut strands: Vec<Vec<Portion>> = Vec::new();
         let mut open = false;
         for (i, mut cuts) in self.cuts().into_iter().enumerate() {
@@ -135,11 +138,11 @@ impl<'a> Arrangement<'a> {
         strands
     }
 
-    /// Whether poses reach the left side of a part, but not its right; an error where another curve is too close to
-    /// be sure.
-    fn bounds(&self, portion: &Portion) -> Result<bool, bool> {
+    /// How many poses reach the left side of a part, and how many its right; an error where another curve is too close
+    /// to be sure.
+    fn sides(&self, portion: &Portion) -> Result<[i32; 2], [i32; 2]> {
         let span = &self.spans[portion.span];
-        let mut unclean = false;
+        let (mut unclean, mut alike) = ([0; 2], 0);
         // Close enough that even where curves touch, no other is in between; and if one is, elsewhere there is none.
         for reach in [1e-11, 1e-12, 1e-9] {
             for share in [0.5, 0.31, 0.77, 0.13, 0.91] {
@@ -149,22 +152,32 @@ impl<'a> Arrangement<'a> {
                 if !(aside.is_finite() && reach < 0.1 * speed * (portion.to - portion.from)) {
                     continue;
                 }
-                let (left, right) = (self.poses_at(jet.at + aside), self.poses_at(jet.at - aside));
-                unclean = left > 0 && right == 0;
-                if left - right == span.weight() {
-                    return Ok(unclean);
+                let sides = [jet.at + aside, jet.at - aside].map(|p| self.cycle.poses_at(self.on, p));
+                if sides[0] - sides[1] == span.weight() {
+                    return Ok(sides);
+                }
+                // The same all along: another curve coincides.
+                alike = if sides == unclean { alike + 1 } else { 0 };
+                unclean = sides;
+                if alike == 3 {
+                    return Err(unclean);
                 }
             }
         }
         Err(unclean)
     }
 
+    /// The parts of strands that bound the points which at least `n` poses reach.
+    pub fn level(&self, strands: &[Strand], n: i32) -> Vec<Portion> {
+        self.without_doubles(strands.iter().filter(|s| s.bounds(n)).flat_map(|s| &s.parts))
+    }
+
     /// Curves that coincide bound the workspace once.
-    fn without_doubles(&self, portions: Vec<Portion>) -> Vec<Portion> {
+    fn without_doubles<'b>(&self, portions: impl Iterator<Item = &'b Portion>) -> Vec<Portion> {
         let ends = |p: &Portion| [p.from, p.to].map(|t| self.on.at(&self.spans[p.span], t));
         let near = |a: Vector, b: Vector| (a - b).norm() < JOINT;
-        let mut kept: Vec<(Portion, [Vector; 2])> = Vec::with_capacity(portions.len());
-        for portion in portions {
+        let mut kept: Vec<(Portion, [Vector; 2])> = Vec::new();
+        for &portion in portions {
             let [from, to] = ends(&portion);
             let middle = |p: &Portion| self.on.at(&self.spans[p.span], 0.5 * (p.from + p.to));
             let double = kept.iter().any(|(other, [f, t])| {
@@ -181,12 +194,12 @@ impl<'a> Arrangement<'a> {
     fn cuts(&self) -> Vec<Vec<f64>> {
         let mut cuts = vec![Vec::new(); self.spans.len()];
         let mut order: Vec<usize> = (0..self.spans.len()).collect();
-        order.sort_by(|&i, &j| self.boxes[i].low.re.total_cmp(&self.boxes[j].low.re));
+        order.sort_by(|&i, &j| self.cycle.bounds[i].low.re.total_cmp(&self.cycle.bounds[j].low.re));
         let mut work = VecDeque::new();
         for (n, &i) in order.iter().enumerate() {
-            let a = &self.boxes[i];
+            let a = &self.cycle.bounds[i];
             for &j in &order[n + 1..] {
-                let b = &self.boxes[j];
+                let b = &self.cycle.bounds[j];
                 if b.low.re > a.high.re {
                     break;
                 }
@@ -215,12 +228,17 @@ impl<'a> Arrangement<'a> {
         let (a, b) = (&self.spans[i], &self.spans[j]);
         work.clear();
         work.push_back((Part::of(a), Part::of(b)));
+        let tip = a.ends.into_iter().zip(a.at).find(|(end, _)| b.ends.contains(end)).map(|(_, at)| at);
         let mut patience = PATIENCE;
         while let Some((pa, pb)) = work.pop_front() {
             patience -= 1;
-            if patience == 0 {
+            if patience == 0 || (patience == WONDER && self.run_along(i, j)) {
                 self.overlap(i, j, cuts);
                 return;
+            }
+            let at_tip = |tip: Vector| pa.at.iter().chain(&pb.at).all(|p| (p - tip).norm_sqr() < self.tip * self.tip);
+            if tip.is_some_and(at_tip) {
+                continue;
             }
             let (da, db) = (pa.deviation(a), pb.deviation(b));
             if apart(pa.at, pb.at, da + db) {
@@ -280,24 +298,40 @@ impl<'a> Arrangement<'a> {
     fn overlap(&self, i: usize, j: usize, cuts: &mut [Vec<f64>]) {
         for (one, other) in [(i, j), (j, i)] {
             for end in self.spans[one].at {
-                let span = &self.spans[other];
-                let mut t = 0.5;
-                for _ in 0..40 {
-                    let jet = self.on.jet(span, t);
-                    let step = dot(end - jet.at, jet.rate) / jet.rate.norm_sqr();
-                    if !step.is_finite() {
-                        break;
-                    }
-                    t = (t + step).clamp(0.0, 1.0);
-                    if step.abs() < 1e-14 {
-                        break;
-                    }
-                }
-                if (self.on.at(span, t) - end).norm() < JOINT {
+                let (t, gap) = self.foot(&self.spans[other], end);
+                if gap < JOINT {
                     cuts[other].push(t);
                 }
             }
         }
+    }
+
+    /// Whether two spans share a stretch: two points, and those between.
+    fn run_along(&self, i: usize, j: usize) -> bool {
+        let (a, b) = (&self.spans[i], &self.spans[j]);
+        let on_both = |t: f64| self.foot(b, self.on.at(a, t)).1 < ON_CURVE;
+        let ends = [0.0, 1.0].into_iter().filter(|&t| on_both(t));
+        let others = b.at.into_iter().map(|end| self.foot(a, end)).filter(|(_, gap)| *gap < ON_CURVE).map(|(t, _)| t);
+        let (low, high) = ends.chain(others).fold((1.0_f64, 0.0_f64), |(low, high), t| (low.min(t), high.max(t)));
+        high - low > 1e-6 && [0.5, 0.3, 0.8].into_iter().all(|share| on_both(low + share * (high - low)))
+    }
+
+    /// The parameter of the point of a span that is nearest to another, and their distance.
+    fn foot(&self, span: &Span, p: Vector) -> (f64, f64) {
+        let mut t = 0.5;
+        for _ in 0..40 {
+            let jet = self.on.jet(span, t);
+            let step = dot(p - jet.at, jet.rate) / jet.rate.norm_sqr();
+            if !step.is_finite() {
+                break;
+            }
+            let before = t;
+            t = (t + step).clamp(0.0, 1.0);
+            if (t - before).abs() < 1e-14 {
+                break;
+            }
+        }
+        (t, (self.on.at(span, t) - p).norm())
     }
 
     /// Joins parts end to start; where there is a choice, the leftmost turn keeps loops from crossing themselves.

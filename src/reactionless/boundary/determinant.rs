@@ -53,12 +53,13 @@ impl Determinant {
         g
     }
 
-    /// (C, S, Q) with det = C + S sin y + Q cos y along the line where angle `fixed` is `x` and the other is y.
-    fn along(&self, fixed: usize, x: f64) -> [f64; 3] {
+    /// (C, S, Q) with det = C + S sin y + Q cos y along the line `from` + y `way`: one coordinate, or one of their sums
+    /// or differences that a term depends on, is constant along it.
+    fn along(&self, from: [f64; 2], way: [f64; 2]) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for t in &self.terms {
-            let (sin, cos) = (t.n[fixed] * x + t.offset).sin_cos();
-            let n = t.n[1 - fixed];
+            let (sin, cos) = (t.n[0] * from[0] + t.n[1] * from[1] + t.offset).sin_cos();
+            let n = t.n[0] * way[0] + t.n[1] * way[1];
             if n == 0.0 {
                 sum[0] += t.k * sin;
             } else {
@@ -69,9 +70,9 @@ impl Determinant {
         sum
     }
 
-    /// The values of the other angle, in one turn, at which the determinant is 0 where angle `fixed` is `x`.
-    pub fn zeros(&self, fixed: usize, x: f64) -> Option<[f64; 2]> {
-        let [c, s, q] = self.along(fixed, x);
+    /// The y, in one turn, at which the determinant is 0 on the line `from` + y `way`.
+    pub fn zeros(&self, from: [f64; 2], way: [f64; 2]) -> Option<[f64; 2]> {
+        let [c, s, q] = self.along(from, way);
         let radius = s.hypot(q);
         if c.abs() > radius || radius <= 1e-14 * self.scale() {
             return None;
@@ -80,8 +81,16 @@ impl Determinant {
         Some([(middle - half).rem_euclid(TAU), (middle + half).rem_euclid(TAU)])
     }
 
-    /// Whether the determinant is 0 all along the line where angle `fixed` is `x`.
-    pub fn vanishes(&self, fixed: usize, x: f64) -> bool {
-        self.along(fixed, x).iter().all(|x| x.abs() < INSET * self.scale())
+    /// Whether the determinant is 0 all along a line.
+    pub fn vanishes(&self, from: [f64; 2], way: [f64; 2]) -> bool {
+        self.along(from, way).iter().all(|x| x.abs() < INSET * self.scale())
     }
+}
+
+/// The line on which angle `fixed` is `x`, by the other angle: `from` and `way`.
+pub(super) fn upright(fixed: usize, x: f64) -> [[f64; 2]; 2] {
+    let (mut from, mut way) = ([0.0; 2], [0.0; 2]);
+    from[fixed] = x;
+    way[1 - fixed] = 1.0;
+    [from, way]
 }

@@ -7,6 +7,7 @@
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
+use super::determinant::upright;
 use super::span::{Curve, Span, Surface};
 
 /// Cells and spans are no longer than this, rad.
@@ -32,11 +33,24 @@ struct Cell {
     sides: [Side; 4],
 }
 
+/// Curves of det = 0.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Folds {
+    pub spans: Vec<Span>,
+    /// (a_1, a_2) where the image turns back.
+    pub cusps: Vec<[f64; 2]>,
+}
+
 /// Zeros of det on the line where angle `fixed` is `x`, with the other angle within `range`, ascending.
 pub(super) fn zeros(on: &Surface, fixed: usize, x: f64, range: [f64; 2]) -> Vec<f64> {
+    zeros_on(on, upright(fixed, x), range)
+}
+
+/// Zeros of det on the line `from` + y `way`, y within `range`, ascending.
+pub(super) fn zeros_on(on: &Surface, [from, way]: [[f64; 2]; 2], range: [f64; 2]) -> Vec<f64> {
     let [least, most] = [range[0] + CORNER, range[1] - CORNER];
     let mut found = Vec::new();
-    for zero in on.det.zeros(fixed, x).into_iter().flatten() {
+    for zero in on.det.zeros(from, way).into_iter().flatten() {
         let mut y = zero + TAU * ((least - zero) / TAU).ceil();
         while y <= most {
             found.push(y);
@@ -58,8 +72,8 @@ fn lines(axis: usize, range: [f64; 2]) -> Vec<f64> {
     lines
 }
 
-/// All of det = 0 inside the limits.
-pub(super) fn spans(on: &Surface) -> Vec<Span> {
+/// All of det = 0 inside the limits: spans in order, cut at the cusps of their images.
+pub(super) fn spans(on: &Surface) -> Folds {
     let range = on.map.limits().map(|l| [l.min, l.max]);
     let grid = [0, 1].map(|axis| lines(axis, range[axis]));
     // crossings[axis][line]: zeros on the line where that axis is fixed
@@ -67,7 +81,7 @@ pub(super) fn spans(on: &Surface) -> Vec<Span> {
         [0, 1].map(|axis| grid[axis].iter().map(|&x| zeros(on, axis, x, range[1 - axis])).collect());
     let between =
         |list: &[f64], low: f64, high: f64| Side(list.iter().copied().filter(|y| (low..high).contains(y)).collect());
-    let mut spans = Vec::new();
+    let mut folds = Folds::default();
     for (i, a1) in grid[0].windows(2).enumerate() {
         for (j, a2) in grid[1].windows(2).enumerate() {
             let mut cell = Cell {
@@ -81,10 +95,11 @@ pub(super) fn spans(on: &Surface) -> Vec<Span> {
                 ],
             };
             cell.mend_corner(on, range);
-            cell.trace(on, DEPTH, &mut spans);
+            cell.trace(on, DEPTH, &mut folds);
         }
     }
-    in_order(&spans)
+    folds.spans = in_order(&folds.spans);
+    folds
 }
 
 /// Each span before the one that begins where it ends.
@@ -105,6 +120,24 @@ fn in_order(spans: &[Span]) -> Vec<Span> {
         }
     }
     ordered
+}
+
+impl Folds {
+    /// Takes in a span, cut at its cusps so that no piece turns back.
+    fn push(&mut self, on: &Surface, span: Span) {
+        let cusps: Vec<[f64; 2]> = on.cusps(&span).into_iter().map(|t| on.point(&span, t)).collect();
+        let mut stops = vec![span.ends[0]];
+        stops.extend(&cusps);
+        stops.push(span.ends[1]);
+        let pieces: Option<Vec<Span>> = stops.windows(2).map(|w| on.fold([w[0], w[1]])).collect();
+        match pieces {
+            Some(pieces) if !cusps.is_empty() => {
+                self.spans.extend(pieces);
+                self.cusps.extend(cusps);
+            }
+            _ => self.spans.push(span),
+        }
+    }
 }
 
 impl Cell {
@@ -136,7 +169,7 @@ impl Cell {
         level(bottom, low[1]).chain(level(top, high[1])).chain(upright(left, low[0])).chain(upright(right, high[0]))
     }
 
-    fn trace(&self, on: &Surface, depth: usize, spans: &mut Vec<Span>) {
+    fn trace(&self, on: &Surface, depth: usize, folds: &mut Folds) {
         let count = self.count();
         if count == 0 {
             return;
@@ -145,17 +178,14 @@ impl Cell {
             let mut points = self.points();
             let ends = [points.next(), points.next()].map(Option::unwrap_or_default);
             if let Some(span) = on.fold(ends) {
-                match between_cusps(on, &span) {
-                    Some(pieces) => spans.extend(pieces),
-                    None => spans.push(span),
-                }
+                folds.push(on, span);
                 return;
             }
         }
         if depth == 0 {
-            self.join(on, spans);
+            self.join(on, &mut folds.spans);
         } else {
-            self.quarters(on).iter().for_each(|q| q.trace(on, depth - 1, spans));
+            self.quarters(on).iter().for_each(|q| q.trace(on, depth - 1, folds));
         }
     }
 
@@ -211,16 +241,4 @@ impl Cell {
 fn halves(side: &Side, middle: f64) -> [Side; 2] {
     let (first, second): (Vec<f64>, Vec<f64>) = side.0.iter().partition(|&&y| y < middle);
     [Side(first), Side(second)]
-}
-
-/// A span cut at its cusps, so that no piece turns back; `None` if it has none.
-fn between_cusps(on: &Surface, span: &Span) -> Option<Vec<Span>> {
-    let cusps = on.cusps(span);
-    if cusps.is_empty() {
-        return None;
-    }
-    let mut stops = vec![span.ends[0]];
-    stops.extend(cusps.into_iter().map(|t| on.point(span, t)));
-    stops.push(span.ends[1]);
-    stops.windows(2).map(|w| on.fold([w[0], w[1]])).collect()
 }

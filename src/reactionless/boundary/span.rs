@@ -6,7 +6,7 @@
 
 use std::f64::consts::TAU;
 
-use super::determinant::{Determinant, INSET};
+use super::determinant::{Determinant, INSET, upright};
 use crate::planar::{Vector, cross, dot};
 use crate::reactionless::{Limit, PlaneMap};
 
@@ -25,6 +25,11 @@ pub enum Curve {
     },
     /// det = 0.
     Fold,
+    /// A change point of a pair of drives, where a part of the workspace ends that keeps to one side of it.
+    Change {
+        /// Which of [`PAIRS`](super::super::PAIRS).
+        pair: usize,
+    },
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -64,7 +69,10 @@ impl Surface {
         for (i, limit) in limits.iter_mut().enumerate() {
             let excess = 0.5 * (limit.max - limit.min - TURNS * TAU).max(0.0);
             *limit = Limit { min: limit.min + excess, max: limit.max - excess };
-            let [low, high] = [limit.min, limit.max].map(|x| if det.vanishes(i, x) { INSET } else { 0.0 });
+            let [low, high] = [limit.min, limit.max].map(|x| {
+                let [from, way] = upright(i, x);
+                if det.vanishes(from, way) { INSET } else { 0.0 }
+            });
             if limit.max - limit.min > 4.0 * INSET {
                 *limit = Limit { min: limit.min + low, max: limit.max - high };
             }
@@ -136,6 +144,29 @@ impl Surface {
         let ends = [2.0 * bend[0] - bend[1], 2.0 * bend[6] - bend[5]];
         span.deviation = 1.3 / 8.0 * bend.iter().chain(&ends).map(|b| b.norm()).fold(0.0, f64::max);
         Some(span)
+    }
+
+    /// The part of a span between two of its points, ends and middle by their own plane coordinates.
+    pub fn part(&self, span: &Span, range: [f64; 2], ends: [[f64; 2]; 2]) -> Span {
+        let slope = |a: [f64; 2]| {
+            let g = self.det.gradient(a);
+            -g[span.chart] / g[1 - span.chart]
+        };
+        Span {
+            ends,
+            at: ends.map(|a| self.map.forward_unturned(a)),
+            slopes: if span.solved { ends.map(slope) } else { span.slopes },
+            deviation: span.deviation * (range[1] - range[0]).powi(2),
+            ..*span
+        }
+    }
+
+    /// The parameter of a point of a span; `None` if it lies elsewhere.
+    pub fn locate(&self, span: &Span, a: [f64; 2]) -> Option<f64> {
+        let [from, to] = span.ends.map(|e| e[span.chart]);
+        let t = (a[span.chart] - from) / (to - from);
+        let there = (0.0..=1.0).contains(&t) && (self.point(span, t)[1 - span.chart] - a[1 - span.chart]).abs() < 1e-8;
+        there.then_some(t)
     }
 
     /// Where the image of a fold turns back: its cusps, where the direction that det = 0 loses runs along the curve.
@@ -242,7 +273,7 @@ impl Surface {
     pub fn swept(&self, span: &Span, from: f64, to: f64) -> f64 {
         let whole = self.gauss(span, from, to);
         match span.curve {
-            Curve::Limit { .. } => whole,
+            Curve::Limit { .. } | Curve::Change { .. } => whole,
             Curve::Fold => self.refined(span, from, to, whole, 8),
         }
     }
@@ -276,7 +307,7 @@ impl Span {
     /// How many more poses reach the left side than the right.
     pub fn weight(&self) -> i32 {
         match self.curve {
-            Curve::Limit { .. } => 1,
+            Curve::Limit { .. } | Curve::Change { .. } => 1,
             Curve::Fold => 2,
         }
     }

@@ -2,6 +2,8 @@
 //!
 //! A saved session is a scenario with `[[edit]]` entries, each with the step at which it applies.
 
+mod task;
+
 use std::path::Path as FilePath;
 
 use serde::{Deserialize, Serialize};
@@ -9,8 +11,9 @@ use thiserror::Error;
 
 use crate::control::Gains;
 use crate::machine::{self, FileError, Machine, MachineError, MachineSpec, Payload};
-use crate::plan::TimeLaw;
 use crate::session::TimedEdit;
+
+pub use task::{Change, Corners, Least, MAX_POINTS, Shape, Task, TaskKind};
 
 /// What a run starts from.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,8 +36,8 @@ pub struct Scenario {
     pub pose_acceleration: f64,
     /// Pose constant of a second workspace to compare with, rad.
     pub compare_b: Option<f64>,
-    /// Time that a headless run covers, s.
-    pub duration: f64,
+    /// Time that a headless run covers, s; by default that of the planned motion.
+    pub duration: Option<f64>,
     /// What was done, in the order of steps.
     pub edits: Vec<TimedEdit>,
 }
@@ -46,45 +49,6 @@ pub struct Plant {
     /// A payload that control does not know of; it adds to the machine's own.
     #[serde(default)]
     pub payload: Payload,
-}
-
-/// What the machine is to do.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Task {
-    /// How it gets from A to B.
-    pub kind: TaskKind,
-    /// A, m.
-    pub from: [f64; 2],
-    /// B, m.
-    pub to: [f64; 2],
-    /// Pose constant at A, rad.
-    pub b: f64,
-    /// Where drive 1 ends, rad; for `same-tip`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub first_drive_to: Option<f64>,
-    /// T, s.
-    #[serde(default = "one_second")]
-    pub time: f64,
-    /// Time law.
-    #[serde(default)]
-    pub law: TimeLaw,
-}
-
-fn one_second() -> f64 {
-    1.0
-}
-
-/// The ways from A to B of the paper's section 6.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum TaskKind {
-    /// Case 1: a straight line of the end effector, minimum-norm joint rates.
-    TipLine,
-    /// Case 2: the end effector as in case 3, drive 1 on a course of its own.
-    SameTip,
-    /// Case 3: a straight line in joint space on the plane b.
-    Reactionless,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -171,9 +135,9 @@ pub enum ScenarioError {
 
 /// The scenarios that come along: the paper's three cases.
 const BUILTIN: [(&str, &str); 3] = [
-    ("case-1", include_str!("../assets/scenarios/case-1.toml")),
-    ("case-2", include_str!("../assets/scenarios/case-2.toml")),
-    ("case-3", include_str!("../assets/scenarios/case-3.toml")),
+    ("case-1", include_str!("../../assets/scenarios/case-1.toml")),
+    ("case-2", include_str!("../../assets/scenarios/case-2.toml")),
+    ("case-3", include_str!("../../assets/scenarios/case-3.toml")),
 ];
 
 impl Scenario {
@@ -234,7 +198,7 @@ impl Scenario {
             step: file.step,
             pose_acceleration: file.pose_acceleration,
             compare_b: file.compare_b,
-            duration: file.duration.unwrap_or(file.task.time),
+            duration: file.duration,
             task: file.task,
             edits: file.edits,
         };
@@ -242,12 +206,30 @@ impl Scenario {
         Ok(scenario)
     }
 
-    fn check(&self, file: &str) -> Result<(), ScenarioError> {
+    /// Whether every number is in its range; `file` is what errors call it.
+    ///
+    /// # Errors
+    /// The first that is not.
+    pub fn check(&self, file: &str) -> Result<(), ScenarioError> {
         let t = &self.task;
         let positive = [
             ("step", self.step, "a step of 0.00001 to 0.01 s", (1e-5..=0.01).contains(&self.step)),
             ("task.time", t.time, "a time of at least one step, s", t.time >= self.step && t.time <= MAX_TIME),
-            ("duration", self.duration, "0 to 3600 s", (0.0..=MAX_TIME).contains(&self.duration)),
+            (
+                "duration",
+                self.duration.unwrap_or(0.0),
+                "0 to 3600 s",
+                (0.0..=MAX_TIME).contains(&self.duration.unwrap_or(0.0)),
+            ),
+            ("task.cycles", f64::from(t.cycles), "1 to 100", (1..=100).contains(&t.cycles)),
+            ("task.blend", t.blend, "0 to 1", (0.0..=1.0).contains(&t.blend)),
+            (
+                "task.moment_limit",
+                t.moment_limit.unwrap_or(1.0),
+                "above 0 N m",
+                t.moment_limit.is_none_or(|limit| limit > 0.0),
+            ),
+            ("task.via", t.via.len() as f64, "at most 2000 points between A and B", t.via.len() <= MAX_POINTS),
             ("pose_acceleration", self.pose_acceleration, "above 0 rad/s²", self.pose_acceleration > 0.0),
             ("control.kp", self.gains.kp, "0 to 1/step² s⁻²", (0.0..=1.0 / self.step.powi(2)).contains(&self.gains.kp)),
             ("control.kd", self.gains.kd, "0 to 2/step s⁻¹", (0.0..=2.0 / self.step).contains(&self.gains.kd)),
@@ -272,8 +254,10 @@ impl Scenario {
             ("task.b", t.b),
             ("task.first_drive_to", t.first_drive_to.unwrap_or(0.0)),
             ("compare_b", self.compare_b.unwrap_or(0.0)),
-        ]
-        .map(|(key, value)| (key, value, "a finite number", true));
+            ("task.b_to", t.b_to.unwrap_or(0.0)),
+        ];
+        let via = t.via.iter().flatten().map(|x| ("task.via", *x));
+        let finite = finite.into_iter().chain(via).map(|(key, value)| (key, value, "a finite number", true));
         for (key, value, want, ok) in positive.into_iter().chain(finite) {
             if !ok || !value.is_finite() {
                 return Err(ScenarioError::OutOfRange { file: file.into(), key, value, want });
@@ -299,7 +283,7 @@ impl Scenario {
             title,
             machine,
             step,
-            duration: Some(duration),
+            duration,
             pose_acceleration,
             compare_b,
             task,

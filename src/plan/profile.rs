@@ -1,0 +1,320 @@
+//! Timings s(t) from rest to rest: a law over a time, or phases of constant jerk.
+
+use super::law::{Progress, TimeLaw};
+
+/// When a motion is where on its path: s(t) from 0 to 1 with its derivatives, still before 0 and from T on.
+///
+/// Rest before the start and after the end is part of every profile, so its rate may step there only where it is made
+/// to ([`even`](Self::even)).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Profile {
+    duration: f64,
+    shape: Shape,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Shape {
+    Law(TimeLaw),
+    Phases(Phases),
+    Sequence(Vec<Leg>),
+}
+
+/// A part of a sequence.
+#[derive(Clone, Debug, PartialEq)]
+struct Leg {
+    /// When it begins, s.
+    start: f64,
+    /// s where it begins, and how far it goes.
+    from: f64,
+    run: f64,
+    profile: Profile,
+}
+
+/// Some time at constant s⃛.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Span {
+    /// How long, s.
+    pub time: f64,
+    /// s̈ at its start, 1/s².
+    pub acceleration: f64,
+    /// s⃛, 1/s³.
+    pub jerk: f64,
+}
+
+/// The start of a span.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Start {
+    t: f64,
+    at: Progress,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Phases {
+    starts: Vec<Start>,
+    /// For each of as many even parts of T as there are phases, the phase in which it begins.
+    guide: Vec<u32>,
+    /// Parts of T in a second.
+    pace: f64,
+}
+
+impl Phases {
+    fn new(starts: Vec<Start>, duration: f64) -> Self {
+        let n = starts.len();
+        let mut guide = Vec::with_capacity(n);
+        let mut at = 0;
+        for i in 0..n {
+            let begin = i as f64 / n as f64 * duration;
+            while at + 1 < n && starts[at + 1].t <= begin {
+                at += 1;
+            }
+            guide.push(at as u32);
+        }
+        Self { starts, guide, pace: n as f64 / duration }
+    }
+
+    #[inline]
+    fn at(&self, t: f64) -> Progress {
+        let last = self.guide.len() - 1;
+        let mut i = self.guide[((t * self.pace) as usize).min(last)] as usize;
+        // The guide's part may begin a rounding error late.
+        while i > 0 && self.starts[i].t > t {
+            i -= 1;
+        }
+        while i < last && self.starts[i + 1].t <= t {
+            i += 1;
+        }
+        let Start { t: begin, at } = self.starts[i];
+        after(&at, t - begin)
+    }
+}
+
+/// Progress some time later at the same jerk.
+#[inline]
+fn after(from: &Progress, t: f64) -> Progress {
+    let Progress { s, rate, acceleration, jerk } = *from;
+    Progress {
+        s: (s + t * (rate + t * (acceleration / 2.0 + t * (jerk / 6.0)))).min(1.0),
+        rate: rate + t * (acceleration + t * (jerk / 2.0)),
+        acceleration: acceleration + t * jerk,
+        jerk,
+    }
+}
+
+impl Profile {
+    /// A law that takes T, s.
+    pub fn of(law: TimeLaw, duration: f64) -> Self {
+        Self { duration, shape: Shape::Law(law) }
+    }
+
+    /// s = t/T: for paths that hold their timing themselves, and are at rest at both ends.
+    pub fn even(duration: f64) -> Self {
+        Self::from_starts(vec![(0.0, Progress { rate: 1.0 / duration, ..Progress::still(0.0) })], duration)
+    }
+
+    /// Profiles one after another, each with its share of s; shares are put in proportion to their sum.
+    pub fn sequence(legs: Vec<(Self, f64)>) -> Self {
+        let total: f64 = legs.iter().map(|(_, share)| share).sum();
+        let (mut start, mut from) = (0.0, 0.0);
+        let leg = |(profile, share): (Self, f64)| {
+            let leg = Leg { start, from, run: share / total, profile };
+            start += leg.profile.duration;
+            from += leg.run;
+            leg
+        };
+        let legs: Vec<Leg> = legs.into_iter().map(leg).collect();
+        Self { duration: start, shape: Shape::Sequence(legs) }
+    }
+
+    /// At the end at once, of a path that goes nowhere.
+    pub fn none() -> Self {
+        Self { duration: 0.0, shape: Shape::Law(TimeLaw::Quintic) }
+    }
+
+    /// From rest through spans of constant jerk. Those of no time are left out.
+    ///
+    /// That s comes to 1 at rest is up to them.
+    pub fn of_spans(spans: &[Span]) -> Self {
+        let (mut t, mut s, mut rate) = (0.0, 0.0, 0.0);
+        let mut starts = Vec::with_capacity(spans.len());
+        for span in spans.iter().filter(|span| span.time > 0.0) {
+            let from = Progress { s, rate, acceleration: span.acceleration, jerk: span.jerk };
+            starts.push((t, from));
+            let end = after(&from, span.time);
+            (t, s, rate) = (t + span.time, end.s, end.rate);
+        }
+        Self::from_starts(starts, t)
+    }
+
+    /// Through stations s that rise from 0 to 1 with given squares of the rate x = ṡ², 1/s², and between them with s̈ of
+    /// constant slope in time that rises by as much as is given for each space, 1/s²; none given: constant s̈. `None` if
+    /// two neighbours are both at rest, which no time would join, or the lengths differ.
+    pub fn through(stations: &[f64], x: &[f64], rise: &[f64]) -> Option<Self> {
+        let spaces = stations.len().checked_sub(1).filter(|n| *n > 0 && x.len() == stations.len())?;
+        let mut starts = Vec::with_capacity(spaces);
+        let mut t = 0.0;
+        let mut rate = x[0].sqrt();
+        for i in 0..spaces {
+            let (way, next) = (stations[i + 1] - stations[i], x[i + 1].sqrt());
+            let rise = rise.get(i).copied().unwrap_or(0.0);
+            // The way is mean · time − rise · time² / 12.
+            let mean = 0.5 * (rate + next);
+            let time = 2.0 * way / (mean + (mean * mean - rise * way / 3.0).sqrt());
+            let from = Progress {
+                s: stations[i],
+                rate,
+                acceleration: if rise == 0.0 {
+                    (x[i + 1] - x[i]) / (2.0 * way)
+                } else {
+                    (next - rate) / time - 0.5 * rise
+                },
+                jerk: rise / time,
+            };
+            starts.push((t, from));
+            t += time;
+            rate = next;
+        }
+        t.is_finite().then(|| Self::from_starts(starts, t))
+    }
+
+    fn from_starts(starts: Vec<(f64, Progress)>, duration: f64) -> Self {
+        if starts.is_empty() {
+            return Self::none();
+        }
+        let starts = starts.into_iter().map(|(t, at)| Start { t, at }).collect();
+        Self { duration, shape: Shape::Phases(Phases::new(starts, duration)) }
+    }
+
+    /// T, s.
+    #[inline]
+    pub fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    /// The law, if it is one.
+    pub fn law(&self) -> Option<TimeLaw> {
+        match self.shape {
+            Shape::Law(law) => Some(law),
+            Shape::Phases(_) | Shape::Sequence(_) => None,
+        }
+    }
+
+    /// Progress t seconds after the start.
+    #[inline]
+    pub fn at(&self, t: f64) -> Progress {
+        match &self.shape {
+            Shape::Law(law) => law.at(t, self.duration),
+            Shape::Phases(_) if t < 0.0 => Progress::still(0.0),
+            Shape::Phases(_) if t >= self.duration => Progress::still(1.0),
+            Shape::Phases(phases) => phases.at(t),
+            Shape::Sequence(_) if t >= self.duration => Progress::still(1.0),
+            Shape::Sequence(legs) => {
+                let i = legs.partition_point(|leg| leg.start <= t).max(1) - 1;
+                legs.get(i).map_or(Progress::still(0.0), |leg| {
+                    let at = leg.profile.at(t - leg.start);
+                    Progress {
+                        s: leg.from + leg.run * at.s,
+                        rate: leg.run * at.rate,
+                        acceleration: leg.run * at.acceleration,
+                        jerk: leg.run * at.jerk,
+                    }
+                })
+            }
+        }
+    }
+
+    /// The same timing over another time: rates fall with its first, accelerations with its second, jerks with its
+    /// third power.
+    #[must_use]
+    pub fn stretched(&self, factor: f64) -> Self {
+        let duration = factor * self.duration;
+        match &self.shape {
+            Shape::Law(law) => Self::of(*law, duration),
+            Shape::Phases(phases) => {
+                let f = 1.0 / factor;
+                let slower = |at: &Progress| Progress {
+                    s: at.s,
+                    rate: f * at.rate,
+                    acceleration: f * f * at.acceleration,
+                    jerk: f * f * f * at.jerk,
+                };
+                Self::from_starts(phases.starts.iter().map(|p| (factor * p.t, slower(&p.at))).collect(), duration)
+            }
+            Shape::Sequence(legs) => {
+                Self::sequence(legs.iter().map(|leg| (leg.profile.stretched(factor), leg.run)).collect())
+            }
+        }
+    }
+
+    /// The same rates where phases begin, at constant s̈ between; `None` for a law.
+    pub fn levelled(&self) -> Option<Self> {
+        let Shape::Phases(phases) = &self.shape else { return None };
+        let each = phases.starts.iter().map(|p| (p.at.s, p.at.rate * p.at.rate)).chain([(1.0, 0.0)]);
+        let (s, x): (Vec<f64>, Vec<f64>) = each.unzip();
+        Self::through(&s, &x, &[])
+    }
+
+    /// The running mean of the timing over a window, s: s̈ becomes continuous, s⃛ stays piecewise constant, and T grows by
+    /// the window. `None` where s̈ is not constant in every phase ([`levelled`](Self::levelled) makes it so), or for a
+    /// window that is not above 0.
+    pub fn averaged(&self, window: f64) -> Option<Self> {
+        let Shape::Phases(phases) = &self.shape else { return None };
+        if !(window > 0.0 && window.is_finite()) || phases.starts.iter().any(|p| p.at.jerk != 0.0) {
+            return None;
+        }
+        let duration = self.duration + window;
+        let starts = &phases.starts;
+        let mut merged = Vec::with_capacity(2 * starts.len() + 2);
+        // Something changes where a phase begins or the end is, now or a window ago.
+        let change = |i: usize| starts.get(i).map_or(self.duration, |p| p.t);
+        let (mut now, mut ago) = (0, 0);
+        let mut s = 0.0;
+        let mut last: Option<(f64, Progress)> = None;
+        while now <= starts.len() || ago <= starts.len() {
+            let (here, there) = (
+                if now <= starts.len() { change(now) } else { f64::INFINITY },
+                if ago <= starts.len() { change(ago) + window } else { f64::INFINITY },
+            );
+            let t = here.min(there);
+            now += usize::from(here <= t);
+            ago += usize::from(there <= t);
+            if t >= duration {
+                break;
+            }
+            // Indices, and not times, say which phases reign, so that a rounding error cannot leave one behind.
+            let reign = |next: usize, t: f64| match next {
+                0 => Progress::still(0.0),
+                n if n > starts.len() => Progress::still(1.0),
+                n => after(&starts[n - 1].at, t - starts[n - 1].t),
+            };
+            let (a, b) = (reign(now, t), reign(ago, t - window));
+            if let Some((begin, at)) = last {
+                s = after(&at, t - begin).s;
+            }
+            let at = Progress {
+                s,
+                rate: (a.s - b.s) / window,
+                acceleration: (a.rate - b.rate) / window,
+                jerk: (a.acceleration - b.acceleration) / window,
+            };
+            // Steps that follow each other within a rounding error are one.
+            match merged.last_mut() {
+                Some((begin, held)) if t - *begin <= 1e-14 * duration => *held = at,
+                _ => merged.push((t, at)),
+            }
+            last = merged.last().copied();
+        }
+        Some(Self::from_starts(merged, duration))
+    }
+
+    /// Instants that tell what the profile asks for: both ends and the middle of one phase of `every`; none of a law or sequence.
+    pub(super) fn instants(&self, every: usize) -> impl Iterator<Item = Progress> + '_ {
+        let starts: &[Start] = match &self.shape {
+            Shape::Phases(phases) => &phases.starts,
+            Shape::Law(_) | Shape::Sequence(_) => &[],
+        };
+        starts.iter().enumerate().step_by(every.max(1)).flat_map(move |(i, start)| {
+            let time = starts.get(i + 1).map_or(self.duration, |next| next.t) - start.t;
+            [0.0, 0.5, 1.0].map(|part| after(&start.at, part * time))
+        })
+    }
+}

@@ -1,0 +1,266 @@
+//! Time-optimal path parameterisation: the greatest rate that limits allow everywhere on a path.
+//!
+//! With x = ṡ² and u = s̈ the motion is x′ = 2 u, and every limit is linear in (u, x). Over a space Δ of the grid u has a
+//! mean u_i, so x_{i+1} = x_i + 2 Δ u_i exactly; rows are kept at both ends of the space. Backwards from rest at the end,
+//! the *controllable* x at each station, from which the end can be reached, are an interval; forwards from rest, the
+//! greatest u that stays within them makes the fastest motion (reachability analysis, Pham & Pham 2018).
+//!
+//! A first pass takes u as constant over a space, so that a limit is met at one end of it and T is exact to first order
+//! in Δ. A second one lets u rise over the space by as much as the first pass has it rise there: met at both ends, T
+//! exact to second order.
+
+use super::limits::{Constraints, MAX_ROWS, Row};
+use super::path::Path;
+
+/// The greatest x that counts as limited, 1/s².
+pub(super) const UNLIMITED: f64 = 1e20;
+
+/// The constraints of a path at every station; at least two.
+pub(super) struct Grid<'a> {
+    pub(super) s: &'a [f64],
+    /// Rows in one.
+    pub(super) m: usize,
+    pub(super) rows: Vec<Row>,
+    /// The greatest x that speeds allow.
+    pub(super) cap: Vec<f64>,
+}
+
+/// Where the sweeps end without a motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Blocked {
+    /// No x is controllable at this station.
+    At(usize),
+    /// The start, at rest, is not; or nothing moves from here.
+    Rest(usize),
+}
+
+impl<'a> Grid<'a> {
+    pub(super) fn new(path: &Path, constraints: &Constraints, s: &'a [f64]) -> Self {
+        let m = constraints.rows().len();
+        let mut rows = vec![Row::default(); m * s.len()];
+        let cap = s
+            .iter()
+            .enumerate()
+            .map(|(i, s)| constraints.at(&path.at(*s), &mut rows[i * m..(i + 1) * m]).min(10.0 * UNLIMITED))
+            .collect();
+        Self { s, m, rows, cap }
+    }
+
+    /// The same with |u| ≤ most too.
+    pub(super) fn with_bound(&self, most: f64) -> Self {
+        let bound = Row { a: 1.0 / most, c: 0.0, g: 0.0 };
+        let rows = (0..self.s.len()).flat_map(|i| self.rows_at(i).iter().copied().chain([bound])).collect();
+        Self { s: self.s, m: self.m + 1, rows, cap: self.cap.clone() }
+    }
+
+    pub(super) fn rows_at(&self, i: usize) -> &[Row] {
+        &self.rows[i * self.m..(i + 1) * self.m]
+    }
+
+    /// The fastest motion from rest to rest.
+    pub(super) fn fastest(&self) -> Result<Sweep, Blocked> {
+        let flat = vec![0.0; self.s.len().saturating_sub(1)];
+        let first = Sweep { x: self.sweep(&flat)?, rise: flat };
+        let rise = self.rises(&first.x);
+        Ok(match self.sweep(&rise) {
+            Ok(x) => {
+                // As much as the new x can bear.
+                let rise = (0..rise.len()).map(|i| self.bearable(&x, i, rise[i])).collect();
+                Sweep { x, rise }
+            }
+            Err(_) => first,
+        })
+    }
+
+    /// Two sweeps over the grid: x at every station of the fastest motion with given rises of u.
+    fn sweep(&self, rise: &[f64]) -> Result<Vec<f64>, Blocked> {
+        let n = self.s.len();
+        let mut x = vec![0.0; n];
+        let mut reach = vec![[0.0; 2]; n];
+        let mut space = Space::new();
+        for i in (0..rise.len()).rev() {
+            space.set(self, i, rise[i], reach[i + 1]);
+            let least = space.least().ok_or(Blocked::At(i))?;
+            let greatest = space.greatest().filter(|x| *x >= least).ok_or(Blocked::At(i))?;
+            reach[i] = [least, greatest];
+        }
+        if reach[0][0] > 0.0 {
+            return Err(Blocked::Rest(0));
+        }
+        for i in 0..rise.len() {
+            space.set(self, i, rise[i], reach[i + 1]);
+            let u = space.fastest_at(x[i]);
+            let [least, most] = reach[i + 1];
+            x[i + 1] = (x[i] + 2.0 * (self.s[i + 1] - self.s[i]) * u).clamp(least, most);
+            if x[i] == 0.0 && x[i + 1] == 0.0 {
+                return Err(Blocked::Rest(i));
+            }
+        }
+        Ok(x)
+    }
+
+    /// By how much u rises over each space, from its neighbours: the lesser of both slopes, none where they differ in
+    /// sign, as where u switches.
+    fn rises(&self, x: &[f64]) -> Vec<f64> {
+        let spaces = x.len() - 1;
+        let u = |i: usize| (x[i + 1] - x[i]) / (2.0 * (self.s[i + 1] - self.s[i]));
+        let slope = |i: usize| 2.0 * (u(i) - u(i - 1)) / (self.s[i + 1] - self.s[i - 1]);
+        let rise = |i: usize| {
+            if i == 0 || i + 1 == spaces {
+                return 0.0;
+            }
+            let (before, after) = (slope(i), slope(i + 1));
+            let lesser = if before.abs() < after.abs() { before } else { after };
+            let both = if before * after > 0.0 { lesser * (self.s[i + 1] - self.s[i]) } else { 0.0 };
+            self.bearable(x, i, both)
+        };
+        (0..spaces).map(rise).collect()
+    }
+
+    /// A rise of u over a space that leaves x above 0 there.
+    fn bearable(&self, x: &[f64], i: usize, rise: f64) -> f64 {
+        let most = 0.5 * x[i].min(x[i + 1]) / (self.s[i + 1] - self.s[i]);
+        rise.clamp(-most, most)
+    }
+}
+
+/// x at every station, and the rise of u over every space.
+pub(super) struct Sweep {
+    pub(super) x: Vec<f64>,
+    pub(super) rise: Vec<f64>,
+}
+
+/// u lies between low + slope x and high + slope x.
+#[derive(Clone, Copy, Default)]
+struct Strip {
+    low: f64,
+    high: f64,
+    slope: f64,
+}
+
+/// Strips of one space: the rows of both its ends, one more for each, the interval to arrive in, and the middle.
+const MAX_STRIPS: usize = 2 * MAX_ROWS + 4;
+/// Each step of a search leaves at least one pair of lines behind; far fewer are ever met.
+const MAX_SEARCH: usize = 4 * MAX_STRIPS;
+/// A row in which u counts less than this beside another bounds x alone.
+const NO_PART: f64 = 1e-13;
+/// How far, relatively, bounds may cross by rounding.
+const CROSSED: f64 = 1e-12;
+
+/// The pairs (u, x) that keep every row over one space: a convex polygon, whose extreme x are wanted.
+struct Space {
+    strips: [Strip; MAX_STRIPS],
+    len: usize,
+    x: [f64; 2],
+}
+
+impl Space {
+    fn new() -> Self {
+        Self { strips: [Strip::default(); MAX_STRIPS], len: 0, x: [0.0; 2] }
+    }
+
+    #[inline]
+    fn set(&mut self, grid: &Grid, i: usize, rise: f64, arrive: [f64; 2]) {
+        let twice = 2.0 * (grid.s[i + 1] - grid.s[i]);
+        self.x = [0.0, grid.cap[i]];
+        let (here, there) = (grid.rows_at(i), grid.rows_at(i + 1));
+        // a u + c (x + 2 Δ u) at the far end.
+        let near = here.iter().map(|r| Row { g: r.g - 0.5 * rise * r.a, ..*r });
+        let far = there.iter().map(|r| Row { a: r.a + twice * r.c, c: r.c, g: r.g + 0.5 * rise * r.a });
+        let all = || near.clone().chain(far.clone());
+        let floor = NO_PART * all().fold(0.0, |m: f64, r| m.max(r.a.abs()));
+        self.strips[0] = Strip { low: arrive[0] / twice, high: arrive[1] / twice, slope: -1.0 / twice };
+        self.len = 1;
+        // The bound by speeds, 1/(q′)², is curved: kept in the middle of the space too, where q′ is nearly the mean.
+        let slow = 0.5 * (grid.cap[i].sqrt().recip() + grid.cap[i + 1].sqrt().recip());
+        let middle = 1.0 / (slow * slow);
+        if middle < UNLIMITED {
+            let (per, high) = (2.0 / twice, middle + 0.125 * twice * rise);
+            self.strips[1] = Strip { low: f64::NEG_INFINITY, high: per * high, slope: -per };
+            self.len = 2;
+        }
+        for r in all() {
+            if r.a.abs() > floor {
+                let per = 1.0 / r.a;
+                let (p, q) = ((-1.0 - r.g) * per, (1.0 - r.g) * per);
+                let (low, high) = if per > 0.0 { (p, q) } else { (q, p) };
+                self.strips[self.len] = Strip { low, high, slope: -r.c * per };
+                self.len += 1;
+            } else if r.c != 0.0 {
+                let (p, q) = ((-1.0 - r.g) / r.c, (1.0 - r.g) / r.c);
+                self.x = [self.x[0].max(p.min(q)), self.x[1].min(p.max(q))];
+            } else if r.g.abs() > 1.0 {
+                self.x[1] = -1.0;
+            }
+        }
+    }
+
+    /// The lines that bound u at x: from below and from above, each as its value and its slope.
+    #[inline]
+    fn bounds(&self, x: f64) -> [(f64, &Strip); 2] {
+        let mut low = (f64::NEG_INFINITY, &self.strips[0]);
+        let mut high = (f64::INFINITY, &self.strips[0]);
+        for strip in &self.strips[..self.len] {
+            let by = strip.slope * x;
+            if strip.low + by > low.0 {
+                low = (strip.low + by, strip);
+            }
+            if strip.high + by < high.0 {
+                high = (strip.high + by, strip);
+            }
+        }
+        [low, high]
+    }
+
+    /// The greatest x.
+    fn greatest(&self) -> Option<f64> {
+        self.search(self.x[1], 1.0)
+    }
+
+    /// The least x.
+    fn least(&self) -> Option<f64> {
+        self.search(self.x[0], -1.0)
+    }
+
+    /// Newton's method on the convex gap between the bounds, from outside inwards: every step ends where two lines
+    /// meet, and none passes the polygon.
+    #[inline]
+    fn search(&self, start: f64, outwards: f64) -> Option<f64> {
+        let mut x = start;
+        for _ in 0..MAX_SEARCH {
+            if !(self.x[0]..=self.x[1]).contains(&x) {
+                return None;
+            }
+            let [(l, low), (h, high)] = self.bounds(x);
+            if l - h <= CROSSED * (l.abs() + h.abs()) {
+                return Some(x);
+            }
+            let slope = low.slope - high.slope;
+            // The gap does not close inwards.
+            if slope * outwards <= 0.0 {
+                return None;
+            }
+            let next = (high.low_or_high(false) - low.low_or_high(true)) / slope;
+            if (x - next) * outwards <= 0.0 {
+                return Some(x);
+            }
+            x = next;
+        }
+        Some(x)
+    }
+
+    /// The greatest u at a controllable x.
+    #[inline]
+    fn fastest_at(&self, x: f64) -> f64 {
+        let [(low, _), (high, _)] = self.bounds(x);
+        // They cross by rounding only.
+        if low > high { 0.5 * (low + high) } else { high }
+    }
+}
+
+impl Strip {
+    #[inline]
+    fn low_or_high(&self, low: bool) -> f64 {
+        if low { self.low } else { self.high }
+    }
+}

@@ -1,0 +1,122 @@
+//! Change points: where two drives are parallel, sin(q_k − q_l) = 0, and the linkage goes flat.
+//!
+//! q_l − q_k = n · a + δ with n of −1, 0 and 1, whatever b: in (a_1, a_2) the change points of a pair are straight
+//! lines half a turn apart, and the half turns of q_l − q_k tell the side of a pose. Pin forces grow without bound
+//! towards them; the torques do not.
+
+use std::f64::consts::PI;
+
+use super::plane::{Limit, PlaneMap};
+
+/// The pairs (k, l) of drives, counted from 0, in whose order sides are given.
+pub const PAIRS: [[usize; 2]; 3] = [[0, 1], [1, 2], [0, 2]];
+
+/// Poses this near to a change point are on it, rad.
+pub(super) const TOUCH: f64 = 1e-9;
+
+/// A change point on a straight line in (a_1, a_2).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChangePoint {
+    /// Which of [`PAIRS`].
+    pub pair: usize,
+    /// m, where q_l − q_k = mπ.
+    pub half_turns: i32,
+    /// The share of the line before it, above 0, at most 1.
+    pub share: f64,
+}
+
+/// q_l − q_k = n · a + δ.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Difference {
+    pub n: [f64; 2],
+    delta: f64,
+}
+
+impl Difference {
+    pub fn of(map: &PlaneMap, pair: usize) -> Self {
+        let [k, l] = PAIRS[pair];
+        let (u, v) = (map.u(), map.v());
+        Self { n: [0, 1].map(|j| (u[l][j] - u[k][j]).round()), delta: v[l] - v[k] }
+    }
+
+    pub fn at(&self, a: [f64; 2]) -> f64 {
+        self.n[0] * a[0] + self.n[1] * a[1] + self.delta
+    }
+
+    /// n · a at so many half turns.
+    pub fn level(&self, half_turns: f64) -> f64 {
+        half_turns * PI - self.delta
+    }
+
+    /// Least and greatest within limits.
+    pub fn range(&self, limits: [Limit; 2]) -> [f64; 2] {
+        let ends = |j: usize| [self.n[j] * limits[j].min, self.n[j] * limits[j].max];
+        let [first, second] = [ends(0), ends(1)];
+        [
+            self.delta + first[0].min(first[1]) + second[0].min(second[1]),
+            self.delta + first[0].max(first[1]) + second[0].max(second[1]),
+        ]
+    }
+
+    /// The ends, within limits, of the line at so many half turns.
+    pub fn segment(&self, limits: [Limit; 2], half_turns: f64) -> Option<[[f64; 2]; 2]> {
+        let level = self.level(half_turns);
+        // The coordinate that runs along it: a_2 where a_1 is constant, else a_1.
+        let run = usize::from(self.n[1] == 0.0);
+        let (slope, other) = (self.n[run], 1 - run);
+        let point = |y: f64| {
+            let mut a = [y; 2];
+            a[other] = (level - slope * y) / self.n[other];
+            a[other] = a[other].clamp(limits[other].min, limits[other].max);
+            a
+        };
+        let (mut low, mut high) = (limits[run].min, limits[run].max);
+        if slope != 0.0 {
+            let ends = [limits[other].min, limits[other].max].map(|x| (level - self.n[other] * x) / slope);
+            (low, high) = (low.max(ends[0].min(ends[1])), high.min(ends[0].max(ends[1])));
+        }
+        (high > low).then(|| [point(low), point(high)])
+    }
+}
+
+impl PlaneMap {
+    /// sin(q_l − q_k) of each pair of [`PAIRS`], the same for every b: 0 at a change point, its sign the side.
+    #[inline]
+    pub fn sines(&self, a: [f64; 2]) -> [f64; 3] {
+        [0, 1, 2].map(|pair| Difference::of(self, pair).at(a).sin())
+    }
+
+    /// How well force passes through the parallelograms: min |sin(q_k − q_l)|, 0 at a change point.
+    pub fn transmission(&self, a: [f64; 2]) -> f64 {
+        self.sines(a).iter().fold(1.0, |least: f64, s| least.min(s.abs()))
+    }
+
+    /// The side of a pose for each pair of [`PAIRS`]: m with mπ ≤ q_l − q_k < (m + 1)π. Two poses with equal sides are
+    /// joined by a straight line in (a_1, a_2) that crosses no change point.
+    pub fn sides(&self, a: [f64; 2]) -> [i32; 3] {
+        [0, 1, 2].map(|pair| (Difference::of(self, pair).at(a) / PI).floor() as i32)
+    }
+
+    /// The first change point on the straight line in (a_1, a_2) from one pose to another, or in a step; `None` if
+    /// there is none.
+    ///
+    /// Ending on a change point meets it; beginning on one does not, so that a chain of lines meets each but once. Poses
+    /// within 1e-9 rad are on it.
+    pub fn change_between(&self, from: [f64; 2], to: [f64; 2]) -> Option<ChangePoint> {
+        let of_pair = |pair: usize| {
+            let difference = Difference::of(self, pair);
+            let [begin, end] = [from, to].map(|a| difference.at(a));
+            let way = (end - begin).signum();
+            // Counted in the direction of motion.
+            let half_turns = way * (((way * begin + TOUCH) / PI).floor() + 1.0);
+            let ahead = way * (half_turns * PI - begin);
+            let length = way * (end - begin);
+            (length > 0.0 && ahead <= length + TOUCH).then(|| ChangePoint {
+                pair,
+                half_turns: half_turns as i32,
+                share: (ahead / length).min(1.0),
+            })
+        };
+        (0..PAIRS.len()).filter_map(of_pair).min_by(|x, y| x.share.total_cmp(&y.share))
+    }
+}

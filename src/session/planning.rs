@@ -1,0 +1,237 @@
+//! From a task to a motion: poses for its points, a path through them, and when to be where.
+
+mod off_plane;
+
+use super::Refusal;
+use crate::dynamics::Surroundings;
+use crate::machine::Inertia;
+use crate::plan::least_reaction::Verdicts;
+use crate::plan::limits::Limit;
+use crate::plan::path::{Chained, SameTip, minimum_norm_path};
+use crate::plan::{Curve, Forecast, Limits, Motion, Path, Price, Profile, Rule, TimeLaw, fastest, trace};
+use crate::planar::{DriveAngles, Vector};
+use crate::pose_constant::{Planes, Unreachable};
+use crate::reactionless::PlanePoint;
+use crate::scenario::{Corners, Scenario, Shape, Task, TaskKind};
+
+/// A planned task.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// What the machine is to do.
+    pub motion: Motion,
+    /// What it will cost.
+    pub forecast: Forecast,
+    /// For the fastest motion: what holds it back.
+    pub pace: Option<Pace>,
+    /// For a change of b: its price.
+    pub price: Option<Price>,
+    /// For the least reaction: what other ways would cost.
+    pub verdicts: Option<Verdicts>,
+    /// For motions of zero momentum: the drives at the start and after each cycle, rad.
+    pub cycles: Vec<DriveAngles>,
+}
+
+impl Plan {
+    fn of(scenario: &Scenario, motion: Motion) -> Self {
+        let (model, around) = dynamics_of(scenario);
+        let forecast = Forecast::of(&motion, &model, &around);
+        Self { motion, forecast, pace: None, price: None, verdicts: None, cycles: Vec::new() }
+    }
+}
+
+/// What control believes in.
+fn dynamics_of(scenario: &Scenario) -> (Inertia, Surroundings) {
+    let around = Surroundings { gravity: scenario.machine.gravity(), force: Vector::default() };
+    (Inertia::of(&scenario.machine), around)
+}
+
+/// What holds the fastest motion back.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pace {
+    /// T, s.
+    pub taken: f64,
+    /// The least time without limits on jerk, s.
+    pub unlimited: f64,
+    /// The limit that leads for the greatest share of the first part.
+    pub leading: Option<Limit>,
+}
+
+/// Plans the task of a scenario.
+///
+/// # Errors
+/// Which point, part of the path or setting is in the way, and what would do.
+pub fn plan(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
+    let task = &scenario.task;
+    let points = task.points();
+    match task.kind {
+        TaskKind::ChangeB => return off_plane::change_b(scenario, planes),
+        TaskKind::LeastReaction => return off_plane::least_reaction(scenario, planes),
+        TaskKind::ZeroMomentum => return off_plane::zero_momentum(scenario, planes),
+        TaskKind::Reactionless | TaskKind::MinimumNorm | TaskKind::SameTip => {}
+    }
+    let parts = match (task.kind, task.shape()) {
+        (TaskKind::Reactionless, Shape::JointLine) => joint_lines(task, planes, &points)?,
+        (TaskKind::Reactionless, _) => on_plane(task, planes, &points)?,
+        (TaskKind::MinimumNorm, _) => minimum_norm(scenario, planes, &points)?,
+        _ => {
+            let [from, to] = lifted(planes, &serve(task, planes, &[points[0], points[points.len() - 1]])?)[..] else {
+                return Err(Refusal::Task("same-tip: want two points".into()));
+            };
+            let first_to = task.first_drive_to.unwrap_or(from[0]);
+            vec![(Path::SameTip(SameTip::new(scenario.machine.tip(), from, to, first_to)?), 1.0)]
+        }
+    };
+    let (motion, pace) = timed(scenario, parts)?;
+    Ok(Plan { pace, ..Plan::of(scenario, motion) })
+}
+
+/// The parts of a path, each from rest to rest: by a law in their share of the time, or as fast as they can.
+fn timed(scenario: &Scenario, parts: Vec<(Path, f64)>) -> Result<(Motion, Option<Pace>), Refusal> {
+    let task = &scenario.task;
+    let total: f64 = parts.iter().map(|(_, length)| length).sum();
+    let (model, around) = dynamics_of(scenario);
+    let limits = Limits::of(&scenario.machine);
+    let mut timings = Vec::with_capacity(parts.len());
+    let mut pace: Option<Pace> = None;
+    for (path, length) in &parts {
+        let profile = if task.law.is_fastest() {
+            let fastest = fastest(path, &model, &around, &limits, task.law == TimeLaw::FastestSmooth)?;
+            let time = fastest.profile.duration();
+            let pace = pace.get_or_insert_default();
+            pace.unlimited += time / (1.0 + fastest.gap.unwrap_or(0.0));
+            pace.taken += time;
+            if pace.leading.is_none() {
+                pace.leading = fastest.limiting.first().map(|(limit, _)| *limit);
+            }
+            fastest.profile
+        } else {
+            Profile::of(task.law, task.time * length / total)
+        };
+        timings.push((profile, length / total));
+    }
+    let mut parts = parts;
+    let motion = match parts.len() {
+        1 => Motion { path: parts.remove(0).0, profile: timings.remove(0).0 },
+        _ => {
+            let nowhere = || Refusal::Task("want at least two points that are apart".into());
+            let path = Path::Chain(Chained::new(parts).ok_or_else(nowhere)?);
+            Motion { path, profile: Profile::sequence(timings) }
+        }
+    };
+    Ok((motion, pace))
+}
+
+/// Poses of the points on the plane of the task.
+fn serve(task: &Task, planes: &Planes, points: &[Vector]) -> Result<Vec<PlanePoint>, Refusal> {
+    planes.serve(points, task.b).map_err(|(i, unreachable)| refusal(task, i, unreachable))
+}
+
+fn refusal(task: &Task, i: usize, unreachable: Unreachable) -> Refusal {
+    match unreachable {
+        Unreachable::NoCommonPlane(why) => Refusal::NoCommonPlane(why.in_words(&|i| task.name_of(i))),
+        unreachable => Refusal::Unreachable { point: task.name_of(i), unreachable },
+    }
+}
+
+fn lifted(planes: &Planes, poses: &[PlanePoint]) -> Vec<DriveAngles> {
+    poses.iter().map(|x| DriveAngles::from(planes.map().lift(*x))).collect()
+}
+
+/// Straight lines of joint space from pose to pose; their corners a stop or a blend.
+fn joint_lines(task: &Task, planes: &Planes, points: &[Vector]) -> Result<Vec<(Path, f64)>, Refusal> {
+    let mut poses = serve(task, planes, points)?;
+    if task.keep_off_change_points {
+        same_side(task, planes, &poses)?;
+    }
+    poses.extend(task.closed.then(|| poses[0]));
+    let a = |x: &PlanePoint| Vector::new(x.a[0], x.a[1]);
+    if task.corners == Corners::Blend && poses.len() > 2 {
+        let corners: Vec<Vector> = poses.iter().map(a).collect();
+        let curves = Curve::polyline(&corners, false, task.blend)?;
+        let path = |curve: Curve| {
+            let length = curve.length();
+            (Path::OnPlane { map: *planes.map(), b: task.b, curve }, length)
+        };
+        return Ok(curves.into_iter().map(path).collect());
+    }
+    let q = lifted(planes, &poses);
+    let way = |i: usize| (a(&poses[i + 1]) - a(&poses[i])).norm();
+    let line = |i: usize| (Path::JointLine { from: q[i], to: q[i + 1] }, way(i).max(1e-12));
+    // A point twice in a row is no way.
+    let moving = (0..q.len() - 1).filter(|i| q.len() == 2 || way(*i) > 1e-12);
+    Ok(moving.map(line).collect())
+}
+
+/// Refuses poses between which two drives would become parallel.
+fn same_side(task: &Task, planes: &Planes, poses: &[PlanePoint]) -> Result<(), Refusal> {
+    for (i, w) in poses.windows(2).enumerate() {
+        let [from, to] = [w[0], w[1]].map(|x| planes.map().lift(x));
+        for [k, l] in [[0, 1], [0, 2], [1, 2]] {
+            let side = |q: &[f64; 3]| (q[k] - q[l]).sin();
+            let turns = |q: &[f64; 3]| ((q[k] - q[l]) / std::f64::consts::PI).floor();
+            if side(&from) * side(&to) < 0.0 || (turns(&from) != turns(&to) && side(&from) * side(&to) > 0.0) {
+                let between = [task.name_of(i), task.name_of(i + 1)];
+                return Err(Refusal::Task(format!(
+                    "between {} and {} drives {} and {} become parallel, a change point: want points on one side of \
+                     it, another b, or keep_off_change_points = false",
+                    between[0],
+                    between[1],
+                    k + 1,
+                    l + 1
+                )));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The end effector's curves through the points; at their ends the motion rests.
+///
+/// # Errors
+/// If the points give none.
+pub fn curves(task: &Task, points: &[Vector]) -> Result<Vec<Curve>, Refusal> {
+    let blend = if task.corners == Corners::Blend { task.blend } else { 0.0 };
+    Ok(match task.shape() {
+        Shape::JointLine | Shape::Line => Curve::polyline(points, task.closed, blend)?,
+        Shape::Arc => match points {
+            [a, b, c] => vec![Curve::arc([*a, *b, *c], task.closed)?],
+            _ => {
+                let have = points.len();
+                return Err(Refusal::Task(format!(
+                    "an arc goes through 3 points, here are {have}: want one via point"
+                )));
+            }
+        },
+        Shape::Spline => vec![Curve::spline(points, task.closed)?],
+        Shape::Freehand => vec![Curve::freehand(points, task.closed)?],
+    })
+}
+
+/// The end effector's curves followed on the plane of the task.
+fn on_plane(task: &Task, planes: &Planes, points: &[Vector]) -> Result<Vec<(Path, f64)>, Refusal> {
+    let curves = curves(task, points)?;
+    let rule = Rule { keep_off_change_points: task.keep_off_change_points };
+    // Where even single points fail, they are the clearer reason.
+    if task.shape() != Shape::Freehand {
+        serve(task, planes, points)?;
+    }
+    let tables = trace::follow(planes.map(), &curves, task.b, None, rule)?;
+    Ok(tables.into_iter().zip(&curves).map(|(table, curve)| (Path::Table(table), curve.length())).collect())
+}
+
+/// Minimum-norm joint rates along the end effector's curves, from the pose of A on the plane of the task.
+fn minimum_norm(scenario: &Scenario, planes: &Planes, points: &[Vector]) -> Result<Vec<(Path, f64)>, Refusal> {
+    let task = &scenario.task;
+    // A and B on one sheet, as for the reactionless motion to compare with, or else A alone.
+    let ends = [points[0], points[points.len() - 1]];
+    let start = planes.serve(&ends, task.b).or_else(|_| planes.serve(&ends[..1], task.b));
+    let start = start.map_err(|(i, unreachable)| refusal(task, i, unreachable))?;
+    let mut q = DriveAngles::from(planes.map().lift(start[0]));
+    let mut parts = Vec::new();
+    for curve in curves(task, points)? {
+        let table = minimum_norm_path(scenario.machine.tip(), q, |s| curve.at(s))?;
+        q = table.nodes().last().map_or(q, |last| last.q);
+        parts.push((Path::Table(table), curve.length()));
+    }
+    Ok(parts)
+}

@@ -1,0 +1,198 @@
+//! Motions that leave their plane knowingly: a change of b, the least reaction, and zero momentum on any machine.
+
+use super::{Plan, Refusal, curves, dynamics_of, refusal, serve, timed};
+use crate::plan::drift::zero_momentum_path;
+use crate::plan::least_reaction::Goal;
+use crate::plan::path::Chained;
+use crate::plan::price::{bang_bang_in_b, joint_line, least_change};
+use crate::plan::{Curve, CurvePoint, Forecast, LeastReaction, Limits, Motion, Path, Price, Profile, TimeLaw};
+use crate::planar::{DriveAngles, Vector};
+use crate::pose_constant::{Planes, Unreachable};
+use crate::reactionless::PlanePoint;
+use crate::scenario::{Least, Scenario};
+
+/// T² max|s̈| of the laws from rest to rest.
+fn peak(law: TimeLaw) -> f64 {
+    match law {
+        TimeLaw::Quintic => 10.0 / 3_f64.sqrt(),
+        TimeLaw::Septic => 84.0 * 5_f64.sqrt() / 25.0,
+        TimeLaw::Trapezoidal => 4.5,
+        // Bang-bang where it can be.
+        TimeLaw::Fastest | TimeLaw::FastestSmooth => 4.0,
+    }
+}
+
+/// From A on the plane of the task to B on another, along a straight joint line; a limit on |n_B| sets the time.
+pub fn change_b(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
+    let task = &scenario.task;
+    if !task.via.is_empty() || task.closed {
+        return Err(Refusal::Task(
+            "change-b goes straight from A to B: want no points between and an open path".into(),
+        ));
+    }
+    let ends = ends(scenario, planes)?;
+    let (model, around) = dynamics_of(scenario);
+    let price = Price::of(&model, ends[1].b - ends[0].b)?;
+    let line = joint_line(planes.map(), ends);
+    let least = task.moment_limit.map(|limit| price.inertia() * price.delta_b().abs() / limit);
+    let motion = match (task.law, least) {
+        (TimeLaw::Fastest, Some(square)) => {
+            let time = 2.0 * square.sqrt();
+            let table = bang_bang_in_b(planes.map(), ends);
+            let table = table.ok_or_else(|| Refusal::Task("A and B are too far apart".into()))?;
+            let path = Path::Table(table);
+            let alone = |time: f64| Motion { path: path.clone(), profile: Profile::even(time) };
+            // A short change of b leaves the joints little time: their torques may want more.
+            let limits = Limits::of(&scenario.machine);
+            let torque = Forecast::of(&alone(time.max(1e-3)), &model, &around).torque;
+            let excess = torque.iter().zip(limits.torque.iter()).map(|(t, limit)| t / limit).fold(0.0, f64::max);
+            alone(time.max(1e-3) * excess.max(1.0).sqrt())
+        }
+        (law, Some(square)) if !law.is_fastest() => Motion::new(line, law, (peak(law) * square).sqrt().max(1e-2)),
+        _ => {
+            let (motion, _) = timed(scenario, vec![(line, 1.0)])?;
+            let fast = least.map_or(0.0, |square| {
+                // The greatest |s̈| of the motion is at most that of bang-bang.
+                let peak = Forecast::of(&motion, &model, &around).moment;
+                let limit = price.inertia() * price.delta_b().abs() / square;
+                (peak / limit).sqrt()
+            });
+            Motion { profile: if fast > 1.0 { motion.profile.stretched(fast) } else { motion.profile }, ..motion }
+        }
+    };
+    Ok(Plan { price: Some(price), ..Plan::of(scenario, motion) })
+}
+
+/// A and B, each on its plane.
+fn ends(scenario: &Scenario, planes: &Planes) -> Result<[PlanePoint; 2], Refusal> {
+    let (task, map) = (&scenario.task, planes.map());
+    let points = [task.from, task.to].map(|p| Vector::new(p[0], p[1]));
+    let far = |x: &PlanePoint, y: &PlanePoint| (x.a[0] - y.a[0]).hypot(x.a[1] - y.a[1]);
+    let nearest = |b: [f64; 2]| {
+        let poses = [map.poses(points[0], b[0]), map.poses(points[1], b[1])];
+        let pairs = poses[0].iter().flat_map(|x| poses[1].iter().map(move |y| [*x, *y]));
+        pairs.min_by(|p, q| far(&p[0], &p[1]).total_cmp(&far(&q[0], &q[1])))
+    };
+    if let Some(b_to) = task.b_to {
+        return match nearest([task.b, b_to]) {
+            Some(pair) => Ok(pair),
+            None => {
+                let point = usize::from(!map.poses(points[0], task.b).is_empty());
+                let why = planes.serve(&points[point..=point], [task.b, b_to][point]);
+                Err(why.err().map_or_else(
+                    || Refusal::Task("A and B have no pose on their planes".into()),
+                    |(_, unreachable)| refusal(task, if point == 0 { 0 } else { task.via.len() + 1 }, unreachable),
+                ))
+            }
+        };
+    }
+    // B's own b nearest to that of A, if A is on its plane; else the pair with the least change.
+    if let (false, Ok(set)) = (map.poses(points[0], task.b).is_empty(), map.reach(points[1])) {
+        for share in [0.0, 1e-12, 1e-9, 1e-6] {
+            let b = set.nearest(task.b).map(|b| set.inwards(b, share));
+            if let Some(pair) = b.and_then(|b| nearest([task.b, b])) {
+                return Ok(pair);
+            }
+        }
+    }
+    least_change(map, points, task.b).map_err(|(i, reason)| {
+        let (x, y) = (points[i].re, points[i].im);
+        refusal(task, if i == 0 { 0 } else { task.via.len() + 1 }, Unreachable::Anywhere { x, y, reason })
+    })
+}
+
+/// The end effector's curves with b changing as little as its corridor allows.
+pub fn least_reaction(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
+    let (task, map) = (&scenario.task, planes.map());
+    let law = match task.law {
+        TimeLaw::Fastest | TimeLaw::FastestSmooth => {
+            return Err(Refusal::Task("least-reaction wants a law over a given time: quintic or septic".into()));
+        }
+        TimeLaw::Trapezoidal => {
+            return Err(Refusal::Task("least-reaction wants a smooth law: quintic or septic".into()));
+        }
+        law => law,
+    };
+    let curves = curves(task, &task.points())?;
+    let curve = whole(&curves, law);
+    let goal = match task.least {
+        Least::MeanSquare => Goal::Rms,
+        Least::Peak => Goal::Peak,
+    };
+    let (model, _) = dynamics_of(scenario);
+    let mut refused = None;
+    for start in serve(task, planes, &task.points()[..1])?.iter().chain(map.poses(task.points()[0], task.b).iter()) {
+        match LeastReaction::plan(map, &model, &curve, *start, task.b_to, goal) {
+            Ok(plan) => {
+                let motion = Motion { path: Path::Table(plan.path().clone()), profile: Profile::even(task.time) };
+                let verdicts = plan.compare(scenario.machine.tip(), &curve, task.time);
+                return Ok(Plan { verdicts: Some(verdicts), ..Plan::of(scenario, motion) });
+            }
+            Err(why) => refused = Some(refused.unwrap_or(why)),
+        }
+    }
+    Err(refused.map_or_else(|| Refusal::Task("A has no pose on this plane".into()), Refusal::LeastReaction))
+}
+
+/// All curves one after another over u = t/T, each by the law in its share of the time.
+fn whole(curves: &[Curve], law: TimeLaw) -> impl Fn(f64) -> CurvePoint {
+    let total: f64 = curves.iter().map(Curve::length).sum();
+    let profile =
+        Profile::sequence(curves.iter().map(|c| (Profile::of(law, c.length() / total), c.length())).collect());
+    move |u: f64| {
+        let at = profile.at(u);
+        let mut left = at.s * total;
+        let mut i = 0;
+        while i + 1 < curves.len() && left > curves[i].length() {
+            left -= curves[i].length();
+            i += 1;
+        }
+        let scale = total / curves[i].length();
+        let local = curves[i].at(left / curves[i].length());
+        let (rate, acceleration) = (at.rate * scale, at.acceleration * scale);
+        CurvePoint {
+            p: local.p,
+            first: local.first * rate,
+            second: local.second * rate * rate + local.first * acceleration,
+        }
+    }
+}
+
+/// The end effector's curves at zero momentum, a closed path as often as asked.
+pub fn zero_momentum(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
+    let task = &scenario.task;
+    if task.cycles > 1 && !task.closed {
+        return Err(Refusal::Task("an open path is run through once: want closed = true, or cycles = 1".into()));
+    }
+    let (model, _) = dynamics_of(scenario);
+    let start = serve(task, planes, &task.points()[..1])?;
+    let mut q = DriveAngles::from(planes.map().lift(start[0]));
+    let curves = curves(task, &task.points())?;
+    let mut parts = Vec::new();
+    let mut cycles = vec![q];
+    for _ in 0..task.cycles {
+        for curve in &curves {
+            let table = zero_momentum_path(&model, q, |s| curve.at(s))?;
+            q = table.nodes().last().map_or(q, |last| last.q);
+            parts.push((Path::Table(table), curve.length()));
+        }
+        cycles.push(q);
+    }
+    // Each cycle takes the whole time of the task.
+    let once = parts.len() / task.cycles as usize;
+    let mut legs = Vec::with_capacity(task.cycles as usize);
+    let mut rest = parts.into_iter();
+    for _ in 0..task.cycles {
+        let (motion, _) = timed(scenario, rest.by_ref().take(once).collect())?;
+        legs.push(motion);
+    }
+    let motion = match legs.len() {
+        1 => legs.remove(0),
+        _ => {
+            let profile = Profile::sequence(legs.iter().map(|m| (m.profile.clone(), 1.0)).collect());
+            let path = Chained::new(legs.into_iter().map(|m| (m.path, 1.0)).collect());
+            Motion { path: Path::Chain(path.ok_or_else(|| Refusal::Task("want a path".into()))?), profile }
+        }
+    };
+    Ok(Plan { cycles, ..Plan::of(scenario, motion) })
+}

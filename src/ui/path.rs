@@ -1,0 +1,228 @@
+//! The task in the panel on the left: what becomes of the redundancy, which points, along what, and when.
+
+use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
+
+use super::Command;
+use super::side::{Row, note, section, send, unit};
+use super::theme::{colour, plain};
+use super::top::name;
+use crate::plan::TimeLaw;
+use crate::planar::Vector;
+use crate::scenario::{Change, Corners, Shape, Task, TaskKind};
+use crate::scene::palette::Palette;
+use crate::scene::stage::signed;
+use crate::session::{Edit, Session};
+
+/// A choice: what stands in a file, what stands on the screen, and what it means.
+type Choice<T> = (T, &'static str, &'static str, &'static str);
+
+const KINDS: [Choice<TaskKind>; 3] = [
+    (TaskKind::Reactionless, "reactionless", "Stay reactionless", "Hold b: nothing reaches the base (case 3)"),
+    (TaskKind::MinimumNorm, "minimum-norm", "Minimum-norm rates", "The usual inverse, q̇ = J⁺ẋ (case 1)"),
+    (TaskKind::SameTip, "same-tip", "Drive 1 apart", "The end effector as in case 3, drive 1 elsewhere (case 2)"),
+];
+
+const SHAPES: [Choice<Shape>; 5] = [
+    (Shape::JointLine, "joint-line", "Joint lines", "Straight in joint space"),
+    (Shape::Line, "line", "Straight lines", "The end effector on straight lines"),
+    (Shape::Arc, "arc", "Arc", "One arc through three points"),
+    (Shape::Spline, "spline", "Spline", "A smooth curve through all points"),
+    (Shape::Freehand, "freehand", "Freehand", "As drawn with the pointer: D, then drag"),
+];
+
+const LAWS: [Choice<TimeLaw>; 5] = [
+    (TimeLaw::Quintic, "quintic", "Quintic", "Acceleration begins and ends at zero; peaks 5.7735/T²"),
+    (TimeLaw::Septic, "septic", "Septic", "Jerk begins and ends at zero too; peaks 7.5132/T²"),
+    (TimeLaw::Trapezoidal, "trapezoidal", "Trapezoidal", "A third speeding up, a third cruising, a third braking"),
+    (TimeLaw::Fastest, "fastest", "Fastest", "As fast as torque, speed and acceleration limits allow"),
+    (TimeLaw::FastestSmooth, "fastest-smooth", "Fastest, smooth", "The same with limits on jerk"),
+];
+
+/// The most points that are listed.
+const LISTED: usize = 8;
+
+/// Draws it.
+pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
+    section(ui, p, "Path");
+    let task = &session.scenario().task;
+    let half = 0.5 * (ui.available_width() - ui.spacing().item_spacing.x);
+    choose(ui, "Redundancy", "kind", &KINDS, task.kind, 2.0 * half, commands);
+    ui.horizontal(|ui| {
+        choose(ui, "Shape", "shape", &SHAPES, task.shape(), half - 10.0, commands);
+        choose(ui, "Time law", "law", &LAWS, task.law, half - 10.0, commands);
+    });
+    time(ui, session, p, commands);
+    points(ui, session, task, p, commands);
+    corners(ui, task, p, commands);
+    costs(ui, session, p);
+}
+
+fn choose<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    label: &str,
+    key: &str,
+    choices: &[Choice<T>],
+    now: T,
+    width: f32,
+    commands: &mut Vec<Command>,
+) {
+    let shown = choices.iter().find(|c| c.0 == now);
+    let combo = ComboBox::from_id_salt(key).selected_text(shown.map_or("", |c| c.2)).width(width);
+    let response = combo.show_ui(ui, |ui| {
+        for (value, word, words, tip) in choices {
+            if ui.selectable_label(*value == now, *words).on_hover_text(*tip).clicked() && *value != now {
+                commands.push(Command::Edit(Edit::task(key, *word)));
+                commands.push(Command::EndGesture);
+            }
+        }
+    });
+    name(&response.response.on_hover_text(shown.map_or(label, |c| c.3)), label);
+}
+
+fn time(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
+    if session.scenario().task.law.is_fastest() {
+        let pace = session.run().plan().pace;
+        let leads = pace.and_then(|p| p.leading).map_or(String::new(), |limit| format!(", {limit} leads"));
+        let gap = pace.filter(|p| p.taken > 1.0005 * p.unlimited);
+        let gap = gap
+            .map_or(String::new(), |p| format!(", {:.1} % over unlimited jerk", 100.0 * (p.taken / p.unlimited - 1.0)));
+        note(ui, p, &format!("T = {} s{leads}{gap}", signed(session.run().planned_time(), 3)));
+        return;
+    }
+    let mut time = session.scenario().task.time;
+    let tip = "Duration T from A to B: peaks of torque go with 1/T²";
+    let row = Row { label: "time T", unit: "s", tip, decimals: 2, speed: 0.01, range: 0.1..=10.0 };
+    let responses = row.with_slider(ui, p, &mut time);
+    send(commands, &responses, || Edit::SetTime { time });
+}
+
+/// The points, to be typed, put in order and taken out.
+fn points(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
+    let all = task.points();
+    if all.len() > LISTED || task.shape() == Shape::Freehand {
+        note(ui, p, &format!("{} points from A to B", all.len()));
+        return;
+    }
+    let change = |commands: &mut Vec<Command>, change: Option<Change>, lasts: bool| {
+        if let Some(change) = change {
+            commands.push(Command::Edit(Edit::SetTask { change }));
+        }
+        if !lasts {
+            commands.push(Command::EndGesture);
+        }
+    };
+    for (i, at) in all.iter().enumerate() {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            let label = task.name_of(i);
+            ui.add_sized([14.0, 18.0], egui::Label::new(&label).halign(Align::LEFT));
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                unit(ui, p, "m");
+                let small = |ui: &mut Ui, enabled: bool, text: &str, label: &str, tip: &str| {
+                    let text = RichText::new(text).font(plain(11.0)).color(colour(p.dim));
+                    let button = Button::new(text).frame(false).min_size(egui::vec2(14.0, 18.0));
+                    let response = ui.add_enabled(enabled, button).on_hover_text(tip);
+                    name(&response, label);
+                    response.clicked()
+                };
+                if small(ui, all.len() > 2, "×", &format!("Leave out {label}"), "Leave this point out (Delete)") {
+                    change(commands, task.removing(i), false);
+                }
+                if small(ui, i > 0, "↑", &format!("{label} earlier"), "Visit this point one place earlier") {
+                    change(commands, task.advancing(i), false);
+                }
+                let mut xy = [at.re, at.im];
+                let mut responses = Vec::new();
+                for (axis, word) in [(1, "y"), (0, "x")] {
+                    let row = Row {
+                        label: &format!("{label} {word}"),
+                        unit: "m",
+                        tip: "A point of the path; drag it in the scene, or type",
+                        decimals: 3,
+                        speed: 0.002,
+                        range: -10.0..=10.0,
+                    };
+                    responses.push(row.number(ui, &mut xy[axis]));
+                }
+                if responses.iter().any(|r| r.changed()) {
+                    change(commands, task.moving(i, Vector::new(xy[0], xy[1])), true);
+                }
+                if responses.iter().any(|r| r.drag_stopped() || r.lost_focus()) {
+                    commands.push(Command::EndGesture);
+                }
+            });
+        });
+    }
+    let plus = RichText::new("+ point").font(plain(11.5)).color(colour(p.dim));
+    let response =
+        ui.add(Button::new(plus).frame(false)).on_hover_text("One more point before B; or double-click in the scene");
+    name(&response, "Add a point");
+    if response.clicked() {
+        let last = all.len() - 1;
+        let middle = 0.5 * (all[last - 1] + all[last]);
+        // Where the machine can go for certain: on the path, if it is known there.
+        let on_path = session.run().motion().map(|motion| motion.at(0.5 * motion.duration()));
+        let at = on_path.filter(|_| all.len() == 2).map_or(middle, |r| session.run().place(&r.q));
+        change(commands, task.adding(at), false);
+    }
+}
+
+fn corners(ui: &mut Ui, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
+    let straight = matches!(task.shape(), Shape::JointLine | Shape::Line);
+    ui.horizontal_wrapped(|ui| {
+        let mut closed = task.closed;
+        let tip = "Return from B to A";
+        if ui
+            .add_enabled(task.kind != TaskKind::SameTip, egui::Checkbox::new(&mut closed, "closed"))
+            .on_hover_text(tip)
+            .changed()
+        {
+            commands.push(Command::Edit(Edit::task("closed", closed)));
+            commands.push(Command::EndGesture);
+        }
+        let mut off = task.keep_off_change_points;
+        let tip =
+            "Keep to one side of every change point, where two drives are parallel and pin forces grow without bound";
+        if ui.checkbox(&mut off, "off change points").on_hover_text(tip).changed() {
+            commands.push(Command::Edit(Edit::task("keep_off_change_points", off)));
+            commands.push(Command::EndGesture);
+        }
+    });
+    if straight && (task.via.len() + usize::from(task.closed)) > 0 {
+        ui.horizontal(|ui| {
+            let mut blend = task.corners == Corners::Blend;
+            let tip = "Round corners off instead of coming to rest there";
+            if ui.checkbox(&mut blend, "blend corners").on_hover_text(tip).changed() {
+                commands.push(Command::Edit(Edit::task("corners", if blend { "blend" } else { "stop" })));
+                commands.push(Command::EndGesture);
+            }
+            if blend {
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    let measure = if task.shape() == Shape::JointLine { "rad" } else { "m" };
+                    unit(ui, p, measure);
+                    let mut distance = task.blend;
+                    let tip = "How far from the corner its blend begins";
+                    let row = Row { label: "blend", unit: measure, tip, decimals: 3, speed: 0.002, range: 0.001..=1.0 };
+                    let response = row.number(ui, &mut distance);
+                    send(commands, &[response], || Edit::task("blend", distance));
+                });
+            }
+        });
+    }
+}
+
+/// What the planned motion will cost.
+fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
+    let forecast = &session.run().plan().forecast;
+    let torque = forecast.torque.max_abs();
+    note(
+        ui,
+        p,
+        &format!(
+            "{} s, peak torque {} N m, peak n_B {} N m",
+            signed(forecast.time, 3),
+            signed(torque, 3),
+            signed(forecast.moment, 3)
+        ),
+    );
+}

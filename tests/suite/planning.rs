@@ -1,0 +1,257 @@
+//! Tasks: what is planned is what the machine then does, and what cannot be is refused with the reason.
+
+use stillbase::frame::{Frame, Phase};
+use stillbase::plan::Stop;
+use stillbase::planar::Vector;
+use stillbase::scenario::{Change, Scenario, Task};
+use stillbase::session::{Edit, Refusal, Run, Session, curves, replay};
+
+fn scenario() -> Scenario {
+    Scenario { compare_b: None, ..Scenario::builtin("case-3").expect("built in") }
+}
+
+/// Case 3 with keys of its task as they stand in a file.
+fn task(text: &str) -> Scenario {
+    let base = scenario();
+    let change: Change = toml::from_str(text).expect("keys and values");
+    Scenario { task: base.task.with(&change).expect("a task"), ..base }
+}
+
+fn run(scenario: &Scenario) -> (Run, Vec<Frame>) {
+    let mut frames = Vec::new();
+    let run = replay(scenario, |_, frame| frames.push(*frame)).unwrap_or_else(|e| panic!("{e}"));
+    (run, frames)
+}
+
+/// Every shape on the plane is reactionless, keeps b, visits its points and ends at rest.
+#[test]
+fn every_shape_is_reactionless() {
+    for (text, closed) in [
+        ("shape = 'line'", false),
+        ("shape = 'line'\nvia = [[0.6, 0.7], [0.5, 0.8]]", false),
+        ("shape = 'line'\nvia = [[0.6, 0.7], [0.5, 0.8]]\ncorners = 'blend'", false),
+        ("shape = 'line'\nvia = [[0.6, 0.7]]\nclosed = true", true),
+        ("shape = 'arc'\nvia = [[0.6, 0.7]]", false),
+        ("shape = 'spline'\nvia = [[0.6, 0.7], [0.5, 0.8]]\nclosed = true", true),
+        ("shape = 'joint-line'\nvia = [[0.6, 0.7], [0.5, 0.8]]", false),
+        ("shape = 'joint-line'\nvia = [[0.6, 0.7], [0.5, 0.8]]\ncorners = 'blend'\nblend = 0.1", false),
+        ("shape = 'freehand'\nvia = [[0.53, 0.55], [0.57, 0.6], [0.6, 0.7], [0.58, 0.8]]", false),
+    ] {
+        let scenario = task(text);
+        let (run, frames) = run(&scenario);
+        let last = frames[frames.len() - 1];
+        assert!(last.peaks.is_reactionless(), "{text}: {:?}", last.peaks);
+        assert_eq!(last.phase, Phase::Rest, "{text}");
+        assert!(last.peaks.torque.max_abs() > 0.1, "{text}: it moves");
+        assert!(frames.iter().all(|f| (f.b_reference - 2.4).abs() < 1e-11), "{text}");
+        assert!(frames.iter().all(|f| f.q_reference.0.minus(&f.q.0).max_abs() < 1e-6), "{text}");
+        let points = scenario.task.points();
+        let end = if closed { points[0] } else { points[points.len() - 1] };
+        assert!((last.tip - end).norm() < 1e-6, "{text}: {}", last.tip);
+        // Points at which the path must be: all but those whose corner is rounded or smoothed.
+        let exact = !text.contains("blend") && !text.contains("freehand");
+        for p in points.iter().filter(|_| exact) {
+            let nearest = frames.iter().map(|f| (f.tip - p).norm()).fold(f64::INFINITY, f64::min);
+            assert!(nearest < 3e-3, "{text}: passes {p} at {nearest}");
+        }
+        let forecast = &run.plan().forecast;
+        let most = forecast.torque.minus(&last.peaks.torque).max_abs();
+        assert!(most < 2e-3 * last.peaks.torque.max_abs(), "{text}: torques are as forecast, {most}");
+        assert!(forecast.moment < 1e-6, "{text}: {}", forecast.moment);
+    }
+}
+
+/// Where corners stop, the machine rests at each of them; where they blend, it never does on the way.
+#[test]
+fn corners_rest_or_do_not() {
+    let via = "via = [[0.6, 0.7], [0.5, 0.8]]";
+    for shape in ["line", "joint-line"] {
+        let slowest = |more: &str| {
+            let (_, frames) = run(&task(&format!("shape = '{shape}'\n{via}\n{more}")));
+            let middle = &frames[frames.len() / 10..frames.len() * 9 / 10];
+            middle.iter().map(|f| f.qd.max_abs()).fold(f64::INFINITY, f64::min)
+        };
+        assert!(slowest("corners = 'stop'") < 0.02, "{shape}");
+        assert!(slowest("corners = 'blend'\nblend = 0.1") > 0.1, "{shape}");
+    }
+}
+
+/// A line that only makes sense with another b, and one that none allows.
+#[test]
+fn what_cannot_be_followed_is_refused_before_it_moves() {
+    // Through the inner edge of the workspace: both ends are inside, the middle is not.
+    let hole = task("shape = 'line'\nfrom = [0.42, 1.12]\nto = [0.0, 0.5]");
+    let Err(Refusal::Blocked(blocked)) = Run::new(&hole) else { panic!("the middle is outside") };
+    assert!(blocked.leaves_workspace && matches!(blocked.stop, Stop::Limit { .. }), "{blocked:?}");
+    let at = hole.task.points()[0] + (hole.task.points()[1] - hole.task.points()[0]) * blocked.s;
+    assert!((at - blocked.at).norm() < 1e-9);
+    // A joint line joins the same two points.
+    assert!(Run::new(&task("from = [0.42, 1.12]\nto = [0.0, 0.5]")).is_ok());
+
+    let Err(refusal) = Run::new(&task("to = [-0.6, -0.2]")) else { panic!("no b serves both") };
+    let words = refusal.to_string();
+    assert!(words.contains("no b serves both A and B") && words.contains("moving "), "{words}");
+}
+
+/// The move that is said to mend it does, and a bit less of it does not.
+#[test]
+fn the_least_move_mends() {
+    let run = Run::new(&scenario()).expect("it starts");
+    let planes = run.planes().expect("it has planes");
+    let points = [Vector::new(0.5, 0.5), Vector::new(-0.6, -0.2), Vector::new(0.1, 1.0)];
+    for points in [&points[..2], &points[..]] {
+        let why = planes.no_common(points).expect("nothing in common");
+        assert_eq!(why.pair, Some([0, 1]));
+        let Some(mend) = why.mend else {
+            assert_eq!(points.len(), 3, "two can always be brought together");
+            continue;
+        };
+        let moved = |share: f64| {
+            let mut points = points.to_vec();
+            let was = points[mend.point];
+            points[mend.point] = was + share * (mend.to - was);
+            planes.common(&points)
+        };
+        assert!(moved(1.0 + 1e-6).is_some(), "{mend:?}");
+        assert!(moved(0.999).is_none(), "{mend:?}");
+        assert!((mend.distance - (mend.to - points[mend.point]).norm()).abs() < 1e-9);
+    }
+}
+
+/// Moved, added, taken out, brought forward: the task has the points that it should.
+#[test]
+fn waypoints_are_edited_as_lists() {
+    let task = scenario().task;
+    let with = |task: &Task, change: Option<Change>| task.with(&change.expect("possible")).expect("a task");
+    let p = Vector::new(0.6, 0.7);
+    let three = with(&task, task.adding(p));
+    assert_eq!(three.points(), [Vector::new(0.5, 0.5), p, Vector::new(0.55, 0.9)]);
+    assert_eq!(three.name_of(1), "1");
+    let moved = with(&three, three.moving(0, Vector::new(0.52, 0.5)));
+    assert_eq!(moved.points()[0].re, 0.52);
+    let first = with(&three, three.advancing(1));
+    assert_eq!(first.points(), [p, Vector::new(0.5, 0.5), Vector::new(0.55, 0.9)]);
+    assert_eq!(with(&three, three.removing(1)), task);
+    assert_eq!(task.removing(0), None);
+    assert_eq!(three.advancing(0), None);
+    // Where the least way is added.
+    let far = with(&three, three.adding(Vector::new(0.58, 0.8)));
+    assert_eq!(far.points()[2], Vector::new(0.58, 0.8));
+}
+
+/// Planning edits are edits: refused ones change nothing, undone ones leave no trace, saved ones replay.
+#[test]
+fn planning_is_done_by_edits() {
+    let mut session = Session::open(scenario()).expect("it starts");
+    session.play();
+    session.tick(300);
+    let before = session.frames().to_vec();
+    session.apply(Edit::task("shape", "line")).expect("feasible");
+    session.end_gesture();
+    assert_eq!(session.frames().len(), before.len(), "the display stays where it was");
+    assert_ne!(session.frame().q, before[300].q);
+    assert!(session.undo_title().expect("an edit").contains("shape to line"));
+
+    let task = session.scenario().task.clone();
+    let outside = task.moving(1, Vector::new(1.1, 0.3)).expect("a point");
+    let frames = session.frames().to_vec();
+    let refusal = session.apply(Edit::SetTask { change: outside }).expect_err("outside of every plane of A");
+    assert!(matches!(refusal, Refusal::NoCommonPlane(_) | Refusal::Unreachable { .. }), "{refusal}");
+    assert_eq!((session.frames(), &session.scenario().task), (&frames[..], &task));
+    let nonsense = session.apply(Edit::task("shape", "square")).expect_err("no such shape").to_string();
+    assert!(nonsense.contains("square") && nonsense.contains("spline"), "{nonsense}");
+
+    let inside = task.adding(Vector::new(0.6, 0.7)).expect("a point");
+    session.apply(Edit::SetTask { change: inside }).expect("feasible");
+    session.end_gesture();
+    assert_eq!(session.scenario().task.points().len(), 3);
+
+    let saved = session.to_scenario();
+    let read = Scenario::parse(&saved.to_toml(), "saved.toml", None).expect("reads");
+    assert_eq!(read, saved);
+    let (_, replayed) = run(&read);
+    assert_eq!(replayed, session.frames());
+
+    session.undo().expect("taken back");
+    session.undo().expect("taken back");
+    assert_eq!(session.scenario().task, scenario().task);
+    assert_eq!(&session.frames()[..300], &before[..300]);
+}
+
+/// Who plans again takes the machine back from the hand that led it.
+#[test]
+fn a_new_path_ends_following() {
+    let mut session = Session::open(scenario()).expect("it starts");
+    session.apply(Edit::DragTarget { x: 0.6, y: 0.7 }).expect("follows");
+    session.end_gesture();
+    session.tick(400);
+    assert!(session.is_live());
+    session.apply(Edit::task("shape", "line")).expect("feasible");
+    assert!(!session.is_live());
+    assert_eq!(session.frames().len(), 1);
+    session.undo().expect("taken back");
+    assert!(session.is_live());
+}
+
+/// Slid while at rest, b turns all points of a path when no plane serves them any more.
+#[test]
+fn posing_turns_all_points() {
+    let mut session = Session::open(task("via = [[0.6, 0.7]]")).expect("it starts");
+    let before = session.scenario().task.points();
+    session.apply(Edit::PoseB { b: 4.0 }).expect("posed");
+    let after = session.scenario().task.points();
+    assert_eq!(after.len(), 3);
+    let ratio = after[0] / before[0];
+    assert!((ratio.norm() - 1.0).abs() < 1e-9);
+    for (p, q) in before.iter().zip(&after) {
+        assert!((p * ratio - q).norm() < 1e-9, "all turn alike");
+    }
+}
+
+/// The curve that is drawn is the one that is followed.
+#[test]
+fn what_is_drawn_is_followed() {
+    let scenario = task("shape = 'spline'\nvia = [[0.6, 0.7], [0.5, 0.8]]");
+    let (run, frames) = run(&scenario);
+    let drawn = curves(&scenario.task, &scenario.task.points()).expect("a curve");
+    for frame in frames.iter().step_by(50) {
+        let s = drawn[0].nearest(frame.tip, 4000);
+        assert!((drawn[0].at(s).p - frame.tip).norm() < 1e-6);
+    }
+    let end = run.plan().motion.at(run.planned_time()).q;
+    assert!((run.place(&end) - Vector::new(0.55, 0.9)).norm() < 1e-10);
+}
+
+/// However fast the pointer jumps about within folded limits, the machine stays on its plane, keeps its bounds and does
+/// not pass a fold.
+#[test]
+fn dragging_never_jumps_sheets() {
+    let base = scenario();
+    let machine = base.machine.set_all([("limits.a1", "-3.1,3.1"), ("limits.a2", "-3.1,3.1")]).expect("valid");
+    let mut session = Session::open(Scenario { machine, step: 0.002, ..base }).expect("it starts");
+    let map = *session.run().planes().expect("planes").map();
+    let sheet = map.det([session.frame().a[0], session.frame().a[1]]);
+    let mut seed = 7_u64;
+    let mut random = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let mut other_sheets = 0;
+    for _ in 0..60 {
+        let (x, y) = (2.4 * random() - 1.2, 2.4 * random() - 1.2);
+        session.apply(Edit::DragTarget { x, y }).expect("follows");
+        session.tick(60);
+        let target = session.frame().target.reach;
+        other_sheets += usize::from(matches!(target, stillbase::frame::Reach::Outside { other_sheet: true, .. }));
+    }
+    assert!(other_sheets > 3, "{other_sheets} targets were beyond a fold");
+    let frames = session.frames();
+    let least = frames.iter().map(|f| map.det([f.a[0], f.a[1]]) * sheet.signum()).fold(f64::INFINITY, f64::min);
+    assert!(least > -1e-6, "{least}");
+    assert!(frames.iter().all(|f| (f.b_reference - 2.4).abs() < 1e-12));
+    assert!(frames[frames.len() - 1].peaks.is_reactionless());
+    let limit = session.scenario().machine.spec().drives[0].torque_limit;
+    if let Some(limit) = limit {
+        assert!(frames.iter().all(|f| f.torque[0].abs() < limit));
+    }
+}

@@ -1,0 +1,661 @@
+//! Time laws, and the fastest motions that limits allow: closed forms, an independent phase-plane integration, and the
+//! limits themselves, kept and used.
+
+use proptest::prelude::*;
+use stillbase::dynamics::{Surroundings, holding_torque, inverse, mass_matrix};
+use stillbase::machine::{Inertia, Machine, builtin};
+use stillbase::plan::fastest::{fastest_at, s_curve, stations};
+use stillbase::plan::limits::{Limit, Quantity};
+use stillbase::plan::path::{PathPoint, SameTip, tip_line};
+use stillbase::plan::profile::Span;
+use stillbase::plan::usage::ACTIVE;
+use stillbase::plan::{Fastest, Limits, Motion, Path, Profile, Progress, Table, TimeError, TimeLaw, Usage, fastest};
+use stillbase::planar::{DriveAngles, PerDrive, Vector};
+
+/// q_A and q_B of Case 3, rad.
+const Q_A: [f64; 3] = [1.6875182179, 3.7146223682, 2.1801769897];
+const Q_B: [f64; 3] = [1.5074743692, 4.2177092073, 3.1287473760];
+
+fn nine_link() -> &'static Machine {
+    builtin("nine-link").expect("built in")
+}
+
+fn line() -> Path {
+    Path::JointLine { from: Q_A.into(), to: Q_B.into() }
+}
+
+/// Case 1: the straight line of the end effector.
+fn tip_path() -> Path {
+    Path::Table(tip_line(nine_link().tip(), Q_A.into(), Vector::new(0.55, 0.90)).expect("regular"))
+}
+
+/// Case 2.
+fn same_tip() -> Path {
+    Path::SameTip(SameTip::new(nine_link().tip(), Q_A.into(), Q_B.into(), 1.45).expect("in reach"))
+}
+
+/// q_k = c_k + r_k sin(w_k s + p_k), by its nodes.
+fn waves(r: [f64; 3], w: [f64; 3], p: [f64; 3]) -> Path {
+    let node = |i: u32| {
+        let s = f64::from(i) / 200.0;
+        let by = |f: &dyn Fn(usize) -> f64| PerDrive::from_fn(3, f);
+        let angle = |k: usize| w[k] * s + p[k];
+        PathPoint {
+            q: DriveAngles(by(&|k| Q_A[k] + r[k] * angle(k).sin())),
+            first: by(&|k| r[k] * w[k] * angle(k).cos()),
+            second: by(&|k| -r[k] * w[k] * w[k] * angle(k).sin()),
+        }
+    };
+    Path::Table(Table::even((0..=200).map(node).collect()).expect("nodes"))
+}
+
+/// Curved paths: gentle ones, one on which every drive turns back, which makes zero-inertia points, and one whose q′
+/// vanishes at its ends.
+fn curves() -> Vec<(&'static str, Path)> {
+    vec![
+        ("tip line", tip_path()),
+        ("same tip", same_tip()),
+        ("gentle waves", waves([0.3, 0.4, 0.5], [2.0, 1.5, 2.5], [0.2, 1.0, -0.7])),
+        ("waves", waves([0.2, 0.5, 0.6], [7.0, 5.0, 6.0], [0.3, 1.1, 2.0])),
+        ("ends at a turn", waves([0.3, 0.3, 0.3], [std::f64::consts::PI; 3], [std::f64::consts::FRAC_PI_2; 3])),
+    ]
+}
+
+fn limits(torque: [f64; 3], speed: [f64; 3], acceleration: [f64; 3], jerk: [f64; 3]) -> Limits {
+    Limits { torque: torque.into(), speed: speed.into(), acceleration: acceleration.into(), jerk: jerk.into() }
+}
+
+const FREE: [f64; 3] = [f64::INFINITY; 3];
+
+/// 20, 5 and 5 N m.
+fn by_torque() -> Limits {
+    limits([20.0, 5.0, 5.0], FREE, FREE, FREE)
+}
+
+/// A machine out of balance, in gravity.
+fn unbalanced() -> Machine {
+    let settings = [("link.5.com", "0.05"), ("link.9.mass", "0.9"), ("gravity", "1,-9.81")];
+    nine_link().set_all(settings).expect("valid")
+}
+
+/// A machine's constants and gravity.
+fn of(machine: &Machine) -> (Inertia, Surroundings) {
+    (Inertia::of(machine), Surroundings { gravity: machine.gravity(), force: Vector::default() })
+}
+
+fn even(n: usize) -> Vec<f64> {
+    (0..=n).map(|i| i as f64 / n as f64).collect()
+}
+
+fn timed(path: &Path, machine: &Machine, limits: &Limits, n: usize) -> Fastest {
+    let (model, around) = of(machine);
+    fastest_at(path, &model, &around, limits, false, &stations(n)).expect("a motion")
+}
+
+fn usage(path: &Path, found: &Fastest, machine: &Machine, limits: &Limits, samples: usize) -> Usage {
+    let (model, around) = of(machine);
+    let motion = Motion { path: path.clone(), profile: found.profile.clone() };
+    Usage::of(&motion, &model, &around, limits, samples)
+}
+
+/// d/dt by central differences of fourth order.
+fn slope(f: impl Fn(f64) -> f64, t: f64, h: f64) -> f64 {
+    (8.0 * (f(t + h) - f(t - h)) - (f(t + 2.0 * h) - f(t - 2.0 * h))) / (12.0 * h)
+}
+
+/// That each derivative of a timing is that of what stands before it.
+#[track_caller]
+fn derivatives_agree(what: &str, at: impl Fn(f64) -> Progress, t: f64, h: f64, tolerance: f64) {
+    let (p, scale) = (at(t), 1.0 / (h * 1e4));
+    for (i, (got, want)) in [
+        (p.rate, slope(|t| at(t).s, t, h)),
+        (p.acceleration, slope(|t| at(t).rate, t, h)),
+        (p.jerk, slope(|t| at(t).acceleration, t, h)),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let off = (got - want).abs() / scale.powi(i as i32 + 1).max(1.0);
+        assert!(off < tolerance, "{what} at {t}: derivative {}: {got}, by differences {want}", i + 1);
+    }
+}
+
+/// Where laws step in s̈ or s⃛, as parts of T.
+const KINKS: [f64; 5] = [0.25, 1.0 / 3.0, 0.5, 2.0 / 3.0, 0.75];
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn derivatives_of_laws_are_their_own(u in 0.002..0.998, duration in 0.2..5.0) {
+        prop_assume!(KINKS.iter().all(|kink| f64::abs(u - kink) > 1e-3));
+        for law in TimeLaw::ALL {
+            derivatives_agree(&format!("{law:?}"), |t| law.at(t, duration), u * duration, 1e-4 * duration, 1e-6);
+            // The second half is the first, backwards.
+            let (p, back) = (law.at(u * duration, duration), law.at((1.0 - u) * duration, duration));
+            prop_assert!((p.s + back.s - 1.0).abs() < 1e-12 && (p.rate - back.rate).abs() * duration < 1e-12);
+        }
+    }
+
+    /// The running mean over a window, against a sum over the window, and with derivatives of its own.
+    #[test]
+    fn an_average_is_the_mean_over_its_window(part in 0.05..1.5, u in 0.01..0.99) {
+        let base = timed(&tip_path(), nine_link(), &by_torque(), 60).profile.levelled().expect("phases");
+        let window = part * base.duration();
+        let smooth = base.averaged(window).expect("phases");
+        prop_assert!((smooth.duration() - base.duration() - window).abs() < 1e-12);
+        let t = u * smooth.duration();
+        let n = 20_000;
+        let mean: f64 =
+            (0..n).map(|i| base.at(t - window * (f64::from(i) + 0.5) / f64::from(n)).s).sum::<f64>() / f64::from(n);
+        prop_assert!((smooth.at(t).s - mean).abs() < 1e-8, "{} and {mean}", smooth.at(t).s);
+        // s̈ has no steps left.
+        for i in 1..4000 {
+            let (t, hair) = (f64::from(i) / 4000.0 * smooth.duration(), 1e-9);
+            let step = smooth.at(t + hair).acceleration - smooth.at(t - hair).acceleration;
+            prop_assert!(step.abs() < 1e-2, "{step} at {t}");
+        }
+        let end = smooth.at(smooth.duration() * (1.0 - 1e-9));
+        prop_assert!((end.s - 1.0).abs() < 1e-9 && end.rate.abs() < 1e-5, "{end:?}");
+    }
+}
+
+/// Peaks of s̈ T² and s⃛ T³, as the docs state them.
+#[test]
+fn laws_have_their_peaks() {
+    let peaks = |law: TimeLaw| {
+        let n = 120_000;
+        let all = (0..n).map(|i| law.at(3.0 * (f64::from(i) + 0.5) / f64::from(n), 3.0));
+        all.fold([0.0_f64; 3], |m, p| {
+            [m[0].max(3.0 * p.rate), m[1].max(9.0 * p.acceleration.abs()), m[2].max(27.0 * p.jerk.abs())]
+        })
+    };
+    for (law, want) in [
+        (TimeLaw::Quintic, [1.875, 10.0 / 3f64.sqrt(), 60.0]),
+        (TimeLaw::Septic, [35.0 / 16.0, 84.0 * 5f64.sqrt() / 25.0, 52.5]),
+        (TimeLaw::Trapezoidal, [1.5, 4.5, 0.0]),
+        (TimeLaw::Fastest, [2.0, 4.0, 0.0]),
+        (TimeLaw::FastestSmooth, [2.0, 8.0, 32.0]),
+    ] {
+        let got = peaks(law);
+        let off = [0, 1, 2].map(|i| (got[i] - want[i]).abs());
+        assert!(off[0] < 3e-5 && off[1] < 1e-3 && off[2] < 2e-3, "{law:?}: {got:?}, want {want:?}");
+    }
+    assert!((10.0 / 3f64.sqrt() - 5.7735).abs() < 1e-4);
+}
+
+#[test]
+fn laws_begin_and_end_at_rest() {
+    for law in TimeLaw::ALL {
+        for t in [-1.0, -1e-300] {
+            assert_eq!(law.at(t, 2.0), Progress::still(0.0), "{law:?}");
+        }
+        for t in [2.0, 2.1, f64::INFINITY] {
+            assert_eq!(law.at(t, 2.0), Progress::still(1.0), "{law:?}");
+        }
+        let (first, last) = (law.at(0.0, 2.0), law.at(2.0 - 1e-9, 2.0));
+        assert_eq!((first.s, first.rate), (0.0, 0.0), "{law:?}");
+        assert!((last.s - 1.0).abs() < 1e-12 && last.rate.abs() < 1e-8, "{law:?}: {last:?}");
+        // Which are continuous in s̈, and which in s⃛.
+        let steps = [TimeLaw::Trapezoidal, TimeLaw::Fastest].contains(&law);
+        assert_eq!(first.acceleration == 0.0 && last.acceleration.abs() < 1e-6, !steps, "{law:?}");
+        assert_eq!(first.jerk == 0.0 && last.jerk.abs() < 1e-6, steps || law == TimeLaw::Septic, "{law:?}");
+        // No time at all is at the end.
+        assert_eq!(law.at(0.0, 0.0), Progress::still(1.0));
+    }
+}
+
+/// The laws made of phases, from spans.
+#[test]
+fn spans_make_the_laws() {
+    let third = 2.0 / 3.0;
+    let span = |time, acceleration, jerk| Span { time, acceleration, jerk };
+    for (law, spans) in [
+        (
+            TimeLaw::Trapezoidal,
+            vec![span(third, 1.125, 0.0), span(third, 0.0, 0.0), span(0.0, 9.0, 9.0), span(third, -1.125, 0.0)],
+        ),
+        (TimeLaw::Fastest, vec![span(1.0, 1.0, 0.0), span(1.0, -1.0, 0.0)]),
+        (TimeLaw::FastestSmooth, vec![span(0.5, 0.0, 4.0), span(1.0, 2.0, -4.0), span(0.5, -2.0, 4.0)]),
+    ] {
+        let made = Profile::of_spans(&spans);
+        assert!((made.duration() - 2.0).abs() < 1e-15);
+        let slower = made.stretched(1.5);
+        for i in -50..2100 {
+            let t = (f64::from(i) + 0.5) * 1e-3;
+            for (got, want) in [(made.at(t), law.at(t, 2.0)), (slower.at(1.5 * t), law.at(1.5 * t, 3.0))] {
+                let off = [got.s - want.s, got.rate - want.rate, got.acceleration - want.acceleration];
+                assert!(off.iter().all(|x| x.abs() < 1e-12), "{law:?} at {t}: {got:?} and {want:?}");
+            }
+        }
+    }
+    // A path that holds its timing itself.
+    let even = Profile::even(4.0);
+    assert_eq!((even.at(1.0).s, even.at(1.0).rate, even.duration()), (0.25, 0.25, 4.0));
+    assert_eq!((Profile::none().duration(), Profile::none().at(0.0).s), (0.0, 1.0));
+}
+
+/// Through given rates: exact at every station, with derivatives of its own, wherever it is looked up.
+#[test]
+fn a_profile_goes_through_its_stations() {
+    let s = even(40);
+    // ṡ² of a law at these s, so that phases differ widely in time.
+    let x: Vec<f64> = s.iter().map(|s| 16.0 * s.min(1.0 - s)).collect();
+    let made = Profile::through(&s, &x, &[]).expect("it moves");
+    assert!((made.duration() - 2.0 / 8f64.sqrt()).abs() < 1e-12, "{}", made.duration());
+    for (s, x) in s.iter().zip(&x) {
+        let t = if *s <= 0.5 { (s / 4.0).sqrt() } else { made.duration() - ((1.0 - s) / 4.0).sqrt() };
+        let p = made.at(t);
+        assert!((p.s - s).abs() < 1e-12 && (p.rate * p.rate - x).abs() < 1e-7, "{p:?} at s = {s}");
+    }
+    let rise: Vec<f64> = (0..40).map(|i| 0.05 * f64::from(i % 3)).collect();
+    let risen = Profile::through(&s, &x, &rise).expect("it moves");
+    for i in 0..1000 {
+        let t = (f64::from(i) + 0.37) / 1000.0 * risen.duration();
+        let (h, p) = (1e-7, risen.at(t));
+        let [a, b] = [risen.at(t - h), risen.at(t + h)];
+        assert!((p.rate - (b.s - a.s) / (2.0 * h)).abs() < 1e-6 && a.s < b.s, "at {t}");
+    }
+    assert_eq!(Profile::through(&s, &vec![0.0; 41], &[]), None);
+    assert_eq!(Profile::through(&s, &x[1..], &[]), None);
+    assert_eq!(Profile::through(&[0.0], &[0.0], &[]), None);
+}
+
+/// The straight line from q_A to q_B as a table, which nobody can take for a straight line.
+fn line_as_table() -> Path {
+    let path = line();
+    Path::Table(Table::even([0.0, 0.5, 1.0].map(|s| path.at(s)).to_vec()).expect("nodes"))
+}
+
+/// 2/√s̈ with s̈ = min τ_max,k / (H_kk |Δq_k|), and what other limits make of it.
+#[test]
+fn a_straight_line_is_in_closed_form() {
+    let (model, around) = of(nine_link());
+    let step = [0, 1, 2].map(|k| (Q_B[k] - Q_A[k]).abs());
+    let torque = (0..3).map(|k| [20.0, 5.0, 5.0][k] / (model.diagonal(k) * step[k])).fold(f64::INFINITY, f64::min);
+    let best = 2.0 / torque.sqrt();
+    let third = Limit { quantity: Quantity::Torque, drive: 2 };
+    let found = fastest(&line(), &model, &around, &by_torque(), false).expect("limits");
+    assert!((found.profile.duration() - best).abs() < 1e-14, "{found:?}");
+    assert_eq!((found.limiting, found.gap), (vec![(third, 1.0)], None));
+    // A speed limit cuts it: T = 1/v + v/a.
+    let v = 2.0;
+    let cut = limits([20.0, 5.0, 5.0], [f64::INFINITY, f64::INFINITY, v * step[2]], FREE, FREE);
+    let found = fastest(&line(), &model, &around, &cut, false).expect("limits");
+    assert!((found.profile.duration() - (1.0 / v + v / torque)).abs() < 1e-14);
+    assert_eq!(found.limiting.len(), 2);
+    // As does one on acceleration, below what the torque gives.
+    let slow = limits([20.0, 5.0, 5.0], FREE, [f64::INFINITY, 3.0, f64::INFINITY], FREE);
+    let found = fastest(&line(), &model, &around, &slow, false).expect("limits");
+    assert!((found.profile.duration() - 2.0 / (3.0 / step[1]).sqrt()).abs() < 1e-14);
+    assert_eq!(found.limiting, vec![(Limit { quantity: Quantity::Acceleration, drive: 1 }, 1.0)]);
+    // Parameterisation by reachability finds the same.
+    for limits in [by_torque(), cut, slow] {
+        let want = fastest(&line(), &model, &around, &limits, false).expect("limits").profile.duration();
+        let got = fastest(&line_as_table(), &model, &around, &limits, false).expect("limits").profile.duration();
+        assert!((got / want - 1.0).abs() < 1e-4, "{got} and {want}");
+        let coarse = fastest_at(&line_as_table(), &model, &around, &limits, false, &even(100)).expect("limits");
+        assert!((coarse.profile.duration() / want - 1.0).abs() < 1e-3, "{coarse:?} and {want}");
+    }
+}
+
+/// The constraints of a path at many s, from the dynamics: (a u + c x + g) within ±1 for every torque.
+struct PhasePlane {
+    s: Vec<f64>,
+    rows: Vec<[[f64; 3]; 3]>,
+}
+
+impl PhasePlane {
+    fn new(path: &Path, machine: &Machine, torque: [f64; 3], n: usize) -> Self {
+        let (model, around) = of(machine);
+        let s: Vec<f64> = (0..=n).map(|i| 0.5 * (1.0 - (std::f64::consts::PI * i as f64 / n as f64).cos())).collect();
+        let at = |i: usize| {
+            // In the middle of the space that follows.
+            let p = path.at(0.5 * (s[i] + s[(i + 1).min(n)]));
+            let e = p.q.units();
+            let (h, v) = mass_matrix(&model, &e, &p.first);
+            let (a, b) = (h.times(&p.first), h.times(&p.second));
+            let g = holding_torque(&model, &e, &around);
+            [0, 1, 2].map(|k| [a[k], b[k] + v[k], g[k]].map(|x| x / torque[k]))
+        };
+        Self { rows: (0..=n).map(at).collect(), s }
+    }
+
+    /// Least and greatest s̈ at ṡ² = x.
+    fn range(&self, i: usize, x: f64) -> (f64, f64) {
+        self.rows[i].iter().fold((f64::NEG_INFINITY, f64::INFINITY), |(low, high), [a, c, g]| {
+            let (p, q) = ((-1.0 - c * x - g) / a, (1.0 - c * x - g) / a);
+            (low.max(p.min(q)), high.min(p.max(q)))
+        })
+    }
+
+    /// Whether braking from here as hard as can be stops it before the end, without ever asking for too much.
+    fn stops(&self, mut i: usize, mut x: f64) -> bool {
+        while i + 1 < self.s.len() {
+            let (low, high) = self.range(i, x);
+            if low > high {
+                return false;
+            }
+            x += 2.0 * (self.s[i + 1] - self.s[i]) * low;
+            if x <= 0.0 {
+                return true;
+            }
+            i += 1;
+        }
+        false
+    }
+
+    /// Least time: always the greatest s̈ from which it can still be stopped, found by bisection.
+    fn least_time(&self) -> f64 {
+        let (mut x, mut t) = (0.0_f64, 0.0);
+        for i in 0..self.s.len() - 1 {
+            let way = self.s[i + 1] - self.s[i];
+            let (low, high) = self.range(i, x);
+            let last = i + 2 == self.s.len();
+            let fits = |u: f64| {
+                let next = x + 2.0 * way * u;
+                next > 0.0 && !last && self.stops(i + 1, next)
+            };
+            let u = if fits(high) {
+                high
+            } else {
+                let (mut good, mut bad) = (low, high.max(low));
+                for _ in 0..24 {
+                    let middle = 0.5 * (good + bad);
+                    if fits(middle) { good = middle } else { bad = middle }
+                }
+                good
+            };
+            let next = if last { 0.0 } else { (x + 2.0 * way * u).max(0.0) };
+            t += 2.0 * way / (x.sqrt() + next.sqrt());
+            x = next;
+        }
+        t
+    }
+}
+
+/// Every curve with a machine in balance and with one that is not, in gravity.
+fn tasks() -> impl Iterator<Item = (String, Path, Machine)> {
+    let machines = [("balanced", nine_link().clone()), ("unbalanced", unbalanced())];
+    machines.into_iter().flat_map(|(what, machine)| {
+        curves().into_iter().map(move |(name, path)| (format!("{name}, {what}"), path, machine.clone()))
+    })
+}
+
+#[test]
+fn reachability_agrees_with_the_phase_plane() {
+    for (name, path, machine) in tasks() {
+        let want = PhasePlane::new(&path, &machine, [20.0, 5.0, 5.0], 400).least_time();
+        let got = timed(&path, &machine, &by_torque(), 1000).profile.duration();
+        assert!((got / want - 1.0).abs() < 6e-4, "{name}: {got} s, by the phase plane {want} s");
+    }
+}
+
+/// T falls to its limit with the square of the spacing.
+#[test]
+fn time_converges_with_the_grid() {
+    for (name, path, machine) in tasks() {
+        let [a, b, c, d] = [125, 250, 500, 2000].map(|n| timed(&path, &machine, &by_torque(), n).profile.duration());
+        let off = [a - d, b - d, c - d];
+        assert!(off[0] > 2.5 * off[1] && off[1] > 2.5 * off[2], "{name}: {off:?} over {d}");
+        assert!(off[2] / d < 1.5e-4, "{name}: {off:?} over {d}");
+        // And not only on the grid that is finest at the ends.
+        let (model, around) = of(&machine);
+        let plain = fastest_at(&path, &model, &around, &by_torque(), false, &even(1000)).expect("a motion");
+        assert!((plain.profile.duration() / d - 1.0).abs() < 5e-3, "{name}: {} over {d}", plain.profile.duration());
+    }
+}
+
+/// The optimum is at some limit almost always, and beyond none: 0.05 % at worst, where q′ vanishes at rest, 0.005 %
+/// elsewhere.
+#[test]
+fn some_limit_is_active_and_none_is_passed() {
+    let all = limits([20.0, 5.0, 5.0], [2.0, 2.5, 3.0], [20.0, 30.0, 35.0], FREE);
+    for (name, path, machine) in tasks() {
+        for limits in [by_torque(), all] {
+            let found = timed(&path, &machine, &limits, 1000);
+            let usage = usage(&path, &found, &machine, &limits, 10_000);
+            assert!(usage.active > 0.98, "{name}: {usage:?}");
+            let most = if name.starts_with("ends") { 5e-4 } else { 5e-5 };
+            assert!(usage.violation() < most, "{name}: {usage:?}");
+            // What the sweep says leads is what the dynamics finds.
+            for (limit, share) in &found.limiting {
+                let seen = usage.leading.iter().find(|l| l.0 == *limit).map_or(0.0, |l| l.1);
+                assert!((seen - share).abs() < 0.02, "{name}, {limit}: {share} and {seen}");
+            }
+        }
+    }
+}
+
+/// The account itself: half and twice a limit, and what it names.
+#[test]
+fn usage_tells_violations() {
+    let (model, around) = of(nine_link());
+    let limits = by_torque();
+    let best = fastest(&line(), &model, &around, &limits, false).expect("limits").profile;
+    for (factor, most, active) in [(1.0, 1.0, 1.0), (2.0, 0.25, 0.0), (0.5, 4.0, 1.0)] {
+        let motion = Motion { path: line(), profile: best.stretched(factor) };
+        let usage = Usage::of(&motion, &model, &around, &limits, 1000);
+        assert!((usage.most - most).abs() < 1e-9 && (usage.active - active).abs() < 1e-9, "{usage:?}");
+        assert_eq!(usage.limit, Some(Limit { quantity: Quantity::Torque, drive: 2 }));
+        assert!((usage.violation() - (most - 1.0).max(0.0)).abs() < 1e-9);
+    }
+    // A quintic of the same peak takes √(5.7735/4) of the time.
+    let quintic = Profile::of(TimeLaw::Quintic, best.duration() * (10.0 / 3f64.sqrt() / 4.0).sqrt());
+    let usage = Usage::of(&Motion { path: line(), profile: quintic }, &model, &around, &limits, 10_000);
+    assert!((usage.most - 1.0).abs() < 1e-6 && usage.active < 0.1, "{usage:?}");
+    let free = Usage::of(&Motion { path: line(), profile: best }, &model, &around, &Limits::none(3), 100);
+    assert_eq!((free.active, free.most, free.limit), (0.0, 0.0, None));
+    const { assert!(ACTIVE < 1.0 && ACTIVE >= 0.999) }
+}
+
+/// T of the fastest way from 0 to 1 over all phase durations, by search: up, constant, down to a rate; the same or other
+/// phases down from it.
+fn searched(v: f64, a: f64, j: f64) -> f64 {
+    let (n, rates) = (40, 400);
+    // Ways to the rate j up (up + constant): how long each takes.
+    let ways = |rate: f64| {
+        let most = (rate / j).sqrt().min(a / j);
+        (1..=n).map(move |i| {
+            let up = most * f64::from(i) / f64::from(n);
+            let constant = rate / (j * up) - up;
+            2.0 * up + constant
+        })
+    };
+    let top = v.min(2.0 * (0.25 * j).cbrt());
+    (0..=rates)
+        .map(|i| {
+            let rate = top * 1e-4_f64.powf(f64::from(i) / f64::from(rates));
+            let best = ways(rate).fold(f64::INFINITY, f64::min);
+            // Half the rate times both times is the way without a cruise.
+            let cruise = (1.0 - rate * best) / rate;
+            if cruise < 0.0 { f64::INFINITY } else { 2.0 * best + cruise }
+        })
+        .fold(f64::INFINITY, f64::min)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// The seven-phase curve keeps its limits exactly, is at one of them all the time, and no search beats it.
+    #[test]
+    fn s_curves_are_exact_and_best(v in -1.5..1.5_f64, a in -1.5..2.0_f64, j in -1.0..3.0_f64) {
+        let [v, a, j] = [v, a, j].map(|x| 10f64.powf(x));
+        for (v, a, j) in [(v, a, j), (f64::INFINITY, a, j), (v, f64::INFINITY, j), (f64::INFINITY, f64::INFINITY, j)] {
+            let profile = Profile::of_spans(&s_curve(v, a, j).expect("jerk is limited"));
+            let whole = profile.duration();
+            let n = 2000;
+            for i in 0..n {
+                let p = profile.at((f64::from(i) + 0.5) / f64::from(n) * whole);
+                let parts = [p.rate / v, p.acceleration.abs() / a, p.jerk.abs() / j];
+                let most = parts.iter().fold(0.0_f64, |m, x| m.max(*x));
+                prop_assert!((most - 1.0).abs() < 1e-9, "{p:?}: {parts:?}");
+            }
+            let end = profile.at(whole * (1.0 - 1e-12));
+            prop_assert!((end.s - 1.0).abs() < 1e-9 && end.rate < 1e-8 / whole, "{end:?}");
+            let found = searched(v, a, j);
+            prop_assert!(whole <= found * (1.0 + 1e-12) && whole >= found * 0.98, "{whole} s, by search {found} s");
+        }
+    }
+
+    /// Without jerk: 2/√a, or 1/v + v/a where v cuts it; it is what jerk without end comes to.
+    #[test]
+    fn s_curves_of_endless_jerk(v in -1.0..1.5_f64, a in -1.0..2.0_f64) {
+        let [v, a] = [v, a].map(|x| 10f64.powf(x));
+        let time = |j: f64| Profile::of_spans(&s_curve(v, a, j).expect("limited")).duration();
+        let want = if v * v < a { 1.0 / v + v / a } else { 2.0 / a.sqrt() };
+        prop_assert!((time(f64::INFINITY) / want - 1.0).abs() < 1e-14);
+        prop_assert!((time(1e9 * a) / want - 1.0).abs() < 1e-6);
+        prop_assert_eq!(s_curve(v, f64::INFINITY, f64::INFINITY), None);
+    }
+}
+
+/// On a straight line with limits on jerk: the S-curve, with the gap that they cost.
+#[test]
+fn a_straight_line_with_limits_on_jerk() {
+    let (model, around) = of(nine_link());
+    let limits = limits([20.0, 5.0, 5.0], [2.0; 3], FREE, [900.0, 400.0, 300.0]);
+    let found = fastest(&line(), &model, &around, &limits, true).expect("limits");
+    let without = fastest(&line(), &model, &around, &limits, false).expect("limits").profile.duration();
+    let gap = found.gap.expect("torque is limited too");
+    assert!((found.profile.duration() / without - 1.0 - gap).abs() < 1e-12 && gap > 0.01, "{gap}");
+    let motion = Motion { path: line(), profile: found.profile };
+    let usage = Usage::of(&motion, &model, &around, &limits, 4000);
+    assert!(usage.active > 0.999 && usage.violation() < 1e-9, "{usage:?}");
+    assert!(found.limiting.iter().any(|(l, _)| l.quantity == Quantity::Jerk), "{:?}", found.limiting);
+}
+
+/// On curves every limit is kept, jerk found by differences of q̈ included, and the gap is the one stated.
+#[test]
+fn limits_on_jerk_are_kept_on_curves() {
+    for (name, path, machine) in tasks() {
+        let (model, around) = of(&machine);
+        let mut times = Vec::new();
+        for jerk in [100.0, 3000.0] {
+            let limits = limits([20.0, 5.0, 5.0], [3.0; 3], FREE, [jerk, jerk, 2.0 * jerk]);
+            let grid = stations(120);
+            let found = fastest_at(&path, &model, &around, &limits, true, &grid).expect("a motion");
+            let bound = fastest_at(&path, &model, &around, &limits, false, &grid).expect("a motion").profile;
+            let whole = found.profile.duration();
+            assert!((whole / bound.duration() - 1.0 - found.gap.expect("a bound")).abs() < 1e-12);
+            let motion = Motion { path: path.clone(), profile: found.profile };
+            let (n, h) = (3000, whole * 1e-6);
+            for i in 0..n {
+                let t = (f64::from(i) + 0.5) / f64::from(n) * whole;
+                let (r, a, b) = (motion.at(t), motion.at(t - h), motion.at(t + h));
+                let torque = inverse(&model, &r.q.units(), &r.qd, &r.qdd, &around);
+                let third = b.qdd.minus(&a.qdd).scaled(0.5 / h);
+                for k in 0..3 {
+                    let parts = [
+                        torque[k].abs() / limits.torque[k],
+                        r.qd[k].abs() / limits.speed[k],
+                        third[k].abs() / limits.jerk[k],
+                    ];
+                    assert!(parts.iter().all(|p| *p < 1.002), "{name}, {jerk} at {t} of {whole}: {parts:?}");
+                }
+            }
+            times.push((whole, bound.duration()));
+        }
+        assert!(times[0].0 > times[1].0 && times[1].0 > times[1].1, "{name}: {times:?}");
+    }
+}
+
+/// Jerk alone, or with speed: no bound to compare with, but a motion.
+#[test]
+fn jerk_alone_is_enough() {
+    let (model, around) = of(nine_link());
+    let only = limits(FREE, FREE, FREE, [300.0; 3]);
+    for path in [line(), tip_path()] {
+        let found = fastest(&path, &model, &around, &only, true).expect("jerk is limited");
+        assert_eq!(found.gap, None);
+        let motion = Motion { path, profile: found.profile };
+        let usage = Usage::of(&motion, &model, &around, &only, 4000);
+        assert!(usage.most > 0.99 && usage.violation() < 1e-5, "{usage:?}");
+    }
+}
+
+#[test]
+fn what_cannot_be_timed_is_refused() {
+    let (model, around) = of(nine_link());
+    let refused = |path: &Path, limits: Limits, smooth| {
+        fastest(path, &model, &around, &limits, smooth).expect_err("nothing to go by")
+    };
+    let speed = limits(FREE, [2.0; 3], FREE, FREE);
+    for path in [line(), tip_path()] {
+        assert!(matches!(refused(&path, Limits::none(3), false), TimeError::Unlimited { .. }));
+        assert_eq!(refused(&path, speed, false), TimeError::SpeedOnly);
+        assert_eq!(refused(&path, by_torque(), true), TimeError::NoJerkLimit);
+        let two = Limits::none(2);
+        assert_eq!(refused(&path, two, false), TimeError::Drives { path: 3, model: 3, limits: 2 });
+    }
+    // Only a drive that stands still is limited.
+    let still = Path::JointLine { from: Q_A.into(), to: [Q_A[0], Q_B[1], Q_B[2]].into() };
+    let first = limits([20.0, f64::INFINITY, f64::INFINITY], FREE, FREE, FREE);
+    assert!(matches!(refused(&still, first, false), TimeError::Unlimited { .. }));
+    for bad in [vec![], vec![0.0], vec![0.0, 0.5], vec![0.1, 1.0], vec![0.0, 0.6, 0.5, 1.0], vec![0.0, f64::NAN, 1.0]] {
+        let error = fastest_at(&line(), &model, &around, &by_torque(), false, &bad).expect_err("no grid");
+        assert_eq!(error, TimeError::Stations);
+    }
+    // Drive 2 of the machine out of balance cannot hold its links up.
+    let machine = unbalanced();
+    let (model, around) = of(&machine);
+    let weak = limits([20.0, 0.5, 5.0], FREE, FREE, FREE);
+    for smooth in [false, true] {
+        let weak = Limits { jerk: [300.0; 3].into(), ..weak };
+        let error = fastest(&tip_path(), &model, &around, &weak, smooth).expect_err("too heavy");
+        let TimeError::Static { drive, s, torque, limit } = error.clone() else { panic!("{error}") };
+        assert!((drive, limit) == (2, 0.5) && torque.abs() > 0.5, "{error}");
+        let want = holding_torque(&model, &tip_path().at(s).q.units(), &around)[1];
+        assert!((torque - want).abs() < 1e-9 && error.to_string().contains("want a higher torque limit"), "{error}");
+    }
+}
+
+/// A path that goes nowhere takes no time.
+#[test]
+fn nowhere_takes_no_time() {
+    let (model, around) = of(nine_link());
+    let nodes = [0.0, 1.0].map(|s| Path::Rest(Q_A.into()).at(s)).to_vec();
+    let table = Path::Table(Table::even(nodes).expect("nodes"));
+    for path in [Path::Rest(Q_A.into()), Path::JointLine { from: Q_A.into(), to: Q_A.into() }, table] {
+        let limits = Limits { jerk: [300.0; 3].into(), ..by_torque() };
+        for smooth in [false, true] {
+            let found = fastest(&path, &model, &around, &limits, smooth).expect("it is there");
+            assert_eq!((found.profile.duration(), found.profile.at(0.0).s), (0.0, 1.0));
+            assert_eq!(Motion { path: path.clone(), profile: found.profile }.at(0.0).qd.max_abs(), 0.0);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    /// Any waves, any limits, with and without balance: rest to rest within all limits, and one of them active.
+    #[test]
+    fn random_curves_keep_random_limits(
+        r in prop::array::uniform3(0.05..0.8_f64),
+        w in prop::array::uniform3(0.5..9.0_f64),
+        p in prop::array::uniform3(0.0..6.3_f64),
+        torque in prop::array::uniform3(6.0..40.0_f64),
+        speed in prop::array::uniform3(0.5..20.0_f64),
+        acceleration in prop::array::uniform3(5.0..80.0_f64),
+        heavy in any::<bool>(),
+    ) {
+        let machine = if heavy { unbalanced() } else { nine_link().clone() };
+        let limits = limits(torque, speed, acceleration, FREE);
+        let path = waves(r, w, p);
+        let (model, around) = of(&machine);
+        let found = match fastest(&path, &model, &around, &limits, false) {
+            Ok(found) => found,
+            Err(error) => {
+                prop_assert!(heavy && matches!(error, TimeError::Static { .. }), "{}", error);
+                return Ok(());
+            }
+        };
+        let usage = usage(&path, &found, &machine, &limits, 4000);
+        prop_assert!(usage.violation() < 2e-3, "{:?}", usage);
+        prop_assert!(usage.active > 0.9, "{:?}", usage);
+        let end = found.profile.at(found.profile.duration() * (1.0 - 1e-9));
+        prop_assert!((end.s - 1.0).abs() < 1e-6 && end.rate < 1e-3);
+        prop_assert!((found.limiting.iter().map(|l| l.1).sum::<f64>() - 1.0).abs() < 1e-9);
+    }
+}
