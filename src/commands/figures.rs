@@ -1,11 +1,14 @@
 //! `stillbase figures`
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use clap::Args;
 use stillbase::files::write_new;
+use stillbase::render::offscreen::Picture;
 use stillbase::scenario::Scenario;
 use stillbase::scene::palette::Theme;
+use stillbase::scene::stage::ViewOptions;
 use stillbase::scene::views::ViewKind;
 use stillbase::ui::picture::Canvas;
 use stillbase::ui::{Command, Desk};
@@ -13,7 +16,7 @@ use stillbase::ui::{Command, Desk};
 use super::failure::Failure;
 use super::output::say;
 
-/// Draw the pictures of the documentation: the window in both themes and all views, without a display
+/// Draw the pictures of the documentation: the window in both themes, joint space and the tower, without a display
 #[derive(Args)]
 #[command(after_help = "Example:\n  stillbase figures -o assets/pictures --force")]
 pub struct Figures {
@@ -25,35 +28,55 @@ pub struct Figures {
     force: bool,
 }
 
-/// Name, scenario, theme, view, instant in s.
-const FIGURES: [(&str, &str, Theme, ViewKind, f64); 8] = [
+/// The window: name, scenario, theme, view, instant in s.
+const WINDOWS: [(&str, &str, Theme, ViewKind, f64); 4] = [
     ("window-dark.png", "case-3", Theme::Dark, ViewKind::Flat, 0.62),
     ("window-light.png", "case-3", Theme::Light, ViewKind::Flat, 0.62),
     ("case-1-dark.png", "case-1", Theme::Dark, ViewKind::Flat, 0.25),
     ("space-dark.png", "case-3", Theme::Dark, ViewKind::Space, 0.62),
+];
+
+/// The scene alone.
+const SCENES: [(&str, &str, Theme, ViewKind, f64); 4] = [
     ("tower-dark.png", "case-3", Theme::Dark, ViewKind::Tower, 0.62),
     ("tower-light.png", "case-3", Theme::Light, ViewKind::Tower, 0.62),
-    ("joints-dark.png", "case-3", Theme::Dark, ViewKind::Joints, 0.62),
-    ("joints-light.png", "case-3", Theme::Light, ViewKind::Joints, 0.62),
+    ("joints-dark.png", "case-1", Theme::Dark, ViewKind::Joints, 0.5),
+    ("joints-light.png", "case-1", Theme::Light, ViewKind::Joints, 0.5),
 ];
 
 impl Figures {
     /// Draws them all.
     pub fn run(&self) -> Result<(), Failure> {
-        for (name, scenario, theme, view, time) in FIGURES {
-            let scenario = Scenario::find(scenario)?;
-            let mut desk = Desk::new(scenario, theme)?;
-            let task_time = desk.session().length();
-            for command in [Command::Seek(task_time), Command::Seek(time), Command::View(view)] {
-                desk.carry_out(command);
-            }
+        for (name, scenario, theme, view, time) in WINDOWS {
+            let mut desk = desk(scenario, theme, view, time)?;
             let mut canvas = Canvas::new([1440, 900], 1.0).map_err(Failure::no_answer)?;
-            let picture = canvas.desk(&mut desk).map_err(Failure::no_answer)?;
-            let png = picture.to_png().map_err(Failure::no_answer)?;
-            let file = self.output.join(name);
-            write_new(&file, &png, self.force)?;
-            say(format!("wrote {}", file.display()));
+            self.write(name, canvas.desk(&mut desk).map_err(Failure::no_answer)?)?;
+        }
+        for (name, scenario, theme, view, time) in SCENES {
+            let desk = desk(scenario, theme, view, time)?;
+            let (options, camera) = (ViewOptions { theme, ..ViewOptions::default() }, desk.views().camera(view));
+            let scene = Arc::new(desk.views().scene(view, desk.session().frame(), &options, &camera));
+            let mut canvas = Canvas::new([1200, 1000], 1.25).map_err(Failure::no_answer)?;
+            self.write(name, canvas.scene(&scene, &camera).map_err(Failure::no_answer)?)?;
         }
         Ok(())
     }
+
+    fn write(&self, name: &str, picture: Picture) -> Result<(), Failure> {
+        let file = self.output.join(name);
+        write_new(&file, &picture.to_png().map_err(Failure::no_answer)?, self.force)?;
+        say(format!("wrote {}", file.display()));
+        Ok(())
+    }
+}
+
+/// A scenario run through once, shown at an instant.
+fn desk(scenario: &str, theme: Theme, view: ViewKind, time: f64) -> Result<Desk, Failure> {
+    let scenario = Scenario::find(scenario)?;
+    let mut desk = Desk::new(scenario, theme)?;
+    let task_time = desk.session().length();
+    for command in [Command::Seek(task_time), Command::Seek(time), Command::View(view)] {
+        desk.carry_out(command);
+    }
+    Ok(desk)
 }

@@ -156,7 +156,7 @@ fn mark(scene: &mut Scene, palette: &Palette, sight: &Sight, k: usize, axis: &Ax
     for value in axis.marks() {
         scene.lines.push(tick(value, 0.012, palette.dim, 1.0));
         // The value of now takes the place of a mark.
-        let room = if upright { 0.07 } else { 0.11 };
+        let room = if upright { 0.07 } else { 0.062 };
         if axis.now.is_some_and(|(now, _)| (now - value).abs() < room * (axis.values[1] - axis.values[0])) {
             continue;
         }
@@ -173,7 +173,7 @@ fn mark(scene: &mut Scene, palette: &Palette, sight: &Sight, k: usize, axis: &Ax
         true => (place(axis.values[1], 0.0), [0.0, -18.0]),
         false => {
             let far = usize::from(sight.back[k] == axis.ends[1]);
-            let beyond = axis.values[far] + 0.08 * (axis.values[far] - axis.values[1 - far]);
+            let beyond = axis.values[far] + 0.1 * (axis.values[far] - axis.values[1 - far]);
             // Where the upright axis begins, its own marks need the room.
             let shared = sight.edge(2).0[k] == sight.back[k];
             (place(beyond, 0.012), beside(if shared { 48.0 } else { 19.0 }))

@@ -11,7 +11,7 @@ use super::axes::{self, Axis};
 use super::camera::{Camera, Orbit};
 use super::palette::{Palette, faded, palette};
 use super::pointer::{Pointer, dot};
-use super::stage::{Handle, ViewOptions, round_up};
+use super::stage::{Handle, ViewOptions, round_up, signed};
 use super::views::{Aim, GRIP, Grip};
 use super::{Anchor, Label, Line, Marker, Mesh, Model, Scene, Solid};
 use crate::frame::Frame;
@@ -105,7 +105,7 @@ impl JointSpace {
     /// A view of the whole prism.
     pub fn camera(&self) -> Camera {
         let size = self.bounds(HOME).iter().map(|[from, to]| (to - from) * (to - from)).sum::<f64>().sqrt();
-        Camera::Orbit(Orbit { centre: [0.0, 0.0, -0.06 * size], distance: 1.8 * size, yaw: 0.62, pitch: 0.6 })
+        Camera::Orbit(Orbit { centre: [0.0, 0.0, -0.06 * size], distance: 1.85 * size, yaw: 1.85, pitch: 0.66 })
     }
 
     /// Ends of the box along the scene's axes.
@@ -267,19 +267,39 @@ impl JointSpace {
     fn plane(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, hot: bool) {
         let b = frame.b_reference;
         let polygon = self.polygon(b, b);
-        // At a corner that the pose leaves free.
+        // Outside a corner that the pose leaves free.
         let taken = [0, 1].iter().all(|i| (frame.a[*i] - self.corners[2][*i]).abs() < 0.8);
+        let (corner, other) = if taken { (polygon[0], polygon[2]) } else { (polygon[2], polygon[0]) };
         scene.labels.push(Label {
-            at: polygon[if taken { 0 } else { 2 }],
-            offset: [0.0, -14.0],
+            at: [0, 1, 2].map(|k| corner[k] + 0.1 * (corner[k] - other[k])),
+            offset: [0.0; 2],
             text: format!("b = {b:.3} rad"),
             colour: palette.amber,
             size: 12.5,
             anchor: Anchor::Centre,
         });
+        self.limits(scene, palette, &polygon);
         let mut outline = line("plane/boundary", polygon, if hot { 3.2 } else { 2.0 }, palette.amber);
         outline.on_top = true;
         scene.lines.push(outline);
+    }
+
+    /// Which limit each side of the polygon is.
+    fn limits(&self, scene: &mut Scene, palette: &Palette, polygon: &[[f32; 3]]) {
+        for (i, ends) in polygon.windows(2).enumerate() {
+            // Sides run along a_1 and a_2 in turn, at a limit of the other.
+            let fixed = 1 - i % 2;
+            scene.labels.push(Label {
+                // A little outside.
+                at: [0, 1, 2]
+                    .map(|k| 0.5 * (1.13 * (ends[0][k] + ends[1][k]) - 0.13 * (polygon[0][k] + polygon[2][k]))),
+                offset: [0.0; 2],
+                text: format!("{} = {}°", ["a₁", "a₂"][fixed], degrees(self.corners[i][fixed])),
+                colour: palette.dim,
+                size: 10.5,
+                anchor: Anchor::Centre,
+            });
+        }
     }
 
     /// From the pose straight to the walls behind it, each in the colour of its drive.
@@ -333,6 +353,12 @@ impl JointSpace {
 
 fn line(name: &str, points: Vec<[f32; 3]>, width: f32, colour: super::Rgba) -> Line {
     Line { name: name.into(), points, width, colour, dash: None, on_top: false }
+}
+
+/// An angle in whole degrees, or with a digit where it has one.
+fn degrees(angle: f64) -> String {
+    let text = signed(angle.to_degrees(), 1);
+    text.strip_suffix(".0").map_or_else(|| text.clone(), Into::into)
 }
 
 /// Triangles as an open shell, each with its own normal.

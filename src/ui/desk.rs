@@ -8,7 +8,7 @@ use crate::machine::Machine;
 use crate::scenario::Scenario;
 use crate::scene::palette::Theme;
 use crate::scene::stage::Stage;
-use crate::scene::views::Views;
+use crate::scene::views::{ViewKind, Views};
 use crate::session::{Refusal, Session};
 use crate::signals::{Signal, signals};
 
@@ -213,7 +213,15 @@ impl Desk {
     fn refresh(&mut self) {
         let key = stage_key(&self.session);
         if key != self.stage_of {
-            self.views = Arc::new(Views::of(self.session.run()));
+            let views = Views::of(self.session.run());
+            for kind in ViewKind::ALL {
+                // A camera that nobody has moved goes on showing everything.
+                let camera = &mut self.look.cameras[kind as usize];
+                if *camera == self.views.camera(kind) {
+                    *camera = views.camera(kind);
+                }
+            }
+            self.views = Arc::new(views);
             self.signals = signals(&self.session.scenario().machine);
             self.stage_of = key;
         }

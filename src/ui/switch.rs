@@ -30,12 +30,21 @@ pub fn show(ui: &mut Ui, rect: Rect, look: &Look, views: &Views, commands: &mut 
     if look.view.shows_machine() {
         shade(&mut child, &p, look, views.stage().greatest_det(), commands);
     }
-    let text = |at, align, words: &str| {
-        ui.painter().text(at, align, words, plain(11.5), colour(p.dim));
-    };
     let low = rect.bottom() - 16.0;
-    text(pos2(rect.right() - 14.0, low), Align2::RIGHT_CENTER, look.view.grid());
-    text(pos2(rect.left() + 16.0, low), Align2::LEFT_CENTER, look.view.invitation());
+    let grid = ui.painter().text(
+        pos2(rect.right() - 14.0, low),
+        Align2::RIGHT_CENTER,
+        look.view.grid(),
+        plain(11.5),
+        colour(p.dim),
+    );
+    // Where there is no room, it is cut short rather than run into the grid's width.
+    let left = pos2(rect.left() + 16.0, low);
+    let room = Rect::from_min_max(left - vec2(0.0, 10.0), pos2(grid.left() - 12.0, low + 10.0));
+    let words = RichText::new(look.view.invitation()).font(plain(11.5)).color(colour(p.dim));
+    let layout = egui::Layout::left_to_right(egui::Align::Center);
+    let mut corner = ui.new_child(egui::UiBuilder::new().max_rect(room).layout(layout));
+    corner.add(egui::Label::new(words).truncate());
 }
 
 fn segment(ui: &mut Ui, p: &Palette, text: &str, chosen: bool) -> egui::Response {
@@ -53,7 +62,7 @@ fn shade(ui: &mut Ui, p: &Palette, look: &Look, most: f64, commands: &mut Vec<Co
         let ink = colour(if look.dexterity { p.ink } else { p.dim });
         let words = RichText::new("dexterity").font(plain(11.5)).color(ink);
         let help = "Shade the workspace by |det ∂(x, y)/∂(a₁, a₂)|: how far the end effector moves for a motion of the \
-                    joints on its plane; 0 where it is singular (D)";
+                    joints on its plane; 0 where it is singular (J)";
         let mut shown = look.dexterity;
         if ui.checkbox(&mut shown, words).on_hover_text(help).clicked() {
             commands.push(Command::Dexterity(shown));

@@ -17,7 +17,9 @@ use stillbase::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::pose_constant::plane_map;
 use stillbase::reactionless::{AngleDefinition, Boundary, Limit, PlaneMap};
 use stillbase::scenario::Scenario;
-use stillbase::session::{Run, replay};
+use stillbase::scene::stage::ViewOptions;
+use stillbase::scene::views::{ViewKind, Views};
+use stillbase::session::{Run, Session, replay};
 
 fn main() {
     divan::main();
@@ -227,4 +229,21 @@ fn least_reaction_path(bencher: Bencher) {
     let start = map.poses(from, 1.75)[0];
     bencher
         .bench_local(|| LeastReaction::plan(&map, &model, curve, black_box(start), None, Goal::Rms).expect("it can"));
+}
+
+/// Everything that the linked views keep from frame to frame.
+#[divan::bench]
+fn views_of_a_run(bencher: Bencher) {
+    let session = Session::open(Scenario::builtin("case-3").expect("built in")).expect("it can start");
+    bencher.bench_local(|| Views::of(black_box(session.run())));
+}
+
+/// One scene of each view.
+#[divan::bench(args = ViewKind::ALL.map(ViewKind::name))]
+fn scene_of_a_view(bencher: Bencher, name: &str) {
+    let kind = ViewKind::ALL.into_iter().find(|k| k.name() == name).expect("a view");
+    let session = Session::open(Scenario::builtin("case-3").expect("built in")).expect("it can start");
+    let views = Views::of(session.run());
+    let (camera, options) = (views.camera(kind), ViewOptions::default());
+    bencher.bench_local(|| views.scene(kind, black_box(session.frame()), &options, &camera));
 }

@@ -296,7 +296,7 @@ fn dexterity_is_shown_with_its_key_where_there_is_a_workspace() {
     assert!(h.query_by_label("dexterity").is_none());
     h.get_by_label("3D").click();
     h.run_steps(3);
-    h.key_press(Key::D);
+    h.key_press(Key::J);
     h.run_steps(3);
     assert!(h.query_by_label("dexterity").is_some() && h.query_by_label("|det| 0").is_none());
 }
