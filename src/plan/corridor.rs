@@ -116,7 +116,7 @@ impl Station {
         own.min_by(|x, y| far(x).total_cmp(&far(y))).map(|x| PlanePoint { a: x.a, b })
     }
 
-    /// Where the corridor is widest from its ends; b itself where it has none.
+    /// The b furthest from both ends; b itself where there are none.
     fn middle(&self, b: f64) -> f64 {
         if self.low.is_finite() { 0.5 * (self.low + self.high) } else { b }
     }
@@ -220,11 +220,13 @@ fn station(map: &PlaneMap, u: f64, point: CurvePoint, near: PlanePoint, det: f64
             }
         }
     }
-    match (best, map.reach(p)) {
-        (Some((_, station)), _) => Ok(station),
-        (None, Err(reason)) => Err(CorridorError::Unreachable { u, x: p.re, y: p.im, reason }),
-        (None, Ok(_)) => Err(CorridorError::Ends { u }),
+    if let Some((_, station)) = best {
+        return Ok(station);
     }
+    Err(match map.reach(p) {
+        Err(reason) => CorridorError::Unreachable { u, x: p.re, y: p.im, reason },
+        Ok(_) => CorridorError::Ends { u },
+    })
 }
 
 /// A branch of a self-motion cut where b turns back; each part with b rising.
