@@ -182,7 +182,7 @@ fn the_course_keeps_its_corridor() {
                 close("b", &[point.b, map.project_rates(&at.first).1], &[on, first], 1e-9);
                 let n_b = moment(plan.path(), u);
                 let off = n_b + model.diagonal(0) * second;
-                assert!(off.abs() < 1e-8, "u = {u}: {n_b}, off by {off:e}");
+                assert!(off.abs() < 1e-9, "u = {u}: {n_b}, off by {off:e}");
                 peak = peak.max(n_b.abs());
                 square += n_b * n_b / f64::from(n) * if i == 0 || i == n { 0.5 } else { 1.0 };
             }
