@@ -97,7 +97,7 @@ impl Headless {
     }
 
     fn scenarios(&self) -> Result<Vec<Scenario>, Failure> {
-        let builtin = Scenario::builtin_names().map(String::from);
+        let builtin = Scenario::cases().map(String::from).collect::<Vec<_>>();
         let names = if self.scenarios.is_empty() { &builtin[..] } else { &self.scenarios };
         let mut scenarios: Vec<Scenario> = Vec::with_capacity(names.len());
         for name in names {

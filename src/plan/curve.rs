@@ -143,23 +143,23 @@ impl Curve {
             let (before, after) = (along(i - 1), along(i));
             let turn = (after / before).arg().abs();
             let room = blend.min(0.5 * before.norm()).min(0.5 * after.norm());
-            if turn < 1e-9 || turn > TURNS_BACK { 0.0 } else { room.max(0.0) }
+            if (1e-9..=TURNS_BACK).contains(&turn) { room.max(0.0) } else { 0.0 }
         };
         let straight = |i: usize| (along(i) / along(i - 1)).arg().abs() < 1e-9;
         let mut curves = Vec::new();
         let mut pieces: Vec<(Shape, f64)> = Vec::new();
         let mut at = corners[0];
-        for i in 1..=last {
+        for (i, corner) in corners.iter().enumerate().skip(1) {
             let d = if i == last { 0.0 } else { room(i) };
             let direction = along(i - 1) / along(i - 1).norm();
-            let end = corners[i] - d * direction;
+            let end = corner - d * direction;
             if (end - at).norm() > APART {
                 pieces.push((line(at, end), (end - at).norm()));
             }
             at = end;
             if i < last && d > 0.0 {
                 let onwards = along(i) / along(i).norm();
-                at = corners[i] + d * onwards;
+                at = corner + d * onwards;
                 pieces.push((blended(end, direction, at, onwards, d), 2.0 * d));
             } else if i == last || !straight(i) {
                 curves.push(Self::of(std::mem::take(&mut pieces)));

@@ -117,6 +117,9 @@ const STATIONS: usize = 96;
 /// Parts of a curve that is drawn.
 const DRAWN: i32 = 160;
 
+/// How far a curve can be followed: to which s, to which pose, and what stops it there.
+pub type Halt = (f64, [f64; 2], Stop);
+
 /// A curve on a plane.
 #[derive(Clone, Copy)]
 struct Track<'a> {
@@ -138,7 +141,7 @@ pub fn walk(
     start: [f64; 2],
     rule: Rule,
     stations: usize,
-) -> Result<[f64; 2], (f64, [f64; 2], Stop)> {
+) -> Result<[f64; 2], Halt> {
     let track = Track { map, b, turn: unit(-map.turn(b)), curve, rule };
     let mut a = start;
     for i in 0..stations {
@@ -150,7 +153,7 @@ pub fn walk(
 
 impl Track<'_> {
     /// From the pose at one s to that at another.
-    fn advance(&self, mut a: [f64; 2], from: f64, to: f64) -> Result<[f64; 2], (f64, [f64; 2], Stop)> {
+    fn advance(&self, mut a: [f64; 2], from: f64, to: f64) -> Result<[f64; 2], Halt> {
         let (mut s, mut step) = (from, to - from);
         let mut tangent = self.jet(a, s).first;
         while s < to {
@@ -218,7 +221,7 @@ impl Track<'_> {
     }
 
     /// Nodes along the curve, dense enough for the quintics between them.
-    fn table(&self, start: [f64; 2]) -> Result<Table, (f64, [f64; 2], Stop)> {
+    fn table(&self, start: [f64; 2]) -> Result<Table, Halt> {
         let (mut stations, mut nodes) = (vec![0.0], vec![self.jet(start, 0.0)]);
         let joints: Vec<f64> = self.curve.joints().collect();
         for ends in joints.windows(2) {
@@ -240,12 +243,7 @@ impl Track<'_> {
     }
 
     /// Nodes on one piece of the curve, both ends included.
-    fn piece(
-        &self,
-        [from, to]: [f64; 2],
-        start: [f64; 2],
-        spaces: usize,
-    ) -> Result<Vec<(f64, Jet)>, (f64, [f64; 2], Stop)> {
+    fn piece(&self, [from, to]: [f64; 2], start: [f64; 2], spaces: usize) -> Result<Vec<(f64, Jet)>, Halt> {
         let station = |i: usize| if i == spaces { to } else { from + (to - from) * i as f64 / spaces as f64 };
         let mut nodes = Vec::with_capacity(spaces + 1);
         nodes.push((from, self.jet(start, from)));
@@ -303,7 +301,7 @@ pub fn follow(
     rule: Rule,
 ) -> Result<Vec<Table>, Box<Blocked>> {
     let Some(first) = curves.first() else { return Ok(Vec::new()) };
-    let mut farthest: Option<(f64, [f64; 2], Stop)> = None;
+    let mut farthest: Option<Halt> = None;
     for start in starts(map, first.at(0.0).p, b, prefer) {
         match tables(map, curves, b, start, rule) {
             Ok(tables) => return Ok(tables),
@@ -328,13 +326,7 @@ fn starts(map: &PlaneMap, p: Vector, b: f64, prefer: Option<[f64; 2]>) -> Vec<[f
     starts
 }
 
-fn tables(
-    map: &PlaneMap,
-    curves: &[Curve],
-    b: f64,
-    start: [f64; 2],
-    rule: Rule,
-) -> Result<Vec<Table>, (f64, [f64; 2], Stop)> {
+fn tables(map: &PlaneMap, curves: &[Curve], b: f64, start: [f64; 2], rule: Rule) -> Result<Vec<Table>, Halt> {
     let turn = unit(-map.turn(b));
     let mut a = start;
     let mut tables = Vec::with_capacity(curves.len());

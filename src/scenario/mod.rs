@@ -58,6 +58,9 @@ struct File {
     #[serde(default)]
     title: String,
     machine: MachineRef,
+    /// Settings of the machine, as on the command line: `payload.mass=0.5`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    set: Vec<String>,
     #[serde(default = "one_millisecond")]
     step: f64,
     duration: Option<f64>,
@@ -133,17 +136,29 @@ pub enum ScenarioError {
     MachineFile(#[from] FileError),
 }
 
-/// The scenarios that come along: the paper's three cases.
-const BUILTIN: [(&str, &str); 3] = [
+/// How many of the scenarios that come along are the paper's cases; they stand first.
+const CASES: usize = 3;
+
+/// The scenarios that come along: the paper's three cases, and what planning can do besides.
+const BUILTIN: [(&str, &str); 7] = [
     ("case-1", include_str!("../../assets/scenarios/case-1.toml")),
     ("case-2", include_str!("../../assets/scenarios/case-2.toml")),
     ("case-3", include_str!("../../assets/scenarios/case-3.toml")),
+    ("circle", include_str!("../../assets/scenarios/circle.toml")),
+    ("change-b", include_str!("../../assets/scenarios/change-b.toml")),
+    ("least-reaction", include_str!("../../assets/scenarios/least-reaction.toml")),
+    ("drift", include_str!("../../assets/scenarios/drift.toml")),
 ];
 
 impl Scenario {
-    /// The names of the built-in scenarios.
-    pub fn builtin_names() -> [&'static str; 3] {
-        BUILTIN.map(|(name, _)| name)
+    /// The names of the built-in scenarios, the paper's cases first.
+    pub fn builtin_names() -> impl Iterator<Item = &'static str> {
+        BUILTIN.iter().map(|(name, _)| *name)
+    }
+
+    /// The names of the paper's cases.
+    pub fn cases() -> impl Iterator<Item = &'static str> {
+        Self::builtin_names().take(CASES)
     }
 
     /// A built-in scenario.
@@ -165,7 +180,10 @@ impl Scenario {
             std::io::ErrorKind::NotFound if !name.ends_with(".toml") => ScenarioError::Syntax {
                 file: name.into(),
                 line: None,
-                message: format!("no such scenario: want {}, or a TOML file", Self::builtin_names().join(", ")),
+                message: format!(
+                    "no such scenario: want {}, or a TOML file",
+                    Self::builtin_names().collect::<Vec<_>>().join(", ")
+                ),
             },
             _ => ScenarioError::Unreadable { file: name.into(), source },
         })?;
@@ -187,6 +205,16 @@ impl Scenario {
             MachineRef::Inline(spec) => {
                 Machine::new(*spec).map_err(|error| ScenarioError::Machine { file: label.into(), error })?
             }
+        };
+        let wrong = |message: String| ScenarioError::Syntax { file: label.into(), line: None, message };
+        let mut settings = Vec::with_capacity(file.set.len());
+        for setting in &file.set {
+            let pair = setting.split_once('=').map(|(key, value)| (key.trim(), value.trim()));
+            settings.push(pair.ok_or_else(|| wrong(format!("set: {setting:?}: want KEY=VALUE")))?);
+        }
+        let machine = match settings.is_empty() {
+            true => machine,
+            false => machine.set_all(settings).map_err(|error| ScenarioError::Machine { file: label.into(), error })?,
         };
         let stem = FilePath::new(label).file_stem().map_or_else(|| label.into(), |s| s.to_string_lossy().into_owned());
         let scenario = Self {
@@ -282,6 +310,7 @@ impl Scenario {
             name: Some(name),
             title,
             machine,
+            set: Vec::new(),
             step,
             duration,
             pose_acceleration,

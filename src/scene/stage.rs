@@ -25,6 +25,8 @@ pub struct ViewOptions {
     pub hot: Option<Handle>,
     /// Where the pointer holds what it drags, m.
     pub held: Option<[f64; 2]>,
+    /// A pose constant to show A, or the target, on, rad.
+    pub preview_b: Option<f64>,
     /// What the pointer has drawn so far, m.
     pub stroke: Vec<[f64; 2]>,
     /// What was asked for last and refused.
@@ -33,7 +35,15 @@ pub struct ViewOptions {
 
 impl Default for ViewOptions {
     fn default() -> Self {
-        Self { theme: Theme::Dark, dexterity: false, hot: None, held: None, stroke: Vec::new(), refused: None }
+        Self {
+            theme: Theme::Dark,
+            dexterity: false,
+            hot: None,
+            held: None,
+            preview_b: None,
+            stroke: Vec::new(),
+            refused: None,
+        }
     }
 }
 
@@ -224,6 +234,13 @@ impl Stage {
         if let Some(course) = &self.motion {
             solids.extend(self.linkage.ghost(&course.start, &palette, 0.16));
         }
+        if let (Some(b), Some(planes)) = (options.preview_b, &self.planes) {
+            let p = self.motion.as_ref().and_then(|c| c.points.first().copied()).unwrap_or(frame.target.at);
+            for pose in planes.map().poses(p, b).iter() {
+                let q = DriveAngles::from(planes.map().lift(*pose));
+                solids.extend(self.linkage.ghost(&q.units(), &palette, 0.34));
+            }
+        }
         solids.extend(self.linkage.solids(&e, &palette));
         let mut scene = Scene {
             background: palette.background,
@@ -240,6 +257,9 @@ impl Stage {
                 self.workspace(&mut scene, &palette, planes, b, true);
             }
             self.workspace(&mut scene, &palette, planes, frame.b_reference, false);
+            if let Some(b) = options.preview_b {
+                self.preview(&mut scene, &palette, planes, b);
+            }
             scene
                 .areas
                 .iter_mut()
@@ -342,6 +362,23 @@ impl Stage {
     fn shade(&self, area: &mut Area, palette: &Palette) {
         let [low, high] = dexterity::colours(palette);
         (area.colour, area.shade) = (low, Some(Shade { colour: high, full: self.most_det as f32 }));
+    }
+
+    /// The outline of the workspace of a b that is only looked at.
+    fn preview(&self, scene: &mut Scene, palette: &Palette, planes: &Planes, b: f64) {
+        let (r, z) = (unit(planes.map().turn(b)), self.linkage.floor());
+        for outline in &self.boundary {
+            let mut points: Vec<_> = outline.iter().map(|p| point(p * r, z)).collect();
+            points.extend(points.first().copied());
+            scene.lines.push(Line {
+                name: "workspace/preview".into(),
+                points,
+                width: 1.2,
+                colour: faded(palette.amber, 0.8),
+                dash: Some([5.0, 4.0]),
+                on_top: false,
+            });
+        }
     }
 
     fn ring(&self, scene: &mut Scene, palette: &Palette, planes: &Planes, frame: &Frame, options: &ViewOptions) {

@@ -94,7 +94,7 @@ impl Desk {
         viewport::show(ui, &self.session, &self.views, &mut self.look, &mut commands);
         keys::help(ui.ctx(), &self.look, &mut commands);
         top::dialog(ui.ctx(), &mut self.look, &mut commands);
-        if commands.iter().any(|c| !matches!(c, Command::EndGesture)) {
+        if commands.iter().any(|c| !matches!(c, Command::EndGesture | Command::Preview(_))) {
             self.look.message = None;
             self.look.refused = None;
         }
@@ -140,6 +140,7 @@ impl Desk {
                 }
                 self.look.refused = None;
             }
+            Command::Preview(b) => self.look.preview = b,
             Command::Draw(draw) => self.look.stroke = draw.then(Vec::new),
             Command::EndGesture => self.session.end_gesture(),
             Command::TogglePlay if self.session.is_playing() => self.session.pause(),

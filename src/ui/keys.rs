@@ -84,7 +84,7 @@ pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Co
             commands.push(command);
         }
     }
-    for (key, name) in [Key::Num1, Key::Num2, Key::Num3].into_iter().zip(Scenario::builtin_names()) {
+    for (key, name) in [Key::Num1, Key::Num2, Key::Num3].into_iter().zip(Scenario::cases()) {
         if chord(plain, key) {
             commands.extend(case(session, name));
         }

@@ -60,6 +60,8 @@ pub enum Command {
     Fit,
     /// Light or dark.
     Theme(Theme),
+    /// Show how A would be held on the plane of another b, rad.
+    Preview(Option<f64>),
     /// Take up the pencil, or lay it down.
     Draw(bool),
     /// Show or hide the keys.
@@ -142,6 +144,8 @@ pub struct Look {
     pub dragged: bool,
     /// What the pencil has drawn so far, m; none while it lies down.
     pub stroke: Option<Vec<[f64; 2]>>,
+    /// The b under the pointer in the chart of which b, rad.
+    pub preview: Option<f64>,
     /// What was asked for last and refused.
     pub refused: Option<Wish>,
     /// The last thing to say, and whether it is bad news.
@@ -164,6 +168,7 @@ impl Look {
             dialog: None,
             dragged: false,
             stroke: None,
+            preview: None,
             refused: None,
             message: None,
         }

@@ -54,7 +54,7 @@ pub fn show(ui: &mut Ui, session: &Session, signals: &[Signal], look: &Look, com
             header(ui, &p, chart, &lines, session.frame());
             time_plot(ui, &p, chart, &lines, session, &shown, height, commands);
         }
-        which_b(ui, &p, session, height * 1.6 + 14.0, commands);
+        which_b(ui, &p, session, look, height * 1.6 + 14.0, commands);
     });
 }
 
@@ -217,7 +217,7 @@ fn thinned(frames: &[Instant], signal: &Signal) -> Vec<[f64; 2]> {
 }
 
 /// Fig. 3: q_1 against b for A and B, or for the target; a click chooses b.
-fn which_b(ui: &mut Ui, p: &Palette, session: &Session, height: f32, commands: &mut Vec<Command>) {
+fn which_b(ui: &mut Ui, p: &Palette, session: &Session, look: &Look, height: f32, commands: &mut Vec<Command>) {
     let Some(planes) = session.run().planes() else { return };
     let (task, now) = (&session.scenario().task, session.frame());
     let named: Vec<String> = (0..task.via.len() + 2).map(|i| task.name_of(i)).collect();
@@ -275,14 +275,18 @@ fn which_b(ui: &mut Ui, p: &Palette, session: &Session, height: f32, commands: &
                 let clear = egui::Stroke::NONE;
                 plot.span(Span::new("", *from..=*to).fill(fill).border(clear));
             }
+            let last = points.len() - 1;
             for (name, line) in lines {
-                if let Some(end) = line.last() {
+                // Of many points only the ends have room for a name.
+                let named = points.len() <= 4 || name == points[0].0 || name == points[last].0;
+                if let Some(end) = line.last().filter(|_| named) {
                     let text = RichText::new(name).font(plain(11.5));
                     let place = PlotPoint::new(end[0], end[1]);
                     let text = egui_plot::Text::new("name", place, text).color(colour(p.ink));
                     plot.text(text.anchor(egui::Align2::RIGHT_BOTTOM).allow_hover(false));
                 }
-                let line = Line::new(name.to_owned(), PlotPoints::from(line)).width(1.8).color(colour(p.ink));
+                let line = Line::new(name.to_owned(), PlotPoints::from(line)).width(1.8);
+                let line = line.color(colour(if named { p.ink } else { faded(p.dim, 0.6) }));
                 plot.line(line.style(LineStyle::Solid).allow_hover(false));
             }
             if empty {
@@ -300,6 +304,10 @@ fn which_b(ui: &mut Ui, p: &Palette, session: &Session, height: f32, commands: &
             plot.pointer_coordinate().map(|c| c.x)
         });
     name(&response.response, "Which b: q1 against b of each point");
+    let preview = response.inner.filter(|_| response.response.hovered());
+    if preview != look.preview {
+        commands.push(Command::Preview(preview));
+    }
     let held = response.response.dragged() || response.response.clicked();
     if let (true, Some(b)) = (held, response.inner) {
         commands.push(Command::Edit(set_b(session, b)));

@@ -31,12 +31,14 @@ pub fn show(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Comm
 }
 
 fn machines(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
-    let current = session.scenario().machine.name().to_owned();
+    let present = &session.scenario().machine;
+    let changed = machine::builtins().iter().any(|m| m.name() == present.name() && m != present);
+    let current = if changed { format!("{} (changed)", present.name()) } else { present.name().to_owned() };
     let tip = "The machine: three coaxial drives at B, nine links";
     let combo = ComboBox::from_id_salt("machine").selected_text(&current).width(136.0);
     let response = combo.show_ui(ui, |ui| {
         for machine in machine::builtins() {
-            let chosen = machine.name() == current;
+            let chosen = machine == present;
             if ui.selectable_label(chosen, machine.name()).on_hover_text(&machine.spec().summary).clicked() && !chosen {
                 // Everything that was set stays; what was done to the other machine does not.
                 let scenario = Scenario { machine: machine.clone(), edits: Vec::new(), ..session.scenario().clone() };
@@ -52,11 +54,17 @@ fn scenarios(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
     let shown = if current.title.is_empty() { &current.name } else { &current.title };
     let combo = ComboBox::from_id_salt("scenario").selected_text(shown).width(196.0);
     let response = combo.show_ui(ui, |ui| {
-        for (i, builtin) in Scenario::builtin_names().into_iter().filter_map(Scenario::builtin).enumerate() {
+        let cases = Scenario::cases().count();
+        for (i, builtin) in Scenario::builtin_names().filter_map(Scenario::builtin).enumerate() {
             let chosen = builtin.name == current.name;
-            let label = format!("{}   {}", i + 1, builtin.title);
+            let label =
+                if i < cases { format!("{}   {}", i + 1, builtin.title) } else { format!("     {}", builtin.title) };
             if ui.selectable_label(chosen, label).clicked() {
-                commands.extend(case(session, &builtin.name));
+                commands.extend(match i < cases {
+                    true => case(session, &builtin.name),
+                    // These bring the machine that they are about.
+                    false => Some(Command::Open(Box::new(builtin))),
+                });
             }
         }
         ui.separator();

@@ -36,6 +36,7 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &mut Look, comm
             dexterity: look.dexterity,
             hot: look.grabbed.map(|grip| grip.handle).or(look.hot),
             held: look.held,
+            preview_b: look.preview,
             stroke: look.stroke.clone().unwrap_or_default(),
             refused: look.refused.as_ref().and_then(|r| r.curve.clone()),
         };

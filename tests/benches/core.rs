@@ -120,7 +120,7 @@ fn workspace_boundary(bencher: Bencher) {
 #[cfg(feature = "record")]
 #[divan::bench]
 fn record_three_cases(bencher: Bencher) {
-    let scenarios: Vec<_> = Scenario::builtin_names().into_iter().filter_map(Scenario::builtin).collect();
+    let scenarios: Vec<_> = Scenario::cases().filter_map(Scenario::builtin).collect();
     let file = std::env::temp_dir().join(format!("stillbase-bench-{}.rrd", std::process::id()));
     let options = stillbase::headless::Options { pictures: None, force: true };
     bencher.bench_local(|| stillbase::headless::record(&scenarios, &file, &options, &mut |_| {}).expect("it records"));

@@ -728,7 +728,7 @@ fn plan_says_what_its_scenario_then_does() {
     assert_eq!((&plan["feasible"], &plan["duration"]), (&json!(true), &json!(0.8)));
     let done = object(&["simulate", name]);
     assert_eq!(done["verdict"]["reactionless"], json!(true));
-    near(&plan["peak_torque"], &done["verdict"]["peak_torque"], 1e-3, "peak torque");
+    near(&plan["peak_torque"], &done["verdict"]["peak_torque"], 5e-3, "peak torque");
     fails(&[&arguments[..], &["-o", name]].concat(), 2, &["exists"]);
 
     let straight = object(&["plan", "nine-link", "0.5,0.5", "0.55,0.9", "--b", "2.4", "--law", "fastest"]);
@@ -748,7 +748,7 @@ fn plan_says_what_its_scenario_then_does() {
 #[test]
 fn plan_refuses_with_where_why_and_what_would_do() {
     let arguments = ["plan", "nine-link", "0.42,1.12", "0,0.5", "--shape", "line", "--b", "2.4"];
-    let said = ["the path stops at (0.417, 1.117) m", "a1 at its upper limit", "b = 2.5440 rad would do", "76.3"];
+    let said = ["the path stops at (0.418, 1.116) m", "a1 at its upper limit", "b = 2.5256 rad would do", "68.1"];
     fails(&arguments, 1, &said);
     let out = stillbase(&[&arguments[..], &["--json"]].concat());
     assert_eq!(out.status.code(), Some(1));

@@ -105,7 +105,7 @@ impl Contents {
 }
 
 fn cases() -> Vec<Scenario> {
-    Scenario::builtin_names().map(|name| Scenario::builtin(name).expect("built in")).to_vec()
+    Scenario::cases().map(|name| Scenario::builtin(name).expect("built in")).collect()
 }
 
 fn short(name: &str) -> Scenario {

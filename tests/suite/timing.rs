@@ -429,6 +429,28 @@ fn some_limit_is_active_and_none_is_passed() {
     }
 }
 
+/// A straight way there and back, q = q_A + r sin π s: at the turn q′ vanishes and only ṡ² is bounded. There and back
+/// at the greatest |q̈| of the drive that limits take 4 √(r/q̈).
+#[test]
+fn a_path_may_turn_back() {
+    let machine = nine_link();
+    let (model, around) = of(machine);
+    let r = [0.3, 0.2, 0.3];
+    let path = waves(r, [std::f64::consts::PI; 3], [0.0; 3]);
+    let best = (0..3).map(|k| 4.0 * (r[k] * model.diagonal(k) / by_torque().torque[k]).sqrt()).fold(0.0, f64::max);
+    for n in [500, 501, 1000] {
+        let found = timed(&path, machine, &by_torque(), n);
+        assert!((found.profile.duration() / best - 1.0).abs() < 2e-3, "{} and {best}", found.profile.duration());
+        let usage = usage(&path, &found, machine, &by_torque(), 10_000);
+        assert!(usage.active > 0.97 && usage.violation() < 1e-3, "{usage:?}");
+    }
+    let limits = Limits { jerk: [3000.0; 3].into(), ..by_torque() };
+    let smooth = fastest(&path, &model, &around, &limits, true).expect("limits");
+    let motion = Motion { path, profile: smooth.profile };
+    let usage = Usage::of(&motion, &model, &around, &limits, 10_000);
+    assert!(usage.violation() < 1e-4 && smooth.gap.expect("a bound") < 0.5, "{usage:?}");
+}
+
 /// The account itself: half and twice a limit, and what it names.
 #[test]
 fn usage_tells_violations() {
@@ -710,7 +732,7 @@ proptest! {
             }
         };
         let usage = usage(&path, &found, &machine, &limits, 4000);
-        prop_assert!(usage.violation() < 2e-3, "{:?}", usage);
+        prop_assert!(usage.violation() < 5e-3, "{:?}", usage);
         prop_assert!(usage.active > 0.9, "{:?}", usage);
         let end = found.profile.at(found.profile.duration() * (1.0 - 1e-9));
         prop_assert!((end.s - 1.0).abs() < 1e-6 && end.rate < 1e-3);
