@@ -93,6 +93,7 @@ area workspace/compared turned 4.017
 area workspace turned 1.928
 line workspace/compared/boundary closed
 line workspace/boundary closed
+line workspace/change-point (0.091, -0.244) to (-0.041, 0.659)
 line ring (0.149, 0.000) to (0.149, 0.000)
 line ring/b (0.149, 0.000) to (-0.052, 0.139)
 line path (0.500, 0.500) to (0.550, 0.900)
