@@ -14,6 +14,8 @@ use crate::reactionless::{NoReach, PlaneMap, PlanePoint, SLACK};
 const SAMPLES: usize = 25;
 /// From one station to the next a pose may move by this much, rad; further away is another branch.
 const JUMP: f64 = 0.2;
+/// Newton's iteration from a guess is trusted if it moves no further than this, rad.
+const NEAR: f64 = 0.05;
 /// Steps of b below this are rounding, rad.
 const FLAT: f64 = 1e-11;
 
@@ -110,13 +112,19 @@ impl Station {
         }
         let share = (on - from.b) / (to.b - from.b);
         let guess = [0, 1].map(|i| from.a[i] + share * (to.a[i] - from.a[i]));
+        if map.det(guess) * self.det > 0.0
+            && let Some(a) = map.follow(self.point.p, on, guess)
+            && (a[0] - guess[0]).hypot(a[1] - guess[1]) < NEAR
+        {
+            return Some(PlanePoint { a, b });
+        }
         let far = |x: &PlanePoint| (x.a[0] - guess[0]).hypot(x.a[1] - guess[1]);
         let poses = map.poses(self.point.p, on);
         let own = poses.iter().filter(|x| map.det(x.a) * self.det > 0.0);
         own.min_by(|x, y| far(x).total_cmp(&far(y))).map(|x| PlanePoint { a: x.a, b })
     }
 
-    /// Where the corridor is widest from its ends; b itself where it has none.
+    /// The b furthest from both ends; b itself where there are none.
     fn middle(&self, b: f64) -> f64 {
         if self.low.is_finite() { 0.5 * (self.low + self.high) } else { b }
     }
@@ -203,8 +211,7 @@ fn station(map: &PlaneMap, u: f64, point: CurvePoint, near: PlanePoint, det: f64
         for mut line in sheets(map, branch) {
             let (low, high) = (line[0].b, line[line.len() - 1].b);
             // Folds end a part, so that inside it det has one sign; a sheet may have shrunk to a point, where it is anything.
-            let dets = line.iter().map(|at| map.det(at.a));
-            let own = dets.fold(0.0, |most: f64, det| if det.abs() > most.abs() { det } else { most });
+            let own = map.det(inside(&line));
             if own * det < 0.0 && high - low > FLAT {
                 continue;
             }
@@ -220,10 +227,20 @@ fn station(map: &PlaneMap, u: f64, point: CurvePoint, near: PlanePoint, det: f64
             }
         }
     }
-    match (best, map.reach(p)) {
-        (Some((_, station)), _) => Ok(station),
-        (None, Err(reason)) => Err(CorridorError::Unreachable { u, x: p.re, y: p.im, reason }),
-        (None, Ok(_)) => Err(CorridorError::Ends { u }),
+    if let Some((_, station)) = best {
+        return Ok(station);
+    }
+    Err(match map.reach(p) {
+        Err(reason) => CorridorError::Unreachable { u, x: p.re, y: p.im, reason },
+        Ok(_) => CorridorError::Ends { u },
+    })
+}
+
+/// A pose between the ends of a part.
+fn inside(line: &[PlanePoint]) -> [f64; 2] {
+    match line {
+        [from, to] => [0, 1].map(|i| 0.5 * (from.a[i] + to.a[i])),
+        line => line[line.len() / 2].a,
     }
 }
 

@@ -158,7 +158,7 @@ impl Drift {
     }
 }
 
-/// Follows a closed curve of the end effector time after time at zero angular momentum.
+/// Follows a closed curve of the end effector time after time, once at least, at zero angular momentum.
 ///
 /// # Errors
 /// As [`zero_momentum_path`], or if the curve is not closed.

@@ -15,12 +15,12 @@
 
 use thiserror::Error;
 
-use super::corridor::{Corridor, CorridorError};
+use super::corridor::{Corridor, CorridorError, Station};
 use super::curve::CurvePoint;
 use super::inverse::pose_along;
 use super::path::{PathError, minimum_norm_path};
 use super::pose_course::{PoseCourse, Reaction};
-use super::pose_program::{KEPT, STATIONS, least_course};
+use super::pose_program::{STATIONS, least_course};
 use super::price::{Price, PriceError};
 use super::table::Table;
 use crate::machine::{Chain, Inertia};
@@ -31,6 +31,8 @@ use crate::reactionless::{PlaneMap, PlanePoint, SLACK};
 pub const SPACES: usize = 96;
 /// The most pieces.
 pub const MAX_SPACES: usize = 512;
+/// How near to its curve the end effector is kept between nodes, as a part of the arm.
+const ON_CURVE: f64 = 1e-10;
 
 /// What is to be least.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -239,12 +241,13 @@ pub struct MinimumNorm {
     pub keeps_limits: bool,
 }
 
-/// The drives along a course of b, by nodes.
+/// The drives along a course of b: as few nodes as keep the end effector on its curve at every station, because the
+/// rounding of q″ between nodes grows with their number. Near a fold it takes them all.
 fn followed(corridor: &Corridor, course: &PoseCourse) -> Result<Table, LeastReactionError> {
-    let map = corridor.map();
+    let (map, stations) = (corridor.map(), corridor.stations());
     let mut from = corridor.start().a;
-    let mut nodes = Vec::with_capacity(corridor.stations().len() / KEPT + 1);
-    for station in corridor.stations().iter().step_by(KEPT) {
+    let mut nodes = Vec::with_capacity(stations.len());
+    for station in stations {
         let b = course.at(station.u);
         let missing = LeastReactionError::NotFollowed { u: station.u };
         let on = pose_along(map, &station.point, b, from)
@@ -253,5 +256,17 @@ fn followed(corridor: &Corridor, course: &PoseCourse) -> Result<Table, LeastReac
         from = at.a;
         nodes.push(node);
     }
-    Table::even(nodes).ok_or(LeastReactionError::NotFollowed { u: 0.0 })
+    let nothing = LeastReactionError::NotFollowed { u: 0.0 };
+    let near = ON_CURVE * map.c().iter().map(|c| c.abs()).sum::<f64>();
+    let off = |table: &Table, station: &Station| {
+        let at = map.project(&table.at(station.u).q);
+        (map.forward(at.a, at.b) - station.point.p).norm()
+    };
+    for step in [STATIONS / 2, STATIONS / 4] {
+        let table = Table::even(nodes.iter().step_by(step).copied().collect()).ok_or(nothing.clone())?;
+        if stations.iter().all(|station| off(&table, station) <= near) {
+            return Ok(table);
+        }
+    }
+    Table::even(nodes).ok_or(nothing)
 }

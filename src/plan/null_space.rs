@@ -20,6 +20,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::path::PathPoint;
+use super::table::Table;
 use crate::dynamics::mass_matrix;
 use crate::kinematics::column;
 use crate::machine::{BALANCED, Inertia};
@@ -77,6 +79,60 @@ impl NullSpace {
     pub fn basis(&self) -> &[PerDrive] {
         &self.basis[..self.len]
     }
+}
+
+/// The rates of zero momentum nearest to wanted ones: w − D (D · w)/(D · D).
+pub fn projected(model: &Inertia, q: &DriveAngles, w: &PerDrive) -> PerDrive {
+    let d = momentum_row(model, &q.units());
+    w.plus(-share(&d, w), &d)
+}
+
+/// (D · w)/(D · D); 0 where D is, so that nothing has to be taken away.
+fn share(d: &PerDrive, w: &PerDrive) -> f64 {
+    let square = d.dot(d);
+    if square > 0.0 { d.dot(w) / square } else { 0.0 }
+}
+
+/// Spaces between the nodes of a motion.
+const SPACES: usize = 256;
+/// Steps of its integration from node to node.
+const STEPS: usize = 4;
+
+/// A motion of zero momentum from a pose, any number of drives: q′ is the wanted direction w, rad, as far as it transmits
+/// nothing, by the fourth-order rule. On an invariant machine it is a straight line. `None` unless pose and direction are
+/// of the machine and finite.
+pub fn motion(model: &Inertia, start: DriveAngles, w: &PerDrive) -> Option<Table> {
+    let n = model.drives();
+    if start.len() != n || w.len() != n || !start.iter().chain(w.iter()).all(|x| x.is_finite()) {
+        return None;
+    }
+    let h = 1.0 / (SPACES * STEPS) as f64;
+    let slope = |q: &PerDrive| projected(model, &DriveAngles(*q), w);
+    let mut q = start.0;
+    let mut nodes = Vec::with_capacity(SPACES + 1);
+    for i in 0..=SPACES * STEPS {
+        if i % STEPS == 0 {
+            nodes.push(node(model, DriveAngles(q), w));
+        }
+        let k1 = slope(&q);
+        let k2 = slope(&q.plus(h / 2.0, &k1));
+        let k3 = slope(&q.plus(h / 2.0, &k2));
+        let k4 = slope(&q.plus(h, &k3));
+        q = q.plus(h / 6.0, &k1).plus(h / 3.0, &k2).plus(h / 3.0, &k3).plus(h / 6.0, &k4);
+    }
+    Table::even(nodes)
+}
+
+/// q, q′ = w − σ D and q″ = −σ′ D − σ D′, with σ = (D · w)/(D · D).
+fn node(model: &Inertia, q: DriveAngles, w: &PerDrive) -> PathPoint {
+    let e = q.units();
+    let d = momentum_row(model, &e);
+    let sigma = share(&d, w);
+    let first = w.plus(-sigma, &d);
+    let rate = momentum_row_rate(model, &e, &first);
+    let square = d.dot(&d);
+    let sigma_rate = if square > 0.0 { (rate.dot(w) - 2.0 * sigma * d.dot(&rate)) / square } else { 0.0 };
+    PathPoint { q, first, second: d.scaled(-sigma_rate).plus(-sigma, &rate) }
 }
 
 /// The rates of three drives that give the end effector the velocity v, m/s, at angular momentum h, kg m²/s about B:

@@ -98,7 +98,7 @@ impl Path {
         }
     }
 
-    /// d³q/ds³ at s, rad: zero on straight lines, else from differences of q″ over [`THIRD_OVER`] either way.
+    /// d³q/ds³ at s, rad: zero on straight lines, else from differences of q″ over 1e-5 either way.
     pub fn third(&self, s: f64) -> PerDrive {
         let (before, after) = ((s - THIRD_OVER).max(0.0), (s + THIRD_OVER).min(1.0));
         match self {

@@ -10,7 +10,7 @@ use crate::reactionless::SLACK;
 /// Stations of the corridor in each piece; the program keeps every second one, and all are checked.
 pub(super) const STATIONS: usize = 8;
 /// Between two stations that the program keeps.
-pub(super) const KEPT: usize = 2;
+const KEPT: usize = 2;
 /// b keeps this far from the corridor's ends, rad, or a tenth of its width: at a fold the joints would be infinitely fast.
 const MARGIN: f64 = 1e-3;
 /// Where the start pose is nearer to an end than that, the margin grows over this part of the motion.

@@ -181,7 +181,7 @@ impl Price {
     /// time: Δθ = −D_1 Δb/(I_b + μ|ρ|² + ΣD_k), rad. Here Δb is that of the angles between drives and base, q_k − θ.
     ///
     /// # Errors
-    /// If the machine is not this price's own, or its centre of mass moves, or the base is none.
+    /// If the machine's mass matrix is not constant, its centre of mass moves, or the base is none.
     pub fn base_turn(&self, model: &Inertia, base: &FloatingBase) -> Result<f64, PriceError> {
         Self::of(model, self.delta_b)?;
         if !model.is_force_balanced() {

@@ -1,5 +1,7 @@
 //! Timings s(t) from rest to rest: a law over a time, or phases of constant jerk.
 
+use std::collections::VecDeque;
+
 use super::law::{Progress, TimeLaw};
 
 /// When a motion is where on its path: s(t) from 0 to 1 with its derivatives, still before 0 and from T on.
@@ -247,9 +249,22 @@ impl Profile {
 
     /// The same rates where phases begin, at constant s̈ between; `None` for a law.
     pub fn levelled(&self) -> Option<Self> {
+        self.clipped(0.0)
+    }
+
+    /// The same with every peak of ṡ cut down to where it is a given time wide, s, and s̈ constant in every phase: a
+    /// rate is kept only if it, or a greater one, lasts that long. `None` for a law, or a width beyond T.
+    pub fn clipped(&self, width: f64) -> Option<Self> {
         let Shape::Phases(phases) = &self.shape else { return None };
-        let each = phases.starts.iter().map(|p| (p.at.s, p.at.rate * p.at.rate)).chain([(1.0, 0.0)]);
-        let (s, x): (Vec<f64>, Vec<f64>) = each.unzip();
+        let each = phases.starts.iter().map(|p| (p.t, p.at.s, p.at.rate));
+        let each: Vec<_> = each.chain([(self.duration, 1.0, 0.0)]).collect();
+        let t: Vec<f64> = each.iter().map(|e| e.0).collect();
+        let mut rate: Vec<f64> = each.iter().map(|e| e.2).collect();
+        if width > 0.0 {
+            rate = opened(&t, &rate, width);
+        }
+        let s: Vec<f64> = each.iter().map(|e| e.1).collect();
+        let x: Vec<f64> = rate.iter().map(|v| v * v).collect();
         Self::through(&s, &x, &[])
     }
 
@@ -317,4 +332,46 @@ impl Profile {
             [0.0, 0.5, 1.0].map(|part| after(&start.at, part * time))
         })
     }
+}
+
+/// For each instant the greatest of what is kept throughout some window that holds it; windows begin or end at an
+/// instant and reach as far as the first one that is a width away, or to the end. Instants rise.
+fn opened(t: &[f64], value: &[f64], width: f64) -> Vec<f64> {
+    let last = t.len() - 1;
+    // Windows that begin at each instant: where they end; those that end at each: where they begin.
+    let ends: Vec<usize> = (0..=last).map(|a| t.partition_point(|b| *b < t[a] + width).min(last)).collect();
+    let begins: Vec<usize> =
+        (0..=last).map(|b| t.partition_point(|a| *a <= t[b] - width).saturating_sub(1).min(b)).collect();
+    let negative: Vec<f64> = value.iter().map(|v| -v).collect();
+    let least = |windows: &mut dyn Iterator<Item = (usize, usize)>| -> Vec<f64> {
+        greatest_over(&negative, windows).iter().map(|v| -v).collect()
+    };
+    let from = least(&mut ends.iter().enumerate().map(|(a, b)| (a, *b)));
+    let to = least(&mut begins.iter().enumerate().map(|(b, a)| (*a, b)));
+    // The windows that hold an instant.
+    let first = (0..=last).map(|i| (ends.partition_point(|end| *end < i), i));
+    let second = (0..=last).map(|i| (i, begins.partition_point(|begin| *begin <= i) - 1));
+    let (from, to) = (greatest_over(&from, first), greatest_over(&to, second));
+    (0..=last).map(|i| value[i].min(from[i].max(to[i]))).collect()
+}
+
+/// The greatest value over each of windows whose ends rise.
+fn greatest_over(value: &[f64], windows: impl Iterator<Item = (usize, usize)>) -> Vec<f64> {
+    // Candidates in order, each greater than all that follow it.
+    let mut queue: VecDeque<usize> = VecDeque::new();
+    let mut next = 0;
+    let over = |(begin, end): (usize, usize)| {
+        while next <= end {
+            while queue.back().is_some_and(|i| value[*i] <= value[next]) {
+                queue.pop_back();
+            }
+            queue.push_back(next);
+            next += 1;
+        }
+        while queue.front().is_some_and(|i| *i < begin) {
+            queue.pop_front();
+        }
+        queue.front().map_or(f64::NEG_INFINITY, |i| value[*i])
+    };
+    windows.map(over).collect()
 }

@@ -6,7 +6,9 @@ use stillbase::dynamics::{Surroundings, angular_momentum, base_wrench, mass_matr
 use stillbase::kinematics::{end_effector, velocity};
 use stillbase::machine::{Inertia, Machine, builtin, parse};
 use stillbase::plan::drift::{DriftError, circle, drift, drift_in, zero_momentum_path};
-use stillbase::plan::null_space::{NullSpace, is_integrable, momentum_row, momentum_row_rate, rates, twist};
+use stillbase::plan::null_space::{
+    NullSpace, is_integrable, momentum_row, momentum_row_rate, motion, projected, rates, twist,
+};
 use stillbase::plan::pose_integral::PoseIntegral;
 use stillbase::planar::{DriveAngles, PerDrive, Vector};
 
@@ -317,6 +319,41 @@ fn a_cycle_is_a_path_of_zero_moment() {
         let wrench = base_wrench(&model, &node.q.units(), &node.first, &node.second, &Surroundings::default());
         assert!(wrench.total().moment.abs() < 1e-12, "{:e}", wrench.total().moment);
     }
+}
+
+/// Along the null space, with any number of drives: no momentum, no moment, and as near to the wanted way as can be.
+#[test]
+fn motions_along_the_null_space_transmit_nothing() {
+    for drives in [2, 3, 5] {
+        let (model, start) = (serial(drives, 0.04), angles(&[0.1, 1.4, 2.9, 4.0, 0.7][..drives]));
+        let w = PerDrive::from_slice(&[1.1, -0.7, 1.9, 0.4, -1.3][..drives]).expect("few");
+        let table = motion(&model, start, &w).expect("of this machine");
+        assert!(table.at(1.0).q.0.minus(&start.0).max_abs() > 0.5, "it goes somewhere");
+        for node in table.nodes() {
+            let e = node.q.units();
+            assert!(angular_momentum(&model, &e, &node.first).abs() < 1e-13);
+            let wrench = base_wrench(&model, &e, &node.first, &node.second, &Surroundings::default());
+            assert!(wrench.total().moment.abs() < 1e-12, "{:e}", wrench.total().moment);
+            // What was taken away is at right angles to every other direction of the null space.
+            let gone = w.minus(&projected(&model, &node.q, &w));
+            assert!(NullSpace::of(&model, &node.q).basis().iter().all(|x| x.dot(&gone).abs() < 1e-13));
+        }
+        for i in 1..50 {
+            let (s, h) = (f64::from(i) / 50.0, 1e-4);
+            let [back, on, ahead] = [s - h, s, s + h].map(|s| table.at(s));
+            let rate = ahead.q.0.minus(&back.q.0).scaled(0.5 / h);
+            assert!(rate.minus(&on.first).max_abs() < 1e-5, "{drives} drives, s = {s}");
+            assert!(projected(&model, &on.q, &w).minus(&on.first).max_abs() < 1e-8, "{drives} drives, s = {s}");
+        }
+        if let Some(integral) = PoseIntegral::of(&model) {
+            let b = table.nodes().iter().map(|node| integral.b([node.q[0], node.q[1]]));
+            assert!(b.clone().all(|b| (b - integral.b([start[0], start[1]])).abs() < 1e-10));
+        }
+    }
+    let straight = motion(&Inertia::of(nine_link()), Q.into(), &[0.3, -0.4, 1.0].into()).expect("of this machine");
+    let way = straight.at(1.0).q.0.minus(&PerDrive::from(Q));
+    assert!(straight.at(0.3).q.0.minus(&PerDrive::from(Q).plus(0.3, &way)).max_abs() < 1e-12);
+    assert_eq!(motion(&serial(2, 0.0), Q.into(), &[0.0; 3].into()), None);
 }
 
 #[test]
