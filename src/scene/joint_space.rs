@@ -330,7 +330,10 @@ impl JointSpace {
         let mut path = line("path", points, 2.0, palette.ink);
         (path.dash, path.on_top) = (Some([2.0, 3.5]), true);
         scene.lines.push(path);
-        for (name, at, anchor, aside) in [("A", first, Anchor::Right, -11.0), ("B", last, Anchor::Left, 11.0)] {
+        let ends = [("A", first, Anchor::Right, -11.0), ("B", last, Anchor::Left, 11.0)];
+        // A closed path has one end.
+        let closed = first.iter().zip(last).all(|(s, t)| (s - t).abs() < 1e-3);
+        for (name, at, anchor, aside) in ends.into_iter().take(if closed { 1 } else { 2 }) {
             scene.markers.push(Marker {
                 name: format!("waypoint/{name}"),
                 at,

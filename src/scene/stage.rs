@@ -140,7 +140,8 @@ const LOOKS: i32 = 256;
 /// The most points of a task that are drawn one by one; more are a curve drawn by hand.
 const NAMED: usize = 24;
 
-fn waypoints(task: &Task) -> Vec<(usize, String, Vector)> {
+/// Numbers, names and places of the points that are drawn, m.
+pub(super) fn waypoints(task: &Task) -> Vec<(usize, String, Vector)> {
     let named = |(i, p)| (i, task.name_of(i), p);
     let all: Vec<_> = task.points().into_iter().enumerate().map(named).collect();
     if all.len() <= NAMED && task.shape() != Shape::Freehand {

@@ -9,7 +9,7 @@ use super::axes::{self, Axis};
 use super::camera::{Camera, Orbit};
 use super::palette::{Palette, faded, palette};
 use super::pointer::Pointer;
-use super::stage::{Handle, ViewOptions, area_of, target_handle};
+use super::stage::{Handle, ViewOptions, area_of, target_handle, waypoints};
 use super::views::{Aim, GRIP, Grip};
 use super::wall::Wall;
 use super::{Anchor, Label, Line, Marker, Model, Scene, Solid};
@@ -28,6 +28,8 @@ const CONTOUR: f64 = 0.5;
 const MARGIN: f64 = 0.08;
 /// Height of the box in radii of the workspace.
 const HEIGHT: f64 = 2.1;
+/// The most points that have their b shown; of more, the first and the last.
+const POSTS: usize = 8;
 /// How near to a bar the pointer takes hold of it, px.
 const BAR_GRIP: f64 = 9.0;
 
@@ -38,8 +40,8 @@ pub struct Tower {
     outlines: Vec<Vec<Vector>>,
     wall: Wall,
     model: Arc<Model>,
-    /// A and B of a planned motion.
-    ends: Option<[Post; 2]>,
+    /// A, B and what is between them, of a planned motion.
+    ends: Option<Vec<Post>>,
     /// The planned motion: p and b.
     course: Vec<(Vector, f64)>,
     radius: f64,
@@ -49,8 +51,8 @@ pub struct Tower {
 /// A point of the plane and the b that reach it.
 #[derive(Clone, Debug)]
 pub struct Post {
-    /// `A`, `B`, `target`.
-    pub name: &'static str,
+    /// `A`, `1`, `B`, `target`.
+    pub name: String,
     /// m.
     pub at: Vector,
     /// None if no b does.
@@ -81,11 +83,13 @@ impl Tower {
             let at = |i: i32| motion.path.at(f64::from(i) / 96.0).q;
             (0..=96).map(at).map(|q| (place_of(&tip, &q.units()), planes.map().project(&q).b)).collect()
         });
-        let post = |name, at| Post { name, at, reach: planes.map().reach(at).ok() };
-        let ends = match (course.first(), course.last()) {
-            (Some(a), Some(b)) => Some([post("A", a.0), post("B", b.0)]),
-            _ => None,
-        };
+        let ends = run.motion().map(|_| {
+            let mut points = waypoints(&run.scenario().task);
+            if points.len() > POSTS {
+                points.drain(1..points.len() - 1);
+            }
+            points.into_iter().map(|(_, name, at)| Post { name, at, reach: planes.map().reach(at).ok() }).collect()
+        });
         Some(Self { planes, outlines, wall, model, ends, course, radius, span })
     }
 
@@ -109,10 +113,10 @@ impl Tower {
     pub fn posts(&self, frame: &Frame) -> Vec<(Post, Vec<[f64; 2]>)> {
         let window = self.window(frame.b_reference);
         let posts = match &self.ends {
-            Some(ends) => ends.to_vec(),
+            Some(ends) => ends.clone(),
             None => {
                 let at = frame.target.at;
-                vec![Post { name: "target", at, reach: self.planes.map().reach(at).ok() }]
+                vec![Post { name: "target".into(), at, reach: self.planes.map().reach(at).ok() }]
             }
         };
         posts
@@ -294,7 +298,7 @@ impl Tower {
             scene.labels.push(Label {
                 at: point(post.at, head),
                 offset: [0.0, -11.0],
-                text: post.name.into(),
+                text: post.name.clone(),
                 colour: palette.ink,
                 size: 13.0,
                 anchor: Anchor::Centre,
