@@ -704,7 +704,7 @@ fn brief(x: f64) -> String {
 }
 
 fn brief_point(p: Vector) -> String {
-    format!("{:.3}, {:.3}", p.re, p.im)
+    format!("{}, {}", signed(p.re, 3), signed(p.im, 3))
 }
 
 /// Fixed decimals with a real minus sign, and no minus on zero.

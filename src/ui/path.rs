@@ -285,9 +285,12 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
             let row = Row { label: "cycles", unit: "", tip, decimals: 0, speed: 0.05, range: 1.0..=100.0 };
             let response = row.show(ui, p, &mut cycles);
             send(commands, &[response], || Edit::task("cycles", cycles.round() as i64));
-            if let (Some(first), Some(last), true) = (plan.cycles.first(), plan.cycles.last(), task.closed) {
-                let drift: Vec<String> = last.0.minus(&first.0).iter().map(|d| signed(*d, 4)).collect();
-                note(ui, p, &format!("in the end the joints have drifted by {} rad", drift.join(", ")));
+            if let (Some((first, rounds)), true) = (plan.cycles.split_first(), task.closed) {
+                let every = rounds.len().div_ceil(10).max(1);
+                let drift = |q: &crate::planar::DriveAngles| signed(q.0.minus(&first.0).max_abs(), 3);
+                let rounds: Vec<String> = rounds.iter().skip(every - 1).step_by(every).map(drift).collect();
+                let each = if every == 1 { "each cycle".into() } else { format!("every {every} cycles") };
+                note(ui, p, &format!("drift of the joints after {each}: {} rad", rounds.join("  ")));
             }
         }
         TaskKind::Reactionless | TaskKind::MinimumNorm | TaskKind::SameTip => {}
