@@ -629,7 +629,7 @@ impl Stage {
 }
 
 /// The workspace of a pose constant at a height, m.
-pub(super) fn area_of(map: &PlaneMap, b: f64, name: &str, z: f64, colour: Rgba) -> Area {
+fn area_of(map: &PlaneMap, b: f64, name: &str, z: f64, colour: Rgba) -> Area {
     let limits = map.limits();
     Area {
         name: name.into(),
