@@ -221,9 +221,7 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
     let plan = session.run().plan();
     match task.kind {
         TaskKind::ChangeB => {
-            let end =
-                session.run().planes().map(|planes| planes.map().project(&plan.motion.at(plan.forecast.time).q).b);
-            let mut b_to = task.b_to.or(end).unwrap_or(task.b);
+            let mut b_to = plan.forecast.b_end;
             let tip = "Pose constant at B; by default the one that changes b least";
             let row = Row { label: "b at B", unit: "rad", tip, decimals: 3, speed: 0.005, range: -50.0..=50.0 };
             let response = row.show(ui, p, &mut b_to);
