@@ -189,6 +189,13 @@ impl Stage {
         self.most_det
     }
 
+    /// How many poses of the present plane put the end effector where it is, and how far it is from the boundary of
+    /// the workspace, m, positive inside. `None` for a machine without planes.
+    pub fn standing(&self, frame: &Frame) -> Option<(usize, f64)> {
+        let boundary = self.planes.as_ref()?.boundary();
+        Some((boundary.pose_count(frame.tip, frame.b), boundary.distance(frame.tip, frame.b)))
+    }
+
     /// Radius of the b ring, m.
     pub fn ring_radius(&self) -> f64 {
         0.118 * self.linkage.reach()

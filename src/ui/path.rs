@@ -52,8 +52,8 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
     let half = 0.5 * (ui.available_width() - ui.spacing().item_spacing.x);
     choose(ui, "Redundancy", "kind", &KINDS, task.kind, 2.0 * half, commands);
     ui.horizontal(|ui| {
-        choose(ui, "Shape", "shape", &SHAPES, task.shape(), half - 10.0, commands);
-        choose(ui, "Time law", "law", &LAWS, task.law, half - 10.0, commands);
+        choose(ui, "Shape", "shape", &SHAPES, task.shape(), half - 16.0, commands);
+        choose(ui, "Time law", "law", &LAWS, task.law, half - 16.0, commands);
     });
     time(ui, session, p, commands);
     points(ui, session, task, p, commands);

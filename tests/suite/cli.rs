@@ -748,7 +748,7 @@ fn plan_says_what_its_scenario_then_does() {
 #[test]
 fn plan_refuses_with_where_why_and_what_would_do() {
     let arguments = ["plan", "nine-link", "0.42,1.12", "0,0.5", "--shape", "line", "--b", "2.4"];
-    let said = ["the path stops at (0.418, 1.116) m", "a1 at its upper limit", "b = 2.5256 rad would do", "68.1"];
+    let said = ["the path stops at (0.418, 1.116) m", "a1 at its upper limit", "b = 2.5257 rad would do", "68.1"];
     fails(&arguments, 1, &said);
     let out = stillbase(&[&arguments[..], &["--json"]].concat());
     assert_eq!(out.status.code(), Some(1));
