@@ -72,6 +72,8 @@ pub struct Refused {
     pub curve: Vec<Vector>,
     /// m.
     pub at: Vector,
+    /// Why, in a few words.
+    pub why: String,
 }
 
 /// What stays the same from frame to frame.
@@ -475,7 +477,15 @@ impl Stage {
                 stroke: palette.reaction,
                 stroke_width: 2.2,
             });
-            scene.labels.push(label(refused.at, z, [12.0, 0.0], "stops here", palette.reaction, 12.0, Anchor::Left));
+            scene.labels.push(label(
+                refused.at,
+                z,
+                [12.0, 0.0],
+                &format!("stops here: {}", refused.why),
+                palette.reaction,
+                12.0,
+                Anchor::Left,
+            ));
         }
     }
 
@@ -608,11 +618,11 @@ impl Stage {
                 });
                 let would = match mending_b {
                     Some(b) => format!("b = {b:.3} rad would reach it"),
-                    None if other_sheet => "drag it round the fold, or change b".into(),
+                    None if other_sheet => "drag it round, or change b".into(),
                     None => "no b reaches it".into(),
                 };
                 let title = match other_sheet {
-                    true => "beyond a fold, on another sheet",
+                    true => "beyond a fold or a change point",
                     false => "outside the reactionless workspace",
                 };
                 let rows = [

@@ -27,12 +27,13 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &Look, commands
             };
             ui.label(RichText::new(word).font(bold(13.0)).color(tone));
             let mut facts = format!("peak |n_B| {:.3} N m  ·  b {:.3} rad", f.peaks.moment, f.b);
-            if let Some((poses, distance)) = views.stage().standing(f) {
+            let bad_news = matches!(look.message, Some((_, true)));
+            if let Some((poses, distance)) = views.stage().standing(f).filter(|_| !bad_news) {
                 let many = if poses == 1 { "one pose".into() } else { format!("{poses} poses") };
                 facts += &format!("  ·  {many}, {} m from the boundary", signed(distance.abs(), 3));
             }
             // A narrow window keeps its room for what to do next.
-            if ui.available_width() > 900.0 {
+            if ui.available_width() > 900.0 && !bad_news {
                 facts += &format!("  ·  energy balance {:.0e} J", f.energy_balance.abs());
             }
             ui.label(RichText::new(facts).font(plain(12.0)).color(colour(p.dim)));
@@ -63,7 +64,7 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &Look, commands
                         ("the target is outside".into(), p.ink)
                     }
                     (None, Reach::Outside { other_sheet: true, .. }) => {
-                        ("the target is beyond a fold, on another sheet".into(), p.ink)
+                        ("the target is beyond a fold or a change point".into(), p.ink)
                     }
                     (None, Reach::Outside { .. }) => ("the target is outside, whatever b".into(), p.ink),
                     (None, _) => ("drag the target or the b ring  ·  Space plays  ·  F1 keys".into(), p.dim),

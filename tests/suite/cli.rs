@@ -136,7 +136,16 @@ fn check_reports_table_1_as_printed_and_re_solved() {
     let (printed, want) = (object(&["check", "nine-link-table-1"]), &planning()["table_1"]);
     assert_eq!(
         keys(&printed),
-        ["coupling_coefficients", "force_balanced", "gamma_coefficients", "h", "invariant", "lambda", "mass"]
+        [
+            "coupling_coefficients",
+            "force_balanced",
+            "gamma_coefficients",
+            "h",
+            "integrable",
+            "invariant",
+            "lambda",
+            "mass"
+        ]
     );
     for (key, reference) in [
         ("gamma_coefficients", "gamma_coefficients"),
