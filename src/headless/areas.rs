@@ -4,13 +4,15 @@ use std::sync::Arc;
 
 use rerun::{Clear, EntityPath, Mesh3D, Points3D, Transform3D};
 
+use super::inside;
 use super::rows::Track;
 use super::store::{Instant, Store, StoreError};
 use super::style::{colour, dots, lines, named, point, turned, under};
 use crate::frame::Frame;
 use crate::planar::{Vector, unit};
 use crate::pose_constant::Planes;
-use crate::reactionless::Limit;
+use crate::reactionless::{Limit, PlaneMap};
+use crate::scene::Rgba;
 use crate::scene::linkage::Linkage;
 use crate::scene::palette::{Palette, faded};
 
@@ -37,9 +39,9 @@ struct Area {
 
 /// What an area looks like: edges are a little stronger than fills, the compared one lies under the other.
 struct Look {
-    fill: crate::scene::Rgba,
-    edge: crate::scene::Rgba,
-    words: crate::scene::Rgba,
+    fill: Rgba,
+    edge: Rgba,
+    words: Rgba,
     width: f32,
     z: f64,
 }
@@ -80,6 +82,7 @@ impl Areas {
             };
             let own = self.own.take().unwrap_or_else(|| Area::new(self.path(b), b));
             own.show(store, since, planes, &look)?;
+            inside::show(store, &own.path, since, planes, [linkage.reach(), look.z], &palette)?;
             self.own = Some(own);
         }
         if !fresh && compare == self.compared.as_ref().map(|area| area.b) {
@@ -125,29 +128,42 @@ impl Areas {
     }
 }
 
+/// The point of the workspace, not turned, at shares of the ranges of a_1 and a_2.
+fn within(map: &PlaneMap, shares: [f64; 2]) -> Vector {
+    let between = |l: Limit, share: f64| l.min + (l.max - l.min) * share;
+    map.forward_unturned([0, 1].map(|i| between(map.limits()[i], shares[i])))
+}
+
+/// A workspace that is not turned, at a height, m.
+pub fn sheet(map: &PlaneMap, z: f64, fill: Rgba) -> Mesh3D {
+    let share = |i: u32| f64::from(i) / f64::from(CELLS);
+    let at = |i, j| point(within(map, [share(i), share(j)]), z);
+    let corners = (0..=CELLS).flat_map(|i| (0..=CELLS).map(move |j| at(i, j)));
+    let cells = (0..CELLS).flat_map(|i| (0..CELLS).map(move |j| i * (CELLS + 1) + j));
+    let triangles = cells.flat_map(|c| [[c, c + CELLS + 1, c + 1], [c + 1, c + CELLS + 1, c + CELLS + 2]]);
+    Mesh3D::new(corners).with_triangle_indices(triangles).with_albedo_factor(colour(fill).0)
+}
+
+/// The outlines of a workspace that is not turned, at a height, m, as closed lines.
+pub fn outlines(planes: &Planes, z: f64) -> impl Iterator<Item = Vec<[f32; 3]>> {
+    planes.boundary().turned(0.0).into_iter().map(move |mut outline| {
+        outline.extend(outline.first().copied());
+        outline.into_iter().map(|[x, y]| point(Vector::new(x, y), z)).collect()
+    })
+}
+
 impl Area {
     fn new(path: EntityPath, b: f64) -> Self {
         Self { path, b, turn: Track::new(), label: Track::new() }
     }
 
     fn show(&self, store: &mut Store, since: Option<Instant>, planes: &Planes, look: &Look) -> Result<(), StoreError> {
-        let map = planes.map();
-        let [first, second] = map.limits();
-        let between = |l: Limit, share: f64| l.min + (l.max - l.min) * share;
-        let at = |s: f64, t: f64| point(map.forward_unturned([between(first, s), between(second, t)]), look.z);
-        let share = |i: u32| f64::from(i) / f64::from(CELLS);
-        let corners = (0..=CELLS).flat_map(|i| (0..=CELLS).map(move |j| at(share(i), share(j))));
-        let cells = (0..CELLS).flat_map(|i| (0..CELLS).map(move |j| i * (CELLS + 1) + j));
-        let triangles = cells.flat_map(|c| [[c, c + CELLS + 1, c + 1], [c + 1, c + CELLS + 1, c + CELLS + 2]]);
-        let fill = Mesh3D::new(corners).with_triangle_indices(triangles).with_albedo_factor(colour(look.fill).0);
-        store.shape(since, &self.path, &fill)?;
-        let outlines = planes.boundary().turned(0.0).into_iter().map(|mut outline| {
-            outline.extend(outline.first().copied());
-            outline.into_iter().map(|[x, y]| point(Vector::new(x, y), look.z)).collect()
-        });
-        store.shape(since, &under(&self.path, "boundary"), &lines(outlines, look.width, look.edge))?;
+        store.shape(since, &self.path, &sheet(planes.map(), look.z, look.fill))?;
+        let boundary = lines(outlines(planes, look.z), look.width, look.edge);
+        store.shape(since, &under(&self.path, "boundary"), &boundary)?;
         // In the broad part, where the arm rarely is.
-        let words = dots(0.5, look.words).with_positions([at(0.86, 0.88)]).with_show_labels(true);
+        let middle = point(within(planes.map(), [0.86, 0.88]), look.z);
+        let words = dots(0.5, look.words).with_positions([middle]).with_show_labels(true);
         store.shape(since, &under(&self.path, "label"), &words)
     }
 

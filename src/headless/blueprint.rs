@@ -1,11 +1,11 @@
-//! The layout that a recording opens with: scene left, plots by unit right, events below; several cases side by side
+//! The layout that a recording opens with: scene left, joint space and tower behind it, plots by unit right, events below; several cases side by side
 //! first, and each in a tab of its own.
 //!
 //! Views are rows of a store of their own. The SDK's builders reach neither the eye of a 3D view, nor axis ranges, nor
 //! backgrounds, so the rows are written here.
 
 use rerun::blueprint::components::{
-    ActiveTab, BackgroundKind, ColumnShare, ContainerKind, Eye3DKind, GridSpacing, IncludedContent, LinkAxis, LoopMode,
+    ActiveTab, BackgroundKind, ColumnShare, ContainerKind, GridSpacing, IncludedContent, LinkAxis, LoopMode,
     PanelState, PlayState, QueryExpression, RootContainer, RowShare, ViewClass,
 };
 use rerun::blueprint::datatypes::{TextLogColumn, TextLogColumnKind, TimelineColumn};
@@ -15,10 +15,12 @@ use rerun::external::re_sdk_types::blueprint::components::VisualizerInstructionI
 use rerun::external::uuid::Uuid;
 use rerun::{AsComponents, EntityPath, SeriesLines};
 
+use super::eye::Eye;
 use super::rehearsal::Rehearsal;
 use super::store::{Store, StoreError, TIME};
 use super::style::{Both, colour, series_name, under};
 use crate::scene::Rgba;
+use crate::scene::camera::Orbit;
 use crate::scene::linkage::mix;
 use crate::scene::palette::{Palette, Theme, faded, palette};
 
@@ -181,6 +183,12 @@ impl Layout<'_> {
             let origin = under(&case.root, "view");
             scenes.push(self.view("2D", "Pictures", &origin, &["$origin/**".into()], &[])?);
         }
+        let others = [("Joint space", "joint_space", case.joints), ("Tower", "tower", case.tower)];
+        for (name, path, eye) in others {
+            if let Some(eye) = eye {
+                scenes.push(self.drawing(name, &under(&case.root, path), &eye)?);
+            }
+        }
         let scene = self.container(ContainerKind::Tabs, "", &scenes, &[])?;
         let Axes { moment, force, b } = self.axes;
         let moment = Some([-moment, moment]);
@@ -196,7 +204,7 @@ impl Layout<'_> {
         let events = self.events(std::slice::from_ref(case))?;
         let phase = self.view("StateTimeline", "Phase", &under(&case.root, "phase"), &["$origin/**".into()], &[])?;
         let bottom = self.container(ContainerKind::Horizontal, "", &[events, phase], &[1.6, 1.0])?;
-        self.container(ContainerKind::Vertical, &case.title, &[top, bottom], &[4.2, 1.0])
+        self.container(ContainerKind::Vertical, &case.title, &[top, bottom], &[3.4, 1.0])
     }
 
     fn scene(&mut self, case: &Rehearsal, name: &str) -> Result<Part, StoreError> {
@@ -207,12 +215,22 @@ impl Layout<'_> {
             .with_plane(Plane3D::new([0.0, 0.0, 1.0], -0.02 * case.reach as f32))
             .with_stroke_width(0.7)
             .with_color(colour(faded(self.palette.line, 0.6)));
-        let eye = eye(case.reach);
+        let eye = eye(case.reach).controls();
         let properties: [(&str, &dyn AsComponents); 3] =
             [("Background", &background), ("LineGrid3D", &grid), ("EyeControls3D", &eye)];
-        let contents = ["machine", "com", "end_effector", "target", "workspace", "reaction"];
+        let contents = ["machine", "com", "end_effector", "target", "plan", "workspace", "reaction"];
         let contents: Vec<_> = contents.iter().map(|part| format!("$origin/{part}/**")).collect();
         self.view("3D", name, &case.root, &contents, &properties)
+    }
+
+    /// A space with axes of its own.
+    fn drawing(&mut self, name: &str, origin: &EntityPath, eye: &Eye) -> Result<Part, StoreError> {
+        let background = view::Background::new(BackgroundKind::SolidColor).with_color(colour(self.palette.background));
+        let grid = view::LineGrid3D::new().with_visible(false);
+        let eye = eye.controls();
+        let properties: [(&str, &dyn AsComponents); 3] =
+            [("Background", &background), ("LineGrid3D", &grid), ("EyeControls3D", &eye)];
+        self.view("3D", name, origin, &["$origin/**".into()], &properties)
     }
 
     fn plot(
@@ -295,14 +313,6 @@ fn case_colour(i: usize, quiet: bool, palette: &Palette) -> Rgba {
 }
 
 /// From the front and above, so near that the arm and its workspaces fill the view.
-fn eye(reach: f64) -> view::EyeControls3D {
-    let (yaw, pitch) = (0.3_f64, 0.95_f64);
-    let (centre, distance) = ([-0.12 * reach, 0.06 * reach, 0.0], 1.6 * reach);
-    let towards = [yaw.sin() * pitch.cos(), -yaw.cos() * pitch.cos(), pitch.sin()];
-    let position = [0, 1, 2].map(|i| (centre[i] + distance * towards[i]) as f32);
-    view::EyeControls3D::new()
-        .with_kind(Eye3DKind::Orbital)
-        .with_position(position)
-        .with_look_target(centre.map(|x| x as f32))
-        .with_eye_up([0.0, 0.0, 1.0])
+fn eye(reach: f64) -> Eye {
+    Eye::upright(Orbit { centre: [-0.12 * reach, 0.06 * reach, 0.0], distance: 1.6 * reach, yaw: 0.3, pitch: 0.95 })
 }

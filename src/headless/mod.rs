@@ -6,7 +6,11 @@
 //! |---|---|
 //! | `machine/base`, `machine/link/<name>` | meshes that never change; transforms |
 //! | `machine/joints`, `com`, `end_effector`, `target` | points; `end_effector/path` is the whole trail |
+//! | `plan/path`, `plan/waypoints` | where the end effector is to go; gone while the pointer leads |
 //! | `workspace/<b>` | a reactionless workspace and its boundary; b turns it |
+//! | `workspace/<b>/folds`, `…/cusps`, `…/inner_limits`, `…/change_points` | curves inside, where there are any |
+//! | `joint_space` | q as coordinates: the plane of b within the limits, the planned path, the pose |
+//! | `tower` | all workspaces, b as height: the wall, the present slice, and which b reach the task's points |
 //! | `reaction/force`, `reaction/moment` | what reaches the base, in proportion; the scale stands beside it |
 //! | `signals/<path>` | every row of the table of [`signals`](crate::signals), at every step |
 //! | `events`, `phase` | what happened |
@@ -16,9 +20,15 @@
 //! properties of the recording. The same scenarios give the same recording, whenever and wherever it is made.
 
 mod areas;
+mod axes;
 mod blueprint;
 mod body;
+mod dashes;
+mod eye;
 mod film;
+mod inside;
+mod joints;
+mod planned;
 mod reaction;
 mod recorder;
 mod rehearsal;
@@ -27,6 +37,7 @@ mod store;
 mod story;
 mod style;
 mod tip;
+mod tower;
 
 use std::path::{Path, PathBuf};
 

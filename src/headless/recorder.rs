@@ -1,5 +1,7 @@
 //! One case: from the frames of a run to the entities of a recording.
 
+use std::sync::Arc;
+
 use rerun::components::{Scalar, Text};
 use rerun::external::re_log_types::EntityPathPart;
 use rerun::{AnyValues, EntityPath, Scalars, SeriesLines, ViewCoordinates};
@@ -7,16 +9,20 @@ use rerun::{AnyValues, EntityPath, Scalars, SeriesLines, ViewCoordinates};
 use super::areas::Areas;
 use super::body::Body;
 use super::film::Film;
+use super::joints::Joints;
+use super::planned;
 use super::reaction::{Drawing, Scale};
 use super::rehearsal::Rehearsal;
 use super::store::{Clock, Instant, Store, StoreError};
 use super::story::{Story, verdict};
 use super::style::{colour, series_name, signal_colour, under};
 use super::tip::Tip;
+use super::tower::Tower;
 use crate::frame::{Frame, Peaks};
+use crate::pose_constant::Planes;
 use crate::scenario::Scenario;
 use crate::scene::palette::{Palette, Theme, palette};
-use crate::session::{Edit, Refusal, Run, replay};
+use crate::session::{Edit, Plan, Refusal, Run, replay};
 use crate::signals::Signal;
 
 /// Rows that gather before they are written.
@@ -86,7 +92,7 @@ pub fn record(
     let run = run.map_err(|refusal| Stop::Refused { scenario: scenario.name.clone(), refusal })?;
     match failure {
         Some(stop) => Err(stop),
-        None => recorder.finish(&run.frame()),
+        None => recorder.finish(&run),
     }
 }
 
@@ -107,6 +113,12 @@ struct Recorder<'a> {
     reaction_every: u64,
     body: Option<Body>,
     areas: Areas,
+    /// The plan stays what it is.
+    planned: bool,
+    /// Whose drawings joint space and tower are: the planes, and whether a planned motion leads.
+    drawn: Option<(Arc<Planes>, bool)>,
+    joints: Option<Joints>,
+    tower: Option<Tower>,
     tip: Tip,
     reactions: Drawing,
     story: Story,
@@ -132,6 +144,8 @@ impl<'a> Recorder<'a> {
         }
         let every = |time: f64| (time / scenario.step).round().max(1.0) as u64;
         let reshapes = |edit: &Edit| matches!(edit, Edit::SetMachine { .. } | Edit::CompareB { .. });
+        let leads = |edit: &Edit| edit.leads() || matches!(edit, Edit::PoseB { .. } | Edit::SetMachine { .. });
+        let later = |which: &dyn Fn(&Edit) -> bool| scenario.edits.iter().any(|e| e.step > 0 && which(&e.edit));
         let prefix = if *several { format!("{} · ", scenario.name) } else { String::new() };
         Ok(Self {
             tip: Tip::show(store, root, rehearsal.reach, &palette)?,
@@ -143,7 +157,11 @@ impl<'a> Recorder<'a> {
             rehearsal,
             root,
             palette,
-            lasting: !scenario.edits.iter().any(|e| e.step > 0 && reshapes(&e.edit)),
+            lasting: !later(&reshapes),
+            planned: !later(&leads),
+            drawn: None,
+            joints: None,
+            tower: None,
             edits: 0,
             clock: Clock::default(),
             series: vec![Vec::new(); rehearsal.signals.len()],
@@ -159,6 +177,7 @@ impl<'a> Recorder<'a> {
         let (at, last) = (Instant::of(frame), frame.step == self.rehearsal.steps);
         if frame.step == 0 {
             self.story.start(at, &self.rehearsal.title, self.scenario.machine.name());
+            self.story.plan(at, &run.scenario().task, run.planned_time());
         }
         if self.edited(at) || self.body.is_none() {
             self.show(at, run, frame)?;
@@ -173,6 +192,12 @@ impl<'a> Recorder<'a> {
             if last || frame.step.is_multiple_of(self.body_every) {
                 body.place(at, frame);
                 self.areas.place(at, frame);
+                if let Some(joints) = &mut self.joints {
+                    joints.place(at, frame);
+                }
+                if let Some(tower) = &mut self.tower {
+                    tower.place(at, frame);
+                }
                 self.tip.place(at, frame, top, last);
             }
             if last || frame.step.is_multiple_of(self.reaction_every) {
@@ -212,8 +237,41 @@ impl<'a> Recorder<'a> {
             let compare = run.scenario().compare_b;
             self.areas.show(store, (at, since), planes, body.linkage(), frame.b_reference, compare)?;
         }
+        let above = [body.linkage().reach(), body.linkage().top()];
         self.body = Some(body);
         self.film.cut();
+        self.show_plan(at, run, frame, above)
+    }
+
+    /// The plan, joint space and tower, if they have changed; above a machine of a reach and a height, m.
+    fn show_plan(&mut self, at: Instant, run: &Run, frame: &Frame, above: [f64; 2]) -> Result<(), Stop> {
+        let leads = run.motion().is_some();
+        let known = |(planes, led): &(Arc<Planes>, bool)| {
+            *led == leads && run.planes().is_some_and(|now| Arc::ptr_eq(planes, now))
+        };
+        if self.drawn.as_ref().is_some_and(known) {
+            return Ok(());
+        }
+        self.drawn = run.planes().map(|planes| (planes.clone(), leads));
+        let since = if self.planned { None } else { Some(at) };
+        let (store, root, palette) = (&mut *self.store, self.root, &self.palette);
+        planned::show(store, root, since, run, above, palette)?;
+        // What has gathered of the last drawing belongs before this one.
+        if let Some(joints) = &mut self.joints {
+            joints.write(store)?;
+        }
+        if let Some(tower) = &mut self.tower {
+            tower.write(store)?;
+        }
+        let range = self.rehearsal.b;
+        self.joints = match &self.rehearsal.joints {
+            Some(eye) => Joints::show(store, root, since, (run, frame.b_reference, range), eye, palette)?,
+            None => None,
+        };
+        self.tower = match &self.rehearsal.tower {
+            Some(eye) => Tower::show(store, root, since, (run, range), eye, palette)?,
+            None => None,
+        };
         Ok(())
     }
 
@@ -229,18 +287,25 @@ impl<'a> Recorder<'a> {
             body.write(self.store, self.root)?;
         }
         self.areas.write(self.store)?;
+        if let Some(joints) = &mut self.joints {
+            joints.write(self.store)?;
+        }
+        if let Some(tower) = &mut self.tower {
+            tower.write(self.store)?;
+        }
         self.tip.write(self.store, self.root)?;
         self.reactions.write(self.store, self.root)?;
         self.film.write(self.store, &under(self.root, "view"))
     }
 
     /// What is known only at the end.
-    fn finish(mut self, frame: &Frame) -> Result<Peaks, Stop> {
+    fn finish(mut self, run: &Run) -> Result<Peaks, Stop> {
+        let frame = &run.frame();
         self.flush()?;
         self.tip.write_trail(self.store, self.root, &self.palette)?;
         self.story.write(self.store, self.root, (Instant::of(frame), &frame.peaks))?;
         let path = EntityPath::properties() / EntityPathPart::new(self.scenario.name.as_str());
-        self.store.fixed(&path, &properties(self.scenario, &frame.peaks))?;
+        self.store.fixed(&path, &properties(self.scenario, &frame.peaks, run.plan()))?;
         Ok(frame.peaks)
     }
 }
@@ -249,17 +314,41 @@ fn path_of(root: &EntityPath, signal: &Signal) -> EntityPath {
     under(root, &format!("signals/{}", signal.path))
 }
 
-/// All that the run can be made of again, and what came of it.
-fn properties(scenario: &Scenario, peaks: &Peaks) -> AnyValues {
+/// All that the run can be made of again, what was foreseen, and what came of it.
+fn properties(scenario: &Scenario, peaks: &Peaks, plan: &Plan) -> AnyValues {
     let words = |text: &str| [Text::from(text)];
     let numbers = |values: &[f64]| values.iter().copied().map(Scalar::from).collect::<Vec<_>>();
-    AnyValues::default()
+    let number = |x: f64| [Scalar::from(x)];
+    let Plan { forecast, pace, price, cycles, .. } = plan;
+    let mut all = AnyValues::default()
         .with_component::<Text>("title", words(&scenario.title))
         .with_component::<Text>("version", words(env!("CARGO_PKG_VERSION")))
         .with_component::<Text>("verdict", words(&verdict(peaks)))
         .with_component::<Text>("scenario", words(&scenario.to_toml()))
         .with_component::<Text>("machine", words(&crate::machine::to_toml(&scenario.machine)))
         .with_component::<Scalar>("peak_torque", numbers(&peaks.torque))
-        .with_component::<Scalar>("peak_base_force", numbers(&[peaks.force]))
-        .with_component::<Scalar>("peak_base_moment", numbers(&[peaks.moment]))
+        .with_component::<Scalar>("peak_base_force", number(peaks.force))
+        .with_component::<Scalar>("peak_base_moment", number(peaks.moment))
+        .with_component::<Scalar>("forecast_time", number(forecast.time))
+        .with_component::<Scalar>("forecast_peak_base_moment", number(forecast.moment))
+        .with_component::<Scalar>("forecast_moment_impulse", number(forecast.impulse));
+    if let Some(price) = price {
+        all = all
+            .with_component::<Scalar>("delta_b", number(price.delta_b()))
+            .with_component::<Scalar>("least_peak_base_moment", number(price.least_peak(forecast.time)));
+    }
+    if let Some(pace) = pace {
+        if let Some(limit) = pace.leading {
+            all = all.with_component::<Text>("limit", words(&limit.to_string()));
+        }
+        all = all.with_component::<Scalar>("gap", number(pace.taken / pace.unlimited - 1.0));
+    }
+    // By drive, a number for each cycle: so far it has drifted in all.
+    if let [start, ends @ ..] = &cycles[..] {
+        for (k, name) in ["drift_1", "drift_2", "drift_3"].into_iter().enumerate() {
+            let drift: Vec<f64> = ends.iter().map(|end| end[k] - start[k]).collect();
+            all = all.with_component::<Scalar>(name, numbers(&drift));
+        }
+    }
+    all
 }

@@ -4,9 +4,12 @@
 use rerun::EntityPath;
 use rerun::external::re_log_types::EntityPathPart;
 
+use super::eye::Eye;
+use super::{joints, tower};
 use crate::frame::Peaks;
 use crate::scenario::Scenario;
 use crate::scene::linkage::Linkage;
+use crate::scene::palette::{Theme, palette};
 use crate::session::{Refusal, replay};
 use crate::signals::{Signal, signals};
 
@@ -31,6 +34,10 @@ pub struct Rehearsal {
     pub reach: f64,
     /// What it records.
     pub signals: Vec<Signal>,
+    /// From where joint space is seen, if there are planes.
+    pub joints: Option<Eye>,
+    /// From where the tower is seen.
+    pub tower: Option<Eye>,
 }
 
 impl Rehearsal {
@@ -58,6 +65,8 @@ impl Rehearsal {
             b,
             reach: Linkage::of(&run.scenario().machine).reach(),
             signals: signals(&scenario.machine),
+            joints: joints::eye(&run, b, &palette(Theme::Dark)),
+            tower: tower::eye(&run, b),
         })
     }
 }

@@ -8,6 +8,7 @@ use super::rows::Track;
 use super::store::{Clock, Instant, Store, StoreError};
 use super::style::{brief, colour, under};
 use crate::frame::{Frame, Peaks, Phase, Reach};
+use crate::scenario::Task;
 use crate::scene::Rgba;
 use crate::scene::palette::Palette;
 
@@ -45,6 +46,11 @@ impl Story {
     /// It begins.
     pub fn start(&mut self, at: Instant, title: &str, machine: &str) {
         self.add(at, format!("start: {title}, machine {machine}"), TextLogLevel::INFO, self.palette.ink);
+    }
+
+    /// What is planned, to take T, s.
+    pub fn plan(&mut self, at: Instant, task: &Task, time: f64) {
+        self.add(at, format!("plan: {}, T = {time:.3} s", task.in_one_line()), TextLogLevel::INFO, self.palette.ink);
     }
 
     /// Somebody changed something.

@@ -237,6 +237,16 @@ impl Task {
         })
     }
 
+    /// Kind, shape, law and points in one line, in the words of a file.
+    pub fn in_one_line(&self) -> String {
+        let word = |value: Option<Value>| value.as_ref().and_then(Value::as_str).unwrap_or_default().to_owned();
+        let [kind, shape, law] =
+            [Value::try_from(self.kind).ok(), Value::try_from(self.shape()).ok(), Value::try_from(self.law).ok()]
+                .map(word);
+        let closed = if self.closed { ", closed" } else { "" };
+        format!("{kind}, {shape}{closed}, {law}, {} points", self.via.len() + 2)
+    }
+
     /// The task with some of its keys changed, as they stand in a file; the word `default` takes a key out.
     ///
     /// # Errors

@@ -183,6 +183,13 @@ fn mark(scene: &mut Scene, palette: &Palette, sight: &Sight, k: usize, axis: &Ax
     scene.labels.push(Label { at, offset, text: axis.title.into(), colour: axis.colour, size: 12.5, anchor });
 }
 
+/// The range of `width`, about `home` where it can be, that holds a range with a `margin` to its ends; of a range that is
+/// wider, its lower part.
+pub fn covering([low, high]: [f64; 2], home: f64, width: f64, margin: f64) -> [f64; 2] {
+    let middle = home.max(high + margin - 0.5 * width).min(low - margin + 0.5 * width);
+    [middle - 0.5 * width, middle + 0.5 * width]
+}
+
 /// The range of `width` in which a value is shown: about `home` while the value keeps `margin` from its ends, else
 /// moved along with it, so that nothing ever jumps.
 pub fn sliding(value: f64, home: f64, width: f64, margin: f64) -> [f64; 2] {

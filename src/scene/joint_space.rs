@@ -79,6 +79,31 @@ impl JointSpace {
         axes::sliding(b, HOME, SPAN, MARGIN)
     }
 
+    /// For a whole run, whose b lie in a range: the b that are shown, rad.
+    pub fn window_over(&self, b: [f64; 2]) -> [f64; 2] {
+        axes::covering(b, HOME, SPAN.max(b[1] - b[0] + 2.0 * MARGIN), MARGIN)
+    }
+
+    /// The drive shown along each axis of the scene, counted from 0; the last one points up.
+    pub fn drives(&self) -> [usize; 3] {
+        self.drives
+    }
+
+    /// q at the corners of a plane, in order, rad.
+    pub fn corners(&self, b: f64) -> [[f64; 3]; 4] {
+        self.corners.map(|a| self.planes.map().lift(PlanePoint { a, b }))
+    }
+
+    /// q along the planned motion, rad.
+    pub fn planned(&self) -> &[[f64; 3]] {
+        &self.course
+    }
+
+    /// The axes of the box over a window of b, with q itself as coordinates.
+    pub fn frame_box(&self, palette: &Palette, window: [f64; 2]) -> [Axis; 3] {
+        self.axes_of(palette, self.bounds_of(window, [0.0; 3]), [0.0; 3])
+    }
+
     /// q at the scene's origin while the present pose constant is b, in the order of the drives, rad.
     pub fn origin(&self, b: f64) -> [f64; 3] {
         let [low, high] = self.window(b);
@@ -110,11 +135,15 @@ impl JointSpace {
 
     /// Ends of the box along the scene's axes.
     fn bounds(&self, b: f64) -> [[f64; 2]; 3] {
-        let window = self.window(b);
+        self.bounds_of(self.window(b), self.origin(b))
+    }
+
+    /// The same for a window of b, seen from an origin.
+    fn bounds_of(&self, window: [f64; 2], origin: [f64; 3]) -> [[f64; 2]; 3] {
         let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
-        for a in self.corners {
-            for edge in window {
-                let p = self.point(self.planes.map().lift(PlanePoint { a, b: edge }), b);
+        for edge in window {
+            for q in self.corners(edge) {
+                let p = self.drives.map(|k| q[k] - origin[k]);
                 for (bound, x) in bounds.iter_mut().zip(p) {
                     *bound = [bound[0].min(x - ROOM), bound[1].max(x + ROOM)];
                 }
@@ -225,6 +254,14 @@ impl JointSpace {
 
     fn axes(&self, palette: &Palette, frame: &Frame) -> [Axis; 3] {
         let (bounds, origin) = (self.bounds(frame.b_reference), self.origin(frame.b_reference));
+        let mut axes = self.axes_of(palette, bounds, origin);
+        for (axis, k) in axes.iter_mut().zip(self.drives) {
+            axis.now = Some((frame.q[k], palette.drive(k)));
+        }
+        axes
+    }
+
+    fn axes_of(&self, palette: &Palette, bounds: [[f64; 2]; 3], origin: [f64; 3]) -> [Axis; 3] {
         let longest = bounds.iter().map(|[from, to]| to - from).fold(0.0, f64::max);
         [0, 1, 2].map(|i| {
             let (k, [from, to]) = (self.drives[i], bounds[i]);
@@ -235,7 +272,7 @@ impl JointSpace {
                 values: [from + origin[k], to + origin[k]],
                 step: round_up(longest / 10.0),
                 decimals: 0,
-                now: Some((frame.q[k], palette.drive(k))),
+                now: None,
             }
         })
     }
@@ -253,11 +290,14 @@ impl JointSpace {
         }
     }
 
-    fn neighbours(&self, scene: &mut Scene, palette: &Palette, b: f64) {
-        let [low, high] = self.window(b);
+    /// The b of neighbouring planes in a window, rad.
+    pub fn neighbours_in(&self, [low, high]: [f64; 2]) -> impl Iterator<Item = f64> + use<> {
         let first = (low / NEIGHBOURS).ceil();
-        let planes = (0..20).map(|i| (first + f64::from(i)) * NEIGHBOURS).take_while(|b| *b <= high);
-        for of in planes {
+        (0..80).map(move |i| (first + f64::from(i)) * NEIGHBOURS).take_while(move |b| *b <= high)
+    }
+
+    fn neighbours(&self, scene: &mut Scene, palette: &Palette, b: f64) {
+        for of in self.neighbours_in(self.window(b)) {
             let mut outline = line("neighbour", self.polygon(of, b), 1.0, faded(palette.amber, 0.3));
             outline.on_top = true;
             scene.lines.push(outline);

@@ -143,7 +143,7 @@ const LOOKS: i32 = 256;
 const NAMED: usize = 24;
 
 /// Numbers, names and places of the points that are drawn, m.
-pub(super) fn waypoints(task: &Task) -> Vec<(usize, String, Vector)> {
+pub(crate) fn waypoints(task: &Task) -> Vec<(usize, String, Vector)> {
     let named = |(i, p)| (i, task.name_of(i), p);
     let all: Vec<_> = task.points().into_iter().enumerate().map(named).collect();
     if all.len() <= NAMED && task.shape() != Shape::Freehand {

@@ -22,6 +22,10 @@ use crate::session::Run;
 
 /// How much of b is shown, rad.
 pub const SPAN: f64 = 5.0;
+/// The widest, for runs over many b, rad.
+pub const MOST: f64 = 4.0 * SPAN;
+/// How much coarser a recorded wall is.
+const GRAIN: f64 = 2.6;
 /// Contours lie at multiples of this, rad.
 const CONTOUR: f64 = 0.5;
 /// The present b keeps this share of the span from top and bottom.
@@ -95,6 +99,34 @@ impl Tower {
         Some(Self { planes, outlines, wall, model, ends, course, radius, span })
     }
 
+    /// For a whole run, whose b lie in a range, with the window in which they are shown: [`SPAN`] or more, up to
+    /// [`MOST`].
+    pub fn over(run: &Run, b: [f64; 2]) -> Option<(Self, [f64; 2])> {
+        let span = (b[1] - b[0] + 2.0 * MARGIN * SPAN).clamp(SPAN, MOST);
+        Some((Self::spanning(run, span)?, axes::covering(b, 0.5 * span, span, MARGIN * SPAN)))
+    }
+
+    /// Its wall in a few thousand triangles, from z = 0, not turned.
+    pub fn coarse_wall(&self) -> Mesh {
+        let twist = 1.0 / (self.rise() * self.planes.map().lambda_sum());
+        Wall::with_grain(&self.outlines, twist, GRAIN).mesh(HEIGHT * self.radius)
+    }
+
+    /// The b at which contours lie in a window, rad, and the outlines there, turned, m.
+    pub fn levels(&self, window: [f64; 2]) -> impl Iterator<Item = (f64, Vec<Vec<Vector>>)> {
+        contours(window).map(|b| (b, self.wall.level(self.planes.map().turn(b))))
+    }
+
+    /// p, m, and b, rad, along the planned motion.
+    pub fn planned(&self) -> &[(Vector, f64)] {
+        &self.course
+    }
+
+    /// Greatest distance of the workspace from B, m.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
     /// Height of a radian of b, m.
     pub fn rise(&self) -> f64 {
         HEIGHT * self.radius / self.span
@@ -114,20 +146,16 @@ impl Tower {
     /// The points whose b are shown, with these as intervals within a window.
     pub fn posts(&self, frame: &Frame) -> Vec<(Post, Vec<[f64; 2]>)> {
         let window = self.window(frame.b_reference);
-        let posts = match &self.ends {
-            Some(ends) => ends.clone(),
-            None => {
-                let at = frame.target.at;
-                vec![Post { name: "target".into(), at, reach: self.planes.map().reach(at).ok() }]
-            }
-        };
-        posts
-            .into_iter()
-            .map(|post| {
-                let bars = post.reach.as_ref().map_or_else(Vec::new, |set| within(set, window));
-                (post, bars)
-            })
-            .collect()
+        if self.ends.is_some() {
+            return self.planned_posts(window);
+        }
+        let at = frame.target.at;
+        vec![barred(&Post { name: "target".into(), at, reach: self.planes.map().reach(at).ok() }, window)]
+    }
+
+    /// The points of a planned motion, with the b that reach them as intervals within a window.
+    pub fn planned_posts(&self, window: [f64; 2]) -> Vec<(Post, Vec<[f64; 2]>)> {
+        self.ends.iter().flatten().map(|post| barred(post, window)).collect()
     }
 
     /// What the pointer can take hold of: the end effector's dot, a bar, the slice.
@@ -217,7 +245,12 @@ impl Tower {
     }
 
     fn axes(&self, palette: &Palette, frame: &Frame) -> [Axis; 3] {
-        let [low, high] = self.window(frame.b_reference);
+        let [x, y, up] = self.frame_box(palette, self.window(frame.b_reference));
+        [x, y, Axis { now: Some((frame.b_reference, palette.amber)), ..up }]
+    }
+
+    /// The axes of the box about it, over a window of b.
+    pub fn frame_box(&self, palette: &Palette, [low, high]: [f64; 2]) -> [Axis; 3] {
         let across = |title| Axis {
             title,
             colour: palette.dim,
@@ -234,15 +267,13 @@ impl Tower {
             values: [low, high],
             step: super::stage::round_up(self.span / 6.0),
             decimals: 0,
-            now: Some((frame.b_reference, palette.amber)),
+            now: None,
         };
         [across("x, m"), across("y, m"), up]
     }
 
     fn contours(&self, scene: &mut Scene, palette: &Palette, [low, high]: [f64; 2], eye: [f64; 3]) {
-        let first = (low / CONTOUR).ceil();
-        let inner = (0..200).map(|i| (first + f64::from(i)) * CONTOUR).take_while(|b| *b <= high);
-        for b in inner.chain([low, high]) {
+        for b in contours([low, high]) {
             let z = (b - low) * self.rise();
             for (piece, near) in self.wall.contour(self.planes.map().turn(b), eye) {
                 scene.lines.push(Line {
@@ -372,6 +403,19 @@ fn sheet(map: &PlaneMap) -> Mesh {
         mesh.triangles.extend([[a, b, b + 1], [a, b + 1, a + 1]]);
     }
     mesh
+}
+
+/// A post with its bars.
+fn barred(post: &Post, window: [f64; 2]) -> (Post, Vec<[f64; 2]>) {
+    let bars = post.reach.as_ref().map_or_else(Vec::new, |set| within(set, window));
+    (post.clone(), bars)
+}
+
+/// The b of contours: round ones, and both ends.
+fn contours([low, high]: [f64; 2]) -> impl Iterator<Item = f64> {
+    let first = (low / CONTOUR).ceil();
+    let inner = (0..200).map(move |i| (first + f64::from(i)) * CONTOUR).take_while(move |b| *b <= high);
+    inner.chain([low, high])
 }
 
 /// The intervals of a set on the circle, wherever they show in a window of the real line, in order.

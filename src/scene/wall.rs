@@ -26,24 +26,31 @@ struct Stretch {
 pub struct Wall {
     stretches: Vec<Stretch>,
     twist: f64,
+    /// How much coarser than the finest.
+    grain: f64,
 }
 
 impl Wall {
     /// Above closed outlines with the inside on their left, m; `twist` in rad/m.
     pub fn of(outlines: &[Vec<Vector>], twist: f64) -> Self {
+        Self::with_grain(outlines, twist, 1.0)
+    }
+
+    /// The same with vertices as many times as far apart along the outline and in height.
+    pub fn with_grain(outlines: &[Vec<Vector>], twist: f64, grain: f64) -> Self {
         let radius = outlines.iter().flatten().fold(0.0_f64, |m, p| m.max(p.norm()));
         let stretches = outlines
             .iter()
             .flat_map(|outline| smooth_parts(outline))
-            .map(|part| Stretch::of(&thinned(&part, SIDE * radius), twist))
+            .map(|part| Stretch::of(&thinned(&part, SIDE * radius * grain, TURN * grain), twist))
             .filter(|s| s.points.len() > 1)
             .collect();
-        Self { stretches, twist }
+        Self { stretches, twist, grain }
     }
 
     /// From z = 0 to a height, m, as an open shell.
     pub fn mesh(&self, height: f64) -> Mesh {
-        let rows = ((self.twist * height / ROW).abs().ceil() as u32).clamp(1, 400);
+        let rows = ((self.twist * height / (ROW * self.grain)).abs().ceil() as u32).clamp(1, 400);
         let mut mesh = Mesh { shell: true, ..Mesh::default() };
         for stretch in &self.stretches {
             let (first, n) = (mesh.positions.len() as u32, stretch.points.len() as u32);
@@ -64,6 +71,12 @@ impl Wall {
             }
         }
         mesh
+    }
+
+    /// The outlines turned by an angle, cut at their corners.
+    pub fn level(&self, turn: f64) -> Vec<Vec<Vector>> {
+        let turn = unit(turn);
+        self.stretches.iter().map(|s| s.points.iter().map(|p| p * turn).collect()).collect()
     }
 
     /// The outlines turned by an angle, cut where the wall turns away from an eye in a direction (a unit vector towards
@@ -140,13 +153,13 @@ fn turning(a: Vector, b: Vector, c: Vector) -> f64 {
 }
 
 /// The points between which a path turns little and does not go far, with its ends.
-fn thinned(path: &[Vector], side: f64) -> Vec<Vector> {
+fn thinned(path: &[Vector], side: f64, turn: f64) -> Vec<Vector> {
     let mut kept: Vec<Vector> = path.first().copied().into_iter().collect();
     let (mut turned, mut gone) = (0.0, 0.0);
     for w in path.windows(3) {
         turned += turning(w[0], w[1], w[2]).abs();
         gone += (w[1] - w[0]).norm();
-        if turned > TURN || gone > side {
+        if turned > turn || gone > side {
             kept.push(w[1]);
             (turned, gone) = (0.0, 0.0);
         }

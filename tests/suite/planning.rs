@@ -328,7 +328,7 @@ fn the_least_reaction_is_less_than_others() {
 #[test]
 fn zero_momentum_drifts_only_without_invariance() {
     let circle = "kind = 'zero-momentum'\nshape = 'arc'\nfrom = [0.6, 0.62]\nvia = [[0.52, 0.7]]\nto = [0.44, 0.62]\n\
-                  closed = true\ncycles = 3";
+                  closed = true\ncycles = 3\nb = 2.65";
     let invariant = Run::new(&task(circle)).expect("planned");
     let drift = |run: &Run, i: usize| {
         let cycles = &run.plan().cycles;
@@ -359,6 +359,10 @@ fn the_scenarios_that_come_along_do_what_they_say() {
     }
     let words = Run::new(&task("kind = 'change-b'\nvia = [[0.5, 0.6]]")).expect_err("no points between").to_string();
     assert!(words.contains("no points between"), "{words}");
+    let near = Scenario { task: Scenario::builtin("drift").expect("built in").task, ..scenario() };
+    let near = Scenario { task: stillbase::scenario::Task { b: 2.07, ..near.task }, ..near };
+    let words = Run::new(&near).expect_err("passes a limit").to_string();
+    assert!(words.contains("would pass its upper limit"), "{words}");
     let words = Run::new(&task("kind = 'zero-momentum'\ncycles = 2")).expect_err("open").to_string();
     assert!(words.contains("closed = true"), "{words}");
     let words = Run::new(&task("kind = 'least-reaction'\nlaw = 'fastest'")).expect_err("no time").to_string();
