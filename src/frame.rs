@@ -7,6 +7,7 @@ use crate::planar::{DriveAngles, PerDrive, Pose2, Vector};
 
 pub use crate::plan::follow::Target;
 pub use crate::pose_constant::Reach;
+pub use crate::reactionless::Dexterity;
 
 /// Peaks below this part of what moves count as zero.
 pub const REACTIONLESS: f64 = 1e-6;
@@ -52,6 +53,8 @@ pub struct Frame {
     pub kinetic: f64,
     /// Kinetic and potential energy gained less the work of the motors since the start, J: 0 in exact arithmetic.
     pub energy_balance: f64,
+    /// How well the end effector moves on the plane; zero on machines that have none.
+    pub dexterity: Dexterity,
     /// min |sin(q_k − q_l)|: 0 at a change point, where pin forces grow without bound.
     pub transmission: f64,
     /// What the run is doing.

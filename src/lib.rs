@@ -31,6 +31,17 @@
 //! assert!((a.intervals[0][0] - 1.6495370969).abs() < 1e-9);
 //! assert!((planes.boundary().area() - 0.8451448471).abs() < 1e-9);
 //! ```
+//! A curve of the end effector is followed on a plane, or refused with where, why, and which b would do:
+//! ```
+//! # use stillbase::{machine, planar::Vector, pose_constant::Planes};
+//! # let machine = machine::builtin("nine-link").expect("built in");
+//! # let planes = Planes::of(machine).expect("three drives, two angles");
+//! use stillbase::plan::{Curve, Rule, trace};
+//! let line = [Curve::line(Vector::new(0.50, 0.50), Vector::new(0.55, 0.90))];
+//! assert!(trace::follow(planes.map(), &line, 2.4, None, Rule::default()).is_ok());
+//! let blocked = trace::follow(planes.map(), &line, 2.9, None, Rule::default()).expect_err("B is on other planes");
+//! assert!((blocked.nearest_b.expect("2.4 and others") - 2.6610727).abs() < 1e-4);
+//! ```
 //! A [`Scenario`](scenario::Scenario) sets a task; a [`Run`](session::Run) carries it out step by step and gives a
 //! [`Frame`](frame::Frame) of everything true at each instant:
 //! ```
@@ -57,7 +68,7 @@
 //! |---|---|---|
 //! | words | [`planar`] | vectors as x + iy, values per drive |
 //! | machine | [`machine`], [`kinematics`], [`dynamics`] | links, constants g, C, J, Eqs (1)–(6) |
-//! | methods | [`balance`], [`reactionless`], [`pose_constant`], [`plan`], [`control`] | Eqs (7)–(16), paths, feedback |
+//! | methods | [`balance`], [`reactionless`], [`pose_constant`], [`plan`], [`control`] | Eqs (7)–(16), paths, time laws, prices, feedback |
 //! | motion | [`frame`], [`simulation`], [`signals`] | one instant, one step, one table |
 //! | path | [`scenario`], [`session`] | files, edits, undo, replay |
 //! | picture | [`scene`] | plain data to draw, cameras, palette |

@@ -11,6 +11,7 @@ use crate::reactionless::{AngleDefinition, BSet, Boundary, Limit, NoReach, NotAP
 pub struct Planes {
     map: PlaneMap,
     boundary: Boundary,
+    keep_off_change_points: bool,
 }
 
 /// Whether a target can be reached on the present plane.
@@ -24,7 +25,7 @@ pub enum Reach {
         nearest: Vector,
         /// The b nearest to the present one that would reach the target, rad; none if no b does.
         mending_b: Option<f64>,
-        /// A pose of this plane reaches it, but beyond a fold: on another sheet.
+        /// A pose of this plane reaches it, but beyond a fold, or a change point to keep off.
         other_sheet: bool,
     },
     /// It cannot any more since b was changed, so the machine keeps a_1 and a_2 and turns with its workspace.
@@ -130,7 +131,23 @@ impl Planes {
     /// If it has not three drives and two relative angles.
     pub fn of(machine: &Machine) -> Result<Self, PlaneError> {
         let map = plane_map(machine)?;
-        Ok(Self { boundary: Boundary::of(&map), map })
+        Ok(Self { boundary: Boundary::of(&map), map, keep_off_change_points: false })
+    }
+
+    /// The same planes, on which ways lead across change points or keep off them.
+    #[must_use]
+    pub fn keeping_off_change_points(self, keep_off_change_points: bool) -> Self {
+        Self { keep_off_change_points, ..self }
+    }
+
+    /// Whether ways keep off change points.
+    pub fn keep_off_change_points(&self) -> bool {
+        self.keep_off_change_points
+    }
+
+    /// Whether something inside the limits can bar a way: a fold, or a change point to keep off.
+    pub fn has_bars(&self) -> bool {
+        self.keep_off_change_points || self.boundary.interior_singularity()
     }
 
     /// Eqs (13)–(16).
@@ -150,12 +167,12 @@ impl Planes {
 
     /// Where to go for a target: its pose on the plane b and the sheet of `from`, or the nearest that can be reached.
     pub fn reach(&self, p: Vector, b: f64, from: [f64; 2]) -> ([f64; 2], Reach) {
-        if let Some(a) = self.follow(p, b, from).filter(|a| self.is_one_sheet(from, *a)) {
+        if let Some(a) = self.follow(p, b, from).filter(|a| self.is_open_way(from, *a)) {
             return (a, Reach::Inside);
         }
         let far = |a: &[f64; 2]| (a[0] - from[0]).hypot(a[1] - from[1]);
         let poses = self.map.poses(p, b);
-        let same = poses.iter().map(|x| x.a).filter(|a| self.is_one_sheet(from, *a));
+        let same = poses.iter().map(|x| x.a).filter(|a| self.is_open_way(from, *a));
         if let Some(a) = same.min_by(|x, y| far(x).total_cmp(&far(y))) {
             return (a, Reach::Inside);
         }
@@ -163,10 +180,10 @@ impl Planes {
         let mending_b = self.map.reach(p).ok().and_then(|set| set.nearest(b)).filter(|_| !other_sheet);
         let nearest = self.boundary.nearest(p, b, self.map.forward(from, b));
         let edge = self.map.clamp(nearest.a);
-        if !other_sheet && self.is_one_sheet(from, edge) {
+        if !other_sheet && self.is_open_way(from, edge) {
             return (edge, Reach::Outside { nearest: nearest.at, mending_b, other_sheet });
         }
-        // A fold lies between: as near as the straight way goes.
+        // Something lies between: as near as the straight way goes.
         let a = self.towards(p, b, from);
         (a, Reach::Outside { nearest: self.map.forward(a, b), mending_b, other_sheet })
     }
@@ -177,7 +194,7 @@ impl Planes {
         let (mut a, mut t, mut step) = (from, 0.0, 0.125);
         while step > 1e-6 && t < 1.0 {
             let next = self.follow(start + (t + step) * (p - start), b, a);
-            let near = |x: &[f64; 2]| (x[0] - a[0]).hypot(x[1] - a[1]) < 0.5 && self.is_one_sheet(from, *x);
+            let near = |x: &[f64; 2]| (x[0] - a[0]).hypot(x[1] - a[1]) < 0.5 && self.is_open_way(from, *x);
             match next.filter(near) {
                 Some(x) => (a, t) = (x, t + step),
                 None => step *= 0.5,
@@ -186,9 +203,13 @@ impl Planes {
         a
     }
 
-    /// Whether the straight way of joint space between two poses of one plane keeps to a sheet, where det has one sign.
-    pub fn is_one_sheet(&self, from: [f64; 2], to: [f64; 2]) -> bool {
+    /// Whether the straight way of joint space between two poses of one plane keeps to a sheet, where det has one sign,
+    /// and, if so asked, to one side of every change point.
+    pub fn is_open_way(&self, from: [f64; 2], to: [f64; 2]) -> bool {
         const LOOKS: i32 = 32;
+        if self.keep_off_change_points && self.map.sides(from) != self.map.sides(to) {
+            return false;
+        }
         if !self.boundary.interior_singularity() {
             return true;
         }

@@ -78,7 +78,7 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
         });
     }
     type Single = (&'static str, &'static str, &'static str, &'static str, fn(&Frame) -> f64);
-    let whole: [Single; 26] = [
+    let whole: [Single; 29] = [
         ("pose/b", "b", "pose constant", "rad", |f| f.b),
         ("pose/b_reference", "b ref", "pose constant aimed at", "rad", |f| f.b_reference),
         ("moment/total", "n_B", "base moment", "N m", |f| f.base_moment()),
@@ -103,6 +103,15 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
         ("attitude/base", "θ", "attitude of the base", "rad", |f| f.base.angle),
         ("energy/kinetic", "T", "kinetic energy", "J", |f| f.kinetic),
         ("energy/balance", "ΔE − W", "energy gained less work done", "J", |f| f.energy_balance),
+        ("dexterity/det", "|det|", "|det| of ∂(x, y)/∂(a₁, a₂) on the plane", "m²", |f| f.dexterity.det),
+        ("dexterity/manipulability", "w", "manipulability √det J Jᵀ", "m²", |f| f.dexterity.manipulability),
+        (
+            "dexterity/torque_per_force",
+            "|τ|/|F|",
+            "torque of all drives for the worst unit force at the end effector",
+            "N m/N",
+            |f| f.dexterity.worst_torque_per_force,
+        ),
         ("transmission/least", "min |sin|", "least |sin(q_k − q_l)|, 0 at a change point", "1", |f| f.transmission),
         ("reactionless/now", "quiet", "1 while the base feels nothing", "1", |f| f64::from(u8::from(f.is_quiet()))),
     ];

@@ -10,6 +10,8 @@ use crate::kinematics::{end_effector, transmission};
 use crate::machine::{Inertia, Machine, RelativeAngle};
 use crate::plan::{Follower, Motion, Reference};
 use crate::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Units, Vector};
+use crate::pose_constant::plane_map;
+use crate::reactionless::PlaneMap;
 
 /// What leads the machine.
 #[derive(Clone, Debug)]
@@ -85,6 +87,7 @@ pub struct Simulation {
     /// m_j a_jk of each link and of the payload, `drives` after `drives`, kg m.
     link_moments: Vec<Vector>,
     lambda: PerDrive,
+    map: Option<PlaneMap>,
     angles: Vec<RelativeAngle>,
     gains: Gains,
     dt: f64,
@@ -117,6 +120,7 @@ impl Simulation {
             .collect();
         let mut sim = Self {
             lambda: model_body.inertia.lambda(),
+            map: plane_map(model).ok(),
             model: model_body,
             plant: body,
             link_moments,
@@ -311,6 +315,7 @@ impl Simulation {
             target,
             kinetic,
             energy_balance: kinetic + potential - work - self.start_energy,
+            dexterity: self.map.map_or_else(Default::default, |map| map.dexterity(map.project(&q).a)),
             transmission: transmission(&s.e, q.len()),
             phase,
             peaks: self.peaks,

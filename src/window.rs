@@ -118,6 +118,11 @@ impl App {
     pub fn desk(&self) -> &Desk {
         &self.desk
     }
+
+    /// The same, to be told what to do.
+    pub fn desk_mut(&mut self) -> &mut Desk {
+        &mut self.desk
+    }
 }
 
 impl eframe::App for App {

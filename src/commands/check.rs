@@ -3,6 +3,7 @@
 use clap::Args;
 use serde::Serialize;
 use stillbase::machine::{Inertia, Machine};
+use stillbase::plan::null_space::is_integrable;
 
 use super::failure::Failure;
 use super::input::MachineArgument;
@@ -73,6 +74,8 @@ struct Answer {
     balance: Balance,
     force_balanced: bool,
     invariant: bool,
+    /// Whether some b(q) is kept by all motions of zero angular momentum.
+    integrable: bool,
 }
 
 impl Check {
@@ -85,17 +88,24 @@ impl Check {
             balance: Balance::of(&inertia),
             force_balanced: inertia.is_force_balanced(),
             invariant: inertia.is_invariant(),
+            integrable: is_integrable(&inertia),
         };
         self.format.print(&answer, |answer| {
             let (force, coupling) = (inertia.force_residual(), inertia.invariance_residual());
             format!(
                 "{} · {}\n\nmass             {} kg\nforce balanced   {}, largest |g_k| {force:.1e} kg m\n\
-                 invariant        {}, largest |C_kl| {coupling:.1e} kg m²\n\n{}",
+                 invariant        {}, largest |C_kl| {coupling:.1e} kg m²\n\
+                 pose constant    {}\n\n{}",
                 machine.name(),
                 machine.spec().summary,
                 fixed(answer.mass, 3),
                 yes(answer.force_balanced),
                 yes(answer.invariant),
+                match (answer.integrable, answer.invariant) {
+                    (true, true) => "b = Σ λ_k q_k",
+                    (true, false) => "exists, though the mass matrix changes with the pose",
+                    (false, _) => "none: zero momentum does not keep to surfaces of joint space",
+                },
                 answer.balance.tables(&machine),
             )
         })

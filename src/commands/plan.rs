@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use serde::Serialize;
-use stillbase::files::write_new;
+use stillbase::files::{check_new, write_new};
 use stillbase::machine::{self, Inertia};
 use stillbase::plan::Blocked;
 use stillbase::plan::least_reaction::{FixedB, Verdicts};
@@ -241,6 +241,9 @@ impl From<&Blocked> for OfBlocked {
 impl Plan {
     /// Plans, prints, and writes the scenario if asked.
     pub fn run(&self) -> Result<(), Failure> {
+        if let Some(file) = &self.output {
+            check_new(file, self.force)?;
+        }
         let scenario = self.scenario()?;
         let planes = Planes::of(&scenario.machine)?;
         let common = planes.common(&scenario.task.points()).map_or(Vec::new(), |set: BSet| set.intervals);

@@ -226,14 +226,14 @@ impl Follower {
     /// The wanted accelerations, or full braking where after them a fold could not be avoided any more. So there is
     /// always a straight way on which to stop that keeps to the sheet.
     fn before_folds(&self, want: [f64; 2]) -> [f64; 2] {
-        if !self.planes.boundary().interior_singularity() {
+        if !self.planes.has_bars() {
             return want;
         }
         let [x, y] = [0, 1].map(|i| Course { acc: want[i], ..self.a[i] }.after(self.step));
         let speed = x.v.hypot(y.v);
         let stop = [x, y].map(|c| c.x + 0.5 * speed * c.v / self.bounds.joint);
         let (now, next) = (self.a.map(|c| c.x), [x.x, y.x]);
-        if self.planes.is_one_sheet(now, next) && self.planes.is_one_sheet(next, stop) {
+        if self.planes.is_open_way(now, next) && self.planes.is_open_way(next, stop) {
             return want;
         }
         let speed = self.a[0].v.hypot(self.a[1].v);

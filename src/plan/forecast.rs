@@ -22,6 +22,8 @@ pub struct Forecast {
     pub force: f64,
     /// Least and greatest b on the way, rad.
     pub b: [f64; 2],
+    /// b at the end, rad.
+    pub b_end: f64,
 }
 
 /// Instants that a motion is looked at.
@@ -40,6 +42,7 @@ impl Forecast {
             impulse: 0.0,
             force: 0.0,
             b: [f64::INFINITY, f64::NEG_INFINITY],
+            b_end: lambda.dot(&motion.at(time).q),
         };
         let dt = time / INSTANTS as f64;
         // Between the instants, so that no step of the acceleration is looked at from the wrong side.

@@ -9,7 +9,7 @@ use super::curve::{Curve, CurvePoint};
 use super::path::PathPoint;
 use super::table::Table;
 use crate::planar::{DriveAngles, PerDrive, Vector, cross, unit};
-use crate::reactionless::{BSet, PlaneMap, PlanePoint};
+use crate::reactionless::{BSet, PlaneMap, PlanePoint, SLACK};
 
 /// What ends a sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -229,6 +229,7 @@ impl Track<'_> {
             loop {
                 let piece = self.piece([ends[0], ends[1]], nodes[nodes.len() - 1].a, spaces)?;
                 if spaces >= MOST_SPACES || self.is_dense(&piece) {
+                    piece.windows(2).try_for_each(|w| self.keeps_limits(w[0], w[1]))?;
                     stations.extend(piece.iter().skip(1).map(|(s, _)| *s));
                     nodes.extend(piece.into_iter().skip(1).map(|(_, jet)| jet));
                     break;
@@ -271,6 +272,41 @@ impl Track<'_> {
         })
     }
 
+    /// Between two nodes an angle may turn back beyond its limit.
+    fn keeps_limits(&self, (s, x): (f64, Jet), (t, y): (f64, Jet)) -> Result<(), Halt> {
+        const LOOKS: i32 = 16;
+        let limits = self.map.limits();
+        for (i, limit) in limits.iter().enumerate() {
+            if x.first[i] * y.first[i] >= 0.0 {
+                continue;
+            }
+            let at = |u: f64| hermite([x.a[i], x.first[i], x.second[i]], [y.a[i], y.first[i], y.second[i]], t - s, u);
+            let past = |u: f64| (at(u) - limit.max).max(limit.min - at(u));
+            let looks = (1..LOOKS).map(|k| f64::from(k) / f64::from(LOOKS));
+            let Some(mut bad) = looks.max_by(|u, v| past(*u).total_cmp(&past(*v))) else { continue };
+            // The peak between the looks, to second order.
+            let d = 1.0 / f64::from(LOOKS);
+            let [before, here, after] = [past(bad - d), past(bad), past(bad + d)];
+            let shift = 0.5 * d * (before - after) / (before - 2.0 * here + after);
+            if shift.is_finite() && past(bad + shift) > here {
+                bad += shift;
+            }
+            if past(bad) <= SLACK {
+                continue;
+            }
+            let upper = at(bad) > limit.max;
+            let mut good = 0.0;
+            for _ in 0..50 {
+                let middle = 0.5 * (good + bad);
+                if past(middle) <= 0.0 { good = middle } else { bad = middle }
+            }
+            let end = s + (t - s) * good;
+            let a = self.map.follow(self.curve.at(end).p, self.b, x.a).unwrap_or(x.a);
+            return Err((end, a, Stop::Limit { angle: i, upper }));
+        }
+        Ok(())
+    }
+
     fn lifted(&self, jet: &Jet) -> PathPoint {
         PathPoint {
             q: DriveAngles::from(self.map.lift(PlanePoint { a: jet.a, b: self.b })),
@@ -286,6 +322,14 @@ struct Jet {
     a: [f64; 2],
     first: [f64; 2],
     second: [f64; 2],
+}
+
+/// The quintic through value and two derivatives at both ends of a space h, at the share u.
+fn hermite(from: [f64; 3], to: [f64; 3], h: f64, u: f64) -> f64 {
+    let (c1, c2) = (from[1] * h, 0.5 * from[2] * h * h);
+    let (v, v1, v2) = (to[0] - from[0] - c1 - c2, to[1] * h - c1 - 2.0 * c2, to[2] * h * h - 2.0 * c2);
+    let (c3, c4, c5) = (10.0 * v - 4.0 * v1 + 0.5 * v2, -15.0 * v + 7.0 * v1 - v2, 6.0 * v - 3.0 * v1 + 0.5 * v2);
+    from[0] + u * (c1 + u * (c2 + u * (c3 + u * (c4 + u * c5))))
 }
 
 /// Follows curves that join end to end on the plane b: a table of nodes for each. Of several poses at the start, the one
@@ -410,15 +454,28 @@ fn nearest_b(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, common: &BSet
     }
     tries.sort_by(|x, y| (x - b).abs().total_cmp(&(y - b).abs()));
     let found = tries.iter().position(|x| can(*x))?;
-    let mut good = tries[found];
+    let first = tries[found];
+    let mut good = first;
     // Between it and the nearest one on the same side that does not do.
     let beside = tries[..found].iter().rev().copied().find(|x| (x - b) * (good - b) >= 0.0);
-    let Some(mut bad) = beside else { return Some(good) };
-    for _ in 0..16 {
-        let middle = 0.5 * (good + bad);
-        if can(middle) { good = middle } else { bad = middle }
+    if let Some(mut bad) = beside {
+        for _ in 0..16 {
+            let middle = 0.5 * (good + bad);
+            if can(middle) { good = middle } else { bad = middle }
+        }
     }
-    Some(good)
+    // Between the stations the curve may still leave the workspace by a little: then a little further in.
+    let start = curves.first().map(|curve| curve.at(0.0).p)?;
+    let follows = |b: f64| starts(map, start, b, None).into_iter().any(|a| tables(map, curves, b, a, rule).is_ok());
+    if follows(good) {
+        return Some(good);
+    }
+    let mut inner = [first, common.inwards(first, 0.5)].into_iter().find(|b| follows(*b))?;
+    for _ in 0..10 {
+        let middle = 0.5 * (good + inner);
+        if follows(middle) { inner = middle } else { good = middle }
+    }
+    Some(inner)
 }
 
 /// The longest part of curves that can be followed on a plane, as s over all of them.

@@ -10,7 +10,7 @@ use super::plane::PlaneMap;
 use crate::planar::{Vector, cross};
 
 /// Three measures of a pose, the same for every b.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Dexterity {
     /// |det ∂(x, y)/∂(a_1, a_2)| at constant b: the area of workspace per area of (a_1, a_2), 0 on a fold, m².
     pub det: f64,

@@ -2,7 +2,7 @@
 //!
 //! The renderer knows scenes and no mechanics. It draws into its own multisampled target and hands the result on pixel
 //! for pixel, so a window, a test and a recording show the same picture. Order: background, opaque solids,
-//! depth-tested lines, areas, shells, translucent solids, lines on top, markers. Labels belong to whoever owns a font.
+//! areas, depth-tested lines, shells, translucent solids, lines on top, markers. Labels belong to whoever owns a font.
 //!
 //! Depth runs from 0 (near) to 1; colours are sRGB values with straight alpha, blended as they are.
 
@@ -126,8 +126,8 @@ impl Renderer {
         });
         pass.set_bind_group(0, &self.kit.frame_group, &[]);
         self.solids.draw_opaque(&mut pass);
-        self.lines.draw_tested(&mut pass);
         self.workspace.draw(&mut pass);
+        self.lines.draw_tested(&mut pass);
         self.solids.draw_shells(&mut pass);
         self.solids.draw_translucent(&mut pass);
         self.lines.draw_on_top(&mut pass);

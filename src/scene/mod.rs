@@ -159,7 +159,7 @@ pub struct Scene {
     pub background: Rgba,
     /// Meshes that the solids refer to.
     pub model: Arc<Model>,
-    /// Fills, over lines that are not on top; solids in front of them hide them. Later ones blend over earlier ones.
+    /// Fills, under all lines; solids in front of them hide them. Later ones blend over earlier ones.
     pub areas: Vec<Area>,
     /// Bars, joints, base.
     pub solids: Vec<Solid>,

@@ -72,6 +72,8 @@ pub struct Refused {
     pub curve: Vec<Vector>,
     /// m.
     pub at: Vector,
+    /// Why, in a few words.
+    pub why: String,
 }
 
 /// What stays the same from frame to frame.
@@ -187,6 +189,13 @@ impl Stage {
     /// The greatest |det ∂(x, y)/∂(a_1, a_2)| within the limits, m².
     pub fn greatest_det(&self) -> f64 {
         self.most_det
+    }
+
+    /// How many poses of the present plane put the end effector where it is, and how far it is from the boundary of
+    /// the workspace, m, positive inside. `None` for a machine without planes.
+    pub fn standing(&self, frame: &Frame) -> Option<(usize, f64)> {
+        let boundary = self.planes.as_ref()?.boundary();
+        Some((boundary.pose_count(frame.tip, frame.b), boundary.distance(frame.tip, frame.b)))
     }
 
     /// Radius of the b ring, m.
@@ -468,7 +477,15 @@ impl Stage {
                 stroke: palette.reaction,
                 stroke_width: 2.2,
             });
-            scene.labels.push(label(refused.at, z, [12.0, 0.0], "stops here", palette.reaction, 12.0, Anchor::Left));
+            scene.labels.push(label(
+                refused.at,
+                z,
+                [12.0, 0.0],
+                &format!("stops here: {}", refused.why),
+                palette.reaction,
+                12.0,
+                Anchor::Left,
+            ));
         }
     }
 
@@ -601,11 +618,11 @@ impl Stage {
                 });
                 let would = match mending_b {
                     Some(b) => format!("b = {b:.3} rad would reach it"),
-                    None if other_sheet => "drag it round the fold, or change b".into(),
+                    None if other_sheet => "drag it round, or change b".into(),
                     None => "no b reaches it".into(),
                 };
                 let title = match other_sheet {
-                    true => "beyond a fold, on another sheet",
+                    true => "beyond a fold or a change point",
                     false => "outside the reactionless workspace",
                 };
                 let rows = [
@@ -629,7 +646,7 @@ impl Stage {
 }
 
 /// The workspace of a pose constant at a height, m.
-pub(super) fn area_of(map: &PlaneMap, b: f64, name: &str, z: f64, colour: Rgba) -> Area {
+fn area_of(map: &PlaneMap, b: f64, name: &str, z: f64, colour: Rgba) -> Area {
     let limits = map.limits();
     Area {
         name: name.into(),
@@ -704,7 +721,7 @@ fn brief(x: f64) -> String {
 }
 
 fn brief_point(p: Vector) -> String {
-    format!("{:.3}, {:.3}", p.re, p.im)
+    format!("{}, {}", signed(p.re, 3), signed(p.im, 3))
 }
 
 /// Fixed decimals with a real minus sign, and no minus on zero.

@@ -9,7 +9,7 @@ use super::axes::{self, Axis};
 use super::camera::{Camera, Orbit};
 use super::palette::{Palette, faded, palette};
 use super::pointer::Pointer;
-use super::stage::{Handle, ViewOptions, area_of, target_handle, waypoints};
+use super::stage::{Handle, ViewOptions, target_handle, waypoints};
 use super::views::{Aim, GRIP, Grip};
 use super::wall::Wall;
 use super::{Anchor, Label, Line, Marker, Mesh, Model, Scene, Solid};
@@ -17,7 +17,7 @@ use crate::frame::{Frame, Reach};
 use crate::machine::place_of;
 use crate::planar::{Vector, unit};
 use crate::pose_constant::Planes;
-use crate::reactionless::BSet;
+use crate::reactionless::{BSet, Limit, PlaneMap};
 use crate::session::Run;
 
 /// How much of b is shown, rad.
@@ -32,6 +32,8 @@ const CONTOUR: f64 = 0.5;
 const MARGIN: f64 = 0.08;
 /// Height of the box in radii of the workspace.
 const HEIGHT: f64 = 2.1;
+/// Cells a side of the slice's fill.
+const CELLS: u32 = 64;
 /// The most points that have their b shown; of more, the first and the last.
 const POSTS: usize = 8;
 /// How near to a bar the pointer takes hold of it, px.
@@ -81,7 +83,7 @@ impl Tower {
         }
         let rise = HEIGHT * radius / span;
         let wall = Wall::of(&outlines, 1.0 / (rise * planes.map().lambda_sum()));
-        let model = Arc::new(Model { meshes: vec![wall.mesh(HEIGHT * radius)] });
+        let model = Arc::new(Model { meshes: vec![sheet(planes.map()), wall.mesh(HEIGHT * radius)] });
         let tip = *run.scenario().machine.tip();
         let course: Vec<(Vector, f64)> = run.motion().map_or_else(Vec::new, |motion| {
             let at = |i: i32| motion.path.at(f64::from(i) / 96.0).q;
@@ -209,18 +211,25 @@ impl Tower {
         let b = frame.b_reference;
         let [low, high] = self.window(b);
         let z = |b: f64| (b - low) * self.rise();
-        let turn = unit(self.planes.map().turn(low));
-        let (c, s) = (turn.re as f32, turn.im as f32);
+        let hot = options.hot == Some(Handle::Plane);
+        let turned = |name: &str, mesh, b: f64, z: f64, colour| {
+            let turn = unit(self.planes.map().turn(b));
+            let (c, s) = (turn.re as f32, turn.im as f32);
+            Solid {
+                name: name.into(),
+                mesh,
+                world_from_mesh: [[c, s, 0.0, 0.0], [-s, c, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, z as f32, 1.0]],
+                colour,
+            }
+        };
         let mut scene = Scene {
             background: palette.background,
             model: self.model.clone(),
-            areas: vec![area_of(self.planes.map(), b, "slice", z(b), faded(palette.amber, 0.42))],
-            solids: vec![Solid {
-                name: "tower".into(),
-                mesh: 0,
-                world_from_mesh: [[c, s, 0.0, 0.0], [-s, c, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]],
-                colour: faded(palette.amber, 0.1),
-            }],
+            areas: Vec::new(),
+            solids: vec![
+                turned("slice", 0, b, z(b), faded(palette.amber, if hot { 0.42 } else { 0.34 })),
+                turned("tower", 1, low, 0.0, faded(palette.amber, 0.1)),
+            ],
             lines: Vec::new(),
             markers: Vec::new(),
             labels: Vec::new(),
@@ -378,6 +387,22 @@ impl Tower {
         scene.markers.push(disc("end-effector", frame.tip, 4.0, palette.ink, 0.0));
         scene.markers.push(disc("target", at, if hot { 12.0 } else { 10.0 }, inside, 2.0));
     }
+}
+
+/// A workspace before it is turned, over a grid of (a_1, a_2). A shell lies over the grid of the walls, an area under it.
+fn sheet(map: &PlaneMap) -> Mesh {
+    let [l1, l2] = map.limits();
+    let share = |l: Limit, i: u32| l.min + f64::from(i) / f64::from(CELLS) * (l.max - l.min);
+    let mut mesh = Mesh { shell: true, ..Mesh::default() };
+    for (i, j) in (0..=CELLS).flat_map(|i| (0..=CELLS).map(move |j| (i, j))) {
+        mesh.positions.push(point(map.forward_unturned([share(l1, i), share(l2, j)]), 0.0));
+        mesh.normals.push([0.0, 0.0, 1.0]);
+    }
+    for (i, j) in (0..CELLS).flat_map(|i| (0..CELLS).map(move |j| (i, j))) {
+        let [a, b] = [i * (CELLS + 1) + j, (i + 1) * (CELLS + 1) + j];
+        mesh.triangles.extend([[a, b, b + 1], [a, b + 1, a + 1]]);
+    }
+    mesh
 }
 
 /// A post with its bars.

@@ -39,6 +39,28 @@ impl Plan {
     }
 }
 
+/// Refuses a motion that passes a joint limit, which rates alone do not know of.
+fn within_limits(scenario: &Scenario, motion: &Motion) -> Result<(), Refusal> {
+    const LOOKS: i32 = 1000;
+    for i in 0..=LOOKS {
+        let s = f64::from(i) / f64::from(LOOKS);
+        let q = motion.path.at(s).q;
+        for (k, angle) in scenario.machine.angles().iter().enumerate() {
+            let a = q[angle.to] - q[angle.from] + angle.offset;
+            let past = (angle.limits.start() - a).max(a - angle.limits.end());
+            if past > 1e-6 {
+                return Err(Refusal::Task(format!(
+                    "{:.1} % along, a{} would pass its {} limit: want another path, another b, or wider limits",
+                    100.0 * s,
+                    k + 1,
+                    if a > *angle.limits.end() { "upper" } else { "lower" },
+                )));
+            }
+        }
+    }
+    Ok(())
+}
+
 /// What control believes in.
 fn dynamics_of(scenario: &Scenario) -> (Inertia, Surroundings) {
     let around = Surroundings { gravity: scenario.machine.gravity(), force: Vector::default() };
@@ -82,6 +104,7 @@ pub fn plan(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
         }
     };
     let (motion, pace) = timed(scenario, parts)?;
+    within_limits(scenario, &motion)?;
     Ok(Plan { pace, ..Plan::of(scenario, motion) })
 }
 

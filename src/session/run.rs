@@ -123,6 +123,11 @@ impl Run {
             Some(planes) => planes,
             None => Arc::new(Planes::of(&scenario.machine)?),
         };
+        let keep_off = scenario.task.keep_off_change_points;
+        let planes = match planes.keep_off_change_points() == keep_off {
+            true => planes,
+            false => Arc::new(Planes::clone(&planes).keeping_off_change_points(keep_off)),
+        };
         let plan = plan(scenario, &planes)?;
         let guide = Guide::Motion { motion: plan.motion.clone(), start: 0.0 };
         let plant = scenario.plant_machine()?;
@@ -241,7 +246,8 @@ impl Run {
         }
         let plant = scenario.plant_machine()?;
         if scenario.machine != self.scenario.machine {
-            let planes = Arc::new(Planes::of(&scenario.machine)?);
+            let keep_off = scenario.task.keep_off_change_points;
+            let planes = Arc::new(Planes::of(&scenario.machine)?.keeping_off_change_points(keep_off));
             if let Guide::Follow(old) = self.simulation.guide() {
                 let bounds = bounds(&scenario, &planes);
                 let mut follower = Follower::new(planes.clone(), bounds, scenario.step, self.simulation.reference());

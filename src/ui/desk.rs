@@ -88,7 +88,7 @@ impl Desk {
         let mut commands = Vec::new();
         keys::read(ui.ctx(), &self.session, &self.look, &mut commands);
         top::show(ui, &self.session, &self.look, &mut commands);
-        status::show(ui, &self.session, &self.look, &mut commands);
+        status::show(ui, &self.session, &self.views, &self.look, &mut commands);
         side::show(ui, &self.session, &self.look, &mut commands);
         plots::show(ui, &self.session, &self.signals, &self.look, &mut commands);
         viewport::show(ui, &self.session, &self.views, &mut self.look, &mut commands);

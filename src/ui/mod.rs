@@ -102,7 +102,9 @@ pub struct Wish {
 impl Wish {
     fn of(edit: &Edit, refusal: &Refusal) -> Self {
         let curve = match refusal {
-            Refusal::Blocked(blocked) => Some(Refused { curve: blocked.curve.clone(), at: blocked.at }),
+            Refusal::Blocked(blocked) => {
+                Some(Refused { curve: blocked.curve.clone(), at: blocked.at, why: blocked.stop.to_string() })
+            }
             _ => None,
         };
         let remedy = match (edit, refusal.mending_b()) {

@@ -52,8 +52,8 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
     let half = 0.5 * (ui.available_width() - ui.spacing().item_spacing.x);
     choose(ui, "Redundancy", "kind", &KINDS, task.kind, 2.0 * half, commands);
     ui.horizontal(|ui| {
-        choose(ui, "Shape", "shape", &SHAPES, task.shape(), half - 10.0, commands);
-        choose(ui, "Time law", "law", &LAWS, task.law, half - 10.0, commands);
+        choose(ui, "Shape", "shape", &SHAPES, task.shape(), half - 16.0, commands);
+        choose(ui, "Time law", "law", &LAWS, task.law, half - 16.0, commands);
     });
     time(ui, session, p, commands);
     points(ui, session, task, p, commands);
@@ -221,9 +221,7 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
     let plan = session.run().plan();
     match task.kind {
         TaskKind::ChangeB => {
-            let end =
-                session.run().planes().map(|planes| planes.map().project(&plan.motion.at(plan.forecast.time).q).b);
-            let mut b_to = task.b_to.or(end).unwrap_or(task.b);
+            let mut b_to = plan.forecast.b_end;
             let tip = "Pose constant at B; by default the one that changes b least";
             let row = Row { label: "b at B", unit: "rad", tip, decimals: 3, speed: 0.005, range: -50.0..=50.0 };
             let response = row.show(ui, p, &mut b_to);
@@ -285,9 +283,12 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
             let row = Row { label: "cycles", unit: "", tip, decimals: 0, speed: 0.05, range: 1.0..=100.0 };
             let response = row.show(ui, p, &mut cycles);
             send(commands, &[response], || Edit::task("cycles", cycles.round() as i64));
-            if let (Some(first), Some(last), true) = (plan.cycles.first(), plan.cycles.last(), task.closed) {
-                let drift: Vec<String> = last.0.minus(&first.0).iter().map(|d| signed(*d, 4)).collect();
-                note(ui, p, &format!("in the end the joints have drifted by {} rad", drift.join(", ")));
+            if let (Some((first, rounds)), true) = (plan.cycles.split_first(), task.closed) {
+                let every = rounds.len().div_ceil(10).max(1);
+                let drift = |q: &crate::planar::DriveAngles| signed(q.0.minus(&first.0).max_abs(), 3);
+                let rounds: Vec<String> = rounds.iter().skip(every - 1).step_by(every).map(drift).collect();
+                let each = if every == 1 { "each cycle".into() } else { format!("every {every} cycles") };
+                note(ui, p, &format!("drift of the joints after {each}: {} rad", rounds.join("  ")));
             }
         }
         TaskKind::Reactionless | TaskKind::MinimumNorm | TaskKind::SameTip => {}

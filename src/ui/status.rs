@@ -6,10 +6,11 @@ use super::theme::{bold, colour, plain};
 use super::{Command, Look};
 use crate::frame::Reach;
 use crate::scene::stage::signed;
+use crate::scene::views::Views;
 use crate::session::{Edit, Session};
 
 /// Draws it.
-pub fn show(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &Look, commands: &mut Vec<Command>) {
     let p = look.palette();
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin::symmetric(16, 0));
     Panel::bottom("status").exact_size(30.0).resizable(false).frame(frame).show(ui, |ui| {
@@ -26,13 +27,14 @@ pub fn show(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Comm
             };
             ui.label(RichText::new(word).font(bold(13.0)).color(tone));
             let mut facts = format!("peak |n_B| {:.3} N m  ·  b {:.3} rad", f.peaks.moment, f.b);
+            let bad_news = matches!(look.message, Some((_, true)));
+            if let Some((poses, distance)) = views.stage().standing(f).filter(|_| !bad_news) {
+                let many = if poses == 1 { "one pose".into() } else { format!("{poses} poses") };
+                facts += &format!("  ·  {many}, {} m from the boundary", signed(distance.abs(), 3));
+            }
             // A narrow window keeps its room for what to do next.
-            if ui.available_width() > 900.0 {
-                let momentum = signed(f.angular_momentum, 3);
-                facts += &format!(
-                    "  ·  angular momentum {momentum} kg m²/s  ·  energy balance {:.0e} J",
-                    f.energy_balance.abs()
-                );
+            if ui.available_width() > 900.0 && !bad_news {
+                facts += &format!("  ·  energy balance {:.0e} J", f.energy_balance.abs());
             }
             ui.label(RichText::new(facts).font(plain(12.0)).color(colour(p.dim)));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -62,7 +64,7 @@ pub fn show(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Comm
                         ("the target is outside".into(), p.ink)
                     }
                     (None, Reach::Outside { other_sheet: true, .. }) => {
-                        ("the target is beyond a fold, on another sheet".into(), p.ink)
+                        ("the target is beyond a fold or a change point".into(), p.ink)
                     }
                     (None, Reach::Outside { .. }) => ("the target is outside, whatever b".into(), p.ink),
                     (None, _) => ("drag the target or the b ring  ·  Space plays  ·  F1 keys".into(), p.dim),

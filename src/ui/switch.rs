@@ -54,11 +54,18 @@ fn segment(ui: &mut Ui, p: &Palette, text: &str, chosen: bool) -> egui::Response
     ui.add(Button::new(words).fill(fill).stroke(Stroke::NONE).min_size(vec2(40.0, 22.0)))
 }
 
-/// The toggle, and once it is on the key to its colours.
+/// The toggles, and once the shade is on the key to its colours.
 fn shade(ui: &mut Ui, p: &Palette, look: &Look, most: f64, commands: &mut Vec<Command>) {
     ui.add_space(2.0);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
+        let ink = colour(if look.stroke.is_some() { p.ink } else { p.dim });
+        let mut drawing = look.stroke.is_some();
+        let help = "Draw the end effector's path with the pointer (P)";
+        let words = RichText::new("draw a path").font(plain(11.5)).color(ink);
+        if ui.checkbox(&mut drawing, words).on_hover_text(help).clicked() {
+            commands.push(Command::Draw(drawing));
+        }
         let ink = colour(if look.dexterity { p.ink } else { p.dim });
         let words = RichText::new("dexterity").font(plain(11.5)).color(ink);
         let help = "Shade the workspace by |det ∂(x, y)/∂(a₁, a₂)|: how far the end effector moves for a motion of the \
@@ -66,13 +73,6 @@ fn shade(ui: &mut Ui, p: &Palette, look: &Look, most: f64, commands: &mut Vec<Co
         let mut shown = look.dexterity;
         if ui.checkbox(&mut shown, words).on_hover_text(help).clicked() {
             commands.push(Command::Dexterity(shown));
-        }
-        let ink = colour(if look.stroke.is_some() { p.ink } else { p.dim });
-        let mut drawing = look.stroke.is_some();
-        let help = "Draw the end effector's path with the pointer (P)";
-        let words = RichText::new("draw a path").font(plain(11.5)).color(ink);
-        if ui.checkbox(&mut drawing, words).on_hover_text(help).clicked() {
-            commands.push(Command::Draw(drawing));
         }
         if !look.dexterity {
             return;

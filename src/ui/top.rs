@@ -33,9 +33,13 @@ pub fn show(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Comm
 fn machines(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
     let present = &session.scenario().machine;
     let changed = machine::builtins().iter().any(|m| m.name() == present.name() && m != present);
-    let current = if changed { format!("{} (changed)", present.name()) } else { present.name().to_owned() };
-    let tip = "The machine: three coaxial drives at B, nine links";
-    let combo = ComboBox::from_id_salt("machine").selected_text(&current).width(136.0);
+    let current = if changed { format!("{} *", present.name()) } else { present.name().to_owned() };
+    let tip = if changed {
+        "The machine, changed from the one of that name"
+    } else {
+        "The machine: three coaxial drives at B, nine links"
+    };
+    let combo = ComboBox::from_id_salt("machine").selected_text(&current).width(136.0).truncate();
     let response = combo.show_ui(ui, |ui| {
         for machine in machine::builtins() {
             let chosen = machine == present;
@@ -52,7 +56,7 @@ fn machines(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
 fn scenarios(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
     let current = session.scenario().clone();
     let shown = if current.title.is_empty() { &current.name } else { &current.title };
-    let combo = ComboBox::from_id_salt("scenario").selected_text(shown).width(196.0);
+    let combo = ComboBox::from_id_salt("scenario").selected_text(shown).width(196.0).truncate();
     let response = combo.show_ui(ui, |ui| {
         let cases = Scenario::cases().count();
         for (i, builtin) in Scenario::builtin_names().filter_map(Scenario::builtin).enumerate() {

@@ -11,8 +11,7 @@ use stillbase::dynamics::{Surroundings, inverse_with_wrench};
 use stillbase::machine::{Inertia, builtin};
 use stillbase::plan::least_reaction::Goal;
 use stillbase::plan::path::tip_line;
-use stillbase::plan::{CurvePoint, LeastReaction, TimeLaw};
-use stillbase::plan::{Limits, Path, fastest};
+use stillbase::plan::{Curve, CurvePoint, LeastReaction, Limits, Path, Rule, TimeLaw, fastest, trace};
 use stillbase::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::pose_constant::plane_map;
 use stillbase::reactionless::{AngleDefinition, Boundary, Limit, PlaneMap};
@@ -246,4 +245,14 @@ fn scene_of_a_view(bencher: Bencher, name: &str) {
     let views = Views::of(session.run());
     let (camera, options) = (views.camera(kind), ViewOptions::default());
     bencher.bench_local(|| views.scene(kind, black_box(session.frame()), &options, &camera));
+}
+
+/// Whether a curve can be followed on a plane, at 1000 points one after another.
+#[divan::bench]
+fn feasibility_of_a_path_of_1000_points(bencher: Bencher) {
+    let map = plane_map(builtin("nine-link").expect("built in")).expect("three drives");
+    let points = [Vector::new(0.50, 0.50), Vector::new(0.60, 0.70), Vector::new(0.5, 0.8), Vector::new(0.55, 0.90)];
+    let curve = Curve::spline(&points, false).expect("apart");
+    let start = map.poses(points[0], 2.4)[0].a;
+    bencher.bench_local(|| trace::walk(&map, black_box(&curve), 2.4, start, Rule::default(), 1000).expect("inside"));
 }

@@ -33,6 +33,9 @@ fn every_shape_is_reactionless() {
         ("shape = 'line'\nvia = [[0.6, 0.7]]\nclosed = true", true),
         ("shape = 'arc'\nvia = [[0.6, 0.7]]", false),
         ("shape = 'spline'\nvia = [[0.6, 0.7], [0.5, 0.8]]\nclosed = true", true),
+        ("shape = 'spline'\nvia = [[0.6, 0.7]]\nlaw = 'septic'", false),
+        ("shape = 'line'\nvia = [[0.6, 0.7]]\nlaw = 'trapezoidal'", false),
+        ("shape = 'arc'\nvia = [[0.6, 0.7]]\nlaw = 'fastest'", false),
         ("shape = 'joint-line'\nvia = [[0.6, 0.7], [0.5, 0.8]]", false),
         ("shape = 'joint-line'\nvia = [[0.6, 0.7], [0.5, 0.8]]\ncorners = 'blend'\nblend = 0.1", false),
         ("shape = 'freehand'\nvia = [[0.53, 0.55], [0.57, 0.6], [0.6, 0.7], [0.58, 0.8]]", false),
@@ -47,7 +50,7 @@ fn every_shape_is_reactionless() {
         assert!(frames.iter().all(|f| f.q_reference.0.minus(&f.q.0).max_abs() < 1e-4), "{text}");
         let points = scenario.task.points();
         let end = if closed { points[0] } else { points[points.len() - 1] };
-        assert!((last.tip - end).norm() < 1e-6, "{text}: {}", last.tip);
+        assert!((last.tip - end).norm() < 1e-4, "{text}: {}", last.tip);
         // Points at which the path must be: all but those whose corner is rounded or smoothed.
         let exact = !text.contains("blend") && !text.contains("freehand");
         for p in points.iter().filter(|_| exact) {
@@ -253,5 +256,135 @@ fn dragging_never_jumps_sheets() {
     let limit = session.scenario().machine.spec().drives[0].torque_limit;
     if let Some(limit) = limit {
         assert!(frames.iter().all(|f| f.torque[0].abs() < limit));
+    }
+}
+
+/// A change of b costs what was said: n_B = −D_1 b̈ all the way, the peak and the time are those of the law.
+#[test]
+fn the_price_of_b_is_what_was_said() {
+    let d1 = stillbase::machine::Inertia::of(&scenario().machine).diagonal(0);
+    let far = "kind = 'change-b'\nto = [-0.6, -0.2]";
+    for (law, limit, factor) in [
+        ("quintic", None, 10.0 / 3f64.sqrt()),
+        ("trapezoidal", None, 4.5),
+        ("quintic", Some(3.0), 10.0 / 3f64.sqrt()),
+        ("septic", Some(3.0), 84.0 * 5f64.sqrt() / 25.0),
+        ("fastest", Some(2.0), 4.0),
+    ] {
+        let limited = limit.map_or(String::new(), |n| format!("\nmoment_limit = {n}"));
+        let (run, frames) = run(&task(&format!("{far}\nlaw = '{law}'{limited}")));
+        let plan = run.plan();
+        let price = plan.price.expect("b changes");
+        let time = run.planned_time();
+        let peak = factor * d1 * price.delta_b().abs() / (time * time);
+        assert!((plan.forecast.moment - peak).abs() < 2e-4 * peak, "{law}: {} {peak}", plan.forecast.moment);
+        if let Some(limit) = limit {
+            assert!((peak - limit).abs() < 1e-9 * limit, "{law}: {peak} for {limit}");
+        }
+        assert!(price.least_peak(time) <= peak * (1.0 + 1e-12));
+        let moved = frames[frames.len() - 1].b_reference - frames[0].b_reference;
+        assert!((moved - price.delta_b()).abs() < 1e-9, "{law}: {moved}");
+        // The measured moment against the second derivative of the machine's own b.
+        let lambda = stillbase::machine::Inertia::of(&scenario().machine).lambda();
+        for f in &frames {
+            assert!((f.base_moment() + d1 * lambda.dot(&f.qdd)).abs() < 1e-9, "{law}: at {} s", f.time);
+        }
+        let last = frames[frames.len() - 1];
+        assert!((last.peaks.moment - peak).abs() < 0.02 * peak, "{law}: {} {peak}", last.peaks.moment);
+        assert!(last.peaks.force < 1e-9 && !last.peaks.is_reactionless());
+        assert!((last.tip - scenario().task.points()[0]).norm() > 0.5);
+    }
+    // Where A and B share a plane, nothing has to change.
+    let (free, frames) = run(&task("kind = 'change-b'"));
+    assert!(free.plan().price.expect("a price").delta_b().abs() < 1e-12);
+    assert!(frames[frames.len() - 1].peaks.is_reactionless());
+}
+
+/// The least reaction is less than that of minimum norm, what it was said to be, and none at all where b can stay.
+#[test]
+fn the_least_reaction_is_less_than_others() {
+    let line = "kind = 'least-reaction'\nb = 1.75";
+    let (least, frames) = run(&task(line));
+    let verdicts = least.plan().verdicts.clone().expect("compared");
+    let last = frames[frames.len() - 1];
+    assert!((last.peaks.moment - verdicts.least.peak).abs() < 0.02 * verdicts.least.peak, "{:?}", last.peaks);
+    let (_, norm) = run(&task("kind = 'minimum-norm'\nb = 1.75"));
+    let norm = norm[norm.len() - 1].peaks.moment;
+    let said = verdicts.minimum_norm.expect("regular").reaction.peak;
+    assert!((norm - said).abs() < 5e-3 * norm, "{norm} {said}");
+    assert!(last.peaks.moment < 0.9 * norm);
+    let (peak, _) = run(&task(&format!("{line}\nleast = 'peak'")));
+    let peak = peak.plan().verdicts.clone().expect("compared").least;
+    assert!(peak.peak < verdicts.least.peak && peak.rms > verdicts.least.rms, "{peak:?} {:?}", verdicts.least);
+    // Limits are kept.
+    let limits = least.planes().expect("planes").map().limits();
+    assert!(frames.iter().all(|f| (0..2).all(|i| limits[i].contains(f.a[i], 1e-6))));
+    let (stays, frames) = run(&task("kind = 'least-reaction'\nvia = [[0.58, 0.7]]"));
+    assert!(frames[frames.len() - 1].peaks.is_reactionless());
+    assert_eq!(stays.plan().verdicts.as_ref().expect("compared").least.peak, 0.0);
+}
+
+/// Zero momentum transmits no moment on any machine; round and round it drifts where D is not constant, and only there.
+#[test]
+fn zero_momentum_drifts_only_without_invariance() {
+    let circle = "kind = 'zero-momentum'\nshape = 'arc'\nfrom = [0.6, 0.62]\nvia = [[0.52, 0.7]]\nto = [0.44, 0.62]\n\
+                  closed = true\ncycles = 3\nb = 2.65";
+    let invariant = Run::new(&task(circle)).expect("planned");
+    let drift = |run: &Run, i: usize| {
+        let cycles = &run.plan().cycles;
+        cycles[i].0.minus(&cycles[0].0).max_abs()
+    };
+    assert_eq!(invariant.plan().cycles.len(), 4);
+    assert!(drift(&invariant, 3) < 1e-9);
+    let loaded = scenario().machine.set_all([("payload.mass", "0.5")]).expect("valid");
+    let (run, frames) = run(&Scenario { machine: loaded, ..task(circle) });
+    assert!((1..4).all(|i| drift(&run, i) > 0.01 * i as f64), "{}", drift(&run, 3));
+    assert!((run.planned_time() - 3.0).abs() < 1e-9, "each cycle takes the time of the task");
+    let last = frames[frames.len() - 1];
+    assert!(last.peaks.moment < 1e-5 * last.peaks.torque_sum, "{:?}", last.peaks);
+    assert!(frames.iter().all(|f| f.angular_momentum.abs() < 1e-6));
+    assert!((last.tip - run.scenario().task.points()[0]).norm() < 1e-6);
+    assert!(last.q.0.minus(&run.plan().cycles[3].0).max_abs() < 1e-6);
+}
+
+/// All scenarios that come along start, and do what their titles say.
+#[test]
+fn the_scenarios_that_come_along_do_what_they_say() {
+    for name in Scenario::builtin_names() {
+        let scenario = Scenario::builtin(name).expect("built in");
+        let run = Run::new(&scenario).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let forecast = &run.plan().forecast;
+        let quiet = forecast.moment < 1e-5 * forecast.torque.max_abs();
+        assert_eq!(quiet, ["case-3", "circle", "drift"].contains(&name), "{name}: {}", forecast.moment);
+    }
+    let words = Run::new(&task("kind = 'change-b'\nvia = [[0.5, 0.6]]")).expect_err("no points between").to_string();
+    assert!(words.contains("no points between"), "{words}");
+    let near = Scenario { task: Scenario::builtin("drift").expect("built in").task, ..scenario() };
+    let near = Scenario { task: stillbase::scenario::Task { b: 2.07, ..near.task }, ..near };
+    let words = Run::new(&near).expect_err("passes a limit").to_string();
+    assert!(words.contains("would pass its upper limit"), "{words}");
+    let words = Run::new(&task("kind = 'zero-momentum'\ncycles = 2")).expect_err("open").to_string();
+    assert!(words.contains("closed = true"), "{words}");
+    let words = Run::new(&task("kind = 'least-reaction'\nlaw = 'fastest'")).expect_err("no time").to_string();
+    assert!(words.contains("quintic or septic"), "{words}");
+}
+
+/// Who keeps off change points does so while dragging too: the machine stays where q_3 < q_1 or q_3 > q_1.
+#[test]
+fn dragging_can_keep_off_change_points() {
+    for keep in [false, true] {
+        let mut session = Session::open(task(&format!("keep_off_change_points = {keep}"))).expect("case 3 stays off");
+        let side = |f: &Frame| (f.q[2] - f.q[0]).signum();
+        let start = side(session.frame());
+        // A place of the other side.
+        let map = *session.run().planes().expect("planes").map();
+        let p = map.forward([1.2, 1.4], 2.4);
+        session.apply(Edit::DragTarget { x: p.re, y: p.im }).expect("follows");
+        session.tick(3000);
+        let crossed = session.frames().iter().any(|f| side(f) != start);
+        assert_eq!(crossed, !keep);
+        let reach = session.frame().target.reach;
+        assert_eq!(matches!(reach, stillbase::frame::Reach::Outside { other_sheet: true, .. }), keep, "{reach:?}");
+        assert!(session.frame().peaks.is_reactionless());
     }
 }

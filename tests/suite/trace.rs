@@ -201,3 +201,28 @@ proptest! {
         }
     }
 }
+
+/// A line that touches a limit between stations is stopped where it passes it, however little.
+#[test]
+fn a_graze_of_a_limit_is_noticed() {
+    let planes = planes();
+    let map = planes.map();
+    // The line of joint space from which the tip line bends away: its own extreme of a_1, then a limit just below it.
+    let (from, to) = (map.forward([1.2, 1.0], B), map.forward([1.2, 2.2], B));
+    let line = [Curve::line(from, to)];
+    let table = &follow(&planes, &line, B).expect("inside")[0];
+    let a = |s: f64| map.project(&table.at(s).q).a;
+    let extreme = (0..=4000).map(|i| a(f64::from(i) / 4000.0)[0]).fold(0.0, f64::max);
+    assert!(extreme > a(0.0)[0] + 0.01 && extreme > a(1.0)[0] + 0.01, "{extreme} turns back");
+    for below in [1e-2, 1e-4, 1e-6] {
+        let mut limits = map.limits();
+        limits[0].max = extreme - below;
+        let narrow = map.with_limits(limits);
+        let blocked = trace::follow(&narrow, &line, B, None, Rule::default()).expect_err("it passes the limit");
+        assert_eq!(blocked.stop, Stop::Limit { angle: 0, upper: true });
+        assert!((a(blocked.s)[0] - limits[0].max).abs() < 1e-6, "{below}: {}", blocked.s);
+    }
+    let mut limits = map.limits();
+    limits[0].max = extreme + 1e-6;
+    assert!(trace::follow(&map.with_limits(limits), &line, B, None, Rule::default()).is_ok());
+}

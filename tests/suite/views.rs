@@ -76,8 +76,19 @@ fn the_slice_is_the_workspace_at_its_height() {
                 assert!((b_at(&tower, frame, got[2]) - frame.b_reference).abs() < 1e-6);
             }
         }
-        let [area] = &scene.areas[..] else { panic!("one fill") };
-        assert!((b_at(&tower, frame, area.z) - frame.b_reference).abs() < 1e-6);
+        // Its fill is that workspace too, vertex by vertex.
+        let fill = scene.solids.iter().find(|s| s.name == "slice").expect("a fill");
+        let m = fill.world_from_mesh;
+        assert!((b_at(&tower, frame, m[3][2]) - frame.b_reference).abs() < 1e-6);
+        for p in scene.model.meshes[fill.mesh].positions.iter().step_by(101) {
+            let at: [f32; 2] = std::array::from_fn(|r| (0..3).map(|c| m[c][r] * p[c]).sum::<f32>());
+            let at = Vector::new(f64::from(at[0]), f64::from(at[1]));
+            // Rounded to f32, a vertex on the boundary may lie a hair outside.
+            let inside = at * (1.0 - 1e-6) + planes.map().forward([1.0, 1.0], frame.b_reference) * 1e-6;
+            let boundary = planes.boundary();
+            let near = (boundary.nearest(at, frame.b_reference, at).at - at).norm();
+            assert!(boundary.contains(inside, frame.b_reference) || near < 1e-6, "{at}: {near}");
+        }
     }
 }
 
@@ -87,7 +98,7 @@ fn the_wall_stands_on_the_boundary_at_every_height() {
     for session in [open("case-3"), posed("case-3", -3.3)] {
         let (tower, scene) = tower_of(&session);
         let (frame, boundary) = (session.frame(), session.run().planes().expect("three drives").boundary());
-        let [solid] = &scene.solids[..] else { panic!("the wall") };
+        let solid = scene.solids.iter().find(|s| s.name == "tower").expect("the wall");
         let (mesh, m) = (&scene.model.meshes[solid.mesh], solid.world_from_mesh);
         assert!(mesh.shell && mesh.positions.len() > 5_000);
         assert_eq!(mesh.positions.len(), mesh.normals.len());
@@ -554,7 +565,8 @@ mod drawn {
             views.scene(ViewKind::Tower, session.frame(), &ViewOptions::default(), &views.camera(ViewKind::Tower));
         (scene.areas, scene.lines, scene.markers) = Default::default();
         scene.background = [0.0, 0.0, 0.0, 1.0];
-        scene.solids.truncate(1);
+        scene.solids.retain(|s| s.name == "tower");
+        scene.solids[0].mesh = 0;
         scene.solids[0].colour = [1.0, 1.0, 1.0, 0.2];
         scene.model = std::sync::Arc::new(stillbase::scene::Model { meshes: vec![Wall::of(&[circle], 0.0).mesh(2.0)] });
         use stillbase::scene::camera::Orbit;

@@ -300,3 +300,99 @@ fn dexterity_is_shown_with_its_key_where_there_is_a_workspace() {
     h.run_steps(3);
     assert!(h.query_by_label("dexterity").is_some() && h.query_by_label("|det| 0").is_none());
 }
+
+/// A point of the path goes where it is dragged; where the target covers it, by its name.
+#[test]
+fn waypoints_are_handles() {
+    let Some(mut h) = desk("case-3", Theme::Dark) else { return };
+    h.step();
+    let points = |h: &Desktop| session(h).scenario().task.points();
+    // At rest at A the target covers A, so B is taken as it is and A by its letter.
+    let (from, to) = (on_screen(&h, 0.55, 0.90), on_screen(&h, 0.60, 0.75));
+    drag(&mut h, from, to);
+    assert!((points(&h)[1].re - 0.60).abs() < 2e-3 && (points(&h)[1].im - 0.75).abs() < 2e-3, "{:?}", points(&h));
+    let letter = egui::vec2(-17.0, 0.0);
+    let (from, to) = (on_screen(&h, 0.50, 0.50) + letter, on_screen(&h, 0.45, 0.45));
+    drag(&mut h, from, to);
+    assert!((points(&h)[0].re - 0.45).abs() < 2e-3 && (points(&h)[0].im - 0.45).abs() < 2e-3, "{:?}", points(&h));
+    assert!(!session(&h).is_live(), "nobody leads the machine");
+    assert!((session(&h).frame().tip - points(&h)[0]).norm() < 1e-9, "it waits at A");
+    // Each drag is one undo.
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    h.run_steps(2);
+    assert_eq!(points(&h)[0].re, 0.5);
+
+    // Twice in the open: one more point; Delete over it: one less.
+    let place = on_screen(&h, 0.62, 0.62);
+    for _ in 0..2 {
+        h.drag_at(place);
+        h.drop_at(place);
+        h.step();
+    }
+    h.run_steps(2);
+    assert_eq!(points(&h).len(), 3, "{:?}", points(&h));
+    assert!((points(&h)[1].re - 0.62).abs() < 2e-3 && (points(&h)[1].im - 0.62).abs() < 2e-3);
+    assert!(h.query_by_label("1 x m").is_some(), "the panel lists it");
+    h.hover_at(place);
+    h.run_steps(2);
+    h.key_press(Key::Delete);
+    h.run_steps(2);
+    assert_eq!(points(&h).len(), 2);
+}
+
+/// What cannot be followed is refused, shown, and mended by a button.
+#[test]
+fn a_refused_path_shows_where_and_what_b_would_do() {
+    let Some(mut h) = desk("case-3", Theme::Dark) else { return };
+    h.step();
+    let change = stillbase::scenario::Change::from_iter([
+        ("shape".to_owned(), "line".into()),
+        ("from".to_owned(), vec![0.42, 1.12].into()),
+        ("to".to_owned(), vec![0.0, 0.5].into()),
+    ]);
+    let before = session(&h).scenario().task.clone();
+    h.state_mut().desk_mut().carry_out(stillbase::ui::Command::Edit(Edit::SetTask { change }));
+    h.run_steps(2);
+    assert_eq!(session(&h).scenario().task, before, "nothing has changed");
+    assert!(h.query_by_label_contains("the path stops at (0.418, 1.116) m").is_some());
+    h.snapshot("refused-dark");
+    h.get_by_label_contains("take b").click();
+    h.run_steps(3);
+    let task = &session(&h).scenario().task;
+    let message = &h.state().desk().look().message;
+    assert!((task.b - 2.5256).abs() < 1e-3 && task.to == [0.0, 0.5], "{task:?} {message:?}");
+    assert!(h.query_by_label_contains("the path stops").is_none());
+}
+
+/// Drawn with the pencil, a path is followed.
+#[test]
+fn a_path_is_drawn_by_hand() {
+    let Some(mut h) = desk("case-3", Theme::Dark) else { return };
+    h.step();
+    h.key_press(Key::P);
+    h.run_steps(2);
+    let curve = |t: f64| (0.5 + 0.12 * (2.0 * t).sin(), 0.5 + 0.3 * t);
+    let at = |h: &Desktop, t: f64| {
+        let (x, y) = curve(t);
+        on_screen(h, x, y)
+    };
+    h.hover_at(at(&h, 0.0));
+    h.step();
+    h.drag_at(at(&h, 0.0));
+    h.step();
+    for i in 1..=30 {
+        h.hover_at(at(&h, f64::from(i) / 30.0));
+        h.step();
+    }
+    h.drop_at(at(&h, 1.0));
+    h.run_steps(3);
+    let task = &session(&h).scenario().task;
+    assert_eq!(task.shape(), stillbase::scenario::Shape::Freehand);
+    assert!(task.points().len() > 20, "{}", task.points().len());
+    assert!(h.state().desk().look().stroke.is_none(), "the pencil is laid down");
+    h.get_by_label("Play").click();
+    h.run_steps(70);
+    let f = session(&h).frame();
+    let (x, y) = curve(1.0);
+    assert!((f.tip.re - x).hypot(f.tip.im - y) < 5e-3 && f.peaks.is_reactionless(), "{:?}", f.tip);
+}

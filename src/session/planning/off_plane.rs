@@ -1,6 +1,6 @@
 //! Motions that leave their plane knowingly: a change of b, the least reaction, and zero momentum on any machine.
 
-use super::{Plan, Refusal, curves, dynamics_of, refusal, serve, timed};
+use super::{Plan, Refusal, curves, dynamics_of, refusal, serve, timed, within_limits};
 use crate::plan::drift::zero_momentum_path;
 use crate::plan::least_reaction::Goal;
 use crate::plan::path::Chained;
@@ -194,5 +194,6 @@ pub fn zero_momentum(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refus
             Motion { path: Path::Chain(path.ok_or_else(|| Refusal::Task("want a path".into()))?), profile }
         }
     };
+    within_limits(scenario, &motion)?;
     Ok(Plan { cycles, ..Plan::of(scenario, motion) })
 }
