@@ -56,7 +56,7 @@ impl Areas {
         named(&self.root, "workspace", &format!("{b:.3}"))
     }
 
-    /// Writes what is new of the workspaces at an instant: for good, or from an instant on.
+    /// Writes what is new of the workspaces at an instant: for good, or from an instant on. Words keep off points, m.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -66,8 +66,8 @@ impl Areas {
         (at, since): (Instant, Option<Instant>),
         planes: &Arc<Planes>,
         linkage: &Linkage,
-        b: f64,
-        compare: Option<f64>,
+        (b, compare): (f64, Option<f64>),
+        avoid: &[Vector],
     ) -> Result<(), StoreError> {
         let palette = self.palette;
         let fresh = !self.planes.as_ref().is_some_and(|known| Arc::ptr_eq(known, planes));
@@ -81,7 +81,11 @@ impl Areas {
                 z: linkage.floor(),
             };
             let own = self.own.take().unwrap_or_else(|| Area::new(self.path(b), b));
-            own.show(store, since, planes, &look)?;
+            let back = unit(-planes.map().turn(b));
+            // The arm reaches from B to the path.
+            let way = |p: Vector| [0.25, 0.5, 0.75, 1.0].map(|share| p * back * share);
+            let avoid: Vec<Vector> = avoid.iter().step_by(4).flat_map(|p| way(*p)).collect();
+            own.show(store, since, planes, &avoid, &look)?;
             inside::show(store, &own.path, since, planes, [linkage.reach(), look.z], &palette)?;
             self.own = Some(own);
         }
@@ -105,7 +109,7 @@ impl Areas {
                 path = named(&self.root, "workspace", &format!("{b:.3} compared"));
             }
             let mut area = Area::new(path, b);
-            area.show(store, since, planes, &look)?;
+            area.show(store, since, planes, &[], &look)?;
             area.place(at, planes, b);
             self.compared = Some(area);
         }
@@ -134,6 +138,18 @@ fn within(map: &PlaneMap, shares: [f64; 2]) -> Vector {
     map.forward_unturned([0, 1].map(|i| between(map.limits()[i], shares[i])))
 }
 
+/// Where words have room in a workspace that is not turned: off its outline, off the arm's root, off what to avoid.
+fn roomiest(planes: &Planes, avoid: &[Vector]) -> Vector {
+    let map = planes.map();
+    let outline = planes.boundary().turned(0.0).into_iter().flatten().step_by(16);
+    let outline: Vec<Vector> = outline.map(|[x, y]| Vector::new(x, y)).collect();
+    let off = |p: Vector, from: &[Vector]| from.iter().fold(f64::INFINITY, |m, q| m.min((p - q).norm()));
+    let far = 0.35 * map.c().iter().map(|c| c.abs()).sum::<f64>();
+    let places = (0..225).map(|i| [i / 15, i % 15].map(|i| (f64::from(i) + 0.5) / 15.0)).map(|at| within(map, at));
+    let rooms = places.filter(|p| p.norm() > far).map(|p| (off(p, &outline).min(0.6 * off(p, avoid)), p));
+    rooms.max_by(|s, t| s.0.total_cmp(&t.0)).map_or_else(Vector::default, |(_, p)| p)
+}
+
 /// A workspace that is not turned, at a height, m.
 pub fn sheet(map: &PlaneMap, z: f64, fill: Rgba) -> Mesh3D {
     let share = |i: u32| f64::from(i) / f64::from(CELLS);
@@ -157,12 +173,18 @@ impl Area {
         Self { path, b, turn: Track::new(), label: Track::new() }
     }
 
-    fn show(&self, store: &mut Store, since: Option<Instant>, planes: &Planes, look: &Look) -> Result<(), StoreError> {
+    fn show(
+        &self,
+        store: &mut Store,
+        since: Option<Instant>,
+        planes: &Planes,
+        avoid: &[Vector],
+        look: &Look,
+    ) -> Result<(), StoreError> {
         store.shape(since, &self.path, &sheet(planes.map(), look.z, look.fill))?;
         let boundary = lines(outlines(planes, look.z), look.width, look.edge);
         store.shape(since, &under(&self.path, "boundary"), &boundary)?;
-        // In the broad part, where the arm rarely is.
-        let middle = point(within(planes.map(), [0.86, 0.88]), look.z);
+        let middle = point(roomiest(planes, avoid), look.z);
         let words = dots(0.5, look.words).with_positions([middle]).with_show_labels(true);
         store.shape(since, &under(&self.path, "label"), &words)
     }

@@ -189,6 +189,10 @@ impl Layout<'_> {
                 scenes.push(self.drawing(name, &under(&case.root, path), &eye)?);
             }
         }
+        if let Ok(t) = std::env::var("TAB") {
+            let n = scenes.len();
+            scenes.rotate_left(t.parse::<usize>().unwrap_or(0) % n);
+        }
         let scene = self.container(ContainerKind::Tabs, "", &scenes, &[])?;
         let Axes { moment, force, b } = self.axes;
         let moment = Some([-moment, moment]);
@@ -204,7 +208,7 @@ impl Layout<'_> {
         let events = self.events(std::slice::from_ref(case))?;
         let phase = self.view("StateTimeline", "Phase", &under(&case.root, "phase"), &["$origin/**".into()], &[])?;
         let bottom = self.container(ContainerKind::Horizontal, "", &[events, phase], &[1.6, 1.0])?;
-        self.container(ContainerKind::Vertical, &case.title, &[top, bottom], &[3.4, 1.0])
+        self.container(ContainerKind::Vertical, &case.title, &[top, bottom], &[3.0, 1.0])
     }
 
     fn scene(&mut self, case: &Rehearsal, name: &str) -> Result<Part, StoreError> {

@@ -15,6 +15,9 @@ use crate::scene::linkage::mix;
 use crate::scene::palette::{Palette, faded};
 use crate::session::Run;
 
+/// Changes of b from which on they are what there is to see, rad.
+const BESIDE: f64 = 0.3;
+
 /// From where it is seen at first, of a run whose b lie in a range, rad.
 pub fn eye(run: &Run, b: [f64; 2], palette: &Palette) -> Option<Eye> {
     let space = JointSpace::of(run)?;
@@ -23,7 +26,9 @@ pub fn eye(run: &Run, b: [f64; 2], palette: &Palette) -> Option<Eye> {
     let size = ends.iter().map(|[from, to]| (to - from) * (to - from)).sum::<f64>().sqrt();
     let middle = ends.map(|[from, to]| 0.5 * (from + to));
     let centre = [middle[0], middle[1], middle[2] - 0.05 * size];
-    Some(Eye { orbit: Orbit { centre, distance: 1.05 * size, ..orbit }, axes: space.drives() })
+    // Where b changes the path runs along (1, 1, 1), which is seen from its side.
+    let (yaw, distance) = if b[1] - b[0] > BESIDE { (-0.45, 1.2 * size) } else { (orbit.yaw, 1.05 * size) };
+    Some(Eye { orbit: Orbit { centre, distance, yaw, ..orbit }, axes: space.drives() })
 }
 
 /// Rows of joint space.
@@ -33,6 +38,7 @@ pub struct Joints {
     /// b of the plane that was drawn, and Σλ.
     home: [f64; 2],
     plane: Track<[f32; 3]>,
+    words: Track<String>,
     clock: Clock,
     poses: Vec<[f32; 3]>,
 }
@@ -67,6 +73,8 @@ impl Joints {
         store.shape(since, &under(&path, "plane"), &plane)?;
         let outline = lines([ring(corners)], 2.0, palette.amber);
         store.shape(since, &under(&path, "plane/boundary"), &outline)?;
+        let label = dots(0.5, palette.amber).with_positions([corners[2]]).with_show_labels(true);
+        store.shape(since, &under(&path, "plane/label"), &label)?;
         store.shape(since, &under(&path, "pose"), &dots(4.5, palette.ink))?;
         let course: Vec<_> = space.planned().iter().map(|q| narrow(*q)).collect();
         if let (Some(first), Some(last)) = (course.first(), course.last()) {
@@ -79,7 +87,14 @@ impl Joints {
             store.shape(since, &under(&path, "path"), &Clear::recursive())?;
         }
         let home = [b, planes.map().lambda_sum()];
-        Ok(Some(Self { path, home, plane: Track::new(), clock: Clock::default(), poses: Vec::new() }))
+        Ok(Some(Self {
+            path,
+            home,
+            plane: Track::new(),
+            words: Track::new(),
+            clock: Clock::default(),
+            poses: Vec::new(),
+        }))
     }
 
     /// Where the plane and the pose are at an instant.
@@ -87,6 +102,7 @@ impl Joints {
         let [b, sum] = self.home;
         // Turning all drives alike leads from plane to plane.
         self.plane.push(at, [((frame.b_reference - b) / sum) as f32; 3]);
+        self.words.push(at, format!("b = {:.3} rad", frame.b_reference));
         self.clock.push(at);
         self.poses.push(narrow([frame.q[0], frame.q[1], frame.q[2]]));
     }
@@ -99,6 +115,9 @@ impl Joints {
         let (clock, shifts) = self.plane.take();
         let shifts = Transform3D::update_fields().with_many_translation(shifts);
         store.columns(&clock.columns(), &under(&self.path, "plane"), shifts.columns_of_unit_batches()?)?;
+        let (clock, words) = self.words.take();
+        let words = Points3D::update_fields().with_labels(words.iter().map(String::as_str));
+        store.columns(&clock.columns(), &under(&self.path, "plane/label"), words.columns_of_unit_batches()?)?;
         let (clock, poses) = (self.clock.columns(), std::mem::take(&mut self.poses));
         self.clock.clear();
         let poses = Points3D::update_fields().with_positions(poses).columns_of_unit_batches()?;

@@ -5,6 +5,7 @@ use rerun::{Clear, EntityPath};
 use super::dashes::dashed;
 use super::store::{Instant, Store, StoreError};
 use super::style::{dots, lines, point, under};
+use crate::planar::Vector;
 use crate::scene::linkage::mix;
 use crate::scene::palette::Palette;
 use crate::scene::stage::waypoints;
@@ -12,6 +13,12 @@ use crate::session::Run;
 
 /// Parts of the curve that is drawn.
 const LOOKS: i32 = 256;
+
+/// The planned curve of the end effector while it leads, m.
+pub fn points(run: &Run) -> Vec<Vector> {
+    let Some(motion) = run.motion() else { return Vec::new() };
+    (0..=LOOKS).map(|i| run.place(&motion.path.at(f64::from(i) / f64::from(LOOKS)).q)).collect()
+}
 
 /// Writes the plan while it leads, for good or from an instant on, above a machine of a reach and a height, m; clears it
 /// where the pointer leads.
@@ -26,23 +33,22 @@ pub fn show(
     [reach, z]: [f64; 2],
     palette: &Palette,
 ) -> Result<(), StoreError> {
-    let Some(motion) = run.motion() else {
+    if run.motion().is_none() {
         return store.shape(since, &under(root, "plan"), &Clear::recursive());
-    };
+    }
     // A little above the trail, which it would share its place with.
     let over = z + 0.004 * reach;
-    let at = |i: i32| point(run.place(&motion.path.at(f64::from(i) / f64::from(LOOKS)).q), over);
-    let path: Vec<_> = (0..=LOOKS).map(at).collect();
+    let path: Vec<_> = points(run).into_iter().map(|p| point(p, over)).collect();
     let ink = mix(palette.background, palette.ink, 0.75);
     store.shape(since, &under(root, "plan/path"), &lines(dashed(&path, 0.011 * reach as f32), 1.6, ink))?;
-    let points = waypoints(&run.scenario().task);
+    let named = waypoints(&run.scenario().task);
     let rings = dots(4.5, palette.ink)
-        .with_positions(points.iter().map(|(.., p)| point(*p, over)))
-        .with_labels(points.iter().map(|(_, name, _)| name.as_str()))
+        .with_positions(named.iter().map(|(.., p)| point(*p, over)))
+        .with_labels(named.iter().map(|(_, name, _)| name.as_str()))
         .with_show_labels(true);
     store.shape(since, &under(root, "plan/waypoints"), &rings)?;
     let inside = dots(2.9, palette.background)
-        .with_positions(points.iter().map(|(.., p)| point(*p, over + 0.003 * reach)))
+        .with_positions(named.iter().map(|(.., p)| point(*p, over + 0.003 * reach)))
         .with_show_labels(false);
     store.shape(since, &under(root, "plan/waypoints/inside"), &inside)
 }

@@ -179,9 +179,7 @@ impl<'a> Recorder<'a> {
             self.story.start(at, &self.rehearsal.title, self.scenario.machine.name());
             self.story.plan(at, &run.scenario().task, run.planned_time());
         }
-        if self.edited(at) || self.body.is_none() {
-            self.show(at, run, frame)?;
-        }
+        let redrawn = (self.edited(at) || self.body.is_none()) && self.show(at, run, frame)?;
         self.story.note(at, frame);
         self.clock.push(at);
         for (series, signal) in self.series.iter_mut().zip(&self.rehearsal.signals) {
@@ -192,13 +190,16 @@ impl<'a> Recorder<'a> {
             if last || frame.step.is_multiple_of(self.body_every) {
                 body.place(at, frame);
                 self.areas.place(at, frame);
+                self.tip.place(at, frame, top, last);
+            }
+            // What is drawn anew stands in its place from then on.
+            if last || redrawn || frame.step.is_multiple_of(self.body_every) {
                 if let Some(joints) = &mut self.joints {
                     joints.place(at, frame);
                 }
                 if let Some(tower) = &mut self.tower {
                     tower.place(at, frame);
                 }
-                self.tip.place(at, frame, top, last);
             }
             if last || frame.step.is_multiple_of(self.reaction_every) {
                 self.reactions.place(at, frame, reach, top);
@@ -223,8 +224,8 @@ impl<'a> Recorder<'a> {
         self.edits > before
     }
 
-    /// Machine and workspaces, as far as they have changed.
-    fn show(&mut self, at: Instant, run: &Run, frame: &Frame) -> Result<(), Stop> {
+    /// Machine and workspaces, as far as they have changed; whether joint space and tower have.
+    fn show(&mut self, at: Instant, run: &Run, frame: &Frame) -> Result<bool, Stop> {
         let since = if self.lasting { None } else { Some(at) };
         let machine = &run.scenario().machine;
         let (store, root, palette) = (&mut *self.store, self.root, &self.palette);
@@ -235,7 +236,8 @@ impl<'a> Recorder<'a> {
         };
         if let Some(planes) = run.planes() {
             let compare = run.scenario().compare_b;
-            self.areas.show(store, (at, since), planes, body.linkage(), frame.b_reference, compare)?;
+            let path = planned::points(run);
+            self.areas.show(store, (at, since), planes, body.linkage(), (frame.b_reference, compare), &path)?;
         }
         let above = [body.linkage().reach(), body.linkage().top()];
         self.body = Some(body);
@@ -244,13 +246,13 @@ impl<'a> Recorder<'a> {
     }
 
     /// The plan, joint space and tower, if they have changed; above a machine of a reach and a height, m.
-    fn show_plan(&mut self, at: Instant, run: &Run, frame: &Frame, above: [f64; 2]) -> Result<(), Stop> {
+    fn show_plan(&mut self, at: Instant, run: &Run, frame: &Frame, above: [f64; 2]) -> Result<bool, Stop> {
         let leads = run.motion().is_some();
         let known = |(planes, led): &(Arc<Planes>, bool)| {
             *led == leads && run.planes().is_some_and(|now| Arc::ptr_eq(planes, now))
         };
         if self.drawn.as_ref().is_some_and(known) {
-            return Ok(());
+            return Ok(false);
         }
         self.drawn = run.planes().map(|planes| (planes.clone(), leads));
         let since = if self.planned { None } else { Some(at) };
@@ -272,7 +274,7 @@ impl<'a> Recorder<'a> {
             Some(eye) => Tower::show(store, root, since, (run, range), eye, palette)?,
             None => None,
         };
-        Ok(())
+        Ok(true)
     }
 
     /// Writes what has gathered.

@@ -79,7 +79,7 @@ impl Tower {
         store.shape(since, &under(&path, "contours"), &lines(contours, 1.0, on(palette.amber, 0.4)))?;
         store.shape(since, &under(&path, "end_effector"), &dots(4.0, palette.ink))?;
 
-        let (posts, head) = (tower.planned_posts(window), z(high) + 0.05 * tower.radius());
+        let posts = tower.planned_posts(window);
         if posts.is_empty() {
             if since.is_some() {
                 store.shape(since, &under(&path, "points"), &Clear::recursive())?;
@@ -88,11 +88,13 @@ impl Tower {
             }
         } else {
             let dash = (0.03 * tower.radius()) as f32;
-            let uprights =
-                posts.iter().flat_map(|(post, _)| dashed(&[point(post.at, 0.0), point(post.at, head)], dash));
+            // Names step up, or those of neighbours would hide each other.
+            let head = |i: usize| z(high) + (0.08 + 0.13 * i as f64) * tower.radius();
+            let feet = posts.iter().enumerate().map(|(i, (post, _))| (post, head(i)));
+            let uprights = feet.clone().flat_map(|(post, top)| dashed(&[0.0, top].map(|z| point(post.at, z)), dash));
             store.shape(since, &under(&path, "points"), &lines(uprights, 1.2, on(palette.ink, 0.6)))?;
             let names = dots(0.5, palette.ink)
-                .with_positions(posts.iter().map(|(post, _)| point(post.at, head)))
+                .with_positions(feet.map(|(post, top)| point(post.at, top)))
                 .with_labels(posts.iter().map(|(post, _)| post.name.as_str()))
                 .with_show_labels(true);
             store.shape(since, &under(&path, "points/names"), &names)?;

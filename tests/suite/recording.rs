@@ -551,7 +551,7 @@ fn edits_on_the_way_are_recorded() {
     let mut scenario = short("case-3");
     let edit = |step, edit| TimedEdit { step, edit };
     scenario.edits = vec![
-        edit(20, Edit::DragTarget { x: 3.0, y: 0.0 }),
+        edit(22, Edit::DragTarget { x: 3.0, y: 0.0 }),
         edit(40, Edit::CompareB { b: Some(1.0) }),
         edit(60, Edit::SetMachine { key: "limits.a1".into(), value: "0.4,2.7".into() }),
     ];
@@ -571,6 +571,22 @@ fn edits_on_the_way_are_recorded() {
     assert_eq!(steps("/case-3/workspace/5.000", "Mesh3D:vertex_positions"), [0]);
     assert_eq!(steps("/case-3/workspace/5.000", "Clear:is_recursive"), [40]);
     assert_eq!(steps("/case-3/workspace/1.000", "Mesh3D:vertex_positions"), [40, 60]);
+    // The plan is there until the pointer leads.
+    for (path, component) in [
+        ("plan/waypoints", "Points3D:positions"),
+        ("joint_space/path", "LineStrips3D:strips"),
+        ("tower/reach/B", "LineStrips3D:strips"),
+    ] {
+        assert_eq!(steps(&format!("/case-3/{path}"), component), [0], "{path}");
+    }
+    for path in ["plan", "joint_space/path", "tower/reach", "tower/points", "tower/path"] {
+        assert_eq!(steps(&format!("/case-3/{path}"), "Clear:is_recursive"), [22, 60], "{path}");
+    }
+    assert_eq!(steps("/case-3/tower/wall", "Mesh3D:vertex_positions"), [0, 22, 60]);
+    assert_eq!(steps("/case-3/joint_space/plane", "Mesh3D:vertex_positions"), [0, 22, 60]);
+    // Also between the instants at which bodies have their rows.
+    let moved = steps("/case-3/joint_space/pose", "Points3D:positions");
+    assert!(moved.windows(2).all(|w| w[0] < w[1]) && moved[4..7] == [20, 22, 25], "{moved:?}");
     assert_eq!(contents.texts("/case-3/phase", "StateChange:state"), ["motion", "follow"]);
 }
 
