@@ -1,0 +1,211 @@
+//! A curve on a plane, followed step by step: poses with derivatives, and what stops them.
+
+use super::{Halt, Rule, Stop};
+use crate::plan::curve::{Curve, CurvePoint};
+use crate::plan::path::PathPoint;
+use crate::plan::table::Table;
+use crate::planar::{DriveAngles, PerDrive, Vector, cross};
+use crate::reactionless::{PlaneMap, PlanePoint, SLACK};
+
+/// The smallest advance along a curve before it counts as stopped.
+const LEAST_STEP: f64 = 1e-11;
+
+/// How far the pose may lie from where the tangent leads, rad: farther, the step is halved.
+const ASTRAY: f64 = 0.02;
+
+/// The nodes are dense enough when the quintics between them miss by no more than this, rad.
+const MISS: f64 = 2e-11;
+
+/// The most spaces between nodes on a piece of a curve.
+const MOST_SPACES: usize = 512;
+
+/// A curve on a plane.
+#[derive(Clone, Copy)]
+pub(super) struct Track<'a> {
+    pub map: &'a PlaneMap,
+    pub b: f64,
+    pub turn: Vector,
+    pub curve: &'a Curve,
+    pub rule: Rule,
+}
+
+impl Track<'_> {
+    /// From the pose at one s to that at another.
+    pub fn advance(&self, mut a: [f64; 2], from: f64, to: f64) -> Result<[f64; 2], Halt> {
+        let (mut s, mut step) = (from, to - from);
+        let mut tangent = self.jet(a, s).first;
+        while s < to {
+            let next = if s + step >= to { to } else { s + step };
+            let ahead = [0, 1].map(|i| a[i] + (next - s) * tangent[i]);
+            let found = self.map.follow(self.curve.at(next).p, self.b, a).filter(|x| self.keeps_side(a, *x));
+            let near = |x: &[f64; 2]| {
+                let step = (x[0] - a[0]).hypot(x[1] - a[1]);
+                (x[0] - ahead[0]).hypot(x[1] - ahead[1]) <= ASTRAY + 0.25 * step
+            };
+            match found.filter(near) {
+                Some(x) => {
+                    (a, s) = (x, next);
+                    tangent = self.jet(a, s).first;
+                    step *= 2.0;
+                }
+                None if step > LEAST_STEP => step *= 0.5,
+                None => return Err((s, a, self.stop(a, tangent))),
+            }
+        }
+        Ok(a)
+    }
+
+    /// (a_1, a_2) with derivatives by s, for the pose at s: J a′ = p′, J a″ = p″ + Σ_k arm_k (u_k · a′)².
+    fn jet(&self, a: [f64; 2], s: f64) -> Jet {
+        let CurvePoint { first, second, .. } = self.curve.at(s);
+        let arms = self.map.arms(a);
+        let [c1, c2] = self.map.columns(&arms);
+        let det = cross(c1, c2);
+        let solve = |v: Vector| [cross(v, c2) / det, cross(c1, v) / det];
+        let rate = solve(first * self.turn);
+        let u = self.map.u();
+        let bend: Vector = (0..3).map(|k| arms[k] * (u[k][0] * rate[0] + u[k][1] * rate[1]).powi(2)).sum();
+        Jet { a, first: rate, second: solve(second * self.turn + bend) }
+    }
+
+    pub fn keeps_side(&self, from: [f64; 2], to: [f64; 2]) -> bool {
+        !self.rule.keep_off_change_points || self.crossed(from, to).is_none()
+    }
+
+    /// The pair of drives that becomes parallel between two poses.
+    fn crossed(&self, from: [f64; 2], to: [f64; 2]) -> Option<[usize; 2]> {
+        let q = [from, to].map(|a| self.map.lift(PlanePoint { a, b: 0.0 }));
+        let side = |q: &[f64; 3], [k, l]: [usize; 2]| (q[k] - q[l]).sin();
+        [[0, 1], [0, 2], [1, 2]].into_iter().find(|pair| side(&q[0], *pair) * side(&q[1], *pair) < 0.0)
+    }
+
+    /// What lies ahead of a pose that cannot be left along a tangent.
+    fn stop(&self, a: [f64; 2], tangent: [f64; 2]) -> Stop {
+        let length = tangent[0].hypot(tangent[1]);
+        let ahead = [0, 1].map(|i| a[i] + 1e-5 * tangent[i] / length);
+        if let (true, Some(drives)) = (self.rule.keep_off_change_points, self.crossed(a, ahead)) {
+            return Stop::ChangePoint { drives };
+        }
+        let limits = self.map.limits();
+        for (angle, limit) in limits.iter().enumerate() {
+            let out = [(a[angle] - limit.min, false, -tangent[angle]), (limit.max - a[angle], true, tangent[angle])];
+            for (room, upper, outwards) in out {
+                if room < 1e-6 && outwards > 0.0 {
+                    return Stop::Limit { angle, upper };
+                }
+            }
+        }
+        Stop::Fold
+    }
+
+    /// Nodes along the curve, dense enough for the quintics between them.
+    pub fn table(&self, start: [f64; 2]) -> Result<Table, Halt> {
+        let (mut stations, mut nodes) = (vec![0.0], vec![self.jet(start, 0.0)]);
+        let joints: Vec<f64> = self.curve.joints().collect();
+        for ends in joints.windows(2) {
+            let mut spaces = 8;
+            loop {
+                let piece = self.piece([ends[0], ends[1]], nodes[nodes.len() - 1].a, spaces)?;
+                if spaces >= MOST_SPACES || self.is_dense(&piece) {
+                    piece.windows(2).try_for_each(|w| self.keeps_limits(w[0], w[1]))?;
+                    stations.extend(piece.iter().skip(1).map(|(s, _)| *s));
+                    nodes.extend(piece.into_iter().skip(1).map(|(_, jet)| jet));
+                    break;
+                }
+                spaces *= 2;
+            }
+        }
+        let lifted = nodes.iter().map(|jet| self.lifted(jet)).collect();
+        let last = stations.len() - 1;
+        stations[last] = 1.0;
+        Table::new(stations, lifted).ok_or((0.0, start, Stop::Start))
+    }
+
+    /// Nodes on one piece of the curve, both ends included.
+    fn piece(&self, [from, to]: [f64; 2], start: [f64; 2], spaces: usize) -> Result<Vec<(f64, Jet)>, Halt> {
+        let station = |i: usize| if i == spaces { to } else { from + (to - from) * i as f64 / spaces as f64 };
+        let mut nodes = Vec::with_capacity(spaces + 1);
+        nodes.push((from, self.jet(start, from)));
+        for i in 1..=spaces {
+            let a = self.advance(nodes[i - 1].1.a, station(i - 1), station(i))?;
+            nodes.push((station(i), self.jet(a, station(i))));
+        }
+        Ok(nodes)
+    }
+
+    /// Whether a point halfway between nodes lies where their quintic has it.
+    fn is_dense(&self, piece: &[(f64, Jet)]) -> bool {
+        piece.windows(2).all(|w| {
+            let [(s, x), (t, y)] = [w[0], w[1]];
+            let h = t - s;
+            let middle = [0, 1].map(|i| {
+                0.5 * (x.a[i] + y.a[i])
+                    + 5.0 / 32.0 * h * (x.first[i] - y.first[i])
+                    + h * h / 64.0 * (x.second[i] + y.second[i])
+            });
+            match self.map.follow(self.curve.at(0.5 * (s + t)).p, self.b, x.a) {
+                Some(a) => (a[0] - middle[0]).abs().max((a[1] - middle[1]).abs()) < MISS,
+                None => false,
+            }
+        })
+    }
+
+    /// Between two nodes an angle may turn back beyond its limit.
+    fn keeps_limits(&self, (s, x): (f64, Jet), (t, y): (f64, Jet)) -> Result<(), Halt> {
+        const LOOKS: i32 = 16;
+        let limits = self.map.limits();
+        for (i, limit) in limits.iter().enumerate() {
+            if x.first[i] * y.first[i] >= 0.0 {
+                continue;
+            }
+            let at = |u: f64| hermite([x.a[i], x.first[i], x.second[i]], [y.a[i], y.first[i], y.second[i]], t - s, u);
+            let past = |u: f64| (at(u) - limit.max).max(limit.min - at(u));
+            let looks = (1..LOOKS).map(|k| f64::from(k) / f64::from(LOOKS));
+            let Some(mut bad) = looks.max_by(|u, v| past(*u).total_cmp(&past(*v))) else { continue };
+            // The peak between the looks, to second order.
+            let d = 1.0 / f64::from(LOOKS);
+            let [before, here, after] = [past(bad - d), past(bad), past(bad + d)];
+            let shift = 0.5 * d * (before - after) / (before - 2.0 * here + after);
+            if shift.is_finite() && past(bad + shift) > here {
+                bad += shift;
+            }
+            if past(bad) <= SLACK {
+                continue;
+            }
+            let upper = at(bad) > limit.max;
+            let mut good = 0.0;
+            for _ in 0..50 {
+                let middle = 0.5 * (good + bad);
+                if past(middle) <= 0.0 { good = middle } else { bad = middle }
+            }
+            let end = s + (t - s) * good;
+            let a = self.map.follow(self.curve.at(end).p, self.b, x.a).unwrap_or(x.a);
+            return Err((end, a, Stop::Limit { angle: i, upper }));
+        }
+        Ok(())
+    }
+
+    fn lifted(&self, jet: &Jet) -> PathPoint {
+        PathPoint {
+            q: DriveAngles::from(self.map.lift(PlanePoint { a: jet.a, b: self.b })),
+            first: PerDrive::from(self.map.lift_rates(jet.first, 0.0)),
+            second: PerDrive::from(self.map.lift_rates(jet.second, 0.0)),
+        }
+    }
+}
+
+/// Plane coordinates with derivatives by s.
+#[derive(Clone, Copy)]
+struct Jet {
+    a: [f64; 2],
+    first: [f64; 2],
+    second: [f64; 2],
+}
+
+/// The quintic through value and two derivatives at both ends of a space h, at the share u.
+fn hermite(from: [f64; 3], to: [f64; 3], h: f64, u: f64) -> f64 {
+    let (c1, c2) = (from[1] * h, 0.5 * from[2] * h * h);
+    let (v, v1, v2) = (to[0] - from[0] - c1 - c2, to[1] * h - c1 - 2.0 * c2, to[2] * h * h - 2.0 * c2);
+    let (c3, c4, c5) = (10.0 * v - 4.0 * v1 + 0.5 * v2, -15.0 * v + 7.0 * v1 - v2, 6.0 * v - 3.0 * v1 + 0.5 * v2);
+    from[0] + u * (c1 + u * (c2 + u * (c3 + u * (c4 + u * c5))))
+}
