@@ -106,7 +106,7 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
         ("dexterity/det", "|det|", "|det| of ∂(x, y)/∂(a₁, a₂) on the plane", "m²", |f| f.dexterity.det),
         ("dexterity/manipulability", "w", "manipulability √det J Jᵀ", "m²", |f| f.dexterity.manipulability),
         (
-            "dexterity/torque_per_force",
+            "torque_per_force/worst",
             "|τ|/|F|",
             "torque of all drives for the worst unit force at the end effector",
             "N m/N",

@@ -67,7 +67,13 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &Look, commands
                         ("the target is beyond a fold or a change point".into(), p.ink)
                     }
                     (None, Reach::Outside { .. }) => ("the target is outside, whatever b".into(), p.ink),
-                    (None, _) => ("drag the target or the b ring  ·  Space plays  ·  F1 keys".into(), p.dim),
+                    (None, _) if look.stroke.is_some() => {
+                        ("draw with the pointer  ·  Esc lays the pencil down".into(), p.ink)
+                    }
+                    (None, _) if look.view.shows_machine() => {
+                        ("drag the target, a point or the b ring  ·  Space plays  ·  F1 keys".into(), p.dim)
+                    }
+                    (None, _) => ("Space plays  ·  F1 keys".into(), p.dim),
                 };
                 ui.add(egui::Label::new(RichText::new(text).font(plain(12.0)).color(colour(tone))).truncate());
             });

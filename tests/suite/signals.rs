@@ -4,6 +4,8 @@ use std::collections::BTreeSet;
 
 use stillbase::frame::{Frame, Phase, REACTIONLESS};
 use stillbase::machine::{Inertia, Machine, builtin};
+use stillbase::planar::{Vector, cross};
+use stillbase::pose_constant::plane_map;
 use stillbase::scenario::Scenario;
 use stillbase::session::{Run, replay};
 use stillbase::signals::{Signal, signals};
@@ -45,7 +47,7 @@ fn paths_are_unique_and_plain() {
 /// SI without prefixes, and one unit a group: they share an axis.
 #[test]
 fn units_are_si_and_one_a_group() {
-    let si = ["1", "rad", "rad/s", "rad/s²", "m", "N", "N m", "kg m/s", "kg m²/s", "J"];
+    let si = ["1", "rad", "rad/s", "rad/s²", "m", "N", "N m", "kg m/s", "kg m²/s", "J", "m²", "N m/N"];
     let table = signals(machine());
     for signal in &table {
         assert!(si.contains(&signal.unit), "{} in {}", signal.path, signal.unit);
@@ -113,6 +115,27 @@ fn values_are_the_frame_s() {
         is("attitude/base", frame.base.angle);
         is("energy/kinetic", frame.kinetic);
         is("energy/balance", frame.energy_balance);
+        // The determinant by differences of the end effector along the plane, the others by the Jacobian's columns.
+        let map = plane_map(machine()).expect("three drives");
+        let a = [frame.a[0], frame.a[1]];
+        let slope = |i: usize| {
+            let at = |h: f64| map.forward([a[0] + h * (1 - i) as f64, a[1] + h * i as f64], 0.0);
+            (at(1e-6) - at(-1e-6)) / 2e-6
+        };
+        assert!((frame.dexterity.det - cross(slope(0), slope(1)).abs()).abs() < 1e-9);
+        let e = frame.q.units();
+        let columns: Vec<_> = (0..3).map(|k| machine().tip()[k] * e[k]).collect();
+        let minors: f64 = [(0, 1), (0, 2), (1, 2)].map(|(k, l)| cross(columns[k], columns[l]).powi(2)).iter().sum();
+        assert!((frame.dexterity.manipulability - minors.sqrt()).abs() < 1e-12);
+        let torque = |angle: f64| {
+            let force = Vector::new(angle.cos(), angle.sin());
+            columns.iter().map(|c| cross(*c, force).powi(2)).sum::<f64>().sqrt()
+        };
+        let worst = (0..3600).map(|i| torque(f64::from(i) * 1e-3)).fold(0.0, f64::max);
+        assert!((frame.dexterity.worst_torque_per_force - worst).abs() < 1e-6);
+        is("dexterity/det", frame.dexterity.det);
+        is("dexterity/manipulability", frame.dexterity.manipulability);
+        is("torque_per_force/worst", frame.dexterity.worst_torque_per_force);
         is("transmission/least", frame.transmission);
         is("reactionless/now", f64::from(u8::from(frame.is_quiet())));
     }
