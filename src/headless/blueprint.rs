@@ -189,10 +189,6 @@ impl Layout<'_> {
                 scenes.push(self.drawing(name, &under(&case.root, path), &eye)?);
             }
         }
-        if let Ok(t) = std::env::var("TAB") {
-            let n = scenes.len();
-            scenes.rotate_left(t.parse::<usize>().unwrap_or(0) % n);
-        }
         let scene = self.container(ContainerKind::Tabs, "", &scenes, &[])?;
         let Axes { moment, force, b } = self.axes;
         let moment = Some([-moment, moment]);
