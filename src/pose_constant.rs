@@ -62,7 +62,7 @@ pub enum Unreachable {
         reason: NoReach,
     },
     /// Not on this plane.
-    #[error("({x:.3}, {y:.3}) m is outside the reactionless workspace of b = {b:.3} rad: want {would_do}")]
+    #[error("({x:.3}, {y:.3}) m is outside the reactionless workspace of b = {b:.6} rad: want {would_do}")]
     OnThisPlane {
         /// m.
         x: f64,
@@ -326,7 +326,10 @@ impl Planes {
 
 /// `b from 2.216 to 2.661 rad`.
 pub fn in_words(set: &BSet) -> String {
-    let ranges: Vec<String> = set.intervals.iter().map(|[a, b]| format!("from {a:.3} to {b:.3}")).collect();
+    // Rounded inwards, so that the ends themselves will do.
+    let (up, down) = (|x: f64| (x * 1e4).ceil() / 1e4, |x: f64| (x * 1e4).floor() / 1e4);
+    let range = |[a, b]: &[f64; 2]| format!("from {:.4} to {:.4}", up(*a), down(*b).max(up(*a)));
+    let ranges: Vec<String> = set.intervals.iter().map(range).collect();
     format!("b {} rad", ranges.join(" or "))
 }
 

@@ -13,10 +13,10 @@ use stillbase::planar::Vector;
 use stillbase::pose_constant::Planes;
 use stillbase::reactionless::BSet;
 use stillbase::scenario::{Change, Scenario, TaskKind};
-use stillbase::session::{Refusal, Run};
+use stillbase::session::{Refusal, Run, settled};
 
 use super::failure::Failure;
-use super::input::{DEFAULT_SCENARIO, Settings, change_task, point, pose_constant, scenario};
+use super::input::{DEFAULT_SCENARIO, Settings, change_task, planes_of, point, pose_constant, scenario};
 use super::output::{Format, Table, fixed, say};
 
 /// Plan a motion through points: which b serves them, along what, how fast, at what cost
@@ -38,7 +38,8 @@ pub struct Plan {
     /// Points of the end effector in base axes, m: from the first to the last; none keeps a scenario's own
     #[arg(value_name = "X,Y", value_parser = point)]
     points: Vec<Vector>,
-    /// Pose constant at the first point, rad; by default the middle of what serves all points, or the scenario's
+    /// Pose constant at the first point, rad; by default the middle of what serves all points, or else the first point,
+    /// or the scenario's
     #[arg(long, value_name = "B", value_parser = pose_constant)]
     b: Option<f64>,
     /// How the redundancy is resolved
@@ -51,22 +52,22 @@ pub struct Plan {
     #[arg(long)]
     closed: bool,
     /// Round corners off, from this far before them, m (rad for joint lines); otherwise the motion rests there
-    #[arg(long, value_name = "DISTANCE")]
+    #[arg(long, value_name = "DISTANCE", value_parser = above_zero)]
     blend: Option<f64>,
     /// Time law
     #[arg(long, value_enum)]
     law: Option<Law>,
     /// Time, s, for the laws that do not find it themselves
-    #[arg(long, value_name = "T")]
+    #[arg(long, value_name = "T", value_parser = above_zero)]
     time: Option<f64>,
     /// How often a closed path is run through, for zero-momentum
     #[arg(long, value_name = "N")]
     cycles: Option<u32>,
-    /// Pose constant at the last point, rad, for change-b and least-reaction; by default the nearest that serves it
+    /// Pose constant at the last point, rad: for change-b by default the nearest that serves it, for least-reaction free
     #[arg(long, value_name = "B", value_parser = pose_constant)]
     b_to: Option<f64>,
     /// Bound on |n_B| while b changes, N m, for change-b: it sets the time
-    #[arg(long, value_name = "N_B")]
+    #[arg(long, value_name = "N_B", value_parser = above_zero)]
     moment_limit: Option<f64>,
     /// A base that floats freely, with its mass, kg, and inertia, kg m²: by how much would change-b turn it
     #[arg(long, value_name = "MASS,INERTIA", value_parser = floating_base)]
@@ -83,10 +84,14 @@ pub struct Plan {
     format: Format,
 }
 
+fn above_zero(text: &str) -> Result<f64, String> {
+    text.trim().parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite()).ok_or_else(|| "want a number above 0".into())
+}
+
 fn floating_base(text: &str) -> Result<FloatingBase, String> {
-    let numbers: Vec<f64> = text.split(',').filter_map(|x| x.trim().parse().ok()).collect();
-    match numbers[..] {
-        [mass, inertia] => Ok(FloatingBase { mass, inertia, com: Vector::default() }),
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|x| x.trim().parse()).collect();
+    match numbers.as_deref() {
+        Ok(&[mass, inertia]) => Ok(FloatingBase { mass, inertia, com: Vector::default() }),
         _ => Err("want MASS,INERTIA, such as 40,3".into()),
     }
 }
@@ -128,7 +133,11 @@ enum Law {
 #[derive(Serialize)]
 struct Answer {
     feasible: bool,
+    /// Why not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reason: Option<String>,
     scenario: String,
+    /// At the start.
     b: f64,
     b_common: Vec<[f64; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -159,6 +168,11 @@ struct Answer {
     price: Option<OfPrice>,
     #[serde(skip_serializing_if = "Option::is_none")]
     alternatives: Option<OfVerdicts>,
+    /// The limit of a drive that is passed by most, and by what factor.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    over: Option<(String, f64)>,
+    #[serde(skip)]
+    closed: bool,
     /// The drives at the start and after each cycle.
     #[serde(skip_serializing_if = "Option::is_none")]
     cycles: Option<Vec<Vec<f64>>>,
@@ -245,12 +259,14 @@ impl Plan {
             check_new(file, self.force)?;
         }
         let scenario = self.scenario()?;
+        planes_of(&scenario.machine)?;
         let planes = Planes::of(&scenario.machine)?;
         let common = planes.common(&scenario.task.points()).map_or(Vec::new(), |set: BSet| set.intervals);
         let mut answer = Answer {
             feasible: true,
             scenario: scenario.name.clone(),
             b: scenario.task.b,
+            reason: None,
             b_common: common,
             duration: None,
             q_start: None,
@@ -265,6 +281,8 @@ impl Plan {
             gap: None,
             price: None,
             alternatives: None,
+            over: None,
+            closed: scenario.task.closed,
             cycles: None,
             blocked: None,
         };
@@ -272,9 +290,11 @@ impl Plan {
             Ok(run) => {
                 let plan = run.plan();
                 let (forecast, end) = (&plan.forecast, run.planned_time());
+                answer.b = forecast.b_start;
                 answer.duration = Some(forecast.time);
                 answer.q_start = Some(plan.motion.at(0.0).q.to_vec());
                 answer.q_end = Some(plan.motion.at(end).q.to_vec());
+                answer.over = forecast.over.map(|(limit, factor)| (limit.to_string(), factor));
                 answer.b_range = Some(forecast.b);
                 answer.peak_torque = Some(forecast.torque.to_vec());
                 answer.peak_speed = Some(forecast.speed.to_vec());
@@ -297,7 +317,7 @@ impl Plan {
                         "--base: want --kind change-b, only a change of b turns the base",
                     ));
                 }
-                answer.gap = plan.pace.map(|pace| pace.taken / pace.unlimited - 1.0);
+                answer.gap = plan.pace.map(|pace| pace.gap());
                 self.format.print(&answer, table)?;
                 if let Some(file) = &self.output {
                     write_new(file, scenario.to_toml().as_bytes(), self.force)?;
@@ -307,6 +327,7 @@ impl Plan {
             }
             Err(refusal) => {
                 answer.feasible = false;
+                answer.reason = Some(refusal.to_string());
                 if let Refusal::Blocked(blocked) = &refusal {
                     answer.blocked = Some(blocked.as_ref().into());
                 }
@@ -332,7 +353,13 @@ impl Plan {
                 super::input::set(with, &self.settings)?
             }
             // What is wrong with a file is said by whoever it was meant for.
-            _ => scenario(&self.name, &self.settings)?,
+            _ => {
+                let (ground, later) = settled(&scenario(&self.name, &self.settings)?)?;
+                if later > 0 {
+                    say(format!("note: {later} edits after the start are no part of the plan"));
+                }
+                ground
+            }
         };
         let mut change = Change::new();
         if let [from, via @ .., to] = &self.points[..] {
@@ -370,16 +397,13 @@ impl Plan {
             change.insert("closed".into(), true.into());
         }
         change_task(&mut scenario, &change)?;
-        let common_wanted = scenario.task.kind == TaskKind::Reactionless;
-        if self.b.is_none() && !self.points.is_empty() && !common_wanted {
-            // The middle of what serves the first point.
+        if self.b.is_none() && !self.points.is_empty() {
+            // The middle of the widest range that serves all points, as far from every edge as it gets; kinds that leave
+            // the plane can do with one that serves the first.
             let planes = Planes::of(&scenario.machine)?;
-            let sets = planes.common(&scenario.task.points()[..1]).map_or(Vec::new(), |set| set.intervals);
-            scenario.task.b = sets.first().map_or(scenario.task.b, |[low, high]| 0.5 * (low + high));
-        } else if self.b.is_none() && !self.points.is_empty() {
-            // The middle of the widest range that serves all points, as far from every edge as it gets.
-            let planes = Planes::of(&scenario.machine)?;
-            let sets = planes.common(&scenario.task.points()).map_or(Vec::new(), |set| set.intervals);
+            let points = scenario.task.points();
+            let alone = (scenario.task.kind != TaskKind::Reactionless).then(|| planes.common(&points[..1])).flatten();
+            let sets = planes.common(&points).or(alone).map_or(Vec::new(), |set| set.intervals);
             let widest = sets.into_iter().max_by(|x, y| (x[1] - x[0]).total_cmp(&(y[1] - y[0])));
             scenario.task.b = widest.map_or(scenario.task.b, |[low, high]| 0.5 * (low + high));
         }
@@ -428,9 +452,15 @@ fn table(answer: &Answer) -> String {
     }
     if let Some((first, others)) = answer.cycles.iter().flatten().collect::<Vec<_>>().split_first() {
         for (i, q) in others.iter().enumerate() {
+            if !answer.closed {
+                break;
+            }
             let drift = q.iter().zip(first.iter()).map(|(q, start)| (q - start).abs()).fold(0.0, f64::max);
             row(format!("drift after cycle {}", i + 1), Some(drift), "rad");
         }
+    }
+    if let Some((limit, factor)) = &answer.over {
+        row(format!("{limit} over its limit"), Some(*factor), "times");
     }
     let held = answer.limiting.iter().map(|limit| {
         let gap = answer.gap.filter(|gap| *gap > 5e-4);

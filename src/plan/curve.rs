@@ -56,8 +56,8 @@ pub enum CurveError {
         want: &'static str,
     },
     /// Two neighbours are one point.
-    #[error("points {first} and {second} are the same: want them apart", first = .0 + 1, second = .0 + 2)]
-    Coincident(usize),
+    #[error("points {} and {} are the same: want them apart", .0 + 1, .1 + 1)]
+    Coincident(usize, usize),
     /// No circle goes through them.
     #[error("the three points lie on a line, so no arc goes through them: move the middle one aside")]
     Collinear,
@@ -82,7 +82,7 @@ impl Curve {
     /// # Errors
     /// If the points do not determine a circle.
     pub fn arc(points: [Vector; 3], closed: bool) -> Result<Self, CurveError> {
-        check(&points, false)?;
+        check(&points, closed)?;
         let [a, b, c] = points;
         let (ab, ac) = (b - a, c - a);
         let turn = cross(ab, ac);
@@ -189,10 +189,18 @@ impl Curve {
         // Evenly along the line, then smoothed, then every few of them.
         let (even, spacing) = resampled(&drawn, length, 8 * HAND);
         let smooth = smoothed(&even, (0.012 / spacing).clamp(1.0, 24.0));
-        let knots: Vec<Vector> = (0..=HAND).map(|i| smooth[8 * i]).collect();
-        let ends_meet = (knots[0] - knots[HAND]).norm() < 1e-6;
-        let knots = if closed && ends_meet { &knots[..HAND] } else { &knots[..] };
-        Self::spline(knots, closed)
+        let mut knots: Vec<Vector> = Vec::with_capacity(HAND + 1);
+        for i in 0..=HAND {
+            // A hand that goes there and back comes by the same place.
+            if knots.last().is_none_or(|last| (smooth[8 * i] - last).norm() > 1e-3 * spacing) {
+                knots.push(smooth[8 * i]);
+            }
+        }
+        let meets = |knots: &[Vector]| (knots[0] - knots[knots.len() - 1]).norm() < 4.0 * spacing;
+        while closed && knots.len() > 3 && meets(&knots) {
+            knots.pop();
+        }
+        Self::spline(&knots, closed && knots.len() > 2)
     }
 
     fn of(shapes: Vec<(Shape, f64)>) -> Self {
@@ -262,7 +270,7 @@ fn check(points: &[Vector], closed: bool) -> Result<(), CurveError> {
     }
     let close = |i: &usize| (points[(i + 1) % points.len()] - points[*i]).norm() <= APART;
     let neighbours = if closed { points.len() } else { points.len().saturating_sub(1) };
-    (0..neighbours).find(close).map_or(Ok(()), |i| Err(CurveError::Coincident(i)))
+    (0..neighbours).find(close).map_or(Ok(()), |i| Err(CurveError::Coincident(i, (i + 1) % points.len())))
 }
 
 fn line(from: Vector, to: Vector) -> Shape {

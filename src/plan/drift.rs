@@ -5,9 +5,9 @@
 
 use thiserror::Error;
 
-use super::curve::CurvePoint;
+use super::curve::{Curve, CurvePoint};
 use super::null_space::{lines, momentum_row_rate, rates, solve};
-use super::path::PathPoint;
+use super::path::{PathPoint, by_pieces};
 use super::table::Table;
 use crate::kinematics::{acceleration, end_effector};
 use crate::machine::Inertia;
@@ -77,7 +77,26 @@ pub fn zero_momentum_path(
     start: DriveAngles,
     curve: impl Fn(f64) -> CurvePoint,
 ) -> Result<Table, DriftError> {
-    round(model, start, &curve, SPACES, 1)
+    Table::even(round(model, start, &curve, SPACES, 1)?).ok_or(DriftError::Singular { s: 0.0, cycle: 1 })
+}
+
+/// The same along a curve of pieces, each with spaces of its own, for the given time round.
+///
+/// # Errors
+/// As [`zero_momentum_path`].
+pub fn zero_momentum_curve(
+    model: &Inertia,
+    start: DriveAngles,
+    curve: &Curve,
+    cycle: usize,
+) -> Result<Table, DriftError> {
+    let piece = |q: DriveAngles, [from, to]: [f64; 2], at: &dyn Fn(f64) -> CurvePoint, spaces: usize| {
+        round(model, q, &at, spaces, cycle).map_err(|error| match error {
+            DriftError::Singular { s, cycle } => DriftError::Singular { s: from + s * (to - from), cycle },
+            other => other,
+        })
+    };
+    by_pieces(curve, start, SPACES, piece)?.ok_or(DriftError::Singular { s: 0.0, cycle })
 }
 
 fn round(
@@ -86,7 +105,7 @@ fn round(
     curve: &impl Fn(f64) -> CurvePoint,
     spaces: usize,
     cycle: usize,
-) -> Result<Table, DriftError> {
+) -> Result<Vec<PathPoint>, DriftError> {
     let drives = model.drives();
     if drives != 3 || start.len() != 3 {
         return Err(DriftError::Drives { drives });
@@ -127,7 +146,7 @@ fn round(
             q.0 = q.0.plus(1.0, &rates(model, &q, gap, 0.0).ok_or(singular(s))?);
         }
     }
-    Table::even(nodes).ok_or(singular(0.0))
+    Ok(nodes)
 }
 
 /// q, q′ and q″ with D q′ = 0 and D q″ + D′ q′ = 0.
@@ -188,9 +207,10 @@ pub fn drift_in(
         return Err(DriftError::Open { gap });
     }
     let spaces = spaces.clamp(2, 4096);
-    let end = |table: &Table| table.nodes().last().map_or(start, |node| node.q);
+    let end = |nodes: &[PathPoint]| nodes.last().map_or(start, |node| node.q);
     let first = round(model, start, &curve, spaces, 1)?;
     let mut ends = vec![start, end(&first)];
+    let first = Table::even(first).ok_or(DriftError::Singular { s: 0.0, cycle: 1 })?;
     for cycle in 2..=cycles {
         ends.push(end(&round(model, ends[cycle - 1], &curve, spaces, cycle)?));
     }

@@ -46,7 +46,9 @@ pub enum TimeError {
     #[error("only speeds are limited, and the motion would jump to them: want torque or acceleration limits too")]
     SpeedOnly,
     /// Jerk was to be limited.
-    #[error("no drive that moves has a limit on its jerk: want jerk_limit of a drive, or the law without it")]
+    #[error(
+        "no drive that moves has a limit on its jerk: want jerk_limit of a drive, such as drive.1.jerk_limit=900, or the law without it"
+    )]
     NoJerkLimit,
     /// A drive cannot hold the machine up.
     #[error(

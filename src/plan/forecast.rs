@@ -1,6 +1,7 @@
 //! What a motion will cost if it is followed exactly: known before anything moves.
 
 use super::Motion;
+use super::limits::{Limit, Limits, Quantity};
 use crate::dynamics::{Surroundings, inverse_with_wrench};
 use crate::machine::Inertia;
 use crate::planar::PerDrive;
@@ -20,18 +21,24 @@ pub struct Forecast {
     pub impulse: f64,
     /// Largest dynamic |f_B|, N.
     pub force: f64,
+    /// The limit of a drive that is passed by most, and by what factor; none if all are kept.
+    pub over: Option<(Limit, f64)>,
     /// Least and greatest b on the way, rad.
     pub b: [f64; 2],
+    /// b at the start, rad.
+    pub b_start: f64,
     /// b at the end, rad.
     pub b_end: f64,
 }
 
-/// Instants that a motion is looked at.
+/// Instants at which a motion is looked at, at least; for each of many parts, and at most.
 const INSTANTS: usize = 2000;
+const A_PART: usize = 100;
+const MOST: usize = 100_000;
 
 impl Forecast {
     /// Of a motion of a model.
-    pub fn of(motion: &Motion, model: &Inertia, around: &Surroundings) -> Self {
+    pub fn of(motion: &Motion, model: &Inertia, around: &Surroundings, limits: &Limits) -> Self {
         let (time, lambda) = (motion.duration(), model.lambda());
         let n = model.drives();
         let mut sum = Self {
@@ -41,12 +48,15 @@ impl Forecast {
             moment: 0.0,
             impulse: 0.0,
             force: 0.0,
+            over: None,
             b: [f64::INFINITY, f64::NEG_INFINITY],
+            b_start: lambda.dot(&motion.at(0.0).q),
             b_end: lambda.dot(&motion.at(time).q),
         };
-        let dt = time / INSTANTS as f64;
+        let instants = (A_PART * motion.path.parts()).clamp(INSTANTS, MOST);
+        let dt = time / instants as f64;
         // Between the instants, so that no step of the acceleration is looked at from the wrong side.
-        for i in 0..INSTANTS {
+        for i in 0..instants {
             let r = motion.at((i as f64 + 0.5) * dt);
             let (torque, wrench) = inverse_with_wrench(model, &r.q.units(), &r.qd, &r.qdd, around);
             let most = |most: &mut PerDrive, x: &PerDrive| {
@@ -54,6 +64,17 @@ impl Forecast {
             };
             most(&mut sum.torque, &torque);
             most(&mut sum.speed, &r.qd);
+            for (quantity, values) in
+                [(Quantity::Torque, &torque), (Quantity::Speed, &r.qd), (Quantity::Acceleration, &r.qdd)]
+            {
+                for (drive, (x, limit)) in values.iter().zip(limits.on(quantity).iter()).enumerate() {
+                    let factor = x.abs() / limit;
+                    // What rounding and the grid of a fastest motion pass by is none.
+                    if factor > 1.005 && sum.over.is_none_or(|(_, most)| factor > most) {
+                        sum.over = Some((Limit { quantity, drive }, factor));
+                    }
+                }
+            }
             let moment = wrench.total().moment.abs();
             sum.moment = sum.moment.max(moment);
             sum.impulse += moment * dt;

@@ -98,6 +98,14 @@ impl Path {
         }
     }
 
+    /// How many paths it is made of.
+    pub fn parts(&self) -> usize {
+        match self {
+            Self::Chain(chain) => chain.paths.iter().map(Self::parts).sum(),
+            _ => 1,
+        }
+    }
+
     /// d³q/ds³ at s, rad: zero on straight lines, else from differences of q″ over 1e-5 either way.
     pub fn third(&self, s: f64) -> PerDrive {
         let (before, after) = ((s - THIRD_OVER).max(0.0), (s + THIRD_OVER).min(1.0));
@@ -169,10 +177,11 @@ fn joint_line(from: &DriveAngles, to: &DriveAngles, s: f64) -> PathPoint {
     PathPoint { q: DriveAngles(from.0.plus(s, &step)), first: step, second: PerDrive::zeros(n) }
 }
 
-/// Spaces between the nodes of an integrated path; the quintic's error is below 1e-13 rad here.
+/// Spaces between the nodes of an integrated path; the quintic's error is below 1e-13 rad on a straight line.
 const SPACES: usize = 256;
-/// How far off its curve the integration may end up, as a part of the arm; 1e-13 where the Jacobian is regular.
-const OFF_LINE: f64 = 1e-8;
+/// How far off its curve the integration may end up in a space, as a part of the arm, before it is put back onto it; far
+/// less where the Jacobian is regular.
+const OFF_CURVE: f64 = 1e-6;
 
 /// Follows a curve of the end effector with minimum-norm rates, q′ = J⁺ p′, by the fourth-order rule from a pose at its
 /// start.
@@ -184,7 +193,63 @@ pub fn minimum_norm_path(
     start: DriveAngles,
     curve: impl Fn(f64) -> CurvePoint,
 ) -> Result<Table, PathError> {
-    let off_line = OFF_LINE * tip.iter().map(|c| c.abs()).sum::<f64>();
+    let nodes = minimum_norm_nodes(tip, start, &curve, SPACES)?;
+    Table::even(nodes).ok_or(PathError::Singular { s: 0.0 })
+}
+
+/// The same along a curve of pieces, each with spaces of its own: an integration across a joint is not exact.
+///
+/// # Errors
+/// If the Jacobian loses rank on the way.
+pub fn minimum_norm_curve(tip: &Chain, start: DriveAngles, curve: &Curve) -> Result<Table, PathError> {
+    let piece = |q: DriveAngles, [from, to]: [f64; 2], at: &dyn Fn(f64) -> CurvePoint, spaces: usize| {
+        minimum_norm_nodes(tip, q, &at, spaces).map_err(|error| match error {
+            PathError::Singular { s } => PathError::Singular { s: from + s * (to - from) },
+            other => other,
+        })
+    };
+    by_pieces(curve, start, SPACES, piece)?.ok_or(PathError::Singular { s: 0.0 })
+}
+
+/// A path along a curve from what follows each of its pieces: from a pose, over a part of s, by u from 0 to 1.
+pub(super) fn by_pieces<E>(
+    curve: &Curve,
+    start: DriveAngles,
+    spaces: usize,
+    follow: impl Fn(DriveAngles, [f64; 2], &dyn Fn(f64) -> CurvePoint, usize) -> Result<Vec<PathPoint>, E>,
+) -> Result<Option<Table>, E> {
+    const LEAST: usize = 16;
+    let joints: Vec<f64> = curve.joints().collect();
+    let (mut stations, mut nodes, mut q) = (Vec::new(), Vec::new(), start);
+    for ends in joints.windows(2) {
+        let (from, run) = (ends[0], ends[1] - ends[0]);
+        let own = ((spaces as f64 * run).ceil() as usize).max(LEAST);
+        let at = |u: f64| {
+            let point = curve.at(if u >= 1.0 { ends[1] } else { from + u * run });
+            CurvePoint { p: point.p, first: point.first * run, second: point.second * (run * run) }
+        };
+        let piece = follow(q, [ends[0], ends[1]], &at, own)?;
+        q = piece.last().map_or(q, |last| last.q);
+        let first = usize::from(!nodes.is_empty());
+        for (i, node) in piece.into_iter().enumerate().skip(first) {
+            stations.push(if i == own { ends[1] } else { from + run * i as f64 / own as f64 });
+            nodes.push(PathPoint {
+                q: node.q,
+                first: node.first.scaled(1.0 / run),
+                second: node.second.scaled(1.0 / (run * run)),
+            });
+        }
+    }
+    Ok(Table::new(stations, nodes))
+}
+
+fn minimum_norm_nodes(
+    tip: &Chain,
+    start: DriveAngles,
+    curve: &impl Fn(f64) -> CurvePoint,
+    spaces: usize,
+) -> Result<Vec<PathPoint>, PathError> {
+    let off_curve = OFF_CURVE * tip.iter().map(|c| c.abs()).sum::<f64>();
     let n = start.len();
     let slope = |q: &DriveAngles, s: f64| {
         let way = curve(s);
@@ -192,18 +257,21 @@ pub fn minimum_norm_path(
     };
     // Each space takes several steps, so that the integration is as exact as the quintics.
     const STEPS: usize = 4;
-    let h = 1.0 / (SPACES * STEPS) as f64;
+    let h = 1.0 / (spaces * STEPS) as f64;
     let mut q = start;
-    let mut nodes = Vec::with_capacity(SPACES + 1);
-    for i in 0..=SPACES {
-        let s = i as f64 / SPACES as f64;
+    let mut nodes = Vec::with_capacity(spaces + 1);
+    for i in 0..=spaces {
+        let s = i as f64 / spaces as f64;
         // A step may jump over the place where the rank is lost, but not without leaving the curve.
-        if (end_effector(tip, &q.units()) - curve(s).p).norm() > off_line {
+        let gap = curve(s).p - end_effector(tip, &q.units());
+        if gap.is_nan() || gap.norm() > off_curve {
             return Err(PathError::Singular { s });
         }
+        let (back, _) = minimum_norm(tip, &q.units(), n, gap, Vector::default()).ok_or(PathError::Singular { s })?;
+        q = DriveAngles(q.0.plus(1.0, &back));
         let (first, second) = slope(&q, s)?;
         nodes.push(PathPoint { q, first, second });
-        if i == SPACES {
+        if i == spaces {
             break;
         }
         for j in 0..STEPS {
@@ -215,7 +283,7 @@ pub fn minimum_norm_path(
             q = DriveAngles(q.0.plus(h / 6.0, &k1).plus(h / 3.0, &k2).plus(h / 3.0, &k3).plus(h / 6.0, &k4));
         }
     }
-    Table::even(nodes).ok_or(PathError::Singular { s: 0.0 })
+    Ok(nodes)
 }
 
 /// The straight line of the end effector from where a pose has it, with minimum-norm rates (case 1).

@@ -242,7 +242,7 @@ impl Scenario {
         let t = &self.task;
         let positive = [
             ("step", self.step, "a step of 0.00001 to 0.01 s", (1e-5..=0.01).contains(&self.step)),
-            ("task.time", t.time, "a time of at least one step, s", t.time >= self.step && t.time <= MAX_TIME),
+            ("task.time", t.time, "one step to 3600 s", t.time >= self.step && t.time <= MAX_TIME),
             (
                 "duration",
                 self.duration.unwrap_or(0.0),

@@ -35,10 +35,11 @@ pub struct Task {
     pub keep_off_change_points: bool,
     /// Pose constant at A, rad.
     pub b: f64,
-    /// Pose constant at B, rad; for `change-b`. By default the one that B allows with the least change.
+    /// Pose constant at B, rad: for `change-b` by default the one that B allows with the least change, for
+    /// `least-reaction` free.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub b_to: Option<f64>,
-    /// Bound on |n_B| while b changes, N m; for `change-b`: the time follows from it.
+    /// Bound on |n_B| while b changes, N m; for `change-b`: the motion takes as long as it wants, T or longer.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub moment_limit: Option<f64>,
     /// How often a closed path is run through; for `zero-momentum`.

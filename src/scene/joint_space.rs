@@ -11,7 +11,7 @@ use super::axes::{self, Axis};
 use super::camera::{Camera, Orbit};
 use super::palette::{Palette, faded, palette};
 use super::pointer::{Pointer, dot};
-use super::stage::{Handle, ViewOptions, round_up, signed};
+use super::stage::{Handle, ViewOptions, looks, round_up, signed};
 use super::views::{Aim, GRIP, Grip};
 use super::{Anchor, Label, Line, Marker, Mesh, Model, Scene, Solid};
 use crate::frame::Frame;
@@ -56,8 +56,8 @@ impl JointSpace {
         let [a1, a2] = map.limits();
         let corners = [[a1.min, a2.min], [a1.max, a2.min], [a1.max, a2.max], [a1.min, a2.max]];
         let course = run.motion().map_or_else(Vec::new, |motion| {
-            let at = |i: i32| motion.path.at(f64::from(i) / 96.0).q;
-            (0..=96).map(at).map(|q| [q[0], q[1], q[2]]).collect()
+            let at = |s: f64| motion.path.at(s).q;
+            looks(motion).map(at).map(|q| [q[0], q[1], q[2]]).collect()
         });
         let mut space =
             Self { model: Arc::default(), drives: [1, 2, 3].map(|i| (up + i) % 3), corners, course, planes };

@@ -5,8 +5,9 @@ mod reaction;
 mod target;
 mod workspace;
 
+use path::Course;
+pub(super) use path::looks;
 pub(crate) use path::waypoints;
-use path::{Course, LOOKS};
 pub(super) use target::target_handle;
 use workspace::{Inside, inside, roomiest};
 
@@ -110,7 +111,7 @@ impl Stage {
         });
         let tip = *machine.tip();
         let motion = run.motion().map(|motion| Course {
-            points: (0..=LOOKS).map(|i| place(&tip, &motion.path.at(f64::from(i) / f64::from(LOOKS)).q)).collect(),
+            points: looks(motion).map(|s| place(&tip, &motion.path.at(s).q)).collect(),
             start: motion.path.at(0.0).q.units(),
             waypoints: waypoints(&run.scenario().task),
         });

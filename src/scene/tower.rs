@@ -9,7 +9,7 @@ use super::axes::{self, Axis};
 use super::camera::{Camera, Orbit};
 use super::palette::{Palette, faded, palette};
 use super::pointer::Pointer;
-use super::stage::{Handle, ViewOptions, target_handle, waypoints};
+use super::stage::{Handle, ViewOptions, looks, target_handle, waypoints};
 use super::views::{Aim, GRIP, Grip};
 use super::wall::Wall;
 use super::{Anchor, Label, Line, Marker, Mesh, Model, Scene, Solid};
@@ -86,8 +86,8 @@ impl Tower {
         let model = Arc::new(Model { meshes: vec![sheet(planes.map()), wall.mesh(HEIGHT * radius)] });
         let tip = *run.scenario().machine.tip();
         let course: Vec<(Vector, f64)> = run.motion().map_or_else(Vec::new, |motion| {
-            let at = |i: i32| motion.path.at(f64::from(i) / 96.0).q;
-            (0..=96).map(at).map(|q| (place_of(&tip, &q.units()), planes.map().project(&q).b)).collect()
+            let at = |s: f64| motion.path.at(s).q;
+            looks(motion).map(at).map(|q| (place_of(&tip, &q.units()), planes.map().project(&q).b)).collect()
         });
         let ends = run.motion().map(|_| {
             let mut points = waypoints(&run.scenario().task);

@@ -10,7 +10,7 @@ mod run;
 
 pub use edit::{Edit, TimedEdit};
 pub use planning::{Plan, curves};
-pub use run::{Refusal, Run, replay};
+pub use run::{Refusal, Run, replay, settled};
 
 use run::in_order;
 
@@ -81,7 +81,10 @@ impl Session {
         let mut ground = scenario;
         let mut script = in_order(&std::mem::take(&mut ground.edits));
         let runs = is_led(&script) || script.iter().any(|e| e.step > 0);
-        let end = if runs { Run::new(&ground)?.last_step().min(MAX_FRAMES as u64 - 1) } else { 0 };
+        let end = match runs {
+            true => Run::begin(&ground, &script, None)?.0.last_step().min(MAX_FRAMES as u64 - 1),
+            false => 0,
+        };
         script.retain(|e| e.step <= end);
         let mut session = Self::of(Document { scenario: ground, script, end })?;
         session.cursor = 0;
@@ -89,7 +92,7 @@ impl Session {
     }
 
     fn of(document: Document) -> Result<Self, Refusal> {
-        let (run, frames) = perform(&document)?;
+        let (run, frames) = perform(&document, None)?;
         let cursor = frames.len() - 1;
         Ok(Self {
             document,
@@ -273,7 +276,7 @@ impl Session {
         if !self.is_at_end() {
             document.end = self.cursor as u64;
             document.script.retain(|e| e.step <= document.end);
-            remade = Some(perform(&document)?);
+            remade = Some(perform(&document, Some(&self.run))?);
         }
         let timed = TimedEdit { step: document.end, edit };
         let joins = self.gesture
@@ -319,8 +322,16 @@ impl Session {
         let mut document = self.document.clone();
         document.script.retain(|e| !e.edit.is_replaced_by(&timed.edit));
         if matches!(timed.edit, Edit::SetTask { .. }) && self.is_live() {
-            // To plan is to take the machine back from the hand that led it.
-            document.script.retain(|e| e.step == 0 && !e.edit.leads());
+            // To plan is to take the machine back from the hand that led it. What was set on the way stays.
+            let mut kept: Vec<TimedEdit> = Vec::with_capacity(document.script.len());
+            for e in document.script.drain(..).filter(|e| !e.edit.leads()) {
+                if e.step > 0 && matches!(e.edit, Edit::PoseB { .. }) {
+                    continue;
+                }
+                kept.retain(|old| !old.edit.is_replaced_by(&e.edit));
+                kept.push(TimedEdit { step: 0, edit: e.edit });
+            }
+            document.script = kept;
             document.end = 0;
         }
         // Who leads the machine from the start does so from where this puts it.
@@ -429,7 +440,7 @@ impl Session {
 
     /// Makes the run of a document; the display stays where it is, if there is a frame.
     fn restore(&mut self, document: Document) -> Result<(), Refusal> {
-        let (run, frames) = perform(&document)?;
+        let (run, frames) = perform(&document, Some(&self.run))?;
         (self.document, self.run, self.frames, self.unedited) = (document, run, frames, None);
         self.cursor = self.cursor.min(self.frames.len() - 1);
         Ok(())
@@ -462,8 +473,9 @@ impl Session {
 }
 
 /// Runs a document from its start to its end.
-fn perform(document: &Document) -> Result<(Run, Vec<Frame>), Refusal> {
+fn perform(document: &Document, known: Option<&Run>) -> Result<(Run, Vec<Frame>), Refusal> {
     let mut frames = Vec::with_capacity(document.end as usize + 1);
-    let run = run::perform(&document.scenario, &document.script, Some(document.end), |_, frame| frames.push(*frame))?;
+    let see = |_: &Run, frame: &Frame| frames.push(*frame);
+    let run = run::perform(&document.scenario, &document.script, Some(document.end), known, see)?;
     Ok((run, frames))
 }

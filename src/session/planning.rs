@@ -6,9 +6,9 @@ use super::Refusal;
 use crate::dynamics::Surroundings;
 use crate::machine::Inertia;
 use crate::plan::least_reaction::Verdicts;
-use crate::plan::limits::Limit;
-use crate::plan::path::{Chained, SameTip, minimum_norm_path};
-use crate::plan::{Curve, Forecast, Limits, Motion, Path, Price, Profile, Rule, TimeLaw, fastest, trace};
+use crate::plan::limits::{Limit, Quantity};
+use crate::plan::path::{Chained, SameTip, minimum_norm_curve};
+use crate::plan::{Curve, Forecast, Limits, Motion, Path, Price, Profile, Rule, TimeLaw, Usage, fastest, trace};
 use crate::planar::{DriveAngles, Vector};
 use crate::pose_constant::{Planes, Unreachable};
 use crate::reactionless::PlanePoint;
@@ -31,20 +31,48 @@ pub struct Plan {
     pub cycles: Vec<DriveAngles>,
 }
 
+impl Pace {
+    /// T/T* − 1, T* the least time without limits on jerk.
+    pub fn gap(&self) -> f64 {
+        if self.unlimited > 0.0 { (self.taken / self.unlimited - 1.0).max(0.0) } else { 0.0 }
+    }
+}
+
 impl Plan {
+    /// The largest |Δq_k| between the start and the end of each cycle, rad.
+    pub fn drift(&self) -> impl Iterator<Item = f64> {
+        let first = self.cycles.first();
+        self.cycles.iter().skip(1).filter_map(move |q| Some(q.0.minus(&first?.0).max_abs()))
+    }
+
     fn of(scenario: &Scenario, motion: Motion) -> Self {
         let (model, around) = dynamics_of(scenario);
-        let forecast = Forecast::of(&motion, &model, &around);
+        let forecast = Forecast::of(&motion, &model, &around, &Limits::of(&scenario.machine));
         Self { motion, forecast, pace: None, price: None, verdicts: None, cycles: Vec::new() }
     }
 }
 
-/// Refuses a motion that passes a joint limit, which rates alone do not know of.
-fn within_limits(scenario: &Scenario, motion: &Motion) -> Result<(), Refusal> {
-    const LOOKS: i32 = 1000;
-    for i in 0..=LOOKS {
-        let s = f64::from(i) / f64::from(LOOKS);
+/// Refuses a motion that passes a joint limit, or a change point to keep off, which rates alone do not know of.
+fn keeps_rules(scenario: &Scenario, motion: &Motion) -> Result<(), Refusal> {
+    const LOOKS: usize = 1000;
+    let looks = (100 * motion.path.parts()).clamp(LOOKS, 100_000);
+    let mut last: Option<DriveAngles> = None;
+    for i in 0..=looks {
+        let s = i as f64 / looks as f64;
         let q = motion.path.at(s).q;
+        let before = last.replace(q).filter(|_| scenario.task.keep_off_change_points);
+        for (k, l) in Inertia::pairs(q.len()) {
+            let side = |q: &DriveAngles| (q[k] - q[l]).sin();
+            if before.is_some_and(|before| side(&before) * side(&q) < 0.0) {
+                return Err(Refusal::Task(format!(
+                    "{:.1} % along, drives {} and {} become parallel, a change point: want another path or b, or \
+                     keep_off_change_points = false",
+                    100.0 * s,
+                    k + 1,
+                    l + 1,
+                )));
+            }
+        }
         for (k, angle) in scenario.machine.angles().iter().enumerate() {
             let a = q[angle.to] - q[angle.from] + angle.offset;
             let past = (angle.limits.start() - a).max(a - angle.limits.end());
@@ -96,6 +124,10 @@ pub fn plan(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
         (TaskKind::Reactionless, _) => on_plane(task, planes, &points)?,
         (TaskKind::MinimumNorm, _) => minimum_norm(scenario, planes, &points)?,
         _ => {
+            if !task.via.is_empty() || task.closed {
+                let why = "same-tip goes straight from A to B: want no points between and an open path";
+                return Err(Refusal::Task(why.into()));
+            }
             let [from, to] = lifted(planes, &serve(task, planes, &[points[0], points[points.len() - 1]])?)[..] else {
                 return Err(Refusal::Task("same-tip: want two points".into()));
             };
@@ -104,7 +136,7 @@ pub fn plan(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
         }
     };
     let (motion, pace) = timed(scenario, parts)?;
-    within_limits(scenario, &motion)?;
+    keeps_rules(scenario, &motion)?;
     Ok(Plan { pace, ..Plan::of(scenario, motion) })
 }
 
@@ -119,14 +151,18 @@ fn timed(scenario: &Scenario, parts: Vec<(Path, f64)>) -> Result<(Motion, Option
     for (path, length) in &parts {
         let profile = if task.law.is_fastest() {
             let fastest = fastest(path, &model, &around, &limits, task.law == TimeLaw::FastestSmooth)?;
-            let time = fastest.profile.duration();
+            let planned = fastest.profile.duration();
+            // Between the stations of its grid it may pass a limit by a little.
+            let motion = Motion { path: path.clone(), profile: fastest.profile };
+            let profile = slowed(motion, &model, &around, &limits)?.profile;
+            let time = profile.duration();
             let pace = pace.get_or_insert_default();
-            pace.unlimited += time / (1.0 + fastest.gap.unwrap_or(0.0));
+            pace.unlimited += planned / (1.0 + fastest.gap.unwrap_or(0.0));
             pace.taken += time;
             if pace.leading.is_none() {
                 pace.leading = fastest.limiting.first().map(|(limit, _)| *limit);
             }
-            fastest.profile
+            profile
         } else {
             Profile::of(task.law, task.time * length / total)
         };
@@ -142,6 +178,30 @@ fn timed(scenario: &Scenario, parts: Vec<(Path, f64)>) -> Result<(Motion, Option
         }
     };
     Ok((motion, pace))
+}
+
+/// A motion as slow as the limits of the drives want it, whatever the timing of its path.
+fn slowed(mut motion: Motion, model: &Inertia, around: &Surroundings, limits: &Limits) -> Result<Motion, Refusal> {
+    const SAMPLES: usize = 2000;
+    for _ in 0..12 {
+        let usage = Usage::of(&motion, model, around, limits, SAMPLES);
+        if usage.most <= 1.0 + 1e-9 {
+            return Ok(motion);
+        }
+        // Torques and accelerations fall with the square of the time, speeds with the time.
+        let by = match usage.limit.map(|limit| limit.quantity) {
+            Some(Quantity::Speed) => usage.most,
+            _ => usage.most.sqrt(),
+        };
+        motion.profile = motion.profile.stretched(by * (1.0 + 1e-12));
+    }
+    let usage = Usage::of(&motion, model, around, limits, SAMPLES);
+    match usage.limit.filter(|_| usage.most > 1.0 + 1e-3) {
+        Some(limit) => {
+            Err(Refusal::Task(format!("the {limit} is passed however slow the motion is: want a higher one")))
+        }
+        None => Ok(motion),
+    }
 }
 
 /// Poses of the points on the plane of the task.
@@ -252,7 +312,7 @@ fn minimum_norm(scenario: &Scenario, planes: &Planes, points: &[Vector]) -> Resu
     let mut q = DriveAngles::from(planes.map().lift(start[0]));
     let mut parts = Vec::new();
     for curve in curves(task, points)? {
-        let table = minimum_norm_path(scenario.machine.tip(), q, |s| curve.at(s))?;
+        let table = minimum_norm_curve(scenario.machine.tip(), q, &curve)?;
         q = table.nodes().last().map_or(q, |last| last.q);
         parts.push((Path::Table(table), curve.length()));
     }

@@ -7,7 +7,7 @@ use thiserror::Error;
 use super::planning::{Plan, plan};
 use super::{Edit, TimedEdit};
 use crate::frame::Frame;
-use crate::machine::MachineError;
+use crate::machine::{Machine, MachineError};
 use crate::plan::drift::DriftError;
 use crate::plan::follow::Bounds;
 use crate::plan::least_reaction::LeastReactionError;
@@ -118,6 +118,22 @@ impl Run {
         Self::with_planes(scenario, None)
     }
 
+    /// At the start of the task as edits before the first step leave it, up to the first that leads the machine; how
+    /// many those are. Planned once, when all have been made: what stands between two of them need not be possible.
+    ///
+    /// # Errors
+    /// If an edit is out of range, or the task cannot be planned.
+    pub(super) fn begin(
+        scenario: &Scenario,
+        script: &[TimedEdit],
+        known: Option<&Self>,
+    ) -> Result<(Self, usize), Refusal> {
+        let mut planes = known.and_then(|run| Some((run.scenario.machine.clone(), run.planes.clone()?)));
+        let (ground, count) = folded(scenario, script, &mut planes)?;
+        let known = planes.filter(|(machine, _)| *machine == ground.machine).map(|(_, planes)| planes);
+        Ok((Self::with_planes(&ground, known)?, count))
+    }
+
     fn with_planes(scenario: &Scenario, known: Option<Arc<Planes>>) -> Result<Self, Refusal> {
         let planes = match known {
             Some(planes) => planes,
@@ -188,6 +204,13 @@ impl Run {
     /// # Errors
     /// If it cannot apply; then nothing has changed.
     pub fn apply(&mut self, edit: &Edit) -> Result<(), Refusal> {
+        if self.is_untouched() && !edit.leads() {
+            let mut planes = self.planes.clone().map(|planes| (self.scenario.machine.clone(), planes));
+            let scenario = amended(&self.scenario, edit, &mut planes)?;
+            let known = planes.filter(|(machine, _)| *machine == scenario.machine).map(|(_, planes)| planes);
+            *self = Self::with_planes(&scenario, known)?;
+            return Ok(());
+        }
         check(edit, self.scenario.step)?;
         match edit {
             Edit::DragTarget { x, y } => {
@@ -200,7 +223,6 @@ impl Run {
                 follower.set_b(*b);
                 self.simulation.lead(Guide::Follow(follower));
             }
-            Edit::PoseB { b } if self.is_untouched() => self.pose_task(*b)?,
             Edit::PoseB { b } => {
                 let mut follower = self.follower()?;
                 follower.pose_at(*b);
@@ -221,26 +243,12 @@ impl Run {
         self.simulation.step_count() == 0 && matches!(self.simulation.guide(), Guide::Motion { .. })
     }
 
-    /// Parameters: while the task lies ahead it is planned anew, later the motion keeps its path.
+    /// Parameters in motion: it keeps its path.
     fn set(&mut self, edit: &Edit) -> Result<(), Refusal> {
-        let mut scenario = self.scenario.clone();
-        match edit {
-            Edit::SetGains { kp, kd } => (scenario.gains.kp, scenario.gains.kd) = (*kp, *kd),
-            Edit::SetPayload { mass } => scenario.plant.payload.mass = *mass,
-            Edit::SetMachine { key, value } => scenario.machine = scenario.machine.set(key, value)?,
-            Edit::SetTime { time } => scenario.task.time = *time,
-            Edit::SetTask { .. } if !self.is_untouched() => {
-                return Err(Refusal::Task("the task can change only before its first step".into()));
-            }
-            Edit::SetTask { change } => {
-                scenario.task = scenario.task.with(change).map_err(|why| Refusal::Task(format!("task: {why}")))?;
-                scenario.check("task").map_err(|why| Refusal::Task(why.to_string()))?;
-            }
-            _ => {}
+        if matches!(edit, Edit::SetTask { .. }) {
+            return Err(Refusal::Task("the task can change only before its first step".into()));
         }
-        if self.is_untouched() {
-            return self.restart(scenario);
-        }
+        let scenario = changed(&self.scenario, edit)?;
         if let (Edit::SetMachine { key, value }, true) = (edit, self.leaves_limits(&scenario)) {
             return Err(Refusal::LeavesLimits { key: key.clone(), value: value.clone() });
         }
@@ -265,27 +273,6 @@ impl Run {
         Ok(())
     }
 
-    /// The task on another plane: A and B keep their places while one plane serves both; beyond that they turn with
-    /// the workspace.
-    fn pose_task(&mut self, b: f64) -> Result<(), Refusal> {
-        let mut scenario = self.scenario.clone();
-        scenario.task.b = b;
-        if let Some(planes) = &self.planes {
-            let points = scenario.task.points();
-            if let (Err(_), Some(turned)) = (planes.serve(&points, b), planes.serve_turned(&points, b)) {
-                let place = |at: &PlanePoint| {
-                    let p = planes.map().forward(at.a, at.b);
-                    [p.re, p.im]
-                };
-                if let [from, via @ .., to] = &turned[..] {
-                    (scenario.task.from, scenario.task.to) = (place(from), place(to));
-                    scenario.task.via = via.iter().map(place).collect();
-                }
-            }
-        }
-        self.restart(scenario)
-    }
-
     /// Whether the planned motion, where it leads, has yet to pass limits that it kept before.
     fn leaves_limits(&self, changed: &Scenario) -> bool {
         let Guide::Motion { motion, start } = self.simulation.guide() else { return false };
@@ -300,12 +287,6 @@ impl Run {
             };
             keeps(&self.scenario) && !keeps(changed)
         })
-    }
-
-    fn restart(&mut self, scenario: Scenario) -> Result<(), Refusal> {
-        let known = (scenario.machine == self.scenario.machine).then(|| self.planes.clone()).flatten();
-        *self = Self::with_planes(&scenario, known)?;
-        Ok(())
     }
 
     /// The follower that leads, or one that takes over from the motion.
@@ -347,6 +328,55 @@ impl Run {
     }
 }
 
+/// A scenario with a parameter set; nothing is planned.
+fn changed(scenario: &Scenario, edit: &Edit) -> Result<Scenario, Refusal> {
+    let mut scenario = scenario.clone();
+    match edit {
+        Edit::SetGains { kp, kd } => (scenario.gains.kp, scenario.gains.kd) = (*kp, *kd),
+        Edit::SetPayload { mass } => scenario.plant.payload.mass = *mass,
+        Edit::SetMachine { key, value } => scenario.machine = scenario.machine.set(key, value)?,
+        Edit::SetTime { time } => scenario.task.time = *time,
+        Edit::CompareB { b } => scenario.compare_b = *b,
+        Edit::SetTask { change } => {
+            scenario.task = scenario.task.with(change).map_err(|why| Refusal::Task(format!("task: {why}")))?;
+            scenario.check("task").map_err(|why| Refusal::Task(why.to_string()))?;
+        }
+        Edit::PoseB { .. } | Edit::DragTarget { .. } | Edit::SlideB { .. } => {}
+    }
+    Ok(scenario)
+}
+
+/// A scenario as an edit before its first step leaves it; planes are made if a pose needs them, and kept.
+fn amended(scenario: &Scenario, edit: &Edit, planes: &mut Option<(Machine, Arc<Planes>)>) -> Result<Scenario, Refusal> {
+    check(edit, scenario.step)?;
+    let Edit::PoseB { b } = edit else { return changed(scenario, edit) };
+    let known = planes.take().filter(|(machine, _)| *machine == scenario.machine);
+    let planes = match known {
+        Some(known) => planes.insert(known),
+        None => planes.insert((scenario.machine.clone(), Arc::new(Planes::of(&scenario.machine)?))),
+    };
+    Ok(posed(scenario, &planes.1, *b))
+}
+
+/// The task on another plane: its points keep their places while one plane serves all; beyond that they turn with the
+/// workspace.
+fn posed(scenario: &Scenario, planes: &Planes, b: f64) -> Scenario {
+    let mut scenario = scenario.clone();
+    scenario.task.b = b;
+    let points = scenario.task.points();
+    if let (Err(_), Some(turned)) = (planes.serve(&points, b), planes.serve_turned(&points, b)) {
+        let place = |at: &PlanePoint| {
+            let p = planes.map().forward(at.a, at.b);
+            [p.re, p.im]
+        };
+        if let [from, via @ .., to] = &turned[..] {
+            (scenario.task.from, scenario.task.to) = (place(from), place(to));
+            scenario.task.via = via.iter().map(place).collect();
+        }
+    }
+    scenario
+}
+
 const GAIN_WANTED: &str = "0 or more, K_p at most 1/h² and K_d at most 2/h for a step h";
 
 fn check(edit: &Edit, step: f64) -> Result<(), Refusal> {
@@ -361,7 +391,7 @@ fn check(edit: &Edit, step: f64) -> Result<(), Refusal> {
         Edit::SetGains { kp, .. } if !(0.0..=1.0 / (step * step)).contains(&kp) => out("K_p", kp, GAIN_WANTED),
         Edit::SetGains { kd, .. } if !(0.0..=2.0 / step).contains(&kd) => out("K_d", kd, GAIN_WANTED),
         Edit::SetPayload { mass } if !(0.0..=MAX_PAYLOAD).contains(&mass) => out("payload", mass, "0 to 10000 kg"),
-        Edit::SetTime { time } if !(0.01..=MAX_TIME).contains(&time) => out("motion time", time, "0.01 to 3600 s"),
+        Edit::SetTime { time } if !(step..=MAX_TIME).contains(&time) => out("motion time", time, "one step to 3600 s"),
         _ => Ok(()),
     }
 }
@@ -381,12 +411,36 @@ fn bounds(scenario: &Scenario, planes: &Planes) -> Bounds {
     Bounds { joint, pose: scenario.pose_acceleration }
 }
 
+/// A scenario with the edits before its first step made part of it, and the others left out, and how many those others are.
+///
+/// # Errors
+/// If an edit cannot be made.
+pub fn settled(scenario: &Scenario) -> Result<(Scenario, usize), Refusal> {
+    let script = in_order(&scenario.edits);
+    let (ground, count) = folded(&Scenario { edits: Vec::new(), ..scenario.clone() }, &script, &mut None)?;
+    Ok((ground, script.len() - count))
+}
+
+/// A scenario with the edits before its first step made, up to the first that leads the machine, and their number.
+fn folded(
+    scenario: &Scenario,
+    script: &[TimedEdit],
+    planes: &mut Option<(Machine, Arc<Planes>)>,
+) -> Result<(Scenario, usize), Refusal> {
+    let count = script.iter().take_while(|e| e.step == 0 && !e.edit.leads()).count();
+    let mut ground = scenario.clone();
+    for timed in &script[..count] {
+        ground = amended(&ground, &timed.edit, planes)?;
+    }
+    Ok((ground, count))
+}
+
 /// Frames of a scenario with its edits, from the first to the last step, one at a time.
 ///
 /// # Errors
 /// If it cannot start, or an edit cannot apply.
 pub fn replay(scenario: &Scenario, see: impl FnMut(&Run, &Frame)) -> Result<Run, Refusal> {
-    perform(scenario, &in_order(&scenario.edits), None, see)
+    perform(scenario, &in_order(&scenario.edits), None, None, see)
 }
 
 impl Run {
@@ -414,10 +468,11 @@ pub(super) fn perform(
     scenario: &Scenario,
     script: &[TimedEdit],
     mut end: Option<u64>,
+    known: Option<&Run>,
     mut see: impl FnMut(&Run, &Frame),
 ) -> Result<Run, Refusal> {
-    let mut run = Run::new(scenario)?;
-    let mut edits = script.iter().peekable();
+    let (mut run, begun) = Run::begin(scenario, script, known)?;
+    let mut edits = script[begun..].iter().peekable();
     loop {
         let step = run.simulation().step_count();
         while let Some(timed) = edits.next_if(|e| e.step <= step) {

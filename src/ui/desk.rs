@@ -92,6 +92,7 @@ impl Desk {
         side::show(ui, &self.session, &self.look, &mut commands);
         plots::show(ui, &self.session, &self.signals, &self.look, &mut commands);
         viewport::show(ui, &self.session, &self.views, &mut self.look, &mut commands);
+        status::news(ui.ctx(), &self.look, &mut commands);
         keys::help(ui.ctx(), &self.look, &mut commands);
         top::dialog(ui.ctx(), &mut self.look, &mut commands);
         if commands.iter().any(|c| !matches!(c, Command::EndGesture | Command::Preview(_))) {
@@ -139,6 +140,8 @@ impl Desk {
                     return Err(refusal.to_string());
                 }
                 self.look.refused = None;
+                // What a drag has changed, Esc takes back.
+                self.look.dragged |= self.look.grabbed.is_some();
             }
             Command::Preview(b) => self.look.preview = b,
             Command::Draw(draw) => self.look.stroke = draw.then(Vec::new),

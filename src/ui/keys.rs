@@ -104,12 +104,15 @@ pub fn help(ctx: &Context, look: &Look, commands: &mut Vec<Command>) {
         .resizable(false)
         .anchor(egui::Align2::CENTER_CENTER, [0.0, 0.0])
         .show(ctx, |ui| {
-            egui::Grid::new("keys").num_columns(2).spacing([24.0, 7.0]).show(ui, |ui| {
-                for (key, does) in KEYS {
-                    ui.label(egui::RichText::new(key).font(bold(13.0)));
-                    ui.label(egui::RichText::new(does).color(colour(p.dim)));
-                    ui.end_row();
-                }
+            let room = (ctx.content_rect().height() - 120.0).max(160.0);
+            egui::ScrollArea::vertical().max_height(room).show(ui, |ui| {
+                egui::Grid::new("keys").num_columns(2).spacing([24.0, 7.0]).show(ui, |ui| {
+                    for (key, does) in KEYS {
+                        ui.label(egui::RichText::new(key).font(bold(13.0)));
+                        ui.label(egui::RichText::new(does).color(colour(p.dim)));
+                        ui.end_row();
+                    }
+                });
             });
         });
     if !open {

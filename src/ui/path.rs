@@ -76,8 +76,12 @@ fn choose<T: Copy + PartialEq>(
     let response = combo.show_ui(ui, |ui| {
         for (value, word, words, tip) in choices {
             if ui.selectable_label(*value == now, *words).on_hover_text(*tip).clicked() && *value != now {
-                commands.push(Command::Edit(Edit::task(key, *word)));
-                commands.push(Command::EndGesture);
+                let mut change = Change::from_iter([(key.to_owned(), Value::String((*word).into()))]);
+                if key == "kind" {
+                    // What only the other kind has.
+                    change.extend(["b_to", "moment_limit"].map(|key| (key.into(), "default".into())));
+                }
+                commands.extend([Command::Edit(Edit::SetTask { change }), Command::EndGesture]);
             }
         }
     });
@@ -88,9 +92,8 @@ fn time(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>
     if session.scenario().task.law.is_fastest() {
         let pace = session.run().plan().pace;
         let leads = pace.and_then(|p| p.leading).map_or(String::new(), |limit| format!(", {limit} leads"));
-        let gap = pace.filter(|p| p.taken > 1.0005 * p.unlimited);
-        let gap = gap
-            .map_or(String::new(), |p| format!(", {:.1} % over unlimited jerk", 100.0 * (p.taken / p.unlimited - 1.0)));
+        let gap = pace.map(|p| p.gap()).filter(|gap| *gap > 5e-4);
+        let gap = gap.map_or(String::new(), |gap| format!(", {:.1} % over unlimited jerk", 100.0 * gap));
         note(ui, p, &format!("T = {} s{leads}{gap}", signed(session.run().planned_time(), 3)));
         return;
     }
@@ -283,10 +286,9 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
             let row = Row { label: "cycles", unit: "", tip, decimals: 0, speed: 0.05, range: 1.0..=100.0 };
             let response = row.show(ui, p, &mut cycles);
             send(commands, &[response], || Edit::task("cycles", cycles.round() as i64));
-            if let (Some((first, rounds)), true) = (plan.cycles.split_first(), task.closed) {
-                let every = rounds.len().div_ceil(10).max(1);
-                let drift = |q: &crate::planar::DriveAngles| signed(q.0.minus(&first.0).max_abs(), 3);
-                let rounds: Vec<String> = rounds.iter().skip(every - 1).step_by(every).map(drift).collect();
+            if task.closed {
+                let every = (task.cycles as usize).div_ceil(10).max(1);
+                let rounds: Vec<String> = plan.drift().skip(every - 1).step_by(every).map(|d| signed(d, 3)).collect();
                 let each = if every == 1 { "each cycle".into() } else { format!("every {every} cycles") };
                 note(ui, p, &format!("drift of the joints after {each}: {} rad", rounds.join("  ")));
             }
@@ -299,6 +301,10 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
 fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
     let forecast = &session.run().plan().forecast;
     let torque = forecast.torque.max_abs();
+    if let Some((limit, factor)) = forecast.over {
+        let words = format!("{limit} passes its limit, {} times", signed(factor, 2));
+        ui.add(egui::Label::new(RichText::new(words).font(plain(11.0)).color(colour(p.reaction))).wrap());
+    }
     note(
         ui,
         p,

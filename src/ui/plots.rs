@@ -263,8 +263,8 @@ fn which_b(ui: &mut Ui, p: &Palette, session: &Session, look: &Look, height: f32
     let [q_low, q_high] = [bounds[2] - room, bounds[3] + room];
     let response = base_plot("which b", p, height - 16.0)
         .show_axes([true, true])
-        .y_grid_spacer(move |_| marks(&spaced(q_low, q_high), 1.0))
-        .x_grid_spacer(move |_| marks(&spaced(b_low, b_high), 1.0))
+        .y_grid_spacer(move |_| marks(&spaced(q_low, q_high), q_high - q_low))
+        .x_grid_spacer(move |_| marks(&spaced(b_low, b_high), b_high - b_low))
         .x_axis_formatter(|mark, _| signed(mark.value, 1))
         .y_axis_formatter(|mark, _| signed(mark.value, 1))
         .show(ui, |plot| {

@@ -142,8 +142,8 @@ fn pose_constant(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec
             commands.push(Command::EndGesture);
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            unit(ui, p, "rad");
             if shown {
+                unit(ui, p, "rad");
                 let row = Row {
                     label: "compare b",
                     unit: "rad",

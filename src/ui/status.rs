@@ -9,6 +9,25 @@ use crate::scene::stage::signed;
 use crate::scene::views::Views;
 use crate::session::{Edit, Session};
 
+/// Bad news, in full, over the lower edge of the viewport, with the way out if there is one.
+pub fn news(ctx: &egui::Context, look: &Look, commands: &mut Vec<Command>) {
+    let (Some((text, true)), None) = (&look.message, &look.dialog) else { return };
+    let p = look.palette();
+    let frame = Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.reaction))).corner_radius(8).inner_margin(10);
+    egui::Area::new(egui::Id::new("news")).anchor(egui::Align2::CENTER_BOTTOM, [-40.0, -42.0]).show(ctx, |ui| {
+        frame.show(ui, |ui| {
+            ui.set_max_width((0.42 * ctx.content_rect().width()).max(320.0));
+            ui.add(egui::Label::new(RichText::new(text).font(plain(12.0)).color(colour(p.ink))).wrap());
+            if let Some((edit, b)) = look.refused.as_ref().and_then(|wish| wish.remedy.clone()) {
+                let way_out = ui.button(format!("take b = {b:.3} rad"));
+                if way_out.on_hover_text("The same on the nearest plane that allows it").clicked() {
+                    commands.extend([Command::Edit(edit), Command::EndGesture]);
+                }
+            }
+        });
+    });
+}
+
 /// Draws it.
 pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &Look, commands: &mut Vec<Command>) {
     let p = look.palette();
@@ -39,15 +58,7 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &Look, commands
             ui.label(RichText::new(facts).font(plain(12.0)).color(colour(p.dim)));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let (text, tone) = match (&look.message, f.target.reach) {
-                    (Some((text, true)), _) => {
-                        if let Some((edit, b)) = look.refused.as_ref().and_then(|wish| wish.remedy.clone()) {
-                            let way_out = ui.button(format!("take b = {b:.3} rad"));
-                            if way_out.on_hover_text("The same on the nearest plane that allows it").clicked() {
-                                commands.extend([Command::Edit(edit), Command::EndGesture]);
-                            }
-                        }
-                        (text.clone(), p.reaction)
-                    }
+                    (Some((_, true)), _) => (String::new(), p.reaction),
                     (Some((text, false)), _) => (text.clone(), p.ink),
                     (None, _) if session.is_full() => {
                         ("three minutes are full: save or record them, then start over".into(), p.reaction)

@@ -103,9 +103,7 @@ fn point_at(
         // The last movement may come together with the release.
         let moved = response.drag_delta() != Vec2::ZERO || (look.dragged && response.drag_stopped());
         if let Some(pos) = response.interact_pointer_pos().filter(|_| moved) {
-            let edit = ask(grip, pos, look);
-            look.dragged |= edit.is_some();
-            commands.extend(edit);
+            commands.extend(ask(grip, pos, look));
         }
         let let_go = ui.input(|i| i.key_pressed(egui::Key::Escape));
         if response.drag_stopped() || let_go {
@@ -135,7 +133,8 @@ fn point_at(
     {
         commands.extend([Command::Edit(Edit::SetTask { change }), Command::EndGesture]);
     }
-    let out = ui.input(|i| i.key_pressed(egui::Key::Delete) || i.key_pressed(egui::Key::Backspace));
+    let typing = ui.ctx().egui_wants_keyboard_input();
+    let out = !typing && ui.input(|i| i.key_pressed(egui::Key::Delete) || i.key_pressed(egui::Key::Backspace));
     if let (Some(Handle::Waypoint(i)), None, true) = (look.hot, look.grabbed, out)
         && let Some(change) = task.removing(i)
     {

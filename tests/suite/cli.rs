@@ -331,7 +331,7 @@ fn numbers_that_mean_nothing_are_refused() {
 
 #[test]
 fn a_point_outside_the_plane_is_told_which_b_would_do() {
-    fails(&["pose", "nine-link", "0.5,0.5", "--b", "5"], 1, &["b = 5.000 rad", "want b from 1.650 to 2.901 rad"]);
+    fails(&["pose", "nine-link", "0.5,0.5", "--b", "5"], 1, &["b = 5.000000 rad", "want b from 1.6496 to 2.9012 rad"]);
 }
 
 #[test]

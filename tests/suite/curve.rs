@@ -168,7 +168,7 @@ fn freehand_takes_the_tremble_out() {
 fn what_is_no_curve_is_said() {
     let nan = [v(0.0, 0.0), v(f64::NAN, 1.0)];
     assert_eq!(Curve::polyline(&nan, false, 0.0), Err(CurveError::NotFinite(1)));
-    assert_eq!(Curve::spline(&[v(1.0, 0.0), v(1.0, 0.0)], false), Err(CurveError::Coincident(0)));
+    assert_eq!(Curve::spline(&[v(1.0, 0.0), v(1.0, 0.0)], false), Err(CurveError::Coincident(0, 1)));
     assert!(matches!(Curve::spline(&[v(1.0, 0.0)], false), Err(CurveError::Count { got: 1, .. })));
     assert!(matches!(Curve::freehand(&[v(1.0, 0.0); 9], false), Err(CurveError::Count { got: 1, .. })));
     let words = Curve::arc([v(0.0, 0.0), v(0.0, 0.0), v(1.0, 0.0)], false).expect_err("no").to_string();

@@ -388,3 +388,45 @@ fn dragging_can_keep_off_change_points() {
         assert!(session.frame().peaks.is_reactionless());
     }
 }
+
+/// Motions whose rates alone are given stay on their curve across the joints of a spline, and keep limits or are refused.
+#[test]
+fn rates_follow_splines_too() {
+    let zigzag: Vec<String> = (1..16)
+        .map(|i| {
+            let t = f64::from(i) / 16.0;
+            let off = if i % 2 == 0 { 0.01 } else { -0.01 };
+            format!("[{}, {}]", 0.5 + 0.05 * t + off, 0.5 + 0.4 * t)
+        })
+        .collect();
+    for kind in ["minimum-norm", "zero-momentum"] {
+        let scenario = task(&format!("kind = '{kind}'\nshape = 'spline'\nvia = [{}]\ntime = 4.0", zigzag.join(", ")));
+        let (run, frames) = run(&scenario);
+        let drawn = curves(&scenario.task, &scenario.task.points()).expect("a curve");
+        let motion = &run.plan().motion;
+        for i in 0..=500 {
+            let tip = run.place(&motion.path.at(f64::from(i) / 500.0).q);
+            let s = drawn[0].nearest(tip, 20_000);
+            assert!((drawn[0].at(s).p - tip).norm() < 1e-8, "{kind} {i}");
+        }
+        let last = frames[frames.len() - 1];
+        assert_eq!(last.peaks.moment < 1e-6 * last.peaks.torque_sum, kind == "zero-momentum", "{:?}", last.peaks);
+    }
+}
+
+/// A limit on n_B never asks more of the drives than they have.
+#[test]
+fn a_price_limit_spares_the_drives() {
+    for text in [
+        "kind = 'change-b'\nmoment_limit = 3.0",
+        "kind = 'change-b'\nmoment_limit = 100.0\nlaw = 'fastest'\nb_to = 2.41",
+        "kind = 'change-b'\nto = [-0.6, -0.2]\nmoment_limit = 1000.0\nlaw = 'fastest'",
+    ] {
+        let run = Run::new(&task(text)).unwrap_or_else(|e| panic!("{text}: {e}"));
+        let forecast = &run.plan().forecast;
+        assert!(forecast.over.is_none(), "{text}: {:?}", forecast.over);
+    }
+    let hasty = Run::new(&task("time = 0.1")).expect("it can be planned");
+    let (limit, factor) = hasty.plan().forecast.over.expect("too fast");
+    assert!(factor > 5.0 && limit.to_string().contains("torque"), "{limit} {factor}");
+}

@@ -475,7 +475,10 @@ fn a_task_that_cannot_be_is_refused_by_its_point() {
     assert!(matches!(refusal, Refusal::Unreachable { ref point, .. } if point == "A"), "{refusal}");
     let refusal = session.apply(set("limits.a2", "0.8,2.0")).expect_err("B needs a2 = 2.05");
     let words = refusal.to_string();
-    assert!(words.contains("B (0.550, 0.900) m is outside") && words.contains("want b from 2.216 to 2.374"), "{words}");
+    assert!(
+        words.contains("B (0.550, 0.900) m is outside") && words.contains("want b from 2.2158 to 2.3740"),
+        "{words}"
+    );
     assert!(state(&session) == before);
 }
 
@@ -856,5 +859,43 @@ fn an_inline_machine_is_saved_with_its_session() {
     do_it(&mut session, set("gravity", "0,-9.81"));
     do_it(&mut session, drag(0.55, 0.55));
     session.tick(60);
+    one_path(&session);
+}
+
+/// In whatever order settings were made, the last word of each holds, and what stood between them need not be possible.
+#[test]
+fn the_order_of_settings_does_not_matter() {
+    let task = |key: &str, value: &str| Edit::task(key, value);
+    let to = |x: f64, y: f64| Edit::SetTask { change: [("to".to_owned(), vec![x, y].into())].into_iter().collect() };
+    for [first, second, third] in [
+        [set("drive.3.jerk_limit", "900"), task("law", "fastest-smooth"), set("drive.3.jerk_limit", "800")],
+        [task("kind", "minimum-norm"), to(0.3, 1.0), task("kind", "least-reaction")],
+        [set("limits.a1", "-1,3.2"), to(0.6, 0.4), set("limits.a1", "-1.2,3.2")],
+    ] {
+        let mut session = open(scenario());
+        for edit in [first, second, third.clone()] {
+            do_it(&mut session, edit);
+            session.end_gesture();
+        }
+        assert!(session.script().iter().all(|e| e.step == 0));
+        assert_eq!(session.script().last().map(|e| &e.edit), Some(&third));
+        session.step_by(5);
+        one_path(&session);
+    }
+}
+
+/// What was set while the machine was led stays when a new path takes it back.
+#[test]
+fn settings_outlive_following() {
+    let mut session = open(scenario());
+    do_it(&mut session, drag(0.6, 0.7));
+    session.tick(200);
+    session.end_gesture();
+    do_it(&mut session, Edit::SetPayload { mass: 0.3 });
+    session.end_gesture();
+    session.tick(50);
+    do_it(&mut session, Edit::task("shape", "line"));
+    assert!(!session.is_live());
+    assert_eq!(session.scenario().plant.payload.mass, 0.3);
     one_path(&session);
 }

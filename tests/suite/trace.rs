@@ -195,8 +195,10 @@ proptest! {
             let counted = f64::from(best) / 2000.0;
             let found = blocked.longest.map_or(0.0, |[s, t]| t - s);
             prop_assert!((found - counted).abs() < 2.5e-3, "{} {}", found, counted);
-            if let Some([s, t]) = blocked.longest.filter(|[s, t]| t - s > 1e-3) {
-                prop_assert!(follow(&planes, &part(s + 1e-6, t - 1e-6), B).is_ok());
+            if let Some([s, t]) = blocked.longest.filter(|[s, t]| t - s > 1e-2) {
+                // Where it ends on det = 0, the rates there have no bound: a little off.
+                let again = follow(&planes, &part(s + 1e-3, t - 1e-3), B);
+                prop_assert!(again.is_ok(), "{s} {t} {again:?}");
             }
         }
     }

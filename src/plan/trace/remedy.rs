@@ -20,7 +20,12 @@ pub(super) fn blocked(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, s: f
         leaves_workspace: map.poses(beyond, b).is_empty(),
         nearest_b: nearest_b(map, curves, b, rule, &common),
         some_b_reaches_all: !common.is_empty(),
-        longest: longest(map, curves, b, rule),
+        longest: longest(map, curves, b, rule).map(|[from, to]| match from < s && s < to {
+            // A graze between stations.
+            true if s - from >= to - s => [from, s],
+            true => [s, to],
+            false => [from, to],
+        }),
         curve: (0..=DRAWN).map(|i| at(curves, f64::from(i) / f64::from(DRAWN))).collect(),
     }
 }
@@ -52,15 +57,17 @@ fn nearest_b(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, common: &BSet
     // Between the stations the curve may still leave the workspace by a little: then a little further in.
     let start = curves.first().map(|curve| curve.at(0.0).p)?;
     let follows = |b: f64| starts(map, start, b, None).into_iter().any(|a| tables(map, curves, b, a, rule).is_ok());
-    if follows(good) {
-        return Some(good);
+    // A hair further in, so that it still does when read off with four decimals.
+    let shown = |b: f64| b + (first - b).clamp(-6e-5, 6e-5);
+    if follows(shown(good)) {
+        return Some(shown(good));
     }
     let mut inner = [first, common.inwards(first, 0.5)].into_iter().find(|b| follows(*b))?;
     for _ in 0..10 {
         let middle = 0.5 * (good + inner);
         if follows(middle) { inner = middle } else { good = middle }
     }
-    Some(inner)
+    Some(if follows(shown(inner)) { shown(inner) } else { inner })
 }
 
 /// The longest part of curves that can be followed on a plane, as s over all of them.

@@ -16,8 +16,13 @@ const ASTRAY: f64 = 0.02;
 /// The nodes are dense enough when the quintics between them miss by no more than this, rad.
 const MISS: f64 = 2e-11;
 
-/// The most spaces between nodes on a piece of a curve.
-const MOST_SPACES: usize = 512;
+/// In the least spaces this must do, rad: close by a fold.
+const MISS_AT_LEAST: f64 = 1e-8;
+/// Spaces between nodes on a piece of a curve to begin with.
+const SPACES: usize = 8;
+/// The least space, as a share of its piece, and the most nodes of a curve.
+const LEAST_SPACE: f64 = 1e-6;
+const MOST_NODES: usize = 20_000;
 
 /// A curve on a plane.
 #[derive(Clone, Copy)]
@@ -33,10 +38,10 @@ impl Track<'_> {
     /// From the pose at one s to that at another.
     pub fn advance(&self, mut a: [f64; 2], from: f64, to: f64) -> Result<[f64; 2], Halt> {
         let (mut s, mut step) = (from, to - from);
-        let mut tangent = self.jet(a, s).first;
+        let mut here = self.jet(a, s);
         while s < to {
             let next = if s + step >= to { to } else { s + step };
-            let ahead = [0, 1].map(|i| a[i] + (next - s) * tangent[i]);
+            let ahead = [0, 1].map(|i| a[i] + (next - s) * here.first[i]);
             let found = self.map.follow(self.curve.at(next).p, self.b, a).filter(|x| self.keeps_side(a, *x));
             let near = |x: &[f64; 2]| {
                 let step = (x[0] - a[0]).hypot(x[1] - a[1]);
@@ -44,12 +49,13 @@ impl Track<'_> {
             };
             match found.filter(near) {
                 Some(x) => {
-                    (a, s) = (x, next);
-                    tangent = self.jet(a, s).first;
+                    let there = self.jet(x, next);
+                    self.keeps_limits((s, here), (next, there))?;
+                    (a, s, here) = (x, next, there);
                     step *= 2.0;
                 }
                 None if step > LEAST_STEP => step *= 0.5,
-                None => return Err((s, a, self.stop(a, tangent))),
+                None => return Err((s, a, self.stop(a, here.first))),
             }
         }
         Ok(a)
@@ -98,21 +104,29 @@ impl Track<'_> {
         Stop::Fold
     }
 
-    /// Nodes along the curve, dense enough for the quintics between them.
+    /// Nodes along the curve, each space halved until its quintic does.
     pub fn table(&self, start: [f64; 2]) -> Result<Table, Halt> {
         let (mut stations, mut nodes) = (vec![0.0], vec![self.jet(start, 0.0)]);
         let joints: Vec<f64> = self.curve.joints().collect();
+        let mut ahead: Vec<f64> = Vec::with_capacity(64);
         for ends in joints.windows(2) {
-            let mut spaces = 8;
-            loop {
-                let piece = self.piece([ends[0], ends[1]], nodes[nodes.len() - 1].a, spaces)?;
-                if spaces >= MOST_SPACES || self.is_dense(&piece) {
-                    piece.windows(2).try_for_each(|w| self.keeps_limits(w[0], w[1]))?;
-                    stations.extend(piece.iter().skip(1).map(|(s, _)| *s));
-                    nodes.extend(piece.into_iter().skip(1).map(|(_, jet)| jet));
-                    break;
+            let run = ends[1] - ends[0];
+            let station = |i: usize| if i == SPACES { ends[1] } else { ends[0] + run * i as f64 / SPACES as f64 };
+            ahead.extend((1..=SPACES).rev().map(station));
+            while let Some(&next) = ahead.last() {
+                let (s, here) = (stations[stations.len() - 1], nodes[nodes.len() - 1]);
+                let there = self.jet(self.advance(here.a, s, next)?, next);
+                let miss = self.miss((s, here), (next, there));
+                if miss < MISS || (next - s < LEAST_SPACE * run && miss < MISS_AT_LEAST) {
+                    stations.push(next);
+                    nodes.push(there);
+                    ahead.pop();
+                } else if next - s < LEAST_SPACE * run || nodes.len() > MOST_NODES {
+                    // So near to a fold that no nodes are dense enough.
+                    return Err((s, here.a, Stop::Fold));
+                } else {
+                    ahead.push(0.5 * (s + next));
                 }
-                spaces *= 2;
             }
         }
         let lifted = nodes.iter().map(|jet| self.lifted(jet)).collect();
@@ -121,33 +135,14 @@ impl Track<'_> {
         Table::new(stations, lifted).ok_or((0.0, start, Stop::Start))
     }
 
-    /// Nodes on one piece of the curve, both ends included.
-    fn piece(&self, [from, to]: [f64; 2], start: [f64; 2], spaces: usize) -> Result<Vec<(f64, Jet)>, Halt> {
-        let station = |i: usize| if i == spaces { to } else { from + (to - from) * i as f64 / spaces as f64 };
-        let mut nodes = Vec::with_capacity(spaces + 1);
-        nodes.push((from, self.jet(start, from)));
-        for i in 1..=spaces {
-            let a = self.advance(nodes[i - 1].1.a, station(i - 1), station(i))?;
-            nodes.push((station(i), self.jet(a, station(i))));
+    /// How far the point halfway between two nodes lies from their quintic, rad.
+    fn miss(&self, (s, x): (f64, Jet), (t, y): (f64, Jet)) -> f64 {
+        let middle =
+            [0, 1].map(|i| hermite([x.a[i], x.first[i], x.second[i]], [y.a[i], y.first[i], y.second[i]], t - s, 0.5));
+        match self.map.follow(self.curve.at(0.5 * (s + t)).p, self.b, x.a) {
+            Some(a) => (a[0] - middle[0]).abs().max((a[1] - middle[1]).abs()),
+            None => f64::INFINITY,
         }
-        Ok(nodes)
-    }
-
-    /// Whether a point halfway between nodes lies where their quintic has it.
-    fn is_dense(&self, piece: &[(f64, Jet)]) -> bool {
-        piece.windows(2).all(|w| {
-            let [(s, x), (t, y)] = [w[0], w[1]];
-            let h = t - s;
-            let middle = [0, 1].map(|i| {
-                0.5 * (x.a[i] + y.a[i])
-                    + 5.0 / 32.0 * h * (x.first[i] - y.first[i])
-                    + h * h / 64.0 * (x.second[i] + y.second[i])
-            });
-            match self.map.follow(self.curve.at(0.5 * (s + t)).p, self.b, x.a) {
-                Some(a) => (a[0] - middle[0]).abs().max((a[1] - middle[1]).abs()) < MISS,
-                None => false,
-            }
-        })
     }
 
     /// Between two nodes an angle may turn back beyond its limit.
@@ -170,6 +165,10 @@ impl Track<'_> {
                 bad += shift;
             }
             if past(bad) <= SLACK {
+                continue;
+            }
+            // A long space has a poor quintic: only what cannot be followed there counts.
+            if self.map.follow(self.curve.at(s + (t - s) * bad).p, self.b, x.a).is_some() {
                 continue;
             }
             let upper = at(bad) > limit.max;

@@ -1,13 +1,17 @@
 //! The planned path with its points, what is drawn by hand, and what was refused.
 
 use super::{Handle, Stage, ViewOptions, label, point};
+use crate::plan::Motion;
 use crate::planar::{Units, Vector};
 use crate::scenario::{Shape, Task};
 use crate::scene::palette::{Palette, faded};
 use crate::scene::{Anchor, Line, Marker, Scene};
 
 /// Parts of a path that is drawn.
-pub(super) const LOOKS: i32 = 256;
+const LOOKS: usize = 256;
+
+/// Parts that each of many paths end to end is drawn in.
+const A_PART: usize = 48;
 
 /// The most points of a task that are drawn one by one; more are a curve drawn by hand.
 pub(super) const NAMED: usize = 24;
@@ -30,6 +34,12 @@ pub(crate) fn waypoints(task: &Task) -> Vec<(usize, String, Vector)> {
     } else {
         [&all[..1], &all[all.len() - 1..]].concat()
     }
+}
+
+/// Where a path is looked at to be drawn.
+pub(in crate::scene) fn looks(motion: &Motion) -> impl Iterator<Item = f64> {
+    let n = (A_PART * motion.path.parts()).clamp(LOOKS, 4096);
+    (0..=n).map(move |i| i as f64 / n as f64)
 }
 
 impl Stage {

@@ -1,7 +1,7 @@
 //! Motions that leave their plane knowingly: a change of b, the least reaction, and zero momentum on any machine.
 
-use super::{Plan, Refusal, curves, dynamics_of, refusal, serve, timed, within_limits};
-use crate::plan::drift::zero_momentum_path;
+use super::{Plan, Refusal, curves, dynamics_of, keeps_rules, refusal, serve, slowed, timed};
+use crate::plan::drift::zero_momentum_curve;
 use crate::plan::least_reaction::Goal;
 use crate::plan::path::Chained;
 use crate::plan::price::{bang_bang_in_b, joint_line, least_change};
@@ -34,32 +34,29 @@ pub fn change_b(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
     let (model, around) = dynamics_of(scenario);
     let price = Price::of(&model, ends[1].b - ends[0].b)?;
     let line = joint_line(planes.map(), ends);
-    let least = task.moment_limit.map(|limit| price.inertia() * price.delta_b().abs() / limit);
-    let motion = match (task.law, least) {
+    // T² times the peak of n_B over |s̈|'s, for a b that moves.
+    let moves = price.delta_b().abs() > 1e-9;
+    let square = task.moment_limit.filter(|_| moves).map(|limit| price.inertia() * price.delta_b().abs() / limit);
+    let limits = Limits::of(&scenario.machine);
+    let motion = match (task.law, square) {
         (TimeLaw::Fastest, Some(square)) => {
-            let time = 2.0 * square.sqrt();
             let table = bang_bang_in_b(planes.map(), ends);
             let table = table.ok_or_else(|| Refusal::Task("A and B are too far apart".into()))?;
-            let path = Path::Table(table);
-            let alone = |time: f64| Motion { path: path.clone(), profile: Profile::even(time) };
-            // A short change of b leaves the joints little time: their torques may want more.
-            let limits = Limits::of(&scenario.machine);
-            let torque = Forecast::of(&alone(time.max(1e-3)), &model, &around).torque;
-            let excess = torque.iter().zip(limits.torque.iter()).map(|(t, limit)| t / limit).fold(0.0, f64::max);
-            alone(time.max(1e-3) * excess.max(1.0).sqrt())
+            let motion = Motion { path: Path::Table(table), profile: Profile::even(2.0 * square.sqrt()) };
+            // A short change of b leaves the joints little time.
+            slowed(motion, &model, &around, &limits)?
         }
-        (law, Some(square)) if !law.is_fastest() => Motion::new(line, law, (peak(law) * square).sqrt().max(1e-2)),
-        _ => {
+        (law, Some(square)) if !law.is_fastest() => Motion::new(line, law, (peak(law) * square).sqrt().max(task.time)),
+        (_, square) => {
             let (motion, _) = timed(scenario, vec![(line, 1.0)])?;
-            let fast = least.map_or(0.0, |square| {
-                // The greatest |s̈| of the motion is at most that of bang-bang.
-                let peak = Forecast::of(&motion, &model, &around).moment;
-                let limit = price.inertia() * price.delta_b().abs() / square;
-                (peak / limit).sqrt()
+            let fast = square.map_or(0.0, |square| {
+                let peak = Forecast::of(&motion, &model, &around, &limits).moment;
+                (peak * square / (price.inertia() * price.delta_b().abs())).sqrt()
             });
             Motion { profile: if fast > 1.0 { motion.profile.stretched(fast) } else { motion.profile }, ..motion }
         }
     };
+    keeps_rules(scenario, &motion)?;
     Ok(Plan { price: Some(price), ..Plan::of(scenario, motion) })
 }
 
@@ -121,17 +118,21 @@ pub fn least_reaction(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refu
     };
     let (model, _) = dynamics_of(scenario);
     let mut refused = None;
-    for start in serve(task, planes, &task.points()[..1])?.iter().chain(map.poses(task.points()[0], task.b).iter()) {
+    for start in map.poses(task.points()[0], task.b).iter() {
         match LeastReaction::plan(map, &model, &curve, *start, task.b_to, goal) {
             Ok(plan) => {
                 let motion = Motion { path: Path::Table(plan.path().clone()), profile: Profile::even(task.time) };
+                keeps_rules(scenario, &motion)?;
                 let verdicts = plan.compare(scenario.machine.tip(), &curve, task.time);
                 return Ok(Plan { verdicts: Some(verdicts), ..Plan::of(scenario, motion) });
             }
             Err(why) => refused = Some(refused.unwrap_or(why)),
         }
     }
-    Err(refused.map_or_else(|| Refusal::Task("A has no pose on this plane".into()), Refusal::LeastReaction))
+    match refused {
+        Some(why) => Err(Refusal::LeastReaction(why)),
+        None => Err(serve(task, planes, &task.points()[..1]).err().unwrap_or(Refusal::Task("A has no pose".into()))),
+    }
 }
 
 /// All curves one after another over u = t/T, each by the law in its share of the time.
@@ -170,9 +171,9 @@ pub fn zero_momentum(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refus
     let curves = curves(task, &task.points())?;
     let mut parts = Vec::new();
     let mut cycles = vec![q];
-    for _ in 0..task.cycles {
+    for cycle in 1..=task.cycles as usize {
         for curve in &curves {
-            let table = zero_momentum_path(&model, q, |s| curve.at(s))?;
+            let table = zero_momentum_curve(&model, q, curve, cycle)?;
             q = table.nodes().last().map_or(q, |last| last.q);
             parts.push((Path::Table(table), curve.length()));
         }
@@ -194,6 +195,6 @@ pub fn zero_momentum(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refus
             Motion { path: Path::Chain(path.ok_or_else(|| Refusal::Task("want a path".into()))?), profile }
         }
     };
-    within_limits(scenario, &motion)?;
+    keeps_rules(scenario, &motion)?;
     Ok(Plan { cycles, ..Plan::of(scenario, motion) })
 }
