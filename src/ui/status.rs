@@ -14,7 +14,7 @@ pub fn news(ctx: &egui::Context, look: &Look, commands: &mut Vec<Command>) {
     let (Some((text, true)), None) = (&look.message, &look.dialog) else { return };
     let p = look.palette();
     let frame = Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.reaction))).corner_radius(8).inner_margin(10);
-    egui::Area::new(egui::Id::new("news")).anchor(egui::Align2::CENTER_BOTTOM, [-40.0, -42.0]).show(ctx, |ui| {
+    egui::Area::new(egui::Id::unique("news")).anchor(egui::Align2::CENTER_BOTTOM, [-40.0, -42.0]).show(ctx, |ui| {
         frame.show(ui, |ui| {
             ui.set_max_width((0.42 * ctx.content_rect().width()).max(320.0));
             ui.add(egui::Label::new(RichText::new(text).font(plain(12.0)).color(colour(p.ink))).wrap());
