@@ -42,8 +42,10 @@ pub enum WindowError {
 /// If there is no display, library or adapter, or the scenario cannot start.
 pub fn run(scenario: Scenario, theme: Theme) -> Result<(), WindowError> {
     check_libraries()?;
-    let mut desk = Desk::new(scenario, theme)?;
-    desk.carry_out(Command::TogglePlay);
+    let mut desk = Desk::open_or_explain(scenario, theme)?;
+    if desk.look().message.is_none() {
+        desk.carry_out(Command::TogglePlay);
+    }
     let event_loop = EventLoop::<eframe::UserEvent>::with_user_event()
         .build()
         .map_err(|e| WindowError::NoDisplay(last_clause(&e.to_string())))?;

@@ -12,7 +12,7 @@ use stillbase::plan::price::FloatingBase;
 use stillbase::planar::Vector;
 use stillbase::pose_constant::Planes;
 use stillbase::reactionless::BSet;
-use stillbase::scenario::{Change, Scenario, TaskKind};
+use stillbase::scenario::{Change, Scenario, Task, TaskKind};
 use stillbase::session::{Refusal, Run, settled};
 
 use super::failure::Failure;
@@ -362,13 +362,10 @@ impl Plan {
             }
         };
         let mut change = Change::new();
-        if let [from, via @ .., to] = &self.points[..] {
-            let pair = |p: &Vector| toml::Value::Array(vec![p.re.into(), p.im.into()]);
-            change.insert("from".into(), pair(from));
-            change.insert("via".into(), toml::Value::Array(via.iter().map(pair).collect()));
-            change.insert("to".into(), pair(to));
-        } else if !self.points.is_empty() {
-            return Err(Failure::wrong_input("one point is no path: want at least two"));
+        match Task::visiting(&self.points) {
+            Some(points) => change.extend(points),
+            None if self.points.is_empty() => {}
+            None => return Err(Failure::wrong_input("one point is no path: want at least two")),
         }
         let word = |value: Option<clap::builder::PossibleValue>| value.map(|v| v.get_name().to_owned());
         let words = [

@@ -1,4 +1,14 @@
 //! Plans: a path and a timing make the reference that control follows.
+//!
+//! | what | modules |
+//! |---|---|
+//! | curves of the end effector, and paths of the drives | [`curve`], [`path`], [`table`] |
+//! | on a plane: a curve followed on one sheet, or why not | [`trace`] |
+//! | when: laws, limits of the drives, the fastest motion | [`law`], [`profile`], [`limits`], [`mod@fastest`], [`usage`] |
+//! | off the plane: the price of b, the least reaction | [`price`], [`corridor`], [`inverse`], [`pose_course`], [`least_reaction`] |
+//! | on any machine: zero momentum, its drift, and two drives | [`null_space`], [`drift`], [`pose_integral`] |
+//! | what it will cost | [`forecast`] |
+//! | following the pointer and the slider | [`follow`] |
 
 mod convex;
 pub mod corridor;

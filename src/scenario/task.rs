@@ -170,8 +170,16 @@ impl Task {
         }
     }
 
+    /// All keys, so that another task can be made this one.
+    pub fn whole(&self) -> Change {
+        let optional = ["shape", "via", "closed", "corners", "blend", "keep_off_change_points", "b_to", "moment_limit"];
+        let others = ["cycles", "least", "first_drive_to"];
+        let absent = optional.into_iter().chain(others).map(|key| (key.to_owned(), Value::from("default")));
+        absent.chain(Change::try_from(self).unwrap_or_default()).collect()
+    }
+
     /// The change that makes these the points; `None` for fewer than two.
-    fn visiting(points: &[Vector]) -> Option<Change> {
+    pub fn visiting(points: &[Vector]) -> Option<Change> {
         let [from, via @ .., to] = points else { return None };
         let pair = |p: &Vector| toml::Value::Array(vec![p.re.into(), p.im.into()]);
         let via = via.iter().map(pair).collect();

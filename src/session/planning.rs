@@ -295,10 +295,11 @@ fn on_plane(task: &Task, planes: &Planes, points: &[Vector]) -> Result<Vec<(Path
     let curves = curves(task, points)?;
     let rule = Rule { keep_off_change_points: task.keep_off_change_points };
     // Where even single points fail, they are the clearer reason.
-    if task.shape() != Shape::Freehand {
-        serve(task, planes, points)?;
-    }
-    let tables = trace::follow(planes.map(), &curves, task.b, None, rule)?;
+    let prefer = match task.shape() {
+        Shape::Freehand => None,
+        _ => serve(task, planes, points)?.first().map(|pose| pose.a),
+    };
+    let tables = trace::follow(planes.map(), &curves, task.b, prefer, rule)?;
     Ok(tables.into_iter().zip(&curves).map(|(table, curve)| (Path::Table(table), curve.length())).collect())
 }
 

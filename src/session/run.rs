@@ -181,6 +181,11 @@ impl Run {
         crate::kinematics::end_effector(self.scenario.machine.tip(), &q.units())
     }
 
+    /// Where the end effector is after a share of the planned time, m.
+    pub fn on_path(&self, share: f64) -> Vector {
+        self.place(&self.plan.motion.at(share * self.planned_time()).q)
+    }
+
     /// The planned motion, while it leads.
     pub fn motion(&self) -> Option<&Motion> {
         match self.simulation.guide() {

@@ -9,7 +9,7 @@ use crate::scenario::Scenario;
 use crate::scene::palette::Theme;
 use crate::scene::stage::Stage;
 use crate::scene::views::{ViewKind, Views};
-use crate::session::{Refusal, Session};
+use crate::session::{Edit, Refusal, Session};
 use crate::signals::{Signal, signals};
 
 /// A session on display.
@@ -47,6 +47,22 @@ impl Desk {
             dressed: None,
             fonts: false,
         })
+    }
+
+    /// Opens a scenario; where its task cannot be planned, its machine with the paper's task, and what is in the way.
+    ///
+    /// # Errors
+    /// If not even that can start.
+    pub fn open_or_explain(scenario: Scenario, theme: Theme) -> Result<Self, Refusal> {
+        let refusal = match Self::new(scenario.clone(), theme) {
+            Ok(desk) => return Ok(desk),
+            Err(refusal) => refusal,
+        };
+        let (change, known) = (scenario.task.whole(), Scenario::builtin("case-3"));
+        let ground = known.map(|known| Scenario { task: known.task, edits: Vec::new(), ..scenario });
+        let Some(Ok(mut desk)) = ground.map(|ground| Self::new(ground, theme)) else { return Err(refusal) };
+        desk.carry_out(Command::Edit(Edit::SetTask { change }));
+        Ok(desk)
     }
 
     /// The session.
@@ -183,7 +199,11 @@ impl Desk {
 
     fn open(&mut self, path: &Path) -> Result<String, String> {
         let scenario = Scenario::find(&path.display().to_string()).map_err(|e| e.to_string())?;
-        self.session.switch(scenario).map_err(|e| e.to_string())?;
+        let change = scenario.task.whole();
+        if let Err(refusal) = self.session.switch(scenario) {
+            self.look.refused = Some(Wish::of(&Edit::SetTask { change }, &refusal));
+            return Err(refusal.to_string());
+        }
         self.look.dialog = None;
         Ok(format!("opened {}", path.display()))
     }

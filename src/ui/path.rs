@@ -50,10 +50,10 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
     section(ui, p, "Path");
     let task = &session.scenario().task;
     let half = 0.5 * (ui.available_width() - ui.spacing().item_spacing.x);
-    choose(ui, "Redundancy", "kind", &KINDS, task.kind, 2.0 * half, commands);
+    choose(ui, session, "Redundancy", "kind", &KINDS, task.kind, 2.0 * half, commands);
     ui.horizontal(|ui| {
-        choose(ui, "Shape", "shape", &SHAPES, task.shape(), half - 16.0, commands);
-        choose(ui, "Time law", "law", &LAWS, task.law, half - 16.0, commands);
+        choose(ui, session, "Shape", "shape", &SHAPES, task.shape(), half - 16.0, commands);
+        choose(ui, session, "Time law", "law", &LAWS, task.law, half - 16.0, commands);
     });
     time(ui, session, p, commands);
     points(ui, session, task, p, commands);
@@ -64,6 +64,7 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
 
 fn choose<T: Copy + PartialEq>(
     ui: &mut Ui,
+    session: &Session,
     label: &str,
     key: &str,
     choices: &[Choice<T>],
@@ -77,6 +78,11 @@ fn choose<T: Copy + PartialEq>(
         for (value, word, words, tip) in choices {
             if ui.selectable_label(*value == now, *words).on_hover_text(*tip).clicked() && *value != now {
                 let mut change = Change::from_iter([(key.to_owned(), Value::String((*word).into()))]);
+                if *word == "arc" && session.scenario().task.via.is_empty() {
+                    // Through what has been the middle of the path.
+                    let p = session.run().on_path(0.5);
+                    change.insert("via".into(), vec![vec![p.re, p.im]].into());
+                }
                 if key == "kind" {
                     // What only the other kind has.
                     change.extend(["b_to", "moment_limit"].map(|key| (key.into(), "default".into())));
@@ -169,8 +175,7 @@ fn points(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &m
         let last = all.len() - 1;
         let middle = 0.5 * (all[last - 1] + all[last]);
         // Where the machine can go for certain: on the path, if it is known there.
-        let on_path = session.run().motion().map(|motion| motion.at(0.5 * motion.duration()));
-        let at = on_path.filter(|_| all.len() == 2).map_or(middle, |r| session.run().place(&r.q));
+        let at = if all.len() == 2 { session.run().on_path(0.5) } else { middle };
         change(commands, task.adding(at), false);
     }
 }
@@ -253,7 +258,7 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
                     }
                 });
             });
-            if let Some(price) = plan.price {
+            if let Some(price) = plan.price.filter(|price| price.delta_b().abs() > 1e-9) {
                 let words = format!(
                     "Δb {} rad; no motion of this time gets below {} N m",
                     signed(price.delta_b(), 3),
@@ -268,7 +273,7 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
                 (Least::Peak, "peak", "Least peak", "The greatest |n_B| as small as can be"),
             ];
             let width = ui.available_width() - 10.0;
-            choose(ui, "What to keep small", "least", &least, task.least, width, commands);
+            choose(ui, session, "What to keep small", "least", &least, task.least, width, commands);
             if let Some(verdicts) = &plan.verdicts {
                 let fixed = match verdicts.fixed {
                     FixedB::Serves => "b can stay: no reaction at all".into(),

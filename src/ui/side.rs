@@ -125,7 +125,7 @@ fn pose_constant(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec
         let points = scenario.task.points();
         let all = if points.len() == 2 { "A and B".into() } else { format!("all {} points", points.len()) };
         let text = match planes.common(&points) {
-            Some(common) => format!("{all} share {}", in_words(&common.near(b))),
+            Some(common) => format!("{all}: {}", in_words(&common.near(b))),
             None => format!("{all} share no b"),
         };
         note(ui, p, &text);

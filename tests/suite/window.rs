@@ -396,3 +396,23 @@ fn a_path_is_drawn_by_hand() {
     let (x, y) = curve(1.0);
     assert!((f.tip.re - x).hypot(f.tip.im - y) < 5e-3 && f.peaks.is_reactionless(), "{:?}", f.tip);
 }
+
+/// A scenario that cannot be planned still opens: the machine, what was asked for, and the way out.
+#[test]
+fn a_scenario_that_cannot_be_planned_is_explained() {
+    if gpu().is_none() {
+        return;
+    }
+    let scenario = Scenario::builtin("case-3").expect("built in");
+    let keys = "shape = 'line'\nfrom = [0.42, 1.12]\nto = [0.0, 0.5]";
+    let task = scenario.task.with(&toml::from_str(keys).expect("keys")).expect("a task");
+    let asked = Scenario { task: task.clone(), ..scenario };
+    assert!(Desk::new(asked.clone(), Theme::Dark).is_err());
+    let mut desk = Desk::open_or_explain(asked, Theme::Dark).expect("explained");
+    let (words, bad) = desk.look().message.clone().expect("a reason");
+    assert!(bad && words.contains("the path stops at"), "{words}");
+    let (edit, _) = desk.look().refused.as_ref().and_then(|wish| wish.remedy.clone()).expect("another b would do");
+    desk.carry_out(stillbase::ui::Command::Edit(edit));
+    let done = &desk.session().scenario().task;
+    assert_eq!((done.points(), done.shape()), (task.points(), task.shape()));
+}
