@@ -1,6 +1,6 @@
 // A reactionless workspace, Eq. (16), evaluated at each vertex of a grid over (a_1, a_2). The turn b* is one number of
 // the area, so turning it costs nothing. Sheets that overlap blend, and the colour gathers. The colour goes from one to
-// another with |det d(x, y)/d(a_1, a_2)|, which the turn does not change.
+// another with a measure of dexterity, which the turn does not change.
 
 struct Frame {
     clip_from_world: mat4x4<f32>,
@@ -19,16 +19,18 @@ struct Area {
     v: vec3<f32>,   // v_k, rad
     a_min: vec2<f32>,
     a_max: vec2<f32>,
-    colour: vec4<f32>, // where det = 0
-    shade: vec4<f32>,  // where |det| is full or more
-    full: f32,         // m^2
+    colour: vec4<f32>, // where the measure is empty
+    shade: vec4<f32>,  // where it is full or more
+    full: f32,
+    empty: f32,
+    measure: u32,      // 0: |det|, m^2; 1: sqrt det(J J^T), m^2; 2: worst |tau| of a unit force, N m/N
 };
 
 struct Varying {
     @builtin(position) clip: vec4<f32>,
     @location(0) @interpolate(flat) colour: vec4<f32>,
     @location(1) @interpolate(flat) shade: vec4<f32>,
-    @location(2) det: f32, // as a share of full; its sign tells sheets apart
+    @location(2) share: f32, // from empty to full; for det its sign tells sheets apart
 };
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -47,16 +49,23 @@ fn vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) i: u32) -
     let one = vec3<f32>(1.0);
     let at = vec3<f32>(dot(x, one), dot(y, one), area.z);
     // d(x + iy)/da_j = i sum_k u_kj (x_k + i y_k), and a quarter turn of both columns leaves det alone.
-    let det = dot(x, area.u1) * dot(y, area.u2) - dot(y, area.u1) * dot(x, area.u2);
+    var value = dot(x, area.u1) * dot(y, area.u2) - dot(y, area.u1) * dot(x, area.u2);
+    if area.measure == 1u {
+        let minors = x * y.yzx - y * x.yzx;
+        value = length(minors);
+    } else if area.measure == 2u {
+        let squares = vec2<f32>(dot(x, x) - dot(y, y), 2.0 * dot(x, y));
+        value = sqrt(0.5 * (dot(x, x) + dot(y, y) + length(squares)));
+    }
     var out: Varying;
     out.clip = frame.clip_from_world * vec4<f32>(at, 1.0);
     out.colour = area.colour;
     out.shade = area.shade;
-    out.det = det / area.full;
+    out.share = (value - area.empty) / (area.full - area.empty);
     return out;
 }
 
 @fragment
 fn fragment(in: Varying) -> @location(0) vec4<f32> {
-    return mix(in.colour, in.shade, clamp(abs(in.det), 0.0, 1.0));
+    return mix(in.colour, in.shade, clamp(abs(in.share), 0.0, 1.0));
 }

@@ -104,7 +104,7 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
         ("energy/kinetic", "T", "kinetic energy", "J", |f| f.kinetic),
         ("energy/balance", "ΔE − W", "energy gained less work done", "J", |f| f.energy_balance),
         ("dexterity/det", "|det|", "|det| of ∂(x, y)/∂(a₁, a₂) on the plane", "m²", |f| f.dexterity.det),
-        ("dexterity/manipulability", "w", "manipulability √det J Jᵀ", "m²", |f| f.dexterity.manipulability),
+        ("dexterity/manipulability", "w", "manipulability √det J J*", "m²", |f| f.dexterity.manipulability),
         (
             "torque_per_force/worst",
             "|τ|/|F|",

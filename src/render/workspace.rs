@@ -22,7 +22,9 @@ twin! {
         colour: [f32; 4],
         shade: [f32; 4],
         full: f32,
-        _pad2: [f32; 3],
+        empty: f32,
+        measure: u32,
+        _pad2: f32,
     }
 }
 
@@ -81,8 +83,9 @@ impl Workspace {
             let &scene::Area { name: _, c, u, v, a_min, a_max, turn, z, colour, shade } = area;
             let [u1, u2] = [0, 1].map(|i| u.map(|u_k| u_k[i]));
             // Without a shade the fill turns into itself.
-            let (shade, full) = shade.map_or((colour, 1.0), |s| (s.colour, s.full));
-            Area { c, turn, u1, z, u2, v, a_min, a_max, colour, shade, full, ..Area::zeroed() }
+            let (shade, [empty, full], measure) =
+                shade.map_or((colour, [0.0, 1.0], 0), |s| (s.colour, [s.empty, s.full], s.measure as u32));
+            Area { c, turn, u1, z, u2, v, a_min, a_max, colour, shade, full, empty, measure, ..Area::zeroed() }
         }));
         self.list.upload(kit, upload);
     }

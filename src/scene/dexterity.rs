@@ -1,36 +1,95 @@
-//! How far the end effector moves for a motion of the joints on a plane: |det ∂(x, y)/∂(a_1, a_2)|, m². It is the same
-//! for every b, 0 at singular poses, and shades the workspace.
+//! Dexterity as a shade of the workspace: three measures of a pose, the same for every b.
 
-use super::Rgba;
 use super::linkage::mix;
 use super::palette::{Palette, faded};
+use super::{Measure, Rgba};
 use crate::reactionless::PlaneMap;
 
 /// Poses a side of the first search.
 const GRID: i32 = 48;
 
-/// The greatest |det| within the limits, m².
-pub fn greatest(map: &PlaneMap) -> f64 {
+impl Measure {
+    /// In the order in which they come by.
+    pub const ALL: [Self; 3] = [Self::Det, Self::Manipulability, Self::TorquePerForce];
+
+    /// None, each of them, and none again.
+    pub fn after(now: Option<Self>) -> Option<Self> {
+        match now {
+            None => Some(Self::Det),
+            Some(measure) => Self::ALL.get(measure as usize + 1).copied(),
+        }
+    }
+
+    /// What a key says.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Det => "|det|",
+            Self::Manipulability => "√det JJ*",
+            Self::TorquePerForce => "|τ|/|F|",
+        }
+    }
+
+    /// SI unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Det | Self::Manipulability => "m²",
+            Self::TorquePerForce => "N m/N",
+        }
+    }
+
+    /// What it means.
+    pub fn explanation(self) -> &'static str {
+        match self {
+            Self::Det => {
+                "|det ∂(x, y)/∂(a₁, a₂)|: how far the end effector moves for a motion on its plane; 0 if singular"
+            }
+            Self::Manipulability => {
+                "√det(J J*), J* transposed: manipulability with b free; 0 where all arms are in line"
+            }
+            Self::TorquePerForce => "The greatest |τ| that a unit force at the end effector asks of the drives",
+        }
+    }
+
+    /// Of a pose.
+    pub fn of(self, map: &PlaneMap, a: [f64; 2]) -> f64 {
+        let dexterity = map.dexterity(a);
+        match self {
+            Self::Det => dexterity.det,
+            Self::Manipulability => dexterity.manipulability,
+            Self::TorquePerForce => dexterity.worst_torque_per_force,
+        }
+    }
+
+    /// Where a shade begins and ends: the least and greatest within the limits; from 0 for det, whose sheets may meet.
+    pub fn range(self, map: &PlaneMap) -> [f64; 2] {
+        let least = if self == Self::Det { 0.0 } else { -greatest(map, |a| -self.of(map, a)) };
+        let most = greatest(map, |a| self.of(map, a));
+        // A measure that does not change is full everywhere.
+        if most > least { [least, most] } else { [least - 1.0, most.max(least)] }
+    }
+}
+
+/// The greatest of something within the limits.
+fn greatest(map: &PlaneMap, value: impl Fn([f64; 2]) -> f64) -> f64 {
     let [l1, l2] = map.limits();
-    let det = |a: [f64; 2]| map.det(a).abs();
     let at = |i: i32, j: i32| {
         let share = |l: crate::reactionless::Limit, i: i32| l.min + f64::from(i) / f64::from(GRID) * (l.max - l.min);
         [share(l1, i), share(l2, j)]
     };
     let poses = (0..=GRID).flat_map(|i| (0..=GRID).map(move |j| at(i, j)));
-    let Some(mut best) = poses.max_by(|s, t| det(*s).total_cmp(&det(*t))) else { return 0.0 };
+    let Some(mut best) = poses.max_by(|s, t| value(*s).total_cmp(&value(*t))) else { return 0.0 };
     // Then about the best one, in steps that halve.
     let mut step = [l1, l2].map(|l| (l.max - l.min) / f64::from(GRID));
     for _ in 0..40 {
         let around = (0..9)
             .map(|k| map.clamp([best[0] + f64::from(k % 3 - 1) * step[0], best[1] + f64::from(k / 3 - 1) * step[1]]));
-        best = around.fold(best, |best, a| if det(a) > det(best) { a } else { best });
+        best = around.fold(best, |best, a| if value(a) > value(best) { a } else { best });
         step = step.map(|s| 0.5 * s);
     }
-    det(best)
+    value(best)
 }
 
-/// The fill at |det| = 0 and at its greatest: amber, and pale.
+/// The fill where a measure is least and where it is greatest: amber, and pale.
 pub fn colours(palette: &Palette) -> [Rgba; 2] {
     let pale = |share| mix(palette.amber, [1.0, 0.98, 0.92, 1.0], share);
     // The brighter of fill and background says where there is more.

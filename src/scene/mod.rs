@@ -94,17 +94,33 @@ pub struct Area {
     pub z: f32,
     /// Fill of one sheet; where sheets overlap, the colour gathers.
     pub colour: Rgba,
-    /// Shades the fill by |det ∂(x, y)/∂(a_1, a_2)|.
+    /// Shades the fill by a measure of dexterity.
     pub shade: Option<Shade>,
 }
 
-/// A colour that a fill turns into as |det| grows from 0.
+/// A colour that a fill turns into as a measure of dexterity grows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shade {
-    /// The fill where |det| is [`full`](Self::full) or more.
+    /// Of what: the arms as vectors tell it at each vertex.
+    pub measure: Measure,
+    /// The fill where the measure is [`full`](Self::full) or more.
     pub colour: Rgba,
-    /// |det|, m².
+    /// Where it still has the area's own colour, 0 for det.
+    pub empty: f32,
+    /// Where it has this colour.
     pub full: f32,
+}
+
+/// A measure of dexterity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Measure {
+    /// |det ∂(x, y)/∂(a_1, a_2)|, m².
+    Det = 0,
+    /// √det(J Jᵀ), m².
+    Manipulability = 1,
+    /// The greatest |τ| of a unit force at the end effector, N m/N.
+    TorquePerForce = 2,
 }
 
 /// A disc or ring of constant size on the screen: a joint dot, a handle, the end effector.

@@ -13,7 +13,7 @@ use workspace::{Inside, inside, roomiest};
 
 use super::linkage::Linkage;
 use super::palette::{Palette, Theme, faded, palette};
-use super::{Anchor, Label, Line, Rgba, Scene, dexterity};
+use super::{Anchor, Label, Line, Measure, Rgba, Scene};
 use crate::frame::Frame;
 use crate::machine::Chain;
 use crate::planar::{DriveAngles, Vector, unit};
@@ -26,8 +26,8 @@ use std::sync::Arc;
 pub struct ViewOptions {
     /// Light or dark.
     pub theme: Theme,
-    /// The workspace is shaded by |det ∂(x, y)/∂(a_1, a_2)|.
-    pub dexterity: bool,
+    /// The workspace is shaded by this measure.
+    pub dexterity: Option<Measure>,
     /// The pointer is on this handle, or drags it.
     pub hot: Option<Handle>,
     /// Where the pointer holds what it drags, m.
@@ -44,7 +44,7 @@ impl Default for ViewOptions {
     fn default() -> Self {
         Self {
             theme: Theme::Dark,
-            dexterity: false,
+            dexterity: None,
             hot: None,
             held: None,
             preview_b: None,
@@ -93,8 +93,8 @@ pub struct Stage {
     middle: Option<Vector>,
     compare_b: Option<f64>,
     motion: Option<Course>,
-    /// The greatest |det| within the limits, m².
-    most_det: f64,
+    /// Least and greatest of each measure of dexterity within the limits.
+    dexterity: [[f64; 2]; 3],
     /// Curves in the workspace, and where folds turn back, before it is turned, m.
     inside: Vec<(Inside, Vec<Vector>)>,
     cusps: Vec<Vector>,
@@ -120,7 +120,7 @@ impl Stage {
             middle: planes.as_ref().and_then(|p| roomiest(p, &boundary)),
             inside: planes.as_ref().map_or_else(Vec::new, |p| inside(p)),
             cusps: planes.as_ref().map_or_else(Vec::new, |p| p.boundary().cusps().iter().map(|v| v.at).collect()),
-            most_det: planes.as_ref().map_or(0.0, |p| dexterity::greatest(p.map())),
+            dexterity: planes.as_ref().map_or([[0.0, 1.0]; 3], |p| Measure::ALL.map(|m| m.range(p.map()))),
             planes,
             boundary,
             compare_b: run.scenario().compare_b,
@@ -133,9 +133,9 @@ impl Stage {
         &self.linkage
     }
 
-    /// The greatest |det ∂(x, y)/∂(a_1, a_2)| within the limits, m².
-    pub fn greatest_det(&self) -> f64 {
-        self.most_det
+    /// From where to where a measure of dexterity is shaded.
+    pub fn shaded(&self, measure: Measure) -> [f64; 2] {
+        self.dexterity[measure as usize]
     }
 
     /// How many poses of the present plane put the end effector where it is, and how far it is from the boundary of
@@ -222,8 +222,8 @@ impl Stage {
                 .iter_mut()
                 .rev()
                 .take(1)
-                .filter(|_| options.dexterity)
-                .for_each(|area| self.shade(area, &palette));
+                .zip(options.dexterity)
+                .for_each(|(area, measure)| self.shade(area, &palette, measure));
             self.ring(&mut scene, &palette, planes, frame, options);
         }
         self.course(&mut scene, &palette, options);

@@ -5,6 +5,7 @@ use egui::{Context, Key, KeyboardShortcut, Modifiers};
 use super::theme::{bold, colour};
 use super::{Command, Desk, Look, Purpose, case};
 use crate::scenario::Scenario;
+use crate::scene::Measure;
 use crate::session::Session;
 
 const KEYS: [(&str, &str); 22] = [
@@ -14,7 +15,7 @@ const KEYS: [(&str, &str); 22] = [
     ("Home  End", "start, newest instant"),
     ("1  2  3", "the paper's cases"),
     ("V", "2D, 3D, joint space, tower of workspaces"),
-    ("J", "shade the workspace by dexterity, |det J|"),
+    ("J", "shade the workspace by dexterity, one measure after the other"),
     ("F", "show everything"),
     ("L", "light or dark"),
     ("R", "record for the Rerun viewer"),
@@ -74,7 +75,7 @@ pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Co
         (plain, Key::Home, Command::Seek(0.0)),
         (plain, Key::End, Command::Seek(session.length())),
         (plain, Key::V, Command::View(look.view.next())),
-        (plain, Key::J, Command::Dexterity(!look.dexterity)),
+        (plain, Key::J, Command::Dexterity(Measure::after(look.dexterity))),
         (plain, Key::F, Command::Fit),
         (plain, Key::P, Command::Draw(look.stroke.is_none())),
         (plain, Key::L, Command::Theme(super::top::other(look.theme))),

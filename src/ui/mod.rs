@@ -18,6 +18,7 @@ mod viewport;
 pub use desk::Desk;
 
 use crate::scenario::Scenario;
+use crate::scene::Measure;
 use crate::scene::camera::Camera;
 use crate::scene::palette::{Palette, Theme, palette};
 use crate::scene::stage::{Handle, Refused};
@@ -54,8 +55,8 @@ pub enum Command {
     Redo,
     /// One of the linked views.
     View(ViewKind),
-    /// Shade the workspace by |det|, or not.
-    Dexterity(bool),
+    /// Shade the workspace by a measure of dexterity, or not.
+    Dexterity(Option<Measure>),
     /// Show everything.
     Fit,
     /// Light or dark.
@@ -129,7 +130,7 @@ pub struct Look {
     /// From where each view is seen, in the order of [`ViewKind::ALL`].
     pub cameras: [Camera; 4],
     /// The workspace is shaded by |det|.
-    pub dexterity: bool,
+    pub dexterity: Option<Measure>,
     /// Simulated seconds a second.
     pub speed: f64,
     /// Under the pointer.
@@ -161,7 +162,7 @@ impl Look {
             theme,
             view: ViewKind::default(),
             cameras: ViewKind::ALL.map(|kind| views.camera(kind)),
-            dexterity: false,
+            dexterity: None,
             speed: 1.0,
             hot: None,
             grabbed: None,

@@ -6,14 +6,14 @@ use egui::{Align2, Button, Color32, Frame, Rect, RichText, Stroke, Ui, pos2, vec
 
 use super::theme::{colour, plain};
 use super::{Command, Look};
-use crate::scene::dexterity;
 use crate::scene::palette::Palette;
 use crate::scene::views::{ViewKind, Views};
+use crate::scene::{Measure, dexterity};
 
 /// Draws it.
 pub fn show(ui: &mut Ui, rect: Rect, look: &Look, views: &Views, commands: &mut Vec<Command>) {
     let p = look.palette();
-    let area = Rect::from_min_size(rect.min + vec2(14.0, 12.0), vec2(360.0, 64.0));
+    let area = Rect::from_min_size(rect.min + vec2(14.0, 12.0), vec2(460.0, 64.0));
     let mut child = ui.new_child(egui::UiBuilder::new().max_rect(area));
     let frame = Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.line))).corner_radius(8).inner_margin(3);
     frame.show(&mut child, |ui| {
@@ -28,7 +28,7 @@ pub fn show(ui: &mut Ui, rect: Rect, look: &Look, views: &Views, commands: &mut 
         });
     });
     if look.view.shows_machine() {
-        shade(&mut child, &p, look, views.stage().greatest_det(), commands);
+        shade(&mut child, &p, look, views, commands);
     }
     let low = rect.bottom() - 16.0;
     let grid = ui.painter().text(
@@ -55,7 +55,7 @@ fn segment(ui: &mut Ui, p: &Palette, text: &str, chosen: bool) -> egui::Response
 }
 
 /// The toggles, and once the shade is on the key to its colours.
-fn shade(ui: &mut Ui, p: &Palette, look: &Look, most: f64, commands: &mut Vec<Command>) {
+fn shade(ui: &mut Ui, p: &Palette, look: &Look, views: &Views, commands: &mut Vec<Command>) {
     ui.add_space(2.0);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
@@ -66,18 +66,22 @@ fn shade(ui: &mut Ui, p: &Palette, look: &Look, most: f64, commands: &mut Vec<Co
         if ui.checkbox(&mut drawing, words).on_hover_text(help).clicked() {
             commands.push(Command::Draw(drawing));
         }
-        let ink = colour(if look.dexterity { p.ink } else { p.dim });
+        let ink = colour(if look.dexterity.is_some() { p.ink } else { p.dim });
         let words = RichText::new("dexterity").font(plain(11.5)).color(ink);
-        let help = "Shade the workspace by |det ∂(x, y)/∂(a₁, a₂)|: how far the end effector moves for a motion of the \
-                    joints on its plane; 0 where it is singular (J)";
-        let mut shown = look.dexterity;
+        let help = "Shade the workspace by how well the end effector moves (J)";
+        let mut shown = look.dexterity.is_some();
         if ui.checkbox(&mut shown, words).on_hover_text(help).clicked() {
-            commands.push(Command::Dexterity(shown));
+            commands.push(Command::Dexterity(shown.then_some(Measure::Det)));
         }
-        if !look.dexterity {
-            return;
+        let Some(measure) = look.dexterity else { return };
+        let [least, most] = views.stage().shaded(measure);
+        let words = RichText::new(measure.symbol()).font(plain(11.5)).color(colour(p.ink));
+        let help = format!("{} (click for another)", measure.explanation());
+        if ui.add(Button::new(words)).on_hover_text(help).clicked() {
+            commands.push(Command::Dexterity(Measure::after(Some(measure)).or(Some(Measure::Det))));
         }
-        ui.label(RichText::new("|det| 0").font(plain(11.5)).color(colour(p.dim)));
+        let least = if least == 0.0 { "0".into() } else { format!("{least:.3}") };
+        ui.label(RichText::new(least).font(plain(11.5)).color(colour(p.dim)));
         let (bar, _) = ui.allocate_exact_size(vec2(56.0, 8.0), egui::Sense::hover());
         let [low, high] = dexterity::colours(p).map(colour);
         let mut mesh = Mesh::default();
@@ -88,6 +92,6 @@ fn shade(ui: &mut Ui, p: &Palette, look: &Look, most: f64, commands: &mut Vec<Co
         }
         mesh.indices = vec![0, 1, 2, 0, 2, 3];
         ui.painter().add(mesh);
-        ui.label(RichText::new(format!("{most:.3} m²")).font(plain(11.5)).color(colour(p.dim)));
+        ui.label(RichText::new(format!("{most:.3} {}", measure.unit())).font(plain(11.5)).color(colour(p.dim)));
     });
 }

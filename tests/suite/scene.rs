@@ -244,7 +244,7 @@ fn reactions_are_said() {
 fn nothing_drawn_is_lost() {
     for session in [open("case-1"), open("case-2"), dragged_outside()] {
         for theme in [Theme::Dark, Theme::Light] {
-            for dexterity in [true, false] {
+            for dexterity in [Some(stillbase::scene::Measure::Det), None] {
                 let options = ViewOptions { theme, dexterity, ..ViewOptions::default() };
                 let scene = Stage::of(session.run()).scene(session.frame(), &options);
                 let points = scene.lines.iter().flat_map(|l| &l.points).chain(scene.markers.iter().map(|m| &m.at));

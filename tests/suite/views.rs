@@ -3,10 +3,11 @@
 
 use stillbase::frame::Frame;
 use stillbase::planar::Vector;
+use stillbase::reactionless::Limit;
 use stillbase::scenario::Scenario;
+use stillbase::scene::Measure;
 use stillbase::scene::axes::{Axis, sliding};
 use stillbase::scene::camera::Camera;
-use stillbase::scene::dexterity;
 use stillbase::scene::joint_space::JointSpace;
 use stillbase::scene::palette::{Theme, palette};
 use stillbase::scene::pointer::Pointer;
@@ -450,30 +451,32 @@ fn the_grid_is_behind() {
     }
 }
 
-/// The greatest |det| against a fine grid, and its closed form's terms.
+/// Least and greatest of each measure against a fine grid.
 #[test]
-fn the_key_to_dexterity_is_the_greatest_det() {
+fn the_key_to_dexterity_is_its_range() {
     let session = open("case-3");
     let map = *session.run().planes().expect("three drives").map();
-    let greatest = dexterity::greatest(&map);
     let [l1, l2] = map.limits();
-    let mut found = 0.0_f64;
-    for i in 0..=600 {
-        for j in 0..=600 {
-            let a =
-                [l1.min + (l1.max - l1.min) * f64::from(i) / 600.0, l2.min + (l2.max - l2.min) * f64::from(j) / 600.0];
-            found = found.max(map.det(a).abs());
-        }
+    let at = |l: Limit, i: u32| l.min + (l.max - l.min) * f64::from(i) / 300.0;
+    let poses = || (0..=300).flat_map(|i| (0..=300).map(move |j| [at(l1, i), at(l2, j)]));
+    for measure in Measure::ALL {
+        let [least, most] = measure.range(&map);
+        let values = || poses().map(|a| measure.of(&map, a));
+        let found = values().fold(0.0, f64::max);
+        assert!(most >= found * (1.0 - 1e-6) && most < found * (1.0 + 1e-4), "{measure:?}: {most} and {found}");
+        let found = if measure == Measure::Det { 0.0 } else { values().fold(f64::INFINITY, f64::min) };
+        assert!((least - found).abs() < 1e-4 * most, "{measure:?}: {least} and {found}");
     }
-    assert!(greatest >= found && greatest < found * (1.0 + 1e-5), "{greatest} and {found}");
     // Shading is asked for in the area, and only there.
     let views = Views::of(session.run());
     let camera = views.camera(ViewKind::Flat);
-    for dexterity in [false, true] {
+    for dexterity in [None, Some(Measure::Det), Some(Measure::TorquePerForce)] {
         let options = ViewOptions { dexterity, ..ViewOptions::default() };
         let scene = views.scene(ViewKind::Flat, session.frame(), &options, &camera);
-        let full: Vec<_> = scene.areas.iter().map(|a| (a.name.as_str(), a.shade.map(|s| s.full))).collect();
-        assert_eq!(full, [("workspace/compared", None), ("workspace", dexterity.then_some(greatest as f32))]);
+        let shades: Vec<_> =
+            scene.areas.iter().map(|a| (a.name.as_str(), a.shade.map(|s| [s.empty, s.full]))).collect();
+        let range = dexterity.map(|measure| measure.range(&map).map(|x| x as f32));
+        assert_eq!(shades, [("workspace/compared", None), ("workspace", range)]);
     }
 }
 
@@ -525,15 +528,21 @@ mod drawn {
         }
     }
 
-    /// The shade at the end effector is the mixture that |det| says; both layers of a shell show, and hide nothing.
+    /// The shade at the end effector is the mixture that the measure says.
     #[test]
-    fn dexterity_shades_as_det_says() {
+    fn dexterity_shades_as_the_measure_says() {
+        for measure in Measure::ALL {
+            shades(measure);
+        }
+    }
+
+    fn shades(measure: Measure) {
         let Some(mut gpu) = gpu() else { return };
         let session = open("case-3");
         let (frame, views) = (session.frame(), Views::of(session.run()));
         let map = *session.run().planes().expect("three drives").map();
         let camera = views.camera(ViewKind::Flat);
-        let options = ViewOptions { dexterity: true, ..ViewOptions::default() };
+        let options = ViewOptions { dexterity: Some(measure), ..ViewOptions::default() };
         let mut scene = views.scene(ViewKind::Flat, frame, &options, &camera);
         (scene.solids, scene.lines, scene.markers) = Default::default();
         scene.areas.remove(0);
@@ -545,7 +554,8 @@ mod drawn {
             let p = map.forward(a, frame.b_reference);
             let [u, v] = camera.project([p.re, p.im, f64::from(area.z)], 1.0).expect("in sight");
             let pixel = picture.pixel((u * 800.0) as u32, (v * 800.0) as u32).expect("in the picture");
-            let share = (map.det(a).abs() / f64::from(shade.full)) as f32;
+            let (empty, full) = (f64::from(shade.empty), f64::from(shade.full));
+            let share = ((measure.of(&map, a) - empty) / (full - empty)) as f32;
             let mixed: [f32; 4] = std::array::from_fn(|i| area.colour[i] + share * (shade.colour[i] - area.colour[i]));
             for (i, got) in pixel[..3].iter().enumerate() {
                 let want = scene.background[i] + mixed[3] * (mixed[i] - scene.background[i]);

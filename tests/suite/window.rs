@@ -287,18 +287,24 @@ fn views_are_linked() {
 fn dexterity_is_shown_with_its_key_where_there_is_a_workspace() {
     let Some(mut h) = desk("case-3", Theme::Light) else { return };
     h.step();
-    assert!(h.query_by_label("|det| 0").is_none());
+    assert!(h.query_by_label("|det|").is_none());
     h.get_by_label("dexterity").click();
     h.run_steps(3);
-    assert!(h.query_by_label("|det| 0").is_some() && h.query_by_label("0.139 m²").is_some());
+    assert!(h.query_by_label("|det|").is_some() && h.query_by_label("0.139 m²").is_some());
     h.get_by_label("Tower").click();
     h.run_steps(3);
     assert!(h.query_by_label("dexterity").is_none());
     h.get_by_label("3D").click();
     h.run_steps(3);
+    // One measure after the other, then none.
+    for symbol in ["√det JJ*", "|τ|/|F|"] {
+        h.key_press(Key::J);
+        h.run_steps(3);
+        assert!(h.query_by_label(symbol).is_some(), "{symbol}");
+    }
     h.key_press(Key::J);
     h.run_steps(3);
-    assert!(h.query_by_label("dexterity").is_some() && h.query_by_label("|det| 0").is_none());
+    assert!(h.query_by_label("dexterity").is_some() && h.query_by_label("|det|").is_none());
 }
 
 /// A point of the path goes where it is dragged; where the target covers it, by its name.
@@ -415,4 +421,32 @@ fn a_scenario_that_cannot_be_planned_is_explained() {
     desk.carry_out(stillbase::ui::Command::Edit(edit));
     let done = &desk.session().scenario().task;
     assert_eq!((done.points(), done.shape()), (task.points(), task.shape()));
+}
+
+/// Every letter that the sources can put on the screen is in the fonts that come along.
+#[test]
+fn the_fonts_have_every_letter() {
+    let Some(mut h) = desk("case-3", Theme::Dark) else { return };
+    h.step();
+    let mut letters = std::collections::BTreeSet::new();
+    let mut folders = vec![std::path::PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/src"))];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                folders.extend((!path.ends_with("commands") && !path.ends_with("headless")).then_some(path));
+            } else if path.extension().is_some_and(|e| e == "rs") {
+                let text = std::fs::read_to_string(path).expect("readable");
+                let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
+                letters.extend(code.flat_map(str::chars).filter(|c| !c.is_ascii()));
+            }
+        }
+    }
+    assert!(letters.len() > 30, "{letters:?}");
+    for family in [egui::FontFamily::Proportional, egui::FontFamily::Name("bold".into())] {
+        let font = egui::FontId::new(13.0, family);
+        let missing: Vec<char> =
+            letters.iter().copied().filter(|c| !h.ctx.fonts_mut(|fonts| fonts.has_glyph(&font, *c))).collect();
+        assert!(missing.is_empty(), "{font:?}: {missing:?}");
+    }
 }

@@ -8,7 +8,7 @@ use crate::planar::{Vector, unit};
 use crate::pose_constant::Planes;
 use crate::reactionless::PlaneMap;
 use crate::scene::palette::{Palette, faded};
-use crate::scene::{Anchor, Area, Line, Marker, Rgba, Scene, Shade, dexterity};
+use crate::scene::{Anchor, Area, Line, Marker, Measure, Rgba, Scene, Shade, dexterity};
 
 /// What a curve in the workspace is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -140,10 +140,11 @@ impl Stage {
         }
     }
 
-    /// By |det|, from 0 to its greatest.
-    pub(super) fn shade(&self, area: &mut Area, palette: &Palette) {
+    /// By a measure, from its least to its greatest.
+    pub(super) fn shade(&self, area: &mut Area, palette: &Palette, measure: Measure) {
         let [low, high] = dexterity::colours(palette);
-        (area.colour, area.shade) = (low, Some(Shade { colour: high, full: self.most_det as f32 }));
+        let [empty, full] = self.shaded(measure).map(|x| x as f32);
+        (area.colour, area.shade) = (low, Some(Shade { measure, colour: high, empty, full }));
     }
 
     /// The outline of the workspace of a b that is only looked at.
