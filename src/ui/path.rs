@@ -50,10 +50,10 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
     section(ui, p, "Path");
     let task = &session.scenario().task;
     let half = 0.5 * (ui.available_width() - ui.spacing().item_spacing.x);
-    choose(ui, session, "Redundancy", "kind", &KINDS, task.kind, 2.0 * half, commands);
+    choose(ui, session, ("Redundancy", "kind"), &KINDS, task.kind, 2.0 * half, commands);
     ui.horizontal(|ui| {
-        choose(ui, session, "Shape", "shape", &SHAPES, task.shape(), half - 16.0, commands);
-        choose(ui, session, "Time law", "law", &LAWS, task.law, half - 16.0, commands);
+        choose(ui, session, ("Shape", "shape"), &SHAPES, task.shape(), half - 16.0, commands);
+        choose(ui, session, ("Time law", "law"), &LAWS, task.law, half - 16.0, commands);
     });
     time(ui, session, p, commands);
     points(ui, session, task, p, commands);
@@ -65,8 +65,7 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
 fn choose<T: Copy + PartialEq>(
     ui: &mut Ui,
     session: &Session,
-    label: &str,
-    key: &str,
+    (label, key): (&str, &str),
     choices: &[Choice<T>],
     now: T,
     width: f32,
@@ -273,7 +272,7 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
                 (Least::Peak, "peak", "Least peak", "The greatest |n_B| as small as can be"),
             ];
             let width = ui.available_width() - 10.0;
-            choose(ui, session, "What to keep small", "least", &least, task.least, width, commands);
+            choose(ui, session, ("What to keep small", "least"), &least, task.least, width, commands);
             if let Some(verdicts) = &plan.verdicts {
                 let fixed = match verdicts.fixed {
                     FixedB::Serves => "b can stay: no reaction at all".into(),
