@@ -93,7 +93,7 @@ fn solve_padded<const N: usize>(h: &MassMatrix, x: &PerDrive) -> PerDrive {
     solve(&h.trimmed::<N>(), *first(x.padded())).into()
 }
 
-#[inline]
+#[inline(always)]
 fn times<const N: usize>(h: &Square<N>, x: &[f64; N]) -> [f64; N] {
     std::array::from_fn(|k| (0..N).map(|l| h[k][l] * x[l]).sum())
 }
@@ -129,7 +129,7 @@ fn mass_matrix_of<const N: usize>(inertia: &Inertia, e: &Units, qd: &PerDrive) -
     (MassMatrix { n: N, h }, v.into())
 }
 
-#[inline]
+#[inline(always)]
 fn assemble<const N: usize>(inertia: &Inertia, e: &[Vector; N], qd: &[f64; N]) -> (Square<N>, [f64; N]) {
     let mut h = [[0.0; N]; N];
     let mut v = [0.0; N];
@@ -157,7 +157,7 @@ fn holding_torque_of<const N: usize>(inertia: &Inertia, e: &Units, around: &Surr
     hold::<N>(inertia, first(e), around).into()
 }
 
-#[inline]
+#[inline(always)]
 fn hold<const N: usize>(inertia: &Inertia, e: &[Vector; N], around: &Surroundings) -> [f64; N] {
     // (i e) · a = e × a for a unit vector e turned by a right angle
     std::array::from_fn(|k| -cross(inertia.g[k] * e[k], around.gravity) - inertia.tip[k] * cross(e[k], around.force))
@@ -225,7 +225,7 @@ pub fn base_wrench(inertia: &Inertia, e: &Units, qd: &PerDrive, qdd: &PerDrive, 
     inverse_with_wrench(inertia, e, qd, qdd, around).1
 }
 
-#[inline]
+#[inline(always)]
 fn wrench_with<const N: usize>(
     inertia: &Inertia,
     e: &[Vector; N],
@@ -262,7 +262,7 @@ pub fn inverse_with_wrench(
     by_drives!(inertia.drives, inverse_with_wrench_of(inertia, e, qd, qdd, around))
 }
 
-#[inline]
+#[inline(always)]
 fn inverse_with_wrench_of<const N: usize>(
     inertia: &Inertia,
     e: &Units,

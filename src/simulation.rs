@@ -315,7 +315,7 @@ impl Simulation {
             target,
             kinetic,
             energy_balance: kinetic + potential - work - self.start_energy,
-            dexterity: self.map.map_or_else(Default::default, |map| map.dexterity(map.project(&q).a)),
+            dexterity: self.map.map_or_else(Default::default, |map| map.dexterity_at(&s.e)),
             transmission: transmission(&s.e, q.len()),
             phase,
             peaks: self.peaks,

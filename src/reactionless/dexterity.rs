@@ -7,7 +7,7 @@
 //! | σ_1 ≥ σ_2 | singular values of J | m |
 
 use super::plane::PlaneMap;
-use crate::planar::{Vector, cross};
+use crate::planar::{Units, Vector, cross};
 
 /// Three measures of a pose, the same for every b.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -24,7 +24,15 @@ pub struct Dexterity {
 impl PlaneMap {
     /// The dexterity of a pose.
     pub fn dexterity(&self, a: [f64; 2]) -> Dexterity {
-        let arms = self.arms(a);
+        self.dexterity_of(self.arms(a))
+    }
+
+    /// The same from the unit vectors e(q_k) of its drives: turning them all changes nothing.
+    pub fn dexterity_at(&self, e: &Units) -> Dexterity {
+        self.dexterity_of([0, 1, 2].map(|k| self.c()[k] * e[k]))
+    }
+
+    fn dexterity_of(&self, arms: [Vector; 3]) -> Dexterity {
         let [first, second] = self.columns(&arms);
         // A quarter turn of all arms changes neither.
         let pair = |k: usize, l: usize| cross(arms[k], arms[l]).powi(2);
