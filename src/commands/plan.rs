@@ -12,7 +12,7 @@ use stillbase::plan::price::FloatingBase;
 use stillbase::planar::Vector;
 use stillbase::pose_constant::Planes;
 use stillbase::reactionless::BSet;
-use stillbase::scenario::{Change, Scenario, Task, TaskKind};
+use stillbase::scenario::{Change, Plant, Scenario, Shape, Task, TaskKind};
 use stillbase::session::{Refusal, Run, settled};
 
 use super::failure::Failure;
@@ -312,10 +312,6 @@ impl Plan {
                         least_peak: price.least_peak(forecast.time),
                         base_turn: base_turn.map_err(|e| Failure::wrong_input(e).of("--base"))?,
                     });
-                } else if self.base.is_some() {
-                    return Err(Failure::wrong_input(
-                        "--base: want --kind change-b, only a change of b turns the base",
-                    ));
                 }
                 answer.gap = plan.pace.map(|pace| pace.gap());
                 self.format.print(&answer, table)?;
@@ -337,6 +333,30 @@ impl Plan {
                 Err(refusal.into())
             }
         }
+    }
+
+    /// Refuses options that the task has no use for, and tells what it leaves out.
+    fn check_use(&self, scenario: &Scenario) -> Result<(), Failure> {
+        let task = &scenario.task;
+        let kind = |kinds: &[TaskKind]| kinds.contains(&task.kind);
+        let straight = matches!(task.shape(), Shape::JointLine | Shape::Line);
+        let of_kind = [TaskKind::ChangeB, TaskKind::LeastReaction];
+        for (given, used, option, want) in [
+            (self.b_to.is_some(), kind(&of_kind), "--b-to", "--kind change-b or least-reaction"),
+            (self.moment_limit.is_some(), kind(&of_kind[..1]), "--moment-limit", "--kind change-b"),
+            (self.base.is_some(), kind(&of_kind[..1]), "--base", "--kind change-b: only a change of b turns the base"),
+            (self.cycles.is_some(), kind(&[TaskKind::ZeroMomentum]), "--cycles", "--kind zero-momentum"),
+            (self.blend.is_some(), straight, "--blend", "--shape line or joint-line: others have no corners"),
+            (self.time.is_some(), !task.law.is_fastest(), "--time", "another --law: the fastest ones find the time"),
+        ] {
+            if given && !used {
+                return Err(Failure::wrong_input(format!("{option} has no use here: want {want}")));
+            }
+        }
+        if scenario.plant != Plant::default() {
+            say("note: a plan is of the model; what differs in the plant shows in `simulate`");
+        }
+        Ok(())
     }
 
     /// The scenario that the arguments ask for.
@@ -394,6 +414,7 @@ impl Plan {
             change.insert("closed".into(), true.into());
         }
         change_task(&mut scenario, &change)?;
+        self.check_use(&scenario)?;
         if self.b.is_none() && !self.points.is_empty() {
             // The middle of the widest range that serves all points, as far from every edge as it gets; kinds that leave
             // the plane can do with one that serves the first.

@@ -773,4 +773,15 @@ fn plan_refuses_with_where_why_and_what_would_do() {
     fails(&["plan", "nine-link", "0.5,0.5"], 2, &["at least two"]);
     fails(&["plan", "case-3", "--set", "task.shape=square"], 2, &["square", "spline"]);
     fails(&["plan", "case-3", "--set", "task.blend=-1"], 2, &["task.blend", "0 to 1"]);
+    for (option, value, want) in [
+        ("--b-to", "2.5", "change-b or least-reaction"),
+        ("--moment-limit", "2", "change-b"),
+        ("--base", "40,3", "change-b"),
+        ("--cycles", "3", "zero-momentum"),
+    ] {
+        fails(&["plan", "case-3", option, value], 2, &[option, "no use here", want]);
+    }
+    fails(&["plan", "case-3", "--law", "fastest", "--time", "2"], 2, &["--time", "find the time"]);
+    fails(&["plan", "circle", "--blend", "0.1"], 2, &["--blend", "no corners"]);
+    fails(&["plan", "case-3", "--time", "-1"], 2, &["want a number above 0"]);
 }
