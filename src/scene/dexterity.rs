@@ -6,7 +6,7 @@ use super::{Measure, Rgba};
 use crate::reactionless::PlaneMap;
 
 /// Poses a side of the first search.
-const GRID: i32 = 48;
+const GRID: i32 = 24;
 
 impl Measure {
     /// In the order in which they come by.
