@@ -13,6 +13,17 @@ use super::path::PathPoint;
 use crate::planar::{DriveAngles, PerDrive, Vector, cross, unit};
 use crate::reactionless::{PlaneMap, PlanePoint};
 
+/// (a_1′, a_2′) and (a_1″, a_2″) at a pose for given w′ and w″; not finite where det ∂(x, y)/∂(a_1, a_2) = 0.
+pub(super) fn rates(map: &PlaneMap, a: [f64; 2], first: Vector, second: Vector) -> [[f64; 2]; 2] {
+    let arms = map.arms(a);
+    let [c1, c2] = map.columns(&arms);
+    let det = cross(c1, c2);
+    let solve = |w: Vector| [cross(w, c2) / det, cross(c1, w) / det];
+    let (ad, u) = (solve(first), map.u());
+    let inward: Vector = (0..3).map(|k| arms[k] * (u[k][0] * ad[0] + u[k][1] * ad[1]).powi(2)).sum();
+    [ad, solve(second + inward)]
+}
+
 /// The pose that has the end effector on a point of a curve at b = `[b, b′, b″]`, found continuously from the pose `from`,
 /// and how it moves along. Derivatives are by the parameter of the curve.
 ///
@@ -25,18 +36,7 @@ pub fn pose_along(map: &PlaneMap, point: &CurvePoint, b: [f64; 3], from: [f64; 2
     let first = (point.first - i * turn[1] * point.p) * back;
     let second =
         (point.second - 2.0 * turn[1] * i * point.first - i * turn[2] * point.p - turn[1] * turn[1] * point.p) * back;
-    let arms = map.arms(a);
-    let columns = map.columns(&arms);
-    let det = cross(columns[0], columns[1]);
-    let solve = |w: Vector| [cross(w, columns[1]) / det, cross(columns[0], w) / det];
-    let ad = solve(first);
-    let inward: Vector = (0..3)
-        .map(|k| {
-            let rate = map.u()[k][0] * ad[0] + map.u()[k][1] * ad[1];
-            arms[k] * (rate * rate)
-        })
-        .sum();
-    let add = solve(second + inward);
+    let [ad, add] = rates(map, a, first, second);
     let at = PlanePoint { a, b: b[0] };
     ad.iter().chain(&add).all(|x| x.is_finite()).then(|| {
         let q = DriveAngles::from(map.lift(at));

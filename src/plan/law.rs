@@ -51,6 +51,17 @@ impl TimeLaw {
         matches!(self, Self::Fastest | Self::FastestSmooth)
     }
 
+    /// The greatest |s̈|, times T².
+    pub fn peak(self) -> f64 {
+        match self {
+            Self::Quintic => 10.0 / 3f64.sqrt(),
+            Self::Septic => 84.0 * 5f64.sqrt() / 25.0,
+            Self::Trapezoidal => 4.5,
+            Self::Fastest => 4.0,
+            Self::FastestSmooth => 8.0,
+        }
+    }
+
     /// Progress at time t, s, of a motion that takes T, s; still before its start and from its end on.
     #[inline]
     pub fn at(self, t: f64, duration: f64) -> Progress {

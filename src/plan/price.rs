@@ -19,6 +19,7 @@
 
 use thiserror::Error;
 
+use super::law::TimeLaw;
 use super::path::{Path, PathPoint};
 use super::table::Table;
 use crate::machine::Inertia;
@@ -42,7 +43,7 @@ impl PoseLaw {
         match self {
             Self::BangBang => 4.0,
             Self::Cubic => 6.0,
-            Self::Quintic => 10.0 / 3f64.sqrt(),
+            Self::Quintic => TimeLaw::Quintic.peak(),
         }
     }
 
@@ -224,6 +225,17 @@ pub fn nearest_planes(from: &BSet, to: &BSet, near: f64) -> Option<[f64; 2]> {
     best
 }
 
+/// Shares of the way to the middle of an interval of b, for an end of it that misses its pose by rounding.
+pub const INWARDS: [f64; 4] = [0.0, 1e-12, 1e-9, 1e-6];
+
+/// Of the poses of two points, m, each on the plane of its own b, rad, the two that lie nearest together.
+pub fn nearest_poses(map: &PlaneMap, points: [Vector; 2], b: [f64; 2]) -> Option<[PlanePoint; 2]> {
+    let poses = [map.poses(points[0], b[0]), map.poses(points[1], b[1])];
+    let apart = |[x, y]: &[PlanePoint; 2]| (x.a[0] - y.a[0]).hypot(x.a[1] - y.a[1]);
+    let pairs = poses[0].iter().flat_map(|x| poses[1].iter().map(move |y| [*x, *y]));
+    pairs.min_by(|p, q| apart(p).total_cmp(&apart(q)))
+}
+
 /// Poses of two points, m, at the b of each that lie nearest together: the move with the least price. Where the points
 /// share a plane it is free, at the common b nearest to `near`, rad. Of several poses the two nearest together are taken,
 /// as a straight joint line may pass from sheet to sheet.
@@ -236,17 +248,14 @@ pub fn least_change(map: &PlaneMap, points: [Vector; 2], near: f64) -> Result<[P
     let free = first == second;
     let inner = |b: f64, set: &BSet, share: f64| set.inwards(b, share);
     // An end of an interval may miss its pose by rounding: then a little further inside.
-    for share in [0.0, 1e-12, 1e-9, 1e-6] {
+    for share in INWARDS {
         let b = if free {
             let common = BSet::overlap(&sets);
             [inner(first, &common, share); 2]
         } else {
             [inner(first, &sets[0], share), inner(second, &sets[1], share)]
         };
-        let poses = [map.poses(points[0], b[0]), map.poses(points[1], b[1])];
-        let apart = |x: &PlanePoint, y: &PlanePoint| (x.a[0] - y.a[0]).hypot(x.a[1] - y.a[1]);
-        let pairs = poses[0].iter().flat_map(|x| poses[1].iter().map(move |y| [*x, *y]));
-        if let Some(pair) = pairs.min_by(|p, q| apart(&p[0], &p[1]).total_cmp(&apart(&q[0], &q[1]))) {
+        if let Some(pair) = nearest_poses(map, points, b) {
             return Ok(pair);
         }
     }

@@ -11,7 +11,7 @@ use thiserror::Error;
 use super::curve::Curve;
 use super::table::Table;
 use crate::planar::{Vector, unit};
-use crate::reactionless::{BSet, PlaneMap};
+use crate::reactionless::{BSet, PAIRS, PlaneMap};
 use remedy::blocked;
 use track::Track;
 
@@ -107,6 +107,18 @@ pub struct Rule {
     pub keep_off_change_points: bool,
 }
 
+impl Rule {
+    fn keeps_side(self, map: &PlaneMap, from: [f64; 2], to: [f64; 2]) -> bool {
+        !self.keep_off_change_points || crossed(map, from, to).is_none()
+    }
+}
+
+/// The pair of drives that becomes parallel between two poses, counted from 0.
+fn crossed(map: &PlaneMap, from: [f64; 2], to: [f64; 2]) -> Option<[usize; 2]> {
+    let (x, y) = (map.sines(from), map.sines(to));
+    PAIRS.into_iter().zip(x.into_iter().zip(y)).find(|(_, (x, y))| x * y < 0.0).map(|(pair, _)| pair)
+}
+
 /// Stations at which a curve is tried for other b, or for its longest part.
 const STATIONS: usize = 96;
 
@@ -193,7 +205,7 @@ fn whole(curves: &[Curve], i: usize, s: f64) -> f64 {
 }
 
 /// The curve and its s, of an s over all of them.
-fn part(curves: &[Curve], s: f64) -> (usize, f64) {
+pub fn part(curves: &[Curve], s: f64) -> (usize, f64) {
     let total: f64 = curves.iter().map(Curve::length).sum();
     let mut left = s * total;
     for (i, curve) in curves.iter().enumerate() {

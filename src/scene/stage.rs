@@ -19,7 +19,7 @@ use crate::machine::Chain;
 use crate::planar::{DriveAngles, Vector, unit};
 use crate::pose_constant::Planes;
 use crate::session::Run;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// What a person has chosen to see.
 #[derive(Clone, Debug, PartialEq)]
@@ -93,8 +93,8 @@ pub struct Stage {
     middle: Option<Vector>,
     compare_b: Option<f64>,
     motion: Option<Course>,
-    /// Least and greatest of each measure of dexterity within the limits.
-    dexterity: [[f64; 2]; 3],
+    /// Least and greatest of each measure of dexterity within the limits, found when first shown.
+    dexterity: [OnceLock<[f64; 2]>; 3],
     /// Curves in the workspace, and where folds turn back, before it is turned, m.
     inside: Vec<(Inside, Vec<Vector>)>,
     cusps: Vec<Vector>,
@@ -120,7 +120,7 @@ impl Stage {
             middle: planes.as_ref().and_then(|p| roomiest(p, &boundary)),
             inside: planes.as_ref().map_or_else(Vec::new, |p| inside(p)),
             cusps: planes.as_ref().map_or_else(Vec::new, |p| p.boundary().cusps().iter().map(|v| v.at).collect()),
-            dexterity: planes.as_ref().map_or([[0.0, 1.0]; 3], |p| Measure::ALL.map(|m| m.range(p.map()))),
+            dexterity: Default::default(),
             planes,
             boundary,
             compare_b: run.scenario().compare_b,
@@ -135,7 +135,8 @@ impl Stage {
 
     /// From where to where a measure of dexterity is shaded.
     pub fn shaded(&self, measure: Measure) -> [f64; 2] {
-        self.dexterity[measure as usize]
+        let range = || self.planes.as_ref().map_or([0.0, 1.0], |p| measure.range(p.map()));
+        *self.dexterity[measure as usize].get_or_init(range)
     }
 
     /// How many poses of the present plane put the end effector where it is, and how far it is from the boundary of

@@ -93,6 +93,11 @@ fn choose<T: Copy + PartialEq>(
     name(&response.response.on_hover_text(shown.map_or(label, |c| c.3)), label);
 }
 
+/// Sets one key of the task, as an undo of its own.
+fn set(commands: &mut Vec<Command>, key: &str, value: impl Into<Value>) {
+    commands.extend([Command::Edit(Edit::task(key, value)), Command::EndGesture]);
+}
+
 fn time(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
     if session.scenario().task.law.is_fastest() {
         let pace = session.run().plan().pace;
@@ -189,15 +194,13 @@ fn corners(ui: &mut Ui, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
             .on_hover_text(tip)
             .changed()
         {
-            commands.push(Command::Edit(Edit::task("closed", closed)));
-            commands.push(Command::EndGesture);
+            set(commands, "closed", closed);
         }
         let mut off = task.keep_off_change_points;
         let tip =
             "Keep to one side of every change point, where two drives are parallel and pin forces grow without bound";
         if ui.checkbox(&mut off, "off change points").on_hover_text(tip).changed() {
-            commands.push(Command::Edit(Edit::task("keep_off_change_points", off)));
-            commands.push(Command::EndGesture);
+            set(commands, "keep_off_change_points", off);
         }
     });
     if straight && (task.via.len() + usize::from(task.closed)) > 0 {
@@ -205,8 +208,7 @@ fn corners(ui: &mut Ui, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
             let mut blend = task.corners == Corners::Blend;
             let tip = "Round corners off instead of coming to rest there";
             if ui.checkbox(&mut blend, "blend corners").on_hover_text(tip).changed() {
-                commands.push(Command::Edit(Edit::task("corners", if blend { "blend" } else { "stop" })));
-                commands.push(Command::EndGesture);
+                set(commands, "corners", if blend { "blend" } else { "stop" });
             }
             if blend {
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -239,7 +241,7 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
                 let tip = "A bound on |n_B| while b changes: it sets the time";
                 if ui.checkbox(&mut limited, "n_B at most").on_hover_text(tip).changed() {
                     let value = if limited { Value::Float(limit) } else { Value::String("default".into()) };
-                    commands.extend([Command::Edit(Edit::task("moment_limit", value)), Command::EndGesture]);
+                    set(commands, "moment_limit", value);
                 }
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                     unit(ui, p, "N m");

@@ -129,10 +129,7 @@ fn begin(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, s: f64, a: [f64; 
     }
     for _ in 0..24 {
         let middle = 0.5 * (good + bad);
-        let on_sheet = map.follow(at(curves, middle), b, a).is_some_and(|x| {
-            let track = Track { map, b, turn: unit(-map.turn(b)), curve: &curves[0], rule };
-            track.keeps_side(a, x)
-        });
+        let on_sheet = map.follow(at(curves, middle), b, a).is_some_and(|x| rule.keeps_side(map, a, x));
         if on_sheet { good = middle } else { bad = middle }
     }
     good

@@ -1,10 +1,11 @@
 //! A curve on a plane, followed step by step: poses with derivatives, and what stops them.
 
-use super::{Halt, Rule, Stop};
+use super::{Halt, Rule, Stop, crossed};
 use crate::plan::curve::{Curve, CurvePoint};
+use crate::plan::inverse::rates;
 use crate::plan::path::PathPoint;
 use crate::plan::table::Table;
-use crate::planar::{DriveAngles, PerDrive, Vector, cross};
+use crate::planar::{DriveAngles, PerDrive, Vector};
 use crate::reactionless::{PlaneMap, PlanePoint, SLACK};
 
 /// The smallest advance along a curve before it counts as stopped.
@@ -42,7 +43,8 @@ impl Track<'_> {
         while s < to {
             let next = if s + step >= to { to } else { s + step };
             let ahead = [0, 1].map(|i| a[i] + (next - s) * here.first[i]);
-            let found = self.map.follow(self.curve.at(next).p, self.b, a).filter(|x| self.keeps_side(a, *x));
+            let found =
+                self.map.follow(self.curve.at(next).p, self.b, a).filter(|x| self.rule.keeps_side(self.map, a, *x));
             let near = |x: &[f64; 2]| {
                 let step = (x[0] - a[0]).hypot(x[1] - a[1]);
                 (x[0] - ahead[0]).hypot(x[1] - ahead[1]) <= ASTRAY + 0.25 * step
@@ -61,35 +63,18 @@ impl Track<'_> {
         Ok(a)
     }
 
-    /// (a_1, a_2) with derivatives by s, for the pose at s: J a′ = p′, J a″ = p″ + Σ_k arm_k (u_k · a′)².
+    /// (a_1, a_2) with derivatives by s, for the pose at s.
     fn jet(&self, a: [f64; 2], s: f64) -> Jet {
         let CurvePoint { first, second, .. } = self.curve.at(s);
-        let arms = self.map.arms(a);
-        let [c1, c2] = self.map.columns(&arms);
-        let det = cross(c1, c2);
-        let solve = |v: Vector| [cross(v, c2) / det, cross(c1, v) / det];
-        let rate = solve(first * self.turn);
-        let u = self.map.u();
-        let bend: Vector = (0..3).map(|k| arms[k] * (u[k][0] * rate[0] + u[k][1] * rate[1]).powi(2)).sum();
-        Jet { a, first: rate, second: solve(second * self.turn + bend) }
-    }
-
-    pub fn keeps_side(&self, from: [f64; 2], to: [f64; 2]) -> bool {
-        !self.rule.keep_off_change_points || self.crossed(from, to).is_none()
-    }
-
-    /// The pair of drives that becomes parallel between two poses.
-    fn crossed(&self, from: [f64; 2], to: [f64; 2]) -> Option<[usize; 2]> {
-        let q = [from, to].map(|a| self.map.lift(PlanePoint { a, b: 0.0 }));
-        let side = |q: &[f64; 3], [k, l]: [usize; 2]| (q[k] - q[l]).sin();
-        [[0, 1], [0, 2], [1, 2]].into_iter().find(|pair| side(&q[0], *pair) * side(&q[1], *pair) < 0.0)
+        let [first, second] = rates(self.map, a, first * self.turn, second * self.turn);
+        Jet { a, first, second }
     }
 
     /// What lies ahead of a pose that cannot be left along a tangent.
     fn stop(&self, a: [f64; 2], tangent: [f64; 2]) -> Stop {
         let length = tangent[0].hypot(tangent[1]);
         let ahead = [0, 1].map(|i| a[i] + 1e-5 * tangent[i] / length);
-        if let (true, Some(drives)) = (self.rule.keep_off_change_points, self.crossed(a, ahead)) {
+        if let (true, Some(drives)) = (self.rule.keep_off_change_points, crossed(self.map, a, ahead)) {
             return Stop::ChangePoint { drives };
         }
         let limits = self.map.limits();

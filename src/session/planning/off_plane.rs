@@ -4,23 +4,12 @@ use super::{Plan, Refusal, curves, dynamics_of, keeps_rules, refusal, serve, slo
 use crate::plan::drift::zero_momentum_curve;
 use crate::plan::least_reaction::Goal;
 use crate::plan::path::Chained;
-use crate::plan::price::{bang_bang_in_b, joint_line, least_change};
-use crate::plan::{Curve, CurvePoint, Forecast, LeastReaction, Limits, Motion, Path, Price, Profile, TimeLaw};
+use crate::plan::price::{INWARDS, bang_bang_in_b, joint_line, least_change, nearest_poses};
+use crate::plan::{Curve, CurvePoint, Forecast, LeastReaction, Limits, Motion, Path, Price, Profile, TimeLaw, trace};
 use crate::planar::{DriveAngles, Vector};
 use crate::pose_constant::{Planes, Unreachable};
 use crate::reactionless::PlanePoint;
 use crate::scenario::{Least, Scenario};
-
-/// T² max|s̈| of the laws from rest to rest.
-fn peak(law: TimeLaw) -> f64 {
-    match law {
-        TimeLaw::Quintic => 10.0 / 3_f64.sqrt(),
-        TimeLaw::Septic => 84.0 * 5_f64.sqrt() / 25.0,
-        TimeLaw::Trapezoidal => 4.5,
-        // Bang-bang where it can be.
-        TimeLaw::Fastest | TimeLaw::FastestSmooth => 4.0,
-    }
-}
 
 /// From A on the plane of the task to B on another, along a straight joint line; a limit on |n_B| sets the time.
 pub fn change_b(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
@@ -46,7 +35,7 @@ pub fn change_b(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
             // A short change of b leaves the joints little time.
             slowed(motion, &model, &around, &limits)?
         }
-        (law, Some(square)) if !law.is_fastest() => Motion::new(line, law, (peak(law) * square).sqrt().max(task.time)),
+        (law, Some(square)) if !law.is_fastest() => Motion::new(line, law, (law.peak() * square).sqrt().max(task.time)),
         (_, square) => {
             let (motion, _) = timed(scenario, vec![(line, 1.0)])?;
             let fast = square.map_or(0.0, |square| {
@@ -64,12 +53,7 @@ pub fn change_b(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
 fn ends(scenario: &Scenario, planes: &Planes) -> Result<[PlanePoint; 2], Refusal> {
     let (task, map) = (&scenario.task, planes.map());
     let points = [task.from, task.to].map(|p| Vector::new(p[0], p[1]));
-    let far = |x: &PlanePoint, y: &PlanePoint| (x.a[0] - y.a[0]).hypot(x.a[1] - y.a[1]);
-    let nearest = |b: [f64; 2]| {
-        let poses = [map.poses(points[0], b[0]), map.poses(points[1], b[1])];
-        let pairs = poses[0].iter().flat_map(|x| poses[1].iter().map(move |y| [*x, *y]));
-        pairs.min_by(|p, q| far(&p[0], &p[1]).total_cmp(&far(&q[0], &q[1])))
-    };
+    let nearest = |b: [f64; 2]| nearest_poses(map, points, b);
     if let Some(b_to) = task.b_to {
         return match nearest([task.b, b_to]) {
             Some(pair) => Ok(pair),
@@ -85,7 +69,7 @@ fn ends(scenario: &Scenario, planes: &Planes) -> Result<[PlanePoint; 2], Refusal
     }
     // B's own b nearest to that of A, if A is on its plane; else the pair with the least change.
     if let (false, Ok(set)) = (map.poses(points[0], task.b).is_empty(), map.reach(points[1])) {
-        for share in [0.0, 1e-12, 1e-9, 1e-6] {
+        for share in INWARDS {
             let b = set.nearest(task.b).map(|b| set.inwards(b, share));
             if let Some(pair) = b.and_then(|b| nearest([task.b, b])) {
                 return Ok(pair);
@@ -142,14 +126,9 @@ fn whole(curves: &[Curve], law: TimeLaw) -> impl Fn(f64) -> CurvePoint {
         Profile::sequence(curves.iter().map(|c| (Profile::of(law, c.length() / total), c.length())).collect());
     move |u: f64| {
         let at = profile.at(u);
-        let mut left = at.s * total;
-        let mut i = 0;
-        while i + 1 < curves.len() && left > curves[i].length() {
-            left -= curves[i].length();
-            i += 1;
-        }
+        let (i, s) = trace::part(curves, at.s);
         let scale = total / curves[i].length();
-        let local = curves[i].at(left / curves[i].length());
+        let local = curves[i].at(s);
         let (rate, acceleration) = (at.rate * scale, at.acceleration * scale);
         CurvePoint {
             p: local.p,
