@@ -30,6 +30,8 @@ macro_rules! by_drives {
         }
     };
 }
+pub(crate) use by_drives;
+
 /// A force held at the end effector and the field it all moves in.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Surroundings {
@@ -80,7 +82,7 @@ type Square<const N: usize> = [[f64; N]; N];
 
 /// The first N of a padded array.
 #[inline]
-fn first<const N: usize, T>(padded: &[T; MAX_DRIVES]) -> &[T; N] {
+pub(crate) fn first<const N: usize, T>(padded: &[T; MAX_DRIVES]) -> &[T; N] {
     const { assert!(N <= MAX_DRIVES) }
     &padded.as_chunks().0[0]
 }
@@ -98,22 +100,44 @@ fn times<const N: usize>(h: &Square<N>, x: &[f64; N]) -> [f64; N] {
     std::array::from_fn(|k| (0..N).map(|l| h[k][l] * x[l]).sum())
 }
 
-#[inline]
-fn solve<const N: usize>(h: &Square<N>, mut x: [f64; N]) -> [f64; N] {
-    // H = L D Lᵀ needs no root; `l` holds L below its diagonal, `ld` L D, `inverse` 1/D.
-    let (mut l, mut ld, mut inverse) = ([[0.0; N]; N], [[0.0; N]; N], [0.0; N]);
-    for i in 0..N {
-        for j in 0..i {
-            ld[i][j] = h[i][j] - (0..j).map(|m| ld[i][m] * l[j][m]).sum::<f64>();
-            l[i][j] = ld[i][j] * inverse[j];
+/// H = L D Lᵀ, which needs no root.
+pub(crate) struct Factors<const N: usize> {
+    /// L below its diagonal.
+    l: Square<N>,
+    /// 1/D.
+    inverse: [f64; N],
+}
+
+impl<const N: usize> Factors<N> {
+    #[inline(always)]
+    pub(crate) fn of(h: &Square<N>) -> Self {
+        let (mut l, mut ld, mut inverse) = ([[0.0; N]; N], [[0.0; N]; N], [0.0; N]);
+        for i in 0..N {
+            for j in 0..i {
+                ld[i][j] = h[i][j] - (0..j).map(|m| ld[i][m] * l[j][m]).sum::<f64>();
+                l[i][j] = ld[i][j] * inverse[j];
+            }
+            inverse[i] = 1.0 / (h[i][i] - (0..i).map(|m| ld[i][m] * l[i][m]).sum::<f64>());
         }
-        inverse[i] = 1.0 / (h[i][i] - (0..i).map(|m| ld[i][m] * l[i][m]).sum::<f64>());
-        x[i] -= (0..i).map(|m| l[i][m] * x[m]).sum::<f64>();
+        Self { l, inverse }
     }
-    for i in (0..N).rev() {
-        x[i] = x[i] * inverse[i] - (i + 1..N).map(|m| l[m][i] * x[m]).sum::<f64>();
+
+    /// H⁻¹ x.
+    #[inline(always)]
+    pub(crate) fn solve(&self, mut x: [f64; N]) -> [f64; N] {
+        for i in 0..N {
+            x[i] -= (0..i).map(|m| self.l[i][m] * x[m]).sum::<f64>();
+        }
+        for i in (0..N).rev() {
+            x[i] = x[i] * self.inverse[i] - (i + 1..N).map(|m| self.l[m][i] * x[m]).sum::<f64>();
+        }
+        x
     }
-    x
+}
+
+#[inline]
+fn solve<const N: usize>(h: &Square<N>, x: [f64; N]) -> [f64; N] {
+    Factors::of(h).solve(x)
 }
 
 /// H and V, (4).
@@ -226,7 +250,7 @@ pub fn base_wrench(inertia: &Inertia, e: &Units, qd: &PerDrive, qdd: &PerDrive, 
 }
 
 #[inline(always)]
-fn wrench_with<const N: usize>(
+pub(crate) fn wrench_with<const N: usize>(
     inertia: &Inertia,
     e: &[Vector; N],
     qd: &[f64; N],

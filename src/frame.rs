@@ -4,10 +4,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::dynamics::BaseWrench;
 use crate::planar::{DriveAngles, PerDrive, Pose2, Vector};
+use crate::plant::Spin;
 
+pub use crate::audit::Audit;
 pub use crate::plan::follow::Target;
 pub use crate::pose_constant::Reach;
 pub use crate::reactionless::Dexterity;
+pub use crate::tally::Tally;
 
 /// Peaks below this part of what moves count as zero.
 pub const REACTIONLESS: f64 = 1e-6;
@@ -19,7 +22,7 @@ pub struct Frame {
     pub step: u64,
     /// Time since the start, s.
     pub time: f64,
-    /// Drive angles q, rad.
+    /// Drive angles q, absolute, rad.
     pub q: DriveAngles,
     /// q̇, rad/s.
     pub qd: PerDrive,
@@ -27,32 +30,40 @@ pub struct Frame {
     pub qdd: PerDrive,
     /// Motor torques τ, N m.
     pub torque: PerDrive,
-    /// Drive angles that control aims at, rad.
+    /// Friction of the bearings against them, N m: n_B = −Σ (τ_k − friction_k).
+    pub friction: PerDrive,
+    /// Drive angles relative to the base that control aims at, rad.
     pub q_reference: DriveAngles,
-    /// Pose constant b = Σ λ_k q_k of the model, rad, (13).
+    /// Pose constant b = Σ λ_k (q_k − θ) of the model, rad, (13).
     pub b: f64,
     /// b that control aims at, rad.
     pub b_reference: f64,
     /// Relative joint angles a_1, a_2 …, rad, in the machine's order.
     pub a: PerDrive,
-    /// Pose of the base; a fixed base stays at the origin.
+    /// Pose of the base, p_B and θ; a fixed base stays at the origin.
     pub base: Pose2,
-    /// What the plant transmits to its base.
+    /// ṗ_B, m/s.
+    pub base_velocity: Vector,
+    /// θ̇, rad/s.
+    pub base_rate: f64,
+    /// What the manipulator transmits to its base.
     pub wrench: BaseWrench,
-    /// Linear momentum, kg m/s.
+    /// What a reaction wheel in the base does.
+    pub wheel: Spin,
+    /// Linear momentum of all that moves, the base too if it does, kg m/s.
     pub momentum: Vector,
-    /// Angular momentum about B, kg m²/s.
+    /// Its angular momentum about the origin, where B is at the start, kg m²/s; without the wheel.
     pub angular_momentum: f64,
     /// Centre of mass of manipulator and payload, m.
     pub com: Vector,
     /// End effector, m.
     pub tip: Vector,
-    /// What the end effector is sent to.
+    /// What the end effector is sent to, in the axes of the base at the start.
     pub target: Target,
+    /// Whether the payload that the model lacks is held.
+    pub loaded: bool,
     /// Kinetic energy, J.
     pub kinetic: f64,
-    /// Kinetic and potential energy gained less the work of the motors since the start, J: 0 in exact arithmetic.
-    pub energy_balance: f64,
     /// How well the end effector moves on the plane; zero on machines that have none.
     pub dexterity: Dexterity,
     /// min |sin(q_k − q_l)|: 0 at a change point, where pin forces grow without bound.
@@ -61,6 +72,10 @@ pub struct Frame {
     pub phase: Phase,
     /// The largest values so far.
     pub peaks: Peaks,
+    /// Sums so far.
+    pub tally: Tally,
+    /// What should be zero.
+    pub audit: Audit,
 }
 
 /// What the run is doing.
@@ -95,7 +110,7 @@ pub struct Peaks {
     pub torque_sum: f64,
     /// Dynamic |f_B|, N.
     pub force: f64,
-    /// |n_B|, N m.
+    /// |n_B|, less what a wheel takes up, N m.
     pub moment: f64,
     /// Σ_j m_j |a_cj|, N: the force that the links would transmit if nothing cancelled.
     pub inertial_pull: f64,
@@ -107,14 +122,14 @@ impl Peaks {
         Self { torque: PerDrive::zeros(drives), torque_sum: 0.0, force: 0.0, moment: 0.0, inertial_pull: 0.0 }
     }
 
-    /// Takes in one more instant.
-    pub fn include(&mut self, torque: &PerDrive, wrench: &BaseWrench, inertial_pull: f64) {
+    /// Takes in one more instant: torques and the moment that the base feels, N m, dynamic |f_B| and Σ m_j |a_cj|, N.
+    pub(crate) fn include(&mut self, torque: &PerDrive, force: f64, felt: f64, inertial_pull: f64) {
         for (peak, t) in self.torque.iter_mut().zip(torque.iter()) {
             *peak = worse(*peak, t.abs());
         }
         self.torque_sum = worse(self.torque_sum, torque.iter().map(|t| t.abs()).sum());
-        self.force = worse(self.force, wrench.dynamic.force.norm());
-        self.moment = worse(self.moment, wrench.total().moment.abs());
+        self.force = worse(self.force, force);
+        self.moment = worse(self.moment, felt.abs());
         self.inertial_pull = worse(self.inertial_pull, inertial_pull);
     }
 
@@ -141,9 +156,19 @@ impl Frame {
         self.wrench.total().moment
     }
 
+    /// n_B less what a reaction wheel takes up, N m: what the base feels.
+    pub fn felt_moment(&self) -> f64 {
+        self.base_moment() - self.wheel.torque
+    }
+
+    /// Angle of a drive relative to the base, q_k − θ, rad.
+    pub fn relative(&self, k: usize) -> f64 {
+        self.q[k] - self.base.angle
+    }
+
     /// Whether the base feels nothing at this instant, by the measure of the run's peaks.
     pub fn is_quiet(&self) -> bool {
-        self.base_moment().abs() <= REACTIONLESS * self.peaks.torque_sum.max(1e-9)
+        self.felt_moment().abs() <= REACTIONLESS * self.peaks.torque_sum.max(1e-9)
             && self.wrench.dynamic.force.norm() <= REACTIONLESS * self.peaks.inertial_pull.max(1e-9)
     }
 }

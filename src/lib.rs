@@ -78,6 +78,7 @@
 //! The core builds without any feature: no GPU, no window, no Rerun, and it reads no clock.
 #![warn(missing_docs)]
 
+pub mod audit;
 pub mod balance;
 pub mod control;
 pub mod dynamics;
@@ -85,10 +86,12 @@ pub mod files;
 pub mod frame;
 #[cfg(feature = "record")]
 pub mod headless;
+pub mod keys;
 pub mod kinematics;
 pub mod machine;
 pub mod plan;
 pub mod planar;
+pub mod plant;
 pub mod pose_constant;
 pub mod reactionless;
 #[cfg(feature = "render")]
@@ -98,6 +101,7 @@ pub mod scene;
 pub mod session;
 pub mod signals;
 pub mod simulation;
+pub mod tally;
 #[cfg(feature = "ui")]
 pub mod ui;
 #[cfg(feature = "window")]

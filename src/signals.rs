@@ -46,13 +46,14 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
     let mut table = Vec::new();
     let n = machine.drives();
     type Row = (&'static str, &'static str, &'static str, &'static str, fn(&Frame, usize) -> f64);
-    let per_drive: [Row; 6] = [
+    let per_drive: [Row; 7] = [
         ("torque", "τ", "torque of drive", "N m", |f, k| f.torque[k]),
         ("angle", "q", "angle of drive", "rad", |f, k| f.q[k]),
         ("rate", "q̇", "rate of drive", "rad/s", |f, k| f.qd[k]),
         ("acceleration", "q̈", "acceleration of drive", "rad/s²", |f, k| f.qdd[k]),
         ("reference", "q ref", "reference of drive", "rad", |f, k| f.q_reference[k]),
-        ("error", "e", "tracking error of drive", "rad", |f, k| f.q_reference[k] - f.q[k]),
+        ("error", "e", "tracking error of drive", "rad", |f, k| f.q_reference[k] - f.relative(k)),
+        ("friction", "τ f", "friction in the bearing of drive", "N m", |f, k| f.friction[k]),
     ];
     for (path, symbol, label, unit, value) in per_drive {
         for k in 0..n {
@@ -78,20 +79,24 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
         });
     }
     type Single = (&'static str, &'static str, &'static str, &'static str, fn(&Frame) -> f64);
-    let whole: [Single; 29] = [
+    let whole: [Single; 47] = [
         ("pose/b", "b", "pose constant", "rad", |f| f.b),
         ("pose/b_reference", "b ref", "pose constant aimed at", "rad", |f| f.b_reference),
         ("moment/total", "n_B", "base moment", "N m", |f| f.base_moment()),
         ("moment/dynamic", "n_B dyn", "base moment, from motion", "N m", |f| f.wrench.dynamic.moment),
+        ("moment/felt", "n felt", "moment that the base feels: n_B less a wheel's", "N m", |f| f.felt_moment()),
+        ("moment/wheel", "τ_w", "torque of the reaction wheel", "N m", |f| f.wheel.torque),
+        ("moment/rms", "n rms", "root mean square of the moment so far", "N m", |f| f.tally.moment_rms()),
         ("moment/static", "n_B stat", "base moment, from weight", "N m", |f| f.wrench.statical.moment),
         ("force/dynamic", "|f_B|", "base force, from motion", "N", |f| f.wrench.dynamic.force.norm()),
+        ("force/rms", "f rms", "root mean square of |f_B| so far", "N", |f| f.tally.force_rms()),
         ("force/dynamic_x", "f_Bx", "base force along x, from motion", "N", |f| f.wrench.dynamic.force.re),
         ("force/dynamic_y", "f_By", "base force along y, from motion", "N", |f| f.wrench.dynamic.force.im),
         ("force/static_x", "f_Bx stat", "base force along x, from weight", "N", |f| f.wrench.statical.force.re),
         ("force/static_y", "f_By stat", "base force along y, from weight", "N", |f| f.wrench.statical.force.im),
         ("momentum/x", "p_x", "linear momentum along x", "kg m/s", |f| f.momentum.re),
         ("momentum/y", "p_y", "linear momentum along y", "kg m/s", |f| f.momentum.im),
-        ("angular_momentum/about_b", "h_B", "angular momentum about B", "kg m²/s", |f| f.angular_momentum),
+        ("angular_momentum/about_b", "h_B", "angular momentum about the origin", "kg m²/s", |f| f.angular_momentum),
         ("com/x", "x_CM", "centre of mass, x", "m", |f| f.com.re),
         ("com/y", "y_CM", "centre of mass, y", "m", |f| f.com.im),
         ("tip/x", "x", "end effector, x", "m", |f| f.tip.re),
@@ -101,8 +106,26 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
         ("base/x", "x_B", "base, x", "m", |f| f.base.at.re),
         ("base/y", "y_B", "base, y", "m", |f| f.base.at.im),
         ("attitude/base", "θ", "attitude of the base", "rad", |f| f.base.angle),
+        ("attitude_rate/base", "θ̇", "rate of the base", "rad/s", |f| f.base_rate),
+        ("base_velocity/x", "ẋ_B", "velocity of the base, x", "m/s", |f| f.base_velocity.re),
+        ("base_velocity/y", "ẏ_B", "velocity of the base, y", "m/s", |f| f.base_velocity.im),
+        ("wheel/rate", "Ω", "rate of the reaction wheel", "rad/s", |f| f.wheel.rate),
+        ("impulse/force", "∫|f|dt", "impulse of |f_B| so far", "N s", |f| f.tally.force_impulse),
+        ("angular_impulse/moment", "∫|n|dt", "impulse of the moment so far", "N m s", |f| f.tally.moment_impulse),
+        ("payload/held", "held", "1 while the payload unknown to the model is held", "1", |f| {
+            f64::from(u8::from(f.loaded))
+        }),
+        ("wheel_saturated/now", "sat", "1 while the wheel cannot give what is wanted", "1", |f| {
+            f64::from(u8::from(f.wheel.saturated))
+        }),
         ("energy/kinetic", "T", "kinetic energy", "J", |f| f.kinetic),
-        ("energy/balance", "ΔE − W", "energy gained less work done", "J", |f| f.energy_balance),
+        ("energy/motors", "W motors", "energy that motors took, none given back", "J", |f| f.tally.energy),
+        ("audit_energy/balance", "ΔE − W", "energy gained less work done, plus losses", "J", |f| f.audit.energy),
+        ("audit_momentum/linear", "p + ∫f dt", "momentum and impulse on the base", "kg m/s", |f| f.audit.momentum),
+        ("audit_angular/about_o", "h + ∫n dt", "angular momentum and its impulse", "kg m²/s", |f| f.audit.angular),
+        ("audit_closure/worst", "gap", "worst gap in a pin that closes a loop", "m", |f| f.audit.closure),
+        ("audit_step/worst", "h err", "worst error of a step so far, by halving", "rad", |f| f.audit.step),
+        ("audit_plane/b", "b − b ref", "distance from the plane", "rad", |f| f.audit.plane),
         ("dexterity/det", "|det|", "|det| of ∂(x, y)/∂(a₁, a₂) on the plane", "m²", |f| f.dexterity.det),
         ("dexterity/manipulability", "w", "manipulability √det J J*", "m²", |f| f.dexterity.manipulability),
         (

@@ -2,6 +2,8 @@
 
 #[path = "suite/balance.rs"]
 mod balance;
+#[path = "suite/bases.rs"]
+mod bases;
 #[path = "suite/boundary.rs"]
 mod boundary;
 #[path = "suite/cases.rs"]
@@ -36,6 +38,8 @@ mod nine_body;
 mod null_space;
 #[path = "suite/planning.rs"]
 mod planning;
+#[path = "suite/plants.rs"]
+mod plants;
 #[path = "suite/price.rs"]
 mod price;
 #[path = "suite/reach.rs"]

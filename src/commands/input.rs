@@ -4,11 +4,12 @@ use std::ffi::OsString;
 use std::path::Path;
 
 use clap::Args;
+use stillbase::keys;
 use stillbase::machine::{self, Inertia, Machine};
 use stillbase::planar::Vector;
 use stillbase::pose_constant::plane_map;
 use stillbase::reactionless::PlaneMap;
-use stillbase::scenario::{Change, MAX_PAYLOAD, Scenario};
+use stillbase::scenario::{Change, Scenario};
 
 use super::failure::Failure;
 use super::output::say;
@@ -20,8 +21,10 @@ pub const DEFAULT_SCENARIO: &str = "case-3";
 #[derive(Args, Default)]
 pub struct Settings {
     /// Change the machine, as often as needed: link.5.com=-0.02 (m), link.9.mass=0.3 (kg), length.l1=0.6 (m),
-    /// payload.mass=0.1 (kg, known to control), plant.payload.mass=0.1 (unknown to it; scenarios only), gravity=0,-9.81 (m/s²), limits.a1=0.4,2.7 (rad), drive.1.torque_limit=20 (N m), drive.1.speed_limit=3 (rad/s), drive.1.acceleration_limit=40 (rad/s²), drive.1.jerk_limit=900 (rad/s³),
-    /// task.shape=spline, task.time=2 (s) and so on (scenarios only)
+    /// payload.mass=0.1 (kg, known to control), gravity=0,-9.81 (m/s²), limits.a1=0.4,2.7 (rad), drive.1.torque_limit=20 (N m), drive.1.speed_limit=3 (rad/s), drive.1.acceleration_limit=40 (rad/s²), drive.1.jerk_limit=900 (rad/s³),
+    /// and of scenarios: task.shape=spline, task.time=2 (s), plant.payload.mass=0.1 (kg, unknown to control),
+    /// plant.friction.coulomb=0.2 (N m), plant.link.5.com=-0.02 (m), base.kind=free, base.mass=40 (kg),
+    /// control.law=pd, control.kp=400,300,300 (s⁻²), and every other key of a scenario file
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
     pairs: Vec<(String, String)>,
 }
@@ -79,29 +82,22 @@ pub fn scenario(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
 /// # Errors
 /// If there is no such setting, or its machine is not valid.
 pub fn set(mut scenario: Scenario, settings: &Settings) -> Result<Scenario, Failure> {
-    let (task, others): (Vec<_>, Vec<_>) =
-        settings.pairs.iter().cloned().partition(|(key, _)| key.starts_with("task."));
-    let (plant, model): (Vec<_>, Vec<_>) = others.into_iter().partition(|(key, _)| key.starts_with("plant."));
+    let parts = ["task", "plant", "base", "control"];
+    let part = |key: &str| parts.iter().position(|part| key.split_once('.').is_some_and(|(head, _)| head == *part));
+    let (own, model): (Vec<_>, Vec<_>) = settings.pairs.iter().cloned().partition(|(key, _)| part(key).is_some());
     scenario.machine = Settings { pairs: model }.apply(scenario.machine)?;
-    for (key, value) in plant {
-        let amount = value.trim().parse().ok().filter(|x| (0.0..=MAX_PAYLOAD).contains(x));
-        let slot = match key.as_str() {
-            "plant.payload.mass" => &mut scenario.plant.payload.mass,
-            "plant.payload.inertia" => &mut scenario.plant.payload.inertia,
-            _ => {
-                let why = format!("no setting {key:?}: want plant.payload.mass or plant.payload.inertia");
-                return Err(Failure::wrong_input(why).of("--set"));
-            }
-        };
-        let why =
-            || Failure::wrong_input(format!("{key}={value:?}: want a number from 0 to {MAX_PAYLOAD}")).of("--set");
-        *slot = amount.ok_or_else(why)?;
+    let mut changes = std::array::from_fn::<_, 4, _>(|_| Change::new());
+    for (key, value) in own {
+        let (Some(i), Some((_, rest))) = (part(&key), key.split_once('.')) else { continue };
+        changes[i] = keys::join(std::mem::take(&mut changes[i]), &keys::one(rest, listed(&value)));
     }
-    let mut change = Change::new();
-    for (key, value) in task {
-        change.insert(key.trim_start_matches("task.").to_owned(), toml_value(&value));
-    }
-    change_task(&mut scenario, &change).map_err(|e| e.of("--set"))?;
+    let [task, plant, base, control] = changes;
+    let wrong = |of: &str, why: String| Failure::wrong_input(format!("{of}: {why}")).of("--set");
+    scenario.plant = keys::with(&scenario.plant, &plant).map_err(|why| wrong("plant", why))?;
+    scenario.base = keys::with(&scenario.base, &base).map_err(|why| wrong("base", why))?;
+    scenario.control = keys::with(&scenario.control, &control).map_err(|why| wrong("control", why))?;
+    change_task(&mut scenario, &task).map_err(|e| e.of("--set"))?;
+    scenario.check("--set")?;
     Ok(scenario)
 }
 
@@ -115,6 +111,13 @@ pub fn change_task(scenario: &mut Scenario, change: &Change) -> Result<(), Failu
         scenario.check("task")?;
     }
     Ok(())
+}
+
+/// A value as it would stand in a file; several numbers parted by commas are a list.
+fn listed(text: &str) -> toml::Value {
+    let value = toml_value(text);
+    let list = || text.contains(',').then(|| toml_value(&format!("[{text}]"))).filter(toml::Value::is_array);
+    if value.is_str() { list().unwrap_or(value) } else { value }
 }
 
 /// A value as it would stand in a file; what is none there is text.

@@ -10,9 +10,10 @@ use stillbase::plan::Blocked;
 use stillbase::plan::least_reaction::{FixedB, Verdicts};
 use stillbase::plan::price::FloatingBase;
 use stillbase::planar::Vector;
+use stillbase::plant::Plant;
 use stillbase::pose_constant::Planes;
 use stillbase::reactionless::BSet;
-use stillbase::scenario::{Change, Plant, Scenario, Shape, Task, TaskKind};
+use stillbase::scenario::{Change, Scenario, Shape, Task, TaskKind};
 use stillbase::session::{Refusal, Run, settled};
 
 use super::failure::Failure;
@@ -353,8 +354,8 @@ impl Plan {
                 return Err(Failure::wrong_input(format!("{option} has no use here: want {want}")));
             }
         }
-        if scenario.plant != Plant::default() {
-            say("note: a plan is of the model; what differs in the plant shows in `simulate`");
+        if scenario.plant != Plant::default() || scenario.base.moves() {
+            say("note: a plan is of the model; what differs in the plant or the base shows in `simulate`");
         }
         Ok(())
     }

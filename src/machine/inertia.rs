@@ -43,7 +43,7 @@ impl Inertia {
         sum
     }
 
-    fn add(&mut self, mass: f64, inertia: f64, drive: usize, a: &[Vector; MAX_DRIVES]) {
+    pub(crate) fn add(&mut self, mass: f64, inertia: f64, drive: usize, a: &[Vector; MAX_DRIVES]) {
         self.mass += mass;
         self.spin[drive] += inertia;
         for k in 0..self.drives {

@@ -171,6 +171,21 @@ impl Machine {
         a
     }
 
+    /// For every pin that closes a loop, how its one description differs from the other: a sum of unit vectors that is
+    /// zero in every pose.
+    pub fn closure_gaps(&self) -> Vec<Chain> {
+        let Ok(names) = Names::of(&self.spec) else { return Vec::new() };
+        let point = |p: &Point| {
+            let (j, s) = locate(&self.spec, &names, p, &|| Place::new(&[&"closure"])).ok()?;
+            Some(self.parts[j].point(s))
+        };
+        let gap = |c: &Closure| {
+            let (a, b) = (point(&c.a)?, point(&c.b)?);
+            Some(std::array::from_fn(|k| a[k] - b[k]))
+        };
+        self.spec.closures.iter().filter_map(gap).collect()
+    }
+
     fn check_inertia(&self) -> Result<(), MachineError> {
         let inertia = Inertia::of(self);
         match (0..self.drives()).find(|&k| inertia.diagonal(k).partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater)) {

@@ -9,9 +9,11 @@ use std::path::Path as FilePath;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::control::Gains;
-use crate::machine::{self, FileError, Machine, MachineError, MachineSpec, Payload};
+use crate::control::Control;
+use crate::machine::{self, FileError, Machine, MachineError, MachineSpec};
+use crate::plant::{Base, Plant, is_default};
 use crate::session::TimedEdit;
+use crate::simulation::Setup;
 
 pub use task::{Change, Corners, Least, MAX_POINTS, Shape, Task, TaskKind, Value};
 
@@ -26,10 +28,12 @@ pub struct Scenario {
     pub machine: Machine,
     /// What differs in the machine that moves.
     pub plant: Plant,
+    /// What it stands on.
+    pub base: Base,
     /// The task.
     pub task: Task,
-    /// Feedback.
-    pub gains: Gains,
+    /// What the motors are told.
+    pub control: Control,
     /// Fixed step, s.
     pub step: f64,
     /// Bound on |b̈| while b is slid, rad/s².
@@ -40,15 +44,6 @@ pub struct Scenario {
     pub duration: Option<f64>,
     /// What was done, in the order of steps.
     pub edits: Vec<TimedEdit>,
-}
-
-/// How the plant differs from the model.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Plant {
-    /// A payload that control does not know of; it adds to the machine's own.
-    #[serde(default)]
-    pub payload: Payload,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -68,10 +63,12 @@ struct File {
     pose_acceleration: f64,
     compare_b: Option<f64>,
     task: Task,
-    #[serde(default)]
-    control: Gains,
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
+    control: Control,
+    #[serde(default, skip_serializing_if = "is_default")]
     plant: Plant,
+    #[serde(default, skip_serializing_if = "is_default")]
+    base: Base,
     #[serde(default, rename = "edit", skip_serializing_if = "Vec::is_empty")]
     edits: Vec<TimedEdit>,
 }
@@ -222,7 +219,8 @@ impl Scenario {
             title: file.title,
             machine,
             plant: file.plant,
-            gains: file.control,
+            base: file.base,
+            control: file.control,
             step: file.step,
             pose_acceleration: file.pose_acceleration,
             compare_b: file.compare_b,
@@ -259,20 +257,6 @@ impl Scenario {
             ),
             ("task.via", t.via.len() as f64, "at most 2000 points between A and B", t.via.len() <= MAX_POINTS),
             ("pose_acceleration", self.pose_acceleration, "above 0 rad/s²", self.pose_acceleration > 0.0),
-            ("control.kp", self.gains.kp, "0 to 1/step² s⁻²", (0.0..=1.0 / self.step.powi(2)).contains(&self.gains.kp)),
-            ("control.kd", self.gains.kd, "0 to 2/step s⁻¹", (0.0..=2.0 / self.step).contains(&self.gains.kd)),
-            (
-                "plant.payload.mass",
-                self.plant.payload.mass,
-                "0 to 10000 kg",
-                (0.0..=MAX_PAYLOAD).contains(&self.plant.payload.mass),
-            ),
-            (
-                "plant.payload.inertia",
-                self.plant.payload.inertia,
-                "0 to 10000 kg m²",
-                (0.0..=MAX_PAYLOAD).contains(&self.plant.payload.inertia),
-            ),
         ];
         let finite = [
             ("task.from", t.from[0]),
@@ -286,12 +270,15 @@ impl Scenario {
         ];
         let via = t.via.iter().flatten().map(|x| ("task.via", *x));
         let finite = finite.into_iter().chain(via).map(|(key, value)| (key, value, "a finite number", true));
-        for (key, value, want, ok) in positive.into_iter().chain(finite) {
+        let n = self.machine.drives();
+        let parts = [self.control.checks(n, self.step), self.plant.checks(n), self.base.checks()];
+        for (key, value, want, ok) in positive.into_iter().chain(finite).chain(parts.into_iter().flatten()) {
             if !ok || !value.is_finite() {
                 return Err(ScenarioError::OutOfRange { file: file.into(), key, value, want });
             }
         }
-        Ok(())
+        let named = self.plant.machine(&self.machine).map(|_| ());
+        named.map_err(|error| ScenarioError::Machine { file: format!("{file}: plant"), error })
     }
 
     /// The scenario as TOML, so that [`parse`](Self::parse) gives an equal one. A built-in machine is named, any
@@ -304,8 +291,20 @@ impl Scenario {
             Some(known) if *known == self.machine => MachineRef::Name(self.machine.name().into()),
             _ => MachineRef::Inline(Box::new(self.machine.spec().clone())),
         };
-        let Self { name, title, machine: _, plant, task, gains, step, pose_acceleration, compare_b, duration, edits } =
-            self.clone();
+        let Self {
+            name,
+            title,
+            machine: _,
+            plant,
+            base,
+            task,
+            control,
+            step,
+            pose_acceleration,
+            compare_b,
+            duration,
+            edits,
+        } = self.clone();
         let file = File {
             name: Some(name),
             title,
@@ -316,27 +315,20 @@ impl Scenario {
             pose_acceleration,
             compare_b,
             task,
-            control: gains,
+            control,
             plant,
+            base,
             edits,
         };
         toml::to_string(&file).expect("a scenario is plain data")
     }
 
-    /// The machine that moves: the model with what differs in the plant.
-    ///
-    /// # Errors
-    /// If the difference leaves no valid machine.
-    pub fn plant_machine(&self) -> Result<Machine, MachineError> {
-        let mut spec = self.machine.spec().clone();
-        spec.payload.mass += self.plant.payload.mass;
-        spec.payload.inertia += self.plant.payload.inertia;
-        Machine::new(spec)
+    /// What a simulation of it is made of.
+    pub fn setup(&self) -> Setup<'_> {
+        let Self { machine: model, plant, base, control, step, .. } = self;
+        Setup { model, plant, base, control, step: *step }
     }
 }
-
-/// The heaviest unknown payload, kg; also the bound on its inertia, kg m².
-pub const MAX_PAYLOAD: f64 = 1e4;
 
 /// The longest run, s.
 pub const MAX_TIME: f64 = 3600.0;

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::keys;
 use crate::plan::TimeLaw;
 use crate::planar::Vector;
 
@@ -261,22 +262,12 @@ impl Task {
     /// # Errors
     /// What key or value is wrong, and what would be right.
     pub fn with(&self, change: &Change) -> Result<Self, String> {
-        let mut table = Change::try_from(self).map_err(|e| e.to_string())?;
-        for (key, value) in change {
-            if value.as_str() == Some("default") {
-                table.remove(key);
-            } else {
-                table.insert(key.clone(), value.clone());
-            }
-        }
-        table.try_into().map_err(|e: toml::de::Error| e.message().to_owned())
+        keys::with(self, change)
     }
 
     /// What these keys hold now, so that [`with`](Self::with) brings it back.
     pub fn only(&self, change: &Change) -> Change {
-        let table = Change::try_from(self).unwrap_or_default();
-        let absent = || toml::Value::String("default".into());
-        change.keys().map(|key| (key.clone(), table.get(key).cloned().unwrap_or_else(absent))).collect()
+        keys::only(self, change)
     }
 }
 

@@ -3,6 +3,8 @@
 use serde::de::Error as _;
 use serde::{Deserialize, Serialize};
 
+use crate::keys;
+
 /// One change. It can be saved, replayed and undone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "do", rename_all = "kebab-case", deny_unknown_fields)]
@@ -24,17 +26,27 @@ pub enum Edit {
         /// rad.
         b: f64,
     },
-    /// Feedback gains.
-    SetGains {
-        /// s⁻².
-        kp: f64,
-        /// s⁻¹.
-        kd: f64,
+    /// A force held at the end effector from now on, N: a hand that pushes; zero lets go.
+    Push {
+        /// N.
+        x: f64,
+        /// N.
+        y: f64,
     },
-    /// A payload that control does not know of.
-    SetPayload {
-        /// kg.
-        mass: f64,
+    /// Keys of the plant, as in a scenario file: payload, friction, links that differ; `default` takes a key out.
+    SetPlant {
+        /// Such as `{ payload = { mass = 0.3 } }`.
+        change: toml::Table,
+    },
+    /// Keys of what the machine stands on, during the whole run.
+    SetBase {
+        /// Such as `{ kind = "free" }`.
+        change: toml::Table,
+    },
+    /// Keys of control: law, gains, rate, delay.
+    SetControl {
+        /// Such as `{ kp = 400.0 }`.
+        change: toml::Table,
     },
     /// One setting of the machine, by the keys of `--set`.
     SetMachine {
@@ -86,14 +98,37 @@ impl<'de> Deserialize<'de> for TimedEdit {
 impl Edit {
     /// One key of the task.
     pub fn task(key: &str, value: impl Into<toml::Value>) -> Self {
-        Self::SetTask { change: toml::Table::from_iter([(key.to_owned(), value.into())]) }
+        Self::SetTask { change: keys::one(key, value) }
+    }
+
+    /// One key of the plant, its parts joined by dots.
+    pub fn plant(key: &str, value: impl Into<toml::Value>) -> Self {
+        Self::SetPlant { change: keys::one(key, value) }
+    }
+
+    /// One key of what the machine stands on.
+    pub fn base(key: &str, value: impl Into<toml::Value>) -> Self {
+        Self::SetBase { change: keys::one(key, value) }
+    }
+
+    /// One key of control.
+    pub fn control(key: &str, value: impl Into<toml::Value>) -> Self {
+        Self::SetControl { change: keys::one(key, value) }
+    }
+
+    /// Whether it is of the run as a whole and has no meaning at a later step.
+    pub fn is_of_the_whole(&self) -> bool {
+        matches!(self, Self::SetTask { .. } | Self::SetTime { .. } | Self::SetBase { .. })
     }
 
     /// Whether a later edit makes this one void, so that a drag keeps only its last word.
     pub fn is_replaced_by(&self, later: &Self) -> bool {
         match (self, later) {
             (Self::SetMachine { key: a, .. }, Self::SetMachine { key: b, .. }) => a == b,
-            (Self::SetTask { change: a }, Self::SetTask { change: b }) => a.keys().all(|key| b.contains_key(key)),
+            (Self::SetTask { change: a }, Self::SetTask { change: b })
+            | (Self::SetPlant { change: a }, Self::SetPlant { change: b })
+            | (Self::SetBase { change: a }, Self::SetBase { change: b })
+            | (Self::SetControl { change: a }, Self::SetControl { change: b }) => keys::covers(b, a),
             _ => std::mem::discriminant(self) == std::mem::discriminant(later),
         }
     }
@@ -109,8 +144,11 @@ impl Edit {
             Self::DragTarget { x, y } => format!("drag target to {x:.3}, {y:.3} m"),
             Self::SlideB { b } => format!("slide b to {b:.3} rad"),
             Self::PoseB { b } => format!("pose at b = {b:.3} rad"),
-            Self::SetGains { kp, kd } => format!("set gains to {kp:.0} s⁻², {kd:.0} s⁻¹"),
-            Self::SetPayload { mass } => format!("set unknown payload to {mass:.3} kg"),
+            Self::Push { x: 0.0, y: 0.0 } => "let go".into(),
+            Self::Push { x, y } => format!("push with {x:.2}, {y:.2} N"),
+            Self::SetPlant { change } => listed("plant", change),
+            Self::SetBase { change } => listed("base", change),
+            Self::SetControl { change } => listed("control", change),
             Self::SetMachine { key, value } => format!("set {key} to {value}"),
             Self::SetTime { time } => format!("set motion time to {time:.3} s"),
             Self::SetTask { change } => task_title(change),
@@ -130,4 +168,16 @@ fn task_title(change: &toml::Table) -> String {
         format!("{} to {value}", key.replace('_', " "))
     };
     format!("set {}", change.iter().map(say).collect::<Vec<_>>().join(", "))
+}
+
+/// What a change of keys does.
+fn listed(of: &str, change: &toml::Table) -> String {
+    let say = |(key, value): (String, String)| match value.as_str() {
+        "default" => format!("{} back to normal", key.replace(['_', '.'], " ")),
+        _ => {
+            let short = value.parse().map_or(value.clone(), |x: f64| format!("{}", (x * 1e6).round() / 1e6));
+            format!("{} to {short}", key.replace(['_', '.'], " "))
+        }
+    };
+    format!("set {of} {}", keys::listed(change).into_iter().map(say).collect::<Vec<_>>().join(", "))
 }

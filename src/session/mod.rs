@@ -42,9 +42,9 @@ struct Change {
 }
 
 impl Change {
-    /// Whether it is of the task: that has no meaning at a later step.
+    /// Whether it is of the run as a whole: that has no meaning at a later step.
     fn plans(&self) -> bool {
-        self.edit.as_ref().is_some_and(|e| matches!(e.edit, Edit::SetTask { .. }))
+        self.edit.as_ref().is_some_and(|e| matches!(e.edit, Edit::SetTask { .. } | Edit::SetBase { .. }))
     }
 }
 
@@ -254,10 +254,10 @@ impl Session {
     /// Whether an edit applies at the present step rather than to the run as a whole.
     fn concerns_now(&self, edit: &Edit) -> bool {
         match edit {
-            Edit::DragTarget { .. } | Edit::SlideB { .. } => true,
+            Edit::DragTarget { .. } | Edit::SlideB { .. } | Edit::Push { .. } => true,
             Edit::PoseB { .. } => self.is_live(),
-            // The path that the machine is on cannot change its time.
-            Edit::SetTime { .. } | Edit::SetTask { .. } => false,
+            // The path that the machine is on cannot change its time, nor can it move to another base.
+            edit if edit.is_of_the_whole() => false,
             // A slider that set the machine in motion goes on as it began.
             _ => self.gesture_now.unwrap_or_else(|| self.is_running()),
         }

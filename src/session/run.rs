@@ -7,6 +7,7 @@ use thiserror::Error;
 use super::planning::{Plan, plan};
 use super::{Edit, TimedEdit};
 use crate::frame::Frame;
+use crate::keys;
 use crate::machine::{Machine, MachineError};
 use crate::plan::drift::DriftError;
 use crate::plan::follow::Bounds;
@@ -16,7 +17,7 @@ use crate::plan::{Blocked, CurveError, Follower, Motion, PathError, TimeError};
 use crate::planar::{DriveAngles, Vector};
 use crate::pose_constant::{PlaneError, Planes, Unreachable};
 use crate::reactionless::PlanePoint;
-use crate::scenario::{MAX_PAYLOAD, MAX_TIME, Scenario};
+use crate::scenario::{MAX_TIME, Scenario};
 use crate::simulation::{Guide, Simulation};
 
 /// Why a scenario cannot start or an edit cannot apply; nothing has changed then.
@@ -146,8 +147,7 @@ impl Run {
         };
         let plan = plan(scenario, &planes)?;
         let guide = Guide::Motion { motion: plan.motion.clone(), start: 0.0 };
-        let plant = scenario.plant_machine()?;
-        let simulation = Simulation::new(&scenario.machine, &plant, scenario.gains, scenario.step, guide);
+        let simulation = Simulation::new(&scenario.setup(), guide)?;
         Ok(Self { scenario: scenario.clone(), planes: Some(planes), plan, simulation })
     }
 
@@ -234,8 +234,10 @@ impl Run {
                 self.simulation.place(Guide::Follow(follower));
             }
             Edit::CompareB { b } => self.scenario.compare_b = *b,
-            Edit::SetGains { .. }
-            | Edit::SetPayload { .. }
+            Edit::Push { .. }
+            | Edit::SetPlant { .. }
+            | Edit::SetBase { .. }
+            | Edit::SetControl { .. }
             | Edit::SetMachine { .. }
             | Edit::SetTime { .. }
             | Edit::SetTask { .. } => self.set(edit)?,
@@ -250,14 +252,15 @@ impl Run {
 
     /// Parameters in motion: it keeps its path.
     fn set(&mut self, edit: &Edit) -> Result<(), Refusal> {
-        if matches!(edit, Edit::SetTask { .. }) {
-            return Err(Refusal::Task("the task can change only before its first step".into()));
+        if matches!(edit, Edit::SetTask { .. } | Edit::SetBase { .. }) {
+            return Err(Refusal::Task("task and base can change only before the first step".into()));
         }
         let scenario = changed(&self.scenario, edit)?;
         if let (Edit::SetMachine { key, value }, true) = (edit, self.leaves_limits(&scenario)) {
             return Err(Refusal::LeavesLimits { key: key.clone(), value: value.clone() });
         }
-        let plant = scenario.plant_machine()?;
+        let mut simulation = self.simulation.clone();
+        simulation.change(&scenario.setup())?;
         if scenario.machine != self.scenario.machine {
             let keep_off = scenario.task.keep_off_change_points;
             let planes = Arc::new(Planes::of(&scenario.machine)?.keeping_off_change_points(keep_off));
@@ -269,11 +272,11 @@ impl Run {
                 if planes.map().lambda() == old.planes().map().lambda() {
                     follower.set_b(old.b_aim());
                 }
-                self.simulation.lead(Guide::Follow(follower));
+                simulation.lead(Guide::Follow(follower));
             }
             self.planes = Some(planes);
         }
-        self.simulation.change(&scenario.machine, &plant, scenario.gains);
+        self.simulation = simulation;
         self.scenario = scenario;
         Ok(())
     }
@@ -323,8 +326,10 @@ impl Run {
             Edit::DragTarget { .. } => Edit::DragTarget { x: frame.target.at.re, y: frame.target.at.im },
             Edit::SlideB { .. } => Edit::SlideB { b: b_aim() },
             Edit::PoseB { .. } => Edit::PoseB { b: b_aim() },
-            Edit::SetGains { .. } => Edit::SetGains { kp: scenario.gains.kp, kd: scenario.gains.kd },
-            Edit::SetPayload { .. } => Edit::SetPayload { mass: scenario.plant.payload.mass },
+            Edit::Push { .. } => Edit::Push { x: scenario.plant.force[0], y: scenario.plant.force[1] },
+            Edit::SetPlant { change } => Edit::SetPlant { change: keys::only(&scenario.plant, change) },
+            Edit::SetBase { change } => Edit::SetBase { change: keys::only(&scenario.base, change) },
+            Edit::SetControl { change } => Edit::SetControl { change: keys::only(&scenario.control, change) },
             Edit::SetMachine { key, .. } => Edit::SetMachine { key: key.clone(), value: scenario.machine.get(key)? },
             Edit::SetTime { .. } => Edit::SetTime { time: scenario.task.time },
             Edit::SetTask { change } => Edit::SetTask { change: scenario.task.only(change) },
@@ -337,18 +342,40 @@ impl Run {
 fn changed(scenario: &Scenario, edit: &Edit) -> Result<Scenario, Refusal> {
     let mut scenario = scenario.clone();
     match edit {
-        Edit::SetGains { kp, kd } => (scenario.gains.kp, scenario.gains.kd) = (*kp, *kd),
-        Edit::SetPayload { mass } => scenario.plant.payload.mass = *mass,
+        Edit::Push { x, y } => {
+            scenario.plant.force = [*x, *y];
+            checked(&scenario, "push")?;
+        }
+        Edit::SetPlant { change } => {
+            scenario.plant = keys::with(&scenario.plant, change).map_err(|why| wrong("plant", &why))?;
+            checked(&scenario, "plant")?;
+        }
+        Edit::SetBase { change } => {
+            scenario.base = keys::with(&scenario.base, change).map_err(|why| wrong("base", &why))?;
+            checked(&scenario, "base")?;
+        }
+        Edit::SetControl { change } => {
+            scenario.control = keys::with(&scenario.control, change).map_err(|why| wrong("control", &why))?;
+            checked(&scenario, "control")?;
+        }
         Edit::SetMachine { key, value } => scenario.machine = scenario.machine.set(key, value)?,
         Edit::SetTime { time } => scenario.task.time = *time,
         Edit::CompareB { b } => scenario.compare_b = *b,
         Edit::SetTask { change } => {
-            scenario.task = scenario.task.with(change).map_err(|why| Refusal::Task(format!("task: {why}")))?;
-            scenario.check("task").map_err(|why| Refusal::Task(why.to_string()))?;
+            scenario.task = scenario.task.with(change).map_err(|why| wrong("task", &why))?;
+            checked(&scenario, "task")?;
         }
         Edit::PoseB { .. } | Edit::DragTarget { .. } | Edit::SlideB { .. } => {}
     }
     Ok(scenario)
+}
+
+fn wrong(of: &str, why: &str) -> Refusal {
+    Refusal::Task(format!("{of}: {why}"))
+}
+
+fn checked(scenario: &Scenario, of: &str) -> Result<(), Refusal> {
+    scenario.check(of).map_err(|why| Refusal::Task(why.to_string()))
 }
 
 /// A scenario as an edit before its first step leaves it; planes are made if a pose needs them, and kept.
@@ -382,8 +409,6 @@ fn posed(scenario: &Scenario, planes: &Planes, b: f64) -> Scenario {
     scenario
 }
 
-const GAIN_WANTED: &str = "0 or more, K_p at most 1/h² and K_d at most 2/h for a step h";
-
 fn check(edit: &Edit, step: f64) -> Result<(), Refusal> {
     let out = |what, value, want| Err(Refusal::OutOfRange { what, value, want });
     match *edit {
@@ -393,9 +418,6 @@ fn check(edit: &Edit, step: f64) -> Result<(), Refusal> {
         Edit::SlideB { b } | Edit::PoseB { b } | Edit::CompareB { b: Some(b) } if !(-1e3..=1e3).contains(&b) => {
             out("b", b, "a number between -1000 and 1000 rad")
         }
-        Edit::SetGains { kp, .. } if !(0.0..=1.0 / (step * step)).contains(&kp) => out("K_p", kp, GAIN_WANTED),
-        Edit::SetGains { kd, .. } if !(0.0..=2.0 / step).contains(&kd) => out("K_d", kd, GAIN_WANTED),
-        Edit::SetPayload { mass } if !(0.0..=MAX_PAYLOAD).contains(&mass) => out("payload", mass, "0 to 10000 kg"),
         Edit::SetTime { time } if !(step..=MAX_TIME).contains(&time) => out("motion time", time, "one step to 3600 s"),
         _ => Ok(()),
     }

@@ -203,7 +203,7 @@ fn plant(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command
     let tip = "A mass at the end effector that control does not know of: it unbalances the machine";
     let row = Row { label: "payload", unit: "kg", tip, decimals: 2, speed: 0.01, range: 0.0..=2.0 };
     let responses = row.with_slider(ui, p, &mut mass);
-    send(commands, &responses, || Edit::SetPayload { mass });
+    send(commands, &responses, || Edit::plant("payload.mass", mass));
     let gravity = scenario.machine.gravity();
     // From zero, so that no gravity reads 0.00 and not −0.00.
     let mut down = 0.0 - gravity.im;
@@ -218,15 +218,16 @@ fn plant(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command
 
 fn control(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
     section(ui, p, "Control");
-    let gains = session.scenario().gains;
-    let (mut kp, mut kd) = (gains.kp, gains.kd);
+    let control = session.scenario().control;
+    let (mut kp, mut kd) = (control.kp.of(1)[0], control.kd.of(1)[0]);
     let tip = "Computed torque: position gain, the same on all drives";
     let first =
         Row { label: "Kp", unit: "s⁻²", tip, decimals: 0, speed: 1.0, range: 0.0..=10_000.0 }.show(ui, p, &mut kp);
     let tip = "Computed torque: velocity gain, the same on all drives";
     let second =
         Row { label: "Kd", unit: "s⁻¹", tip, decimals: 0, speed: 0.2, range: 0.0..=1_000.0 }.show(ui, p, &mut kd);
-    send(commands, &[first, second], || Edit::SetGains { kp, kd });
+    send(commands, &[first], || Edit::control("kp", kp));
+    send(commands, &[second], || Edit::control("kd", kd));
 }
 
 fn balance(ui: &mut Ui, session: &Session, p: &Palette) {

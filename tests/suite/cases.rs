@@ -246,7 +246,7 @@ fn energy_balances() {
     let others = [Performed::of(falling), Performed::of(wrong), Performed::of(slid())];
     for case in CASES.iter().chain(&others) {
         assert!(case.peak(|f| f.kinetic) > 0.02);
-        let off = case.peak(|f| f.energy_balance);
+        let off = case.peak(|f| f.audit.energy);
         assert!(off < 1e-8, "{}: {off:e} J", case.scenario.name);
     }
 }
@@ -323,7 +323,8 @@ struct FirstOrder {
 impl FirstOrder {
     fn of(case: &Performed) -> Self {
         let tip = case.scenario.machine.tip();
-        let (kp, kd) = (case.scenario.gains.kp, case.scenario.gains.kd);
+        let control = case.scenario.control;
+        let (kp, kd) = (control.kp.of(1)[0], control.kd.of(1)[0]);
         let planned = |t: f64| {
             let r = case.motion().at(t);
             let e = r.q.units();

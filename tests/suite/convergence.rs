@@ -1,13 +1,14 @@
 //! The rate at which errors fall, and that every path's derivatives are its own.
 
 use proptest::prelude::*;
-use stillbase::control::Gains;
+use stillbase::control::Control;
 use stillbase::kinematics::{end_effector, minimum_norm};
 use stillbase::machine::{Machine, builtin};
 use stillbase::plan::path::{PathPoint, SameTip, tip_line};
 use stillbase::plan::{Motion, Path, PathError, TimeLaw};
 use stillbase::planar::{DriveAngles, PerDrive, Vector};
-use stillbase::simulation::{Guide, Simulation};
+use stillbase::plant::{Base, Plant};
+use stillbase::simulation::{Guide, Setup, Simulation};
 
 use crate::support::close;
 
@@ -54,15 +55,20 @@ fn order_is_the_slope() {
     assert!((order(&points) - 4.0).abs() < 1e-12);
 }
 
+fn simulated(model: &Machine, plant: &Plant, step: f64, guide: Guide) -> Simulation {
+    let (base, control) = (Base::default(), Control::default());
+    Simulation::new(&Setup { model, plant, base: &base, control: &control, step }, guide).expect("valid")
+}
+
 /// State of an unbalanced plant with a payload, in gravity, at 0.6 s of a motion planned for another machine.
 fn state_after(dt: f64) -> [f64; 6] {
     let settings = [("link.1.com", "0.1"), ("link.9.mass", "0.9"), ("gravity", "1,-9.81")];
     let model = builtin("nine-link-table-1").expect("built in").set_all(settings).expect("valid");
-    let plant = model.set_all([("payload.mass", "0.4"), ("link.2.com", "0.05")]).expect("valid");
+    let plant: Plant = toml::from_str("payload.mass = 0.4\nlink.2.com = 0.05").expect("valid");
     assert!(!stillbase::machine::Inertia::of(&model).is_invariant());
     let motion = Motion::new(line(), TimeLaw::Quintic, 1.0);
     let guide = Guide::Motion { motion, start: 0.0 };
-    let mut simulation = Simulation::new(&model, &plant, Gains::default(), dt, guide);
+    let mut simulation = simulated(&model, &plant, dt, guide);
     for _ in 0..(0.6 / dt).round() as u64 {
         simulation.advance();
     }
@@ -90,14 +96,13 @@ fn integrator_is_of_order_four() {
 fn energy_balance_is_of_order_four() {
     let off = |dt: f64| {
         let model = nine_link().set("gravity", "0,-9.81").expect("valid");
-        let plant = model.set("payload.mass", "0.5").expect("valid");
+        let plant: Plant = toml::from_str("payload.mass = 0.5").expect("valid");
         let motion = Motion::new(line(), TimeLaw::Quintic, 1.0);
-        let mut simulation =
-            Simulation::new(&model, &plant, Gains::default(), dt, Guide::Motion { motion, start: 0.0 });
+        let mut simulation = simulated(&model, &plant, dt, Guide::Motion { motion, start: 0.0 });
         for _ in 0..(0.6 / dt).round() as u64 {
             simulation.advance();
         }
-        simulation.frame().energy_balance.abs()
+        simulation.frame().audit.energy.abs()
     };
     let errors = [0.01, 0.005, 0.0025, 0.00125].map(|h| (h, off(h)));
     let order = order(&errors);

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// From the words at the bottom to the edges; modules of one row may use each other.
 const LAYERS: &[&[&str]] = &[
-    &["planar"],
+    &["planar", "keys"],
     &["machine"],
     &["kinematics"],
     &["dynamics"],
@@ -14,8 +14,9 @@ const LAYERS: &[&[&str]] = &[
     &["reactionless"],
     &["pose_constant"],
     &["plan"],
+    &["plant"],
     &["control"],
-    &["frame"],
+    &["frame", "tally", "audit"],
     &["simulation"],
     &["signals"],
     // A scenario holds the edits of a saved session; a session starts from a scenario.
@@ -40,8 +41,12 @@ const CORE: &[&str] = &[
     "reactionless",
     "pose_constant",
     "plan",
+    "plant",
     "control",
     "frame",
+    "tally",
+    "audit",
+    "keys",
     "simulation",
     "signals",
     "scenario",
@@ -66,7 +71,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("indicatif", &["commands"]),
     ("csv", &["commands"]),
     ("serde_json", &["commands"]),
-    ("toml", &["machine", "scenario", "session", "commands"]),
+    ("toml", &["keys", "machine", "plant", "scenario", "session", "commands"]),
     ("clarabel", &["plan"]),
 ];
 

@@ -539,7 +539,7 @@ fn recording_again_gives_the_same_recording() {
     }
     assert_eq!(data(&folder.file("a.rrd")), data(&folder.file("b.rrd")));
     let mut other = short("case-2");
-    other.gains.kp = 100.0;
+    other.control.kp = stillbase::plant::Each::All(100.0);
     record_in(&folder, "c.rrd", &[short("case-1"), other]).expect("two cases");
     let ids = |name: &str| Contents::of(&folder.file(name)).stores.into_keys().collect::<Vec<_>>();
     assert_ne!(ids("a.rrd"), ids("c.rrd"), "another recording has another name");

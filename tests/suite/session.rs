@@ -7,6 +7,10 @@ use stillbase::planar::Vector;
 use stillbase::scenario::Scenario;
 use stillbase::session::{Edit, Refusal, Session, TimedEdit, replay};
 
+fn gains(kp: f64, kd: f64) -> Edit {
+    Edit::SetControl { change: toml::Table::from_iter([("kp".into(), kp.into()), ("kd".into(), kd.into())]) }
+}
+
 fn scenario() -> Scenario {
     Scenario::builtin("case-3").expect("built in")
 }
@@ -109,9 +113,9 @@ fn a_sitting_replayed_gives_equal_frames() {
         session.tick([1, 0, 4, 0, 0, 2, 7, 1, 0, 3, 3, 5][i as usize]);
     }
     session.end_gesture();
-    do_it(&mut session, Edit::SetPayload { mass: 0.2 });
+    do_it(&mut session, Edit::plant("payload.mass", 0.2));
     session.tick(11);
-    do_it(&mut session, Edit::SetGains { kp: 300.0, kd: 30.0 });
+    do_it(&mut session, gains(300.0, 30.0));
     session.tick(2);
     do_it(&mut session, set("limits.a1", "0.2,2.9"));
     session.tick(13);
@@ -154,15 +158,15 @@ fn any_edit() -> impl Strategy<Value = Edit> {
         6 => (-0.2..1.0, -0.2..1.2).prop_map(|(x, y)| drag(x, y)),
         3 => (1.8..3.2).prop_map(slide),
         2 => (2.2..2.7).prop_map(|b| Edit::PoseB { b }),
-        1 => (100.0..600.0, 10.0..50.0).prop_map(|(kp, kd)| Edit::SetGains { kp, kd }),
-        1 => (0.0..0.5).prop_map(|mass| Edit::SetPayload { mass }),
+        1 => (100.0..600.0, 10.0..50.0).prop_map(|(kp, kd)| gains(kp, kd)),
+        1 => (0.0..0.5).prop_map(|mass| Edit::plant("payload.mass", mass)),
         1 => limits("a1"),
         1 => limits("a2"),
         1 => (-10.0..10.0).prop_map(|g| set("gravity", &format!("0,{g}"))),
         1 => (0.2..1.0).prop_map(|mass: f64| set("link.9.mass", &mass.to_string())),
         1 => (0.3..1.5).prop_map(|time| Edit::SetTime { time }),
         1 => prop::option::of(0.0..7.0).prop_map(|b| Edit::CompareB { b }),
-        1 => Just(Edit::SetPayload { mass: f64::NAN }),
+        1 => Just(Edit::plant("payload.mass", f64::NAN)),
         1 => Just(set("limits.a1", "3,1")),
     ]
 }
@@ -241,11 +245,11 @@ fn undo_at_rest_restores_and_redo_brings_back() {
     let mut session = open(coarse());
     settle(&mut session);
     let edits = [
-        Edit::SetPayload { mass: 0.3 },
-        Edit::SetGains { kp: 900.0, kd: 60.0 },
+        Edit::plant("payload.mass", 0.3),
+        gains(900.0, 60.0),
         set("limits.a2", "0.3,3"),
         drag(0.6, 0.6),
-        Edit::SetPayload { mass: 0.1 },
+        Edit::plant("payload.mass", 0.1),
         Edit::PoseB { b: 2.3 },
         slide(2.5),
         Edit::CompareB { b: None },
@@ -281,8 +285,8 @@ fn undo_at_rest_restores_and_redo_brings_back() {
 #[test]
 fn undo_in_motion_appends_the_inverse() {
     let pairs = [
-        (Edit::SetPayload { mass: 0.3 }, Edit::SetPayload { mass: 0.0 }),
-        (Edit::SetGains { kp: 900.0, kd: 60.0 }, Edit::SetGains { kp: 400.0, kd: 40.0 }),
+        (Edit::plant("payload.mass", 0.3), Edit::plant("payload.mass", "default")),
+        (gains(900.0, 60.0), gains(400.0, 40.0)),
         (set("limits.a2", "0.3,3"), set("limits.a2", "0,3.141592653589793")),
         (slide(2.5), slide(2.4)),
         (Edit::CompareB { b: None }, Edit::CompareB { b: Some(5.0) }),
@@ -419,10 +423,10 @@ fn refused_edits_change_nothing() {
         drag(0.5, f64::INFINITY),
         slide(f64::NAN),
         Edit::PoseB { b: f64::INFINITY },
-        Edit::SetPayload { mass: -0.1 },
-        Edit::SetPayload { mass: f64::NAN },
-        Edit::SetGains { kp: -1.0, kd: 10.0 },
-        Edit::SetGains { kp: 100.0, kd: f64::NAN },
+        Edit::plant("payload.mass", -0.1),
+        Edit::plant("payload.mass", f64::NAN),
+        gains(-1.0, 10.0),
+        gains(100.0, f64::NAN),
         Edit::SetTime { time: 0.0 },
         Edit::SetTime { time: f64::NAN },
         Edit::CompareB { b: Some(f64::NAN) },
@@ -516,12 +520,8 @@ fn scrubbing_back_and_editing_replaces_the_later_script() {
 /// A target dragged before the first step outlives a change of parameters, in motion or at rest.
 #[test]
 fn a_drag_at_the_start_outlives_parameters() {
-    let parameters = [
-        Edit::SetGains { kp: 500.0, kd: 45.0 },
-        Edit::SetPayload { mass: 0.05 },
-        set("limits.a1", "0.1,3"),
-        set("gravity", "0,-9.81"),
-    ];
+    let parameters =
+        [gains(500.0, 45.0), Edit::plant("payload.mass", 0.05), set("limits.a1", "0.1,3"), set("gravity", "0,-9.81")];
     for parameter in parameters {
         // At once, in motion, and at rest.
         for ticks in [0, 30, 100_000] {
@@ -547,10 +547,10 @@ fn a_parameter_set_at_rest_is_the_last_word() {
     do_it(&mut session, drag(0.6, 0.6));
     session.end_gesture();
     session.tick(20);
-    do_it(&mut session, Edit::SetPayload { mass: 0.3 });
+    do_it(&mut session, Edit::plant("payload.mass", 0.3));
     session.end_gesture();
     settle(&mut session);
-    do_it(&mut session, Edit::SetPayload { mass: 0.1 });
+    do_it(&mut session, Edit::plant("payload.mass", 0.1));
     assert_eq!(session.scenario().plant.payload.mass, 0.1);
     settle(&mut session);
     one_path(&session);
@@ -636,8 +636,12 @@ fn switching_scenarios_is_undone() {
 #[test]
 fn edits_of_a_file_are_put_in_order() {
     let at = |step, edit| TimedEdit { step, edit };
-    let edits =
-        vec![at(120, slide(2.5)), at(40, drag(0.6, 0.6)), at(9000, slide(1.0)), at(0, Edit::SetPayload { mass: 0.1 })];
+    let edits = vec![
+        at(120, slide(2.5)),
+        at(40, drag(0.6, 0.6)),
+        at(9000, slide(1.0)),
+        at(0, Edit::plant("payload.mass", 0.1)),
+    ];
     let scrambled = Scenario { edits: edits.clone(), ..coarse() };
     let mut sorted = scrambled.clone();
     sorted.edits.sort_by_key(|e| e.step);
@@ -891,7 +895,7 @@ fn settings_outlive_following() {
     do_it(&mut session, drag(0.6, 0.7));
     session.tick(200);
     session.end_gesture();
-    do_it(&mut session, Edit::SetPayload { mass: 0.3 });
+    do_it(&mut session, Edit::plant("payload.mass", 0.3));
     session.end_gesture();
     session.tick(50);
     do_it(&mut session, Edit::task("shape", "line"));

@@ -47,7 +47,9 @@ fn paths_are_unique_and_plain() {
 /// SI without prefixes, and one unit a group: they share an axis.
 #[test]
 fn units_are_si_and_one_a_group() {
-    let si = ["1", "rad", "rad/s", "rad/s²", "m", "N", "N m", "kg m/s", "kg m²/s", "J", "m²", "N m/N"];
+    let si = [
+        "1", "rad", "rad/s", "rad/s²", "m", "m/s", "N", "N s", "N m s", "N m", "kg m/s", "kg m²/s", "J", "m²", "N m/N",
+    ];
     let table = signals(machine());
     for signal in &table {
         assert!(si.contains(&signal.unit), "{} in {}", signal.path, signal.unit);
@@ -87,6 +89,7 @@ fn values_are_the_frame_s() {
             is(&format!("acceleration/{drive}"), frame.qdd[k]);
             is(&format!("reference/{drive}"), frame.q_reference[k]);
             is(&format!("error/{drive}"), frame.q_reference[k] - frame.q[k]);
+            is(&format!("friction/{drive}"), frame.friction[k]);
         }
         is("joint/a1", frame.a[0]);
         is("joint/a2", frame.a[1]);
@@ -114,7 +117,26 @@ fn values_are_the_frame_s() {
         is("base/y", frame.base.at.im);
         is("attitude/base", frame.base.angle);
         is("energy/kinetic", frame.kinetic);
-        is("energy/balance", frame.energy_balance);
+        let (tally, audit) = (frame.tally, frame.audit);
+        is("energy/motors", tally.energy);
+        is("audit_energy/balance", audit.energy);
+        is("audit_momentum/linear", audit.momentum);
+        is("audit_angular/about_o", audit.angular);
+        is("audit_closure/worst", audit.closure);
+        is("audit_step/worst", audit.step);
+        is("audit_plane/b", audit.plane);
+        is("moment/felt", still.moment + moving.moment - frame.wheel.torque);
+        is("moment/wheel", frame.wheel.torque);
+        is("moment/rms", tally.moment_rms());
+        is("force/rms", tally.force_rms());
+        is("attitude_rate/base", frame.base_rate);
+        is("base_velocity/x", frame.base_velocity.re);
+        is("base_velocity/y", frame.base_velocity.im);
+        is("wheel/rate", frame.wheel.rate);
+        is("impulse/force", tally.force_impulse);
+        is("angular_impulse/moment", tally.moment_impulse);
+        is("payload/held", 1.0);
+        is("wheel_saturated/now", 0.0);
         // The determinant by differences of the end effector along the plane, the others by the Jacobian's columns.
         let map = plane_map(machine()).expect("three drives");
         let a = [frame.a[0], frame.a[1]];
@@ -149,7 +171,7 @@ fn a_frame_agrees_with_itself() {
     let mut scenario = Scenario::builtin("case-1").expect("built in");
     scenario.plant.payload.mass = 0.1;
     scenario.machine = scenario.machine.set("gravity", "1,-9.81").expect("valid");
-    let plant = Inertia::of(&scenario.plant_machine().expect("valid"));
+    let plant = scenario.plant.payload.on(&scenario.plant.machine(&scenario.machine).expect("valid"));
     let model = Inertia::of(&scenario.machine);
     let (mut torque, mut moment, mut force) = (0.0_f64, 0.0_f64, 0.0_f64);
     let see = |_: &Run, f: &Frame| {

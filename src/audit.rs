@@ -1,0 +1,78 @@
+//! [`Audit`]: what should be zero in every run, measured all the time.
+//!
+//! | figure | what is compared |
+//! |---|---|
+//! | momentum | that of the manipulator, from its rates, with −∫ f_B dt, from its accelerations |
+//! | angular | its angular momentum about the origin with −∫ (n_B + p_B × f_B) dt |
+//! | energy | what is there with what motors, wheel and outer force brought and friction took |
+//! | closure | the two points of every pin that closes a loop |
+//! | step | a step with two of half its size |
+//! | plane | b with the b that was aimed at |
+
+use crate::frame::{Frame, Peaks, Tally};
+
+/// What should be zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Audit {
+    /// kg m/s.
+    pub momentum: f64,
+    /// kg m²/s.
+    pub angular: f64,
+    /// J.
+    pub energy: f64,
+    /// m.
+    pub closure: f64,
+    /// Largest so far, rad.
+    pub step: f64,
+    /// b − b_ref, rad: the plant's own, not an error of the simulation.
+    pub plane: f64,
+}
+
+/// One figure of an audit beside what it may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lamp {
+    /// One or two words.
+    pub name: &'static str,
+    /// What it compares.
+    pub meaning: &'static str,
+    /// How far it is from zero.
+    pub value: f64,
+    /// How far it may be; `None` for a figure that only tells.
+    pub limit: Option<f64>,
+    /// SI unit.
+    pub unit: &'static str,
+}
+
+impl Lamp {
+    /// Whether the figure is where it should be; one that is no number never is.
+    pub fn is_good(&self) -> bool {
+        self.limit.is_none_or(|limit| self.value <= limit)
+    }
+}
+
+/// How much of what has moved may be missing.
+const SHARE: f64 = 1e-6;
+
+impl Audit {
+    /// Every figure beside what it may be, by the measure of what the run has moved.
+    pub fn lamps(&self, peaks: &Peaks, tally: &Tally) -> [Lamp; 6] {
+        let time = tally.time.max(1e-3);
+        let pull = (peaks.inertial_pull * time).max(1e-6);
+        let turn = (peaks.torque_sum * time).max(1e-6);
+        let energy = tally.energy.max(1e-3);
+        let lamp = |name, meaning, value: f64, limit, unit| Lamp { name, meaning, value: value.abs(), limit, unit };
+        [
+            lamp("momentum", "momentum + ∫ f_B dt", self.momentum, Some(SHARE * pull), "kg m/s"),
+            lamp("angular", "angular momentum + ∫ n_B dt", self.angular, Some(SHARE * turn), "kg m²/s"),
+            lamp("energy", "energy − work + losses", self.energy, Some(SHARE * energy), "J"),
+            lamp("loops", "pins that close loops", self.closure, Some(1e-8), "m"),
+            lamp("step", "error of a step, by halving it", self.step, Some(1e-6), "rad"),
+            lamp("plane", "b − b aimed at", self.plane, None, "rad"),
+        ]
+    }
+
+    /// The first figure that is not where it should be.
+    pub fn fault(frame: &Frame) -> Option<Lamp> {
+        frame.audit.lamps(&frame.peaks, &frame.tally).into_iter().find(|lamp| !lamp.is_good())
+    }
+}

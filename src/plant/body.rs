@@ -1,0 +1,652 @@
+//! [`Body`]: everything that moves, collapsed into constants, and its equations of motion.
+//!
+//! # Symbols
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | n, N | drives; what turns: N = n on a fixed base, n + 1 on one that moves, the last being θ | |
+//! | M_t | mass of all that moves, m_b + M | kg |
+//! | R, P | centre of mass of all that moves, its momentum M_t Ṙ | m, kg m/s |
+//! | p_B | position of B, R − Σ g_k e_k / M_t | m |
+//! | C'_kl | couplings about R: C_kl − ḡ_k g_l / M_t | kg m² |
+//! | π_k | momenta H q̇, with C' on a base that moves | kg m²/s |
+//! | L | angular momentum about R, Σ π_k; stands in the place of π_θ | kg m²/s |
+//!
+//! # Method
+//! A base is one more drive, with g_0 = m_b ρ, C_00 = m_b |ρ|², J_0 = I_b. Its translation leaves the equations when
+//! everything is referred to R: the kinetic energy is |P|²/2M_t + ½ q̇ᵀ H' q̇ with H' made of C', so
+//! π̇_k = ∂T/∂q_k + Q_k, and P and L change by outer forces only: a free base keeps both to the last digit. Gravity
+//! has no lever about R.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Base, BaseKind, Contacts, Friction, Grip, MAX_CONTACTS, Spin, is_default};
+use crate::dynamics::{BaseWrench, Factors, Surroundings, base_wrench, by_drives, first};
+use crate::machine::{Inertia, Machine, MachineError};
+use crate::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Units, Vector, cross, dot};
+
+const I: Vector = Vector::new(0.0, 1.0);
+
+/// A payload that the model lacks, and when it is held.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Load {
+    /// kg.
+    #[serde(default)]
+    pub mass: f64,
+    /// About its own centre of mass, kg m².
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub inertia: f64,
+    /// Its centre of mass seen from the end effector: along the link that holds it, and to its left, m.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub offset: [f64; 2],
+    /// When it is picked up, s: by a hand that moves with it, so that no rate changes.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub from: f64,
+    /// When it is let go, s; none: never.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub until: Option<f64>,
+}
+
+impl Load {
+    /// Whether there is any.
+    pub fn is_some(&self) -> bool {
+        self.mass > 0.0 || self.inertia > 0.0
+    }
+
+    /// Whether it is held at a time, s; `slack` is half a step.
+    pub fn is_held(&self, time: f64, slack: f64) -> bool {
+        self.is_some() && time >= self.from - slack && self.until.is_none_or(|until| time < until - slack)
+    }
+
+    /// The constants of a machine that holds it.
+    pub fn on(&self, machine: &Machine) -> Inertia {
+        let mut inertia = Inertia::of(machine);
+        if self.is_some() {
+            inertia.add(self.mass, self.inertia, machine.parts()[machine.tip_link()].drive, &self.chain(machine));
+        }
+        inertia
+    }
+
+    /// Its centre of mass as a sum of unit vectors.
+    pub fn chain(&self, machine: &Machine) -> [Vector; MAX_DRIVES] {
+        let part = &machine.parts()[machine.tip_link()];
+        let mut a = machine.tip().map(|w| Vector::new(w, 0.0));
+        a[part.drive] += part.sign * Vector::new(self.offset[0], self.offset[1]);
+        a
+    }
+}
+
+/// What holds a base that moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Support {
+    stiffness: [f64; 3],
+    damping: [f64; 3],
+    /// What it gives at the start pose, N, N m.
+    preload: (Vector, f64),
+}
+
+/// Everything that moves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// The manipulator with what it holds.
+    arm: Inertia,
+    /// All that turns: about B on a fixed base, about R on one that moves.
+    whole: Inertia,
+    moves: bool,
+    /// M_t, kg.
+    mass: f64,
+    /// Lever of gravity about what the coordinates refer to: g_k on a fixed base, none on one that moves.
+    lever: [Vector; MAX_DRIVES],
+    /// B seen from R.
+    anchor: [Vector; MAX_DRIVES],
+    /// The end effector seen from B on a fixed base, from R on one that moves.
+    tip: [Vector; MAX_DRIVES],
+    support: Support,
+    contacts: Contacts,
+    around: Surroundings,
+    /// Base mass times ρ, and base mass: for its own momentum.
+    base: (f64, Vector),
+}
+
+/// Positions and momenta of everything that moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    /// Absolute angles of the drives and, last, of a base that moves, rad.
+    pub q: PerDrive,
+    /// π_k; for a base that moves, last, L.
+    pub momenta: PerDrive,
+    /// R, m.
+    pub place: Vector,
+    /// P, kg m/s.
+    pub momentum: Vector,
+    /// Ω of a wheel, rad/s.
+    pub wheel: f64,
+    /// Work done by motors and by the force at the end effector, J.
+    pub work: f64,
+    /// Energy lost in friction and dampers, J.
+    pub lost: f64,
+    /// ∫ dynamic f_B dt, N s, and the moment of it all about the origin, N m s.
+    pub impulse: (Vector, f64),
+}
+
+/// What the motors and the wheel do.
+#[derive(Clone, Copy, Debug)]
+pub struct Command {
+    /// τ_k, N m.
+    pub torque: PerDrive,
+    /// Of the wheel.
+    pub spin: Spin,
+    /// The wheel's rotor, kg m²; 0 for none.
+    pub rotor: f64,
+}
+
+/// What a state leads to.
+#[derive(Clone, Copy, Debug)]
+pub struct Slope {
+    /// e(q_k), of a base that moves last.
+    pub e: Units,
+    /// q̇, rad/s.
+    pub qd: PerDrive,
+    /// q̈, rad/s².
+    pub qdd: PerDrive,
+    /// Motor torques, N m.
+    pub torque: PerDrive,
+    /// Friction of the bearings against them, N m.
+    pub friction: PerDrive,
+    /// Of the wheel.
+    pub spin: Spin,
+    /// p_B and θ.
+    pub base: Pose2,
+    /// ṗ_B, m/s.
+    pub base_velocity: Vector,
+    /// What the manipulator transmits.
+    pub wrench: BaseWrench,
+    /// Kinetic energy of all that moves, J.
+    pub kinetic: f64,
+    /// Work done a second, W.
+    pub power: f64,
+    /// Energy lost a second, W.
+    pub loss: f64,
+    momenta_rate: PerDrive,
+    place_rate: Vector,
+    momentum_rate: Vector,
+    wheel_rate: f64,
+}
+
+impl State {
+    /// The state a time `h` later along the slope of an instant, s.
+    #[inline(always)]
+    #[must_use]
+    pub fn along(&self, x: &Slope, h: f64) -> Self {
+        Self {
+            q: self.q.plus(h, &x.qd),
+            momenta: self.momenta.plus(h, &x.momenta_rate),
+            place: self.place + h * x.place_rate,
+            momentum: self.momentum + h * x.momentum_rate,
+            wheel: self.wheel + h * x.wheel_rate,
+            work: self.work + h * x.power,
+            lost: self.lost + h * x.loss,
+            impulse: (
+                self.impulse.0 + h * x.wrench.dynamic.force,
+                self.impulse.1 + h * (x.wrench.dynamic.moment + cross(x.base.at, x.wrench.dynamic.force)),
+            ),
+        }
+    }
+
+    /// The classical rule: a time `h` later by slopes at the start, twice half-way, and at the end.
+    #[inline(always)]
+    #[must_use]
+    pub fn stepped(&self, k: [&Slope; 4], h: f64) -> Self {
+        let w = [h / 6.0, h / 3.0, h / 3.0, h / 6.0];
+        k.into_iter().zip(w).fold(*self, |state, (x, w)| state.along(x, w))
+    }
+
+    /// The drives' angles without the base, rad.
+    #[inline]
+    pub fn drives(&self, n: usize) -> DriveAngles {
+        DriveAngles(cut(&self.q, n))
+    }
+}
+
+/// The first `n`.
+#[inline]
+fn cut(v: &PerDrive, n: usize) -> PerDrive {
+    if v.len() == n { *v } else { PerDrive::from_fn(n, |k| v[k]) }
+}
+
+impl Body {
+    /// Constants of a machine with what it holds, on its base; `start` is the pose of rest that a compliant base is
+    /// preloaded for.
+    ///
+    /// # Errors
+    /// If a base that moves is one too many to turn.
+    pub fn of(
+        machine: &Machine,
+        load: &Load,
+        friction: &Friction,
+        base: &Base,
+        start: &DriveAngles,
+    ) -> Result<Self, MachineError> {
+        let n = machine.drives();
+        let arm = load.on(machine);
+        let around = Surroundings { gravity: machine.gravity(), force: Vector::default() };
+        let real = |chain: &[f64; MAX_DRIVES]| chain.map(|w| Vector::new(w, 0.0));
+        let nothing = [Vector::default(); MAX_DRIVES];
+        if !base.moves() {
+            let contacts = Contacts::of(machine, friction, None);
+            let (lever, tip) = (arm.g, real(&arm.tip));
+            let whole = arm.clone();
+            let (mass, support, base) = (arm.mass, Support::default(), (0.0, Vector::default()));
+            return Ok(Self {
+                arm,
+                whole,
+                moves: false,
+                mass,
+                lever,
+                anchor: nothing,
+                tip,
+                support,
+                contacts,
+                around,
+                base,
+            });
+        }
+        if n >= MAX_DRIVES {
+            let want = format!("at most {} on a base that moves", MAX_DRIVES - 1);
+            return Err(MachineError::Count { what: "drives", count: n, want });
+        }
+        let rho = Vector::new(base.com[0], base.com[1]);
+        let mut whole = arm.clone();
+        whole.drives = n + 1;
+        let mut of_base = nothing;
+        of_base[n] = rho;
+        whole.add(base.mass, base.inertia, n, &of_base);
+        let g = whole.g;
+        let mass = whole.mass;
+        for k in 0..=n {
+            for l in 0..=n {
+                whole.c[k][l] -= g[k].conj() * g[l] / mass;
+            }
+        }
+        let anchor = g.map(|g| -g / mass);
+        let mut tip = real(&arm.tip);
+        tip.iter_mut().zip(&anchor).for_each(|(tip, anchor)| *tip += anchor);
+        let support = match base.kind {
+            BaseKind::Compliant => {
+                let units = start.units();
+                let moment = (0..n).map(|k| g[k] * units[k]).sum::<Vector>() + g[n];
+                let preload = (-mass * around.gravity, -cross(moment, around.gravity));
+                Support { stiffness: base.stiffness, damping: base.damping, preload }
+            }
+            _ => Support::default(),
+        };
+        let contacts = Contacts::of(machine, friction, Some(n));
+        let base = (base.mass, base.mass * rho);
+        Ok(Self { arm, whole, moves: true, mass, lever: nothing, anchor, tip, support, contacts, around, base })
+    }
+
+    /// The same with another force at the end effector, N.
+    #[must_use]
+    pub fn pushed(mut self, force: Vector) -> Self {
+        self.around.force = force;
+        self
+    }
+
+    /// The same, preloaded as another.
+    #[must_use]
+    pub fn preloaded_as(mut self, other: &Self) -> Self {
+        if self.moves && other.moves {
+            self.support.preload = other.support.preload;
+        }
+        self
+    }
+
+    /// The manipulator with what it holds.
+    pub fn arm(&self) -> &Inertia {
+        &self.arm
+    }
+
+    /// Gravity and the force at the end effector.
+    pub fn around(&self) -> &Surroundings {
+        &self.around
+    }
+
+    /// What rubs.
+    pub fn contacts(&self) -> &Contacts {
+        &self.contacts
+    }
+
+    /// Whether the base moves.
+    pub fn moves(&self) -> bool {
+        self.moves
+    }
+
+    /// The state of given angles and rates of the drives, pose and rates of the base.
+    pub fn state(&self, q: &DriveAngles, qd: &PerDrive, base: Pose2, velocity: Vector, turning: f64) -> State {
+        let n = q.len();
+        let turns = |drives: &[f64], last: f64| {
+            PerDrive::from_fn(self.whole.drives, |k| drives.get(k).copied().unwrap_or(last))
+        };
+        let (q, qd) = (turns(q, base.angle), turns(qd, turning));
+        let e = DriveAngles(q).units();
+        let (h, _) = crate::dynamics::mass_matrix(&self.whole, &e, &qd);
+        let mut momenta = h.times(&qd);
+        let (mut place, mut momentum) = (Vector::default(), Vector::default());
+        if self.moves {
+            momenta[n] = momenta.iter().sum();
+            let (lever, swing) = self.seen(&self.anchor, &e, &qd);
+            place = base.at - lever;
+            momentum = self.mass * (velocity - swing);
+        }
+        let impulse = (Vector::default(), 0.0);
+        State { q, momenta, place, momentum, wheel: 0.0, work: 0.0, lost: 0.0, impulse }
+    }
+
+    /// A point given as a sum of unit vectors, and its rate.
+    #[inline(always)]
+    fn seen(&self, chain: &[Vector; MAX_DRIVES], e: &Units, qd: &PerDrive) -> (Vector, Vector) {
+        (0..self.whole.drives).fold(Default::default(), |(p, v), k| {
+            let arm = chain[k] * e[k];
+            (p + arm, v + I * arm * qd[k])
+        })
+    }
+
+    /// Rates, torques, accelerations and base wrench of a state. `control` is asked for the torques, given unit
+    /// vectors and rates of all that turns, and pose and velocity of B.
+    #[inline]
+    pub fn instant(
+        &self,
+        state: &State,
+        grip: &Grip,
+        taken: &mut [f64; MAX_CONTACTS],
+        control: impl FnOnce(&Units, &PerDrive, Pose2, Vector) -> Command,
+    ) -> Slope {
+        by_drives!(self.whole.drives, instant_of(self, state, grip, taken, control))
+    }
+
+    /// Potential energy of weight and springs, J.
+    pub fn potential(&self, x: &Slope) -> f64 {
+        let n = self.arm.drives;
+        let weight = |g: Vector| -dot(self.around.gravity, g);
+        if !self.moves {
+            return weight((0..n).map(|k| self.arm.g[k] * x.e[k]).sum());
+        }
+        let (lever, _) = self.seen(&self.anchor, &x.e, &x.qd);
+        let Support { stiffness: [kx, ky, kt], preload: (force, moment), .. } = self.support;
+        let (p, tilt) = (x.base.at, x.base.angle);
+        weight(self.mass * (p - lever)) - dot(force, p) - moment * tilt
+            + 0.5 * (kx * p.re * p.re + ky * p.im * p.im + kt * tilt * tilt)
+    }
+
+    /// Momentum of all that moves, kg m/s, and its angular momentum about the origin, kg m²/s, from rates.
+    pub fn momentum(&self, x: &Slope) -> (Vector, f64) {
+        let (p, h) = self.arm_momentum(x);
+        if !self.moves {
+            return (p, h);
+        }
+        let n = self.arm.drives;
+        let ((mass, rho), spin) = (self.base, self.base_spin());
+        let arm = rho * x.e[n];
+        let own = mass * x.base_velocity + I * arm * x.qd[n];
+        let turning = cross(x.base.at, own) + cross(arm, x.base_velocity) + spin * x.qd[n];
+        (p + own, h + turning)
+    }
+
+    /// The same of the manipulator with what it holds.
+    pub fn arm_momentum(&self, x: &Slope) -> (Vector, f64) {
+        let n = self.arm.drives;
+        let qd = cut(&x.qd, n);
+        let lever = crate::dynamics::first_moment(&self.arm, &x.e);
+        let p = crate::dynamics::linear_momentum(&self.arm, &x.e, &qd) + self.arm.mass * x.base_velocity;
+        let h = crate::dynamics::angular_momentum(&self.arm, &x.e, &qd);
+        (p, h + cross(x.base.at, p) + cross(lever, x.base_velocity))
+    }
+
+    /// I_b + m_b |ρ|², kg m².
+    fn base_spin(&self) -> f64 {
+        let n = self.arm.drives;
+        let g = -self.anchor[n] * self.mass;
+        self.whole.c[n][n].re + self.whole.spin[n] + g.norm_sqr() / self.mass
+    }
+
+    /// The torques that would give the drives these accelerations relative to the base, rad/s², in this state of
+    /// motion: what a controller that knows everything computes.
+    pub fn torque_for(
+        &self,
+        commanded: &PerDrive,
+        e: &Units,
+        qd: &PerDrive,
+        base: Pose2,
+        velocity: Vector,
+    ) -> PerDrive {
+        let n = commanded.len();
+        let (h, v) = crate::dynamics::mass_matrix(&self.whole, e, qd);
+        let outer = self.outer(e, qd, base, velocity);
+        let mut qdd = PerDrive::from_fn(self.whole.drives, |k| commanded.get(k).copied().unwrap_or(0.0));
+        if self.moves {
+            // Torques between drives and base cancel, so the base turns by what outer forces leave.
+            let sum = |x: &PerDrive| x.iter().sum::<f64>();
+            let all: f64 = (0..=n).map(|k| h.momentum_row(k)).sum();
+            let turn = (sum(&outer) - sum(&h.times(&qdd)) - sum(&v)) / all;
+            qdd.iter_mut().for_each(|a| *a += turn);
+        }
+        let inertial = h.times(&qdd);
+        PerDrive::from_fn(n, |k| inertial[k] + v[k] - outer[k])
+    }
+
+    /// Generalised forces of weight, of the force at the end effector and of the support, N m.
+    fn outer(&self, e: &Units, qd: &PerDrive, base: Pose2, velocity: Vector) -> PerDrive {
+        let (force, moment) = self.held(base, velocity, qd.get(self.arm.drives).copied().unwrap_or(0.0));
+        let mut q = PerDrive::from_fn(self.whole.drives, |k| {
+            cross(self.lever[k] * e[k], self.around.gravity)
+                + cross(self.tip[k] * e[k], self.around.force)
+                + cross(self.anchor[k] * e[k], force)
+        });
+        if self.moves {
+            q[self.arm.drives] += moment;
+        }
+        q
+    }
+
+    /// Force and moment of the support on a base that moves, N, N m.
+    #[inline(always)]
+    fn held(&self, base: Pose2, velocity: Vector, turning: f64) -> (Vector, f64) {
+        let Support { stiffness: k, damping: c, preload: (force, moment) } = &self.support;
+        let (p, v) = (base.at, velocity);
+        let force = force - Vector::new(k[0] * p.re + c[0] * v.re, k[1] * p.im + c[1] * v.im);
+        (force, moment - k[2] * base.angle - c[2] * turning)
+    }
+}
+
+#[inline]
+fn instant_of<const N: usize>(
+    body: &Body,
+    state: &State,
+    grip: &Grip,
+    taken: &mut [f64; MAX_CONTACTS],
+    control: impl FnOnce(&Units, &PerDrive, Pose2, Vector) -> Command,
+) -> Slope {
+    let n = body.arm.drives;
+    let e = DriveAngles(state.q).units();
+    // Mass matrix and the part of the couplings that rates act through.
+    let (mut h, mut im) = ([[0.0; N]; N], [[0.0; N]; N]);
+    for k in 0..N {
+        h[k][k] = body.whole.c[k][k].re + body.whole.spin[k];
+        for l in k + 1..N {
+            let z = body.whole.c[k][l] * (e[k].conj() * e[l]);
+            h[k][l] = z.re;
+            h[l][k] = z.re;
+            im[k][l] = z.im;
+        }
+    }
+    let factors = Factors::of(&h);
+    let mut momenta = *first::<N, _>(state.momenta.padded());
+    if body.moves {
+        momenta[N - 1] -= momenta[..N - 1].iter().sum::<f64>();
+    }
+    let rate = factors.solve(momenta);
+    let (mut gain, mut v) = ([0.0; N], [0.0; N]);
+    for k in 0..N {
+        for l in k + 1..N {
+            let x = im[k][l] * rate[k] * rate[l];
+            gain[k] += x;
+            gain[l] -= x;
+            v[k] -= im[k][l] * (rate[l] * rate[l]);
+            v[l] += im[k][l] * (rate[k] * rate[k]);
+        }
+    }
+    let qd = PerDrive::from(rate);
+    let (mut base, mut velocity, mut turning) = (Pose2::default(), Vector::default(), 0.0);
+    let mut drift = Vector::default();
+    if body.moves {
+        drift = state.momentum / body.mass;
+        let (lever, swing) = body.seen(&body.anchor, &e, &qd);
+        base = Pose2 { at: state.place + lever, angle: state.q[N - 1] };
+        velocity = drift + swing;
+        turning = rate[N - 1];
+    }
+    let Command { torque, spin, rotor } = control(&e, &qd, base, velocity);
+
+    // Generalised forces.
+    let mut force = [0.0; N];
+    let mut friction = PerDrive::zeros(n);
+    let (mut power, mut outer_power) = (0.0, Vector::default());
+    for k in 0..n.min(N) {
+        force[k] = torque[k];
+        power += torque[k] * (rate[k] - turning);
+    }
+    let mut loss = 0.0;
+    let mut external = 0.0;
+    let mut momentum_rate = Vector::default();
+    for k in 0..N {
+        let tip = body.tip[k] * e[k];
+        outer_power += I * tip * rate[k];
+        let outer = cross(body.lever[k] * e[k], body.around.gravity) + cross(tip, body.around.force);
+        force[k] += outer;
+        external += outer;
+    }
+    power += dot(body.around.force, outer_power + drift) + spin.torque * (spin.rate - turning);
+    if body.moves {
+        let (hold, moment) = body.held(base, velocity, turning);
+        for k in 0..N {
+            let outer = cross(body.anchor[k] * e[k], hold);
+            force[k] += outer;
+            external += outer;
+        }
+        let moment = moment - spin.torque;
+        external += moment;
+        force[N - 1] += moment - torque.iter().sum::<f64>();
+        let c = &body.support.damping;
+        loss += c[0] * velocity.re.powi(2) + c[1] * velocity.im.powi(2) + c[2] * turning * turning;
+        momentum_rate = body.mass * body.around.gravity + body.around.force + hold;
+    }
+    if !body.contacts.is_empty() {
+        loss += body.contacts.slide(grip, &rate, &mut force, &mut friction);
+        let free = factors.solve(std::array::from_fn(|k| force[k] - v[k]));
+        let solve = |x: &[f64; MAX_DRIVES]| {
+            let mut padded = [0.0; MAX_DRIVES];
+            padded[..N].copy_from_slice(&factors.solve(*first::<N, _>(x)));
+            padded
+        };
+        body.contacts.hold(grip, &free, solve, &mut force, &mut friction, taken);
+    }
+    let acceleration = factors.solve(std::array::from_fn(|k| force[k] - v[k]));
+    let qdd = PerDrive::from(acceleration);
+    let mut momenta_rate = PerDrive::from(std::array::from_fn::<_, N, _>(|k| gain[k] + force[k]));
+    if body.moves {
+        momenta_rate[N - 1] = external;
+    }
+    // The wrench from the accelerations and not from the torques, so that a zero is found and not assumed.
+    let wrench = if body.moves {
+        let pull: Vector =
+            (0..N).map(|k| body.anchor[k] * e[k] * Vector::new(-rate[k] * rate[k], acceleration[k])).sum();
+        let acceleration = momentum_rate / body.mass + pull;
+        let mut wrench = base_wrench(&body.arm, &e, &cut(&qd, n), &cut(&qdd, n), &body.around);
+        let lever = crate::dynamics::first_moment(&body.arm, &e);
+        wrench.dynamic.force -= body.arm.mass * acceleration;
+        wrench.dynamic.moment -= cross(lever, acceleration);
+        wrench
+    } else {
+        let rate_of: f64 = (0..N).map(|k| (0..N).map(|l| h[k][l] * acceleration[l]).sum::<f64>() + v[k]).sum();
+        crate::dynamics::wrench_with(&body.arm, first::<N, _>(&e), &rate, &acceleration, &body.around, rate_of)
+    };
+    let kinetic = 0.5 * (0..N).map(|k| momenta[k] * rate[k]).sum::<f64>()
+        + 0.5 * dot(state.momentum, drift)
+        + 0.5 * rotor * spin.rate * spin.rate;
+    Slope {
+        e,
+        qd,
+        qdd,
+        torque,
+        friction,
+        spin,
+        base,
+        base_velocity: velocity,
+        wrench,
+        kinetic,
+        power,
+        loss,
+        momenta_rate,
+        place_rate: drift,
+        momentum_rate,
+        wheel_rate: if rotor > 0.0 { spin.torque / rotor } else { 0.0 },
+    }
+}
+
+impl Body {
+    /// Rates of a state, rad/s.
+    pub fn rates(&self, state: &State) -> PerDrive {
+        let e = DriveAngles(state.q).units();
+        let (h, _) = crate::dynamics::mass_matrix(&self.whole, &e, &state.q);
+        h.solve(&self.own_momenta(state))
+    }
+
+    /// π_k, with that of the base in its place, kg m²/s.
+    fn own_momenta(&self, state: &State) -> PerDrive {
+        let mut momenta = state.momenta;
+        if self.moves {
+            let n = self.arm.drives;
+            momenta[n] -= momenta[..n].iter().sum::<f64>();
+        }
+        momenta
+    }
+
+    /// A state in which what is stuck stands still to the last digit: the trace that rounding leaves is taken out by
+    /// torques between the two sides, which change no momentum of the whole.
+    #[must_use]
+    pub fn stuck(&self, mut state: State, grip: &Grip) -> State {
+        let n = self.arm.drives;
+        let e = DriveAngles(state.q).units();
+        let (h, _) = crate::dynamics::mass_matrix(&self.whole, &e, &state.q);
+        let still = |i: &usize| self.contacts.sticks(*i) && grip[*i] == 0;
+        for _ in 0..8 {
+            let mut most: f64 = 0.0;
+            for i in (0..self.contacts.len()).filter(still) {
+                let v = self.contacts.sliding(i, &h.solve(&self.own_momenta(&state)));
+                let mut unit = PerDrive::zeros(self.whole.drives);
+                self.contacts.apply(i, 1.0, &mut unit);
+                let give = -self.contacts.sliding(i, &h.solve(&unit));
+                for k in 0..n {
+                    state.momenta[k] += unit[k] * v / give;
+                }
+                most = most.max(v.abs());
+            }
+            if most < 1e-16 {
+                break;
+            }
+        }
+        state
+    }
+}
+
+impl Body {
+    /// A state without torques.
+    pub fn still(&self, state: &State) -> Slope {
+        let n = self.arm.drives;
+        self.instant(state, &[0; MAX_CONTACTS], &mut [0.0; MAX_CONTACTS], |_, _, _, _| Command {
+            torque: PerDrive::zeros(n),
+            spin: Spin::default(),
+            rotor: 0.0,
+        })
+    }
+}

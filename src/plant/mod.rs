@@ -1,0 +1,185 @@
+//! The plant: how the machine that moves differs from the one that control believes in, and what it stands on.
+//!
+//! A [`Plant`] says what differs, a [`Base`] what the machine stands on, a [`Wheel`] what else turns there: plain data,
+//! as files and edits state it. A [`Body`] is what all of it comes to: constants of everything that moves.
+
+mod base;
+mod body;
+mod friction;
+mod wheel;
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+pub use base::{Base, BaseKind};
+pub use body::{Body, Command, Load, Slope, State};
+pub use friction::{Contacts, Friction, Grip, MAX_CONTACTS};
+pub use wheel::{Spin, Wheel};
+
+use crate::machine::{Machine, MachineError};
+use crate::planar::PerDrive;
+
+/// What differs in the machine that moves.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Plant {
+    /// Whether motors give no more than the drives' torque limits.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub torque_limits: bool,
+    /// A force held at the end effector, in base axes as they are at the start, N.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub force: [f64; 2],
+    /// A payload that the model lacks; it adds to the machine's own.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub payload: Load,
+    /// Friction.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub friction: Friction,
+    /// Named lengths that differ, m: bars that share one stay equal, so that parallelograms stay closed.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub length: BTreeMap<String, f64>,
+    /// Links that differ.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub link: BTreeMap<String, Deviation>,
+}
+
+/// What differs in a link: its true values, where they are not the model's.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Deviation {
+    /// kg.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mass: Option<f64>,
+    /// About its own centre of mass, kg m².
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub inertia: Option<f64>,
+    /// Centre of mass along the link, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub com: Option<f64>,
+    /// Centre of mass off the link's axis, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub com_normal: Option<f64>,
+}
+
+/// One number for all drives, or one for each.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged, expecting = "want one number for all drives, or a list with one for each")]
+pub enum Each {
+    /// The same for all.
+    All(f64),
+    /// In the order of the drives.
+    Own(PerDrive),
+}
+
+impl Default for Each {
+    fn default() -> Self {
+        Self::All(0.0)
+    }
+}
+
+impl Each {
+    /// The value of every one of `n` drives; a list that is too short goes on with its last.
+    pub fn of(&self, n: usize) -> PerDrive {
+        PerDrive::from_fn(n, |k| match self {
+            Self::All(x) => *x,
+            Self::Own(list) => list.get(k).or(list.last()).copied().unwrap_or(0.0),
+        })
+    }
+
+    /// All values that stand there.
+    pub fn values(&self) -> Vec<f64> {
+        match self {
+            Self::All(x) => vec![*x],
+            Self::Own(list) => list.to_vec(),
+        }
+    }
+
+    /// Whether there is one for each of `n` drives.
+    pub fn fits(&self, n: usize) -> bool {
+        matches!(self, Self::All(_)) || self.values().len() == n
+    }
+
+    /// The same with the value of drive `k` of `n` changed.
+    #[must_use]
+    pub fn with(&self, n: usize, k: usize, value: f64) -> Self {
+        let mut list = self.of(n);
+        if let Some(slot) = list.get_mut(k) {
+            *slot = value;
+        }
+        match list.iter().all(|x| *x == value) {
+            true => Self::All(value),
+            false => Self::Own(list),
+        }
+    }
+
+    /// As it would stand in a file.
+    pub fn to_value(self) -> toml::Value {
+        match self {
+            Self::All(x) => x.into(),
+            Self::Own(list) => list.to_vec().into(),
+        }
+    }
+}
+
+pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
+impl Plant {
+    /// The machine that moves, without the payload that comes and goes.
+    ///
+    /// # Errors
+    /// If what differs leaves no valid machine, or names what the machine does not have.
+    pub fn machine(&self, model: &Machine) -> Result<Machine, MachineError> {
+        let lengths = self.length.iter().map(|(name, value)| (format!("length.{name}"), value.to_string()));
+        let links = self.link.iter().flat_map(|(name, d)| {
+            let fields = [("mass", d.mass), ("inertia", d.inertia), ("com", d.com), ("com_normal", d.com_normal)];
+            let key =
+                move |(field, value): (&str, Option<f64>)| Some((format!("link.{name}.{field}"), value?.to_string()));
+            fields.into_iter().filter_map(key)
+        });
+        let pairs: Vec<(String, String)> = lengths.chain(links).collect();
+        match pairs.is_empty() {
+            true => Ok(model.clone()),
+            false => model.set_all(pairs.iter().map(|(key, value)| (key.as_str(), value.as_str()))),
+        }
+    }
+
+    /// Every number with its key, what it should be, and whether it is.
+    pub(crate) fn checks(&self, n: usize) -> Vec<(&'static str, f64, &'static str, bool)> {
+        let (load, friction) = (&self.payload, &self.friction);
+        let amount = |x: f64| (0.0..=MAX_PAYLOAD).contains(&x);
+        let reach = |x: f64| x.abs() <= 1e3;
+        let mut list = vec![
+            ("plant.payload.mass", load.mass, "0 to 10000 kg", amount(load.mass)),
+            ("plant.payload.inertia", load.inertia, "0 to 10000 kg m²", amount(load.inertia)),
+            ("plant.payload.offset", load.offset[0], "-1000 to 1000 m", reach(load.offset[0])),
+            ("plant.payload.offset", load.offset[1], "-1000 to 1000 m", reach(load.offset[1])),
+            ("plant.payload.from", load.from, "0 s or later", load.from >= 0.0),
+            (
+                "plant.payload.until",
+                load.until.unwrap_or(f64::MAX),
+                "later than plant.payload.from, s",
+                load.until.is_none_or(|until| until > load.from),
+            ),
+            ("plant.force", self.force[0], "-1e6 to 1e6 N", self.force[0].abs() <= 1e6),
+            ("plant.force", self.force[1], "-1e6 to 1e6 N", self.force[1].abs() <= 1e6),
+            ("plant.friction.pin_viscous", friction.pin_viscous, "0 to 10000 N m s", amount(friction.pin_viscous)),
+            ("plant.friction.pin_coulomb", friction.pin_coulomb, "0 to 10000 N m", amount(friction.pin_coulomb)),
+        ];
+        for (key, each, want) in [
+            ("plant.friction.viscous", friction.viscous, "0 to 10000 N m s, one number or one for each drive"),
+            ("plant.friction.coulomb", friction.coulomb, "0 to 10000 N m, one number or one for each drive"),
+        ] {
+            list.extend(each.values().into_iter().map(|x| (key, x, want, amount(x) && each.fits(n))));
+            if each.values().is_empty() {
+                list.push((key, f64::NAN, want, false));
+            }
+        }
+        list
+    }
+}
+
+/// The heaviest unknown payload, kg; also the bound on its inertia, kg m², and on friction.
+pub const MAX_PAYLOAD: f64 = 1e4;

@@ -1,0 +1,473 @@
+//! The plant under control, advanced by a fixed step with the classical fourth-order rule.
+//!
+//! The simulation reads no clock. Control is evaluated in every stage. The base wrench is taken from the plant's own
+//! accelerations, never from the planned motion, so that a zero is found and not assumed.
+
+mod pilot;
+mod sticking;
+
+use crate::control::{Control, Controller, Reading};
+use crate::dynamics;
+use crate::frame::{Audit, Frame, Peaks, Phase, Reach, Tally, Target};
+use crate::kinematics::{end_effector, transmission};
+use crate::machine::{Machine, MachineError, RelativeAngle};
+use crate::plan::{Follower, Motion, Reference};
+use crate::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Vector};
+use crate::plant::{Base, Body, Friction, Grip, Load, MAX_CONTACTS, Plant, Slope, State};
+use crate::pose_constant::plane_map;
+use crate::reactionless::PlaneMap;
+
+use pilot::Pilot;
+use sticking::{grips, release};
+
+/// What leads the machine.
+#[derive(Clone, Debug)]
+pub enum Guide {
+    /// A planned motion that began at a time, s.
+    Motion {
+        /// The plan.
+        motion: Motion,
+        /// s.
+        start: f64,
+    },
+    /// The pointer and the slider.
+    Follow(Follower),
+}
+
+impl Guide {
+    /// The reference at a time, s; `dt` is the time since the present step began, s.
+    #[inline]
+    fn at(&self, time: f64, dt: f64) -> Reference {
+        match self {
+            Self::Motion { motion, start } => motion.at(time + dt - start),
+            Self::Follow(follower) => follower.reference(dt),
+        }
+    }
+}
+
+/// What a simulation is made of.
+#[derive(Clone, Copy, Debug)]
+pub struct Setup<'a> {
+    /// The machine that control believes in.
+    pub model: &'a Machine,
+    /// What differs in the machine that moves.
+    pub plant: &'a Plant,
+    /// What it stands on.
+    pub base: &'a Base,
+    /// Control.
+    pub control: &'a Control,
+    /// Fixed step, s.
+    pub step: f64,
+}
+
+/// How often the error of a step is looked at by halving it, in steps.
+const HALVED_EVERY: u64 = 64;
+
+/// A run in progress.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    /// Without the payload that comes and goes, and with it.
+    bodies: [Body; 2],
+    load: Load,
+    loaded: bool,
+    pilot: Pilot,
+    /// m_j a_jk of each link, `drives` after `drives`, kg m, and of each with the payload.
+    link_moments: [Vec<Vector>; 2],
+    /// Differences of the points that each closure joins.
+    closures: Vec<[f64; MAX_DRIVES]>,
+    lambda: PerDrive,
+    map: Option<PlaneMap>,
+    angles: Vec<RelativeAngle>,
+    drives: usize,
+    dt: f64,
+    step: u64,
+    guide: Guide,
+    state: State,
+    grip: Grip,
+    /// Torques of stuck contacts, N m.
+    taken: [f64; MAX_CONTACTS],
+    now: Slope,
+    reference: Reference,
+    /// What energy and momenta less their sources were at the start.
+    ground: Ground,
+    peaks: Peaks,
+    tally: Tally,
+    audit: Audit,
+}
+
+/// What audits start from.
+#[derive(Clone, Copy, Debug, Default)]
+struct Ground {
+    energy: f64,
+    momentum: Vector,
+    angular: f64,
+}
+
+impl Simulation {
+    /// At the start of its guide, with the guide's rates, on a base at rest at the origin.
+    ///
+    /// # Errors
+    /// If what differs in the plant leaves no valid machine, or the base is one too many to turn.
+    pub fn new(setup: &Setup, guide: Guide) -> Result<Self, MachineError> {
+        let reference = guide.at(0.0, 0.0);
+        let machine = setup.plant.machine(setup.model)?;
+        let (plant, load) = (setup.plant, setup.plant.payload);
+        let force = Vector::new(plant.force[0], plant.force[1]);
+        let start = &reference.q;
+        let body = |load: &Load| Body::of(&machine, load, &plant.friction, setup.base, start).map(|b| b.pushed(force));
+        let empty = body(&Load::default())?;
+        let first = load.is_held(0.0, 0.5 * setup.step);
+        // The springs are preloaded for what is held at the start.
+        let with = body(&load)?;
+        let bodies = if first { [empty.preloaded_as(&with), with] } else { [empty.clone(), with.preloaded_as(&empty)] };
+        let fixed = Base::default();
+        let known = if setup.control.knows_base { setup.base } else { &fixed };
+        let model = |load: &Load| Body::of(setup.model, load, &Friction::default(), known, start);
+        let models = [model(&Load::default())?, model(&load)?];
+        let n = machine.drives();
+        let lambda = models[0].arm().lambda();
+        let limits = plant
+            .torque_limits
+            .then(|| PerDrive::from_fn(n, |k| setup.model.spec().drives[k].torque_limit.unwrap_or(f64::INFINITY)));
+        let controller = Controller::new(setup.control, n, models);
+        let pilot = Pilot::new(controller, setup.control, setup.step, limits, setup.base.wheel);
+        let loaded = usize::from(first);
+        let state = bodies[loaded].state(&reference.q, &reference.qd, Pose2::default(), Vector::default(), 0.0);
+        let now = bodies[loaded].still(&state);
+        let moments = link_moments(&machine);
+        let held: Vec<Vector> = load.chain(&machine).into_iter().take(n).map(|a| load.mass * a).collect();
+        let with_load = moments.iter().copied().chain(held).collect();
+        let mut sim = Self {
+            bodies,
+            load,
+            loaded: first,
+            pilot,
+            link_moments: [moments, with_load],
+            closures: machine.closure_gaps(),
+            lambda,
+            map: plane_map(setup.model).ok(),
+            angles: setup.model.angles().to_vec(),
+            drives: n,
+            dt: setup.step,
+            step: 0,
+            guide,
+            state,
+            grip: [0; MAX_CONTACTS],
+            taken: [0.0; MAX_CONTACTS],
+            now,
+            reference,
+            ground: Ground::default(),
+            peaks: Peaks::zero(n),
+            tally: Tally::default(),
+            audit: Audit::default(),
+        };
+        sim.begin();
+        Ok(sim)
+    }
+
+    /// Takes the present instant as where audits start.
+    fn begin(&mut self) {
+        self.grip = grips(self.body().contacts(), &self.body().rates(&self.state));
+        self.look();
+        self.ground = self.sources();
+        self.include();
+    }
+
+    /// Energy and momenta less what has come in and gone out: these do not change.
+    fn sources(&self) -> Ground {
+        let (p, h) = self.body().arm_momentum(&self.now);
+        let energy = self.now.kinetic + self.body().potential(&self.now) - self.state.work + self.state.lost;
+        Ground { energy, momentum: p + self.state.impulse.0, angular: h + self.state.impulse.1 }
+    }
+
+    /// What moves now.
+    pub(crate) fn body(&self) -> &Body {
+        &self.bodies[usize::from(self.loaded)]
+    }
+
+    /// Steps done.
+    pub fn step_count(&self) -> u64 {
+        self.step
+    }
+
+    /// Time since the start, s.
+    pub fn time(&self) -> f64 {
+        self.step as f64 * self.dt
+    }
+
+    /// The fixed step, s.
+    pub fn dt(&self) -> f64 {
+        self.dt
+    }
+
+    /// What leads it.
+    pub fn guide(&self) -> &Guide {
+        &self.guide
+    }
+
+    /// The reference at the present instant.
+    pub fn reference(&self) -> &Reference {
+        &self.reference
+    }
+
+    /// Lets something else lead from now on. The machine keeps its state and control takes up the difference.
+    pub fn lead(&mut self, guide: Guide) {
+        self.guide = guide;
+        self.look();
+        self.include();
+    }
+
+    /// Changes what moves and what control believes, in motion: positions and rates stay.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); then nothing has changed.
+    pub fn change(&mut self, setup: &Setup) -> Result<(), MachineError> {
+        let fresh = Self::new(setup, self.guide.clone())?;
+        let old = std::mem::replace(self, fresh);
+        let Self { step, guide, state, peaks, tally, audit, ground, now, pilot, bodies, .. } = old;
+        (self.step, self.guide, self.peaks, self.tally, self.audit) = (step, guide, peaks, tally, audit);
+        self.pilot.resume(&pilot);
+        self.bodies = self.bodies.clone().map(|body| body.preloaded_as(&bodies[0]));
+        self.loaded = self.load.is_held(self.time(), 0.5 * self.dt);
+        (self.state, self.now, self.ground) = (state, now, ground);
+        self.carry_over(&now, &bodies[usize::from(old.loaded)]);
+        Ok(())
+    }
+
+    /// The same positions and rates on the body of now; what audits compare with goes on from here.
+    fn carry_over(&mut self, before: &Slope, body: &Body) {
+        let n = self.drives;
+        let error = |now: Ground, ground: Ground| Ground {
+            energy: now.energy - ground.energy,
+            momentum: now.momentum - ground.momentum,
+            angular: now.angular - ground.angular,
+        };
+        let (p, h) = body.arm_momentum(before);
+        let energy = before.kinetic + body.potential(before) - self.state.work + self.state.lost;
+        let was = Ground { energy, momentum: p + self.state.impulse.0, angular: h + self.state.impulse.1 };
+        let off = error(was, self.ground);
+        let (q, qd) = (self.state.drives(n), PerDrive::from_fn(n, |k| before.qd[k]));
+        let turning = before.qd.get(n).copied().unwrap_or(0.0);
+        let (pose, velocity) = match self.body().moves() {
+            true => (before.base, before.base_velocity),
+            false => Default::default(),
+        };
+        let State { wheel, work, lost, impulse, .. } = self.state;
+        let state = self.body().state(&q, &qd, pose, velocity, if self.body().moves() { turning } else { 0.0 });
+        self.state = State { wheel, work, lost, impulse, ..state };
+        self.grip = grips(self.body().contacts(), &self.body().rates(&self.state));
+        self.look();
+        let now = self.sources();
+        self.ground = error(now, off);
+        self.include();
+    }
+
+    /// Puts the machine at the reference, at rest or in motion as the reference is, without passing between.
+    pub fn place(&mut self, guide: Guide) {
+        self.guide = guide;
+        let reference = self.guide.at(self.time(), 0.0);
+        let State { wheel, work, lost, impulse, .. } = self.state;
+        let (base, velocity) = (self.now.base, self.now.base_velocity);
+        let turning = self.now.qd.get(self.drives).copied().unwrap_or(0.0);
+        let n = self.drives;
+        let q = DriveAngles(PerDrive::from_fn(n, |k| reference.q[k] + base.angle));
+        let qd = PerDrive::from_fn(n, |k| reference.qd[k] + turning);
+        let state = self.body().state(&q, &qd, base, velocity, turning);
+        self.state = State { wheel, work, lost, impulse, ..state };
+        self.begin();
+    }
+
+    /// Whether nothing will change any more: the guide has arrived and the machine stands still on it.
+    pub fn is_settled(&self) -> bool {
+        let e = PerDrive::from_fn(self.drives, |k| self.relative(k) - self.reference.q[k]);
+        let still = self.now.qd.max_abs() < 1e-7 && self.now.base_velocity.norm() < 1e-7;
+        let coming = self.load.is_some() && self.time() < self.load.until.unwrap_or(self.load.from);
+        self.has_arrived() && still && !coming && (e.max_abs() < 1e-7 || self.now.qdd.max_abs() < 1e-7)
+    }
+
+    /// q_k − θ, rad.
+    fn relative(&self, k: usize) -> f64 {
+        self.state.q[k] - self.now.base.angle
+    }
+
+    /// Whether the guide has come to its end, even if the machine still moves.
+    pub fn has_arrived(&self) -> bool {
+        match &self.guide {
+            Guide::Motion { motion, start } => self.time() >= start + motion.duration() - 0.5 * self.dt,
+            Guide::Follow(follower) => follower.is_at_rest(),
+        }
+    }
+
+    /// What a state leads to, `dt` after the present step began, s.
+    #[inline]
+    fn instant(&self, state: &State, dt: f64, grip: &Grip, taken: &mut [f64; MAX_CONTACTS]) -> Slope {
+        let reference = self.guide.at(self.time(), dt);
+        let n = self.drives;
+        self.body().instant(state, grip, taken, |e, rates, base, velocity| {
+            let reading = reading(n, state, e, rates, base, velocity);
+            self.pilot.command(&reference, &reading, self.loaded, state.wheel)
+        })
+    }
+
+    /// One step of the classical rule, `offset` after the present step began, of `h`, s; `k1` is its start.
+    #[inline]
+    fn rk4(&self, from: &State, k1: &Slope, offset: f64, h: f64, grip: &Grip) -> State {
+        let mut taken = self.taken;
+        let k2 = self.instant(&from.along(k1, h / 2.0), offset + h / 2.0, grip, &mut taken);
+        let k3 = self.instant(&from.along(&k2, h / 2.0), offset + h / 2.0, grip, &mut taken);
+        let k4 = self.instant(&from.along(&k3, h), offset + h, grip, &mut taken);
+        from.stepped([k1, &k2, &k3, &k4], h)
+    }
+
+    /// Advances by one step.
+    pub fn advance(&mut self) {
+        let (state, grip) = self.travel(&self.now, self.dt);
+        if (self.step + HALVED_EVERY / 2).is_multiple_of(HALVED_EVERY) && self.body().contacts().is_empty() {
+            self.audit.step = self.audit.step.max(self.halved(&state));
+        }
+        (self.state, self.grip) = (state, grip);
+        self.step += 1;
+        if let Guide::Follow(follower) = &mut self.guide {
+            follower.advance();
+        }
+        self.look();
+        let held = self.load.is_held(self.time(), 0.5 * self.dt);
+        if held != self.loaded {
+            let (before, old) = (self.now, usize::from(self.loaded));
+            self.loaded = held;
+            let body = self.bodies[old].clone();
+            self.carry_over(&before, &body);
+        } else {
+            self.include();
+        }
+    }
+
+    /// The error of the step that led to a state, rad, by two steps of half the size.
+    fn halved(&self, whole: &State) -> f64 {
+        let (h, mut taken) = (0.5 * self.dt, self.taken);
+        let half = self.rk4(&self.state, &self.now, 0.0, h, &self.grip);
+        let start = self.instant(&half, h, &self.grip, &mut taken);
+        let twice = self.rk4(&half, &start, h, h, &self.grip);
+        16.0 / 15.0 * whole.q.minus(&twice.q).max_abs()
+    }
+
+    /// Takes in the present instant: control, slope, wrench of the plant's own motion.
+    fn look(&mut self) {
+        self.reference = self.guide.at(self.time(), 0.0);
+        let n = self.drives;
+        // Sampled control reads first.
+        let body = &self.bodies[usize::from(self.loaded)];
+        let (state, pilot, reference, loaded) = (&self.state, &mut self.pilot, &self.reference, self.loaded);
+        let mut taken = self.taken;
+        let step = self.step;
+        self.now = body.instant(state, &self.grip, &mut taken, |e, rates, base, velocity| {
+            let reading = reading(n, state, e, rates, base, velocity);
+            pilot.sample(step, reference, &reading, loaded, state.wheel);
+            pilot.command(reference, &reading, loaded, state.wheel)
+        });
+        self.taken = taken;
+        release(self.bodies[usize::from(self.loaded)].contacts(), &mut self.grip, &taken);
+    }
+
+    /// Takes the present instant into peaks, sums and audits.
+    fn include(&mut self) {
+        let x = &self.now;
+        let qd = PerDrive::from_fn(self.drives, |k| x.qd[k]);
+        let qdd = PerDrive::from_fn(self.drives, |k| x.qdd[k]);
+        let pull = dynamics::inertial_pull(&self.link_moments[usize::from(self.loaded)], &x.e, &qd, &qdd);
+        let felt = x.wrench.total().moment - x.spin.torque;
+        self.peaks.include(&x.torque, x.wrench.dynamic.force.norm(), felt, pull);
+        self.tally.include(x, felt, self.time());
+        let now = self.sources();
+        self.audit.energy = now.energy - self.ground.energy;
+        self.audit.momentum = (now.momentum - self.ground.momentum).norm();
+        self.audit.angular = now.angular - self.ground.angular;
+        let gap = |chain: &[f64; MAX_DRIVES]| crate::machine::place_of(chain, &x.e).norm();
+        self.audit.closure = self.closures.iter().map(gap).fold(0.0, f64::max);
+    }
+
+    /// Everything that is true now.
+    pub fn frame(&self) -> Frame {
+        let (x, n) = (&self.now, self.drives);
+        let arm = self.body().arm();
+        let q = self.state.drives(n);
+        let relative = PerDrive::from_fn(n, |k| self.relative(k));
+        let (phase, target, b_reference) = match &self.guide {
+            Guide::Motion { motion, .. } => {
+                let end = end_effector(&arm.tip, &motion.path.at(1.0).q.units());
+                let phase = if self.has_arrived() { Phase::Rest } else { Phase::Motion };
+                (phase, Target { at: end, reach: Reach::Inside }, self.lambda.dot(&self.reference.q))
+            }
+            Guide::Follow(follower) => {
+                let phase = if follower.is_at_rest() { Phase::Rest } else { Phase::Follow };
+                (phase, follower.target(), follower.b())
+            }
+        };
+        let (momentum, angular_momentum) = self.body().momentum(x);
+        let b = self.lambda.dot(&relative);
+        Frame {
+            step: self.step,
+            time: self.time(),
+            q,
+            qd: PerDrive::from_fn(n, |k| x.qd[k]),
+            qdd: PerDrive::from_fn(n, |k| x.qdd[k]),
+            torque: x.torque,
+            friction: x.friction,
+            q_reference: self.reference.q,
+            b,
+            b_reference,
+            a: PerDrive::from_fn(self.angles.len().min(MAX_DRIVES), |i| {
+                let a = &self.angles[i];
+                q[a.to] - q[a.from] + a.offset
+            }),
+            base: x.base,
+            base_velocity: x.base_velocity,
+            base_rate: x.qd.get(n).copied().unwrap_or(0.0),
+            wrench: x.wrench,
+            wheel: x.spin,
+            momentum,
+            angular_momentum,
+            com: x.base.at + dynamics::centre_of_mass(arm, &x.e),
+            tip: x.base.at + end_effector(&arm.tip, &x.e),
+            target,
+            loaded: self.loaded,
+            kinetic: x.kinetic,
+            dexterity: self.map.map_or_else(Default::default, |map| map.dexterity_at(&x.e)),
+            transmission: transmission(&x.e, n),
+            phase,
+            peaks: self.peaks,
+            tally: self.tally,
+            audit: Audit { plane: b - b_reference, ..self.audit },
+        }
+    }
+}
+
+/// What encoders and tachometers read, exactly.
+#[inline(always)]
+fn reading<'a>(
+    n: usize,
+    state: &State,
+    e: &'a crate::planar::Units,
+    rates: &'a PerDrive,
+    base: Pose2,
+    velocity: Vector,
+) -> Reading<'a> {
+    let turning = rates.get(n).copied().unwrap_or(0.0);
+    Reading {
+        q: DriveAngles(PerDrive::from_fn(n, |k| state.q[k] - base.angle)),
+        qd: PerDrive::from_fn(n, |k| rates[k] - turning),
+        e,
+        rates,
+        base,
+        velocity,
+    }
+}
+
+/// m_j a_jk of every link and of the machine's own payload, kg m.
+fn link_moments(machine: &Machine) -> Vec<Vector> {
+    let n = machine.drives();
+    let payload = (machine.spec().payload.mass, machine.tip().map(|w| Vector::new(w, 0.0)));
+    let links = machine.links().iter().enumerate().map(|(j, l)| (l.mass, machine.com_chain(j)));
+    let all = links.chain([payload]).filter(|(m, _)| *m > 0.0);
+    all.flat_map(|(m, a)| a.into_iter().take(n).map(move |a| m * a)).collect()
+}

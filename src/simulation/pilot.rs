@@ -1,0 +1,116 @@
+//! [`Pilot`]: control as it runs, all the time or sampled: encoders, delay, torque limits, and the wheel.
+
+use std::collections::VecDeque;
+
+use crate::control::{Control, Controller, Reading};
+use crate::plan::Reference;
+use crate::planar::{DriveAngles, PerDrive};
+use crate::plant::{Command, Spin, Wheel};
+
+/// Control as it runs.
+#[derive(Clone, Debug)]
+pub struct Pilot {
+    controller: Controller,
+    limits: Option<PerDrive>,
+    wheel: Option<Wheel>,
+    /// Which way the wheel turns as fast as it can, ±1, or 0.
+    wheel_limit: f64,
+    sampling: Option<Sampling>,
+}
+
+/// Control that is computed now and then.
+#[derive(Clone, Debug)]
+struct Sampling {
+    /// Steps between samples.
+    period: u64,
+    /// Steps from a reading to its torque.
+    delay: u64,
+    /// One count of the encoders, rad; 0: exact.
+    count: f64,
+    /// s.
+    step: f64,
+    last: Option<DriveAngles>,
+    /// Torques to come and the steps at which they do.
+    pending: VecDeque<(u64, PerDrive)>,
+    held: Option<PerDrive>,
+}
+
+impl Pilot {
+    /// A controller at `step` s; motors give no more than `limits`, N m.
+    pub fn new(
+        controller: Controller,
+        control: &Control,
+        step: f64,
+        limits: Option<PerDrive>,
+        wheel: Option<Wheel>,
+    ) -> Self {
+        let sampling = control.is_sampled().then(|| {
+            let (period, delay) = (control.period(step), (control.delay / step).round() as u64);
+            Sampling {
+                period,
+                delay,
+                count: if control.encoder > 0.0 { std::f64::consts::TAU / control.encoder } else { 0.0 },
+                step,
+                last: None,
+                pending: VecDeque::with_capacity((delay / period) as usize + 2),
+                held: None,
+            }
+        });
+        Self { controller, limits, wheel, wheel_limit: 0.0, sampling }
+    }
+
+    /// Once a step: sees whether the wheel is at its limit, and reads and computes, if it samples and its time has come.
+    pub fn sample(&mut self, step: u64, reference: &Reference, reading: &Reading, loaded: bool, wheel_rate: f64) {
+        self.wheel_limit = self.wheel.map_or(0.0, |wheel| wheel.at_limit(wheel_rate));
+        let Some(sampling) = &mut self.sampling else { return };
+        if sampling.held.is_none() || step.is_multiple_of(sampling.period) {
+            let mut reading = *reading;
+            if sampling.count > 0.0 {
+                let count = sampling.count;
+                reading.q = DriveAngles(PerDrive::from_fn(reading.q.len(), |k| (reading.q[k] / count).round() * count));
+                // A tachometer's first word is exact: there is nothing to compare with yet.
+                if let Some(last) = sampling.last.replace(reading.q) {
+                    let time = sampling.period as f64 * sampling.step;
+                    reading.qd = reading.q.0.minus(&last.0).scaled(1.0 / time);
+                }
+            }
+            let torque = self.controller.torque(reference, &reading, loaded);
+            sampling.held.get_or_insert(torque);
+            sampling.pending.push_back((step + sampling.delay, torque));
+        }
+        while let Some((_, torque)) = sampling.pending.pop_front_if(|(due, _)| *due <= step) {
+            sampling.held = Some(torque);
+        }
+    }
+
+    /// Goes on where another was, with what that has under way.
+    pub fn resume(&mut self, other: &Self) {
+        if let (Some(now), Some(before)) = (&mut self.sampling, &other.sampling) {
+            (now.last, now.held) = (before.last, before.held);
+            now.pending.clone_from(&before.pending);
+        }
+    }
+
+    /// The rotor of the wheel, kg m²; 0 for none.
+    pub fn rotor(&self) -> f64 {
+        self.wheel.map_or(0.0, |wheel| wheel.inertia)
+    }
+
+    /// What motors and wheel do at this instant; Ω in rad/s.
+    #[inline(always)]
+    pub fn command(&self, reference: &Reference, reading: &Reading, loaded: bool, wheel_rate: f64) -> Command {
+        let wanted = match &self.sampling {
+            Some(Sampling { held: Some(held), .. }) => *held,
+            _ => self.controller.torque(reference, reading, loaded),
+        };
+        let torque = match &self.limits {
+            Some(limits) => PerDrive::from_fn(wanted.len(), |k| wanted[k].clamp(-limits[k], limits[k])),
+            None => wanted,
+        };
+        let spin = match &self.wheel {
+            Some(wheel) => wheel.give(-torque.iter().sum::<f64>(), wheel_rate, self.wheel_limit),
+            None => Spin::default(),
+        };
+        Command { torque, spin, rotor: self.rotor() }
+    }
+}

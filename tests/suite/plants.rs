@@ -1,0 +1,291 @@
+//! Plants that differ from the model: what each deviation does is what physics says.
+
+use proptest::prelude::*;
+use stillbase::audit::Audit;
+use stillbase::frame::Frame;
+use stillbase::keys;
+use stillbase::machine::builtin;
+use stillbase::plant::{Contacts, Friction};
+use stillbase::scenario::Scenario;
+use stillbase::session::{Edit, TimedEdit, replay};
+
+fn case(name: &str, settings: &str) -> Scenario {
+    let mut scenario = Scenario::builtin(name).expect("built in");
+    let table: toml::Table = settings.parse().expect("TOML");
+    let part = |key: &str| table.get(key).and_then(|v| v.as_table()).cloned().unwrap_or_default();
+    scenario.plant = keys::with(&scenario.plant, &part("plant")).expect("a plant");
+    scenario.control = keys::with(&scenario.control, &part("control")).expect("control");
+    scenario.base = keys::with(&scenario.base, &part("base")).expect("a base");
+    if let Some(step) = table.get("step").and_then(|v| v.as_float()) {
+        scenario.step = step;
+    }
+    if let Some(duration) = table.get("duration").and_then(|v| v.as_float()) {
+        scenario.duration = Some(duration);
+    }
+    scenario.check("test").expect("in range");
+    scenario
+}
+
+fn frames(scenario: &Scenario) -> Vec<Frame> {
+    let mut frames = Vec::new();
+    replay(scenario, |_, f| frames.push(*f)).expect("runs");
+    frames
+}
+
+fn last(scenario: &Scenario) -> Frame {
+    let frames = frames(scenario);
+    let last = frames[frames.len() - 1];
+    assert!(Audit::fault(&last).is_none(), "{:?} {:?}", last.audit, Audit::fault(&last));
+    last
+}
+
+/// Friction between drive and base is internal to that pair: control that tracks it away leaves nothing. Here it is
+/// told nothing of it, and what is left falls with the gains.
+#[test]
+fn friction_that_is_tracked_away_leaves_nothing() {
+    let left = [400.0, 40_000.0, 400_000.0].map(|kp: f64| {
+        let kd = 2.0 * kp.sqrt();
+        let text = format!("step = 0.0005\n[plant.friction]\nviscous = 0.3\n[control]\nkp = {kp}\nkd = {kd}");
+        last(&case("case-3", &text)).peaks.moment
+    });
+    // The tracking error falls as 1/K_p, and so does what is transmitted: an error that rises and falls as before.
+    assert!(left[0] > 1e-2, "{left:?}");
+    assert!(left[1] < left[0] / 20.0 && left[2] < left[1] / 5.0, "{left:?}");
+    // Only the difference of motors and friction reaches the base.
+    for f in frames(&case("case-3", "[plant.friction]\nviscous = 0.3\ncoulomb = 0.1")) {
+        let net: f64 = (0..3).map(|k| f.torque[k] - f.friction[k]).sum();
+        assert!((f.base_moment() + net).abs() < 1e-9, "{} {net}", f.base_moment());
+    }
+}
+
+/// Friction in the pins acts on relative rates and sums to zero: the motors feel it, the base only through errors.
+#[test]
+fn friction_of_pins_sums_to_zero() {
+    for f in frames(&case("case-3", "[plant.friction]\npin_viscous = 0.05\npin_coulomb = 0.02")) {
+        assert!((f.base_moment() + f.torque.iter().sum::<f64>()).abs() < 1e-9);
+        assert_eq!(f.friction.max_abs(), 0.0);
+    }
+}
+
+/// Coulomb friction against its closed form: one drive coasts, v = v_0 − (τ_C / D) t, and stays where it stops.
+#[test]
+fn a_coasting_drive_stops_where_it_should() {
+    // Control is cut out: no gains, and the model's own torque is zero once the guide rests.
+    let text =
+        "duration = 0.5\n[plant.friction]\ncoulomb = [2.0, 1e4, 1e4]\n[control]\nlaw = \"pd\"\nkp = 0.0\nkd = 0.0";
+    let mut scenario = case("case-3", text);
+    // Pushed for a while at the tip with drives 2 and 3 locked, then let go.
+    let at = |step, edit| TimedEdit { step, edit };
+    scenario.edits = vec![at(0, Edit::Push { x: 12.0, y: 3.0 }), at(100, Edit::Push { x: 0.0, y: 0.0 })];
+    let stops = [1e-3, 5e-4, 2e-4].map(|step| {
+        scenario.step = step;
+        scenario.edits[1].step = (0.1 / step).round() as u64;
+        let frames = frames(&scenario);
+        let d = stillbase::machine::Inertia::of(&scenario.machine).diagonal(0);
+        let free = &frames[scenario.edits[1].step as usize];
+        assert!(free.qd[0].abs() > 0.1 && free.qd[1].abs() < 1e-15 && free.qd[2].abs() < 1e-15, "{:?}", free.qd);
+        let end = &frames[frames.len() - 1];
+        assert!(end.qd.max_abs() < 1e-15, "at rest, to the last digit");
+        // It stops after v² / (2 τ_C / D).
+        let way = free.qd[0].powi(2) / (2.0 * 2.0 / d) * free.qd[0].signum();
+        assert!((end.q[0] - free.q[0] - way).abs() < 1e-12, "{} {way}", end.q[0] - free.q[0]);
+        end.q[0]
+    });
+    assert!((stops[0] - stops[1]).abs() < 1e-10 && (stops[1] - stops[2]).abs() < 1e-10, "{stops:?}");
+}
+
+/// Stick and slip under control: no chatter at rest, and the same whatever the step.
+#[test]
+fn stick_and_slip_do_not_depend_on_the_step() {
+    let text = |step: f64| {
+        format!("step = {step}\nduration = 2.0\n[plant.friction]\ncoulomb = [0.4, 0.15, 0.2]\npin_coulomb = 0.01")
+    };
+    let ends = [2e-3, 1e-3, 5e-4, 2.5e-4].map(|step| {
+        let frames = frames(&case("case-3", &text(step)));
+        // Once still, always still.
+        let still: Vec<bool> = frames.iter().skip_while(|f| f.time < 1.2).map(|f| f.qd.max_abs() < 1e-14).collect();
+        let first = still.iter().position(|s| *s).expect("it comes to rest");
+        assert!(still[first..].iter().all(|s| *s), "it chatters at {step}");
+        let end = &frames[frames.len() - 1];
+        assert!(end.q_reference.0.minus(&end.q.0).max_abs() > 1e-5, "stuck short of the aim");
+        [end.q[0], end.q[1], end.q[2]]
+    });
+    for k in 0..3 {
+        let off = [0, 1, 2].map(|i| (ends[i][k] - ends[3][k]).abs());
+        assert!(off[0] < 1e-6 && off[1] < 1e-6 && off[2] < 1e-6, "{off:?}");
+    }
+}
+
+/// What friction takes is energy lost, and the books close, on every base.
+#[test]
+fn losses_are_in_the_balance() {
+    for base in ["fixed", "free", "compliant"] {
+        let text = format!(
+            "[plant.friction]\nviscous = 0.1\ncoulomb = 0.1\npin_viscous = 0.01\n[base]\nkind = \"{base}\"\ncom = [0.1, 0.0]"
+        );
+        let end = last(&case("case-1", &text));
+        assert!(end.tally.energy > 0.1);
+        assert!(end.audit.energy.abs() < 1e-7 * end.tally.energy, "{base}: {:?}", end.audit);
+        if base == "free" {
+            assert!(end.momentum.norm() < 1e-12 && end.angular_momentum.abs() < 1e-12);
+        }
+    }
+}
+
+/// With equal gains errors stay on the plane; unequal gains leak, and leak nothing when there is no error.
+#[test]
+fn unequal_gains_leak() {
+    let started_off = |kp: &str| {
+        let mut scenario = case("case-3", &format!("[control]\nkp = {kp}"));
+        // A push on a machine whose plan it does not stop: an error of all three drives.
+        let at = |step, edit| TimedEdit { step, edit };
+        scenario.edits = vec![at(200, Edit::Push { x: 5.0, y: 0.0 }), at(260, Edit::Push { x: 0.0, y: 0.0 })];
+        frames(&scenario)
+    };
+    let d = stillbase::machine::Inertia::of(builtin("nine-link").expect("built in")).diagonals();
+    let weighted = |f: &Frame| (0..3).map(|k| d[k] * (f.q_reference[k] - f.q[k])).sum::<f64>();
+    let after = |frames: &[Frame]| frames.iter().skip(261).map(|f| f.base_moment().abs()).fold(0.0, f64::max);
+    let (equal, unequal) = (started_off("400.0"), started_off("[900.0, 400.0, 100.0]"));
+    // The push itself moves b; what then happens to it is the decay of one error, Σ D_k e_k.
+    let (e, v) = (weighted(&equal[260]), (weighted(&equal[261]) - weighted(&equal[259])) / 0.002);
+    let off = |frames: &[Frame]| {
+        let one = |f: &Frame| {
+            let t = f.time - 0.26;
+            (weighted(f) - (e + (v + 20.0 * e) * t) * (-20.0 * t).exp()).abs()
+        };
+        frames.iter().skip(270).step_by(10).map(one).fold(0.0, f64::max)
+    };
+    assert!(off(&equal) < 1e-2 * e.abs() && off(&unequal) > 0.1 * e.abs(), "{e} {} {}", off(&equal), off(&unequal));
+    assert!(after(&unequal) != after(&equal));
+    assert!(
+        frames(&case("case-3", "[control]\nkp = [900.0, 400.0, 100.0]")).iter().all(|f| f.base_moment().abs() < 1e-6)
+    );
+}
+
+/// PD without a model leaves the plane's moment small only because its gains are scaled by D_k.
+#[test]
+fn pd_tracks_late_and_still_keeps_the_plane() {
+    let end = last(&case("case-3", "[control]\nlaw = \"pd\""));
+    assert!(end.peaks.is_reactionless(), "{:?}", end.peaks);
+    let late = frames(&case("case-3", "[control]\nlaw = \"pd\""))
+        .iter()
+        .fold(0.0_f64, |m, f| m.max(f.q_reference.0.minus(&f.q.0).max_abs()));
+    assert!(late > 1e-3, "{late}");
+}
+
+/// Compensation knows the payload, so the machine tracks; but balance is lost all the same.
+#[test]
+fn compensation_tracks_but_does_not_balance() {
+    let of = |law: &str| {
+        let text = format!("[plant.payload]\nmass = 0.4\noffset = [0.05, 0.02]\n[control]\nlaw = \"{law}\"");
+        let frames = frames(&case("case-3", &text));
+        let late = frames.iter().fold(0.0_f64, |m, f| m.max(f.q_reference.0.minus(&f.q.0).max_abs()));
+        (late, frames[frames.len() - 1].peaks)
+    };
+    let (blind, knowing) = (of("computed-torque"), of("payload-compensation"));
+    assert!(knowing.0 < 1e-9 && blind.0 > 1e-3, "{} {}", knowing.0, blind.0);
+    assert!(knowing.1.moment > 0.05 && !knowing.1.is_reactionless());
+}
+
+/// Picked up and let go in motion: no rate jumps, the books stay closed, and it is quiet without it.
+#[test]
+fn a_payload_comes_and_goes() {
+    for base in ["fixed", "free"] {
+        let text = format!(
+            "duration = 1.4\n[plant.payload]\nmass = 0.3\ninertia = 0.002\nfrom = 0.3\nuntil = 0.6\n[base]\nkind = \"{base}\""
+        );
+        let frames = frames(&case("case-3", &text));
+        for w in frames.windows(2) {
+            assert!(w[1].qd.minus(&w[0].qd).max_abs() < 0.02, "no jump of rates at {}", w[1].time);
+            assert_eq!(w[1].loaded, w[1].time > 0.2995 && w[1].time < 0.5995, "{}", w[1].time);
+        }
+        assert!(frames.iter().take(299).all(|f| f.base_moment().abs() < 1e-9));
+        let end = &frames[frames.len() - 1];
+        assert!(end.peaks.moment > 0.05);
+        assert!(end.audit.energy.abs() < 1e-8 && end.audit.momentum < 1e-8, "{:?}", end.audit);
+    }
+}
+
+/// Sampled control at every step is close to control all the time; slower, later and coarser is worse.
+#[test]
+fn sampling_delay_and_counts_cost_accuracy() {
+    let off = |control: &str| {
+        let text = format!("[plant.payload]\nmass = 0.2\n[control]\n{control}");
+        let fine = frames(&case("case-3", "[plant.payload]\nmass = 0.2"));
+        let these = frames(&case("case-3", &text));
+        these.iter().zip(&fine).fold(0.0_f64, |m, (a, b)| m.max(a.q.0.minus(&b.q.0).max_abs()))
+    };
+    let (fast, slow) = (off("rate = 1000.0"), off("rate = 100.0"));
+    assert!(fast > 0.0 && fast < 1e-3 && slow > 3.0 * fast, "{fast} {slow}");
+    let (early, late) = (off("delay = 0.002"), off("delay = 0.01"));
+    assert!(late > 1.5 * early && early > fast, "{early} {late}");
+    let (fine, coarse) = (off("encoder = 1e8"), off("encoder = 4000.0"));
+    assert!(coarse > 1.5 * fine && fine < 1e-3, "{fine} {coarse}");
+    assert!(last(&case("case-3", "[control]\nrate = 500.0")).peaks.moment < 5e-2);
+}
+
+/// Motors that saturate give no more than their limit.
+#[test]
+fn motors_saturate() {
+    let mut scenario = case("case-3", "[plant]\ntorque_limits = true");
+    scenario.machine = scenario.machine.set("drive.1.torque_limit", "0.9").expect("valid");
+    let end = last(&scenario);
+    assert_eq!(end.peaks.torque[0], 0.9);
+    assert!(end.peaks.moment > 0.05, "and leave the plane");
+    scenario.plant.torque_limits = false;
+    assert!(last(&scenario).peaks.is_reactionless());
+}
+
+/// Lengths that differ keep the parallelograms, and a bar alone is refused.
+#[test]
+fn lengths_differ_together() {
+    let text = "[plant.length]\nl1 = 0.51\n[plant.link.5]\ncom = -0.02\ncom_normal = 0.004";
+    let end = last(&case("case-3", text));
+    assert!(end.audit.closure < 1e-12 && end.peaks.moment > 1e-4);
+    let mut scenario = Scenario::builtin("case-3").expect("built in");
+    scenario.plant = toml::from_str("length.l77 = 0.5").expect("a plant");
+    let why = scenario.check("test").expect_err("no such length").to_string();
+    assert!(why.contains("l77"), "{why}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Stuck contacts take what holds them, within their bounds, and what they take is never more than what moves them.
+    #[test]
+    fn holding_is_a_projection(
+        coulomb in prop::array::uniform3(0.01..3.0_f64),
+        force in prop::array::uniform3(-5.0..5.0_f64),
+        pin in 0.0..0.5_f64,
+        e in prop::array::uniform3(0.0..6.3_f64),
+    ) {
+        let machine = builtin("nine-link-table-1").expect("built in").set("link.1.com", "0.2").expect("valid");
+        let friction = Friction {
+            coulomb: stillbase::plant::Each::Own(coulomb.into()), pin_coulomb: pin, ..Friction::default()
+        };
+        let contacts = Contacts::of(&machine, &friction, None);
+        let inertia = stillbase::machine::Inertia::of(&machine);
+        let q = stillbase::planar::DriveAngles::from(e);
+        let (h, _) = stillbase::dynamics::mass_matrix(&inertia, &q.units(), &[0.0; 3].into());
+        let solve = |x: &[f64; 8]| {
+            let y = h.solve(&[x[0], x[1], x[2]].into());
+            [y[0], y[1], y[2], 0.0, 0.0, 0.0, 0.0, 0.0]
+        };
+        let mut padded = [0.0; 8];
+        padded[..3].copy_from_slice(&force);
+        let free = solve(&padded);
+        let (mut total, mut bearing) = (force, [0.0; 3]);
+        let mut taken = [0.0; stillbase::plant::MAX_CONTACTS];
+        contacts.hold(&[0; stillbase::plant::MAX_CONTACTS], &free[..3], solve, &mut total, &mut bearing, &mut taken);
+        padded[..3].copy_from_slice(&total);
+        let left = solve(&padded);
+        let scale = free.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
+        for i in 0..contacts.len() {
+            let (v, f, most) = (contacts.sliding(i, &left[..3]), taken[i], contacts.coulomb(i));
+            prop_assert!(f.abs() <= most * (1.0 + 1e-12));
+            // Either still, or fully against the way it goes.
+            let still = v.abs() < 1e-7 * scale;
+            prop_assert!(still || ((f.abs() - most).abs() < 1e-9 * most && f * v > 0.0), "{v} {f} {most}");
+        }
+    }
+}
