@@ -53,7 +53,7 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &Look, commands
             }
             // A narrow window keeps its room for what to do next.
             if ui.available_width() > 900.0 && !bad_news {
-                facts += &format!("  ·  energy balance {:.0e} J", f.energy_balance.abs());
+                facts += &format!("  ·  energy balance {:.0e} J", f.audit.energy.abs());
             }
             ui.label(RichText::new(facts).font(plain(12.0)).color(colour(p.dim)));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
