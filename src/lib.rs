@@ -80,6 +80,7 @@
 
 pub mod audit;
 pub mod balance;
+pub mod compare;
 pub mod control;
 pub mod dynamics;
 pub mod files;

@@ -13,6 +13,8 @@ mod change_points;
 #[cfg(feature = "cli")]
 #[path = "suite/cli.rs"]
 mod cli;
+#[path = "suite/compare.rs"]
+mod compare;
 #[path = "suite/convergence.rs"]
 mod convergence;
 #[path = "suite/curve.rs"]

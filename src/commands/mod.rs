@@ -4,6 +4,7 @@
 //! bar to standard error. Exit status: 0 done, 1 the question has no answer, 2 wrong input.
 
 mod check;
+mod compare;
 mod design;
 mod dynamics;
 mod failure;
@@ -22,6 +23,7 @@ mod simulate;
 mod workspace;
 
 pub use check::Check;
+pub use compare::Compare;
 pub use design::Design;
 pub use dynamics::Dynamics;
 pub use failure::{exit_code, usage};

@@ -21,6 +21,7 @@ const LAYERS: &[&[&str]] = &[
     &["signals"],
     // A scenario holds the edits of a saved session; a session starts from a scenario.
     &["scenario", "session"],
+    &["compare"],
     &["scene"],
     &["render"],
     &["files"],
@@ -51,6 +52,7 @@ const CORE: &[&str] = &[
     "signals",
     "scenario",
     "session",
+    "compare",
     "scene",
 ];
 
