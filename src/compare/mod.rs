@@ -1,9 +1,11 @@
 //! Runs side by side: the same task done in other ways, or any scenarios, on one time axis.
 
+mod board;
 mod differences;
 mod summary;
 mod way;
 
+pub use board::{Board, Entry};
 pub use differences::{Difference, differences};
 pub use summary::{COLUMNS, Column, Summary};
 pub use way::{SLOWER, Way};

@@ -37,6 +37,7 @@ pub struct Bar {
     pub carries_tip: bool,
     root: Chain,
     sign: f64,
+    length: f64,
     z: f64,
 }
 
@@ -94,6 +95,7 @@ impl Linkage {
                 carries_tip: carries[j],
                 root: part.root,
                 sign: part.sign,
+                length: part.length,
                 z: layer(part.drive),
             });
         }
@@ -170,6 +172,17 @@ impl Linkage {
         }
         solids.push(upright("base/cap".into(), self.cap, origin, 0.0, grey));
         solids
+    }
+
+    /// The links that carry the end effector as lines from root to tip, from B outwards, with their drives.
+    pub fn skeleton(&self, e: &Units) -> Vec<(usize, [Vector; 2])> {
+        let carriers = self.bars.iter().filter(|b| b.carries_tip);
+        carriers
+            .map(|bar| {
+                let (root, along, _) = bar.pose(e);
+                (bar.drive, [root, root + along * bar.length])
+            })
+            .collect()
     }
 
     /// The arms that carry the end effector, as a ghost of another pose.

@@ -2,12 +2,14 @@
 
 mod path;
 mod reaction;
+mod snapshots;
 mod target;
 mod workspace;
 
 use path::Course;
 pub(super) use path::looks;
 pub(crate) use path::waypoints;
+pub use snapshots::Other;
 pub(super) use target::target_handle;
 use workspace::{Inside, inside, roomiest};
 
@@ -38,6 +40,10 @@ pub struct ViewOptions {
     pub stroke: Vec<[f64; 2]>,
     /// What was asked for last and refused.
     pub refused: Option<Arc<Refused>>,
+    /// Poses along the motion, in the order of time, as in Fig. 5.
+    pub snapshots: Vec<DriveAngles>,
+    /// Other runs at the same instant.
+    pub others: Vec<Other>,
 }
 
 impl Default for ViewOptions {
@@ -50,6 +56,8 @@ impl Default for ViewOptions {
             preview_b: None,
             stroke: Vec::new(),
             refused: None,
+            snapshots: Vec::new(),
+            others: Vec::new(),
         }
     }
 }
@@ -228,6 +236,8 @@ impl Stage {
             self.ring(&mut scene, &palette, planes, frame, options);
         }
         self.course(&mut scene, &palette, options);
+        self.snapshots(&mut scene, &palette, options);
+        self.others(&mut scene, &palette, options);
         self.wishes(&mut scene, &palette, options);
         self.reaction(&mut scene, &palette, frame);
         self.target(&mut scene, &palette, frame, options);

@@ -8,7 +8,7 @@ use crate::scenario::Scenario;
 use crate::scene::Measure;
 use crate::session::Session;
 
-const KEYS: [(&str, &str); 22] = [
+const KEYS: [(&str, &str); 25] = [
     ("Space", "play, pause, start over"),
     ("← →", "one step back, one step on"),
     ("Shift ← →", "ten steps"),
@@ -16,6 +16,9 @@ const KEYS: [(&str, &str); 22] = [
     ("1  2  3", "the paper's cases"),
     ("V", "2D, 3D, joint space, tower of workspaces"),
     ("J", "shade the workspace by dexterity, one measure after the other"),
+    ("C", "the same task done in other ways, side by side"),
+    ("S", "snapshots along the motion"),
+    ("Shift click plot", "a second cursor: plots show differences; Esc takes it away"),
     ("F", "show everything"),
     ("L", "light or dark"),
     ("R", "record for the Rerun viewer"),
@@ -58,6 +61,7 @@ pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Co
         commands.push(match (&look.dialog, &look.stroke) {
             (Some(_), _) => Command::Dialog(None),
             (None, Some(_)) => Command::Draw(false),
+            (None, None) if look.mark.is_some() => Command::Mark(None),
             (None, None) => Command::Help(false),
         });
     }
@@ -77,6 +81,8 @@ pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Co
         (plain, Key::V, Command::View(look.view.next())),
         (plain, Key::J, Command::Dexterity(Measure::after(look.dexterity))),
         (plain, Key::F, Command::Fit),
+        (plain, Key::C, Command::Compare(!look.compare)),
+        (plain, Key::S, Command::Snapshots(!look.snapshots)),
         (plain, Key::P, Command::Draw(look.stroke.is_none())),
         (plain, Key::L, Command::Theme(super::top::other(look.theme))),
         (plain, Key::R, Command::Dialog(Some(Desk::suggest(session, Purpose::Record)))),
