@@ -31,6 +31,8 @@ enum Command {
     Pose(commands::Pose),
     Plan(commands::Plan),
     Workspace(commands::Workspace),
+    Import(commands::Import),
+    Export(commands::Export),
     #[cfg(feature = "ui")]
     Figures(commands::Figures),
 }
@@ -62,6 +64,8 @@ fn main() -> ExitCode {
         Some(Command::Pose(command)) => command.run(),
         Some(Command::Plan(command)) => command.run(),
         Some(Command::Workspace(command)) => command.run(),
+        Some(Command::Import(command)) => command.run(),
+        Some(Command::Export(command)) => command.run(),
         #[cfg(feature = "ui")]
         Some(Command::Figures(command)) => command.run(),
     };

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | curves of the end effector, and paths of the drives | [`curve`], [`path`], [`table`] |
 //! | given by samples: splined, smoothed | [`given`], [`spline`], [`low_pass`] |
+//! | the nearest reactionless motion to a given one | [`nearest`] |
 //! | on a plane: a curve followed on one sheet, or why not | [`trace`] |
 //! | when: laws, limits of the drives, the fastest motion | [`law`], [`profile`], [`limits`], [`mod@fastest`], [`usage`] |
 //! | off the plane: the price of b, the least reaction | [`price`], [`corridor`], [`inverse`], [`pose_course`], [`least_reaction`] |
@@ -24,6 +25,7 @@ pub mod law;
 pub mod least_reaction;
 pub mod limits;
 pub mod low_pass;
+pub mod nearest;
 pub mod null_space;
 pub mod path;
 pub mod pose_course;
