@@ -36,7 +36,7 @@ pub struct Read {
 const TURNS: f64 = 2.0 * TAU;
 /// From one sample to the next an angle may move by this much, rad.
 const LARGEST_STEP: f64 = 0.5 * PI;
-/// A step so many times as large as both beside it is a jump, if it is also larger than this, rad or m.
+/// A step so many times as fast as both beside it is a jump, if it is also larger than this, rad or m.
 const JUMP: f64 = 10.0;
 const VISIBLE: [f64; 2] = [0.1, 0.02];
 /// A time between samples so many times as long as the usual one is a gap.
@@ -92,6 +92,15 @@ pub fn samples(
     if rows.len() < FEWEST {
         return Err(Failure::wrong_input(format!("{file}: {} rows of numbers: want at least {FEWEST}", rows.len())));
     }
+    if let Some((i, step, usual)) = gap(&rows).filter(|_| !gaps) {
+        let why = format!(
+            "column {}: {step:.6} s after line {}, where {usual:.6} s is usual: a gap; want it filled, or --gaps to have it \
+             bridged by the spline",
+            columns.all[0].name,
+            places[i - 1]
+        );
+        return Err(at(places[i], &why));
+    }
     let mut unwrapped = vec![0; columns.all.len() - 1];
     for (k, column) in columns.all.iter().enumerate().skip(1) {
         if columns.content == Content::Drives {
@@ -119,15 +128,6 @@ pub fn samples(
             );
             return Err(at(places[i], &why));
         }
-    }
-    if let Some((i, step, usual)) = gap(&rows).filter(|_| !gaps) {
-        let why = format!(
-            "column {}: {step:.6} s after line {}, where {usual:.6} s is usual: a gap; want it filled, or --gaps to have it \
-             bridged by the spline",
-            columns.all[0].name,
-            places[i - 1]
-        );
-        return Err(at(places[i], &why));
     }
     let names = columns.all[1..].iter().map(|c| c.name.clone()).collect();
     let samples = Samples::new(&rows).map_err(|e| Failure::wrong_input(e).of(file))?;
@@ -264,11 +264,12 @@ fn unwrap(rows: &mut [Vec<f64>], k: usize) -> usize {
 /// The first step of a column that no smooth motion makes: at which row, and how large.
 fn jump(rows: &[Vec<f64>], k: usize, content: Content) -> Option<(usize, f64)> {
     let step = |i: usize| rows[i][k] - rows[i - 1][k];
+    let speed = |i: usize| (step(i) / (rows[i][0] - rows[i - 1][0])).abs();
     let visible = VISIBLE[usize::from(content == Content::Tip)];
     (1..rows.len()).map(|i| (i, step(i))).find(|(i, size)| {
         let beside = [i.checked_sub(1).filter(|i| *i > 0), Some(i + 1).filter(|i| *i < rows.len())];
-        let most = beside.into_iter().flatten().map(|i| step(i).abs()).fold(0.0, f64::max);
-        let lone = size.abs() > visible && size.abs() > JUMP * most;
+        let most = beside.into_iter().flatten().map(speed).fold(0.0, f64::max);
+        let lone = size.abs() > visible && speed(*i) > JUMP * most;
         lone || (content == Content::Drives && size.abs() > LARGEST_STEP)
     })
 }

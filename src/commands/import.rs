@@ -1,5 +1,6 @@
 //! `stillbase import`
 
+use std::f64::consts::TAU;
 use std::path::{Path as FilePath, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -7,7 +8,7 @@ use serde::Serialize;
 use stillbase::dynamics::{Surroundings, angular_momentum};
 use stillbase::files::{check_new, write_new};
 use stillbase::machine::{self, Inertia, Machine};
-use stillbase::plan::nearest::{Deviation, same_tip, turned};
+use stillbase::plan::nearest::{Deviation, nearest_b, same_tip, turned};
 use stillbase::plan::path::minimum_norm_curve;
 use stillbase::plan::{Forecast, Limits, Motion, Path, Profile, Rule, Samples, trace};
 use stillbase::planar::{DriveAngles, Vector};
@@ -114,6 +115,11 @@ struct Account {
     rms_base_force: f64,
     peak_torque: Vec<f64>,
     peak_speed: Vec<f64>,
+    /// The limit of a drive that is passed by most, and by what factor.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    over: Option<(String, f64)>,
+    /// By how much a relative angle passes its limits at most, rad; 0 if all keep them.
+    past_limits: f64,
     b_range: [f64; 2],
     b_mean: f64,
     angular_momentum_start: f64,
@@ -158,6 +164,20 @@ struct Judge {
 }
 
 impl Judge {
+    fn past_limits(&self, motion: &Motion) -> f64 {
+        let past = |i: usize| {
+            let q = motion.path.at(i as f64 / self.instants as f64).q;
+            let angles = self.machine.angles().iter().map(|angle| {
+                let a = q[angle.to] - q[angle.from] + angle.offset;
+                (angle.limits.start() - a).max(a - angle.limits.end())
+            });
+            angles.fold(0.0, f64::max)
+        };
+        let most = (0..=self.instants).map(past).fold(0.0, f64::max);
+        // What rounding passes by is none.
+        if most > 1e-6 { most } else { 0.0 }
+    }
+
     fn account(&self, motion: &Motion) -> Account {
         let f = Forecast::at(motion, &self.model, &self.around, &Limits::of(&self.machine), self.instants);
         let ends = [0.0, motion.duration()].map(|t| motion.at(t));
@@ -170,6 +190,8 @@ impl Judge {
             rms_base_force: f.force_rms,
             peak_torque: f.torque.to_vec(),
             peak_speed: f.speed.to_vec(),
+            over: f.over.map(|(limit, factor)| (limit.to_string(), factor)),
+            past_limits: self.past_limits(motion),
             b_range: f.b,
             b_mean: f.b_mean,
             angular_momentum_start: start,
@@ -192,7 +214,10 @@ impl Import {
         for (column, turns) in found.names.iter().zip(&found.unwrapped).filter(|(_, turns)| **turns > 0) {
             say(format!("note: {column} was wrapped: a whole turn taken out at {turns} places"));
         }
-        let raw = found.samples.clone();
+        let raw = match found.content {
+            Content::Drives => within_limits(&machine, &found.samples),
+            Content::Tip => found.samples.clone(),
+        };
         let samples = match self.smooth {
             Some(cut_off) => raw.smoothed(cut_off).map_err(|e| Failure::wrong_input(e).of("--smooth"))?,
             None => raw.clone(),
@@ -257,7 +282,7 @@ impl Import {
                             break;
                         }
                         Ok(proposal) => {
-                            answer.reason = Some(judge.not_quiet(&proposal));
+                            answer.reason = Some(judge.not_quiet(&proposal, answer.given.as_ref()));
                         }
                         Err(why) => answer.reason = Some(why),
                     }
@@ -265,6 +290,12 @@ impl Import {
             }
         }
         answer.feasible = chosen.is_some();
+        if let Some((limit, factor)) = answer.proposal.as_ref().and_then(|p| p.account.over.as_ref()) {
+            say(format!(
+                "note: the proposal asks for {} times the {limit}; slower samples, or another --b",
+                fixed(*factor, 2)
+            ));
+        }
         self.format.print(&answer, table)?;
         let Some(chosen) = chosen else {
             return Err(Failure::no_answer(answer.reason.unwrap_or_default()));
@@ -312,17 +343,14 @@ impl Import {
                 }
                 Err(blocked) => Some(blocked),
             };
-            if let Some(stop) = add(wanted, format!("{which} reaches every point of the end effector's path")) {
-                if let (Some(b), None) = (stop.nearest_b, self.b) {
-                    add(
-                        b,
-                        format!(
-                            "b = {b:.4} rad is the nearest to the mean that reaches all of the end effector's path"
-                        ),
-                    );
+            let near =
+                self.b.is_none().then(|| nearest_b(map, judge.machine.tip(), &judge.model, samples, Rule::default()));
+            blocked = match near.flatten() {
+                Some((b, _)) => {
+                    add(b, "of all b that reach every point of its path, the one that moves the drives least".into())
                 }
-                blocked = Some(stop);
-            }
+                None => add(wanted, format!("{which} reaches every point of its path")),
+            };
         }
         match (self.keep, &blocked) {
             (Some(Keep::Tip), Some(stop)) if candidates.is_empty() => return Ok((Some(motion), Err(stop.to_string()))),
@@ -400,6 +428,13 @@ impl Import {
                 ));
             }
         }
+        if let Some(account) = answer.given.as_ref().filter(|account| account.past_limits > 0.0) {
+            let what = if found.content == Content::Drives { "the motion as given" } else { "minimum-norm rates" };
+            say(format!(
+                "note: {what}: relative angles pass their limits by up to {} rad",
+                fixed(account.past_limits, 4)
+            ));
+        }
         if let (Some(account), Some(_)) = (&answer.given, motion)
             && account.speed_end > 1e-3 * account.peak_speed.iter().fold(0.0, |m: f64, x| m.max(*x))
         {
@@ -409,6 +444,33 @@ impl Import {
             ));
         }
     }
+}
+
+/// The angles of single drives lifted by whole turns where that brings the first pose within the joint limits: a file may
+/// hold angles that were wrapped.
+fn within_limits(machine: &Machine, samples: &Samples) -> Samples {
+    let first = samples.values(0);
+    let mut lift = vec![0.0; samples.columns()];
+    for angle in machine.angles() {
+        let a = first[angle.to] + lift[angle.to] - first[angle.from] - lift[angle.from] + angle.offset;
+        let (low, high) = (*angle.limits.start(), *angle.limits.end());
+        let turns = ((low - a) / TAU).ceil() * TAU;
+        if !(low..=high).contains(&a) && a + turns <= high {
+            lift[angle.to] += turns;
+        }
+    }
+    for (k, lift) in lift.iter().enumerate().filter(|(_, lift)| **lift != 0.0) {
+        let turns = lift / TAU;
+        say(format!(
+            "note: q{} lifted by {turns:+.0} turns, so that the relative angles begin within their limits",
+            k + 1
+        ));
+    }
+    let row = |i: usize| samples.values(i).iter().zip(&lift).map(|(q, lift)| q + lift).collect();
+    if lift.iter().all(|lift| *lift == 0.0) {
+        return samples.clone();
+    }
+    samples.with_values((0..samples.count()).map(row)).unwrap_or_else(|| samples.clone())
 }
 
 /// Largest second derivative of each column at the samples, its unit/s².
@@ -445,7 +507,11 @@ impl Judge {
     }
 
     /// Why holding b is not enough.
-    fn not_quiet(&self, proposal: &Proposal) -> String {
+    fn not_quiet(&self, proposal: &Proposal, given: Option<&Account>) -> String {
+        let most = |a: &Account| a.peak_torque.iter().fold(0.0, |m: f64, x| m.max(*x));
+        if given.is_some_and(|given| most(&proposal.account) < 1e-6 * most(given)) {
+            return "on a plane nothing of the motion is left: all of it turns the arm as a whole".into();
+        }
         let what = format!(
             "with b held the machine still transmits up to {:.2e} N m and {:.2e} N",
             proposal.simulated_peak_base_moment, proposal.simulated_peak_base_force

@@ -182,6 +182,20 @@ impl Samples {
         (rows.len() == self.count()).then(|| Self::new(&rows).ok()).flatten()
     }
 
+    /// About as many of the samples, evenly taken, the first and the last among them.
+    #[must_use]
+    pub fn thinned(&self, count: usize) -> Self {
+        let last = self.count() - 1;
+        let spaces = last.min(count.max(FEWEST) - 1);
+        let rows: Vec<Vec<f64>> = (0..=spaces)
+            .map(|i| {
+                let i = i * last / spaces;
+                self.values[i * self.width..(i + 1) * self.width].to_vec()
+            })
+            .collect();
+        Self::new(&rows).unwrap_or_else(|_| self.clone())
+    }
+
     /// Smoothed without delay: half of the amplitude is left at the cut-off, Hz; see [`super::low_pass`].
     ///
     /// # Errors

@@ -12,7 +12,8 @@
 //! In the metric of kinetic energy the normal of the planes is D⁻¹λ ∝ (1, …, 1): the nearest pose on a plane is the pose
 //! turned as a whole by (b − b(t))/Σλ. Its distance is |b − b(t)|/Σλ, so that of all constant b the nearest is b̄. This
 //! turns the end effector with the arm. To keep the end effector instead, the pose moves along the null space of its
-//! Jacobian onto the plane, (16) inverted, where b reaches every point of its path.
+//! Jacobian onto the plane, (16) inverted, where b reaches every point of its path; of these b the nearest, in the same
+//! metric, is found by search.
 
 use super::Motion;
 use super::curve::{Curve, CurvePoint};
@@ -22,7 +23,7 @@ use super::trace::{self, Blocked, Rule};
 use crate::kinematics::{acceleration, end_effector, velocity};
 use crate::machine::{Chain, Inertia};
 use crate::planar::{DriveAngles, PerDrive};
-use crate::reactionless::PlaneMap;
+use crate::reactionless::{BSet, PlaneMap};
 
 /// How far two motions of one timing are apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,6 +82,61 @@ pub fn tip_curve(tip: &Chain, path: &Table) -> Option<Curve> {
         })
         .collect();
     Curve::through(path.stations(), &nodes)
+}
+
+/// The constant b whose motion with the same end effector is nearest to the given one, rad, and its ‖Δq‖, rad; `None` if
+/// none can be followed. Judged by some two hundred of the samples.
+pub fn nearest_b(map: &PlaneMap, tip: &Chain, model: &Inertia, samples: &Samples, rule: Rule) -> Option<(f64, f64)> {
+    const TRIES: usize = 32;
+    let thin = samples.thinned(JUDGED);
+    let curve = tip_curve(tip, &thin.path(0.0)?)?;
+    let far = |b: f64| {
+        let moved = same_tip(map, tip, &thin, b, rule).ok().flatten();
+        moved.map_or(f64::INFINITY, |moved| apart(model, &thin, &moved))
+    };
+    let mean = (0..thin.count()).map(|i| map.project(thin.values(i)).b).sum::<f64>() / thin.count() as f64;
+    let common: BSet = trace::common_b(map, std::slice::from_ref(&curve), JUDGED).near(mean);
+    let mut best: Option<(f64, f64, [f64; 2])> = None;
+    for [low, high] in common.intervals {
+        let step = (high - low) / TRIES as f64;
+        // A little inside: at the very ends a relative angle grazes its limit, or two poses meet.
+        let tries =
+            (0..TRIES).map(|i| low + (i as f64 + 0.5) * step).chain((low..=high).contains(&mean).then_some(mean));
+        for b in tries {
+            let distance = far(b);
+            if distance.is_finite() && best.is_none_or(|(_, least, _)| distance < least) {
+                best = Some((b, distance, [(b - step).max(low), (b + step).min(high)]));
+            }
+        }
+    }
+    let (mut b, mut least, [mut from, mut to]) = best?;
+    // Golden section.
+    for _ in 0..24 {
+        let (s, t) = (from + 0.381_966 * (to - from), from + 0.618_034 * (to - from));
+        let [x, y] = [far(s), far(t)];
+        for (at, distance) in [(s, x), (t, y)] {
+            if distance < least {
+                (b, least) = (at, distance);
+            }
+        }
+        if x < y { to = t } else { from = s }
+    }
+    Some((b, least))
+}
+
+/// Samples that judge a plane.
+const JUDGED: usize = 201;
+
+/// ‖Δq‖ of samples at the same times, by the trapezoidal rule, rad.
+fn apart(model: &Inertia, one: &Samples, other: &Samples) -> f64 {
+    let n = model.drives();
+    let whole: f64 = (0..n).map(|k| model.diagonal(k)).sum();
+    let square = |i: usize| -> f64 {
+        let pairs = one.values(i).iter().zip(other.values(i)).enumerate();
+        pairs.map(|(k, (a, b))| model.diagonal(k) * (a - b) * (a - b)).sum()
+    };
+    let spaces = (1..one.count()).map(|i| 0.5 * (one.time(i) - one.time(i - 1)) * (square(i) + square(i - 1)));
+    (spaces.sum::<f64>() / (whole * one.duration())).sqrt()
 }
 
 /// The samples moved onto the plane b, rad, with the end effector where it was at every one of them, on the sheet
