@@ -42,6 +42,7 @@ Examples:
   stillbase                                      the paper's case 3, in a window
   stillbase headless -o cases.rrd                the three cases, recorded for the Rerun viewer
   stillbase check nine-link --set link.5.com=0   what one misplaced centre of mass does
+  stillbase import motion.csv -o quiet.toml      your own motion, and the nearest one without reactions
   stillbase reach nine-link 0.5,0.5 0.55,0.9     which b reach both points
 
 Units are SI and angles are radians. Exit status: 0 done, 1 the question has no answer, 2 wrong input.";

@@ -761,7 +761,10 @@ mod commands {
             (with(7, "5,1.7,3.7,2.2"), vec!["own.csv:7: column t: 5 s after 5.15", "want times that rise"]),
             (lines[..5].join("\n"), vec!["own.csv: 4 rows of numbers: want at least 6"]),
             (without(10..30), vec!["own.csv:11: column t: 0.787500 s after line 10, where 0.0375", "--gaps"]),
-            (with(42, "6.5,1.504,5.9,2.049"), vec!["own.csv:42: column q2: a jump of", "from line 41", "no whole turn"]),
+            (
+                with(42, "6.5,1.504,5.9,2.049"),
+                vec!["own.csv:42: column q2: a jump of", "from line 41", "no whole turn"],
+            ),
             (
                 of(&swinging(40), "t,q1,q2,q3", &[1.0, degrees, degrees, degrees]),
                 vec!["own.csv:2: column q1: 97.4", "(deg)"],
