@@ -21,6 +21,8 @@ mod convergence;
 mod curve;
 #[path = "suite/dynamics.rs"]
 mod dynamics;
+#[path = "suite/given.rs"]
+mod given;
 #[cfg(feature = "render")]
 #[path = "suite/gpu.rs"]
 mod gpu;

@@ -4,14 +4,17 @@
 //! bar to standard error. Exit status: 0 done, 1 the question has no answer, 2 wrong input.
 
 mod check;
+mod columns;
 mod compare;
 mod design;
 mod dynamics;
+mod export;
 mod failure;
 #[cfg(feature = "ui")]
 mod figures;
 #[cfg(feature = "record")]
 mod headless;
+mod import;
 mod input;
 mod machines;
 mod open;
@@ -26,11 +29,13 @@ pub use check::Check;
 pub use compare::Compare;
 pub use design::Design;
 pub use dynamics::Dynamics;
+pub use export::Export;
 pub use failure::{exit_code, usage};
 #[cfg(feature = "ui")]
 pub use figures::Figures;
 #[cfg(feature = "record")]
 pub use headless::Headless;
+pub use import::Import;
 pub use input::words;
 pub use machines::Machines;
 pub use open::Open;

@@ -214,6 +214,11 @@ impl Scenario {
             false => machine.set_all(settings).map_err(|error| ScenarioError::Machine { file: label.into(), error })?,
         };
         let stem = FilePath::new(label).file_stem().map_or_else(|| label.into(), |s| s.to_string_lossy().into_owned());
+        let task = file.task.completed(&machine).map_err(|key| ScenarioError::Syntax {
+            file: label.into(),
+            line: text.lines().position(|line| line.trim() == "[task]").map(|i| i + 1),
+            message: format!("missing field `{key}`"),
+        })?;
         let scenario = Self {
             name: file.name.unwrap_or(stem),
             title: file.title,
@@ -225,7 +230,7 @@ impl Scenario {
             pose_acceleration: file.pose_acceleration,
             compare_b: file.compare_b,
             duration: file.duration,
-            task: file.task,
+            task,
             edits: file.edits,
         };
         scenario.check(label)?;
@@ -264,6 +269,7 @@ impl Scenario {
             ("task.to", t.to[0]),
             ("task.to", t.to[1]),
             ("task.b", t.b),
+            ("task.turn", t.turn),
             ("task.first_drive_to", t.first_drive_to.unwrap_or(0.0)),
             ("compare_b", self.compare_b.unwrap_or(0.0)),
             ("task.b_to", t.b_to.unwrap_or(0.0)),

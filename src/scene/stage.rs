@@ -121,7 +121,7 @@ impl Stage {
         let motion = run.motion().map(|motion| Course {
             points: looks(motion).map(|s| place(&tip, &motion.path.at(s).q)).collect(),
             start: motion.path.at(0.0).q.units(),
-            waypoints: waypoints(&run.scenario().task),
+            waypoints: waypoints(run),
         });
         Self {
             linkage: Linkage::of(machine),

@@ -394,6 +394,9 @@ fn amended(scenario: &Scenario, edit: &Edit, planes: &mut Option<(Machine, Arc<P
 /// workspace.
 fn posed(scenario: &Scenario, planes: &Planes, b: f64) -> Scenario {
     let mut scenario = scenario.clone();
+    if let Some(task) = scenario.task.posed(&scenario.machine, b) {
+        return Scenario { task, ..scenario };
+    }
     scenario.task.b = b;
     let points = scenario.task.points();
     if let (Err(_), Some(turned)) = (planes.serve(&points, b), planes.serve_turned(&points, b)) {

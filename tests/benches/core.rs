@@ -11,7 +11,9 @@ use stillbase::dynamics::{Surroundings, inverse_with_wrench};
 use stillbase::machine::{Inertia, builtin};
 use stillbase::plan::least_reaction::Goal;
 use stillbase::plan::path::tip_line;
-use stillbase::plan::{Curve, CurvePoint, LeastReaction, Limits, Path, Rule, TimeLaw, fastest, trace};
+use stillbase::plan::{
+    Curve, CurvePoint, LeastReaction, Limits, Path, Profile, Rule, Samples, TimeLaw, fastest, trace,
+};
 use stillbase::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::pose_constant::plane_map;
 use stillbase::reactionless::{AngleDefinition, Boundary, Limit, PlaneMap};
@@ -38,6 +40,41 @@ fn dynamics_with_base_wrench(bencher: Bencher) {
         let e = black_box(&q).units();
         inverse_with_wrench(&inertia, &e, black_box(&qd), black_box(&qdd), &around)
     });
+}
+
+/// A motion of 20,000 samples of three drives: its spline, solved.
+#[divan::bench]
+fn spline_through_samples(bencher: Bencher) {
+    let samples = swinging();
+    bencher.bench_local(|| black_box(&samples).path(0.0).expect("a path"));
+}
+
+/// The same samples smoothed at 20 Hz.
+#[divan::bench]
+fn smoothing_of_samples(bencher: Bencher) {
+    let samples = swinging();
+    bencher.bench_local(|| black_box(&samples).smoothed(20.0).expect("below half of the rate"));
+}
+
+/// The reference at an instant of them.
+#[divan::bench]
+fn reference_of_samples(bencher: Bencher) {
+    let samples = swinging();
+    let path = Path::Table(samples.path(0.0).expect("a path"));
+    let motion = stillbase::plan::Motion { path, profile: Profile::running(samples.duration()) };
+    let mut t = 0.0;
+    bencher.bench_local(|| {
+        t = (t + 0.731) % 20.0;
+        motion.at(black_box(t))
+    });
+}
+
+fn swinging() -> Samples {
+    let row = |i: i32| {
+        let t = 0.001 * f64::from(i);
+        vec![t, 1.7 + 0.2 * (3.0 * t).sin(), 3.7 + 0.2 * (2.0 * t).cos(), 2.2 + 0.2 * (2.0 * t + 1.0).sin()]
+    };
+    Samples::new(&(0..20_000).map(row).collect::<Vec<_>>()).expect("sound")
 }
 
 /// The same by a generic recursion over nine bodies.
