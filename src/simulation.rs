@@ -6,6 +6,7 @@
 use crate::control::{Gains, computed_torque};
 use crate::dynamics::{self, BaseWrench, Surroundings, angular_momentum, centre_of_mass, energy, linear_momentum};
 use crate::frame::{Frame, Peaks, Phase, Reach, Target};
+use crate::joint_forces::Watch;
 use crate::kinematics::{end_effector, transmission};
 use crate::machine::{Inertia, Machine, RelativeAngle};
 use crate::plan::{Follower, Motion, Reference};
@@ -86,6 +87,7 @@ pub struct Simulation {
     plant: Body,
     /// m_j a_jk of each link and of the payload, `drives` after `drives`, kg m.
     link_moments: Vec<Vector>,
+    inside: Watch,
     lambda: PerDrive,
     map: Option<PlaneMap>,
     angles: Vec<RelativeAngle>,
@@ -124,6 +126,7 @@ impl Simulation {
             model: model_body,
             plant: body,
             link_moments,
+            inside: Watch::of(plant),
             angles: model.angles().to_vec(),
             gains,
             dt,
@@ -317,6 +320,7 @@ impl Simulation {
             energy_balance: kinetic + potential - work - self.start_energy,
             dexterity: self.map.map_or_else(Default::default, |map| map.dexterity_at(&s.e)),
             transmission: transmission(&s.e, q.len()),
+            inside: self.inside.at(&s.e, &qd, &s.qdd, &self.plant.around),
             phase,
             peaks: self.peaks,
         }

@@ -22,6 +22,8 @@ mod dynamics;
 mod gpu;
 #[path = "suite/inside.rs"]
 mod inside;
+#[path = "suite/joint_forces.rs"]
+mod joint_forces;
 #[path = "suite/layers.rs"]
 mod layers;
 #[path = "suite/least_reaction.rs"]

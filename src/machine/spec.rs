@@ -50,11 +50,26 @@ pub struct Payload {
     /// About its own centre of mass, kg m².
     #[serde(default)]
     pub inertia: f64,
+    /// Height of its centre of mass, and of a force on the end effector, along the drives' axis from the plane of
+    /// reference, m.
+    #[serde(default, skip_serializing_if = "is_nought")]
+    pub axial: f64,
 }
 
 impl Payload {
     fn is_none(&self) -> bool {
         *self == Self::default()
+    }
+
+    /// Both held together: masses add, and the height is that of the common centre of mass.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        let mass = self.mass + other.mass;
+        let axial = match other.mass > 0.0 {
+            true => (self.mass * self.axial + other.mass * other.axial) / mass,
+            false => self.axial,
+        };
+        Self { mass, inertia: self.inertia + other.inertia, axial }
     }
 }
 
@@ -102,6 +117,10 @@ pub struct Link {
     /// Centre of mass off the link's axis, to the left of the direction root to tip, m.
     #[serde(default, skip_serializing_if = "is_nought")]
     pub com_normal: f64,
+    /// Height of its centre of mass along the drives' axis, from the plane of reference at B, m. The motion stays
+    /// plane; the offsets decide which moments tilt the base.
+    #[serde(default, skip_serializing_if = "is_nought")]
+    pub axial: f64,
 }
 
 fn forwards() -> i8 {

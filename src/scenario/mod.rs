@@ -329,8 +329,7 @@ impl Scenario {
     /// If the difference leaves no valid machine.
     pub fn plant_machine(&self) -> Result<Machine, MachineError> {
         let mut spec = self.machine.spec().clone();
-        spec.payload.mass += self.plant.payload.mass;
-        spec.payload.inertia += self.plant.payload.inertia;
+        spec.payload = spec.payload.and(self.plant.payload);
         Machine::new(spec)
     }
 }
