@@ -23,6 +23,7 @@ enum Command {
     #[cfg(feature = "record")]
     Headless(commands::Headless),
     Simulate(commands::Simulate),
+    Joints(commands::JointsCommand),
     Machines(commands::Machines),
     Check(commands::Check),
     Design(commands::Design),
@@ -54,6 +55,7 @@ fn main() -> ExitCode {
         #[cfg(feature = "record")]
         Some(Command::Headless(command)) => command.run(),
         Some(Command::Simulate(command)) => command.run(),
+        Some(Command::Joints(command)) => command.run(),
         Some(Command::Machines(command)) => command.run(),
         Some(Command::Check(command)) => command.run(),
         Some(Command::Design(command)) => command.run(),

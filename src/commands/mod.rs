@@ -4,6 +4,7 @@
 //! bar to standard error. Exit status: 0 done, 1 the question has no answer, 2 wrong input.
 
 mod check;
+mod csv_file;
 mod design;
 mod dynamics;
 mod failure;
@@ -12,6 +13,7 @@ mod figures;
 #[cfg(feature = "record")]
 mod headless;
 mod input;
+mod joints;
 mod machines;
 mod open;
 mod output;
@@ -30,6 +32,7 @@ pub use figures::Figures;
 #[cfg(feature = "record")]
 pub use headless::Headless;
 pub use input::words;
+pub use joints::JointsCommand;
 pub use machines::Machines;
 pub use open::Open;
 pub use plan::Plan;

@@ -507,8 +507,9 @@ fn the_layout_comes_along_and_is_activated() {
     let layouts: Vec<_> = contents.stores.iter().filter(|(id, _)| id.kind() == StoreKind::Blueprint).collect();
     let [(_, chunks)] = layouts[..] else { panic!("one layout") };
     let views = chunks.iter().filter(|c| c.components().contains_component("ViewBlueprint:class_identifier".into()));
-    // Side by side: two scenes, two plots, events; each case: scene, joint space, tower, five plots, events, phase.
-    assert_eq!(views.count(), 5 + 2 * 10);
+    // Side by side: two scenes, two plots, events; each case: scene, joint space, tower, five plots, four of
+    // the inside, events, phase.
+    assert_eq!(views.count(), 5 + 2 * 14);
     assert!(chunks.iter().any(|c| *c.entity_path() == EntityPath::from("/viewport")));
 }
 
