@@ -1,6 +1,7 @@
 //! From a run and a frame to a [`Scene`]. A [`Stage`] holds what does not change from frame to frame.
 
 mod path;
+mod pins;
 mod reaction;
 mod target;
 mod workspace;
@@ -8,6 +9,7 @@ mod workspace;
 use path::Course;
 pub(super) use path::looks;
 pub(crate) use path::waypoints;
+use pins::{Bearing, bearings};
 pub(super) use target::target_handle;
 use workspace::{Inside, inside, roomiest};
 
@@ -38,6 +40,8 @@ pub struct ViewOptions {
     pub stroke: Vec<[f64; 2]>,
     /// What was asked for last and refused.
     pub refused: Option<Arc<Refused>>,
+    /// Arrows show what the pins carry.
+    pub pin_forces: bool,
 }
 
 impl Default for ViewOptions {
@@ -50,6 +54,7 @@ impl Default for ViewOptions {
             preview_b: None,
             stroke: Vec::new(),
             refused: None,
+            pin_forces: false,
         }
     }
 }
@@ -98,6 +103,7 @@ pub struct Stage {
     /// Curves in the workspace, and where folds turn back, before it is turned, m.
     inside: Vec<(Inside, Vec<Vector>)>,
     cusps: Vec<Vector>,
+    pins: Vec<Bearing>,
 }
 
 impl Stage {
@@ -121,6 +127,7 @@ impl Stage {
             inside: planes.as_ref().map_or_else(Vec::new, |p| inside(p)),
             cusps: planes.as_ref().map_or_else(Vec::new, |p| p.boundary().cusps().iter().map(|v| v.at).collect()),
             dexterity: Default::default(),
+            pins: bearings(machine),
             planes,
             boundary,
             compare_b: run.scenario().compare_b,
@@ -230,6 +237,9 @@ impl Stage {
         self.course(&mut scene, &palette, options);
         self.wishes(&mut scene, &palette, options);
         self.reaction(&mut scene, &palette, frame);
+        if options.pin_forces && !self.pins.is_empty() {
+            self.pin_forces(&mut scene, &palette, frame);
+        }
         self.target(&mut scene, &palette, frame, options);
         scene
     }

@@ -39,6 +39,7 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &mut Look, comm
             preview_b: look.preview,
             stroke: look.stroke.clone().unwrap_or_default(),
             refused: look.refused.as_ref().and_then(|r| r.curve.clone()),
+            ..ViewOptions::default()
         };
         let scene = Arc::new(views.scene(look.view, frame, &options, look.camera()));
         paint(ui, rect, &scene, look.camera());

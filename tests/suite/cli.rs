@@ -487,6 +487,19 @@ fn joints_tells_peaks_of_every_pin() {
     assert!(prints(&[&["joints", "case-1"][..], &run].concat()).contains("about x"));
 }
 
+/// Through q_3 = q_1 the least transmission is zero, even if no step lands on it, and that is said.
+#[test]
+fn joints_tells_that_a_change_point_is_passed() {
+    let through = ["joints", "case-3", "--set", "task.to=[0.3,0.3]"];
+    let got = object(&through);
+    let pair = &got["transmission"][1];
+    assert_eq!((&pair["drives"], &pair["closures"]), (&json!(["1", "3"]), &json!(["6-7"])));
+    assert_eq!((&pair["least"], &pair["passed"]), (&json!(0.0), &json!(1)));
+    assert!(got["pins"].as_array().expect("pins").iter().any(|p| p["peak"].as_f64().expect("a force") > 100.0));
+    assert!(prints(&through).contains("1 change point passed between steps"));
+    assert_eq!(object(&["joints", "case-3"])["transmission"][1]["passed"], 0);
+}
+
 #[test]
 fn joints_writes_forces_as_csv_and_says_why_there_are_none() {
     let folder = Folder::new();
