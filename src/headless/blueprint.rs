@@ -211,15 +211,15 @@ impl Layout<'_> {
 
     /// Pins in one plot, what tilts the base, and how near change points are.
     fn inside(&mut self, case: &Rehearsal) -> Result<Part, StoreError> {
-        let has = |group: &str| case.signals.iter().any(|s| s.group() == group);
+        let has = |path: &str| case.signals.iter().any(|s| path.split('/').next() == Some(s.group()));
         let plots = [
-            ("Pin forces  N", "pin", "pin/**", 1.6),
-            ("Tilting moment  N m", "tilt", "tilt/**", 1.0),
-            ("Transmission |sin(q_k − q_l)|", "transmission", "transmission/**", 1.0),
-            ("To the next change point  rad", "change_point", "change_point/distance", 1.0),
+            ("Pin forces  N", "pin/**", 1.6),
+            ("Tilting moment  N m", "tilt/**", 1.0),
+            ("Transmission |sin(q_k − q_l)|", "transmission/**", 1.0),
+            ("To the nearest change point  rad", "change_point/distance", 1.0),
         ];
         let (mut parts, mut shares) = (Vec::new(), Vec::new());
-        for (name, group, signals, share) in plots.into_iter().filter(|(_, group, ..)| has(group)) {
+        for (name, signals, share) in plots.into_iter().filter(|(_, signals, _)| has(signals)) {
             parts.push(self.plot(case, name, &[signals], None)?);
             shares.push(share);
         }

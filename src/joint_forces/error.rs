@@ -26,15 +26,17 @@ pub enum JointsError {
     },
     /// Links whose orientation nothing holds.
     #[error(
-        "no drive turns links {links}, and {closures} closures hold the orientation of two each: want {wanted} closures, \
-         as the forces are undetermined while links hang loose"
+        "{links} links that no drive turns, and {closures} closures, which hold the orientation of two each; nothing \
+         holds {loose}: want {wanted} closures"
     )]
     Missing {
-        /// Links that no drive turns.
-        links: String,
+        /// How many links no drive turns.
+        links: usize,
         /// How many closures there are.
         closures: usize,
-        /// How many there should be.
+        /// The links that are in no loop, or among which one too few is.
+        loose: String,
+        /// How many closures there should be.
         wanted: String,
     },
     /// More closures than hold links.
@@ -52,8 +54,8 @@ pub enum JointsError {
     },
     /// Closures redundant in one place and missing in another.
     #[error(
-        "closures {closures} do not hold the orientation of links {links} between them in any pose: want each of those \
-         links in a loop of its own need, as one place has a closure too many and another lacks it"
+        "closures {closures} do not hold the orientation of links {links} in any pose: want one for each parallelogram, \
+         where now one has too many and another none"
     )]
     Misplaced {
         /// Names of the pins.

@@ -159,7 +159,12 @@ pub fn steps(machine: &Machine, bodies: &[Body], closures: &[Closure]) -> Result
     };
     let loose = |rows: &[usize]| names(machine, rows.iter().map(|&j| bodies[j].link));
     if rows.len() > 2 * closures.len() {
-        return Err(JointsError::Missing { links: loose(&rows), closures: closures.len(), wanted });
+        let free: Vec<usize> = rows.iter().copied().filter(|&j| closures.iter().all(|c| lever(c, j) == 0.0)).collect();
+        let loose = match free.len() {
+            0 => format!("one of {}", loose(&rows)),
+            _ => loose(&free),
+        };
+        return Err(JointsError::Missing { links: rows.len(), closures: closures.len(), loose, wanted });
     }
     if rows.len() < 2 * closures.len() {
         return Err(JointsError::Redundant { closures: closures.len(), links: rows.len(), wanted });

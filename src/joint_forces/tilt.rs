@@ -88,11 +88,6 @@ impl AxialMoments {
         self.flat
     }
 
-    /// s_k, kg m².
-    pub fn weighted(&self, k: usize) -> Vector {
-        self.s[k]
-    }
-
     /// Largest |s_k − z̄ g_k|, kg m²: 0 where motion transmits no couple that tilts, force balanced or not.
     pub fn residual(&self) -> f64 {
         self.couple[..self.drives].iter().fold(0.0, |m, s| m.max(s.norm()))
