@@ -56,7 +56,7 @@ impl Forces {
 /// The most closures solved together: each holds two links, so 3 pins each beside one at B.
 const MOST: usize = MAX_PINS / 3;
 
-/// Up to [`MOST`] forces, and for each closure of the block its place.
+/// Closure forces of a block, in its order.
 type Block = [Vector; MOST];
 
 impl Joints {
