@@ -68,6 +68,7 @@
 //! |---|---|---|
 //! | words | [`planar`] | vectors as x + iy, values per drive |
 //! | machine | [`machine`], [`kinematics`], [`dynamics`] | links, constants g, C, J, Eqs (1)–(6) |
+//! | inside | [`joint_forces`] | pins, change points, what tilts the base |
 //! | methods | [`balance`], [`reactionless`], [`pose_constant`], [`plan`], [`control`] | Eqs (7)–(16), paths, time laws, prices, feedback |
 //! | motion | [`frame`], [`simulation`], [`signals`] | one instant, one step, one table |
 //! | path | [`scenario`], [`session`] | files, edits, undo, replay |
@@ -87,6 +88,7 @@ pub mod files;
 pub mod frame;
 #[cfg(feature = "record")]
 pub mod headless;
+pub mod joint_forces;
 pub mod keys;
 pub mod kinematics;
 pub mod machine;

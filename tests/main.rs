@@ -28,6 +28,8 @@ mod given;
 mod gpu;
 #[path = "suite/inside.rs"]
 mod inside;
+#[path = "suite/joint_forces.rs"]
+mod joint_forces;
 #[path = "suite/layers.rs"]
 mod layers;
 #[path = "suite/least_reaction.rs"]

@@ -1,16 +1,16 @@
 //! `stillbase simulate`
 
-use std::io::{self, StdoutLock, Write};
 use std::num::NonZeroU64;
 use std::path::PathBuf;
 
 use clap::Args;
 use serde::{Serialize, Serializer};
-use stillbase::files::{NewFile, WriteError, check_new};
+use stillbase::files::check_new;
 use stillbase::frame::Frame;
 use stillbase::session::replay;
 use stillbase::signals::{Signal, signals};
 
+use super::csv_file::Csv;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, fixed, say, yes};
@@ -103,7 +103,8 @@ impl Simulate {
                 return;
             }
             if (self.output.is_some() || !self.format.json) && written.is_ok() {
-                written = self.csv(&mut csv, &table).and_then(|csv| csv.row(&table, frame));
+                let values = [frame.time].into_iter().chain(table.iter().map(|s| s.value(frame)));
+                written = self.csv(&mut csv, &table).and_then(|csv| csv.row(values));
             }
             if self.format.json {
                 time.push(frame.time);
@@ -142,11 +143,9 @@ impl Simulate {
         match begun {
             Some(csv) => Ok(csv),
             None => {
-                let sink = match &self.output {
-                    Some(file) => Sink::File(NewFile::create(file, self.force)?),
-                    None => Sink::Standard(io::stdout().lock()),
-                };
-                Ok(begun.insert(Csv::begin(sink, table)?))
+                let head = table.iter().map(|s| format!("{} {}", s.path, s.unit));
+                let head = ["time s".to_string()].into_iter().chain(head);
+                Ok(begun.insert(Csv::begin(self.output.as_deref(), self.force, head)?))
             }
         }
     }
@@ -155,78 +154,4 @@ impl Simulate {
 /// The value of a signal, zero without a sign.
 fn value(signal: &Signal, frame: &Frame) -> f64 {
     signal.value(frame) + 0.0
-}
-
-struct Csv {
-    writer: csv::Writer<Sink>,
-    row: Vec<f64>,
-}
-
-impl Csv {
-    fn begin(sink: Sink, table: &[Signal]) -> Result<Self, Failure> {
-        let mut csv = Self { writer: csv::Writer::from_writer(sink), row: Vec::with_capacity(table.len() + 1) };
-        let head = table.iter().map(|s| format!("{} {}", s.path, s.unit));
-        let done = csv.writer.write_record(["time s".to_string()].into_iter().chain(head));
-        csv.checked(done)?;
-        Ok(csv)
-    }
-
-    fn row(&mut self, table: &[Signal], frame: &Frame) -> Result<(), Failure> {
-        self.row.clear();
-        self.row.push(frame.time);
-        self.row.extend(table.iter().map(|s| value(s, frame)));
-        let done = self.writer.serialize(&self.row);
-        self.checked(done)
-    }
-
-    fn checked(&self, done: Result<(), csv::Error>) -> Result<(), Failure> {
-        done.map_err(|e| match e.into_kind() {
-            csv::ErrorKind::Io(e) => self.writer.get_ref().failure(e),
-            other => Failure::WrongInput(format!("CSV: {other:?}")),
-        })
-    }
-
-    fn finish(mut self) -> Result<(), Failure> {
-        let done = self.writer.flush();
-        done.map_err(|e| self.writer.get_ref().failure(e))?;
-        match self.writer.into_inner() {
-            Ok(Sink::File(file)) => {
-                let name = file.path().display().to_string();
-                file.finish()?;
-                say(format!("wrote {name}"));
-            }
-            Ok(Sink::Standard(_)) => {}
-            Err(e) => return Err(Failure::standard_output(e.error())),
-        }
-        Ok(())
-    }
-}
-
-enum Sink {
-    File(NewFile),
-    Standard(StdoutLock<'static>),
-}
-
-impl Sink {
-    fn failure(&self, error: io::Error) -> Failure {
-        match self {
-            Self::File(file) => WriteError::Failed { file: file.path().into(), source: error }.into(),
-            Self::Standard(_) => Failure::standard_output(&error),
-        }
-    }
-}
-
-impl Write for Sink {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match self {
-            Self::File(file) => file.write(bytes),
-            Self::Standard(out) => out.write(bytes),
-        }
-    }
-    fn flush(&mut self) -> io::Result<()> {
-        match self {
-            Self::File(file) => file.flush(),
-            Self::Standard(out) => out.flush(),
-        }
-    }
 }

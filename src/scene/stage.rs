@@ -1,6 +1,7 @@
 //! From a run and a frame to a [`Scene`]. A [`Stage`] holds what does not change from frame to frame.
 
 mod path;
+mod pins;
 mod reaction;
 mod snapshots;
 mod target;
@@ -9,6 +10,7 @@ mod workspace;
 use path::Course;
 pub(super) use path::looks;
 pub(crate) use path::waypoints;
+use pins::{Bearing, bearings};
 pub use snapshots::Other;
 pub(super) use target::target_handle;
 use workspace::{Inside, inside, roomiest};
@@ -44,6 +46,8 @@ pub struct ViewOptions {
     pub snapshots: Vec<DriveAngles>,
     /// Other runs at the same instant.
     pub others: Vec<Other>,
+    /// Arrows show what the pins carry.
+    pub pin_forces: bool,
 }
 
 impl Default for ViewOptions {
@@ -58,6 +62,7 @@ impl Default for ViewOptions {
             refused: None,
             snapshots: Vec::new(),
             others: Vec::new(),
+            pin_forces: false,
         }
     }
 }
@@ -106,6 +111,7 @@ pub struct Stage {
     /// Curves in the workspace, and where folds turn back, before it is turned, m.
     inside: Vec<(Inside, Vec<Vector>)>,
     cusps: Vec<Vector>,
+    pins: Vec<Bearing>,
 }
 
 impl Stage {
@@ -129,6 +135,7 @@ impl Stage {
             inside: planes.as_ref().map_or_else(Vec::new, |p| inside(p)),
             cusps: planes.as_ref().map_or_else(Vec::new, |p| p.boundary().cusps().iter().map(|v| v.at).collect()),
             dexterity: Default::default(),
+            pins: bearings(machine),
             planes,
             boundary,
             compare_b: run.scenario().compare_b,
@@ -240,6 +247,9 @@ impl Stage {
         self.others(&mut scene, &palette, options);
         self.wishes(&mut scene, &palette, options);
         self.reaction(&mut scene, &palette, frame);
+        if options.pin_forces && !self.pins.is_empty() {
+            self.pin_forces(&mut scene, &palette, frame);
+        }
         self.target(&mut scene, &palette, frame, options);
         scene
     }

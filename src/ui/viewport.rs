@@ -49,6 +49,7 @@ pub fn show(
             refused: look.refused.as_ref().and_then(|r| r.curve.clone()),
             snapshots: if look.snapshots { snapshots(session) } else { Vec::new() },
             others: board.map_or_else(Vec::new, |board| others(board, frame.time)),
+            ..ViewOptions::default()
         };
         let scene = Arc::new(views.scene(look.view, frame, &options, look.camera()));
         paint(ui, rect, &scene, look.camera());

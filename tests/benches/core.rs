@@ -8,6 +8,7 @@ mod nine_body;
 
 use divan::{Bencher, black_box};
 use stillbase::dynamics::{Surroundings, inverse_with_wrench};
+use stillbase::joint_forces::Joints;
 use stillbase::machine::{Inertia, builtin};
 use stillbase::plan::least_reaction::Goal;
 use stillbase::plan::path::tip_line;
@@ -77,20 +78,44 @@ fn swinging() -> Samples {
     Samples::new(&(0..20_000).map(row).collect::<Vec<_>>()).expect("sound")
 }
 
-/// The same by a generic recursion over nine bodies.
-#[divan::bench]
-fn dynamics_by_recursive_newton_euler(bencher: Bencher) {
+/// The nine-link machine as nine rigid bodies, in gravity.
+fn twin() -> nine_body::NineBody {
     let machine = builtin("nine-link").expect("built in");
     let each = |f: fn(&stillbase::machine::Link) -> f64| std::array::from_fn(|j| f(&machine.links()[j]));
-    let twin = nine_body::NineBody {
+    nine_body::NineBody {
         length: std::array::from_fn(|j| machine.parts()[j].length),
         mass: each(|l| l.mass),
         inertia: each(|l| l.inertia),
         com: each(|l| l.com),
         gravity: [0.0, -9.81],
         payload: 0.0,
-    };
+    }
+}
+
+/// The same by a generic recursion over nine bodies.
+#[divan::bench]
+fn dynamics_by_recursive_newton_euler(bencher: Bencher) {
+    let twin = twin();
     bencher.bench_local(|| twin.recursive(black_box(Q), black_box(QD), black_box(QDD)));
+}
+
+/// Force of every pin of the nine-link machine, and its torques.
+#[divan::bench]
+fn pin_forces(bencher: Bencher) {
+    let joints = Joints::of(builtin("nine-link").expect("built in")).expect("determinate");
+    let around = Surroundings { gravity: Vector::new(0.0, -9.81), force: Vector::default() };
+    let (q, qd, qdd) = (DriveAngles::from(Q), PerDrive::from(QD), PerDrive::from(QDD));
+    bencher.bench_local(|| {
+        let e = black_box(&q).units();
+        joints.forces(&e, black_box(&qd), black_box(&qdd), &around)
+    });
+}
+
+/// The same by 27 equations in 27 numbers.
+#[divan::bench]
+fn pin_forces_by_27_equations(bencher: Bencher) {
+    let twin = twin();
+    bencher.bench_local(|| twin.solve(black_box(Q), black_box(QD), black_box(QDD)));
 }
 
 /// One step of case 3: order 4, control in every stage, peaks included.
