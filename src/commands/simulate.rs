@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::{Serialize, Serializer};
+use stillbase::audit::Audit;
 use stillbase::files::check_new;
 use stillbase::frame::Frame;
 use stillbase::session::replay;
@@ -52,7 +53,14 @@ struct Verdict {
     peak_torque: Vec<f64>,
     peak_base_force: f64,
     peak_base_moment: f64,
+    rms_base_force: f64,
+    rms_base_moment: f64,
+    base_shift: f64,
+    base_tilt: f64,
     reactionless: bool,
+    audit: Columns<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    audit_failed: Option<String>,
 }
 
 impl Verdict {
@@ -62,7 +70,13 @@ impl Verdict {
             peak_torque: last.peaks.torque.to_vec(),
             peak_base_force: last.peaks.force,
             peak_base_moment: last.peaks.moment,
+            rms_base_force: last.tally.force_rms(),
+            rms_base_moment: last.tally.moment_rms(),
+            base_shift: last.tally.shift,
+            base_tilt: last.tally.tilt,
             reactionless: last.peaks.is_reactionless(),
+            audit: Columns(last.audit.lamps(&last.peaks, &last.tally).map(|l| (l.name.to_owned(), l.value)).to_vec()),
+            audit_failed: Audit::fault(last).map(|lamp| lamp.to_string()),
         }
     }
 }
@@ -126,8 +140,10 @@ impl Simulate {
                 fixed(verdict.peak_base_force, 6),
                 yes(verdict.reactionless),
             ));
-            return Ok(());
+            return trusted(&scenario.name, verdict.audit_failed);
         }
+        let fault = verdict.audit_failed.clone();
+        let name = scenario.name.clone();
         let answer = Answer {
             scenario: scenario.name,
             units: Columns(table.iter().map(|s| (s.path.clone(), s.unit)).collect()),
@@ -135,7 +151,8 @@ impl Simulate {
             signals: Columns(table.iter().map(|s| s.path.clone()).zip(columns).collect()),
             verdict,
         };
-        self.format.print(&answer, |_| String::new())
+        self.format.print(&answer, |_| String::new())?;
+        trusted(&name, fault)
     }
 
     /// Where rows go; begins it with a head.
@@ -148,6 +165,14 @@ impl Simulate {
                 Ok(begun.insert(Csv::begin(self.output.as_deref(), self.force, head)?))
             }
         }
+    }
+}
+
+/// Fails if an audit has: the figures stand there, but they are no answer.
+fn trusted(scenario: &str, fault: Option<String>) -> Result<(), Failure> {
+    match fault {
+        Some(why) => Err(Failure::no_answer(format!("{scenario}: audit failed: {why}; want a smaller step"))),
+        None => Ok(()),
     }
 }
 

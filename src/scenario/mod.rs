@@ -136,8 +136,9 @@ pub enum ScenarioError {
 /// How many of the scenarios that come along are the paper's cases; they stand first.
 const CASES: usize = 3;
 
-/// The scenarios that come along: the paper's three cases, and what planning can do besides.
-const BUILTIN: [(&str, &str); 7] = [
+/// The scenarios that come along: the paper's three cases, what planning can do besides, and plants and bases that are
+/// not ideal.
+const BUILTIN: [(&str, &str); 12] = [
     ("case-1", include_str!("../../assets/scenarios/case-1.toml")),
     ("case-2", include_str!("../../assets/scenarios/case-2.toml")),
     ("case-3", include_str!("../../assets/scenarios/case-3.toml")),
@@ -145,6 +146,11 @@ const BUILTIN: [(&str, &str); 7] = [
     ("change-b", include_str!("../../assets/scenarios/change-b.toml")),
     ("least-reaction", include_str!("../../assets/scenarios/least-reaction.toml")),
     ("drift", include_str!("../../assets/scenarios/drift.toml")),
+    ("spacecraft", include_str!("../../assets/scenarios/spacecraft.toml")),
+    ("bench-top", include_str!("../../assets/scenarios/bench-top.toml")),
+    ("pick-up", include_str!("../../assets/scenarios/pick-up.toml")),
+    ("friction", include_str!("../../assets/scenarios/friction.toml")),
+    ("wheel", include_str!("../../assets/scenarios/wheel.toml")),
 ];
 
 impl Scenario {
