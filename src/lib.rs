@@ -69,7 +69,8 @@
 //! | words | [`planar`] | vectors as x + iy, values per drive |
 //! | machine | [`machine`], [`kinematics`], [`dynamics`] | links, constants g, C, J, Eqs (1)–(6) |
 //! | methods | [`balance`], [`reactionless`], [`pose_constant`], [`plan`], [`control`] | Eqs (7)–(16), paths, time laws, prices, feedback |
-//! | motion | [`frame`], [`simulation`], [`signals`] | one instant, one step, one table |
+//! | motion | [`frame`], [`simulation`], [`signals`], [`spectrum`] | one instant, one step, one table, its frequencies |
+//! | study | [`tolerance`] | random machines around a nominal one |
 //! | path | [`scenario`], [`session`] | files, edits, undo, replay |
 //! | picture | [`scene`] | plain data to draw, cameras, palette |
 //! | devices | `render` (feature `render`), `ui` (feature `ui`) | wgpu; egui |
@@ -98,6 +99,8 @@ pub mod scene;
 pub mod session;
 pub mod signals;
 pub mod simulation;
+pub mod spectrum;
+pub mod tolerance;
 #[cfg(feature = "ui")]
 pub mod ui;
 #[cfg(feature = "window")]

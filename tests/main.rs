@@ -61,6 +61,8 @@ mod sincos;
 mod support;
 #[path = "suite/timing.rs"]
 mod timing;
+#[path = "suite/tolerance.rs"]
+mod tolerance;
 #[path = "suite/trace.rs"]
 mod trace;
 #[path = "suite/views.rs"]

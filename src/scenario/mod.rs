@@ -12,6 +12,7 @@ use thiserror::Error;
 use crate::control::Gains;
 use crate::machine::{self, FileError, Machine, MachineError, MachineSpec, Payload};
 use crate::session::TimedEdit;
+use crate::tolerance::Tolerance;
 
 pub use task::{Change, Corners, Least, MAX_POINTS, Shape, Task, TaskKind, Value};
 
@@ -38,6 +39,8 @@ pub struct Scenario {
     pub compare_b: Option<f64>,
     /// Time that a headless run covers, s; by default that of the planned motion.
     pub duration: Option<f64>,
+    /// How machines that are built differ from it.
+    pub tolerance: Tolerance,
     /// What was done, in the order of steps.
     pub edits: Vec<TimedEdit>,
 }
@@ -72,6 +75,8 @@ struct File {
     control: Gains,
     #[serde(default)]
     plant: Plant,
+    #[serde(default, skip_serializing_if = "Tolerance::is_empty")]
+    tolerance: Tolerance,
     #[serde(default, rename = "edit", skip_serializing_if = "Vec::is_empty")]
     edits: Vec<TimedEdit>,
 }
@@ -228,6 +233,7 @@ impl Scenario {
             compare_b: file.compare_b,
             duration: file.duration,
             task: file.task,
+            tolerance: file.tolerance,
             edits: file.edits,
         };
         scenario.check(label)?;
@@ -304,8 +310,8 @@ impl Scenario {
             Some(known) if *known == self.machine => MachineRef::Name(self.machine.name().into()),
             _ => MachineRef::Inline(Box::new(self.machine.spec().clone())),
         };
-        let Self { name, title, machine: _, plant, task, gains, step, pose_acceleration, compare_b, duration, edits } =
-            self.clone();
+        let Self { name, title, machine: _, plant, task, gains, step, pose_acceleration, compare_b, .. } = self.clone();
+        let Self { duration, tolerance, edits, .. } = self.clone();
         let file = File {
             name: Some(name),
             title,
@@ -318,6 +324,7 @@ impl Scenario {
             task,
             control: gains,
             plant,
+            tolerance,
             edits,
         };
         toml::to_string(&file).expect("a scenario is plain data")

@@ -15,11 +15,13 @@ const LAYERS: &[&[&str]] = &[
     &["pose_constant"],
     &["plan"],
     &["control"],
+    &["spectrum"],
     &["frame"],
     &["simulation"],
     &["signals"],
-    // A scenario holds the edits of a saved session; a session starts from a scenario.
-    &["scenario", "session"],
+    // A scenario holds the edits of a saved session, and its tolerances; a session starts from a scenario, and so does
+    // the simulation of a varied machine.
+    &["scenario", "session", "tolerance"],
     &["scene"],
     &["render"],
     &["files"],
@@ -41,11 +43,13 @@ const CORE: &[&str] = &[
     "pose_constant",
     "plan",
     "control",
+    "spectrum",
     "frame",
     "simulation",
     "signals",
     "scenario",
     "session",
+    "tolerance",
     "scene",
 ];
 
@@ -66,7 +70,11 @@ const CRATES: &[(&str, &[&str])] = &[
     ("indicatif", &["commands"]),
     ("csv", &["commands"]),
     ("serde_json", &["commands"]),
-    ("toml", &["machine", "scenario", "session", "commands"]),
+    ("parquet", &["commands"]),
+    ("toml", &["machine", "scenario", "session", "tolerance", "commands"]),
+    ("rand_chacha", &["tolerance"]),
+    ("libm", &["tolerance"]),
+    ("realfft", &["spectrum"]),
     ("clarabel", &["plan"]),
 ];
 
