@@ -31,6 +31,8 @@ enum Command {
     Pose(commands::Pose),
     Plan(commands::Plan),
     Workspace(commands::Workspace),
+    Tolerance(commands::Tolerance),
+    Spectrum(commands::SpectrumOf),
     #[cfg(feature = "ui")]
     Figures(commands::Figures),
 }
@@ -62,6 +64,8 @@ fn main() -> ExitCode {
         Some(Command::Pose(command)) => command.run(),
         Some(Command::Plan(command)) => command.run(),
         Some(Command::Workspace(command)) => command.run(),
+        Some(Command::Tolerance(command)) => command.run(),
+        Some(Command::Spectrum(command)) => command.run(),
         #[cfg(feature = "ui")]
         Some(Command::Figures(command)) => command.run(),
     };

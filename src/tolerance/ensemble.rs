@@ -129,6 +129,19 @@ impl Ensemble {
         &self.nominal
     }
 
+    /// What the nominal machine comes to.
+    pub fn nominal_outcome(&self) -> Outcome {
+        let instants = self.nominal.len() as f64;
+        let peak = |f: fn(&(f64, Vector)) -> f64| self.nominal.iter().map(f).fold(0.0, f64::max);
+        let rms = |f: fn(&(f64, Vector)) -> f64| (self.nominal.iter().map(f).sum::<f64>() / instants).sqrt();
+        Outcome {
+            peak_moment: peak(|w| w.0.abs()),
+            peak_force: peak(|w| w.1.norm()),
+            rms_moment: rms(|w| w.0 * w.0),
+            rms_force: rms(|w| w.1.norm_sqr()),
+        }
+    }
+
     /// One machine of them, from its parameters' deviations in their order.
     ///
     /// # Errors

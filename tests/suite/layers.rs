@@ -82,7 +82,7 @@ const CRATES: &[(&str, &[&str])] = &[
 const EDGES: &[(&str, &[&str])] = &[
     ("std::time", &["render/shader.rs", "window.rs"]),
     ("std::env", &["main.rs", "window.rs"]),
-    ("std::thread", &["headless/store.rs"]),
+    ("std::thread", &["commands/tolerance/parallel.rs", "headless/store.rs"]),
     ("std::net", &[]),
     ("std::process", &["commands/failure.rs", "files.rs", "main.rs"]),
     // A machine and a scenario by file; everything else of the core takes text.
