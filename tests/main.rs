@@ -57,6 +57,8 @@ mod shaders;
 mod signals;
 #[path = "suite/sincos.rs"]
 mod sincos;
+#[path = "suite/spectrum.rs"]
+mod spectrum;
 #[path = "suite/support.rs"]
 mod support;
 #[path = "suite/timing.rs"]

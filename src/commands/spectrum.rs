@@ -10,7 +10,7 @@ use stillbase::spectrum::{Limit, Spectrum, SpectrumError, Verdict, Window};
 
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, Table, fixed, say, yes};
+use super::output::{Format, Table, fixed, say, shown, yes};
 
 /// Say at which frequencies a run shakes its base, and whether that keeps within jitter limits
 ///
@@ -186,7 +186,7 @@ fn text(answer: &Answer, spectra: &Axes<Spectrum>) -> String {
         let lines = spectrum.frequency.iter().zip(&spectrum.density);
         let (at, most) = lines.max_by(|a, b| a.1.total_cmp(b.1)).map_or((0.0, 0.0), |(f, d)| (*f, *d));
         let frequencies = [at, below(spectrum, 0.5), below(spectrum, 0.99)].map(|f| fixed(f, 3));
-        let row = [name.to_owned(), unit.to_owned(), fixed(spectrum.rms(), 6), fixed(most, 6)];
+        let row = [name.to_owned(), unit.to_owned(), shown(spectrum.rms(), 6), shown(most, 6)];
         table.row(row.into_iter().chain(frequencies));
     }
     let (samples, step, resolution) = (answer.samples, answer.step, fixed(answer.resolution, 3));
@@ -196,7 +196,7 @@ fn text(answer: &Answer, spectra: &Axes<Spectrum>) -> String {
     let mut any = false;
     for (name, unit, axis) in answer.axes.named() {
         let Some(v) = &axis.limit else { continue };
-        let numbers = [fixed(v.frequency, 3), fixed(v.density, 6), fixed(v.limit, 6), fixed(v.ratio, 3)];
+        let numbers = [fixed(v.frequency, 3), shown(v.density, 6), shown(v.limit, 6), shown(v.ratio, 3)];
         let row = [name.to_owned(), format!("{unit}/√Hz"), yes(v.within).to_owned()];
         verdicts.row(row.into_iter().chain(numbers));
         any = true;

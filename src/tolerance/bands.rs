@@ -178,16 +178,17 @@ pub struct Gap {
     pub worst: f64,
     /// When, s.
     pub time: f64,
-    /// Share of the instants at which it is more than the tolerance of [`Agreement`].
+    /// Share of the instants at which it is more than [`Agreement`] tolerates.
     pub share: f64,
 }
 
 /// Where first order says something else than all orders do.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Agreement {
-    /// From how many standard deviations on two courses count as apart: 0.05, or four standard errors of the sampling
-    /// if that is more.
+    /// From how many standard deviations on two exact courses count as apart.
     pub tolerance: f64,
+    /// The same where one is sampled: no less than four standard errors.
+    pub sampled_tolerance: f64,
     /// Mean of n_B: nominal against exact.
     pub moment_mean: Gap,
     /// Deviation of n_B: first-order against exact.
@@ -206,8 +207,9 @@ impl Agreement {
     /// Of bands.
     pub fn of(bands: &Bands) -> Self {
         let Bands { time, samples, moment, force } = bands;
-        let tolerance = (4.0 / (*samples as f64).sqrt()).max(0.05);
-        let gap = |a: &[f64], b: &[f64], deviation: &[f64]| {
+        let tolerance = 0.05;
+        let sampled_tolerance = (4.0 / (*samples as f64).sqrt()).max(tolerance);
+        let gap = |a: &[f64], b: &[f64], deviation: &[f64], tolerance: f64| {
             // Where the machines hardly differ there is nothing to be apart by.
             let least = 1e-6 * deviation.iter().fold(0.0_f64, |m, d| m.max(*d));
             let mut gap = Gap::default();
@@ -222,12 +224,18 @@ impl Agreement {
         };
         Self {
             tolerance,
-            moment_mean: gap(&moment.nominal, &moment.mean, &moment.deviation),
-            moment_deviation: gap(&moment.first_order_deviation, &moment.deviation, &moment.deviation),
-            force_rms: gap(&force.first_order_rms, &force.rms, &force.rms),
-            force_mean: gap(&force.nominal, &force.sampled_mean, &force.sampled_deviation),
-            force_deviation: gap(&force.first_order_deviation, &force.sampled_deviation, &force.sampled_deviation),
-            sampling: gap(&moment.sampled_mean, &moment.mean, &moment.deviation),
+            sampled_tolerance,
+            moment_mean: gap(&moment.nominal, &moment.mean, &moment.deviation, tolerance),
+            moment_deviation: gap(&moment.first_order_deviation, &moment.deviation, &moment.deviation, tolerance),
+            force_rms: gap(&force.first_order_rms, &force.rms, &force.rms, tolerance),
+            force_mean: gap(&force.nominal, &force.sampled_mean, &force.sampled_deviation, sampled_tolerance),
+            force_deviation: gap(
+                &force.first_order_deviation,
+                &force.sampled_deviation,
+                &force.sampled_deviation,
+                sampled_tolerance,
+            ),
+            sampling: gap(&moment.sampled_mean, &moment.mean, &moment.deviation, sampled_tolerance),
         }
     }
 }

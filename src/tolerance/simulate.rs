@@ -13,21 +13,24 @@ pub fn simulate(planned: &Run, plant: &Machine) -> Result<Outcome, Refusal> {
     let scenario = planned.scenario();
     let guide = Guide::Motion { motion: planned.plan().motion.clone(), start: 0.0 };
     let mut simulation = Simulation::new(&scenario.machine, plant, scenario.gains, scenario.step, guide);
-    let (mut steps, mut moment, mut force) = (0.0, 0.0, 0.0);
+    let last = planned.last_step();
+    let (mut weights, mut moment, mut force) = (0.0, 0.0, 0.0);
     loop {
         let frame = simulation.frame();
         if !frame.is_finite() {
             return Err(Refusal::Diverged { time: frame.time });
         }
-        moment += frame.base_moment().powi(2);
-        force += frame.wrench.dynamic.force.norm_sqr();
-        steps += 1.0;
-        if frame.step >= planned.last_step() {
+        // The trapezoidal rule: the ends count half.
+        let weight = if frame.step == 0 || frame.step >= last { 0.5 } else { 1.0 };
+        moment += weight * frame.base_moment().powi(2);
+        force += weight * frame.wrench.dynamic.force.norm_sqr();
+        weights += weight;
+        if frame.step >= last {
             return Ok(Outcome {
                 peak_moment: frame.peaks.moment,
                 peak_force: frame.peaks.force,
-                rms_moment: f64::sqrt(moment / steps),
-                rms_force: f64::sqrt(force / steps),
+                rms_moment: f64::sqrt(moment / weights),
+                rms_force: f64::sqrt(force / weights),
             });
         }
         simulation.advance();

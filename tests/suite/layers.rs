@@ -90,6 +90,7 @@ const EDGES: &[(&str, &[&str])] = &[
         "std::fs",
         &[
             "commands/input.rs",
+            "commands/tolerance/rows.rs",
             "files.rs",
             "machine/file.rs",
             "render/offscreen.rs",

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use stillbase::tolerance::Outcome;
 
-use super::super::failure::Failure;
 use super::OUTCOMES;
 use super::rows::{Head, Part, Study, Writer};
+use crate::commands::failure::Failure;
 
 /// Puts parts together, in whatever order they are named, and gives what their machines come to.
 ///

@@ -20,9 +20,9 @@ use stillbase::tolerance::{
 use self::parallel::Mode;
 use self::report::{Answer, Compared, Distributions, Drawn, Merged, Yields};
 use self::rows::{Head, Study, Writer};
-use super::failure::Failure;
-use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, say};
+use crate::commands::failure::Failure;
+use crate::commands::input::{DEFAULT_SCENARIO, Settings, scenario};
+use crate::commands::output::{Format, say};
 
 /// Vary a machine within its tolerances and see what its base feels
 ///
@@ -47,13 +47,13 @@ deviation, mean_deviation, cut}]; nominal {peak_moment, peak_force, rms_moment, 
 rms_moment, rms_force {mean, deviation, quantiles {levels, values}, histogram {edges, counts}}; yield {moment, force,
 both: {limit, good, of, share, interval}}; shares {parameters [{key, unit, deviation, moment_slope, force_slope,
 moment_share, force_share}], moment_first_order, force_first_order}; bands {time, samples, moment, force} with percentiles
-5, 25, 50, 75, 95; agreement {tolerance; moment_mean, moment_deviation, force_rms, force_mean, force_deviation, sampling:
+5, 25, 50, 75, 95; agreement {tolerance, sampled_tolerance; moment_mean, moment_deviation, force_rms, force_mean, force_deviation, sampling:
 {worst, time, share}}; against_tracking with --simulate; file with -o. With --merge: file, samples, seed, the four
 distributions, yield.")]
 pub struct Tolerance {
-    /// A built-in scenario (case-1, case-2, case-3) or a TOML file
-    #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
-    scenario: String,
+    /// A built-in scenario (case-1, case-2, case-3) or a TOML file; by default case-3
+    #[arg(value_name = "SCENARIO")]
+    scenario: Option<String>,
     /// How many machines; by default the scenario's number, or 100000, or 1000 with --simulate
     #[arg(long, value_name = "N", value_parser = samples)]
     samples: Option<u64>,
@@ -83,7 +83,7 @@ pub struct Tolerance {
     /// Put these parts together into -o, in any order
     #[arg(
         long, value_name = "PART", num_args = 1.., requires = "output",
-        conflicts_with_all = ["samples", "seed", "spreads", "instants", "shard", "simulate", "pairs"]
+        conflicts_with_all = ["scenario", "samples", "seed", "spreads", "instants", "shard", "simulate", "pairs"]
     )]
     merge: Vec<PathBuf>,
     /// Write every machine to this file
@@ -170,7 +170,8 @@ impl Tolerance {
     }
 
     fn study(&self) -> Result<(), Failure> {
-        let (scenario, others) = settled(&scenario(&self.scenario, &self.settings)?)?;
+        let name = self.scenario.as_deref().unwrap_or(DEFAULT_SCENARIO);
+        let (scenario, others) = settled(&scenario(name, &self.settings)?)?;
         if others > 0 {
             say(format!("note: {}: {others} edits in motion are left out; the planned motion counts", scenario.name));
         }

@@ -3,8 +3,8 @@
 use serde::Serialize;
 use stillbase::tolerance::{Agreement, Bands, Histogram, Outcome, Parameter, Quantiles, Shares, Yield};
 
-use super::super::output::{Table, fixed};
 use super::rows::Study;
+use crate::commands::output::{Table, fixed, shown};
 
 /// A quantity over all machines.
 #[derive(Serialize)]
@@ -64,8 +64,8 @@ impl Distributions {
         ];
         for (name, d, of) in rows {
             let q = &d.quantiles.values;
-            let nominal = nominal.map_or_else(|| "–".into(), |o| fixed(of(o), 6));
-            let numbers = [d.mean, d.deviation, q[0], q[2], q[4], q[6], q[7], q[8]].map(|x| fixed(x, 6));
+            let nominal = nominal.map_or_else(|| "–".into(), |o| shown(of(o), 6));
+            let numbers = [d.mean, d.deviation, q[0], q[2], q[4], q[6], q[7], q[8]].map(|x| shown(x, 6));
             table.row([name.to_owned(), nominal].into_iter().chain(numbers));
         }
         table
@@ -114,7 +114,7 @@ impl Yields {
         for (name, kept) in rows {
             let Some(Kept { limit, count }) = kept else { continue };
             let percent = |x: f64| fixed(100.0 * x, 3);
-            let limit = limit.map_or_else(String::new, |x| fixed(x, 6));
+            let limit = limit.map_or_else(String::new, |x| shown(x, 6));
             let between = format!("{} … {}", percent(count.interval[0]), percent(count.interval[1]));
             table.row([name.to_owned(), limit, count.good.to_string(), percent(count.share), between]);
             any = true;
@@ -267,6 +267,9 @@ impl From<Outcome> for Peaks {
     }
 }
 
+/// Fewer machines than this say nothing about means and deviations.
+const FEW: u64 = 100;
+
 /// Rows of the table of shares; the rest is one row.
 const SHOWN: usize = 12;
 
@@ -291,8 +294,7 @@ impl Answer {
         }
         text += &format!("\n{}\n{}", self.shares_table(), self.orders());
         for drawn in self.parameters.iter().filter(|d| d.cut > 0.0) {
-            let share =
-                if drawn.cut < 1e-4 { format!("{:.1e}", 100.0 * drawn.cut) } else { fixed(100.0 * drawn.cut, 3) };
+            let share = shown(100.0 * drawn.cut, 3);
             text += &format!("{}: {share} % of its distribution lies below 0 and is never drawn\n", drawn.key);
         }
         if let Some(c) = &self.against_tracking {
@@ -320,7 +322,7 @@ impl Answer {
         for s in shares.iter().take(SHOWN) {
             table.row([
                 s.key.clone(),
-                fixed(s.deviation, 6),
+                shown(s.deviation, 6),
                 s.unit.to_owned(),
                 fixed(s.moment_slope * s.deviation, 6),
                 percent(s.moment_share),
@@ -343,16 +345,20 @@ impl Answer {
         let mut table =
             Table::new(["first order against all", "worst, in σ", "at s", "of the time %", "verdict"]).with_words(4);
         let rows = [
-            ("mean of n_B: nominal, exact", &a.moment_mean),
-            ("deviation of n_B: first order, exact", &a.moment_deviation),
-            ("RMS of |f_B|: first order, exact", &a.force_rms),
-            ("mean of |f_B|: nominal, sampled", &a.force_mean),
-            ("deviation of |f_B|: first order, sampled", &a.force_deviation),
+            ("mean of n_B: nominal, exact", &a.moment_mean, a.tolerance),
+            ("deviation of n_B: first order, exact", &a.moment_deviation, a.tolerance),
+            ("RMS of |f_B|: first order, exact", &a.force_rms, a.tolerance),
+            ("mean of |f_B|: nominal, sampled", &a.force_mean, a.sampled_tolerance),
+            ("deviation of |f_B|: first order, sampled", &a.force_deviation, a.sampled_tolerance),
         ];
-        for (name, gap) in rows {
-            let verdict = if gap.worst <= a.tolerance { "agree" } else { "part" };
+        for (name, gap, tolerance) in rows {
+            let verdict = match gap.worst <= tolerance {
+                _ if name.ends_with("sampled") && self.bands.samples < FEW => "too few samples".into(),
+                true => "agree".to_owned(),
+                false => format!("part, by more than {} σ", fixed(tolerance, 2)),
+            };
             let numbers = [fixed(gap.worst, 4), fixed(gap.time, 3), fixed(100.0 * gap.share, 1)];
-            table.row([name.to_owned()].into_iter().chain(numbers).chain([verdict.to_owned()]));
+            table.row([name.to_owned()].into_iter().chain(numbers).chain([verdict]));
         }
         let explained = |x: f64| fixed(100.0 * x, 2);
         let mut text = format!(
@@ -361,7 +367,8 @@ impl Answer {
             explained(self.shares.moment_first_order),
             explained(self.shares.force_first_order),
         );
-        if a.force_mean.worst > a.tolerance || a.force_deviation.worst > a.tolerance {
+        let parts = [a.force_mean, a.force_deviation].iter().any(|gap| gap.worst > a.sampled_tolerance);
+        if parts && self.bands.samples >= FEW {
             text += "|f_B| is a norm: near a balanced machine its mean and deviation are not of first order, so read its \
                      percentiles and RMS.\n";
         }

@@ -17,7 +17,7 @@ use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 use stillbase::files::{NewFile, WriteError};
 
-use super::super::failure::Failure;
+use crate::commands::failure::Failure;
 
 /// Which study rows belong to. Its text heads the column of samples in a CSV file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
