@@ -56,7 +56,8 @@ impl Distributions {
     fn table(&self, nominal: Option<&Outcome>) -> Table {
         let head = ["", "nominal", "mean", "deviation", "least", "5 %", "50 %", "95 %", "99 %", "greatest"];
         let mut table = Table::new(head);
-        let rows: [(&str, &Distribution, fn(&Outcome) -> f64); 4] = [
+        type Row<'a> = (&'a str, &'a Distribution, fn(&Outcome) -> f64);
+        let rows: [Row; 4] = [
             ("peak |n_B| N m", &self.peak_moment, |o| o.peak_moment),
             ("RMS n_B N m", &self.rms_moment, |o| o.rms_moment),
             ("peak |f_B| N", &self.peak_force, |o| o.peak_force),
