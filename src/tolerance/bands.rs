@@ -64,13 +64,18 @@ pub struct ForceBand {
     pub percentiles: Vec<Vec<f64>>,
 }
 
-/// The most machines that percentiles are taken of: all their courses are kept at once.
+/// The most machines that percentiles are taken of.
 const MOST: u64 = 4096;
 
+/// All their courses are kept at once: this many numbers, but no fewer than a hundred machines.
+const KEPT: u64 = 4_000_000;
+
 impl Bands {
-    /// Of an ensemble, percentiles of its first `samples` machines, or 4096 if that is less.
+    /// Of an ensemble, percentiles of its first `samples` machines, or 4096 if that is less, or fewer where instants are
+    /// many.
     pub fn of(ensemble: &Ensemble, samples: u64) -> Self {
-        let (count, samples) = (ensemble.time().len(), samples.clamp(1, MOST));
+        let count = ensemble.time().len();
+        let samples = samples.clamp(1, MOST).min((KEPT / count as u64).max(100));
         let (mut moments, mut forces) = (vec![Vec::new(); count], vec![Vec::new(); count]);
         let mut sampler = ensemble.sampler();
         for chunk in 0..samples.div_ceil(CHUNK as u64) {

@@ -73,7 +73,7 @@ struct Table {
 }
 
 impl Ensemble {
-    /// Machines around `machine`, drawn by `seed`, on `instants` of a motion.
+    /// Machines around `machine`, drawn by `seed`, on `instants` of a motion, at least one.
     ///
     /// # Errors
     /// If nothing varies, a key or spread is wrong, or a length cannot vary alone.
@@ -84,7 +84,7 @@ impl Ensemble {
         spreads: &BTreeMap<String, Spread>,
         seed: u64,
     ) -> Result<Self, ToleranceError> {
-        let (n, parameters) = (machine.drives(), parameters(machine, spreads)?);
+        let (n, parameters, instants) = (machine.drives(), parameters(machine, spreads)?, instants.max(1));
         let bodies = constants::bodies(machine, &parameters).map_err(ToleranceError::Machine)?;
         let moments = Moments::of(n, &bodies, &parameters);
         let step = motion.duration() / instants as f64;

@@ -71,7 +71,7 @@ pub struct Tolerance {
     /// The greatest peak dynamic |f_B| that will do, N
     #[arg(long, value_name = "X", value_parser = limit)]
     limit_force: Option<f64>,
-    /// Instants of the motion that are looked at
+    /// Instants of the motion that are looked at: peaks between them go unseen, so take more for long motions
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(2..=100_000))]
     instants: u32,
     /// Only the i-th of n equal parts of the samples, i from 1

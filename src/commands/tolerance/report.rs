@@ -301,8 +301,8 @@ impl Answer {
         if let Some(c) = &self.against_tracking {
             let percent = |ratio: f64| format!("{:+.2} %", 100.0 * (ratio - 1.0));
             text += &format!(
-                "Simulated against perfect tracking: mean peak |n_B| {}, differing by at most {} N m; mean peak |f_B| {}, by \
-                 at most {} N\n",
+                "Simulated at every step against perfect tracking at the instants: mean peak |n_B| {}, differing by at most \
+                 {} N m; mean peak |f_B| {}, by at most {} N\n",
                 percent(c.peak_moment_ratio),
                 fixed(c.peak_moment_difference, 6),
                 percent(c.peak_force_ratio),
