@@ -35,6 +35,8 @@ enum Command {
     Workspace(commands::Workspace),
     Import(commands::Import),
     Export(commands::Export),
+    Tolerance(commands::Tolerance),
+    Spectrum(commands::SpectrumOf),
     #[cfg(feature = "ui")]
     Figures(commands::Figures),
 }
@@ -71,6 +73,8 @@ fn main() -> ExitCode {
         Some(Command::Workspace(command)) => command.run(),
         Some(Command::Import(command)) => command.run(),
         Some(Command::Export(command)) => command.run(),
+        Some(Command::Tolerance(command)) => command.run(),
+        Some(Command::Spectrum(command)) => command.run(),
         #[cfg(feature = "ui")]
         Some(Command::Figures(command)) => command.run(),
     };

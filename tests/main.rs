@@ -67,10 +67,14 @@ mod shaders;
 mod signals;
 #[path = "suite/sincos.rs"]
 mod sincos;
+#[path = "suite/spectrum.rs"]
+mod spectrum;
 #[path = "suite/support.rs"]
 mod support;
 #[path = "suite/timing.rs"]
 mod timing;
+#[path = "suite/tolerance.rs"]
+mod tolerance;
 #[path = "suite/trace.rs"]
 mod trace;
 #[path = "suite/views.rs"]

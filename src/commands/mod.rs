@@ -25,6 +25,8 @@ mod plan;
 mod pose;
 mod reach;
 mod simulate;
+mod spectrum;
+mod tolerance;
 mod workspace;
 
 pub use check::Check;
@@ -46,4 +48,6 @@ pub use plan::Plan;
 pub use pose::Pose;
 pub use reach::Reach;
 pub use simulate::Simulate;
+pub use spectrum::SpectrumOf;
+pub use tolerance::Tolerance;
 pub use workspace::Workspace;

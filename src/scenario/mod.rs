@@ -14,6 +14,7 @@ use crate::machine::{self, FileError, Machine, MachineError, MachineSpec};
 use crate::plant::{Base, Plant, is_default};
 use crate::session::TimedEdit;
 use crate::simulation::Setup;
+use crate::tolerance::Tolerance;
 
 pub use task::{Change, Corners, Least, MAX_POINTS, Shape, Task, TaskKind, Value};
 
@@ -42,6 +43,8 @@ pub struct Scenario {
     pub compare_b: Option<f64>,
     /// Time that a headless run covers, s; by default that of the planned motion.
     pub duration: Option<f64>,
+    /// How machines that are built differ from it.
+    pub tolerance: Tolerance,
     /// What was done, in the order of steps.
     pub edits: Vec<TimedEdit>,
 }
@@ -69,6 +72,8 @@ struct File {
     plant: Plant,
     #[serde(default, skip_serializing_if = "is_default")]
     base: Base,
+    #[serde(default, skip_serializing_if = "Tolerance::is_empty")]
+    tolerance: Tolerance,
     #[serde(default, rename = "edit", skip_serializing_if = "Vec::is_empty")]
     edits: Vec<TimedEdit>,
 }
@@ -237,6 +242,7 @@ impl Scenario {
             compare_b: file.compare_b,
             duration: file.duration,
             task,
+            tolerance: file.tolerance,
             edits: file.edits,
         };
         scenario.check(label)?;
@@ -315,6 +321,7 @@ impl Scenario {
             pose_acceleration,
             compare_b,
             duration,
+            tolerance,
             edits,
         } = self.clone();
         let file = File {
@@ -330,9 +337,19 @@ impl Scenario {
             control,
             plant,
             base,
+            tolerance,
             edits,
         };
         toml::to_string(&file).expect("a scenario is plain data")
+    }
+
+    /// The machine that moves, with what it holds at the start.
+    ///
+    /// # Errors
+    /// If what differs leaves no valid machine.
+    pub fn plant_machine(&self) -> Result<Machine, MachineError> {
+        let (machine, load) = (self.plant.machine(&self.machine)?, &self.plant.payload);
+        if load.is_held(0.0, 0.5 * self.step) { load.held_by(&machine) } else { Ok(machine) }
     }
 
     /// What a simulation of it is made of.

@@ -112,8 +112,15 @@ impl Simulation {
     /// # Errors
     /// If what differs in the plant leaves no valid machine, or the base is one too many to turn.
     pub fn new(setup: &Setup, guide: Guide) -> Result<Self, MachineError> {
+        Self::of_machine(setup, setup.plant.machine(setup.model)?, guide)
+    }
+
+    /// The same with a machine that moves in place of the one that the plant makes of the model.
+    ///
+    /// # Errors
+    /// If it cannot hold the plant's payload, or the base is one too many to turn.
+    pub fn of_machine(setup: &Setup, machine: Machine, guide: Guide) -> Result<Self, MachineError> {
         let reference = guide.at(0.0, 0.0);
-        let machine = setup.plant.machine(setup.model)?;
         let (plant, load) = (setup.plant, setup.plant.payload);
         let force = Vector::new(plant.force[0], plant.force[1]);
         let start = &reference.q;

@@ -7,7 +7,7 @@
 mod nine_body;
 
 use divan::{Bencher, black_box};
-use stillbase::dynamics::{Surroundings, inverse_with_wrench};
+use stillbase::dynamics::{Surroundings, base_wrench, inverse_with_wrench};
 use stillbase::joint_forces::Joints;
 use stillbase::machine::{Inertia, builtin};
 use stillbase::plan::least_reaction::Goal;
@@ -22,6 +22,7 @@ use stillbase::scenario::Scenario;
 use stillbase::scene::stage::ViewOptions;
 use stillbase::scene::views::{ViewKind, Views};
 use stillbase::session::{Run, Session, replay};
+use stillbase::tolerance::{CHUNK, Ensemble, default_spreads};
 
 fn main() {
     divan::main();
@@ -317,4 +318,60 @@ fn feasibility_of_a_path_of_1000_points(bencher: Bencher) {
     let curve = Curve::spline(&points, false).expect("apart");
     let start = map.poses(points[0], 2.4)[0].a;
     bencher.bench_local(|| trace::walk(&map, black_box(&curve), 2.4, start, Rule::default(), 1000).expect("inside"));
+}
+
+/// A million machines, or so: 200 instants of case 3, every number that varies by default.
+const MACHINES: u64 = 1_000_000 / CHUNK as u64 * CHUNK as u64;
+
+fn ensemble() -> Ensemble {
+    let run = Run::new(&Scenario::builtin("case-3").expect("built in")).expect("it starts");
+    let machine = builtin("nine-link").expect("built in");
+    Ensemble::new(machine, &run.plan().motion, 200, &default_spreads(), 1).expect("it varies")
+}
+
+/// Peaks and root mean squares of a million varied machines on two threads.
+#[divan::bench(sample_count = 10, sample_size = 1)]
+fn tolerance_of_a_million_machines(bencher: Bencher) {
+    let ensemble = ensemble();
+    let chunks = MACHINES / CHUNK as u64;
+    bencher.bench_local(|| {
+        let worst = |from: u64, to: u64| {
+            let mut sampler = ensemble.sampler();
+            (from..to).fold(0.0_f64, |m, c| sampler.outcomes(c).iter().fold(m, |m, o| m.max(o.peak_moment)))
+        };
+        std::thread::scope(|scope| {
+            let other = scope.spawn(|| worst(0, chunks / 2));
+            worst(chunks / 2, chunks).max(other.join().expect("no panic"))
+        })
+    });
+}
+
+/// The same the straightforward way, for a thousandth of the machines and on one thread: each machine built and
+/// checked, its constants summed, the dynamics at every instant. What is drawn is the same.
+#[divan::bench(sample_count = 10, sample_size = 1)]
+fn tolerance_of_1024_machines_one_by_one(bencher: Bencher) {
+    let ensemble = ensemble();
+    let mut sampler = ensemble.sampler();
+    let count = ensemble.parameters().len();
+    bencher.bench_local(|| {
+        let mut worst = 0.0_f64;
+        for chunk in 0..1024 / CHUNK as u64 {
+            sampler.draw(chunk);
+            for machine in 0..CHUNK {
+                let deviations: Vec<f64> = (0..count).map(|p| sampler.deviations()[p][machine]).collect();
+                let machine = ensemble.machine_of(&deviations).expect("possible");
+                let inertia = Inertia::of(&machine);
+                let around = Surroundings { gravity: machine.gravity(), force: Vector::default() };
+                let (mut squares, mut peak) = (0.0, [0.0_f64; 2]);
+                for r in ensemble.references() {
+                    let wrench = base_wrench(&inertia, &r.q.units(), &r.qd, &r.qdd, &around);
+                    let (n, f) = (wrench.total().moment, wrench.dynamic.force.norm());
+                    squares += n * n + f * f;
+                    peak = [peak[0].max(n.abs()), peak[1].max(f)];
+                }
+                worst = worst.max(black_box(peak)[0] + black_box(squares) * 0.0);
+            }
+        }
+        worst
+    });
 }
