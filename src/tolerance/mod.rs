@@ -17,6 +17,7 @@
 //! | random machines, a million a second | [`Ensemble`], [`Sampler`], [`Outcome`] |
 //! | means and deviations over time, exact, first-order and sampled | [`Bands`], [`Agreement`] |
 //! | which tolerance matters | [`Share`] |
+//! | all of it for a run, as a window shows it | [`Study`] |
 //! | quantiles, histograms, yield | [`Quantiles`], [`Histogram`], [`Yield`] |
 
 mod bands;
@@ -30,6 +31,7 @@ mod shares;
 mod simulate;
 mod spread;
 mod statistics;
+mod study;
 
 pub use bands::{Agreement, Bands, ForceBand, Gap, MomentBand, PERCENTILES};
 pub use deviate::{CHUNK, inverse_normal};
@@ -40,3 +42,4 @@ pub use shares::{Share, Shares};
 pub use simulate::simulate;
 pub use spread::{Amount, MAX_SAMPLES, Spread, Tolerance, default_spreads};
 pub use statistics::{Histogram, Quantiles, Yield};
+pub use study::{INSTANTS, Study};
