@@ -8,7 +8,7 @@ use crate::scenario::Scenario;
 use crate::scene::Measure;
 use crate::session::Session;
 
-const KEYS: [(&str, &str); 22] = [
+const KEYS: [(&str, &str); 24] = [
     ("Space", "play, pause, start over"),
     ("← →", "one step back, one step on"),
     ("Shift ← →", "ten steps"),
@@ -17,6 +17,7 @@ const KEYS: [(&str, &str); 22] = [
     ("V", "2D, 3D, joint space, tower of workspaces"),
     ("J", "shade the workspace by dexterity, one measure after the other"),
     ("F", "show everything"),
+    ("X", "exaggerate the motion of the base, or show it as it is"),
     ("L", "light or dark"),
     ("R", "record for the Rerun viewer"),
     ("Ctrl Z  Ctrl Y", "take back, bring back"),
@@ -26,6 +27,7 @@ const KEYS: [(&str, &str); 22] = [
     ("double click", "one more point of the path"),
     ("Delete", "leave out the point under the pointer"),
     ("P, then drag", "draw a path"),
+    ("Alt drag, or U, drag", "push the end effector, 20 N for each metre"),
     ("drag b ring", "the workspace turns"),
     ("drag plane, slice", "b, in joint space and in the tower"),
     ("drag elsewhere", "pan in 2D, else orbit; Shift pans"),
@@ -58,6 +60,7 @@ pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Co
         commands.push(match (&look.dialog, &look.stroke) {
             (Some(_), _) => Command::Dialog(None),
             (None, Some(_)) => Command::Draw(false),
+            (None, None) if look.pushing && !look.help => Command::Push(false),
             (None, None) => Command::Help(false),
         });
     }
@@ -78,6 +81,8 @@ pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Co
         (plain, Key::J, Command::Dexterity(Measure::after(look.dexterity))),
         (plain, Key::F, Command::Fit),
         (plain, Key::P, Command::Draw(look.stroke.is_none())),
+        (plain, Key::U, Command::Push(!look.pushing)),
+        (plain, Key::X, Command::Exaggerate(!look.exaggerate)),
         (plain, Key::L, Command::Theme(super::top::other(look.theme))),
         (plain, Key::R, Command::Dialog(Some(Desk::suggest(session, Purpose::Record)))),
     ] {
