@@ -16,7 +16,9 @@ struct Area {
     u1: vec3<f32>,  // first component of u_k
     z: f32,         // m
     u2: vec3<f32>,  // second component of u_k
+    x: f32,         // of B, m
     v: vec3<f32>,   // v_k, rad
+    y: f32,
     a_min: vec2<f32>,
     a_max: vec2<f32>,
     colour: vec4<f32>, // where the measure is empty
@@ -47,7 +49,7 @@ fn vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) i: u32) -
     let x = area.c * cos(angle);
     let y = area.c * sin(angle);
     let one = vec3<f32>(1.0);
-    let at = vec3<f32>(dot(x, one), dot(y, one), area.z);
+    let at = vec3<f32>(area.x + dot(x, one), area.y + dot(y, one), area.z);
     // d(x + iy)/da_j = i sum_k u_kj (x_k + i y_k), and a quarter turn of both columns leaves det alone.
     var value = dot(x, area.u1) * dot(y, area.u2) - dot(y, area.u1) * dot(x, area.u2);
     if area.measure == 1u {

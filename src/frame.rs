@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::dynamics::BaseWrench;
 use crate::joint_forces::Inside;
-use crate::planar::{DriveAngles, PerDrive, Pose2, Vector};
+use crate::planar::{DriveAngles, PerDrive, Pose2, Vector, unit};
 use crate::plant::Spin;
 
 pub use crate::audit::Audit;
@@ -162,6 +162,11 @@ impl Frame {
     /// n_B less what a reaction wheel takes up, N m: what the base feels.
     pub fn felt_moment(&self) -> f64 {
         self.base_moment() - self.wheel.torque
+    }
+
+    /// A point as seen from the base, m: where it would be, had the base not moved.
+    pub fn in_base(&self, point: Vector) -> Vector {
+        (point - self.base.at) * unit(-self.base.angle)
     }
 
     /// Angle of a drive relative to the base, q_k − θ, rad.

@@ -23,6 +23,8 @@ pub struct Tally {
     pub tilt: f64,
     /// Largest |Ω| of a reaction wheel, rad/s.
     pub wheel_rate: f64,
+    /// ∫ Ω dt of a reaction wheel, rad.
+    pub wheel_turn: f64,
     /// When a reaction wheel first could not give what was wanted, s; `None`: never.
     pub saturated: Option<f64>,
     last: Integrands,
@@ -33,6 +35,7 @@ struct Integrands {
     force: f64,
     moment: f64,
     power: f64,
+    wheel: f64,
 }
 
 impl Tally {
@@ -41,14 +44,19 @@ impl Tally {
         let turning = x.qd.get(x.torque.len()).copied().unwrap_or(0.0);
         let powers = x.torque.iter().zip(x.qd.iter()).map(|(t, qd)| (t * (qd - turning)).abs());
         let wheel = (x.spin.torque * (x.spin.rate - turning)).abs();
-        let now =
-            Integrands { force: x.wrench.dynamic.force.norm(), moment: felt.abs(), power: powers.sum::<f64>() + wheel };
+        let now = Integrands {
+            force: x.wrench.dynamic.force.norm(),
+            moment: felt.abs(),
+            power: powers.sum::<f64>() + wheel,
+            wheel: x.spin.rate,
+        };
         let (h, was) = (0.5 * (time - self.time), self.last);
         self.force_squared += h * (now.force.powi(2) + was.force.powi(2));
         self.moment_squared += h * (now.moment.powi(2) + was.moment.powi(2));
         self.force_impulse += h * (now.force + was.force);
         self.moment_impulse += h * (now.moment + was.moment);
         self.energy += h * (now.power + was.power);
+        self.wheel_turn += h * (now.wheel + was.wheel);
         self.shift = self.shift.max(x.base.at.norm());
         self.tilt = self.tilt.max(x.base.angle.abs());
         self.wheel_rate = self.wheel_rate.max(x.spin.rate.abs());

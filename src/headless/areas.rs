@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use rerun::{Clear, EntityPath, Mesh3D, Points3D, Transform3D};
+use rerun::{Clear, EntityPath, Mesh3D, Points3D, Quaternion, Transform3D};
 
 use super::inside;
 use super::rows::Track;
 use super::store::{Instant, Store, StoreError};
 use super::style::{colour, dots, lines, named, point, turned, under};
 use crate::frame::Frame;
-use crate::planar::{Vector, unit};
+use crate::planar::{Pose2, Vector, unit};
 use crate::pose_constant::Planes;
 use crate::reactionless::{Limit, PlaneMap};
 use crate::scene::Rgba;
@@ -33,7 +33,7 @@ pub struct Areas {
 struct Area {
     path: EntityPath,
     b: f64,
-    turn: Track<f64>,
+    pose: Track<([f32; 3], Quaternion)>,
     label: Track<String>,
 }
 
@@ -66,7 +66,7 @@ impl Areas {
         (at, since): (Instant, Option<Instant>),
         planes: &Arc<Planes>,
         linkage: &Linkage,
-        (b, compare): (f64, Option<f64>),
+        (b, compare, base): (f64, Option<f64>, Pose2),
         avoid: &[Vector],
     ) -> Result<(), StoreError> {
         let palette = self.palette;
@@ -110,7 +110,7 @@ impl Areas {
             }
             let mut area = Area::new(path, b);
             area.show(store, since, planes, &[], &look)?;
-            area.place(at, planes, b);
+            area.place(at, planes, b, base);
             self.compared = Some(area);
         }
         Ok(())
@@ -119,7 +119,11 @@ impl Areas {
     /// How the workspace stands at an instant.
     pub fn place(&mut self, at: Instant, frame: &Frame) {
         if let (Some(planes), Some(own)) = (&self.planes, &mut self.own) {
-            own.place(at, planes, frame.b_reference);
+            own.place(at, planes, frame.b_reference, frame.base);
+            if let Some(compared) = &mut self.compared {
+                let b = compared.b;
+                compared.place(at, planes, b, frame.base);
+            }
         }
     }
 
@@ -170,7 +174,7 @@ pub fn outlines(planes: &Planes, z: f64) -> impl Iterator<Item = Vec<[f32; 3]>> 
 
 impl Area {
     fn new(path: EntityPath, b: f64) -> Self {
-        Self { path, b, turn: Track::new(), label: Track::new() }
+        Self { path, b, pose: Track::new(), label: Track::new() }
     }
 
     fn show(
@@ -189,15 +193,16 @@ impl Area {
         store.shape(since, &under(&self.path, "label"), &words)
     }
 
-    fn place(&mut self, at: Instant, planes: &Planes, b: f64) {
-        self.turn.push(at, planes.map().turn(b));
+    /// In the axes of a base.
+    fn place(&mut self, at: Instant, planes: &Planes, b: f64, base: Pose2) {
+        self.pose.push(at, (point(base.at, 0.0), turned(unit(planes.map().turn(b) + base.angle))));
         self.label.push(at, format!("b = {b:.3} rad"));
     }
 
     fn write(&mut self, store: &mut Store) -> Result<(), StoreError> {
-        let (clock, turns) = self.turn.take();
-        let turns = turns.into_iter().map(|turn| turned(unit(turn)));
-        let pose = Transform3D::update_fields().with_many_quaternion(turns);
+        let (clock, poses) = self.pose.take();
+        let (places, turns): (Vec<_>, Vec<_>) = poses.into_iter().unzip();
+        let pose = Transform3D::update_fields().with_many_translation(places).with_many_quaternion(turns);
         store.columns(&clock.columns(), &self.path, pose.columns_of_unit_batches()?)?;
         let (clock, labels) = self.label.take();
         let words = Points3D::update_fields().with_labels(labels.iter().map(String::as_str));

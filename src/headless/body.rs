@@ -7,7 +7,7 @@ use super::store::{Clock, Instant, Store, StoreError};
 use super::style::{Both, dots, named, point, solid, turned, under};
 use crate::frame::Frame;
 use crate::machine::Machine;
-use crate::planar::unit;
+use crate::planar::{Pose2, unit};
 use crate::scene::linkage::Linkage;
 use crate::scene::palette::Palette;
 
@@ -31,7 +31,7 @@ struct Link {
 }
 
 impl Body {
-    /// Writes the meshes of a machine: for good, or from an instant on.
+    /// Writes the meshes of a machine, on a base that moves or not: for good, or from an instant on.
     ///
     /// # Errors
     /// If they cannot be written.
@@ -39,13 +39,13 @@ impl Body {
         store: &mut Store,
         root: &EntityPath,
         since: Option<Instant>,
-        machine: &Machine,
+        (machine, moves): (&Machine, bool),
         frame: &Frame,
         palette: &Palette,
     ) -> Result<Self, StoreError> {
         let linkage = Linkage::of(machine);
         let mesh = |i: usize, rgba| solid(&linkage.model.meshes[i], rgba);
-        for part in linkage.solids(&frame.q.units(), palette) {
+        for part in linkage.solids(&frame.q.units(), Pose2::default(), moves, palette) {
             if let Some(name) = part.name.strip_prefix("base/") {
                 let path = under(root, &format!("machine/base/{name}"));
                 let [.., [x, y, z, _]] = part.world_from_mesh;

@@ -104,7 +104,7 @@ impl Joints {
         self.plane.push(at, [((frame.b_reference - b) / sum) as f32; 3]);
         self.words.push(at, format!("b = {:.3} rad", frame.b_reference));
         self.clock.push(at);
-        self.poses.push(narrow([frame.q[0], frame.q[1], frame.q[2]]));
+        self.poses.push(narrow([0, 1, 2].map(|k| frame.relative(k))));
     }
 
     /// Writes the rows since the last time.

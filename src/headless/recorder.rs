@@ -143,7 +143,11 @@ impl<'a> Recorder<'a> {
             store.fixed(&path_of(root, signal), &style)?;
         }
         let every = |time: f64| (time / scenario.step).round().max(1.0) as u64;
-        let reshapes = |edit: &Edit| matches!(edit, Edit::SetMachine { .. } | Edit::CompareB { .. });
+        let reshapes = |edit: &Edit| match edit {
+            Edit::SetMachine { .. } | Edit::CompareB { .. } => true,
+            Edit::SetPlant { change } => ["length", "link"].iter().any(|key| change.contains_key(*key)),
+            _ => false,
+        };
         let leads = |edit: &Edit| edit.leads() || matches!(edit, Edit::PoseB { .. } | Edit::SetMachine { .. });
         let later = |which: &dyn Fn(&Edit) -> bool| scenario.edits.iter().any(|e| e.step > 0 && which(&e.edit));
         let prefix = if *several { format!("{} · ", scenario.name) } else { String::new() };
@@ -227,17 +231,26 @@ impl<'a> Recorder<'a> {
     /// Machine and workspaces, as far as they have changed; whether joint space and tower have.
     fn show(&mut self, at: Instant, run: &Run, frame: &Frame) -> Result<bool, Stop> {
         let since = if self.lasting { None } else { Some(at) };
-        let machine = &run.scenario().machine;
+        let Scenario { machine: model, plant, base, .. } = run.scenario();
+        // A machine with other lengths is drawn as it is.
+        let machine = &plant.machine(model).unwrap_or_else(|_| model.clone());
         let (store, root, palette) = (&mut *self.store, self.root, &self.palette);
         let same = |body: &Body| body.shows(machine);
         let body = match self.body.take().filter(same) {
             Some(body) => body,
-            None => Body::show(store, root, since, machine, frame, palette)?,
+            None => Body::show(store, root, since, (machine, base.moves()), frame, palette)?,
         };
         if let Some(planes) = run.planes() {
             let compare = run.scenario().compare_b;
             let path = planned::points(run);
-            self.areas.show(store, (at, since), planes, body.linkage(), (frame.b_reference, compare), &path)?;
+            self.areas.show(
+                store,
+                (at, since),
+                planes,
+                body.linkage(),
+                (frame.b_reference, compare, frame.base),
+                &path,
+            )?;
         }
         let above = [body.linkage().reach(), body.linkage().top()];
         self.body = Some(body);

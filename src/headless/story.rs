@@ -7,7 +7,7 @@ use rerun::{EntityPath, StateChange, StateConfiguration, TextLog, TextLogLevel};
 use super::rows::Track;
 use super::store::{Clock, Instant, Store, StoreError};
 use super::style::{brief, colour, under};
-use crate::frame::{Frame, Peaks, Phase, Reach};
+use crate::frame::{Audit, Frame, Peaks, Phase, Reach};
 use crate::scenario::Task;
 use crate::scene::Rgba;
 use crate::scene::palette::Palette;
@@ -21,6 +21,9 @@ pub struct Story {
     events: Vec<Event>,
     phases: Track<Phase>,
     reach: Option<Reach>,
+    held: Option<bool>,
+    saturated: bool,
+    faulty: bool,
     peak: (Instant, f64),
 }
 
@@ -36,7 +39,17 @@ impl Story {
     /// Nothing has happened yet.
     pub fn new(prefix: String, palette: Palette) -> Self {
         let peak = (Instant { step: 0, nanos: 0 }, 0.0);
-        Self { prefix, palette, events: Vec::new(), phases: Track::new(), reach: None, peak }
+        Self {
+            prefix,
+            palette,
+            events: Vec::new(),
+            phases: Track::new(),
+            reach: None,
+            held: None,
+            saturated: false,
+            faulty: false,
+            peak,
+        }
     }
 
     fn add(&mut self, at: Instant, text: String, level: &'static str, rgba: Rgba) {
@@ -58,6 +71,36 @@ impl Story {
         self.add(at, title, TextLogLevel::INFO, self.palette.drive(0));
     }
 
+    /// What becomes of payload and wheel, and the first time that an audit fails.
+    fn watch(&mut self, at: Instant, frame: &Frame) {
+        match (self.held.replace(frame.loaded), frame.loaded) {
+            (Some(false), true) => {
+                self.add(at, "the payload is picked up".into(), TextLogLevel::INFO, self.palette.ink);
+            }
+            (None, true) => self.add(at, "the payload is held".into(), TextLogLevel::INFO, self.palette.ink),
+            (Some(true), false) => {
+                self.add(at, "the payload is let go".into(), TextLogLevel::INFO, self.palette.ink);
+            }
+            _ => {}
+        }
+        match (std::mem::replace(&mut self.saturated, frame.wheel.saturated), frame.wheel.saturated) {
+            (false, true) => {
+                let text = format!("the reaction wheel saturates at {} rad/s", brief(frame.wheel.rate));
+                self.add(at, text, TextLogLevel::WARN, self.palette.reaction);
+            }
+            (true, false) => {
+                let text = "the reaction wheel gives what is wanted again".into();
+                self.add(at, text, TextLogLevel::INFO, self.palette.ink);
+            }
+            _ => {}
+        }
+        if let (false, Some(lamp)) = (self.faulty, Audit::fault(frame)) {
+            self.faulty = true;
+            let text = format!("audit failed: {} ({}) {:.1e} {}", lamp.name, lamp.meaning, lamp.value, lamp.unit);
+            self.add(at, text, TextLogLevel::ERROR, self.palette.reaction);
+        }
+    }
+
     /// What an instant brings.
     pub fn note(&mut self, at: Instant, frame: &Frame) {
         if frame.peaks.moment > self.peak.1 {
@@ -71,6 +114,7 @@ impl Story {
             _ => {}
         }
         self.phases.push(at, frame.phase);
+        self.watch(at, frame);
         let reach = frame.target.reach;
         let before = self.reach.replace(reach);
         if before.is_some_and(|before| discriminant(&before) != discriminant(&reach)) {

@@ -125,7 +125,7 @@ impl Tower {
         self.slice.push(at, ([0.0, 0.0, height as f32], turned(unit(self.planes.map().turn(b)))));
         self.words.push(at, format!("b = {b:.3} rad"));
         self.clock.push(at);
-        self.tips.push(point(frame.tip, height));
+        self.tips.push(point(frame.in_base(frame.tip), height));
     }
 
     /// Writes the rows since the last time.

@@ -14,9 +14,9 @@ twin! {
         u1: [f32; 3],
         z: f32,
         u2: [f32; 3],
-        _pad0: f32,
+        x: f32,
         v: [f32; 3],
-        _pad1: f32,
+        y: f32,
         a_min: [f32; 2],
         a_max: [f32; 2],
         colour: [f32; 4],
@@ -24,7 +24,7 @@ twin! {
         full: f32,
         empty: f32,
         measure: u32,
-        _pad2: f32,
+        _pad0: f32,
     }
 }
 
@@ -80,12 +80,12 @@ impl Workspace {
         self.shader.reload(upload.device);
         self.list.items.clear();
         self.list.items.extend(scene.areas.iter().map(|area| {
-            let &scene::Area { name: _, c, u, v, a_min, a_max, turn, z, colour, shade } = area;
+            let &scene::Area { name: _, c, u, v, a_min, a_max, turn, at: [x, y], z, colour, shade } = area;
             let [u1, u2] = [0, 1].map(|i| u.map(|u_k| u_k[i]));
             // Without a shade the fill turns into itself.
             let (shade, [empty, full], measure) =
                 shade.map_or((colour, [0.0, 1.0], 0), |s| (s.colour, [s.empty, s.full], s.measure as u32));
-            Area { c, turn, u1, z, u2, v, a_min, a_max, colour, shade, full, empty, measure, ..Area::zeroed() }
+            Area { c, turn, u1, z, u2, x, v, y, a_min, a_max, colour, shade, full, empty, measure, ..Area::zeroed() }
         }));
         self.list.upload(kit, upload);
     }

@@ -168,7 +168,7 @@ impl JointSpace {
     }
 
     fn pose(&self, frame: &Frame) -> [f64; 3] {
-        self.point([frame.q[0], frame.q[1], frame.q[2]], frame.b_reference)
+        self.point([0, 1, 2].map(|k| frame.relative(k)), frame.b_reference)
     }
 
     /// What the pointer can take hold of: the pose's dot, the plane.
@@ -200,7 +200,7 @@ impl JointSpace {
                 let [low, high] = self.window(b);
                 Some(Aim::B(self.b_at(at, b).clamp(low, high)))
             }
-            Handle::Ring | Handle::Bar | Handle::Waypoint(_) => None,
+            Handle::Ring | Handle::Bar | Handle::Tip | Handle::Waypoint(_) => None,
         }
     }
 
@@ -256,7 +256,7 @@ impl JointSpace {
         let (bounds, origin) = (self.bounds(frame.b_reference), self.origin(frame.b_reference));
         let mut axes = self.axes_of(palette, bounds, origin);
         for (axis, k) in axes.iter_mut().zip(self.drives) {
-            axis.now = Some((frame.q[k], palette.drive(k)));
+            axis.now = Some((frame.relative(k), palette.drive(k)));
         }
         axes
     }

@@ -6,9 +6,10 @@ use std::sync::Arc;
 
 use super::mesh::{bar, cylinder};
 use super::palette::{Palette, faded};
+use super::stage::PLATE;
 use super::{Mesh, Model, Rgba, Solid};
 use crate::machine::{Chain, Machine, place_of};
-use crate::planar::{Units, Vector};
+use crate::planar::{Pose2, Units, Vector, unit};
 
 /// A machine's meshes, and how a pose places them.
 #[derive(Clone, Debug)]
@@ -19,6 +20,7 @@ pub struct Linkage {
     pins: Vec<Pin>,
     motors: Vec<Motor>,
     plate: usize,
+    body: usize,
     cap: usize,
     reach: f64,
     top: f64,
@@ -37,6 +39,7 @@ pub struct Bar {
     pub carries_tip: bool,
     root: Chain,
     sign: f64,
+    /// Where the next one or the end effector is, m along it.
     length: f64,
     z: f64,
 }
@@ -117,9 +120,12 @@ impl Linkage {
             })
             .collect();
         let plate = add(cylinder(2.0 * drive_radius, 0.3 * drive_height, 0.05 * drive_height));
+        // Of a base that moves.
+        let [length, width] = PLATE.map(|part| part * reach);
+        let body = add(bar(width - length, length - width, width, 0.3 * drive_height, 0.05 * drive_height));
         let top = layer(n - 1) + height;
         let cap = add(cylinder(0.6 * drive_radius, top + 2.0 * gap, 0.2 * gap));
-        Self { model: Arc::new(Model { meshes }), bars, pins, motors, plate, cap, reach, top: top + 2.0 * gap }
+        Self { model: Arc::new(Model { meshes }), bars, pins, motors, plate, body, cap, reach, top: top + 2.0 * gap }
     }
 
     /// The farthest the end effector gets from B, m.
@@ -147,24 +153,30 @@ impl Linkage {
         self.pins.iter().map(|pin| (place_of(&pin.at, e), pin.hole_z))
     }
 
-    /// Everything, in the colours of the palette.
-    pub fn solids(&self, e: &Units, palette: &Palette) -> Vec<Solid> {
+    /// Everything, in the colours of the palette, on a base in a pose.
+    pub fn solids(&self, e: &Units, base: Pose2, moves: bool, palette: &Palette) -> Vec<Solid> {
         let mut solids = Vec::with_capacity(self.bars.len() + 2 * self.pins.len() + self.motors.len() + 2);
         let upright = |name: String, mesh, at: Vector, z, colour| Solid {
             name,
             mesh,
-            world_from_mesh: placed(at, Vector::new(1.0, 0.0), z),
+            world_from_mesh: placed(base.at + at, Vector::new(1.0, 0.0), z),
             colour,
         };
         let grey = mix(palette.dim, palette.line, 0.65);
         let depth = self.motors.iter().fold(0.0_f64, |m, motor| m.min(motor.z));
         let origin = Vector::default();
-        solids.push(upright("base/plate".into(), self.plate, origin, depth - 0.015 * self.reach, grey));
+        let under = depth - 0.015 * self.reach;
+        solids.push(upright("base/plate".into(), self.plate, origin, under, grey));
+        if moves {
+            let world_from_mesh = placed(base.at, unit(base.angle), under - 0.002 * self.reach);
+            let colour = mix(grey, palette.line, 0.5);
+            solids.push(Solid { name: "base/body".into(), mesh: self.body, world_from_mesh, colour });
+        }
         for motor in &self.motors {
             let colour = mix(palette.drive(motor.drive), grey, 0.45);
             solids.push(upright(format!("base/drive/{}", motor.drive + 1), motor.mesh, origin, motor.z, colour));
         }
-        solids.extend(self.bars.iter().map(|bar| bar.solid(e, palette.drive(bar.drive))));
+        solids.extend(self.bars.iter().map(|bar| bar.solid(e, base.at, palette.drive(bar.drive))));
         for (i, pin) in self.pins.iter().enumerate() {
             let at = place_of(&pin.at, e);
             solids.push(upright(format!("joint/{}", i + 1), pin.mesh, at, pin.z, palette.ink));
@@ -191,9 +203,20 @@ impl Linkage {
         carriers
             .map(|bar| Solid {
                 name: format!("ghost/{}", bar.name),
-                ..bar.solid(e, faded(palette.drive(bar.drive), alpha))
+                ..bar.solid(e, Vector::default(), faded(palette.drive(bar.drive), alpha))
             })
             .collect()
+    }
+}
+
+impl Linkage {
+    /// Ends of the arms that carry the end effector, in a pose, m.
+    pub fn outlines(&self, e: &Units) -> impl Iterator<Item = [Vector; 2]> {
+        let e = *e;
+        self.bars.iter().filter(|b| b.carries_tip).map(move |bar| {
+            let (at, along, _) = bar.pose(&e);
+            [at, at + along * bar.length]
+        })
     }
 }
 
@@ -203,8 +226,9 @@ impl Bar {
         (place_of(&self.root, e), e[self.drive] * self.sign, self.z)
     }
 
-    fn solid(&self, e: &Units, colour: Rgba) -> Solid {
+    fn solid(&self, e: &Units, base: Vector, colour: Rgba) -> Solid {
         let (at, along, z) = self.pose(e);
+        let at = base + at;
         Solid { name: format!("link/{}", self.name), mesh: self.mesh, world_from_mesh: placed(at, along, z), colour }
     }
 }

@@ -13,6 +13,7 @@ pub mod mesh;
 pub mod palette;
 pub mod pointer;
 pub mod stage;
+pub mod sway;
 pub mod tower;
 pub mod views;
 pub mod wall;
@@ -73,7 +74,7 @@ pub struct Line {
 }
 
 /// A reactionless workspace as Eq. (16) states it: for `(a_1, a_2)` in the rectangle,
-/// `x + iy = e^{i turn} Σ_k c_k e^{i (u_k · a + v_k)}`. The renderer evaluates it per vertex and knows nothing more.
+/// `x + iy = B + e^{i turn} Σ_k c_k e^{i (u_k · a + v_k)}`. The renderer evaluates it per vertex and knows nothing more.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Area {
     /// What it is.
@@ -88,8 +89,10 @@ pub struct Area {
     pub a_min: [f32; 2],
     /// Greatest `(a_1, a_2)`, rad.
     pub a_max: [f32; 2],
-    /// b*, rad: turns the whole area about the origin.
+    /// b*, rad: turns the whole area about B.
     pub turn: f32,
+    /// B, m.
+    pub at: [f32; 2],
     /// Height of its plane, m.
     pub z: f32,
     /// Fill of one sheet; where sheets overlap, the colour gathers.

@@ -1,5 +1,6 @@
 //! From a run and a frame to a [`Scene`]. A [`Stage`] holds what does not change from frame to frame.
 
+mod base;
 mod path;
 mod pins;
 mod reaction;
@@ -7,6 +8,9 @@ mod snapshots;
 mod target;
 mod workspace;
 
+use base::Ground;
+pub(super) use base::PLATE;
+pub use base::PULL;
 use path::Course;
 pub(super) use path::looks;
 pub(crate) use path::waypoints;
@@ -17,6 +21,7 @@ use workspace::{Inside, inside, roomiest};
 
 use super::linkage::Linkage;
 use super::palette::{Palette, Theme, faded, palette};
+use super::sway::swayed;
 use super::{Anchor, Label, Line, Measure, Rgba, Scene};
 use crate::frame::Frame;
 use crate::machine::Chain;
@@ -48,6 +53,10 @@ pub struct ViewOptions {
     pub others: Vec<Other>,
     /// Arrows show what the pins carry.
     pub pin_forces: bool,
+    /// How many times the base's motion is shown.
+    pub sway: f64,
+    /// A force at the end effector, N.
+    pub push: Option<[f64; 2]>,
 }
 
 impl Default for ViewOptions {
@@ -63,6 +72,8 @@ impl Default for ViewOptions {
             snapshots: Vec::new(),
             others: Vec::new(),
             pin_forces: false,
+            sway: 1.0,
+            push: None,
         }
     }
 }
@@ -75,6 +86,8 @@ pub const INVITATION: &str = "drag me";
 pub enum Handle {
     /// The end effector's target.
     Target,
+    /// The end effector, to be pushed.
+    Tip,
     /// The knob of the b ring.
     Ring,
     /// The plane b = const, in joint space or as a slice of the tower.
@@ -112,35 +125,47 @@ pub struct Stage {
     inside: Vec<(Inside, Vec<Vector>)>,
     cusps: Vec<Vector>,
     pins: Vec<Bearing>,
+    ground: Ground,
+    /// Drive that the link with the end effector follows, and which way.
+    holder: (usize, f64),
 }
 
 impl Stage {
     /// Prepares a run for drawing; to be made again when its machine or plan changes.
     pub fn of(run: &Run) -> Self {
-        let machine = &run.scenario().machine;
+        let model = &run.scenario().machine;
+        // A machine with other lengths is drawn as it is.
+        let plant = run.scenario().plant.machine(model).unwrap_or_else(|_| model.clone());
         let planes = run.planes().cloned();
         let boundary = planes.as_ref().map_or_else(Vec::new, |p| {
             let loops = p.boundary().turned(0.0);
             loops.into_iter().map(|l| l.into_iter().map(|[x, y]| Vector::new(x, y)).collect()).collect()
         });
-        let tip = *machine.tip();
+        let tip = *model.tip();
         let motion = run.motion().map(|motion| Course {
             points: looks(motion).map(|s| place(&tip, &motion.path.at(s).q)).collect(),
             start: motion.path.at(0.0).q.units(),
             waypoints: waypoints(run),
         });
         Self {
-            linkage: Linkage::of(machine),
+            linkage: Linkage::of(&plant),
+            ground: ground(run),
+            holder: (plant.parts()[plant.tip_link()].drive, plant.parts()[plant.tip_link()].sign),
             middle: planes.as_ref().and_then(|p| roomiest(p, &boundary)),
             inside: planes.as_ref().map_or_else(Vec::new, |p| inside(p)),
             cusps: planes.as_ref().map_or_else(Vec::new, |p| p.boundary().cusps().iter().map(|v| v.at).collect()),
             dexterity: Default::default(),
-            pins: bearings(machine),
+            pins: bearings(&plant),
             planes,
             boundary,
             compare_b: run.scenario().compare_b,
             motion,
         }
+    }
+
+    /// Takes over what has changed of base and payload.
+    pub fn refresh(&mut self, run: &Run) {
+        self.ground = ground(run);
     }
 
     /// The machine's body.
@@ -158,7 +183,8 @@ impl Stage {
     /// the workspace, m, positive inside. `None` for a machine without planes.
     pub fn standing(&self, frame: &Frame) -> Option<(usize, f64)> {
         let boundary = self.planes.as_ref()?.boundary();
-        Some((boundary.pose_count(frame.tip, frame.b), boundary.distance(frame.tip, frame.b)))
+        let at = frame.in_base(frame.tip);
+        Some((boundary.pose_count(at, frame.b), boundary.distance(at, frame.b)))
     }
 
     /// Radius of the b ring, m.
@@ -171,7 +197,7 @@ impl Stage {
         self.linkage.top()
     }
 
-    /// Where a handle is, m.
+    /// Where a handle is in a frame as shown, m.
     pub fn handle(&self, handle: Handle, frame: &Frame) -> Option<[f64; 3]> {
         let z = self.handle_height();
         match handle {
@@ -180,9 +206,11 @@ impl Stage {
                 Some([p.re, p.im, z])
             }
             Handle::Ring => {
-                let p = unit(self.planes.as_ref()?.map().turn(frame.b_reference)) * self.ring_radius();
+                let turn = self.planes.as_ref()?.map().turn(frame.b_reference) + frame.base.angle;
+                let p = frame.base.at + unit(turn) * self.ring_radius();
                 Some([p.re, p.im, z])
             }
+            Handle::Tip => Some([frame.tip.re, frame.tip.im, z]),
             Handle::Waypoint(i) => {
                 let course = self.motion.as_ref()?;
                 let (.., p) = course.waypoints.iter().find(|(number, ..)| *number == i)?;
@@ -192,16 +220,19 @@ impl Stage {
         }
     }
 
-    /// The b that a place of the ring's knob stands for, nearest to the present one, rad.
-    pub fn ring_b(&self, at: [f64; 2], near: f64) -> Option<f64> {
+    /// The b that a place of the ring's knob stands for in a frame as shown, nearest to the present one, rad.
+    pub fn ring_b(&self, at: [f64; 2], near: f64, frame: &Frame) -> Option<f64> {
         let map = self.planes.as_ref()?.map();
-        let turn = crate::kinematics::closest_turn(at[1].atan2(at[0]), map.turn(near));
+        let at = frame.in_base(Vector::new(at[0], at[1]));
+        let turn = crate::kinematics::closest_turn(at.arg(), map.turn(near));
         Some(turn * map.lambda_sum())
     }
 
     /// Everything there is to draw.
     pub fn scene(&self, frame: &Frame, options: &ViewOptions) -> Scene {
         let palette = palette(options.theme);
+        let shown = swayed(frame, options.sway);
+        let frame = &shown;
         let e = frame.q.units();
         let mut solids = Vec::new();
         if let Some(course) = &self.motion {
@@ -214,7 +245,7 @@ impl Stage {
                 solids.extend(self.linkage.ghost(&q.units(), &palette, 0.34));
             }
         }
-        solids.extend(self.linkage.solids(&e, &palette));
+        solids.extend(self.linkage.solids(&e, frame.base, self.ground.base.moves(), &palette));
         let mut scene = Scene {
             background: palette.background,
             model: self.linkage.model.clone(),
@@ -225,11 +256,13 @@ impl Stage {
             labels: Vec::new(),
         };
         self.grid(&mut scene, &palette);
+        self.unmoved(&mut scene, &palette, frame, options.sway);
+        self.ground(&mut scene, &palette, frame);
         if let Some(planes) = &self.planes {
             if let Some(b) = self.compare_b {
-                self.workspace(&mut scene, &palette, planes, b, true);
+                self.workspace(&mut scene, &palette, planes, b, frame.base, true);
             }
-            self.workspace(&mut scene, &palette, planes, frame.b_reference, false);
+            self.workspace(&mut scene, &palette, planes, frame.b_reference, frame.base, false);
             if let Some(b) = options.preview_b {
                 self.preview(&mut scene, &palette, planes, b);
             }
@@ -246,11 +279,12 @@ impl Stage {
         self.snapshots(&mut scene, &palette, options);
         self.others(&mut scene, &palette, options);
         self.wishes(&mut scene, &palette, options);
-        self.reaction(&mut scene, &palette, frame);
+        self.reaction(&mut scene, &palette, frame, options);
         if options.pin_forces && !self.pins.is_empty() {
             self.pin_forces(&mut scene, &palette, frame);
         }
         self.target(&mut scene, &palette, frame, options);
+        self.burden(&mut scene, &palette, frame, options);
         scene
     }
 
@@ -274,6 +308,21 @@ impl Stage {
             }
         }
     }
+}
+
+fn ground(run: &Run) -> Ground {
+    let scenario = run.scenario();
+    Ground { base: scenario.base, load: scenario.plant.payload }
+}
+
+/// Three digits, without zeros at the end.
+fn brief_number(x: f64) -> String {
+    if x == 0.0 || !x.is_finite() {
+        return "0".into();
+    }
+    let decimals = (2 - x.abs().log10().floor() as i32).clamp(0, 12) as usize;
+    let text = signed(x, decimals);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
 }
 
 fn place(tip: &Chain, q: &DriveAngles) -> Vector {

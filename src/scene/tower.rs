@@ -201,7 +201,7 @@ impl Tower {
                 let near = bars.iter().map(|[from, to]| b.clamp(*from, *to));
                 near.min_by(|s, t| (s - b).abs().total_cmp(&(t - b).abs())).map(Aim::B)
             }
-            Handle::Ring | Handle::Waypoint(_) => None,
+            Handle::Ring | Handle::Tip | Handle::Waypoint(_) => None,
         }
     }
 
@@ -367,7 +367,7 @@ impl Tower {
         if outside {
             scene.lines.push(Line {
                 name: "target/gap".into(),
-                points: vec![point(frame.tip, z), point(at, z)],
+                points: vec![point(frame.in_base(frame.tip), z), point(at, z)],
                 width: 1.4,
                 colour: palette.dim,
                 dash: Some([4.0, 4.0]),
@@ -384,7 +384,7 @@ impl Tower {
             stroke_width,
         };
         let inside = faded(palette.ink, if hot && !outside { 0.12 } else { 0.0 });
-        scene.markers.push(disc("end-effector", frame.tip, 4.0, palette.ink, 0.0));
+        scene.markers.push(disc("end-effector", frame.in_base(frame.tip), 4.0, palette.ink, 0.0));
         scene.markers.push(disc("target", at, if hot { 12.0 } else { 10.0 }, inside, 2.0));
     }
 }

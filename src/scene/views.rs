@@ -5,7 +5,7 @@ use super::Scene;
 use super::camera::Camera;
 use super::joint_space::JointSpace;
 use super::pointer::Pointer;
-use super::stage::{Handle, Stage, ViewOptions};
+use super::stage::{Handle, PULL, Stage, ViewOptions};
 use super::tower::Tower;
 use crate::frame::Frame;
 use crate::session::Run;
@@ -104,6 +104,8 @@ pub enum Aim {
     B(f64),
     /// A point of the path, counted from A, at a place, m.
     Waypoint(usize, [f64; 2]),
+    /// A force at the end effector, N.
+    Push([f64; 2]),
 }
 
 /// What stays the same from frame to frame in all views.
@@ -118,6 +120,11 @@ impl Views {
     /// Prepares a run for drawing; to be made again when its machine or plan changes.
     pub fn of(run: &Run) -> Self {
         Self { stage: Stage::of(run), joints: JointSpace::of(run), tower: Tower::of(run) }
+    }
+
+    /// Takes over what has changed of base and payload.
+    pub fn refresh(&mut self, run: &Run) {
+        self.stage.refresh(run);
     }
 
     /// The machine's view.
@@ -155,7 +162,13 @@ impl Views {
         }
     }
 
-    /// What is under the pointer and can be pulled at.
+    /// The end effector, if it is under the pointer.
+    pub fn pick_tip(&self, frame: &Frame, pointer: &Pointer) -> Option<Grip> {
+        let at = self.stage.handle(Handle::Tip, frame)?;
+        (pointer.distance(at)? < 1.5 * GRIP).then_some(Grip { handle: Handle::Tip, at })
+    }
+
+    /// What is under the pointer and can be pulled at, in a frame as shown.
     pub fn pick(&self, kind: ViewKind, frame: &Frame, pointer: &Pointer) -> Option<Grip> {
         match (kind, &self.joints, &self.tower) {
             (ViewKind::Joints, Some(joints), _) => joints.pick(frame, pointer),
@@ -191,7 +204,8 @@ impl Views {
                 let at = pointer.ray()?.at_height(self.stage.handle_height())?;
                 match grip.handle {
                     Handle::Target => Some(Aim::Target(at)),
-                    Handle::Ring => self.stage.ring_b(at, b).map(Aim::B),
+                    Handle::Ring => self.stage.ring_b(at, b, frame).map(Aim::B),
+                    Handle::Tip => Some(Aim::Push([PULL * (at[0] - frame.tip.re), PULL * (at[1] - frame.tip.im)])),
                     Handle::Waypoint(i) => Some(Aim::Waypoint(i, at)),
                     Handle::Plane | Handle::Bar => None,
                 }

@@ -144,6 +144,15 @@ impl Edit {
         matches!(self, Self::DragTarget { .. } | Self::SlideB { .. })
     }
 
+    /// Whether it changes the force at the end effector.
+    pub fn pushes(&self) -> bool {
+        match self {
+            Self::Push { .. } => true,
+            Self::SetPlant { change } => change.contains_key("force"),
+            _ => false,
+        }
+    }
+
     /// What it does, for menus and the event log.
     pub fn title(&self) -> String {
         match self {

@@ -293,7 +293,11 @@ impl Simulation {
         let e = PerDrive::from_fn(self.drives, |k| self.relative(k) - self.reference.q[k]);
         let still = self.now.qd.max_abs() < 1e-7 && self.now.base_velocity.norm() < 1e-7;
         let coming = self.load.is_some() && self.time() < self.load.until.unwrap_or(self.load.from);
-        self.has_arrived() && still && !coming && (e.max_abs() < 1e-7 || self.now.qdd.max_abs() < 1e-7)
+        self.has_arrived() && still && !coming && {
+            // On the reference and about to be pushed off it is not at rest.
+            let pull = self.now.qdd.max_abs();
+            pull < 1e-7 || (e.max_abs() < 1e-7 && pull < 1e-3)
+        }
     }
 
     /// q_k − θ, rad.

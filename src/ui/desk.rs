@@ -7,10 +7,12 @@ use super::{
     Command, FileDialog, Look, OnBoard, Purpose, Wish, compare, keys, plots, side, status, theme, top, viewport,
 };
 use crate::compare::Board;
+use crate::frame::Tally;
 use crate::machine::Machine;
 use crate::scenario::Scenario;
 use crate::scene::palette::Theme;
 use crate::scene::stage::Stage;
+use crate::scene::sway::exaggeration;
 use crate::scene::views::{ViewKind, Views};
 use crate::session::{Edit, Refusal, Session};
 use crate::signals::{Signal, signals};
@@ -24,11 +26,16 @@ pub struct Desk {
     look: Look,
     /// Runs side by side, while they are on display.
     board: Option<Board>,
+    /// What the planned motion will have come to.
+    foreseen: Tally,
     /// Wall time not yet turned into steps, s.
     owed: f64,
     dressed: Option<Theme>,
     fonts: bool,
 }
+
+/// The most steps that are run ahead to see how far the base will move.
+const MOST_AHEAD: f64 = 20_000.0;
 
 /// The most wall time that one repaint makes up for, s: after a pause of the program time does not jump.
 const MOST_OWED: f64 = 0.1;
@@ -42,17 +49,21 @@ impl Desk {
         let session = Session::open(scenario)?;
         let views = Views::of(session.run());
         let look = Look::new(theme, &views);
-        Ok(Self {
+        let mut desk = Self {
             signals: signals(&session.scenario().machine),
             stage_of: stage_key(&session),
             views: Arc::new(views),
+            foreseen: Tally::default(),
             session,
             look,
             board: None,
             owed: 0.0,
             dressed: None,
             fonts: false,
-        })
+        };
+        desk.foresee();
+        desk.adjust();
+        Ok(desk)
     }
 
     /// Opens a scenario; where its task cannot be planned, its machine with the paper's task, and what is in the way.
@@ -107,6 +118,7 @@ impl Desk {
         let steps = (self.owed / dt).floor();
         self.owed -= steps * dt;
         self.session.tick(steps as u64);
+        self.adjust();
     }
 
     /// One pass of the user interface; commands are carried out at its end.
@@ -122,7 +134,7 @@ impl Desk {
         side::show(ui, &self.session, &self.look, &mut commands);
         plots::show(ui, &self.session, &self.signals, self.board.as_ref(), &self.look, &mut commands);
         viewport::show(ui, &self.session, &self.views, self.board.as_ref(), &mut self.look, &mut commands);
-        status::news(ui.ctx(), &self.look, &mut commands);
+        status::news(ui.ctx(), &self.session, &self.look, &mut commands);
         keys::help(ui.ctx(), &self.look, &mut commands);
         top::dialog(ui.ctx(), &mut self.look, &mut commands);
         if commands.iter().any(|c| !matches!(c, Command::EndGesture | Command::Preview(_))) {
@@ -170,11 +182,20 @@ impl Desk {
                     return Err(refusal.to_string());
                 }
                 self.look.refused = None;
+                self.foresee();
                 // What a drag has changed, Esc takes back.
                 self.look.dragged |= self.look.grabbed.is_some();
             }
             Command::Preview(b) => self.look.preview = b,
-            Command::Draw(draw) => self.look.stroke = draw.then(Vec::new),
+            Command::Draw(draw) => {
+                self.look.stroke = draw.then(Vec::new);
+                self.look.pushing &= !draw;
+            }
+            Command::Push(push) => {
+                self.look.pushing = push;
+                self.look.stroke = self.look.stroke.take().filter(|_| !push);
+            }
+            Command::Exaggerate(on) => self.look.exaggerate = on,
             Command::EndGesture => self.session.end_gesture(),
             Command::TogglePlay if self.session.is_playing() => self.session.pause(),
             Command::TogglePlay => self.session.play(),
@@ -186,6 +207,7 @@ impl Desk {
             Command::Speed(speed) => self.look.speed = speed,
             Command::Open(scenario) => {
                 self.session.switch(*scenario).map_err(refused)?;
+                self.foresee();
                 self.session.play();
             }
             Command::OpenFile(path) => return self.open(&path).map(Some),
@@ -194,11 +216,13 @@ impl Desk {
             Command::Undo => {
                 let title = self.session.undo_title().map(|t| format!("took back: {t}"));
                 self.session.undo().map_err(refused)?;
+                self.foresee();
                 return Ok(title);
             }
             Command::Redo => {
                 let title = self.session.redo_title().map(|t| format!("brought back: {t}"));
                 self.session.redo().map_err(refused)?;
+                self.foresee();
                 return Ok(title);
             }
             Command::View(view) => self.look.view = view,
@@ -248,6 +272,7 @@ impl Desk {
             self.look.refused = Some(Wish::of(&Edit::SetTask { change }, &refusal));
             return Err(refusal.to_string());
         }
+        self.foresee();
         self.look.dialog = None;
         Ok(format!("opened {}", path.display()))
     }
@@ -277,6 +302,31 @@ impl Desk {
         Err("this build cannot record: build it with the feature `record`".into())
     }
 
+    /// Runs ahead to where the planned motion ends, to know how far the base will move.
+    fn foresee(&mut self) {
+        self.foreseen = Tally::default();
+        let scenario = self.session.scenario();
+        let steps = (self.session.run().planned_time() / scenario.step).ceil();
+        if scenario.base.moves() && !self.session.is_live() && steps <= MOST_AHEAD {
+            let mut run = self.session.run().clone();
+            while (run.simulation().step_count() as f64) < steps {
+                run.advance();
+            }
+            self.foreseen = run.frame().tally;
+        }
+    }
+
+    /// How many times the motion of the base has to be shown to be seen: as far as it is known, of the whole run.
+    fn adjust(&mut self) {
+        let reach = self.views.stage().linkage().reach();
+        let newest = self.session.frames().last().map_or_else(Tally::default, |frame| frame.tally);
+        let motion = [newest.shift.max(self.foreseen.shift), newest.tilt.max(self.foreseen.tilt)];
+        self.look.seen_at = match self.session.scenario().base.moves() {
+            true => exaggeration(motion, reach),
+            false => 1.0,
+        };
+    }
+
     /// Makes the stage again when what it shows has changed.
     fn refresh(&mut self) {
         let key = stage_key(&self.session);
@@ -293,6 +343,8 @@ impl Desk {
             self.signals = signals(&self.session.scenario().machine);
             self.stage_of = key;
         }
+        Arc::make_mut(&mut self.views).refresh(self.session.run());
+        self.adjust();
         // Not while something is dragged: every way is planned and run anew.
         if let (Some(board), None) = (&mut self.board, self.look.grabbed) {
             let ours = board.entries().iter().any(|e| {
@@ -336,5 +388,6 @@ fn same_ground(a: &Scenario, b: &Scenario) -> bool {
 /// What a stage depends on.
 fn stage_key(session: &Session) -> (Machine, String) {
     let s = session.scenario();
-    (s.machine.clone(), format!("{:?} {:?} {}", s.task, s.compare_b, session.run().motion().is_some()))
+    let differs = format!("{:?} {:?}", s.plant.length, s.plant.link);
+    (s.machine.clone(), format!("{:?} {:?} {} {differs}", s.task, s.compare_b, session.run().motion().is_some()))
 }

@@ -8,7 +8,7 @@ use crate::scenario::Scenario;
 use crate::scene::Measure;
 use crate::session::Session;
 
-const KEYS: [(&str, &str); 25] = [
+const KEYS: [(&str, &str); 27] = [
     ("Space", "play, pause, start over"),
     ("← →", "one step back, one step on"),
     ("Shift ← →", "ten steps"),
@@ -20,6 +20,7 @@ const KEYS: [(&str, &str); 25] = [
     ("S", "snapshots along the motion"),
     ("Shift click plot", "a second cursor: plots show differences; Esc takes it away"),
     ("F", "show everything"),
+    ("X", "exaggerate the motion of the base, or show it as it is"),
     ("L", "light or dark"),
     ("R", "record for the Rerun viewer"),
     ("Ctrl Z  Ctrl Y", "take back, bring back"),
@@ -29,6 +30,7 @@ const KEYS: [(&str, &str); 25] = [
     ("double click", "one more point of the path"),
     ("Delete", "leave out the point under the pointer"),
     ("P, then drag", "draw a path"),
+    ("Alt drag, or U, drag", "push the end effector, 20 N for each metre"),
     ("drag b ring", "the workspace turns"),
     ("drag plane, slice", "b, in joint space and in the tower"),
     ("drag elsewhere", "pan in 2D, else orbit; Shift pans"),
@@ -62,6 +64,7 @@ pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Co
             (Some(_), _) => Command::Dialog(None),
             (None, Some(_)) => Command::Draw(false),
             (None, None) if look.mark.is_some() => Command::Mark(None),
+            (None, None) if look.pushing && !look.help => Command::Push(false),
             (None, None) => Command::Help(false),
         });
     }
@@ -84,6 +87,8 @@ pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Co
         (plain, Key::C, Command::Compare(!look.compare)),
         (plain, Key::S, Command::Snapshots(!look.snapshots)),
         (plain, Key::P, Command::Draw(look.stroke.is_none())),
+        (plain, Key::U, Command::Push(!look.pushing)),
+        (plain, Key::X, Command::Exaggerate(!look.exaggerate)),
         (plain, Key::L, Command::Theme(super::top::other(look.theme))),
         (plain, Key::R, Command::Dialog(Some(Desk::suggest(session, Purpose::Record)))),
     ] {

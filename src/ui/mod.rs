@@ -74,6 +74,10 @@ pub enum Command {
     Mark(Option<f64>),
     /// Show or hide snapshots along the motion.
     Snapshots(bool),
+    /// Take up the hand that pushes the end effector, or lay it down.
+    Push(bool),
+    /// Exaggerate the motion of the base as much as it takes to be seen, or show it as it is.
+    Exaggerate(bool),
     /// Show or hide the keys.
     Help(bool),
     /// Show or hide the dialog for a file.
@@ -179,6 +183,12 @@ pub struct Look {
     pub dragged: bool,
     /// What the pencil has drawn so far, m; none while it lies down.
     pub stroke: Option<Vec<[f64; 2]>>,
+    /// The hand that pushes is taken up.
+    pub pushing: bool,
+    /// Motion of the base is exaggerated.
+    pub exaggerate: bool,
+    /// How many times it takes for that motion to be seen.
+    pub seen_at: f64,
     /// The b under the pointer in the chart of which b, rad.
     pub preview: Option<f64>,
     /// What was asked for last and refused.
@@ -206,6 +216,9 @@ impl Look {
             dialog: None,
             dragged: false,
             stroke: None,
+            pushing: false,
+            exaggerate: true,
+            seen_at: 1.0,
             preview: None,
             refused: None,
             message: None,
@@ -215,6 +228,11 @@ impl Look {
     /// Colours.
     pub fn palette(&self) -> Palette {
         palette(self.theme)
+    }
+
+    /// How many times the motion of the base is shown.
+    pub fn sway(&self) -> f64 {
+        if self.exaggerate { self.seen_at } else { 1.0 }
     }
 
     /// The view in use.

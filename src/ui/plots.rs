@@ -10,6 +10,7 @@ use crate::compare::Board;
 use crate::frame::{Frame as Instant, REACTIONLESS};
 use crate::planar::Vector;
 use crate::reactionless::PlanePoint;
+use crate::scenario::Scenario;
 use crate::scene::palette::{Palette, faded};
 use crate::scene::stage::{round_up, signed};
 use crate::session::Session;
@@ -22,15 +23,50 @@ struct Chart {
     groups: &'static [&'static str],
     least: f64,
     centred: bool,
+    /// What SI values are multiplied by.
+    times: f64,
 }
 
 const CHARTS: [Chart; 5] = [
-    Chart { title: "Torque", unit: "N m", groups: &["torque"], least: 0.1, centred: true },
-    Chart { title: "Base moment", unit: "N m", groups: &["moment/total"], least: 0.5, centred: true },
-    Chart { title: "Base force", unit: "N, from motion", groups: &["force/dynamic"], least: 0.5, centred: true },
-    Chart { title: "Drive angles", unit: "rad", groups: &["angle"], least: 0.5, centred: false },
-    Chart { title: "Pose constant", unit: "rad", groups: &["pose/b"], least: 0.1, centred: false },
+    Chart { title: "Torque", unit: "N m", groups: &["torque"], least: 0.1, centred: true, times: 1.0 },
+    Chart { title: "Base moment", unit: "N m", groups: &["moment/total"], least: 0.5, centred: true, times: 1.0 },
+    Chart {
+        title: "Base force",
+        unit: "N, from motion",
+        groups: &["force/dynamic"],
+        least: 0.5,
+        centred: true,
+        times: 1.0,
+    },
+    Chart { title: "Drive angles", unit: "rad", groups: &["angle"], least: 0.5, centred: false, times: 1.0 },
+    Chart { title: "Pose constant", unit: "rad", groups: &["pose/b"], least: 0.1, centred: false, times: 1.0 },
 ];
+
+/// With a reaction wheel: what the machine transmits, and what of it the base feels.
+const WITH_WHEEL: Chart = Chart { groups: &["moment/total", "moment/felt"], ..CHARTS[1] };
+/// With friction.
+const FRICTION: Chart =
+    Chart { title: "Friction", unit: "N m", groups: &["friction"], least: 0.01, centred: true, times: 1.0 };
+/// On a base that moves.
+const BASE: Chart = Chart {
+    title: "Base motion",
+    unit: "mm, mrad",
+    groups: &["base", "attitude"],
+    least: 0.01,
+    centred: true,
+    times: 1e3,
+};
+
+/// The plots that have something to tell of a scenario.
+fn charts(scenario: &Scenario) -> Vec<Chart> {
+    let [torque, moment, force, angles, b] = CHARTS;
+    let wheel = scenario.base.wheel.is_some();
+    let mut list = vec![torque, if wheel { WITH_WHEEL } else { moment }, force];
+    list.extend(Some(BASE).filter(|_| scenario.base.moves()));
+    list.extend(Some(FRICTION).filter(|_| scenario.plant.friction != Default::default()));
+    list.extend([angles, b]);
+    list
+}
 
 /// The longest stretch of time shown at once, s.
 const WINDOW: f64 = 12.0;
@@ -50,20 +86,24 @@ pub fn show(
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 14, right: 14, top: 10, bottom: 8 });
     let width = (0.27 * ui.available_width()).clamp(336.0, 376.0);
     Panel::right("plots").exact_size(width).resizable(false).frame(frame).show(ui, |ui| {
-        let rows = CHARTS.len() as f32 + 1.6;
-        let height = ((ui.available_height() - 32.0 * (CHARTS.len() as f32 + 1.0)) / rows).max(40.0);
+        let charts = charts(session.scenario());
+        let rows = charts.len() as f32 + 1.6;
+        let height = ((ui.available_height() - 32.0 * (charts.len() as f32 + 1.0)) / rows).max(44.0);
         let end = session.frames().last().map_or(0.0, |f| f.time).max(session.length());
         let end = if session.is_live() { end.max(1.0) } else { end };
         // Scrubbed far back, the plots go along.
         let end = end.min((session.frame().time + 0.5 * WINDOW).max(WINDOW));
         let shown = (end - WINDOW).max(0.0)..=end;
-        for chart in &CHARTS {
-            let lines: Vec<&Signal> = signals.iter().filter(|s| belongs(s, chart)).collect();
-            let marked = look.mark.map(|time| instant(session, time));
-            header(ui, &p, chart, &lines, session.frame(), marked);
-            time_plot(ui, &p, chart, &lines, session, board, look.mark, &shown, height, commands);
-        }
-        which_b(ui, &p, session, look, height * 1.6 + 14.0, commands);
+        // Where there is no room for all of them, they scroll.
+        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            for chart in &charts {
+                let lines: Vec<&Signal> = signals.iter().filter(|s| belongs(s, chart)).collect();
+                let marked = look.mark.map(|time| instant(session, time));
+                header(ui, &p, chart, &lines, session.frame(), marked);
+                time_plot(ui, &p, chart, &lines, session, board, look.mark, &shown, height, commands);
+            }
+            which_b(ui, &p, session, look, height * 1.6 + 14.0, commands);
+        });
     });
 }
 
@@ -86,13 +126,19 @@ fn header(ui: &mut Ui, p: &Palette, chart: &Chart, lines: &[&Signal], now: &Inst
         ui.label(RichText::new(chart.unit).font(plain(11.5)).color(colour(p.dim)));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             for signal in lines.iter().rev() {
-                let (value, meaning) = (signal.value(now), format!("{}, {}", signal.label, signal.unit));
-                let (text, meaning) = match marked.map(|marked| signal.value(marked)) {
+                // Of values in thousandths two digits do, and the plot says whose they are.
+                let (symbol, decimals) = match chart.times == 1.0 {
+                    true => (signal.symbol.as_str(), 3),
+                    false => (signal.symbol.trim_end_matches("_B"), 2),
+                };
+                let value = chart.times * signal.value(now);
+                let meaning = format!("{}, {}", signal.label, unit_of(chart, signal));
+                let (text, meaning) = match marked.map(|marked| chart.times * signal.value(marked)) {
                     Some(first) => (
-                        format!("Δ{} {}", signal.symbol, signed(value - first, 3)),
+                        format!("Δ{symbol} {}", signed(value - first, decimals)),
                         format!("{meaning}: {} at the second cursor, {} now", signed(first, 4), signed(value, 4)),
                     ),
-                    None => (format!("{} {}", signal.symbol, signed(value, 3)), meaning),
+                    None => (format!("{symbol} {}", signed(value, decimals)), meaning),
                 };
                 let label = RichText::new(text).font(plain(11.5)).color(tone(p, signal, now));
                 ui.label(label).on_hover_text(meaning);
@@ -101,11 +147,21 @@ fn header(ui: &mut Ui, p: &Palette, chart: &Chart, lines: &[&Signal], now: &Inst
     });
 }
 
+/// The unit that a signal is shown in.
+fn unit_of(chart: &Chart, signal: &Signal) -> String {
+    if chart.times == 1e3 { format!("m{}", signal.unit) } else { signal.unit.into() }
+}
+
 /// A signal's colour; a reaction is red where it is one, by the peaks up to the instant that is asked about.
 fn tone(p: &Palette, signal: &Signal, now: &Instant) -> Color32 {
     colour(match (signal.drive, signal.group()) {
         (Some(k), _) => p.drive(k),
         (None, "pose") => p.amber,
+        (None, "base") if signal.path.ends_with('y') => p.dim,
+        (None, "attitude") => p.reaction,
+        (None, "moment") if signal.path == "moment/felt" && now.peaks.moment > REACTIONLESS * now.peaks.torque_sum => {
+            p.ink
+        }
         (None, "moment") if now.peaks.moment <= REACTIONLESS * now.peaks.torque_sum => p.zero,
         (None, "force") if now.peaks.force <= REACTIONLESS * now.peaks.inertial_pull => p.zero,
         (None, "moment" | "force") => p.reaction,
@@ -130,7 +186,7 @@ fn time_plot(
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let mut drawn = Vec::new();
     for signal in lines {
-        let points = thinned(frames, signal);
+        let points = thinned(frames, signal, chart.times);
         for [_, y] in &points {
             (low, high) = (low.min(*y), high.max(*y));
         }
@@ -140,7 +196,7 @@ fn time_plot(
     for (i, run) in board.iter().flat_map(|board| board.shown()) {
         for signal in lines {
             let frames = &run.frames[..run.frames.partition_point(|f| f.time <= *shown.end())];
-            let points = thinned(frames, signal);
+            let points = thinned(frames, signal, chart.times);
             for [_, y] in &points {
                 (low, high) = (low.min(*y), high.max(*y));
             }
@@ -217,7 +273,7 @@ fn base_plot<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
         .allow_boxed_zoom(false)
         .allow_double_click_reset(false)
         .sense(egui::Sense::click_and_drag())
-        .y_axis_min_width(40.0)
+        .y_axis_min_width(46.0)
         .set_margin_fraction(egui::Vec2::ZERO)
 }
 
@@ -249,8 +305,8 @@ fn visible<'a>(session: &'a Session, shown: &std::ops::RangeInclusive<f64>) -> &
 }
 
 /// At most [`POINTS`] points; of each bucket the least and the greatest, so that no peak is lost.
-fn thinned(frames: &[Instant], signal: &Signal) -> Vec<[f64; 2]> {
-    let point = |f: &Instant| [f.time, signal.value(f)];
+fn thinned(frames: &[Instant], signal: &Signal, times: f64) -> Vec<[f64; 2]> {
+    let point = |f: &Instant| [f.time, times * signal.value(f)];
     if frames.len() <= POINTS {
         return frames.iter().map(point).collect();
     }

@@ -1,4 +1,9 @@
-//! The panel on the left: pose constant, limits, motion, plant, control, balance.
+//! The panel on the left: pose constant, limits, motion, plant, base, control, balance.
+
+mod base;
+mod control;
+mod fold;
+mod plant;
 
 use egui::{
     Align, DragValue, Frame, Layout, Margin, Panel, Response, RichText, ScrollArea, Slider, SliderClamping, Ui,
@@ -21,9 +26,11 @@ pub fn show(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Comm
             ui.set_width(ui.available_width() - 6.0);
             pose_constant(ui, session, &p, commands);
             limits(ui, session, &p, commands);
+            gravity(ui, session, &p, commands);
             path::show(ui, session, &p, commands);
-            plant(ui, session, &p, commands);
-            control(ui, session, &p, commands);
+            plant::show(ui, session, &p, commands);
+            base::show(ui, session, look, commands);
+            control::show(ui, session, &p, commands);
             balance(ui, session, &p);
         });
     });
@@ -73,21 +80,26 @@ impl Row<'_> {
     /// The same with a slider below.
     pub fn with_slider(&self, ui: &mut Ui, p: &Palette, value: &mut f64) -> [Response; 2] {
         let number = self.show(ui, p, value);
+        [number, self.slider(ui, value, false)]
+    }
+
+    /// A slider alone.
+    pub fn slider(&self, ui: &mut Ui, value: &mut f64, logarithmic: bool) -> Response {
         ui.spacing_mut().slider_width = ui.available_width();
         // The knob's size follows the row's height.
         ui.spacing_mut().interact_size.y = 15.0;
-        let slider = ui.add(
-            Slider::new(value, self.range.clone()).clamping(SliderClamping::Edits).show_value(false).smart_aim(false),
-        );
+        let slider = Slider::new(value, self.range.clone()).clamping(SliderClamping::Edits).show_value(false);
+        let slider = ui.add(slider.smart_aim(false).logarithmic(logarithmic));
         ui.spacing_mut().interact_size.y = 22.0;
         name(&slider, &format!("{} slider", self.label));
-        [number, slider.on_hover_text(self.tip)]
+        slider.on_hover_text(self.tip)
     }
 }
 
 pub(super) fn unit(ui: &mut Ui, p: &Palette, text: &str) {
-    let text = RichText::new(text).font(plain(11.5)).color(colour(p.dim));
-    ui.add_sized([38.0, 18.0], egui::Label::new(text).halign(Align::LEFT));
+    let size = if text.chars().count() > 6 { 10.5 } else { 11.5 };
+    let text = RichText::new(text).font(plain(size)).color(colour(p.dim));
+    ui.add_sized([44.0, 18.0], egui::Label::new(text).halign(Align::LEFT));
 }
 
 pub(super) fn note(ui: &mut Ui, p: &Palette, text: &str) {
@@ -160,7 +172,7 @@ fn pose_constant(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec
 }
 
 fn limits(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
-    section(ui, p, "Joint limits");
+    section(ui, p, "Limits and gravity");
     for (i, angle) in session.scenario().machine.angles().iter().enumerate() {
         let mut ends = [angle.limits.start().to_degrees(), angle.limits.end().to_degrees()];
         let old = ends;
@@ -196,15 +208,8 @@ fn limits(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comman
     }
 }
 
-fn plant(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
-    section(ui, p, "Plant");
-    let scenario = session.scenario();
-    let mut mass = scenario.plant.payload.mass;
-    let tip = "A mass at the end effector that control does not know of: it unbalances the machine";
-    let row = Row { label: "payload", unit: "kg", tip, decimals: 2, speed: 0.01, range: 0.0..=2.0 };
-    let responses = row.with_slider(ui, p, &mut mass);
-    send(commands, &responses, || Edit::plant("payload.mass", mass));
-    let gravity = scenario.machine.gravity();
+fn gravity(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
+    let gravity = session.scenario().machine.gravity();
     // From zero, so that no gravity reads 0.00 and not −0.00.
     let mut down = 0.0 - gravity.im;
     let tip = "Acceleration of gravity along −y; known to control";
@@ -214,20 +219,6 @@ fn plant(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command
         key: "gravity".into(),
         value: format!("{},{}", gravity.re, 0.0 - down),
     });
-}
-
-fn control(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
-    section(ui, p, "Control");
-    let control = session.scenario().control;
-    let (mut kp, mut kd) = (control.kp.of(1)[0], control.kd.of(1)[0]);
-    let tip = "Computed torque: position gain, the same on all drives";
-    let first =
-        Row { label: "Kp", unit: "s⁻²", tip, decimals: 0, speed: 1.0, range: 0.0..=10_000.0 }.show(ui, p, &mut kp);
-    let tip = "Computed torque: velocity gain, the same on all drives";
-    let second =
-        Row { label: "Kd", unit: "s⁻¹", tip, decimals: 0, speed: 0.2, range: 0.0..=1_000.0 }.show(ui, p, &mut kd);
-    send(commands, &[first], || Edit::control("kp", kp));
-    send(commands, &[second], || Edit::control("kd", kd));
 }
 
 fn balance(ui: &mut Ui, session: &Session, p: &Palette) {

@@ -1,19 +1,26 @@
 //! The line at the bottom: the verdict, and what to do next.
 
-use egui::{Align, Frame, Layout, Margin, Panel, RichText, Ui};
+use egui::{Align, Layout, Margin, Panel, RichText, Sense, Ui, vec2};
 
 use super::theme::{bold, colour, plain};
+use super::top::name;
 use super::{Command, Look};
-use crate::frame::Reach;
+use crate::frame::{Audit, Frame, Reach};
+use crate::scene::palette::{Palette, faded};
 use crate::scene::stage::signed;
 use crate::scene::views::Views;
 use crate::session::{Edit, Session};
 
 /// Bad news, in full, over the lower edge of the viewport, with the way out if there is one.
-pub fn news(ctx: &egui::Context, look: &Look, commands: &mut Vec<Command>) {
-    let (Some((text, true)), None) = (&look.message, &look.dialog) else { return };
+pub fn news(ctx: &egui::Context, session: &Session, look: &Look, commands: &mut Vec<Command>) {
+    let fault = fault(session.frame());
+    let text = match (&look.message, &fault, &look.dialog) {
+        (Some((text, true)), _, None) | (_, Some(text), None) => text,
+        _ => return,
+    };
     let p = look.palette();
-    let frame = Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.reaction))).corner_radius(8).inner_margin(10);
+    let frame =
+        egui::Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.reaction))).corner_radius(8).inner_margin(10);
     egui::Area::new(egui::Id::unique("news")).anchor(egui::Align2::CENTER_BOTTOM, [-40.0, -42.0]).show(ctx, |ui| {
         frame.show(ui, |ui| {
             ui.set_max_width((0.42 * ctx.content_rect().width()).max(320.0));
@@ -28,10 +35,56 @@ pub fn news(ctx: &egui::Context, look: &Look, commands: &mut Vec<Command>) {
     });
 }
 
+/// What should be zero: a quiet dot for each figure, red where it is not.
+fn lamps(ui: &mut Ui, frame: &Frame, p: &Palette) {
+    ui.add_space(4.0);
+    ui.spacing_mut().item_spacing.x = 1.0;
+    for lamp in frame.audit.lamps(&frame.peaks, &frame.tally) {
+        let good = lamp.is_good();
+        let (dot, response) = ui.allocate_exact_size(vec2(12.0, 18.0), Sense::hover());
+        let tone = colour(if good { faded(p.zero, 0.75) } else { p.reaction });
+        ui.painter().circle_filled(dot.center(), if good { 2.8 } else { 4.2 }, tone);
+        let word = if good { "good" } else { "not as it should be" };
+        name(&response, &format!("audit {}: {} {}, {word}", lamp.name, power(lamp.value), lamp.unit));
+        let limit = match lamp.limit {
+            Some(limit) => format!("should be at most {} {}", power(limit), lamp.unit),
+            None => "tells how well the plane is held; no limit".into(),
+        };
+        response.on_hover_text(format!(
+            "{}: {}\n{} {}, {limit}",
+            lamp.name,
+            lamp.meaning,
+            power(lamp.value),
+            lamp.unit
+        ));
+    }
+    ui.spacing_mut().item_spacing.x = 8.0;
+    ui.add_space(4.0);
+}
+
+/// Two digits and the order of magnitude.
+fn power(x: f64) -> String {
+    if x == 0.0 { "0".into() } else { format!("{x:.1e}").replace("e-", "e−") }
+}
+
+/// What an audit that fails has to say, loudly.
+fn fault(frame: &Frame) -> Option<String> {
+    let lamp = Audit::fault(frame)?;
+    let limit = lamp.limit.unwrap_or_default();
+    Some(format!(
+        "This run cannot be trusted: {} ({}) is off by {} {}, at most {} is right. A smaller step or softer gains help.",
+        lamp.name,
+        lamp.meaning,
+        power(lamp.value),
+        lamp.unit,
+        power(limit)
+    ))
+}
+
 /// Draws it.
 pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &Look, commands: &mut Vec<Command>) {
     let p = look.palette();
-    let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin::symmetric(16, 0));
+    let frame = egui::Frame::new().fill(colour(p.panel)).inner_margin(Margin::symmetric(16, 0));
     Panel::bottom("status").exact_size(30.0).resizable(false).frame(frame).show(ui, |ui| {
         ui.horizontal_centered(|ui| {
             let f = session.frame();
@@ -45,15 +98,18 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &Look, commands
                 (false, true) => "has reacted on its base",
             };
             ui.label(RichText::new(word).font(bold(13.0)).color(tone));
+            lamps(ui, f, &p);
             let mut facts = format!("peak |n_B| {:.3} N m  ·  b {:.3} rad", f.peaks.moment, f.b);
             let bad_news = matches!(look.message, Some((_, true)));
-            if let Some((poses, distance)) = views.stage().standing(f).filter(|_| !bad_news) {
+            if let Some((poses, distance)) =
+                views.stage().standing(f).filter(|_| !bad_news && ui.available_width() > 460.0)
+            {
                 let many = if poses == 1 { "one pose".into() } else { format!("{poses} poses") };
-                facts += &format!("  ·  {many}, {} m from the boundary", signed(distance.abs(), 3));
-            }
-            // A narrow window keeps its room for what to do next.
-            if ui.available_width() > 900.0 && !bad_news {
-                facts += &format!("  ·  energy balance {:.0e} J", f.audit.energy.abs());
+                facts += &format!("  ·  {many}");
+                // A narrow window keeps its room for what to do next.
+                if ui.available_width() > 900.0 {
+                    facts += &format!(", {} m from the boundary", signed(distance.abs(), 3));
+                }
             }
             ui.label(RichText::new(facts).font(plain(12.0)).color(colour(p.dim)));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -80,6 +136,9 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &Look, commands
                     (None, Reach::Outside { .. }) => ("the target is outside, whatever b".into(), p.ink),
                     (None, _) if look.stroke.is_some() => {
                         ("draw with the pointer  ·  Esc lays the pencil down".into(), p.ink)
+                    }
+                    (None, _) if look.pushing => {
+                        ("pull at the end effector to push it, 20 N for each metre  ·  U lets go".into(), p.ink)
                     }
                     (None, _) if look.view.shows_machine() => {
                         ("drag the target, a point or the b ring  ·  Space plays  ·  F1 keys".into(), p.dim)

@@ -66,6 +66,12 @@ fn shade(ui: &mut Ui, p: &Palette, look: &Look, views: &Views, commands: &mut Ve
         if ui.checkbox(&mut drawing, words).on_hover_text(help).clicked() {
             commands.push(Command::Draw(drawing));
         }
+        let ink = colour(if look.pushing { p.ink } else { p.dim });
+        let mut pushing = look.pushing;
+        let help = "Push the end effector with the pointer, 20 N for each metre (U; or hold Alt)";
+        if ui.checkbox(&mut pushing, RichText::new("push").font(plain(11.5)).color(ink)).on_hover_text(help).clicked() {
+            commands.push(Command::Push(pushing));
+        }
         let ink = colour(if look.dexterity.is_some() { p.ink } else { p.dim });
         let words = RichText::new("dexterity").font(plain(11.5)).color(ink);
         let help = "Shade the workspace by how well the end effector moves (J)";

@@ -8,6 +8,7 @@ use super::theme::{colour, plain};
 use super::top::name;
 use super::{Command, Look, set_b, switch};
 use crate::compare::Board;
+use crate::frame::Frame as Instant;
 use crate::planar::{DriveAngles, Vector};
 use crate::render::{Renderer, View};
 use crate::scenario::Task;
@@ -15,6 +16,7 @@ use crate::scene::camera::Camera;
 use crate::scene::palette::faded;
 use crate::scene::pointer::Pointer;
 use crate::scene::stage::{Handle, Other, ViewOptions};
+use crate::scene::sway::swayed;
 use crate::scene::views::{Aim, ViewKind, Views};
 use crate::scene::{Anchor, Label, Scene};
 use crate::session::{Edit, Session};
@@ -31,12 +33,13 @@ pub fn show(
     CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         name(&response, "Scene: the machine, its reactionless workspace and its target");
-        let frame = session.frame();
+        // What the pointer meets is what is seen.
+        let shown = swayed(session.frame(), look.sway());
         let spot = Spot { rect, camera: *look.camera() };
         if look.stroke.is_some() && look.view.shows_machine() {
             draw(ui, &response, &spot, views, look, commands);
         } else {
-            point_at(ui, &response, &spot, session, views, look, commands);
+            point_at(ui, &response, &spot, (session, &shown), views, look, commands);
             move_camera(ui, &response, rect, look);
         }
         let options = ViewOptions {
@@ -48,10 +51,12 @@ pub fn show(
             stroke: look.stroke.clone().unwrap_or_default(),
             refused: look.refused.as_ref().and_then(|r| r.curve.clone()),
             snapshots: if look.snapshots { snapshots(session) } else { Vec::new() },
-            others: board.map_or_else(Vec::new, |board| others(board, frame.time)),
+            others: board.map_or_else(Vec::new, |board| others(board, session.frame().time, look.sway())),
+            sway: look.sway(),
+            push: force(session),
             ..ViewOptions::default()
         };
-        let scene = Arc::new(views.scene(look.view, frame, &options, look.camera()));
+        let scene = Arc::new(views.scene(look.view, session.frame(), &options, look.camera()));
         paint(ui, rect, &scene, look.camera());
         words(ui, &Spot { rect, camera: *look.camera() }, &scene);
         switch::show(ui, rect, look, views, commands);
@@ -73,13 +78,19 @@ fn snapshots(session: &Session) -> Vec<DriveAngles> {
     (0..SNAPSHOTS).map(|i| run.plan().motion.at(share(i) * run.planned_time()).q).collect()
 }
 
-/// The runs that are laid over, at a time, s.
-fn others(board: &Board, time: f64) -> Vec<Other> {
+/// The runs that are laid over, at a time, s, the motion of their bases so many times as far.
+fn others(board: &Board, time: f64, times: f64) -> Vec<Other> {
     let other = |(i, run): (usize, &crate::compare::Compared)| {
-        let frame = run.at(time)?;
+        let frame = swayed(run.at(time)?, times);
         Some(Other { name: (i + 1).to_string(), q: frame.q, base: frame.base })
     };
     board.shown().filter_map(other).collect()
+}
+
+/// What pushes at the end effector, N, as far as it is known of the instant on display.
+fn force(session: &Session) -> Option<[f64; 2]> {
+    let lasting = !session.script().iter().any(|e| e.step > 0 && e.edit.pushes());
+    Some(session.scenario().plant.force).filter(|_| lasting || session.is_at_end())
 }
 
 /// A viewport and the camera in it.
@@ -105,13 +116,18 @@ fn point_at(
     ui: &Ui,
     response: &egui::Response,
     spot: &Spot,
-    session: &Session,
+    (session, frame): (&Session, &Instant),
     views: &Views,
     look: &mut Look,
     commands: &mut Vec<Command>,
 ) {
-    let (frame, view) = (session.frame(), look.view);
-    let under = |pos: Pos2| views.pick(view, frame, &spot.pointer(pos));
+    let view = look.view;
+    // A hand pushes with Alt, or while its tool is taken up.
+    let pushes = view.shows_machine() && (look.pushing || ui.input(|i| i.modifiers.alt));
+    let under = |pos: Pos2| match pushes {
+        true => views.pick_tip(frame, &spot.pointer(pos)),
+        false => views.pick(view, frame, &spot.pointer(pos)),
+    };
     if look.grabbed.is_none() {
         look.hot = response.hover_pos().and_then(under).map(|grip| grip.handle);
     }
@@ -126,6 +142,7 @@ fn point_at(
                 Edit::DragTarget { x, y }
             }
             Aim::B(b) => set_b(session, b),
+            Aim::Push([x, y]) => Edit::Push { x, y },
             Aim::Waypoint(i, [x, y]) => {
                 look.held = Some([x, y]);
                 Edit::SetTask { change: session.scenario().task.moving(i, Vector::new(x, y))? }
@@ -136,13 +153,22 @@ fn point_at(
     if let Some(grip) = look.grabbed {
         ui.ctx().set_cursor_icon(cursor(grip.handle, true));
         // The last movement may come together with the release.
-        let moved = response.drag_delta() != Vec2::ZERO || (look.dragged && response.drag_stopped());
+        let pushes = grip.handle == Handle::Tip;
+        // A hand that pushes a machine in motion pulls on while it holds still.
+        let pulls = pushes && session.is_moving();
+        let moved = response.drag_delta() != Vec2::ZERO || (look.dragged && response.drag_stopped()) || pulls;
         if let Some(pos) = response.interact_pointer_pos().filter(|_| moved) {
             commands.extend(ask(grip, pos, look));
+            if pushes && !session.is_playing() {
+                commands.push(Command::TogglePlay);
+            }
         }
         let let_go = ui.input(|i| i.key_pressed(egui::Key::Escape));
         if response.drag_stopped() || let_go {
             look.grabbed = None;
+            if pushes && look.dragged {
+                commands.push(Command::Edit(Edit::Push { x: 0.0, y: 0.0 }));
+            }
             commands.push(Command::EndGesture);
             if let_go && look.dragged {
                 commands.push(Command::Undo);
@@ -207,8 +233,8 @@ fn cursor(handle: Handle, held: bool) -> CursorIcon {
     match (handle, held) {
         (Handle::Bar, _) => CursorIcon::PointingHand,
         (Handle::Plane, _) => CursorIcon::ResizeVertical,
-        (Handle::Target | Handle::Ring | Handle::Waypoint(_), true) => CursorIcon::Grabbing,
-        (Handle::Target | Handle::Ring | Handle::Waypoint(_), false) => CursorIcon::Grab,
+        (Handle::Target | Handle::Tip | Handle::Ring | Handle::Waypoint(_), true) => CursorIcon::Grabbing,
+        (Handle::Target | Handle::Tip | Handle::Ring | Handle::Waypoint(_), false) => CursorIcon::Grab,
     }
 }
 

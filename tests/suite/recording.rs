@@ -686,3 +686,40 @@ fn pictures_come_at_their_times_or_it_is_said_why_not() {
     assert!(matches!(refused, Err(RecordError::Pictures(_))));
     assert_eq!(folder.names(), ["x.rrd"]);
 }
+
+/// On a base that floats the machine is where it truly is, its workspace with it, and what happens is told.
+#[test]
+fn a_base_that_moves_is_recorded_as_it_moves() {
+    let folder = Folder::new("floating");
+    let mut scenario = short("case-1");
+    scenario.base.kind = stillbase::plant::BaseKind::Free;
+    scenario.base.wheel = Some(stillbase::plant::Wheel { torque_limit: Some(0.02), ..Default::default() });
+    scenario.plant.payload = stillbase::plant::Load { mass: 0.3, from: 0.02, until: Some(0.06), ..Default::default() };
+    record_in(&folder, "one.rrd", std::slice::from_ref(&scenario)).expect("a case");
+    let contents = Contents::of(&folder.file("one.rrd"));
+    let mut frames = Vec::new();
+    replay(&scenario, |_, frame| frames.push(*frame)).expect("it runs");
+    let part = &scenario.machine.parts()[4];
+    let places = |path: &str| contents.vectors(path, "Transform3D:translation");
+    let (steps, at) = places("/case-1/machine/link/5");
+    for (step, at) in steps.iter().zip(&at) {
+        let f = &frames[*step as usize];
+        let root = f.base.at + stillbase::machine::place_of(&part.root, &f.q.units());
+        assert!((f64::from(at[0]) - root.re).hypot(f64::from(at[1]) - root.im) < 1e-6, "{step}");
+    }
+    for path in ["/case-1/machine/base", "/case-1/workspace/2.400"] {
+        let (steps, at) = places(path);
+        assert!(steps.len() > 10, "{path} moves");
+        for (step, at) in steps.iter().zip(&at) {
+            let b = frames[*step as usize].base.at;
+            assert!((f64::from(at[0]) - b.re).hypot(f64::from(at[1]) - b.im) < 1e-6, "{path} at {step}");
+        }
+    }
+    let last = frames.last().expect("frames");
+    assert!(last.base.at.norm() > 1e-6 && last.base.angle.abs() > 1e-6, "{:?}", last.base);
+    let events = contents.texts("/case-1/events", "TextLog:text").join("\n");
+    for part in ["the payload is picked up", "the payload is let go", "the reaction wheel saturates"] {
+        assert!(events.contains(part), "{part} in {events}");
+    }
+    assert!(!events.contains("audit failed"), "{events}");
+}

@@ -76,6 +76,7 @@ fn nine_link(b: f32) -> Area {
         a_min: [0.0; 2],
         a_max: [PI; 2],
         turn: b / sum,
+        at: [0.0; 2],
         z: 0.0,
         colour: WHITE,
         shade: None,

@@ -6,12 +6,13 @@ use proptest::prelude::*;
 use stillbase::frame::Reach;
 use stillbase::joint_forces::Joints;
 use stillbase::machine::{builtins, place_of};
-use stillbase::planar::{DriveAngles, Vector, unit};
+use stillbase::planar::{DriveAngles, Pose2, Vector, unit};
 use stillbase::scenario::Scenario;
 use stillbase::scene::camera::{Camera, Flat, Orbit};
 use stillbase::scene::linkage::Linkage;
 use stillbase::scene::palette::{Theme, palette};
 use stillbase::scene::stage::{Handle, Stage, ViewOptions, round_up};
+use stillbase::scene::sway::{exaggeration, swayed};
 use stillbase::scene::{Scene, Solid};
 use stillbase::session::{Edit, Session};
 
@@ -195,10 +196,10 @@ fn handles_are_under_their_markers() {
         }
         // The knob stands for b, and for one turn of everything more or less.
         let [x, y, _] = stage.handle(Handle::Ring, frame).expect("three drives");
-        let b = stage.ring_b([x, y], frame.b_reference).expect("three drives");
+        let b = stage.ring_b([x, y], frame.b_reference, frame).expect("three drives");
         assert!((b - frame.b_reference).abs() < 1e-12);
         let period = session.run().planes().expect("three drives").map().period();
-        let next = stage.ring_b([x, y], frame.b_reference + 1.1 * period).expect("three drives");
+        let next = stage.ring_b([x, y], frame.b_reference + 1.1 * period, frame).expect("three drives");
         assert!((next - b - period).abs() < 1e-12);
         // The end effector is marked where it is.
         let marker = scene.markers.iter().find(|m| m.name == "end-effector").expect("a marker");
@@ -305,7 +306,7 @@ proptest! {
         let machine = &builtins()[which];
         let linkage = Linkage::of(machine);
         let e = DriveAngles::from(q).units();
-        let solids = linkage.solids(&e, &palette(Theme::Dark));
+        let solids = linkage.solids(&e, Pose2::default(), false, &palette(Theme::Dark));
         for (part, link) in machine.parts().iter().zip(machine.links()) {
             let solid = solids.iter().find(|s| s.name == format!("link/{}", link.name)).expect("every link");
             let mesh = &linkage.model.meshes[solid.mesh];
@@ -429,4 +430,94 @@ fn views_look_where_they_say() {
         assert!(flat.clip_from_world(aspect).iter().flatten().all(|x| x.is_finite()));
     }
     assert!(unit(0.0).re == 1.0);
+}
+
+/// Case 1 on a base that floats, at its end, with a payload in hand.
+fn floating() -> Session {
+    let mut scenario = Scenario::builtin("case-1").expect("built in");
+    scenario.base.kind = stillbase::plant::BaseKind::Free;
+    scenario.plant.payload.mass = 0.3;
+    scenario.plant.payload.offset = [0.05, -0.02];
+    let mut session = Session::open(scenario).expect("it can start");
+    session.seek(1.0);
+    session
+}
+
+/// The machine is drawn where its base is; its workspace goes along, and the target does not.
+#[test]
+fn all_of_the_machine_goes_with_its_base() {
+    let session = floating();
+    let f = session.frame();
+    assert!(f.base.angle.abs() > 1e-3 && f.base.at.norm() > 1e-4, "{:?}", f.base);
+    let still = {
+        let mut still = *f;
+        still.q.0.iter_mut().for_each(|q| *q -= f.base.angle);
+        (still.tip, still.com, still.base) = (f.in_base(f.tip), f.in_base(f.com), Pose2::default());
+        still
+    };
+    let stage = Stage::of(session.run());
+    for times in [1.0, 20.0] {
+        let options = ViewOptions { sway: times, ..Default::default() };
+        let (moved, unmoved) = (stage.scene(f, &options), stage.scene(&still, &options));
+        let (at, turn) = (f.base.at * times, unit(f.base.angle * times));
+        let seen = |scene: &Scene, name: &str| {
+            let solid = scene.solids.iter().find(|s| s.name == name).expect("a solid").world_from_mesh[3];
+            Vector::new(f64::from(solid[0]), f64::from(solid[1]))
+        };
+        for name in ["link/1", "link/5", "link/9", "joint/4", "base/plate", "base/body"] {
+            let want = at + seen(&unmoved, name) * turn;
+            assert!((seen(&moved, name) - want).norm() < 1e-6, "{name} at {times} times");
+        }
+        let area = |scene: &Scene| scene.areas.last().expect("a workspace").clone();
+        let [x, y] = area(&moved).at;
+        assert!((Vector::new(f64::from(x), f64::from(y)) - at).norm() < 1e-6);
+        let more = f64::from(area(&moved).turn - area(&unmoved).turn);
+        assert!((unit(more) - turn).norm() < 1e-6);
+        let mark = |scene: &Scene, name: &str| scene.markers.iter().find(|m| m.name == name).expect("a marker").at;
+        assert_eq!(mark(&moved, "target"), mark(&unmoved, "target"), "it stays where it was set");
+        assert!(mark(&moved, "payload") != mark(&moved, "end-effector"));
+        let ghost = |scene: &Scene| scene.lines.iter().any(|l| l.name == "unmoved");
+        assert!(ghost(&moved) && !ghost(&unmoved), "a ghost where there is a difference");
+        assert!(moved.labels.iter().any(|l| l.text.ends_with("shown ×20")) == (times == 20.0));
+    }
+    // The disc of the payload is where the plant has its centre of mass.
+    let scene = stage.scene(f, &ViewOptions::default());
+    let marker = scene.markers.iter().find(|m| m.name == "payload").expect("held");
+    let scenario = session.scenario();
+    let chain = scenario.plant.payload.held_by(&scenario.machine).expect("valid").payload_chain();
+    let want = f.base.at + f.q.units().iter().zip(chain).map(|(e, a)| e * a).sum::<Vector>();
+    assert!((Vector::new(f64::from(marker.at[0]), f64::from(marker.at[1])) - want).norm() < 1e-6);
+}
+
+proptest! {
+    /// Motion is shown by the least round number of times with which it is seen, and noise never.
+    #[test]
+    fn motion_is_exaggerated_no_more_than_needed(size in -9.0..1.0f64, tilts: bool) {
+        let motion = 10f64.powf(size);
+        let times = exaggeration(if tilts { [0.0, motion] } else { [motion, 0.0] }, 1.0);
+        prop_assert!(times >= 1.0);
+        if times > 1.0 && times < 1e6 {
+            prop_assert!((0.041 - 1e-9..0.041 * 2.5).contains(&(times * motion)), "{times} times {motion}");
+            let mantissa = times / 10f64.powf(times.log10().floor() + 1e-12).round();
+            prop_assert!([1.0, 2.0, 5.0, 10.0].iter().any(|m| (m - mantissa).abs() < 1e-9), "{times}");
+        }
+        prop_assert_eq!(exaggeration([1e-14, 0.0], 1.0), 1.0);
+        prop_assert_eq!(exaggeration([f64::NAN, 0.0], 1.0), 1.0);
+    }
+
+    /// Seen from the base nothing changes, and once is as it is.
+    #[test]
+    fn exaggeration_moves_all_alike(times in 1.0..100.0f64) {
+        let session = floating();
+        let frame = session.frame();
+        prop_assert_eq!(swayed(frame, 1.0), *frame);
+        let more = swayed(frame, times);
+        prop_assert!((more.in_base(more.tip) - frame.in_base(frame.tip)).norm() < 1e-12);
+        prop_assert!((more.in_base(more.com) - frame.in_base(frame.com)).norm() < 1e-12);
+        for k in 0..3 {
+            prop_assert!((more.relative(k) - frame.relative(k)).abs() < 1e-12);
+        }
+        let tip = more.base.at + stillbase::kinematics::end_effector(session.scenario().machine.tip(), &more.q.units());
+        prop_assert!((more.tip - tip).norm() < 1e-12);
+    }
 }

@@ -379,7 +379,7 @@ fn the_machines_handles_are_found_in_both_views() {
             match views.aim(kind, &Grip { handle, at }, frame, &here, 2.4) {
                 Some(Aim::Target([x, y])) => assert!((x - 0.5).hypot(y - 0.5) < 1e-6),
                 Some(Aim::B(b)) => assert!((b - 2.4).abs() < 1e-6),
-                Some(Aim::Waypoint(..)) => panic!("not asked for"),
+                Some(Aim::Waypoint(..) | Aim::Push(_)) => panic!("not asked for"),
                 None => panic!("{handle:?} asks for nothing"),
             }
         }

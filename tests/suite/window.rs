@@ -2,11 +2,15 @@
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, pos2};
-use egui_kittest::{Harness, kittest::Queryable as _};
+use egui_kittest::{Harness, kittest::NodeT as _, kittest::Queryable as _};
 use stillbase::frame::Reach;
+use stillbase::planar::PerDrive;
+use stillbase::plant::{Base, BaseKind, Each, Plant};
 use stillbase::reactionless::PlanePoint;
 use stillbase::scenario::Scenario;
 use stillbase::scene::palette::Theme;
+use stillbase::scene::stage::Handle;
+use stillbase::scene::sway::swayed;
 use stillbase::scene::views::ViewKind;
 use stillbase::session::Edit;
 use stillbase::ui::Desk;
@@ -18,11 +22,16 @@ type Desktop = Harness<'static, App>;
 
 /// A desk of 1280 by 800 on which every repaint lasts 20 ms; `None`, with the reason said, without an adapter.
 fn desk(case: &str, theme: Theme) -> Option<Desktop> {
+    desk_of(Scenario::builtin(case).expect("built in"), theme, 800.0)
+}
+
+/// The same of any scenario and height: what is scrolled out of view cannot be found.
+fn desk_of(scenario: Scenario, theme: Theme, height: f32) -> Option<Desktop> {
     drop(gpu()?);
-    let desk = Desk::new(Scenario::builtin(case).expect("built in"), theme).expect("it starts");
+    let desk = Desk::new(scenario, theme).expect("it starts");
     Some(
         Harness::builder()
-            .with_size([1280.0, 800.0])
+            .with_size([1280.0, height])
             .with_step_dt(0.02)
             .wgpu()
             .build_eframe(move |cc| App::new(cc, desk, Clock::Fixed(0.02)).expect("kittest draws with wgpu")),
@@ -58,6 +67,15 @@ fn drag(h: &mut Desktop, from: egui::Pos2, to: egui::Pos2) {
     }
     h.drop_at(to);
     h.step();
+}
+
+/// Opens the plant's section and has it hold a payload.
+fn hold(h: &mut Desktop) {
+    h.get_by_label("Plant section").click();
+    h.run_steps(2);
+    h.get_by_label("payload").click();
+    h.run_steps(2);
+    assert_eq!(session(h).scenario().plant.payload.mass, 0.3);
 }
 
 #[test]
@@ -152,12 +170,17 @@ fn keys_play_step_and_take_back() {
     h.key_press(Key::Home);
     h.step();
     assert_eq!(session(&h).frame().step, 0);
-    h.get_by_role_and_label(Role::Slider, "payload slider").set_value_accesskit(0.5);
+    hold(&mut h);
+    h.get_by_role_and_label(Role::Slider, "payload mass slider").set_value_accesskit(0.5);
     h.run_steps(2);
     assert!(session(&h).scenario().plant.payload.mass > 0.49);
-    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-    h.run_steps(2);
+    for _ in 0..2 {
+        h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        h.run_steps(2);
+    }
     assert_eq!(session(&h).scenario().plant.payload.mass, 0.0);
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Y);
+    h.run_steps(2);
     h.key_press_modifiers(Modifiers::COMMAND, Key::Y);
     h.run_steps(2);
     assert!(session(&h).scenario().plant.payload.mass > 0.49);
@@ -498,4 +521,137 @@ fn runs_stand_side_by_side() {
     h.key_press(Key::Escape);
     h.run_steps(2);
     assert!(h.state().desk().look().mark.is_none());
+}
+
+/// Whatever differs in the plant is switched on, set and taken back in its section.
+#[test]
+fn what_differs_is_set_and_taken_back() {
+    let Some(mut h) = desk_of(Scenario::builtin("case-3").expect("built in"), Theme::Dark, 1700.0) else { return };
+    h.step();
+    assert!(h.query_by_label("payload").is_none(), "folded while all is as the model");
+    assert!(h.query_by_label("as the model").is_some());
+    hold(&mut h);
+    assert!(h.query_by_label("1 difference").is_some());
+    for label in ["friction", "torque limits", "force"] {
+        h.get_by_label(label).click();
+        h.run_steps(2);
+    }
+    h.get_by_role_and_label(Role::Slider, "Coulomb slider").set_value_accesskit(0.05);
+    h.run_steps(2);
+    h.get_by_label("viscous per drive").click();
+    h.run_steps(2);
+    let plant = session(&h).scenario().plant.clone();
+    assert_eq!(plant.friction.viscous, Each::Own(PerDrive::from_fn(3, |_| 0.02)));
+    assert!((plant.friction.coulomb.of(3)[2] - 0.05).abs() < 1e-3 && plant.torque_limits && plant.force == [2.0, 0.0]);
+    assert!(h.query_by_label("4 differences").is_some());
+    assert!(h.query_by_label_contains("Friction over time").is_some(), "friction has a plot where there is some");
+    // One at a time, then all.
+    h.get_by_label("Coulomb back to normal").click();
+    h.run_steps(2);
+    assert_eq!(session(&h).scenario().plant.friction.coulomb, Each::All(0.0));
+    h.get_by_label("Plant back to normal").click();
+    h.run_steps(2);
+    assert_eq!(session(&h).scenario().plant, Plant::default());
+    assert!(h.query_by_label("payload").is_some(), "it does not fold under the hand");
+    assert!(h.query_by_label_contains("Friction over time").is_none());
+}
+
+/// A link and a length that differ show what they would be in the model.
+#[test]
+fn a_link_that_differs_is_named() {
+    let text = include_str!("../../assets/scenarios/case-3.toml")
+        .replace("[task]", "[plant.link.5]\nmass = 2.5\n\n[plant.length]\nl1 = 0.51\n\n[task]");
+    let scenario = Scenario::parse(&text, "differs", None).expect("right");
+    let Some(mut h) = desk_of(scenario, Theme::Light, 1700.0) else { return };
+    h.run_steps(3);
+    assert!(h.query_by_label("2 differences").is_some(), "it opens unfolded");
+    let reach = h.state().desk().stage().linkage().reach();
+    assert!((reach - 1.27).abs() < 1e-9, "drawn as it is: {reach}");
+    h.get_by_label("link 5 mass back to normal").click();
+    h.run_steps(2);
+    assert!(session(&h).scenario().plant.link.get("5").is_none_or(|d| d.mass.is_none()));
+    h.get_by_label("length l1 back to normal").click();
+    h.run_steps(2);
+    assert!(session(&h).scenario().plant.length.is_empty());
+    assert!((h.state().desk().stage().linkage().reach() - 1.26).abs() < 1e-9);
+}
+
+/// A base that floats is chosen, seen and plotted, and its motion exaggerated until it is seen.
+#[test]
+fn a_base_that_moves_is_seen_to_move() {
+    let Some(mut h) = desk_of(Scenario::builtin("case-1").expect("built in"), Theme::Dark, 1700.0) else { return };
+    h.step();
+    assert!(h.query_by_label_contains("Base motion over time").is_none());
+    h.get_by_label("Base section").click();
+    h.run_steps(2);
+    h.get_by_label("free").click();
+    h.run_steps(2);
+    assert_eq!(session(&h).scenario().base.kind, BaseKind::Free);
+    assert!(h.query_by_label_contains("Base motion over time").is_some());
+    let foreseen = h.state().desk().look().sway();
+    h.get_by_label("Play").click();
+    h.run_steps(70);
+    let f = *session(&h).frame();
+    assert!(f.base.angle.abs() > 1e-3, "{:?}", f.base);
+    assert_eq!(h.state().desk().look().sway(), foreseen, "known before it plays, so that nothing jumps");
+    let moved = foreseen * (f.tally.shift + f.tally.tilt * 1.26);
+    assert!((0.04..0.13).contains(&moved), "{moved} m is seen, {foreseen} times");
+    // The ring's knob is where it is drawn, and pulling it there asks for the same b.
+    let shown = swayed(&f, foreseen);
+    let stage = h.state().desk().stage().clone();
+    let at = stage.handle(Handle::Ring, &shown).expect("three drives");
+    let b = stage.ring_b([at[0], at[1]], f.b_reference, &shown).expect("three drives");
+    assert!((b - f.b_reference).abs() < 1e-12);
+    h.key_press(Key::X);
+    h.run_steps(2);
+    assert_eq!(h.state().desk().look().sway(), 1.0);
+    h.get_by_label("Base back to normal").click();
+    h.run_steps(2);
+    assert_eq!(session(&h).scenario().base, Base::default());
+}
+
+/// With Alt the end effector is pushed while time passes; letting go ends the push, and all of it is one undo.
+#[test]
+fn a_hand_pushes_the_end_effector() {
+    let Some(mut h) = desk("case-3", Theme::Dark) else { return };
+    h.get_by_label("Play").click();
+    h.run_steps(70);
+    let tip = session(&h).frame().tip;
+    let (from, to) = (on_screen(&h, tip.re, tip.im), on_screen(&h, tip.re - 0.2, tip.im));
+    h.key_press(Key::U);
+    h.run_steps(2);
+    assert!(h.state().desk().look().pushing);
+    h.hover_at(from);
+    h.step();
+    h.drag_at(from);
+    h.step();
+    for i in 1..=10 {
+        h.hover_at(from + (to - from) * (i as f32 / 10.0));
+        h.step();
+    }
+    let pushed = session(&h).scenario().plant.force;
+    assert!((pushed[0] + 4.0).abs() < 0.5 && pushed[1].abs() < 0.5, "{pushed:?} N for 0.2 m");
+    h.run_steps(10);
+    assert!((session(&h).frame().tip - tip).norm() > 1e-3, "it gives way: {}", session(&h).frame().tip);
+    assert!(session(&h).frame().peaks.moment > 0.1, "a force that nobody planned reaches the base");
+    h.drop_at(to);
+    h.run_steps(60);
+    assert_eq!(session(&h).scenario().plant.force, [0.0; 2]);
+    assert!((session(&h).frame().tip - tip).norm() < 1e-3, "and returns");
+    let again = stillbase::session::replay(&session(&h).to_scenario(), |_, _| {}).expect("it runs");
+    assert_eq!(again.frame(), session(&h).run().frame(), "the push is in the script");
+}
+
+/// Six lamps say how far every audited figure is from zero.
+#[test]
+fn lamps_tell_the_audit() {
+    let Some(mut h) = desk("case-3", Theme::Light) else { return };
+    h.get_by_label("Play").click();
+    h.run_steps(70);
+    for figure in ["momentum", "angular", "energy", "loops", "step", "plane"] {
+        let words = format!("audit {figure}:");
+        let lamp = h.get_by_label_contains(&words);
+        assert!(lamp.accesskit_node().label().is_some_and(|label| label.ends_with(", good")), "{figure}");
+    }
+    assert!(h.query_by_label_contains("cannot be trusted").is_none());
 }

@@ -31,7 +31,7 @@ impl Stage {
         for (i, pin) in self.pins.iter().enumerate() {
             let Some(force) = frame.inside.pin(i) else { continue };
             let worst = frame.inside.worst_pin() == Some(i);
-            let (from, arrow) = (place_of(&pin.at, &e), force * per_newton);
+            let (from, arrow) = (frame.base.at + place_of(&pin.at, &e), force * per_newton);
             if arrow.norm() <= 0.004 * reach {
                 continue;
             }

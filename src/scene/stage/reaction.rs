@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::{Stage, label, point, round_up, signed};
+use super::{Stage, ViewOptions, label, point, round_up, signed};
 use crate::frame::{Frame, REACTIONLESS};
 use crate::planar::{Vector, unit};
 use crate::scene::palette::Palette;
@@ -25,8 +25,9 @@ pub(super) fn brief(x: f64) -> String {
 
 impl Stage {
     /// A force arrow and a moment arc at B, in proportion, with their scale in words.
-    pub(super) fn reaction(&self, scene: &mut Scene, palette: &Palette, frame: &Frame) {
+    pub(super) fn reaction(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, options: &ViewOptions) {
         let (z, reach) = (self.handle_height(), self.linkage.reach());
+        let b = frame.base.at;
         let (force, moment) = (frame.wrench.dynamic.force, frame.base_moment());
         let weight = frame.wrench.statical.force.norm();
         let tone = |still: bool| if still { palette.zero } else { palette.reaction };
@@ -43,8 +44,8 @@ impl Stage {
         let per_newton = 0.25 * reach / round_up(frame.peaks.force.max(force.norm()).max(1e-3));
         let arrow = force * per_newton;
         if arrow.norm() > 0.004 * reach {
-            scene.lines.push(line("reaction/force", vec![point(Vector::default(), z), point(arrow, z)]));
-            scene.lines.push(line("reaction/force", head(arrow, force / force.norm(), 0.025 * reach, z)));
+            scene.lines.push(line("reaction/force", vec![point(b, z), point(b + arrow, z)]));
+            scene.lines.push(line("reaction/force", head(b + arrow, force / force.norm(), 0.025 * reach, z)));
         }
         let full = round_up(frame.peaks.moment.max(1e-3));
         let sweep = moment / full * 1.5 * FRAC_PI_2;
@@ -52,11 +53,12 @@ impl Stage {
         if sweep.abs() > 0.02 {
             let n = ((sweep.abs() * 24.0).ceil() as usize).max(2);
             let from = -FRAC_PI_2;
-            let arc: Vec<_> = (0..=n).map(|i| point(unit(from + sweep * i as f64 / n as f64) * radius, z)).collect();
+            let arc: Vec<_> =
+                (0..=n).map(|i| point(b + unit(from + sweep * i as f64 / n as f64) * radius, z)).collect();
             scene.lines.push(line("reaction/moment", arc));
             let end = unit(from + sweep);
             let along = end * Vector::new(0.0, sweep.signum());
-            scene.lines.push(line("reaction/moment", head(end * radius, along, 0.025 * reach, z)));
+            scene.lines.push(line("reaction/moment", head(b + end * radius, along, 0.025 * reach, z)));
         }
         let com = frame.com;
         let arm = 0.014 * reach;
@@ -71,11 +73,12 @@ impl Stage {
             });
         }
         let at = Vector::new(0.2 * reach, -0.11 * reach);
-        let still = com.norm() < 1e-6 * reach;
+        let off = (com - b).norm();
+        let still = off < 1e-6 * reach;
         let com_words = if still {
             "centre of mass at rest in B".into()
         } else {
-            format!("centre of mass {:.2} mm off B", 1e3 * com.norm())
+            format!("centre of mass {:.2} mm off B", 1e3 * off)
         };
         let scale = match (arrow.norm() > 0.004 * reach, sweep.abs() > 0.02) {
             (false, false) => String::new(),
@@ -90,10 +93,14 @@ impl Stage {
                 )
             }
         };
+        let of = match options.push {
+            Some([x, y]) if x.hypot(y) > 0.0 => "weight and push",
+            _ => "its weight",
+        };
         let rows = [
             (format!("f_B {} N", reading(force.norm(), pulls)), tone(!pulls), 13.0),
             (format!("n_B {} N m", reading(moment, turns)), tone(!turns), 13.0),
-            (if weight > 0.0 { format!("and its weight, {weight:.1} N") } else { String::new() }, palette.dim, 11.5),
+            (if weight > 0.0 { format!("and {of}, {weight:.1} N") } else { String::new() }, palette.dim, 11.5),
             (com_words, palette.dim, 11.5),
             (scale, palette.dim, 11.5),
         ];

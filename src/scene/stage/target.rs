@@ -6,11 +6,12 @@ use crate::planar::Vector;
 use crate::scene::palette::{Palette, faded};
 use crate::scene::{Anchor, Line, Marker, Scene};
 
-/// Where the target's handle is: out of reach it stays where it was sent, else it goes with the end effector.
+/// Where the target's handle is: out of reach it stays where it was sent, else it goes with the end effector. It is in
+/// the axes of the base at the start, as if the base had not moved.
 pub(in crate::scene) fn target_handle(frame: &Frame) -> Vector {
     match frame.target.reach {
         Reach::Outside { .. } => frame.target.at,
-        Reach::Inside | Reach::Carried => frame.tip,
+        Reach::Inside | Reach::Carried => frame.in_base(frame.tip),
     }
 }
 

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::{Handle, Stage, ViewOptions, label, point};
 use crate::frame::Frame;
-use crate::planar::{Vector, unit};
+use crate::planar::{Pose2, Vector, unit};
 use crate::pose_constant::Planes;
 use crate::reactionless::PlaneMap;
 use crate::scene::palette::{Palette, faded};
@@ -56,6 +56,7 @@ pub(super) fn area_of(map: &PlaneMap, b: f64, name: &str, z: f64, colour: Rgba) 
         a_max: limits.map(|l| l.max as f32),
         // Whole turns are taken off in f64, where they cost nothing.
         turn: map.turn(b).rem_euclid(TAU) as f32,
+        at: [0.0; 2],
         z: z as f32,
         colour,
         shade: None,
@@ -79,17 +80,30 @@ pub(super) fn roomiest(planes: &Planes, boundary: &[Vec<Vector>]) -> Option<Vect
 }
 
 impl Stage {
-    pub(super) fn workspace(&self, scene: &mut Scene, palette: &Palette, planes: &Planes, b: f64, compared: bool) {
+    /// The workspace of b in the axes of a base.
+    pub(super) fn workspace(
+        &self,
+        scene: &mut Scene,
+        palette: &Palette,
+        planes: &Planes,
+        b: f64,
+        base: Pose2,
+        compared: bool,
+    ) {
         let (colour, edge, dash, lift) = match compared {
             false => (faded(palette.amber, 0.13), palette.amber, None, 0.0),
             true => (faded(palette.dim, 0.08), faded(palette.dim, 0.55), Some([5.0, 4.0]), -0.002),
         };
         let z = self.linkage.floor() + lift * self.linkage.reach();
         let name = if compared { "workspace/compared" } else { "workspace" };
-        scene.areas.push(area_of(planes.map(), b, name, z, colour));
-        let r = unit(planes.map().turn(b));
+        let mut area = area_of(planes.map(), b, name, z, colour);
+        area.turn = (planes.map().turn(b) + base.angle).rem_euclid(TAU) as f32;
+        area.at = [base.at.re as f32, base.at.im as f32];
+        scene.areas.push(area);
+        let r = unit(planes.map().turn(b) + base.angle);
+        let there = |p: Vector| base.at + p * r;
         for outline in &self.boundary {
-            let mut points: Vec<_> = outline.iter().map(|p| point(p * r, z)).collect();
+            let mut points: Vec<_> = outline.iter().map(|p| point(there(*p), z)).collect();
             if points.len() > 2 && points.first() != points.last() {
                 points.push(points[0]);
             }
@@ -110,7 +124,7 @@ impl Stage {
             };
             scene.lines.push(Line {
                 name: format!("workspace/{}", kind.name()),
-                points: line.iter().map(|p| point(p * r, z)).collect(),
+                points: line.iter().map(|p| point(there(*p), z)).collect(),
                 width: 1.2,
                 colour,
                 dash,
@@ -120,7 +134,7 @@ impl Stage {
         for cusp in self.cusps.iter().filter(|_| !compared) {
             scene.markers.push(Marker {
                 name: "workspace/cusp".into(),
-                at: point(cusp * r, z),
+                at: point(there(*cusp), z),
                 radius: 2.5,
                 fill: palette.amber,
                 stroke: palette.amber,
@@ -135,7 +149,7 @@ impl Stage {
             ],
         };
         for (i, (text, colour, size)) in rows.into_iter().enumerate().filter(|_| self.middle.is_some()) {
-            let at = self.middle.unwrap_or_default() * r;
+            let at = there(self.middle.unwrap_or_default());
             scene.labels.push(label(at, z, [0.0, 17.0 * i as f32], &text, colour, size, Anchor::Centre));
         }
     }
@@ -173,10 +187,11 @@ impl Stage {
         options: &ViewOptions,
     ) {
         let (radius, z) = (self.ring_radius(), self.handle_height());
-        let turn = planes.map().turn(frame.b_reference);
+        let turn = planes.map().turn(frame.b_reference) + frame.base.angle;
+        let b = frame.base.at;
         let circle = |from: f64, to: f64| -> Vec<[f32; 3]> {
             let n = (((to - from).abs() / TAU * 96.0).ceil() as usize).max(2);
-            (0..=n).map(|i| point(unit(from + (to - from) * i as f64 / n as f64) * radius, z)).collect()
+            (0..=n).map(|i| point(b + unit(from + (to - from) * i as f64 / n as f64) * radius, z)).collect()
         };
         let line = |name: &str, points, width, colour| Line {
             name: name.into(),
@@ -187,9 +202,9 @@ impl Stage {
             on_top: true,
         };
         scene.lines.push(line("ring", circle(0.0, TAU), 3.0, faded(palette.line, 0.9)));
-        let shown = turn.rem_euclid(TAU);
-        scene.lines.push(line("ring/b", circle(0.0, shown), 3.5, palette.amber));
-        let knob = unit(turn) * radius;
+        let shown = (turn - frame.base.angle).rem_euclid(TAU);
+        scene.lines.push(line("ring/b", circle(frame.base.angle, frame.base.angle + shown), 3.5, palette.amber));
+        let knob = b + unit(turn) * radius;
         let hot = options.hot == Some(Handle::Ring);
         scene.markers.push(Marker {
             name: "ring/knob".into(),
@@ -199,7 +214,7 @@ impl Stage {
             stroke: palette.background,
             stroke_width: 2.0,
         });
-        let beside = unit(turn) * (radius * 1.28);
+        let beside = b + unit(turn) * (radius * 1.28);
         scene.labels.push(label(beside, z, [0.0, 0.0], "b", palette.amber, 14.0, Anchor::Centre));
     }
 }
