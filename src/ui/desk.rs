@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::{
-    Command, FileDialog, Look, OnBoard, Purpose, Wish, compare, keys, plots, side, status, theme, top, viewport,
+    Command, FileDialog, Look, OnBoard, Purpose, Wish, compare, keys, plots, side, status, study, theme, top, viewport,
 };
 use crate::compare::Board;
 use crate::frame::Tally;
@@ -16,6 +16,7 @@ use crate::scene::sway::exaggeration;
 use crate::scene::views::{ViewKind, Views};
 use crate::session::{Edit, Refusal, Session};
 use crate::signals::{Signal, signals};
+use crate::tolerance::Study;
 
 /// A session on display.
 pub struct Desk {
@@ -26,6 +27,8 @@ pub struct Desk {
     look: Look,
     /// Runs side by side, while they are on display.
     board: Option<Board>,
+    /// Tolerances and what they were found for, while they are on display.
+    study: Option<(Scenario, Result<Study, String>)>,
     /// What the planned motion will have come to.
     foreseen: Tally,
     /// Wall time not yet turned into steps, s.
@@ -57,6 +60,7 @@ impl Desk {
             session,
             look,
             board: None,
+            study: None,
             owed: 0.0,
             dressed: None,
             fonts: false,
@@ -130,6 +134,9 @@ impl Desk {
         status::show(ui, &self.session, &self.views, &self.look, &mut commands);
         if let Some(board) = &self.board {
             compare::show(ui, board, &self.look, &mut commands);
+        }
+        if let Some((_, study)) = &self.study {
+            study::show(ui, study, self.session.frame().time, &self.look, &mut commands);
         }
         side::show(ui, &self.session, &self.look, &mut commands);
         plots::show(ui, &self.session, &self.signals, self.board.as_ref(), &self.look, &mut commands);
@@ -234,8 +241,16 @@ impl Desk {
             Command::Snapshots(shown) => self.look.snapshots = shown,
             Command::Compare(compare) => {
                 self.look.compare = compare;
+                self.look.study &= !compare;
                 self.board = compare.then(|| Board::of(self.session.scenario()));
             }
+            Command::Study(study) => {
+                self.look.study = study;
+                if study {
+                    (self.look.compare, self.board) = (false, None);
+                }
+            }
+            Command::Pins(shown) => self.look.pins = shown,
             Command::Board(on) => return self.on_board(on),
             Command::Dialog(dialog) => self.look.dialog = dialog,
         }
@@ -345,6 +360,13 @@ impl Desk {
         }
         Arc::make_mut(&mut self.views).refresh(self.session.run());
         self.adjust();
+        if !self.look.study {
+            self.study = None;
+        } else if self.look.grabbed.is_none() && self.study.as_ref().is_none_or(|(of, _)| of != self.session.scenario())
+        {
+            let study = Study::of(self.session.run()).map_err(|why| why.to_string());
+            self.study = Some((self.session.scenario().clone(), study));
+        }
         // Not while something is dragged: every way is planned and run anew.
         if let (Some(board), None) = (&mut self.board, self.look.grabbed) {
             let ours = board.entries().iter().any(|e| {

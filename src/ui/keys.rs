@@ -8,7 +8,7 @@ use crate::scenario::Scenario;
 use crate::scene::Measure;
 use crate::session::Session;
 
-const KEYS: [(&str, &str); 27] = [
+const KEYS: [(&str, &str); 29] = [
     ("Space", "play, pause, start over"),
     ("← →", "one step back, one step on"),
     ("Shift ← →", "ten steps"),
@@ -17,7 +17,9 @@ const KEYS: [(&str, &str); 27] = [
     ("V", "2D, 3D, joint space, tower of workspaces"),
     ("J", "shade the workspace by dexterity, one measure after the other"),
     ("C", "the same task done in other ways, side by side"),
+    ("T", "tolerances: what the bases of many machines feel, and the spectrum"),
     ("S", "snapshots along the motion"),
+    ("I", "inside: what pins carry"),
     ("Shift click plot", "a second cursor: plots show differences; Esc takes it away"),
     ("F", "show everything"),
     ("X", "exaggerate the motion of the base, or show it as it is"),
@@ -86,6 +88,8 @@ pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Co
         (plain, Key::F, Command::Fit),
         (plain, Key::C, Command::Compare(!look.compare)),
         (plain, Key::S, Command::Snapshots(!look.snapshots)),
+        (plain, Key::T, Command::Study(!look.study)),
+        (plain, Key::I, Command::Pins(!look.pins)),
         (plain, Key::P, Command::Draw(look.stroke.is_none())),
         (plain, Key::U, Command::Push(!look.pushing)),
         (plain, Key::X, Command::Exaggerate(!look.exaggerate)),

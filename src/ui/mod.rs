@@ -11,6 +11,7 @@ pub mod picture;
 mod plots;
 mod side;
 mod status;
+mod study;
 mod switch;
 mod theme;
 mod top;
@@ -68,6 +69,10 @@ pub enum Command {
     Draw(bool),
     /// Show or hide runs side by side.
     Compare(bool),
+    /// Show or hide the study of tolerances.
+    Study(bool),
+    /// Show or hide what pins carry.
+    Pins(bool),
     /// What is done to the table of runs.
     Board(OnBoard),
     /// Put the second cursor at a time, s, or away.
@@ -171,6 +176,10 @@ pub struct Look {
     pub held: Option<[f64; 2]>,
     /// Runs stand side by side.
     pub compare: bool,
+    /// The study of tolerances is on display.
+    pub study: bool,
+    /// What pins carry is on display.
+    pub pins: bool,
     /// The second cursor, s.
     pub mark: Option<f64>,
     /// Snapshots along the motion are on display.
@@ -210,6 +219,8 @@ impl Look {
             grabbed: None,
             held: None,
             compare: false,
+            study: false,
+            pins: false,
             mark: None,
             snapshots: false,
             help: false,

@@ -57,13 +57,18 @@ const BASE: Chart = Chart {
     times: 1e3,
 };
 
+/// Inside the machine.
+const PINS: Chart =
+    Chart { title: "Pin forces", unit: "N", groups: &["pin/worst"], least: 1.0, centred: false, times: 1.0 };
+
 /// The plots that have something to tell of a scenario.
-fn charts(scenario: &Scenario) -> Vec<Chart> {
+fn charts(scenario: &Scenario, pins: bool) -> Vec<Chart> {
     let [torque, moment, force, angles, b] = CHARTS;
     let wheel = scenario.base.wheel.is_some();
     let mut list = vec![torque, if wheel { WITH_WHEEL } else { moment }, force];
     list.extend(Some(BASE).filter(|_| scenario.base.moves()));
     list.extend(Some(FRICTION).filter(|_| scenario.plant.friction != Default::default()));
+    list.extend(Some(PINS).filter(|_| pins));
     list.extend([angles, b]);
     list
 }
@@ -86,7 +91,7 @@ pub fn show(
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 14, right: 14, top: 10, bottom: 8 });
     let width = (0.27 * ui.available_width()).clamp(336.0, 376.0);
     Panel::right("plots").exact_size(width).resizable(false).frame(frame).show(ui, |ui| {
-        let charts = charts(session.scenario());
+        let charts = charts(session.scenario(), look.pins);
         let rows = charts.len() as f32 + 1.6;
         let height = ((ui.available_height() - 32.0 * (charts.len() as f32 + 1.0)) / rows).max(44.0);
         let end = session.frames().last().map_or(0.0, |f| f.time).max(session.length());

@@ -86,6 +86,8 @@ fn shade(ui: &mut Ui, p: &Palette, look: &Look, views: &Views, commands: &mut Ve
                 look.snapshots,
                 Command::Snapshots as fn(bool) -> Command,
             ),
+            ("pins", "What pins and bearings carry (I)", look.pins, Command::Pins),
+            ("tolerances", "What the bases of many machines feel, and the spectrum (T)", look.study, Command::Study),
             ("side by side", "The same task done in other ways (C)", look.compare, Command::Compare),
         ] {
             let ink = colour(if on { p.ink } else { p.dim });

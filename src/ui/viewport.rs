@@ -54,7 +54,7 @@ pub fn show(
             others: board.map_or_else(Vec::new, |board| others(board, session.frame().time, look.sway())),
             sway: look.sway(),
             push: force(session),
-            ..ViewOptions::default()
+            pin_forces: look.pins,
         };
         let scene = Arc::new(views.scene(look.view, session.frame(), &options, look.camera()));
         paint(ui, rect, &scene, look.camera());
