@@ -2,7 +2,7 @@
 //! blame, and the motion's frequencies.
 
 use egui::{Align, Color32, DragValue, Frame, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui, vec2};
-use egui_plot::{Bar, BarChart, FilledArea, GridMark, HLine, Line, LineStyle, Plot, PlotPoints, VLine};
+use egui_plot::{Bar, BarChart, FilledArea, GridMark, Line, LineStyle, Plot, PlotPoints, VLine};
 
 use super::side::send;
 use super::theme::{bold, colour, plain};
@@ -124,7 +124,7 @@ fn words(key: &str, amount: Amount) -> (String, &'static str, f64) {
 
 /// What varies, one row each, and the limit on |n_B|.
 fn spreads(ui: &mut Ui, p: &Palette, study: &Study, commands: &mut Vec<Command>) {
-    title(ui, p, "What varies", "standard deviation σ, or half-width ±");
+    title(ui, p, "What varies", "deviation σ, half-width ±");
     let spreads = study.tolerance.spreads_or_default();
     ScrollArea::vertical().id_salt("spreads").auto_shrink([false, false]).show(ui, |ui| {
         for (key, spread) in &spreads {
@@ -198,26 +198,29 @@ fn bare<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
         .set_margin_fraction(vec2(0.0, 0.05))
 }
 
-/// n_B over time: 5 to 95 % and 25 to 75 % of the machines, the mean, and one deviation to first order.
+/// n_B over time, less that of the nominal machine: 5 to 95 % and 25 to 75 % of the machines, the mean, and one deviation
+/// to first order.
 fn band(ui: &mut Ui, p: &Palette, study: &Study, time: f64) {
-    title(ui, p, "Base moment", "N m: 5–95 %, 25–75 % of machines; dashed ±σ to first order");
+    title(ui, p, "n_B off nominal", "N m; 5–95 %, 25–75 %; dashed ±σ, first order");
     let (x, band) = (&study.bands.time, &study.bands.moment);
     let tone = colour(p.reaction);
     let response = bare("bands", p, ui.available_height()).show_axes([true, true]).show(ui, |plot| {
         for (i, strength) in [(0, 0.16), (1, 0.28)] {
-            let (low, high) = (&band.percentiles[i], &band.percentiles[4 - i]);
+            let [low, high] = [i, 4 - i].map(|i| {
+                let off = band.percentiles[i].iter().zip(&band.nominal);
+                off.map(|(n, nominal)| n - nominal).collect::<Vec<f64>>()
+            });
             let fill = colour(faded(p.reaction, strength));
-            plot.add(FilledArea::new("band", x, low, high).fill_color(fill).allow_hover(false));
+            plot.add(FilledArea::new("band", x, &low, &high).fill_color(fill).allow_hover(false));
         }
         let line = |y: &dyn Fn(usize) -> f64| PlotPoints::from((0..x.len()).map(|i| [x[i], y(i)]).collect::<Vec<_>>());
-        plot.line(Line::new("mean", line(&|i| band.mean[i])).color(tone).width(1.6).allow_hover(false));
+        plot.line(
+            Line::new("mean", line(&|i| band.mean[i] - band.nominal[i])).color(tone).width(1.6).allow_hover(false),
+        );
         for side in [-1.0, 1.0] {
-            let sigma = line(&|i| band.nominal[i] + side * band.first_order_deviation[i]);
+            let sigma = line(&|i| side * band.first_order_deviation[i]);
             let sigma = Line::new("σ", sigma).color(colour(p.ink)).width(1.0).style(LineStyle::dashed_dense());
             plot.line(sigma.allow_hover(false));
-            if let Some(limit) = study.tolerance.moment_limit {
-                plot.hline(HLine::new("limit", side * limit).color(colour(p.dim)).allow_hover(false));
-            }
         }
         plot.vline(VLine::new("now", time).color(colour(p.amber)).width(1.0).allow_hover(false));
     });
@@ -227,8 +230,7 @@ fn band(ui: &mut Ui, p: &Palette, study: &Study, time: f64) {
 /// Peaks of |n_B| over machines.
 fn peaks(ui: &mut Ui, p: &Palette, study: &Study) {
     let [_, half, most, nearly] = study.moment.values[..] else { return };
-    let rest = format!("N m: half below {half:.4}, 95 % {most:.4}, 99 % {nearly:.4}");
-    title(ui, p, "Peak |n_B|", &rest);
+    title(ui, p, "Peak |n_B|", &format!("N m; 95 % below {most:.4}"));
     let histogram = &study.moment_histogram;
     let within = |x: f64| study.tolerance.moment_limit.is_none_or(|limit| x <= limit);
     let bars = histogram.counts.iter().zip(histogram.edges.windows(2)).map(|(count, w)| {
@@ -247,7 +249,9 @@ fn peaks(ui: &mut Ui, p: &Palette, study: &Study) {
             }
         },
     );
+    let words = format!("half below {half:.5}, 95 % below {most:.5}, 99 % below {nearly:.5} N m");
     name(&response.response, "Histogram of peaks of the base moment over machines, N m");
+    response.response.on_hover_text(words);
 }
 
 /// Which tolerance matters: shares of the first-order variance of n_B, summed over the motion.
@@ -275,7 +279,7 @@ fn blame(ui: &mut Ui, p: &Palette, study: &Study) {
 
 /// Amplitude spectral densities of the run, both axes in powers of ten.
 fn spectrum(ui: &mut Ui, p: &Palette, study: &Study) {
-    title(ui, p, "Spectrum", "of this run, N m/√Hz and N/√Hz over Hz");
+    title(ui, p, "Spectrum", "N m/√Hz, grey N/√Hz; Hz");
     let Some([fx, fy, n]) = &study.spectra else {
         ui.label(RichText::new("this run is too short for it").color(colour(p.dim)));
         return;
@@ -291,7 +295,7 @@ fn spectrum(ui: &mut Ui, p: &Palette, study: &Study) {
     let whole = |from: f64, to: f64, step: i32| -> Vec<GridMark> {
         let (from, to) = (from.ceil() as i32, to.floor() as i32);
         let marks = (from..=to).filter(|i| i.rem_euclid(step) == 0);
-        marks.map(|i| GridMark { value: f64::from(i), step_size: 1.0 }).collect()
+        marks.map(|i| GridMark { value: f64::from(i), step_size: 4.0 }).collect()
     };
     let response = bare("spectrum", p, ui.available_height())
         .show_axes([true, true])
