@@ -52,6 +52,9 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &mut Look, comm
     });
 }
 
+/// A hand that pulls less differently is not asked again, N.
+const LEAST_PUSH: f64 = 0.02;
+
 /// What pushes at the end effector, N, as far as it is known of the instant on display.
 fn force(session: &Session) -> Option<[f64; 2]> {
     let lasting = !session.script().iter().any(|e| e.step > 0 && e.edit.pushes());
@@ -107,7 +110,13 @@ fn point_at(
                 Edit::DragTarget { x, y }
             }
             Aim::B(b) => set_b(session, b),
-            Aim::Push([x, y]) => Edit::Push { x, y },
+            Aim::Push([x, y]) => {
+                let [now_x, now_y] = session.scenario().plant.force;
+                if (x - now_x).hypot(y - now_y) < LEAST_PUSH {
+                    return None;
+                }
+                Edit::Push { x, y }
+            }
             Aim::Waypoint(i, [x, y]) => {
                 look.held = Some([x, y]);
                 Edit::SetTask { change: session.scenario().task.moving(i, Vector::new(x, y))? }
