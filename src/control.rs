@@ -156,13 +156,13 @@ pub struct Controller {
     kp: PerDrive,
     kd: PerDrive,
     /// The model, and the model with the payload.
-    models: [Body; 2],
+    models: Box<[Body; 2]>,
 }
 
 impl Controller {
     /// For a machine of `n` drives.
     pub fn new(control: &Control, n: usize, models: [Body; 2]) -> Self {
-        Self { law: control.law, kp: control.kp.of(n), kd: control.kd.of(n), models }
+        Self { law: control.law, kp: control.kp.of(n), kd: control.kd.of(n), models: Box::new(models) }
     }
 
     /// Motor torques, N m; `loaded` while the plant holds its payload.

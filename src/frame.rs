@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::dynamics::BaseWrench;
+use crate::joint_forces::Inside;
 use crate::planar::{DriveAngles, PerDrive, Pose2, Vector, unit};
 use crate::plant::Spin;
 
@@ -68,6 +69,8 @@ pub struct Frame {
     pub dexterity: Dexterity,
     /// min |sin(q_k − q_l)|: 0 at a change point, where pin forces grow without bound.
     pub transmission: f64,
+    /// What the pins carry, and what tilts the base.
+    pub inside: Inside,
     /// What the run is doing.
     pub phase: Phase,
     /// The largest values so far.

@@ -68,8 +68,10 @@
 //! |---|---|---|
 //! | words | [`planar`] | vectors as x + iy, values per drive |
 //! | machine | [`machine`], [`kinematics`], [`dynamics`] | links, constants g, C, J, Eqs (1)–(6) |
+//! | inside | [`joint_forces`] | pins, change points, what tilts the base |
 //! | methods | [`balance`], [`reactionless`], [`pose_constant`], [`plan`], [`control`] | Eqs (7)–(16), paths, time laws, prices, feedback |
-//! | motion | [`frame`], [`simulation`], [`signals`] | one instant, one step, one table |
+//! | motion | [`frame`], [`simulation`], [`signals`], [`spectrum`] | one instant, one step, one table, its frequencies |
+//! | study | [`tolerance`] | random machines around a nominal one |
 //! | path | [`scenario`], [`session`] | files, edits, undo, replay |
 //! | picture | [`scene`] | plain data to draw, cameras, palette |
 //! | devices | `render` (feature `render`), `ui` (feature `ui`) | wgpu; egui |
@@ -80,12 +82,14 @@
 
 pub mod audit;
 pub mod balance;
+pub mod compare;
 pub mod control;
 pub mod dynamics;
 pub mod files;
 pub mod frame;
 #[cfg(feature = "record")]
 pub mod headless;
+pub mod joint_forces;
 pub mod keys;
 pub mod kinematics;
 pub mod machine;
@@ -101,7 +105,9 @@ pub mod scene;
 pub mod session;
 pub mod signals;
 pub mod simulation;
+pub mod spectrum;
 pub mod tally;
+pub mod tolerance;
 #[cfg(feature = "ui")]
 pub mod ui;
 #[cfg(feature = "window")]

@@ -23,6 +23,8 @@ enum Command {
     #[cfg(feature = "record")]
     Headless(commands::Headless),
     Simulate(commands::Simulate),
+    Compare(commands::Compare),
+    Joints(commands::JointsCommand),
     Machines(commands::Machines),
     Check(commands::Check),
     Design(commands::Design),
@@ -31,6 +33,10 @@ enum Command {
     Pose(commands::Pose),
     Plan(commands::Plan),
     Workspace(commands::Workspace),
+    Import(commands::Import),
+    Export(commands::Export),
+    Tolerance(commands::Tolerance),
+    Spectrum(commands::SpectrumOf),
     #[cfg(feature = "ui")]
     Figures(commands::Figures),
 }
@@ -40,6 +46,7 @@ Examples:
   stillbase                                      the paper's case 3, in a window
   stillbase headless -o cases.rrd                the three cases, recorded for the Rerun viewer
   stillbase check nine-link --set link.5.com=0   what one misplaced centre of mass does
+  stillbase import motion.csv -o quiet.toml      your own motion, and the nearest one without reactions
   stillbase reach nine-link 0.5,0.5 0.55,0.9     which b reach both points
 
 Units are SI and angles are radians. Exit status: 0 done, 1 the question has no answer, 2 wrong input.";
@@ -54,6 +61,8 @@ fn main() -> ExitCode {
         #[cfg(feature = "record")]
         Some(Command::Headless(command)) => command.run(),
         Some(Command::Simulate(command)) => command.run(),
+        Some(Command::Compare(command)) => command.run(),
+        Some(Command::Joints(command)) => command.run(),
         Some(Command::Machines(command)) => command.run(),
         Some(Command::Check(command)) => command.run(),
         Some(Command::Design(command)) => command.run(),
@@ -62,6 +71,10 @@ fn main() -> ExitCode {
         Some(Command::Pose(command)) => command.run(),
         Some(Command::Plan(command)) => command.run(),
         Some(Command::Workspace(command)) => command.run(),
+        Some(Command::Import(command)) => command.run(),
+        Some(Command::Export(command)) => command.run(),
+        Some(Command::Tolerance(command)) => command.run(),
+        Some(Command::Spectrum(command)) => command.run(),
         #[cfg(feature = "ui")]
         Some(Command::Figures(command)) => command.run(),
     };

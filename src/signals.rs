@@ -1,7 +1,9 @@
 //! The one table of signals: a row is a plot, a series of the recording and a column of the CSV.
 
 use crate::frame::Frame;
-use crate::machine::Machine;
+use crate::joint_forces::{self, Joints, KEPT};
+use crate::machine::{Inertia, Machine};
+use crate::planar::MAX_DRIVES;
 
 /// A number that a [`Frame`] holds, with its name and unit.
 #[derive(Clone, Debug)]
@@ -21,7 +23,7 @@ pub struct Signal {
 
 #[derive(Clone, Copy, Debug)]
 enum Quantity {
-    PerDrive(usize, fn(&Frame, usize) -> f64),
+    PerIndex(usize, fn(&Frame, usize) -> f64),
     Whole(fn(&Frame) -> f64),
 }
 
@@ -30,7 +32,7 @@ impl Signal {
     #[inline]
     pub fn value(&self, frame: &Frame) -> f64 {
         match self.quantity {
-            Quantity::PerDrive(k, f) => f(frame, k),
+            Quantity::PerIndex(k, f) => f(frame, k),
             Quantity::Whole(f) => f(frame),
         }
     }
@@ -64,7 +66,7 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
                 label: format!("{label} {name}"),
                 unit,
                 drive: Some(k),
-                quantity: Quantity::PerDrive(k, value),
+                quantity: Quantity::PerIndex(k, value),
             });
         }
     }
@@ -75,7 +77,7 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
             label: format!("relative joint angle {}", angle.name),
             unit: "rad",
             drive: Some(angle.to),
-            quantity: Quantity::PerDrive(i, |f, i| f.a[i]),
+            quantity: Quantity::PerIndex(i, |f, i| f.a[i]),
         });
     }
     type Single = (&'static str, &'static str, &'static str, &'static str, fn(&Frame) -> f64);
@@ -147,6 +149,48 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
             drive: None,
             quantity: Quantity::Whole(value),
         });
+    }
+    table.extend(inside(machine));
+    table
+}
+
+/// Inside the machine: pins, as far as statics determines their forces, tilting moments and change points.
+fn inside(machine: &Machine) -> Vec<Signal> {
+    let mut table = Vec::new();
+    let mut add = |path: String, symbol: String, label: String, unit, drive, quantity| {
+        table.push(Signal { path, symbol, label, unit, drive, quantity });
+    };
+    if let Ok(joints) = Joints::of(machine) {
+        for (i, pin) in joints.pins().iter().enumerate().take(KEPT) {
+            let path = format!("pin/{}", pin.name);
+            let (symbol, label) = (format!("F {}", pin.name), format!("force of pin {}", pin.name));
+            let drive = Some(machine.parts()[pin.to].drive);
+            add(path, symbol, label, "N", drive, Quantity::PerIndex(i, |f, i| f.inside.size(i)));
+        }
+        let worst = Quantity::Whole(|f| f.inside.worst);
+        add("pin/worst".into(), "F worst".into(), "largest force of a pin".into(), "N", None, worst);
+    }
+    let tilt = |value: fn(&Frame) -> f64| Quantity::Whole(value);
+    let (x, y) = (tilt(|f| f.inside.tilt.total().re), tilt(|f| f.inside.tilt.total().im));
+    for (axis, value) in [("x", x), ("y", y)] {
+        let label = format!("moment about {axis} that tilts the base");
+        add(format!("tilt/{axis}"), format!("n_{axis}"), label, "N m", None, value);
+    }
+    let drives = &machine.spec().drives;
+    for (k, l) in Inertia::pairs(drives.len()) {
+        let (a, b) = (&drives[k].name, &drives[l].name);
+        let pair = if a.chars().count() + b.chars().count() == 2 { format!("{a}{b}") } else { format!("{a}_{b}") };
+        let symbol = format!("|sin(q{} − q{})|", subscript(k + 1), subscript(l + 1));
+        let label = format!("transmission of drives {a} and {b}, 0 at a change point");
+        let value = Quantity::PerIndex(MAX_DRIVES * k + l, |f, pair| {
+            joint_forces::transmission(&f.q.units(), pair / MAX_DRIVES, pair % MAX_DRIVES)
+        });
+        add(format!("transmission/{pair}"), symbol, label, "1", None, value);
+    }
+    if drives.len() > 1 {
+        let label = "least |q_k − q_l − mπ|: how far the nearest change point is".into();
+        let value = Quantity::Whole(|f| joint_forces::nearest(&f.q, &f.qd).map_or(0.0, |c| c.distance));
+        add("change_point/distance".into(), "Δq".into(), label, "rad", None, value);
     }
     table
 }

@@ -13,17 +13,23 @@ mod change_points;
 #[cfg(feature = "cli")]
 #[path = "suite/cli.rs"]
 mod cli;
+#[path = "suite/compare.rs"]
+mod compare;
 #[path = "suite/convergence.rs"]
 mod convergence;
 #[path = "suite/curve.rs"]
 mod curve;
 #[path = "suite/dynamics.rs"]
 mod dynamics;
+#[path = "suite/given.rs"]
+mod given;
 #[cfg(feature = "render")]
 #[path = "suite/gpu.rs"]
 mod gpu;
 #[path = "suite/inside.rs"]
 mod inside;
+#[path = "suite/joint_forces.rs"]
+mod joint_forces;
 #[path = "suite/layers.rs"]
 mod layers;
 #[path = "suite/least_reaction.rs"]
@@ -61,10 +67,14 @@ mod shaders;
 mod signals;
 #[path = "suite/sincos.rs"]
 mod sincos;
+#[path = "suite/spectrum.rs"]
+mod spectrum;
 #[path = "suite/support.rs"]
 mod support;
 #[path = "suite/timing.rs"]
 mod timing;
+#[path = "suite/tolerance.rs"]
+mod tolerance;
 #[path = "suite/trace.rs"]
 mod trace;
 #[path = "suite/views.rs"]

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use stillbase::balance::DesignError;
 use stillbase::files::WriteError;
+use stillbase::joint_forces::JointsError;
 use stillbase::machine::{FileError, MachineError};
 use stillbase::pose_constant::{PlaneError, Unreachable};
 use stillbase::scenario::ScenarioError;
@@ -81,6 +82,11 @@ impl From<PlaneError> for Failure {
 }
 impl From<Unreachable> for Failure {
     fn from(e: Unreachable) -> Self {
+        Self::no_answer(e)
+    }
+}
+impl From<JointsError> for Failure {
+    fn from(e: JointsError) -> Self {
         Self::no_answer(e)
     }
 }

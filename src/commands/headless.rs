@@ -33,6 +33,9 @@ pub struct Headless {
     /// Width and height of the pictures, pixels
     #[arg(long, value_name = "WxH", default_value = "1280x800", requires = "fps", value_parser = size)]
     size: [u32; 2],
+    /// Show in the pictures what the pins carry
+    #[arg(long, requires = "fps")]
+    pin_forces: bool,
     /// Replace the file if it exists
     #[arg(long)]
     force: bool,
@@ -89,7 +92,7 @@ impl Headless {
         let scenarios = self.scenarios()?;
         check_new(&self.output, self.force)?;
         let [width, height] = self.size;
-        let pictures = self.fps.map(|fps| Pictures { fps, width, height });
+        let pictures = self.fps.map(|fps| Pictures { fps, width, height, pin_forces: self.pin_forces });
         let recordings = record_with_bar(&scenarios, &self.output, &Options { pictures, force: self.force })?;
         say(format!("wrote {}", self.output.display()));
         let answer = Answer { recordings: recordings.into_iter().map(Row::from).collect() };

@@ -4,14 +4,20 @@
 //! bar to standard error. Exit status: 0 done, 1 the question has no answer, 2 wrong input.
 
 mod check;
+mod columns;
+mod compare;
+mod csv_file;
 mod design;
 mod dynamics;
+mod export;
 mod failure;
 #[cfg(feature = "ui")]
 mod figures;
 #[cfg(feature = "record")]
 mod headless;
+mod import;
 mod input;
+mod joints;
 mod machines;
 mod open;
 mod output;
@@ -19,21 +25,29 @@ mod plan;
 mod pose;
 mod reach;
 mod simulate;
+mod spectrum;
+mod tolerance;
 mod workspace;
 
 pub use check::Check;
+pub use compare::Compare;
 pub use design::Design;
 pub use dynamics::Dynamics;
+pub use export::Export;
 pub use failure::{exit_code, usage};
 #[cfg(feature = "ui")]
 pub use figures::Figures;
 #[cfg(feature = "record")]
 pub use headless::Headless;
+pub use import::Import;
 pub use input::words;
+pub use joints::JointsCommand;
 pub use machines::Machines;
 pub use open::Open;
 pub use plan::Plan;
 pub use pose::Pose;
 pub use reach::Reach;
 pub use simulate::Simulate;
+pub use spectrum::SpectrumOf;
+pub use tolerance::Tolerance;
 pub use workspace::Workspace;

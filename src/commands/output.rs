@@ -67,6 +67,15 @@ pub fn fixed(x: f64, decimals: usize) -> String {
     }
 }
 
+/// A number with fixed decimals, or in powers of ten where these would show nothing of it; rounding's noise is zero.
+pub fn shown(x: f64, decimals: usize) -> String {
+    let text = fixed(x, decimals);
+    match x.abs() >= 1e-12 && text.bytes().all(|b| matches!(b, b'0' | b'.')) {
+        true => format!("{x:.1e}"),
+        false => text,
+    }
+}
+
 /// `yes` or `no`.
 pub fn yes(is_so: bool) -> &'static str {
     if is_so { "yes" } else { "no" }

@@ -1,16 +1,17 @@
 //! `stillbase simulate`
 
-use std::io::{self, StdoutLock, Write};
 use std::num::NonZeroU64;
 use std::path::PathBuf;
 
 use clap::Args;
 use serde::{Serialize, Serializer};
-use stillbase::files::{NewFile, WriteError, check_new};
+use stillbase::audit::Audit;
+use stillbase::files::check_new;
 use stillbase::frame::Frame;
 use stillbase::session::replay;
 use stillbase::signals::{Signal, signals};
 
+use super::csv_file::Csv;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, fixed, say, yes};
@@ -52,7 +53,14 @@ struct Verdict {
     peak_torque: Vec<f64>,
     peak_base_force: f64,
     peak_base_moment: f64,
+    rms_base_force: f64,
+    rms_base_moment: f64,
+    base_shift: f64,
+    base_tilt: f64,
     reactionless: bool,
+    audit: Columns<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    audit_failed: Option<String>,
 }
 
 impl Verdict {
@@ -62,7 +70,13 @@ impl Verdict {
             peak_torque: last.peaks.torque.to_vec(),
             peak_base_force: last.peaks.force,
             peak_base_moment: last.peaks.moment,
+            rms_base_force: last.tally.force_rms(),
+            rms_base_moment: last.tally.moment_rms(),
+            base_shift: last.tally.shift,
+            base_tilt: last.tally.tilt,
             reactionless: last.peaks.is_reactionless(),
+            audit: Columns(last.audit.lamps(&last.peaks, &last.tally).map(|l| (l.name.to_owned(), l.value)).to_vec()),
+            audit_failed: Audit::fault(last).map(|lamp| lamp.to_string()),
         }
     }
 }
@@ -103,7 +117,8 @@ impl Simulate {
                 return;
             }
             if (self.output.is_some() || !self.format.json) && written.is_ok() {
-                written = self.csv(&mut csv, &table).and_then(|csv| csv.row(&table, frame));
+                let values = [frame.time].into_iter().chain(table.iter().map(|s| s.value(frame)));
+                written = self.csv(&mut csv, &table).and_then(|csv| csv.row(values));
             }
             if self.format.json {
                 time.push(frame.time);
@@ -125,8 +140,10 @@ impl Simulate {
                 fixed(verdict.peak_base_force, 6),
                 yes(verdict.reactionless),
             ));
-            return Ok(());
+            return trusted(&scenario.name, verdict.audit_failed);
         }
+        let fault = verdict.audit_failed.clone();
+        let name = scenario.name.clone();
         let answer = Answer {
             scenario: scenario.name,
             units: Columns(table.iter().map(|s| (s.path.clone(), s.unit)).collect()),
@@ -134,7 +151,8 @@ impl Simulate {
             signals: Columns(table.iter().map(|s| s.path.clone()).zip(columns).collect()),
             verdict,
         };
-        self.format.print(&answer, |_| String::new())
+        self.format.print(&answer, |_| String::new())?;
+        trusted(&name, fault)
     }
 
     /// Where rows go; begins it with a head.
@@ -142,91 +160,23 @@ impl Simulate {
         match begun {
             Some(csv) => Ok(csv),
             None => {
-                let sink = match &self.output {
-                    Some(file) => Sink::File(NewFile::create(file, self.force)?),
-                    None => Sink::Standard(io::stdout().lock()),
-                };
-                Ok(begun.insert(Csv::begin(sink, table)?))
+                let head = table.iter().map(|s| format!("{} {}", s.path, s.unit));
+                let head = ["time s".to_string()].into_iter().chain(head);
+                Ok(begun.insert(Csv::begin(self.output.as_deref(), self.force, head)?))
             }
         }
+    }
+}
+
+/// Fails if an audit has: the figures stand there, but they are no answer.
+fn trusted(scenario: &str, fault: Option<String>) -> Result<(), Failure> {
+    match fault {
+        Some(why) => Err(Failure::no_answer(format!("{scenario}: audit failed: {why}; want a smaller step"))),
+        None => Ok(()),
     }
 }
 
 /// The value of a signal, zero without a sign.
 fn value(signal: &Signal, frame: &Frame) -> f64 {
     signal.value(frame) + 0.0
-}
-
-struct Csv {
-    writer: csv::Writer<Sink>,
-    row: Vec<f64>,
-}
-
-impl Csv {
-    fn begin(sink: Sink, table: &[Signal]) -> Result<Self, Failure> {
-        let mut csv = Self { writer: csv::Writer::from_writer(sink), row: Vec::with_capacity(table.len() + 1) };
-        let head = table.iter().map(|s| format!("{} {}", s.path, s.unit));
-        let done = csv.writer.write_record(["time s".to_string()].into_iter().chain(head));
-        csv.checked(done)?;
-        Ok(csv)
-    }
-
-    fn row(&mut self, table: &[Signal], frame: &Frame) -> Result<(), Failure> {
-        self.row.clear();
-        self.row.push(frame.time);
-        self.row.extend(table.iter().map(|s| value(s, frame)));
-        let done = self.writer.serialize(&self.row);
-        self.checked(done)
-    }
-
-    fn checked(&self, done: Result<(), csv::Error>) -> Result<(), Failure> {
-        done.map_err(|e| match e.into_kind() {
-            csv::ErrorKind::Io(e) => self.writer.get_ref().failure(e),
-            other => Failure::WrongInput(format!("CSV: {other:?}")),
-        })
-    }
-
-    fn finish(mut self) -> Result<(), Failure> {
-        let done = self.writer.flush();
-        done.map_err(|e| self.writer.get_ref().failure(e))?;
-        match self.writer.into_inner() {
-            Ok(Sink::File(file)) => {
-                let name = file.path().display().to_string();
-                file.finish()?;
-                say(format!("wrote {name}"));
-            }
-            Ok(Sink::Standard(_)) => {}
-            Err(e) => return Err(Failure::standard_output(e.error())),
-        }
-        Ok(())
-    }
-}
-
-enum Sink {
-    File(NewFile),
-    Standard(StdoutLock<'static>),
-}
-
-impl Sink {
-    fn failure(&self, error: io::Error) -> Failure {
-        match self {
-            Self::File(file) => WriteError::Failed { file: file.path().into(), source: error }.into(),
-            Self::Standard(_) => Failure::standard_output(&error),
-        }
-    }
-}
-
-impl Write for Sink {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match self {
-            Self::File(file) => file.write(bytes),
-            Self::Standard(out) => out.write(bytes),
-        }
-    }
-    fn flush(&mut self) -> io::Result<()> {
-        match self {
-            Self::File(file) => file.flush(),
-            Self::Standard(out) => out.flush(),
-        }
-    }
 }

@@ -199,12 +199,31 @@ impl Layout<'_> {
             self.plot(case, "Drive angles  rad", &["angle/**"], None)?,
             self.plot(case, "Pose constant  rad", &["pose/**"], Some(b))?,
         ];
-        let plots = self.container(ContainerKind::Vertical, "", &plots, &[1.2, 1.0, 1.0, 1.0, 1.0])?;
+        let plots = self.container(ContainerKind::Vertical, "Drives and base", &plots, &[1.2, 1.0, 1.0, 1.0, 1.0])?;
+        let inside = self.inside(case)?;
+        let plots = self.container(ContainerKind::Tabs, "", &[plots, inside], &[])?;
         let top = self.container(ContainerKind::Horizontal, "", &[scene, plots], &[1.25, 1.0])?;
         let events = self.events(std::slice::from_ref(case))?;
         let phase = self.view("StateTimeline", "Phase", &under(&case.root, "phase"), &["$origin/**".into()], &[])?;
         let bottom = self.container(ContainerKind::Horizontal, "", &[events, phase], &[1.6, 1.0])?;
         self.container(ContainerKind::Vertical, &case.title, &[top, bottom], &[3.0, 1.0])
+    }
+
+    /// Pins in one plot, what tilts the base, and how near change points are.
+    fn inside(&mut self, case: &Rehearsal) -> Result<Part, StoreError> {
+        let has = |path: &str| case.signals.iter().any(|s| path.split('/').next() == Some(s.group()));
+        let plots = [
+            ("Pin forces  N", "pin/**", 1.6),
+            ("Tilting moment  N m", "tilt/**", 1.0),
+            ("Transmission |sin(q_k − q_l)|", "transmission/**", 1.0),
+            ("To the nearest change point  rad", "change_point/distance", 1.0),
+        ];
+        let (mut parts, mut shares) = (Vec::new(), Vec::new());
+        for (name, signals, share) in plots.into_iter().filter(|(_, signals, _)| has(signals)) {
+            parts.push(self.plot(case, name, &[signals], None)?);
+            shares.push(share);
+        }
+        self.container(ContainerKind::Vertical, "Inside", &parts, &shares)
     }
 
     fn scene(&mut self, case: &Rehearsal, name: &str) -> Result<Part, StoreError> {

@@ -143,7 +143,8 @@ impl Film {
     pub fn take(&mut self, at: Instant, run: &Run, frame: &Frame) -> Result<(), Stop> {
         let (Some(wanted), Some(easel)) = (self.wanted, &mut self.easel) else { return Ok(()) };
         let stage = self.stage.get_or_insert_with(|| Stage::of(run));
-        let mut scene = stage.scene(frame, &ViewOptions::default());
+        let options = ViewOptions { pin_forces: wanted.pin_forces, ..ViewOptions::default() };
+        let mut scene = stage.scene(frame, &options);
         scene.labels.retain(|label| label.text != INVITATION);
         let failed = |why: &dyn std::fmt::Display| Stop::Pictures(why.to_string());
         let picture = easel.draw(scene, &Camera::flat(stage.linkage().reach())).map_err(|why| failed(&why))?;

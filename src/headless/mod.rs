@@ -62,6 +62,8 @@ pub struct Pictures {
     pub width: u32,
     /// Rows.
     pub height: u32,
+    /// Arrows show what the pins carry.
+    pub pin_forces: bool,
 }
 
 /// What to record, and over what.

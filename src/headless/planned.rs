@@ -41,7 +41,7 @@ pub fn show(
     let path: Vec<_> = points(run).into_iter().map(|p| point(p, over)).collect();
     let ink = mix(palette.background, palette.ink, 0.75);
     store.shape(since, &under(root, "plan/path"), &lines(dashed(&path, 0.011 * reach as f32), 1.6, ink))?;
-    let named = waypoints(&run.scenario().task);
+    let named = waypoints(run);
     let rings = dots(4.5, palette.ink)
         .with_positions(named.iter().map(|(.., p)| point(*p, over)))
         .with_labels(named.iter().map(|(_, name, _)| name.as_str()))

@@ -39,7 +39,7 @@ impl Inertia {
         }
         let payload = machine.spec().payload;
         let held_by = machine.parts()[machine.tip_link()].drive;
-        sum.add(payload.mass, payload.inertia, held_by, &machine.tip().map(|w| Vector::new(w, 0.0)));
+        sum.add(payload.mass, payload.inertia, held_by, &machine.payload_chain());
         sum
     }
 

@@ -48,6 +48,7 @@ pub struct Machine {
     tip: Chain,
     tip_link: usize,
     angles: Vec<RelativeAngle>,
+    loops: Vec<Loop>,
 }
 
 /// What is derived of a link.
@@ -63,6 +64,8 @@ pub struct Part {
     pub root: Chain,
     /// The link its root is pinned to; none: the base.
     pub parent: Option<usize>,
+    /// How far from the root of that link, m; 0 on the base.
+    pub at: f64,
     /// Where pins sit along it, m from the root, in rising order and without repetition.
     pub pins: Vec<f64>,
 }
@@ -80,6 +83,19 @@ pub struct RelativeAngle {
     pub offset: f64,
     /// rad.
     pub limits: RangeInclusive<f64>,
+}
+
+/// A closure, resolved: a point of link `a` is pinned to a point of link `b`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Loop {
+    /// A link.
+    pub a: usize,
+    /// Where on it, m from its root.
+    pub at_a: f64,
+    /// Another link.
+    pub b: usize,
+    /// Where on that, m from its root.
+    pub at_b: f64,
 }
 
 impl Part {
@@ -100,15 +116,14 @@ impl Machine {
         let names = Names::of(&spec)?;
         check_numbers(&spec)?;
         let mut parts = resolve(&spec, &names)?;
-        for (i, closure) in spec.closures.iter().enumerate() {
-            check_closure(&spec, &names, &parts, i, closure)?;
-        }
+        let closures = spec.closures.iter().enumerate();
+        let loops = closures.map(|(i, c)| resolve_closure(&spec, &names, &parts, i, c)).collect::<Result<_, _>>()?;
         let end = spec.end_effector.as_ref().ok_or(MachineError::NoEndEffector)?;
         let (tip_link, s) = locate(&spec, &names, end, &|| Place::new(&[&"end_effector"]))?;
         let tip = parts[tip_link].point(s);
         let angles = resolve_angles(&spec, &names)?;
         add_pins(&spec, &names, &mut parts)?;
-        let machine = Self { spec, parts, tip, tip_link, angles };
+        let machine = Self { spec, parts, tip, tip_link, angles, loops };
         machine.check_inertia()?;
         Ok(machine)
     }
@@ -153,6 +168,11 @@ impl Machine {
         &self.angles
     }
 
+    /// Its closures as resolved, in the order of the file.
+    pub fn loops(&self) -> &[Loop] {
+        &self.loops
+    }
+
     /// Acceleration of gravity, m/s².
     pub fn gravity(&self) -> Vector {
         Vector::new(self.spec.gravity[0], self.spec.gravity[1])
@@ -174,16 +194,19 @@ impl Machine {
     /// For every pin that closes a loop, how its one description differs from the other: a sum of unit vectors that is
     /// zero in every pose.
     pub fn closure_gaps(&self) -> Vec<Chain> {
-        let Ok(names) = Names::of(&self.spec) else { return Vec::new() };
-        let point = |p: &Point| {
-            let (j, s) = locate(&self.spec, &names, p, &|| Place::new(&[&"closure"])).ok()?;
-            Some(self.parts[j].point(s))
+        let gap = |l: &Loop| {
+            let (a, b) = (self.parts[l.a].point(l.at_a), self.parts[l.b].point(l.at_b));
+            std::array::from_fn(|k| a[k] - b[k])
         };
-        let gap = |c: &Closure| {
-            let (a, b) = (point(&c.a)?, point(&c.b)?);
-            Some(std::array::from_fn(|k| a[k] - b[k]))
-        };
-        self.spec.closures.iter().filter_map(gap).collect()
+        self.loops.iter().map(gap).collect()
+    }
+
+    /// The centre of mass of the payload as a sum of unit vectors, complex where it lies off the link's axis.
+    pub fn payload_chain(&self) -> [Vector; MAX_DRIVES] {
+        let (part, [along, left]) = (&self.parts[self.tip_link], self.spec.payload.offset);
+        let mut a = self.tip.map(|w| Vector::new(w, 0.0));
+        a[part.drive] += part.sign * Vector::new(along, left);
+        a
     }
 
     fn check_inertia(&self) -> Result<(), MachineError> {
@@ -279,6 +302,10 @@ fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {
         finite(value, unit, &place)?;
         ranged(value >= 0.0, value, want, &place)?;
     }
+    finite(spec.payload.axial, ", m", &|| Place::new(&[&"payload", &"axial"]))?;
+    for (i, &value) in spec.payload.offset.iter().enumerate() {
+        finite(value, ", m", &|| Place::new(&[&"payload", &"offset", &i]))?;
+    }
     for (i, drive) in spec.drives.iter().enumerate() {
         for (key, value, unit, want) in [
             ("torque_limit", drive.torque_limit, ", N m", "a torque above 0 N m, or no key for none"),
@@ -303,6 +330,7 @@ fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {
             ("inertia", link.inertia, ", kg m²"),
             ("com", link.com, ", m"),
             ("com_normal", link.com_normal, ", m"),
+            ("axial", link.axial, ", m"),
         ] {
             finite(value, unit, &|| Place::new(&[&"link", &i, &key]))?;
         }
@@ -409,19 +437,20 @@ fn resolve(spec: &MachineSpec, names: &Names) -> Result<Vec<Part>, MachineError>
             length: length_of(spec, i)?,
             root,
             parent: parents[i].map(|(p, _)| p),
+            at: parents[i].map_or(0.0, |(_, s)| s),
             pins: Vec::new(),
         });
     }
     Ok(parts)
 }
 
-fn check_closure(
+fn resolve_closure(
     spec: &MachineSpec,
     names: &Names,
     parts: &[Part],
     i: usize,
     closure: &Closure,
-) -> Result<(), MachineError> {
+) -> Result<Loop, MachineError> {
     let (a, s) = locate(spec, names, &closure.a, &|| Place::new(&[&"closure", &i, &"a"]))?;
     let (b, t) = locate(spec, names, &closure.b, &|| Place::new(&[&"closure", &i, &"b"]))?;
     let (p, r) = (parts[a].point(s), parts[b].point(t));
@@ -430,7 +459,7 @@ fn check_closure(
         .map(|k| format!("{:.6} m along drive {}", p[k] - r[k], spec.drives[k].name))
         .collect();
     if gap.is_empty() {
-        return Ok(());
+        return Ok(Loop { a, at_a: s, b, at_b: t });
     }
     let say = |point: &Point| match &point.at {
         Station::Metres(s) => format!("{s} m of link {}", point.link),

@@ -2,8 +2,9 @@
 
 use super::{Length, Machine, MachineError, MachineSpec, Place};
 
-const KEYS: &str = "link.NAME.(com|com_normal|mass|inertia|length), length.NAME, payload.mass, payload.inertia, \
-                    gravity, limits.ANGLE, drive.NAME.(torque|speed|acceleration|jerk)_limit";
+const KEYS: &str = "link.NAME.(com|com_normal|mass|inertia|length|axial), length.NAME, \
+                    payload.(mass|inertia|offset|axial), gravity, limits.ANGLE, \
+                    drive.NAME.(torque|speed|acceleration|jerk)_limit";
 
 impl Machine {
     /// A machine with one setting changed; `value` is one number, or two parted by a comma.
@@ -39,6 +40,7 @@ impl Machine {
                     "com_normal" => link.com_normal,
                     "mass" => link.mass,
                     "inertia" => link.inertia,
+                    "axial" => link.axial,
                     "length" => part.length,
                     _ => return None,
                 })
@@ -47,6 +49,8 @@ impl Machine {
             ["length", name] => spec.lengths.get(name).map(f64::to_string),
             ["payload", "mass"] => Some(spec.payload.mass.to_string()),
             ["payload", "inertia"] => Some(spec.payload.inertia.to_string()),
+            ["payload", "offset"] => Some(two(spec.payload.offset)),
+            ["payload", "axial"] => Some(spec.payload.axial.to_string()),
             ["gravity"] => Some(two(spec.gravity)),
             ["limits", name] => spec.angles.iter().find(|a| a.name == name).map(|a| two([a.min, a.max])),
             ["drive", name, field] => {
@@ -89,6 +93,7 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &str) -> Result<(), MachineE
                 "com_normal" => &mut link.com_normal,
                 "mass" => &mut link.mass,
                 "inertia" => &mut link.inertia,
+                "axial" => &mut link.axial,
                 _ => return Err(unknown()),
             } = one()?;
         }
@@ -99,6 +104,8 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &str) -> Result<(), MachineE
         }
         ["payload", "mass"] => spec.payload.mass = one()?,
         ["payload", "inertia"] => spec.payload.inertia = one()?,
+        ["payload", "offset"] => spec.payload.offset = two()?,
+        ["payload", "axial"] => spec.payload.axial = one()?,
         ["gravity"] => spec.gravity = two()?,
         ["limits", name] => {
             let known = spec.angles.iter().map(|a| a.name.as_str()).collect();

@@ -50,11 +50,32 @@ pub struct Payload {
     /// About its own centre of mass, kg m².
     #[serde(default)]
     pub inertia: f64,
+    /// Its centre of mass seen from the end effector: along the link that holds it, and to its left, m.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub offset: [f64; 2],
+    /// Height of its centre of mass, and of a force on the end effector, along the drives' axis from the plane of
+    /// reference, m.
+    #[serde(default, skip_serializing_if = "is_nought")]
+    pub axial: f64,
 }
 
 impl Payload {
     fn is_none(&self) -> bool {
         *self == Self::default()
+    }
+
+    /// Both held together as one: its mass, its common centre of mass, and its inertia about that.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        let mass = self.mass + other.mass;
+        let mean = |own: f64, others: f64| match other.mass > 0.0 {
+            true => (self.mass * own + other.mass * others) / mass,
+            false => own,
+        };
+        let offset = [0, 1].map(|i| mean(self.offset[i], other.offset[i]));
+        let away = |p: &Self| p.mass * ((p.offset[0] - offset[0]).powi(2) + (p.offset[1] - offset[1]).powi(2));
+        let inertia = self.inertia + other.inertia + away(&self) + away(&other);
+        Self { mass, inertia, offset, axial: mean(self.axial, other.axial) }
     }
 }
 
@@ -102,6 +123,10 @@ pub struct Link {
     /// Centre of mass off the link's axis, to the left of the direction root to tip, m.
     #[serde(default, skip_serializing_if = "is_nought")]
     pub com_normal: f64,
+    /// Height of its centre of mass along the drives' axis, from the plane of reference at B, m. The motion stays
+    /// plane; the offsets decide which moments tilt the base.
+    #[serde(default, skip_serializing_if = "is_nought")]
+    pub axial: f64,
 }
 
 fn forwards() -> i8 {

@@ -203,6 +203,26 @@ impl Curve {
         Self::spline(&knots, closed && knots.len() > 2)
     }
 
+    /// Through places that are passed at given s with given derivatives by s, joined by quintics: s is the caller's, such
+    /// as t/T. `None` if the s do not rise from 0 to 1, or differ in number from the places.
+    pub fn through(stations: &[f64], nodes: &[CurvePoint]) -> Option<Self> {
+        let last = stations.len().checked_sub(1).filter(|n| *n > 0 && nodes.len() == stations.len())?;
+        if stations[0] != 0.0 || stations[last] != 1.0 || !stations.windows(2).all(|w| w[0] < w[1]) {
+            return None;
+        }
+        let piece = |i: usize| {
+            let (from, to, a, b) = (stations[i], stations[i + 1], &nodes[i], &nodes[i + 1]);
+            let h = to - from;
+            let (c0, c1, c2) = (a.p, a.first * h, a.second * (h * h / 2.0));
+            let (v, v1, v2) = (b.p - c0 - c1 - c2, b.first * h - c1 - 2.0 * c2, b.second * (h * h) - 2.0 * c2);
+            let (c3, c4) = (10.0 * v - 4.0 * v1 + 0.5 * v2, -15.0 * v + 7.0 * v1 - v2);
+            let shape = Shape::Polynomial([c0, c1, c2, c3, c4, 6.0 * v - 3.0 * v1 + 0.5 * v2]);
+            Piece { from, to, shape }
+        };
+        let length: f64 = nodes.windows(2).map(|w| (w[1].p - w[0].p).norm()).sum();
+        Some(Self { pieces: (0..last).map(piece).collect(), length: length.max(APART) })
+    }
+
     fn of(shapes: Vec<(Shape, f64)>) -> Self {
         let length: f64 = shapes.iter().map(|(_, length)| length).sum();
         let n = shapes.len();

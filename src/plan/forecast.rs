@@ -19,12 +19,18 @@ pub struct Forecast {
     pub moment: f64,
     /// ∫ |n_B| dt, N m s.
     pub impulse: f64,
+    /// Root of the mean of n_B², N m.
+    pub moment_rms: f64,
     /// Largest dynamic |f_B|, N.
     pub force: f64,
+    /// Root of the mean of the dynamic |f_B|², N.
+    pub force_rms: f64,
     /// The limit of a drive that is passed by most, and by what factor; none if all are kept.
     pub over: Option<(Limit, f64)>,
     /// Least and greatest b on the way, rad.
     pub b: [f64; 2],
+    /// Mean of b over time, rad.
+    pub b_mean: f64,
     /// b at the start, rad.
     pub b_start: f64,
     /// b at the end, rad.
@@ -39,6 +45,12 @@ const MOST: usize = 100_000;
 impl Forecast {
     /// Of a motion of a model.
     pub fn of(motion: &Motion, model: &Inertia, around: &Surroundings, limits: &Limits) -> Self {
+        let instants = (A_PART * motion.path.parts()).clamp(INSTANTS, MOST);
+        Self::at(motion, model, around, limits, instants)
+    }
+
+    /// The same by that many instants, evenly in the middles of as many parts of T.
+    pub fn at(motion: &Motion, model: &Inertia, around: &Surroundings, limits: &Limits, instants: usize) -> Self {
         let (time, lambda) = (motion.duration(), model.lambda());
         let n = model.drives();
         let mut sum = Self {
@@ -47,13 +59,15 @@ impl Forecast {
             speed: PerDrive::zeros(n),
             moment: 0.0,
             impulse: 0.0,
+            moment_rms: 0.0,
             force: 0.0,
+            force_rms: 0.0,
             over: None,
             b: [f64::INFINITY, f64::NEG_INFINITY],
+            b_mean: 0.0,
             b_start: lambda.dot(&motion.at(0.0).q),
             b_end: lambda.dot(&motion.at(time).q),
         };
-        let instants = (A_PART * motion.path.parts()).clamp(INSTANTS, MOST);
         let dt = time / instants as f64;
         // Between the instants, so that no step of the acceleration is looked at from the wrong side.
         for i in 0..instants {
@@ -79,9 +93,15 @@ impl Forecast {
             sum.moment = sum.moment.max(moment);
             sum.impulse += moment * dt;
             sum.force = sum.force.max(wrench.dynamic.force.norm());
+            sum.moment_rms += moment * moment / instants as f64;
+            sum.force_rms += wrench.dynamic.force.norm_sqr() / instants as f64;
             let b = lambda.dot(&r.q);
             sum.b = [sum.b[0].min(b), sum.b[1].max(b)];
+            sum.b_mean += (b - sum.b_start) / instants as f64;
         }
+        sum.b_mean += sum.b_start;
+        sum.moment_rms = sum.moment_rms.sqrt();
+        sum.force_rms = sum.force_rms.sqrt();
         sum
     }
 }

@@ -3,6 +3,8 @@
 //! | what | modules |
 //! |---|---|
 //! | curves of the end effector, and paths of the drives | [`curve`], [`path`], [`table`] |
+//! | given by samples: splined, smoothed | [`given`], [`spline`], [`low_pass`] |
+//! | the nearest reactionless motion to a given one | [`nearest`] |
 //! | on a plane: a curve followed on one sheet, or why not | [`trace`] |
 //! | when: laws, limits of the drives, the fastest motion | [`law`], [`profile`], [`limits`], [`mod@fastest`], [`usage`] |
 //! | off the plane: the price of b, the least reaction | [`price`], [`corridor`], [`inverse`], [`pose_course`], [`least_reaction`] |
@@ -17,10 +19,13 @@ pub mod drift;
 pub mod fastest;
 pub mod follow;
 pub mod forecast;
+pub mod given;
 pub mod inverse;
 pub mod law;
 pub mod least_reaction;
 pub mod limits;
+pub mod low_pass;
+pub mod nearest;
 pub mod null_space;
 pub mod path;
 pub mod pose_course;
@@ -29,6 +34,7 @@ mod pose_program;
 pub mod price;
 pub mod profile;
 mod smooth;
+pub mod spline;
 pub mod table;
 mod topp;
 pub mod trace;
@@ -39,6 +45,7 @@ pub use curve::{Curve, CurveError, CurvePoint};
 pub use fastest::{Fastest, TimeError, fastest};
 pub use follow::Follower;
 pub use forecast::Forecast;
+pub use given::Samples;
 pub use law::{Progress, TimeLaw};
 pub use least_reaction::LeastReaction;
 pub use limits::Limits;
@@ -70,7 +77,7 @@ impl Reference {
     }
 }
 
-/// A path run through once, from rest to rest.
+/// A path run through once, from rest to rest unless it is given otherwise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
     /// Where.

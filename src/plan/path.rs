@@ -98,10 +98,11 @@ impl Path {
         }
     }
 
-    /// How many paths it is made of.
+    /// How many paths it is made of; a table of very many nodes counts as several.
     pub fn parts(&self) -> usize {
         match self {
             Self::Chain(chain) => chain.paths.iter().map(Self::parts).sum(),
+            Self::Table(table) => table.nodes().len().div_ceil(A_PART),
             _ => 1,
         }
     }
@@ -167,6 +168,8 @@ impl Chained {
         PathPoint { q: point.q, first: point.first.scaled(1.0 / run), second: point.second.scaled(1.0 / (run * run)) }
     }
 }
+/// Nodes of a table that count as one path.
+const A_PART: usize = 1024;
 /// Difference quotients lose as much by rounding as by their length.
 const THIRD_OVER: f64 = 1e-5;
 
@@ -218,12 +221,13 @@ pub(super) fn by_pieces<E>(
     spaces: usize,
     follow: impl Fn(DriveAngles, [f64; 2], &dyn Fn(f64) -> CurvePoint, usize) -> Result<Vec<PathPoint>, E>,
 ) -> Result<Option<Table>, E> {
-    const LEAST: usize = 16;
     let joints: Vec<f64> = curve.joints().collect();
+    // Many pieces are short, as those between samples.
+    let least = if joints.len() > 200 { 1 } else { 16 };
     let (mut stations, mut nodes, mut q) = (Vec::new(), Vec::new(), start);
     for ends in joints.windows(2) {
         let (from, run) = (ends[0], ends[1] - ends[0]);
-        let own = ((spaces as f64 * run).ceil() as usize).max(LEAST);
+        let own = ((spaces as f64 * run).ceil() as usize).max(least);
         let at = |u: f64| {
             let point = curve.at(if u >= 1.0 { ends[1] } else { from + u * run });
             CurvePoint { p: point.p, first: point.first * run, second: point.second * (run * run) }

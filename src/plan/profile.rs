@@ -1,4 +1,4 @@
-//! Timings s(t) from rest to rest: a law over a time, or phases of constant jerk.
+//! Timings s(t): a law over a time, phases of constant jerk, both from rest to rest, or time itself.
 
 use std::collections::VecDeque;
 
@@ -14,9 +14,13 @@ pub struct Profile {
     shape: Shape,
 }
 
+/// The last instant of a running profile belongs to it, give or take this share of T.
+const EDGE: f64 = 1e-9;
+
 #[derive(Clone, Debug, PartialEq)]
 enum Shape {
     Law(TimeLaw),
+    Running,
     Phases(Phases),
     Sequence(Vec<Leg>),
 }
@@ -113,6 +117,12 @@ impl Profile {
         Self::from_starts(vec![(0.0, Progress { rate: 1.0 / duration, ..Progress::still(0.0) })], duration)
     }
 
+    /// s = t/T, both ends included: for paths that hold their timing themselves and need not be at rest where they begin
+    /// and end. After T the motion stands.
+    pub fn running(duration: f64) -> Self {
+        Self { duration, shape: Shape::Running }
+    }
+
     /// Profiles one after another, each with its share of s; shares are put in proportion to their sum.
     pub fn sequence(legs: Vec<(Self, f64)>) -> Self {
         let total: f64 = legs.iter().map(|(_, share)| share).sum();
@@ -196,7 +206,7 @@ impl Profile {
     pub fn law(&self) -> Option<TimeLaw> {
         match self.shape {
             Shape::Law(law) => Some(law),
-            Shape::Phases(_) | Shape::Sequence(_) => None,
+            Shape::Running | Shape::Phases(_) | Shape::Sequence(_) => None,
         }
     }
 
@@ -205,6 +215,13 @@ impl Profile {
     pub fn at(&self, t: f64) -> Progress {
         match &self.shape {
             Shape::Law(law) => law.at(t, self.duration),
+            // Steps may add up to a hair beside either end.
+            Shape::Running if t < -EDGE * self.duration => Progress::still(0.0),
+            Shape::Running if t > (1.0 + EDGE) * self.duration => Progress::still(1.0),
+            Shape::Running => {
+                let s = (t / self.duration).clamp(0.0, 1.0);
+                Progress { rate: 1.0 / self.duration, ..Progress::still(s) }
+            }
             Shape::Phases(_) if t < 0.0 => Progress::still(0.0),
             Shape::Phases(_) if t >= self.duration => Progress::still(1.0),
             Shape::Phases(phases) => phases.at(t),
@@ -231,6 +248,7 @@ impl Profile {
         let duration = factor * self.duration;
         match &self.shape {
             Shape::Law(law) => Self::of(*law, duration),
+            Shape::Running => Self::running(duration),
             Shape::Phases(phases) => {
                 let f = 1.0 / factor;
                 let slower = |at: &Progress| Progress {
@@ -325,7 +343,7 @@ impl Profile {
     pub(super) fn instants(&self, every: usize) -> impl Iterator<Item = Progress> + '_ {
         let starts: &[Start] = match &self.shape {
             Shape::Phases(phases) => &phases.starts,
-            Shape::Law(_) | Shape::Sequence(_) => &[],
+            Shape::Law(_) | Shape::Running | Shape::Sequence(_) => &[],
         };
         starts.iter().enumerate().step_by(every.max(1)).flat_map(move |(i, start)| {
             let time = starts.get(i + 1).map_or(self.duration, |next| next.t) - start.t;

@@ -17,64 +17,12 @@
 //! π̇_k = ∂T/∂q_k + Q_k, and P and L change by outer forces only: a free base keeps both to the last digit. Gravity
 //! has no lever about R.
 
-use serde::{Deserialize, Serialize};
-
-use super::{Base, BaseKind, Contacts, Friction, Grip, MAX_CONTACTS, Spin, is_default};
+use super::{Base, BaseKind, Contacts, Friction, Grip, MAX_CONTACTS, Spin};
 use crate::dynamics::{BaseWrench, Factors, Surroundings, base_wrench, by_drives, first};
 use crate::machine::{Inertia, Machine, MachineError};
 use crate::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Units, Vector, cross, dot};
 
 const I: Vector = Vector::new(0.0, 1.0);
-
-/// A payload that the model lacks, and when it is held.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Load {
-    /// kg.
-    #[serde(default)]
-    pub mass: f64,
-    /// About its own centre of mass, kg m².
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub inertia: f64,
-    /// Its centre of mass seen from the end effector: along the link that holds it, and to its left, m.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub offset: [f64; 2],
-    /// When it is picked up, s: by a hand that moves with it, so that no rate changes.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub from: f64,
-    /// When it is let go, s; none: never.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub until: Option<f64>,
-}
-
-impl Load {
-    /// Whether there is any.
-    pub fn is_some(&self) -> bool {
-        self.mass > 0.0 || self.inertia > 0.0
-    }
-
-    /// Whether it is held at a time, s; `slack` is half a step.
-    pub fn is_held(&self, time: f64, slack: f64) -> bool {
-        self.is_some() && time >= self.from - slack && self.until.is_none_or(|until| time < until - slack)
-    }
-
-    /// The constants of a machine that holds it.
-    pub fn on(&self, machine: &Machine) -> Inertia {
-        let mut inertia = Inertia::of(machine);
-        if self.is_some() {
-            inertia.add(self.mass, self.inertia, machine.parts()[machine.tip_link()].drive, &self.chain(machine));
-        }
-        inertia
-    }
-
-    /// Its centre of mass as a sum of unit vectors.
-    pub fn chain(&self, machine: &Machine) -> [Vector; MAX_DRIVES] {
-        let part = &machine.parts()[machine.tip_link()];
-        let mut a = machine.tip().map(|w| Vector::new(w, 0.0));
-        a[part.drive] += part.sign * Vector::new(self.offset[0], self.offset[1]);
-        a
-    }
-}
 
 /// What holds a base that moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -159,6 +107,8 @@ pub struct Slope {
     pub base: Pose2,
     /// ṗ_B, m/s.
     pub base_velocity: Vector,
+    /// p̈_B, m/s².
+    pub base_acceleration: Vector,
     /// What the manipulator transmits.
     pub wrench: BaseWrench,
     /// Kinetic energy of all that moves, J.
@@ -220,15 +170,9 @@ impl Body {
     ///
     /// # Errors
     /// If a base that moves is one too many to turn.
-    pub fn of(
-        machine: &Machine,
-        load: &Load,
-        friction: &Friction,
-        base: &Base,
-        start: &DriveAngles,
-    ) -> Result<Self, MachineError> {
+    pub fn of(machine: &Machine, friction: &Friction, base: &Base, start: &DriveAngles) -> Result<Self, MachineError> {
         let n = machine.drives();
-        let arm = load.on(machine);
+        let arm = Inertia::of(machine);
         let around = Surroundings { gravity: machine.gravity(), force: Vector::default() };
         let real = |chain: &[f64; MAX_DRIVES]| chain.map(|w| Vector::new(w, 0.0));
         let nothing = [Vector::default(); MAX_DRIVES];
@@ -557,14 +501,15 @@ fn instant_of<const N: usize>(
         momenta_rate[N - 1] = external;
     }
     // The wrench from the accelerations and not from the torques, so that a zero is found and not assumed.
+    let mut base_acceleration = Vector::default();
     let wrench = if body.moves {
         let pull: Vector =
             (0..N).map(|k| body.anchor[k] * e[k] * Vector::new(-rate[k] * rate[k], acceleration[k])).sum();
-        let acceleration = momentum_rate / body.mass + pull;
+        base_acceleration = momentum_rate / body.mass + pull;
         let mut wrench = base_wrench(&body.arm, &e, &cut(&qd, n), &cut(&qdd, n), &body.around);
         let lever = crate::dynamics::first_moment(&body.arm, &e);
-        wrench.dynamic.force -= body.arm.mass * acceleration;
-        wrench.dynamic.moment -= cross(lever, acceleration);
+        wrench.dynamic.force -= body.arm.mass * base_acceleration;
+        wrench.dynamic.moment -= cross(lever, base_acceleration);
         wrench
     } else {
         let rate_of: f64 = (0..N).map(|k| (0..N).map(|l| h[k][l] * acceleration[l]).sum::<f64>() + v[k]).sum();
@@ -582,6 +527,7 @@ fn instant_of<const N: usize>(
         spin,
         base,
         base_velocity: velocity,
+        base_acceleration,
         wrench,
         kinetic,
         power,

@@ -6,6 +6,7 @@
 mod base;
 mod body;
 mod friction;
+mod load;
 mod wheel;
 
 use std::collections::BTreeMap;
@@ -13,8 +14,9 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 pub use base::{Base, BaseKind};
-pub use body::{Body, Command, Load, Slope, State};
+pub use body::{Body, Command, Slope, State};
 pub use friction::{Contacts, Friction, Grip, MAX_CONTACTS};
+pub use load::Load;
 pub use wheel::{Spin, Wheel};
 
 use crate::machine::{Machine, MachineError};
@@ -156,6 +158,7 @@ impl Plant {
             ("plant.payload.inertia", load.inertia, "0 to 10000 kg m²", amount(load.inertia)),
             ("plant.payload.offset", load.offset[0], "-1000 to 1000 m", reach(load.offset[0])),
             ("plant.payload.offset", load.offset[1], "-1000 to 1000 m", reach(load.offset[1])),
+            ("plant.payload.axial", load.axial, "-1000 to 1000 m", reach(load.axial)),
             ("plant.payload.from", load.from, "0 s or later", load.from >= 0.0),
             (
                 "plant.payload.until",

@@ -27,7 +27,7 @@ pub struct Wheel {
 }
 
 fn rotor() -> f64 {
-    0.002
+    0.02
 }
 
 impl Default for Wheel {

@@ -14,6 +14,7 @@ use crate::machine::{self, FileError, Machine, MachineError, MachineSpec};
 use crate::plant::{Base, Plant, is_default};
 use crate::session::TimedEdit;
 use crate::simulation::Setup;
+use crate::tolerance::Tolerance;
 
 pub use task::{Change, Corners, Least, MAX_POINTS, Shape, Task, TaskKind, Value};
 
@@ -42,6 +43,8 @@ pub struct Scenario {
     pub compare_b: Option<f64>,
     /// Time that a headless run covers, s; by default that of the planned motion.
     pub duration: Option<f64>,
+    /// How machines that are built differ from it.
+    pub tolerance: Tolerance,
     /// What was done, in the order of steps.
     pub edits: Vec<TimedEdit>,
 }
@@ -69,6 +72,8 @@ struct File {
     plant: Plant,
     #[serde(default, skip_serializing_if = "is_default")]
     base: Base,
+    #[serde(default, skip_serializing_if = "Tolerance::is_empty")]
+    tolerance: Tolerance,
     #[serde(default, rename = "edit", skip_serializing_if = "Vec::is_empty")]
     edits: Vec<TimedEdit>,
 }
@@ -136,8 +141,9 @@ pub enum ScenarioError {
 /// How many of the scenarios that come along are the paper's cases; they stand first.
 const CASES: usize = 3;
 
-/// The scenarios that come along: the paper's three cases, and what planning can do besides.
-const BUILTIN: [(&str, &str); 7] = [
+/// The scenarios that come along: the paper's three cases, what planning can do besides, and plants and bases that are
+/// not ideal.
+const BUILTIN: [(&str, &str); 12] = [
     ("case-1", include_str!("../../assets/scenarios/case-1.toml")),
     ("case-2", include_str!("../../assets/scenarios/case-2.toml")),
     ("case-3", include_str!("../../assets/scenarios/case-3.toml")),
@@ -145,6 +151,11 @@ const BUILTIN: [(&str, &str); 7] = [
     ("change-b", include_str!("../../assets/scenarios/change-b.toml")),
     ("least-reaction", include_str!("../../assets/scenarios/least-reaction.toml")),
     ("drift", include_str!("../../assets/scenarios/drift.toml")),
+    ("spacecraft", include_str!("../../assets/scenarios/spacecraft.toml")),
+    ("bench-top", include_str!("../../assets/scenarios/bench-top.toml")),
+    ("pick-up", include_str!("../../assets/scenarios/pick-up.toml")),
+    ("friction", include_str!("../../assets/scenarios/friction.toml")),
+    ("wheel", include_str!("../../assets/scenarios/wheel.toml")),
 ];
 
 impl Scenario {
@@ -214,6 +225,11 @@ impl Scenario {
             false => machine.set_all(settings).map_err(|error| ScenarioError::Machine { file: label.into(), error })?,
         };
         let stem = FilePath::new(label).file_stem().map_or_else(|| label.into(), |s| s.to_string_lossy().into_owned());
+        let task = file.task.completed(&machine).map_err(|key| ScenarioError::Syntax {
+            file: label.into(),
+            line: text.lines().position(|line| line.trim() == "[task]").map(|i| i + 1),
+            message: format!("missing field `{key}`"),
+        })?;
         let scenario = Self {
             name: file.name.unwrap_or(stem),
             title: file.title,
@@ -225,7 +241,8 @@ impl Scenario {
             pose_acceleration: file.pose_acceleration,
             compare_b: file.compare_b,
             duration: file.duration,
-            task: file.task,
+            task,
+            tolerance: file.tolerance,
             edits: file.edits,
         };
         scenario.check(label)?;
@@ -264,6 +281,7 @@ impl Scenario {
             ("task.to", t.to[0]),
             ("task.to", t.to[1]),
             ("task.b", t.b),
+            ("task.turn", t.turn),
             ("task.first_drive_to", t.first_drive_to.unwrap_or(0.0)),
             ("compare_b", self.compare_b.unwrap_or(0.0)),
             ("task.b_to", t.b_to.unwrap_or(0.0)),
@@ -303,6 +321,7 @@ impl Scenario {
             pose_acceleration,
             compare_b,
             duration,
+            tolerance,
             edits,
         } = self.clone();
         let file = File {
@@ -318,9 +337,19 @@ impl Scenario {
             control,
             plant,
             base,
+            tolerance,
             edits,
         };
         toml::to_string(&file).expect("a scenario is plain data")
+    }
+
+    /// The machine that moves, with what it holds at the start.
+    ///
+    /// # Errors
+    /// If what differs leaves no valid machine.
+    pub fn plant_machine(&self) -> Result<Machine, MachineError> {
+        let (machine, load) = (self.plant.machine(&self.machine)?, &self.plant.payload);
+        if load.is_held(0.0, 0.5 * self.step) { load.held_by(&machine) } else { Ok(machine) }
     }
 
     /// What a simulation of it is made of.

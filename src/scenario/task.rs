@@ -3,8 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::keys;
-use crate::plan::TimeLaw;
-use crate::planar::Vector;
+use crate::kinematics::end_effector;
+use crate::machine::{Inertia, Machine};
+use crate::plan::{Samples, TimeLaw};
+use crate::planar::{DriveAngles, PerDrive, Vector};
 
 /// What the machine is to do.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -15,12 +17,21 @@ pub struct Task {
     /// What joins the points; by default what suits the kind.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shape: Option<Shape>,
-    /// A, m.
+    /// The motion over time: rows of t, s, and all drive angles, rad, for `given`; or of t, x, y, m, for `given`,
+    /// `reactionless` and `minimum-norm`. Points, shape and law have no say then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub samples: Option<Samples>,
+    /// By how much samples of drive angles are turned as a whole, rad.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub turn: f64,
+    /// A, m; by default where samples begin.
+    #[serde(default = "missing_point")]
     pub from: [f64; 2],
     /// Points between A and B, in order, m.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub via: Vec<[f64; 2]>,
-    /// B, m.
+    /// B, m; by default where samples end.
+    #[serde(default = "missing_point")]
     pub to: [f64; 2],
     /// Returns from B to A.
     #[serde(default, skip_serializing_if = "is_false")]
@@ -34,7 +45,8 @@ pub struct Task {
     /// Keeps to one side of every change point, where two drives are parallel and pin forces grow without bound.
     #[serde(default, skip_serializing_if = "is_false")]
     pub keep_off_change_points: bool,
-    /// Pose constant at A, rad.
+    /// Pose constant at A, rad; samples of drive angles have their own.
+    #[serde(default = "missing")]
     pub b: f64,
     /// Pose constant at B, rad: for `change-b` by default the one that B allows with the least change, for
     /// `least-reaction` free.
@@ -52,8 +64,9 @@ pub struct Task {
     /// Where drive 1 ends, rad; for `same-tip`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_drive_to: Option<f64>,
-    /// T, s; for the laws that do not find it themselves.
-    #[serde(default = "one_second")]
+    /// T, s; for the laws that do not find it themselves. By default 1 s, or as long as samples take; another T stretches
+    /// them.
+    #[serde(default = "missing")]
     pub time: f64,
     /// Time law.
     #[serde(default)]
@@ -84,6 +97,8 @@ pub enum TaskKind {
     /// Any path of the end effector at zero momentum, on machines whose mass matrix changes with the pose too; a closed
     /// one again and again, with the drift of the joints.
     ZeroMomentum,
+    /// By samples over time: of the drives as they are, of the end effector on the plane b = const.
+    Given,
 }
 
 /// What joins the points of a task.
@@ -124,8 +139,13 @@ pub enum Least {
     Peak,
 }
 
-fn one_second() -> f64 {
-    1.0
+/// What stands for a key that a file leaves out, until it is known; no file can hold it.
+fn missing() -> f64 {
+    f64::NAN
+}
+
+fn missing_point() -> [f64; 2] {
+    [f64::NAN; 2]
 }
 
 fn default_blend() -> f64 {
@@ -156,6 +176,103 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 pub const MAX_POINTS: usize = 2000;
 
 impl Task {
+    /// A task by samples, on the plane b, rad, where they are of the end effector; those of the drives have their own.
+    ///
+    /// # Errors
+    /// Which key is missing: `b` for samples of the end effector without one.
+    pub fn sampled(kind: TaskKind, samples: Samples, b: Option<f64>, machine: &Machine) -> Result<Self, &'static str> {
+        let task = Self {
+            kind,
+            shape: None,
+            samples: Some(samples),
+            turn: 0.0,
+            from: missing_point(),
+            via: Vec::new(),
+            to: missing_point(),
+            closed: false,
+            corners: Corners::default(),
+            blend: default_blend(),
+            keep_off_change_points: false,
+            b: b.unwrap_or_else(missing),
+            b_to: None,
+            moment_limit: None,
+            cycles: once(),
+            least: Least::default(),
+            first_drive_to: None,
+            time: missing(),
+            law: TimeLaw::default(),
+        };
+        task.completed(machine)
+    }
+
+    /// The task with what its file leaves out and what follows from its samples alone.
+    fn settled(mut self) -> Self {
+        let samples = self.samples.as_ref();
+        if self.time.is_nan() {
+            self.time = samples.map_or(1.0, Samples::duration);
+        }
+        if let Some(samples) = samples.filter(|samples| samples.columns() == 2) {
+            let place = |i| [samples.point(i).re, samples.point(i).im];
+            self.place_ends([place(0), place(samples.count() - 1)]);
+        }
+        self
+    }
+
+    fn place_ends(&mut self, ends: [[f64; 2]; 2]) {
+        for (own, end) in [&mut self.from, &mut self.to].into_iter().zip(ends) {
+            if own.iter().all(|x| x.is_nan()) {
+                *own = end;
+            }
+        }
+    }
+
+    /// The task as a file means it for a machine: what it leaves out is filled in from its samples.
+    ///
+    /// # Errors
+    /// Which key is missing.
+    pub(super) fn completed(self, machine: &Machine) -> Result<Self, &'static str> {
+        let mut task = self.settled();
+        if let Some([first, last]) = task.end_poses(machine) {
+            let place = |q: &DriveAngles| {
+                let p = end_effector(machine.tip(), &q.units());
+                [p.re, p.im]
+            };
+            task.place_ends([place(&first), place(&last)]);
+            if task.b.is_nan() {
+                task.b = Inertia::of(machine).lambda().dot(&first);
+            }
+        }
+        let missing = [
+            ("from", task.from.iter().all(|x| x.is_nan())),
+            ("to", task.to.iter().all(|x| x.is_nan())),
+            ("b", task.b.is_nan()),
+        ];
+        match missing.into_iter().find(|(_, is)| *is) {
+            Some((key, _)) => Err(key),
+            None => Ok(task),
+        }
+    }
+
+    /// Where samples of the drive angles begin and end; `None` if there are none for this machine.
+    fn end_poses(&self, machine: &Machine) -> Option<[DriveAngles; 2]> {
+        let samples = self.samples.as_ref().filter(|samples| samples.columns() == machine.drives())?;
+        let pose = |i: usize| DriveAngles(PerDrive::from_fn(samples.columns(), |k| samples.values(i)[k] + self.turn));
+        Some([pose(0), pose(samples.count() - 1)])
+    }
+
+    /// Samples turned as a whole to begin on the plane b, rad, if they are of the drives of a machine; what else a task
+    /// with samples has is left to its plan. `None` for a task without samples.
+    pub(crate) fn posed(&self, machine: &Machine, b: f64) -> Option<Self> {
+        self.samples.as_ref()?;
+        let mut task = Self { b, ..self.clone() };
+        if let Some([first, _]) = self.end_poses(machine) {
+            let lambda = Inertia::of(machine).lambda();
+            task.turn += (b - lambda.dot(&first)) / lambda.iter().sum::<f64>();
+            (task.from, task.to) = (missing_point(), missing_point());
+        }
+        task.completed(machine).ok()
+    }
+
     /// All points in order, A first and B last, m.
     pub fn points(&self) -> Vec<Vector> {
         let all = std::iter::once(&self.from).chain(&self.via).chain(std::iter::once(&self.to));
@@ -174,7 +291,7 @@ impl Task {
     /// All keys, so that another task can be made this one.
     pub fn whole(&self) -> Change {
         let optional = ["shape", "via", "closed", "corners", "blend", "keep_off_change_points", "b_to", "moment_limit"];
-        let others = ["cycles", "least", "first_drive_to"];
+        let others = ["cycles", "least", "first_drive_to", "samples", "turn"];
         let absent = optional.into_iter().chain(others).map(|key| (key.to_owned(), Value::from("default")));
         absent.chain(Change::try_from(self).unwrap_or_default()).collect()
     }
@@ -189,16 +306,21 @@ impl Task {
         )
     }
 
-    /// The change that moves a point, m.
+    /// The points, unless samples say where to go.
+    fn movable(&self) -> Option<Vec<Vector>> {
+        self.samples.is_none().then(|| self.points())
+    }
+
+    /// The change that moves a point, m; as all such changes, none where samples say where to go.
     pub fn moving(&self, point: usize, to: Vector) -> Option<Change> {
-        let mut points = self.points();
+        let mut points = self.movable()?;
         *points.get_mut(point)? = to;
         Self::visiting(&points)
     }
 
     /// The change that visits one more point, m, where the least way is added.
     pub fn adding(&self, p: Vector) -> Option<Change> {
-        let mut points = self.points();
+        let mut points = self.movable()?;
         let detour = |i: &usize| {
             let (a, b) = (points[*i], points[i + 1]);
             (p - a).norm() + (b - p).norm() - (b - a).norm()
@@ -210,7 +332,7 @@ impl Task {
 
     /// The change that leaves a point out; `None` if only two are left.
     pub fn removing(&self, point: usize) -> Option<Change> {
-        let mut points = self.points();
+        let mut points = self.movable()?;
         if points.len() <= 2 || point >= points.len() {
             return None;
         }
@@ -220,7 +342,7 @@ impl Task {
 
     /// The change that visits a point one place earlier.
     pub fn advancing(&self, point: usize) -> Option<Change> {
-        let mut points = self.points();
+        let mut points = self.movable()?;
         if point == 0 || point >= points.len() {
             return None;
         }
@@ -236,6 +358,7 @@ impl Task {
         thin.extend(points.last().filter(|last| thin.last() != Some(last)));
         let mut change = Self::visiting(&thin)?;
         change.insert("shape".into(), "freehand".into());
+        change.insert("samples".into(), "default".into());
         Some(change)
     }
 
@@ -243,7 +366,7 @@ impl Task {
     pub fn shape(&self) -> Shape {
         self.shape.unwrap_or(match self.kind {
             TaskKind::Reactionless | TaskKind::SameTip | TaskKind::ChangeB => Shape::JointLine,
-            TaskKind::MinimumNorm | TaskKind::LeastReaction | TaskKind::ZeroMomentum => Shape::Line,
+            TaskKind::MinimumNorm | TaskKind::LeastReaction | TaskKind::ZeroMomentum | TaskKind::Given => Shape::Line,
         })
     }
 
@@ -253,6 +376,9 @@ impl Task {
         let [kind, shape, law] =
             [Value::try_from(self.kind).ok(), Value::try_from(self.shape()).ok(), Value::try_from(self.law).ok()]
                 .map(word);
+        if let Some(samples) = &self.samples {
+            return format!("{kind}, {} samples", samples.count());
+        }
         let closed = if self.closed { ", closed" } else { "" };
         format!("{kind}, {shape}{closed}, {law}, {} points", self.via.len() + 2)
     }
@@ -262,7 +388,7 @@ impl Task {
     /// # Errors
     /// What key or value is wrong, and what would be right.
     pub fn with(&self, change: &Change) -> Result<Self, String> {
-        keys::with(self, change)
+        keys::with(self, change).map(Self::settled)
     }
 
     /// What these keys hold now, so that [`with`](Self::with) brings it back.

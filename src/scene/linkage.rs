@@ -190,6 +190,17 @@ impl Linkage {
         solids
     }
 
+    /// The links that carry the end effector as lines from root to tip, from B outwards, with their drives.
+    pub fn skeleton(&self, e: &Units) -> Vec<(usize, [Vector; 2])> {
+        let carriers = self.bars.iter().filter(|b| b.carries_tip);
+        carriers
+            .map(|bar| {
+                let (root, along, _) = bar.pose(e);
+                (bar.drive, [root, root + along * bar.length])
+            })
+            .collect()
+    }
+
     /// The arms that carry the end effector, as a ghost of another pose.
     pub fn ghost(&self, e: &Units, palette: &Palette, alpha: f32) -> Vec<Solid> {
         let carriers = self.bars.iter().filter(|b| b.carries_tip);

@@ -2,7 +2,9 @@
 
 mod base;
 mod path;
+mod pins;
 mod reaction;
+mod snapshots;
 mod target;
 mod workspace;
 
@@ -12,6 +14,8 @@ pub use base::PULL;
 use path::Course;
 pub(super) use path::looks;
 pub(crate) use path::waypoints;
+use pins::{Bearing, bearings};
+pub use snapshots::Other;
 pub(super) use target::target_handle;
 use workspace::{Inside, inside, roomiest};
 
@@ -43,6 +47,12 @@ pub struct ViewOptions {
     pub stroke: Vec<[f64; 2]>,
     /// What was asked for last and refused.
     pub refused: Option<Arc<Refused>>,
+    /// Poses along the motion, in the order of time, as in Fig. 5.
+    pub snapshots: Vec<DriveAngles>,
+    /// Other runs at the same instant.
+    pub others: Vec<Other>,
+    /// Arrows show what the pins carry.
+    pub pin_forces: bool,
     /// How many times the base's motion is shown.
     pub sway: f64,
     /// A force at the end effector, N.
@@ -59,6 +69,9 @@ impl Default for ViewOptions {
             preview_b: None,
             stroke: Vec::new(),
             refused: None,
+            snapshots: Vec::new(),
+            others: Vec::new(),
+            pin_forces: false,
             sway: 1.0,
             push: None,
         }
@@ -111,6 +124,7 @@ pub struct Stage {
     /// Curves in the workspace, and where folds turn back, before it is turned, m.
     inside: Vec<(Inside, Vec<Vector>)>,
     cusps: Vec<Vector>,
+    pins: Vec<Bearing>,
     ground: Ground,
     /// Drive that the link with the end effector follows, and which way.
     holder: (usize, f64),
@@ -131,7 +145,7 @@ impl Stage {
         let motion = run.motion().map(|motion| Course {
             points: looks(motion).map(|s| place(&tip, &motion.path.at(s).q)).collect(),
             start: motion.path.at(0.0).q.units(),
-            waypoints: waypoints(&run.scenario().task),
+            waypoints: waypoints(run),
         });
         Self {
             linkage: Linkage::of(&plant),
@@ -141,6 +155,7 @@ impl Stage {
             inside: planes.as_ref().map_or_else(Vec::new, |p| inside(p)),
             cusps: planes.as_ref().map_or_else(Vec::new, |p| p.boundary().cusps().iter().map(|v| v.at).collect()),
             dexterity: Default::default(),
+            pins: bearings(&plant),
             planes,
             boundary,
             compare_b: run.scenario().compare_b,
@@ -261,8 +276,13 @@ impl Stage {
             self.ring(&mut scene, &palette, planes, frame, options);
         }
         self.course(&mut scene, &palette, options);
+        self.snapshots(&mut scene, &palette, options);
+        self.others(&mut scene, &palette, options);
         self.wishes(&mut scene, &palette, options);
         self.reaction(&mut scene, &palette, frame, options);
+        if options.pin_forces && !self.pins.is_empty() {
+            self.pin_forces(&mut scene, &palette, frame);
+        }
         self.target(&mut scene, &palette, frame, options);
         self.burden(&mut scene, &palette, frame, options);
         scene

@@ -90,7 +90,7 @@ impl Tower {
             looks(motion).map(at).map(|q| (place_of(&tip, &q.units()), planes.map().project(&q).b)).collect()
         });
         let ends = run.motion().map(|_| {
-            let mut points = waypoints(&run.scenario().task);
+            let mut points = waypoints(run);
             if points.len() > POSTS {
                 points.drain(1..points.len() - 1);
             }

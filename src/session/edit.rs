@@ -48,6 +48,11 @@ pub enum Edit {
         /// Such as `{ kp = 400.0 }`.
         change: toml::Table,
     },
+    /// Keys of the tolerances, as in a scenario file: spreads, seed, limits; they change no run.
+    SetTolerance {
+        /// Such as `{ moment_limit = 0.01, "link.*.com" = { normal = 0.0005 } }`.
+        change: toml::Table,
+    },
     /// One setting of the machine, by the keys of `--set`.
     SetMachine {
         /// Such as `limits.a1`.
@@ -118,7 +123,7 @@ impl Edit {
 
     /// Whether it is of the run as a whole and has no meaning at a later step.
     pub fn is_of_the_whole(&self) -> bool {
-        matches!(self, Self::SetTask { .. } | Self::SetTime { .. } | Self::SetBase { .. })
+        matches!(self, Self::SetTask { .. } | Self::SetTime { .. } | Self::SetBase { .. } | Self::SetTolerance { .. })
     }
 
     /// Whether a later edit makes this one void, so that a drag keeps only its last word.
@@ -128,7 +133,8 @@ impl Edit {
             (Self::SetTask { change: a }, Self::SetTask { change: b })
             | (Self::SetPlant { change: a }, Self::SetPlant { change: b })
             | (Self::SetBase { change: a }, Self::SetBase { change: b })
-            | (Self::SetControl { change: a }, Self::SetControl { change: b }) => keys::covers(b, a),
+            | (Self::SetControl { change: a }, Self::SetControl { change: b })
+            | (Self::SetTolerance { change: a }, Self::SetTolerance { change: b }) => keys::covers(b, a),
             _ => std::mem::discriminant(self) == std::mem::discriminant(later),
         }
     }
@@ -158,6 +164,7 @@ impl Edit {
             Self::SetPlant { change } => listed("plant", change),
             Self::SetBase { change } => listed("base", change),
             Self::SetControl { change } => listed("control", change),
+            Self::SetTolerance { change } => listed("tolerance", change),
             Self::SetMachine { key, value } => format!("set {key} to {value}"),
             Self::SetTime { time } => format!("set motion time to {time:.3} s"),
             Self::SetTask { change } => task_title(change),

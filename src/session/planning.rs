@@ -1,5 +1,6 @@
 //! From a task to a motion: poses for its points, a path through them, and when to be where.
 
+mod given;
 mod off_plane;
 
 use super::Refusal;
@@ -113,11 +114,14 @@ pub struct Pace {
 pub fn plan(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
     let task = &scenario.task;
     let points = task.points();
+    if task.samples.is_some() || task.kind == TaskKind::Given {
+        return given::given(scenario, planes);
+    }
     match task.kind {
         TaskKind::ChangeB => return off_plane::change_b(scenario, planes),
         TaskKind::LeastReaction => return off_plane::least_reaction(scenario, planes),
         TaskKind::ZeroMomentum => return off_plane::zero_momentum(scenario, planes),
-        TaskKind::Reactionless | TaskKind::MinimumNorm | TaskKind::SameTip => {}
+        TaskKind::Reactionless | TaskKind::MinimumNorm | TaskKind::SameTip | TaskKind::Given => {}
     }
     let parts = match (task.kind, task.shape()) {
         (TaskKind::Reactionless, Shape::JointLine) => joint_lines(task, planes, &points)?,
@@ -303,14 +307,19 @@ fn on_plane(task: &Task, planes: &Planes, points: &[Vector]) -> Result<Vec<(Path
     Ok(tables.into_iter().zip(&curves).map(|(table, curve)| (Path::Table(table), curve.length())).collect())
 }
 
-/// Minimum-norm joint rates along the end effector's curves, from the pose of A on the plane of the task.
-fn minimum_norm(scenario: &Scenario, planes: &Planes, points: &[Vector]) -> Result<Vec<(Path, f64)>, Refusal> {
-    let task = &scenario.task;
-    // A and B on one sheet, as for the reactionless motion to compare with, or else A alone.
+/// A pose of A on the plane of the task: A and B on one sheet, as for the reactionless motion to compare with, or else A
+/// alone.
+fn start(task: &Task, planes: &Planes, points: &[Vector]) -> Result<DriveAngles, Refusal> {
     let ends = [points[0], points[points.len() - 1]];
     let start = planes.serve(&ends, task.b).or_else(|_| planes.serve(&ends[..1], task.b));
     let start = start.map_err(|(i, unreachable)| refusal(task, i, unreachable))?;
-    let mut q = DriveAngles::from(planes.map().lift(start[0]));
+    Ok(DriveAngles::from(planes.map().lift(start[0])))
+}
+
+/// Minimum-norm joint rates along the end effector's curves, from the pose of A on the plane of the task.
+fn minimum_norm(scenario: &Scenario, planes: &Planes, points: &[Vector]) -> Result<Vec<(Path, f64)>, Refusal> {
+    let task = &scenario.task;
+    let mut q = start(task, planes, points)?;
     let mut parts = Vec::new();
     for curve in curves(task, points)? {
         let table = minimum_norm_curve(scenario.machine.tip(), q, &curve)?;

@@ -238,6 +238,7 @@ impl Run {
             | Edit::SetPlant { .. }
             | Edit::SetBase { .. }
             | Edit::SetControl { .. }
+            | Edit::SetTolerance { .. }
             | Edit::SetMachine { .. }
             | Edit::SetTime { .. }
             | Edit::SetTask { .. } => self.set(edit)?,
@@ -330,6 +331,7 @@ impl Run {
             Edit::SetPlant { change } => Edit::SetPlant { change: keys::only(&scenario.plant, change) },
             Edit::SetBase { change } => Edit::SetBase { change: keys::only(&scenario.base, change) },
             Edit::SetControl { change } => Edit::SetControl { change: keys::only(&scenario.control, change) },
+            Edit::SetTolerance { change } => Edit::SetTolerance { change: keys::only(&scenario.tolerance, change) },
             Edit::SetMachine { key, .. } => Edit::SetMachine { key: key.clone(), value: scenario.machine.get(key)? },
             Edit::SetTime { .. } => Edit::SetTime { time: scenario.task.time },
             Edit::SetTask { change } => Edit::SetTask { change: scenario.task.only(change) },
@@ -357,6 +359,10 @@ fn changed(scenario: &Scenario, edit: &Edit) -> Result<Scenario, Refusal> {
         Edit::SetControl { change } => {
             scenario.control = keys::with(&scenario.control, change).map_err(|why| wrong("control", &why))?;
             checked(&scenario, "control")?;
+        }
+        Edit::SetTolerance { change } => {
+            scenario.tolerance = keys::with(&scenario.tolerance, change).map_err(|why| wrong("tolerance", &why))?;
+            checked(&scenario, "tolerance")?;
         }
         Edit::SetMachine { key, value } => scenario.machine = scenario.machine.set(key, value)?,
         Edit::SetTime { time } => scenario.task.time = *time,
@@ -394,6 +400,9 @@ fn amended(scenario: &Scenario, edit: &Edit, planes: &mut Option<(Machine, Arc<P
 /// workspace.
 fn posed(scenario: &Scenario, planes: &Planes, b: f64) -> Scenario {
     let mut scenario = scenario.clone();
+    if let Some(task) = scenario.task.posed(&scenario.machine, b) {
+        return Scenario { task, ..scenario };
+    }
     scenario.task.b = b;
     let points = scenario.task.points();
     if let (Err(_), Some(turned)) = (planes.serve(&points, b), planes.serve_turned(&points, b)) {

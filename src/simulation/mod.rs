@@ -7,8 +7,9 @@ mod pilot;
 mod sticking;
 
 use crate::control::{Control, Controller, Reading};
-use crate::dynamics;
+use crate::dynamics::{self, Surroundings};
 use crate::frame::{Audit, Frame, Peaks, Phase, Reach, Tally, Target};
+use crate::joint_forces::{Inside, Watch};
 use crate::kinematics::{end_effector, transmission};
 use crate::machine::{Machine, MachineError, RelativeAngle};
 use crate::plan::{Follower, Motion, Reference};
@@ -67,12 +68,14 @@ const HALVED_EVERY: u64 = 64;
 #[derive(Clone, Debug)]
 pub struct Simulation {
     /// Without the payload that comes and goes, and with it.
-    bodies: [Body; 2],
+    bodies: Box<[Body; 2]>,
     load: Load,
     loaded: bool,
     pilot: Pilot,
     /// m_j a_jk of each link, `drives` after `drives`, kg m, and of each with the payload.
     link_moments: [Vec<Vector>; 2],
+    /// What pins carry, likewise.
+    inside: [Watch; 2],
     /// Differences of the points that each closure joins.
     closures: Vec<[f64; MAX_DRIVES]>,
     lambda: PerDrive,
@@ -109,21 +112,29 @@ impl Simulation {
     /// # Errors
     /// If what differs in the plant leaves no valid machine, or the base is one too many to turn.
     pub fn new(setup: &Setup, guide: Guide) -> Result<Self, MachineError> {
+        Self::of_machine(setup, setup.plant.machine(setup.model)?, guide)
+    }
+
+    /// The same with a machine that moves in place of the one that the plant makes of the model.
+    ///
+    /// # Errors
+    /// If it cannot hold the plant's payload, or the base is one too many to turn.
+    pub fn of_machine(setup: &Setup, machine: Machine, guide: Guide) -> Result<Self, MachineError> {
         let reference = guide.at(0.0, 0.0);
-        let machine = setup.plant.machine(setup.model)?;
         let (plant, load) = (setup.plant, setup.plant.payload);
         let force = Vector::new(plant.force[0], plant.force[1]);
         let start = &reference.q;
-        let body = |load: &Load| Body::of(&machine, load, &plant.friction, setup.base, start).map(|b| b.pushed(force));
-        let empty = body(&Load::default())?;
+        let holding = load.held_by(&machine)?;
+        let body = |m: &Machine| Body::of(m, &plant.friction, setup.base, start).map(|b| b.pushed(force));
+        let empty = body(&machine)?;
         let first = load.is_held(0.0, 0.5 * setup.step);
         // The springs are preloaded for what is held at the start.
-        let with = body(&load)?;
+        let with = body(&holding)?;
         let bodies = if first { [empty.preloaded_as(&with), with] } else { [empty.clone(), with.preloaded_as(&empty)] };
         let fixed = Base::default();
         let known = if setup.control.knows_base { setup.base } else { &fixed };
-        let model = |load: &Load| Body::of(setup.model, load, &Friction::default(), known, start);
-        let models = [model(&Load::default())?, model(&load)?];
+        let model = |m: &Machine| Body::of(m, &Friction::default(), known, start);
+        let models = [model(setup.model)?, model(&load.held_by(setup.model)?)?];
         let n = machine.drives();
         let lambda = models[0].arm().lambda();
         let limits = plant
@@ -134,15 +145,13 @@ impl Simulation {
         let loaded = usize::from(first);
         let state = bodies[loaded].state(&reference.q, &reference.qd, Pose2::default(), Vector::default(), 0.0);
         let now = bodies[loaded].still(&state);
-        let moments = link_moments(&machine);
-        let held: Vec<Vector> = load.chain(&machine).into_iter().take(n).map(|a| load.mass * a).collect();
-        let with_load = moments.iter().copied().chain(held).collect();
         let mut sim = Self {
-            bodies,
+            bodies: Box::new(bodies),
             load,
             loaded: first,
             pilot,
-            link_moments: [moments, with_load],
+            link_moments: [&machine, &holding].map(link_moments),
+            inside: [&machine, &holding].map(Watch::of),
             closures: machine.closure_gaps(),
             lambda,
             map: plane_map(setup.model).ok(),
@@ -227,7 +236,9 @@ impl Simulation {
         let Self { step, guide, state, peaks, tally, audit, ground, now, pilot, bodies, .. } = old;
         (self.step, self.guide, self.peaks, self.tally, self.audit) = (step, guide, peaks, tally, audit);
         self.pilot.resume(&pilot);
-        self.bodies = self.bodies.clone().map(|body| body.preloaded_as(&bodies[0]));
+        for body in self.bodies.iter_mut() {
+            *body = body.clone().preloaded_as(&bodies[0]);
+        }
         self.loaded = self.load.is_held(self.time(), 0.5 * self.dt);
         (self.state, self.now, self.ground) = (state, now, ground);
         self.carry_over(&now, &bodies[usize::from(old.loaded)]);
@@ -390,6 +401,15 @@ impl Simulation {
         self.audit.closure = self.closures.iter().map(gap).fold(0.0, f64::max);
     }
 
+    /// What pins carry now; a base that moves adds to gravity.
+    fn inside(&self) -> Inside {
+        let (x, n) = (&self.now, self.drives);
+        let around = *self.body().around();
+        let around = Surroundings { gravity: around.gravity - x.base_acceleration, ..around };
+        let cut = |v: &PerDrive| PerDrive::from_fn(n, |k| v[k]);
+        self.inside[usize::from(self.loaded)].at(&x.e, &cut(&x.qd), &cut(&x.qdd), &around)
+    }
+
     /// Everything that is true now.
     pub fn frame(&self) -> Frame {
         let (x, n) = (&self.now, self.drives);
@@ -438,6 +458,7 @@ impl Simulation {
             kinetic: x.kinetic,
             dexterity: self.map.map_or_else(Default::default, |map| map.dexterity_at(&x.e)),
             transmission: transmission(&x.e, n),
+            inside: self.inside(),
             phase,
             peaks: self.peaks,
             tally: self.tally,
@@ -470,7 +491,7 @@ fn reading<'a>(
 /// m_j a_jk of every link and of the machine's own payload, kg m.
 fn link_moments(machine: &Machine) -> Vec<Vector> {
     let n = machine.drives();
-    let payload = (machine.spec().payload.mass, machine.tip().map(|w| Vector::new(w, 0.0)));
+    let payload = (machine.spec().payload.mass, machine.payload_chain());
     let links = machine.links().iter().enumerate().map(|(j, l)| (l.mass, machine.com_chain(j)));
     let all = links.chain([payload]).filter(|(m, _)| *m > 0.0);
     all.flat_map(|(m, a)| a.into_iter().take(n).map(move |a| m * a)).collect()

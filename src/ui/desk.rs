@@ -3,7 +3,10 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::{Command, FileDialog, Look, Purpose, Wish, keys, plots, side, status, theme, top, viewport};
+use super::{
+    Command, FileDialog, Look, OnBoard, Purpose, Wish, compare, keys, plots, side, status, theme, top, viewport,
+};
+use crate::compare::Board;
 use crate::frame::Tally;
 use crate::machine::Machine;
 use crate::scenario::Scenario;
@@ -21,6 +24,8 @@ pub struct Desk {
     signals: Vec<Signal>,
     stage_of: (Machine, String),
     look: Look,
+    /// Runs side by side, while they are on display.
+    board: Option<Board>,
     /// What the planned motion will have come to.
     foreseen: Tally,
     /// Wall time not yet turned into steps, s.
@@ -51,6 +56,7 @@ impl Desk {
             foreseen: Tally::default(),
             session,
             look,
+            board: None,
             owed: 0.0,
             dressed: None,
             fonts: false,
@@ -86,6 +92,11 @@ impl Desk {
         &self.look
     }
 
+    /// Runs side by side, while they are on display.
+    pub fn board(&self) -> Option<&Board> {
+        self.board.as_ref()
+    }
+
     /// What scenes are made from.
     pub fn stage(&self) -> &Stage {
         self.views.stage()
@@ -117,9 +128,12 @@ impl Desk {
         keys::read(ui.ctx(), &self.session, &self.look, &mut commands);
         top::show(ui, &self.session, &self.look, &mut commands);
         status::show(ui, &self.session, &self.views, &self.look, &mut commands);
+        if let Some(board) = &self.board {
+            compare::show(ui, board, &self.look, &mut commands);
+        }
         side::show(ui, &self.session, &self.look, &mut commands);
-        plots::show(ui, &self.session, &self.signals, &self.look, &mut commands);
-        viewport::show(ui, &self.session, &self.views, &mut self.look, &mut commands);
+        plots::show(ui, &self.session, &self.signals, self.board.as_ref(), &self.look, &mut commands);
+        viewport::show(ui, &self.session, &self.views, self.board.as_ref(), &mut self.look, &mut commands);
         status::news(ui.ctx(), &self.session, &self.look, &mut commands);
         keys::help(ui.ctx(), &self.look, &mut commands);
         top::dialog(ui.ctx(), &mut self.look, &mut commands);
@@ -219,7 +233,37 @@ impl Desk {
             Command::Fit => *self.look.camera_mut() = self.views.camera(self.look.view),
             Command::Theme(theme) => self.look.theme = theme,
             Command::Help(help) => self.look.help = help,
+            Command::Mark(time) => self.look.mark = time,
+            Command::Snapshots(shown) => self.look.snapshots = shown,
+            Command::Compare(compare) => {
+                self.look.compare = compare;
+                self.board = compare.then(|| Board::of(self.session.scenario()));
+            }
+            Command::Board(on) => return self.on_board(on),
             Command::Dialog(dialog) => self.look.dialog = dialog,
+        }
+        Ok(None)
+    }
+
+    fn on_board(&mut self, on: OnBoard) -> Result<Option<String>, String> {
+        let Some(board) = &mut self.board else { return Ok(None) };
+        match on {
+            OnBoard::Sort(column) => board.sort_by(column),
+            OnBoard::Show(entry, shown) => board.show(entry, shown),
+            OnBoard::Remove(entry) => board.remove(entry),
+            OnBoard::Add(scenario) => board.keep(*scenario).map_err(|why| why.to_string())?,
+            OnBoard::Keep => {
+                let mut scenario = self.session.to_scenario();
+                scenario.duration = Some(self.session.length());
+                board.keep(scenario).map_err(|why| why.to_string())?;
+                return Ok(Some("kept this run to compare with".into()));
+            }
+            OnBoard::Open(entry) => {
+                let run = board.entries().get(entry).and_then(|e| e.outcome.as_ref().ok()).cloned();
+                if let Some(run) = run {
+                    self.session.switch(run.scenario.clone()).map_err(|why| why.to_string())?;
+                }
+            }
         }
         Ok(None)
     }
@@ -304,6 +348,15 @@ impl Desk {
         }
         Arc::make_mut(&mut self.views).refresh(self.session.run());
         self.adjust();
+        // Not while something is dragged: every way is planned and run anew.
+        if let (Some(board), None) = (&mut self.board, self.look.grabbed) {
+            let ours = board.entries().iter().any(|e| {
+                e.outcome.as_ref().is_ok_and(|run| run.scenario.task == self.session.scenario().task && !e.kept)
+            });
+            if !ours || !same_ground(board.task(), self.session.scenario()) {
+                board.follow(self.session.scenario());
+            }
+        }
     }
 
     /// A file name that is free, for a dialog to start from.
@@ -328,6 +381,11 @@ fn check_name(path: &Path) -> Result<(), String> {
 /// The whole name of a file, so that it can be found again.
 fn whole(path: &Path) -> String {
     path.canonicalize().unwrap_or_else(|_| path.into()).display().to_string()
+}
+
+/// Whether two scenarios differ in their tasks at most.
+fn same_ground(a: &Scenario, b: &Scenario) -> bool {
+    a.machine == b.machine && a.plant == b.plant && a.control == b.control && a.base == b.base && a.step == b.step
 }
 
 /// What a stage depends on.

@@ -8,7 +8,7 @@ use crate::scenario::Scenario;
 use crate::scene::Measure;
 use crate::session::Session;
 
-const KEYS: [(&str, &str); 24] = [
+const KEYS: [(&str, &str); 27] = [
     ("Space", "play, pause, start over"),
     ("← →", "one step back, one step on"),
     ("Shift ← →", "ten steps"),
@@ -16,6 +16,9 @@ const KEYS: [(&str, &str); 24] = [
     ("1  2  3", "the paper's cases"),
     ("V", "2D, 3D, joint space, tower of workspaces"),
     ("J", "shade the workspace by dexterity, one measure after the other"),
+    ("C", "the same task done in other ways, side by side"),
+    ("S", "snapshots along the motion"),
+    ("Shift click plot", "a second cursor: plots show differences; Esc takes it away"),
     ("F", "show everything"),
     ("X", "exaggerate the motion of the base, or show it as it is"),
     ("L", "light or dark"),
@@ -60,6 +63,7 @@ pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Co
         commands.push(match (&look.dialog, &look.stroke) {
             (Some(_), _) => Command::Dialog(None),
             (None, Some(_)) => Command::Draw(false),
+            (None, None) if look.mark.is_some() => Command::Mark(None),
             (None, None) if look.pushing && !look.help => Command::Push(false),
             (None, None) => Command::Help(false),
         });
@@ -80,6 +84,8 @@ pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Co
         (plain, Key::V, Command::View(look.view.next())),
         (plain, Key::J, Command::Dexterity(Measure::after(look.dexterity))),
         (plain, Key::F, Command::Fit),
+        (plain, Key::C, Command::Compare(!look.compare)),
+        (plain, Key::S, Command::Snapshots(!look.snapshots)),
         (plain, Key::P, Command::Draw(look.stroke.is_none())),
         (plain, Key::U, Command::Push(!look.pushing)),
         (plain, Key::X, Command::Exaggerate(!look.exaggerate)),

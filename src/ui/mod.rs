@@ -3,6 +3,7 @@
 //! Everything here reads a [`Session`] and gives back [`Command`]s; the [`Desk`] carries them out. Nothing is computed
 //! and nothing is changed in between.
 
+mod compare;
 mod desk;
 mod keys;
 mod path;
@@ -65,6 +66,14 @@ pub enum Command {
     Preview(Option<f64>),
     /// Take up the pencil, or lay it down.
     Draw(bool),
+    /// Show or hide runs side by side.
+    Compare(bool),
+    /// What is done to the table of runs.
+    Board(OnBoard),
+    /// Put the second cursor at a time, s, or away.
+    Mark(Option<f64>),
+    /// Show or hide snapshots along the motion.
+    Snapshots(bool),
     /// Take up the hand that pushes the end effector, or lay it down.
     Push(bool),
     /// Exaggerate the motion of the base as much as it takes to be seen, or show it as it is.
@@ -73,6 +82,23 @@ pub enum Command {
     Help(bool),
     /// Show or hide the dialog for a file.
     Dialog(Option<FileDialog>),
+}
+
+/// What can be done to the table of runs.
+#[derive(Clone, Debug)]
+pub enum OnBoard {
+    /// By a column.
+    Sort(usize),
+    /// Lay a row over plots and scene, or not.
+    Show(usize, bool),
+    /// Keep the session's own run.
+    Keep,
+    /// Add a scenario.
+    Add(Box<Scenario>),
+    /// Take a kept row away.
+    Remove(usize),
+    /// Open a row's scenario in the session.
+    Open(usize),
 }
 
 /// Asking for a file name.
@@ -143,6 +169,12 @@ pub struct Look {
     pub grabbed: Option<Grip>,
     /// Where the pointer holds the target, m.
     pub held: Option<[f64; 2]>,
+    /// Runs stand side by side.
+    pub compare: bool,
+    /// The second cursor, s.
+    pub mark: Option<f64>,
+    /// Snapshots along the motion are on display.
+    pub snapshots: bool,
     /// The keys are on display.
     pub help: bool,
     /// A file is being asked for.
@@ -177,6 +209,9 @@ impl Look {
             hot: None,
             grabbed: None,
             held: None,
+            compare: false,
+            mark: None,
+            snapshots: false,
             help: false,
             dialog: None,
             dragged: false,

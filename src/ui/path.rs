@@ -17,13 +17,14 @@ use crate::session::{Edit, Session};
 /// A choice: what stands in a file, what stands on the screen, and what it means.
 type Choice<T> = (T, &'static str, &'static str, &'static str);
 
-const KINDS: [Choice<TaskKind>; 6] = [
+const KINDS: [Choice<TaskKind>; 7] = [
     (TaskKind::Reactionless, "reactionless", "Stay reactionless", "Hold b: nothing reaches the base (case 3)"),
     (TaskKind::MinimumNorm, "minimum-norm", "Minimum-norm rates", "The usual inverse, q̇ = J⁺ẋ (case 1)"),
     (TaskKind::LeastReaction, "least-reaction", "Least reaction", "Any path, b changing as little as it must"),
     (TaskKind::ChangeB, "change-b", "Change b, at a price", "From A on one plane to B on another: n_B = −D₁ b̈"),
     (TaskKind::ZeroMomentum, "zero-momentum", "Zero momentum", "Reactionless on any machine; closed paths may drift"),
     (TaskKind::SameTip, "same-tip", "Drive 1 apart", "The end effector as in case 3, drive 1 elsewhere (case 2)"),
+    (TaskKind::Given, "given", "As given", "By samples over time, from a file: stillbase import"),
 ];
 
 const SHAPES: [Choice<Shape>; 5] = [
@@ -85,6 +86,10 @@ fn choose<T: Copy + PartialEq>(
                 if key == "kind" {
                     // What only the other kind has.
                     change.extend(["b_to", "moment_limit"].map(|key| (key.into(), "default".into())));
+                    let takes = ["given", "reactionless", "minimum-norm"].contains(word);
+                    if session.scenario().task.samples.as_ref().is_some_and(|s| s.columns() != 2 || !takes) {
+                        change.extend(["samples", "turn"].map(|key| (key.into(), "default".into())));
+                    }
                 }
                 commands.extend([Command::Edit(Edit::SetTask { change }), Command::EndGesture]);
             }
@@ -116,6 +121,10 @@ fn time(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>
 
 /// The points, to be typed, put in order and taken out.
 fn points(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
+    if let Some(samples) = &task.samples {
+        note(ui, p, &format!("{} samples say where to be when", samples.count()));
+        return;
+    }
     let all = task.points();
     if all.len() > LISTED || task.shape() == Shape::Freehand {
         note(ui, p, &format!("{} points from A to B", all.len()));
@@ -299,7 +308,7 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
                 note(ui, p, &format!("drift of the joints after {each}: {} rad", rounds.join("  ")));
             }
         }
-        TaskKind::Reactionless | TaskKind::MinimumNorm | TaskKind::SameTip => {}
+        TaskKind::Reactionless | TaskKind::MinimumNorm | TaskKind::SameTip | TaskKind::Given => {}
     }
 }
 

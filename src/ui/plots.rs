@@ -6,6 +6,7 @@ use egui_plot::{GridMark, Line, LineStyle, Plot, PlotPoint, PlotPoints, Points, 
 use super::theme::{bold, colour, plain};
 use super::top::name;
 use super::{Command, Look, set_b};
+use crate::compare::Board;
 use crate::frame::{Frame as Instant, REACTIONLESS};
 use crate::planar::Vector;
 use crate::reactionless::PlanePoint;
@@ -73,7 +74,14 @@ const WINDOW: f64 = 12.0;
 const POINTS: usize = 600;
 
 /// Draws it.
-pub fn show(ui: &mut Ui, session: &Session, signals: &[Signal], look: &Look, commands: &mut Vec<Command>) {
+pub fn show(
+    ui: &mut Ui,
+    session: &Session,
+    signals: &[Signal],
+    board: Option<&Board>,
+    look: &Look,
+    commands: &mut Vec<Command>,
+) {
     let p = look.palette();
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 14, right: 14, top: 10, bottom: 8 });
     let width = (0.27 * ui.available_width()).clamp(336.0, 376.0);
@@ -90,8 +98,9 @@ pub fn show(ui: &mut Ui, session: &Session, signals: &[Signal], look: &Look, com
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             for chart in &charts {
                 let lines: Vec<&Signal> = signals.iter().filter(|s| belongs(s, chart)).collect();
-                header(ui, &p, chart, &lines, session.frame());
-                time_plot(ui, &p, chart, &lines, session, &shown, height, commands);
+                let marked = look.mark.map(|time| instant(session, time));
+                header(ui, &p, chart, &lines, session.frame(), marked);
+                time_plot(ui, &p, chart, &lines, session, board, look.mark, &shown, height, commands);
             }
             which_b(ui, &p, session, look, height * 1.6 + 14.0, commands);
         });
@@ -102,8 +111,15 @@ fn belongs(signal: &Signal, chart: &Chart) -> bool {
     chart.groups.iter().any(|g| signal.path == *g || signal.group() == *g)
 }
 
-/// Title and unit on the left; symbols in their colours with their values at the cursor on the right.
-fn header(ui: &mut Ui, p: &Palette, chart: &Chart, lines: &[&Signal], now: &Instant) {
+/// The frame at a time, s, or the nearest.
+fn instant(session: &Session, time: f64) -> &Instant {
+    let frames = session.frames();
+    &frames[frames.partition_point(|f| f.time <= time + 1e-9).saturating_sub(1)]
+}
+
+/// Title and unit on the left; symbols in their colours with their values at the cursor on the right, or what they
+/// differ by from the second cursor.
+fn header(ui: &mut Ui, p: &Palette, chart: &Chart, lines: &[&Signal], now: &Instant, marked: Option<&Instant>) {
     ui.horizontal(|ui| {
         ui.set_height(16.0);
         ui.label(RichText::new(chart.title).font(bold(12.5)));
@@ -115,9 +131,17 @@ fn header(ui: &mut Ui, p: &Palette, chart: &Chart, lines: &[&Signal], now: &Inst
                     true => (signal.symbol.as_str(), 3),
                     false => (signal.symbol.trim_end_matches("_B"), 2),
                 };
-                let text = format!("{symbol} {}", signed(chart.times * signal.value(now), decimals));
+                let value = chart.times * signal.value(now);
+                let meaning = format!("{}, {}", signal.label, unit_of(chart, signal));
+                let (text, meaning) = match marked.map(|marked| chart.times * signal.value(marked)) {
+                    Some(first) => (
+                        format!("Δ{symbol} {}", signed(value - first, decimals)),
+                        format!("{meaning}: {} at the second cursor, {} now", signed(first, 4), signed(value, 4)),
+                    ),
+                    None => (format!("{symbol} {}", signed(value, decimals)), meaning),
+                };
                 let label = RichText::new(text).font(plain(11.5)).color(tone(p, signal, now));
-                ui.label(label).on_hover_text(format!("{}, {}", signal.label, unit_of(chart, signal)));
+                ui.label(label).on_hover_text(meaning);
             }
         });
     });
@@ -152,6 +176,8 @@ fn time_plot(
     chart: &Chart,
     lines: &[&Signal],
     session: &Session,
+    board: Option<&Board>,
+    mark: Option<f64>,
     shown: &std::ops::RangeInclusive<f64>,
     height: f32,
     commands: &mut Vec<Command>,
@@ -165,6 +191,17 @@ fn time_plot(
             (low, high) = (low.min(*y), high.max(*y));
         }
         drawn.push((signal, points));
+    }
+    let mut laid_over = Vec::new();
+    for (i, run) in board.iter().flat_map(|board| board.shown()) {
+        for signal in lines {
+            let frames = &run.frames[..run.frames.partition_point(|f| f.time <= *shown.end())];
+            let points = thinned(frames, signal, chart.times);
+            for [_, y] in &points {
+                (low, high) = (low.min(*y), high.max(*y));
+            }
+            laid_over.push((i, signal, points));
+        }
     }
     let (low, high) = range(chart, low, high);
     let amber = colour(p.amber);
@@ -185,17 +222,33 @@ fn time_plot(
             let margin = 0.06 * (high - low);
             plot.set_plot_bounds_y(low - margin..=high + margin);
             let (now, newest) = (session.frame(), session.frames().last().unwrap_or(session.frame()));
+            for (i, signal, points) in laid_over {
+                let (style, strength) = super::compare::line_style(i);
+                let tone = match signal.drive {
+                    Some(k) => p.drive(k),
+                    None => p.ink,
+                };
+                let line = Line::new(format!("{} {}", signal.symbol, i + 1), PlotPoints::from(points)).width(1.2);
+                plot.line(line.color(colour(faded(tone, strength))).style(style).allow_hover(false));
+            }
             for (signal, points) in drawn {
                 let line = Line::new(signal.symbol.clone(), PlotPoints::from(points)).width(1.8);
                 plot.line(line.color(tone(p, signal, newest)).allow_hover(false));
             }
             plot.vline(VLine::new("now", now.time).color(amber).width(1.0).allow_hover(false));
+            if let Some(time) = mark {
+                let line = VLine::new("mark", time).color(amber).width(1.0).style(LineStyle::dashed_dense());
+                plot.vline(line.allow_hover(false));
+            }
             pointer_time(plot)
         });
     name(&response.response, &format!("{} over time, {}", chart.title, chart.unit));
     let held = response.response.dragged() || response.response.clicked();
     if let (true, Some(time)) = (held, response.inner) {
-        commands.push(Command::Seek(time));
+        commands.push(match ui.input(|i| i.modifiers.shift) {
+            true => Command::Mark(Some(time)),
+            false => Command::Seek(time),
+        });
     }
     ui.add_space(2.0);
 }

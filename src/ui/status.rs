@@ -45,7 +45,7 @@ fn lamps(ui: &mut Ui, frame: &Frame, p: &Palette) {
         ui.painter().circle_filled(dot.center(), if good { 2.8 } else { 4.2 }, tone);
         let word = if good { "good" } else { "not as it should be" };
         let words = format!("audit {}: {} {}, {word}", lamp.name, power(lamp.value), lamp.unit);
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Image, true, &words));
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &words));
         let limit = match lamp.limit {
             Some(limit) => format!("should be at most {} {}", power(limit), lamp.unit),
             None => "tells how well the plane is held; no limit".into(),

@@ -13,7 +13,7 @@ use crate::scene::{Measure, dexterity};
 /// Draws it.
 pub fn show(ui: &mut Ui, rect: Rect, look: &Look, views: &Views, commands: &mut Vec<Command>) {
     let p = look.palette();
-    let area = Rect::from_min_size(rect.min + vec2(14.0, 12.0), vec2(460.0, 64.0));
+    let area = Rect::from_min_size(rect.min + vec2(14.0, 12.0), vec2(620.0, 64.0));
     let mut child = ui.new_child(egui::UiBuilder::new().max_rect(area));
     let frame = Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.line))).corner_radius(8).inner_margin(3);
     frame.show(&mut child, |ui| {
@@ -78,6 +78,21 @@ fn shade(ui: &mut Ui, p: &Palette, look: &Look, views: &Views, commands: &mut Ve
         let mut shown = look.dexterity.is_some();
         if ui.checkbox(&mut shown, words).on_hover_text(help).clicked() {
             commands.push(Command::Dexterity(shown.then_some(Measure::Det)));
+        }
+        for (words, help, mut on, command) in [
+            (
+                "snapshots",
+                "Poses along the motion, as in Fig. 5 (S)",
+                look.snapshots,
+                Command::Snapshots as fn(bool) -> Command,
+            ),
+            ("side by side", "The same task done in other ways (C)", look.compare, Command::Compare),
+        ] {
+            let ink = colour(if on { p.ink } else { p.dim });
+            let words = RichText::new(words).font(plain(11.5)).color(ink);
+            if ui.checkbox(&mut on, words).on_hover_text(help).clicked() {
+                commands.push(command(on));
+            }
         }
         let Some(measure) = look.dexterity else { return };
         let [least, most] = views.stage().shaded(measure);

@@ -7,21 +7,29 @@ use egui::{Align2, CentralPanel, CursorIcon, Frame, PointerButton, Pos2, Rect, S
 use super::theme::{colour, plain};
 use super::top::name;
 use super::{Command, Look, set_b, switch};
+use crate::compare::Board;
 use crate::frame::Frame as Instant;
-use crate::planar::Vector;
+use crate::planar::{DriveAngles, Vector};
 use crate::render::{Renderer, View};
 use crate::scenario::Task;
 use crate::scene::camera::Camera;
 use crate::scene::palette::faded;
 use crate::scene::pointer::Pointer;
-use crate::scene::stage::{Handle, ViewOptions};
+use crate::scene::stage::{Handle, Other, ViewOptions};
 use crate::scene::sway::swayed;
 use crate::scene::views::{Aim, ViewKind, Views};
 use crate::scene::{Anchor, Label, Scene};
 use crate::session::{Edit, Session};
 
 /// Draws it and reads the pointer.
-pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &mut Look, commands: &mut Vec<Command>) {
+pub fn show(
+    ui: &mut Ui,
+    session: &Session,
+    views: &Views,
+    board: Option<&Board>,
+    look: &mut Look,
+    commands: &mut Vec<Command>,
+) {
     CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         name(&response, "Scene: the machine, its reactionless workspace and its target");
@@ -42,8 +50,11 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &mut Look, comm
             preview_b: look.preview,
             stroke: look.stroke.clone().unwrap_or_default(),
             refused: look.refused.as_ref().and_then(|r| r.curve.clone()),
+            snapshots: if look.snapshots { snapshots(session) } else { Vec::new() },
+            others: board.map_or_else(Vec::new, |board| others(board, session.frame().time, look.sway())),
             sway: look.sway(),
             push: force(session),
+            ..ViewOptions::default()
         };
         let scene = Arc::new(views.scene(look.view, session.frame(), &options, look.camera()));
         paint(ui, rect, &scene, look.camera());
@@ -54,6 +65,30 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &mut Look, comm
 
 /// A hand that pulls less differently is not asked again, N.
 const LEAST_PUSH: f64 = 0.02;
+
+/// How many snapshots stand along a motion, as in Fig. 5.
+const SNAPSHOTS: usize = 9;
+
+/// Poses at equal intervals of time: as planned, or as run where a hand leads.
+fn snapshots(session: &Session) -> Vec<DriveAngles> {
+    let share = |i: usize| i as f64 / (SNAPSHOTS - 1) as f64;
+    if session.is_live() {
+        let frames = session.frames();
+        let at = |i: usize| frames[(share(i) * (frames.len() - 1) as f64).round() as usize].q;
+        return (0..SNAPSHOTS).map(at).collect();
+    }
+    let run = session.run();
+    (0..SNAPSHOTS).map(|i| run.plan().motion.at(share(i) * run.planned_time()).q).collect()
+}
+
+/// The runs that are laid over, at a time, s, the motion of their bases so many times as far.
+fn others(board: &Board, time: f64, times: f64) -> Vec<Other> {
+    let other = |(i, run): (usize, &crate::compare::Compared)| {
+        let frame = swayed(run.at(time)?, times);
+        Some(Other { name: (i + 1).to_string(), q: frame.q, base: frame.base })
+    };
+    board.shown().filter_map(other).collect()
+}
 
 /// What pushes at the end effector, N, as far as it is known of the instant on display.
 fn force(session: &Session) -> Option<[f64; 2]> {

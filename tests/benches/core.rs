@@ -7,11 +7,14 @@
 mod nine_body;
 
 use divan::{Bencher, black_box};
-use stillbase::dynamics::{Surroundings, inverse_with_wrench};
+use stillbase::dynamics::{Surroundings, base_wrench, inverse_with_wrench};
+use stillbase::joint_forces::Joints;
 use stillbase::machine::{Inertia, builtin};
 use stillbase::plan::least_reaction::Goal;
 use stillbase::plan::path::tip_line;
-use stillbase::plan::{Curve, CurvePoint, LeastReaction, Limits, Path, Rule, TimeLaw, fastest, trace};
+use stillbase::plan::{
+    Curve, CurvePoint, LeastReaction, Limits, Path, Profile, Rule, Samples, TimeLaw, fastest, trace,
+};
 use stillbase::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::pose_constant::plane_map;
 use stillbase::reactionless::{AngleDefinition, Boundary, Limit, PlaneMap};
@@ -19,6 +22,7 @@ use stillbase::scenario::Scenario;
 use stillbase::scene::stage::ViewOptions;
 use stillbase::scene::views::{ViewKind, Views};
 use stillbase::session::{Run, Session, replay};
+use stillbase::tolerance::{CHUNK, Ensemble, default_spreads};
 
 fn main() {
     divan::main();
@@ -40,20 +44,79 @@ fn dynamics_with_base_wrench(bencher: Bencher) {
     });
 }
 
-/// The same by a generic recursion over nine bodies.
+/// A motion of 20,000 samples of three drives: its spline, solved.
 #[divan::bench]
-fn dynamics_by_recursive_newton_euler(bencher: Bencher) {
+fn spline_through_samples(bencher: Bencher) {
+    let samples = swinging();
+    bencher.bench_local(|| black_box(&samples).path(0.0).expect("a path"));
+}
+
+/// The same samples smoothed at 20 Hz.
+#[divan::bench]
+fn smoothing_of_samples(bencher: Bencher) {
+    let samples = swinging();
+    bencher.bench_local(|| black_box(&samples).smoothed(20.0).expect("below half of the rate"));
+}
+
+/// The reference at an instant of them.
+#[divan::bench]
+fn reference_of_samples(bencher: Bencher) {
+    let samples = swinging();
+    let path = Path::Table(samples.path(0.0).expect("a path"));
+    let motion = stillbase::plan::Motion { path, profile: Profile::running(samples.duration()) };
+    let mut t = 0.0;
+    bencher.bench_local(|| {
+        t = (t + 0.731) % 20.0;
+        motion.at(black_box(t))
+    });
+}
+
+fn swinging() -> Samples {
+    let row = |i: i32| {
+        let t = 0.001 * f64::from(i);
+        vec![t, 1.7 + 0.2 * (3.0 * t).sin(), 3.7 + 0.2 * (2.0 * t).cos(), 2.2 + 0.2 * (2.0 * t + 1.0).sin()]
+    };
+    Samples::new(&(0..20_000).map(row).collect::<Vec<_>>()).expect("sound")
+}
+
+/// The nine-link machine as nine rigid bodies, in gravity.
+fn twin() -> nine_body::NineBody {
     let machine = builtin("nine-link").expect("built in");
     let each = |f: fn(&stillbase::machine::Link) -> f64| std::array::from_fn(|j| f(&machine.links()[j]));
-    let twin = nine_body::NineBody {
+    nine_body::NineBody {
         length: std::array::from_fn(|j| machine.parts()[j].length),
         mass: each(|l| l.mass),
         inertia: each(|l| l.inertia),
         com: each(|l| l.com),
         gravity: [0.0, -9.81],
         payload: 0.0,
-    };
+    }
+}
+
+/// The same by a generic recursion over nine bodies.
+#[divan::bench]
+fn dynamics_by_recursive_newton_euler(bencher: Bencher) {
+    let twin = twin();
     bencher.bench_local(|| twin.recursive(black_box(Q), black_box(QD), black_box(QDD)));
+}
+
+/// Force of every pin of the nine-link machine, and its torques.
+#[divan::bench]
+fn pin_forces(bencher: Bencher) {
+    let joints = Joints::of(builtin("nine-link").expect("built in")).expect("determinate");
+    let around = Surroundings { gravity: Vector::new(0.0, -9.81), force: Vector::default() };
+    let (q, qd, qdd) = (DriveAngles::from(Q), PerDrive::from(QD), PerDrive::from(QDD));
+    bencher.bench_local(|| {
+        let e = black_box(&q).units();
+        joints.forces(&e, black_box(&qd), black_box(&qdd), &around)
+    });
+}
+
+/// The same by 27 equations in 27 numbers.
+#[divan::bench]
+fn pin_forces_by_27_equations(bencher: Bencher) {
+    let twin = twin();
+    bencher.bench_local(|| twin.solve(black_box(Q), black_box(QD), black_box(QDD)));
 }
 
 /// One step of case 3: order 4, control in every stage, peaks included.
@@ -255,4 +318,60 @@ fn feasibility_of_a_path_of_1000_points(bencher: Bencher) {
     let curve = Curve::spline(&points, false).expect("apart");
     let start = map.poses(points[0], 2.4)[0].a;
     bencher.bench_local(|| trace::walk(&map, black_box(&curve), 2.4, start, Rule::default(), 1000).expect("inside"));
+}
+
+/// A million machines, or so: 200 instants of case 3, every number that varies by default.
+const MACHINES: u64 = 1_000_000 / CHUNK as u64 * CHUNK as u64;
+
+fn ensemble() -> Ensemble {
+    let run = Run::new(&Scenario::builtin("case-3").expect("built in")).expect("it starts");
+    let machine = builtin("nine-link").expect("built in");
+    Ensemble::new(machine, &run.plan().motion, 200, &default_spreads(), 1).expect("it varies")
+}
+
+/// Peaks and root mean squares of a million varied machines on two threads.
+#[divan::bench(sample_count = 10, sample_size = 1)]
+fn tolerance_of_a_million_machines(bencher: Bencher) {
+    let ensemble = ensemble();
+    let chunks = MACHINES / CHUNK as u64;
+    bencher.bench_local(|| {
+        let worst = |from: u64, to: u64| {
+            let mut sampler = ensemble.sampler();
+            (from..to).fold(0.0_f64, |m, c| sampler.outcomes(c).iter().fold(m, |m, o| m.max(o.peak_moment)))
+        };
+        std::thread::scope(|scope| {
+            let other = scope.spawn(|| worst(0, chunks / 2));
+            worst(chunks / 2, chunks).max(other.join().expect("no panic"))
+        })
+    });
+}
+
+/// The same the straightforward way, for a thousandth of the machines and on one thread: each machine built and
+/// checked, its constants summed, the dynamics at every instant. What is drawn is the same.
+#[divan::bench(sample_count = 10, sample_size = 1)]
+fn tolerance_of_1024_machines_one_by_one(bencher: Bencher) {
+    let ensemble = ensemble();
+    let mut sampler = ensemble.sampler();
+    let count = ensemble.parameters().len();
+    bencher.bench_local(|| {
+        let mut worst = 0.0_f64;
+        for chunk in 0..1024 / CHUNK as u64 {
+            sampler.draw(chunk);
+            for machine in 0..CHUNK {
+                let deviations: Vec<f64> = (0..count).map(|p| sampler.deviations()[p][machine]).collect();
+                let machine = ensemble.machine_of(&deviations).expect("possible");
+                let inertia = Inertia::of(&machine);
+                let around = Surroundings { gravity: machine.gravity(), force: Vector::default() };
+                let (mut squares, mut peak) = (0.0, [0.0_f64; 2]);
+                for r in ensemble.references() {
+                    let wrench = base_wrench(&inertia, &r.q.units(), &r.qd, &r.qdd, &around);
+                    let (n, f) = (wrench.total().moment, wrench.dynamic.force.norm());
+                    squares += n * n + f * f;
+                    peak = [peak[0].max(n.abs()), peak[1].max(f)];
+                }
+                worst = worst.max(black_box(peak)[0] + black_box(squares) * 0.0);
+            }
+        }
+        worst
+    });
 }

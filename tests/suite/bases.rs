@@ -272,9 +272,9 @@ fn a_wheel_cancels_until_it_saturates() {
     let ample = with(Wheel { inertia: 0.002, ..Wheel::default() });
     assert!(ample.peaks.is_reactionless() && ample.tally.saturated.is_none());
     assert!(ample.peaks.moment < 1e-9 && ample.tally.wheel_rate > 50.0, "{}", ample.tally.wheel_rate);
-    let weak = with(Wheel { torque_limit: Some(0.5), ..Wheel::default() });
+    let weak = with(Wheel { inertia: 0.002, torque_limit: Some(0.5), ..Wheel::default() });
     assert!((weak.peaks.moment - (1.0891 - 0.5)).abs() < 1e-3, "{}", weak.peaks.moment);
-    let slow = with(Wheel { speed_limit: Some(20.0), ..Wheel::default() });
+    let slow = with(Wheel { inertia: 0.002, speed_limit: Some(20.0), ..Wheel::default() });
     assert!(slow.tally.saturated.is_some_and(|t| t > 0.05 && t < 0.5), "{:?}", slow.tally.saturated);
     assert!(slow.tally.wheel_rate < 20.5, "{}", slow.tally.wheel_rate);
 }

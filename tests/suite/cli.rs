@@ -430,7 +430,12 @@ fn workspace_answers_about_points() {
 fn simulate_prints_every_signal() {
     let got = object(&["simulate", "case-3", "--every", "7"]);
     assert_eq!(keys(&got), ["scenario", "signals", "time", "units", "verdict"]);
-    assert_eq!(keys(&got["verdict"]), ["peak_base_force", "peak_base_moment", "peak_torque", "reactionless", "steps"]);
+    let peaks = ["peak_base_force", "peak_base_moment", "peak_torque"];
+    let sums = ["rms_base_force", "rms_base_moment", "steps"];
+    let all: Vec<&str> =
+        ["audit", "base_shift", "base_tilt"].into_iter().chain(peaks).chain(["reactionless"]).chain(sums).collect();
+    assert_eq!(keys(&got["verdict"]), all);
+    assert_eq!(keys(&got["verdict"]["audit"]), ["angular", "energy", "loops", "momentum", "plane", "step"]);
     assert_eq!(keys(&got["signals"]), keys(&got["units"]));
     let time = numbers(&got["time"]);
     // Steps 0, 7 … 994 and the last, 1000.
@@ -453,6 +458,80 @@ fn simulate_prints_every_signal() {
         // The same to the last digit; JSON is read with an error of one.
         near(&json!(values), &got["signals"][path], 1e-15, &name);
     }
+}
+
+/// What every pin carries: as the signals of the same run have it.
+#[test]
+fn joints_tells_peaks_of_every_pin() {
+    let run = ["--set", "gravity=0,-9.81", "--set", "link.5.axial=0.02"];
+    let got = object(&[&["joints", "case-1"][..], &run].concat());
+    assert_eq!(keys(&got), ["pins", "scenario", "steps", "tilt", "transmission", "worst"]);
+    let signals = object(&[&["simulate", "case-1"][..], &run].concat());
+    let time = numbers(&signals["time"]);
+    let pins = got["pins"].as_array().expect("pins");
+    assert_eq!(pins.len(), 12);
+    assert_eq!(keys(&pins[0]), ["from", "mean", "name", "peak", "time", "to", "undefined_steps"]);
+    let mut worst = 0.0_f64;
+    for pin in pins {
+        let forces = numbers(&signals["signals"][format!("pin/{}", pin["name"].as_str().expect("a name"))]);
+        let (at, peak) = forces.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).expect("steps");
+        near(&pin["peak"], &json!(peak), 1e-14, "peak");
+        near(&pin["time"], &json!(time[at]), 1e-14, "time");
+        near(&pin["mean"], &json!(forces.iter().sum::<f64>() / forces.len() as f64), 1e-12, "mean");
+        worst = worst.max(*peak);
+    }
+    let named = pins.iter().find(|p| p["name"] == got["worst"]).expect("the worst");
+    near(&named["peak"], &json!(worst), 1e-14, "worst");
+    let tilt = numbers(&signals["signals"]["tilt/x"]).into_iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    near(&got["tilt"]["x"]["value"], &json!(tilt), 1e-14, "tilt");
+    assert!(got["tilt"]["flat"] == json!(false) && tilt > 0.1);
+    // Weight does not tilt what lies at no height.
+    let flat = object(&["joints", "case-1", "--set", "gravity=0,-9.81"]);
+    assert!(flat["tilt"]["flat"] == json!(true) && flat["tilt"]["x"]["value"] == json!(0.0));
+    assert!(prints(&["joints", "case-1"]).contains("all axial offsets are zero"));
+    assert!(prints(&[&["joints", "case-1"][..], &run].concat()).contains("about x"));
+}
+
+/// Through q_3 = q_1 the least transmission is zero, even if no step lands on it, and that is said.
+#[test]
+fn joints_tells_that_a_change_point_is_passed() {
+    let through = ["joints", "case-3", "--set", "task.to=[0.3,0.3]"];
+    let got = object(&through);
+    let pair = &got["transmission"][1];
+    assert_eq!((&pair["drives"], &pair["closures"]), (&json!(["1", "3"]), &json!(["6-7"])));
+    assert_eq!((&pair["least"], &pair["passed"]), (&json!(0.0), &json!(1)));
+    assert!(got["pins"].as_array().expect("pins").iter().any(|p| p["peak"].as_f64().expect("a force") > 100.0));
+    assert!(prints(&through).contains("1 change point passed between steps"));
+    assert_eq!(object(&["joints", "case-3"])["transmission"][1]["passed"], 0);
+}
+
+#[test]
+fn joints_writes_forces_as_csv_and_says_why_there_are_none() {
+    let folder = Folder::new();
+    let file = folder.path("pins.csv");
+    prints(&["joints", "case-3", "-o", &file]);
+    let mut reader = csv::Reader::from_path(&file).expect("a file");
+    assert_eq!(reader.headers().expect("a head").len(), 1 + 24 + 2);
+    let rows: Vec<Vec<f64>> = reader.deserialize().collect::<Result<_, _>>().expect("numbers");
+    assert_eq!(rows.len(), 1001);
+    // Nothing reaches the base: its three bearings cancel, though each carries newtons.
+    for row in &rows {
+        assert!((row[1] + row[3] + row[5]).hypot(row[2] + row[4] + row[6]) < 1e-9);
+    }
+    assert!(rows.iter().any(|r| r[1].hypot(r[2]) > 1.0));
+    fails(&["joints", "case-3", "-o", &file], 2, &["pins.csv exists", "--force"]);
+    let open = NINE_LINK.replacen(
+        "[[closure]]\na = { link = \"6\", at = \"tip\" }\nb = { link = \"7\", at = \"tip\" }\n",
+        "",
+        1,
+    );
+    assert!(open.len() < NINE_LINK.len());
+    let machine = folder.file("open.toml", &open);
+    let scenario =
+        fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenarios/case-3.toml")).expect("it");
+    let scenario = folder.file("open-case.toml", &scenario.replace("\"nine-link\"", &format!("{machine:?}")));
+    fails(&["joints", &scenario], 1, &["nothing holds 6", "want 3 closures"]);
+    fails(&["joints", "case-9"], 2, &["case-9"]);
 }
 
 #[test]
@@ -706,7 +785,7 @@ fn without_a_display_it_records_and_names_the_file() {
 #[test]
 fn help_names_every_command_with_units_and_examples() {
     let all = prints(&["--help"]);
-    for command in ["simulate", "machines", "check", "design", "dynamics", "reach", "pose", "workspace"] {
+    for command in ["simulate", "joints", "machines", "check", "design", "dynamics", "reach", "pose", "workspace"] {
         assert!(all.contains(&format!("\n  {command} ")), "{command}");
         let help = prints(&[command, "--help"]);
         assert!(help.contains("--set <KEY=VALUE>") && help.contains("--json"), "{command}");
@@ -784,4 +863,252 @@ fn plan_refuses_with_where_why_and_what_would_do() {
     fails(&["plan", "case-3", "--law", "fastest", "--time", "2"], 2, &["--time", "find the time"]);
     fails(&["plan", "circle", "--blend", "0.1"], 2, &["--blend", "no corners"]);
     fails(&["plan", "case-3", "--time", "-1"], 2, &["want a number above 0"]);
+}
+
+/// A folder of this test's own, empty.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+/// Runs in a folder and says what it printed on standard error.
+fn said_in(folder: &Path, args: &[&str], status: i32) -> String {
+    let out = stillbase_in(folder, args);
+    assert_eq!(out.status.code(), Some(status), "{args:?}: {}", text(&out.stderr));
+    text(&out.stderr).to_owned()
+}
+
+/// Every column of a Parquet file, by rows.
+fn parquet_rows(file: &Path) -> (Vec<String>, Vec<String>) {
+    use parquet::file::reader::{FileReader, SerializedFileReader};
+    let reader = SerializedFileReader::new(fs::File::open(file).expect("there")).expect("Parquet");
+    let names = reader.metadata().file_metadata().schema().get_fields().iter().map(|f| f.name().to_owned()).collect();
+    // The shortest text of a number that is read back as the same.
+    let rows = reader.get_row_iter(None).expect("rows").map(|row| {
+        let row = row.expect("a row");
+        let value = |(_, field): (&String, &parquet::record::Field)| match field {
+            parquet::record::Field::Long(x) => x.to_string(),
+            parquet::record::Field::Double(x) => format!("{x:e}"),
+            other => panic!("{other}"),
+        };
+        row.get_column_iter().map(value).collect::<Vec<_>>().join(",")
+    });
+    (names, rows.collect())
+}
+
+#[test]
+fn shards_put_together_are_the_whole() {
+    let folder = folder("shards");
+    let study = |rest: &[&'static str]| {
+        let common = ["tolerance", "case-1", "--samples", "1000", "--seed", "11", "--instants", "20"];
+        let spreads = ["--spread", "link.*.com=normal:0.0005", "--spread", "link.5.mass=uniform:1%"];
+        let args = [&common[..], &spreads, rest].concat();
+        said_in(&folder, &args, 0)
+    };
+    study(&["-o", "whole.csv"]);
+    study(&["-o", "whole.parquet"]);
+    for (shard, csv, parquet) in
+        [("1/3", "1.csv", "1.parquet"), ("2/3", "2.csv", "2.parquet"), ("3/3", "3.csv", "3.parquet")]
+    {
+        study(&["--shard", shard, "-o", csv]);
+        study(&["--shard", shard, "-o", parquet]);
+    }
+    let merge = |parts: &[&'static str], whole: &'static str, status| {
+        said_in(&folder, &[&["tolerance", "--merge"], parts, &["-o", whole]].concat(), status)
+    };
+    merge(&["3.csv", "1.csv", "2.csv"], "merged.csv", 0);
+    assert_eq!(fs::read(folder.join("merged.csv")).expect("there"), fs::read(folder.join("whole.csv")).expect("there"));
+    merge(&["2.parquet", "3.parquet", "1.parquet"], "merged.parquet", 0);
+    let (names, rows) = parquet_rows(&folder.join("merged.parquet"));
+    assert_eq!(
+        (&names, &rows),
+        (&parquet_rows(&folder.join("whole.parquet")).0, &parquet_rows(&folder.join("whole.parquet")).1)
+    );
+    assert_eq!((rows.len(), names.len()), (1000, 1 + 10 + 4));
+    // The two kinds of file hold the same numbers, and parts of both go together.
+    merge(&["2.parquet", "3.csv", "1.parquet"], "mixed.csv", 0);
+    assert_eq!(fs::read(folder.join("mixed.csv")).expect("there"), fs::read(folder.join("whole.csv")).expect("there"));
+    let csv = fs::read_to_string(folder.join("whole.csv")).expect("there");
+    let mut lines = csv.lines();
+    let head: Vec<&str> = lines.next().expect("a head").split(',').collect();
+    assert!(head[0].starts_with("sample of 1000 seed 11 problem ") && head[1..] == names[1..], "{head:?}");
+    for (line, row) in lines.zip(&rows) {
+        let numbers = |text: &str| text.split(',').map(|x| x.parse().expect("a number")).collect::<Vec<f64>>();
+        assert_eq!(numbers(line), numbers(row));
+    }
+    // What is missing, double or of another study is named, and nothing is written.
+    let refused: [(&[&str], &str); 5] = [
+        (&["1.csv", "3.csv"], "samples 333 to 665 are in no part"),
+        (&["1.csv", "2.csv"], "samples 666 to 999 are in no part"),
+        (&["1.csv", "2.csv", "3.csv", "2.parquet"], "sample 333 stands in"),
+        (&["1.csv", "whole.csv"], "sample 0 stands in"),
+        (&["nowhere.csv"], "nowhere.csv"),
+    ];
+    for (parts, words) in refused {
+        let said = merge(parts, "no.csv", 2);
+        assert!(said.contains(words) && said.lines().count() == 1, "{parts:?}: {said}");
+        assert!(!folder.join("no.csv").exists());
+    }
+    for (option, value, words) in [
+        ("--seed", "12", "seeds 11 and 12"),
+        ("--samples", "999", "of 1000 and of 999"),
+        ("--instants", "21", "instants"),
+    ] {
+        let common =
+            ["tolerance", "case-1", "--spread", "link.*.com=normal:0.0005", "--spread", "link.5.mass=uniform:1%"];
+        let mut others = vec![("--samples", "1000"), ("--seed", "11"), ("--instants", "20")];
+        others.retain(|(key, _)| *key != option);
+        others.push((option, value));
+        let others: Vec<&str> = others.iter().flat_map(|(key, value)| [*key, *value]).collect();
+        said_in(&folder, &[&common[..], &others, &["--shard", "2/3", "-o", "other.csv", "--force"]].concat(), 0);
+        let said = said_in(&folder, &["tolerance", "--merge", "other.csv", "1.csv", "3.csv", "-o", "no.csv"], 2);
+        let (a, b) = words.split_once(" and ").unwrap_or((words, words));
+        assert!(said.contains("other.csv") && said.contains(a) && said.contains(b.trim_start_matches("of ")), "{said}");
+    }
+    // A row in the wrong place, and one that is none.
+    let broken = csv.replacen("\n5,", "\n6,", 1);
+    fs::write(folder.join("broken.csv"), broken).expect("written");
+    assert!(merge(&["broken.csv"], "no.csv", 2).contains("sample 6 where 5 should follow"));
+    fs::write(folder.join("broken.csv"), csv.replacen("\n5,", "\n5,x", 1)).expect("written");
+    assert!(merge(&["broken.csv"], "no.csv", 2).contains("broken.csv:7"));
+    fs::write(folder.join("broken.parquet"), "PAR1").expect("written");
+    assert!(merge(&["broken.parquet"], "no.csv", 2).contains("broken.parquet"));
+    assert!(merge(&["1.csv"], "1.csv", 2).contains("exists"));
+}
+
+#[test]
+fn tolerance_counts_what_keeps_within_limits() {
+    let args = ["tolerance", "case-3", "--samples", "2000", "--limit-moment", "0.01", "--limit-force", "0.02"];
+    let value = object(&args);
+    let wanted =
+        ["agreement", "bands", "motion_time", "nominal", "parameters", "peak_force", "peak_moment", "rms_force"];
+    let more = ["rms_moment", "samples", "scenario", "seed", "shard", "shares", "simulated", "yield"];
+    assert_eq!(keys(&value), [wanted, more].concat());
+    assert_eq!((&value["samples"], &value["seed"], &value["shard"]), (&json!(2000), &json!(1), &json!([0, 2000])));
+    let of = |key: &str| value["yield"][key]["share"].as_f64().expect("a share");
+    assert!(of("both") <= of("moment").min(of("force")) && of("both") >= of("moment") + of("force") - 1.0);
+    // The yield and the quantiles tell the same story.
+    let quantiles = &value["peak_moment"]["quantiles"];
+    for (level, at) in numbers(&quantiles["levels"]).into_iter().zip(numbers(&quantiles["values"])) {
+        assert!((at <= 0.01) == (level <= of("moment")) || (level - of("moment")).abs() < 1e-3, "{level}: {at}");
+    }
+    let counts: f64 = numbers(&value["peak_force"]["histogram"]["counts"]).iter().sum();
+    assert_eq!(counts, 2000.0);
+    // Moments of inertia do not come into the force.
+    let shares = value["shares"]["parameters"].as_array().expect("shares");
+    let inertia = shares.iter().find(|s| s["key"] == "link.1.inertia").expect("it varies");
+    assert!(inertia["force_share"] == 0.0 && inertia["moment_share"].as_f64() > Some(0.2));
+    // All the same, simulated: control is good.
+    let simulated = object(&["tolerance", "case-3", "--simulate", "--samples", "6"]);
+    let ratio = simulated["against_tracking"]["peak_moment_ratio"].as_f64().expect("a ratio");
+    assert!(simulated["simulated"] == true && (ratio - 1.0).abs() < 0.1 && ratio != 1.0, "{ratio}");
+    let printed = prints(&args);
+    for word in ["peak |n_B|", "yield", "95 % between", "what matters", "first order against all", "others"] {
+        assert!(printed.contains(word), "{printed}");
+    }
+    fails(&["tolerance", "case-3", "--spread", "link.1.com"], 2, &["KEY=SPREAD"]);
+    fails(&["tolerance", "case-3", "--spread", "link.1.com=normal:x"], 2, &["uniform:1%"]);
+    fails(&["tolerance", "case-3", "--spread", "link.x.com=normal:1"], 2, &["link.x.com"]);
+    fails(&["tolerance", "case-3", "--shard", "0/3"], 2, &["i from 1"]);
+    fails(&["tolerance", "case-3", "--samples", "2", "--shard", "1/3"], 2, &["fewer shards"]);
+    fails(&["tolerance", "case-3", "--samples", "1000000000"], 2, &["shards"]);
+    fails(&["tolerance", "case-3", "-o", "x.txt"], 2, &[".parquet"]);
+    fails(&["tolerance", "case-3", "--set", "task.b=9"], 1, &["case-3"]);
+    fails(&["tolerance", "--merge", "a.csv"], 2, &["--output"]);
+}
+
+#[test]
+fn spectrum_says_what_is_kept() {
+    let value = object(&["spectrum", "case-1", "--limit-moment", "1:0.1,10:0.01,100:0.001", "--limit-force", "0.5"]);
+    let wanted =
+        ["axes", "cumulative_rms", "density", "frequency", "resolution", "samples", "scenario", "step", "window"];
+    assert_eq!(keys(&value), wanted);
+    let moment = &value["axes"]["moment"];
+    assert!(moment["limit"]["within"] == false && value["axes"]["force_x"]["limit"]["within"] == true);
+    let (density, rms) = (numbers(&value["density"]["moment"]), numbers(&value["cumulative_rms"]["moment"]));
+    assert_eq!((density.len(), rms.len()), (501, 501));
+    // The worst frequency is where the density says.
+    let frequency = numbers(&value["frequency"]);
+    let worst = moment["limit"]["frequency"].as_f64().expect("a frequency");
+    let line = frequency.iter().position(|f| *f == worst).expect("a line");
+    assert_eq!(Some(density[line]), moment["limit"]["density"].as_f64());
+    assert_eq!(rms.last().copied(), moment["rms"].as_f64());
+    // With no window the RMS is that of the samples, which `simulate` prints too.
+    let plain = object(&["spectrum", "case-1", "--window", "rectangular"]);
+    let course = numbers(&object(&["simulate", "case-1"])["signals"]["moment/total"]);
+    let square = course.iter().map(|x| x * x).sum::<f64>() / course.len() as f64;
+    assert!((plain["axes"]["moment"]["rms"].as_f64().expect("RMS") - square.sqrt()).abs() < 1e-12);
+    let folder = folder("spectrum");
+    said_in(&folder, &["spectrum", "case-1", "-o", "s.csv"], 0);
+    let csv = fs::read_to_string(folder.join("s.csv")).expect("there");
+    assert!(csv.starts_with("frequency Hz,f_Bx N/√Hz,f_Bx RMS N,f_By N/√Hz,f_By RMS N,n_B N m/√Hz,n_B RMS N m\n"));
+    assert_eq!(csv.lines().count(), 502);
+    assert!(said_in(&folder, &["spectrum", "case-1", "-o", "s.csv"], 2).contains("exists"));
+    fails(&["spectrum", "case-1", "--limit-moment", "2:1,1:1"], 2, &["rising"]);
+    fails(&["spectrum", "case-1", "--limit-moment", "600:1,700:1"], 2, &["600", "499.5"]);
+    fails(&["spectrum", "case-1", "--window", "flat"], 2, &["hann"]);
+}
+
+/// A failed audit is loud: the figures stand there, the message says what is off, and the status is 1.
+#[test]
+fn a_failed_audit_is_no_answer() {
+    let folder = Folder::new();
+    let case = include_str!("../../assets/scenarios/case-3.toml");
+    let file = folder.file("rough.toml", &format!("step = 0.01\n{case}"));
+    let settings = ["control.kp=10000", "control.kd=190", "plant.payload.mass=5"];
+    let settings: Vec<&str> = settings.iter().flat_map(|s| ["--set", s]).collect();
+    let out = stillbase(&[&["simulate", &file, "--json"][..], &settings].concat());
+    assert_eq!(out.status.code(), Some(1), "{}", text(&out.stderr));
+    assert!(text(&out.stderr).contains("audit failed: "), "{}", text(&out.stderr));
+    assert!(text(&out.stdout).contains("audit_failed"));
+}
+
+/// What differs in plant, base and control is set by the keys of a file, and refused in words.
+#[test]
+fn plants_bases_and_control_are_set_by_key() {
+    let good =
+        ["base.kind=free", "base.com=0.1,0.05", "control.kp=400,300,200", "plant.friction.viscous=0.01,0.02,0.03"];
+    let settings: Vec<&str> = good.iter().flat_map(|s| ["--set", s]).collect();
+    let got = object(&[&["simulate", "case-1", "--every", "1000"][..], &settings].concat());
+    assert!(got["verdict"]["base_tilt"].as_f64().expect("a number") > 0.01);
+    for (pair, word) in [
+        ("base.kind=floating", "floating"),
+        ("base.mass=-1", "base.mass is -1"),
+        ("base.colour=3", "colour"),
+        ("plant.payload.mass=-1", "plant.payload.mass is -1"),
+        ("plant.link.77.mass=1", "77"),
+        ("plant.length.l1=-1", "length"),
+        ("plant.friction.coulomb=1,2", "one for each drive"),
+        ("control.law=magic", "magic"),
+        ("control.rate=333.3", "control.rate is 333.3"),
+        ("control.delay=0.0005", "control.delay"),
+        ("plant.payload.until=0", "plant.payload.until"),
+        ("base.wheel.inertia=0", "base.wheel.inertia"),
+    ] {
+        fails(&["simulate", "case-1", "--set", pair], 2, &[word]);
+    }
+}
+
+/// The ways of a task as a table, as JSON, as CSV and as one row that cannot be.
+#[test]
+fn compare_tells_ways_apart() {
+    let got = object(&["compare", "case-3"]);
+    let runs = got["runs"].as_array().expect("runs");
+    let ways: Vec<&str> = runs.iter().filter_map(|r| r["way"].as_str()).collect();
+    assert_eq!(ways, ["reactionless", "straight-line", "other-pose", "wheel", "slowly"]);
+    assert!((runs[1]["peak_moment"].as_f64().expect("a number") - 1.0891).abs() < 1e-4);
+    assert!(runs[0]["reactionless"] == json!(true) && runs[0]["wheel_rate"].is_null());
+    let folder = Folder::new();
+    let file = folder.path("table.csv");
+    assert!(
+        prints(&["compare", "least-reaction", "-o", &file]).contains("reactionless: B (0.550, 0.900) m is outside")
+    );
+    let table = fs::read_to_string(&file).expect("written");
+    assert_eq!(table.lines().count(), 7);
+    assert!(table.lines().next().expect("a head").starts_with("scenario,time s,peak_moment N m,"));
+    assert!(table.contains("is outside the reactionless workspace"), "{table}");
+    fails(&["compare", "least-reaction", "-o", &file], 2, &["table.csv"]);
+    fails(&["compare", "case-3", "-o", "table.txt"], 2, &[".csv or .rrd"]);
 }

@@ -10,17 +10,21 @@ const LAYERS: &[&[&str]] = &[
     &["machine"],
     &["kinematics"],
     &["dynamics"],
+    &["joint_forces"],
     &["balance"],
     &["reactionless"],
     &["pose_constant"],
     &["plan"],
     &["plant"],
     &["control"],
+    &["spectrum"],
     &["frame", "tally", "audit"],
     &["simulation"],
     &["signals"],
-    // A scenario holds the edits of a saved session; a session starts from a scenario.
-    &["scenario", "session"],
+    // A scenario holds the edits of a saved session, and its tolerances; a session starts from a scenario, and so does
+    // the simulation of a varied machine.
+    &["scenario", "session", "tolerance"],
+    &["compare"],
     &["scene"],
     &["render"],
     &["files"],
@@ -37,12 +41,14 @@ const CORE: &[&str] = &[
     "machine",
     "kinematics",
     "dynamics",
+    "joint_forces",
     "balance",
     "reactionless",
     "pose_constant",
     "plan",
     "plant",
     "control",
+    "spectrum",
     "frame",
     "tally",
     "audit",
@@ -51,6 +57,8 @@ const CORE: &[&str] = &[
     "signals",
     "scenario",
     "session",
+    "compare",
+    "tolerance",
     "scene",
 ];
 
@@ -71,7 +79,11 @@ const CRATES: &[(&str, &[&str])] = &[
     ("indicatif", &["commands"]),
     ("csv", &["commands"]),
     ("serde_json", &["commands"]),
-    ("toml", &["keys", "machine", "plant", "scenario", "session", "commands"]),
+    ("parquet", &["commands"]),
+    ("toml", &["keys", "machine", "plant", "scenario", "session", "tolerance", "commands"]),
+    ("rand_chacha", &["tolerance"]),
+    ("libm", &["tolerance"]),
+    ("realfft", &["spectrum"]),
     ("clarabel", &["plan"]),
 ];
 
@@ -79,7 +91,7 @@ const CRATES: &[(&str, &[&str])] = &[
 const EDGES: &[(&str, &[&str])] = &[
     ("std::time", &["render/shader.rs", "window.rs"]),
     ("std::env", &["main.rs", "window.rs"]),
-    ("std::thread", &["headless/store.rs"]),
+    ("std::thread", &["commands/tolerance/parallel.rs", "headless/store.rs"]),
     ("std::net", &[]),
     ("std::process", &["commands/failure.rs", "files.rs", "main.rs"]),
     // A machine and a scenario by file; everything else of the core takes text.
@@ -87,6 +99,7 @@ const EDGES: &[(&str, &[&str])] = &[
         "std::fs",
         &[
             "commands/input.rs",
+            "commands/tolerance/rows.rs",
             "files.rs",
             "machine/file.rs",
             "render/offscreen.rs",

@@ -13,10 +13,12 @@ fn setting() -> impl Strategy<Value = (String, String)> {
     prop_oneof![
         (link(), number(1e-6..1e3)).prop_map(|(l, v)| (format!("{l}.mass"), v)),
         (link(), number(0.0..10.0)).prop_map(|(l, v)| (format!("{l}.inertia"), v)),
-        (link(), select(vec!["com", "com_normal"]), number(-1.0..1.0)).prop_map(|(l, f, v)| (format!("{l}.{f}"), v)),
+        (link(), select(vec!["com", "com_normal", "axial"]), number(-1.0..1.0))
+            .prop_map(|(l, f, v)| (format!("{l}.{f}"), v)),
         (select(vec!["l1", "l2", "l3", "l5", "l9"]), number(1e-3..10.0)).prop_map(|(l, v)| (format!("length.{l}"), v)),
         number(0.0..100.0).prop_map(|v| ("payload.mass".into(), v)),
         number(0.0..1.0).prop_map(|v| ("payload.inertia".into(), v)),
+        number(-1.0..1.0).prop_map(|v| ("payload.axial".into(), v)),
         (-20.0..20.0, -20.0..20.0).prop_map(|(x, y): (f64, f64)| ("gravity".into(), format!("{x},{y}"))),
         (select(vec!["a1", "a2"]), -7.0..0.0, 0.0..7.0)
             .prop_map(|(a, min, max): (&str, f64, f64)| (format!("limits.{a}"), format!("{min},{max}"))),
@@ -84,14 +86,16 @@ fn a_number_that_is_none_is_named() {
         ("inertia = 0.0025", "inertia = nan"),
         ("com = -0.11113242634709285", "com = -inf"),
         ("com = -0.11113242634709285", "com = 0.0\ncom_normal = nan"),
+        ("com = -0.11113242634709285", "com = 0.0\naxial = nan"),
+        ("[end_effector]", "[payload]\naxial = inf\n[end_effector]"),
         ("torque_limit = 20.0", "torque_limit = inf"),
         ("torque_limit = 20.0", "speed_limit = inf"),
         ("torque_limit = 20.0", "acceleration_limit = nan"),
         ("torque_limit = 20.0", "jerk_limit = inf"),
         ("offset = 3.141592653589793", "offset = nan"),
     ] {
-        // The key added below its line is the only one that is not where the text was.
-        if to.contains("com_normal") {
+        // A key added below its line is not where the text was.
+        if ["com_normal", "axial"].iter().any(|key| to.contains(key)) {
             assert!(matches!(wrong(&NINE_LINK.replacen(from, to, 1)).0, MachineError::NotFinite { .. }));
             continue;
         }
@@ -105,6 +109,7 @@ fn a_number_out_of_range_is_named() {
         ("l9 = 0.30", "l9 = 0.0"),
         ("mass = 1.45", "mass = -1.45"),
         ("mass = 1.45", "mass = 0"),
+        ("com = -0.11113242634709285", "axial = 2e6\ncom = 0"),
         ("inertia = 0.0025", "inertia = -0.0025"),
         ("direction = -1", "direction = 2"),
         ("torque_limit = 5.0", "torque_limit = -5.0"),

@@ -507,8 +507,9 @@ fn the_layout_comes_along_and_is_activated() {
     let layouts: Vec<_> = contents.stores.iter().filter(|(id, _)| id.kind() == StoreKind::Blueprint).collect();
     let [(_, chunks)] = layouts[..] else { panic!("one layout") };
     let views = chunks.iter().filter(|c| c.components().contains_component("ViewBlueprint:class_identifier".into()));
-    // Side by side: two scenes, two plots, events; each case: scene, joint space, tower, five plots, events, phase.
-    assert_eq!(views.count(), 5 + 2 * 10);
+    // Side by side: two scenes, two plots, events; each case: scene, joint space, tower, five plots, four of
+    // the inside, events, phase.
+    assert_eq!(views.count(), 5 + 2 * 14);
     assert!(chunks.iter().any(|c| *c.entity_path() == EntityPath::from("/viewport")));
 }
 
@@ -640,9 +641,9 @@ fn what_cannot_be_recorded_is_said() {
     let twice = record_in(&folder, "x.rrd", &[short("case-1"), short("case-1")]);
     assert!(matches!(twice, Err(RecordError::SameName(name)) if name == "case-1"));
     for pictures in [
-        Pictures { fps: 0.0, width: 10, height: 10 },
-        Pictures { fps: f64::NAN, width: 10, height: 10 },
-        Pictures { fps: 30.0, width: 0, height: 10 },
+        Pictures { fps: 0.0, width: 10, height: 10, pin_forces: false },
+        Pictures { fps: f64::NAN, width: 10, height: 10, pin_forces: false },
+        Pictures { fps: 30.0, width: 0, height: 10, pin_forces: false },
     ] {
         let options = Options { pictures: Some(pictures), force: false };
         let refused = record(&[short("case-1")], &folder.file("x.rrd"), &options, &mut quietly);
@@ -665,7 +666,8 @@ fn names_with_slashes_and_blanks_stay_one_case() {
 #[test]
 fn pictures_come_at_their_times_or_it_is_said_why_not() {
     let folder = Folder::new("pictures");
-    let options = Options { pictures: Some(Pictures { fps: 30.0, width: 64, height: 40 }), force: false };
+    let options =
+        Options { pictures: Some(Pictures { fps: 30.0, width: 64, height: 40, pin_forces: false }), force: false };
     let recordings = record(&[short("case-3")], &folder.file("x.rrd"), &options, &mut quietly).expect("a case");
     let contents = Contents::of(&folder.file("x.rrd"));
     let chunks = contents.at("/case-3/view");
@@ -678,7 +680,8 @@ fn pictures_come_at_their_times_or_it_is_said_why_not() {
         chunks.iter().flat_map(|c| c.timelines()[&TimelineName::from("step")].times_raw().to_vec()).collect();
     assert_eq!(steps, [0, 33, 67, 100]);
     assert_eq!(contents.texts("/case-3/view", "EncodedImage:media_type"), vec!["image/png"; 4]);
-    let huge = Options { pictures: Some(Pictures { fps: 30.0, width: u32::MAX, height: 1 }), force: false };
+    let huge =
+        Options { pictures: Some(Pictures { fps: 30.0, width: u32::MAX, height: 1, pin_forces: false }), force: false };
     let refused = record(&[short("case-3")], &folder.file("y.rrd"), &huge, &mut quietly);
     assert!(matches!(refused, Err(RecordError::Pictures(_))));
     assert_eq!(folder.names(), ["x.rrd"]);

@@ -4,13 +4,14 @@ use std::fmt::Write;
 
 use proptest::prelude::*;
 use stillbase::frame::Reach;
+use stillbase::joint_forces::Joints;
 use stillbase::machine::{builtins, place_of};
 use stillbase::planar::{DriveAngles, Pose2, Vector, unit};
 use stillbase::scenario::Scenario;
 use stillbase::scene::camera::{Camera, Flat, Orbit};
 use stillbase::scene::linkage::Linkage;
 use stillbase::scene::palette::{Theme, palette};
-use stillbase::scene::stage::{Handle, Stage, ViewOptions};
+use stillbase::scene::stage::{Handle, Stage, ViewOptions, round_up};
 use stillbase::scene::sway::{exaggeration, swayed};
 use stillbase::scene::{Scene, Solid};
 use stillbase::session::{Edit, Session};
@@ -249,6 +250,38 @@ fn reactions_are_said() {
     }
 }
 
+/// Arrows at the pins, where asked for: along the forces, in one proportion, the largest named.
+#[test]
+fn pins_show_what_they_carry() {
+    let mut session = open("case-1");
+    session.play();
+    session.tick(250);
+    let (run, frame) = (session.run(), session.frame());
+    let stage = Stage::of(run);
+    let joints = Joints::of(&run.scenario().machine).expect("determinate");
+    assert!(scene_of(&session).lines.iter().all(|l| !l.name.starts_with("pin/")));
+    let scene = stage.scene(frame, &ViewOptions { pin_forces: true, ..ViewOptions::default() });
+    let worst = frame.inside.worst_pin().expect("one");
+    let per_newton = 0.25 * stage.linkage().reach() / round_up(frame.inside.worst);
+    for (i, pin) in joints.pins().iter().enumerate() {
+        let force = frame.inside.pin(i).expect("defined");
+        let Some(shaft) = scene.lines.iter().find(|l| l.name == format!("pin/{}", pin.name)) else {
+            assert!(force.norm() * per_newton <= 0.004 * stage.linkage().reach(), "{}", pin.name);
+            continue;
+        };
+        let at = place_of(&pin.at, &frame.q.units());
+        let want = [at, at + force * per_newton];
+        for (got, want) in shaft.points.iter().zip(want) {
+            assert!((f64::from(got[0]) - want.re).hypot(f64::from(got[1]) - want.im) < 1e-6, "{}", pin.name);
+        }
+        let p = palette(Theme::Dark);
+        assert_eq!(shaft.colour, if i == worst { p.reaction } else { p.ink });
+    }
+    let said = format!("{} {:.1} N", joints.pins()[worst].name, frame.inside.worst);
+    assert!(scene.labels.iter().any(|l| l.text == said), "{said}");
+    assert!(scene.labels.iter().any(|l| l.text.starts_with("pins: ") && l.text.ends_with(" N")));
+}
+
 /// Everything drawn is finite, on both themes and in both views, whatever the state.
 #[test]
 fn nothing_drawn_is_lost() {
@@ -460,7 +493,7 @@ fn all_of_the_machine_goes_with_its_base() {
     let scene = stage.scene(f, &ViewOptions::default());
     let marker = scene.markers.iter().find(|m| m.name == "payload").expect("held");
     let scenario = session.scenario();
-    let chain = scenario.plant.payload.chain(&scenario.machine);
+    let chain = scenario.plant.payload.held_by(&scenario.machine).expect("valid").payload_chain();
     let want = f.base.at + f.q.units().iter().zip(chain).map(|(e, a)| e * a).sum::<Vector>();
     assert!((Vector::new(f64::from(marker.at[0]), f64::from(marker.at[1])) - want).norm() < 1e-6);
 }

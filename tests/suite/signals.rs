@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use stillbase::frame::{Frame, Phase, REACTIONLESS};
+use stillbase::joint_forces::{Joints, nearest};
 use stillbase::machine::{Inertia, Machine, builtin};
 use stillbase::planar::{Vector, cross};
 use stillbase::pose_constant::plane_map;
@@ -18,7 +19,8 @@ fn machine() -> &'static Machine {
 fn frames() -> Vec<Frame> {
     let mut scenario = Scenario::builtin("case-1").expect("built in");
     scenario.plant.payload.mass = 0.1;
-    scenario.machine = scenario.machine.set("gravity", "1,-9.81").expect("valid");
+    let settings = [("gravity", "1,-9.81"), ("link.5.axial", "0.02"), ("payload.axial", "0.03")];
+    scenario.machine = scenario.machine.set_all(settings).expect("valid");
     let mut frames = Vec::new();
     replay(&scenario, |_, f| frames.push(*f)).expect("it can start");
     frames
@@ -35,7 +37,7 @@ fn paths_are_unique_and_plain() {
         let paths: BTreeSet<&str> = table.iter().map(|s| s.path.as_str()).collect();
         assert_eq!(paths.len(), table.len());
         for signal in &table {
-            let plain = |c: char| c.is_ascii_alphanumeric() || c == '/' || c == '_';
+            let plain = |c: char| c.is_ascii_alphanumeric() || "/_-".contains(c);
             assert!(signal.path.chars().all(plain) && signal.path.matches('/').count() == 1, "{}", signal.path);
             assert!(!signal.label.is_empty() && !signal.symbol.is_empty(), "{}", signal.path);
             assert_eq!(signal.group(), signal.path.split_once('/').expect("a group").0);
@@ -74,6 +76,8 @@ fn symbols_count_drives_below_the_line() {
 #[test]
 fn values_are_the_frame_s() {
     let table = signals(machine());
+    let joints = Joints::of(machine()).expect("determinate");
+    let pins = joints.pins();
     let mut named = BTreeSet::new();
     for frame in frames().iter().step_by(97) {
         let mut is = |path: &str, want: f64| {
@@ -159,6 +163,23 @@ fn values_are_the_frame_s() {
         is("dexterity/manipulability", frame.dexterity.manipulability);
         is("torque_per_force/worst", frame.dexterity.worst_torque_per_force);
         is("transmission/least", frame.transmission);
+        for (i, pin) in pins.iter().enumerate() {
+            is(&format!("pin/{}", pin.name), frame.inside.pin(i).expect("defined").norm());
+        }
+        let worst = (0..pins.len()).map(|i| frame.inside.size(i)).fold(0.0, f64::max);
+        assert!((frame.inside.worst - worst).abs() <= 1e-14 * worst);
+        is("pin/worst", frame.inside.worst);
+        is("tilt/x", frame.inside.tilt.motion.re + frame.inside.tilt.weight.re);
+        is("tilt/y", frame.inside.tilt.motion.im + frame.inside.tilt.weight.im);
+        for (pair, (k, l)) in [("12", (0, 1)), ("13", (0, 2)), ("23", (1, 2))] {
+            let turn = frame.q[k] - frame.q[l];
+            assert!((value(&table, &format!("transmission/{pair}"), frame) - turn.sin().abs()).abs() < 1e-14, "{pair}");
+            is(&format!("transmission/{pair}"), cross(e[k], e[l]).abs());
+        }
+        let distance = [(0, 1), (0, 2), (1, 2)].map(|(k, l)| (frame.q[k] - frame.q[l]).sin().abs().asin());
+        let distance = distance.into_iter().fold(f64::INFINITY, f64::min);
+        assert!((value(&table, "change_point/distance", frame) - distance).abs() < 1e-12);
+        is("change_point/distance", nearest(&frame.q, &frame.qd).expect("pairs").distance);
         is("reactionless/now", f64::from(u8::from(frame.is_quiet())));
     }
     // No row is left that nobody has looked at.
@@ -171,7 +192,7 @@ fn a_frame_agrees_with_itself() {
     let mut scenario = Scenario::builtin("case-1").expect("built in");
     scenario.plant.payload.mass = 0.1;
     scenario.machine = scenario.machine.set("gravity", "1,-9.81").expect("valid");
-    let plant = scenario.plant.payload.on(&scenario.plant.machine(&scenario.machine).expect("valid"));
+    let plant = Inertia::of(&scenario.plant.payload.held_by(&scenario.machine).expect("valid"));
     let model = Inertia::of(&scenario.machine);
     let (mut torque, mut moment, mut force) = (0.0_f64, 0.0_f64, 0.0_f64);
     let see = |_: &Run, f: &Frame| {

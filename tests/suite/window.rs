@@ -474,6 +474,55 @@ fn the_fonts_have_every_letter() {
     }
 }
 
+/// Runs side by side: by key, a row laid over, sorted by its head, this run kept; a second cursor shows differences.
+#[test]
+fn runs_stand_side_by_side() {
+    let Some(mut h) = desk("case-1", Theme::Dark) else { return };
+    h.run_steps(3);
+    h.key_press(Key::C);
+    h.run_steps(2);
+    let board = |h: &Desktop| h.state().desk().board().cloned();
+    assert_eq!(board(&h).expect("on display").entries().len(), 5);
+    h.get_by_label("Lay over: Reactionless").click();
+    h.run_steps(2);
+    assert_eq!(board(&h).expect("on display").shown().count(), 1);
+    h.get_by_label("Sort by largest moment that the base feels").click();
+    h.run_steps(2);
+    assert_eq!(board(&h).expect("on display").sorted(), Some((1, false)));
+    h.get_by_label("Keep this run").click();
+    h.run_steps(2);
+    assert!(board(&h).expect("on display").entries()[5].kept);
+    h.get_by_label("Remove case-1").click();
+    h.run_steps(2);
+    assert_eq!(board(&h).expect("on display").entries().len(), 5);
+    // The other way opens in place of this one.
+    h.get_by_label("Open Reactionless").click();
+    h.run_steps(2);
+    assert_eq!(session(&h).scenario().task.kind, stillbase::scenario::TaskKind::Reactionless);
+    h.key_press(Key::C);
+    h.run_steps(2);
+    assert!(board(&h).is_none());
+
+    h.key_press(Key::S);
+    h.run_steps(2);
+    assert!(h.state().desk().look().snapshots);
+    let plot = h.get_by_label_contains("Torque over time").rect();
+    h.event(egui::Event::ModifiersChanged(Modifiers::SHIFT));
+    h.hover_at(plot.center());
+    h.step();
+    h.drag_at(plot.center());
+    h.step();
+    h.drop_at(plot.center());
+    h.step();
+    h.event(egui::Event::ModifiersChanged(Modifiers::NONE));
+    h.run_steps(2);
+    assert!(h.state().desk().look().mark.is_some(), "a second cursor");
+    assert!(h.query_all_by_label_contains("Δτ").count() > 0, "differences");
+    h.key_press(Key::Escape);
+    h.run_steps(2);
+    assert!(h.state().desk().look().mark.is_none());
+}
+
 /// Whatever differs in the plant is switched on, set and taken back in its section.
 #[test]
 fn what_differs_is_set_and_taken_back() {

@@ -21,7 +21,9 @@ const MISS: f64 = 2e-11;
 const MISS_AT_LEAST: f64 = 1e-8;
 /// Spaces between nodes on a piece of a curve to begin with.
 const SPACES: usize = 8;
-/// The least space, as a share of its piece, and the most nodes of a curve.
+/// More pieces than this begin with one space each.
+const MANY: usize = 200;
+/// The least space, as a share of its piece, and the most nodes of a curve, some more for each piece.
 const LEAST_SPACE: f64 = 1e-6;
 const MOST_NODES: usize = 20_000;
 
@@ -94,10 +96,13 @@ impl Track<'_> {
         let (mut stations, mut nodes) = (vec![0.0], vec![self.jet(start, 0.0)]);
         let joints: Vec<f64> = self.curve.joints().collect();
         let mut ahead: Vec<f64> = Vec::with_capacity(64);
+        let pieces = joints.len() - 1;
+        // Many pieces are short, as those between samples.
+        let spaces = if pieces > MANY { 1 } else { SPACES };
         for ends in joints.windows(2) {
             let run = ends[1] - ends[0];
-            let station = |i: usize| if i == SPACES { ends[1] } else { ends[0] + run * i as f64 / SPACES as f64 };
-            ahead.extend((1..=SPACES).rev().map(station));
+            let station = |i: usize| if i == spaces { ends[1] } else { ends[0] + run * i as f64 / spaces as f64 };
+            ahead.extend((1..=spaces).rev().map(station));
             while let Some(&next) = ahead.last() {
                 let (s, here) = (stations[stations.len() - 1], nodes[nodes.len() - 1]);
                 let there = self.jet(self.advance(here.a, s, next)?, next);
@@ -106,7 +111,7 @@ impl Track<'_> {
                     stations.push(next);
                     nodes.push(there);
                     ahead.pop();
-                } else if next - s < LEAST_SPACE * run || nodes.len() > MOST_NODES {
+                } else if next - s < LEAST_SPACE * run || nodes.len() > MOST_NODES + 4 * pieces {
                     // So near to a fold that no nodes are dense enough.
                     return Err((s, here.a, Stop::Fold));
                 } else {

@@ -3,9 +3,10 @@
 use super::{Handle, Stage, ViewOptions, label, point};
 use crate::plan::Motion;
 use crate::planar::{Units, Vector};
-use crate::scenario::{Shape, Task};
+use crate::scenario::Shape;
 use crate::scene::palette::{Palette, faded};
 use crate::scene::{Anchor, Line, Marker, Scene};
+use crate::session::Run;
 
 /// Parts of a path that is drawn.
 const LOOKS: usize = 256;
@@ -26,7 +27,12 @@ pub(super) struct Course {
 }
 
 /// Numbers, names and places of the points that are drawn, m.
-pub(crate) fn waypoints(task: &Task) -> Vec<(usize, String, Vector)> {
+pub(crate) fn waypoints(run: &Run) -> Vec<(usize, String, Vector)> {
+    let task = &run.scenario().task;
+    if task.samples.is_some() {
+        // They may have been turned since the file was written.
+        return [(0, 0.0), (1, 1.0)].map(|(i, share)| (i, task.name_of(i), run.on_path(share))).to_vec();
+    }
     let named = |(i, p)| (i, task.name_of(i), p);
     let all: Vec<_> = task.points().into_iter().enumerate().map(named).collect();
     if all.len() <= NAMED && task.shape() != Shape::Freehand {

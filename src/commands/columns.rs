@@ -1,0 +1,284 @@
+//! Samples from a CSV file of a person's own: columns by name and unit, and every wrong thing with its file, line and
+//! column.
+
+use std::f64::consts::{PI, TAU};
+use std::fmt::Display;
+
+use clap::ValueEnum;
+use stillbase::machine::Machine;
+use stillbase::plan::Samples;
+use stillbase::plan::given::MAX_SAMPLES;
+use stillbase::plan::spline::FEWEST;
+
+use super::failure::Failure;
+
+/// What the columns are of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Content {
+    /// Absolute drive angles q1, q2 …
+    Drives,
+    /// x and y of the end effector
+    Tip,
+}
+
+/// A file read.
+#[derive(Debug)]
+pub struct Read {
+    pub content: Content,
+    pub samples: Samples,
+    /// Names of the columns beside the time.
+    pub names: Vec<String>,
+    /// For each column how many whole turns were taken out.
+    pub unwrapped: Vec<usize>,
+}
+
+/// An angle without unit beyond this, rad, is taken for one in degrees.
+const TURNS: f64 = 2.0 * TAU;
+/// From one sample to the next an angle may move by this much, rad.
+const LARGEST_STEP: f64 = 0.5 * PI;
+/// A step so many times as fast as both beside it is a jump, if it is also larger than this, rad or m.
+const JUMP: f64 = 10.0;
+const VISIBLE: [f64; 2] = [0.1, 0.02];
+/// A time between samples so many times as long as the usual one is a gap.
+const GAP: f64 = 10.0;
+
+/// Reads samples; gaps in time are let pass if asked to.
+///
+/// # Errors
+/// Where what is wrong, and what was expected.
+pub fn samples(
+    text: &str,
+    file: &str,
+    machine: &Machine,
+    wanted: Option<Content>,
+    gaps: bool,
+) -> Result<Read, Failure> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let at = |line: u64, why: &dyn Display| Failure::wrong_input(format!("{file}:{line}: {why}"));
+    let mut lines = reader(text).into_records();
+    let mut next =
+        || lines.next().map(|r| r.map_err(|e| Failure::wrong_input(format!("{file}: {e}: want a CSV file"))));
+    let want = head_wanted(machine);
+    let Some(head) = next().transpose()? else {
+        return Err(at(1, &format!("nothing here: want {want}")));
+    };
+    let line_of = |record: &csv::StringRecord| record.position().map_or(0, csv::Position::line);
+    if head.iter().all(|cell| cell.parse::<f64>().is_ok()) {
+        return Err(at(line_of(&head), &format!("no header: want {want}")));
+    }
+    let columns = Columns::of(&head, machine, wanted).map_err(|why| at(line_of(&head), &why))?;
+    let (mut rows, mut places): (Vec<Vec<f64>>, Vec<u64>) = (Vec::new(), Vec::new());
+    while let Some(record) = next().transpose()? {
+        let line = line_of(&record);
+        let number = |column: &Column| match record.get(column.place).filter(|cell| !cell.is_empty()) {
+            None => Err(at(line, &format!("column {}: nothing there: want a number", column.name))),
+            Some(cell) => {
+                cell.parse().ok().filter(|x: &f64| x.is_finite()).map(|x| x * column.scale).ok_or_else(|| {
+                    at(line, &format!("column {}: {cell:?}: want a finite number, such as 0.25", column.name))
+                })
+            }
+        };
+        let row: Vec<f64> = columns.all.iter().map(number).collect::<Result<_, _>>()?;
+        if let Some(before) = rows.last().map(|row| row[0]).filter(|before| row[0] <= *before) {
+            let why = format!("column {}: {} s after {before} s: want times that rise", columns.all[0].name, row[0]);
+            return Err(at(line, &why));
+        }
+        rows.push(row);
+        places.push(line);
+        if rows.len() > MAX_SAMPLES {
+            return Err(at(line, &format!("more than {MAX_SAMPLES} rows: want fewer; every second one will do")));
+        }
+    }
+    if rows.len() < FEWEST {
+        return Err(Failure::wrong_input(format!("{file}: {} rows of numbers: want at least {FEWEST}", rows.len())));
+    }
+    if let Some((i, step, usual)) = gap(&rows).filter(|_| !gaps) {
+        let why = format!(
+            "column {}: {step:.6} s after line {}, where {usual:.6} s is usual: a gap; want it filled, or --gaps to have it \
+             bridged by the spline",
+            columns.all[0].name,
+            places[i - 1]
+        );
+        return Err(at(places[i], &why));
+    }
+    let mut unwrapped = vec![0; columns.all.len() - 1];
+    for (k, column) in columns.all.iter().enumerate().skip(1) {
+        if columns.content == Content::Drives {
+            if !column.has_unit
+                && let Some(i) = rows.iter().position(|row| row[k].abs() > TURNS)
+            {
+                let name = &column.name;
+                let why = format!(
+                    "column {name}: {} rad is more than two turns: want radians; if these are degrees, name the column \
+                     \"{name} (deg)\", if they are radians, \"{name} (rad)\"",
+                    rows[i][k]
+                );
+                return Err(at(places[i], &why));
+            }
+            unwrapped[k - 1] = unwrap(&mut rows, k);
+        }
+        if let Some((i, step)) = jump(&rows, k, columns.content) {
+            let unit = if columns.content == Content::Drives { "rad" } else { "m" };
+            let turns = if unit == "rad" { ", which no whole turn explains" } else { "" };
+            let why = format!(
+                "column {}: a jump of {step:.3} {unit} from line {}{turns}: want a continuous motion, sampled more often \
+                 if it is that fast",
+                column.name,
+                places[i - 1]
+            );
+            return Err(at(places[i], &why));
+        }
+    }
+    let names = columns.all[1..].iter().map(|c| c.name.clone()).collect();
+    let samples = Samples::new(&rows).map_err(|e| Failure::wrong_input(e).of(file))?;
+    Ok(Read { content: columns.content, samples, names, unwrapped })
+}
+
+/// By the first line that tells: semicolons, tabs or commas.
+fn reader(text: &str) -> csv::Reader<&[u8]> {
+    let head = text.lines().find(|line| !line.trim().is_empty() && !line.starts_with('#')).unwrap_or_default();
+    let delimiter = [b';', b'\t'].into_iter().find(|d| head.bytes().any(|b| b == *d)).unwrap_or(b',');
+    csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .trim(csv::Trim::All)
+        .comment(Some(b'#'))
+        .delimiter(delimiter)
+        .from_reader(text.as_bytes())
+}
+
+fn head_wanted(machine: &Machine) -> String {
+    let drives: Vec<String> = (1..=machine.drives()).map(|k| format!("q{k}")).collect();
+    format!("a header t,{} (rad) or t,x,y (m)", drives.join(","))
+}
+
+/// A column of the file.
+struct Column {
+    place: usize,
+    name: String,
+    scale: f64,
+    has_unit: bool,
+}
+
+struct Columns {
+    content: Content,
+    /// The time first.
+    all: Vec<Column>,
+}
+
+const TIME: &[(&str, f64)] = &[("s", 1.0), ("sec", 1.0), ("ms", 1e-3), ("us", 1e-6), ("µs", 1e-6)];
+const ANGLE: &[(&str, f64)] =
+    &[("rad", 1.0), ("radians", 1.0), ("deg", PI / 180.0), ("degrees", PI / 180.0), ("°", PI / 180.0)];
+const LENGTH: &[(&str, f64)] = &[("m", 1.0), ("cm", 1e-2), ("mm", 1e-3)];
+
+impl Columns {
+    fn of(head: &csv::StringRecord, machine: &Machine, wanted: Option<Content>) -> Result<Self, String> {
+        let cells: Vec<(String, Option<String>)> = head.iter().map(name_and_unit).collect();
+        let find = |names: &[String], units: &[(&str, f64)]| -> Result<Option<Column>, String> {
+            let mut found = cells.iter().enumerate().filter(|(_, (name, _))| names.contains(name));
+            let Some((place, (name, unit))) = found.next() else { return Ok(None) };
+            if let Some((other, _)) = found.next() {
+                return Err(format!("columns {} and {} are both {name}: want one", place + 1, other + 1));
+            }
+            let scale = match unit {
+                None => 1.0,
+                Some(unit) => {
+                    let known = units.iter().find(|(known, _)| known == unit);
+                    known.map(|known| known.1).ok_or_else(|| {
+                        let all: Vec<&str> = units.iter().map(|u| u.0).collect();
+                        format!("column {name}: unit {unit:?}: want one of {}", all.join(", "))
+                    })?
+                }
+            };
+            Ok(Some(Column { place, name: name.clone(), scale, has_unit: unit.is_some() }))
+        };
+        let named = |all: &[&str]| all.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
+        let want = head_wanted(machine);
+        let missing = |name: &str| {
+            let have: Vec<&str> = head.iter().collect();
+            format!("no column {name} among {}: want {want}", have.join(", "))
+        };
+        let time = find(&named(&["t", "time"]), TIME)?.ok_or_else(|| missing("t"))?;
+        let drive = |k: usize| {
+            let own = &machine.spec().drives[k].name;
+            find(&[format!("q{}", k + 1), format!("q_{}", k + 1), format!("angle/{}", own.to_lowercase())], ANGLE)
+        };
+        let drives: Vec<Option<Column>> = (0..machine.drives()).map(drive).collect::<Result<_, _>>()?;
+        let tip = [find(&named(&["x", "tip/x"]), LENGTH)?, find(&named(&["y", "tip/y"]), LENGTH)?];
+        let content = wanted.unwrap_or(match drives.iter().any(Option::is_some) || tip.iter().all(Option::is_none) {
+            true => Content::Drives,
+            false => Content::Tip,
+        });
+        let mut all = vec![time];
+        match content {
+            Content::Drives => {
+                for (k, column) in drives.into_iter().enumerate() {
+                    all.push(column.ok_or_else(|| missing(&format!("q{}", k + 1)))?);
+                }
+            }
+            Content::Tip => {
+                for (name, column) in ["x", "y"].into_iter().zip(tip) {
+                    all.push(column.ok_or_else(|| missing(name))?);
+                }
+            }
+        }
+        Ok(Self { content, all })
+    }
+}
+
+/// `q1 (deg)`, `q1 [deg]`, `time s`, `q1_deg` or a name alone.
+fn name_and_unit(cell: &str) -> (String, Option<String>) {
+    let cell = cell.trim().to_lowercase();
+    let bracketed = |open: char, close: char| {
+        let (name, rest) = cell.split_once(open)?;
+        Some((name.trim().to_owned(), rest.trim().strip_suffix(close)?.trim().to_owned()))
+    };
+    if let Some((name, unit)) = bracketed('(', ')').or_else(|| bracketed('[', ']')) {
+        return (name, Some(unit).filter(|unit| !unit.is_empty()));
+    }
+    let known = |unit: &str| [TIME, ANGLE, LENGTH].iter().any(|units| units.iter().any(|(known, _)| *known == unit));
+    for separator in [' ', '_', '/'] {
+        if let Some((name, unit)) = cell.rsplit_once(separator).filter(|(_, unit)| known(unit)) {
+            return (name.trim().to_owned(), Some(unit.to_owned()));
+        }
+    }
+    (cell, None)
+}
+
+/// Takes whole turns out of the steps of a column; how many there were.
+fn unwrap(rows: &mut [Vec<f64>], k: usize) -> usize {
+    let (mut turns, mut count) = (0.0, 0);
+    let mut before = rows[0][k];
+    for row in rows.iter_mut().skip(1) {
+        let step = ((row[k] - before) / TAU).round();
+        before = row[k];
+        count += usize::from(step != 0.0);
+        turns -= step;
+        if turns != 0.0 {
+            row[k] += TAU * turns;
+        }
+    }
+    count
+}
+
+/// The first step of a column that no smooth motion makes: at which row, and how large.
+fn jump(rows: &[Vec<f64>], k: usize, content: Content) -> Option<(usize, f64)> {
+    let step = |i: usize| rows[i][k] - rows[i - 1][k];
+    let speed = |i: usize| (step(i) / (rows[i][0] - rows[i - 1][0])).abs();
+    let visible = VISIBLE[usize::from(content == Content::Tip)];
+    (1..rows.len()).map(|i| (i, step(i))).find(|(i, size)| {
+        let beside = [i.checked_sub(1).filter(|i| *i > 0), Some(i + 1).filter(|i| *i < rows.len())];
+        let most = beside.into_iter().flatten().map(speed).fold(0.0, f64::max);
+        let lone = size.abs() > visible && speed(*i) > JUMP * most;
+        lone || (content == Content::Drives && size.abs() > LARGEST_STEP)
+    })
+}
+
+/// The first time between samples that is far longer than the usual one: at which row, how long, and the usual one, s.
+fn gap(rows: &[Vec<f64>]) -> Option<(usize, f64, f64)> {
+    let steps: Vec<f64> = rows.windows(2).map(|w| w[1][0] - w[0][0]).collect();
+    let mut sorted = steps.clone();
+    sorted.sort_by(f64::total_cmp);
+    let usual = sorted[sorted.len() / 2];
+    steps.iter().position(|step| *step > GAP * usual).map(|i| (i + 1, steps[i], usual))
+}

@@ -1,0 +1,200 @@
+//! `stillbase compare`
+
+use std::path::PathBuf;
+
+use clap::Args;
+use serde::{Serialize, Serializer};
+use stillbase::compare::{COLUMNS, Compared, Summary, alternatives};
+use stillbase::files::{NewFile, WriteError, check_new};
+use stillbase::scenario::Scenario;
+
+use super::failure::Failure;
+use super::input::{DEFAULT_SCENARIO, Settings, scenario};
+use super::output::{Format, Table, fixed, say, yes};
+
+/// Compare runs: one task done in several ways, or any scenarios, by what reaches the base and what it costs
+///
+/// One scenario: its task on a reactionless path, on a straight line (case 1), with another pose at the end (case 2), on a straight line with a reaction wheel, and slowly. Several: just these.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  stillbase compare case-3                                        five ways from A to B
+  stillbase compare case-3 --set base.kind=free                   and what each does to a spacecraft
+  stillbase compare case-3 --set base.wheel.torque_limit=0.5      when does the wheel saturate?
+  stillbase compare case-1 case-3 my.toml -o table.csv")]
+pub struct Compare {
+    /// One scenario to do in several ways, or several to compare
+    #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
+    scenarios: Vec<String>,
+    /// Write the table as CSV, or with .rrd the runs as a recording
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Replace the file if it exists
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    settings: Settings,
+    #[command(flatten)]
+    format: Format,
+}
+
+#[derive(Serialize)]
+struct Answer {
+    runs: Vec<Row>,
+}
+
+struct Row {
+    name: String,
+    way: Option<&'static str>,
+    outcome: Result<Summary, String>,
+}
+
+impl Serialize for Row {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        use serde::ser::SerializeMap;
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("scenario", &self.name)?;
+        if let Some(way) = self.way {
+            map.serialize_entry("way", way)?;
+        }
+        match &self.outcome {
+            Ok(summary) => {
+                for column in COLUMNS {
+                    if let Some(value) = (column.value)(summary) {
+                        map.serialize_entry(column.key, &value)?;
+                    }
+                }
+                map.serialize_entry("reactionless", &summary.reactionless)?;
+                if let Some(fault) = &summary.fault {
+                    map.serialize_entry("audit", fault)?;
+                }
+            }
+            Err(why) => map.serialize_entry("refused", why)?,
+        }
+        map.end()
+    }
+}
+
+impl Compare {
+    /// Runs all and prints a row of each.
+    pub fn run(&self) -> Result<(), Failure> {
+        if let Some(file) = &self.output {
+            check_new(file, self.force)?;
+            let known = ["csv", "rrd"].iter().any(|e| file.extension().is_some_and(|x| x == *e));
+            if !known {
+                return Err(Failure::wrong_input("want a name that ends in .csv or .rrd").of(file.display()));
+            }
+        }
+        let scenarios = self.scenarios()?;
+        let (mut runs, mut good) = (Vec::new(), Vec::new());
+        for (way, scenario) in scenarios {
+            let outcome = Compared::of(scenario.clone());
+            let outcome = outcome.map(|run| run.summary).map_err(|why| why.to_string());
+            if let Ok(summary) = &outcome {
+                if let Some(fault) = &summary.fault {
+                    say(format!("{}: audit failed: {fault}", scenario.name));
+                }
+                good.push(scenario.clone());
+            }
+            runs.push(Row { name: scenario.name, way, outcome });
+        }
+        if let [Row { name, outcome: Err(why), .. }] = &runs[..] {
+            return Err(Failure::NoAnswer(format!("{name}: {why}")));
+        }
+        if good.is_empty() {
+            let why = runs.iter().find_map(|r| r.outcome.as_ref().err()).cloned().unwrap_or_default();
+            return Err(Failure::NoAnswer(format!("none of these can be done: {why}")));
+        }
+        match &self.output {
+            Some(file) if file.extension().is_some_and(|x| x == "rrd") => self.record(&good, file)?,
+            Some(file) => self.csv(&runs, file)?,
+            None => {}
+        }
+        self.format.print(&Answer { runs }, table)
+    }
+
+    fn scenarios(&self) -> Result<Vec<(Option<&'static str>, Scenario)>, Failure> {
+        if let [name] = &self.scenarios[..] {
+            let scenario = scenario(name, &self.settings)?;
+            return Ok(alternatives(&scenario).into_iter().map(|(way, s)| (Some(way.name()), s)).collect());
+        }
+        let mut all: Vec<(Option<&'static str>, Scenario)> = Vec::new();
+        for name in &self.scenarios {
+            let mut next = scenario(name, &self.settings)?;
+            let (own, mut count) = (next.name.clone(), 1);
+            while all.iter().any(|(_, s)| s.name == next.name) {
+                count += 1;
+                next.name = format!("{own}-{count}");
+            }
+            all.push((None, next));
+        }
+        Ok(all)
+    }
+
+    #[cfg(feature = "record")]
+    fn record(&self, scenarios: &[Scenario], file: &std::path::Path) -> Result<(), Failure> {
+        let options = stillbase::headless::Options { force: self.force, ..super::headless::unpictured() };
+        super::headless::record_with_bar(scenarios, file, &options)?;
+        say(format!("wrote {}", file.display()));
+        Ok(())
+    }
+
+    #[cfg(not(feature = "record"))]
+    fn record(&self, _: &[Scenario], file: &std::path::Path) -> Result<(), Failure> {
+        Err(Failure::wrong_input("this build cannot record: want a name that ends in .csv").of(file.display()))
+    }
+
+    fn csv(&self, runs: &[Row], file: &std::path::Path) -> Result<(), Failure> {
+        let mut writer = csv::Writer::from_writer(NewFile::create(file, self.force)?);
+        let failed = |e: csv::Error| match e.into_kind() {
+            csv::ErrorKind::Io(source) => WriteError::Failed { file: file.into(), source }.into(),
+            other => Failure::wrong_input(format!("CSV: {other:?}")),
+        };
+        let heads = COLUMNS.iter().map(|c| format!("{} {}", c.key, c.unit));
+        let head = ["scenario".to_owned()].into_iter().chain(heads).chain(["reactionless".into(), "refused".into()]);
+        writer.write_record(head).map_err(failed)?;
+        for row in runs {
+            let values = COLUMNS.iter().map(|c| match &row.outcome {
+                Ok(summary) => (c.value)(summary).map_or_else(String::new, |x| (x + 0.0).to_string()),
+                Err(_) => String::new(),
+            });
+            let (verdict, why) = match &row.outcome {
+                Ok(summary) => (yes(summary.reactionless), String::new()),
+                Err(why) => ("", why.clone()),
+            };
+            let cells = [row.name.clone()].into_iter().chain(values).chain([verdict.to_owned(), why]);
+            writer.write_record(cells).map_err(failed)?;
+        }
+        match writer.into_inner() {
+            Ok(file) => file.finish()?,
+            Err(e) => return Err(Failure::wrong_input(e.error())),
+        }
+        say(format!("wrote {}", file.display()));
+        Ok(())
+    }
+}
+
+/// Runs downwards, figures across; columns that hold nothing are left out.
+fn table(answer: &Answer) -> String {
+    let good: Vec<&Summary> = answer.runs.iter().filter_map(|r| r.outcome.as_ref().ok()).collect();
+    let moves = good.iter().any(|s| s.base_shift > 0.0 || s.base_tilt > 0.0);
+    let columns: Vec<_> = COLUMNS
+        .iter()
+        .filter(|c| moves || !matches!(c.key, "base_shift" | "base_tilt"))
+        .filter(|c| good.iter().any(|s| (c.value)(s).is_some()))
+        .collect();
+    let heads = columns.iter().map(|c| format!("{} {}", c.head, c.unit));
+    let mut table = Table::new(["run".to_owned()].into_iter().chain(heads).chain(["reactionless".into()]));
+    let mut refused = String::new();
+    for row in &answer.runs {
+        let name = row.way.unwrap_or(&row.name).to_owned();
+        match &row.outcome {
+            Ok(s) => {
+                let cells = columns.iter().map(|c| (c.value)(s).map_or_else(|| "–".into(), |x| fixed(x, c.decimals)));
+                table.row([name].into_iter().chain(cells).chain([yes(s.reactionless).to_owned()]));
+            }
+            Err(why) => refused += &format!("{name}: {why}\n"),
+        }
+    }
+    format!("{table}{refused}")
+}

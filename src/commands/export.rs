@@ -1,0 +1,195 @@
+//! `stillbase export`
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use serde::Serialize;
+use stillbase::dynamics::{Surroundings, inverse};
+use stillbase::files::{check_new, write_new};
+use stillbase::machine::Inertia;
+use stillbase::planar::Vector;
+use stillbase::session::{Run, replay, settled};
+
+use super::failure::Failure;
+use super::input::{Settings, scenario};
+use super::output::{Format, fixed, say};
+
+/// Write a motion as CSV at the rate of a controller: angles, rates, accelerations, feed-forward torques
+///
+/// Columns are t, q, qd, qdd, tau_ff of each drive, x, y of the end effector, and b; SI and radians, every digit. The
+/// first row is the start and the last one the end, also where the rate does not divide the duration.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  stillbase export case-3 --rate 500 -o case-3.csv
+  stillbase export case-1 --what simulated --set plant.payload.mass=0.2 | head")]
+pub struct Export {
+    /// A built-in scenario or a TOML file
+    #[arg(value_name = "SCENARIO")]
+    scenario: String,
+    /// Rows a second
+    #[arg(long, value_name = "HZ", default_value = "1000", value_parser = rate)]
+    rate: f64,
+    /// The planned reference with the torques that the model needs for it, or what the simulated machine does (its torque
+    /// columns are tau1, tau2 …)
+    #[arg(long, value_enum, default_value = "reference")]
+    what: What,
+    /// Write the CSV to this file instead of standard output
+    #[arg(short, long, value_name = "FILE.csv")]
+    output: Option<PathBuf>,
+    /// Replace the file if it exists
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    settings: Settings,
+    #[command(flatten)]
+    format: Format,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum What {
+    Reference,
+    Simulated,
+}
+
+/// The most rows: more are asked for by a slip of the hand.
+const MOST_ROWS: f64 = 2e6;
+
+fn rate(text: &str) -> Result<f64, String> {
+    text.trim().parse().ok().filter(|x| (0.01..=1e6).contains(x)).ok_or_else(|| "want 0.01 to 1000000 Hz".into())
+}
+
+#[derive(Serialize)]
+struct Answer {
+    scenario: String,
+    what: &'static str,
+    rate: f64,
+    duration: f64,
+    /// s from the last row but one to the last.
+    last_interval: f64,
+    columns: Vec<String>,
+    rows: Vec<Vec<f64>>,
+}
+
+impl Export {
+    /// Runs it.
+    pub fn run(&self) -> Result<(), Failure> {
+        if let Some(file) = &self.output {
+            check_new(file, self.force)?;
+        }
+        let scenario = scenario(&self.scenario, &self.settings)?;
+        let name = scenario.name.clone();
+        let drives = scenario.machine.drives();
+        let (rows, duration) = match self.what {
+            What::Reference => {
+                let (ground, later) = settled(&scenario)?;
+                if later > 0 {
+                    say(format!("note: {later} edits after the start are no part of the reference; --what simulated"));
+                }
+                self.reference(&Run::new(&ground).map_err(|e| Failure::from(e).of(&name))?)?
+            }
+            What::Simulated => self.simulated(&scenario)?,
+        };
+        let torque = if self.what == What::Reference { "tau_ff" } else { "tau" };
+        let per_drive = ["q", "qd", "qdd", torque].into_iter();
+        let columns: Vec<String> = std::iter::once("t".to_owned())
+            .chain(per_drive.flat_map(|word| (1..=drives).map(move |k| format!("{word}{k}"))))
+            .chain(["x", "y", "b"].map(String::from))
+            .collect();
+        let last_interval = match rows.as_slice() {
+            [.., before, last] => last[0] - before[0],
+            _ => 0.0,
+        };
+        if (last_interval * self.rate - 1.0).abs() > 1e-6 && rows.len() > 1 {
+            say(format!(
+                "note: {} Hz does not divide {} s: the last row, the end, is {} ms after the one before",
+                self.rate,
+                fixed(duration, 6),
+                fixed(1e3 * last_interval, 6)
+            ));
+        }
+        let what = if self.what == What::Reference { "reference" } else { "simulated" };
+        let answer = Answer { scenario: name, what, rate: self.rate, duration, last_interval, columns, rows };
+        let csv = csv(&answer)?;
+        match &self.output {
+            Some(file) => {
+                write_new(file, csv.as_bytes(), self.force)?;
+                if self.format.json {
+                    self.format.print(&answer, |_| String::new())?;
+                }
+                say(format!("wrote {}, {} rows", file.display(), answer.rows.len()));
+                Ok(())
+            }
+            None => self.format.print(&answer, |_| csv),
+        }
+    }
+
+    /// Rows of the planned motion, and its duration, s.
+    fn reference(&self, run: &Run) -> Result<(Vec<Vec<f64>>, f64), Failure> {
+        let (motion, machine) = (&run.plan().motion, &run.scenario().machine);
+        let (model, whole) = (Inertia::of(machine), motion.duration());
+        let around = Surroundings { gravity: machine.gravity(), force: Vector::default() };
+        self.check_rows(whole)?;
+        // The end is a row of its own unless a whole number of intervals comes to it.
+        let spaces = (whole * self.rate * (1.0 - 1e-9)).ceil() as usize;
+        let lambda = model.lambda();
+        let row = |i: usize| {
+            let t = if i == spaces { whole } else { i as f64 / self.rate };
+            let r = motion.at(t);
+            let e = r.q.units();
+            let torque = inverse(&model, &e, &r.qd, &r.qdd, &around);
+            let p = run.place(&r.q);
+            // Zeros without a sign.
+            let all = r.q.iter().chain(r.qd.iter()).chain(r.qdd.iter()).chain(torque.iter()).map(|x| x + 0.0);
+            std::iter::once(t).chain(all).chain([p.re, p.im, lambda.dot(&r.q)]).collect()
+        };
+        Ok(((0..=spaces).map(row).collect(), whole))
+    }
+
+    /// Rows of what the machine does, and how long it is seen, s.
+    fn simulated(&self, scenario: &stillbase::scenario::Scenario) -> Result<(Vec<Vec<f64>>, f64), Failure> {
+        let steps = 1.0 / (scenario.step * self.rate);
+        let every = steps.round();
+        if !(every >= 1.0 && (steps - every).abs() < 1e-6 * every) {
+            let why = format!(
+                "--rate {} does not divide the simulation's {:.6} steps a second: want a part of it, or another step in the \
+                 scenario",
+                self.rate,
+                1.0 / scenario.step
+            );
+            return Err(Failure::wrong_input(why));
+        }
+        self.check_rows(scenario.duration.unwrap_or(scenario.task.time))?;
+        let mut rows = Vec::new();
+        let run = replay(scenario, |run, f| {
+            if f.step % every as u64 == 0 || f.step == run.last_step() {
+                let all = f.q.iter().chain(f.qd.iter()).chain(f.qdd.iter()).chain(f.torque.iter()).map(|x| x + 0.0);
+                rows.push(std::iter::once(f.time).chain(all).chain([f.tip.re, f.tip.im, f.b]).collect());
+            }
+        })
+        .map_err(|e| Failure::from(e).of(&scenario.name))?;
+        Ok((rows, run.frame().time))
+    }
+
+    fn check_rows(&self, duration: f64) -> Result<(), Failure> {
+        let rows = duration * self.rate;
+        match rows <= MOST_ROWS {
+            true => Ok(()),
+            false => Err(Failure::wrong_input(format!(
+                "--rate {}: {rows:.0} rows: want at most {MOST_ROWS:.0}, a lower rate",
+                self.rate
+            ))),
+        }
+    }
+}
+
+fn csv(answer: &Answer) -> Result<String, Failure> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let mut done = writer.write_record(&answer.columns);
+    for row in &answer.rows {
+        done = done.and_then(|()| writer.serialize(row));
+    }
+    done.map_err(|e| Failure::wrong_input(format!("CSV: {e}")))?;
+    let bytes = writer.into_inner().map_err(|e| Failure::standard_output(e.error()))?;
+    String::from_utf8(bytes).map_err(Failure::wrong_input)
+}

@@ -1,0 +1,154 @@
+//! What motions of a machine do to its base, and whether a proposal is as quiet as it is meant to be.
+
+use serde::Serialize;
+use stillbase::dynamics::{Surroundings, angular_momentum};
+use stillbase::machine::{Inertia, Machine};
+use stillbase::plan::nearest::Deviation;
+use stillbase::plan::{Forecast, Limits, Motion};
+use stillbase::pose_constant::Planes;
+use stillbase::scenario::{Scenario, Task};
+use stillbase::session::replay;
+
+/// What a motion does, if it is followed exactly.
+#[derive(Serialize)]
+pub struct Account {
+    pub peak_base_moment: f64,
+    pub rms_base_moment: f64,
+    pub moment_impulse: f64,
+    pub peak_base_force: f64,
+    pub rms_base_force: f64,
+    pub peak_torque: Vec<f64>,
+    pub peak_speed: Vec<f64>,
+    /// The limit of a drive that is passed by most, and by what factor.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub over: Option<(String, f64)>,
+    /// By how much a relative angle passes its limits at most, rad; 0 if all keep them.
+    pub past_limits: f64,
+    pub b_range: [f64; 2],
+    pub b_mean: f64,
+    pub angular_momentum_start: f64,
+    pub angular_momentum_end: f64,
+    /// Largest |q̇_k| at the end.
+    pub speed_end: f64,
+}
+
+#[derive(Serialize)]
+pub struct Proposal {
+    /// `same-tip`, `turned` or `on-plane`.
+    pub way: &'static str,
+    pub why: String,
+    pub b: f64,
+    /// Greatest distance of the end effector from the given motion.
+    pub tip_deviation: f64,
+    pub joint_deviation: Vec<f64>,
+    /// Root mean square over time and drives in the metric of kinetic energy.
+    pub rms_deviation: f64,
+    #[serde(flatten)]
+    pub account: Account,
+    /// As simulated.
+    pub simulated_peak_base_moment: f64,
+    pub simulated_peak_base_force: f64,
+    pub reactionless: bool,
+}
+
+/// A motion that might be proposed.
+pub struct Candidate {
+    pub way: &'static str,
+    pub why: String,
+    pub task: Task,
+}
+
+/// The machine with what is needed to judge motions of it.
+pub struct Judge {
+    pub machine: Machine,
+    pub model: Inertia,
+    pub around: Surroundings,
+    pub planes: Planes,
+    pub instants: usize,
+}
+
+impl Judge {
+    fn past_limits(&self, motion: &Motion) -> f64 {
+        let past = |i: usize| {
+            let q = motion.path.at(i as f64 / self.instants as f64).q;
+            let angles = self.machine.angles().iter().map(|angle| {
+                let a = q[angle.to] - q[angle.from] + angle.offset;
+                (angle.limits.start() - a).max(a - angle.limits.end())
+            });
+            angles.fold(0.0, f64::max)
+        };
+        let most = (0..=self.instants).map(past).fold(0.0, f64::max);
+        // What rounding passes by is none.
+        if most > 1e-6 { most } else { 0.0 }
+    }
+
+    pub fn account(&self, motion: &Motion) -> Account {
+        let f = Forecast::at(motion, &self.model, &self.around, &Limits::of(&self.machine), self.instants);
+        let ends = [0.0, motion.duration()].map(|t| motion.at(t));
+        let [start, end] = [0, 1].map(|i| angular_momentum(&self.model, &ends[i].q.units(), &ends[i].qd) + 0.0);
+        Account {
+            peak_base_moment: f.moment,
+            rms_base_moment: f.moment_rms,
+            moment_impulse: f.impulse,
+            peak_base_force: f.force,
+            rms_base_force: f.force_rms,
+            peak_torque: f.torque.to_vec(),
+            peak_speed: f.speed.to_vec(),
+            over: f.over.map(|(limit, factor)| (limit.to_string(), factor)),
+            past_limits: self.past_limits(motion),
+            b_range: f.b,
+            b_mean: f.b_mean,
+            angular_momentum_start: start,
+            angular_momentum_end: end,
+            speed_end: ends[1].qd.max_abs(),
+        }
+    }
+}
+
+impl Judge {
+    /// A candidate, planned and simulated.
+    ///
+    /// Errors say why it cannot be carried out.
+    pub fn proposal(
+        &self,
+        candidate: &Candidate,
+        scenario: &Scenario,
+        given: Option<&Motion>,
+    ) -> Result<Proposal, String> {
+        let run = replay(scenario, |_, _| {}).map_err(|refusal| refusal.to_string())?;
+        let peaks = run.frame().peaks;
+        let motion = &run.plan().motion;
+        let deviation =
+            given.map(|given| Deviation::between(self.machine.tip(), &self.model, given, motion, self.instants));
+        let account = self.account(motion);
+        Ok(Proposal {
+            way: candidate.way,
+            why: candidate.why.clone(),
+            b: account.b_mean,
+            tip_deviation: deviation.as_ref().map_or(0.0, |d| d.tip),
+            joint_deviation: deviation.as_ref().map_or_else(Vec::new, |d| d.joints.to_vec()),
+            rms_deviation: deviation.as_ref().map_or(0.0, |d| d.rms),
+            account,
+            simulated_peak_base_moment: peaks.moment,
+            simulated_peak_base_force: peaks.force,
+            reactionless: peaks.is_reactionless(),
+        })
+    }
+
+    /// Why holding b is not enough.
+    pub fn not_quiet(&self, proposal: &Proposal, given: Option<&Account>) -> String {
+        let most = |a: &Account| a.peak_torque.iter().fold(0.0, |m: f64, x| m.max(*x));
+        if given.is_some_and(|given| most(&proposal.account) < 1e-6 * most(given)) {
+            return "on a plane nothing of the motion is left: all of it turns the arm as a whole".into();
+        }
+        let what = format!(
+            "with b held the machine still transmits up to {:.2e} N m and {:.2e} N",
+            proposal.simulated_peak_base_moment, proposal.simulated_peak_base_force
+        );
+        let balanced = self.model.is_force_balanced() && self.model.is_invariant();
+        match balanced {
+            false => format!("{what}: it is not balanced; `stillbase design` mends that, `stillbase check` says where"),
+            true => format!("{what}: the samples are too rough or too dense for their digits; want --smooth, or fewer"),
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! The ways in which a given motion might be made reactionless, the best first.
+
+use clap::ValueEnum;
+use stillbase::plan::nearest::{nearest_b, same_tip, turned};
+use stillbase::plan::path::minimum_norm_curve;
+use stillbase::plan::{Motion, Path, Profile, Rule, Samples, trace};
+use stillbase::planar::DriveAngles;
+use stillbase::reactionless::BSet;
+use stillbase::scenario::{Task, TaskKind};
+
+use super::judge::{Candidate, Judge};
+use crate::commands::failure::Failure;
+
+/// What the proposal keeps of given drive angles.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Keep {
+    Tip,
+    Joints,
+}
+
+/// What is asked of the proposal.
+pub struct Asked {
+    /// rad.
+    pub b: Option<f64>,
+    pub keep: Option<Keep>,
+}
+
+/// What samples come to.
+pub struct Ways {
+    /// The motion as given; for the end effector with minimum-norm rates, if these can follow.
+    pub given: Option<Motion>,
+    /// Or why there is none.
+    pub candidates: Result<Vec<Candidate>, String>,
+}
+
+/// The motion given by drive angles, and what might be proposed, the best first.
+pub fn of_drives(asked: &Asked, judge: &Judge, samples: &Samples) -> Result<Ways, Failure> {
+    let path = samples.path(0.0).ok_or_else(|| Failure::wrong_input("want times further apart"))?;
+    let motion = Motion { path: Path::Table(path), profile: Profile::running(samples.duration()) };
+    let lambda = judge.model.lambda();
+    let mean = judge.account(&motion).b_mean;
+    let map = judge.planes.map();
+    // Whole turns of all drives are nothing: the one nearest to where the motion is.
+    let wanted = asked.b.map_or(mean, |b| b + map.period() * ((mean - b) / map.period()).round());
+    let which = if asked.b.is_some() { "the b asked for" } else { "the mean b" };
+    let task = |samples: Samples| Task::sampled(TaskKind::Given, samples, None, &judge.machine).ok();
+    let mut candidates = Vec::new();
+    let mut blocked = None;
+    if asked.keep != Some(Keep::Joints) {
+        let mut add = |b: f64, why: String| match same_tip(map, judge.machine.tip(), samples, b, Rule::default()) {
+            Ok(moved) => {
+                let made = moved.and_then(task).map(|task| Candidate { way: "same-tip", why, task });
+                candidates.extend(made);
+                None
+            }
+            Err(blocked) => Some(blocked),
+        };
+        let near =
+            asked.b.is_none().then(|| nearest_b(map, judge.machine.tip(), &judge.model, samples, Rule::default()));
+        blocked = match near.flatten() {
+            Some((b, _)) => {
+                let why = "of all b that reach every point of its path, the one that moves the drives least";
+                // Between the samples that chose it the path may still leave the workspace by a little.
+                match add(b, why.into()) {
+                    Some(stop) if stop.nearest_b.is_some() => add(stop.nearest_b.unwrap_or(b), why.into()),
+                    done => done,
+                }
+            }
+            None => add(wanted, format!("{which} reaches every point of its path")),
+        };
+    }
+    match (asked.keep, &blocked) {
+        (Some(Keep::Tip), Some(stop)) if candidates.is_empty() => {
+            return Ok(Ways { given: Some(motion), candidates: Err(stop.to_string()) });
+        }
+        (Some(Keep::Tip), _) => {}
+        _ => {
+            let why = match (asked.keep, blocked) {
+                (Some(_), _) => "the relative joint angles are to be kept".into(),
+                (None, Some(stop)) => format!("the end effector's path cannot be kept: {stop}"),
+                (None, None) => "the end effector's path cannot be kept within the rules".into(),
+            };
+            let made = turned(&lambda, samples, wanted).and_then(task);
+            candidates.extend(made.map(|task| Candidate { way: "turned", why, task }));
+        }
+    }
+    Ok(Ways { given: Some(motion), candidates: Ok(candidates) })
+}
+
+/// The usual inverse of a motion given by the end effector, and the one on a plane.
+pub fn of_tip(asked: &Asked, judge: &Judge, samples: &Samples) -> Result<Ways, Failure> {
+    let (planes, map) = (&judge.planes, judge.planes.map());
+    let curve = samples.curve().ok_or_else(|| Failure::wrong_input("want times further apart"))?;
+    let curves = [curve];
+    let (b, why) = match asked.b {
+        Some(b) => (b, "b is the one asked for".to_owned()),
+        None => {
+            let serves = |set: BSet| set.intervals.into_iter().max_by(|x, y| (x[1] - x[0]).total_cmp(&(y[1] - y[0])));
+            let all = serves(trace::common_b(map, &curves, 257));
+            // Where no b serves all points, the first one's gives the reason.
+            let first = map.reach(samples.point(0)).ok().and_then(serves);
+            let range = all.or(first).unwrap_or([0.0; 2]);
+            let b = 0.5 * (range[0] + range[1]);
+            (b, format!("b is the middle of what reaches all of the path, {:.4} to {:.4} rad", range[0], range[1]))
+        }
+    };
+    let follow = |b: f64| trace::follow(map, &curves, b, None, Rule::default()).map(|_| b);
+    let followed = follow(b).map(|b| (b, why)).or_else(|stop| match (stop.nearest_b, asked.b) {
+        (Some(b), None) => follow(b).map(|b| (b, format!("b = {b:.4} rad is one at which all of it can be followed"))),
+        _ => Err(stop),
+    });
+    let b = followed.as_ref().map_or(b, |(b, _)| *b);
+    let starts = planes.serve(&[samples.point(0)], b).ok().and_then(|poses| poses.first().copied());
+    let usual = starts.and_then(|pose| {
+        let q = DriveAngles::from(map.lift(pose));
+        let table = minimum_norm_curve(judge.machine.tip(), q, &curves[0]).ok()?;
+        Some(Motion { path: Path::Table(table), profile: Profile::running(samples.duration()) })
+    });
+    let candidates = followed.map_err(|stop| stop.to_string()).map(|(b, why)| {
+        let task = Task::sampled(TaskKind::Given, samples.clone(), Some(b), &judge.machine).ok();
+        task.map(|task| Candidate { way: "on-plane", why, task }).into_iter().collect()
+    });
+    Ok(Ways { given: usual, candidates })
+}

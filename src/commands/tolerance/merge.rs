@@ -1,0 +1,94 @@
+//! Shards put together: the whole, exactly, or why not.
+
+use std::path::{Path, PathBuf};
+
+use stillbase::tolerance::Outcome;
+
+use super::OUTCOMES;
+use super::rows::{Head, Part, Study, Writer};
+use crate::commands::failure::Failure;
+
+/// Puts parts together, in whatever order they are named, and gives what their machines come to.
+///
+/// # Errors
+/// If a part is of another study, or samples are there twice or missing.
+pub fn merge(parts: &[PathBuf], whole: &Path, force: bool) -> Result<(Study, Vec<Outcome>), Failure> {
+    let mut opened = Vec::with_capacity(parts.len());
+    for file in parts {
+        opened.push((first_sample(file)?, Part::open(file)?));
+    }
+    let Some((_, reference)) = opened.first() else { return Err(Failure::wrong_input("--merge: want parts")) };
+    let head = reference.head.clone();
+    if let Some((_, other)) = opened.iter().find(|(_, part)| part.head != head) {
+        let [other_file, file] = [other, reference].map(|part| part.file.display());
+        let why = difference(&other.head, &head);
+        return Err(Failure::wrong_input(format!("{other_file} and {file} are parts of different studies: {why}")));
+    }
+    // A shard without a machine has no place of its own.
+    opened.sort_by_key(|(first, _)| first.unwrap_or(u64::MAX));
+    let mut writer = Writer::create(whole, force, &head)?;
+    let outcome = |row: &[f64]| {
+        let last = row.last_chunk().copied().unwrap_or([f64::NAN; OUTCOMES]);
+        let [peak_moment, peak_force, rms_moment, rms_force] = last;
+        Outcome { peak_moment, peak_force, rms_moment, rms_force }
+    };
+    let (mut next, mut outcomes, mut before) = (0, Vec::new(), None::<PathBuf>);
+    for (first, part) in opened {
+        let file = part.file.clone();
+        if first.is_some_and(|first| first > next) {
+            return Err(missing(next, first.unwrap_or(next) - 1));
+        }
+        if let (Some(first), Some(before)) = (first.filter(|first| *first < next), &before) {
+            let (file, before) = (file.display(), before.display());
+            let why = format!("{file}: sample {first} stands in {before} too: want every shard once");
+            return Err(Failure::wrong_input(why));
+        }
+        part.rows(|sample, row| {
+            if sample != next {
+                let why = format!("{}: sample {sample} where {next} should follow: want a whole shard", file.display());
+                return Err(Failure::wrong_input(why));
+            }
+            next += 1;
+            outcomes.push(outcome(row));
+            writer.row(sample, row)
+        })?;
+        before = Some(file);
+    }
+    if next < head.study.samples {
+        return Err(missing(next, head.study.samples - 1));
+    }
+    writer.finish()?;
+    Ok((head.study, outcomes))
+}
+
+fn missing(first: u64, last: u64) -> Failure {
+    Failure::wrong_input(format!("samples {first} to {last} are in no part: want every shard"))
+}
+
+/// The number of a file's first sample; `None` if it holds none.
+fn first_sample(file: &Path) -> Result<Option<u64>, Failure> {
+    let mut first = None;
+    let enough = |sample, _: &[f64]| {
+        first = Some(sample);
+        Err(Failure::ReaderGone)
+    };
+    match Part::open(file)?.rows(enough) {
+        Ok(()) | Err(Failure::ReaderGone) => Ok(first),
+        Err(failure) => Err(failure),
+    }
+}
+
+/// In what two heads differ.
+fn difference(a: &Head, b: &Head) -> String {
+    let (one, two) = (a.study, b.study);
+    if one.samples != two.samples {
+        return format!("of {} and of {} samples", one.samples, two.samples);
+    }
+    if one.seed != two.seed {
+        return format!("seeds {} and {}", one.seed, two.seed);
+    }
+    match a.columns == b.columns {
+        true => "the scenario, a spread, the instants or the program's version".into(),
+        false => "other numbers vary".into(),
+    }
+}

@@ -1,0 +1,296 @@
+//! `stillbase tolerance`
+
+mod merge;
+mod parallel;
+mod report;
+mod rows;
+
+use std::ops::Range;
+use std::path::PathBuf;
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use stillbase::files::check_new;
+use stillbase::scenario::Scenario;
+use stillbase::session::{Run, settled};
+use stillbase::tolerance::{
+    Agreement, Bands, Ensemble, MAX_SAMPLES, Outcome, Shares, Spread, Tolerance as Section, ToleranceError,
+};
+
+use self::parallel::Mode;
+use self::report::{Answer, Compared, Distributions, Drawn, Merged, Yields};
+use self::rows::{Head, Study, Writer};
+use crate::commands::failure::Failure;
+use crate::commands::input::{DEFAULT_SCENARIO, Settings, scenario};
+use crate::commands::output::{Format, say};
+
+/// Vary a machine within its tolerances and see what its base feels
+///
+/// The spreads come from the scenario's [tolerance] and from --spread; where there are none, centres of mass vary by
+/// 0.5 mm both ways, masses by 0.5 %, inertias by 2 %, lengths by 0.05 mm, all normal. Every machine tracks the planned
+/// motion perfectly, so its wrench is linear in g, C and H and costs next to nothing. With --simulate each one is
+/// simulated, with control that knows only the nominal machine.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  stillbase tolerance case-3 --limit-moment 0.02 --limit-force 0.6
+  stillbase tolerance case-3 --spread link.*.com=normal:0.0005 --spread link.*.mass=uniform:1%
+  stillbase tolerance case-3 --samples 1000000 --shard 1/2 -o part-1.parquet
+  stillbase tolerance --merge part-1.parquet part-2.parquet -o whole.parquet
+  stillbase tolerance case-1 --simulate --samples 500
+
+A file has one row a machine: its number, its parameters, peak |n_B|, peak dynamic |f_B|, and the root mean square of
+both over time. Machine i depends on the seed and on i only, so shards put together are the whole, exactly.
+
+JSON keys: scenario, simulated, samples, shard [from, to), seed, motion_time; parameters [{key, unit, nominal, spread,
+deviation, mean_deviation, cut}]; nominal {peak_moment, peak_force, rms_moment, rms_force}; peak_moment, peak_force,
+rms_moment, rms_force {mean, deviation, quantiles {levels, values}, histogram {edges, counts}}; yield {moment, force,
+both: {limit, good, of, share, interval}}; shares {parameters [{key, unit, deviation, moment_slope, force_slope,
+moment_share, force_share}], moment_first_order, force_first_order}; bands {time, samples, moment, force} with percentiles
+5, 25, 50, 75, 95; agreement {tolerance, sampled_tolerance; moment_mean, moment_deviation, force_rms, force_mean, force_deviation, sampling:
+{worst, time, share}}; against_tracking with --simulate; file with -o. With --merge: file, samples, seed, the four
+distributions, yield.")]
+pub struct Tolerance {
+    /// A built-in scenario (case-1, case-2, case-3) or a TOML file; by default case-3
+    #[arg(value_name = "SCENARIO")]
+    scenario: Option<String>,
+    /// How many machines; by default the scenario's number, or 100000, or 1000 with --simulate
+    #[arg(long, value_name = "N", value_parser = samples)]
+    samples: Option<u64>,
+    /// Which random machines; by default the scenario's number, or 1
+    #[arg(long, value_name = "S")]
+    seed: Option<u64>,
+    /// What varies and how much, as often as needed: link.*.com=normal:0.0005 (standard deviation, in the setting's
+    /// unit), link.*.mass=uniform:1% (half-width, of the nominal value); link.NAME.com, com_normal, mass, inertia,
+    /// length.NAME, payload.mass, payload.inertia; a name goes before *
+    #[arg(long = "spread", value_name = "KEY=SPREAD", value_parser = spread)]
+    spreads: Vec<(String, Spread)>,
+    /// The greatest peak |n_B| that will do, N m
+    #[arg(long, value_name = "X", value_parser = limit)]
+    limit_moment: Option<f64>,
+    /// The greatest peak dynamic |f_B| that will do, N
+    #[arg(long, value_name = "X", value_parser = limit)]
+    limit_force: Option<f64>,
+    /// Instants of the motion that are looked at: peaks between them go unseen, so take more for long motions
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(2..=100_000))]
+    instants: u32,
+    /// Only the i-th of n equal parts of the samples, i from 1
+    #[arg(long, value_name = "i/n", value_parser = shard)]
+    shard: Option<(u64, u64)>,
+    /// Simulate each machine under control instead of perfect tracking
+    #[arg(long)]
+    simulate: bool,
+    /// Put these parts together into -o, in any order
+    #[arg(
+        long, value_name = "PART", num_args = 1.., requires = "output",
+        conflicts_with_all = ["scenario", "samples", "seed", "spreads", "instants", "shard", "simulate", "pairs"]
+    )]
+    merge: Vec<PathBuf>,
+    /// Write every machine to this file
+    #[arg(short, long, value_name = "FILE.parquet|FILE.csv")]
+    output: Option<PathBuf>,
+    /// Replace the file if it exists
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    settings: Settings,
+    #[command(flatten)]
+    format: Format,
+}
+
+/// Machines of which all results are kept at once.
+const MOST_AT_ONCE: u64 = 20_000_000;
+
+/// How many numbers each machine comes to.
+const OUTCOMES: usize = 4;
+
+fn samples(text: &str) -> Result<u64, String> {
+    let count = text.trim().parse().ok().filter(|n| (1..=MAX_SAMPLES).contains(n));
+    count.ok_or_else(|| format!("want a whole number from 1 to {MAX_SAMPLES}"))
+}
+
+fn limit(text: &str) -> Result<f64, String> {
+    text.trim().parse().ok().filter(|x: &f64| x.is_finite() && *x > 0.0).ok_or_else(|| "want a number above 0".into())
+}
+
+fn spread(text: &str) -> Result<(String, Spread), String> {
+    let (key, spread) = text.split_once('=').ok_or("want KEY=SPREAD, such as link.*.com=normal:0.0005")?;
+    Ok((key.trim().into(), spread.parse()?))
+}
+
+fn shard(text: &str) -> Result<(u64, u64), String> {
+    let pair = text.split_once('/').and_then(|(i, n)| Some((i.trim().parse().ok()?, n.trim().parse().ok()?)));
+    let ok = pair.filter(|(i, n)| (1..=*n).contains(i) && *n <= MAX_SAMPLES);
+    ok.ok_or_else(|| "want i/n with i from 1 to n, such as 2/8".into())
+}
+
+impl From<ToleranceError> for Failure {
+    fn from(e: ToleranceError) -> Self {
+        Self::wrong_input(e)
+    }
+}
+
+impl Tolerance {
+    /// Runs it.
+    pub fn run(&self) -> Result<(), Failure> {
+        match self.merge.is_empty() {
+            true => self.study(),
+            false => self.put_together(),
+        }
+    }
+
+    fn put_together(&self) -> Result<(), Failure> {
+        let Some(whole) = &self.output else { return Err(Failure::wrong_input("--merge: want -o FILE")) };
+        check_new(whole, self.force)?;
+        let (study, outcomes) = merge::merge(&self.merge, whole, self.force)?;
+        let Some(distributions) = Distributions::of(&outcomes) else {
+            return Err(Failure::no_answer("the parts hold no machine"));
+        };
+        let answer = Merged {
+            file: whole.display().to_string(),
+            samples: study.samples,
+            seed: study.seed,
+            distributions,
+            yields: Yields::of(&outcomes, self.limit_moment, self.limit_force),
+        };
+        say(format!("wrote {}", answer.file));
+        self.format.print(&answer, Merged::text)
+    }
+
+    /// What the scenario says, with what the command line says over it.
+    fn section(&self, scenario: &Scenario) -> Section {
+        let mut section = scenario.tolerance.clone();
+        section.spreads.extend(self.spreads.iter().cloned());
+        section.spreads = section.spreads_or_default();
+        section.seed = self.seed.or(section.seed);
+        section.samples = self.samples.or(section.samples);
+        section.moment_limit = self.limit_moment.or(section.moment_limit);
+        section.force_limit = self.limit_force.or(section.force_limit);
+        section
+    }
+
+    fn study(&self) -> Result<(), Failure> {
+        let name = self.scenario.as_deref().unwrap_or(DEFAULT_SCENARIO);
+        let (scenario, others) = settled(&scenario(name, &self.settings)?)?;
+        if others > 0 {
+            say(format!("note: {}: {others} edits in motion are left out; the planned motion counts", scenario.name));
+        }
+        let section = self.section(&scenario);
+        let samples = section.samples.unwrap_or(if self.simulate { 1000 } else { 100_000 });
+        let (i, n) = self.shard.unwrap_or((1, 1));
+        let end = |i: u64| (u128::from(samples) * u128::from(i) / u128::from(n)) as u64;
+        let range = end(i - 1)..end(i);
+        if range.end - range.start > MOST_AT_ONCE {
+            let why = format!("{} machines at once: want at most {MOST_AT_ONCE}, in shards", range.end - range.start);
+            return Err(Failure::wrong_input(why));
+        }
+        if range.is_empty() {
+            let why = format!("--shard {i}/{n} of {samples} samples holds no machine: want fewer shards");
+            return Err(Failure::wrong_input(why));
+        }
+        if let Some(file) = &self.output {
+            rows::check_name(file)?;
+            check_new(file, self.force)?;
+        }
+        let run = Run::new(&scenario).map_err(|e| Failure::from(e).of(&scenario.name))?;
+        let plant = scenario.plant_machine()?;
+        let seed = section.seed.unwrap_or(1);
+        let motion = &run.plan().motion;
+        let ensemble = Ensemble::new(&plant, motion, self.instants as usize, &section.spreads, seed)?;
+        let study = Study { samples, seed, problem: self.problem(&scenario, &section) };
+        let (outcomes, tracking) = self.evaluate(&ensemble, &run, &study, range.clone())?;
+        let Some(distributions) = Distributions::of(&outcomes) else {
+            return Err(Failure::no_answer("no machine was drawn"));
+        };
+        let bands = Bands::of(&ensemble, samples);
+        let nominal = ensemble.nominal_outcome();
+        let answer = Answer {
+            scenario: scenario.name.clone(),
+            simulated: self.simulate,
+            samples,
+            shard: [range.start, range.end],
+            seed,
+            motion_time: motion.duration(),
+            parameters: ensemble.parameters().iter().map(Drawn::of).collect(),
+            nominal: nominal.into(),
+            distributions,
+            yields: Yields::of(&outcomes, section.moment_limit, section.force_limit),
+            shares: Shares::of(&ensemble),
+            agreement: Agreement::of(&bands),
+            bands,
+            against_tracking: Compared::of(&outcomes, &tracking),
+            file: self.output.as_ref().map(|file| file.display().to_string()),
+        };
+        if let Some(file) = &answer.file {
+            say(format!("wrote {file}"));
+        }
+        self.format.print(&answer, |answer| answer.text(&study, &nominal))
+    }
+
+    /// Evaluates the machines of a range and writes them if asked; outcomes, and those of perfect tracking where the
+    /// former were simulated.
+    fn evaluate(
+        &self,
+        ensemble: &Ensemble,
+        run: &Run,
+        study: &Study,
+        range: Range<u64>,
+    ) -> Result<(Vec<Outcome>, Vec<Outcome>), Failure> {
+        let parameters = ensemble.parameters();
+        let mut writer = match &self.output {
+            Some(file) => {
+                let names = parameters.iter().map(|p| format!("{} {}", p.key, p.unit));
+                let outcomes = ["peak moment N m", "peak force N", "rms moment N m", "rms force N"];
+                let columns = names.chain(outcomes.map(str::to_owned)).collect();
+                Some(Writer::create(file, self.force, &Head { study: *study, columns })?)
+            }
+            None => None,
+        };
+        let mode = if self.simulate { Mode::Simulated(run) } else { Mode::Tracking };
+        let bar = self.progress(range.end - range.start);
+        let mut outcomes = Vec::with_capacity((range.end - range.start) as usize);
+        let (mut tracking, mut row) = (Vec::new(), Vec::new());
+        let done = parallel::evaluate(ensemble, mode, range, writer.is_some(), |batch| {
+            if let Some(writer) = &mut writer {
+                for ((sample, deviations), o) in batch.samples.clone().zip(&batch.deviations).zip(&batch.outcomes) {
+                    row.clear();
+                    row.extend(parameters.iter().zip(deviations).map(|(p, deviation)| p.nominal + deviation));
+                    row.extend([o.peak_moment, o.peak_force, o.rms_moment, o.rms_force]);
+                    writer.row(sample, &row)?;
+                }
+            }
+            bar.inc(batch.samples.end - batch.samples.start);
+            outcomes.extend(batch.outcomes);
+            tracking.extend(batch.tracking);
+            Ok::<_, Failure>(())
+        });
+        bar.finish_and_clear();
+        done?;
+        if let Some(writer) = writer {
+            writer.finish()?;
+        }
+        Ok((outcomes, tracking))
+    }
+
+    fn progress(&self, machines: u64) -> ProgressBar {
+        if !self.simulate {
+            return ProgressBar::hidden();
+        }
+        let style = ProgressStyle::with_template("{bar:30} {human_pos} of {human_len} machines, {eta} left");
+        ProgressBar::new(machines).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+    }
+
+    /// A number of everything that a machine's row depends on, but for seed and samples (FNV-1a).
+    fn problem(&self, scenario: &Scenario, section: &Section) -> u64 {
+        let bare = Scenario { tolerance: Section::default(), edits: Vec::new(), ..scenario.clone() };
+        let spreads: Vec<String> = section.spreads.iter().map(|(key, spread)| format!("{key}={spread}")).collect();
+        let parts = [
+            env!("CARGO_PKG_VERSION").to_owned(),
+            bare.to_toml(),
+            spreads.join("\n"),
+            format!("{} {}", self.instants, self.simulate),
+        ];
+        let byte = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        parts.join("\n").as_bytes().iter().fold(0xcbf2_9ce4_8422_2325, byte)
+    }
+}

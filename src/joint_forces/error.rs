@@ -1,0 +1,66 @@
+//! Why the forces of pins cannot be told.
+
+use thiserror::Error;
+
+use super::MAX_PINS;
+
+/// Why statics does not determine the forces in a machine.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum JointsError {
+    /// More pins than there is room for.
+    #[error("{count} pins: want at most {MAX_PINS}")]
+    TooMany {
+        /// How many.
+        count: usize,
+    },
+    /// A drive without a link at B, and several that follow it.
+    #[error(
+        "drive {drive} has no link at B, and links {links} follow it: want one link on \"base\", or one link only, so \
+         that it is known which one it turns"
+    )]
+    Unattached {
+        /// The drive.
+        drive: String,
+        /// Who follows it.
+        links: String,
+    },
+    /// Links whose orientation nothing holds.
+    #[error(
+        "{links} links that no drive turns, and {closures} closures, which hold the orientation of two each; nothing \
+         holds {loose}: want {wanted} closures"
+    )]
+    Missing {
+        /// How many links no drive turns.
+        links: usize,
+        /// How many closures there are.
+        closures: usize,
+        /// The links that are in no loop, or among which one too few is.
+        loose: String,
+        /// How many closures there should be.
+        wanted: String,
+    },
+    /// More closures than hold links.
+    #[error(
+        "{closures} closures, which hold the orientation of two links each, and {links} links that no drive turns: want \
+         {wanted} closures, as redundant ones share their force in a way that only the links' elasticity decides"
+    )]
+    Redundant {
+        /// How many closures there are.
+        closures: usize,
+        /// How many links no drive turns.
+        links: usize,
+        /// How many closures there should be.
+        wanted: String,
+    },
+    /// Closures redundant in one place and missing in another.
+    #[error(
+        "closures {closures} do not hold the orientation of links {links} in any pose: want one for each parallelogram, \
+         where now one has too many and another none"
+    )]
+    Misplaced {
+        /// Names of the pins.
+        closures: String,
+        /// Names of links.
+        links: String,
+    },
+}

@@ -1,0 +1,59 @@
+//! Motions given by samples: of the drives as they are, of the end effector with the redundancy resolved.
+
+use super::{Plan, Refusal, dynamics_of, keeps_rules, start};
+use crate::plan::path::minimum_norm_curve;
+use crate::plan::{Forecast, Limits, Motion, Path, Profile, Rule, trace};
+use crate::pose_constant::Planes;
+use crate::scenario::{Scenario, TaskKind};
+
+/// Instants at which a motion is looked at for each of its samples, at least, and at most in all.
+const A_SAMPLE: usize = 8;
+const INSTANTS: (usize, usize) = (2000, 100_000);
+
+/// The samples of the task, stretched to its time.
+///
+/// # Errors
+/// If there are none, they do not fit the machine or the kind of the task, or cannot be followed.
+pub fn given(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
+    let (task, drives) = (&scenario.task, scenario.machine.drives());
+    let refuse = |why: String| Err(Refusal::Task(why));
+    let Some(samples) = &task.samples else {
+        let rows = format!("samples, rows of t, q1 … q{drives} or of t, x, y");
+        return refuse(format!("a given motion wants {rows}: want them, or another kind"));
+    };
+    if !task.via.is_empty() || task.closed {
+        return refuse("samples say where to go: want no points between and an open path, or no samples".into());
+    }
+    if task.law.is_fastest() {
+        return refuse("samples say when to be where: want the law quintic, which has no say, or no samples".into());
+    }
+    let columns = samples.columns();
+    let unsound = || Refusal::Task("the samples give no spline: want times further apart".into());
+    let table = match (task.kind, columns) {
+        (TaskKind::Given, n) if n == drives => samples.path(task.turn).ok_or_else(unsound)?,
+        (TaskKind::Given | TaskKind::Reactionless, 2) => {
+            let curve = samples.curve().ok_or_else(unsound)?;
+            let rule = Rule { keep_off_change_points: task.keep_off_change_points };
+            let mut tables = trace::follow(planes.map(), &[curve], task.b, None, rule)?;
+            tables.pop().ok_or_else(unsound)?
+        }
+        (TaskKind::MinimumNorm, 2) => {
+            let ends = [samples.point(0), samples.point(samples.count() - 1)];
+            let q = start(task, planes, &ends)?;
+            minimum_norm_curve(scenario.machine.tip(), q, &samples.curve().ok_or_else(unsound)?)?
+        }
+        (TaskKind::Given, _) => {
+            return refuse(format!(
+                "samples of {columns} values beside the time: want {drives} drive angles, or 2, x and y"
+            ));
+        }
+        (_, 2) => return refuse("samples of x and y want the kind given, reactionless or minimum-norm".into()),
+        _ => return refuse("samples of drive angles want the kind given".into()),
+    };
+    let motion = Motion { path: Path::Table(table), profile: Profile::running(task.time) };
+    keeps_rules(scenario, &motion)?;
+    let (model, around) = dynamics_of(scenario);
+    let instants = (A_SAMPLE * samples.count()).clamp(INSTANTS.0, INSTANTS.1);
+    let forecast = Forecast::at(&motion, &model, &around, &Limits::of(&scenario.machine), instants);
+    Ok(Plan { motion, forecast, pace: None, price: None, verdicts: None, cycles: Vec::new() })
+}

@@ -1,0 +1,220 @@
+//! What of the base wrench lies at which frequency: amplitude spectral density, cumulative RMS, jitter limits.
+//!
+//! # Symbols
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | x_n, h | samples, and the time between two | its own; s |
+//! | w_n | window; Hann: ½ (1 − cos(2π n/N)) | 1 |
+//! | X_m | Σ_n w_n x_n e^{−2πi nm/N} | its own |
+//! | f_m | m/(N h), m = 0 … N/2 | Hz |
+//! | P_m | one-sided power spectral density, c_m h \|X_m\|² / Σ w_n²; c = 1 at 0 and at N/2, else 2 | unit²/Hz |
+//! | A_m | amplitude spectral density √P_m | unit/√Hz |
+//! | r_m | cumulative RMS, √(Σ_{i ≤ m} P_i / (N h)) | unit |
+//!
+//! By Parseval r at the end is the window-weighted RMS, √(Σ (w x)² / Σ w²): with no window that of the samples, with
+//! Hann one that counts the middle of the record most. The mean is left in: it stands at f = 0 and, through a Hann
+//! window, at the next line too. A motion that passes once is no stationary signal: its density falls as its record
+//! grows longer, so densities compare over records of one length.
+//!
+//! # Source
+//! P. D. Welch, *The use of fast Fourier transform for the estimation of power spectra* (1967), with one segment;
+//! F. J. Harris, *On the use of windows for harmonic analysis with the discrete Fourier transform* (1978).
+
+use std::str::FromStr;
+
+use realfft::RealFftPlanner;
+use serde::Serialize;
+use thiserror::Error;
+
+/// How samples are weighted before they are transformed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Window {
+    /// ½ (1 − cos(2π n/N)), periodic: little leaks far away.
+    #[default]
+    Hann,
+    /// None: every sample alike. Right for a motion from rest to rest that the record holds as a whole.
+    Rectangular,
+}
+
+impl Window {
+    fn weight(self, n: usize, of: usize) -> f64 {
+        match self {
+            Self::Hann => 0.5 * (1.0 - (std::f64::consts::TAU * n as f64 / of as f64).cos()),
+            Self::Rectangular => 1.0,
+        }
+    }
+}
+
+impl FromStr for Window {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "hann" => Ok(Self::Hann),
+            "rectangular" => Ok(Self::Rectangular),
+            _ => Err("want hann or rectangular".into()),
+        }
+    }
+}
+
+/// Why there is no spectrum.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum SpectrumError {
+    /// Too few samples to tell frequencies apart.
+    #[error("{count} samples make no spectrum: want at least {least}, with a longer record or a smaller step")]
+    TooFew {
+        /// How many.
+        count: usize,
+        /// How many it takes.
+        least: usize,
+    },
+    /// A sample, or the time between two.
+    #[error("sample {index} is not finite: want a run that does not diverge")]
+    NotFinite {
+        /// Which.
+        index: usize,
+    },
+    /// The time between two samples.
+    #[error("a step of {step} s: want one above 0 s")]
+    Step {
+        /// s.
+        step: f64,
+    },
+}
+
+/// The fewest samples of a spectrum.
+pub const LEAST: usize = 8;
+
+/// A one-sided spectrum of one signal.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Spectrum {
+    /// f_m, Hz.
+    pub frequency: Vec<f64>,
+    /// A_m, the signal's unit by √Hz.
+    pub density: Vec<f64>,
+    /// r_m, the signal's unit.
+    pub cumulative_rms: Vec<f64>,
+}
+
+impl Spectrum {
+    /// Of samples `step` seconds apart.
+    ///
+    /// # Errors
+    /// If there are fewer than [`LEAST`] samples, one is not finite, or the step is not above 0.
+    pub fn of(samples: &[f64], step: f64, window: Window) -> Result<Self, SpectrumError> {
+        let count = samples.len();
+        if count < LEAST {
+            return Err(SpectrumError::TooFew { count, least: LEAST });
+        }
+        if let Some(index) = samples.iter().position(|x| !x.is_finite()) {
+            return Err(SpectrumError::NotFinite { index });
+        }
+        if !(step > 0.0 && step.is_finite()) {
+            return Err(SpectrumError::Step { step });
+        }
+        let weights: Vec<f64> = (0..count).map(|n| window.weight(n, count)).collect();
+        let mut weighted: Vec<f64> = samples.iter().zip(&weights).map(|(x, w)| x * w).collect();
+        let transform = RealFftPlanner::new().plan_fft_forward(count);
+        let mut lines = transform.make_output_vec();
+        // Both are as long as the transform wants them.
+        if transform.process(&mut weighted, &mut lines).is_err() {
+            return Err(SpectrumError::TooFew { count, least: LEAST });
+        }
+        let power: f64 = weights.iter().map(|w| w * w).sum();
+        let resolution = 1.0 / (count as f64 * step);
+        let mut sum = 0.0;
+        let mut spectrum = Self { frequency: Vec::new(), density: Vec::new(), cumulative_rms: Vec::new() };
+        for (m, line) in lines.iter().enumerate() {
+            let both_sides = if m == 0 || 2 * m == count { 1.0 } else { 2.0 };
+            let p = both_sides * step * line.norm_sqr() / power;
+            sum += p * resolution;
+            spectrum.frequency.push(m as f64 * resolution);
+            spectrum.density.push(p.sqrt());
+            spectrum.cumulative_rms.push(sum.sqrt());
+        }
+        Ok(spectrum)
+    }
+
+    /// The window-weighted RMS of the whole signal.
+    pub fn rms(&self) -> f64 {
+        self.cumulative_rms.last().copied().unwrap_or(0.0)
+    }
+
+    /// How the density stands against a limit; `None` if no line above 0 Hz lies where the limit is defined.
+    pub fn against(&self, limit: &Limit) -> Option<Verdict> {
+        let lines = self.frequency.iter().zip(&self.density).skip(1);
+        let ratios = lines.filter_map(|(f, density)| {
+            let limit = limit.at(*f)?;
+            Some(Verdict { frequency: *f, density: *density, limit, ratio: density / limit, within: *density <= limit })
+        });
+        ratios.max_by(|a, b| a.ratio.total_cmp(&b.ratio))
+    }
+}
+
+/// A spectrum against its limit, where it comes nearest to it or passes it most.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Verdict {
+    /// Hz.
+    pub frequency: f64,
+    /// A there, unit/√Hz.
+    pub density: f64,
+    /// The limit there, unit/√Hz.
+    pub limit: f64,
+    /// Density by limit.
+    pub ratio: f64,
+    /// Whether the density keeps to the limit at every frequency above 0 at which there is one.
+    pub within: bool,
+}
+
+/// A jitter limit: the greatest amplitude spectral density that will do, by frequency.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limit {
+    /// Frequency, Hz, rising, and limit, unit/√Hz.
+    points: Vec<(f64, f64)>,
+}
+
+impl Limit {
+    /// The limit at a frequency, Hz, between two points as a straight line of log against log. One point is a limit at
+    /// every frequency; of several, none holds below the first or above the last.
+    pub fn at(&self, frequency: f64) -> Option<f64> {
+        if let [(_, only)] = self.points[..] {
+            return Some(only);
+        }
+        let next = self.points.partition_point(|(f, _)| *f < frequency);
+        let &(f1, v1) = self.points.get(next)?;
+        if f1 == frequency {
+            return Some(v1);
+        }
+        let &(f0, v0) = self.points.get(next.checked_sub(1)?)?;
+        let share = (frequency / f0).ln() / (f1 / f0).ln();
+        Some(v0 * (v1 / v0).powf(share))
+    }
+
+    /// Frequencies, Hz, and limits, unit/√Hz, that it is made of; one point holds everywhere.
+    pub fn points(&self) -> &[(f64, f64)] {
+        &self.points
+    }
+}
+
+impl FromStr for Limit {
+    type Err = String;
+
+    /// One number for all frequencies, or pairs `f:v,f:v` with rising f.
+    fn from_str(text: &str) -> Result<Self, String> {
+        const WANT: &str = "want one number above 0, or pairs FREQUENCY:LIMIT with rising frequencies in Hz, all above \
+                            0, such as 1:0.01,10:0.001";
+        let positive = |t: &str| t.trim().parse().ok().filter(|x: &f64| x.is_finite() && *x > 0.0).ok_or(WANT);
+        if !text.contains(':') {
+            return Ok(Self { points: vec![(1.0, positive(text)?)] });
+        }
+        let pair = |pair: &str| {
+            let (f, v) = pair.split_once(':').ok_or(WANT)?;
+            Ok::<_, &str>((positive(f)?, positive(v)?))
+        };
+        let points = text.split(',').map(pair).collect::<Result<Vec<_>, _>>()?;
+        match points.windows(2).all(|w| w[0].0 < w[1].0) && points.len() > 1 {
+            true => Ok(Self { points }),
+            false => Err(WANT.into()),
+        }
+    }
+}

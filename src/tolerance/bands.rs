@@ -1,0 +1,246 @@
+//! How n_B(t) and |f_B|(t) are spread over the machines: exact where it can be, to first order, and as sampled.
+//!
+//! The mean and the variance of n_B and of the components of f_B are exact, from the moments of the constants. The mean
+//! and the deviation of |f_B| are not to be had so: a norm is not linear, and where the nominal f_B is zero it has no
+//! first order at all. They are sampled; so are all percentiles. [`Agreement`] says where the two part.
+
+use serde::Serialize;
+
+use super::deviate::CHUNK;
+use super::ensemble::Ensemble;
+use super::statistics::quantile;
+
+/// The percentiles of a band.
+pub const PERCENTILES: [f64; 5] = [5.0, 25.0, 50.0, 75.0, 95.0];
+
+/// Both bands over time.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Bands {
+    /// Instants, s.
+    pub time: Vec<f64>,
+    /// Machines that were sampled for percentiles: the first of the seed's.
+    pub samples: u64,
+    /// n_B, N m.
+    pub moment: MomentBand,
+    /// |f_B|, dynamic, N.
+    pub force: ForceBand,
+}
+
+/// n_B over time, N m.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MomentBand {
+    /// Of the nominal machine: the mean to first order, but for cut distributions.
+    pub nominal: Vec<f64>,
+    /// Exact mean.
+    pub mean: Vec<f64>,
+    /// Exact standard deviation.
+    pub deviation: Vec<f64>,
+    /// Standard deviation to first order.
+    pub first_order_deviation: Vec<f64>,
+    /// Mean as sampled.
+    pub sampled_mean: Vec<f64>,
+    /// Standard deviation as sampled.
+    pub sampled_deviation: Vec<f64>,
+    /// By [`PERCENTILES`], then by instant, as sampled.
+    pub percentiles: Vec<Vec<f64>>,
+}
+
+/// |f_B| over time, N.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ForceBand {
+    /// Of the nominal machine: the mean to first order.
+    pub nominal: Vec<f64>,
+    /// Exact root of the mean square over the machines.
+    pub rms: Vec<f64>,
+    /// The same with the components of f_B to first order.
+    pub first_order_rms: Vec<f64>,
+    /// Standard deviation to first order: of the component along the nominal f_B; 0 where that is zero.
+    pub first_order_deviation: Vec<f64>,
+    /// Mean as sampled.
+    pub sampled_mean: Vec<f64>,
+    /// Standard deviation as sampled.
+    pub sampled_deviation: Vec<f64>,
+    /// By [`PERCENTILES`], then by instant, as sampled.
+    pub percentiles: Vec<Vec<f64>>,
+}
+
+/// The most machines that percentiles are taken of.
+const MOST: u64 = 4096;
+
+/// All their courses are kept at once: this many numbers, but no fewer than a hundred machines.
+const KEPT: u64 = 4_000_000;
+
+impl Bands {
+    /// Of an ensemble, percentiles of its first `samples` machines, or 4096 if that is less, or fewer where instants are
+    /// many.
+    pub fn of(ensemble: &Ensemble, samples: u64) -> Self {
+        let count = ensemble.time().len();
+        let samples = samples.clamp(1, MOST).min((KEPT / count as u64).max(100));
+        let (mut moments, mut forces) = (vec![Vec::new(); count], vec![Vec::new(); count]);
+        let mut sampler = ensemble.sampler();
+        for chunk in 0..samples.div_ceil(CHUNK as u64) {
+            sampler.courses(chunk, |s, machine, n, f| {
+                if chunk * (CHUNK as u64) + (machine as u64) < samples {
+                    moments[s].push(n);
+                    forces[s].push(f);
+                }
+            });
+        }
+        let [moments, forces] = [moments, forces].map(|courses| courses.into_iter().map(Sampled::of).collect());
+        Self {
+            time: ensemble.time().to_vec(),
+            samples,
+            moment: MomentBand::of(ensemble, moments),
+            force: ForceBand::of(ensemble, forces),
+        }
+    }
+}
+
+/// What a sample says at one instant.
+struct Sampled {
+    mean: f64,
+    deviation: f64,
+    percentiles: [f64; PERCENTILES.len()],
+}
+
+impl Sampled {
+    fn of(mut values: Vec<f64>) -> Self {
+        values.sort_unstable_by(f64::total_cmp);
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let squares: f64 = values.iter().map(|x| (x - mean).powi(2)).sum();
+        Self {
+            mean,
+            deviation: (squares / (n - 1.0).max(1.0)).sqrt(),
+            percentiles: PERCENTILES.map(|p| quantile(&values, p / 100.0).unwrap_or(mean)),
+        }
+    }
+}
+
+/// Percentiles by instant, turned to instants by percentile.
+fn by_percentile(sampled: &[Sampled]) -> Vec<Vec<f64>> {
+    (0..PERCENTILES.len()).map(|i| sampled.iter().map(|s| s.percentiles[i]).collect()).collect()
+}
+
+/// Σ_p (slope_p σ_p)².
+fn first_order(ensemble: &Ensemble, slopes: impl Fn(usize) -> f64) -> f64 {
+    ensemble.parameters().iter().enumerate().map(|(p, parameter)| (slopes(p) * parameter.deviation).powi(2)).sum()
+}
+
+impl MomentBand {
+    fn of(ensemble: &Ensemble, sampled: Vec<Sampled>) -> Self {
+        let at = |f: &dyn Fn(usize) -> f64| (0..sampled.len()).map(f).collect::<Vec<f64>>();
+        Self {
+            nominal: at(&|s| ensemble.nominal()[s].0),
+            mean: at(&|s| ensemble.mean_at(s).0),
+            deviation: at(&|s| ensemble.variance_at(s)[0].sqrt()),
+            first_order_deviation: at(&|s| {
+                let [slope, ..] = ensemble.slopes_at(s);
+                first_order(ensemble, |p| slope[p]).sqrt()
+            }),
+            sampled_mean: sampled.iter().map(|s| s.mean).collect(),
+            sampled_deviation: sampled.iter().map(|s| s.deviation).collect(),
+            percentiles: by_percentile(&sampled),
+        }
+    }
+}
+
+impl ForceBand {
+    fn of(ensemble: &Ensemble, sampled: Vec<Sampled>) -> Self {
+        let at = |f: &dyn Fn(usize) -> f64| (0..sampled.len()).map(f).collect::<Vec<f64>>();
+        Self {
+            nominal: at(&|s| ensemble.nominal()[s].1.norm()),
+            rms: at(&|s| {
+                let [_, x, y] = ensemble.variance_at(s);
+                (ensemble.mean_at(s).1.norm_sqr() + x + y).sqrt()
+            }),
+            first_order_rms: at(&|s| {
+                let [_, x, y] = ensemble.slopes_at(s);
+                let variance = first_order(ensemble, |p| x[p].hypot(y[p]));
+                (ensemble.nominal()[s].1.norm_sqr() + variance).sqrt()
+            }),
+            first_order_deviation: at(&|s| {
+                let ([_, x, y], f) = (ensemble.slopes_at(s), ensemble.nominal()[s].1);
+                // What is left of a balanced machine by rounding has no direction.
+                let all = first_order(ensemble, |p| x[p].hypot(y[p])).sqrt();
+                if f.norm() <= 1e-9 * all {
+                    return 0.0;
+                }
+                let along = f / f.norm();
+                first_order(ensemble, |p| along.re * x[p] + along.im * y[p]).sqrt()
+            }),
+            sampled_mean: sampled.iter().map(|s| s.mean).collect(),
+            sampled_deviation: sampled.iter().map(|s| s.deviation).collect(),
+            percentiles: by_percentile(&sampled),
+        }
+    }
+}
+
+/// How far two courses are apart, in standard deviations of the instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Gap {
+    /// The most.
+    pub worst: f64,
+    /// When, s.
+    pub time: f64,
+    /// Share of the instants at which it is more than [`Agreement`] tolerates.
+    pub share: f64,
+}
+
+/// Where first order says something else than all orders do.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Agreement {
+    /// From how many standard deviations on two exact courses count as apart.
+    pub tolerance: f64,
+    /// The same where one is sampled: no less than four standard errors.
+    pub sampled_tolerance: f64,
+    /// Mean of n_B: nominal against exact.
+    pub moment_mean: Gap,
+    /// Deviation of n_B: first-order against exact.
+    pub moment_deviation: Gap,
+    /// Root mean square of |f_B|: components to first order against exact.
+    pub force_rms: Gap,
+    /// Mean of |f_B|: nominal against sampled.
+    pub force_mean: Gap,
+    /// Deviation of |f_B|: first-order against sampled.
+    pub force_deviation: Gap,
+    /// Mean of n_B: sampled against exact, which is sampling alone and no matter of order.
+    pub sampling: Gap,
+}
+
+impl Agreement {
+    /// Of bands.
+    pub fn of(bands: &Bands) -> Self {
+        let Bands { time, samples, moment, force } = bands;
+        let tolerance = 0.05;
+        let sampled_tolerance = (4.0 / (*samples as f64).sqrt()).max(tolerance);
+        let gap = |a: &[f64], b: &[f64], deviation: &[f64], tolerance: f64| {
+            // Where the machines hardly differ there is nothing to be apart by.
+            let least = 1e-6 * deviation.iter().fold(0.0_f64, |m, d| m.max(*d));
+            let mut gap = Gap::default();
+            for (s, t) in time.iter().enumerate().filter(|(s, _)| deviation[*s] > least) {
+                let apart = (a[s] - b[s]).abs() / deviation[s];
+                if apart > gap.worst {
+                    (gap.worst, gap.time) = (apart, *t);
+                }
+                gap.share += f64::from(u8::from(apart > tolerance)) / time.len() as f64;
+            }
+            gap
+        };
+        Self {
+            tolerance,
+            sampled_tolerance,
+            moment_mean: gap(&moment.nominal, &moment.mean, &moment.deviation, tolerance),
+            moment_deviation: gap(&moment.first_order_deviation, &moment.deviation, &moment.deviation, tolerance),
+            force_rms: gap(&force.first_order_rms, &force.rms, &force.rms, tolerance),
+            force_mean: gap(&force.nominal, &force.sampled_mean, &force.sampled_deviation, sampled_tolerance),
+            force_deviation: gap(
+                &force.first_order_deviation,
+                &force.sampled_deviation,
+                &force.sampled_deviation,
+                sampled_tolerance,
+            ),
+            sampling: gap(&moment.sampled_mean, &moment.mean, &moment.deviation, sampled_tolerance),
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! Which tolerance matters most: exact derivatives of the wrench, and the variance that each parameter brings in.
+//!
+//! # Symbols
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | σ_p | standard deviation of parameter p | its own |
+//! | ∂n_B/∂p | at the nominal machine, exact | N m per its own |
+//! | s_p | ∫(∂n_B/∂p σ_p)² dt / Σ_r ∫(∂n_B/∂r σ_r)² dt; for f_B with \|∂f_B/∂p\| | 1 |
+
+use serde::Serialize;
+
+use super::ensemble::Ensemble;
+
+/// What one parameter contributes, to first order.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Share {
+    /// Key of the setting.
+    pub key: String,
+    /// Its unit.
+    pub unit: &'static str,
+    /// σ_p.
+    pub deviation: f64,
+    /// max_t |∂n_B/∂p|, N m per unit.
+    pub moment_slope: f64,
+    /// max_t |∂f_B/∂p|, N per unit.
+    pub force_slope: f64,
+    /// Share of the variance of n_B over the motion, 0 to 1.
+    pub moment_share: f64,
+    /// Share of the variance of f_B over the motion, 0 to 1.
+    pub force_share: f64,
+}
+
+/// What all parameters contribute.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Shares {
+    /// In the order of the parameters.
+    pub parameters: Vec<Share>,
+    /// Variance of n_B over the motion to first order, of the exact one: 1 where masses and lengths act linearly.
+    pub moment_first_order: f64,
+    /// Variance of f_B over the motion to first order, of the exact one.
+    pub force_first_order: f64,
+}
+
+impl Shares {
+    /// Of an ensemble.
+    pub fn of(ensemble: &Ensemble) -> Self {
+        let parameters = ensemble.parameters();
+        let (mut slopes, mut sums) = (vec![[0.0_f64; 2]; parameters.len()], vec![[0.0; 2]; parameters.len()]);
+        let mut exact = [0.0; 2];
+        for s in 0..ensemble.time().len() {
+            let [n, x, y] = ensemble.slopes_at(s);
+            for p in 0..parameters.len() {
+                let [n, f] = [n[p] * n[p], x[p] * x[p] + y[p] * y[p]];
+                slopes[p] = [slopes[p][0].max(n), slopes[p][1].max(f)];
+                let variance = parameters[p].deviation.powi(2);
+                sums[p] = [sums[p][0] + n * variance, sums[p][1] + f * variance];
+            }
+            let [n, x, y] = ensemble.variance_at(s);
+            exact = [exact[0] + n, exact[1] + x + y];
+        }
+        let total = [0, 1].map(|i| sums.iter().map(|sum| sum[i]).sum::<f64>());
+        let part = |x: f64, of: f64| if of > 0.0 { x / of } else { 0.0 };
+        let share = |(p, parameter): (usize, &super::Parameter)| Share {
+            key: parameter.key.clone(),
+            unit: parameter.unit,
+            deviation: parameter.deviation,
+            moment_slope: slopes[p][0].sqrt(),
+            force_slope: slopes[p][1].sqrt(),
+            moment_share: part(sums[p][0], total[0]),
+            force_share: part(sums[p][1], total[1]),
+        };
+        Self {
+            parameters: parameters.iter().enumerate().map(share).collect(),
+            moment_first_order: part(total[0], exact[0]),
+            force_first_order: part(total[1], exact[1]),
+        }
+    }
+}

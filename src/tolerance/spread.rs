@@ -1,0 +1,223 @@
+//! What varies about a machine and how much, as a scenario's `[tolerance]` or the command line states it.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+/// The most samples of one study.
+pub const MAX_SAMPLES: u64 = 1_000_000_000;
+
+/// The `[tolerance]` of a scenario: spreads by key of a setting, and what to do with them.
+///
+/// ```toml
+/// [tolerance]
+/// seed = 7
+/// samples = 100000
+/// moment_limit = 0.02                     # N m
+/// force_limit = 0.5                       # N
+/// "link.*.com" = { normal = 0.0005 }      # standard deviation, m
+/// "link.*.mass" = { uniform = "1%" }      # half-width, of the nominal mass
+/// "link.5.mass" = { uniform = 0.01 }      # a name goes before *
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "BTreeMap<String, toml::Value>", into = "BTreeMap<String, toml::Value>")]
+pub struct Tolerance {
+    /// Which random machines.
+    pub seed: Option<u64>,
+    /// How many.
+    pub samples: Option<u64>,
+    /// The greatest |n_B| that will do, N m.
+    pub moment_limit: Option<f64>,
+    /// The greatest dynamic |f_B| that will do, N.
+    pub force_limit: Option<f64>,
+    /// Spreads by key; see [`Parameter`](super::Parameter).
+    pub spreads: BTreeMap<String, Spread>,
+}
+
+impl Tolerance {
+    /// Whether it says nothing.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// The spreads, or [`default_spreads`] if none is given.
+    pub fn spreads_or_default(&self) -> BTreeMap<String, Spread> {
+        if self.spreads.is_empty() { default_spreads() } else { self.spreads.clone() }
+    }
+}
+
+/// What is taken where no spread is given: careful workshop practice. Centres of mass to 0.5 mm in both directions,
+/// masses to 0.5 %, inertias to 2 %, lengths to 0.05 mm; all normal, standard deviations.
+pub fn default_spreads() -> BTreeMap<String, Spread> {
+    let rows = [
+        ("link.*.com", Amount::Absolute(5e-4)),
+        ("link.*.com_normal", Amount::Absolute(5e-4)),
+        ("link.*.mass", Amount::Percent(0.5)),
+        ("link.*.inertia", Amount::Percent(2.0)),
+        ("length.*", Amount::Absolute(5e-5)),
+    ];
+    rows.into_iter().map(|(key, amount)| (key.into(), Spread::Normal(amount))).collect()
+}
+
+/// How a parameter lies about its nominal value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Spread {
+    /// Normal, with this standard deviation.
+    Normal(Amount),
+    /// Uniform, with this half-width.
+    Uniform(Amount),
+}
+
+/// A spread's size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Amount {
+    /// In the parameter's own unit.
+    Absolute(f64),
+    /// In percent of the nominal value's magnitude.
+    Percent(f64),
+}
+
+const WANT: &str = "normal:0.0005 (standard deviation) or uniform:1% (half-width), 0 or more";
+
+impl FromStr for Spread {
+    type Err = String;
+
+    /// As on the command line: `normal:0.0005`, `uniform:1%`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("want {WANT}");
+        let (word, amount) = text.trim().split_once(':').ok_or_else(wrong)?;
+        Self::of(word.trim(), amount.parse().map_err(|()| wrong())?).ok_or_else(wrong)
+    }
+}
+
+impl Spread {
+    fn of(word: &str, amount: Amount) -> Option<Self> {
+        match word {
+            "normal" => Some(Self::Normal(amount)),
+            "uniform" => Some(Self::Uniform(amount)),
+            _ => None,
+        }
+    }
+
+    fn word(&self) -> &'static str {
+        match self {
+            Self::Normal(_) => "normal",
+            Self::Uniform(_) => "uniform",
+        }
+    }
+
+    /// Standard deviation or half-width.
+    pub fn amount(&self) -> Amount {
+        match self {
+            Self::Normal(amount) | Self::Uniform(amount) => *amount,
+        }
+    }
+}
+
+impl fmt::Display for Spread {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.word(), self.amount())
+    }
+}
+
+impl FromStr for Amount {
+    type Err = ();
+    fn from_str(text: &str) -> Result<Self, ()> {
+        let (digits, percent) = match text.trim().strip_suffix('%') {
+            Some(digits) => (digits, true),
+            None => (text, false),
+        };
+        let value = digits.trim().parse().ok().filter(|x: &f64| x.is_finite() && *x >= 0.0).ok_or(())?;
+        Ok(if percent { Self::Percent(value) } else { Self::Absolute(value) })
+    }
+}
+
+impl fmt::Display for Amount {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Absolute(x) => write!(f, "{x}"),
+            Self::Percent(x) => write!(f, "{x}%"),
+        }
+    }
+}
+
+type Section = BTreeMap<String, toml::Value>;
+
+impl TryFrom<Section> for Tolerance {
+    type Error = String;
+
+    fn try_from(section: Section) -> Result<Self, String> {
+        let mut tolerance = Self::default();
+        for (key, value) in section {
+            match key.as_str() {
+                "seed" => tolerance.seed = Some(whole(&key, &value, 0)?),
+                "samples" => tolerance.samples = Some(whole(&key, &value, 1)?),
+                "moment_limit" => tolerance.moment_limit = Some(positive(&key, &value)?),
+                "force_limit" => tolerance.force_limit = Some(positive(&key, &value)?),
+                _ => {
+                    let spread = in_words(&value)
+                        .and_then(|text| text.parse().ok())
+                        .ok_or_else(|| format!("tolerance: {key:?} is {value}: {SECTION}"))?;
+                    tolerance.spreads.insert(key, spread);
+                }
+            }
+        }
+        Ok(tolerance)
+    }
+}
+
+const SECTION: &str = "want { normal = 0.0005 } or { uniform = \"1%\" }, 0 or more, for a key such as \"link.*.com\"; \
+                       or seed, samples, moment_limit, force_limit";
+
+/// A spread of a file, written as on the command line.
+fn in_words(value: &toml::Value) -> Option<String> {
+    let table = value.as_table().filter(|table| table.len() == 1)?;
+    let (word, amount) = table.iter().next()?;
+    let amount = match amount {
+        toml::Value::String(text) => text.clone(),
+        toml::Value::Float(x) => x.to_string(),
+        toml::Value::Integer(x) => x.to_string(),
+        _ => return None,
+    };
+    Some(format!("{word}:{amount}"))
+}
+
+fn whole(key: &str, value: &toml::Value, least: u64) -> Result<u64, String> {
+    let whole = value.as_integer().and_then(|x| u64::try_from(x).ok());
+    let ok = whole.filter(|x| *x >= least && (key == "seed" || *x <= MAX_SAMPLES));
+    ok.ok_or_else(|| match key {
+        "seed" => format!("tolerance: {key} is {value}: want a whole number, 0 or more"),
+        _ => format!("tolerance: {key} is {value}: want a whole number from {least} to {MAX_SAMPLES}"),
+    })
+}
+
+fn positive(key: &str, value: &toml::Value) -> Result<f64, String> {
+    let number = value.as_float().or_else(|| value.as_integer().map(|x| x as f64));
+    let ok = number.filter(|x| x.is_finite() && *x > 0.0);
+    ok.ok_or_else(|| format!("tolerance: {key} is {value}: want a number above 0"))
+}
+
+impl From<Tolerance> for Section {
+    fn from(tolerance: Tolerance) -> Self {
+        let Tolerance { seed, samples, moment_limit, force_limit, spreads } = tolerance;
+        let mut section = Section::new();
+        for (key, value) in [("seed", seed), ("samples", samples)] {
+            // A seed beyond what TOML can hold comes from the command line and is never saved.
+            section.extend(value.and_then(|x| i64::try_from(x).ok()).map(|x| (key.to_owned(), x.into())));
+        }
+        for (key, value) in [("moment_limit", moment_limit), ("force_limit", force_limit)] {
+            section.extend(value.map(|x| (key.to_owned(), x.into())));
+        }
+        for (key, spread) in spreads {
+            let amount = match spread.amount() {
+                Amount::Absolute(x) => x.into(),
+                percent @ Amount::Percent(_) => toml::Value::String(percent.to_string()),
+            };
+            let table = toml::Table::from_iter([(spread.word().to_owned(), amount)]);
+            section.insert(key, toml::Value::Table(table));
+        }
+        section
+    }
+}

@@ -1,0 +1,192 @@
+//! Runs side by side: the ways of one task, their table, and the two instants of a cursor.
+
+use stillbase::compare::{COLUMNS, Compared, SLOWER, Way, alternatives, differences};
+use stillbase::scenario::{Scenario, TaskKind};
+use stillbase::session::{Edit, TimedEdit};
+use stillbase::signals::signals;
+
+fn scenario(name: &str) -> Scenario {
+    Scenario::builtin(name).expect("built in")
+}
+
+fn run(way: Way, of: &str) -> Compared {
+    Compared::of(way.of(&scenario(of))).expect("it runs")
+}
+
+/// The ways of case 3 are the paper's three cases, a wheel and patience.
+#[test]
+fn the_ways_of_case_3_are_the_cases() {
+    let ways: Vec<Way> = alternatives(&scenario("case-3")).into_iter().map(|(way, _)| way).collect();
+    assert_eq!(ways, [Way::Reactionless, Way::StraightLine, Way::OtherPose, Way::Wheel, Way::Slowly]);
+    for (way, case) in [(Way::Reactionless, "case-3"), (Way::StraightLine, "case-1")] {
+        let (got, want) = (run(way, "case-3").summary, Compared::of(scenario(case)).expect("it runs").summary);
+        assert_eq!((got.peak_moment, got.energy, got.peak_torque), (want.peak_moment, want.energy, want.peak_torque));
+    }
+    let (other, case_2) = (run(Way::OtherPose, "case-3").summary, scenario("case-2"));
+    let case_2 = Compared::of(case_2).expect("it runs").summary;
+    assert!(
+        (other.peak_moment / case_2.peak_moment - 1.0).abs() < 1e-3,
+        "{} {}",
+        other.peak_moment,
+        case_2.peak_moment
+    );
+}
+
+/// Forces and moments fall with the square of the time; what the base turns by does not fall at all.
+#[test]
+fn patience_divides_by_the_square_and_not_the_turn() {
+    let mut free = scenario("case-1");
+    free.base.kind = stillbase::plant::BaseKind::Free;
+    let (quick, slow) = (run_of(&free, Way::StraightLine), run_of(&free, Way::Slowly));
+    let (quick, slow) = (quick.summary, slow.summary);
+    assert!((slow.time - SLOWER * quick.time).abs() < 1e-9);
+    assert!((quick.peak_moment / slow.peak_moment / SLOWER.powi(2) - 1.0).abs() < 1e-3);
+    assert!((quick.moment_impulse / slow.moment_impulse / SLOWER - 1.0).abs() < 1e-3);
+    assert!((quick.base_tilt / slow.base_tilt - 1.0).abs() < 1e-6, "{} {}", quick.base_tilt, slow.base_tilt);
+}
+
+fn run_of(scenario: &Scenario, way: Way) -> Compared {
+    Compared::of(way.of(scenario)).expect("it runs")
+}
+
+/// A wheel that is large enough takes all of it; one that is not says when it stopped.
+#[test]
+fn the_wheel_says_when_it_saturates() {
+    let ample = run(Way::Wheel, "case-3").summary;
+    assert!(ample.reactionless && ample.saturated_at.is_none() && ample.wheel_rate.is_some_and(|rate| rate > 5.0));
+    let mut small = scenario("case-3");
+    small.base.wheel = Some(toml::from_str("torque_limit = 0.5").expect("a wheel"));
+    let small_run = run_of(&small, Way::Wheel).summary;
+    assert!(!small_run.reactionless && small_run.saturated_at.is_some_and(|t| t > 0.0 && t < 0.5));
+    // The others go without it.
+    assert!(run_of(&small, Way::StraightLine).summary.wheel_rate.is_none());
+}
+
+/// What is none of the others stands first; what cannot be done is refused in words, and the rest goes on.
+#[test]
+fn a_task_of_its_own_kind_stands_first() {
+    let ways = alternatives(&scenario("least-reaction"));
+    assert_eq!(ways[0].0, Way::AsGiven);
+    assert_eq!(ways[0].1.task.kind, TaskKind::LeastReaction);
+    let outcomes: Vec<bool> = ways.into_iter().map(|(_, s)| Compared::of(s).is_ok()).collect();
+    assert!(outcomes[0] && outcomes.contains(&false) && outcomes.iter().filter(|ok| **ok).count() >= 4);
+}
+
+/// Hands on the way belong to one run and not to the task.
+#[test]
+fn ways_leave_hands_out() {
+    let mut led = scenario("case-3");
+    let at = |step, edit| TimedEdit { step, edit };
+    led.edits = vec![at(0, Edit::plant("payload.mass", 0.2)), at(200, Edit::Push { x: 3.0, y: 0.0 })];
+    let ways = alternatives(&led);
+    assert_eq!(ways[0].0, Way::AsGiven, "the hand makes it another run");
+    assert_eq!(ways[0].1.edits.len(), 2);
+    assert!(ways.iter().skip(1).all(|(_, s)| s.edits.len() == 1));
+}
+
+/// RMS, impulse and peak agree with the frames by another rule.
+#[test]
+fn the_table_agrees_with_the_frames() {
+    let run = run(Way::StraightLine, "case-3");
+    let h = 0.001;
+    // Simpson's rule.
+    let sum = |f: &dyn Fn(usize) -> f64| {
+        let w = |i: usize| {
+            if i == 0 || i == 1000 {
+                1.0
+            } else if i % 2 == 1 {
+                4.0
+            } else {
+                2.0
+            }
+        };
+        (0..=1000).map(|i| w(i) * f(i)).sum::<f64>() * h / 3.0
+    };
+    let moment = |i: usize| run.frames[i].base_moment();
+    let s = &run.summary;
+    assert_eq!(run.frames.len(), 1001);
+    assert!((s.rms_moment - sum(&|i| moment(i).powi(2)).sqrt()).abs() < 1e-6);
+    assert!((s.moment_impulse - sum(&|i| moment(i).abs())).abs() < 1e-4);
+    assert_eq!(s.peak_moment, (0..=1000).map(|i| moment(i).abs()).fold(0.0, f64::max));
+    let power = |i: usize| (0..3).map(|k| (run.frames[i].torque[k] * run.frames[i].qd[k]).abs()).sum::<f64>();
+    assert!((s.energy - sum(&power)).abs() < 1e-4 * s.energy);
+    // Every column has a value or none, and keys are their own.
+    let mut keys: Vec<&str> = COLUMNS.iter().map(|c| c.key).collect();
+    keys.dedup();
+    assert_eq!(keys.len(), COLUMNS.len());
+    assert!(COLUMNS.iter().filter_map(|c| (c.value)(s)).all(f64::is_finite));
+}
+
+/// Long runs keep evenly spaced frames, and their last.
+#[test]
+fn long_runs_are_thinned() {
+    let mut long = scenario("case-3");
+    long.task.time = 9.5;
+    let run = Compared::of(long).expect("it runs");
+    assert!(run.frames.len() < 4100 && run.frames.len() > 2000, "{}", run.frames.len());
+    assert!((run.duration() - 9.5).abs() < 1e-9);
+    let gaps: Vec<u64> = run.frames.windows(2).map(|w| w[1].step - w[0].step).collect();
+    assert!(gaps[..gaps.len() - 1].iter().all(|g| *g == gaps[0]), "even");
+    assert_eq!(run.at(4.0).map(|f| f.time <= 4.0 + 1e-9 && f.time > 3.98), Some(true));
+    assert_eq!(run.at(100.0).map(|f| f.step), run.frames.last().map(|f| f.step));
+    assert_eq!(run.at(-1.0).map(|f| f.step), Some(0));
+}
+
+/// Two cursors: every signal at both, and the difference.
+#[test]
+fn two_instants_differ_by_their_signals() {
+    let run = run(Way::StraightLine, "case-3");
+    let table = signals(run.machine());
+    let (a, b) = (run.at(0.2).expect("a frame"), run.at(0.7).expect("a frame"));
+    let list = differences(&table, a, b);
+    assert_eq!(list.len(), table.len());
+    for d in &list {
+        let signal = &table[d.signal];
+        assert_eq!((d.from, d.to), (signal.value(a), signal.value(b)), "{}", signal.path);
+        assert_eq!(d.by(), d.to - d.from);
+    }
+}
+
+/// The board keeps what it is given, follows the task, sorts both ways and gives its table away.
+#[test]
+fn a_board_follows_sorts_and_keeps() {
+    use stillbase::compare::Board;
+    let mut board = Board::of(&scenario("case-3"));
+    assert_eq!(board.entries().len(), 5);
+    board.show(1, true);
+    board.keep(scenario("case-2")).expect("it runs");
+    board.keep(scenario("case-2")).expect("it runs");
+    let titles: Vec<&str> = board.entries().iter().map(|e| e.title.as_str()).collect();
+    assert_eq!(titles[5..], ["case-2", "case-2 2"]);
+    assert_eq!(board.shown().map(|(i, _)| i).collect::<Vec<_>>(), [1, 5, 6]);
+
+    let column = COLUMNS.iter().position(|c| c.key == "peak_moment").expect("a column");
+    let values = |board: &Board| -> Vec<f64> {
+        let value =
+            |i: usize| board.entries()[i].outcome.as_ref().ok().and_then(|r| (COLUMNS[column].value)(&r.summary));
+        board.order().into_iter().filter_map(value).collect()
+    };
+    board.sort_by(column);
+    assert!(values(&board).is_sorted());
+    board.sort_by(column);
+    assert!(values(&board).is_sorted_by(|a, b| a >= b));
+    board.sort_by(column);
+    assert_eq!(board.order(), (0..7).collect::<Vec<_>>());
+
+    let text = board.to_text();
+    assert_eq!(text.lines().count(), 8);
+    assert!(text.lines().all(|line| line.split('\t').count() == COLUMNS.len() + 1));
+
+    // Another task: its ways are run, what was ticked stays so, what was kept stays.
+    let mut other = scenario("case-3");
+    assert!(!board.follow(&other));
+    other.task.time = 2.0;
+    assert!(board.follow(&other));
+    assert_eq!(board.entries().len(), 7);
+    assert!(board.entries()[1].shown && board.entries()[5].kept);
+    assert_eq!(board.entries()[1].outcome.as_ref().map(|r| r.summary.time), Ok(2.0));
+    board.remove(0);
+    assert_eq!(board.entries().len(), 7, "only what was kept can be taken away");
+    board.remove(6);
+    assert_eq!(board.entries().len(), 6);
+}

@@ -1,0 +1,114 @@
+//! Spectra: Parseval, known tones, white noise, limits.
+
+use proptest::prelude::*;
+use std::f64::consts::TAU;
+use stillbase::spectrum::{LEAST, Limit, Spectrum, SpectrumError, Window};
+
+/// The one-sided density by its definition, a sum for each line.
+fn by_definition(x: &[f64], step: f64, weight: impl Fn(usize) -> f64) -> Vec<f64> {
+    let n = x.len();
+    let power: f64 = (0..n).map(|i| weight(i).powi(2)).sum();
+    (0..=n / 2)
+        .map(|m| {
+            let (mut re, mut im) = (0.0, 0.0);
+            for (i, x) in x.iter().enumerate() {
+                let (s, c) = (TAU * ((m * i) % n) as f64 / n as f64).sin_cos();
+                (re, im) = (re + weight(i) * x * c, im - weight(i) * x * s);
+            }
+            let sides = if m == 0 || 2 * m == n { 1.0 } else { 2.0 };
+            (sides * step * (re * re + im * im) / power).sqrt()
+        })
+        .collect()
+}
+
+fn hann(n: usize) -> impl Fn(usize) -> f64 {
+    move |i| (std::f64::consts::PI * i as f64 / n as f64).sin().powi(2)
+}
+
+proptest! {
+    #[test]
+    fn the_power_of_all_lines_is_that_of_the_samples(
+        x in prop::collection::vec(-10.0..10.0_f64, LEAST..300),
+        step in 1e-4..1.0_f64,
+    ) {
+        let n = x.len();
+        let plain = Spectrum::of(&x, step, Window::Rectangular).expect("enough");
+        let square = x.iter().map(|x| x * x).sum::<f64>() / n as f64;
+        prop_assert!((plain.rms() - square.sqrt()).abs() <= 1e-12 * square.sqrt());
+        let windowed = Spectrum::of(&x, step, Window::Hann).expect("enough");
+        let w = hann(n);
+        let sums = (0..n).fold([0.0; 2], |s, i| [s[0] + (w(i) * x[i]).powi(2), s[1] + w(i).powi(2)]);
+        let rms = (sums[0] / sums[1]).sqrt();
+        prop_assert!((windowed.rms() - rms).abs() <= 1e-12 * rms);
+        for (spectrum, twin) in [(plain, by_definition(&x, step, |_| 1.0)), (windowed, by_definition(&x, step, w))] {
+            prop_assert_eq!(spectrum.density.len(), n / 2 + 1);
+            let most = twin.iter().fold(0.0_f64, |m, d| m.max(*d));
+            for (got, want) in spectrum.density.iter().zip(&twin) {
+                prop_assert!((got - want).abs() <= 1e-11 * most);
+            }
+            prop_assert!(spectrum.cumulative_rms.is_sorted());
+            let last = spectrum.frequency[n / 2];
+            prop_assert!((last - (n / 2) as f64 / (n as f64 * step)).abs() <= 1e-12 * last);
+        }
+    }
+}
+
+#[test]
+fn a_tone_stands_at_its_frequency_with_its_power() {
+    let (n, step, amplitude, line) = (1000, 0.001, 3.0, 40);
+    let x: Vec<f64> = (0..n).map(|i| amplitude * (TAU * (line * i) as f64 / n as f64 + 0.3).cos()).collect();
+    let rms = amplitude / 2_f64.sqrt();
+    let plain = Spectrum::of(&x, step, Window::Rectangular).expect("enough");
+    // One line of 1 Hz.
+    assert!((plain.frequency[line] - 40.0).abs() < 1e-9 && (plain.density[line] - rms).abs() < 1e-12);
+    assert!(plain.cumulative_rms[line - 1] < 1e-12 && (plain.cumulative_rms[line] - rms).abs() < 1e-12);
+    // A Hann window spreads it over three, 1/6, 4/6, 1/6 of its power: its noise bandwidth is one and a half lines.
+    let hann = Spectrum::of(&x, step, Window::Hann).expect("enough");
+    let density = |m: usize| hann.density[m].powi(2) / rms.powi(2);
+    assert!((density(line) - 4.0 / 6.0).abs() < 1e-12);
+    assert!((density(line - 1) - 1.0 / 6.0).abs() < 1e-12 && (density(line + 1) - 1.0 / 6.0).abs() < 1e-12);
+    assert!(hann.density[line + 2] < 1e-12 && (hann.rms() - rms).abs() < 1e-12);
+}
+
+#[test]
+fn limits_are_straight_in_logarithms() {
+    let limit: Limit = "1:0.1, 10:0.01,1000:1".parse().expect("a limit");
+    assert_eq!(limit.at(0.5), None);
+    assert_eq!(limit.at(1000.1), None);
+    for (f, want) in [(1.0, 0.1), (10.0, 0.01), (1000.0, 1.0), (10_f64.sqrt(), 10_f64.powf(-1.5)), (100.0, 0.1)] {
+        assert!((limit.at(f).expect("within") / want - 1.0).abs() < 1e-12, "{f}");
+    }
+    let flat: Limit = "0.2".parse().expect("a limit");
+    assert_eq!((flat.at(1e-9), flat.at(1e9)), (Some(0.2), Some(0.2)));
+    for text in ["", "x", "-1", "0", "nan", "inf", "1:2", "2:1,1:1", "1:1,1:2", "0:1,1:1", "1:0,2:1", "1:1,2"] {
+        assert!(text.parse::<Limit>().is_err(), "{text}");
+    }
+}
+
+#[test]
+fn a_verdict_names_the_worst_frequency() {
+    let x: Vec<f64> = (0..400)
+        .map(|i| f64::from(i) * 0.01)
+        .map(|t| 5.0 + 0.2 * (TAU * 3.0 * t).sin() + 0.1 * (TAU * 20.0 * t).sin())
+        .collect();
+    let spectrum = Spectrum::of(&x, 0.01, Window::Rectangular).expect("enough");
+    let against = |text: &str| spectrum.against(&text.parse().expect("a limit"));
+    // The mean, at 0 Hz, is not held against it. Lines are 0.25 Hz apart, so the density of a tone is its RMS by 0.5.
+    let flat = against("1").expect("lines");
+    assert!((flat.frequency - 3.0).abs() < 1e-9 && (flat.ratio - 0.2 / 2_f64.sqrt() / 0.5).abs() < 1e-9 && flat.within);
+    let falling = against("1:1,30:0.01").expect("lines");
+    assert!((falling.frequency - 20.0).abs() < 1e-9 && !falling.within && falling.ratio > 1.0);
+    assert!(against("60:1,70:1").is_none());
+}
+
+#[test]
+fn what_has_no_spectrum_is_refused() {
+    let few = Spectrum::of(&[1.0; LEAST - 1], 0.1, Window::Hann);
+    assert_eq!(few, Err(SpectrumError::TooFew { count: LEAST - 1, least: LEAST }));
+    let mut x = [1.0; 20];
+    for step in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(matches!(Spectrum::of(&x, step, Window::Hann), Err(SpectrumError::Step { .. })));
+    }
+    x[3] = f64::NAN;
+    assert_eq!(Spectrum::of(&x, 0.1, Window::Hann), Err(SpectrumError::NotFinite { index: 3 }));
+}
