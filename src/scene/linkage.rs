@@ -143,6 +143,11 @@ impl Linkage {
         self.top
     }
 
+    /// Height of what the drives stand on, m.
+    pub fn bottom(&self) -> f64 {
+        self.motors.iter().fold(0.0_f64, |m, motor| m.min(motor.z)) - 0.015 * self.reach
+    }
+
     /// The links.
     pub fn bars(&self) -> &[Bar] {
         &self.bars
@@ -163,9 +168,8 @@ impl Linkage {
             colour,
         };
         let grey = mix(palette.dim, palette.line, 0.65);
-        let depth = self.motors.iter().fold(0.0_f64, |m, motor| m.min(motor.z));
         let origin = Vector::default();
-        let under = depth - 0.015 * self.reach;
+        let under = self.bottom();
         solids.push(upright("base/plate".into(), self.plate, origin, under, grey));
         if moves {
             let world_from_mesh = placed(base.at, unit(base.angle), under - 0.002 * self.reach);

@@ -312,7 +312,7 @@ impl Stage {
 
 fn ground(run: &Run) -> Ground {
     let scenario = run.scenario();
-    Ground { base: scenario.base, load: scenario.plant.payload }
+    Ground { base: scenario.base, load: scenario.plant.payload, weightless: scenario.machine.gravity().norm() == 0.0 }
 }
 
 /// Three digits, without zeros at the end.

@@ -189,7 +189,10 @@ impl Desk {
                     return Err(refusal.to_string());
                 }
                 self.look.refused = None;
-                self.foresee();
+                // A hand that pushes asks many times a second, and nobody knows how long.
+                if !matches!(edit, Edit::Push { .. }) {
+                    self.foresee();
+                }
                 // What a drag has changed, Esc takes back.
                 self.look.dragged |= self.look.grabbed.is_some();
             }

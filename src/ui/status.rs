@@ -3,7 +3,6 @@
 use egui::{Align, Layout, Margin, Panel, RichText, Sense, Ui, vec2};
 
 use super::theme::{bold, colour, plain};
-use super::top::name;
 use super::{Command, Look};
 use crate::frame::{Audit, Frame, Reach};
 use crate::scene::palette::{Palette, faded};
@@ -45,7 +44,8 @@ fn lamps(ui: &mut Ui, frame: &Frame, p: &Palette) {
         let tone = colour(if good { faded(p.zero, 0.75) } else { p.reaction });
         ui.painter().circle_filled(dot.center(), if good { 2.8 } else { 4.2 }, tone);
         let word = if good { "good" } else { "not as it should be" };
-        name(&response, &format!("audit {}: {} {}, {word}", lamp.name, power(lamp.value), lamp.unit));
+        let words = format!("audit {}: {} {}, {word}", lamp.name, power(lamp.value), lamp.unit);
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &words));
         let limit = match lamp.limit {
             Some(limit) => format!("should be at most {} {}", power(limit), lamp.unit),
             None => "tells how well the plane is held; no limit".into(),

@@ -63,6 +63,9 @@ pub fn show(
     });
 }
 
+/// A hand that pulls less differently is not asked again, N.
+const LEAST_PUSH: f64 = 0.02;
+
 /// How many snapshots stand along a motion, as in Fig. 5.
 const SNAPSHOTS: usize = 9;
 
@@ -142,7 +145,13 @@ fn point_at(
                 Edit::DragTarget { x, y }
             }
             Aim::B(b) => set_b(session, b),
-            Aim::Push([x, y]) => Edit::Push { x, y },
+            Aim::Push([x, y]) => {
+                let [now_x, now_y] = session.scenario().plant.force;
+                if (x - now_x).hypot(y - now_y) < LEAST_PUSH {
+                    return None;
+                }
+                Edit::Push { x, y }
+            }
             Aim::Waypoint(i, [x, y]) => {
                 look.held = Some([x, y]);
                 Edit::SetTask { change: session.scenario().task.moving(i, Vector::new(x, y))? }

@@ -654,4 +654,8 @@ fn lamps_tell_the_audit() {
         assert!(lamp.accesskit_node().label().is_some_and(|label| label.ends_with(", good")), "{figure}");
     }
     assert!(h.query_by_label_contains("cannot be trusted").is_none());
+    let lamp = h.get_by_label_contains("audit energy:").rect().center();
+    h.hover_at(lamp);
+    h.run_steps(60);
+    assert!(h.query_by_label_contains("energy − work + losses").is_some(), "its figure is under the pointer");
 }

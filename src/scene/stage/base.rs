@@ -17,6 +17,8 @@ use crate::scene::{Anchor, Line, Marker, Rgba, Scene};
 pub(super) struct Ground {
     pub base: Base,
     pub load: Load,
+    /// No gravity.
+    pub weightless: bool,
 }
 
 /// Newtons for each metre that a hand pulls.
@@ -36,7 +38,7 @@ impl Stage {
     /// Glyphs under the machine: panels of a spacecraft, or springs between the plate and the ground.
     pub(super) fn ground(&self, scene: &mut Scene, palette: &Palette, frame: &Frame) {
         let reach = self.linkage.reach();
-        let (z, top) = (self.linkage.floor() - 0.002 * reach, self.handle_height());
+        let (z, top) = (self.linkage.bottom(), self.handle_height());
         let place = |p: Vector| frame.base.at + p * unit(frame.base.angle);
         let [length, width] = PLATE.map(|part| part * reach);
         match self.ground.base.kind {
@@ -181,7 +183,7 @@ impl Stage {
                         + unit(side * (-FRAC_PI_2 + std::f64::consts::PI * f64::from(i) / 16.0)) * side * width
                 })
             };
-            let mut outline: Vec<_> = cap(1.0).chain(cap(-1.0)).map(|p| point(p, z)).collect();
+            let mut outline: Vec<_> = cap(1.0).chain(cap(-1.0)).map(|p| point(p, self.linkage.bottom())).collect();
             outline.extend(outline.first().copied());
             scene.lines.push(line(outline));
         }

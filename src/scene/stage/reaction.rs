@@ -94,7 +94,8 @@ impl Stage {
             }
         };
         let of = match options.push {
-            Some([x, y]) if x.hypot(y) > 0.0 => "weight and push",
+            Some([x, y]) if x.hypot(y) > 0.0 && self.ground.weightless => "the push",
+            Some([x, y]) if x.hypot(y) > 0.0 => "its weight with the push",
             _ => "its weight",
         };
         let rows = [

@@ -64,7 +64,8 @@ pub fn fold(
     let id = egui::Id::unique(("fold", title));
     let chosen = ui.data(|d| d.get_temp::<bool>(id));
     let mut open = chosen.unwrap_or(back.is_some());
-    ui.add_space(10.0);
+    // Folded, they stand together.
+    ui.add_space(if open { 8.0 } else { 2.0 });
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let sign = if open { "▾" } else { "▸" };
