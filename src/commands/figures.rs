@@ -6,12 +6,13 @@ use std::sync::Arc;
 use clap::Args;
 use stillbase::files::write_new;
 use stillbase::render::offscreen::Picture;
-use stillbase::scenario::Scenario;
+use stillbase::scenario::{Change, Scenario, Value};
 use stillbase::scene::palette::Theme;
 use stillbase::scene::stage::ViewOptions;
 use stillbase::scene::views::ViewKind;
+use stillbase::session::Edit;
 use stillbase::ui::picture::Canvas;
-use stillbase::ui::{Command, Desk};
+use stillbase::ui::{Command, Desk, OnBoard};
 
 use super::failure::Failure;
 use super::output::say;
@@ -29,7 +30,8 @@ pub struct Figures {
 }
 
 /// The window: name, scenario, theme, view, instant in s.
-const WINDOWS: [(&str, &str, Theme, ViewKind, f64); 4] = [
+const WINDOWS: [(&str, &str, Theme, ViewKind, f64); 5] = [
+    ("spacecraft-dark.png", "spacecraft", Theme::Dark, ViewKind::Flat, 0.75),
     ("window-dark.png", "case-3", Theme::Dark, ViewKind::Flat, 0.62),
     ("window-light.png", "case-3", Theme::Light, ViewKind::Flat, 0.62),
     ("case-1-dark.png", "case-1", Theme::Dark, ViewKind::Flat, 0.25),
@@ -49,9 +51,16 @@ impl Figures {
     pub fn run(&self) -> Result<(), Failure> {
         for (name, scenario, theme, view, time) in WINDOWS {
             let mut desk = desk(scenario, theme, view, time)?;
-            let mut canvas = Canvas::new([1440, 900], 1.0).map_err(Failure::no_answer)?;
-            self.write(name, canvas.desk(&mut desk).map_err(Failure::no_answer)?)?;
+            self.window(name, &mut desk)?;
         }
+        let mut ways = desk("case-1", Theme::Dark, ViewKind::Flat, 0.62)?;
+        let over = [0, 2].map(|row| Command::Board(OnBoard::Show(row, true)));
+        [Command::Compare(true), Command::Snapshots(true)].into_iter().chain(over).for_each(|c| ways.carry_out(c));
+        self.window("compare-dark.png", &mut ways)?;
+        let mut machines = desk("case-3", Theme::Dark, ViewKind::Flat, 0.62)?;
+        machines.carry_out(Command::Edit(Edit::SetTolerance { change: Change::from_iter([limit()]) }));
+        machines.carry_out(Command::Study(true));
+        self.window("tolerances-dark.png", &mut machines)?;
         for (name, scenario, theme, view, time) in SCENES {
             let desk = desk(scenario, theme, view, time)?;
             let (options, camera) = (ViewOptions { theme, ..ViewOptions::default() }, desk.views().camera(view));
@@ -62,12 +71,22 @@ impl Figures {
         Ok(())
     }
 
+    fn window(&self, name: &str, desk: &mut Desk) -> Result<(), Failure> {
+        let mut canvas = Canvas::new([1440, 900], 1.0).map_err(Failure::no_answer)?;
+        self.write(name, canvas.desk(desk).map_err(Failure::no_answer)?)
+    }
+
     fn write(&self, name: &str, picture: Picture) -> Result<(), Failure> {
         let file = self.output.join(name);
         write_new(&file, &picture.to_png().map_err(Failure::no_answer)?, self.force)?;
         say(format!("wrote {}", file.display()));
         Ok(())
     }
+}
+
+/// A limit on |n_B| of 10 mN m.
+fn limit() -> (String, Value) {
+    ("moment_limit".into(), 0.01.into())
 }
 
 /// A scenario run through once, shown at an instant.
