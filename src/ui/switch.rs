@@ -13,7 +13,7 @@ use crate::scene::{Measure, dexterity};
 /// Draws it.
 pub fn show(ui: &mut Ui, rect: Rect, look: &Look, views: &Views, commands: &mut Vec<Command>) {
     let p = look.palette();
-    let area = Rect::from_min_size(rect.min + vec2(14.0, 12.0), vec2(620.0, 64.0));
+    let area = Rect::from_min_size(rect.min + vec2(14.0, 12.0), vec2((rect.width() - 28.0).min(620.0), 88.0));
     let mut child = ui.new_child(egui::UiBuilder::new().max_rect(area));
     let frame = Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.line))).corner_radius(8).inner_margin(3);
     frame.show(&mut child, |ui| {
@@ -57,8 +57,9 @@ fn segment(ui: &mut Ui, p: &Palette, text: &str, chosen: bool) -> egui::Response
 /// The toggles, and once the shade is on the key to its colours.
 fn shade(ui: &mut Ui, p: &Palette, look: &Look, views: &Views, commands: &mut Vec<Command>) {
     ui.add_space(2.0);
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 6.0;
+    // A narrow window breaks the line.
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(6.0, 2.0);
         let ink = colour(if look.stroke.is_some() { p.ink } else { p.dim });
         let mut drawing = look.stroke.is_some();
         let help = "Draw the end effector's path with the pointer (P)";
