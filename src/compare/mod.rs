@@ -75,7 +75,8 @@ impl Compared {
 /// The ways to do a scenario's task, each with its scenario; as it is given only if that is none of the others.
 pub fn alternatives(scenario: &Scenario) -> Vec<(Way, Scenario)> {
     let mut all: Vec<(Way, Scenario)> = Way::ALL.into_iter().map(|way| (way, way.of(scenario))).collect();
-    let given = |s: &Scenario| s.task == scenario.task && s.base == scenario.base;
+    // A wheel makes no other way of the task, but for the one that is about it.
+    let given = |s: &Scenario| s.task == scenario.task && s.base.kind == scenario.base.kind;
     if scenario.edits.is_empty() && all.iter().skip(1).any(|(_, s)| given(s)) {
         all.remove(0);
     }
