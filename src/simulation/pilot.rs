@@ -29,7 +29,9 @@ struct Sampling {
     count: f64,
     /// s.
     step: f64,
-    last: Option<DriveAngles>,
+    /// The newest reading with its step, and the one before: a step may be looked at again after an edit.
+    last: Option<(u64, DriveAngles)>,
+    before: Option<DriveAngles>,
     /// Torques to come and the steps at which they do.
     pending: VecDeque<(u64, PerDrive)>,
     held: Option<PerDrive>,
@@ -52,6 +54,7 @@ impl Pilot {
                 count: if control.encoder > 0.0 { std::f64::consts::TAU / control.encoder } else { 0.0 },
                 step,
                 last: None,
+                before: None,
                 pending: VecDeque::with_capacity((delay / period) as usize + 2),
                 held: None,
             }
@@ -68,10 +71,13 @@ impl Pilot {
             if sampling.count > 0.0 {
                 let count = sampling.count;
                 reading.q = DriveAngles(PerDrive::from_fn(reading.q.len(), |k| (reading.q[k] / count).round() * count));
-                // A tachometer's first word is exact: there is nothing to compare with yet.
-                if let Some(last) = sampling.last.replace(reading.q) {
+                if let Some((_, q)) = sampling.last.replace((step, reading.q)).filter(|(at, _)| *at != step) {
+                    sampling.before = Some(q);
+                }
+                // The first rate is exact: there is nothing to compare with yet.
+                if let Some(before) = sampling.before {
                     let time = sampling.period as f64 * sampling.step;
-                    reading.qd = reading.q.0.minus(&last.0).scaled(1.0 / time);
+                    reading.qd = reading.q.0.minus(&before.0).scaled(1.0 / time);
                 }
             }
             let torque = self.controller.torque(reference, &reading, loaded);
@@ -86,7 +92,7 @@ impl Pilot {
     /// Goes on where another was, with what that has under way.
     pub fn resume(&mut self, other: &Self) {
         if let (Some(now), Some(before)) = (&mut self.sampling, &other.sampling) {
-            (now.last, now.held) = (before.last, before.held);
+            (now.last, now.before, now.held) = (before.last, before.before, before.held);
             now.pending.clone_from(&before.pending);
         }
     }

@@ -201,7 +201,7 @@ fn bare<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
 /// n_B over time, less that of the nominal machine: 5 to 95 % and 25 to 75 % of the machines, the mean, and one deviation
 /// to first order.
 fn band(ui: &mut Ui, p: &Palette, study: &Study, time: f64) {
-    title(ui, p, "n_B off nominal", "N m; 5–95 %, 25–75 %; dashed ±σ, first order");
+    title(ui, p, "n_B off nominal", "N m; 5–95, 25–75 %; dashed σ");
     let (x, band) = (&study.bands.time, &study.bands.moment);
     let tone = colour(p.reaction);
     let response = bare("bands", p, ui.available_height()).show_axes([true, true]).show(ui, |plot| {

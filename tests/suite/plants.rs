@@ -224,6 +224,27 @@ fn sampling_delay_and_counts_cost_accuracy() {
     assert!(last(&case("case-3", "[control]\nrate = 500.0")).peaks.moment < 5e-2);
 }
 
+/// An edit on the way that changes nothing leaves no trace, whatever control has under way: rates of encoders, torques
+/// that are delayed, a wheel that turns, contacts that stick.
+#[test]
+fn an_edit_that_changes_nothing_leaves_no_trace() {
+    let text = "[control]\nrate = 250.0\ndelay = 0.006\nencoder = 20000.0\n[plant.friction]\ncoulomb = 0.05\n\
+                [base]\nkind = \"free\"\ncom = [0.1, 0.0]\nwheel = { torque_limit = 0.2 }";
+    let scenario = case("case-1", text);
+    let mut edited = scenario.clone();
+    let force = scenario.plant.force;
+    edited.edits =
+        [100, 101, 333].map(|step| TimedEdit { step, edit: Edit::Push { x: force[0], y: force[1] } }).to_vec();
+    let (plain, edited) = (frames(&scenario), frames(&edited));
+    // Later a last digit may turn a count of the encoders over.
+    for (a, b) in plain.iter().zip(&edited).take(500) {
+        assert!(a.q.0.minus(&b.q.0).max_abs() < 1e-11, "{} s: {:?} {:?}", a.time, a.q, b.q);
+        assert!((a.base.angle - b.base.angle).abs() < 1e-11 && (a.wheel.rate - b.wheel.rate).abs() < 1e-9);
+        assert!(a.torque.minus(&b.torque).max_abs() < 1e-8, "{} s: {:?} {:?}", a.time, a.torque, b.torque);
+    }
+    assert!(Audit::fault(&edited[edited.len() - 1]).is_none());
+}
+
 /// Motors that saturate give no more than their limit.
 #[test]
 fn motors_saturate() {
