@@ -6,7 +6,7 @@
 //! | angular | its angular momentum about the origin with −∫ (n_B + p_B × f_B) dt |
 //! | energy | what is there with what motors, wheel and outer force brought and friction took |
 //! | closure | the two points of every pin that closes a loop |
-//! | step | a step with two of half its size, where no contact can stick |
+//! | step | a step with two of half its size, where no contact can stick; else 0 |
 //! | plane | b with the b that was aimed at |
 
 use crate::frame::{Frame, Peaks, Tally};

@@ -28,7 +28,7 @@ pub struct Control {
     /// K_d, s⁻¹, one for all drives or one for each.
     #[serde(default = "critical")]
     pub kd: Each,
-    /// Whether the model includes a base that moves; otherwise it is taken to be fixed.
+    /// Whether the model includes a base that moves, but no wheel in it; otherwise the base is taken to be fixed.
     #[serde(default = "yes", skip_serializing_if = "is_yes")]
     pub knows_base: bool,
     /// How often torques are computed, Hz, and held between; 0: all the time.
@@ -163,6 +163,13 @@ impl Controller {
     /// For a machine of `n` drives.
     pub fn new(control: &Control, n: usize, models: [Body; 2]) -> Self {
         Self { law: control.law, kp: control.kp.of(n), kd: control.kd.of(n), models: Box::new(models) }
+    }
+
+    /// Believes that a compliant base is preloaded as another controller does.
+    pub(crate) fn preload_as(&mut self, other: &Self) {
+        for model in self.models.iter_mut() {
+            *model = model.clone().preloaded_as(&other.models[0]);
+        }
     }
 
     /// Motor torques, N m; `loaded` while the plant holds its payload.

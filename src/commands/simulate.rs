@@ -133,9 +133,10 @@ impl Simulate {
         let verdict = Verdict::of(&run.frame());
         if !self.format.json {
             say(format!(
-                "{}: {} steps, peak |n_B| {} N m, peak |f_B| {} N, reactionless: {}",
+                "{}: {} steps, peak {} {} N m, peak |f_B| {} N, reactionless: {}",
                 scenario.name,
                 verdict.steps,
+                if scenario.base.wheel.is_some() { "moment past the wheel" } else { "|n_B|" },
                 fixed(verdict.peak_base_moment, 6),
                 fixed(verdict.peak_base_force, 6),
                 yes(verdict.reactionless),

@@ -3,6 +3,7 @@
 use crate::plan::TimeLaw;
 use crate::plant::Wheel;
 use crate::scenario::{Change, Scenario, Shape, TaskKind, Value};
+use crate::session::settled;
 
 /// A way to bring the end effector from A to B.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,14 +62,16 @@ impl Way {
 
     /// The scenario of this way: the same points, machine, plant, base and control.
     pub fn of(self, scenario: &Scenario) -> Scenario {
-        let mut other = scenario.clone();
         if self == Self::AsGiven {
-            return other;
+            return scenario.clone();
         }
+        // What was set before the first step is the task; a hand on the way, or another plant, would be another run.
+        let ground = settled(scenario).map_or_else(|_| scenario.clone(), |(ground, _)| ground);
+        let scenario = &ground;
+        let mut other = ground.clone();
         other.name = format!("{}-{}", scenario.name, self.name());
         other.title = format!("{} · {}", scenario.title, self.title());
-        // A hand or another base on the way would not be the same task any more.
-        other.edits.retain(|e| e.step == 0 && !e.edit.leads());
+        other.edits.clear();
         let word = |word: &str| Value::from(word);
         let mut change = Change::new();
         let mut set = |key: &str, value: Value| change.insert(key.into(), value);

@@ -58,7 +58,7 @@ impl Drawing {
 
     /// One instant, at a height above a machine of a reach, m.
     pub fn place(&mut self, at: Instant, frame: &Frame, reach: f64, z: f64) {
-        let (force, moment, quiet) = (frame.wrench.total().force, frame.base_moment(), frame.is_quiet());
+        let (force, moment, quiet) = (frame.wrench.total().force, frame.felt_moment(), frame.is_quiet());
         let (from, length, radius) = (frame.base.at, 0.25 * reach, 0.17 * reach);
         let arrow = force * (length / self.scale.newtons);
         let has_force = arrow.norm() > 0.004 * reach;

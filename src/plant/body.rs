@@ -492,7 +492,7 @@ fn instant_of<const N: usize>(
             padded[..N].copy_from_slice(&factors.solve(*first::<N, _>(x)));
             padded
         };
-        body.contacts.hold(grip, &free, solve, &mut force, &mut friction, taken);
+        loss += body.contacts.hold(grip, (&rate, &free), solve, &mut force, &mut friction, taken);
     }
     let acceleration = factors.solve(std::array::from_fn(|k| force[k] - v[k]));
     let qdd = PerDrive::from(acceleration);
@@ -557,10 +557,11 @@ impl Body {
         momenta
     }
 
-    /// A state in which what is stuck stands still to the last digit: the trace that rounding leaves is taken out by
-    /// torques between the two sides, which change no momentum of the whole.
+    /// A state in which what is stuck stands still to the last digit: what is left of its motion is taken out by
+    /// torques between the two sides, which change no momentum of the whole, and is booked as lost and transmitted.
     #[must_use]
     pub fn stuck(&self, mut state: State, grip: &Grip) -> State {
+        let before = state;
         let n = self.arm.drives;
         let e = DriveAngles(state.q).units();
         let (h, _) = crate::dynamics::mass_matrix(&self.whole, &e, &state.q);
@@ -575,11 +576,19 @@ impl Body {
                 for k in 0..n {
                     state.momenta[k] += unit[k] * v / give;
                 }
+                state.lost += 0.5 * v * v / give;
                 most = most.max(v.abs());
             }
             if most < 1e-16 {
                 break;
             }
+        }
+        // More than rounding: a contact that came loose within the step and did not get away.
+        if state.lost - before.lost > 1e-24 {
+            let of = |state: &State| self.arm_momentum(&self.still(state));
+            let ((p, h), (was_p, was_h)) = (of(&state), of(&before));
+            state.impulse.0 -= p - was_p;
+            state.impulse.1 -= h - was_h;
         }
         state
     }

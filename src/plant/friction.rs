@@ -103,6 +103,11 @@ impl Contacts {
         self.list[i].coulomb > 0.0
     }
 
+    /// Whether any can stick.
+    pub fn stick(&self) -> bool {
+        self.list.iter().any(|contact| contact.coulomb > 0.0)
+    }
+
     /// τ_C of a contact, N m.
     pub fn coulomb(&self, i: usize) -> f64 {
         self.list[i].coulomb
@@ -137,20 +142,21 @@ impl Contacts {
 
     /// The torques of stuck contacts, that nothing stuck may move: each |f| ≤ τ_C with v̇ = 0, or at its bound against
     /// v̇. `solve` gives accelerations for generalised forces, `free` those without these torques. Adds to `force`;
-    /// `taken` holds the torques, before as a first guess, after as found. Bounded sweeps: exact in one where contacts do not act on each other.
+    /// `taken` holds the torques, before as a first guess, after as found; gives the power they take, W, which is none
+    /// unless a contact has begun to slide since the step did. Bounded sweeps: exact in one where contacts do not act on each other.
     pub fn hold(
         &self,
         grip: &Grip,
-        free: &[f64],
+        (qd, free): (&[f64], &[f64]),
         solve: impl Fn(&[f64; MAX_DRIVES]) -> [f64; MAX_DRIVES],
         force: &mut [f64],
         bearing: &mut [f64],
         taken: &mut [f64; MAX_CONTACTS],
-    ) {
+    ) -> f64 {
         const SWEEPS: usize = 2000;
         let stuck = |i: &usize| self.list[*i].coulomb > 0.0 && grip[*i] == 0;
         if !(0..self.list.len()).any(|i| stuck(&i)) {
-            return;
+            return 0.0;
         }
         let mut qdd = [0.0; MAX_DRIVES];
         qdd[..free.len()].copy_from_slice(free);
@@ -181,12 +187,15 @@ impl Contacts {
                 break;
             }
         }
+        let mut lost = 0.0;
         for i in (0..self.list.len()).filter(stuck) {
             self.apply(i, taken[i], force);
+            lost += taken[i] * self.sliding(i, qd);
             if i < self.bearings {
                 bearing[self.list[i].plus] += taken[i];
             }
         }
+        lost
     }
 }
 

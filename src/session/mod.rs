@@ -312,7 +312,18 @@ impl Session {
     fn amend(&mut self, edit: Edit) -> Result<(), Refusal> {
         let (before, inverse) = (self.document.clone(), self.run.inverse_of(&edit));
         let timed = TimedEdit { step: 0, edit };
-        self.restore(self.amended(&timed))?;
+        let document = self.amended(&timed);
+        match &timed.edit {
+            Edit::SetTolerance { change } => {
+                // No frame depends on it.
+                let mut scenario = self.run.scenario().clone();
+                let wrong = |why: String| Refusal::Task(format!("tolerance: {why}"));
+                scenario.tolerance = crate::keys::with(&scenario.tolerance, change).map_err(wrong)?;
+                self.run.set_tolerance(scenario.tolerance);
+                self.document = document;
+            }
+            _ => self.restore(document)?,
+        }
         self.remember(before, timed, inverse);
         Ok(())
     }

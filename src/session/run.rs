@@ -65,7 +65,10 @@ pub enum Refusal {
     #[error(transparent)]
     Machine(#[from] MachineError),
     /// The numbers have blown up.
-    #[error("the simulation diverges at {time:.3} s: want smaller gains, a smaller step or a lighter payload")]
+    #[error(
+        "the simulation diverges at {time:.3} s: want smaller gains, a smaller step, a lighter payload, or softer springs, dampers and \
+             friction"
+    )]
     Diverged {
         /// s.
         time: f64,
@@ -199,6 +202,11 @@ impl Run {
         self.simulation.frame()
     }
 
+    /// The same run with other tolerances: they change nothing of it.
+    pub(super) fn set_tolerance(&mut self, tolerance: crate::tolerance::Tolerance) {
+        self.scenario.tolerance = tolerance;
+    }
+
     /// One step.
     pub fn advance(&mut self) {
         self.simulation.advance();
@@ -211,7 +219,7 @@ impl Run {
     pub fn apply(&mut self, edit: &Edit) -> Result<(), Refusal> {
         if self.is_untouched() && !edit.leads() {
             let mut planes = self.planes.clone().map(|planes| (self.scenario.machine.clone(), planes));
-            let scenario = amended(&self.scenario, edit, &mut planes)?;
+            let scenario = amended(&self.scenario, edit, &mut planes, true)?;
             let known = planes.filter(|(machine, _)| *machine == scenario.machine).map(|(_, planes)| planes);
             *self = Self::with_planes(&scenario, known)?;
             return Ok(());
@@ -234,11 +242,11 @@ impl Run {
                 self.simulation.place(Guide::Follow(follower));
             }
             Edit::CompareB { b } => self.scenario.compare_b = *b,
+            Edit::SetTolerance { .. } => self.scenario = changed(&self.scenario, edit, true)?,
             Edit::Push { .. }
             | Edit::SetPlant { .. }
             | Edit::SetBase { .. }
             | Edit::SetControl { .. }
-            | Edit::SetTolerance { .. }
             | Edit::SetMachine { .. }
             | Edit::SetTime { .. }
             | Edit::SetTask { .. } => self.set(edit)?,
@@ -256,7 +264,7 @@ impl Run {
         if matches!(edit, Edit::SetTask { .. } | Edit::SetBase { .. }) {
             return Err(Refusal::Task("task and base can change only before the first step".into()));
         }
-        let scenario = changed(&self.scenario, edit)?;
+        let scenario = changed(&self.scenario, edit, true)?;
         if let (Edit::SetMachine { key, value }, true) = (edit, self.leaves_limits(&scenario)) {
             return Err(Refusal::LeavesLimits { key: key.clone(), value: value.clone() });
         }
@@ -340,36 +348,36 @@ impl Run {
     }
 }
 
-/// A scenario with a parameter set; nothing is planned.
-fn changed(scenario: &Scenario, edit: &Edit) -> Result<Scenario, Refusal> {
+/// A scenario with a parameter set; nothing is planned. Whether all fits together may be left to be checked later.
+fn changed(scenario: &Scenario, edit: &Edit, check: bool) -> Result<Scenario, Refusal> {
     let mut scenario = scenario.clone();
     match edit {
         Edit::Push { x, y } => {
             scenario.plant.force = [*x, *y];
-            checked(&scenario, "push")?;
+            checked(&scenario, "push", check)?;
         }
         Edit::SetPlant { change } => {
             scenario.plant = keys::with(&scenario.plant, change).map_err(|why| wrong("plant", &why))?;
-            checked(&scenario, "plant")?;
+            checked(&scenario, "plant", check)?;
         }
         Edit::SetBase { change } => {
             scenario.base = keys::with(&scenario.base, change).map_err(|why| wrong("base", &why))?;
-            checked(&scenario, "base")?;
+            checked(&scenario, "base", check)?;
         }
         Edit::SetControl { change } => {
             scenario.control = keys::with(&scenario.control, change).map_err(|why| wrong("control", &why))?;
-            checked(&scenario, "control")?;
+            checked(&scenario, "control", check)?;
         }
         Edit::SetTolerance { change } => {
             scenario.tolerance = keys::with(&scenario.tolerance, change).map_err(|why| wrong("tolerance", &why))?;
-            checked(&scenario, "tolerance")?;
+            checked(&scenario, "tolerance", check)?;
         }
         Edit::SetMachine { key, value } => scenario.machine = scenario.machine.set(key, value)?,
         Edit::SetTime { time } => scenario.task.time = *time,
         Edit::CompareB { b } => scenario.compare_b = *b,
         Edit::SetTask { change } => {
             scenario.task = scenario.task.with(change).map_err(|why| wrong("task", &why))?;
-            checked(&scenario, "task")?;
+            checked(&scenario, "task", check)?;
         }
         Edit::PoseB { .. } | Edit::DragTarget { .. } | Edit::SlideB { .. } => {}
     }
@@ -380,14 +388,22 @@ fn wrong(of: &str, why: &str) -> Refusal {
     Refusal::Task(format!("{of}: {why}"))
 }
 
-fn checked(scenario: &Scenario, of: &str) -> Result<(), Refusal> {
+fn checked(scenario: &Scenario, of: &str, check: bool) -> Result<(), Refusal> {
+    if !check {
+        return Ok(());
+    }
     scenario.check(of).map_err(|why| Refusal::Task(why.to_string()))
 }
 
 /// A scenario as an edit before its first step leaves it; planes are made if a pose needs them, and kept.
-fn amended(scenario: &Scenario, edit: &Edit, planes: &mut Option<(Machine, Arc<Planes>)>) -> Result<Scenario, Refusal> {
+fn amended(
+    scenario: &Scenario,
+    edit: &Edit,
+    planes: &mut Option<(Machine, Arc<Planes>)>,
+    whole: bool,
+) -> Result<Scenario, Refusal> {
     check(edit, scenario.step)?;
-    let Edit::PoseB { b } = edit else { return changed(scenario, edit) };
+    let Edit::PoseB { b } = edit else { return changed(scenario, edit, whole) };
     let known = planes.take().filter(|(machine, _)| *machine == scenario.machine);
     let planes = match known {
         Some(known) => planes.insert(known),
@@ -466,8 +482,10 @@ fn folded(
     let count = script.iter().take_while(|e| e.step == 0 && !e.edit.leads()).count();
     let mut ground = scenario.clone();
     for timed in &script[..count] {
-        ground = amended(&ground, &timed.edit, planes)?;
+        ground = amended(&ground, &timed.edit, planes, false)?;
     }
+    // What stands between two of them need not fit together.
+    checked(&ground, "the scenario", count > 0)?;
     Ok((ground, count))
 }
 

@@ -95,7 +95,8 @@ pub struct Simulation {
     ground: Ground,
     peaks: Peaks,
     tally: Tally,
-    audit: Audit,
+    /// The largest error of a step so far, rad.
+    step_error: f64,
 }
 
 /// What audits start from.
@@ -135,6 +136,10 @@ impl Simulation {
         let known = if setup.control.knows_base { setup.base } else { &fixed };
         let model = |m: &Machine| Body::of(m, &Friction::default(), known, start);
         let models = [model(setup.model)?, model(&load.held_by(setup.model)?)?];
+        let models = match (first, models) {
+            (true, [empty, with]) => [empty.preloaded_as(&with), with],
+            (false, [empty, with]) => [empty.clone(), with.preloaded_as(&empty)],
+        };
         let n = machine.drives();
         let lambda = models[0].arm().lambda();
         let limits = plant
@@ -168,7 +173,7 @@ impl Simulation {
             ground: Ground::default(),
             peaks: Peaks::zero(n),
             tally: Tally::default(),
-            audit: Audit::default(),
+            step_error: 0.0,
         };
         sim.begin();
         Ok(sim)
@@ -233,9 +238,10 @@ impl Simulation {
     pub fn change(&mut self, setup: &Setup) -> Result<(), MachineError> {
         let fresh = Self::new(setup, self.guide.clone())?;
         let old = std::mem::replace(self, fresh);
-        let Self { step, guide, state, peaks, tally, audit, ground, now, pilot, bodies, .. } = old;
-        (self.step, self.guide, self.peaks, self.tally, self.audit) = (step, guide, peaks, tally, audit);
-        self.pilot.resume(&pilot);
+        let Self { step, guide, state, peaks, tally, step_error, ground, now, pilot, bodies, .. } = old;
+        (self.step, self.guide, self.peaks, self.tally) = (step, guide, peaks, tally);
+        self.step_error = step_error;
+        self.pilot.resume(&pilot, step);
         for body in self.bodies.iter_mut() {
             *body = body.clone().preloaded_as(&bodies[0]);
         }
@@ -285,6 +291,7 @@ impl Simulation {
         let qd = PerDrive::from_fn(n, |k| reference.qd[k] + turning);
         let state = self.body().state(&q, &qd, base, velocity, turning);
         self.state = State { wheel, work, lost, impulse, ..state };
+        self.pilot.forget();
         self.begin();
     }
 
@@ -337,8 +344,8 @@ impl Simulation {
     /// Advances by one step.
     pub fn advance(&mut self) {
         let (state, grip) = self.travel(&self.now, self.dt);
-        if (self.step + HALVED_EVERY / 2).is_multiple_of(HALVED_EVERY) && self.body().contacts().is_empty() {
-            self.audit.step = self.audit.step.max(self.halved(&state));
+        if (self.step + HALVED_EVERY / 2).is_multiple_of(HALVED_EVERY) && !self.body().contacts().stick() {
+            self.step_error = self.step_error.max(self.halved(&state));
         }
         (self.state, self.grip) = (state, grip);
         self.step += 1;
@@ -384,7 +391,7 @@ impl Simulation {
         release(self.bodies[usize::from(self.loaded)].contacts(), &mut self.grip, &taken);
     }
 
-    /// Takes the present instant into peaks, sums and audits.
+    /// Takes the present instant into peaks and sums.
     fn include(&mut self) {
         let x = &self.now;
         let qd = PerDrive::from_fn(self.drives, |k| x.qd[k]);
@@ -393,12 +400,20 @@ impl Simulation {
         let felt = x.wrench.total().moment - x.spin.torque;
         self.peaks.include(&x.torque, x.wrench.dynamic.force.norm(), felt, pull);
         self.tally.include(x, felt, self.time());
+    }
+
+    /// What should be zero now.
+    fn audited(&self, plane: f64) -> Audit {
         let now = self.sources();
-        self.audit.energy = now.energy - self.ground.energy;
-        self.audit.momentum = (now.momentum - self.ground.momentum).norm();
-        self.audit.angular = now.angular - self.ground.angular;
-        let gap = |chain: &[f64; MAX_DRIVES]| crate::machine::place_of(chain, &x.e).norm();
-        self.audit.closure = self.closures.iter().map(gap).fold(0.0, f64::max);
+        let gap = |chain: &[f64; MAX_DRIVES]| crate::machine::place_of(chain, &self.now.e).norm();
+        Audit {
+            momentum: (now.momentum - self.ground.momentum).norm(),
+            angular: now.angular - self.ground.angular,
+            energy: now.energy - self.ground.energy,
+            closure: self.closures.iter().map(gap).fold(0.0, f64::max),
+            step: self.step_error,
+            plane,
+        }
     }
 
     /// What pins carry now; a base that moves adds to gravity.
@@ -462,7 +477,7 @@ impl Simulation {
             phase,
             peaks: self.peaks,
             tally: self.tally,
-            audit: Audit { plane: b - b_reference, ..self.audit },
+            audit: self.audited(b - b_reference),
         }
     }
 }

@@ -31,7 +31,7 @@ struct Sampling {
     step: f64,
     /// The newest reading with its step, and the one before: a step may be looked at again after an edit.
     last: Option<(u64, DriveAngles)>,
-    before: Option<DriveAngles>,
+    before: Option<(u64, DriveAngles)>,
     /// Torques to come and the steps at which they do.
     pending: VecDeque<(u64, PerDrive)>,
     held: Option<PerDrive>,
@@ -71,12 +71,12 @@ impl Pilot {
             if sampling.count > 0.0 {
                 let count = sampling.count;
                 reading.q = DriveAngles(PerDrive::from_fn(reading.q.len(), |k| (reading.q[k] / count).round() * count));
-                if let Some((_, q)) = sampling.last.replace((step, reading.q)).filter(|(at, _)| *at != step) {
-                    sampling.before = Some(q);
+                if let Some(last) = sampling.last.replace((step, reading.q)).filter(|(at, _)| *at < step) {
+                    sampling.before = Some(last);
                 }
                 // The first rate is exact: there is nothing to compare with yet.
-                if let Some(before) = sampling.before {
-                    let time = sampling.period as f64 * sampling.step;
+                if let Some((at, before)) = sampling.before {
+                    let time = (step - at) as f64 * sampling.step;
                     reading.qd = reading.q.0.minus(&before.0).scaled(1.0 / time);
                 }
             }
@@ -89,11 +89,24 @@ impl Pilot {
         }
     }
 
-    /// Goes on where another was, with what that has under way.
-    pub fn resume(&mut self, other: &Self) {
+    /// Goes on at a step where another was, with what that has under way; what it has from before its own start is
+    /// forgotten.
+    pub fn resume(&mut self, other: &Self, step: u64) {
+        self.controller.preload_as(&other.controller);
+        self.forget();
         if let (Some(now), Some(before)) = (&mut self.sampling, &other.sampling) {
             (now.last, now.before, now.held) = (before.last, before.before, before.held);
-            now.pending.clone_from(&before.pending);
+            // With a shorter delay nothing older may arrive after what is newer.
+            let due = step + now.delay;
+            now.pending.extend(before.pending.iter().filter(|(at, _)| *at <= due));
+        }
+    }
+
+    /// Forgets readings and torques under way: the machine is put somewhere else.
+    pub fn forget(&mut self) {
+        if let Some(sampling) = &mut self.sampling {
+            (sampling.last, sampling.before, sampling.held) = (None, None, None);
+            sampling.pending.clear();
         }
     }
 

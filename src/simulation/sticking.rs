@@ -5,7 +5,7 @@ use super::Simulation;
 use crate::plant::{Contacts, Grip, MAX_CONTACTS, Slope, State};
 
 /// The most changes that are looked for within one step.
-const MOST: usize = 24;
+const MOST: usize = MAX_CONTACTS + 4;
 
 /// Slides contacts that can no longer hold.
 pub(super) fn release(contacts: &Contacts, grip: &mut Grip, taken: &[f64; MAX_CONTACTS]) {
@@ -54,14 +54,14 @@ impl Simulation {
                 (state, v)
             };
             let (mut low, mut high) = ((0.0, along(i, &start.qd)), (left, along(i, &rates)));
-            let mut found = state;
+            let (mut found, mut at) = (state, 0.0);
             if low.1 > 1e-13 {
                 // The Illinois rule.
                 let mut side = 0;
                 for _ in 0..40 {
                     let tau = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
                     let (there, v) = stop(tau);
-                    found = there;
+                    (found, at) = (there, tau);
                     if v > 0.0 {
                         low = (tau, v);
                         high.1 *= if side == 1 { 0.5 } else { 1.0 };
@@ -75,7 +75,7 @@ impl Simulation {
                         break;
                     }
                 }
-                done += high.0;
+                done += at;
             }
             grip[i] = 0;
             state = self.body().stuck(found, &grip);
@@ -85,6 +85,7 @@ impl Simulation {
                 release(contacts, &mut grip, &taken);
             }
         }
-        (self.rk4(&state, &start, done, h - done, &grip), grip)
+        let end = self.rk4(&state, &start, done, h - done, &grip);
+        (self.body().stuck(end, &grip), grip)
     }
 }

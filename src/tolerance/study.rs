@@ -3,6 +3,7 @@
 use super::{
     Agreement, Bands, CHUNK, Ensemble, Histogram, Outcome, Quantiles, Share, Shares, Tolerance, ToleranceError, Yield,
 };
+use crate::control::Control;
 use crate::plant::Plant;
 use crate::session::{Run, replay};
 use crate::spectrum::{Spectrum, Window};
@@ -82,8 +83,7 @@ impl Study {
         let bands = Bands::of(&ensemble, samples);
         let mut shares = Shares::of(&ensemble).parameters;
         shares.sort_by(|a, b| b.moment_share.total_cmp(&a.moment_share));
-        let ideal = Plant { payload: scenario.plant.payload, ..Plant::default() };
-        let same = Plant { link: Default::default(), length: Default::default(), ..scenario.plant.clone() } == ideal;
+        let ideal = scenario.plant == Plant::default() && scenario.control == Control::default();
         Ok(Self {
             samples,
             parameters: ensemble.parameters().len(),
@@ -96,7 +96,7 @@ impl Study {
             yields,
             shares,
             spectra: spectra(run),
-            idealised: scenario.base.moves() || !same,
+            idealised: scenario.base.moves() || !ideal,
             tolerance,
         })
     }

@@ -277,6 +277,7 @@ impl Desk {
                 let run = board.entries().get(entry).and_then(|e| e.outcome.as_ref().ok()).cloned();
                 if let Some(run) = run {
                     self.session.switch(run.scenario.clone()).map_err(|why| why.to_string())?;
+                    self.foresee();
                 }
             }
         }

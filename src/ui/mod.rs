@@ -174,6 +174,8 @@ pub struct Look {
     pub grabbed: Option<Grip>,
     /// Where the pointer holds the target, m.
     pub held: Option<[f64; 2]>,
+    /// The force at the end effector before a hand pushes, N.
+    pub force: Option<[f64; 2]>,
     /// Runs stand side by side.
     pub compare: bool,
     /// The study of tolerances is on display.
@@ -218,6 +220,7 @@ impl Look {
             hot: None,
             grabbed: None,
             held: None,
+            force: None,
             compare: false,
             study: false,
             pins: false,

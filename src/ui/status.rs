@@ -99,7 +99,9 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &Look, commands
             };
             ui.label(RichText::new(word).font(bold(13.0)).color(tone));
             lamps(ui, f, &p);
-            let mut facts = format!("peak |n_B| {:.3} N m  ·  b {:.3} rad", f.peaks.moment, f.b);
+            // With a wheel the base feels less than the manipulator transmits.
+            let what = if session.scenario().base.wheel.is_some() { "n felt" } else { "|n_B|" };
+            let mut facts = format!("peak {what} {:.3} N m  ·  b {:.3} rad", f.peaks.moment, f.b);
             let bad_news = matches!(look.message, Some((_, true)));
             if let Some((poses, distance)) =
                 views.stage().standing(f).filter(|_| !bad_news && ui.available_width() > 460.0)

@@ -137,6 +137,7 @@ fn point_at(
     if response.drag_started_by(PointerButton::Primary) {
         // A drag begins where the button went down, not where it was noticed.
         look.grabbed = ui.input(|i| i.pointer.press_origin()).and_then(under);
+        look.force = Some(session.scenario().plant.force);
     }
     let ask = |grip, pos: Pos2, look: &mut Look| {
         let edit = match views.aim(view, &grip, frame, &spot.pointer(pos), session.b_aim())? {
@@ -176,7 +177,9 @@ fn point_at(
         if response.drag_stopped() || let_go {
             look.grabbed = None;
             if pushes && look.dragged {
-                commands.push(Command::Edit(Edit::Push { x: 0.0, y: 0.0 }));
+                // Back to the force that was there before the hand.
+                let [x, y] = look.force.take().unwrap_or_default();
+                commands.push(Command::Edit(Edit::Push { x, y }));
             }
             commands.push(Command::EndGesture);
             if let_go && look.dragged {

@@ -242,7 +242,8 @@ fn an_edit_that_changes_nothing_leaves_no_trace() {
         assert!((a.base.angle - b.base.angle).abs() < 1e-11 && (a.wheel.rate - b.wheel.rate).abs() < 1e-9);
         assert!(a.torque.minus(&b.torque).max_abs() < 1e-8, "{} s: {:?} {:?}", a.time, a.torque, b.torque);
     }
-    assert!(Audit::fault(&edited[edited.len() - 1]).is_none());
+    let fault = Audit::fault(&edited[edited.len() - 1]);
+    assert!(fault.is_none(), "{fault:?}");
 }
 
 /// Motors that saturate give no more than their limit.
@@ -297,7 +298,7 @@ proptest! {
         let free = solve(&padded);
         let (mut total, mut bearing) = (force, [0.0; 3]);
         let mut taken = [0.0; stillbase::plant::MAX_CONTACTS];
-        contacts.hold(&[0; stillbase::plant::MAX_CONTACTS], &free[..3], solve, &mut total, &mut bearing, &mut taken);
+        contacts.hold(&[0; stillbase::plant::MAX_CONTACTS], (&[0.0; 3], &free[..3]), solve, &mut total, &mut bearing, &mut taken);
         padded[..3].copy_from_slice(&total);
         let left = solve(&padded);
         let scale = free.iter().fold(1.0_f64, |m, x| m.max(x.abs()));

@@ -28,7 +28,7 @@ impl Stage {
     pub(super) fn reaction(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, options: &ViewOptions) {
         let (z, reach) = (self.handle_height(), self.linkage.reach());
         let b = frame.base.at;
-        let (force, moment) = (frame.wrench.dynamic.force, frame.base_moment());
+        let (force, moment) = (frame.wrench.dynamic.force, frame.felt_moment());
         let weight = frame.wrench.statical.force.norm();
         let tone = |still: bool| if still { palette.zero } else { palette.reaction };
         let pulls = frame.wrench.dynamic.force.norm() > REACTIONLESS * frame.peaks.inertial_pull.max(1e-9);
