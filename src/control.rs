@@ -100,11 +100,9 @@ impl Control {
             ("control.kp", self.kp, 1.0 / (step * step), "0 to 1/step² s⁻², one number or one for each drive"),
             ("control.kd", self.kd, 2.0 / step, "0 to 2/step s⁻¹, one number or one for each drive"),
         ] {
-            let ok = |x: f64| (0.0..=most).contains(&x) && gain.fits(n);
+            let ok = |x: f64| (0.0..=most).contains(&x);
             list.extend(gain.values().into_iter().map(|x| (key, x, want, ok(x))));
-            if gain.values().is_empty() {
-                list.push((key, f64::NAN, want, false));
-            }
+            list.extend(gain.misfit(n, key));
         }
         let whole = |steps: f64| (steps - steps.round()).abs() < 1e-6 * steps.max(1.0);
         let steps = if self.rate > 0.0 { 1.0 / (self.rate * step) } else { 1.0 };

@@ -110,7 +110,9 @@ impl Compare {
             Some(file) => self.csv(&runs, file)?,
             None => {}
         }
-        self.format.print(&Answer { runs }, table)
+        let fault = runs.iter().find_map(|r| Some(format!("{}: {}", r.name, r.outcome.as_ref().ok()?.fault.as_ref()?)));
+        self.format.print(&Answer { runs }, table)?;
+        fault.map_or(Ok(()), |why| Err(Failure::NoAnswer(format!("audit failed: {why}; want a smaller step"))))
     }
 
     fn scenarios(&self) -> Result<Vec<(Option<&'static str>, Scenario)>, Failure> {
@@ -159,6 +161,7 @@ impl Compare {
                 Err(_) => String::new(),
             });
             let (verdict, why) = match &row.outcome {
+                Ok(summary) if summary.fault.is_some() => ("untrusted", String::new()),
                 Ok(summary) => (yes(summary.reactionless), String::new()),
                 Err(why) => ("", why.clone()),
             };
@@ -191,7 +194,8 @@ fn table(answer: &Answer) -> String {
         match &row.outcome {
             Ok(s) => {
                 let cells = columns.iter().map(|c| (c.value)(s).map_or_else(|| "–".into(), |x| fixed(x, c.decimals)));
-                table.row([name].into_iter().chain(cells).chain([yes(s.reactionless).to_owned()]));
+                let verdict = if s.fault.is_some() { "untrusted" } else { yes(s.reactionless) };
+                table.row([name].into_iter().chain(cells).chain([verdict.to_owned()]));
             }
             Err(why) => refused += &format!("{name}: {why}\n"),
         }

@@ -86,6 +86,9 @@ impl Export {
                 if later > 0 {
                     say(format!("note: {later} edits after the start are no part of the reference; --what simulated"));
                 }
+                if ground.base.moves() {
+                    say("note: tau_ff is of the model on a fixed base; --what simulated has what control asks for");
+                }
                 self.reference(&Run::new(&ground).map_err(|e| Failure::from(e).of(&name))?)?
             }
             What::Simulated => self.simulated(&scenario)?,

@@ -57,6 +57,7 @@ struct Verdict {
     rms_base_moment: f64,
     base_shift: f64,
     base_tilt: f64,
+    miss: f64,
     reactionless: bool,
     audit: Columns<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -74,6 +75,7 @@ impl Verdict {
             rms_base_moment: last.tally.moment_rms(),
             base_shift: last.tally.shift,
             base_tilt: last.tally.tilt,
+            miss: (last.tip - last.target.at).norm(),
             reactionless: last.peaks.is_reactionless(),
             audit: Columns(last.audit.lamps(&last.peaks, &last.tally).map(|l| (l.name.to_owned(), l.value)).to_vec()),
             audit_failed: Audit::fault(last).map(|lamp| lamp.to_string()),
@@ -141,6 +143,9 @@ impl Simulate {
                 fixed(verdict.peak_base_force, 6),
                 yes(verdict.reactionless),
             ));
+            if verdict.miss > 1e-4 {
+                say(format!("{}: ends {} m from its target", scenario.name, fixed(verdict.miss, 4)));
+            }
             return trusted(&scenario.name, verdict.audit_failed);
         }
         let fault = verdict.audit_failed.clone();

@@ -112,15 +112,17 @@ impl SpectrumOf {
             let force = frame.wrench.dynamic.force;
             course.force_x.push(force.re);
             course.force_y.push(force.im);
-            course.moment.push(frame.base_moment());
+            course.moment.push(frame.felt_moment());
         })
         .map_err(|e| Failure::from(e).of(&scenario.name))?;
         let of = |samples: &[f64]| Spectrum::of(samples, scenario.step, self.window);
         let spectra =
             Axes { force_x: of(&course.force_x)?, force_y: of(&course.force_y)?, moment: of(&course.moment)? };
-        let axis = |unit, spectrum: &Spectrum, limit: &Option<Limit>| {
+        // Of the run itself: a window weighs its middle.
+        let rms = |samples: &[f64]| (samples.iter().map(|x| x * x).sum::<f64>() / samples.len() as f64).sqrt();
+        let axis = |unit, samples: &[f64], spectrum: &Spectrum, limit: &Option<Limit>| {
             let verdict = limit.as_ref().map(|limit| spectrum.against(limit).ok_or_else(|| beyond(limit, spectrum)));
-            Ok::<_, Failure>(Axis { unit, rms: spectrum.rms(), limit: verdict.transpose()? })
+            Ok::<_, Failure>(Axis { unit, rms: rms(samples), limit: verdict.transpose()? })
         };
         if let Some(file) = &self.output {
             write(file, self.force, &spectra)?;
@@ -134,9 +136,9 @@ impl SpectrumOf {
             step: scenario.step,
             resolution: frequency.get(1).copied().unwrap_or(0.0),
             axes: Axes {
-                force_x: axis("N", &spectra.force_x, &self.limit_force)?,
-                force_y: axis("N", &spectra.force_y, &self.limit_force)?,
-                moment: axis("N m", &spectra.moment, &self.limit_moment)?,
+                force_x: axis("N", &course.force_x, &spectra.force_x, &self.limit_force)?,
+                force_y: axis("N", &course.force_y, &spectra.force_y, &self.limit_force)?,
+                moment: axis("N m", &course.moment, &spectra.moment, &self.limit_moment)?,
             },
             frequency,
             density: spectra.map(|s| s.density.clone()),
@@ -182,11 +184,11 @@ fn text(answer: &Answer, spectra: &Axes<Spectrum>) -> String {
         "99 % below Hz",
     ])
     .with_words(1);
-    for (name, unit, spectrum) in spectra.named() {
+    for ((name, unit, spectrum), (_, _, axis)) in spectra.named().into_iter().zip(answer.axes.named()) {
         let lines = spectrum.frequency.iter().zip(&spectrum.density);
         let (at, most) = lines.max_by(|a, b| a.1.total_cmp(b.1)).map_or((0.0, 0.0), |(f, d)| (*f, *d));
         let frequencies = [at, below(spectrum, 0.5), below(spectrum, 0.99)].map(|f| fixed(f, 3));
-        let row = [name.to_owned(), unit.to_owned(), shown(spectrum.rms(), 6), shown(most, 6)];
+        let row = [name.to_owned(), unit.to_owned(), shown(axis.rms, 6), shown(most, 6)];
         table.row(row.into_iter().chain(frequencies));
     }
     let (samples, step, resolution) = (answer.samples, answer.step, fixed(answer.resolution, 3));

@@ -29,6 +29,8 @@ pub struct Summary {
     pub base_shift: f64,
     /// Largest |θ|, rad.
     pub base_tilt: f64,
+    /// How far from its target the end effector is at the end, m.
+    pub miss: f64,
     /// Largest |τ_k| of any drive, N m.
     pub peak_torque: f64,
     /// ∫ Σ |τ_k (q̇_k − θ̇)| dt, the wheel's too, J.
@@ -61,7 +63,7 @@ pub struct Column {
 }
 
 /// The table's columns, in order.
-pub const COLUMNS: [Column; 13] = [
+pub const COLUMNS: [Column; 14] = [
     column("time", "T", "time of the motion", "s", 3, |s| Some(s.time)),
     column("peak_moment", "peak n", "largest moment that the base feels", "N m", 4, |s| Some(s.peak_moment)),
     column("rms_moment", "rms n", "its root mean square", "N m", 4, |s| Some(s.rms_moment)),
@@ -71,6 +73,7 @@ pub const COLUMNS: [Column; 13] = [
     column("force_impulse", "∫|f|dt", "its impulse", "N s", 4, |s| Some(s.force_impulse)),
     column("base_shift", "shift", "largest way of the base", "m", 5, |s| Some(s.base_shift)),
     column("base_tilt", "tilt", "largest angle of the base", "rad", 5, |s| Some(s.base_tilt)),
+    column("miss", "miss", "from the end effector to its target at the end", "m", 5, |s| Some(s.miss)),
     column("peak_torque", "peak τ", "largest torque of any drive", "N m", 4, |s| Some(s.peak_torque)),
     column("energy", "energy", "what motors took, none given back", "J", 4, |s| Some(s.energy)),
     column("wheel_rate", "wheel", "largest rate of the reaction wheel", "rad/s", 1, |s| s.wheel_rate),
@@ -104,6 +107,7 @@ impl Summary {
             moment_impulse: tally.moment_impulse,
             base_shift: tally.shift,
             base_tilt: tally.tilt,
+            miss: (last.tip - last.target.at).norm(),
             peak_torque: peaks.torque.max_abs(),
             energy: tally.energy,
             wheel_rate: scenario.base.wheel.map(|_| tally.wheel_rate),

@@ -237,6 +237,7 @@ fn write(
         for (scenario, case) in scenarios.iter().zip(&cases) {
             let mut tick = |step| progress(Progress { done: before + step, of: 2 * total, what: &scenario.name });
             let peaks = recorder::record(&mut set, scenario, case, &mut tick)?;
+            let fault = case.fault.iter().map(|why| format!("{}: audit failed: {why}", scenario.name));
             before += case.steps;
             recordings.push(Recording {
                 scenario: scenario.name.clone(),
@@ -246,7 +247,7 @@ fn write(
                 peak_base_force: peaks.force,
                 peak_base_moment: peaks.moment,
                 reactionless: peaks.is_reactionless(),
-                notes: set.film.notes(),
+                notes: set.film.notes().into_iter().chain(fault).collect(),
             });
         }
         Ok(())

@@ -28,6 +28,8 @@ pub struct Rehearsal {
     pub peaks: Peaks,
     /// The largest |f_B|, static and dynamic, N.
     pub force: f64,
+    /// The first audit that fails, in words.
+    pub fault: Option<String>,
     /// Least and greatest b, rad.
     pub b: [f64; 2],
     /// The farthest the end effector gets from B, m.
@@ -56,6 +58,7 @@ impl Rehearsal {
         })?;
         let last = run.frame();
         Ok(Self {
+            fault: crate::audit::Audit::fault(&last).map(|lamp| lamp.to_string()),
             name: scenario.name.clone(),
             title: if scenario.title.is_empty() { scenario.name.clone() } else { scenario.title.clone() },
             root: EntityPath::new(vec![EntityPathPart::new(scenario.name.as_str())]),

@@ -97,9 +97,16 @@ impl Each {
         }
     }
 
-    /// Whether there is one for each of `n` drives.
-    pub fn fits(&self, n: usize) -> bool {
-        matches!(self, Self::All(_)) || self.values().len() == n
+    /// A check that fails if it is a list, but not one number for each of `n` drives.
+    pub(crate) fn misfit(&self, n: usize, key: &'static str) -> Option<(&'static str, f64, &'static str, bool)> {
+        let count = self.values().len();
+        let fits = matches!(self, Self::All(_)) || count == n;
+        (!fits).then_some((
+            key,
+            count as f64,
+            "one number, or a list with one for each drive; its length is given",
+            false,
+        ))
     }
 
     /// The same with the value of drive `k` of `n` changed.
@@ -175,10 +182,8 @@ impl Plant {
             ("plant.friction.viscous", friction.viscous, "0 to 10000 N m s, one number or one for each drive"),
             ("plant.friction.coulomb", friction.coulomb, "0 to 10000 N m, one number or one for each drive"),
         ] {
-            list.extend(each.values().into_iter().map(|x| (key, x, want, amount(x) && each.fits(n))));
-            if each.values().is_empty() {
-                list.push((key, f64::NAN, want, false));
-            }
+            list.extend(each.values().into_iter().map(|x| (key, x, want, amount(x))));
+            list.extend(each.misfit(n, key));
         }
         list
     }

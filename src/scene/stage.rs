@@ -232,7 +232,7 @@ impl Stage {
     pub fn scene(&self, frame: &Frame, options: &ViewOptions) -> Scene {
         let palette = palette(options.theme);
         let shown = swayed(frame, options.sway);
-        let frame = &shown;
+        let (frame, true_tip) = (&shown, frame.tip);
         let e = frame.q.units();
         let mut solids = Vec::new();
         if let Some(course) = &self.motion {
@@ -283,7 +283,7 @@ impl Stage {
         if options.pin_forces && !self.pins.is_empty() {
             self.pin_forces(&mut scene, &palette, frame);
         }
-        self.target(&mut scene, &palette, frame, options);
+        self.target(&mut scene, &palette, frame, options, true_tip);
         self.burden(&mut scene, &palette, frame, options);
         scene
     }

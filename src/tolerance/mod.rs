@@ -42,4 +42,4 @@ pub use shares::{Share, Shares};
 pub use simulate::simulate;
 pub use spread::{Amount, MAX_SAMPLES, Spread, Tolerance, default_spreads};
 pub use statistics::{Histogram, Quantiles, Yield};
-pub use study::{INSTANTS, Study};
+pub use study::{INSTANTS, Study, left_out};

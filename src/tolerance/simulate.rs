@@ -13,8 +13,10 @@ use crate::simulation::{Guide, Setup, Simulation};
 pub fn simulate(planned: &Run, plant: &Machine) -> Result<Outcome, Refusal> {
     let scenario = planned.scenario();
     let guide = Guide::Motion { motion: planned.plan().motion.clone(), start: 0.0 };
-    // What it holds at the start is part of the varied machine.
-    let rest = Plant { payload: Load::default(), ..scenario.plant.clone() };
+    // What it holds at the start is part of the varied machine; what comes later is not.
+    let load = scenario.plant.payload;
+    let payload = if load.is_held(0.0, 0.5 * scenario.step) { Load::default() } else { load };
+    let rest = Plant { payload, ..scenario.plant.clone() };
     let setup = Setup { plant: &rest, ..scenario.setup() };
     let mut simulation = Simulation::of_machine(&setup, plant.clone(), guide)?;
     let last = planned.last_step();

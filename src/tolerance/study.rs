@@ -5,6 +5,7 @@ use super::{
 };
 use crate::control::Control;
 use crate::plant::Plant;
+use crate::scenario::Scenario;
 use crate::session::{Run, replay};
 use crate::spectrum::{Spectrum, Window};
 
@@ -42,8 +43,8 @@ pub struct Study {
     pub shares: Vec<Share>,
     /// Frequencies of f_Bx, f_By and of what moment the base feels, as run.
     pub spectra: Option<[Spectrum; 3]>,
-    /// Whether perfect tracking on a fixed base is not what this scenario has: then only full simulation is exact.
-    pub idealised: bool,
+    /// What this scenario has that perfect tracking on a fixed base does not: only full simulation is exact then.
+    pub left_out: Vec<&'static str>,
 }
 
 impl Study {
@@ -83,7 +84,6 @@ impl Study {
         let bands = Bands::of(&ensemble, samples);
         let mut shares = Shares::of(&ensemble).parameters;
         shares.sort_by(|a, b| b.moment_share.total_cmp(&a.moment_share));
-        let ideal = scenario.plant == Plant::default() && scenario.control == Control::default();
         Ok(Self {
             samples,
             parameters: ensemble.parameters().len(),
@@ -96,10 +96,31 @@ impl Study {
             yields,
             shares,
             spectra: spectra(run),
-            idealised: scenario.base.moves() || !ideal,
+            left_out: left_out(scenario),
             tolerance,
         })
     }
+}
+
+/// What a scenario has that perfect tracking on a fixed base leaves out.
+pub fn left_out(scenario: &Scenario) -> Vec<&'static str> {
+    let Plant { torque_limits, force, payload, friction, length, link } = &scenario.plant;
+    let known = Control { kp: scenario.control.kp, kd: scenario.control.kd, ..Control::default() };
+    let always = payload.is_held(0.0, 0.5 * scenario.step) && payload.until.is_none();
+    let all = [
+        (scenario.base.moves(), "a base that moves"),
+        (scenario.base.wheel.is_some(), "a reaction wheel"),
+        (payload.is_some() && !always, "a payload that comes or goes"),
+        (
+            payload.is_some() && always || !length.is_empty() || !link.is_empty(),
+            "errors of a control that believes the model",
+        ),
+        (*friction != Default::default(), "friction"),
+        (*force != [0.0; 2], "a force at the end effector"),
+        (*torque_limits, "torque limits"),
+        (scenario.control != known, "control other than computed torque at all times"),
+    ];
+    all.into_iter().filter(|(has, _)| *has).map(|(_, what)| what).collect()
 }
 
 /// Of the whole run, at every step; none where it cannot be run or is too short.

@@ -66,8 +66,8 @@ fn summary(study: &Study) -> String {
     if f.worst > study.agreement.sampled_tolerance {
         text += ", not for the mean of |f_B|, which is a norm";
     }
-    if study.idealised {
-        text += "  ·  perfect tracking on a fixed base is assumed: `stillbase tolerance --simulate` runs each in full";
+    if !study.left_out.is_empty() {
+        text += &format!("  ·  left out: {}; `stillbase tolerance --simulate` has it", study.left_out.join(", "));
     }
     text
 }
@@ -204,7 +204,9 @@ fn band(ui: &mut Ui, p: &Palette, study: &Study, time: f64) {
     title(ui, p, "n_B off nominal", "N m; 5–95, 25–75 %; dashed σ");
     let (x, band) = (&study.bands.time, &study.bands.moment);
     let tone = colour(p.reaction);
+    let end = x.last().copied().unwrap_or(1.0) + x.first().copied().unwrap_or(0.0);
     let response = bare("bands", p, ui.available_height()).show_axes([true, true]).show(ui, |plot| {
+        plot.set_plot_bounds_x(0.0..=end);
         for (i, strength) in [(0, 0.16), (1, 0.28)] {
             let [low, high] = [i, 4 - i].map(|i| {
                 let off = band.percentiles[i].iter().zip(&band.nominal);

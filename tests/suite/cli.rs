@@ -432,8 +432,12 @@ fn simulate_prints_every_signal() {
     assert_eq!(keys(&got), ["scenario", "signals", "time", "units", "verdict"]);
     let peaks = ["peak_base_force", "peak_base_moment", "peak_torque"];
     let sums = ["rms_base_force", "rms_base_moment", "steps"];
-    let all: Vec<&str> =
-        ["audit", "base_shift", "base_tilt"].into_iter().chain(peaks).chain(["reactionless"]).chain(sums).collect();
+    let all: Vec<&str> = ["audit", "base_shift", "base_tilt", "miss"]
+        .into_iter()
+        .chain(peaks)
+        .chain(["reactionless"])
+        .chain(sums)
+        .collect();
     assert_eq!(keys(&got["verdict"]), all);
     assert_eq!(keys(&got["verdict"]["audit"]), ["angular", "energy", "loops", "momentum", "plane", "step"]);
     assert_eq!(keys(&got["signals"]), keys(&got["units"]));
@@ -1034,9 +1038,12 @@ fn spectrum_says_what_is_kept() {
     let worst = moment["limit"]["frequency"].as_f64().expect("a frequency");
     let line = frequency.iter().position(|f| *f == worst).expect("a line");
     assert_eq!(Some(density[line]), moment["limit"]["density"].as_f64());
-    assert_eq!(rms.last().copied(), moment["rms"].as_f64());
-    // With no window the RMS is that of the samples, which `simulate` prints too.
+    assert!(rms.is_sorted(), "it only grows");
+    // The RMS is that of the samples, whatever the window; with none the lines add up to it.
     let plain = object(&["spectrum", "case-1", "--window", "rectangular"]);
+    let whole = numbers(&plain["cumulative_rms"]["moment"]).last().copied().expect("lines");
+    assert!((whole - moment["rms"].as_f64().expect("RMS")).abs() < 1e-12);
+    assert_eq!(plain["axes"]["moment"]["rms"], moment["rms"]);
     let course = numbers(&object(&["simulate", "case-1"])["signals"]["moment/total"]);
     let square = course.iter().map(|x| x * x).sum::<f64>() / course.len() as f64;
     assert!((plain["axes"]["moment"]["rms"].as_f64().expect("RMS") - square.sqrt()).abs() < 1e-12);

@@ -175,6 +175,14 @@ impl Tolerance {
         if others > 0 {
             say(format!("note: {}: {others} edits in motion are left out; the planned motion counts", scenario.name));
         }
+        let left_out = stillbase::tolerance::left_out(&scenario);
+        if !left_out.is_empty() && !self.simulate {
+            let what = left_out.join(", ");
+            say(format!(
+                "note: {}: perfect tracking on a fixed base leaves out {what}: --simulate has it",
+                scenario.name
+            ));
+        }
         let section = self.section(&scenario);
         let samples = section.samples.unwrap_or(if self.simulate { 1000 } else { 100_000 });
         let (i, n) = self.shard.unwrap_or((1, 1));

@@ -20,7 +20,14 @@ pub(super) fn brief_point(p: Vector) -> String {
 }
 
 impl Stage {
-    pub(super) fn target(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, options: &ViewOptions) {
+    pub(super) fn target(
+        &self,
+        scene: &mut Scene,
+        palette: &Palette,
+        frame: &Frame,
+        options: &ViewOptions,
+        true_tip: Vector,
+    ) {
         let z = self.handle_height();
         let tip = frame.tip;
         let hot = options.hot == Some(Handle::Target);
@@ -83,7 +90,8 @@ impl Stage {
             }
             reach => {
                 let words = if reach == Reach::Carried { "turns with its workspace" } else { INVITATION };
-                let text = format!("{} m", brief_point(tip));
+                // Where it is, whatever the picture exaggerates.
+                let text = format!("{} m", brief_point(true_tip));
                 scene.labels.push(label(at, z, [20.0, -7.0], &text, ink, 13.0, Anchor::Left));
                 scene.labels.push(label(at, z, [20.0, 9.0], words, palette.dim, 11.5, Anchor::Left));
             }
