@@ -13,6 +13,9 @@ const DEFAULT: &str = "default";
 /// # Errors
 /// What key or value is wrong, and what would be right.
 pub fn with<T: Serialize + DeserializeOwned>(value: &T, change: &Table) -> Result<T, String> {
+    if let Some(key) = not_finite(change) {
+        return Err(format!("{key} is not a finite number: want one"));
+    }
     let mut table = Table::try_from(value).map_err(|e| e.to_string())?;
     lay(&mut table, change);
     table.try_into().map_err(|e: toml::de::Error| e.message().to_owned())
@@ -49,6 +52,21 @@ pub fn join(mut first: Table, second: &Table) -> Table {
         first.insert(key.clone(), value);
     }
     first
+}
+
+/// The first key whose value is a number, or a list with one, that is not finite.
+pub fn not_finite(table: &Table) -> Option<String> {
+    fn within(value: &Value) -> bool {
+        match value {
+            Value::Float(x) => !x.is_finite(),
+            Value::Array(list) => list.iter().any(within),
+            _ => false,
+        }
+    }
+    table.iter().find_map(|(key, value)| match value {
+        Value::Table(inner) => not_finite(inner).map(|rest| format!("{key}.{rest}")),
+        value => within(value).then(|| key.clone()),
+    })
 }
 
 /// Every key of a change with its value, as `a.b = 1`.

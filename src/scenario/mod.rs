@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::control::Control;
+use crate::keys;
 use crate::machine::{self, FileError, Machine, MachineError, MachineSpec};
 use crate::plant::{Base, Plant, is_default};
 use crate::session::TimedEdit;
@@ -208,6 +209,15 @@ impl Scenario {
             line: e.span().map(|s| text[..s.start.min(text.len())].matches('\n').count() + 1),
             message: e.message().to_owned(),
         })?;
+        // A key that is left out may stand as such a number until it is filled in, so it has to be seen here.
+        if let Some(key) =
+            text.parse().ok().and_then(|table| keys::not_finite(&table)).filter(|key| key.starts_with("task"))
+        {
+            let message = format!("{key} is not a finite number: want one");
+            let last = key.rsplit('.').next().unwrap_or_default();
+            let line = text.lines().position(|line| line.trim_start().starts_with(last)).map(|i| i + 1);
+            return Err(ScenarioError::Syntax { file: label.into(), line, message });
+        }
         let machine = match file.machine {
             MachineRef::Name(name) => machine::find(&name, folder)?,
             MachineRef::Inline(spec) => {

@@ -48,14 +48,8 @@ const WITH_WHEEL: Chart = Chart { groups: &["moment/total", "moment/felt"], ..CH
 const FRICTION: Chart =
     Chart { title: "Friction", unit: "N m", groups: &["friction"], least: 0.01, centred: true, times: 1.0 };
 /// On a base that moves.
-const BASE: Chart = Chart {
-    title: "Base motion",
-    unit: "mm, mrad",
-    groups: &["base", "attitude"],
-    least: 0.01,
-    centred: true,
-    times: 1e3,
-};
+const BASE: Chart =
+    Chart { title: "Base", unit: "mm, mrad", groups: &["base", "attitude"], least: 0.01, centred: true, times: 1e3 };
 
 /// Inside the machine.
 const PINS: Chart =

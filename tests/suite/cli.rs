@@ -1093,9 +1093,19 @@ fn plants_bases_and_control_are_set_by_key() {
         ("control.delay=0.0005", "control.delay"),
         ("plant.payload.until=0", "plant.payload.until"),
         ("base.wheel.inertia=0", "base.wheel.inertia"),
+        ("task.time=nan", "time is not a finite number"),
+        ("plant.payload.offset=[0.1,inf]", "payload.offset is not a finite number"),
     ] {
         fails(&["simulate", "case-1", "--set", pair], 2, &[word]);
     }
+}
+
+/// A number that is none is refused where it stands.
+#[test]
+fn a_time_that_is_no_number_is_refused() {
+    let folder = Folder::new();
+    let case = include_str!("../../assets/scenarios/case-3.toml").replace("time = 1.0", "time = nan");
+    fails(&["simulate", &folder.file("odd.toml", &case)], 2, &["odd.toml:", "task.time is not a finite number"]);
 }
 
 /// The ways of a task as a table, as JSON, as CSV and as one row that cannot be.

@@ -581,13 +581,13 @@ fn a_link_that_differs_is_named() {
 fn a_base_that_moves_is_seen_to_move() {
     let Some(mut h) = desk_of(Scenario::builtin("case-1").expect("built in"), Theme::Dark, 1700.0) else { return };
     h.step();
-    assert!(h.query_by_label_contains("Base motion over time").is_none());
+    assert!(h.query_by_label_contains("Base over time").is_none());
     h.get_by_label("Base section").click();
     h.run_steps(2);
     h.get_by_label("free").click();
     h.run_steps(2);
     assert_eq!(session(&h).scenario().base.kind, BaseKind::Free);
-    assert!(h.query_by_label_contains("Base motion over time").is_some());
+    assert!(h.query_by_label_contains("Base over time").is_some());
     let foreseen = h.state().desk().look().sway();
     h.get_by_label("Play").click();
     h.run_steps(70);

@@ -26,7 +26,7 @@ impl Stage {
     /// scale goes by the largest of the instant, because near a change point there is no bound to go by.
     pub(super) fn pin_forces(&self, scene: &mut Scene, palette: &Palette, frame: &Frame) {
         let (z, reach, e) = (self.handle_height(), self.linkage.reach(), frame.q.units());
-        let full = round_up(frame.inside.worst.max(1e-3));
+        let full = round_up(frame.inside.worst.max(0.05 * frame.peaks.inertial_pull).max(1e-3));
         let per_newton = 0.25 * reach / full;
         for (i, pin) in self.pins.iter().enumerate() {
             let Some(force) = frame.inside.pin(i) else { continue };
