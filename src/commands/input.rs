@@ -22,7 +22,7 @@ pub const DEFAULT_SCENARIO: &str = "case-3";
 pub struct Settings {
     /// Change the machine, as often as needed: link.5.com=-0.02 (m), link.5.axial=0.02 (m), link.9.mass=0.3 (kg), length.l1=0.6 (m),
     /// payload.mass=0.1 (kg, known to control), gravity=0,-9.81 (m/s²), limits.a1=0.4,2.7 (rad), drive.1.torque_limit=20 (N m), drive.1.speed_limit=3 (rad/s), drive.1.acceleration_limit=40 (rad/s²), drive.1.jerk_limit=900 (rad/s³),
-    /// and of scenarios: task.shape=spline, task.time=2 (s), plant.payload.mass=0.1 (kg, unknown to control),
+    /// and, where a scenario is asked for and not a machine alone: task.shape=spline, task.time=2 (s), plant.payload.mass=0.1 (kg, unknown to control),
     /// plant.friction.coulomb=0.2 (N m), plant.link.5.com=-0.02 (m), base.kind=free, base.mass=40 (kg),
     /// control.law=pd, control.kp=400,300,300 (s⁻²), and every other key of a scenario file
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]

@@ -24,7 +24,7 @@ Examples:
   stillbase joints case-1 --set gravity=0,-9.81 -o pins.csv
   stillbase joints case-3 --set link.5.axial=0.02 --json")]
 pub struct JointsCommand {
-    /// A built-in scenario (case-1, case-2, case-3) or a TOML file
+    /// A built-in scenario (case-1, spacecraft …; an unknown name lists them all) or a TOML file
     #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
     scenario: String,
     /// Write the force of every pin over time to this file, as CSV: x and y in base axes, of the first link on the second

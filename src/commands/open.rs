@@ -13,7 +13,7 @@ use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 /// What to open.
 #[derive(Args)]
 pub struct Open {
-    /// A built-in scenario (case-1, case-2, case-3) or a TOML file to open in a window
+    /// A built-in scenario (case-1, spacecraft …; an unknown name lists them all) or a TOML file to open in a window
     #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
     scenario: String,
     /// Colours of the window

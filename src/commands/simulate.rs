@@ -24,7 +24,7 @@ Examples:
   stillbase simulate --every 10 --set payload.mass=0.1 | head
   stillbase simulate case-3 --json")]
 pub struct Simulate {
-    /// A built-in scenario (case-1, case-2, case-3) or a TOML file
+    /// A built-in scenario (case-1, spacecraft …; an unknown name lists them all) or a TOML file
     #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
     scenario: String,
     /// Write the CSV to this file instead of standard output

@@ -29,7 +29,7 @@ The exit status is 0 whether limits are kept or not.
 JSON keys: scenario, window, samples, step, resolution (Hz); axes {force_x, force_y, moment: {unit, rms, limit?: {frequency,
 density, limit, ratio, within}}}; frequency[]; density and cumulative_rms {force_x[], force_y[], moment[]}; file with -o.")]
 pub struct SpectrumOf {
-    /// A built-in scenario (case-1, case-2, case-3) or a TOML file
+    /// A built-in scenario (case-1, spacecraft …; an unknown name lists them all) or a TOML file
     #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
     scenario: String,
     /// The greatest density of n_B that will do, N m/√Hz: one number, or pairs FREQUENCY:LIMIT

@@ -6,7 +6,7 @@ use egui::{Align2, Button, Color32, Frame, Rect, RichText, Stroke, Ui, pos2, vec
 
 use super::theme::{colour, plain};
 use super::{Command, Look};
-use crate::scene::palette::Palette;
+use crate::scene::palette::{Palette, faded};
 use crate::scene::views::{ViewKind, Views};
 use crate::scene::{Measure, dexterity};
 
@@ -57,7 +57,12 @@ fn segment(ui: &mut Ui, p: &Palette, text: &str, chosen: bool) -> egui::Response
 /// The toggles, and once the shade is on the key to its colours.
 fn shade(ui: &mut Ui, p: &Palette, look: &Look, views: &Views, commands: &mut Vec<Command>) {
     ui.add_space(2.0);
-    // A narrow window breaks the line.
+    // Labels of the scene pass behind it; a narrow window breaks the line.
+    let frame = Frame::new().fill(colour(faded(p.background, 0.82))).corner_radius(6).inner_margin(2);
+    frame.show(ui, |ui| toggles(ui, p, look, views, commands));
+}
+
+fn toggles(ui: &mut Ui, p: &Palette, look: &Look, views: &Views, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(6.0, 2.0);
         let ink = colour(if look.stroke.is_some() { p.ink } else { p.dim });

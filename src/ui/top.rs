@@ -111,7 +111,11 @@ fn transport(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Com
 fn timeline(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Command>) {
     let p = look.palette();
     let (mut time, length) = (session.frame().time, session.length().max(1e-3));
-    let text = format!("{time:.3} / {length:.3} s");
+    // A narrow window keeps its room for the slider.
+    let text = match ui.available_width() > 200.0 {
+        true => format!("{time:.3} / {length:.3} s"),
+        false => format!("{time:.3} s"),
+    };
     ui.label(RichText::new(text).font(plain(12.5)).color(colour(p.dim)));
     ui.spacing_mut().slider_width = (ui.available_width() - 16.0).max(60.0);
     ui.spacing_mut().interact_size.y = 15.0;

@@ -51,7 +51,7 @@ moment_share, force_share}], moment_first_order, force_first_order}; bands {time
 {worst, time, share}}; against_tracking with --simulate; file with -o. With --merge: file, samples, seed, the four
 distributions, yield.")]
 pub struct Tolerance {
-    /// A built-in scenario (case-1, case-2, case-3) or a TOML file; by default case-3
+    /// A built-in scenario (case-1, spacecraft …; an unknown name lists them all) or a TOML file; by default case-3
     #[arg(value_name = "SCENARIO")]
     scenario: Option<String>,
     /// How many machines; by default the scenario's number, or 100000, or 1000 with --simulate
