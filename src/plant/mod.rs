@@ -7,6 +7,7 @@ mod base;
 mod body;
 mod friction;
 mod load;
+mod state;
 mod wheel;
 
 use std::collections::BTreeMap;
@@ -14,9 +15,10 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 pub use base::{Base, BaseKind};
-pub use body::{Body, Command, Slope, State};
+pub use body::Body;
 pub use friction::{Contacts, Friction, Grip, MAX_CONTACTS};
 pub use load::Load;
+pub use state::{Command, Slope, State};
 pub use wheel::{Spin, Wheel};
 
 use crate::machine::{Machine, MachineError};
