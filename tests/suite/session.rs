@@ -903,3 +903,25 @@ fn settings_outlive_following() {
     assert_eq!(session.scenario().plant.payload.mass, 0.3);
     one_path(&session);
 }
+
+/// Tolerances are set, saved, taken back, and change no frame.
+#[test]
+fn tolerances_change_no_frame() {
+    let mut session = Session::open(Scenario::builtin("case-1").expect("built in")).expect("it starts");
+    session.seek(1.0);
+    let before = session.frames().to_vec();
+    let spread = toml::Value::Table(toml::Table::from_iter([("normal".into(), 0.001.into())]));
+    let change = toml::Table::from_iter([("link.*.com".into(), spread), ("moment_limit".into(), 0.02.into())]);
+    do_it(&mut session, Edit::SetTolerance { change: change.clone() });
+    assert_eq!(session.frames(), &before[..]);
+    let tolerance = &session.scenario().tolerance;
+    assert_eq!((tolerance.moment_limit, tolerance.spreads.len()), (Some(0.02), 1));
+    let saved = Scenario::parse(&session.to_scenario().to_toml(), "saved", None).expect("valid");
+    assert_eq!(stillbase::session::settled(&saved).expect("set").0.tolerance, *tolerance);
+    let wrong = Edit::SetTolerance { change: toml::Table::from_iter([("link.*.com".into(), "much".into())]) };
+    assert!(session.apply(wrong).is_err());
+    session.undo().expect("taken back");
+    assert!(session.scenario().tolerance.is_empty());
+    session.redo().expect("brought back");
+    assert_eq!(session.scenario().tolerance.moment_limit, Some(0.02));
+}

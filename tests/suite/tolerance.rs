@@ -441,3 +441,29 @@ fn what_cannot_vary_is_refused() {
     assert!(matches!(refused(&[("link.1.mass", "normal:6")]), ToleranceError::Impossible { .. }));
     assert!(matches!(refused(&[("link.1.com", "normal:1e9")]), ToleranceError::TooWide { .. }));
 }
+
+/// What a window shows of tolerances: shares of a whole, quantiles in order, a yield by the limit, the run's frequencies,
+/// and what perfect tracking leaves out.
+#[test]
+fn a_study_is_of_one_piece() {
+    use stillbase::session::Run;
+    use stillbase::tolerance::{Study, left_out};
+    let mut scenario = stillbase::scenario::Scenario::builtin("case-3").expect("built in");
+    scenario.tolerance = toml::from_str("samples = 3000\nmoment_limit = 0.01").expect("tolerances");
+    let study = Study::of(&Run::new(&scenario).expect("planned")).expect("something varies");
+    assert!((study.shares.iter().map(|s| s.moment_share).sum::<f64>() - 1.0).abs() < 1e-9);
+    assert!(study.shares.is_sorted_by(|a, b| a.moment_share >= b.moment_share));
+    assert!(study.moment.values.is_sorted() && study.moment_histogram.counts.iter().sum::<u64>() == 3000);
+    let good = study.yields.as_ref().expect("a limit").share;
+    let [_, half, most, _] = study.moment.values[..] else { panic!("four levels") };
+    assert!(half < 0.01 && most > 0.01 && good > 0.5 && good < 0.95, "{half} {most} {good}");
+    let [x, _, n] = study.spectra.as_ref().expect("long enough");
+    assert!(n.rms() < 1e-9 && x.rms() < 1e-9, "the run itself transmits nothing");
+    assert!(study.left_out.is_empty());
+    for (name, word) in
+        [("spacecraft", "a base that moves"), ("pick-up", "a payload that comes or goes"), ("friction", "friction")]
+    {
+        let scenario = stillbase::scenario::Scenario::builtin(name).expect("built in");
+        assert!(left_out(&scenario).contains(&word), "{name}: {:?}", left_out(&scenario));
+    }
+}

@@ -659,3 +659,24 @@ fn lamps_tell_the_audit() {
     h.run_steps(60);
     assert!(h.query_by_label_contains("energy − work + losses").is_some(), "its figure is under the pointer");
 }
+
+/// Tolerances by key: the panel shows them, a spread is set by its number, and they make room for runs side by side.
+#[test]
+fn tolerances_are_shown_and_set() {
+    let Some(mut h) = desk("case-3", Theme::Dark) else { return };
+    h.run_steps(3);
+    h.key_press(Key::T);
+    h.run_steps(2);
+    assert!(h.query_by_label("Histogram of peaks of the base moment over machines, N m").is_some());
+    assert!(h.query_by_label_contains("20000 machines, 41 numbers vary in each").is_some());
+    h.get_by_label("Spread of limit on |n_B|, N m").set_value_accesskit(0.01);
+    h.run_steps(3);
+    assert_eq!(session(&h).scenario().tolerance.moment_limit, Some(0.01));
+    assert!(h.query_by_label_contains("keep within limits").is_some());
+    h.key_press(Key::C);
+    h.run_steps(2);
+    assert!(h.query_by_label_contains("Histogram").is_none() && h.state().desk().board().is_some());
+    h.key_press(Key::I);
+    h.run_steps(2);
+    assert!(h.query_by_label_contains("Pin forces over time").is_some());
+}
