@@ -54,7 +54,8 @@ pub struct Blocked {
     pub nearest_b: Option<f64>,
     /// Whether some b reaches each single point of the curve, if not the curve as a whole.
     pub some_b_reaches_all: bool,
-    /// From where to where the longest part runs that can be followed on this plane, 0 to 1 by length.
+    /// From where to where the longest part runs that can be followed on this plane, 0 to 1 by length; one of less than
+    /// 0.6 % may be missed.
     pub longest: Option<[f64; 2]>,
     /// The whole curve, m, to be drawn.
     pub curve: Vec<Vector>,

@@ -194,7 +194,9 @@ proptest! {
             }
             let counted = f64::from(best) / 2000.0;
             let found = blocked.longest.map_or(0.0, |[s, t]| t - s);
-            prop_assert!((found - counted).abs() < 2.5e-3, "{} {}", found, counted);
+            // A part shorter than the stations are apart may lie between two of them.
+            let missed = found < counted && counted < 1.0 / 192.0 + 1e-3;
+            prop_assert!((found - counted).abs() < 2.5e-3 || missed, "{} {}", found, counted);
             if let Some([s, t]) = blocked.longest.filter(|[s, t]| t - s > 1e-2) {
                 // Where it ends on det = 0, the rates there have no bound: a little off.
                 let again = follow(&planes, &part(s + 1e-3, t - 1e-3), B);
