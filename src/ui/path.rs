@@ -320,14 +320,10 @@ fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
         let words = format!("{limit} passes its limit, {} times", signed(factor, 2));
         ui.add(egui::Label::new(RichText::new(words).font(plain(11.0)).color(colour(p.reaction))).wrap());
     }
-    note(
-        ui,
-        p,
-        &format!(
-            "{} s, peak torque {} N m, peak n_B {} N m",
-            signed(forecast.time, 3),
-            signed(torque, 3),
-            signed(forecast.moment, 3)
-        ),
-    );
+    // Plans are of the model; what the plant and the base make of them the status line tells.
+    let scenario = session.scenario();
+    let ideal = scenario.plant == Default::default() && !scenario.base.moves();
+    let of = if ideal { "" } else { "as the model on a fixed base: " };
+    let (time, moment) = (signed(forecast.time, 3), signed(forecast.moment, 3));
+    note(ui, p, &format!("{of}{time} s, peak torque {} N m, peak n_B {moment} N m", signed(torque, 3)));
 }

@@ -143,7 +143,8 @@ fn pose_constant(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec
         note(ui, p, &text);
         let inertia = Inertia::of(&scenario.machine);
         let price = inertia.diagonal(0) * scenario.pose_acceleration;
-        note(ui, p, &format!("in motion it costs up to {price:.2} N m"));
+        let of = if scenario.base.moves() { ", on a fixed base" } else { "" };
+        note(ui, p, &format!("in motion it costs up to {price:.2} N m{of}"));
     }
     let mut shown = scenario.compare_b.is_some();
     let mut other = scenario.compare_b.unwrap_or(b + 0.5 * period);
