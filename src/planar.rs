@@ -58,6 +58,13 @@ impl PerDrive {
         v
     }
 
+    /// The values of the first `n` drives.
+    #[inline]
+    #[must_use]
+    pub fn first(&self, n: usize) -> Self {
+        if self.len == n { *self } else { Self::from_fn(n, |k| self[k]) }
+    }
+
     /// A copy of a slice, or `None` if it holds more than [`MAX_DRIVES`].
     pub fn from_slice(values: &[f64]) -> Option<Self> {
         (values.len() <= MAX_DRIVES).then(|| Self::from_fn(values.len(), |k| values[k]))

@@ -56,12 +56,6 @@ pub struct Body {
     base: (f64, Vector),
 }
 
-/// The first `n`.
-#[inline]
-pub(super) fn cut(v: &PerDrive, n: usize) -> PerDrive {
-    if v.len() == n { *v } else { PerDrive::from_fn(n, |k| v[k]) }
-}
-
 impl Body {
     /// Constants of a machine with what it holds, on its base; `start` is the pose of rest that a compliant base is
     /// preloaded for.
@@ -237,7 +231,7 @@ impl Body {
     /// The same of the manipulator with what it holds.
     pub fn arm_momentum(&self, x: &Slope) -> (Vector, f64) {
         let n = self.arm.drives;
-        let qd = cut(&x.qd, n);
+        let qd = x.qd.first(n);
         let lever = crate::dynamics::first_moment(&self.arm, &x.e);
         let p = crate::dynamics::linear_momentum(&self.arm, &x.e, &qd) + self.arm.mass * x.base_velocity;
         let h = crate::dynamics::angular_momentum(&self.arm, &x.e, &qd);
@@ -263,7 +257,8 @@ impl Body {
     ) -> PerDrive {
         let n = commanded.len();
         let (h, v) = crate::dynamics::mass_matrix(&self.whole, e, qd);
-        let outer = self.outer(e, qd, base, velocity);
+        let hold = self.held(base, velocity, qd.get(n).copied().unwrap_or(0.0));
+        let outer = by_drives!(self.whole.drives, outer_padded(self, e, hold));
         let mut qdd = PerDrive::from_fn(self.whole.drives, |k| commanded.get(k).copied().unwrap_or(0.0));
         if self.moves {
             // Torques between drives and base cancel, so the base turns by what outer forces leave.
@@ -276,18 +271,19 @@ impl Body {
         PerDrive::from_fn(n, |k| inertial[k] + v[k] - outer[k])
     }
 
-    /// Generalised forces of weight, of the force at the end effector and of the support, N m.
-    fn outer(&self, e: &Units, qd: &PerDrive, base: Pose2, velocity: Vector) -> PerDrive {
-        let (force, moment) = self.held(base, velocity, qd.get(self.arm.drives).copied().unwrap_or(0.0));
-        let mut q = PerDrive::from_fn(self.whole.drives, |k| {
+    /// Generalised forces of weight, of the force at the end effector and of the support, N m, the moment on the base
+    /// last.
+    #[inline(always)]
+    fn outer<const N: usize>(&self, e: &Units, (hold, moment): (Vector, f64)) -> [f64; N] {
+        let mut outer = std::array::from_fn(|k| {
             cross(self.lever[k] * e[k], self.around.gravity)
                 + cross(self.tip[k] * e[k], self.around.force)
-                + cross(self.anchor[k] * e[k], force)
+                + cross(self.anchor[k] * e[k], hold)
         });
         if self.moves {
-            q[self.arm.drives] += moment;
+            outer[N - 1] += moment;
         }
-        q
+        outer
     }
 
     /// Force and moment of the support on a base that moves, N, N m.
@@ -298,6 +294,10 @@ impl Body {
         let force = force - Vector::new(k[0] * p.re + c[0] * v.re, k[1] * p.im + c[1] * v.im);
         (force, moment - k[2] * base.angle - c[2] * turning)
     }
+}
+
+fn outer_padded<const N: usize>(body: &Body, e: &Units, hold: (Vector, f64)) -> PerDrive {
+    body.outer::<N>(e, hold).into()
 }
 
 #[inline]
@@ -349,35 +349,20 @@ fn instant_of<const N: usize>(
     }
     let Command { torque, spin, rotor } = control(&e, &qd, base, velocity);
 
-    // Generalised forces.
-    let mut force = [0.0; N];
-    let mut friction = PerDrive::zeros(n);
-    let (mut power, mut outer_power) = (0.0, Vector::default());
+    // Generalised forces: outer ones, whose sum changes L, and torques between the drives and the base.
+    let (hold, moment) = body.held(base, velocity, turning);
+    let mut force = body.outer::<N>(&e, (hold, moment - spin.torque));
+    let external: f64 = force.iter().sum();
+    let (_, tip_velocity) = body.seen(&body.tip, &e, &qd);
+    let mut power = dot(body.around.force, tip_velocity + drift) + spin.torque * (spin.rate - turning);
     for k in 0..n.min(N) {
-        force[k] = torque[k];
+        force[k] += torque[k];
         power += torque[k] * (rate[k] - turning);
     }
-    let mut loss = 0.0;
-    let mut external = 0.0;
-    let mut momentum_rate = Vector::default();
-    for k in 0..N {
-        let tip = body.tip[k] * e[k];
-        outer_power += I * tip * rate[k];
-        let outer = cross(body.lever[k] * e[k], body.around.gravity) + cross(tip, body.around.force);
-        force[k] += outer;
-        external += outer;
-    }
-    power += dot(body.around.force, outer_power + drift) + spin.torque * (spin.rate - turning);
+    let mut friction = PerDrive::zeros(n);
+    let (mut loss, mut momentum_rate) = (0.0, Vector::default());
     if body.moves {
-        let (hold, moment) = body.held(base, velocity, turning);
-        for k in 0..N {
-            let outer = cross(body.anchor[k] * e[k], hold);
-            force[k] += outer;
-            external += outer;
-        }
-        let moment = moment - spin.torque;
-        external += moment;
-        force[N - 1] += moment - torque.iter().sum::<f64>();
+        force[N - 1] -= torque.iter().sum::<f64>();
         let c = &body.support.damping;
         loss += c[0] * velocity.re.powi(2) + c[1] * velocity.im.powi(2) + c[2] * turning * turning;
         momentum_rate = body.mass * body.around.gravity + body.around.force + hold;
@@ -404,7 +389,7 @@ fn instant_of<const N: usize>(
         let pull: Vector =
             (0..N).map(|k| body.anchor[k] * e[k] * Vector::new(-rate[k] * rate[k], acceleration[k])).sum();
         base_acceleration = momentum_rate / body.mass + pull;
-        let mut wrench = base_wrench(&body.arm, &e, &cut(&qd, n), &cut(&qdd, n), &body.around);
+        let mut wrench = base_wrench(&body.arm, &e, &qd.first(n), &qdd.first(n), &body.around);
         let lever = crate::dynamics::first_moment(&body.arm, &e);
         wrench.dynamic.force -= body.arm.mass * base_acceleration;
         wrench.dynamic.moment -= cross(lever, base_acceleration);

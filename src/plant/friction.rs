@@ -201,12 +201,8 @@ impl Contacts {
 
 /// The drives that the two sides of every pin follow.
 fn pins(machine: &Machine) -> Vec<(usize, usize)> {
-    let spec = machine.spec();
-    let drive = |name: &str| {
-        let j = machine.links().iter().position(|link| link.name == name)?;
-        Some(machine.parts()[j].drive)
-    };
-    let hinges = machine.parts().iter().filter_map(|part| Some((machine.parts()[part.parent?].drive, part.drive)));
-    let closures = spec.closures.iter().filter_map(|c| Some((drive(&c.a.link)?, drive(&c.b.link)?)));
+    let drive = |j: usize| machine.parts()[j].drive;
+    let hinges = machine.parts().iter().filter_map(|part| Some((drive(part.parent?), part.drive)));
+    let closures = machine.loops().iter().map(|l| (drive(l.a), drive(l.b)));
     hinges.chain(closures).filter(|(k, l)| k != l).collect()
 }

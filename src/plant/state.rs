@@ -99,9 +99,16 @@ impl State {
         k.into_iter().zip(w).fold(*self, |state, (x, w)| state.along(x, w))
     }
 
+    /// The same in the books of another: its wheel, work, losses and impulse.
+    #[must_use]
+    pub fn in_books_of(self, other: &Self) -> Self {
+        let Self { wheel, work, lost, impulse, .. } = *other;
+        Self { wheel, work, lost, impulse, ..self }
+    }
+
     /// The drives' angles without the base, rad.
     #[inline]
     pub fn drives(&self, n: usize) -> DriveAngles {
-        DriveAngles(super::body::cut(&self.q, n))
+        DriveAngles(self.q.first(n))
     }
 }

@@ -107,6 +107,16 @@ struct Ground {
     angular: f64,
 }
 
+impl Ground {
+    fn less(self, other: &Self) -> Self {
+        Self {
+            energy: self.energy - other.energy,
+            momentum: self.momentum - other.momentum,
+            angular: self.angular - other.angular,
+        }
+    }
+}
+
 impl Simulation {
     /// At the start of its guide, with the guide's rates, on a base at rest at the origin.
     ///
@@ -183,14 +193,14 @@ impl Simulation {
     fn begin(&mut self) {
         self.grip = grips(self.body().contacts(), &self.body().rates(&self.state));
         self.look();
-        self.ground = self.sources();
+        self.ground = self.sources(self.body(), &self.now);
         self.include();
     }
 
-    /// Energy and momenta less what has come in and gone out: these do not change.
-    fn sources(&self) -> Ground {
-        let (p, h) = self.body().arm_momentum(&self.now);
-        let energy = self.now.kinetic + self.body().potential(&self.now) - self.state.work + self.state.lost;
+    /// Energy and momenta of a body less what has come in and gone out: these do not change.
+    fn sources(&self, body: &Body, x: &Slope) -> Ground {
+        let (p, h) = body.arm_momentum(x);
+        let energy = x.kinetic + body.potential(x) - self.state.work + self.state.lost;
         Ground { energy, momentum: p + self.state.impulse.0, angular: h + self.state.impulse.1 }
     }
 
@@ -254,28 +264,15 @@ impl Simulation {
     /// The same positions and rates on the body of now; what audits compare with goes on from here.
     fn carry_over(&mut self, before: &Slope, body: &Body) {
         let n = self.drives;
-        let error = |now: Ground, ground: Ground| Ground {
-            energy: now.energy - ground.energy,
-            momentum: now.momentum - ground.momentum,
-            angular: now.angular - ground.angular,
-        };
-        let (p, h) = body.arm_momentum(before);
-        let energy = before.kinetic + body.potential(before) - self.state.work + self.state.lost;
-        let was = Ground { energy, momentum: p + self.state.impulse.0, angular: h + self.state.impulse.1 };
-        let off = error(was, self.ground);
-        let (q, qd) = (self.state.drives(n), PerDrive::from_fn(n, |k| before.qd[k]));
+        let off = self.sources(body, before).less(&self.ground);
+        let (q, qd) = (self.state.drives(n), before.qd.first(n));
         let turning = before.qd.get(n).copied().unwrap_or(0.0);
-        let (pose, velocity) = match self.body().moves() {
-            true => (before.base, before.base_velocity),
-            false => Default::default(),
-        };
-        let State { wheel, work, lost, impulse, .. } = self.state;
-        let state = self.body().state(&q, &qd, pose, velocity, if self.body().moves() { turning } else { 0.0 });
-        self.state = State { wheel, work, lost, impulse, ..state };
+        let (pose, velocity) = (before.base, before.base_velocity);
+        let state = self.body().state(&q, &qd, pose, velocity, turning);
+        self.state = state.in_books_of(&self.state);
         self.grip = grips(self.body().contacts(), &self.body().rates(&self.state));
         self.look();
-        let now = self.sources();
-        self.ground = error(now, off);
+        self.ground = self.sources(self.body(), &self.now).less(&off);
         self.include();
     }
 
@@ -283,14 +280,13 @@ impl Simulation {
     pub fn place(&mut self, guide: Guide) {
         self.guide = guide;
         let reference = self.guide.at(self.time(), 0.0);
-        let State { wheel, work, lost, impulse, .. } = self.state;
         let (base, velocity) = (self.now.base, self.now.base_velocity);
         let turning = self.now.qd.get(self.drives).copied().unwrap_or(0.0);
         let n = self.drives;
         let q = DriveAngles(PerDrive::from_fn(n, |k| reference.q[k] + base.angle));
         let qd = PerDrive::from_fn(n, |k| reference.qd[k] + turning);
         let state = self.body().state(&q, &qd, base, velocity, turning);
-        self.state = State { wheel, work, lost, impulse, ..state };
+        self.state = state.in_books_of(&self.state);
         self.pilot.forget();
         self.begin();
     }
@@ -394,8 +390,7 @@ impl Simulation {
     /// Takes the present instant into peaks and sums.
     fn include(&mut self) {
         let x = &self.now;
-        let qd = PerDrive::from_fn(self.drives, |k| x.qd[k]);
-        let qdd = PerDrive::from_fn(self.drives, |k| x.qdd[k]);
+        let (qd, qdd) = (x.qd.first(self.drives), x.qdd.first(self.drives));
         let pull = dynamics::inertial_pull(&self.link_moments[usize::from(self.loaded)], &x.e, &qd, &qdd);
         let felt = x.wrench.total().moment - x.spin.torque;
         self.peaks.include(&x.torque, x.wrench.dynamic.force.norm(), felt, pull);
@@ -404,12 +399,12 @@ impl Simulation {
 
     /// What should be zero now.
     fn audited(&self, plane: f64) -> Audit {
-        let now = self.sources();
+        let off = self.sources(self.body(), &self.now).less(&self.ground);
         let gap = |chain: &[f64; MAX_DRIVES]| crate::machine::place_of(chain, &self.now.e).norm();
         Audit {
-            momentum: (now.momentum - self.ground.momentum).norm(),
-            angular: now.angular - self.ground.angular,
-            energy: now.energy - self.ground.energy,
+            momentum: off.momentum.norm(),
+            angular: off.angular,
+            energy: off.energy,
             closure: self.closures.iter().map(gap).fold(0.0, f64::max),
             step: self.step_error,
             plane,
@@ -421,8 +416,7 @@ impl Simulation {
         let (x, n) = (&self.now, self.drives);
         let around = *self.body().around();
         let around = Surroundings { gravity: around.gravity - x.base_acceleration, ..around };
-        let cut = |v: &PerDrive| PerDrive::from_fn(n, |k| v[k]);
-        self.inside[usize::from(self.loaded)].at(&x.e, &cut(&x.qd), &cut(&x.qdd), &around)
+        self.inside[usize::from(self.loaded)].at(&x.e, &x.qd.first(n), &x.qdd.first(n), &around)
     }
 
     /// Everything that is true now.
@@ -448,8 +442,8 @@ impl Simulation {
             step: self.step,
             time: self.time(),
             q,
-            qd: PerDrive::from_fn(n, |k| x.qd[k]),
-            qdd: PerDrive::from_fn(n, |k| x.qdd[k]),
+            qd: x.qd.first(n),
+            qdd: x.qdd.first(n),
             torque: x.torque,
             friction: x.friction,
             q_reference: self.reference.q,
