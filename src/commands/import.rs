@@ -19,7 +19,7 @@ use stillbase::scenario::{Scenario, Task, TaskKind};
 
 use super::columns::{Content, Read, samples};
 use super::failure::Failure;
-use super::input::{DEFAULT_SCENARIO, Settings, pose_constant, read};
+use super::input::{DEFAULT_SCENARIO, Settings, above_zero, pose_constant, read};
 use super::output::{Format, fixed, say};
 use judge::{Account, Judge, Proposal};
 use table::table;
@@ -72,10 +72,6 @@ pub struct Import {
     settings: Settings,
     #[command(flatten)]
     format: Format,
-}
-
-fn above_zero(text: &str) -> Result<f64, String> {
-    text.trim().parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite()).ok_or_else(|| "want a number above 0".into())
 }
 
 #[derive(Serialize)]

@@ -176,6 +176,11 @@ fn number(text: &str) -> Option<f64> {
     text.trim().parse().ok().filter(|x: &f64| x.abs() <= 1e6)
 }
 
+/// A number above 0.
+pub fn above_zero(text: &str) -> Result<f64, String> {
+    text.trim().parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite()).ok_or_else(|| "want a number above 0".into())
+}
+
 /// A text file.
 ///
 /// # Errors

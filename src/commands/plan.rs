@@ -17,7 +17,7 @@ use stillbase::scenario::{Change, Scenario, Shape, Task, TaskKind};
 use stillbase::session::{Refusal, Run, settled};
 
 use super::failure::Failure;
-use super::input::{DEFAULT_SCENARIO, Settings, change_task, planes_of, point, pose_constant, scenario};
+use super::input::{DEFAULT_SCENARIO, Settings, above_zero, change_task, planes_of, point, pose_constant, scenario};
 use super::output::{Format, Table, fixed, say};
 
 /// Plan a motion through points: which b serves them, along what, how fast, at what cost
@@ -83,10 +83,6 @@ pub struct Plan {
     settings: Settings,
     #[command(flatten)]
     format: Format,
-}
-
-fn above_zero(text: &str) -> Result<f64, String> {
-    text.trim().parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite()).ok_or_else(|| "want a number above 0".into())
 }
 
 fn floating_base(text: &str) -> Result<FloatingBase, String> {

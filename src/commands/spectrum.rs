@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde::Serialize;
 use stillbase::files::{NewFile, WriteError, check_new};
-use stillbase::session::replay;
+use stillbase::session::felt;
 use stillbase::spectrum::{Limit, Spectrum, SpectrumError, Verdict, Window};
 
 use super::failure::Failure;
@@ -107,14 +107,8 @@ impl SpectrumOf {
         if let Some(file) = &self.output {
             check_new(file, self.force)?;
         }
-        let mut course = Axes { force_x: Vec::new(), force_y: Vec::new(), moment: Vec::new() };
-        replay(&scenario, |_, frame| {
-            let force = frame.wrench.dynamic.force;
-            course.force_x.push(force.re);
-            course.force_y.push(force.im);
-            course.moment.push(frame.felt_moment());
-        })
-        .map_err(|e| Failure::from(e).of(&scenario.name))?;
+        let [force_x, force_y, moment] = felt(&scenario).map_err(|e| Failure::from(e).of(&scenario.name))?;
+        let course = Axes { force_x, force_y, moment };
         let of = |samples: &[f64]| Spectrum::of(samples, scenario.step, self.window);
         let spectra =
             Axes { force_x: of(&course.force_x)?, force_y: of(&course.force_y)?, moment: of(&course.moment)? };

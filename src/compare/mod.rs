@@ -1,12 +1,12 @@
 //! Runs side by side: the same task done in other ways, or any scenarios, on one time axis.
 
 mod board;
-mod differences;
+mod difference;
 mod summary;
 mod way;
 
 pub use board::{Board, Entry};
-pub use differences::{Difference, differences};
+pub use difference::Difference;
 pub use summary::{COLUMNS, Column, Summary};
 pub use way::{SLOWER, Way};
 

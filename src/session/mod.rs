@@ -10,7 +10,7 @@ mod run;
 
 pub use edit::{Edit, TimedEdit};
 pub use planning::{Plan, curves};
-pub use run::{Refusal, Run, replay, settled};
+pub use run::{Refusal, Run, felt, replay, settled};
 
 use run::in_order;
 
@@ -314,12 +314,8 @@ impl Session {
         let timed = TimedEdit { step: 0, edit };
         let document = self.amended(&timed);
         match &timed.edit {
-            Edit::SetTolerance { change } => {
-                // No frame depends on it.
-                let mut scenario = self.run.scenario().clone();
-                let wrong = |why: String| Refusal::Task(format!("tolerance: {why}"));
-                scenario.tolerance = crate::keys::with(&scenario.tolerance, change).map_err(wrong)?;
-                self.run.set_tolerance(scenario.tolerance);
+            Edit::SetTolerance { .. } => {
+                self.run.apply(&timed.edit)?;
                 self.document = document;
             }
             _ => self.restore(document)?,

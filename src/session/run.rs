@@ -202,11 +202,6 @@ impl Run {
         self.simulation.frame()
     }
 
-    /// The same run with other tolerances: they change nothing of it.
-    pub(super) fn set_tolerance(&mut self, tolerance: crate::tolerance::Tolerance) {
-        self.scenario.tolerance = tolerance;
-    }
-
     /// One step.
     pub fn advance(&mut self) {
         self.simulation.advance();
@@ -217,9 +212,14 @@ impl Run {
     /// # Errors
     /// If it cannot apply; then nothing has changed.
     pub fn apply(&mut self, edit: &Edit) -> Result<(), Refusal> {
+        if matches!(edit, Edit::SetTolerance { .. }) {
+            // Nothing of the run depends on it.
+            self.scenario = checked(changed(&self.scenario, edit)?, edit)?;
+            return Ok(());
+        }
         if self.is_untouched() && !edit.leads() {
             let mut planes = self.planes.clone().map(|planes| (self.scenario.machine.clone(), planes));
-            let scenario = amended(&self.scenario, edit, &mut planes, true)?;
+            let scenario = checked(amended(&self.scenario, edit, &mut planes)?, edit)?;
             let known = planes.filter(|(machine, _)| *machine == scenario.machine).map(|(_, planes)| planes);
             *self = Self::with_planes(&scenario, known)?;
             return Ok(());
@@ -242,7 +242,7 @@ impl Run {
                 self.simulation.place(Guide::Follow(follower));
             }
             Edit::CompareB { b } => self.scenario.compare_b = *b,
-            Edit::SetTolerance { .. } => self.scenario = changed(&self.scenario, edit, true)?,
+            Edit::SetTolerance { .. } => {}
             Edit::Push { .. }
             | Edit::SetPlant { .. }
             | Edit::SetBase { .. }
@@ -264,7 +264,7 @@ impl Run {
         if matches!(edit, Edit::SetTask { .. } | Edit::SetBase { .. }) {
             return Err(Refusal::Task("task and base can change only before the first step".into()));
         }
-        let scenario = changed(&self.scenario, edit, true)?;
+        let scenario = checked(changed(&self.scenario, edit)?, edit)?;
         if let (Edit::SetMachine { key, value }, true) = (edit, self.leaves_limits(&scenario)) {
             return Err(Refusal::LeavesLimits { key: key.clone(), value: value.clone() });
         }
@@ -348,36 +348,30 @@ impl Run {
     }
 }
 
-/// A scenario with a parameter set; nothing is planned. Whether all fits together may be left to be checked later.
-fn changed(scenario: &Scenario, edit: &Edit, check: bool) -> Result<Scenario, Refusal> {
+/// A scenario with a parameter set; nothing is planned, and whether all fits together is for [`checked`] to say.
+fn changed(scenario: &Scenario, edit: &Edit) -> Result<Scenario, Refusal> {
     let mut scenario = scenario.clone();
     match edit {
         Edit::Push { x, y } => {
             scenario.plant.force = [*x, *y];
-            checked(&scenario, "push", check)?;
         }
         Edit::SetPlant { change } => {
             scenario.plant = keys::with(&scenario.plant, change).map_err(|why| wrong("plant", &why))?;
-            checked(&scenario, "plant", check)?;
         }
         Edit::SetBase { change } => {
             scenario.base = keys::with(&scenario.base, change).map_err(|why| wrong("base", &why))?;
-            checked(&scenario, "base", check)?;
         }
         Edit::SetControl { change } => {
             scenario.control = keys::with(&scenario.control, change).map_err(|why| wrong("control", &why))?;
-            checked(&scenario, "control", check)?;
         }
         Edit::SetTolerance { change } => {
             scenario.tolerance = keys::with(&scenario.tolerance, change).map_err(|why| wrong("tolerance", &why))?;
-            checked(&scenario, "tolerance", check)?;
         }
         Edit::SetMachine { key, value } => scenario.machine = scenario.machine.set(key, value)?,
         Edit::SetTime { time } => scenario.task.time = *time,
         Edit::CompareB { b } => scenario.compare_b = *b,
         Edit::SetTask { change } => {
             scenario.task = scenario.task.with(change).map_err(|why| wrong("task", &why))?;
-            checked(&scenario, "task", check)?;
         }
         Edit::PoseB { .. } | Edit::DragTarget { .. } | Edit::SlideB { .. } => {}
     }
@@ -388,22 +382,29 @@ fn wrong(of: &str, why: &str) -> Refusal {
     Refusal::Task(format!("{of}: {why}"))
 }
 
-fn checked(scenario: &Scenario, of: &str, check: bool) -> Result<(), Refusal> {
-    if !check {
-        return Ok(());
-    }
-    scenario.check(of).map_err(|why| Refusal::Task(why.to_string()))
+/// A scenario that an edit of its keys has left sound.
+fn checked(scenario: Scenario, edit: &Edit) -> Result<Scenario, Refusal> {
+    let of = match edit {
+        Edit::Push { .. } => "push",
+        Edit::SetPlant { .. } => "plant",
+        Edit::SetBase { .. } => "base",
+        Edit::SetControl { .. } => "control",
+        Edit::SetTolerance { .. } => "tolerance",
+        Edit::SetTask { .. } => "task",
+        _ => return Ok(scenario),
+    };
+    sound(scenario, of)
+}
+
+fn sound(scenario: Scenario, of: &str) -> Result<Scenario, Refusal> {
+    scenario.check(of).map_err(|why| Refusal::Task(why.to_string()))?;
+    Ok(scenario)
 }
 
 /// A scenario as an edit before its first step leaves it; planes are made if a pose needs them, and kept.
-fn amended(
-    scenario: &Scenario,
-    edit: &Edit,
-    planes: &mut Option<(Machine, Arc<Planes>)>,
-    whole: bool,
-) -> Result<Scenario, Refusal> {
+fn amended(scenario: &Scenario, edit: &Edit, planes: &mut Option<(Machine, Arc<Planes>)>) -> Result<Scenario, Refusal> {
     check(edit, scenario.step)?;
-    let Edit::PoseB { b } = edit else { return changed(scenario, edit, whole) };
+    let Edit::PoseB { b } = edit else { return changed(scenario, edit) };
     let known = planes.take().filter(|(machine, _)| *machine == scenario.machine);
     let planes = match known {
         Some(known) => planes.insert(known),
@@ -482,10 +483,10 @@ fn folded(
     let count = script.iter().take_while(|e| e.step == 0 && !e.edit.leads()).count();
     let mut ground = scenario.clone();
     for timed in &script[..count] {
-        ground = amended(&ground, &timed.edit, planes, false)?;
+        ground = amended(&ground, &timed.edit, planes)?;
     }
     // What stands between two of them need not fit together.
-    checked(&ground, "the scenario", count > 0)?;
+    let ground = if count > 0 { sound(ground, "the scenario")? } else { ground };
     Ok((ground, count))
 }
 
@@ -495,6 +496,20 @@ fn folded(
 /// If it cannot start, or an edit cannot apply.
 pub fn replay(scenario: &Scenario, see: impl FnMut(&Run, &Frame)) -> Result<Run, Refusal> {
     perform(scenario, &in_order(&scenario.edits), None, None, see)
+}
+
+/// What shakes the base at every step of a scenario: f_Bx and f_By of motion, N, and the moment that it feels, N m.
+///
+/// # Errors
+/// As [`replay`].
+pub fn felt(scenario: &Scenario) -> Result<[Vec<f64>; 3], Refusal> {
+    let mut course: [Vec<f64>; 3] = Default::default();
+    replay(scenario, |_, frame| {
+        let force = frame.wrench.dynamic.force;
+        let now = [force.re, force.im, frame.felt_moment()];
+        course.iter_mut().zip(now).for_each(|(all, x)| all.push(x));
+    })?;
+    Ok(course)
 }
 
 impl Run {

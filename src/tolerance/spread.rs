@@ -108,6 +108,24 @@ impl Spread {
         }
     }
 
+    /// As it stands in a file.
+    pub fn to_value(&self) -> toml::Value {
+        let amount = match self.amount() {
+            Amount::Absolute(x) => x.into(),
+            percent @ Amount::Percent(_) => toml::Value::String(percent.to_string()),
+        };
+        toml::Value::Table(toml::Table::from_iter([(self.word().to_owned(), amount)]))
+    }
+
+    /// The same kind of spread with another amount.
+    #[must_use]
+    pub fn with(&self, amount: Amount) -> Self {
+        match self {
+            Self::Normal(_) => Self::Normal(amount),
+            Self::Uniform(_) => Self::Uniform(amount),
+        }
+    }
+
     /// Standard deviation or half-width.
     pub fn amount(&self) -> Amount {
         match self {
@@ -211,12 +229,7 @@ impl From<Tolerance> for Section {
             section.extend(value.map(|x| (key.to_owned(), x.into())));
         }
         for (key, spread) in spreads {
-            let amount = match spread.amount() {
-                Amount::Absolute(x) => x.into(),
-                percent @ Amount::Percent(_) => toml::Value::String(percent.to_string()),
-            };
-            let table = toml::Table::from_iter([(spread.word().to_owned(), amount)]);
-            section.insert(key, toml::Value::Table(table));
+            section.insert(key, spread.to_value());
         }
         section
     }

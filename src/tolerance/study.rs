@@ -6,7 +6,7 @@ use super::{
 use crate::control::Control;
 use crate::plant::Plant;
 use crate::scenario::Scenario;
-use crate::session::{Run, replay};
+use crate::session::{Run, felt};
 use crate::spectrum::{Spectrum, Window};
 
 /// Instants at which a motion is looked at.
@@ -125,14 +125,8 @@ pub fn left_out(scenario: &Scenario) -> Vec<&'static str> {
 
 /// Of the whole run, at every step; none where it cannot be run or is too short.
 fn spectra(run: &Run) -> Option<[Spectrum; 3]> {
-    let mut course: [Vec<f64>; 3] = Default::default();
     let scenario = run.scenario();
-    replay(scenario, |_, frame| {
-        let force = frame.wrench.dynamic.force;
-        let now = [force.re, force.im, frame.felt_moment()];
-        course.iter_mut().zip(now).for_each(|(all, x)| all.push(x));
-    })
-    .ok()?;
+    let course = felt(scenario).ok()?;
     let of = |samples: &[f64]| Spectrum::of(samples, scenario.step, Window::Hann).ok();
     let [x, y, n] = &course;
     Some([of(x)?, of(y)?, of(n)?])

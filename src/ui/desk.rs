@@ -242,17 +242,9 @@ impl Desk {
             Command::Help(help) => self.look.help = help,
             Command::Mark(time) => self.look.mark = time,
             Command::Snapshots(shown) => self.look.snapshots = shown,
-            Command::Compare(compare) => {
-                self.look.compare = compare;
-                self.look.study &= !compare;
-                self.board = compare.then(|| Board::of(self.session.scenario()));
-            }
-            Command::Study(study) => {
-                self.look.study = study;
-                if study {
-                    (self.look.compare, self.board) = (false, None);
-                }
-            }
+            // There is room for one of them.
+            Command::Compare(compare) => (self.look.compare, self.look.study) = (compare, self.look.study && !compare),
+            Command::Study(study) => (self.look.study, self.look.compare) = (study, self.look.compare && !study),
             Command::Pins(shown) => self.look.pins = shown,
             Command::Board(on) => return self.on_board(on),
             Command::Dialog(dialog) => self.look.dialog = dialog,
@@ -370,6 +362,11 @@ impl Desk {
         {
             let study = Study::of(self.session.run()).map_err(|why| why.to_string());
             self.study = Some((self.session.scenario().clone(), study));
+        }
+        if !self.look.compare {
+            self.board = None;
+        } else if self.board.is_none() {
+            self.board = Some(Board::of(self.session.scenario()));
         }
         // Not while something is dragged: every way is planned and run anew.
         if let (Some(board), None) = (&mut self.board, self.look.grabbed) {

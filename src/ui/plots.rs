@@ -6,7 +6,7 @@ use egui_plot::{GridMark, Line, LineStyle, Plot, PlotPoint, PlotPoints, Points, 
 use super::theme::{bold, colour, plain};
 use super::top::name;
 use super::{Command, Look, set_b};
-use crate::compare::Board;
+use crate::compare::{Board, Difference};
 use crate::frame::{Frame as Instant, REACTIONLESS};
 use crate::planar::Vector;
 use crate::reactionless::PlanePoint;
@@ -130,14 +130,14 @@ fn header(ui: &mut Ui, p: &Palette, chart: &Chart, lines: &[&Signal], now: &Inst
                     true => (signal.symbol.as_str(), 3),
                     false => (signal.symbol.trim_end_matches("_B"), 2),
                 };
-                let value = chart.times * signal.value(now);
                 let meaning = format!("{}, {}", signal.label, unit_of(chart, signal));
-                let (text, meaning) = match marked.map(|marked| chart.times * signal.value(marked)) {
-                    Some(first) => (
-                        format!("Δ{symbol} {}", signed(value - first, decimals)),
-                        format!("{meaning}: {} at the second cursor, {} now", signed(first, 4), signed(value, 4)),
+                let shown = |value: f64, decimals| signed(chart.times * value, decimals);
+                let (text, meaning) = match marked.map(|marked| Difference::of(signal, marked, now)) {
+                    Some(d) => (
+                        format!("Δ{symbol} {}", shown(d.by(), decimals)),
+                        format!("{meaning}: {} at the second cursor, {} now", shown(d.from, 4), shown(d.to, 4)),
                     ),
-                    None => (format!("{symbol} {}", signed(value, decimals)), meaning),
+                    None => (format!("{symbol} {}", shown(signal.value(now), decimals)), meaning),
                 };
                 let label = RichText::new(text).font(plain(11.5)).color(tone(p, signal, now));
                 ui.label(label).on_hover_text(meaning);
@@ -256,7 +256,7 @@ fn pointer_time(plot: &egui_plot::PlotUi<'_>) -> Option<f64> {
     plot.pointer_coordinate().map(|c: PlotPoint| c.x.max(0.0))
 }
 
-fn base_plot<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
+pub(super) fn base_plot<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
     Plot::new(id.to_owned())
         .height(height)
         .show_background(false)

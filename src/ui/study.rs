@@ -4,6 +4,7 @@
 use egui::{Align, Color32, DragValue, Frame, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui, vec2};
 use egui_plot::{Bar, BarChart, FilledArea, GridMark, Line, LineStyle, Plot, PlotPoints, VLine};
 
+use super::plots::base_plot;
 use super::side::send;
 use super::theme::{bold, colour, plain};
 use super::top::name;
@@ -135,14 +136,13 @@ fn spreads(ui: &mut Ui, p: &Palette, study: &Study, commands: &mut Vec<Command>)
             let sign = if matches!(spread, Spread::Normal(_)) { "σ" } else { "±" };
             let response = row(ui, p, &format!("{label}  {sign}"), unit, key, &mut value);
             send(commands, &[response], || {
-                let text = match amount {
-                    Amount::Percent(_) => Value::from(format!("{}%", value / times)),
-                    Amount::Absolute(_) => Value::from(value / times),
+                let amount = match amount {
+                    Amount::Percent(_) => Amount::Percent(value / times),
+                    Amount::Absolute(_) => Amount::Absolute(value / times),
                 };
-                let word = if matches!(spread, Spread::Normal(_)) { "normal" } else { "uniform" };
                 // The defaults are written out with the first change, so that the others stay.
-                let mut change: Change = spreads.iter().map(|(key, spread)| (key.clone(), as_value(spread))).collect();
-                change.insert(key.clone(), Value::Table(Change::from_iter([(word.to_owned(), text)])));
+                let mut change: Change = spreads.iter().map(|(key, spread)| (key.clone(), spread.to_value())).collect();
+                change.insert(key.clone(), spread.with(amount).to_value());
                 Edit::SetTolerance { change }
             });
         }
@@ -153,15 +153,6 @@ fn spreads(ui: &mut Ui, p: &Palette, study: &Study, commands: &mut Vec<Command>)
             Edit::SetTolerance { change: Change::from_iter([("moment_limit".to_owned(), value)]) }
         });
     });
-}
-
-fn as_value(spread: &Spread) -> Value {
-    let word = if matches!(spread, Spread::Normal(_)) { "normal" } else { "uniform" };
-    let amount = match spread.amount() {
-        Amount::Absolute(size) => Value::from(size),
-        Amount::Percent(percent) => Value::from(format!("{percent}%")),
-    };
-    Value::Table(Change::from_iter([(word.to_owned(), amount)]))
 }
 
 fn row(ui: &mut Ui, p: &Palette, label: &str, unit: &str, tip: &str, value: &mut f64) -> egui::Response {
@@ -180,22 +171,9 @@ fn row(ui: &mut Ui, p: &Palette, label: &str, unit: &str, tip: &str, value: &mut
     .inner
 }
 
+/// A plot that nobody can touch, with a little air above and below.
 fn bare<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
-    Plot::new(id.to_owned())
-        .height(height)
-        .show_background(false)
-        .show_grid([false, true])
-        .grid_color(colour(faded(p.line, 0.9)))
-        .grid_fade(0.0)
-        .show_x(false)
-        .show_y(false)
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
-        .allow_double_click_reset(false)
-        .y_axis_min_width(46.0)
-        .set_margin_fraction(vec2(0.0, 0.05))
+    base_plot(id, p, height).sense(Sense::hover()).set_margin_fraction(vec2(0.0, 0.05))
 }
 
 /// n_B over time, less that of the nominal machine: 5 to 95 % and 25 to 75 % of the machines, the mean, and one deviation

@@ -1,6 +1,6 @@
 //! Runs side by side: the ways of one task, their table, and the two instants of a cursor.
 
-use stillbase::compare::{COLUMNS, Compared, SLOWER, Way, alternatives, differences};
+use stillbase::compare::{COLUMNS, Compared, Difference, SLOWER, Way, alternatives};
 use stillbase::scenario::{Scenario, TaskKind};
 use stillbase::session::{Edit, TimedEdit};
 use stillbase::signals::signals;
@@ -142,10 +142,9 @@ fn two_instants_differ_by_their_signals() {
     let run = run(Way::StraightLine, "case-3");
     let table = signals(run.machine());
     let (a, b) = (run.at(0.2).expect("a frame"), run.at(0.7).expect("a frame"));
-    let list = differences(&table, a, b);
+    let list: Vec<Difference> = table.iter().map(|signal| Difference::of(signal, a, b)).collect();
     assert_eq!(list.len(), table.len());
-    for d in &list {
-        let signal = &table[d.signal];
+    for (d, signal) in list.iter().zip(&table) {
         assert_eq!((d.from, d.to), (signal.value(a), signal.value(b)), "{}", signal.path);
         assert_eq!(d.by(), d.to - d.from);
     }

@@ -10,7 +10,7 @@ use stillbase::machine::{Inertia, Machine, builtin};
 use stillbase::planar::{DriveAngles, PerDrive, Units, Vector, cross, dot};
 
 use crate::nine_body::NineBody;
-use crate::support::{angles, array, body_of, close, dynamics, machine_of, numbers, three, xy};
+use crate::support::{angles, any_body, array, body_of, close, dynamics, machine_of, numbers, three, xy};
 
 /// A state of motion.
 #[derive(Clone, Copy, Debug)]
@@ -83,22 +83,6 @@ fn reference_states_to_nine_digits() {
         }
     }
     assert_eq!(states, 36);
-}
-
-/// Any nine-link machine: nothing is balanced, parallelograms close.
-fn any_body() -> impl Strategy<Value = NineBody> {
-    let nine = |range: std::ops::Range<f64>| prop::collection::vec(range, 9);
-    let lengths = prop::collection::vec(0.1..0.7, 5);
-    (lengths, nine(0.1..8.0), nine(1e-3..0.3), nine(-0.4..0.4), (-12.0..12.0, -12.0..12.0), 0.0..2.0).prop_map(
-        |(l, m, i, c, (gx, gy), payload)| NineBody {
-            length: [l[0], l[1], l[2], l[0], l[3], l[0], l[2], l[3], l[4]],
-            mass: std::array::from_fn(|j| m[j]),
-            inertia: std::array::from_fn(|j| i[j]),
-            com: std::array::from_fn(|j| c[j]),
-            gravity: [gx, gy],
-            payload,
-        },
-    )
 }
 
 /// Any state with min |sin(q_k − q_l)| above 0.05: nearer to a change point it is the twin that is ill-conditioned.

@@ -11,8 +11,7 @@ use stillbase::kinematics::{acceleration, transmission};
 use stillbase::machine::{Chain, Inertia, Machine, builtin, parse, place_of};
 use stillbase::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, cross, dot, unit};
 
-use crate::nine_body::NineBody;
-use crate::support::{close, machine_of, three, xy};
+use crate::support::{any_body, close, machine_of, three, xy};
 
 /// A state of motion.
 #[derive(Clone, Copy, Debug)]
@@ -43,22 +42,6 @@ fn any_state() -> impl Strategy<Value = State> {
     (three(6.0), three(4.0), three(12.0))
         .prop_map(|(q, qd, qdd)| State::of(q, qd, qdd))
         .prop_filter("near a change point", |s| transmission(&s.q.units(), 3) > 0.02)
-}
-
-/// Any nine-link machine: nothing is balanced, parallelograms close.
-fn any_body() -> impl Strategy<Value = NineBody> {
-    let nine = |range: std::ops::Range<f64>| prop::collection::vec(range, 9);
-    let lengths = prop::collection::vec(0.1..0.7, 5);
-    (lengths, nine(0.1..8.0), nine(1e-3..0.3), nine(-0.4..0.4), (-12.0..12.0, -12.0..12.0), 0.0..2.0).prop_map(
-        |(l, m, i, c, (gx, gy), payload)| NineBody {
-            length: [l[0], l[1], l[2], l[0], l[3], l[0], l[2], l[3], l[4]],
-            mass: std::array::from_fn(|j| m[j]),
-            inertia: std::array::from_fn(|j| i[j]),
-            com: std::array::from_fn(|j| c[j]),
-            gravity: [gx, gy],
-            payload,
-        },
-    )
 }
 
 /// The same with what the twin has not: CMs off the axis, inertia of the payload, heights.

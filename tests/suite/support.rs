@@ -1,5 +1,6 @@
 //! What several tests share: reference files, the twin of a machine, comparison by scale.
 
+use proptest::prelude::*;
 use serde_json::Value;
 use stillbase::machine::{Machine, Station, builtin};
 use stillbase::planar::{DriveAngles, PerDrive, Vector};
@@ -84,4 +85,20 @@ pub fn body_of(machine: &Machine) -> NineBody {
         gravity: spec.gravity,
         payload: spec.payload.mass,
     }
+}
+
+/// Any nine-link machine: nothing is balanced, parallelograms close.
+pub fn any_body() -> impl Strategy<Value = NineBody> {
+    let nine = |range: std::ops::Range<f64>| prop::collection::vec(range, 9);
+    let lengths = prop::collection::vec(0.1..0.7, 5);
+    (lengths, nine(0.1..8.0), nine(1e-3..0.3), nine(-0.4..0.4), (-12.0..12.0, -12.0..12.0), 0.0..2.0).prop_map(
+        |(l, m, i, c, (gx, gy), payload)| NineBody {
+            length: [l[0], l[1], l[2], l[0], l[3], l[0], l[2], l[3], l[4]],
+            mass: std::array::from_fn(|j| m[j]),
+            inertia: std::array::from_fn(|j| i[j]),
+            com: std::array::from_fn(|j| c[j]),
+            gravity: [gx, gy],
+            payload,
+        },
+    )
 }

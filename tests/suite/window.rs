@@ -57,6 +57,13 @@ fn seen(h: &Desktop, point: [f64; 3]) -> egui::Pos2 {
 }
 
 fn drag(h: &mut Desktop, from: egui::Pos2, to: egui::Pos2) {
+    pull(h, from, to);
+    h.drop_at(to);
+    h.step();
+}
+
+/// A drag that is not let go.
+fn pull(h: &mut Desktop, from: egui::Pos2, to: egui::Pos2) {
     h.hover_at(from);
     h.step();
     h.drag_at(from);
@@ -65,8 +72,6 @@ fn drag(h: &mut Desktop, from: egui::Pos2, to: egui::Pos2) {
         h.hover_at(from + (to - from) * (i as f32 / 10.0));
         h.step();
     }
-    h.drop_at(to);
-    h.step();
 }
 
 /// Opens the plant's section and has it hold a payload.
@@ -621,14 +626,7 @@ fn a_hand_pushes_the_end_effector() {
     h.key_press(Key::U);
     h.run_steps(2);
     assert!(h.state().desk().look().pushing);
-    h.hover_at(from);
-    h.step();
-    h.drag_at(from);
-    h.step();
-    for i in 1..=10 {
-        h.hover_at(from + (to - from) * (i as f32 / 10.0));
-        h.step();
-    }
+    pull(&mut h, from, to);
     let pushed = session(&h).scenario().plant.force;
     assert!((pushed[0] + 4.0).abs() < 0.5 && pushed[1].abs() < 0.5, "{pushed:?} N for 0.2 m");
     h.run_steps(10);
