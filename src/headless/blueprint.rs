@@ -5,7 +5,7 @@
 //! backgrounds, so the rows are written here.
 
 use rerun::blueprint::components::{
-    ActiveTab, BackgroundKind, ColumnShare, ContainerKind, GridSpacing, IncludedContent, LinkAxis, LoopMode,
+    ActiveTab, BackgroundKind, ColumnShare, ContainerKind, Corner2D, GridSpacing, IncludedContent, LinkAxis, LoopMode,
     PanelState, PlayState, QueryExpression, RootContainer, RowShare, ViewClass,
 };
 use rerun::blueprint::datatypes::{TextLogColumn, TextLogColumnKind, TimelineColumn};
@@ -15,6 +15,7 @@ use rerun::external::re_sdk_types::blueprint::components::VisualizerInstructionI
 use rerun::external::uuid::Uuid;
 use rerun::{AsComponents, EntityPath, SeriesLines};
 
+use super::Hash;
 use super::eye::Eye;
 use super::rehearsal::Rehearsal;
 use super::store::{Store, StoreError, TIME};
@@ -29,7 +30,8 @@ use crate::scene::palette::{Palette, Theme, faded, palette};
 /// # Errors
 /// If it cannot be written.
 pub fn lay_out(store: &mut Store, cases: &[Rehearsal], pictured: bool) -> Result<(), StoreError> {
-    let mut layout = Layout { store, palette: palette(Theme::Dark), made: 0, axes: Axes::of(cases), pictured };
+    let mut layout =
+        Layout { store, palette: palette(Theme::Dark), tab: String::new(), axes: Axes::of(cases), pictured };
     let mut tabs = Vec::new();
     if cases.len() > 1 {
         tabs.push(layout.comparison(cases)?);
@@ -37,6 +39,7 @@ pub fn lay_out(store: &mut Store, cases: &[Rehearsal], pictured: bool) -> Result
     for case in cases {
         tabs.push(layout.case(case)?);
     }
+    layout.tab.clear();
     let root = layout.container(ContainerKind::Tabs, "", &tabs, &[])?;
     let viewport = view::ViewportBlueprint::new()
         .with_root_container(RootContainer(root.id.into()))
@@ -102,18 +105,27 @@ struct Part {
 struct Layout<'a> {
     store: &'a mut Store,
     palette: Palette,
-    made: u128,
+    /// The tab that is being laid out: the name of its case, or none where all are side by side.
+    tab: String,
     axes: Axes,
     pictured: bool,
 }
 
-/// Identifiers of views only have to differ within one layout.
-const FIRST_ID: u128 = 0x5eed_0000_0000_4000_8000_0000_0000_0000;
+/// What marks an identifier as one that its maker chose (version 8).
+const VERSION: u128 = 0x0000_0000_0000_8000_8000_0000_0000_0000;
+const VERSION_BITS: u128 = 0x0000_0000_0000_f000_c000_0000_0000_0000;
+
+/// How many cases a legend names; it has room for no more.
+const LEGEND: usize = 5;
 
 impl Layout<'_> {
-    fn id(&mut self) -> Uuid {
-        self.made += 1;
-        Uuid::from_u128(FIRST_ID + self.made)
+    /// The identifier of a view or container: always the same for the same thing. A viewer keeps what it knows of a view
+    /// by its identifier, also from one recording to the next, and shows nothing where that turns out to be of another
+    /// class.
+    fn id(&self, class: &str, words: &[&str]) -> Uuid {
+        let mut hash = Hash::new();
+        [class, &self.tab].iter().chain(words).for_each(|word| hash.add(word));
+        Uuid::from_u128(hash.0 & !VERSION_BITS | VERSION)
     }
 
     fn container(
@@ -123,7 +135,9 @@ impl Layout<'_> {
         parts: &[Part],
         shares: &[f32],
     ) -> Result<Part, StoreError> {
-        let id = self.id();
+        let parted: Vec<String> = parts.iter().map(|part| part.id.to_string()).collect();
+        let words: Vec<&str> = parted.iter().map(String::as_str).collect();
+        let id = self.id(&format!("container {kind:?}"), &words);
         let path = EntityPath::from(format!("container/{id}"));
         let mut container = view::ContainerBlueprint::new(kind)
             .with_contents(parts.iter().map(|p| IncludedContent(p.path.to_string().into())));
@@ -150,13 +164,14 @@ impl Layout<'_> {
         contents: &[String],
         properties: &[(&str, &dyn AsComponents)],
     ) -> Result<Part, StoreError> {
-        let id = self.id();
+        let from = origin.to_string();
+        let words: Vec<&str> = [from.as_str()].into_iter().chain(contents.iter().map(String::as_str)).collect();
+        let id = self.id(class, &words);
         let path = EntityPath::from(format!("view/{id}"));
         let query = view::ViewContents::new(contents.iter().map(|q| QueryExpression(q.as_str().into())));
         self.store.layout(&under(&path, "ViewContents"), &query)?;
-        let view = view::ViewBlueprint::new(ViewClass(class.into()))
-            .with_display_name(name)
-            .with_space_origin(origin.to_string());
+        let view =
+            view::ViewBlueprint::new(ViewClass(class.into())).with_display_name(name).with_space_origin(from.as_str());
         self.store.layout(&path, &view)?;
         for (property, value) in properties {
             self.store.layout(&under(&path, property), *value)?;
@@ -167,7 +182,13 @@ impl Layout<'_> {
     /// Several cases side by side: scenes above, what differs below.
     fn comparison(&mut self, cases: &[Rehearsal]) -> Result<Part, StoreError> {
         let scenes = cases.iter().map(|case| self.scene(case, &case.title)).collect::<Result<Vec<_>, _>>()?;
-        let top = self.container(ContainerKind::Horizontal, "", &scenes, &vec![1.0; scenes.len()])?;
+        let mut top = self.container(ContainerKind::Horizontal, "Scenes", &scenes, &vec![1.0; scenes.len()])?;
+        if self.pictured {
+            let pictures = cases.iter().map(|case| self.pictures(case, &case.title)).collect::<Result<Vec<_>, _>>()?;
+            let pictures =
+                self.container(ContainerKind::Horizontal, "Pictures", &pictures, &vec![1.0; pictures.len()])?;
+            top = self.container(ContainerKind::Tabs, "", &[top, pictures], &[])?;
+        }
         let axes = [-self.axes.moment, self.axes.moment];
         let moment = self.compared(cases, "Base moment n_B  N m", "moment/total", Some(axes))?;
         let b = self.compared(cases, "Pose constant b  rad", "pose/b", Some(self.axes.b))?;
@@ -178,10 +199,10 @@ impl Layout<'_> {
 
     /// One case: scene left, plots right, events below.
     fn case(&mut self, case: &Rehearsal) -> Result<Part, StoreError> {
+        self.tab.clone_from(&case.name);
         let mut scenes = vec![self.scene(case, "Scene")?];
         if self.pictured {
-            let origin = under(&case.root, "view");
-            scenes.push(self.view("2D", "Pictures", &origin, &["$origin/**".into()], &[])?);
+            scenes.push(self.pictures(case, "Pictures")?);
         }
         let others = [("Joint space", "joint_space", case.joints), ("Tower", "tower", case.tower)];
         for (name, path, eye) in others {
@@ -242,6 +263,11 @@ impl Layout<'_> {
         self.view("3D", name, &case.root, &contents, &properties)
     }
 
+    /// What was drawn offscreen.
+    fn pictures(&mut self, case: &Rehearsal, name: &str) -> Result<Part, StoreError> {
+        self.view("2D", name, &under(&case.root, "view"), &["$origin/**".into()], &[])
+    }
+
     /// A space with axes of its own.
     fn drawing(&mut self, name: &str, origin: &EntityPath, eye: &Eye) -> Result<Part, StoreError> {
         let background = view::Background::new(BackgroundKind::SolidColor).with_color(colour(self.palette.background));
@@ -260,7 +286,8 @@ impl Layout<'_> {
         range: Option<[f64; 2]>,
     ) -> Result<Part, StoreError> {
         let contents: Vec<_> = signals.iter().map(|s| format!("$origin/{s}")).collect();
-        self.time_series(name, &under(&case.root, "signals"), &contents, range)
+        let name = titled(name, case, signals);
+        self.time_series(&name, &under(&case.root, "signals"), &contents, range, false)
     }
 
     fn time_series(
@@ -269,14 +296,11 @@ impl Layout<'_> {
         origin: &EntityPath,
         contents: &[String],
         range: Option<[f64; 2]>,
+        legend: bool,
     ) -> Result<Part, StoreError> {
         let time = view::TimeAxis::new().with_link(LinkAxis::LinkToGlobal);
-        let mut properties: Vec<(&str, &dyn AsComponents)> = vec![("TimeAxis", &time)];
-        // Of one series the title says everything.
-        let legend = view::PlotLegend::new().with_visible(false);
-        if contents.len() == 1 && !contents[0].ends_with('*') {
-            properties.push(("PlotLegend", &legend));
-        }
+        let legend = view::PlotLegend::new().with_visible(legend).with_corner(Corner2D::LeftBottom);
+        let mut properties: Vec<(&str, &dyn AsComponents)> = vec![("TimeAxis", &time), ("PlotLegend", &legend)];
         let scalar = range.map(|[low, high]| view::ScalarAxis::new().with_range(Range1D::new(low, high)));
         properties.extend(scalar.as_ref().map(|s| ("ScalarAxis", s as &dyn AsComponents)));
         self.view("TimeSeries", name, origin, contents, &properties)
@@ -292,7 +316,9 @@ impl Layout<'_> {
     ) -> Result<Part, StoreError> {
         let paths: Vec<_> = cases.iter().map(|case| under(&case.root, &format!("signals/{signal}"))).collect();
         let contents: Vec<_> = paths.iter().map(|p| p.to_string()).collect();
-        let plot = self.time_series(name, &EntityPath::root(), &contents, range)?;
+        let legend = cases.len() <= LEGEND;
+        let range = range.map(|range| if legend { with_room(range, cases.len()) } else { range });
+        let plot = self.time_series(name, &EntityPath::root(), &contents, range, legend)?;
         for (i, (case, path)) in cases.iter().zip(&paths).enumerate() {
             let rgba = case_colour(i, case.peaks.is_reactionless(), &self.palette);
             let unit = case.signals.iter().find(|s| s.path == signal).map_or(String::new(), series_name);
@@ -321,6 +347,34 @@ impl Layout<'_> {
         let contents: Vec<_> = cases.iter().map(|case| under(&case.root, "events").to_string()).collect();
         self.view("TextLog", "Events", &EntityPath::root(), &contents, &[("TextLogColumns", &columns)])
     }
+}
+
+/// The title of a plot with the colours of what it shows: a legend would cover the curves of so low a plot. Of one series
+/// the title says everything already, and of many the pointer tells which is which.
+fn titled(name: &str, case: &Rehearsal, signals: &[&str]) -> String {
+    let shown = |path: &str| signals.iter().any(|s| s.strip_suffix("**").map_or(*s == path, |of| path.starts_with(of)));
+    let all: Vec<_> = case.signals.iter().filter(|signal| shown(&signal.path)).collect();
+    let of_drives = all.len() == COLOURS.len() && all.iter().enumerate().all(|(k, signal)| signal.drive == Some(k));
+    let words: Vec<String> = match &all[..] {
+        _ if of_drives => {
+            all.iter().zip(COLOURS).map(|(signal, colour)| format!("{} {colour}", signal.symbol)).collect()
+        }
+        [now, wanted] if wanted.path == format!("{}_reference", now.path) => {
+            vec![now.symbol.clone(), format!("{} pale", wanted.symbol)]
+        }
+        _ => Vec::new(),
+    };
+    [name.to_owned()].into_iter().chain(words).collect::<Vec<_>>().join("  ·  ")
+}
+
+/// What the colours of the first drives are called.
+const COLOURS: [&str; 3] = ["blue", "orange", "green"];
+
+/// A range with room below for a legend of so many lines.
+fn with_room([low, high]: [f64; 2], lines: usize) -> [f64; 2] {
+    // In parts of the height of a plot, of a viewer of a usual size.
+    let share = 0.05 + 0.08 * lines as f64;
+    [low - share / (1.0 - share) * (high - low), high]
 }
 
 /// Where nothing is felt, the green of zero; else reds that can be told apart.

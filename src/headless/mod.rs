@@ -181,23 +181,33 @@ fn steps(scenario: &Scenario) -> u64 {
     (scenario.duration.unwrap_or(scenario.task.time) / scenario.step).round() as u64
 }
 
-/// What tells this recording from others: FNV-1a of everything that goes into it.
-fn digest(scenarios: &[Scenario], options: &Options) -> u128 {
-    let mut hash = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d_u128;
-    let mut add = |text: &str| {
-        for byte in text.bytes().chain([0]) {
-            hash = (hash ^ u128::from(byte)).wrapping_mul(0x0100_0000_0000_0000_0000_013b);
+/// FNV-1a of words, one after another.
+struct Hash(u128);
+
+impl Hash {
+    fn new() -> Self {
+        Self(0x6c62_272e_07bb_0142_62b8_2175_6295_c58d)
+    }
+
+    fn add(&mut self, word: &str) {
+        for byte in word.bytes().chain([0]) {
+            self.0 = (self.0 ^ u128::from(byte)).wrapping_mul(0x0100_0000_0000_0000_0000_013b);
         }
-    };
-    add(env!("CARGO_PKG_VERSION"));
+    }
+}
+
+/// What tells this recording from others: everything that goes into it.
+fn digest(scenarios: &[Scenario], options: &Options) -> u128 {
+    let mut hash = Hash::new();
+    hash.add(env!("CARGO_PKG_VERSION"));
     for scenario in scenarios {
-        add(&scenario.to_toml());
-        add(&crate::machine::to_toml(&scenario.machine));
+        hash.add(&scenario.to_toml());
+        hash.add(&crate::machine::to_toml(&scenario.machine));
     }
     if let Some(p) = options.pictures {
-        add(&format!("{} {} {}", p.fps, p.width, p.height));
+        hash.add(&format!("{} {} {} {}", p.fps, p.width, p.height, p.pin_forces));
     }
-    hash
+    hash.0
 }
 
 fn write(

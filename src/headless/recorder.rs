@@ -222,7 +222,7 @@ impl<'a> Recorder<'a> {
     fn edited(&mut self, at: Instant) -> bool {
         let before = self.edits;
         while let Some(timed) = self.scenario.edits.get(self.edits).filter(|e| e.step <= at.step) {
-            self.story.edit(at, timed.edit.title());
+            self.story.edit(at, &timed.edit);
             self.edits += 1;
         }
         self.edits > before

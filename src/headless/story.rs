@@ -11,6 +11,7 @@ use crate::frame::{Audit, Frame, Peaks, Phase, Reach};
 use crate::scenario::Task;
 use crate::scene::Rgba;
 use crate::scene::palette::Palette;
+use crate::session::Edit;
 
 /// Events and phases of a case.
 #[derive(Debug)]
@@ -25,7 +26,23 @@ pub struct Story {
     saturated: bool,
     faulty: bool,
     peak: (Instant, f64),
+    gesture: Option<Gesture>,
 }
+
+/// Edits that are one gesture: a push until it is let go, a drag until the pointer rests.
+#[derive(Debug)]
+struct Gesture {
+    /// Which event tells of it.
+    event: usize,
+    first: Instant,
+    last: Instant,
+    edit: Edit,
+    /// The largest push, N.
+    push: f64,
+}
+
+/// A gesture goes on while its edits come so close, ns: a screen brings one a frame.
+const GESTURE: i64 = 250_000_000;
 
 #[derive(Debug)]
 struct Event {
@@ -49,6 +66,7 @@ impl Story {
             saturated: false,
             faulty: false,
             peak,
+            gesture: None,
         }
     }
 
@@ -66,9 +84,36 @@ impl Story {
         self.add(at, format!("plan: {}, T = {time:.3} s", task.in_one_line()), TextLogLevel::INFO, self.palette.ink);
     }
 
-    /// Somebody changed something.
-    pub fn edit(&mut self, at: Instant, title: String) {
-        self.add(at, title, TextLogLevel::INFO, self.palette.drive(0));
+    /// Somebody changed something. What one gesture does, frame by frame, is one event, at its beginning.
+    pub fn edit(&mut self, at: Instant, edit: &Edit) {
+        let force = |edit: &Edit| match edit {
+            Edit::Push { x, y } => x.hypot(*y),
+            _ => 0.0,
+        };
+        // A push lasts until it is let go, however still the hand is.
+        let goes_on = |gesture: &Gesture| match edit {
+            Edit::Push { .. } => force(edit) > 0.0 && force(&gesture.edit) > 0.0,
+            _ => at.nanos - gesture.last.nanos <= GESTURE,
+        };
+        if let Some(gesture) = &mut self.gesture
+            && gesture.edit.is_replaced_by(edit)
+            && goes_on(gesture)
+        {
+            (gesture.last, gesture.edit) = (at, edit.clone());
+            gesture.push = gesture.push.max(force(edit));
+            let lasts = 1e-9 * (at.nanos - gesture.first.nanos) as f64;
+            let title = match edit {
+                Edit::Push { .. } => format!("push with up to {:.2} N", gesture.push),
+                other => other.title(),
+            };
+            if let Some(event) = self.events.get_mut(gesture.event) {
+                event.text = if lasts > 0.0 { format!("{title}, within {lasts:.3} s") } else { title };
+            }
+            return;
+        }
+        let event = self.events.len();
+        self.gesture = Some(Gesture { event, first: at, last: at, edit: edit.clone(), push: force(edit) });
+        self.add(at, edit.title(), TextLogLevel::INFO, self.palette.drive(0));
     }
 
     /// What becomes of payload and wheel, and the first time that an audit fails.

@@ -513,6 +513,110 @@ fn the_layout_comes_along_and_is_activated() {
     assert!(chunks.iter().any(|c| *c.entity_path() == EntityPath::from("/viewport")));
 }
 
+/// Views and containers of a layout: identifier, class or kind, and origin.
+fn parts(contents: &Contents) -> Vec<(String, String, String)> {
+    let layouts = contents.stores.iter().filter(|(id, _)| id.kind() == StoreKind::Blueprint);
+    let chunks = layouts.flat_map(|(_, chunks)| chunks);
+    let text = |chunk: &Chunk, component: &'static str| {
+        let column = chunk.components().get_array(component.into())?;
+        let flat = column.values().as_any().downcast_ref::<StringArray>()?;
+        Some(flat.value(0).to_owned())
+    };
+    chunks
+        .filter_map(|chunk| {
+            let id = chunk.entity_path().to_string();
+            if id.starts_with("/container/") && id.matches('/').count() == 2 {
+                return Some((id, "container".into(), String::new()));
+            }
+            let class = text(chunk, "ViewBlueprint:class_identifier")?;
+            Some((id, class, text(chunk, "ViewBlueprint:space_origin")?))
+        })
+        .collect()
+}
+
+/// A viewer keeps what it knows of a view under its identifier, from recording to recording.
+#[test]
+fn a_view_has_its_identifier_for_good_and_shares_it_with_nothing() {
+    let folder = Folder::new("identifiers");
+    let sets: [&[&str]; 5] = [
+        &["case-1", "case-2", "case-3"],
+        &["case-3"],
+        &["spacecraft"],
+        &["pick-up", "case-3", "case-1"],
+        &["wheel", "spacecraft"],
+    ];
+    let mut known: BTreeMap<String, (String, String)> = BTreeMap::new();
+    let mut tabs: BTreeMap<(String, String), Vec<std::collections::BTreeSet<String>>> = BTreeMap::new();
+    for (i, names) in sets.iter().enumerate() {
+        let scenarios: Vec<_> = names.iter().map(|name| short(name)).collect();
+        record_in(&folder, &format!("{i}.rrd"), &scenarios).expect("cases");
+        let parts = parts(&Contents::of(&folder.file(&format!("{i}.rrd"))));
+        let ids: std::collections::BTreeSet<_> = parts.iter().map(|(id, ..)| id).collect();
+        assert_eq!(ids.len(), parts.len(), "no two parts of a layout share an identifier");
+        let mut views: BTreeMap<(String, String), std::collections::BTreeSet<String>> = BTreeMap::new();
+        for (id, class, origin) in parts {
+            let before = known.insert(id.clone(), (class.clone(), origin.clone()));
+            assert!(before.is_none_or(|before| before == (class.clone(), origin.clone())), "{id} was another view");
+            views.entry((class, origin)).or_default().insert(id);
+        }
+        views.into_iter().for_each(|(key, ids)| tabs.entry(key).or_default().push(ids));
+    }
+    // What a case shows in a tab of its own is the same view in every recording that has it.
+    for (class, origin, recordings) in
+        [("TimeSeries", "/case-3/signals", 3), ("3D", "/case-3/tower", 3), ("StateTimeline", "/spacecraft/phase", 2)]
+    {
+        let seen = &tabs[&(class.to_owned(), origin.to_owned())];
+        assert!(seen.len() == recordings && seen.iter().all(|ids| *ids == seen[0]), "{class} of {origin}: {seen:?}");
+    }
+}
+
+#[cfg(feature = "render")]
+#[test]
+fn pictures_stand_beside_each_other_and_in_their_case() {
+    if stillbase::render::offscreen::Gpu::new().is_err() {
+        return;
+    }
+    let folder = Folder::new("pictured");
+    let options =
+        Options { pictures: Some(Pictures { fps: 10.0, width: 64, height: 40, pin_forces: false }), force: false };
+    let cases = [short("case-1"), short("case-3")];
+    record(&cases, &folder.file("two.rrd"), &options, &mut quietly).expect("two cases");
+    let parts = parts(&Contents::of(&folder.file("two.rrd")));
+    for case in cases {
+        let origin = format!("/{}/view", case.name);
+        assert_eq!(parts.iter().filter(|(_, class, from)| class == "2D" && *from == origin).count(), 2, "{origin}");
+    }
+}
+
+#[test]
+fn a_gesture_is_one_event() {
+    let folder = Folder::new("gestures");
+    let mut scenario = short("case-3");
+    scenario.duration = Some(0.9);
+    let push = |step, x: f64| TimedEdit { step, edit: Edit::Push { x, y: 0.0 } };
+    let drag = |step, x: f64| TimedEdit { step, edit: Edit::DragTarget { x, y: 0.8 } };
+    // A frame brings an edit; a still hand brings none for a while; then the pointer leads, rests, and leads again.
+    scenario.edits = (0..10).map(|i| push(16 * i, 0.1 + 0.01 * i as f64)).collect();
+    scenario.edits.extend([push(450, 0.05), push(466, 0.0), push(470, 0.02), push(480, 0.0)]);
+    scenario.edits.extend((0..5).map(|i| drag(500 + 16 * i, 0.52 + 0.001 * i as f64)));
+    scenario.edits.push(drag(840, 0.55));
+    record_in(&folder, "one.rrd", std::slice::from_ref(&scenario)).expect("an edited case");
+    let told = Contents::of(&folder.file("one.rrd")).texts("/case-3/events", "TextLog:text");
+    let edits: Vec<&str> =
+        told.iter().map(String::as_str).filter(|e| ["push", "let", "drag"].iter().any(|w| e.starts_with(w))).collect();
+    assert_eq!(
+        edits,
+        [
+            "push with up to 0.19 N, within 0.450 s",
+            "let go",
+            "push with 0.02, 0.00 N",
+            "let go",
+            "drag target to 0.524, 0.800 m, within 0.064 s",
+            "drag target to 0.550, 0.800 m",
+        ]
+    );
+}
+
 /// Chunks without their identifiers.
 fn data(file: &std::path::Path) -> Vec<(String, Vec<String>)> {
     let contents = Contents::of(file);
