@@ -42,6 +42,8 @@ mod mesh;
 mod nine_body;
 #[path = "suite/null_space.rs"]
 mod null_space;
+#[path = "suite/pin_friction.rs"]
+mod pin_friction;
 #[path = "suite/planning.rs"]
 mod planning;
 #[path = "suite/plants.rs"]

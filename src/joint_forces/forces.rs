@@ -46,8 +46,8 @@ impl Forces {
         (worst.0.sqrt(), worst.1)
     }
 
-    /// τ, N m, from the moments that the links at B ask for; `None` at a change point, where
-    /// [`inverse`](crate::dynamics::inverse) knows it.
+    /// τ less the friction of the drives' bearings, N m, from the moments that the links at B ask for; `None` at a change
+    /// point, where [`inverse`](crate::dynamics::inverse) knows it for pins without friction.
     pub fn torque(&self) -> Option<PerDrive> {
         (self.undefined == 0).then_some(self.torque)
     }
@@ -60,9 +60,23 @@ const MOST: usize = MAX_PINS / 3;
 type Block = [Vector; MOST];
 
 impl Joints {
-    /// Force of every pin for a motion, and the torques of the drives. On a base that moves, gravity is g − p̈_B.
-    #[inline]
+    /// Force of every pin for a motion, and the torques of the drives, with pins that turn freely. On a base that moves,
+    /// gravity is g − p̈_B.
     pub fn forces(&self, e: &Units, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> Forces {
+        self.forces_with(e, qd, qdd, around, |_, _| 0.0)
+    }
+
+    /// The same with friction in the pins: `couple` is asked for the friction torque of a pin from a link that follows
+    /// one drive to a link that follows another, N m, against the second turning faster than the first.
+    #[inline]
+    pub fn forces_with(
+        &self,
+        e: &Units,
+        qd: &PerDrive,
+        qdd: &PerDrive,
+        around: &Surroundings,
+        couple: impl Fn(usize, usize) -> f64,
+    ) -> Forces {
         let zero = Vector::default();
         let mut turn = [zero; MAX_DRIVES];
         for k in 0..self.drives {
@@ -83,6 +97,12 @@ impl Joints {
                 force[j] -= around.force;
                 moment[j] -= tip * cross(e[body.drive], around.force);
             }
+        }
+        // What a pin's friction takes from one side it gives to the other.
+        for &(from, to) in &self.rubbing {
+            let f = couple(bodies[from].drive, bodies[to].drive);
+            moment[from] -= f;
+            moment[to] += f;
         }
         // And inwards: with all that hangs on it.
         for (j, body) in bodies.iter().enumerate().rev() {

@@ -67,11 +67,19 @@ impl Watch {
         Self { joints: Joints::of(machine).ok(), axial: AxialMoments::of(machine) }
     }
 
-    /// The present instant. On a base that moves, gravity is g − p̈_B.
-    pub fn at(&self, e: &Units, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> Inside {
+    /// The present instant, with the friction of pins as [`Joints::forces_with`] asks for it. On a base that moves,
+    /// gravity is g − p̈_B.
+    pub fn at(
+        &self,
+        e: &Units,
+        qd: &PerDrive,
+        qdd: &PerDrive,
+        around: &Surroundings,
+        couple: impl Fn(usize, usize) -> f64,
+    ) -> Inside {
         let tilt = self.axial.tilt(e, qd, qdd, around);
         match &self.joints {
-            Some(joints) => Inside::of(&joints.forces(e, qd, qdd, around), tilt),
+            Some(joints) => Inside::of(&joints.forces_with(e, qd, qdd, around, couple), tilt),
             None => Inside { tilt, ..Inside::default() },
         }
     }

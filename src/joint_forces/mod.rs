@@ -12,12 +12,14 @@
 //! | F_i | force of pin i, base axes: what the first of its links exerts on the second | N |
 //! | λ_c | force of closure c, the pin that is cut | N |
 //! | w_jc | lever of λ_c about the root of link j: its moment there is w_jc e_j × λ_c | m |
-//! | μ_j | moment about its root that link j, with all it carries, asks for once the closures are cut | N m |
+//! | μ_j | moment about its root that link j, with all it carries, asks for once the closures are cut: its inertia, what friction in its pins takes | N m |
+//! | f_i | friction torque of pin i: −f_i on its second link, +f_i on its first | N m |
 //! | τ_k | torque of drive k | N m |
 //!
 //! # Method
 //! Cut every closure. What is left is a tree, in which each link's root carries the link and all that hangs on it. A
-//! drive turns the links at B that follow it; no couple acts on the others, so their moments fix the closure forces:
+//! drive turns the links at B that follow it; on the others acts no couple but the friction of their pins, which is
+//! known, so their moments fix the closure forces:
 //! Σ_c w_jc e_j × λ_c = μ_j. The levers w are constants of the machine. In the nine-link machine six links and three
 //! closures give six equations in six numbers, and they fall into three pairs: each parallelogram has two links that no
 //! drive turns, of drives k and l, and λ = (x_k e_l − x_l e_k) / sin(q_l − q_k) with x = μ/w. Loops that do not
@@ -26,7 +28,9 @@
 //! # What is assumed
 //! All drives stand on the base. A drive without a link at B turns the one link that follows it by a belt, so its couple
 //! acts between that link and the base. Where several links share an axle, each attachment and each closure is a pin of
-//! its own, as the file has it. Pins are free of friction.
+//! its own, as the file has it. Each pin has its own friction, all alike; the torque that keeps the pins between two
+//! drives stuck is shared equally among them. Friction in the bearing of a drive acts between the base and the link that
+//! the drive turns: no pin but that one knows of it, and there it is a couple and no force.
 //!
 //! # Near change points
 //! Where sin(q_k − q_l) → 0 the parallelogram is flat and its forces grow like 1/|sin|, while τ stays finite. Below
@@ -76,6 +80,8 @@ pub struct Joints {
     pins: Vec<Pin>,
     bodies: Vec<Body>,
     closures: Vec<Closure>,
+    /// Bodies on both sides of each pin whose links follow different drives.
+    rubbing: Vec<(usize, usize)>,
     steps: Vec<Step>,
     parallelograms: Vec<Parallelogram>,
 }
@@ -95,7 +101,10 @@ impl Joints {
         let steps = structure::steps(machine, &bodies, &closures)?;
         structure::spread(&bodies, &mut closures, &steps);
         let parallelograms = transmission::parallelograms(&pins[machine.links().len()..], &bodies, &closures);
-        Ok(Self { drives: machine.drives(), pins, bodies, closures, steps, parallelograms })
+        let body = |link: usize| bodies.iter().position(|b| b.link == link);
+        let sides = pins.iter().filter_map(|pin| Some((body(pin.from?)?, body(pin.to)?)));
+        let rubbing = sides.filter(|(a, b)| bodies[*a].drive != bodies[*b].drive).collect();
+        Ok(Self { drives: machine.drives(), pins, bodies, closures, rubbing, steps, parallelograms })
     }
 
     /// The pins: where each link is attached, in the order of links, then the closures.

@@ -47,6 +47,8 @@ struct Contact {
     viscous: f64,
     /// N m.
     coulomb: f64,
+    /// Pins that share it, all alike; 0 for a bearing.
+    pins: f64,
 }
 
 /// What a contact does: 0 stuck, ±1 sliding that way.
@@ -65,7 +67,7 @@ impl Contacts {
         let n = machine.drives();
         let minus = base.unwrap_or(usize::MAX);
         let (viscous, coulomb) = (friction.viscous.of(n), friction.coulomb.of(n));
-        let bearing = |k| Contact { plus: k, minus, viscous: viscous[k], coulomb: coulomb[k] };
+        let bearing = |k| Contact { plus: k, minus, viscous: viscous[k], coulomb: coulomb[k], pins: 0.0 };
         let rubs = |c: &Contact| c.viscous > 0.0 || c.coulomb > 0.0;
         let mut list: Vec<Contact> = (0..n).map(bearing).filter(rubs).collect();
         let bearings = list.len();
@@ -74,7 +76,7 @@ impl Contacts {
             list.extend(Inertia::pairs(n).filter_map(|(k, l)| {
                 let count = pins.iter().filter(|pair| **pair == (k, l) || **pair == (l, k)).count() as f64;
                 let (viscous, coulomb) = (count * friction.pin_viscous, count * friction.pin_coulomb);
-                (count > 0.0).then_some(Contact { plus: l, minus: k, viscous, coulomb })
+                (count > 0.0).then_some(Contact { plus: l, minus: k, viscous, coulomb, pins: count })
             }));
         }
         Self { list, bearings }
@@ -111,6 +113,17 @@ impl Contacts {
     /// τ_C of a contact, N m.
     pub fn coulomb(&self, i: usize) -> f64 {
         self.list[i].coulomb
+    }
+
+    /// Friction of one pin between links that follow drives `from` and `to`, N m, against q̇_to − q̇_from; `taken` holds
+    /// the torques of stuck contacts. Pins between the same two drives turn alike, so each has an equal part.
+    pub fn couple(&self, from: usize, to: usize, qd: &[f64], grip: &Grip, taken: &[f64; MAX_CONTACTS]) -> f64 {
+        let pins = self.list.iter().enumerate().skip(self.bearings);
+        let ends = |c: &Contact| (c.minus.min(c.plus), c.minus.max(c.plus));
+        let Some((i, c)) = pins.into_iter().find(|(_, c)| ends(c) == (from.min(to), from.max(to))) else { return 0.0 };
+        let held = if c.coulomb > 0.0 && grip[i] == 0 { taken[i] } else { c.coulomb * f64::from(grip[i]) };
+        let against = c.viscous * self.sliding(i, qd) + held;
+        if c.plus == to { against / c.pins } else { -against / c.pins }
     }
 
     /// Adds the torque `f` against sliding of a contact to generalised forces.

@@ -416,7 +416,9 @@ impl Simulation {
         let (x, n) = (&self.now, self.drives);
         let around = *self.body().around();
         let around = Surroundings { gravity: around.gravity - x.base_acceleration, ..around };
-        self.inside[usize::from(self.loaded)].at(&x.e, &x.qd.first(n), &x.qdd.first(n), &around)
+        let contacts = self.body().contacts();
+        let couple = |from, to| contacts.couple(from, to, &x.qd, &self.grip, &self.taken);
+        self.inside[usize::from(self.loaded)].at(&x.e, &x.qd.first(n), &x.qdd.first(n), &around, couple)
     }
 
     /// Everything that is true now.

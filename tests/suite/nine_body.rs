@@ -58,7 +58,7 @@ pub struct Pin {
 }
 
 /// The drive whose orientation each link has, and the sense along it.
-const DRIVE: [usize; 9] = [0, 1, 2, 0, 1, 0, 2, 1, 2];
+pub const DRIVE: [usize; 9] = [0, 1, 2, 0, 1, 0, 2, 1, 2];
 const SENSE: [f64; 9] = [1.0, 1.0, 1.0, 1.0, -1.0, 1.0, 1.0, -1.0, -1.0];
 /// The link at whose tip each link is attached. Parents come first.
 const PARENT: [Option<usize>; 9] = [None, None, None, Some(1), Some(0), Some(2), Some(0), Some(6), Some(4)];
@@ -152,6 +152,11 @@ impl NineBody {
     ///
     /// Panics at a change point (sin(q_k − q_l) = 0), where the pin forces are not finite.
     pub fn solve(&self, q: [f64; 3], qd: [f64; 3], qdd: [f64; 3]) -> Answer {
+        self.solve_rubbing(q, qd, qdd, [0.0; 12])
+    }
+
+    /// The same with a couple in each pin, N m: −couple on `to`, +couple on `from`, which may be the base.
+    pub fn solve_rubbing(&self, q: [f64; 3], qd: [f64; 3], qdd: [f64; 3], couples: [f64; 12]) -> Answer {
         let gravity = Vector2::from(self.gravity);
         let links = self.links(q, qd, qdd);
         let lumps = self.lumps(&links);
@@ -184,6 +189,12 @@ impl NineBody {
             b[3 * j + 1] += force.y;
             b[3 * j + 2] += lump.inertia * links[j].alpha + (lump.point.r - cm[j]).perp(&force);
         }
+        for (pin, couple) in pins.iter().zip(couples) {
+            b[3 * pin.to + 2] += couple;
+            if let Some(from) = pin.from {
+                b[3 * from + 2] -= couple;
+            }
+        }
         let x = a.lu().solve(&b).expect("the linkage is off its change points");
 
         let force = |i: usize| Vector2::new(x[2 * i], x[2 * i + 1]);
@@ -192,7 +203,7 @@ impl NineBody {
         let (mut base_force, mut base_moment) = (Vector2::zeros(), 0.0);
         for (i, pin) in pins.iter().enumerate().filter(|(_, pin)| pin.from.is_none()) {
             base_force -= force(i);
-            base_moment -= links[pin.to].point(pin.at.1).r.perp(&force(i)) + torque[pin.to];
+            base_moment -= links[pin.to].point(pin.at.1).r.perp(&force(i)) + torque[pin.to] - couples[i];
         }
         let total: f64 = lumps.iter().map(|p| p.mass).sum();
         let moment: Vector2<f64> = lumps.iter().map(|p| p.mass * p.point.r).sum();
