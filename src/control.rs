@@ -34,10 +34,12 @@ pub struct Control {
     /// How often torques are computed, Hz, and held between; 0: all the time.
     #[serde(default, skip_serializing_if = "is_default")]
     pub rate: f64,
-    /// From reading the encoders to the torque, s; sampled at every step if no rate is given.
+    /// From reading the encoders to the torque, s; sampled at every step if no rate is given. Until the first torque
+    /// arrives the motors hold the start pose.
     #[serde(default, skip_serializing_if = "is_default")]
     pub delay: f64,
-    /// Counts of the encoders in a turn, rates by their differences; 0: exact.
+    /// Counts of the encoders in a turn, rates by their differences; 0: exact. All that control knows of the drives is
+    /// rounded to them; the base is measured by other instruments, exactly.
     #[serde(default, skip_serializing_if = "is_default")]
     pub encoder: f64,
 }
@@ -168,6 +170,14 @@ impl Controller {
         for model in self.models.iter_mut() {
             *model = model.clone().preloaded_as(&other.models[0]);
         }
+    }
+
+    /// The torques that hold the pose of a reading at rest, N m, by what the model knows.
+    pub fn holding(&self, reading: &Reading, loaded: bool) -> PerDrive {
+        let still = PerDrive::zeros(reading.q.len());
+        let rates = PerDrive::zeros(reading.rates.len());
+        let at_rest = Reading { qd: still, rates: &rates, velocity: Vector::default(), ..*reading };
+        self.torque(&Reference::at_rest(reading.q), &at_rest, loaded)
     }
 
     /// Motor torques, N m; `loaded` while the plant holds its payload.

@@ -251,7 +251,7 @@ impl Simulation {
         let Self { step, guide, state, peaks, tally, step_error, ground, now, pilot, bodies, .. } = old;
         (self.step, self.guide, self.peaks, self.tally) = (step, guide, peaks, tally);
         self.step_error = step_error;
-        self.pilot.resume(&pilot, step);
+        self.pilot.resume(&pilot, step, &now.torque);
         for body in self.bodies.iter_mut() {
             *body = body.clone().preloaded_as(&bodies[0]);
         }

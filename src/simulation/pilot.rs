@@ -1,4 +1,18 @@
 //! [`Pilot`]: control as it runs, all the time or sampled: encoders, delay, torque limits, and the wheel.
+//!
+//! # What is measured
+//! | quantity | how |
+//! |---|---|
+//! | q_k − θ | by encoders, rounded to a count, at the instants of sampling |
+//! | q̇_k − θ̇ | from the last two readings of the encoders; before there are two, the reference's own rate stands for it |
+//! | p_B, θ and their rates | by other instruments (gyroscopes, a star tracker), exactly, at the same instants |
+//!
+//! All that control knows of the machine comes from these: also e(q) and q̇, at which it evaluates its model.
+//!
+//! # Before the first torque
+//! A torque comes into effect `delay` after its reading. Until the first does, the motors do what they did while the
+//! machine stood there: they hold the pose against what the model knows of weight. In motion, when control is changed on
+//! the way, they keep the last torque.
 
 use std::collections::VecDeque;
 
@@ -67,21 +81,30 @@ impl Pilot {
         self.wheel_limit = self.wheel.map_or(0.0, |wheel| wheel.at_limit(wheel_rate));
         let Some(sampling) = &mut self.sampling else { return };
         if sampling.held.is_none() || step.is_multiple_of(sampling.period) {
-            let mut reading = *reading;
+            let (mut e, mut rates, mut seen) = (*reading.e, *reading.rates, *reading);
             if sampling.count > 0.0 {
-                let count = sampling.count;
-                reading.q = DriveAngles(PerDrive::from_fn(reading.q.len(), |k| (reading.q[k] / count).round() * count));
-                if let Some(last) = sampling.last.replace((step, reading.q)).filter(|(at, _)| *at < step) {
+                let (n, count) = (reading.q.len(), sampling.count);
+                seen.q = DriveAngles(PerDrive::from_fn(n, |k| (reading.q[k] / count).round() * count));
+                if let Some(last) = sampling.last.replace((step, seen.q)).filter(|(at, _)| *at < step) {
                     sampling.before = Some(last);
                 }
-                // The first rate is exact: there is nothing to compare with yet.
-                if let Some((at, before)) = sampling.before {
-                    let time = (step - at) as f64 * sampling.step;
-                    reading.qd = reading.q.0.minus(&before.0).scaled(1.0 / time);
-                }
+                seen.qd = match sampling.before {
+                    Some((at, before)) => {
+                        let time = (step - at) as f64 * sampling.step;
+                        seen.q.0.minus(&before.0).scaled(1.0 / time)
+                    }
+                    None => reference.qd,
+                };
+                let turning = reading.rates.get(n).copied().unwrap_or(0.0);
+                let absolute = PerDrive::from_fn(n, |k| seen.q[k] + reading.base.angle);
+                e[..n].copy_from_slice(&DriveAngles(absolute).units()[..n]);
+                (0..n).for_each(|k| rates[k] = seen.qd[k] + turning);
+                (seen.e, seen.rates) = (&e, &rates);
             }
-            let torque = self.controller.torque(reference, &reading, loaded);
-            sampling.held.get_or_insert(torque);
+            let torque = self.controller.torque(reference, &seen, loaded);
+            if sampling.held.is_none() {
+                sampling.held = Some(if sampling.delay > 0 { self.controller.holding(&seen, loaded) } else { torque });
+            }
             sampling.pending.push_back((step + sampling.delay, torque));
         }
         while let Some((_, torque)) = sampling.pending.pop_front_if(|(due, _)| *due <= step) {
@@ -89,12 +112,14 @@ impl Pilot {
         }
     }
 
-    /// Goes on at a step where another was, with what that has under way; what it has from before its own start is
-    /// forgotten.
-    pub fn resume(&mut self, other: &Self, step: u64) {
+    /// Goes on at a step where another was, with what that has under way and the torque that the motors give; what it has
+    /// from before its own start is forgotten.
+    pub fn resume(&mut self, other: &Self, step: u64, torque: &PerDrive) {
         self.controller.preload_as(&other.controller);
         self.forget();
-        if let (Some(now), Some(before)) = (&mut self.sampling, &other.sampling) {
+        let Some(now) = &mut self.sampling else { return };
+        now.held = Some(*torque);
+        if let Some(before) = &other.sampling {
             (now.last, now.before, now.held) = (before.last, before.before, before.held);
             // With a shorter delay nothing older may arrive after what is newer.
             let due = step + now.delay;

@@ -2,12 +2,15 @@
 
 use proptest::prelude::*;
 use stillbase::audit::Audit;
+use stillbase::control::Control;
 use stillbase::frame::Frame;
 use stillbase::keys;
 use stillbase::machine::builtin;
-use stillbase::plant::{Contacts, Friction};
+use stillbase::plant::{BaseKind, Contacts, Each, Friction};
 use stillbase::scenario::Scenario;
 use stillbase::session::{Edit, TimedEdit, replay};
+
+use crate::support::{body_of, close, three};
 
 fn case(name: &str, settings: &str) -> Scenario {
     let mut scenario = Scenario::builtin(name).expect("built in");
@@ -246,6 +249,95 @@ fn an_edit_that_changes_nothing_leaves_no_trace() {
     assert!(fault.is_none(), "{fault:?}");
 }
 
+/// What a controller that samples, reads counts and is late tells the motors, by somebody who knows nothing of the
+/// program's own: rounded angles, their differences, nine bodies at the rounded pose, a queue.
+fn check_sampled(given: Sampled) {
+    let Sampled { off, gravity, encoder, period, delay, base, kp } = given;
+    let mut scenario = Scenario::builtin("case-1").expect("built in");
+    let (off, pull) = (off.to_string(), format!("{},{}", gravity[0], gravity[1]));
+    let settings = [("link.1.com", off.as_str()), ("gravity", pull.as_str())];
+    scenario.machine = scenario.machine.set_all(settings).expect("valid");
+    scenario.plant.payload.mass = 0.3;
+    scenario.base.kind = base;
+    scenario.control = Control {
+        knows_base: false,
+        kp: Each::All(kp),
+        rate: 1.0 / (period as f64 * scenario.step),
+        delay: delay as f64 * scenario.step,
+        encoder,
+        ..Control::default()
+    };
+    scenario.duration = Some(0.06);
+    scenario.check("test").expect("in range");
+    let (body, count) = (body_of(&scenario.machine), std::f64::consts::TAU / encoder);
+    let mut read: Vec<[f64; 3]> = Vec::new();
+    // By the step at which each comes into effect.
+    let mut told: Vec<(u64, [f64; 3])> = Vec::new();
+    replay(&scenario, |run, f| {
+        if f.step % period == 0 {
+            let seen = [0, 1, 2].map(|k| (f.relative(k) / count).round() * count);
+            let r = run.plan().motion.at(f.time);
+            let rate = match read.last() {
+                Some(before) => [0, 1, 2].map(|k| (seen[k] - before[k]) / (period as f64 * scenario.step)),
+                None => three(&r.qd),
+            };
+            read.push(seen);
+            if delay > 0 && told.is_empty() {
+                told.push((0, body.recursive(seen, [0.0; 3], [0.0; 3]).0));
+            }
+            let wanted = [0, 1, 2].map(|k| r.qdd[k] + 40.0 * (r.qd[k] - rate[k]) + kp * (r.q[k] - seen[k]));
+            told.push((f.step + delay, body.recursive(seen, rate, wanted).0));
+        }
+        let (_, now) = told.iter().rev().find(|(due, _)| *due <= f.step).expect("the hold, at least");
+        close("torque", &f.torque, now, 1e-9);
+    })
+    .expect("runs");
+}
+
+#[derive(Clone, Debug)]
+struct Sampled {
+    off: f64,
+    gravity: [f64; 2],
+    encoder: f64,
+    period: u64,
+    delay: u64,
+    base: BaseKind,
+    kp: f64,
+}
+
+fn any_sampled() -> impl Strategy<Value = Sampled> {
+    let kinds = prop_oneof![Just(BaseKind::Fixed), Just(BaseKind::Free), Just(BaseKind::Compliant)];
+    (-0.2..0.2_f64, prop::array::uniform2(-9.0..9.0_f64), 2.0..5.0_f64, 1..6_u64, 0..12_u64, kinds, 0.0..900.0_f64)
+        .prop_map(|(off, gravity, digits, period, delay, base, kp)| Sampled {
+            off,
+            gravity,
+            encoder: 10.0_f64.powf(digits).round(),
+            period,
+            delay,
+            base,
+            kp,
+        })
+}
+
+/// Torques that come before any was computed hold the pose: none in free space, the weight's else.
+#[test]
+fn a_late_controller_holds_until_its_first_torque() {
+    for (gravity, base) in [("0,0", "fixed"), ("0,0", "free"), ("2,-9", "fixed"), ("2,-9", "compliant")] {
+        let mut scenario = case("case-1", &format!("[control]\ndelay = 0.005\n[base]\nkind = \"{base}\""));
+        let settings = [("gravity", gravity), ("link.1.com", "0.1")];
+        scenario.machine = scenario.machine.set_all(settings).expect("valid");
+        let frames = frames(&scenario);
+        let hold = body_of(&scenario.machine).recursive(three(&frames[0].q.0), [0.0; 3], [0.0; 3]).0;
+        for f in &frames[..5] {
+            assert!((0..3).all(|k| (f.torque[k] - hold[k]).abs() < 1e-9), "{gravity} {base}: {:?} {hold:?}", f.torque);
+            assert!(f.qd.max_abs() < 1e-9, "it stands still until then: {:?}", f.qd);
+        }
+        assert_eq!(hold.iter().all(|t| *t == 0.0), gravity == "0,0");
+        // What was read at the start, before anything accelerates, says the same once more.
+        assert!(frames[6].torque.minus(&frames[5].torque).max_abs() > 1e-3, "then it begins");
+    }
+}
+
 /// Motors that saturate give no more than their limit.
 #[test]
 fn motors_saturate() {
@@ -272,6 +364,12 @@ fn lengths_differ_together() {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// 64 controllers at 61 steps each.
+    #[test]
+    fn control_knows_only_what_it_has_read(given in any_sampled()) {
+        check_sampled(given);
+    }
 
     /// Stuck contacts take what holds them, within their bounds, and what they take is never more than what moves them.
     #[test]
