@@ -1,11 +1,17 @@
 //! Writing files so that nothing is lost: never over another without being told to, and never half.
 
-use std::ffi::OsString;
-use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufWriter, Write};
+pub mod fault;
+
+use std::collections::BTreeSet;
+use std::ffi::OsStr;
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, BufWriter, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use thiserror::Error;
+
+use fault::Step;
 
 /// Why a file was not written.
 #[derive(Debug, Error)]
@@ -30,6 +36,14 @@ pub enum WriteError {
     /// The file system.
     #[error("{}: {source}: want a place that can be written", file.display())]
     Failed {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// It is there, but the disk may not know it yet.
+    #[error("{} is written whole, but its folder was not synced ({source}): a power cut may undo it", file.display())]
+    Unsynced {
         /// The file.
         file: PathBuf,
         /// Why.
@@ -60,16 +74,56 @@ fn folder_of(file: &Path) -> &Path {
     file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Where a file is written before it takes its name: hidden beside it, free when asked for.
-pub fn beside(file: &Path) -> PathBuf {
-    let numbered = |attempt: u32| {
-        let mut name = OsString::from(".");
-        name.push(file.file_name().unwrap_or_default());
-        name.push(format!(".{}-{attempt}.part", std::process::id()));
-        file.with_file_name(name)
-    };
-    // One may be left over by a program of the same number that was killed.
-    (0..1000).map(numbered).find(|part| part.symlink_metadata().is_err()).unwrap_or_else(|| numbered(1000))
+/// The files in the making of this program. Who holds them keeps others from beginning and from taking their names.
+static MAKING: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+fn making() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    MAKING.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// All files in the making are gone, and no other can begin or take its name as long as this lives.
+#[derive(Debug)]
+pub struct Abandoned(#[expect(dead_code, reason = "held, not read")] MutexGuard<'static, BTreeSet<PathBuf>>);
+
+/// Gives up all files in the making, for who is about to end the program.
+pub fn abandon() -> Abandoned {
+    let parts = making();
+    for part in parts.iter() {
+        // Nobody is left to tell.
+        let _ = fs::remove_file(part);
+    }
+    Abandoned(parts)
+}
+
+/// What names of files in the making end in.
+const PART: &str = ".stillbase.part";
+
+/// Where a file is written before it takes its name: hidden beside it, `.case.csv.4711-0.stillbase.part`.
+fn part_of(file: &Path, attempt: u32) -> PathBuf {
+    // A name may be as long as the file system allows already.
+    let name: String = file.file_name().unwrap_or_default().to_string_lossy().chars().take(40).collect();
+    file.with_file_name(format!(".{name}.{}-{attempt}{PART}", std::process::id()))
+}
+
+fn is_part(name: &OsStr) -> bool {
+    let counted = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    let middle = name.to_str().and_then(|name| name.strip_prefix('.')?.strip_suffix(PART));
+    let number = middle.and_then(|middle| middle.rsplit_once('.')?.1.split_once('-'));
+    number.is_some_and(|(process, attempt)| counted(process) && counted(attempt))
+}
+
+/// Removes what programs that were killed have left in a folder. Who makes a file holds a lock on it, which ends with the
+/// program whatever ends it.
+fn sweep(folder: &Path) {
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    let plain = |entry: &fs::DirEntry| entry.file_type().is_ok_and(|kind| kind.is_file());
+    for entry in entries.flatten().filter(|entry| is_part(&entry.file_name()) && plain(entry)) {
+        let Ok(part) = File::open(entry.path()) else { continue };
+        if part.try_lock().is_ok() {
+            // Where it cannot be removed, it is somebody else's.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
 }
 
 /// A file in the making, buffered. It takes its name in [`finish`](Self::finish); dropped before, it leaves nothing.
@@ -78,7 +132,7 @@ pub struct NewFile {
     /// What errors call it.
     asked: PathBuf,
     force: bool,
-    out: BufWriter<File>,
+    out: BufWriter<Checked>,
     draft: Draft,
 }
 
@@ -89,10 +143,58 @@ struct Draft {
     file: PathBuf,
 }
 
+impl Draft {
+    /// Begins a file beside another, locked.
+    fn create(file: PathBuf) -> io::Result<(Self, File)> {
+        sweep(folder_of(&file));
+        let mut parts = making();
+        for attempt in 0..1000 {
+            let part = part_of(&file, attempt);
+            fault::at(Step::Fallible)?;
+            let out = match OpenOptions::new().read(true).write(true).create_new(true).open(&part) {
+                Err(e) if e.kind() == ErrorKind::AlreadyExists => continue,
+                out => out?,
+            };
+            // Somebody else's sweep may have come between; and where there are no locks, nobody sweeps.
+            let swept = matches!(out.try_lock(), Err(TryLockError::WouldBlock)) || part.symlink_metadata().is_err();
+            if !swept {
+                parts.insert(part.clone());
+                return Ok((Self { part, file }, out));
+            }
+        }
+        Err(io::Error::new(ErrorKind::AlreadyExists, "a thousand files in the making stand beside it"))
+    }
+}
+
 impl Drop for Draft {
     fn drop(&mut self) {
-        // Gone already if it was renamed; if it cannot be removed, nobody is left to tell.
+        let mut parts = making();
+        // Gone already if it has taken its name; if it cannot be removed, the next who writes here tries again.
         let _ = fs::remove_file(&self.part);
+        parts.remove(&self.part);
+    }
+}
+
+/// A file whose writing can be made to fail.
+#[derive(Debug)]
+struct Checked(File);
+
+impl Write for Checked {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if fault::is_due(Step::Fallible) {
+            self.0.write_all(&bytes[..bytes.len() / 2])?;
+            fault::strike()?;
+        }
+        self.0.write(bytes)
+    }
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
+}
+
+impl Seek for Checked {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.0.seek(to)
     }
 }
 
@@ -103,13 +205,11 @@ impl NewFile {
     /// As [`check_new`], or if its folder cannot be written.
     pub fn create(file: &Path, force: bool) -> Result<Self, WriteError> {
         check_new(file, force)?;
-        let failed = |source| WriteError::Failed { file: file.into(), source };
         // Through a link, so that the link stays.
         let target = fs::canonicalize(file).unwrap_or_else(|_| file.into());
-        let part = beside(&target);
-        let out = OpenOptions::new().write(true).create_new(true).open(&part).map_err(failed)?;
-        let draft = Draft { part, file: target };
-        Ok(Self { asked: file.into(), force, out: BufWriter::new(out), draft })
+        let begun = Draft::create(target).map_err(|source| WriteError::Failed { file: file.into(), source })?;
+        let (draft, out) = begun;
+        Ok(Self { asked: file.into(), force, out: BufWriter::new(Checked(out)), draft })
     }
 
     /// What was asked for.
@@ -117,16 +217,156 @@ impl NewFile {
         &self.asked
     }
 
+    /// The last bytes so far, at most so many, and where they begin.
+    ///
+    /// # Errors
+    /// If they cannot be read.
+    pub fn tail(&mut self, most: u64) -> io::Result<(u64, Vec<u8>)> {
+        let end = self.out.seek(SeekFrom::End(0))?;
+        let from = end.saturating_sub(most);
+        let mut bytes = Vec::new();
+        let file = &mut self.out.get_mut().0;
+        file.seek(SeekFrom::Start(from))?;
+        file.take(most).read_to_end(&mut bytes)?;
+        Ok((from, bytes))
+    }
+
+    /// Writes over what stands somewhere.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn replace(&mut self, at: u64, bytes: &[u8]) -> io::Result<()> {
+        self.out.seek(SeekFrom::Start(at))?;
+        self.out.write_all(bytes)?;
+        self.out.seek(SeekFrom::End(0)).map(|_| ())
+    }
+
     /// Puts the file under its name.
     ///
     /// # Errors
     /// If not everything could be written, or another file has taken the name meanwhile.
-    pub fn finish(mut self) -> Result<(), WriteError> {
-        let failed = |source| WriteError::Failed { file: self.asked.clone(), source };
-        self.out.flush().map_err(failed)?;
-        self.out.get_ref().sync_all().map_err(failed)?;
-        check_new(&self.draft.file, self.force)?;
-        fs::rename(&self.draft.part, &self.draft.file).map_err(failed)
+    pub fn finish(self) -> Result<(), WriteError> {
+        finish_all([self])
+    }
+
+    fn failed(&self, source: io::Error) -> WriteError {
+        WriteError::Failed { file: self.asked.clone(), source }
+    }
+
+    /// Everything on the disk, under whatever name.
+    fn settle(&mut self) -> Result<(), WriteError> {
+        let settled =
+            self.out.flush().and_then(|()| fault::at(Step::Fallible)).and_then(|()| self.out.get_ref().0.sync_all());
+        settled.map_err(|source| self.failed(source))
+    }
+
+    /// Takes its name; what was there before, if it may be replaced, is kept aside if asked to.
+    fn take_name(&self, keep: bool) -> Result<Taken, WriteError> {
+        let Draft { part, file } = &self.draft;
+        check_new(&self.asked, self.force)?;
+        let before = if keep && self.force { aside(part, file) } else { None };
+        let named = |()| if self.force { fs::rename(part, file) } else { link(part, file) };
+        match fault::at(Step::Fallible).and_then(named) {
+            Ok(()) => Ok(Taken { file: file.clone(), before }),
+            Err(error) => {
+                before.map(fs::remove_file);
+                Err(match error.kind() {
+                    ErrorKind::AlreadyExists => WriteError::Exists(self.asked.clone()),
+                    _ => self.failed(error),
+                })
+            }
+        }
+    }
+}
+
+/// Gives a file in the making a name that must be free: of two that try, one succeeds.
+fn link(part: &Path, file: &Path) -> io::Result<()> {
+    match fs::hard_link(part, file) {
+        Ok(()) => {
+            if fault::at(Step::Tidy).is_ok() {
+                // It goes with the draft otherwise.
+                let _ = fs::remove_file(part);
+            }
+            Ok(())
+        }
+        Err(e) if e.kind() == ErrorKind::AlreadyExists => Err(e),
+        // A file system without second names: an empty file keeps the name until the whole one replaces it.
+        Err(_) => {
+            OpenOptions::new().write(true).create_new(true).open(file)?;
+            fs::rename(part, file).inspect_err(|_| _ = fs::remove_file(file))
+        }
+    }
+}
+
+/// A second name for a file that is about to be replaced, if the file system has such; a sweep takes it for left over.
+fn aside(part: &Path, file: &Path) -> Option<PathBuf> {
+    let aside = part.with_file_name(format!("{}0{PART}", part.file_name()?.to_str()?.strip_suffix(PART)?));
+    fs::hard_link(file, &aside).ok().map(|()| aside)
+}
+
+/// A name that was taken.
+struct Taken {
+    file: PathBuf,
+    /// What had the name before.
+    before: Option<PathBuf>,
+}
+
+impl Taken {
+    /// As it was.
+    fn give_back(self, force: bool) {
+        // What was kept aside comes back; a name that was free is free again.
+        let _ = match &self.before {
+            Some(before) => fs::rename(before, &self.file),
+            None if !force => fs::remove_file(&self.file),
+            None => Ok(()),
+        };
+    }
+}
+
+/// Puts files that belong together under their names: all, or none. They take them in their order, so where the last one
+/// is, all are.
+///
+/// # Errors
+/// If not everything could be written, or another file has taken a name meanwhile.
+pub fn finish_all<const N: usize>(mut files: [NewFile; N]) -> Result<(), WriteError> {
+    for file in &mut files {
+        file.settle()?;
+    }
+    let mut taken = Vec::with_capacity(N);
+    // Nothing may come between: not the end of the program either.
+    let parts = making();
+    for file in &files {
+        match file.take_name(N > 1) {
+            Ok(name) => taken.push((name, file.force)),
+            Err(error) => {
+                taken.into_iter().rev().for_each(|(name, force)| name.give_back(force));
+                drop(parts);
+                return Err(error);
+            }
+        }
+    }
+    for before in taken.iter().filter_map(|(name, _)| name.before.as_ref()) {
+        let _ = fs::remove_file(before);
+    }
+    drop(parts);
+    for file in &files {
+        let synced = fault::at(Step::Fallible).and_then(|()| sync(folder_of(&file.draft.file)));
+        synced.map_err(|source| WriteError::Unsynced { file: file.asked.clone(), source })?;
+    }
+    Ok(())
+}
+
+/// Has the disk know the names in a folder.
+fn sync(folder: &Path) -> io::Result<()> {
+    if !cfg!(unix) {
+        return Ok(());
+    }
+    // A folder that may be written need not be readable.
+    let Ok(folder) = File::open(folder) else { return Ok(()) };
+    match folder.sync_all() {
+        // Not every file system knows how.
+        Err(e) if matches!(e.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => Ok(()),
+        done => done,
     }
 }
 
@@ -144,9 +384,17 @@ impl Write for NewFile {
 /// # Errors
 /// If it exists and is not to be replaced, or cannot be written.
 pub fn write_new(file: &Path, bytes: &[u8], force: bool) -> Result<(), WriteError> {
+    made(file, bytes, force)?.finish()
+}
+
+/// A whole file that has yet to take its name.
+///
+/// # Errors
+/// As [`write_new`].
+pub fn made(file: &Path, bytes: &[u8], force: bool) -> Result<NewFile, WriteError> {
     let mut out = NewFile::create(file, force)?;
     out.write_all(bytes).map_err(|source| WriteError::Failed { file: file.into(), source })?;
-    out.finish()
+    Ok(out)
 }
 
 /// `name.ending`, or `name-1.ending` and so on, whichever is free in the current folder.

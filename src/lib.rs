@@ -66,7 +66,7 @@
 //! # Source map
 //! | layer | modules | knows |
 //! |---|---|---|
-//! | words | [`planar`] | vectors as x + iy, values per drive |
+//! | words | [`planar`], [`text`] | vectors as x + iy, values per drive; text from outside |
 //! | machine | [`machine`], [`kinematics`], [`dynamics`] | links, constants g, C, J, Eqs (1)–(6) |
 //! | inside | [`joint_forces`] | pins, change points, what tilts the base |
 //! | methods | [`balance`], [`reactionless`], [`pose_constant`], [`plan`], [`control`] | Eqs (7)–(16), paths, time laws, prices, feedback |
@@ -107,6 +107,7 @@ pub mod signals;
 pub mod simulation;
 pub mod spectrum;
 pub mod tally;
+pub mod text;
 pub mod tolerance;
 #[cfg(feature = "ui")]
 pub mod ui;

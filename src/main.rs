@@ -52,6 +52,11 @@ Examples:
 Units are SI and angles are radians. Exit status: 0 done, 1 the question has no answer, 2 wrong input.";
 
 fn main() -> ExitCode {
+    commands::watch();
+    #[cfg(debug_assertions)]
+    if let Ok(wanted) = std::env::var("STILLBASE_FAULT") {
+        stillbase::files::fault::arm(&wanted);
+    }
     let arguments = match Arguments::try_parse_from(commands::words(std::env::args_os())) {
         Ok(arguments) => arguments,
         Err(error) => return commands::usage(&error),

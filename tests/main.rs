@@ -21,6 +21,9 @@ mod convergence;
 mod curve;
 #[path = "suite/dynamics.rs"]
 mod dynamics;
+#[cfg(feature = "cli")]
+#[path = "suite/files.rs"]
+mod files;
 #[path = "suite/given.rs"]
 mod given;
 #[cfg(feature = "render")]

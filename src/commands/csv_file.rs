@@ -4,6 +4,7 @@ use std::io::{self, StdoutLock, Write};
 use std::path::Path;
 
 use stillbase::files::{NewFile, WriteError};
+use stillbase::text::plain;
 
 use super::failure::Failure;
 use super::output::say;
@@ -24,8 +25,9 @@ impl Csv {
             Some(file) => Sink::File(NewFile::create(file, force)?),
             None => Sink::Standard(io::stdout().lock()),
         };
+        let shown = |name: String| if file.is_some() { name } else { plain(&name).into_owned() };
         let mut csv = Self { writer: csv::Writer::from_writer(sink), row: Vec::new() };
-        let done = csv.writer.write_record(head);
+        let done = csv.writer.write_record(head.into_iter().map(shown));
         csv.checked(done)?;
         Ok(csv)
     }

@@ -93,7 +93,11 @@ fn states(file: &Path, machine: &Machine) -> Result<Vec<[PerDrive; 3]>, Failure>
     })?;
     let n = machine.drives();
     // States hold no strings or objects of their own, so the i-th brace opens the i-th state.
-    let starts = text.match_indices('{').map(|(at, _)| text[..at].matches('\n').count() + 1);
+    let mut line = 1;
+    let starts = text.bytes().filter_map(|byte| {
+        line += usize::from(byte == b'\n');
+        (byte == b'{').then_some(line)
+    });
     states
         .iter()
         .zip(starts)

@@ -8,6 +8,7 @@ use serde::Serialize;
 use stillbase::files::check_new;
 use stillbase::headless::{Options, Pictures, Progress, RecordError, Recording, record};
 use stillbase::scenario::Scenario;
+use stillbase::text::plain;
 
 use super::failure::Failure;
 use super::input::{Settings, scenario};
@@ -127,8 +128,9 @@ pub fn record_with_bar(scenarios: &[Scenario], file: &Path, options: &Options) -
         bar.set_style(style);
     }
     let recordings = record(scenarios, file, options, &mut |progress: Progress| {
-        if bar.message() != progress.what {
-            bar.set_message(progress.what.to_owned());
+        let what = plain(progress.what);
+        if bar.message() != what {
+            bar.set_message(what.into_owned());
         }
         bar.set_length(progress.of);
         bar.set_position(progress.done);

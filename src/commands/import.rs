@@ -10,7 +10,7 @@ use std::path::{Path as FilePath, PathBuf};
 use clap::Args;
 use serde::Serialize;
 use stillbase::dynamics::Surroundings;
-use stillbase::files::{check_new, write_new};
+use stillbase::files::{check_new, finish_all, made};
 use stillbase::machine::{self, Inertia, Machine};
 use stillbase::plan::{Motion, Samples};
 use stillbase::planar::Vector;
@@ -209,8 +209,10 @@ impl Import {
                 Content::Tip => task,
             };
             let own = scenario(&task, format!("{stem}-given"), format!("{file_name} · as given"));
-            write_new(file, chosen.to_toml().as_bytes(), self.force)?;
-            write_new(given, own.to_toml().as_bytes(), self.force)?;
+            // Where the proposal is, what it was made of is too.
+            let given_first = [(given, own.to_toml()), (file, chosen.to_toml())];
+            let [given_file, chosen_file] = given_first.map(|(file, text)| made(file, text.as_bytes(), self.force));
+            finish_all([given_file?, chosen_file?])?;
             say(format!("wrote {} and {}", file.display(), given.display()));
         }
         Ok(())

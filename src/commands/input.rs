@@ -10,6 +10,7 @@ use stillbase::planar::Vector;
 use stillbase::pose_constant::plane_map;
 use stillbase::reactionless::PlaneMap;
 use stillbase::scenario::{Change, Scenario};
+use stillbase::text::{self, MOST_BYTES};
 
 use super::failure::Failure;
 use super::output::say;
@@ -186,5 +187,8 @@ pub fn above_zero(text: &str) -> Result<f64, String> {
 /// # Errors
 /// If it cannot be read.
 pub fn read(file: &Path) -> Result<String, Failure> {
-    std::fs::read_to_string(file).map_err(|e| Failure::wrong_input(e).of(file.display()))
+    text::read(file).map_err(|e| {
+        let why = format!("{e}: want a plain file that can be read, of at most {MOST_BYTES} bytes");
+        Failure::wrong_input(why).of(file.display())
+    })
 }

@@ -1,10 +1,12 @@
 //! Standard output: one JSON object, or a calm table. Standard error: messages.
 
+use std::borrow::Cow;
 use std::fmt::{self, Display};
 use std::io::{self, Write};
 
 use serde::Serialize;
 use serde_json::ser::Formatter;
+use stillbase::text::{brief, plain};
 
 use super::failure::Failure;
 
@@ -24,9 +26,9 @@ impl Format {
     pub fn print<T: Serialize>(&self, answer: &T, human: impl FnOnce(&T) -> String) -> Result<(), Failure> {
         // Made in both cases, because it finds numbers that are not finite.
         let json = json(answer)?;
-        let text = if self.json { json } else { human(answer).into_bytes() };
+        let text = if self.json { json } else { plain(&human(answer)).into_owned() };
         let mut out = io::stdout().lock();
-        out.write_all(&text).and_then(|()| out.flush()).map_err(|e| Failure::standard_output(&e))
+        out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|e| Failure::standard_output(&e))
     }
 }
 
@@ -39,18 +41,34 @@ impl Formatter for FiniteOnly {
     }
 }
 
-fn json(answer: &impl Serialize) -> Result<Vec<u8>, Failure> {
+fn json(answer: &impl Serialize) -> Result<String, Failure> {
     let mut text = Vec::new();
     let mut serializer = serde_json::Serializer::with_formatter(&mut text, FiniteOnly);
     answer.serialize(&mut serializer).map_err(Failure::wrong_input)?;
-    text.push(b'\n');
-    Ok(text)
+    let mut text = String::from_utf8(text).map_err(Failure::wrong_input)?;
+    text.push('\n');
+    // JSON spells out what steers a terminal but for a few, which stand in strings only.
+    Ok(match plain(&text) {
+        Cow::Borrowed(_) => text,
+        Cow::Owned(_) => text.chars().map(spelled).collect(),
+    })
+}
+
+/// A character as JSON may have it.
+fn spelled(c: char) -> String {
+    let mut own = [0; 4];
+    match plain(c.encode_utf8(&mut own)) {
+        Cow::Borrowed(same) => same.into(),
+        Cow::Owned(_) => format!("\\u{:04x}", u32::from(c)),
+    }
 }
 
 /// A message on standard error, in one line.
 pub fn say(message: impl Display) {
     let message = message.to_string();
     let line = message.lines().map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join(" ");
+    let line = brief(&line);
+    let line = plain(&line);
     // Nobody is left to tell when standard error is closed.
     let _ = writeln!(io::stderr(), "stillbase: {line}");
 }
@@ -102,7 +120,9 @@ impl Table {
 
     /// One more row.
     pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
-        self.rows.push(cells.into_iter().collect());
+        // A name may hold anything, but a row is a line.
+        let line = |cell: String| if cell.contains('\n') { cell.replace('\n', "\\n") } else { cell };
+        self.rows.push(cells.into_iter().map(line).map(|cell| plain(&cell).into_owned()).collect());
     }
 }
 

@@ -6,12 +6,13 @@ use thiserror::Error;
 use toml::de::{DeTable, DeValue};
 
 use super::{Machine, MachineError, MachineSpec, Place, Step};
+use crate::text::MOST_BYTES;
 
 /// What is wrong with a file, and where.
 #[derive(Debug, Error)]
 pub enum FileError {
     /// It cannot be read.
-    #[error("{}: {source}: want a file that can be read", file.display())]
+    #[error("{}: {source}: want a plain file that can be read, of at most {MOST_BYTES} bytes", file.display())]
     Unreadable {
         /// The file.
         file: PathBuf,
@@ -35,7 +36,7 @@ pub enum FileError {
 /// # Errors
 /// If it cannot be read or is not a machine.
 pub fn read(file: &Path) -> Result<Machine, FileError> {
-    let text = std::fs::read_to_string(file).map_err(|source| FileError::Unreadable { file: file.into(), source })?;
+    let text = crate::text::read(file).map_err(|source| FileError::Unreadable { file: file.into(), source })?;
     parse(&text, &file.display().to_string())
 }
 

@@ -15,6 +15,7 @@ use crate::machine::{self, FileError, Machine, MachineError, MachineSpec};
 use crate::plant::{Base, Plant, is_default};
 use crate::session::TimedEdit;
 use crate::simulation::Setup;
+use crate::text::{self, MOST_BYTES};
 use crate::tolerance::Tolerance;
 
 pub use task::{Change, Corners, Least, MAX_POINTS, Shape, Task, TaskKind, Value};
@@ -97,7 +98,7 @@ enum MachineRef {
 #[derive(Debug, Error)]
 pub enum ScenarioError {
     /// The file itself.
-    #[error("{file}: {source}: want a file that can be read")]
+    #[error("{file}: {source}: want a plain file that can be read, of at most {MOST_BYTES} bytes")]
     Unreadable {
         /// The file.
         file: String,
@@ -185,7 +186,7 @@ impl Scenario {
             return Ok(scenario);
         }
         let file = FilePath::new(name);
-        let text = std::fs::read_to_string(file).map_err(|source| match source.kind() {
+        let text = text::read(file).map_err(|source| match source.kind() {
             std::io::ErrorKind::NotFound if !name.ends_with(".toml") => ScenarioError::Syntax {
                 file: name.into(),
                 line: None,

@@ -16,6 +16,7 @@ use crate::scene::sway::exaggeration;
 use crate::scene::views::{ViewKind, Views};
 use crate::session::{Edit, Refusal, Session};
 use crate::signals::{Signal, signals};
+use crate::text::brief;
 use crate::tolerance::Study;
 
 /// A session on display.
@@ -277,7 +278,8 @@ impl Desk {
     }
 
     fn open(&mut self, path: &Path) -> Result<String, String> {
-        let scenario = Scenario::find(&path.display().to_string()).map_err(|e| e.to_string())?;
+        let found = Scenario::find(&path.display().to_string());
+        let scenario = found.map_err(|e| brief(&e.to_string()).into_owned())?;
         let change = scenario.task.whole();
         if let Err(refusal) = self.session.switch(scenario) {
             self.look.refused = Some(Wish::of(&Edit::SetTask { change }, &refusal));

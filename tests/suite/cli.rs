@@ -971,12 +971,11 @@ fn shards_put_together_are_the_whole() {
         let (a, b) = words.split_once(" and ").unwrap_or((words, words));
         assert!(said.contains("other.csv") && said.contains(a) && said.contains(b.trim_start_matches("of ")), "{said}");
     }
-    // A row in the wrong place, and one that is none.
-    let broken = csv.replacen("\n5,", "\n6,", 1);
-    fs::write(folder.join("broken.csv"), broken).expect("written");
-    assert!(merge(&["broken.csv"], "no.csv", 2).contains("sample 6 where 5 should follow"));
-    fs::write(folder.join("broken.csv"), csv.replacen("\n5,", "\n5,x", 1)).expect("written");
-    assert!(merge(&["broken.csv"], "no.csv", 2).contains("broken.csv:7"));
+    // A row in the wrong place, and a file without a checksum.
+    fs::write(folder.join("broken.csv"), csv.replacen("\n5,", "\n6,", 1)).expect("written");
+    assert!(merge(&["broken.csv"], "no.csv", 2).contains("it was changed or damaged"));
+    fs::write(folder.join("broken.csv"), csv.replacen(" check ", " checked ", 1)).expect("written");
+    assert!(merge(&["broken.csv"], "no.csv", 2).contains("broken.csv: want a file that this version"));
     fs::write(folder.join("broken.parquet"), "PAR1").expect("written");
     assert!(merge(&["broken.parquet"], "no.csv", 2).contains("broken.parquet"));
     assert!(merge(&["1.csv"], "1.csv", 2).contains("exists"));

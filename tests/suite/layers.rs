@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// From the words at the bottom to the edges; modules of one row may use each other.
 const LAYERS: &[&[&str]] = &[
-    &["planar", "keys"],
+    &["planar", "keys", "text"],
     &["machine"],
     &["kinematics"],
     &["dynamics"],
@@ -53,6 +53,7 @@ const CORE: &[&str] = &[
     "tally",
     "audit",
     "keys",
+    "text",
     "simulation",
     "signals",
     "scenario",
@@ -80,6 +81,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("csv", &["commands"]),
     ("serde_json", &["commands"]),
     ("parquet", &["commands"]),
+    ("signal_hook", &["commands"]),
     ("toml", &["keys", "machine", "plant", "scenario", "session", "tolerance", "commands"]),
     ("rand_chacha", &["tolerance"]),
     ("libm", &["tolerance"]),
@@ -91,20 +93,19 @@ const CRATES: &[(&str, &[&str])] = &[
 const EDGES: &[(&str, &[&str])] = &[
     ("std::time", &["render/shader.rs", "window.rs"]),
     ("std::env", &["main.rs", "window.rs"]),
-    ("std::thread", &["commands/tolerance/parallel.rs", "headless/store.rs"]),
+    ("std::thread", &["commands/interrupt.rs", "commands/tolerance/parallel.rs", "headless/store.rs"]),
     ("std::net", &[]),
-    ("std::process", &["commands/failure.rs", "files.rs", "main.rs"]),
-    // A machine and a scenario by file; everything else of the core takes text.
+    ("std::process", &["commands/failure.rs", "files.rs", "files/fault.rs", "main.rs"]),
+    // Text comes in at one place; everything else of the core takes it from there.
     (
         "std::fs",
         &[
-            "commands/input.rs",
             "commands/tolerance/rows.rs",
+            "commands/tolerance/seal.rs",
             "files.rs",
-            "machine/file.rs",
             "render/offscreen.rs",
             "render/shader.rs",
-            "scenario/mod.rs",
+            "text.rs",
         ],
     ),
 ];

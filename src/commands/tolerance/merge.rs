@@ -15,7 +15,8 @@ use crate::commands::failure::Failure;
 pub fn merge(parts: &[PathBuf], whole: &Path, force: bool) -> Result<(Study, Vec<Outcome>), Failure> {
     let mut opened = Vec::with_capacity(parts.len());
     for file in parts {
-        opened.push((first_sample(file)?, Part::open(file)?));
+        let part = Part::open(file)?;
+        opened.push((part.first_sample()?, part));
     }
     let Some((_, reference)) = opened.first() else { return Err(Failure::wrong_input("--merge: want parts")) };
     let head = reference.head.clone();
@@ -63,19 +64,6 @@ pub fn merge(parts: &[PathBuf], whole: &Path, force: bool) -> Result<(Study, Vec
 
 fn missing(first: u64, last: u64) -> Failure {
     Failure::wrong_input(format!("samples {first} to {last} are in no part: want every shard"))
-}
-
-/// The number of a file's first sample; `None` if it holds none.
-fn first_sample(file: &Path) -> Result<Option<u64>, Failure> {
-    let mut first = None;
-    let enough = |sample, _: &[f64]| {
-        first = Some(sample);
-        Err(Failure::ReaderGone)
-    };
-    match Part::open(file)?.rows(enough) {
-        Ok(()) | Err(Failure::ReaderGone) => Ok(first),
-        Err(failure) => Err(failure),
-    }
 }
 
 /// In what two heads differ.

@@ -4,6 +4,7 @@ mod merge;
 mod parallel;
 mod report;
 mod rows;
+mod seal;
 
 use std::ops::Range;
 use std::path::PathBuf;
@@ -19,7 +20,7 @@ use stillbase::tolerance::{
 
 use self::parallel::Mode;
 use self::report::{Answer, Compared, Distributions, Drawn, Merged, Yields};
-use self::rows::{Head, Study, Writer};
+use self::rows::{Head, OUTCOME_COLUMNS, Study, Writer};
 use crate::commands::failure::Failure;
 use crate::commands::input::{DEFAULT_SCENARIO, Settings, scenario};
 use crate::commands::output::{Format, say};
@@ -40,7 +41,7 @@ Examples:
   stillbase tolerance case-1 --simulate --samples 500
 
 A file has one row a machine: its number, its parameters, peak |n_B|, peak dynamic |f_B|, and the root mean square of
-both over time. Machine i depends on the seed and on i only, so shards put together are the whole, exactly.
+both over time. Its head holds a checksum of it all, which --merge looks at. Machine i depends on the seed and on i only, so shards put together are the whole, exactly.
 
 JSON keys: scenario, simulated, samples, shard [from, to), seed, motion_time; parameters [{key, unit, nominal, spread,
 deviation, mean_deviation, cut}]; nominal {peak_moment, peak_force, rms_moment, rms_force}; peak_moment, peak_force,
@@ -248,8 +249,7 @@ impl Tolerance {
         let mut writer = match &self.output {
             Some(file) => {
                 let names = parameters.iter().map(|p| format!("{} {}", p.key, p.unit));
-                let outcomes = ["peak moment N m", "peak force N", "rms moment N m", "rms force N"];
-                let columns = names.chain(outcomes.map(str::to_owned)).collect();
+                let columns = names.chain(OUTCOME_COLUMNS.map(str::to_owned)).collect();
                 Some(Writer::create(file, self.force, &Head { study: *study, columns })?)
             }
             None => None,

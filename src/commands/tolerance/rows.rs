@@ -2,21 +2,24 @@
 
 use std::fmt;
 use std::fs::File;
-use std::io::Write;
+use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use parquet::basic::{Repetition, Type as Physical};
+use parquet::basic::{Compression, Repetition, Type as Physical};
 use parquet::column::reader::get_typed_column_reader;
 use parquet::data_type::{DoubleType, Int64Type};
 use parquet::errors::ParquetError;
-use parquet::file::metadata::KeyValue;
+use parquet::file::metadata::{KeyValue, RowGroupMetaData};
 use parquet::file::properties::WriterProperties;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 use stillbase::files::{NewFile, WriteError};
+use stillbase::text;
 
+use super::OUTCOMES;
+use super::seal::{self, BEFORE, End, Sealing, UNSEALED};
 use crate::commands::failure::Failure;
 
 /// Which study rows belong to. Its text heads the column of samples in a CSV file.
@@ -32,13 +35,16 @@ pub struct Study {
 
 impl fmt::Display for Study {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "sample of {} seed {} problem {:016x}", self.samples, self.seed, self.problem)
+        let Self { samples, seed, problem } = self;
+        write!(f, "sample of {samples} seed {seed} problem {problem:016x}{BEFORE}{UNSEALED}")
     }
 }
 
 impl Study {
     fn parse(text: &str) -> Option<Self> {
-        let ["sample", "of", samples, "seed", seed, "problem", problem] = *text.split(' ').collect::<Vec<_>>() else {
+        let ["sample", "of", samples, "seed", seed, "problem", problem, "check", _] =
+            *text.splitn(9, ' ').collect::<Vec<_>>()
+        else {
             return None;
         };
         Some(Self {
@@ -58,11 +64,21 @@ pub struct Head {
     pub columns: Vec<String>,
 }
 
+/// The last columns: what each machine comes to.
+pub const OUTCOME_COLUMNS: [&str; OUTCOMES] = ["peak moment N m", "peak force N", "rms moment N m", "rms force N"];
+
 /// The kinds of file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
     Csv,
     Parquet,
+}
+
+impl Kind {
+    /// Where its files name their study.
+    fn end(self) -> End {
+        if self == Self::Csv { End::Head } else { End::Tail }
+    }
 }
 
 fn kind_of(file: &Path) -> Result<Kind, Failure> {
@@ -84,20 +100,29 @@ pub fn check_name(file: &Path) -> Result<(), Failure> {
 /// Rows of a Parquet row group.
 const GROUP: usize = 65_536;
 
+/// Columns of a file, at most: far more than any machine has parameters.
+const MOST_COLUMNS: usize = 1000;
+
+/// The longest line of a CSV file, bytes.
+const LONGEST_LINE: u64 = 1 << 18;
+
+/// The longest table of contents of a Parquet file, bytes: that of as many machines as there may be.
+const LONGEST_CONTENTS: u64 = 1 << 27;
+
 /// The key under which a Parquet file names its study.
 const STUDY_KEY: &str = "stillbase.study";
 
 /// Writes rows.
 pub enum Writer {
     /// One line a row.
-    Csv(Box<csv::Writer<NewFile>>),
+    Csv(Box<csv::Writer<Sealing>>),
     /// Columns, a group of rows at a time.
     Parquet(Box<Groups>),
 }
 
 /// A Parquet file in the making.
 pub struct Groups {
-    writer: SerializedFileWriter<NewFile>,
+    writer: SerializedFileWriter<Sealing>,
     file: PathBuf,
     samples: Vec<i64>,
     columns: Vec<Vec<f64>>,
@@ -110,7 +135,7 @@ impl Writer {
     /// If it cannot be made.
     pub fn create(file: &Path, force: bool, head: &Head) -> Result<Self, Failure> {
         let kind = kind_of(file)?;
-        let out = NewFile::create(file, force)?;
+        let out = Sealing::new(NewFile::create(file, force)?);
         match kind {
             Kind::Csv => {
                 let mut writer = csv::Writer::from_writer(out);
@@ -145,7 +170,7 @@ impl Writer {
             Self::Csv(writer) => {
                 let file = writer.get_ref().path().to_owned();
                 let out = writer.into_inner().map_err(|e| csv_failure(&file, e.into_error().into()))?;
-                Ok(out.finish()?)
+                Ok(out.finish(End::Head)?)
             }
             Self::Parquet(groups) => groups.finish(),
         }
@@ -165,7 +190,7 @@ fn parquet_failure(file: &Path) -> impl Fn(ParquetError) -> Failure + use<> {
 }
 
 impl Groups {
-    fn create(out: NewFile, head: &Head) -> Result<Self, Failure> {
+    fn create(out: Sealing, head: &Head) -> Result<Self, Failure> {
         let file = out.path().to_owned();
         let failed = parquet_failure(&file);
         let column = |name: &str, physical| {
@@ -218,7 +243,7 @@ impl Groups {
         }
         let mut out = self.writer.into_inner().map_err(&failed)?;
         out.flush().map_err(|source| WriteError::Failed { file: self.file.clone(), source })?;
-        Ok(out.finish()?)
+        Ok(out.finish(End::Tail)?)
     }
 }
 
@@ -232,30 +257,59 @@ pub struct Part {
 }
 
 enum Reader {
-    Csv(Box<csv::Reader<File>>),
+    Csv(BufReader<File>),
     Parquet(Box<SerializedFileReader<File>>),
 }
 
 impl Part {
-    /// Opens a file and reads its head.
+    /// Opens a file, sees that it is as it was written, and reads its head.
     ///
     /// # Errors
-    /// If it is none that this program wrote.
+    /// If it is none that this program wrote, or has changed since.
     pub fn open(file: &Path) -> Result<Self, Failure> {
-        let kind = kind_of(file)?;
-        let foreign =
-            || Failure::wrong_input(format!("{}: want a file that `stillbase tolerance -o` wrote", file.display()));
-        let opened = File::open(file).map_err(|e| Failure::wrong_input(e).of(file.display()))?;
+        let (kind, mut opened) = plain_file(file)?;
+        let unreadable = |e| Failure::wrong_input(e).of(file.display());
+        match seal::holds(&mut opened, kind.end()).map_err(unreadable)? {
+            Some(true) => Self::load(file),
+            Some(false) => {
+                let why =
+                    "its bytes are not those that its checksum is of: it was changed or damaged: want it made again";
+                Err(Failure::wrong_input(why).of(file.display()))
+            }
+            None => Err(foreign(file)),
+        }
+    }
+
+    /// The number of its first sample; `None` if it holds none.
+    ///
+    /// # Errors
+    /// If it cannot be read.
+    pub fn first_sample(&self) -> Result<Option<u64>, Failure> {
+        let mut first = None;
+        let enough = |sample, _: &[f64]| {
+            first = Some(sample);
+            Err(Failure::ReaderGone)
+        };
+        match Self::load(&self.file)?.rows(enough) {
+            Ok(()) | Err(Failure::ReaderGone) => Ok(first),
+            Err(failure) => Err(failure),
+        }
+    }
+
+    /// Reads the head.
+    fn load(file: &Path) -> Result<Self, Failure> {
+        let (kind, opened) = plain_file(file)?;
         let (study, columns, reader) = match kind {
             Kind::Csv => {
-                let mut reader = csv::Reader::from_reader(opened);
-                let names = reader.headers().map_err(|_| foreign())?;
+                let mut reader = BufReader::new(opened);
+                let line = line(&mut reader).filter(|line| !line.is_empty()).ok_or_else(|| foreign(file))?;
+                let mut head = csv::ReaderBuilder::new().has_headers(false).from_reader(&line[..]);
+                let names = head.records().next().and_then(Result::ok).ok_or_else(|| foreign(file))?;
                 let study = names.get(0).and_then(Study::parse);
-                let columns = names.iter().skip(1).map(str::to_owned).collect();
-                (study, columns, Reader::Csv(Box::new(reader)))
+                (study, names.iter().skip(1).map(str::to_owned).collect::<Vec<_>>(), Reader::Csv(reader))
             }
             Kind::Parquet => {
-                let reader = SerializedFileReader::new(opened).map_err(parquet_failure(file))?;
+                let reader = parquet_reader(file, opened)?;
                 let about = reader.metadata().file_metadata();
                 let entries = about.key_value_metadata().map_or(&[][..], Vec::as_slice);
                 let text = entries.iter().find(|e| e.key == STUDY_KEY).and_then(|e| e.value.as_deref());
@@ -269,50 +323,59 @@ impl Part {
                     is(field, if i == 0 { Physical::INT64 } else { Physical::DOUBLE })
                 };
                 if fields.is_empty() || !fields.iter().enumerate().all(ours) {
-                    return Err(foreign());
+                    return Err(foreign(file));
                 }
                 let columns = fields.iter().skip(1).map(|f| f.name().to_owned()).collect();
                 (study, columns, Reader::Parquet(Box::new(reader)))
             }
         };
-        let head = Head { study: study.ok_or_else(foreign)?, columns };
+        if columns.len() > MOST_COLUMNS || !columns.ends_with(&OUTCOME_COLUMNS.map(str::to_owned)) {
+            return Err(foreign(file));
+        }
+        let head = Head { study: study.ok_or_else(|| foreign(file))?, columns };
         Ok(Self { file: file.into(), head, reader })
     }
 
-    /// Shows every row.
+    /// Shows every row, each of finite numbers, its last those of a machine.
     ///
     /// # Errors
-    /// If one cannot be read, or what `see` says.
+    /// If one cannot be read or cannot be, or what `see` says.
     pub fn rows(self, mut see: impl FnMut(u64, &[f64]) -> Result<(), Failure>) -> Result<(), Failure> {
-        let mut row = vec![0.0; self.head.columns.len()];
-        match self.reader {
+        let Self { file, head: Head { study, columns: names }, reader } = self;
+        let mut see = |sample: u64, row: &[f64]| {
+            plausible(&study, &names, sample, row).map_err(|why| Failure::wrong_input(why).of(file.display()))?;
+            see(sample, row)
+        };
+        let mut row = vec![0.0; names.len()];
+        match reader {
             Reader::Csv(mut reader) => {
-                let mut record = csv::StringRecord::new();
-                let broken = |line: u64| {
-                    let at = format!("{}:{line}", self.file.display());
-                    Failure::wrong_input(format!("{at}: want the number of a sample and {} numbers", row.len()))
-                };
-                let broken = &broken;
-                let mut values = row.clone();
-                loop {
-                    let line = reader.position().line();
-                    match reader.read_record(&mut record) {
-                        Ok(true) => {}
-                        Ok(false) => return Ok(()),
-                        Err(_) => return Err(broken(line)),
+                for number in 2_u64.. {
+                    let broken = || {
+                        let want = format!("want the number of a sample and {} numbers", names.len());
+                        Failure::wrong_input(want).of(format!("{}:{number}", file.display()))
+                    };
+                    let line = line(&mut reader).ok_or_else(broken)?;
+                    if line.is_empty() {
+                        break;
                     }
-                    let sample = record.get(0).and_then(|x| x.parse().ok()).ok_or_else(|| broken(line))?;
-                    for (value, text) in values.iter_mut().zip(record.iter().skip(1)) {
-                        *value = text.parse().map_err(|_| broken(line))?;
+                    let text = std::str::from_utf8(&line).map_err(|_| broken())?;
+                    let mut cells = text.trim_end_matches(['\r', '\n']).split(',');
+                    let sample = cells.next().and_then(|x| x.parse().ok()).ok_or_else(broken)?;
+                    for value in &mut row {
+                        *value = cells.next().and_then(|x| x.parse().ok()).ok_or_else(broken)?;
                     }
-                    see(sample, &values)?;
+                    if cells.next().is_some() {
+                        return Err(broken());
+                    }
+                    see(sample, &row)?;
                 }
+                Ok(())
             }
             Reader::Parquet(reader) => {
-                let failed = parquet_failure(&self.file);
+                let failed = parquet_failure(&file);
                 for group in 0..reader.num_row_groups() {
                     let group = reader.get_row_group(group).map_err(&failed)?;
-                    let count = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
+                    let count = rows_of(group.metadata()).ok_or_else(|| foreign(&file))?;
                     let (mut samples, mut columns) = (Vec::with_capacity(count), Vec::new());
                     let mut column = get_typed_column_reader::<Int64Type>(group.get_column_reader(0).map_err(&failed)?);
                     column.read_records(count, None, None, &mut samples).map_err(&failed)?;
@@ -323,15 +386,90 @@ impl Part {
                         column.read_records(count, None, None, &mut values).map_err(&failed)?;
                         columns.push(values);
                     }
+                    if samples.len() != count || columns.iter().any(|column| column.len() != count) {
+                        return Err(foreign(&file));
+                    }
                     for (i, sample) in samples.iter().enumerate() {
-                        for (value, column) in row.iter_mut().zip(&columns) {
-                            *value = column.get(i).copied().unwrap_or(f64::NAN);
-                        }
+                        row.iter_mut().zip(&columns).for_each(|(value, column)| *value = column[i]);
                         see(u64::try_from(*sample).unwrap_or(u64::MAX), &row)?;
                     }
                 }
                 Ok(())
             }
+        }
+    }
+}
+
+fn foreign(file: &Path) -> Failure {
+    let why = "want a file that this version's `stillbase tolerance -o` wrote";
+    Failure::wrong_input(why).of(file.display())
+}
+
+/// A file by its name: a plain one.
+fn plain_file(file: &Path) -> Result<(Kind, File), Failure> {
+    let kind = kind_of(file)?;
+    let unreadable = |e| Failure::wrong_input(format!("{e}: want a plain file that can be read")).of(file.display());
+    // To open a pipe would already wait for its other end.
+    let there = std::fs::metadata(file).and_then(|there| text::check(&there, u64::MAX));
+    there.map_err(unreadable)?;
+    Ok((kind, File::open(file).map_err(unreadable)?))
+}
+
+/// The next line with its end, empty after the last; none if it cannot be read or is too long.
+fn line(reader: &mut BufReader<File>) -> Option<Vec<u8>> {
+    let mut line = Vec::new();
+    reader.by_ref().take(LONGEST_LINE).read_until(b'\n', &mut line).ok()?;
+    ((line.len() as u64) < LONGEST_LINE).then_some(line)
+}
+
+/// A reader of a Parquet file whose table of contents can be what it says.
+fn parquet_reader(file: &Path, mut opened: File) -> Result<SerializedFileReader<File>, Failure> {
+    let mut contents = || {
+        let length = opened.metadata().ok()?.len();
+        opened.seek(SeekFrom::End(-8)).ok()?;
+        let mut last = [0; 8];
+        opened.read_exact(&mut last).ok()?;
+        let [a, b, c, d, magic @ ..] = last;
+        let contents = u64::from(u32::from_le_bytes([a, b, c, d]));
+        (magic == *b"PAR1" && contents <= LONGEST_CONTENTS && contents + 12 <= length).then_some(length)
+    };
+    let length = contents().ok_or_else(|| foreign(file))?;
+    let reader = SerializedFileReader::new(opened).map_err(parquet_failure(file))?;
+    let contents = reader.metadata();
+    let columns = contents.file_metadata().schema().get_fields().len();
+    let within = |group: &RowGroupMetaData| {
+        let columns_match = group.columns().len() == columns;
+        let plain = group.columns().iter().all(|column| {
+            let (from, size) = (column.data_page_offset(), column.compressed_size());
+            let inside = from >= 4 && size >= 0 && from.checked_add(size).is_some_and(|end| end as u64 <= length);
+            let whole = column.num_values() == group.num_rows() && size >= group.num_rows().saturating_mul(8);
+            inside
+                && whole
+                && column.dictionary_page_offset().is_none()
+                && column.compression() == Compression::UNCOMPRESSED
+        });
+        columns_match && plain && rows_of(group).is_some()
+    };
+    if contents.row_groups().iter().all(within) { Ok(reader) } else { Err(foreign(file)) }
+}
+
+/// How many rows a group has, if it is as large as those that are written here.
+fn rows_of(group: &RowGroupMetaData) -> Option<usize> {
+    usize::try_from(group.num_rows()).ok().filter(|rows| (1..=GROUP).contains(rows))
+}
+
+/// What is wrong with a row that no machine has.
+fn plausible(study: &Study, names: &[String], sample: u64, row: &[f64]) -> Result<(), String> {
+    if sample >= study.samples {
+        return Err(format!("sample {sample} of a study of {}: want numbers below it", study.samples));
+    }
+    let outcomes = row.len().saturating_sub(OUTCOMES);
+    let wrong = |(i, x): (usize, &f64)| !x.is_finite() || (i >= outcomes && *x < 0.0);
+    match row.iter().enumerate().position(wrong) {
+        None => Ok(()),
+        Some(i) => {
+            let want = if i >= outcomes { "a finite number, 0 or more" } else { "a finite number" };
+            Err(format!("sample {sample}: {} is {}: want {want}", names[i], row[i]))
         }
     }
 }

@@ -1,0 +1,32 @@
+//! Interrupt, hang-up and termination: files in the making go before the program does.
+
+/// Watches for signals that end the program, in a thread of its own.
+#[cfg(unix)]
+pub fn watch() {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::iterator::Signals;
+    use signal_hook::low_level::emulate_default_handler;
+
+    let ignored = ignored();
+    let heard = [SIGINT, SIGHUP, SIGTERM].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
+    // Without it, files in the making are swept by whoever writes beside them next.
+    let Ok(mut signals) = Signals::new(heard) else { return };
+    let wait = move || {
+        if let Some(signal) = signals.forever().next() {
+            let _held = stillbase::files::abandon();
+            let _ = emulate_default_handler(signal);
+        }
+    };
+    let _ = std::thread::Builder::new().name("signals".into()).spawn(wait);
+}
+
+/// Signals that whoever started the program wants ignored, as `nohup` does: bit 0 is signal 1.
+#[cfg(unix)]
+fn ignored() -> u64 {
+    let status = stillbase::text::read(std::path::Path::new("/proc/self/status")).unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
+}
+
+#[cfg(not(unix))]
+pub fn watch() {}

@@ -1,0 +1,140 @@
+//! The seal of a file of samples: a checksum of all its bytes, which stands in the words that name its study. While it is
+//! reckoned, zeros stand in its place.
+
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::Path;
+
+use stillbase::files::{NewFile, WriteError};
+
+/// What stands before the seal.
+pub const BEFORE: &str = " check ";
+
+/// What stands where a seal is to come.
+pub const UNSEALED: &str = "0000000000000000";
+
+const DIGITS: u64 = UNSEALED.len() as u64;
+
+/// Where in a file its seal is looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// In its first bytes.
+    Head,
+    /// In its last.
+    Tail,
+}
+
+/// Bytes at either end among which the seal is.
+const NEAR: u64 = 1 << 16;
+
+/// FNV-1a: no single byte changes without it.
+#[derive(Clone, Copy)]
+struct Checksum(u64);
+
+impl Checksum {
+    const START: Self = Self(0xcbf2_9ce4_8422_2325);
+
+    fn add(&mut self, bytes: &[u8]) {
+        self.0 = bytes.iter().fold(self.0, |sum, byte| (sum ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3));
+    }
+}
+
+/// Where the digits of a seal begin among the bytes at an end, and what they say. Names of columns may look like it, but
+/// do not stand as near to the end.
+fn find(bytes: &[u8], end: End) -> Option<(u64, u64)> {
+    let before = BEFORE.as_bytes();
+    let digits = |at: usize| {
+        let text = bytes.get(at..at + UNSEALED.len())?;
+        // Each value has one spelling, so that no bit of it can change unseen.
+        let spelled = text.iter().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f'));
+        u64::from_str_radix(std::str::from_utf8(text).ok().filter(|_| spelled)?, 16).ok()
+    };
+    let seal = |(i, window): (usize, &[u8])| {
+        let at = i + before.len();
+        (window == before).then(|| Some((at as u64, digits(at)?)))?
+    };
+    let mut windows = bytes.windows(before.len()).enumerate();
+    if end == End::Head { windows.find_map(seal) } else { windows.rev().find_map(seal) }
+}
+
+/// A file in the making that will be sealed.
+pub struct Sealing {
+    out: NewFile,
+    sum: Checksum,
+    /// What was written first.
+    head: Vec<u8>,
+}
+
+impl Sealing {
+    /// Nothing is written yet.
+    pub fn new(out: NewFile) -> Self {
+        Self { out, sum: Checksum::START, head: Vec::new() }
+    }
+
+    /// What was asked for.
+    pub fn path(&self) -> &Path {
+        self.out.path()
+    }
+
+    /// Seals the file and puts it under its name.
+    ///
+    /// # Errors
+    /// If not everything could be written.
+    pub fn finish(mut self, end: End) -> Result<(), WriteError> {
+        if let Err(source) = self.seal(end) {
+            return Err(WriteError::Failed { file: self.out.path().into(), source });
+        }
+        self.out.finish()
+    }
+
+    fn seal(&mut self, end: End) -> io::Result<()> {
+        let (from, bytes) = match end {
+            End::Head => (0, std::mem::take(&mut self.head)),
+            End::Tail => self.out.tail(NEAR)?,
+        };
+        let (place, _) = find(&bytes, end).ok_or_else(|| io::Error::other("no place for its checksum"))?;
+        self.out.replace(from + place, format!("{:016x}", self.sum.0).as_bytes())
+    }
+}
+
+impl Write for Sealing {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let count = self.out.write(bytes)?;
+        self.sum.add(&bytes[..count]);
+        let room = (NEAR as usize).saturating_sub(self.head.len()).min(count);
+        self.head.extend_from_slice(&bytes[..room]);
+        Ok(count)
+    }
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+/// Whether a file has a seal at an end, and it is that of its bytes.
+///
+/// # Errors
+/// If it cannot be read.
+pub fn holds(file: &mut File, end: End) -> io::Result<Option<bool>> {
+    let length = file.metadata()?.len();
+    let from = if end == End::Head { 0 } else { length.saturating_sub(NEAR) };
+    file.seek(SeekFrom::Start(from))?;
+    let mut near = Vec::new();
+    file.take(NEAR).read_to_end(&mut near)?;
+    let Some((place, said)) = find(&near, end) else { return Ok(None) };
+    let place = from + place;
+    file.seek(SeekFrom::Start(0))?;
+    let (mut sum, mut block, mut at) = (Checksum::START, vec![0; 1 << 18], 0_u64);
+    loop {
+        let count = match file.read(&mut block) {
+            Ok(0) => return Ok(Some(sum.0 == said)),
+            Ok(count) => count,
+            Err(e) if e.kind() == io::ErrorKind::Interrupted => continue,
+            Err(e) => return Err(e),
+        };
+        for i in place.max(at)..(place + DIGITS).min(at + count as u64) {
+            block[(i - at) as usize] = b'0';
+        }
+        sum.add(&block[..count]);
+        at += count as u64;
+    }
+}
