@@ -345,7 +345,7 @@ fn faults_in_recordings() {
     faults(12..13);
 }
 
-/// FNV-1a of a file's bytes, zeros in place of its seal, put there.
+/// The checksum of a file's bytes, zeros in place of its seal, put there.
 fn sealed(mut file: Vec<u8>, tail: bool) -> Vec<u8> {
     let mark = b" check ";
     let places = file.windows(mark.len()).enumerate().filter(|(_, w)| *w == mark).map(|(i, _)| i + mark.len());
@@ -354,7 +354,12 @@ fn sealed(mut file: Vec<u8>, tail: bool) -> Vec<u8> {
         return file;
     };
     file[at..at + 16].fill(b'0');
-    let sum = file.iter().fold(0xcbf2_9ce4_8422_2325_u64, |s, b| (s ^ u64::from(*b)).wrapping_mul(0x0100_0000_01b3));
+    let ended = [&file[..], &[1]].concat();
+    let sum = ended.chunks(8).fold(0xcbf2_9ce4_8422_2325_u64, |sum, word| {
+        let mut whole = [0; 8];
+        whole[..word.len()].copy_from_slice(word);
+        (sum ^ u64::from_le_bytes(whole)).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29)
+    });
     file[at..at + 16].copy_from_slice(format!("{sum:016x}").as_bytes());
     file
 }

@@ -27,15 +27,44 @@ pub enum End {
 /// Bytes at either end among which the seal is.
 const NEAR: u64 = 1 << 16;
 
-/// FNV-1a: no single byte changes without it.
-#[derive(Clone, Copy)]
-struct Checksum(u64);
+/// A sum in the manner of FNV-1a, over words of eight bytes: each step keeps different sums different, so no single word
+/// changes without it.
+struct Checksum {
+    sum: u64,
+    /// What does not yet fill a word.
+    rest: Vec<u8>,
+}
 
 impl Checksum {
-    const START: Self = Self(0xcbf2_9ce4_8422_2325);
+    fn new() -> Self {
+        Self { sum: 0xcbf2_9ce4_8422_2325, rest: Vec::with_capacity(8) }
+    }
+
+    fn step(sum: u64, word: &[u8]) -> u64 {
+        let word = word.iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte));
+        (sum ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29)
+    }
 
     fn add(&mut self, bytes: &[u8]) {
-        self.0 = bytes.iter().fold(self.0, |sum, byte| (sum ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3));
+        let missing = if self.rest.is_empty() { 0 } else { (8 - self.rest.len()).min(bytes.len()) };
+        let (first, bytes) = bytes.split_at(missing);
+        self.rest.extend_from_slice(first);
+        if self.rest.len() == 8 {
+            self.sum = Self::step(self.sum, &self.rest);
+            self.rest.clear();
+        }
+        if !bytes.is_empty() {
+            let words = bytes.chunks_exact(8);
+            self.rest.extend_from_slice(words.remainder());
+            self.sum = words.fold(self.sum, Self::step);
+        }
+    }
+
+    /// The sum of it all; a one marks the end, so that zeros after it are not nothing.
+    fn total(&self) -> u64 {
+        let mut last = self.rest.clone();
+        last.push(1);
+        Self::step(self.sum, &last)
     }
 }
 
@@ -68,7 +97,7 @@ pub struct Sealing {
 impl Sealing {
     /// Nothing is written yet.
     pub fn new(out: NewFile) -> Self {
-        Self { out, sum: Checksum::START, head: Vec::new() }
+        Self { out, sum: Checksum::new(), head: Vec::new() }
     }
 
     /// What was asked for.
@@ -93,7 +122,7 @@ impl Sealing {
             End::Tail => self.out.tail(NEAR)?,
         };
         let (place, _) = find(&bytes, end).ok_or_else(|| io::Error::other("no place for its checksum"))?;
-        self.out.replace(from + place, format!("{:016x}", self.sum.0).as_bytes())
+        self.out.replace(from + place, format!("{:016x}", self.sum.total()).as_bytes())
     }
 }
 
@@ -123,10 +152,10 @@ pub fn holds(file: &mut File, end: End) -> io::Result<Option<bool>> {
     let Some((place, said)) = find(&near, end) else { return Ok(None) };
     let place = from + place;
     file.seek(SeekFrom::Start(0))?;
-    let (mut sum, mut block, mut at) = (Checksum::START, vec![0; 1 << 18], 0_u64);
+    let (mut sum, mut block, mut at) = (Checksum::new(), vec![0; 1 << 18], 0_u64);
     loop {
         let count = match file.read(&mut block) {
-            Ok(0) => return Ok(Some(sum.0 == said)),
+            Ok(0) => return Ok(Some(sum.total() == said)),
             Ok(count) => count,
             Err(e) if e.kind() == io::ErrorKind::Interrupted => continue,
             Err(e) => return Err(e),
