@@ -4,7 +4,9 @@ use thiserror::Error;
 
 use crate::machine::{Inertia, Machine};
 use crate::planar::Vector;
-use crate::reactionless::{AngleDefinition, BSet, Boundary, Limit, NoReach, NotAPlaneMap, PlaneMap, PlanePoint, Poses};
+use crate::reactionless::{
+    AngleDefinition, BSet, Boundary, Decimal, Limit, NoReach, NotAPlaneMap, PlaneMap, PlanePoint, Poses, metres,
+};
 
 /// The reactionless planes of a machine, with the boundary of their workspace.
 #[derive(Clone, Debug)]
@@ -25,6 +27,8 @@ pub enum Reach {
         nearest: Vector,
         /// The b nearest to the present one that would reach the target, rad; none if no b does.
         mending_b: Option<f64>,
+        /// The same as it is shown: rounded to where it still does.
+        shown_b: Option<Decimal>,
         /// A pose of this plane reaches it, but beyond a fold, or a change point to keep off.
         other_sheet: bool,
     },
@@ -52,7 +56,7 @@ pub enum PlaneError {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Unreachable {
     /// Not on any plane.
-    #[error("({x:.3}, {y:.3}) m: {reason}")]
+    #[error("({}, {}) m: {reason}", metres(*.x, 3), metres(*.y, 3))]
     Anywhere {
         /// m.
         x: f64,
@@ -62,7 +66,7 @@ pub enum Unreachable {
         reason: NoReach,
     },
     /// Not on this plane.
-    #[error("({x:.3}, {y:.3}) m is outside the reactionless workspace of b = {b:.6} rad: want {would_do}")]
+    #[error("({}, {}) m is outside the reactionless workspace of b = {b:.6} rad: want {would_do}", metres(*.x, 3), metres(*.y, 3))]
     OnThisPlane {
         /// m.
         x: f64,
@@ -74,6 +78,8 @@ pub enum Unreachable {
         would_do: String,
         /// The nearest of them to b, rad.
         nearest_b: Option<f64>,
+        /// The same as it is shown: rounded to where it still does.
+        shown_b: Option<Decimal>,
     },
     /// Each point on some plane, but no plane serves all.
     #[error("{}", .0.in_words(&|i| format!("point {}", i + 1)))]
@@ -97,17 +103,45 @@ impl NoCommon {
             None => "each two points share some b, but no b serves all".into(),
         };
         let remedy = match self.mend {
-            Some(m) => format!(
-                "moving {} by {:.3} m to ({:.3}, {:.3}) m would do, at b = {:.4} rad",
-                name(m.point),
-                m.distance,
-                m.to.re,
-                m.to.im,
-                m.b
-            ),
-            None => "want points nearer to each other".into(),
+            Some(Mend { point, shown: Some(shown), .. }) => {
+                let (point, ShownMend { to: [x, y], b, .. }) = (name(point), shown);
+                let distance = shown.distance();
+                if shown.does {
+                    format!("moving {point} by {distance} m to ({x}, {y}) m would do, at b = {b} rad")
+                } else {
+                    format!(
+                        "moved by {distance} m to ({x}, {y}) m, {point} shares b = {b} rad with the others, but this path \
+                         could still not be followed there: want another one"
+                    )
+                }
+            }
+            _ => "want points nearer to each other".into(),
         };
         format!("{who}, so no reactionless path joins them; {remedy}")
+    }
+}
+
+/// A [`Mend`] as it is printed: rounded to numbers that still serve all points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShownMend {
+    /// Where the point would go, m.
+    pub to: [Decimal; 2],
+    /// The b that then serves all, rad.
+    pub b: Decimal,
+    /// How far the point would go, m.
+    pub far: f64,
+    /// Whether what is planned can then be done too.
+    pub does: bool,
+}
+
+impl ShownMend {
+    /// Where the point would go, m.
+    pub fn point(&self) -> Vector {
+        Vector::new(self.to[0].value(), self.to[1].value())
+    }
+
+    fn distance(&self) -> Decimal {
+        Decimal::nearest(self.far, self.to[0].decimals())
     }
 }
 
@@ -122,6 +156,8 @@ pub struct Mend {
     pub distance: f64,
     /// The b that then serves all, rad.
     pub b: f64,
+    /// The same as it is printed.
+    pub shown: Option<ShownMend>,
 }
 
 impl Planes {
@@ -177,15 +213,17 @@ impl Planes {
             return (a, Reach::Inside);
         }
         let other_sheet = !poses.is_empty();
-        let mending_b = self.map.reach(p).ok().and_then(|set| set.nearest(b)).filter(|_| !other_sheet);
+        let set = self.map.reach(p).ok().filter(|_| !other_sheet);
+        let mending_b = set.as_ref().and_then(|set| set.nearest(b));
+        let shown_b = set.zip(mending_b).and_then(|(set, b)| set.decimal(b, 3));
         let nearest = self.boundary.nearest(p, b, self.map.forward(from, b));
         let edge = self.map.clamp(nearest.a);
         if !other_sheet && self.is_open_way(from, edge) {
-            return (edge, Reach::Outside { nearest: nearest.at, mending_b, other_sheet });
+            return (edge, Reach::Outside { nearest: nearest.at, mending_b, shown_b, other_sheet });
         }
         // Something lies between: as near as the straight way goes.
         let a = self.towards(p, b, from);
-        (a, Reach::Outside { nearest: self.map.forward(a, b), mending_b, other_sheet })
+        (a, Reach::Outside { nearest: self.map.forward(a, b), mending_b, shown_b, other_sheet })
     }
 
     /// The last pose on the straight way of the end effector to p that continues a pose of the plane b.
@@ -206,6 +244,7 @@ impl Planes {
     /// Whether the straight way of joint space between two poses of one plane keeps to a sheet, where det has one sign,
     /// and, if so asked, to one side of every change point.
     pub fn is_open_way(&self, from: [f64; 2], to: [f64; 2]) -> bool {
+        /// At least so many looks, and one for each tenth of a radian.
         const LOOKS: i32 = 32;
         if self.keep_off_change_points && self.map.sides(from) != self.map.sides(to) {
             return false;
@@ -215,7 +254,10 @@ impl Planes {
         }
         let sheet = self.map.det(from);
         let at = |t: f64| [0, 1].map(|i| from[i] + t * (to[i] - from[i]));
-        (1..=LOOKS).all(|i| self.map.det(at(f64::from(i) / f64::from(LOOKS))) * sheet >= 0.0)
+        let far = (to[0] - from[0]).hypot(to[1] - from[1]);
+        // As a cast: limits keep it below a thousand.
+        let looks = LOOKS.max((10.0 * far) as i32);
+        (1..=looks).all(|i| self.map.det(at(f64::from(i) / f64::from(looks))) * sheet >= 0.0)
     }
 
     /// One pose for each of some points on the plane b: all on one sheet if possible, else each near the one before.
@@ -225,6 +267,9 @@ impl Planes {
     pub fn serve(&self, points: &[Vector], b: f64) -> Result<Vec<PlanePoint>, (usize, Unreachable)> {
         let poses: Vec<Poses> = points.iter().map(|p| self.map.poses(*p, b)).collect();
         if let Some(i) = poses.iter().position(|p| p.is_empty()) {
+            // A point that no b reaches says more than one that wants another b.
+            let nowhere = points.iter().position(|p| self.map.reach(*p).is_err());
+            let i = nowhere.unwrap_or(i);
             return Err((i, self.why_not(points, i, b)));
         }
         let Some((first, others)) = poses.split_first() else { return Ok(Vec::new()) };
@@ -274,7 +319,8 @@ impl Planes {
             BSet::overlap(&rest)
         };
         let mends = (0..points.len()).filter_map(|i| self.mend(points[i], i, &others(i)));
-        Some(NoCommon { pair, mend: mends.min_by(|x, y| x.distance.total_cmp(&y.distance)) })
+        let least = mends.min_by(|x, y| x.distance.total_cmp(&y.distance));
+        Some(NoCommon { pair, mend: least.map(|mend| self.proved(points, &others(mend.point), mend)) })
     }
 
     /// The nearest point to p that some b of a set reaches.
@@ -301,7 +347,52 @@ impl Planes {
         }
         let (_, b) = best?;
         let nearest = at(b);
-        Some(Mend { point, to: nearest.at, distance: nearest.distance, b })
+        Some(Mend { point, to: nearest.at, distance: nearest.distance, b, shown: None })
+    }
+
+    /// A move that rounding does not take away: a hair further where the end of it misses, and the same to be printed.
+    fn proved(&self, points: &[Vector], others: &BSet, mend: Mend) -> Mend {
+        let from = points[mend.point];
+        let with = |to: Vector| {
+            let mut points = points.to_vec();
+            points[mend.point] = to;
+            points
+        };
+        let common = |to: Vector| {
+            let set = BSet::overlap(&[others.clone(), self.map.reach(to).ok()?]).near(mend.b);
+            let gap = |[low, high]: &[f64; 2]| (mend.b - 0.5 * (low + high)).abs();
+            set.intervals.into_iter().min_by(|x, y| gap(x).total_cmp(&gap(y)))
+        };
+        let serves = |to: Vector, b: f64| self.serve(&with(to), b).is_ok();
+        let exact = [0.0, 1e-12, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6].into_iter().find_map(|share| {
+            let to = from + (1.0 + share) * (mend.to - from);
+            let [low, high] = common(to)?;
+            [mend.b, 0.5 * (low + high)].into_iter().find(|b| serves(to, *b)).map(|b| (to, b))
+        });
+        let shown = (3..=12).find_map(|decimals| {
+            // All numbers near by with so many decimals, the least move first.
+            let [x, y] = [mend.to.re, mend.to.im].map(|x| Decimal::nearest(x, decimals));
+            let mut around: Vec<([Decimal; 2], f64)> = (-2..=2)
+                .flat_map(|i| (-2..=2).map(move |j| [x.stepped(i), y.stepped(j)]))
+                .map(|to| (to, (Vector::new(to[0].value(), to[1].value()) - from).norm()))
+                .collect();
+            around.retain(|(_, far)| *far <= 1.02 * mend.distance || decimals > 8);
+            around.sort_by(|a, b| a.1.total_cmp(&b.1));
+            around.into_iter().find_map(|(to, far)| {
+                let at = Vector::new(to[0].value(), to[1].value());
+                let [low, high] = common(at)?;
+                let b = mend.b.clamp(low, high);
+                let inside = |x: f64| low <= x && x <= high && serves(at, x);
+                // Where the common b are few, the middle of them has more room than their end.
+                let b = [b, 0.5 * (low + high)].into_iter().filter_map(|b| Decimal::that(b, 4, inside));
+                let b = b.min_by_key(Decimal::decimals).filter(|b| b.decimals() <= decimals + 4)?;
+                Some(ShownMend { to, b, far, does: true })
+            })
+        });
+        match exact {
+            Some((to, b)) => Mend { to, distance: (to - from).norm(), b, shown, ..mend },
+            None => Mend { shown, ..mend },
+        }
     }
 
     fn why_not(&self, points: &[Vector], i: usize, b: f64) -> Unreachable {
@@ -311,26 +402,21 @@ impl Planes {
         }
         match (self.common(points), self.no_common(points)) {
             (Some(common), _) => {
-                let nearest_b = common.nearest(b).map(|nearest| common.inwards(nearest, 1e-6));
-                Unreachable::OnThisPlane { x, y, b, would_do: in_words(&common), nearest_b }
+                let serves = |b: f64| points.iter().all(|p| !self.map.poses(*p, b).is_empty());
+                let nearest = common.nearest(b);
+                let inner = [1e-6, 1e-3, 0.5].map(|share| nearest.map(|b| common.inwards(b, share)));
+                let nearest_b = inner.into_iter().flatten().find(|b| serves(*b));
+                let shown_b = nearest_b.and_then(|b| Decimal::that(b, 4, serves));
+                Unreachable::OnThisPlane { x, y, b, would_do: common.in_words(), nearest_b, shown_b }
             }
             (None, Some(why)) => Unreachable::NoCommonPlane(why),
             // Another point is out of every reach.
             (None, None) => {
-                let own = self.map.reach(points[i]).map(|set| in_words(&set)).unwrap_or_default();
-                Unreachable::OnThisPlane { x, y, b, would_do: own, nearest_b: None }
+                let own = self.map.reach(points[i]).map(|set| set.in_words()).unwrap_or_default();
+                Unreachable::OnThisPlane { x, y, b, would_do: own, nearest_b: None, shown_b: None }
             }
         }
     }
-}
-
-/// `b from 2.216 to 2.661 rad`.
-pub fn in_words(set: &BSet) -> String {
-    // Rounded inwards, so that the ends themselves will do.
-    let (up, down) = (|x: f64| (x * 1e4).ceil() / 1e4, |x: f64| (x * 1e4).floor() / 1e4);
-    let range = |[a, b]: &[f64; 2]| format!("from {:.4} to {:.4}", up(*a), down(*b).max(up(*a)));
-    let ranges: Vec<String> = set.intervals.iter().map(range).collect();
-    format!("b {} rad", ranges.join(" or "))
 }
 
 /// Eqs (13)–(16) of a machine.

@@ -53,6 +53,8 @@ mod planning;
 mod plants;
 #[path = "suite/price.rs"]
 mod price;
+#[path = "suite/proposals.rs"]
+mod proposals;
 #[path = "suite/reach.rs"]
 mod reach;
 #[cfg(feature = "record")]
@@ -72,6 +74,8 @@ mod shaders;
 mod signals;
 #[path = "suite/sincos.rs"]
 mod sincos;
+#[path = "suite/sizes.rs"]
+mod sizes;
 #[path = "suite/spectrum.rs"]
 mod spectrum;
 #[path = "suite/support.rs"]
@@ -84,6 +88,8 @@ mod tolerance;
 mod trace;
 #[path = "suite/views.rs"]
 mod views;
+#[path = "suite/windings.rs"]
+mod windings;
 #[cfg(feature = "window")]
 #[path = "suite/window.rs"]
 mod window;

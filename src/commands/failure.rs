@@ -108,7 +108,7 @@ impl From<Refusal> for Failure {
             | Refusal::Price(_)
             | Refusal::LeastReaction(_)
             | Refusal::Drift(_)
-            | Refusal::NoCommonPlane(_)
+            | Refusal::NoCommonPlane { .. }
             | Refusal::Blocked(_)
             | Refusal::Diverged { .. } => Self::no_answer(e),
             Refusal::Machine(_)

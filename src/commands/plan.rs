@@ -19,6 +19,7 @@ use stillbase::session::{Refusal, Run, settled};
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, above_zero, change_task, planes_of, point, pose_constant, scenario};
 use super::output::{Format, Table, fixed, say};
+use super::reach::OfMend;
 
 /// Plan a motion through points: which b serves them, along what, how fast, at what cost
 ///
@@ -175,6 +176,12 @@ struct Answer {
     cycles: Option<Vec<Vec<f64>>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     blocked: Option<OfBlocked>,
+    /// The b nearest to the one asked for at which it can be done.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mending_b: Option<f64>,
+    /// The least move of one point after which all have a b in common.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mend: Option<OfMend>,
 }
 
 /// What a change of b costs.
@@ -282,6 +289,8 @@ impl Plan {
             closed: scenario.task.closed,
             cycles: None,
             blocked: None,
+            mending_b: None,
+            mend: None,
         };
         match Run::new(&scenario) {
             Ok(run) => {
@@ -321,8 +330,11 @@ impl Plan {
             Err(refusal) => {
                 answer.feasible = false;
                 answer.reason = Some(refusal.to_string());
-                if let Refusal::Blocked(blocked) = &refusal {
-                    answer.blocked = Some(blocked.as_ref().into());
+                answer.mending_b = refusal.mending_b();
+                match &refusal {
+                    Refusal::Blocked(blocked) => answer.blocked = Some(blocked.as_ref().into()),
+                    Refusal::NoCommonPlane { why, .. } => answer.mend = why.mend.as_ref().map(OfMend::from),
+                    _ => {}
                 }
                 if self.format.json {
                     self.format.print(&answer, |_| String::new())?;

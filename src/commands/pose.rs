@@ -3,7 +3,7 @@
 use clap::Args;
 use serde::Serialize;
 use stillbase::planar::Vector;
-use stillbase::pose_constant::{Unreachable, in_words};
+use stillbase::pose_constant::Unreachable;
 use stillbase::reactionless::{PlaneMap, PlanePoint};
 
 use super::failure::Failure;
@@ -99,7 +99,11 @@ impl Pose {
         let (x, y, b) = (self.point.re, self.point.im, self.b);
         match map.reach(self.point) {
             Err(reason) => Unreachable::Anywhere { x, y, reason },
-            Ok(set) => Unreachable::OnThisPlane { x, y, b, would_do: in_words(&set), nearest_b: set.nearest(self.b) },
+            Ok(set) => {
+                let nearest_b = set.nearest(self.b);
+                let shown_b = nearest_b.and_then(|b| set.decimal(b, 4));
+                Unreachable::OnThisPlane { x, y, b, would_do: set.in_words(), nearest_b, shown_b }
+            }
         }
     }
 }

@@ -3,12 +3,12 @@
 use clap::Args;
 use serde::Serialize;
 use stillbase::planar::Vector;
-use stillbase::pose_constant::{Planes, Unreachable};
+use stillbase::pose_constant::{Mend, Planes, Unreachable};
 use stillbase::reactionless::BSet;
 
 use super::failure::Failure;
 use super::input::{MachineArgument, planes_of, point};
-use super::output::{Format, Table, fixed, say};
+use super::output::{Format, Table, fixed};
 
 /// The pose constants b whose reactionless workspace holds a point, and those that hold all points
 ///
@@ -34,6 +34,24 @@ struct Answer {
     points: Vec<OfPoint>,
     overlap: Vec<[f64; 2]>,
     period: f64,
+    /// The least move of one point after which all have a b in common, if they have none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mend: Option<OfMend>,
+}
+
+/// A move of one point, counted from 1.
+#[derive(Serialize)]
+pub struct OfMend {
+    point: usize,
+    to: [f64; 2],
+    distance: f64,
+    b: f64,
+}
+
+impl From<&Mend> for OfMend {
+    fn from(mend: &Mend) -> Self {
+        Self { point: mend.point + 1, to: [mend.to.re, mend.to.im], distance: mend.distance, b: mend.b }
+    }
 }
 
 #[derive(Serialize)]
@@ -43,7 +61,7 @@ struct OfPoint {
 }
 
 impl Reach {
-    /// Prints the b of each point and of all.
+    /// Prints the b of each point and of all; none in common is no answer.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
         let map = planes_of(&machine)?;
@@ -53,14 +71,18 @@ impl Reach {
             sets.push(map.reach(*p).map_err(none)?);
         }
         let overlap = BSet::overlap(&sets).intervals;
-        if overlap.is_empty() {
-            let why = Planes::of(&machine)?.no_common(&self.points);
-            say(why.map_or("no b serves all points".into(), |w| w.in_words(&|i| format!("point {}", i + 1))));
-        }
+        let why = if overlap.is_empty() { Planes::of(&machine)?.no_common(&self.points) } else { None };
+        let apart = overlap.is_empty();
         let of_point = |(p, set): (&Vector, BSet)| OfPoint { point: [p.re, p.im], intervals: set.intervals };
-        let answer =
-            Answer { points: self.points.iter().zip(sets).map(of_point).collect(), overlap, period: map.period() };
-        self.format.print(&answer, table)
+        let answer = Answer {
+            points: self.points.iter().zip(sets).map(of_point).collect(),
+            overlap,
+            period: map.period(),
+            mend: why.and_then(|why| why.mend).as_ref().map(OfMend::from),
+        };
+        self.format.print(&answer, table)?;
+        let said = || why.map_or("no b serves all points".into(), |w| w.in_words(&|i| format!("point {}", i + 1)));
+        if apart { Err(Failure::no_answer(said())) } else { Ok(()) }
     }
 }
 

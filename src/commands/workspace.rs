@@ -151,6 +151,9 @@ fn sides(map: &PlaneMap, boundary: &Boundary, changes: &[ChangeCurve]) -> Vec<Of
 
 fn table(a: &Answer) -> Table {
     let mut table = Table::new(["", "", ""]).with_words(2);
+    // Nine decimals say nothing of a workspace of millimetres.
+    let small = (a.x_max - a.x_min).hypot(a.y_max - a.y_min) < 1e-2;
+    let number = |x: f64| if small { format!("{x:.9e}") } else { fixed(x, 9) };
     for (name, value, unit) in [
         ("area", a.area, "m²"),
         ("area of all sheets", a.sheet_area, "m²"),
@@ -159,7 +162,7 @@ fn table(a: &Answer) -> Table {
         ("y from", a.y_min, "m"),
         ("y to", a.y_max, "m"),
     ] {
-        table.row([name.into(), fixed(value, 9), unit.into()]);
+        table.row([name.into(), number(value), unit.into()]);
     }
     // One change curve makes two parts; where there are many, the table would no longer be calm.
     if let [first, second] = &a.areas_by_side[..] {
@@ -177,7 +180,7 @@ fn table(a: &Answer) -> Table {
                 turns(part.half_turns),
                 turns(part.half_turns.saturating_add(1))
             );
-            table.row([name, fixed(part.area, 9), "m²".into()]);
+            table.row([name, number(part.area), "m²".into()]);
         }
     }
     table

@@ -166,8 +166,8 @@ impl Story {
             let (text, level) = match reach {
                 Reach::Inside => ("the target is inside the reactionless workspace".into(), TextLogLevel::INFO),
                 Reach::Carried => ("the target turns with the workspace".into(), TextLogLevel::INFO),
-                Reach::Outside { mending_b, .. } => {
-                    let mend = mending_b.map_or("no b reaches it".into(), |b| format!("b = {b:.3} rad would reach it"));
+                Reach::Outside { shown_b, .. } => {
+                    let mend = shown_b.map_or("no b reaches it".into(), |b| format!("b = {b} rad would reach it"));
                     (format!("the target is outside the reactionless workspace: {mend}"), TextLogLevel::WARN)
                 }
             };

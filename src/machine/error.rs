@@ -58,6 +58,15 @@ impl fmt::Display for Place {
     }
 }
 
+/// A number as it was given, in powers of ten where it would run to hundreds of digits.
+pub(crate) fn brief(x: f64) -> String {
+    match x.abs() {
+        0.0 => x.to_string(),
+        size if (1e-6..1e12).contains(&size) => x.to_string(),
+        _ => format!("{x:e}"),
+    }
+}
+
 /// Why a description is not a machine.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum MachineError {
@@ -72,7 +81,7 @@ pub enum MachineError {
         unit: &'static str,
     },
     /// A number of the wrong sign or size.
-    #[error("{place} is {value}: want {want}")]
+    #[error("{place} is {}: want {want}", brief(*.value))]
     OutOfRange {
         /// Where.
         place: Place,

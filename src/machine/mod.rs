@@ -21,6 +21,7 @@ mod spec;
 use std::ops::RangeInclusive;
 
 pub use catalog::{builtin, builtins, find};
+pub(crate) use error::brief;
 pub use error::{MachineError, Place, Step};
 pub use file::{FileError, parse, read, to_toml};
 pub use inertia::{BALANCED, Inertia};

@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use super::curve::CurvePoint;
 use crate::planar::Vector;
-use crate::reactionless::{NoReach, PlaneMap, PlanePoint, SLACK};
+use crate::reactionless::{NoReach, PlaneMap, PlanePoint, SLACK, between, metres};
 
 /// Points of a self-motion that tell its parts from each other.
 const SAMPLES: usize = 25;
@@ -53,8 +53,11 @@ pub enum CorridorError {
         /// m.
         miss: f64,
     },
+    /// The motion begins nowhere.
+    #[error("the motion's first point is no point, or too far away to count: want finite coordinates")]
+    Nowhere,
     /// The start pose passes a joint limit.
-    #[error("the start pose has a_{number} = {angle:.3} rad: want it from {min:.3} to {max:.3}")]
+    #[error("the start pose has a_{number} = {angle:.3} rad: want it {}", between(*.min, *.max))]
     Limit {
         /// 1 or 2.
         number: usize,
@@ -69,7 +72,7 @@ pub enum CorridorError {
     #[error("the start pose lies on a fold, where two sheets meet: want det ∂(x, y)/∂(a_1, a_2) ≠ 0")]
     Fold,
     /// No b at all.
-    #[error("at u = {u:.3} of the motion, ({x:.3}, {y:.3}) m: {reason}")]
+    #[error("at u = {u:.3} of the motion, ({}, {}) m: {reason}", metres(*.x, 3), metres(*.y, 3))]
     Unreachable {
         /// t/T.
         u: f64,
@@ -151,7 +154,10 @@ impl Corridor {
         let first = curve(0.0).p;
         let miss = (map.forward(start.a, start.b) - first).norm();
         let reach: f64 = map.c().iter().map(|c| c.abs()).sum();
-        if miss.is_nan() || miss > 1e-8 * reach {
+        if !miss.is_finite() {
+            return Err(CorridorError::Nowhere);
+        }
+        if miss > 1e-8 * reach {
             return Err(CorridorError::Start { miss });
         }
         for (i, limit) in map.limits().iter().enumerate() {

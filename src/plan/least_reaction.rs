@@ -15,7 +15,7 @@
 
 use thiserror::Error;
 
-use super::corridor::{Corridor, CorridorError, Station};
+use super::corridor::{Corridor, CorridorError};
 use super::curve::CurvePoint;
 use super::inverse::pose_along;
 use super::path::{PathError, minimum_norm_path};
@@ -24,8 +24,8 @@ use super::pose_program::{STATIONS, least_course};
 use super::price::{Price, PriceError};
 use super::table::Table;
 use crate::machine::{Chain, Inertia};
-use crate::planar::DriveAngles;
-use crate::reactionless::{PlaneMap, PlanePoint, SLACK};
+use crate::planar::{DriveAngles, Vector};
+use crate::reactionless::{PlaneMap, PlanePoint, SLACK, between};
 
 /// Pieces of b″ unless more are asked for.
 pub const SPACES: usize = 96;
@@ -33,6 +33,11 @@ pub const SPACES: usize = 96;
 pub const MAX_SPACES: usize = 512;
 /// How near to its curve the end effector is kept between nodes, as a part of the arm.
 const ON_CURVE: f64 = 1e-10;
+/// The same near a fold, where spaces between nodes are halved so often to keep it.
+const NEAR_CURVE: f64 = 1e-8;
+const HALVINGS: usize = 6;
+/// Further off it counts as not followed.
+const AWAY: f64 = 1e-6;
 
 /// What is to be least.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,7 +73,7 @@ pub enum LeastReactionError {
         u: f64,
     },
     /// The wanted end.
-    #[error("b = {b:.3} rad at the end is outside of its corridor there: want b from {low:.3} to {high:.3} rad")]
+    #[error("b = {b:.3} rad at the end is outside of its corridor there: want b {} rad", between(*.low, *.high))]
     EndOutside {
         /// rad.
         b: f64,
@@ -123,7 +128,7 @@ impl LeastReaction {
     ) -> Result<Self, LeastReactionError> {
         let inertia = Price::of(model, 0.0)?.inertia();
         let spaces = spaces.clamp(2, MAX_SPACES);
-        let corridor = Corridor::along(map, curve, start, spaces * STATIONS)?;
+        let corridor = Corridor::along(map, &curve, start, spaces * STATIONS)?;
         let stations = corridor.stations();
         let size: f64 = map.c().iter().map(|c| c.abs()).sum();
         for station in [&stations[0], &stations[stations.len() - 1]] {
@@ -138,14 +143,21 @@ impl LeastReaction {
         let stays = end.is_none_or(|end| end == start.b) && corridor.leaves(start.b).is_none();
         if stays {
             let course = PoseCourse::constant(start.b);
-            if let Ok(path) = followed(&corridor, &course) {
+            if let Ok(path) = followed(&corridor, &curve, &course) {
                 return Ok(Self { corridor, course, path, inertia });
             }
         }
-        let course = least_course(&corridor, end, goal == Goal::Peak, spaces)
-            .map_err(|solver| LeastReactionError::NoCourse { solver })?;
-        let path = followed(&corridor, &course)?;
-        Ok(Self { corridor, course, path, inertia })
+        let mut refused = None;
+        // Too near to a fold the drives cannot follow: then farther from it, at a cost.
+        for ease in [1.0, 2.0, 8.0, 64.0, f64::INFINITY] {
+            let course = least_course(&corridor, end, goal == Goal::Peak, spaces, ease)
+                .map_err(|solver| LeastReactionError::NoCourse { solver })?;
+            match followed(&corridor, &curve, &course) {
+                Ok(path) => return Ok(Self { corridor, course, path, inertia }),
+                Err(why) => refused = Some(why),
+            }
+        }
+        Err(refused.unwrap_or(LeastReactionError::NotFollowed { u: 0.0 }))
     }
 
     /// b over u.
@@ -242,8 +254,12 @@ pub struct MinimumNorm {
 }
 
 /// The drives along a course of b: as few nodes as keep the end effector on its curve at every station, because the
-/// rounding of q″ between nodes grows with their number. Near a fold it takes them all.
-fn followed(corridor: &Corridor, course: &PoseCourse) -> Result<Table, LeastReactionError> {
+/// rounding of q″ between nodes grows with their number. Near a fold it takes them all, and more between them.
+fn followed(
+    corridor: &Corridor,
+    curve: impl Fn(f64) -> CurvePoint,
+    course: &PoseCourse,
+) -> Result<Table, LeastReactionError> {
     let (map, stations) = (corridor.map(), corridor.stations());
     let mut from = corridor.start().a;
     let mut nodes = Vec::with_capacity(stations.len());
@@ -257,16 +273,55 @@ fn followed(corridor: &Corridor, course: &PoseCourse) -> Result<Table, LeastReac
         nodes.push(node);
     }
     let nothing = LeastReactionError::NotFollowed { u: 0.0 };
-    let near = ON_CURVE * map.c().iter().map(|c| c.abs()).sum::<f64>();
-    let off = |table: &Table, station: &Station| {
-        let at = map.project(&table.at(station.u).q);
-        (map.forward(at.a, at.b) - station.point.p).norm()
+    let reach = map.c().iter().map(|c| c.abs()).sum::<f64>();
+    let off = |table: &Table, u: f64, p: Vector| {
+        let at = map.project(&table.at(u).q);
+        (map.forward(at.a, at.b) - p).norm()
     };
     for step in [STATIONS / 2, STATIONS / 4] {
         let table = Table::even(nodes.iter().step_by(step).copied().collect()).ok_or(nothing.clone())?;
-        if stations.iter().all(|station| off(&table, station) <= near) {
+        if stations.iter().all(|station| off(&table, station.u, station.point.p) <= ON_CURVE * reach) {
             return Ok(table);
         }
     }
-    Table::even(nodes).ok_or(nothing)
+    let mut table = Table::even(nodes.clone()).ok_or(nothing.clone())?;
+    let mut u: Vec<f64> = stations.iter().map(|station| station.u).collect();
+    for round in 0..=HALVINGS {
+        let mut worst = (0.0, 0.0);
+        let (mut finer, mut finer_nodes) = (Vec::with_capacity(u.len()), Vec::with_capacity(u.len()));
+        for (i, w) in u.windows(2).enumerate() {
+            finer.push(w[0]);
+            finer_nodes.push(nodes[i]);
+            let middle = 0.5 * (w[0] + w[1]);
+            let point = curve(middle);
+            let gap = off(&table, middle, point.p);
+            if gap <= NEAR_CURVE * reach {
+                continue;
+            }
+            if gap > worst.0 {
+                worst = (gap, middle);
+            }
+            let b = course.at(middle);
+            let missing = LeastReactionError::NotFollowed { u: middle };
+            let from = [i, i + 1].map(|i| map.project(&nodes[i].q).a);
+            let on = from.into_iter().find_map(|from| pose_along(map, &point, b, from));
+            finer.push(middle);
+            finer_nodes.push(on.ok_or(missing)?.1);
+        }
+        if worst.0 == 0.0 {
+            break;
+        }
+        if round == HALVINGS {
+            return if worst.0 > AWAY * reach {
+                Err(LeastReactionError::NotFollowed { u: worst.1 })
+            } else {
+                Ok(table)
+            };
+        }
+        finer.push(1.0);
+        finer_nodes.push(nodes[nodes.len() - 1]);
+        (u, nodes) = (finer, finer_nodes);
+        table = Table::new(u.clone(), nodes.clone()).ok_or(nothing.clone())?;
+    }
+    Ok(table)
 }

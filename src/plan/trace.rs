@@ -11,7 +11,7 @@ use thiserror::Error;
 use super::curve::Curve;
 use super::table::Table;
 use crate::planar::{Vector, unit};
-use crate::reactionless::{BSet, PAIRS, PlaneMap};
+use crate::reactionless::{BSet, Decimal, PAIRS, PlaneMap};
 use remedy::blocked;
 use track::Track;
 
@@ -52,6 +52,8 @@ pub struct Blocked {
     pub leaves_workspace: bool,
     /// The pose constant nearest to b at which the whole curve can be followed, rad.
     pub nearest_b: Option<f64>,
+    /// The same as it is shown: rounded to where the curve can still be followed.
+    pub shown_b: Option<Decimal>,
     /// Whether some b reaches each single point of the curve, if not the curve as a whole.
     pub some_b_reaches_all: bool,
     /// From where to where the longest part runs that can be followed on this plane, 0 to 1 by length; one of less than
@@ -79,8 +81,8 @@ impl std::fmt::Display for Stop {
 impl Blocked {
     fn in_words(&self) -> String {
         let where_to = if self.leaves_workspace { ", the boundary of the reactionless workspace" } else { "" };
-        let remedy = match (self.nearest_b, self.some_b_reaches_all) {
-            (Some(b), _) => format!("b = {b:.4} rad would do"),
+        let remedy = match (self.shown_b, self.some_b_reaches_all) {
+            (Some(b), _) => format!("b = {b} rad would do"),
             (None, false) => "no b reaches all of it".into(),
             (None, true) => "each point has a b in common with the others, but no b lets it be followed".into(),
         };

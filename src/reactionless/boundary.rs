@@ -80,8 +80,7 @@ pub struct Nearest {
 impl Boundary {
     /// The boundary of the workspace within the map's limits.
     ///
-    /// Limits further apart than five turns are cut to five about their middle. Where they coincide with a straight
-    /// fold they are drawn in by 4e-10 rad. Nodes of folds, which only machines of special proportions have, are exact
+    /// Where limits coincide with a straight fold they are drawn in by 4e-10 rad. Nodes of folds, which only machines of special proportions have, are exact
     /// to 1e-10 m; where such proportions make whole curves coincide, loops may be incomplete.
     pub fn of(map: &PlaneMap) -> Self {
         let on = Surface::of(map);
@@ -100,7 +99,7 @@ impl Boundary {
         let interior_singularity = !folds.spans.is_empty();
         spans.extend(folds.spans);
         let sheet_area = spans.iter().map(|s| f64::from(s.weight()) * on.swept(s, 0.0, 1.0)).sum();
-        let cycle = Cycle::of(spans);
+        let cycle = Cycle::of(spans, on.map.unit());
         let arrangement = Arrangement::of(&on, &cycle);
         let strands = arrangement.strands();
         let chains = arrangement.chain(arrangement.level(&strands, 1));
@@ -123,7 +122,7 @@ impl Boundary {
         Self {
             loops: vec![outline],
             on,
-            cycle: Cycle::of(spans),
+            cycle: Cycle::of(spans, on.map.unit()),
             strands: Vec::new(),
             cusps: Vec::new(),
             area: 0.0,
@@ -175,7 +174,7 @@ impl Boundary {
     fn support(&self, w: Vector) -> f64 {
         let vertices = || self.loops.iter().flat_map(|l| l.vertices());
         let mut best = vertices().map(|v| dot(v.at, w)).fold(f64::NEG_INFINITY, f64::max);
-        let bar = best - 2e-5;
+        let bar = best - 2.5 * line::near(&self.on.map);
         for l in &self.loops {
             for (i, part) in l.portions().iter().enumerate() {
                 let [from, to] = l.chord(i);
@@ -276,7 +275,7 @@ impl Boundary {
         for (k, l) in self.loops.iter().enumerate() {
             for i in 0..l.vertices().len() {
                 let [a, b] = l.chord(i);
-                if from_chord([a, b], from) < 1e-10 {
+                if from_chord([a, b], from) < (1.25 * line::near(&self.on.map)).powi(2) {
                     return None;
                 }
                 let n = cross(way, b - a);

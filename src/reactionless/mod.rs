@@ -14,6 +14,7 @@
 
 mod boundary;
 mod change;
+mod decimal;
 mod dexterity;
 mod plane;
 mod poses;
@@ -22,7 +23,8 @@ mod reach;
 
 pub use boundary::{Boundary, ChangeCurve, Curve, Extent, Line, Loop, Nearest, Vertex};
 pub use change::{ChangePoint, PAIRS};
+pub use decimal::{Decimal, between, metres, metres_apart};
 pub use dexterity::Dexterity;
-pub use plane::{AngleDefinition, Limit, NotAPlaneMap, PlaneMap, PlanePoint, SLACK};
-pub use poses::{MAX_POSES, Poses};
+pub use plane::{AngleDefinition, Limit, NotAPlaneMap, PlaneMap, PlanePoint, SLACK, WIDEST};
+pub use poses::Poses;
 pub use reach::{BSet, NoReach};

@@ -53,6 +53,7 @@ pub struct PlaneMap {
     lambda_sum: f64,
     u: [[f64; 2]; 3],
     v: [f64; 3],
+    unit: f64,
 }
 
 /// Why a machine has no plane coordinates.
@@ -66,7 +67,41 @@ pub enum NotAPlaneMap {
     /// A number is not finite, or Σλ is zero.
     #[error("λ, lengths, offsets and limits must be finite, with Σλ above 0 and min ≤ max")]
     OutOfRange,
+    /// Windings are counted one by one, so there must be few.
+    #[error("a{} may turn by {width:.2} rad: want limits at most eight turns apart, {} rad", .angle + 1, WIDEST)]
+    TooWide {
+        /// Which angle: 0 for a_1, 1 for a_2.
+        angle: usize,
+        /// max − min, rad.
+        width: f64,
+    },
+    /// Too small or too large for squares and cubes of it.
+    #[error("the arms reach {reach:.3e} m: want a reach of 1e-9 to 1e9 m")]
+    Size {
+        /// Σ |c_k|, m.
+        reach: f64,
+    },
+    /// Rounding of the longest arm would hide what the shorter ones do.
+    #[error(
+        "the arms are {:.3e}, {:.3e} and {:.3e} m long, with λ {:.3e}, {:.3e} and {:.3e}: a reactionless workspace \
+         so much narrower than its radius is lost in rounding; want arms of more equal length",
+        .arms[0], .arms[1], .arms[2], .lambda[0], .lambda[1], .lambda[2]
+    )]
+    Uneven {
+        /// |c_k|, m.
+        arms: [f64; 3],
+        /// λ_k.
+        lambda: [f64; 3],
+    },
 }
+
+/// Below this share of the square of the reach, |det| is too small for curves to be told apart.
+const LEAST_DET: f64 = 1e-5;
+/// And below this one it is 0.
+const NO_DET: f64 = 1e-15;
+
+/// Limits are at most this far apart, rad: eight turns and a little, as four either way are.
+pub const WIDEST: f64 = 50.4;
 
 impl PlaneMap {
     /// Checks the numbers and derives u and v.
@@ -99,7 +134,18 @@ impl PlaneMap {
         let offset = inverse * Vector3::new(angles[0].offset, angles[1].offset, 0.0);
         let u = [0, 1, 2].map(|k| [inverse[(k, 0)], inverse[(k, 1)]]);
         let v = [0, 1, 2].map(|k| -offset[k]);
-        Ok(Self { c, lambda, angles, limits, lambda_sum, u, v })
+        let reach: f64 = c.iter().map(|c| c.abs()).sum();
+        if reach != 0.0 && !(1e-9..=1e9).contains(&reach) {
+            return Err(NotAPlaneMap::Size { reach });
+        }
+        let unit = if reach > 0.0 { reach.log2().floor().exp2() } else { 1.0 };
+        // |det| reaches this share of the square of the reach; of what turns as one arm it is 0 but for rounding.
+        let pair = |[k, l]: [usize; 2]| (c[k] * c[l] * (u[k][0] * u[l][1] - u[k][1] * u[l][0])).abs();
+        let most = [[0, 1], [1, 2], [0, 2]].map(pair).into_iter().fold(0.0, f64::max) / (reach * reach);
+        if (NO_DET..LEAST_DET).contains(&most) {
+            return Err(NotAPlaneMap::Uneven { arms: c.map(f64::abs), lambda });
+        }
+        Self { c, lambda, angles, limits, lambda_sum, u, v, unit }.with_limits(limits)
     }
 
     /// c_k, m.
@@ -138,10 +184,25 @@ impl PlaneMap {
     }
 
     /// The same map within other bounds.
-    #[must_use]
-    pub fn with_limits(mut self, limits: [Limit; 2]) -> Self {
+    ///
+    /// # Errors
+    /// If they are no bounds, or more than [`WIDEST`] apart.
+    pub fn with_limits(mut self, limits: [Limit; 2]) -> Result<Self, NotAPlaneMap> {
+        for (angle, Limit { min, max }) in limits.into_iter().enumerate() {
+            if !(min.is_finite() && max.is_finite() && min <= max) {
+                return Err(NotAPlaneMap::OutOfRange);
+            }
+            if max - min > WIDEST {
+                return Err(NotAPlaneMap::TooWide { angle, width: max - min });
+            }
+        }
         self.limits = limits;
-        self
+        Ok(self)
+    }
+
+    /// A power of two near the reach of the arms, m: what rounding and tolerances are measured by.
+    pub(crate) fn unit(&self) -> f64 {
+        self.unit
     }
 
     /// Turning all drives once adds this to b and changes nothing else: 2π Σλ, rad.
@@ -243,13 +304,13 @@ impl PlaneMap {
             // Long steps leave the sheet; half a radian at a time does not skip one.
             let scale = (0.5 / length).min(1.0);
             a = [a[0] + scale * step[0], a[1] + scale * step[1]];
-            if length < 1e-14 || (length < 1e-9 && gap.norm_sqr() < 1e-28) {
+            if length < 1e-14 || (length < 1e-9 && gap.norm_sqr() < 1e-28 * self.unit * self.unit) {
                 break;
             }
         }
         let miss = (goal - self.forward_unturned(a)).norm();
         let inside = (0..2).all(|i| self.limits[i].contains(a[i], SLACK));
-        (miss < 1e-11 && inside && self.det(a) * sheet >= 0.0).then(|| self.clamp(a))
+        (miss < 1e-11 * self.unit && inside && self.det(a) * sheet >= 0.0).then(|| self.clamp(a))
     }
 
     /// The nearest pose within the limits.

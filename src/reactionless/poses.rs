@@ -10,8 +10,8 @@ use super::plane::{PlaneMap, PlanePoint, SLACK};
 use super::quadrilateral::{Quadrilateral, Site};
 use crate::planar::{Vector, cross, unit};
 
-/// The most poses a [`Poses`] holds: many more than there are within one turn of each angle.
-pub const MAX_POSES: usize = 64;
+/// Poses that fit without memory of their own: many more than there are within one turn of each angle.
+const INLINE: usize = 64;
 
 /// b may pass a fold by this much and still meet it, rad; a flat pose may miss the point by this share of the reach.
 const AT_FOLD: f64 = 1e-12;
@@ -23,16 +23,18 @@ const CLAMPED: f64 = 10.0 * SLACK;
 const SAME: f64 = 1e-7;
 
 /// All poses of a point on a plane, in order of a_1. Reads as a slice.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct Poses {
     len: usize,
-    poses: [PlanePoint; MAX_POSES],
+    few: [PlanePoint; INLINE],
+    /// All of them, once they are more than fit; only limits of many turns have so many.
+    many: Vec<PlanePoint>,
 }
 
 impl Deref for Poses {
     type Target = [PlanePoint];
     fn deref(&self) -> &[PlanePoint] {
-        &self.poses[..self.len]
+        if self.many.is_empty() { &self.few[..self.len] } else { &self.many }
     }
 }
 
@@ -52,26 +54,36 @@ impl<'a> IntoIterator for &'a Poses {
 
 impl Poses {
     fn new(b: f64) -> Self {
-        Self { len: 0, poses: [PlanePoint { a: [0.0; 2], b }; MAX_POSES] }
+        Self { len: 0, few: [PlanePoint { a: [0.0; 2], b }; INLINE], many: Vec::new() }
+    }
+
+    fn all(&mut self) -> &mut [PlanePoint] {
+        if self.many.is_empty() { &mut self.few[..self.len] } else { &mut self.many }
     }
 
     /// Takes in a pose; of two that are the same, the one with the smaller miss.
     fn push(&mut self, a: [f64; 2], miss: impl Fn([f64; 2]) -> f64) {
         let same = |pose: &&mut PlanePoint| (pose.a[0] - a[0]).abs() < SAME && (pose.a[1] - a[1]).abs() < SAME;
-        match self.poses[..self.len].iter_mut().find(same) {
-            Some(pose) if miss(a) < miss(pose.a) => pose.a = a,
-            Some(_) => {}
-            None if self.len < MAX_POSES => {
-                self.poses[self.len].a = a;
-                self.len += 1;
+        if let Some(pose) = self.all().iter_mut().find(same) {
+            if miss(a) < miss(pose.a) {
+                pose.a = a;
             }
-            None => {}
+            return;
         }
+        if let Some(free) = self.few.get_mut(self.len) {
+            free.a = a;
+            self.len += 1;
+            return;
+        }
+        if self.many.is_empty() {
+            self.many.extend(self.few);
+        }
+        self.many.push(PlanePoint { a, ..self.few[0] });
     }
 
     fn sort(&mut self) {
         let key = |pose: &PlanePoint| pose.a;
-        self.poses[..self.len].sort_unstable_by(|s, t| {
+        self.all().sort_unstable_by(|s, t| {
             let [s, t] = [key(s), key(t)];
             s[0].total_cmp(&t[0]).then(s[1].total_cmp(&t[1]))
         });

@@ -23,9 +23,6 @@ use std::f64::consts::{PI, TAU};
 use super::plane::{Limit, PlaneMap};
 use crate::planar::{Vector, unit};
 
-/// Limits wider than this count as this much about their middle: more turns than any joint has.
-const WIDEST: f64 = 16.0 * TAU;
-
 /// A point whose distance misses the reach of the arms by less than this share of it counts as reached: rounding.
 pub(super) const ROUNDING: f64 = 1e-12;
 
@@ -167,10 +164,6 @@ impl Quadrilateral {
         let limits = [0, 1].map(|i| {
             let Limit { min, max } = map.limits()[i];
             let ends = [min, max].map(|a| sign[i] * a + shift[i]);
-            let (mid, half) = (0.5 * (ends[0] + ends[1]), 0.5 * (max - min));
-            if half > 0.5 * WIDEST {
-                return Limit { min: mid - 0.5 * WIDEST, max: mid + 0.5 * WIDEST };
-            }
             Limit { min: ends[0].min(ends[1]) - slack, max: ends[0].max(ends[1]) + slack }
         });
 

@@ -5,6 +5,7 @@
 
 use thiserror::Error;
 
+use super::decimal::metres_apart;
 use super::plane::{PlaneMap, PlanePoint, SLACK};
 use super::quadrilateral::{Arc, Quadrilateral, ROUNDING, Site};
 use crate::planar::Vector;
@@ -29,7 +30,7 @@ pub struct BSet {
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum NoReach {
     /// Beyond full stretch.
-    #[error("the point is {distance:.4} m from the base, but the arms reach only {farthest:.4} m")]
+    #[error("the point is {} m from the base, but the arms reach only {} m", metres_apart(*.distance, *.farthest)[0], metres_apart(*.distance, *.farthest)[1])]
     TooFar {
         /// m.
         distance: f64,
@@ -37,7 +38,7 @@ pub enum NoReach {
         farthest: f64,
     },
     /// Within the hole that the longest arm leaves.
-    #[error("the point is {distance:.4} m from the base, but the arms cannot come nearer than {nearest:.4} m")]
+    #[error("the point is {} m from the base, but the arms cannot come nearer than {} m", metres_apart(*.distance, *.nearest)[0], metres_apart(*.distance, *.nearest)[1])]
     TooNear {
         /// m.
         distance: f64,

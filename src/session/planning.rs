@@ -11,8 +11,8 @@ use crate::plan::limits::{Limit, Quantity};
 use crate::plan::path::{Chained, SameTip, minimum_norm_curve};
 use crate::plan::{Curve, Forecast, Limits, Motion, Path, Price, Profile, Rule, TimeLaw, Usage, fastest, trace};
 use crate::planar::{DriveAngles, Vector};
-use crate::pose_constant::{Planes, Unreachable};
-use crate::reactionless::PlanePoint;
+use crate::pose_constant::{Mend, Planes, Unreachable};
+use crate::reactionless::{Decimal, PlanePoint};
 use crate::scenario::{Corners, Scenario, Shape, Task, TaskKind};
 
 /// A planned task.
@@ -124,9 +124,10 @@ pub fn plan(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
         TaskKind::Reactionless | TaskKind::MinimumNorm | TaskKind::SameTip | TaskKind::Given => {}
     }
     let parts = match (task.kind, task.shape()) {
-        (TaskKind::Reactionless, Shape::JointLine) => joint_lines(task, planes, &points)?,
-        (TaskKind::Reactionless, _) => on_plane(task, planes, &points)?,
-        (TaskKind::MinimumNorm, _) => minimum_norm(scenario, planes, &points)?,
+        (TaskKind::Reactionless, _) => reactionless(task, planes).map_err(|refusal| proved(task, planes, refusal))?,
+        (TaskKind::MinimumNorm, _) => {
+            minimum_norm(scenario, planes, &points).map_err(|refusal| elsewhere(scenario, planes, refusal))?
+        }
         _ => {
             if !task.via.is_empty() || task.closed {
                 let why = "same-tip goes straight from A to B: want no points between and an open path";
@@ -142,6 +143,93 @@ pub fn plan(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
     let (motion, pace) = timed(scenario, parts)?;
     keeps_rules(scenario, &motion)?;
     Ok(Plan { pace, ..Plan::of(scenario, motion) })
+}
+
+/// The path of a task that holds its b.
+fn reactionless(task: &Task, planes: &Planes) -> Result<Vec<(Path, f64)>, Refusal> {
+    match task.shape() {
+        Shape::JointLine => joint_lines(task, planes, &task.points()),
+        _ => on_plane(task, planes, &task.points()),
+    }
+}
+
+/// A refusal that proposes only what has been tried: points that share a b may still be joined by no path on its plane.
+fn proved(task: &Task, planes: &Planes, refusal: Refusal) -> Refusal {
+    let at = |task: &Task, b: f64| Task { b, ..task.clone() };
+    let goes = |task: &Task| reactionless(task, planes);
+    // Where a path is stopped on one plane, what is said then knows of another.
+    let another = |why: &Refusal| match why {
+        Refusal::Blocked(blocked) => blocked.nearest_b.zip(blocked.shown_b),
+        _ => None,
+    };
+    match refusal {
+        Refusal::NoCommonPlane { mut why, .. } => {
+            if let Some((mend, mut shown)) = why.mend.and_then(|mend| Some((mend, mend.shown?))) {
+                let moved = task.moving(mend.point, shown.point()).and_then(|change| task.with(&change).ok());
+                let result = moved.as_ref().map(|moved| goes(&at(moved, shown.b.value())));
+                shown.does = match result {
+                    Some(Ok(_)) => true,
+                    Some(Err(stopped)) => {
+                        let other = another(&stopped).map(|(_, other)| other);
+                        shown.b = other.unwrap_or(shown.b);
+                        other.is_some()
+                    }
+                    None => false,
+                };
+                why.mend = Some(Mend { shown: Some(shown), ..mend });
+            }
+            Refusal::NoCommonPlane { said: why.in_words(&|i| task.name_of(i)), why }
+        }
+        Refusal::Unreachable { .. } if task.shape() != Shape::JointLine || task.keep_off_change_points => {
+            tried(planes, refusal, |b| goes(&at(task, b)).map(|_| ()))
+        }
+        other => other,
+    }
+}
+
+/// A refusal for a b that does not reach A, of a task that leaves its plane: the b nearest to it with which it can be
+/// planned.
+fn elsewhere(scenario: &Scenario, planes: &Planes, refusal: Refusal) -> Refusal {
+    // The law has no say in where a path goes.
+    let law = TimeLaw::Quintic;
+    let at = |b: f64| Scenario { task: Task { b, law, ..scenario.task.clone() }, ..scenario.clone() };
+    tried(planes, refusal, |b| plan(&at(b), planes).map(|_| ()))
+}
+
+/// A refusal for a b that does not reach a point: the b nearest to it with which the whole path goes, or what stops it.
+fn tried(planes: &Planes, refusal: Refusal, goes: impl Fn(f64) -> Result<(), Refusal>) -> Refusal {
+    let Refusal::Unreachable {
+        point,
+        unreachable: Unreachable::OnThisPlane { x, y, b, nearest_b: Some(nearest), shown_b: Some(shown), .. },
+    } = &refusal
+    else {
+        return refusal;
+    };
+    let made = |would_do: String, nearest_b: Option<f64>, shown_b: Option<Decimal>| {
+        let unreachable = Unreachable::OnThisPlane { x: *x, y: *y, b: *b, would_do, nearest_b, shown_b };
+        Refusal::Unreachable { point: point.clone(), unreachable }
+    };
+    let stopped = match goes(shown.value()) {
+        Ok(()) => {
+            let exact = if goes(*nearest).is_ok() { *nearest } else { shown.value() };
+            return made(format!("b = {shown} rad"), Some(exact), Some(*shown));
+        }
+        Err(stopped) => stopped,
+    };
+    // Where the path is stopped on one plane, what is said then knows of another.
+    if let Refusal::Blocked(blocked) = &stopped
+        && let Some((nearest, shown)) = blocked.nearest_b.zip(blocked.shown_b)
+    {
+        return made(format!("b = {shown} rad"), Some(nearest), Some(shown));
+    }
+    let own = planes.map().reach(Vector::new(*x, *y)).ok();
+    for share in [0.1, 0.3, 0.6, 1.0, 1.4, 1.7, 1.9] {
+        let inner = own.as_ref().and_then(|set| set.decimal(set.inwards(*nearest, share), 4));
+        if let Some(shown) = inner.filter(|b| goes(b.value()).is_ok()) {
+            return made(format!("b = {shown} rad"), Some(shown.value()), Some(shown));
+        }
+    }
+    made(format!("another path: at b = {shown} rad, {stopped}"), None, None)
 }
 
 /// The parts of a path, each from rest to rest: by a law in their share of the time, or as fast as they can.
@@ -215,7 +303,7 @@ fn serve(task: &Task, planes: &Planes, points: &[Vector]) -> Result<Vec<PlanePoi
 
 fn refusal(task: &Task, i: usize, unreachable: Unreachable) -> Refusal {
     match unreachable {
-        Unreachable::NoCommonPlane(why) => Refusal::NoCommonPlane(why.in_words(&|i| task.name_of(i))),
+        Unreachable::NoCommonPlane(why) => Refusal::NoCommonPlane { said: why.in_words(&|i| task.name_of(i)), why },
         unreachable => Refusal::Unreachable { point: task.name_of(i), unreachable },
     }
 }

@@ -8,15 +8,15 @@ use super::planning::{Plan, plan};
 use super::{Edit, TimedEdit};
 use crate::frame::Frame;
 use crate::keys;
-use crate::machine::{Machine, MachineError};
+use crate::machine::{Machine, MachineError, brief};
 use crate::plan::drift::DriftError;
 use crate::plan::follow::Bounds;
 use crate::plan::least_reaction::LeastReactionError;
 use crate::plan::price::PriceError;
 use crate::plan::{Blocked, CurveError, Follower, Motion, PathError, TimeError};
 use crate::planar::{DriveAngles, Vector};
-use crate::pose_constant::{PlaneError, Planes, Unreachable};
-use crate::reactionless::PlanePoint;
+use crate::pose_constant::{NoCommon, PlaneError, Planes, Unreachable};
+use crate::reactionless::{Decimal, PlanePoint};
 use crate::scenario::{MAX_TIME, Scenario};
 use crate::simulation::{Guide, Simulation};
 
@@ -35,8 +35,13 @@ pub enum Refusal {
         unreachable: Unreachable,
     },
     /// No plane serves all points.
-    #[error("{0}")]
-    NoCommonPlane(String),
+    #[error("{said}")]
+    NoCommonPlane {
+        /// In words, points by their names.
+        said: String,
+        /// Why, and what would mend it.
+        why: NoCommon,
+    },
     /// The path.
     #[error(transparent)]
     Path(#[from] PathError),
@@ -82,7 +87,7 @@ pub enum Refusal {
         value: String,
     },
     /// A number out of range.
-    #[error("{what} {value}: want {want}")]
+    #[error("{what} {}: want {want}", brief(*.value))]
     OutOfRange {
         /// Which.
         what: &'static str,
@@ -99,6 +104,15 @@ impl Refusal {
         match self {
             Self::Blocked(blocked) => blocked.nearest_b,
             Self::Unreachable { unreachable: Unreachable::OnThisPlane { nearest_b, .. }, .. } => *nearest_b,
+            _ => None,
+        }
+    }
+
+    /// The same as it is shown: rounded to where it still does.
+    pub fn shown_b(&self) -> Option<Decimal> {
+        match self {
+            Self::Blocked(blocked) => blocked.shown_b,
+            Self::Unreachable { unreachable: Unreachable::OnThisPlane { shown_b, .. }, .. } => *shown_b,
             _ => None,
         }
     }

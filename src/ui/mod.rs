@@ -19,6 +19,7 @@ mod viewport;
 
 pub use desk::Desk;
 
+use crate::reactionless::Decimal;
 use crate::scenario::Scenario;
 use crate::scene::Measure;
 use crate::scene::camera::Camera;
@@ -131,8 +132,8 @@ pub enum Purpose {
 pub struct Wish {
     /// The curve that was asked for, and where it stops.
     pub curve: Option<Arc<Refused>>,
-    /// The same with another b, rad, that would do.
-    pub remedy: Option<(Edit, f64)>,
+    /// The same with another b, rad, that would do, as it is shown.
+    pub remedy: Option<(Edit, Decimal)>,
 }
 
 impl Wish {
@@ -143,11 +144,11 @@ impl Wish {
             }
             _ => None,
         };
-        let remedy = match (edit, refusal.mending_b()) {
-            (Edit::SetTask { change }, Some(b)) => {
+        let remedy = match (edit, refusal.mending_b().zip(refusal.shown_b())) {
+            (Edit::SetTask { change }, Some((b, shown))) => {
                 let mut change = change.clone();
                 change.insert("b".into(), b.into());
-                Some((Edit::SetTask { change }, b))
+                Some((Edit::SetTask { change }, shown))
             }
             _ => None,
         };

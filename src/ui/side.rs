@@ -13,7 +13,6 @@ use super::theme::{bold, colour, plain};
 use super::top::name;
 use super::{Command, Look, path, set_b};
 use crate::machine::Inertia;
-use crate::pose_constant::in_words;
 use crate::scene::palette::Palette;
 use crate::session::{Edit, Session};
 
@@ -137,7 +136,7 @@ fn pose_constant(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec
         let points = scenario.task.points();
         let all = if points.len() == 2 { "A and B".into() } else { format!("all {} points", points.len()) };
         let text = match planes.common(&points) {
-            Some(common) => format!("{all}: {}", in_words(&common.near(b))),
+            Some(common) => format!("{all}: {}", common.near(b).in_words()),
             None => format!("{all} share no b"),
         };
         note(ui, p, &text);

@@ -25,7 +25,7 @@ pub fn news(ctx: &egui::Context, session: &Session, look: &Look, commands: &mut 
             ui.set_max_width((0.42 * ctx.content_rect().width()).max(320.0));
             ui.add(egui::Label::new(RichText::new(text).font(plain(12.0)).color(colour(p.ink))).wrap());
             if let Some((edit, b)) = look.refused.as_ref().and_then(|wish| wish.remedy.clone()) {
-                let way_out = ui.button(format!("take b = {b:.3} rad"));
+                let way_out = ui.button(format!("take b = {b} rad"));
                 if way_out.on_hover_text("The same on the nearest plane that allows it").clicked() {
                     commands.extend([Command::Edit(edit), Command::EndGesture]);
                 }
@@ -121,8 +121,8 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &Look, commands
                     (None, _) if session.is_full() => {
                         ("three minutes are full: save or record them, then start over".into(), p.reaction)
                     }
-                    (None, Reach::Outside { mending_b: Some(b), .. }) => {
-                        let way_out = ui.button(format!("go to b = {b:.3} rad"));
+                    (None, Reach::Outside { mending_b: Some(b), shown_b: Some(shown), .. }) => {
+                        let way_out = ui.button(format!("go to b = {shown} rad"));
                         if way_out
                             .on_hover_text("Another plane reaches the target; getting there costs a moment")
                             .clicked()

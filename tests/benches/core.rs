@@ -192,7 +192,7 @@ fn record_three_cases(bencher: Bencher) {
 /// The nine-link machine within other limits.
 fn folded(limits: [[f64; 2]; 2]) -> PlaneMap {
     let map = plane_map(builtin("nine-link").expect("built in")).expect("three drives");
-    map.with_limits(limits.map(|[min, max]| Limit { min, max }))
+    map.with_limits(limits.map(|[min, max]| Limit { min, max })).expect("limits")
 }
 
 /// The boundary where the map folds: up to six poses a point.

@@ -252,12 +252,19 @@ fn reach_finds_the_known_intervals() {
 }
 
 #[test]
-fn points_that_share_no_b_are_an_answer_and_a_point_beyond_all_is_none() {
+fn points_that_share_no_b_have_no_answer_but_a_mend() {
     let out = stillbase(&["reach", "nine-link", "0.5,0.5", "-0.5,-0.5", "--json"]);
-    assert_eq!(out.status.code(), Some(0));
+    assert_eq!(out.status.code(), Some(1));
     let got: Value = serde_json::from_slice(&out.stdout).expect("JSON");
     assert_eq!(got["overlap"], json!([]));
     assert!(text(&out.stderr).contains("no reactionless path"), "{}", text(&out.stderr));
+    // The exact move mends it.
+    let mended = |mend: &Value| {
+        let to = joined(&mend["to"]);
+        let points = if mend["point"] == json!(1) { [&to, "-0.5,-0.5"] } else { ["0.5,0.5", &to] };
+        object(&["reach", "nine-link", points[0], points[1]])
+    };
+    assert_ne!(mended(&got["mend"])["overlap"], json!([]));
     fails(&["reach", "nine-link", "0.5,0.5", "9,9"], 1, &["(9.000, 9.000) m"]);
 }
 
@@ -837,6 +844,27 @@ fn plan_says_what_its_scenario_then_does() {
     near(&free["b"], &json!(0.5 * (common[0] + common[1])), 1e-12, "b");
 }
 
+/// What the README shows of planning is what is said, and what is proposed there works as printed.
+#[test]
+fn the_readme_shows_what_plan_says() {
+    let readme = include_str!("../../README.md");
+    let mut shown = 0;
+    for (i, line) in readme.lines().enumerate() {
+        let Some(words) = line.strip_prefix("$ stillbase plan nine-link ").filter(|words| !words.contains(" -o "))
+        else {
+            continue;
+        };
+        let arguments: Vec<&str> = ["plan", "nine-link"].into_iter().chain(words.split(' ')).collect();
+        let said = readme.lines().nth(i + 1).expect("an answer").strip_prefix("stillbase: ");
+        let out = stillbase(&arguments);
+        assert_eq!(out.status.success(), said.is_none(), "{line}");
+        let Some(said) = said else { continue };
+        assert_eq!(text(&out.stderr).trim(), format!("stillbase: {said}"), "{line}");
+        shown += 1;
+    }
+    assert_eq!(shown, 2);
+}
+
 #[test]
 fn plan_refuses_with_where_why_and_what_would_do() {
     let arguments = ["plan", "nine-link", "0.42,1.12", "0,0.5", "--shape", "line", "--b", "2.4"];
@@ -852,6 +880,13 @@ fn plan_refuses_with_where_why_and_what_would_do() {
     let line = ["plan", "nine-link", "0.42,1.12", "0,0.5", "--shape", "line", "--b", &b];
     assert_eq!(object(&line)["feasible"], json!(true));
     fails(&["plan", "nine-link", "0.5,0.5", "-0.6,-0.2"], 1, &["no b serves both A and B", "moving B by 0.309 m"]);
+    let apart = stillbase(&["plan", "nine-link", "0.5,0.5", "-0.6,-0.2", "--json"]);
+    let apart: Value = serde_json::from_slice(&apart.stdout).expect("JSON");
+    let b = apart["mend"]["b"].to_string();
+    assert_eq!(
+        object(&["plan", "nine-link", "0.5,0.5", &joined(&apart["mend"]["to"]), "--b", &b])["feasible"],
+        json!(true)
+    );
     fails(&["plan", "nine-link"], 2, &["want points"]);
     fails(&["plan", "nine-link", "0.5,0.5"], 2, &["at least two"]);
     fails(&["plan", "case-3", "--set", "task.shape=square"], 2, &["square", "spline"]);

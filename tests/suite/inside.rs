@@ -15,7 +15,7 @@ pub const B: f64 = 2.4;
 
 pub fn within(limits: [[f64; 2]; 2]) -> PlaneMap {
     let map = plane_map(builtin("nine-link").unwrap()).unwrap();
-    map.with_limits(limits.map(|[min, max]| Limit { min, max }))
+    map.with_limits(limits.map(|[min, max]| Limit { min, max })).unwrap()
 }
 
 /// Limits that make every kind of curve: none folded, folded once, overlapping, with holes, more than a turn.
@@ -478,7 +478,7 @@ fn other_proportions_and_special_ones() {
     for (key, value) in [("length.l1", "0.9"), ("length.l5", "0.2"), ("length.l9", "1.1"), ("length.l3", "0.7")] {
         let machine = builtin("nine-link").unwrap().set_all([(key, value)]).unwrap();
         for limits in [CASES[0], CASES[3]] {
-            let map = plane_map(&machine).unwrap().with_limits(limits.map(|[min, max]| Limit { min, max }));
+            let map = plane_map(&machine).unwrap().with_limits(limits.map(|[min, max]| Limit { min, max })).unwrap();
             counts_agree(&map, 600, 200);
             parts_add_up(&map);
         }

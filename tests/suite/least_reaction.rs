@@ -80,7 +80,7 @@ fn the_corridor_is_what_the_points_reach() {
 #[test]
 fn the_corridor_keeps_to_its_sheet() {
     let (map, _) = parts();
-    let wide = map.with_limits([Limit { min: -0.5, max: 5.5 }; 2]);
+    let wide = map.with_limits([Limit { min: -0.5, max: 5.5 }; 2]).expect("limits");
     let mut folds = 0;
     for b in [1.8, 2.4, 2.8] {
         for start in &wide.poses(A, b) {
@@ -200,7 +200,8 @@ fn a_free_end_stops_where_the_corridor_begins() {
     let plan = plan(A, B, 2.2, None, Goal::Rms);
     let [end, ..] = plan.course().at(1.0);
     let last = &plan.corridor().stations()[plan.corridor().stations().len() - 1];
-    assert!((end - last.low - 1e-3).abs() < 1e-5, "{end} and {}", last.low);
+    // A hair inside it, which costs no more than 0.5 % of the least.
+    assert!(end > last.low && end - last.low < 0.005 * (last.low - 2.2), "{end} and {}", last.low);
     let d = parts().1.diagonal(0);
     assert!((plan.reaction(1.0).rms - 12f64.sqrt() * d * (end - 2.2)).abs() < 1e-4 * d);
 }
@@ -226,7 +227,7 @@ fn the_course_converges_and_is_least() {
         let mean = change.windows(2).map(|w| (w[0] + w[1]) / 48.0).sum::<f64>();
         change.iter_mut().for_each(|x| *x -= mean);
         let other: Vec<f64> = own.iter().zip(&change).map(|(x, y)| x + y).collect();
-        // The rows of the plan and their margin, so that what only comes nearer to the corridor's end does not count.
+        // The whole of the corridor: what comes nearer to its end may be better by what the plan's distance costs.
         let (mut b, mut rate, mut inside, h) = (base[0][0], 0.0, true, 1.0 / 24.0);
         for i in 0..24 {
             let third = (other[i + 1] - other[i]) / h;
@@ -234,13 +235,13 @@ fn the_course_converges_and_is_least() {
             for k in [2, 4, 6, 8] {
                 let station = &least.corridor().stations()[8 * i + k];
                 let b = on(k as f64 / 8.0 * h);
-                inside &= station.low + 1e-3 - 1e-9 <= b && b <= station.high - 1e-3;
+                inside &= station.low <= b && b <= station.high;
             }
             (b, rate) = (on(h), rate + h * (other[i] + other[i + 1]) / 2.0);
         }
         if inside {
             tried += 1;
-            assert!(square(&other) >= square(&own) - 1e-7, "change {k}: {} below {}", square(&other), square(&own));
+            assert!(square(&other) >= 0.99 * square(&own), "change {k}: {} below {}", square(&other), square(&own));
         }
     }
     assert!(tried >= 5, "{tried} changes were feasible");
@@ -320,7 +321,7 @@ fn what_cannot_be_planned_says_why() {
     let LeastReactionError::Corridor(CorridorError::Unreachable { u, reason, .. }) = far else { panic!("{far}") };
     assert!((0.4..0.9).contains(&u) && matches!(reason, NoReach::TooFar { .. } | NoReach::Limits), "{u} {reason}");
     let end = refusal(&line(A, B), start, Some(1.0)).to_string();
-    assert!(end.contains("want b from 2.216 to 2.661 rad"), "{end}");
+    assert!(end.contains("want b from 2.2158 to 2.6610 rad"), "{end}");
     let moving = |u: f64| CurvePoint { p: A + u * (B - A), first: B - A, second: Vector::default() };
     assert_eq!(refusal(&moving, start, None), LeastReactionError::NotAtRest { u: 0.0 });
     let outside = PlanePoint { a: [start.a[0] + 4.0, start.a[1]], b: start.b };
@@ -343,7 +344,7 @@ fn what_cannot_be_planned_says_why() {
 #[test]
 fn any_line_is_planned_or_refused() {
     let (map, model) = parts();
-    let wide = map.with_limits([Limit { min: -0.6, max: 4.5 }; 2]);
+    let wide = map.with_limits([Limit { min: -0.6, max: 4.5 }; 2]).expect("limits");
     let mut noise = 1u64;
     let mut next = |low: f64, high: f64| {
         noise = noise.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -383,4 +384,126 @@ fn any_line_is_planned_or_refused() {
         }
     }
     assert!(planned >= 20, "{planned} of 24");
+}
+
+/// The least ∫ b″² or peak of |b″| within the ends of a corridor, by second differences at even u: another discretisation,
+/// without any distance from the ends.
+fn twin(low: &[f64], high: &[f64], start: f64, peak: bool) -> f64 {
+    use clarabel::algebra::CscMatrix;
+    use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};
+    let n = low.len() - 1;
+    let square = (n * n) as f64;
+    // Unknowns: b of each station less the start's, then b″ of each, then the peak.
+    let top = 2 * (n + 1);
+    let (mut rows, mut columns, mut values, mut right) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut row = |entries: &[(usize, f64)], bound: f64| {
+        for (j, value) in entries {
+            rows.push(right.len());
+            columns.push(*j);
+            values.push(*value);
+        }
+        right.push(bound);
+    };
+    row(&[(0, 1.0)], 0.0);
+    for i in 0..=n {
+        // At rest at both ends: mirrored there.
+        let (before, after) = (if i == 0 { 1 } else { i - 1 }, if i == n { n - 1 } else { i + 1 });
+        let entries = [(before, -square), (i, 2.0 * square), (after, -square), (n + 1 + i, 1.0)];
+        let merged = [(before, -2.0 * square), (i, 2.0 * square), (n + 1 + i, 1.0)];
+        row(if before == after { &merged } else { &entries }, 0.0);
+    }
+    let equal = n + 2;
+    for i in 1..=n {
+        if high[i].is_finite() {
+            row(&[(i, 1.0)], high[i] - start);
+            row(&[(i, -1.0)], start - low[i]);
+        }
+    }
+    if peak {
+        for i in 0..=n {
+            row(&[(n + 1 + i, 1.0), (top, -1.0)], 0.0);
+            row(&[(n + 1 + i, -1.0), (top, -1.0)], 0.0);
+        }
+    }
+    let count = right.len();
+    let a = CscMatrix::new_from_triplets(count, top + 1, rows, columns, values);
+    let weight = |i: usize| if i == 0 || i == n { 1.0 } else { 2.0 } / n as f64;
+    let diagonal = if peak { Vec::new() } else { (0..=n).collect() };
+    let at: Vec<usize> = diagonal.iter().map(|i| n + 1 + i).collect();
+    let p =
+        CscMatrix::new_from_triplets(top + 1, top + 1, at.clone(), at, diagonal.iter().map(|i| weight(*i)).collect());
+    let mut linear = vec![0.0; top + 1];
+    linear[top] = f64::from(u8::from(peak));
+    let cones = [ZeroConeT(equal), NonnegativeConeT(count - equal)];
+    let settings = DefaultSettings { verbose: false, max_iter: 100, ..DefaultSettings::default() };
+    let mut solver = DefaultSolver::new(&p, &linear, &a, &right, &cones, settings).expect("a program");
+    solver.solve();
+    assert!(matches!(solver.solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved));
+    let x = &solver.solution.x;
+    if peak { x[top] } else { (0..=n).map(|i| 0.5 * weight(i) * x[n + 1 + i] * x[n + 1 + i]).sum::<f64>().sqrt() }
+}
+
+/// By how much so many random lines exceed the twin, as parts of it.
+fn excess(cases: usize, seed: u64) -> Vec<f64> {
+    let (map, model) = parts();
+    let d = model.diagonal(0);
+    let wide = map.with_limits([Limit { min: -0.6, max: 4.5 }; 2]).expect("limits");
+    let mut noise = crate::support::Noise::of(seed);
+    let (mut all, mut done) = (Vec::with_capacity(cases), 0);
+    while done < cases {
+        let map = if done % 3 == 2 { wide } else { map };
+        let [a1, a2] = map.limits();
+        let start = PlanePoint {
+            a: [noise.between(a1.min, a1.max), noise.between(a2.min, a2.max)],
+            b: noise.between(-3.0, 9.0),
+        };
+        let from = map.forward(start.a, start.b);
+        let size = [0.5, 0.2, 0.05][done % 3];
+        let curve = line(from, from + Vector::new(noise.between(-size, size), noise.between(-size, size)));
+        let goal = if done % 2 == 0 { Goal::Rms } else { Goal::Peak };
+        let Ok(plan) = LeastReaction::plan(&map, &model, &curve, start, None, goal) else { continue };
+        if plan.course().is_constant() {
+            continue;
+        }
+        done += 1;
+        let stations: Vec<_> = plan.corridor().stations().iter().step_by(4).collect();
+        let [low, high]: [Vec<f64>; 2] =
+            [stations.iter().map(|s| s.low).collect(), stations.iter().map(|s| s.high).collect()];
+        let want = twin(&low, &high, start.b, goal == Goal::Peak);
+        let felt = plan.reaction(1.0);
+        let got = if goal == Goal::Peak { felt.peak } else { felt.rms } / d;
+        let over = got / want - 1.0;
+        if over > 0.01 {
+            println!("case {done}: {goal:?} {got} for {want}, from {start:?} by {}", curve(1.0).p - from);
+        }
+        // Every fourth station bounds it from below, but for its own differences.
+        assert!(over > -0.01, "case {done}: {goal:?} {got} for {want}: the twin is worse");
+        all.push(over);
+        for i in 0..=400 {
+            let u = f64::from(i) / 400.0;
+            let at = map.project(&plan.path().at(u).q);
+            assert!((map.forward(at.a, at.b) - curve(u).p).norm() < 1e-6, "case {done}, u = {u}");
+            assert!(map.limits().iter().zip(at.a).all(|(l, a)| l.contains(a, 1e-6)), "case {done}, u = {u}: {at:?}");
+        }
+    }
+    all
+}
+
+/// Within 1 % of what is least, however little that is.
+#[test]
+fn it_is_within_a_hundredth_of_the_least() {
+    let most = excess(12, 61).into_iter().fold(0.0, f64::max);
+    assert!(most < 0.01, "{most}");
+}
+
+#[test]
+#[ignore = "long: two thousand lines"]
+fn it_is_within_a_hundredth_of_the_least_often() {
+    let mut all = excess(2000, 67);
+    all.sort_by(f64::total_cmp);
+    let at = |share: f64| all[(share * (all.len() - 1) as f64) as usize];
+    let quantiles = [0.5, 0.9, 0.99, 0.999, 1.0].map(at);
+    println!("{quantiles:?}");
+    // Where the corridor ends at a fold that vanishes, the drives keep further off.
+    assert!(quantiles[2] < 0.01 && quantiles[4] < 0.05, "{quantiles:?}");
 }

@@ -159,7 +159,7 @@ fn planning_is_done_by_edits() {
     let outside = task.moving(1, Vector::new(1.1, 0.3)).expect("a point");
     let frames = session.frames().to_vec();
     let refusal = session.apply(Edit::SetTask { change: outside }).expect_err("outside of every plane of A");
-    assert!(matches!(refusal, Refusal::NoCommonPlane(_) | Refusal::Unreachable { .. }), "{refusal}");
+    assert!(matches!(refusal, Refusal::NoCommonPlane { .. } | Refusal::Unreachable { .. }), "{refusal}");
     assert_eq!((session.frames(), &session.scenario().task), (&frames[..], &task));
     let nonsense = session.apply(Edit::task("shape", "square")).expect_err("no such shape").to_string();
     assert!(nonsense.contains("square") && nonsense.contains("spline"), "{nonsense}");

@@ -564,8 +564,10 @@ fn a_target_outlives_a_change_of_the_machine() {
     let mut session = open(coarse());
     do_it(&mut session, set("limits.a2", "0.8,2.2"));
     let planes = session.run().planes().expect("three drives").clone();
-    let free =
-        planes.map().with_limits([planes.map().limits()[0], stillbase::reactionless::Limit { min: 0.0, max: 3.0 }]);
+    let free = planes
+        .map()
+        .with_limits([planes.map().limits()[0], stillbase::reactionless::Limit { min: 0.0, max: 3.0 }])
+        .expect("limits");
     let at = free.forward([1.2, 2.6], 2.4);
     do_it(&mut session, drag(at.re, at.im));
     session.end_gesture();

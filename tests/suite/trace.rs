@@ -221,12 +221,12 @@ fn a_graze_of_a_limit_is_noticed() {
     for below in [1e-2, 1e-4, 1e-6] {
         let mut limits = map.limits();
         limits[0].max = extreme - below;
-        let narrow = map.with_limits(limits);
+        let narrow = map.with_limits(limits).expect("limits");
         let blocked = trace::follow(&narrow, &line, B, None, Rule::default()).expect_err("it passes the limit");
         assert_eq!(blocked.stop, Stop::Limit { angle: 0, upper: true });
         assert!((a(blocked.s)[0] - limits[0].max).abs() < 1e-6, "{below}: {}", blocked.s);
     }
     let mut limits = map.limits();
     limits[0].max = extreme + 1e-6;
-    assert!(trace::follow(&map.with_limits(limits), &line, B, None, Rule::default()).is_ok());
+    assert!(trace::follow(&map.with_limits(limits).expect("limits"), &line, B, None, Rule::default()).is_ok());
 }

@@ -5,7 +5,7 @@ use stillbase::plan::nearest::{nearest_b, same_tip, turned};
 use stillbase::plan::path::minimum_norm_curve;
 use stillbase::plan::{Motion, Path, Profile, Rule, Samples, trace};
 use stillbase::planar::DriveAngles;
-use stillbase::reactionless::BSet;
+use stillbase::reactionless::{BSet, between};
 use stillbase::scenario::{Task, TaskKind};
 
 use super::judge::{Candidate, Judge};
@@ -101,12 +101,14 @@ pub fn of_tip(asked: &Asked, judge: &Judge, samples: &Samples) -> Result<Ways, F
             let first = map.reach(samples.point(0)).ok().and_then(serves);
             let range = all.or(first).unwrap_or([0.0; 2]);
             let b = 0.5 * (range[0] + range[1]);
-            (b, format!("b is the middle of what reaches all of the path, {:.4} to {:.4} rad", range[0], range[1]))
+            (b, format!("b is the middle of what reaches all of the path, {} rad", between(range[0], range[1])))
         }
     };
     let follow = |b: f64| trace::follow(map, &curves, b, None, Rule::default()).map(|_| b);
-    let followed = follow(b).map(|b| (b, why)).or_else(|stop| match (stop.nearest_b, asked.b) {
-        (Some(b), None) => follow(b).map(|b| (b, format!("b = {b:.4} rad is one at which all of it can be followed"))),
+    let followed = follow(b).map(|b| (b, why)).or_else(|stop| match (stop.nearest_b.zip(stop.shown_b), asked.b) {
+        (Some((b, shown)), None) => {
+            follow(b).map(|b| (b, format!("b = {shown} rad is one at which all of it can be followed")))
+        }
         _ => Err(stop),
     });
     let b = followed.as_ref().map_or(b, |(b, _)| *b);

@@ -4,7 +4,7 @@ use super::track::Track;
 use super::{Blocked, Rule, STATIONS, Stop, at, common_b, is_feasible, part, starts, tables, whole};
 use crate::plan::curve::Curve;
 use crate::planar::unit;
-use crate::reactionless::{BSet, PlaneMap};
+use crate::reactionless::{BSet, Decimal, PlaneMap};
 
 /// Parts of a curve that is drawn.
 const DRAWN: i32 = 160;
@@ -12,13 +12,15 @@ const DRAWN: i32 = 160;
 pub(super) fn blocked(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, s: f64, stop: Stop) -> Blocked {
     let common = common_b(map, curves, 2 * STATIONS + 1);
     let beyond = at(curves, if stop == Stop::Start { 0.0 } else { (s + 1e-6).min(1.0) });
+    let (nearest_b, shown_b) = nearest_b(map, curves, b, rule, &common).unzip();
     Blocked {
         b,
         s,
         at: at(curves, s),
         stop,
         leaves_workspace: map.poses(beyond, b).is_empty(),
-        nearest_b: nearest_b(map, curves, b, rule, &common),
+        nearest_b,
+        shown_b: shown_b.flatten(),
         some_b_reaches_all: !common.is_empty(),
         longest: longest(map, curves, b, rule).map(|[from, to]| match from < s && s < to {
             // A graze between stations.
@@ -30,8 +32,9 @@ pub(super) fn blocked(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, s: f
     }
 }
 
-/// The b nearest to a given one at which curves can be followed, among those that reach each point.
-fn nearest_b(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, common: &BSet) -> Option<f64> {
+/// The b nearest to a given one at which curves can be followed, among those that reach each point; and the same rounded
+/// to where they still can.
+fn nearest_b(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, common: &BSet) -> Option<(f64, Option<Decimal>)> {
     const TRIES: usize = 24;
     let can = |b: f64| is_feasible(map, curves, b, rule);
     let mut tries: Vec<f64> = Vec::new();
@@ -57,17 +60,15 @@ fn nearest_b(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, common: &BSet
     // Between the stations the curve may still leave the workspace by a little: then a little further in.
     let start = curves.first().map(|curve| curve.at(0.0).p)?;
     let follows = |b: f64| starts(map, start, b, None).into_iter().any(|a| tables(map, curves, b, a, rule).is_ok());
-    // A hair further in, so that it still does when read off with four decimals.
-    let shown = |b: f64| b + (first - b).clamp(-6e-5, 6e-5);
-    if follows(shown(good)) {
-        return Some(shown(good));
+    let mut further = [good, first, common.inwards(first, 0.5)].into_iter().chain(tries[found..].iter().copied());
+    let mut inner = further.find(|b| follows(*b))?;
+    if inner != good {
+        for _ in 0..10 {
+            let middle = 0.5 * (good + inner);
+            if follows(middle) { inner = middle } else { good = middle }
+        }
     }
-    let mut inner = [first, common.inwards(first, 0.5)].into_iter().find(|b| follows(*b))?;
-    for _ in 0..10 {
-        let middle = 0.5 * (good + inner);
-        if follows(middle) { inner = middle } else { good = middle }
-    }
-    Some(if follows(shown(inner)) { shown(inner) } else { inner })
+    Some((inner, Decimal::that(inner, 4, follows)))
 }
 
 /// The longest part of curves that can be followed on a plane, as s over all of them.

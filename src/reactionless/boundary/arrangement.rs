@@ -8,9 +8,9 @@ use crate::planar::{Vector, cross, dot};
 
 /// Parts of a span this near to each other, as a part of the span, are one cut.
 const SAME: f64 = 1e-11;
-/// Ends this near to each other are joined, m.
+/// Ends this near to each other are joined, as a share of the unit of the map; so are the next two lengths.
 const JOINT: f64 = 1e-9;
-/// Curves still entangled at this length touch without crossing, m.
+/// Curves still entangled at this length touch without crossing.
 const SHORTEST: f64 = 1e-9;
 /// Pairs of parts looked at before two spans count as running along each other.
 const PATIENCE: usize = 3000;
@@ -19,7 +19,7 @@ const WONDER: usize = PATIENCE - 100;
 /// Curves that end in the same point touch there, or leave a sliver too thin to matter: this near to it, as a share of
 /// the reach, they do not cross.
 const TIP: f64 = 1e-4;
-/// Points this near to a curve lie on it, m.
+/// Points this near to a curve lie on it.
 const ON_CURVE: f64 = 1e-11;
 
 /// A part of a span.
@@ -53,6 +53,8 @@ pub(super) struct Arrangement<'a> {
     spans: &'a [Span],
     /// m.
     tip: f64,
+    /// m.
+    unit: f64,
 }
 
 #[derive(Clone, Copy)]
@@ -66,8 +68,8 @@ impl Part {
         Self { range: [0.0, 1.0], at: span.at }
     }
 
-    fn deviation(&self, span: &Span) -> f64 {
-        span.deviation * (self.range[1] - self.range[0]).powi(2) + 1e-16
+    fn deviation(&self, span: &Span, unit: f64) -> f64 {
+        span.deviation * (self.range[1] - self.range[0]).powi(2) + 1e-16 * unit
     }
 
     fn halves(&self, on: &Surface, span: &Span) -> [Self; 2] {
@@ -83,7 +85,7 @@ impl Part {
 impl<'a> Arrangement<'a> {
     pub fn of(on: &'a Surface, cycle: &'a Cycle) -> Self {
         let reach: f64 = on.map.c().iter().map(|c| c.abs()).sum();
-        Self { on, cycle, spans: &cycle.spans, tip: TIP * reach }
+        Self { on, cycle, spans: &cycle.spans, tip: TIP * reach, unit: on.map.unit() }
     }
 
     /// All curves, cut where they cross each other.
@@ -144,7 +146,7 @@ impl<'a> Arrangement<'a> {
         let span = &self.spans[portion.span];
         let (mut unclean, mut alike) = ([0; 2], 0);
         // Close enough that even where curves touch, no other is in between; and if one is, elsewhere there is none.
-        for reach in [1e-11, 1e-12, 1e-9] {
+        for reach in [1e-11, 1e-12, 1e-9].map(|share| share * self.unit) {
             for share in [0.5, 0.31, 0.77, 0.13, 0.91] {
                 let jet = self.on.jet(span, portion.from + share * (portion.to - portion.from));
                 let speed = jet.rate.norm();
@@ -175,7 +177,7 @@ impl<'a> Arrangement<'a> {
     /// Curves that coincide bound the workspace once.
     fn without_doubles<'b>(&self, portions: impl Iterator<Item = &'b Portion>) -> Vec<Portion> {
         let ends = |p: &Portion| [p.from, p.to].map(|t| self.on.at(&self.spans[p.span], t));
-        let near = |a: Vector, b: Vector| (a - b).norm() < JOINT;
+        let near = |a: Vector, b: Vector| (a - b).norm() < JOINT * self.unit;
         let mut kept: Vec<(Portion, [Vector; 2])> = Vec::new();
         for &portion in portions {
             let [from, to] = ends(&portion);
@@ -240,7 +242,7 @@ impl<'a> Arrangement<'a> {
             if tip.is_some_and(at_tip) {
                 continue;
             }
-            let (da, db) = (pa.deviation(a), pb.deviation(b));
+            let (da, db) = (pa.deviation(a, self.unit), pb.deviation(b, self.unit));
             if apart(pa.at, pb.at, da + db) {
                 continue;
             }
@@ -253,7 +255,7 @@ impl<'a> Arrangement<'a> {
                     cuts[i].push(t);
                     cuts[j].push(s);
                 }
-            } else if la.max(lb) > SHORTEST || da + db > SHORTEST {
+            } else if la.max(lb) > SHORTEST * self.unit || da + db > SHORTEST * self.unit {
                 if la + da > lb + db {
                     pa.halves(self.on, a).into_iter().for_each(|half| work.push_back((half, pb)));
                 } else {
@@ -290,7 +292,7 @@ impl<'a> Arrangement<'a> {
             }
             (t, s) = (near(t + step[0], pa.range), near(s + step[1], pb.range));
         }
-        let meets = (self.on.at(a, t) - self.on.at(b, s)).norm() < 1e-12;
+        let meets = (self.on.at(a, t) - self.on.at(b, s)).norm() < 1e-12 * self.unit;
         (meets && within(t, pa.range) && within(s, pb.range)).then_some([t, s])
     }
 
@@ -299,7 +301,7 @@ impl<'a> Arrangement<'a> {
         for (one, other) in [(i, j), (j, i)] {
             for end in self.spans[one].at {
                 let (t, gap) = self.foot(&self.spans[other], end);
-                if gap < JOINT {
+                if gap < JOINT * self.unit {
                     cuts[other].push(t);
                 }
             }
@@ -309,9 +311,13 @@ impl<'a> Arrangement<'a> {
     /// Whether two spans share a stretch: two points, and those between.
     fn run_along(&self, i: usize, j: usize) -> bool {
         let (a, b) = (&self.spans[i], &self.spans[j]);
-        let on_both = |t: f64| self.foot(b, self.on.at(a, t)).1 < ON_CURVE;
+        let on_both = |t: f64| self.foot(b, self.on.at(a, t)).1 < ON_CURVE * self.unit;
         let ends = [0.0, 1.0].into_iter().filter(|&t| on_both(t));
-        let others = b.at.into_iter().map(|end| self.foot(a, end)).filter(|(_, gap)| *gap < ON_CURVE).map(|(t, _)| t);
+        let others =
+            b.at.into_iter()
+                .map(|end| self.foot(a, end))
+                .filter(|(_, gap)| *gap < ON_CURVE * self.unit)
+                .map(|(t, _)| t);
         let (low, high) = ends.chain(others).fold((1.0_f64, 0.0_f64), |(low, high), t| (low.min(t), high.max(t)));
         high - low > 1e-6 && [0.5, 0.3, 0.8].into_iter().all(|share| on_both(low + share * (high - low)))
     }
@@ -348,7 +354,7 @@ impl<'a> Arrangement<'a> {
             let mut chain = vec![portions[first]];
             used[first] = true;
             let mut last = first;
-            while (ends[last] - starts[first]).norm() > JOINT {
+            while (ends[last] - starts[first]).norm() > JOINT * self.unit {
                 let along = ends[last] - at(&portions[last], 0.95);
                 let turn = |k: usize| {
                     let next = at(&portions[k], 0.05) - starts[k];
@@ -356,9 +362,10 @@ impl<'a> Arrangement<'a> {
                 };
                 let gap = |k: usize| (starts[k] - ends[last]).norm();
                 let free = || (0..portions.len()).filter(|&k| !used[k]);
-                let joined = free().filter(|&k| gap(k) <= JOINT).max_by(|&i, &j| turn(i).total_cmp(&turn(j)));
+                let joined =
+                    free().filter(|&k| gap(k) <= JOINT * self.unit).max_by(|&i, &j| turn(i).total_cmp(&turn(j)));
                 // Only rounding near a tangency leaves a gap; the nearest start closes it.
-                let near = || free().filter(|&k| gap(k) < 1e-5).min_by(|&i, &j| gap(i).total_cmp(&gap(j)));
+                let near = || free().filter(|&k| gap(k) < 1e-5 * self.unit).min_by(|&i, &j| gap(i).total_cmp(&gap(j)));
                 let Some(next) = joined.or_else(near) else { break };
                 used[next] = true;
                 chain.push(portions[next]);

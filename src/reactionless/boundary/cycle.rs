@@ -26,11 +26,12 @@ pub(super) struct Cycle {
 }
 
 impl Cycle {
-    pub fn of(spans: Vec<Span>) -> Self {
+    /// `unit` is that of the map, m.
+    pub fn of(spans: Vec<Span>, unit: f64) -> Self {
         let bounds: Vec<Bounds> = spans
             .iter()
             .map(|s| {
-                let slack = s.deviation + 1e-12;
+                let slack = s.deviation + 1e-12 * unit;
                 let [a, b] = s.at;
                 Bounds {
                     low: Vector::new(a.re.min(b.re) - slack, a.im.min(b.im) - slack),

@@ -4,14 +4,14 @@ use super::arrangement::Portion;
 use super::{Boundary, from_chord};
 use crate::planar::{Vector, unit};
 
-/// Distances are exact to this, m.
+/// Distances are exact to this share of the unit of the map.
 const EXACT: f64 = 2e-10;
 /// Halvings of a chord's portion: each brings the chord four times nearer to the curve.
 const DEPTH: usize = 14;
 
 impl Boundary {
     /// The distance of p, m, from the boundary of the workspace of b, m: positive inside, negative outside, 0 on it.
-    /// Along the true curves, exact to 1e-9 m. Negative infinity if p is no point.
+    /// Along the true curves, exact to 1e-9 of the reach. Negative infinity if p is no point.
     pub fn distance(&self, p: Vector, b: f64) -> f64 {
         if !(p.re.is_finite() && p.im.is_finite() && b.is_finite()) {
             return f64::NEG_INFINITY;
@@ -40,7 +40,7 @@ impl Boundary {
     }
 
     fn slack(&self, portion: &Portion) -> f64 {
-        self.cycle.spans[portion.span].deviation * (portion.to - portion.from).powi(2) + 1e-15
+        self.cycle.spans[portion.span].deviation * (portion.to - portion.from).powi(2) + 1e-15 * self.on.map.unit()
     }
 
     /// Branch and bound: only halves that may come nearer than what is known are looked into.
@@ -49,7 +49,7 @@ impl Boundary {
         if gap - slack >= *least {
             return;
         }
-        if slack < EXACT || depth == 0 {
+        if slack < EXACT * self.on.map.unit() || depth == 0 {
             *least = least.min(gap);
             return;
         }

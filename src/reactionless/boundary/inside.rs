@@ -11,8 +11,7 @@ impl Boundary {
     /// limits and folds about p, without any pose being solved for.
     ///
     /// On a fold or a limit, to 1e-12 m, it is the number on one of its sides. Elsewhere it is how many
-    /// [`PlaneMap::poses`](crate::reactionless::PlaneMap::poses) lists, unless limits are wider than five turns: then
-    /// five are counted, and more poses than fit may be left out there.
+    /// [`PlaneMap::poses`](crate::reactionless::PlaneMap::poses) lists.
     pub fn pose_count(&self, p: Vector, b: f64) -> usize {
         if !(p.re.is_finite() && p.im.is_finite() && b.is_finite()) {
             return 0;

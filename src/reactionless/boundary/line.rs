@@ -3,9 +3,17 @@
 use super::arrangement::Portion;
 use super::span::{Curve, Span, Surface};
 use crate::planar::{Vector, unit};
+use crate::reactionless::PlaneMap;
 
 /// Chords between vertices keep this near to the curve, m.
 const CHORD: f64 = 0.8e-5;
+/// The same as a share of the unit of the map: small machines want them nearer, huge ones would have too many.
+const SHARE: [f64; 2] = [1e-3 * CHORD, CHORD];
+
+/// How near to the curve the chords of a map are kept, m.
+pub(super) fn near(map: &PlaneMap) -> f64 {
+    CHORD.clamp(SHARE[0] * map.unit(), SHARE[1] * map.unit())
+}
 
 /// A point of a curve; the curve and a are those of the piece that begins here.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +44,8 @@ pub struct Line {
 }
 
 impl Loop {
-    /// Points of the curve, each chord within 1e-5 m of it.
+    /// Points of the curve, each chord within 1e-5 m of it; within 1e-5 of the reach below a metre, 1e-8 of it above
+    /// a kilometre.
     pub fn vertices(&self) -> &[Vertex] {
         &self.vertices
     }
@@ -110,7 +119,7 @@ fn chords(on: &Surface, spans: &[Span], chain: &[Portion]) -> (Vec<Vertex>, Vec<
     for part in chain {
         let span = &spans[part.span];
         let length = part.to - part.from;
-        let n = (length * (span.deviation / CHORD).sqrt()).ceil().clamp(1.0, 1e5) as usize;
+        let n = (length * (span.deviation / near(&on.map)).sqrt()).ceil().clamp(1.0, 1e5) as usize;
         let t = |i: usize| if i == n { part.to } else { part.from + length * i as f64 / n as f64 };
         for i in 0..n {
             let a = on.point(span, t(i));

@@ -4,14 +4,9 @@
 //! It is oriented so that more poses reach the points on its left than those on its right: one more for a limit, two
 //! more for a fold. So the spans together are a weighted cycle whose winding number about p counts the poses at p.
 
-use std::f64::consts::TAU;
-
 use super::determinant::{Determinant, INSET, upright};
 use crate::planar::{Vector, cross, dot};
 use crate::reactionless::{Limit, PlaneMap};
-
-/// Wider limits are cut to so many turns.
-const TURNS: f64 = 5.0;
 
 /// A curve in (a_1, a_2) whose image can bound the workspace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,8 +62,6 @@ impl Surface {
         let det = Determinant::of(map);
         let mut limits = map.limits();
         for (i, limit) in limits.iter_mut().enumerate() {
-            let excess = 0.5 * (limit.max - limit.min - TURNS * TAU).max(0.0);
-            *limit = Limit { min: limit.min + excess, max: limit.max - excess };
             let [low, high] = [limit.min, limit.max].map(|x| {
                 let [from, way] = upright(i, x);
                 if det.vanishes(from, way) { INSET } else { 0.0 }
@@ -77,7 +70,8 @@ impl Surface {
                 *limit = Limit { min: limit.min + low, max: limit.max - high };
             }
         }
-        Self { map: map.with_limits(limits), det }
+        // Drawn in, limits are still limits.
+        Self { map: map.with_limits(limits).unwrap_or(*map), det }
     }
 
     /// A straight piece along one coordinate.
@@ -281,7 +275,7 @@ impl Surface {
     fn refined(&self, span: &Span, from: f64, to: f64, whole: f64, depth: usize) -> f64 {
         let middle = 0.5 * (from + to);
         let (first, second) = (self.gauss(span, from, middle), self.gauss(span, middle, to));
-        if depth == 0 || (first + second - whole).abs() < 1e-16 {
+        if depth == 0 || (first + second - whole).abs() < 1e-16 * self.map.unit().powi(2) {
             return first + second;
         }
         self.refined(span, from, middle, first, depth - 1) + self.refined(span, middle, to, second, depth - 1)
@@ -326,7 +320,8 @@ impl Span {
     /// `None` if p lies on it.
     pub fn crossings(&self, on: &Surface, from: (f64, Vector), to: (f64, Vector), p: Vector) -> Option<i32> {
         let (a, b) = (from.1, to.1);
-        let slack = self.deviation * (to.0 - from.0).powi(2) + 1e-15;
+        let unit = on.map.unit();
+        let slack = self.deviation * (to.0 - from.0).powi(2) + 1e-15 * unit;
         let (low, high) = (a.im.min(b.im) - slack, a.im.max(b.im) + slack);
         let (left, right) = (a.re.min(b.re) - slack, a.re.max(b.re) + slack);
         if p.im < low || p.im > high || p.re > right {
@@ -335,7 +330,7 @@ impl Span {
         if p.re < left {
             return Some(i32::from(a.im <= p.im && p.im < b.im) - i32::from(b.im <= p.im && p.im < a.im));
         }
-        if (high - low).max(right - left) < 1e-13 || to.0 - from.0 < 1e-12 {
+        if (high - low).max(right - left) < 1e-13 * unit || to.0 - from.0 < 1e-12 {
             return None;
         }
         let middle = 0.5 * (from.0 + to.0);

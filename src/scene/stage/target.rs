@@ -52,7 +52,7 @@ impl Stage {
         });
         let ink = palette.ink;
         match frame.target.reach {
-            Reach::Outside { nearest, mending_b, other_sheet } => {
+            Reach::Outside { nearest, shown_b, other_sheet, .. } => {
                 scene.lines.push(Line {
                     name: "target/gap".into(),
                     points: vec![point(nearest, z), point(at, z)],
@@ -69,8 +69,8 @@ impl Stage {
                     stroke: palette.amber,
                     stroke_width: 2.0,
                 });
-                let would = match mending_b {
-                    Some(b) => format!("b = {b:.3} rad would reach it"),
+                let would = match shown_b {
+                    Some(b) => format!("b = {b} rad would reach it"),
                     None if other_sheet => "drag it round, or change b".into(),
                     None => "no b reaches it".into(),
                 };

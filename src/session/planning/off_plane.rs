@@ -1,6 +1,6 @@
 //! Motions that leave their plane knowingly: a change of b, the least reaction, and zero momentum on any machine.
 
-use super::{Plan, Refusal, curves, dynamics_of, keeps_rules, refusal, serve, slowed, timed};
+use super::{Plan, Refusal, curves, dynamics_of, elsewhere, keeps_rules, refusal, serve, slowed, timed};
 use crate::plan::drift::zero_momentum_curve;
 use crate::plan::least_reaction::Goal;
 use crate::plan::path::Chained;
@@ -115,7 +115,10 @@ pub fn least_reaction(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refu
     }
     match refused {
         Some(why) => Err(Refusal::LeastReaction(why)),
-        None => Err(serve(task, planes, &task.points()[..1]).err().unwrap_or(Refusal::Task("A has no pose".into()))),
+        None => {
+            let refusal = serve(task, planes, &task.points()[..1]).err();
+            Err(refusal.map_or(Refusal::Task("A has no pose".into()), |refusal| elsewhere(scenario, planes, refusal)))
+        }
     }
 }
 

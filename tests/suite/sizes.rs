@@ -1,0 +1,125 @@
+//! Machines of any size: planes and workspaces scale with their lengths, or the machine is refused.
+
+use std::f64::consts::TAU;
+
+use stillbase::machine::builtin;
+use stillbase::planar::Vector;
+use stillbase::pose_constant::plane_map;
+use stillbase::reactionless::{AngleDefinition, Boundary, Limit, NoReach, NotAPlaneMap, PlaneMap};
+
+use crate::support::Noise;
+
+fn map(c: [f64; 3], lambda: [f64; 3], limits: [Limit; 2], offsets: [f64; 2]) -> Result<PlaneMap, NotAPlaneMap> {
+    let angles =
+        [(1, 0, offsets[0]), (2, 1, offsets[1])].map(|(to, from, offset)| AngleDefinition { to, from, offset });
+    PlaneMap::new(c, lambda, angles, limits)
+}
+
+/// Areas go with the square of all lengths; b, poses and limits stay.
+fn scale(cases: usize, seed: u64) {
+    let mut noise = Noise::of(seed);
+    for case in 0..cases {
+        let c = [0, 1, 2].map(|_| noise.sign() * noise.between(0.1, 1.0));
+        let lambda = [1.0, noise.between(0.05, 1.5), noise.between(0.05, 1.5)];
+        let offsets = [noise.between(-3.0, 3.0), noise.between(-3.0, 3.0)];
+        let limits = [0, 1].map(|_| {
+            let min = noise.between(-3.0, 3.0);
+            Limit { min, max: min + noise.between(0.3, 0.9 * TAU) }
+        });
+        let size = 10f64.powf(noise.between(-6.0, 6.0));
+        let one = map(c, lambda, limits, offsets).expect("a map");
+        let other = map(c.map(|c| c * size), lambda, limits, offsets).expect("a map");
+        let [x, y] = [&one, &other].map(Boundary::of);
+        let reach: f64 = c.iter().map(|c| c.abs()).sum();
+        for (what, a, b) in [("area", x.area(), y.area()), ("sheets", x.sheet_area(), y.sheet_area())] {
+            let off = (a - b / (size * size)).abs();
+            assert!(off < 1e-9 * reach * reach, "case {case}, {what} at {size:e}: {a} and {b:e}, {one:?}");
+        }
+        let at = [0, 1].map(|i| limits[i].min + noise.between(0.01, 0.99) * (limits[i].max - limits[i].min));
+        let b = noise.between(-9.0, 9.0);
+        let p = one.forward(at, b);
+        let [s, t] = [one.reach(p).expect("reached"), other.reach(p * size).expect("reached")];
+        assert_eq!(s.intervals.len(), t.intervals.len(), "case {case} at {size:e}: {s:?} {t:?}");
+        for (s, t) in s.intervals.iter().flatten().zip(t.intervals.iter().flatten()) {
+            assert!((s - t).abs() < 1e-7, "case {case} at {size:e}: {s} {t}");
+        }
+        let [s, t] = [one.poses(p, b), other.poses(p * size, b)];
+        if one.det(at).abs() > 1e-4 {
+            let near = |f: &stillbase::reactionless::PlanePoint| (f.a[0] - at[0]).hypot(f.a[1] - at[1]) < 1e-7;
+            assert!(s.iter().any(near) && t.iter().any(near), "case {case} at {size:e}");
+        }
+        let beside = [at[0] + 0.02, at[1] - 0.02];
+        let [s, t] = [one.follow(p, b, beside), other.follow(p * size, b, beside)];
+        assert_eq!(s.is_some(), t.is_some(), "case {case} at {size:e}");
+        // From outside, along and within.
+        let out = Vector::new(noise.between(-reach, reach), noise.between(-reach, reach));
+        let gap = (x.distance(out, b) - y.distance(out * size, b) / size).abs();
+        assert!(gap < 1e-8 * reach, "case {case} at {size:e}: {gap:e}");
+    }
+}
+
+#[test]
+fn areas_go_with_the_square_of_lengths_and_b_stays() {
+    scale(120, 9);
+}
+
+#[test]
+#[ignore = "long: a hundred thousand machines"]
+fn areas_go_with_the_square_of_lengths_and_b_stays_often() {
+    scale(100_000, 31);
+}
+
+/// A machine of one long arm has the area of its sheets, or says that rounding would hide it.
+#[test]
+fn one_length_of_any_size_has_a_right_area_or_is_refused() {
+    let (mut right, mut refused) = (0, 0);
+    for name in ["l1", "l5", "l9", "l2"] {
+        for power in -6..=6 {
+            let set = builtin("nine-link").expect("built in").set(&format!("length.{name}"), &format!("1e{power}"));
+            let machine = set.expect("a length");
+            match plane_map(&machine) {
+                Err(why) => {
+                    let words = why.to_string();
+                    assert!(words.contains("want arms of more equal length"), "{words}");
+                    refused += 1;
+                }
+                Ok(map) => {
+                    let boundary = Boundary::of(&map);
+                    let want = sheets(&map);
+                    let off = (boundary.sheet_area() - want).abs();
+                    assert!(off < 1e-3 * want, "{name} = 1e{power}: {} for {want}", boundary.sheet_area());
+                    let area = boundary.area();
+                    assert!(area > 0.0 && area <= boundary.sheet_area() * (1.0 + 1e-6), "{name} = 1e{power}: {area}");
+                    right += 1;
+                }
+            }
+        }
+    }
+    assert!(right >= 26 && refused >= 1, "{right} right, {refused} refused");
+}
+
+/// ∫ |det| da, det as the limit of finite areas.
+fn sheets(map: &PlaneMap) -> f64 {
+    let [s, t] = map.limits();
+    let n = 200;
+    let at = |l: Limit, i: usize| l.min + (l.max - l.min) * (i as f64 + 0.5) / f64::from(n);
+    let sum: f64 = (0..n as usize)
+        .flat_map(|i| (0..n as usize).map(move |j| (i, j)))
+        .map(|(i, j)| map.det([at(s, i), at(t, j)]).abs())
+        .sum();
+    sum * (s.max - s.min) * (t.max - t.min) / f64::from(n * n)
+}
+
+/// Lengths that differ by little are said with digits that differ; none runs to hundreds of digits.
+#[test]
+fn lengths_are_said_with_enough_digits_and_not_more() {
+    for (distance, farthest) in [(1.576_99, 1.576_961), (1.260_000_001, 1.26), (1e6, 1.26), (1.26e-6, 1.25e-6)] {
+        let words = NoReach::TooFar { distance, farthest }.to_string();
+        let numbers: Vec<&str> = words.split(' ').filter(|w| w.parse::<f64>().is_ok()).collect();
+        assert_eq!(numbers.len(), 2, "{words}");
+        let [x, y] = [numbers[0], numbers[1]].map(|w| w.parse::<f64>().expect("a number"));
+        assert!(x > y && words.len() < 110, "{words}");
+    }
+    let long = builtin("nine-link").expect("built in").set("link.1.mass", "1e300").expect_err("refused").to_string();
+    assert!(long.contains("1e300") && long.len() < 120, "{long}");
+}
