@@ -72,7 +72,7 @@
 //! | methods | [`balance`], [`reactionless`], [`pose_constant`], [`plan`], [`control`] | Eqs (7)–(16), paths, time laws, prices, feedback |
 //! | motion | [`frame`], [`simulation`], [`signals`], [`spectrum`] | one instant, one step, one table, its frequencies |
 //! | study | [`tolerance`] | random machines around a nominal one |
-//! | path | [`scenario`], [`session`] | files, edits, undo, replay |
+//! | path | [`scenario`], [`session`], [`verdict`] | files, edits, undo, replay, what a run came to |
 //! | picture | [`scene`] | plain data to draw, cameras, palette |
 //! | devices | `render` (feature `render`), `ui` (feature `ui`) | wgpu; egui |
 //! | edges | `window`, `headless` (feature `record`), [`files`], the program's `commands` | displays, Rerun, disks |
@@ -111,5 +111,6 @@ pub mod text;
 pub mod tolerance;
 #[cfg(feature = "ui")]
 pub mod ui;
+pub mod verdict;
 #[cfg(feature = "window")]
 pub mod window;

@@ -86,6 +86,8 @@ mod timing;
 mod tolerance;
 #[path = "suite/trace.rs"]
 mod trace;
+#[path = "suite/verdict.rs"]
+mod verdict;
 #[path = "suite/views.rs"]
 mod views;
 #[path = "suite/windings.rs"]

@@ -16,8 +16,9 @@ use super::output::{Format, fixed, say};
 
 /// Write a motion as CSV at the rate of a controller: angles, rates, accelerations, feed-forward torques
 ///
-/// Columns are t, q, qd, qdd, tau_ff of each drive, x, y of the end effector, and b; SI and radians, every digit. The
-/// first row is the start and the last one the end, also where the rate does not divide the duration.
+/// Columns are t, q, qd, qdd, tau_ff of each drive, x, y of the end effector, and b; SI and radians, every digit. What is
+/// simulated on a base that moves has base_x, base_y, theta and their rates base_xd, base_yd, thetad besides: q is absolute,
+/// an encoder reads q - theta. The first row is the start and the last one the end, also where the rate does not divide the duration.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -51,6 +52,9 @@ enum What {
     Reference,
     Simulated,
 }
+
+/// Columns of a base that moves: where B is, how the base is turned, and the rates of both.
+const OF_BASE: [&str; 6] = ["base_x", "base_y", "theta", "base_xd", "base_yd", "thetad"];
 
 /// The most rows: more are asked for by a slip of the hand.
 const MOST_ROWS: f64 = 2e6;
@@ -93,11 +97,13 @@ impl Export {
             }
             What::Simulated => self.simulated(&scenario)?,
         };
+        let based = self.what == What::Simulated && scenario.base.moves();
         let torque = if self.what == What::Reference { "tau_ff" } else { "tau" };
         let per_drive = ["q", "qd", "qdd", torque].into_iter();
         let columns: Vec<String> = std::iter::once("t".to_owned())
             .chain(per_drive.flat_map(|word| (1..=drives).map(move |k| format!("{word}{k}"))))
             .chain(["x", "y", "b"].map(String::from))
+            .chain(OF_BASE.map(String::from).into_iter().filter(|_| based))
             .collect();
         let last_interval = match rows.as_slice() {
             [.., before, last] => last[0] - before[0],
@@ -167,7 +173,10 @@ impl Export {
         let run = replay(scenario, |run, f| {
             if f.step % every as u64 == 0 || f.step == run.last_step() {
                 let all = f.q.iter().chain(f.qd.iter()).chain(f.qdd.iter()).chain(f.torque.iter()).map(|x| x + 0.0);
-                rows.push(std::iter::once(f.time).chain(all).chain([f.tip.re, f.tip.im, f.b]).collect());
+                let place = [f.base.at.re, f.base.at.im, f.base.angle];
+                let rates = [f.base_velocity.re, f.base_velocity.im, f.base_rate];
+                let base = place.into_iter().chain(rates).map(|x| x + 0.0).filter(|_| scenario.base.moves());
+                rows.push(std::iter::once(f.time).chain(all).chain([f.tip.re, f.tip.im, f.b]).chain(base).collect());
             }
         })
         .map_err(|e| Failure::from(e).of(&scenario.name))?;

@@ -47,6 +47,7 @@ use thiserror::Error;
 use crate::files::{NewFile, WriteError};
 use crate::scenario::Scenario;
 use crate::session::Refusal;
+use crate::verdict::Verdict;
 use film::Film;
 use reaction::Scale;
 use recorder::{Set, Stop};
@@ -89,10 +90,12 @@ pub struct Recording {
     pub peak_torque: Vec<f64>,
     /// Largest dynamic |f_B|, N.
     pub peak_base_force: f64,
-    /// Largest |n_B|, N m.
+    /// Largest |n_B|, what the arm transmits, N m.
     pub peak_base_moment: f64,
-    /// Whether nothing reached the base.
+    /// Whether the arm transmitted nothing.
     pub reactionless: bool,
+    /// What is to be said of it.
+    pub verdict: Verdict,
     /// What somebody should know: why there are no pictures.
     pub notes: Vec<String>,
 }
@@ -246,7 +249,7 @@ fn write(
         set.store.fixed(&EntityPath::properties(), &info)?;
         for (scenario, case) in scenarios.iter().zip(&cases) {
             let mut tick = |step| progress(Progress { done: before + step, of: 2 * total, what: &scenario.name });
-            let peaks = recorder::record(&mut set, scenario, case, &mut tick)?;
+            let (peaks, verdict) = recorder::record(&mut set, scenario, case, &mut tick)?;
             let fault = case.fault.iter().map(|why| format!("{}: audit failed: {why}", scenario.name));
             before += case.steps;
             recordings.push(Recording {
@@ -255,8 +258,9 @@ fn write(
                 steps: case.steps,
                 peak_torque: peaks.torque.to_vec(),
                 peak_base_force: peaks.force,
-                peak_base_moment: peaks.moment,
-                reactionless: peaks.is_reactionless(),
+                peak_base_moment: verdict.arm_moment,
+                reactionless: verdict.reactionless,
+                verdict,
                 notes: set.film.notes().into_iter().chain(fault).collect(),
             });
         }

@@ -68,6 +68,8 @@ impl Forecast {
             b_start: lambda.dot(&motion.at(0.0).q),
             b_end: lambda.dot(&motion.at(time).q),
         };
+        // The instants lie between: the ends belong to the range too.
+        sum.b = [sum.b_start.min(sum.b_end), sum.b_start.max(sum.b_end)];
         let dt = time / instants as f64;
         // Between the instants, so that no step of the acceleration is looked at from the wrong side.
         for i in 0..instants {

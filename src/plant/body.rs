@@ -18,7 +18,7 @@
 //! has no lever about R.
 
 use super::{Base, BaseKind, Command, Contacts, Friction, Grip, MAX_CONTACTS, Slope, Spin, State};
-use crate::dynamics::{Factors, Surroundings, base_wrench, by_drives, first};
+use crate::dynamics::{BaseWrench, Factors, Surroundings, base_wrench, by_drives, first};
 use crate::machine::{Inertia, Machine, MachineError};
 use crate::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Units, Vector, cross, dot};
 
@@ -41,6 +41,8 @@ pub struct Body {
     /// All that turns: about B on a fixed base, about R on one that moves.
     whole: Inertia,
     moves: bool,
+    /// Whether nothing holds the base, so that weight is not carried.
+    falls: bool,
     /// M_t, kg.
     mass: f64,
     /// Lever of gravity about what the coordinates refer to: g_k on a fixed base, none on one that moves.
@@ -77,6 +79,7 @@ impl Body {
                 arm,
                 whole,
                 moves: false,
+                falls: false,
                 mass,
                 lever,
                 anchor: nothing,
@@ -117,8 +120,9 @@ impl Body {
             _ => Support::default(),
         };
         let contacts = Contacts::of(machine, friction, Some(n));
-        let base = (base.mass, base.mass * rho);
-        Ok(Self { arm, whole, moves: true, mass, lever: nothing, anchor, tip, support, contacts, around, base })
+        let (kind, base) = (base.kind, (base.mass, base.mass * rho));
+        let falls = kind == BaseKind::Free;
+        Ok(Self { arm, whole, moves: true, falls, mass, lever: nothing, anchor, tip, support, contacts, around, base })
     }
 
     /// The same with another force at the end effector, N.
@@ -198,6 +202,21 @@ impl Body {
         control: impl FnOnce(&Units, &PerDrive, Pose2, Vector) -> Command,
     ) -> Slope {
         by_drives!(self.whole.drives, instant_of(self, state, grip, taken, control))
+    }
+
+    /// What the manipulator transmits to its base, in its two parts. On a base that nothing holds weight is not carried:
+    /// what it and the fall leave of each other is motion.
+    pub fn transmitted(&self, x: &Slope) -> BaseWrench {
+        let mut wrench = x.wrench;
+        if self.falls {
+            let weight = self.arm.mass * self.around.gravity;
+            let moment = cross(crate::dynamics::first_moment(&self.arm, &x.e), self.around.gravity);
+            wrench.statical.force -= weight;
+            wrench.dynamic.force += weight;
+            wrench.statical.moment -= moment;
+            wrench.dynamic.moment += moment;
+        }
+        wrench
     }
 
     /// Potential energy of weight and springs, J.

@@ -391,10 +391,35 @@ impl Simulation {
     fn include(&mut self) {
         let x = &self.now;
         let (qd, qdd) = (x.qd.first(self.drives), x.qdd.first(self.drives));
-        let pull = dynamics::inertial_pull(&self.link_moments[usize::from(self.loaded)], &x.e, &qd, &qdd);
-        let felt = x.wrench.total().moment - x.spin.torque;
-        self.peaks.include(&x.torque, x.wrench.dynamic.force.norm(), felt, pull);
-        self.tally.include(x, felt, self.time());
+        let turning = x.qd.get(self.drives).copied().unwrap_or(0.0);
+        let wrench = self.body().transmitted(x);
+        let total = wrench.total().moment;
+        let loaded = usize::from(self.loaded);
+        let past = |(i, a): (usize, &RelativeAngle)| {
+            let angle = self.state.q[a.to] - self.state.q[a.from] + a.offset;
+            ((a.limits.start() - angle).max(angle - a.limits.end()), i)
+        };
+        let now = Peaks {
+            torque: x.torque,
+            torque_sum: x.torque.iter().map(|t| t.abs()).sum(),
+            force: wrench.dynamic.force.norm(),
+            arm_moment: total.abs(),
+            moment: (total - x.spin.torque).abs(),
+            inertial_pull: dynamics::inertial_pull(&self.link_moments[loaded], &x.e, &qd, &qdd),
+            weight: x.wrench.statical.force.norm(),
+            rate: qd.iter().fold(0.0, |most, qd| most.max((qd - turning).abs())),
+            tilt: self.inside[loaded].tilt(&x.e, &qd, &qdd, &self.field()),
+            past_limit: self.angles.iter().enumerate().map(past).fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a }),
+        };
+        let time = self.time();
+        self.peaks.include(&now);
+        self.tally.include(x, &wrench, time);
+    }
+
+    /// What links move in, in axes that move with the base: its acceleration adds to gravity.
+    fn field(&self) -> Surroundings {
+        let around = *self.body().around();
+        Surroundings { gravity: around.gravity - self.now.base_acceleration, ..around }
     }
 
     /// What should be zero now.
@@ -414,8 +439,7 @@ impl Simulation {
     /// What pins carry now; a base that moves adds to gravity.
     fn inside(&self) -> Inside {
         let (x, n) = (&self.now, self.drives);
-        let around = *self.body().around();
-        let around = Surroundings { gravity: around.gravity - x.base_acceleration, ..around };
+        let around = self.field();
         let contacts = self.body().contacts();
         let couple = |from, to| contacts.couple(from, to, &x.qd, &self.grip, &self.taken);
         self.inside[usize::from(self.loaded)].at(&x.e, &x.qd.first(n), &x.qdd.first(n), &around, couple)
@@ -458,7 +482,7 @@ impl Simulation {
             base: x.base,
             base_velocity: x.base_velocity,
             base_rate: x.qd.get(n).copied().unwrap_or(0.0),
-            wrench: x.wrench,
+            wrench: self.body().transmitted(x),
             wheel: x.spin,
             momentum,
             angular_momentum,

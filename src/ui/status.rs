@@ -9,6 +9,7 @@ use crate::scene::palette::{Palette, faded};
 use crate::scene::stage::signed;
 use crate::scene::views::Views;
 use crate::session::{Edit, Session};
+use crate::verdict::Verdict;
 
 /// Bad news, in full, over the lower edge of the viewport, with the way out if there is one.
 pub fn news(ctx: &egui::Context, session: &Session, look: &Look, commands: &mut Vec<Command>) {
@@ -88,20 +89,31 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &Look, commands
     Panel::bottom("status").exact_size(30.0).resizable(false).frame(frame).show(ui, |ui| {
         ui.horizontal_centered(|ui| {
             let f = session.frame();
-            let clean = f.peaks.is_reactionless();
-            let tone = colour(if clean { p.zero } else { p.reaction });
+            let verdict = Verdict::of(session.scenario(), f);
+            let tone = colour(if verdict.is_good() { p.zero } else { p.reaction });
             let (dot, _) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), egui::Sense::hover());
             ui.painter().circle_filled(dot.center(), 4.5, tone);
-            let word = match (clean, f.is_quiet()) {
-                (true, _) => "reactionless",
-                (false, false) => "reacts on its base",
-                (false, true) => "has reacted on its base",
+            let word = match (verdict.word(), f.is_quiet()) {
+                ("not reactionless", false) => "reacts on its base",
+                ("not reactionless", true) => "has reacted on its base",
+                (word, _) => word,
             };
-            ui.label(RichText::new(word).font(bold(13.0)).color(tone));
+            let remarks = verdict.so_far();
+            let told = ui.label(RichText::new(word).font(bold(13.0)).color(tone));
+            if !remarks.is_empty() {
+                let long: Vec<&str> = remarks.iter().map(|r| r.long.as_str()).collect();
+                told.on_hover_text(long.join("\n"));
+            }
             lamps(ui, f, &p);
-            // With a wheel the base feels less than the manipulator transmits.
-            let what = if session.scenario().base.wheel.is_some() { "n felt" } else { "|n_B|" };
-            let mut facts = format!("peak {what} {:.3} N m  ·  b {:.3} rad", f.peaks.moment, f.b);
+            let mut facts = format!("peak |n_B| {:.3} N m", verdict.arm_moment);
+            // Two quantities: what the arm transmits, and what a wheel leaves of it.
+            if let Some(left) = verdict.past_wheel {
+                facts += &format!(", past the wheel {left:.3} N m");
+            }
+            for remark in remarks.iter().filter(|_| ui.available_width() > 460.0) {
+                facts += &format!("  ·  {}", remark.short);
+            }
+            facts += &format!("  ·  b {:.3} rad", f.b);
             let bad_news = matches!(look.message, Some((_, true)));
             if let Some((poses, distance)) =
                 views.stage().standing(f).filter(|_| !bad_news && ui.available_width() > 460.0)

@@ -439,11 +439,12 @@ fn simulate_prints_every_signal() {
     assert_eq!(keys(&got), ["scenario", "signals", "time", "units", "verdict"]);
     let peaks = ["peak_base_force", "peak_base_moment", "peak_torque"];
     let sums = ["rms_base_force", "rms_base_moment", "steps"];
-    let all: Vec<&str> = ["audit", "base_shift", "base_tilt", "miss"]
+    let all: Vec<&str> = ["audit", "base_shift", "base_tilt", "miss", "moved"]
         .into_iter()
-        .chain(peaks)
-        .chain(["reactionless"])
-        .chain(sums)
+        .chain(peaks[..2].iter().copied())
+        .chain(["peak_tilt", peaks[2], "reactionless", "remarks"])
+        .chain(sums.into_iter().take(2))
+        .chain(["sentence", "steps"])
         .collect();
     assert_eq!(keys(&got["verdict"]), all);
     assert_eq!(keys(&got["verdict"]["audit"]), ["angular", "energy", "loops", "momentum", "plane", "step"]);
@@ -688,7 +689,16 @@ fn headless_reports_the_three_cases() {
     for row in rows {
         assert_eq!(
             keys(row),
-            ["file", "peak_base_force", "peak_base_moment", "peak_torque", "reactionless", "scenario", "steps"]
+            [
+                "file",
+                "peak_base_force",
+                "peak_base_moment",
+                "peak_torque",
+                "reactionless",
+                "scenario",
+                "steps",
+                "verdict"
+            ]
         );
         assert_eq!((&row["file"], &row["steps"]), (&json!(file), &json!(1000)));
         assert_eq!(row["reactionless"], json!(row["scenario"] == "case-3"));
@@ -1090,6 +1100,123 @@ fn spectrum_says_what_is_kept() {
     fails(&["spectrum", "case-1", "--limit-moment", "2:1,1:1"], 2, &["rising"]);
     fails(&["spectrum", "case-1", "--limit-moment", "600:1,700:1"], 2, &["600", "499.5"]);
     fails(&["spectrum", "case-1", "--window", "flat"], 2, &["hann"]);
+}
+
+/// A window weighs the samples, so the cumulative RMS ends at the weighted one; without a window that is the plain one.
+#[test]
+fn the_cumulative_rms_ends_at_what_stands_beside_it() {
+    for (window, same) in [("hann", false), ("rectangular", true)] {
+        let got = object(&["spectrum", "case-1", "--window", window]);
+        for axis in ["force_x", "force_y", "moment"] {
+            let ends = *numbers(&got["cumulative_rms"][axis]).last().expect("lines");
+            let of = |key: &str| got["axes"][axis][key].as_f64().expect("a number");
+            assert!((ends - of("weighted_rms")).abs() <= 1e-12 * ends, "{axis}: {ends} {}", of("weighted_rms"));
+            let off = (of("rms") - ends).abs() / ends;
+            assert_eq!(off < 1e-9, same, "{window} {axis}: {off}");
+        }
+        let shown = prints(&["spectrum", "case-1", "--window", window]);
+        assert!(shown.contains("weighted RMS") && shown.contains("ends at the weighted RMS") != same, "{shown}");
+    }
+}
+
+/// The machine without deviations goes the way of the others: the same base, control and friction.
+#[test]
+fn simulated_machines_stand_beside_a_simulated_nominal_one() {
+    let settings = ["base.kind=free", "base.com=0.1,0.05", "control.kp=300", "plant.friction.viscous=0.2"];
+    let settings: Vec<&str> = settings.iter().flat_map(|s| ["--set", s]).collect();
+    let study = object(&[&["tolerance", "case-1", "--simulate", "--samples", "2"][..], &settings].concat());
+    let run = object(&[&["simulate", "case-1"][..], &settings].concat());
+    let (nominal, verdict) = (&study["nominal"], &run["verdict"]);
+    for (a, b) in [("peak_moment", "peak_base_moment"), ("peak_force", "peak_base_force")] {
+        near(&nominal[a], &verdict[b], 1e-12, a);
+    }
+    for (a, b) in [("rms_moment", "rms_base_moment"), ("rms_force", "rms_base_force")] {
+        near(&nominal[a], &verdict[b], 1e-9, a);
+    }
+    // Perfect tracking on a fixed base is another row.
+    let tracked = object(&[&["tolerance", "case-1", "--samples", "2"][..], &settings].concat());
+    let peak = |of: &Value| of["nominal"]["peak_moment"].as_f64().expect("a number");
+    assert!((peak(&tracked) / peak(&study) - 1.0).abs() > 0.01, "{} {}", peak(&tracked), peak(&study));
+}
+
+/// Drive angles are absolute, so what a base that moves does belongs to them.
+#[test]
+fn what_is_simulated_on_a_base_that_moves_has_its_pose() {
+    let settings = ["--set", "base.kind=free", "--set", "base.com=0.1,0.05"];
+    let got = object(&[&["export", "case-1", "--what", "simulated", "--rate", "100"][..], &settings].concat());
+    let columns: Vec<&str> = got["columns"].as_array().expect("a list").iter().filter_map(Value::as_str).collect();
+    let run = object(&[&["simulate", "case-1", "--every", "10"][..], &settings].concat());
+    let rows: Vec<Vec<f64>> = got["rows"].as_array().expect("rows").iter().map(numbers).collect();
+    let pairs = [
+        ("base_x", "base/x"),
+        ("base_y", "base/y"),
+        ("theta", "attitude/base"),
+        ("base_xd", "base_velocity/x"),
+        ("base_yd", "base_velocity/y"),
+        ("thetad", "attitude_rate/base"),
+    ];
+    for (column, signal) in pairs {
+        let place = columns.iter().position(|c| *c == column).unwrap_or_else(|| panic!("no {column} in {columns:?}"));
+        let want = numbers(&run["signals"][signal]);
+        assert!(rows.iter().map(|row| row[place]).eq(want.iter().copied()), "{column}");
+        assert!(want.iter().any(|x| x.abs() > 1e-9), "{column} moves");
+    }
+    let still = object(&["export", "case-1", "--what", "simulated", "--rate", "100"]);
+    assert!(still["columns"].as_array().expect("a list").iter().all(|c| c != "theta"));
+}
+
+/// The spline goes beyond its samples: what is said of them is what they hold.
+#[test]
+fn import_tells_the_b_of_samples_from_that_of_the_spline() {
+    let folder = Folder::new();
+    let lambda = numbers(&object(&["check", "nine-link"])["lambda"]);
+    // A motion with few samples, from rest to rest.
+    let q = |s: f64| [1.7 - 0.3 * s, 3.7 + 0.4 * s, 2.2 + 0.5 * s];
+    let mut csv = String::from("t,q1,q2,q3\n");
+    let mut all = Vec::new();
+    for i in 0..9 {
+        let t = f64::from(i) / 8.0;
+        let s = if i < 4 {
+            0.0
+        } else if i > 4 {
+            1.0
+        } else {
+            0.5
+        };
+        all.push((0..3).map(|k| lambda[k] * q(s)[k]).sum::<f64>());
+        csv += &format!("{t},{},{},{}\n", q(s)[0], q(s)[1], q(s)[2]);
+    }
+    let file = folder.file("few.csv", &csv);
+    let out = stillbase(&["import", &file, "--json"]);
+    let got: Value = serde_json::from_str(text(&out.stdout)).expect("an object");
+    let (low, high) = all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), b| (l.min(*b), h.max(*b)));
+    near(&got["b_samples"], &json!([low, high]), 1e-12, "b of the samples");
+    let way = numbers(&got["given"]["b_range"]);
+    assert!(way[0] < low - 1e-4 && way[1] > high + 1e-4, "the spline swings: {way:?} {low} {high}");
+    let shown = text(&stillbase(&["import", &file]).stdout).to_owned();
+    assert!(shown.contains("least b of the samples") && shown.contains("least b on the way"), "{shown}");
+}
+
+/// What a verdict leaves out is said in words, in the table, and in JSON.
+#[test]
+fn verdicts_are_said_in_full() {
+    let said = |args: &[&str]| text(&stillbase(args).stderr).to_owned();
+    let wheel = ["simulate", "case-1", "--set", "base.wheel.inertia=0.002"];
+    let line = said(&wheel);
+    assert!(line.contains("peak |n_B| 1.089") && line.contains("past the wheel 0.000000 N m"), "{line}");
+    assert!(line.contains("reactionless: no") && line.contains("the wheel takes it up"), "{line}");
+    let got = object(&wheel);
+    assert!(got["verdict"]["peak_moment_past_wheel"].as_f64() < Some(1e-9), "{}", got["verdict"]);
+    assert!(got["verdict"]["peak_base_moment"].as_f64() > Some(1.0), "{}", got["verdict"]);
+    let fall = object(&["simulate", "case-3", "--set", "base.kind=free", "--set", "gravity=0,-9.81"]);
+    assert_eq!(fall["verdict"]["reactionless"], true);
+    assert!(fall["verdict"]["peak_base_force"].as_f64() < Some(1e-9), "{}", fall["verdict"]);
+    let tilted = said(&["simulate", "case-3", "--set", "link.5.axial=0.02"]);
+    assert!(tilted.contains("reactionless: yes") && tilted.contains("different heights tilt the base"), "{tilted}");
+    let held = said(&["simulate", "case-3", "--set", "plant.friction.coulomb=1e4"]);
+    assert!(held.contains("never moved") && held.contains("from its target"), "{held}");
+    let table = prints(&["compare", "case-3", "--set", "base.wheel.inertia=0.002"]);
+    assert!(table.contains("no, the wheel takes it up") && table.contains("peak n_B N m"), "{table}");
 }
 
 /// A failed audit is loud: the figures stand there, the message says what is off, and the status is 1.

@@ -24,6 +24,7 @@ const LAYERS: &[&[&str]] = &[
     // A scenario holds the edits of a saved session, and its tolerances; a session starts from a scenario, and so does
     // the simulation of a varied machine.
     &["scenario", "session", "tolerance"],
+    &["verdict"],
     &["compare"],
     &["scene"],
     &["render"],
@@ -58,6 +59,7 @@ const CORE: &[&str] = &[
     "signals",
     "scenario",
     "session",
+    "verdict",
     "compare",
     "tolerance",
     "scene",
