@@ -7,7 +7,7 @@
 //! | moment past the wheel | what is left of n_B for the base once a reaction wheel has taken its part: by this the base is quiet |
 
 use crate::audit::{Audit, Lamp};
-use crate::frame::{Frame, Phase};
+use crate::frame::{Frame, Phase, Reach};
 use crate::scenario::Scenario;
 
 /// Farther than this from its target an end effector misses it, m.
@@ -45,7 +45,7 @@ pub struct Verdict {
     pub past_limit: Option<(String, f64)>,
     /// The first audit that failed: then nothing of this can be trusted.
     pub fault: Option<Lamp>,
-    /// Whether the guide has come to its end.
+    /// Whether the guide has come to its end, where it can.
     ended: bool,
 }
 
@@ -75,7 +75,8 @@ impl Verdict {
             miss: (frame.tip - frame.target.at).norm(),
             past_limit: (by > PAST).then(|| (name(angle), by)),
             fault: Audit::fault(frame),
-            ended: frame.phase == Phase::Rest,
+            // A target that cannot be reached is told of where it is set.
+            ended: frame.phase == Phase::Rest && !matches!(frame.target.reach, Reach::Outside { .. }),
         }
     }
 
