@@ -162,6 +162,9 @@ struct Answer {
     /// For the fastest smooth motion: T/T* − 1, T* without limits on jerk.
     #[serde(skip_serializing_if = "Option::is_none")]
     gap: Option<f64>,
+    /// T with corners rounded off, where the motion rests at them because that is faster.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    blended: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     price: Option<OfPrice>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -283,6 +286,7 @@ impl Plan {
             peak_base_force: None,
             limiting: None,
             gap: None,
+            blended: None,
             price: None,
             alternatives: None,
             over: None,
@@ -319,7 +323,8 @@ impl Plan {
                         base_turn: base_turn.map_err(|e| Failure::wrong_input(e).of("--base"))?,
                     });
                 }
-                answer.gap = plan.pace.map(|pace| pace.gap());
+                answer.gap = plan.pace.and_then(|pace| pace.gap());
+                answer.blended = plan.blended;
                 self.format.print(&answer, table)?;
                 if let Some(file) = &self.output {
                     write_new(file, scenario.to_toml().as_bytes(), self.force)?;
@@ -495,5 +500,8 @@ fn table(answer: &Answer) -> String {
             gap.map_or(String::new(), |gap| format!(", {:.1} % over the motion with unlimited jerk", 100.0 * gap));
         format!("\nheld back by the {limit}{gap}\n")
     });
-    format!("{}{}", table.to_string().trim_start(), held.collect::<String>())
+    let rests = answer.blended.map_or(String::new(), |blended| {
+        format!("\nrests at its corners, which is faster: rounded off it would take {blended:.6} s\n")
+    });
+    format!("{}{}{rests}", table.to_string().trim_start(), held.collect::<String>())
 }

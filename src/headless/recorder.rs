@@ -356,7 +356,9 @@ fn properties(scenario: &Scenario, peaks: &Peaks, plan: &Plan) -> AnyValues {
         if let Some(limit) = pace.leading {
             all = all.with_component::<Text>("limit", words(&limit.to_string()));
         }
-        all = all.with_component::<Scalar>("gap", number(pace.taken / pace.unlimited - 1.0));
+        if let Some(gap) = pace.gap() {
+            all = all.with_component::<Scalar>("gap", number(gap));
+        }
     }
     // By drive, a number for each cycle: so far it has drifted in all.
     if let [start, ends @ ..] = &cycles[..] {

@@ -21,6 +21,8 @@ pub mod follow;
 pub mod forecast;
 pub mod given;
 pub mod inverse;
+mod jerk;
+mod keep;
 pub mod law;
 pub mod least_reaction;
 pub mod limits;

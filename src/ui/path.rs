@@ -107,9 +107,12 @@ fn time(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>
     if session.scenario().task.law.is_fastest() {
         let pace = session.run().plan().pace;
         let leads = pace.and_then(|p| p.leading).map_or(String::new(), |limit| format!(", {limit} leads"));
-        let gap = pace.map(|p| p.gap()).filter(|gap| *gap > 5e-4);
+        let gap = pace.and_then(|p| p.gap()).filter(|gap| *gap > 5e-4);
         let gap = gap.map_or(String::new(), |gap| format!(", {:.1} % over unlimited jerk", 100.0 * gap));
         note(ui, p, &format!("T = {} s{leads}{gap}", signed(session.run().planned_time(), 3)));
+        if let Some(blended) = session.run().plan().blended {
+            note(ui, p, &format!("rests at its corners: rounded off it would take {} s", signed(blended, 3)));
+        }
         return;
     }
     let mut time = session.scenario().task.time;

@@ -47,7 +47,10 @@ fn every_shape_is_reactionless() {
         assert_eq!(last.phase, Phase::Rest, "{text}");
         assert!(last.peaks.torque.max_abs() > 0.1, "{text}: it moves");
         assert!(frames.iter().all(|f| (f.b_reference - 2.4).abs() < 1e-11), "{text}");
-        assert!(frames.iter().all(|f| f.q_reference.0.minus(&f.q.0).max_abs() < 1e-4), "{text}");
+        // The fastest law steps between accelerations anywhere within a step of 1 ms: up to 57 rad/s² for half of it, of
+        // which a loop of 20 rad/s makes 57 × 0.5e-3 / (20 e) rad at most.
+        let behind = if text.contains("fastest") { 5.3e-4 } else { 1e-4 };
+        assert!(frames.iter().all(|f| f.q_reference.0.minus(&f.q.0).max_abs() < behind), "{text}");
         let points = scenario.task.points();
         let end = if closed { points[0] } else { points[points.len() - 1] };
         assert!((last.tip - end).norm() < 1e-4, "{text}: {}", last.tip);
