@@ -793,6 +793,43 @@ fn without_a_display_it_records_and_names_the_file() {
     assert_eq!(fs::read_to_string(&taken).expect("file"), "mine");
 }
 
+/// With a display but nothing that draws on it, the same, and what is missing is said. Wants Xvfb.
+#[cfg(all(target_os = "linux", feature = "record", feature = "window"))]
+#[test]
+fn without_a_graphics_driver_it_records_and_says_what_is_missing() {
+    let Ok(mut display) = Command::new("Xvfb")
+        .args(["-displayfd", "1", "-screen", "0", "800x600x24"])
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+    else {
+        println!("skipped: no Xvfb");
+        return;
+    };
+    let mut number = String::new();
+    let out = display.stdout.take().expect("piped");
+    std::io::BufRead::read_line(&mut std::io::BufReader::new(out), &mut number).expect("its number");
+    let folder = Folder::new();
+    let out = Command::new(env!("CARGO_BIN_EXE_stillbase"))
+        .env("DISPLAY", format!(":{}", number.trim()))
+        .env_remove("WAYLAND_DISPLAY")
+        .env_remove("WAYLAND_SOCKET")
+        .env("VK_ICD_FILENAMES", "/nonexistent")
+        .env("VK_DRIVER_FILES", "/nonexistent")
+        .current_dir(&folder.0)
+        .stdin(Stdio::null())
+        .output();
+    let _ = display.kill();
+    let _ = display.wait();
+    let out = out.expect("starts");
+    let said = text(&out.stderr);
+    assert_eq!(out.status.code(), Some(0), "{said}");
+    assert!(said.contains("case-3.rrd"), "{said}");
+    assert!(said.contains("graphics driver") || said.contains("libvulkan") || said.contains("window needs"), "{said}");
+    assert!(folder.0.join("case-3.rrd").exists());
+}
+
 #[test]
 fn help_names_every_command_with_units_and_examples() {
     let all = prints(&["--help"]);
