@@ -144,6 +144,11 @@ impl Edit {
         matches!(self, Self::DragTarget { .. } | Self::SlideB { .. })
     }
 
+    /// Whether it sets limits of joints.
+    pub fn sets_limits(&self) -> bool {
+        matches!(self, Self::SetMachine { key, .. } if key.starts_with("limits."))
+    }
+
     /// Whether it changes the force at the end effector.
     pub fn pushes(&self) -> bool {
         match self {
@@ -178,6 +183,9 @@ impl Edit {
 fn task_title(change: &toml::Table) -> String {
     if ["from", "via", "to"].iter().any(|key| change.contains_key(*key)) {
         return "move waypoints".into();
+    }
+    if change.is_empty() {
+        return "go back to the path".into();
     }
     let say = |(key, value): (&String, &toml::Value)| {
         let value = value.as_str().map_or_else(|| value.to_string(), Into::into);

@@ -10,7 +10,7 @@ mod run;
 
 pub use edit::{Edit, TimedEdit};
 pub use planning::{Plan, curves};
-pub use run::{Refusal, Run, felt, replay, settled};
+pub use run::{Refusal, Run, Waiting, felt, replay, settled};
 
 use run::in_order;
 
@@ -76,7 +76,7 @@ impl Session {
     /// Opens a scenario; its saved edits are replayed up to its duration, and the cursor stands at the start.
     ///
     /// # Errors
-    /// If it cannot start, or one of its edits cannot apply.
+    /// If it cannot start, or one of its edits cannot apply. A session that was saved while it waited waits again.
     pub fn open(scenario: Scenario) -> Result<Self, Refusal> {
         let mut ground = scenario;
         let mut script = in_order(&std::mem::take(&mut ground.edits));
@@ -86,13 +86,14 @@ impl Session {
             false => 0,
         };
         script.retain(|e| e.step <= end);
-        let mut session = Self::of(Document { scenario: ground, script, end })?;
+        let patient = !script.is_empty();
+        let mut session = Self::of(Document { scenario: ground, script, end }, patient)?;
         session.cursor = 0;
         Ok(session)
     }
 
-    fn of(document: Document) -> Result<Self, Refusal> {
-        let (run, frames) = perform(&document, None)?;
+    fn of(document: Document, patient: bool) -> Result<Self, Refusal> {
+        let (run, frames) = perform(&document, None, patient)?;
         let cursor = frames.len() - 1;
         Ok(Self {
             document,
@@ -140,7 +141,12 @@ impl Session {
 
     /// Whether the display will change by itself.
     pub fn is_moving(&self) -> bool {
-        self.playing && !(self.is_at_end() && self.is_settled())
+        self.playing && self.run.waiting().is_none() && !(self.is_at_end() && self.is_settled())
+    }
+
+    /// Whether there can be one more frame.
+    fn has_room(&self) -> bool {
+        !self.is_full() && self.run.waiting().is_none()
     }
 
     /// Whether it holds as many frames as it can: time stands still until it starts over.
@@ -171,6 +177,18 @@ impl Session {
         }
     }
 
+    /// The b nearest to one, rad, at which the points of the task stay where they are; `None` if no b serves them all.
+    pub fn serving(&self, b: f64) -> Option<f64> {
+        let task = &self.scenario().task;
+        if task.samples.as_ref().is_some_and(|samples| samples.columns() != 2) {
+            // Samples of the drives have a b of their own.
+            return Some(task.b);
+        }
+        let common = self.run.planes()?.common(&task.points())?;
+        let nearest = common.nearest(b)?;
+        Some(if nearest == b { b } else { common.inwards(nearest, 1e-6) })
+    }
+
     /// Whether somebody has led the machine off its planned motion.
     pub fn is_live(&self) -> bool {
         is_led(&self.document.script)
@@ -178,6 +196,9 @@ impl Session {
 
     /// Lets time pass. At the end of a finished motion it starts over.
     pub fn play(&mut self) {
+        if self.run.waiting().is_some() {
+            return;
+        }
         if self.is_at_end() && self.is_settled() {
             self.cursor = 0;
         }
@@ -194,7 +215,7 @@ impl Session {
         let step = (time / self.scenario().step).round().max(0.0) as usize;
         if !self.is_live() {
             let planned = (self.run.planned_time() / self.scenario().step - 1e-6).ceil() as usize;
-            while self.frames.len() <= step.min(planned) && !self.is_full() {
+            while self.frames.len() <= step.min(planned) && self.has_room() {
                 self.advance_run();
             }
         }
@@ -205,7 +226,7 @@ impl Session {
     pub fn step_by(&mut self, steps: i64) {
         self.playing = false;
         let to = (self.cursor as i64).saturating_add(steps).max(0) as usize;
-        while self.frames.len() <= to && !self.is_full() {
+        while self.frames.len() <= to && self.has_room() {
             self.advance_run();
         }
         self.cursor = to.min(self.frames.len() - 1);
@@ -243,10 +264,22 @@ impl Session {
     /// and the run so far is made again.
     ///
     /// # Errors
-    /// If it cannot apply; then nothing has changed.
+    /// If it cannot apply; then nothing has changed. Joint limits always apply: where the task does not fit into them,
+    /// the run waits.
     pub fn apply(&mut self, edit: Edit) -> Result<(), Refusal> {
-        let now = self.concerns_now(&edit);
-        if now { self.apply_now(edit) } else { self.amend(edit) }?;
+        let mut now = self.concerns_now(&edit);
+        if let (true, Some(waiting)) = (now, self.run.waiting()) {
+            return Err(waiting.why.clone());
+        }
+        let done = if now { self.apply_now(edit.clone()) } else { self.amend(edit.clone()) };
+        match done {
+            Err(_) if now && edit.sets_limits() => {
+                // The motion in progress does not keep them: they hold from its start.
+                now = false;
+                self.amend(edit)?;
+            }
+            done => done?,
+        }
         self.gesture_now = Some(now);
         Ok(())
     }
@@ -256,6 +289,8 @@ impl Session {
         match edit {
             Edit::DragTarget { .. } | Edit::SlideB { .. } | Edit::Push { .. } => true,
             Edit::PoseB { .. } => self.is_live(),
+            // Whoever leads the machine finds other limits where he is.
+            edit if edit.sets_limits() && self.is_live() && self.run.waiting().is_none() => true,
             // The path that the machine is on cannot change its time, nor can it move to another base.
             edit if edit.is_of_the_whole() => false,
             // A slider that set the machine in motion goes on as it began.
@@ -276,7 +311,7 @@ impl Session {
         if !self.is_at_end() {
             document.end = self.cursor as u64;
             document.script.retain(|e| e.step <= document.end);
-            remade = Some(perform(&document, Some(&self.run))?);
+            remade = Some(perform(&document, Some(&self.run), false)?);
         }
         let timed = TimedEdit { step: document.end, edit };
         let joins = self.gesture
@@ -318,7 +353,10 @@ impl Session {
                 self.run.apply(&timed.edit)?;
                 self.document = document;
             }
-            _ => self.restore(document)?,
+            edit => {
+                let patient = matches!(edit, Edit::SetMachine { .. }) || self.run.waiting().is_some();
+                self.restore(document, patient)?;
+            }
         }
         self.remember(before, timed, inverse);
         Ok(())
@@ -343,7 +381,10 @@ impl Session {
         }
         // Who leads the machine from the start does so from where this puts it.
         let place = document.script.iter().position(|e| e.step > 0 || e.edit.leads());
-        document.script.insert(place.unwrap_or(document.script.len()), timed.clone());
+        let says_nothing = matches!(&timed.edit, Edit::SetTask { change } if change.is_empty());
+        if !says_nothing {
+            document.script.insert(place.unwrap_or(document.script.len()), timed.clone());
+        }
         document
     }
 
@@ -397,7 +438,9 @@ impl Session {
         let Some(change) = self.undo.last().cloned() else { return Ok(()) };
         let after = self.document.clone();
         let done = match &change.inverse {
-            Some(inverse) if self.is_running() && !change.plans() => self.append(inverse.clone()),
+            Some(inverse) if self.is_running() && !change.plans() => {
+                self.append(inverse.clone()).or_else(|_| self.return_to(&change.before))
+            }
             _ => self.return_to(&change.before),
         };
         done?;
@@ -415,7 +458,9 @@ impl Session {
         let Some(change) = self.redo.last().cloned() else { return Ok(()) };
         let before = self.document.clone();
         let done = match &change.edit {
-            Some(timed) if self.is_running() && !change.plans() => self.append(timed.edit.clone()),
+            Some(timed) if self.is_running() && !change.plans() => {
+                self.append(timed.edit.clone()).or_else(|_| self.return_to(&change.before))
+            }
             _ => self.return_to(&change.before),
         };
         done?;
@@ -427,7 +472,7 @@ impl Session {
     /// Applies while time passes, without touching history.
     fn append(&mut self, edit: Edit) -> Result<(), Refusal> {
         if !self.concerns_now(&edit) {
-            return self.restore(self.amended(&TimedEdit { step: 0, edit }));
+            return self.restore(self.amended(&TimedEdit { step: 0, edit }), false);
         }
         self.run.apply(&edit)?;
         self.document.script.push(TimedEdit { step: self.document.end, edit });
@@ -437,7 +482,7 @@ impl Session {
 
     /// What was, with time standing still.
     fn return_to(&mut self, document: &Document) -> Result<(), Refusal> {
-        self.restore(document.clone())?;
+        self.restore(document.clone(), true)?;
         self.playing = false;
         if self.is_live() {
             self.cursor = self.frames.len() - 1;
@@ -445,9 +490,11 @@ impl Session {
         Ok(())
     }
 
-    /// Makes the run of a document; the display stays where it is, if there is a frame.
-    fn restore(&mut self, document: Document) -> Result<(), Refusal> {
-        let (run, frames) = perform(&document, Some(&self.run))?;
+    /// Makes the run of a document; the display stays where it is, if there is a frame. With patience, a task that does
+    /// not fit its machine waits; the document stays whole, to go on where it was once it fits again.
+    fn restore(&mut self, document: Document, patient: bool) -> Result<(), Refusal> {
+        let (run, frames) = perform(&document, Some(&self.run), patient)?;
+        self.playing &= run.waiting().is_none();
         (self.document, self.run, self.frames, self.unedited) = (document, run, frames, None);
         self.cursor = self.cursor.min(self.frames.len() - 1);
         Ok(())
@@ -480,9 +527,9 @@ impl Session {
 }
 
 /// Runs a document from its start to its end.
-fn perform(document: &Document, known: Option<&Run>) -> Result<(Run, Vec<Frame>), Refusal> {
+fn perform(document: &Document, known: Option<&Run>, patient: bool) -> Result<(Run, Vec<Frame>), Refusal> {
     let mut frames = Vec::with_capacity(document.end as usize + 1);
     let see = |_: &Run, frame: &Frame| frames.push(*frame);
-    let run = run::perform(&document.scenario, &document.script, Some(document.end), known, see)?;
+    let run = run::perform(&document.scenario, &document.script, (Some(document.end), patient), known, see)?;
     Ok((run, frames))
 }

@@ -46,6 +46,17 @@ impl Plan {
         self.cycles.iter().skip(1).filter_map(move |q| Some(q.0.minus(&first?.0).max_abs()))
     }
 
+    /// Rest where the end effector is as near to A as the plane of the task lets it be: for a run that waits.
+    pub fn rest(scenario: &Scenario, planes: &Planes) -> Self {
+        let (task, map) = (&scenario.task, planes.map());
+        let p = task.points()[0];
+        let pose = map.poses(p, task.b).iter().next().copied();
+        let a = pose.map_or_else(|| map.clamp(planes.boundary().nearest(p, task.b, p).a), |pose| pose.a);
+        let q = DriveAngles::from(map.lift(PlanePoint { a, b: task.b }));
+        let path = Path::JointLine { from: q, to: q };
+        Self::of(scenario, Motion::new(path, TimeLaw::Quintic, task.time))
+    }
+
     fn of(scenario: &Scenario, motion: Motion) -> Self {
         let (model, around) = dynamics_of(scenario);
         let forecast = Forecast::of(&motion, &model, &around, &Limits::of(&scenario.machine));

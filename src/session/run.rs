@@ -118,12 +118,37 @@ impl Refusal {
     }
 }
 
+/// Why a run waits: its task does not fit its machine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Waiting {
+    /// What is in the way.
+    pub why: Refusal,
+    /// Points that the plane of the task does not serve, counted from A, and the nearest b of each that would, rad, as printed.
+    pub points: Vec<(usize, Option<Decimal>)>,
+}
+
+impl Waiting {
+    fn of(scenario: &Scenario, planes: &Planes, why: Refusal) -> Self {
+        let (task, map) = (&scenario.task, planes.map());
+        let unserved = |(i, p): (usize, Vector)| {
+            let would_do = || {
+                let set = map.reach(p).ok()?;
+                set.decimal(set.inwards(set.nearest(task.b)?, 1e-6), 4)
+            };
+            map.poses(p, task.b).is_empty().then(|| (i, would_do()))
+        };
+        Self { why, points: task.points().into_iter().enumerate().filter_map(unserved).collect() }
+    }
+}
+
 /// A scenario in motion.
 #[derive(Clone, Debug)]
 pub struct Run {
     scenario: Scenario,
     planes: Option<Arc<Planes>>,
     plan: Plan,
+    /// Set where the task cannot be planned; the plan is then to rest.
+    waiting: Option<Waiting>,
     simulation: Simulation,
 }
 
@@ -149,10 +174,19 @@ impl Run {
         let mut planes = known.and_then(|run| Some((run.scenario.machine.clone(), run.planes.clone()?)));
         let (ground, count) = folded(scenario, script, &mut planes)?;
         let known = planes.filter(|(machine, _)| *machine == ground.machine).map(|(_, planes)| planes);
-        Ok((Self::with_planes(&ground, known)?, count))
+        Ok((Self::patient(&ground, known)?, count))
     }
 
     fn with_planes(scenario: &Scenario, known: Option<Arc<Planes>>) -> Result<Self, Refusal> {
+        let run = Self::patient(scenario, known)?;
+        match run.waiting {
+            Some(waiting) => Err(waiting.why),
+            None => Ok(run),
+        }
+    }
+
+    /// At rest at the start of the task; where that cannot be planned, waiting.
+    fn patient(scenario: &Scenario, known: Option<Arc<Planes>>) -> Result<Self, Refusal> {
         let planes = match known {
             Some(planes) => planes,
             None => Arc::new(Planes::of(&scenario.machine)?),
@@ -162,10 +196,18 @@ impl Run {
             true => planes,
             false => Arc::new(Planes::clone(&planes).keeping_off_change_points(keep_off)),
         };
-        let plan = plan(scenario, &planes)?;
+        let (plan, waiting) = match plan(scenario, &planes) {
+            Ok(plan) => (plan, None),
+            Err(why) => (Plan::rest(scenario, &planes), Some(Waiting::of(scenario, &planes, why))),
+        };
         let guide = Guide::Motion { motion: plan.motion.clone(), start: 0.0 };
         let simulation = Simulation::new(&scenario.setup(), guide)?;
-        Ok(Self { scenario: scenario.clone(), planes: Some(planes), plan, simulation })
+        Ok(Self { scenario: scenario.clone(), planes: Some(planes), plan, waiting, simulation })
+    }
+
+    /// Why it waits, if its task does not fit its machine.
+    pub fn waiting(&self) -> Option<&Waiting> {
+        self.waiting.as_ref()
     }
 
     /// The scenario with everything that edits have set.
@@ -509,7 +551,7 @@ fn folded(
 /// # Errors
 /// If it cannot start, or an edit cannot apply.
 pub fn replay(scenario: &Scenario, see: impl FnMut(&Run, &Frame)) -> Result<Run, Refusal> {
-    perform(scenario, &in_order(&scenario.edits), None, None, see)
+    perform(scenario, &in_order(&scenario.edits), (None, false), None, see)
 }
 
 /// What shakes the base at every step of a scenario: f_Bx and f_By of motion, N, and the moment that it feels, N m.
@@ -546,15 +588,22 @@ pub(super) fn in_order(edits: &[TimedEdit]) -> Vec<TimedEdit> {
 }
 
 /// Runs a scenario to a step, or else through its duration as edits at the start leave it, with a script in order, and
-/// shows every frame.
+/// shows every frame. A task that does not fit its machine is refused, or, with patience, waits at its first step.
 pub(super) fn perform(
     scenario: &Scenario,
     script: &[TimedEdit],
-    mut end: Option<u64>,
+    (mut end, patient): (Option<u64>, bool),
     known: Option<&Run>,
     mut see: impl FnMut(&Run, &Frame),
 ) -> Result<Run, Refusal> {
     let (mut run, begun) = Run::begin(scenario, script, known)?;
+    if let Some(waiting) = &run.waiting {
+        if !patient {
+            return Err(waiting.why.clone());
+        }
+        see(&run, &run.frame());
+        return Ok(run);
+    }
     let mut edits = script[begun..].iter().peekable();
     loop {
         let step = run.simulation().step_count();

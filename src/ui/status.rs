@@ -13,8 +13,10 @@ use crate::session::{Edit, Session};
 /// Bad news, in full, over the lower edge of the viewport, with the way out if there is one.
 pub fn news(ctx: &egui::Context, session: &Session, look: &Look, commands: &mut Vec<Command>) {
     let fault = fault(session.frame());
-    let text = match (&look.message, &fault, &look.dialog) {
-        (Some((text, true)), _, None) | (_, Some(text), None) => text,
+    let waits = session.run().waiting();
+    let waiting = waits.map(|waiting| format!("The run waits: {}", waiting.why));
+    let text = match (&look.message, &fault, &waiting, &look.dialog) {
+        (Some((text, true)), _, _, None) | (_, Some(text), _, None) | (_, _, Some(text), None) => text,
         _ => return,
     };
     let p = look.palette();
@@ -24,7 +26,11 @@ pub fn news(ctx: &egui::Context, session: &Session, look: &Look, commands: &mut 
         frame.show(ui, |ui| {
             ui.set_max_width((0.42 * ctx.content_rect().width()).max(320.0));
             ui.add(egui::Label::new(RichText::new(text).font(plain(12.0)).color(colour(p.ink))).wrap());
-            if let Some((edit, b)) = look.refused.as_ref().and_then(|wish| wish.remedy.clone()) {
+            let remedy = look.refused.as_ref().and_then(|wish| wish.remedy.clone());
+            let mends = waits
+                .and_then(|w| w.why.mending_b().zip(w.why.shown_b()))
+                .map(|(b, shown)| (Edit::task("b", b), shown));
+            if let Some((edit, b)) = remedy.or(mends) {
                 let way_out = ui.button(format!("take b = {b} rad"));
                 if way_out.on_hover_text("The same on the nearest plane that allows it").clicked() {
                     commands.extend([Command::Edit(edit), Command::EndGesture]);
@@ -89,10 +95,12 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &Look, commands
         ui.horizontal_centered(|ui| {
             let f = session.frame();
             let clean = f.peaks.is_reactionless();
+            let clean = clean && session.run().waiting().is_none();
             let tone = colour(if clean { p.zero } else { p.reaction });
             let (dot, _) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), egui::Sense::hover());
             ui.painter().circle_filled(dot.center(), 4.5, tone);
             let word = match (clean, f.is_quiet()) {
+                _ if session.run().waiting().is_some() => "waits",
                 (true, _) => "reactionless",
                 (false, false) => "reacts on its base",
                 (false, true) => "has reacted on its base",
@@ -101,7 +109,8 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &Look, commands
             lamps(ui, f, &p);
             // With a wheel the base feels less than the manipulator transmits.
             let what = if session.scenario().base.wheel.is_some() { "n felt" } else { "|n_B|" };
-            let mut facts = format!("peak {what} {:.3} N m  ·  b {:.3} rad", f.peaks.moment, f.b);
+            let b = session.run().planes().map_or(f.b, |planes| f.b.rem_euclid(planes.map().period()));
+            let mut facts = format!("peak {what} {:.3} N m  ·  b {b:.3} rad", f.peaks.moment);
             let bad_news = matches!(look.message, Some((_, true)));
             if let Some((poses, distance)) =
                 views.stage().standing(f).filter(|_| !bad_news && ui.available_width() > 460.0)
@@ -141,6 +150,9 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &Look, commands
                     }
                     (None, _) if look.pushing => {
                         ("pull at the end effector to push it, 20 N for each metre  ·  U lets go".into(), p.ink)
+                    }
+                    (None, _) if session.is_live() => {
+                        ("led by hand  ·  B goes back to the path  ·  F1 keys".into(), p.dim)
                     }
                     (None, _) if look.view.shows_machine() => {
                         ("drag the target, a point or the b ring  ·  Space plays  ·  F1 keys".into(), p.dim)
