@@ -66,7 +66,7 @@
 //! # Source map
 //! | layer | modules | knows |
 //! |---|---|---|
-//! | words | [`planar`], [`text`] | vectors as x + iy, values per drive; text from outside |
+//! | words | [`planar`], [`text`], [`range`] | vectors as x + iy, values per drive; text from outside; where numbers may lie |
 //! | machine | [`machine`], [`kinematics`], [`dynamics`] | links, constants g, C, J, Eqs (1)–(6) |
 //! | inside | [`joint_forces`] | pins, change points, what tilts the base |
 //! | methods | [`balance`], [`reactionless`], [`pose_constant`], [`plan`], [`control`] | Eqs (7)–(16), paths, time laws, prices, feedback |
@@ -97,6 +97,7 @@ pub mod plan;
 pub mod planar;
 pub mod plant;
 pub mod pose_constant;
+pub mod range;
 pub mod reactionless;
 #[cfg(feature = "render")]
 pub mod render;

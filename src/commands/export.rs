@@ -8,11 +8,11 @@ use stillbase::dynamics::{Surroundings, inverse};
 use stillbase::files::{check_new, write_new};
 use stillbase::machine::Inertia;
 use stillbase::planar::Vector;
-use stillbase::session::{Run, replay, settled};
+use stillbase::session::{Run, replay_if, settled};
 
 use super::failure::Failure;
 use super::input::{Settings, scenario};
-use super::output::{Format, fixed, say};
+use super::output::{Format, check_size, fixed, say};
 
 /// Write a motion as CSV at the rate of a controller: angles, rates, accelerations, feed-forward torques
 ///
@@ -164,7 +164,9 @@ impl Export {
         }
         self.check_rows(scenario.duration.unwrap_or(scenario.task.time))?;
         let mut rows = Vec::new();
-        let run = replay(scenario, |run, f| {
+        let columns = 4 * scenario.machine.drives() + 4;
+        let fits = |last: u64| check_size(last / every as u64 + 1, columns, true);
+        let run = replay_if(scenario, fits, |run, f| {
             if f.step % every as u64 == 0 || f.step == run.last_step() {
                 let all = f.q.iter().chain(f.qd.iter()).chain(f.qdd.iter()).chain(f.torque.iter()).map(|x| x + 0.0);
                 rows.push(std::iter::once(f.time).chain(all).chain([f.tip.re, f.tip.im, f.b]).collect());

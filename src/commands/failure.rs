@@ -100,7 +100,12 @@ impl From<DesignError> for Failure {
 }
 impl From<Refusal> for Failure {
     fn from(e: Refusal) -> Self {
+        let whole = e.to_string();
         match e {
+            Refusal::Edit { refusal, .. } => match Self::from(*refusal) {
+                Self::NoAnswer(_) => Self::NoAnswer(whole),
+                _ => Self::WrongInput(whole),
+            },
             Refusal::NoPlanes(_)
             | Refusal::Unreachable { .. }
             | Refusal::Path(_)
@@ -110,9 +115,13 @@ impl From<Refusal> for Failure {
             | Refusal::Drift(_)
             | Refusal::NoCommonPlane { .. }
             | Refusal::Blocked(_)
+            | Refusal::TooLong { .. }
+            | Refusal::Full { .. }
             | Refusal::Diverged { .. } => Self::no_answer(e),
             Refusal::Machine(_)
             | Refusal::OutOfRange { .. }
+            | Refusal::TooManySteps { .. }
+            | Refusal::TooLarge { .. }
             | Refusal::LeavesLimits { .. }
             | Refusal::Curve(_)
             | Refusal::Task(_) => Self::wrong_input(e),

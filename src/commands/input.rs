@@ -8,8 +8,9 @@ use stillbase::keys;
 use stillbase::machine::{self, Inertia, Machine};
 use stillbase::planar::Vector;
 use stillbase::pose_constant::plane_map;
+use stillbase::range::Range;
 use stillbase::reactionless::PlaneMap;
-use stillbase::scenario::{Change, Scenario};
+use stillbase::scenario::{Change, PLACE, POSE_CONSTANT, Scenario};
 use stillbase::text::{self, MOST_BYTES};
 
 use super::failure::Failure;
@@ -75,7 +76,9 @@ impl MachineArgument {
 /// # Errors
 /// If there is no such scenario, or its machine is not valid.
 pub fn scenario(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
-    set(Scenario::find(name)?, settings)
+    let scenario = set(Scenario::find(name)?, settings)?;
+    tell_unused(&scenario);
+    Ok(scenario)
 }
 
 /// A scenario with its machine, plant and task changed.
@@ -99,7 +102,33 @@ pub fn set(mut scenario: Scenario, settings: &Settings) -> Result<Scenario, Fail
     scenario.control = keys::with(&scenario.control, &control).map_err(|why| wrong("control", why))?;
     change_task(&mut scenario, &task).map_err(|e| e.of("--set"))?;
     scenario.check("--set")?;
+    for key in task.keys() {
+        if let Some(want) = scenario.task.unused(key) {
+            return Err(no_use(&format!("task.{key}"), want).of("--set"));
+        }
+    }
+    for key in base.keys() {
+        if let Some(want) = scenario.base.unused(key) {
+            return Err(no_use(&format!("base.{key}"), want).of("--set"));
+        }
+    }
     Ok(scenario)
+}
+
+/// Refuses what would be passed over in silence.
+pub fn no_use(what: &str, want: &str) -> Failure {
+    Failure::wrong_input(format!("{what} has no use here: want {want}"))
+}
+
+/// Tells which keys of a scenario's own file have no say in its task; some always stand there.
+fn tell_unused(scenario: &Scenario) {
+    let standing = ["kind", "from", "to", "b", "time", "law"];
+    let keys = Change::try_from(&scenario.task).unwrap_or_default();
+    for (key, _) in keys.iter().filter(|(key, _)| !standing.contains(&key.as_str())) {
+        if let Some(want) = scenario.task.unused(key) {
+            say(format!("note: {}: task.{key} has no use there: want {want}", scenario.name));
+        }
+    }
 }
 
 /// Changes keys of a scenario's task.
@@ -163,18 +192,17 @@ fn padded(word: OsString) -> OsString {
 
 /// A point X,Y, m.
 pub fn point(text: &str) -> Result<Vector, String> {
-    let both = text.split_once(',').and_then(|(x, y)| Some(Vector::new(number(x)?, number(y)?)));
-    both.ok_or_else(|| "want X,Y in m, such as 0.5,-0.25, up to 1e6".into())
+    let both = text.split_once(',').and_then(|(x, y)| Some(Vector::new(number(x, PLACE)?, number(y, PLACE)?)));
+    both.ok_or_else(|| format!("want X,Y in m, such as 0.5,-0.25, each {PLACE}"))
 }
 
 /// A pose constant, rad.
 pub fn pose_constant(text: &str) -> Result<f64, String> {
-    number(text).ok_or_else(|| "want a number in rad, such as 2.4, up to 1e6".into())
+    number(text, POSE_CONSTANT).ok_or_else(|| format!("want a number in rad, such as 2.4, {POSE_CONSTANT}"))
 }
 
-/// A number whose digits still mean something beside metres and turns.
-fn number(text: &str) -> Option<f64> {
-    text.trim().parse().ok().filter(|x: &f64| x.abs() <= 1e6)
+fn number(text: &str, range: Range) -> Option<f64> {
+    text.trim().parse().ok().filter(|x| range.contains(*x))
 }
 
 /// A number above 0.

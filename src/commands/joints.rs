@@ -9,12 +9,12 @@ use stillbase::frame::Frame;
 use stillbase::joint_forces::{AxialMoments, Joints, KEPT, Pin, PinPeak};
 use stillbase::machine::{Inertia, Machine};
 use stillbase::planar::cross;
-use stillbase::session::replay;
+use stillbase::session::replay_if;
 
 use super::csv_file::Csv;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, Table, fixed, say};
+use super::output::{Format, Table, check_size, fixed, say};
 
 /// Say what every pin and bearing carries over a run, how near change points come, and what tilts the base
 #[derive(Args)]
@@ -172,12 +172,17 @@ impl JointsCommand {
         let n = machine.drives();
         let mut tally = Tally::new(pins.len(), Inertia::pairs(n).count());
         let (mut csv, mut written) = (None, Ok(()));
-        let run = replay(&scenario, |_, frame| {
-            tally.include(frame);
-            if self.output.is_some() && written.is_ok() {
-                written = self.csv(&mut csv, pins).and_then(|csv| csv.row(row(frame, pins.len())));
-            }
-        })
+        let columns = if self.output.is_some() { 2 * pins.len() + 3 } else { 0 };
+        let run = replay_if(
+            &scenario,
+            |last| check_size(last + 1, columns, false),
+            |_, frame| {
+                tally.include(frame);
+                if self.output.is_some() && written.is_ok() {
+                    written = self.csv(&mut csv, pins).and_then(|csv| csv.row(row(frame, pins.len())));
+                }
+            },
+        )
         .map_err(|e| Failure::from(e).of(&scenario.name))?;
         written?;
         if let Some(csv) = csv {

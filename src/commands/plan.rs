@@ -13,11 +13,13 @@ use stillbase::planar::Vector;
 use stillbase::plant::Plant;
 use stillbase::pose_constant::Planes;
 use stillbase::reactionless::BSet;
-use stillbase::scenario::{Change, Scenario, Shape, Task, TaskKind};
+use stillbase::scenario::{Change, Scenario, Task, TaskKind};
 use stillbase::session::{Refusal, Run, settled};
 
 use super::failure::Failure;
-use super::input::{DEFAULT_SCENARIO, Settings, above_zero, change_task, planes_of, point, pose_constant, scenario};
+use super::input::{
+    DEFAULT_SCENARIO, Settings, above_zero, change_task, no_use, planes_of, point, pose_constant, scenario,
+};
 use super::output::{Format, Table, fixed, say};
 use super::reach::OfMend;
 
@@ -347,20 +349,24 @@ impl Plan {
     /// Refuses options that the task has no use for, and tells what it leaves out.
     fn check_use(&self, scenario: &Scenario) -> Result<(), Failure> {
         let task = &scenario.task;
-        let kind = |kinds: &[TaskKind]| kinds.contains(&task.kind);
-        let straight = matches!(task.shape(), Shape::JointLine | Shape::Line);
-        let of_kind = [TaskKind::ChangeB, TaskKind::LeastReaction];
-        for (given, used, option, want) in [
-            (self.b_to.is_some(), kind(&of_kind), "--b-to", "--kind change-b or least-reaction"),
-            (self.moment_limit.is_some(), kind(&of_kind[..1]), "--moment-limit", "--kind change-b"),
-            (self.base.is_some(), kind(&of_kind[..1]), "--base", "--kind change-b: only a change of b turns the base"),
-            (self.cycles.is_some(), kind(&[TaskKind::ZeroMomentum]), "--cycles", "--kind zero-momentum"),
-            (self.blend.is_some(), straight, "--blend", "--shape line or joint-line: others have no corners"),
-            (self.time.is_some(), !task.law.is_fastest(), "--time", "another --law: the fastest ones find the time"),
+        for (given, key) in [
+            (!self.points.is_empty(), "from"),
+            (self.b.is_some(), "b"),
+            (self.shape.is_some(), "shape"),
+            (self.law.is_some(), "law"),
+            (self.b_to.is_some(), "b_to"),
+            (self.moment_limit.is_some(), "moment_limit"),
+            (self.cycles.is_some(), "cycles"),
+            (self.blend.is_some(), "blend"),
+            (self.time.is_some(), "time"),
         ] {
-            if given && !used {
-                return Err(Failure::wrong_input(format!("{option} has no use here: want {want}")));
+            if let Some(want) = task.unused(key).filter(|_| given) {
+                let option = if key == "from" { "X,Y".into() } else { format!("--{}", key.replace('_', "-")) };
+                return Err(no_use(&option, want));
             }
+        }
+        if self.base.is_some() && task.kind != TaskKind::ChangeB {
+            return Err(no_use("--base", "the kind change-b: only a change of b turns the base"));
         }
         if scenario.plant != Plant::default() || scenario.base.moves() {
             say("note: a plan is of the model; what differs in the plant or the base shows in `simulate`");

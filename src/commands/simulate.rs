@@ -8,13 +8,13 @@ use serde::{Serialize, Serializer};
 use stillbase::audit::Audit;
 use stillbase::files::check_new;
 use stillbase::frame::Frame;
-use stillbase::session::replay;
+use stillbase::session::replay_if;
 use stillbase::signals::{Signal, signals};
 
 use super::csv_file::Csv;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, fixed, say, yes};
+use super::output::{Format, check_size, fixed, say, yes};
 
 /// Run a scenario and print every signal over time as CSV
 #[derive(Args)]
@@ -114,7 +114,8 @@ impl Simulate {
         let (mut time, mut columns) = (Vec::new(), vec![Vec::new(); table.len()]);
         // A run cannot be left half-way; after a failure nothing more is written.
         let mut written = Ok(());
-        let run = replay(&scenario, |run, frame| {
+        let fits = |last: u64| check_size(last / self.every + 2, table.len() + 1, self.format.json);
+        let run = replay_if(&scenario, fits, |run, frame| {
             if frame.step % self.every != 0 && frame.step != run.last_step() {
                 return;
             }

@@ -176,6 +176,28 @@ fn check(scenarios: &[Scenario], options: &Options) -> Result<(), RecordError> {
     }
 }
 
+/// The most pictures of a recording, and the most pixels of all of them.
+const MOST_PICTURES: f64 = 1e5;
+const MOST_PIXELS: f64 = 1.5e11;
+
+/// Refuses more pictures than anybody would wait for.
+fn check_film(scenarios: &[Scenario], cases: &[Rehearsal], options: &Options) -> Result<(), RecordError> {
+    let Some(p) = options.pictures else { return Ok(()) };
+    let of_case = |(scenario, case): (&Scenario, &Rehearsal)| {
+        let steps = case.steps as f64;
+        steps.min(steps * scenario.step * p.fps) + 1.0
+    };
+    let count: f64 = scenarios.iter().zip(cases).map(of_case).sum();
+    let most = MOST_PICTURES.min(MOST_PIXELS / (f64::from(p.width) * f64::from(p.height))).floor();
+    match count <= most {
+        true => Ok(()),
+        false => Err(RecordError::Pictures(format!(
+            "{count:.0} of {} x {} pixels: want at most {most:.0}, fewer a second, smaller, or of a shorter run",
+            p.width, p.height
+        ))),
+    }
+}
+
 /// About how many steps a run has.
 fn steps(scenario: &Scenario) -> u64 {
     (scenario.duration.unwrap_or(scenario.task.time) / scenario.step).round() as u64
@@ -233,6 +255,7 @@ fn write(
     // Now it is known.
     let total: u64 = cases.iter().map(|case| case.steps).sum();
     before = total;
+    check_film(scenarios, &cases, options)?;
     let mut store = Store::open(to, digest(scenarios, options)).map_err(because)?;
     let mut film = Film::of(options.pictures);
     let pictured = film.is_loaded();

@@ -11,6 +11,12 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::range::{Check, Range};
+
+const INERTIA: Range = Range::new(1e-9, 1e6, "kg m²");
+const TORQUE_LIMIT: Range = Range::new(1e-9, 1e6, "N m");
+const SPEED_LIMIT: Range = Range::new(1e-9, 1e6, "rad/s");
+
 /// A reaction wheel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -63,12 +69,10 @@ impl Wheel {
         Spin { rate, torque, saturated: torque != wanted }
     }
 
-    pub(crate) fn checks(&self) -> Vec<(&'static str, f64, &'static str, bool)> {
-        let limit = |x: Option<f64>| x.is_none_or(|x| x > 0.0 && x <= 1e6);
-        vec![
-            ("base.wheel.inertia", self.inertia, "1e-9 to 1e6 kg m²", (1e-9..=1e6).contains(&self.inertia)),
-            ("base.wheel.torque_limit", self.torque_limit.unwrap_or(1.0), "above 0 N m", limit(self.torque_limit)),
-            ("base.wheel.speed_limit", self.speed_limit.unwrap_or(1.0), "above 0 rad/s", limit(self.speed_limit)),
-        ]
+    pub(crate) fn checks(&self) -> impl Iterator<Item = Check> {
+        let inertia = INERTIA.check("base.wheel.inertia", self.inertia);
+        let torque = TORQUE_LIMIT.check_some("base.wheel.torque_limit", self.torque_limit);
+        let speed = SPEED_LIMIT.check_some("base.wheel.speed_limit", self.speed_limit);
+        std::iter::once(inertia).chain(torque).chain(speed)
     }
 }

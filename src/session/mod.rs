@@ -7,12 +7,18 @@
 mod edit;
 mod planning;
 mod run;
+mod script;
+mod survey;
+
+use std::sync::Arc;
 
 pub use edit::{Edit, TimedEdit};
 pub use planning::{Plan, curves};
-pub use run::{Refusal, Run, felt, replay, settled};
+pub use run::{Refusal, Run, allowed, felt, replay, replay_if, settled};
+pub(crate) use survey::survey;
 
-use run::in_order;
+use run::{Failed, in_order};
+use script::Script;
 
 use crate::frame::Frame;
 use crate::scenario::{MAX_TIME, Scenario};
@@ -21,12 +27,12 @@ use crate::scenario::{MAX_TIME, Scenario};
 const MAX_FRAMES: usize = 180_000;
 
 /// Everything that makes a run: what undo restores and what is saved.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 struct Document {
     /// Its edits are empty; they stand in `script`.
-    scenario: Scenario,
-    /// In the order of steps, none beyond `end`.
-    script: Vec<TimedEdit>,
+    scenario: Arc<Scenario>,
+    /// None beyond `end`.
+    script: Script,
     /// Steps done.
     end: u64,
 }
@@ -52,6 +58,8 @@ impl Change {
 #[derive(Clone, Debug)]
 pub struct Session {
     document: Document,
+    /// The script of the document, one after the other.
+    edits: Vec<TimedEdit>,
     run: Run,
     frames: Vec<Frame>,
     cursor: usize,
@@ -67,11 +75,6 @@ pub struct Session {
     unedited: Option<Run>,
 }
 
-/// Whether somebody leads the machine off its planned motion.
-fn is_led(script: &[TimedEdit]) -> bool {
-    script.iter().any(|e| e.edit.leads() || (e.step > 0 && matches!(e.edit, Edit::PoseB { .. })))
-}
-
 impl Session {
     /// Opens a scenario; its saved edits are replayed up to its duration, and the cursor stands at the start.
     ///
@@ -79,22 +82,34 @@ impl Session {
     /// If it cannot start, or one of its edits cannot apply.
     pub fn open(scenario: Scenario) -> Result<Self, Refusal> {
         let mut ground = scenario;
-        let mut script = in_order(&std::mem::take(&mut ground.edits));
-        let runs = is_led(&script) || script.iter().any(|e| e.step > 0);
+        let edits = std::mem::take(&mut ground.edits);
+        Self::replayed(ground, in_order(&edits)).map_err(|failed| failed.named(&edits))
+    }
+
+    fn replayed(ground: Scenario, script: Vec<TimedEdit>) -> Result<Self, Failed> {
+        let known: Script = script.iter().cloned().collect();
+        let runs = known.is_led() || script.last().is_some_and(|e| e.step > 0);
         let end = match runs {
-            true => Run::begin(&ground, &script, None)?.0.last_step().min(MAX_FRAMES as u64 - 1),
+            true => {
+                let run = Run::begin(&ground, &script, None)?.0;
+                let end = run.whole(&script)?.min(MAX_FRAMES as u64 - 1);
+                if let Some(late) = script.iter().position(|e| e.step > end) {
+                    return Err(Failed::at(late, Refusal::Full { time: end as f64 * run.scenario().step }));
+                }
+                end
+            }
             false => 0,
         };
-        script.retain(|e| e.step <= end);
-        let mut session = Self::of(Document { scenario: ground, script, end })?;
+        let mut session = Self::of(Document { scenario: Arc::new(ground), script: known, end })?;
         session.cursor = 0;
         Ok(session)
     }
 
-    fn of(document: Document) -> Result<Self, Refusal> {
+    fn of(document: Document) -> Result<Self, Failed> {
         let (run, frames) = perform(&document, None)?;
         let cursor = frames.len() - 1;
         Ok(Self {
+            edits: document.script.to_vec(),
             document,
             run,
             frames,
@@ -130,7 +145,7 @@ impl Session {
 
     /// Edits so far.
     pub fn script(&self) -> &[TimedEdit] {
-        &self.document.script
+        &self.edits
     }
 
     /// Whether time is to pass.
@@ -173,7 +188,7 @@ impl Session {
 
     /// Whether somebody has led the machine off its planned motion.
     pub fn is_live(&self) -> bool {
-        is_led(&self.document.script)
+        self.document.script.is_led()
     }
 
     /// Lets time pass. At the end of a finished motion it starts over.
@@ -270,13 +285,16 @@ impl Session {
 
     /// At the present step; later frames, if the display was scrubbed back, are replaced.
     fn apply_now(&mut self, edit: Edit) -> Result<(), Refusal> {
+        if self.is_full() && self.is_at_end() && (edit.leads() || matches!(edit, Edit::Push { .. })) {
+            return Err(Refusal::Full { time: self.run.simulation().time() });
+        }
         let before = self.document.clone();
         let mut document = before.clone();
         let mut remade = None;
         if !self.is_at_end() {
             document.end = self.cursor as u64;
-            document.script.retain(|e| e.step <= document.end);
-            remade = Some(perform(&document, Some(&self.run))?);
+            document.script.cut(document.end);
+            remade = Some(perform(&document, Some(&self.run)).map_err(Failed::refusal)?);
         }
         let timed = TimedEdit { step: document.end, edit };
         let joins = self.gesture
@@ -294,6 +312,8 @@ impl Session {
         let inverse = unedited.inverse_of(&timed.edit);
         let mut run = unedited.clone();
         run.apply(&timed.edit)?;
+        self.edits.truncate(document.script.len());
+        self.edits.push(timed.clone());
         document.script.push(timed.clone());
         if let Some((_, frames)) = remade {
             self.frames = frames;
@@ -316,6 +336,7 @@ impl Session {
         match &timed.edit {
             Edit::SetTolerance { .. } => {
                 self.run.apply(&timed.edit)?;
+                self.edits = document.script.to_vec();
                 self.document = document;
             }
             _ => self.restore(document)?,
@@ -327,23 +348,25 @@ impl Session {
     /// The document with an edit before the first step.
     fn amended(&self, timed: &TimedEdit) -> Document {
         let mut document = self.document.clone();
-        document.script.retain(|e| !e.edit.is_replaced_by(&timed.edit));
+        let mut script: Vec<TimedEdit> =
+            self.edits.iter().filter(|e| !e.edit.is_replaced_by(&timed.edit)).cloned().collect();
         if matches!(timed.edit, Edit::SetTask { .. }) && self.is_live() {
             // To plan is to take the machine back from the hand that led it. What was set on the way stays.
-            let mut kept: Vec<TimedEdit> = Vec::with_capacity(document.script.len());
-            for e in document.script.drain(..).filter(|e| !e.edit.leads()) {
+            let mut kept: Vec<TimedEdit> = Vec::with_capacity(script.len());
+            for e in script.drain(..).filter(|e| !e.edit.leads()) {
                 if e.step > 0 && matches!(e.edit, Edit::PoseB { .. }) {
                     continue;
                 }
                 kept.retain(|old| !old.edit.is_replaced_by(&e.edit));
                 kept.push(TimedEdit { step: 0, edit: e.edit });
             }
-            document.script = kept;
+            script = kept;
             document.end = 0;
         }
         // Who leads the machine from the start does so from where this puts it.
-        let place = document.script.iter().position(|e| e.step > 0 || e.edit.leads());
-        document.script.insert(place.unwrap_or(document.script.len()), timed.clone());
+        let place = script.iter().position(|e| e.step > 0 || e.edit.leads());
+        script.insert(place.unwrap_or(script.len()), timed.clone());
+        document.script = document.script.replaced(script);
         document
     }
 
@@ -430,7 +453,9 @@ impl Session {
             return self.restore(self.amended(&TimedEdit { step: 0, edit }));
         }
         self.run.apply(&edit)?;
-        self.document.script.push(TimedEdit { step: self.document.end, edit });
+        let timed = TimedEdit { step: self.document.end, edit };
+        self.edits.push(timed.clone());
+        self.document.script.push(timed);
         self.show_present();
         Ok(())
     }
@@ -447,7 +472,8 @@ impl Session {
 
     /// Makes the run of a document; the display stays where it is, if there is a frame.
     fn restore(&mut self, document: Document) -> Result<(), Refusal> {
-        let (run, frames) = perform(&document, Some(&self.run))?;
+        let (run, frames) = perform(&document, Some(&self.run)).map_err(Failed::refusal)?;
+        self.edits = document.script.to_vec();
         (self.document, self.run, self.frames, self.unedited) = (document, run, frames, None);
         self.cursor = self.cursor.min(self.frames.len() - 1);
         Ok(())
@@ -469,8 +495,8 @@ impl Session {
     /// The session as a scenario: replayed or opened again, it gives equal frames. One that has not begun covers its
     /// motion.
     pub fn to_scenario(&self) -> Scenario {
-        let mut scenario = self.document.scenario.clone();
-        scenario.edits.clone_from(&self.document.script);
+        let mut scenario = Scenario::clone(&self.document.scenario);
+        scenario.edits.clone_from(&self.edits);
         scenario.duration = match self.document.end {
             0 => self.scenario().duration,
             end => Some(end as f64 * scenario.step),
@@ -480,9 +506,9 @@ impl Session {
 }
 
 /// Runs a document from its start to its end.
-fn perform(document: &Document, known: Option<&Run>) -> Result<(Run, Vec<Frame>), Refusal> {
+fn perform(document: &Document, known: Option<&Run>) -> Result<(Run, Vec<Frame>), Failed> {
     let mut frames = Vec::with_capacity(document.end as usize + 1);
     let see = |_: &Run, frame: &Frame| frames.push(*frame);
-    let run = run::perform(&document.scenario, &document.script, Some(document.end), known, see)?;
+    let run = run::perform(&document.scenario, &document.script.to_vec(), |_, _| Ok(document.end), known, see)?;
     Ok((run, frames))
 }

@@ -333,7 +333,7 @@ fn numbers_that_mean_nothing_are_refused() {
         fails(&["workspace", "nine-link", "--b", b], 2, &["--b"]);
     }
     fails(&["simulate", "--every", "0"], 2, &["whole number of steps"]);
-    fails(&["check", "nine-link", "--set", "length.l1=1e300"], 2, &["at most 1000000"]);
+    fails(&["check", "nine-link", "--set", "length.l1=1e300"], 2, &["lengths.l1 is 1e300: want 1e-6 to 1000000 m"]);
 }
 
 #[test]
@@ -629,8 +629,8 @@ fn settings_change_the_machine_before_anything_is_planned() {
 #[test]
 fn wrong_settings_say_what_would_be_right() {
     let refused = |set: &str, words: &[&str]| fails(&["check", "nine-link", "--set", set], 2, words);
-    refused("link.5.mass=NaN", &["link[5].mass is NaN", "want a finite number, kg"]);
-    refused("link.5.mass=-1", &["link[5].mass is -1", "want a mass above 0 kg"]);
+    refused("link.5.mass=NaN", &["link[5].mass is not a number", "want a finite number, kg"]);
+    refused("link.5.mass=-1", &["link[5].mass is -1", "want 1e-9 to 1000000 kg"]);
     refused("link.5.mass=much", &["link.5.mass=\"much\"", "want one number"]);
     refused("link.5.length=0.7", &["l5", "link 8", "parallelogram", "length.l5"]);
     refused("link.99.mass=1", &["\"99\"", "want one of \"1\""]);
@@ -654,8 +654,8 @@ fn a_damaged_machine_file_is_named_with_its_line() {
         let line = format!("arm.toml:{}:", NINE_LINK[..at].matches('\n').count() + 1);
         check(&NINE_LINK.replacen(from, to, 1), &[&[line.as_str()], words].concat());
     };
-    damage("mass = 1.45", "mass = nan", &["link[2].mass is NaN"]);
-    damage("mass = 1.45", "mass = -1.45", &["link[2].mass is -1.45", "above 0 kg"]);
+    damage("mass = 1.45", "mass = nan", &["link[2].mass is not a number"]);
+    damage("mass = 1.45", "mass = -1.45", &["link[2].mass is -1.45", "1e-9 to 1000000 kg"]);
     damage("mass = 1.45", "weight = 1.45", &["unknown field `weight`"]);
     damage("mass = 1.45", "mass = ", &[]);
     damage(
@@ -1162,4 +1162,71 @@ fn compare_tells_ways_apart() {
     assert!(table.contains("is outside the reactionless workspace"), "{table}");
     fails(&["compare", "least-reaction", "-o", &file], 2, &["table.csv"]);
     fails(&["compare", "case-3", "-o", "table.txt"], 2, &[".csv or .rrd"]);
+}
+
+/// What a kind of task or base passes over is refused where it is asked for, and told where it stands in a file.
+#[test]
+fn what_a_kind_ignores_is_refused_or_told() {
+    for (args, words) in [
+        (vec!["plan", "change-b", "--shape", "arc"], ["--shape has no use here", "the kind reactionless"]),
+        (vec!["plan", "case-3", "--cycles", "2"], ["--cycles has no use here", "the kind zero-momentum"]),
+        (vec!["plan", "circle", "--time", "2"], ["--time has no use here", "another law"]),
+        (vec!["plan", "case-3", "--base", "40,3"], ["--base has no use here", "change-b"]),
+        (
+            vec!["simulate", "change-b", "--set", "task.shape=arc"],
+            ["task.shape has no use here", "the kind reactionless"],
+        ),
+        (
+            vec!["simulate", "case-1", "--set", "task.b_to=2.5"],
+            ["task.b_to has no use here", "change-b or least-reaction"],
+        ),
+        (vec!["simulate", "case-1", "--set", "task.first_drive_to=1"], ["task.first_drive_to has no use", "same-tip"]),
+        (vec!["simulate", "case-1", "--set", "task.blend=0.1"], ["task.blend has no use here", "corners = blend"]),
+        (vec!["simulate", "circle", "--set", "task.least=peak"], ["task.least has no use here", "least-reaction"]),
+        (vec!["simulate", "circle", "--set", "task.time=3"], ["task.time has no use here", "another law"]),
+        (vec!["simulate", "case-1", "--set", "base.mass=50"], ["base.mass has no use here", "free or compliant"]),
+        (vec!["simulate", "spacecraft", "--set", "base.stiffness=[1,1,1]"], ["base.stiffness has no use", "compliant"]),
+    ] {
+        fails(&args, 2, &words);
+    }
+    prints(&["simulate", "case-1", "--set", "base.mass=50", "--set", "base.kind=free", "--every", "1000"]);
+    let folder = Folder::new();
+    let case = include_str!("../../assets/scenarios/case-3.toml");
+    let file = folder.file("own.toml", &case.replace("time = 1.0", "cycles = 3\ntime = 1.0"));
+    let out = stillbase(&["simulate", &file, "--every", "1000"]);
+    let said = text(&out.stderr);
+    assert!(out.status.code() == Some(0) && said.contains("note: case-3: task.cycles has no use there"), "{said}");
+    assert!(!text(&stillbase(&["simulate", "case-3", "--every", "1000"]).stderr).contains("note"));
+}
+
+/// What would never end, or fill the disk, is refused with the number, at once.
+#[test]
+fn what_would_never_end_is_refused() {
+    let folder = Folder::new();
+    let began = std::time::Instant::now();
+    let out = folder.path("x.csv");
+    fails(
+        &["simulate", "circle", "--set", "task.b=-2.3e18", "-o", &out],
+        2,
+        &["task.b is -2.3e18", "-1000 to 1000 rad"],
+    );
+    fails(&["simulate", "change-b", "--set", "task.moment_limit=1e-9", "-o", &out], 1, &["at most 3600 s"]);
+    fails(
+        &["simulate", "change-b", "--set", "task.moment_limit=1e-308", "-o", &out],
+        2,
+        &["task.moment_limit is 1e-308"],
+    );
+    fails(&["simulate", "circle", "--set", "drive.1.speed_limit=1e-9", "-o", &out], 1, &["at most 3600 s"]);
+    fails(&["simulate", "case-3", "--set", "drive.1.torque_limit=1e-300"], 2, &["torque_limit is 1e-300", "1e-9 to"]);
+    let case = include_str!("../../assets/scenarios/case-3.toml");
+    let long = folder.file("long.toml", &case.replace("[task]", "duration = 3600\n[task]"));
+    fails(&["simulate", &long, "-o", &out], 2, &["GB: want at most 4 GB"]);
+    fails(&["simulate", &long, "--json", "--every", "4"], 2, &["GB: want at most 1 GB"]);
+    let fine = folder.file("fine.toml", &case.replace("[task]", "duration = 3600\nstep = 1e-5\n[task]"));
+    for command in ["simulate", "joints", "spectrum", "compare"] {
+        fails(&[command, &fine], 2, &["360000000 steps: want at most 4000000"]);
+    }
+    fails(&["export", &fine, "--what", "simulated", "--rate", "100"], 2, &["360000000 steps: want at most 4000000"]);
+    assert_eq!(folder.names(), ["fine.toml", "long.toml"]);
+    assert!(began.elapsed().as_secs() < 60, "{:?}", began.elapsed());
 }

@@ -1,9 +1,9 @@
 //! `stillbase tolerance`
 
-mod merge;
+pub(crate) mod merge;
 mod parallel;
 mod report;
-mod rows;
+pub(crate) mod rows;
 mod seal;
 
 use std::ops::Range;
