@@ -6,7 +6,7 @@
 //! | angular | its angular momentum about the origin with −∫ (n_B + p_B × f_B) dt |
 //! | energy | what is there with what motors, wheel and outer force brought and friction took |
 //! | closure | the two points of every pin that closes a loop |
-//! | step | a step with two of half its size, where no contact can stick; else 0 |
+//! | step | what two ways of taking a step show: the moment that the base feels, f_B, torques, the end effector, as a share of their peaks |
 //! | plane | b with the b that was aimed at |
 
 use crate::frame::{Frame, Peaks, Tally};
@@ -22,7 +22,7 @@ pub struct Audit {
     pub energy: f64,
     /// m.
     pub closure: f64,
-    /// Largest so far, rad.
+    /// Error of what is shown, as a share of its peak.
     pub step: f64,
     /// b − b_ref, rad: the plant's own, not an error of the simulation.
     pub plane: f64,
@@ -54,6 +54,9 @@ impl Lamp {
 /// costs a few parts in a million.
 const SHARE: f64 = 1e-5;
 
+/// How far what is shown may be off, as a share of its peak.
+const STEP: f64 = 1e-3;
+
 impl Audit {
     /// Every figure beside what it may be, by the measure of what the run has moved.
     pub fn lamps(&self, peaks: &Peaks, tally: &Tally) -> [Lamp; 6] {
@@ -67,7 +70,7 @@ impl Audit {
             lamp("angular", "angular momentum + ∫ n_B dt", self.angular, Some(SHARE * turn), "kg m²/s"),
             lamp("energy", "energy − work + losses", self.energy, Some(SHARE * energy), "J"),
             lamp("loops", "pins that close loops", self.closure, Some(1e-8), "m"),
-            lamp("step", "error of a step, by halving it", self.step, Some(1e-6), "rad"),
+            lamp("step", "error of moment, force, torques, tip", self.step, Some(STEP), "of the peak"),
             lamp("plane", "b − b aimed at", self.plane, None, "rad"),
         ]
     }

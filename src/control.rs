@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::plan::Reference;
 use crate::planar::{DriveAngles, PerDrive, Pose2, Units, Vector};
 use crate::plant::{Body, Each, is_default};
+use crate::range::Check;
 
 /// Control as a file states it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -96,36 +97,36 @@ impl Control {
     }
 
     /// Every number with its key, what it should be, and whether it is.
-    pub(crate) fn checks(&self, n: usize, step: f64) -> Vec<(&'static str, f64, &'static str, bool)> {
+    pub(crate) fn checks(&self, n: usize, step: f64) -> Vec<Check> {
         let mut list = Vec::new();
         for (key, gain, most, want) in [
             ("control.kp", self.kp, 1.0 / (step * step), "0 to 1/step² s⁻², one number or one for each drive"),
             ("control.kd", self.kd, 2.0 / step, "0 to 2/step s⁻¹, one number or one for each drive"),
         ] {
             let ok = |x: f64| (0.0..=most).contains(&x);
-            list.extend(gain.values().into_iter().map(|x| (key, x, want, ok(x))));
+            list.extend(gain.values().into_iter().map(|x| Check::words(key, x, ok(x), want)));
             list.extend(gain.misfit(n, key));
         }
         let whole = |steps: f64| (steps - steps.round()).abs() < 1e-6 * steps.max(1.0);
         let steps = if self.rate > 0.0 { 1.0 / (self.rate * step) } else { 1.0 };
         list.extend([
-            (
+            Check::words(
                 "control.rate",
                 self.rate,
-                "0, or a rate whose period is a whole number of steps, Hz",
                 self.rate >= 0.0 && (1.0 - 1e-9..1e9).contains(&steps) && whole(steps),
+                "0, or a rate whose period is a whole number of steps, Hz",
             ),
-            (
+            Check::words(
                 "control.delay",
                 self.delay,
-                "0 to 1 s, a whole number of steps",
                 (0.0..=1.0).contains(&self.delay) && whole(self.delay / step),
+                "0 to 1 s, a whole number of steps",
             ),
-            (
+            Check::words(
                 "control.encoder",
                 self.encoder,
-                "0, or 16 to 1e12 counts in a turn",
                 self.encoder == 0.0 || (16.0..=1e12).contains(&self.encoder),
+                "0, or 16 to 1e12 counts in a turn",
             ),
         ]);
         list

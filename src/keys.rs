@@ -4,6 +4,8 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 
+use crate::range::shortened;
+
 /// The word that takes a key out, so that its default returns.
 const DEFAULT: &str = "default";
 
@@ -18,7 +20,7 @@ pub fn with<T: Serialize + DeserializeOwned>(value: &T, change: &Table) -> Resul
     }
     let mut table = Table::try_from(value).map_err(|e| e.to_string())?;
     lay(&mut table, change);
-    table.try_into().map_err(|e: toml::de::Error| e.message().to_owned())
+    table.try_into().map_err(|e: toml::de::Error| shortened(e.message(), 300))
 }
 
 /// What the keys of a change hold now, so that [`with`] brings it back.

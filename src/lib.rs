@@ -66,13 +66,13 @@
 //! # Source map
 //! | layer | modules | knows |
 //! |---|---|---|
-//! | words | [`planar`], [`text`] | vectors as x + iy, values per drive; text from outside |
+//! | words | [`planar`], [`text`], [`range`] | vectors as x + iy, values per drive; text from outside; where numbers may lie |
 //! | machine | [`machine`], [`kinematics`], [`dynamics`] | links, constants g, C, J, Eqs (1)–(6) |
 //! | inside | [`joint_forces`] | pins, change points, what tilts the base |
 //! | methods | [`balance`], [`reactionless`], [`pose_constant`], [`plan`], [`control`] | Eqs (7)–(16), paths, time laws, prices, feedback |
 //! | motion | [`frame`], [`simulation`], [`signals`], [`spectrum`] | one instant, one step, one table, its frequencies |
 //! | study | [`tolerance`] | random machines around a nominal one |
-//! | path | [`scenario`], [`session`] | files, edits, undo, replay |
+//! | path | [`scenario`], [`session`], [`verdict`] | files, edits, undo, replay, what a run came to |
 //! | picture | [`scene`] | plain data to draw, cameras, palette |
 //! | devices | `render` (feature `render`), `ui` (feature `ui`) | wgpu; egui |
 //! | edges | `window`, `headless` (feature `record`), [`files`], the program's `commands` | displays, Rerun, disks |
@@ -97,6 +97,7 @@ pub mod plan;
 pub mod planar;
 pub mod plant;
 pub mod pose_constant;
+pub mod range;
 pub mod reactionless;
 #[cfg(feature = "render")]
 pub mod render;
@@ -111,5 +112,6 @@ pub mod text;
 pub mod tolerance;
 #[cfg(feature = "ui")]
 pub mod ui;
+pub mod verdict;
 #[cfg(feature = "window")]
 pub mod window;

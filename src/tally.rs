@@ -1,5 +1,6 @@
 //! [`Tally`]: what a run has come to so far, summed over time: root mean squares, impulses, energy, motion of the base.
 
+use crate::dynamics::BaseWrench;
 use crate::plant::Slope;
 
 /// Sums over a run.
@@ -9,7 +10,9 @@ pub struct Tally {
     pub time: f64,
     /// ∫ |f_B|² dt of the dynamic part, N² s.
     pub force_squared: f64,
-    /// ∫ n² dt of the moment that the base feels, N² m² s.
+    /// ∫ n_B² dt of what the arm transmits, N² m² s.
+    pub arm_moment_squared: f64,
+    /// ∫ n² dt of the moment that the base feels, past a reaction wheel, N² m² s.
     pub moment_squared: f64,
     /// ∫ |f_B| dt of the dynamic part, N s.
     pub force_impulse: f64,
@@ -33,25 +36,28 @@ pub struct Tally {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Integrands {
     force: f64,
+    arm_moment: f64,
     moment: f64,
     power: f64,
     wheel: f64,
 }
 
 impl Tally {
-    /// Takes in one more instant, at a time, s, by the trapezoidal rule; `felt` is the moment that the base feels, N m.
-    pub(crate) fn include(&mut self, x: &Slope, felt: f64, time: f64) {
+    /// Takes in one more instant, with what the manipulator transmits, at a time, s, by the trapezoidal rule.
+    pub(crate) fn include(&mut self, x: &Slope, wrench: &BaseWrench, time: f64) {
         let turning = x.qd.get(x.torque.len()).copied().unwrap_or(0.0);
         let powers = x.torque.iter().zip(x.qd.iter()).map(|(t, qd)| (t * (qd - turning)).abs());
         let wheel = (x.spin.torque * (x.spin.rate - turning)).abs();
         let now = Integrands {
-            force: x.wrench.dynamic.force.norm(),
-            moment: felt.abs(),
+            force: wrench.dynamic.force.norm(),
+            arm_moment: wrench.total().moment.abs(),
+            moment: (wrench.total().moment - x.spin.torque).abs(),
             power: powers.sum::<f64>() + wheel,
             wheel: x.spin.rate,
         };
         let (h, was) = (0.5 * (time - self.time), self.last);
         self.force_squared += h * (now.force.powi(2) + was.force.powi(2));
+        self.arm_moment_squared += h * (now.arm_moment.powi(2) + was.arm_moment.powi(2));
         self.moment_squared += h * (now.moment.powi(2) + was.moment.powi(2));
         self.force_impulse += h * (now.force + was.force);
         self.moment_impulse += h * (now.moment + was.moment);
@@ -71,7 +77,12 @@ impl Tally {
         rms(self.force_squared, self.time)
     }
 
-    /// Root mean square of the moment that the base feels, N m.
+    /// Root mean square of n_B, what the arm transmits, N m.
+    pub fn arm_moment_rms(&self) -> f64 {
+        rms(self.arm_moment_squared, self.time)
+    }
+
+    /// Root mean square of the moment that the base feels, past a reaction wheel, N m.
     pub fn moment_rms(&self) -> f64 {
         rms(self.moment_squared, self.time)
     }

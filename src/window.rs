@@ -1,12 +1,15 @@
 //! A real window around a [`Desk`], in a winit event loop of our own.
 
+use std::cell::Cell;
 use std::path::PathBuf;
+use std::rc::Rc;
 use std::time::Instant;
 
 use thiserror::Error;
 use winit::event_loop::{ControlFlow, EventLoop};
 
 use crate::render::Renderer;
+use crate::render::offscreen::{Gpu, NoAdapter};
 use crate::scenario::Scenario;
 use crate::scene::palette::Theme;
 use crate::session::Refusal;
@@ -29,10 +32,11 @@ pub enum WindowError {
     /// The scenario cannot start.
     #[error(transparent)]
     Refused(#[from] Refusal),
-    /// No graphics adapter, or the window system failed.
-    #[error(
-        "the window could not be opened: {0} (on Debian, `apt-get install mesa-vulkan-drivers` gives a software adapter)"
-    )]
+    /// Nothing can draw on the display.
+    #[error("the window cannot be drawn: {0}")]
+    NoAdapter(String),
+    /// The window system failed.
+    #[error("the window could not be opened: {0}")]
     Failed(String),
 }
 
@@ -59,10 +63,34 @@ pub fn run(scenario: Scenario, theme: Theme) -> Result<(), WindowError> {
         renderer: eframe::Renderer::Wgpu,
         ..Default::default()
     };
-    let create: eframe::AppCreator<'_> =
-        Box::new(move |cc| Ok(Box::new(App::new(cc, desk, Clock::Wall(None)).ok_or("no graphics adapter")?)));
+    let opened = Rc::new(Cell::new(false));
+    let seen = opened.clone();
+    let create: eframe::AppCreator<'_> = Box::new(move |cc| {
+        let app = App::new(cc, desk, Clock::Wall(None)).ok_or("no graphics adapter")?;
+        seen.set(true);
+        Ok(Box::new(app))
+    });
     let mut app = eframe::create_native("stillbase", options, create, &event_loop);
-    event_loop.run_app(&mut app).map_err(|e| WindowError::Failed(e.to_string()))
+    event_loop.run_app(&mut app).map_err(|e| WindowError::Failed(e.to_string()))?;
+    // Where eframe cannot draw, it ends its loop as if the window had been closed, and keeps the reason to itself.
+    if opened.get() { Ok(()) } else { Err(WindowError::NoAdapter(what_is_missing())) }
+}
+
+/// Why nothing could be drawn on a display that is there.
+fn what_is_missing() -> String {
+    // SAFETY: the loader of the graphics drivers, which has been tried a moment ago in the same way; its initialisers do
+    // nothing but set up its own state.
+    if cfg!(target_os = "linux") && unsafe { libloading::Library::new("libvulkan.so.1") }.is_err() {
+        return "libvulkan.so.1 is missing: install it with `apt-get install libvulkan1`".into();
+    }
+    match Gpu::new() {
+        // What was tried in vain helps nobody.
+        Err(NoAdapter::Missing(_)) => "no graphics driver answers; on Debian and its kin one in software comes with \
+                                       `apt-get install mesa-vulkan-drivers`"
+            .into(),
+        Err(other) => other.to_string(),
+        Ok(gpu) => format!("the GPU adapter {} cannot draw on this display", gpu.name()),
+    }
 }
 
 /// winit puts the place in its own source before what is wrong.
@@ -108,9 +136,12 @@ pub enum Clock {
 }
 
 impl App {
-    /// Around a desk; `None` if eframe has no graphics adapter.
+    /// Around a desk; `None` if eframe has no graphics adapter, or one whose shaders read no lists.
     pub fn new(cc: &eframe::CreationContext<'_>, desk: Desk, clock: Clock) -> Option<Self> {
         let state = cc.wgpu_render_state.as_ref()?;
+        if state.device.limits().max_storage_buffers_per_shader_stage == 0 {
+            return None;
+        }
         let renderer = Renderer::new(&state.device, state.target_format);
         state.renderer.write().callback_resources.insert(renderer);
         Some(Self { desk, clock })

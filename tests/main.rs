@@ -6,6 +6,8 @@ mod balance;
 mod bases;
 #[path = "suite/boundary.rs"]
 mod boundary;
+#[path = "suite/bounds.rs"]
+mod bounds;
 #[path = "suite/cases.rs"]
 mod cases;
 #[path = "suite/change_points.rs"]
@@ -13,8 +15,15 @@ mod change_points;
 #[cfg(feature = "cli")]
 #[path = "suite/cli.rs"]
 mod cli;
+/// The program's own modules, so that what they read is tried in process.
+#[cfg(feature = "cli")]
+#[allow(dead_code, unused_imports, reason = "the tests use a few of them")]
+#[path = "../src/commands/mod.rs"]
+mod commands;
 #[path = "suite/compare.rs"]
 mod compare;
+#[path = "suite/contacts.rs"]
+mod contacts;
 #[path = "suite/convergence.rs"]
 mod convergence;
 #[path = "suite/curve.rs"]
@@ -24,6 +33,11 @@ mod dynamics;
 #[cfg(feature = "cli")]
 #[path = "suite/files.rs"]
 mod files;
+#[path = "suite/fuzz.rs"]
+mod fuzz;
+#[cfg(feature = "cli")]
+#[path = "suite/fuzz_commands.rs"]
+mod fuzz_commands;
 #[path = "suite/given.rs"]
 mod given;
 #[cfg(feature = "render")]
@@ -41,6 +55,8 @@ mod least_reaction;
 mod machine_file;
 #[path = "suite/mesh.rs"]
 mod mesh;
+#[path = "suite/mutation.rs"]
+mod mutation;
 #[path = "suite/nine_body.rs"]
 mod nine_body;
 #[path = "suite/null_space.rs"]
@@ -86,6 +102,8 @@ mod timing;
 mod tolerance;
 #[path = "suite/trace.rs"]
 mod trace;
+#[path = "suite/verdict.rs"]
+mod verdict;
 #[path = "suite/views.rs"]
 mod views;
 #[path = "suite/windings.rs"]

@@ -10,7 +10,7 @@ use stillbase::scenario::Scenario;
 
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, Table, fixed, say, yes};
+use super::output::{Format, Table, fixed, say};
 
 /// Compare runs: one task done in several ways, or any scenarios, by what reaches the base and what it costs
 ///
@@ -65,6 +65,7 @@ impl Serialize for Row {
                     }
                 }
                 map.serialize_entry("reactionless", &summary.reactionless)?;
+                map.serialize_entry("verdict", &summary.verdict.sentence())?;
                 if let Some(fault) = &summary.fault {
                     map.serialize_entry("audit", fault)?;
                 }
@@ -110,9 +111,9 @@ impl Compare {
             Some(file) => self.csv(&runs, file)?,
             None => {}
         }
-        let fault = runs.iter().find_map(|r| Some(format!("{}: {}", r.name, r.outcome.as_ref().ok()?.fault.as_ref()?)));
+        let fault = runs.iter().find_map(|r| Some((r.name.clone(), r.outcome.as_ref().ok()?.fault.clone()?)));
         self.format.print(&Answer { runs }, table)?;
-        fault.map_or(Ok(()), |why| Err(Failure::NoAnswer(format!("audit failed: {why}; want a smaller step"))))
+        fault.map_or(Ok(()), |(name, why)| Err(Failure::untrusted(&name, why)))
     }
 
     fn scenarios(&self) -> Result<Vec<(Option<&'static str>, Scenario)>, Failure> {
@@ -161,11 +162,10 @@ impl Compare {
                 Err(_) => String::new(),
             });
             let (verdict, why) = match &row.outcome {
-                Ok(summary) if summary.fault.is_some() => ("untrusted", String::new()),
-                Ok(summary) => (yes(summary.reactionless), String::new()),
-                Err(why) => ("", why.clone()),
+                Ok(summary) => (summary.verdict.answer(), String::new()),
+                Err(why) => (String::new(), why.clone()),
             };
-            let cells = [row.name.clone()].into_iter().chain(values).chain([verdict.to_owned(), why]);
+            let cells = [row.name.clone()].into_iter().chain(values).chain([verdict, why]);
             writer.write_record(cells).map_err(failed)?;
         }
         match writer.into_inner() {
@@ -194,8 +194,7 @@ fn table(answer: &Answer) -> String {
         match &row.outcome {
             Ok(s) => {
                 let cells = columns.iter().map(|c| (c.value)(s).map_or_else(|| "–".into(), |x| fixed(x, c.decimals)));
-                let verdict = if s.fault.is_some() { "untrusted" } else { yes(s.reactionless) };
-                table.row([name].into_iter().chain(cells).chain([verdict.to_owned()]));
+                table.row([name].into_iter().chain(cells).chain([s.verdict.answer()]));
             }
             Err(why) => refused += &format!("{name}: {why}\n"),
         }

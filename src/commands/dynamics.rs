@@ -84,9 +84,13 @@ fn outcome(inertia: &Inertia, around: &Surroundings, q: &PerDrive, qd: &PerDrive
 
 /// Reads states, each as q, q̇, q̈.
 fn states(file: &Path, machine: &Machine) -> Result<Vec<[PerDrive; 3]>, Failure> {
-    let text = read(file)?;
-    let wrong = |line: usize, what: String| Failure::WrongInput(format!("{}:{line}: {what}", file.display()));
-    let states: Vec<State> = serde_json::from_str(&text).map_err(|e| {
+    states_in(&read(file)?, &file.display().to_string(), machine)
+}
+
+/// The same from text; `file` is what errors call it.
+pub fn states_in(text: &str, file: &str, machine: &Machine) -> Result<Vec<[PerDrive; 3]>, Failure> {
+    let wrong = |line: usize, what: String| Failure::WrongInput(format!("{file}:{line}: {what}"));
+    let states: Vec<State> = serde_json::from_str(text).map_err(|e| {
         let said = e.to_string();
         let what = said.rsplit_once(" at line ").map_or(said.as_str(), |(what, _)| what);
         wrong(e.line(), format!(r#"{what}: want [{{"q": [rad], "qd": [rad/s], "qdd": [rad/s²]}}, …]"#))

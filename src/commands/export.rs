@@ -4,20 +4,24 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use serde::Serialize;
+use stillbase::audit::Audit;
 use stillbase::dynamics::{Surroundings, inverse};
 use stillbase::files::{check_new, write_new};
 use stillbase::machine::Inertia;
 use stillbase::planar::Vector;
-use stillbase::session::{Run, replay, settled};
+use stillbase::scenario::Scenario;
+use stillbase::session::{Run, replay_if, settled};
 
 use super::failure::Failure;
 use super::input::{Settings, scenario};
-use super::output::{Format, fixed, say};
+use super::output::{Format, check_size, fixed, say};
+use super::simulate::trusted;
 
 /// Write a motion as CSV at the rate of a controller: angles, rates, accelerations, feed-forward torques
 ///
-/// Columns are t, q, qd, qdd, tau_ff of each drive, x, y of the end effector, and b; SI and radians, every digit. The
-/// first row is the start and the last one the end, also where the rate does not divide the duration.
+/// Columns are t, q, qd, qdd, tau_ff of each drive, x, y of the end effector, and b; SI and radians, every digit. What is
+/// simulated on a base that moves has base_x, base_y, theta and their rates base_xd, base_yd, thetad besides: q is absolute,
+/// an encoder reads q - theta. The first row is the start and the last one the end, also where the rate does not divide the duration.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -52,6 +56,9 @@ enum What {
     Simulated,
 }
 
+/// Columns of a base that moves: where B is, how the base is turned, and the rates of both.
+const OF_BASE: [&str; 6] = ["base_x", "base_y", "theta", "base_xd", "base_yd", "thetad"];
+
 /// The most rows: more are asked for by a slip of the hand.
 const MOST_ROWS: f64 = 2e6;
 
@@ -69,6 +76,8 @@ struct Answer {
     last_interval: f64,
     columns: Vec<String>,
     rows: Vec<Vec<f64>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    audit_failed: Option<String>,
 }
 
 impl Export {
@@ -80,7 +89,7 @@ impl Export {
         let scenario = scenario(&self.scenario, &self.settings)?;
         let name = scenario.name.clone();
         let drives = scenario.machine.drives();
-        let (rows, duration) = match self.what {
+        let (rows, duration, audit_failed) = match self.what {
             What::Reference => {
                 let (ground, later) = settled(&scenario)?;
                 if later > 0 {
@@ -89,15 +98,18 @@ impl Export {
                 if ground.base.moves() {
                     say("note: tau_ff is of the model on a fixed base; --what simulated has what control asks for");
                 }
-                self.reference(&Run::new(&ground).map_err(|e| Failure::from(e).of(&name))?)?
+                let (rows, duration) = self.reference(&Run::new(&ground).map_err(|e| Failure::from(e).of(&name))?)?;
+                (rows, duration, None)
             }
             What::Simulated => self.simulated(&scenario)?,
         };
+        let based = self.what == What::Simulated && scenario.base.moves();
         let torque = if self.what == What::Reference { "tau_ff" } else { "tau" };
         let per_drive = ["q", "qd", "qdd", torque].into_iter();
         let columns: Vec<String> = std::iter::once("t".to_owned())
             .chain(per_drive.flat_map(|word| (1..=drives).map(move |k| format!("{word}{k}"))))
             .chain(["x", "y", "b"].map(String::from))
+            .chain(OF_BASE.map(String::from).into_iter().filter(|_| based))
             .collect();
         let last_interval = match rows.as_slice() {
             [.., before, last] => last[0] - before[0],
@@ -112,7 +124,8 @@ impl Export {
             ));
         }
         let what = if self.what == What::Reference { "reference" } else { "simulated" };
-        let answer = Answer { scenario: name, what, rate: self.rate, duration, last_interval, columns, rows };
+        let answer =
+            Answer { scenario: name, what, rate: self.rate, duration, last_interval, columns, rows, audit_failed };
         let csv = csv(&answer)?;
         match &self.output {
             Some(file) => {
@@ -121,10 +134,10 @@ impl Export {
                     self.format.print(&answer, |_| String::new())?;
                 }
                 say(format!("wrote {}, {} rows", file.display(), answer.rows.len()));
-                Ok(())
             }
-            None => self.format.print(&answer, |_| csv),
+            None => self.format.print(&answer, |_| csv)?,
         }
+        trusted(&answer.scenario, answer.audit_failed)
     }
 
     /// Rows of the planned motion, and its duration, s.
@@ -149,8 +162,8 @@ impl Export {
         Ok(((0..=spaces).map(row).collect(), whole))
     }
 
-    /// Rows of what the machine does, and how long it is seen, s.
-    fn simulated(&self, scenario: &stillbase::scenario::Scenario) -> Result<(Vec<Vec<f64>>, f64), Failure> {
+    /// Rows of what the machine does, how long it is seen, s, and the audit that it fails.
+    fn simulated(&self, scenario: &Scenario) -> Result<(Vec<Vec<f64>>, f64, Option<String>), Failure> {
         let steps = 1.0 / (scenario.step * self.rate);
         let every = steps.round();
         if !(every >= 1.0 && (steps - every).abs() < 1e-6 * every) {
@@ -164,14 +177,20 @@ impl Export {
         }
         self.check_rows(scenario.duration.unwrap_or(scenario.task.time))?;
         let mut rows = Vec::new();
-        let run = replay(scenario, |run, f| {
+        let columns = 4 * scenario.machine.drives() + 4;
+        let fits = |last: u64| check_size(last / every as u64 + 1, columns, true);
+        let run = replay_if(scenario, fits, |run, f| {
             if f.step % every as u64 == 0 || f.step == run.last_step() {
                 let all = f.q.iter().chain(f.qd.iter()).chain(f.qdd.iter()).chain(f.torque.iter()).map(|x| x + 0.0);
-                rows.push(std::iter::once(f.time).chain(all).chain([f.tip.re, f.tip.im, f.b]).collect());
+                let place = [f.base.at.re, f.base.at.im, f.base.angle];
+                let rates = [f.base_velocity.re, f.base_velocity.im, f.base_rate];
+                let base = place.into_iter().chain(rates).map(|x| x + 0.0).filter(|_| scenario.base.moves());
+                rows.push(std::iter::once(f.time).chain(all).chain([f.tip.re, f.tip.im, f.b]).chain(base).collect());
             }
         })
         .map_err(|e| Failure::from(e).of(&scenario.name))?;
-        Ok((rows, run.frame().time))
+        let last = run.frame();
+        Ok((rows, last.time, Audit::fault(&last).map(|lamp| lamp.to_string())))
     }
 
     fn check_rows(&self, duration: f64) -> Result<(), Failure> {

@@ -36,6 +36,11 @@ impl Failure {
         Self::WrongInput(why.to_string())
     }
 
+    /// An audit of a run has failed: its figures are no answer.
+    pub fn untrusted(scenario: &str, why: impl Display) -> Self {
+        Self::NoAnswer(format!("{scenario}: audit failed: {why}; want a smaller step, as --set step=0.0002"))
+    }
+
     /// Standard output could not be written.
     pub fn standard_output(error: &io::Error) -> Self {
         match error.kind() {
@@ -100,7 +105,12 @@ impl From<DesignError> for Failure {
 }
 impl From<Refusal> for Failure {
     fn from(e: Refusal) -> Self {
+        let whole = e.to_string();
         match e {
+            Refusal::Edit { refusal, .. } => match Self::from(*refusal) {
+                Self::NoAnswer(_) => Self::NoAnswer(whole),
+                _ => Self::WrongInput(whole),
+            },
             Refusal::NoPlanes(_)
             | Refusal::Unreachable { .. }
             | Refusal::Path(_)
@@ -110,9 +120,14 @@ impl From<Refusal> for Failure {
             | Refusal::Drift(_)
             | Refusal::NoCommonPlane { .. }
             | Refusal::Blocked(_)
-            | Refusal::Diverged { .. } => Self::no_answer(e),
+            | Refusal::TooLong { .. }
+            | Refusal::Full { .. }
+            | Refusal::Diverged { .. }
+            | Refusal::Untrusted { .. } => Self::no_answer(e),
             Refusal::Machine(_)
             | Refusal::OutOfRange { .. }
+            | Refusal::TooManySteps { .. }
+            | Refusal::TooLarge { .. }
             | Refusal::LeavesLimits { .. }
             | Refusal::Curve(_)
             | Refusal::Task(_) => Self::wrong_input(e),

@@ -12,7 +12,7 @@ use stillbase::text::plain;
 
 use super::failure::Failure;
 use super::input::{Settings, scenario};
-use super::output::{Format, Table, fixed, say, yes};
+use super::output::{Format, Table, fixed, say};
 
 /// Simulate scenarios without a window and record them for the Rerun viewer
 #[derive(Args)]
@@ -70,7 +70,15 @@ struct Row {
     peak_torque: Vec<f64>,
     peak_base_force: f64,
     peak_base_moment: f64,
+    /// With a reaction wheel: what it leaves of n_B for the base.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    peak_moment_past_wheel: Option<f64>,
     reactionless: bool,
+    verdict: String,
+    #[serde(skip)]
+    answer: String,
+    #[serde(skip)]
+    remarks: Vec<String>,
 }
 
 impl From<Recording> for Row {
@@ -82,7 +90,11 @@ impl From<Recording> for Row {
             peak_torque: recording.peak_torque,
             peak_base_force: recording.peak_base_force,
             peak_base_moment: recording.peak_base_moment,
+            peak_moment_past_wheel: recording.verdict.past_wheel,
             reactionless: recording.reactionless,
+            verdict: recording.verdict.sentence(),
+            answer: recording.verdict.answer(),
+            remarks: recording.verdict.remarks().into_iter().map(|r| r.long).collect(),
         }
     }
 }
@@ -97,6 +109,9 @@ impl Headless {
         let recordings = record_with_bar(&scenarios, &self.output, &Options { pictures, force: self.force })?;
         say(format!("wrote {}", self.output.display()));
         let answer = Answer { recordings: recordings.into_iter().map(Row::from).collect() };
+        for row in &answer.recordings {
+            row.remarks.iter().for_each(|remark| say(format!("{}: {remark}", row.scenario)));
+        }
         self.format.print(&answer, table)
     }
 
@@ -155,12 +170,18 @@ impl From<RecordError> for Failure {
 fn table(answer: &Answer) -> String {
     let drives = answer.recordings.iter().map(|r| r.peak_torque.len()).max().unwrap_or(0);
     let torques = (1..=drives).map(|k| format!("peak |τ_{k}| N m"));
-    let rest = ["peak |f_B| N", "peak |n_B| N m", "reactionless"].map(String::from);
-    let mut table = Table::new(["scenario", "steps"].map(String::from).into_iter().chain(torques).chain(rest));
+    // What a reaction wheel leaves is another quantity than what the arm transmits.
+    let wheels = answer.recordings.iter().any(|r| r.peak_moment_past_wheel.is_some());
+    let past = wheels.then(|| "peak past the wheel N m".to_owned());
+    let rest = ["peak |f_B| N", "peak |n_B| N m"].map(String::from).into_iter().chain(past);
+    let heads = ["scenario", "steps"].map(String::from).into_iter().chain(torques).chain(rest);
+    let mut table = Table::new(heads.chain(["reactionless".into()]));
     for r in &answer.recordings {
         let torques = (0..drives).map(|k| r.peak_torque.get(k).map_or_else(String::new, |t| fixed(*t, 6)));
-        let rest = [fixed(r.peak_base_force, 6), fixed(r.peak_base_moment, 6), yes(r.reactionless).into()];
-        table.row([r.scenario.clone(), r.steps.to_string()].into_iter().chain(torques).chain(rest));
+        let past = wheels.then(|| r.peak_moment_past_wheel.map_or_else(|| "–".into(), |n| fixed(n, 6)));
+        let rest = [fixed(r.peak_base_force, 6), fixed(r.peak_base_moment, 6)].into_iter().chain(past);
+        let cells = [r.scenario.clone(), r.steps.to_string()].into_iter().chain(torques).chain(rest);
+        table.row(cells.chain([r.answer.clone()]));
     }
     table.to_string()
 }

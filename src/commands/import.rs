@@ -90,6 +90,9 @@ struct Answer {
     smoothed_by: Option<f64>,
     /// How far the second derivative of each column can be trusted, rad/s² or m/s².
     uncertainty: Vec<f64>,
+    /// Least and greatest b of the samples themselves, rad: the spline between them may go beyond; none for the end effector.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    b_samples: Option<[f64; 2]>,
     /// For the end effector: with minimum-norm rates; none where these cannot follow.
     #[serde(skip_serializing_if = "Option::is_none")]
     given: Option<Account>,
@@ -146,6 +149,11 @@ impl Import {
             smoothed_at: self.smooth,
             smoothed_by: self.smooth.map(|_| (0..samples.count()).flat_map(changed).fold(0.0, f64::max)),
             uncertainty: (0..samples.columns()).map(|k| samples.uncertainty(k)).collect(),
+            b_samples: (found.content == Content::Drives).then(|| {
+                let lambda = judge.model.lambda();
+                let all = (0..samples.count()).map(|i| lambda.dot(samples.values(i)));
+                all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], b| [low.min(b), high.max(b)])
+            }),
             given: motion.as_ref().map(|motion| judge.account(motion)),
             feasible: false,
             reason: None,

@@ -8,8 +8,9 @@ use stillbase::keys;
 use stillbase::machine::{self, Inertia, Machine};
 use stillbase::planar::Vector;
 use stillbase::pose_constant::plane_map;
+use stillbase::range::Range;
 use stillbase::reactionless::PlaneMap;
-use stillbase::scenario::{Change, Scenario};
+use stillbase::scenario::{Change, PLACE, POSE_CONSTANT, STEPS, Scenario};
 use stillbase::text::{self, MOST_BYTES};
 
 use super::failure::Failure;
@@ -25,7 +26,7 @@ pub struct Settings {
     /// payload.mass=0.1 (kg, known to control), gravity=0,-9.81 (m/s²), limits.a1=0.4,2.7 (rad), drive.1.torque_limit=20 (N m), drive.1.speed_limit=3 (rad/s), drive.1.acceleration_limit=40 (rad/s²), drive.1.jerk_limit=900 (rad/s³),
     /// and, where a scenario is asked for and not a machine alone: task.shape=spline, task.time=2 (s), plant.payload.mass=0.1 (kg, unknown to control),
     /// plant.friction.coulomb=0.2 (N m), plant.link.5.com=-0.02 (m), base.kind=free, base.mass=40 (kg),
-    /// control.law=pd, control.kp=400,300,300 (s⁻²), and every other key of a scenario file
+    /// control.law=pd, control.kp=400,300,300 (s⁻²), step=0.0005 (s, 0.00001 to 0.01), and every other key of a scenario file
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
     pairs: Vec<(String, String)>,
 }
@@ -75,7 +76,9 @@ impl MachineArgument {
 /// # Errors
 /// If there is no such scenario, or its machine is not valid.
 pub fn scenario(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
-    set(Scenario::find(name)?, settings)
+    let scenario = set(Scenario::find(name)?, settings)?;
+    tell_unused(&scenario);
+    Ok(scenario)
 }
 
 /// A scenario with its machine, plant and task changed.
@@ -85,7 +88,13 @@ pub fn scenario(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
 pub fn set(mut scenario: Scenario, settings: &Settings) -> Result<Scenario, Failure> {
     let parts = ["task", "plant", "base", "control"];
     let part = |key: &str| parts.iter().position(|part| key.split_once('.').is_some_and(|(head, _)| head == *part));
-    let (own, model): (Vec<_>, Vec<_>) = settings.pairs.iter().cloned().partition(|(key, _)| part(key).is_some());
+    let (steps, others): (Vec<_>, Vec<_>) = settings.pairs.iter().cloned().partition(|(key, _)| key == "step");
+    for (_, value) in steps {
+        let step = value.parse().ok().filter(|step: &f64| step.is_finite());
+        let wrong = || Failure::wrong_input(format!("step is {value:?}: want a step of {STEPS}")).of("--set");
+        step_by(&mut scenario, step.ok_or_else(wrong)?);
+    }
+    let (own, model): (Vec<_>, Vec<_>) = others.into_iter().partition(|(key, _)| part(key).is_some());
     scenario.machine = Settings { pairs: model }.apply(scenario.machine)?;
     let mut changes = std::array::from_fn::<_, 4, _>(|_| Change::new());
     for (key, value) in own {
@@ -99,7 +108,40 @@ pub fn set(mut scenario: Scenario, settings: &Settings) -> Result<Scenario, Fail
     scenario.control = keys::with(&scenario.control, &control).map_err(|why| wrong("control", why))?;
     change_task(&mut scenario, &task).map_err(|e| e.of("--set"))?;
     scenario.check("--set")?;
+    for key in task.keys() {
+        if let Some(want) = scenario.task.unused(key) {
+            return Err(no_use(&format!("task.{key}"), want).of("--set"));
+        }
+    }
+    for key in base.keys() {
+        if let Some(want) = scenario.base.unused(key) {
+            return Err(no_use(&format!("base.{key}"), want).of("--set"));
+        }
+    }
     Ok(scenario)
+}
+
+/// Refuses what would be passed over in silence.
+pub fn no_use(what: &str, want: &str) -> Failure {
+    Failure::wrong_input(format!("{what} has no use here: want {want}"))
+}
+
+/// Tells which keys of a scenario's own file have no say in its task; some always stand there.
+fn tell_unused(scenario: &Scenario) {
+    let standing = ["kind", "from", "to", "b", "time", "law"];
+    let keys = Change::try_from(&scenario.task).unwrap_or_default();
+    for (key, _) in keys.iter().filter(|(key, _)| !standing.contains(&key.as_str())) {
+        if let Some(want) = scenario.task.unused(key) {
+            say(format!("note: {}: task.{key} has no use there: want {want}", scenario.name));
+        }
+    }
+}
+
+/// Another step, s; edits stay at their times.
+fn step_by(scenario: &mut Scenario, step: f64) {
+    let ratio = scenario.step / step;
+    scenario.edits.iter_mut().for_each(|edit| edit.step = (edit.step as f64 * ratio).round() as u64);
+    scenario.step = step;
 }
 
 /// Changes keys of a scenario's task.
@@ -163,18 +205,17 @@ fn padded(word: OsString) -> OsString {
 
 /// A point X,Y, m.
 pub fn point(text: &str) -> Result<Vector, String> {
-    let both = text.split_once(',').and_then(|(x, y)| Some(Vector::new(number(x)?, number(y)?)));
-    both.ok_or_else(|| "want X,Y in m, such as 0.5,-0.25, up to 1e6".into())
+    let both = text.split_once(',').and_then(|(x, y)| Some(Vector::new(number(x, PLACE)?, number(y, PLACE)?)));
+    both.ok_or_else(|| format!("want X,Y in m, such as 0.5,-0.25, each {PLACE}"))
 }
 
 /// A pose constant, rad.
 pub fn pose_constant(text: &str) -> Result<f64, String> {
-    number(text).ok_or_else(|| "want a number in rad, such as 2.4, up to 1e6".into())
+    number(text, POSE_CONSTANT).ok_or_else(|| format!("want a number in rad, such as 2.4, {POSE_CONSTANT}"))
 }
 
-/// A number whose digits still mean something beside metres and turns.
-fn number(text: &str) -> Option<f64> {
-    text.trim().parse().ok().filter(|x: &f64| x.abs() <= 1e6)
+fn number(text: &str, range: Range) -> Option<f64> {
+    text.trim().parse().ok().filter(|x| range.contains(*x))
 }
 
 /// A number above 0.

@@ -4,17 +4,19 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::Serialize;
+use stillbase::audit::Audit;
 use stillbase::files::check_new;
 use stillbase::frame::Frame;
 use stillbase::joint_forces::{AxialMoments, Joints, KEPT, Pin, PinPeak};
 use stillbase::machine::{Inertia, Machine};
 use stillbase::planar::cross;
-use stillbase::session::replay;
+use stillbase::session::replay_if;
 
 use super::csv_file::Csv;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, Table, fixed, say};
+use super::output::{Format, Table, check_size, fixed, say};
+use super::simulate::trusted;
 
 /// Say what every pin and bearing carries over a run, how near change points come, and what tilts the base
 #[derive(Args)]
@@ -107,6 +109,8 @@ struct Answer {
     worst: String,
     transmission: Vec<Pair>,
     tilt: TiltAnswer,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    audit_failed: Option<String>,
 }
 
 /// sin(q_k − q_l) of two drives over a run.
@@ -172,19 +176,25 @@ impl JointsCommand {
         let n = machine.drives();
         let mut tally = Tally::new(pins.len(), Inertia::pairs(n).count());
         let (mut csv, mut written) = (None, Ok(()));
-        let run = replay(&scenario, |_, frame| {
-            tally.include(frame);
-            if self.output.is_some() && written.is_ok() {
-                written = self.csv(&mut csv, pins).and_then(|csv| csv.row(row(frame, pins.len())));
-            }
-        })
+        let columns = if self.output.is_some() { 2 * pins.len() + 3 } else { 0 };
+        let run = replay_if(
+            &scenario,
+            |last| check_size(last + 1, columns, false),
+            |_, frame| {
+                tally.include(frame);
+                if self.output.is_some() && written.is_ok() {
+                    written = self.csv(&mut csv, pins).and_then(|csv| csv.row(row(frame, pins.len())));
+                }
+            },
+        )
         .map_err(|e| Failure::from(e).of(&scenario.name))?;
         written?;
         if let Some(csv) = csv {
             csv.finish()?;
         }
-        let answer = answer(&scenario.name, run.frame().step, &machine, &joints, &tally);
-        self.format.print(&answer, human)
+        let answer = answer(&scenario.name, &run.frame(), &machine, &joints, &tally);
+        self.format.print(&answer, human)?;
+        trusted(&answer.scenario, answer.audit_failed)
     }
 
     fn csv<'a>(&self, begun: &'a mut Option<Csv>, pins: &[Pin]) -> Result<&'a mut Csv, Failure> {
@@ -210,7 +220,7 @@ fn row(frame: &Frame, pins: usize) -> impl Iterator<Item = Option<f64>> {
     [Some(frame.time)].into_iter().chain(forces).chain([Some(tilt.re), Some(tilt.im)])
 }
 
-fn answer(scenario: &str, steps: u64, machine: &Machine, joints: &Joints, tally: &Tally) -> Answer {
+fn answer(scenario: &str, last: &Frame, machine: &Machine, joints: &Joints, tally: &Tally) -> Answer {
     let axial = AxialMoments::of(machine);
     let link = |j: usize| machine.links()[j].name.clone();
     let pin = |(pin, seen): (&Pin, &PinPeak)| PinAnswer {
@@ -239,11 +249,12 @@ fn answer(scenario: &str, steps: u64, machine: &Machine, joints: &Joints, tally:
     let [x, y, motion] = tally.tilt.map(|seen| seen.unwrap_or(none));
     Answer {
         scenario: scenario.into(),
-        steps,
+        steps: last.step,
         worst: pins.iter().max_by(|a, b| a.peak.total_cmp(&b.peak)).map_or(String::new(), |p| p.name.clone()),
         pins,
         transmission: Inertia::pairs(machine.drives()).zip(&tally.pairs).map(pair).collect(),
         tilt: TiltAnswer { flat: axial.is_flat(), x, y, motion, residual: axial.residual() },
+        audit_failed: Audit::fault(last).map(|lamp| lamp.to_string()),
     }
 }
 

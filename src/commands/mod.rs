@@ -4,19 +4,19 @@
 //! bar to standard error. Exit status: 0 done, 1 the question has no answer, 2 wrong input.
 
 mod check;
-mod columns;
+pub(crate) mod columns;
 mod compare;
 mod csv_file;
 mod design;
-mod dynamics;
+pub(crate) mod dynamics;
 mod export;
-mod failure;
+pub(crate) mod failure;
 #[cfg(feature = "ui")]
 mod figures;
 #[cfg(feature = "record")]
 mod headless;
 mod import;
-mod input;
+pub(crate) mod input;
 mod interrupt;
 mod joints;
 mod machines;
@@ -27,7 +27,7 @@ mod pose;
 mod reach;
 mod simulate;
 mod spectrum;
-mod tolerance;
+pub(crate) mod tolerance;
 mod workspace;
 
 pub use check::Check;

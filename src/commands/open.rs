@@ -70,18 +70,12 @@ fn record_instead(scenario: Scenario, why: &str) -> Result<(), Failure> {
     use stillbase::files::free_name;
 
     use super::headless::{record_with_bar, unpictured};
-    use super::output::{fixed, say, yes};
+    use super::output::say;
 
     let file = free_name(&scenario.name, "rrd");
     say(format!("{}; recording {} without a window instead", why.trim_end_matches('.'), scenario.name));
     for done in record_with_bar(&[scenario], &file, &unpictured())? {
-        say(format!(
-            "wrote {}: {} steps, peak |n_B| {} N m, reactionless: {}",
-            done.file.display(),
-            done.steps,
-            fixed(done.peak_base_moment, 6),
-            yes(done.reactionless),
-        ));
+        say(format!("wrote {}: {} steps, {}", done.file.display(), done.steps, done.verdict.sentence(),));
     }
     Ok(())
 }

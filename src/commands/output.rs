@@ -6,6 +6,7 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 use serde_json::ser::Formatter;
+use stillbase::session::Refusal;
 use stillbase::text::{brief, plain};
 
 use super::failure::Failure;
@@ -143,4 +144,19 @@ impl Display for Table {
         }
         Ok(())
     }
+}
+
+/// The most bytes that a command writes, and the most where all of them are held in memory: more are asked for by a slip
+/// of the hand.
+const MOST_BYTES: [f64; 2] = [4e9, 1e9];
+/// What a number takes, at most.
+const A_NUMBER: f64 = 20.0;
+
+/// Refuses a table that would take more bytes than may be.
+///
+/// # Errors
+/// If it would.
+pub fn check_size(rows: u64, columns: usize, held: bool) -> Result<(), Refusal> {
+    let (bytes, most) = (rows as f64 * columns as f64 * A_NUMBER, MOST_BYTES[usize::from(held)]);
+    if bytes <= most { Ok(()) } else { Err(Refusal::TooLarge { rows, columns, bytes, most }) }
 }

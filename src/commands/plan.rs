@@ -13,11 +13,13 @@ use stillbase::planar::Vector;
 use stillbase::plant::Plant;
 use stillbase::pose_constant::Planes;
 use stillbase::reactionless::BSet;
-use stillbase::scenario::{Change, Scenario, Shape, Task, TaskKind};
+use stillbase::scenario::{Change, Scenario, Task, TaskKind};
 use stillbase::session::{Refusal, Run, settled};
 
 use super::failure::Failure;
-use super::input::{DEFAULT_SCENARIO, Settings, above_zero, change_task, planes_of, point, pose_constant, scenario};
+use super::input::{
+    DEFAULT_SCENARIO, Settings, above_zero, change_task, no_use, planes_of, point, pose_constant, scenario,
+};
 use super::output::{Format, Table, fixed, say};
 use super::reach::OfMend;
 
@@ -162,6 +164,9 @@ struct Answer {
     /// For the fastest smooth motion: T/T* − 1, T* without limits on jerk.
     #[serde(skip_serializing_if = "Option::is_none")]
     gap: Option<f64>,
+    /// T with corners rounded off, where the motion rests at them because that is faster.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    blended: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     price: Option<OfPrice>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -283,6 +288,7 @@ impl Plan {
             peak_base_force: None,
             limiting: None,
             gap: None,
+            blended: None,
             price: None,
             alternatives: None,
             over: None,
@@ -319,7 +325,8 @@ impl Plan {
                         base_turn: base_turn.map_err(|e| Failure::wrong_input(e).of("--base"))?,
                     });
                 }
-                answer.gap = plan.pace.map(|pace| pace.gap());
+                answer.gap = plan.pace.and_then(|pace| pace.gap());
+                answer.blended = plan.blended;
                 self.format.print(&answer, table)?;
                 if let Some(file) = &self.output {
                     write_new(file, scenario.to_toml().as_bytes(), self.force)?;
@@ -347,20 +354,24 @@ impl Plan {
     /// Refuses options that the task has no use for, and tells what it leaves out.
     fn check_use(&self, scenario: &Scenario) -> Result<(), Failure> {
         let task = &scenario.task;
-        let kind = |kinds: &[TaskKind]| kinds.contains(&task.kind);
-        let straight = matches!(task.shape(), Shape::JointLine | Shape::Line);
-        let of_kind = [TaskKind::ChangeB, TaskKind::LeastReaction];
-        for (given, used, option, want) in [
-            (self.b_to.is_some(), kind(&of_kind), "--b-to", "--kind change-b or least-reaction"),
-            (self.moment_limit.is_some(), kind(&of_kind[..1]), "--moment-limit", "--kind change-b"),
-            (self.base.is_some(), kind(&of_kind[..1]), "--base", "--kind change-b: only a change of b turns the base"),
-            (self.cycles.is_some(), kind(&[TaskKind::ZeroMomentum]), "--cycles", "--kind zero-momentum"),
-            (self.blend.is_some(), straight, "--blend", "--shape line or joint-line: others have no corners"),
-            (self.time.is_some(), !task.law.is_fastest(), "--time", "another --law: the fastest ones find the time"),
+        for (given, key) in [
+            (!self.points.is_empty(), "from"),
+            (self.b.is_some(), "b"),
+            (self.shape.is_some(), "shape"),
+            (self.law.is_some(), "law"),
+            (self.b_to.is_some(), "b_to"),
+            (self.moment_limit.is_some(), "moment_limit"),
+            (self.cycles.is_some(), "cycles"),
+            (self.blend.is_some(), "blend"),
+            (self.time.is_some(), "time"),
         ] {
-            if given && !used {
-                return Err(Failure::wrong_input(format!("{option} has no use here: want {want}")));
+            if let Some(want) = task.unused(key).filter(|_| given) {
+                let option = if key == "from" { "X,Y".into() } else { format!("--{}", key.replace('_', "-")) };
+                return Err(no_use(&option, want));
             }
+        }
+        if self.base.is_some() && task.kind != TaskKind::ChangeB {
+            return Err(no_use("--base", "the kind change-b: only a change of b turns the base"));
         }
         if scenario.plant != Plant::default() || scenario.base.moves() {
             say("note: a plan is of the model; what differs in the plant or the base shows in `simulate`");
@@ -495,5 +506,8 @@ fn table(answer: &Answer) -> String {
             gap.map_or(String::new(), |gap| format!(", {:.1} % over the motion with unlimited jerk", 100.0 * gap));
         format!("\nheld back by the {limit}{gap}\n")
     });
-    format!("{}{}", table.to_string().trim_start(), held.collect::<String>())
+    let rests = answer.blended.map_or(String::new(), |blended| {
+        format!("\nrests at its corners, which is faster: rounded off it would take {blended:.6} s\n")
+    });
+    format!("{}{}{rests}", table.to_string().trim_start(), held.collect::<String>())
 }

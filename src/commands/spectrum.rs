@@ -11,11 +11,13 @@ use stillbase::spectrum::{Limit, Spectrum, SpectrumError, Verdict, Window};
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, Table, fixed, say, shown, yes};
+use super::simulate::trusted;
 
 /// Say at which frequencies a run shakes its base, and whether that keeps within jitter limits
 ///
 /// The scenario is simulated; dynamic f_Bx and f_By and the whole n_B of every step are transformed. Amplitude spectral
-/// densities are one-sided; the cumulative RMS adds them up from 0 Hz.
+/// densities are one-sided; the cumulative RMS adds them up from 0 Hz. It ends at the RMS of the samples without a window;
+/// with one at the weighted RMS, in which samples count as the window weighs them: Hann counts the middle of the record most.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -26,7 +28,7 @@ Examples:
 
 The exit status is 0 whether limits are kept or not.
 
-JSON keys: scenario, window, samples, step, resolution (Hz); axes {force_x, force_y, moment: {unit, rms, limit?: {frequency,
+JSON keys: scenario, window, samples, step, resolution (Hz); axes {force_x, force_y, moment: {unit, rms, weighted_rms, limit?: {frequency,
 density, limit, ratio, within}}}; frequency[]; density and cumulative_rms {force_x[], force_y[], moment[]}; file with -o.")]
 pub struct SpectrumOf {
     /// A built-in scenario (case-1, spacecraft …; an unknown name lists them all) or a TOML file
@@ -74,7 +76,10 @@ impl<T> Axes<T> {
 #[derive(Serialize)]
 struct Axis {
     unit: &'static str,
+    /// Of the samples, all alike.
     rms: f64,
+    /// As the window weighs the samples: where the cumulative RMS ends.
+    weighted_rms: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     limit: Option<Verdict>,
 }
@@ -92,6 +97,8 @@ struct Answer {
     cumulative_rms: Axes<Vec<f64>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     file: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    audit_failed: Option<String>,
 }
 
 impl From<SpectrumError> for Failure {
@@ -107,7 +114,10 @@ impl SpectrumOf {
         if let Some(file) = &self.output {
             check_new(file, self.force)?;
         }
-        let [force_x, force_y, moment] = felt(&scenario).map_err(|e| Failure::from(e).of(&scenario.name))?;
+        if scenario.base.wheel.is_some() {
+            say(format!("note: {}: n_B is what the reaction wheel leaves of it for the base", scenario.name));
+        }
+        let ([force_x, force_y, moment], fault) = felt(&scenario).map_err(|e| Failure::from(e).of(&scenario.name))?;
         let course = Axes { force_x, force_y, moment };
         let of = |samples: &[f64]| Spectrum::of(samples, scenario.step, self.window);
         let spectra =
@@ -116,7 +126,8 @@ impl SpectrumOf {
         let rms = |samples: &[f64]| (samples.iter().map(|x| x * x).sum::<f64>() / samples.len() as f64).sqrt();
         let axis = |unit, samples: &[f64], spectrum: &Spectrum, limit: &Option<Limit>| {
             let verdict = limit.as_ref().map(|limit| spectrum.against(limit).ok_or_else(|| beyond(limit, spectrum)));
-            Ok::<_, Failure>(Axis { unit, rms: rms(samples), limit: verdict.transpose()? })
+            let (rms, weighted_rms) = (rms(samples), spectrum.rms());
+            Ok::<_, Failure>(Axis { unit, rms, weighted_rms, limit: verdict.transpose()? })
         };
         if let Some(file) = &self.output {
             write(file, self.force, &spectra)?;
@@ -138,8 +149,10 @@ impl SpectrumOf {
             density: spectra.map(|s| s.density.clone()),
             cumulative_rms: spectra.map(|s| s.cumulative_rms.clone()),
             file: self.output.as_ref().map(|file| file.display().to_string()),
+            audit_failed: fault.map(|lamp| lamp.to_string()),
         };
-        self.format.print(&answer, |answer| text(answer, &spectra))
+        self.format.print(&answer, |answer| text(answer, &spectra))?;
+        trusted(&answer.scenario, answer.audit_failed)
     }
 }
 
@@ -172,6 +185,7 @@ fn text(answer: &Answer, spectra: &Axes<Spectrum>) -> String {
         "axis",
         "unit",
         "RMS",
+        "weighted RMS",
         "greatest density /√Hz",
         "at Hz",
         "half the power below Hz",
@@ -182,8 +196,9 @@ fn text(answer: &Answer, spectra: &Axes<Spectrum>) -> String {
         let lines = spectrum.frequency.iter().zip(&spectrum.density);
         let (at, most) = lines.max_by(|a, b| a.1.total_cmp(b.1)).map_or((0.0, 0.0), |(f, d)| (*f, *d));
         let frequencies = [at, below(spectrum, 0.5), below(spectrum, 0.99)].map(|f| fixed(f, 3));
-        let row = [name.to_owned(), unit.to_owned(), shown(axis.rms, 6), shown(most, 6)];
-        table.row(row.into_iter().chain(frequencies));
+        let sizes = [axis.rms, axis.weighted_rms, most].map(|x| shown(x, 6));
+        let row = [name.to_owned(), unit.to_owned()].into_iter().chain(sizes);
+        table.row(row.chain(frequencies));
     }
     let (samples, step, resolution) = (answer.samples, answer.step, fixed(answer.resolution, 3));
     let head = format!("{} · {samples} samples by {step} s, {window}, lines by {resolution} Hz", answer.scenario);
@@ -197,7 +212,14 @@ fn text(answer: &Answer, spectra: &Axes<Spectrum>) -> String {
         verdicts.row(row.into_iter().chain(numbers));
         any = true;
     }
-    if any { format!("{head}\n\n{table}\n{verdicts}") } else { format!("{head}\n\n{table}") }
+    let why = match answer.window {
+        Window::Hann => {
+            "Frequencies and the cumulative RMS are of the samples as the window weighs them, its middle most: it ends at the \
+             weighted RMS. --window rectangular weighs all alike.\n"
+        }
+        Window::Rectangular => "",
+    };
+    if any { format!("{head}\n\n{table}{why}\n{verdicts}") } else { format!("{head}\n\n{table}{why}") }
 }
 
 fn write(file: &Path, force: bool, spectra: &Axes<Spectrum>) -> Result<(), Failure> {

@@ -1,8 +1,8 @@
 //! [`Summary`]: what a run came to, one row of a table.
 
-use crate::audit::Audit;
 use crate::frame::Frame;
 use crate::scenario::Scenario;
+use crate::verdict::Verdict;
 
 /// What a run came to.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,7 +19,9 @@ pub struct Summary {
     pub rms_force: f64,
     /// ∫ |f_B| dt, N s.
     pub force_impulse: f64,
-    /// Largest moment that the base feels, N m.
+    /// Largest |n_B|, what the arm transmits, N m, where a reaction wheel leaves the base another moment.
+    pub peak_arm_moment: Option<f64>,
+    /// Largest moment that the base feels, past a reaction wheel, N m.
     pub peak_moment: f64,
     /// Its root mean square, N m.
     pub rms_moment: f64,
@@ -39,10 +41,12 @@ pub struct Summary {
     pub wheel_rate: Option<f64>,
     /// When a reaction wheel first could not give what was wanted, s.
     pub saturated_at: Option<f64>,
-    /// Whether nothing reached the base.
+    /// Whether the arm transmitted nothing.
     pub reactionless: bool,
     /// The first audit that failed, in words.
     pub fault: Option<String>,
+    /// What is to be said of it.
+    pub verdict: Verdict,
 }
 
 /// A column of the table.
@@ -63,7 +67,7 @@ pub struct Column {
 }
 
 /// The table's columns, in order.
-pub const COLUMNS: [Column; 14] = [
+pub const COLUMNS: [Column; 15] = [
     column("time", "T", "time of the motion", "s", 3, |s| Some(s.time)),
     column("peak_moment", "peak n", "largest moment that the base feels", "N m", 4, |s| Some(s.peak_moment)),
     column("rms_moment", "rms n", "its root mean square", "N m", 4, |s| Some(s.rms_moment)),
@@ -78,6 +82,9 @@ pub const COLUMNS: [Column; 14] = [
     column("energy", "energy", "what motors took, none given back", "J", 4, |s| Some(s.energy)),
     column("wheel_rate", "wheel", "largest rate of the reaction wheel", "rad/s", 1, |s| s.wheel_rate),
     column("saturated_at", "saturates", "when the wheel could give no more", "s", 3, |s| s.saturated_at),
+    column("peak_arm_moment", "peak n_B", "largest moment of the arm, before the wheel", "N m", 4, |s| {
+        s.peak_arm_moment
+    }),
 ];
 
 const fn column(
@@ -94,7 +101,7 @@ const fn column(
 impl Summary {
     /// Of a run's last frame.
     pub fn of(scenario: &Scenario, last: &Frame) -> Self {
-        let (peaks, tally) = (&last.peaks, &last.tally);
+        let (peaks, tally, verdict) = (&last.peaks, &last.tally, Verdict::of(scenario, last));
         Self {
             name: scenario.name.clone(),
             title: scenario.title.clone(),
@@ -102,18 +109,20 @@ impl Summary {
             peak_force: peaks.force,
             rms_force: tally.force_rms(),
             force_impulse: tally.force_impulse,
+            peak_arm_moment: verdict.past_wheel.map(|_| verdict.arm_moment),
             peak_moment: peaks.moment,
             rms_moment: tally.moment_rms(),
             moment_impulse: tally.moment_impulse,
             base_shift: tally.shift,
             base_tilt: tally.tilt,
-            miss: (last.tip - last.target.at).norm(),
+            miss: verdict.miss,
             peak_torque: peaks.torque.max_abs(),
             energy: tally.energy,
             wheel_rate: scenario.base.wheel.map(|_| tally.wheel_rate),
             saturated_at: tally.saturated,
-            reactionless: peaks.is_reactionless(),
-            fault: Audit::fault(last).map(|lamp| lamp.to_string()),
+            reactionless: verdict.reactionless,
+            fault: verdict.fault.map(|lamp| lamp.to_string()),
+            verdict,
         }
     }
 }

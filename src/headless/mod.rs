@@ -47,6 +47,7 @@ use thiserror::Error;
 use crate::files::{NewFile, WriteError};
 use crate::scenario::Scenario;
 use crate::session::Refusal;
+use crate::verdict::Verdict;
 use film::Film;
 use reaction::Scale;
 use recorder::{Set, Stop};
@@ -89,10 +90,12 @@ pub struct Recording {
     pub peak_torque: Vec<f64>,
     /// Largest dynamic |f_B|, N.
     pub peak_base_force: f64,
-    /// Largest |n_B|, N m.
+    /// Largest |n_B|, what the arm transmits, N m.
     pub peak_base_moment: f64,
-    /// Whether nothing reached the base.
+    /// Whether the arm transmitted nothing.
     pub reactionless: bool,
+    /// What is to be said of it.
+    pub verdict: Verdict,
     /// What somebody should know: why there are no pictures.
     pub notes: Vec<String>,
 }
@@ -176,6 +179,28 @@ fn check(scenarios: &[Scenario], options: &Options) -> Result<(), RecordError> {
     }
 }
 
+/// The most pictures of a recording, and the most pixels of all of them.
+const MOST_PICTURES: f64 = 1e5;
+const MOST_PIXELS: f64 = 1.5e11;
+
+/// Refuses more pictures than anybody would wait for.
+fn check_film(scenarios: &[Scenario], cases: &[Rehearsal], options: &Options) -> Result<(), RecordError> {
+    let Some(p) = options.pictures else { return Ok(()) };
+    let of_case = |(scenario, case): (&Scenario, &Rehearsal)| {
+        let steps = case.steps as f64;
+        steps.min(steps * scenario.step * p.fps) + 1.0
+    };
+    let count: f64 = scenarios.iter().zip(cases).map(of_case).sum();
+    let most = MOST_PICTURES.min(MOST_PIXELS / (f64::from(p.width) * f64::from(p.height))).floor();
+    match count <= most {
+        true => Ok(()),
+        false => Err(RecordError::Pictures(format!(
+            "{count:.0} of {} x {} pixels: want at most {most:.0}, fewer a second, smaller, or of a shorter run",
+            p.width, p.height
+        ))),
+    }
+}
+
 /// About how many steps a run has.
 fn steps(scenario: &Scenario) -> u64 {
     (scenario.duration.unwrap_or(scenario.task.time) / scenario.step).round() as u64
@@ -233,6 +258,7 @@ fn write(
     // Now it is known.
     let total: u64 = cases.iter().map(|case| case.steps).sum();
     before = total;
+    check_film(scenarios, &cases, options)?;
     let mut store = Store::open(to, digest(scenarios, options)).map_err(because)?;
     let mut film = Film::of(options.pictures);
     let pictured = film.is_loaded();
@@ -246,7 +272,7 @@ fn write(
         set.store.fixed(&EntityPath::properties(), &info)?;
         for (scenario, case) in scenarios.iter().zip(&cases) {
             let mut tick = |step| progress(Progress { done: before + step, of: 2 * total, what: &scenario.name });
-            let peaks = recorder::record(&mut set, scenario, case, &mut tick)?;
+            let (peaks, verdict) = recorder::record(&mut set, scenario, case, &mut tick)?;
             let fault = case.fault.iter().map(|why| format!("{}: audit failed: {why}", scenario.name));
             before += case.steps;
             recordings.push(Recording {
@@ -255,8 +281,9 @@ fn write(
                 steps: case.steps,
                 peak_torque: peaks.torque.to_vec(),
                 peak_base_force: peaks.force,
-                peak_base_moment: peaks.moment,
-                reactionless: peaks.is_reactionless(),
+                peak_base_moment: verdict.arm_moment,
+                reactionless: verdict.reactionless,
+                verdict,
                 notes: set.film.notes().into_iter().chain(fault).collect(),
             });
         }

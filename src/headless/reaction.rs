@@ -10,7 +10,8 @@ use super::style::{colour, point, under};
 use crate::frame::Frame;
 use crate::planar::{Vector, unit};
 use crate::scene::palette::Palette;
-use crate::scene::stage::{round_up, signed};
+use crate::scene::reaction::{ARROW, RADIUS, Reaction};
+use crate::scene::stage::round_up;
 
 /// What a full arrow and a full arc stand for. Cases of one recording share it, so that they can be compared.
 #[derive(Clone, Copy, Debug)]
@@ -23,12 +24,13 @@ impl Scale {
     /// The next round numbers above the largest of all cases.
     pub fn of(cases: &[Rehearsal]) -> Self {
         let largest = |of: fn(&Rehearsal) -> f64| round_up(cases.iter().map(of).fold(1e-3, f64::max));
-        Self { newtons: largest(|c| c.force), newton_metres: largest(|c| c.peaks.moment) }
+        Self { newtons: largest(|c| c.peaks.force), newton_metres: largest(|c| c.peaks.moment) }
     }
 }
 
-/// The sweep of a full arc, rad.
-const FULL: f64 = 1.5 * FRAC_PI_2;
+/// How far below B the first row of words stands, and how far apart the rows are, parts of the reach.
+const FIRST: f64 = 0.37;
+const ROW: f64 = 0.06;
 
 /// The drawing of one case.
 #[derive(Debug)]
@@ -37,7 +39,7 @@ pub struct Drawing {
     palette: Palette,
     arrows: Track<Option<([f32; 3], [f32; 3])>>,
     arcs: Track<Option<Vec<[f32; 3]>>>,
-    words: Track<([f32; 3], String, Color)>,
+    words: Track<Vec<([f32; 3], String, Color)>>,
 }
 
 impl Drawing {
@@ -58,23 +60,25 @@ impl Drawing {
 
     /// One instant, at a height above a machine of a reach, m.
     pub fn place(&mut self, at: Instant, frame: &Frame, reach: f64, z: f64) {
-        let (force, moment, quiet) = (frame.wrench.total().force, frame.felt_moment(), frame.is_quiet());
-        let (from, length, radius) = (frame.base.at, 0.25 * reach, 0.17 * reach);
-        let arrow = force * (length / self.scale.newtons);
-        let has_force = arrow.norm() > 0.004 * reach;
-        self.arrows.push(at, has_force.then(|| (point(from, z), point(arrow, 0.0))));
-        let sweep = moment / self.scale.newton_metres * FULL;
-        let has_moment = sweep.abs() > 0.02 && !quiet;
-        self.arcs.push(at, has_moment.then(|| arc(from, sweep, radius, z)));
-        let mut text = format!("f_B {:.2} N\nn_B {} N m", force.norm(), signed(moment, 2));
-        if has_force {
-            text += &format!("\narrow {length:.2} m = {} N", self.scale.newtons);
-        }
-        if has_moment {
-            text += &format!("\narc 135° = {} N m", self.scale.newton_metres);
-        }
-        let rgba = if quiet { self.palette.zero } else { self.palette.reaction };
-        self.words.push(at, (point(from + Vector::new(0.0, -0.44 * reach), z), text, colour(rgba)));
+        let (from, felt) = (frame.base.at, Reaction::of(frame));
+        let arrow = felt.arrow(self.scale.newtons).map(|parts| parts * reach);
+        self.arrows.push(at, arrow.map(|arrow| (point(from, z), point(arrow, 0.0))));
+        let sweep = felt.sweep(self.scale.newton_metres);
+        self.arcs.push(at, sweep.map(|sweep| arc(from, sweep, RADIUS * reach, z)));
+        let dim = self.palette.dim;
+        let scale = [
+            arrow.map(|_| format!("arrow {:.2} m = {} N", ARROW * reach, self.scale.newtons)),
+            sweep.map(|_| format!("arc 135° = {} N m", self.scale.newton_metres)),
+        ];
+        let scale: Vec<String> = scale.into_iter().flatten().collect();
+        let rows = felt
+            .readings(&self.palette)
+            .into_iter()
+            .chain(felt.beside("its weight and pushes").map(|text| (text, dim)))
+            .chain((!scale.is_empty()).then(|| (scale.join(" · "), dim)));
+        let down = |i: usize| Vector::new(0.0, -(FIRST + ROW * i as f64) * reach);
+        let placed = |(i, (text, tone))| (point(from + down(i), z), text, colour(tone));
+        self.words.push(at, rows.enumerate().map(placed).collect());
     }
 
     /// Writes the rows since the last time.
@@ -92,11 +96,12 @@ impl Drawing {
         let arcs = LineStrips3D::new(rows.into_iter().flatten());
         store.columns(&clock.columns(), &under(root, "reaction/moment"), arcs.columns(lengths)?)?;
         let (clock, rows) = self.words.take();
+        let lengths: Vec<_> = rows.iter().map(Vec::len).collect();
         let words = Points3D::update_fields()
-            .with_positions(rows.iter().map(|r| r.0))
-            .with_labels(rows.iter().map(|r| r.1.as_str()))
-            .with_colors(rows.iter().map(|r| r.2));
-        store.columns(&clock.columns(), &under(root, "reaction/words"), words.columns_of_unit_batches()?)
+            .with_positions(rows.iter().flatten().map(|r| r.0))
+            .with_labels(rows.iter().flatten().map(|r| r.1.as_str()))
+            .with_colors(rows.iter().flatten().map(|r| r.2));
+        store.columns(&clock.columns(), &under(root, "reaction/words"), words.columns(lengths)?)
     }
 }
 

@@ -14,7 +14,7 @@ use super::planned;
 use super::reaction::{Drawing, Scale};
 use super::rehearsal::Rehearsal;
 use super::store::{Clock, Instant, Store, StoreError};
-use super::story::{Story, verdict};
+use super::story::Story;
 use super::style::{colour, series_name, signal_colour, under};
 use super::tip::Tip;
 use super::tower::Tower;
@@ -24,6 +24,7 @@ use crate::scenario::Scenario;
 use crate::scene::palette::{Palette, Theme, palette};
 use crate::session::{Edit, Plan, Refusal, Run, replay};
 use crate::signals::Signal;
+use crate::verdict::Verdict;
 
 /// Rows that gather before they are written.
 const BATCH: usize = 8192;
@@ -78,7 +79,7 @@ pub fn record(
     scenario: &Scenario,
     rehearsal: &Rehearsal,
     tick: &mut dyn FnMut(u64),
-) -> Result<Peaks, Stop> {
+) -> Result<(Peaks, Verdict), Stop> {
     let mut recorder = Recorder::new(set, scenario, rehearsal)?;
     let mut failure = None;
     let run = replay(scenario, |run, frame| {
@@ -314,14 +315,15 @@ impl<'a> Recorder<'a> {
     }
 
     /// What is known only at the end.
-    fn finish(mut self, run: &Run) -> Result<Peaks, Stop> {
+    fn finish(mut self, run: &Run) -> Result<(Peaks, Verdict), Stop> {
         let frame = &run.frame();
         self.flush()?;
         self.tip.write_trail(self.store, self.root, &self.palette)?;
-        self.story.write(self.store, self.root, (Instant::of(frame), &frame.peaks))?;
+        let verdict = Verdict::of(run.scenario(), frame);
+        self.story.write(self.store, self.root, (Instant::of(frame), &frame.peaks, &verdict))?;
         let path = EntityPath::properties() / EntityPathPart::new(self.scenario.name.as_str());
-        self.store.fixed(&path, &properties(self.scenario, &frame.peaks, run.plan()))?;
-        Ok(frame.peaks)
+        self.store.fixed(&path, &properties(self.scenario, (&frame.peaks, &verdict), run.plan()))?;
+        Ok((frame.peaks, verdict))
     }
 }
 
@@ -330,7 +332,7 @@ fn path_of(root: &EntityPath, signal: &Signal) -> EntityPath {
 }
 
 /// All that the run can be made of again, what was foreseen, and what came of it.
-fn properties(scenario: &Scenario, peaks: &Peaks, plan: &Plan) -> AnyValues {
+fn properties(scenario: &Scenario, (peaks, verdict): (&Peaks, &Verdict), plan: &Plan) -> AnyValues {
     let words = |text: &str| [Text::from(text)];
     let numbers = |values: &[f64]| values.iter().copied().map(Scalar::from).collect::<Vec<_>>();
     let number = |x: f64| [Scalar::from(x)];
@@ -338,15 +340,18 @@ fn properties(scenario: &Scenario, peaks: &Peaks, plan: &Plan) -> AnyValues {
     let mut all = AnyValues::default()
         .with_component::<Text>("title", words(&scenario.title))
         .with_component::<Text>("version", words(env!("CARGO_PKG_VERSION")))
-        .with_component::<Text>("verdict", words(&verdict(peaks)))
+        .with_component::<Text>("verdict", words(&verdict.sentence()))
         .with_component::<Text>("scenario", words(&scenario.to_toml()))
         .with_component::<Text>("machine", words(&crate::machine::to_toml(&scenario.machine)))
         .with_component::<Scalar>("peak_torque", numbers(&peaks.torque))
         .with_component::<Scalar>("peak_base_force", number(peaks.force))
-        .with_component::<Scalar>("peak_base_moment", number(peaks.moment))
+        .with_component::<Scalar>("peak_base_moment", number(peaks.arm_moment))
         .with_component::<Scalar>("forecast_time", number(forecast.time))
         .with_component::<Scalar>("forecast_peak_base_moment", number(forecast.moment))
         .with_component::<Scalar>("forecast_moment_impulse", number(forecast.impulse));
+    if let Some(left) = verdict.past_wheel {
+        all = all.with_component::<Scalar>("peak_moment_past_wheel", number(left));
+    }
     if let Some(price) = price {
         all = all
             .with_component::<Scalar>("delta_b", number(price.delta_b()))
@@ -356,7 +361,9 @@ fn properties(scenario: &Scenario, peaks: &Peaks, plan: &Plan) -> AnyValues {
         if let Some(limit) = pace.leading {
             all = all.with_component::<Text>("limit", words(&limit.to_string()));
         }
-        all = all.with_component::<Scalar>("gap", number(pace.taken / pace.unlimited - 1.0));
+        if let Some(gap) = pace.gap() {
+            all = all.with_component::<Scalar>("gap", number(gap));
+        }
     }
     // By drive, a number for each cycle: so far it has drifted in all.
     if let [start, ends @ ..] = &cycles[..] {

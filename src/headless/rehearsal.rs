@@ -26,8 +26,6 @@ pub struct Rehearsal {
     pub steps: u64,
     /// The largest of everything.
     pub peaks: Peaks,
-    /// The largest |f_B|, static and dynamic, N.
-    pub force: f64,
     /// The first audit that fails, in words.
     pub fault: Option<String>,
     /// Least and greatest b, rad.
@@ -48,9 +46,8 @@ impl Rehearsal {
     /// # Errors
     /// If it cannot start, or one of its edits cannot apply.
     pub fn of(scenario: &Scenario, tick: &mut dyn FnMut(u64)) -> Result<Self, Refusal> {
-        let (mut force, mut b) = (0.0_f64, [f64::INFINITY, f64::NEG_INFINITY]);
+        let mut b = [f64::INFINITY, f64::NEG_INFINITY];
         let run = replay(scenario, |_, frame| {
-            force = force.max(frame.wrench.total().force.norm());
             b = [b[0].min(frame.b), b[1].max(frame.b)];
             if frame.step.is_multiple_of(1024) {
                 tick(frame.step);
@@ -64,7 +61,6 @@ impl Rehearsal {
             root: EntityPath::new(vec![EntityPathPart::new(scenario.name.as_str())]),
             steps: last.step,
             peaks: last.peaks,
-            force,
             b,
             reach: Linkage::of(&run.scenario().machine).reach(),
             signals: signals(&scenario.machine),

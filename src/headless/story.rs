@@ -12,6 +12,7 @@ use crate::scenario::Task;
 use crate::scene::Rgba;
 use crate::scene::palette::Palette;
 use crate::session::Edit;
+use crate::verdict::Verdict;
 
 /// Events and phases of a case.
 #[derive(Debug)]
@@ -148,8 +149,8 @@ impl Story {
 
     /// What an instant brings.
     pub fn note(&mut self, at: Instant, frame: &Frame) {
-        if frame.peaks.moment > self.peak.1 {
-            self.peak = (at, frame.peaks.moment);
+        if frame.peaks.arm_moment > self.peak.1 {
+            self.peak = (at, frame.peaks.arm_moment);
         }
         match (self.phases.last(), frame.phase) {
             (Some(Phase::Motion), Phase::Rest) => {
@@ -183,7 +184,7 @@ impl Story {
         mut self,
         store: &mut Store,
         root: &EntityPath,
-        (end, peaks): (Instant, &Peaks),
+        (end, peaks, verdict): (Instant, &Peaks, &Verdict),
     ) -> Result<(), StoreError> {
         let states = [Phase::Motion, Phase::Follow, Phase::Rest];
         let lanes = StateConfiguration::new()
@@ -195,18 +196,17 @@ impl Story {
         let states = StateChange::new().with_state(phases.into_iter().map(Phase::name));
         store.columns(&clock.columns(), &under(root, "phase"), states.columns_of_unit_batches()?)?;
 
-        let quiet = peaks.is_reactionless();
-        if !quiet {
+        if !verdict.reactionless {
             let (at, moment) = self.peak;
             self.add(at, format!("peak |n_B| {} N m", brief(moment)), TextLogLevel::WARN, self.palette.reaction);
         }
         let torques: Vec<String> = peaks.torque.iter().map(|t| brief(*t)).collect();
         self.add(end, format!("peak |τ| {} N m", torques.join(", ")), TextLogLevel::INFO, self.palette.ink);
-        let (level, rgba) = match quiet {
+        let (level, rgba) = match verdict.is_good() {
             true => (TextLogLevel::INFO, self.palette.zero),
             false => (TextLogLevel::WARN, self.palette.reaction),
         };
-        self.add(end, verdict(peaks), level, rgba);
+        self.add(end, verdict.sentence(), level, rgba);
         self.events.sort_by_key(|event| event.at.step);
         let mut clock = Clock::default();
         self.events.iter().for_each(|event| clock.push(event.at));
@@ -216,10 +216,4 @@ impl Story {
             .with_many_color(self.events.iter().map(|event| colour(event.rgba)));
         store.columns(&clock.columns(), &under(root, "events"), log.columns_of_unit_batches()?)
     }
-}
-
-/// `reactionless: peak |n_B| 1.2e-15 N m, peak |f_B| 3.1e-14 N`.
-pub fn verdict(peaks: &Peaks) -> String {
-    let word = if peaks.is_reactionless() { "reactionless" } else { "not reactionless" };
-    format!("{word}: peak |n_B| {} N m, peak |f_B| {} N", brief(peaks.moment), brief(peaks.force))
 }

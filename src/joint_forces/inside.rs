@@ -67,6 +67,11 @@ impl Watch {
         Self { joints: Joints::of(machine).ok(), axial: AxialMoments::of(machine) }
     }
 
+    /// The size of what tilts the base, N m.
+    pub fn tilt(&self, e: &Units, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> f64 {
+        if self.axial.is_flat() { 0.0 } else { self.axial.tilt(e, qd, qdd, around).total().norm() }
+    }
+
     /// The present instant, with the friction of pins as [`Joints::forces_with`] asks for it. On a base that moves,
     /// gravity is g − p̈_B.
     pub fn at(

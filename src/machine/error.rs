@@ -4,6 +4,8 @@ use std::fmt;
 
 use thiserror::Error;
 
+use crate::range::{Short, Want, clipped};
+
 /// A place in a machine file: a path of keys and positions, such as `link[4].mass`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Place(pub Vec<Step>);
@@ -21,6 +23,22 @@ impl Place {
     /// A place from its keys; numbers become positions.
     pub fn new(path: &[&dyn AsStep]) -> Self {
         Self(path.iter().map(|s| s.step()).collect())
+    }
+
+    /// The place of a key as `--set` names it, its parts joined by dots, positions in brackets: `task.via[3]`.
+    pub fn of_key(key: &str) -> Self {
+        let steps = key.split('.').flat_map(|part| {
+            let (name, position) = part.split_once('[').unwrap_or((part, ""));
+            let position = position.trim_end_matches(']').parse().ok().and_then(|i: usize| i.checked_sub(1));
+            std::iter::once(Step::Key(name.into())).chain(position.map(Step::At))
+        });
+        Self(steps.collect())
+    }
+
+    /// The same place in a table that holds this one under a key.
+    #[must_use]
+    pub fn under(self, key: &str) -> Self {
+        Self(std::iter::once(Step::Key(key.into())).chain(self.0).collect())
     }
 }
 
@@ -49,8 +67,8 @@ impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, step) in self.0.iter().enumerate() {
             match step {
-                Step::Key(k) if i == 0 => write!(f, "{k}")?,
-                Step::Key(k) => write!(f, ".{k}")?,
+                Step::Key(k) if i == 0 => f.write_str(&clipped(k))?,
+                Step::Key(k) => write!(f, ".{}", clipped(k))?,
                 Step::At(i) => write!(f, "[{}]", i + 1)?,
             }
         }
@@ -58,20 +76,11 @@ impl fmt::Display for Place {
     }
 }
 
-/// A number as it was given, in powers of ten where it would run to hundreds of digits.
-pub(crate) fn brief(x: f64) -> String {
-    match x.abs() {
-        0.0 => x.to_string(),
-        size if (1e-6..1e12).contains(&size) => x.to_string(),
-        _ => format!("{x:e}"),
-    }
-}
-
 /// Why a description is not a machine.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum MachineError {
     /// Not a number where one is needed.
-    #[error("{place} is {value}: want a finite number{unit}")]
+    #[error("{place} is {}: want a finite number, {unit}", Short(*value))]
     NotFinite {
         /// Where.
         place: Place,
@@ -81,17 +90,17 @@ pub enum MachineError {
         unit: &'static str,
     },
     /// A number of the wrong sign or size.
-    #[error("{place} is {}: want {want}", brief(*.value))]
+    #[error("{place} is {}: want {want}", Short(*value))]
     OutOfRange {
         /// Where.
         place: Place,
         /// What stands there.
         value: f64,
         /// What would be right.
-        want: &'static str,
+        want: Want,
     },
     /// A name that nothing has.
-    #[error("{place} names the {what} {name:?}, which does not exist: want one of {known}")]
+    #[error("{place} names the {what} {:?}, which does not exist: want one of {known}", clipped(name))]
     Unknown {
         /// Where.
         place: Place,
@@ -103,7 +112,7 @@ pub enum MachineError {
         known: String,
     },
     /// Two of the same name.
-    #[error("{place} is {name:?}, which is taken: want a name of its own")]
+    #[error("{place} is {:?}, which is taken: want a name of its own", clipped(name))]
     Duplicate {
         /// Where.
         place: Place,
@@ -148,7 +157,7 @@ pub enum MachineError {
     #[error("no end effector: want [end_effector] with link = \"…\", at = \"tip\"")]
     NoEndEffector,
     /// A drive that moves nothing.
-    #[error("drive {drive:?} moves no mass: want a link with inertia on it")]
+    #[error("drive {:?} moves no mass: want a link with inertia on it", clipped(drive))]
     Massless {
         /// The drive.
         drive: String,
@@ -166,7 +175,7 @@ pub enum MachineError {
         sharers: String,
     },
     /// A key of `--set` or of an edit that nothing answers to.
-    #[error("no setting {key:?}: want one of {known}")]
+    #[error("no setting {:?}: want one of {known}", clipped(key))]
     UnknownKey {
         /// The key.
         key: String,
@@ -174,7 +183,7 @@ pub enum MachineError {
         known: String,
     },
     /// A value of `--set` that cannot be read.
-    #[error("{key}={value:?}: want {want}")]
+    #[error("{}={:?}: want {want}", clipped(key), clipped(value))]
     BadValue {
         /// The key.
         key: String,

@@ -6,6 +6,7 @@ use thiserror::Error;
 use toml::de::{DeTable, DeValue};
 
 use super::{Machine, MachineError, MachineSpec, Place, Step};
+use crate::range::shortened;
 use crate::text::MOST_BYTES;
 
 /// What is wrong with a file, and where.
@@ -48,7 +49,7 @@ pub fn parse(text: &str, file: &str) -> Result<Machine, FileError> {
     let wrong = |line, error| FileError::Wrong { file: file.into(), line, error };
     let spec: MachineSpec = toml::from_str(text).map_err(|e| {
         let line = e.span().map(|span| line_of(text, span.start));
-        wrong(line, MachineError::Syntax(e.message().to_owned()))
+        wrong(line, MachineError::Syntax(shortened(e.message(), 300)))
     })?;
     Machine::new(spec).map_err(|e| wrong(e.place().and_then(|p| line_of_place(text, p)), e))
 }
@@ -61,12 +62,13 @@ pub fn to_toml(machine: &Machine) -> String {
     toml::to_string(machine.spec()).expect("a machine is plain data")
 }
 
-fn line_of(text: &str, byte: usize) -> usize {
+/// The line of a byte, counted from 1.
+pub(crate) fn line_of(text: &str, byte: usize) -> usize {
     text.as_bytes()[..byte.min(text.len())].iter().filter(|b| **b == b'\n').count() + 1
 }
 
 /// The line of the innermost part of a place that the text has.
-fn line_of_place(text: &str, place: &Place) -> Option<usize> {
+pub(crate) fn line_of_place(text: &str, place: &Place) -> Option<usize> {
     let table = DeTable::parse(text).ok()?;
     let mut span = None;
     let mut at: Option<&DeValue> = None;

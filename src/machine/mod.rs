@@ -21,22 +21,37 @@ mod spec;
 use std::ops::RangeInclusive;
 
 pub use catalog::{builtin, builtins, find};
-pub(crate) use error::brief;
 pub use error::{MachineError, Place, Step};
 pub use file::{FileError, parse, read, to_toml};
+pub(crate) use file::{line_of, line_of_place};
 pub use inertia::{BALANCED, Inertia};
 pub use spec::{Angle, Attach, Closure, Drive, Length, Link, MachineSpec, Payload, Point, Station};
 
 use crate::planar::{MAX_DRIVES, Units, Vector};
+use crate::range::{Range, Short, Want, clipped, shortened};
 
 /// A point as a sum of unit vectors: weight w_k, m, on e(q_k).
 pub type Chain = [f64; MAX_DRIVES];
 
 /// The largest number of a machine, in SI units: beyond it, products of them would not be finite.
 const MOST: f64 = 1e6;
+/// The least of those that nothing works without: below it, quotients would not be.
+const LEAST: f64 = 1e-9;
+
+const GRAVITY: Range = Range::either_way(MOST, "m/s²");
+const LENGTH: Range = Range::new(1e-6, MOST, "m");
+const PLACE: Range = Range::either_way(MOST, "m");
+const MASS: Range = Range::new(LEAST, MOST, "kg");
+const LOAD: Range = Range::new(0.0, MOST, "kg");
+const INERTIA: Range = Range::new(0.0, MOST, "kg m²");
+const TORQUE_LIMIT: Range = Range::new(LEAST, MOST, "N m");
+const SPEED_LIMIT: Range = Range::new(LEAST, MOST, "rad/s");
+const ACCELERATION_LIMIT: Range = Range::new(LEAST, MOST, "rad/s²");
+const JERK_LIMIT: Range = Range::new(LEAST, 1e9, "rad/s³");
 
 /// The largest joint limit either way, rad: each further turn is one more winding of the same workspace.
 pub const MAX_ANGLE: f64 = 25.2;
+const ANGLE: Range = Range::either_way(MAX_ANGLE, "rad, four turns");
 
 /// How far, m, the two points of a closure may lie apart.
 pub const CLOSURE_TOLERANCE: f64 = 1e-9;
@@ -274,92 +289,82 @@ fn look_up(what: &'static str, names: &[&str], name: &str, place: impl Fn() -> P
 }
 
 fn quoted<'a>(names: impl Iterator<Item = &'a str>) -> String {
-    names.map(|n| format!("{n:?}")).collect::<Vec<_>>().join(", ")
+    let mut known: Vec<String> = names.take(21).map(|n| format!("{:?}", clipped(n))).collect();
+    if known.len() > 20 {
+        known[20] = "…".into();
+    }
+    known.join(", ")
 }
 
 fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {
-    let finite = |value: f64, unit, place: &dyn Fn() -> Place| match value.is_finite() {
-        true if value.abs() <= MOST => Ok(()),
-        true => Err(MachineError::OutOfRange { place: place(), value, want: "a size of at most 1000000" }),
-        false => Err(MachineError::NotFinite { place: place(), value, unit }),
-    };
-    let ranged = |ok: bool, value: f64, want, place: &dyn Fn() -> Place| match ok {
-        true => Ok(()),
-        false => Err(MachineError::OutOfRange { place: place(), value, want }),
-    };
     for (i, &value) in spec.gravity.iter().enumerate() {
-        finite(value, ", m/s²", &|| Place::new(&[&"gravity", &i]))?;
+        within(GRAVITY, value, || Place::new(&[&"gravity", &i]))?;
     }
     for (name, &value) in &spec.lengths {
-        let place = || Place::new(&[&"lengths", name]);
-        finite(value, ", m", &place)?;
-        ranged(value > 0.0, value, "a length above 0 m", &place)?;
+        within(LENGTH, value, || Place::new(&[&"lengths", name]))?;
     }
-    for (value, key, want, unit) in [
-        (spec.payload.mass, "mass", "a mass of 0 kg or more", ", kg"),
-        (spec.payload.inertia, "inertia", "an inertia of 0 kg m² or more", ", kg m²"),
-    ] {
-        let place = || Place::new(&[&"payload", &key]);
-        finite(value, unit, &place)?;
-        ranged(value >= 0.0, value, want, &place)?;
-    }
-    finite(spec.payload.axial, ", m", &|| Place::new(&[&"payload", &"axial"]))?;
-    for (i, &value) in spec.payload.offset.iter().enumerate() {
-        finite(value, ", m", &|| Place::new(&[&"payload", &"offset", &i]))?;
+    let Payload { mass, inertia, offset, axial } = spec.payload;
+    within(LOAD, mass, || Place::new(&[&"payload", &"mass"]))?;
+    within(INERTIA, inertia, || Place::new(&[&"payload", &"inertia"]))?;
+    within(PLACE, axial, || Place::new(&[&"payload", &"axial"]))?;
+    for (i, &value) in offset.iter().enumerate() {
+        within(PLACE, value, || Place::new(&[&"payload", &"offset", &i]))?;
     }
     for (i, drive) in spec.drives.iter().enumerate() {
-        for (key, value, unit, want) in [
-            ("torque_limit", drive.torque_limit, ", N m", "a torque above 0 N m, or no key for none"),
-            ("speed_limit", drive.speed_limit, ", rad/s", "a speed above 0 rad/s, or no key for none"),
-            (
-                "acceleration_limit",
-                drive.acceleration_limit,
-                ", rad/s²",
-                "an acceleration above 0 rad/s², or no key for none",
-            ),
-            ("jerk_limit", drive.jerk_limit, ", rad/s³", "a jerk above 0 rad/s³, or no key for none"),
+        for (key, value, range) in [
+            ("torque_limit", drive.torque_limit, TORQUE_LIMIT),
+            ("speed_limit", drive.speed_limit, SPEED_LIMIT),
+            ("acceleration_limit", drive.acceleration_limit, ACCELERATION_LIMIT),
+            ("jerk_limit", drive.jerk_limit, JERK_LIMIT),
         ] {
-            let Some(value) = value else { continue };
-            let place = || Place::new(&[&"drive", &i, &key]);
-            finite(value, unit, &place)?;
-            ranged(value > 0.0, value, want, &place)?;
+            value.map_or(Ok(()), |value| within(range, value, || Place::new(&[&"drive", &i, &key])))?;
         }
     }
     for (i, link) in spec.links.iter().enumerate() {
-        for (key, value, unit) in [
-            ("mass", link.mass, ", kg"),
-            ("inertia", link.inertia, ", kg m²"),
-            ("com", link.com, ", m"),
-            ("com_normal", link.com_normal, ", m"),
-            ("axial", link.axial, ", m"),
+        for (key, value, range) in [
+            ("mass", link.mass, MASS),
+            ("inertia", link.inertia, INERTIA),
+            ("com", link.com, PLACE),
+            ("com_normal", link.com_normal, PLACE),
+            ("axial", link.axial, PLACE),
         ] {
-            finite(value, unit, &|| Place::new(&[&"link", &i, &key]))?;
+            within(range, value, || Place::new(&[&"link", &i, &key]))?;
         }
-        ranged(link.mass > 0.0, link.mass, "a mass above 0 kg", &|| Place::new(&[&"link", &i, &"mass"]))?;
-        ranged(link.inertia >= 0.0, link.inertia, "an inertia of 0 kg m² or more", &|| {
-            Place::new(&[&"link", &i, &"inertia"])
-        })?;
-        ranged(matches!(link.direction, -1 | 1), f64::from(link.direction), "1 or -1", &|| {
-            Place::new(&[&"link", &i, &"direction"])
-        })?;
+        if !matches!(link.direction, -1 | 1) {
+            let place = Place::new(&[&"link", &i, &"direction"]);
+            return Err(MachineError::OutOfRange { place, value: link.direction.into(), want: Want::Words("1 or -1") });
+        }
     }
     for (i, angle) in spec.angles.iter().enumerate() {
         for (key, value) in [("offset", angle.offset), ("min", angle.min), ("max", angle.max)] {
-            let place = || Place::new(&[&"angle", &i, &key]);
-            finite(value, ", rad", &place)?;
-            ranged(value.abs() <= MAX_ANGLE, value, "at most four turns either way: -25.2 to 25.2 rad", &place)?;
+            within(ANGLE, value, || Place::new(&[&"angle", &i, &key]))?;
         }
-        ranged(angle.min <= angle.max, angle.max, "a limit not below min", &|| Place::new(&[&"angle", &i, &"max"]))?;
+        if angle.min > angle.max {
+            let place = Place::new(&[&"angle", &i, &"max"]);
+            return Err(MachineError::OutOfRange {
+                place,
+                value: angle.max,
+                want: Want::Words("a limit not below min"),
+            });
+        }
     }
     Ok(())
+}
+
+/// Refuses a number that is none, or out of the range of its key.
+fn within(range: Range, value: f64, place: impl Fn() -> Place) -> Result<(), MachineError> {
+    match value.is_finite() {
+        true if range.contains(value) => Ok(()),
+        true => Err(MachineError::OutOfRange { place: place(), value, want: Want::Within(range) }),
+        false => Err(MachineError::NotFinite { place: place(), value, unit: range.unit() }),
+    }
 }
 
 /// Length of a link, m.
 fn length_of(spec: &MachineSpec, i: usize) -> Result<f64, MachineError> {
     let place = || Place::new(&[&"link", &i, &"length"]);
     match &spec.links[i].length {
-        Length::Metres(l) if l.is_finite() && *l > 0.0 => Ok(*l),
-        Length::Metres(l) => Err(MachineError::OutOfRange { place: place(), value: *l, want: "a length above 0 m" }),
+        Length::Metres(l) => within(LENGTH, *l, place).map(|()| *l),
         Length::Named(name) => named_length(spec, name, place),
     }
 }
@@ -387,8 +392,7 @@ fn locate(
     };
     let link = names.link(&point.link, || under("link"))?;
     let s = match &point.at {
-        Station::Metres(s) if s.is_finite() => *s,
-        Station::Metres(s) => return Err(MachineError::NotFinite { place: under("at"), value: *s, unit: ", m" }),
+        Station::Metres(s) => within(PLACE, *s, || under("at")).map(|()| *s)?,
         Station::Named(name) => match name.as_str() {
             "tip" => length_of(spec, link)?,
             "root" => 0.0,
@@ -423,8 +427,8 @@ fn resolve(spec: &MachineSpec, names: &Names) -> Result<Vec<Part>, MachineError>
             if chain.len() > spec.links.len() {
                 return Err(MachineError::Cycle {
                     place: Place::new(&[&"link", &i, &"attach"]),
-                    link: link.name.clone(),
-                    chain: chain.join(" on "),
+                    link: clipped(&link.name),
+                    chain: shortened(&chain.join(" on "), 200),
                 });
             }
             let on = &spec.links[parent];
@@ -457,14 +461,14 @@ fn resolve_closure(
     let (p, r) = (parts[a].point(s), parts[b].point(t));
     let gap: Vec<String> = (0..spec.drives.len())
         .filter(|&k| (p[k] - r[k]).abs() > CLOSURE_TOLERANCE)
-        .map(|k| format!("{:.6} m along drive {}", p[k] - r[k], spec.drives[k].name))
+        .map(|k| format!("{:.6} m along drive {}", p[k] - r[k], clipped(&spec.drives[k].name)))
         .collect();
     if gap.is_empty() {
         return Ok(Loop { a, at_a: s, b, at_b: t });
     }
     let say = |point: &Point| match &point.at {
-        Station::Metres(s) => format!("{s} m of link {}", point.link),
-        Station::Named(name) => format!("{name} of link {}", point.link),
+        Station::Metres(s) => format!("{} m of link {}", Short(*s), clipped(&point.link)),
+        Station::Named(name) => format!("{} of link {}", clipped(name), clipped(&point.link)),
     };
     Err(MachineError::OpenLoop {
         place: Place::new(&[&"closure", &i]),

@@ -149,9 +149,9 @@ fn set_link_length(spec: &mut MachineSpec, j: usize, metres: f64) -> Result<(), 
     if !others.is_empty() {
         let plural = if others.len() > 1 { "links" } else { "link" };
         return Err(MachineError::SharedLength {
-            link: spec.links[j].name.clone(),
-            length: name,
-            sharers: format!("{plural} {}", others.join(", ")),
+            link: super::clipped(&spec.links[j].name),
+            length: super::clipped(&name),
+            sharers: format!("{plural} {}", super::shortened(&others.join(", "), 200)),
         });
     }
     spec.lengths.insert(name, metres);

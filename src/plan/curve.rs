@@ -246,6 +246,16 @@ impl Curve {
         std::iter::once(0.0).chain(self.pieces.iter().map(|p| p.to))
     }
 
+    /// The joints, and places between them so dense that the curve changes little from one to the next.
+    pub fn places(&self) -> impl Iterator<Item = f64> + '_ {
+        let parts = |piece: &Piece| {
+            let spaces = if piece.shape.is_straight() { 1 } else { 16 };
+            let (from, to) = (piece.from, piece.to);
+            (1..=spaces).map(move |i| if i == spaces { to } else { from + (to - from) * i as f64 / spaces as f64 })
+        };
+        std::iter::once(0.0).chain(self.pieces.iter().flat_map(parts))
+    }
+
     /// The place at s, clamped to 0..1.
     pub fn at(&self, s: f64) -> CurvePoint {
         let s = s.clamp(0.0, 1.0);
@@ -254,6 +264,14 @@ impl Curve {
         let run = piece.to - piece.from;
         let local = piece.shape.at((s - piece.from) / run);
         CurvePoint { p: local.p, first: local.first / run, second: local.second / (run * run) }
+    }
+
+    /// d³p/ds³ at s, clamped to 0..1.
+    pub fn third(&self, s: f64) -> Vector {
+        let s = s.clamp(0.0, 1.0);
+        let piece = &self.pieces[self.pieces.partition_point(|p| p.to < s).min(self.pieces.len() - 1)];
+        let run = piece.to - piece.from;
+        piece.shape.third((s - piece.from) / run) / (run * run * run)
     }
 
     /// The s of the point nearest to p, among `samples` and between them to first order.
@@ -280,6 +298,19 @@ impl Shape {
                 let r = arm * unit(sweep * u);
                 CurvePoint { p: centre + r, first: r * Vector::new(0.0, *sweep), second: r * (-sweep * sweep) }
             }
+        }
+    }
+}
+
+impl Shape {
+    fn is_straight(&self) -> bool {
+        matches!(self, Self::Polynomial([_, _, rest @ ..]) if *rest == [Vector::default(); 4])
+    }
+
+    fn third(&self, u: f64) -> Vector {
+        match self {
+            Self::Polynomial(c) => 6.0 * c[3] + u * (24.0 * c[4] + u * 60.0 * c[5]),
+            Self::Arc { arm, sweep, .. } => arm * unit(sweep * u) * Vector::new(0.0, -sweep.powi(3)),
         }
     }
 }

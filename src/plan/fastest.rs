@@ -6,18 +6,20 @@
 
 use thiserror::Error;
 
+use super::keep::{greatest, kept};
+use super::law::Progress;
 use super::limits::{Constraints, Limit, Limits, Quantity, Row};
 use super::path::Path;
 use super::profile::{Profile, Span};
 use super::smooth;
-use super::topp::{Blocked, Grid, Sweep, UNLIMITED};
+use super::topp::{Blocked, Grid, PAST, Sweep, UNLIMITED};
 use super::usage::Shares;
 use crate::dynamics::Surroundings;
 use crate::machine::Inertia;
 use crate::planar::PerDrive;
 
-/// Spaces of the grid on a curve, if nobody says otherwise.
-pub const SPACES: usize = 1000;
+/// Spaces of the grid on a curve to begin with, if nobody says otherwise.
+pub const SPACES: usize = 600;
 
 /// The fastest motion on a path.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,8 +88,9 @@ pub enum TimeError {
     },
 }
 
-/// The fastest motion on a path within a machine's limits; `smooth`: those on jerk too. On a curve the grid is
-/// [`stations`] of [`SPACES`].
+/// The fastest motion on a path within a machine's limits; `smooth`: those on jerk too. On a curve the grid begins with
+/// [`stations`] of [`SPACES`] and the path's own places, is made finer where what is limited changes much, and the motion
+/// is slowed down by what limits are passed by between its stations, so that it keeps them everywhere.
 ///
 /// # Errors
 /// If nothing limits the motion, or the limits leave none.
@@ -98,7 +101,7 @@ pub fn fastest(
     limits: &Limits,
     smooth: bool,
 ) -> Result<Fastest, TimeError> {
-    fastest_at(path, model, around, limits, smooth, &stations(SPACES))
+    planned(path, model, around, limits, smooth, None)
 }
 
 /// Stations s = u² (3 − 2 u), u even: as a motion at constant |s̈| would pass at even times, so that they are finest at
@@ -111,7 +114,8 @@ pub fn stations(spaces: usize) -> Vec<f64> {
     (0..=spaces).map(at).collect()
 }
 
-/// [`fastest`] on a grid of stations that rise from 0 to 1.
+/// [`fastest`] on a grid of stations that rise from 0 to 1, as it is: limits other than those on jerk are kept at the
+/// stations, and between them to second order in their spacing.
 ///
 /// # Errors
 /// As [`fastest`], and if the stations do not rise from 0 to 1.
@@ -127,6 +131,17 @@ pub fn fastest_at(
     if !rising || stations.len() < 2 || stations.first() != Some(&0.0) || stations.last() != Some(&1.0) {
         return Err(TimeError::Stations);
     }
+    planned(path, model, around, limits, smooth, Some(stations))
+}
+
+fn planned(
+    path: &Path,
+    model: &Inertia,
+    around: &Surroundings,
+    limits: &Limits,
+    smooth: bool,
+    stations: Option<&[f64]>,
+) -> Result<Fastest, TimeError> {
     let drives = (path.at(0.0).q.len(), model.drives(), limits.torque.len());
     let alike = Quantity::ALL.iter().all(|quantity| limits.on(*quantity).len() == drives.1);
     if drives.0 != drives.1 || !alike {
@@ -134,21 +149,60 @@ pub fn fastest_at(
     }
     let constraints = Constraints::new(model, around, limits);
     match path {
-        Path::Rest(_) => Ok(nowhere()),
-        Path::JointLine { from, to } if from == to => Ok(nowhere()),
+        Path::Rest(_) => return Ok(nowhere()),
+        Path::JointLine { from, to } if from == to => return Ok(nowhere()),
         Path::JointLine { from, to } if constraints.is_constant() => {
-            straight(&to.0.minus(&from.0), model, limits, smooth)
+            return straight(&to.0.minus(&from.0), model, limits, smooth);
         }
-        _ if smooth => {
-            if !(0..drives.1).any(|k| limits.jerk[k].is_finite()) {
-                return Err(TimeError::NoJerkLimit);
-            }
-            let grid = Grid::new(path, &constraints, stations);
-            let bound = curved(path, &constraints, &grid);
-            smooth::smooth(path, model, around, limits, &grid, bound)
-        }
-        _ => curved(path, &constraints, &Grid::new(path, &constraints, stations)),
+        _ if smooth && !(0..drives.1).any(|k| limits.jerk[k].is_finite()) => return Err(TimeError::NoJerkLimit),
+        _ => {}
     }
+    if let Some(stations) = stations {
+        let grid = Grid::new(path, &constraints, stations.to_vec());
+        let bound = curved(path, &constraints, &grid, grid.fastest());
+        return if smooth { smooth::smooth(path, model, around, &constraints, &grid, bound) } else { bound };
+    }
+    let stretch = |at: &Progress| constraints.stretch(path, at);
+    let (mut grid, found) = Grid::new(path, &constraints, dense(path)).fastest_refined(path, &constraints);
+    let mut bound = curved(path, &constraints, &grid, found);
+    for _ in 0..MENDINGS {
+        let Ok(found) = &bound else { break };
+        let past: Vec<f64> = found.profile.phases().map(|phase| greatest(std::iter::once(phase), stretch)).collect();
+        if past.len() + 1 != grid.s.len() || past.iter().all(|past| *past <= 1.0 + PAST) {
+            break;
+        }
+        let found;
+        (grid, found) = grid.mended(path, &constraints, &past);
+        bound = curved(path, &constraints, &grid, found);
+    }
+    if smooth {
+        return smooth::smooth(path, model, around, &constraints, &grid, bound);
+    }
+    let found = bound?;
+    let profile = kept(&found.profile, stretch).ok_or(TimeError::Stuck { s: 0.0 })?;
+    Ok(Fastest { profile, ..found })
+}
+
+/// How often the grid is made finer where limits are passed between its stations.
+const MENDINGS: usize = 6;
+
+/// [`stations`] and the places of a path, which take the place of stations close by.
+fn dense(path: &Path) -> Vec<f64> {
+    let (own, even) = (path.places(), stations(SPACES));
+    let mut all = Vec::with_capacity(own.len() + even.len());
+    let mut next = 0;
+    for (i, s) in even.iter().enumerate() {
+        while next < own.len() && own[next] <= *s {
+            all.push(own[next]);
+            next += 1;
+        }
+        let room = 0.25 * (even[(i + 1).min(SPACES)] - even[i.saturating_sub(1)]);
+        let clear = |near: Option<&f64>| near.is_none_or(|near| (near - s).abs() > room);
+        if clear(all.last()) && clear(own.get(next)) {
+            all.push(*s);
+        }
+    }
+    all
 }
 
 fn nowhere() -> Fastest {
@@ -223,8 +277,13 @@ pub fn s_curve(v: f64, a: f64, j: f64) -> Option<[Span; 7]> {
     ])
 }
 
-fn curved(path: &Path, constraints: &Constraints, grid: &Grid) -> Result<Fastest, TimeError> {
-    let stations = grid.s;
+fn curved(
+    path: &Path,
+    constraints: &Constraints,
+    grid: &Grid,
+    found: Result<Sweep, Blocked>,
+) -> Result<Fastest, TimeError> {
+    let stations = &grid.s;
     if grid.rows.iter().all(|r| r.a == 0.0 && r.c == 0.0) {
         // Nothing moves, or nothing that moves has a limit.
         let moves = stations.iter().any(|s| path.at(*s).first.max_abs() > 0.0);
@@ -234,7 +293,7 @@ fn curved(path: &Path, constraints: &Constraints, grid: &Grid) -> Result<Fastest
             (true, false) => Err(TimeError::Unlimited { s: 0.0 }),
         };
     }
-    let Sweep { x, rise } = grid.fastest().map_err(|blocked| explain(grid, constraints, blocked))?;
+    let Sweep { x, rise } = found.map_err(|blocked| explain(grid, constraints, blocked))?;
     if let Some(i) = x.iter().position(|x| *x >= UNLIMITED) {
         return Err(TimeError::Unlimited { s: stations[i] });
     }

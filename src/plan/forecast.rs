@@ -42,6 +42,9 @@ const INSTANTS: usize = 2000;
 const A_PART: usize = 100;
 const MOST: usize = 100_000;
 
+/// A limit counts as passed from this factor on.
+const PASSED: f64 = 1.0 + 1e-6;
+
 impl Forecast {
     /// Of a motion of a model.
     pub fn of(motion: &Motion, model: &Inertia, around: &Surroundings, limits: &Limits) -> Self {
@@ -68,6 +71,8 @@ impl Forecast {
             b_start: lambda.dot(&motion.at(0.0).q),
             b_end: lambda.dot(&motion.at(time).q),
         };
+        // The instants lie between: the ends belong to the range too.
+        sum.b = [sum.b_start.min(sum.b_end), sum.b_start.max(sum.b_end)];
         let dt = time / instants as f64;
         // Between the instants, so that no step of the acceleration is looked at from the wrong side.
         for i in 0..instants {
@@ -83,8 +88,8 @@ impl Forecast {
             {
                 for (drive, (x, limit)) in values.iter().zip(limits.on(quantity).iter()).enumerate() {
                     let factor = x.abs() / limit;
-                    // What rounding and the grid of a fastest motion pass by is none.
-                    if factor > 1.005 && sum.over.is_none_or(|(_, most)| factor > most) {
+                    // What rounding passes by is none.
+                    if factor > PASSED && sum.over.is_none_or(|(_, most)| factor > most) {
                         sum.over = Some((Limit { quantity, drive }, factor));
                     }
                 }

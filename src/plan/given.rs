@@ -16,9 +16,14 @@ use super::path::PathPoint;
 use super::spline::{FEWEST, Knots};
 use super::table::Table;
 use crate::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector};
+use crate::range::{Range, Short};
 
 /// The most samples.
 pub const MAX_SAMPLES: usize = 20_000;
+
+/// Of a time, which may count from long ago, and of angles and coordinates.
+const TIME: Range = Range::either_way(1e11, "s");
+const VALUE: Range = Range::either_way(1e6, "rad or m");
 
 /// Two times nearer to each other than this share of the whole are one.
 const APART: f64 = 1e-9;
@@ -65,8 +70,22 @@ pub enum SamplesError {
         /// Which.
         column: usize,
     },
+    /// Out of range.
+    #[error("sample {}, number {} is {}: want {range}", row + 1, column + 1, Short(*value))]
+    OutOfRange {
+        /// Which.
+        row: usize,
+        /// Which.
+        column: usize,
+        /// What stands there.
+        value: f64,
+        /// What would be right.
+        range: Range,
+    },
     /// Time stands still or goes back.
-    #[error("sample {} is at {time} s, the one before at {before} s: want times that rise", row + 1)]
+    #[error(
+        "sample {} is at {} s, the one before at {} s: want times that rise", row + 1, Short(*time), Short(*before)
+    )]
     NotRising {
         /// Which.
         row: usize,
@@ -76,7 +95,7 @@ pub enum SamplesError {
         before: f64,
     },
     /// Nothing to be smoothed so.
-    #[error("a cut-off of {cut_off} Hz: want one above 0 and below {nyquist:.6} Hz, half of the mean rate")]
+    #[error("a cut-off of {} Hz: want one above 0 and below {nyquist:.6} Hz, half of the mean rate", Short(*cut_off))]
     CutOff {
         /// Hz.
         cut_off: f64,
@@ -118,6 +137,11 @@ impl Samples {
         for (row, of) in rows.iter().enumerate() {
             if let Some(column) = of.iter().position(|x| !x.is_finite()) {
                 return Err(SamplesError::NotFinite { row, column });
+            }
+            let range = |column: usize| if column == 0 { TIME } else { VALUE };
+            if let Some(column) = (0..of.len()).find(|column| !range(*column).contains(of[*column])) {
+                let (value, range) = (of[column], range(column));
+                return Err(SamplesError::OutOfRange { row, column, value, range });
             }
         }
         let least = APART * (rows[got - 1][0] - rows[0][0]).abs();

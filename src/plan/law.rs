@@ -62,6 +62,16 @@ impl TimeLaw {
         }
     }
 
+    /// The shares of T at which s̈ jumps or bends.
+    pub fn kinks(self) -> &'static [f64] {
+        match self {
+            Self::Quintic | Self::Septic => &[0.0, 1.0],
+            Self::Trapezoidal => &[0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0],
+            Self::Fastest => &[0.0, 0.5, 1.0],
+            Self::FastestSmooth => &[0.0, 0.25, 0.75, 1.0],
+        }
+    }
+
     /// Progress at time t, s, of a motion that takes T, s; still before its start and from its end on.
     #[inline]
     pub fn at(self, t: f64, duration: f64) -> Progress {

@@ -13,7 +13,8 @@
 
 use std::fmt;
 
-use super::path::PathPoint;
+use super::law::Progress;
+use super::path::{Path, PathPoint};
 use crate::dynamics::{Surroundings, holding_torque, inverse, mass_matrix};
 use crate::machine::{Inertia, Machine};
 use crate::planar::{MAX_DRIVES, PerDrive};
@@ -121,6 +122,22 @@ impl Row {
     }
 }
 
+impl Row {
+    /// The factor on time with which the limit is just kept: all but what is there at rest falls with its square.
+    /// Infinite where no time is enough.
+    #[inline]
+    pub(super) fn stretch(&self, u: f64, x: f64) -> f64 {
+        let moving = self.a * u + self.c * x;
+        // Room on the side to which the motion pushes.
+        let room = 1.0 - if moving < 0.0 { -self.g } else { self.g };
+        match (moving == 0.0, room > 0.0) {
+            (true, _) => 0.0,
+            (false, true) => (moving.abs() / room).sqrt(),
+            (false, false) => f64::INFINITY,
+        }
+    }
+}
+
 /// The most rows there can be: torque and acceleration of every drive.
 pub const MAX_ROWS: usize = 2 * MAX_DRIVES;
 
@@ -199,6 +216,15 @@ impl<'a> Constraints<'a> {
         }
         let slow = self.limits.speed.iter().zip(first.iter()).fold(0.0, |m: f64, (v, d)| m.max(d.abs() / v));
         1.0 / (slow * slow)
+    }
+
+    /// The factor on time with which a place on a path, passed so, just keeps every limit but those on jerk.
+    pub(super) fn stretch(&self, path: &Path, at: &Progress) -> f64 {
+        let mut rows = [Row::default(); MAX_ROWS];
+        let rows = &mut rows[..self.rows.len()];
+        let x = at.rate * at.rate;
+        let cap = self.at(&path.at(at.s), rows);
+        rows.iter().map(|row| row.stretch(at.acceleration, x)).fold((x / cap).sqrt(), f64::max)
     }
 
     /// The drive whose limit on speed is nearest, whatever ṡ.

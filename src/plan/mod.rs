@@ -21,6 +21,8 @@ pub mod follow;
 pub mod forecast;
 pub mod given;
 pub mod inverse;
+mod jerk;
+mod keep;
 pub mod law;
 pub mod least_reaction;
 pub mod limits;
@@ -96,6 +98,15 @@ impl Motion {
     #[inline]
     pub fn duration(&self) -> f64 {
         self.profile.duration()
+    }
+
+    /// Times after the start at which q̈ jumps or bends, s, in order: no step of a simulation should pass one.
+    pub fn kinks(&self) -> Vec<f64> {
+        let mut all = self.profile.kinks();
+        all.extend(self.path.kinks().into_iter().map(|s| self.profile.when(s)));
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        all
     }
 
     /// The reference t seconds after the start; at rest before it and after T.

@@ -98,6 +98,30 @@ impl Path {
         }
     }
 
+    /// s at which q′ or q″ jumps: at joints of curves, where paths meet, and where a table jumps.
+    pub fn kinks(&self) -> Vec<f64> {
+        const HAIR: f64 = 1e-9;
+        let joints: Vec<f64> = match self {
+            Self::Chain(chain) => {
+                let inner = |(path, [from, to]): (&Self, [f64; 2])| {
+                    path.kinks().into_iter().map(move |s| from + s * (to - from)).chain([to])
+                };
+                return chain.parts().flat_map(inner).filter(|s| *s < 1.0).collect();
+            }
+            Self::OnPlane { curve, .. } => curve.joints().collect(),
+            // Where a table jumps two of its nodes stand side by side.
+            Self::Table(table) => table.stations().windows(2).filter(|w| w[1] - w[0] < HAIR).map(|w| w[0]).collect(),
+            _ => Vec::new(),
+        };
+        let jumps = |s: &f64| {
+            let (a, b) = (self.at(s - HAIR), self.at(s + HAIR));
+            let jump = |a: &PerDrive, b: &PerDrive| b.minus(a).max_abs();
+            jump(&a.first, &b.first) + jump(&a.second, &b.second)
+                > 1e-5 * (a.first.max_abs() + a.second.max_abs() + b.second.max_abs())
+        };
+        joints.into_iter().filter(|s| *s > 0.0 && *s < 1.0).filter(jumps).collect()
+    }
+
     /// How many paths it is made of; a table of very many nodes counts as several.
     pub fn parts(&self) -> usize {
         match self {
@@ -107,12 +131,42 @@ impl Path {
         }
     }
 
-    /// d³q/ds³ at s, rad: zero on straight lines, else from differences of q″ over 1e-5 either way.
+    /// d³q/ds³ at s, rad: exact but for the course of case 2, where it is from differences of q″. Where it jumps, as
+    /// where a blend begins, it is that of the part which s begins, or for a curve on a plane of the one which it ends.
     pub fn third(&self, s: f64) -> PerDrive {
-        let (before, after) = ((s - THIRD_OVER).max(0.0), (s + THIRD_OVER).min(1.0));
+        let s = s.clamp(0.0, 1.0);
         match self {
             Self::Rest(q) | Self::JointLine { from: q, .. } => PerDrive::zeros(q.len()),
-            _ => self.at(after).second.minus(&self.at(before).second).scaled(1.0 / (after - before)),
+            Self::Table(table) => table.third(s),
+            Self::OnPlane { map, curve, .. } => {
+                let third = curve.third(s);
+                PerDrive::from(map.lift_rates([third.re, third.im], 0.0))
+            }
+            Self::Chain(chain) => chain.third(s),
+            Self::SameTip(_) => {
+                let (before, after) = ((s - THIRD_OVER).max(0.0), (s + THIRD_OVER).min(1.0));
+                self.at(after).second.minus(&self.at(before).second).scaled(1.0 / (after - before))
+            }
+        }
+    }
+
+    /// Where q‴ jumps, and both ends: s from 0 to 1. Between these a path is smooth.
+    pub fn joints(&self) -> Vec<f64> {
+        match self {
+            Self::Rest(_) | Self::JointLine { .. } | Self::SameTip(_) => vec![0.0, 1.0],
+            Self::Table(table) => table.joints(),
+            Self::OnPlane { curve, .. } => curve.joints().collect(),
+            Self::Chain(chain) => chain.joined(Self::joints),
+        }
+    }
+
+    /// Places so dense that a path changes little from one to the next, if it knows of some; both ends in any case.
+    pub fn places(&self) -> Vec<f64> {
+        match self {
+            Self::Table(table) => table.stations().to_vec(),
+            Self::OnPlane { curve, .. } => curve.places().collect(),
+            Self::Chain(chain) => chain.joined(Self::places),
+            _ => self.joints(),
         }
     }
 }
@@ -160,12 +214,32 @@ impl Chained {
         self.paths.iter().zip(begins.zip(&self.ends).map(|(from, to)| [from, *to]))
     }
 
-    fn at(&self, s: f64) -> PathPoint {
+    /// Which part s is on, where on it, and its share of s.
+    fn part(&self, s: f64) -> (&Path, f64, f64) {
         let i = self.ends.partition_point(|end| *end < s).min(self.paths.len() - 1);
         let from = if i == 0 { 0.0 } else { self.ends[i - 1] };
         let run = self.ends[i] - from;
-        let point = self.paths[i].at((s - from) / run);
+        (&self.paths[i], (s - from) / run, run)
+    }
+
+    fn at(&self, s: f64) -> PathPoint {
+        let (path, s, run) = self.part(s);
+        let point = path.at(s);
         PathPoint { q: point.q, first: point.first.scaled(1.0 / run), second: point.second.scaled(1.0 / (run * run)) }
+    }
+
+    fn third(&self, s: f64) -> PerDrive {
+        let (path, s, run) = self.part(s);
+        path.third(s).scaled(1.0 / (run * run * run))
+    }
+
+    /// Places of the parts, one after another.
+    fn joined(&self, places: impl Fn(&Path) -> Vec<f64>) -> Vec<f64> {
+        let own = self.parts().flat_map(|(path, [from, to])| {
+            let inner: Vec<f64> = places(path).into_iter().filter(|s| *s < 1.0).collect();
+            inner.into_iter().map(move |s| from + s * (to - from))
+        });
+        own.chain([1.0]).collect()
     }
 }
 /// Nodes of a table that count as one path.

@@ -1,7 +1,5 @@
 //! Timings s(t): a law over a time, phases of constant jerk, both from rest to rest, or time itself.
 
-use std::collections::VecDeque;
-
 use super::law::{Progress, TimeLaw};
 
 /// When a motion is where on its path: s(t) from 0 to 1 with its derivatives, still before 0 and from T on.
@@ -16,6 +14,9 @@ pub struct Profile {
 
 /// The last instant of a running profile belongs to it, give or take this share of T.
 const EDGE: f64 = 1e-9;
+
+/// Jumps of s̈ up to this share of its peak are too small for a step to end on.
+const SMALL_JUMP: f64 = 1e-3;
 
 #[derive(Clone, Debug, PartialEq)]
 enum Shape {
@@ -96,7 +97,7 @@ impl Phases {
 
 /// Progress some time later at the same jerk.
 #[inline]
-fn after(from: &Progress, t: f64) -> Progress {
+pub(super) fn after(from: &Progress, t: f64) -> Progress {
     let Progress { s, rate, acceleration, jerk } = *from;
     Progress {
         s: (s + t * (rate + t * (acceleration / 2.0 + t * (jerk / 6.0)))).min(1.0),
@@ -265,131 +266,92 @@ impl Profile {
         }
     }
 
-    /// The same rates where phases begin, at constant s̈ between; `None` for a law.
-    pub fn levelled(&self) -> Option<Self> {
-        self.clipped(0.0)
+    /// Times at which s̈ jumps or bends, both ends among them, s, in order: where a step of a simulation must end. Small
+    /// jumps, as between the stations of a timing that follows a curve, are left out.
+    pub fn kinks(&self) -> Vec<f64> {
+        let whole = self.duration;
+        match &self.shape {
+            Shape::Law(law) => law.kinks().iter().map(|u| u * whole).collect(),
+            Shape::Running => vec![-EDGE * whole, (1.0 + EDGE) * whole],
+            Shape::Phases(Phases { starts, .. }) => {
+                let most = |f: fn(&Progress) -> f64| starts.iter().map(|p| f(&p.at).abs()).fold(0.0, f64::max);
+                let end = |i: usize| after(&starts[i].at, starts.get(i + 1).map_or(whole, |p| p.t) - starts[i].t);
+                let peak =
+                    (0..starts.len()).map(|i| end(i).acceleration.abs()).fold(most(|p| p.acceleration), f64::max);
+                let top = most(|p| p.rate);
+                let bends = |i: &usize| {
+                    let (was, is) = (end(i - 1), starts[*i].at);
+                    (is.rate - was.rate).abs() > 1e-9 * top
+                        || (is.acceleration - was.acceleration).abs() > SMALL_JUMP * peak
+                        || (is.jerk - was.jerk).abs() * whole > peak
+                };
+                let inner = (1..starts.len()).filter(bends).map(|i| starts[i].t);
+                [0.0].into_iter().chain(inner).chain([whole]).collect()
+            }
+            Shape::Sequence(legs) => {
+                legs.iter().flat_map(|leg| leg.profile.kinks().into_iter().map(|t| leg.start + t)).collect()
+            }
+        }
     }
 
-    /// The same with every peak of ṡ cut down to where it is a given time wide, s, and s̈ constant in every phase: a
-    /// rate is kept only if it, or a greater one, lasts that long. `None` for a law, or a width beyond T.
-    pub fn clipped(&self, width: f64) -> Option<Self> {
-        let Shape::Phases(phases) = &self.shape else { return None };
-        let each = phases.starts.iter().map(|p| (p.t, p.at.s, p.at.rate));
-        let each: Vec<_> = each.chain([(self.duration, 1.0, 0.0)]).collect();
-        let t: Vec<f64> = each.iter().map(|e| e.0).collect();
-        let mut rate: Vec<f64> = each.iter().map(|e| e.2).collect();
-        if width > 0.0 {
-            rate = opened(&t, &rate, width);
+    /// When s is first reached, s.
+    pub fn when(&self, s: f64) -> f64 {
+        let (mut low, mut high) = (0.0, self.duration);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            *(if self.at(middle).s < s { &mut low } else { &mut high }) = middle;
         }
-        let s: Vec<f64> = each.iter().map(|e| e.1).collect();
-        let x: Vec<f64> = rate.iter().map(|v| v * v).collect();
-        Self::through(&s, &x, &[])
+        high
     }
 
-    /// The running mean of the timing over a window, s: s̈ becomes continuous, s⃛ stays piecewise constant, and T grows by
-    /// the window. `None` where s̈ is not constant in every phase ([`levelled`](Self::levelled) makes it so), or for a
-    /// window that is not above 0.
-    pub fn averaged(&self, window: f64) -> Option<Self> {
-        let Shape::Phases(phases) = &self.shape else { return None };
-        if !(window > 0.0 && window.is_finite()) || phases.starts.iter().any(|p| p.at.jerk != 0.0) {
-            return None;
-        }
-        let duration = self.duration + window;
-        let starts = &phases.starts;
-        let mut merged = Vec::with_capacity(2 * starts.len() + 2);
-        // Something changes where a phase begins or the end is, now or a window ago.
-        let change = |i: usize| starts.get(i).map_or(self.duration, |p| p.t);
-        let (mut now, mut ago) = (0, 0);
-        let mut s = 0.0;
-        let mut last: Option<(f64, Progress)> = None;
-        while now <= starts.len() || ago <= starts.len() {
-            let (here, there) = (
-                if now <= starts.len() { change(now) } else { f64::INFINITY },
-                if ago <= starts.len() { change(ago) + window } else { f64::INFINITY },
-            );
-            let t = here.min(there);
-            now += usize::from(here <= t);
-            ago += usize::from(there <= t);
-            if t >= duration {
-                break;
-            }
-            // Indices, and not times, say which phases reign, so that a rounding error cannot leave one behind.
-            let reign = |next: usize, t: f64| match next {
-                0 => Progress::still(0.0),
-                n if n > starts.len() => Progress::still(1.0),
-                n => after(&starts[n - 1].at, t - starts[n - 1].t),
-            };
-            let (a, b) = (reign(now, t), reign(ago, t - window));
-            if let Some((begin, at)) = last {
-                s = after(&at, t - begin).s;
-            }
-            let at = Progress {
-                s,
-                rate: (a.s - b.s) / window,
-                acceleration: (a.rate - b.rate) / window,
-                jerk: (a.acceleration - b.acceleration) / window,
-            };
-            // Steps that follow each other within a rounding error are one.
-            match merged.last_mut() {
-                Some((begin, held)) if t - *begin <= 1e-14 * duration => *held = at,
-                _ => merged.push((t, at)),
-            }
-            last = merged.last().copied();
-        }
-        Some(Self::from_starts(merged, duration))
-    }
-
-    /// Instants that tell what the profile asks for: both ends and the middle of one phase of `every`; none of a law or sequence.
-    pub(super) fn instants(&self, every: usize) -> impl Iterator<Item = Progress> + '_ {
+    /// The phases of constant s⃛, each by how it begins and how long it takes; none of a law, a running profile or a
+    /// sequence.
+    pub(super) fn phases(&self) -> impl Iterator<Item = (Progress, f64)> + '_ {
         let starts: &[Start] = match &self.shape {
             Shape::Phases(phases) => &phases.starts,
             Shape::Law(_) | Shape::Running | Shape::Sequence(_) => &[],
         };
-        starts.iter().enumerate().step_by(every.max(1)).flat_map(move |(i, start)| {
-            let time = starts.get(i + 1).map_or(self.duration, |next| next.t) - start.t;
-            [0.0, 0.5, 1.0].map(|part| after(&start.at, part * time))
-        })
+        let end = |i: usize| starts.get(i + 1).map_or(self.duration, |next| next.t);
+        starts.iter().enumerate().map(move |(i, start)| (start.at, end(i) - start.t))
     }
-}
 
-/// For each instant the greatest of what is kept throughout some window that holds it; windows begin or end at an
-/// instant and reach as far as the first one that is a width away, or to the end. Instants rise.
-fn opened(t: &[f64], value: &[f64], width: f64) -> Vec<f64> {
-    let last = t.len() - 1;
-    // Windows that begin at each instant: where they end; those that end at each: where they begin.
-    let ends: Vec<usize> = (0..=last).map(|a| t.partition_point(|b| *b < t[a] + width).min(last)).collect();
-    let begins: Vec<usize> =
-        (0..=last).map(|b| t.partition_point(|a| *a <= t[b] - width).saturating_sub(1).min(b)).collect();
-    let negative: Vec<f64> = value.iter().map(|v| -v).collect();
-    let least = |windows: &mut dyn Iterator<Item = (usize, usize)>| -> Vec<f64> {
-        greatest_over(&negative, windows).iter().map(|v| -v).collect()
-    };
-    let from = least(&mut ends.iter().enumerate().map(|(a, b)| (a, *b)));
-    let to = least(&mut begins.iter().enumerate().map(|(b, a)| (*a, b)));
-    // The windows that hold an instant.
-    let first = (0..=last).map(|i| (ends.partition_point(|end| *end < i), i));
-    let second = (0..=last).map(|i| (i, begins.partition_point(|begin| *begin <= i) - 1));
-    let (from, to) = (greatest_over(&from, first), greatest_over(&to, second));
-    (0..=last).map(|i| value[i].min(from[i].max(to[i]))).collect()
-}
-
-/// The greatest value over each of windows whose ends rise.
-fn greatest_over(value: &[f64], windows: impl Iterator<Item = (usize, usize)>) -> Vec<f64> {
-    // Candidates in order, each greater than all that follow it.
-    let mut queue: VecDeque<usize> = VecDeque::new();
-    let mut next = 0;
-    let over = |(begin, end): (usize, usize)| {
-        while next <= end {
-            while queue.back().is_some_and(|i| value[*i] <= value[next]) {
-                queue.pop_back();
+    /// The greatest |s̈|, 1/s²; of a law its own, of a running profile none, of a sequence that of its parts.
+    pub fn peak_acceleration(&self) -> f64 {
+        match &self.shape {
+            Shape::Law(law) => law.peak() / (self.duration * self.duration),
+            Shape::Running => 0.0,
+            Shape::Phases(_) => {
+                let ends = |(from, time): (Progress, f64)| {
+                    from.acceleration.abs().max((from.acceleration + time * from.jerk).abs())
+                };
+                self.phases().map(ends).fold(0.0, f64::max)
             }
-            queue.push_back(next);
-            next += 1;
+            Shape::Sequence(legs) => {
+                legs.iter().map(|leg| leg.run * leg.profile.peak_acceleration()).fold(0.0, f64::max)
+            }
         }
-        while queue.front().is_some_and(|i| *i < begin) {
-            queue.pop_front();
+    }
+
+    /// Through instants with s, ṡ and s̈ given there: between two of them three phases of equal time, which meet both.
+    pub(super) fn through_jets(jets: &[(f64, Progress)]) -> Self {
+        let mut starts = Vec::with_capacity(3 * jets.len());
+        for w in jets.windows(2) {
+            let ([(t, a), (end, b)], third) = ([w[0], w[1]], (w[1].0 - w[0].0) / 3.0);
+            let whole = end - t;
+            // s̈, ṡ and s that the jerks must add.
+            let bend = (b.acceleration - a.acceleration) / third;
+            let rate = (b.rate - a.rate - a.acceleration * whole) / (third * third);
+            let way = b.s - a.s - whole * (a.rate + 0.5 * whole * a.acceleration);
+            let first = way / (third * third * third) - rate + bend / 3.0;
+            let second = rate - 0.5 * bend - 2.0 * first;
+            let mut from = a;
+            for (i, jerk) in [first, second, bend - first - second].into_iter().enumerate() {
+                from.jerk = jerk;
+                starts.push((t + i as f64 * third, from));
+                from = after(&from, third);
+            }
         }
-        queue.front().map_or(f64::NEG_INFINITY, |i| value[*i])
-    };
-    windows.map(over).collect()
+        let duration = jets.last().map_or(0.0, |last| last.0);
+        Self::from_starts(starts, duration)
+    }
 }

@@ -1,6 +1,7 @@
 //! A path by its nodes: poses with two derivatives, joined by quintics.
 
 use super::path::PathPoint;
+use crate::planar::PerDrive;
 
 /// Nodes of a path at s from 0 to 1, in order, joined by quintics that keep q, q′ and q″; the quintic's error falls with
 /// the sixth power of the spacing. Between nodes of one pose constant b, b is kept to rounding.
@@ -49,16 +50,51 @@ impl Table {
         &self.s
     }
 
-    /// The pose at s, 0..1.
+    /// The space in which s lies, 0..1.
     #[inline]
-    pub fn at(&self, s: f64) -> PathPoint {
+    fn space(&self, s: f64) -> usize {
         let spaces = self.guide.len();
-        let mut i = self.guide[((s * spaces as f64) as usize).min(spaces - 1)] as usize;
+        let part = ((s * spaces as f64) as usize).min(spaces - 1);
+        let first = self.guide[part] as usize;
+        // Nodes may be much denser in one part than in another.
+        let last = self.guide.get(part + 1).map_or(spaces - 1, |next| *next as usize);
+        if last - first > 8 {
+            return first + self.s[first + 1..=last].partition_point(|node| *node <= s);
+        }
+        let mut i = first;
         while i + 1 < spaces && self.s[i + 1] <= s {
             i += 1;
         }
+        i
+    }
+
+    /// The pose at s, 0..1.
+    #[inline]
+    pub fn at(&self, s: f64) -> PathPoint {
+        let i = self.space(s);
         let h = self.s[i + 1] - self.s[i];
         quintic(&self.nodes[i], &self.nodes[i + 1], h, (s - self.s[i]) / h)
+    }
+
+    /// d³q/ds³ at s, 0..1.
+    pub(super) fn third(&self, s: f64) -> PerDrive {
+        let i = self.space(s);
+        let h = self.s[i + 1] - self.s[i];
+        third(&self.nodes[i], &self.nodes[i + 1], h, (s - self.s[i]) / h)
+    }
+
+    /// The nodes at which q‴ jumps, with both ends: their s.
+    pub(super) fn joints(&self) -> Vec<f64> {
+        let width = |i: usize| self.s[i + 1] - self.s[i];
+        let side = |i: usize, u: f64| third(&self.nodes[i], &self.nodes[i + 1], width(i), u);
+        let jumps = |i: &usize| {
+            let (before, after) = (side(*i - 1, 1.0), side(*i, 0.0));
+            // What the quintics miss of q‴, and rounding, are no jumps.
+            let noise = 1e-12 / width(*i - 1).min(width(*i)).powi(3);
+            after.minus(&before).max_abs() > 0.02 * before.max_abs().max(after.max_abs()) + noise
+        };
+        let inner = (1..self.guide.len()).filter(jumps).map(|i| self.s[i]);
+        std::iter::once(0.0).chain(inner).chain([1.0]).collect()
     }
 }
 
@@ -75,4 +111,14 @@ fn quintic(a: &PathPoint, b: &PathPoint, h: f64, u: f64) -> PathPoint {
         p.second[k] = (2.0 * c2 + u * (6.0 * c3 + u * (12.0 * c4 + u * 20.0 * c5))) / (h * h);
     }
     p
+}
+
+/// d³q/ds³ of the same.
+fn third(a: &PathPoint, b: &PathPoint, h: f64, u: f64) -> PerDrive {
+    PerDrive::from_fn(a.q.len(), |k| {
+        let (c0, c1, c2) = (a.q[k], a.first[k] * h, a.second[k] * h * h / 2.0);
+        let (v, v1, v2) = (b.q[k] - c0 - c1 - c2, b.first[k] * h - c1 - 2.0 * c2, b.second[k] * h * h - 2.0 * c2);
+        let (c3, c4, c5) = (10.0 * v - 4.0 * v1 + v2 / 2.0, -15.0 * v + 7.0 * v1 - v2, 6.0 * v - 3.0 * v1 + v2 / 2.0);
+        (6.0 * c3 + u * (24.0 * c4 + u * 60.0 * c5)) / (h * h * h)
+    })
 }

@@ -15,9 +15,21 @@ use super::path::Path;
 /// The greatest x that counts as limited, 1/s².
 pub(super) const UNLIMITED: f64 = 1e20;
 
+/// How much of a limit what it limits may change over a space by the path's own doing, before the space is cut.
+const CHANGE: f64 = 0.04;
+/// Into how many parts a space is cut at once, how often, how small, and how many there may be.
+const MOST_PARTS: usize = 8;
+const ROUNDS: usize = 8;
+const LEAST_SPACE: f64 = 1e-9;
+const MOST_SPACES: usize = 60_000;
+
+/// Into how many parts a space is cut in which a limit is passed, by this factor on time or more.
+const MENDING: usize = 4;
+pub(super) const PAST: f64 = 1e-4;
+
 /// The constraints of a path at every station; at least two.
-pub(super) struct Grid<'a> {
-    pub(super) s: &'a [f64],
+pub(super) struct Grid {
+    pub(super) s: Vec<f64>,
     /// Rows in one.
     pub(super) m: usize,
     pub(super) rows: Vec<Row>,
@@ -34,23 +46,90 @@ pub(super) enum Blocked {
     Rest(usize),
 }
 
-impl<'a> Grid<'a> {
-    pub(super) fn new(path: &Path, constraints: &Constraints, s: &'a [f64]) -> Self {
-        let m = constraints.rows().len();
-        let mut rows = vec![Row::default(); m * s.len()];
-        let cap = s
-            .iter()
-            .enumerate()
-            .map(|(i, s)| constraints.at(&path.at(*s), &mut rows[i * m..(i + 1) * m]).min(10.0 * UNLIMITED))
-            .collect();
-        Self { s, m, rows, cap }
+impl Grid {
+    pub(super) fn new(path: &Path, constraints: &Constraints, s: Vec<f64>) -> Self {
+        let mut grid = Self { s: Vec::new(), m: constraints.rows().len(), rows: Vec::new(), cap: Vec::new() };
+        grid.rows.reserve(grid.m * s.len());
+        grid.cap.reserve(s.len());
+        s.iter().for_each(|s| grid.push(path, constraints, *s));
+        Self { s, ..grid }
     }
 
-    /// The same with |u| ≤ most too.
-    pub(super) fn with_bound(&self, most: f64) -> Self {
-        let bound = Row { a: 1.0 / most, c: 0.0, g: 0.0 };
-        let rows = (0..self.s.len()).flat_map(|i| self.rows_at(i).iter().copied().chain([bound])).collect();
-        Self { s: self.s, m: self.m + 1, rows, cap: self.cap.clone() }
+    /// Rows of one more station, which s does not hold yet.
+    fn push(&mut self, path: &Path, constraints: &Constraints, s: f64) {
+        let from = self.rows.len();
+        self.rows.resize(from + self.m, Row::default());
+        let cap = constraints.at(&path.at(s), &mut self.rows[from..]);
+        self.cap.push(cap.min(10.0 * UNLIMITED));
+    }
+
+    /// The same with each space cut into as many even parts as asked.
+    fn cut(&self, path: &Path, constraints: &Constraints, parts: &[usize]) -> Self {
+        let total = 1 + parts.iter().sum::<usize>();
+        let rows = Vec::with_capacity(self.m * total);
+        let mut fine = Self { s: Vec::with_capacity(total), m: self.m, rows, cap: Vec::with_capacity(total) };
+        for i in 0..self.s.len() {
+            fine.s.push(self.s[i]);
+            fine.rows.extend_from_slice(self.rows_at(i));
+            fine.cap.push(self.cap[i]);
+            let count = parts.get(i).copied().unwrap_or(1);
+            for k in 1..count {
+                let s = self.s[i] + (self.s[i + 1] - self.s[i]) * k as f64 / count as f64;
+                fine.push(path, constraints, s);
+                fine.s.push(s);
+            }
+        }
+        fine
+    }
+
+    /// The fastest motion on a grid that is made finer wherever what is limited changes much within a space.
+    pub(super) fn fastest_refined(mut self, path: &Path, constraints: &Constraints) -> (Self, Result<Sweep, Blocked>) {
+        let mut found = self.fastest();
+        for _ in 0..ROUNDS {
+            let Ok(sweep) = &found else { break };
+            let (parts, most) = self.parts(sweep);
+            if most == 1 || parts.iter().sum::<usize>() > MOST_SPACES {
+                break;
+            }
+            self = self.cut(path, constraints, &parts);
+            found = self.fastest();
+        }
+        (self, found)
+    }
+
+    /// The same motion on a grid that is made finer where its profile passes a limit between two stations: `past` is by
+    /// what factor on time, for each space.
+    pub(super) fn mended(self, path: &Path, constraints: &Constraints, past: &[f64]) -> (Self, Result<Sweep, Blocked>) {
+        let parts: Vec<usize> = (0..past.len())
+            .map(|i| {
+                let wide = self.s[i + 1] - self.s[i] > LEAST_SPACE;
+                if past[i] > 1.0 + PAST && wide { MENDING } else { 1 }
+            })
+            .collect();
+        let grid = self.cut(path, constraints, &parts);
+        let found = grid.fastest();
+        (grid, found)
+    }
+
+    /// Into how many parts each space should be cut, and the most of them.
+    fn parts(&self, sweep: &Sweep) -> (Vec<usize>, usize) {
+        let Sweep { x, .. } = sweep;
+        let of = |i: usize| {
+            let way = self.s[i + 1] - self.s[i];
+            let u = (x[i + 1] - x[i]) / (2.0 * way);
+            let (here, there) = (self.rows_at(i), self.rows_at(i + 1));
+            // By how much a quantity changes over the space, as a part of its limit, but for what x itself makes of it.
+            let high = x[i].max(x[i + 1]);
+            let change =
+                |(a, b): (&Row, &Row)| ((b.a - a.a) * u).abs() + ((b.c - a.c) * high).abs() + (b.g - a.g).abs();
+            let rows = here.iter().zip(there).map(change).fold(0.0, f64::max);
+            let speed = (high / self.cap[i]).sqrt() - (high / self.cap[i + 1]).sqrt();
+            let parts = (rows.max(speed.abs()) / CHANGE).ceil();
+            if way > LEAST_SPACE { (parts as usize).clamp(1, MOST_PARTS) } else { 1 }
+        };
+        let parts: Vec<usize> = (0..x.len() - 1).map(of).collect();
+        let most = parts.iter().copied().max().unwrap_or(1);
+        (parts, most)
     }
 
     pub(super) fn rows_at(&self, i: usize) -> &[Row] {

@@ -3,6 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Wheel, is_default};
+use crate::range::{Check, Range};
+
+const MASS: Range = Range::new(1e-9, 1e6, "kg");
+const INERTIA: Range = Range::new(1e-9, 1e6, "kg m²");
+const COM: Range = Range::either_way(1e3, "m");
+const STIFFNESS: Range = Range::new(0.0, 1e9, "N/m, N m/rad");
+const DAMPING: Range = Range::new(0.0, 1e9, "N s/m, N m s");
 
 /// What the machine stands on.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -89,17 +96,22 @@ impl Base {
         self.kind != BaseKind::Fixed
     }
 
+    /// What a key would want to have a say, if it has none as things are.
+    pub fn unused(&self, key: &str) -> Option<&'static str> {
+        let (used, want) = match key {
+            "mass" | "inertia" | "com" => (self.moves(), "base.kind = free or compliant: a fixed base does not move"),
+            "stiffness" | "damping" => (self.kind == BaseKind::Compliant, "base.kind = compliant"),
+            _ => return None,
+        };
+        (!used).then_some(want)
+    }
+
     /// Every number with its key, what it should be, and whether it is.
-    pub(crate) fn checks(&self) -> Vec<(&'static str, f64, &'static str, bool)> {
-        let mut list = vec![
-            ("base.mass", self.mass, "above 0, up to 1e6 kg", self.mass > 0.0 && self.mass <= 1e6),
-            ("base.inertia", self.inertia, "above 0, up to 1e6 kg m²", self.inertia > 0.0 && self.inertia <= 1e6),
-        ];
-        let place = |x: f64| x.abs() <= 1e3;
-        list.extend(self.com.map(|x| ("base.com", x, "-1000 to 1000 m", place(x))));
-        let hold = |x: f64| (0.0..=1e9).contains(&x);
-        list.extend(self.stiffness.map(|x| ("base.stiffness", x, "0 to 1e9 N/m, N m/rad", hold(x))));
-        list.extend(self.damping.map(|x| ("base.damping", x, "0 to 1e9 N s/m, N m s", hold(x))));
+    pub(crate) fn checks(&self) -> Vec<Check> {
+        let mut list = vec![MASS.check("base.mass", self.mass), INERTIA.check("base.inertia", self.inertia)];
+        list.extend(self.com.map(|x| COM.check("base.com", x)));
+        list.extend(self.stiffness.map(|x| STIFFNESS.check("base.stiffness", x)));
+        list.extend(self.damping.map(|x| DAMPING.check("base.damping", x)));
         list.extend(self.wheel.iter().flat_map(Wheel::checks));
         list
     }

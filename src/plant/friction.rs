@@ -100,6 +100,14 @@ impl Contacts {
         qd[c.plus] - qd.get(c.minus).copied().unwrap_or(0.0)
     }
 
+    /// What the two sides of a contact resist a torque between them with, kg m², given what each turning part resists
+    /// alone.
+    pub fn resists(&self, i: usize, alone: impl Fn(usize) -> f64) -> f64 {
+        let c = &self.list[i];
+        let (a, b) = (alone(c.plus), if c.minus < MAX_DRIVES { alone(c.minus) } else { f64::INFINITY });
+        1.0 / (1.0 / a + 1.0 / b)
+    }
+
     /// Whether a contact can stick.
     pub fn sticks(&self, i: usize) -> bool {
         self.list[i].coulomb > 0.0

@@ -23,6 +23,7 @@ pub use wheel::{Spin, Wheel};
 
 use crate::machine::{Machine, MachineError};
 use crate::planar::PerDrive;
+use crate::range::{Check, Range};
 
 /// What differs in the machine that moves.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -100,15 +101,11 @@ impl Each {
     }
 
     /// A check that fails if it is a list, but not one number for each of `n` drives.
-    pub(crate) fn misfit(&self, n: usize, key: &'static str) -> Option<(&'static str, f64, &'static str, bool)> {
+    pub(crate) fn misfit(&self, n: usize, key: &'static str) -> Option<Check> {
         let count = self.values().len();
         let fits = matches!(self, Self::All(_)) || count == n;
-        (!fits).then_some((
-            key,
-            count as f64,
-            "one number, or a list with one for each drive; its length is given",
-            false,
-        ))
+        let want = "one number, or a list with one for each drive; its length is given";
+        (!fits).then(|| Check::words(key, count as f64, false, want))
     }
 
     /// The same with the value of drive `k` of `n` changed.
@@ -158,33 +155,30 @@ impl Plant {
     }
 
     /// Every number with its key, what it should be, and whether it is.
-    pub(crate) fn checks(&self, n: usize) -> Vec<(&'static str, f64, &'static str, bool)> {
+    pub(crate) fn checks(&self, n: usize) -> Vec<Check> {
         let (load, friction) = (&self.payload, &self.friction);
-        let amount = |x: f64| (0.0..=MAX_PAYLOAD).contains(&x);
-        let reach = |x: f64| x.abs() <= 1e3;
         let mut list = vec![
-            ("plant.payload.mass", load.mass, "0 to 10000 kg", amount(load.mass)),
-            ("plant.payload.inertia", load.inertia, "0 to 10000 kg m²", amount(load.inertia)),
-            ("plant.payload.offset", load.offset[0], "-1000 to 1000 m", reach(load.offset[0])),
-            ("plant.payload.offset", load.offset[1], "-1000 to 1000 m", reach(load.offset[1])),
-            ("plant.payload.axial", load.axial, "-1000 to 1000 m", reach(load.axial)),
-            ("plant.payload.from", load.from, "0 s or later", load.from >= 0.0),
-            (
-                "plant.payload.until",
-                load.until.unwrap_or(f64::MAX),
-                "later than plant.payload.from, s",
-                load.until.is_none_or(|until| until > load.from),
-            ),
-            ("plant.force", self.force[0], "-1e6 to 1e6 N", self.force[0].abs() <= 1e6),
-            ("plant.force", self.force[1], "-1e6 to 1e6 N", self.force[1].abs() <= 1e6),
-            ("plant.friction.pin_viscous", friction.pin_viscous, "0 to 10000 N m s", amount(friction.pin_viscous)),
-            ("plant.friction.pin_coulomb", friction.pin_coulomb, "0 to 10000 N m", amount(friction.pin_coulomb)),
+            MASS.check("plant.payload.mass", load.mass),
+            INERTIA.check("plant.payload.inertia", load.inertia),
+            PLACE.check("plant.payload.offset", load.offset[0]),
+            PLACE.check("plant.payload.offset", load.offset[1]),
+            PLACE.check("plant.payload.axial", load.axial),
+            TIME.check("plant.payload.from", load.from),
+            FORCE.check("plant.force", self.force[0]),
+            FORCE.check("plant.force", self.force[1]),
+            VISCOUS.check("plant.friction.pin_viscous", friction.pin_viscous),
+            COULOMB.check("plant.friction.pin_coulomb", friction.pin_coulomb),
         ];
-        for (key, each, want) in [
-            ("plant.friction.viscous", friction.viscous, "0 to 10000 N m s, one number or one for each drive"),
-            ("plant.friction.coulomb", friction.coulomb, "0 to 10000 N m, one number or one for each drive"),
+        if let Some(until) = load.until {
+            list.push(TIME.check("plant.payload.until", until));
+            let want = "later than plant.payload.from, s";
+            list.push(Check::words("plant.payload.until", until, until > load.from, want));
+        }
+        for (key, each, range) in [
+            ("plant.friction.viscous", friction.viscous, VISCOUS),
+            ("plant.friction.coulomb", friction.coulomb, COULOMB),
         ] {
-            list.extend(each.values().into_iter().map(|x| (key, x, want, amount(x))));
+            list.extend(each.values().into_iter().map(|x| range.check(key, x)));
             list.extend(each.misfit(n, key));
         }
         list
@@ -193,3 +187,11 @@ impl Plant {
 
 /// The heaviest unknown payload, kg; also the bound on its inertia, kg m², and on friction.
 pub const MAX_PAYLOAD: f64 = 1e4;
+
+const MASS: Range = Range::new(0.0, MAX_PAYLOAD, "kg");
+const INERTIA: Range = Range::new(0.0, MAX_PAYLOAD, "kg m²");
+const PLACE: Range = Range::either_way(1e3, "m");
+const TIME: Range = Range::new(0.0, 1e6, "s");
+const FORCE: Range = Range::either_way(1e6, "N");
+const VISCOUS: Range = Range::new(0.0, MAX_PAYLOAD, "N m s");
+const COULOMB: Range = Range::new(0.0, MAX_PAYLOAD, "N m");

@@ -8,8 +8,19 @@
 //!
 //! The wheel is told the sum of the motors' torques, which the base feels as −Σ τ_k, and turns τ_w = −Σ τ_k. It
 //! saturates where τ_w or Ω would pass their limits; then the base feels the rest.
+//!
+//! # At the top rate
+//! Ω never passes its limit, not even within a step: in each step of h seconds the wheel gives no more than
+//! J (Ω_top − Ω)/h either way, which brings it to the limit by the step's end and leaves it there. So the step in which the
+//! limit is reached has the right impulse, spread evenly over what is left of it, and the next ones give nothing outwards.
 
 use serde::{Deserialize, Serialize};
+
+use crate::range::{Check, Range};
+
+const INERTIA: Range = Range::new(1e-9, 1e6, "kg m²");
+const TORQUE_LIMIT: Range = Range::new(1e-9, 1e6, "N m");
+const SPEED_LIMIT: Range = Range::new(1e-9, 1e6, "rad/s");
 
 /// A reaction wheel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -48,27 +59,26 @@ pub struct Spin {
 }
 
 impl Wheel {
-    /// Which way it turns as fast as it can, ±1, or 0: asked once a step, so that within one nothing jumps.
-    pub fn at_limit(&self, rate: f64) -> f64 {
+    /// The least and the greatest torque, N m, that it can give through a step of a length, s, which begins at a rate,
+    /// rad/s: asked once a step, so that within one nothing jumps.
+    pub fn room(&self, rate: f64, step: f64) -> [f64; 2] {
+        let most = self.torque_limit.unwrap_or(f64::INFINITY);
         let top = self.speed_limit.unwrap_or(f64::INFINITY);
-        if rate.abs() >= top { rate.signum() } else { 0.0 }
+        let to = |end: f64| self.inertia * (end - rate) / step;
+        [to(-top).clamp(-most, 0.0), to(top).clamp(0.0, most)]
     }
 
-    /// What it gives of a wanted torque, N m, at a rate, rad/s.
+    /// What it gives of a wanted torque, N m, at a rate, rad/s, with what room there is in this step.
     #[inline]
-    pub fn give(&self, wanted: f64, rate: f64, at_limit: f64) -> Spin {
-        let limit = self.torque_limit.unwrap_or(f64::INFINITY);
-        let within = wanted.clamp(-limit, limit);
-        let torque = if within * at_limit > 0.0 { 0.0 } else { within };
+    pub fn give(&self, wanted: f64, rate: f64, room: [f64; 2]) -> Spin {
+        let torque = wanted.clamp(room[0], room[1]);
         Spin { rate, torque, saturated: torque != wanted }
     }
 
-    pub(crate) fn checks(&self) -> Vec<(&'static str, f64, &'static str, bool)> {
-        let limit = |x: Option<f64>| x.is_none_or(|x| x > 0.0 && x <= 1e6);
-        vec![
-            ("base.wheel.inertia", self.inertia, "1e-9 to 1e6 kg m²", (1e-9..=1e6).contains(&self.inertia)),
-            ("base.wheel.torque_limit", self.torque_limit.unwrap_or(1.0), "above 0 N m", limit(self.torque_limit)),
-            ("base.wheel.speed_limit", self.speed_limit.unwrap_or(1.0), "above 0 rad/s", limit(self.speed_limit)),
-        ]
+    pub(crate) fn checks(&self) -> impl Iterator<Item = Check> {
+        let inertia = INERTIA.check("base.wheel.inertia", self.inertia);
+        let torque = TORQUE_LIMIT.check_some("base.wheel.torque_limit", self.torque_limit);
+        let speed = SPEED_LIMIT.check_some("base.wheel.speed_limit", self.speed_limit);
+        std::iter::once(inertia).chain(torque).chain(speed)
     }
 }

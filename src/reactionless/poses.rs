@@ -116,11 +116,13 @@ impl PlaneMap {
             let period = self.period();
             curve.arcs(|arc| {
                 let [low, high] = if arc.from.b < arc.to.b { [arc.from.b, arc.to.b] } else { [arc.to.b, arc.from.b] };
-                let mut turn = ((low - AT_FOLD - b) / period).ceil();
-                while b + turn * period <= high + AT_FOLD {
-                    let Site { alpha, beta, .. } = curve.solve(arc, b + turn * period);
+                let first = ((low - AT_FOLD - b) / period).ceil();
+                // Counted, for a sum of turns stands still where b is huge.
+                let turns = ((high - low + 2.0 * AT_FOLD) / period) as usize + 1;
+                let lifted = (0..=turns).map(|i| b + (first + i as f64) * period);
+                for b_there in lifted.take_while(|b| *b <= high + AT_FOLD) {
+                    let Site { alpha, beta, .. } = curve.solve(arc, b_there);
                     push(self.polished(p, b, curve.relative_angles(alpha, beta)), CLAMPED);
-                    turn += 1.0;
                 }
             });
             // The curve is singular where the arms are flat, and rounding may keep it off such a pose.

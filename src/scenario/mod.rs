@@ -11,14 +11,15 @@ use thiserror::Error;
 
 use crate::control::Control;
 use crate::keys;
-use crate::machine::{self, FileError, Machine, MachineError, MachineSpec};
+use crate::machine::{self, FileError, Machine, MachineError, MachineSpec, Place, Step};
 use crate::plant::{Base, Plant, is_default};
-use crate::session::TimedEdit;
+use crate::range::{Check, Range, Short, Want, clipped, shortened};
+use crate::session::{TimedEdit, survey};
 use crate::simulation::Setup;
 use crate::text::{self, MOST_BYTES};
 use crate::tolerance::Tolerance;
 
-pub use task::{Change, Corners, Least, MAX_POINTS, Shape, Task, TaskKind, Value};
+pub use task::{Change, Corners, Least, MAX_POINTS, PLACE, POSE_CONSTANT, Shape, TIME, Task, TaskKind, Value};
 
 /// What a run starts from.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,8 +77,9 @@ struct File {
     base: Base,
     #[serde(default, skip_serializing_if = "Tolerance::is_empty")]
     tolerance: Tolerance,
+    /// As they stand there, so that a wrong one can be named.
     #[serde(default, rename = "edit", skip_serializing_if = "Vec::is_empty")]
-    edits: Vec<TimedEdit>,
+    edits: Vec<toml::Table>,
 }
 
 fn one_millisecond() -> f64 {
@@ -106,7 +108,7 @@ pub enum ScenarioError {
         source: std::io::Error,
     },
     /// Not TOML, or not of a scenario.
-    #[error("{file}{}: {message}", line.map(|l| format!(":{l}")).unwrap_or_default())]
+    #[error("{file}{}: {message}", at(*line))]
     Syntax {
         /// The file.
         file: String,
@@ -116,29 +118,65 @@ pub enum ScenarioError {
         message: String,
     },
     /// A number out of range.
-    #[error("{file}: {key} is {value}: want {want}")]
+    #[error("{file}{}: {key} is {}: want {want}", at(*line), Short(*value))]
     OutOfRange {
         /// The file.
         file: String,
+        /// Line, counted from 1, where it is known.
+        line: Option<usize>,
         /// Which.
-        key: &'static str,
+        key: String,
         /// What stands there.
         value: f64,
         /// What would be right.
-        want: &'static str,
+        want: Want,
     },
     /// Its machine.
-    #[error("{file}: machine: {error}")]
+    #[error("{file}{}: machine: {error}", at(*line))]
     Machine {
         /// The file.
         file: String,
+        /// Line, counted from 1, where it is known.
+        line: Option<usize>,
         /// What.
         error: MachineError,
+    },
+    /// One of its edits.
+    #[error("{file}{}: the {} [[edit]]: {message}", at(*line), ordinal(*entry))]
+    Edit {
+        /// The file.
+        file: String,
+        /// Line, counted from 1, where it is known.
+        line: Option<usize>,
+        /// Which, counted from 1.
+        entry: usize,
+        /// What.
+        message: String,
     },
     /// Its machine's file.
     #[error(transparent)]
     MachineFile(#[from] FileError),
 }
+
+/// A line behind the name of its file.
+fn at(line: Option<usize>) -> String {
+    line.map(|line| format!(":{line}")).unwrap_or_default()
+}
+
+/// 1st, 2nd, 3rd, 4th …
+pub(crate) fn ordinal(n: usize) -> String {
+    let ending = match (n % 10, n % 100) {
+        (_, 11..=13) => "th",
+        (1, _) => "st",
+        (2, _) => "nd",
+        (3, _) => "rd",
+        _ => "th",
+    };
+    format!("{n}{ending}")
+}
+
+/// The most characters of what somebody else's reader says of a file.
+const MOST_WORDS: usize = 300;
 
 /// How many of the scenarios that come along are the paper's cases; they stand first.
 const CASES: usize = 3;
@@ -207,40 +245,52 @@ impl Scenario {
     pub fn parse(text: &str, label: &str, folder: Option<&FilePath>) -> Result<Self, ScenarioError> {
         let file: File = toml::from_str(text).map_err(|e| ScenarioError::Syntax {
             file: label.into(),
-            line: e.span().map(|s| text[..s.start.min(text.len())].matches('\n').count() + 1),
-            message: e.message().to_owned(),
+            line: e.span().map(|s| machine::line_of(text, s.start)),
+            message: shortened(e.message(), MOST_WORDS),
         })?;
+        let line_of = |key: &str| machine::line_of_place(text, &Place::of_key(key));
         // A key that is left out may stand as such a number until it is filled in, so it has to be seen here.
         if let Some(key) =
             text.parse().ok().and_then(|table| keys::not_finite(&table)).filter(|key| key.starts_with("task"))
         {
             let message = format!("{key} is not a finite number: want one");
-            let last = key.rsplit('.').next().unwrap_or_default();
-            let line = text.lines().position(|line| line.trim_start().starts_with(last)).map(|i| i + 1);
-            return Err(ScenarioError::Syntax { file: label.into(), line, message });
+            return Err(ScenarioError::Syntax { file: label.into(), line: line_of(&key), message });
         }
         let machine = match file.machine {
             MachineRef::Name(name) => machine::find(&name, folder)?,
-            MachineRef::Inline(spec) => {
-                Machine::new(*spec).map_err(|error| ScenarioError::Machine { file: label.into(), error })?
-            }
+            MachineRef::Inline(spec) => Machine::new(*spec).map_err(|error| {
+                let place = error.place().cloned().unwrap_or_default().under("machine");
+                ScenarioError::Machine { file: label.into(), line: machine::line_of_place(text, &place), error }
+            })?,
         };
-        let wrong = |message: String| ScenarioError::Syntax { file: label.into(), line: None, message };
+        let wrong = |message: String| ScenarioError::Syntax { file: label.into(), line: line_of("set"), message };
         let mut settings = Vec::with_capacity(file.set.len());
         for setting in &file.set {
             let pair = setting.split_once('=').map(|(key, value)| (key.trim(), value.trim()));
-            settings.push(pair.ok_or_else(|| wrong(format!("set: {setting:?}: want KEY=VALUE")))?);
+            settings.push(pair.ok_or_else(|| wrong(format!("set: {:?}: want KEY=VALUE", clipped(setting))))?);
         }
         let machine = match settings.is_empty() {
             true => machine,
-            false => machine.set_all(settings).map_err(|error| ScenarioError::Machine { file: label.into(), error })?,
+            false => machine.set_all(settings).map_err(|error| {
+                let (file, line) = (label.into(), line_of("set"));
+                ScenarioError::Machine { file, line, error }
+            })?,
         };
         let stem = FilePath::new(label).file_stem().map_or_else(|| label.into(), |s| s.to_string_lossy().into_owned());
         let task = file.task.completed(&machine).map_err(|key| ScenarioError::Syntax {
             file: label.into(),
-            line: text.lines().position(|line| line.trim() == "[task]").map(|i| i + 1),
+            line: line_of("task"),
             message: format!("missing field `{key}`"),
         })?;
+        let mut edits = Vec::with_capacity(file.edits.len());
+        let wrong_edit = |(i, message): (usize, String)| {
+            let place = Place::new(&[&"edit", &i]);
+            let (file, line) = (label.into(), machine::line_of_place(text, &place));
+            ScenarioError::Edit { file, line, entry: i + 1, message: shortened(&message, MOST_WORDS) }
+        };
+        for (i, entry) in file.edits.into_iter().enumerate() {
+            edits.push(TimedEdit::from_table(entry).map_err(|why| wrong_edit((i, why)))?);
+        }
         let scenario = Self {
             name: file.name.unwrap_or(stem),
             title: file.title,
@@ -254,10 +304,44 @@ impl Scenario {
             duration: file.duration,
             task,
             tolerance: file.tolerance,
-            edits: file.edits,
+            edits,
         };
-        scenario.check(label)?;
+        scenario.check(label).map_err(|error| scenario.with_line(error, text))?;
+        survey(&scenario).map_err(wrong_edit)?;
         Ok(scenario)
+    }
+
+    /// An error of [`check`](Self::check) with the line of its key in a text.
+    fn with_line(&self, error: ScenarioError, text: &str) -> ScenarioError {
+        let line_of = |place: Place| machine::line_of_place(text, &place);
+        match error {
+            ScenarioError::OutOfRange { file, key, value, want, .. } => {
+                let line = line_of(Place::of_key(&key));
+                ScenarioError::OutOfRange { file, line, key, value, want }
+            }
+            ScenarioError::Machine { file, error, .. } => {
+                let file = file.trim_end_matches(": plant").to_owned();
+                // What differs goes by the names of links and lengths, not by their places in the machine.
+                let place = error.place().map_or_else(Place::default, |place| match place.0.as_slice() {
+                    [Step::Key(word), Step::At(i), rest @ ..] if word == "link" => {
+                        let name = self.machine.links().get(*i).map_or("", |link| link.name.as_str());
+                        Place(
+                            [Step::Key("link".into()), Step::Key(name.into())]
+                                .into_iter()
+                                .chain(rest.iter().cloned())
+                                .collect(),
+                        )
+                    }
+                    [Step::Key(word), rest @ ..] if word == "lengths" => {
+                        Place(std::iter::once(Step::Key("length".into())).chain(rest.iter().cloned()).collect())
+                    }
+                    [Step::Key(key)] => Place::of_key(key),
+                    _ => place.clone(),
+                });
+                ScenarioError::Machine { file, line: line_of(place.under("plant")), error }
+            }
+            other => other,
+        }
     }
 
     /// Whether every number is in its range; `file` is what errors call it.
@@ -265,49 +349,25 @@ impl Scenario {
     /// # Errors
     /// The first that is not.
     pub fn check(&self, file: &str) -> Result<(), ScenarioError> {
-        let t = &self.task;
-        let positive = [
-            ("step", self.step, "a step of 0.00001 to 0.01 s", (1e-5..=0.01).contains(&self.step)),
-            ("task.time", t.time, "one step to 3600 s", t.time >= self.step && t.time <= MAX_TIME),
-            (
-                "duration",
-                self.duration.unwrap_or(0.0),
-                "0 to 3600 s",
-                (0.0..=MAX_TIME).contains(&self.duration.unwrap_or(0.0)),
-            ),
-            ("task.cycles", f64::from(t.cycles), "1 to 100", (1..=100).contains(&t.cycles)),
-            ("task.blend", t.blend, "0 to 1", (0.0..=1.0).contains(&t.blend)),
-            (
-                "task.moment_limit",
-                t.moment_limit.unwrap_or(1.0),
-                "above 0 N m",
-                t.moment_limit.is_none_or(|limit| limit > 0.0),
-            ),
-            ("task.via", t.via.len() as f64, "at most 2000 points between A and B", t.via.len() <= MAX_POINTS),
-            ("pose_acceleration", self.pose_acceleration, "above 0 rad/s²", self.pose_acceleration > 0.0),
-        ];
-        let finite = [
-            ("task.from", t.from[0]),
-            ("task.from", t.from[1]),
-            ("task.to", t.to[0]),
-            ("task.to", t.to[1]),
-            ("task.b", t.b),
-            ("task.turn", t.turn),
-            ("task.first_drive_to", t.first_drive_to.unwrap_or(0.0)),
-            ("compare_b", self.compare_b.unwrap_or(0.0)),
-            ("task.b_to", t.b_to.unwrap_or(0.0)),
-        ];
-        let via = t.via.iter().flatten().map(|x| ("task.via", *x));
-        let finite = finite.into_iter().chain(via).map(|(key, value)| (key, value, "a finite number", true));
-        let n = self.machine.drives();
-        let parts = [self.control.checks(n, self.step), self.plant.checks(n), self.base.checks()];
-        for (key, value, want, ok) in positive.into_iter().chain(finite).chain(parts.into_iter().flatten()) {
-            if !ok || !value.is_finite() {
-                return Err(ScenarioError::OutOfRange { file: file.into(), key, value, want });
-            }
+        if let Some(Check { key, value, want, .. }) = self.checks().into_iter().find(|check| !check.ok) {
+            return Err(ScenarioError::OutOfRange { file: file.into(), line: None, key: key.into(), value, want });
         }
         let named = self.plant.machine(&self.machine).map(|_| ());
-        named.map_err(|error| ScenarioError::Machine { file: format!("{file}: plant"), error })
+        named.map_err(|error| ScenarioError::Machine { file: format!("{file}: plant"), line: None, error })
+    }
+
+    /// Every number with its key, and whether it may stand there.
+    fn checks(&self) -> Vec<Check> {
+        let n = self.machine.drives();
+        let mut list = vec![STEP.check("step", self.step)];
+        list.extend(DURATION.check_some("duration", self.duration));
+        list.push(POSE_ACCELERATION.check("pose_acceleration", self.pose_acceleration));
+        list.extend(POSE_CONSTANT.check_some("compare_b", self.compare_b));
+        list.extend(self.task.checks(self.step));
+        list.extend(self.control.checks(n, self.step));
+        list.extend(self.plant.checks(n));
+        list.extend(self.base.checks());
+        list
     }
 
     /// The scenario as TOML, so that [`parse`](Self::parse) gives an equal one. A built-in machine is named, any
@@ -349,7 +409,7 @@ impl Scenario {
             plant,
             base,
             tolerance,
-            edits,
+            edits: edits.iter().map(TimedEdit::to_table).collect(),
         };
         toml::to_string(&file).expect("a scenario is plain data")
     }
@@ -363,6 +423,27 @@ impl Scenario {
         if load.is_held(0.0, 0.5 * self.step) { load.held_by(&machine) } else { Ok(machine) }
     }
 
+    /// The same before anything was done to it.
+    pub(crate) fn without_edits(&self) -> Self {
+        let Self { name, title, machine, plant, base, task, control, step, .. } = self;
+        let Self { pose_acceleration, compare_b, duration, tolerance, .. } = self;
+        Self {
+            name: name.clone(),
+            title: title.clone(),
+            machine: machine.clone(),
+            plant: plant.clone(),
+            base: *base,
+            task: task.clone(),
+            control: *control,
+            step: *step,
+            pose_acceleration: *pose_acceleration,
+            compare_b: *compare_b,
+            duration: *duration,
+            tolerance: tolerance.clone(),
+            edits: Vec::new(),
+        }
+    }
+
     /// What a simulation of it is made of.
     pub fn setup(&self) -> Setup<'_> {
         let Self { machine: model, plant, base, control, step, .. } = self;
@@ -370,5 +451,14 @@ impl Scenario {
     }
 }
 
+/// What a step may be.
+pub const STEPS: &str = "0.00001 to 0.01 s";
 /// The longest run, s.
 pub const MAX_TIME: f64 = 3600.0;
+
+/// The most steps of a run: an hour of 1 ms each, and some to spare.
+pub const MAX_STEPS: u64 = 4_000_000;
+
+const STEP: Range = Range::new(1e-5, 0.01, "s");
+const DURATION: Range = Range::new(0.0, MAX_TIME, "s");
+const POSE_ACCELERATION: Range = Range::new(1e-6, 1e6, "rad/s²");

@@ -7,6 +7,7 @@ use crate::kinematics::end_effector;
 use crate::machine::{Inertia, Machine};
 use crate::plan::{Samples, TimeLaw};
 use crate::planar::{DriveAngles, PerDrive, Vector};
+use crate::range::{Check, Range};
 
 /// What the machine is to do.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -175,6 +176,17 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 /// The most points a task may visit.
 pub const MAX_POINTS: usize = 2000;
 
+/// Where a point may lie, either coordinate.
+pub const PLACE: Range = Range::either_way(1e6, "m");
+/// Where a pose constant may lie: two hundred turns and more keep all its digits.
+pub const POSE_CONSTANT: Range = Range::either_way(1e3, "rad");
+/// How long a motion may take, whether it is told to or finds its time itself.
+pub const TIME: Range = Range::new(1e-5, super::MAX_TIME, "s");
+const ANGLE: Range = Range::either_way(1e3, "rad");
+const BLEND: Range = Range::new(0.0, 1.0, "");
+const CYCLES: Range = Range::new(1.0, 100.0, "");
+const MOMENT_LIMIT: Range = Range::new(1e-9, 1e9, "N m");
+
 impl Task {
     /// A task by samples, on the plane b, rad, where they are of the end effector; those of the drives have their own.
     ///
@@ -273,6 +285,29 @@ impl Task {
         task.completed(machine).ok()
     }
 
+    /// Every number with its key, and whether it may stand there, for a step, s.
+    pub(super) fn checks(&self, step: f64) -> Vec<Check> {
+        let place = |key: &'static str, [x, y]: [f64; 2]| [PLACE.check(key, x), PLACE.check(key, y)];
+        let mut list = vec![
+            TIME.check("task.time", self.time),
+            Check::words("task.time", self.time, self.time >= step, "one step or more, s"),
+            CYCLES.check("task.cycles", self.cycles.into()),
+            BLEND.check("task.blend", self.blend),
+            POSE_CONSTANT.check("task.b", self.b),
+            ANGLE.check("task.turn", self.turn),
+        ];
+        list.extend(MOMENT_LIMIT.check_some("task.moment_limit", self.moment_limit));
+        list.extend(POSE_CONSTANT.check_some("task.b_to", self.b_to));
+        list.extend(ANGLE.check_some("task.first_drive_to", self.first_drive_to));
+        list.extend(place("task.from", self.from));
+        list.extend(place("task.to", self.to));
+        let (count, enough) = (self.via.len(), self.via.len() <= MAX_POINTS);
+        list.push(Check::words("task.via", count as f64, enough, "at most 2000 points between A and B"));
+        let via = self.via.iter().enumerate().flat_map(|(i, p)| p.map(|x| (i, x))).find(|(_, x)| !PLACE.contains(*x));
+        list.extend(via.map(|(i, x)| PLACE.check(format!("task.via[{}]", i + 1), x)));
+        list
+    }
+
     /// All points in order, A first and B last, m.
     pub fn points(&self) -> Vec<Vector> {
         let all = std::iter::once(&self.from).chain(&self.via).chain(std::iter::once(&self.to));
@@ -360,6 +395,33 @@ impl Task {
         change.insert("shape".into(), "freehand".into());
         change.insert("samples".into(), "default".into());
         Some(change)
+    }
+
+    /// What a key would want to have a say in this task, if it has none as things are.
+    pub fn unused(&self, key: &str) -> Option<&'static str> {
+        use TaskKind::{ChangeB, LeastReaction, MinimumNorm, Reactionless, SameTip, ZeroMomentum};
+        let kind = |kinds: &[TaskKind]| kinds.contains(&self.kind);
+        let samples = self.samples.as_ref().map(Samples::columns);
+        let curved = kind(&[Reactionless, MinimumNorm, LeastReaction, ZeroMomentum]) && samples.is_none();
+        let straight = curved && matches!(self.shape(), Shape::JointLine | Shape::Line);
+        let (used, want) = match key {
+            "from" | "to" => (samples.is_none(), "no samples, which say where to go"),
+            "shape" => (curved, "points, and the kind reactionless, minimum-norm, least-reaction or zero-momentum"),
+            "corners" => (straight, "the shape line or joint-line: others have no corners"),
+            "blend" if straight => (self.corners == Corners::Blend, "corners = blend"),
+            "blend" => (false, "the shape line or joint-line: others have no corners"),
+            "b" => (samples.is_none_or(|n| n == 2), "task.turn, for samples of drive angles have their own b"),
+            "b_to" => (kind(&[ChangeB, LeastReaction]), "the kind change-b or least-reaction"),
+            "moment_limit" => (kind(&[ChangeB]), "the kind change-b"),
+            "cycles" => (kind(&[ZeroMomentum]), "the kind zero-momentum"),
+            "least" => (kind(&[LeastReaction]), "the kind least-reaction"),
+            "first_drive_to" => (kind(&[SameTip]), "the kind same-tip"),
+            "turn" => (samples.is_some_and(|n| n != 2), "samples of drive angles"),
+            "law" => (samples.is_none(), "no samples, which say when to be where"),
+            "time" => (!self.law.is_fastest(), "another law: the fastest ones find the time"),
+            _ => return None,
+        };
+        (!used).then_some(want)
     }
 
     /// What joins the points.

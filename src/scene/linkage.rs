@@ -41,6 +41,8 @@ pub struct Bar {
     sign: f64,
     /// Where the next one or the end effector is, m along it.
     length: f64,
+    /// From where to where it is drawn, m along it.
+    span: [f64; 2],
     z: f64,
 }
 
@@ -99,6 +101,7 @@ impl Linkage {
                 root: part.root,
                 sign: part.sign,
                 length: part.length,
+                span: [from.min(link.com), to.max(link.com)],
                 z: layer(part.drive),
             });
         }
@@ -225,6 +228,15 @@ impl Linkage {
 }
 
 impl Bar {
+    /// The line along it as drawn on a base that stands still, from end to end, m.
+    pub fn ends(&self, e: &Units) -> [[f64; 3]; 2] {
+        let (root, along, z) = self.pose(e);
+        self.span.map(|s| {
+            let p = root + along * s;
+            [p.re, p.im, z]
+        })
+    }
+
     /// Where its root is and which way it points, and its height.
     pub fn pose(&self, e: &Units) -> (Vector, Vector, f64) {
         (place_of(&self.root, e), e[self.drive] * self.sign, self.z)

@@ -12,6 +12,7 @@ pub mod linkage;
 pub mod mesh;
 pub mod palette;
 pub mod pointer;
+pub mod reaction;
 pub mod stage;
 pub mod sway;
 pub mod tower;

@@ -27,7 +27,7 @@ use crate::frame::Frame;
 use crate::machine::Chain;
 use crate::planar::{DriveAngles, Vector, unit};
 use crate::pose_constant::Planes;
-use crate::session::Run;
+use crate::session::{Refusal, Run, Waiting};
 use std::sync::{Arc, OnceLock};
 
 /// What a person has chosen to see.
@@ -109,6 +109,14 @@ pub struct Refused {
     pub why: String,
 }
 
+impl Refused {
+    /// The curve of a refusal, if it is of one.
+    pub fn of(refusal: &Refusal) -> Option<Self> {
+        let Refusal::Blocked(blocked) = refusal else { return None };
+        Some(Self { curve: blocked.curve.clone(), at: blocked.at, why: blocked.stop.to_string() })
+    }
+}
+
 /// What stays the same from frame to frame.
 #[derive(Clone, Debug)]
 pub struct Stage {
@@ -119,6 +127,8 @@ pub struct Stage {
     middle: Option<Vector>,
     compare_b: Option<f64>,
     motion: Option<Course>,
+    /// Why the run waits, and the curve that cannot be followed, if that is it.
+    waiting: Option<(Waiting, Option<Refused>)>,
     /// Least and greatest of each measure of dexterity within the limits, found when first shown.
     dexterity: [OnceLock<[f64; 2]>; 3],
     /// Curves in the workspace, and where folds turn back, before it is turned, m.
@@ -143,7 +153,11 @@ impl Stage {
         });
         let tip = *model.tip();
         let motion = run.motion().map(|motion| Course {
-            points: looks(motion).map(|s| place(&tip, &motion.path.at(s).q)).collect(),
+            // What waits has points, but no path.
+            points: match run.waiting() {
+                Some(_) => Vec::new(),
+                None => looks(motion).map(|s| place(&tip, &motion.path.at(s).q)).collect(),
+            },
             start: motion.path.at(0.0).q.units(),
             waypoints: waypoints(run),
         });
@@ -160,6 +174,7 @@ impl Stage {
             boundary,
             compare_b: run.scenario().compare_b,
             motion,
+            waiting: run.waiting().map(|waiting| (waiting.clone(), Refused::of(&waiting.why))),
         }
     }
 
@@ -235,7 +250,7 @@ impl Stage {
         let (frame, true_tip) = (&shown, frame.tip);
         let e = frame.q.units();
         let mut solids = Vec::new();
-        if let Some(course) = &self.motion {
+        if let Some(course) = self.motion.as_ref().filter(|_| self.waiting.is_none()) {
             solids.extend(self.linkage.ghost(&course.start, &palette, 0.16));
         }
         if let (Some(b), Some(planes)) = (options.preview_b, &self.planes) {

@@ -16,6 +16,9 @@ pub const GRIP: f64 = 20.0;
 /// The same for a point of the path, px.
 const POINT_GRIP: f64 = 9.0;
 
+/// The same for a link, px.
+const LINK_GRIP: f64 = 6.0;
+
 /// How far to the left of a point its name stands, px.
 const NAME: f64 = 17.0;
 
@@ -166,6 +169,16 @@ impl Views {
     pub fn pick_tip(&self, frame: &Frame, pointer: &Pointer) -> Option<Grip> {
         let at = self.stage.handle(Handle::Tip, frame)?;
         (pointer.distance(at)? < 1.5 * GRIP).then_some(Grip { handle: Handle::Tip, at })
+    }
+
+    /// The number of the link under the pointer in the machine's view, in a frame as shown; the uppermost of several.
+    pub fn link_at(&self, frame: &Frame, pointer: &Pointer) -> Option<usize> {
+        let (e, at) = (frame.q.units(), frame.base.at);
+        let near = |ends: [[f64; 3]; 2]| {
+            pointer.distance_to_segment(ends.map(|[x, y, z]| [x + at.re, y + at.im, z])).is_some_and(|d| d < LINK_GRIP)
+        };
+        let bars = self.stage.linkage().bars().iter().enumerate();
+        bars.filter(|(_, bar)| near(bar.ends(&e))).max_by_key(|(_, bar)| bar.drive).map(|(i, _)| i)
     }
 
     /// What is under the pointer and can be pulled at, in a frame as shown.

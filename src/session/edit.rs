@@ -4,6 +4,8 @@ use serde::de::Error as _;
 use serde::{Deserialize, Serialize};
 
 use crate::keys;
+use crate::range::Check;
+use crate::scenario::{MAX_STEPS, PLACE, POSE_CONSTANT, TIME};
 
 /// One change. It can be saved, replayed and undone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -91,12 +93,29 @@ pub struct TimedEdit {
 impl<'de> Deserialize<'de> for TimedEdit {
     /// By hand, because a flattened enum would accept keys that it does not know.
     fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        let mut table = toml::Table::deserialize(from)?;
-        let step = table.remove("step").ok_or_else(|| D::Error::missing_field("step"))?;
-        let step = step.as_integer().and_then(|n| u64::try_from(n).ok());
-        let step = step.ok_or_else(|| D::Error::custom("step: want a whole number of steps, 0 or more"))?;
-        let edit = Edit::deserialize(table).map_err(|e| D::Error::custom(e.message()))?;
+        Self::from_table(toml::Table::deserialize(from)?).map_err(D::Error::custom)
+    }
+}
+
+impl TimedEdit {
+    /// An entry of a file.
+    ///
+    /// # Errors
+    /// What is wrong with it, and what would be right.
+    pub fn from_table(mut table: toml::Table) -> Result<Self, String> {
+        let step = table.remove("step").ok_or("missing field `step`")?;
+        let step = step.as_integer().and_then(|n| u64::try_from(n).ok()).filter(|n| *n <= MAX_STEPS);
+        let step = step.ok_or_else(|| format!("step: want a whole number of steps, 0 to {MAX_STEPS}"))?;
+        let edit = Edit::deserialize(table).map_err(|e| e.message().to_owned())?;
         Ok(Self { step, edit })
+    }
+
+    /// As an entry of a file.
+    ///
+    /// # Panics
+    /// Never: every edit can be written.
+    pub fn to_table(&self) -> toml::Table {
+        toml::Table::try_from(self).expect("an edit is plain data")
     }
 }
 
@@ -121,6 +140,25 @@ impl Edit {
         Self::SetControl { change: keys::one(key, value) }
     }
 
+    /// Whether its own numbers may stand there, for a step, s; what it changes is checked where that is known.
+    ///
+    /// # Errors
+    /// The first that may not.
+    pub fn check(&self, step: f64) -> Result<(), Check> {
+        let found: Vec<Check> = match self {
+            Self::DragTarget { x, y } => vec![PLACE.check("x", *x), PLACE.check("y", *y)],
+            Self::SlideB { b } | Self::PoseB { b } | Self::CompareB { b: Some(b) } => {
+                vec![POSE_CONSTANT.check("b", *b)]
+            }
+            Self::SetTime { time } => {
+                let enough = Check::words("time", *time, *time >= step, "one step or more, s");
+                vec![TIME.check("time", *time), enough]
+            }
+            _ => Vec::new(),
+        };
+        found.into_iter().find(|check| !check.ok).map_or(Ok(()), Err)
+    }
+
     /// Whether it is of the run as a whole and has no meaning at a later step.
     pub fn is_of_the_whole(&self) -> bool {
         matches!(self, Self::SetTask { .. } | Self::SetTime { .. } | Self::SetBase { .. } | Self::SetTolerance { .. })
@@ -139,9 +177,31 @@ impl Edit {
         }
     }
 
+    /// Which part of a scenario it changes, for messages.
+    pub(super) fn part(&self) -> &'static str {
+        match self {
+            Self::DragTarget { .. } => "target",
+            Self::SlideB { .. } | Self::PoseB { .. } => "b",
+            Self::Push { .. } => "push",
+            Self::SetPlant { .. } => "plant",
+            Self::SetBase { .. } => "base",
+            Self::SetControl { .. } => "control",
+            Self::SetTolerance { .. } => "tolerance",
+            Self::SetMachine { .. } => "machine",
+            Self::SetTime { .. } => "time",
+            Self::SetTask { .. } => "task",
+            Self::CompareB { .. } => "compare b",
+        }
+    }
+
     /// Whether it sends the machine somewhere: the pointer or the slider.
     pub fn leads(&self) -> bool {
         matches!(self, Self::DragTarget { .. } | Self::SlideB { .. })
+    }
+
+    /// Whether it sets limits of joints.
+    pub fn sets_limits(&self) -> bool {
+        matches!(self, Self::SetMachine { key, .. } if key.starts_with("limits."))
     }
 
     /// Whether it changes the force at the end effector.
@@ -178,6 +238,9 @@ impl Edit {
 fn task_title(change: &toml::Table) -> String {
     if ["from", "via", "to"].iter().any(|key| change.contains_key(*key)) {
         return "move waypoints".into();
+    }
+    if change.is_empty() {
+        return "go back to the path".into();
     }
     let say = |(key, value): (&String, &toml::Value)| {
         let value = value.as_str().map_or_else(|| value.to_string(), Into::into);

@@ -7,12 +7,18 @@
 mod edit;
 mod planning;
 mod run;
+mod script;
+mod survey;
+
+use std::sync::Arc;
 
 pub use edit::{Edit, TimedEdit};
 pub use planning::{Plan, curves};
-pub use run::{Refusal, Run, felt, replay, settled};
+pub use run::{Refusal, Run, Waiting, felt, replay, replay_if, settled};
+pub(crate) use survey::survey;
 
-use run::in_order;
+use run::{Failed, in_order};
+use script::Script;
 
 use crate::frame::Frame;
 use crate::scenario::{MAX_TIME, Scenario};
@@ -21,12 +27,12 @@ use crate::scenario::{MAX_TIME, Scenario};
 const MAX_FRAMES: usize = 180_000;
 
 /// Everything that makes a run: what undo restores and what is saved.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 struct Document {
     /// Its edits are empty; they stand in `script`.
-    scenario: Scenario,
-    /// In the order of steps, none beyond `end`.
-    script: Vec<TimedEdit>,
+    scenario: Arc<Scenario>,
+    /// None beyond `end`.
+    script: Script,
     /// Steps done.
     end: u64,
 }
@@ -52,6 +58,8 @@ impl Change {
 #[derive(Clone, Debug)]
 pub struct Session {
     document: Document,
+    /// The script of the document, one after the other.
+    edits: Vec<TimedEdit>,
     run: Run,
     frames: Vec<Frame>,
     cursor: usize,
@@ -67,34 +75,46 @@ pub struct Session {
     unedited: Option<Run>,
 }
 
-/// Whether somebody leads the machine off its planned motion.
-fn is_led(script: &[TimedEdit]) -> bool {
-    script.iter().any(|e| e.edit.leads() || (e.step > 0 && matches!(e.edit, Edit::PoseB { .. })))
-}
-
 impl Session {
     /// Opens a scenario; its saved edits are replayed up to its duration, and the cursor stands at the start.
     ///
     /// # Errors
-    /// If it cannot start, or one of its edits cannot apply.
+    /// If it cannot start, or one of its edits cannot apply. A session that was saved while it waited waits again.
     pub fn open(scenario: Scenario) -> Result<Self, Refusal> {
         let mut ground = scenario;
-        let mut script = in_order(&std::mem::take(&mut ground.edits));
-        let runs = is_led(&script) || script.iter().any(|e| e.step > 0);
+        let edits = std::mem::take(&mut ground.edits);
+        Self::replayed(ground, in_order(&edits)).map_err(|failed| failed.named(&edits))
+    }
+
+    fn replayed(ground: Scenario, script: Vec<TimedEdit>) -> Result<Self, Failed> {
+        let known: Script = script.iter().cloned().collect();
+        let runs = known.is_led() || script.last().is_some_and(|e| e.step > 0);
         let end = match runs {
-            true => Run::begin(&ground, &script, None)?.0.last_step().min(MAX_FRAMES as u64 - 1),
+            true => {
+                let run = Run::begin(&ground, &script, None)?.0;
+                let end = match run.waiting() {
+                    Some(_) => script.last().map_or(0, |e| e.step),
+                    None => run.whole(&script)?,
+                };
+                let end = end.min(MAX_FRAMES as u64 - 1);
+                if let Some(late) = script.iter().position(|e| e.step > end) {
+                    return Err(Failed::at(late, Refusal::Full { time: end as f64 * run.scenario().step }));
+                }
+                end
+            }
             false => 0,
         };
-        script.retain(|e| e.step <= end);
-        let mut session = Self::of(Document { scenario: ground, script, end })?;
+        let patient = !script.is_empty();
+        let mut session = Self::of(Document { scenario: Arc::new(ground), script: known, end }, patient)?;
         session.cursor = 0;
         Ok(session)
     }
 
-    fn of(document: Document) -> Result<Self, Refusal> {
-        let (run, frames) = perform(&document, None)?;
+    fn of(document: Document, patient: bool) -> Result<Self, Failed> {
+        let (run, frames) = perform(&document, None, patient)?;
         let cursor = frames.len() - 1;
         Ok(Self {
+            edits: document.script.to_vec(),
             document,
             run,
             frames,
@@ -130,7 +150,7 @@ impl Session {
 
     /// Edits so far.
     pub fn script(&self) -> &[TimedEdit] {
-        &self.document.script
+        &self.edits
     }
 
     /// Whether time is to pass.
@@ -140,7 +160,12 @@ impl Session {
 
     /// Whether the display will change by itself.
     pub fn is_moving(&self) -> bool {
-        self.playing && !(self.is_at_end() && self.is_settled())
+        self.playing && self.run.waiting().is_none() && !(self.is_at_end() && self.is_settled())
+    }
+
+    /// Whether there can be one more frame.
+    fn has_room(&self) -> bool {
+        !self.is_full() && self.run.waiting().is_none()
     }
 
     /// Whether it holds as many frames as it can: time stands still until it starts over.
@@ -171,13 +196,28 @@ impl Session {
         }
     }
 
+    /// The b nearest to one, rad, at which the points of the task stay where they are; `None` if no b serves them all.
+    pub fn serving(&self, b: f64) -> Option<f64> {
+        let task = &self.scenario().task;
+        if task.samples.as_ref().is_some_and(|samples| samples.columns() != 2) {
+            // Samples of the drives have a b of their own.
+            return Some(task.b);
+        }
+        let common = self.run.planes()?.common(&task.points())?;
+        let nearest = common.nearest(b)?;
+        Some(if nearest == b { b } else { common.inwards(nearest, 1e-6) })
+    }
+
     /// Whether somebody has led the machine off its planned motion.
     pub fn is_live(&self) -> bool {
-        is_led(&self.document.script)
+        self.document.script.is_led()
     }
 
     /// Lets time pass. At the end of a finished motion it starts over.
     pub fn play(&mut self) {
+        if self.run.waiting().is_some() {
+            return;
+        }
         if self.is_at_end() && self.is_settled() {
             self.cursor = 0;
         }
@@ -194,7 +234,7 @@ impl Session {
         let step = (time / self.scenario().step).round().max(0.0) as usize;
         if !self.is_live() {
             let planned = (self.run.planned_time() / self.scenario().step - 1e-6).ceil() as usize;
-            while self.frames.len() <= step.min(planned) && !self.is_full() {
+            while self.frames.len() <= step.min(planned) && self.has_room() {
                 self.advance_run();
             }
         }
@@ -205,7 +245,7 @@ impl Session {
     pub fn step_by(&mut self, steps: i64) {
         self.playing = false;
         let to = (self.cursor as i64).saturating_add(steps).max(0) as usize;
-        while self.frames.len() <= to && !self.is_full() {
+        while self.frames.len() <= to && self.has_room() {
             self.advance_run();
         }
         self.cursor = to.min(self.frames.len() - 1);
@@ -243,10 +283,22 @@ impl Session {
     /// and the run so far is made again.
     ///
     /// # Errors
-    /// If it cannot apply; then nothing has changed.
+    /// If it cannot apply; then nothing has changed. Joint limits always apply: where the task does not fit into them,
+    /// the run waits.
     pub fn apply(&mut self, edit: Edit) -> Result<(), Refusal> {
-        let now = self.concerns_now(&edit);
-        if now { self.apply_now(edit) } else { self.amend(edit) }?;
+        let mut now = self.concerns_now(&edit);
+        if let (true, Some(waiting)) = (now, self.run.waiting()) {
+            return Err(waiting.why.clone());
+        }
+        let done = if now { self.apply_now(edit.clone()) } else { self.amend(edit.clone()) };
+        match done {
+            Err(_) if now && edit.sets_limits() => {
+                // The motion in progress does not keep them: they hold from its start.
+                now = false;
+                self.amend(edit)?;
+            }
+            done => done?,
+        }
         self.gesture_now = Some(now);
         Ok(())
     }
@@ -256,6 +308,8 @@ impl Session {
         match edit {
             Edit::DragTarget { .. } | Edit::SlideB { .. } | Edit::Push { .. } => true,
             Edit::PoseB { .. } => self.is_live(),
+            // Whoever leads the machine finds other limits where he is.
+            edit if edit.sets_limits() && self.is_live() && self.run.waiting().is_none() => true,
             // The path that the machine is on cannot change its time, nor can it move to another base.
             edit if edit.is_of_the_whole() => false,
             // A slider that set the machine in motion goes on as it began.
@@ -270,13 +324,16 @@ impl Session {
 
     /// At the present step; later frames, if the display was scrubbed back, are replaced.
     fn apply_now(&mut self, edit: Edit) -> Result<(), Refusal> {
+        if self.is_full() && self.is_at_end() && (edit.leads() || matches!(edit, Edit::Push { .. })) {
+            return Err(Refusal::Full { time: self.run.simulation().time() });
+        }
         let before = self.document.clone();
         let mut document = before.clone();
         let mut remade = None;
         if !self.is_at_end() {
             document.end = self.cursor as u64;
-            document.script.retain(|e| e.step <= document.end);
-            remade = Some(perform(&document, Some(&self.run))?);
+            document.script.cut(document.end);
+            remade = Some(perform(&document, Some(&self.run), false).map_err(Failed::refusal)?);
         }
         let timed = TimedEdit { step: document.end, edit };
         let joins = self.gesture
@@ -294,6 +351,8 @@ impl Session {
         let inverse = unedited.inverse_of(&timed.edit);
         let mut run = unedited.clone();
         run.apply(&timed.edit)?;
+        self.edits.truncate(document.script.len());
+        self.edits.push(timed.clone());
         document.script.push(timed.clone());
         if let Some((_, frames)) = remade {
             self.frames = frames;
@@ -316,9 +375,13 @@ impl Session {
         match &timed.edit {
             Edit::SetTolerance { .. } => {
                 self.run.apply(&timed.edit)?;
+                self.edits = document.script.to_vec();
                 self.document = document;
             }
-            _ => self.restore(document)?,
+            edit => {
+                let patient = matches!(edit, Edit::SetMachine { .. }) || self.run.waiting().is_some();
+                self.restore(document, patient)?;
+            }
         }
         self.remember(before, timed, inverse);
         Ok(())
@@ -327,23 +390,28 @@ impl Session {
     /// The document with an edit before the first step.
     fn amended(&self, timed: &TimedEdit) -> Document {
         let mut document = self.document.clone();
-        document.script.retain(|e| !e.edit.is_replaced_by(&timed.edit));
+        let mut script: Vec<TimedEdit> =
+            self.edits.iter().filter(|e| !e.edit.is_replaced_by(&timed.edit)).cloned().collect();
         if matches!(timed.edit, Edit::SetTask { .. }) && self.is_live() {
             // To plan is to take the machine back from the hand that led it. What was set on the way stays.
-            let mut kept: Vec<TimedEdit> = Vec::with_capacity(document.script.len());
-            for e in document.script.drain(..).filter(|e| !e.edit.leads()) {
+            let mut kept: Vec<TimedEdit> = Vec::with_capacity(script.len());
+            for e in script.drain(..).filter(|e| !e.edit.leads()) {
                 if e.step > 0 && matches!(e.edit, Edit::PoseB { .. }) {
                     continue;
                 }
                 kept.retain(|old| !old.edit.is_replaced_by(&e.edit));
                 kept.push(TimedEdit { step: 0, edit: e.edit });
             }
-            document.script = kept;
+            script = kept;
             document.end = 0;
         }
         // Who leads the machine from the start does so from where this puts it.
-        let place = document.script.iter().position(|e| e.step > 0 || e.edit.leads());
-        document.script.insert(place.unwrap_or(document.script.len()), timed.clone());
+        let place = script.iter().position(|e| e.step > 0 || e.edit.leads());
+        let says_nothing = matches!(&timed.edit, Edit::SetTask { change } if change.is_empty());
+        if !says_nothing {
+            script.insert(place.unwrap_or(script.len()), timed.clone());
+        }
+        document.script = document.script.replaced(script);
         document
     }
 
@@ -397,7 +465,9 @@ impl Session {
         let Some(change) = self.undo.last().cloned() else { return Ok(()) };
         let after = self.document.clone();
         let done = match &change.inverse {
-            Some(inverse) if self.is_running() && !change.plans() => self.append(inverse.clone()),
+            Some(inverse) if self.is_running() && !change.plans() => {
+                self.append(inverse.clone()).or_else(|_| self.return_to(&change.before))
+            }
             _ => self.return_to(&change.before),
         };
         done?;
@@ -415,7 +485,9 @@ impl Session {
         let Some(change) = self.redo.last().cloned() else { return Ok(()) };
         let before = self.document.clone();
         let done = match &change.edit {
-            Some(timed) if self.is_running() && !change.plans() => self.append(timed.edit.clone()),
+            Some(timed) if self.is_running() && !change.plans() => {
+                self.append(timed.edit.clone()).or_else(|_| self.return_to(&change.before))
+            }
             _ => self.return_to(&change.before),
         };
         done?;
@@ -427,17 +499,19 @@ impl Session {
     /// Applies while time passes, without touching history.
     fn append(&mut self, edit: Edit) -> Result<(), Refusal> {
         if !self.concerns_now(&edit) {
-            return self.restore(self.amended(&TimedEdit { step: 0, edit }));
+            return self.restore(self.amended(&TimedEdit { step: 0, edit }), false);
         }
         self.run.apply(&edit)?;
-        self.document.script.push(TimedEdit { step: self.document.end, edit });
+        let timed = TimedEdit { step: self.document.end, edit };
+        self.edits.push(timed.clone());
+        self.document.script.push(timed);
         self.show_present();
         Ok(())
     }
 
     /// What was, with time standing still.
     fn return_to(&mut self, document: &Document) -> Result<(), Refusal> {
-        self.restore(document.clone())?;
+        self.restore(document.clone(), true)?;
         self.playing = false;
         if self.is_live() {
             self.cursor = self.frames.len() - 1;
@@ -445,9 +519,12 @@ impl Session {
         Ok(())
     }
 
-    /// Makes the run of a document; the display stays where it is, if there is a frame.
-    fn restore(&mut self, document: Document) -> Result<(), Refusal> {
-        let (run, frames) = perform(&document, Some(&self.run))?;
+    /// Makes the run of a document; the display stays where it is, if there is a frame. With patience, a task that does
+    /// not fit its machine waits; the document stays whole, to go on where it was once it fits again.
+    fn restore(&mut self, document: Document, patient: bool) -> Result<(), Refusal> {
+        let (run, frames) = perform(&document, Some(&self.run), patient).map_err(Failed::refusal)?;
+        self.playing &= run.waiting().is_none();
+        self.edits = document.script.to_vec();
         (self.document, self.run, self.frames, self.unedited) = (document, run, frames, None);
         self.cursor = self.cursor.min(self.frames.len() - 1);
         Ok(())
@@ -469,8 +546,8 @@ impl Session {
     /// The session as a scenario: replayed or opened again, it gives equal frames. One that has not begun covers its
     /// motion.
     pub fn to_scenario(&self) -> Scenario {
-        let mut scenario = self.document.scenario.clone();
-        scenario.edits.clone_from(&self.document.script);
+        let mut scenario = Scenario::clone(&self.document.scenario);
+        scenario.edits.clone_from(&self.edits);
         scenario.duration = match self.document.end {
             0 => self.scenario().duration,
             end => Some(end as f64 * scenario.step),
@@ -480,9 +557,10 @@ impl Session {
 }
 
 /// Runs a document from its start to its end.
-fn perform(document: &Document, known: Option<&Run>) -> Result<(Run, Vec<Frame>), Refusal> {
+fn perform(document: &Document, known: Option<&Run>, patient: bool) -> Result<(Run, Vec<Frame>), Failed> {
     let mut frames = Vec::with_capacity(document.end as usize + 1);
     let see = |_: &Run, frame: &Frame| frames.push(*frame);
-    let run = run::perform(&document.scenario, &document.script, Some(document.end), known, see)?;
+    let end = |_: &Run, _: &[TimedEdit]| Ok(document.end);
+    let run = run::perform(&document.scenario, &document.script.to_vec(), (end, patient), known, see)?;
     Ok((run, frames))
 }

@@ -4,10 +4,11 @@ mod given;
 mod off_plane;
 
 use super::Refusal;
+use super::run::allowed;
 use crate::dynamics::Surroundings;
 use crate::machine::Inertia;
 use crate::plan::least_reaction::Verdicts;
-use crate::plan::limits::{Limit, Quantity};
+use crate::plan::limits::Limit;
 use crate::plan::path::{Chained, SameTip, minimum_norm_curve};
 use crate::plan::{Curve, Forecast, Limits, Motion, Path, Price, Profile, Rule, TimeLaw, Usage, fastest, trace};
 use crate::planar::{DriveAngles, Vector};
@@ -30,12 +31,14 @@ pub struct Plan {
     pub verdicts: Option<Verdicts>,
     /// For motions of zero momentum: the drives at the start and after each cycle, rad.
     pub cycles: Vec<DriveAngles>,
+    /// T with corners rounded off as the task asks, s, where it would take longer than resting at them: the motion rests.
+    pub blended: Option<f64>,
 }
 
 impl Pace {
-    /// T/T* − 1, T* the least time without limits on jerk.
-    pub fn gap(&self) -> f64 {
-        if self.unlimited > 0.0 { (self.taken / self.unlimited - 1.0).max(0.0) } else { 0.0 }
+    /// T/T* − 1, T* the least time without limits on jerk; for a law with such limits, where something besides them limits.
+    pub fn gap(&self) -> Option<f64> {
+        self.unlimited.filter(|least| *least > 0.0).map(|least| (self.taken / least - 1.0).max(0.0))
     }
 }
 
@@ -46,10 +49,21 @@ impl Plan {
         self.cycles.iter().skip(1).filter_map(move |q| Some(q.0.minus(&first?.0).max_abs()))
     }
 
+    /// Rest where the end effector is as near to A as the plane of the task lets it be: for a run that waits.
+    pub fn rest(scenario: &Scenario, planes: &Planes) -> Self {
+        let (task, map) = (&scenario.task, planes.map());
+        let p = task.points()[0];
+        let pose = map.poses(p, task.b).iter().next().copied();
+        let a = pose.map_or_else(|| map.clamp(planes.boundary().nearest(p, task.b, p).a), |pose| pose.a);
+        let q = DriveAngles::from(map.lift(PlanePoint { a, b: task.b }));
+        let path = Path::JointLine { from: q, to: q };
+        Self::of(scenario, Motion::new(path, TimeLaw::Quintic, task.time))
+    }
+
     fn of(scenario: &Scenario, motion: Motion) -> Self {
         let (model, around) = dynamics_of(scenario);
         let forecast = Forecast::of(&motion, &model, &around, &Limits::of(&scenario.machine));
-        Self { motion, forecast, pace: None, price: None, verdicts: None, cycles: Vec::new() }
+        Self { motion, forecast, pace: None, price: None, verdicts: None, cycles: Vec::new(), blended: None }
     }
 }
 
@@ -101,8 +115,8 @@ fn dynamics_of(scenario: &Scenario) -> (Inertia, Surroundings) {
 pub struct Pace {
     /// T, s.
     pub taken: f64,
-    /// The least time without limits on jerk, s.
-    pub unlimited: f64,
+    /// The least time without limits on jerk, s, where there are any.
+    pub unlimited: Option<f64>,
     /// The limit that leads for the greatest share of the first part.
     pub leading: Option<Limit>,
 }
@@ -113,20 +127,61 @@ pub struct Pace {
 /// Which point, part of the path or setting is in the way, and what would do.
 pub fn plan(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
     let task = &scenario.task;
+    let plan = if task.samples.is_some() || task.kind == TaskKind::Given {
+        given::given(scenario, planes)
+    } else {
+        match task.kind {
+            TaskKind::ChangeB => off_plane::change_b(scenario, planes),
+            TaskKind::LeastReaction => off_plane::least_reaction(scenario, planes),
+            TaskKind::ZeroMomentum => off_plane::zero_momentum(scenario, planes),
+            TaskKind::Reactionless | TaskKind::MinimumNorm | TaskKind::SameTip | TaskKind::Given => {
+                along(scenario, planes)
+            }
+        }
+    }?;
+    let found = task.law.is_fastest() || (task.kind == TaskKind::ChangeB && task.moment_limit.is_some());
+    let time = plan.motion.duration();
+    // A path that goes nowhere takes no time.
+    if found && time != 0.0 && time < scenario.step {
+        return Err(Refusal::Task(format!(
+            "the limits let the motion take {time:.1e} s: want at least one step, {} s, with lower limits or a smaller \
+             step",
+            scenario.step
+        )));
+    }
+    allowed(time).map(|()| plan)
+}
+
+/// A path through the points of a task, and its timing.
+fn along(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
+    let task = &scenario.task;
+    let motion = |scenario: &Scenario| -> Result<(Motion, Option<Pace>), Refusal> {
+        let (motion, pace) = timed(scenario, parts(scenario, planes)?)?;
+        keeps_rules(scenario, &motion)?;
+        Ok((motion, pace))
+    };
+    let (own, pace) = motion(scenario)?;
+    if task.law.is_fastest() && task.corners == Corners::Blend {
+        // A corner rounded off very tightly may be no faster than a rest at it.
+        let resting = Scenario { task: Task { corners: Corners::Stop, ..task.clone() }, ..scenario.clone() };
+        if let Ok((rests, pace)) = motion(&resting)
+            && rests.duration() < own.duration()
+        {
+            let blended = Some(own.duration());
+            return Ok(Plan { pace, blended, ..Plan::of(scenario, rests) });
+        }
+    }
+    Ok(Plan { pace, ..Plan::of(scenario, own) })
+}
+
+/// The paths of a task from rest to rest, each with its length.
+fn parts(scenario: &Scenario, planes: &Planes) -> Result<Vec<(Path, f64)>, Refusal> {
+    let task = &scenario.task;
     let points = task.points();
-    if task.samples.is_some() || task.kind == TaskKind::Given {
-        return given::given(scenario, planes);
-    }
-    match task.kind {
-        TaskKind::ChangeB => return off_plane::change_b(scenario, planes),
-        TaskKind::LeastReaction => return off_plane::least_reaction(scenario, planes),
-        TaskKind::ZeroMomentum => return off_plane::zero_momentum(scenario, planes),
-        TaskKind::Reactionless | TaskKind::MinimumNorm | TaskKind::SameTip | TaskKind::Given => {}
-    }
-    let parts = match (task.kind, task.shape()) {
-        (TaskKind::Reactionless, _) => reactionless(task, planes).map_err(|refusal| proved(task, planes, refusal))?,
+    match (task.kind, task.shape()) {
+        (TaskKind::Reactionless, _) => reactionless(task, planes).map_err(|refusal| proved(task, planes, refusal)),
         (TaskKind::MinimumNorm, _) => {
-            minimum_norm(scenario, planes, &points).map_err(|refusal| elsewhere(scenario, planes, refusal))?
+            minimum_norm(scenario, planes, &points).map_err(|refusal| elsewhere(scenario, planes, refusal))
         }
         _ => {
             if !task.via.is_empty() || task.closed {
@@ -137,12 +192,9 @@ pub fn plan(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
                 return Err(Refusal::Task("same-tip: want two points".into()));
             };
             let first_to = task.first_drive_to.unwrap_or(from[0]);
-            vec![(Path::SameTip(SameTip::new(scenario.machine.tip(), from, to, first_to)?), 1.0)]
+            Ok(vec![(Path::SameTip(SameTip::new(scenario.machine.tip(), from, to, first_to)?), 1.0)])
         }
-    };
-    let (motion, pace) = timed(scenario, parts)?;
-    keeps_rules(scenario, &motion)?;
-    Ok(Plan { pace, ..Plan::of(scenario, motion) })
+    }
 }
 
 /// The path of a task that holds its b.
@@ -243,13 +295,12 @@ fn timed(scenario: &Scenario, parts: Vec<(Path, f64)>) -> Result<(Motion, Option
     for (path, length) in &parts {
         let profile = if task.law.is_fastest() {
             let fastest = fastest(path, &model, &around, &limits, task.law == TimeLaw::FastestSmooth)?;
-            let planned = fastest.profile.duration();
-            // Between the stations of its grid it may pass a limit by a little.
-            let motion = Motion { path: path.clone(), profile: fastest.profile };
-            let profile = slowed(motion, &model, &around, &limits)?.profile;
+            let profile = fastest.profile;
             let time = profile.duration();
-            let pace = pace.get_or_insert_default();
-            pace.unlimited += planned / (1.0 + fastest.gap.unwrap_or(0.0));
+            // Of parts that go nowhere nothing limits any.
+            let least = fastest.gap.map(|gap| time / (1.0 + gap)).or((time == 0.0).then_some(0.0));
+            let pace = pace.get_or_insert(Pace { unlimited: Some(0.0), ..Pace::default() });
+            pace.unlimited = pace.unlimited.zip(least).map(|(sum, least)| sum + least);
             pace.taken += time;
             if pace.leading.is_none() {
                 pace.leading = fastest.limiting.first().map(|(limit, _)| *limit);
@@ -273,27 +324,13 @@ fn timed(scenario: &Scenario, parts: Vec<(Path, f64)>) -> Result<(Motion, Option
 }
 
 /// A motion as slow as the limits of the drives want it, whatever the timing of its path.
-fn slowed(mut motion: Motion, model: &Inertia, around: &Surroundings, limits: &Limits) -> Result<Motion, Refusal> {
+fn slowed(motion: Motion, model: &Inertia, around: &Surroundings, limits: &Limits) -> Result<Motion, Refusal> {
     const SAMPLES: usize = 2000;
-    for _ in 0..12 {
+    motion.slowed(model, around, limits).ok_or_else(|| {
         let usage = Usage::of(&motion, model, around, limits, SAMPLES);
-        if usage.most <= 1.0 + 1e-9 {
-            return Ok(motion);
-        }
-        // Torques and accelerations fall with the square of the time, speeds with the time.
-        let by = match usage.limit.map(|limit| limit.quantity) {
-            Some(Quantity::Speed) => usage.most,
-            _ => usage.most.sqrt(),
-        };
-        motion.profile = motion.profile.stretched(by * (1.0 + 1e-12));
-    }
-    let usage = Usage::of(&motion, model, around, limits, SAMPLES);
-    match usage.limit.filter(|_| usage.most > 1.0 + 1e-3) {
-        Some(limit) => {
-            Err(Refusal::Task(format!("the {limit} is passed however slow the motion is: want a higher one")))
-        }
-        None => Ok(motion),
-    }
+        let limit = usage.limit.map_or("a limit".into(), |limit| format!("the {limit}"));
+        Refusal::Task(format!("{limit} is passed however slow the motion is: want a higher one"))
+    })
 }
 
 /// Poses of the points on the plane of the task.
@@ -318,17 +355,18 @@ fn joint_lines(task: &Task, planes: &Planes, points: &[Vector]) -> Result<Vec<(P
     if task.keep_off_change_points {
         same_side(task, planes, &poses)?;
     }
-    poses.extend(task.closed.then(|| poses[0]));
     let a = |x: &PlanePoint| Vector::new(x.a[0], x.a[1]);
-    if task.corners == Corners::Blend && poses.len() > 2 {
+    if task.corners == Corners::Blend && (poses.len() > 2 || task.closed) {
         let corners: Vec<Vector> = poses.iter().map(a).collect();
-        let curves = Curve::polyline(&corners, false, task.blend)?;
+        // The way back to the first point is the curve's own, so that what is wrong is said of points that were given.
+        let curves = Curve::polyline(&corners, task.closed, task.blend)?;
         let path = |curve: Curve| {
             let length = curve.length();
             (Path::OnPlane { map: *planes.map(), b: task.b, curve }, length)
         };
         return Ok(curves.into_iter().map(path).collect());
     }
+    poses.extend(task.closed.then(|| poses[0]));
     let q = lifted(planes, &poses);
     let way = |i: usize| (a(&poses[i + 1]) - a(&poses[i])).norm();
     let line = |i: usize| (Path::JointLine { from: q[i], to: q[i + 1] }, way(i).max(1e-12));

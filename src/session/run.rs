@@ -5,10 +5,11 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use super::planning::{Plan, plan};
-use super::{Edit, TimedEdit};
+use super::{Edit, MAX_FRAMES, TimedEdit};
+use crate::audit::{Audit, Lamp};
 use crate::frame::Frame;
 use crate::keys;
-use crate::machine::{Machine, MachineError, brief};
+use crate::machine::{Machine, MachineError};
 use crate::plan::drift::DriftError;
 use crate::plan::follow::Bounds;
 use crate::plan::least_reaction::LeastReactionError;
@@ -16,8 +17,9 @@ use crate::plan::price::PriceError;
 use crate::plan::{Blocked, CurveError, Follower, Motion, PathError, TimeError};
 use crate::planar::{DriveAngles, Vector};
 use crate::pose_constant::{NoCommon, PlaneError, Planes, Unreachable};
+use crate::range::{Check, Short, Want, shortened};
 use crate::reactionless::{Decimal, PlanePoint};
-use crate::scenario::{MAX_TIME, Scenario};
+use crate::scenario::{MAX_STEPS, MAX_TIME, Scenario, ordinal};
 use crate::simulation::{Guide, Simulation};
 
 /// Why a scenario cannot start or an edit cannot apply; nothing has changed then.
@@ -78,6 +80,12 @@ pub enum Refusal {
         /// s.
         time: f64,
     },
+    /// An audit of the run has failed.
+    #[error("audit failed: {why}; want a smaller step")]
+    Untrusted {
+        /// Which, and by how much.
+        why: String,
+    },
     /// The motion in progress does not fit into new limits.
     #[error("the motion in progress would leave {key} = {value}: want wider limits, or set them at its start")]
     LeavesLimits {
@@ -87,21 +95,93 @@ pub enum Refusal {
         value: String,
     },
     /// A number out of range.
-    #[error("{what} {}: want {want}", brief(*.value))]
+    #[error("{what} is {}: want {want}", Short(*value))]
     OutOfRange {
         /// Which.
-        what: &'static str,
+        what: String,
         /// What was given.
         value: f64,
         /// What would be right.
-        want: &'static str,
+        want: Want,
     },
+    /// The motion takes longer than any may.
+    #[error("the motion would take {}: want at most {MAX_TIME} s, with higher limits or a shorter way", seconds(*time))]
+    TooLong {
+        /// s.
+        time: f64,
+    },
+    /// The run has more steps than any may.
+    #[error("{} s in steps of {} s are {steps} steps: want at most {MAX_STEPS}, with longer steps or a shorter duration", Short(*time), Short(*step))]
+    TooManySteps {
+        /// s.
+        time: f64,
+        /// s.
+        step: f64,
+        /// How many.
+        steps: u64,
+    },
+    /// A session keeps no more frames.
+    #[error(
+        "a session keeps {MAX_FRAMES} frames and an hour at most, and this one is full at {time:.3} s: want an earlier \
+         instant, or the start, to go on from; `simulate` and `headless` run longer"
+    )]
+    Full {
+        /// s.
+        time: f64,
+    },
+    /// What a run would write.
+    #[error(
+        "{rows} rows of {columns} numbers are up to {:.1} GB: want at most {:.0} GB, with fewer rows or a shorter duration",
+        bytes / 1e9, most / 1e9
+    )]
+    TooLarge {
+        /// How many.
+        rows: u64,
+        /// Numbers in each.
+        columns: usize,
+        /// At most.
+        bytes: f64,
+        /// How many there may be.
+        most: f64,
+    },
+    /// One of the edits of a scenario.
+    #[error("the {} [[edit]], {title} at step {step}: {refusal}", ordinal(*entry))]
+    Edit {
+        /// Which, counted from 1 in the order of the file.
+        entry: usize,
+        /// When.
+        step: u64,
+        /// What it would do.
+        title: String,
+        /// Why it cannot.
+        refusal: Box<Refusal>,
+    },
+}
+
+/// A time for a message.
+fn seconds(time: f64) -> String {
+    if time < 1e9 { format!("{time:.0} s") } else { "more than 1e9 s".into() }
+}
+
+/// A time that a motion finds itself obeys the same bound as one that it is given.
+///
+/// # Errors
+/// If it is longer than any motion may take, or no number.
+pub(super) fn allowed(time: f64) -> Result<(), Refusal> {
+    if time <= MAX_TIME { Ok(()) } else { Err(Refusal::TooLong { time }) }
+}
+
+impl From<Check> for Refusal {
+    fn from(Check { key, value, want, .. }: Check) -> Self {
+        Self::OutOfRange { what: key.into(), value, want }
+    }
 }
 
 impl Refusal {
     /// The pose constant nearest to the present one that would do, rad, if another b is all it takes.
     pub fn mending_b(&self) -> Option<f64> {
         match self {
+            Self::Edit { refusal, .. } => refusal.mending_b(),
             Self::Blocked(blocked) => blocked.nearest_b,
             Self::Unreachable { unreachable: Unreachable::OnThisPlane { nearest_b, .. }, .. } => *nearest_b,
             _ => None,
@@ -111,10 +191,34 @@ impl Refusal {
     /// The same as it is shown: rounded to where it still does.
     pub fn shown_b(&self) -> Option<Decimal> {
         match self {
+            Self::Edit { refusal, .. } => refusal.shown_b(),
             Self::Blocked(blocked) => blocked.shown_b,
             Self::Unreachable { unreachable: Unreachable::OnThisPlane { shown_b, .. }, .. } => *shown_b,
             _ => None,
         }
+    }
+}
+
+/// Why a run waits: its task does not fit its machine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Waiting {
+    /// What is in the way.
+    pub why: Refusal,
+    /// Points that the plane of the task does not serve, counted from A, and the nearest b of each that would, rad.
+    pub points: Vec<(usize, Option<f64>)>,
+}
+
+impl Waiting {
+    fn of(scenario: &Scenario, planes: &Planes, why: Refusal) -> Self {
+        let (task, map) = (&scenario.task, planes.map());
+        let unserved = |(i, p): (usize, Vector)| {
+            let would_do = || {
+                let set = map.reach(p).ok()?;
+                set.nearest(task.b).map(|b| set.inwards(b, 1e-6))
+            };
+            map.poses(p, task.b).is_empty().then(|| (i, would_do()))
+        };
+        Self { why, points: task.points().into_iter().enumerate().filter_map(unserved).collect() }
     }
 }
 
@@ -124,6 +228,8 @@ pub struct Run {
     scenario: Scenario,
     planes: Option<Arc<Planes>>,
     plan: Plan,
+    /// Set where the task cannot be planned; the plan is then to rest.
+    waiting: Option<Waiting>,
     simulation: Simulation,
 }
 
@@ -145,14 +251,23 @@ impl Run {
         scenario: &Scenario,
         script: &[TimedEdit],
         known: Option<&Self>,
-    ) -> Result<(Self, usize), Refusal> {
+    ) -> Result<(Self, usize), Failed> {
         let mut planes = known.and_then(|run| Some((run.scenario.machine.clone(), run.planes.clone()?)));
         let (ground, count) = folded(scenario, script, &mut planes)?;
         let known = planes.filter(|(machine, _)| *machine == ground.machine).map(|(_, planes)| planes);
-        Ok((Self::with_planes(&ground, known)?, count))
+        Ok((Self::patient(&ground, known)?, count))
     }
 
     fn with_planes(scenario: &Scenario, known: Option<Arc<Planes>>) -> Result<Self, Refusal> {
+        let run = Self::patient(scenario, known)?;
+        match run.waiting {
+            Some(waiting) => Err(waiting.why),
+            None => Ok(run),
+        }
+    }
+
+    /// At rest at the start of the task; where that cannot be planned, waiting.
+    fn patient(scenario: &Scenario, known: Option<Arc<Planes>>) -> Result<Self, Refusal> {
         let planes = match known {
             Some(planes) => planes,
             None => Arc::new(Planes::of(&scenario.machine)?),
@@ -162,10 +277,18 @@ impl Run {
             true => planes,
             false => Arc::new(Planes::clone(&planes).keeping_off_change_points(keep_off)),
         };
-        let plan = plan(scenario, &planes)?;
+        let (plan, waiting) = match plan(scenario, &planes) {
+            Ok(plan) => (plan, None),
+            Err(why) => (Plan::rest(scenario, &planes), Some(Waiting::of(scenario, &planes, why))),
+        };
         let guide = Guide::Motion { motion: plan.motion.clone(), start: 0.0 };
         let simulation = Simulation::new(&scenario.setup(), guide)?;
-        Ok(Self { scenario: scenario.clone(), planes: Some(planes), plan, simulation })
+        Ok(Self { scenario: scenario.clone(), planes: Some(planes), plan, waiting, simulation })
+    }
+
+    /// Why it waits, if its task does not fit its machine.
+    pub fn waiting(&self) -> Option<&Waiting> {
+        self.waiting.as_ref()
     }
 
     /// The scenario with everything that edits have set.
@@ -238,7 +361,7 @@ impl Run {
             *self = Self::with_planes(&scenario, known)?;
             return Ok(());
         }
-        check(edit, self.scenario.step)?;
+        edit.check(self.scenario.step)?;
         match edit {
             Edit::DragTarget { x, y } => {
                 let mut follower = self.follower()?;
@@ -363,7 +486,7 @@ impl Run {
 }
 
 /// A scenario with a parameter set; nothing is planned, and whether all fits together is for [`checked`] to say.
-fn changed(scenario: &Scenario, edit: &Edit) -> Result<Scenario, Refusal> {
+pub(super) fn changed(scenario: &Scenario, edit: &Edit) -> Result<Scenario, Refusal> {
     let mut scenario = scenario.clone();
     match edit {
         Edit::Push { x, y } => {
@@ -398,16 +521,15 @@ fn wrong(of: &str, why: &str) -> Refusal {
 
 /// A scenario that an edit of its keys has left sound.
 fn checked(scenario: Scenario, edit: &Edit) -> Result<Scenario, Refusal> {
-    let of = match edit {
-        Edit::Push { .. } => "push",
-        Edit::SetPlant { .. } => "plant",
-        Edit::SetBase { .. } => "base",
-        Edit::SetControl { .. } => "control",
-        Edit::SetTolerance { .. } => "tolerance",
-        Edit::SetTask { .. } => "task",
-        _ => return Ok(scenario),
-    };
-    sound(scenario, of)
+    match edit {
+        Edit::Push { .. }
+        | Edit::SetPlant { .. }
+        | Edit::SetBase { .. }
+        | Edit::SetControl { .. }
+        | Edit::SetTolerance { .. }
+        | Edit::SetTask { .. } => sound(scenario, edit.part()),
+        _ => Ok(scenario),
+    }
 }
 
 fn sound(scenario: Scenario, of: &str) -> Result<Scenario, Refusal> {
@@ -417,7 +539,7 @@ fn sound(scenario: Scenario, of: &str) -> Result<Scenario, Refusal> {
 
 /// A scenario as an edit before its first step leaves it; planes are made if a pose needs them, and kept.
 fn amended(scenario: &Scenario, edit: &Edit, planes: &mut Option<(Machine, Arc<Planes>)>) -> Result<Scenario, Refusal> {
-    check(edit, scenario.step)?;
+    edit.check(scenario.step)?;
     let Edit::PoseB { b } = edit else { return changed(scenario, edit) };
     let known = planes.take().filter(|(machine, _)| *machine == scenario.machine);
     let planes = match known {
@@ -449,20 +571,6 @@ fn posed(scenario: &Scenario, planes: &Planes, b: f64) -> Scenario {
     scenario
 }
 
-fn check(edit: &Edit, step: f64) -> Result<(), Refusal> {
-    let out = |what, value, want| Err(Refusal::OutOfRange { what, value, want });
-    match *edit {
-        Edit::DragTarget { x, y } if !(x.is_finite() && y.is_finite()) => {
-            out("target", if x.is_finite() { y } else { x }, "finite coordinates, m")
-        }
-        Edit::SlideB { b } | Edit::PoseB { b } | Edit::CompareB { b: Some(b) } if !(-1e3..=1e3).contains(&b) => {
-            out("b", b, "a number between -1000 and 1000 rad")
-        }
-        Edit::SetTime { time } if !(step..=MAX_TIME).contains(&time) => out("motion time", time, "one step to 3600 s"),
-        _ => Ok(()),
-    }
-}
-
 /// Bounds of the follower: no torque limit of any drive is passed in any direction of (ä_1, ä_2).
 fn bounds(scenario: &Scenario, planes: &Planes) -> Bounds {
     const UNLIMITED: f64 = 30.0;
@@ -484,20 +592,64 @@ fn bounds(scenario: &Scenario, planes: &Planes) -> Bounds {
 /// If an edit cannot be made.
 pub fn settled(scenario: &Scenario) -> Result<(Scenario, usize), Refusal> {
     let script = in_order(&scenario.edits);
-    let (ground, count) = folded(&Scenario { edits: Vec::new(), ..scenario.clone() }, &script, &mut None)?;
+    let (ground, count) = folded(scenario, &script, &mut None).map_err(|failed| failed.named(&scenario.edits))?;
     Ok((ground, script.len() - count))
 }
 
-/// A scenario with the edits before its first step made, up to the first that leads the machine, and their number.
+/// Why a script cannot be carried out, and which of its edits is to blame, counted from 0, if it is one.
+pub(super) struct Failed {
+    edit: Option<usize>,
+    refusal: Refusal,
+}
+
+impl Failed {
+    pub(super) fn at(edit: usize, refusal: Refusal) -> Self {
+        Self { edit: Some(edit), refusal }
+    }
+
+    /// Why.
+    pub(super) fn refusal(self) -> Refusal {
+        self.refusal
+    }
+
+    /// Why, with the entry of the file that the script was made of.
+    pub(super) fn named(self, edits: &[TimedEdit]) -> Refusal {
+        let order = order_of(edits);
+        match self.edit.and_then(|i| order.get(i)).and_then(|&i| Some((i, edits.get(i)?))) {
+            Some((i, timed)) => Refusal::Edit {
+                entry: i + 1,
+                step: timed.step,
+                title: shortened(&timed.edit.title(), 80),
+                refusal: Box::new(self.refusal),
+            },
+            None => self.refusal,
+        }
+    }
+}
+
+impl<E: Into<Refusal>> From<E> for Failed {
+    fn from(error: E) -> Self {
+        Self { edit: None, refusal: error.into() }
+    }
+}
+
+/// How many edits come before the first step, up to the first that leads the machine.
+pub(super) fn opening<'a>(script: impl IntoIterator<Item = &'a TimedEdit>) -> usize {
+    script.into_iter().take_while(|e| e.step == 0 && !e.edit.leads()).count()
+}
+
+/// A scenario with the edits before its first step made, up to the first that leads the machine, and their number; it
+/// carries no edits any more.
 fn folded(
     scenario: &Scenario,
     script: &[TimedEdit],
     planes: &mut Option<(Machine, Arc<Planes>)>,
-) -> Result<(Scenario, usize), Refusal> {
-    let count = script.iter().take_while(|e| e.step == 0 && !e.edit.leads()).count();
-    let mut ground = scenario.clone();
-    for timed in &script[..count] {
-        ground = amended(&ground, &timed.edit, planes)?;
+) -> Result<(Scenario, usize), Failed> {
+    let count = opening(script);
+    // With its edits, each copy of it would cost as much as all of them.
+    let mut ground = scenario.without_edits();
+    for (i, timed) in script[..count].iter().enumerate() {
+        ground = amended(&ground, &timed.edit, planes).map_err(|refusal| Failed::at(i, refusal))?;
     }
     // What stands between two of them need not fit together.
     let ground = if count > 0 { sound(ground, "the scenario")? } else { ground };
@@ -509,21 +661,39 @@ fn folded(
 /// # Errors
 /// If it cannot start, or an edit cannot apply.
 pub fn replay(scenario: &Scenario, see: impl FnMut(&Run, &Frame)) -> Result<Run, Refusal> {
-    perform(scenario, &in_order(&scenario.edits), None, None, see)
+    replay_if(scenario, |_| Ok(()), see)
 }
 
-/// What shakes the base at every step of a scenario: f_Bx and f_By of motion, N, and the moment that it feels, N m.
+/// The same, unless what knows the last step has something against it before the first.
+///
+/// # Errors
+/// As [`replay`], and if it is refused.
+pub fn replay_if(
+    scenario: &Scenario,
+    allow: impl FnOnce(u64) -> Result<(), Refusal>,
+    see: impl FnMut(&Run, &Frame),
+) -> Result<Run, Refusal> {
+    let end = |run: &Run, script: &[TimedEdit]| {
+        let last = run.whole(script)?;
+        allow(last).map(|()| last).map_err(Failed::from)
+    };
+    let done = perform(scenario, &in_order(&scenario.edits), (end, false), None, see);
+    done.map_err(|failed| failed.named(&scenario.edits))
+}
+
+/// What shakes the base at every step of a scenario: f_Bx and f_By of motion, N, and the moment that it feels, N m; and
+/// the first audit that the run has failed.
 ///
 /// # Errors
 /// As [`replay`].
-pub fn felt(scenario: &Scenario) -> Result<[Vec<f64>; 3], Refusal> {
+pub fn felt(scenario: &Scenario) -> Result<([Vec<f64>; 3], Option<Lamp>), Refusal> {
     let mut course: [Vec<f64>; 3] = Default::default();
-    replay(scenario, |_, frame| {
+    let run = replay(scenario, |_, frame| {
         let force = frame.wrench.dynamic.force;
         let now = [force.re, force.im, frame.felt_moment()];
         course.iter_mut().zip(now).for_each(|(all, x)| all.push(x));
     })?;
-    Ok(course)
+    Ok((course, Audit::fault(&run.frame())))
 }
 
 impl Run {
@@ -536,37 +706,69 @@ impl Run {
             None => (self.planned_time() / step - 1e-6).ceil() as u64,
         }
     }
+
+    /// The same, if a run may have so many and no edit comes after it.
+    ///
+    /// # Errors
+    /// If it may not, or one does.
+    pub(super) fn whole(&self, script: &[TimedEdit]) -> Result<u64, Failed> {
+        let (last, step) = (self.last_step(), self.scenario.step);
+        if last > MAX_STEPS {
+            let time = self.scenario.duration.unwrap_or(self.planned_time());
+            return Err(Refusal::TooManySteps { time, step, steps: last }.into());
+        }
+        match script.iter().position(|e| e.step > last) {
+            Some(late) => Err(Failed::at(
+                late,
+                Refusal::Task(format!("the run ends at step {last}: want an earlier one, or a longer duration")),
+            )),
+            None => Ok(last),
+        }
+    }
+}
+
+/// Places of edits in the order of their steps; those of one step stay in theirs.
+pub(super) fn order_of(edits: &[TimedEdit]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..edits.len()).collect();
+    order.sort_by_key(|i| edits[*i].step);
+    order
 }
 
 /// Edits in the order of their steps; those of one step stay in theirs.
 pub(super) fn in_order(edits: &[TimedEdit]) -> Vec<TimedEdit> {
-    let mut script = edits.to_vec();
-    script.sort_by_key(|e| e.step);
-    script
+    order_of(edits).into_iter().map(|i| edits[i].clone()).collect()
 }
 
-/// Runs a scenario to a step, or else through its duration as edits at the start leave it, with a script in order, and
-/// shows every frame.
+/// Runs a scenario, as edits at the start leave it, to a last step, with a script in order, and shows every frame. A task
+/// that does not fit its machine is refused, or, with patience, waits at its first step.
 pub(super) fn perform(
     scenario: &Scenario,
     script: &[TimedEdit],
-    mut end: Option<u64>,
+    (end, patient): (impl FnOnce(&Run, &[TimedEdit]) -> Result<u64, Failed>, bool),
     known: Option<&Run>,
     mut see: impl FnMut(&Run, &Frame),
-) -> Result<Run, Refusal> {
+) -> Result<Run, Failed> {
     let (mut run, begun) = Run::begin(scenario, script, known)?;
-    let mut edits = script[begun..].iter().peekable();
+    if let Some(waiting) = &run.waiting {
+        if !patient {
+            return Err(waiting.why.clone().into());
+        }
+        see(&run, &run.frame());
+        return Ok(run);
+    }
+    let end = end(&run, script)?;
+    let mut edits = script.iter().enumerate().skip(begun).peekable();
     loop {
         let step = run.simulation().step_count();
-        while let Some(timed) = edits.next_if(|e| e.step <= step) {
-            run.apply(&timed.edit)?;
+        while let Some((i, timed)) = edits.next_if(|(_, e)| e.step <= step) {
+            run.apply(&timed.edit).map_err(|refusal| Failed::at(i, refusal))?;
         }
         let frame = run.frame();
         if !frame.is_finite() {
-            return Err(Refusal::Diverged { time: frame.time });
+            return Err(Refusal::Diverged { time: frame.time }.into());
         }
         see(&run, &frame);
-        if step >= *end.get_or_insert_with(|| run.last_step()) {
+        if step >= end {
             return Ok(run);
         }
         run.advance();

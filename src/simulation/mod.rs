@@ -1,10 +1,12 @@
-//! The plant under control, advanced by a fixed step with the classical fourth-order rule.
+//! The plant under control, advanced by a fixed step with the classical fourth-order rule; within a step by as many
+//! parts as it takes ([`stride`]), cut where contacts stick or slip ([`sticking`]).
 //!
 //! The simulation reads no clock. Control is evaluated in every stage. The base wrench is taken from the plant's own
 //! accelerations, never from the planned motion, so that a zero is found and not assumed.
 
 mod pilot;
 mod sticking;
+mod stride;
 
 use crate::control::{Control, Controller, Reading};
 use crate::dynamics::{self, Surroundings};
@@ -19,7 +21,8 @@ use crate::pose_constant::plane_map;
 use crate::reactionless::PlaneMap;
 
 use pilot::Pilot;
-use sticking::{grips, release};
+use sticking::grips;
+use stride::Pace;
 
 /// What leads the machine.
 #[derive(Clone, Debug)]
@@ -36,12 +39,11 @@ pub enum Guide {
 }
 
 impl Guide {
-    /// The reference at a time, s; `dt` is the time since the present step began, s.
-    #[inline]
-    fn at(&self, time: f64, dt: f64) -> Reference {
+    /// The reference at a time, s.
+    fn at(&self, time: f64) -> Reference {
         match self {
-            Self::Motion { motion, start } => motion.at(time + dt - start),
-            Self::Follow(follower) => follower.reference(dt),
+            Self::Motion { motion, start } => motion.at(time - start),
+            Self::Follow(follower) => follower.reference(0.0),
         }
     }
 }
@@ -60,9 +62,6 @@ pub struct Setup<'a> {
     /// Fixed step, s.
     pub step: f64,
 }
-
-/// How often the error of a step is looked at by halving it, in steps.
-const HALVED_EVERY: u64 = 64;
 
 /// A run in progress.
 #[derive(Clone, Debug)]
@@ -95,8 +94,8 @@ pub struct Simulation {
     ground: Ground,
     peaks: Peaks,
     tally: Tally,
-    /// The largest error of a step so far, rad.
-    step_error: f64,
+    /// How finely steps are taken, and with which errors.
+    pace: Pace,
 }
 
 /// What audits start from.
@@ -131,7 +130,7 @@ impl Simulation {
     /// # Errors
     /// If it cannot hold the plant's payload, or the base is one too many to turn.
     pub fn of_machine(setup: &Setup, machine: Machine, guide: Guide) -> Result<Self, MachineError> {
-        let reference = guide.at(0.0, 0.0);
+        let reference = guide.at(0.0);
         let (plant, load) = (setup.plant, setup.plant.payload);
         let force = Vector::new(plant.force[0], plant.force[1]);
         let start = &reference.q;
@@ -183,7 +182,7 @@ impl Simulation {
             ground: Ground::default(),
             peaks: Peaks::zero(n),
             tally: Tally::default(),
-            step_error: 0.0,
+            pace: Pace::new(n),
         };
         sim.begin();
         Ok(sim)
@@ -191,6 +190,7 @@ impl Simulation {
 
     /// Takes the present instant as where audits start.
     fn begin(&mut self) {
+        self.prepare();
         self.grip = grips(self.body().contacts(), &self.body().rates(&self.state));
         self.look();
         self.ground = self.sources(self.body(), &self.now);
@@ -237,6 +237,7 @@ impl Simulation {
     /// Lets something else lead from now on. The machine keeps its state and control takes up the difference.
     pub fn lead(&mut self, guide: Guide) {
         self.guide = guide;
+        self.prepare();
         self.look();
         self.include();
     }
@@ -248,9 +249,9 @@ impl Simulation {
     pub fn change(&mut self, setup: &Setup) -> Result<(), MachineError> {
         let fresh = Self::new(setup, self.guide.clone())?;
         let old = std::mem::replace(self, fresh);
-        let Self { step, guide, state, peaks, tally, step_error, ground, now, pilot, bodies, .. } = old;
+        let Self { step, guide, state, peaks, tally, pace, ground, now, pilot, bodies, .. } = old;
         (self.step, self.guide, self.peaks, self.tally) = (step, guide, peaks, tally);
-        self.step_error = step_error;
+        self.pace.resume(&pace);
         self.pilot.resume(&pilot, step, &now.torque);
         for body in self.bodies.iter_mut() {
             *body = body.clone().preloaded_as(&bodies[0]);
@@ -279,7 +280,7 @@ impl Simulation {
     /// Puts the machine at the reference, at rest or in motion as the reference is, without passing between.
     pub fn place(&mut self, guide: Guide) {
         self.guide = guide;
-        let reference = self.guide.at(self.time(), 0.0);
+        let reference = self.guide.at(self.time());
         let (base, velocity) = (self.now.base, self.now.base_velocity);
         let turning = self.now.qd.get(self.drives).copied().unwrap_or(0.0);
         let n = self.drives;
@@ -316,39 +317,32 @@ impl Simulation {
         }
     }
 
-    /// What a state leads to, `dt` after the present step began, s.
+    /// What a state leads to, with a reference.
     #[inline]
-    fn instant(&self, state: &State, dt: f64, grip: &Grip, taken: &mut [f64; MAX_CONTACTS]) -> Slope {
-        let reference = self.guide.at(self.time(), dt);
+    fn instant(&self, state: &State, reference: &Reference, grip: &Grip, taken: &mut [f64; MAX_CONTACTS]) -> Slope {
         let n = self.drives;
         self.body().instant(state, grip, taken, |e, rates, base, velocity| {
             let reading = reading(n, state, e, rates, base, velocity);
-            self.pilot.command(&reference, &reading, self.loaded, state.wheel)
+            self.pilot.command(reference, &reading, self.loaded, state.wheel)
         })
-    }
-
-    /// One step of the classical rule, `offset` after the present step began, of `h`, s; `k1` is its start.
-    #[inline]
-    fn rk4(&self, from: &State, k1: &Slope, offset: f64, h: f64, grip: &Grip) -> State {
-        let mut taken = self.taken;
-        let k2 = self.instant(&from.along(k1, h / 2.0), offset + h / 2.0, grip, &mut taken);
-        let k3 = self.instant(&from.along(&k2, h / 2.0), offset + h / 2.0, grip, &mut taken);
-        let k4 = self.instant(&from.along(&k3, h), offset + h, grip, &mut taken);
-        from.stepped([k1, &k2, &k3, &k4], h)
     }
 
     /// Advances by one step.
     pub fn advance(&mut self) {
-        let (state, grip) = self.travel(&self.now, self.dt);
-        if (self.step + HALVED_EVERY / 2).is_multiple_of(HALVED_EVERY) && !self.body().contacts().stick() {
-            self.step_error = self.step_error.max(self.halved(&state));
-        }
-        (self.state, self.grip) = (state, grip);
+        let (leg, goes_on) = self.stride();
+        (self.state, self.grip) = (leg.state, leg.grip);
         self.step += 1;
         if let Guide::Follow(follower) = &mut self.guide {
             follower.advance();
         }
-        self.look();
+        if goes_on && self.pilot.is_steady() && matches!(self.guide, Guide::Motion { .. }) {
+            // The end of the step has been looked at already.
+            (self.now, self.taken) = (leg.slope, leg.taken);
+            self.reference = self.aim_now();
+        } else {
+            self.taken = leg.taken;
+            self.look();
+        }
         let held = self.load.is_held(self.time(), 0.5 * self.dt);
         if held != self.loaded {
             let (before, old) = (self.now, usize::from(self.loaded));
@@ -360,18 +354,9 @@ impl Simulation {
         }
     }
 
-    /// The error of the step that led to a state, rad, by two steps of half the size.
-    fn halved(&self, whole: &State) -> f64 {
-        let (h, mut taken) = (0.5 * self.dt, self.taken);
-        let half = self.rk4(&self.state, &self.now, 0.0, h, &self.grip);
-        let start = self.instant(&half, h, &self.grip, &mut taken);
-        let twice = self.rk4(&half, &start, h, h, &self.grip);
-        16.0 / 15.0 * whole.q.minus(&twice.q).max_abs()
-    }
-
     /// Takes in the present instant: control, slope, wrench of the plant's own motion.
     fn look(&mut self) {
-        self.reference = self.guide.at(self.time(), 0.0);
+        self.reference = self.aim_now();
         let n = self.drives;
         // Sampled control reads first.
         let body = &self.bodies[usize::from(self.loaded)];
@@ -384,17 +369,44 @@ impl Simulation {
             pilot.command(reference, &reading, loaded, state.wheel)
         });
         self.taken = taken;
-        release(self.bodies[usize::from(self.loaded)].contacts(), &mut self.grip, &taken);
+        let mut grip = self.grip;
+        self.release(&self.now, &mut grip, &taken);
+        self.grip = grip;
     }
 
     /// Takes the present instant into peaks and sums.
     fn include(&mut self) {
         let x = &self.now;
         let (qd, qdd) = (x.qd.first(self.drives), x.qdd.first(self.drives));
-        let pull = dynamics::inertial_pull(&self.link_moments[usize::from(self.loaded)], &x.e, &qd, &qdd);
-        let felt = x.wrench.total().moment - x.spin.torque;
-        self.peaks.include(&x.torque, x.wrench.dynamic.force.norm(), felt, pull);
-        self.tally.include(x, felt, self.time());
+        let turning = x.qd.get(self.drives).copied().unwrap_or(0.0);
+        let wrench = self.body().transmitted(x);
+        let total = wrench.total().moment;
+        let loaded = usize::from(self.loaded);
+        let past = |(i, a): (usize, &RelativeAngle)| {
+            let angle = self.state.q[a.to] - self.state.q[a.from] + a.offset;
+            ((a.limits.start() - angle).max(angle - a.limits.end()), i)
+        };
+        let now = Peaks {
+            torque: x.torque,
+            torque_sum: x.torque.iter().map(|t| t.abs()).sum(),
+            force: wrench.dynamic.force.norm(),
+            arm_moment: total.abs(),
+            moment: (total - x.spin.torque).abs(),
+            inertial_pull: dynamics::inertial_pull(&self.link_moments[loaded], &x.e, &qd, &qdd),
+            weight: x.wrench.statical.force.norm(),
+            rate: qd.iter().fold(0.0, |most, qd| most.max((qd - turning).abs())),
+            tilt: self.inside[loaded].tilt(&x.e, &qd, &qdd, &self.field()),
+            past_limit: self.angles.iter().enumerate().map(past).fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a }),
+        };
+        let time = self.time();
+        self.peaks.include(&now);
+        self.tally.include(x, &wrench, time);
+    }
+
+    /// What links move in, in axes that move with the base: its acceleration adds to gravity.
+    fn field(&self) -> Surroundings {
+        let around = *self.body().around();
+        Surroundings { gravity: around.gravity - self.now.base_acceleration, ..around }
     }
 
     /// What should be zero now.
@@ -406,7 +418,7 @@ impl Simulation {
             angular: off.angular,
             energy: off.energy,
             closure: self.closures.iter().map(gap).fold(0.0, f64::max),
-            step: self.step_error,
+            step: self.pace.error(&self.yard(), &self.tally, self.reach()),
             plane,
         }
     }
@@ -414,8 +426,7 @@ impl Simulation {
     /// What pins carry now; a base that moves adds to gravity.
     fn inside(&self) -> Inside {
         let (x, n) = (&self.now, self.drives);
-        let around = *self.body().around();
-        let around = Surroundings { gravity: around.gravity - x.base_acceleration, ..around };
+        let around = self.field();
         let contacts = self.body().contacts();
         let couple = |from, to| contacts.couple(from, to, &x.qd, &self.grip, &self.taken);
         self.inside[usize::from(self.loaded)].at(&x.e, &x.qd.first(n), &x.qdd.first(n), &around, couple)
@@ -458,7 +469,7 @@ impl Simulation {
             base: x.base,
             base_velocity: x.base_velocity,
             base_rate: x.qd.get(n).copied().unwrap_or(0.0),
-            wrench: x.wrench,
+            wrench: self.body().transmitted(x),
             wheel: x.spin,
             momentum,
             angular_momentum,

@@ -27,8 +27,10 @@ pub struct Pilot {
     controller: Controller,
     limits: Option<PerDrive>,
     wheel: Option<Wheel>,
-    /// Which way the wheel turns as fast as it can, ±1, or 0.
-    wheel_limit: f64,
+    /// The least and the greatest torque of the wheel in this step, N m.
+    wheel_room: [f64; 2],
+    /// s.
+    step: f64,
     sampling: Option<Sampling>,
 }
 
@@ -73,12 +75,12 @@ impl Pilot {
                 held: None,
             }
         });
-        Self { controller, limits, wheel, wheel_limit: 0.0, sampling }
+        Self { controller, limits, wheel, wheel_room: [0.0; 2], step, sampling }
     }
 
-    /// Once a step: sees whether the wheel is at its limit, and reads and computes, if it samples and its time has come.
+    /// Once a step: sees how much the wheel can still take up, and reads and computes, if it samples and its time has come.
     pub fn sample(&mut self, step: u64, reference: &Reference, reading: &Reading, loaded: bool, wheel_rate: f64) {
-        self.wheel_limit = self.wheel.map_or(0.0, |wheel| wheel.at_limit(wheel_rate));
+        self.wheel_room = self.wheel.map_or([0.0; 2], |wheel| wheel.room(wheel_rate, self.step));
         let Some(sampling) = &mut self.sampling else { return };
         if sampling.held.is_none() || step.is_multiple_of(sampling.period) {
             let (mut e, mut rates, mut seen) = (*reading.e, *reading.rates, *reading);
@@ -127,6 +129,16 @@ impl Pilot {
         }
     }
 
+    /// Whether a motor gives all it has.
+    pub fn is_full(&self, torque: &PerDrive) -> bool {
+        self.limits.is_some_and(|limits| torque.iter().zip(limits.iter()).any(|(t, limit)| t.abs() >= *limit))
+    }
+
+    /// Whether nothing is decided once a step, so that the slope at the end of one is that at the start of the next.
+    pub fn is_steady(&self) -> bool {
+        self.sampling.is_none() && self.wheel.is_none()
+    }
+
     /// Forgets readings and torques under way: the machine is put somewhere else.
     pub fn forget(&mut self) {
         if let Some(sampling) = &mut self.sampling {
@@ -152,7 +164,7 @@ impl Pilot {
             None => wanted,
         };
         let spin = match &self.wheel {
-            Some(wheel) => wheel.give(-torque.iter().sum::<f64>(), wheel_rate, self.wheel_limit),
+            Some(wheel) => wheel.give(-torque.iter().sum::<f64>(), wheel_rate, self.wheel_room),
             None => Spin::default(),
         };
         Command { torque, spin, rotor: self.rotor() }

@@ -1,6 +1,7 @@
 //! A varied machine under control that knows only the nominal one.
 
 use super::ensemble::Outcome;
+use crate::audit::Audit;
 use crate::machine::Machine;
 use crate::plant::{Load, Plant};
 use crate::session::{Refusal, Run};
@@ -9,7 +10,7 @@ use crate::simulation::{Guide, Setup, Simulation};
 /// Simulates a planned motion, control and all, with another machine as plant.
 ///
 /// # Errors
-/// If the numbers blow up.
+/// If the numbers blow up, or an audit fails: a study with figures in it that nobody vouches for is none.
 pub fn simulate(planned: &Run, plant: &Machine) -> Result<Outcome, Refusal> {
     let scenario = planned.scenario();
     let guide = Guide::Motion { motion: planned.plan().motion.clone(), start: 0.0 };
@@ -32,6 +33,9 @@ pub fn simulate(planned: &Run, plant: &Machine) -> Result<Outcome, Refusal> {
         force += weight * frame.wrench.dynamic.force.norm_sqr();
         weights += weight;
         if frame.step >= last {
+            if let Some(lamp) = Audit::fault(&frame) {
+                return Err(Refusal::Untrusted { why: lamp.to_string() });
+            }
             return Ok(Outcome {
                 peak_moment: frame.peaks.moment,
                 peak_force: frame.peaks.force,

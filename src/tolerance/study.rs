@@ -123,10 +123,14 @@ pub fn left_out(scenario: &Scenario) -> Vec<&'static str> {
     all.into_iter().filter(|(has, _)| *has).map(|(_, what)| what).collect()
 }
 
-/// Of the whole run, at every step; none where it cannot be run or is too short.
+/// Of the whole run, at every step; none where it cannot be run, fails an audit or is too short.
 fn spectra(run: &Run) -> Option<[Spectrum; 3]> {
     let scenario = run.scenario();
-    let course = felt(scenario).ok()?;
+    // What no audit vouches for is not shown.
+    let (course, fault) = felt(scenario).ok()?;
+    if fault.is_some() {
+        return None;
+    }
     let of = |samples: &[f64]| Spectrum::of(samples, scenario.step, Window::Hann).ok();
     let [x, y, n] = &course;
     Some([of(x)?, of(y)?, of(n)?])

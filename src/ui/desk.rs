@@ -4,7 +4,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::{
-    Command, FileDialog, Look, OnBoard, Purpose, Wish, compare, keys, plots, side, status, study, theme, top, viewport,
+    Command, FileDialog, Look, OnBoard, Purpose, Wish, compare, keys, order, plots, side, status, study, theme, top,
+    viewport,
 };
 use crate::compare::Board;
 use crate::frame::Tally;
@@ -145,6 +146,7 @@ impl Desk {
         status::news(ui.ctx(), &self.session, &self.look, &mut commands);
         keys::help(ui.ctx(), &self.look, &mut commands);
         top::dialog(ui.ctx(), &mut self.look, &mut commands);
+        commands.extend(side::refused_entry(ui.ctx()).map(Command::Refuse));
         if commands.iter().any(|c| !matches!(c, Command::EndGesture | Command::Preview(_))) {
             self.look.message = None;
             self.look.refused = None;
@@ -163,6 +165,7 @@ impl Desk {
     fn dress(&mut self, ctx: &egui::Context) {
         if !self.fonts {
             theme::install_fonts(ctx);
+            ctx.add_plugin(order::Order::default());
             self.fonts = true;
         }
         if self.dressed != Some(self.look.theme) {
@@ -221,6 +224,19 @@ impl Desk {
                 self.foresee();
                 self.session.play();
             }
+            Command::Case(name) => return self.case(name),
+            Command::BackToPath => {
+                if self.session.is_live() {
+                    self.session.apply(Edit::SetTask { change: Default::default() }).map_err(refused)?;
+                    self.session.end_gesture();
+                    self.session.pause();
+                    self.session.seek(0.0);
+                    self.foresee();
+                    return Ok(Some("back on the planned path, at its start".into()));
+                }
+            }
+            Command::TurnTask(turn) => self.look.turn_task = turn,
+            Command::Refuse(why) => return Err(why),
             Command::OpenFile(path) => return self.open(&path).map(Some),
             Command::SaveFile(path) => return self.save(&path).map(Some),
             Command::Record(path) => return self.record(&path).map(Some),
@@ -275,6 +291,19 @@ impl Desk {
             }
         }
         Ok(None)
+    }
+
+    /// One of the paper's cases: whole, or with another machine that somebody has chosen, which is then said.
+    fn case(&mut self, name: &str) -> Result<Option<String>, String> {
+        let Some(case) = Scenario::builtin(name) else { return Ok(None) };
+        let present = &self.session.scenario().machine;
+        let other = (present.name() != case.machine.name()).then(|| present.clone());
+        let news = other.as_ref().map(|machine| format!("{}, with the machine {}", case.title, machine.name()));
+        let scenario = Scenario { machine: other.unwrap_or_else(|| case.machine.clone()), ..case };
+        self.session.switch(scenario).map_err(|why| why.to_string())?;
+        self.foresee();
+        self.session.play();
+        Ok(news)
     }
 
     fn open(&mut self, path: &Path) -> Result<String, String> {
@@ -362,7 +391,11 @@ impl Desk {
             self.study = None;
         } else if self.look.grabbed.is_none() && self.study.as_ref().is_none_or(|(of, _)| of != self.session.scenario())
         {
-            let study = Study::of(self.session.run()).map_err(|why| why.to_string());
+            let run = self.session.run();
+            let study = match run.waiting() {
+                Some(waiting) => Err(waiting.why.to_string()),
+                None => Study::of(run).map_err(|why| why.to_string()),
+            };
             self.study = Some((self.session.scenario().clone(), study));
         }
         if !self.look.compare {

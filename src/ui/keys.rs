@@ -3,17 +3,18 @@
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use super::theme::{bold, colour};
-use super::{Command, Desk, Look, Purpose, case};
+use super::{Command, Desk, Look, Purpose};
 use crate::scenario::Scenario;
 use crate::scene::Measure;
 use crate::session::Session;
 
-const KEYS: [(&str, &str); 29] = [
+const KEYS: [(&str, &str); 30] = [
     ("Space", "play, pause, start over"),
     ("← →", "one step back, one step on"),
     ("Shift ← →", "ten steps"),
     ("Home  End", "start, newest instant"),
-    ("1  2  3", "the paper's cases"),
+    ("1  2  3", "the paper's cases, as they are in the paper"),
+    ("B", "led by hand: back to the path"),
     ("V", "2D, 3D, joint space, tower of workspaces"),
     ("J", "shade the workspace by dexterity, one measure after the other"),
     ("C", "the same task done in other ways, side by side"),
@@ -37,7 +38,7 @@ const KEYS: [(&str, &str); 29] = [
     ("drag plane, slice", "b, in joint space and in the tower"),
     ("drag elsewhere", "pan in 2D, else orbit; Shift pans"),
     ("wheel", "zoom"),
-    ("F1  Esc", "this card; close, cancel a drag"),
+    ("F1  Esc", "this card; close a card or a list, cancel a drag"),
 ];
 
 /// Turns keys into commands; while text is typed only shortcuts with Ctrl count.
@@ -60,8 +61,9 @@ pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Co
     if chord(Modifiers::NONE, Key::F1) {
         commands.push(Command::Help(!look.help));
     }
-    // While something is dragged, Esc belongs to the drag.
-    if look.grabbed.is_none() && chord(Modifiers::NONE, Key::Escape) {
+    // While something is dragged or a list is open, Esc belongs to that.
+    let taken = look.grabbed.is_some() || egui::Popup::is_any_open(ctx);
+    if !taken && chord(Modifiers::NONE, Key::Escape) {
         commands.push(match (&look.dialog, &look.stroke) {
             (Some(_), _) => Command::Dialog(None),
             (None, Some(_)) => Command::Draw(false),
@@ -92,6 +94,7 @@ pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Co
         (plain, Key::I, Command::Pins(!look.pins)),
         (plain, Key::P, Command::Draw(look.stroke.is_none())),
         (plain, Key::U, Command::Push(!look.pushing)),
+        (plain, Key::B, Command::BackToPath),
         (plain, Key::X, Command::Exaggerate(!look.exaggerate)),
         (plain, Key::L, Command::Theme(super::top::other(look.theme))),
         (plain, Key::R, Command::Dialog(Some(Desk::suggest(session, Purpose::Record)))),
@@ -102,7 +105,7 @@ pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Co
     }
     for (key, name) in [Key::Num1, Key::Num2, Key::Num3].into_iter().zip(Scenario::cases()) {
         if chord(plain, key) {
-            commands.extend(case(session, name));
+            commands.push(Command::Case(name));
         }
     }
 }

@@ -6,6 +6,7 @@
 mod compare;
 mod desk;
 mod keys;
+mod order;
 mod path;
 pub mod picture;
 mod plots;
@@ -84,6 +85,14 @@ pub enum Command {
     Push(bool),
     /// Exaggerate the motion of the base as much as it takes to be seen, or show it as it is.
     Exaggerate(bool),
+    /// Let b go on past the band that serves the points, and turn them along with it.
+    TurnTask(bool),
+    /// One of the paper's cases, by name.
+    Case(&'static str),
+    /// Take the machine back from the hand that led it.
+    BackToPath,
+    /// Say what was typed and cannot be taken.
+    Refuse(String),
     /// Show or hide the keys.
     Help(bool),
     /// Show or hide the dialog for a file.
@@ -138,12 +147,7 @@ pub struct Wish {
 
 impl Wish {
     fn of(edit: &Edit, refusal: &Refusal) -> Self {
-        let curve = match refusal {
-            Refusal::Blocked(blocked) => {
-                Some(Refused { curve: blocked.curve.clone(), at: blocked.at, why: blocked.stop.to_string() })
-            }
-            _ => None,
-        };
+        let curve = Refused::of(refusal);
         let remedy = match (edit, refusal.mending_b().zip(refusal.shown_b())) {
             (Edit::SetTask { change }, Some((b, shown))) => {
                 let mut change = change.clone();
@@ -197,6 +201,8 @@ pub struct Look {
     pub stroke: Option<Vec<[f64; 2]>>,
     /// The hand that pushes is taken up.
     pub pushing: bool,
+    /// Past the band that serves the points, b turns them along.
+    pub turn_task: bool,
     /// Motion of the base is exaggerated.
     pub exaggerate: bool,
     /// How many times it takes for that motion to be seen.
@@ -232,6 +238,7 @@ impl Look {
             dragged: false,
             stroke: None,
             pushing: false,
+            turn_task: false,
             exaggerate: true,
             seen_at: 1.0,
             preview: None,
@@ -260,13 +267,12 @@ impl Look {
     }
 }
 
-/// What a slider of b does: while time runs the machine follows, paused it is posed.
-fn set_b(session: &Session, b: f64) -> Edit {
-    if session.is_playing() && session.is_at_end() { Edit::SlideB { b } } else { Edit::PoseB { b } }
-}
-
-/// One of the paper's cases, with the machine that is on display.
-fn case(session: &Session, name: &str) -> Option<Command> {
-    let scenario = Scenario::builtin(name)?;
-    Some(Command::Open(Box::new(Scenario { machine: session.scenario().machine.clone(), ..scenario })))
+/// What a slider of b does: while time runs the machine follows; paused it is posed, as far as the points of the task
+/// stay where they are, or else with them.
+fn set_b(session: &Session, look: &Look, b: f64) -> Edit {
+    if session.is_playing() && session.is_at_end() {
+        return Edit::SlideB { b };
+    }
+    let stays = |b: f64| session.serving(b).unwrap_or(b);
+    Edit::PoseB { b: if session.is_live() || look.turn_task { b } else { stays(b) } }
 }

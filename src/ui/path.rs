@@ -107,9 +107,12 @@ fn time(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>
     if session.scenario().task.law.is_fastest() {
         let pace = session.run().plan().pace;
         let leads = pace.and_then(|p| p.leading).map_or(String::new(), |limit| format!(", {limit} leads"));
-        let gap = pace.map(|p| p.gap()).filter(|gap| *gap > 5e-4);
+        let gap = pace.and_then(|p| p.gap()).filter(|gap| *gap > 5e-4);
         let gap = gap.map_or(String::new(), |gap| format!(", {:.1} % over unlimited jerk", 100.0 * gap));
         note(ui, p, &format!("T = {} s{leads}{gap}", signed(session.run().planned_time(), 3)));
+        if let Some(blended) = session.run().plan().blended {
+            note(ui, p, &format!("rests at its corners: rounded off it would take {} s", signed(blended, 3)));
+        }
         return;
     }
     let mut time = session.scenario().task.time;
@@ -142,7 +145,10 @@ fn points(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &m
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
             let label = task.name_of(i);
-            ui.add_sized([14.0, 18.0], egui::Label::new(&label).halign(Align::LEFT));
+            let unserved = session.run().waiting().is_some_and(|w| w.points.iter().any(|(n, _)| *n == i));
+            let ink = colour(if unserved { p.reaction } else { p.ink });
+            let words = RichText::new(&label).color(ink);
+            ui.add_sized([14.0, 18.0], egui::Label::new(words).halign(Align::LEFT));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 unit(ui, p, "m");
                 let small = |ui: &mut Ui, enabled: bool, text: &str, label: &str, tip: &str| {
@@ -312,7 +318,7 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
     }
 }
 
-/// What the planned motion will cost.
+/// What the planned motion will cost, in two lines whatever plant and base are, so that nothing below jumps.
 fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
     let forecast = &session.run().plan().forecast;
     let torque = forecast.torque.max_abs();
@@ -323,7 +329,23 @@ fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
     // Plans are of the model; what the plant and the base make of them the status line tells.
     let scenario = session.scenario();
     let ideal = scenario.plant == Default::default() && !scenario.base.moves();
-    let of = if ideal { "" } else { "as the model on a fixed base: " };
-    let (time, moment) = (signed(forecast.time, 3), signed(forecast.moment, 3));
-    note(ui, p, &format!("{of}{time} s, peak torque {} N m, peak n_B {moment} N m", signed(torque, 3)));
+    let waits = session.run().waiting().is_some();
+    let of = match (session.is_live(), ideal) {
+        _ if waits => "the run waits, nothing is planned",
+        (true, _) => "led by hand; planned was",
+        (false, true) => "planned",
+        (false, false) => "planned, as the model on a fixed base",
+    };
+    let [time, torque, moment] = [forecast.time, torque, forecast.moment].map(|x| signed(x, 3));
+    let figures = match waits {
+        true => "other limits or points or another b would do".into(),
+        false => format!("{time} s  ·  τ {torque}  ·  n_B {moment} N m"),
+    };
+    for (words, tip) in [
+        (of.to_owned(), "What the run comes to, the line at the bottom tells"),
+        (figures, "Its duration, its largest |τ| and its largest |n_B|"),
+    ] {
+        let words = RichText::new(words).font(plain(11.0)).color(colour(p.dim));
+        ui.add(egui::Label::new(words).truncate()).on_hover_text(tip);
+    }
 }

@@ -67,6 +67,8 @@ fn charts(scenario: &Scenario, pins: bool) -> Vec<Chart> {
     list
 }
 
+/// The least height of a plot that has three numbers beside it.
+const THREE_NUMBERS: f32 = 50.0;
 /// The longest stretch of time shown at once, s.
 const WINDOW: f64 = 12.0;
 /// The most points of a line.
@@ -119,28 +121,43 @@ fn instant(session: &Session, time: f64) -> &Instant {
 /// Title and unit on the left; symbols in their colours with their values at the cursor on the right, or what they
 /// differ by from the second cursor.
 fn header(ui: &mut Ui, p: &Palette, chart: &Chart, lines: &[&Signal], now: &Instant, marked: Option<&Instant>) {
+    let words = |signal: &Signal, fewer: usize| {
+        // Of values in thousandths two digits do, and the plot says whose they are.
+        let (symbol, decimals) = match chart.times == 1.0 {
+            true => (signal.symbol.as_str(), 3 - fewer),
+            false => (signal.symbol.trim_end_matches("_B"), 2 - fewer),
+        };
+        let meaning = format!("{}, {}", signal.label, unit_of(chart, signal));
+        let shown = |value: f64, decimals| signed(chart.times * value, decimals);
+        match marked.map(|marked| Difference::of(signal, marked, now)) {
+            Some(d) => (
+                format!("Δ{symbol} {}", shown(d.by(), decimals)),
+                format!("{meaning}: {} at the second cursor, {} now", shown(d.from, 4), shown(d.to, 4)),
+            ),
+            None => (format!("{symbol} {}", shown(signal.value(now), decimals)), meaning),
+        }
+    };
     ui.horizontal(|ui| {
         ui.set_height(16.0);
+        let gap = ui.spacing().item_spacing.x;
+        let wide =
+            |ui: &Ui, text: &str, font| gap + ui.painter().layout_no_wrap(text.into(), font, Color32::WHITE).size().x;
+        let values = |ui: &Ui, fewer: usize| -> f32 {
+            lines.iter().map(|signal| wide(ui, &words(signal, fewer).0, plain(11.5))).sum()
+        };
+        // Where there is no room for all, digits go first, then the unit, which the values tell under the pointer.
+        let room = ui.available_width() - wide(ui, chart.title, bold(12.5));
+        let unit = wide(ui, chart.unit, plain(11.5));
+        let fewer = (0..=2).find(|fewer| values(ui, *fewer) + unit <= room).unwrap_or(2);
         ui.label(RichText::new(chart.title).font(bold(12.5)));
-        ui.label(RichText::new(chart.unit).font(plain(11.5)).color(colour(p.dim)));
+        if values(ui, fewer) + unit <= room {
+            ui.label(RichText::new(chart.unit).font(plain(11.5)).color(colour(p.dim)));
+        }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             for signal in lines.iter().rev() {
-                // Of values in thousandths two digits do, and the plot says whose they are.
-                let (symbol, decimals) = match chart.times == 1.0 {
-                    true => (signal.symbol.as_str(), 3),
-                    false => (signal.symbol.trim_end_matches("_B"), 2),
-                };
-                let meaning = format!("{}, {}", signal.label, unit_of(chart, signal));
-                let shown = |value: f64, decimals| signed(chart.times * value, decimals);
-                let (text, meaning) = match marked.map(|marked| Difference::of(signal, marked, now)) {
-                    Some(d) => (
-                        format!("Δ{symbol} {}", shown(d.by(), decimals)),
-                        format!("{meaning}: {} at the second cursor, {} now", shown(d.from, 4), shown(d.to, 4)),
-                    ),
-                    None => (format!("{symbol} {}", shown(signal.value(now), decimals)), meaning),
-                };
+                let (text, meaning) = words(signal, fewer);
                 let label = RichText::new(text).font(plain(11.5)).color(tone(p, signal, now));
-                ui.label(label).on_hover_text(meaning);
+                ui.add(egui::Label::new(label).truncate()).on_hover_text(meaning);
             }
         });
     });
@@ -213,7 +230,11 @@ fn time_plot(
     };
     let middle = 0.5 * (low + high);
     let response = base_plot(chart.title, p, height)
-        .y_grid_spacer(move |_| marks(&[low, middle, high], high - low))
+        // Three numbers in so little room would run into each other.
+        .y_grid_spacer(move |_| match height < THREE_NUMBERS {
+            true => marks(&[low, high], high - low),
+            false => marks(&[low, middle, high], high - low),
+        })
         .x_grid_spacer(|_| Vec::new())
         .y_axis_formatter(move |mark, _| signed(mark.value, decimals))
         .show(ui, |plot| {
@@ -417,7 +438,7 @@ fn which_b(ui: &mut Ui, p: &Palette, session: &Session, look: &Look, height: f32
     }
     let held = response.response.dragged() || response.response.clicked();
     if let (true, Some(b)) = (held, response.inner) {
-        commands.push(Command::Edit(set_b(session, b)));
+        commands.push(Command::Edit(set_b(session, look, b)));
     }
     if response.response.drag_stopped() || response.response.clicked() {
         commands.push(Command::EndGesture);

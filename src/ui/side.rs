@@ -5,6 +5,8 @@ mod control;
 mod fold;
 mod plant;
 
+use std::cell::Cell;
+
 use egui::{
     Align, DragValue, Frame, Layout, Margin, Panel, Response, RichText, ScrollArea, Slider, SliderClamping, Ui,
 };
@@ -14,6 +16,7 @@ use super::top::name;
 use super::{Command, Look, path, set_b};
 use crate::machine::Inertia;
 use crate::scene::palette::Palette;
+use crate::scene::stage::signed;
 use crate::session::{Edit, Session};
 
 /// Draws it.
@@ -23,7 +26,7 @@ pub fn show(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Comm
     Panel::left("side").exact_size(262.0).resizable(false).frame(frame).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.set_width(ui.available_width() - 6.0);
-            pose_constant(ui, session, &p, commands);
+            pose_constant(ui, session, look, commands);
             limits(ui, session, &p, commands);
             gravity(ui, session, &p, commands);
             path::show(ui, session, &p, commands);
@@ -64,7 +67,17 @@ impl Row<'_> {
     }
 
     pub fn number(&self, ui: &mut Ui, value: &mut f64) -> Response {
+        let shown = ui.style().number_formatter.format(*value, self.decimals..=self.decimals);
+        let refused = Cell::new(None);
+        let read = |text: &str| {
+            // Nobody has typed anything: what a file says keeps its last bit.
+            if text == shown {
+                return None;
+            }
+            self.read(text).inspect_err(|_| refused.set(Some(text.to_owned()))).ok()
+        };
         let drag = DragValue::new(value)
+            .custom_parser(read)
             .speed(self.speed)
             .range(self.range.clone())
             // What a file says stays as it is until somebody changes it.
@@ -72,8 +85,25 @@ impl Row<'_> {
             .fixed_decimals(self.decimals)
             .update_while_editing(false);
         let response = ui.add(drag).on_hover_text(self.tip);
+        if let Some(text) = refused.take() {
+            ui.data_mut(|data| data.insert_temp(refused_id(), self.why_not(&text)));
+        }
         name(&response, &format!("{} {}", self.label, self.unit));
         response
+    }
+
+    /// A number that was typed, if it is one and in range.
+    fn read(&self, text: &str) -> Result<f64, ()> {
+        let number: f64 = text.trim().replace('−', "-").parse().map_err(|_| ())?;
+        if self.range.contains(&number) { Ok(number) } else { Err(()) }
+    }
+
+    fn why_not(&self, text: &str) -> String {
+        let text: String = text.trim().chars().take(24).collect();
+        let end = |x: f64| signed(x, self.decimals);
+        let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
+        let (low, high) = (end(*self.range.start()), end(*self.range.end()));
+        format!("{}: \"{text}\" changes nothing: want a number from {low} to {high}{unit}", self.label)
     }
 
     /// The same with a slider below.
@@ -93,6 +123,16 @@ impl Row<'_> {
         name(&slider, &format!("{} slider", self.label));
         slider.on_hover_text(self.tip)
     }
+}
+
+/// Where what was typed and cannot be taken waits for the end of the pass.
+fn refused_id() -> egui::Id {
+    egui::Id::unique("refused entry")
+}
+
+/// Why what was typed in this pass cannot be taken.
+pub(super) fn refused_entry(ctx: &egui::Context) -> Option<String> {
+    ctx.data_mut(|data| data.remove_temp(refused_id()))
 }
 
 pub(super) fn unit(ui: &mut Ui, p: &Palette, text: &str) {
@@ -115,35 +155,65 @@ pub(super) fn send(commands: &mut Vec<Command>, responses: &[Response], edit: im
     }
 }
 
-fn pose_constant(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
-    let scenario = session.scenario();
+fn pose_constant(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Command>) {
+    let (scenario, p) = (session.scenario(), &look.palette());
     let period = session.run().planes().map_or(std::f64::consts::TAU, |p| p.map().period());
     ui.label(RichText::new("POSE CONSTANT").font(bold(11.0)).color(colour(p.dim)));
-    let mut b = session.b_aim();
-    let low = (b / period).floor() * period;
-    let high = low + period;
-    let row = Row {
-        label: "b",
-        unit: "rad",
-        tip: "b = q₁ + λ₂ q₂ + λ₃ q₃, Eq. (13). Changing it turns the reactionless workspace.",
-        decimals: 3,
-        speed: 0.005,
-        range: low..=high,
-    };
-    let responses = row.with_slider(ui, p, &mut b);
-    send(commands, &responses, || set_b(session, b));
-    if let Some(planes) = session.run().planes() {
-        let points = scenario.task.points();
-        let all = if points.len() == 2 { "A and B".into() } else { format!("all {} points", points.len()) };
-        let text = match planes.common(&points) {
-            Some(common) => format!("{all}: {}", common.near(b).in_words()),
-            None => format!("{all} share no b"),
+    // Whole turns of the machine are kept, and not shown.
+    let b = session.b_aim();
+    let turns = (b / period).floor() * period;
+    let mut shown = b - turns;
+    let tip = format!(
+        "b = q₁ + λ₂ q₂ + λ₃ q₃, Eq. (13), give or take whole periods of {period:.3} rad; {b:.3} rad as it is. Changing \
+         it turns the reactionless workspace."
+    );
+    let row = Row { label: "b", unit: "rad", tip: &tip, decimals: 3, speed: 0.005, range: 0.0..=period };
+    let responses = row.with_slider(ui, p, &mut shown);
+    let asked = turns + shown;
+    let edit = set_b(session, look, asked);
+    let typed = responses[0].changed() && !responses[0].dragged();
+    let stops = matches!(edit, Edit::PoseB { b } if b != asked);
+    let serving = session.run().planes().and_then(|planes| planes.common(&scenario.task.points()));
+    if typed && stops {
+        let band = serving.as_ref().map_or_else(String::new, |common| common.near(shown).in_words());
+        let who = all_points(session);
+        commands.push(Command::Refuse(format!(
+            "b = {shown:.3} rad does not serve {who}, so nothing has changed: want {band}, or \"turn the task too\""
+        )));
+    } else {
+        send(commands, &responses, || edit);
+    }
+    if session.is_live() {
+        ui.horizontal(|ui| {
+            ui.label(RichText::new("led by hand").font(plain(11.0)).color(colour(p.amber)));
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                let words = RichText::new("back to the path").font(plain(11.0));
+                let tip = "Takes the machine back from the hand, to the start of its planned path (B)";
+                if ui.add(egui::Button::new(words)).on_hover_text(tip).clicked() {
+                    commands.push(Command::BackToPath);
+                }
+            });
+        });
+    } else if session.run().planes().is_some() {
+        let who = all_points(session);
+        let text = match &serving {
+            Some(common) => format!("{who}: {}", common.near(shown).in_words()),
+            None => format!("{who} share no b"),
         };
         note(ui, p, &text);
-        let inertia = Inertia::of(&scenario.machine);
-        let price = inertia.diagonal(0) * scenario.pose_acceleration;
-        let of = if scenario.base.moves() { ", on a fixed base" } else { "" };
-        note(ui, p, &format!("in motion it costs up to {price:.2} N m{of}"));
+        let mut turn = look.turn_task;
+        let words = RichText::new("turn the task too").font(plain(11.0)).color(colour(p.dim));
+        let tip = format!("Past the b that serve {who}, where b stops: turn the points along with their workspace");
+        if ui.checkbox(&mut turn, words).on_hover_text(tip).changed() {
+            commands.push(Command::TurnTask(turn));
+        }
+    }
+    if session.run().planes().is_some() {
+        let price = Inertia::of(&scenario.machine).diagonal(0) * scenario.pose_acceleration;
+        // One line whatever the base, so that nothing below jumps.
+        let words = RichText::new(format!("in motion it costs up to {price:.2} N m")).font(plain(11.0));
+        let tip = "The moment of D₁ b̈ on a fixed base; one that moves gives way";
+        ui.add(egui::Label::new(words.color(colour(p.dim))).truncate()).on_hover_text(tip);
     }
     let mut shown = scenario.compare_b.is_some();
     let mut other = scenario.compare_b.unwrap_or(b + 0.5 * period);
@@ -169,6 +239,14 @@ fn pose_constant(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec
             }
         });
     });
+}
+
+/// The points of the task, in words.
+fn all_points(session: &Session) -> String {
+    match session.scenario().task.points().len() {
+        2 => "A and B".into(),
+        n => format!("all {n} points"),
+    }
 }
 
 fn limits(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {

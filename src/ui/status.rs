@@ -9,12 +9,15 @@ use crate::scene::palette::{Palette, faded};
 use crate::scene::stage::signed;
 use crate::scene::views::Views;
 use crate::session::{Edit, Session};
+use crate::verdict::Verdict;
 
 /// Bad news, in full, over the lower edge of the viewport, with the way out if there is one.
 pub fn news(ctx: &egui::Context, session: &Session, look: &Look, commands: &mut Vec<Command>) {
     let fault = fault(session.frame());
-    let text = match (&look.message, &fault, &look.dialog) {
-        (Some((text, true)), _, None) | (_, Some(text), None) => text,
+    let waits = session.run().waiting();
+    let waiting = waits.map(|waiting| format!("The run waits: {}", waiting.why));
+    let text = match (&look.message, &fault, &waiting, &look.dialog) {
+        (Some((text, true)), _, _, None) | (_, Some(text), _, None) | (_, _, Some(text), None) => text,
         _ => return,
     };
     let p = look.palette();
@@ -24,7 +27,10 @@ pub fn news(ctx: &egui::Context, session: &Session, look: &Look, commands: &mut 
         frame.show(ui, |ui| {
             ui.set_max_width((0.42 * ctx.content_rect().width()).max(320.0));
             ui.add(egui::Label::new(RichText::new(text).font(plain(12.0)).color(colour(p.ink))).wrap());
-            if let Some((edit, b)) = look.refused.as_ref().and_then(|wish| wish.remedy.clone()) {
+            let remedy = look.refused.as_ref().and_then(|wish| wish.remedy.clone());
+            let mends = waits.and_then(|waiting| waiting.why.mending_b().zip(waiting.why.shown_b()));
+            let mends = mends.map(|(b, shown)| (Edit::task("b", b), shown));
+            if let Some((edit, b)) = remedy.or(mends) {
                 let way_out = ui.button(format!("take b = {b} rad"));
                 if way_out.on_hover_text("The same on the nearest plane that allows it").clicked() {
                     commands.extend([Command::Edit(edit), Command::EndGesture]);
@@ -88,20 +94,34 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &Look, commands
     Panel::bottom("status").exact_size(30.0).resizable(false).frame(frame).show(ui, |ui| {
         ui.horizontal_centered(|ui| {
             let f = session.frame();
-            let clean = f.peaks.is_reactionless();
-            let tone = colour(if clean { p.zero } else { p.reaction });
+            let verdict = Verdict::of(session.scenario(), f);
+            let waits = session.run().waiting().is_some();
+            let tone = colour(if verdict.is_good() && !waits { p.zero } else { p.reaction });
             let (dot, _) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), egui::Sense::hover());
             ui.painter().circle_filled(dot.center(), 4.5, tone);
-            let word = match (clean, f.is_quiet()) {
-                (true, _) => "reactionless",
-                (false, false) => "reacts on its base",
-                (false, true) => "has reacted on its base",
+            let word = match (verdict.word(), f.is_quiet()) {
+                _ if waits => "waits",
+                ("not reactionless", false) => "reacts on its base",
+                ("not reactionless", true) => "has reacted on its base",
+                (word, _) => word,
             };
-            ui.label(RichText::new(word).font(bold(13.0)).color(tone));
+            let remarks = verdict.so_far();
+            let told = ui.label(RichText::new(word).font(bold(13.0)).color(tone));
+            if !remarks.is_empty() {
+                let long: Vec<&str> = remarks.iter().map(|r| r.long.as_str()).collect();
+                told.on_hover_text(long.join("\n"));
+            }
             lamps(ui, f, &p);
-            // With a wheel the base feels less than the manipulator transmits.
-            let what = if session.scenario().base.wheel.is_some() { "n felt" } else { "|n_B|" };
-            let mut facts = format!("peak {what} {:.3} N m  ·  b {:.3} rad", f.peaks.moment, f.b);
+            let mut facts = format!("peak |n_B| {:.3} N m", verdict.arm_moment);
+            // Two quantities: what the arm transmits, and what a wheel leaves of it.
+            if let Some(left) = verdict.past_wheel {
+                facts += &format!(", past the wheel {left:.3} N m");
+            }
+            for remark in remarks.iter().filter(|_| ui.available_width() > 460.0) {
+                facts += &format!("  ·  {}", remark.short);
+            }
+            let b = session.run().planes().map_or(f.b, |planes| f.b.rem_euclid(planes.map().period()));
+            facts += &format!("  ·  b {b:.3} rad");
             let bad_news = matches!(look.message, Some((_, true)));
             if let Some((poses, distance)) =
                 views.stage().standing(f).filter(|_| !bad_news && ui.available_width() > 460.0)
@@ -141,6 +161,9 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &Look, commands
                     }
                     (None, _) if look.pushing => {
                         ("pull at the end effector to push it, 20 N for each metre  ·  U lets go".into(), p.ink)
+                    }
+                    (None, _) if session.is_live() => {
+                        ("led by hand  ·  B goes back to the path  ·  F1 keys".into(), p.dim)
                     }
                     (None, _) if look.view.shows_machine() => {
                         ("drag the target, a point or the b ring  ·  Space plays  ·  F1 keys".into(), p.dim)

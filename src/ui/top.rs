@@ -3,7 +3,7 @@
 use egui::{Align, ComboBox, Frame, Layout, Margin, Panel, Response, RichText, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use super::theme::{bold, colour, plain};
-use super::{Command, Desk, Look, Purpose, case};
+use super::{Command, Desk, Look, Purpose};
 use crate::machine;
 use crate::scenario::Scenario;
 use crate::scene::palette::Theme;
@@ -54,8 +54,10 @@ fn machines(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
 }
 
 fn scenarios(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
-    let current = session.scenario().clone();
+    let current = session.scenario();
     let shown = if current.title.is_empty() { &current.name } else { &current.title };
+    let changed = Scenario::builtin(&current.name).is_some_and(|builtin| !same_work(&builtin, current));
+    let shown = if changed { format!("{shown} *") } else { shown.clone() };
     let combo = ComboBox::from_id_salt("scenario").selected_text(shown).width(196.0).truncate();
     let response = combo.show_ui(ui, |ui| {
         let cases = Scenario::cases().count();
@@ -64,10 +66,10 @@ fn scenarios(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
             let label =
                 if i < cases { format!("{}   {}", i + 1, builtin.title) } else { format!("     {}", builtin.title) };
             if ui.selectable_label(chosen, label).clicked() {
-                commands.extend(match i < cases {
-                    true => case(session, &builtin.name),
+                commands.push(match Scenario::cases().find(|name| *name == builtin.name) {
+                    Some(name) => Command::Case(name),
                     // These bring the machine that they are about.
-                    false => Some(Command::Open(Box::new(builtin))),
+                    None => Command::Open(Box::new(builtin)),
                 });
             }
         }
@@ -78,7 +80,18 @@ fn scenarios(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
             }
         }
     });
-    name(&response.response.on_hover_text("What the machine does: keys 1, 2, 3"), "Scenario");
+    let tip = match changed {
+        true => {
+            "What the machine does, changed from the scenario of that name: keys 1, 2, 3 bring the paper's cases back"
+        }
+        false => "What the machine does: keys 1, 2, 3",
+    };
+    name(&response.response.on_hover_text(tip), "Scenario");
+}
+
+/// Whether two scenarios ask for the same, whatever the machine.
+fn same_work(a: &Scenario, b: &Scenario) -> bool {
+    a.task == b.task && a.plant == b.plant && a.base == b.base && a.control == b.control
 }
 
 fn transport(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Command>) {

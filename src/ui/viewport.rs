@@ -15,7 +15,7 @@ use crate::scenario::Task;
 use crate::scene::camera::Camera;
 use crate::scene::palette::faded;
 use crate::scene::pointer::Pointer;
-use crate::scene::stage::{Handle, Other, ViewOptions};
+use crate::scene::stage::{Handle, Other, ViewOptions, signed};
 use crate::scene::sway::swayed;
 use crate::scene::views::{Aim, ViewKind, Views};
 use crate::scene::{Anchor, Label, Scene};
@@ -31,6 +31,9 @@ pub fn show(
     commands: &mut Vec<Command>,
 ) {
     CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+        // The bar stands above the scene, so that it covers nothing of it.
+        ui.spacing_mut().item_spacing.y = 0.0;
+        switch::bar(ui, look, commands);
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         name(&response, "Scene: the machine, its reactionless workspace and its target");
         // What the pointer meets is what is seen.
@@ -40,6 +43,7 @@ pub fn show(
             draw(ui, &response, &spot, views, look, commands);
         } else {
             point_at(ui, &response, &spot, (session, &shown), views, look, commands);
+            link_name(&response, &spot, (session, &shown), views, look);
             move_camera(ui, &response, rect, look);
         }
         let options = ViewOptions {
@@ -59,7 +63,7 @@ pub fn show(
         let scene = Arc::new(views.scene(look.view, session.frame(), &options, look.camera()));
         paint(ui, rect, &scene, look.camera());
         words(ui, &Spot { rect, camera: *look.camera() }, &scene);
-        switch::show(ui, rect, look, views, commands);
+        switch::corners(ui, rect, look, views, commands);
     });
 }
 
@@ -145,7 +149,7 @@ fn point_at(
                 look.held = Some([x, y]);
                 Edit::DragTarget { x, y }
             }
-            Aim::B(b) => set_b(session, b),
+            Aim::B(b) => set_b(session, look, b),
             Aim::Push([x, y]) => {
                 let [now_x, now_y] = session.scenario().plant.force;
                 if (x - now_x).hypot(y - now_y) < LEAST_PUSH {
@@ -217,6 +221,24 @@ fn point_at(
     if look.grabbed.is_none() {
         look.held = None;
     }
+}
+
+/// Says which link is under the pointer, where nothing can be taken hold of.
+fn link_name(
+    response: &egui::Response,
+    spot: &Spot,
+    (session, frame): (&Session, &Instant),
+    views: &Views,
+    look: &Look,
+) {
+    let free = look.view.shows_machine() && look.hot.is_none() && look.grabbed.is_none();
+    let Some(pos) = response.hover_pos().filter(|_| free && !response.dragged()) else { return };
+    let machine = &session.scenario().machine;
+    let Some(i) = views.link_at(frame, &spot.pointer(pos)) else { return };
+    let (link, part) = (&machine.links()[i], &machine.parts()[i]);
+    let drive = part.drive + 1;
+    let words = format!("link {}, drive {drive}\n{} m, {} kg", link.name, signed(part.length, 3), signed(link.mass, 2));
+    response.clone().on_hover_text_at_pointer(words);
 }
 
 /// A path drawn by hand: from where the button goes down to where it comes up.

@@ -333,7 +333,7 @@ fn numbers_that_mean_nothing_are_refused() {
         fails(&["workspace", "nine-link", "--b", b], 2, &["--b"]);
     }
     fails(&["simulate", "--every", "0"], 2, &["whole number of steps"]);
-    fails(&["check", "nine-link", "--set", "length.l1=1e300"], 2, &["at most 1000000"]);
+    fails(&["check", "nine-link", "--set", "length.l1=1e300"], 2, &["lengths.l1 is 1e300: want 1e-6 to 1000000 m"]);
 }
 
 #[test]
@@ -439,11 +439,12 @@ fn simulate_prints_every_signal() {
     assert_eq!(keys(&got), ["scenario", "signals", "time", "units", "verdict"]);
     let peaks = ["peak_base_force", "peak_base_moment", "peak_torque"];
     let sums = ["rms_base_force", "rms_base_moment", "steps"];
-    let all: Vec<&str> = ["audit", "base_shift", "base_tilt", "miss"]
+    let all: Vec<&str> = ["audit", "base_shift", "base_tilt", "miss", "moved"]
         .into_iter()
-        .chain(peaks)
-        .chain(["reactionless"])
-        .chain(sums)
+        .chain(peaks[..2].iter().copied())
+        .chain(["peak_tilt", peaks[2], "reactionless", "remarks"])
+        .chain(sums.into_iter().take(2))
+        .chain(["sentence", "steps"])
         .collect();
     assert_eq!(keys(&got["verdict"]), all);
     assert_eq!(keys(&got["verdict"]["audit"]), ["angular", "energy", "loops", "momentum", "plane", "step"]);
@@ -629,8 +630,8 @@ fn settings_change_the_machine_before_anything_is_planned() {
 #[test]
 fn wrong_settings_say_what_would_be_right() {
     let refused = |set: &str, words: &[&str]| fails(&["check", "nine-link", "--set", set], 2, words);
-    refused("link.5.mass=NaN", &["link[5].mass is NaN", "want a finite number, kg"]);
-    refused("link.5.mass=-1", &["link[5].mass is -1", "want a mass above 0 kg"]);
+    refused("link.5.mass=NaN", &["link[5].mass is not a number", "want a finite number, kg"]);
+    refused("link.5.mass=-1", &["link[5].mass is -1", "want 1e-9 to 1000000 kg"]);
     refused("link.5.mass=much", &["link.5.mass=\"much\"", "want one number"]);
     refused("link.5.length=0.7", &["l5", "link 8", "parallelogram", "length.l5"]);
     refused("link.99.mass=1", &["\"99\"", "want one of \"1\""]);
@@ -654,8 +655,8 @@ fn a_damaged_machine_file_is_named_with_its_line() {
         let line = format!("arm.toml:{}:", NINE_LINK[..at].matches('\n').count() + 1);
         check(&NINE_LINK.replacen(from, to, 1), &[&[line.as_str()], words].concat());
     };
-    damage("mass = 1.45", "mass = nan", &["link[2].mass is NaN"]);
-    damage("mass = 1.45", "mass = -1.45", &["link[2].mass is -1.45", "above 0 kg"]);
+    damage("mass = 1.45", "mass = nan", &["link[2].mass is not a number"]);
+    damage("mass = 1.45", "mass = -1.45", &["link[2].mass is -1.45", "1e-9 to 1000000 kg"]);
     damage("mass = 1.45", "weight = 1.45", &["unknown field `weight`"]);
     damage("mass = 1.45", "mass = ", &[]);
     damage(
@@ -688,7 +689,16 @@ fn headless_reports_the_three_cases() {
     for row in rows {
         assert_eq!(
             keys(row),
-            ["file", "peak_base_force", "peak_base_moment", "peak_torque", "reactionless", "scenario", "steps"]
+            [
+                "file",
+                "peak_base_force",
+                "peak_base_moment",
+                "peak_torque",
+                "reactionless",
+                "scenario",
+                "steps",
+                "verdict"
+            ]
         );
         assert_eq!((&row["file"], &row["steps"]), (&json!(file), &json!(1000)));
         assert_eq!(row["reactionless"], json!(row["scenario"] == "case-3"));
@@ -791,6 +801,43 @@ fn without_a_display_it_records_and_names_the_file() {
     assert_eq!(out.status.code(), Some(0), "{said}");
     assert!(said.contains("case-3-1.rrd") && said.contains("display"), "{said}");
     assert_eq!(fs::read_to_string(&taken).expect("file"), "mine");
+}
+
+/// With a display but nothing that draws on it, the same, and what is missing is said. Wants Xvfb.
+#[cfg(all(target_os = "linux", feature = "record", feature = "window"))]
+#[test]
+fn without_a_graphics_driver_it_records_and_says_what_is_missing() {
+    let Ok(mut display) = Command::new("Xvfb")
+        .args(["-displayfd", "1", "-screen", "0", "800x600x24"])
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+    else {
+        println!("skipped: no Xvfb");
+        return;
+    };
+    let mut number = String::new();
+    let out = display.stdout.take().expect("piped");
+    std::io::BufRead::read_line(&mut std::io::BufReader::new(out), &mut number).expect("its number");
+    let folder = Folder::new();
+    let out = Command::new(env!("CARGO_BIN_EXE_stillbase"))
+        .env("DISPLAY", format!(":{}", number.trim()))
+        .env_remove("WAYLAND_DISPLAY")
+        .env_remove("WAYLAND_SOCKET")
+        .env("VK_ICD_FILENAMES", "/nonexistent")
+        .env("VK_DRIVER_FILES", "/nonexistent")
+        .current_dir(&folder.0)
+        .stdin(Stdio::null())
+        .output();
+    let _ = display.kill();
+    let _ = display.wait();
+    let out = out.expect("starts");
+    let said = text(&out.stderr);
+    assert_eq!(out.status.code(), Some(0), "{said}");
+    assert!(said.contains("case-3.rrd"), "{said}");
+    assert!(said.contains("graphics driver") || said.contains("libvulkan") || said.contains("window needs"), "{said}");
+    assert!(folder.0.join("case-3.rrd").exists());
 }
 
 #[test]
@@ -1092,18 +1139,169 @@ fn spectrum_says_what_is_kept() {
     fails(&["spectrum", "case-1", "--window", "flat"], 2, &["hann"]);
 }
 
+/// A window weighs the samples, so the cumulative RMS ends at the weighted one; without a window that is the plain one.
+#[test]
+fn the_cumulative_rms_ends_at_what_stands_beside_it() {
+    for (window, same) in [("hann", false), ("rectangular", true)] {
+        let got = object(&["spectrum", "case-1", "--window", window]);
+        for axis in ["force_x", "force_y", "moment"] {
+            let ends = *numbers(&got["cumulative_rms"][axis]).last().expect("lines");
+            let of = |key: &str| got["axes"][axis][key].as_f64().expect("a number");
+            assert!((ends - of("weighted_rms")).abs() <= 1e-12 * ends, "{axis}: {ends} {}", of("weighted_rms"));
+            let off = (of("rms") - ends).abs() / ends;
+            assert_eq!(off < 1e-9, same, "{window} {axis}: {off}");
+        }
+        let shown = prints(&["spectrum", "case-1", "--window", window]);
+        assert!(shown.contains("weighted RMS") && shown.contains("ends at the weighted RMS") != same, "{shown}");
+    }
+}
+
+/// The machine without deviations goes the way of the others: the same base, control and friction.
+#[test]
+fn simulated_machines_stand_beside_a_simulated_nominal_one() {
+    let settings = ["base.kind=free", "base.com=0.1,0.05", "control.kp=300", "plant.friction.viscous=0.2"];
+    let settings: Vec<&str> = settings.iter().flat_map(|s| ["--set", s]).collect();
+    let study = object(&[&["tolerance", "case-1", "--simulate", "--samples", "2"][..], &settings].concat());
+    let run = object(&[&["simulate", "case-1"][..], &settings].concat());
+    let (nominal, verdict) = (&study["nominal"], &run["verdict"]);
+    for (a, b) in [("peak_moment", "peak_base_moment"), ("peak_force", "peak_base_force")] {
+        near(&nominal[a], &verdict[b], 1e-12, a);
+    }
+    for (a, b) in [("rms_moment", "rms_base_moment"), ("rms_force", "rms_base_force")] {
+        near(&nominal[a], &verdict[b], 1e-9, a);
+    }
+    // Perfect tracking on a fixed base is another row.
+    let tracked = object(&[&["tolerance", "case-1", "--samples", "2"][..], &settings].concat());
+    let peak = |of: &Value| of["nominal"]["peak_moment"].as_f64().expect("a number");
+    assert!((peak(&tracked) / peak(&study) - 1.0).abs() > 0.01, "{} {}", peak(&tracked), peak(&study));
+}
+
+/// Drive angles are absolute, so what a base that moves does belongs to them.
+#[test]
+fn what_is_simulated_on_a_base_that_moves_has_its_pose() {
+    let settings = ["--set", "base.kind=free", "--set", "base.com=0.1,0.05"];
+    let got = object(&[&["export", "case-1", "--what", "simulated", "--rate", "100"][..], &settings].concat());
+    let columns: Vec<&str> = got["columns"].as_array().expect("a list").iter().filter_map(Value::as_str).collect();
+    let run = object(&[&["simulate", "case-1", "--every", "10"][..], &settings].concat());
+    let rows: Vec<Vec<f64>> = got["rows"].as_array().expect("rows").iter().map(numbers).collect();
+    let pairs = [
+        ("base_x", "base/x"),
+        ("base_y", "base/y"),
+        ("theta", "attitude/base"),
+        ("base_xd", "base_velocity/x"),
+        ("base_yd", "base_velocity/y"),
+        ("thetad", "attitude_rate/base"),
+    ];
+    for (column, signal) in pairs {
+        let place = columns.iter().position(|c| *c == column).unwrap_or_else(|| panic!("no {column} in {columns:?}"));
+        let want = numbers(&run["signals"][signal]);
+        assert!(rows.iter().map(|row| row[place]).eq(want.iter().copied()), "{column}");
+        assert!(want.iter().any(|x| x.abs() > 1e-9), "{column} moves");
+    }
+    let still = object(&["export", "case-1", "--what", "simulated", "--rate", "100"]);
+    assert!(still["columns"].as_array().expect("a list").iter().all(|c| c != "theta"));
+}
+
+/// The spline goes beyond its samples: what is said of them is what they hold.
+#[test]
+fn import_tells_the_b_of_samples_from_that_of_the_spline() {
+    let folder = Folder::new();
+    let lambda = numbers(&object(&["check", "nine-link"])["lambda"]);
+    // A motion with few samples, from rest to rest.
+    let q = |s: f64| [1.7 - 0.3 * s, 3.7 + 0.4 * s, 2.2 + 0.5 * s];
+    let mut csv = String::from("t,q1,q2,q3\n");
+    let mut all = Vec::new();
+    for i in 0..9 {
+        let t = f64::from(i) / 8.0;
+        let s = if i < 4 {
+            0.0
+        } else if i > 4 {
+            1.0
+        } else {
+            0.5
+        };
+        all.push((0..3).map(|k| lambda[k] * q(s)[k]).sum::<f64>());
+        csv += &format!("{t},{},{},{}\n", q(s)[0], q(s)[1], q(s)[2]);
+    }
+    let file = folder.file("few.csv", &csv);
+    let out = stillbase(&["import", &file, "--json"]);
+    let got: Value = serde_json::from_str(text(&out.stdout)).expect("an object");
+    let (low, high) = all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), b| (l.min(*b), h.max(*b)));
+    near(&got["b_samples"], &json!([low, high]), 1e-12, "b of the samples");
+    let way = numbers(&got["given"]["b_range"]);
+    assert!(way[0] < low - 1e-4 && way[1] > high + 1e-4, "the spline swings: {way:?} {low} {high}");
+    let shown = text(&stillbase(&["import", &file]).stdout).to_owned();
+    assert!(shown.contains("least b of the samples") && shown.contains("least b on the way"), "{shown}");
+}
+
+/// What a verdict leaves out is said in words, in the table, and in JSON.
+#[test]
+fn verdicts_are_said_in_full() {
+    let said = |args: &[&str]| text(&stillbase(args).stderr).to_owned();
+    let wheel = ["simulate", "case-1", "--set", "base.wheel.inertia=0.002"];
+    let line = said(&wheel);
+    assert!(line.contains("peak |n_B| 1.089") && line.contains("past the wheel 0.000000 N m"), "{line}");
+    assert!(line.contains("reactionless: no") && line.contains("the wheel takes it up"), "{line}");
+    let got = object(&wheel);
+    assert!(got["verdict"]["peak_moment_past_wheel"].as_f64() < Some(1e-9), "{}", got["verdict"]);
+    assert!(got["verdict"]["peak_base_moment"].as_f64() > Some(1.0), "{}", got["verdict"]);
+    let fall = object(&["simulate", "case-3", "--set", "base.kind=free", "--set", "gravity=0,-9.81"]);
+    assert_eq!(fall["verdict"]["reactionless"], true);
+    assert!(fall["verdict"]["peak_base_force"].as_f64() < Some(1e-9), "{}", fall["verdict"]);
+    let tilted = said(&["simulate", "case-3", "--set", "link.5.axial=0.02"]);
+    assert!(tilted.contains("reactionless: yes") && tilted.contains("different heights tilt the base"), "{tilted}");
+    let held = said(&["simulate", "case-3", "--set", "plant.friction.coulomb=1e4"]);
+    assert!(held.contains("never moved") && held.contains("from its target"), "{held}");
+    let table = prints(&["compare", "case-3", "--set", "base.wheel.inertia=0.002"]);
+    assert!(table.contains("no, the wheel takes it up") && table.contains("peak n_B N m"), "{table}");
+}
+
 /// A failed audit is loud: the figures stand there, the message says what is off, and the status is 1.
 #[test]
 fn a_failed_audit_is_no_answer() {
+    // So much friction that no number of parts of such a step can follow it.
+    let rough = ["--set", "step=0.01", "--set", "plant.friction.viscous=2500"];
+    for (command, key) in [
+        (&["simulate", "case-3", "--json"][..], "audit_failed"),
+        (&["joints", "case-3", "--json"], "audit_failed"),
+        (&["spectrum", "case-3", "--json"], "audit_failed"),
+        (&["export", "case-3", "--what", "simulated", "--rate", "100", "--json"], "audit_failed"),
+        (&["compare", "case-3", "case-1", "--json"], "\"audit\""),
+        (&["tolerance", "case-3", "--simulate", "--samples", "2"], ""),
+    ] {
+        let out = stillbase(&[command, &rough[..]].concat());
+        assert_eq!(out.status.code(), Some(1), "{command:?}: {}", text(&out.stderr));
+        assert!(text(&out.stderr).contains("audit failed: step: "), "{command:?}: {}", text(&out.stderr));
+        assert!(text(&out.stdout).contains(key), "{command:?}");
+        // The same by a smaller step is an answer.
+        let fine = ["--set", "step=0.001", "--set", "plant.friction.viscous=2500"];
+        let out = stillbase(&[command, &fine[..]].concat());
+        assert!(!text(&out.stderr).contains("audit failed"), "{command:?}: {}", text(&out.stderr));
+    }
+    // Stiff gains that once were off by a third are followed, and say so everywhere.
+    let stiff = ["--set", "control.kp=478004", "--set", "control.kd=1514", "--set", "plant.friction.viscous=15.7"];
+    for command in [&["simulate", "case-1"][..], &["joints", "case-1"], &["export", "case-1", "--what", "simulated"]] {
+        assert_eq!(stillbase(&[command, &stiff[..]].concat()).status.code(), Some(0), "{command:?}");
+    }
+}
+
+/// The step is set as any other key; edits stay at their times.
+#[test]
+fn the_step_is_set_by_key() {
+    let steps =
+        |step: &str| object(&["simulate", "case-3", "--set", step, "--every", "100000"])["verdict"]["steps"].as_u64();
+    assert_eq!((steps("step=0.0005"), steps("step=0.01")), (Some(2000), Some(100)));
+    for (pair, word) in [("step=0.02", "step is 0.02: want 0.00001 to 0.01 s"), ("step=fast", "0.00001 to 0.01 s")] {
+        fails(&["simulate", "case-3", "--set", pair], 2, &[word]);
+    }
     let folder = Folder::new();
     let case = include_str!("../../assets/scenarios/case-3.toml");
-    let file = folder.file("rough.toml", &format!("step = 0.01\n{case}"));
-    let settings = ["control.kp=10000", "control.kd=190", "plant.payload.mass=5"];
-    let settings: Vec<&str> = settings.iter().flat_map(|s| ["--set", s]).collect();
-    let out = stillbase(&[&["simulate", &file, "--json"][..], &settings].concat());
-    assert_eq!(out.status.code(), Some(1), "{}", text(&out.stderr));
-    assert!(text(&out.stderr).contains("audit failed: "), "{}", text(&out.stderr));
-    assert!(text(&out.stdout).contains("audit_failed"));
+    let edit = "[[edit]]\nstep = 300\ndo = \"push\"\nx = 5.0\ny = 0.0\n";
+    let file = folder.file("pushed.toml", &format!("{case}\n{edit}"));
+    let miss =
+        |step: &str| object(&["simulate", &file, "--set", step, "--every", "100000"])["verdict"]["miss"].as_f64();
+    let (a, b) = (miss("step=0.001").expect("a number"), miss("step=0.0005").expect("a number"));
+    assert!(a > 1e-3 && (a - b).abs() < 1e-6, "{a} {b}");
 }
 
 /// What differs in plant, base and control is set by the keys of a file, and refused in words.
@@ -1162,4 +1360,71 @@ fn compare_tells_ways_apart() {
     assert!(table.contains("is outside the reactionless workspace"), "{table}");
     fails(&["compare", "least-reaction", "-o", &file], 2, &["table.csv"]);
     fails(&["compare", "case-3", "-o", "table.txt"], 2, &[".csv or .rrd"]);
+}
+
+/// What a kind of task or base passes over is refused where it is asked for, and told where it stands in a file.
+#[test]
+fn what_a_kind_ignores_is_refused_or_told() {
+    for (args, words) in [
+        (vec!["plan", "change-b", "--shape", "arc"], ["--shape has no use here", "the kind reactionless"]),
+        (vec!["plan", "case-3", "--cycles", "2"], ["--cycles has no use here", "the kind zero-momentum"]),
+        (vec!["plan", "circle", "--time", "2"], ["--time has no use here", "another law"]),
+        (vec!["plan", "case-3", "--base", "40,3"], ["--base has no use here", "change-b"]),
+        (
+            vec!["simulate", "change-b", "--set", "task.shape=arc"],
+            ["task.shape has no use here", "the kind reactionless"],
+        ),
+        (
+            vec!["simulate", "case-1", "--set", "task.b_to=2.5"],
+            ["task.b_to has no use here", "change-b or least-reaction"],
+        ),
+        (vec!["simulate", "case-1", "--set", "task.first_drive_to=1"], ["task.first_drive_to has no use", "same-tip"]),
+        (vec!["simulate", "case-1", "--set", "task.blend=0.1"], ["task.blend has no use here", "corners = blend"]),
+        (vec!["simulate", "circle", "--set", "task.least=peak"], ["task.least has no use here", "least-reaction"]),
+        (vec!["simulate", "circle", "--set", "task.time=3"], ["task.time has no use here", "another law"]),
+        (vec!["simulate", "case-1", "--set", "base.mass=50"], ["base.mass has no use here", "free or compliant"]),
+        (vec!["simulate", "spacecraft", "--set", "base.stiffness=[1,1,1]"], ["base.stiffness has no use", "compliant"]),
+    ] {
+        fails(&args, 2, &words);
+    }
+    prints(&["simulate", "case-1", "--set", "base.mass=50", "--set", "base.kind=free", "--every", "1000"]);
+    let folder = Folder::new();
+    let case = include_str!("../../assets/scenarios/case-3.toml");
+    let file = folder.file("own.toml", &case.replace("time = 1.0", "cycles = 3\ntime = 1.0"));
+    let out = stillbase(&["simulate", &file, "--every", "1000"]);
+    let said = text(&out.stderr);
+    assert!(out.status.code() == Some(0) && said.contains("note: case-3: task.cycles has no use there"), "{said}");
+    assert!(!text(&stillbase(&["simulate", "case-3", "--every", "1000"]).stderr).contains("note"));
+}
+
+/// What would never end, or fill the disk, is refused with the number, at once.
+#[test]
+fn what_would_never_end_is_refused() {
+    let folder = Folder::new();
+    let began = std::time::Instant::now();
+    let out = folder.path("x.csv");
+    fails(
+        &["simulate", "circle", "--set", "task.b=-2.3e18", "-o", &out],
+        2,
+        &["task.b is -2.3e18", "-1000 to 1000 rad"],
+    );
+    fails(&["simulate", "change-b", "--set", "task.moment_limit=1e-9", "-o", &out], 1, &["at most 3600 s"]);
+    fails(
+        &["simulate", "change-b", "--set", "task.moment_limit=1e-308", "-o", &out],
+        2,
+        &["task.moment_limit is 1e-308"],
+    );
+    fails(&["simulate", "circle", "--set", "drive.1.speed_limit=1e-9", "-o", &out], 1, &["at most 3600 s"]);
+    fails(&["simulate", "case-3", "--set", "drive.1.torque_limit=1e-300"], 2, &["torque_limit is 1e-300", "1e-9 to"]);
+    let case = include_str!("../../assets/scenarios/case-3.toml");
+    let long = folder.file("long.toml", &case.replace("[task]", "duration = 3600\n[task]"));
+    fails(&["simulate", &long, "-o", &out], 2, &["GB: want at most 4 GB"]);
+    fails(&["simulate", &long, "--json", "--every", "4"], 2, &["GB: want at most 1 GB"]);
+    let fine = folder.file("fine.toml", &case.replace("[task]", "duration = 3600\nstep = 1e-5\n[task]"));
+    for command in ["simulate", "joints", "spectrum", "compare"] {
+        fails(&[command, &fine], 2, &["360000000 steps: want at most 4000000"]);
+    }
+    fails(&["export", &fine, "--what", "simulated", "--rate", "100"], 2, &["360000000 steps: want at most 4000000"]);
+    assert_eq!(folder.names(), ["fine.toml", "long.toml"]);
+    assert!(began.elapsed().as_secs() < 60, "{:?}", began.elapsed());
 }

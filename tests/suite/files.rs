@@ -269,7 +269,10 @@ fn faults(writers: std::ops::Range<usize>) {
             }
             results.iter().filter(|_| old).for_each(|name| fs::write(folder.path(name), "old").expect("written"));
         };
-        for (how, old) in [("fail", false), ("end", false), ("fail", true), ("end", true)] {
+        // What replaces a file does so by the same steps whoever writes: those that run long need not show it again.
+        let replaces = ["design", "tolerance", "import", "headless"].contains(&args[0]);
+        let all = [("fail", false), ("end", false), ("fail", true), ("end", true)];
+        for (how, old) in all.into_iter().filter(|(_, old)| replaces || !old) {
             let args: &[&str] = &[*args, if old { &["--force"][..] } else { &[] }].concat();
             let mut steps = 0;
             // A recording has hundreds of writes: all at first, then fewer and fewer.
@@ -407,6 +410,15 @@ fn a_forged_part_is_bounded() {
         assert!(matches!(out.status.code(), Some(0 | 2)), "byte {byte}: {:?} {said}", out.status);
         assert!(since.elapsed() < Duration::from_secs(20), "byte {byte}");
     }
+    // Pages that claim a dictionary where there is none, at which the reader of Parquet panics: 30 values, PLAIN.
+    let mut bad = good.clone();
+    let header = [0x2c, 0x15, 0x3c, 0x15, 0x00];
+    let pages: Vec<usize> = (0..bad.len() - 5).filter(|i| bad[*i..].starts_with(&header)).collect();
+    assert!(pages.len() > 4, "a page a column");
+    pages.iter().for_each(|i| bad[i + 4] = 0x10);
+    fs::write(folder.path("b.parquet"), sealed(bad, true)).expect("written");
+    let said = folder.said(&["tolerance", "--merge", "a.csv", "b.parquet", "-o", "no.csv", "--force"], 2);
+    assert!(said.contains("b.parquet: ") && said.trim_end().lines().count() == 1, "{said}");
     fs::write(folder.path("b.parquet"), good).expect("written");
     let csv = String::from_utf8(bytes(&folder.path("a.csv"))).expect("text");
     let mut lines: Vec<String> = csv.lines().map(str::to_owned).collect();

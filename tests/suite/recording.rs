@@ -827,3 +827,61 @@ fn a_base_that_moves_is_recorded_as_it_moves() {
     }
     assert!(!events.contains("audit failed"), "{events}");
 }
+
+/// What reaches the base is one thing in the window and in the recording, under gravity, with a load and with both: the
+/// same numbers in the same words, each in its own colour.
+#[test]
+fn the_reaction_is_the_same_in_the_window() {
+    use rerun::external::arrow::array::UInt32Array;
+    use stillbase::scene::palette::{Theme, palette};
+    use stillbase::scene::stage::{Stage, ViewOptions};
+    let folder = Folder::new("reaction");
+    let p = palette(Theme::Dark);
+    let packed = |c: [f32; 4]| c.iter().fold(0u32, |all, x| all << 8 | (x * 255.0).round() as u32);
+    let mut kinds = std::collections::BTreeSet::new();
+    for (name, gravity, mass) in
+        [("case-1", -9.81, 0.0), ("case-1", -9.81, 0.4), ("case-3", -9.81, 0.0), ("case-3", 0.0, 0.3)]
+    {
+        let mut scenario = short(name);
+        scenario.machine = scenario.machine.set("gravity", &format!("0,{gravity}")).expect("a machine");
+        scenario.plant.payload.mass = mass;
+        let file = format!("{name}-{gravity}-{mass}.rrd");
+        record_in(&folder, &file, std::slice::from_ref(&scenario)).expect("recorded");
+        let contents = Contents::of(&folder.file(&file));
+        let mut frames: Vec<Frame> = Vec::new();
+        let run = replay(&scenario, |_, frame| frames.push(*frame)).expect("it runs");
+        let stage = Stage::of(&run);
+        let mut rows = 0;
+        for chunk in contents.at(&format!("/{name}/reaction/words")).into_iter().filter(|c| !c.is_static()) {
+            let steps = chunk.timelines()[&TimelineName::from("step")].times_raw();
+            let column = |component: &'static str| chunk.components().get_array(component.into()).expect("a column");
+            let (labels, colours) = (column("Points3D:labels"), column("Points3D:colors"));
+            for (i, step) in steps.iter().enumerate() {
+                let (labels, colours) = (labels.value(i), colours.value(i));
+                let labels = labels.as_any().downcast_ref::<StringArray>().expect("words");
+                let colours = colours.as_any().downcast_ref::<UInt32Array>().expect("colours");
+                let scene = stage.scene(&frames[*step as usize], &ViewOptions::default());
+                for k in 0..2 {
+                    let seen = scene.labels.iter().find(|l| l.text.starts_with(["f_B", "n_B"][k])).expect("a label");
+                    assert_eq!(labels.value(k), seen.text, "{file} at {step}");
+                    assert_eq!(colours.value(k), packed(seen.colour), "{file} at {step}: {}", seen.text);
+                    kinds.insert((k, seen.colour == p.reaction));
+                }
+                let weight = (gravity != 0.0).then(|| frames[*step as usize].wrench.statical.force.norm());
+                let words = weight.map(|w| format!("and its weight and pushes, {w:.1} N"));
+                assert_eq!(
+                    words.as_deref(),
+                    labels.iter().flatten().find(|t| t.starts_with("and ")),
+                    "{file} at {step}"
+                );
+                rows += 1;
+            }
+        }
+        assert!(rows > 0, "{file}: {rows}");
+        // Arrows lie along the force of motion; the static part has none.
+        let (steps, arrows) = contents.vectors(&format!("/{name}/reaction/force"), "Arrows3D:vectors");
+        assert_eq!(mass > 0.0, !arrows.is_empty(), "{file}");
+        assert!(steps.len() >= arrows.len());
+    }
+    assert_eq!(kinds.len(), 4, "each of the two was green and red: {kinds:?}");
+}

@@ -530,3 +530,26 @@ proptest! {
         prop_assert!((more.tip - tip).norm() < 1e-12);
     }
 }
+
+/// On a base that gives way the ring stays where the target is, and how far the end effector is from it is said.
+#[test]
+fn a_miss_is_shown_and_said() {
+    let session = floating();
+    let f = session.frame();
+    let (goal, tip) = (f.in_base(f.tip), f.tip);
+    let miss = 1e3 * (tip - goal).norm();
+    assert!(miss > 1.0, "{miss} mm");
+    let stage = Stage::of(session.run());
+    for sway in [1.0, 20.0] {
+        let scene = stage.scene(f, &ViewOptions { sway, ..Default::default() });
+        let said = |words: &str| scene.labels.iter().any(|l| l.text == words);
+        assert!(said(&format!("{:.3}, {:.3} m", goal.re, goal.im)), "the ring's own place");
+        let words = format!("end effector {:.3}, {:.3} m, {miss:.1} mm off", tip.re, tip.im);
+        assert!(said(&words), "{words}: {:?}", scene.labels);
+        let line = scene.lines.iter().find(|l| l.name == "target/miss").expect("a line between");
+        let at = |name: &str| scene.markers.iter().find(|m| m.name == name).expect("a marker").at;
+        assert_eq!(line.points, [at("end-effector"), at("target")]);
+    }
+    let still = scene_of(&open("case-3"));
+    assert!(still.lines.iter().all(|l| l.name != "target/miss"));
+}

@@ -9,9 +9,12 @@ use stillbase::plan::limits::{Limit, Quantity};
 use stillbase::plan::path::{PathPoint, SameTip, tip_line};
 use stillbase::plan::profile::Span;
 use stillbase::plan::usage::ACTIVE;
-use stillbase::plan::{Fastest, Limits, Motion, Path, Profile, Progress, Table, TimeError, TimeLaw, Usage, fastest};
+use stillbase::plan::{
+    Curve, Fastest, Limits, Motion, Path, Profile, Progress, Rule, Table, TimeError, TimeLaw, Usage, fastest, trace,
+};
 use stillbase::planar::{DriveAngles, PerDrive, Vector};
-use stillbase::scenario::Scenario;
+use stillbase::pose_constant::Planes;
+use stillbase::scenario::{Scenario, Task, Value};
 use stillbase::session::{Run, replay};
 
 /// q_A and q_B of Case 3, rad.
@@ -137,28 +140,6 @@ proptest! {
             let (p, back) = (law.at(u * duration, duration), law.at((1.0 - u) * duration, duration));
             prop_assert!((p.s + back.s - 1.0).abs() < 1e-12 && (p.rate - back.rate).abs() * duration < 1e-12);
         }
-    }
-
-    /// The running mean over a window, against a sum over the window, and with derivatives of its own.
-    #[test]
-    fn an_average_is_the_mean_over_its_window(part in 0.05..1.5, u in 0.01..0.99) {
-        let base = timed(&tip_path(), nine_link(), &by_torque(), 60).profile.levelled().expect("phases");
-        let window = part * base.duration();
-        let smooth = base.averaged(window).expect("phases");
-        prop_assert!((smooth.duration() - base.duration() - window).abs() < 1e-12);
-        let t = u * smooth.duration();
-        let n = 20_000;
-        let mean: f64 =
-            (0..n).map(|i| base.at(t - window * (f64::from(i) + 0.5) / f64::from(n)).s).sum::<f64>() / f64::from(n);
-        prop_assert!((smooth.at(t).s - mean).abs() < 1e-8, "{} and {mean}", smooth.at(t).s);
-        // s̈ has no steps left.
-        for i in 1..4000 {
-            let (t, hair) = (f64::from(i) / 4000.0 * smooth.duration(), 1e-9);
-            let step = smooth.at(t + hair).acceleration - smooth.at(t - hair).acceleration;
-            prop_assert!(step.abs() < 1e-2, "{step} at {t}");
-        }
-        let end = smooth.at(smooth.duration() * (1.0 - 1e-9));
-        prop_assert!((end.s - 1.0).abs() < 1e-9 && end.rate.abs() < 1e-5, "{end:?}");
     }
 }
 
@@ -584,7 +565,7 @@ fn limits_on_jerk_are_kept_on_curves() {
     }
 }
 
-/// Where the optimum is known, the way of curves comes within 1.2 % of it, whatever the jerk, and never below.
+/// Where the optimum is known, the way of curves comes within 0.4 % of it, whatever the jerk, and never below.
 #[test]
 fn limits_on_jerk_cost_little_more_than_they_must() {
     let (model, around) = of(nine_link());
@@ -593,27 +574,8 @@ fn limits_on_jerk_cost_little_more_than_they_must() {
         let best = fastest(&line(), &model, &around, &limits, true).expect("limits").profile.duration();
         let found = fastest_at(&line_as_table(), &model, &around, &limits, true, &stations(300)).expect("limits");
         let ratio = found.profile.duration() / best;
-        assert!(ratio > 1.0 && ratio < 1.012, "{jerk}: {ratio}");
+        assert!(ratio > 1.0 - 1e-6 && ratio < 1.004, "{jerk}: {ratio}");
     }
-}
-
-/// A peak is cut down to where it is as wide as asked, and what is wide enough stays.
-#[test]
-fn peaks_are_clipped_to_a_width() {
-    let s = even(400);
-    let x: Vec<f64> = s.iter().map(|s| 16.0 * s.min(1.0 - s)).collect();
-    let peak = Profile::through(&s, &x, &[]).expect("it moves");
-    for width in [0.05, 0.2, 0.5] {
-        let clipped = peak.clipped(width).expect("phases");
-        // ṡ = 8 t up to the middle: 8 · width/2 below the top.
-        let (top, t) = (peak.duration() / 2.0 * 8.0, clipped.duration() / 2.0);
-        assert!((clipped.at(t).rate - (top - 4.0 * width)).abs() < 0.06, "{width}: {}", clipped.at(t).rate);
-        let flat = (0..100).map(|i| clipped.at(t + (f64::from(i) / 99.0 - 0.5) * width).acceleration.abs());
-        assert!(flat.fold(0.0, f64::max) < 1e-9, "{width}");
-        assert!((clipped.at(0.1).s - peak.at(0.1).s).abs() < 1e-12);
-    }
-    assert!(peak.clipped(0.0).expect("phases").duration() == peak.duration());
-    assert_eq!(Profile::of(TimeLaw::Quintic, 1.0).clipped(0.1), None);
 }
 
 /// Jerk alone, or with speed: no bound to compare with, but a motion.
@@ -732,10 +694,196 @@ proptest! {
             }
         };
         let usage = usage(&path, &found, &machine, &limits, 4000);
-        prop_assert!(usage.violation() < 5e-3, "{:?}", usage);
+        prop_assert!(usage.violation() < 1e-6, "{:?}", usage);
         prop_assert!(usage.active > 0.9, "{:?}", usage);
         let end = found.profile.at(found.profile.duration() * (1.0 - 1e-9));
         prop_assert!((end.s - 1.0).abs() < 1e-6 && end.rate < 1e-3);
         prop_assert!((found.limiting.iter().map(|l| l.1).sum::<f64>() - 1.0).abs() < 1e-9);
     }
+}
+
+/// A path through random points on the plane b = 2.4: straight lines with rounded or sharp corners, an arc, a spline.
+fn drawn(points: &[Vector], shape: usize, blend: f64) -> Option<Vec<Path>> {
+    let planes = Planes::of(nine_link()).expect("three drives");
+    let start = planes.serve(points, 2.4).ok()?[0].a;
+    let curves = match shape {
+        0 => Curve::polyline(points, false, blend).ok()?,
+        1 => vec![Curve::arc([points[0], points[1], points[2]], false).ok()?],
+        _ => vec![Curve::spline(points, false).ok()?],
+    };
+    let tables = trace::follow(planes.map(), &curves, 2.4, Some(start), Rule::default()).ok()?;
+    Some(tables.into_iter().map(Path::Table).collect())
+}
+
+fn whole_time(paths: &[Path], limits: &Limits, smooth: bool) -> f64 {
+    let (model, around) = of(nine_link());
+    let time = |path: &Path| fastest(path, &model, &around, limits, smooth).expect("a motion").profile.duration();
+    paths.iter().map(time).sum()
+}
+
+/// Every place of a path and many stations, each space cut into as many parts: far denser than is ever planned with.
+fn converged(path: &Path, parts: usize) -> Vec<f64> {
+    let mut all = path.places();
+    all.extend(stations(300));
+    all.sort_by(f64::total_cmp);
+    all.dedup_by(|b, a| *b - *a < 1e-9);
+    let mut fine: Vec<f64> =
+        all.windows(2).flat_map(|w| (0..parts).map(move |k| w[0] + (w[1] - w[0]) * k as f64 / parts as f64)).collect();
+    fine.push(1.0);
+    fine
+}
+
+/// Random limits of the nine-link machine's drives, those on torque as they are.
+fn drives(speed: Option<f64>, jerk: f64) -> Limits {
+    let speed = speed.map_or(FREE, |v| [v, 2.0 * v, 2.0 * v]);
+    limits([20.0, 5.0, 5.0], speed, FREE, [jerk, 2.0 * jerk, 3.0 * jerk])
+}
+
+fn anywhere(count: usize) -> impl Strategy<Value = Vec<Vector>> {
+    prop::collection::vec((-0.1..0.7_f64, 0.1..0.8_f64).prop_map(|(x, y)| Vector::new(x, y)), 3..=count)
+}
+
+/// What must be true of every fastest motion along lines with rounded corners, arcs and splines.
+fn judge(points: &[Vector], shape: usize, blend: f64, limits: &Limits, smooth: bool) -> Result<(), TestCaseError> {
+    let Some(paths) = drawn(points, shape, blend) else { return Ok(()) };
+    let (model, around) = of(nine_link());
+    let without = Limits { jerk: FREE.into(), ..*limits };
+    let asked = if smooth { limits } else { &without };
+    for path in &paths {
+        let found = fastest(path, &model, &around, limits, smooth).expect("a motion");
+        let motion = Motion { path: path.clone(), profile: found.profile };
+        let usage = Usage::of(&motion, &model, &around, asked, 20_000);
+        prop_assert!(usage.violation() < 1e-6, "{:?} of {:?}, shape {}, blend {}", usage, points, shape, blend);
+        let end = motion.profile.at(motion.duration() * (1.0 - 1e-12));
+        prop_assert!((end.s - 1.0).abs() < 1e-9, "{:?}", end);
+        if !smooth {
+            let grid = converged(path, 12);
+            let best = fastest_at(path, &model, &around, &without, false, &grid).expect("a motion").profile.duration();
+            let ratio = motion.duration() / best;
+            prop_assert!(
+                (0.999..1.005).contains(&ratio),
+                "{} of {:?}, shape {}, blend {}",
+                ratio,
+                points,
+                shape,
+                blend
+            );
+        }
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Limits are kept to 1e-6 between the stations too, and no more than 0.5 % is lost to a converged grid, however
+    /// tightly corners are rounded off.
+    #[test]
+    fn fastest_motions_keep_their_limits_and_are_the_best(
+        points in anywhere(4), shape in 0..3_usize, blend in -4.0..-1.0_f64, speed in prop::option::of(1.0..6.0_f64),
+    ) {
+        judge(&points, shape, 10f64.powf(blend), &drives(speed, f64::INFINITY), false)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(8))]
+
+    /// And those on jerk too.
+    #[test]
+    fn smooth_motions_keep_their_limits(
+        points in anywhere(4), shape in 0..3_usize, blend in -4.0..-1.0_f64, jerk in 2.5..4.0_f64,
+        speed in prop::option::of(1.0..6.0_f64),
+    ) {
+        judge(&points, shape, 10f64.powf(blend), &drives(speed, 10f64.powf(jerk)), true)?;
+    }
+}
+
+/// A scenario through points with straight lines of the end effector, rounded off or not.
+fn through(points: &[Vector], blend: Option<f64>, law: &str) -> Option<Scenario> {
+    let mut scenario = Scenario::builtin("case-3").expect("built in");
+    for k in 0..3 {
+        let jerk = format!("drive.{}.jerk_limit=900", k + 1);
+        let (key, value) = jerk.split_once('=').expect("both");
+        scenario.machine = scenario.machine.set(key, value).expect("a limit");
+    }
+    let mut change = Task::visiting(points)?;
+    let words = [("shape", "line"), ("law", law), ("corners", if blend.is_some() { "blend" } else { "stop" })];
+    change.extend(words.map(|(key, word)| (key.to_owned(), word.into())));
+    change.extend(blend.map(|blend| ("blend".to_owned(), blend.into())));
+    scenario.task = scenario.task.with(&change).ok()?;
+    Some(scenario)
+}
+
+/// A plan with rounded corners takes no longer than one that rests at them; at first one took three times as long.
+fn never_slower(points: &[Vector], blend: f64, law: &str) -> Option<(f64, f64)> {
+    let time = |blend| Some(Run::new(&through(points, blend, law)?).ok()?.planned_time());
+    Some((time(Some(blend))?, time(None)?))
+}
+
+#[test]
+fn rounded_corners_are_never_slower_than_rests() {
+    let points = [(0.018, 0.363), (0.255, 0.196), (-0.091, 0.123), (0.273, 0.269), (0.086, 0.422)];
+    let points = points.map(|(x, y)| Vector::new(x, y));
+    for (law, at_most) in [("fastest", 1.345), ("fastest-smooth", f64::INFINITY)] {
+        for blend in [1e-4, 1e-3, 0.02] {
+            let (rounded, resting) = never_slower(&points, blend, law).expect("it can be followed");
+            assert!(rounded <= resting && rounded <= at_most, "{law}, {blend}: {rounded} s, resting {resting} s");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(500))]
+
+    #[test]
+    #[ignore = "long: 500 plans of either law, some minutes in a release build"]
+    fn rounded_corners_are_never_slower_than_rests_anywhere(points in anywhere(5), blend in -4.0..-1.0_f64) {
+        for law in ["fastest", "fastest-smooth"] {
+            if let Some((rounded, resting)) = never_slower(&points, 10f64.powf(blend), law) {
+                prop_assert!(rounded <= resting, "{}: {} s, resting {} s", law, rounded, resting);
+            }
+        }
+    }
+
+    #[test]
+    #[ignore = "long: 500 motions of either law, some minutes in a release build"]
+    fn fastest_motions_keep_their_limits_anywhere(
+        points in anywhere(5), shape in 0..3_usize, blend in -4.0..-1.0_f64, jerk in 2.5..4.0_f64,
+        speed in prop::option::of(1.0..6.0_f64), smooth in any::<bool>(),
+    ) {
+        judge(&points, shape, 10f64.powf(blend), &drives(speed, 10f64.powf(jerk)), smooth)?;
+    }
+}
+
+/// A time that a law finds is bound as one that is given is; and one without limits on jerk has no gap to them.
+#[test]
+fn times_that_are_found_have_a_range() {
+    let with = |limit: &str| {
+        let mut scenario = Scenario::builtin("case-3").expect("built in");
+        scenario.task.law = TimeLaw::Fastest;
+        for k in 1..4 {
+            scenario.machine = scenario.machine.set(&format!("drive.{k}.torque_limit"), limit).expect("a limit");
+        }
+        Run::new(&scenario)
+    };
+    for (limit, want) in [("1e-300", "want at most 3600 s"), ("1e-9", "want at most 3600 s"), ("1e12", "want at least")]
+    {
+        let error = with(limit).expect_err("no time for a motion").to_string();
+        assert!(error.contains(want) && error.len() < 200, "{limit}: {error}");
+    }
+    let run = with("3").expect("it can");
+    assert_eq!(run.plan().pace.expect("fastest").gap(), None);
+}
+
+/// Two poses that are one are named as they were given, on a closed path with rounded corners too.
+#[test]
+fn closed_joint_lines_name_given_points() {
+    let points = [(0.5, 0.5), (0.55, 0.9), (0.5, 0.5)].map(|(x, y)| Vector::new(x, y));
+    let mut scenario = through(&points, Some(0.05), "quintic").expect("a task");
+    let change =
+        [("shape", "joint-line".into()), ("closed", true.into())].map(|(k, v): (&str, Value)| (k.to_owned(), v));
+    scenario.task = scenario.task.with(&change.into_iter().collect()).expect("a task");
+    let error = Run::new(&scenario).expect_err("no way from a point to itself").to_string();
+    assert!(error.contains("points 3 and 1 are the same"), "{error}");
 }

@@ -4,11 +4,12 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers, pos2};
 use egui_kittest::{Harness, kittest::NodeT as _, kittest::Queryable as _};
 use stillbase::frame::Reach;
-use stillbase::planar::PerDrive;
+use stillbase::planar::{PerDrive, unit};
 use stillbase::plant::{Base, BaseKind, Each, Plant};
 use stillbase::reactionless::PlanePoint;
 use stillbase::scenario::Scenario;
 use stillbase::scene::palette::Theme;
+use stillbase::scene::pointer::Pointer;
 use stillbase::scene::stage::Handle;
 use stillbase::scene::sway::swayed;
 use stillbase::scene::views::ViewKind;
@@ -677,4 +678,315 @@ fn tolerances_are_shown_and_set() {
     h.key_press(Key::I);
     h.run_steps(2);
     assert!(h.query_by_label_contains("Pin forces over time").is_some());
+}
+
+/// How a drag arrives: a frame for each event, its release together with what comes after, or all of it at once.
+#[derive(Clone, Copy, PartialEq)]
+enum Arrival {
+    Slowly,
+    ReleasedLate,
+    AtOnce,
+}
+
+/// A drag after which the pointer goes elsewhere.
+fn arrive(h: &mut Desktop, how: Arrival, [from, to, after]: [egui::Pos2; 3]) {
+    let button = |pos, pressed| egui::Event::PointerButton {
+        pos,
+        button: egui::PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    let moved = egui::Event::PointerMoved;
+    let begun = [moved(from), button(from, true), moved(from + 0.5 * (to - from)), moved(to)];
+    let rest = [button(to, false), moved(after)];
+    for event in begun.into_iter().chain(rest.clone()) {
+        h.input_mut().events.push(event.clone());
+        let waits = match how {
+            Arrival::Slowly => false,
+            Arrival::ReleasedLate => event == rest[0],
+            Arrival::AtOnce => event != rest[1],
+        };
+        if !waits {
+            h.step();
+        }
+    }
+    h.run_steps(4);
+}
+
+/// On a slow display press, drag, release and what the hand does then may come in one frame: each counts where it was.
+#[test]
+fn a_release_counts_where_the_button_came_up() {
+    let outcome = |how: Arrival| {
+        let mut h = desk("case-3", Theme::Dark)?;
+        h.run_steps(2);
+        let mut said = Vec::new();
+        let slider = h.get_by_role_and_label(Role::Slider, "b slider").rect();
+        let [low, high] = [slider.left() + 8.0, slider.right() - 8.0];
+        let at = |share: f32| pos2(low + share * (high - low), slider.center().y);
+        arrive(&mut h, how, [at(0.307), at(0.32), at(0.33)]);
+        said.push(session(&h).frame().b);
+        // The ring's knob, a little on; then the hand goes across the picture.
+        let stage = h.state().desk().stage().clone();
+        let knob = |b: f64| {
+            let p = stage.ring_radius() * unit(session(&h).run().planes().expect("planes").map().turn(b));
+            on_screen(&h, p.re, p.im)
+        };
+        let way = [knob(session(&h).frame().b), knob(2.3), on_screen(&h, 0.5, -0.3)];
+        arrive(&mut h, how, way);
+        said.push(session(&h).frame().b);
+        let way = [(0.55, 0.9), (0.57, 0.8), (0.3, 0.3)].map(|(x, y)| on_screen(&h, x, y));
+        arrive(&mut h, how, way);
+        let to = session(&h).scenario().task.to;
+        said.extend(to);
+        let time = h.get_by_role_and_label(Role::Slider, "Time").rect();
+        let at = |share: f32| pos2(time.left() + 8.0 + share * (time.width() - 16.0), time.center().y);
+        arrive(&mut h, how, [at(0.0), at(0.4), at(0.9)]);
+        said.push(session(&h).frame().time);
+        h.key_press(Key::Home);
+        h.run_steps(2);
+        h.key_press(Key::P);
+        h.run_steps(2);
+        let way = [(0.5, 0.5), (0.5, 0.8), (0.1, 0.2)].map(|(x, y)| on_screen(&h, x, y));
+        arrive(&mut h, how, way);
+        said.extend(session(&h).scenario().task.to);
+        h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        h.run_steps(2);
+        let way = [(0.5, 0.5), (0.45, 0.6), (0.2, 0.8)].map(|(x, y)| on_screen(&h, x, y));
+        arrive(&mut h, how, way);
+        let target = session(&h).frame().target.at;
+        said.extend([target.re, target.im]);
+        Some(said)
+    };
+    let Some(slowly) = outcome(Arrival::Slowly) else { return };
+    assert!((slowly[1] - 2.3).abs() < 0.02 && (slowly[2] - 0.57).abs() < 2e-3, "{slowly:?}");
+    assert!((slowly[4] - 0.4).abs() < 0.02 && (slowly[6] - 0.8).abs() < 2e-3, "{slowly:?}");
+    assert!((slowly[7] - 0.45).abs() < 2e-3 && (slowly[8] - 0.6).abs() < 2e-3, "{slowly:?}");
+    for how in [Arrival::ReleasedLate, Arrival::AtOnce] {
+        let all = outcome(how).expect("as before");
+        for (i, (x, y)) in slowly.iter().zip(&all).enumerate() {
+            assert!((x - y).abs() < 1e-9, "number {i}: {x} slowly, {y} {}", how == Arrival::AtOnce);
+        }
+    }
+}
+
+/// Types into a field and leaves it.
+fn type_into(h: &mut Desktop, label: &str, text: &str) {
+    h.get_by_label(label).click();
+    h.run_steps(2);
+    h.event(egui::Event::Text(text.into()));
+    h.step();
+    h.key_press(Key::Enter);
+    h.run_steps(3);
+}
+
+/// Paused, b stops where it would move A and B, unless that is asked for; what is typed and cannot be is said.
+#[test]
+fn b_leaves_the_task_as_it_is() {
+    let Some(mut h) = desk("case-3", Theme::Dark) else { return };
+    h.run_steps(2);
+    let points = session(&h).scenario().task.points();
+    let ends = session(&h).run().planes().expect("planes").common(&points).expect("a band").intervals[0];
+    for (asked, stops) in [(3.6, ends[1]), (0.9, ends[0])] {
+        h.get_by_role_and_label(Role::Slider, "b slider").set_value_accesskit(asked);
+        h.run_steps(2);
+        let task = &session(&h).scenario().task;
+        assert!((task.b - stops).abs() < 1e-5, "{} for {asked}: it stops at {stops}", task.b);
+        assert_eq!(task.points(), points);
+    }
+    for (text, words) in
+        [("abc", "\"abc\" changes nothing"), ("-3", "from 0.000 to"), ("9e9", "from 0.000 to"), ("3.6", "A and B")]
+    {
+        let before = session(&h).to_scenario();
+        type_into(&mut h, "b rad", text);
+        let (said, bad) = h.state().desk().look().message.clone().unwrap_or_else(|| panic!("{text} is refused"));
+        assert!(bad && said.contains(words), "{said}");
+        assert_eq!(session(&h).to_scenario(), before, "{text}");
+    }
+    type_into(&mut h, "b rad", "2.5");
+    assert!((session(&h).frame().b - 2.5).abs() < 1e-9);
+    assert!(h.state().desk().look().message.is_none());
+    h.get_by_label("turn the task too").click();
+    h.run_steps(2);
+    h.get_by_role_and_label(Role::Slider, "b slider").set_value_accesskit(3.6);
+    h.run_steps(2);
+    let task = session(&h).scenario().task.clone();
+    assert!((task.b - 3.6).abs() < 1e-9 && (task.points()[0] - points[0]).norm() > 0.1, "{task:?}");
+    assert!(h.query_by_label_contains("Scenario").is_some());
+    // In motion it goes round and round; a whole turn is not shown.
+    h.key_press(Key::Num3);
+    h.run_steps(70);
+    let period = session(&h).run().planes().expect("planes").map().period();
+    h.state_mut().desk_mut().carry_out(stillbase::ui::Command::Edit(Edit::SlideB { b: 2.4 + period }));
+    h.run_steps(2);
+    assert!((session(&h).b_aim() - 2.4 - period).abs() < 1e-9);
+    let value = h.get_by_role_and_label(Role::Slider, "b slider").accesskit_node().numeric_value();
+    assert!(value.is_some_and(|b| (b - 2.4).abs() < 1e-9), "{value:?}");
+}
+
+/// Led by hand, the panel says so and leads back; the paper's cases come back whole.
+#[test]
+fn a_hand_is_named_and_let_go() {
+    let Some(mut h) = desk("case-3", Theme::Dark) else { return };
+    h.run_steps(2);
+    let band = "A and B: b from";
+    assert!(h.query_by_label_contains(band).is_some() && h.query_by_label("led by hand").is_none());
+    let (from, to) = (on_screen(&h, 0.5, 0.5), on_screen(&h, 0.45, 0.62));
+    drag(&mut h, from, to);
+    h.run_steps(20);
+    assert!(session(&h).is_live() && h.query_by_label("led by hand").is_some());
+    assert!(h.query_by_label_contains(band).is_none() && h.query_by_label("planned").is_none());
+    for by_key in [true, false] {
+        match by_key {
+            true => h.key_press(Key::B),
+            false => h.get_by_label("back to the path").click(),
+        }
+        h.run_steps(3);
+        assert!(!session(&h).is_live() && h.query_by_label_contains(band).is_some());
+        assert_eq!(session(&h).frame().step, 0);
+        assert!(session(&h).script().is_empty(), "{:?}", session(&h).script());
+        h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        h.run_steps(3);
+        assert!(session(&h).is_live(), "the hand comes back");
+    }
+    let gravity = Edit::SetMachine { key: "gravity".into(), value: "0,-9.81".into() };
+    h.state_mut().desk_mut().carry_out(stillbase::ui::Command::Edit(gravity));
+    h.key_press(Key::Num3);
+    h.run_steps(2);
+    assert_eq!(session(&h).to_scenario().machine, Scenario::builtin("case-3").expect("built in").machine);
+    assert!(h.state().desk().look().message.is_none());
+    // Another machine that somebody has chosen stays, and that is said.
+    let case = Scenario::builtin("case-3").expect("built in");
+    let other = stillbase::machine::builtins().iter().find(|m| m.name() == "nine-link-table-1");
+    let other = other.unwrap_or_else(|| {
+        panic!("{:?}", stillbase::machine::builtins().iter().map(|m| m.name().to_owned()).collect::<Vec<_>>())
+    });
+    let open = stillbase::ui::Command::Open(Box::new(Scenario { machine: other.clone(), ..case }));
+    h.state_mut().desk_mut().carry_out(open);
+    h.key_press(Key::Num3);
+    h.run_steps(2);
+    let (said, bad) = h.state().desk().look().message.clone().expect("it is said");
+    assert!(!bad && said.contains(other.name()), "{said}");
+    assert_eq!(session(&h).scenario().machine.name(), other.name());
+}
+
+/// The bar stands above the scene: in the default view nothing of the workspace, the machine or the target is covered.
+#[test]
+fn the_bar_covers_nothing() {
+    for (width, height) in [(1280.0, 800.0), (960.0, 600.0), (1440.0, 900.0)] {
+        let Some(mut h) = desk("case-3", Theme::Dark) else { return };
+        h.set_size(egui::vec2(width, height));
+        h.run_steps(4);
+        let scene = h.get_by_label_contains("Scene:").rect();
+        for label in ["2D", "Tower", "draw a path", "side by side"] {
+            let rect = h.get_by_label(label).rect();
+            assert!(rect.bottom() <= scene.top() && rect.right() <= scene.right(), "{label} {rect} {scene}");
+        }
+        let planes = session(&h).run().planes().expect("planes").clone();
+        for p in planes.boundary().turned(planes.map().turn(2.4)).iter().flatten() {
+            let at = on_screen(&h, p[0], p[1]);
+            assert!(scene.contains(at), "{p:?} at {at} in {scene}, {width} by {height}");
+        }
+    }
+}
+
+/// Choosing what the machine stands on, or what it holds, moves nothing away from under the pointer.
+#[test]
+fn the_panel_holds_still() {
+    let Some(mut h) = desk_of(Scenario::builtin("case-3").expect("built in"), Theme::Dark, 1700.0) else { return };
+    h.run_steps(2);
+    h.get_by_label("Base section").click();
+    h.run_steps(2);
+    let top = |h: &Desktop| ["Plant section", "Base section"].map(|label| h.get_by_label(label).rect().top());
+    let before = top(&h);
+    for kind in ["compliant", "free", "fixed"] {
+        h.get_by_label(kind).click();
+        h.run_steps(3);
+        assert_eq!(top(&h), before, "{kind}");
+    }
+}
+
+/// A list closes with Esc and nothing else does; a link says its name.
+#[test]
+fn lists_close_and_links_are_named() {
+    let Some(mut h) = desk("case-3", Theme::Dark) else { return };
+    h.run_steps(2);
+    h.key_press(Key::U);
+    h.run_steps(2);
+    for list in ["Scenario", "Machine", "Speed", "Shape"] {
+        h.get_by_label(list).click();
+        h.run_steps(3);
+        assert!(egui::Popup::is_any_open(&h.ctx), "{list} opens");
+        h.key_press(Key::Escape);
+        h.run_steps(3);
+        assert!(!egui::Popup::is_any_open(&h.ctx), "{list} closes");
+        assert!(h.state().desk().look().pushing, "Esc was for the list");
+    }
+    h.key_press(Key::U);
+    let frame = *session(&h).frame();
+    let e = frame.q.units();
+    let stage = h.state().desk().stage().clone();
+    for (i, bar) in stage.linkage().bars().iter().enumerate() {
+        let [from, to] = bar.ends(&e);
+        // Where no other link lies on it.
+        let free = (1..20).map(|k| f64::from(k) / 20.0).map(|t| [0, 1, 2].map(|j| from[j] + t * (to[j] - from[j])));
+        let alone = free.map(|p| seen(&h, p)).find(|at| {
+            let scene = h.get_by_label_contains("Scene:").rect();
+            let pair = |v: egui::Vec2| [f64::from(v.x), f64::from(v.y)];
+            let camera = *h.state().desk().look().camera();
+            let pointer = Pointer { camera, size: pair(scene.size()), at: pair(*at - scene.min) };
+            let views = h.state().desk().views();
+            views.link_at(&frame, &pointer) == Some(i) && views.pick(ViewKind::Flat, &frame, &pointer).is_none()
+        });
+        h.hover_at(alone.unwrap_or_else(|| panic!("{} is seen somewhere", bar.name)));
+        h.run_steps(40);
+        let words = format!("link {}, drive {}", bar.name, bar.drive + 1);
+        assert!(h.query_by_label_contains(&words).is_some(), "{words}");
+    }
+}
+
+/// A joint limit applies whatever the task: what no longer fits turns red, the run waits, and there are two ways out.
+#[test]
+fn limits_apply_and_the_run_waits() {
+    let Some(mut h) = desk("case-3", Theme::Dark) else { return };
+    h.run_steps(2);
+    let red = |h: &Desktop| {
+        let desk = h.state().desk();
+        let scene = desk.stage().scene(session(h).frame(), &Default::default());
+        let named = scene.labels.iter().filter(|l| l.colour == desk.look().palette().reaction);
+        named.map(|l| l.text.clone()).collect::<Vec<_>>()
+    };
+    for way_out in ["take b", "take back", "by hand"] {
+        type_into(&mut h, "a₁ greatest °", "150");
+        let limit = *session(&h).scenario().machine.angles()[0].limits.end();
+        assert!((limit - 150f64.to_radians()).abs() < 1e-12, "{limit}");
+        let waiting = session(&h).run().waiting().cloned().expect("B does not fit");
+        let [(1, Some(b))] = waiting.points[..] else { panic!("{waiting:?}") };
+        assert_eq!(red(&h), ["B".to_owned(), format!("b = {b:.3} rad would reach it")]);
+        assert!(h.query_by_label_contains("The run waits: B").is_some() && h.query_by_label("waits").is_some());
+        if way_out == "take b" {
+            h.snapshot("waits-dark");
+        }
+        h.key_press(Key::Space);
+        h.run_steps(10);
+        assert_eq!(session(&h).frame().step, 0, "time stands still");
+        match way_out {
+            "take b" => h.get_by_label_contains("take b").click(),
+            "take back" => h.key_press_modifiers(Modifiers::COMMAND, Key::Z),
+            _ => {
+                let (from, to) = (on_screen(&h, 0.55, 0.9), on_screen(&h, 0.55, 0.7));
+                drag(&mut h, from, to);
+            }
+        }
+        h.run_steps(3);
+        assert!(session(&h).run().waiting().is_none(), "{way_out}: {:?}", session(&h).run().waiting());
+        assert!(red(&h).is_empty() && h.query_by_label_contains("The run waits").is_none());
+        h.key_press(Key::Space);
+        h.run_steps(70);
+        assert!(session(&h).frame().step > 900 && session(&h).frame().peaks.is_reactionless(), "{way_out}");
+        h.key_press(Key::Num3);
+        h.run_steps(2);
+        h.key_press(Key::Space);
+        h.key_press(Key::Home);
+        h.run_steps(2);
+    }
 }

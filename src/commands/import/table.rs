@@ -23,8 +23,20 @@ pub fn table(answer: &Answer) -> String {
     for k in 0..drives {
         row(&format!("peak |τ_{}|", k + 1), &|a| a.peak_torque[k], 6, "N m");
     }
-    row("least b", &|a| a.b_range[0], 6, "rad");
-    row("greatest b", &|a| a.b_range[1], 6, "rad");
+    row("least b on the way", &|a| a.b_range[0], 6, "rad");
+    row("greatest b on the way", &|a| a.b_range[1], 6, "rad");
+    // The spline between the samples goes beyond them: both are said where they differ.
+    let range = given.map(|a| a.b_range);
+    if let Some(([low, high], [least, greatest])) = answer.b_samples.zip(range)
+        && (low - least).max(greatest - high) > 5e-7
+    {
+        table.row(["least b of the samples".into(), fixed(low, 6), String::new(), "rad".into()]);
+        table.row(["greatest b of the samples".into(), fixed(high, 6), String::new(), "rad".into()]);
+    }
+    let mut row = |name: &str, of: &dyn Fn(&Account) -> f64, decimals: usize, unit: &str| {
+        let both = [given.map(of), proposal.map(|p| of(&p.account))];
+        table.row([name.into(), cell(both[0], decimals), cell(both[1], decimals), unit.into()]);
+    };
     row("momentum at the end", &|a| a.angular_momentum_end, 9, "kg m²/s");
     if let Some(p) = proposal {
         let mut row = |name: String, value: f64, decimals: usize, unit: &str| {

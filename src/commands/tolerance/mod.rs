@@ -1,9 +1,9 @@
 //! `stillbase tolerance`
 
-mod merge;
+pub(crate) mod merge;
 mod parallel;
 mod report;
-mod rows;
+pub(crate) mod rows;
 mod seal;
 
 use std::ops::Range;
@@ -15,7 +15,7 @@ use stillbase::files::check_new;
 use stillbase::scenario::Scenario;
 use stillbase::session::{Run, settled};
 use stillbase::tolerance::{
-    Agreement, Bands, Ensemble, MAX_SAMPLES, Outcome, Shares, Spread, Tolerance as Section, ToleranceError,
+    Agreement, Bands, Ensemble, MAX_SAMPLES, Outcome, Shares, Spread, Tolerance as Section, ToleranceError, simulate,
 };
 
 use self::parallel::Mode;
@@ -184,6 +184,12 @@ impl Tolerance {
                 scenario.name
             ));
         }
+        if self.simulate && scenario.base.wheel.is_some() {
+            say(format!(
+                "note: {}: |n_B| of the simulated machines is what the reaction wheel leaves of it for the base",
+                scenario.name
+            ));
+        }
         let section = self.section(&scenario);
         let samples = section.samples.unwrap_or(if self.simulate { 1000 } else { 100_000 });
         let (i, n) = self.shard.unwrap_or((1, 1));
@@ -212,7 +218,11 @@ impl Tolerance {
             return Err(Failure::no_answer("no machine was drawn"));
         };
         let bands = Bands::of(&ensemble, samples);
-        let nominal = ensemble.nominal_outcome();
+        // By the same way as the machines beside it: the same base, control and friction, or perfect tracking for all.
+        let nominal = match self.simulate {
+            true => simulate(&run, &plant).map_err(|e| Failure::from(e).of(&scenario.name))?,
+            false => ensemble.nominal_outcome(),
+        };
         let answer = Answer {
             scenario: scenario.name.clone(),
             simulated: self.simulate,

@@ -230,7 +230,7 @@ pub struct Answer {
     pub motion_time: f64,
     /// What varies.
     pub parameters: Vec<Drawn>,
-    /// The machine without deviations, by perfect tracking.
+    /// The machine without deviations, by perfect tracking or simulated, as the machines are.
     pub nominal: Peaks,
     /// Peaks and root mean squares.
     #[serde(flatten)]

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
+use std::panic::{self, AssertUnwindSafe};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -372,23 +373,8 @@ impl Part {
                 Ok(())
             }
             Reader::Parquet(reader) => {
-                let failed = parquet_failure(&file);
                 for group in 0..reader.num_row_groups() {
-                    let group = reader.get_row_group(group).map_err(&failed)?;
-                    let count = rows_of(group.metadata()).ok_or_else(|| foreign(&file))?;
-                    let (mut samples, mut columns) = (Vec::with_capacity(count), Vec::new());
-                    let mut column = get_typed_column_reader::<Int64Type>(group.get_column_reader(0).map_err(&failed)?);
-                    column.read_records(count, None, None, &mut samples).map_err(&failed)?;
-                    for c in 0..row.len() {
-                        let reader = group.get_column_reader(c + 1).map_err(&failed)?;
-                        let mut values = Vec::with_capacity(count);
-                        let mut column = get_typed_column_reader::<DoubleType>(reader);
-                        column.read_records(count, None, None, &mut values).map_err(&failed)?;
-                        columns.push(values);
-                    }
-                    if samples.len() != count || columns.iter().any(|column| column.len() != count) {
-                        return Err(foreign(&file));
-                    }
+                    let (samples, columns) = guarded(&file, || group_of(&file, &reader, group, row.len()))?;
                     for (i, sample) in samples.iter().enumerate() {
                         row.iter_mut().zip(&columns).for_each(|(value, column)| *value = column[i]);
                         see(u64::try_from(*sample).unwrap_or(u64::MAX), &row)?;
@@ -434,7 +420,7 @@ fn parquet_reader(file: &Path, mut opened: File) -> Result<SerializedFileReader<
         (magic == *b"PAR1" && contents <= LONGEST_CONTENTS && contents + 12 <= length).then_some(length)
     };
     let length = contents().ok_or_else(|| foreign(file))?;
-    let reader = SerializedFileReader::new(opened).map_err(parquet_failure(file))?;
+    let reader = guarded(file, || SerializedFileReader::new(opened).map_err(parquet_failure(file)))?;
     let contents = reader.metadata();
     let columns = contents.file_metadata().schema().get_fields().len();
     let within = |group: &RowGroupMetaData| {
@@ -451,6 +437,39 @@ fn parquet_reader(file: &Path, mut opened: File) -> Result<SerializedFileReader<
         columns_match && plain && rows_of(group).is_some()
     };
     if contents.row_groups().iter().all(within) { Ok(reader) } else { Err(foreign(file)) }
+}
+
+/// The columns of a group: numbers of samples, and everything else.
+fn group_of(
+    file: &Path,
+    reader: &SerializedFileReader<File>,
+    group: usize,
+    width: usize,
+) -> Result<(Vec<i64>, Vec<Vec<f64>>), Failure> {
+    let failed = parquet_failure(file);
+    let group = reader.get_row_group(group).map_err(&failed)?;
+    let count = rows_of(group.metadata()).ok_or_else(|| foreign(file))?;
+    let mut samples = Vec::with_capacity(count);
+    let mut column = get_typed_column_reader::<Int64Type>(group.get_column_reader(0).map_err(&failed)?);
+    column.read_records(count, None, None, &mut samples).map_err(&failed)?;
+    let mut columns = Vec::with_capacity(width);
+    for c in 0..width {
+        let mut values = Vec::with_capacity(count);
+        let mut column = get_typed_column_reader::<DoubleType>(group.get_column_reader(c + 1).map_err(&failed)?);
+        column.read_records(count, None, None, &mut values).map_err(&failed)?;
+        columns.push(values);
+    }
+    let whole = samples.len() == count && columns.iter().all(|column| column.len() == count);
+    if whole { Ok((samples, columns)) } else { Err(foreign(file)) }
+}
+
+/// What the Parquet reader makes of a file: it panics on some that nobody wrote, which is a refusal here.
+fn guarded<T>(file: &Path, read: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
+    let hook = panic::take_hook();
+    panic::set_hook(Box::new(|_| {}));
+    let done = panic::catch_unwind(AssertUnwindSafe(read));
+    panic::set_hook(hook);
+    done.unwrap_or_else(|_| Err(foreign(file)))
 }
 
 /// How many rows a group has, if it is as large as those that are written here.

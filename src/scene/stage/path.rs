@@ -66,15 +66,25 @@ impl Stage {
                 (true, Some([x, y])) => Vector::new(x, y),
                 _ => *at,
             };
+            let unserved = self.waiting.iter().flat_map(|(waiting, _)| &waiting.points).find(|(n, _)| n == i);
+            let ink = if unserved.is_some() { palette.reaction } else { palette.ink };
             scene.markers.push(Marker {
                 name: format!("waypoint/{name}"),
                 at: point(at, z),
                 radius: if hot { 6.5 } else { 4.5 },
                 fill: palette.background,
-                stroke: palette.ink,
+                stroke: ink,
                 stroke_width: if hot { 2.2 } else { 1.6 },
             });
-            scene.labels.push(label(at, z, [-12.0, 0.0], name, palette.ink, 13.0, Anchor::Right));
+            scene.labels.push(label(at, z, [-12.0, 0.0], name, ink, 13.0, Anchor::Right));
+            if let Some((_, would_do)) = unserved {
+                let within = |b: f64| self.planes.as_ref().map_or(b, |planes| b.rem_euclid(planes.map().period()));
+                let text = match would_do {
+                    Some(b) => format!("b = {:.3} rad would reach it", within(*b)),
+                    None => "no b reaches it".into(),
+                };
+                scene.labels.push(label(at, z, [-12.0, 15.0], &text, palette.reaction, 11.5, Anchor::Right));
+            }
         }
     }
 
@@ -93,7 +103,8 @@ impl Stage {
             let drawn: Vec<Vector> = options.stroke.iter().map(|[x, y]| Vector::new(*x, *y)).collect();
             scene.lines.push(line("stroke", &drawn, palette.ink, None));
         }
-        if let Some(refused) = &options.refused {
+        let refused = self.waiting.as_ref().and_then(|(_, curve)| curve.as_ref());
+        if let Some(refused) = options.refused.as_deref().or(refused) {
             scene.lines.push(line("refused", &refused.curve, palette.reaction, Some([4.0, 4.0])));
             scene.markers.push(Marker {
                 name: "refused/at".into(),

@@ -15,6 +15,9 @@ pub(in crate::scene) fn target_handle(frame: &Frame) -> Vector {
     }
 }
 
+/// The end effector's distance from its target that is spoken of, m.
+const SEEN_MISS: f64 = 5e-4;
+
 pub(super) fn brief_point(p: Vector) -> String {
     format!("{}, {}", signed(p.re, 3), signed(p.im, 3))
 }
@@ -90,10 +93,26 @@ impl Stage {
             }
             reach => {
                 let words = if reach == Reach::Carried { "turns with its workspace" } else { INVITATION };
-                // Where it is, whatever the picture exaggerates.
-                let text = format!("{} m", brief_point(true_tip));
-                scene.labels.push(label(at, z, [20.0, -7.0], &text, ink, 13.0, Anchor::Left));
-                scene.labels.push(label(at, z, [20.0, 9.0], words, palette.dim, 11.5, Anchor::Left));
+                // Where things are, whatever the picture exaggerates.
+                let miss = (true_tip - at).norm();
+                let mut rows = vec![(format!("{} m", brief_point(at)), ink, 13.0)];
+                if miss > SEEN_MISS {
+                    scene.lines.push(Line {
+                        name: "target/miss".into(),
+                        points: vec![point(tip, z), point(at, z)],
+                        width: 1.4,
+                        colour: palette.dim,
+                        dash: Some([4.0, 4.0]),
+                        on_top: true,
+                    });
+                    let text = format!("end effector {} m, {} mm off", brief_point(true_tip), signed(1e3 * miss, 1));
+                    rows.push((text, palette.dim, 11.5));
+                }
+                rows.push((words.into(), palette.dim, 11.5));
+                for (i, (text, colour, size)) in rows.into_iter().enumerate() {
+                    let down = -7.0 + 16.0 * i as f32;
+                    scene.labels.push(label(at, z, [20.0, down], &text, colour, size, Anchor::Left));
+                }
             }
         }
     }

@@ -141,11 +141,13 @@ impl Stage {
                 stroke_width: 0.0,
             });
         }
+        // Whole turns of the machine make no other workspace.
+        let within = b.rem_euclid(planes.map().period());
         let rows = match compared {
-            true => vec![(format!("b = {b:.3} rad"), palette.dim, 11.5)],
+            true => vec![(format!("b = {within:.3} rad"), palette.dim, 11.5)],
             false => vec![
                 ("reactionless workspace".into(), palette.amber, 12.5),
-                (format!("b = {b:.3} rad · {:.3} m²", planes.boundary().area()), palette.dim, 11.5),
+                (format!("b = {within:.3} rad · {:.3} m²", planes.boundary().area()), palette.dim, 11.5),
             ],
         };
         for (i, (text, colour, size)) in rows.into_iter().enumerate().filter(|_| self.middle.is_some()) {

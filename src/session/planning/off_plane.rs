@@ -40,7 +40,9 @@ pub fn change_b(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
             let (motion, _) = timed(scenario, vec![(line, 1.0)])?;
             let fast = square.map_or(0.0, |square| {
                 let peak = Forecast::of(&motion, &model, &around, &limits).moment;
-                (peak * square / (price.inertia() * price.delta_b().abs())).sqrt()
+                let sampled = peak * square / (price.inertia() * price.delta_b().abs());
+                // Along a straight line b̈ = Δb s̈, whose greatest value is known.
+                sampled.max(motion.profile.peak_acceleration() * square).sqrt()
             });
             Motion { profile: if fast > 1.0 { motion.profile.stretched(fast) } else { motion.profile }, ..motion }
         }

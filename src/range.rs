@@ -1,0 +1,133 @@
+//! [`Range`]: where the number of a key may lie. Each key has one, stated once beside it; checks and messages read it.
+
+use std::borrow::Cow;
+use std::fmt;
+
+/// The numbers from one to another, both included, and their unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    low: f64,
+    high: f64,
+    unit: &'static str,
+}
+
+impl Range {
+    /// From `low` to `high`; the unit is only for words.
+    pub const fn new(low: f64, high: f64, unit: &'static str) -> Self {
+        Self { low, high, unit }
+    }
+
+    /// As far either way from zero.
+    pub const fn either_way(most: f64, unit: &'static str) -> Self {
+        Self::new(-most, most, unit)
+    }
+
+    /// Whether a number lies in it; one that is not finite never does.
+    pub fn contains(&self, x: f64) -> bool {
+        (self.low..=self.high).contains(&x)
+    }
+
+    /// Its unit.
+    pub const fn unit(&self) -> &'static str {
+        self.unit
+    }
+
+    /// The least number.
+    pub const fn low(&self) -> f64 {
+        self.low
+    }
+
+    /// The greatest number.
+    pub const fn high(&self) -> f64 {
+        self.high
+    }
+
+    /// A number of this key, looked at.
+    pub fn check(self, key: impl Into<Cow<'static, str>>, value: f64) -> Check {
+        Check { key: key.into(), value, ok: self.contains(value), want: Want::Within(self) }
+    }
+
+    /// The same for a key that may be absent.
+    pub fn check_some(self, key: &'static str, value: Option<f64>) -> Option<Check> {
+        value.map(|value| self.check(key, value))
+    }
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} to {}", Short(self.low), Short(self.high))?;
+        if self.unit.is_empty() { Ok(()) } else { write!(f, " {}", self.unit) }
+    }
+}
+
+/// A number that stands somewhere, and whether it may.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Check {
+    /// Its key, as `--set` names it.
+    pub key: Cow<'static, str>,
+    /// The number.
+    pub value: f64,
+    /// Whether it may stand there.
+    pub ok: bool,
+    /// What would be right.
+    pub want: Want,
+}
+
+impl Check {
+    /// A check that no range says.
+    pub fn words(key: impl Into<Cow<'static, str>>, value: f64, ok: bool, want: &'static str) -> Self {
+        Self { key: key.into(), value, ok, want: Want::Words(want) }
+    }
+}
+
+/// What would be right.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Want {
+    /// A number in a range.
+    Within(Range),
+    /// Something else.
+    Words(&'static str),
+}
+
+impl fmt::Display for Want {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Within(range) => range.fmt(f),
+            Self::Words(words) => f.write_str(words),
+        }
+    }
+}
+
+/// A number in as many digits as it needs, but never in hundreds of them: 1e300 stays 1e300.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Short(pub f64);
+
+impl fmt::Display for Short {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(x) = *self;
+        match x.abs() {
+            _ if x.is_nan() => f.write_str("not a number"),
+            f64::INFINITY => f.write_str(if x > 0.0 { "infinite" } else { "-infinite" }),
+            size if size == 0.0 || (1e-5..1e7).contains(&size) => write!(f, "{x}"),
+            _ => write!(f, "{x:e}"),
+        }
+    }
+}
+
+/// The most characters of somebody's text that a message repeats.
+const MOST_TEXT: usize = 80;
+
+/// Somebody's text as a message repeats it: its beginning, on one line, without what a terminal would obey.
+pub fn clipped(text: &str) -> String {
+    shortened(text, MOST_TEXT)
+}
+
+/// The first characters of a text, on one line, and dots where there is more.
+pub fn shortened(text: &str, most: usize) -> String {
+    let plain = |c: char| if c.is_control() { ' ' } else { c };
+    let mut short: String = text.chars().take(most).map(plain).collect();
+    if text.chars().nth(most).is_some() {
+        short.push('…');
+    }
+    short
+}

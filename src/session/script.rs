@@ -1,0 +1,102 @@
+//! [`Script`]: the edits of a document, in the order of steps. Versions share what they have in common, so that to
+//! remember one more of them costs no more than the edit that it adds.
+
+use std::sync::Arc;
+
+use super::{Edit, TimedEdit};
+
+/// Edits in the order of steps.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Script {
+    last: Option<Arc<Entry>>,
+    count: usize,
+}
+
+#[derive(Debug)]
+struct Entry {
+    timed: TimedEdit,
+    /// Whether somebody has led the machine off its planned motion by then.
+    led: bool,
+    before: Option<Arc<Self>>,
+}
+
+impl Drop for Entry {
+    fn drop(&mut self) {
+        // One after the other: a chain that drops itself would go as deep as it is long.
+        let mut next = self.before.take();
+        while let Some(mut entry) = next.and_then(Arc::into_inner) {
+            next = entry.before.take();
+        }
+    }
+}
+
+impl Script {
+    /// Adds an edit at the end.
+    pub fn push(&mut self, timed: TimedEdit) {
+        let leads = timed.edit.leads() || (timed.step > 0 && matches!(timed.edit, Edit::PoseB { .. }));
+        let led = leads || self.is_led();
+        self.last = Some(Arc::new(Entry { timed, led, before: self.last.take() }));
+        self.count += 1;
+    }
+
+    /// Takes the last one away.
+    pub fn pop(&mut self) {
+        if let Some(entry) = self.last.take() {
+            self.last.clone_from(&entry.before);
+            self.count -= 1;
+        }
+    }
+
+    /// The last one.
+    pub fn last(&self) -> Option<&TimedEdit> {
+        self.last.as_ref().map(|entry| &entry.timed)
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Whether somebody leads the machine off its planned motion.
+    pub fn is_led(&self) -> bool {
+        self.last.as_ref().is_some_and(|entry| entry.led)
+    }
+
+    /// Leaves out what comes after a step.
+    pub fn cut(&mut self, end: u64) {
+        while self.last().is_some_and(|timed| timed.step > end) {
+            self.pop();
+        }
+    }
+
+    /// All of them, one after the other.
+    pub fn to_vec(&self) -> Vec<TimedEdit> {
+        let mut all: Vec<TimedEdit> = self.entries().map(|entry| entry.timed.clone()).collect();
+        all.reverse();
+        all
+    }
+
+    /// These in place of its own; what both begin with is shared.
+    pub fn replaced(&self, edits: Vec<TimedEdit>) -> Self {
+        let mut own: Vec<&Arc<Entry>> = self.entries().collect();
+        own.reverse();
+        let same = own.iter().zip(&edits).take_while(|(own, new)| own.timed == **new).count();
+        let last = same.checked_sub(1).map(|i| own[i].clone());
+        let mut script = Self { last, count: same };
+        edits.into_iter().skip(same).for_each(|timed| script.push(timed));
+        script
+    }
+
+    /// From the last to the first.
+    fn entries(&self) -> impl Iterator<Item = &Arc<Entry>> {
+        std::iter::successors(self.last.as_ref(), |entry| entry.before.as_ref())
+    }
+}
+
+impl FromIterator<TimedEdit> for Script {
+    fn from_iter<T: IntoIterator<Item = TimedEdit>>(edits: T) -> Self {
+        let mut script = Self::default();
+        edits.into_iter().for_each(|timed| script.push(timed));
+        script
+    }
+}

@@ -1,0 +1,44 @@
+//! What is wrong with the edits of a file, as far as that takes neither a plan nor a motion.
+
+use super::run::{Refusal, changed, opening, order_of};
+use super::{Edit, TimedEdit};
+use crate::scenario::Scenario;
+
+/// Looks at every edit of a scenario in the order of steps: whether its numbers and what it sets may stand there.
+///
+/// # Errors
+/// The entry to blame, counted from 0, and what is wrong with it.
+pub(crate) fn survey(scenario: &Scenario) -> Result<(), (usize, String)> {
+    let edits = &scenario.edits;
+    if edits.is_empty() {
+        return Ok(());
+    }
+    let order = order_of(edits);
+    let script: Vec<&TimedEdit> = order.iter().map(|i| &edits[*i]).collect();
+    let opening = opening(script.iter().copied());
+    let mut now = scenario.without_edits();
+    // What stands between two edits before the first step need not fit together, but what they come to must.
+    let mut unsound = None;
+    for (place, (entry, timed)) in order.iter().zip(&script).enumerate() {
+        let of_entry = |why: String| (*entry, why);
+        if place == opening
+            && let Some(wrong) = unsound.take()
+        {
+            return Err(wrong);
+        }
+        timed.edit.check(now.step).map_err(|check| of_entry(Refusal::from(check).to_string()))?;
+        if matches!(timed.edit, Edit::DragTarget { .. } | Edit::SlideB { .. } | Edit::PoseB { .. }) {
+            continue;
+        }
+        if place >= opening && matches!(timed.edit, Edit::SetTask { .. } | Edit::SetBase { .. }) {
+            return Err(of_entry("task and base can change only before the first step: want step = 0".into()));
+        }
+        now = changed(&now, &timed.edit).map_err(|why| of_entry(why.to_string()))?;
+        match now.check(timed.edit.part()) {
+            Ok(()) => unsound = None,
+            Err(why) if place >= opening => return Err(of_entry(why.to_string())),
+            Err(why) => unsound = unsound.or_else(|| Some(of_entry(why.to_string()))),
+        }
+    }
+    unsound.map_or(Ok(()), Err)
+}

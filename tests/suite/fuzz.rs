@@ -1,0 +1,326 @@
+//! Whatever comes from outside ends in an answer or in a short error: no panic, no endless loop, no gigabytes.
+//!
+//! Inputs are good ones with numbers, keys, lines and bytes changed, as a seed decides: a failure prints its seed and
+//! number, and is made again by them. What has failed once stays in `tests/corpus` and is tried first.
+//! `STILLBASE_FUZZ_SECONDS` bounds how long each target goes on, `STILLBASE_FUZZ_INPUTS` how many inputs it takes (a
+//! small number without either), `STILLBASE_FUZZ_SEED` and `STILLBASE_FUZZ_FIRST` say where it begins.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use stillbase::machine::{self, Inertia};
+use stillbase::planar::Vector;
+use stillbase::pose_constant::{Planes, plane_map};
+use stillbase::scenario::Scenario;
+use stillbase::session::{Session, replay};
+
+use crate::mutation::{Dice, mutated};
+
+const MACHINES: [&str; 2] = [
+    include_str!("../../assets/machines/nine-link.toml"),
+    include_str!("../../assets/machines/nine-link-table-1.toml"),
+];
+
+const SCENARIOS: [&str; 12] = [
+    include_str!("../../assets/scenarios/case-1.toml"),
+    include_str!("../../assets/scenarios/case-2.toml"),
+    include_str!("../../assets/scenarios/case-3.toml"),
+    include_str!("../../assets/scenarios/circle.toml"),
+    include_str!("../../assets/scenarios/change-b.toml"),
+    include_str!("../../assets/scenarios/least-reaction.toml"),
+    include_str!("../../assets/scenarios/drift.toml"),
+    include_str!("../../assets/scenarios/spacecraft.toml"),
+    include_str!("../../assets/scenarios/bench-top.toml"),
+    include_str!("../../assets/scenarios/pick-up.toml"),
+    include_str!("../../assets/scenarios/friction.toml"),
+    include_str!("../../assets/scenarios/wheel.toml"),
+];
+
+const SESSION: &str = r#"
+machine = "nine-link"
+step = 0.01
+duration = 0.3
+[task]
+kind = "reactionless"
+from = [0.5, 0.5]
+to = [0.55, 0.9]
+b = 2.4
+time = 0.3
+[[edit]]
+step = 0
+do = "set-plant"
+change = { payload = { mass = 0.1, offset = [0.01, 0.0] }, friction = { coulomb = 0.01 } }
+[[edit]]
+step = 0
+do = "set-task"
+change = { shape = "spline", via = [[0.6, 0.7]] }
+[[edit]]
+step = 3
+do = "drag-target"
+x = 0.6
+y = 0.7
+[[edit]]
+step = 5
+do = "slide-b"
+b = 2.45
+[[edit]]
+step = 7
+do = "push"
+x = 1.5
+y = -2.0
+[[edit]]
+step = 9
+do = "set-control"
+change = { kp = 300.0, kd = 35.0 }
+[[edit]]
+step = 11
+do = "set-machine"
+key = "limits.a1"
+value = "0.1,3.0"
+[[edit]]
+step = 12
+do = "pose-b"
+b = 2.5
+[[edit]]
+step = 13
+do = "compare-b"
+b = 2.0
+[[edit]]
+step = 14
+do = "set-tolerance"
+change = { moment_limit = 0.01, "link.*.com" = { normal = 0.0005 } }
+"#;
+
+/// How long one input may take.
+const PATIENCE: Duration = Duration::from_secs(if cfg!(debug_assertions) { 60 } else { 10 });
+/// How much one input may add to what the process holds, bytes.
+const MEMORY: u64 = 2 << 30;
+
+/// A message is short, and its numbers are.
+pub fn is_short(said: &str) -> Result<(), String> {
+    let digits = said.split(|c: char| !c.is_ascii_digit()).map(str::len).max().unwrap_or(0);
+    match said.chars().count() > 1500 || digits > 30 || said.contains("NaN") || said.trim().is_empty() {
+        true => Err(format!(
+            "a message of {} characters: {}",
+            said.chars().count(),
+            said.chars().take(600).collect::<String>()
+        )),
+        false => Ok(()),
+    }
+}
+
+fn variable(name: &str) -> Option<u64> {
+    std::env::var(name).ok()?.parse().ok()
+}
+
+fn held() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    line.and_then(|line| line.trim().trim_end_matches(" kB").parse::<u64>().ok()).map_or(0, |kb| kb << 10)
+}
+
+/// Tries a check on what has failed before, and on inputs made of good ones.
+pub fn fuzz(target: &str, good: &[Vec<u8>], few: u64, check: impl Fn(&[u8], &mut Dice) -> Result<(), String>) {
+    let seconds = variable("STILLBASE_FUZZ_SECONDS");
+    let inputs = variable("STILLBASE_FUZZ_INPUTS").unwrap_or(if seconds.is_some() { u64::MAX } else { few });
+    let (seed, first) = (variable("STILLBASE_FUZZ_SEED").unwrap_or(1), variable("STILLBASE_FUZZ_FIRST").unwrap_or(0));
+    let now = Arc::new(Mutex::new((String::new(), Vec::new())));
+    let (beat, beats) = channel::<()>();
+    // An input that never ends is written down, and ends the process.
+    let watched = now.clone();
+    let watch = std::thread::spawn(move || {
+        loop {
+            match beats.recv_timeout(PATIENCE) {
+                Ok(()) => {}
+                Err(RecvTimeoutError::Disconnected) => return,
+                Err(RecvTimeoutError::Timeout) => {
+                    let (what, bytes) = &*watched.lock().expect("not poisoned");
+                    eprintln!("{what}: no end after {PATIENCE:?}; see {}", keep(what, bytes).display());
+                    std::process::abort();
+                }
+            }
+        }
+    });
+    let mut before = held();
+    let mut run = |what: String, bytes: Vec<u8>, dice: &mut Dice| {
+        *now.lock().expect("not poisoned") = (what.clone(), bytes.clone());
+        let _ = beat.send(());
+        let done = catch_unwind(AssertUnwindSafe(|| check(&bytes, dice)));
+        let fail = |why: String| panic!("{what}: {why}; see {}", keep(&what, &bytes).display());
+        match done {
+            Ok(Ok(())) => {}
+            Ok(Err(why)) => fail(why),
+            Err(panic) => {
+                let words = panic.downcast_ref::<String>().cloned();
+                fail(format!(
+                    "panic: {}",
+                    words.or(panic.downcast_ref::<&str>().map(|s| (*s).into())).unwrap_or_default()
+                ));
+            }
+        }
+        let after = held();
+        if after > before + MEMORY {
+            fail(format!("{} MB more than before", (after - before) >> 20));
+        }
+        before = after;
+    };
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/corpus").join(target);
+    let mut known: Vec<PathBuf> = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|e| e.path()).collect();
+    known.sort();
+    for file in &known {
+        run(
+            format!("{target} {}", file.display()),
+            std::fs::read(file).expect("readable"),
+            &mut Dice::new(seed, target, 0),
+        );
+    }
+    let began = Instant::now();
+    let mut count = 0;
+    while count < inputs && seconds.is_none_or(|s| began.elapsed() < Duration::from_secs(s)) {
+        let mut dice = Dice::new(seed, target, first + count);
+        let start = &good[dice.below(good.len())];
+        let other = &good[dice.below(good.len())];
+        let bytes = mutated(start, other, &mut dice);
+        let what = format!("STILLBASE_FUZZ_SEED={seed} STILLBASE_FUZZ_FIRST={} {target}", first + count);
+        run(what, bytes, &mut dice);
+        count += 1;
+    }
+    drop(beat);
+    watch.join().expect("it watches");
+    println!(
+        "{target}: {count} inputs and {} kept ones from seed {seed} in {:.1} s",
+        known.len(),
+        began.elapsed().as_secs_f64()
+    );
+}
+
+/// Writes an input down.
+fn keep(what: &str, bytes: &[u8]) -> PathBuf {
+    let name: String = what.chars().map(|c| if c.is_alphanumeric() { c } else { '-' }).collect();
+    let tail: String = name.chars().rev().take(80).collect::<Vec<_>>().into_iter().rev().collect();
+    let file = PathBuf::from(option_env!("CARGO_TARGET_TMPDIR").unwrap_or("/tmp")).join(format!("fuzz{tail}"));
+    let _ = std::fs::write(&file, bytes);
+    file
+}
+
+pub fn bytes(texts: &[&str]) -> Vec<Vec<u8>> {
+    texts.iter().map(|text| text.as_bytes().to_vec()).collect()
+}
+
+#[test]
+fn machines() {
+    fuzz("machine", &bytes(&MACHINES), 300, |bytes, dice| {
+        let text = String::from_utf8_lossy(bytes);
+        let machine = match machine::parse(&text, "in.toml") {
+            Ok(machine) => machine,
+            Err(error) => return is_short(&error.to_string()),
+        };
+        let again =
+            machine::parse(&machine::to_toml(&machine), "again.toml").map_err(|e| format!("not read back: {e}"))?;
+        if again != machine {
+            return Err("read back as another".into());
+        }
+        let inertia = Inertia::of(&machine);
+        if !(0..machine.drives()).all(|k| inertia.diagonal(k) > 0.0 && inertia.diagonal(k).is_finite()) {
+            return Err("a mass matrix that is none".into());
+        }
+        match plane_map(&machine) {
+            Err(error) => is_short(&error.to_string())?,
+            Ok(map) if dice.one_in(4) => {
+                let p = Vector::new(dice.between(-1.0, 1.0), dice.between(-1.0, 1.0));
+                let _ = map.poses(p, dice.between(-1e3, 1e3)).iter().count();
+                if let Err(why) = map.reach(p) {
+                    is_short(&why.to_string())?;
+                }
+                if dice.one_in(16)
+                    && let Err(why) = Planes::of(&machine)
+                {
+                    is_short(&why.to_string())?;
+                }
+            }
+            Ok(_) => {}
+        }
+        Ok(())
+    });
+}
+
+#[test]
+fn scenarios() {
+    fuzz("scenario", &bytes(&SCENARIOS), 150, |bytes, dice| {
+        let text = String::from_utf8_lossy(bytes);
+        let scenario = match Scenario::parse(&text, "in.toml", None) {
+            Ok(scenario) => scenario,
+            Err(error) => return is_short(&error.to_string()),
+        };
+        let again =
+            Scenario::parse(&scenario.to_toml(), "again.toml", None).map_err(|e| format!("not read back: {e}"))?;
+        if again != scenario {
+            return Err("read back as another".into());
+        }
+        if dice.one_in(4) {
+            let short = Scenario { duration: Some(3.0 * scenario.step), edits: Vec::new(), ..scenario };
+            let mut sound = true;
+            match replay(&short, |_, frame| sound &= frame.is_finite()) {
+                Ok(_) if !sound => return Err("a frame that is not finite".into()),
+                Ok(_) => {}
+                Err(refusal) => is_short(&refusal.to_string())?,
+            }
+        }
+        Ok(())
+    });
+}
+
+#[test]
+fn sessions() {
+    fuzz("session", &bytes(&[SESSION]), 60, |bytes, dice| {
+        let text = String::from_utf8_lossy(bytes);
+        let scenario = match Scenario::parse(&text, "in.toml", None) {
+            Ok(scenario) => scenario,
+            Err(error) => return is_short(&error.to_string()),
+        };
+        // A long run says nothing that a short one does not.
+        let duration = scenario.duration.map(|d| d.min(60.0 * scenario.step));
+        if dice.one_in(2) {
+            let saved = Scenario { duration, ..scenario.clone() };
+            if let Err(refusal) = replay(&saved, |_, _| {}) {
+                is_short(&refusal.to_string())?;
+            }
+        }
+        let edits = scenario.edits.clone();
+        let mut session = match Session::open(Scenario { edits: Vec::new(), duration, ..scenario }) {
+            Ok(session) => session,
+            Err(refusal) => return is_short(&refusal.to_string()),
+        };
+        for timed in edits {
+            if let Err(refusal) = session.apply(timed.edit) {
+                is_short(&refusal.to_string())?;
+            }
+            if dice.one_in(3) {
+                session.end_gesture();
+            }
+            session.tick(dice.below(4) as u64);
+            if dice.one_in(6)
+                && let Err(refusal) = session.undo()
+            {
+                is_short(&refusal.to_string())?;
+            }
+        }
+        let saved = session.to_scenario();
+        let read = Scenario::parse(&saved.to_toml(), "saved.toml", None).map_err(|e| format!("not read back: {e}"))?;
+        if read != saved {
+            return Err("read back as another".into());
+        }
+        // What was done by hand is replayed to the same frames, unless the numbers blow up.
+        let mut frames = Vec::new();
+        match replay(&read, |_, frame| frames.push(*frame)) {
+            Ok(_) if session.frames().len() > 1 && frames[..] != *session.frames() => {
+                Err("replayed to other frames".into())
+            }
+            Ok(_) => Ok(()),
+            Err(refusal) => is_short(&refusal.to_string()),
+        }
+    });
+}

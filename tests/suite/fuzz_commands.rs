@@ -1,0 +1,123 @@
+//! The same for what only commands read: settings, samples as CSV, states as JSON, parts of a study.
+
+use clap::Parser;
+use stillbase::machine::builtin;
+use stillbase::scenario::Scenario;
+
+use crate::commands::failure::Failure;
+use crate::commands::input::{Settings, set};
+use crate::commands::tolerance::{merge, rows};
+use crate::commands::{columns, dynamics};
+use crate::fuzz::{bytes, fuzz, is_short};
+
+fn said(failure: &Failure) -> Result<(), String> {
+    match failure {
+        Failure::ReaderGone => Ok(()),
+        Failure::NoAnswer(why) | Failure::WrongInput(why) => is_short(why),
+    }
+}
+
+#[derive(Parser)]
+struct Line {
+    #[command(flatten)]
+    settings: Settings,
+}
+
+#[test]
+fn settings() {
+    const GOOD: [&str; 3] = [
+        "link.5.com=-0.02\nlink.9.mass=0.3\nlength.l1=0.6\npayload.mass=0.1\ngravity=0,-9.81\nlimits.a1=0.4,2.7",
+        "task.shape=spline\ntask.time=2\ntask.b=2.5\nplant.payload.mass=0.1\nplant.friction.coulomb=0.2,0.1,0.1\nbase.kind=free",
+        "drive.1.torque_limit=20\ndrive.2.jerk_limit=900\ncontrol.kp=400,300,300\nbase.kind=compliant\nbase.mass=40\ncontrol.law=pd",
+    ];
+    fuzz("settings", &bytes(&GOOD), 300, |bytes, dice| {
+        let text = String::from_utf8_lossy(bytes);
+        let words = text.lines().flat_map(|line| ["--set", line]);
+        let line = match Line::try_parse_from(std::iter::once("stillbase").chain(words)) {
+            Ok(line) => line,
+            // The reader of command lines repeats what it was given, and the program says it in one line.
+            Err(_) => return Ok(()),
+        };
+        let name = ["case-1", "case-3", "circle", "change-b"][dice.below(4)];
+        match set(Scenario::builtin(name).expect("built in"), &line.settings) {
+            Ok(scenario) => match Scenario::parse(&scenario.to_toml(), "again.toml", None) {
+                Ok(again) if again == scenario => Ok(()),
+                Ok(_) => Err("read back as another".into()),
+                Err(error) => Err(format!("not read back: {error}")),
+            },
+            Err(failure) => said(&failure),
+        }
+    });
+}
+
+#[test]
+fn samples_as_csv() {
+    let table = |head: &str, row: &dyn Fn(f64) -> String| {
+        let rows: String = (0..40).map(|i| row(0.025 * f64::from(i)) + "\n").collect();
+        format!("{head}\n{rows}").into_bytes()
+    };
+    let good = [
+        table("t,q1,q2,q3", &|t| format!("{t},{},{},{}", 1.7 - 0.2 * t * t, 3.7 + 0.5 * t * t, 2.2 + 0.9 * t * t)),
+        table("t (ms),x (mm),y (mm)", &|t| format!("{},{},{}", 1e3 * t, 500.0 + 50.0 * t * t, 500.0 + 400.0 * t * t)),
+        table("time;q1 (deg);q2 (deg);q3 (deg)", &|t| format!("{t};{};{};{}", 97.0 - t, 210.0 + t, 120.0 + 3.0 * t)),
+    ];
+    let machine = builtin("nine-link").expect("built in");
+    fuzz("csv", &good, 300, |bytes, dice| {
+        let text = String::from_utf8_lossy(bytes);
+        match columns::samples(&text, "in.csv", machine, None, dice.one_in(2)) {
+            Ok(read) => match read.samples.rows().flatten().all(|x| x.is_finite()) {
+                true => Ok(()),
+                false => Err("a sample that is not finite".into()),
+            },
+            Err(failure) => said(&failure),
+        }
+    });
+}
+
+#[test]
+fn states() {
+    const GOOD: &str = "[{\"q\": [1.7, 3.7, 2.2], \"qd\": [0.1, -0.2, 0.3], \"qdd\": [0, 1e-3, -2]},\n\
+                        {\"q\": [0, 1, 2], \"qd\": [0, 0, 0], \"qdd\": [0, 0, 0]}]\n";
+    let machine = builtin("nine-link").expect("built in");
+    fuzz("states", &bytes(&[GOOD]), 300, |bytes, _| {
+        match dynamics::states_in(&String::from_utf8_lossy(bytes), "in.json", machine) {
+            Ok(states) => match states.iter().flatten().flat_map(|v| v.iter()).all(|x| x.is_finite()) {
+                true => Ok(()),
+                false => Err("a state that is not finite".into()),
+            },
+            Err(failure) => said(&failure),
+        }
+    });
+}
+
+#[test]
+fn parts() {
+    let folder = std::path::Path::new(option_env!("CARGO_TARGET_TMPDIR").unwrap_or("/tmp"));
+    let named = |name: &str, ending: &str| folder.join(format!("fuzz-{name}-{}.{ending}", std::process::id()));
+    for (target, ending) in [("parquet", "parquet"), ("parts", "csv")] {
+        let (part, whole) = (named("part", ending), named("whole", ending));
+        let head = rows::Head {
+            study: rows::Study { samples: 40, seed: 1, problem: 7 },
+            columns: ["a", "peak_moment N m", "peak_force N", "rms_moment N m", "rms_force N"]
+                .map(String::from)
+                .to_vec(),
+        };
+        let mut writer = rows::Writer::create(&part, true, &head).expect("begun");
+        for i in 0..40 {
+            let x = 0.1 + 1e-3 * i as f64;
+            writer.row(i, &[x, x, 2.0 * x, 0.5 * x, x]).expect("written");
+        }
+        writer.finish().expect("written");
+        let good = std::fs::read(&part).expect("readable");
+        fuzz(target, &[good], 150, |bytes, _| {
+            std::fs::write(&part, bytes).expect("a place to write");
+            match merge::merge(std::slice::from_ref(&part), &whole, true) {
+                Ok((study, outcomes)) if outcomes.len() as u64 == study.samples => Ok(()),
+                Ok(_) => Err("another number of machines than it says".into()),
+                Err(failure) => said(&failure),
+            }
+        });
+        let _ = std::fs::remove_file(&part);
+        let _ = std::fs::remove_file(&whole);
+    }
+}

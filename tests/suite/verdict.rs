@@ -1,0 +1,175 @@
+//! What a run is called, and what is said beside it.
+
+use proptest::prelude::*;
+use stillbase::frame::Frame;
+use stillbase::keys;
+use stillbase::plant::{BaseKind, Each, Wheel};
+use stillbase::scenario::Scenario;
+use stillbase::session::{Edit, Session, TimedEdit, replay};
+use stillbase::verdict::{PAST, Verdict};
+
+fn case(name: &str, machine: &[(&str, &str)], settings: &str) -> Scenario {
+    let mut scenario = Scenario::builtin(name).expect("built in");
+    let table: toml::Table = settings.parse().expect("TOML");
+    let part = |key: &str| table.get(key).and_then(|v| v.as_table()).cloned().unwrap_or_default();
+    scenario.machine = scenario.machine.set_all(machine.iter().copied()).expect("valid");
+    scenario.plant = keys::with(&scenario.plant, &part("plant")).expect("a plant");
+    scenario.control = keys::with(&scenario.control, &part("control")).expect("control");
+    scenario.base = keys::with(&scenario.base, &part("base")).expect("a base");
+    scenario
+}
+
+fn run(scenario: &Scenario) -> (Verdict, Vec<Frame>) {
+    let mut frames = Vec::new();
+    let run = replay(scenario, |_, f| frames.push(*f)).expect("runs");
+    (Verdict::of(run.scenario(), &run.frame()), frames)
+}
+
+fn shorts(verdict: &Verdict) -> Vec<String> {
+    verdict.remarks().into_iter().map(|r| r.short).collect()
+}
+
+#[test]
+fn the_cases_of_the_paper_need_no_remark() {
+    for name in ["case-1", "case-2", "case-3"] {
+        let (verdict, frames) = run(&case(name, &[], ""));
+        let peak = frames.iter().map(|f| f.base_moment().abs()).fold(0.0, f64::max);
+        assert_eq!((verdict.arm_moment, verdict.past_wheel), (peak, None));
+        assert_eq!(verdict.reactionless, name == "case-3");
+        assert_eq!(verdict.answer(), if name == "case-3" { "yes" } else { "no" });
+        assert_eq!(verdict.is_clean(), name == "case-3", "{:?}", verdict.remarks());
+        assert!(verdict.sentence().starts_with(if name == "case-3" { "reactionless: " } else { "not reactionless: " }));
+    }
+}
+
+/// What the arm transmits and what a wheel leaves of it are two quantities: the arm is not called reactionless for it.
+#[test]
+fn a_wheel_does_not_make_an_arm_reactionless() {
+    let mut scenario = case("case-1", &[], "");
+    scenario.base.wheel = Some(Wheel { inertia: 0.002, ..Wheel::default() });
+    let (verdict, frames) = run(&scenario);
+    let peak = |of: fn(&Frame) -> f64| frames.iter().map(|f| of(f).abs()).fold(0.0, f64::max);
+    assert_eq!(verdict.arm_moment, peak(Frame::base_moment));
+    assert_eq!(verdict.past_wheel, Some(peak(Frame::felt_moment)));
+    assert!((verdict.arm_moment - 1.0891).abs() < 1e-3 && verdict.past_wheel.is_some_and(|n| n < 1e-9));
+    assert!(!verdict.reactionless && verdict.quiet && verdict.is_good());
+    assert_eq!((verdict.word(), verdict.answer().as_str()), ("quiet past the wheel", "no, the wheel takes it up"));
+    // One that is too weak leaves the base something: no praise.
+    scenario.base.wheel = Some(Wheel { inertia: 0.002, torque_limit: Some(0.5), ..Wheel::default() });
+    let (weak, _) = run(&scenario);
+    assert!(!weak.quiet && weak.past_wheel.is_some_and(|n| (n - 0.5891).abs() < 1e-3), "{weak:?}");
+    assert_eq!((weak.word(), weak.answer().as_str()), ("not reactionless", "no"));
+    assert!(weak.sentence().contains("peak |n_B| 1.0891 N m, past the wheel 0.5891 N m"), "{}", weak.sentence());
+}
+
+/// Heights along the axis tilt the base whatever the plane says: the verdict says that it leaves that out.
+#[test]
+fn tilting_is_said_to_be_outside() {
+    let (verdict, frames) = run(&case("case-3", &[("link.5.axial", "0.02"), ("link.9.axial", "0.04")], ""));
+    let peak = frames.iter().map(|f| f.inside.tilt.total().norm()).fold(0.0, f64::max);
+    assert!(peak > 0.01 && (verdict.tilt - peak).abs() < 1e-12, "{} {peak}", verdict.tilt);
+    assert!(verdict.reactionless && !verdict.is_clean());
+    assert_eq!(verdict.answer(), "yes, tilts its base");
+    assert!(verdict.sentence().contains("heights"), "{}", verdict.sentence());
+}
+
+/// An arm that friction holds transmits nothing and has shown nothing.
+#[test]
+fn an_arm_that_never_moves_is_not_praised() {
+    let (verdict, frames) = run(&case("case-3", &[], "[plant.friction]\ncoulomb = 1e4"));
+    assert!(frames.iter().all(|f| f.qd.max_abs() < 1e-12));
+    assert!(!verdict.moved && !verdict.is_clean());
+    assert_eq!(shorts(&verdict), ["never moved", "off its target"]);
+    assert!(verdict.answer().starts_with("yes, never moved"), "{}", verdict.answer());
+}
+
+/// A miss is of the end effector where the run ended, and is told only when it has.
+#[test]
+fn a_miss_is_said_at_the_end() {
+    let scenario = case("case-2", &[], "[base]\nkind = \"free\"");
+    let (verdict, frames) = run(&scenario);
+    let end = &frames[frames.len() - 1];
+    assert!(verdict.miss > 1e-3 && verdict.miss == (end.tip - end.target.at).norm());
+    assert_eq!(shorts(&verdict), ["off its target"]);
+    let on_the_way = Verdict::of(&scenario, &frames[frames.len() / 2]);
+    assert!(on_the_way.so_far().is_empty() && Verdict::of(&scenario, end).so_far().len() == 1);
+    assert_eq!(Verdict::of(&scenario, &frames[0]).so_far(), []);
+}
+
+/// Joint limits that are passed are named, with by how much.
+#[test]
+fn a_joint_limit_that_is_passed_is_named() {
+    let mut scenario = case("case-3", &[], "[control]\nlaw = \"pd\"\nkp = 0.0\nkd = 0.0");
+    scenario.duration = Some(1.5);
+    scenario.edits = vec![TimedEdit { step: 1, edit: Edit::Push { x: 60.0, y: -20.0 } }];
+    let (verdict, frames) = run(&scenario);
+    let past = |f: &Frame, i: usize| {
+        let limits = &scenario.machine.angles()[i].limits;
+        (limits.start() - f.a[i]).max(f.a[i] - limits.end())
+    };
+    let most = |i: usize| frames.iter().map(|f| past(f, i)).fold(0.0, f64::max);
+    let (worst, by) = if most(0) > most(1) { ("a1", most(0)) } else { ("a2", most(1)) };
+    assert!(by > 0.1, "it swings past: {by}");
+    assert_eq!(verdict.past_limit, Some((worst.into(), by)));
+    assert!(verdict.answer().contains("past a joint limit") && verdict.sentence().contains(worst));
+    // What rounding passes by is none.
+    assert!(run(&case("case-1", &[], "")).0.past_limit.is_none_or(|(_, by)| by > PAST));
+}
+
+/// An audit that fails leaves no answer, whatever the peaks say.
+#[test]
+fn a_failed_audit_leaves_no_answer() {
+    let scenario = case("case-3", &[], "");
+    let (_, frames) = run(&scenario);
+    let mut end = frames[frames.len() - 1];
+    end.audit.energy = 1.0;
+    let verdict = Verdict::of(&scenario, &end);
+    assert_eq!((verdict.word(), verdict.answer().as_str()), ("untrusted", "untrusted"));
+    assert!(!verdict.is_good() && !verdict.is_clean() && verdict.sentence().contains("audit failed: energy"));
+}
+
+/// A session on its way says what it knows and no more.
+#[test]
+fn a_session_has_a_verdict_at_any_time() {
+    let session = Session::open(case("case-3", &[], "")).expect("begins");
+    let verdict = Verdict::of(session.scenario(), session.frame());
+    assert!(verdict.is_good() && verdict.so_far().is_empty() && !verdict.moved);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    /// Free fall is weightlessness: whatever gravity does to a base that nothing holds, arm and base do to each other what
+    /// they do without it.
+    #[test]
+    fn free_fall_transmits_what_weightlessness_does(
+        gravity in prop::array::uniform2(-12.0..12.0_f64),
+        com in prop::array::uniform2(-0.2..0.2_f64),
+        name in prop_oneof![Just("case-1"), Just("case-3")],
+        payload in prop_oneof![Just(0.0), 0.0..1.0_f64],
+        knows in any::<bool>(),
+    ) {
+        let of = |gravity: [f64; 2]| {
+            let pull = format!("{},{}", gravity[0], gravity[1]);
+            let mut scenario = case(name, &[("gravity", pull.as_str())], "");
+            scenario.base.kind = BaseKind::Free;
+            scenario.base.com = com;
+            scenario.plant.payload.mass = payload;
+            // PD knows no weight: it is the same controller in both.
+            scenario.control.law = if knows { stillbase::control::Law::ComputedTorque } else { stillbase::control::Law::Pd };
+            scenario.control.kp = Each::All(400.0);
+            scenario.duration = Some(0.4);
+            run(&scenario)
+        };
+        let ((falling, frames), (floating, others)) = (of(gravity), of([0.0; 2]));
+        for (a, b) in frames.iter().zip(&others) {
+            prop_assert!((a.wrench.dynamic.force - b.wrench.dynamic.force).norm() < 1e-8);
+            prop_assert!(a.wrench.statical.force.norm() < 1e-12);
+            prop_assert!((a.base_moment() - b.base_moment()).abs() < 1e-8);
+            prop_assert!((a.inside.worst - b.inside.worst).abs() < 1e-6);
+        }
+        prop_assert_eq!(falling.reactionless, floating.reactionless);
+        prop_assert_eq!(falling.reactionless, name == "case-3" && payload == 0.0);
+        prop_assert_eq!(falling.word(), floating.word());
+    }
+}
