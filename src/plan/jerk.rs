@@ -65,7 +65,7 @@ pub(super) fn uneased(s: f64) -> f64 {
     for _ in 0..60 {
         let [at, slope, ..] = eased(theta);
         let step = (at - s) / slope;
-        if !(step.abs() > 1e-16 * theta) {
+        if step.is_nan() || step.abs() <= 1e-16 * theta {
             break;
         }
         theta -= step;
@@ -254,7 +254,7 @@ impl Program {
             }
             alone.push((theta, least));
         }
-        if !(bend > 0.0) {
+        if bend.is_nan() || bend <= 0.0 {
             return None;
         }
         // From below by parabolas that open upwards, then from inside by ones that open downwards: what is left has no
@@ -308,7 +308,7 @@ impl Program {
         for (place, sides) in self.places.iter().zip(self.sides.chunks_exact_mut(self.each)) {
             let c = &c[place.first..];
             let (y, slope) = (dot(&place.y, c), dot(&place.slope, c));
-            if !(y > 0.0) {
+            if y.is_nan() || y <= 0.0 {
                 return false;
             }
             let (root, squares) = (y.cbrt(), slope * slope / y);
@@ -371,8 +371,8 @@ impl Program {
 
     /// Where the objective and the limits push the coefficients.
     fn push(&self, c: &[f64], centre: f64, push: &mut [f64]) {
-        for i in 0..c.len() {
-            push[i] = (centre - self.bent[i]) / c[i];
+        for (push, (bent, c)) in push.iter_mut().zip(self.bent.iter().zip(c)) {
+            *push = (centre - bent) / c;
         }
         for (place, sides) in self.places.iter().zip(self.sides.chunks_exact(self.each)) {
             let y = dot(&place.y, &c[place.first..]);
@@ -391,9 +391,8 @@ impl Program {
     /// Calls with room, its change, worth and its change, for every limit.
     #[inline]
     fn each(&self, c: &[f64], step: &[f64], centre: f64, mut call: impl FnMut([f64; 4])) {
-        for i in 0..c.len() {
-            let worth = (centre - self.bent[i] - self.worth[i] * step[i]) / c[i] - self.worth[i];
-            call([c[i], step[i], self.worth[i], worth]);
+        for ((room, change), (worth, bent)) in c.iter().zip(step).zip(self.worth.iter().zip(&self.bent)) {
+            call([*room, *change, *worth, (centre - bent - worth * change) / room - worth]);
         }
         for (place, sides) in self.places.iter().zip(self.sides.chunks_exact(self.each)) {
             let step = &step[place.first..];

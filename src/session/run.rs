@@ -204,8 +204,8 @@ impl Refusal {
 pub struct Waiting {
     /// What is in the way.
     pub why: Refusal,
-    /// Points that the plane of the task does not serve, counted from A, and the nearest b of each that would, rad.
-    pub points: Vec<(usize, Option<f64>)>,
+    /// Points that the plane of the task does not serve, counted from A, and the nearest b of each that would, rad, as printed.
+    pub points: Vec<(usize, Option<Decimal>)>,
 }
 
 impl Waiting {
@@ -214,7 +214,7 @@ impl Waiting {
         let unserved = |(i, p): (usize, Vector)| {
             let would_do = || {
                 let set = map.reach(p).ok()?;
-                set.nearest(task.b).map(|b| set.inwards(b, 1e-6))
+                set.decimal(set.inwards(set.nearest(task.b)?, 1e-6), 4)
             };
             map.poses(p, task.b).is_empty().then(|| (i, would_do()))
         };

@@ -999,7 +999,7 @@ proptest! {
             }
             for (i, would_do) in &waiting.points {
                 if let Some(b) = would_do {
-                    prop_assert!(!planes.map().poses(points[*i], *b).is_empty(), "{} at {}", i, b);
+                    prop_assert!(!planes.map().poses(points[*i], b.value()).is_empty(), "{} at {}", i, b);
                 }
             }
             let at = session.frames().to_vec();

@@ -695,7 +695,10 @@ proptest! {
         };
         let usage = usage(&path, &found, &machine, &limits, 4000);
         prop_assert!(usage.violation() < 1e-6, "{:?}", usage);
-        prop_assert!(usage.active > 0.9, "{:?}", usage);
+        // It is slowed down as a whole by what is passed at one place: no more than 0.5 % is lost to a converged grid.
+        let best = fastest_at(&path, &model, &around, &limits, false, &converged(&path, 8)).expect("a motion");
+        let ratio = found.profile.duration() / best.profile.duration();
+        prop_assert!((0.998..1.005).contains(&ratio), "{}: {:?}", ratio, usage);
         let end = found.profile.at(found.profile.duration() * (1.0 - 1e-9));
         prop_assert!((end.s - 1.0).abs() < 1e-6 && end.rate < 1e-3);
         prop_assert!((found.limiting.iter().map(|l| l.1).sum::<f64>() - 1.0).abs() < 1e-9);
@@ -713,12 +716,6 @@ fn drawn(points: &[Vector], shape: usize, blend: f64) -> Option<Vec<Path>> {
     };
     let tables = trace::follow(planes.map(), &curves, 2.4, Some(start), Rule::default()).ok()?;
     Some(tables.into_iter().map(Path::Table).collect())
-}
-
-fn whole_time(paths: &[Path], limits: &Limits, smooth: bool) -> f64 {
-    let (model, around) = of(nine_link());
-    let time = |path: &Path| fastest(path, &model, &around, limits, smooth).expect("a motion").profile.duration();
-    paths.iter().map(time).sum()
 }
 
 /// Every place of a path and many stations, each space cut into as many parts: far denser than is ever planned with.
@@ -825,7 +822,7 @@ fn never_slower(points: &[Vector], blend: f64, law: &str) -> Option<(f64, f64)> 
 fn rounded_corners_are_never_slower_than_rests() {
     let points = [(0.018, 0.363), (0.255, 0.196), (-0.091, 0.123), (0.273, 0.269), (0.086, 0.422)];
     let points = points.map(|(x, y)| Vector::new(x, y));
-    for (law, at_most) in [("fastest", 1.345), ("fastest-smooth", f64::INFINITY)] {
+    for (law, at_most) in [("fastest", 1.3455), ("fastest-smooth", f64::INFINITY)] {
         for blend in [1e-4, 1e-3, 0.02] {
             let (rounded, resting) = never_slower(&points, blend, law).expect("it can be followed");
             assert!(rounded <= resting && rounded <= at_most, "{law}, {blend}: {rounded} s, resting {resting} s");
@@ -867,7 +864,7 @@ fn times_that_are_found_have_a_range() {
         }
         Run::new(&scenario)
     };
-    for (limit, want) in [("1e-300", "want at most 3600 s"), ("1e-9", "want at most 3600 s"), ("1e12", "want at least")]
+    for (limit, want) in [("1e-300", "want at most 3600 s"), ("1e-9", "want at most 3600 s"), ("1e6", "want at least")]
     {
         let error = with(limit).expect_err("no time for a motion").to_string();
         assert!(error.contains(want) && error.len() < 200, "{limit}: {error}");

@@ -961,7 +961,7 @@ fn limits_apply_and_the_run_waits() {
         assert!((limit - 150f64.to_radians()).abs() < 1e-12, "{limit}");
         let waiting = session(&h).run().waiting().cloned().expect("B does not fit");
         let [(1, Some(b))] = waiting.points[..] else { panic!("{waiting:?}") };
-        assert_eq!(red(&h), ["B".to_owned(), format!("b = {b:.3} rad would reach it")]);
+        assert_eq!(red(&h), ["B".to_owned(), format!("b = {b} rad would reach it")]);
         assert!(h.query_by_label_contains("The run waits: B").is_some() && h.query_by_label("waits").is_some());
         if way_out == "take b" {
             h.snapshot("waits-dark");

@@ -78,9 +78,8 @@ impl Stage {
             });
             scene.labels.push(label(at, z, [-12.0, 0.0], name, ink, 13.0, Anchor::Right));
             if let Some((_, would_do)) = unserved {
-                let within = |b: f64| self.planes.as_ref().map_or(b, |planes| b.rem_euclid(planes.map().period()));
                 let text = match would_do {
-                    Some(b) => format!("b = {:.3} rad would reach it", within(*b)),
+                    Some(b) => format!("b = {b} rad would reach it"),
                     None => "no b reaches it".into(),
                 };
                 scene.labels.push(label(at, z, [-12.0, 15.0], &text, palette.reaction, 11.5, Anchor::Right));
