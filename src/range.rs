@@ -122,12 +122,25 @@ pub fn clipped(text: &str) -> String {
     shortened(text, MOST_TEXT)
 }
 
-/// The first characters of a text, on one line, and dots where there is more.
+/// The most digits in a row that a message repeats: more than any number needs.
+const MOST_DIGITS: usize = 20;
+
+/// The first characters of a text, on one line, and dots where there is more, or a number that runs on and on.
 pub fn shortened(text: &str, most: usize) -> String {
-    let plain = |c: char| if c.is_control() { ' ' } else { c };
-    let mut short: String = text.chars().take(most).map(plain).collect();
-    if text.chars().nth(most).is_some() {
-        short.push('…');
+    let mut short = String::new();
+    let (mut count, mut digits) = (0, 0);
+    for c in text.chars() {
+        digits = if c.is_ascii_digit() { digits + 1 } else { 0 };
+        match digits.cmp(&(MOST_DIGITS + 1)) {
+            std::cmp::Ordering::Greater => continue,
+            _ if count == most => {
+                short.push('…');
+                break;
+            }
+            std::cmp::Ordering::Equal => short.push('…'),
+            std::cmp::Ordering::Less => short.push(if c.is_control() { ' ' } else { c }),
+        }
+        count += 1;
     }
     short
 }

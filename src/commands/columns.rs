@@ -9,6 +9,7 @@ use stillbase::machine::Machine;
 use stillbase::plan::Samples;
 use stillbase::plan::given::MAX_SAMPLES;
 use stillbase::plan::spline::FEWEST;
+use stillbase::range::Short;
 
 use super::failure::Failure;
 
@@ -80,7 +81,8 @@ pub fn samples(
         };
         let row: Vec<f64> = columns.all.iter().map(number).collect::<Result<_, _>>()?;
         if let Some(before) = rows.last().map(|row| row[0]).filter(|before| row[0] <= *before) {
-            let why = format!("column {}: {} s after {before} s: want times that rise", columns.all[0].name, row[0]);
+            let (name, now, before) = (&columns.all[0].name, Short(row[0]), Short(before));
+            let why = format!("column {name}: {now} s after {before} s: want times that rise");
             return Err(at(line, &why));
         }
         rows.push(row);
@@ -111,7 +113,7 @@ pub fn samples(
                 let why = format!(
                     "column {name}: {} rad is more than two turns: want radians; if these are degrees, name the column \
                      \"{name} (deg)\", if they are radians, \"{name} (rad)\"",
-                    rows[i][k]
+                    Short(rows[i][k])
                 );
                 return Err(at(places[i], &why));
             }

@@ -141,7 +141,7 @@ fn machines_inside_a_scenario_are_named_with_their_lines() {
     let error = said(&format!("{CASE_3}[plant.length]\nl1 = 0.5\nl2 = 1e300\n"));
     assert!(error.starts_with(&format!("own.toml:{}: machine: lengths.l2 is 1e300", lines + 3)), "{error}");
     let error = said(&format!("{CASE_3}[plant.link.55]\nmass = 3.0\n"));
-    assert!(error.starts_with(&format!("own.toml:{}: ", lines + 1)) && error.contains("\"55\""), "{error}");
+    assert!(error.starts_with(&format!("own.toml:{}: ", lines + 2)) && error.contains("\"55\""), "{error}");
     let error = said(&CASE_3.replace("[task]", "set = [\"link.5.mass=-1\"]\n[task]"));
     let line = CASE_3.lines().position(|line| line == "[task]").expect("there") + 1;
     assert!(error.starts_with(&format!("own.toml:{line}: machine: link[5].mass is -1")), "{error}");

@@ -1421,7 +1421,8 @@ fn what_would_never_end_is_refused() {
     fails(&["simulate", &long, "-o", &out], 2, &["GB: want at most 4 GB"]);
     fails(&["simulate", &long, "--json", "--every", "4"], 2, &["GB: want at most 1 GB"]);
     let fine = folder.file("fine.toml", &case.replace("[task]", "duration = 3600\nstep = 1e-5\n[task]"));
-    for command in ["simulate", "joints", "spectrum", "compare"] {
+    fails(&["compare", &fine], 1, &["360000000 steps: want at most 4000000"]);
+    for command in ["simulate", "joints", "spectrum"] {
         fails(&[command, &fine], 2, &["360000000 steps: want at most 4000000"]);
     }
     fails(&["export", &fine, "--what", "simulated", "--rate", "100"], 2, &["360000000 steps: want at most 4000000"]);
