@@ -9,7 +9,7 @@ use stillbase::machine::Machine;
 use stillbase::plan::Samples;
 use stillbase::plan::given::MAX_SAMPLES;
 use stillbase::plan::spline::FEWEST;
-use stillbase::range::Short;
+use stillbase::range::{Short, clipped};
 
 use super::failure::Failure;
 
@@ -40,6 +40,8 @@ const LARGEST_STEP: f64 = 0.5 * PI;
 /// A step so many times as fast as both beside it is a jump, if it is also larger than this, rad or m.
 const JUMP: f64 = 10.0;
 const VISIBLE: [f64; 2] = [0.1, 0.02];
+/// The largest number, in SI units.
+const MOST: f64 = 1e11;
 /// A time between samples so many times as long as the usual one is a gap.
 const GAP: f64 = 10.0;
 
@@ -74,8 +76,9 @@ pub fn samples(
         let number = |column: &Column| match record.get(column.place).filter(|cell| !cell.is_empty()) {
             None => Err(at(line, &format!("column {}: nothing there: want a number", column.name))),
             Some(cell) => {
-                cell.parse().ok().filter(|x: &f64| x.is_finite()).map(|x| x * column.scale).ok_or_else(|| {
-                    at(line, &format!("column {}: {cell:?}: want a finite number, such as 0.25", column.name))
+                cell.parse().ok().map(|x: f64| x * column.scale).filter(|x| x.abs() <= MOST).ok_or_else(|| {
+                    let (name, cell) = (&column.name, clipped(cell));
+                    at(line, &format!("column {name}: {cell:?}: want a finite number, such as 0.25, of at most 1e11"))
                 })
             }
         };
