@@ -141,7 +141,7 @@ impl Export {
     }
 
     /// Rows of the planned motion, and its duration, s.
-    fn reference(&self, run: &Run) -> Result<(Vec<Vec<f64>>, f64), Failure> {
+    fn reference(&self, run: &Run) -> Result<(Rows, f64), Failure> {
         let (motion, machine) = (&run.plan().motion, &run.scenario().machine);
         let (model, whole) = (Inertia::of(machine), motion.duration());
         let around = Surroundings { gravity: machine.gravity(), force: Vector::default() };
@@ -163,7 +163,7 @@ impl Export {
     }
 
     /// Rows of what the machine does, how long it is seen, s, and the audit that it fails.
-    fn simulated(&self, scenario: &Scenario) -> Result<(Vec<Vec<f64>>, f64, Option<String>), Failure> {
+    fn simulated(&self, scenario: &Scenario) -> Result<(Rows, f64, Option<String>), Failure> {
         let steps = 1.0 / (scenario.step * self.rate);
         let every = steps.round();
         if !(every >= 1.0 && (steps - every).abs() < 1e-6 * every) {
@@ -204,6 +204,9 @@ impl Export {
         }
     }
 }
+
+/// One row of numbers for each instant.
+type Rows = Vec<Vec<f64>>;
 
 fn csv(answer: &Answer) -> Result<String, Failure> {
     let mut writer = csv::Writer::from_writer(Vec::new());

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use super::{FileError, Machine, MachineError, parse, read};
+use crate::range::shortened;
 
 static BUILTINS: LazyLock<Vec<Machine>> = LazyLock::new(|| {
     [
@@ -40,7 +41,7 @@ pub fn find(name: &str, folder: Option<&Path>) -> Result<Machine, FileError> {
         {
             let known = builtins().iter().map(Machine::name).collect::<Vec<_>>().join(", ");
             let error = MachineError::Syntax(format!("no such machine: want {known}, or a TOML file"));
-            Err(FileError::Wrong { file: name.into(), line: None, error })
+            Err(FileError::Wrong { file: shortened(name, 300), line: None, error })
         }
         other => other,
     }

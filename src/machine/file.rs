@@ -13,7 +13,7 @@ use crate::text::MOST_BYTES;
 #[derive(Debug, Error)]
 pub enum FileError {
     /// It cannot be read.
-    #[error("{}: {source}: want a plain file that can be read, of at most {MOST_BYTES} bytes", file.display())]
+    #[error("{}: {source}: want a plain file that can be read, of at most {MOST_BYTES} bytes", named(file))]
     Unreadable {
         /// The file.
         file: PathBuf,
@@ -30,6 +30,11 @@ pub enum FileError {
         /// What.
         error: MachineError,
     },
+}
+
+/// A file as a message calls it: whatever stands for a name may be as long as a book.
+fn named(file: &Path) -> String {
+    shortened(&file.display().to_string(), 300)
 }
 
 /// Reads a machine from a file.

@@ -41,7 +41,8 @@ const LEAST: f64 = 1e-9;
 const GRAVITY: Range = Range::either_way(MOST, "m/s²");
 const LENGTH: Range = Range::new(1e-6, MOST, "m");
 const PLACE: Range = Range::either_way(MOST, "m");
-const MASS: Range = Range::new(LEAST, MOST, "kg");
+/// Links may be all but without mass.
+const MASS: Range = Range::new(1e-15, MOST, "kg");
 const LOAD: Range = Range::new(0.0, MOST, "kg");
 const INERTIA: Range = Range::new(0.0, MOST, "kg m²");
 const TORQUE_LIMIT: Range = Range::new(LEAST, MOST, "N m");

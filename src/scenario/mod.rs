@@ -226,14 +226,14 @@ impl Scenario {
         let file = FilePath::new(name);
         let text = text::read(file).map_err(|source| match source.kind() {
             std::io::ErrorKind::NotFound if !name.ends_with(".toml") => ScenarioError::Syntax {
-                file: name.into(),
+                file: shortened(name, 300),
                 line: None,
                 message: format!(
                     "no such scenario: want {}, or a TOML file",
                     Self::builtin_names().collect::<Vec<_>>().join(", ")
                 ),
             },
-            _ => ScenarioError::Unreadable { file: name.into(), source },
+            _ => ScenarioError::Unreadable { file: shortened(name, 300), source },
         })?;
         Self::parse(&text, name, file.parent())
     }

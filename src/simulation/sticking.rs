@@ -37,6 +37,7 @@ enum Event {
 }
 
 /// How far a part may go.
+#[expect(clippy::large_enum_variant, reason = "a step allocates nothing")]
 enum Cut {
     /// To its end, where the contact that was looked for stops or comes loose.
     Here(Part),

@@ -32,6 +32,8 @@ const MOST_PIECES: usize = 64;
 /// Kinks nearer to an end of a piece than this share of a step are at it, and how far beside them they are looked at.
 const NEAR: f64 = 1e-7;
 const BESIDE: f64 = 1e-8;
+/// A change of q̈ below this share of its peak is a bend, and no jump.
+const BEND: f64 = 1e-6;
 
 /// Where a step has come to.
 #[derive(Clone, Copy, Debug)]
@@ -113,12 +115,14 @@ pub(super) struct Pace {
     until: f64,
     /// When the reference jumps or bends, in times of the motion, s.
     kinks: Vec<f64>,
+    /// Where q̈ of the reference changes by less, it only bends, rad/s².
+    level: f64,
 }
 
 impl Pace {
     pub fn new(drives: usize) -> Self {
         let (worst, drift) = Default::default();
-        Self { parts: 1, worst, drift, expected: Peaks::zero(drives), until: 0.0, kinks: Vec::new() }
+        Self { parts: 1, worst, drift, expected: Peaks::zero(drives), until: 0.0, kinks: Vec::new(), level: 0.0 }
     }
 
     /// Goes on where another was: errors made before stay.
@@ -141,7 +145,7 @@ impl Simulation {
     /// Takes in a new guide: where it has kinks, and about how much it asks for.
     pub(super) fn prepare(&mut self) {
         let n = self.drives;
-        let mut expected = Peaks::zero(n);
+        let (mut expected, mut level) = (Peaks::zero(n), 0.0_f64);
         self.pace.kinks.clear();
         self.pace.until = 0.0;
         if let Guide::Motion { motion, start } = &self.guide {
@@ -150,6 +154,7 @@ impl Simulation {
             let (arm, around) = (self.body().arm(), self.body().around());
             for i in 0..=16 {
                 let r = motion.at(f64::from(i) / 16.0 * motion.duration());
+                level = level.max(BEND * r.qdd.max_abs());
                 let e = r.q.units();
                 let (torque, wrench) = crate::dynamics::inverse_with_wrench(arm, &e, &r.qd, &r.qdd, around);
                 let moments = &self.link_moments[usize::from(self.loaded)];
@@ -160,7 +165,7 @@ impl Simulation {
                 expected.inertial_pull = expected.inertial_pull.max(pull);
             }
         }
-        self.pace.expected = expected;
+        (self.pace.expected, self.pace.level) = (expected, level);
     }
 
     /// How far the arm reaches at most, m.
@@ -190,7 +195,7 @@ impl Simulation {
             Guide::Motion { motion, start } => {
                 // The end of the step is where the next one begins, to the last digit.
                 let time = if at >= self.dt { (self.step + 1) as f64 * self.dt } else { self.time() + at };
-                beside(motion, time - start, piece.window)
+                beside(motion, time - start, piece.window, self.pace.level)
             }
             Guide::Follow(follower) => follower.reference(at),
         }
@@ -202,7 +207,7 @@ impl Simulation {
             Guide::Motion { motion, start } => {
                 let t = self.time() - start;
                 let after = self.kink_at(t).map_or(f64::NEG_INFINITY, |kink| kink + BESIDE * self.dt);
-                beside(motion, t, [after, f64::INFINITY])
+                beside(motion, t, [after, f64::INFINITY], self.pace.level)
             }
             Guide::Follow(follower) => follower.reference(0.0),
         }
@@ -385,13 +390,19 @@ fn stands_for(step: u64) -> Option<f64> {
     }
 }
 
-/// The reference of a motion, as it is within a window of its times, s.
+/// The reference of a motion, as it is within a window of its times, s; where q̈ changes by no more than `level`, rad/s²,
+/// to get there, as it is.
 #[inline]
-fn beside(motion: &Motion, t: f64, [after, before]: [f64; 2]) -> Reference {
+fn beside(motion: &Motion, t: f64, [after, before]: [f64; 2], level: f64) -> Reference {
     let within = t.max(after).min(before);
-    let mut reference = motion.at(within);
-    if within != t {
-        reference.q = DriveAngles(reference.q.0.plus(t - within, &reference.qd));
+    let reference = motion.at(t);
+    if within == t {
+        return reference;
     }
-    reference
+    let mut inside = motion.at(within);
+    if inside.qdd.minus(&reference.qdd).max_abs() <= level {
+        return reference;
+    }
+    inside.q = DriveAngles(inside.q.0.plus(t - within, &inside.qd));
+    inside
 }

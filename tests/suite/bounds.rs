@@ -111,7 +111,7 @@ proptest! {
             ("do = \"set-plant\"\nchange = { payload = { mass = -1.0 } }", "plant.payload.mass is -1: want 0 to 10000 kg"),
             ("do = \"set-plant\"\nchange = { payload = { weight = 1.0 } }", "weight"),
             ("do = \"set-control\"\nchange = { kp = 1e99 }", "control.kp is 1e99"),
-            ("do = \"set-machine\"\nkey = \"link.5.mass\"\nvalue = \"-1\"", "link[5].mass is -1: want 1e-9 to 1000000 kg"),
+            ("do = \"set-machine\"\nkey = \"link.5.mass\"\nvalue = \"-1\"", "link[5].mass is -1: want 1e-15 to 1000000 kg"),
             ("do = \"set-time\"\ntime = 1e9", "time is 1e9: want"),
         ][bad];
         let mut text = CASE_3.to_owned();

@@ -965,7 +965,7 @@ proptest! {
     fn limits_always_apply(
         one in limits(),
         other in limits(),
-        steps in 0..100u64,
+        steps in 1..100u64,
         plays: bool,
         leads: bool,
     ) {
