@@ -135,8 +135,11 @@ impl Twin {
         let n = self.inertia.len();
         let (mut t, mut q, mut v) = (0.0, vec![0.0; n], vec![0.0; n]);
         let (mut ways, mut seen, mut stops) = (vec![0_i8; self.contacts.len()], Vec::new(), 0);
+        let mut events = 0;
         for until in times {
             while t < *until {
+                events += 1;
+                assert!(events < 10_000, "the twin comes to no end at {t} s");
                 let (s, rise, end) = self.asked(t);
                 let mode = self.mode(&ways, s, rise);
                 ways.clone_from(&mode.ways);
@@ -171,6 +174,8 @@ impl Twin {
                         }
                         if high < step {
                             (step, first.1) = (high, None);
+                            // It may come loose within rounding of now.
+                            ways = self.mode(&mode.ways, s + rise * high, rise).ways;
                         }
                     }
                 }

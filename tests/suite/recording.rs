@@ -11,6 +11,7 @@ use rerun::{EntityPath, StoreKind, TimelineName};
 use stillbase::files::WriteError;
 use stillbase::frame::Frame;
 use stillbase::headless::{Options, Pictures, Progress, RecordError, Recording, record};
+use stillbase::plan::TimeLaw;
 use stillbase::planar::{Vector, unit};
 use stillbase::scenario::Scenario;
 use stillbase::session::{Edit, TimedEdit, replay};
@@ -472,10 +473,17 @@ fn the_slice_of_the_tower_lies_at_the_height_of_b() {
 #[test]
 fn what_was_foreseen_is_told() {
     let folder = Folder::new("foreseen");
-    let names = ["change-b", "circle", "drift"];
-    let scenarios = names.map(|name| Scenario { duration: Some(0.02), ..Scenario::builtin(name).expect("built in") });
-    record_in(&folder, "three.rrd", &scenarios).expect("three cases");
-    let contents = Contents::of(&folder.file("three.rrd"));
+    let names = ["change-b", "circle", "drift", "circle"];
+    let mut scenarios =
+        names.map(|name| Scenario { duration: Some(0.02), ..Scenario::builtin(name).expect("built in") });
+    // The last with limits on jerk.
+    let smooth = &mut scenarios[3];
+    (smooth.name, smooth.task.law) = ("smooth".into(), TimeLaw::FastestSmooth);
+    for k in 1..=3 {
+        smooth.machine = smooth.machine.set(&format!("drive.{k}.jerk_limit"), "900").expect("a limit");
+    }
+    record_in(&folder, "four.rrd", &scenarios).expect("four cases");
+    let contents = Contents::of(&folder.file("four.rrd"));
     for scenario in &scenarios {
         let run = stillbase::session::Run::new(scenario).expect("it runs");
         let plan = run.plan();
@@ -487,7 +495,8 @@ fn what_was_foreseen_is_told() {
         assert_eq!((told("delta_b"), price.len()), (price.clone(), usize::from(scenario.name == "change-b")));
         let least: Vec<f64> = plan.price.iter().map(|p| p.least_peak(plan.forecast.time)).collect();
         assert_eq!(told("least_peak_base_moment"), least);
-        assert_eq!(told("gap").len(), usize::from(plan.pace.is_some()));
+        let gap: Vec<f64> = plan.pace.iter().filter_map(|pace| pace.gap()).collect();
+        assert_eq!((told("gap"), gap.len()), (gap.clone(), usize::from(scenario.name == "smooth")));
         let drift = told("drift_2");
         assert_eq!(drift.len(), if scenario.name == "drift" { scenario.task.cycles as usize } else { 0 });
         if let (Some(drift), Some([start, .., end])) = (drift.last(), plan.cycles.get(..)) {
