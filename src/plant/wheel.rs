@@ -71,7 +71,8 @@ impl Wheel {
     /// What it gives of a wanted torque, N m, at a rate, rad/s, with what room there is in this step.
     #[inline]
     pub fn give(&self, wanted: f64, rate: f64, room: [f64; 2]) -> Spin {
-        let torque = wanted.clamp(room[0], room[1]);
+        // A run that has blown up has no room, and says so by what is no number.
+        let torque = if rate.is_finite() { wanted.max(room[0]).min(room[1]) } else { f64::NAN };
         Spin { rate, torque, saturated: torque != wanted }
     }
 

@@ -164,6 +164,14 @@ impl Edit {
         matches!(self, Self::SetTask { .. } | Self::SetTime { .. } | Self::SetBase { .. } | Self::SetTolerance { .. })
     }
 
+    /// Why an edit [of the start](Self::is_of_the_start) is refused later.
+    pub(super) const AT_START: &str = "task, time and base can change only before the first step: want step = 0";
+
+    /// Whether it changes what a motion is planned from, so that it has no say once time runs.
+    pub(super) fn is_of_the_start(&self) -> bool {
+        self.is_of_the_whole() && !matches!(self, Self::SetTolerance { .. })
+    }
+
     /// Whether a later edit makes this one void, so that a drag keeps only its last word.
     pub fn is_replaced_by(&self, later: &Self) -> bool {
         match (self, later) {

@@ -93,7 +93,10 @@ impl Session {
             true => {
                 let run = Run::begin(&ground, &script, None)?.0;
                 let end = match run.waiting() {
-                    Some(_) => script.last().map_or(0, |e| e.step),
+                    Some(_) => {
+                        let known = run.scenario().duration.map_or(0, |_| run.last_step());
+                        known.max(script.last().map_or(0, |e| e.step))
+                    }
                     None => run.whole(&script)?,
                 };
                 let end = end.min(MAX_FRAMES as u64 - 1);
@@ -165,7 +168,8 @@ impl Session {
 
     /// Whether there can be one more frame.
     fn has_room(&self) -> bool {
-        !self.is_full() && self.run.waiting().is_none()
+        let goes_on = self.frames.last().is_some_and(Frame::is_finite);
+        goes_on && !self.is_full() && self.run.waiting().is_none()
     }
 
     /// Whether it holds as many frames as it can: time stands still until it starts over.
@@ -258,7 +262,7 @@ impl Session {
                 return;
             }
             if self.is_at_end() {
-                if self.is_full() {
+                if !self.has_room() {
                     self.playing = false;
                     return;
                 }
@@ -275,8 +279,12 @@ impl Session {
     fn advance_run(&mut self) {
         self.unedited = None;
         self.run.advance();
-        self.frames.push(self.run.frame());
-        self.document.end = self.run.simulation().step_count();
+        let frame = self.run.frame();
+        self.frames.push(frame);
+        // A session can be opened again only as far as its run has numbers.
+        if frame.is_finite() {
+            self.document.end = frame.step;
+        }
     }
 
     /// Applies an edit: to the machine in motion at the present step; at rest, parameters and poses change the start,

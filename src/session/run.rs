@@ -398,8 +398,8 @@ impl Run {
 
     /// Parameters in motion: it keeps its path.
     fn set(&mut self, edit: &Edit) -> Result<(), Refusal> {
-        if matches!(edit, Edit::SetTask { .. } | Edit::SetBase { .. }) {
-            return Err(Refusal::Task("task and base can change only before the first step".into()));
+        if edit.is_of_the_start() {
+            return Err(Refusal::Task(Edit::AT_START.into()));
         }
         let scenario = checked(changed(&self.scenario, edit)?, edit)?;
         if let (Edit::SetMachine { key, value }, true) = (edit, self.leaves_limits(&scenario)) {

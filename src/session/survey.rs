@@ -30,8 +30,8 @@ pub(crate) fn survey(scenario: &Scenario) -> Result<(), (usize, String)> {
         if matches!(timed.edit, Edit::DragTarget { .. } | Edit::SlideB { .. } | Edit::PoseB { .. }) {
             continue;
         }
-        if place >= opening && matches!(timed.edit, Edit::SetTask { .. } | Edit::SetBase { .. }) {
-            return Err(of_entry("task and base can change only before the first step: want step = 0".into()));
+        if place >= opening && timed.edit.is_of_the_start() {
+            return Err(of_entry(Edit::AT_START.into()));
         }
         now = changed(&now, &timed.edit).map_err(|why| of_entry(why.to_string()))?;
         match now.check(timed.edit.part()) {

@@ -14,7 +14,7 @@ use egui::{
 use super::theme::{bold, colour, plain};
 use super::top::name;
 use super::{Command, Look, path, set_b};
-use crate::machine::Inertia;
+use crate::machine::{Inertia, MAX_ANGLE};
 use crate::scene::palette::Palette;
 use crate::scene::stage::signed;
 use crate::session::{Edit, Session};
@@ -260,8 +260,9 @@ fn limits(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comman
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 unit(ui, p, "°");
                 let mut changed = Vec::new();
+                let widest = MAX_ANGLE.to_degrees();
                 for (end, word) in [(1, "greatest"), (0, "least")] {
-                    let range = if end == 1 { ends[0]..=ends[0].max(0.0) + 720.0 } else { -720.0..=ends[1] };
+                    let range = if end == 1 { ends[0]..=widest } else { -widest..=ends[1] };
                     let row = Row {
                         label: &format!("{symbol} {word}"),
                         unit: "°",

@@ -28,7 +28,8 @@ pub fn news(ctx: &egui::Context, session: &Session, look: &Look, commands: &mut 
             ui.set_max_width((0.42 * ctx.content_rect().width()).max(320.0));
             ui.add(egui::Label::new(RichText::new(text).font(plain(12.0)).color(colour(p.ink))).wrap());
             let remedy = look.refused.as_ref().and_then(|wish| wish.remedy.clone());
-            let mends = waits.and_then(|waiting| waiting.why.mending_b().zip(waiting.why.shown_b()));
+            let mends = waits.filter(|_| waiting.as_ref() == Some(text));
+            let mends = mends.and_then(|waiting| waiting.why.mending_b().zip(waiting.why.shown_b()));
             let mends = mends.map(|(b, shown)| (Edit::task("b", b), shown));
             if let Some((edit, b)) = remedy.or(mends) {
                 let way_out = ui.button(format!("take b = {b} rad"));
@@ -139,7 +140,7 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &Look, commands
                     (Some((_, true)), _) => (String::new(), p.reaction),
                     (Some((text, false)), _) => (text.clone(), p.ink),
                     (None, _) if session.is_full() => {
-                        ("three minutes are full: save or record them, then start over".into(), p.reaction)
+                        ("this session is full: save or record it, then start over".into(), p.reaction)
                     }
                     (None, Reach::Outside { mending_b: Some(b), shown_b: Some(shown), .. }) => {
                         let way_out = ui.button(format!("go to b = {shown} rad"));

@@ -1027,3 +1027,52 @@ proptest! {
         }
     }
 }
+
+/// Friction that no part of a step can follow.
+fn blows_up(name: &str) -> Scenario {
+    let mut scenario = Scenario::builtin(name).expect("built in");
+    scenario.plant.friction.viscous = stillbase::plant::Each::All(1e4);
+    scenario.step = 0.01;
+    scenario
+}
+
+#[test]
+fn a_run_that_blows_up_says_so_with_a_wheel_too() {
+    for name in ["case-3", "wheel"] {
+        let refusal = stillbase::session::replay(&blows_up(name), |_, _| {}).expect_err("it blows up");
+        assert!(matches!(refusal, Refusal::Diverged { .. }), "{name}: {refusal}");
+    }
+}
+
+#[test]
+fn a_session_that_blew_up_opens_again() {
+    for name in ["case-3", "wheel"] {
+        let mut session = open(Scenario { step: 0.01, ..Scenario::builtin(name).expect("built in") });
+        session.play();
+        session.tick(20);
+        let change = stillbase::keys::one("friction.viscous", 1e4);
+        session.apply(Edit::SetPlant { change }).expect("within its range");
+        session.end_gesture();
+        session.tick(300);
+        session.seek(1.0);
+        session.step_by(50);
+        let none = session.frames().iter().filter(|frame| !frame.is_finite()).count();
+        assert_eq!(none, 1, "{name}: time stands still where there are no numbers");
+        let again = open(session.to_scenario());
+        assert!(again.frames().iter().all(|frame| frame.is_finite()));
+        assert_eq!(again.frames().len() + 1, session.frames().len());
+        // And what comes before can be taken back.
+        session.undo().expect("taken back");
+        assert!(session.frame().is_finite());
+    }
+}
+
+#[test]
+fn what_a_motion_is_planned_from_is_set_before_the_first_step() {
+    let mut scenario = coarse();
+    scenario.edits = vec![stillbase::session::TimedEdit { step: 100, edit: Edit::SetTime { time: 2.0 } }];
+    let refusal = stillbase::session::replay(&scenario, |_, _| {}).expect_err("too late");
+    assert!(refusal.to_string().contains("before the first step"), "{refusal}");
+    let file = Scenario::parse(&scenario.to_toml(), "late.toml", None).expect_err("too late").to_string();
+    assert!(file.contains("late.toml:") && file.contains("the 1st [[edit]]"), "{file}");
+}

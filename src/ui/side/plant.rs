@@ -96,7 +96,7 @@ fn payload(ui: &mut Ui, plant: &Plant, p: &Palette, commands: &mut Vec<Command>)
                         tip,
                         decimals: 2,
                         speed: 0.01,
-                        range: load.from + 0.01..=60.0,
+                        range: load.from + 0.01..=load.from + 60.0,
                     };
                     let response = row.number(ui, &mut until);
                     super::send(commands, &[response], || Of::Plant.set(&["payload", "until"], until));
