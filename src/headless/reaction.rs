@@ -37,17 +37,25 @@ const ROW: f64 = 0.06;
 pub struct Drawing {
     scale: Scale,
     palette: Palette,
+    /// What the base carries besides.
+    rest: &'static str,
     arrows: Track<Option<([f32; 3], [f32; 3])>>,
     arcs: Track<Option<Vec<[f32; 3]>>>,
     words: Track<Vec<([f32; 3], String, Color)>>,
 }
 
 impl Drawing {
-    /// Nothing yet, but how it looks.
+    /// Nothing yet, but how it looks; `rest` names what the base carries besides.
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn show(store: &mut Store, root: &EntityPath, scale: Scale, palette: Palette) -> Result<Self, StoreError> {
+    pub fn show(
+        store: &mut Store,
+        root: &EntityPath,
+        scale: Scale,
+        palette: Palette,
+        rest: &'static str,
+    ) -> Result<Self, StoreError> {
         let red = [colour(palette.reaction)];
         let force = Arrows3D::update_fields().with_radii([Radius::new_ui_points(2.0)]).with_colors(red);
         store.fixed(&under(root, "reaction/force"), &force)?;
@@ -55,7 +63,7 @@ impl Drawing {
         store.fixed(&under(root, "reaction/moment"), &moment)?;
         let words = Points3D::update_fields().with_radii([Radius::ZERO]).with_show_labels(true);
         store.fixed(&under(root, "reaction/words"), &words)?;
-        Ok(Self { scale, palette, arrows: Track::new(), arcs: Track::new(), words: Track::new() })
+        Ok(Self { scale, palette, rest, arrows: Track::new(), arcs: Track::new(), words: Track::new() })
     }
 
     /// One instant, at a height above a machine of a reach, m.
@@ -74,7 +82,7 @@ impl Drawing {
         let rows = felt
             .readings(&self.palette)
             .into_iter()
-            .chain(felt.beside("its weight and pushes").map(|text| (text, dim)))
+            .chain(felt.beside(self.rest).map(|text| (text, dim)))
             .chain((!scale.is_empty()).then(|| (scale.join(" · "), dim)));
         let down = |i: usize| Vector::new(0.0, -(FIRST + ROW * i as f64) * reach);
         let placed = |(i, (text, tone))| (point(from + down(i), z), text, colour(tone));

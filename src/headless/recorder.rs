@@ -154,7 +154,7 @@ impl<'a> Recorder<'a> {
         let prefix = if *several { format!("{} · ", scenario.name) } else { String::new() };
         Ok(Self {
             tip: Tip::show(store, root, rehearsal.reach, &palette)?,
-            reactions: Drawing::show(store, root, *scale, palette)?,
+            reactions: Drawing::show(store, root, *scale, palette, besides(scenario))?,
             story: Story::new(prefix, palette),
             store,
             film,
@@ -373,4 +373,15 @@ fn properties(scenario: &Scenario, (peaks, verdict): (&Peaks, &Verdict), plan: &
         }
     }
     all
+}
+
+/// What the base carries besides what comes of motion.
+fn besides(scenario: &Scenario) -> &'static str {
+    let pushes = |edit: &Edit| match edit {
+        Edit::Push { .. } => true,
+        Edit::SetPlant { change } => change.contains_key("force"),
+        _ => false,
+    };
+    let pushed = scenario.plant.force != [0.0; 2] || scenario.edits.iter().any(|timed| pushes(&timed.edit));
+    if pushed { "its weight and pushes" } else { "its weight" }
 }

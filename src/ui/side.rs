@@ -121,7 +121,8 @@ impl Row<'_> {
         let slider = ui.add(slider.smart_aim(false).logarithmic(logarithmic));
         ui.spacing_mut().interact_size.y = 22.0;
         name(&slider, &format!("{} slider", self.label));
-        slider.on_hover_text(self.tip)
+        // In a drag it would cover what the drag is about.
+        if slider.dragged() { slider } else { slider.on_hover_text(self.tip) }
     }
 }
 

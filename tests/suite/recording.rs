@@ -877,7 +877,7 @@ fn the_reaction_is_the_same_in_the_window() {
                     kinds.insert((k, seen.colour == p.reaction));
                 }
                 let weight = (gravity != 0.0).then(|| frames[*step as usize].wrench.statical.force.norm());
-                let words = weight.map(|w| format!("and its weight and pushes, {w:.1} N"));
+                let words = weight.map(|w| format!("and its weight, {w:.1} N"));
                 assert_eq!(
                     words.as_deref(),
                     labels.iter().flatten().find(|t| t.starts_with("and ")),
