@@ -9,7 +9,7 @@ use stillbase::machine::Machine;
 use stillbase::plan::Samples;
 use stillbase::plan::given::MAX_SAMPLES;
 use stillbase::plan::spline::FEWEST;
-use stillbase::range::{Short, clipped};
+use stillbase::range::{Short, clipped, shortened};
 
 use super::failure::Failure;
 
@@ -191,7 +191,7 @@ impl Columns {
                     let known = units.iter().find(|(known, _)| known == unit);
                     known.map(|known| known.1).ok_or_else(|| {
                         let all: Vec<&str> = units.iter().map(|u| u.0).collect();
-                        format!("column {name}: unit {unit:?}: want one of {}", all.join(", "))
+                        format!("column {name}: unit {:?}: want one of {}", clipped(unit), all.join(", "))
                     })?
                 }
             };
@@ -201,7 +201,7 @@ impl Columns {
         let want = head_wanted(machine);
         let missing = |name: &str| {
             let have: Vec<&str> = head.iter().collect();
-            format!("no column {name} among {}: want {want}", have.join(", "))
+            format!("no column {name} among {}: want {want}", shortened(&have.join(", "), 300))
         };
         let time = find(&named(&["t", "time"]), TIME)?.ok_or_else(|| missing("t"))?;
         let drive = |k: usize| {

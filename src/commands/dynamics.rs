@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use stillbase::dynamics::{Surroundings, angular_momentum, centre_of_mass, inverse_with_wrench, mass_matrix};
 use stillbase::machine::{Inertia, Machine};
 use stillbase::planar::{DriveAngles, PerDrive};
+use stillbase::range::shortened;
 
 use super::failure::Failure;
 use super::input::{MachineArgument, read};
@@ -93,6 +94,7 @@ pub fn states_in(text: &str, file: &str, machine: &Machine) -> Result<Vec<[PerDr
     let states: Vec<State> = serde_json::from_str(text).map_err(|e| {
         let said = e.to_string();
         let what = said.rsplit_once(" at line ").map_or(said.as_str(), |(what, _)| what);
+        let what = shortened(what, 300);
         wrong(e.line(), format!(r#"{what}: want [{{"q": [rad], "qd": [rad/s], "qdd": [rad/s²]}}, …]"#))
     })?;
     let n = machine.drives();

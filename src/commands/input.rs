@@ -8,7 +8,7 @@ use stillbase::keys;
 use stillbase::machine::{self, Inertia, Machine};
 use stillbase::planar::Vector;
 use stillbase::pose_constant::plane_map;
-use stillbase::range::Range;
+use stillbase::range::{Range, clipped};
 use stillbase::reactionless::PlaneMap;
 use stillbase::scenario::{Change, PLACE, POSE_CONSTANT, STEPS, Scenario};
 use stillbase::text::{self, MOST_BYTES};
@@ -31,8 +31,15 @@ pub struct Settings {
     pairs: Vec<(String, String)>,
 }
 
+/// The most parts of a key, joined by dots; none has more than four.
+const MOST_PARTS: usize = 16;
+
 fn setting(text: &str) -> Result<(String, String), String> {
     let (key, value) = text.split_once('=').ok_or("want KEY=VALUE, such as link.5.com=-0.02")?;
+    // Keys are taken apart one part after the other, each within the one before.
+    if key.split('.').count() > MOST_PARTS {
+        return Err(format!("the key has more than {MOST_PARTS} parts: want one such as plant.payload.mass"));
+    }
     Ok((key.trim().into(), value.trim().into()))
 }
 
@@ -91,7 +98,8 @@ pub fn set(mut scenario: Scenario, settings: &Settings) -> Result<Scenario, Fail
     let (steps, others): (Vec<_>, Vec<_>) = settings.pairs.iter().cloned().partition(|(key, _)| key == "step");
     for (_, value) in steps {
         let step = value.parse().ok().filter(|step: &f64| step.is_finite());
-        let wrong = || Failure::wrong_input(format!("step is {value:?}: want a step of {STEPS}")).of("--set");
+        let wrong =
+            || Failure::wrong_input(format!("step is {:?}: want a step of {STEPS}", clipped(&value))).of("--set");
         step_by(&mut scenario, step.ok_or_else(wrong)?);
     }
     let (own, model): (Vec<_>, Vec<_>) = others.into_iter().partition(|(key, _)| part(key).is_some());

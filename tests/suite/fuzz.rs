@@ -102,7 +102,9 @@ const MEMORY: u64 = 2 << 30;
 /// A message is short, and its numbers are.
 pub fn is_short(said: &str) -> Result<(), String> {
     let digits = said.split(|c: char| !c.is_ascii_digit()).map(str::len).max().unwrap_or(0);
-    match said.chars().count() > 1500 || digits > 30 || said.contains("NaN") || said.trim().is_empty() {
+    // What somebody wrote may be quoted.
+    let own = said.replace("\"NaN\"", "").replace("`NaN`", "");
+    match said.chars().count() > 1500 || digits > 30 || own.contains("NaN") || said.trim().is_empty() {
         true => Err(format!(
             "a message of {} characters: {}",
             said.chars().count(),

@@ -50,6 +50,14 @@ fn settings() {
     });
 }
 
+/// Found by chance: keys within keys once went as deep as the stack.
+#[test]
+fn a_key_of_many_parts_is_refused() {
+    let key = format!("plant.{}x=1", "a.".repeat(50_000));
+    let refused = Line::try_parse_from(["stillbase", "--set", &key]).err().expect("too many parts").to_string();
+    assert!(refused.contains("more than 16 parts"), "{}", &refused[refused.len() - 200..]);
+}
+
 #[test]
 fn samples_as_csv() {
     let table = |head: &str, row: &dyn Fn(f64) -> String| {

@@ -105,8 +105,9 @@ impl Stage {
                         dash: Some([4.0, 4.0]),
                         on_top: true,
                     });
-                    let text = format!("end effector {} m, {} mm off", brief_point(true_tip), signed(1e3 * miss, 1));
-                    rows.push((text, palette.dim, 11.5));
+                    // Two rows: beside the target there is little room.
+                    rows.push((format!("end effector {} m", brief_point(true_tip)), palette.dim, 11.5));
+                    rows.push((format!("{} mm off", signed(1e3 * miss, 1)), palette.dim, 11.5));
                 }
                 rows.push((words.into(), palette.dim, 11.5));
                 for (i, (text, colour, size)) in rows.into_iter().enumerate() {
