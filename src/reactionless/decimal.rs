@@ -29,7 +29,7 @@ impl Decimal {
     }
 
     /// The number with the fewest decimals, `least` at least, near x that passes a test: the nearest one, or one
-    /// beside it. `None` if none with up to [`MOST_DECIMALS`] does.
+    /// beside it. `None` if none with up to `MOST_DECIMALS` does.
     pub fn that(x: f64, least: usize, passes: impl Fn(f64) -> bool) -> Option<Self> {
         (least..=MOST_DECIMALS).find_map(|decimals| {
             let nearest = Self::nearest(x, decimals);
