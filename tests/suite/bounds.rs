@@ -200,7 +200,7 @@ fn poses_of_a_huge_pose_constant_end() {
     assert_eq!(planes.map().poses(p, 2.4 - 100.0 * period).iter().count(), near);
 }
 
-/// A hundred thousand edits cost a hundred times what a thousand do, by hand and from a file, and are undone.
+/// An edit among eight thousand costs about what one among five hundred does, by hand and from a file; and is undone.
 #[test]
 fn edits_cost_the_same_however_many_there_are() {
     let scenario = || Scenario { step: 0.01, duration: Some(5.0), ..Scenario::builtin("case-3").expect("built in") };
