@@ -50,8 +50,7 @@ impl Lamp {
     }
 }
 
-/// How much of what has moved may be missing: a step that accelerations jump in, as those of the fastest motions do,
-/// costs a few parts in a million.
+/// How much of what has moved may be missing.
 const SHARE: f64 = 1e-5;
 
 /// How far what is shown may be off, as a share of its peak.

@@ -10,7 +10,7 @@ use stillbase::planar::Vector;
 use stillbase::pose_constant::plane_map;
 use stillbase::range::{Range, clipped};
 use stillbase::reactionless::PlaneMap;
-use stillbase::scenario::{Change, PLACE, POSE_CONSTANT, STEPS, Scenario};
+use stillbase::scenario::{Change, PLACE, POSE_CONSTANT, STEP, Scenario};
 use stillbase::text::{self, MOST_BYTES};
 
 use super::failure::Failure;
@@ -99,7 +99,7 @@ pub fn set(mut scenario: Scenario, settings: &Settings) -> Result<Scenario, Fail
     for (_, value) in steps {
         let step = value.parse().ok().filter(|step: &f64| step.is_finite());
         let wrong =
-            || Failure::wrong_input(format!("step is {:?}: want a step of {STEPS}", clipped(&value))).of("--set");
+            || Failure::wrong_input(format!("step is {:?}: want a step of {STEP}", clipped(&value))).of("--set");
         step_by(&mut scenario, step.ok_or_else(wrong)?);
     }
     let (own, model): (Vec<_>, Vec<_>) = others.into_iter().partition(|(key, _)| part(key).is_some());

@@ -451,14 +451,13 @@ impl Scenario {
     }
 }
 
-/// What a step may be.
-pub const STEPS: &str = "0.00001 to 0.01 s";
 /// The longest run, s.
 pub const MAX_TIME: f64 = 3600.0;
 
 /// The most steps of a run: an hour of 1 ms each, and some to spare.
 pub const MAX_STEPS: u64 = 4_000_000;
 
-const STEP: Range = Range::new(1e-5, 0.01, "s");
+/// What a step may be.
+pub const STEP: Range = Range::new(1e-5, 0.01, "s");
 const DURATION: Range = Range::new(0.0, MAX_TIME, "s");
 const POSE_ACCELERATION: Range = Range::new(1e-6, 1e6, "rad/s²");

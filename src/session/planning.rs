@@ -161,7 +161,8 @@ fn along(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
         Ok((motion, pace))
     };
     let (own, pace) = motion(scenario)?;
-    if task.law.is_fastest() && task.corners == Corners::Blend {
+    let has_corners = !task.via.is_empty() || task.closed;
+    if task.law.is_fastest() && task.corners == Corners::Blend && has_corners {
         // A corner rounded off very tightly may be no faster than a rest at it.
         let resting = Scenario { task: Task { corners: Corners::Stop, ..task.clone() }, ..scenario.clone() };
         if let Ok((rests, pace)) = motion(&resting)
