@@ -47,7 +47,7 @@ pub enum WindowError {
 pub fn run(scenario: Scenario, theme: Theme) -> Result<(), WindowError> {
     check_libraries()?;
     let mut desk = Desk::open_or_explain(scenario, theme)?;
-    if desk.look().message.is_none() {
+    if desk.look().message.is_none() && desk.session().run().waiting().is_none() {
         desk.carry_out(Command::TogglePlay);
     }
     let event_loop = EventLoop::<eframe::UserEvent>::with_user_event()

@@ -83,10 +83,21 @@ impl Session {
     pub fn open(scenario: Scenario) -> Result<Self, Refusal> {
         let mut ground = scenario;
         let edits = std::mem::take(&mut ground.edits);
-        Self::replayed(ground, in_order(&edits)).map_err(|failed| failed.named(&edits))
+        let patient = !edits.is_empty();
+        Self::replayed(ground, in_order(&edits), patient).map_err(|failed| failed.named(&edits))
     }
 
-    fn replayed(ground: Scenario, script: Vec<TimedEdit>) -> Result<Self, Failed> {
+    /// The same; a task that does not fit its machine waits, and [`Run::waiting`] says why.
+    ///
+    /// # Errors
+    /// If a value is out of range, the machine has no reactionless planes, or one of its edits cannot apply.
+    pub fn open_waiting(scenario: Scenario) -> Result<Self, Refusal> {
+        let mut ground = scenario;
+        let edits = std::mem::take(&mut ground.edits);
+        Self::replayed(ground, in_order(&edits), true).map_err(|failed| failed.named(&edits))
+    }
+
+    fn replayed(ground: Scenario, script: Vec<TimedEdit>, patient: bool) -> Result<Self, Failed> {
         let known: Script = script.iter().cloned().collect();
         let runs = known.is_led() || script.last().is_some_and(|e| e.step > 0);
         let end = match runs {
@@ -107,7 +118,6 @@ impl Session {
             }
             false => 0,
         };
-        let patient = !script.is_empty();
         let mut session = Self::of(Document { scenario: Arc::new(ground), script: known, end }, patient)?;
         session.cursor = 0;
         Ok(session)

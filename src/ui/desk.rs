@@ -51,7 +51,10 @@ impl Desk {
     /// # Errors
     /// If it cannot start.
     pub fn new(scenario: Scenario, theme: Theme) -> Result<Self, Refusal> {
-        let session = Session::open(scenario)?;
+        Ok(Self::around(Session::open(scenario)?, theme))
+    }
+
+    fn around(session: Session, theme: Theme) -> Self {
         let views = Views::of(session.run());
         let look = Look::new(theme, &views);
         let mut desk = Self {
@@ -69,10 +72,11 @@ impl Desk {
         };
         desk.foresee();
         desk.adjust();
-        Ok(desk)
+        desk
     }
 
     /// Opens a scenario; where its task cannot be planned, its machine with the paper's task, and what is in the way.
+    /// A machine that cannot do that either waits where it stands.
     ///
     /// # Errors
     /// If not even that can start.
@@ -82,8 +86,10 @@ impl Desk {
             Err(refusal) => refusal,
         };
         let (change, known) = (scenario.task.whole(), Scenario::builtin("case-3"));
-        let ground = known.map(|known| Scenario { task: known.task, edits: Vec::new(), ..scenario });
-        let Some(Ok(mut desk)) = ground.map(|ground| Self::new(ground, theme)) else { return Err(refusal) };
+        let ground = known.map(|known| Scenario { task: known.task, edits: Vec::new(), ..scenario.clone() });
+        let Some(Ok(mut desk)) = ground.map(|ground| Self::new(ground, theme)) else {
+            return Session::open_waiting(scenario).map_or(Err(refusal), |session| Ok(Self::around(session, theme)));
+        };
         desk.carry_out(Command::Edit(Edit::SetTask { change }));
         Ok(desk)
     }
