@@ -9,22 +9,25 @@
 //! A [`Machine`](machine::Machine) is data, checked. It collapses into a few constants, its
 //! [`Inertia`](machine::Inertia), and these say whether it is balanced:
 //! ```
-//! use stillbase::machine::{self, Inertia};
+//! use stillbase::mechanics::machine::{self, Inertia};
 //! let machine = machine::builtin("nine-link").expect("built in");
 //! let inertia = Inertia::of(machine);
 //! assert!(inertia.is_force_balanced() && inertia.is_invariant());
 //! ```
 //! [`balance::design`] finds the centres of mass that make a machine so, Eqs (7)–(10):
 //! ```
-//! # use stillbase::{balance::{design, Preset}, machine};
+//! # use stillbase::mechanics::balance::{design, Preset};
+//! # use stillbase::mechanics::machine;
 //! let rounded = machine::builtin("nine-link-table-1").expect("built in");
 //! let exact = design(rounded, &Preset::Table1.penalty(9)?)?;
 //! assert!((exact.links()[0].com - -0.2214384).abs() < 1e-7);
-//! # Ok::<(), stillbase::balance::DesignError>(())
+//! # Ok::<(), stillbase::mechanics::balance::DesignError>(())
 //! ```
 //! Its planes ([`pose_constant::Planes`]) know which b reach a point, where, and how far the workspace goes:
 //! ```
-//! # use stillbase::{machine, planar::Vector, pose_constant::Planes};
+//! # use stillbase::mechanics::machine;
+//! # use stillbase::mechanics::planar::Vector;
+//! # use stillbase::planning::pose_constant::Planes;
 //! # let machine = machine::builtin("nine-link").expect("built in");
 //! let planes = Planes::of(machine).expect("three drives, two angles");
 //! let a = planes.map().reach(Vector::new(0.50, 0.50)).expect("within reach");
@@ -33,10 +36,12 @@
 //! ```
 //! A curve of the end effector is followed on a plane, or refused with where, why, and which b would do:
 //! ```
-//! # use stillbase::{machine, planar::Vector, pose_constant::Planes};
+//! # use stillbase::mechanics::machine;
+//! # use stillbase::mechanics::planar::Vector;
+//! # use stillbase::planning::pose_constant::Planes;
 //! # let machine = machine::builtin("nine-link").expect("built in");
 //! # let planes = Planes::of(machine).expect("three drives, two angles");
-//! use stillbase::plan::{Curve, Rule, trace};
+//! use stillbase::planning::plan::{Curve, Rule, trace};
 //! let line = [Curve::line(Vector::new(0.50, 0.50), Vector::new(0.55, 0.90))];
 //! assert!(trace::follow(planes.map(), &line, 2.4, None, Rule::default()).is_ok());
 //! let blocked = trace::follow(planes.map(), &line, 2.9, None, Rule::default()).expect_err("B is on other planes");
@@ -45,7 +50,8 @@
 //! A [`Scenario`](scenario::Scenario) sets a task; a [`Run`](session::Run) carries it out step by step and gives a
 //! [`Frame`](frame::Frame) of everything true at each instant:
 //! ```
-//! # use stillbase::{scenario::Scenario, session::replay};
+//! # use stillbase::session::scenario::Scenario;
+//! # use stillbase::session::replay;
 //! let case_3 = Scenario::builtin("case-3").expect("built in");
 //! let run = replay(&case_3, |_run, frame| assert!(frame.base_moment().abs() < 1e-9))?;
 //! assert!(run.frame().peaks.is_reactionless());
@@ -80,38 +86,15 @@
 //! The core builds without any feature: no GPU, no window, no Rerun, and it reads no clock.
 #![warn(missing_docs)]
 
-pub mod audit;
-pub mod balance;
-pub mod compare;
-pub mod control;
-pub mod dynamics;
-pub mod files;
-pub mod frame;
-#[cfg(feature = "record")]
-pub mod headless;
-pub mod joint_forces;
-pub mod keys;
-pub mod kinematics;
-pub mod machine;
-pub mod plan;
-pub mod planar;
-pub mod plant;
-pub mod pose_constant;
-pub mod range;
-pub mod reactionless;
-#[cfg(feature = "render")]
-pub mod render;
-pub mod scenario;
-pub mod scene;
-pub mod session;
-pub mod signals;
-pub mod simulation;
-pub mod spectrum;
-pub mod tally;
-pub mod text;
-pub mod tolerance;
 #[cfg(feature = "ui")]
-pub mod ui;
-pub mod verdict;
-#[cfg(feature = "window")]
-pub mod window;
+pub mod app;
+pub mod files;
+pub mod mechanics;
+pub mod picture;
+pub mod planning;
+#[cfg(feature = "record")]
+pub mod recording;
+pub mod session;
+pub mod settings;
+pub mod simulation;
+pub mod study;

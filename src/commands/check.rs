@@ -2,8 +2,8 @@
 
 use clap::Args;
 use serde::Serialize;
-use stillbase::machine::{Inertia, Machine};
-use stillbase::plan::null_space::is_integrable;
+use stillbase::mechanics::machine::{Inertia, Machine};
+use stillbase::planning::plan::null_space::is_integrable;
 
 use super::failure::Failure;
 use super::input::MachineArgument;

@@ -5,11 +5,11 @@ use std::f64::consts::{PI, TAU};
 use std::fmt::Display;
 
 use clap::ValueEnum;
-use stillbase::machine::Machine;
-use stillbase::plan::Samples;
-use stillbase::plan::given::MAX_SAMPLES;
-use stillbase::plan::spline::FEWEST;
-use stillbase::range::{Short, clipped, shortened};
+use stillbase::mechanics::machine::Machine;
+use stillbase::planning::plan::Samples;
+use stillbase::planning::plan::given::MAX_SAMPLES;
+use stillbase::planning::plan::spline::FEWEST;
+use stillbase::settings::range::{Short, clipped, shortened};
 
 use super::failure::Failure;
 

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::{Serialize, Serializer};
-use stillbase::compare::{COLUMNS, Compared, Summary, alternatives};
 use stillbase::files::{NewFile, WriteError, check_new};
-use stillbase::scenario::Scenario;
+use stillbase::session::scenario::Scenario;
+use stillbase::study::comparison::{COLUMNS, Compared, Summary, alternatives};
 
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
@@ -136,7 +136,7 @@ impl Compare {
 
     #[cfg(feature = "record")]
     fn record(&self, scenarios: &[Scenario], file: &std::path::Path) -> Result<(), Failure> {
-        let options = stillbase::headless::Options { force: self.force, ..super::headless::unpictured() };
+        let options = stillbase::recording::Options { force: self.force, ..super::headless::unpictured() };
         super::headless::record_with_bar(scenarios, file, &options)?;
         say(format!("wrote {}", file.display()));
         Ok(())

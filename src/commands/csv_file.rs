@@ -4,7 +4,7 @@ use std::io::{self, StdoutLock, Write};
 use std::path::Path;
 
 use stillbase::files::{NewFile, WriteError};
-use stillbase::text::plain;
+use stillbase::settings::text::plain;
 
 use super::failure::Failure;
 use super::output::say;

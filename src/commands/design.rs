@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use clap::builder::PossibleValue;
 use serde::Serialize;
-use stillbase::balance::{self, Preset};
 use stillbase::files::{check_new, write_new};
-use stillbase::machine::{Inertia, Machine, to_toml};
+use stillbase::mechanics::balance::{self, Preset};
+use stillbase::mechanics::machine::{Inertia, Machine, to_toml};
 
 use super::check::Balance;
 use super::failure::Failure;

@@ -4,10 +4,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::{Deserialize, Serialize};
-use stillbase::dynamics::{Surroundings, angular_momentum, centre_of_mass, inverse_with_wrench, mass_matrix};
-use stillbase::machine::{Inertia, Machine};
-use stillbase::planar::{DriveAngles, PerDrive};
-use stillbase::range::shortened;
+use stillbase::mechanics::dynamics::{
+    Surroundings, angular_momentum, centre_of_mass, inverse_with_wrench, mass_matrix,
+};
+use stillbase::mechanics::machine::{Inertia, Machine};
+use stillbase::mechanics::planar::{DriveAngles, PerDrive};
+use stillbase::settings::range::shortened;
 
 use super::failure::Failure;
 use super::input::{MachineArgument, read};

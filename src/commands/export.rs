@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use serde::Serialize;
-use stillbase::audit::Audit;
-use stillbase::dynamics::{Surroundings, inverse};
 use stillbase::files::{check_new, write_new};
-use stillbase::machine::Inertia;
-use stillbase::planar::Vector;
-use stillbase::scenario::Scenario;
+use stillbase::mechanics::dynamics::{Surroundings, inverse};
+use stillbase::mechanics::machine::Inertia;
+use stillbase::mechanics::planar::Vector;
+use stillbase::session::scenario::Scenario;
 use stillbase::session::{Run, replay_if, settled};
+use stillbase::simulation::audit::Audit;
 
 use super::failure::Failure;
 use super::input::{Settings, scenario};

@@ -4,13 +4,13 @@ use std::fmt::Display;
 use std::io;
 use std::process::ExitCode;
 
-use stillbase::balance::DesignError;
 use stillbase::files::WriteError;
-use stillbase::joint_forces::JointsError;
-use stillbase::machine::{FileError, MachineError};
-use stillbase::pose_constant::{PlaneError, Unreachable};
-use stillbase::scenario::ScenarioError;
+use stillbase::mechanics::balance::DesignError;
+use stillbase::mechanics::joint_forces::JointsError;
+use stillbase::mechanics::machine::{FileError, MachineError};
+use stillbase::planning::pose_constant::{PlaneError, Unreachable};
 use stillbase::session::Refusal;
+use stillbase::session::scenario::ScenarioError;
 
 use super::output::say;
 

@@ -4,15 +4,15 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::Args;
+use stillbase::app::picture::Canvas;
+use stillbase::app::{Command, Desk, OnBoard};
 use stillbase::files::write_new;
-use stillbase::render::offscreen::Picture;
-use stillbase::scenario::{Change, Scenario, Value};
-use stillbase::scene::palette::Theme;
-use stillbase::scene::stage::ViewOptions;
-use stillbase::scene::views::ViewKind;
+use stillbase::picture::render::offscreen::Picture;
+use stillbase::picture::scene::palette::Theme;
+use stillbase::picture::scene::stage::ViewOptions;
+use stillbase::picture::scene::views::ViewKind;
 use stillbase::session::Edit;
-use stillbase::ui::picture::Canvas;
-use stillbase::ui::{Command, Desk, OnBoard};
+use stillbase::session::scenario::{Change, Scenario, Value};
 
 use super::failure::Failure;
 use super::output::say;

@@ -6,9 +6,9 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use stillbase::files::check_new;
-use stillbase::headless::{Options, Pictures, Progress, RecordError, Recording, record};
-use stillbase::scenario::Scenario;
-use stillbase::text::plain;
+use stillbase::recording::{Options, Pictures, Progress, RecordError, Recording, record};
+use stillbase::session::scenario::Scenario;
+use stillbase::settings::text::plain;
 
 use super::failure::Failure;
 use super::input::{Settings, scenario};

@@ -9,13 +9,13 @@ use std::path::{Path as FilePath, PathBuf};
 
 use clap::Args;
 use serde::Serialize;
-use stillbase::dynamics::Surroundings;
 use stillbase::files::{check_new, finish_all, made};
-use stillbase::machine::{self, Inertia, Machine};
-use stillbase::plan::{Motion, Samples};
-use stillbase::planar::Vector;
-use stillbase::pose_constant::Planes;
-use stillbase::scenario::{Scenario, Task, TaskKind};
+use stillbase::mechanics::dynamics::Surroundings;
+use stillbase::mechanics::machine::{self, Inertia, Machine};
+use stillbase::mechanics::planar::Vector;
+use stillbase::planning::plan::{Motion, Samples};
+use stillbase::planning::pose_constant::Planes;
+use stillbase::session::scenario::{Scenario, Task, TaskKind};
 
 use super::columns::{Content, Read, samples};
 use super::failure::Failure;

@@ -4,14 +4,14 @@ use std::ffi::OsString;
 use std::path::Path;
 
 use clap::Args;
-use stillbase::keys;
-use stillbase::machine::{self, Inertia, Machine};
-use stillbase::planar::Vector;
-use stillbase::pose_constant::plane_map;
-use stillbase::range::{Range, clipped};
-use stillbase::reactionless::PlaneMap;
-use stillbase::scenario::{Change, PLACE, POSE_CONSTANT, STEP, Scenario};
-use stillbase::text::{self, MOST_BYTES};
+use stillbase::mechanics::machine::{self, Inertia, Machine};
+use stillbase::mechanics::planar::Vector;
+use stillbase::planning::pose_constant::plane_map;
+use stillbase::planning::reactionless::PlaneMap;
+use stillbase::session::scenario::{Change, PLACE, POSE_CONSTANT, STEP, Scenario};
+use stillbase::settings::change;
+use stillbase::settings::range::{Range, clipped};
+use stillbase::settings::text::{self, MOST_BYTES};
 
 use super::failure::Failure;
 use super::output::say;
@@ -107,13 +107,13 @@ pub fn set(mut scenario: Scenario, settings: &Settings) -> Result<Scenario, Fail
     let mut changes = std::array::from_fn::<_, 4, _>(|_| Change::new());
     for (key, value) in own {
         let (Some(i), Some((_, rest))) = (part(&key), key.split_once('.')) else { continue };
-        changes[i] = keys::join(std::mem::take(&mut changes[i]), &keys::one(rest, listed(&value)));
+        changes[i] = change::join(std::mem::take(&mut changes[i]), &change::one(rest, listed(&value)));
     }
     let [task, plant, base, control] = changes;
     let wrong = |of: &str, why: String| Failure::wrong_input(format!("{of}: {why}")).of("--set");
-    scenario.plant = keys::with(&scenario.plant, &plant).map_err(|why| wrong("plant", why))?;
-    scenario.base = keys::with(&scenario.base, &base).map_err(|why| wrong("base", why))?;
-    scenario.control = keys::with(&scenario.control, &control).map_err(|why| wrong("control", why))?;
+    scenario.plant = change::with(&scenario.plant, &plant).map_err(|why| wrong("plant", why))?;
+    scenario.base = change::with(&scenario.base, &base).map_err(|why| wrong("base", why))?;
+    scenario.control = change::with(&scenario.control, &control).map_err(|why| wrong("control", why))?;
     change_task(&mut scenario, &task).map_err(|e| e.of("--set"))?;
     scenario.check("--set")?;
     for key in task.keys() {

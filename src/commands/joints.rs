@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::Serialize;
-use stillbase::audit::Audit;
 use stillbase::files::check_new;
-use stillbase::frame::Frame;
-use stillbase::joint_forces::{AxialMoments, Joints, KEPT, Pin, PinPeak};
-use stillbase::machine::{Inertia, Machine};
-use stillbase::planar::cross;
+use stillbase::mechanics::joint_forces::{AxialMoments, Joints, KEPT, Pin, PinPeak};
+use stillbase::mechanics::machine::{Inertia, Machine};
+use stillbase::mechanics::planar::cross;
 use stillbase::session::replay_if;
+use stillbase::simulation::audit::Audit;
+use stillbase::simulation::frame::Frame;
 
 use super::csv_file::Csv;
 use super::failure::Failure;

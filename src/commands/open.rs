@@ -1,11 +1,11 @@
 //! `stillbase [SCENARIO]`: the window, or a recording where there is no display.
 
 use clap::Args;
-use stillbase::scenario::Scenario;
 #[cfg(feature = "window")]
-use stillbase::scene::palette::Theme;
+use stillbase::app::window::WindowError;
 #[cfg(feature = "window")]
-use stillbase::window::WindowError;
+use stillbase::picture::scene::palette::Theme;
+use stillbase::session::scenario::Scenario;
 
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
@@ -53,7 +53,7 @@ impl Open {
             other => other,
         })?;
         #[cfg(feature = "window")]
-        let why = match stillbase::window::run(scenario.clone(), self.theme.unwrap_or_default().into()) {
+        let why = match stillbase::app::window::run(scenario.clone(), self.theme.unwrap_or_default().into()) {
             Ok(()) => return Ok(()),
             Err(WindowError::Refused(refusal)) => return Err(Failure::from(refusal).of(&scenario.name)),
             // The window system says where in its source it gave up before it says why.

@@ -7,7 +7,7 @@ use std::io::{self, Write};
 use serde::Serialize;
 use serde_json::ser::Formatter;
 use stillbase::session::Refusal;
-use stillbase::text::{brief, plain};
+use stillbase::settings::text::{brief, plain};
 
 use super::failure::Failure;
 

@@ -5,16 +5,16 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use stillbase::files::{check_new, write_new};
-use stillbase::machine::{self, Inertia};
-use stillbase::plan::Blocked;
-use stillbase::plan::least_reaction::{FixedB, Verdicts};
-use stillbase::plan::price::FloatingBase;
-use stillbase::planar::Vector;
-use stillbase::plant::Plant;
-use stillbase::pose_constant::Planes;
-use stillbase::reactionless::BSet;
-use stillbase::scenario::{Change, Scenario, Task, TaskKind};
+use stillbase::mechanics::machine::{self, Inertia};
+use stillbase::mechanics::planar::Vector;
+use stillbase::planning::plan::Blocked;
+use stillbase::planning::plan::least_reaction::{FixedB, Verdicts};
+use stillbase::planning::plan::price::FloatingBase;
+use stillbase::planning::pose_constant::Planes;
+use stillbase::planning::reactionless::BSet;
+use stillbase::session::scenario::{Change, Scenario, Task, TaskKind};
 use stillbase::session::{Refusal, Run, settled};
+use stillbase::simulation::plant::Plant;
 
 use super::failure::Failure;
 use super::input::{

@@ -2,9 +2,9 @@
 
 use clap::Args;
 use serde::Serialize;
-use stillbase::planar::Vector;
-use stillbase::pose_constant::Unreachable;
-use stillbase::reactionless::{PlaneMap, PlanePoint};
+use stillbase::mechanics::planar::Vector;
+use stillbase::planning::pose_constant::Unreachable;
+use stillbase::planning::reactionless::{PlaneMap, PlanePoint};
 
 use super::failure::Failure;
 use super::input::{MachineArgument, planes_of, point, pose_constant};

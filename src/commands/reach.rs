@@ -2,9 +2,9 @@
 
 use clap::Args;
 use serde::Serialize;
-use stillbase::planar::Vector;
-use stillbase::pose_constant::{Mend, Planes, Unreachable};
-use stillbase::reactionless::BSet;
+use stillbase::mechanics::planar::Vector;
+use stillbase::planning::pose_constant::{Mend, Planes, Unreachable};
+use stillbase::planning::reactionless::BSet;
 
 use super::failure::Failure;
 use super::input::{MachineArgument, planes_of, point};

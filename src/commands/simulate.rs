@@ -6,11 +6,11 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::{Serialize, Serializer};
 use stillbase::files::check_new;
-use stillbase::frame::Frame;
-use stillbase::scenario::Scenario;
 use stillbase::session::replay_if;
-use stillbase::signals::{Signal, signals};
-use stillbase::verdict::Verdict;
+use stillbase::session::scenario::Scenario;
+use stillbase::session::verdict::Verdict;
+use stillbase::simulation::frame::Frame;
+use stillbase::simulation::signals::{Signal, signals};
 
 use super::csv_file::Csv;
 use super::failure::Failure;

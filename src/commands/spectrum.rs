@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 use stillbase::files::{NewFile, WriteError, check_new};
 use stillbase::session::felt;
-use stillbase::spectrum::{Limit, Spectrum, SpectrumError, Verdict, Window};
+use stillbase::study::spectrum::{Limit, Spectrum, SpectrumError, Verdict, Window};
 
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};

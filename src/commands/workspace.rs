@@ -2,8 +2,8 @@
 
 use clap::Args;
 use serde::Serialize;
-use stillbase::planar::{Vector, unit};
-use stillbase::reactionless::{Boundary, ChangeCurve, PAIRS, PlaneMap};
+use stillbase::mechanics::planar::{Vector, unit};
+use stillbase::planning::reactionless::{Boundary, ChangeCurve, PAIRS, PlaneMap};
 
 use super::failure::Failure;
 use super::input::{MachineArgument, planes_of, point, pose_constant};

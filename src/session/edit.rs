@@ -3,9 +3,9 @@
 use serde::de::Error as _;
 use serde::{Deserialize, Serialize};
 
-use crate::keys;
-use crate::range::Check;
-use crate::scenario::{MAX_STEPS, PLACE, POSE_CONSTANT, TIME};
+use crate::session::scenario::{MAX_STEPS, PLACE, POSE_CONSTANT, TIME};
+use crate::settings::change;
+use crate::settings::range::Check;
 
 /// One change. It can be saved, replayed and undone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -122,22 +122,22 @@ impl TimedEdit {
 impl Edit {
     /// One key of the task.
     pub fn task(key: &str, value: impl Into<toml::Value>) -> Self {
-        Self::SetTask { change: keys::one(key, value) }
+        Self::SetTask { change: change::one(key, value) }
     }
 
     /// One key of the plant, its parts joined by dots.
     pub fn plant(key: &str, value: impl Into<toml::Value>) -> Self {
-        Self::SetPlant { change: keys::one(key, value) }
+        Self::SetPlant { change: change::one(key, value) }
     }
 
     /// One key of what the machine stands on.
     pub fn base(key: &str, value: impl Into<toml::Value>) -> Self {
-        Self::SetBase { change: keys::one(key, value) }
+        Self::SetBase { change: change::one(key, value) }
     }
 
     /// One key of control.
     pub fn control(key: &str, value: impl Into<toml::Value>) -> Self {
-        Self::SetControl { change: keys::one(key, value) }
+        Self::SetControl { change: change::one(key, value) }
     }
 
     /// Whether its own numbers may stand there, for a step, s; what it changes is checked where that is known.
@@ -180,7 +180,7 @@ impl Edit {
             | (Self::SetPlant { change: a }, Self::SetPlant { change: b })
             | (Self::SetBase { change: a }, Self::SetBase { change: b })
             | (Self::SetControl { change: a }, Self::SetControl { change: b })
-            | (Self::SetTolerance { change: a }, Self::SetTolerance { change: b }) => keys::covers(b, a),
+            | (Self::SetTolerance { change: a }, Self::SetTolerance { change: b }) => change::covers(b, a),
             _ => std::mem::discriminant(self) == std::mem::discriminant(later),
         }
     }
@@ -266,5 +266,5 @@ fn listed(of: &str, change: &toml::Table) -> String {
             format!("{} to {short}", key.replace(['_', '.'], " "))
         }
     };
-    format!("set {of} {}", keys::listed(change).into_iter().map(say).collect::<Vec<_>>().join(", "))
+    format!("set {of} {}", change::listed(change).into_iter().map(say).collect::<Vec<_>>().join(", "))
 }

@@ -5,16 +5,18 @@ mod off_plane;
 
 use super::Refusal;
 use super::run::allowed;
-use crate::dynamics::Surroundings;
-use crate::machine::Inertia;
-use crate::plan::least_reaction::Verdicts;
-use crate::plan::limits::Limit;
-use crate::plan::path::{Chained, SameTip, minimum_norm_curve};
-use crate::plan::{Curve, Forecast, Limits, Motion, Path, Price, Profile, Rule, TimeLaw, Usage, fastest, trace};
-use crate::planar::{DriveAngles, Vector};
-use crate::pose_constant::{Mend, Planes, Unreachable};
-use crate::reactionless::{Decimal, PlanePoint};
-use crate::scenario::{Corners, Scenario, Shape, Task, TaskKind};
+use crate::mechanics::dynamics::Surroundings;
+use crate::mechanics::machine::Inertia;
+use crate::mechanics::planar::{DriveAngles, Vector};
+use crate::planning::plan::least_reaction::Verdicts;
+use crate::planning::plan::limits::Limit;
+use crate::planning::plan::path::{Chained, SameTip, minimum_norm_curve};
+use crate::planning::plan::{
+    Curve, Forecast, Limits, Motion, Path, Price, Profile, Rule, TimeLaw, Usage, fastest, trace,
+};
+use crate::planning::pose_constant::{Mend, Planes, Unreachable};
+use crate::planning::reactionless::{Decimal, PlanePoint};
+use crate::session::scenario::{Corners, Scenario, Shape, Task, TaskKind};
 
 /// A planned task.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,23 +4,26 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
+use super::edit::{Edit, TimedEdit};
 use super::planning::{Plan, plan};
-use super::{Edit, MAX_FRAMES, TimedEdit};
-use crate::audit::{Audit, Lamp};
-use crate::frame::Frame;
-use crate::keys;
-use crate::machine::{Machine, MachineError};
-use crate::plan::drift::DriftError;
-use crate::plan::follow::Bounds;
-use crate::plan::least_reaction::LeastReactionError;
-use crate::plan::price::PriceError;
-use crate::plan::{Blocked, CurveError, Follower, Motion, PathError, TimeError};
-use crate::planar::{DriveAngles, Vector};
-use crate::pose_constant::{NoCommon, PlaneError, Planes, Unreachable};
-use crate::range::{Check, Short, Want, shortened};
-use crate::reactionless::{Decimal, PlanePoint};
-use crate::scenario::{MAX_STEPS, MAX_TIME, Scenario, ordinal};
+use crate::mechanics::machine::{Machine, MachineError};
+use crate::mechanics::planar::{DriveAngles, Vector};
+use crate::planning::plan::drift::DriftError;
+use crate::planning::plan::follow::Bounds;
+use crate::planning::plan::least_reaction::LeastReactionError;
+use crate::planning::plan::price::PriceError;
+use crate::planning::plan::{Blocked, CurveError, Follower, Motion, PathError, TimeError};
+use crate::planning::pose_constant::{NoCommon, PlaneError, Planes, Unreachable};
+use crate::planning::reactionless::{Decimal, PlanePoint};
+use crate::session::scenario::{MAX_STEPS, MAX_TIME, Scenario, ordinal};
+use crate::settings::change;
+use crate::settings::range::{Check, Short, Want, shortened};
+use crate::simulation::audit::{Audit, Lamp};
+use crate::simulation::frame::Frame;
 use crate::simulation::{Guide, Simulation};
+
+/// The most frames a session keeps: three minutes of motion at 1 kHz, some 150 MB.
+pub(super) const MAX_FRAMES: usize = 180_000;
 
 /// Why a scenario cannot start or an edit cannot apply; nothing has changed then.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -318,7 +321,7 @@ impl Run {
 
     /// Where a pose has the end effector, m.
     pub fn place(&self, q: &DriveAngles) -> Vector {
-        crate::kinematics::end_effector(self.scenario.machine.tip(), &q.units())
+        crate::mechanics::kinematics::end_effector(self.scenario.machine.tip(), &q.units())
     }
 
     /// Where the end effector is after a share of the planned time, m.
@@ -473,10 +476,10 @@ impl Run {
             Edit::SlideB { .. } => Edit::SlideB { b: b_aim() },
             Edit::PoseB { .. } => Edit::PoseB { b: b_aim() },
             Edit::Push { .. } => Edit::Push { x: scenario.plant.force[0], y: scenario.plant.force[1] },
-            Edit::SetPlant { change } => Edit::SetPlant { change: keys::only(&scenario.plant, change) },
-            Edit::SetBase { change } => Edit::SetBase { change: keys::only(&scenario.base, change) },
-            Edit::SetControl { change } => Edit::SetControl { change: keys::only(&scenario.control, change) },
-            Edit::SetTolerance { change } => Edit::SetTolerance { change: keys::only(&scenario.tolerance, change) },
+            Edit::SetPlant { change } => Edit::SetPlant { change: change::only(&scenario.plant, change) },
+            Edit::SetBase { change } => Edit::SetBase { change: change::only(&scenario.base, change) },
+            Edit::SetControl { change } => Edit::SetControl { change: change::only(&scenario.control, change) },
+            Edit::SetTolerance { change } => Edit::SetTolerance { change: change::only(&scenario.tolerance, change) },
             Edit::SetMachine { key, .. } => Edit::SetMachine { key: key.clone(), value: scenario.machine.get(key)? },
             Edit::SetTime { .. } => Edit::SetTime { time: scenario.task.time },
             Edit::SetTask { change } => Edit::SetTask { change: scenario.task.only(change) },
@@ -493,16 +496,16 @@ pub(super) fn changed(scenario: &Scenario, edit: &Edit) -> Result<Scenario, Refu
             scenario.plant.force = [*x, *y];
         }
         Edit::SetPlant { change } => {
-            scenario.plant = keys::with(&scenario.plant, change).map_err(|why| wrong("plant", &why))?;
+            scenario.plant = change::with(&scenario.plant, change).map_err(|why| wrong("plant", &why))?;
         }
         Edit::SetBase { change } => {
-            scenario.base = keys::with(&scenario.base, change).map_err(|why| wrong("base", &why))?;
+            scenario.base = change::with(&scenario.base, change).map_err(|why| wrong("base", &why))?;
         }
         Edit::SetControl { change } => {
-            scenario.control = keys::with(&scenario.control, change).map_err(|why| wrong("control", &why))?;
+            scenario.control = change::with(&scenario.control, change).map_err(|why| wrong("control", &why))?;
         }
         Edit::SetTolerance { change } => {
-            scenario.tolerance = keys::with(&scenario.tolerance, change).map_err(|why| wrong("tolerance", &why))?;
+            scenario.tolerance = change::with(&scenario.tolerance, change).map_err(|why| wrong("tolerance", &why))?;
         }
         Edit::SetMachine { key, value } => scenario.machine = scenario.machine.set(key, value)?,
         Edit::SetTime { time } => scenario.task.time = *time,
@@ -575,7 +578,7 @@ fn posed(scenario: &Scenario, planes: &Planes, b: f64) -> Scenario {
 fn bounds(scenario: &Scenario, planes: &Planes) -> Bounds {
     const UNLIMITED: f64 = 30.0;
     let machine = &scenario.machine;
-    let inertia = crate::machine::Inertia::of(machine);
+    let inertia = crate::mechanics::machine::Inertia::of(machine);
     let joint = (0..machine.drives())
         .filter_map(|k| {
             let limit = machine.spec().drives[k].torque_limit?;

@@ -2,7 +2,7 @@
 
 use super::run::{Refusal, changed, opening, order_of};
 use super::{Edit, TimedEdit};
-use crate::scenario::Scenario;
+use crate::session::scenario::Scenario;
 
 /// Looks at every edit of a scenario in the order of steps: whether its numbers and what it sets may stand there.
 ///

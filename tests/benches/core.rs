@@ -7,22 +7,22 @@
 mod nine_body;
 
 use divan::{Bencher, black_box};
-use stillbase::dynamics::{Surroundings, base_wrench, inverse_with_wrench};
-use stillbase::joint_forces::Joints;
-use stillbase::machine::{Inertia, builtin};
-use stillbase::plan::least_reaction::Goal;
-use stillbase::plan::path::tip_line;
-use stillbase::plan::{
+use stillbase::mechanics::dynamics::{Surroundings, base_wrench, inverse_with_wrench};
+use stillbase::mechanics::joint_forces::Joints;
+use stillbase::mechanics::machine::{Inertia, builtin};
+use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
+use stillbase::picture::scene::stage::ViewOptions;
+use stillbase::picture::scene::views::{ViewKind, Views};
+use stillbase::planning::plan::least_reaction::Goal;
+use stillbase::planning::plan::path::tip_line;
+use stillbase::planning::plan::{
     Curve, CurvePoint, LeastReaction, Limits, Path, Profile, Rule, Samples, TimeLaw, fastest, trace,
 };
-use stillbase::planar::{DriveAngles, PerDrive, Vector};
-use stillbase::pose_constant::plane_map;
-use stillbase::reactionless::{AngleDefinition, Boundary, Limit, PlaneMap};
-use stillbase::scenario::Scenario;
-use stillbase::scene::stage::ViewOptions;
-use stillbase::scene::views::{ViewKind, Views};
+use stillbase::planning::pose_constant::plane_map;
+use stillbase::planning::reactionless::{AngleDefinition, Boundary, Limit, PlaneMap};
+use stillbase::session::scenario::Scenario;
 use stillbase::session::{Run, Session, replay};
-use stillbase::tolerance::{CHUNK, Ensemble, default_spreads};
+use stillbase::study::tolerance::{CHUNK, Ensemble, default_spreads};
 
 fn main() {
     divan::main();
@@ -63,7 +63,7 @@ fn smoothing_of_samples(bencher: Bencher) {
 fn reference_of_samples(bencher: Bencher) {
     let samples = swinging();
     let path = Path::Table(samples.path(0.0).expect("a path"));
-    let motion = stillbase::plan::Motion { path, profile: Profile::running(samples.duration()) };
+    let motion = stillbase::planning::plan::Motion { path, profile: Profile::running(samples.duration()) };
     let mut t = 0.0;
     bencher.bench_local(|| {
         t = (t + 0.731) % 20.0;
@@ -82,7 +82,7 @@ fn swinging() -> Samples {
 /// The nine-link machine as nine rigid bodies, in gravity.
 fn twin() -> nine_body::NineBody {
     let machine = builtin("nine-link").expect("built in");
-    let each = |f: fn(&stillbase::machine::Link) -> f64| std::array::from_fn(|j| f(&machine.links()[j]));
+    let each = |f: fn(&stillbase::mechanics::machine::Link) -> f64| std::array::from_fn(|j| f(&machine.links()[j]));
     nine_body::NineBody {
         length: std::array::from_fn(|j| machine.parts()[j].length),
         mass: each(|l| l.mass),
@@ -184,8 +184,8 @@ fn workspace_boundary(bencher: Bencher) {
 fn record_three_cases(bencher: Bencher) {
     let scenarios: Vec<_> = Scenario::cases().filter_map(Scenario::builtin).collect();
     let file = std::env::temp_dir().join(format!("stillbase-bench-{}.rrd", std::process::id()));
-    let options = stillbase::headless::Options { pictures: None, force: true };
-    bencher.bench_local(|| stillbase::headless::record(&scenarios, &file, &options, &mut |_| {}).expect("it records"));
+    let options = stillbase::recording::Options { pictures: None, force: true };
+    bencher.bench_local(|| stillbase::recording::record(&scenarios, &file, &options, &mut |_| {}).expect("it records"));
     std::fs::remove_file(&file).expect("the recording is there");
 }
 

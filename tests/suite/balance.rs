@@ -2,8 +2,8 @@
 
 use nalgebra::DVector;
 use proptest::prelude::*;
-use stillbase::balance::{DesignError, Preset, conditions, design};
-use stillbase::machine::{Inertia, Machine, builtin, parse};
+use stillbase::mechanics::balance::{DesignError, Preset, conditions, design};
+use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse};
 
 use crate::nine_body::NineBody;
 use crate::support::{array, close, machine_of, numbers, planning};

@@ -1,14 +1,14 @@
 //! Bases that move: reference answers, conservation laws, and the closed forms that they obey.
 
 use proptest::prelude::*;
-use stillbase::control::Control;
-use stillbase::frame::Frame;
-use stillbase::machine::{Inertia, Machine, builtin};
-use stillbase::plan::{Motion, Path, TimeLaw};
-use stillbase::planar::{DriveAngles, PerDrive, Vector, cross};
-use stillbase::plant::{Base, BaseKind, Plant, Wheel};
-use stillbase::scenario::Scenario;
+use stillbase::mechanics::machine::{Inertia, Machine, builtin};
+use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector, cross};
+use stillbase::planning::plan::{Motion, Path, TimeLaw};
 use stillbase::session::replay;
+use stillbase::session::scenario::Scenario;
+use stillbase::simulation::control::Control;
+use stillbase::simulation::frame::Frame;
+use stillbase::simulation::plant::{Base, BaseKind, Plant, Wheel};
 use stillbase::simulation::{Guide, Setup, Simulation};
 
 use crate::support::{array, planning};
@@ -172,9 +172,12 @@ fn simulation_mass(machine: &Machine) -> f64 {
 fn momentum_is_kept_for_an_hour() {
     let model = builtin("nine-link-table-1").expect("built in").set("link.1.com", "0.1").expect("valid");
     let base = Base { com: [0.15, -0.1], ..free() };
-    let zero =
-        Control { kp: stillbase::plant::Each::All(0.0), kd: stillbase::plant::Each::All(0.0), ..Control::default() };
-    let control = Control { law: stillbase::control::Law::Pd, ..zero };
+    let zero = Control {
+        kp: stillbase::simulation::plant::Each::All(0.0),
+        kd: stillbase::simulation::plant::Each::All(0.0),
+        ..Control::default()
+    };
+    let control = Control { law: stillbase::simulation::control::Law::Pd, ..zero };
     // Turning at the start: a guide that is in full motion when it begins.
     let path = Path::JointLine { from: [1.6, 3.5, 2.0].into(), to: [2.1, 4.4, 3.2].into() };
     let guide = Guide::Motion { motion: Motion::new(path, TimeLaw::Quintic, 2.0), start: -1.0 };
@@ -242,7 +245,8 @@ fn only_case_3_leaves_a_spacecraft_alone() {
     let moved = ["case-1", "case-2", "case-3"].map(|name| {
         let mut scenario = Scenario::builtin(name).expect("built in");
         scenario.base = Base { com: [0.15, -0.1], ..free() };
-        let end = replay(&scenario, |_, f| assert!(stillbase::audit::Audit::fault(f).is_none(), "{:?}", f.audit));
+        let end =
+            replay(&scenario, |_, f| assert!(stillbase::simulation::audit::Audit::fault(f).is_none(), "{:?}", f.audit));
         let tally = end.expect("runs").frame().tally;
         (tally.shift, tally.tilt)
     });
@@ -263,7 +267,7 @@ fn a_wheel_cancels_until_it_saturates() {
             if f.tally.saturated.is_none() {
                 wheel_momentum = wheel_momentum.max(off.abs());
             }
-            assert!(stillbase::audit::Audit::fault(f).is_none(), "{:?}", f.audit);
+            assert!(stillbase::simulation::audit::Audit::fault(f).is_none(), "{:?}", f.audit);
         });
         let f = run.expect("runs").frame();
         assert!(wheel_momentum < 1e-9, "{wheel_momentum}");
@@ -328,7 +332,7 @@ proptest! {
             }
         });
         let end = run.expect("runs").frame();
-        let fault = stillbase::audit::Audit::fault(&end);
+        let fault = stillbase::simulation::audit::Audit::fault(&end);
         prop_assert!(fault.is_none(), "{fault:?}");
         prop_assert!(end.tally.wheel_rate <= top * (1.0 + 1e-13));
         // One that has reached it without a weak motor stays there for a while.
@@ -364,7 +368,7 @@ fn b_is_relative_to_the_base() {
         let relative = PerDrive::from_fn(3, |k| f.relative(k));
         assert!((f.b - model.lambda().dot(&relative)).abs() < 1e-12);
         let e = DriveAngles(f.q.0).units();
-        let tip = f.base.at + stillbase::kinematics::end_effector(scenario.machine.tip(), &e);
+        let tip = f.base.at + stillbase::mechanics::kinematics::end_effector(scenario.machine.tip(), &e);
         assert!((f.tip - tip).norm() < 1e-14);
     })
     .expect("runs");

@@ -3,9 +3,9 @@
 use std::f64::consts::{PI, TAU};
 
 use proptest::prelude::*;
-use stillbase::machine::{Inertia, builtin};
-use stillbase::planar::{Vector, cross, dot, unit};
-use stillbase::reactionless::{AngleDefinition, Boundary, Curve, Limit, PlaneMap};
+use stillbase::mechanics::machine::{Inertia, builtin};
+use stillbase::mechanics::planar::{Vector, cross, dot, unit};
+use stillbase::planning::reactionless::{AngleDefinition, Boundary, Curve, Limit, PlaneMap};
 
 const B: f64 = 2.4;
 

@@ -3,10 +3,10 @@
 use std::time::{Duration, Instant};
 
 use proptest::prelude::*;
-use stillbase::machine::builtin;
-use stillbase::range::Short;
-use stillbase::scenario::{MAX_STEPS, MAX_TIME, Scenario};
+use stillbase::mechanics::machine::builtin;
+use stillbase::session::scenario::{MAX_STEPS, MAX_TIME, Scenario};
 use stillbase::session::{Edit, Refusal, Run, Session, TimedEdit, replay, replay_if};
+use stillbase::settings::range::Short;
 
 const CASE_3: &str = include_str!("../../assets/scenarios/case-3.toml");
 
@@ -145,7 +145,7 @@ fn machines_inside_a_scenario_are_named_with_their_lines() {
     let error = said(&CASE_3.replace("[task]", "set = [\"link.5.mass=-1\"]\n[task]"));
     let line = CASE_3.lines().position(|line| line == "[task]").expect("there") + 1;
     assert!(error.starts_with(&format!("own.toml:{line}: machine: link[5].mass is -1")), "{error}");
-    let machine = stillbase::machine::to_toml(builtin("nine-link").expect("built in"));
+    let machine = stillbase::mechanics::machine::to_toml(builtin("nine-link").expect("built in"));
     let inline = Scenario {
         machine: builtin("nine-link").expect("it").set("payload.mass", "0.1").expect("valid"),
         ..Scenario::builtin("case-3").expect("it")
@@ -189,9 +189,10 @@ fn what_would_take_too_long_is_refused_at_once() {
 /// Turns that a pose constant is off by cost nothing, however many: a sum of them stood still beyond 2⁵³.
 #[test]
 fn poses_of_a_huge_pose_constant_end() {
-    let planes = stillbase::pose_constant::Planes::of(builtin("nine-link").expect("built in")).expect("planes");
+    let planes =
+        stillbase::planning::pose_constant::Planes::of(builtin("nine-link").expect("built in")).expect("planes");
     let period = planes.map().period();
-    let p = stillbase::planar::Vector::new(0.5, 0.5);
+    let p = stillbase::mechanics::planar::Vector::new(0.5, 0.5);
     for b in [-2.3e18, 2.3e18, 1e300, -9.1e15] {
         // No digits are left that could tell poses; only that it ends.
         assert!(planes.map().poses(p, b).iter().count() <= 64);

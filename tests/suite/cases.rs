@@ -2,13 +2,13 @@
 
 use std::sync::LazyLock;
 
-use stillbase::frame::{Frame, Phase};
-use stillbase::kinematics::{acceleration, end_effector, velocity};
-use stillbase::machine::{Inertia, builtin};
-use stillbase::plan::Motion;
-use stillbase::planar::{PerDrive, Vector, cross};
-use stillbase::scenario::Scenario;
+use stillbase::mechanics::kinematics::{acceleration, end_effector, velocity};
+use stillbase::mechanics::machine::{Inertia, builtin};
+use stillbase::mechanics::planar::{PerDrive, Vector, cross};
+use stillbase::planning::plan::Motion;
+use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Run, TimedEdit, replay};
+use stillbase::simulation::frame::{Frame, Phase};
 
 use crate::support::{angles, array, body_of, close, numbers, planning, three, xy};
 

@@ -4,8 +4,8 @@
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Matrix2, Matrix2x3};
-use stillbase::planar::{Vector, unit};
-use stillbase::reactionless::{Boundary, Curve, PAIRS, PlaneMap, PlanePoint};
+use stillbase::mechanics::planar::{Vector, unit};
+use stillbase::planning::reactionless::{Boundary, Curve, PAIRS, PlaneMap, PlanePoint};
 
 use crate::inside::{B, CASES, check_line, from_curves, share, size, spread, within};
 

@@ -1,9 +1,9 @@
 //! Runs side by side: the ways of one task, their table, and the two instants of a cursor.
 
-use stillbase::compare::{COLUMNS, Compared, Difference, SLOWER, Way, alternatives};
-use stillbase::scenario::{Scenario, TaskKind};
+use stillbase::session::scenario::{Scenario, TaskKind};
 use stillbase::session::{Edit, TimedEdit};
-use stillbase::signals::signals;
+use stillbase::simulation::signals::signals;
+use stillbase::study::comparison::{COLUMNS, Compared, Difference, SLOWER, Way, alternatives};
 
 fn scenario(name: &str) -> Scenario {
     Scenario::builtin(name).expect("built in")
@@ -36,7 +36,7 @@ fn the_ways_of_case_3_are_the_cases() {
 #[test]
 fn patience_divides_by_the_square_and_not_the_turn() {
     let mut free = scenario("case-1");
-    free.base.kind = stillbase::plant::BaseKind::Free;
+    free.base.kind = stillbase::simulation::plant::BaseKind::Free;
     let (quick, slow) = (run_of(&free, Way::StraightLine), run_of(&free, Way::Slowly));
     let (quick, slow) = (quick.summary, slow.summary);
     assert!((slow.time - SLOWER * quick.time).abs() < 1e-9);
@@ -160,7 +160,7 @@ fn two_instants_differ_by_their_signals() {
 /// The board keeps what it is given, follows the task, sorts both ways and gives its table away.
 #[test]
 fn a_board_follows_sorts_and_keeps() {
-    use stillbase::compare::Board;
+    use stillbase::study::comparison::Board;
     let mut board = Board::of(&scenario("case-3"));
     assert_eq!(board.entries().len(), 5);
     board.show(1, true);

@@ -2,13 +2,13 @@
 //! that rates are parabolas between events and every event is a root in closed form. What is stuck and what slides at an
 //! instant is found by Gauss's principle, by trying every way it could be; the library projects.
 
-use stillbase::machine::{Inertia, Machine, builtin};
-use stillbase::plan::profile::Span;
-use stillbase::plan::{Motion, Path, Profile};
-use stillbase::planar::{DriveAngles, PerDrive};
-use stillbase::plant::{Base, BaseKind, Body, Contacts, Each, Friction, Plant};
-use stillbase::scenario::Scenario;
+use stillbase::mechanics::machine::{Inertia, Machine, builtin};
+use stillbase::mechanics::planar::{DriveAngles, PerDrive};
+use stillbase::planning::plan::profile::Span;
+use stillbase::planning::plan::{Motion, Path, Profile};
 use stillbase::session::replay;
+use stillbase::session::scenario::Scenario;
+use stillbase::simulation::plant::{Base, BaseKind, Body, Contacts, Each, Friction, Plant};
 use stillbase::simulation::{Guide, Setup, Simulation};
 
 /// Numbers that are the same in every run.
@@ -274,7 +274,7 @@ fn against_the_twin(case: u64) -> (f64, usize) {
     let (exact, stops) = twin.run(&times);
 
     let plant = Plant { friction, ..Plant::default() };
-    let control: stillbase::control::Control = toml::from_str("kp = 0.0\nkd = 0.0").expect("valid");
+    let control: stillbase::simulation::control::Control = toml::from_str("kp = 0.0\nkd = 0.0").expect("valid");
     let setup = Setup { model: &machine, plant: &plant, base: &base, control: &control, step: STEP };
     let mut simulation = Simulation::new(&setup, Guide::Motion { motion, start: 0.0 }).expect("valid");
     let fastest = exact.iter().flat_map(|(_, v)| v).fold(1e-3, |m: f64, v| m.max(v.abs()));
@@ -337,7 +337,7 @@ fn circle(coulomb: f64, step: f64, quick: bool) -> Vec<f64> {
         }
     });
     let end = run.expect("runs").frame();
-    assert!(stillbase::audit::Audit::fault(&end).is_none(), "{:?}", end.audit);
+    assert!(stillbase::simulation::audit::Audit::fault(&end).is_none(), "{:?}", end.audit);
     moments
 }
 
@@ -368,7 +368,7 @@ fn what_sticking_takes_is_an_error() {
         let (q, base) = (DriveAngles::from([1.7, 3.7, 2.2]), Base { kind, ..Base::default() });
         let body = Body::of(machine, &friction, &base, &q).expect("valid");
         let state = body.state(&q, &PerDrive::from([0.1, 0.2, -0.3]), Default::default(), Default::default(), 0.0);
-        let stuck = body.stuck(state, &[0; stillbase::plant::MAX_CONTACTS]);
+        let stuck = body.stuck(state, &[0; stillbase::simulation::plant::MAX_CONTACTS]);
         assert!(
             body.rates(&stuck).first(3).iter().all(|qd| (qd - body.rates(&stuck).get(3).unwrap_or(&0.0)).abs() < 1e-12)
         );

@@ -1,13 +1,13 @@
 //! The rate at which errors fall, and that every path's derivatives are its own.
 
 use proptest::prelude::*;
-use stillbase::control::Control;
-use stillbase::kinematics::{end_effector, minimum_norm};
-use stillbase::machine::{Machine, builtin};
-use stillbase::plan::path::{PathPoint, SameTip, tip_line};
-use stillbase::plan::{Motion, Path, PathError, TimeLaw};
-use stillbase::planar::{DriveAngles, PerDrive, Vector};
-use stillbase::plant::{Base, Plant};
+use stillbase::mechanics::kinematics::{end_effector, minimum_norm};
+use stillbase::mechanics::machine::{Machine, builtin};
+use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
+use stillbase::planning::plan::path::{PathPoint, SameTip, tip_line};
+use stillbase::planning::plan::{Motion, Path, PathError, TimeLaw};
+use stillbase::simulation::control::Control;
+use stillbase::simulation::plant::{Base, Plant};
 use stillbase::simulation::{Guide, Setup, Simulation};
 
 use crate::support::close;
@@ -20,7 +20,7 @@ fn nine_link() -> &'static Machine {
     builtin("nine-link").expect("built in")
 }
 
-fn tip() -> &'static stillbase::machine::Chain {
+fn tip() -> &'static stillbase::mechanics::machine::Chain {
     nine_link().tip()
 }
 
@@ -65,7 +65,7 @@ fn state_after(dt: f64) -> [f64; 6] {
     let settings = [("link.1.com", "0.1"), ("link.9.mass", "0.9"), ("gravity", "1,-9.81")];
     let model = builtin("nine-link-table-1").expect("built in").set_all(settings).expect("valid");
     let plant: Plant = toml::from_str("payload.mass = 0.4\nlink.2.com = 0.05").expect("valid");
-    assert!(!stillbase::machine::Inertia::of(&model).is_invariant());
+    assert!(!stillbase::mechanics::machine::Inertia::of(&model).is_invariant());
     let motion = Motion::new(line(), TimeLaw::Quintic, 1.0);
     let guide = Guide::Motion { motion, start: 0.0 };
     let mut simulation = simulated(&model, &plant, dt, guide);
@@ -224,7 +224,8 @@ fn motions_begin_and_end_at_rest() {
 fn quintic_law() {
     let law = TimeLaw::Quintic;
     let grid = || (0..=10_000).map(|i| law.at(f64::from(i) * 3e-4, 3.0));
-    let peak = |f: fn(&stillbase::plan::law::Progress) -> f64| grid().map(|p| f(&p).abs()).fold(0.0, f64::max);
+    let peak =
+        |f: fn(&stillbase::planning::plan::law::Progress) -> f64| grid().map(|p| f(&p).abs()).fold(0.0, f64::max);
     assert!((peak(|p| p.acceleration) * 9.0 - 10.0 / 3f64.sqrt()).abs() < 1e-6);
     assert!((peak(|p| p.rate) * 3.0 - 1.875).abs() < 1e-9);
     assert!(grid().zip(grid().skip(1)).all(|(a, b)| a.s <= b.s));

@@ -1,8 +1,8 @@
 //! Curves: they go through their points, their derivatives are their own, and pieces join as they should.
 
 use proptest::prelude::*;
-use stillbase::plan::{Curve, CurveError};
-use stillbase::planar::Vector;
+use stillbase::mechanics::planar::Vector;
+use stillbase::planning::plan::{Curve, CurveError};
 
 fn v(x: f64, y: f64) -> Vector {
     Vector::new(x, y)

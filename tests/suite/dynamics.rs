@@ -1,13 +1,13 @@
 //! The collapsed constants g, C, J against independent software, against nine rigid bodies, and against the laws.
 
 use proptest::prelude::*;
-use stillbase::dynamics::{
+use stillbase::mechanics::dynamics::{
     Surroundings, angular_momentum, base_wrench, centre_of_mass, energy, first_moment, forward, inverse,
     inverse_with_wrench, linear_momentum, mass_matrix,
 };
-use stillbase::kinematics::{end_effector, transmission, velocity};
-use stillbase::machine::{Inertia, Machine, builtin};
-use stillbase::planar::{DriveAngles, PerDrive, Units, Vector, cross, dot};
+use stillbase::mechanics::kinematics::{end_effector, transmission, velocity};
+use stillbase::mechanics::machine::{Inertia, Machine, builtin};
+use stillbase::mechanics::planar::{DriveAngles, PerDrive, Units, Vector, cross, dot};
 
 use crate::nine_body::NineBody;
 use crate::support::{angles, any_body, array, body_of, close, dynamics, machine_of, numbers, three, xy};

@@ -8,7 +8,7 @@ use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use stillbase::files::{NewFile, WriteError, finish_all, made, write_new};
-use stillbase::text::{MOST_BYTES, brief, plain, read};
+use stillbase::settings::text::{MOST_BYTES, brief, plain, read};
 
 /// A folder of one test.
 struct Folder(PathBuf);

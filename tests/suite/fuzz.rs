@@ -11,10 +11,10 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use stillbase::machine::{self, Inertia};
-use stillbase::planar::Vector;
-use stillbase::pose_constant::{Planes, plane_map};
-use stillbase::scenario::Scenario;
+use stillbase::mechanics::machine::{self, Inertia};
+use stillbase::mechanics::planar::Vector;
+use stillbase::planning::pose_constant::{Planes, plane_map};
+use stillbase::session::scenario::Scenario;
 use stillbase::session::{Session, replay};
 
 use crate::mutation::{Dice, mutated};

@@ -1,8 +1,8 @@
 //! The same for what only commands read: settings, samples as CSV, states as JSON, parts of a study.
 
 use clap::Parser;
-use stillbase::machine::builtin;
-use stillbase::scenario::Scenario;
+use stillbase::mechanics::machine::builtin;
+use stillbase::session::scenario::Scenario;
 
 use crate::commands::failure::Failure;
 use crate::commands::input::{Settings, set};

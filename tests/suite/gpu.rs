@@ -5,7 +5,7 @@
 
 use std::io::Write as _;
 use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
-use stillbase::render::offscreen::{Gpu, NoAdapter};
+use stillbase::picture::render::offscreen::{Gpu, NoAdapter};
 
 static GPU: LazyLock<Result<Mutex<Gpu>, NoAdapter>> = LazyLock::new(|| Gpu::new().map(Mutex::new));
 

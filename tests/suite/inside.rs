@@ -4,10 +4,10 @@
 use std::f64::consts::{PI, TAU};
 
 use proptest::prelude::*;
-use stillbase::machine::builtin;
-use stillbase::planar::{Vector, cross, dot, unit};
-use stillbase::pose_constant::plane_map;
-use stillbase::reactionless::{AngleDefinition, Boundary, Curve, Limit, Line, PlaneMap, Vertex};
+use stillbase::mechanics::machine::builtin;
+use stillbase::mechanics::planar::{Vector, cross, dot, unit};
+use stillbase::planning::pose_constant::plane_map;
+use stillbase::planning::reactionless::{AngleDefinition, Boundary, Curve, Limit, Line, PlaneMap, Vertex};
 
 use crate::change_points::{change_curves_are_sound, parts_add_up, parts_hold_the_poses_on_their_side};
 

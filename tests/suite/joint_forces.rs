@@ -3,13 +3,13 @@
 use std::f64::consts::PI;
 
 use proptest::prelude::*;
-use stillbase::dynamics::{Surroundings, inverse_with_wrench};
-use stillbase::joint_forces::{
+use stillbase::mechanics::dynamics::{Surroundings, inverse_with_wrench};
+use stillbase::mechanics::joint_forces::{
     AxialMoments, FLAT, Forces, Inside, Joints, JointsError, KEPT, Pin, PinPeak, Watch, ahead, nearest,
 };
-use stillbase::kinematics::{acceleration, transmission};
-use stillbase::machine::{Chain, Inertia, Machine, builtin, parse, place_of};
-use stillbase::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, cross, dot, unit};
+use stillbase::mechanics::kinematics::{acceleration, transmission};
+use stillbase::mechanics::machine::{Chain, Inertia, Machine, builtin, parse, place_of};
+use stillbase::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, cross, dot, unit};
 
 use crate::support::{any_body, close, machine_of, three, xy};
 
@@ -288,22 +288,24 @@ proptest! {
 /// The nine-link machine as another file may describe it.
 fn recut() -> Machine {
     let mut spec = builtin("nine-link").expect("built in").spec().clone();
-    let toml = |text: &str| -> stillbase::machine::Point { toml::from_str(text).expect("a point") };
+    let toml = |text: &str| -> stillbase::mechanics::machine::Point { toml::from_str(text).expect("a point") };
     // Turned round, so that roots are where the links now hang: 8 keeps its root, 9 hangs on 8, 5 on 9.
     let metres = |name: &str| spec.lengths[name];
     let (l2, l3, l5, l9) = (metres("l2"), metres("l3"), metres("l5"), metres("l9"));
-    let number = |x: f64| stillbase::machine::Length::Metres(x);
+    let number = |x: f64| stillbase::mechanics::machine::Length::Metres(x);
     let (five, nine) = (4, 8);
-    spec.links[nine].attach = stillbase::machine::Attach::On(toml("link = \"8\""));
+    spec.links[nine].attach = stillbase::mechanics::machine::Attach::On(toml("link = \"8\""));
     spec.links[nine].length = number(l9 + l3);
     spec.links[nine].com += l3;
-    spec.links[five].attach = stillbase::machine::Attach::On(toml(&format!("link = \"9\"\nat = {l3}")));
+    spec.links[five].attach = stillbase::mechanics::machine::Attach::On(toml(&format!("link = \"9\"\nat = {l3}")));
     spec.links[five].direction = 1;
     spec.links[five].length = number(l5 + l2);
     spec.links[five].com = l5 - spec.links[five].com;
     spec.closures[0].b = toml("link = \"5\"");
-    spec.closures[2] =
-        stillbase::machine::Closure { a: toml("link = \"1\""), b: toml(&format!("link = \"5\"\nat = {l5}")) };
+    spec.closures[2] = stillbase::mechanics::machine::Closure {
+        a: toml("link = \"1\""),
+        b: toml(&format!("link = \"5\"\nat = {l5}")),
+    };
     Machine::new(spec).expect("the same hardware")
 }
 
@@ -452,7 +454,7 @@ fn machines_of_any_number_of_drives() {
 #[test]
 fn what_statics_does_not_determine_is_refused() {
     let nine = builtin("nine-link").expect("built in");
-    let with = |change: &dyn Fn(&mut stillbase::machine::MachineSpec)| {
+    let with = |change: &dyn Fn(&mut stillbase::mechanics::machine::MachineSpec)| {
         let mut spec = nine.spec().clone();
         change(&mut spec);
         Joints::of(&Machine::new(spec).expect("a valid machine")).map(|_| ()).expect_err("undetermined")

@@ -1,16 +1,16 @@
 //! The redundant mode: closed forms, convergence, and what nothing else does better.
 
-use stillbase::dynamics::{Surroundings, base_wrench};
-use stillbase::kinematics::end_effector;
-use stillbase::machine::{Inertia, Machine, builtin};
-use stillbase::plan::corridor::CorridorError;
-use stillbase::plan::inverse::pose_along;
-use stillbase::plan::least_reaction::{FixedB, Goal, LeastReactionError};
-use stillbase::plan::pose_course::PoseCourse;
-use stillbase::plan::{Corridor, CurvePoint, LeastReaction, TimeLaw};
-use stillbase::planar::{DriveAngles, Vector, unit};
-use stillbase::pose_constant::plane_map;
-use stillbase::reactionless::{Limit, NoReach, PlaneMap, PlanePoint};
+use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
+use stillbase::mechanics::kinematics::end_effector;
+use stillbase::mechanics::machine::{Inertia, Machine, builtin};
+use stillbase::mechanics::planar::{DriveAngles, Vector, unit};
+use stillbase::planning::plan::corridor::CorridorError;
+use stillbase::planning::plan::inverse::pose_along;
+use stillbase::planning::plan::least_reaction::{FixedB, Goal, LeastReactionError};
+use stillbase::planning::plan::pose_course::PoseCourse;
+use stillbase::planning::plan::{Corridor, CurvePoint, LeastReaction, TimeLaw};
+use stillbase::planning::pose_constant::plane_map;
+use stillbase::planning::reactionless::{Limit, NoReach, PlaneMap, PlanePoint};
 
 use crate::support::close;
 
@@ -51,7 +51,7 @@ fn in_spaces(from: Vector, to: Vector, b: f64, end: Option<f64>, goal: Goal, spa
 }
 
 /// n_B of the dynamics at T = 1 s, N m.
-fn moment(path: &stillbase::plan::Table, u: f64) -> f64 {
+fn moment(path: &stillbase::planning::plan::Table, u: f64) -> f64 {
     let at = path.at(u);
     let model = Inertia::of(nine_link());
     base_wrench(&model, &at.q.units(), &at.first, &at.second, &Surroundings::default()).total().moment

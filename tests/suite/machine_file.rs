@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use proptest::sample::select;
-use stillbase::machine::{FileError, Machine, MachineError, builtins, parse, read, to_toml};
+use stillbase::mechanics::machine::{FileError, Machine, MachineError, builtins, parse, read, to_toml};
 
 const NINE_LINK: &str = include_str!("../../assets/machines/nine-link.toml");
 

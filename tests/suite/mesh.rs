@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 use std::f64::consts::PI;
-use stillbase::scene::Mesh;
-use stillbase::scene::mesh::{bar, cylinder, polygon_factor, ring};
+use stillbase::picture::scene::Mesh;
+use stillbase::picture::scene::mesh::{bar, cylinder, polygon_factor, ring};
 
 fn vector(p: [f32; 3]) -> nalgebra::Vector3<f64> {
     nalgebra::Vector3::from(p.map(f64::from))

@@ -2,15 +2,15 @@
 
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
-use stillbase::dynamics::{Surroundings, angular_momentum, base_wrench, mass_matrix};
-use stillbase::kinematics::{end_effector, velocity};
-use stillbase::machine::{Inertia, Machine, builtin, parse};
-use stillbase::plan::drift::{DriftError, circle, drift, drift_in, zero_momentum_path};
-use stillbase::plan::null_space::{
+use stillbase::mechanics::dynamics::{Surroundings, angular_momentum, base_wrench, mass_matrix};
+use stillbase::mechanics::kinematics::{end_effector, velocity};
+use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse};
+use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
+use stillbase::planning::plan::drift::{DriftError, circle, drift, drift_in, zero_momentum_path};
+use stillbase::planning::plan::null_space::{
     NullSpace, is_integrable, momentum_row, momentum_row_rate, motion, projected, rates, twist,
 };
-use stillbase::plan::pose_integral::PoseIntegral;
-use stillbase::planar::{DriveAngles, PerDrive, Vector};
+use stillbase::planning::plan::pose_integral::PoseIntegral;
 
 /// A pose in the middle of the joint limits.
 const Q: [f64; 3] = [1.6875182179, 3.7146223682, 2.1801769897];
@@ -107,7 +107,7 @@ proptest! {
     fn twist_is_the_stated_sum_of_three_sines(q in [-4.0..4.0f64, -4.0..4.0, -4.0..4.0], com in -0.2..0.2f64, mass in 0.1..1.5f64) {
         let model = unbalanced(com, mass);
         let (h, c) = (|k| Vector::new(model.diagonal(k), 0.0), |k, l| model.coupling(k, l));
-        let turn = |k: usize, l: usize| stillbase::planar::unit(q[l] - q[k]);
+        let turn = |k: usize, l: usize| stillbase::mechanics::planar::unit(q[l] - q[k]);
         let sum = (h(0) * c(1, 2) - c(1, 0) * c(0, 2)) * turn(1, 2)
             + (h(1) * c(2, 0) - c(2, 1) * c(1, 0)) * turn(2, 0)
             + (h(2) * c(0, 1) - c(0, 2) * c(2, 1)) * turn(0, 1);
@@ -243,7 +243,7 @@ fn a_point_mass_has_its_bearing() {
     assert!(moved > 0.1 && (bearing(&q) - from).abs() < 2e-5, "{moved} {:e}", bearing(&q) - from);
 }
 
-fn round(radius: f64) -> impl Fn(f64) -> stillbase::plan::CurvePoint + Clone {
+fn round(radius: f64) -> impl Fn(f64) -> stillbase::planning::plan::CurvePoint + Clone {
     let at = end_effector(nine_link().tip(), &DriveAngles::from(Q).units());
     circle(at + Vector::new(radius, 0.0), at)
 }
@@ -292,7 +292,7 @@ fn drift_goes_with_the_area() {
     let curve = round(0.05);
     let back = move |s: f64| {
         let at = curve(1.0 - s);
-        stillbase::plan::CurvePoint { first: -at.first, ..at }
+        stillbase::planning::plan::CurvePoint { first: -at.first, ..at }
     };
     let home = drift(&model, there, back, 1).expect("regular").ends[1];
     assert!(home.0.minus(&PerDrive::from(Q)).max_abs() < 1e-10);

@@ -3,14 +3,14 @@
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
-use stillbase::dynamics::Surroundings;
-use stillbase::frame::Frame;
-use stillbase::joint_forces::Joints;
-use stillbase::kinematics::transmission;
-use stillbase::planar::{DriveAngles, PerDrive};
-use stillbase::plant::{Each, Friction};
-use stillbase::scenario::Scenario;
+use stillbase::mechanics::dynamics::Surroundings;
+use stillbase::mechanics::joint_forces::Joints;
+use stillbase::mechanics::kinematics::transmission;
+use stillbase::mechanics::planar::{DriveAngles, PerDrive};
 use stillbase::session::replay;
+use stillbase::session::scenario::Scenario;
+use stillbase::simulation::frame::Frame;
+use stillbase::simulation::plant::{Each, Friction};
 
 use crate::nine_body::{Answer, DRIVE, NineBody};
 use crate::support::{any_body, body_of, close, machine_of, three};

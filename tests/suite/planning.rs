@@ -1,10 +1,10 @@
 //! Tasks: what is planned is what the machine then does, and what cannot be is refused with the reason.
 
-use stillbase::frame::{Frame, Phase};
-use stillbase::plan::Stop;
-use stillbase::planar::Vector;
-use stillbase::scenario::{Change, Scenario, Task};
+use stillbase::mechanics::planar::Vector;
+use stillbase::planning::plan::Stop;
+use stillbase::session::scenario::{Change, Scenario, Task};
 use stillbase::session::{Edit, Refusal, Run, Session, curves, replay};
+use stillbase::simulation::frame::{Frame, Phase};
 
 fn scenario() -> Scenario {
     Scenario { compare_b: None, ..Scenario::builtin("case-3").expect("built in") }
@@ -245,7 +245,8 @@ fn dragging_never_jumps_sheets() {
         session.apply(Edit::DragTarget { x, y }).expect("follows");
         session.tick(60);
         let target = session.frame().target.reach;
-        other_sheets += usize::from(matches!(target, stillbase::frame::Reach::Outside { other_sheet: true, .. }));
+        other_sheets +=
+            usize::from(matches!(target, stillbase::simulation::frame::Reach::Outside { other_sheet: true, .. }));
     }
     assert!(other_sheets > 3, "{other_sheets} targets were beyond a fold");
     let frames = session.frames();
@@ -262,7 +263,7 @@ fn dragging_never_jumps_sheets() {
 /// A change of b costs what was said: n_B = −D_1 b̈ all the way, the peak and the time are those of the law.
 #[test]
 fn the_price_of_b_is_what_was_said() {
-    let d1 = stillbase::machine::Inertia::of(&scenario().machine).diagonal(0);
+    let d1 = stillbase::mechanics::machine::Inertia::of(&scenario().machine).diagonal(0);
     let far = "kind = 'change-b'\nto = [-0.6, -0.2]";
     for (law, limit, factor) in [
         ("quintic", None, 10.0 / 3f64.sqrt()),
@@ -285,7 +286,7 @@ fn the_price_of_b_is_what_was_said() {
         let moved = frames[frames.len() - 1].b_reference - frames[0].b_reference;
         assert!((moved - price.delta_b()).abs() < 1e-9, "{law}: {moved}");
         // The measured moment against the second derivative of the machine's own b.
-        let lambda = stillbase::machine::Inertia::of(&scenario().machine).lambda();
+        let lambda = stillbase::mechanics::machine::Inertia::of(&scenario().machine).lambda();
         for f in &frames {
             assert!((f.base_moment() + d1 * lambda.dot(&f.qdd)).abs() < 1e-9, "{law}: at {} s", f.time);
         }
@@ -359,7 +360,7 @@ fn the_scenarios_that_come_along_do_what_they_say() {
         let planned = ["case-3", "circle", "drift", "pick-up", "friction"];
         assert_eq!(quiet, planned.contains(&name), "{name}: {}", forecast.moment);
         let end = stillbase::session::replay(&scenario, |_, _| {}).expect("it runs").frame();
-        let fault = stillbase::audit::Audit::fault(&end);
+        let fault = stillbase::simulation::audit::Audit::fault(&end);
         assert!(fault.is_none(), "{name}: {fault:?}");
         let done = end.peaks.moment < 1e-5 * end.peaks.torque_sum;
         assert_eq!(done, ["case-3", "circle", "drift"].contains(&name), "{name}: {}", end.peaks.moment);
@@ -369,7 +370,7 @@ fn the_scenarios_that_come_along_do_what_they_say() {
     let words = Run::new(&task("kind = 'change-b'\nvia = [[0.5, 0.6]]")).expect_err("no points between").to_string();
     assert!(words.contains("no points between"), "{words}");
     let near = Scenario { task: Scenario::builtin("drift").expect("built in").task, ..scenario() };
-    let near = Scenario { task: stillbase::scenario::Task { b: 2.07, ..near.task }, ..near };
+    let near = Scenario { task: stillbase::session::scenario::Task { b: 2.07, ..near.task }, ..near };
     let words = Run::new(&near).expect_err("passes a limit").to_string();
     assert!(words.contains("would pass its upper limit"), "{words}");
     let words = Run::new(&task("kind = 'zero-momentum'\ncycles = 2")).expect_err("open").to_string();
@@ -393,7 +394,11 @@ fn dragging_can_keep_off_change_points() {
         let crossed = session.frames().iter().any(|f| side(f) != start);
         assert_eq!(crossed, !keep);
         let reach = session.frame().target.reach;
-        assert_eq!(matches!(reach, stillbase::frame::Reach::Outside { other_sheet: true, .. }), keep, "{reach:?}");
+        assert_eq!(
+            matches!(reach, stillbase::simulation::frame::Reach::Outside { other_sheet: true, .. }),
+            keep,
+            "{reach:?}"
+        );
         assert!(session.frame().peaks.is_reactionless());
     }
 }

@@ -1,14 +1,14 @@
 //! Plants that differ from the model: what each deviation does is what physics says.
 
 use proptest::prelude::*;
-use stillbase::audit::Audit;
-use stillbase::control::Control;
-use stillbase::frame::Frame;
-use stillbase::keys;
-use stillbase::machine::builtin;
-use stillbase::plant::{BaseKind, Contacts, Each, Friction};
-use stillbase::scenario::Scenario;
+use stillbase::mechanics::machine::builtin;
+use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, TimedEdit, replay};
+use stillbase::settings::change;
+use stillbase::simulation::audit::Audit;
+use stillbase::simulation::control::Control;
+use stillbase::simulation::frame::Frame;
+use stillbase::simulation::plant::{BaseKind, Contacts, Each, Friction};
 
 use crate::support::{body_of, close, three};
 
@@ -16,9 +16,9 @@ fn case(name: &str, settings: &str) -> Scenario {
     let mut scenario = Scenario::builtin(name).expect("built in");
     let table: toml::Table = settings.parse().expect("TOML");
     let part = |key: &str| table.get(key).and_then(|v| v.as_table()).cloned().unwrap_or_default();
-    scenario.plant = keys::with(&scenario.plant, &part("plant")).expect("a plant");
-    scenario.control = keys::with(&scenario.control, &part("control")).expect("control");
-    scenario.base = keys::with(&scenario.base, &part("base")).expect("a base");
+    scenario.plant = change::with(&scenario.plant, &part("plant")).expect("a plant");
+    scenario.control = change::with(&scenario.control, &part("control")).expect("control");
+    scenario.base = change::with(&scenario.base, &part("base")).expect("a base");
     if let Some(step) = table.get("step").and_then(|v| v.as_float()) {
         scenario.step = step;
     }
@@ -84,7 +84,7 @@ fn a_coasting_drive_stops_where_it_should() {
         scenario.step = step;
         scenario.edits[1].step = (0.1 / step).round() as u64;
         let frames = frames(&scenario);
-        let d = stillbase::machine::Inertia::of(&scenario.machine).diagonal(0);
+        let d = stillbase::mechanics::machine::Inertia::of(&scenario.machine).diagonal(0);
         let free = &frames[scenario.edits[1].step as usize];
         assert!(free.qd[0].abs() > 0.1 && free.qd[1].abs() < 1e-15 && free.qd[2].abs() < 1e-15, "{:?}", free.qd);
         let end = &frames[frames.len() - 1];
@@ -145,7 +145,7 @@ fn unequal_gains_leak() {
         scenario.edits = vec![at(200, Edit::Push { x: 5.0, y: 0.0 }), at(260, Edit::Push { x: 0.0, y: 0.0 })];
         frames(&scenario)
     };
-    let d = stillbase::machine::Inertia::of(builtin("nine-link").expect("built in")).diagonals();
+    let d = stillbase::mechanics::machine::Inertia::of(builtin("nine-link").expect("built in")).diagonals();
     let weighted = |f: &Frame| (0..3).map(|k| d[k] * (f.q_reference[k] - f.q[k])).sum::<f64>();
     let after = |frames: &[Frame]| frames.iter().skip(261).map(|f| f.base_moment().abs()).fold(0.0, f64::max);
     let (equal, unequal) = (started_off("400.0"), started_off("[900.0, 400.0, 100.0]"));
@@ -417,12 +417,12 @@ proptest! {
     ) {
         let machine = builtin("nine-link-table-1").expect("built in").set("link.1.com", "0.2").expect("valid");
         let friction = Friction {
-            coulomb: stillbase::plant::Each::Own(coulomb.into()), pin_coulomb: pin, ..Friction::default()
+            coulomb: stillbase::simulation::plant::Each::Own(coulomb.into()), pin_coulomb: pin, ..Friction::default()
         };
         let contacts = Contacts::of(&machine, &friction, None);
-        let inertia = stillbase::machine::Inertia::of(&machine);
-        let q = stillbase::planar::DriveAngles::from(e);
-        let (h, _) = stillbase::dynamics::mass_matrix(&inertia, &q.units(), &[0.0; 3].into());
+        let inertia = stillbase::mechanics::machine::Inertia::of(&machine);
+        let q = stillbase::mechanics::planar::DriveAngles::from(e);
+        let (h, _) = stillbase::mechanics::dynamics::mass_matrix(&inertia, &q.units(), &[0.0; 3].into());
         let solve = |x: &[f64; 8]| {
             let y = h.solve(&[x[0], x[1], x[2]].into());
             [y[0], y[1], y[2], 0.0, 0.0, 0.0, 0.0, 0.0]
@@ -431,8 +431,8 @@ proptest! {
         padded[..3].copy_from_slice(&force);
         let free = solve(&padded);
         let (mut total, mut bearing) = (force, [0.0; 3]);
-        let mut taken = [0.0; stillbase::plant::MAX_CONTACTS];
-        contacts.hold(&[0; stillbase::plant::MAX_CONTACTS], (&[0.0; 3], &free[..3]), solve, &mut total, &mut bearing, &mut taken);
+        let mut taken = [0.0; stillbase::simulation::plant::MAX_CONTACTS];
+        contacts.hold(&[0; stillbase::simulation::plant::MAX_CONTACTS], (&[0.0; 3], &free[..3]), solve, &mut total, &mut bearing, &mut taken);
         padded[..3].copy_from_slice(&total);
         let left = solve(&padded);
         let scale = free.iter().fold(1.0_f64, |m, x| m.max(x.abs()));

@@ -1,15 +1,15 @@
 //! The price of b: stated before a motion, found again by the dynamics of it.
 
 use proptest::prelude::*;
-use stillbase::dynamics::{Surroundings, base_wrench};
-use stillbase::machine::{Inertia, builtin};
-use stillbase::plan::price::{
+use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
+use stillbase::mechanics::machine::{Inertia, builtin};
+use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
+use stillbase::planning::plan::price::{
     FloatingBase, PoseLaw, PriceError, bang_bang_in_b, joint_line, least_change, nearest_planes,
 };
-use stillbase::plan::{Motion, Price, TimeLaw};
-use stillbase::planar::{DriveAngles, PerDrive, Vector, unit};
-use stillbase::pose_constant::plane_map;
-use stillbase::reactionless::{BSet, PlaneMap, PlanePoint};
+use stillbase::planning::plan::{Motion, Price, TimeLaw};
+use stillbase::planning::pose_constant::plane_map;
+use stillbase::planning::reactionless::{BSet, PlaneMap, PlanePoint};
 
 use crate::support::{array, close, machine_of, planning};
 

@@ -1,7 +1,7 @@
 //! What a refusal proposes works as printed: typed back, it is accepted.
 
-use stillbase::pose_constant::Planes;
-use stillbase::scenario::{Change, Scenario};
+use stillbase::planning::pose_constant::Planes;
+use stillbase::session::scenario::{Change, Scenario};
 use stillbase::session::{Refusal, Run};
 
 use crate::support::Noise;
@@ -103,7 +103,7 @@ fn shown_b_reach_their_point() {
     let mut noise = Noise::of(59);
     let mut tried = 0;
     while tried < 500 {
-        let p = stillbase::planar::Vector::new(noise.between(-1.26, 1.26), noise.between(-1.26, 1.26));
+        let p = stillbase::mechanics::planar::Vector::new(noise.between(-1.26, 1.26), noise.between(-1.26, 1.26));
         let Ok(set) = planes.map().reach(p) else { continue };
         tried += 1;
         let nearest = set.nearest(noise.between(-9.0, 9.0)).expect("some b");

@@ -6,9 +6,9 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::{Matrix2, Vector2};
 use proptest::prelude::*;
 use serde_json::Value;
-use stillbase::machine::{Inertia, builtin};
-use stillbase::planar::Vector;
-use stillbase::reactionless::{AngleDefinition, BSet, Limit, NoReach, PlaneMap, PlanePoint, SLACK};
+use stillbase::mechanics::machine::{Inertia, builtin};
+use stillbase::mechanics::planar::Vector;
+use stillbase::planning::reactionless::{AngleDefinition, BSet, Limit, NoReach, PlaneMap, PlanePoint, SLACK};
 
 fn planning() -> Value {
     serde_json::from_str(include_str!("../reference/planning.json")).unwrap()

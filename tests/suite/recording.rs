@@ -9,13 +9,13 @@ use rerun::external::re_log_types::StoreId;
 use rerun::log::{Chunk, LogMsg};
 use rerun::{EntityPath, StoreKind, TimelineName};
 use stillbase::files::WriteError;
-use stillbase::frame::Frame;
-use stillbase::headless::{Options, Pictures, Progress, RecordError, Recording, record};
-use stillbase::plan::TimeLaw;
-use stillbase::planar::{Vector, unit};
-use stillbase::scenario::Scenario;
+use stillbase::mechanics::planar::{Vector, unit};
+use stillbase::planning::plan::TimeLaw;
+use stillbase::recording::{Options, Pictures, Progress, RecordError, Recording, record};
+use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, TimedEdit, replay};
-use stillbase::signals::signals;
+use stillbase::simulation::frame::Frame;
+use stillbase::simulation::signals::signals;
 
 /// A folder that goes when the test ends.
 struct Folder(PathBuf);
@@ -274,7 +274,7 @@ fn links_stand_where_the_machine_is() {
         let (places, turns) = (floats("Transform3D:translation"), floats("Transform3D:quaternion"));
         for (i, step) in steps.iter().enumerate() {
             let e = frames[*step as usize].q.units();
-            let root = stillbase::machine::place_of(&part.root, &e);
+            let root = stillbase::mechanics::machine::place_of(&part.root, &e);
             assert!((f64::from(places[3 * i]) - root.re).abs() < 1e-6, "{path} x");
             assert!((f64::from(places[3 * i + 1]) - root.im).abs() < 1e-6, "{path} y");
             let half = f64::from(turns[4 * i + 2]).atan2(f64::from(turns[4 * i + 3]));
@@ -294,7 +294,7 @@ fn what_happened_and_what_was_run_is_told() {
     let [text] = &property("scenario")[..] else { panic!("one scenario") };
     assert_eq!(Scenario::parse(text, "recorded", None).expect("a scenario"), scenario);
     let [text] = &property("machine")[..] else { panic!("one machine") };
-    assert_eq!(stillbase::machine::parse(text, "recorded").expect("a machine"), scenario.machine);
+    assert_eq!(stillbase::mechanics::machine::parse(text, "recorded").expect("a machine"), scenario.machine);
     assert_eq!(property("version"), [env!("CARGO_PKG_VERSION")]);
     assert!(property("verdict")[0].starts_with("not reactionless: peak |n_B| 1.0891 N m"), "{:?}", property("verdict"));
     let events = contents.texts("/case-1/events", "TextLog:text");
@@ -356,11 +356,11 @@ fn what_runs_inside_a_workspace_turns_with_it() {
     let (plain, scenario) = (short("case-2"), folded());
     record_in(&folder, "two.rrd", &[plain, scenario.clone()]).expect("two cases");
     let contents = Contents::of(&folder.file("two.rrd"));
-    let planes = stillbase::pose_constant::Planes::of(&scenario.machine).expect("planes");
+    let planes = stillbase::planning::pose_constant::Planes::of(&scenario.machine).expect("planes");
     let boundary = planes.boundary();
     let height = f64::from(contents.strips("/case-3/workspace/2.400/boundary")[0][0][2]);
     // Before they are turned: their transform is the workspace's.
-    let flat = |line: &stillbase::reactionless::Line| -> Vec<[f64; 3]> {
+    let flat = |line: &stillbase::planning::reactionless::Line| -> Vec<[f64; 3]> {
         line.turned(0.0).iter().map(|[x, y]| [*x, *y, height]).collect()
     };
     for (name, curves) in [("folds", boundary.fold_curves()), ("inner_limits", boundary.inner_limits())] {
@@ -582,7 +582,7 @@ fn a_view_has_its_identifier_for_good_and_shares_it_with_nothing() {
 #[cfg(feature = "render")]
 #[test]
 fn pictures_stand_beside_each_other_and_in_their_case() {
-    if stillbase::render::offscreen::Gpu::new().is_err() {
+    if stillbase::picture::render::offscreen::Gpu::new().is_err() {
         return;
     }
     let folder = Folder::new("pictured");
@@ -653,7 +653,7 @@ fn recording_again_gives_the_same_recording() {
     }
     assert_eq!(data(&folder.file("a.rrd")), data(&folder.file("b.rrd")));
     let mut other = short("case-2");
-    other.control.kp = stillbase::plant::Each::All(100.0);
+    other.control.kp = stillbase::simulation::plant::Each::All(100.0);
     record_in(&folder, "c.rrd", &[short("case-1"), other]).expect("two cases");
     let ids = |name: &str| Contents::of(&folder.file(name)).stores.into_keys().collect::<Vec<_>>();
     assert_ne!(ids("a.rrd"), ids("c.rrd"), "another recording has another name");
@@ -714,7 +714,7 @@ fn a_file_is_never_replaced_unasked_and_never_left_half() {
     assert_eq!(std::fs::read(&file).expect("the file"), b"mine");
 
     let unplannable =
-        Scenario { task: stillbase::scenario::Task { b: 9.0, ..short("case-3").task }, ..short("case-3") };
+        Scenario { task: stillbase::session::scenario::Task { b: 9.0, ..short("case-3").task }, ..short("case-3") };
     let force = Options { force: true, ..Options::default() };
     let refused = record(&[short("case-1"), unplannable], &file, &force, &mut quietly);
     assert!(matches!(&refused, Err(RecordError::Refused { scenario, .. }) if scenario == "case-3"), "{refused:?}");
@@ -784,7 +784,7 @@ fn pictures_come_at_their_times_or_it_is_said_why_not() {
     let recordings = record(&[short("case-3")], &folder.file("x.rrd"), &options, &mut quietly).expect("a case");
     let contents = Contents::of(&folder.file("x.rrd"));
     let chunks = contents.at("/case-3/view");
-    if stillbase::render::offscreen::Gpu::new().is_err() {
+    if stillbase::picture::render::offscreen::Gpu::new().is_err() {
         assert!(chunks.is_empty() && recordings[0].notes[0].starts_with("recorded without pictures"));
         return;
     }
@@ -805,9 +805,10 @@ fn pictures_come_at_their_times_or_it_is_said_why_not() {
 fn a_base_that_moves_is_recorded_as_it_moves() {
     let folder = Folder::new("floating");
     let mut scenario = short("case-1");
-    scenario.base.kind = stillbase::plant::BaseKind::Free;
-    scenario.base.wheel = Some(stillbase::plant::Wheel { torque_limit: Some(0.02), ..Default::default() });
-    scenario.plant.payload = stillbase::plant::Load { mass: 0.3, from: 0.02, until: Some(0.06), ..Default::default() };
+    scenario.base.kind = stillbase::simulation::plant::BaseKind::Free;
+    scenario.base.wheel = Some(stillbase::simulation::plant::Wheel { torque_limit: Some(0.02), ..Default::default() });
+    scenario.plant.payload =
+        stillbase::simulation::plant::Load { mass: 0.3, from: 0.02, until: Some(0.06), ..Default::default() };
     record_in(&folder, "one.rrd", std::slice::from_ref(&scenario)).expect("a case");
     let contents = Contents::of(&folder.file("one.rrd"));
     let mut frames = Vec::new();
@@ -817,7 +818,7 @@ fn a_base_that_moves_is_recorded_as_it_moves() {
     let (steps, at) = places("/case-1/machine/link/5");
     for (step, at) in steps.iter().zip(&at) {
         let f = &frames[*step as usize];
-        let root = f.base.at + stillbase::machine::place_of(&part.root, &f.q.units());
+        let root = f.base.at + stillbase::mechanics::machine::place_of(&part.root, &f.q.units());
         assert!((f64::from(at[0]) - root.re).hypot(f64::from(at[1]) - root.im) < 1e-6, "{step}");
     }
     for path in ["/case-1/machine/base", "/case-1/workspace/2.400"] {
@@ -842,8 +843,8 @@ fn a_base_that_moves_is_recorded_as_it_moves() {
 #[test]
 fn the_reaction_is_the_same_in_the_window() {
     use rerun::external::arrow::array::UInt32Array;
-    use stillbase::scene::palette::{Theme, palette};
-    use stillbase::scene::stage::{Stage, ViewOptions};
+    use stillbase::picture::scene::palette::{Theme, palette};
+    use stillbase::picture::scene::stage::{Stage, ViewOptions};
     let folder = Folder::new("reaction");
     let p = palette(Theme::Dark);
     let packed = |c: [f32; 4]| c.iter().fold(0u32, |all, x| all << 8 | (x * 255.0).round() as u32);

@@ -3,10 +3,10 @@
 use crate::gpu::{fresh, gpu};
 use std::f32::consts::PI;
 use std::sync::Arc;
-use stillbase::render::offscreen::{NoPicture, Picture};
-use stillbase::render::{Renderer, View};
-use stillbase::scene::palette::{Theme, faded, palette};
-use stillbase::scene::{Area, Line, Marker, Mesh, Model, Rgba, Scene, Solid, mesh};
+use stillbase::picture::render::offscreen::{NoPicture, Picture};
+use stillbase::picture::render::{Renderer, View};
+use stillbase::picture::scene::palette::{Theme, faded, palette};
+use stillbase::picture::scene::{Area, Line, Marker, Mesh, Model, Rgba, Scene, Solid, mesh};
 
 const WHITE: Rgba = [1.0; 4];
 const BLACK: Rgba = [0.0, 0.0, 0.0, 1.0];

@@ -3,18 +3,18 @@
 use std::fmt::Write;
 
 use proptest::prelude::*;
-use stillbase::frame::Reach;
-use stillbase::joint_forces::Joints;
-use stillbase::machine::{builtins, place_of};
-use stillbase::planar::{DriveAngles, Pose2, Vector, unit};
-use stillbase::scenario::Scenario;
-use stillbase::scene::camera::{Camera, Flat, Orbit};
-use stillbase::scene::linkage::Linkage;
-use stillbase::scene::palette::{Theme, palette};
-use stillbase::scene::stage::{Handle, Stage, ViewOptions, round_up};
-use stillbase::scene::sway::{exaggeration, swayed};
-use stillbase::scene::{Scene, Solid};
+use stillbase::mechanics::joint_forces::Joints;
+use stillbase::mechanics::machine::{builtins, place_of};
+use stillbase::mechanics::planar::{DriveAngles, Pose2, Vector, unit};
+use stillbase::picture::scene::camera::{Camera, Flat, Orbit};
+use stillbase::picture::scene::linkage::Linkage;
+use stillbase::picture::scene::palette::{Theme, palette};
+use stillbase::picture::scene::stage::{Handle, Stage, ViewOptions, round_up};
+use stillbase::picture::scene::sway::{exaggeration, swayed};
+use stillbase::picture::scene::{Scene, Solid};
+use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Session};
+use stillbase::simulation::frame::Reach;
 
 fn open(case: &str) -> Session {
     Session::open(Scenario::builtin(case).expect("built in")).expect("it can start")
@@ -287,7 +287,7 @@ fn pins_show_what_they_carry() {
 fn nothing_drawn_is_lost() {
     for session in [open("case-1"), open("case-2"), dragged_outside()] {
         for theme in [Theme::Dark, Theme::Light] {
-            for dexterity in [Some(stillbase::scene::Measure::Det), None] {
+            for dexterity in [Some(stillbase::picture::scene::Measure::Det), None] {
                 let options = ViewOptions { theme, dexterity, ..ViewOptions::default() };
                 let scene = Stage::of(session.run()).scene(session.frame(), &options);
                 let points = scene.lines.iter().flat_map(|l| &l.points).chain(scene.markers.iter().map(|m| &m.at));
@@ -444,7 +444,7 @@ fn views_look_where_they_say() {
 /// Case 1 on a base that floats, at its end, with a payload in hand.
 fn floating() -> Session {
     let mut scenario = Scenario::builtin("case-1").expect("built in");
-    scenario.base.kind = stillbase::plant::BaseKind::Free;
+    scenario.base.kind = stillbase::simulation::plant::BaseKind::Free;
     scenario.plant.payload.mass = 0.3;
     scenario.plant.payload.offset = [0.05, -0.02];
     let mut session = Session::open(scenario).expect("it can start");
@@ -526,7 +526,7 @@ proptest! {
         for k in 0..3 {
             prop_assert!((more.relative(k) - frame.relative(k)).abs() < 1e-12);
         }
-        let tip = more.base.at + stillbase::kinematics::end_effector(session.scenario().machine.tip(), &more.q.units());
+        let tip = more.base.at + stillbase::mechanics::kinematics::end_effector(session.scenario().machine.tip(), &more.q.units());
         prop_assert!((more.tip - tip).norm() < 1e-12);
     }
 }

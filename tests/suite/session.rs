@@ -1,11 +1,11 @@
 //! One path: whatever is done to a session by hand, its script replayed headless gives the very same frames.
 
 use proptest::prelude::*;
-use stillbase::frame::{Frame, Phase, Reach};
-use stillbase::machine::{Inertia, builtin};
-use stillbase::planar::Vector;
-use stillbase::scenario::Scenario;
+use stillbase::mechanics::machine::{Inertia, builtin};
+use stillbase::mechanics::planar::Vector;
+use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Refusal, Session, TimedEdit, replay};
+use stillbase::simulation::frame::{Frame, Phase, Reach};
 
 fn gains(kp: f64, kd: f64) -> Edit {
     Edit::SetControl { change: toml::Table::from_iter([("kp".into(), kp.into()), ("kd".into(), kd.into())]) }
@@ -577,7 +577,7 @@ fn a_target_outlives_a_change_of_the_machine() {
     let planes = session.run().planes().expect("three drives").clone();
     let free = planes
         .map()
-        .with_limits([planes.map().limits()[0], stillbase::reactionless::Limit { min: 0.0, max: 3.0 }])
+        .with_limits([planes.map().limits()[0], stillbase::planning::reactionless::Limit { min: 0.0, max: 3.0 }])
         .expect("limits");
     let at = free.forward([1.2, 2.6], 2.4);
     do_it(&mut session, drag(at.re, at.im));
@@ -1031,7 +1031,7 @@ proptest! {
 /// Friction that no part of a step can follow.
 fn blows_up(name: &str) -> Scenario {
     let mut scenario = Scenario::builtin(name).expect("built in");
-    scenario.plant.friction.viscous = stillbase::plant::Each::All(1e4);
+    scenario.plant.friction.viscous = stillbase::simulation::plant::Each::All(1e4);
     scenario.step = 0.01;
     scenario
 }
@@ -1050,7 +1050,7 @@ fn a_session_that_blew_up_opens_again() {
         let mut session = open(Scenario { step: 0.01, ..Scenario::builtin(name).expect("built in") });
         session.play();
         session.tick(20);
-        let change = stillbase::keys::one("friction.viscous", 1e4);
+        let change = stillbase::settings::change::one("friction.viscous", 1e4);
         session.apply(Edit::SetPlant { change }).expect("within its range");
         session.end_gesture();
         session.tick(300);

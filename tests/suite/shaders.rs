@@ -3,7 +3,7 @@
 use naga::{AddressSpace, TypeInner, valid};
 use std::collections::BTreeSet;
 use std::path::Path;
-use stillbase::render::TWINS;
+use stillbase::picture::render::TWINS;
 
 /// Names and modules of all shaders in the repository.
 fn shaders() -> Vec<(String, naga::Module)> {

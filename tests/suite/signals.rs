@@ -2,14 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use stillbase::frame::{Frame, Phase, REACTIONLESS};
-use stillbase::joint_forces::{Joints, nearest};
-use stillbase::machine::{Inertia, Machine, builtin};
-use stillbase::planar::{Vector, cross};
-use stillbase::pose_constant::plane_map;
-use stillbase::scenario::Scenario;
+use stillbase::mechanics::joint_forces::{Joints, nearest};
+use stillbase::mechanics::machine::{Inertia, Machine, builtin};
+use stillbase::mechanics::planar::{Vector, cross};
+use stillbase::planning::pose_constant::plane_map;
+use stillbase::session::scenario::Scenario;
 use stillbase::session::{Run, replay};
-use stillbase::signals::{Signal, signals};
+use stillbase::simulation::frame::{Frame, Phase, REACTIONLESS};
+use stillbase::simulation::signals::{Signal, signals};
 
 fn machine() -> &'static Machine {
     builtin("nine-link").expect("built in")
@@ -32,7 +32,7 @@ fn value(table: &[Signal], path: &str, frame: &Frame) -> f64 {
 
 #[test]
 fn paths_are_unique_and_plain() {
-    for machine in stillbase::machine::builtins() {
+    for machine in stillbase::mechanics::machine::builtins() {
         let table = signals(machine);
         let paths: BTreeSet<&str> = table.iter().map(|s| s.path.as_str()).collect();
         assert_eq!(paths.len(), table.len());
@@ -197,10 +197,10 @@ fn a_frame_agrees_with_itself() {
     let (mut torque, mut moment, mut force) = (0.0_f64, 0.0_f64, 0.0_f64);
     let see = |_: &Run, f: &Frame| {
         let e = f.q.units();
-        assert_eq!(f.tip, stillbase::kinematics::end_effector(scenario.machine.tip(), &e));
+        assert_eq!(f.tip, stillbase::mechanics::kinematics::end_effector(scenario.machine.tip(), &e));
         assert_eq!(f.b, model.lambda().dot(&f.q));
-        assert_eq!(f.com, stillbase::dynamics::centre_of_mass(&plant, &e));
-        assert_eq!(f.transmission, stillbase::kinematics::transmission(&e, 3));
+        assert_eq!(f.com, stillbase::mechanics::dynamics::centre_of_mass(&plant, &e));
+        assert_eq!(f.transmission, stillbase::mechanics::kinematics::transmission(&e, 3));
         let a = [f.q[1] - f.q[0], f.q[2] - f.q[1] + std::f64::consts::PI];
         assert!((f.a[0] - a[0]).abs() + (f.a[1] - a[1]).abs() < 1e-14);
         // −Σ τ is what the base feels.

@@ -1,7 +1,7 @@
 //! The unit vectors' own cosine and sine against those of the system's library.
 
 use proptest::prelude::*;
-use stillbase::planar::unit;
+use stillbase::mechanics::planar::unit;
 
 fn agrees(q: f64) -> Result<(), TestCaseError> {
     let e = unit(q);

@@ -2,10 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use stillbase::machine::builtin;
-use stillbase::planar::Vector;
-use stillbase::pose_constant::plane_map;
-use stillbase::reactionless::{AngleDefinition, Boundary, Limit, NoReach, NotAPlaneMap, PlaneMap};
+use stillbase::mechanics::machine::builtin;
+use stillbase::mechanics::planar::Vector;
+use stillbase::planning::pose_constant::plane_map;
+use stillbase::planning::reactionless::{AngleDefinition, Boundary, Limit, NoReach, NotAPlaneMap, PlaneMap};
 
 use crate::support::Noise;
 
@@ -45,7 +45,8 @@ fn scale(cases: usize, seed: u64) {
         }
         let [s, t] = [one.poses(p, b), other.poses(p * size, b)];
         if one.det(at).abs() > 1e-4 {
-            let near = |f: &stillbase::reactionless::PlanePoint| (f.a[0] - at[0]).hypot(f.a[1] - at[1]) < 1e-7;
+            let near =
+                |f: &stillbase::planning::reactionless::PlanePoint| (f.a[0] - at[0]).hypot(f.a[1] - at[1]) < 1e-7;
             assert!(s.iter().any(near) && t.iter().any(near), "case {case} at {size:e}");
         }
         let beside = [at[0] + 0.02, at[1] - 0.02];

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use std::f64::consts::TAU;
-use stillbase::spectrum::{LEAST, Limit, Spectrum, SpectrumError, Window};
+use stillbase::study::spectrum::{LEAST, Limit, Spectrum, SpectrumError, Window};
 
 /// The one-sided density by its definition, a sum for each line.
 fn by_definition(x: &[f64], step: f64, weight: impl Fn(usize) -> f64) -> Vec<f64> {

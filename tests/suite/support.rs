@@ -2,8 +2,8 @@
 
 use proptest::prelude::*;
 use serde_json::Value;
-use stillbase::machine::{Machine, Station, builtin};
-use stillbase::planar::{DriveAngles, PerDrive, Vector};
+use stillbase::mechanics::machine::{Machine, Station, builtin};
+use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 
 use crate::nine_body::NineBody;
 

@@ -2,19 +2,19 @@
 //! limits themselves, kept and used.
 
 use proptest::prelude::*;
-use stillbase::dynamics::{Surroundings, holding_torque, inverse, mass_matrix};
-use stillbase::machine::{Inertia, Machine, builtin};
-use stillbase::plan::fastest::{fastest_at, s_curve, stations};
-use stillbase::plan::limits::{Limit, Quantity};
-use stillbase::plan::path::{PathPoint, SameTip, tip_line};
-use stillbase::plan::profile::Span;
-use stillbase::plan::usage::ACTIVE;
-use stillbase::plan::{
+use stillbase::mechanics::dynamics::{Surroundings, holding_torque, inverse, mass_matrix};
+use stillbase::mechanics::machine::{Inertia, Machine, builtin};
+use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
+use stillbase::planning::plan::fastest::{fastest_at, s_curve, stations};
+use stillbase::planning::plan::limits::{Limit, Quantity};
+use stillbase::planning::plan::path::{PathPoint, SameTip, tip_line};
+use stillbase::planning::plan::profile::Span;
+use stillbase::planning::plan::usage::ACTIVE;
+use stillbase::planning::plan::{
     Curve, Fastest, Limits, Motion, Path, Profile, Progress, Rule, Table, TimeError, TimeLaw, Usage, fastest, trace,
 };
-use stillbase::planar::{DriveAngles, PerDrive, Vector};
-use stillbase::pose_constant::Planes;
-use stillbase::scenario::{Scenario, Task, Value};
+use stillbase::planning::pose_constant::Planes;
+use stillbase::session::scenario::{Scenario, Task, Value};
 use stillbase::session::{Run, replay};
 
 /// q_A and q_B of Case 3, rad.

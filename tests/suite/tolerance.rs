@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 
 use proptest::prelude::*;
-use stillbase::dynamics::{Surroundings, base_wrench};
-use stillbase::machine::{Inertia, Machine, builtin, parse};
-use stillbase::plan::Motion;
-use stillbase::planar::Vector;
-use stillbase::scenario::Scenario;
+use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
+use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse};
+use stillbase::mechanics::planar::Vector;
+use stillbase::planning::plan::Motion;
 use stillbase::session::Run;
-use stillbase::tolerance::{
+use stillbase::session::scenario::Scenario;
+use stillbase::study::tolerance::{
     Agreement, Bands, CHUNK, Ensemble, Histogram, Outcome, Quantiles, Shares, Spread, Tolerance, ToleranceError, Yield,
     default_spreads, inverse_normal, simulate,
 };
@@ -27,7 +27,7 @@ fn motion(case: &str) -> Motion {
 }
 
 /// The deviations of one machine of the chunk that was drawn last.
-fn of_machine(sampler: &stillbase::tolerance::Sampler, machine: usize) -> Vec<f64> {
+fn of_machine(sampler: &stillbase::study::tolerance::Sampler, machine: usize) -> Vec<f64> {
     sampler.deviations().iter().map(|p| p[machine]).collect()
 }
 
@@ -121,12 +121,12 @@ proptest! {
         seed in any::<u64>(),
     ) {
         let machine = serial_arm(n, &numbers);
-        let end = |from: usize| stillbase::planar::PerDrive::from_fn(n, |k| 6.0 * numbers[(from + k) % 11]);
-        let path = stillbase::plan::Path::JointLine {
-            from: stillbase::planar::DriveAngles(end(0)),
-            to: stillbase::planar::DriveAngles(end(3)),
+        let end = |from: usize| stillbase::mechanics::planar::PerDrive::from_fn(n, |k| 6.0 * numbers[(from + k) % 11]);
+        let path = stillbase::planning::plan::Path::JointLine {
+            from: stillbase::mechanics::planar::DriveAngles(end(0)),
+            to: stillbase::mechanics::planar::DriveAngles(end(3)),
         };
-        let motion = Motion::new(path, stillbase::plan::TimeLaw::Quintic, 1.3);
+        let motion = Motion::new(path, stillbase::planning::plan::TimeLaw::Quintic, 1.3);
         let wide = [("link.*.com", "normal:0.01"), ("link.*.com_normal", "uniform:0.01"), ("link.*.mass", "uniform:3%"),
             ("link.*.inertia", "uniform:30%"), ("length.*", "normal:0.002"), ("payload.mass", "normal:10%")];
         let ensemble = Ensemble::new(&machine, &motion, 50, &spreads(&wide), seed).expect("it varies");
@@ -288,7 +288,10 @@ fn first_order_is_the_limit_of_small_tolerances() {
         all.insert("link.*.mass".into(), format!("uniform:{}%", 90.0 * size).parse().expect("a spread"));
         let ensemble = Ensemble::new(&nine_link(), &motion, 30, &all, 1).expect("it varies");
         let shares = Shares::of(&ensemble);
-        for of in [|s: &stillbase::tolerance::Share| s.moment_share, |s: &stillbase::tolerance::Share| s.force_share] {
+        for of in [
+            |s: &stillbase::study::tolerance::Share| s.moment_share,
+            |s: &stillbase::study::tolerance::Share| s.force_share,
+        ] {
             let sum: f64 = shares.parameters.iter().map(of).sum();
             assert!((sum - 1.0).abs() < 1e-12);
         }
@@ -320,7 +323,8 @@ fn sensitivities_are_derivatives() {
         let machine = ensemble.machine_of(deviations).expect("possible");
         let (inertia, gravity) = (Inertia::of(&machine), machine.gravity());
         let around = Surroundings { gravity, force: Vector::default() };
-        let wrench = |r: &stillbase::plan::Reference| base_wrench(&inertia, &r.q.units(), &r.qd, &r.qdd, &around);
+        let wrench =
+            |r: &stillbase::planning::plan::Reference| base_wrench(&inertia, &r.q.units(), &r.qd, &r.qdd, &around);
         ensemble.references().iter().map(wrench).map(|w| (w.total().moment, w.dynamic.force)).collect()
     };
     for (p, share) in shares.parameters.iter().enumerate() {
@@ -343,8 +347,8 @@ fn simulated_machines_come_to_perfect_tracking_as_gains_grow() {
     let base = Scenario::builtin("case-1").expect("built in");
     let some = spreads(&[("link.*.com", "normal:0.002"), ("link.*.mass", "uniform:5%")]);
     let difference = |kp: f64, kd: f64| {
-        let all = stillbase::plant::Each::All;
-        let control = stillbase::control::Control { kp: all(kp), kd: all(kd), ..base.control };
+        let all = stillbase::simulation::plant::Each::All;
+        let control = stillbase::simulation::control::Control { kp: all(kp), kd: all(kd), ..base.control };
         let scenario = Scenario { control, step: 0.0005, ..base.clone() };
         let run = Run::new(&scenario).expect("it starts");
         let ensemble = Ensemble::new(&scenario.machine, &run.plan().motion, 2000, &some, 3).expect("it varies");
@@ -447,8 +451,8 @@ fn what_cannot_vary_is_refused() {
 #[test]
 fn a_study_is_of_one_piece() {
     use stillbase::session::Run;
-    use stillbase::tolerance::{Study, left_out};
-    let mut scenario = stillbase::scenario::Scenario::builtin("case-3").expect("built in");
+    use stillbase::study::tolerance::{Study, left_out};
+    let mut scenario = stillbase::session::scenario::Scenario::builtin("case-3").expect("built in");
     scenario.tolerance = toml::from_str("samples = 3000\nmoment_limit = 0.01").expect("tolerances");
     let study = Study::of(&Run::new(&scenario).expect("planned")).expect("something varies");
     assert!((study.shares.iter().map(|s| s.moment_share).sum::<f64>() - 1.0).abs() < 1e-9);
@@ -463,7 +467,7 @@ fn a_study_is_of_one_piece() {
     for (name, word) in
         [("spacecraft", "a base that moves"), ("pick-up", "a payload that comes or goes"), ("friction", "friction")]
     {
-        let scenario = stillbase::scenario::Scenario::builtin(name).expect("built in");
+        let scenario = stillbase::session::scenario::Scenario::builtin(name).expect("built in");
         assert!(left_out(&scenario).contains(&word), "{name}: {:?}", left_out(&scenario));
     }
 }

@@ -1,11 +1,11 @@
 //! Curves followed on a plane: exactly, on one sheet, and refused with the truth about where and why.
 
 use proptest::prelude::*;
-use stillbase::kinematics::end_effector;
-use stillbase::machine::{Machine, builtin};
-use stillbase::plan::{Blocked, Curve, Rule, Stop, Table, trace};
-use stillbase::planar::{PerDrive, Vector};
-use stillbase::pose_constant::Planes;
+use stillbase::mechanics::kinematics::end_effector;
+use stillbase::mechanics::machine::{Machine, builtin};
+use stillbase::mechanics::planar::{PerDrive, Vector};
+use stillbase::planning::plan::{Blocked, Curve, Rule, Stop, Table, trace};
+use stillbase::planning::pose_constant::Planes;
 
 const B: f64 = 2.4;
 
@@ -93,7 +93,7 @@ fn a_line_out_of_the_workspace_stops_at_the_boundary() {
     let inside = |s: f64| planes.boundary().contains(line.at(s).p, B);
     assert!(inside(blocked.s - 1e-6) && !inside(blocked.s + 1e-6), "{}", blocked.s);
     let at = planes.boundary().nearest(line.at(blocked.s + 1e-4).p, B, line.at(blocked.s).p);
-    let stillbase::reactionless::Curve::Limit { angle, upper } = at.curve else { panic!("no folds here") };
+    let stillbase::planning::reactionless::Curve::Limit { angle, upper } = at.curve else { panic!("no folds here") };
     assert_eq!(blocked.stop, Stop::Limit { angle, upper });
     let longest = blocked.longest.expect("a part is inside");
     assert!(longest[0] == 0.0 && (longest[1] - blocked.s).abs() < 1e-6, "{longest:?}");

@@ -1,21 +1,21 @@
 //! What a run is called, and what is said beside it.
 
 use proptest::prelude::*;
-use stillbase::frame::Frame;
-use stillbase::keys;
-use stillbase::plant::{BaseKind, Each, Wheel};
-use stillbase::scenario::Scenario;
+use stillbase::session::scenario::Scenario;
+use stillbase::session::verdict::{PAST, Verdict};
 use stillbase::session::{Edit, Session, TimedEdit, replay};
-use stillbase::verdict::{PAST, Verdict};
+use stillbase::settings::change;
+use stillbase::simulation::frame::Frame;
+use stillbase::simulation::plant::{BaseKind, Each, Wheel};
 
 fn case(name: &str, machine: &[(&str, &str)], settings: &str) -> Scenario {
     let mut scenario = Scenario::builtin(name).expect("built in");
     let table: toml::Table = settings.parse().expect("TOML");
     let part = |key: &str| table.get(key).and_then(|v| v.as_table()).cloned().unwrap_or_default();
     scenario.machine = scenario.machine.set_all(machine.iter().copied()).expect("valid");
-    scenario.plant = keys::with(&scenario.plant, &part("plant")).expect("a plant");
-    scenario.control = keys::with(&scenario.control, &part("control")).expect("control");
-    scenario.base = keys::with(&scenario.base, &part("base")).expect("a base");
+    scenario.plant = change::with(&scenario.plant, &part("plant")).expect("a plant");
+    scenario.control = change::with(&scenario.control, &part("control")).expect("control");
+    scenario.base = change::with(&scenario.base, &part("base")).expect("a base");
     scenario
 }
 
@@ -156,7 +156,7 @@ proptest! {
             scenario.base.com = com;
             scenario.plant.payload.mass = payload;
             // PD knows no weight: it is the same controller in both.
-            scenario.control.law = if knows { stillbase::control::Law::ComputedTorque } else { stillbase::control::Law::Pd };
+            scenario.control.law = if knows { stillbase::simulation::control::Law::ComputedTorque } else { stillbase::simulation::control::Law::Pd };
             scenario.control.kp = Each::All(400.0);
             scenario.duration = Some(0.4);
             run(&scenario)

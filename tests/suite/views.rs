@@ -1,22 +1,22 @@
 //! Joint space and the tower of workspaces as plain data: what is drawn is where the mechanics has it, and what is
 //! pulled at is what is meant.
 
-use stillbase::frame::Frame;
-use stillbase::planar::Vector;
-use stillbase::reactionless::Limit;
-use stillbase::scenario::Scenario;
-use stillbase::scene::Measure;
-use stillbase::scene::axes::{Axis, sliding};
-use stillbase::scene::camera::Camera;
-use stillbase::scene::joint_space::JointSpace;
-use stillbase::scene::palette::{Theme, palette};
-use stillbase::scene::pointer::Pointer;
-use stillbase::scene::stage::{Handle, ViewOptions};
-use stillbase::scene::tower::Tower;
-use stillbase::scene::views::{Aim, Grip, ViewKind, Views};
-use stillbase::scene::wall::Wall;
-use stillbase::scene::{Line, Scene};
+use stillbase::mechanics::planar::Vector;
+use stillbase::picture::scene::Measure;
+use stillbase::picture::scene::axes::{Axis, sliding};
+use stillbase::picture::scene::camera::Camera;
+use stillbase::picture::scene::joint_space::JointSpace;
+use stillbase::picture::scene::palette::{Theme, palette};
+use stillbase::picture::scene::pointer::Pointer;
+use stillbase::picture::scene::stage::{Handle, ViewOptions};
+use stillbase::picture::scene::tower::Tower;
+use stillbase::picture::scene::views::{Aim, Grip, ViewKind, Views};
+use stillbase::picture::scene::wall::Wall;
+use stillbase::picture::scene::{Line, Scene};
+use stillbase::planning::reactionless::Limit;
+use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Session};
+use stillbase::simulation::frame::Frame;
 
 fn open(case: &str) -> Session {
     Session::open(Scenario::builtin(case).expect("built in")).expect("it can start")
@@ -341,7 +341,8 @@ fn pulling_in_joint_space_asks_for_what_is_seen() {
     let (frame, space) = (session.frame(), JointSpace::of(session.run()).expect("three drives"));
     let map = *session.run().planes().expect("three drives").map();
     let b = frame.b_reference;
-    let seen = |a: [f64; 2], b_of: f64| space.point(map.lift(stillbase::reactionless::PlanePoint { a, b: b_of }), b);
+    let seen =
+        |a: [f64; 2], b_of: f64| space.point(map.lift(stillbase::planning::reactionless::PlanePoint { a, b: b_of }), b);
     for camera in cameras(space.camera()) {
         let pose = space.point([frame.q[0], frame.q[1], frame.q[2]], b);
         let grip = space.pick(frame, &pointer(camera, pose)).expect("the dot");
@@ -484,8 +485,8 @@ fn the_key_to_dexterity_is_its_range() {
 mod drawn {
     use super::*;
     use crate::gpu::gpu;
-    use stillbase::render::View;
-    use stillbase::render::offscreen::Picture;
+    use stillbase::picture::render::View;
+    use stillbase::picture::render::offscreen::Picture;
 
     fn view(camera: &Camera, size_px: [u32; 2]) -> View {
         View {
@@ -578,8 +579,9 @@ mod drawn {
         scene.solids.retain(|s| s.name == "tower");
         scene.solids[0].mesh = 0;
         scene.solids[0].colour = [1.0, 1.0, 1.0, 0.2];
-        scene.model = std::sync::Arc::new(stillbase::scene::Model { meshes: vec![Wall::of(&[circle], 0.0).mesh(2.0)] });
-        use stillbase::scene::camera::Orbit;
+        scene.model =
+            std::sync::Arc::new(stillbase::picture::scene::Model { meshes: vec![Wall::of(&[circle], 0.0).mesh(2.0)] });
+        use stillbase::picture::scene::camera::Orbit;
         let camera = Camera::Orbit(Orbit { centre: [0.0, 0.0, 1.0], distance: 12.0, yaw: 0.0, pitch: 0.0 });
         let mut levels = Vec::new();
         for mirrored in [false, true] {

@@ -5,10 +5,10 @@
 
 use std::f64::consts::TAU;
 
-use stillbase::machine::builtin;
-use stillbase::planar::Vector;
-use stillbase::pose_constant::plane_map;
-use stillbase::reactionless::{AngleDefinition, Boundary, Limit, PlaneMap, WIDEST};
+use stillbase::mechanics::machine::builtin;
+use stillbase::mechanics::planar::Vector;
+use stillbase::planning::pose_constant::plane_map;
+use stillbase::planning::reactionless::{AngleDefinition, Boundary, Limit, PlaneMap, WIDEST};
 
 use crate::support::Noise;
 

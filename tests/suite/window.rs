@@ -3,19 +3,19 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, pos2};
 use egui_kittest::{Harness, kittest::NodeT as _, kittest::Queryable as _};
-use stillbase::frame::Reach;
-use stillbase::planar::{PerDrive, unit};
-use stillbase::plant::{Base, BaseKind, Each, Plant};
-use stillbase::reactionless::PlanePoint;
-use stillbase::scenario::Scenario;
-use stillbase::scene::palette::Theme;
-use stillbase::scene::pointer::Pointer;
-use stillbase::scene::stage::Handle;
-use stillbase::scene::sway::swayed;
-use stillbase::scene::views::ViewKind;
+use stillbase::app::Desk;
+use stillbase::app::window::{App, Clock};
+use stillbase::mechanics::planar::{PerDrive, unit};
+use stillbase::picture::scene::palette::Theme;
+use stillbase::picture::scene::pointer::Pointer;
+use stillbase::picture::scene::stage::Handle;
+use stillbase::picture::scene::sway::swayed;
+use stillbase::picture::scene::views::ViewKind;
+use stillbase::planning::reactionless::PlanePoint;
 use stillbase::session::Edit;
-use stillbase::ui::Desk;
-use stillbase::window::{App, Clock};
+use stillbase::session::scenario::Scenario;
+use stillbase::simulation::frame::Reach;
+use stillbase::simulation::plant::{Base, BaseKind, Each, Plant};
 
 use super::gpu::gpu;
 
@@ -380,13 +380,13 @@ fn waypoints_are_handles() {
 fn a_refused_path_shows_where_and_what_b_would_do() {
     let Some(mut h) = desk("case-3", Theme::Dark) else { return };
     h.step();
-    let change = stillbase::scenario::Change::from_iter([
+    let change = stillbase::session::scenario::Change::from_iter([
         ("shape".to_owned(), "line".into()),
         ("from".to_owned(), vec![0.42, 1.12].into()),
         ("to".to_owned(), vec![0.0, 0.5].into()),
     ]);
     let before = session(&h).scenario().task.clone();
-    h.state_mut().desk_mut().carry_out(stillbase::ui::Command::Edit(Edit::SetTask { change }));
+    h.state_mut().desk_mut().carry_out(stillbase::app::Command::Edit(Edit::SetTask { change }));
     h.run_steps(2);
     assert_eq!(session(&h).scenario().task, before, "nothing has changed");
     assert!(h.query_by_label_contains("the path stops at (0.418, 1.116) m").is_some());
@@ -422,7 +422,7 @@ fn a_path_is_drawn_by_hand() {
     h.drop_at(at(&h, 1.0));
     h.run_steps(3);
     let task = &session(&h).scenario().task;
-    assert_eq!(task.shape(), stillbase::scenario::Shape::Freehand);
+    assert_eq!(task.shape(), stillbase::session::scenario::Shape::Freehand);
     assert!(task.points().len() > 20, "{}", task.points().len());
     assert!(h.state().desk().look().stroke.is_none(), "the pencil is laid down");
     h.get_by_label("Play").click();
@@ -447,7 +447,7 @@ fn a_scenario_that_cannot_be_planned_is_explained() {
     let (words, bad) = desk.look().message.clone().expect("a reason");
     assert!(bad && words.contains("the path stops at"), "{words}");
     let (edit, _) = desk.look().refused.as_ref().and_then(|wish| wish.remedy.clone()).expect("another b would do");
-    desk.carry_out(stillbase::ui::Command::Edit(edit));
+    desk.carry_out(stillbase::app::Command::Edit(edit));
     let done = &desk.session().scenario().task;
     assert_eq!((done.points(), done.shape()), (task.points(), task.shape()));
 }
@@ -504,7 +504,7 @@ fn runs_stand_side_by_side() {
     // The other way opens in place of this one.
     h.get_by_label("Open Reactionless").click();
     h.run_steps(2);
-    assert_eq!(session(&h).scenario().task.kind, stillbase::scenario::TaskKind::Reactionless);
+    assert_eq!(session(&h).scenario().task.kind, stillbase::session::scenario::TaskKind::Reactionless);
     h.key_press(Key::C);
     h.run_steps(2);
     assert!(board(&h).is_none());
@@ -816,7 +816,7 @@ fn b_leaves_the_task_as_it_is() {
     h.key_press(Key::Num3);
     h.run_steps(70);
     let period = session(&h).run().planes().expect("planes").map().period();
-    h.state_mut().desk_mut().carry_out(stillbase::ui::Command::Edit(Edit::SlideB { b: 2.4 + period }));
+    h.state_mut().desk_mut().carry_out(stillbase::app::Command::Edit(Edit::SlideB { b: 2.4 + period }));
     h.run_steps(2);
     assert!((session(&h).b_aim() - 2.4 - period).abs() < 1e-9);
     let value = h.get_by_role_and_label(Role::Slider, "b slider").accesskit_node().numeric_value();
@@ -849,18 +849,21 @@ fn a_hand_is_named_and_let_go() {
         assert!(session(&h).is_live(), "the hand comes back");
     }
     let gravity = Edit::SetMachine { key: "gravity".into(), value: "0,-9.81".into() };
-    h.state_mut().desk_mut().carry_out(stillbase::ui::Command::Edit(gravity));
+    h.state_mut().desk_mut().carry_out(stillbase::app::Command::Edit(gravity));
     h.key_press(Key::Num3);
     h.run_steps(2);
     assert_eq!(session(&h).to_scenario().machine, Scenario::builtin("case-3").expect("built in").machine);
     assert!(h.state().desk().look().message.is_none());
     // Another machine that somebody has chosen stays, and that is said.
     let case = Scenario::builtin("case-3").expect("built in");
-    let other = stillbase::machine::builtins().iter().find(|m| m.name() == "nine-link-table-1");
+    let other = stillbase::mechanics::machine::builtins().iter().find(|m| m.name() == "nine-link-table-1");
     let other = other.unwrap_or_else(|| {
-        panic!("{:?}", stillbase::machine::builtins().iter().map(|m| m.name().to_owned()).collect::<Vec<_>>())
+        panic!(
+            "{:?}",
+            stillbase::mechanics::machine::builtins().iter().map(|m| m.name().to_owned()).collect::<Vec<_>>()
+        )
     });
-    let open = stillbase::ui::Command::Open(Box::new(Scenario { machine: other.clone(), ..case }));
+    let open = stillbase::app::Command::Open(Box::new(Scenario { machine: other.clone(), ..case }));
     h.state_mut().desk_mut().carry_out(open);
     h.key_press(Key::Num3);
     h.run_steps(2);

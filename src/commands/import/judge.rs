@@ -1,13 +1,13 @@
 //! What motions of a machine do to its base, and whether a proposal is as quiet as it is meant to be.
 
 use serde::Serialize;
-use stillbase::dynamics::{Surroundings, angular_momentum};
-use stillbase::machine::{Inertia, Machine};
-use stillbase::plan::nearest::Deviation;
-use stillbase::plan::{Forecast, Limits, Motion};
-use stillbase::pose_constant::Planes;
-use stillbase::scenario::{Scenario, Task};
+use stillbase::mechanics::dynamics::{Surroundings, angular_momentum};
+use stillbase::mechanics::machine::{Inertia, Machine};
+use stillbase::planning::plan::nearest::Deviation;
+use stillbase::planning::plan::{Forecast, Limits, Motion};
+use stillbase::planning::pose_constant::Planes;
 use stillbase::session::replay;
+use stillbase::session::scenario::{Scenario, Task};
 
 /// What a motion does, if it is followed exactly.
 #[derive(Serialize)]

@@ -1,12 +1,12 @@
 //! The ways in which a given motion might be made reactionless, the best first.
 
 use clap::ValueEnum;
-use stillbase::plan::nearest::{nearest_b, same_tip, turned};
-use stillbase::plan::path::minimum_norm_curve;
-use stillbase::plan::{Motion, Path, Profile, Rule, Samples, trace};
-use stillbase::planar::DriveAngles;
-use stillbase::reactionless::{BSet, between};
-use stillbase::scenario::{Task, TaskKind};
+use stillbase::mechanics::planar::DriveAngles;
+use stillbase::planning::plan::nearest::{nearest_b, same_tip, turned};
+use stillbase::planning::plan::path::minimum_norm_curve;
+use stillbase::planning::plan::{Motion, Path, Profile, Rule, Samples, trace};
+use stillbase::planning::reactionless::{BSet, between};
+use stillbase::session::scenario::{Task, TaskKind};
 
 use super::judge::{Candidate, Judge};
 use crate::commands::failure::Failure;

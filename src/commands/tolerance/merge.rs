@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use stillbase::tolerance::Outcome;
+use stillbase::study::tolerance::Outcome;
 
 use super::OUTCOMES;
 use super::rows::{Head, Part, Study, Writer};

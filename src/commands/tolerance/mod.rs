@@ -12,9 +12,9 @@ use std::path::PathBuf;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use stillbase::files::check_new;
-use stillbase::scenario::Scenario;
+use stillbase::session::scenario::Scenario;
 use stillbase::session::{Run, settled};
-use stillbase::tolerance::{
+use stillbase::study::tolerance::{
     Agreement, Bands, Ensemble, MAX_SAMPLES, Outcome, Shares, Spread, Tolerance as Section, ToleranceError, simulate,
 };
 
@@ -176,7 +176,7 @@ impl Tolerance {
         if others > 0 {
             say(format!("note: {}: {others} edits in motion are left out; the planned motion counts", scenario.name));
         }
-        let left_out = stillbase::tolerance::left_out(&scenario);
+        let left_out = stillbase::study::tolerance::left_out(&scenario);
         if !left_out.is_empty() && !self.simulate {
             let what = left_out.join(", ");
             say(format!(

@@ -4,9 +4,9 @@ use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-use stillbase::machine::Machine;
+use stillbase::mechanics::machine::Machine;
 use stillbase::session::{Refusal, Run};
-use stillbase::tolerance::{CHUNK, Ensemble, Outcome, Sampler, simulate};
+use stillbase::study::tolerance::{CHUNK, Ensemble, Outcome, Sampler, simulate};
 
 /// Chunks of a wave, for each thread: enough that nobody waits long for the slowest.
 const CHUNKS: usize = 32;

@@ -1,7 +1,7 @@
 //! What a study comes to, as JSON and as text.
 
 use serde::Serialize;
-use stillbase::tolerance::{Agreement, Bands, Histogram, Outcome, Parameter, Quantiles, Shares, Yield};
+use stillbase::study::tolerance::{Agreement, Bands, Histogram, Outcome, Parameter, Quantiles, Shares, Yield};
 
 use super::rows::Study;
 use crate::commands::output::{Table, fixed, shown};
@@ -315,7 +315,7 @@ impl Answer {
     /// The parameters that bring in the most variance, by the larger of their two shares.
     fn shares_table(&self) -> Table {
         let mut shares: Vec<_> = self.shares.parameters.iter().collect();
-        let rank = |s: &stillbase::tolerance::Share| s.moment_share.max(s.force_share);
+        let rank = |s: &stillbase::study::tolerance::Share| s.moment_share.max(s.force_share);
         shares.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
         let mut table = Table::new(["what matters", "σ", "unit", "|∂n_B| σ N m", "of n_B %", "|∂f_B| σ N", "of f_B %"])
             .with_words(2);
@@ -332,7 +332,7 @@ impl Answer {
             ]);
         }
         if let Some(rest) = shares.get(SHOWN..).filter(|rest| !rest.is_empty()) {
-            let sum = |f: fn(&stillbase::tolerance::Share) -> f64| percent(rest.iter().map(|s| f(s)).sum());
+            let sum = |f: fn(&stillbase::study::tolerance::Share) -> f64| percent(rest.iter().map(|s| f(s)).sum());
             let [moment, force] = [sum(|s| s.moment_share), sum(|s| s.force_share)];
             let empty = String::new;
             table.row([format!("{} others", rest.len()), empty(), empty(), empty(), moment, empty(), force]);

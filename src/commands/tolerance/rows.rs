@@ -17,7 +17,7 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 use stillbase::files::{NewFile, WriteError};
-use stillbase::text;
+use stillbase::settings::text;
 
 use super::OUTCOMES;
 use super::seal::{self, BEFORE, End, Sealing, UNSEALED};

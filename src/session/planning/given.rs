@@ -1,10 +1,10 @@
 //! Motions given by samples: of the drives as they are, of the end effector with the redundancy resolved.
 
 use super::{Plan, Refusal, dynamics_of, keeps_rules, start};
-use crate::plan::path::minimum_norm_curve;
-use crate::plan::{Forecast, Limits, Motion, Path, Profile, Rule, trace};
-use crate::pose_constant::Planes;
-use crate::scenario::{Scenario, TaskKind};
+use crate::planning::plan::path::minimum_norm_curve;
+use crate::planning::plan::{Forecast, Limits, Motion, Path, Profile, Rule, trace};
+use crate::planning::pose_constant::Planes;
+use crate::session::scenario::{Scenario, TaskKind};
 
 /// Instants at which a motion is looked at for each of its samples, at least, and at most in all.
 const A_SAMPLE: usize = 8;

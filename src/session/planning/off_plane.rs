@@ -1,15 +1,17 @@
 //! Motions that leave their plane knowingly: a change of b, the least reaction, and zero momentum on any machine.
 
 use super::{Plan, Refusal, curves, dynamics_of, elsewhere, keeps_rules, refusal, serve, slowed, timed};
-use crate::plan::drift::zero_momentum_curve;
-use crate::plan::least_reaction::Goal;
-use crate::plan::path::Chained;
-use crate::plan::price::{INWARDS, bang_bang_in_b, joint_line, least_change, nearest_poses};
-use crate::plan::{Curve, CurvePoint, Forecast, LeastReaction, Limits, Motion, Path, Price, Profile, TimeLaw, trace};
-use crate::planar::{DriveAngles, Vector};
-use crate::pose_constant::{Planes, Unreachable};
-use crate::reactionless::PlanePoint;
-use crate::scenario::{Least, Scenario};
+use crate::mechanics::planar::{DriveAngles, Vector};
+use crate::planning::plan::drift::zero_momentum_curve;
+use crate::planning::plan::least_reaction::Goal;
+use crate::planning::plan::path::Chained;
+use crate::planning::plan::price::{INWARDS, bang_bang_in_b, joint_line, least_change, nearest_poses};
+use crate::planning::plan::{
+    Curve, CurvePoint, Forecast, LeastReaction, Limits, Motion, Path, Price, Profile, TimeLaw, trace,
+};
+use crate::planning::pose_constant::{Planes, Unreachable};
+use crate::planning::reactionless::PlanePoint;
+use crate::session::scenario::{Least, Scenario};
 
 /// From A on the plane of the task to B on another, along a straight joint line; a limit on |n_B| sets the time.
 pub fn change_b(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {

@@ -1,0 +1,175 @@
+//! The table of runs at the bottom: the same task done in several ways, and what was kept.
+
+use egui::{Align, Button, CursorIcon, Frame, Grid, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui};
+use egui_plot::LineStyle;
+
+use super::theme::{bold, colour, plain};
+use super::top::name;
+use super::{Command, Look, OnBoard};
+use crate::picture::scene::palette::{Palette, faded};
+use crate::picture::scene::stage::signed;
+use crate::session::scenario::Scenario;
+use crate::study::comparison::{Board, COLUMNS, Column, Entry};
+
+/// How the lines of a row look in plots, and how strong they are: told apart without colour, which means something.
+pub fn line_style(entry: usize) -> (LineStyle, f32) {
+    let styles = [
+        LineStyle::Dashed { length: 7.0 },
+        LineStyle::Dotted { spacing: 4.0 },
+        LineStyle::Dashed { length: 3.5 },
+        LineStyle::Dashed { length: 14.0 },
+        LineStyle::Dotted { spacing: 7.0 },
+        LineStyle::Solid,
+    ];
+    (styles[entry % styles.len()], if entry >= styles.len() { 0.45 } else { 0.7 })
+}
+
+/// Draws it.
+pub fn show(ui: &mut Ui, board: &Board, look: &Look, commands: &mut Vec<Command>) {
+    let p = look.palette();
+    let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 16, right: 16, top: 8, bottom: 8 });
+    let rows = board.entries().len() as f32;
+    let most = (0.42 * ui.available_height()).max(120.0);
+    let height = (76.0 + 27.5 * rows).min(most);
+    Panel::bottom("compare").exact_size(height).resizable(false).frame(frame).show(ui, |ui| {
+        ui.horizontal(|ui| {
+            ui.label(RichText::new("Side by side").font(bold(13.5)));
+            let words = "one task, several ways; tick a row to lay it over plots and scene, click a head to sort";
+            ui.add(Label::new(RichText::new(words).font(plain(11.5)).color(colour(p.dim))).truncate());
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| buttons(ui, board, commands));
+        });
+        ui.add_space(2.0);
+        ScrollArea::both().auto_shrink([false, false]).show(ui, |ui| table(ui, &p, board, commands));
+    });
+}
+
+fn buttons(ui: &mut Ui, board: &Board, commands: &mut Vec<Command>) {
+    let close = ui.button("Close").on_hover_text("C");
+    if close.clicked() {
+        commands.push(Command::Compare(false));
+    }
+    if ui.button("Copy").on_hover_text("The table, for a spreadsheet").clicked() {
+        ui.ctx().copy_text(board.to_text());
+    }
+    if ui.button("Keep this run").on_hover_text("Also as it was led by hand; stays when the task changes").clicked() {
+        commands.push(Command::Board(OnBoard::Keep));
+    }
+    let add = egui::ComboBox::from_id_salt("add run").selected_text("Add…").width(84.0).show_ui(ui, |ui| {
+        for scenario in Scenario::builtin_names().filter_map(Scenario::builtin) {
+            if ui.selectable_label(false, &scenario.title).clicked() {
+                commands.push(Command::Board(OnBoard::Add(Box::new(scenario))));
+            }
+        }
+    });
+    name(&add.response.on_hover_text("Another scenario to compare with"), "Add a run");
+}
+
+/// Columns in which something stands.
+fn columns(board: &Board) -> Vec<(usize, &'static Column)> {
+    let runs = || board.entries().iter().filter_map(|e| e.outcome.as_ref().ok());
+    let moves = runs().any(|r| r.summary.base_shift > 0.0 || r.summary.base_tilt > 0.0);
+    let stands = |c: &Column| runs().any(|r| (c.value)(&r.summary).is_some());
+    let all = COLUMNS.iter().enumerate();
+    all.filter(|(_, c)| stands(c) && (moves || !matches!(c.key, "base_shift" | "base_tilt"))).collect()
+}
+
+fn table(ui: &mut Ui, p: &Palette, board: &Board, commands: &mut Vec<Command>) {
+    let columns = columns(board);
+    ui.spacing_mut().button_padding = egui::vec2(0.0, 0.0);
+    Grid::new("runs").num_columns(columns.len() + 3).spacing([14.0, 5.0]).min_col_width(0.0).show(ui, |ui| {
+        ui.label("");
+        ui.label(RichText::new("run").font(plain(11.5)).color(colour(p.dim)));
+        for (i, column) in &columns {
+            head(ui, p, board, *i, column, commands);
+        }
+        ui.end_row();
+        for i in board.order() {
+            row(ui, p, i, &board.entries()[i], &columns, commands);
+            ui.end_row();
+        }
+    });
+}
+
+fn head(ui: &mut Ui, p: &Palette, board: &Board, i: usize, column: &Column, commands: &mut Vec<Command>) {
+    let arrow = match board.sorted() {
+        Some((sorted, down)) if sorted == i => [" ↑", " ↓"][usize::from(down)],
+        _ => "",
+    };
+    let strong = if arrow.is_empty() { p.dim } else { p.ink };
+    let text =
+        RichText::new(format!("{}, {}{arrow}", column.head, column.unit)).font(plain(11.5)).color(colour(strong));
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        let head = ui.add(Button::new(text).frame(false));
+        name(&head, &format!("Sort by {}", column.meaning));
+        let head = head.on_hover_cursor(CursorIcon::PointingHand);
+        if head.on_hover_text(format!("{}, {}; click to sort", column.meaning, column.unit)).clicked() {
+            commands.push(Command::Board(OnBoard::Sort(i)));
+        }
+    });
+}
+
+fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &Entry, columns: &[(usize, &Column)], commands: &mut Vec<Command>) {
+    let mut shown = entry.shown;
+    ui.horizontal(|ui| {
+        let tick = ui.add_enabled(entry.outcome.is_ok(), egui::Checkbox::without_text(&mut shown));
+        name(&tick, &format!("Lay over: {}", entry.title));
+        if tick.on_hover_text("Lay over plots and scene").changed() {
+            commands.push(Command::Board(OnBoard::Show(i, shown)));
+        }
+        let (rect, _) = ui.allocate_exact_size(egui::vec2(30.0, 12.0), Sense::hover());
+        if shown {
+            let (style, strength) = line_style(i);
+            sample(ui, rect, style, colour(faded(p.ink, strength)));
+        }
+    });
+    ui.horizontal(|ui| {
+        let number = RichText::new(format!("{}", i + 1)).font(plain(11.5)).color(colour(p.dim));
+        ui.label(number);
+        let title = RichText::new(&entry.title).font(plain(12.5));
+        let clean = entry.outcome.as_ref().is_ok_and(|run| run.summary.reactionless);
+        let title = if clean { title.color(colour(p.zero)) } else { title };
+        let label = ui.add(Button::new(title).frame(false));
+        name(&label, &format!("Open {}", entry.title));
+        let label = label.on_hover_cursor(CursorIcon::PointingHand);
+        if label.on_hover_text("Open this run in place of the present one").clicked() {
+            commands.push(Command::Board(OnBoard::Open(i)));
+        }
+        if entry.kept {
+            let remove = ui.small_button("×");
+            name(&remove, &format!("Remove {}", entry.title));
+            if remove.on_hover_text("Take it away").clicked() {
+                commands.push(Command::Board(OnBoard::Remove(i)));
+            }
+        }
+    });
+    match &entry.outcome {
+        Ok(run) => {
+            for (_, column) in columns {
+                let text = match (column.value)(&run.summary) {
+                    Some(x) => signed(x, column.decimals),
+                    None => "–".into(),
+                };
+                let zero = text.chars().all(|c| matches!(c, '0' | '.' | '–'));
+                let tone = if zero { p.dim } else { p.ink };
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    ui.add(Label::new(RichText::new(text).font(plain(12.5)).color(colour(tone))).extend());
+                });
+            }
+        }
+        Err(why) => {
+            ui.add(Label::new(RichText::new(why).font(plain(11.5)).color(colour(p.dim))).extend());
+        }
+    }
+}
+
+/// A short piece of a line as plots draw it.
+fn sample(ui: &Ui, rect: egui::Rect, style: LineStyle, tone: egui::Color32) {
+    let ends = [rect.left_center(), rect.right_center()];
+    let stroke = egui::Stroke::new(1.6, tone);
+    let shapes = match style {
+        LineStyle::Dashed { length } => egui::Shape::dashed_line(&ends, stroke, length, 0.6 * length),
+        LineStyle::Dotted { spacing } => egui::Shape::dotted_line(&ends, tone, spacing, 1.1),
+        LineStyle::Solid => vec![egui::Shape::line_segment(ends, stroke)],
+    };
+    ui.painter().extend(shapes);
+}

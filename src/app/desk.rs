@@ -1,0 +1,457 @@
+//! The [`Desk`]: a session, how it is shown, and what carries out commands. Every window, test and figure has one.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::{
+    Command, FileDialog, Look, OnBoard, Purpose, Wish, compare, keys, order, plots, side, status, study, theme, top,
+    viewport,
+};
+use crate::mechanics::machine::Machine;
+use crate::picture::scene::palette::Theme;
+use crate::picture::scene::stage::Stage;
+use crate::picture::scene::sway::exaggeration;
+use crate::picture::scene::views::{ViewKind, Views};
+use crate::session::scenario::Scenario;
+use crate::session::{Edit, Refusal, Session};
+use crate::settings::text::brief;
+use crate::simulation::frame::Tally;
+use crate::simulation::signals::{Signal, signals};
+use crate::study::comparison::Board;
+use crate::study::tolerance::Study;
+
+/// A session on display.
+pub struct Desk {
+    session: Session,
+    views: Arc<Views>,
+    signals: Vec<Signal>,
+    stage_of: (Machine, String),
+    look: Look,
+    /// Runs side by side, while they are on display.
+    board: Option<Board>,
+    /// Tolerances and what they were found for, while they are on display.
+    study: Option<(Scenario, Result<Study, String>)>,
+    /// What the planned motion will have come to.
+    foreseen: Tally,
+    /// Wall time not yet turned into steps, s.
+    owed: f64,
+    dressed: Option<Theme>,
+    fonts: bool,
+}
+
+/// The most steps that are run ahead to see how far the base will move.
+const MOST_AHEAD: f64 = 20_000.0;
+
+/// The most wall time that one repaint makes up for, s: after a pause of the program time does not jump.
+const MOST_OWED: f64 = 0.1;
+
+impl Desk {
+    /// Opens a scenario.
+    ///
+    /// # Errors
+    /// If it cannot start.
+    pub fn new(scenario: Scenario, theme: Theme) -> Result<Self, Refusal> {
+        Ok(Self::around(Session::open(scenario)?, theme))
+    }
+
+    fn around(session: Session, theme: Theme) -> Self {
+        let views = Views::of(session.run());
+        let look = Look::new(theme, &views);
+        let mut desk = Self {
+            signals: signals(&session.scenario().machine),
+            stage_of: stage_key(&session),
+            views: Arc::new(views),
+            foreseen: Tally::default(),
+            session,
+            look,
+            board: None,
+            study: None,
+            owed: 0.0,
+            dressed: None,
+            fonts: false,
+        };
+        desk.foresee();
+        desk.adjust();
+        desk
+    }
+
+    /// Opens a scenario; where its task cannot be planned, its machine with the paper's task, and what is in the way.
+    /// A machine that cannot do that either waits where it stands.
+    ///
+    /// # Errors
+    /// If not even that can start.
+    pub fn open_or_explain(scenario: Scenario, theme: Theme) -> Result<Self, Refusal> {
+        let refusal = match Self::new(scenario.clone(), theme) {
+            Ok(desk) => return Ok(desk),
+            Err(refusal) => refusal,
+        };
+        let (change, known) = (scenario.task.whole(), Scenario::builtin("case-3"));
+        let ground = known.map(|known| Scenario { task: known.task, edits: Vec::new(), ..scenario.clone() });
+        let Some(Ok(mut desk)) = ground.map(|ground| Self::new(ground, theme)) else {
+            return Session::open_waiting(scenario).map_or(Err(refusal), |session| Ok(Self::around(session, theme)));
+        };
+        desk.carry_out(Command::Edit(Edit::SetTask { change }));
+        Ok(desk)
+    }
+
+    /// The session.
+    pub fn session(&self) -> &Session {
+        &self.session
+    }
+
+    /// How it is shown.
+    pub fn look(&self) -> &Look {
+        &self.look
+    }
+
+    /// Runs side by side, while they are on display.
+    pub fn board(&self) -> Option<&Board> {
+        self.board.as_ref()
+    }
+
+    /// What scenes are made from.
+    pub fn stage(&self) -> &Stage {
+        self.views.stage()
+    }
+
+    /// The linked views.
+    pub fn views(&self) -> &Views {
+        &self.views
+    }
+
+    /// Lets wall time pass, s.
+    pub fn pass(&mut self, wall: f64) {
+        if !self.session.is_moving() {
+            self.owed = 0.0;
+            return;
+        }
+        let dt = self.session.scenario().step;
+        self.owed += wall.clamp(0.0, MOST_OWED) * self.look.speed;
+        let steps = (self.owed / dt).floor();
+        self.owed -= steps * dt;
+        self.session.tick(steps as u64);
+        self.adjust();
+    }
+
+    /// One pass of the user interface; commands are carried out at its end.
+    pub fn ui(&mut self, ui: &mut egui::Ui) {
+        self.dress(ui.ctx());
+        let mut commands = Vec::new();
+        keys::read(ui.ctx(), &self.session, &self.look, &mut commands);
+        top::show(ui, &self.session, &self.look, &mut commands);
+        status::show(ui, &self.session, &self.views, &self.look, &mut commands);
+        if let Some(board) = &self.board {
+            compare::show(ui, board, &self.look, &mut commands);
+        }
+        if let Some((_, study)) = &self.study {
+            study::show(ui, study, self.session.frame().time, &self.look, &mut commands);
+        }
+        side::show(ui, &self.session, &self.look, &mut commands);
+        plots::show(ui, &self.session, &self.signals, self.board.as_ref(), &self.look, &mut commands);
+        viewport::show(ui, &self.session, &self.views, self.board.as_ref(), &mut self.look, &mut commands);
+        status::news(ui.ctx(), &self.session, &self.look, &mut commands);
+        keys::help(ui.ctx(), &self.look, &mut commands);
+        top::dialog(ui.ctx(), &mut self.look, &mut commands);
+        commands.extend(side::refused_entry(ui.ctx()).map(Command::Refuse));
+        if commands.iter().any(|c| !matches!(c, Command::EndGesture | Command::Preview(_))) {
+            self.look.message = None;
+            self.look.refused = None;
+        }
+        if !commands.is_empty() {
+            ui.ctx().request_repaint();
+        }
+        for command in commands {
+            self.carry_out(command);
+        }
+        if self.session.is_moving() {
+            ui.ctx().request_repaint();
+        }
+    }
+
+    fn dress(&mut self, ctx: &egui::Context) {
+        if !self.fonts {
+            theme::install_fonts(ctx);
+            ctx.add_plugin(order::Order::default());
+            self.fonts = true;
+        }
+        if self.dressed != Some(self.look.theme) {
+            theme::apply(ctx, self.look.theme);
+            self.dressed = Some(self.look.theme);
+        }
+    }
+
+    /// Carries out one command. What cannot be done is said and changes nothing.
+    pub fn carry_out(&mut self, command: Command) {
+        match self.attempt(command) {
+            Ok(None) => {}
+            Ok(Some(news)) => self.look.message = Some((news, false)),
+            Err(problem) => self.look.message = Some((problem, true)),
+        }
+        self.refresh();
+    }
+
+    fn attempt(&mut self, command: Command) -> Result<Option<String>, String> {
+        let refused = |r: Refusal| r.to_string();
+        match command {
+            Command::Edit(edit) => {
+                if let Err(refusal) = self.session.apply(edit.clone()) {
+                    self.look.refused = Some(Wish::of(&edit, &refusal));
+                    return Err(refusal.to_string());
+                }
+                self.look.refused = None;
+                // A hand that pushes asks many times a second, and nobody knows how long.
+                if !matches!(edit, Edit::Push { .. }) {
+                    self.foresee();
+                }
+                // What a drag has changed, Esc takes back.
+                self.look.dragged |= self.look.grabbed.is_some();
+            }
+            Command::Preview(b) => self.look.preview = b,
+            Command::Draw(draw) => {
+                self.look.stroke = draw.then(Vec::new);
+                self.look.pushing &= !draw;
+            }
+            Command::Push(push) => {
+                self.look.pushing = push;
+                self.look.stroke = self.look.stroke.take().filter(|_| !push);
+            }
+            Command::Exaggerate(on) => self.look.exaggerate = on,
+            Command::EndGesture => self.session.end_gesture(),
+            Command::TogglePlay if self.session.is_playing() => self.session.pause(),
+            Command::TogglePlay => self.session.play(),
+            Command::Seek(time) => {
+                self.session.pause();
+                self.session.seek(time);
+            }
+            Command::Step(steps) => self.session.step_by(steps),
+            Command::Speed(speed) => self.look.speed = speed,
+            Command::Open(scenario) => {
+                self.session.switch(*scenario).map_err(refused)?;
+                self.foresee();
+                self.session.play();
+            }
+            Command::Case(name) => return self.case(name),
+            Command::BackToPath => {
+                if self.session.is_live() {
+                    self.session.apply(Edit::SetTask { change: Default::default() }).map_err(refused)?;
+                    self.session.end_gesture();
+                    self.session.pause();
+                    self.session.seek(0.0);
+                    self.foresee();
+                    return Ok(Some("back on the planned path, at its start".into()));
+                }
+            }
+            Command::TurnTask(turn) => self.look.turn_task = turn,
+            Command::Refuse(why) => return Err(why),
+            Command::OpenFile(path) => return self.open(&path).map(Some),
+            Command::SaveFile(path) => return self.save(&path).map(Some),
+            Command::Record(path) => return self.record(&path).map(Some),
+            Command::Undo => {
+                let title = self.session.undo_title().map(|t| format!("took back: {t}"));
+                self.session.undo().map_err(refused)?;
+                self.foresee();
+                return Ok(title);
+            }
+            Command::Redo => {
+                let title = self.session.redo_title().map(|t| format!("brought back: {t}"));
+                self.session.redo().map_err(refused)?;
+                self.foresee();
+                return Ok(title);
+            }
+            Command::View(view) => self.look.view = view,
+            Command::Dexterity(shown) => self.look.dexterity = shown,
+            Command::Fit => *self.look.camera_mut() = self.views.camera(self.look.view),
+            Command::Theme(theme) => self.look.theme = theme,
+            Command::Help(help) => self.look.help = help,
+            Command::Mark(time) => self.look.mark = time,
+            Command::Snapshots(shown) => self.look.snapshots = shown,
+            // There is room for one of them.
+            Command::Compare(compare) => (self.look.compare, self.look.study) = (compare, self.look.study && !compare),
+            Command::Study(study) => (self.look.study, self.look.compare) = (study, self.look.compare && !study),
+            Command::Pins(shown) => self.look.pins = shown,
+            Command::Board(on) => return self.on_board(on),
+            Command::Dialog(dialog) => self.look.dialog = dialog,
+        }
+        Ok(None)
+    }
+
+    fn on_board(&mut self, on: OnBoard) -> Result<Option<String>, String> {
+        let Some(board) = &mut self.board else { return Ok(None) };
+        match on {
+            OnBoard::Sort(column) => board.sort_by(column),
+            OnBoard::Show(entry, shown) => board.show(entry, shown),
+            OnBoard::Remove(entry) => board.remove(entry),
+            OnBoard::Add(scenario) => board.keep(*scenario).map_err(|why| why.to_string())?,
+            OnBoard::Keep => {
+                let mut scenario = self.session.to_scenario();
+                scenario.duration = Some(self.session.length());
+                board.keep(scenario).map_err(|why| why.to_string())?;
+                return Ok(Some("kept this run to compare with".into()));
+            }
+            OnBoard::Open(entry) => {
+                let run = board.entries().get(entry).and_then(|e| e.outcome.as_ref().ok()).cloned();
+                if let Some(run) = run {
+                    self.session.switch(run.scenario.clone()).map_err(|why| why.to_string())?;
+                    self.foresee();
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// One of the paper's cases: whole, or with another machine that somebody has chosen, which is then said.
+    fn case(&mut self, name: &str) -> Result<Option<String>, String> {
+        let Some(case) = Scenario::builtin(name) else { return Ok(None) };
+        let present = &self.session.scenario().machine;
+        let other = (present.name() != case.machine.name()).then(|| present.clone());
+        let news = other.as_ref().map(|machine| format!("{}, with the machine {}", case.title, machine.name()));
+        let scenario = Scenario { machine: other.unwrap_or_else(|| case.machine.clone()), ..case };
+        self.session.switch(scenario).map_err(|why| why.to_string())?;
+        self.foresee();
+        self.session.play();
+        Ok(news)
+    }
+
+    fn open(&mut self, path: &Path) -> Result<String, String> {
+        let found = Scenario::find(&path.display().to_string());
+        let scenario = found.map_err(|e| brief(&e.to_string()).into_owned())?;
+        let change = scenario.task.whole();
+        if let Err(refusal) = self.session.switch(scenario) {
+            self.look.refused = Some(Wish::of(&Edit::SetTask { change }, &refusal));
+            return Err(refusal.to_string());
+        }
+        self.foresee();
+        self.look.dialog = None;
+        Ok(format!("opened {}", path.display()))
+    }
+
+    fn save(&mut self, path: &Path) -> Result<String, String> {
+        check_name(path)?;
+        crate::files::write_new(path, self.session.to_scenario().to_toml().as_bytes(), false)
+            .map_err(|e| e.to_string())?;
+        self.look.dialog = None;
+        Ok(format!("saved {}", whole(path)))
+    }
+
+    #[cfg(feature = "record")]
+    fn record(&mut self, path: &Path) -> Result<String, String> {
+        check_name(path)?;
+        let options = crate::recording::Options { pictures: None, force: false };
+        let mut scenario = self.session.to_scenario();
+        scenario.duration = Some(self.session.length());
+        let done = crate::recording::record(&[scenario], path, &options, &mut |_| {}).map_err(|e| e.to_string())?;
+        self.look.dialog = None;
+        let verdict = if done.iter().all(|r| r.reactionless) { "reactionless" } else { "with reactions" };
+        Ok(format!("recorded {} ({verdict}); open it with the Rerun viewer", whole(path)))
+    }
+
+    #[cfg(not(feature = "record"))]
+    fn record(&mut self, _path: &Path) -> Result<String, String> {
+        Err("this build cannot record: build it with the feature `record`".into())
+    }
+
+    /// Runs ahead to where the planned motion ends, to know how far the base will move.
+    fn foresee(&mut self) {
+        self.foreseen = Tally::default();
+        let scenario = self.session.scenario();
+        let steps = (self.session.run().planned_time() / scenario.step).ceil();
+        if scenario.base.moves() && !self.session.is_live() && steps <= MOST_AHEAD {
+            let mut run = self.session.run().clone();
+            while (run.simulation().step_count() as f64) < steps {
+                run.advance();
+            }
+            self.foreseen = run.frame().tally;
+        }
+    }
+
+    /// How many times the motion of the base has to be shown to be seen: as far as it is known, of the whole run.
+    fn adjust(&mut self) {
+        let reach = self.views.stage().linkage().reach();
+        let newest = self.session.frames().last().map_or_else(Tally::default, |frame| frame.tally);
+        let motion = [newest.shift.max(self.foreseen.shift), newest.tilt.max(self.foreseen.tilt)];
+        self.look.seen_at = match self.session.scenario().base.moves() {
+            true => exaggeration(motion, reach),
+            false => 1.0,
+        };
+    }
+
+    /// Makes the stage again when what it shows has changed.
+    fn refresh(&mut self) {
+        let key = stage_key(&self.session);
+        if key != self.stage_of {
+            let views = Views::of(self.session.run());
+            for kind in ViewKind::ALL {
+                // A camera that nobody has moved goes on showing everything.
+                let camera = &mut self.look.cameras[kind as usize];
+                if *camera == self.views.camera(kind) {
+                    *camera = views.camera(kind);
+                }
+            }
+            self.views = Arc::new(views);
+            self.signals = signals(&self.session.scenario().machine);
+            self.stage_of = key;
+        }
+        Arc::make_mut(&mut self.views).refresh(self.session.run());
+        self.adjust();
+        if !self.look.study {
+            self.study = None;
+        } else if self.look.grabbed.is_none() && self.study.as_ref().is_none_or(|(of, _)| of != self.session.scenario())
+        {
+            let run = self.session.run();
+            let study = match run.waiting() {
+                Some(waiting) => Err(waiting.why.to_string()),
+                None => Study::of(run).map_err(|why| why.to_string()),
+            };
+            self.study = Some((self.session.scenario().clone(), study));
+        }
+        if !self.look.compare {
+            self.board = None;
+        } else if self.board.is_none() {
+            self.board = Some(Board::of(self.session.scenario()));
+        }
+        // Not while something is dragged: every way is planned and run anew.
+        if let (Some(board), None) = (&mut self.board, self.look.grabbed) {
+            let ours = board.entries().iter().any(|e| {
+                e.outcome.as_ref().is_ok_and(|run| run.scenario.task == self.session.scenario().task && !e.kept)
+            });
+            if !ours || !same_ground(board.task(), self.session.scenario()) {
+                board.follow(self.session.scenario());
+            }
+        }
+    }
+
+    /// A file name that is free, for a dialog to start from.
+    pub fn suggest(session: &Session, purpose: Purpose) -> FileDialog {
+        let ending = if purpose == Purpose::Record { "rrd" } else { "toml" };
+        let name = match purpose {
+            Purpose::Open => String::new(),
+            _ => crate::files::free_name(&session.scenario().name, ending).display().to_string(),
+        };
+        FileDialog { purpose, path: name }
+    }
+}
+
+/// A file that exists is not replaced from a window.
+fn check_name(path: &Path) -> Result<(), String> {
+    match path.exists() {
+        true => Err(format!("{} exists: want another name", path.display())),
+        false => Ok(()),
+    }
+}
+
+/// The whole name of a file, so that it can be found again.
+fn whole(path: &Path) -> String {
+    path.canonicalize().unwrap_or_else(|_| path.into()).display().to_string()
+}
+
+/// Whether two scenarios differ in their tasks at most.
+fn same_ground(a: &Scenario, b: &Scenario) -> bool {
+    a.machine == b.machine && a.plant == b.plant && a.control == b.control && a.base == b.base && a.step == b.step
+}
+
+/// What a stage depends on.
+fn stage_key(session: &Session) -> (Machine, String) {
+    let s = session.scenario();
+    let differs = format!("{:?} {:?}", s.plant.length, s.plant.link);
+    (s.machine.clone(), format!("{:?} {:?} {} {differs}", s.task, s.compare_b, session.run().motion().is_some()))
+}

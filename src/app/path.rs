@@ -1,0 +1,351 @@
+//! The task in the panel on the left: what becomes of the redundancy, which points, along what, and when.
+
+use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
+
+use super::Command;
+use super::side::{Row, note, section, send, unit};
+use super::theme::{colour, plain};
+use super::top::name;
+use crate::mechanics::planar::Vector;
+use crate::picture::scene::palette::Palette;
+use crate::picture::scene::stage::signed;
+use crate::planning::plan::TimeLaw;
+use crate::planning::plan::least_reaction::FixedB;
+use crate::session::scenario::{Change, Corners, Least, Shape, Task, TaskKind, Value};
+use crate::session::{Edit, Session};
+
+/// A choice: what stands in a file, what stands on the screen, and what it means.
+type Choice<T> = (T, &'static str, &'static str, &'static str);
+
+const KINDS: [Choice<TaskKind>; 7] = [
+    (TaskKind::Reactionless, "reactionless", "Stay reactionless", "Hold b: nothing reaches the base (case 3)"),
+    (TaskKind::MinimumNorm, "minimum-norm", "Minimum-norm rates", "The usual inverse, q̇ = J⁺ẋ (case 1)"),
+    (TaskKind::LeastReaction, "least-reaction", "Least reaction", "Any path, b changing as little as it must"),
+    (TaskKind::ChangeB, "change-b", "Change b, at a price", "From A on one plane to B on another: n_B = −D₁ b̈"),
+    (TaskKind::ZeroMomentum, "zero-momentum", "Zero momentum", "Reactionless on any machine; closed paths may drift"),
+    (TaskKind::SameTip, "same-tip", "Drive 1 apart", "The end effector as in case 3, drive 1 elsewhere (case 2)"),
+    (TaskKind::Given, "given", "As given", "By samples over time, from a file: stillbase import"),
+];
+
+const SHAPES: [Choice<Shape>; 5] = [
+    (Shape::JointLine, "joint-line", "Joint lines", "Straight in joint space"),
+    (Shape::Line, "line", "Straight lines", "The end effector on straight lines"),
+    (Shape::Arc, "arc", "Arc", "One arc through three points"),
+    (Shape::Spline, "spline", "Spline", "A smooth curve through all points"),
+    (Shape::Freehand, "freehand", "Freehand", "As drawn with the pointer: P, then drag"),
+];
+
+const LAWS: [Choice<TimeLaw>; 5] = [
+    (TimeLaw::Quintic, "quintic", "Quintic", "Acceleration begins and ends at zero; peaks 5.7735/T²"),
+    (TimeLaw::Septic, "septic", "Septic", "Jerk begins and ends at zero too; peaks 7.5132/T²"),
+    (TimeLaw::Trapezoidal, "trapezoidal", "Trapezoidal", "A third speeding up, a third cruising, a third braking"),
+    (TimeLaw::Fastest, "fastest", "Fastest", "As fast as torque, speed and acceleration limits allow"),
+    (TimeLaw::FastestSmooth, "fastest-smooth", "Fastest, smooth", "The same with limits on jerk"),
+];
+
+/// The most points that are listed.
+const LISTED: usize = 8;
+
+/// Draws it.
+pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
+    section(ui, p, "Path");
+    let task = &session.scenario().task;
+    let half = 0.5 * (ui.available_width() - ui.spacing().item_spacing.x);
+    choose(ui, session, ("Redundancy", "kind"), &KINDS, task.kind, 2.0 * half, commands);
+    ui.horizontal(|ui| {
+        choose(ui, session, ("Shape", "shape"), &SHAPES, task.shape(), half - 16.0, commands);
+        choose(ui, session, ("Time law", "law"), &LAWS, task.law, half - 16.0, commands);
+    });
+    time(ui, session, p, commands);
+    points(ui, session, task, p, commands);
+    corners(ui, task, p, commands);
+    off_plane(ui, session, task, p, commands);
+    costs(ui, session, p);
+}
+
+fn choose<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    session: &Session,
+    (label, key): (&str, &str),
+    choices: &[Choice<T>],
+    now: T,
+    width: f32,
+    commands: &mut Vec<Command>,
+) {
+    let shown = choices.iter().find(|c| c.0 == now);
+    let combo = ComboBox::from_id_salt(key).selected_text(shown.map_or("", |c| c.2)).width(width);
+    let response = combo.show_ui(ui, |ui| {
+        for (value, word, words, tip) in choices {
+            if ui.selectable_label(*value == now, *words).on_hover_text(*tip).clicked() && *value != now {
+                let mut change = Change::from_iter([(key.to_owned(), Value::String((*word).into()))]);
+                if *word == "arc" && session.scenario().task.via.is_empty() {
+                    // Through what has been the middle of the path.
+                    let p = session.run().on_path(0.5);
+                    change.insert("via".into(), vec![vec![p.re, p.im]].into());
+                }
+                if key == "kind" {
+                    // What only the other kind has.
+                    change.extend(["b_to", "moment_limit"].map(|key| (key.into(), "default".into())));
+                    let takes = ["given", "reactionless", "minimum-norm"].contains(word);
+                    if session.scenario().task.samples.as_ref().is_some_and(|s| s.columns() != 2 || !takes) {
+                        change.extend(["samples", "turn"].map(|key| (key.into(), "default".into())));
+                    }
+                }
+                commands.extend([Command::Edit(Edit::SetTask { change }), Command::EndGesture]);
+            }
+        }
+    });
+    name(&response.response.on_hover_text(shown.map_or(label, |c| c.3)), label);
+}
+
+/// Sets one key of the task, as an undo of its own.
+fn set(commands: &mut Vec<Command>, key: &str, value: impl Into<Value>) {
+    commands.extend([Command::Edit(Edit::task(key, value)), Command::EndGesture]);
+}
+
+fn time(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
+    if session.scenario().task.law.is_fastest() {
+        let pace = session.run().plan().pace;
+        let leads = pace.and_then(|p| p.leading).map_or(String::new(), |limit| format!(", {limit} leads"));
+        let gap = pace.and_then(|p| p.gap()).filter(|gap| *gap > 5e-4);
+        let gap = gap.map_or(String::new(), |gap| format!(", {:.1} % over unlimited jerk", 100.0 * gap));
+        note(ui, p, &format!("T = {} s{leads}{gap}", signed(session.run().planned_time(), 3)));
+        if let Some(blended) = session.run().plan().blended {
+            note(ui, p, &format!("rests at its corners: rounded off it would take {} s", signed(blended, 3)));
+        }
+        return;
+    }
+    let mut time = session.scenario().task.time;
+    let tip = "Duration T from A to B: peaks of torque go with 1/T²";
+    let row = Row { label: "time T", unit: "s", tip, decimals: 2, speed: 0.01, range: 0.1..=10.0 };
+    let responses = row.with_slider(ui, p, &mut time);
+    send(commands, &responses, || Edit::SetTime { time });
+}
+
+/// The points, to be typed, put in order and taken out.
+fn points(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
+    if let Some(samples) = &task.samples {
+        note(ui, p, &format!("{} samples say where to be when", samples.count()));
+        return;
+    }
+    let all = task.points();
+    if all.len() > LISTED || task.shape() == Shape::Freehand {
+        note(ui, p, &format!("{} points from A to B", all.len()));
+        return;
+    }
+    let change = |commands: &mut Vec<Command>, change: Option<Change>, lasts: bool| {
+        if let Some(change) = change {
+            commands.push(Command::Edit(Edit::SetTask { change }));
+        }
+        if !lasts {
+            commands.push(Command::EndGesture);
+        }
+    };
+    for (i, at) in all.iter().enumerate() {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            let label = task.name_of(i);
+            let unserved = session.run().waiting().is_some_and(|w| w.points.iter().any(|(n, _)| *n == i));
+            let ink = colour(if unserved { p.reaction } else { p.ink });
+            let words = RichText::new(&label).color(ink);
+            ui.add_sized([14.0, 18.0], egui::Label::new(words).halign(Align::LEFT));
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                unit(ui, p, "m");
+                let small = |ui: &mut Ui, enabled: bool, text: &str, label: &str, tip: &str| {
+                    let text = RichText::new(text).font(plain(11.0)).color(colour(p.dim));
+                    let button = Button::new(text).frame(false).min_size(egui::vec2(14.0, 18.0));
+                    let response = ui.add_enabled(enabled, button).on_hover_text(tip);
+                    name(&response, label);
+                    response.clicked()
+                };
+                if small(ui, all.len() > 2, "×", &format!("Leave out {label}"), "Leave this point out (Delete)") {
+                    change(commands, task.removing(i), false);
+                }
+                if small(ui, i > 0, "↑", &format!("{label} earlier"), "Visit this point one place earlier") {
+                    change(commands, task.advancing(i), false);
+                }
+                let mut xy = [at.re, at.im];
+                let mut responses = Vec::new();
+                for (axis, word) in [(1, "y"), (0, "x")] {
+                    let row = Row {
+                        label: &format!("{label} {word}"),
+                        unit: "m",
+                        tip: "A point of the path; drag it in the scene, or type",
+                        decimals: 3,
+                        speed: 0.002,
+                        range: -10.0..=10.0,
+                    };
+                    responses.push(row.number(ui, &mut xy[axis]));
+                }
+                if responses.iter().any(|r| r.changed()) {
+                    change(commands, task.moving(i, Vector::new(xy[0], xy[1])), true);
+                }
+                if responses.iter().any(|r| r.drag_stopped() || r.lost_focus()) {
+                    commands.push(Command::EndGesture);
+                }
+            });
+        });
+    }
+    let plus = RichText::new("+ point").font(plain(11.5)).color(colour(p.dim));
+    let response =
+        ui.add(Button::new(plus).frame(false)).on_hover_text("One more point before B; or double-click in the scene");
+    name(&response, "Add a point");
+    if response.clicked() {
+        let last = all.len() - 1;
+        let middle = 0.5 * (all[last - 1] + all[last]);
+        // Where the machine can go for certain: on the path, if it is known there.
+        let at = if all.len() == 2 { session.run().on_path(0.5) } else { middle };
+        change(commands, task.adding(at), false);
+    }
+}
+
+fn corners(ui: &mut Ui, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
+    let straight = matches!(task.shape(), Shape::JointLine | Shape::Line);
+    ui.horizontal_wrapped(|ui| {
+        let mut closed = task.closed;
+        let tip = "Return from B to A";
+        if ui
+            .add_enabled(task.kind != TaskKind::SameTip, egui::Checkbox::new(&mut closed, "closed"))
+            .on_hover_text(tip)
+            .changed()
+        {
+            set(commands, "closed", closed);
+        }
+        let mut off = task.keep_off_change_points;
+        let tip =
+            "Keep to one side of every change point, where two drives are parallel and pin forces grow without bound";
+        if ui.checkbox(&mut off, "off change points").on_hover_text(tip).changed() {
+            set(commands, "keep_off_change_points", off);
+        }
+    });
+    if straight && (task.via.len() + usize::from(task.closed)) > 0 {
+        ui.horizontal(|ui| {
+            let mut blend = task.corners == Corners::Blend;
+            let tip = "Round corners off instead of coming to rest there";
+            if ui.checkbox(&mut blend, "blend corners").on_hover_text(tip).changed() {
+                set(commands, "corners", if blend { "blend" } else { "stop" });
+            }
+            if blend {
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    let measure = if task.shape() == Shape::JointLine { "rad" } else { "m" };
+                    unit(ui, p, measure);
+                    let mut distance = task.blend;
+                    let tip = "How far from the corner its blend begins";
+                    let row = Row { label: "blend", unit: measure, tip, decimals: 3, speed: 0.002, range: 0.001..=1.0 };
+                    let response = row.number(ui, &mut distance);
+                    send(commands, &[response], || Edit::task("blend", distance));
+                });
+            }
+        });
+    }
+}
+
+/// What only some kinds of task have.
+fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
+    let plan = session.run().plan();
+    match task.kind {
+        TaskKind::ChangeB => {
+            let mut b_to = plan.forecast.b_end;
+            let tip = "Pose constant at B; by default the one that changes b least";
+            let row = Row { label: "b at B", unit: "rad", tip, decimals: 3, speed: 0.005, range: -50.0..=50.0 };
+            let response = row.show(ui, p, &mut b_to);
+            send(commands, &[response], || Edit::task("b_to", b_to));
+            let mut limited = task.moment_limit.is_some();
+            let mut limit = task.moment_limit.unwrap_or((0.5 * plan.forecast.moment).max(0.1));
+            ui.horizontal(|ui| {
+                let tip = "A bound on |n_B| while b changes: it sets the time";
+                if ui.checkbox(&mut limited, "n_B at most").on_hover_text(tip).changed() {
+                    let value = if limited { Value::Float(limit) } else { Value::String("default".into()) };
+                    set(commands, "moment_limit", value);
+                }
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    unit(ui, p, "N m");
+                    if limited {
+                        let row = Row {
+                            label: "n_B at most",
+                            unit: "N m",
+                            tip,
+                            decimals: 2,
+                            speed: 0.02,
+                            range: 0.01..=100.0,
+                        };
+                        let response = row.number(ui, &mut limit);
+                        send(commands, &[response], || Edit::task("moment_limit", limit));
+                    }
+                });
+            });
+            if let Some(price) = plan.price.filter(|price| price.delta_b().abs() > 1e-9) {
+                let words = format!(
+                    "Δb {} rad; no motion of this time gets below {} N m",
+                    signed(price.delta_b(), 3),
+                    signed(price.least_peak(plan.forecast.time), 3)
+                );
+                note(ui, p, &words);
+            }
+        }
+        TaskKind::LeastReaction => {
+            let least = [
+                (Least::MeanSquare, "mean-square", "Least mean square", "∫ n_B² dt as small as can be"),
+                (Least::Peak, "peak", "Least peak", "The greatest |n_B| as small as can be"),
+            ];
+            let width = ui.available_width() - 10.0;
+            choose(ui, session, ("What to keep small", "least"), &least, task.least, width, commands);
+            if let Some(verdicts) = &plan.verdicts {
+                let fixed = match verdicts.fixed {
+                    FixedB::Serves => "b can stay: no reaction at all".into(),
+                    FixedB::Leaves { u, .. } => format!("b could stay until {:.0} % of T", 100.0 * u),
+                };
+                let norm = verdicts.minimum_norm.as_ref().ok();
+                let norm =
+                    norm.map_or(String::new(), |n| format!("; minimum-norm rates: {} N m", signed(n.reaction.peak, 3)));
+                note(ui, p, &format!("{fixed}{norm}"));
+            }
+        }
+        TaskKind::ZeroMomentum => {
+            let mut cycles = f64::from(task.cycles);
+            let tip = "How often a closed path is run through";
+            let row = Row { label: "cycles", unit: "", tip, decimals: 0, speed: 0.05, range: 1.0..=100.0 };
+            let response = row.show(ui, p, &mut cycles);
+            send(commands, &[response], || Edit::task("cycles", cycles.round() as i64));
+            if task.closed {
+                let every = (task.cycles as usize).div_ceil(10).max(1);
+                let rounds: Vec<String> = plan.drift().skip(every - 1).step_by(every).map(|d| signed(d, 3)).collect();
+                let each = if every == 1 { "each cycle".into() } else { format!("every {every} cycles") };
+                note(ui, p, &format!("drift of the joints after {each}: {} rad", rounds.join("  ")));
+            }
+        }
+        TaskKind::Reactionless | TaskKind::MinimumNorm | TaskKind::SameTip | TaskKind::Given => {}
+    }
+}
+
+/// What the planned motion will cost, in two lines whatever plant and base are, so that nothing below jumps.
+fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
+    let forecast = &session.run().plan().forecast;
+    let torque = forecast.torque.max_abs();
+    if let Some((limit, factor)) = forecast.over {
+        let words = format!("{limit} passes its limit, {} times", signed(factor, 2));
+        ui.add(egui::Label::new(RichText::new(words).font(plain(11.0)).color(colour(p.reaction))).wrap());
+    }
+    // Plans are of the model; what the plant and the base make of them the status line tells.
+    let scenario = session.scenario();
+    let ideal = scenario.plant == Default::default() && !scenario.base.moves();
+    let waits = session.run().waiting().is_some();
+    let of = match (session.is_live(), ideal) {
+        _ if waits => "the run waits, nothing is planned",
+        (true, _) => "led by hand; planned was",
+        (false, true) => "planned",
+        (false, false) => "planned, as the model on a fixed base",
+    };
+    let [time, torque, moment] = [forecast.time, torque, forecast.moment].map(|x| signed(x, 3));
+    let figures = match waits {
+        true => "other limits or points or another b would do".into(),
+        false => format!("{time} s  ·  τ {torque}  ·  n_B {moment} N m"),
+    };
+    for (words, tip) in [
+        (of.to_owned(), "What the run comes to, the line at the bottom tells"),
+        (figures, "Its duration, its largest |τ| and its largest |n_B|"),
+    ] {
+        let words = RichText::new(words).font(plain(11.0)).color(colour(p.dim));
+        ui.add(egui::Label::new(words).truncate()).on_hover_text(tip);
+    }
+}

@@ -1,0 +1,352 @@
+//! The panel on the left: pose constant, limits, motion, plant, base, control, balance.
+
+mod base;
+mod control;
+mod fold;
+mod plant;
+
+use std::cell::Cell;
+
+use egui::{
+    Align, DragValue, Frame, Layout, Margin, Panel, Response, RichText, ScrollArea, Slider, SliderClamping, Ui,
+};
+
+use super::theme::{bold, colour, plain};
+use super::top::name;
+use super::{Command, Look, path, set_b};
+use crate::mechanics::machine::{Inertia, MAX_ANGLE};
+use crate::picture::scene::palette::Palette;
+use crate::picture::scene::stage::signed;
+use crate::session::{Edit, Session};
+
+/// Draws it.
+pub fn show(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Command>) {
+    let p = look.palette();
+    let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 16, right: 10, top: 12, bottom: 8 });
+    Panel::left("side").exact_size(262.0).resizable(false).frame(frame).show(ui, |ui| {
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            ui.set_width(ui.available_width() - 6.0);
+            pose_constant(ui, session, look, commands);
+            limits(ui, session, &p, commands);
+            gravity(ui, session, &p, commands);
+            path::show(ui, session, &p, commands);
+            plant::show(ui, session, &p, commands);
+            base::show(ui, session, look, commands);
+            control::show(ui, session, &p, commands);
+            balance(ui, session, &p);
+        });
+    });
+}
+
+pub(super) fn section(ui: &mut Ui, p: &Palette, title: &str) {
+    ui.add_space(10.0);
+    ui.label(RichText::new(title.to_uppercase()).font(bold(11.0)).color(colour(p.dim)));
+}
+
+/// A name on the left, a number that can be dragged or typed and its unit on the right.
+pub(super) struct Row<'a> {
+    pub label: &'a str,
+    pub unit: &'a str,
+    pub tip: &'a str,
+    pub decimals: usize,
+    pub speed: f64,
+    pub range: std::ops::RangeInclusive<f64>,
+}
+
+impl Row<'_> {
+    pub fn show(&self, ui: &mut Ui, p: &Palette, value: &mut f64) -> Response {
+        ui.horizontal(|ui| {
+            ui.label(self.label).on_hover_text(self.tip);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                unit(ui, p, self.unit);
+                self.number(ui, value)
+            })
+            .inner
+        })
+        .inner
+    }
+
+    pub fn number(&self, ui: &mut Ui, value: &mut f64) -> Response {
+        let shown = ui.style().number_formatter.format(*value, self.decimals..=self.decimals);
+        let refused = Cell::new(None);
+        let read = |text: &str| {
+            // Nobody has typed anything: what a file says keeps its last bit.
+            if text == shown {
+                return None;
+            }
+            self.read(text).inspect_err(|_| refused.set(Some(text.to_owned()))).ok()
+        };
+        let drag = DragValue::new(value)
+            .custom_parser(read)
+            .speed(self.speed)
+            .range(self.range.clone())
+            // What a file says stays as it is until somebody changes it.
+            .clamp_existing_to_range(false)
+            .fixed_decimals(self.decimals)
+            .update_while_editing(false);
+        let response = ui.add(drag).on_hover_text(self.tip);
+        if let Some(text) = refused.take() {
+            ui.data_mut(|data| data.insert_temp(refused_id(), self.why_not(&text)));
+        }
+        name(&response, &format!("{} {}", self.label, self.unit));
+        response
+    }
+
+    /// A number that was typed, if it is one and in range.
+    fn read(&self, text: &str) -> Result<f64, ()> {
+        let number: f64 = text.trim().replace('−', "-").parse().map_err(|_| ())?;
+        if self.range.contains(&number) { Ok(number) } else { Err(()) }
+    }
+
+    fn why_not(&self, text: &str) -> String {
+        let text: String = text.trim().chars().take(24).collect();
+        let end = |x: f64| signed(x, self.decimals);
+        let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
+        let (low, high) = (end(*self.range.start()), end(*self.range.end()));
+        format!("{}: \"{text}\" changes nothing: want a number from {low} to {high}{unit}", self.label)
+    }
+
+    /// The same with a slider below.
+    pub fn with_slider(&self, ui: &mut Ui, p: &Palette, value: &mut f64) -> [Response; 2] {
+        let number = self.show(ui, p, value);
+        [number, self.slider(ui, value, false)]
+    }
+
+    /// A slider alone.
+    pub fn slider(&self, ui: &mut Ui, value: &mut f64, logarithmic: bool) -> Response {
+        ui.spacing_mut().slider_width = ui.available_width();
+        // The knob's size follows the row's height.
+        ui.spacing_mut().interact_size.y = 15.0;
+        let slider = Slider::new(value, self.range.clone()).clamping(SliderClamping::Edits).show_value(false);
+        let slider = ui.add(slider.smart_aim(false).logarithmic(logarithmic));
+        ui.spacing_mut().interact_size.y = 22.0;
+        name(&slider, &format!("{} slider", self.label));
+        // In a drag it would cover what the drag is about.
+        if slider.dragged() { slider } else { slider.on_hover_text(self.tip) }
+    }
+}
+
+/// Where what was typed and cannot be taken waits for the end of the pass.
+fn refused_id() -> egui::Id {
+    egui::Id::unique("refused entry")
+}
+
+/// Why what was typed in this pass cannot be taken.
+pub(super) fn refused_entry(ctx: &egui::Context) -> Option<String> {
+    ctx.data_mut(|data| data.remove_temp(refused_id()))
+}
+
+pub(super) fn unit(ui: &mut Ui, p: &Palette, text: &str) {
+    let size = if text.chars().count() > 6 { 10.5 } else { 11.5 };
+    let text = RichText::new(text).font(plain(size)).color(colour(p.dim));
+    ui.add_sized([44.0, 18.0], egui::Label::new(text).halign(Align::LEFT));
+}
+
+pub(super) fn note(ui: &mut Ui, p: &Palette, text: &str) {
+    ui.add(egui::Label::new(RichText::new(text).font(plain(11.0)).color(colour(p.dim))).wrap());
+}
+
+/// Sends an edit when a widget has changed, and ends the gesture when it is let go.
+pub(super) fn send(commands: &mut Vec<Command>, responses: &[Response], edit: impl FnOnce() -> Edit) {
+    if responses.iter().any(Response::changed) {
+        commands.push(Command::Edit(edit()));
+    }
+    if responses.iter().any(|r| r.drag_stopped() || r.lost_focus()) {
+        commands.push(Command::EndGesture);
+    }
+}
+
+fn pose_constant(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Command>) {
+    let (scenario, p) = (session.scenario(), &look.palette());
+    let period = session.run().planes().map_or(std::f64::consts::TAU, |p| p.map().period());
+    ui.label(RichText::new("POSE CONSTANT").font(bold(11.0)).color(colour(p.dim)));
+    // Whole turns of the machine are kept, and not shown.
+    let b = session.b_aim();
+    let turns = (b / period).floor() * period;
+    let mut shown = b - turns;
+    let tip = format!(
+        "b = q₁ + λ₂ q₂ + λ₃ q₃, Eq. (13), give or take whole periods of {period:.3} rad; {b:.3} rad as it is. Changing \
+         it turns the reactionless workspace."
+    );
+    let row = Row { label: "b", unit: "rad", tip: &tip, decimals: 3, speed: 0.005, range: 0.0..=period };
+    let responses = row.with_slider(ui, p, &mut shown);
+    let asked = turns + shown;
+    let edit = set_b(session, look, asked);
+    let typed = responses[0].changed() && !responses[0].dragged();
+    let stops = matches!(edit, Edit::PoseB { b } if b != asked);
+    let serving = session.run().planes().and_then(|planes| planes.common(&scenario.task.points()));
+    if typed && stops {
+        let band = serving.as_ref().map_or_else(String::new, |common| common.near(shown).in_words());
+        let who = all_points(session);
+        commands.push(Command::Refuse(format!(
+            "b = {shown:.3} rad does not serve {who}, so nothing has changed: want {band}, or \"turn the task too\""
+        )));
+    } else {
+        send(commands, &responses, || edit);
+    }
+    if session.is_live() {
+        ui.horizontal(|ui| {
+            ui.label(RichText::new("led by hand").font(plain(11.0)).color(colour(p.amber)));
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                let words = RichText::new("back to the path").font(plain(11.0));
+                let tip = "Takes the machine back from the hand, to the start of its planned path (B)";
+                if ui.add(egui::Button::new(words)).on_hover_text(tip).clicked() {
+                    commands.push(Command::BackToPath);
+                }
+            });
+        });
+    } else if session.run().planes().is_some() {
+        let who = all_points(session);
+        let text = match &serving {
+            Some(common) => format!("{who}: {}", common.near(shown).in_words()),
+            None => format!("{who} share no b"),
+        };
+        note(ui, p, &text);
+        let mut turn = look.turn_task;
+        let words = RichText::new("turn the task too").font(plain(11.0)).color(colour(p.dim));
+        let tip = format!("Past the b that serve {who}, where b stops: turn the points along with their workspace");
+        if ui.checkbox(&mut turn, words).on_hover_text(tip).changed() {
+            commands.push(Command::TurnTask(turn));
+        }
+    }
+    if session.run().planes().is_some() {
+        let price = Inertia::of(&scenario.machine).diagonal(0) * scenario.pose_acceleration;
+        // One line whatever the base, so that nothing below jumps.
+        let words = RichText::new(format!("in motion it costs up to {price:.2} N m")).font(plain(11.0));
+        let tip = "The moment of D₁ b̈ on a fixed base; one that moves gives way";
+        ui.add(egui::Label::new(words.color(colour(p.dim))).truncate()).on_hover_text(tip);
+    }
+    let mut shown = scenario.compare_b.is_some();
+    let mut other = scenario.compare_b.unwrap_or(b + 0.5 * period);
+    ui.horizontal(|ui| {
+        let tick = ui.checkbox(&mut shown, "compare").on_hover_text("A second workspace, as in Fig. 4");
+        if tick.changed() {
+            commands.push(Command::Edit(Edit::CompareB { b: shown.then_some(other) }));
+            commands.push(Command::EndGesture);
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if shown {
+                unit(ui, p, "rad");
+                let row = Row {
+                    label: "compare b",
+                    unit: "rad",
+                    tip: "Its pose constant",
+                    decimals: 3,
+                    speed: 0.005,
+                    range: -50.0..=50.0,
+                };
+                let response = row.number(ui, &mut other);
+                send(commands, &[response], || Edit::CompareB { b: Some(other) });
+            }
+        });
+    });
+}
+
+/// The points of the task, in words.
+fn all_points(session: &Session) -> String {
+    match session.scenario().task.points().len() {
+        2 => "A and B".into(),
+        n => format!("all {n} points"),
+    }
+}
+
+fn limits(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
+    section(ui, p, "Limits and gravity");
+    for (i, angle) in session.scenario().machine.angles().iter().enumerate() {
+        let mut ends = [angle.limits.start().to_degrees(), angle.limits.end().to_degrees()];
+        let old = ends;
+        ui.horizontal(|ui| {
+            let symbol = ["a₁", "a₂"].get(i).copied().unwrap_or("a");
+            ui.label(symbol).on_hover_text("Relative joint angle: a₁ = q₂ − q₁, a₂ = q₃ − q₂ + π");
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                unit(ui, p, "°");
+                let mut changed = Vec::new();
+                let widest = MAX_ANGLE.to_degrees();
+                for (end, word) in [(1, "greatest"), (0, "least")] {
+                    let range = if end == 1 { ends[0]..=widest } else { -widest..=ends[1] };
+                    let row = Row {
+                        label: &format!("{symbol} {word}"),
+                        unit: "°",
+                        tip: "Joint limit; the workspace is what (a₁, a₂) within them reach",
+                        decimals: 1,
+                        speed: 0.5,
+                        range,
+                    };
+                    changed.push(row.number(ui, &mut ends[end]));
+                    if end == 1 {
+                        ui.label(RichText::new("…").color(colour(p.dim)));
+                    }
+                }
+                send(commands, &changed, || {
+                    // An end that was not touched keeps its last bit.
+                    let rad = |k: usize, was: f64| if ends[k] == old[k] { was } else { ends[k].to_radians() };
+                    let value = format!("{},{}", rad(0, *angle.limits.start()), rad(1, *angle.limits.end()));
+                    Edit::SetMachine { key: format!("limits.{}", angle.name), value }
+                });
+            });
+        });
+    }
+}
+
+fn gravity(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
+    let gravity = session.scenario().machine.gravity();
+    // From zero, so that no gravity reads 0.00 and not −0.00.
+    let mut down = 0.0 - gravity.im;
+    let tip = "Acceleration of gravity along −y; known to control";
+    let row = Row { label: "gravity", unit: "m/s²", tip, decimals: 2, speed: 0.05, range: 0.0..=20.0 };
+    let responses = row.with_slider(ui, p, &mut down);
+    send(commands, &responses, || Edit::SetMachine {
+        key: "gravity".into(),
+        value: format!("{},{}", gravity.re, 0.0 - down),
+    });
+}
+
+fn balance(ui: &mut Ui, session: &Session, p: &Palette) {
+    section(ui, p, "Balance");
+    let machine = &session.scenario().machine;
+    let inertia = Inertia::of(machine);
+    let rows = [
+        (
+            "γ",
+            "kg m",
+            inertia.force_residual(),
+            inertia.is_force_balanced(),
+            "Force balance, Eq. (7): largest |g_k|; zero means the centre of mass never moves",
+        ),
+        (
+            "coupling",
+            "kg m²",
+            inertia.invariance_residual(),
+            inertia.is_invariant(),
+            "Invariance, Eq. (8): largest |C_kl|; zero means a constant mass matrix",
+        ),
+    ];
+    for (label, in_unit, value, good, tip) in rows {
+        let tone = if good { p.zero } else { p.reaction };
+        fact(ui, p, label, &format!("{value:.1e}"), in_unit, tone, tip);
+    }
+    for k in 0..machine.drives() {
+        let tip = "Inertia of the drive, D = H in Eq. (11)";
+        let label = format!("D{}", ['₁', '₂', '₃', '₄', '₅', '₆', '₇', '₈'][k]);
+        fact(ui, p, &label, &format!("{:.4}", inertia.diagonal(k)), "kg m²", p.drive(k), tip);
+    }
+    fact(ui, p, "mass", &format!("{:.2}", machine.mass()), "kg", p.ink, "All links, without the unknown payload");
+}
+
+fn fact(
+    ui: &mut Ui,
+    p: &Palette,
+    label: &str,
+    value: &str,
+    in_unit: &str,
+    tone: crate::picture::scene::Rgba,
+    tip: &str,
+) {
+    ui.horizontal(|ui| {
+        ui.label(label).on_hover_text(tip);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            unit(ui, p, in_unit);
+            ui.label(RichText::new(value).color(colour(tone))).on_hover_text(tip);
+        });
+    });
+}

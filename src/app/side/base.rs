@@ -1,0 +1,145 @@
+//! What the machine stands on.
+
+use egui::Ui;
+
+use super::Row;
+use super::fold::{Knob, Of, Slide, fold, segments, switch};
+use crate::app::{Command, Look};
+use crate::picture::scene::palette::Palette;
+use crate::session::Session;
+use crate::simulation::plant::{Base, BaseKind, Wheel};
+
+const KEYS: [&str; 7] = ["kind", "mass", "inertia", "com", "stiffness", "damping", "wheel"];
+
+const KINDS: [(BaseKind, &str, &str); 3] = [
+    (BaseKind::Fixed, "fixed", "It cannot move"),
+    (BaseKind::Compliant, "compliant", "On springs and dampers, preloaded so that the start is an equilibrium"),
+    (BaseKind::Free, "free", "It floats, as a spacecraft does"),
+];
+
+/// Draws it.
+pub fn show(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Command>) {
+    let (base, p) = (&session.scenario().base, &look.palette());
+    let word = KINDS.iter().find(|k| k.0 == base.kind).map_or("", |k| k.1);
+    let summary = if base.wheel.is_some() { format!("{word}, with a wheel") } else { word.to_owned() };
+    let back = (*base != Base::default()).then(|| Of::Base.clear(&KEYS));
+    fold(ui, p, ("Base", &summary), back, commands, |ui, commands| {
+        let word = |kind: BaseKind| KINDS.iter().find(|k| k.0 == kind).map_or("fixed", |k| k.1);
+        segments(ui, p, &KINDS, base.kind, commands, |kind| Of::Base.set(&["kind"], word(kind)));
+        if base.moves() {
+            body(ui, base, p, commands);
+            let mut seen = look.exaggerate;
+            let tip = "Show the motion of the base so many times larger that it is seen (X)";
+            if ui.checkbox(&mut seen, "exaggerate its motion").on_hover_text(tip).changed() {
+                commands.push(Command::Exaggerate(seen));
+            }
+        }
+        wheel(ui, base, p, commands);
+    });
+}
+
+fn body(ui: &mut Ui, base: &Base, p: &Palette, commands: &mut Vec<Command>) {
+    let normal = Base::default();
+    let mass = Row {
+        label: "base mass",
+        unit: "kg",
+        tip: "m_b of the base without the machine",
+        decimals: 1,
+        speed: 0.2,
+        range: 0.1..=1000.0,
+    };
+    Knob::of(mass, base.mass, normal.mass).show(ui, p, Slide::Logarithmic, commands, |x| Of::Base.set(&["mass"], x));
+    let inertia = Row {
+        label: "base inertia",
+        unit: "kg m²",
+        tip: "I_b about the base's own centre of mass",
+        decimals: 2,
+        speed: 0.02,
+        range: 0.01..=1000.0,
+    };
+    Knob::of(inertia, base.inertia, normal.inertia)
+        .show(ui, p, Slide::Logarithmic, commands, |x| Of::Base.set(&["inertia"], x));
+    for (i, label) in ["CM x", "CM y"].into_iter().enumerate() {
+        let tip = "ρ: centre of mass of the base, seen from B in the base's axes";
+        let row = Row { label, unit: "m", tip, decimals: 3, speed: 0.002, range: -2.0..=2.0 };
+        Knob::of(row, base.com[i], 0.0).show(ui, p, Slide::No, commands, |x| {
+            let mut com = base.com;
+            com[i] = x;
+            Of::Base.set(&["com"], com.to_vec())
+        });
+    }
+    if base.kind != BaseKind::Compliant {
+        return;
+    }
+    let triples = [
+        ("stiffness", "stiffness", "Spring", ["N/m", "N/m", "N m/rad"], base.stiffness, normal.stiffness, 1e6),
+        ("damping", "damping", "Damper", ["N s/m", "N s/m", "N m s"], base.damping, normal.damping, 1e4),
+    ];
+    for (key, word, what, units, now, normal, most) in triples {
+        for (i, axis) in ["x", "y", "θ"].into_iter().enumerate() {
+            let label = format!("{word} {axis}");
+            let tip = match i {
+                2 => format!("{what} against tilt θ of the base"),
+                _ => format!("{what} along {axis}"),
+            };
+            let row =
+                Row { label: &label, unit: units[i], tip: &tip, decimals: 0, speed: most / 1e4, range: 0.0..=most };
+            Knob::of(row, now[i], normal[i]).show(ui, p, Slide::No, commands, |x| {
+                let mut all = now;
+                all[i] = x;
+                Of::Base.set(&[key], all.to_vec())
+            });
+        }
+    }
+}
+
+fn wheel(ui: &mut Ui, base: &Base, p: &Palette, commands: &mut Vec<Command>) {
+    let normal = Wheel::default();
+    let tip = "A wheel in the base that takes up the moment of the machine while it can";
+    switch(ui, ("reaction wheel", tip), base.wheel.is_some(), commands, |on| match on {
+        true => Of::Base.set(&["wheel", "inertia"], normal.inertia),
+        false => Of::Base.back(&["wheel"]),
+    });
+    let Some(wheel) = &base.wheel else { return };
+    ui.indent("wheel", |ui| {
+        let tip = "Inertia of the rotor about its axis";
+        let row = Row { label: "rotor", unit: "kg m²", tip, decimals: 4, speed: 0.0001, range: 1e-4..=10.0 };
+        Knob::of(row, wheel.inertia, normal.inertia)
+            .show(ui, p, Slide::No, commands, |x| Of::Base.set(&["wheel", "inertia"], x));
+        for (key, label, unit, tip, now, usual) in [
+            (
+                "torque_limit",
+                "max torque",
+                "N m",
+                "Greatest |τ_w|; past it the base feels the rest",
+                wheel.torque_limit,
+                0.5,
+            ),
+            (
+                "speed_limit",
+                "max speed",
+                "rad/s",
+                "Greatest |Ω|; at it the wheel takes up no more",
+                wheel.speed_limit,
+                200.0,
+            ),
+        ] {
+            ui.horizontal(|ui| {
+                let on = switch(ui, (label, tip), now.is_some(), commands, |on| match on {
+                    true => Of::Base.set(&["wheel", key], usual),
+                    false => Of::Base.back(&["wheel", key]),
+                });
+                if on {
+                    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                        super::unit(ui, p, unit);
+                        let mut value = now.unwrap_or(usual);
+                        let range = 0.01 * usual..=1e4 * usual;
+                        let row = Row { label, unit, tip, decimals: 2, speed: usual / 200.0, range };
+                        let response = row.number(ui, &mut value);
+                        super::send(commands, &[response], || Of::Base.set(&["wheel", key], value));
+                    });
+                }
+            });
+        }
+    });
+}

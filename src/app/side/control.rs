@@ -1,0 +1,99 @@
+//! What the motors are told.
+
+use egui::Ui;
+
+use super::Row;
+use super::fold::{Knob, Of, Slide, choose, fold};
+use super::plant::Gain;
+use crate::app::Command;
+use crate::picture::scene::palette::Palette;
+use crate::session::Session;
+use crate::simulation::control::{Control, Law};
+
+const KEYS: [&str; 7] = ["law", "kp", "kd", "knows_base", "rate", "delay", "encoder"];
+
+const LAWS: [(Law, &str, &str); 3] = [
+    (Law::ComputedTorque, "computed-torque", "Computed torque"),
+    (Law::PayloadCompensation, "payload-compensation", "… with the payload"),
+    (Law::Pd, "pd", "PD"),
+];
+
+/// Steps between samples that are offered; a rate must fit the simulation's step.
+const PERIODS: [u32; 11] = [1, 2, 4, 5, 8, 10, 20, 25, 40, 50, 100];
+
+/// Counts of encoders that are offered.
+const COUNTS: [f64; 6] = [1024.0, 4096.0, 16384.0, 65536.0, 262_144.0, 1_048_576.0];
+
+/// Draws it.
+pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
+    let scenario = session.scenario();
+    let (control, step, n) = (&scenario.control, scenario.step, scenario.machine.drives());
+    let law = LAWS.iter().find(|l| l.0 == control.law);
+    let mut summary = match control.law {
+        Law::ComputedTorque => "computed torque".to_owned(),
+        Law::PayloadCompensation => "with the payload".to_owned(),
+        Law::Pd => "PD".to_owned(),
+    };
+    if control.is_sampled() {
+        summary += ", sampled";
+    }
+    let back = (*control != Control::default()).then(|| Of::Control.clear(&KEYS));
+    fold(ui, p, ("Control", &summary), back, commands, |ui, commands| {
+        let laws: Vec<(&str, String)> = LAWS.iter().map(|l| (l.1, l.2.to_owned())).collect();
+        let tip = "Computed torque, from the model; the same with the payload in the model while it is held; or PD, from \
+                   the errors alone";
+        choose(ui, ("law", tip), &laws, &law.map_or("", |l| l.1), commands, |word| {
+            Some(Of::Control.set(&["law"], *word))
+        });
+        let kp = Gain {
+            label: "Kp",
+            unit: "s⁻²",
+            tip: "Position gain K_p; equal on all drives, errors stay on the plane",
+            decimals: 0,
+            most: 2000.0,
+            normal: 400.0,
+        };
+        kp.show(ui, (Of::Control, &["kp"]), &control.kp, n, p, commands);
+        let tip = "Velocity gain K_d; equal on all drives, errors stay on the plane";
+        let kd = Gain { label: "Kd", unit: "s⁻¹", tip, most: 200.0, normal: 40.0, ..kp };
+        kd.show(ui, (Of::Control, &["kd"]), &control.kd, n, p, commands);
+        sampling(ui, control, step, p, commands);
+        if scenario.base.moves() {
+            let mut knows = control.knows_base;
+            let tip = "Its model includes the base that moves; otherwise it takes the base to be fixed";
+            if ui.checkbox(&mut knows, "knows the base").on_hover_text(tip).changed() {
+                super::fold::once(commands, Of::Control.set(&["knows_base"], knows));
+            }
+        }
+    });
+}
+
+fn sampling(ui: &mut Ui, control: &Control, step: f64, p: &Palette, commands: &mut Vec<Command>) {
+    let offered = |all: &mut Vec<(f64, String)>, now: f64, words: String| {
+        if all.iter().all(|(x, _)| *x != now) {
+            all.push((now, words));
+        }
+    };
+    let hertz = |x: f64| format!("{} Hz", (x * 1e3).round() / 1e3);
+    let mut rates = vec![(0.0, "all the time".to_owned())];
+    rates.extend(PERIODS.map(|n| 1.0 / (f64::from(n) * step)).map(|x| (x, hertz(x))));
+    offered(&mut rates, control.rate, hertz(control.rate));
+    let tip = "How often torques are computed, and held between; a whole number of the simulation's steps";
+    choose(ui, ("rate", tip), &rates, &control.rate, commands, |x| Some(Of::Control.set(&["rate"], *x)));
+    let row = Row {
+        label: "delay",
+        unit: "ms",
+        tip: "From reading the encoders to the torque; a whole number of the simulation's steps",
+        decimals: 1,
+        speed: 1e3 * step,
+        range: 0.0..=100.0,
+    };
+    Knob::of(row, 1e3 * control.delay, 0.0)
+        .show(ui, p, Slide::No, commands, |x| Of::Control.set(&["delay"], (1e-3 * x / step).round() * step));
+    let words = |x: f64| format!("{x} counts");
+    let mut counts = vec![(0.0, "exact".to_owned())];
+    counts.extend(COUNTS.map(|x| (x, words(x))));
+    offered(&mut counts, control.encoder, words(control.encoder));
+    let tip = "Counts of the encoders in a turn; rates are their differences";
+    choose(ui, ("encoder", tip), &counts, &control.encoder, commands, |x| Some(Of::Control.set(&["encoder"], *x)));
+}

@@ -1,0 +1,247 @@
+//! Sections that fold, switches, and numbers that know what is normal.
+
+use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
+
+use super::{Row, send};
+use crate::app::Command;
+use crate::app::theme::{bold, colour, plain};
+use crate::app::top::name;
+use crate::picture::scene::palette::Palette;
+use crate::session::Edit;
+use crate::session::scenario::{Change, Value};
+
+/// What a setting belongs to.
+#[derive(Clone, Copy)]
+pub enum Of {
+    Plant,
+    Base,
+    Control,
+}
+
+impl Of {
+    /// A key, by its parts, set to a value; the word `default` takes it out.
+    pub fn set(self, path: &[&str], value: impl Into<Value>) -> Edit {
+        let Some((last, outer)) = path.split_last() else { return self.change(Change::new()) };
+        let innermost = Change::from_iter([((*last).to_owned(), value.into())]);
+        let wrap = |inner, key: &&str| Change::from_iter([((*key).to_owned(), Value::Table(inner))]);
+        self.change(outer.iter().rev().fold(innermost, wrap))
+    }
+
+    /// A key back to normal.
+    pub fn back(self, path: &[&str]) -> Edit {
+        self.set(path, "default")
+    }
+
+    /// Several keys back to normal.
+    pub fn clear(self, keys: &[&str]) -> Edit {
+        self.change(keys.iter().map(|key| ((*key).to_owned(), Value::from("default"))).collect())
+    }
+
+    /// Several keys at once.
+    pub fn change(self, change: Change) -> Edit {
+        match self {
+            Self::Plant => Edit::SetPlant { change },
+            Self::Base => Edit::SetBase { change },
+            Self::Control => Edit::SetControl { change },
+        }
+    }
+}
+
+/// An edit that is an undo of its own.
+pub fn once(commands: &mut Vec<Command>, edit: Edit) {
+    commands.extend([Command::Edit(edit), Command::EndGesture]);
+}
+
+/// A section that opens and closes; it begins open if something in it is not as usual. `back` takes all of it back.
+pub fn fold(
+    ui: &mut Ui,
+    p: &Palette,
+    (title, summary): (&str, &str),
+    back: Option<Edit>,
+    commands: &mut Vec<Command>,
+    body: impl FnOnce(&mut Ui, &mut Vec<Command>),
+) {
+    let id = egui::Id::unique(("fold", title));
+    let chosen = ui.data(|d| d.get_temp::<bool>(id));
+    let mut open = chosen.unwrap_or(back.is_some());
+    // Folded, they stand together.
+    ui.add_space(if open { 8.0 } else { 2.0 });
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let sign = if open { "▾" } else { "▸" };
+        let words = RichText::new(format!("{sign} {}", title.to_uppercase())).font(bold(11.0)).color(colour(p.dim));
+        let button = ui.add(Button::new(words).frame(false).min_size(egui::vec2(0.0, 18.0)));
+        name(&button, &format!("{title} section"));
+        if button.on_hover_text(if open { "Fold" } else { "Unfold" }).clicked() {
+            open = !open;
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let differs = back.is_some();
+            if let Some(edit) = back
+                && undo(ui, p, &format!("{title} back to normal"), "All of this back to normal")
+            {
+                once(commands, edit);
+            }
+            let ink = colour(if differs { p.amber } else { p.dim });
+            ui.add(egui::Label::new(RichText::new(summary).font(plain(11.0)).color(ink)).truncate());
+        });
+    });
+    // What began open stays so when everything is normal again.
+    ui.data_mut(|d| d.insert_temp(id, open));
+    if open {
+        body(ui, commands);
+    }
+}
+
+/// A small sign that takes something back.
+pub fn undo(ui: &mut Ui, p: &Palette, label: &str, tip: &str) -> bool {
+    let sign = RichText::new("↺").font(plain(13.0)).color(colour(p.amber));
+    let response = ui.add(Button::new(sign).frame(false).min_size(egui::vec2(14.0, 18.0)));
+    name(&response, label);
+    response.on_hover_text(tip).clicked()
+}
+
+/// A switch; whether it is on.
+pub fn switch(
+    ui: &mut Ui,
+    (label, tip): (&str, &str),
+    on: bool,
+    commands: &mut Vec<Command>,
+    to: impl FnOnce(bool) -> Edit,
+) -> bool {
+    let mut now = on;
+    if ui.checkbox(&mut now, label).on_hover_text(tip).changed() {
+        once(commands, to(now));
+    }
+    on
+}
+
+/// A switch for something that is there while it is not nothing: held down, a slider may pass nothing.
+pub fn something(
+    ui: &mut Ui,
+    words: (&str, &str),
+    there: bool,
+    commands: &mut Vec<Command>,
+    to: impl FnOnce(bool) -> Edit,
+) -> bool {
+    let id = egui::Id::unique(("something", words.0));
+    let was = ui.data(|d| d.get_temp::<bool>(id)).unwrap_or_default();
+    let held = ui.input(|i| i.pointer.any_down() || i.pointer.any_released());
+    let on = there || (was && held);
+    ui.data_mut(|d| d.insert_temp(id, on));
+    switch(ui, words, on, commands, to)
+}
+
+/// Some choices beside each other.
+pub fn segments<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    p: &Palette,
+    choices: &[(T, &str, &str)],
+    now: T,
+    commands: &mut Vec<Command>,
+    to: impl Fn(T) -> Edit,
+) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
+        let width = (ui.available_width() - 3.0 * (choices.len() as f32 - 1.0)) / choices.len() as f32;
+        for (value, words, tip) in choices {
+            let chosen = *value == now;
+            let text = RichText::new(*words).font(plain(12.0)).color(colour(if chosen { p.ink } else { p.dim }));
+            let fill = if chosen { colour(p.line) } else { egui::Color32::TRANSPARENT };
+            let button = Button::new(text).fill(fill).stroke((1.0, colour(p.line))).min_size(egui::vec2(width, 22.0));
+            let response = ui.add(button.selected(false)).on_hover_text(*tip);
+            if response.clicked() && !chosen {
+                once(commands, to(*value));
+            }
+        }
+    });
+}
+
+/// A label and a list to choose from.
+pub fn choose<T: Clone + PartialEq>(
+    ui: &mut Ui,
+    (label, tip): (&str, &str),
+    choices: &[(T, String)],
+    now: &T,
+    commands: &mut Vec<Command>,
+    to: impl Fn(&T) -> Option<Edit>,
+) -> Option<T> {
+    let mut taken = None;
+    ui.horizontal(|ui| {
+        ui.label(label).on_hover_text(tip);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let shown = choices.iter().find(|c| c.0 == *now).map_or("", |c| &c.1);
+            let room = (ui.available_width() - 22.0).clamp(60.0, 150.0);
+            let response = ComboBox::from_id_salt(label).selected_text(shown).width(room).show_ui(ui, |ui| {
+                for (value, words) in choices {
+                    if ui.selectable_label(value == now, words).clicked() && value != now {
+                        taken = Some(value.clone());
+                        commands.extend(to(value).into_iter().flat_map(|e| [Command::Edit(e), Command::EndGesture]));
+                    }
+                }
+            });
+            name(&response.response.on_hover_text(tip), label);
+        });
+    });
+    taken
+}
+
+/// How a number is set besides typing.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Slide {
+    No,
+    Linear,
+    Logarithmic,
+}
+
+/// A number that has a normal value.
+pub struct Knob<'a> {
+    pub row: Row<'a>,
+    pub now: f64,
+    pub normal: f64,
+    /// The normal value stands beside it.
+    pub beside: bool,
+    /// What takes it back; none: setting the normal value does.
+    pub back: Option<Edit>,
+    /// What it is called where its label alone would not do.
+    pub called: Option<String>,
+}
+
+impl<'a> Knob<'a> {
+    pub fn of(row: Row<'a>, now: f64, normal: f64) -> Self {
+        Self { row, now, normal, beside: false, back: None, called: None }
+    }
+
+    pub fn show(self, ui: &mut Ui, p: &Palette, slide: Slide, commands: &mut Vec<Command>, edit: impl Fn(f64) -> Edit) {
+        let Self { row, now, normal, beside, back, called } = self;
+        let called = called.unwrap_or_else(|| row.label.to_owned());
+        let mut value = now;
+        let differs = now != normal;
+        let written = |x: f64| crate::picture::scene::stage::signed(x, row.decimals);
+        let mut responses = Vec::new();
+        ui.horizontal(|ui| {
+            ui.label(row.label).on_hover_text(row.tip);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                ui.spacing_mut().item_spacing.x = 6.0;
+                super::unit(ui, p, row.unit);
+                let number = row.number(ui, &mut value);
+                name(&number, &format!("{called} {}", row.unit));
+                responses.push(number);
+                if differs {
+                    let tip = format!("Back to normal: {} {}", written(normal), row.unit);
+                    if undo(ui, p, &format!("{called} back to normal"), &tip) {
+                        once(commands, back.unwrap_or_else(|| edit(normal)));
+                    }
+                }
+                if beside {
+                    let text = RichText::new(written(normal)).font(plain(11.5)).color(colour(p.dim));
+                    ui.label(text).on_hover_text("As the model has it");
+                }
+            });
+        });
+        if slide != Slide::No {
+            responses.push(row.slider(ui, &mut value, slide == Slide::Logarithmic));
+        }
+        send(commands, &responses, || edit(value));
+    }
+}

@@ -1,0 +1,178 @@
+//! The line at the bottom: the verdict, and what to do next.
+
+use egui::{Align, Layout, Margin, Panel, RichText, Sense, Ui, vec2};
+
+use super::theme::{bold, colour, plain};
+use super::{Command, Look};
+use crate::picture::scene::palette::{Palette, faded};
+use crate::picture::scene::stage::signed;
+use crate::picture::scene::views::Views;
+use crate::session::verdict::Verdict;
+use crate::session::{Edit, Session};
+use crate::simulation::frame::{Audit, Frame, Reach};
+
+/// Bad news, in full, over the lower edge of the viewport, with the way out if there is one.
+pub fn news(ctx: &egui::Context, session: &Session, look: &Look, commands: &mut Vec<Command>) {
+    let fault = fault(session.frame());
+    let waits = session.run().waiting();
+    let waiting = waits.map(|waiting| format!("The run waits: {}", waiting.why));
+    let text = match (&look.message, &fault, &waiting, &look.dialog) {
+        (Some((text, true)), _, _, None) | (_, Some(text), _, None) | (_, _, Some(text), None) => text,
+        _ => return,
+    };
+    let p = look.palette();
+    let frame =
+        egui::Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.reaction))).corner_radius(8).inner_margin(10);
+    egui::Area::new(egui::Id::unique("news")).anchor(egui::Align2::CENTER_BOTTOM, [-40.0, -42.0]).show(ctx, |ui| {
+        frame.show(ui, |ui| {
+            ui.set_max_width((0.42 * ctx.content_rect().width()).max(320.0));
+            ui.add(egui::Label::new(RichText::new(text).font(plain(12.0)).color(colour(p.ink))).wrap());
+            let remedy = look.refused.as_ref().and_then(|wish| wish.remedy.clone());
+            let mends = waits.filter(|_| waiting.as_ref() == Some(text));
+            let mends = mends.and_then(|waiting| waiting.why.mending_b().zip(waiting.why.shown_b()));
+            let mends = mends.map(|(b, shown)| (Edit::task("b", b), shown));
+            if let Some((edit, b)) = remedy.or(mends) {
+                let way_out = ui.button(format!("take b = {b} rad"));
+                if way_out.on_hover_text("The same on the nearest plane that allows it").clicked() {
+                    commands.extend([Command::Edit(edit), Command::EndGesture]);
+                }
+            }
+        });
+    });
+}
+
+/// What should be zero: a quiet dot for each figure, red where it is not.
+fn lamps(ui: &mut Ui, frame: &Frame, p: &Palette) {
+    ui.add_space(4.0);
+    ui.spacing_mut().item_spacing.x = 1.0;
+    for lamp in frame.audit.lamps(&frame.peaks, &frame.tally) {
+        let good = lamp.is_good();
+        let (dot, response) = ui.allocate_exact_size(vec2(12.0, 18.0), Sense::hover());
+        let tone = colour(if good { faded(p.zero, 0.75) } else { p.reaction });
+        ui.painter().circle_filled(dot.center(), if good { 2.8 } else { 4.2 }, tone);
+        let word = if good { "good" } else { "not as it should be" };
+        let words = format!("audit {}: {} {}, {word}", lamp.name, power(lamp.value), lamp.unit);
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &words));
+        let limit = match lamp.limit {
+            Some(limit) => format!("should be at most {} {}", power(limit), lamp.unit),
+            None => "tells how well the plane is held; no limit".into(),
+        };
+        response.on_hover_text(format!(
+            "{}: {}\n{} {}, {limit}",
+            lamp.name,
+            lamp.meaning,
+            power(lamp.value),
+            lamp.unit
+        ));
+    }
+    ui.spacing_mut().item_spacing.x = 8.0;
+    ui.add_space(4.0);
+}
+
+/// Two digits and the order of magnitude.
+fn power(x: f64) -> String {
+    if x == 0.0 { "0".into() } else { format!("{x:.1e}").replace("e-", "e−") }
+}
+
+/// What an audit that fails has to say, loudly.
+fn fault(frame: &Frame) -> Option<String> {
+    let lamp = Audit::fault(frame)?;
+    let limit = lamp.limit.unwrap_or_default();
+    Some(format!(
+        "This run cannot be trusted: {} ({}) is off by {} {}, at most {} is right. A smaller step or softer gains help.",
+        lamp.name,
+        lamp.meaning,
+        power(lamp.value),
+        lamp.unit,
+        power(limit)
+    ))
+}
+
+/// Draws it.
+pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &Look, commands: &mut Vec<Command>) {
+    let p = look.palette();
+    let frame = egui::Frame::new().fill(colour(p.panel)).inner_margin(Margin::symmetric(16, 0));
+    Panel::bottom("status").exact_size(30.0).resizable(false).frame(frame).show(ui, |ui| {
+        ui.horizontal_centered(|ui| {
+            let f = session.frame();
+            let verdict = Verdict::of(session.scenario(), f);
+            let waits = session.run().waiting().is_some();
+            let tone = colour(if verdict.is_good() && !waits { p.zero } else { p.reaction });
+            let (dot, _) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), egui::Sense::hover());
+            ui.painter().circle_filled(dot.center(), 4.5, tone);
+            let word = match (verdict.word(), f.is_quiet()) {
+                _ if waits => "waits",
+                ("not reactionless", false) => "reacts on its base",
+                ("not reactionless", true) => "has reacted on its base",
+                (word, _) => word,
+            };
+            let remarks = verdict.so_far();
+            let told = ui.label(RichText::new(word).font(bold(13.0)).color(tone));
+            if !remarks.is_empty() {
+                let long: Vec<&str> = remarks.iter().map(|r| r.long.as_str()).collect();
+                told.on_hover_text(long.join("\n"));
+            }
+            lamps(ui, f, &p);
+            let mut facts = format!("peak |n_B| {:.3} N m", verdict.arm_moment);
+            // Two quantities: what the arm transmits, and what a wheel leaves of it.
+            if let Some(left) = verdict.past_wheel {
+                facts += &format!(", past the wheel {left:.3} N m");
+            }
+            for remark in remarks.iter().filter(|_| ui.available_width() > 460.0) {
+                facts += &format!("  ·  {}", remark.short);
+            }
+            let b = session.run().planes().map_or(f.b, |planes| f.b.rem_euclid(planes.map().period()));
+            facts += &format!("  ·  b {b:.3} rad");
+            let bad_news = matches!(look.message, Some((_, true)));
+            if let Some((poses, distance)) =
+                views.stage().standing(f).filter(|_| !bad_news && ui.available_width() > 460.0)
+            {
+                let many = if poses == 1 { "one pose".into() } else { format!("{poses} poses") };
+                facts += &format!("  ·  {many}");
+                // A narrow window keeps its room for what to do next.
+                if ui.available_width() > 900.0 {
+                    facts += &format!(", {} m from the boundary", signed(distance.abs(), 3));
+                }
+            }
+            ui.label(RichText::new(facts).font(plain(12.0)).color(colour(p.dim)));
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                let (text, tone) = match (&look.message, f.target.reach) {
+                    (Some((_, true)), _) => (String::new(), p.reaction),
+                    (Some((text, false)), _) => (text.clone(), p.ink),
+                    (None, _) if session.is_full() => {
+                        ("this session is full: save or record it, then start over".into(), p.reaction)
+                    }
+                    (None, Reach::Outside { mending_b: Some(b), shown_b: Some(shown), .. }) => {
+                        let way_out = ui.button(format!("go to b = {shown} rad"));
+                        if way_out
+                            .on_hover_text("Another plane reaches the target; getting there costs a moment")
+                            .clicked()
+                        {
+                            commands.push(Command::Edit(Edit::SlideB { b }));
+                            commands.push(Command::EndGesture);
+                        }
+                        ("the target is outside".into(), p.ink)
+                    }
+                    (None, Reach::Outside { other_sheet: true, .. }) => {
+                        ("the target is beyond a fold or a change point".into(), p.ink)
+                    }
+                    (None, Reach::Outside { .. }) => ("the target is outside, whatever b".into(), p.ink),
+                    (None, _) if look.stroke.is_some() => {
+                        ("draw with the pointer  ·  Esc lays the pencil down".into(), p.ink)
+                    }
+                    (None, _) if look.pushing => {
+                        ("pull at the end effector to push it, 20 N for each metre  ·  U lets go".into(), p.ink)
+                    }
+                    (None, _) if session.is_live() => {
+                        ("led by hand  ·  B goes back to the path  ·  F1 keys".into(), p.dim)
+                    }
+                    (None, _) if look.view.shows_machine() => {
+                        ("drag the target, a point or the b ring  ·  Space plays  ·  F1 keys".into(), p.dim)
+                    }
+                    (None, _) => ("Space plays  ·  F1 keys".into(), p.dim),
+                };
+                ui.add(egui::Label::new(RichText::new(text).font(plain(12.0)).color(colour(tone))).truncate());
+            });
+        });
+    });
+}

@@ -1,0 +1,297 @@
+//! The study of tolerances at the bottom: what varies, what the bases of many machines feel, which tolerance is to
+//! blame, and the motion's frequencies.
+
+use egui::{Align, Color32, DragValue, Frame, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui, vec2};
+use egui_plot::{Bar, BarChart, FilledArea, GridMark, Line, LineStyle, Plot, PlotPoints, VLine};
+
+use super::plots::base_plot;
+use super::side::send;
+use super::theme::{bold, colour, plain};
+use super::top::name;
+use super::{Command, Look};
+use crate::picture::scene::palette::{Palette, faded};
+use crate::picture::scene::stage::signed;
+use crate::session::Edit;
+use crate::session::scenario::{Change, Value};
+use crate::study::tolerance::{Amount, Spread, Study};
+
+const HEIGHT: f32 = 268.0;
+
+/// Draws it.
+pub fn show(ui: &mut Ui, study: &Result<Study, String>, time: f64, look: &Look, commands: &mut Vec<Command>) {
+    let p = look.palette();
+    let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 16, right: 16, top: 8, bottom: 8 });
+    let height = HEIGHT.min(0.45 * ui.available_height());
+    Panel::bottom("study").exact_size(height).resizable(false).frame(frame).show(ui, |ui| {
+        ui.horizontal(|ui| {
+            ui.label(RichText::new("Tolerances").font(bold(13.5)));
+            let words = match study {
+                Ok(study) => summary(study),
+                Err(_) => String::new(),
+            };
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                if ui.button("Close").on_hover_text("T").clicked() {
+                    commands.push(Command::Study(false));
+                }
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                    ui.add(Label::new(RichText::new(words).font(plain(11.5)).color(colour(p.dim))).truncate());
+                });
+            });
+        });
+        match study {
+            Err(why) => {
+                ui.label(RichText::new(why).color(colour(p.reaction)));
+            }
+            Ok(study) => {
+                ScrollArea::horizontal().auto_shrink([false, false]).show(ui, |ui| {
+                    ui.horizontal_top(|ui| columns(ui, &p, study, time, commands));
+                });
+            }
+        }
+    });
+}
+
+/// Machines, what is typical, and how far first order can be trusted.
+fn summary(study: &Study) -> String {
+    let numbers = study.parameters;
+    let mut text = format!("{} machines, {numbers} numbers vary in each", study.samples);
+    if let Some(yields) = &study.yields {
+        let [low, high] = yields.interval.map(|x| 100.0 * x);
+        text += &format!("  ·  {:.1} % keep within limits ({low:.1} to {high:.1} %)", 100.0 * yields.share);
+    }
+    let (n, f) = (&study.agreement.moment_deviation, &study.agreement.force_mean);
+    text += &match n.worst <= study.agreement.tolerance {
+        true => "  ·  first order holds for n_B".into(),
+        false => format!("  ·  first order is off by {:.2} σ for n_B at {:.3} s", n.worst, n.time),
+    };
+    if f.worst > study.agreement.sampled_tolerance {
+        text += ", not for the mean of |f_B|, which is a norm";
+    }
+    if !study.left_out.is_empty() {
+        text += &format!("  ·  left out: {}; `stillbase tolerance --simulate` has it", study.left_out.join(", "));
+    }
+    text
+}
+
+fn columns(ui: &mut Ui, p: &Palette, study: &Study, time: f64, commands: &mut Vec<Command>) {
+    let height = ui.available_height() - 4.0;
+    let column = |ui: &mut Ui, width: f32, add: &mut dyn FnMut(&mut Ui)| {
+        ui.allocate_ui_with_layout(vec2(width, height), Layout::top_down(Align::LEFT), |ui| {
+            ui.set_width(width);
+            add(ui);
+        });
+        ui.add_space(10.0);
+    };
+    let rest = ((ui.available_width() - 236.0 - 220.0 - 50.0) / 3.0).max(220.0);
+    column(ui, 236.0, &mut |ui| spreads(ui, p, study, commands));
+    column(ui, rest, &mut |ui| band(ui, p, study, time));
+    column(ui, rest, &mut |ui| peaks(ui, p, study));
+    column(ui, 220.0, &mut |ui| blame(ui, p, study));
+    column(ui, rest, &mut |ui| spectrum(ui, p, study));
+}
+
+fn title(ui: &mut Ui, p: &Palette, title: &str, rest: &str) {
+    ui.horizontal(|ui| {
+        ui.set_height(16.0);
+        ui.label(RichText::new(title).font(bold(12.5)));
+        ui.add(Label::new(RichText::new(rest).font(plain(11.5)).color(colour(p.dim))).truncate());
+    });
+}
+
+/// What a key of a spread is called, its unit, and what the number is multiplied by.
+fn words(key: &str, amount: Amount) -> (String, &'static str, f64) {
+    let (of, what) = match key.rsplit_once('.') {
+        Some((of, "com")) => (of, "CM along"),
+        Some((of, "com_normal")) => (of, "CM across"),
+        Some((of, what)) if of.starts_with("link") || of == "payload" => (of, what),
+        _ => ("", key),
+    };
+    let who = match of.strip_prefix("link.") {
+        Some("*") | None => String::new(),
+        Some(name) => format!(" of {name}"),
+    };
+    let what = match key {
+        "length.*" => "lengths".into(),
+        _ => format!("{what}{who}"),
+    };
+    let metres = key.starts_with("length") || key.contains(".com");
+    match amount {
+        Amount::Percent(_) => (what, "%", 1.0),
+        Amount::Absolute(_) if metres => (what, "mm", 1e3),
+        Amount::Absolute(_) if key.ends_with("mass") => (what, "g", 1e3),
+        Amount::Absolute(_) => (what, "kg m²", 1.0),
+    }
+}
+
+/// What varies, one row each, and the limit on |n_B|.
+fn spreads(ui: &mut Ui, p: &Palette, study: &Study, commands: &mut Vec<Command>) {
+    title(ui, p, "What varies", "deviation σ, half-width ±");
+    let spreads = study.tolerance.spreads_or_default();
+    ScrollArea::vertical().id_salt("spreads").auto_shrink([false, false]).show(ui, |ui| {
+        for (key, spread) in &spreads {
+            let amount = spread.amount();
+            let (label, unit, times) = words(key, amount);
+            let (Amount::Absolute(size) | Amount::Percent(size)) = amount;
+            let mut value = size * times;
+            let sign = if matches!(spread, Spread::Normal(_)) { "σ" } else { "±" };
+            let response = row(ui, p, &format!("{label}  {sign}"), unit, key, &mut value);
+            send(commands, &[response], || {
+                let amount = match amount {
+                    Amount::Percent(_) => Amount::Percent(value / times),
+                    Amount::Absolute(_) => Amount::Absolute(value / times),
+                };
+                // The defaults are written out with the first change, so that the others stay.
+                let mut change: Change = spreads.iter().map(|(key, spread)| (key.clone(), spread.to_value())).collect();
+                change.insert(key.clone(), spread.with(amount).to_value());
+                Edit::SetTolerance { change }
+            });
+        }
+        let mut limit = study.tolerance.moment_limit.unwrap_or(0.0);
+        let response = row(ui, p, "limit on |n_B|", "N m", "moment_limit: zero for none", &mut limit);
+        send(commands, &[response], || {
+            let value = if limit > 0.0 { Value::from(limit) } else { Value::from("default") };
+            Edit::SetTolerance { change: Change::from_iter([("moment_limit".to_owned(), value)]) }
+        });
+    });
+}
+
+fn row(ui: &mut Ui, p: &Palette, label: &str, unit: &str, tip: &str, value: &mut f64) -> egui::Response {
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(label).font(plain(12.5)));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let text = RichText::new(unit).font(plain(11.5)).color(colour(p.dim));
+            ui.add_sized([42.0, 18.0], Label::new(text).halign(Align::LEFT));
+            let drag = DragValue::new(value).range(0.0..=1e3).speed(0.01).fixed_decimals(3);
+            let response = ui.add(drag.update_while_editing(false)).on_hover_text(tip);
+            name(&response, &format!("Spread of {label}, {unit}"));
+            response
+        })
+        .inner
+    })
+    .inner
+}
+
+/// A plot that nobody can touch, with a little air above and below.
+fn bare<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
+    base_plot(id, p, height).sense(Sense::hover()).set_margin_fraction(vec2(0.0, 0.05))
+}
+
+/// n_B over time, less that of the nominal machine: 5 to 95 % and 25 to 75 % of the machines, the mean, and one deviation
+/// to first order.
+fn band(ui: &mut Ui, p: &Palette, study: &Study, time: f64) {
+    title(ui, p, "n_B off nominal", "N m; 5–95, 25–75 %; dashed σ");
+    let (x, band) = (&study.bands.time, &study.bands.moment);
+    let tone = colour(p.reaction);
+    let end = x.last().copied().unwrap_or(1.0) + x.first().copied().unwrap_or(0.0);
+    let response = bare("bands", p, ui.available_height()).show_axes([true, true]).show(ui, |plot| {
+        plot.set_plot_bounds_x(0.0..=end);
+        for (i, strength) in [(0, 0.16), (1, 0.28)] {
+            let [low, high] = [i, 4 - i].map(|i| {
+                let off = band.percentiles[i].iter().zip(&band.nominal);
+                off.map(|(n, nominal)| n - nominal).collect::<Vec<f64>>()
+            });
+            let fill = colour(faded(p.reaction, strength));
+            plot.add(FilledArea::new("band", x, &low, &high).fill_color(fill).allow_hover(false));
+        }
+        let line = |y: &dyn Fn(usize) -> f64| PlotPoints::from((0..x.len()).map(|i| [x[i], y(i)]).collect::<Vec<_>>());
+        plot.line(
+            Line::new("mean", line(&|i| band.mean[i] - band.nominal[i])).color(tone).width(1.6).allow_hover(false),
+        );
+        for side in [-1.0, 1.0] {
+            let sigma = line(&|i| side * band.first_order_deviation[i]);
+            let sigma = Line::new("σ", sigma).color(colour(p.ink)).width(1.0).style(LineStyle::dashed_dense());
+            plot.line(sigma.allow_hover(false));
+        }
+        plot.vline(VLine::new("now", time).color(colour(p.amber)).width(1.0).allow_hover(false));
+    });
+    name(&response.response, "Band of the base moment over time, N m");
+}
+
+/// Peaks of |n_B| over machines.
+fn peaks(ui: &mut Ui, p: &Palette, study: &Study) {
+    let [_, half, most, nearly] = study.moment.values[..] else { return };
+    title(ui, p, "Peak |n_B|", &format!("N m; 95 % below {most:.4}"));
+    let histogram = &study.moment_histogram;
+    let within = |x: f64| study.tolerance.moment_limit.is_none_or(|limit| x <= limit);
+    let bars = histogram.counts.iter().zip(histogram.edges.windows(2)).map(|(count, w)| {
+        let middle = 0.5 * (w[0] + w[1]);
+        let tone = if within(middle) { p.dim } else { p.reaction };
+        Bar::new(middle, *count as f64).width(0.92 * (w[1] - w[0])).fill(colour(faded(tone, 0.7)))
+    });
+    let bars: Vec<Bar> = bars.collect();
+    let response = bare("peaks", p, ui.available_height()).show_axes([true, false]).include_x(0.0).include_y(0.0).show(
+        ui,
+        |plot| {
+            plot.bar_chart(BarChart::new("machines", bars).allow_hover(false));
+            plot.vline(VLine::new("half", half).color(colour(p.ink)).width(1.0).allow_hover(false));
+            if let Some(limit) = study.tolerance.moment_limit {
+                plot.vline(VLine::new("limit", limit).color(colour(p.amber)).width(1.4).allow_hover(false));
+            }
+        },
+    );
+    let words = format!("half below {half:.5}, 95 % below {most:.5}, 99 % below {nearly:.5} N m");
+    name(&response.response, "Histogram of peaks of the base moment over machines, N m");
+    response.response.on_hover_text(words);
+}
+
+/// Which tolerance matters: shares of the first-order variance of n_B, summed over the motion.
+fn blame(ui: &mut Ui, p: &Palette, study: &Study) {
+    title(ui, p, "To blame", "share of variance of n_B");
+    let width = ui.available_width();
+    ScrollArea::vertical().id_salt("blame").auto_shrink([false, false]).show(ui, |ui| {
+        for share in study.shares.iter().take(20).filter(|s| s.moment_share > 5e-4) {
+            let (rect, response) = ui.allocate_exact_size(vec2(width - 8.0, 16.0), Sense::hover());
+            let bar =
+                egui::Rect::from_min_size(rect.min, vec2(rect.width() * share.moment_share as f32, rect.height()));
+            ui.painter().rect_filled(bar, 3.0, colour(faded(p.amber, 0.35)));
+            let (left, right) = (egui::Align2::LEFT_CENTER, egui::Align2::RIGHT_CENTER);
+            let (font, ink) = (plain(11.5), colour(p.ink));
+            ui.painter().text(rect.left_center() + vec2(4.0, 0.0), left, &share.key, font.clone(), ink);
+            let percent = format!("{:.1} %", 100.0 * share.moment_share);
+            ui.painter().text(rect.right_center() - vec2(4.0, 0.0), right, percent, font, colour(p.dim));
+            let slope = signed(share.moment_slope, 4);
+            let unit = share.unit;
+            name(&response, &format!("{} {:.1} %", share.key, 100.0 * share.moment_share));
+            response.on_hover_text(format!("σ = {:.3e} {unit}; RMS of ∂n_B: {slope} N m/{unit}", share.deviation));
+        }
+    });
+}
+
+/// Amplitude spectral densities of the run, both axes in powers of ten.
+fn spectrum(ui: &mut Ui, p: &Palette, study: &Study) {
+    title(ui, p, "Spectrum", "N m/√Hz, grey N/√Hz; Hz");
+    let Some([fx, fy, n]) = &study.spectra else {
+        ui.label(RichText::new("this run is too short for it").color(colour(p.dim)));
+        return;
+    };
+    const FLOOR: f64 = 1e-9;
+    let line = |s: &crate::study::spectrum::Spectrum| {
+        let points = s.frequency.iter().zip(&s.density).skip(1);
+        points.map(|(f, d)| [f.log10(), d.max(FLOOR).log10()]).collect::<Vec<_>>()
+    };
+    let lines = [(line(fx), p.dim, "f_x"), (line(fy), p.dim, "f_y"), (line(n), p.reaction, "n")];
+    let decade = |mark: GridMark, _: &std::ops::RangeInclusive<f64>| format!("1e{:.0}", mark.value);
+    let hertz = |mark: GridMark, _: &std::ops::RangeInclusive<f64>| format!("{}", 10f64.powf(mark.value));
+    let whole = |from: f64, to: f64, step: i32| -> Vec<GridMark> {
+        let (from, to) = (from.ceil() as i32, to.floor() as i32);
+        let marks = (from..=to).filter(|i| i.rem_euclid(step) == 0);
+        marks.map(|i| GridMark { value: f64::from(i), step_size: 4.0 }).collect()
+    };
+    let response = bare("spectrum", p, ui.available_height())
+        .show_axes([true, true])
+        .x_grid_spacer(move |g| whole(g.bounds.0, g.bounds.1, 1))
+        .y_grid_spacer(move |g| whole(g.bounds.0, g.bounds.1, 2))
+        .x_axis_formatter(hertz)
+        .y_axis_formatter(decade)
+        .include_y(0.0)
+        .include_y(-6.0)
+        .show(ui, |plot| {
+            for (points, tone, label) in lines {
+                let tone: Color32 = colour(tone);
+                let style = if label == "f_y" { LineStyle::dashed_dense() } else { LineStyle::Solid };
+                let line = Line::new(label, PlotPoints::from(points)).color(tone).width(1.4).style(style);
+                plot.line(line.allow_hover(false));
+            }
+        });
+    name(&response.response, "Amplitude spectral density of base force and moment");
+}

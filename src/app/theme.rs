@@ -1,0 +1,103 @@
+//! The palette as egui's visuals, and type with tabular digits.
+
+use std::sync::Arc;
+
+use egui::{Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Stroke, TextStyle, vec2};
+
+use crate::picture::scene::Rgba;
+use crate::picture::scene::palette::{Palette, Theme, faded, palette};
+
+/// A colour of the palette for egui.
+pub fn colour([r, g, b, a]: Rgba) -> Color32 {
+    let byte = |x: f32| (x * 255.0).round() as u8;
+    Color32::from_rgba_unmultiplied(byte(r), byte(g), byte(b), byte(a))
+}
+
+/// Bold type of a size.
+pub fn bold(size: f32) -> FontId {
+    FontId::new(size, FontFamily::Name("bold".into()))
+}
+
+/// Plain type of a size.
+pub fn plain(size: f32) -> FontId {
+    FontId::new(size, FontFamily::Proportional)
+}
+
+/// DejaVu Sans: figures of one width, and every letter of the paper.
+pub fn install_fonts(ctx: &egui::Context) {
+    let mut fonts = FontDefinitions::default();
+    let files: [(&str, &[u8]); 2] = [
+        ("sans", include_bytes!("../../assets/fonts/DejaVuSans.ttf")),
+        ("sans-bold", include_bytes!("../../assets/fonts/DejaVuSans-Bold.ttf")),
+    ];
+    for (name, bytes) in files {
+        fonts.font_data.insert(name.into(), Arc::new(FontData::from_static(bytes)));
+    }
+    fonts.families.entry(FontFamily::Proportional).or_default().insert(0, "sans".into());
+    fonts.families.entry(FontFamily::Monospace).or_default().insert(0, "sans".into());
+    fonts.families.insert(FontFamily::Name("bold".into()), vec!["sans-bold".into(), "sans".into()]);
+    ctx.set_fonts(fonts);
+}
+
+/// Dresses egui in a theme.
+pub fn apply(ctx: &egui::Context, theme: Theme) {
+    let p: Palette = palette(theme);
+    let egui_theme = match theme {
+        Theme::Dark => egui::Theme::Dark,
+        Theme::Light => egui::Theme::Light,
+    };
+    ctx.set_theme(egui_theme);
+    let mut style = (*ctx.style_of(egui_theme)).clone();
+    style.text_styles = [
+        (TextStyle::Heading, bold(17.0)),
+        (TextStyle::Body, plain(13.0)),
+        (TextStyle::Button, plain(13.0)),
+        (TextStyle::Monospace, plain(13.0)),
+        (TextStyle::Small, plain(11.5)),
+    ]
+    .into();
+    let (ink, dim, line, panel) = (colour(p.ink), colour(p.dim), colour(p.line), colour(p.panel));
+    let raised = colour(faded(p.line, 0.75));
+    let v = &mut style.visuals;
+    v.override_text_color = None;
+    v.weak_text_color = Some(dim);
+    v.panel_fill = panel;
+    v.window_fill = panel;
+    v.window_stroke = Stroke::new(1.0, line);
+    v.window_corner_radius = CornerRadius::same(10);
+    v.menu_corner_radius = CornerRadius::same(8);
+    v.extreme_bg_color = colour(p.background);
+    v.faint_bg_color = raised;
+    v.selection.bg_fill = colour(p.amber);
+    v.selection.stroke = Stroke::new(1.0, colour(p.background));
+    v.slider_trailing_fill = true;
+    v.handle_shape = egui::style::HandleShape::Circle;
+    v.error_fg_color = colour(p.reaction);
+    v.warn_fg_color = colour(p.amber);
+    v.hyperlink_color = colour(p.drives[0]);
+    let radius = CornerRadius::same(6);
+    for (w, fill, stroke) in [
+        (&mut v.widgets.noninteractive, panel, line),
+        (&mut v.widgets.inactive, raised, Color32::TRANSPARENT),
+        (&mut v.widgets.hovered, line, dim),
+        (&mut v.widgets.active, line, ink),
+        (&mut v.widgets.open, raised, dim),
+    ] {
+        w.bg_fill = fill;
+        w.weak_bg_fill = fill;
+        w.bg_stroke = Stroke::new(1.0, stroke);
+        w.fg_stroke = Stroke::new(1.5, ink);
+        w.corner_radius = radius;
+        w.expansion = 0.0;
+    }
+    v.widgets.noninteractive.fg_stroke = Stroke::new(1.0, ink);
+    style.spacing.item_spacing = vec2(8.0, 6.0);
+    style.spacing.button_padding = vec2(9.0, 4.0);
+    style.spacing.slider_rail_height = 3.0;
+    style.spacing.interact_size = vec2(28.0, 22.0);
+    style.spacing.menu_margin = Margin::same(6);
+    style.spacing.window_margin = Margin::same(14);
+    style.spacing.scroll.floating = true;
+    style.interaction.selectable_labels = false;
+    ctx.set_style_of(egui_theme, style);
+}

@@ -1,0 +1,253 @@
+//! The bar at the top: machine, scenario, transport, recording.
+
+use egui::{Align, ComboBox, Frame, Layout, Margin, Panel, Response, RichText, Sense, Shape, Stroke, Ui, pos2, vec2};
+
+use super::theme::{bold, colour, plain};
+use super::{Command, Desk, Look, Purpose};
+use crate::mechanics::machine;
+use crate::picture::scene::palette::Theme;
+use crate::session::Session;
+use crate::session::scenario::Scenario;
+
+/// Draws it.
+pub fn show(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Command>) {
+    let p = look.palette();
+    let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin::symmetric(16, 0));
+    Panel::top("top").exact_size(44.0).resizable(false).frame(frame).show(ui, |ui| {
+        ui.horizontal_centered(|ui| {
+            ui.label(RichText::new("Stillbase").font(bold(17.0)));
+            ui.add_space(6.0);
+            machines(ui, session, commands);
+            scenarios(ui, session, commands);
+            ui.add_space(8.0);
+            transport(ui, session, look, commands);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                right_end(ui, session, look, commands);
+                ui.add_space(10.0);
+                timeline(ui, session, look, commands);
+            });
+        });
+    });
+}
+
+fn machines(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
+    let present = &session.scenario().machine;
+    let changed = machine::builtins().iter().any(|m| m.name() == present.name() && m != present);
+    let current = if changed { format!("{} *", present.name()) } else { present.name().to_owned() };
+    let tip = if changed {
+        "The machine, changed from the one of that name"
+    } else {
+        "The machine: three coaxial drives at B, nine links"
+    };
+    let combo = ComboBox::from_id_salt("machine").selected_text(&current).width(136.0).truncate();
+    let response = combo.show_ui(ui, |ui| {
+        for machine in machine::builtins() {
+            let chosen = machine == present;
+            if ui.selectable_label(chosen, machine.name()).on_hover_text(&machine.spec().summary).clicked() && !chosen {
+                // Everything that was set stays; what was done to the other machine does not.
+                let scenario = Scenario { machine: machine.clone(), edits: Vec::new(), ..session.scenario().clone() };
+                commands.push(Command::Open(Box::new(scenario)));
+            }
+        }
+    });
+    name(&response.response.on_hover_text(tip), "Machine");
+}
+
+fn scenarios(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
+    let current = session.scenario();
+    let shown = if current.title.is_empty() { &current.name } else { &current.title };
+    let changed = Scenario::builtin(&current.name).is_some_and(|builtin| !same_work(&builtin, current));
+    let shown = if changed { format!("{shown} *") } else { shown.clone() };
+    let combo = ComboBox::from_id_salt("scenario").selected_text(shown).width(196.0).truncate();
+    let response = combo.show_ui(ui, |ui| {
+        let cases = Scenario::cases().count();
+        for (i, builtin) in Scenario::builtin_names().filter_map(Scenario::builtin).enumerate() {
+            let chosen = builtin.name == current.name;
+            let label =
+                if i < cases { format!("{}   {}", i + 1, builtin.title) } else { format!("     {}", builtin.title) };
+            if ui.selectable_label(chosen, label).clicked() {
+                commands.push(match Scenario::cases().find(|name| *name == builtin.name) {
+                    Some(name) => Command::Case(name),
+                    // These bring the machine that they are about.
+                    None => Command::Open(Box::new(builtin)),
+                });
+            }
+        }
+        ui.separator();
+        for (label, purpose) in [("Open…   Ctrl O", Purpose::Open), ("Save session…   Ctrl S", Purpose::Save)] {
+            if ui.selectable_label(false, label).clicked() {
+                commands.push(Command::Dialog(Some(Desk::suggest(session, purpose))));
+            }
+        }
+    });
+    let tip = match changed {
+        true => {
+            "What the machine does, changed from the scenario of that name: keys 1, 2, 3 bring the paper's cases back"
+        }
+        false => "What the machine does: keys 1, 2, 3",
+    };
+    name(&response.response.on_hover_text(tip), "Scenario");
+}
+
+/// Whether two scenarios ask for the same, whatever the machine.
+fn same_work(a: &Scenario, b: &Scenario) -> bool {
+    a.task == b.task && a.plant == b.plant && a.base == b.base && a.control == b.control
+}
+
+fn transport(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Command>) {
+    let start = [Icon::Bar(-5.0), Icon::Left(-4.0)];
+    if icon(ui, look, "Start", "To the start (Home)", &start).clicked() {
+        commands.push(Command::Seek(0.0));
+    }
+    let (label, shape): (_, &[Icon]) = match session.is_playing() {
+        true => ("Pause", &[Icon::Bar(-3.0), Icon::Bar(3.0)]),
+        false => ("Play", &[Icon::Right(-4.0)]),
+    };
+    if icon(ui, look, label, &format!("{label} (Space)"), shape).clicked() {
+        commands.push(Command::TogglePlay);
+    }
+    if icon(ui, look, "Step", "One step on (→)", &[Icon::Right(-6.0), Icon::Bar(5.0)]).clicked() {
+        commands.push(Command::Step(1));
+    }
+    let text = |s: f64| format!("{s}×");
+    let combo = ComboBox::from_id_salt("speed").selected_text(text(look.speed)).width(58.0);
+    let response = combo.show_ui(ui, |ui| {
+        for speed in [0.05, 0.1, 0.25, 0.5, 1.0, 2.0] {
+            if ui.selectable_label(speed == look.speed, text(speed)).clicked() {
+                commands.push(Command::Speed(speed));
+            }
+        }
+    });
+    name(&response.response.on_hover_text("Simulated seconds a second"), "Speed");
+}
+
+fn timeline(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Command>) {
+    let p = look.palette();
+    let (mut time, length) = (session.frame().time, session.length().max(1e-3));
+    // A narrow window keeps its room for the slider.
+    let text = match ui.available_width() > 200.0 {
+        true => format!("{time:.3} / {length:.3} s"),
+        false => format!("{time:.3} s"),
+    };
+    ui.label(RichText::new(text).font(plain(12.5)).color(colour(p.dim)));
+    ui.spacing_mut().slider_width = (ui.available_width() - 16.0).max(60.0);
+    ui.spacing_mut().interact_size.y = 15.0;
+    let slider = egui::Slider::new(&mut time, 0.0..=length).show_value(false).step_by(session.scenario().step);
+    let response = ui.add(slider).on_hover_text("Time, s");
+    name(&response, "Time");
+    if response.changed() {
+        commands.push(Command::Seek(time));
+    }
+}
+
+/// Laid out from the right.
+fn right_end(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Command>) {
+    let p = look.palette();
+    let quiet = |text: &str| RichText::new(text.to_owned()).color(colour(p.dim));
+    let help = ui.add(egui::Button::new(quiet("?")).frame(false)).on_hover_text("Keys (F1)");
+    name(&help, "Help");
+    if help.clicked() {
+        commands.push(Command::Help(!look.help));
+    }
+    let word = if look.theme == Theme::Dark { "Light" } else { "Dark" };
+    if ui.add(egui::Button::new(quiet(word)).frame(false)).on_hover_text("Light or dark (L)").clicked() {
+        commands.push(Command::Theme(other(look.theme)));
+    }
+    let record = egui::Button::new(RichText::new("     Record")).frame(false);
+    let record = ui.add(record).on_hover_text("Write this run for the Rerun viewer (R)");
+    name(&record, "Record");
+    ui.painter().circle_filled(pos2(record.rect.left() + 14.0, record.rect.center().y), 4.5, colour(p.reaction));
+    if record.clicked() {
+        commands.push(Command::Dialog(Some(Desk::suggest(session, Purpose::Record))));
+    }
+}
+
+/// The other theme.
+pub fn other(theme: Theme) -> Theme {
+    if theme == Theme::Dark { Theme::Light } else { Theme::Dark }
+}
+
+/// A part of an icon, at a place along x.
+enum Icon {
+    Bar(f32),
+    Left(f32),
+    Right(f32),
+}
+
+fn icon(ui: &mut Ui, look: &Look, label: &str, tip: &str, parts: &[Icon]) -> Response {
+    let p = look.palette();
+    let (rect, response) = ui.allocate_exact_size(vec2(28.0, 26.0), Sense::click());
+    if response.hovered() || response.has_focus() {
+        ui.painter().rect_filled(rect, 6.0, colour(p.line));
+    }
+    let c = rect.center();
+    let ink = colour(p.ink);
+    for part in parts {
+        let triangle = |tip: f32, back: f32| {
+            let points = vec![pos2(tip, c.y), pos2(back, c.y - 6.0), pos2(back, c.y + 6.0)];
+            Shape::convex_polygon(points, ink, Stroke::NONE)
+        };
+        ui.painter().add(match part {
+            Icon::Bar(x) => {
+                Shape::line_segment([pos2(c.x + x, c.y - 6.0), pos2(c.x + x, c.y + 6.0)], Stroke::new(2.5, ink))
+            }
+            Icon::Left(x) => triangle(c.x + x, c.x + x + 9.5),
+            Icon::Right(x) => triangle(c.x + x + 9.5, c.x + x),
+        });
+    }
+    name(&response, label);
+    response.on_hover_text(tip)
+}
+
+/// Tells a screen reader what a widget is.
+pub fn name(response: &Response, label: &str) {
+    let label = label.to_owned();
+    response.ctx.accesskit_node_builder(response.id, |node| node.set_label(label));
+}
+
+/// Asks for a file name.
+pub fn dialog(ctx: &egui::Context, look: &mut Look, commands: &mut Vec<Command>) {
+    let Some(mut dialog) = look.dialog.clone() else { return };
+    let (title, verb) = match dialog.purpose {
+        Purpose::Open => ("Open a session", "Open"),
+        Purpose::Save => ("Save the session", "Save"),
+        Purpose::Record => ("Record for the Rerun viewer", "Record"),
+    };
+    let mut open = true;
+    egui::Window::new(title)
+        .open(&mut open)
+        .collapsible(false)
+        .resizable(false)
+        .anchor(egui::Align2::CENTER_TOP, [0.0, 120.0])
+        .show(ctx, |ui| {
+            let hint = if dialog.purpose == Purpose::Record { "run.rrd" } else { "session.toml" };
+            let edit = egui::TextEdit::singleline(&mut dialog.path).hint_text(hint).desired_width(380.0);
+            let field = ui.add(edit);
+            name(&field, "File name");
+            if !field.has_focus() && !field.lost_focus() {
+                field.request_focus();
+            }
+            let enter = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+            ui.horizontal(|ui| {
+                let ready = !dialog.path.trim().is_empty();
+                if ui.add_enabled(ready, egui::Button::new(verb)).clicked() || (enter && ready) {
+                    let path = dialog.path.trim().into();
+                    commands.push(match dialog.purpose {
+                        Purpose::Open => Command::OpenFile(path),
+                        Purpose::Save => Command::SaveFile(path),
+                        Purpose::Record => Command::Record(path),
+                    });
+                }
+                if ui.button("Cancel").clicked() {
+                    commands.push(Command::Dialog(None));
+                }
+                if dialog.purpose == Purpose::Open {
+                    ui.label(RichText::new("or drop a file on the window").weak());
+                }
+            });
+            if let Some((text, true)) = &look.message {
+                ui.label(RichText::new(text).color(ui.visuals().error_fg_color));
+            }
+        });
+    look.dialog = open.then_some(dialog);
+}

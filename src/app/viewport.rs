@@ -1,0 +1,389 @@
+//! The viewport: the scene, its words, and what can be done to it with the pointer.
+
+use std::sync::Arc;
+
+use egui::{Align2, CentralPanel, CursorIcon, Frame, PointerButton, Pos2, Rect, Sense, Ui, Vec2, vec2};
+
+use super::theme::{colour, plain};
+use super::top::name;
+use super::{Command, Look, set_b, switch};
+use crate::mechanics::planar::{DriveAngles, Vector};
+use crate::picture::render::{Renderer, View};
+use crate::picture::scene::camera::Camera;
+use crate::picture::scene::palette::faded;
+use crate::picture::scene::pointer::Pointer;
+use crate::picture::scene::stage::{Handle, Other, ViewOptions, signed};
+use crate::picture::scene::sway::swayed;
+use crate::picture::scene::views::{Aim, ViewKind, Views};
+use crate::picture::scene::{Anchor, Label, Scene};
+use crate::session::scenario::Task;
+use crate::session::{Edit, Session};
+use crate::simulation::frame::Frame as Instant;
+use crate::study::comparison::Board;
+
+/// Draws it and reads the pointer.
+pub fn show(
+    ui: &mut Ui,
+    session: &Session,
+    views: &Views,
+    board: Option<&Board>,
+    look: &mut Look,
+    commands: &mut Vec<Command>,
+) {
+    CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+        // The bar stands above the scene, so that it covers nothing of it.
+        ui.spacing_mut().item_spacing.y = 0.0;
+        switch::bar(ui, look, commands);
+        let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        name(&response, "Scene: the machine, its reactionless workspace and its target");
+        // What the pointer meets is what is seen.
+        let shown = swayed(session.frame(), look.sway());
+        let spot = Spot { rect, camera: *look.camera() };
+        if look.stroke.is_some() && look.view.shows_machine() {
+            draw(ui, &response, &spot, views, look, commands);
+        } else {
+            point_at(ui, &response, &spot, (session, &shown), views, look, commands);
+            link_name(&response, &spot, (session, &shown), views, look);
+            move_camera(ui, &response, rect, look);
+        }
+        let options = ViewOptions {
+            theme: look.theme,
+            dexterity: look.dexterity,
+            hot: look.grabbed.map(|grip| grip.handle).or(look.hot),
+            held: look.held,
+            preview_b: look.preview,
+            stroke: look.stroke.clone().unwrap_or_default(),
+            refused: look.refused.as_ref().and_then(|r| r.curve.clone()),
+            snapshots: if look.snapshots { snapshots(session) } else { Vec::new() },
+            others: board.map_or_else(Vec::new, |board| others(board, session.frame().time, look.sway())),
+            sway: look.sway(),
+            push: force(session),
+            pin_forces: look.pins,
+        };
+        let scene = Arc::new(views.scene(look.view, session.frame(), &options, look.camera()));
+        paint(ui, rect, &scene, look.camera());
+        words(ui, &Spot { rect, camera: *look.camera() }, &scene);
+        switch::corners(ui, rect, look, views, commands);
+    });
+}
+
+/// A hand that pulls less differently is not asked again, N.
+const LEAST_PUSH: f64 = 0.02;
+
+/// How many snapshots stand along a motion, as in Fig. 5.
+const SNAPSHOTS: usize = 9;
+
+/// Poses at equal intervals of time: as planned, or as run where a hand leads.
+fn snapshots(session: &Session) -> Vec<DriveAngles> {
+    let share = |i: usize| i as f64 / (SNAPSHOTS - 1) as f64;
+    if session.is_live() {
+        let frames = session.frames();
+        let at = |i: usize| frames[(share(i) * (frames.len() - 1) as f64).round() as usize].q;
+        return (0..SNAPSHOTS).map(at).collect();
+    }
+    let run = session.run();
+    (0..SNAPSHOTS).map(|i| run.plan().motion.at(share(i) * run.planned_time()).q).collect()
+}
+
+/// The runs that are laid over, at a time, s, the motion of their bases so many times as far.
+fn others(board: &Board, time: f64, times: f64) -> Vec<Other> {
+    let other = |(i, run): (usize, &crate::study::comparison::Compared)| {
+        let frame = swayed(run.at(time)?, times);
+        Some(Other { name: (i + 1).to_string(), q: frame.q, base: frame.base })
+    };
+    board.shown().filter_map(other).collect()
+}
+
+/// What pushes at the end effector, N, as far as it is known of the instant on display.
+fn force(session: &Session) -> Option<[f64; 2]> {
+    let lasting = !session.script().iter().any(|e| e.step > 0 && e.edit.pushes());
+    Some(session.scenario().plant.force).filter(|_| lasting || session.is_at_end())
+}
+
+/// A viewport and the camera in it.
+struct Spot {
+    rect: Rect,
+    camera: Camera,
+}
+
+impl Spot {
+    fn pointer(&self, pos: Pos2) -> Pointer {
+        let at = pos - self.rect.min;
+        let pair = |v: Vec2| [f64::from(v.x), f64::from(v.y)];
+        Pointer { camera: self.camera, size: pair(self.rect.size()), at: pair(at) }
+    }
+
+    fn screen(&self, point: [f64; 3]) -> Option<Pos2> {
+        let [x, y] = self.pointer(self.rect.min).seen(point)?;
+        Some(self.rect.min + vec2(x as f32, y as f32))
+    }
+}
+
+fn point_at(
+    ui: &Ui,
+    response: &egui::Response,
+    spot: &Spot,
+    (session, frame): (&Session, &Instant),
+    views: &Views,
+    look: &mut Look,
+    commands: &mut Vec<Command>,
+) {
+    let view = look.view;
+    // A hand pushes with Alt, or while its tool is taken up.
+    let pushes = view.shows_machine() && (look.pushing || ui.input(|i| i.modifiers.alt));
+    let under = |pos: Pos2| match pushes {
+        true => views.pick_tip(frame, &spot.pointer(pos)),
+        false => views.pick(view, frame, &spot.pointer(pos)),
+    };
+    if look.grabbed.is_none() {
+        look.hot = response.hover_pos().and_then(under).map(|grip| grip.handle);
+    }
+    if response.drag_started_by(PointerButton::Primary) {
+        // A drag begins where the button went down, not where it was noticed.
+        look.grabbed = ui.input(|i| i.pointer.press_origin()).and_then(under);
+        look.force = Some(session.scenario().plant.force);
+    }
+    let ask = |grip, pos: Pos2, look: &mut Look| {
+        let edit = match views.aim(view, &grip, frame, &spot.pointer(pos), session.b_aim())? {
+            Aim::Target([x, y]) => {
+                look.held = Some([x, y]);
+                Edit::DragTarget { x, y }
+            }
+            Aim::B(b) => set_b(session, look, b),
+            Aim::Push([x, y]) => {
+                let [now_x, now_y] = session.scenario().plant.force;
+                if (x - now_x).hypot(y - now_y) < LEAST_PUSH {
+                    return None;
+                }
+                Edit::Push { x, y }
+            }
+            Aim::Waypoint(i, [x, y]) => {
+                look.held = Some([x, y]);
+                Edit::SetTask { change: session.scenario().task.moving(i, Vector::new(x, y))? }
+            }
+        };
+        Some(Command::Edit(edit))
+    };
+    if let Some(grip) = look.grabbed {
+        ui.ctx().set_cursor_icon(cursor(grip.handle, true));
+        // The last movement may come together with the release.
+        let pushes = grip.handle == Handle::Tip;
+        // A hand that pushes a machine in motion pulls on while it holds still.
+        let pulls = pushes && session.is_moving();
+        let moved = response.drag_delta() != Vec2::ZERO || (look.dragged && response.drag_stopped()) || pulls;
+        if let Some(pos) = response.interact_pointer_pos().filter(|_| moved) {
+            commands.extend(ask(grip, pos, look));
+            if pushes && !session.is_playing() {
+                commands.push(Command::TogglePlay);
+            }
+        }
+        let let_go = ui.input(|i| i.key_pressed(egui::Key::Escape));
+        if response.drag_stopped() || let_go {
+            look.grabbed = None;
+            if pushes && look.dragged {
+                // Back to the force that was there before the hand.
+                let [x, y] = look.force.take().unwrap_or_default();
+                commands.push(Command::Edit(Edit::Push { x, y }));
+            }
+            commands.push(Command::EndGesture);
+            if let_go && look.dragged {
+                commands.push(Command::Undo);
+            }
+            look.dragged = false;
+        }
+    } else if let Some(hot) = look.hot {
+        ui.ctx().set_cursor_icon(cursor(hot, false));
+    }
+    // A bar needs no dragging: a click chooses.
+    if let Some(pos) = response.interact_pointer_pos().filter(|_| response.clicked_by(PointerButton::Primary))
+        && let Some(grip) = under(pos).filter(|grip| grip.handle == Handle::Bar)
+        && let Some(edit) = ask(grip, pos, look)
+    {
+        commands.extend([edit, Command::EndGesture]);
+    }
+    let task = &session.scenario().task;
+    // Twice in the open: one more point of the path.
+    let twice = response.double_clicked_by(PointerButton::Primary) && look.hot.is_none() && view.shows_machine();
+    if let Some(pos) = response.interact_pointer_pos().filter(|_| twice)
+        && let Some([x, y]) = spot.pointer(pos).ray().and_then(|ray| ray.at_height(views.stage().handle_height()))
+        && let Some(change) = task.adding(Vector::new(x, y))
+    {
+        commands.extend([Command::Edit(Edit::SetTask { change }), Command::EndGesture]);
+    }
+    let typing = ui.ctx().egui_wants_keyboard_input();
+    let out = !typing && ui.input(|i| i.key_pressed(egui::Key::Delete) || i.key_pressed(egui::Key::Backspace));
+    if let (Some(Handle::Waypoint(i)), None, true) = (look.hot, look.grabbed, out)
+        && let Some(change) = task.removing(i)
+    {
+        commands.extend([Command::Edit(Edit::SetTask { change }), Command::EndGesture]);
+        look.hot = None;
+    }
+    if look.grabbed.is_none() {
+        look.held = None;
+    }
+}
+
+/// Says which link is under the pointer, where nothing can be taken hold of.
+fn link_name(
+    response: &egui::Response,
+    spot: &Spot,
+    (session, frame): (&Session, &Instant),
+    views: &Views,
+    look: &Look,
+) {
+    let free = look.view.shows_machine() && look.hot.is_none() && look.grabbed.is_none();
+    let Some(pos) = response.hover_pos().filter(|_| free && !response.dragged()) else { return };
+    let machine = &session.scenario().machine;
+    let Some(i) = views.link_at(frame, &spot.pointer(pos)) else { return };
+    let (link, part) = (&machine.links()[i], &machine.parts()[i]);
+    let drive = part.drive + 1;
+    let words = format!("link {}, drive {drive}\n{} m, {} kg", link.name, signed(part.length, 3), signed(link.mass, 2));
+    response.clone().on_hover_text_at_pointer(words);
+}
+
+/// A path drawn by hand: from where the button goes down to where it comes up.
+fn draw(ui: &Ui, response: &egui::Response, spot: &Spot, views: &Views, look: &mut Look, commands: &mut Vec<Command>) {
+    ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
+    let Some(stroke) = &mut look.stroke else { return };
+    let place = |pos| spot.pointer(pos).ray()?.at_height(views.stage().handle_height());
+    if response.drag_started_by(PointerButton::Primary) {
+        stroke.clear();
+        stroke.extend(ui.input(|i| i.pointer.press_origin()).and_then(place));
+    }
+    if response.dragged_by(PointerButton::Primary) || response.drag_stopped() {
+        let at = response.interact_pointer_pos().and_then(place);
+        stroke.extend(at.filter(|at| stroke.last() != Some(at)));
+    }
+    if response.drag_stopped() {
+        let points: Vec<Vector> = stroke.iter().map(|[x, y]| Vector::new(*x, *y)).collect();
+        commands.push(Command::Draw(false));
+        if let Some(change) = Task::drawing(&points) {
+            commands.extend([Command::Edit(Edit::SetTask { change }), Command::EndGesture]);
+        }
+    }
+}
+
+fn cursor(handle: Handle, held: bool) -> CursorIcon {
+    match (handle, held) {
+        (Handle::Bar, _) => CursorIcon::PointingHand,
+        (Handle::Plane, _) => CursorIcon::ResizeVertical,
+        (Handle::Target | Handle::Tip | Handle::Ring | Handle::Waypoint(_), true) => CursorIcon::Grabbing,
+        (Handle::Target | Handle::Tip | Handle::Ring | Handle::Waypoint(_), false) => CursorIcon::Grab,
+    }
+}
+
+fn move_camera(ui: &Ui, response: &egui::Response, rect: Rect, look: &mut Look) {
+    let height = f64::from(rect.height().max(1.0));
+    let delta = response.drag_delta();
+    if look.grabbed.is_none() && delta != Vec2::ZERO {
+        let (x, y) = (f64::from(delta.x) / height, f64::from(delta.y) / height);
+        let aspect = f64::from(rect.width()) / height;
+        let pans = look.view == ViewKind::Flat
+            || !response.dragged_by(PointerButton::Primary)
+            || ui.input(|i| i.modifiers.shift);
+        let camera = look.camera_mut();
+        if pans {
+            camera.pan(x, y, aspect);
+        } else {
+            camera.turn(-4.0 * x, 4.0 * y);
+        }
+    }
+    if let Some(pos) = response.hover_pos() {
+        let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta.y, i.zoom_delta()));
+        let factor = f64::from(pinch) * (f64::from(scroll) * 0.004).exp();
+        if (factor - 1.0).abs() > 1e-6 {
+            let place = (pos - rect.min) / rect.size();
+            let aspect = f64::from(rect.width() / rect.height().max(1.0));
+            look.camera_mut().zoom(factor, [f64::from(place.x), f64::from(place.y)], aspect);
+        }
+    }
+}
+
+/// The scene as a callback that egui's renderer runs.
+struct Paint {
+    scene: Arc<Scene>,
+    view: View,
+}
+
+impl egui_wgpu::CallbackTrait for Paint {
+    fn prepare(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        _screen: &egui_wgpu::ScreenDescriptor,
+        encoder: &mut wgpu::CommandEncoder,
+        resources: &mut egui_wgpu::CallbackResources,
+    ) -> Vec<wgpu::CommandBuffer> {
+        if let Some(renderer) = resources.get_mut::<Renderer>() {
+            renderer.prepare(device, queue, encoder, &self.scene, &self.view);
+        }
+        Vec::new()
+    }
+
+    fn paint(
+        &self,
+        _info: egui::PaintCallbackInfo,
+        pass: &mut wgpu::RenderPass<'static>,
+        resources: &egui_wgpu::CallbackResources,
+    ) {
+        if let Some(renderer) = resources.get::<Renderer>() {
+            renderer.paint(pass);
+        }
+    }
+}
+
+/// Draws a scene into a rectangle; the [`Renderer`] must be among egui's callback resources.
+pub fn paint(ui: &Ui, rect: Rect, scene: &Arc<Scene>, camera: &Camera) {
+    let pixels = ui.ctx().pixels_per_point();
+    let aspect = f64::from(rect.width() / rect.height().max(1.0));
+    let view = View {
+        clip_from_world: camera.clip_from_world(aspect),
+        eye_direction: camera.eye_direction(),
+        size_px: [(rect.width() * pixels).round() as u32, (rect.height() * pixels).round() as u32],
+        pixels_per_point: pixels,
+    };
+    let paint = Paint { scene: scene.clone(), view };
+    ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, paint));
+}
+
+/// A scene with its words, filling everything, that nobody can touch.
+pub fn still(ui: &mut Ui, scene: &Arc<Scene>, camera: &Camera) {
+    CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+        let rect = ui.max_rect();
+        paint(ui, rect, scene, camera);
+        words(ui, &Spot { rect, camera: *camera }, scene);
+    });
+}
+
+/// The scene's labels.
+fn words(ui: &Ui, spot: &Spot, scene: &Scene) {
+    let painter = ui.painter().with_clip_rect(spot.rect);
+    let galley = |l: &Label| painter.layout_no_wrap(l.text.clone(), plain(l.size), colour(l.colour));
+    for label in &scene.labels {
+        let Some(at) = spot.screen(label.at.map(f64::from)) else { continue };
+        // Words about one point stay together.
+        let together = scene.labels.iter().filter(|l| l.at == label.at);
+        let widest = together.map(|l| galley(l).size().x).fold(0.0, f32::max);
+        let galley = galley(label);
+        let [x, y] = label.offset;
+        let over = at.x + x + widest - (spot.rect.right() - 10.0);
+        let (align, shift) = match label.anchor {
+            // Words that would be cut off move back into view, below what they would cover.
+            Anchor::Left if over > 0.0 && spot.rect.contains(at) => {
+                (Align2::LEFT_CENTER, vec2(x - over, if over > x { y + 30.0 } else { y }))
+            }
+            Anchor::Left => (Align2::LEFT_CENTER, vec2(x, y)),
+            Anchor::Centre => (Align2::CENTER_CENTER, vec2(x, y)),
+            Anchor::Right => (Align2::RIGHT_CENTER, vec2(x, y)),
+        };
+        let mut place = align.anchor_size(at + shift, galley.size());
+        if label.anchor == Anchor::Centre && spot.rect.contains(at) {
+            let room = spot.rect.shrink(8.0);
+            let over = (place.right() - room.right()).max(0.0) - (room.left() - place.left()).max(0.0);
+            place = place.translate(vec2(-over, 0.0));
+        }
+        // A faint plate keeps words legible over bars and curves.
+        painter.rect_filled(place.expand2(vec2(3.0, 0.0)), 3.0, colour(faded(scene.background, 0.55)));
+        painter.galley(place.min, galley, colour(label.colour));
+    }
+}

@@ -1,0 +1,177 @@
+//! A real window around a [`Desk`], in a winit event loop of our own.
+
+use std::cell::Cell;
+use std::path::PathBuf;
+use std::rc::Rc;
+use std::time::Instant;
+
+use thiserror::Error;
+use winit::event_loop::{ControlFlow, EventLoop};
+
+use crate::app::{Command, Desk};
+use crate::picture::render::Renderer;
+use crate::picture::render::offscreen::{Gpu, NoAdapter};
+use crate::picture::scene::palette::Theme;
+use crate::session::Refusal;
+use crate::session::scenario::Scenario;
+
+/// Why there is no window.
+#[derive(Debug, Error)]
+pub enum WindowError {
+    /// No display server answers.
+    #[error("no display: {0}")]
+    NoDisplay(String),
+    /// A library that the window system needs.
+    #[error("the window needs {library}: install it with `{install}`")]
+    MissingLibrary {
+        /// File name of the library.
+        library: &'static str,
+        /// What installs it on Debian.
+        install: &'static str,
+    },
+    /// The scenario cannot start.
+    #[error(transparent)]
+    Refused(#[from] Refusal),
+    /// Nothing can draw on the display.
+    #[error("the window cannot be drawn: {0}")]
+    NoAdapter(String),
+    /// The window system failed.
+    #[error("the window could not be opened: {0}")]
+    Failed(String),
+}
+
+/// Opens a window on a scenario and returns when it is closed.
+///
+/// # Errors
+/// If there is no display, library or adapter, or the scenario cannot start.
+pub fn run(scenario: Scenario, theme: Theme) -> Result<(), WindowError> {
+    check_libraries()?;
+    let mut desk = Desk::open_or_explain(scenario, theme)?;
+    if desk.look().message.is_none() && desk.session().run().waiting().is_none() {
+        desk.carry_out(Command::TogglePlay);
+    }
+    let event_loop = EventLoop::<eframe::UserEvent>::with_user_event()
+        .build()
+        .map_err(|e| WindowError::NoDisplay(last_clause(&e.to_string())))?;
+    event_loop.set_control_flow(ControlFlow::Wait);
+    let options = eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("Stillbase")
+            .with_app_id("stillbase")
+            .with_inner_size([1440.0, 900.0])
+            .with_min_inner_size([960.0, 600.0]),
+        renderer: eframe::Renderer::Wgpu,
+        ..Default::default()
+    };
+    let opened = Rc::new(Cell::new(false));
+    let seen = opened.clone();
+    let create: eframe::AppCreator<'_> = Box::new(move |cc| {
+        let app = App::new(cc, desk, Clock::Wall(None)).ok_or("no graphics adapter")?;
+        seen.set(true);
+        Ok(Box::new(app))
+    });
+    let mut app = eframe::create_native("stillbase", options, create, &event_loop);
+    event_loop.run_app(&mut app).map_err(|e| WindowError::Failed(e.to_string()))?;
+    // Where eframe cannot draw, it ends its loop as if the window had been closed, and keeps the reason to itself.
+    if opened.get() { Ok(()) } else { Err(WindowError::NoAdapter(what_is_missing())) }
+}
+
+/// Why nothing could be drawn on a display that is there.
+fn what_is_missing() -> String {
+    // SAFETY: the loader of the graphics drivers, which has been tried a moment ago in the same way; its initialisers do
+    // nothing but set up its own state.
+    if cfg!(target_os = "linux") && unsafe { libloading::Library::new("libvulkan.so.1") }.is_err() {
+        return "libvulkan.so.1 is missing: install it with `apt-get install libvulkan1`".into();
+    }
+    match Gpu::new() {
+        // What was tried in vain helps nobody.
+        Err(NoAdapter::Missing(_)) => "no graphics driver answers; on Debian and its kin one in software comes with \
+                                       `apt-get install mesa-vulkan-drivers`"
+            .into(),
+        Err(other) => other.to_string(),
+        Ok(gpu) => format!("the GPU adapter {} cannot draw on this display", gpu.name()),
+    }
+}
+
+/// winit puts the place in its own source before what is wrong.
+fn last_clause(text: &str) -> String {
+    text.rsplit(": ").next().unwrap_or(text).to_owned()
+}
+
+/// On X11 a missing library would end the program deep inside; name it before.
+fn check_libraries() -> Result<(), WindowError> {
+    let x11 = cfg!(target_os = "linux")
+        && std::env::var_os("WAYLAND_DISPLAY").is_none()
+        && std::env::var_os("DISPLAY").is_some();
+    if !x11 {
+        return Ok(());
+    }
+    for (library, install) in [
+        ("libxkbcommon-x11.so.0", "apt-get install libxkbcommon-x11-0"),
+        ("libXcursor.so.1", "apt-get install libxcursor1"),
+        ("libXi.so.6", "apt-get install libxi6"),
+    ] {
+        // SAFETY: these are system libraries that the window system loads a moment later in the same way; their
+        // initialisers do nothing but set up their own state.
+        if unsafe { libloading::Library::new(library) }.is_err() {
+            return Err(WindowError::MissingLibrary { library, install });
+        }
+    }
+    Ok(())
+}
+
+/// The desk as eframe wants it; tests drive it without a window.
+pub struct App {
+    desk: Desk,
+    clock: Clock,
+}
+
+/// Where wall time comes from.
+#[derive(Clone, Copy, Debug)]
+pub enum Clock {
+    /// The machine's clock, and what it last said.
+    Wall(Option<Instant>),
+    /// The same time for each repaint, s: for tests.
+    Fixed(f64),
+}
+
+impl App {
+    /// Around a desk; `None` if eframe has no graphics adapter, or one whose shaders read no lists.
+    pub fn new(cc: &eframe::CreationContext<'_>, desk: Desk, clock: Clock) -> Option<Self> {
+        let state = cc.wgpu_render_state.as_ref()?;
+        if state.device.limits().max_storage_buffers_per_shader_stage == 0 {
+            return None;
+        }
+        let renderer = Renderer::new(&state.device, state.target_format);
+        state.renderer.write().callback_resources.insert(renderer);
+        Some(Self { desk, clock })
+    }
+
+    /// What it shows.
+    pub fn desk(&self) -> &Desk {
+        &self.desk
+    }
+
+    /// The same, to be told what to do.
+    pub fn desk_mut(&mut self) -> &mut Desk {
+        &mut self.desk
+    }
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        let wall = match &mut self.clock {
+            Clock::Fixed(wall) => *wall,
+            Clock::Wall(last) => {
+                let now = Instant::now();
+                last.replace(now).map_or(0.0, |last| (now - last).as_secs_f64())
+            }
+        };
+        self.desk.pass(wall);
+        let dropped: Option<PathBuf> = ui.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_path_buf()));
+        if let Some(path) = dropped {
+            self.desk.carry_out(Command::OpenFile(path));
+        }
+        self.desk.ui(ui);
+    }
+}

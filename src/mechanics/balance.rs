@@ -1,0 +1,160 @@
+//! Balance as a linear problem: where the links' centres of mass must lie, (7)–(10).
+//!
+//! Force balance g_k = 0 and invariance C_kl = 0 (k ≠ l) are linear in the l_cj, so for any machine they are
+//! A l_c = k with n + n(n−1)/2 rows. [`design`] finds the solution that minimises Σ (p_j l_cj)².
+//!
+//! # Symbols
+//! | letter | meaning | shape, unit |
+//! |---|---|---|
+//! | l_c | CM of each link along itself | links, m |
+//! | A, k | A l_c = k; rows g_1..g_n, then C_kl by pairs | (n + n(n−1)/2) × links |
+//! | p | penalty on each l_cj | links |
+//!
+//! # Source
+//! (9), (10). The weight that gives Table I is not the printed W but W^(−1/2): see [`Preset`].
+
+use nalgebra::{DMatrix, DVector};
+use thiserror::Error;
+
+use crate::mechanics::machine::{Inertia, Machine, MachineError};
+
+/// Penalties by name, for machines of nine links.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Preset {
+    /// W^(−1/2): reproduces Table I to its last digit.
+    Table1,
+    /// W as printed beside (10): off from Table I by up to 0.17 m.
+    AsPrinted,
+    /// Every penalty 1.
+    MinimumNorm,
+}
+
+/// The weights printed beside (10).
+const W: [f64; 9] = [1.0, 0.2, 1.0, 1.2, 1.0, 1.0, 1.0, 1.2, 1.0];
+
+impl Preset {
+    /// Every preset, with its name on the command line.
+    pub const ALL: [(Self, &str); 3] =
+        [(Self::Table1, "table-1"), (Self::AsPrinted, "as-printed"), (Self::MinimumNorm, "minimum-norm")];
+
+    /// The penalty on each of `links` links.
+    ///
+    /// # Errors
+    /// If the preset is about nine links and there are not nine.
+    pub fn penalty(self, links: usize) -> Result<Vec<f64>, DesignError> {
+        match self {
+            Self::MinimumNorm => Ok(vec![1.0; links]),
+            _ if links != W.len() => Err(DesignError::Penalties { count: W.len(), links }),
+            Self::AsPrinted => Ok(W.to_vec()),
+            Self::Table1 => Ok(W.map(|w| 1.0 / w.sqrt()).to_vec()),
+        }
+    }
+}
+
+/// Why there is no balanced design.
+#[derive(Debug, Error)]
+pub enum DesignError {
+    /// The number of penalties is not the number of links.
+    #[error("{count} penalties for {links} links: want one a link")]
+    Penalties {
+        /// How many.
+        count: usize,
+        /// Links of the machine.
+        links: usize,
+    },
+    /// A penalty that is not positive.
+    #[error("penalty {value} of link {link}: want a number above 0")]
+    Penalty {
+        /// What was given.
+        value: f64,
+        /// The link.
+        link: String,
+    },
+    /// The conditions contradict each other, or no l_c appears in one that is not met.
+    #[error(
+        "no centres of mass along the links balance this machine: {left} remain at best in {condition}; \
+             counterweights need a link that follows that drive and hangs on the base"
+    )]
+    Inconsistent {
+        /// The condition that stays furthest from zero.
+        condition: String,
+        /// What remains, with unit.
+        left: String,
+    },
+    /// The result is not a machine.
+    #[error(transparent)]
+    Machine(#[from] MachineError),
+}
+
+/// A and k of (9).
+pub fn conditions(machine: &Machine) -> (DMatrix<f64>, DVector<f64>) {
+    let (n, links) = (machine.drives(), machine.links());
+    let pairs: Vec<_> = Inertia::pairs(n).collect();
+    let mut a = DMatrix::zeros(n + pairs.len(), links.len());
+    for (j, (link, part)) in links.iter().zip(machine.parts()).enumerate() {
+        let moment = link.mass * part.sign;
+        a[(part.drive, j)] = moment;
+        for (row, &(k, l)) in pairs.iter().enumerate() {
+            a[(n + row, j)] = match part.drive {
+                d if d == k => moment * part.root[l],
+                d if d == l => moment * part.root[k],
+                _ => 0.0,
+            };
+        }
+    }
+    // What the present l_c leave is A l_c − k.
+    let inertia = Inertia::of(machine);
+    let left = (0..n).map(|k| inertia.first_moment(k)).chain(pairs.iter().map(|&(k, l)| inertia.coupling(k, l)));
+    let com = DVector::from_iterator(links.len(), links.iter().map(|l| l.com));
+    let k = &a * com - DVector::from_iterator(a.nrows(), left.map(|z| z.re));
+    (a, k)
+}
+
+/// The balanced, invariant machine with the least Σ (p_j l_cj)², (10).
+///
+/// # Errors
+/// If the penalties do not fit, or no l_c fulfils (7) and (8) together.
+pub fn design(machine: &Machine, penalty: &[f64]) -> Result<Machine, DesignError> {
+    let links = machine.links();
+    if penalty.len() != links.len() {
+        return Err(DesignError::Penalties { count: penalty.len(), links: links.len() });
+    }
+    if let Some(j) = penalty.iter().position(|p| !(p.is_finite() && *p > 0.0)) {
+        return Err(DesignError::Penalty { value: penalty[j], link: links[j].name.clone() });
+    }
+    let (a, k) = conditions(machine);
+    let weighted = DMatrix::from_fn(a.nrows(), a.ncols(), |r, c| a[(r, c)] / penalty[c]);
+    let svd = weighted.clone().svd(true, true);
+    let cut = svd.singular_values.max() * 1e-12;
+    let solve = |rhs: &DVector<f64>| svd.solve(rhs, cut).unwrap_or_else(|_| DVector::zeros(penalty.len()));
+    let mut x = solve(&k);
+    // One step of refinement brings the residual to rounding.
+    x += solve(&(&k - &weighted * &x));
+    let mut spec = machine.spec().clone();
+    for (j, link) in spec.links.iter_mut().enumerate() {
+        link.com = x[j] / penalty[j];
+    }
+    let designed = Machine::new(spec)?;
+    let inertia = Inertia::of(&designed);
+    if inertia.is_force_balanced() && inertia.is_invariant() {
+        return Ok(designed);
+    }
+    Err(inconsistent(machine.drives(), &inertia))
+}
+
+fn inconsistent(n: usize, inertia: &Inertia) -> DesignError {
+    let force = (0..n).max_by(|a, b| inertia.first_moment(*a).norm().total_cmp(&inertia.first_moment(*b).norm()));
+    if let (false, Some(k)) = (inertia.is_force_balanced(), force) {
+        return DesignError::Inconsistent {
+            condition: format!("the force balance of drive {}, (7)", k + 1),
+            left: format!("{:.3e} kg m", inertia.first_moment(k).norm()),
+        };
+    }
+    let worst = Inertia::pairs(n)
+        .max_by(|a, b| inertia.coupling(a.0, a.1).norm().total_cmp(&inertia.coupling(b.0, b.1).norm()))
+        .unwrap_or((0, 0));
+    DesignError::Inconsistent {
+        condition: format!("the coupling of drives {} and {}, (8)", worst.0 + 1, worst.1 + 1),
+        left: format!("{:.3e} kg m²", inertia.coupling(worst.0, worst.1).norm()),
+    }
+}

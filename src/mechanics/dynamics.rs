@@ -1,0 +1,375 @@
+//! Torques, base wrench, momenta, energy: (1), (4), (5), (6) in closed form.
+//!
+//! # Symbols
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | Z_kl | C_kl e^{i (q_l − q_k)} | kg m² |
+//! | H_kl | mass matrix, Re Z_kl + δ_kl J_k | kg m² |
+//! | V_k | velocity terms, −Σ_l Im Z_kl q̇_l² | N m |
+//! | τ | H q̈ + V − γᵀ g − Jᵀ F | N m |
+//! | f_B, n_B | what the manipulator transmits to its base: dynamic −Σ g_k (i q̈_k − q̇_k²) e_k and −d/dt(D q̇); static M g and r_CM × M g | N, N m |
+//!
+//! # Source
+//! (4) with the sign of gravity put right: with g the acceleration of (1), the torque is H q̈ + V − γᵀ g.
+
+use crate::mechanics::machine::Inertia;
+use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Units, Vector, Wrench, cross, dot};
+
+/// Calls a function with the number of drives as a constant, so that its loops unroll.
+macro_rules! by_drives {
+    ($n:expr, $f:ident($($arg:expr),*)) => {
+        match $n {
+            1 => $f::<1>($($arg),*),
+            2 => $f::<2>($($arg),*),
+            3 => $f::<3>($($arg),*),
+            4 => $f::<4>($($arg),*),
+            5 => $f::<5>($($arg),*),
+            6 => $f::<6>($($arg),*),
+            7 => $f::<7>($($arg),*),
+            _ => $f::<8>($($arg),*),
+        }
+    };
+}
+pub(crate) use by_drives;
+
+/// A force held at the end effector and the field it all moves in.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Surroundings {
+    /// Acceleration of gravity g, m/s².
+    pub gravity: Vector,
+    /// Force F acting on the end effector, N.
+    pub force: Vector,
+}
+
+/// Mass matrix and velocity terms at a pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MassMatrix {
+    n: usize,
+    h: [[f64; MAX_DRIVES]; MAX_DRIVES],
+}
+
+impl MassMatrix {
+    /// H_kl, kg m².
+    pub fn get(&self, k: usize, l: usize) -> f64 {
+        self.h[k][l]
+    }
+
+    /// D_k = Σ_l H_lk, kg m², (A3).
+    pub fn momentum_row(&self, k: usize) -> f64 {
+        (0..self.n).map(|l| self.h[l][k]).sum()
+    }
+
+    /// H x.
+    #[inline]
+    pub fn times(&self, x: &PerDrive) -> PerDrive {
+        by_drives!(self.n, times_padded(self, x))
+    }
+
+    /// H⁻¹ x by the factors L D Lᵀ; H is positive definite for every machine whose links have mass.
+    #[inline]
+    pub fn solve(&self, x: &PerDrive) -> PerDrive {
+        by_drives!(self.n, solve_padded(self, x))
+    }
+
+    fn trimmed<const N: usize>(&self) -> Square<N> {
+        std::array::from_fn(|k| *first(&self.h[k]))
+    }
+}
+
+// What follows works on arrays of the machine's own size: padding to MAX_DRIVES at every step would cost more than
+// the arithmetic.
+type Square<const N: usize> = [[f64; N]; N];
+
+/// The first N of a padded array.
+#[inline]
+pub(crate) fn first<const N: usize, T>(padded: &[T; MAX_DRIVES]) -> &[T; N] {
+    const { assert!(N <= MAX_DRIVES) }
+    &padded.as_chunks().0[0]
+}
+
+fn times_padded<const N: usize>(h: &MassMatrix, x: &PerDrive) -> PerDrive {
+    times(&h.trimmed::<N>(), first(x.padded())).into()
+}
+
+fn solve_padded<const N: usize>(h: &MassMatrix, x: &PerDrive) -> PerDrive {
+    solve(&h.trimmed::<N>(), *first(x.padded())).into()
+}
+
+#[inline(always)]
+fn times<const N: usize>(h: &Square<N>, x: &[f64; N]) -> [f64; N] {
+    std::array::from_fn(|k| (0..N).map(|l| h[k][l] * x[l]).sum())
+}
+
+/// H = L D Lᵀ, which needs no root.
+pub(crate) struct Factors<const N: usize> {
+    /// L below its diagonal.
+    l: Square<N>,
+    /// 1/D.
+    inverse: [f64; N],
+}
+
+impl<const N: usize> Factors<N> {
+    #[inline(always)]
+    pub(crate) fn of(h: &Square<N>) -> Self {
+        let (mut l, mut ld, mut inverse) = ([[0.0; N]; N], [[0.0; N]; N], [0.0; N]);
+        for i in 0..N {
+            for j in 0..i {
+                ld[i][j] = h[i][j] - (0..j).map(|m| ld[i][m] * l[j][m]).sum::<f64>();
+                l[i][j] = ld[i][j] * inverse[j];
+            }
+            inverse[i] = 1.0 / (h[i][i] - (0..i).map(|m| ld[i][m] * l[i][m]).sum::<f64>());
+        }
+        Self { l, inverse }
+    }
+
+    /// H⁻¹ x.
+    #[inline(always)]
+    pub(crate) fn solve(&self, mut x: [f64; N]) -> [f64; N] {
+        for i in 0..N {
+            x[i] -= (0..i).map(|m| self.l[i][m] * x[m]).sum::<f64>();
+        }
+        for i in (0..N).rev() {
+            x[i] = x[i] * self.inverse[i] - (i + 1..N).map(|m| self.l[m][i] * x[m]).sum::<f64>();
+        }
+        x
+    }
+}
+
+#[inline]
+fn solve<const N: usize>(h: &Square<N>, x: [f64; N]) -> [f64; N] {
+    Factors::of(h).solve(x)
+}
+
+/// H and V, (4).
+#[inline]
+pub fn mass_matrix(inertia: &Inertia, e: &Units, qd: &PerDrive) -> (MassMatrix, PerDrive) {
+    by_drives!(inertia.drives, mass_matrix_of(inertia, e, qd))
+}
+
+fn mass_matrix_of<const N: usize>(inertia: &Inertia, e: &Units, qd: &PerDrive) -> (MassMatrix, PerDrive) {
+    let (small, v) = assemble::<N>(inertia, first(e), first(qd.padded()));
+    let mut h = [[0.0; MAX_DRIVES]; MAX_DRIVES];
+    h.iter_mut().zip(small).for_each(|(to, from)| to[..N].copy_from_slice(&from));
+    (MassMatrix { n: N, h }, v.into())
+}
+
+#[inline(always)]
+fn assemble<const N: usize>(inertia: &Inertia, e: &[Vector; N], qd: &[f64; N]) -> (Square<N>, [f64; N]) {
+    let mut h = [[0.0; N]; N];
+    let mut v = [0.0; N];
+    for k in 0..N {
+        h[k][k] = inertia.c[k][k].re + inertia.spin[k];
+        for l in k + 1..N {
+            let z = inertia.c[k][l] * (e[k].conj() * e[l]);
+            h[k][l] = z.re;
+            h[l][k] = z.re;
+            v[k] -= z.im * (qd[l] * qd[l]);
+            v[l] += z.im * (qd[k] * qd[k]);
+        }
+    }
+    (h, v)
+}
+
+/// −γᵀ g − Jᵀ F, the part of the torque that holds still, N m.
+#[inline]
+pub fn holding_torque(inertia: &Inertia, e: &Units, around: &Surroundings) -> PerDrive {
+    by_drives!(inertia.drives, holding_torque_of(inertia, e, around))
+}
+
+#[inline]
+fn holding_torque_of<const N: usize>(inertia: &Inertia, e: &Units, around: &Surroundings) -> PerDrive {
+    hold::<N>(inertia, first(e), around).into()
+}
+
+#[inline(always)]
+fn hold<const N: usize>(inertia: &Inertia, e: &[Vector; N], around: &Surroundings) -> [f64; N] {
+    // (i e) · a = e × a for a unit vector e turned by a right angle
+    std::array::from_fn(|k| -cross(inertia.g[k] * e[k], around.gravity) - inertia.tip[k] * cross(e[k], around.force))
+}
+
+/// Motor torques for given accelerations, (4), N m.
+#[inline]
+pub fn inverse(inertia: &Inertia, e: &Units, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> PerDrive {
+    by_drives!(inertia.drives, inverse_of(inertia, e, qd, qdd, around))
+}
+
+#[inline]
+fn inverse_of<const N: usize>(
+    inertia: &Inertia,
+    e: &Units,
+    qd: &PerDrive,
+    qdd: &PerDrive,
+    around: &Surroundings,
+) -> PerDrive {
+    let (e, qd, qdd) = (first::<N, _>(e), first(qd.padded()), first(qdd.padded()));
+    let (h, v) = assemble(inertia, e, qd);
+    let (inertial, holding) = (times(&h, qdd), hold(inertia, e, around));
+    PerDrive::from(std::array::from_fn::<_, N, _>(|k| inertial[k] + v[k] + holding[k]))
+}
+
+/// Accelerations for given motor torques, rad/s².
+#[inline]
+pub fn forward(inertia: &Inertia, e: &Units, qd: &PerDrive, torque: &PerDrive, around: &Surroundings) -> PerDrive {
+    by_drives!(inertia.drives, forward_of(inertia, e, qd, torque, around))
+}
+
+#[inline]
+fn forward_of<const N: usize>(
+    inertia: &Inertia,
+    e: &Units,
+    qd: &PerDrive,
+    torque: &PerDrive,
+    around: &Surroundings,
+) -> PerDrive {
+    let (e, qd, torque) = (first::<N, _>(e), first(qd.padded()), first::<N, _>(torque.padded()));
+    let (h, v) = assemble(inertia, e, qd);
+    let holding = hold(inertia, e, around);
+    solve(&h, std::array::from_fn(|k| torque[k] - v[k] - holding[k])).into()
+}
+
+/// What the manipulator transmits to its base, in its two parts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BaseWrench {
+    /// From weight and from a force held at the end effector: M g + F and its moment about B.
+    pub statical: Wrench,
+    /// From motion: −d/dt of the linear and of the angular momentum.
+    pub dynamic: Wrench,
+}
+
+impl BaseWrench {
+    /// The sum of both parts.
+    pub fn total(&self) -> Wrench {
+        Wrench { force: self.statical.force + self.dynamic.force, moment: self.statical.moment + self.dynamic.moment }
+    }
+}
+
+/// f_B and n_B, (1) and (5).
+#[inline]
+pub fn base_wrench(inertia: &Inertia, e: &Units, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> BaseWrench {
+    inverse_with_wrench(inertia, e, qd, qdd, around).1
+}
+
+#[inline(always)]
+pub(crate) fn wrench_with<const N: usize>(
+    inertia: &Inertia,
+    e: &[Vector; N],
+    qd: &[f64; N],
+    qdd: &[f64; N],
+    around: &Surroundings,
+    momentum_rate: f64,
+) -> BaseWrench {
+    let (mut pull, mut tip, mut first) = (Vector::default(), Vector::default(), Vector::default());
+    for k in 0..N {
+        let ge = inertia.g[k] * e[k];
+        first += ge;
+        pull -= ge * Vector::new(-qd[k] * qd[k], qdd[k]);
+        tip += e[k] * inertia.tip[k];
+    }
+    BaseWrench {
+        statical: Wrench {
+            force: inertia.mass * around.gravity + around.force,
+            moment: cross(first, around.gravity) + cross(tip, around.force),
+        },
+        dynamic: Wrench { force: pull, moment: -momentum_rate },
+    }
+}
+
+/// Torques and base wrench of a motion, in one evaluation.
+#[inline]
+pub fn inverse_with_wrench(
+    inertia: &Inertia,
+    e: &Units,
+    qd: &PerDrive,
+    qdd: &PerDrive,
+    around: &Surroundings,
+) -> (PerDrive, BaseWrench) {
+    by_drives!(inertia.drives, inverse_with_wrench_of(inertia, e, qd, qdd, around))
+}
+
+#[inline(always)]
+fn inverse_with_wrench_of<const N: usize>(
+    inertia: &Inertia,
+    e: &Units,
+    qd: &PerDrive,
+    qdd: &PerDrive,
+    around: &Surroundings,
+) -> (PerDrive, BaseWrench) {
+    let (e, qd, qdd) = (first::<N, _>(e), first(qd.padded()), first(qdd.padded()));
+    let (h, v) = assemble(inertia, e, qd);
+    let (inertial, holding) = (times(&h, qdd), hold(inertia, e, around));
+    let rate = (0..N).map(|k| inertial[k] + v[k]).sum();
+    let wrench = wrench_with(inertia, e, qd, qdd, around, rate);
+    (PerDrive::from(std::array::from_fn::<_, N, _>(|k| inertial[k] + v[k] + holding[k])), wrench)
+}
+
+/// Accelerations for given motor torques, and the base wrench of the motion they make, in one evaluation.
+#[inline]
+pub fn forward_with_wrench(
+    inertia: &Inertia,
+    e: &Units,
+    qd: &PerDrive,
+    torque: &PerDrive,
+    around: &Surroundings,
+) -> (PerDrive, BaseWrench) {
+    by_drives!(inertia.drives, forward_with_wrench_of(inertia, e, qd, torque, around))
+}
+
+#[inline]
+fn forward_with_wrench_of<const N: usize>(
+    inertia: &Inertia,
+    e: &Units,
+    qd: &PerDrive,
+    torque: &PerDrive,
+    around: &Surroundings,
+) -> (PerDrive, BaseWrench) {
+    let (e, qd, torque) = (first::<N, _>(e), first(qd.padded()), first::<N, _>(torque.padded()));
+    let (h, v) = assemble(inertia, e, qd);
+    let holding = hold(inertia, e, around);
+    let qdd = solve(&h, std::array::from_fn(|k| torque[k] - v[k] - holding[k]));
+    // From the accelerations and not from the torques, so that the wrench is that of the motion.
+    let inertial = times(&h, &qdd);
+    let rate = (0..N).map(|k| inertial[k] + v[k]).sum();
+    (qdd.into(), wrench_with(inertia, e, qd, &qdd, around, rate))
+}
+
+/// Σ_j m_j |a_cj|, N: what the links would transmit if nothing cancelled. `moments` holds m_j a_jk, kg m, all drives
+/// of a link side by side.
+#[inline]
+pub fn inertial_pull(moments: &[Vector], e: &Units, qd: &PerDrive, qdd: &PerDrive) -> f64 {
+    by_drives!(qd.len(), inertial_pull_of(moments, e, qd, qdd))
+}
+
+#[inline]
+fn inertial_pull_of<const N: usize>(moments: &[Vector], e: &Units, qd: &PerDrive, qdd: &PerDrive) -> f64 {
+    let (e, qd, qdd) = (first::<N, _>(e), first::<N, _>(qd.padded()), first::<N, _>(qdd.padded()));
+    let turn: [_; N] = std::array::from_fn(|k| Vector::new(-qd[k] * qd[k], qdd[k]) * e[k]);
+    let pull = |moment: &[Vector; N]| (0..N).map(|k| moment[k] * turn[k]).sum::<Vector>().norm_sqr().sqrt();
+    moments.as_chunks().0.iter().map(pull).sum()
+}
+
+/// Σ_k g_k e_k = M r_CM, kg m.
+pub fn first_moment(inertia: &Inertia, e: &Units) -> Vector {
+    (0..inertia.drives).map(|k| inertia.g[k] * e[k]).sum()
+}
+
+/// Centre of mass r_CM from B, m, (2).
+pub fn centre_of_mass(inertia: &Inertia, e: &Units) -> Vector {
+    first_moment(inertia, e) / inertia.mass
+}
+
+/// Linear momentum Σ_k γ_k q̇_k, kg m/s, (3).
+pub fn linear_momentum(inertia: &Inertia, e: &Units, qd: &PerDrive) -> Vector {
+    (0..inertia.drives).map(|k| inertia.g[k] * e[k] * Vector::new(0.0, qd[k])).sum()
+}
+
+/// Angular momentum about B, D q̇, kg m²/s, (6).
+pub fn angular_momentum(inertia: &Inertia, e: &Units, qd: &PerDrive) -> f64 {
+    let (h, _) = mass_matrix(inertia, e, qd);
+    h.times(qd).iter().sum()
+}
+
+/// Kinetic energy ½ q̇ᵀ H q̇ and potential energy −M g · r_CM, J.
+pub fn energy(inertia: &Inertia, e: &Units, qd: &PerDrive, gravity: Vector) -> (f64, f64) {
+    let (h, _) = mass_matrix(inertia, e, qd);
+    (0.5 * h.times(qd).dot(qd), -dot(gravity, first_moment(inertia, e)))
+}

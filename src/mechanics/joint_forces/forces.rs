@@ -1,0 +1,212 @@
+//! Forces of the pins at one instant.
+
+use super::structure::{Body, Closure, Step, lever};
+use super::{FLAT, Joints, MAX_PINS};
+use crate::mechanics::dynamics::Surroundings;
+use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Units, Vector, cross};
+
+/// What the pins carry at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Forces {
+    len: usize,
+    forces: [Vector; MAX_PINS],
+    undefined: u32,
+    torque: PerDrive,
+}
+
+impl Forces {
+    /// Force of pin i, N, base axes: what its first link exerts on its second. `None` while a parallelogram that it
+    /// depends on is flat.
+    #[inline]
+    pub fn get(&self, i: usize) -> Option<Vector> {
+        (i < self.len && self.undefined & 1 << i == 0).then(|| self.forces[i])
+    }
+
+    /// The same, finite always: at a change point what it would be at |sin(q_k − q_l)| = [`FLAT`].
+    #[inline]
+    pub fn bounded(&self) -> &[Vector] {
+        &self.forces[..self.len]
+    }
+
+    /// Pins whose force is undefined, one bit each.
+    pub fn undefined(&self) -> u32 {
+        self.undefined
+    }
+
+    /// The largest force, N, bounded as in [`bounded`](Self::bounded), and its pin.
+    pub fn worst(&self) -> (f64, usize) {
+        let mut worst = (0.0, 0);
+        for (i, force) in self.bounded().iter().enumerate() {
+            let square = force.norm_sqr();
+            // Not a number counts as worst: a run that has blown up shows.
+            if square > worst.0 || square.is_nan() {
+                worst = (square, i);
+            }
+        }
+        (worst.0.sqrt(), worst.1)
+    }
+
+    /// τ less the friction of the drives' bearings, N m, from the moments that the links at B ask for; `None` at a change
+    /// point, where [`inverse`](crate::mechanics::dynamics::inverse) knows it for pins without friction.
+    pub fn torque(&self) -> Option<PerDrive> {
+        (self.undefined == 0).then_some(self.torque)
+    }
+}
+
+/// The most closures solved together: each holds two links, so 3 pins each beside one at B.
+const MOST: usize = MAX_PINS / 3;
+
+/// Closure forces of a block, in its order.
+type Block = [Vector; MOST];
+
+impl Joints {
+    /// Force of every pin for a motion, and the torques of the drives, with pins that turn freely. On a base that moves,
+    /// gravity is g − p̈_B.
+    pub fn forces(&self, e: &Units, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> Forces {
+        self.forces_with(e, qd, qdd, around, |_, _| 0.0)
+    }
+
+    /// The same with friction in the pins: `couple` is asked for the friction torque of a pin from a link that follows
+    /// one drive to a link that follows another, N m, against the second turning faster than the first.
+    #[inline]
+    pub fn forces_with(
+        &self,
+        e: &Units,
+        qd: &PerDrive,
+        qdd: &PerDrive,
+        around: &Surroundings,
+        couple: impl Fn(usize, usize) -> f64,
+    ) -> Forces {
+        let zero = Vector::default();
+        let mut turn = [zero; MAX_DRIVES];
+        for k in 0..self.drives {
+            turn[k] = Vector::new(-qd[k] * qd[k], qdd[k]) * e[k];
+        }
+        let bodies = &self.bodies[..];
+        // From B outwards: acceleration of each root less gravity. What each link asks of its root for itself.
+        let (mut root, mut force, mut moment) = ([zero; MAX_PINS], [zero; MAX_PINS], [0.0; MAX_PINS]);
+        for (j, body) in bodies.iter().enumerate() {
+            let (drive, arm) = body.arm;
+            root[j] = match body.parent {
+                Some(p) => root[p] + turn[drive] * arm,
+                None => -around.gravity,
+            };
+            force[j] = root[j] * body.mass + body.first * turn[body.drive];
+            moment[j] = body.second * qdd[body.drive] + cross(body.first * e[body.drive], root[j]);
+            if let Some(tip) = body.tip {
+                force[j] -= around.force;
+                moment[j] -= tip * cross(e[body.drive], around.force);
+            }
+        }
+        // What a pin's friction takes from one side it gives to the other.
+        for &(from, to) in &self.rubbing {
+            let f = couple(bodies[from].drive, bodies[to].drive);
+            moment[from] -= f;
+            moment[to] += f;
+        }
+        // And inwards: with all that hangs on it.
+        for (j, body) in bodies.iter().enumerate().rev() {
+            if let Some(p) = body.parent {
+                let (drive, arm) = body.arm;
+                moment[p] += arm * cross(e[drive], force[j]);
+                force[p] += force[j];
+            }
+        }
+        let mut out = Forces {
+            len: self.pins.len(),
+            forces: [zero; MAX_PINS],
+            undefined: 0,
+            torque: PerDrive::zeros(self.drives),
+        };
+        let mut apply = |c: usize, lambda: Vector, force: &mut [Vector], moment: &mut [f64]| {
+            let closure = &self.closures[c];
+            out.forces[closure.pin] = lambda;
+            for &(j, w) in &closure.levers {
+                moment[j] -= w * cross(e[bodies[j].drive], lambda);
+            }
+            for &(j, sense) in &closure.carried {
+                force[j] -= lambda * sense;
+            }
+        };
+        for step in &self.steps {
+            match step {
+                Step::Pair { closure, rows: [(i, v), (j, w)] } => {
+                    let (ek, el) = (e[bodies[*i].drive], e[bodies[*j].drive]);
+                    let mut sine = cross(ek, el);
+                    if sine.abs() < FLAT {
+                        out.undefined |= self.closures[*closure].reaches;
+                        sine = FLAT.copysign(sine);
+                    }
+                    let lambda = (el * (moment[*i] / v) - ek * (moment[*j] / w)) / sine;
+                    apply(*closure, lambda, &mut force, &mut moment);
+                }
+                Step::Together { closures, rows } => {
+                    let (lambdas, regular) = together(bodies, &self.closures, closures, rows, e, &moment);
+                    for (&c, &lambda) in closures.iter().zip(&lambdas) {
+                        if !regular {
+                            out.undefined |= self.closures[c].reaches;
+                        }
+                        apply(c, lambda, &mut force, &mut moment);
+                    }
+                }
+            }
+        }
+        for (j, body) in bodies.iter().enumerate() {
+            out.forces[body.link] = force[j];
+            if body.driven {
+                out.torque[body.drive] += moment[j];
+            }
+        }
+        out
+    }
+
+    /// f_B, N: what the links at B exert on the base.
+    pub fn on_base(&self, forces: &Forces) -> Vector {
+        let at_base = self.pins.iter().zip(forces.bounded()).filter(|(pin, _)| pin.from.is_none());
+        -at_base.map(|(_, f)| f).sum::<Vector>()
+    }
+}
+
+/// Closure forces of a block by elimination with row pivots, and whether no pivot vanished.
+pub(super) fn together(
+    bodies: &[Body],
+    closures: &[Closure],
+    open: &[usize],
+    rows: &[usize],
+    e: &Units,
+    moment: &[f64],
+) -> (Block, bool) {
+    let n = rows.len();
+    let mut a = [[0.0; 2 * MOST + 1]; 2 * MOST];
+    for (row, &j) in a.iter_mut().zip(rows) {
+        let ej = e[bodies[j].drive];
+        // Rows of unit size, so that pivots compare with 1.
+        let size = open.iter().fold(0.0_f64, |m, &c| m.max(lever(&closures[c], j).abs()));
+        let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
+        for (i, &c) in open.iter().enumerate() {
+            let w = scale * lever(&closures[c], j);
+            (row[2 * i], row[2 * i + 1]) = (-w * ej.im, w * ej.re);
+        }
+        row[2 * MOST] = scale * moment[j];
+    }
+    let mut regular = true;
+    for i in 0..n {
+        let p = (i..n).max_by(|&p, &q| a[p][i].abs().total_cmp(&a[q][i].abs())).unwrap_or(i);
+        a.swap(i, p);
+        if a[i][i].abs() < FLAT {
+            regular = false;
+            a[i][i] = FLAT.copysign(a[i][i]);
+        }
+        let pivot = a[i];
+        for row in &mut a[i + 1..n] {
+            let factor = row[i] / pivot[i];
+            row.iter_mut().zip(&pivot).skip(i).for_each(|(x, y)| *x -= factor * y);
+        }
+    }
+    let mut x = [0.0; 2 * MOST];
+    for i in (0..n).rev() {
+        let known: f64 = (i + 1..n).map(|l| a[i][l] * x[l]).sum();
+        x[i] = (a[i][2 * MOST] - known) / a[i][i];
+    }
+    (std::array::from_fn(|i| Vector::new(x[2 * i], x[2 * i + 1])), regular)
+}

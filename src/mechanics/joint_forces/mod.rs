@@ -1,0 +1,136 @@
+//! Inside the machine: what every pin and bearing carries, how near a change point is, and what tilts the base.
+//!
+//! The base wrench is a sum over all links, in which the forces between them cancel. Here they are told apart:
+//! [`Joints`] knows where each link is pinned, and gives the force of each pin for a state of motion.
+//!
+//! # Symbols
+//! | letter | meaning | shape, unit |
+//! |---|---|---|
+//! | i | pins: first where each link is attached, in the order of links, then the closures | |
+//! | e_k | unit vector of drive k; e_j that of the drive whose orientation link j has | |
+//! | ä_k | its second derivative, (i q̈_k − q̇_k²) e_k | rad/s² |
+//! | F_i | force of pin i, base axes: what the first of its links exerts on the second | N |
+//! | λ_c | force of closure c, the pin that is cut | N |
+//! | w_jc | lever of λ_c about the root of link j: its moment there is w_jc e_j × λ_c | m |
+//! | μ_j | moment about its root that link j, with all it carries, asks for once the closures are cut: its inertia, what friction in its pins takes | N m |
+//! | f_i | friction torque of pin i: −f_i on its second link, +f_i on its first | N m |
+//! | τ_k | torque of drive k | N m |
+//!
+//! # Method
+//! Cut every closure. What is left is a tree, in which each link's root carries the link and all that hangs on it. A
+//! drive turns the links at B that follow it; on the others acts no couple but the friction of their pins, which is
+//! known, so their moments fix the closure forces:
+//! Σ_c w_jc e_j × λ_c = μ_j. The levers w are constants of the machine. In the nine-link machine six links and three
+//! closures give six equations in six numbers, and they fall into three pairs: each parallelogram has two links that no
+//! drive turns, of drives k and l, and λ = (x_k e_l − x_l e_k) / sin(q_l − q_k) with x = μ/w. Loops that do not
+//! come apart like that are solved together. The torques come out besides.
+//!
+//! # What is assumed
+//! All drives stand on the base. A drive without a link at B turns the one link that follows it by a belt, so its couple
+//! acts between that link and the base. Where several links share an axle, each attachment and each closure is a pin of
+//! its own, as the file has it. Each pin has its own friction, all alike; the torque that keeps the pins between two
+//! drives stuck is shared equally among them. Friction in the bearing of a drive acts between the base and the link that
+//! the drive turns: no pin but that one knows of it, and there it is a couple and no force.
+//!
+//! # Near change points
+//! Where sin(q_k − q_l) → 0 the parallelogram is flat and its forces grow like 1/|sin|, while τ stays finite. Below
+//! [`FLAT`] they are undefined.
+
+mod error;
+mod forces;
+mod inside;
+mod structure;
+mod tilt;
+mod transmission;
+
+pub use error::JointsError;
+pub use forces::Forces;
+pub use inside::{Inside, KEPT, PinPeak, Watch};
+pub use tilt::{AxialMoments, Tilt};
+pub use transmission::{ChangePoint, Parallelogram, ahead, nearest, transmission};
+
+use crate::mechanics::machine::{Chain, Machine};
+use structure::{Body, Closure, Step};
+
+/// The most pins of a machine whose forces are told.
+pub const MAX_PINS: usize = 32;
+
+/// |sin(q_k − q_l)| below which the forces of a parallelogram are undefined: rounding alone changes them by 1e-7 there.
+pub const FLAT: f64 = 1e-9;
+
+/// A pin or bearing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pin {
+    /// Its two links: `B-1`, `1-5`, `6-7`.
+    pub name: String,
+    /// The link that exerts the force; none: the base.
+    pub from: Option<usize>,
+    /// The link that the force acts on.
+    pub to: usize,
+    /// Where it is.
+    pub at: Chain,
+    /// Whether it closes a loop, rather than attaching a link.
+    pub closes: bool,
+}
+
+/// The pins of a machine, and all of it that their forces depend on.
+#[derive(Clone, Debug)]
+pub struct Joints {
+    drives: usize,
+    pins: Vec<Pin>,
+    bodies: Vec<Body>,
+    closures: Vec<Closure>,
+    /// Bodies on both sides of each pin whose links follow different drives.
+    rubbing: Vec<(usize, usize)>,
+    steps: Vec<Step>,
+    parallelograms: Vec<Parallelogram>,
+}
+
+impl Joints {
+    /// Reads the structure of a machine.
+    ///
+    /// # Errors
+    /// If statics does not determine the forces: closures too many or too few, or a drive that turns nobody knows what.
+    pub fn of(machine: &Machine) -> Result<Self, JointsError> {
+        let pins = pins(machine);
+        if pins.len() > MAX_PINS {
+            return Err(JointsError::TooMany { count: pins.len() });
+        }
+        let bodies = structure::bodies(machine)?;
+        let mut closures = structure::closures(machine, &bodies);
+        let steps = structure::steps(machine, &bodies, &closures)?;
+        structure::spread(&bodies, &mut closures, &steps);
+        let parallelograms = transmission::parallelograms(&pins[machine.links().len()..], &bodies, &closures);
+        let body = |link: usize| bodies.iter().position(|b| b.link == link);
+        let sides = pins.iter().filter_map(|pin| Some((body(pin.from?)?, body(pin.to)?)));
+        let rubbing = sides.filter(|(a, b)| bodies[*a].drive != bodies[*b].drive).collect();
+        Ok(Self { drives: machine.drives(), pins, bodies, closures, rubbing, steps, parallelograms })
+    }
+
+    /// The pins: where each link is attached, in the order of links, then the closures.
+    pub fn pins(&self) -> &[Pin] {
+        &self.pins
+    }
+
+    /// The closures that are parallelograms of two drives.
+    pub fn parallelograms(&self) -> &[Parallelogram] {
+        &self.parallelograms
+    }
+}
+
+/// The pins of any machine, whether or not their forces can be told.
+fn pins(machine: &Machine) -> Vec<Pin> {
+    let name = |link: Option<usize>| link.map_or("B", |j| machine.links()[j].name.as_str());
+    let mut pins: Vec<Pin> = Vec::with_capacity(machine.links().len() + machine.loops().len());
+    let attached = machine.parts().iter().enumerate().map(|(j, part)| (part.parent, j, part.root, false));
+    let closed = machine.loops().iter().map(|c| (Some(c.a), c.b, machine.parts()[c.a].point(c.at_a), true));
+    for (from, to, at, closes) in attached.chain(closed) {
+        let mut called = format!("{}-{}", name(from), name(Some(to)));
+        // Two pins between the same links need two names.
+        while pins.iter().any(|p| p.name == called) {
+            called.push('\'');
+        }
+        pins.push(Pin { name: called, from, to, at, closes });
+    }
+    pins
+}

@@ -1,0 +1,121 @@
+//! Moments out of the plane of motion: what the heights of the links do to the base.
+//!
+//! The motion is plane, but links lie one above the other. A force f in the plane at height z has the moment
+//! (−z f_y, z f_x, …) about B, as complex number x + iy: i z f. So a machine that is force balanced, whose forces
+//! cancel, may transmit a couple all the same.
+//!
+//! # Symbols
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | z_j | height of the CM of link j along the drives' axis; of the payload; 0: the plane of reference through B | m |
+//! | S | Σ_j m_j z_j | kg m |
+//! | s_k | Σ_j m_j z_j a_jk: first moments weighted with z | complex, kg m² |
+//! | n_t | moment about B that tilts the base, n_x + i n_y | N m |
+//! | z̄ | S / M, height of the centre of mass | m |
+//!
+//! # Closed form
+//! n_t = i [S g + z_e F − Σ_k s_k (i q̈_k − q̇_k²) e_k], with F at the payload's height z_e. The couple, the same about
+//! every height, is what is left about z̄: s_k − z̄ g_k in place of s_k.
+//!
+//! # What is assumed
+//! Products of inertia I_xz, I_yz of each link about its own CM are zero: each is symmetric about a plane across the
+//! drives' axis. With all z_j = 0, the default, nothing tilts.
+
+use crate::mechanics::dynamics::Surroundings;
+use crate::mechanics::machine::Machine;
+use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Units, Vector};
+
+/// Constants of tilting.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AxialMoments {
+    drives: usize,
+    /// S, kg m.
+    total: f64,
+    /// s_k, kg m².
+    s: [Vector; MAX_DRIVES],
+    /// s_k − z̄ g_k, kg m².
+    couple: [Vector; MAX_DRIVES],
+    /// z_e, m.
+    end: f64,
+    flat: bool,
+}
+
+/// A moment about B that tilts the base, in its parts; x + iy, N m: what the manipulator exerts on the base.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tilt {
+    /// From motion.
+    pub motion: Vector,
+    /// From weight, and from a force held at the end effector.
+    pub weight: Vector,
+}
+
+impl Tilt {
+    /// The sum of both parts.
+    pub fn total(&self) -> Vector {
+        self.motion + self.weight
+    }
+}
+
+impl AxialMoments {
+    /// Sums over the links and the payload.
+    pub fn of(machine: &Machine) -> Self {
+        let zero = Vector::default();
+        let payload = machine.spec().payload;
+        let links = machine.links().iter().enumerate().map(|(j, l)| (l.mass, l.axial, machine.com_chain(j)));
+        let held = (payload.mass, payload.axial, machine.payload_chain());
+        let (mut total, mut mass, mut s, mut g) = (0.0, 0.0, [zero; MAX_DRIVES], [zero; MAX_DRIVES]);
+        for (m, z, a) in links.chain([held]) {
+            total += m * z;
+            mass += m;
+            for k in 0..machine.drives() {
+                s[k] += m * z * a[k];
+                g[k] += m * a[k];
+            }
+        }
+        let mean = total / mass;
+        Self {
+            drives: machine.drives(),
+            total,
+            s,
+            couple: std::array::from_fn(|k| s[k] - mean * g[k]),
+            end: payload.axial,
+            flat: payload.axial == 0.0 && machine.links().iter().all(|l| l.axial == 0.0),
+        }
+    }
+
+    /// Whether all heights are zero, so that nothing can tilt: the plane model, or one that was never told.
+    pub fn is_flat(&self) -> bool {
+        self.flat
+    }
+
+    /// Largest |s_k − z̄ g_k|, kg m²: 0 where motion transmits no couple that tilts, force balanced or not.
+    pub fn residual(&self) -> f64 {
+        self.couple[..self.drives].iter().fold(0.0, |m, s| m.max(s.norm()))
+    }
+
+    /// The moment about B at the plane of reference.
+    #[inline]
+    pub fn tilt(&self, e: &Units, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> Tilt {
+        let i = Vector::new(0.0, 1.0);
+        Tilt {
+            motion: i * self.pull(&self.s, e, qd, qdd),
+            weight: i * (around.gravity * self.total + around.force * self.end),
+        }
+    }
+
+    /// The couple of the motion, n_x + i n_y, N m: the tilting moment about the height of the centre of mass. It is
+    /// all there is where the machine is force balanced.
+    pub fn couple(&self, e: &Units, qd: &PerDrive, qdd: &PerDrive) -> Vector {
+        Vector::new(0.0, 1.0) * self.pull(&self.couple, e, qd, qdd)
+    }
+
+    /// −Σ_k s_k ä_k.
+    #[inline]
+    fn pull(&self, s: &[Vector; MAX_DRIVES], e: &Units, qd: &PerDrive, qdd: &PerDrive) -> Vector {
+        let mut sum = Vector::default();
+        for k in 0..self.drives {
+            sum -= s[k] * (Vector::new(-qd[k] * qd[k], qdd[k]) * e[k]);
+        }
+        sum
+    }
+}

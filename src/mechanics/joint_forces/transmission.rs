@@ -1,0 +1,92 @@
+//! How well parallelograms pass force on, and how far the next change point is.
+//!
+//! # Symbols
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | \|sin(q_k − q_l)\| | transmission of a pair of drives: 0 at a change point, where parallelograms lie flat | |
+//! | angle | between neighbouring bars of a parallelogram, 0 to π/2 | rad |
+//! | distance | least \|q_k − q_l − mπ\| over pairs and whole m: how much one drive has to turn | rad |
+
+use std::f64::consts::PI;
+
+use super::Pin;
+use super::structure::{Body, Closure};
+use crate::mechanics::machine::Inertia;
+use crate::mechanics::planar::{PerDrive, Units, cross};
+
+/// A loop of two drives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parallelogram {
+    /// Name of the pin that closes it.
+    pub name: String,
+    /// Its drives, counted from 0.
+    pub drives: (usize, usize),
+}
+
+impl Parallelogram {
+    /// Transmission angle between its neighbouring bars, 0 to π/2, rad.
+    pub fn angle(&self, q: &[f64]) -> f64 {
+        off(q[self.drives.0] - q[self.drives.1]).abs()
+    }
+}
+
+/// Where a pair of drives lines up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChangePoint {
+    /// The drives, counted from 0.
+    pub drives: (usize, usize),
+    /// |q_k − q_l − mπ|, rad.
+    pub distance: f64,
+    /// When the present rates get there, s; `None` where they lead away or nowhere.
+    pub time: Option<f64>,
+}
+
+/// |sin(q_k − q_l)|.
+pub fn transmission(e: &Units, k: usize, l: usize) -> f64 {
+    cross(e[k], e[l]).abs()
+}
+
+/// How far an angle is past the nearest multiple of π, −π/2 to π/2, rad.
+fn off(angle: f64) -> f64 {
+    angle - PI * (angle / PI).round()
+}
+
+/// The change point that turning one drive least reaches; `None` for one drive.
+pub fn nearest(q: &[f64], qd: &PerDrive) -> Option<ChangePoint> {
+    let all = Inertia::pairs(q.len()).map(|(k, l)| {
+        let (past, rate) = (off(q[k] - q[l]), qd[k] - qd[l]);
+        ChangePoint { drives: (k, l), distance: past.abs(), time: arrival(-past, rate) }
+    });
+    all.min_by(|a, b| a.distance.total_cmp(&b.distance))
+}
+
+/// The change point that the present rates reach first, with the distance that the pair has to go; `None` where no two
+/// drives turn against each other.
+pub fn ahead(q: &[f64], qd: &PerDrive) -> Option<ChangePoint> {
+    let all = Inertia::pairs(q.len()).filter_map(|(k, l)| {
+        let (past, rate) = (off(q[k] - q[l]), qd[k] - qd[l]);
+        // Towards the nearest multiple of π, or from it to the next.
+        let way = if past * rate <= 0.0 { -past } else { PI.copysign(rate) - past };
+        let time = arrival(way, rate)?;
+        Some(ChangePoint { drives: (k, l), distance: way.abs(), time: Some(time) })
+    });
+    all.min_by(|a, b| a.time.unwrap_or(0.0).total_cmp(&b.time.unwrap_or(0.0)))
+}
+
+/// When a rate covers a way, s.
+fn arrival(way: f64, rate: f64) -> Option<f64> {
+    let time = way / rate;
+    (rate != 0.0 && time >= 0.0 && time.is_finite()).then_some(time)
+}
+
+/// Which closures close a loop of two drives.
+pub(super) fn parallelograms(pins: &[Pin], bodies: &[Body], closures: &[Closure]) -> Vec<Parallelogram> {
+    let of = |(pin, closure): (&Pin, &Closure)| {
+        let mut drives: Vec<usize> = closure.levers.iter().map(|(j, _)| bodies[*j].drive).collect();
+        drives.sort_unstable();
+        drives.dedup();
+        let [k, l] = drives[..] else { return None };
+        Some(Parallelogram { name: pin.name.clone(), drives: (k, l) })
+    };
+    pins.iter().zip(closures).filter_map(of).collect()
+}

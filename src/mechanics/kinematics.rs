@@ -1,0 +1,80 @@
+//! Where the end effector is and how it moves: (14), its Jacobian, and inverses of two-drive sub-chains.
+//!
+//! # Symbols
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | p | end effector, Σ_k c_k e^{i q_k}; nine-link: l_1 e_1 − l_5 e_2 − l_9 e_3, (14) | m |
+//! | J_k | ∂p/∂q_k = i c_k e^{i q_k} | m |
+
+use nalgebra::Complex;
+
+use crate::mechanics::machine::{Chain, place_of};
+use crate::mechanics::planar::{PerDrive, Units, Vector, cross, dot};
+
+const I: Vector = Complex::new(0.0, 1.0);
+
+/// The end effector p, m, (14).
+pub fn end_effector(tip: &Chain, e: &Units) -> Vector {
+    place_of(tip, e)
+}
+
+/// Column k of the Jacobian in absolute drive angles, m.
+pub fn column(tip: &Chain, e: &Units, k: usize) -> Vector {
+    I * e[k] * tip[k]
+}
+
+/// ṗ = J q̇, m/s.
+pub fn velocity(tip: &Chain, e: &Units, qd: &PerDrive) -> Vector {
+    I * qd.iter().zip(tip.iter().zip(e)).map(|(qd, (w, e))| e * (w * qd)).sum::<Vector>()
+}
+
+/// p̈ = J q̈ + J̇ q̇, m/s².
+pub fn acceleration(tip: &Chain, e: &Units, qd: &PerDrive, qdd: &PerDrive) -> Vector {
+    (0..qd.len()).map(|k| Vector::new(-qd[k] * qd[k], qdd[k]) * e[k] * tip[k]).sum()
+}
+
+/// The minimum-norm solution q̇ = J⁺ v, Jᵀ (J Jᵀ)⁻¹ v, and its exact derivative for v̇: J̇ and J enter both factors.
+/// `None` where J has lost rank.
+pub fn minimum_norm(tip: &Chain, e: &Units, n: usize, v: Vector, vd: Vector) -> Option<(PerDrive, PerDrive)> {
+    let j = |k: usize| column(tip, e, k);
+    let gram = |a: &dyn Fn(usize) -> Vector, b: &dyn Fn(usize) -> Vector| {
+        (0..n).fold([0.0; 4], |g, k| {
+            let (a, b) = (a(k), b(k));
+            [g[0] + a.re * b.re, g[1] + a.re * b.im, g[2] + a.im * b.re, g[3] + a.im * b.im]
+        })
+    };
+    let jj = gram(&j, &j);
+    let scale = jj[0] + jj[3];
+    let det = jj[0] * jj[3] - jj[1] * jj[2];
+    if det <= 1e-14 * scale * scale {
+        return None;
+    }
+    let solve = |r: Vector| Vector::new(jj[3] * r.re - jj[1] * r.im, jj[0] * r.im - jj[2] * r.re) / det;
+    let y = solve(v);
+    let qd = PerDrive::from_fn(n, |k| dot(j(k), y));
+    // d/dt (J Jᵀ) y = (J̇ Jᵀ + J J̇ᵀ) y
+    let jd = |k: usize| I * j(k) * qd[k];
+    let m = gram(&jd, &j);
+    let my = Vector::new(2.0 * m[0] * y.re + (m[1] + m[2]) * y.im, (m[1] + m[2]) * y.re + 2.0 * m[3] * y.im);
+    let yd = solve(vd - my);
+    let qdd = PerDrive::from_fn(n, |k| dot(jd(k), y) + dot(j(k), yd));
+    Some((qd, qdd))
+}
+
+/// The angle equal to `angle` modulo 2π that lies nearest to `near`.
+pub fn closest_turn(angle: f64, near: f64) -> f64 {
+    let turn = std::f64::consts::TAU;
+    angle + turn * ((near - angle) / turn).round()
+}
+
+/// Rates (q̇_k, q̇_l) with i c_k e_k q̇_k + i c_l e_l q̇_l = v. `None` where the two links are parallel.
+pub fn two_link_rates(ck: f64, cl: f64, ek: Vector, el: Vector, v: Vector) -> Option<(f64, f64)> {
+    let (jk, jl) = (I * ek * ck, I * el * cl);
+    let det = cross(jk, jl);
+    (det.abs() > 1e-12 * (ck * cl).abs()).then(|| (cross(v, jl) / det, cross(jk, v) / det))
+}
+
+/// How well force passes through the parallelograms: min |sin(q_k − q_l)| over the pairs, 0 at a change point.
+pub fn transmission(e: &Units, n: usize) -> f64 {
+    crate::mechanics::machine::Inertia::pairs(n).fold(1.0, |m, (k, l)| m.min(cross(e[k], e[l]).abs()))
+}

@@ -1,0 +1,213 @@
+//! Everything that can be wrong with a machine: what, where, and what would be right.
+
+use std::fmt;
+
+use thiserror::Error;
+
+use crate::settings::range::{Short, Want, clipped};
+
+/// A place in a machine file: a path of keys and positions, such as `link[4].mass`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Place(pub Vec<Step>);
+
+/// One step of a [`Place`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// A key of a table.
+    Key(String),
+    /// A position in an array, counted from 0.
+    At(usize),
+}
+
+impl Place {
+    /// A place from its keys; numbers become positions.
+    pub fn new(path: &[&dyn AsStep]) -> Self {
+        Self(path.iter().map(|s| s.step()).collect())
+    }
+
+    /// The place of a key as `--set` names it, its parts joined by dots, positions in brackets: `task.via[3]`.
+    pub fn of_key(key: &str) -> Self {
+        let steps = key.split('.').flat_map(|part| {
+            let (name, position) = part.split_once('[').unwrap_or((part, ""));
+            let position = position.trim_end_matches(']').parse().ok().and_then(|i: usize| i.checked_sub(1));
+            std::iter::once(Step::Key(name.into())).chain(position.map(Step::At))
+        });
+        Self(steps.collect())
+    }
+
+    /// The same place in a table that holds this one under a key.
+    #[must_use]
+    pub fn under(self, key: &str) -> Self {
+        Self(std::iter::once(Step::Key(key.into())).chain(self.0).collect())
+    }
+}
+
+/// What can be a step of a place.
+pub trait AsStep {
+    /// The step.
+    fn step(&self) -> Step;
+}
+impl AsStep for &str {
+    fn step(&self) -> Step {
+        Step::Key((*self).into())
+    }
+}
+impl AsStep for String {
+    fn step(&self) -> Step {
+        Step::Key(self.clone())
+    }
+}
+impl AsStep for usize {
+    fn step(&self) -> Step {
+        Step::At(*self)
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, step) in self.0.iter().enumerate() {
+            match step {
+                Step::Key(k) if i == 0 => f.write_str(&clipped(k))?,
+                Step::Key(k) => write!(f, ".{}", clipped(k))?,
+                Step::At(i) => write!(f, "[{}]", i + 1)?,
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Why a description is not a machine.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum MachineError {
+    /// Not a number where one is needed.
+    #[error("{place} is {}: want a finite number, {unit}", Short(*value))]
+    NotFinite {
+        /// Where.
+        place: Place,
+        /// What stands there.
+        value: f64,
+        /// In which unit it is wanted.
+        unit: &'static str,
+    },
+    /// A number of the wrong sign or size.
+    #[error("{place} is {}: want {want}", Short(*value))]
+    OutOfRange {
+        /// Where.
+        place: Place,
+        /// What stands there.
+        value: f64,
+        /// What would be right.
+        want: Want,
+    },
+    /// A name that nothing has.
+    #[error("{place} names the {what} {:?}, which does not exist: want one of {known}", clipped(name))]
+    Unknown {
+        /// Where.
+        place: Place,
+        /// Drive, link, length …
+        what: &'static str,
+        /// The name.
+        name: String,
+        /// What there is.
+        known: String,
+    },
+    /// Two of the same name.
+    #[error("{place} is {:?}, which is taken: want a name of its own", clipped(name))]
+    Duplicate {
+        /// Where.
+        place: Place,
+        /// The name.
+        name: String,
+    },
+    /// The number of things.
+    #[error("{count} {what}: want {want}")]
+    Count {
+        /// Drives, links …
+        what: &'static str,
+        /// How many there are.
+        count: usize,
+        /// How many would be right.
+        want: String,
+    },
+    /// Links that hang on each other in a circle.
+    #[error("{place}: link {link:?} hangs on itself ({chain}): want a chain that ends at \"base\"")]
+    Cycle {
+        /// Where.
+        place: Place,
+        /// A link of the circle.
+        link: String,
+        /// The circle.
+        chain: String,
+    },
+    /// A closure whose two points are not one.
+    #[error(
+        "{place}: {a} and {b} are not one point in every pose, they differ by {gap}: want a parallelogram that closes"
+    )]
+    OpenLoop {
+        /// Where.
+        place: Place,
+        /// One description.
+        a: String,
+        /// The other.
+        b: String,
+        /// The difference, as a sum of the drives' unit vectors.
+        gap: String,
+    },
+    /// No end effector.
+    #[error("no end effector: want [end_effector] with link = \"…\", at = \"tip\"")]
+    NoEndEffector,
+    /// A drive that moves nothing.
+    #[error("drive {:?} moves no mass: want a link with inertia on it", clipped(drive))]
+    Massless {
+        /// The drive.
+        drive: String,
+    },
+    /// One bar of a shared length.
+    #[error(
+        "link {link} shares its length {length} with {sharers}: changing it alone would break a parallelogram; set length.{length} instead"
+    )]
+    SharedLength {
+        /// The link.
+        link: String,
+        /// The name of the length.
+        length: String,
+        /// The others.
+        sharers: String,
+    },
+    /// A key of `--set` or of an edit that nothing answers to.
+    #[error("no setting {:?}: want one of {known}", clipped(key))]
+    UnknownKey {
+        /// The key.
+        key: String,
+        /// What there is.
+        known: String,
+    },
+    /// A value of `--set` that cannot be read.
+    #[error("{}={:?}: want {want}", clipped(key), clipped(value))]
+    BadValue {
+        /// The key.
+        key: String,
+        /// What was given.
+        value: String,
+        /// What would be right.
+        want: &'static str,
+    },
+    /// Not TOML, or not the TOML of a machine.
+    #[error("{0}")]
+    Syntax(String),
+}
+
+impl MachineError {
+    /// Where in the file, if it has a place.
+    pub fn place(&self) -> Option<&Place> {
+        match self {
+            Self::NotFinite { place, .. }
+            | Self::OutOfRange { place, .. }
+            | Self::Unknown { place, .. }
+            | Self::Duplicate { place, .. }
+            | Self::Cycle { place, .. }
+            | Self::OpenLoop { place, .. } => Some(place),
+            _ => None,
+        }
+    }
+}

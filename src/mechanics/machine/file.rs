@@ -1,0 +1,93 @@
+//! Machine files: TOML in and out, with the file and line of whatever is wrong.
+
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+use toml::de::{DeTable, DeValue};
+
+use super::{Machine, MachineError, MachineSpec, Place, Step};
+use crate::settings::range::shortened;
+use crate::settings::text::MOST_BYTES;
+
+/// What is wrong with a file, and where.
+#[derive(Debug, Error)]
+pub enum FileError {
+    /// It cannot be read.
+    #[error("{}: {source}: want a plain file that can be read, of at most {MOST_BYTES} bytes", named(file))]
+    Unreadable {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// It is not a machine.
+    #[error("{file}{}: {error}", line.map(|l| format!(":{l}")).unwrap_or_default())]
+    Wrong {
+        /// The file.
+        file: String,
+        /// Line, counted from 1, where it is known.
+        line: Option<usize>,
+        /// What.
+        error: MachineError,
+    },
+}
+
+/// A file as a message calls it: whatever stands for a name may be as long as a book.
+fn named(file: &Path) -> String {
+    shortened(&file.display().to_string(), 300)
+}
+
+/// Reads a machine from a file.
+///
+/// # Errors
+/// If it cannot be read or is not a machine.
+pub fn read(file: &Path) -> Result<Machine, FileError> {
+    let text =
+        crate::settings::text::read(file).map_err(|source| FileError::Unreadable { file: file.into(), source })?;
+    parse(&text, &file.display().to_string())
+}
+
+/// Reads a machine from text; `file` is what errors call it.
+///
+/// # Errors
+/// If it is not a machine.
+pub fn parse(text: &str, file: &str) -> Result<Machine, FileError> {
+    let wrong = |line, error| FileError::Wrong { file: file.into(), line, error };
+    let spec: MachineSpec = toml::from_str(text).map_err(|e| {
+        let line = e.span().map(|span| line_of(text, span.start));
+        wrong(line, MachineError::Syntax(shortened(e.message(), 300)))
+    })?;
+    Machine::new(spec).map_err(|e| wrong(e.place().and_then(|p| line_of_place(text, p)), e))
+}
+
+/// A machine as TOML, so that [`parse`] gives an equal one.
+///
+/// # Panics
+/// Never: every machine can be written.
+pub fn to_toml(machine: &Machine) -> String {
+    toml::to_string(machine.spec()).expect("a machine is plain data")
+}
+
+/// The line of a byte, counted from 1.
+pub(crate) fn line_of(text: &str, byte: usize) -> usize {
+    text.as_bytes()[..byte.min(text.len())].iter().filter(|b| **b == b'\n').count() + 1
+}
+
+/// The line of the innermost part of a place that the text has.
+pub(crate) fn line_of_place(text: &str, place: &Place) -> Option<usize> {
+    let table = DeTable::parse(text).ok()?;
+    let mut span = None;
+    let mut at: Option<&DeValue> = None;
+    for step in &place.0 {
+        let next = match (step, at) {
+            (Step::Key(k), None) => table.get_ref().get(k.as_str()),
+            (Step::Key(k), Some(DeValue::Table(t))) => t.get(k.as_str()),
+            (Step::At(i), Some(DeValue::Array(a))) => a.get(*i),
+            _ => None,
+        };
+        let Some(next) = next else { break };
+        span = Some(next.span());
+        at = Some(next.get_ref());
+    }
+    span.map(|s| line_of(text, s.start))
+}

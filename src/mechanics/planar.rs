@@ -1,0 +1,211 @@
+//! Words of the plane: complex vectors, small per-drive vectors, wrenches, poses.
+//!
+//! A vector (x, y) of the plane of motion is the complex number x + iy, in base axes, with B as origin.
+
+mod sincos;
+
+use std::ops::{Deref, DerefMut};
+
+use nalgebra::Complex;
+use serde::{Deserialize, Serialize};
+
+/// A vector of the plane, x + iy.
+pub type Vector = Complex<f64>;
+
+/// The most drives a machine can have.
+pub const MAX_DRIVES: usize = 8;
+
+/// e(q) = (cos q, sin q).
+#[inline]
+pub fn unit(q: f64) -> Vector {
+    sincos::unit(q)
+}
+
+/// a × b, the component out of the plane.
+pub fn cross(a: Vector, b: Vector) -> f64 {
+    a.re * b.im - a.im * b.re
+}
+
+/// a · b.
+pub fn dot(a: Vector, b: Vector) -> f64 {
+    a.re * b.re + a.im * b.im
+}
+
+/// One number for each drive, without allocation. Reads and writes as a slice of the machine's drives.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(into = "Vec<f64>", try_from = "Vec<f64>")]
+pub struct PerDrive {
+    len: usize,
+    values: [f64; MAX_DRIVES],
+}
+
+impl PerDrive {
+    /// Zero for each of `n` drives.
+    ///
+    /// # Panics
+    /// If `n` exceeds [`MAX_DRIVES`]; a [`Machine`](crate::mechanics::machine::Machine) never does.
+    #[inline]
+    pub fn zeros(n: usize) -> Self {
+        assert!(n <= MAX_DRIVES, "at most {MAX_DRIVES} drives");
+        Self { len: n, values: [0.0; MAX_DRIVES] }
+    }
+
+    /// The value of `f` for each of `n` drives, counted from 0.
+    #[inline]
+    pub fn from_fn(n: usize, f: impl FnMut(usize) -> f64) -> Self {
+        let mut v = Self::zeros(n);
+        v.iter_mut().zip((0..n).map(f)).for_each(|(v, x)| *v = x);
+        v
+    }
+
+    /// The values of the first `n` drives.
+    #[inline]
+    #[must_use]
+    pub fn first(&self, n: usize) -> Self {
+        if self.len == n { *self } else { Self::from_fn(n, |k| self[k]) }
+    }
+
+    /// A copy of a slice, or `None` if it holds more than [`MAX_DRIVES`].
+    pub fn from_slice(values: &[f64]) -> Option<Self> {
+        (values.len() <= MAX_DRIVES).then(|| Self::from_fn(values.len(), |k| values[k]))
+    }
+
+    /// Σ_k a_k b_k.
+    #[inline]
+    pub fn dot(&self, other: &[f64]) -> f64 {
+        self.iter().zip(other).map(|(a, b)| a * b).sum()
+    }
+
+    /// self + factor · other.
+    #[inline]
+    #[must_use]
+    pub fn plus(&self, factor: f64, other: &Self) -> Self {
+        let mut v = *self;
+        v.values.iter_mut().zip(&other.values).for_each(|(v, x)| *v += factor * x);
+        v
+    }
+
+    /// factor · self.
+    #[inline]
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self { len: self.len, values: self.values.map(|v| factor * v) }
+    }
+
+    /// self − other.
+    #[inline]
+    #[must_use]
+    pub fn minus(&self, other: &Self) -> Self {
+        let mut v = *self;
+        v.values.iter_mut().zip(&other.values).for_each(|(v, x)| *v -= x);
+        v
+    }
+
+    /// The largest magnitude, 0 for no drives.
+    pub fn max_abs(&self) -> f64 {
+        self.iter().fold(0.0, |m, x| m.max(x.abs()))
+    }
+
+    /// The padded array: zero beyond the last drive.
+    #[inline]
+    pub fn padded(&self) -> &[f64; MAX_DRIVES] {
+        &self.values
+    }
+}
+
+impl<const N: usize> From<[f64; N]> for PerDrive {
+    #[inline]
+    fn from(values: [f64; N]) -> Self {
+        const { assert!(N <= MAX_DRIVES) }
+        let mut padded = [0.0; MAX_DRIVES];
+        padded[..N].copy_from_slice(&values);
+        Self { len: N, values: padded }
+    }
+}
+
+impl From<PerDrive> for Vec<f64> {
+    fn from(v: PerDrive) -> Self {
+        v.to_vec()
+    }
+}
+
+impl TryFrom<Vec<f64>> for PerDrive {
+    type Error = String;
+    fn try_from(v: Vec<f64>) -> Result<Self, String> {
+        Self::from_slice(&v)
+            .ok_or_else(|| format!("{} numbers, where a machine has at most {MAX_DRIVES} drives", v.len()))
+    }
+}
+
+impl Deref for PerDrive {
+    type Target = [f64];
+    #[inline]
+    fn deref(&self) -> &[f64] {
+        &self.values[..self.len]
+    }
+}
+
+impl DerefMut for PerDrive {
+    #[inline]
+    fn deref_mut(&mut self) -> &mut [f64] {
+        &mut self.values[..self.len]
+    }
+}
+
+impl PartialEq for PerDrive {
+    fn eq(&self, other: &Self) -> bool {
+        **self == **other
+    }
+}
+
+/// Absolute drive angles q_k, rad: never wrapped, because turning one drive by 2π changes b by 2π λ_k.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct DriveAngles(pub PerDrive);
+
+impl DriveAngles {
+    /// e(q_k) of every drive; zero beyond the last.
+    #[inline]
+    pub fn units(&self) -> Units {
+        let mut e = [Vector::new(0.0, 0.0); MAX_DRIVES];
+        for (e, &q) in e.iter_mut().zip(self.0.iter()) {
+            *e = unit(q);
+        }
+        e
+    }
+}
+
+impl<const N: usize> From<[f64; N]> for DriveAngles {
+    fn from(values: [f64; N]) -> Self {
+        Self(values.into())
+    }
+}
+
+impl Deref for DriveAngles {
+    type Target = [f64];
+    #[inline]
+    fn deref(&self) -> &[f64] {
+        &self.0
+    }
+}
+
+/// The unit vectors e(q_k): the only trigonometry the dynamics needs.
+pub type Units = [Vector; MAX_DRIVES];
+
+/// A force at B and a moment about B.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Wrench {
+    /// N.
+    pub force: Vector,
+    /// N m, out of the plane.
+    pub moment: f64,
+}
+
+/// Where a body is and how it is turned.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Pose2 {
+    /// m.
+    pub at: Vector,
+    /// rad.
+    pub angle: f64,
+}

@@ -1,0 +1,5 @@
+//! What it looks like: plain data to draw, and what draws it.
+
+#[cfg(feature = "render")]
+pub mod render;
+pub mod scene;

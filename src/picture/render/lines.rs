@@ -1,0 +1,137 @@
+//! Polylines as antialiased ribbons of constant width on the screen.
+
+use super::View;
+use super::kit::{ENTRIES, Kit, List, Recipe, Upload};
+use super::shader::{Shader, embedded, twin};
+use crate::picture::scene::{Line, Scene};
+
+twin! {
+    /// One segment, with the vertices beside it.
+    struct Segment {
+        a: [f32; 3],
+        width: f32,
+        b: [f32; 3],
+        arc: f32,
+        before: [f32; 3],
+        dash: f32,
+        after: [f32; 3],
+        gap: f32,
+        colour: [f32; 4],
+    }
+}
+
+struct Pipelines {
+    tested: wgpu::RenderPipeline,
+    on_top: wgpu::RenderPipeline,
+}
+
+pub(super) struct Lines {
+    shader: Shader<Pipelines>,
+    /// Depth-tested ones first.
+    list: List<Segment>,
+    tested: u32,
+    /// The vertices of the line in hand, without repetitions.
+    path: Vec<[f32; 3]>,
+}
+
+impl Lines {
+    pub(super) fn new(device: &wgpu::Device, kit: &Kit) -> Self {
+        let pipeline = kit.pipelines();
+        let build = move |device: &wgpu::Device, module: &wgpu::ShaderModule| {
+            let recipe = |label, depth_compare| {
+                let recipe = Recipe {
+                    label,
+                    module,
+                    entries: ENTRIES,
+                    vertices: None,
+                    topology: wgpu::PrimitiveTopology::TriangleStrip,
+                    cull: None,
+                    depth_write: false,
+                    depth_compare,
+                    blend: Some(wgpu::BlendState::ALPHA_BLENDING),
+                };
+                pipeline(device, recipe)
+            };
+            Pipelines {
+                tested: recipe("lines", wgpu::CompareFunction::LessEqual),
+                on_top: recipe("lines on top", wgpu::CompareFunction::Always),
+            }
+        };
+        Self {
+            shader: Shader::new(device, embedded!("lines"), Box::new(build)),
+            list: List::new(device, kit, "lines"),
+            tested: 0,
+            path: Vec::new(),
+        }
+    }
+
+    pub(super) fn prepare(&mut self, kit: &Kit, upload: &mut Upload, scene: &Scene, view: &View) {
+        self.shader.reload(upload.device);
+        self.list.items.clear();
+        scene.lines.iter().filter(|line| !line.on_top).for_each(|line| self.add(line, view));
+        self.tested = self.list.items.len() as u32;
+        scene.lines.iter().filter(|line| line.on_top).for_each(|line| self.add(line, view));
+        self.list.upload(kit, upload);
+        self.tested = self.tested.min(self.list.items.len() as u32);
+    }
+
+    fn add(&mut self, line: &Line, view: &View) {
+        let Line { name: _, points, width, colour, dash, on_top: _ } = line;
+        self.path.clear();
+        self.path.extend(points.iter().filter(|p| p.iter().all(|x| x.is_finite())));
+        self.path.dedup();
+        let path = &self.path;
+        let n = path.len();
+        if n < 2 || width.is_nan() || *width <= 0.0 || colour[3] <= 0.0 {
+            return;
+        }
+        let closed = n > 2 && path[0] == path[n - 1];
+        let [dash_length, gap] = dash.unwrap_or_default();
+        let mut arc = 0.0;
+        for (k, ends) in path.windows(2).enumerate() {
+            let [a, b] = [ends[0], ends[1]];
+            self.list.items.push(Segment {
+                a,
+                width: *width,
+                b,
+                arc,
+                before: if k > 0 {
+                    path[k - 1]
+                } else if closed {
+                    path[n - 2]
+                } else {
+                    a
+                },
+                dash: dash_length,
+                after: if k + 2 < n {
+                    path[k + 2]
+                } else if closed {
+                    path[1]
+                } else {
+                    b
+                },
+                gap,
+                colour: *colour,
+            });
+            if dash.is_some() {
+                arc += view.pixels_between(a, b);
+            }
+        }
+    }
+
+    pub(super) fn draw_tested(&self, pass: &mut wgpu::RenderPass) {
+        self.draw(pass, &self.shader.tested, 0..self.tested);
+    }
+
+    pub(super) fn draw_on_top(&self, pass: &mut wgpu::RenderPass) {
+        self.draw(pass, &self.shader.on_top, self.tested..self.list.items.len() as u32);
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass, pipeline: &wgpu::RenderPipeline, segments: std::ops::Range<u32>) {
+        if !segments.is_empty() {
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(1, &self.list.group, &[]);
+            pass.draw(0..4, segments);
+        }
+    }
+}

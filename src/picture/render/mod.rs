@@ -1,0 +1,160 @@
+//! Draws a [`Scene`] on the GPU: in a window's pass, or into a picture ([`offscreen`]).
+//!
+//! The renderer knows scenes and no mechanics. It draws into its own multisampled target and hands the result on pixel
+//! for pixel, so a window, a test and a recording show the same picture. Order: background, opaque solids,
+//! areas, depth-tested lines, shells, translucent solids, lines on top, markers. Labels belong to whoever owns a font.
+//!
+//! Depth runs from 0 (near) to 1; colours are sRGB values with straight alpha, blended as they are.
+
+mod blit;
+mod kit;
+mod lines;
+mod markers;
+pub mod offscreen;
+mod shader;
+mod solids;
+mod workspace;
+
+pub use shader::Twin;
+
+use crate::picture::scene::Scene;
+use kit::Upload;
+use wgpu::util::StagingBelt;
+
+/// From where a scene is seen, and how large.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// Clip space from world space, column-major, depth 0..1.
+    pub clip_from_world: [[f32; 4]; 4],
+    /// Unit vector from the scene towards the eye, in the world.
+    pub eye_direction: [f32; 3],
+    /// Width and height, physical pixels.
+    pub size_px: [u32; 2],
+    /// Physical pixels in a logical one: widths and radii in the scene are logical.
+    pub pixels_per_point: f32,
+}
+
+impl View {
+    /// Where a world point lies on the screen in physical pixels, y down; `None` at or behind the eye.
+    pub fn project(&self, [x, y, z]: [f32; 3]) -> Option<[f32; 2]> {
+        let m = &self.clip_from_world;
+        let clip = |row: usize| m[0][row] * x + m[1][row] * y + m[2][row] * z + m[3][row];
+        let [width, height] = self.size_px.map(|n| n as f32);
+        let w = clip(3);
+        (w > 0.0).then(|| [(0.5 + 0.5 * clip(0) / w) * width, (0.5 - 0.5 * clip(1) / w) * height])
+    }
+
+    /// Distance on the screen, physical pixels; 0 where a point is behind the eye.
+    fn pixels_between(&self, a: [f32; 3], b: [f32; 3]) -> f32 {
+        match (self.project(a), self.project(b)) {
+            (Some(a), Some(b)) => (b[0] - a[0]).hypot(b[1] - a[1]),
+            _ => 0.0,
+        }
+    }
+}
+
+/// Pipelines and memory for drawing one scene at a time.
+pub struct Renderer {
+    kit: kit::Kit,
+    belt: StagingBelt,
+    solids: solids::Solids,
+    workspace: workspace::Workspace,
+    lines: lines::Lines,
+    markers: markers::Markers,
+    blit: blit::Blit,
+    target: Option<blit::Target>,
+}
+
+impl Renderer {
+    /// `target_format` is that of the pass [`paint`](Self::paint) draws in; the pass has one sample and no depth.
+    pub fn new(device: &wgpu::Device, target_format: wgpu::TextureFormat) -> Self {
+        let kit = kit::Kit::new(device);
+        Self {
+            belt: StagingBelt::new(device.clone(), 1 << 18),
+            solids: solids::Solids::new(device, &kit),
+            workspace: workspace::Workspace::new(device, &kit),
+            lines: lines::Lines::new(device, &kit),
+            markers: markers::Markers::new(device, &kit),
+            blit: blit::Blit::new(device, target_format),
+            target: None,
+            kit,
+        }
+    }
+
+    /// Records the drawing of `scene` into the renderer's own picture. The encoder must be submitted before the next
+    /// call. Sizes are brought into 1..=the device's largest texture.
+    pub fn prepare(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        encoder: &mut wgpu::CommandEncoder,
+        scene: &Scene,
+        view: &View,
+    ) {
+        let most = device.limits().max_texture_dimension_2d;
+        let view = &View { size_px: view.size_px.map(|n| n.clamp(1, most)), ..*view };
+        self.blit.reload(device);
+        let target = match self.target.take() {
+            Some(target) if target.size_px == view.size_px => target,
+            _ => self.blit.target(device, view.size_px),
+        };
+        let target = self.target.insert(target);
+
+        let upload = &mut Upload { device, encoder, belt: &mut self.belt };
+        self.kit.write_frame(upload, view, scene.background);
+        self.solids.prepare(queue, &self.kit, upload, scene);
+        self.workspace.prepare(&self.kit, upload, scene);
+        self.lines.prepare(&self.kit, upload, scene, view);
+        self.markers.prepare(&self.kit, upload, scene);
+
+        let [r, g, b, a] = scene.background.map(f64::from);
+        let background = wgpu::Color { r: r * a, g: g * a, b: b * a, a };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("scene"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &target.samples,
+                depth_slice: None,
+                resolve_target: Some(&target.picture_view),
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(background), store: wgpu::StoreOp::Discard },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &target.depth,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Discard }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &self.kit.frame_group, &[]);
+        self.solids.draw_opaque(&mut pass);
+        self.workspace.draw(&mut pass);
+        self.lines.draw_tested(&mut pass);
+        self.solids.draw_shells(&mut pass);
+        self.solids.draw_translucent(&mut pass);
+        self.lines.draw_on_top(&mut pass);
+        self.markers.draw(&mut pass);
+        drop(pass);
+        self.belt.finish_and_recall_on_submit(encoder);
+    }
+
+    /// Copies the picture into a pass's viewport, pixel for pixel where the sizes agree.
+    pub fn paint(&self, pass: &mut wgpu::RenderPass<'static>) {
+        if let Some(target) = &self.target {
+            self.blit.paint(pass, target);
+        }
+    }
+
+    /// The picture last drawn: Rgba8Unorm, sRGB values, premultiplied alpha.
+    pub fn picture(&self) -> Option<&wgpu::Texture> {
+        self.target.as_ref().map(|target| &target.picture)
+    }
+}
+
+/// The layouts of all structs that Rust and WGSL share.
+pub const TWINS: [Twin; 6] = [
+    kit::Frame::TWIN,
+    solids::Vertex::TWIN,
+    solids::Instance::TWIN,
+    lines::Segment::TWIN,
+    workspace::Area::TWIN,
+    markers::Marker::TWIN,
+];

@@ -1,0 +1,212 @@
+//! Pictures without a window.
+
+use super::{Renderer, View};
+use crate::picture::scene::Scene;
+use std::io;
+use std::path::Path;
+
+/// Why there is nothing to draw with.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoAdapter {
+    /// No driver offers a GPU, or software in its place.
+    #[error(
+        "no GPU adapter found; one in software is enough and comes, on Debian and its kin, with `apt-get install \
+         mesa-vulkan-drivers` ({0})"
+    )]
+    Missing(String),
+    /// There is one, but it cannot do what is needed.
+    #[error(
+        "GPU adapter {name} cannot be used: {why}; a software one comes with `apt-get install mesa-vulkan-drivers`"
+    )]
+    Unfit {
+        /// What the driver calls it.
+        name: String,
+        /// What it lacks.
+        why: String,
+    },
+}
+
+/// Why a picture could not be made.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoPicture {
+    /// Sides run from 1 pixel to what the GPU holds.
+    #[error("a picture of {width} x {height} pixels cannot be drawn: sides run from 1 to {most}")]
+    Size {
+        /// Width asked for.
+        width: u32,
+        /// Height asked for.
+        height: u32,
+        /// Longest side.
+        most: u32,
+    },
+    /// Only four-byte colours are read back.
+    #[error("pixels of format {0} cannot be read back: Rgba8Unorm or Bgra8Unorm is expected")]
+    Format(String),
+    /// The driver gave up.
+    #[error("the GPU was lost while a picture was read back: {0}")]
+    Lost(String),
+}
+
+/// Pixels in rows from the top: red, green, blue and straight alpha, sRGB.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// Pixels a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// 4 width height bytes.
+    pub rgba: Vec<u8>,
+}
+
+impl Picture {
+    /// Red, green, blue and alpha at column `x` of row `y`, both counted from 0 at the top left.
+    pub fn pixel(&self, x: u32, y: u32) -> Option<[u8; 4]> {
+        let at = 4 * (y as usize * self.width as usize + x as usize);
+        let pixel = self.rgba.get(at..at + 4).filter(|_| x < self.width)?;
+        pixel.try_into().ok()
+    }
+
+    /// Encodes as PNG. Fails if `rgba` is not `4 width height` bytes or the picture is empty.
+    pub fn to_png(&self) -> io::Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        self.encode(&mut bytes)?;
+        Ok(bytes)
+    }
+
+    /// Writes a PNG file, over one that is there.
+    pub fn write_png(&self, path: impl AsRef<Path>) -> io::Result<()> {
+        std::fs::write(path, self.to_png()?)
+    }
+
+    fn encode(&self, to: &mut Vec<u8>) -> Result<(), png::EncodingError> {
+        let mut encoder = png::Encoder::new(to, self.width, self.height);
+        encoder.set_color(png::ColorType::Rgba);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(&self.rgba)?;
+        writer.finish()
+    }
+}
+
+/// A GPU without a window, and a renderer on it.
+pub struct Gpu {
+    adapter: wgpu::Adapter,
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    renderer: Renderer,
+    /// Where textures are copied to be read; grows.
+    staging: Option<wgpu::Buffer>,
+}
+
+impl Gpu {
+    /// Takes the adapter that the system prefers.
+    pub fn new() -> Result<Self, NoAdapter> {
+        // Vulkan, Metal or DirectX 12: pictures are held to the byte, so no fallback that draws a little differently.
+        let backends = wgpu::Backends::PRIMARY;
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends,
+            ..wgpu::InstanceDescriptor::new_without_display_handle()
+        });
+        let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))
+            .map_err(|error| NoAdapter::Missing(error.to_string()))?;
+        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))
+            .map_err(|error| NoAdapter::Unfit { name: adapter.get_info().name, why: error.to_string() })?;
+        let renderer = Renderer::new(&device, wgpu::TextureFormat::Rgba8Unorm);
+        Ok(Self { adapter, device, queue, renderer, staging: None })
+    }
+
+    /// What the driver calls itself.
+    pub fn name(&self) -> String {
+        self.adapter.get_info().name
+    }
+
+    /// The adapter.
+    pub fn adapter(&self) -> &wgpu::Adapter {
+        &self.adapter
+    }
+
+    /// The device, for drawing beside the scene.
+    pub fn device(&self) -> &wgpu::Device {
+        &self.device
+    }
+
+    /// The device's queue.
+    pub fn queue(&self) -> &wgpu::Queue {
+        &self.queue
+    }
+
+    /// Draws a scene and waits for the pixels.
+    pub fn picture(&mut self, scene: &Scene, view: &View) -> Result<Picture, NoPicture> {
+        let ([width, height], most) = (view.size_px, self.device.limits().max_texture_dimension_2d);
+        if width.min(height) == 0 || width.max(height) > most {
+            return Err(NoPicture::Size { width, height, most });
+        }
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        self.renderer.prepare(&self.device, &self.queue, &mut encoder, scene, view);
+        self.queue.submit([encoder.finish()]);
+        let texture = self.renderer.picture().cloned();
+        // The size is valid, so prepare has made a target.
+        texture.map_or(Err(NoPicture::Size { width, height, most }), |texture| self.readback(&texture))
+    }
+
+    /// Waits for the pixels of any texture with usage `COPY_SRC`, four bytes a pixel, premultiplied alpha.
+    pub fn readback(&mut self, texture: &wgpu::Texture) -> Result<Picture, NoPicture> {
+        use wgpu::TextureFormat::{Bgra8Unorm, Bgra8UnormSrgb, Rgba8Unorm, Rgba8UnormSrgb};
+        let swap = match texture.format() {
+            Rgba8Unorm | Rgba8UnormSrgb => false,
+            Bgra8Unorm | Bgra8UnormSrgb => true,
+            other => return Err(NoPicture::Format(format!("{other:?}"))),
+        };
+        let (width, height) = (texture.width(), texture.height());
+        let row = 4 * width as usize;
+        let stride = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
+        let size = stride as u64 * u64::from(height);
+        let staging = match self.staging.take() {
+            Some(buffer) if buffer.size() >= size => buffer,
+            _ => self.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("readback"),
+                size,
+                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            }),
+        };
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(stride as u32), rows_per_image: None };
+        encoder.copy_texture_to_buffer(
+            texture.as_image_copy(),
+            wgpu::TexelCopyBufferInfo { buffer: &staging, layout },
+            wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        );
+        self.queue.submit([encoder.finish()]);
+
+        let lost = |error: &dyn std::fmt::Display| NoPicture::Lost(error.to_string());
+        let (mapped, outcome) = std::sync::mpsc::channel();
+        staging.map_async(wgpu::MapMode::Read, ..size, move |result| _ = mapped.send(result));
+        self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| lost(&error))?;
+        match outcome.try_recv() {
+            Ok(result) => result.map_err(|error| lost(&error))?,
+            Err(error) => return Err(lost(&error)),
+        }
+        let mut rgba = Vec::with_capacity(row * height as usize);
+        {
+            let bytes = staging.get_mapped_range(..size).map_err(|error| lost(&error))?;
+            bytes.chunks_exact(stride).for_each(|line| rgba.extend_from_slice(&line[..row]));
+        }
+        staging.unmap();
+        self.staging = Some(staging);
+
+        for pixel in rgba.as_chunks_mut::<4>().0 {
+            if swap {
+                pixel.swap(0, 2);
+            }
+            let alpha = u16::from(pixel[3]);
+            if alpha != 0 && alpha != 255 {
+                let straight = |c: u8| ((u16::from(c) * 255 + alpha / 2) / alpha).min(255) as u8;
+                *pixel = [straight(pixel[0]), straight(pixel[1]), straight(pixel[2]), pixel[3]];
+            }
+        }
+        Ok(Picture { width, height, rgba })
+    }
+}

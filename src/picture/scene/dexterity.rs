@@ -1,0 +1,102 @@
+//! Dexterity as a shade of the workspace: three measures of a pose, the same for every b.
+
+use super::linkage::mix;
+use super::palette::{Palette, faded};
+use super::{Measure, Rgba};
+use crate::planning::reactionless::PlaneMap;
+
+/// Poses a side of the first search.
+const GRID: i32 = 24;
+
+impl Measure {
+    /// In the order in which they come by.
+    pub const ALL: [Self; 3] = [Self::Det, Self::Manipulability, Self::TorquePerForce];
+
+    /// None, each of them, and none again.
+    pub fn after(now: Option<Self>) -> Option<Self> {
+        match now {
+            None => Some(Self::Det),
+            Some(measure) => Self::ALL.get(measure as usize + 1).copied(),
+        }
+    }
+
+    /// What a key says.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Det => "|det|",
+            Self::Manipulability => "√det JJ*",
+            Self::TorquePerForce => "|τ|/|F|",
+        }
+    }
+
+    /// SI unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Det | Self::Manipulability => "m²",
+            Self::TorquePerForce => "N m/N",
+        }
+    }
+
+    /// What it means.
+    pub fn explanation(self) -> &'static str {
+        match self {
+            Self::Det => {
+                "|det ∂(x, y)/∂(a₁, a₂)|: how far the end effector moves for a motion on its plane; 0 if singular"
+            }
+            Self::Manipulability => {
+                "√det(J J*), J* transposed: manipulability with b free; 0 where all arms are in line"
+            }
+            Self::TorquePerForce => "The greatest |τ| that a unit force at the end effector asks of the drives",
+        }
+    }
+
+    /// Of a pose.
+    pub fn of(self, map: &PlaneMap, a: [f64; 2]) -> f64 {
+        let dexterity = map.dexterity(a);
+        match self {
+            Self::Det => dexterity.det,
+            Self::Manipulability => dexterity.manipulability,
+            Self::TorquePerForce => dexterity.worst_torque_per_force,
+        }
+    }
+
+    /// Where a shade begins and ends: the least and greatest within the limits; from 0 for det, whose sheets may meet.
+    pub fn range(self, map: &PlaneMap) -> [f64; 2] {
+        let least = if self == Self::Det { 0.0 } else { -greatest(map, |a| -self.of(map, a)) };
+        let most = greatest(map, |a| self.of(map, a));
+        // A measure that does not change is full everywhere.
+        if most > least { [least, most] } else { [least - 1.0, most.max(least)] }
+    }
+}
+
+/// The greatest of something within the limits.
+fn greatest(map: &PlaneMap, value: impl Fn([f64; 2]) -> f64) -> f64 {
+    let [l1, l2] = map.limits();
+    let at = |i: i32, j: i32| {
+        let share =
+            |l: crate::planning::reactionless::Limit, i: i32| l.min + f64::from(i) / f64::from(GRID) * (l.max - l.min);
+        [share(l1, i), share(l2, j)]
+    };
+    let poses = (0..=GRID).flat_map(|i| (0..=GRID).map(move |j| at(i, j)));
+    let Some(mut best) = poses.max_by(|s, t| value(*s).total_cmp(&value(*t))) else { return 0.0 };
+    // Then about the best one, in steps that halve.
+    let mut step = [l1, l2].map(|l| (l.max - l.min) / f64::from(GRID));
+    for _ in 0..40 {
+        let around = (0..9)
+            .map(|k| map.clamp([best[0] + f64::from(k % 3 - 1) * step[0], best[1] + f64::from(k / 3 - 1) * step[1]]));
+        best = around.fold(best, |best, a| if value(a) > value(best) { a } else { best });
+        step = step.map(|s| 0.5 * s);
+    }
+    value(best)
+}
+
+/// The fill where a measure is least and where it is greatest: amber, and pale.
+pub fn colours(palette: &Palette) -> [Rgba; 2] {
+    let pale = |share| mix(palette.amber, [1.0, 0.98, 0.92, 1.0], share);
+    // The brighter of fill and background says where there is more.
+    let dark = palette.background.iter().take(3).sum::<f32>() < 1.5;
+    match dark {
+        true => [faded(palette.amber, 0.2), faded(pale(0.45), 0.62)],
+        false => [faded(palette.amber, 0.6), faded(pale(0.7), 0.6)],
+    }
+}

@@ -1,0 +1,302 @@
+//! The body of a machine: bars, pins, counterweights and the drives, as meshes that never change while it moves.
+//!
+//! Links that share a pin follow different drives, so a layer for each drive keeps them apart.
+
+use std::sync::Arc;
+
+use super::mesh::{bar, cylinder};
+use super::palette::{Palette, faded};
+use super::stage::PLATE;
+use super::{Mesh, Model, Rgba, Solid};
+use crate::mechanics::machine::{Chain, Machine, place_of};
+use crate::mechanics::planar::{Pose2, Units, Vector, unit};
+
+/// A machine's meshes, and how a pose places them.
+#[derive(Clone, Debug)]
+pub struct Linkage {
+    /// What the solids refer to.
+    pub model: Arc<Model>,
+    bars: Vec<Bar>,
+    pins: Vec<Pin>,
+    motors: Vec<Motor>,
+    plate: usize,
+    body: usize,
+    cap: usize,
+    reach: f64,
+    top: f64,
+}
+
+/// A link with its counterweight.
+#[derive(Clone, Debug)]
+pub struct Bar {
+    /// The link's name.
+    pub name: String,
+    /// Mesh, along x from the link's root.
+    pub mesh: usize,
+    /// Drive it follows, counted from 0.
+    pub drive: usize,
+    /// Whether it carries the end effector or a link that does.
+    pub carries_tip: bool,
+    root: Chain,
+    sign: f64,
+    /// Where the next one or the end effector is, m along it.
+    length: f64,
+    /// From where to where it is drawn, m along it.
+    span: [f64; 2],
+    z: f64,
+}
+
+#[derive(Clone, Debug)]
+struct Pin {
+    mesh: usize,
+    hole: usize,
+    at: Chain,
+    z: f64,
+    hole_z: f64,
+}
+
+#[derive(Clone, Debug)]
+struct Motor {
+    mesh: usize,
+    drive: usize,
+    z: f64,
+}
+
+/// Parts of the machine's reach.
+const BAR_RADIUS: f64 = 0.0135;
+const THIN_BAR_RADIUS: f64 = 0.0085;
+const BAR_HEIGHT: f64 = 0.016;
+const GAP: f64 = 0.004;
+const WEIGHT_RADIUS: f64 = 0.05;
+
+impl Linkage {
+    /// The body of a machine.
+    pub fn of(machine: &Machine) -> Self {
+        let reach = reach_of(machine);
+        let (height, gap) = (BAR_HEIGHT * reach, GAP * reach);
+        let layer = |drive: usize| drive as f64 * (height + gap);
+        let carries = carriers(machine);
+        let heaviest = machine.links().iter().fold(0.0_f64, |m, l| m.max(l.mass));
+        let mut meshes = Vec::new();
+        let mut add = |mesh: Mesh| {
+            meshes.push(mesh);
+            meshes.len() - 1
+        };
+        let mut bars = Vec::new();
+        for (j, (link, part)) in machine.links().iter().zip(machine.parts()).enumerate() {
+            let radius = reach * if carries[j] { BAR_RADIUS } else { THIN_BAR_RADIUS };
+            let ends = part.pins.iter().copied().chain([part.length]);
+            let (from, to) = ends.fold((0.0_f64, 0.0_f64), |(a, b), s| (a.min(s), b.max(s)));
+            let mut mesh = bar(from.min(link.com), to.max(link.com), radius, height, 0.2 * height);
+            if link.com < from || link.com > to {
+                // A disc of the CM's side suggests the counterweight; its area goes with the link's mass.
+                let size = (reach * WEIGHT_RADIUS * (link.mass / heaviest).sqrt()).max(1.5 * radius);
+                append(&mut mesh, &cylinder(size, 1.6 * height, 0.2 * height), [link.com, 0.0, -0.3 * height]);
+            }
+            bars.push(Bar {
+                name: link.name.clone(),
+                mesh: add(mesh),
+                drive: part.drive,
+                carries_tip: carries[j],
+                root: part.root,
+                sign: part.sign,
+                length: part.length,
+                span: [from.min(link.com), to.max(link.com)],
+                z: layer(part.drive),
+            });
+        }
+        let mut pins = Vec::new();
+        let radius = 0.62 * THIN_BAR_RADIUS * reach;
+        for (at, low, high) in joints(machine) {
+            let (bottom, top) = (layer(low) - gap, layer(high) + height + gap);
+            let mesh = add(cylinder(1.25 * radius, top - bottom, 0.15 * radius));
+            let hole = add(cylinder(0.7 * radius, 0.2 * gap, 0.0));
+            pins.push(Pin { mesh, hole, at, z: bottom, hole_z: top });
+        }
+        let n = machine.drives();
+        let (drive_height, drive_radius) = (0.05 * reach, 0.042 * reach);
+        let motors = (0..n)
+            .map(|k| Motor {
+                mesh: add(cylinder(drive_radius * (1.0 + 0.12 * k as f64), 0.92 * drive_height, 0.1 * drive_height)),
+                drive: k,
+                z: -gap - (k + 1) as f64 * drive_height,
+            })
+            .collect();
+        let plate = add(cylinder(2.0 * drive_radius, 0.3 * drive_height, 0.05 * drive_height));
+        // Of a base that moves.
+        let [length, width] = PLATE.map(|part| part * reach);
+        let body = add(bar(width - length, length - width, width, 0.3 * drive_height, 0.05 * drive_height));
+        let top = layer(n - 1) + height;
+        let cap = add(cylinder(0.6 * drive_radius, top + 2.0 * gap, 0.2 * gap));
+        Self { model: Arc::new(Model { meshes }), bars, pins, motors, plate, body, cap, reach, top: top + 2.0 * gap }
+    }
+
+    /// The farthest the end effector gets from B, m.
+    pub fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    /// Height of the plane on which the links stand, m.
+    pub fn floor(&self) -> f64 {
+        -GAP * self.reach
+    }
+
+    /// Height above every link, m.
+    pub fn top(&self) -> f64 {
+        self.top
+    }
+
+    /// Height of what the drives stand on, m.
+    pub fn bottom(&self) -> f64 {
+        self.motors.iter().fold(0.0_f64, |m, motor| m.min(motor.z)) - 0.015 * self.reach
+    }
+
+    /// The links.
+    pub fn bars(&self) -> &[Bar] {
+        &self.bars
+    }
+
+    /// Where the tops of the pins are, m.
+    pub fn pins(&self, e: &Units) -> impl Iterator<Item = (Vector, f64)> {
+        self.pins.iter().map(|pin| (place_of(&pin.at, e), pin.hole_z))
+    }
+
+    /// Everything, in the colours of the palette, on a base in a pose.
+    pub fn solids(&self, e: &Units, base: Pose2, moves: bool, palette: &Palette) -> Vec<Solid> {
+        let mut solids = Vec::with_capacity(self.bars.len() + 2 * self.pins.len() + self.motors.len() + 2);
+        let upright = |name: String, mesh, at: Vector, z, colour| Solid {
+            name,
+            mesh,
+            world_from_mesh: placed(base.at + at, Vector::new(1.0, 0.0), z),
+            colour,
+        };
+        let grey = mix(palette.dim, palette.line, 0.65);
+        let origin = Vector::default();
+        let under = self.bottom();
+        solids.push(upright("base/plate".into(), self.plate, origin, under, grey));
+        if moves {
+            let world_from_mesh = placed(base.at, unit(base.angle), under - 0.002 * self.reach);
+            let colour = mix(grey, palette.line, 0.5);
+            solids.push(Solid { name: "base/body".into(), mesh: self.body, world_from_mesh, colour });
+        }
+        for motor in &self.motors {
+            let colour = mix(palette.drive(motor.drive), grey, 0.45);
+            solids.push(upright(format!("base/drive/{}", motor.drive + 1), motor.mesh, origin, motor.z, colour));
+        }
+        solids.extend(self.bars.iter().map(|bar| bar.solid(e, base.at, palette.drive(bar.drive))));
+        for (i, pin) in self.pins.iter().enumerate() {
+            let at = place_of(&pin.at, e);
+            solids.push(upright(format!("joint/{}", i + 1), pin.mesh, at, pin.z, palette.ink));
+            solids.push(upright(format!("joint/{}/hole", i + 1), pin.hole, at, pin.hole_z, palette.background));
+        }
+        solids.push(upright("base/cap".into(), self.cap, origin, 0.0, grey));
+        solids
+    }
+
+    /// The links that carry the end effector as lines from root to tip, from B outwards, with their drives.
+    pub fn skeleton(&self, e: &Units) -> Vec<(usize, [Vector; 2])> {
+        let carriers = self.bars.iter().filter(|b| b.carries_tip);
+        carriers
+            .map(|bar| {
+                let (root, along, _) = bar.pose(e);
+                (bar.drive, [root, root + along * bar.length])
+            })
+            .collect()
+    }
+
+    /// The arms that carry the end effector, as a ghost of another pose.
+    pub fn ghost(&self, e: &Units, palette: &Palette, alpha: f32) -> Vec<Solid> {
+        let carriers = self.bars.iter().filter(|b| b.carries_tip);
+        carriers
+            .map(|bar| Solid {
+                name: format!("ghost/{}", bar.name),
+                ..bar.solid(e, Vector::default(), faded(palette.drive(bar.drive), alpha))
+            })
+            .collect()
+    }
+}
+
+impl Linkage {
+    /// Ends of the arms that carry the end effector, in a pose, m.
+    pub fn outlines(&self, e: &Units) -> impl Iterator<Item = [Vector; 2]> {
+        let e = *e;
+        self.bars.iter().filter(|b| b.carries_tip).map(move |bar| {
+            let (at, along, _) = bar.pose(&e);
+            [at, at + along * bar.length]
+        })
+    }
+}
+
+impl Bar {
+    /// The line along it as drawn on a base that stands still, from end to end, m.
+    pub fn ends(&self, e: &Units) -> [[f64; 3]; 2] {
+        let (root, along, z) = self.pose(e);
+        self.span.map(|s| {
+            let p = root + along * s;
+            [p.re, p.im, z]
+        })
+    }
+
+    /// Where its root is and which way it points, and its height.
+    pub fn pose(&self, e: &Units) -> (Vector, Vector, f64) {
+        (place_of(&self.root, e), e[self.drive] * self.sign, self.z)
+    }
+
+    fn solid(&self, e: &Units, base: Vector, colour: Rgba) -> Solid {
+        let (at, along, z) = self.pose(e);
+        let at = base + at;
+        Solid { name: format!("link/{}", self.name), mesh: self.mesh, world_from_mesh: placed(at, along, z), colour }
+    }
+}
+
+/// Which links carry the end effector.
+fn carriers(machine: &Machine) -> Vec<bool> {
+    let mut carries = vec![false; machine.links().len()];
+    let mut at = Some(machine.tip_link());
+    while let Some(j) = at {
+        carries[j] = true;
+        at = machine.parts()[j].parent;
+    }
+    carries
+}
+
+/// Distinct pins: where they are, and the lowest and highest drive whose links they join.
+fn joints(machine: &Machine) -> Vec<(Chain, usize, usize)> {
+    let mut joints: Vec<(Chain, usize, usize)> = Vec::new();
+    for part in machine.parts() {
+        for &s in &part.pins {
+            let at = part.point(s);
+            if at.iter().all(|w| *w == 0.0) {
+                continue;
+            }
+            let same = |a: &Chain| a.iter().zip(&at).all(|(a, b)| (a - b).abs() < 1e-9);
+            match joints.iter_mut().find(|(a, ..)| same(a)) {
+                Some((_, low, high)) => (*low, *high) = ((*low).min(part.drive), (*high).max(part.drive)),
+                None => joints.push((at, part.drive, part.drive)),
+            }
+        }
+    }
+    joints
+}
+
+fn reach_of(machine: &Machine) -> f64 {
+    machine.tip().iter().map(|w| w.abs()).sum::<f64>().max(1e-6)
+}
+
+fn append(to: &mut Mesh, other: &Mesh, shift: [f64; 3]) {
+    let first = to.positions.len() as u32;
+    to.positions.extend(other.positions.iter().map(|p| [0, 1, 2].map(|i| p[i] + shift[i] as f32)));
+    to.normals.extend(&other.normals);
+    to.triangles.extend(other.triangles.iter().map(|t| t.map(|v| v + first)));
+}
+
+/// world_from_mesh of something at a point, its x axis along a unit vector.
+fn placed(at: Vector, along: Vector, z: f64) -> [[f32; 4]; 4] {
+    let (c, s) = (along.re as f32, along.im as f32);
+    [[c, s, 0.0, 0.0], [-s, c, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [at.re as f32, at.im as f32, z as f32, 1.0]]
+}
+
+/// a towards b by a share of 0..1.
+pub fn mix(a: Rgba, b: Rgba, share: f32) -> Rgba {
+    [0, 1, 2, 3].map(|i| a[i] + (b[i] - a[i]) * share)
+}

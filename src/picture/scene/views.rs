@@ -1,0 +1,228 @@
+//! The linked views of one run: the machine from above and in space, joint space, and the tower of workspaces. What is
+//! pulled at in one of them is asked of the session, so all of them follow.
+
+use super::Scene;
+use super::camera::Camera;
+use super::joint_space::JointSpace;
+use super::pointer::Pointer;
+use super::stage::{Handle, PULL, Stage, ViewOptions};
+use super::tower::Tower;
+use crate::session::Run;
+use crate::simulation::frame::Frame;
+
+/// How near to a handle the pointer takes hold of it, px.
+pub const GRIP: f64 = 20.0;
+
+/// The same for a point of the path, px.
+const POINT_GRIP: f64 = 9.0;
+
+/// The same for a link, px.
+const LINK_GRIP: f64 = 6.0;
+
+/// How far to the left of a point its name stands, px.
+const NAME: f64 = 17.0;
+
+/// One of the views.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ViewKind {
+    /// The machine from straight above.
+    #[default]
+    Flat,
+    /// The machine in perspective.
+    Space,
+    /// Joint space with its planes.
+    Joints,
+    /// All reactionless workspaces, b as height.
+    Tower,
+}
+
+impl ViewKind {
+    /// In the order of the switch.
+    pub const ALL: [Self; 4] = [Self::Flat, Self::Space, Self::Joints, Self::Tower];
+
+    /// What the switch says.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Flat => "2D",
+            Self::Space => "3D",
+            Self::Joints => "Joints",
+            Self::Tower => "Tower",
+        }
+    }
+
+    /// The next one, around.
+    #[must_use]
+    pub fn next(self) -> Self {
+        Self::ALL[(self as usize + 1) % Self::ALL.len()]
+    }
+
+    /// What it shows, in a sentence.
+    pub fn explanation(self) -> &'static str {
+        match self {
+            Self::Flat => "The machine and its reactionless workspace from above",
+            Self::Space => "The machine and its reactionless workspace in perspective",
+            Self::Joints => "Joint space: drive angles q₁, q₂, q₃, and the plane Σ λq = b within the joint limits",
+            Self::Tower => "All reactionless workspaces: b as height over the plane of motion",
+        }
+    }
+
+    /// What can be done in it with the pointer.
+    pub fn invitation(self) -> &'static str {
+        match self {
+            Self::Flat | Self::Space => "",
+            Self::Joints => "drag the dot in its plane  ·  drag the plane to change b",
+            Self::Tower => "drag the dot  ·  drag the slice to change b  ·  click a green bar to choose b",
+        }
+    }
+
+    /// The grid's width.
+    pub fn grid(self) -> &'static str {
+        match self {
+            Self::Flat | Self::Space => "0.1 m grid",
+            Self::Joints | Self::Tower => "",
+        }
+    }
+
+    /// Whether it shows the machine and its workspace.
+    pub fn shows_machine(self) -> bool {
+        matches!(self, Self::Flat | Self::Space)
+    }
+}
+
+/// What the pointer has taken hold of, and where.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grip {
+    /// What.
+    pub handle: Handle,
+    /// In the scene.
+    pub at: [f64; 3],
+}
+
+/// What pulling at a grip asks of the session.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Aim {
+    /// The end effector at a point, m.
+    Target([f64; 2]),
+    /// The pose constant, rad.
+    B(f64),
+    /// A point of the path, counted from A, at a place, m.
+    Waypoint(usize, [f64; 2]),
+    /// A force at the end effector, N.
+    Push([f64; 2]),
+}
+
+/// What stays the same from frame to frame in all views.
+#[derive(Clone, Debug)]
+pub struct Views {
+    stage: Stage,
+    joints: Option<JointSpace>,
+    tower: Option<Tower>,
+}
+
+impl Views {
+    /// Prepares a run for drawing; to be made again when its machine or plan changes.
+    pub fn of(run: &Run) -> Self {
+        Self { stage: Stage::of(run), joints: JointSpace::of(run), tower: Tower::of(run) }
+    }
+
+    /// Takes over what has changed of base and payload.
+    pub fn refresh(&mut self, run: &Run) {
+        self.stage.refresh(run);
+    }
+
+    /// The machine's view.
+    pub fn stage(&self) -> &Stage {
+        &self.stage
+    }
+
+    /// Joint space, if the machine has planes.
+    pub fn joints(&self) -> Option<&JointSpace> {
+        self.joints.as_ref()
+    }
+
+    /// The tower, if the machine has planes.
+    pub fn tower(&self) -> Option<&Tower> {
+        self.tower.as_ref()
+    }
+
+    /// The camera that shows everything.
+    pub fn camera(&self, kind: ViewKind) -> Camera {
+        let reach = self.stage.linkage().reach();
+        match (kind, &self.joints, &self.tower) {
+            (ViewKind::Joints, Some(joints), _) => joints.camera(),
+            (ViewKind::Tower, _, Some(tower)) => tower.camera(),
+            (ViewKind::Flat, ..) => Camera::flat(reach),
+            _ => Camera::orbit(reach),
+        }
+    }
+
+    /// Everything there is to draw.
+    pub fn scene(&self, kind: ViewKind, frame: &Frame, options: &ViewOptions, camera: &Camera) -> Scene {
+        match (kind, &self.joints, &self.tower) {
+            (ViewKind::Joints, Some(joints), _) => joints.scene(frame, options, camera),
+            (ViewKind::Tower, _, Some(tower)) => tower.scene(frame, options, camera),
+            _ => self.stage.scene(frame, options),
+        }
+    }
+
+    /// The end effector, if it is under the pointer.
+    pub fn pick_tip(&self, frame: &Frame, pointer: &Pointer) -> Option<Grip> {
+        let at = self.stage.handle(Handle::Tip, frame)?;
+        (pointer.distance(at)? < 1.5 * GRIP).then_some(Grip { handle: Handle::Tip, at })
+    }
+
+    /// The number of the link under the pointer in the machine's view, in a frame as shown; the uppermost of several.
+    pub fn link_at(&self, frame: &Frame, pointer: &Pointer) -> Option<usize> {
+        let (e, at) = (frame.q.units(), frame.base.at);
+        let near = |ends: [[f64; 3]; 2]| {
+            pointer.distance_to_segment(ends.map(|[x, y, z]| [x + at.re, y + at.im, z])).is_some_and(|d| d < LINK_GRIP)
+        };
+        let bars = self.stage.linkage().bars().iter().enumerate();
+        bars.filter(|(_, bar)| near(bar.ends(&e))).max_by_key(|(_, bar)| bar.drive).map(|(i, _)| i)
+    }
+
+    /// What is under the pointer and can be pulled at, in a frame as shown.
+    pub fn pick(&self, kind: ViewKind, frame: &Frame, pointer: &Pointer) -> Option<Grip> {
+        match (kind, &self.joints, &self.tower) {
+            (ViewKind::Joints, Some(joints), _) => joints.pick(frame, pointer),
+            (ViewKind::Tower, _, Some(tower)) => tower.pick(frame, pointer),
+            _ => {
+                let grips = [Handle::Target, Handle::Ring].into_iter().filter_map(|handle| {
+                    let at = self.stage.handle(handle, frame)?;
+                    Some((Grip { handle, at }, pointer.distance(at)?))
+                });
+                let near = grips.filter(|(_, d)| *d < GRIP);
+                let first = near.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(grip, _)| grip);
+                // Where the target covers a point of the path, the point is held by its name, to the left of it.
+                let points = self.stage.waypoints().filter_map(|i| {
+                    let handle = Handle::Waypoint(i);
+                    let at = self.stage.handle(handle, frame)?;
+                    let [x, y] = pointer.seen(at)?;
+                    let name = (pointer.at[0] - x + NAME).hypot(pointer.at[1] - y);
+                    let own = (pointer.at[0] - x).hypot(pointer.at[1] - y);
+                    let off = if first.is_some() { name } else { own.min(name) };
+                    (off < POINT_GRIP).then_some((Grip { handle, at }, off))
+                });
+                points.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(grip, _)| grip).or(first)
+            }
+        }
+    }
+
+    /// What pulling at a grip asks for; `b` is the pose constant that the machine is sent to, rad.
+    pub fn aim(&self, kind: ViewKind, grip: &Grip, frame: &Frame, pointer: &Pointer, b: f64) -> Option<Aim> {
+        match (kind, &self.joints, &self.tower) {
+            (ViewKind::Joints, Some(joints), _) => joints.aim(grip, frame, pointer),
+            (ViewKind::Tower, _, Some(tower)) => tower.aim(grip, frame, pointer),
+            _ => {
+                let at = pointer.ray()?.at_height(self.stage.handle_height())?;
+                match grip.handle {
+                    Handle::Target => Some(Aim::Target(at)),
+                    Handle::Ring => self.stage.ring_b(at, b, frame).map(Aim::B),
+                    Handle::Tip => Some(Aim::Push([PULL * (at[0] - frame.tip.re), PULL * (at[1] - frame.tip.im)])),
+                    Handle::Waypoint(i) => Some(Aim::Waypoint(i, at)),
+                    Handle::Plane | Handle::Bar => None,
+                }
+            }
+        }
+    }
+}

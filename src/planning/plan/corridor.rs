@@ -1,0 +1,293 @@
+//! The corridor of b along a motion of the end effector: between which b_min and b_max the drives can serve each of its
+//! points on the sheet of the start pose, within the joint limits.
+//!
+//! On one sheet q = q(x, y, b): once the end effector's motion is given, b is all that is left to choose. The self-motion
+//! of each point, cut where b turns back, gives the ends exactly: joint limits or folds.
+
+use thiserror::Error;
+
+use super::curve::CurvePoint;
+use crate::mechanics::planar::Vector;
+use crate::planning::reactionless::{NoReach, PlaneMap, PlanePoint, SLACK, between, metres};
+
+/// Points of a self-motion that tell its parts from each other.
+const SAMPLES: usize = 25;
+/// From one station to the next a pose may move by this much, rad; further away is another branch.
+const JUMP: f64 = 0.2;
+/// Newton's iteration from a guess is trusted if it moves no further than this, rad.
+const NEAR: f64 = 0.05;
+/// Steps of b below this are rounding, rad.
+const FLAT: f64 = 1e-11;
+
+/// What b may be at one instant.
+#[derive(Clone, Debug)]
+pub struct Station {
+    /// u = t/T.
+    pub u: f64,
+    /// The end effector and its derivatives by u.
+    pub point: CurvePoint,
+    /// b_min, rad; −∞ where b may turn without end.
+    pub low: f64,
+    /// b_max, rad.
+    pub high: f64,
+    /// Poses from b_min to b_max; never none.
+    line: Vec<PlanePoint>,
+    /// As det ∂(x, y)/∂(a_1, a_2) on the sheet, in sign.
+    det: f64,
+}
+
+/// The corridor along a motion, at stations spaced evenly in u = t/T from 0 to 1.
+#[derive(Clone, Debug)]
+pub struct Corridor {
+    map: PlaneMap,
+    start: PlanePoint,
+    stations: Vec<Station>,
+}
+
+/// Why there is no corridor.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum CorridorError {
+    /// The start pose belongs to another point.
+    #[error("the start pose has the end effector {miss:.2e} m off the motion's first point: want it there")]
+    Start {
+        /// m.
+        miss: f64,
+    },
+    /// The motion begins nowhere.
+    #[error("the motion's first point is no point, or too far away to count: want finite coordinates")]
+    Nowhere,
+    /// The start pose passes a joint limit.
+    #[error("the start pose has a_{number} = {angle:.3} rad: want it {}", between(*.min, *.max))]
+    Limit {
+        /// 1 or 2.
+        number: usize,
+        /// rad.
+        angle: f64,
+        /// rad.
+        min: f64,
+        /// rad.
+        max: f64,
+    },
+    /// det = 0.
+    #[error("the start pose lies on a fold, where two sheets meet: want det ∂(x, y)/∂(a_1, a_2) ≠ 0")]
+    Fold,
+    /// No b at all.
+    #[error("at u = {u:.3} of the motion, ({}, {}) m: {reason}", metres(*.x, 3), metres(*.y, 3))]
+    Unreachable {
+        /// t/T.
+        u: f64,
+        /// m.
+        x: f64,
+        /// m.
+        y: f64,
+        /// Why.
+        reason: NoReach,
+    },
+    /// Other poses only.
+    #[error(
+        "at u = {u:.3} the sheet of the start pose ends: the rest of the motion wants another elbow, or wider joint limits"
+    )]
+    Ends {
+        /// t/T.
+        u: f64,
+    },
+    /// The curve is no curve.
+    #[error("the motion is not finite at u = {u:.3}")]
+    NotFinite {
+        /// t/T.
+        u: f64,
+    },
+}
+
+impl Station {
+    /// The pose of this instant at b, rad, on the corridor's sheet.
+    pub fn pose(&self, map: &PlaneMap, b: f64) -> Option<PlanePoint> {
+        let (first, last) = (self.line.first()?, self.line.last()?);
+        let turns = if self.low.is_finite() { 0.0 } else { map.period() * ((b - first.b) / map.period()).floor() };
+        let on = (b - turns).clamp(first.b, last.b);
+        if (on - (b - turns)).abs() > FLAT {
+            return None;
+        }
+        let i = self.line.partition_point(|at| at.b < on).clamp(1, self.line.len().max(2) - 1);
+        let [from, to] = [self.line[i - 1], *self.line.get(i).unwrap_or(last)];
+        if let Some(end) = [from, to].into_iter().find(|end| (end.b - on).abs() <= FLAT) {
+            return Some(PlanePoint { a: end.a, b });
+        }
+        let share = (on - from.b) / (to.b - from.b);
+        let guess = [0, 1].map(|i| from.a[i] + share * (to.a[i] - from.a[i]));
+        if map.det(guess) * self.det > 0.0
+            && let Some(a) = map.follow(self.point.p, on, guess)
+            && (a[0] - guess[0]).hypot(a[1] - guess[1]) < NEAR
+        {
+            return Some(PlanePoint { a, b });
+        }
+        let far = |x: &PlanePoint| (x.a[0] - guess[0]).hypot(x.a[1] - guess[1]);
+        let poses = map.poses(self.point.p, on);
+        let own = poses.iter().filter(|x| map.det(x.a) * self.det > 0.0);
+        own.min_by(|x, y| far(x).total_cmp(&far(y))).map(|x| PlanePoint { a: x.a, b })
+    }
+
+    /// The b furthest from both ends; b itself where there are none.
+    fn middle(&self, b: f64) -> f64 {
+        if self.low.is_finite() { 0.5 * (self.low + self.high) } else { b }
+    }
+}
+
+/// How far apart two b are, whole turns aside.
+fn off(x: f64, b: f64, map: &PlaneMap) -> f64 {
+    let gap = (x - b).abs();
+    (gap - map.period() * (gap / map.period()).round()).abs()
+}
+
+impl Corridor {
+    /// Follows the sheet of a start pose along a motion p(u), u = t/T from 0 to 1, with `count` + 1 stations. Where joint
+    /// limits part the corridor in two, it is the part nearer to the middle of the corridor just before.
+    ///
+    /// # Errors
+    /// If the pose does not fit the motion's start, or where the sheet ends.
+    pub fn along(
+        map: &PlaneMap,
+        curve: impl Fn(f64) -> CurvePoint,
+        start: PlanePoint,
+        count: usize,
+    ) -> Result<Self, CorridorError> {
+        let first = curve(0.0).p;
+        let miss = (map.forward(start.a, start.b) - first).norm();
+        let reach: f64 = map.c().iter().map(|c| c.abs()).sum();
+        if !miss.is_finite() {
+            return Err(CorridorError::Nowhere);
+        }
+        if miss > 1e-8 * reach {
+            return Err(CorridorError::Start { miss });
+        }
+        for (i, limit) in map.limits().iter().enumerate() {
+            if !limit.contains(start.a[i], SLACK) {
+                let (min, max) = (limit.min, limit.max);
+                return Err(CorridorError::Limit { number: i + 1, angle: start.a[i], min, max });
+            }
+        }
+        let det = map.det(start.a);
+        if det.abs() <= 1e-9 * reach * reach {
+            return Err(CorridorError::Fold);
+        }
+        let count = count.max(1);
+        let mut stations: Vec<Station> = Vec::with_capacity(count + 1);
+        let mut at = start;
+        for i in 0..=count {
+            let u = i as f64 / count as f64;
+            let point = curve(u);
+            let station = station(map, u, point, at, det)?;
+            let b = station.middle(at.b);
+            at = station.pose(map, b).ok_or(CorridorError::Ends { u })?;
+            stations.push(station);
+        }
+        Ok(Self { map: *map, start, stations })
+    }
+
+    /// The stations, from u = 0 to 1.
+    pub fn stations(&self) -> &[Station] {
+        &self.stations
+    }
+
+    /// The pose it begins with.
+    pub fn start(&self) -> PlanePoint {
+        self.start
+    }
+
+    /// Eqs (13)–(16) of its machine.
+    pub fn map(&self) -> &PlaneMap {
+        &self.map
+    }
+
+    /// The first station at which a b, rad, lies outside; `None` if it can be kept all the way.
+    pub fn leaves(&self, b: f64) -> Option<&Station> {
+        self.stations.iter().find(|s| !(s.low - SLACK <= b && b <= s.high + SLACK))
+    }
+}
+
+/// The corridor at a point, on the branch that passes nearest to a pose.
+fn station(map: &PlaneMap, u: f64, point: CurvePoint, near: PlanePoint, det: f64) -> Result<Station, CorridorError> {
+    let p: Vector = point.p;
+    let finite = [p, point.first, point.second].iter().all(|x| x.re.is_finite() && x.im.is_finite());
+    if !finite {
+        return Err(CorridorError::NotFinite { u });
+    }
+    let mut best: Option<(f64, Station)> = None;
+    for branch in map.self_motion(p, SAMPLES) {
+        for mut line in sheets(map, branch) {
+            let (low, high) = (line[0].b, line[line.len() - 1].b);
+            // Folds end a part, so that inside it det has one sign; a sheet may have shrunk to a point, where it is anything.
+            let own = map.det(inside(&line));
+            if own * det < 0.0 && high - low > FLAT {
+                continue;
+            }
+            let endless = high - low >= map.period() - 1e-9;
+            let turns = map.period() * ((near.b - 0.5 * (low + high)) / map.period()).round();
+            line.iter_mut().for_each(|at| at.b += turns);
+            let (low, high) = if endless { (f64::NEG_INFINITY, f64::INFINITY) } else { (low + turns, high + turns) };
+            let candidate = Station { u, point, low, high, line, det: own };
+            let Some(at) = candidate.pose(map, near.b.clamp(low, high)) else { continue };
+            let moved = (at.a[0] - near.a[0]).hypot(at.a[1] - near.a[1]);
+            if moved < JUMP && best.as_ref().is_none_or(|(least, _)| moved < *least) {
+                best = Some((moved, candidate));
+            }
+        }
+    }
+    if let Some((_, station)) = best {
+        return Ok(station);
+    }
+    Err(match map.reach(p) {
+        Err(reason) => CorridorError::Unreachable { u, x: p.re, y: p.im, reason },
+        Ok(_) => CorridorError::Ends { u },
+    })
+}
+
+/// A pose between the ends of a part.
+fn inside(line: &[PlanePoint]) -> [f64; 2] {
+    match line {
+        [from, to] => [0, 1].map(|i| 0.5 * (from.a[i] + to.a[i])),
+        line => line[line.len() / 2].a,
+    }
+}
+
+/// A branch of a self-motion cut where b turns back; each part with b rising.
+fn sheets(map: &PlaneMap, branch: Vec<PlanePoint>) -> Vec<Vec<PlanePoint>> {
+    let closes = match (branch.first(), branch.last()) {
+        (Some(x), Some(y)) if branch.len() > 2 => {
+            (x.a[0] - y.a[0]).abs() < 1e-9 && (x.a[1] - y.a[1]).abs() < 1e-9 && off(x.b, y.b, map) < 1e-9
+        }
+        _ => false,
+    };
+    let mut parts: Vec<(f64, Vec<PlanePoint>)> = Vec::new();
+    for at in branch {
+        let Some((way, part)) = parts.last_mut() else {
+            parts.push((0.0, vec![at]));
+            continue;
+        };
+        let last = part[part.len() - 1];
+        let step = at.b - last.b;
+        if step.abs() > FLAT && *way * step < 0.0 {
+            parts.push((step.signum(), vec![last, at]));
+        } else {
+            if step.abs() > FLAT {
+                *way = step.signum();
+            }
+            part.push(at);
+        }
+    }
+    // Around a closed branch the last part goes on as the first.
+    if closes && parts.len() > 1 && parts[0].0 == parts[parts.len() - 1].0 {
+        let (_, first) = parts.remove(0);
+        if let Some((_, last)) = parts.last_mut() {
+            let lift = last[last.len() - 1].b - first[0].b;
+            last.extend(first.into_iter().skip(1).map(|at| PlanePoint { b: at.b + lift, ..at }));
+        }
+    }
+    let rising = |(way, mut part): (f64, Vec<PlanePoint>)| {
+        if way < 0.0 {
+            part.reverse();
+        }
+        part
+    };
+    parts.into_iter().map(rising).collect()
+}

@@ -1,0 +1,218 @@
+//! Drift: a closed path of the end effector, followed at zero angular momentum time after time.
+//!
+//! D(q) q̇ = 0 is nonholonomic where D depends on the pose: the end effector comes back, the joints do not. On an invariant
+//! machine they do, to rounding. It is why the paper wants invariance, (8).
+
+use thiserror::Error;
+
+use super::curve::{Curve, CurvePoint};
+use super::null_space::{lines, momentum_row_rate, rates, solve};
+use super::path::{PathPoint, by_pieces};
+use super::table::Table;
+use crate::mechanics::kinematics::{acceleration, end_effector};
+use crate::mechanics::machine::Inertia;
+use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
+
+/// Why a motion of zero momentum does not follow a curve.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum DriftError {
+    /// Not three.
+    #[error("{drives} drives: a curve in the plane at zero momentum takes three")]
+    Drives {
+        /// How many.
+        drives: usize,
+    },
+    /// The start is elsewhere.
+    #[error("the start pose has the end effector {miss:.2e} m off the curve's first point: want it there")]
+    Start {
+        /// m.
+        miss: f64,
+    },
+    /// The end is not the start.
+    #[error("the curve ends {gap:.2e} m from where it begins: want a closed one")]
+    Open {
+        /// m.
+        gap: f64,
+    },
+    /// [J; D] has lost rank.
+    #[error("at s = {s:.3} of the curve, time {cycle} round, no rates of zero momentum follow it")]
+    Singular {
+        /// Along the curve.
+        s: f64,
+        /// Counted from 1.
+        cycle: usize,
+    },
+}
+
+/// A circle run through once, counter-clockwise, from a point of it, m.
+pub fn circle(centre: Vector, start: Vector) -> impl Fn(f64) -> CurvePoint + Clone {
+    let radius = start - centre;
+    move |s| {
+        let turn = std::f64::consts::TAU;
+        let at = radius * unit(turn * s);
+        let i = Vector::new(0.0, 1.0);
+        CurvePoint { p: centre + at, first: i * turn * at, second: -turn * turn * at }
+    }
+}
+
+/// Spaces between the nodes of a followed curve.
+const SPACES: usize = 256;
+/// Steps of the integration from node to node.
+const STEPS: usize = 4;
+/// Newton steps that bring the end effector back onto the curve after each step.
+const CORRECTIONS: usize = 4;
+/// How near it is brought, as a part of the arm.
+const ON_CURVE: f64 = 1e-14;
+/// How far off a single step may leave it, as a part of the arm; further off it has jumped over a singular pose.
+const OFF_CURVE: f64 = 1e-4;
+
+/// Follows a curve of the end effector at zero angular momentum, [J; D] q′ = [p′; 0], by the fourth-order rule; after each
+/// step the end effector is put back onto the curve by rates of zero momentum. Any time law, from rest to rest, keeps the
+/// moment at zero.
+///
+/// # Errors
+/// If there are not three drives, the start is not on the curve, or [J; D] loses rank.
+pub fn zero_momentum_path(
+    model: &Inertia,
+    start: DriveAngles,
+    curve: impl Fn(f64) -> CurvePoint,
+) -> Result<Table, DriftError> {
+    Table::even(round(model, start, &curve, SPACES, 1)?).ok_or(DriftError::Singular { s: 0.0, cycle: 1 })
+}
+
+/// The same along a curve of pieces, each with spaces of its own, for the given time round.
+///
+/// # Errors
+/// As [`zero_momentum_path`].
+pub fn zero_momentum_curve(
+    model: &Inertia,
+    start: DriveAngles,
+    curve: &Curve,
+    cycle: usize,
+) -> Result<Table, DriftError> {
+    let piece = |q: DriveAngles, [from, to]: [f64; 2], at: &dyn Fn(f64) -> CurvePoint, spaces: usize| {
+        round(model, q, &at, spaces, cycle).map_err(|error| match error {
+            DriftError::Singular { s, cycle } => DriftError::Singular { s: from + s * (to - from), cycle },
+            other => other,
+        })
+    };
+    by_pieces(curve, start, SPACES, piece)?.ok_or(DriftError::Singular { s: 0.0, cycle })
+}
+
+fn round(
+    model: &Inertia,
+    start: DriveAngles,
+    curve: &impl Fn(f64) -> CurvePoint,
+    spaces: usize,
+    cycle: usize,
+) -> Result<Vec<PathPoint>, DriftError> {
+    let drives = model.drives();
+    if drives != 3 || start.len() != 3 {
+        return Err(DriftError::Drives { drives });
+    }
+    let reach = model.tip.iter().map(|c| c.abs()).sum::<f64>();
+    let miss = (curve(0.0).p - end_effector(&model.tip, &start.units())).norm();
+    if miss.is_nan() || miss > 1e-8 * reach {
+        return Err(DriftError::Start { miss });
+    }
+    let singular = |s: f64| DriftError::Singular { s, cycle };
+    let slope = |q: &DriveAngles, s: f64| rates(model, q, curve(s).first, 0.0).ok_or(singular(s));
+    let steps = spaces * STEPS;
+    let h = 1.0 / steps as f64;
+    let mut q = start;
+    let mut nodes = Vec::with_capacity(spaces + 1);
+    for i in 0..=steps {
+        let s = i as f64 * h;
+        if i % STEPS == 0 {
+            nodes.push(node(model, &q, &curve(s)).ok_or(singular(s))?);
+        }
+        if i == steps {
+            break;
+        }
+        let k1 = slope(&q, s)?;
+        let k2 = slope(&DriveAngles(q.0.plus(h / 2.0, &k1)), s + h / 2.0)?;
+        let k3 = slope(&DriveAngles(q.0.plus(h / 2.0, &k2)), s + h / 2.0)?;
+        let k4 = slope(&DriveAngles(q.0.plus(h, &k3)), s + h)?;
+        q = DriveAngles(q.0.plus(h / 6.0, &k1).plus(h / 3.0, &k2).plus(h / 3.0, &k3).plus(h / 6.0, &k4));
+        let goal = curve((i + 1) as f64 * h).p;
+        for j in 0..CORRECTIONS {
+            let gap = goal - end_effector(&model.tip, &q.units());
+            if j == 0 && (gap.is_nan() || gap.norm() > OFF_CURVE * reach) {
+                return Err(singular(s));
+            }
+            if gap.norm() <= ON_CURVE * reach {
+                break;
+            }
+            q.0 = q.0.plus(1.0, &rates(model, &q, gap, 0.0).ok_or(singular(s))?);
+        }
+    }
+    Ok(nodes)
+}
+
+/// q, q′ and q″ with D q′ = 0 and D q″ + D′ q′ = 0.
+fn node(model: &Inertia, q: &DriveAngles, point: &CurvePoint) -> Option<PathPoint> {
+    let e = q.units();
+    let (lines, scale) = lines(model, &e)?;
+    let first = solve(&lines, point.first, 0.0)?;
+    let bent = acceleration(&model.tip, &e, &first, &PerDrive::zeros(3));
+    let turned = momentum_row_rate(model, &e, &first).dot(&first);
+    let second = solve(&lines, point.second - bent, -turned / scale)?;
+    Some(PathPoint { q: *q, first, second })
+}
+
+/// Where the joints are each time the end effector has come round.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drift {
+    /// q at the start and after each cycle, rad.
+    pub ends: Vec<DriveAngles>,
+    /// The first cycle.
+    pub first: Table,
+}
+
+impl Drift {
+    /// q after the last cycle less q at the start, rad.
+    pub fn total(&self) -> PerDrive {
+        let last = self.ends.len() - 1;
+        self.ends[last].0.minus(&self.ends[0].0)
+    }
+}
+
+/// Follows a closed curve of the end effector time after time, once at least, at zero angular momentum.
+///
+/// # Errors
+/// As [`zero_momentum_path`], or if the curve is not closed.
+pub fn drift(
+    model: &Inertia,
+    start: DriveAngles,
+    curve: impl Fn(f64) -> CurvePoint,
+    cycles: usize,
+) -> Result<Drift, DriftError> {
+    drift_in(model, start, curve, cycles, SPACES)
+}
+
+/// The same in so many spaces a cycle, 2 to 4096, each of four steps: the error falls with their fourth power.
+///
+/// # Errors
+/// As [`drift`].
+pub fn drift_in(
+    model: &Inertia,
+    start: DriveAngles,
+    curve: impl Fn(f64) -> CurvePoint,
+    cycles: usize,
+    spaces: usize,
+) -> Result<Drift, DriftError> {
+    let reach = model.tip.iter().map(|c| c.abs()).sum::<f64>();
+    let gap = (curve(1.0).p - curve(0.0).p).norm();
+    if gap.is_nan() || gap > 1e-10 * reach {
+        return Err(DriftError::Open { gap });
+    }
+    let spaces = spaces.clamp(2, 4096);
+    let end = |nodes: &[PathPoint]| nodes.last().map_or(start, |node| node.q);
+    let first = round(model, start, &curve, spaces, 1)?;
+    let mut ends = vec![start, end(&first)];
+    let first = Table::even(first).ok_or(DriftError::Singular { s: 0.0, cycle: 1 })?;
+    for cycle in 2..=cycles {
+        ends.push(end(&round(model, ends[cycle - 1], &curve, spaces, cycle)?));
+    }
+    Ok(Drift { ends, first })
+}

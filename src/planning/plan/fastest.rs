@@ -1,0 +1,347 @@
+//! The fastest motion on a path, from rest to rest, that the drives can do.
+//!
+//! On a straight joint line, with constant diagonal mass matrix and nothing to hold up, every limit is one on s̈, ṡ or s⃛
+//! and the optimum is known in closed form; elsewhere it is a time-optimal path parameterisation, and with limits on
+//! jerk a feasible motion near it.
+
+use thiserror::Error;
+
+use super::keep::{greatest, kept};
+use super::law::Progress;
+use super::limits::{Constraints, Limit, Limits, Quantity, Row};
+use super::path::Path;
+use super::profile::{Profile, Span};
+use super::smooth;
+use super::topp::{Blocked, Grid, PAST, Sweep, UNLIMITED};
+use super::usage::Shares;
+use crate::mechanics::dynamics::Surroundings;
+use crate::mechanics::machine::Inertia;
+use crate::mechanics::planar::PerDrive;
+
+/// Spaces of the grid on a curve to begin with, if nobody says otherwise.
+pub const SPACES: usize = 600;
+
+/// The fastest motion on a path.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fastest {
+    /// When it is where.
+    pub profile: Profile,
+    /// T/T* − 1, T* the least time without limits on jerk: a bound on what a better motion with them could gain. Only
+    /// where jerk was to be limited, and something besides it limits.
+    pub gap: Option<f64>,
+    /// Which limits lead, for what share of T, the greatest share first.
+    pub limiting: Vec<(Limit, f64)>,
+}
+
+/// Why there is no fastest motion.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum TimeError {
+    /// Nothing limits.
+    #[error(
+        "no limit acts on the motion at s = {s:.3}: want torque, speed or acceleration limits of the drives that move"
+    )]
+    Unlimited {
+        /// How far along.
+        s: f64,
+    },
+    /// Only speeds are limited.
+    #[error("only speeds are limited, and the motion would jump to them: want torque or acceleration limits too")]
+    SpeedOnly,
+    /// Jerk was to be limited.
+    #[error(
+        "no drive that moves has a limit on its jerk: want jerk_limit of a drive, such as drive.1.jerk_limit=900, or the law without it"
+    )]
+    NoJerkLimit,
+    /// A drive cannot hold the machine up.
+    #[error(
+        "drive {drive} needs {torque:.3} N m to hold still at s = {s:.3} and has {limit}: want a higher torque limit, \
+         or a path elsewhere"
+    )]
+    Static {
+        /// Counted from 1.
+        drive: usize,
+        /// How far along.
+        s: f64,
+        /// N m.
+        torque: f64,
+        /// N m.
+        limit: f64,
+    },
+    /// No rate is right.
+    #[error("the limits leave no way past s = {s:.3}: want higher limits, or a path elsewhere")]
+    Stuck {
+        /// How far along.
+        s: f64,
+    },
+    /// The grid.
+    #[error("the stations do not rise from 0 to 1: want two or more that do")]
+    Stations,
+    /// Unlike numbers of drives.
+    #[error("a path of {path} drives, a model of {model} and limits of {limits}: want one number of drives")]
+    Drives {
+        /// Of the path.
+        path: usize,
+        /// Of the model.
+        model: usize,
+        /// Of the limits.
+        limits: usize,
+    },
+}
+
+/// The fastest motion on a path within a machine's limits; `smooth`: those on jerk too. On a curve the grid begins with
+/// [`stations`] of [`SPACES`] and the path's own places, is made finer where what is limited changes much, and the motion
+/// is slowed down by what limits are passed by between its stations, so that it keeps them everywhere.
+///
+/// # Errors
+/// If nothing limits the motion, or the limits leave none.
+pub fn fastest(
+    path: &Path,
+    model: &Inertia,
+    around: &Surroundings,
+    limits: &Limits,
+    smooth: bool,
+) -> Result<Fastest, TimeError> {
+    planned(path, model, around, limits, smooth, None)
+}
+
+/// Stations s = u² (3 − 2 u), u even: as a motion at constant |s̈| would pass at even times, so that they are finest at
+/// the ends, where it is slow.
+pub fn stations(spaces: usize) -> Vec<f64> {
+    let at = |i: usize| {
+        let u = i as f64 / spaces as f64;
+        u * u * (3.0 - 2.0 * u)
+    };
+    (0..=spaces).map(at).collect()
+}
+
+/// [`fastest`] on a grid of stations that rise from 0 to 1, as it is: limits other than those on jerk are kept at the
+/// stations, and between them to second order in their spacing.
+///
+/// # Errors
+/// As [`fastest`], and if the stations do not rise from 0 to 1.
+pub fn fastest_at(
+    path: &Path,
+    model: &Inertia,
+    around: &Surroundings,
+    limits: &Limits,
+    smooth: bool,
+    stations: &[f64],
+) -> Result<Fastest, TimeError> {
+    let rising = stations.windows(2).all(|w| w[0] < w[1]);
+    if !rising || stations.len() < 2 || stations.first() != Some(&0.0) || stations.last() != Some(&1.0) {
+        return Err(TimeError::Stations);
+    }
+    planned(path, model, around, limits, smooth, Some(stations))
+}
+
+fn planned(
+    path: &Path,
+    model: &Inertia,
+    around: &Surroundings,
+    limits: &Limits,
+    smooth: bool,
+    stations: Option<&[f64]>,
+) -> Result<Fastest, TimeError> {
+    let drives = (path.at(0.0).q.len(), model.drives(), limits.torque.len());
+    let alike = Quantity::ALL.iter().all(|quantity| limits.on(*quantity).len() == drives.1);
+    if drives.0 != drives.1 || !alike {
+        return Err(TimeError::Drives { path: drives.0, model: drives.1, limits: drives.2 });
+    }
+    let constraints = Constraints::new(model, around, limits);
+    match path {
+        Path::Rest(_) => return Ok(nowhere()),
+        Path::JointLine { from, to } if from == to => return Ok(nowhere()),
+        Path::JointLine { from, to } if constraints.is_constant() => {
+            return straight(&to.0.minus(&from.0), model, limits, smooth);
+        }
+        _ if smooth && !(0..drives.1).any(|k| limits.jerk[k].is_finite()) => return Err(TimeError::NoJerkLimit),
+        _ => {}
+    }
+    if let Some(stations) = stations {
+        let grid = Grid::new(path, &constraints, stations.to_vec());
+        let bound = curved(path, &constraints, &grid, grid.fastest());
+        return if smooth { smooth::smooth(path, model, around, &constraints, &grid, bound) } else { bound };
+    }
+    let stretch = |at: &Progress| constraints.stretch(path, at);
+    let (mut grid, found) = Grid::new(path, &constraints, dense(path)).fastest_refined(path, &constraints);
+    let mut bound = curved(path, &constraints, &grid, found);
+    for _ in 0..MENDINGS {
+        let Ok(found) = &bound else { break };
+        let past: Vec<f64> = found.profile.phases().map(|phase| greatest(std::iter::once(phase), stretch)).collect();
+        if past.len() + 1 != grid.s.len() || past.iter().all(|past| *past <= 1.0 + PAST) {
+            break;
+        }
+        let found;
+        (grid, found) = grid.mended(path, &constraints, &past);
+        bound = curved(path, &constraints, &grid, found);
+    }
+    if smooth {
+        return smooth::smooth(path, model, around, &constraints, &grid, bound);
+    }
+    let found = bound?;
+    let profile = kept(&found.profile, stretch).ok_or(TimeError::Stuck { s: 0.0 })?;
+    Ok(Fastest { profile, ..found })
+}
+
+/// How often the grid is made finer where limits are passed between its stations.
+const MENDINGS: usize = 6;
+
+/// [`stations`] and the places of a path, which take the place of stations close by.
+fn dense(path: &Path) -> Vec<f64> {
+    let (own, even) = (path.places(), stations(SPACES));
+    let mut all = Vec::with_capacity(own.len() + even.len());
+    let mut next = 0;
+    for (i, s) in even.iter().enumerate() {
+        while next < own.len() && own[next] <= *s {
+            all.push(own[next]);
+            next += 1;
+        }
+        let room = 0.25 * (even[(i + 1).min(SPACES)] - even[i.saturating_sub(1)]);
+        let clear = |near: Option<&f64>| near.is_none_or(|near| (near - s).abs() > room);
+        if clear(all.last()) && clear(own.get(next)) {
+            all.push(*s);
+        }
+    }
+    all
+}
+
+fn nowhere() -> Fastest {
+    Fastest { profile: Profile::none(), gap: None, limiting: Vec::new() }
+}
+
+/// The least of limits on derivatives of s along a straight line, and whose it is.
+fn least(step: &PerDrive, quantity: Quantity, limit: impl Fn(usize) -> f64) -> (f64, Limit) {
+    let of = |drive: usize| (limit(drive) / step[drive].abs(), Limit { quantity, drive });
+    let moving = (0..step.len()).filter(|k| step[*k] != 0.0).map(of);
+    moving.fold((f64::INFINITY, Limit { quantity, drive: 0 }), |a, b| if b.0 < a.0 { b } else { a })
+}
+
+fn straight(step: &PerDrive, model: &Inertia, limits: &Limits, smooth: bool) -> Result<Fastest, TimeError> {
+    let speed = least(step, Quantity::Speed, |k| limits.speed[k]);
+    let torque = least(step, Quantity::Torque, |k| limits.torque[k] / model.diagonal(k));
+    let wanted = least(step, Quantity::Acceleration, |k| limits.acceleration[k]);
+    let acceleration = if torque.0 <= wanted.0 { torque } else { wanted };
+    let jerk = least(step, Quantity::Jerk, |k| limits.jerk[k]);
+    let without = s_curve(speed.0, acceleration.0, f64::INFINITY);
+    let spans = match (smooth, without) {
+        (true, _) if jerk.0.is_infinite() => return Err(TimeError::NoJerkLimit),
+        (true, _) => s_curve(speed.0, acceleration.0, jerk.0),
+        (false, spans) => spans,
+    };
+    let Some(spans) = spans else {
+        return Err(if speed.0.is_finite() { TimeError::SpeedOnly } else { TimeError::Unlimited { s: 0.0 } });
+    };
+    let profile = Profile::of_spans(&spans);
+    let mut shares = Shares::default();
+    for (i, span) in spans.iter().enumerate() {
+        let leads = [jerk, acceleration, jerk, speed, jerk, acceleration, jerk][i];
+        shares.add(leads.1, span.time);
+    }
+    let time = |spans: [Span; 7]| spans.iter().map(|s| s.time).sum::<f64>();
+    let gap = without.filter(|_| smooth).map(|w| (profile.duration() / time(w) - 1.0).max(0.0));
+    Ok(Fastest { profile, gap, limiting: shares.sorted() })
+}
+
+/// The fastest way from 0 to 1, from rest to rest, with |ṡ| ≤ v, |s̈| ≤ a, |s⃛| ≤ j, all above 0, any of them infinite:
+/// jerk up, constant s̈, jerk down, constant ṡ, and the same backwards; phases that do not occur take no time. `None` if
+/// both s̈ and s⃛ are unlimited.
+pub fn s_curve(v: f64, a: f64, j: f64) -> Option<[Span; 7]> {
+    if a.is_infinite() && j.is_infinite() {
+        return None;
+    }
+    // The peak rate if v does not cut it: with constant s̈ between the jerks, or without.
+    let with_constant = 2.0 * a * (a / j) * (a / j) <= 1.0;
+    let free = if a.is_finite() && with_constant {
+        let p = a * (a / j);
+        2.0 * a / (p + (p * p + 4.0 * a).sqrt())
+    } else {
+        (0.25 * j).cbrt()
+    };
+    let peak = v.min(free);
+    // s̈ reaches a, or turns before.
+    let up = if j.is_infinite() { 0.0 } else { (peak / j).sqrt().min(a / j) };
+    let constant = if a.is_infinite() { 0.0 } else { (peak / a - up).max(0.0) };
+    // Not cut by v, it does not cruise, whatever rounding says.
+    let cruise = if peak < free { (1.0 / peak - 2.0 * up - constant).max(0.0) } else { 0.0 };
+    let top = if j.is_infinite() { a } else { (j * up).min(a) };
+    let jerk = if j.is_infinite() { 0.0 } else { j };
+    let span = |time, acceleration, jerk| Span { time, acceleration, jerk };
+    Some([
+        span(up, 0.0, jerk),
+        span(constant, top, 0.0),
+        span(up, top, -jerk),
+        span(cruise, 0.0, 0.0),
+        span(up, 0.0, -jerk),
+        span(constant, -top, 0.0),
+        span(up, -top, jerk),
+    ])
+}
+
+fn curved(
+    path: &Path,
+    constraints: &Constraints,
+    grid: &Grid,
+    found: Result<Sweep, Blocked>,
+) -> Result<Fastest, TimeError> {
+    let stations = &grid.s;
+    if grid.rows.iter().all(|r| r.a == 0.0 && r.c == 0.0) {
+        // Nothing moves, or nothing that moves has a limit.
+        let moves = stations.iter().any(|s| path.at(*s).first.max_abs() > 0.0);
+        return match (moves, grid.cap.iter().any(|x| x.is_finite() && *x < UNLIMITED)) {
+            (false, _) => Ok(nowhere()),
+            (true, true) => Err(TimeError::SpeedOnly),
+            (true, false) => Err(TimeError::Unlimited { s: 0.0 }),
+        };
+    }
+    let Sweep { x, rise } = found.map_err(|blocked| explain(grid, constraints, blocked))?;
+    if let Some(i) = x.iter().position(|x| *x >= UNLIMITED) {
+        return Err(TimeError::Unlimited { s: stations[i] });
+    }
+    let profile = Profile::through(stations, &x, &rise).ok_or(TimeError::Stuck { s: 0.0 })?;
+    Ok(Fastest { limiting: leading(path, grid, constraints, &x), profile, gap: None })
+}
+
+/// What stands in the way.
+fn explain(grid: &Grid, constraints: &Constraints, blocked: Blocked) -> TimeError {
+    let (Blocked::At(i) | Blocked::Rest(i)) = blocked;
+    let near = [i, (i + 1).min(grid.s.len() - 1)];
+    for i in near {
+        for (row, limit) in grid.rows_at(i).iter().zip(constraints.rows()) {
+            if row.g.abs() > 1.0 {
+                let most = constraints.limits().on(limit.quantity)[limit.drive];
+                return TimeError::Static { drive: limit.drive + 1, s: grid.s[i], torque: row.g * most, limit: most };
+            }
+        }
+    }
+    TimeError::Stuck { s: grid.s[i] }
+}
+
+/// Which limits lead, for what share of the time.
+fn leading(path: &Path, grid: &Grid, constraints: &Constraints, x: &[f64]) -> Vec<(Limit, f64)> {
+    let mut shares = Shares::default();
+    for i in 0..x.len() - 1 {
+        let way = grid.s[i + 1] - grid.s[i];
+        let u = (x[i + 1] - x[i]) / (2.0 * way);
+        let mut most: Option<(f64, Limit)> = None;
+        let mut take = |part: f64, limit: Limit| {
+            if most.is_none_or(|(m, _)| part > m) {
+                most = Some((part, limit));
+            }
+        };
+        for i in [i, i + 1] {
+            for (row, limit) in grid.rows_at(i).iter().zip(constraints.rows()) {
+                take(Row::value(row, u, x[i]).abs(), *limit);
+            }
+        }
+        let fastest = if x[i] / grid.cap[i] > x[i + 1] / grid.cap[i + 1] { i } else { i + 1 };
+        let part = (x[fastest] / grid.cap[fastest]).sqrt();
+        if most.is_none_or(|(m, _)| part > m) {
+            let drive = constraints.fastest_drive(&path.at(grid.s[fastest]));
+            most = Some((part, Limit { quantity: Quantity::Speed, drive }));
+        }
+        if let Some((_, limit)) = most {
+            shares.add(limit, 2.0 * way / (x[i].sqrt() + x[i + 1].sqrt()));
+        }
+    }
+    shares.sorted()
+}

@@ -1,0 +1,289 @@
+//! A motion given by samples over time: of the drive angles, or of the end effector.
+//!
+//! The samples are joined by a quintic [spline](super::spline): through every sample, four continuous derivatives,
+//! nothing assumed of its ends, which need not rest. Its parameter is s = t/T, so a motion takes it with
+//! [`Profile::running`](super::Profile::running). As a spline is linear in its samples, angles that lie on a plane
+//! b = const stay on it between them.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::curve::{Curve, CurvePoint};
+use super::low_pass::LowPass;
+use super::path::PathPoint;
+use super::spline::{FEWEST, Knots};
+use super::table::Table;
+use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector};
+use crate::settings::range::{Range, Short};
+
+/// The most samples.
+pub const MAX_SAMPLES: usize = 20_000;
+
+/// Of a time, which may count from long ago, and of angles and coordinates.
+const TIME: Range = Range::either_way(1e11, "s");
+const VALUE: Range = Range::either_way(1e6, "rad or m");
+
+/// Two times nearer to each other than this share of the whole are one.
+const APART: f64 = 1e-9;
+
+/// Rows of time, s, and values: drive angles, rad, or x and y of the end effector, m. Times rise.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Vec<Vec<f64>>", into = "Vec<Vec<f64>>")]
+pub struct Samples {
+    /// Numbers of a row.
+    width: usize,
+    values: Arc<[f64]>,
+}
+
+/// Why rows are no samples. Rows are counted from 0, columns too; column 0 is the time.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum SamplesError {
+    /// Not enough.
+    #[error("{got} samples: want at least {FEWEST}, because the spline's ends take six")]
+    TooFew {
+        /// How many there are.
+        got: usize,
+    },
+    /// Too many.
+    #[error("{got} samples: want at most {MAX_SAMPLES}; every second one will do")]
+    TooMany {
+        /// How many there are.
+        got: usize,
+    },
+    /// A row of another length.
+    #[error("sample {} has {got} numbers: want {want}, a time and the values, at most {MAX_DRIVES}", row + 1)]
+    Ragged {
+        /// Which.
+        row: usize,
+        /// How many it has.
+        got: usize,
+        /// As many as the first one.
+        want: usize,
+    },
+    /// Not a number.
+    #[error("sample {}, number {}: want a finite number", row + 1, column + 1)]
+    NotFinite {
+        /// Which.
+        row: usize,
+        /// Which.
+        column: usize,
+    },
+    /// Out of range.
+    #[error("sample {}, number {} is {}: want {range}", row + 1, column + 1, Short(*value))]
+    OutOfRange {
+        /// Which.
+        row: usize,
+        /// Which.
+        column: usize,
+        /// What stands there.
+        value: f64,
+        /// What would be right.
+        range: Range,
+    },
+    /// Time stands still or goes back.
+    #[error(
+        "sample {} is at {} s, the one before at {} s: want times that rise", row + 1, Short(*time), Short(*before)
+    )]
+    NotRising {
+        /// Which.
+        row: usize,
+        /// s.
+        time: f64,
+        /// s.
+        before: f64,
+    },
+    /// Nothing to be smoothed so.
+    #[error("a cut-off of {} Hz: want one above 0 and below {nyquist:.6} Hz, half of the mean rate", Short(*cut_off))]
+    CutOff {
+        /// Hz.
+        cut_off: f64,
+        /// Hz.
+        nyquist: f64,
+    },
+}
+
+impl TryFrom<Vec<Vec<f64>>> for Samples {
+    type Error = SamplesError;
+    fn try_from(rows: Vec<Vec<f64>>) -> Result<Self, SamplesError> {
+        Self::new(&rows)
+    }
+}
+
+impl From<Samples> for Vec<Vec<f64>> {
+    fn from(samples: Samples) -> Self {
+        samples.rows().map(<[f64]>::to_vec).collect()
+    }
+}
+
+impl Samples {
+    /// Rows of a time, s, and one to eight values.
+    ///
+    /// # Errors
+    /// If there are too few or too many, they differ in length, a number is not finite, or time does not rise.
+    pub fn new(rows: &[Vec<f64>]) -> Result<Self, SamplesError> {
+        let got = rows.len();
+        if got < FEWEST {
+            return Err(SamplesError::TooFew { got });
+        }
+        if got > MAX_SAMPLES {
+            return Err(SamplesError::TooMany { got });
+        }
+        let want = rows[0].len().clamp(2, MAX_DRIVES + 1);
+        if let Some((row, of)) = rows.iter().enumerate().find(|(_, of)| of.len() != want) {
+            return Err(SamplesError::Ragged { row, got: of.len(), want });
+        }
+        for (row, of) in rows.iter().enumerate() {
+            if let Some(column) = of.iter().position(|x| !x.is_finite()) {
+                return Err(SamplesError::NotFinite { row, column });
+            }
+            let range = |column: usize| if column == 0 { TIME } else { VALUE };
+            if let Some(column) = (0..of.len()).find(|column| !range(*column).contains(of[*column])) {
+                let (value, range) = (of[column], range(column));
+                return Err(SamplesError::OutOfRange { row, column, value, range });
+            }
+        }
+        let least = APART * (rows[got - 1][0] - rows[0][0]).abs();
+        for (row, w) in rows.windows(2).enumerate() {
+            let (before, time) = (w[0][0], w[1][0]);
+            if time.partial_cmp(&(before + least)) != Some(std::cmp::Ordering::Greater) {
+                return Err(SamplesError::NotRising { row: row + 1, time, before });
+            }
+        }
+        Ok(Self { width: want, values: rows.iter().flatten().copied().collect() })
+    }
+
+    /// Rows as they stand: a time and the values.
+    pub fn rows(&self) -> impl ExactSizeIterator<Item = &[f64]> {
+        self.values.chunks_exact(self.width)
+    }
+
+    /// How many samples.
+    pub fn count(&self) -> usize {
+        self.values.len() / self.width
+    }
+
+    /// How many values a sample has, without its time.
+    pub fn columns(&self) -> usize {
+        self.width - 1
+    }
+
+    /// Values of a sample.
+    pub fn values(&self, i: usize) -> &[f64] {
+        &self.values[i * self.width + 1..(i + 1) * self.width]
+    }
+
+    /// Time of a sample, s.
+    pub fn time(&self, i: usize) -> f64 {
+        self.values[i * self.width]
+    }
+
+    /// T, from the first sample to the last, s.
+    pub fn duration(&self) -> f64 {
+        self.time(self.count() - 1) - self.time(0)
+    }
+
+    /// Mean time between samples, s.
+    pub fn spacing(&self) -> f64 {
+        self.duration() / (self.count() - 1) as f64
+    }
+
+    /// Times of the samples, s.
+    pub fn times(&self) -> Vec<f64> {
+        self.rows().map(|row| row[0]).collect()
+    }
+
+    /// t/T of each sample, from 0 to 1.
+    pub fn stations(&self) -> Vec<f64> {
+        let (start, whole) = (self.time(0), self.duration());
+        self.rows().map(|row| (row[0] - start) / whole).collect()
+    }
+
+    /// Other values at the same times; `None` if there are not as many, or they are not finite.
+    pub fn with_values(&self, values: impl IntoIterator<Item = Vec<f64>>) -> Option<Self> {
+        let rows: Vec<Vec<f64>> = self.rows().zip(values).map(|(row, values)| [&row[..1], &values].concat()).collect();
+        (rows.len() == self.count()).then(|| Self::new(&rows).ok()).flatten()
+    }
+
+    /// About as many of the samples, evenly taken, the first and the last among them.
+    #[must_use]
+    pub fn thinned(&self, count: usize) -> Self {
+        let last = self.count() - 1;
+        let spaces = last.min(count.max(FEWEST) - 1);
+        let rows: Vec<Vec<f64>> = (0..=spaces)
+            .map(|i| {
+                let i = i * last / spaces;
+                self.values[i * self.width..(i + 1) * self.width].to_vec()
+            })
+            .collect();
+        Self::new(&rows).unwrap_or_else(|_| self.clone())
+    }
+
+    /// Smoothed without delay: half of the amplitude is left at the cut-off, Hz; see [`super::low_pass`].
+    ///
+    /// # Errors
+    /// If the cut-off is not below half of the mean rate.
+    pub fn smoothed(&self, cut_off: f64) -> Result<Self, SamplesError> {
+        let wrong = || SamplesError::CutOff { cut_off, nyquist: 0.5 / self.spacing() };
+        let pass = LowPass::new(&self.times(), cut_off).ok_or_else(wrong)?;
+        let column = |k: usize| pass.smooth(&self.rows().map(|row| row[k + 1]).collect::<Vec<_>>());
+        let columns: Vec<Vec<f64>> = (0..self.columns()).map(column).collect();
+        let row = |i: usize| columns.iter().map(|column| column[i]).collect();
+        self.with_values((0..self.count()).map(row)).ok_or_else(wrong)
+    }
+
+    /// How far a column's second derivative can be trusted, in its unit/s²: what noise, or too few samples, may make of
+    /// it, judged by the sixth differences of the samples.
+    pub fn uncertainty(&self, column: usize) -> f64 {
+        const BINOMIAL: [f64; 7] = [1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0];
+        let y: Vec<f64> = self.rows().map(|row| row[column + 1]).collect();
+        let sixth = |w: &[f64]| w.iter().zip(BINOMIAL).map(|(y, c)| c * y).sum::<f64>().abs();
+        let mut sizes: Vec<f64> = y.windows(7).map(sixth).collect();
+        sizes.sort_by(f64::total_cmp);
+        // The median of |x| is 0.6745 σ, and 924 the sum of the squared binomials.
+        let sigma = sizes.get(sizes.len() / 2).map_or(0.0, |median| median / (0.6745 * 924f64.sqrt()));
+        super::spline::NOISE_GAIN * sigma / (self.spacing() * self.spacing())
+    }
+
+    /// First and second derivatives by s = t/T at each sample, for each column.
+    fn rates(&self) -> Vec<Vec<[f64; 2]>> {
+        let whole = self.duration();
+        let Some(knots) = Knots::new(&self.times()) else { return Vec::new() };
+        let column = |k: usize| {
+            let rates = knots.rates(|i| self.values(i)[k]);
+            rates.into_iter().map(|[first, second]| [first * whole, second * whole * whole]).collect()
+        };
+        (0..self.columns()).map(column).collect()
+    }
+
+    /// The path of the drives over s = t/T, every column a drive, rad, all turned by as much, rad.
+    pub fn path(&self, turn: f64) -> Option<Table> {
+        let rates = self.rates();
+        let node = |i: usize| {
+            let n = self.columns();
+            let q = DriveAngles(PerDrive::from_fn(n, |k| self.values(i)[k] + turn));
+            let [first, second] = [0, 1].map(|j| PerDrive::from_fn(n, |k| rates[k][i][j]));
+            PathPoint { q, first, second }
+        };
+        (!rates.is_empty()).then(|| Table::new(self.stations(), (0..self.count()).map(node).collect())).flatten()
+    }
+
+    /// The curve of the end effector over s = t/T, the columns x and y, m.
+    pub fn curve(&self) -> Option<Curve> {
+        let rates = self.rates();
+        let [x, y] = rates.as_slice() else { return None };
+        let node = |i: usize| CurvePoint {
+            p: self.point(i),
+            first: Vector::new(x[i][0], y[i][0]),
+            second: Vector::new(x[i][1], y[i][1]),
+        };
+        Curve::through(&self.stations(), &(0..self.count()).map(node).collect::<Vec<_>>())
+    }
+
+    /// A sample as x + iy, m.
+    pub fn point(&self, i: usize) -> Vector {
+        let v = self.values(i);
+        Vector::new(v[0], v.get(1).copied().unwrap_or(0.0))
+    }
+}

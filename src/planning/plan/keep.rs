@@ -1,0 +1,80 @@
+//! Limits kept everywhere, not only where they were looked at: by how much a motion must be slowed down.
+
+use super::Motion;
+use super::law::Progress;
+use super::limits::Limits;
+use super::profile::{Profile, after};
+use super::usage::Demand;
+use crate::mechanics::dynamics::Surroundings;
+use crate::mechanics::machine::Inertia;
+
+/// Parts of a phase that is looked at closely.
+const CLOSE: usize = 16;
+/// How far from its ends, as a share of a phase: where a path's derivatives jump, rounding would decide which side is
+/// looked at.
+const INSIDE: f64 = 1e-6;
+/// What rounding may need.
+const SPARE: f64 = 1e-9;
+
+/// The greatest of a quantity that is smooth within every phase, over all of them.
+///
+/// Its peak between three instants is taken to be that of the parabola through them; phases in which that could be the
+/// greatest of all are looked at closely.
+pub(super) fn greatest(phases: impl Iterator<Item = (Progress, f64)>, of: impl Fn(&Progress) -> f64) -> f64 {
+    let mut most: f64 = 0.0;
+    for (from, time) in phases {
+        let at = |u: f64| of(&after(&from, u.clamp(INSIDE, 1.0 - INSIDE) * time));
+        let three = [at(0.0), at(0.5), at(1.0)];
+        let seen = three.into_iter().fold(0.0, f64::max);
+        let spread = seen - three.into_iter().fold(f64::INFINITY, f64::min);
+        if crest(three).max(seen) + 0.25 * spread <= most || spread <= SPARE * seen {
+            most = most.max(seen);
+            continue;
+        }
+        let near: [f64; CLOSE + 1] = std::array::from_fn(|i| at(i as f64 / CLOSE as f64));
+        let crests = near.windows(3).map(|w| crest([w[0], w[1], w[2]]));
+        most = crests.chain(near).fold(most, f64::max);
+    }
+    most
+}
+
+/// The top of the parabola through three values at even distances, if it lies between them; else the greatest of them.
+fn crest([a, b, c]: [f64; 3]) -> f64 {
+    let (slope, bend) = (0.5 * (c - a), a - 2.0 * b + c);
+    // Farther out it is none of this phase.
+    if bend < 0.0 && slope.abs() <= -bend { b - 0.5 * slope * slope / bend } else { a.max(b).max(c) }
+}
+
+/// A profile slowed down by the least factor with which every limit is kept; `stretch` is that factor at one instant.
+/// `None` if no time is enough.
+pub(super) fn kept(profile: &Profile, stretch: impl Fn(&Progress) -> f64) -> Option<Profile> {
+    let factor = greatest(profile.phases(), stretch);
+    // Rounding is not worth another profile.
+    let needed = factor > 1.0 + SPARE;
+    factor.is_finite().then(|| if needed { profile.stretched(factor * (1.0 + SPARE)) } else { profile.clone() })
+}
+
+/// At least so many parts of a motion are looked at.
+const LOOKS: usize = 2000;
+
+impl Motion {
+    /// The motion as slow as the limits of the drives on torque, speed and acceleration want it. `None` if no time is enough.
+    ///
+    /// Its timing is to be by phases, as those of the fastest motions are.
+    #[must_use]
+    pub fn slowed(&self, model: &Inertia, around: &Surroundings, limits: &Limits) -> Option<Self> {
+        let limits = Limits { jerk: Limits::none(limits.jerk.len()).jerk, ..*limits };
+        let count = self.profile.phases().count().max(1);
+        // An even number, so that what changes in the middle of a phase changes between two parts.
+        let parts = 2 * LOOKS.div_ceil(2 * count);
+        let cut = |(from, time): (Progress, f64)| {
+            let time = time / parts as f64;
+            (0..parts).map(move |i| (after(&from, i as f64 * time), time))
+        };
+        let stretch = |at: &Progress| Demand::of(&self.path, model, around, &limits, at).stretch(&limits);
+        let factor = greatest(self.profile.phases().flat_map(cut), stretch);
+        let by = if factor > 1.0 + SPARE { factor * (1.0 + SPARE) } else { 1.0 };
+        let profile = if by > 1.0 { self.profile.stretched(by) } else { self.profile.clone() };
+        factor.is_finite().then(|| Self { path: self.path.clone(), profile })
+    }
+}

@@ -1,0 +1,327 @@
+//! Leaving the plane, and transmitting as little as possible: the redundant mode.
+//!
+//! The end effector's motion p(u), u = t/T, is given; on one sheet q = q(x, y, b), so that b(u) within its
+//! [`Corridor`] is all that is left to choose, and n_B = −D_1 b̈. The least ∫ n_B² dt is a quadratic program, the least
+//! peak of |n_B| a linear one. Where a constant b serves, it is the answer, and the base feels nothing.
+//!
+//! # Symbols
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | u | t/T, 0 to 1 | 1 |
+//! | b, b′, b″ | pose constant and derivatives by u | rad |
+//! | n_B | −D_1 b″/T² | N m |
+//!
+//! b′ = 0 at both ends; n_B is continuous in between, linear between even nodes.
+
+use thiserror::Error;
+
+use super::corridor::{Corridor, CorridorError};
+use super::curve::CurvePoint;
+use super::inverse::pose_along;
+use super::path::{PathError, minimum_norm_path};
+use super::pose_course::{PoseCourse, Reaction};
+use super::pose_program::{STATIONS, least_course};
+use super::price::{Price, PriceError};
+use super::table::Table;
+use crate::mechanics::machine::{Chain, Inertia};
+use crate::mechanics::planar::{DriveAngles, Vector};
+use crate::planning::reactionless::{PlaneMap, PlanePoint, SLACK, between};
+
+/// Pieces of b″ unless more are asked for.
+pub const SPACES: usize = 96;
+/// The most pieces.
+pub const MAX_SPACES: usize = 512;
+/// How near to its curve the end effector is kept between nodes, as a part of the arm.
+const ON_CURVE: f64 = 1e-10;
+/// The same near a fold, where spaces between nodes are halved so often to keep it.
+const NEAR_CURVE: f64 = 1e-8;
+const HALVINGS: usize = 6;
+/// Further off it counts as not followed.
+const AWAY: f64 = 1e-6;
+
+/// What is to be least.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Goal {
+    /// ∫ n_B² dt.
+    Rms,
+    /// The peak of |n_B|, and of all motions with that peak the least ∫ n_B² dt.
+    Peak,
+}
+
+/// A motion of the end effector with the least reaction.
+#[derive(Clone, Debug)]
+pub struct LeastReaction {
+    corridor: Corridor,
+    course: PoseCourse,
+    path: Table,
+    inertia: f64,
+}
+
+/// Why there is none.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum LeastReactionError {
+    /// b has no corridor.
+    #[error(transparent)]
+    Corridor(#[from] CorridorError),
+    /// No b, or another machine.
+    #[error(transparent)]
+    Price(#[from] PriceError),
+    /// The end effector does not rest.
+    #[error("the end effector moves at u = {u}: want a motion from rest to rest, dp/du = 0 at both ends")]
+    NotAtRest {
+        /// 0 or 1.
+        u: f64,
+    },
+    /// The wanted end.
+    #[error("b = {b:.3} rad at the end is outside of its corridor there: want b {} rad", between(*.low, *.high))]
+    EndOutside {
+        /// rad.
+        b: f64,
+        /// rad.
+        low: f64,
+        /// rad.
+        high: f64,
+    },
+    /// The program has no answer.
+    #[error("no smooth course of b stays within its corridor ({solver}): want a shorter motion, or wider joint limits")]
+    NoCourse {
+        /// The solver's word.
+        solver: String,
+    },
+    /// Not followed.
+    #[error("the drives cannot follow the course of b at u = {u:.3}: it comes too near a fold")]
+    NotFollowed {
+        /// t/T.
+        u: f64,
+    },
+}
+
+impl LeastReaction {
+    /// Plans b along a motion of the end effector p(u), u = t/T, that starts from a pose and rests at both ends; `end` is
+    /// b at the end, rad, if it is not free.
+    ///
+    /// # Errors
+    /// If the machine has no b, the sheet of the pose does not reach along the motion, or no smooth course fits.
+    pub fn plan(
+        map: &PlaneMap,
+        model: &Inertia,
+        curve: impl Fn(f64) -> CurvePoint,
+        start: PlanePoint,
+        end: Option<f64>,
+        goal: Goal,
+    ) -> Result<Self, LeastReactionError> {
+        Self::plan_in(map, model, curve, start, end, goal, SPACES)
+    }
+
+    /// The same with b″ in that many pieces, 2 to [`MAX_SPACES`]: the answer's error falls with their square.
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan).
+    pub fn plan_in(
+        map: &PlaneMap,
+        model: &Inertia,
+        curve: impl Fn(f64) -> CurvePoint,
+        start: PlanePoint,
+        end: Option<f64>,
+        goal: Goal,
+        spaces: usize,
+    ) -> Result<Self, LeastReactionError> {
+        let inertia = Price::of(model, 0.0)?.inertia();
+        let spaces = spaces.clamp(2, MAX_SPACES);
+        let corridor = Corridor::along(map, &curve, start, spaces * STATIONS)?;
+        let stations = corridor.stations();
+        let size: f64 = map.c().iter().map(|c| c.abs()).sum();
+        for station in [&stations[0], &stations[stations.len() - 1]] {
+            if station.point.first.norm() > 1e-9 * size {
+                return Err(LeastReactionError::NotAtRest { u: station.u });
+            }
+            let given = end.filter(|_| station.u == 1.0);
+            if let Some(b) = given.filter(|b| !(station.low - SLACK <= *b && *b <= station.high + SLACK)) {
+                return Err(LeastReactionError::EndOutside { b, low: station.low, high: station.high });
+            }
+        }
+        let stays = end.is_none_or(|end| end == start.b) && corridor.leaves(start.b).is_none();
+        if stays {
+            let course = PoseCourse::constant(start.b);
+            if let Ok(path) = followed(&corridor, &curve, &course) {
+                return Ok(Self { corridor, course, path, inertia });
+            }
+        }
+        let mut refused = None;
+        // Too near to a fold the drives cannot follow: then farther from it, at a cost.
+        for ease in [1.0, 2.0, 8.0, 64.0, f64::INFINITY] {
+            let course = least_course(&corridor, end, goal == Goal::Peak, spaces, ease)
+                .map_err(|solver| LeastReactionError::NoCourse { solver })?;
+            match followed(&corridor, &curve, &course) {
+                Ok(path) => return Ok(Self { corridor, course, path, inertia }),
+                Err(why) => refused = Some(why),
+            }
+        }
+        Err(refused.unwrap_or(LeastReactionError::NotFollowed { u: 0.0 }))
+    }
+
+    /// b over u.
+    pub fn course(&self) -> &PoseCourse {
+        &self.course
+    }
+
+    /// The drives over u = t/T; rates are q′/T, accelerations q″/T².
+    pub fn path(&self) -> &Table {
+        &self.path
+    }
+
+    /// Between which b it could choose.
+    pub fn corridor(&self) -> &Corridor {
+        &self.corridor
+    }
+
+    /// What the base feels when it takes `duration`, s.
+    pub fn reaction(&self, duration: f64) -> Reaction {
+        self.course.reaction(self.inertia, duration)
+    }
+
+    /// The three ways to make the same motion of the end effector in `duration`, s, and what each does to the base.
+    /// `tip` and `curve` are those of the plan.
+    pub fn compare(&self, tip: &Chain, curve: impl Fn(f64) -> CurvePoint, duration: f64) -> Verdicts {
+        let start = self.corridor.start();
+        let fixed = match self.corridor.leaves(start.b) {
+            None => FixedB::Serves,
+            Some(station) => FixedB::Leaves { u: station.u, low: station.low, high: station.high },
+        };
+        let from = DriveAngles::from(self.corridor.map().lift(start));
+        let minimum_norm = minimum_norm_path(tip, from, curve).map(|path| self.judge(&path, duration));
+        Verdicts { fixed, minimum_norm, least: self.reaction(duration) }
+    }
+
+    fn judge(&self, path: &Table, duration: f64) -> MinimumNorm {
+        let map = self.corridor.map();
+        let scale = self.inertia / (duration * duration);
+        let n_b = |u: f64| scale * map.project_rates(&path.at(u).second).1.abs();
+        let n = 2048;
+        let (mut peak, mut squares) = (0.0_f64, 0.0);
+        // Simpson's rule.
+        for i in 0..=n {
+            let x = n_b(f64::from(i) / f64::from(n));
+            let weight = [1.0, 2.0, 4.0][if i == 0 || i == n { 0 } else { 1 + (i % 2) as usize }];
+            peak = peak.max(x);
+            squares += weight * x * x / (3.0 * f64::from(n));
+        }
+        let kept = path.nodes().iter().all(|node| {
+            let a = map.project(&node.q).a;
+            map.limits().iter().zip(a).all(|(limit, a)| limit.contains(a, SLACK))
+        });
+        let end_b = path.nodes().last().map_or(f64::NAN, |node| map.project(&node.q).b);
+        MinimumNorm { reaction: Reaction { peak, rms: squares.sqrt() }, end_b, keeps_limits: kept }
+    }
+}
+
+/// Three ways to make one motion of the end effector, from one pose.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdicts {
+    /// b kept: no reaction at all, where it can be done.
+    pub fixed: FixedB,
+    /// Minimum-norm rates, q′ = J⁺ p′, as in case 1.
+    pub minimum_norm: Result<MinimumNorm, PathError>,
+    /// The least reaction.
+    pub least: Reaction,
+}
+
+/// Whether the start pose's own b serves the whole motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FixedB {
+    /// It does, and n_B = 0.
+    Serves,
+    /// From here on it does not.
+    Leaves {
+        /// t/T.
+        u: f64,
+        /// b that would serve there, rad.
+        low: f64,
+        /// rad.
+        high: f64,
+    },
+}
+
+/// The motion with minimum-norm rates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MinimumNorm {
+    /// What the base feels.
+    pub reaction: Reaction,
+    /// b at its end, rad.
+    pub end_b: f64,
+    /// Whether the joint limits are kept all the way.
+    pub keeps_limits: bool,
+}
+
+/// The drives along a course of b: as few nodes as keep the end effector on its curve at every station, because the
+/// rounding of q″ between nodes grows with their number. Near a fold it takes them all, and more between them.
+fn followed(
+    corridor: &Corridor,
+    curve: impl Fn(f64) -> CurvePoint,
+    course: &PoseCourse,
+) -> Result<Table, LeastReactionError> {
+    let (map, stations) = (corridor.map(), corridor.stations());
+    let mut from = corridor.start().a;
+    let mut nodes = Vec::with_capacity(stations.len());
+    for station in stations {
+        let b = course.at(station.u);
+        let missing = LeastReactionError::NotFollowed { u: station.u };
+        let on = pose_along(map, &station.point, b, from)
+            .or_else(|| pose_along(map, &station.point, b, station.pose(map, b[0])?.a));
+        let (at, node) = on.ok_or(missing)?;
+        from = at.a;
+        nodes.push(node);
+    }
+    let nothing = LeastReactionError::NotFollowed { u: 0.0 };
+    let reach = map.c().iter().map(|c| c.abs()).sum::<f64>();
+    let off = |table: &Table, u: f64, p: Vector| {
+        let at = map.project(&table.at(u).q);
+        (map.forward(at.a, at.b) - p).norm()
+    };
+    for step in [STATIONS / 2, STATIONS / 4] {
+        let table = Table::even(nodes.iter().step_by(step).copied().collect()).ok_or(nothing.clone())?;
+        if stations.iter().all(|station| off(&table, station.u, station.point.p) <= ON_CURVE * reach) {
+            return Ok(table);
+        }
+    }
+    let mut table = Table::even(nodes.clone()).ok_or(nothing.clone())?;
+    let mut u: Vec<f64> = stations.iter().map(|station| station.u).collect();
+    for round in 0..=HALVINGS {
+        let mut worst = (0.0, 0.0);
+        let (mut finer, mut finer_nodes) = (Vec::with_capacity(u.len()), Vec::with_capacity(u.len()));
+        for (i, w) in u.windows(2).enumerate() {
+            finer.push(w[0]);
+            finer_nodes.push(nodes[i]);
+            let middle = 0.5 * (w[0] + w[1]);
+            let point = curve(middle);
+            let gap = off(&table, middle, point.p);
+            if gap <= NEAR_CURVE * reach {
+                continue;
+            }
+            if gap > worst.0 {
+                worst = (gap, middle);
+            }
+            let b = course.at(middle);
+            let missing = LeastReactionError::NotFollowed { u: middle };
+            let from = [i, i + 1].map(|i| map.project(&nodes[i].q).a);
+            let on = from.into_iter().find_map(|from| pose_along(map, &point, b, from));
+            finer.push(middle);
+            finer_nodes.push(on.ok_or(missing)?.1);
+        }
+        if worst.0 == 0.0 {
+            break;
+        }
+        if round == HALVINGS {
+            return if worst.0 > AWAY * reach {
+                Err(LeastReactionError::NotFollowed { u: worst.1 })
+            } else {
+                Ok(table)
+            };
+        }
+        finer.push(1.0);
+        finer_nodes.push(nodes[nodes.len() - 1]);
+        (u, nodes) = (finer, finer_nodes);
+        table = Table::new(u.clone(), nodes.clone()).ok_or(nothing.clone())?;
+    }
+    Ok(table)
+}

@@ -1,0 +1,193 @@
+//! Why invariance matters: motions of zero angular momentum on machines whose mass matrix depends on the pose.
+//!
+//! At each pose the rates with D(q) · q̇ = 0 transmit no moment: n − 1 directions. Where D is constant they are the planes
+//! b = const, and a closed path of the end effector brings the joints back. Where it is not, they fit together to no
+//! surface (for three drives and more): each time the end effector comes round, the joints have drifted.
+//!
+//! # Symbols
+//! | letter | meaning | shape, unit |
+//! |---|---|---|
+//! | H, D_k | mass matrix, Σ_l H_lk; angular momentum about B is D q̇, (6), (A3) | n, kg m² |
+//! | Z_kl | C_kl e^{i (q_l − q_k)} | complex, kg m² |
+//! | J | ∂p/∂q in absolute drive angles | 2×n, m |
+//! | dD | ∂D_k/∂q_m − ∂D_m/∂q_k = −2 Im Z_km | n×n, kg m² |
+//!
+//! # Source
+//! D_k = J_k + Σ_l Re Z_kl, so ∂D_k/∂q_m = −Im Z_km for m ≠ k and ∂D_k/∂q_k = Σ_{l≠k} Im Z_kl. By Frobenius, D q̇ = 0 is
+//! integrable where D ∧ dD = 0. For three drives that 3-form is
+//! 2 Im[(H_11 C_23 − C_21 C_13) e^{i(q_3−q_2)} + (H_22 C_31 − C_32 C_21) e^{i(q_1−q_3)} + (H_33 C_12 − C_13 C_32) e^{i(q_2−q_1)}]:
+//! it vanishes in all poses only if its coefficients do, and where H is positive definite only if every C_kl is zero.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::path::PathPoint;
+use super::table::Table;
+use crate::mechanics::dynamics::mass_matrix;
+use crate::mechanics::kinematics::column;
+use crate::mechanics::machine::{BALANCED, Inertia};
+use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Units, Vector};
+
+/// D_k = Σ_l H_lk at a pose, kg m², (A3).
+#[inline]
+pub fn momentum_row(model: &Inertia, e: &Units) -> PerDrive {
+    let n = model.drives();
+    let (h, _) = mass_matrix(model, e, &PerDrive::zeros(n));
+    PerDrive::from_fn(n, |k| h.momentum_row(k))
+}
+
+/// Ḋ_k at a pose for rates q̇, kg m²/s.
+#[inline]
+pub fn momentum_row_rate(model: &Inertia, e: &Units, qd: &PerDrive) -> PerDrive {
+    let n = model.drives();
+    // Re Z_kl changes at −Im Z_kl (q̇_l − q̇_k).
+    PerDrive::from_fn(n, |k| (0..n).map(|l| -coupling(model, e, k, l).im * (qd[l] - qd[k])).sum())
+}
+
+/// Z_kl, kg m².
+#[inline]
+fn coupling(model: &Inertia, e: &Units, k: usize, l: usize) -> Vector {
+    model.coupling(k, l) * (e[k].conj() * e[l])
+}
+
+/// The rates that transmit no moment at a pose: an orthonormal basis of D · q̇ = 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NullSpace {
+    basis: [PerDrive; MAX_DRIVES],
+    len: usize,
+}
+
+impl NullSpace {
+    /// At a pose q, rad.
+    pub fn of(model: &Inertia, q: &DriveAngles) -> Self {
+        let n = model.drives();
+        let d = momentum_row(model, &q.units());
+        let norm = d.dot(&d).sqrt();
+        // The reflection that takes D to the first axis takes the other axes to a basis of what is normal to D.
+        let mut v = d;
+        v[0] += norm.copysign(d[0]);
+        let square = v.dot(&v);
+        let scale = if square > 0.0 { 2.0 / square } else { 0.0 };
+        let mut basis = [PerDrive::zeros(n); MAX_DRIVES];
+        for (k, column) in basis.iter_mut().enumerate().take(n - 1) {
+            *column = v.scaled(-scale * v[k + 1]);
+            column[k + 1] += 1.0;
+        }
+        Self { basis, len: n - 1 }
+    }
+
+    /// n − 1 rates of the drives, each of length 1, at right angles to each other and to D.
+    pub fn basis(&self) -> &[PerDrive] {
+        &self.basis[..self.len]
+    }
+}
+
+/// The rates of zero momentum nearest to wanted ones: w − D (D · w)/(D · D).
+pub fn projected(model: &Inertia, q: &DriveAngles, w: &PerDrive) -> PerDrive {
+    let d = momentum_row(model, &q.units());
+    w.plus(-share(&d, w), &d)
+}
+
+/// (D · w)/(D · D); 0 where D is, so that nothing has to be taken away.
+fn share(d: &PerDrive, w: &PerDrive) -> f64 {
+    let square = d.dot(d);
+    if square > 0.0 { d.dot(w) / square } else { 0.0 }
+}
+
+/// Spaces between the nodes of a motion.
+const SPACES: usize = 256;
+/// Steps of its integration from node to node.
+const STEPS: usize = 4;
+
+/// A motion of zero momentum from a pose, any number of drives: q′ is the wanted direction w, rad, as far as it transmits
+/// nothing, by the fourth-order rule. On an invariant machine it is a straight line. `None` unless pose and direction are
+/// of the machine and finite.
+pub fn motion(model: &Inertia, start: DriveAngles, w: &PerDrive) -> Option<Table> {
+    let n = model.drives();
+    if start.len() != n || w.len() != n || !start.iter().chain(w.iter()).all(|x| x.is_finite()) {
+        return None;
+    }
+    let h = 1.0 / (SPACES * STEPS) as f64;
+    let slope = |q: &PerDrive| projected(model, &DriveAngles(*q), w);
+    let mut q = start.0;
+    let mut nodes = Vec::with_capacity(SPACES + 1);
+    for i in 0..=SPACES * STEPS {
+        if i % STEPS == 0 {
+            nodes.push(node(model, DriveAngles(q), w));
+        }
+        let k1 = slope(&q);
+        let k2 = slope(&q.plus(h / 2.0, &k1));
+        let k3 = slope(&q.plus(h / 2.0, &k2));
+        let k4 = slope(&q.plus(h, &k3));
+        q = q.plus(h / 6.0, &k1).plus(h / 3.0, &k2).plus(h / 3.0, &k3).plus(h / 6.0, &k4);
+    }
+    Table::even(nodes)
+}
+
+/// q, q′ = w − σ D and q″ = −σ′ D − σ D′, with σ = (D · w)/(D · D).
+fn node(model: &Inertia, q: DriveAngles, w: &PerDrive) -> PathPoint {
+    let e = q.units();
+    let d = momentum_row(model, &e);
+    let sigma = share(&d, w);
+    let first = w.plus(-sigma, &d);
+    let rate = momentum_row_rate(model, &e, &first);
+    let square = d.dot(&d);
+    let sigma_rate = if square > 0.0 { (rate.dot(w) - 2.0 * sigma * d.dot(&rate)) / square } else { 0.0 };
+    PathPoint { q, first, second: d.scaled(-sigma_rate).plus(-sigma, &rate) }
+}
+
+/// The rates of three drives that give the end effector the velocity v, m/s, at angular momentum h, kg m²/s about B:
+/// [J; D] q̇ = [v; h]. `None` for other numbers of drives, or where the matrix has lost rank.
+pub fn rates(model: &Inertia, q: &DriveAngles, v: Vector, h: f64) -> Option<PerDrive> {
+    let (lines, scale) = lines(model, &q.units())?;
+    solve(&lines, v, h / scale)
+}
+
+/// J and D of three drives, D divided by its length so that both are of one size for an arm of a metre.
+pub(super) fn lines(model: &Inertia, e: &Units) -> Option<(Matrix3<f64>, f64)> {
+    if model.drives() != 3 {
+        return None;
+    }
+    let d = momentum_row(model, e);
+    let reach = model.tip.iter().map(|c| c.abs()).sum::<f64>();
+    let scale = d.dot(&d).sqrt() / reach;
+    let j = [0, 1, 2].map(|k| column(&model.tip, e, k));
+    let m =
+        Matrix3::new(j[0].re, j[1].re, j[2].re, j[0].im, j[1].im, j[2].im, d[0] / scale, d[1] / scale, d[2] / scale);
+    (m.determinant().abs() > 1e-9 * reach.powi(3)).then_some((m, scale))
+}
+
+pub(super) fn solve(lines: &Matrix3<f64>, v: Vector, h: f64) -> Option<PerDrive> {
+    let x = lines.lu().solve(&Vector3::new(v.re, v.im, h))?;
+    x.iter().all(|x| x.is_finite()).then(|| PerDrive::from([x[0], x[1], x[2]]))
+}
+
+/// How far D q̇ = 0 is from being integrable at a pose, (kg m²)²: the largest component of D ∧ dD,
+/// 2 |D_j Im Z_kl + D_k Im Z_lj + D_l Im Z_jk| over three drives j, k, l. 0 for one or two drives, and where D is constant.
+pub fn twist(model: &Inertia, q: &DriveAngles) -> f64 {
+    let (n, e) = (model.drives(), q.units());
+    let d = momentum_row(model, &e);
+    let z = |k: usize, l: usize| coupling(model, &e, k, l).im;
+    let mut most = 0.0_f64;
+    for j in 0..n {
+        for k in j + 1..n {
+            for l in k + 1..n {
+                most = most.max(2.0 * (d[j] * z(k, l) + d[k] * z(l, j) + d[l] * z(j, k)).abs());
+            }
+        }
+    }
+    most
+}
+
+/// Whether the machine has a pose constant: a b(q) whose surfaces are all that motions of zero momentum stay on.
+///
+/// One or two drives always do. Three and more do if H_jj C_kl = C_kj C_jl for any three of them; where every drive has
+/// some inertia of its own that is an invariant mass matrix, D constant and b = Σ λ_k q_k.
+pub fn is_integrable(model: &Inertia) -> bool {
+    let n = model.drives();
+    let whole: f64 = (0..n).map(|k| model.diagonal(k)).sum();
+    let holds = |j: usize, k: usize, l: usize| {
+        let left = model.diagonal(j) * model.coupling(k, l) - model.coupling(k, j) * model.coupling(j, l);
+        left.norm() <= BALANCED * whole * whole
+    };
+    Inertia::pairs(n).all(|(k, l)| (0..n).filter(|j| *j != k && *j != l).all(|j| holds(j, k, l)))
+}

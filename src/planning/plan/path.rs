@@ -1,0 +1,433 @@
+//! Paths: poses q(s) for s from 0 to 1, with exact derivatives.
+
+use thiserror::Error;
+
+use super::Reference;
+use super::curve::{Curve, CurvePoint};
+use super::law::Progress;
+use super::table::Table;
+use crate::mechanics::kinematics::{acceleration, closest_turn, end_effector, minimum_norm, two_link_rates, velocity};
+use crate::mechanics::machine::Chain;
+use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
+use crate::planning::reactionless::{PlaneMap, PlanePoint};
+
+/// A pose on a path and how it changes with s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathPoint {
+    /// q, rad.
+    pub q: DriveAngles,
+    /// dq/ds, rad.
+    pub first: PerDrive,
+    /// d²q/ds², rad.
+    pub second: PerDrive,
+}
+
+impl PathPoint {
+    /// The reference where the path is passed with given rates of s: q̇ = q′ ṡ, q̈ = q″ ṡ² + q′ s̈.
+    #[inline]
+    pub fn timed(&self, p: &Progress) -> Reference {
+        Reference {
+            q: self.q,
+            qd: self.first.scaled(p.rate),
+            qdd: self.second.scaled(p.rate * p.rate).plus(p.acceleration, &self.first),
+        }
+    }
+}
+
+/// A path of the drives.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Path {
+    /// Stays where it is.
+    Rest(DriveAngles),
+    /// A straight line in joint space; from a pose to another of the same b it is reactionless (case 3).
+    JointLine {
+        /// At s = 0.
+        from: DriveAngles,
+        /// At s = 1.
+        to: DriveAngles,
+    },
+    /// By its nodes: integrated, or followed on a plane.
+    Table(Table),
+    /// A curve of (a_1, a_2) on the plane of a pose constant: reactionless.
+    OnPlane {
+        /// Lifts it.
+        map: PlaneMap,
+        /// rad.
+        b: f64,
+        /// a_1 + i a_2, rad.
+        curve: Curve,
+    },
+    /// Paths end to end; where two meet the motion must rest.
+    Chain(Chained),
+    /// The end effector where a joint line has it, drive 1 on a course of its own (case 2).
+    SameTip(SameTip),
+}
+
+/// Why there is no such path.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum PathError {
+    /// The Jacobian loses rank on the way.
+    #[error("the arm is stretched or folded at s = {s:.3} of the line, where the end effector cannot follow it")]
+    Singular {
+        /// How far along.
+        s: f64,
+    },
+    /// Drives 2 and 3 cannot reach where drive 1 leaves the end effector.
+    #[error("with drive 1 on that course, links 5 and 9 cannot reach the end effector's path at s = {s:.3}")]
+    Unreachable {
+        /// How far along.
+        s: f64,
+    },
+}
+
+impl Path {
+    /// The pose at s, clamped to 0..1.
+    #[inline]
+    pub fn at(&self, s: f64) -> PathPoint {
+        let s = s.clamp(0.0, 1.0);
+        match self {
+            Self::Rest(q) => {
+                let still = PerDrive::zeros(q.len());
+                PathPoint { q: *q, first: still, second: still }
+            }
+            Self::JointLine { from, to } => joint_line(from, to, s),
+            Self::Table(table) => table.at(s),
+            Self::OnPlane { map, b, curve } => on_plane(map, *b, curve, s),
+            Self::Chain(chain) => chain.at(s),
+            Self::SameTip(path) => path.at(s),
+        }
+    }
+
+    /// s at which q′ or q″ jumps: at joints of curves, where paths meet, and where a table jumps.
+    pub fn kinks(&self) -> Vec<f64> {
+        const HAIR: f64 = 1e-9;
+        let joints: Vec<f64> = match self {
+            Self::Chain(chain) => {
+                let inner = |(path, [from, to]): (&Self, [f64; 2])| {
+                    path.kinks().into_iter().map(move |s| from + s * (to - from)).chain([to])
+                };
+                return chain.parts().flat_map(inner).filter(|s| *s < 1.0).collect();
+            }
+            Self::OnPlane { curve, .. } => curve.joints().collect(),
+            // Where a table jumps two of its nodes stand side by side.
+            Self::Table(table) => table.stations().windows(2).filter(|w| w[1] - w[0] < HAIR).map(|w| w[0]).collect(),
+            _ => Vec::new(),
+        };
+        let jumps = |s: &f64| {
+            let (a, b) = (self.at(s - HAIR), self.at(s + HAIR));
+            let jump = |a: &PerDrive, b: &PerDrive| b.minus(a).max_abs();
+            jump(&a.first, &b.first) + jump(&a.second, &b.second)
+                > 1e-5 * (a.first.max_abs() + a.second.max_abs() + b.second.max_abs())
+        };
+        joints.into_iter().filter(|s| *s > 0.0 && *s < 1.0).filter(jumps).collect()
+    }
+
+    /// How many paths it is made of; a table of very many nodes counts as several.
+    pub fn parts(&self) -> usize {
+        match self {
+            Self::Chain(chain) => chain.paths.iter().map(Self::parts).sum(),
+            Self::Table(table) => table.nodes().len().div_ceil(A_PART),
+            _ => 1,
+        }
+    }
+
+    /// d³q/ds³ at s, rad: exact but for the course of case 2, where it is from differences of q″. Where it jumps, as
+    /// where a blend begins, it is that of the part which s begins, or for a curve on a plane of the one which it ends.
+    pub fn third(&self, s: f64) -> PerDrive {
+        let s = s.clamp(0.0, 1.0);
+        match self {
+            Self::Rest(q) | Self::JointLine { from: q, .. } => PerDrive::zeros(q.len()),
+            Self::Table(table) => table.third(s),
+            Self::OnPlane { map, curve, .. } => {
+                let third = curve.third(s);
+                PerDrive::from(map.lift_rates([third.re, third.im], 0.0))
+            }
+            Self::Chain(chain) => chain.third(s),
+            Self::SameTip(_) => {
+                let (before, after) = ((s - THIRD_OVER).max(0.0), (s + THIRD_OVER).min(1.0));
+                self.at(after).second.minus(&self.at(before).second).scaled(1.0 / (after - before))
+            }
+        }
+    }
+
+    /// Where q‴ jumps, and both ends: s from 0 to 1. Between these a path is smooth.
+    pub fn joints(&self) -> Vec<f64> {
+        match self {
+            Self::Rest(_) | Self::JointLine { .. } | Self::SameTip(_) => vec![0.0, 1.0],
+            Self::Table(table) => table.joints(),
+            Self::OnPlane { curve, .. } => curve.joints().collect(),
+            Self::Chain(chain) => chain.joined(Self::joints),
+        }
+    }
+
+    /// Places so dense that a path changes little from one to the next, if it knows of some; both ends in any case.
+    pub fn places(&self) -> Vec<f64> {
+        match self {
+            Self::Table(table) => table.stations().to_vec(),
+            Self::OnPlane { curve, .. } => curve.places().collect(),
+            Self::Chain(chain) => chain.joined(Self::places),
+            _ => self.joints(),
+        }
+    }
+}
+
+fn on_plane(map: &PlaneMap, b: f64, curve: &Curve, s: f64) -> PathPoint {
+    let CurvePoint { p, first, second } = curve.at(s);
+    PathPoint {
+        q: DriveAngles::from(map.lift(PlanePoint { a: [p.re, p.im], b })),
+        first: PerDrive::from(map.lift_rates([first.re, first.im], 0.0)),
+        second: PerDrive::from(map.lift_rates([second.re, second.im], 0.0)),
+    }
+}
+
+/// Paths end to end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chained {
+    paths: Vec<Path>,
+    /// s at which each ends; the last is 1.
+    ends: Vec<f64>,
+}
+
+impl Chained {
+    /// Paths, each with its share of s; `None` if there is none, or a share is not above 0.
+    pub fn new(parts: Vec<(Path, f64)>) -> Option<Self> {
+        let total: f64 = parts.iter().map(|(_, share)| share).sum();
+        let sound = total.is_finite() && parts.iter().all(|(_, share)| *share > 0.0);
+        if parts.is_empty() || !sound {
+            return None;
+        }
+        let mut sum = 0.0;
+        let mut ends: Vec<f64> = Vec::with_capacity(parts.len());
+        for (_, share) in &parts {
+            sum += share;
+            ends.push(sum / total);
+        }
+        if let Some(last) = ends.last_mut() {
+            *last = 1.0;
+        }
+        Some(Self { paths: parts.into_iter().map(|(path, _)| path).collect(), ends })
+    }
+
+    /// The parts, each with where it begins and ends.
+    pub fn parts(&self) -> impl Iterator<Item = (&Path, [f64; 2])> {
+        let begins = std::iter::once(0.0).chain(self.ends.iter().copied());
+        self.paths.iter().zip(begins.zip(&self.ends).map(|(from, to)| [from, *to]))
+    }
+
+    /// Which part s is on, where on it, and its share of s.
+    fn part(&self, s: f64) -> (&Path, f64, f64) {
+        let i = self.ends.partition_point(|end| *end < s).min(self.paths.len() - 1);
+        let from = if i == 0 { 0.0 } else { self.ends[i - 1] };
+        let run = self.ends[i] - from;
+        (&self.paths[i], (s - from) / run, run)
+    }
+
+    fn at(&self, s: f64) -> PathPoint {
+        let (path, s, run) = self.part(s);
+        let point = path.at(s);
+        PathPoint { q: point.q, first: point.first.scaled(1.0 / run), second: point.second.scaled(1.0 / (run * run)) }
+    }
+
+    fn third(&self, s: f64) -> PerDrive {
+        let (path, s, run) = self.part(s);
+        path.third(s).scaled(1.0 / (run * run * run))
+    }
+
+    /// Places of the parts, one after another.
+    fn joined(&self, places: impl Fn(&Path) -> Vec<f64>) -> Vec<f64> {
+        let own = self.parts().flat_map(|(path, [from, to])| {
+            let inner: Vec<f64> = places(path).into_iter().filter(|s| *s < 1.0).collect();
+            inner.into_iter().map(move |s| from + s * (to - from))
+        });
+        own.chain([1.0]).collect()
+    }
+}
+/// Nodes of a table that count as one path.
+const A_PART: usize = 1024;
+/// Difference quotients lose as much by rounding as by their length.
+const THIRD_OVER: f64 = 1e-5;
+
+#[inline]
+fn joint_line(from: &DriveAngles, to: &DriveAngles, s: f64) -> PathPoint {
+    let n = from.len();
+    let step = to.0.minus(&from.0);
+    PathPoint { q: DriveAngles(from.0.plus(s, &step)), first: step, second: PerDrive::zeros(n) }
+}
+
+/// Spaces between the nodes of an integrated path; the quintic's error is below 1e-13 rad on a straight line.
+const SPACES: usize = 256;
+/// How far off its curve the integration may end up in a space, as a part of the arm, before it is put back onto it; far
+/// less where the Jacobian is regular.
+const OFF_CURVE: f64 = 1e-6;
+
+/// Follows a curve of the end effector with minimum-norm rates, q′ = J⁺ p′, by the fourth-order rule from a pose at its
+/// start.
+///
+/// # Errors
+/// If the Jacobian loses rank on the way.
+pub fn minimum_norm_path(
+    tip: &Chain,
+    start: DriveAngles,
+    curve: impl Fn(f64) -> CurvePoint,
+) -> Result<Table, PathError> {
+    let nodes = minimum_norm_nodes(tip, start, &curve, SPACES)?;
+    Table::even(nodes).ok_or(PathError::Singular { s: 0.0 })
+}
+
+/// The same along a curve of pieces, each with spaces of its own: an integration across a joint is not exact.
+///
+/// # Errors
+/// If the Jacobian loses rank on the way.
+pub fn minimum_norm_curve(tip: &Chain, start: DriveAngles, curve: &Curve) -> Result<Table, PathError> {
+    let piece = |q: DriveAngles, [from, to]: [f64; 2], at: &dyn Fn(f64) -> CurvePoint, spaces: usize| {
+        minimum_norm_nodes(tip, q, &at, spaces).map_err(|error| match error {
+            PathError::Singular { s } => PathError::Singular { s: from + s * (to - from) },
+            other => other,
+        })
+    };
+    by_pieces(curve, start, SPACES, piece)?.ok_or(PathError::Singular { s: 0.0 })
+}
+
+/// A path along a curve from what follows each of its pieces: from a pose, over a part of s, by u from 0 to 1.
+pub(super) fn by_pieces<E>(
+    curve: &Curve,
+    start: DriveAngles,
+    spaces: usize,
+    follow: impl Fn(DriveAngles, [f64; 2], &dyn Fn(f64) -> CurvePoint, usize) -> Result<Vec<PathPoint>, E>,
+) -> Result<Option<Table>, E> {
+    let joints: Vec<f64> = curve.joints().collect();
+    // Many pieces are short, as those between samples.
+    let least = if joints.len() > 200 { 1 } else { 16 };
+    let (mut stations, mut nodes, mut q) = (Vec::new(), Vec::new(), start);
+    for ends in joints.windows(2) {
+        let (from, run) = (ends[0], ends[1] - ends[0]);
+        let own = ((spaces as f64 * run).ceil() as usize).max(least);
+        let at = |u: f64| {
+            let point = curve.at(if u >= 1.0 { ends[1] } else { from + u * run });
+            CurvePoint { p: point.p, first: point.first * run, second: point.second * (run * run) }
+        };
+        let piece = follow(q, [ends[0], ends[1]], &at, own)?;
+        q = piece.last().map_or(q, |last| last.q);
+        let first = usize::from(!nodes.is_empty());
+        for (i, node) in piece.into_iter().enumerate().skip(first) {
+            stations.push(if i == own { ends[1] } else { from + run * i as f64 / own as f64 });
+            nodes.push(PathPoint {
+                q: node.q,
+                first: node.first.scaled(1.0 / run),
+                second: node.second.scaled(1.0 / (run * run)),
+            });
+        }
+    }
+    Ok(Table::new(stations, nodes))
+}
+
+fn minimum_norm_nodes(
+    tip: &Chain,
+    start: DriveAngles,
+    curve: &impl Fn(f64) -> CurvePoint,
+    spaces: usize,
+) -> Result<Vec<PathPoint>, PathError> {
+    let off_curve = OFF_CURVE * tip.iter().map(|c| c.abs()).sum::<f64>();
+    let n = start.len();
+    let slope = |q: &DriveAngles, s: f64| {
+        let way = curve(s);
+        minimum_norm(tip, &q.units(), n, way.first, way.second).ok_or(PathError::Singular { s })
+    };
+    // Each space takes several steps, so that the integration is as exact as the quintics.
+    const STEPS: usize = 4;
+    let h = 1.0 / (spaces * STEPS) as f64;
+    let mut q = start;
+    let mut nodes = Vec::with_capacity(spaces + 1);
+    for i in 0..=spaces {
+        let s = i as f64 / spaces as f64;
+        // A step may jump over the place where the rank is lost, but not without leaving the curve.
+        let gap = curve(s).p - end_effector(tip, &q.units());
+        if gap.is_nan() || gap.norm() > off_curve {
+            return Err(PathError::Singular { s });
+        }
+        let (back, _) = minimum_norm(tip, &q.units(), n, gap, Vector::default()).ok_or(PathError::Singular { s })?;
+        q = DriveAngles(q.0.plus(1.0, &back));
+        let (first, second) = slope(&q, s)?;
+        nodes.push(PathPoint { q, first, second });
+        if i == spaces {
+            break;
+        }
+        for j in 0..STEPS {
+            let s = (i * STEPS + j) as f64 * h;
+            let (k1, _) = slope(&q, s)?;
+            let (k2, _) = slope(&DriveAngles(q.0.plus(h / 2.0, &k1)), s + h / 2.0)?;
+            let (k3, _) = slope(&DriveAngles(q.0.plus(h / 2.0, &k2)), s + h / 2.0)?;
+            let (k4, _) = slope(&DriveAngles(q.0.plus(h, &k3)), s + h)?;
+            q = DriveAngles(q.0.plus(h / 6.0, &k1).plus(h / 3.0, &k2).plus(h / 3.0, &k3).plus(h / 6.0, &k4));
+        }
+    }
+    Ok(nodes)
+}
+
+/// The straight line of the end effector from where a pose has it, with minimum-norm rates (case 1).
+///
+/// # Errors
+/// If the Jacobian loses rank on the way.
+pub fn tip_line(tip: &Chain, start: DriveAngles, to: Vector) -> Result<Table, PathError> {
+    let from = end_effector(tip, &start.units());
+    let way = to - from;
+    minimum_norm_path(tip, start, |s| CurvePoint { p: from + s * way, first: way, second: Vector::default() })
+}
+
+/// The end effector of a joint line, reached with drive 1 elsewhere and drives 2 and 3 following on one elbow.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SameTip {
+    tip: Chain,
+    from: DriveAngles,
+    to: DriveAngles,
+    first_to: f64,
+    elbow: f64,
+}
+
+impl SameTip {
+    /// Follows the end effector of the joint line `from`–`to` while drive 1 goes straight to `first_to`, rad.
+    ///
+    /// # Errors
+    /// If links 5 and 9 cannot reach it somewhere.
+    pub fn new(tip: &Chain, from: DriveAngles, to: DriveAngles, first_to: f64) -> Result<Self, PathError> {
+        let elbow = (from[2] - from[1]).sin();
+        let path = Self { tip: *tip, from, to, first_to, elbow };
+        let steps = 256;
+        match (0..=steps).map(|i| f64::from(i) / f64::from(steps)).find(|s| path.solve(*s).is_none()) {
+            Some(s) => Err(PathError::Unreachable { s }),
+            None => Ok(path),
+        }
+    }
+
+    fn at(&self, s: f64) -> PathPoint {
+        // `new` has walked the path; between its samples a miss falls back to the line it follows.
+        self.solve(s).unwrap_or_else(|| joint_line(&self.from, &self.to, s))
+    }
+
+    fn solve(&self, s: f64) -> Option<PathPoint> {
+        let tip = &self.tip;
+        let line = joint_line(&self.from, &self.to, s);
+        let e = line.q.units();
+        let (v, a) = (velocity(tip, &e, &line.first), acceleration(tip, &e, &line.first, &line.second));
+        let q1 = self.from[0] + s * (self.first_to - self.from[0]);
+        let q1_rate = self.first_to - self.from[0];
+        let (c2, c3) = (tip[1], tip[2]);
+        let r = end_effector(tip, &e) - tip[0] * unit(q1);
+        let cos = (r.norm_sqr() - c2 * c2 - c3 * c3) / (2.0 * c2 * c3);
+        if !(-1.0..=1.0).contains(&cos) {
+            return None;
+        }
+        let bend = cos.acos().copysign(self.elbow);
+        let q2 = closest_turn((r * (c2 + c3 * unit(bend)).conj()).arg(), line.q[1]);
+        let q3 = closest_turn(q2 + bend, line.q[2]);
+        let q = DriveAngles::from([q1, q2, q3]);
+        let e = q.units();
+        let zero = PerDrive::zeros(3);
+        let own = velocity(tip, &e, &PerDrive::from([q1_rate, 0.0, 0.0]));
+        let (d2, d3) = two_link_rates(c2, c3, e[1], e[2], v - own)?;
+        let first = PerDrive::from([q1_rate, d2, d3]);
+        // p̈ = J q″ + J̇ q′, and q_1 has no second derivative.
+        let (dd2, dd3) = two_link_rates(c2, c3, e[1], e[2], a - acceleration(tip, &e, &first, &zero))?;
+        Some(PathPoint { q, first, second: PerDrive::from([0.0, dd2, dd3]) })
+    }
+}

@@ -1,0 +1,65 @@
+//! The pose constant of two drives, also where the mass matrix depends on the pose.
+//!
+//! # Symbols
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | δ | q_2 − q_1 | rad |
+//! | D_1, D_2 | H_11 + Re Z_12, H_22 + Re Z_12, Z_12 = C_12 e^{iδ} = R e^{i(δ + φ)} | kg m² |
+//! | S | H_11 + H_22, above 2R as H is positive definite | kg m² |
+//!
+//! # Source
+//! D q̇ = (D_1 + D_2) (q̇_1 + D_2/(D_1 + D_2) δ̇), and D_2/(D_1 + D_2) = ½ + ½ (H_22 − H_11)/(S + 2R cos(δ + φ)) depends on
+//! δ alone. So b = q_1 + ∫_0^δ D_2/(D_1 + D_2) dδ, and angular momentum is (D_1 + D_2) ḃ.
+
+use crate::mechanics::machine::Inertia;
+use crate::mechanics::planar::{Vector, unit};
+
+/// b(q) of a machine with two drives, whatever its couplings: constant exactly along motions of zero momentum.
+///
+/// Unlike (13) it is not scaled by D_1: for a constant mass matrix it is (D_1 q_1 + D_2 q_2)/(D_1 + D_2).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoseIntegral {
+    /// ½ (H_22 − H_11)/√(S² − 4R²).
+    gain: f64,
+    /// √((S − 2R)/(S + 2R)).
+    k: f64,
+    phase: f64,
+    sum: f64,
+    coupling: Vector,
+}
+
+impl PoseIntegral {
+    /// Of a machine; `None` unless it has two drives and a positive definite mass matrix.
+    pub fn of(model: &Inertia) -> Option<Self> {
+        if model.drives() != 2 {
+            return None;
+        }
+        let (first, second, coupling) = (model.diagonal(0), model.diagonal(1), model.coupling(0, 1));
+        let (sum, most) = (first + second, 2.0 * coupling.norm());
+        let definite = first * second > coupling.norm_sqr() && sum > most;
+        definite.then(|| Self {
+            gain: 0.5 * (second - first) / ((sum - most) * (sum + most)).sqrt(),
+            k: ((sum - most) / (sum + most)).sqrt(),
+            phase: coupling.im.atan2(coupling.re),
+            sum,
+            coupling,
+        })
+    }
+
+    /// b at q, rad, without jumps over whole turns.
+    pub fn b(&self, q: [f64; 2]) -> f64 {
+        let delta = q[1] - q[0];
+        q[0] + 0.5 * delta + self.gain * (self.swept(delta + self.phase) - self.swept(self.phase))
+    }
+
+    /// D_1 + D_2 at q, kg m²: what a machine turned as a whole has.
+    pub fn inertia(&self, q: [f64; 2]) -> f64 {
+        self.sum + 2.0 * (self.coupling * unit(q[1] - q[0])).re
+    }
+
+    /// √(S² − 4R²) ∫ dψ/(S + 2R cos ψ) = 2 arctan(k tan(ψ/2)) from 0, continued over whole turns.
+    fn swept(&self, psi: f64) -> f64 {
+        let (e, k) = (unit(psi), self.k);
+        psi - 2.0 * f64::atan((1.0 - k) * e.im / ((1.0 + k) + (1.0 - k) * e.re))
+    }
+}

@@ -1,0 +1,293 @@
+//! The price of b: what the base feels when a motion leaves its plane, stated before it starts.
+//!
+//! A machine whose mass matrix is constant transmits n_B = −D_1 b̈ and nothing else, whatever its other coordinates do.
+//! So a motion from a pose of one b to a pose of another has a price that depends on Δb, on the time and on the law alone.
+//!
+//! # Symbols
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | D_1 | H_11 of the constant mass matrix, (11) | kg m² |
+//! | Δb | change of the pose constant, from rest to rest | rad |
+//! | T | time it takes | s |
+//! | n_B | moment on the base, −D_1 b̈ | N m |
+//! | I_b, m_b, ρ | inertia about its own CM, mass and CM (seen from B) of a free base | kg m², kg, m |
+//! | μ | m_b M / (m_b + M), M the mass of the manipulator | kg |
+//!
+//! # Source
+//! (11)–(13): angular momentum about B is D q̇ = D_1 ḃ. It holds while C_kl = 0 for k ≠ l, nothing pulls at the end
+//! effector and gravity has no moment about B; of what gravity does, the price says nothing.
+
+use thiserror::Error;
+
+use super::law::TimeLaw;
+use super::path::{Path, PathPoint};
+use super::table::Table;
+use crate::mechanics::machine::Inertia;
+use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
+use crate::planning::reactionless::{BSet, NoReach, PlaneMap, PlanePoint};
+
+/// How b goes from rest to rest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PoseLaw {
+    /// Constant b̈ for half of T, its negative for the rest: the least peak of n_B, and the least time for a peak.
+    BangBang,
+    /// 3 u² − 2 u³: the least ∫ n_B² dt.
+    Cubic,
+    /// [`TimeLaw::Quintic`](super::TimeLaw): n_B begins and ends at zero.
+    Quintic,
+}
+
+impl PoseLaw {
+    /// T² max|b̈|/|Δb|: 4, 6, 10/√3.
+    pub fn peak(self) -> f64 {
+        match self {
+            Self::BangBang => 4.0,
+            Self::Cubic => 6.0,
+            Self::Quintic => TimeLaw::Quintic.peak(),
+        }
+    }
+
+    /// T ∫|b̈|dt/|Δb|, twice the peak of ḃ: 4, 3, 15/4.
+    pub fn impulse(self) -> f64 {
+        match self {
+            Self::BangBang => 4.0,
+            Self::Cubic => 3.0,
+            Self::Quintic => 3.75,
+        }
+    }
+
+    /// T² times the root of the mean of b̈² over |Δb|: 4, √12, √(120/7).
+    pub fn rms(self) -> f64 {
+        match self {
+            Self::BangBang => 4.0,
+            Self::Cubic => 12f64.sqrt(),
+            Self::Quintic => (120.0 / 7.0f64).sqrt(),
+        }
+    }
+}
+
+/// Why a change of b has no price that could be stated.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum PriceError {
+    /// H depends on the pose.
+    #[error("the mass matrix depends on the pose (|C_kl| up to {residual:.2e} kg m²), so there is no b: want C_kl = 0")]
+    NotInvariant {
+        /// kg m².
+        residual: f64,
+    },
+    /// The centre of mass moves.
+    #[error("the centre of mass moves (|g_k| up to {residual:.2e} kg m): the turn of a free base wants g_k = 0")]
+    NotBalanced {
+        /// kg m.
+        residual: f64,
+    },
+    /// Poses of another machine.
+    #[error("poses of {from} and {to} angles for a machine of {drives} drives: want {drives} each")]
+    Drives {
+        /// Of the first pose.
+        from: usize,
+        /// Of the second.
+        to: usize,
+        /// Of the machine.
+        drives: usize,
+    },
+    /// The numbers of a base.
+    #[error("a free base wants finite numbers, with mass and inertia not below 0 and one of them above")]
+    Base,
+}
+
+/// A base that floats freely.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FloatingBase {
+    /// m_b, kg.
+    pub mass: f64,
+    /// I_b about its own centre of mass, kg m².
+    pub inertia: f64,
+    /// ρ, its centre of mass seen from B, m.
+    pub com: Vector,
+}
+
+/// What it costs to change b by Δb, from rest to rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Price {
+    inertia: f64,
+    delta_b: f64,
+}
+
+impl Price {
+    /// The price of Δb, rad, on a machine whose mass matrix is constant.
+    ///
+    /// # Errors
+    /// If it is not.
+    pub fn of(model: &Inertia, delta_b: f64) -> Result<Self, PriceError> {
+        if !model.is_invariant() {
+            return Err(PriceError::NotInvariant { residual: model.invariance_residual() });
+        }
+        Ok(Self { inertia: model.diagonal(0), delta_b })
+    }
+
+    /// The price of any motion from one pose to another: Δb = Σ λ_k Δq_k, in absolute drive angles.
+    ///
+    /// # Errors
+    /// If the mass matrix is not constant, or the poses are not of this machine.
+    pub fn between(model: &Inertia, from: &DriveAngles, to: &DriveAngles) -> Result<Self, PriceError> {
+        let drives = model.drives();
+        if from.len() != drives || to.len() != drives {
+            return Err(PriceError::Drives { from: from.len(), to: to.len(), drives });
+        }
+        Self::of(model, model.lambda().dot(&to.0.minus(&from.0)))
+    }
+
+    /// D_1, kg m².
+    pub fn inertia(&self) -> f64 {
+        self.inertia
+    }
+
+    /// Δb, rad.
+    pub fn delta_b(&self) -> f64 {
+        self.delta_b
+    }
+
+    /// Peak |n_B| of a law that takes `duration`, s: 4 or 5.7735 … times D_1 |Δb|/T², N m.
+    pub fn peak(&self, law: PoseLaw, duration: f64) -> f64 {
+        law.peak() * self.size() / (duration * duration)
+    }
+
+    /// The least peak |n_B| of any motion that takes `duration`, s: 4 D_1 |Δb|/T², bang-bang, N m.
+    pub fn least_peak(&self, duration: f64) -> f64 {
+        self.peak(PoseLaw::BangBang, duration)
+    }
+
+    /// ∫|n_B|dt, N m s.
+    pub fn impulse(&self, law: PoseLaw, duration: f64) -> f64 {
+        law.impulse() * self.size() / duration
+    }
+
+    /// Root of the mean of n_B², N m.
+    pub fn rms(&self, law: PoseLaw, duration: f64) -> f64 {
+        law.rms() * self.size() / (duration * duration)
+    }
+
+    /// T at which a law just keeps |n_B| ≤ `limit`, N m; infinite for a limit of zero, unless Δb is zero too.
+    pub fn time(&self, law: PoseLaw, limit: f64) -> f64 {
+        if self.delta_b == 0.0 { 0.0 } else { (law.peak() * self.size() / limit.max(0.0)).sqrt() }
+    }
+
+    /// The least time of any motion that keeps |n_B| ≤ `limit`, N m: 2 √(D_1 |Δb|/n_max), s.
+    pub fn least_time(&self, limit: f64) -> f64 {
+        self.time(PoseLaw::BangBang, limit)
+    }
+
+    /// By how much a base that floats freely and rests at first is turned in the end, whatever the path, the law and the
+    /// time: Δθ = −D_1 Δb/(I_b + μ|ρ|² + ΣD_k), rad. Here Δb is that of the angles between drives and base, q_k − θ.
+    ///
+    /// # Errors
+    /// If the machine's mass matrix is not constant, its centre of mass moves, or the base is none.
+    pub fn base_turn(&self, model: &Inertia, base: &FloatingBase) -> Result<f64, PriceError> {
+        Self::of(model, self.delta_b)?;
+        if !model.is_force_balanced() {
+            return Err(PriceError::NotBalanced { residual: model.force_residual() });
+        }
+        let FloatingBase { mass, inertia, com } = *base;
+        let sound = mass >= 0.0 && inertia >= 0.0 && mass + inertia > 0.0 && (mass + inertia).is_finite();
+        if !(sound && com.is_finite()) {
+            return Err(PriceError::Base);
+        }
+        let reduced = mass * model.mass() / (mass + model.mass());
+        let whole = inertia + reduced * com.norm_sqr() + model.diagonals().iter().sum::<f64>();
+        Ok(-model.diagonal(0) * self.delta_b / whole)
+    }
+
+    fn size(&self) -> f64 {
+        self.inertia * self.delta_b.abs()
+    }
+}
+
+/// The b of two sets that lie nearest to each other on the real line, lifted by whole turns so that the first is as near
+/// as can be to `near`, rad. Where the sets overlap both are the common b nearest to it. `None` if a set is empty.
+pub fn nearest_planes(from: &BSet, to: &BSet, near: f64) -> Option<[f64; 2]> {
+    let common = BSet::overlap(&[from.clone(), to.clone()]);
+    if let Some(b) = common.nearest(near) {
+        return Some([b, b]);
+    }
+    let mut best: Option<[f64; 2]> = None;
+    let cost = |pair: &[f64; 2]| ((pair[1] - pair[0]).abs(), (pair[0] - near).abs());
+    for start in &from.near(near).intervals {
+        // Either end of an interval may be the one to leave from.
+        for b in start {
+            let Some(end) = to.nearest(*b) else { continue };
+            let pair = [*b, end];
+            if best.is_none_or(|least| cost(&pair) < cost(&least)) {
+                best = Some(pair);
+            }
+        }
+    }
+    best
+}
+
+/// Shares of the way to the middle of an interval of b, for an end of it that misses its pose by rounding.
+pub const INWARDS: [f64; 4] = [0.0, 1e-12, 1e-9, 1e-6];
+
+/// Of the poses of two points, m, each on the plane of its own b, rad, the two that lie nearest together.
+pub fn nearest_poses(map: &PlaneMap, points: [Vector; 2], b: [f64; 2]) -> Option<[PlanePoint; 2]> {
+    let poses = [map.poses(points[0], b[0]), map.poses(points[1], b[1])];
+    let apart = |[x, y]: &[PlanePoint; 2]| (x.a[0] - y.a[0]).hypot(x.a[1] - y.a[1]);
+    let pairs = poses[0].iter().flat_map(|x| poses[1].iter().map(move |y| [*x, *y]));
+    pairs.min_by(|p, q| apart(p).total_cmp(&apart(q)))
+}
+
+/// Poses of two points, m, at the b of each that lie nearest together: the move with the least price. Where the points
+/// share a plane it is free, at the common b nearest to `near`, rad. Of several poses the two nearest together are taken,
+/// as a straight joint line may pass from sheet to sheet.
+///
+/// # Errors
+/// Which point (0 or 1) cannot be reached, and why.
+pub fn least_change(map: &PlaneMap, points: [Vector; 2], near: f64) -> Result<[PlanePoint; 2], (usize, NoReach)> {
+    let sets = [map.reach(points[0]).map_err(|e| (0, e))?, map.reach(points[1]).map_err(|e| (1, e))?];
+    let [first, second] = nearest_planes(&sets[0], &sets[1], near).ok_or((0, NoReach::Limits))?;
+    let free = first == second;
+    let inner = |b: f64, set: &BSet, share: f64| set.inwards(b, share);
+    // An end of an interval may miss its pose by rounding: then a little further inside.
+    for share in INWARDS {
+        let b = if free {
+            let common = BSet::overlap(&sets);
+            [inner(first, &common, share); 2]
+        } else {
+            [inner(first, &sets[0], share), inner(second, &sets[1], share)]
+        };
+        if let Some(pair) = nearest_poses(map, points, b) {
+            return Ok(pair);
+        }
+    }
+    Err((usize::from(!map.poses(points[0], first).is_empty()), NoReach::Limits))
+}
+
+/// The straight joint line between two poses, whatever their b; with any law b goes as the law does. Limits on (a_1, a_2)
+/// form a box, so that the line keeps those that its ends keep.
+pub fn joint_line(map: &PlaneMap, [from, to]: [PlanePoint; 2]) -> Path {
+    Path::JointLine { from: DriveAngles::from(map.lift(from)), to: DriveAngles::from(map.lift(to)) }
+}
+
+/// A move in which only b is bang-bang over the whole of T, while (a_1, a_2) go by the quintic law: the least peak of n_B
+/// with joints that start and stop smoothly. Its parameter is u = t/T, so rates are q′/T and accelerations q″/T².
+///
+/// b″ jumps at u = 0, ½ and 1. At ½ it is that of the first half; the next number after ½ begins the second.
+pub fn bang_bang_in_b(map: &PlaneMap, [from, to]: [PlanePoint; 2]) -> Option<Table> {
+    let step = [to.a[0] - from.a[0], to.a[1] - from.a[1]];
+    let delta_b = to.b - from.b;
+    let point = |share: [f64; 3], turn: [f64; 3]| {
+        let a = [from.a[0] + share[0] * step[0], from.a[1] + share[0] * step[1]];
+        let q = map.lift(PlanePoint { a, b: from.b + turn[0] * delta_b });
+        let rates = |i: usize| PerDrive::from(map.lift_rates(step.map(|x| share[i] * x), turn[i] * delta_b));
+        PathPoint { q: DriveAngles::from(q), first: rates(1), second: rates(2) }
+    };
+    let middle = [0.5, 1.875, 0.0];
+    let nodes = vec![
+        point([0.0; 3], [0.0, 0.0, 4.0]),
+        point(middle, [0.5, 2.0, 4.0]),
+        point(middle, [0.5, 2.0, -4.0]),
+        point([1.0, 0.0, 0.0], [1.0, 0.0, -4.0]),
+    ];
+    // No number lies between the two nodes of the kink, so the quintic between them is never asked.
+    Table::new(vec![0.0, 0.5, 0.5f64.next_up(), 1.0], nodes)
+}

@@ -1,0 +1,178 @@
+//! Limits on jerk along a curve: a motion near the best, proved by checking it, and how far it is from a bound.
+//!
+//! With jerk limited the fastest motion on a curve is no convex problem: [`super::jerk`] finds a local optimum on nodes
+//! that are dense where the motion without those limits takes its time, and where the path bends. What its pieces pass
+//! limits by between the places where they are kept is mended by slowing all of it down.
+
+use super::Motion;
+use super::fastest::{Fastest, TimeError, s_curve};
+use super::jerk::{Program, eased, uneased};
+use super::keep::greatest;
+use super::law::Progress;
+use super::limits::Constraints;
+use super::path::Path;
+use super::profile::{Profile, Span};
+use super::topp::Grid;
+use super::usage::{Demand, Usage};
+use crate::mechanics::dynamics::Surroundings;
+use crate::mechanics::machine::Inertia;
+
+/// Instants for the account of what limits.
+const INSTANTS: usize = 2000;
+/// Spaces between nodes: over the time of the motion without limits on jerk, over θ, for each space of its grid, for each
+/// e-fold nearer to an end until very near, and at least between two joints of the path.
+const BY_TIME: f64 = 200.0;
+const BY_PLACE: f64 = 80.0;
+const BY_SPACE: f64 = 0.1;
+const BY_ENDS: f64 = 4.0;
+const NEAR: f64 = 0.003;
+const A_PIECE: usize = 12;
+/// How often nodes are added where a limit is passed by this much or more between the places where it is kept, as a
+/// factor on time, and how many there may be.
+const MENDINGS: usize = 3;
+const PAST: f64 = 2e-3;
+/// A limit passed by more wants more of them.
+const FAR_PAST: f64 = 0.03;
+const MOST_NODES: usize = 4000;
+/// Parts of a phase of a law that are checked.
+const PARTS: usize = 500;
+/// What rounding may need.
+const SPARE: f64 = 1e-9;
+/// The greatest θ̇, times 1/T of the motion without limits on jerk.
+const MOST_RATE: f64 = 60.0;
+
+/// A motion within all limits; `bound` is the fastest one without those on jerk, on the grid.
+pub(super) fn smooth(
+    path: &Path,
+    model: &Inertia,
+    around: &Surroundings,
+    constraints: &Constraints,
+    grid: &Grid,
+    bound: Result<Fastest, TimeError>,
+) -> Result<Fastest, TimeError> {
+    let limits = constraints.limits();
+    let bound = match bound {
+        // Jerk alone may be limited, or jerk and speed.
+        Err(TimeError::Unlimited { .. } | TimeError::SpeedOnly) => None,
+        Ok(bound) if bound.profile.duration() == 0.0 => return Ok(bound),
+        other => Some(other?),
+    };
+    let stuck = || TimeError::Stuck { s: 0.0 };
+    let most = bound.as_ref().map_or(f64::INFINITY, |b| (MOST_RATE / b.profile.duration()).powi(2));
+    let nodes = nodes(path, grid, bound.as_ref().map(|b| &b.profile));
+    let rates: Vec<f64> = bound.iter().flat_map(|b| b.profile.phases().map(|(at, _)| at.rate)).chain([0.0]).collect();
+    // What no motion surpasses, from station to station.
+    let fastest = |theta: f64| {
+        let [s, slope, ..] = eased(theta);
+        let i = grid.s.partition_point(|station| *station <= s).clamp(1, grid.s.len() - 1) - 1;
+        let Some(&[from, to]) = rates.get(i..i + 2) else { return f64::INFINITY };
+        let share = (s - grid.s[i]) / (grid.s[i + 1] - grid.s[i]);
+        (from * from + share * (to * to - from * from)) / (slope * slope)
+    };
+    let stretch = |at: &Progress| Demand::of(path, model, around, limits, at).stretch(limits);
+    let (mut nodes, mut timing, mut best) = (nodes, None, None::<Profile>);
+    for _ in 0..=MENDINGS {
+        let solved = Program::new(path, constraints, nodes, most).solve(fastest, timing.as_ref());
+        let Some(found) = solved else { break };
+        let profile = found.profile();
+        let mut phases = profile.phases();
+        let past: Vec<f64> = (1..found.nodes.len()).map(|_| greatest(phases.by_ref().take(3), stretch)).collect();
+        drop(phases);
+        let most = past.iter().copied().fold(0.0, f64::max);
+        if most.is_finite() && most > 0.0 {
+            let slowed = profile.stretched(most * (1.0 + SPARE));
+            if best.as_ref().is_none_or(|best| slowed.duration() < best.duration()) {
+                best = Some(slowed);
+            }
+        }
+        if most <= 1.0 + PAST || found.nodes.len() > MOST_NODES {
+            break;
+        }
+        nodes = mended(&found.nodes, &past);
+        timing = Some(found);
+    }
+    // The law that is best where jerk alone counts serves where all else fails.
+    let profile = best.or_else(|| by_law(stretch)).ok_or_else(stuck)?;
+    let gap = bound.map(|b| profile.duration() / b.profile.duration() - 1.0);
+    let motion = Motion { path: path.clone(), profile };
+    let limiting = Usage::of(&motion, model, around, limits, INSTANTS).leading;
+    Ok(Fastest { profile: motion.profile, gap, limiting })
+}
+
+/// The law of least jerk in the time that keeps all limits.
+fn by_law(stretch: impl Fn(&Progress) -> f64) -> Option<Profile> {
+    let spans = s_curve(f64::INFINITY, f64::INFINITY, 32.0)?;
+    let cut = |span: &Span| {
+        let (time, from) = (span.time / PARTS as f64, *span);
+        (0..PARTS).map(move |i| Span { time, acceleration: from.acceleration + i as f64 * time * from.jerk, ..from })
+    };
+    let law = Profile::of_spans(&spans.iter().flat_map(cut).collect::<Vec<_>>());
+    let factor = greatest(law.phases(), stretch);
+    (factor > 0.0 && factor.is_finite()).then(|| law.stretched(factor * (1.0 + SPARE)))
+}
+
+/// Nodes with more of them in and beside spaces in which a limit is passed.
+fn mended(nodes: &[f64], past: &[f64]) -> Vec<f64> {
+    let mut fine = Vec::with_capacity(2 * nodes.len());
+    for i in 0..past.len() {
+        let worst = past[i.saturating_sub(1)..(i + 2).min(past.len())].iter().copied().fold(0.0, f64::max);
+        let parts = match past[i] - 1.0 {
+            by if by > FAR_PAST => 5,
+            by if by > PAST => 3,
+            _ if worst > 1.0 + PAST => 2,
+            _ => 1,
+        };
+        fine.extend((0..parts).map(|k| nodes[i] + (nodes[i + 1] - nodes[i]) * k as f64 / parts as f64));
+    }
+    fine.push(1.0);
+    fine
+}
+
+/// Nodes θ: from joint to joint of the path as many as its part is worth.
+fn nodes(path: &Path, grid: &Grid, bound: Option<&Profile>) -> Vec<f64> {
+    // What the spaces of the grid are worth, added up.
+    let thetas: Vec<f64> = grid.s.iter().map(|s| uneased(*s)).collect();
+    let times: Vec<f64> = bound.map_or(Vec::new(), |b| b.phases().map(|(_, time)| time / b.duration()).collect());
+    let mut worth = Vec::with_capacity(thetas.len());
+    let mut sum = 0.0;
+    worth.push(0.0);
+    for i in 1..thetas.len() {
+        let time = times.get(i - 1).copied().unwrap_or(0.0);
+        let (from, to) = (thetas[i - 1], thetas[i]);
+        let ends = ((to + NEAR) * (1.0 - from + NEAR) / ((from + NEAR) * (1.0 - to + NEAR))).ln();
+        sum += BY_TIME * time + BY_PLACE * (to - from) + BY_SPACE + BY_ENDS * ends;
+        worth.push(sum);
+    }
+    let mut nodes = vec![0.0];
+    let mut at = 0;
+    let place = |want: f64, mut at: usize| {
+        while at + 2 < worth.len() && worth[at + 1] < want {
+            at += 1;
+        }
+        let share = ((want - worth[at]) / (worth[at + 1] - worth[at])).clamp(0.0, 1.0);
+        (thetas[at] + share * (thetas[at + 1] - thetas[at]), at)
+    };
+    let joints = path.joints();
+    let least = if joints.len() > 40 { 4 } else { A_PIECE };
+    for ends in joints.windows(2) {
+        let worth_at = |s: f64| {
+            let i = grid.s.partition_point(|station| *station <= s).clamp(1, worth.len() - 1) - 1;
+            let share = (s - grid.s[i]) / (grid.s[i + 1] - grid.s[i]);
+            worth[i] + share * (worth[i + 1] - worth[i])
+        };
+        let [from, to] = [worth_at(ends[0]), worth_at(ends[1])];
+        let count = ((to - from).ceil() as usize).max(least);
+        for k in 1..count {
+            let (theta, near) = place(from + (to - from) * k as f64 / count as f64, at);
+            at = near;
+            nodes.push(theta);
+        }
+        nodes.push(if ends[1] == 1.0 { 1.0 } else { uneased(ends[1]) });
+    }
+    nodes.dedup_by(|b, a| *b - *a < 1e-12);
+    if let Some(last) = nodes.last_mut() {
+        *last = 1.0;
+    }
+    debug_assert!(nodes.windows(2).all(|w| w[0] < w[1] && eased(w[1])[0] > 0.0));
+    nodes
+}

@@ -1,0 +1,200 @@
+//! A curve on a plane, followed step by step: poses with derivatives, and what stops them.
+
+use super::{Halt, Rule, Stop, crossed};
+use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
+use crate::planning::plan::curve::{Curve, CurvePoint};
+use crate::planning::plan::inverse::rates;
+use crate::planning::plan::path::PathPoint;
+use crate::planning::plan::table::Table;
+use crate::planning::reactionless::{PlaneMap, PlanePoint, SLACK};
+
+/// The smallest advance along a curve before it counts as stopped.
+const LEAST_STEP: f64 = 1e-11;
+
+/// How far the pose may lie from where the tangent leads, rad: farther, the step is halved.
+const ASTRAY: f64 = 0.02;
+
+/// The nodes are dense enough when the quintics between them miss by no more than this, rad.
+const MISS: f64 = 2e-11;
+
+/// In the least spaces this must do, rad: close by a fold.
+const MISS_AT_LEAST: f64 = 1e-8;
+/// Spaces between nodes on a piece of a curve to begin with.
+const SPACES: usize = 8;
+/// More pieces than this begin with one space each.
+const MANY: usize = 200;
+/// The least space, as a share of its piece, and the most nodes of a curve, some more for each piece.
+const LEAST_SPACE: f64 = 1e-6;
+const MOST_NODES: usize = 20_000;
+
+/// A curve on a plane.
+#[derive(Clone, Copy)]
+pub(super) struct Track<'a> {
+    pub map: &'a PlaneMap,
+    pub b: f64,
+    pub turn: Vector,
+    pub curve: &'a Curve,
+    pub rule: Rule,
+}
+
+impl Track<'_> {
+    /// From the pose at one s to that at another.
+    pub fn advance(&self, mut a: [f64; 2], from: f64, to: f64) -> Result<[f64; 2], Halt> {
+        let (mut s, mut step) = (from, to - from);
+        let mut here = self.jet(a, s);
+        while s < to {
+            let next = if s + step >= to { to } else { s + step };
+            let ahead = [0, 1].map(|i| a[i] + (next - s) * here.first[i]);
+            let found =
+                self.map.follow(self.curve.at(next).p, self.b, a).filter(|x| self.rule.keeps_side(self.map, a, *x));
+            let near = |x: &[f64; 2]| {
+                let step = (x[0] - a[0]).hypot(x[1] - a[1]);
+                (x[0] - ahead[0]).hypot(x[1] - ahead[1]) <= ASTRAY + 0.25 * step
+            };
+            match found.filter(near) {
+                Some(x) => {
+                    let there = self.jet(x, next);
+                    self.keeps_limits((s, here), (next, there))?;
+                    (a, s, here) = (x, next, there);
+                    step *= 2.0;
+                }
+                None if step > LEAST_STEP => step *= 0.5,
+                None => return Err((s, a, self.stop(a, here.first))),
+            }
+        }
+        Ok(a)
+    }
+
+    /// (a_1, a_2) with derivatives by s, for the pose at s.
+    fn jet(&self, a: [f64; 2], s: f64) -> Jet {
+        let CurvePoint { first, second, .. } = self.curve.at(s);
+        let [first, second] = rates(self.map, a, first * self.turn, second * self.turn);
+        Jet { a, first, second }
+    }
+
+    /// What lies ahead of a pose that cannot be left along a tangent.
+    fn stop(&self, a: [f64; 2], tangent: [f64; 2]) -> Stop {
+        let length = tangent[0].hypot(tangent[1]);
+        let ahead = [0, 1].map(|i| a[i] + 1e-5 * tangent[i] / length);
+        if let (true, Some(drives)) = (self.rule.keep_off_change_points, crossed(self.map, a, ahead)) {
+            return Stop::ChangePoint { drives };
+        }
+        let limits = self.map.limits();
+        for (angle, limit) in limits.iter().enumerate() {
+            let out = [(a[angle] - limit.min, false, -tangent[angle]), (limit.max - a[angle], true, tangent[angle])];
+            for (room, upper, outwards) in out {
+                if room < 1e-6 && outwards > 0.0 {
+                    return Stop::Limit { angle, upper };
+                }
+            }
+        }
+        Stop::Fold
+    }
+
+    /// Nodes along the curve, each space halved until its quintic does.
+    pub fn table(&self, start: [f64; 2]) -> Result<Table, Halt> {
+        let (mut stations, mut nodes) = (vec![0.0], vec![self.jet(start, 0.0)]);
+        let joints: Vec<f64> = self.curve.joints().collect();
+        let mut ahead: Vec<f64> = Vec::with_capacity(64);
+        let pieces = joints.len() - 1;
+        // Many pieces are short, as those between samples.
+        let spaces = if pieces > MANY { 1 } else { SPACES };
+        for ends in joints.windows(2) {
+            let run = ends[1] - ends[0];
+            let station = |i: usize| if i == spaces { ends[1] } else { ends[0] + run * i as f64 / spaces as f64 };
+            ahead.extend((1..=spaces).rev().map(station));
+            while let Some(&next) = ahead.last() {
+                let (s, here) = (stations[stations.len() - 1], nodes[nodes.len() - 1]);
+                let there = self.jet(self.advance(here.a, s, next)?, next);
+                let miss = self.miss((s, here), (next, there));
+                if miss < MISS || (next - s < LEAST_SPACE * run && miss < MISS_AT_LEAST) {
+                    stations.push(next);
+                    nodes.push(there);
+                    ahead.pop();
+                } else if next - s < LEAST_SPACE * run || nodes.len() > MOST_NODES + 4 * pieces {
+                    // So near to a fold that no nodes are dense enough.
+                    return Err((s, here.a, Stop::Fold));
+                } else {
+                    ahead.push(0.5 * (s + next));
+                }
+            }
+        }
+        let lifted = nodes.iter().map(|jet| self.lifted(jet)).collect();
+        let last = stations.len() - 1;
+        stations[last] = 1.0;
+        Table::new(stations, lifted).ok_or((0.0, start, Stop::Start))
+    }
+
+    /// How far the point halfway between two nodes lies from their quintic, rad.
+    fn miss(&self, (s, x): (f64, Jet), (t, y): (f64, Jet)) -> f64 {
+        let middle =
+            [0, 1].map(|i| hermite([x.a[i], x.first[i], x.second[i]], [y.a[i], y.first[i], y.second[i]], t - s, 0.5));
+        match self.map.follow(self.curve.at(0.5 * (s + t)).p, self.b, x.a) {
+            Some(a) => (a[0] - middle[0]).abs().max((a[1] - middle[1]).abs()),
+            None => f64::INFINITY,
+        }
+    }
+
+    /// Between two nodes an angle may turn back beyond its limit.
+    fn keeps_limits(&self, (s, x): (f64, Jet), (t, y): (f64, Jet)) -> Result<(), Halt> {
+        const LOOKS: i32 = 16;
+        let limits = self.map.limits();
+        for (i, limit) in limits.iter().enumerate() {
+            if x.first[i] * y.first[i] >= 0.0 {
+                continue;
+            }
+            let at = |u: f64| hermite([x.a[i], x.first[i], x.second[i]], [y.a[i], y.first[i], y.second[i]], t - s, u);
+            let past = |u: f64| (at(u) - limit.max).max(limit.min - at(u));
+            let looks = (1..LOOKS).map(|k| f64::from(k) / f64::from(LOOKS));
+            let Some(mut bad) = looks.max_by(|u, v| past(*u).total_cmp(&past(*v))) else { continue };
+            // The peak between the looks, to second order.
+            let d = 1.0 / f64::from(LOOKS);
+            let [before, here, after] = [past(bad - d), past(bad), past(bad + d)];
+            let shift = 0.5 * d * (before - after) / (before - 2.0 * here + after);
+            if shift.is_finite() && past(bad + shift) > here {
+                bad += shift;
+            }
+            if past(bad) <= SLACK {
+                continue;
+            }
+            // A long space has a poor quintic: only what cannot be followed there counts.
+            if self.map.follow(self.curve.at(s + (t - s) * bad).p, self.b, x.a).is_some() {
+                continue;
+            }
+            let upper = at(bad) > limit.max;
+            let mut good = 0.0;
+            for _ in 0..50 {
+                let middle = 0.5 * (good + bad);
+                if past(middle) <= 0.0 { good = middle } else { bad = middle }
+            }
+            let end = s + (t - s) * good;
+            let a = self.map.follow(self.curve.at(end).p, self.b, x.a).unwrap_or(x.a);
+            return Err((end, a, Stop::Limit { angle: i, upper }));
+        }
+        Ok(())
+    }
+
+    fn lifted(&self, jet: &Jet) -> PathPoint {
+        PathPoint {
+            q: DriveAngles::from(self.map.lift(PlanePoint { a: jet.a, b: self.b })),
+            first: PerDrive::from(self.map.lift_rates(jet.first, 0.0)),
+            second: PerDrive::from(self.map.lift_rates(jet.second, 0.0)),
+        }
+    }
+}
+
+/// Plane coordinates with derivatives by s.
+#[derive(Clone, Copy)]
+struct Jet {
+    a: [f64; 2],
+    first: [f64; 2],
+    second: [f64; 2],
+}
+
+/// The quintic through value and two derivatives at both ends of a space h, at the share u.
+fn hermite(from: [f64; 3], to: [f64; 3], h: f64, u: f64) -> f64 {
+    let (c1, c2) = (from[1] * h, 0.5 * from[2] * h * h);
+    let (v, v1, v2) = (to[0] - from[0] - c1 - c2, to[1] * h - c1 - 2.0 * c2, to[2] * h * h - 2.0 * c2);
+    let (c3, c4, c5) = (10.0 * v - 4.0 * v1 + 0.5 * v2, -15.0 * v + 7.0 * v1 - v2, 6.0 * v - 3.0 * v1 + 0.5 * v2);
+    from[0] + u * (c1 + u * (c2 + u * (c3 + u * (c4 + u * c5))))
+}

@@ -1,0 +1,156 @@
+//! How far a motion uses its drives: what it asks of them at each instant, beside their limits.
+
+use super::Motion;
+use super::law::Progress;
+use super::limits::{Limit, Limits, Quantity};
+use super::path::Path;
+use crate::mechanics::dynamics::{Surroundings, holding_torque, inverse};
+use crate::mechanics::machine::Inertia;
+use crate::mechanics::planar::PerDrive;
+
+/// A limit counts as active when this much of it, or more, is used.
+pub const ACTIVE: f64 = 1.0 - 1e-3;
+
+/// How far a motion uses its limits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Usage {
+    /// Share of T at which some limit is used to within [`ACTIVE`] or beyond.
+    pub active: f64,
+    /// The greatest part of a limit that is ever used: 1 is the limit, more is a violation.
+    pub most: f64,
+    /// When, s.
+    pub when: f64,
+    /// Of which limit; none where there are no limits.
+    pub limit: Option<Limit>,
+    /// Which limit is used furthest, for what share of T, the greatest share first.
+    pub leading: Vec<(Limit, f64)>,
+}
+
+impl Usage {
+    /// Of a motion of a model in its surroundings, at as many instants, evenly in the middles of as many parts of T.
+    ///
+    /// Torques come from the inverse dynamics (4) along the motion, not from what planned it.
+    pub fn of(motion: &Motion, model: &Inertia, around: &Surroundings, limits: &Limits, samples: usize) -> Self {
+        let mut usage = Self { active: 0.0, most: 0.0, when: 0.0, limit: None, leading: Vec::new() };
+        let mut shares = Shares::default();
+        for i in 0..samples {
+            let t = (i as f64 + 0.5) / samples as f64 * motion.duration();
+            let demand = Demand::of(&motion.path, model, around, limits, &motion.profile.at(t));
+            let Some((part, limit)) = demand.furthest(limits) else { break };
+            if part > usage.most || usage.limit.is_none() {
+                (usage.most, usage.when, usage.limit) = (part, t, Some(limit));
+            }
+            usage.active += if part >= ACTIVE { 1.0 / samples as f64 } else { 0.0 };
+            shares.add(limit, 1.0 / samples as f64);
+        }
+        usage.leading = shares.sorted();
+        usage
+    }
+
+    /// How far beyond its limit the worst drive is asked to go, as a part of the limit; 0 if none is.
+    pub fn violation(&self) -> f64 {
+        (self.most - 1.0).max(0.0)
+    }
+}
+
+/// Time, or shares of it, for each limit.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Shares([PerLimit; 4]);
+
+type PerLimit = [f64; crate::mechanics::planar::MAX_DRIVES];
+
+impl Shares {
+    #[inline]
+    pub(super) fn add(&mut self, limit: Limit, share: f64) {
+        self.0[limit.quantity as usize][limit.drive] += share;
+    }
+
+    /// Those above 0, of a whole, the greatest first.
+    pub(super) fn sorted(&self) -> Vec<(Limit, f64)> {
+        let whole: f64 = self.0.iter().flatten().sum();
+        let each = Quantity::ALL.into_iter().flat_map(|quantity| {
+            let of = self.0[quantity as usize];
+            (0..of.len()).map(move |drive| (Limit { quantity, drive }, of[drive] / whole))
+        });
+        let mut found: Vec<_> = each.filter(|(_, share)| *share > 0.0).collect();
+        found.sort_by(|a, b| b.1.total_cmp(&a.1));
+        found
+    }
+}
+
+/// What an instant of a motion asks of the drives.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Demand {
+    /// Torque to hold still, N m.
+    holding: PerDrive,
+    /// Torque of the motion, N m.
+    moving: PerDrive,
+    speed: PerDrive,
+    acceleration: PerDrive,
+    jerk: PerDrive,
+}
+
+impl Demand {
+    /// Jerk is evaluated only where it is limited.
+    pub(super) fn of(path: &Path, model: &Inertia, around: &Surroundings, limits: &Limits, at: &Progress) -> Self {
+        let point = path.at(at.s);
+        let reference = point.timed(at);
+        let e = point.q.units();
+        let moving = inverse(model, &e, &reference.qd, &reference.qdd, &Surroundings::default());
+        let jerk = match limits.jerk.iter().any(|j| j.is_finite()) {
+            true => point
+                .first
+                .scaled(at.jerk)
+                .plus(3.0 * at.rate * at.acceleration, &point.second)
+                .plus(at.rate.powi(3), &path.third(at.s)),
+            false => PerDrive::zeros(reference.qd.len()),
+        };
+        let holding = holding_torque(model, &e, around);
+        Self { holding, moving, speed: reference.qd, acceleration: reference.qdd, jerk }
+    }
+
+    /// The limit that is used furthest and the part of it that is used; `None` without limits.
+    pub(super) fn furthest(&self, limits: &Limits) -> Option<(f64, Limit)> {
+        let mut furthest: Option<(f64, Limit)> = None;
+        for quantity in Quantity::ALL {
+            let asked = match quantity {
+                Quantity::Torque => self.holding.plus(1.0, &self.moving),
+                Quantity::Speed => self.speed,
+                Quantity::Acceleration => self.acceleration,
+                Quantity::Jerk => self.jerk,
+            };
+            for (drive, (asked, limit)) in asked.iter().zip(limits.on(quantity).iter()).enumerate() {
+                let part = asked.abs() / limit;
+                if limit.is_finite() && furthest.is_none_or(|(most, _)| part > most) {
+                    furthest = Some((part, Limit { quantity, drive }));
+                }
+            }
+        }
+        furthest
+    }
+
+    /// The factor on time with which the instant just keeps every limit: rates fall with its first, accelerations and
+    /// the torque of motion with its second, jerks with its third power. Infinite where no time is enough, because
+    /// holding still already takes all of a torque.
+    pub(super) fn stretch(&self, limits: &Limits) -> f64 {
+        let mut factor: f64 = 0.0;
+        for k in 0..self.speed.len() {
+            let (hold, moving, limit) = (self.holding[k], self.moving[k], limits.torque[k]);
+            // Room on the side to which the motion pushes.
+            let room = limit - hold * moving.signum();
+            let torque = if moving == 0.0 {
+                0.0
+            } else if room > 0.0 {
+                (moving.abs() / room).sqrt()
+            } else {
+                f64::INFINITY
+            };
+            factor = factor
+                .max(if hold.abs() > limit { f64::INFINITY } else { torque })
+                .max(self.speed[k].abs() / limits.speed[k])
+                .max((self.acceleration[k].abs() / limits.acceleration[k]).sqrt())
+                .max((self.jerk[k].abs() / limits.jerk[k]).cbrt());
+        }
+        factor
+    }
+}

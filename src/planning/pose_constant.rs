@@ -1,0 +1,443 @@
+//! A machine's pose constant and its reactionless planes: λ and b of (12), (13), and what can be reached on a plane.
+
+use thiserror::Error;
+
+use crate::mechanics::machine::{Inertia, Machine};
+use crate::mechanics::planar::Vector;
+use crate::planning::reactionless::{
+    AngleDefinition, BSet, Boundary, Decimal, Limit, NoReach, NotAPlaneMap, PlaneMap, PlanePoint, Poses, metres,
+};
+
+/// The reactionless planes of a machine, with the boundary of their workspace.
+#[derive(Clone, Debug)]
+pub struct Planes {
+    map: PlaneMap,
+    boundary: Boundary,
+    keep_off_change_points: bool,
+}
+
+/// Whether a target can be reached on the present plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reach {
+    /// It can.
+    Inside,
+    /// It cannot; the machine waits at the nearest point that it can reach without leaving the plane.
+    Outside {
+        /// Where it waits, m.
+        nearest: Vector,
+        /// The b nearest to the present one that would reach the target, rad; none if no b does.
+        mending_b: Option<f64>,
+        /// The same as it is shown: rounded to where it still does.
+        shown_b: Option<Decimal>,
+        /// A pose of this plane reaches it, but beyond a fold, or a change point to keep off.
+        other_sheet: bool,
+    },
+    /// It cannot any more since b was changed, so the machine keeps a_1 and a_2 and turns with its workspace.
+    Carried,
+}
+
+/// Why a machine has no reactionless planes that can be drawn.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum PlaneError {
+    /// Not three drives.
+    #[error("{drives} drives and {angles} relative angles: reactionless workspaces in the plane want three and two")]
+    Shape {
+        /// How many.
+        drives: usize,
+        /// How many.
+        angles: usize,
+    },
+    /// The numbers.
+    #[error(transparent)]
+    Map(#[from] NotAPlaneMap),
+}
+
+/// Why a point is not on a plane, and what would do.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum Unreachable {
+    /// Not on any plane.
+    #[error("({}, {}) m: {reason}", metres(*.x, 3), metres(*.y, 3))]
+    Anywhere {
+        /// m.
+        x: f64,
+        /// m.
+        y: f64,
+        /// Why.
+        reason: NoReach,
+    },
+    /// Not on this plane.
+    #[error("({}, {}) m is outside the reactionless workspace of b = {b:.6} rad: want {would_do}", metres(*.x, 3), metres(*.y, 3))]
+    OnThisPlane {
+        /// m.
+        x: f64,
+        /// m.
+        y: f64,
+        /// rad.
+        b: f64,
+        /// The b that would do, in words.
+        would_do: String,
+        /// The nearest of them to b, rad.
+        nearest_b: Option<f64>,
+        /// The same as it is shown: rounded to where it still does.
+        shown_b: Option<Decimal>,
+    },
+    /// Each point on some plane, but no plane serves all.
+    #[error("{}", .0.in_words(&|i| format!("point {}", i + 1)))]
+    NoCommonPlane(NoCommon),
+}
+
+/// Why points have no b in common, and what would mend it. Points are counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NoCommon {
+    /// The first two that share no b; none if all do in pairs, but not all at once.
+    pub pair: Option<[usize; 2]>,
+    /// The least move of one point that would mend it.
+    pub mend: Option<Mend>,
+}
+
+impl NoCommon {
+    /// In words, with a name for each point.
+    pub fn in_words(&self, name: &dyn Fn(usize) -> String) -> String {
+        let who = match self.pair {
+            Some([i, j]) => format!("no b serves both {} and {}", name(i), name(j)),
+            None => "each two points share some b, but no b serves all".into(),
+        };
+        let remedy = match self.mend {
+            Some(Mend { point, shown: Some(shown), .. }) => {
+                let (point, ShownMend { to: [x, y], b, .. }) = (name(point), shown);
+                let distance = shown.distance();
+                if shown.does {
+                    format!("moving {point} by {distance} m to ({x}, {y}) m would do, at b = {b} rad")
+                } else {
+                    format!(
+                        "moved by {distance} m to ({x}, {y}) m, {point} shares b = {b} rad with the others, but this path \
+                         could still not be followed there: want another one"
+                    )
+                }
+            }
+            _ => "want points nearer to each other".into(),
+        };
+        format!("{who}, so no reactionless path joins them; {remedy}")
+    }
+}
+
+/// A [`Mend`] as it is printed: rounded to numbers that still serve all points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShownMend {
+    /// Where the point would go, m.
+    pub to: [Decimal; 2],
+    /// The b that then serves all, rad.
+    pub b: Decimal,
+    /// How far the point would go, m.
+    pub far: f64,
+    /// Whether what is planned can then be done too.
+    pub does: bool,
+}
+
+impl ShownMend {
+    /// Where the point would go, m.
+    pub fn point(&self) -> Vector {
+        Vector::new(self.to[0].value(), self.to[1].value())
+    }
+
+    fn distance(&self) -> Decimal {
+        Decimal::nearest(self.far, self.to[0].decimals())
+    }
+}
+
+/// A move of one point after which all points have a b in common.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mend {
+    /// Number of the point.
+    pub point: usize,
+    /// Where it would go, m.
+    pub to: Vector,
+    /// How far, m.
+    pub distance: f64,
+    /// The b that then serves all, rad.
+    pub b: f64,
+    /// The same as it is printed.
+    pub shown: Option<ShownMend>,
+}
+
+impl Planes {
+    /// The planes of a machine, by the λ of its constant diagonal D_k = H_kk.
+    ///
+    /// # Errors
+    /// If it has not three drives and two relative angles.
+    pub fn of(machine: &Machine) -> Result<Self, PlaneError> {
+        let map = plane_map(machine)?;
+        Ok(Self { boundary: Boundary::of(&map), map, keep_off_change_points: false })
+    }
+
+    /// The same planes, on which ways lead across change points or keep off them.
+    #[must_use]
+    pub fn keeping_off_change_points(self, keep_off_change_points: bool) -> Self {
+        Self { keep_off_change_points, ..self }
+    }
+
+    /// Whether ways keep off change points.
+    pub fn keep_off_change_points(&self) -> bool {
+        self.keep_off_change_points
+    }
+
+    /// Whether something inside the limits can bar a way: a fold, or a change point to keep off.
+    pub fn has_bars(&self) -> bool {
+        self.keep_off_change_points || self.boundary.interior_singularity()
+    }
+
+    /// Eqs (13)–(16).
+    pub fn map(&self) -> &PlaneMap {
+        &self.map
+    }
+
+    /// The boundary of the workspace.
+    pub fn boundary(&self) -> &Boundary {
+        &self.boundary
+    }
+
+    /// The pose that puts the end effector on p on the plane b, continuously from another.
+    pub fn follow(&self, p: Vector, b: f64, from: [f64; 2]) -> Option<[f64; 2]> {
+        self.map.follow(p, b, from)
+    }
+
+    /// Where to go for a target: its pose on the plane b and the sheet of `from`, or the nearest that can be reached.
+    pub fn reach(&self, p: Vector, b: f64, from: [f64; 2]) -> ([f64; 2], Reach) {
+        if let Some(a) = self.follow(p, b, from).filter(|a| self.is_open_way(from, *a)) {
+            return (a, Reach::Inside);
+        }
+        let far = |a: &[f64; 2]| (a[0] - from[0]).hypot(a[1] - from[1]);
+        let poses = self.map.poses(p, b);
+        let same = poses.iter().map(|x| x.a).filter(|a| self.is_open_way(from, *a));
+        if let Some(a) = same.min_by(|x, y| far(x).total_cmp(&far(y))) {
+            return (a, Reach::Inside);
+        }
+        let other_sheet = !poses.is_empty();
+        let set = self.map.reach(p).ok().filter(|_| !other_sheet);
+        let mending_b = set.as_ref().and_then(|set| set.nearest(b));
+        let shown_b = set.zip(mending_b).and_then(|(set, b)| set.decimal(b, 3));
+        let nearest = self.boundary.nearest(p, b, self.map.forward(from, b));
+        let edge = self.map.clamp(nearest.a);
+        if !other_sheet && self.is_open_way(from, edge) {
+            return (edge, Reach::Outside { nearest: nearest.at, mending_b, shown_b, other_sheet });
+        }
+        // Something lies between: as near as the straight way goes.
+        let a = self.towards(p, b, from);
+        (a, Reach::Outside { nearest: self.map.forward(a, b), mending_b, shown_b, other_sheet })
+    }
+
+    /// The last pose on the straight way of the end effector to p that continues a pose of the plane b.
+    fn towards(&self, p: Vector, b: f64, from: [f64; 2]) -> [f64; 2] {
+        let start = self.map.forward(from, b);
+        let (mut a, mut t, mut step) = (from, 0.0, 0.125);
+        while step > 1e-6 && t < 1.0 {
+            let next = self.follow(start + (t + step) * (p - start), b, a);
+            let near = |x: &[f64; 2]| (x[0] - a[0]).hypot(x[1] - a[1]) < 0.5 && self.is_open_way(from, *x);
+            match next.filter(near) {
+                Some(x) => (a, t) = (x, t + step),
+                None => step *= 0.5,
+            }
+        }
+        a
+    }
+
+    /// Whether the straight way of joint space between two poses of one plane keeps to a sheet, where det has one sign,
+    /// and, if so asked, to one side of every change point.
+    pub fn is_open_way(&self, from: [f64; 2], to: [f64; 2]) -> bool {
+        /// At least so many looks, and one for each tenth of a radian.
+        const LOOKS: i32 = 32;
+        if self.keep_off_change_points && self.map.sides(from) != self.map.sides(to) {
+            return false;
+        }
+        if !self.boundary.interior_singularity() {
+            return true;
+        }
+        let sheet = self.map.det(from);
+        let at = |t: f64| [0, 1].map(|i| from[i] + t * (to[i] - from[i]));
+        let far = (to[0] - from[0]).hypot(to[1] - from[1]);
+        // As a cast: limits keep it below a thousand.
+        let looks = LOOKS.max((10.0 * far) as i32);
+        (1..=looks).all(|i| self.map.det(at(f64::from(i) / f64::from(looks))) * sheet >= 0.0)
+    }
+
+    /// One pose for each of some points on the plane b: all on one sheet if possible, else each near the one before.
+    ///
+    /// # Errors
+    /// Which point (counted from 0) cannot be reached, and what b would do.
+    pub fn serve(&self, points: &[Vector], b: f64) -> Result<Vec<PlanePoint>, (usize, Unreachable)> {
+        let poses: Vec<Poses> = points.iter().map(|p| self.map.poses(*p, b)).collect();
+        if let Some(i) = poses.iter().position(|p| p.is_empty()) {
+            // A point that no b reaches says more than one that wants another b.
+            let nowhere = points.iter().position(|p| self.map.reach(*p).is_err());
+            let i = nowhere.unwrap_or(i);
+            return Err((i, self.why_not(points, i, b)));
+        }
+        let Some((first, others)) = poses.split_first() else { return Ok(Vec::new()) };
+        let far = |x: &PlanePoint, y: &PlanePoint| (x.a[0] - y.a[0]).hypot(x.a[1] - y.a[1]);
+        // The nearest pose to the last one, of those that a filter lets pass.
+        let chain = |start: &PlanePoint, one_sheet: bool| {
+            let sheet = self.map.det(start.a);
+            let mut served = vec![*start];
+            for poses in others {
+                let last = served[served.len() - 1];
+                let fit = poses.iter().filter(|y| !one_sheet || self.map.det(y.a) * sheet >= 0.0);
+                served.push(*fit.min_by(|x, y| far(x, &last).total_cmp(&far(y, &last)))?);
+            }
+            Some(served)
+        };
+        let on_one_sheet = first.iter().find_map(|start| chain(start, true));
+        Ok(on_one_sheet.or_else(|| first.iter().find_map(|start| chain(start, false))).unwrap_or_default())
+    }
+
+    /// The poses of points at the b nearest to the given one that serves all, turned rigidly to that b: the points move
+    /// along with the workspace.
+    pub fn serve_turned(&self, points: &[Vector], b: f64) -> Option<Vec<PlanePoint>> {
+        let common = self.common(points)?;
+        // A hair inside, so that rounding does not put the pose outside again.
+        let nearest = common.nearest(b)?;
+        let served = self.serve(points, nearest).or_else(|_| self.serve(points, common.inwards(nearest, 1e-9))).ok()?;
+        Some(served.into_iter().map(|x| PlanePoint { a: x.a, b }).collect())
+    }
+
+    /// The b that serve all points; `None` if none does.
+    pub fn common(&self, points: &[Vector]) -> Option<BSet> {
+        let sets: Option<Vec<BSet>> = points.iter().map(|p| self.map.reach(*p).ok()).collect();
+        let common = BSet::overlap(&sets?);
+        (!common.intervals.is_empty()).then_some(common)
+    }
+
+    /// Why points have no b in common; `None` if some b serves all, or a point is out of every reach.
+    pub fn no_common(&self, points: &[Vector]) -> Option<NoCommon> {
+        let sets: Vec<BSet> = points.iter().map(|p| self.map.reach(*p).ok()).collect::<Option<_>>()?;
+        if !BSet::overlap(&sets).is_empty() {
+            return None;
+        }
+        let apart = |&[i, j]: &[usize; 2]| BSet::overlap(&[sets[i].clone(), sets[j].clone()]).is_empty();
+        let pair = (0..points.len()).flat_map(|i| (i + 1..points.len()).map(move |j| [i, j])).find(apart);
+        let others = |i: usize| {
+            let rest: Vec<BSet> = sets.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, s)| s.clone()).collect();
+            BSet::overlap(&rest)
+        };
+        let mends = (0..points.len()).filter_map(|i| self.mend(points[i], i, &others(i)));
+        let least = mends.min_by(|x, y| x.distance.total_cmp(&y.distance));
+        Some(NoCommon { pair, mend: least.map(|mend| self.proved(points, &others(mend.point), mend)) })
+    }
+
+    /// The nearest point to p that some b of a set reaches.
+    fn mend(&self, p: Vector, point: usize, others: &BSet) -> Option<Mend> {
+        const TRIES: usize = 48;
+        let at = |b: f64| self.boundary.nearest(p, b, p);
+        let gap = |b: f64| at(b).distance;
+        let mut best: Option<(f64, f64)> = None;
+        for [low, high] in &others.intervals {
+            let step = (high - low) / TRIES as f64;
+            let tries = (0..=TRIES).map(|i| low + step * i as f64);
+            let Some(b) = tries.min_by(|x, y| gap(*x).total_cmp(&gap(*y))) else { continue };
+            let (mut from, mut to) = ((b - step).max(*low), (b + step).min(*high));
+            // Golden section.
+            for _ in 0..40 {
+                let (s, t) = (from + 0.381_966 * (to - from), from + 0.618_034 * (to - from));
+                if gap(s) < gap(t) { to = t } else { from = s }
+            }
+            let middle = 0.5 * (from + to);
+            let b = [b, middle, from, to].into_iter().min_by(|x, y| gap(*x).total_cmp(&gap(*y))).unwrap_or(b);
+            if best.is_none_or(|(least, _)| gap(b) < least) {
+                best = Some((gap(b), b));
+            }
+        }
+        let (_, b) = best?;
+        let nearest = at(b);
+        Some(Mend { point, to: nearest.at, distance: nearest.distance, b, shown: None })
+    }
+
+    /// A move that rounding does not take away: a hair further where the end of it misses, and the same to be printed.
+    fn proved(&self, points: &[Vector], others: &BSet, mend: Mend) -> Mend {
+        let from = points[mend.point];
+        let with = |to: Vector| {
+            let mut points = points.to_vec();
+            points[mend.point] = to;
+            points
+        };
+        let common = |to: Vector| {
+            let set = BSet::overlap(&[others.clone(), self.map.reach(to).ok()?]).near(mend.b);
+            let gap = |[low, high]: &[f64; 2]| (mend.b - 0.5 * (low + high)).abs();
+            set.intervals.into_iter().min_by(|x, y| gap(x).total_cmp(&gap(y)))
+        };
+        let serves = |to: Vector, b: f64| self.serve(&with(to), b).is_ok();
+        let exact = [0.0, 1e-12, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6].into_iter().find_map(|share| {
+            let to = from + (1.0 + share) * (mend.to - from);
+            let [low, high] = common(to)?;
+            [mend.b, 0.5 * (low + high)].into_iter().find(|b| serves(to, *b)).map(|b| (to, b))
+        });
+        let shown = (3..=12).find_map(|decimals| {
+            // All numbers near by with so many decimals, the least move first.
+            let [x, y] = [mend.to.re, mend.to.im].map(|x| Decimal::nearest(x, decimals));
+            let mut around: Vec<([Decimal; 2], f64)> = (-2..=2)
+                .flat_map(|i| (-2..=2).map(move |j| [x.stepped(i), y.stepped(j)]))
+                .map(|to| (to, (Vector::new(to[0].value(), to[1].value()) - from).norm()))
+                .collect();
+            around.retain(|(_, far)| *far <= 1.02 * mend.distance || decimals > 8);
+            around.sort_by(|a, b| a.1.total_cmp(&b.1));
+            around.into_iter().find_map(|(to, far)| {
+                let at = Vector::new(to[0].value(), to[1].value());
+                let [low, high] = common(at)?;
+                let b = mend.b.clamp(low, high);
+                let inside = |x: f64| low <= x && x <= high && serves(at, x);
+                // Where the common b are few, the middle of them has more room than their end.
+                let b = [b, 0.5 * (low + high)].into_iter().filter_map(|b| Decimal::that(b, 4, inside));
+                let b = b.min_by_key(Decimal::decimals).filter(|b| b.decimals() <= decimals + 4)?;
+                Some(ShownMend { to, b, far, does: true })
+            })
+        });
+        match exact {
+            Some((to, b)) => Mend { to, distance: (to - from).norm(), b, shown, ..mend },
+            None => Mend { shown, ..mend },
+        }
+    }
+
+    fn why_not(&self, points: &[Vector], i: usize, b: f64) -> Unreachable {
+        let (x, y) = (points[i].re, points[i].im);
+        if let Err(reason) = self.map.reach(points[i]) {
+            return Unreachable::Anywhere { x, y, reason };
+        }
+        match (self.common(points), self.no_common(points)) {
+            (Some(common), _) => {
+                let serves = |b: f64| points.iter().all(|p| !self.map.poses(*p, b).is_empty());
+                let nearest = common.nearest(b);
+                let inner = [1e-6, 1e-3, 0.5].map(|share| nearest.map(|b| common.inwards(b, share)));
+                let nearest_b = inner.into_iter().flatten().find(|b| serves(*b));
+                let shown_b = nearest_b.and_then(|b| Decimal::that(b, 4, serves));
+                Unreachable::OnThisPlane { x, y, b, would_do: common.in_words(), nearest_b, shown_b }
+            }
+            (None, Some(why)) => Unreachable::NoCommonPlane(why),
+            // Another point is out of every reach.
+            (None, None) => {
+                let own = self.map.reach(points[i]).map(|set| set.in_words()).unwrap_or_default();
+                Unreachable::OnThisPlane { x, y, b, would_do: own, nearest_b: None, shown_b: None }
+            }
+        }
+    }
+}
+
+/// Eqs (13)–(16) of a machine.
+///
+/// # Errors
+/// If it has not three drives and two relative angles.
+pub fn plane_map(machine: &Machine) -> Result<PlaneMap, PlaneError> {
+    let shape = || PlaneError::Shape { drives: machine.drives(), angles: machine.angles().len() };
+    let [first, second] = machine.angles() else { return Err(shape()) };
+    if machine.drives() != 3 {
+        return Err(shape());
+    }
+    let tip = machine.tip();
+    let lambda = Inertia::of(machine).lambda();
+    let angle =
+        |a: &crate::mechanics::machine::RelativeAngle| AngleDefinition { to: a.to, from: a.from, offset: a.offset };
+    let limit = |a: &crate::mechanics::machine::RelativeAngle| Limit { min: *a.limits.start(), max: *a.limits.end() };
+    Ok(PlaneMap::new(
+        [tip[0], tip[1], tip[2]],
+        [lambda[0], lambda[1], lambda[2]],
+        [angle(first), angle(second)],
+        [limit(first), limit(second)],
+    )?)
+}

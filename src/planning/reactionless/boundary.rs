@@ -1,0 +1,332 @@
+//! The exact boundary of a reactionless workspace.
+//!
+//! All points that the end effector reaches on a plane b = const within the limits of a_1 and a_2. Its boundary is a
+//! subset of the images of the limits and of det ∂(x, y)/∂(a_1, a_2) = 0; b only turns it, by b* = b/Σλ, (15), (16).
+//!
+//! How many poses reach a point changes by one across the image of a limit and by two across a fold. Oriented so that
+//! the more poses are on the left, these images are a cycle whose winding number about a point counts its poses.
+//! Cut where they cross each other, the parts with no pose on their right are the boundary: outer loops run
+//! counter-clockwise, holes clockwise. Areas follow by Green's theorem along the true curves.
+//!
+//! | quantity | unit |
+//! |---|---|
+//! | positions | m, unturned (b = 0) unless a b is given |
+//! | a_1, a_2, b | rad |
+//! | areas | m² |
+
+mod arrangement;
+mod cycle;
+mod determinant;
+mod distance;
+mod fold;
+mod inside;
+mod line;
+mod region;
+mod sides;
+mod span;
+
+use arrangement::{Arrangement, Portion, Strand};
+use cycle::Cycle;
+pub use line::{Line, Loop, Vertex};
+use region::Region;
+pub use sides::ChangeCurve;
+pub use span::Curve;
+use span::Surface;
+
+use super::PlaneMap;
+use crate::mechanics::planar::{Vector, cross, dot, unit};
+
+/// Limits this near to each other leave a curve, not an area, rad.
+const THIN: f64 = 1e-9;
+
+/// The boundary of a reactionless workspace, computed once for all b.
+#[derive(Clone, Debug)]
+pub struct Boundary {
+    on: Surface,
+    cycle: Cycle,
+    strands: Vec<Strand>,
+    loops: Vec<Loop>,
+    cusps: Vec<Vertex>,
+    area: f64,
+    sheet_area: f64,
+    interior_singularity: bool,
+    /// Without area: its outline is all there is.
+    flat: bool,
+}
+
+/// Bounds of a workspace, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Extent {
+    pub x_min: f64,
+    pub x_max: f64,
+    pub y_min: f64,
+    pub y_max: f64,
+}
+
+/// A point of the boundary near a point outside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    /// The point of the boundary, turned by b, m.
+    pub at: Vector,
+    /// Its plane coordinates, rad.
+    pub a: [f64; 2],
+    /// What stops the end effector there.
+    pub curve: Curve,
+    /// m.
+    pub distance: f64,
+}
+
+impl Boundary {
+    /// The boundary of the workspace within the map's limits.
+    ///
+    /// Where limits coincide with a straight fold they are drawn in by 4e-10 rad. Nodes of folds, which only machines of special proportions have, are exact
+    /// to 1e-10 m; where such proportions make whole curves coincide, loops may be incomplete.
+    pub fn of(map: &PlaneMap) -> Self {
+        let on = Surface::of(map);
+        let region = Region::limits(&on);
+        Self::over(on, &region)
+    }
+
+    /// The boundary of what the poses of a region reach.
+    fn over(on: Surface, region: &Region) -> Self {
+        let size: f64 = on.map.c().iter().map(|c| c.abs()).sum();
+        if region.is_thin(THIN) || on.det.scale() <= 1e-14 * size * size {
+            return Self::curve(on, region);
+        }
+        let mut spans = region.edge_spans(&on);
+        let folds = region.keep(&on, fold::spans(&on));
+        let interior_singularity = !folds.spans.is_empty();
+        spans.extend(folds.spans);
+        let sheet_area = spans.iter().map(|s| f64::from(s.weight()) * on.swept(s, 0.0, 1.0)).sum();
+        let cycle = Cycle::of(spans, on.map.unit());
+        let arrangement = Arrangement::of(&on, &cycle);
+        let strands = arrangement.strands();
+        let chains = arrangement.chain(arrangement.level(&strands, 1));
+        let mut loops: Vec<Loop> = chains.iter().map(|chain| Loop::of(&on, &cycle.spans, chain)).collect();
+        loops.sort_by(|a, b| b.area().total_cmp(&a.area()));
+        if loops.is_empty() {
+            return Self::curve(on, region);
+        }
+        let area = loops.iter().map(Loop::area).sum();
+        let cusp = |a: [f64; 2]| Vertex { a, at: on.map.forward_unturned(a), curve: Curve::Fold };
+        let cusps = folds.cusps.into_iter().map(cusp).collect();
+        Self { on, cycle, strands, loops, cusps, area, sheet_area, interior_singularity, flat: false }
+    }
+
+    /// A workspace without area: there and back along the edges.
+    fn curve(on: Surface, region: &Region) -> Self {
+        let spans = region.outline(&on);
+        let chain: Vec<Portion> = (0..spans.len()).map(|span| Portion { span, from: 0.0, to: 1.0 }).collect();
+        let outline = Loop::of(&on, &spans, &chain).without_area();
+        Self {
+            loops: vec![outline],
+            on,
+            cycle: Cycle::of(spans, on.map.unit()),
+            strands: Vec::new(),
+            cusps: Vec::new(),
+            area: 0.0,
+            sheet_area: 0.0,
+            interior_singularity: false,
+            flat: true,
+        }
+    }
+
+    /// The closed curves that bound the workspace, the largest first, never none.
+    pub fn loops(&self) -> &[Loop] {
+        &self.loops
+    }
+
+    /// Of the points that can be reached, m².
+    pub fn area(&self) -> f64 {
+        self.area
+    }
+
+    /// ∫ |det ∂(x, y)/∂(a_1, a_2)| da, each point as often as there are poses, m².
+    pub fn sheet_area(&self) -> f64 {
+        self.sheet_area
+    }
+
+    /// Whether det = 0 somewhere between the limits.
+    pub fn interior_singularity(&self) -> bool {
+        self.interior_singularity
+    }
+
+    /// Vertices of all loops, turned by b, m.
+    pub fn turned(&self, b: f64) -> Vec<Vec<[f64; 2]>> {
+        let turn = unit(self.on.map.turn(b));
+        let point = |v: &Vertex| {
+            let p = v.at * turn;
+            [p.re, p.im]
+        };
+        self.loops.iter().map(|l| l.vertices().iter().map(point).collect()).collect()
+    }
+
+    /// Bounds in x and y of the workspace turned by b.
+    pub fn extent(&self, b: f64) -> Extent {
+        let turn = unit(self.on.map.turn(b));
+        // The component of p along w is what grows in direction w once the workspace is turned.
+        let most = |x: f64, y: f64| self.support(Vector::new(x, y) * turn.conj());
+        Extent { x_min: -most(-1.0, 0.0), x_max: most(1.0, 0.0), y_min: -most(0.0, -1.0), y_max: most(0.0, 1.0) }
+    }
+
+    /// Largest component along a unit vector.
+    fn support(&self, w: Vector) -> f64 {
+        let vertices = || self.loops.iter().flat_map(|l| l.vertices());
+        let mut best = vertices().map(|v| dot(v.at, w)).fold(f64::NEG_INFINITY, f64::max);
+        let bar = best - 2.5 * line::near(&self.on.map);
+        for l in &self.loops {
+            for (i, part) in l.portions().iter().enumerate() {
+                let [from, to] = l.chord(i);
+                if dot(from, w).max(dot(to, w)) < bar {
+                    continue;
+                }
+                let span = &self.cycle.spans[part.span];
+                if let Some(t) = falling_zero(|t| dot(self.on.jet(span, t).rate, w), part.from, part.to) {
+                    best = best.max(dot(self.on.at(span, t), w));
+                }
+            }
+        }
+        best
+    }
+
+    /// Whether p, m, can be reached on the plane b; the boundary itself can.
+    pub fn contains(&self, p: Vector, b: f64) -> bool {
+        self.contains_unturned(p * unit(-self.on.map.turn(b)))
+    }
+
+    fn contains_unturned(&self, p: Vector) -> bool {
+        if !p.is_finite() {
+            return false;
+        }
+        let mut winding = 0;
+        for l in &self.loops {
+            for (i, part) in l.portions().iter().enumerate() {
+                let [from, to] = l.chord(i);
+                let span = &self.cycle.spans[part.span];
+                match span.crossings(&self.on, (part.from, from), (part.to, to), p) {
+                    Some(n) => winding += n,
+                    None => return true,
+                }
+            }
+        }
+        winding > 0
+    }
+
+    /// Where the end effector waits for a target p outside, on the plane b: the nearest point of the boundary that is
+    /// connected with where it is now, `from`, m, downhill all the way along one loop.
+    ///
+    /// From inside, it goes straight towards p until the boundary stops it, then along the boundary.
+    pub fn nearest(&self, p: Vector, b: f64, from: Vector) -> Nearest {
+        let turn = unit(self.on.map.turn(b));
+        let (p, from) = (p * turn.conj(), from * turn.conj());
+        let (which, start) = self.exit(from, p).unwrap_or_else(|| self.closest(from));
+        let l = &self.loops[which];
+        let n = l.vertices().len();
+        let distance = |i: usize| (l.vertices()[i % n].at - p).norm_sqr();
+        let mut i = if distance(start + 1) < distance(start) { (start + 1) % n } else { start };
+        for _ in 0..n {
+            let (next, last) = ((i + 1) % n, (i + n - 1) % n);
+            let lower = if distance(next) < distance(last) { next } else { last };
+            if distance(lower) >= distance(i) {
+                break;
+            }
+            i = lower;
+        }
+        let vertex = l.vertices()[i];
+        let (mut a, mut at, mut curve) = (vertex.a, vertex.at, vertex.curve);
+        for part in [l.portions()[(i + n - 1) % n], l.portions()[i]] {
+            let span = &self.cycle.spans[part.span];
+            let towards = |t: f64| {
+                let jet = self.on.jet(span, t);
+                dot(p - jet.at, jet.rate)
+            };
+            if let Some(t) = falling_zero(towards, part.from, part.to) {
+                let candidate = self.on.jet(span, t);
+                if (candidate.at - p).norm_sqr() < (at - p).norm_sqr() {
+                    (a, at, curve) = (candidate.a, candidate.at, span.curve);
+                }
+            }
+        }
+        Nearest { at: at * turn, a: self.on.map.clamp(a), curve, distance: (at - p).norm() }
+    }
+
+    /// The chord nearest to a point: loop and vertex.
+    fn closest(&self, p: Vector) -> (usize, usize) {
+        let mut best = (f64::INFINITY, (0, 0));
+        for (k, l) in self.loops.iter().enumerate() {
+            for i in 0..l.vertices().len() {
+                let gap = from_chord(l.chord(i), p);
+                if gap < best.0 {
+                    best = (gap, (k, i));
+                }
+            }
+        }
+        best.1
+    }
+
+    /// The chord where the way from a point inside, straight to p, first leaves the workspace: loop and vertex.
+    fn exit(&self, from: Vector, p: Vector) -> Option<(usize, usize)> {
+        if !self.contains_unturned(from) {
+            return None;
+        }
+        let way = p - from;
+        let mut best: Option<(f64, (usize, usize))> = None;
+        for (k, l) in self.loops.iter().enumerate() {
+            for i in 0..l.vertices().len() {
+                let [a, b] = l.chord(i);
+                if from_chord([a, b], from) < (1.25 * line::near(&self.on.map)).powi(2) {
+                    return None;
+                }
+                let n = cross(way, b - a);
+                let (t, s) = (cross(a - from, b - a) / n, cross(a - from, way) / n);
+                // Outwards is to the right of the boundary.
+                let leaves = n > 0.0 && (0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&s);
+                if leaves && best.is_none_or(|(least, _)| t < least) {
+                    best = Some((t, (k, i)));
+                }
+            }
+        }
+        best.map(|(_, found)| found)
+    }
+}
+
+/// Squared distance of p from a chord.
+fn from_chord([a, b]: [Vector; 2], p: Vector) -> f64 {
+    let along = b - a;
+    let share = (dot(p - a, along) / along.norm_sqr()).clamp(0.0, 1.0);
+    let share = if share.is_nan() { 0.0 } else { share };
+    (a + share * along - p).norm_sqr()
+}
+
+/// Where a function falls through 0 between two points, if it is ≥ 0 at the first and ≤ 0 at the second.
+fn falling_zero(f: impl Fn(f64) -> f64, from: f64, to: f64) -> Option<f64> {
+    let (mut low, mut high) = (from, to);
+    let (mut at_low, mut at_high) = (f(low), f(high));
+    if !(at_low >= 0.0 && at_high <= 0.0) {
+        return None;
+    }
+    // Regula falsi, Illinois: superlinear, never leaves the bracket.
+    for _ in 0..60 {
+        if at_low == at_high {
+            break;
+        }
+        let t = (low * at_high - high * at_low) / (at_high - at_low);
+        let value = f(t);
+        if value == 0.0 || (high - low) < 1e-15 {
+            return Some(t);
+        }
+        let (side, other) = if value > 0.0 { (&mut low, &mut at_high) } else { (&mut high, &mut at_low) };
+        if (t - *side).abs() < 1e-16 {
+            return Some(t);
+        }
+        *side = t;
+        *other *= 0.5;
+        if value > 0.0 {
+            at_low = value;
+        } else {
+            at_high = value;
+        }
+    }
+    Some(0.5 * (low + high))
+}

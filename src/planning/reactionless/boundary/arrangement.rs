@@ -1,0 +1,392 @@
+//! Spans cut where they cross each other, the number of poses on both sides of each part, and parts joined into loops.
+
+use std::collections::VecDeque;
+
+use super::cycle::Cycle;
+use super::span::{Span, Surface};
+use crate::mechanics::planar::{Vector, cross, dot};
+
+/// Parts of a span this near to each other, as a part of the span, are one cut.
+const SAME: f64 = 1e-11;
+/// Ends this near to each other are joined, as a share of the unit of the map; so are the next two lengths.
+const JOINT: f64 = 1e-9;
+/// Curves still entangled at this length touch without crossing.
+const SHORTEST: f64 = 1e-9;
+/// Pairs of parts looked at before two spans count as running along each other.
+const PATIENCE: usize = 3000;
+/// What is left of [`PATIENCE`] when it is time to see whether they do.
+const WONDER: usize = PATIENCE - 100;
+/// Curves that end in the same point touch there, or leave a sliver too thin to matter: this near to it, as a share of
+/// the reach, they do not cross.
+const TIP: f64 = 1e-4;
+/// Points this near to a curve lie on it.
+const ON_CURVE: f64 = 1e-11;
+
+/// A part of a span.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Portion {
+    pub span: usize,
+    pub from: f64,
+    pub to: f64,
+}
+
+/// A curve from crossing to crossing: the same number of poses all along each side.
+#[derive(Clone, Debug)]
+pub(super) struct Strand {
+    pub parts: Vec<Portion>,
+    /// Poses that reach the points on its left.
+    pub left: i32,
+    /// Poses that reach the points on its right.
+    pub right: i32,
+}
+
+impl Strand {
+    /// Whether it bounds the points that at least `n` poses reach.
+    pub fn bounds(&self, n: i32) -> bool {
+        self.left >= n && self.right < n
+    }
+}
+
+pub(super) struct Arrangement<'a> {
+    on: &'a Surface,
+    cycle: &'a Cycle,
+    spans: &'a [Span],
+    /// m.
+    tip: f64,
+    /// m.
+    unit: f64,
+}
+
+#[derive(Clone, Copy)]
+struct Part {
+    range: [f64; 2],
+    at: [Vector; 2],
+}
+
+impl Part {
+    fn of(span: &Span) -> Self {
+        Self { range: [0.0, 1.0], at: span.at }
+    }
+
+    fn deviation(&self, span: &Span, unit: f64) -> f64 {
+        span.deviation * (self.range[1] - self.range[0]).powi(2) + 1e-16 * unit
+    }
+
+    fn halves(&self, on: &Surface, span: &Span) -> [Self; 2] {
+        let middle = 0.5 * (self.range[0] + self.range[1]);
+        let at = on.at(span, middle);
+        [
+            Self { range: [self.range[0], middle], at: [self.at[0], at] },
+            Self { range: [middle, self.range[1]], at: [at, self.at[1]] },
+        ]
+    }
+}
+
+impl<'a> Arrangement<'a> {
+    pub fn of(on: &'a Surface, cycle: &'a Cycle) -> Self {
+        let reach: f64 = on.map.c().iter().map(|c| c.abs()).sum();
+        Self { on, cycle, spans: &cycle.spans, tip: TIP * reach, unit: on.map.unit() }
+    }
+
+    /// All curves, cut where they cross each other.
+    pub fn strands(&self) -> Vec<Strand> {
+        let chord = |p: &Portion| {
+            let span = &self.spans[p.span];
+            (self.on.at(span, p.to) - self.on.at(span, p.from)).norm()
+        };
+        let strand = |parts: Vec<Portion>| {
+            // The longest parts first: the shortest may lie in a sliver too narrow to tell its sides apart.
+            let mut order: Vec<(f64, &Portion)> = parts.iter().map(|p| (chord(p), p)).collect();
+            order.sort_by(|a, b| b.0.total_cmp(&a.0));
+            let mut verdicts = order.iter().take(5).map(|(_, portion)| self.sides(portion));
+            let first = verdicts.next().unwrap_or(Err([0; 2]));
+            // Where curves coincide no sample is clean, and the first must do.
+            let [left, right] =
+                first.or_else(|unclean| verdicts.find_map(Result::ok).ok_or(unclean)).unwrap_or_else(|unclean| unclean);
+            Strand { parts, left, right }
+        };
+        self.uncrossed().into_iter().map(strand).collect()
+    }
+
+    /// All curves from crossing to crossing.
+    fn uncrossed(&self) -> Vec<Vec<Portion>> {
+        let mut strands: Vec<Vec<Portion>> = Vec::new();
+        let mut open = false;
+        for (i, mut cuts) in self.cuts().into_iter().enumerate() {
+            let span = &self.spans[i];
+            let free = |end: f64| !cuts.iter().any(|t| (t - end).abs() < 1e-7);
+            let follows = i > 0 && {
+                let last = &self.spans[i - 1];
+                last.ends[1] == span.ends[0] && last.curve == span.curve
+            };
+            let (joined, open_after) = (open && follows && free(0.0), free(1.0));
+            cuts.push(0.0);
+            cuts.push(1.0);
+            cuts.sort_by(f64::total_cmp);
+            cuts.dedup_by(|next, last| *next - *last < SAME);
+            // The exact ends survive the merging.
+            if let Some(last) = cuts.last_mut() {
+                *last = 1.0;
+            }
+            for (n, w) in cuts.windows(2).enumerate() {
+                let portion = Portion { span: i, from: w[0], to: w[1] };
+                match strands.last_mut() {
+                    Some(strand) if n == 0 && joined => strand.push(portion),
+                    _ => strands.push(vec![portion]),
+                }
+            }
+            open = open_after;
+        }
+        strands
+    }
+
+    /// How many poses reach the left side of a part, and how many its right; an error where another curve is too close
+    /// to be sure.
+    fn sides(&self, portion: &Portion) -> Result<[i32; 2], [i32; 2]> {
+        let span = &self.spans[portion.span];
+        let (mut unclean, mut alike) = ([0; 2], 0);
+        // Close enough that even where curves touch, no other is in between; and if one is, elsewhere there is none.
+        for reach in [1e-11, 1e-12, 1e-9].map(|share| share * self.unit) {
+            for share in [0.5, 0.31, 0.77, 0.13, 0.91] {
+                let jet = self.on.jet(span, portion.from + share * (portion.to - portion.from));
+                let speed = jet.rate.norm();
+                let aside = Vector::new(-jet.rate.im, jet.rate.re) * (reach / speed);
+                if !(aside.is_finite() && reach < 0.1 * speed * (portion.to - portion.from)) {
+                    continue;
+                }
+                let sides = [jet.at + aside, jet.at - aside].map(|p| self.cycle.poses_at(self.on, p));
+                if sides[0] - sides[1] == span.weight() {
+                    return Ok(sides);
+                }
+                // The same all along: another curve coincides.
+                alike = if sides == unclean { alike + 1 } else { 0 };
+                unclean = sides;
+                if alike == 3 {
+                    return Err(unclean);
+                }
+            }
+        }
+        Err(unclean)
+    }
+
+    /// The parts of strands that bound the points which at least `n` poses reach.
+    pub fn level(&self, strands: &[Strand], n: i32) -> Vec<Portion> {
+        self.without_doubles(strands.iter().filter(|s| s.bounds(n)).flat_map(|s| &s.parts))
+    }
+
+    /// Curves that coincide bound the workspace once.
+    fn without_doubles<'b>(&self, portions: impl Iterator<Item = &'b Portion>) -> Vec<Portion> {
+        let ends = |p: &Portion| [p.from, p.to].map(|t| self.on.at(&self.spans[p.span], t));
+        let near = |a: Vector, b: Vector| (a - b).norm() < JOINT * self.unit;
+        let mut kept: Vec<(Portion, [Vector; 2])> = Vec::new();
+        for &portion in portions {
+            let [from, to] = ends(&portion);
+            let middle = |p: &Portion| self.on.at(&self.spans[p.span], 0.5 * (p.from + p.to));
+            let double = kept.iter().any(|(other, [f, t])| {
+                near(*f, from) && near(*t, to) && near(middle(other), middle(&portion)) && !near(from, to)
+            });
+            if !double {
+                kept.push((portion, [from, to]));
+            }
+        }
+        kept.into_iter().map(|(portion, _)| portion).collect()
+    }
+
+    /// For each span, where it is crossed.
+    fn cuts(&self) -> Vec<Vec<f64>> {
+        let mut cuts = vec![Vec::new(); self.spans.len()];
+        let mut order: Vec<usize> = (0..self.spans.len()).collect();
+        order.sort_by(|&i, &j| self.cycle.bounds[i].low.re.total_cmp(&self.cycle.bounds[j].low.re));
+        let mut work = VecDeque::new();
+        for (n, &i) in order.iter().enumerate() {
+            let a = &self.cycle.bounds[i];
+            for &j in &order[n + 1..] {
+                let b = &self.cycle.bounds[j];
+                if b.low.re > a.high.re {
+                    break;
+                }
+                if b.low.im > a.high.im || b.high.im < a.low.im || self.continues(i, j) {
+                    continue;
+                }
+                self.cross(i, j, &mut cuts, &mut work);
+            }
+        }
+        cuts
+    }
+
+    /// Whether one span goes on where the other ends, on the same curve, without turning back: they do not cross.
+    fn continues(&self, i: usize, j: usize) -> bool {
+        let (a, b) = (&self.spans[i], &self.spans[j]);
+        let joined = a.ends[1] == b.ends[0] || b.ends[1] == a.ends[0];
+        joined && a.curve == b.curve && {
+            let (along_a, along_b) = (a.at[1] - a.at[0], b.at[1] - b.at[0]);
+            dot(along_a, along_b) > 0.5 * along_a.norm() * along_b.norm()
+                && a.deviation < 0.1 * along_a.norm()
+                && b.deviation < 0.1 * along_b.norm()
+        }
+    }
+
+    fn cross(&self, i: usize, j: usize, cuts: &mut [Vec<f64>], work: &mut VecDeque<(Part, Part)>) {
+        let (a, b) = (&self.spans[i], &self.spans[j]);
+        work.clear();
+        work.push_back((Part::of(a), Part::of(b)));
+        let tip = a.ends.into_iter().zip(a.at).find(|(end, _)| b.ends.contains(end)).map(|(_, at)| at);
+        let mut patience = PATIENCE;
+        while let Some((pa, pb)) = work.pop_front() {
+            patience -= 1;
+            if patience == 0 || (patience == WONDER && self.run_along(i, j)) {
+                self.overlap(i, j, cuts);
+                return;
+            }
+            let at_tip = |tip: Vector| pa.at.iter().chain(&pb.at).all(|p| (p - tip).norm_sqr() < self.tip * self.tip);
+            if tip.is_some_and(at_tip) {
+                continue;
+            }
+            let (da, db) = (pa.deviation(a, self.unit), pb.deviation(b, self.unit));
+            if apart(pa.at, pb.at, da + db) {
+                continue;
+            }
+            let (va, vb) = (pa.at[1] - pa.at[0], pb.at[1] - pb.at[0]);
+            let (la, lb) = (va.norm(), vb.norm());
+            // Straight enough to cross once at most?
+            let bend = 5.0 * (da / la + db / lb);
+            if bend < 0.5 && cross(va, vb).abs() > bend * la * lb {
+                if let Some([t, s]) = self.meet(a, b, &pa, &pb) {
+                    cuts[i].push(t);
+                    cuts[j].push(s);
+                }
+            } else if la.max(lb) > SHORTEST * self.unit || da + db > SHORTEST * self.unit {
+                if la + da > lb + db {
+                    pa.halves(self.on, a).into_iter().for_each(|half| work.push_back((half, pb)));
+                } else {
+                    pb.halves(self.on, b).into_iter().for_each(|half| work.push_back((pa, half)));
+                }
+            }
+        }
+    }
+
+    /// Newton's iteration for P_A(t) = P_B(s) from where the chords meet; within both parts or not at all.
+    fn meet(&self, a: &Span, b: &Span, pa: &Part, pb: &Part) -> Option<[f64; 2]> {
+        let (va, vb) = (pa.at[1] - pa.at[0], pb.at[1] - pb.at[0]);
+        let (ta, tb) = (pa.range[1] - pa.range[0], pb.range[1] - pb.range[0]);
+        let gap = pb.at[0] - pa.at[0];
+        let n = cross(va, vb);
+        let mut t = pa.range[0] + (cross(gap, vb) / n).clamp(0.0, 1.0) * ta;
+        let mut s = pb.range[0] + (cross(gap, va) / n).clamp(0.0, 1.0) * tb;
+        // Both parts are nearly straight: a solution well outside is none.
+        let near = |x: f64, [low, high]: [f64; 2]| {
+            let margin = 0.1 * (high - low);
+            x.clamp((low - margin).max(0.0), (high + margin).min(1.0))
+        };
+        let within = |x: f64, r: [f64; 2]| x >= r[0] - SAME && x <= r[1] + SAME;
+        for _ in 0..16 {
+            let (ja, jb) = (self.on.jet(a, t), self.on.jet(b, s));
+            let gap = jb.at - ja.at;
+            let n = cross(ja.rate, jb.rate);
+            let step = [cross(gap, jb.rate) / n, cross(gap, ja.rate) / n];
+            if step[0].abs() < 1e-13 && step[1].abs() < 1e-13 {
+                break;
+            }
+            if !(step[0].is_finite() && step[1].is_finite()) {
+                return None;
+            }
+            (t, s) = (near(t + step[0], pa.range), near(s + step[1], pb.range));
+        }
+        let meets = (self.on.at(a, t) - self.on.at(b, s)).norm() < 1e-12 * self.unit;
+        (meets && within(t, pa.range) && within(s, pb.range)).then_some([t, s])
+    }
+
+    /// Cuts of two spans that run along each other: each where the other begins or ends.
+    fn overlap(&self, i: usize, j: usize, cuts: &mut [Vec<f64>]) {
+        for (one, other) in [(i, j), (j, i)] {
+            for end in self.spans[one].at {
+                let (t, gap) = self.foot(&self.spans[other], end);
+                if gap < JOINT * self.unit {
+                    cuts[other].push(t);
+                }
+            }
+        }
+    }
+
+    /// Whether two spans share a stretch: two points, and those between.
+    fn run_along(&self, i: usize, j: usize) -> bool {
+        let (a, b) = (&self.spans[i], &self.spans[j]);
+        let on_both = |t: f64| self.foot(b, self.on.at(a, t)).1 < ON_CURVE * self.unit;
+        let ends = [0.0, 1.0].into_iter().filter(|&t| on_both(t));
+        let others =
+            b.at.into_iter()
+                .map(|end| self.foot(a, end))
+                .filter(|(_, gap)| *gap < ON_CURVE * self.unit)
+                .map(|(t, _)| t);
+        let (low, high) = ends.chain(others).fold((1.0_f64, 0.0_f64), |(low, high), t| (low.min(t), high.max(t)));
+        high - low > 1e-6 && [0.5, 0.3, 0.8].into_iter().all(|share| on_both(low + share * (high - low)))
+    }
+
+    /// The parameter of the point of a span that is nearest to another, and their distance.
+    fn foot(&self, span: &Span, p: Vector) -> (f64, f64) {
+        let mut t = 0.5;
+        for _ in 0..40 {
+            let jet = self.on.jet(span, t);
+            let step = dot(p - jet.at, jet.rate) / jet.rate.norm_sqr();
+            if !step.is_finite() {
+                break;
+            }
+            let before = t;
+            t = (t + step).clamp(0.0, 1.0);
+            if (t - before).abs() < 1e-14 {
+                break;
+            }
+        }
+        (t, (self.on.at(span, t) - p).norm())
+    }
+
+    /// Joins parts end to start; where there is a choice, the leftmost turn keeps loops from crossing themselves.
+    pub fn chain(&self, portions: Vec<Portion>) -> Vec<Vec<Portion>> {
+        let at = |p: &Portion, share: f64| self.on.at(&self.spans[p.span], p.from + share * (p.to - p.from));
+        let starts: Vec<Vector> = portions.iter().map(|p| at(p, 0.0)).collect();
+        let ends: Vec<Vector> = portions.iter().map(|p| at(p, 1.0)).collect();
+        let mut used = vec![false; portions.len()];
+        let mut loops = Vec::new();
+        for first in 0..portions.len() {
+            if used[first] {
+                continue;
+            }
+            let mut chain = vec![portions[first]];
+            used[first] = true;
+            let mut last = first;
+            while (ends[last] - starts[first]).norm() > JOINT * self.unit {
+                let along = ends[last] - at(&portions[last], 0.95);
+                let turn = |k: usize| {
+                    let next = at(&portions[k], 0.05) - starts[k];
+                    cross(along, next).atan2(dot(along, next))
+                };
+                let gap = |k: usize| (starts[k] - ends[last]).norm();
+                let free = || (0..portions.len()).filter(|&k| !used[k]);
+                let joined =
+                    free().filter(|&k| gap(k) <= JOINT * self.unit).max_by(|&i, &j| turn(i).total_cmp(&turn(j)));
+                // Only rounding near a tangency leaves a gap; the nearest start closes it.
+                let near = || free().filter(|&k| gap(k) < 1e-5 * self.unit).min_by(|&i, &j| gap(i).total_cmp(&gap(j)));
+                let Some(next) = joined.or_else(near) else { break };
+                used[next] = true;
+                chain.push(portions[next]);
+                last = next;
+            }
+            loops.push(chain);
+        }
+        loops
+    }
+}
+
+/// Whether two chords, each thickened by its share of `slack`, keep apart.
+fn apart(a: [Vector; 2], b: [Vector; 2], slack: f64) -> bool {
+    let out = |p: f64, q: f64, r: f64, s: f64| p.min(q) > r.max(s) + slack || r.min(s) > p.max(q) + slack;
+    if out(a[0].re, a[1].re, b[0].re, b[1].re) || out(a[0].im, a[1].im, b[0].im, b[1].im) {
+        return true;
+    }
+    let one_side = |a: [Vector; 2], b: [Vector; 2]| {
+        let along = a[1] - a[0];
+        let [first, second] = b.map(|p| cross(along, p - a[0]));
+        first * second > 0.0 && first.abs().min(second.abs()) > slack * along.norm()
+    };
+    one_side(a, b) || one_side(b, a)
+}

@@ -1,0 +1,82 @@
+//! The weighted cycle of all spans, whose winding number about a point counts the poses that reach it.
+
+use super::span::{Span, Surface};
+use crate::mechanics::planar::Vector;
+
+/// Rows that spans are sorted into, so that a ray meets few of them.
+const ROWS: usize = 64;
+
+/// Axis-parallel bounds of a span, m.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bounds {
+    pub low: Vector,
+    pub high: Vector,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Cycle {
+    pub spans: Vec<Span>,
+    pub bounds: Vec<Bounds>,
+    /// Where each row begins in `members`, and one more.
+    rows: Vec<u32>,
+    /// Spans by row, each in all rows that it passes through.
+    members: Vec<u32>,
+    low: f64,
+    per_metre: f64,
+}
+
+impl Cycle {
+    /// `unit` is that of the map, m.
+    pub fn of(spans: Vec<Span>, unit: f64) -> Self {
+        let bounds: Vec<Bounds> = spans
+            .iter()
+            .map(|s| {
+                let slack = s.deviation + 1e-12 * unit;
+                let [a, b] = s.at;
+                Bounds {
+                    low: Vector::new(a.re.min(b.re) - slack, a.im.min(b.im) - slack),
+                    high: Vector::new(a.re.max(b.re) + slack, a.im.max(b.im) + slack),
+                }
+            })
+            .collect();
+        let low = bounds.iter().map(|b| b.low.im).fold(f64::INFINITY, f64::min);
+        let high = bounds.iter().map(|b| b.high.im).fold(f64::NEG_INFINITY, f64::max);
+        let per_metre = ROWS as f64 / (high - low);
+        let mut cycle = Self { spans, bounds, rows: vec![0; ROWS + 1], members: Vec::new(), low, per_metre };
+        let passed = |cycle: &Self, b: &Bounds| cycle.row(b.low.im)..=cycle.row(b.high.im);
+        for b in &cycle.bounds.clone() {
+            passed(&cycle, b).for_each(|row| cycle.rows[row + 1] += 1);
+        }
+        for row in 0..ROWS {
+            cycle.rows[row + 1] += cycle.rows[row];
+        }
+        cycle.members = vec![0; cycle.rows[ROWS] as usize];
+        let mut next = cycle.rows.clone();
+        for (i, b) in cycle.bounds.iter().enumerate() {
+            for row in passed(&cycle, b) {
+                cycle.members[next[row] as usize] = i as u32;
+                next[row] += 1;
+            }
+        }
+        cycle
+    }
+
+    /// As a cast: below the first row is the first, NaN too.
+    fn row(&self, y: f64) -> usize {
+        (((y - self.low) * self.per_metre) as usize).min(ROWS - 1)
+    }
+
+    /// How many poses reach p: the winding number of the weighted cycle. On a curve, the number is that of a side.
+    pub fn poses_at(&self, on: &Surface, p: Vector) -> i32 {
+        let row = self.row(p.im);
+        let mut count = 0;
+        for &i in &self.members[self.rows[row] as usize..self.rows[row + 1] as usize] {
+            let (span, b) = (&self.spans[i as usize], &self.bounds[i as usize]);
+            if p.im >= b.low.im && p.im <= b.high.im && p.re <= b.high.re {
+                let ends = [(0.0, span.at[0]), (1.0, span.at[1])];
+                count += span.weight() * span.crossings(on, ends[0], ends[1], p).unwrap_or(0);
+            }
+        }
+        count
+    }
+}

@@ -1,0 +1,323 @@
+//! Points of joint space in plane coordinates (a_1, a_2, b), the map to the end effector, and its inverse on a plane.
+
+use std::f64::consts::TAU;
+
+use nalgebra::{Complex, Matrix3, Vector3};
+use thiserror::Error;
+
+use crate::mechanics::planar::{Vector, cross, unit};
+
+/// Bounds of a relative joint angle, rad.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limit {
+    /// Least.
+    pub min: f64,
+    /// Greatest.
+    pub max: f64,
+}
+
+impl Limit {
+    /// Whether an angle lies within, give or take `slack`, rad.
+    pub fn contains(&self, angle: f64, slack: f64) -> bool {
+        angle >= self.min - slack && angle <= self.max + slack
+    }
+}
+
+/// a = q_to − q_from + offset; drives counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AngleDefinition {
+    /// Drive.
+    pub to: usize,
+    /// Drive.
+    pub from: usize,
+    /// rad.
+    pub offset: f64,
+}
+
+/// A point of joint space by its relative angles and its pose constant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlanePoint {
+    /// (a_1, a_2), rad.
+    pub a: [f64; 2],
+    /// b, rad.
+    pub b: f64,
+}
+
+/// Eqs (13)–(16) of one machine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlaneMap {
+    c: [f64; 3],
+    lambda: [f64; 3],
+    angles: [AngleDefinition; 2],
+    limits: [Limit; 2],
+    lambda_sum: f64,
+    u: [[f64; 2]; 3],
+    v: [f64; 3],
+    unit: f64,
+}
+
+/// Why a machine has no plane coordinates.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum NotAPlaneMap {
+    /// The two relative angles do not tell all three drives apart.
+    #[error(
+        "the relative joint angles do not determine the pose on a plane: want two angles that join all three drives"
+    )]
+    Dependent,
+    /// A number is not finite, or Σλ is zero.
+    #[error("λ, lengths, offsets and limits must be finite, with Σλ above 0 and min ≤ max")]
+    OutOfRange,
+    /// Windings are counted one by one, so there must be few.
+    #[error("a{} may turn by {width:.2} rad: want limits at most eight turns apart, {} rad", .angle + 1, WIDEST)]
+    TooWide {
+        /// Which angle: 0 for a_1, 1 for a_2.
+        angle: usize,
+        /// max − min, rad.
+        width: f64,
+    },
+    /// Too small or too large for squares and cubes of it.
+    #[error("the arms reach {reach:.3e} m: want a reach of 1e-9 to 1e9 m")]
+    Size {
+        /// Σ |c_k|, m.
+        reach: f64,
+    },
+    /// Rounding of the longest arm would hide what the shorter ones do.
+    #[error(
+        "the arms are {:.3e}, {:.3e} and {:.3e} m long, with λ {:.3e}, {:.3e} and {:.3e}: a reactionless workspace \
+         so much narrower than its radius is lost in rounding; want arms of more equal length",
+        .arms[0], .arms[1], .arms[2], .lambda[0], .lambda[1], .lambda[2]
+    )]
+    Uneven {
+        /// |c_k|, m.
+        arms: [f64; 3],
+        /// λ_k.
+        lambda: [f64; 3],
+    },
+}
+
+/// Below this share of the square of the reach, |det| is too small for curves to be told apart.
+const LEAST_DET: f64 = 1e-5;
+/// And below this one it is 0.
+const NO_DET: f64 = 1e-15;
+
+/// Limits are at most this far apart, rad: eight turns and a little, as four either way are.
+pub const WIDEST: f64 = 50.4;
+
+impl PlaneMap {
+    /// Checks the numbers and derives u and v.
+    ///
+    /// # Errors
+    /// If (a_1, a_2, b) does not determine q.
+    pub fn new(
+        c: [f64; 3],
+        lambda: [f64; 3],
+        angles: [AngleDefinition; 2],
+        limits: [Limit; 2],
+    ) -> Result<Self, NotAPlaneMap> {
+        let lambda_sum: f64 = lambda.iter().sum();
+        let finite = c.iter().chain(&lambda).all(|x| x.is_finite())
+            && angles.iter().all(|a| a.offset.is_finite() && a.to < 3 && a.from < 3)
+            && limits.iter().all(|l| l.min.is_finite() && l.max.is_finite() && l.min <= l.max);
+        if !finite || lambda_sum.partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater) {
+            return Err(NotAPlaneMap::OutOfRange);
+        }
+        let mut rows = Matrix3::zeros();
+        for (i, a) in angles.iter().enumerate() {
+            rows[(i, a.to)] += 1.0;
+            rows[(i, a.from)] -= 1.0;
+        }
+        rows.set_row(2, &nalgebra::RowVector3::from_row_slice(&lambda));
+        let inverse = rows.try_inverse().ok_or(NotAPlaneMap::Dependent)?;
+        if inverse.iter().any(|x| !x.is_finite()) {
+            return Err(NotAPlaneMap::Dependent);
+        }
+        let offset = inverse * Vector3::new(angles[0].offset, angles[1].offset, 0.0);
+        let u = [0, 1, 2].map(|k| [inverse[(k, 0)], inverse[(k, 1)]]);
+        let v = [0, 1, 2].map(|k| -offset[k]);
+        let reach: f64 = c.iter().map(|c| c.abs()).sum();
+        if reach != 0.0 && !(1e-9..=1e9).contains(&reach) {
+            return Err(NotAPlaneMap::Size { reach });
+        }
+        let unit = if reach > 0.0 { reach.log2().floor().exp2() } else { 1.0 };
+        // |det| reaches this share of the square of the reach; of what turns as one arm it is 0 but for rounding.
+        let pair = |[k, l]: [usize; 2]| (c[k] * c[l] * (u[k][0] * u[l][1] - u[k][1] * u[l][0])).abs();
+        let most = [[0, 1], [1, 2], [0, 2]].map(pair).into_iter().fold(0.0, f64::max) / (reach * reach);
+        if (NO_DET..LEAST_DET).contains(&most) {
+            return Err(NotAPlaneMap::Uneven { arms: c.map(f64::abs), lambda });
+        }
+        Self { c, lambda, angles, limits, lambda_sum, u, v, unit }.with_limits(limits)
+    }
+
+    /// c_k, m.
+    pub fn c(&self) -> [f64; 3] {
+        self.c
+    }
+
+    /// λ_k.
+    pub fn lambda(&self) -> [f64; 3] {
+        self.lambda
+    }
+
+    /// Σλ.
+    pub fn lambda_sum(&self) -> f64 {
+        self.lambda_sum
+    }
+
+    /// u_k.
+    pub fn u(&self) -> [[f64; 2]; 3] {
+        self.u
+    }
+
+    /// v_k, rad.
+    pub fn v(&self) -> [f64; 3] {
+        self.v
+    }
+
+    /// How a_1 and a_2 are defined.
+    pub fn angles(&self) -> [AngleDefinition; 2] {
+        self.angles
+    }
+
+    /// Bounds of a_1 and a_2.
+    pub fn limits(&self) -> [Limit; 2] {
+        self.limits
+    }
+
+    /// The same map within other bounds.
+    ///
+    /// # Errors
+    /// If they are no bounds, or more than [`WIDEST`] apart.
+    pub fn with_limits(mut self, limits: [Limit; 2]) -> Result<Self, NotAPlaneMap> {
+        for (angle, Limit { min, max }) in limits.into_iter().enumerate() {
+            if !(min.is_finite() && max.is_finite() && min <= max) {
+                return Err(NotAPlaneMap::OutOfRange);
+            }
+            if max - min > WIDEST {
+                return Err(NotAPlaneMap::TooWide { angle, width: max - min });
+            }
+        }
+        self.limits = limits;
+        Ok(self)
+    }
+
+    /// A power of two near the reach of the arms, m: what rounding and tolerances are measured by.
+    pub(crate) fn unit(&self) -> f64 {
+        self.unit
+    }
+
+    /// Turning all drives once adds this to b and changes nothing else: 2π Σλ, rad.
+    pub fn period(&self) -> f64 {
+        TAU * self.lambda_sum
+    }
+
+    /// b* = b/Σλ, the turn of the workspace, rad, (15).
+    pub fn turn(&self, b: f64) -> f64 {
+        b / self.lambda_sum
+    }
+
+    /// Drive angles of a point: q_k = b* + u_k · a + v_k, (15). Never wrapped.
+    #[inline]
+    pub fn lift(&self, at: PlanePoint) -> [f64; 3] {
+        let turn = self.turn(at.b);
+        [0, 1, 2].map(|k| turn + self.local(k, at.a))
+    }
+
+    /// Rates of the drives for rates (ȧ_1, ȧ_2) and ḃ.
+    #[inline]
+    pub fn lift_rates(&self, ad: [f64; 2], bd: f64) -> [f64; 3] {
+        let turn = self.turn(bd);
+        [0, 1, 2].map(|k| turn + self.u[k][0] * ad[0] + self.u[k][1] * ad[1])
+    }
+
+    /// Plane coordinates of drive angles; the inverse of [`lift`](Self::lift).
+    #[inline]
+    pub fn project(&self, q: &[f64]) -> PlanePoint {
+        PlanePoint {
+            a: self.angles.map(|a| q[a.to] - q[a.from] + a.offset),
+            b: self.lambda.iter().zip(q).map(|(l, q)| l * q).sum(),
+        }
+    }
+
+    /// (ȧ_1, ȧ_2) and ḃ for rates of the drives.
+    pub fn project_rates(&self, qd: &[f64]) -> ([f64; 2], f64) {
+        let ad = self.angles.map(|a| qd[a.to] - qd[a.from]);
+        (ad, self.lambda.iter().zip(qd).map(|(l, q)| l * q).sum())
+    }
+
+    #[inline]
+    fn local(&self, k: usize, a: [f64; 2]) -> f64 {
+        self.u[k][0] * a[0] + self.u[k][1] * a[1] + self.v[k]
+    }
+
+    /// c_k e^{i (u_k · a + v_k)}: the arms before the workspace is turned.
+    #[inline]
+    pub fn arms(&self, a: [f64; 2]) -> [Vector; 3] {
+        [0, 1, 2].map(|k| self.c[k] * unit(self.local(k, a)))
+    }
+
+    /// The end effector before the workspace is turned, m; b = 0 of (16).
+    #[inline]
+    pub fn forward_unturned(&self, a: [f64; 2]) -> Vector {
+        self.arms(a).iter().sum()
+    }
+
+    /// The end effector, m, (16).
+    #[inline]
+    pub fn forward(&self, a: [f64; 2], b: f64) -> Vector {
+        self.forward_unturned(a) * unit(self.turn(b))
+    }
+
+    /// ∂p/∂a_1 and ∂p/∂a_2 before the workspace is turned, m.
+    #[inline]
+    pub fn columns(&self, arms: &[Vector; 3]) -> [Vector; 2] {
+        let i = Complex::new(0.0, 1.0);
+        [0, 1].map(|j| i * (0..3).map(|k| arms[k] * self.u[k][j]).sum::<Vector>())
+    }
+
+    /// det ∂(x, y)/∂(a_1, a_2), m²: a sum of sines of the angles between the arms, the same for every b.
+    #[inline]
+    pub fn det(&self, a: [f64; 2]) -> f64 {
+        let [first, second] = self.columns(&self.arms(a));
+        cross(first, second)
+    }
+
+    /// The pose on the plane b that puts the end effector on p, reached continuously from the pose `from`: Newton's
+    /// iteration in (a_1, a_2), which must stay on the sheet where det keeps its sign and within the limits.
+    /// `None` where it cannot.
+    pub fn follow(&self, p: Vector, b: f64, from: [f64; 2]) -> Option<[f64; 2]> {
+        let goal = p * unit(-self.turn(b));
+        let mut a = from;
+        let sheet = self.det(from);
+        for _ in 0..24 {
+            let arms = self.arms(a);
+            let gap = goal - arms.iter().sum::<Vector>();
+            let [first, second] = self.columns(&arms);
+            let det = cross(first, second);
+            if det * sheet < 0.0 {
+                return None;
+            }
+            let step = [cross(gap, second) / det, cross(first, gap) / det];
+            let length = step[0].hypot(step[1]);
+            if !length.is_finite() {
+                return None;
+            }
+            // Long steps leave the sheet; half a radian at a time does not skip one.
+            let scale = (0.5 / length).min(1.0);
+            a = [a[0] + scale * step[0], a[1] + scale * step[1]];
+            if length < 1e-14 || (length < 1e-9 && gap.norm_sqr() < 1e-28 * self.unit * self.unit) {
+                break;
+            }
+        }
+        let miss = (goal - self.forward_unturned(a)).norm();
+        let inside = (0..2).all(|i| self.limits[i].contains(a[i], SLACK));
+        (miss < 1e-11 * self.unit && inside && self.det(a) * sheet >= 0.0).then(|| self.clamp(a))
+    }
+
+    /// The nearest pose within the limits.
+    pub fn clamp(&self, a: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|i| a[i].clamp(self.limits[i].min, self.limits[i].max))
+    }
+}
+
+/// Joint limits count as kept when they are passed by no more than this, rad: the rounding of an inverse at the edge.
+pub const SLACK: f64 = 1e-9;

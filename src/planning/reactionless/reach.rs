@@ -1,0 +1,346 @@
+//! Which planes contain a point: the pose constants at which it can be reached, and the self-motion between them, Fig. 3.
+//!
+//! Source: (13)–(16). Two points are joined by a reactionless path if and only if their sets overlap; the same for any
+//! number of points.
+
+use thiserror::Error;
+
+use super::decimal::metres_apart;
+use super::plane::{PlaneMap, PlanePoint, SLACK};
+use super::quadrilateral::{Arc, Quadrilateral, ROUNDING, Site};
+use crate::mechanics::planar::Vector;
+
+/// Intervals that come as near as this are one, rad: rounding.
+const TOUCH: f64 = 1e-11;
+
+/// At corners of the limits and where the arms are flat, rounding of the point moves the curve by its root: a pose there
+/// belongs to a curve that passes as near as this, rad.
+const CUT_OFF: f64 = 1e-6;
+
+/// A set of pose constants: disjoint closed intervals on the circle of b.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BSet {
+    /// [b_min, b_max] in order, rad: b_min in [0, period), b_max ≥ b_min may exceed it; the whole circle is [0, period].
+    pub intervals: Vec<[f64; 2]>,
+    /// Circumference of the circle, 2π Σλ, rad.
+    pub period: f64,
+}
+
+/// Why no b reaches a point.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum NoReach {
+    /// Beyond full stretch.
+    #[error("the point is {} m from the base, but the arms reach only {} m", metres_apart(*.distance, *.farthest)[0], metres_apart(*.distance, *.farthest)[1])]
+    TooFar {
+        /// m.
+        distance: f64,
+        /// m.
+        farthest: f64,
+    },
+    /// Within the hole that the longest arm leaves.
+    #[error("the point is {} m from the base, but the arms cannot come nearer than {} m", metres_apart(*.distance, *.nearest)[0], metres_apart(*.distance, *.nearest)[1])]
+    TooNear {
+        /// m.
+        distance: f64,
+        /// m.
+        nearest: f64,
+    },
+    /// The arms are long enough, but the relative angles would pass their limits.
+    #[error("the arms are long enough for the point, but the joint limits keep them from it")]
+    Limits,
+}
+
+impl BSet {
+    /// A union of intervals [low, high], wherever on the real line they lie.
+    fn union(mut parts: Vec<[f64; 2]>, period: f64) -> Self {
+        for part in &mut parts {
+            let width = (part[1] - part[0]).min(period);
+            part[0] = wrap(part[0], period);
+            part[1] = part[0] + width;
+        }
+        parts.sort_unstable_by(|s, t| s[0].total_cmp(&t[0]));
+        let mut intervals: Vec<[f64; 2]> = Vec::new();
+        for part in parts {
+            match intervals.last_mut() {
+                Some(last) if part[0] <= last[1] + TOUCH => last[1] = last[1].max(part[1]),
+                _ => intervals.push(part),
+            }
+        }
+        // The last may run past the seam, into the first.
+        if let Some(mut last) = intervals.pop() {
+            let past = |first: &[f64; 2], last: [f64; 2]| first[0] + period <= last[1] + TOUCH;
+            let mut swallowed = 0;
+            while intervals.get(swallowed).is_some_and(|first| past(first, last)) {
+                last[1] = last[1].max(intervals[swallowed][1] + period);
+                swallowed += 1;
+            }
+            intervals.drain(..swallowed);
+            intervals.push(if last[1] - last[0] >= period - TOUCH { [0.0, period] } else { last });
+        }
+        Self { intervals, period }
+    }
+
+    /// Whether no b is left.
+    pub fn is_empty(&self) -> bool {
+        self.intervals.is_empty()
+    }
+
+    /// The b that all sets have in common; they must be of one period. No sets have nothing in common.
+    pub fn overlap(sets: &[Self]) -> Self {
+        let Some((first, others)) = sets.split_first() else {
+            return Self { intervals: Vec::new(), period: 0.0 };
+        };
+        let period = first.period;
+        others.iter().fold(first.clone(), |common, set| {
+            let mut parts = Vec::new();
+            for s in &common.intervals {
+                for t in &set.intervals {
+                    // Both begin in [0, period) and end before 2 period.
+                    for turn in [-period, 0.0, period] {
+                        let part = [s[0].max(t[0] + turn), s[1].min(t[1] + turn)];
+                        if part[0] <= part[1] {
+                            parts.push(part);
+                        }
+                    }
+                }
+            }
+            Self::union(parts, period)
+        })
+    }
+
+    /// Whether a b lies in the set, whole turns and [`SLACK`] aside.
+    pub fn contains(&self, b: f64) -> bool {
+        self.intervals.iter().any(|[low, high]| {
+            let past = wrap(b - low, self.period);
+            past <= high - low + SLACK || past >= self.period - SLACK
+        })
+    }
+
+    /// The same set with each interval lifted by whole periods to where it is nearest to b.
+    #[must_use]
+    pub fn near(&self, b: f64) -> Self {
+        let lift = |[low, high]: [f64; 2]| {
+            let turns = self.period * ((b - 0.5 * (low + high)) / self.period).round();
+            [low + turns, high + turns]
+        };
+        Self { intervals: self.intervals.iter().map(|i| lift(*i)).collect(), period: self.period }
+    }
+
+    /// b moved towards the middle of the interval of the set that it lies in or beside, by a share of the way: what a
+    /// pose at an end of an interval needs where rounding takes it away.
+    pub fn inwards(&self, b: f64, share: f64) -> f64 {
+        let middles = self.near(b).intervals.into_iter().map(|[low, high]| (0.5 * (low + high), 0.5 * (high - low)));
+        let nearest = middles.min_by(|x, y| ((x.0 - b).abs() - x.1).total_cmp(&((y.0 - b).abs() - y.1)));
+        nearest.map_or(b, |(middle, _)| b + share * (middle - b))
+    }
+
+    /// The b of the set, lifted by whole turns, that is nearest on the real line; `b` itself if it lies in the set.
+    pub fn nearest(&self, b: f64) -> Option<f64> {
+        let step = |[low, high]: &[f64; 2]| {
+            let (past, width) = (wrap(b - low, self.period), high - low);
+            let (back, on) = ((past - width).max(0.0), self.period - past);
+            if back <= on { -back } else { on }
+        };
+        self.intervals.iter().map(step).min_by(|s, t| s.abs().total_cmp(&t.abs())).map(|step| b + step)
+    }
+}
+
+/// b give or take whole turns, in [0, period).
+fn wrap(b: f64, period: f64) -> f64 {
+    let wrapped = b.rem_euclid(period);
+    // −1e-20 comes out as the period itself.
+    if wrapped < period { wrapped } else { 0.0 }
+}
+
+/// The poses that hold a point, within the limits.
+enum SelfMotion {
+    /// These (a_1, a_2) hold the point at every b: it is B.
+    EveryB(Vec<[f64; 2]>),
+    /// b runs along arcs. Besides, (a_1, a_2) that rounding may have cut off from them.
+    Curve(Quadrilateral, Vec<Arc>, Vec<[f64; 2]>),
+}
+
+impl PlaneMap {
+    /// All b at which the end effector can be on `p`, m, within the limits: every elbow, every sheet.
+    ///
+    /// # Errors
+    /// If there is none.
+    pub fn reach(&self, p: Vector) -> Result<BSet, NoReach> {
+        let period = self.period();
+        Ok(match self.curve(p)? {
+            SelfMotion::EveryB(_) => BSet { intervals: vec![[0.0, period]], period },
+            SelfMotion::Curve(_, arcs, points) => {
+                let span = |arc: &Arc| [arc.from.b.min(arc.to.b), arc.from.b.max(arc.to.b)];
+                points.iter().fold(BSet::union(arcs.iter().map(span).collect(), period), |set, &a| {
+                    let b = self.b_of(p, a);
+                    let near = set.nearest(b).filter(|near| (b - near).abs() < CUT_OFF).unwrap_or(b);
+                    if near == b && set.contains(b) {
+                        return set;
+                    }
+                    let mut parts = set.intervals;
+                    parts.push([b.min(near), b.max(near)]);
+                    BSet::union(parts, period)
+                })
+            }
+        })
+    }
+
+    /// The self-motion that holds the end effector on `p`, m: each connected branch as a polyline, closed if its first
+    /// and last poses are the same; Fig. 3 is q_1 over b of it. Empty if no b reaches the point.
+    ///
+    /// b is continuous along a branch and first lies in [0, period). A branch has `samples` points, closer towards
+    /// its ends, and besides them every point where b turns back; a branch without extent is one point.
+    pub fn self_motion(&self, p: Vector, samples: usize) -> Vec<Vec<PlanePoint>> {
+        let samples = samples.max(2);
+        match self.curve(p) {
+            Err(_) => Vec::new(),
+            Ok(SelfMotion::EveryB(poses)) => {
+                let b = |i: usize| self.period() * i as f64 / (samples - 1) as f64;
+                poses.iter().map(|&a| (0..samples).map(|i| PlanePoint { a, b: b(i) }).collect()).collect()
+            }
+            Ok(SelfMotion::Curve(curve, arcs, points)) => {
+                let mut lines: Vec<Vec<PlanePoint>> =
+                    branches(arcs).iter().map(|branch| self.polyline(&curve, branch, samples)).collect();
+                let near = |s: [f64; 2], t: [f64; 2]| (s[0] - t[0]).hypot(s[1] - t[1]) < CUT_OFF;
+                for a in points {
+                    if !lines.iter().flatten().any(|at| near(at.a, a)) {
+                        lines.push(vec![PlanePoint { a, b: wrap(self.b_of(p, a), self.period()) }]);
+                    }
+                }
+                lines
+            }
+        }
+    }
+
+    /// b of the pose that (a_1, a_2) has when the workspace is turned so that the end effector is on `p`, whole turns aside.
+    fn b_of(&self, p: Vector, a: [f64; 2]) -> f64 {
+        self.lambda_sum() * (p * self.forward_unturned(a).conj()).arg()
+    }
+
+    fn curve(&self, p: Vector) -> Result<SelfMotion, NoReach> {
+        let lengths = self.c().map(f64::abs);
+        let (distance, farthest) = (p.norm(), lengths.iter().sum::<f64>());
+        let nearest = (2.0 * lengths.into_iter().fold(0.0, f64::max) - farthest).max(0.0);
+        let within = distance <= farthest * (1.0 + ROUNDING);
+        if !within {
+            return Err(NoReach::TooFar { distance, farthest });
+        }
+        if distance < nearest - ROUNDING * farthest {
+            return Err(NoReach::TooNear { distance, nearest });
+        }
+        // A point on the edge of the workspace may miss the limits by rounding.
+        for slack in [0.0, SLACK] {
+            let curve = Quadrilateral::new(self, p, slack);
+            if curve.is_at_base() {
+                let mut poses = Vec::new();
+                curve.triangles(|a| poses.push(self.clamp(a)));
+                if !poses.is_empty() {
+                    return Ok(SelfMotion::EveryB(poses));
+                }
+                continue;
+            }
+            let mut arcs = Vec::with_capacity(16);
+            curve.arcs(|arc| arcs.push(*arc));
+            let mut points = Vec::new();
+            curve.corners(|a| points.push(self.clamp(a)));
+            curve.flat(|a| points.push(self.clamp(a)));
+            if !(arcs.is_empty() && points.is_empty()) {
+                return Ok(SelfMotion::Curve(curve, arcs, points));
+            }
+        }
+        Err(NoReach::Limits)
+    }
+
+    fn polyline(&self, curve: &Quadrilateral, branch: &[Step], samples: usize) -> Vec<PlanePoint> {
+        let length = branch.iter().map(Step::length).sum::<f64>();
+        let period = self.period();
+        let mut line: Vec<PlanePoint> = Vec::with_capacity(samples + branch.len() + 1);
+        let put = |site: Site, line: &mut Vec<PlanePoint>| {
+            // Arcs agree on b to whole turns.
+            let b = match line.last() {
+                Some(last) => site.b + period * ((last.b - site.b) / period).round(),
+                None => wrap(site.b, period),
+            };
+            line.push(PlanePoint { a: self.clamp(curve.relative_angles(site.alpha, site.beta)), b });
+        };
+        let (mut behind, mut i) = (0.0, 0);
+        for step in branch {
+            put(step.start(), &mut line);
+            while i < samples {
+                let at = 0.5 * length * (1.0 - (std::f64::consts::PI * i as f64 / (samples - 1) as f64).cos());
+                let t = (at - behind) / step.length();
+                if t > 1.0 - 1e-9 {
+                    break;
+                }
+                if t > 1e-9 {
+                    put(curve.on(&step.arc, step.s(t)), &mut line);
+                }
+                i += 1;
+            }
+            behind += step.length();
+        }
+        if length > 0.0 {
+            branch.iter().rev().take(1).for_each(|last| put(last.end(), &mut line));
+        }
+        line
+    }
+}
+
+/// An arc of a branch, and in which sense the branch runs through it.
+struct Step {
+    arc: Arc,
+    forwards: bool,
+}
+
+impl Step {
+    fn length(&self) -> f64 {
+        (self.arc.s[1] - self.arc.s[0]).abs()
+    }
+
+    fn start(&self) -> Site {
+        if self.forwards { self.arc.from } else { self.arc.to }
+    }
+
+    fn end(&self) -> Site {
+        if self.forwards { self.arc.to } else { self.arc.from }
+    }
+
+    fn s(&self, t: f64) -> f64 {
+        let t = if self.forwards { t } else { 1.0 - t };
+        self.arc.s[0] + t * (self.arc.s[1] - self.arc.s[0])
+    }
+}
+
+/// Arcs joined end to end.
+fn branches(mut arcs: Vec<Arc>) -> Vec<Vec<Step>> {
+    // Rounding can leave a point beside an arc that begins there.
+    let meets = |s: &Site, t: &Site| (s.alpha - t.alpha).abs().max((s.beta - t.beta).abs()) < 1e-9;
+    let lone = |i: usize, arcs: &[Arc]| {
+        let point = arcs[i].from;
+        !arcs.iter().enumerate().any(|(k, arc)| {
+            let before = k < i || arc.s[0] != arc.s[1];
+            k != i && before && (meets(&arc.from, &point) || meets(&arc.to, &point))
+        })
+    };
+    let keep: Vec<bool> = (0..arcs.len()).map(|i| arcs[i].s[0] != arcs[i].s[1] || lone(i, &arcs)).collect();
+    let mut keep = keep.into_iter();
+    arcs.retain(|_| keep.next().unwrap_or(true));
+
+    let take = |arcs: &mut Vec<Arc>, end: &Site| {
+        let i = arcs.iter().position(|arc| meets(&arc.from, end) || meets(&arc.to, end))?;
+        let arc = arcs.swap_remove(i);
+        Some((arc, meets(&arc.from, end)))
+    };
+    let mut branches = Vec::new();
+    while let Some(arc) = arcs.pop() {
+        let mut branch = std::collections::VecDeque::from([Step { arc, forwards: true }]);
+        while let Some((arc, forwards)) = branch.back().and_then(|last| take(&mut arcs, &last.end())) {
+            branch.push_back(Step { arc, forwards });
+        }
+        while let Some((arc, backwards)) = branch.front().and_then(|first| take(&mut arcs, &first.start())) {
+            branch.push_front(Step { arc, forwards: !backwards });
+        }
+        branches.push(branch.into());
+    }
+    branches
+}

@@ -1,0 +1,182 @@
+//! Offscreen pictures on the way, as PNG.
+
+use rerun::{EncodedImage, EntityPath};
+
+use super::Pictures;
+use super::recorder::Stop;
+use super::store::{Clock, Instant, Store};
+#[cfg(feature = "render")]
+use crate::picture::render::offscreen::{NoAdapter, NoPicture, Picture};
+#[cfg(all(feature = "render", not(feature = "ui")))]
+use crate::picture::render::{View, offscreen::Gpu};
+use crate::picture::scene::stage::{INVITATION, Stage, ViewOptions};
+use crate::picture::scene::{Scene, camera::Camera};
+use crate::session::Run;
+use crate::simulation::frame::Frame;
+
+/// Bytes that are gathered before they are written.
+const ROLL: usize = 4 << 20;
+
+/// Draws scenes: with their words, where there is a font.
+#[cfg(feature = "ui")]
+struct Easel(crate::app::picture::Canvas);
+
+#[cfg(all(feature = "render", not(feature = "ui")))]
+struct Easel(Gpu, View);
+
+#[cfg(feature = "render")]
+impl Easel {
+    fn new(wanted: Pictures) -> Result<Self, NoAdapter> {
+        let size = [wanted.width, wanted.height];
+        // As large as in a window of this height, down to what is still read.
+        let scale = (wanted.height as f32 / 800.0).max(0.5);
+        #[cfg(feature = "ui")]
+        return Ok(Self(crate::app::picture::Canvas::new(size, scale)?));
+        #[cfg(not(feature = "ui"))]
+        Ok(Self(
+            Gpu::new()?,
+            View {
+                clip_from_world: Default::default(),
+                eye_direction: Default::default(),
+                size_px: size,
+                pixels_per_point: scale,
+            },
+        ))
+    }
+
+    fn draw(&mut self, scene: Scene, camera: &Camera) -> Result<Picture, NoPicture> {
+        #[cfg(feature = "ui")]
+        return self.0.scene(&std::sync::Arc::new(scene), camera);
+        #[cfg(not(feature = "ui"))]
+        {
+            let Self(gpu, view) = self;
+            let [width, height] = view.size_px.map(f64::from);
+            view.clip_from_world = camera.clip_from_world(width / height);
+            view.eye_direction = camera.eye_direction();
+            gpu.picture(&scene, view)
+        }
+    }
+}
+
+/// Takes pictures, if any are wanted and there is something to draw with.
+pub struct Film {
+    wanted: Option<Pictures>,
+    note: Option<String>,
+    #[cfg(feature = "render")]
+    easel: Option<Easel>,
+    #[cfg(feature = "render")]
+    stage: Option<Stage>,
+    /// Pictures of the case at hand.
+    taken: u64,
+    clock: Clock,
+    pictures: Vec<Vec<u8>>,
+}
+
+impl Film {
+    /// Looks for something to draw with.
+    pub fn of(wanted: Option<Pictures>) -> Self {
+        let mut film = Self {
+            wanted,
+            note: None,
+            #[cfg(feature = "render")]
+            easel: None,
+            #[cfg(feature = "render")]
+            stage: None,
+            taken: 0,
+            clock: Clock::default(),
+            pictures: Vec::new(),
+        };
+        if let Some(wanted) = wanted {
+            film.load(wanted);
+        }
+        film
+    }
+
+    #[cfg(feature = "render")]
+    fn load(&mut self, wanted: Pictures) {
+        match Easel::new(wanted) {
+            Ok(easel) => self.easel = Some(easel),
+            Err(why) => self.go_without(&why.to_string()),
+        }
+    }
+
+    #[cfg(not(feature = "render"))]
+    fn load(&mut self, _: Pictures) {
+        self.go_without("built without the feature `render`");
+    }
+
+    fn go_without(&mut self, why: &str) {
+        self.wanted = None;
+        self.note = Some(format!("recorded without pictures: {why}"));
+    }
+
+    /// Whether there will be pictures.
+    pub fn is_loaded(&self) -> bool {
+        self.wanted.is_some()
+    }
+
+    /// Why there are no pictures, if some were wanted.
+    pub fn notes(&self) -> Vec<String> {
+        self.note.iter().cloned().collect()
+    }
+
+    /// Whether a picture is due at this instant, on the step nearest to its time.
+    pub fn is_due(&mut self, frame: &Frame, step: f64) -> bool {
+        if frame.step == 0 {
+            self.taken = 0;
+        }
+        self.wanted.is_some_and(|p| frame.time + 0.5 * step >= self.taken as f64 / p.fps)
+    }
+
+    /// Something has changed that stays the same from picture to picture: machine, plan, workspaces.
+    pub fn cut(&mut self) {
+        #[cfg(feature = "render")]
+        {
+            self.stage = None;
+        }
+    }
+
+    /// Takes one.
+    #[cfg(feature = "render")]
+    pub fn take(&mut self, at: Instant, run: &Run, frame: &Frame) -> Result<(), Stop> {
+        let (Some(wanted), Some(easel)) = (self.wanted, &mut self.easel) else { return Ok(()) };
+        let stage = self.stage.get_or_insert_with(|| Stage::of(run));
+        let options = ViewOptions { pin_forces: wanted.pin_forces, ..ViewOptions::default() };
+        let mut scene = stage.scene(frame, &options);
+        scene.labels.retain(|label| label.text != INVITATION);
+        let failed = |why: &dyn std::fmt::Display| Stop::Pictures(why.to_string());
+        let picture = easel.draw(scene, &Camera::flat(stage.linkage().reach())).map_err(|why| failed(&why))?;
+        if [picture.width, picture.height] != [wanted.width, wanted.height] {
+            let most = picture.width.max(picture.height);
+            return Err(failed(&NoPicture::Size { width: wanted.width, height: wanted.height, most }));
+        }
+        self.pictures.push(picture.to_png().map_err(|why| failed(&why))?);
+        self.clock.push(at);
+        // Where steps are longer than the time between pictures, one a step.
+        self.taken = self.taken.max((frame.time * wanted.fps).floor() as u64) + 1;
+        Ok(())
+    }
+
+    #[cfg(not(feature = "render"))]
+    pub fn take(&mut self, _: Instant, _: &Run, _: &Frame) -> Result<(), Stop> {
+        Ok(())
+    }
+
+    /// Whether it is time to write.
+    pub fn is_full(&self) -> bool {
+        self.pictures.iter().map(Vec::len).sum::<usize>() > ROLL
+    }
+
+    /// Writes what was taken.
+    pub fn write(&mut self, store: &mut Store, path: &EntityPath) -> Result<(), Stop> {
+        if self.pictures.is_empty() {
+            return Ok(());
+        }
+        let columns = EncodedImage::update_fields()
+            .with_many_media_type(self.pictures.iter().map(|_| rerun::MediaType::png()))
+            .with_many_blob(self.pictures.drain(..).map(rerun::components::Blob::from));
+        store.columns(&self.clock.columns(), path, columns.columns_of_unit_batches()?)?;
+        self.clock.clear();
+        Ok(())
+    }
+}

@@ -1,0 +1,306 @@
+//! Recordings: scenarios run without a window and written to a Rerun file, with the layout to look at them.
+//!
+//! One file holds all cases, each under `/<case>/`, on the shared time lines `sim_time` and `step`:
+//!
+//! | entity | what |
+//! |---|---|
+//! | `machine/base`, `machine/link/<name>` | meshes that never change; transforms |
+//! | `machine/joints`, `com`, `end_effector`, `target` | points; `end_effector/path` is the whole trail |
+//! | `plan/path`, `plan/waypoints` | where the end effector is to go; gone while the pointer leads |
+//! | `workspace/<b>` | a reactionless workspace and its boundary; b turns it |
+//! | `workspace/<b>/folds`, `…/cusps`, `…/inner_limits`, `…/change_points` | curves inside, where there are any |
+//! | `joint_space` | q as coordinates: the plane of b within the limits, the planned path, the pose |
+//! | `tower` | all workspaces, b as height: the wall, the present slice, and which b reach the task's points |
+//! | `reaction/force`, `reaction/moment` | what reaches the base, in proportion; the scale stands beside it |
+//! | `signals/<path>` | every row of the table of [`signals`](crate::simulation::signals), at every step |
+//! | `events`, `phase` | what happened |
+//! | `view` | offscreen pictures |
+//!
+//! Signals have a row at every step, bodies and points at most 200 a second. Machine, scenario, version and verdict are
+//! properties of the recording. The same scenarios give the same recording, whenever and wherever it is made.
+
+mod areas;
+mod axes;
+mod blueprint;
+mod body;
+mod dashes;
+mod eye;
+mod film;
+mod inside;
+mod joints;
+mod planned;
+mod reaction;
+mod recorder;
+mod rehearsal;
+mod rows;
+mod store;
+mod story;
+mod style;
+mod tip;
+mod tower;
+
+use std::path::{Path, PathBuf};
+
+use rerun::{EntityPath, RecordingInfo};
+use thiserror::Error;
+
+use crate::files::{NewFile, WriteError};
+use crate::session::Refusal;
+use crate::session::scenario::Scenario;
+use crate::session::verdict::Verdict;
+use film::Film;
+use reaction::Scale;
+use recorder::{Set, Stop};
+use rehearsal::Rehearsal;
+use store::{Store, StoreError};
+
+/// Offscreen pictures to take on the way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pictures {
+    /// Pictures a second of simulated time.
+    pub fps: f64,
+    /// Pixels a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Arrows show what the pins carry.
+    pub pin_forces: bool,
+}
+
+/// What to record, and over what.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Options {
+    /// Pictures, if any. Where there is nothing to draw with, the recording goes without and says so in its
+    /// [`notes`](Recording::notes).
+    pub pictures: Option<Pictures>,
+    /// Replace a file that is there.
+    pub force: bool,
+}
+
+/// A scenario that was recorded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    /// Its name.
+    pub scenario: String,
+    /// Where it is.
+    pub file: PathBuf,
+    /// Steps done; there is one more frame.
+    pub steps: u64,
+    /// Largest |τ_k|, N m.
+    pub peak_torque: Vec<f64>,
+    /// Largest dynamic |f_B|, N.
+    pub peak_base_force: f64,
+    /// Largest |n_B|, what the arm transmits, N m.
+    pub peak_base_moment: f64,
+    /// Whether the arm transmitted nothing.
+    pub reactionless: bool,
+    /// What is to be said of it.
+    pub verdict: Verdict,
+    /// What somebody should know: why there are no pictures.
+    pub notes: Vec<String>,
+}
+
+/// How far the recording has got.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress<'a> {
+    /// Steps done, of all scenarios. Each counts twice: it is rehearsed, for the scales, and recorded.
+    pub done: u64,
+    /// Steps to do.
+    pub of: u64,
+    /// The scenario at hand.
+    pub what: &'a str,
+}
+
+/// Why nothing was recorded. No file is left then, and none was touched.
+#[derive(Debug, Error)]
+pub enum RecordError {
+    /// Nothing to record.
+    #[error("no scenario: want at least one")]
+    Nothing,
+    /// Cases of one recording go by their names.
+    #[error("two scenarios are called {0:?}: want different names in one recording")]
+    SameName(String),
+    /// A scenario cannot start, or one of its edits cannot apply.
+    #[error("{scenario}: {refusal}")]
+    Refused {
+        /// Which.
+        scenario: String,
+        /// Why.
+        refusal: Refusal,
+    },
+    /// The pictures asked for cannot be.
+    #[error("pictures: {0}")]
+    Pictures(String),
+    /// The file.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// Rerun refuses the data.
+    #[error("{}: {why}", file.display())]
+    Data {
+        /// The file.
+        file: PathBuf,
+        /// What it says.
+        why: String,
+    },
+}
+
+/// Runs scenarios and records all of them in one file, which appears when it is complete.
+///
+/// # Errors
+/// If a scenario cannot run, or the file exists and is not to be replaced, or cannot be written; no file is left then.
+pub fn record(
+    scenarios: &[Scenario],
+    file: &Path,
+    options: &Options,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Vec<Recording>, RecordError> {
+    check(scenarios, options)?;
+    let to = NewFile::create(file, options.force)?;
+    write(scenarios, to, file, options, progress)
+}
+
+fn check(scenarios: &[Scenario], options: &Options) -> Result<(), RecordError> {
+    if scenarios.is_empty() {
+        return Err(RecordError::Nothing);
+    }
+    for (i, scenario) in scenarios.iter().enumerate() {
+        if scenarios[..i].iter().any(|s| s.name == scenario.name) {
+            return Err(RecordError::SameName(scenario.name.clone()));
+        }
+    }
+    match options.pictures {
+        Some(p) if !(p.fps > 0.0 && p.fps.is_finite()) => {
+            Err(RecordError::Pictures(format!("{} a second: want a number above 0", p.fps)))
+        }
+        Some(p) if p.width == 0 || p.height == 0 => {
+            Err(RecordError::Pictures(format!("{} x {} pixels: want at least 1 x 1", p.width, p.height)))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The most pictures of a recording, and the most pixels of all of them.
+const MOST_PICTURES: f64 = 1e5;
+const MOST_PIXELS: f64 = 1.5e11;
+
+/// Refuses more pictures than anybody would wait for.
+fn check_film(scenarios: &[Scenario], cases: &[Rehearsal], options: &Options) -> Result<(), RecordError> {
+    let Some(p) = options.pictures else { return Ok(()) };
+    let of_case = |(scenario, case): (&Scenario, &Rehearsal)| {
+        let steps = case.steps as f64;
+        steps.min(steps * scenario.step * p.fps) + 1.0
+    };
+    let count: f64 = scenarios.iter().zip(cases).map(of_case).sum();
+    let most = MOST_PICTURES.min(MOST_PIXELS / (f64::from(p.width) * f64::from(p.height))).floor();
+    match count <= most {
+        true => Ok(()),
+        false => Err(RecordError::Pictures(format!(
+            "{count:.0} of {} x {} pixels: want at most {most:.0}, fewer a second, smaller, or of a shorter run",
+            p.width, p.height
+        ))),
+    }
+}
+
+/// About how many steps a run has.
+fn steps(scenario: &Scenario) -> u64 {
+    (scenario.duration.unwrap_or(scenario.task.time) / scenario.step).round() as u64
+}
+
+/// FNV-1a of words, one after another.
+struct Hash(u128);
+
+impl Hash {
+    fn new() -> Self {
+        Self(0x6c62_272e_07bb_0142_62b8_2175_6295_c58d)
+    }
+
+    fn add(&mut self, word: &str) {
+        for byte in word.bytes().chain([0]) {
+            self.0 = (self.0 ^ u128::from(byte)).wrapping_mul(0x0100_0000_0000_0000_0000_013b);
+        }
+    }
+}
+
+/// What tells this recording from others: everything that goes into it.
+fn digest(scenarios: &[Scenario], options: &Options) -> u128 {
+    let mut hash = Hash::new();
+    hash.add(env!("CARGO_PKG_VERSION"));
+    for scenario in scenarios {
+        hash.add(&scenario.to_toml());
+        hash.add(&crate::mechanics::machine::to_toml(&scenario.machine));
+    }
+    if let Some(p) = options.pictures {
+        hash.add(&format!("{} {} {} {}", p.fps, p.width, p.height, p.pin_forces));
+    }
+    hash.0
+}
+
+fn write(
+    scenarios: &[Scenario],
+    to: NewFile,
+    file: &Path,
+    options: &Options,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Vec<Recording>, RecordError> {
+    let because = |error| match error {
+        StoreError::Write(source) => WriteError::Failed { file: file.into(), source }.into(),
+        StoreError::Data(why) => RecordError::Data { file: file.into(), why },
+    };
+    let total: u64 = scenarios.iter().map(steps).sum();
+    let mut before = 0;
+    let mut cases = Vec::with_capacity(scenarios.len());
+    for scenario in scenarios {
+        let mut tick = |step| progress(Progress { done: before + step, of: 2 * total, what: &scenario.name });
+        let refused = |refusal| RecordError::Refused { scenario: scenario.name.clone(), refusal };
+        cases.push(Rehearsal::of(scenario, &mut tick).map_err(refused)?);
+        before += steps(scenario);
+    }
+    // Now it is known.
+    let total: u64 = cases.iter().map(|case| case.steps).sum();
+    before = total;
+    check_film(scenarios, &cases, options)?;
+    let mut store = Store::open(to, digest(scenarios, options)).map_err(because)?;
+    let mut film = Film::of(options.pictures);
+    let pictured = film.is_loaded();
+    let mut set = Set { store: &mut store, film: &mut film, scale: Scale::of(&cases), several: scenarios.len() > 1 };
+    let mut recordings = Vec::with_capacity(scenarios.len());
+    // The layout stands first, so that no viewer begins with one of its own.
+    let laid_out = blueprint::lay_out(set.store, &cases, pictured).map_err(Stop::from);
+    let done = laid_out.and_then(|()| {
+        let names: Vec<_> = scenarios.iter().map(|s| s.name.as_str()).collect();
+        let info = RecordingInfo::update_fields().with_name(names.join(", "));
+        set.store.fixed(&EntityPath::properties(), &info)?;
+        for (scenario, case) in scenarios.iter().zip(&cases) {
+            let mut tick = |step| progress(Progress { done: before + step, of: 2 * total, what: &scenario.name });
+            let (peaks, verdict) = recorder::record(&mut set, scenario, case, &mut tick)?;
+            let fault = case.fault.iter().map(|why| format!("{}: audit failed: {why}", scenario.name));
+            before += case.steps;
+            recordings.push(Recording {
+                scenario: scenario.name.clone(),
+                file: file.into(),
+                steps: case.steps,
+                peak_torque: peaks.torque.to_vec(),
+                peak_base_force: peaks.force,
+                peak_base_moment: verdict.arm_moment,
+                reactionless: verdict.reactionless,
+                verdict,
+                notes: set.film.notes().into_iter().chain(fault).collect(),
+            });
+        }
+        Ok(())
+    });
+    match done {
+        Ok(()) => {
+            store.close().map_err(because)?.finish()?;
+            Ok(recordings)
+        }
+        Err(stop) => {
+            store.abandon();
+            Err(match stop {
+                Stop::Refused { scenario, refusal } => RecordError::Refused { scenario, refusal },
+                Stop::Pictures(why) => RecordError::Pictures(why),
+                Stop::Store(error) => because(error),
+            })
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! [`Verdict`]: what a run comes to, in a word, with what a person should know beside it. Command line, window and
+//! recording show this one.
+//!
+//! | quantity | is |
+//! |---|---|
+//! | n_B, f_B | what the arm transmits to its base: by these it is called reactionless |
+//! | moment past the wheel | what is left of n_B for the base once a reaction wheel has taken its part: by this the base is quiet |
+
+use crate::session::scenario::Scenario;
+use crate::simulation::audit::{Audit, Lamp};
+use crate::simulation::frame::{Frame, Phase, Reach};
+
+/// Farther than this from its target an end effector misses it, m.
+pub const MISS: f64 = 1e-4;
+
+/// By more than this a joint passes its limit, rad.
+pub const PAST: f64 = 1e-6;
+
+/// A smaller tilting moment is none, N m.
+const TILT: f64 = 1e-9;
+
+/// Slower than this the arm does not move, rad/s.
+const STILL: f64 = 1e-9;
+
+/// What a run comes to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// Whether the arm transmits nothing: neither n_B nor dynamic f_B.
+    pub reactionless: bool,
+    /// Whether the base feels nothing, past a reaction wheel if it has one.
+    pub quiet: bool,
+    /// Whether the arm has moved at all.
+    pub moved: bool,
+    /// Largest |n_B|, N m.
+    pub arm_moment: f64,
+    /// Largest moment past the wheel, N m; `None` without a wheel.
+    pub past_wheel: Option<f64>,
+    /// Largest dynamic |f_B|, N.
+    pub force: f64,
+    /// Largest moment that tilts the base, from heights along the axis, N m: outside of the verdict.
+    pub tilt: f64,
+    /// How far the end effector is from its target, m.
+    pub miss: f64,
+    /// A relative joint angle that passed its limit, and by how much at most, rad.
+    pub past_limit: Option<(String, f64)>,
+    /// The first audit that failed: then nothing of this can be trusted.
+    pub fault: Option<Lamp>,
+    /// Whether the guide has come to its end, where it can.
+    ended: bool,
+}
+
+/// Something to know beside a verdict: in two or three words, and in a sentence.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Remark {
+    /// For a cell of a table.
+    pub short: String,
+    /// For a line.
+    pub long: String,
+}
+
+impl Verdict {
+    /// Of a run up to a frame.
+    pub fn of(scenario: &Scenario, frame: &Frame) -> Self {
+        let peaks = &frame.peaks;
+        let (by, angle) = peaks.past_limit;
+        let name = |i: usize| scenario.machine.angles().get(i).map_or_else(String::new, |a| a.name.clone());
+        Self {
+            reactionless: peaks.is_reactionless(),
+            quiet: peaks.is_quiet(),
+            moved: peaks.rate > STILL,
+            arm_moment: peaks.arm_moment,
+            past_wheel: scenario.base.wheel.map(|_| peaks.moment),
+            force: peaks.force,
+            tilt: peaks.tilt,
+            miss: (frame.tip - frame.target.at).norm(),
+            past_limit: (by > PAST).then(|| (name(angle), by)),
+            fault: Audit::fault(frame),
+            // A target that cannot be reached is told of where it is set.
+            ended: frame.phase == Phase::Rest && !matches!(frame.target.reach, Reach::Outside { .. }),
+        }
+    }
+
+    /// Whether nothing more can be wished: reactionless, and nothing to be known beside it.
+    pub fn is_clean(&self) -> bool {
+        self.reactionless && self.fault.is_none() && self.remarks().is_empty()
+    }
+
+    /// Whether the base was left alone, by the arm or by a wheel.
+    pub fn is_good(&self) -> bool {
+        self.fault.is_none() && (self.reactionless || self.quiet)
+    }
+
+    /// `reactionless`, `not reactionless`, `quiet past the wheel`, or `untrusted`.
+    pub fn word(&self) -> &'static str {
+        match (&self.fault, self.reactionless, self.quiet) {
+            (Some(_), ..) => "untrusted",
+            (None, true, _) => "reactionless",
+            (None, false, true) => "quiet past the wheel",
+            (None, false, false) => "not reactionless",
+        }
+    }
+
+    /// The answer to "reactionless?" for a cell of a table: `yes`, `no`, `untrusted`, with the remarks.
+    pub fn answer(&self) -> String {
+        let word = match (&self.fault, self.reactionless) {
+            (Some(_), _) => "untrusted",
+            (None, true) => "yes",
+            (None, false) => "no",
+        };
+        std::iter::once(word.to_owned())
+            .chain(self.remarks().into_iter().map(|r| r.short))
+            .collect::<Vec<_>>()
+            .join(", ")
+    }
+
+    /// What should be known of a run that is over.
+    pub fn remarks(&self) -> Vec<Remark> {
+        self.known(true)
+    }
+
+    /// What should be known of a run that may still go on: what only its end can tell is left out until then.
+    pub fn so_far(&self) -> Vec<Remark> {
+        self.known(self.ended)
+    }
+
+    fn known(&self, over: bool) -> Vec<Remark> {
+        let mut all = Vec::new();
+        let mut add = |short: &str, long: String| all.push(Remark { short: short.into(), long });
+        if over && !self.moved {
+            add("never moved", "the arm never moved, so this says nothing of how it moves".into());
+        }
+        if let Some(left) = self.past_wheel.filter(|_| self.quiet && !self.reactionless) {
+            let all = figure(self.arm_moment);
+            let long =
+                format!("the arm transmits up to {all} N m; the wheel takes it up and leaves {} N m", figure(left));
+            add("the wheel takes it up", long);
+        }
+        if self.tilt > TILT {
+            let long = format!(
+                "the verdict is of the plane: links at different heights tilt the base by up to {} N m besides",
+                figure(self.tilt)
+            );
+            add("tilts its base", long);
+        }
+        if let Some((angle, by)) = &self.past_limit {
+            add("past a joint limit", format!("{angle} passes its limit by up to {} rad", figure(*by)));
+        }
+        if over && (self.miss > MISS || self.miss.is_nan()) {
+            add("off its target", format!("ends {} m from its target", figure(self.miss)));
+        }
+        all
+    }
+
+    /// `reactionless: peak |n_B| 1.2e-15 N m, peak |f_B| 3.1e-14 N; ends 0.0200 m from its target`.
+    pub fn sentence(&self) -> String {
+        let mut text = format!("{}: peak |n_B| {} N m", self.word(), figure(self.arm_moment));
+        if let Some(left) = self.past_wheel {
+            text += &format!(", past the wheel {} N m", figure(left));
+        }
+        text += &format!(", peak |f_B| {} N", figure(self.force));
+        if let Some(lamp) = &self.fault {
+            text += &format!("; audit failed: {lamp}");
+        }
+        self.remarks().into_iter().fold(text, |text, remark| format!("{text}; {}", remark.long))
+    }
+}
+
+/// A number with the digits that matter: tiny and huge ones in powers of ten.
+fn figure(x: f64) -> String {
+    match x.abs() {
+        0.0 => "0".into(),
+        a if !(1e-3..1e6).contains(&a) => format!("{x:.1e}"),
+        _ => format!("{x:.4}"),
+    }
+}

@@ -1,0 +1,5 @@
+//! How a value is named, bounded and shown: changes by key, ranges, text from outside.
+
+pub mod change;
+pub mod range;
+pub mod text;

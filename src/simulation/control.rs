@@ -1,0 +1,206 @@
+//! Control: what the motors are told, by somebody who believes in the model.
+//!
+//! | law | τ |
+//! |---|---|
+//! | computed torque | Ĥ (q̈_r + K_d ė + K_p e) + V̂ − γ̂ᵀ g |
+//! | with payload compensation | the same, with the payload that the plant holds in the model |
+//! | PD | D̂_k (K_d ė_k + K_p e_k) |
+//!
+//! All in angles relative to the base, q_k − θ, as encoders read them. With equal gains on all drives the errors of an
+//! exact model obey Σ D_k e_k = const · decay, so they stay on the plane and transmit nothing; unequal gains leak.
+
+use serde::{Deserialize, Serialize};
+
+use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, Units, Vector};
+use crate::planning::plan::Reference;
+use crate::settings::range::Check;
+use crate::simulation::plant::{Body, Each, is_default};
+
+/// Control as a file states it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Control {
+    /// What is computed.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub law: Law,
+    /// K_p, s⁻², one for all drives or one for each.
+    #[serde(default = "stiff")]
+    pub kp: Each,
+    /// K_d, s⁻¹, one for all drives or one for each.
+    #[serde(default = "critical")]
+    pub kd: Each,
+    /// Whether the model includes a base that moves, but no wheel in it; otherwise the base is taken to be fixed.
+    #[serde(default = "yes", skip_serializing_if = "is_yes")]
+    pub knows_base: bool,
+    /// How often torques are computed, Hz, and held between; 0: all the time.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub rate: f64,
+    /// From reading the encoders to the torque, s; sampled at every step if no rate is given. Until the first torque
+    /// arrives the motors hold the start pose.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub delay: f64,
+    /// Counts of the encoders in a turn, rates by their differences; 0: exact. All that control knows of the drives is
+    /// rounded to them; the base is measured by other instruments, exactly.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub encoder: f64,
+}
+
+/// What a controller computes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Law {
+    /// From the whole model.
+    #[default]
+    ComputedTorque,
+    /// From the whole model, with the payload in it while it is held.
+    PayloadCompensation,
+    /// From the errors alone.
+    Pd,
+}
+
+fn stiff() -> Each {
+    Each::All(400.0)
+}
+fn critical() -> Each {
+    Each::All(40.0)
+}
+fn yes() -> bool {
+    true
+}
+fn is_yes(flag: &bool) -> bool {
+    *flag
+}
+
+impl Default for Control {
+    fn default() -> Self {
+        Self {
+            law: Law::ComputedTorque,
+            kp: stiff(),
+            kd: critical(),
+            knows_base: true,
+            rate: 0.0,
+            delay: 0.0,
+            encoder: 0.0,
+        }
+    }
+}
+
+impl Control {
+    /// Whether torques are held between samples.
+    pub fn is_sampled(&self) -> bool {
+        self.rate > 0.0 || self.delay > 0.0 || self.encoder > 0.0
+    }
+
+    /// Steps between samples, of `step` s each.
+    pub fn period(&self, step: f64) -> u64 {
+        if self.rate > 0.0 { ((1.0 / (self.rate * step)).round() as u64).max(1) } else { 1 }
+    }
+
+    /// Every number with its key, what it should be, and whether it is.
+    pub(crate) fn checks(&self, n: usize, step: f64) -> Vec<Check> {
+        let mut list = Vec::new();
+        for (key, gain, most, want) in [
+            ("control.kp", self.kp, 1.0 / (step * step), "0 to 1/step² s⁻², one number or one for each drive"),
+            ("control.kd", self.kd, 2.0 / step, "0 to 2/step s⁻¹, one number or one for each drive"),
+        ] {
+            let ok = |x: f64| (0.0..=most).contains(&x);
+            list.extend(gain.values().into_iter().map(|x| Check::words(key, x, ok(x), want)));
+            list.extend(gain.misfit(n, key));
+        }
+        let whole = |steps: f64| (steps - steps.round()).abs() < 1e-6 * steps.max(1.0);
+        let steps = if self.rate > 0.0 { 1.0 / (self.rate * step) } else { 1.0 };
+        list.extend([
+            Check::words(
+                "control.rate",
+                self.rate,
+                self.rate >= 0.0 && (1.0 - 1e-9..1e9).contains(&steps) && whole(steps),
+                "0, or a rate whose period is a whole number of steps, Hz",
+            ),
+            Check::words(
+                "control.delay",
+                self.delay,
+                (0.0..=1.0).contains(&self.delay) && whole(self.delay / step),
+                "0 to 1 s, a whole number of steps",
+            ),
+            Check::words(
+                "control.encoder",
+                self.encoder,
+                self.encoder == 0.0 || (16.0..=1e12).contains(&self.encoder),
+                "0, or 16 to 1e12 counts in a turn",
+            ),
+        ]);
+        list
+    }
+}
+
+/// What a controller reads.
+#[derive(Clone, Copy, Debug)]
+pub struct Reading<'a> {
+    /// q_k − θ, rad.
+    pub q: DriveAngles,
+    /// q̇_k − θ̇, rad/s.
+    pub qd: PerDrive,
+    /// e(q) of all that turns, in outer axes.
+    pub e: &'a Units,
+    /// q̇ of all that turns, absolute, rad/s.
+    pub rates: &'a PerDrive,
+    /// p_B and θ.
+    pub base: Pose2,
+    /// ṗ_B, m/s.
+    pub velocity: Vector,
+}
+
+/// A law with its gains and the model it believes in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Controller {
+    law: Law,
+    kp: PerDrive,
+    kd: PerDrive,
+    /// The model, and the model with the payload.
+    models: Box<[Body; 2]>,
+}
+
+impl Controller {
+    /// For a machine of `n` drives.
+    pub fn new(control: &Control, n: usize, models: [Body; 2]) -> Self {
+        Self { law: control.law, kp: control.kp.of(n), kd: control.kd.of(n), models: Box::new(models) }
+    }
+
+    /// Believes that a compliant base is preloaded as another controller does.
+    pub(crate) fn preload_as(&mut self, other: &Self) {
+        for model in self.models.iter_mut() {
+            *model = model.clone().preloaded_as(&other.models[0]);
+        }
+    }
+
+    /// The torques that hold the pose of a reading at rest, N m, by what the model knows.
+    pub fn holding(&self, reading: &Reading, loaded: bool) -> PerDrive {
+        let still = PerDrive::zeros(reading.q.len());
+        let rates = PerDrive::zeros(reading.rates.len());
+        let at_rest = Reading { qd: still, rates: &rates, velocity: Vector::default(), ..*reading };
+        self.torque(&Reference::at_rest(reading.q), &at_rest, loaded)
+    }
+
+    /// Motor torques, N m; `loaded` while the plant holds its payload.
+    #[inline]
+    pub fn torque(&self, reference: &Reference, reading: &Reading, loaded: bool) -> PerDrive {
+        let n = reading.q.len();
+        let correction = PerDrive::from_fn(n, |k| {
+            self.kd[k] * (reference.qd[k] - reading.qd[k]) + self.kp[k] * (reference.q[k] - reading.q[k])
+        });
+        let model = &self.models[usize::from(loaded && self.law == Law::PayloadCompensation)];
+        if self.law == Law::Pd {
+            return PerDrive::from_fn(n, |k| model.arm().diagonal(k) * correction[k]);
+        }
+        let commanded = reference.qdd.plus(1.0, &correction);
+        if model.moves() {
+            return model.torque_for(&commanded, reading.e, reading.rates, reading.base, reading.velocity);
+        }
+        // In the base's own axes.
+        let mut e = *reading.e;
+        if let Some(turn) = (reading.rates.len() > n).then(|| reading.e[n].conj()) {
+            e[..n].iter_mut().for_each(|e| *e *= turn);
+        }
+        crate::mechanics::dynamics::inverse(model.arm(), &e, &reading.qd, &commanded, model.around())
+    }
+}

@@ -1,0 +1,114 @@
+//! [`State`]: positions and momenta of everything that moves, and the [`Slope`] that it leads to.
+
+use super::Spin;
+use crate::mechanics::dynamics::BaseWrench;
+use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, Units, Vector, cross};
+
+/// Positions and momenta of everything that moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    /// Absolute angles of the drives and, last, of a base that moves, rad.
+    pub q: PerDrive,
+    /// π_k; for a base that moves, last, L.
+    pub momenta: PerDrive,
+    /// R, m.
+    pub place: Vector,
+    /// P, kg m/s.
+    pub momentum: Vector,
+    /// Ω of a wheel, rad/s.
+    pub wheel: f64,
+    /// Work done by motors and by the force at the end effector, J.
+    pub work: f64,
+    /// Energy lost in friction and dampers, J.
+    pub lost: f64,
+    /// ∫ dynamic f_B dt, N s, and the moment of it all about the origin, N m s.
+    pub impulse: (Vector, f64),
+}
+
+/// What the motors and the wheel do.
+#[derive(Clone, Copy, Debug)]
+pub struct Command {
+    /// τ_k, N m.
+    pub torque: PerDrive,
+    /// Of the wheel.
+    pub spin: Spin,
+    /// The wheel's rotor, kg m²; 0 for none.
+    pub rotor: f64,
+}
+
+/// What a state leads to.
+#[derive(Clone, Copy, Debug)]
+pub struct Slope {
+    /// e(q_k), of a base that moves last.
+    pub e: Units,
+    /// q̇, rad/s.
+    pub qd: PerDrive,
+    /// q̈, rad/s².
+    pub qdd: PerDrive,
+    /// Motor torques, N m.
+    pub torque: PerDrive,
+    /// Friction of the bearings against them, N m.
+    pub friction: PerDrive,
+    /// Of the wheel.
+    pub spin: Spin,
+    /// p_B and θ.
+    pub base: Pose2,
+    /// ṗ_B, m/s.
+    pub base_velocity: Vector,
+    /// p̈_B, m/s².
+    pub base_acceleration: Vector,
+    /// What the manipulator transmits.
+    pub wrench: BaseWrench,
+    /// Kinetic energy of all that moves, J.
+    pub kinetic: f64,
+    /// Work done a second, W.
+    pub power: f64,
+    /// Energy lost a second, W.
+    pub loss: f64,
+    pub(super) momenta_rate: PerDrive,
+    pub(super) place_rate: Vector,
+    pub(super) momentum_rate: Vector,
+    pub(super) wheel_rate: f64,
+}
+
+impl State {
+    /// The state a time `h` later along the slope of an instant, s.
+    #[inline(always)]
+    #[must_use]
+    pub fn along(&self, x: &Slope, h: f64) -> Self {
+        Self {
+            q: self.q.plus(h, &x.qd),
+            momenta: self.momenta.plus(h, &x.momenta_rate),
+            place: self.place + h * x.place_rate,
+            momentum: self.momentum + h * x.momentum_rate,
+            wheel: self.wheel + h * x.wheel_rate,
+            work: self.work + h * x.power,
+            lost: self.lost + h * x.loss,
+            impulse: (
+                self.impulse.0 + h * x.wrench.dynamic.force,
+                self.impulse.1 + h * (x.wrench.dynamic.moment + cross(x.base.at, x.wrench.dynamic.force)),
+            ),
+        }
+    }
+
+    /// The classical rule: a time `h` later by slopes at the start, twice half-way, and at the end.
+    #[inline(always)]
+    #[must_use]
+    pub fn stepped(&self, k: [&Slope; 4], h: f64) -> Self {
+        let w = [h / 6.0, h / 3.0, h / 3.0, h / 6.0];
+        k.into_iter().zip(w).fold(*self, |state, (x, w)| state.along(x, w))
+    }
+
+    /// The same in the books of another: its wheel, work, losses and impulse.
+    #[must_use]
+    pub fn in_books_of(self, other: &Self) -> Self {
+        let Self { wheel, work, lost, impulse, .. } = *other;
+        Self { wheel, work, lost, impulse, ..self }
+    }
+
+    /// The drives' angles without the base, rad.
+    #[inline]
+    pub fn drives(&self, n: usize) -> DriveAngles {
+        DriveAngles(self.q.first(n))
+    }
+}

@@ -1,0 +1,85 @@
+//! [`Wheel`]: a reaction wheel in the base that takes up the moment of the manipulator while it can.
+//!
+//! # Symbols
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | τ_w | torque of the wheel's motor on the wheel; −τ_w on the base | N m |
+//! | Ω | rate of the wheel, absolute | rad/s |
+//!
+//! The wheel is told the sum of the motors' torques, which the base feels as −Σ τ_k, and turns τ_w = −Σ τ_k. It
+//! saturates where τ_w or Ω would pass their limits; then the base feels the rest.
+//!
+//! # At the top rate
+//! Ω never passes its limit, not even within a step: in each step of h seconds the wheel gives no more than
+//! J (Ω_top − Ω)/h either way, which brings it to the limit by the step's end and leaves it there. So the step in which the
+//! limit is reached has the right impulse, spread evenly over what is left of it, and the next ones give nothing outwards.
+
+use serde::{Deserialize, Serialize};
+
+use crate::settings::range::{Check, Range};
+
+const INERTIA: Range = Range::new(1e-9, 1e6, "kg m²");
+const TORQUE_LIMIT: Range = Range::new(1e-9, 1e6, "N m");
+const SPEED_LIMIT: Range = Range::new(1e-9, 1e6, "rad/s");
+
+/// A reaction wheel.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Wheel {
+    /// Of its rotor about its axis, kg m².
+    #[serde(default = "rotor")]
+    pub inertia: f64,
+    /// The greatest |τ_w|, N m; none: unlimited.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub torque_limit: Option<f64>,
+    /// The greatest |Ω|, rad/s; none: unlimited.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_limit: Option<f64>,
+}
+
+fn rotor() -> f64 {
+    0.02
+}
+
+impl Default for Wheel {
+    fn default() -> Self {
+        Self { inertia: rotor(), torque_limit: None, speed_limit: None }
+    }
+}
+
+/// What a wheel does at an instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spin {
+    /// Ω, rad/s.
+    pub rate: f64,
+    /// τ_w, N m.
+    pub torque: f64,
+    /// Whether it could not give what was wanted.
+    pub saturated: bool,
+}
+
+impl Wheel {
+    /// The least and the greatest torque, N m, that it can give through a step of a length, s, which begins at a rate,
+    /// rad/s: asked once a step, so that within one nothing jumps.
+    pub fn room(&self, rate: f64, step: f64) -> [f64; 2] {
+        let most = self.torque_limit.unwrap_or(f64::INFINITY);
+        let top = self.speed_limit.unwrap_or(f64::INFINITY);
+        let to = |end: f64| self.inertia * (end - rate) / step;
+        [to(-top).clamp(-most, 0.0), to(top).clamp(0.0, most)]
+    }
+
+    /// What it gives of a wanted torque, N m, at a rate, rad/s, with what room there is in this step.
+    #[inline]
+    pub fn give(&self, wanted: f64, rate: f64, room: [f64; 2]) -> Spin {
+        // A run that has blown up has no room, and says so by what is no number.
+        let torque = if rate.is_finite() { wanted.max(room[0]).min(room[1]) } else { f64::NAN };
+        Spin { rate, torque, saturated: torque != wanted }
+    }
+
+    pub(crate) fn checks(&self) -> impl Iterator<Item = Check> {
+        let inertia = INERTIA.check("base.wheel.inertia", self.inertia);
+        let torque = TORQUE_LIMIT.check_some("base.wheel.torque_limit", self.torque_limit);
+        let speed = SPEED_LIMIT.check_some("base.wheel.speed_limit", self.speed_limit);
+        std::iter::once(inertia).chain(torque).chain(speed)
+    }
+}

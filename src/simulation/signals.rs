@@ -1,0 +1,200 @@
+//! The one table of signals: a row is a plot, a series of the recording and a column of the CSV.
+
+use crate::mechanics::joint_forces::{self, Joints, KEPT};
+use crate::mechanics::machine::{Inertia, Machine};
+use crate::mechanics::planar::MAX_DRIVES;
+use crate::simulation::frame::Frame;
+
+/// A number that a [`Frame`] holds, with its name and unit.
+#[derive(Clone, Debug)]
+pub struct Signal {
+    /// Unique, with `/` between its parts: `torque/1`.
+    pub path: String,
+    /// As the paper writes it: `τ₁`.
+    pub symbol: String,
+    /// What it is, in words.
+    pub label: String,
+    /// SI unit, `1` for none.
+    pub unit: &'static str,
+    /// Drive or angle whose colour it has, counted from 0.
+    pub drive: Option<usize>,
+    quantity: Quantity,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Quantity {
+    PerIndex(usize, fn(&Frame, usize) -> f64),
+    Whole(fn(&Frame) -> f64),
+}
+
+impl Signal {
+    /// Its value at one instant.
+    #[inline]
+    pub fn value(&self, frame: &Frame) -> f64 {
+        match self.quantity {
+            Quantity::PerIndex(k, f) => f(frame, k),
+            Quantity::Whole(f) => f(frame),
+        }
+    }
+
+    /// The first part of the path: signals of one group share a plot and a unit.
+    pub fn group(&self) -> &str {
+        self.path.split('/').next().unwrap_or(&self.path)
+    }
+}
+
+/// Every signal of a machine, in a fixed order.
+pub fn signals(machine: &Machine) -> Vec<Signal> {
+    let mut table = Vec::new();
+    let n = machine.drives();
+    type Row = (&'static str, &'static str, &'static str, &'static str, fn(&Frame, usize) -> f64);
+    let per_drive: [Row; 7] = [
+        ("torque", "τ", "torque of drive", "N m", |f, k| f.torque[k]),
+        ("angle", "q", "angle of drive", "rad", |f, k| f.q[k]),
+        ("rate", "q̇", "rate of drive", "rad/s", |f, k| f.qd[k]),
+        ("acceleration", "q̈", "acceleration of drive", "rad/s²", |f, k| f.qdd[k]),
+        ("reference", "q ref", "reference of drive", "rad", |f, k| f.q_reference[k]),
+        ("error", "e", "tracking error of drive", "rad", |f, k| f.q_reference[k] - f.relative(k)),
+        ("friction", "τ f", "friction in the bearing of drive", "N m", |f, k| f.friction[k]),
+    ];
+    for (path, symbol, label, unit, value) in per_drive {
+        for k in 0..n {
+            let name = &machine.spec().drives[k].name;
+            table.push(Signal {
+                path: format!("{path}/{name}"),
+                symbol: format!("{symbol}{}", subscript(k + 1)),
+                label: format!("{label} {name}"),
+                unit,
+                drive: Some(k),
+                quantity: Quantity::PerIndex(k, value),
+            });
+        }
+    }
+    for (i, angle) in machine.angles().iter().enumerate() {
+        table.push(Signal {
+            path: format!("joint/{}", angle.name),
+            symbol: format!("a{}", subscript(i + 1)),
+            label: format!("relative joint angle {}", angle.name),
+            unit: "rad",
+            drive: Some(angle.to),
+            quantity: Quantity::PerIndex(i, |f, i| f.a[i]),
+        });
+    }
+    type Single = (&'static str, &'static str, &'static str, &'static str, fn(&Frame) -> f64);
+    let whole: [Single; 47] = [
+        ("pose/b", "b", "pose constant", "rad", |f| f.b),
+        ("pose/b_reference", "b ref", "pose constant aimed at", "rad", |f| f.b_reference),
+        ("moment/total", "n_B", "base moment", "N m", |f| f.base_moment()),
+        ("moment/dynamic", "n_B dyn", "base moment, from motion", "N m", |f| f.wrench.dynamic.moment),
+        ("moment/felt", "n felt", "moment that the base feels: n_B less a wheel's", "N m", |f| f.felt_moment()),
+        ("moment/wheel", "τ_w", "torque of the reaction wheel", "N m", |f| f.wheel.torque),
+        ("moment/rms", "n rms", "root mean square of the moment so far", "N m", |f| f.tally.moment_rms()),
+        ("moment/static", "n_B stat", "base moment, from weight", "N m", |f| f.wrench.statical.moment),
+        ("force/dynamic", "|f_B|", "base force, from motion", "N", |f| f.wrench.dynamic.force.norm()),
+        ("force/rms", "f rms", "root mean square of |f_B| so far", "N", |f| f.tally.force_rms()),
+        ("force/dynamic_x", "f_Bx", "base force along x, from motion", "N", |f| f.wrench.dynamic.force.re),
+        ("force/dynamic_y", "f_By", "base force along y, from motion", "N", |f| f.wrench.dynamic.force.im),
+        ("force/static_x", "f_Bx stat", "base force along x, from weight", "N", |f| f.wrench.statical.force.re),
+        ("force/static_y", "f_By stat", "base force along y, from weight", "N", |f| f.wrench.statical.force.im),
+        ("momentum/x", "p_x", "linear momentum along x", "kg m/s", |f| f.momentum.re),
+        ("momentum/y", "p_y", "linear momentum along y", "kg m/s", |f| f.momentum.im),
+        ("angular_momentum/about_b", "h_B", "angular momentum about the origin", "kg m²/s", |f| f.angular_momentum),
+        ("com/x", "x_CM", "centre of mass, x", "m", |f| f.com.re),
+        ("com/y", "y_CM", "centre of mass, y", "m", |f| f.com.im),
+        ("tip/x", "x", "end effector, x", "m", |f| f.tip.re),
+        ("tip/y", "y", "end effector, y", "m", |f| f.tip.im),
+        ("target/x", "x target", "target, x", "m", |f| f.target.at.re),
+        ("target/y", "y target", "target, y", "m", |f| f.target.at.im),
+        ("base/x", "x_B", "base, x", "m", |f| f.base.at.re),
+        ("base/y", "y_B", "base, y", "m", |f| f.base.at.im),
+        ("attitude/base", "θ", "attitude of the base", "rad", |f| f.base.angle),
+        ("attitude_rate/base", "θ̇", "rate of the base", "rad/s", |f| f.base_rate),
+        ("base_velocity/x", "ẋ_B", "velocity of the base, x", "m/s", |f| f.base_velocity.re),
+        ("base_velocity/y", "ẏ_B", "velocity of the base, y", "m/s", |f| f.base_velocity.im),
+        ("wheel/rate", "Ω", "rate of the reaction wheel", "rad/s", |f| f.wheel.rate),
+        ("impulse/force", "∫|f|dt", "impulse of |f_B| so far", "N s", |f| f.tally.force_impulse),
+        ("angular_impulse/moment", "∫|n|dt", "impulse of the moment so far", "N m s", |f| f.tally.moment_impulse),
+        ("payload/held", "held", "1 while the payload unknown to the model is held", "1", |f| {
+            f64::from(u8::from(f.loaded))
+        }),
+        ("wheel_saturated/now", "sat", "1 while the wheel cannot give what is wanted", "1", |f| {
+            f64::from(u8::from(f.wheel.saturated))
+        }),
+        ("energy/kinetic", "T", "kinetic energy", "J", |f| f.kinetic),
+        ("energy/motors", "W motors", "energy that motors took, none given back", "J", |f| f.tally.energy),
+        ("audit_energy/balance", "ΔE − W", "energy gained less work done, plus losses", "J", |f| f.audit.energy),
+        ("audit_momentum/linear", "p + ∫f dt", "momentum and impulse on the base", "kg m/s", |f| f.audit.momentum),
+        ("audit_angular/about_o", "h + ∫n dt", "angular momentum and its impulse", "kg m²/s", |f| f.audit.angular),
+        ("audit_closure/worst", "gap", "worst gap in a pin that closes a loop", "m", |f| f.audit.closure),
+        ("audit_step/worst", "h err", "error by the size of the step, as a share of the peaks", "1", |f| f.audit.step),
+        ("audit_plane/b", "b − b ref", "distance from the plane", "rad", |f| f.audit.plane),
+        ("dexterity/det", "|det|", "|det| of ∂(x, y)/∂(a₁, a₂) on the plane", "m²", |f| f.dexterity.det),
+        ("dexterity/manipulability", "w", "manipulability √det J J*", "m²", |f| f.dexterity.manipulability),
+        (
+            "torque_per_force/worst",
+            "|τ|/|F|",
+            "torque of all drives for the worst unit force at the end effector",
+            "N m/N",
+            |f| f.dexterity.worst_torque_per_force,
+        ),
+        ("transmission/least", "min |sin|", "least |sin(q_k − q_l)|, 0 at a change point", "1", |f| f.transmission),
+        ("reactionless/now", "quiet", "1 while the base feels nothing", "1", |f| f64::from(u8::from(f.is_quiet()))),
+    ];
+    for (path, symbol, label, unit, value) in whole {
+        table.push(Signal {
+            path: path.into(),
+            symbol: symbol.into(),
+            label: label.into(),
+            unit,
+            drive: None,
+            quantity: Quantity::Whole(value),
+        });
+    }
+    table.extend(inside(machine));
+    table
+}
+
+/// Inside the machine: pins, as far as statics determines their forces, tilting moments and change points.
+fn inside(machine: &Machine) -> Vec<Signal> {
+    let mut table = Vec::new();
+    let mut add = |path: String, symbol: String, label: String, unit, drive, quantity| {
+        table.push(Signal { path, symbol, label, unit, drive, quantity });
+    };
+    if let Ok(joints) = Joints::of(machine) {
+        for (i, pin) in joints.pins().iter().enumerate().take(KEPT) {
+            let path = format!("pin/{}", pin.name);
+            let (symbol, label) = (format!("F {}", pin.name), format!("force of pin {}", pin.name));
+            let drive = Some(machine.parts()[pin.to].drive);
+            add(path, symbol, label, "N", drive, Quantity::PerIndex(i, |f, i| f.inside.size(i)));
+        }
+        let worst = Quantity::Whole(|f| f.inside.worst);
+        add("pin/worst".into(), "F worst".into(), "largest force of a pin".into(), "N", None, worst);
+    }
+    let tilt = |value: fn(&Frame) -> f64| Quantity::Whole(value);
+    let (x, y) = (tilt(|f| f.inside.tilt.total().re), tilt(|f| f.inside.tilt.total().im));
+    for (axis, value) in [("x", x), ("y", y)] {
+        let label = format!("moment about {axis} that tilts the base");
+        add(format!("tilt/{axis}"), format!("n_{axis}"), label, "N m", None, value);
+    }
+    let drives = &machine.spec().drives;
+    for (k, l) in Inertia::pairs(drives.len()) {
+        let (a, b) = (&drives[k].name, &drives[l].name);
+        let pair = if a.chars().count() + b.chars().count() == 2 { format!("{a}{b}") } else { format!("{a}_{b}") };
+        let symbol = format!("|sin(q{} − q{})|", subscript(k + 1), subscript(l + 1));
+        let label = format!("transmission of drives {a} and {b}, 0 at a change point");
+        let value = Quantity::PerIndex(MAX_DRIVES * k + l, |f, pair| {
+            joint_forces::transmission(&f.q.units(), pair / MAX_DRIVES, pair % MAX_DRIVES)
+        });
+        add(format!("transmission/{pair}"), symbol, label, "1", None, value);
+    }
+    if drives.len() > 1 {
+        let label = "least |q_k − q_l − mπ|: how far the nearest change point is".into();
+        let value = Quantity::Whole(|f| joint_forces::nearest(&f.q, &f.qd).map_or(0.0, |c| c.distance));
+        add("change_point/distance".into(), "Δq".into(), label, "rad", None, value);
+    }
+    table
+}
+
+fn subscript(number: usize) -> String {
+    number.to_string().chars().filter_map(|c| char::from_u32(c as u32 - '0' as u32 + '₀' as u32)).collect()
+}

@@ -1,0 +1,520 @@
+//! The plant under control, advanced by a fixed step with the classical fourth-order rule; within a step by as many
+//! parts as it takes (`stride`), cut where contacts stick or slip (`sticking`).
+//!
+//! The simulation reads no clock. Control is evaluated in every stage. The base wrench is taken from the plant's own
+//! accelerations, never from the planned motion, so that a zero is found and not assumed.
+
+mod pilot;
+mod sticking;
+mod stride;
+
+use crate::mechanics::dynamics::{self, Surroundings};
+use crate::mechanics::joint_forces::{Inside, Watch};
+use crate::mechanics::kinematics::{end_effector, transmission};
+use crate::mechanics::machine::{Machine, MachineError, RelativeAngle};
+use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Vector};
+use crate::planning::plan::{Follower, Motion, Reference};
+use crate::planning::pose_constant::plane_map;
+use crate::planning::reactionless::PlaneMap;
+use crate::simulation::control::{Control, Controller, Reading};
+use crate::simulation::frame::{Audit, Frame, Peaks, Phase, Reach, Tally, Target};
+use crate::simulation::plant::{Base, Body, Friction, Grip, Load, MAX_CONTACTS, Plant, Slope, State};
+
+use pilot::Pilot;
+use sticking::grips;
+use stride::Pace;
+
+/// What leads the machine.
+#[derive(Clone, Debug)]
+pub enum Guide {
+    /// A planned motion that began at a time, s.
+    Motion {
+        /// The plan.
+        motion: Motion,
+        /// s.
+        start: f64,
+    },
+    /// The pointer and the slider.
+    Follow(Follower),
+}
+
+impl Guide {
+    /// The reference at a time, s.
+    fn at(&self, time: f64) -> Reference {
+        match self {
+            Self::Motion { motion, start } => motion.at(time - start),
+            Self::Follow(follower) => follower.reference(0.0),
+        }
+    }
+}
+
+/// What a simulation is made of.
+#[derive(Clone, Copy, Debug)]
+pub struct Setup<'a> {
+    /// The machine that control believes in.
+    pub model: &'a Machine,
+    /// What differs in the machine that moves.
+    pub plant: &'a Plant,
+    /// What it stands on.
+    pub base: &'a Base,
+    /// Control.
+    pub control: &'a Control,
+    /// Fixed step, s.
+    pub step: f64,
+}
+
+/// A run in progress.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    /// Without the payload that comes and goes, and with it.
+    bodies: Box<[Body; 2]>,
+    load: Load,
+    loaded: bool,
+    pilot: Pilot,
+    /// m_j a_jk of each link, `drives` after `drives`, kg m, and of each with the payload.
+    link_moments: [Vec<Vector>; 2],
+    /// What pins carry, likewise.
+    inside: [Watch; 2],
+    /// Differences of the points that each closure joins.
+    closures: Vec<[f64; MAX_DRIVES]>,
+    lambda: PerDrive,
+    map: Option<PlaneMap>,
+    angles: Vec<RelativeAngle>,
+    drives: usize,
+    dt: f64,
+    step: u64,
+    guide: Guide,
+    state: State,
+    grip: Grip,
+    /// Torques of stuck contacts, N m.
+    taken: [f64; MAX_CONTACTS],
+    now: Slope,
+    reference: Reference,
+    /// What energy and momenta less their sources were at the start.
+    ground: Ground,
+    peaks: Peaks,
+    tally: Tally,
+    /// How finely steps are taken, and with which errors.
+    pace: Pace,
+}
+
+/// What audits start from.
+#[derive(Clone, Copy, Debug, Default)]
+struct Ground {
+    energy: f64,
+    momentum: Vector,
+    angular: f64,
+}
+
+impl Ground {
+    fn less(self, other: &Self) -> Self {
+        Self {
+            energy: self.energy - other.energy,
+            momentum: self.momentum - other.momentum,
+            angular: self.angular - other.angular,
+        }
+    }
+}
+
+impl Simulation {
+    /// At the start of its guide, with the guide's rates, on a base at rest at the origin.
+    ///
+    /// # Errors
+    /// If what differs in the plant leaves no valid machine, or the base is one too many to turn.
+    pub fn new(setup: &Setup, guide: Guide) -> Result<Self, MachineError> {
+        Self::of_machine(setup, setup.plant.machine(setup.model)?, guide)
+    }
+
+    /// The same with a machine that moves in place of the one that the plant makes of the model.
+    ///
+    /// # Errors
+    /// If it cannot hold the plant's payload, or the base is one too many to turn.
+    pub fn of_machine(setup: &Setup, machine: Machine, guide: Guide) -> Result<Self, MachineError> {
+        let reference = guide.at(0.0);
+        let (plant, load) = (setup.plant, setup.plant.payload);
+        let force = Vector::new(plant.force[0], plant.force[1]);
+        let start = &reference.q;
+        let holding = load.held_by(&machine)?;
+        let body = |m: &Machine| Body::of(m, &plant.friction, setup.base, start).map(|b| b.pushed(force));
+        let empty = body(&machine)?;
+        let first = load.is_held(0.0, 0.5 * setup.step);
+        // The springs are preloaded for what is held at the start.
+        let with = body(&holding)?;
+        let bodies = if first { [empty.preloaded_as(&with), with] } else { [empty.clone(), with.preloaded_as(&empty)] };
+        let fixed = Base::default();
+        let known = if setup.control.knows_base { setup.base } else { &fixed };
+        let model = |m: &Machine| Body::of(m, &Friction::default(), known, start);
+        let models = [model(setup.model)?, model(&load.held_by(setup.model)?)?];
+        let models = match (first, models) {
+            (true, [empty, with]) => [empty.preloaded_as(&with), with],
+            (false, [empty, with]) => [empty.clone(), with.preloaded_as(&empty)],
+        };
+        let n = machine.drives();
+        let lambda = models[0].arm().lambda();
+        let limits = plant
+            .torque_limits
+            .then(|| PerDrive::from_fn(n, |k| setup.model.spec().drives[k].torque_limit.unwrap_or(f64::INFINITY)));
+        let controller = Controller::new(setup.control, n, models);
+        let pilot = Pilot::new(controller, setup.control, setup.step, limits, setup.base.wheel);
+        let loaded = usize::from(first);
+        let state = bodies[loaded].state(&reference.q, &reference.qd, Pose2::default(), Vector::default(), 0.0);
+        let now = bodies[loaded].still(&state);
+        let mut sim = Self {
+            bodies: Box::new(bodies),
+            load,
+            loaded: first,
+            pilot,
+            link_moments: [&machine, &holding].map(link_moments),
+            inside: [&machine, &holding].map(Watch::of),
+            closures: machine.closure_gaps(),
+            lambda,
+            map: plane_map(setup.model).ok(),
+            angles: setup.model.angles().to_vec(),
+            drives: n,
+            dt: setup.step,
+            step: 0,
+            guide,
+            state,
+            grip: [0; MAX_CONTACTS],
+            taken: [0.0; MAX_CONTACTS],
+            now,
+            reference,
+            ground: Ground::default(),
+            peaks: Peaks::zero(n),
+            tally: Tally::default(),
+            pace: Pace::new(n),
+        };
+        sim.begin();
+        Ok(sim)
+    }
+
+    /// Takes the present instant as where audits start.
+    fn begin(&mut self) {
+        self.prepare();
+        self.grip = grips(self.body().contacts(), &self.body().rates(&self.state));
+        self.look();
+        self.ground = self.sources(self.body(), &self.now);
+        self.include();
+    }
+
+    /// Energy and momenta of a body less what has come in and gone out: these do not change.
+    fn sources(&self, body: &Body, x: &Slope) -> Ground {
+        let (p, h) = body.arm_momentum(x);
+        let energy = x.kinetic + body.potential(x) - self.state.work + self.state.lost;
+        Ground { energy, momentum: p + self.state.impulse.0, angular: h + self.state.impulse.1 }
+    }
+
+    /// What moves now.
+    pub(crate) fn body(&self) -> &Body {
+        &self.bodies[usize::from(self.loaded)]
+    }
+
+    /// Steps done.
+    pub fn step_count(&self) -> u64 {
+        self.step
+    }
+
+    /// Time since the start, s.
+    pub fn time(&self) -> f64 {
+        self.step as f64 * self.dt
+    }
+
+    /// The fixed step, s.
+    pub fn dt(&self) -> f64 {
+        self.dt
+    }
+
+    /// What leads it.
+    pub fn guide(&self) -> &Guide {
+        &self.guide
+    }
+
+    /// The reference at the present instant.
+    pub fn reference(&self) -> &Reference {
+        &self.reference
+    }
+
+    /// Lets something else lead from now on. The machine keeps its state and control takes up the difference.
+    pub fn lead(&mut self, guide: Guide) {
+        self.guide = guide;
+        self.prepare();
+        self.look();
+        self.include();
+    }
+
+    /// Changes what moves and what control believes, in motion: positions and rates stay.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); then nothing has changed.
+    pub fn change(&mut self, setup: &Setup) -> Result<(), MachineError> {
+        let fresh = Self::new(setup, self.guide.clone())?;
+        let old = std::mem::replace(self, fresh);
+        let Self { step, guide, state, peaks, tally, pace, ground, now, pilot, bodies, .. } = old;
+        (self.step, self.guide, self.peaks, self.tally) = (step, guide, peaks, tally);
+        self.pace.resume(&pace);
+        self.pilot.resume(&pilot, step, &now.torque);
+        for body in self.bodies.iter_mut() {
+            *body = body.clone().preloaded_as(&bodies[0]);
+        }
+        self.loaded = self.load.is_held(self.time(), 0.5 * self.dt);
+        (self.state, self.now, self.ground) = (state, now, ground);
+        self.carry_over(&now, &bodies[usize::from(old.loaded)]);
+        Ok(())
+    }
+
+    /// The same positions and rates on the body of now; what audits compare with goes on from here.
+    fn carry_over(&mut self, before: &Slope, body: &Body) {
+        let n = self.drives;
+        let off = self.sources(body, before).less(&self.ground);
+        let (q, qd) = (self.state.drives(n), before.qd.first(n));
+        let turning = before.qd.get(n).copied().unwrap_or(0.0);
+        let (pose, velocity) = (before.base, before.base_velocity);
+        let state = self.body().state(&q, &qd, pose, velocity, turning);
+        self.state = state.in_books_of(&self.state);
+        self.grip = grips(self.body().contacts(), &self.body().rates(&self.state));
+        self.look();
+        self.ground = self.sources(self.body(), &self.now).less(&off);
+        self.include();
+    }
+
+    /// Puts the machine at the reference, at rest or in motion as the reference is, without passing between.
+    pub fn place(&mut self, guide: Guide) {
+        self.guide = guide;
+        let reference = self.guide.at(self.time());
+        let (base, velocity) = (self.now.base, self.now.base_velocity);
+        let turning = self.now.qd.get(self.drives).copied().unwrap_or(0.0);
+        let n = self.drives;
+        let q = DriveAngles(PerDrive::from_fn(n, |k| reference.q[k] + base.angle));
+        let qd = PerDrive::from_fn(n, |k| reference.qd[k] + turning);
+        let state = self.body().state(&q, &qd, base, velocity, turning);
+        self.state = state.in_books_of(&self.state);
+        self.pilot.forget();
+        self.begin();
+    }
+
+    /// Whether nothing will change any more: the guide has arrived and the machine stands still on it.
+    pub fn is_settled(&self) -> bool {
+        let e = PerDrive::from_fn(self.drives, |k| self.relative(k) - self.reference.q[k]);
+        let still = self.now.qd.max_abs() < 1e-7 && self.now.base_velocity.norm() < 1e-7;
+        let coming = self.load.is_some() && self.time() < self.load.until.unwrap_or(self.load.from);
+        self.has_arrived() && still && !coming && {
+            // On the reference and about to be pushed off it is not at rest.
+            let pull = self.now.qdd.max_abs();
+            pull < 1e-7 || (e.max_abs() < 1e-7 && pull < 1e-3)
+        }
+    }
+
+    /// q_k − θ, rad.
+    fn relative(&self, k: usize) -> f64 {
+        self.state.q[k] - self.now.base.angle
+    }
+
+    /// Whether the guide has come to its end, even if the machine still moves.
+    pub fn has_arrived(&self) -> bool {
+        match &self.guide {
+            Guide::Motion { motion, start } => self.time() >= start + motion.duration() - 0.5 * self.dt,
+            Guide::Follow(follower) => follower.is_at_rest(),
+        }
+    }
+
+    /// What a state leads to, with a reference.
+    #[inline]
+    fn instant(&self, state: &State, reference: &Reference, grip: &Grip, taken: &mut [f64; MAX_CONTACTS]) -> Slope {
+        let n = self.drives;
+        self.body().instant(state, grip, taken, |e, rates, base, velocity| {
+            let reading = reading(n, state, e, rates, base, velocity);
+            self.pilot.command(reference, &reading, self.loaded, state.wheel)
+        })
+    }
+
+    /// Advances by one step.
+    pub fn advance(&mut self) {
+        let (leg, goes_on) = self.stride();
+        (self.state, self.grip) = (leg.state, leg.grip);
+        self.step += 1;
+        if let Guide::Follow(follower) = &mut self.guide {
+            follower.advance();
+        }
+        if goes_on && self.pilot.is_steady() && matches!(self.guide, Guide::Motion { .. }) {
+            // The end of the step has been looked at already.
+            (self.now, self.taken) = (leg.slope, leg.taken);
+            self.reference = self.aim_now();
+        } else {
+            self.taken = leg.taken;
+            self.look();
+        }
+        let held = self.load.is_held(self.time(), 0.5 * self.dt);
+        if held != self.loaded {
+            let (before, old) = (self.now, usize::from(self.loaded));
+            self.loaded = held;
+            let body = self.bodies[old].clone();
+            self.carry_over(&before, &body);
+        } else {
+            self.include();
+        }
+    }
+
+    /// Takes in the present instant: control, slope, wrench of the plant's own motion.
+    fn look(&mut self) {
+        self.reference = self.aim_now();
+        let n = self.drives;
+        // Sampled control reads first.
+        let body = &self.bodies[usize::from(self.loaded)];
+        let (state, pilot, reference, loaded) = (&self.state, &mut self.pilot, &self.reference, self.loaded);
+        let mut taken = self.taken;
+        let step = self.step;
+        self.now = body.instant(state, &self.grip, &mut taken, |e, rates, base, velocity| {
+            let reading = reading(n, state, e, rates, base, velocity);
+            pilot.sample(step, reference, &reading, loaded, state.wheel);
+            pilot.command(reference, &reading, loaded, state.wheel)
+        });
+        self.taken = taken;
+        let mut grip = self.grip;
+        self.release(&self.now, &mut grip, &taken);
+        self.grip = grip;
+    }
+
+    /// Takes the present instant into peaks and sums.
+    fn include(&mut self) {
+        let x = &self.now;
+        let (qd, qdd) = (x.qd.first(self.drives), x.qdd.first(self.drives));
+        let turning = x.qd.get(self.drives).copied().unwrap_or(0.0);
+        let wrench = self.body().transmitted(x);
+        let total = wrench.total().moment;
+        let loaded = usize::from(self.loaded);
+        let past = |(i, a): (usize, &RelativeAngle)| {
+            let angle = self.state.q[a.to] - self.state.q[a.from] + a.offset;
+            ((a.limits.start() - angle).max(angle - a.limits.end()), i)
+        };
+        let now = Peaks {
+            torque: x.torque,
+            torque_sum: x.torque.iter().map(|t| t.abs()).sum(),
+            force: wrench.dynamic.force.norm(),
+            arm_moment: total.abs(),
+            moment: (total - x.spin.torque).abs(),
+            inertial_pull: dynamics::inertial_pull(&self.link_moments[loaded], &x.e, &qd, &qdd),
+            weight: x.wrench.statical.force.norm(),
+            rate: qd.iter().fold(0.0, |most, qd| most.max((qd - turning).abs())),
+            tilt: self.inside[loaded].tilt(&x.e, &qd, &qdd, &self.field()),
+            past_limit: self.angles.iter().enumerate().map(past).fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a }),
+        };
+        let time = self.time();
+        self.peaks.include(&now);
+        self.tally.include(x, &wrench, time);
+    }
+
+    /// What links move in, in axes that move with the base: its acceleration adds to gravity.
+    fn field(&self) -> Surroundings {
+        let around = *self.body().around();
+        Surroundings { gravity: around.gravity - self.now.base_acceleration, ..around }
+    }
+
+    /// What should be zero now.
+    fn audited(&self, plane: f64) -> Audit {
+        let off = self.sources(self.body(), &self.now).less(&self.ground);
+        let gap = |chain: &[f64; MAX_DRIVES]| crate::mechanics::machine::place_of(chain, &self.now.e).norm();
+        Audit {
+            momentum: off.momentum.norm(),
+            angular: off.angular,
+            energy: off.energy,
+            closure: self.closures.iter().map(gap).fold(0.0, f64::max),
+            step: self.pace.error(&self.yard(), &self.tally, self.reach()),
+            plane,
+        }
+    }
+
+    /// What pins carry now; a base that moves adds to gravity.
+    fn inside(&self) -> Inside {
+        let (x, n) = (&self.now, self.drives);
+        let around = self.field();
+        let contacts = self.body().contacts();
+        let couple = |from, to| contacts.couple(from, to, &x.qd, &self.grip, &self.taken);
+        self.inside[usize::from(self.loaded)].at(&x.e, &x.qd.first(n), &x.qdd.first(n), &around, couple)
+    }
+
+    /// Everything that is true now.
+    pub fn frame(&self) -> Frame {
+        let (x, n) = (&self.now, self.drives);
+        let arm = self.body().arm();
+        let q = self.state.drives(n);
+        let relative = PerDrive::from_fn(n, |k| self.relative(k));
+        let (phase, target, b_reference) = match &self.guide {
+            Guide::Motion { motion, .. } => {
+                let end = end_effector(&arm.tip, &motion.path.at(1.0).q.units());
+                let phase = if self.has_arrived() { Phase::Rest } else { Phase::Motion };
+                (phase, Target { at: end, reach: Reach::Inside }, self.lambda.dot(&self.reference.q))
+            }
+            Guide::Follow(follower) => {
+                let phase = if follower.is_at_rest() { Phase::Rest } else { Phase::Follow };
+                (phase, follower.target(), follower.b())
+            }
+        };
+        let (momentum, angular_momentum) = self.body().momentum(x);
+        let b = self.lambda.dot(&relative);
+        Frame {
+            step: self.step,
+            time: self.time(),
+            q,
+            qd: x.qd.first(n),
+            qdd: x.qdd.first(n),
+            torque: x.torque,
+            friction: x.friction,
+            q_reference: self.reference.q,
+            b,
+            b_reference,
+            a: PerDrive::from_fn(self.angles.len().min(MAX_DRIVES), |i| {
+                let a = &self.angles[i];
+                q[a.to] - q[a.from] + a.offset
+            }),
+            base: x.base,
+            base_velocity: x.base_velocity,
+            base_rate: x.qd.get(n).copied().unwrap_or(0.0),
+            wrench: self.body().transmitted(x),
+            wheel: x.spin,
+            momentum,
+            angular_momentum,
+            com: x.base.at + dynamics::centre_of_mass(arm, &x.e),
+            tip: x.base.at + end_effector(&arm.tip, &x.e),
+            target,
+            loaded: self.loaded,
+            kinetic: x.kinetic,
+            dexterity: self.map.map_or_else(Default::default, |map| map.dexterity_at(&x.e)),
+            transmission: transmission(&x.e, n),
+            inside: self.inside(),
+            phase,
+            peaks: self.peaks,
+            tally: self.tally,
+            audit: self.audited(b - b_reference),
+        }
+    }
+}
+
+/// What encoders and tachometers read, exactly.
+#[inline(always)]
+fn reading<'a>(
+    n: usize,
+    state: &State,
+    e: &'a crate::mechanics::planar::Units,
+    rates: &'a PerDrive,
+    base: Pose2,
+    velocity: Vector,
+) -> Reading<'a> {
+    let turning = rates.get(n).copied().unwrap_or(0.0);
+    Reading {
+        q: DriveAngles(PerDrive::from_fn(n, |k| state.q[k] - base.angle)),
+        qd: PerDrive::from_fn(n, |k| rates[k] - turning),
+        e,
+        rates,
+        base,
+        velocity,
+    }
+}
+
+/// m_j a_jk of every link and of the machine's own payload, kg m.
+fn link_moments(machine: &Machine) -> Vec<Vector> {
+    let n = machine.drives();
+    let payload = (machine.spec().payload.mass, machine.payload_chain());
+    let links = machine.links().iter().enumerate().map(|(j, l)| (l.mass, machine.com_chain(j)));
+    let all = links.chain([payload]).filter(|(m, _)| *m > 0.0);
+    all.flat_map(|(m, a)| a.into_iter().take(n).map(move |a| m * a)).collect()
+}

@@ -1,0 +1,408 @@
+//! How a step is taken: in pieces that end on the kinks of the reference, each in as many parts as it needs.
+//!
+//! # Method
+//! The classical rule leaves two answers at the end of a part: the slope of its last stage and the slope of where it
+//! comes to, which the next part begins with. What the two show differs by more than the error of the part, by far
+//! where nothing is stiff, so that looking at it costs next to nothing and can be done everywhere. Where they differ by
+//! more than [`FINE`] of the peaks of what is shown, the piece is done again in twice as many parts, until they agree or
+//! what two such runs come to does, up to [`MOST_PARTS`]; the next step begins with as many, and goes back when it can.
+//! So stiff gains, springs and friction, and kinks that nobody can foresee, as of motors that saturate, cost more steps
+//! where they are and none elsewhere; everything else costs what four stages cost.
+//!
+//! Errors of forces and torques fade as control takes them up; those of where things are may add up. So every
+//! [`HALVED_EVERY`]-th step is done in twice as many parts besides, and by how far end effector and base then stand
+//! elsewhere is taken to happen at every step. The worse of the two, the worst disagreement and what adds up, is the
+//! figure `step` of the audit. All of it depends on the run alone, so a replay takes the same parts.
+
+use super::{Guide, Simulation};
+use crate::mechanics::kinematics::end_effector;
+use crate::mechanics::planar::{DriveAngles, Vector};
+use crate::planning::plan::{Motion, Reference};
+use crate::simulation::frame::{Peaks, Tally};
+use crate::simulation::plant::{Body, Grip, MAX_CONTACTS, Slope, State};
+
+/// How far two answers may differ, as a share of the peaks of what is shown.
+const FINE: f64 = 2e-5;
+/// The most parts of a step.
+const MOST_PARTS: u32 = 64;
+/// How often small errors are measured by halving, in steps.
+const HALVED_EVERY: u64 = 64;
+/// The most pieces of a step.
+const MOST_PIECES: usize = 64;
+/// Kinks nearer to an end of a piece than this share of a step are at it, and how far beside them they are looked at.
+const NEAR: f64 = 1e-7;
+const BESIDE: f64 = 1e-8;
+/// A change of q̈ below this share of its peak is a bend, and no jump.
+const BEND: f64 = 1e-6;
+
+/// Where a step has come to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Leg {
+    /// Since the step began, s.
+    pub at: f64,
+    pub state: State,
+    pub slope: Slope,
+    pub grip: Grip,
+    /// Torques of stuck contacts, N m.
+    pub taken: [f64; MAX_CONTACTS],
+}
+
+/// A part of a step in which the reference is smooth.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Piece {
+    from: f64,
+    pub to: f64,
+    /// Times of the motion that belong to it, s.
+    window: [f64; 2],
+}
+
+/// How far two answers are apart, or how far they may be: the moment that the base feels, N m, dynamic f_B, N, motor
+/// torques, N m, the end effector, m.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Off([f64; 4]);
+
+impl Off {
+    /// More than any yard.
+    pub const BEYOND: Self = Self([f64::INFINITY; 4]);
+
+    #[inline]
+    pub fn worse(self, other: Self) -> Self {
+        Self(std::array::from_fn(
+            |i| if other.0[i] > self.0[i] || other.0[i].is_nan() { other.0[i] } else { self.0[i] },
+        ))
+    }
+
+    /// The largest share of a yard; what is no number is more than any.
+    pub fn share(self, yard: &Self) -> f64 {
+        let share = |i: usize| if self.0[i].is_nan() { f64::INFINITY } else { self.0[i] / yard.0[i] };
+        (0..4).map(share).fold(0.0, f64::max)
+    }
+
+    /// What errors are shares of: peaks, or what must be small beside the torques, the pull and the arm to count as none.
+    pub fn yard(peaks: &Peaks, reach: f64) -> Self {
+        let (torque, pull) = (peaks.torque_sum.max(LEAST), peaks.inertial_pull.max(LEAST));
+        let part = |peak: f64, all: f64| peak.max(QUIET * all);
+        Self([part(peaks.moment, torque), part(peaks.force, pull), torque, TIP * reach.max(LEAST)])
+    }
+}
+
+/// Moments and forces below this share of torques and pull are judged as if they were as large.
+const QUIET: f64 = 1e-4;
+/// Errors of the end effector are shares of this part of the arm.
+const TIP: f64 = 1e-2;
+/// N m, N, m: less is nothing.
+const LEAST: f64 = 1e-6;
+
+/// How far things may have strayed from where they should be: the end effector and B, m, and the base, rad.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Drift {
+    tip: f64,
+    shift: f64,
+    tilt: f64,
+}
+
+/// What errors have come to so far, and how many parts steps are taken in.
+#[derive(Clone, Debug)]
+pub(super) struct Pace {
+    parts: u32,
+    /// The most by which two answers have differed.
+    worst: Off,
+    /// What halving has found, added up.
+    drift: Drift,
+    /// What the reference asks for, before the run has shown its own peaks.
+    expected: Peaks,
+    /// Until when that counts, s.
+    until: f64,
+    /// When the reference jumps or bends, in times of the motion, s.
+    kinks: Vec<f64>,
+    /// Where q̈ of the reference changes by less, it only bends, rad/s².
+    level: f64,
+}
+
+impl Pace {
+    pub fn new(drives: usize) -> Self {
+        let (worst, drift) = Default::default();
+        Self { parts: 1, worst, drift, expected: Peaks::zero(drives), until: 0.0, kinks: Vec::new(), level: 0.0 }
+    }
+
+    /// Goes on where another was: errors made before stay.
+    pub fn resume(&mut self, other: &Self) {
+        (self.parts, self.worst, self.drift) = (other.parts, other.worst, other.drift);
+    }
+
+    /// The error of what is shown, as a share of a yard.
+    pub fn error(&self, yard: &Off, tally: &Tally, reach: f64) -> f64 {
+        let Drift { tip, shift, tilt } = self.drift;
+        let least = QUIET * reach.max(LEAST);
+        let drift =
+            (tip / (TIP * reach.max(LEAST))).max(shift / tally.shift.max(least)).max(tilt / tally.tilt.max(QUIET));
+        let worst = self.worst.share(yard);
+        if drift > worst || drift.is_nan() { drift } else { worst }
+    }
+}
+
+impl Simulation {
+    /// Takes in a new guide: where it has kinks, and about how much it asks for.
+    pub(super) fn prepare(&mut self) {
+        let n = self.drives;
+        let (mut expected, mut level) = (Peaks::zero(n), 0.0_f64);
+        self.pace.kinks.clear();
+        self.pace.until = 0.0;
+        if let Guide::Motion { motion, start } = &self.guide {
+            self.pace.kinks = motion.kinks();
+            self.pace.until = start + 0.25 * motion.duration();
+            let (arm, around) = (self.body().arm(), self.body().around());
+            for i in 0..=16 {
+                let r = motion.at(f64::from(i) / 16.0 * motion.duration());
+                level = level.max(BEND * r.qdd.max_abs());
+                let e = r.q.units();
+                let (torque, wrench) = crate::mechanics::dynamics::inverse_with_wrench(arm, &e, &r.qd, &r.qdd, around);
+                let moments = &self.link_moments[usize::from(self.loaded)];
+                let pull = crate::mechanics::dynamics::inertial_pull(moments, &e, &r.qd, &r.qdd);
+                expected.torque_sum = expected.torque_sum.max(torque.iter().map(|t| t.abs()).sum());
+                expected.force = expected.force.max(wrench.dynamic.force.norm());
+                expected.moment = expected.moment.max(wrench.total().moment.abs());
+                expected.inertial_pull = expected.inertial_pull.max(pull);
+            }
+        }
+        (self.pace.expected, self.pace.level) = (expected, level);
+    }
+
+    /// How far the arm reaches at most, m.
+    pub(super) fn reach(&self) -> f64 {
+        self.body().arm().tip.iter().map(|l| l.abs()).sum()
+    }
+
+    /// How far two answers may differ now.
+    pub(super) fn yard(&self) -> Off {
+        let mut peaks = self.peaks;
+        let wanted = &self.pace.expected;
+        // At first half of what the reference asks for: there are no peaks yet.
+        if self.time() < self.pace.until {
+            let of = |seen: f64, wanted: f64| seen.max(0.5 * wanted);
+            peaks.torque_sum = of(peaks.torque_sum, wanted.torque_sum);
+            peaks.moment = of(peaks.moment, wanted.moment);
+            peaks.force = of(peaks.force, wanted.force);
+            peaks.inertial_pull = of(peaks.inertial_pull, wanted.inertial_pull);
+        }
+        Off::yard(&peaks, self.reach())
+    }
+
+    /// The reference at a time since the step began, s, as the piece has it.
+    #[inline]
+    pub(super) fn aim(&self, at: f64, piece: &Piece) -> Reference {
+        match &self.guide {
+            Guide::Motion { motion, start } => {
+                // The end of the step is where the next one begins, to the last digit.
+                let time = if at >= self.dt { (self.step + 1) as f64 * self.dt } else { self.time() + at };
+                beside(motion, time - start, piece.window, self.pace.level)
+            }
+            Guide::Follow(follower) => follower.reference(at),
+        }
+    }
+
+    /// The reference at the present instant, and after a kink there.
+    pub(super) fn aim_now(&self) -> Reference {
+        match &self.guide {
+            Guide::Motion { motion, start } => {
+                let t = self.time() - start;
+                let after = self.kink_at(t).map_or(f64::NEG_INFINITY, |kink| kink + BESIDE * self.dt);
+                beside(motion, t, [after, f64::INFINITY], self.pace.level)
+            }
+            Guide::Follow(follower) => follower.reference(0.0),
+        }
+    }
+
+    /// The last kink at a time of the motion, s, or as near as makes no difference.
+    fn kink_at(&self, t: f64) -> Option<f64> {
+        let (kinks, near) = (&self.pace.kinks, NEAR * self.dt);
+        let next = kinks.partition_point(|kink| *kink <= t + near);
+        next.checked_sub(1).map(|i| kinks[i]).filter(|kink| *kink >= t - near)
+    }
+
+    /// The piece that begins at a time since the step did, s, and whether it ends on a kink.
+    fn piece(&self, from: f64) -> (Piece, bool) {
+        let (all, none) = ([f64::NEG_INFINITY, f64::INFINITY], (self.dt, false));
+        let Guide::Motion { start, .. } = &self.guide else { return (Piece { from, to: none.0, window: all }, none.1) };
+        let (t0, near, beside) = (self.time() - start, NEAR * self.dt, BESIDE * self.dt);
+        let mut window = all;
+        if let Some(kink) = self.kink_at(t0 + from) {
+            window[0] = kink + beside;
+        }
+        let kinks = &self.pace.kinks;
+        let next = kinks.get(kinks.partition_point(|kink| *kink <= t0 + from + near));
+        let Some(kink) = next.filter(|kink| **kink <= t0 + self.dt + near) else {
+            return (Piece { from, to: self.dt, window }, false);
+        };
+        window[1] = kink - beside;
+        let to = if *kink >= t0 + self.dt - near { self.dt } else { kink - t0 };
+        (Piece { from, to, window }, true)
+    }
+
+    /// A whole step, and whether the slope at its end is that with which the next one begins.
+    pub(super) fn stride(&mut self) -> (Leg, bool) {
+        let yard = self.yard();
+        let looked_at = stands_for(self.step);
+        let mut leg = Leg { at: 0.0, state: self.state, slope: self.now, grip: self.grip, taken: self.taken };
+        let mut parts = 1;
+        for count in 1..=MOST_PIECES {
+            let (mut piece, mut kinked) = self.piece(leg.at);
+            if count == MOST_PIECES {
+                (piece.to, piece.window[1], kinked) = (self.dt, f64::INFINITY, true);
+            }
+            if leg.at > 0.0 {
+                leg.slope = self.slope(&leg.state, leg.at, &piece, &leg.grip, &mut leg.taken);
+            }
+            let (end, most) = self.pass(&leg, &piece, &yard, looked_at);
+            parts = parts.max(most);
+            leg = end;
+            if piece.to >= self.dt {
+                self.pace.parts = parts.min(4 * self.pace.parts);
+                return (leg, !kinked);
+            }
+        }
+        (leg, false)
+    }
+
+    /// A piece, and in how many parts of a step the next one should go on.
+    fn pass(&mut self, from: &Leg, piece: &Piece, yard: &Off, looked_at: Option<f64>) -> (Leg, u32) {
+        let share = (piece.to - piece.from) / self.dt;
+        let count = |parts: u32| (f64::from(parts) * share - 1e-9).ceil().max(1.0) as u32;
+        let mut parts = self.pace.parts;
+        let (mut leg, mut off) = self.walk(from, piece, count(parts));
+        let mut error = off;
+        // Nobody takes up errors while motors give all they have.
+        let full = self.pilot.is_full(&from.slope.torque) || self.pilot.is_full(&leg.slope.torque);
+        let fine = if full { 0.02 * FINE } else { FINE };
+        while off.share(yard) > fine && error.share(yard) > fine && parts < MOST_PARTS {
+            parts *= 2;
+            if count(parts) == count(parts / 2) {
+                continue;
+            }
+            let coarse = leg.slope;
+            (leg, off) = self.walk(from, piece, count(parts));
+            error = self.apart(&leg.slope, &coarse);
+        }
+        // Of two bounds the smaller.
+        if off.share(yard) < error.share(yard) {
+            error = off;
+        }
+        self.pace.worst = self.pace.worst.worse(error);
+        if let Some(steps) = looked_at {
+            let (finer, _) = self.walk(from, piece, 2 * count(parts));
+            let (a, b) = (&leg.slope, &finer.slope);
+            let (each, drift) = (16.0 / 15.0 * steps, &mut self.pace.drift);
+            drift.tip += each * (tip(&self.bodies[0], a) - tip(&self.bodies[0], b)).norm();
+            drift.shift += each * (a.base.at - b.base.at).norm();
+            drift.tilt += each * (a.base.angle - b.base.angle).abs();
+        }
+        // Half as many make about eight times the difference.
+        let next = if off.share(yard) < fine / 16.0 { (parts / 2).max(1) } else { parts };
+        (leg, next)
+    }
+
+    /// A piece in equal parts, and the most by which two answers differ.
+    fn walk(&self, from: &Leg, piece: &Piece, parts: u32) -> (Leg, Off) {
+        let (mut leg, mut worst) = (*from, Off::default());
+        let sticks = self.body().contacts().stick();
+        for i in 1..=parts {
+            let share = f64::from(i) / f64::from(parts);
+            let to = if i == parts { piece.to } else { piece.from + share * (piece.to - piece.from) };
+            let off = match sticks {
+                true => self.contact(&mut leg, to, piece),
+                false => {
+                    let part = self.part(&leg, to, piece);
+                    leg = part.end;
+                    self.apart(&part.last, &leg.slope)
+                }
+            };
+            worst = worst.worse(off);
+        }
+        (leg, worst)
+    }
+
+    /// How far apart two answers for one instant are.
+    pub(super) fn apart(&self, a: &Slope, b: &Slope) -> Off {
+        let felt = |x: &Slope| x.wrench.total().moment - x.spin.torque;
+        let tip = |x: &Slope| tip(self.body(), x);
+        Off([
+            (felt(a) - felt(b)).abs(),
+            (a.wrench.dynamic.force - b.wrench.dynamic.force).norm(),
+            a.torque.minus(&b.torque).max_abs(),
+            (tip(a) - tip(b)).norm(),
+        ])
+    }
+}
+
+/// A part by the classical rule.
+pub(super) struct Part {
+    pub end: Leg,
+    /// The slope of the last stage.
+    pub last: Slope,
+    /// Those between, where contacts can stick.
+    pub between: [Slope; 2],
+}
+
+impl Simulation {
+    /// One step of the classical rule to a time since the step began, s.
+    #[inline]
+    pub(super) fn part(&self, from: &Leg, to: f64, piece: &Piece) -> Part {
+        let (h, middle) = (to - from.at, 0.5 * (from.at + to));
+        let (state, k1, grip, mut taken) = (&from.state, &from.slope, &from.grip, from.taken);
+        let half_way = self.aim(middle, piece);
+        let k2 = self.instant(&state.along(k1, 0.5 * h), &half_way, grip, &mut taken);
+        let k3 = self.instant(&state.along(&k2, 0.5 * h), &half_way, grip, &mut taken);
+        let there = self.aim(to, piece);
+        let k4 = self.instant(&state.along(&k3, h), &there, grip, &mut taken);
+        let mut state = state.stepped([k1, &k2, &k3, &k4], h);
+        if self.body().contacts().stick() {
+            state = self.body().stuck(state, grip);
+        }
+        let slope = self.instant(&state, &there, grip, &mut taken);
+        Part { end: Leg { at: to, state, slope, grip: *grip, taken }, last: k4, between: [k2, k3] }
+    }
+
+    /// What a state leads to, at a time since the step began, s.
+    pub(super) fn slope(
+        &self,
+        state: &State,
+        at: f64,
+        piece: &Piece,
+        grip: &Grip,
+        taken: &mut [f64; MAX_CONTACTS],
+    ) -> Slope {
+        self.instant(state, &self.aim(at, piece), grip, taken)
+    }
+}
+
+/// Where the end effector is, m.
+#[inline]
+fn tip(body: &Body, x: &Slope) -> Vector {
+    x.base.at + end_effector(&body.arm().tip, &x.e)
+}
+
+/// For how many steps a step that is looked at stands; at first more often, so that short runs are seen too.
+fn stands_for(step: u64) -> Option<f64> {
+    match step {
+        0 => Some(1.0),
+        1..HALVED_EVERY => step.is_power_of_two().then_some(step as f64),
+        _ => step.is_multiple_of(HALVED_EVERY).then_some(HALVED_EVERY as f64),
+    }
+}
+
+/// The reference of a motion, as it is within a window of its times, s; where q̈ changes by no more than `level`, rad/s²,
+/// to get there, as it is.
+#[inline]
+fn beside(motion: &Motion, t: f64, [after, before]: [f64; 2], level: f64) -> Reference {
+    let within = t.max(after).min(before);
+    let reference = motion.at(t);
+    if within == t {
+        return reference;
+    }
+    let mut inside = motion.at(within);
+    if inside.qdd.minus(&reference.qdd).max_abs() <= level {
+        return reference;
+    }
+    inside.q = DriveAngles(inside.q.0.plus(t - within, &inside.qd));
+    inside
+}

@@ -1,0 +1,154 @@
+//! [`Board`]: a table of runs under somebody's hands.
+
+use std::sync::Arc;
+
+use super::{COLUMNS, Compared, alternatives};
+use crate::session::Refusal;
+use crate::session::scenario::Scenario;
+
+/// One row of the board.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// What it is called.
+    pub title: String,
+    /// The run, or why there is none.
+    pub outcome: Result<Arc<Compared>, String>,
+    /// Whether it is laid over plots and scene.
+    pub shown: bool,
+    /// Put there by hand: it stays when the task changes.
+    pub kept: bool,
+}
+
+/// Runs side by side: the ways of one task, and what was kept.
+#[derive(Clone, Debug)]
+pub struct Board {
+    task: Scenario,
+    entries: Vec<Entry>,
+    sort: Option<(usize, bool)>,
+}
+
+impl Board {
+    /// The ways of a scenario's task.
+    pub fn of(scenario: &Scenario) -> Self {
+        let mut board = Self { task: scenario.clone(), entries: Vec::new(), sort: None };
+        board.fill();
+        board
+    }
+
+    fn fill(&mut self) {
+        let shown: Vec<String> = self.entries.iter().filter(|e| e.shown).map(|e| e.title.clone()).collect();
+        let kept: Vec<Entry> = self.entries.drain(..).filter(|e| e.kept).collect();
+        self.entries = alternatives(&self.task)
+            .into_iter()
+            .map(|(way, scenario)| {
+                let outcome = Compared::of(scenario).map(Arc::new).map_err(|why| why.to_string());
+                let title = way.title().to_owned();
+                let shown = outcome.is_ok() && shown.contains(&title);
+                Entry { title, outcome, shown, kept: false }
+            })
+            .chain(kept)
+            .collect();
+    }
+
+    /// Runs the ways again if the task has changed; whether it had.
+    pub fn follow(&mut self, scenario: &Scenario) -> bool {
+        if self.task == *scenario {
+            return false;
+        }
+        self.task = scenario.clone();
+        self.fill();
+        true
+    }
+
+    /// The scenario whose ways stand there.
+    pub fn task(&self) -> &Scenario {
+        &self.task
+    }
+
+    /// One more run, kept until it is removed.
+    ///
+    /// # Errors
+    /// If it cannot be done.
+    pub fn keep(&mut self, mut scenario: Scenario) -> Result<(), Refusal> {
+        let own = scenario.name.clone();
+        let taken = |name: &str| self.entries.iter().any(|e| e.title == name);
+        let mut title = own.clone();
+        for count in 2.. {
+            if !taken(&title) {
+                break;
+            }
+            title = format!("{own} {count}");
+        }
+        scenario.name.clone_from(&title);
+        let run = Arc::new(Compared::of(scenario)?);
+        self.entries.push(Entry { title, outcome: Ok(run), shown: true, kept: true });
+        Ok(())
+    }
+
+    /// Takes a kept run away.
+    pub fn remove(&mut self, entry: usize) {
+        if self.entries.get(entry).is_some_and(|e| e.kept) {
+            self.entries.remove(entry);
+        }
+    }
+
+    /// Lays a run over plots and scene, or not.
+    pub fn show(&mut self, entry: usize, shown: bool) {
+        if let Some(entry) = self.entries.get_mut(entry) {
+            entry.shown = shown && entry.outcome.is_ok();
+        }
+    }
+
+    /// Sorts by a column, the other way the second time, not at all the third.
+    pub fn sort_by(&mut self, column: usize) {
+        self.sort = match self.sort {
+            Some((c, false)) if c == column => Some((c, true)),
+            Some((c, true)) if c == column => None,
+            _ => Some((column, false)),
+        };
+    }
+
+    /// The column that it is sorted by, and whether downwards.
+    pub fn sorted(&self) -> Option<(usize, bool)> {
+        self.sort
+    }
+
+    /// All rows as they were put there.
+    pub fn entries(&self) -> &[Entry] {
+        &self.entries
+    }
+
+    /// Places of the rows in the order of the table; what could not be done stands last.
+    pub fn order(&self) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.entries.len()).collect();
+        let Some((column, down)) = self.sort else { return order };
+        let value = |i: usize| self.entries[i].outcome.as_ref().ok().and_then(|r| (COLUMNS[column].value)(&r.summary));
+        order.sort_by(|a, b| match (value(*a), value(*b)) {
+            (Some(a), Some(b)) if down => b.total_cmp(&a),
+            (Some(a), Some(b)) => a.total_cmp(&b),
+            (a, b) => a.is_none().cmp(&b.is_none()),
+        });
+        order
+    }
+
+    /// Runs that are laid over, with their places.
+    pub fn shown(&self) -> impl Iterator<Item = (usize, &Compared)> {
+        let all = self.entries.iter().enumerate().filter(|(_, e)| e.shown);
+        all.filter_map(|(i, e)| Some((i, e.outcome.as_deref().ok()?)))
+    }
+
+    /// The table as text, its cells parted by tabs, in the order shown: for a spreadsheet.
+    pub fn to_text(&self) -> String {
+        let heads = COLUMNS.iter().map(|c| format!("{} {}", c.head, c.unit));
+        let mut text = ["run".to_owned()].into_iter().chain(heads).collect::<Vec<_>>().join("\t") + "\n";
+        for i in self.order() {
+            let entry = &self.entries[i];
+            let cells = COLUMNS.iter().map(|c| match &entry.outcome {
+                Ok(run) => (c.value)(&run.summary).map_or_else(String::new, |x| (x + 0.0).to_string()),
+                Err(_) => String::new(),
+            });
+            text += &([entry.title.clone()].into_iter().chain(cells).collect::<Vec<_>>().join("\t") + "\n");
+        }
+        text
+    }
+}

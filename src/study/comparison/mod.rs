@@ -1,0 +1,84 @@
+//! Runs side by side: the same task done in other ways, or any scenarios, on one time axis.
+
+mod board;
+mod difference;
+mod summary;
+mod way;
+
+pub use board::{Board, Entry};
+pub use difference::Difference;
+pub use summary::{COLUMNS, Column, Summary};
+pub use way::{SLOWER, Way};
+
+use crate::mechanics::machine::Machine;
+use crate::session::scenario::Scenario;
+use crate::session::{Refusal, replay};
+use crate::simulation::frame::Frame;
+
+/// The most frames that are kept of one run; a longer one keeps every second, third … of them, and its last.
+const MOST: usize = 4000;
+
+/// A run to compare with others.
+#[derive(Clone, Debug)]
+pub struct Compared {
+    /// What it was of.
+    pub scenario: Scenario,
+    /// In the order of time, evenly spaced but for the last.
+    pub frames: Vec<Frame>,
+    /// What it came to.
+    pub summary: Summary,
+}
+
+impl Compared {
+    /// Runs a scenario.
+    ///
+    /// # Errors
+    /// If it cannot start, or one of its edits cannot apply.
+    pub fn of(scenario: Scenario) -> Result<Self, Refusal> {
+        let (mut frames, mut every): (Vec<Frame>, u64) = (Vec::new(), 1);
+        let run = replay(&scenario, |_, frame| {
+            if frame.step.is_multiple_of(every) {
+                if frames.len() >= MOST {
+                    every *= 2;
+                    frames.retain(|f| f.step.is_multiple_of(every));
+                }
+                if frame.step.is_multiple_of(every) {
+                    frames.push(*frame);
+                }
+            }
+        })?;
+        let last = run.frame();
+        if frames.last().is_none_or(|f| f.step != last.step) {
+            frames.push(last);
+        }
+        let summary = Summary::of(&scenario, &last);
+        Ok(Self { scenario, frames, summary })
+    }
+
+    /// The machine that control believes in.
+    pub fn machine(&self) -> &Machine {
+        &self.scenario.machine
+    }
+
+    /// How long it takes, s.
+    pub fn duration(&self) -> f64 {
+        self.frames.last().map_or(0.0, |f| f.time)
+    }
+
+    /// The frame at a time, s, or the nearest before it; the last after the end.
+    pub fn at(&self, time: f64) -> Option<&Frame> {
+        let after = self.frames.partition_point(|f| f.time <= time + 1e-9);
+        self.frames.get(after.saturating_sub(1))
+    }
+}
+
+/// The ways to do a scenario's task, each with its scenario; as it is given only if that is none of the others.
+pub fn alternatives(scenario: &Scenario) -> Vec<(Way, Scenario)> {
+    let mut all: Vec<(Way, Scenario)> = Way::ALL.into_iter().map(|way| (way, way.of(scenario))).collect();
+    // A wheel makes no other way of the task, but for the one that is about it.
+    let given = |s: &Scenario| s.task == scenario.task && s.base.kind == scenario.base.kind;
+    if scenario.edits.is_empty() && all.iter().skip(1).any(|(_, s)| given(s)) {
+        all.remove(0);
+    }
+    all
+}

@@ -1,0 +1,128 @@
+//! [`Summary`]: what a run came to, one row of a table.
+
+use crate::session::scenario::Scenario;
+use crate::session::verdict::Verdict;
+use crate::simulation::frame::Frame;
+
+/// What a run came to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    /// Name of the scenario.
+    pub name: String,
+    /// Its title.
+    pub title: String,
+    /// s.
+    pub time: f64,
+    /// Largest dynamic |f_B|, N.
+    pub peak_force: f64,
+    /// Its root mean square, N.
+    pub rms_force: f64,
+    /// ∫ |f_B| dt, N s.
+    pub force_impulse: f64,
+    /// Largest |n_B|, what the arm transmits, N m, where a reaction wheel leaves the base another moment.
+    pub peak_arm_moment: Option<f64>,
+    /// Largest moment that the base feels, past a reaction wheel, N m.
+    pub peak_moment: f64,
+    /// Its root mean square, N m.
+    pub rms_moment: f64,
+    /// Its impulse ∫ |n| dt, N m s.
+    pub moment_impulse: f64,
+    /// Largest |p_B|, m.
+    pub base_shift: f64,
+    /// Largest |θ|, rad.
+    pub base_tilt: f64,
+    /// How far from its target the end effector is at the end, m.
+    pub miss: f64,
+    /// Largest |τ_k| of any drive, N m.
+    pub peak_torque: f64,
+    /// ∫ Σ |τ_k (q̇_k − θ̇)| dt, the wheel's too, J.
+    pub energy: f64,
+    /// Largest rate of a reaction wheel, rad/s.
+    pub wheel_rate: Option<f64>,
+    /// When a reaction wheel first could not give what was wanted, s.
+    pub saturated_at: Option<f64>,
+    /// Whether the arm transmitted nothing.
+    pub reactionless: bool,
+    /// The first audit that failed, in words.
+    pub fault: Option<String>,
+    /// What is to be said of it.
+    pub verdict: Verdict,
+}
+
+/// A column of the table.
+#[derive(Clone, Copy, Debug)]
+pub struct Column {
+    /// Key in JSON and CSV.
+    pub key: &'static str,
+    /// Head of the column.
+    pub head: &'static str,
+    /// What it is, in words.
+    pub meaning: &'static str,
+    /// SI unit.
+    pub unit: &'static str,
+    /// Decimals that are shown.
+    pub decimals: usize,
+    /// Its value; `None` where there is none.
+    pub value: fn(&Summary) -> Option<f64>,
+}
+
+/// The table's columns, in order.
+pub const COLUMNS: [Column; 15] = [
+    column("time", "T", "time of the motion", "s", 3, |s| Some(s.time)),
+    column("peak_moment", "peak n", "largest moment that the base feels", "N m", 4, |s| Some(s.peak_moment)),
+    column("rms_moment", "rms n", "its root mean square", "N m", 4, |s| Some(s.rms_moment)),
+    column("moment_impulse", "∫|n|dt", "its impulse", "N m s", 4, |s| Some(s.moment_impulse)),
+    column("peak_force", "peak f", "largest force on the base, from motion", "N", 4, |s| Some(s.peak_force)),
+    column("rms_force", "rms f", "its root mean square", "N", 4, |s| Some(s.rms_force)),
+    column("force_impulse", "∫|f|dt", "its impulse", "N s", 4, |s| Some(s.force_impulse)),
+    column("base_shift", "shift", "largest way of the base", "m", 5, |s| Some(s.base_shift)),
+    column("base_tilt", "tilt", "largest angle of the base", "rad", 5, |s| Some(s.base_tilt)),
+    column("miss", "miss", "from the end effector to its target at the end", "m", 5, |s| Some(s.miss)),
+    column("peak_torque", "peak τ", "largest torque of any drive", "N m", 4, |s| Some(s.peak_torque)),
+    column("energy", "energy", "what motors took, none given back", "J", 4, |s| Some(s.energy)),
+    column("wheel_rate", "wheel", "largest rate of the reaction wheel", "rad/s", 1, |s| s.wheel_rate),
+    column("saturated_at", "saturates", "when the wheel could give no more", "s", 3, |s| s.saturated_at),
+    column("peak_arm_moment", "peak n_B", "largest moment of the arm, before the wheel", "N m", 4, |s| {
+        s.peak_arm_moment
+    }),
+];
+
+const fn column(
+    key: &'static str,
+    head: &'static str,
+    meaning: &'static str,
+    unit: &'static str,
+    decimals: usize,
+    value: fn(&Summary) -> Option<f64>,
+) -> Column {
+    Column { key, head, meaning, unit, decimals, value }
+}
+
+impl Summary {
+    /// Of a run's last frame.
+    pub fn of(scenario: &Scenario, last: &Frame) -> Self {
+        let (peaks, tally, verdict) = (&last.peaks, &last.tally, Verdict::of(scenario, last));
+        Self {
+            name: scenario.name.clone(),
+            title: scenario.title.clone(),
+            time: last.time,
+            peak_force: peaks.force,
+            rms_force: tally.force_rms(),
+            force_impulse: tally.force_impulse,
+            peak_arm_moment: verdict.past_wheel.map(|_| verdict.arm_moment),
+            peak_moment: peaks.moment,
+            rms_moment: tally.moment_rms(),
+            moment_impulse: tally.moment_impulse,
+            base_shift: tally.shift,
+            base_tilt: tally.tilt,
+            miss: verdict.miss,
+            peak_torque: peaks.torque.max_abs(),
+            energy: tally.energy,
+            wheel_rate: scenario.base.wheel.map(|_| tally.wheel_rate),
+            saturated_at: tally.saturated,
+            reactionless: verdict.reactionless,
+            fault: verdict.fault.map(|lamp| lamp.to_string()),
+            verdict,
+        }
+    }
+}

@@ -1,0 +1,355 @@
+//! An [`Ensemble`]: random machines around a nominal one on one motion, a million a second.
+//!
+//! While the drives track the motion perfectly the wrench is linear in the constants θ of the machine. What the motion
+//! does is tabulated once; each machine costs its θ and a sum per instant. Machines stand side by side, so that the
+//! compiler's vectors hold one number of several.
+//!
+//! # Symbols
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | t_s | instants (s + ½) T / S: the mean over them is the midpoint rule | s |
+//! | δθ | θ of a machine less θ of the nominal one | kg m; kg m² |
+//! | φ_i(t) | n_B(t) of the machine of which only θ_i = 1 | N m each |
+//! | ψ_i(t) | dynamic f_B(t) of it | N each |
+//! | n_B(t) | that of the nominal machine + Σ φ_i δθ_i | N m |
+//!
+//! n_B is whole, with the moment of the weight; f_B is the dynamic part, as everywhere: M g is known beforehand.
+
+use std::collections::BTreeMap;
+
+use nalgebra::DVector;
+
+use super::ToleranceError;
+use super::constants::{self, Body, LANES, Lanes, count, evaluate, unit};
+use super::deviate::{CHUNK, Draws};
+use super::moments::Moments;
+use super::parameter::{Parameter, parameters};
+use super::spread::Spread;
+use crate::mechanics::dynamics::{Surroundings, base_wrench};
+use crate::mechanics::machine::{Inertia, Machine, MachineError};
+use crate::mechanics::planar::{MAX_DRIVES, Vector};
+use crate::planning::plan::{Motion, Reference};
+
+/// What one machine comes to on the motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Outcome {
+    /// Largest |n_B|, N m.
+    pub peak_moment: f64,
+    /// Largest dynamic |f_B|, N.
+    pub peak_force: f64,
+    /// Root of the mean square of n_B over time, N m.
+    pub rms_moment: f64,
+    /// Root of the mean square of the dynamic |f_B| over time, N.
+    pub rms_force: f64,
+}
+
+/// Random machines around a nominal one, and a motion that all track perfectly.
+#[derive(Clone, Debug)]
+pub struct Ensemble {
+    machine: Machine,
+    parameters: Vec<Parameter>,
+    bodies: Vec<Body>,
+    seed: u64,
+    references: Vec<Reference>,
+    time: Vec<f64>,
+    /// n_B and f_B of the nominal machine.
+    nominal: Vec<(f64, Vector)>,
+    /// φ and ψ of every constant, instants after instants.
+    influence: Vec<Vec<(f64, Vector)>>,
+    moments: Moments,
+    table: Table,
+}
+
+/// What a machine needs at each instant, packed.
+#[derive(Clone, Debug)]
+struct Table {
+    /// Constants that n_B hangs on, and those that f_B does.
+    moment: Vec<usize>,
+    force: Vec<usize>,
+    /// At each instant: n_B, f_Bx, f_By of the nominal machine, φ, ψ_x and ψ_y by turns.
+    rows: Vec<f64>,
+    /// −θ(0) of the bodies that vary.
+    offset: Vec<f64>,
+}
+
+impl Ensemble {
+    /// Machines around `machine`, drawn by `seed`, on `instants` of a motion, at least one.
+    ///
+    /// # Errors
+    /// If nothing varies, a key or spread is wrong, or a length cannot vary alone.
+    pub fn new(
+        machine: &Machine,
+        motion: &Motion,
+        instants: usize,
+        spreads: &BTreeMap<String, Spread>,
+        seed: u64,
+    ) -> Result<Self, ToleranceError> {
+        let (n, parameters, instants) = (machine.drives(), parameters(machine, spreads)?, instants.max(1));
+        let bodies = constants::bodies(machine, &parameters).map_err(ToleranceError::Machine)?;
+        let moments = Moments::of(n, &bodies, &parameters);
+        let step = motion.duration() / instants as f64;
+        let time: Vec<f64> = (0..instants).map(|s| (s as f64 + 0.5) * step).collect();
+        let references: Vec<Reference> = time.iter().map(|t| motion.at(*t)).collect();
+        let (inertia, around) = (Inertia::of(machine), surroundings(machine));
+        let wrenches = |inertia: &Inertia| references.iter().map(|r| wrench(inertia, r, &around)).collect::<Vec<_>>();
+        let nominal = wrenches(&inertia);
+        let influence: Vec<_> = (0..count(n)).map(|i| wrenches(&unit(n, i, &inertia))).collect();
+        let table = Table::of((n, parameters.len()), &bodies, &nominal, &influence, &moments.varies);
+        let machine = machine.clone();
+        Ok(Self { machine, parameters, bodies, seed, references, time, nominal, influence, moments, table })
+    }
+
+    /// What varies.
+    pub fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    /// The nominal machine.
+    pub fn machine(&self) -> &Machine {
+        &self.machine
+    }
+
+    /// Which random machines.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// The instants, s.
+    pub fn time(&self) -> &[f64] {
+        &self.time
+    }
+
+    /// The motion at the instants.
+    pub fn references(&self) -> &[Reference] {
+        &self.references
+    }
+
+    /// n_B, N m, and dynamic f_B, N, of the nominal machine at the instants.
+    pub fn nominal(&self) -> &[(f64, Vector)] {
+        &self.nominal
+    }
+
+    /// What the nominal machine comes to.
+    pub fn nominal_outcome(&self) -> Outcome {
+        let instants = self.nominal.len() as f64;
+        let peak = |f: fn(&(f64, Vector)) -> f64| self.nominal.iter().map(f).fold(0.0, f64::max);
+        let rms = |f: fn(&(f64, Vector)) -> f64| (self.nominal.iter().map(f).sum::<f64>() / instants).sqrt();
+        Outcome {
+            peak_moment: peak(|w| w.0.abs()),
+            peak_force: peak(|w| w.1.norm()),
+            rms_moment: rms(|w| w.0 * w.0),
+            rms_force: rms(|w| w.1.norm_sqr()),
+        }
+    }
+
+    /// One machine of them, from its parameters' deviations in their order.
+    ///
+    /// # Errors
+    /// Never for deviations that were drawn.
+    pub fn machine_of(&self, deviations: &[f64]) -> Result<Machine, MachineError> {
+        let mut spec = self.machine.spec().clone();
+        for (parameter, deviation) in self.parameters.iter().zip(deviations) {
+            parameter.set(&mut spec, parameter.nominal + deviation);
+        }
+        Machine::new(spec)
+    }
+
+    /// Something that draws and evaluates machines; one for each thread.
+    pub fn sampler(&self) -> Sampler<'_> {
+        Sampler {
+            ensemble: self,
+            draws: Draws::new(self.seed),
+            deviations: vec![[0.0; CHUNK]; self.parameters.len()],
+            theta: vec![[0.0; LANES]; count(self.machine.drives())],
+            outcomes: [Outcome::default(); CHUNK],
+        }
+    }
+
+    /// Exact mean of n_B and of f_B at an instant, over all machines.
+    pub(super) fn mean_at(&self, s: usize) -> (f64, Vector) {
+        self.applied(s, &self.moments.mean)
+    }
+
+    /// n_B and f_B of the nominal machine with constants changed by δθ.
+    fn applied(&self, s: usize, change: &DVector<f64>) -> (f64, Vector) {
+        let sum = |(n, f): (f64, Vector), (i, x): (usize, &f64)| {
+            let (phi, psi) = self.influence[i][s];
+            (n + phi * x, f + psi * *x)
+        };
+        change.iter().enumerate().fold(self.nominal[s], sum)
+    }
+
+    /// Exact variance of n_B and of f_Bx, f_By at an instant, over all machines.
+    pub(super) fn variance_at(&self, s: usize) -> [f64; 3] {
+        let rows = self.rows_at(s);
+        rows.map(|row| (&self.moments.covariance * &row).dot(&row).max(0.0))
+    }
+
+    /// ∂n_B/∂δ, ∂f_Bx/∂δ, ∂f_By/∂δ at an instant, each by parameters.
+    pub(super) fn slopes_at(&self, s: usize) -> [DVector<f64>; 3] {
+        self.rows_at(s).map(|row| self.moments.slope.tr_mul(&row))
+    }
+
+    fn rows_at(&self, s: usize) -> [DVector<f64>; 3] {
+        let pick = |f: fn(&(f64, Vector)) -> f64| {
+            DVector::from_iterator(self.influence.len(), self.influence.iter().map(|i| f(&i[s])))
+        };
+        [pick(|w| w.0), pick(|w| w.1.re), pick(|w| w.1.im)]
+    }
+}
+
+fn surroundings(machine: &Machine) -> Surroundings {
+    Surroundings { gravity: machine.gravity(), force: Vector::default() }
+}
+
+fn wrench(inertia: &Inertia, r: &Reference, around: &Surroundings) -> (f64, Vector) {
+    let wrench = base_wrench(inertia, &r.q.units(), &r.qd, &r.qdd, around);
+    (wrench.total().moment, wrench.dynamic.force)
+}
+
+impl Table {
+    fn of(
+        (n, parameters): (usize, usize),
+        bodies: &[Body],
+        nominal: &[(f64, Vector)],
+        influence: &[Vec<(f64, Vector)>],
+        varies: &[bool],
+    ) -> Self {
+        let used = |counts: fn(&(f64, Vector)) -> bool| {
+            (0..influence.len()).filter(|&i| varies[i] && influence[i].iter().any(counts)).collect::<Vec<_>>()
+        };
+        let (moment, force) = (used(|w| w.0 != 0.0), used(|w| w.1 != Vector::default()));
+        let mut rows = Vec::with_capacity(nominal.len() * (3 + moment.len() + 2 * force.len()));
+        for (s, (n, f)) in nominal.iter().enumerate() {
+            rows.extend([*n, f.re, f.im]);
+            rows.extend(moment.iter().map(|&i| influence[i][s].0));
+            rows.extend(force.iter().flat_map(|&i| [influence[i][s].1.re, influence[i][s].1.im]));
+        }
+        let mut theta = vec![[0.0; LANES]; influence.len()];
+        evaluate(n, bodies, &vec![[0.0; CHUNK]; parameters], 0, &mut theta);
+        Self { moment, force, rows, offset: theta.iter().map(|t| t[0]).collect() }
+    }
+
+    fn width(&self) -> usize {
+        3 + self.moment.len() + 2 * self.force.len()
+    }
+}
+
+/// Draws machines and evaluates them, a chunk at a time; allocates nothing once made.
+#[derive(Clone, Debug)]
+pub struct Sampler<'a> {
+    ensemble: &'a Ensemble,
+    draws: Draws,
+    /// By parameter.
+    deviations: Vec<[f64; CHUNK]>,
+    theta: Vec<Lanes>,
+    outcomes: [Outcome; CHUNK],
+}
+
+impl Sampler<'_> {
+    /// Draws the machines of a chunk: samples `chunk` · [`CHUNK`] and on.
+    pub fn draw(&mut self, chunk: u64) {
+        for (parameter, deviations) in self.ensemble.parameters.iter().zip(&mut self.deviations) {
+            self.draws.uniform(parameter.stream, chunk, deviations);
+            parameter.deviate(deviations);
+        }
+    }
+
+    /// Deviations of the drawn machines, in the parameters' own units: by parameter, then by machine.
+    pub fn deviations(&self) -> &[[f64; CHUNK]] {
+        &self.deviations
+    }
+
+    /// Draws the machines of a chunk and gives what each comes to.
+    pub fn outcomes(&mut self, chunk: u64) -> &[Outcome; CHUNK] {
+        self.draw(chunk);
+        let table = &self.ensemble.table;
+        let (mut moment, mut force) = ([[0.0; LANES]; MOST], [[0.0; LANES]; MOST]);
+        let (moment, force) = (&mut moment[..table.moment.len()], &mut force[..table.force.len()]);
+        for block in 0..CHUNK / LANES {
+            self.constants(block);
+            gather(&self.theta, &table.moment, &table.offset, moment);
+            gather(&self.theta, &table.force, &table.offset, force);
+            let [peak_n, peak_f, sum_n, sum_f] = sweep(&table.rows, moment, force);
+            let mean = 1.0 / self.ensemble.time.len() as f64;
+            for w in 0..LANES {
+                self.outcomes[block * LANES + w] = Outcome {
+                    peak_moment: peak_n[w].sqrt(),
+                    peak_force: peak_f[w].sqrt(),
+                    rms_moment: (sum_n[w] * mean).sqrt(),
+                    rms_force: (sum_f[w] * mean).sqrt(),
+                };
+            }
+        }
+        &self.outcomes
+    }
+
+    /// Draws the machines of a chunk and shows n_B and |f_B| of all of them at each instant.
+    pub fn courses(&mut self, chunk: u64, mut see: impl FnMut(usize, usize, f64, f64)) {
+        self.draw(chunk);
+        let table = &self.ensemble.table;
+        let (mut moment, mut force) = (vec![[0.0; LANES]; table.moment.len()], vec![[0.0; LANES]; table.force.len()]);
+        for block in 0..CHUNK / LANES {
+            self.constants(block);
+            gather(&self.theta, &table.moment, &table.offset, &mut moment);
+            gather(&self.theta, &table.force, &table.offset, &mut force);
+            for (s, row) in table.rows.chunks_exact(table.width()).enumerate() {
+                let (n, fx, fy) = wrenches(row, &moment, &force);
+                (0..LANES).for_each(|w| see(s, block * LANES + w, n[w], fx[w].hypot(fy[w])));
+            }
+        }
+    }
+
+    /// θ of the bodies that vary, of one block of the drawn machines.
+    fn constants(&mut self, block: usize) {
+        let Ensemble { machine, bodies, .. } = self.ensemble;
+        evaluate(machine.drives(), bodies, &self.deviations, block, &mut self.theta);
+    }
+}
+
+/// The most constants of a machine.
+const MOST: usize = count(MAX_DRIVES);
+
+/// δθ of the constants that count.
+fn gather(theta: &[Lanes], which: &[usize], offset: &[f64], out: &mut [Lanes]) {
+    for (out, &i) in out.iter_mut().zip(which) {
+        *out = theta[i].map(|x| x - offset[i]);
+    }
+}
+
+/// n_B, f_Bx, f_By of some machines at one instant.
+#[inline(always)]
+fn wrenches(row: &[f64], moment: &[Lanes], force: &[Lanes]) -> (Lanes, Lanes, Lanes) {
+    let (nominal, row) = row.split_at(3);
+    let (phi, psi) = row.split_at(moment.len());
+    let (mut n, mut fx, mut fy) = ([nominal[0]; LANES], [nominal[1]; LANES], [nominal[2]; LANES]);
+    for (phi, theta) in phi.iter().zip(moment) {
+        for w in 0..LANES {
+            n[w] += phi * theta[w];
+        }
+    }
+    for ([x, y], theta) in psi.as_chunks().0.iter().zip(force) {
+        for w in 0..LANES {
+            fx[w] += x * theta[w];
+            fy[w] += y * theta[w];
+        }
+    }
+    (n, fx, fy)
+}
+
+/// Over all instants: the largest n_B² and |f_B|², and their sums.
+fn sweep(rows: &[f64], moment: &[Lanes], force: &[Lanes]) -> [Lanes; 4] {
+    let [mut peak_n, mut peak_f, mut sum_n, mut sum_f] = [[0.0; LANES]; 4];
+    for row in rows.chunks_exact(3 + moment.len() + 2 * force.len()) {
+        let (n, fx, fy) = wrenches(row, moment, force);
+        for w in 0..LANES {
+            let (n, f) = (n[w] * n[w], fx[w] * fx[w] + fy[w] * fy[w]);
+            // Not f64::max, whose care for NaN takes longer than the rest; nothing here is NaN.
+            peak_n[w] = if n > peak_n[w] { n } else { peak_n[w] };
+            peak_f[w] = if f > peak_f[w] { f } else { peak_f[w] };
+            sum_n[w] += n;
+            sum_f[w] += f;
+        }
+    }
+    [peak_n, peak_f, sum_n, sum_f]
+}

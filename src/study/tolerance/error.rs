@@ -1,0 +1,56 @@
+//! Why there is no study of tolerances.
+
+use thiserror::Error;
+
+use crate::mechanics::machine::MachineError;
+
+/// Why there is no study of tolerances.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum ToleranceError {
+    /// A key that names no number of the machine.
+    #[error(
+        "no number {key:?} that could vary: want link.NAME.(com|com_normal|mass|inertia), length.NAME, payload.mass or \
+         payload.inertia, with names of this machine or *"
+    )]
+    UnknownKey {
+        /// The key.
+        key: String,
+    },
+    /// Percent of zero.
+    #[error("{key} is 0, and percent of 0 is nothing: want a spread in its own unit")]
+    PercentOfZero {
+        /// The key.
+        key: String,
+    },
+    /// Every spread is zero.
+    #[error("nothing varies: want a spread above 0")]
+    NothingVaries,
+    /// Too many machines that cannot be.
+    #[error(
+        "{:.0} % of {key} = {nominal} {unit} with this spread lie below 0: want 10 % at most, with a smaller spread or a \
+         larger nominal value", 100.0 * cut
+    )]
+    Impossible {
+        /// The key.
+        key: String,
+        /// Its nominal value.
+        nominal: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// Which part of the distribution is impossible.
+        cut: f64,
+    },
+    /// Numbers that no machine has.
+    #[error("{key} with a spread of {scale} {unit} could pass 1000000: want a smaller spread")]
+    TooWide {
+        /// The key.
+        key: String,
+        /// Standard deviation or half-width.
+        scale: f64,
+        /// Its unit.
+        unit: &'static str,
+    },
+    /// A length that a closure holds.
+    #[error("a varied machine would not be one: {0}")]
+    Machine(MachineError),
+}

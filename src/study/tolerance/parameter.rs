@@ -1,0 +1,259 @@
+//! A [`Parameter`]: one number of the machine that varies, by the key of its setting.
+//!
+//! # Symbols
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | δ | deviation of the parameter from its nominal value | its own |
+//! | σ, h | standard deviation of a normal spread, half-width of a uniform one | its own |
+//! | α | lower bound in standard deviations; nothing is drawn below it | 1 |
+//! | μ_k | E[δᵏ], raw moments about the nominal value | its own, to the k |
+//!
+//! # Source
+//! Moments of the normal distribution cut at α: E[zᵏ] = (k − 1) E[zᵏ⁻²] + αᵏ⁻¹ φ(α)/(1 − Φ(α)), by parts.
+
+use std::collections::BTreeMap;
+use std::f64::consts::{PI, SQRT_2};
+
+use super::ToleranceError;
+use super::deviate::inverse_normal;
+use super::spread::{Amount, Spread};
+use crate::mechanics::machine::{Machine, MachineError, MachineSpec};
+
+/// What of a machine a parameter is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Quantity {
+    Com(usize),
+    ComNormal(usize),
+    Mass(usize),
+    Inertia(usize),
+    /// Named length, in the order of their names.
+    Length(usize),
+    PayloadMass,
+    PayloadInertia,
+}
+
+impl Quantity {
+    fn unit(self) -> &'static str {
+        match self {
+            Self::Com(_) | Self::ComNormal(_) | Self::Length(_) => "m",
+            Self::Mass(_) | Self::PayloadMass => "kg",
+            Self::Inertia(_) | Self::PayloadInertia => "kg m²",
+        }
+    }
+
+    /// Whether nothing lies below zero.
+    fn is_bounded(self) -> bool {
+        !matches!(self, Self::Com(_) | Self::ComNormal(_))
+    }
+
+    /// Whether zero itself is impossible.
+    fn is_positive(self) -> bool {
+        matches!(self, Self::Mass(_) | Self::Length(_))
+    }
+}
+
+/// One number of the machine that varies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Key of the setting: `link.5.com`.
+    pub key: String,
+    /// SI unit.
+    pub unit: &'static str,
+    /// Value of the nominal machine.
+    pub nominal: f64,
+    /// As it was stated.
+    pub spread: Spread,
+    /// Standard deviation of what is drawn.
+    pub deviation: f64,
+    /// Share of the stated distribution that is impossible, such as a mass below zero. The rest is drawn from as if
+    /// every impossible draw were drawn again; mean and deviation are of that rest.
+    pub cut: f64,
+    pub(super) quantity: Quantity,
+    /// Counted over all numbers of the machine that could vary, so that what one draws does not hang on the others.
+    pub(super) stream: u64,
+    /// σ or h, in the parameter's unit.
+    scale: f64,
+    /// E[δᵏ], k = 0..=4.
+    pub(super) moments: [f64; 5],
+}
+
+/// Every number of a machine that can vary, in a fixed order.
+fn everything(spec: &MachineSpec) -> Vec<(Quantity, String, f64)> {
+    let mut all = Vec::new();
+    for (j, link) in spec.links.iter().enumerate() {
+        all.extend([
+            (Quantity::Com(j), format!("link.{}.com", link.name), link.com),
+            (Quantity::ComNormal(j), format!("link.{}.com_normal", link.name), link.com_normal),
+            (Quantity::Mass(j), format!("link.{}.mass", link.name), link.mass),
+            (Quantity::Inertia(j), format!("link.{}.inertia", link.name), link.inertia),
+        ]);
+    }
+    for (i, (name, metres)) in spec.lengths.iter().enumerate() {
+        all.push((Quantity::Length(i), format!("length.{name}"), *metres));
+    }
+    all.push((Quantity::PayloadMass, "payload.mass".into(), spec.payload.mass));
+    all.push((Quantity::PayloadInertia, "payload.inertia".into(), spec.payload.inertia));
+    all
+}
+
+/// Whether a key names a number, `*` standing for any name.
+fn names(pattern: &str, key: &str) -> bool {
+    let (mut pattern, mut key) = (pattern.split('.'), key.split('.'));
+    loop {
+        match (pattern.next(), key.next()) {
+            (None, None) => return true,
+            (Some(p), Some(k)) if p == k || p == "*" => {}
+            _ => return false,
+        }
+    }
+}
+
+/// The numbers of a machine that vary; where several keys name one, the one without `*` counts.
+///
+/// # Errors
+/// If a key names nothing, a spread is relative to zero, or too much of it is impossible.
+pub(super) fn parameters(
+    machine: &Machine,
+    spreads: &BTreeMap<String, Spread>,
+) -> Result<Vec<Parameter>, ToleranceError> {
+    let all = everything(machine.spec());
+    for (key, spread) in spreads {
+        let named: Vec<_> = all.iter().filter(|(_, k, _)| names(key, k)).collect();
+        if named.is_empty() {
+            return Err(ToleranceError::UnknownKey { key: key.clone() });
+        }
+        let of_nothing = matches!(spread.amount(), Amount::Percent(p) if p > 0.0);
+        if of_nothing && named.iter().all(|(_, _, nominal)| *nominal == 0.0) {
+            return Err(ToleranceError::PercentOfZero { key: key.clone() });
+        }
+    }
+    let mut found = Vec::new();
+    for (stream, (quantity, key, nominal)) in all.into_iter().enumerate() {
+        let stars = |pattern: &str| pattern.matches('*').count();
+        let spread = spreads.iter().filter(|(p, _)| names(p, &key)).min_by_key(|(p, _)| stars(p));
+        let Some((_, &spread)) = spread else { continue };
+        let scale = match spread.amount() {
+            Amount::Absolute(x) => x,
+            Amount::Percent(x) => x / 100.0 * nominal.abs(),
+        };
+        if scale > 0.0 {
+            found.push(Parameter::new(quantity, key, nominal, spread, scale, stream as u64)?);
+        }
+    }
+    match found.is_empty() {
+        true => Err(ToleranceError::NothingVaries),
+        false => Ok(found),
+    }
+}
+
+/// The largest share of a distribution that may be impossible.
+const MOST_CUT: f64 = 0.1;
+
+/// The largest number of a machine.
+const MOST: f64 = 1e6;
+
+impl Parameter {
+    fn new(
+        quantity: Quantity,
+        key: String,
+        nominal: f64,
+        spread: Spread,
+        scale: f64,
+        stream: u64,
+    ) -> Result<Self, ToleranceError> {
+        if nominal.abs() + 9.0 * scale > MOST {
+            return Err(ToleranceError::TooWide { key, scale, unit: quantity.unit() });
+        }
+        let bound = quantity.is_bounded().then_some(-nominal);
+        let (cut, moments) = match spread {
+            Spread::Normal(_) => normal_moments(scale, bound),
+            Spread::Uniform(_) => uniform_moments(scale, bound),
+        };
+        if cut > MOST_CUT {
+            return Err(ToleranceError::Impossible { key, nominal, unit: quantity.unit(), cut });
+        }
+        let deviation = (moments[2] - moments[1] * moments[1]).max(0.0).sqrt();
+        let unit = quantity.unit();
+        Ok(Self { key, unit, nominal, spread, deviation, cut, quantity, stream, scale, moments })
+    }
+
+    /// Mean deviation from the nominal value: zero unless part of the distribution is cut off.
+    pub fn mean_deviation(&self) -> f64 {
+        self.moments[1]
+    }
+
+    /// Turns uniform numbers in (0, 1) into deviations, in place.
+    pub(super) fn deviate(&self, u: &mut [f64]) {
+        match self.spread {
+            Spread::Normal(_) => {
+                // The upper share 1 − cut of the distribution, from its upper end: (0, 1 − cut) mirrored.
+                let (keep, scale) = (1.0 - self.cut, -self.scale);
+                u.iter_mut().for_each(|u| *u *= keep);
+                inverse_normal(u);
+                u.iter_mut().for_each(|z| *z *= scale);
+            }
+            Spread::Uniform(_) => {
+                let low = self.scale * (2.0 * self.cut - 1.0);
+                let width = self.scale - low;
+                u.iter_mut().for_each(|u| *u = low + width * *u);
+            }
+        }
+        if self.cut > 0.0 {
+            // Against rounding only.
+            let least = if self.quantity.is_positive() { -self.nominal * (1.0 - 1e-9) } else { -self.nominal };
+            u.iter_mut().for_each(|d| *d = d.max(least));
+        }
+    }
+
+    /// Sets this number of a machine.
+    pub(super) fn set(&self, spec: &mut MachineSpec, value: f64) {
+        match self.quantity {
+            Quantity::Com(j) => spec.links[j].com = value,
+            Quantity::ComNormal(j) => spec.links[j].com_normal = value,
+            Quantity::Mass(j) => spec.links[j].mass = value,
+            Quantity::Inertia(j) => spec.links[j].inertia = value,
+            Quantity::Length(i) => {
+                if let Some(metres) = spec.lengths.values_mut().nth(i) {
+                    *metres = value;
+                }
+            }
+            Quantity::PayloadMass => spec.payload.mass = value,
+            Quantity::PayloadInertia => spec.payload.inertia = value,
+        }
+    }
+
+    /// A machine with this number changed.
+    ///
+    /// # Errors
+    /// If it is not a machine then.
+    pub(super) fn changed(&self, machine: &Machine, value: f64) -> Result<Machine, MachineError> {
+        let mut spec = machine.spec().clone();
+        self.set(&mut spec, value);
+        Machine::new(spec)
+    }
+}
+
+/// The share below a bound and E[δᵏ] of what remains of a normal distribution.
+fn normal_moments(sigma: f64, bound: Option<f64>) -> (f64, [f64; 5]) {
+    let alpha = bound.map_or(f64::NEG_INFINITY, |b| b / sigma);
+    let (cut, density) = match alpha.is_finite() {
+        true => (0.5 * libm::erfc(-alpha / SQRT_2), (-0.5 * alpha * alpha).exp() / (2.0 * PI).sqrt()),
+        false => (0.0, 0.0),
+    };
+    let ratio = density / (1.0 - cut);
+    // α only counts where the density there is not nothing.
+    let alpha = if ratio > 0.0 { alpha } else { 0.0 };
+    let mut z = [1.0, ratio, 0.0, 0.0, 0.0];
+    for k in 2..5 {
+        z[k] = (k - 1) as f64 * z[k - 2] + alpha.powi(k as i32 - 1) * ratio;
+    }
+    (cut, std::array::from_fn(|k| z[k] * sigma.powi(k as i32)))
+}
+
+/// The share below a bound and E[δᵏ] of what remains of a uniform distribution.
+fn uniform_moments(half: f64, bound: Option<f64>) -> (f64, [f64; 5]) {
+    let low = bound.map_or(-half, |b| b.max(-half));
+    let power = |x: f64, k: usize| x.powi(k as i32 + 1);
+    let moment = |k: usize| (power(half, k) - power(low, k)) / ((k + 1) as f64 * (half - low));
+    ((low + half) / (2.0 * half), std::array::from_fn(moment))
+}

@@ -1,0 +1,48 @@
+//! A varied machine under control that knows only the nominal one.
+
+use super::ensemble::Outcome;
+use crate::mechanics::machine::Machine;
+use crate::session::{Refusal, Run};
+use crate::simulation::audit::Audit;
+use crate::simulation::plant::{Load, Plant};
+use crate::simulation::{Guide, Setup, Simulation};
+
+/// Simulates a planned motion, control and all, with another machine as plant.
+///
+/// # Errors
+/// If the numbers blow up, or an audit fails: a study with figures in it that nobody vouches for is none.
+pub fn simulate(planned: &Run, plant: &Machine) -> Result<Outcome, Refusal> {
+    let scenario = planned.scenario();
+    let guide = Guide::Motion { motion: planned.plan().motion.clone(), start: 0.0 };
+    // What it holds at the start is part of the varied machine; what comes later is not.
+    let load = scenario.plant.payload;
+    let payload = if load.is_held(0.0, 0.5 * scenario.step) { Load::default() } else { load };
+    let rest = Plant { payload, ..scenario.plant.clone() };
+    let setup = Setup { plant: &rest, ..scenario.setup() };
+    let mut simulation = Simulation::of_machine(&setup, plant.clone(), guide)?;
+    let last = planned.last_step();
+    let (mut weights, mut moment, mut force) = (0.0, 0.0, 0.0);
+    loop {
+        let frame = simulation.frame();
+        if !frame.is_finite() {
+            return Err(Refusal::Diverged { time: frame.time });
+        }
+        // The trapezoidal rule: the ends count half.
+        let weight = if frame.step == 0 || frame.step >= last { 0.5 } else { 1.0 };
+        moment += weight * frame.felt_moment().powi(2);
+        force += weight * frame.wrench.dynamic.force.norm_sqr();
+        weights += weight;
+        if frame.step >= last {
+            if let Some(lamp) = Audit::fault(&frame) {
+                return Err(Refusal::Untrusted { why: lamp.to_string() });
+            }
+            return Ok(Outcome {
+                peak_moment: frame.peaks.moment,
+                peak_force: frame.peaks.force,
+                rms_moment: f64::sqrt(moment / weights),
+                rms_force: f64::sqrt(force / weights),
+            });
+        }
+        simulation.advance();
+    }
+}
