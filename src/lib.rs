@@ -41,7 +41,8 @@
 //! # use stillbase::planning::pose_constant::Planes;
 //! # let machine = machine::builtin("nine-link").expect("built in");
 //! # let planes = Planes::of(machine).expect("three drives, two angles");
-//! use stillbase::planning::plan::{Curve, Rule, trace};
+//! use stillbase::planning::curves::Curve;
+//! use stillbase::planning::following::{Rule, trace};
 //! let line = [Curve::line(Vector::new(0.50, 0.50), Vector::new(0.55, 0.90))];
 //! assert!(trace::follow(planes.map(), &line, 2.4, None, Rule::default()).is_ok());
 //! let blocked = trace::follow(planes.map(), &line, 2.9, None, Rule::default()).expect_err("B is on other planes");

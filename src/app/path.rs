@@ -9,8 +9,8 @@ use super::top::name;
 use crate::mechanics::planar::Vector;
 use crate::picture::scene::palette::Palette;
 use crate::picture::scene::stage::signed;
-use crate::planning::plan::TimeLaw;
-use crate::planning::plan::least_reaction::FixedB;
+use crate::planning::off_plane::least_reaction::FixedB;
+use crate::planning::timing::TimeLaw;
 use crate::session::scenario::{Change, Corners, Least, Shape, Task, TaskKind, Value};
 use crate::session::{Edit, Session};
 

@@ -3,7 +3,7 @@
 use clap::Args;
 use serde::Serialize;
 use stillbase::mechanics::machine::{Inertia, Machine};
-use stillbase::planning::plan::null_space::is_integrable;
+use stillbase::planning::off_plane::null_space::is_integrable;
 
 use super::failure::Failure;
 use super::input::MachineArgument;

@@ -6,9 +6,9 @@ use std::fmt::Display;
 
 use clap::ValueEnum;
 use stillbase::mechanics::machine::Machine;
-use stillbase::planning::plan::Samples;
-use stillbase::planning::plan::given::MAX_SAMPLES;
-use stillbase::planning::plan::spline::FEWEST;
+use stillbase::planning::curves::Samples;
+use stillbase::planning::curves::given::MAX_SAMPLES;
+use stillbase::planning::curves::spline::FEWEST;
 use stillbase::settings::range::{Short, clipped, shortened};
 
 use super::failure::Failure;

@@ -13,7 +13,8 @@ use stillbase::files::{check_new, finish_all, made};
 use stillbase::mechanics::dynamics::Surroundings;
 use stillbase::mechanics::machine::{self, Inertia, Machine};
 use stillbase::mechanics::planar::Vector;
-use stillbase::planning::plan::{Motion, Samples};
+use stillbase::planning::curves::Samples;
+use stillbase::planning::motion::Motion;
 use stillbase::planning::pose_constant::Planes;
 use stillbase::session::scenario::{Scenario, Task, TaskKind};
 

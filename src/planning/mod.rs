@@ -1,5 +1,22 @@
-//! Where a machine may go, and when: reactionless planes and workspaces, curves, timing, ways off the plane, following.
+//! Where a machine may go, and when.
+//!
+//! | what | modules |
+//! |---|---|
+//! | planes q₁ + λ₂ q₂ + λ₃ q₃ = b, poses, boundaries, which b reach a point | [`reactionless`], [`pose_constant`] |
+//! | where: curves of the end effector, paths of the drives | [`curves`] |
+//! | when: laws, limits, the fastest | [`timing`] |
+//! | on a plane: curves followed, or why not | [`following`] |
+//! | off the planes: what a change of b costs, the least reaction, zero momentum | [`off_plane`] |
+//! | where and when together, and what they will cost | [`motion`], [`forecast`] |
 
-pub mod plan;
+pub mod curves;
+pub mod following;
+pub mod forecast;
+pub mod motion;
+pub mod off_plane;
 pub mod pose_constant;
 pub mod reactionless;
+pub mod timing;
+
+pub use forecast::Forecast;
+pub use motion::{Motion, Reference};

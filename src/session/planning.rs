@@ -8,14 +8,17 @@ use super::run::allowed;
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{DriveAngles, Vector};
-use crate::planning::plan::least_reaction::Verdicts;
-use crate::planning::plan::limits::Limit;
-use crate::planning::plan::path::{Chained, SameTip, minimum_norm_curve};
-use crate::planning::plan::{
-    Curve, Forecast, Limits, Motion, Path, Price, Profile, Rule, TimeLaw, Usage, fastest, trace,
-};
+use crate::planning::curves::path::{Chained, SameTip, minimum_norm_curve};
+use crate::planning::curves::{Curve, Path};
+use crate::planning::following::{Rule, trace};
+use crate::planning::forecast::Forecast;
+use crate::planning::motion::Motion;
+use crate::planning::off_plane::Price;
+use crate::planning::off_plane::least_reaction::Verdicts;
 use crate::planning::pose_constant::{Mend, Planes, Unreachable};
 use crate::planning::reactionless::{Decimal, PlanePoint};
+use crate::planning::timing::limits::Limit;
+use crate::planning::timing::{Limits, Profile, TimeLaw, Usage, fastest};
 use crate::session::scenario::{Corners, Scenario, Shape, Task, TaskKind};
 
 /// A planned task.

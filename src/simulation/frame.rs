@@ -7,7 +7,7 @@ use crate::mechanics::joint_forces::Inside;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector, unit};
 use crate::simulation::plant::Spin;
 
-pub use crate::planning::plan::follow::Target;
+pub use crate::planning::following::follow::Target;
 pub use crate::planning::pose_constant::Reach;
 pub use crate::planning::reactionless::Dexterity;
 pub use crate::simulation::audit::Audit;

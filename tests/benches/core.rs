@@ -13,13 +13,14 @@ use stillbase::mechanics::machine::{Inertia, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::picture::scene::stage::ViewOptions;
 use stillbase::picture::scene::views::{ViewKind, Views};
-use stillbase::planning::plan::least_reaction::Goal;
-use stillbase::planning::plan::path::tip_line;
-use stillbase::planning::plan::{
-    Curve, CurvePoint, LeastReaction, Limits, Path, Profile, Rule, Samples, TimeLaw, fastest, trace,
-};
+use stillbase::planning::curves::path::tip_line;
+use stillbase::planning::curves::{Curve, CurvePoint, Path, Samples};
+use stillbase::planning::following::{Rule, trace};
+use stillbase::planning::off_plane::LeastReaction;
+use stillbase::planning::off_plane::least_reaction::Goal;
 use stillbase::planning::pose_constant::plane_map;
 use stillbase::planning::reactionless::{AngleDefinition, Boundary, Limit, PlaneMap};
+use stillbase::planning::timing::{Limits, Profile, TimeLaw, fastest};
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Run, Session, replay};
 use stillbase::study::tolerance::{CHUNK, Ensemble, default_spreads};
@@ -63,7 +64,7 @@ fn smoothing_of_samples(bencher: Bencher) {
 fn reference_of_samples(bencher: Bencher) {
     let samples = swinging();
     let path = Path::Table(samples.path(0.0).expect("a path"));
-    let motion = stillbase::planning::plan::Motion { path, profile: Profile::running(samples.duration()) };
+    let motion = stillbase::planning::motion::Motion { path, profile: Profile::running(samples.duration()) };
     let mut t = 0.0;
     bencher.bench_local(|| {
         t = (t + 0.731) % 20.0;

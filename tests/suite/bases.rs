@@ -3,7 +3,9 @@
 use proptest::prelude::*;
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector, cross};
-use stillbase::planning::plan::{Motion, Path, TimeLaw};
+use stillbase::planning::curves::Path;
+use stillbase::planning::motion::Motion;
+use stillbase::planning::timing::TimeLaw;
 use stillbase::session::replay;
 use stillbase::session::scenario::Scenario;
 use stillbase::simulation::control::Control;

@@ -4,8 +4,10 @@
 
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive};
-use stillbase::planning::plan::profile::Span;
-use stillbase::planning::plan::{Motion, Path, Profile};
+use stillbase::planning::curves::Path;
+use stillbase::planning::motion::Motion;
+use stillbase::planning::timing::Profile;
+use stillbase::planning::timing::profile::Span;
 use stillbase::session::replay;
 use stillbase::session::scenario::Scenario;
 use stillbase::simulation::plant::{Base, BaseKind, Body, Contacts, Each, Friction, Plant};

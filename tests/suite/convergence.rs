@@ -4,8 +4,10 @@ use proptest::prelude::*;
 use stillbase::mechanics::kinematics::{end_effector, minimum_norm};
 use stillbase::mechanics::machine::{Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
-use stillbase::planning::plan::path::{PathPoint, SameTip, tip_line};
-use stillbase::planning::plan::{Motion, Path, PathError, TimeLaw};
+use stillbase::planning::curves::path::{PathPoint, SameTip, tip_line};
+use stillbase::planning::curves::{Path, PathError};
+use stillbase::planning::motion::Motion;
+use stillbase::planning::timing::TimeLaw;
 use stillbase::simulation::control::Control;
 use stillbase::simulation::plant::{Base, Plant};
 use stillbase::simulation::{Guide, Setup, Simulation};
@@ -225,7 +227,7 @@ fn quintic_law() {
     let law = TimeLaw::Quintic;
     let grid = || (0..=10_000).map(|i| law.at(f64::from(i) * 3e-4, 3.0));
     let peak =
-        |f: fn(&stillbase::planning::plan::law::Progress) -> f64| grid().map(|p| f(&p).abs()).fold(0.0, f64::max);
+        |f: fn(&stillbase::planning::timing::law::Progress) -> f64| grid().map(|p| f(&p).abs()).fold(0.0, f64::max);
     assert!((peak(|p| p.acceleration) * 9.0 - 10.0 / 3f64.sqrt()).abs() < 1e-6);
     assert!((peak(|p| p.rate) * 3.0 - 1.875).abs() < 1e-9);
     assert!(grid().zip(grid().skip(1)).all(|(a, b)| a.s <= b.s));

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use stillbase::mechanics::planar::Vector;
-use stillbase::planning::plan::{Curve, CurveError};
+use stillbase::planning::curves::{Curve, CurveError};
 
 fn v(x: f64, y: f64) -> Vector {
     Vector::new(x, y)

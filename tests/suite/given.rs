@@ -6,12 +6,15 @@ use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{PerDrive, Vector, unit};
 use stillbase::picture::scene::stage::ViewOptions;
 use stillbase::picture::scene::views::Views;
-use stillbase::planning::plan::given::SamplesError;
-use stillbase::planning::plan::low_pass::LowPass;
-use stillbase::planning::plan::nearest::{Deviation, nearest_b, same_tip, turned};
-use stillbase::planning::plan::spline::{Knots, NOISE_GAIN};
-use stillbase::planning::plan::{Motion, Path, Profile, Reference, Rule, Samples};
+use stillbase::planning::curves::given::SamplesError;
+use stillbase::planning::curves::low_pass::LowPass;
+use stillbase::planning::curves::spline::{Knots, NOISE_GAIN};
+use stillbase::planning::curves::{Path, Samples};
+use stillbase::planning::following::Rule;
+use stillbase::planning::following::nearest::{Deviation, nearest_b, same_tip, turned};
+use stillbase::planning::motion::{Motion, Reference};
 use stillbase::planning::pose_constant::Planes;
+use stillbase::planning::timing::Profile;
 use stillbase::session::scenario::{Scenario, Task, TaskKind};
 use stillbase::session::{Edit, Refusal, Run, Session, replay};
 use stillbase::simulation::frame::Frame;
@@ -273,7 +276,7 @@ fn samples_that_do_not_fit_the_task_are_refused_with_the_way_out() {
         (with(&drives, &|t| t.samples = None), "wants samples"),
         (with(&drives, &|t| t.kind = TaskKind::MinimumNorm), "want the kind given"),
         (with(&drives, &|t| t.closed = true), "open path"),
-        (with(&drives, &|t| t.law = stillbase::planning::plan::TimeLaw::Fastest), "law quintic"),
+        (with(&drives, &|t| t.law = stillbase::planning::timing::TimeLaw::Fastest), "law quintic"),
         (with(&tip, &|t| t.kind = TaskKind::ChangeB), "given, reactionless or minimum-norm"),
         (with(&tip, &|t| t.b = 5.0), "would do"),
         (with(&drives, &|t| t.samples = Some(samples(&uneven(20), |t| vec![t; 4]))), "want 3 drive angles"),
@@ -388,8 +391,8 @@ proptest! {
         let of = |t: f64| vec![1.7 + amplitude * (w * t).sin(), 3.7 + 0.3 * t, 2.2 - amplitude * (w * t).cos()];
         let given = samples(&uneven(100), of);
         let mean = {
-            let f = stillbase::planning::plan::Forecast::at(&motion(&given), &model, &Default::default(),
-                &stillbase::planning::plan::Limits::of(machine()), 20_000);
+            let f = stillbase::planning::forecast::Forecast::at(&motion(&given), &model, &Default::default(),
+                &stillbase::planning::timing::Limits::of(machine()), 20_000);
             f.b_mean
         };
         let distance = |b: f64| {
@@ -718,11 +721,11 @@ mod commands {
         let smooth = folder.object(&["import", "rough.csv", "--smooth", "15"]);
         let peak = |answer: &Value| number(&answer["given"]["peak_base_moment"]);
         let clean = motion(&swinging(150));
-        let want = stillbase::planning::plan::Forecast::at(
+        let want = stillbase::planning::forecast::Forecast::at(
             &clean,
             &Inertia::of(machine()),
             &Default::default(),
-            &stillbase::planning::plan::Limits::of(machine()),
+            &stillbase::planning::timing::Limits::of(machine()),
             4000,
         );
         assert!(

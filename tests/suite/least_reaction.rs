@@ -4,13 +4,15 @@ use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
 use stillbase::mechanics::kinematics::end_effector;
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, Vector, unit};
-use stillbase::planning::plan::corridor::CorridorError;
-use stillbase::planning::plan::inverse::pose_along;
-use stillbase::planning::plan::least_reaction::{FixedB, Goal, LeastReactionError};
-use stillbase::planning::plan::pose_course::PoseCourse;
-use stillbase::planning::plan::{Corridor, CurvePoint, LeastReaction, TimeLaw};
+use stillbase::planning::curves::CurvePoint;
+use stillbase::planning::off_plane::corridor::CorridorError;
+use stillbase::planning::off_plane::inverse::pose_along;
+use stillbase::planning::off_plane::least_reaction::{FixedB, Goal, LeastReactionError};
+use stillbase::planning::off_plane::pose_course::PoseCourse;
+use stillbase::planning::off_plane::{Corridor, LeastReaction};
 use stillbase::planning::pose_constant::plane_map;
 use stillbase::planning::reactionless::{Limit, NoReach, PlaneMap, PlanePoint};
+use stillbase::planning::timing::TimeLaw;
 
 use crate::support::close;
 
@@ -51,7 +53,7 @@ fn in_spaces(from: Vector, to: Vector, b: f64, end: Option<f64>, goal: Goal, spa
 }
 
 /// n_B of the dynamics at T = 1 s, N m.
-fn moment(path: &stillbase::planning::plan::Table, u: f64) -> f64 {
+fn moment(path: &stillbase::planning::curves::Table, u: f64) -> f64 {
     let at = path.at(u);
     let model = Inertia::of(nine_link());
     base_wrench(&model, &at.q.units(), &at.first, &at.second, &Surroundings::default()).total().moment

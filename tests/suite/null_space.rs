@@ -6,11 +6,11 @@ use stillbase::mechanics::dynamics::{Surroundings, angular_momentum, base_wrench
 use stillbase::mechanics::kinematics::{end_effector, velocity};
 use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
-use stillbase::planning::plan::drift::{DriftError, circle, drift, drift_in, zero_momentum_path};
-use stillbase::planning::plan::null_space::{
+use stillbase::planning::off_plane::drift::{DriftError, circle, drift, drift_in, zero_momentum_path};
+use stillbase::planning::off_plane::null_space::{
     NullSpace, is_integrable, momentum_row, momentum_row_rate, motion, projected, rates, twist,
 };
-use stillbase::planning::plan::pose_integral::PoseIntegral;
+use stillbase::planning::off_plane::pose_integral::PoseIntegral;
 
 /// A pose in the middle of the joint limits.
 const Q: [f64; 3] = [1.6875182179, 3.7146223682, 2.1801769897];
@@ -243,7 +243,7 @@ fn a_point_mass_has_its_bearing() {
     assert!(moved > 0.1 && (bearing(&q) - from).abs() < 2e-5, "{moved} {:e}", bearing(&q) - from);
 }
 
-fn round(radius: f64) -> impl Fn(f64) -> stillbase::planning::plan::CurvePoint + Clone {
+fn round(radius: f64) -> impl Fn(f64) -> stillbase::planning::curves::CurvePoint + Clone {
     let at = end_effector(nine_link().tip(), &DriveAngles::from(Q).units());
     circle(at + Vector::new(radius, 0.0), at)
 }
@@ -292,7 +292,7 @@ fn drift_goes_with_the_area() {
     let curve = round(0.05);
     let back = move |s: f64| {
         let at = curve(1.0 - s);
-        stillbase::planning::plan::CurvePoint { first: -at.first, ..at }
+        stillbase::planning::curves::CurvePoint { first: -at.first, ..at }
     };
     let home = drift(&model, there, back, 1).expect("regular").ends[1];
     assert!(home.0.minus(&PerDrive::from(Q)).max_abs() < 1e-10);

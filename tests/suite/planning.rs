@@ -1,7 +1,7 @@
 //! Tasks: what is planned is what the machine then does, and what cannot be is refused with the reason.
 
 use stillbase::mechanics::planar::Vector;
-use stillbase::planning::plan::Stop;
+use stillbase::planning::following::Stop;
 use stillbase::session::scenario::{Change, Scenario, Task};
 use stillbase::session::{Edit, Refusal, Run, Session, curves, replay};
 use stillbase::simulation::frame::{Frame, Phase};

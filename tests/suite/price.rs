@@ -4,12 +4,14 @@ use proptest::prelude::*;
 use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
 use stillbase::mechanics::machine::{Inertia, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
-use stillbase::planning::plan::price::{
+use stillbase::planning::motion::Motion;
+use stillbase::planning::off_plane::Price;
+use stillbase::planning::off_plane::price::{
     FloatingBase, PoseLaw, PriceError, bang_bang_in_b, joint_line, least_change, nearest_planes,
 };
-use stillbase::planning::plan::{Motion, Price, TimeLaw};
 use stillbase::planning::pose_constant::plane_map;
 use stillbase::planning::reactionless::{BSet, PlaneMap, PlanePoint};
+use stillbase::planning::timing::TimeLaw;
 
 use crate::support::{array, close, machine_of, planning};
 

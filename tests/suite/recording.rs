@@ -10,7 +10,7 @@ use rerun::log::{Chunk, LogMsg};
 use rerun::{EntityPath, StoreKind, TimelineName};
 use stillbase::files::WriteError;
 use stillbase::mechanics::planar::{Vector, unit};
-use stillbase::planning::plan::TimeLaw;
+use stillbase::planning::timing::TimeLaw;
 use stillbase::recording::{Options, Pictures, Progress, RecordError, Recording, record};
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, TimedEdit, replay};

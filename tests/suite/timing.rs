@@ -5,15 +5,16 @@ use proptest::prelude::*;
 use stillbase::mechanics::dynamics::{Surroundings, holding_torque, inverse, mass_matrix};
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
-use stillbase::planning::plan::fastest::{fastest_at, s_curve, stations};
-use stillbase::planning::plan::limits::{Limit, Quantity};
-use stillbase::planning::plan::path::{PathPoint, SameTip, tip_line};
-use stillbase::planning::plan::profile::Span;
-use stillbase::planning::plan::usage::ACTIVE;
-use stillbase::planning::plan::{
-    Curve, Fastest, Limits, Motion, Path, Profile, Progress, Rule, Table, TimeError, TimeLaw, Usage, fastest, trace,
-};
+use stillbase::planning::curves::path::{PathPoint, SameTip, tip_line};
+use stillbase::planning::curves::{Curve, Path, Table};
+use stillbase::planning::following::{Rule, trace};
+use stillbase::planning::motion::Motion;
 use stillbase::planning::pose_constant::Planes;
+use stillbase::planning::timing::fastest::{fastest_at, s_curve, stations};
+use stillbase::planning::timing::limits::{Limit, Quantity};
+use stillbase::planning::timing::profile::Span;
+use stillbase::planning::timing::usage::ACTIVE;
+use stillbase::planning::timing::{Fastest, Limits, Profile, Progress, TimeError, TimeLaw, Usage, fastest};
 use stillbase::session::scenario::{Scenario, Task, Value};
 use stillbase::session::{Run, replay};
 

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
 use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse};
 use stillbase::mechanics::planar::Vector;
-use stillbase::planning::plan::Motion;
+use stillbase::planning::motion::Motion;
 use stillbase::session::Run;
 use stillbase::session::scenario::Scenario;
 use stillbase::study::tolerance::{
@@ -122,11 +122,11 @@ proptest! {
     ) {
         let machine = serial_arm(n, &numbers);
         let end = |from: usize| stillbase::mechanics::planar::PerDrive::from_fn(n, |k| 6.0 * numbers[(from + k) % 11]);
-        let path = stillbase::planning::plan::Path::JointLine {
+        let path = stillbase::planning::curves::Path::JointLine {
             from: stillbase::mechanics::planar::DriveAngles(end(0)),
             to: stillbase::mechanics::planar::DriveAngles(end(3)),
         };
-        let motion = Motion::new(path, stillbase::planning::plan::TimeLaw::Quintic, 1.3);
+        let motion = Motion::new(path, stillbase::planning::timing::TimeLaw::Quintic, 1.3);
         let wide = [("link.*.com", "normal:0.01"), ("link.*.com_normal", "uniform:0.01"), ("link.*.mass", "uniform:3%"),
             ("link.*.inertia", "uniform:30%"), ("length.*", "normal:0.002"), ("payload.mass", "normal:10%")];
         let ensemble = Ensemble::new(&machine, &motion, 50, &spreads(&wide), seed).expect("it varies");
@@ -324,7 +324,7 @@ fn sensitivities_are_derivatives() {
         let (inertia, gravity) = (Inertia::of(&machine), machine.gravity());
         let around = Surroundings { gravity, force: Vector::default() };
         let wrench =
-            |r: &stillbase::planning::plan::Reference| base_wrench(&inertia, &r.q.units(), &r.qd, &r.qdd, &around);
+            |r: &stillbase::planning::motion::Reference| base_wrench(&inertia, &r.q.units(), &r.qd, &r.qdd, &around);
         ensemble.references().iter().map(wrench).map(|w| (w.total().moment, w.dynamic.force)).collect()
     };
     for (p, share) in shares.parameters.iter().enumerate() {

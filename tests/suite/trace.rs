@@ -4,7 +4,8 @@ use proptest::prelude::*;
 use stillbase::mechanics::kinematics::end_effector;
 use stillbase::mechanics::machine::{Machine, builtin};
 use stillbase::mechanics::planar::{PerDrive, Vector};
-use stillbase::planning::plan::{Blocked, Curve, Rule, Stop, Table, trace};
+use stillbase::planning::curves::{Curve, Table};
+use stillbase::planning::following::{Blocked, Rule, Stop, trace};
 use stillbase::planning::pose_constant::Planes;
 
 const B: f64 = 2.4;

@@ -3,9 +3,11 @@
 use serde::Serialize;
 use stillbase::mechanics::dynamics::{Surroundings, angular_momentum};
 use stillbase::mechanics::machine::{Inertia, Machine};
-use stillbase::planning::plan::nearest::Deviation;
-use stillbase::planning::plan::{Forecast, Limits, Motion};
+use stillbase::planning::following::nearest::Deviation;
+use stillbase::planning::forecast::Forecast;
+use stillbase::planning::motion::Motion;
 use stillbase::planning::pose_constant::Planes;
+use stillbase::planning::timing::Limits;
 use stillbase::session::replay;
 use stillbase::session::scenario::{Scenario, Task};
 

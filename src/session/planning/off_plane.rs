@@ -2,15 +2,18 @@
 
 use super::{Plan, Refusal, curves, dynamics_of, elsewhere, keeps_rules, refusal, serve, slowed, timed};
 use crate::mechanics::planar::{DriveAngles, Vector};
-use crate::planning::plan::drift::zero_momentum_curve;
-use crate::planning::plan::least_reaction::Goal;
-use crate::planning::plan::path::Chained;
-use crate::planning::plan::price::{INWARDS, bang_bang_in_b, joint_line, least_change, nearest_poses};
-use crate::planning::plan::{
-    Curve, CurvePoint, Forecast, LeastReaction, Limits, Motion, Path, Price, Profile, TimeLaw, trace,
-};
+use crate::planning::curves::path::Chained;
+use crate::planning::curves::{Curve, CurvePoint, Path};
+use crate::planning::following::trace;
+use crate::planning::forecast::Forecast;
+use crate::planning::motion::Motion;
+use crate::planning::off_plane::drift::zero_momentum_curve;
+use crate::planning::off_plane::least_reaction::Goal;
+use crate::planning::off_plane::price::{INWARDS, bang_bang_in_b, joint_line, least_change, nearest_poses};
+use crate::planning::off_plane::{LeastReaction, Price};
 use crate::planning::pose_constant::{Planes, Unreachable};
 use crate::planning::reactionless::PlanePoint;
+use crate::planning::timing::{Limits, Profile, TimeLaw};
 use crate::session::scenario::{Least, Scenario};
 
 /// From A on the plane of the task to B on another, along a straight joint line; a limit on |n_B| sets the time.

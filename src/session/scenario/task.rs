@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 use crate::mechanics::kinematics::end_effector;
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
-use crate::planning::plan::{Samples, TimeLaw};
+use crate::planning::curves::Samples;
+use crate::planning::timing::TimeLaw;
 use crate::settings::change;
 use crate::settings::range::{Check, Range};
 

@@ -17,7 +17,7 @@
 use super::{Guide, Simulation};
 use crate::mechanics::kinematics::end_effector;
 use crate::mechanics::planar::{DriveAngles, Vector};
-use crate::planning::plan::{Motion, Reference};
+use crate::planning::motion::{Motion, Reference};
 use crate::simulation::frame::{Peaks, Tally};
 use crate::simulation::plant::{Body, Grip, MAX_CONTACTS, Slope, State};
 

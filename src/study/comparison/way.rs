@@ -1,6 +1,6 @@
 //! [`Way`]: other ways to do the same task.
 
-use crate::planning::plan::TimeLaw;
+use crate::planning::timing::TimeLaw;
 use crate::session::scenario::{Change, Scenario, Shape, TaskKind, Value};
 use crate::session::settled;
 use crate::simulation::plant::Wheel;

@@ -28,7 +28,7 @@ use super::spread::Spread;
 use crate::mechanics::dynamics::{Surroundings, base_wrench};
 use crate::mechanics::machine::{Inertia, Machine, MachineError};
 use crate::mechanics::planar::{MAX_DRIVES, Vector};
-use crate::planning::plan::{Motion, Reference};
+use crate::planning::motion::{Motion, Reference};
 
 /// What one machine comes to on the motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,12 +1,12 @@
 //! How far a motion uses its drives: what it asks of them at each instant, beside their limits.
 
-use super::Motion;
-use super::law::Progress;
-use super::limits::{Limit, Limits, Quantity};
-use super::path::Path;
 use crate::mechanics::dynamics::{Surroundings, holding_torque, inverse};
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::PerDrive;
+use crate::planning::curves::path::Path;
+use crate::planning::motion::Motion;
+use crate::planning::timing::law::Progress;
+use crate::planning::timing::limits::{Limit, Limits, Quantity};
 
 /// A limit counts as active when this much of it, or more, is used.
 pub const ACTIVE: f64 = 1.0 - 1e-3;

@@ -1,10 +1,10 @@
 //! What a motion will cost if it is followed exactly: known before anything moves.
 
-use super::Motion;
-use super::limits::{Limit, Limits, Quantity};
 use crate::mechanics::dynamics::{Surroundings, inverse_with_wrench};
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::PerDrive;
+use crate::planning::motion::Motion;
+use crate::planning::timing::limits::{Limit, Limits, Quantity};
 
 /// Peaks and sums over a motion, from the model's own dynamics.
 #[derive(Clone, Copy, Debug, PartialEq)]

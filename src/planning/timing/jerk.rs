@@ -18,11 +18,11 @@
 //! corrector of Mehrotra; where a side is not convex its curvature is left out). Rows touch three neighbouring
 //! coefficients each, so a step costs time in proportion to the nodes. It is a local optimum that it comes to.
 
-use super::law::Progress;
-use super::limits::{Constraints, MAX_ROWS, Row};
-use super::path::{Path, PathPoint};
-use super::profile::Profile;
 use crate::mechanics::planar::PerDrive;
+use crate::planning::curves::path::{Path, PathPoint};
+use crate::planning::timing::law::Progress;
+use crate::planning::timing::limits::{Constraints, MAX_ROWS, Row};
+use crate::planning::timing::profile::Profile;
 
 /// Where limits are kept in every space, as shares of it, each with half of its weight: two points of Gauss.
 const SHARES: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];

@@ -6,17 +6,17 @@
 
 use thiserror::Error;
 
-use super::keep::{greatest, kept};
-use super::law::Progress;
-use super::limits::{Constraints, Limit, Limits, Quantity, Row};
-use super::path::Path;
-use super::profile::{Profile, Span};
-use super::smooth;
-use super::topp::{Blocked, Grid, PAST, Sweep, UNLIMITED};
-use super::usage::Shares;
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::PerDrive;
+use crate::planning::curves::path::Path;
+use crate::planning::timing::keep::{greatest, kept};
+use crate::planning::timing::law::Progress;
+use crate::planning::timing::limits::{Constraints, Limit, Limits, Quantity, Row};
+use crate::planning::timing::profile::{Profile, Span};
+use crate::planning::timing::smooth;
+use crate::planning::timing::topp::{Blocked, Grid, PAST, Sweep, UNLIMITED};
+use crate::planning::timing::usage::Shares;
 
 /// Spaces of the grid on a curve to begin with, if nobody says otherwise.
 pub const SPACES: usize = 600;

@@ -19,12 +19,12 @@
 
 use thiserror::Error;
 
-use super::law::TimeLaw;
-use super::path::{Path, PathPoint};
-use super::table::Table;
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
+use crate::planning::curves::path::{Path, PathPoint};
+use crate::planning::curves::table::Table;
 use crate::planning::reactionless::{BSet, NoReach, PlaneMap, PlanePoint};
+use crate::planning::timing::law::TimeLaw;
 
 /// How b goes from rest to rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,7 +33,7 @@ pub enum PoseLaw {
     BangBang,
     /// 3 u² − 2 u³: the least ∫ n_B² dt.
     Cubic,
-    /// [`TimeLaw::Quintic`](super::TimeLaw): n_B begins and ends at zero.
+    /// [`TimeLaw::Quintic`](crate::planning::timing::TimeLaw): n_B begins and ends at zero.
     Quintic,
 }
 

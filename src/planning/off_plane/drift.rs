@@ -5,13 +5,13 @@
 
 use thiserror::Error;
 
-use super::curve::{Curve, CurvePoint};
-use super::null_space::{lines, momentum_row_rate, rates, solve};
-use super::path::{PathPoint, by_pieces};
-use super::table::Table;
 use crate::mechanics::kinematics::{acceleration, end_effector};
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
+use crate::planning::curves::curve::{Curve, CurvePoint};
+use crate::planning::curves::path::{PathPoint, by_pieces};
+use crate::planning::curves::table::Table;
+use crate::planning::off_plane::null_space::{lines, momentum_row_rate, rates, solve};
 
 /// Why a motion of zero momentum does not follow a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]

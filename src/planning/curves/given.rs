@@ -1,8 +1,8 @@
 //! A motion given by samples over time: of the drive angles, or of the end effector.
 //!
-//! The samples are joined by a quintic [spline](super::spline): through every sample, four continuous derivatives,
+//! The samples are joined by a quintic [spline](crate::planning::curves::spline): through every sample, four continuous derivatives,
 //! nothing assumed of its ends, which need not rest. Its parameter is s = t/T, so a motion takes it with
-//! [`Profile::running`](super::Profile::running). As a spline is linear in its samples, angles that lie on a plane
+//! [`Profile::running`](crate::planning::timing::Profile::running). As a spline is linear in its samples, angles that lie on a plane
 //! b = const stay on it between them.
 
 use std::sync::Arc;
@@ -10,12 +10,12 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::curve::{Curve, CurvePoint};
-use super::low_pass::LowPass;
-use super::path::PathPoint;
-use super::spline::{FEWEST, Knots};
-use super::table::Table;
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector};
+use crate::planning::curves::curve::{Curve, CurvePoint};
+use crate::planning::curves::low_pass::LowPass;
+use crate::planning::curves::path::PathPoint;
+use crate::planning::curves::spline::{FEWEST, Knots};
+use crate::planning::curves::table::Table;
 use crate::settings::range::{Range, Short};
 
 /// The most samples.
@@ -220,7 +220,7 @@ impl Samples {
         Self::new(&rows).unwrap_or_else(|_| self.clone())
     }
 
-    /// Smoothed without delay: half of the amplitude is left at the cut-off, Hz; see [`super::low_pass`].
+    /// Smoothed without delay: half of the amplitude is left at the cut-off, Hz; see [`crate::planning::curves::low_pass`].
     ///
     /// # Errors
     /// If the cut-off is not below half of the mean rate.
@@ -243,7 +243,7 @@ impl Samples {
         sizes.sort_by(f64::total_cmp);
         // The median of |x| is 0.6745 σ, and 924 the sum of the squared binomials.
         let sigma = sizes.get(sizes.len() / 2).map_or(0.0, |median| median / (0.6745 * 924f64.sqrt()));
-        super::spline::NOISE_GAIN * sigma / (self.spacing() * self.spacing())
+        crate::planning::curves::spline::NOISE_GAIN * sigma / (self.spacing() * self.spacing())
     }
 
     /// First and second derivatives by s = t/T at each sample, for each column.

@@ -1,21 +1,21 @@
 //! Limits on jerk along a curve: a motion near the best, proved by checking it, and how far it is from a bound.
 //!
-//! With jerk limited the fastest motion on a curve is no convex problem: [`super::jerk`] finds a local optimum on nodes
+//! With jerk limited the fastest motion on a curve is no convex problem: [`crate::planning::timing::jerk`] finds a local optimum on nodes
 //! that are dense where the motion without those limits takes its time, and where the path bends. What its pieces pass
 //! limits by between the places where they are kept is mended by slowing all of it down.
 
-use super::Motion;
-use super::fastest::{Fastest, TimeError, s_curve};
-use super::jerk::{Program, eased, uneased};
-use super::keep::greatest;
-use super::law::Progress;
-use super::limits::Constraints;
-use super::path::Path;
-use super::profile::{Profile, Span};
-use super::topp::Grid;
-use super::usage::{Demand, Usage};
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Inertia;
+use crate::planning::curves::path::Path;
+use crate::planning::motion::Motion;
+use crate::planning::timing::fastest::{Fastest, TimeError, s_curve};
+use crate::planning::timing::jerk::{Program, eased, uneased};
+use crate::planning::timing::keep::greatest;
+use crate::planning::timing::law::Progress;
+use crate::planning::timing::limits::Constraints;
+use crate::planning::timing::profile::{Profile, Span};
+use crate::planning::timing::topp::Grid;
+use crate::planning::timing::usage::{Demand, Usage};
 
 /// Instants for the account of what limits.
 const INSTANTS: usize = 2000;

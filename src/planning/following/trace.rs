@@ -8,9 +8,9 @@ mod track;
 
 use thiserror::Error;
 
-use super::curve::Curve;
-use super::table::Table;
 use crate::mechanics::planar::{Vector, unit};
+use crate::planning::curves::curve::Curve;
+use crate::planning::curves::table::Table;
 use crate::planning::reactionless::{BSet, Decimal, PAIRS, PlaneMap};
 use remedy::blocked;
 use track::Track;

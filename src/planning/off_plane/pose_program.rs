@@ -2,9 +2,9 @@
 //!
 //! b″ is linear between even nodes; b and b′ of the nodes are unknowns too, bound together by exact integration.
 
-use super::convex::Program;
-use super::corridor::{Corridor, Station};
-use super::pose_course::PoseCourse;
+use crate::planning::off_plane::convex::Program;
+use crate::planning::off_plane::corridor::{Corridor, Station};
+use crate::planning::off_plane::pose_course::PoseCourse;
 use crate::planning::reactionless::SLACK;
 
 /// Stations of the corridor in each piece.

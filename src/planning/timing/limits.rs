@@ -13,11 +13,11 @@
 
 use std::fmt;
 
-use super::law::Progress;
-use super::path::{Path, PathPoint};
 use crate::mechanics::dynamics::{Surroundings, holding_torque, inverse, mass_matrix};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::{MAX_DRIVES, PerDrive};
+use crate::planning::curves::path::{Path, PathPoint};
+use crate::planning::timing::law::Progress;
 
 /// What of a drive is limited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,8 +6,8 @@
 
 use thiserror::Error;
 
-use super::curve::CurvePoint;
 use crate::mechanics::planar::Vector;
+use crate::planning::curves::curve::CurvePoint;
 use crate::planning::reactionless::{NoReach, PlaneMap, PlanePoint, SLACK, between, metres};
 
 /// Points of a self-motion that tell its parts from each other.

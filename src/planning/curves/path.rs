@@ -2,14 +2,14 @@
 
 use thiserror::Error;
 
-use super::Reference;
-use super::curve::{Curve, CurvePoint};
-use super::law::Progress;
-use super::table::Table;
 use crate::mechanics::kinematics::{acceleration, closest_turn, end_effector, minimum_norm, two_link_rates, velocity};
 use crate::mechanics::machine::Chain;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
+use crate::planning::curves::curve::{Curve, CurvePoint};
+use crate::planning::curves::table::Table;
+use crate::planning::motion::Reference;
 use crate::planning::reactionless::{PlaneMap, PlanePoint};
+use crate::planning::timing::law::Progress;
 
 /// A pose on a path and how it changes with s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -289,7 +289,7 @@ pub fn minimum_norm_curve(tip: &Chain, start: DriveAngles, curve: &Curve) -> Res
 }
 
 /// A path along a curve from what follows each of its pieces: from a pose, over a part of s, by u from 0 to 1.
-pub(super) fn by_pieces<E>(
+pub(in crate::planning) fn by_pieces<E>(
     curve: &Curve,
     start: DriveAngles,
     spaces: usize,

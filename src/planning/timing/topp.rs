@@ -9,8 +9,8 @@
 //! in Δ. A second one lets u rise over the space by as much as the first pass has it rise there: met at both ends, T
 //! exact to second order.
 
-use super::limits::{Constraints, MAX_ROWS, Row};
-use super::path::Path;
+use crate::planning::curves::path::Path;
+use crate::planning::timing::limits::{Constraints, MAX_ROWS, Row};
 
 /// The greatest x that counts as limited, 1/s².
 pub(super) const UNLIMITED: f64 = 1e20;

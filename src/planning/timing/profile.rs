@@ -1,6 +1,6 @@
 //! Timings s(t): a law over a time, phases of constant jerk, both from rest to rest, or time itself.
 
-use super::law::{Progress, TimeLaw};
+use crate::planning::timing::law::{Progress, TimeLaw};
 
 /// When a motion is where on its path: s(t) from 0 to 1 with its derivatives, still before 0 and from T on.
 ///

@@ -8,13 +8,13 @@
 //!
 //! w′ = F_1 a_1′ + F_2 a_2′ and w″ = F_1 a_1″ + F_2 a_2″ − Σ_k c_k e^{i (u_k · a + v_k)} (u_k · a′)².
 
-use super::curve::CurvePoint;
-use super::path::PathPoint;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, cross, unit};
+use crate::planning::curves::curve::CurvePoint;
+use crate::planning::curves::path::PathPoint;
 use crate::planning::reactionless::{PlaneMap, PlanePoint};
 
 /// (a_1′, a_2′) and (a_1″, a_2″) at a pose for given w′ and w″; not finite where det ∂(x, y)/∂(a_1, a_2) = 0.
-pub(super) fn rates(map: &PlaneMap, a: [f64; 2], first: Vector, second: Vector) -> [[f64; 2]; 2] {
+pub(in crate::planning) fn rates(map: &PlaneMap, a: [f64; 2], first: Vector, second: Vector) -> [[f64; 2]; 2] {
     let arms = map.arms(a);
     let [c1, c2] = map.columns(&arms);
     let det = cross(c1, c2);

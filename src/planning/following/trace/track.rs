@@ -2,10 +2,10 @@
 
 use super::{Halt, Rule, Stop, crossed};
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
-use crate::planning::plan::curve::{Curve, CurvePoint};
-use crate::planning::plan::inverse::rates;
-use crate::planning::plan::path::PathPoint;
-use crate::planning::plan::table::Table;
+use crate::planning::curves::curve::{Curve, CurvePoint};
+use crate::planning::curves::path::PathPoint;
+use crate::planning::curves::table::Table;
+use crate::planning::off_plane::inverse::rates;
 use crate::planning::reactionless::{PlaneMap, PlanePoint, SLACK};
 
 /// The smallest advance along a curve before it counts as stopped.

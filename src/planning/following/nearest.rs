@@ -15,14 +15,15 @@
 //! Jacobian onto the plane, (16) inverted, where b reaches every point of its path; of these b the nearest, in the same
 //! metric, is found by search.
 
-use super::Motion;
-use super::curve::{Curve, CurvePoint};
-use super::given::Samples;
-use super::table::Table;
-use super::trace::{self, Blocked, Rule};
 use crate::mechanics::kinematics::{acceleration, end_effector, velocity};
 use crate::mechanics::machine::{Chain, Inertia};
 use crate::mechanics::planar::{DriveAngles, PerDrive};
+use crate::planning::curves::curve::{Curve, CurvePoint};
+use crate::planning::curves::given::Samples;
+use crate::planning::curves::table::Table;
+use crate::planning::following::trace;
+use crate::planning::following::trace::{Blocked, Rule};
+use crate::planning::motion::Motion;
 use crate::planning::reactionless::{BSet, PlaneMap};
 
 /// How far two motions of one timing are apart.

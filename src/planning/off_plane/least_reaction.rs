@@ -15,16 +15,16 @@
 
 use thiserror::Error;
 
-use super::corridor::{Corridor, CorridorError};
-use super::curve::CurvePoint;
-use super::inverse::pose_along;
-use super::path::{PathError, minimum_norm_path};
-use super::pose_course::{PoseCourse, Reaction};
-use super::pose_program::{STATIONS, least_course};
-use super::price::{Price, PriceError};
-use super::table::Table;
 use crate::mechanics::machine::{Chain, Inertia};
 use crate::mechanics::planar::{DriveAngles, Vector};
+use crate::planning::curves::curve::CurvePoint;
+use crate::planning::curves::path::{PathError, minimum_norm_path};
+use crate::planning::curves::table::Table;
+use crate::planning::off_plane::corridor::{Corridor, CorridorError};
+use crate::planning::off_plane::inverse::pose_along;
+use crate::planning::off_plane::pose_course::{PoseCourse, Reaction};
+use crate::planning::off_plane::pose_program::{STATIONS, least_course};
+use crate::planning::off_plane::price::{Price, PriceError};
 use crate::planning::reactionless::{PlaneMap, PlanePoint, SLACK, between};
 
 /// Pieces of b″ unless more are asked for.

@@ -3,7 +3,7 @@
 use super::track::Track;
 use super::{Blocked, Rule, STATIONS, Stop, at, common_b, is_feasible, part, starts, tables, whole};
 use crate::mechanics::planar::unit;
-use crate::planning::plan::curve::Curve;
+use crate::planning::curves::curve::Curve;
 use crate::planning::reactionless::{BSet, Decimal, PlaneMap};
 
 /// Parts of a curve that is drawn.

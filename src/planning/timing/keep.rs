@@ -1,12 +1,12 @@
 //! Limits kept everywhere, not only where they were looked at: by how much a motion must be slowed down.
 
-use super::Motion;
-use super::law::Progress;
-use super::limits::Limits;
-use super::profile::{Profile, after};
-use super::usage::Demand;
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Inertia;
+use crate::planning::motion::Motion;
+use crate::planning::timing::law::Progress;
+use crate::planning::timing::limits::Limits;
+use crate::planning::timing::profile::{Profile, after};
+use crate::planning::timing::usage::Demand;
 
 /// Parts of a phase that is looked at closely.
 const CLOSE: usize = 16;

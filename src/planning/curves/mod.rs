@@ -1,0 +1,13 @@
+//! Curves of the end effector and paths of the drives, drawn or given by samples.
+
+pub mod curve;
+pub mod given;
+pub mod low_pass;
+pub mod path;
+pub mod spline;
+pub mod table;
+
+pub use curve::{Curve, CurveError, CurvePoint};
+pub use given::Samples;
+pub use path::{Path, PathError};
+pub use table::Table;

@@ -1,0 +1,8 @@
+//! On a plane: a curve followed on one sheet, or why not; the nearest motion to a given one; the pointer and the slider.
+
+pub mod follow;
+pub mod nearest;
+pub mod trace;
+
+pub use follow::Follower;
+pub use trace::{Blocked, Rule, Stop};

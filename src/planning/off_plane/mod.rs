@@ -1,0 +1,16 @@
+//! Off the planes: the price of b, the least reaction, zero momentum with its drift, and machines of two drives.
+
+mod convex;
+pub mod corridor;
+pub mod drift;
+pub mod inverse;
+pub mod least_reaction;
+pub mod null_space;
+pub mod pose_course;
+pub mod pose_integral;
+mod pose_program;
+pub mod price;
+
+pub use corridor::Corridor;
+pub use least_reaction::LeastReaction;
+pub use price::Price;
