@@ -71,18 +71,21 @@
 //! ```
 //!
 //! # Source map
-//! | layer | modules | knows |
-//! |---|---|---|
-//! | words | [`planar`], [`text`], [`range`] | vectors as x + iy, values per drive; text from outside; where numbers may lie |
-//! | machine | [`machine`], [`kinematics`], [`dynamics`] | links, constants g, C, J, Eqs (1)–(6) |
-//! | inside | [`joint_forces`] | pins, change points, what tilts the base |
-//! | methods | [`balance`], [`reactionless`], [`pose_constant`], [`plan`], [`control`] | Eqs (7)–(16), paths, time laws, prices, feedback |
-//! | motion | [`frame`], [`simulation`], [`signals`], [`spectrum`] | one instant, one step, one table, its frequencies |
-//! | study | [`tolerance`] | random machines around a nominal one |
-//! | path | [`scenario`], [`session`], [`verdict`] | files, edits, undo, replay, what a run came to |
-//! | picture | [`scene`] | plain data to draw, cameras, palette |
-//! | devices | `render` (feature `render`), `ui` (feature `ui`) | wgpu; egui |
-//! | edges | `window`, `headless` (feature `record`), [`files`], the program's `commands` | displays, Rerun, disks |
+//! The folders of `src/` from the bottom up; each uses those before it only.
+//!
+//! | folder | what stands there |
+//! |---|---|
+//! | [`settings`] | how a value is named, bounded and shown: changes by key, ranges, text from outside |
+//! | [`mechanics`] | what a machine is: planar algebra, links and drives, kinematics, dynamics, pin forces, balance |
+//! | [`planning`] | where it may go, and when: reactionless planes and workspaces, curves, timing, ways off the plane |
+//! | [`simulation`] | what then happens: plant, control, the step, frames, the audit, signals |
+//! | [`session`] | what a person did: scenarios, edits, runs, undo, replay, the verdict |
+//! | [`study`] | many runs: side by side, around a nominal machine, by frequency |
+//! | [`picture`] | what it looks like: scenes as plain data; what paints them (features `render`, `ui`) |
+//! | [`files`] | files that appear whole or not at all |
+//! | `recording` | the same picture for Rerun (feature `record`) |
+//! | `app` | the window (features `ui`, `window`) |
+//! | `commands` | the program's subcommands, one file each |
 //!
 //! The core builds without any feature: no GPU, no window, no Rerun, and it reads no clock.
 #![warn(missing_docs)]

@@ -8,7 +8,6 @@ mod desk;
 mod keys;
 mod order;
 mod path;
-pub mod picture;
 mod plots;
 mod side;
 mod status;

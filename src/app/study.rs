@@ -12,8 +12,9 @@ use super::{Command, Look};
 use crate::picture::scene::palette::{Palette, faded};
 use crate::picture::scene::stage::signed;
 use crate::session::Edit;
+use crate::session::scenario::{Amount, Spread};
 use crate::session::scenario::{Change, Value};
-use crate::study::tolerance::{Amount, Spread, Study};
+use crate::study::tolerance::Study;
 
 const HEIGHT: f32 = 268.0;
 

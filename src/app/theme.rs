@@ -1,43 +1,9 @@
-//! The palette as egui's visuals, and type with tabular digits.
+//! The palette as egui's visuals.
 
-use std::sync::Arc;
+use egui::{Color32, CornerRadius, Margin, Stroke, TextStyle, vec2};
 
-use egui::{Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Stroke, TextStyle, vec2};
-
-use crate::picture::scene::Rgba;
+pub use crate::picture::paint::{bold, colour, install_fonts, plain};
 use crate::picture::scene::palette::{Palette, Theme, faded, palette};
-
-/// A colour of the palette for egui.
-pub fn colour([r, g, b, a]: Rgba) -> Color32 {
-    let byte = |x: f32| (x * 255.0).round() as u8;
-    Color32::from_rgba_unmultiplied(byte(r), byte(g), byte(b), byte(a))
-}
-
-/// Bold type of a size.
-pub fn bold(size: f32) -> FontId {
-    FontId::new(size, FontFamily::Name("bold".into()))
-}
-
-/// Plain type of a size.
-pub fn plain(size: f32) -> FontId {
-    FontId::new(size, FontFamily::Proportional)
-}
-
-/// DejaVu Sans: figures of one width, and every letter of the paper.
-pub fn install_fonts(ctx: &egui::Context) {
-    let mut fonts = FontDefinitions::default();
-    let files: [(&str, &[u8]); 2] = [
-        ("sans", include_bytes!("../../assets/fonts/DejaVuSans.ttf")),
-        ("sans-bold", include_bytes!("../../assets/fonts/DejaVuSans-Bold.ttf")),
-    ];
-    for (name, bytes) in files {
-        fonts.font_data.insert(name.into(), Arc::new(FontData::from_static(bytes)));
-    }
-    fonts.families.entry(FontFamily::Proportional).or_default().insert(0, "sans".into());
-    fonts.families.entry(FontFamily::Monospace).or_default().insert(0, "sans".into());
-    fonts.families.insert(FontFamily::Name("bold".into()), vec!["sans-bold".into(), "sans".into()]);
-    ctx.set_fonts(fonts);
-}
 
 /// Dresses egui in a theme.
 pub fn apply(ctx: &egui::Context, theme: Theme) {

@@ -2,20 +2,15 @@
 
 use std::sync::Arc;
 
-use egui::{Align2, CentralPanel, CursorIcon, Frame, PointerButton, Pos2, Rect, Sense, Ui, Vec2, vec2};
+use egui::{CentralPanel, CursorIcon, Frame, PointerButton, Pos2, Rect, Sense, Ui, Vec2};
 
-use super::theme::{colour, plain};
 use super::top::name;
 use super::{Command, Look, set_b, switch};
 use crate::mechanics::planar::{DriveAngles, Vector};
-use crate::picture::render::{Renderer, View};
-use crate::picture::scene::camera::Camera;
-use crate::picture::scene::palette::faded;
-use crate::picture::scene::pointer::Pointer;
+use crate::picture::paint::{Spot, paint, words};
 use crate::picture::scene::stage::{Handle, Other, ViewOptions, signed};
 use crate::picture::scene::sway::swayed;
 use crate::picture::scene::views::{Aim, ViewKind, Views};
-use crate::picture::scene::{Anchor, Label, Scene};
 use crate::session::scenario::Task;
 use crate::session::{Edit, Session};
 use crate::simulation::frame::Frame as Instant;
@@ -98,25 +93,6 @@ fn others(board: &Board, time: f64, times: f64) -> Vec<Other> {
 fn force(session: &Session) -> Option<[f64; 2]> {
     let lasting = !session.script().iter().any(|e| e.step > 0 && e.edit.pushes());
     Some(session.scenario().plant.force).filter(|_| lasting || session.is_at_end())
-}
-
-/// A viewport and the camera in it.
-struct Spot {
-    rect: Rect,
-    camera: Camera,
-}
-
-impl Spot {
-    fn pointer(&self, pos: Pos2) -> Pointer {
-        let at = pos - self.rect.min;
-        let pair = |v: Vec2| [f64::from(v.x), f64::from(v.y)];
-        Pointer { camera: self.camera, size: pair(self.rect.size()), at: pair(at) }
-    }
-
-    fn screen(&self, point: [f64; 3]) -> Option<Pos2> {
-        let [x, y] = self.pointer(self.rect.min).seen(point)?;
-        Some(self.rect.min + vec2(x as f32, y as f32))
-    }
 }
 
 fn point_at(
@@ -296,94 +272,5 @@ fn move_camera(ui: &Ui, response: &egui::Response, rect: Rect, look: &mut Look) 
             let aspect = f64::from(rect.width() / rect.height().max(1.0));
             look.camera_mut().zoom(factor, [f64::from(place.x), f64::from(place.y)], aspect);
         }
-    }
-}
-
-/// The scene as a callback that egui's renderer runs.
-struct Paint {
-    scene: Arc<Scene>,
-    view: View,
-}
-
-impl egui_wgpu::CallbackTrait for Paint {
-    fn prepare(
-        &self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-        _screen: &egui_wgpu::ScreenDescriptor,
-        encoder: &mut wgpu::CommandEncoder,
-        resources: &mut egui_wgpu::CallbackResources,
-    ) -> Vec<wgpu::CommandBuffer> {
-        if let Some(renderer) = resources.get_mut::<Renderer>() {
-            renderer.prepare(device, queue, encoder, &self.scene, &self.view);
-        }
-        Vec::new()
-    }
-
-    fn paint(
-        &self,
-        _info: egui::PaintCallbackInfo,
-        pass: &mut wgpu::RenderPass<'static>,
-        resources: &egui_wgpu::CallbackResources,
-    ) {
-        if let Some(renderer) = resources.get::<Renderer>() {
-            renderer.paint(pass);
-        }
-    }
-}
-
-/// Draws a scene into a rectangle; the [`Renderer`] must be among egui's callback resources.
-pub fn paint(ui: &Ui, rect: Rect, scene: &Arc<Scene>, camera: &Camera) {
-    let pixels = ui.ctx().pixels_per_point();
-    let aspect = f64::from(rect.width() / rect.height().max(1.0));
-    let view = View {
-        clip_from_world: camera.clip_from_world(aspect),
-        eye_direction: camera.eye_direction(),
-        size_px: [(rect.width() * pixels).round() as u32, (rect.height() * pixels).round() as u32],
-        pixels_per_point: pixels,
-    };
-    let paint = Paint { scene: scene.clone(), view };
-    ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, paint));
-}
-
-/// A scene with its words, filling everything, that nobody can touch.
-pub fn still(ui: &mut Ui, scene: &Arc<Scene>, camera: &Camera) {
-    CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
-        let rect = ui.max_rect();
-        paint(ui, rect, scene, camera);
-        words(ui, &Spot { rect, camera: *camera }, scene);
-    });
-}
-
-/// The scene's labels.
-fn words(ui: &Ui, spot: &Spot, scene: &Scene) {
-    let painter = ui.painter().with_clip_rect(spot.rect);
-    let galley = |l: &Label| painter.layout_no_wrap(l.text.clone(), plain(l.size), colour(l.colour));
-    for label in &scene.labels {
-        let Some(at) = spot.screen(label.at.map(f64::from)) else { continue };
-        // Words about one point stay together.
-        let together = scene.labels.iter().filter(|l| l.at == label.at);
-        let widest = together.map(|l| galley(l).size().x).fold(0.0, f32::max);
-        let galley = galley(label);
-        let [x, y] = label.offset;
-        let over = at.x + x + widest - (spot.rect.right() - 10.0);
-        let (align, shift) = match label.anchor {
-            // Words that would be cut off move back into view, below what they would cover.
-            Anchor::Left if over > 0.0 && spot.rect.contains(at) => {
-                (Align2::LEFT_CENTER, vec2(x - over, if over > x { y + 30.0 } else { y }))
-            }
-            Anchor::Left => (Align2::LEFT_CENTER, vec2(x, y)),
-            Anchor::Centre => (Align2::CENTER_CENTER, vec2(x, y)),
-            Anchor::Right => (Align2::RIGHT_CENTER, vec2(x, y)),
-        };
-        let mut place = align.anchor_size(at + shift, galley.size());
-        if label.anchor == Anchor::Centre && spot.rect.contains(at) {
-            let room = spot.rect.shrink(8.0);
-            let over = (place.right() - room.right()).max(0.0) - (room.left() - place.left()).max(0.0);
-            place = place.translate(vec2(-over, 0.0));
-        }
-        // A faint plate keeps words legible over bars and curves.
-        painter.rect_filled(place.expand2(vec2(3.0, 0.0)), 3.0, colour(faded(scene.background, 0.55)));
-        painter.galley(place.min, galley, colour(label.colour));
     }
 }

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::Args;
-use stillbase::app::picture::Canvas;
 use stillbase::app::{Command, Desk, OnBoard};
 use stillbase::files::write_new;
+use stillbase::picture::canvas::Canvas;
 use stillbase::picture::render::offscreen::Picture;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::stage::ViewOptions;
@@ -73,7 +73,7 @@ impl Figures {
 
     fn window(&self, name: &str, desk: &mut Desk) -> Result<(), Failure> {
         let mut canvas = Canvas::new([1440, 900], 1.0).map_err(Failure::no_answer)?;
-        self.write(name, canvas.desk(desk).map_err(Failure::no_answer)?)
+        self.write(name, canvas.draw(|ui| desk.ui(ui)).map_err(Failure::no_answer)?)
     }
 
     fn write(&self, name: &str, picture: Picture) -> Result<(), Failure> {

@@ -1,5 +1,9 @@
 //! What it looks like: plain data to draw, and what draws it.
 
+#[cfg(feature = "ui")]
+pub mod canvas;
+#[cfg(feature = "ui")]
+pub mod paint;
 #[cfg(feature = "render")]
 pub mod render;
 pub mod scene;

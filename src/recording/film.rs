@@ -19,7 +19,7 @@ const ROLL: usize = 4 << 20;
 
 /// Draws scenes: with their words, where there is a font.
 #[cfg(feature = "ui")]
-struct Easel(crate::app::picture::Canvas);
+struct Easel(crate::picture::canvas::Canvas);
 
 #[cfg(all(feature = "render", not(feature = "ui")))]
 struct Easel(Gpu, View);
@@ -31,7 +31,7 @@ impl Easel {
         // As large as in a window of this height, down to what is still read.
         let scale = (wanted.height as f32 / 800.0).max(0.5);
         #[cfg(feature = "ui")]
-        return Ok(Self(crate::app::picture::Canvas::new(size, scale)?));
+        return Ok(Self(crate::picture::canvas::Canvas::new(size, scale)?));
         #[cfg(not(feature = "ui"))]
         Ok(Self(
             Gpu::new()?,

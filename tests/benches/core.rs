@@ -2,7 +2,7 @@
 //!
 //! `cargo bench` runs them; the table in README.md is made from its output.
 
-#[path = "../suite/nine_body.rs"]
+#[path = "../mechanics/nine_body.rs"]
 #[allow(dead_code, unused_imports, reason = "the bench uses one function of the twin")]
 mod nine_body;
 
@@ -22,8 +22,9 @@ use stillbase::planning::pose_constant::plane_map;
 use stillbase::planning::reactionless::{AngleDefinition, Boundary, Limit, PlaneMap};
 use stillbase::planning::timing::{Limits, Profile, TimeLaw, fastest};
 use stillbase::session::scenario::Scenario;
+use stillbase::session::scenario::default_spreads;
 use stillbase::session::{Run, Session, replay};
-use stillbase::study::tolerance::{CHUNK, Ensemble, default_spreads};
+use stillbase::study::tolerance::{CHUNK, Ensemble};
 
 fn main() {
     divan::main();

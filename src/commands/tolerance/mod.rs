@@ -12,11 +12,9 @@ use std::path::PathBuf;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use stillbase::files::check_new;
-use stillbase::session::scenario::Scenario;
+use stillbase::session::scenario::{MAX_SAMPLES, Scenario, Spread, Tolerance as Section};
 use stillbase::session::{Run, settled};
-use stillbase::study::tolerance::{
-    Agreement, Bands, Ensemble, MAX_SAMPLES, Outcome, Shares, Spread, Tolerance as Section, ToleranceError, simulate,
-};
+use stillbase::study::tolerance::{Agreement, Bands, Ensemble, Outcome, Shares, ToleranceError, simulate};
 
 use self::parallel::Mode;
 use self::report::{Answer, Compared, Distributions, Drawn, Merged, Yields};

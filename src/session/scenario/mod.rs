@@ -3,6 +3,7 @@
 //! A saved session is a scenario with `[[edit]]` entries, each with the step at which it applies.
 
 mod task;
+mod tolerance;
 
 use std::path::Path as FilePath;
 
@@ -17,9 +18,9 @@ use crate::settings::text::{self, MOST_BYTES};
 use crate::simulation::Setup;
 use crate::simulation::control::Control;
 use crate::simulation::plant::{Base, Plant, is_default};
-use crate::study::tolerance::Tolerance;
 
 pub use task::{Change, Corners, Least, MAX_POINTS, PLACE, POSE_CONSTANT, Shape, TIME, Task, TaskKind, Value};
+pub use tolerance::{Amount, MAX_SAMPLES, Spread, Tolerance, default_spreads};
 
 /// What a run starts from.
 #[derive(Clone, Debug, PartialEq)]

@@ -24,11 +24,11 @@ use super::constants::{self, Body, LANES, Lanes, count, evaluate, unit};
 use super::deviate::{CHUNK, Draws};
 use super::moments::Moments;
 use super::parameter::{Parameter, parameters};
-use super::spread::Spread;
 use crate::mechanics::dynamics::{Surroundings, base_wrench};
 use crate::mechanics::machine::{Inertia, Machine, MachineError};
 use crate::mechanics::planar::{MAX_DRIVES, Vector};
 use crate::planning::motion::{Motion, Reference};
+use crate::session::scenario::Spread;
 
 /// What one machine comes to on the motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

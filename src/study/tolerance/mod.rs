@@ -13,7 +13,7 @@
 //!
 //! | what | modules |
 //! |---|---|
-//! | what varies, by which spread | [`Tolerance`], [`Spread`], [`Parameter`] |
+//! | what varies, by which spread | [`Tolerance`](crate::session::scenario::Tolerance), [`Spread`](crate::session::scenario::Spread), [`Parameter`] |
 //! | random machines, a million a second | [`Ensemble`], [`Sampler`], [`Outcome`] |
 //! | means and deviations over time, exact, first-order and sampled | [`Bands`], [`Agreement`] |
 //! | which tolerance matters | [`Share`] |
@@ -29,7 +29,6 @@ mod moments;
 mod parameter;
 mod shares;
 mod simulate;
-mod spread;
 mod statistics;
 mod study;
 
@@ -40,6 +39,5 @@ pub use error::ToleranceError;
 pub use parameter::Parameter;
 pub use shares::{Share, Shares};
 pub use simulate::simulate;
-pub use spread::{Amount, MAX_SAMPLES, Spread, Tolerance, default_spreads};
 pub use statistics::{Histogram, Quantiles, Yield};
 pub use study::{INSTANTS, Study, left_out};

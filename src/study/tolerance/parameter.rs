@@ -16,8 +16,8 @@ use std::f64::consts::{PI, SQRT_2};
 
 use super::ToleranceError;
 use super::deviate::inverse_normal;
-use super::spread::{Amount, Spread};
 use crate::mechanics::machine::{Machine, MachineError, MachineSpec};
+use crate::session::scenario::{Amount, Spread};
 
 /// What of a machine a parameter is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,9 +1,7 @@
 //! [`Study`]: everything that there is to say of a run's tolerances, and of its frequencies, as plain data.
 
-use super::{
-    Agreement, Bands, CHUNK, Ensemble, Histogram, Outcome, Quantiles, Share, Shares, Tolerance, ToleranceError, Yield,
-};
-use crate::session::scenario::Scenario;
+use super::{Agreement, Bands, CHUNK, Ensemble, Histogram, Outcome, Quantiles, Share, Shares, ToleranceError, Yield};
+use crate::session::scenario::{Scenario, Tolerance};
 use crate::session::{Run, felt};
 use crate::simulation::control::Control;
 use crate::simulation::plant::Plant;

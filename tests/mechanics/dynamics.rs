@@ -9,7 +9,7 @@ use stillbase::mechanics::kinematics::{end_effector, transmission, velocity};
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Units, Vector, cross, dot};
 
-use crate::nine_body::NineBody;
+use crate::mechanics::nine_body::NineBody;
 use crate::support::{angles, any_body, array, body_of, close, dynamics, machine_of, numbers, three, xy};
 
 /// A state of motion.

@@ -5,14 +5,14 @@ use serde_json::Value;
 use stillbase::mechanics::machine::{Machine, Station, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 
-use crate::nine_body::NineBody;
+use crate::mechanics::nine_body::NineBody;
 
 pub fn dynamics() -> Value {
-    serde_json::from_str(include_str!("../reference/dynamics.json")).expect("valid JSON")
+    serde_json::from_str(include_str!("reference/dynamics.json")).expect("valid JSON")
 }
 
 pub fn planning() -> Value {
-    serde_json::from_str(include_str!("../reference/planning.json")).expect("valid JSON")
+    serde_json::from_str(include_str!("reference/planning.json")).expect("valid JSON")
 }
 
 /// Every number of a value, row by row.

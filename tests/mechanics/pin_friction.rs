@@ -12,7 +12,7 @@ use stillbase::session::scenario::Scenario;
 use stillbase::simulation::frame::Frame;
 use stillbase::simulation::plant::{Each, Friction};
 
-use crate::nine_body::{Answer, DRIVE, NineBody};
+use crate::mechanics::nine_body::{Answer, DRIVE, NineBody};
 use crate::support::{any_body, body_of, close, machine_of, three};
 
 /// Pairs of drives.

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use super::{Desk, theme, viewport};
-use crate::picture::render::Renderer;
-use crate::picture::render::offscreen::{Gpu, NoAdapter, NoPicture, Picture};
-use crate::picture::scene::Scene;
-use crate::picture::scene::camera::Camera;
+use super::paint;
+use super::render::Renderer;
+use super::render::offscreen::{Gpu, NoAdapter, NoPicture, Picture};
+use super::scene::Scene;
+use super::scene::camera::Camera;
 
 /// A surface that egui and the scene draw on, and that can be read back.
 pub struct Canvas {
@@ -47,14 +47,14 @@ impl Canvas {
         Ok(Self { gpu, egui, ctx: egui::Context::default(), texture, view, screen, fonts: false })
     }
 
-    /// A whole desk.
+    /// What somebody draws with egui.
     ///
     /// # Errors
     /// If the picture cannot be read back.
-    pub fn desk(&mut self, desk: &mut Desk) -> Result<Picture, NoPicture> {
+    pub fn draw(&mut self, mut draw: impl FnMut(&mut egui::Ui)) -> Result<Picture, NoPicture> {
         // The first passes load fonts and settle the layout; the last one counts.
         for _ in 0..4 {
-            self.pass(|ui| desk.ui(ui));
+            self.pass(&mut draw);
         }
         self.read()
     }
@@ -65,11 +65,11 @@ impl Canvas {
     /// If the picture cannot be read back.
     pub fn scene(&mut self, scene: &Arc<Scene>, camera: &Camera) -> Result<Picture, NoPicture> {
         if !self.fonts {
-            theme::install_fonts(&self.ctx);
+            paint::install_fonts(&self.ctx);
             self.fonts = true;
-            self.pass(|ui| viewport::still(ui, scene, camera));
+            self.pass(|ui| paint::still(ui, scene, camera));
         }
-        self.pass(|ui| viewport::still(ui, scene, camera));
+        self.pass(|ui| paint::still(ui, scene, camera));
         self.read()
     }
 

@@ -9,9 +9,10 @@ use stillbase::mechanics::planar::Vector;
 use stillbase::planning::motion::Motion;
 use stillbase::session::Run;
 use stillbase::session::scenario::Scenario;
+use stillbase::session::scenario::{Spread, Tolerance, default_spreads};
 use stillbase::study::tolerance::{
-    Agreement, Bands, CHUNK, Ensemble, Histogram, Outcome, Quantiles, Shares, Spread, Tolerance, ToleranceError, Yield,
-    default_spreads, inverse_normal, simulate,
+    Agreement, Bands, CHUNK, Ensemble, Histogram, Outcome, Quantiles, Shares, ToleranceError, Yield, inverse_normal,
+    simulate,
 };
 
 fn spreads(pairs: &[(&str, &str)]) -> BTreeMap<String, Spread> {

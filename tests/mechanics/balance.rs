@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use stillbase::mechanics::balance::{DesignError, Preset, conditions, design};
 use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse};
 
-use crate::nine_body::NineBody;
+use crate::mechanics::nine_body::NineBody;
 use crate::support::{array, close, machine_of, numbers, planning};
 
 fn table_1() -> &'static Machine {

@@ -7,7 +7,7 @@ use nalgebra::{Matrix2, Matrix2x3};
 use stillbase::mechanics::planar::{Vector, unit};
 use stillbase::planning::reactionless::{Boundary, Curve, PAIRS, PlaneMap, PlanePoint};
 
-use crate::inside::{B, CASES, check_line, from_curves, share, size, spread, within};
+use crate::mechanics::inside::{B, CASES, check_line, from_curves, share, size, spread, within};
 
 /// q_3 = q_1 runs through the middle of [0, π]²; case 3 stays where a_1 + a_2 > π.
 #[test]

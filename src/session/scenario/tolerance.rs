@@ -32,7 +32,7 @@ pub struct Tolerance {
     pub moment_limit: Option<f64>,
     /// The greatest dynamic |f_B| that will do, N.
     pub force_limit: Option<f64>,
-    /// Spreads by key; see [`Parameter`](super::Parameter).
+    /// Spreads by key; see `Parameter` of the studies.
     pub spreads: BTreeMap<String, Spread>,
 }
 

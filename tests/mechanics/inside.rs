@@ -9,7 +9,7 @@ use stillbase::mechanics::planar::{Vector, cross, dot, unit};
 use stillbase::planning::pose_constant::plane_map;
 use stillbase::planning::reactionless::{AngleDefinition, Boundary, Curve, Limit, Line, PlaneMap, Vertex};
 
-use crate::change_points::{change_curves_are_sound, parts_add_up, parts_hold_the_poses_on_their_side};
+use crate::planning::change_points::{change_curves_are_sound, parts_add_up, parts_hold_the_poses_on_their_side};
 
 pub const B: f64 = 2.4;
 

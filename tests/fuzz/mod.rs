@@ -5,6 +5,10 @@
 //! `STILLBASE_FUZZ_SECONDS` bounds how long each target goes on, `STILLBASE_FUZZ_INPUTS` how many inputs it takes (a
 //! small number without either), `STILLBASE_FUZZ_SEED` and `STILLBASE_FUZZ_FIRST` say where it begins.
 
+#[cfg(feature = "cli")]
+mod commands;
+mod mutation;
+
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -17,7 +21,7 @@ use stillbase::planning::pose_constant::{Planes, plane_map};
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Session, replay};
 
-use crate::mutation::{Dice, mutated};
+use mutation::{Dice, mutated};
 
 const MACHINES: [&str; 2] = [
     include_str!("../../assets/machines/nine-link.toml"),

@@ -1,0 +1,157 @@
+//! A scene and its words painted by egui: in the window, in figures and in the pictures of recordings alike.
+
+use std::sync::Arc;
+
+use egui::{
+    Align2, CentralPanel, Color32, FontData, FontDefinitions, FontFamily, FontId, Frame, Pos2, Rect, Ui, Vec2, vec2,
+};
+
+use super::render::{Renderer, View};
+use super::scene::camera::Camera;
+use super::scene::palette::faded;
+use super::scene::pointer::Pointer;
+use super::scene::{Anchor, Label, Rgba, Scene};
+
+/// A colour of the palette for egui.
+pub fn colour([r, g, b, a]: Rgba) -> Color32 {
+    let byte = |x: f32| (x * 255.0).round() as u8;
+    Color32::from_rgba_unmultiplied(byte(r), byte(g), byte(b), byte(a))
+}
+
+/// Bold type of a size.
+pub fn bold(size: f32) -> FontId {
+    FontId::new(size, FontFamily::Name("bold".into()))
+}
+
+/// Plain type of a size.
+pub fn plain(size: f32) -> FontId {
+    FontId::new(size, FontFamily::Proportional)
+}
+
+/// DejaVu Sans: figures of one width, and every letter of the paper.
+pub fn install_fonts(ctx: &egui::Context) {
+    let mut fonts = FontDefinitions::default();
+    let files: [(&str, &[u8]); 2] = [
+        ("sans", include_bytes!("../../assets/fonts/DejaVuSans.ttf")),
+        ("sans-bold", include_bytes!("../../assets/fonts/DejaVuSans-Bold.ttf")),
+    ];
+    for (name, bytes) in files {
+        fonts.font_data.insert(name.into(), Arc::new(FontData::from_static(bytes)));
+    }
+    fonts.families.entry(FontFamily::Proportional).or_default().insert(0, "sans".into());
+    fonts.families.entry(FontFamily::Monospace).or_default().insert(0, "sans".into());
+    fonts.families.insert(FontFamily::Name("bold".into()), vec!["sans-bold".into(), "sans".into()]);
+    ctx.set_fonts(fonts);
+}
+
+/// A viewport and the camera in it.
+pub struct Spot {
+    /// Points of the screen.
+    pub rect: Rect,
+    /// What looks at the scene.
+    pub camera: Camera,
+}
+
+impl Spot {
+    /// A place of the screen as the scene meets it.
+    pub fn pointer(&self, pos: Pos2) -> Pointer {
+        let at = pos - self.rect.min;
+        let pair = |v: Vec2| [f64::from(v.x), f64::from(v.y)];
+        Pointer { camera: self.camera, size: pair(self.rect.size()), at: pair(at) }
+    }
+
+    /// Where a point, m, is seen.
+    pub fn screen(&self, point: [f64; 3]) -> Option<Pos2> {
+        let [x, y] = self.pointer(self.rect.min).seen(point)?;
+        Some(self.rect.min + vec2(x as f32, y as f32))
+    }
+}
+
+/// The scene as a callback that egui's renderer runs.
+struct Paint {
+    scene: Arc<Scene>,
+    view: View,
+}
+
+impl egui_wgpu::CallbackTrait for Paint {
+    fn prepare(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        _screen: &egui_wgpu::ScreenDescriptor,
+        encoder: &mut wgpu::CommandEncoder,
+        resources: &mut egui_wgpu::CallbackResources,
+    ) -> Vec<wgpu::CommandBuffer> {
+        if let Some(renderer) = resources.get_mut::<Renderer>() {
+            renderer.prepare(device, queue, encoder, &self.scene, &self.view);
+        }
+        Vec::new()
+    }
+
+    fn paint(
+        &self,
+        _info: egui::PaintCallbackInfo,
+        pass: &mut wgpu::RenderPass<'static>,
+        resources: &egui_wgpu::CallbackResources,
+    ) {
+        if let Some(renderer) = resources.get::<Renderer>() {
+            renderer.paint(pass);
+        }
+    }
+}
+
+/// Draws a scene into a rectangle; the [`Renderer`] must be among egui's callback resources.
+pub fn paint(ui: &Ui, rect: Rect, scene: &Arc<Scene>, camera: &Camera) {
+    let pixels = ui.ctx().pixels_per_point();
+    let aspect = f64::from(rect.width() / rect.height().max(1.0));
+    let view = View {
+        clip_from_world: camera.clip_from_world(aspect),
+        eye_direction: camera.eye_direction(),
+        size_px: [(rect.width() * pixels).round() as u32, (rect.height() * pixels).round() as u32],
+        pixels_per_point: pixels,
+    };
+    let paint = Paint { scene: scene.clone(), view };
+    ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, paint));
+}
+
+/// A scene with its words, filling everything, that nobody can touch.
+pub fn still(ui: &mut Ui, scene: &Arc<Scene>, camera: &Camera) {
+    CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+        let rect = ui.max_rect();
+        paint(ui, rect, scene, camera);
+        words(ui, &Spot { rect, camera: *camera }, scene);
+    });
+}
+
+/// The scene's labels.
+pub fn words(ui: &Ui, spot: &Spot, scene: &Scene) {
+    let painter = ui.painter().with_clip_rect(spot.rect);
+    let galley = |l: &Label| painter.layout_no_wrap(l.text.clone(), plain(l.size), colour(l.colour));
+    for label in &scene.labels {
+        let Some(at) = spot.screen(label.at.map(f64::from)) else { continue };
+        // Words about one point stay together.
+        let together = scene.labels.iter().filter(|l| l.at == label.at);
+        let widest = together.map(|l| galley(l).size().x).fold(0.0, f32::max);
+        let galley = galley(label);
+        let [x, y] = label.offset;
+        let over = at.x + x + widest - (spot.rect.right() - 10.0);
+        let (align, shift) = match label.anchor {
+            // Words that would be cut off move back into view, below what they would cover.
+            Anchor::Left if over > 0.0 && spot.rect.contains(at) => {
+                (Align2::LEFT_CENTER, vec2(x - over, if over > x { y + 30.0 } else { y }))
+            }
+            Anchor::Left => (Align2::LEFT_CENTER, vec2(x, y)),
+            Anchor::Centre => (Align2::CENTER_CENTER, vec2(x, y)),
+            Anchor::Right => (Align2::RIGHT_CENTER, vec2(x, y)),
+        };
+        let mut place = align.anchor_size(at + shift, galley.size());
+        if label.anchor == Anchor::Centre && spot.rect.contains(at) {
+            let room = spot.rect.shrink(8.0);
+            let over = (place.right() - room.right()).max(0.0) - (room.left() - place.left()).max(0.0);
+            place = place.translate(vec2(-over, 0.0));
+        }
+        // A faint plate keeps words legible over bars and curves.
+        painter.rect_filled(place.expand2(vec2(3.0, 0.0)), 3.0, colour(faded(scene.background, 0.55)));
+        painter.galley(place.min, galley, colour(label.colour));
+    }
+}

@@ -1,0 +1,205 @@
+//! Imports go one way: a wing uses those below it only, no files use each other, outside crates stay in their place,
+//! and clocks, files and the environment at the edges.
+
+mod source;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use source::{Source, Tree};
+
+/// From the bottom to the edges: a wing uses those before it only.
+const WINGS: &[&str] = &[
+    "settings",
+    "mechanics",
+    "planning",
+    "simulation",
+    "session",
+    "study",
+    "picture",
+    "files",
+    "recording",
+    "app",
+    // The program around the library.
+    "commands",
+    "main",
+];
+
+/// Wings that neither draw, nor talk to a person, nor keep files.
+const CORE: &[&str] = &["settings", "mechanics", "planning", "simulation", "session", "study", "picture/scene"];
+
+/// Outside crates and the modules that may know them.
+const CRATES: &[(&str, &[&str])] = &[
+    ("wgpu", &["picture/render", "picture/canvas", "picture/paint", "app"]),
+    ("bytemuck", &["picture/render"]),
+    ("pollster", &["picture/render"]),
+    ("png", &["picture/render"]),
+    ("egui", &["picture/canvas", "picture/paint", "app"]),
+    ("egui_wgpu", &["picture/canvas", "picture/paint", "app"]),
+    ("egui_plot", &["app"]),
+    ("eframe", &["app/window"]),
+    ("winit", &["app/window"]),
+    ("libloading", &["app/window"]),
+    ("rerun", &["recording"]),
+    ("clap", &["commands", "main"]),
+    ("indicatif", &["commands"]),
+    ("csv", &["commands"]),
+    ("serde_json", &["commands"]),
+    ("parquet", &["commands"]),
+    ("signal_hook", &["commands"]),
+    ("toml", &["settings", "mechanics/machine", "simulation/plant", "session", "commands"]),
+    ("rand_chacha", &["study/tolerance"]),
+    ("libm", &["study/tolerance"]),
+    ("realfft", &["study/spectrum"]),
+    ("clarabel", &["planning"]),
+];
+
+/// Parts of the standard library that reach outside, and the files that are edges.
+const EDGES: &[(&str, &[&str])] = &[
+    ("std::time", &["picture/render/shader.rs", "app/window.rs"]),
+    ("std::env", &["main.rs", "app/window.rs"]),
+    ("std::thread", &["commands/interrupt.rs", "commands/tolerance/parallel.rs", "recording/store.rs"]),
+    ("std::net", &[]),
+    ("std::process", &["commands/failure.rs", "files.rs", "files/fault.rs", "main.rs"]),
+    // Text comes in at one place; everything else of the core takes it from there.
+    (
+        "std::fs",
+        &[
+            "commands/tolerance/rows.rs",
+            "commands/tolerance/seal.rs",
+            "files.rs",
+            "picture/render/offscreen.rs",
+            "picture/render/shader.rs",
+            "settings/text.rs",
+        ],
+    ),
+];
+
+/// Whether a file stands in a wing, or in a folder or file of one.
+fn stands_in(file: &str, place: &str) -> bool {
+    file.strip_prefix(place).is_some_and(|rest| rest.starts_with(['/', '.']))
+}
+
+fn wing(file: &str) -> &str {
+    file.split('/').next().expect("a name").trim_end_matches(".rs")
+}
+
+fn rank(file: &str) -> usize {
+    WINGS.iter().position(|w| *w == wing(file)).unwrap_or_else(|| panic!("{file} stands in no wing"))
+}
+
+#[test]
+fn the_reader_reads() {
+    let tree = Tree::of([
+        ("a/mod.rs".into(), "mod b;\nmod c;\npub use b::B; // use c::C;\nfn f() { c::g(\"d::h\") }".into()),
+        ("a/b.rs".into(), "use crate::d::{self, e::{E, F as G}};\npub struct B;".into()),
+        ("a/c.rs".into(), "use super::B;\npub fn g(_: &'static str) { let _ = r#\"crate::d\"#; }".into()),
+        ("d.rs".into(), "fn h() -> char { '\"' }".into()),
+        ("d/e.rs".into(), "pub struct E; pub struct F; fn i() { crate::a::f(); }".into()),
+    ]);
+    let imports = tree.imports();
+    let of = |file| imports.get(file).into_iter().flatten().map(|(to, _)| *to).collect::<Vec<_>>();
+    assert_eq!(of("a/mod.rs"), ["a/c.rs"], "what is only handed on is not used");
+    assert_eq!(of("a/b.rs"), ["d.rs", "d/e.rs"]);
+    assert_eq!(of("a/c.rs"), ["a/b.rs"], "seen through the file that hands it on");
+    assert_eq!(of("d/e.rs"), ["a/mod.rs"]);
+    assert_eq!(circle(&imports), ["a/b.rs", "a/c.rs", "a/mod.rs", "d/e.rs"]);
+}
+
+/// The first files that use each other, directly or through others; empty where there are none.
+fn circle<'a>(imports: &BTreeMap<&'a str, BTreeMap<&'a str, BTreeSet<String>>>) -> Vec<&'a str> {
+    let mut left: BTreeSet<&str> = imports.iter().flat_map(|(a, to)| to.keys().chain([a])).copied().collect();
+    // Files that use none of the rest, or that none of the rest uses, are in no circle.
+    loop {
+        let uses = |a: &str| imports.get(a).is_some_and(|to| to.keys().any(|b| left.contains(b)));
+        let used = |b: &str| left.iter().any(|a| imports.get(a).is_some_and(|to| to.contains_key(b)));
+        let next: BTreeSet<&str> = left.iter().copied().filter(|f| uses(f) && used(f)).collect();
+        if next.len() == left.len() {
+            return left.into_iter().collect();
+        }
+        left = next;
+    }
+}
+
+#[test]
+fn every_wing_is_listed() {
+    let tree = Tree::read();
+    let found: BTreeSet<&str> = tree.files.values().map(|s| wing(&s.name)).filter(|w| *w != "lib").collect();
+    assert_eq!(found, WINGS.iter().copied().collect());
+}
+
+#[test]
+fn imports_go_down() {
+    let tree = Tree::read();
+    let imports = tree.imports();
+    let count: usize = imports.values().map(BTreeMap::len).sum();
+    assert!(count > 600, "only {count} imports found");
+    for (from, to) in imports.iter().filter(|(from, _)| **from != "lib.rs") {
+        for (to, names) in to {
+            assert!(rank(to) <= rank(from), "{from} uses {to}, which stands above it: {names:?}");
+        }
+    }
+    // The renderer knows pictures, no mechanics.
+    let render = imports.iter().filter(|(f, _)| stands_in(f, "picture/render")).flat_map(|(_, to)| to.keys());
+    for to in render {
+        assert!(stands_in(to, "picture/render") || **to == *"picture/scene/mod.rs", "the renderer uses {to}");
+    }
+}
+
+fn core(tree: &Tree) -> impl Iterator<Item = &Source> {
+    tree.files.values().filter(|s| CORE.iter().any(|place| stands_in(&s.name, place)))
+}
+
+#[test]
+fn outside_crates_stay_in_their_layer() {
+    let mut seen = BTreeSet::new();
+    for source in Tree::read().files.values() {
+        for (name, allowed) in CRATES {
+            if source.starts_from(name) {
+                seen.insert(*name);
+                assert!(allowed.iter().any(|place| stands_in(&source.name, place)), "{} uses {name}", source.name);
+            }
+        }
+    }
+    // A name that nothing uses would allow anything.
+    let listed: BTreeSet<_> = CRATES.iter().map(|(name, _)| *name).collect();
+    assert_eq!(seen, listed);
+}
+
+#[test]
+fn clocks_files_and_environment_stay_at_the_edges() {
+    let tree = Tree::read();
+    for (part, edges) in EDGES {
+        let (root, leaf) = part.split_once("::").expect("a path");
+        let uses = tree.files.values().filter(|s| s.takes(root, leaf));
+        let found: BTreeSet<&str> = uses.map(|s| s.name.as_str()).collect();
+        assert_eq!(found, edges.iter().copied().collect(), "{part}");
+    }
+    // Nor does the core speak or draw lots; chance has no place in it at all.
+    for source in core(&tree) {
+        for word in ["println", "eprintln", "print", "eprint", "dbg", "rand", "thread_rng", "Instant", "SystemTime"] {
+            assert!(!source.tokens.iter().any(|t| t == word), "{} says {word}", source.name);
+        }
+    }
+}
+
+/// Whatever comes from outside ends in an error. What may still panic is named here, with its reason.
+#[test]
+fn the_library_does_not_panic() {
+    let allowed = [
+        // Files that are compiled in; a test reads each.
+        ("mechanics/machine/catalog.rs", "the machines that come along are valid"),
+        ("session/scenario/mod.rs", "the scenarios that come along are valid"),
+        // Plain data is always TOML.
+        ("mechanics/machine/file.rs", "a machine is plain data"),
+        ("session/scenario/mod.rs", "a scenario is plain data"),
+        ("session/edit.rs", "an edit is plain data"),
+    ];
+    for source in core(&Tree::read()) {
+        for line in source.code.lines() {
+            let named = allowed.iter().any(|(file, words)| *file == source.name && line.contains(words));
+            for word in [".unwrap()", ".expect(", "panic!", "todo!", "unimplemented!", "unreachable!"] {
+                assert!(named || !line.contains(word), "{}: {}", source.name, line.trim());
+            }
+        }
+    }
+}

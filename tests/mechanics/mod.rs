@@ -1,0 +1,10 @@
+//! What a machine is.
+
+mod balance;
+mod dynamics;
+pub mod inside;
+mod joint_forces;
+mod machine_file;
+pub mod nine_body;
+mod pin_friction;
+mod sincos;

@@ -1,0 +1,6 @@
+//! What a person did.
+
+mod bounds;
+mod cases;
+mod edits;
+mod verdict;

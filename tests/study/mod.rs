@@ -1,0 +1,5 @@
+//! Many runs.
+
+mod comparison;
+mod spectrum;
+mod tolerance;
