@@ -4,7 +4,7 @@ use egui::{Align, Button, CursorIcon, Frame, Grid, Label, Layout, Margin, Panel,
 use egui_plot::LineStyle;
 
 use super::theme::{bold, colour, plain};
-use super::top::name;
+use super::widgets::name;
 use super::{Command, Look, OnBoard};
 use crate::picture::scene::palette::{Palette, faded};
 use crate::picture::scene::stage::signed;

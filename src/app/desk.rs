@@ -1,12 +1,10 @@
 //! The [`Desk`]: a session, how it is shown, and what carries out commands. Every window, test and figure has one.
 
+use crate::app::widgets;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::{
-    Command, FileDialog, Look, OnBoard, Purpose, Wish, compare, keys, order, plots, side, status, study, theme, top,
-    viewport,
-};
+use super::{Command, Look, OnBoard, Wish, compare, keys, order, plots, side, status, study, theme, top, viewport};
 use crate::mechanics::machine::Machine;
 use crate::picture::scene::palette::Theme;
 use crate::picture::scene::stage::Stage;
@@ -152,7 +150,7 @@ impl Desk {
         status::news(ui.ctx(), &self.session, &self.look, &mut commands);
         keys::help(ui.ctx(), &self.look, &mut commands);
         top::dialog(ui.ctx(), &mut self.look, &mut commands);
-        commands.extend(side::refused_entry(ui.ctx()).map(Command::Refuse));
+        commands.extend(widgets::refused_entry(ui.ctx()).map(Command::Refuse));
         if commands.iter().any(|c| !matches!(c, Command::EndGesture | Command::Preview(_))) {
             self.look.message = None;
             self.look.refused = None;
@@ -313,7 +311,7 @@ impl Desk {
     }
 
     fn open(&mut self, path: &Path) -> Result<String, String> {
-        let found = Scenario::find(&path.display().to_string());
+        let found = crate::files::scenario(&path.display().to_string());
         let scenario = found.map_err(|e| brief(&e.to_string()).into_owned())?;
         let change = scenario.task.whole();
         if let Err(refusal) = self.session.switch(scenario) {
@@ -418,16 +416,6 @@ impl Desk {
                 board.follow(self.session.scenario());
             }
         }
-    }
-
-    /// A file name that is free, for a dialog to start from.
-    pub fn suggest(session: &Session, purpose: Purpose) -> FileDialog {
-        let ending = if purpose == Purpose::Record { "rrd" } else { "toml" };
-        let name = match purpose {
-            Purpose::Open => String::new(),
-            _ => crate::files::free_name(&session.scenario().name, ending).display().to_string(),
-        };
-        FileDialog { purpose, path: name }
     }
 }
 

@@ -3,7 +3,7 @@
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use super::theme::{bold, colour};
-use super::{Command, Desk, Look, Purpose};
+use super::{Command, FileDialog, Look, Purpose};
 use crate::picture::scene::Measure;
 use crate::session::Session;
 use crate::session::scenario::Scenario;
@@ -55,7 +55,7 @@ pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Co
     }
     for (key, purpose) in [(Key::S, Purpose::Save), (Key::O, Purpose::Open)] {
         if chord(ctrl, key) {
-            commands.push(Command::Dialog(Some(Desk::suggest(session, purpose))));
+            commands.push(Command::Dialog(Some(FileDialog::suggest(session, purpose))));
         }
     }
     if chord(Modifiers::NONE, Key::F1) {
@@ -96,8 +96,8 @@ pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Co
         (plain, Key::U, Command::Push(!look.pushing)),
         (plain, Key::B, Command::BackToPath),
         (plain, Key::X, Command::Exaggerate(!look.exaggerate)),
-        (plain, Key::L, Command::Theme(super::top::other(look.theme))),
-        (plain, Key::R, Command::Dialog(Some(Desk::suggest(session, Purpose::Record)))),
+        (plain, Key::L, Command::Theme(super::theme::other(look.theme))),
+        (plain, Key::R, Command::Dialog(Some(FileDialog::suggest(session, Purpose::Record)))),
     ] {
         if chord(modifiers, key) {
             commands.push(command);

@@ -3,9 +3,9 @@
 use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 
 use super::Command;
-use super::side::{Row, note, section, send, unit};
 use super::theme::{colour, plain};
-use super::top::name;
+use super::widgets::name;
+use super::widgets::{Row, note, section, send, unit};
 use crate::mechanics::planar::Vector;
 use crate::picture::scene::palette::Palette;
 use crate::picture::scene::stage::signed;

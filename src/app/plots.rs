@@ -4,7 +4,7 @@ use egui::{Align, Color32, Frame, Layout, Margin, Panel, RichText, Ui};
 use egui_plot::{GridMark, Line, LineStyle, Plot, PlotPoint, PlotPoints, Points, Span, VLine};
 
 use super::theme::{bold, colour, plain};
-use super::top::name;
+use super::widgets::name;
 use super::{Command, Look, set_b};
 use crate::mechanics::planar::Vector;
 use crate::picture::scene::palette::{Palette, faded};

@@ -9,7 +9,7 @@ use crate::picture::scene::stage::signed;
 use crate::picture::scene::views::Views;
 use crate::session::verdict::Verdict;
 use crate::session::{Edit, Session};
-use crate::simulation::frame::{Audit, Frame, Reach};
+use crate::simulation::frame::{Frame, Reach};
 
 /// Bad news, in full, over the lower edge of the viewport, with the way out if there is one.
 pub fn news(ctx: &egui::Context, session: &Session, look: &Look, commands: &mut Vec<Command>) {
@@ -76,7 +76,7 @@ fn power(x: f64) -> String {
 
 /// What an audit that fails has to say, loudly.
 fn fault(frame: &Frame) -> Option<String> {
-    let lamp = Audit::fault(frame)?;
+    let lamp = frame.fault()?;
     let limit = lamp.limit.unwrap_or_default();
     Some(format!(
         "This run cannot be trusted: {} ({}) is off by {} {}, at most {} is right. A smaller step or softer gains help.",

@@ -5,9 +5,9 @@ use egui::{Align, Color32, DragValue, Frame, Label, Layout, Margin, Panel, RichT
 use egui_plot::{Bar, BarChart, FilledArea, GridMark, Line, LineStyle, Plot, PlotPoints, VLine};
 
 use super::plots::base_plot;
-use super::side::send;
 use super::theme::{bold, colour, plain};
-use super::top::name;
+use super::widgets::name;
+use super::widgets::send;
 use super::{Command, Look};
 use crate::picture::scene::palette::{Palette, faded};
 use crate::picture::scene::stage::signed;

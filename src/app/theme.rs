@@ -67,3 +67,8 @@ pub fn apply(ctx: &egui::Context, theme: Theme) {
     style.interaction.selectable_labels = false;
     ctx.set_style_of(egui_theme, style);
 }
+
+/// The other theme.
+pub fn other(theme: Theme) -> Theme {
+    if theme == Theme::Dark { Theme::Light } else { Theme::Dark }
+}

@@ -1,9 +1,11 @@
 //! The bar at the top: machine, scenario, transport, recording.
 
+use crate::app::theme::other;
+use crate::app::widgets::name;
 use egui::{Align, ComboBox, Frame, Layout, Margin, Panel, Response, RichText, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use super::theme::{bold, colour, plain};
-use super::{Command, Desk, Look, Purpose};
+use super::{Command, FileDialog, Look, Purpose};
 use crate::mechanics::machine;
 use crate::picture::scene::palette::Theme;
 use crate::session::Session;
@@ -76,7 +78,7 @@ fn scenarios(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
         ui.separator();
         for (label, purpose) in [("Open…   Ctrl O", Purpose::Open), ("Save session…   Ctrl S", Purpose::Save)] {
             if ui.selectable_label(false, label).clicked() {
-                commands.push(Command::Dialog(Some(Desk::suggest(session, purpose))));
+                commands.push(Command::Dialog(Some(FileDialog::suggest(session, purpose))));
             }
         }
     });
@@ -158,13 +160,8 @@ fn right_end(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Com
     name(&record, "Record");
     ui.painter().circle_filled(pos2(record.rect.left() + 14.0, record.rect.center().y), 4.5, colour(p.reaction));
     if record.clicked() {
-        commands.push(Command::Dialog(Some(Desk::suggest(session, Purpose::Record))));
+        commands.push(Command::Dialog(Some(FileDialog::suggest(session, Purpose::Record))));
     }
-}
-
-/// The other theme.
-pub fn other(theme: Theme) -> Theme {
-    if theme == Theme::Dark { Theme::Light } else { Theme::Dark }
 }
 
 /// A part of an icon, at a place along x.
@@ -197,12 +194,6 @@ fn icon(ui: &mut Ui, look: &Look, label: &str, tip: &str, parts: &[Icon]) -> Res
     }
     name(&response, label);
     response.on_hover_text(tip)
-}
-
-/// Tells a screen reader what a widget is.
-pub fn name(response: &Response, label: &str) {
-    let label = label.to_owned();
-    response.ctx.accesskit_node_builder(response.id, |node| node.set_label(label));
 }
 
 /// Asks for a file name.

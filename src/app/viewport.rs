@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use egui::{CentralPanel, CursorIcon, Frame, PointerButton, Pos2, Rect, Sense, Ui, Vec2};
 
-use super::top::name;
+use super::widgets::name;
 use super::{Command, Look, set_b, switch};
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::picture::paint::{Spot, paint, words};

@@ -200,7 +200,7 @@ impl Columns {
         let named = |all: &[&str]| all.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
         let want = head_wanted(machine);
         let missing = |name: &str| {
-            let have: Vec<&str> = head.iter().collect();
+            let have: Vec<String> = head.iter().map(|word| format!("{:?}", clipped(word))).collect();
             format!("no column {name} among {}: want {want}", shortened(&have.join(", "), 300))
         };
         let time = find(&named(&["t", "time"]), TIME)?.ok_or_else(|| missing("t"))?;

@@ -8,9 +8,10 @@ use stillbase::files::{NewFile, WriteError, check_new};
 use stillbase::session::scenario::Scenario;
 use stillbase::study::comparison::{COLUMNS, Compared, Summary, alternatives};
 
+use super::exit::say;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, Table, fixed, say};
+use super::output::{Format, Table, fixed};
 
 /// Compare runs: one task done in several ways, or any scenarios, by what reaches the base and what it costs
 ///

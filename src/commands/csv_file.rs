@@ -6,8 +6,8 @@ use std::path::Path;
 use stillbase::files::{NewFile, WriteError};
 use stillbase::settings::text::plain;
 
+use super::exit::say;
 use super::failure::Failure;
-use super::output::say;
 
 /// CSV in the making.
 pub struct Csv {

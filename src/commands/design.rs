@@ -11,9 +11,10 @@ use stillbase::mechanics::balance::{self, Preset};
 use stillbase::mechanics::machine::{Inertia, Machine, to_toml};
 
 use super::check::Balance;
+use super::exit::say;
 use super::failure::Failure;
 use super::input::MachineArgument;
-use super::output::{Format, Table, fixed, say};
+use super::output::{Format, Table, fixed};
 
 /// Place the links' centres of mass so that the base feels no force and the mass matrix is invariant, Eq. (10)
 ///

@@ -10,11 +10,11 @@ use stillbase::mechanics::machine::Inertia;
 use stillbase::mechanics::planar::Vector;
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Run, replay_if, settled};
-use stillbase::simulation::audit::Audit;
 
+use super::exit::say;
 use super::failure::Failure;
 use super::input::{Settings, scenario};
-use super::output::{Format, check_size, fixed, say};
+use super::output::{Format, check_size, fixed};
 use super::simulate::trusted;
 
 /// Write a motion as CSV at the rate of a controller: angles, rates, accelerations, feed-forward torques
@@ -190,7 +190,7 @@ impl Export {
         })
         .map_err(|e| Failure::from(e).of(&scenario.name))?;
         let last = run.frame();
-        Ok((rows, last.time, Audit::fault(&last).map(|lamp| lamp.to_string())))
+        Ok((rows, last.time, last.fault().map(|lamp| lamp.to_string())))
     }
 
     fn check_rows(&self, duration: f64) -> Result<(), Failure> {

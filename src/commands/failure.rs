@@ -2,7 +2,6 @@
 
 use std::fmt::Display;
 use std::io;
-use std::process::ExitCode;
 
 use stillbase::files::WriteError;
 use stillbase::mechanics::balance::DesignError;
@@ -11,8 +10,6 @@ use stillbase::mechanics::machine::{FileError, MachineError};
 use stillbase::planning::pose_constant::{PlaneError, Unreachable};
 use stillbase::session::Refusal;
 use stillbase::session::scenario::ScenarioError;
-
-use super::output::say;
 
 /// Why a command did not finish.
 #[derive(Debug)]
@@ -133,44 +130,4 @@ impl From<Refusal> for Failure {
             | Refusal::Task(_) => Self::wrong_input(e),
         }
     }
-}
-
-/// Says why, in one line, and gives the exit status.
-pub fn exit_code(done: Result<(), Failure>) -> ExitCode {
-    match done {
-        Ok(()) | Err(Failure::ReaderGone) => ExitCode::SUCCESS,
-        Err(Failure::NoAnswer(why)) => {
-            say(why);
-            ExitCode::from(1)
-        }
-        Err(Failure::WrongInput(why)) => {
-            say(why);
-            ExitCode::from(2)
-        }
-    }
-}
-
-/// Answers a command line that asks for help or cannot be read.
-pub fn usage(error: &clap::Error) -> ExitCode {
-    if !error.use_stderr() {
-        // Nobody is left to tell when help cannot be printed.
-        let _ = error.print();
-        return ExitCode::SUCCESS;
-    }
-    exit_code(Err(Failure::WrongInput(in_one_line(&error.render().to_string()))))
-}
-
-/// What is wrong and the tips, without the usage that follows.
-fn in_one_line(rendered: &str) -> String {
-    let parts = rendered.split("\n\n").filter(|p| !p.starts_with("Usage:") && !p.starts_with("For more information"));
-    let mut line = String::new();
-    for part in parts {
-        let words: Vec<&str> = part.split_whitespace().collect();
-        if !line.is_empty() {
-            line.push_str("; ");
-        }
-        line.push_str(&words.join(" "));
-    }
-    // Negative numbers have been padded with a space, see `words`.
-    format!("{}; see --help", line.strip_prefix("error: ").unwrap_or(&line).replace("' -", "'-"))
 }

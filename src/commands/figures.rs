@@ -12,10 +12,10 @@ use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::stage::ViewOptions;
 use stillbase::picture::scene::views::ViewKind;
 use stillbase::session::Edit;
-use stillbase::session::scenario::{Change, Scenario, Value};
+use stillbase::session::scenario::{Change, Value};
 
+use super::exit::say;
 use super::failure::Failure;
-use super::output::say;
 
 /// Draw the pictures of the documentation: the window in both themes, joint space and the tower, without a display
 #[derive(Args)]
@@ -91,7 +91,7 @@ fn limit() -> (String, Value) {
 
 /// A scenario run through once, shown at an instant.
 fn desk(scenario: &str, theme: Theme, view: ViewKind, time: f64) -> Result<Desk, Failure> {
-    let scenario = Scenario::find(scenario)?;
+    let scenario = stillbase::files::scenario(scenario)?;
     let mut desk = Desk::new(scenario, theme)?;
     let task_time = desk.session().length();
     for command in [Command::Seek(task_time), Command::Seek(time), Command::View(view)] {

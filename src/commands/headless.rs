@@ -10,9 +10,10 @@ use stillbase::recording::{Options, Pictures, Progress, RecordError, Recording, 
 use stillbase::session::scenario::Scenario;
 use stillbase::settings::text::plain;
 
+use super::exit::say;
 use super::failure::Failure;
 use super::input::{Settings, scenario};
-use super::output::{Format, Table, fixed, say};
+use super::output::{Format, Table, fixed};
 
 /// Simulate scenarios without a window and record them for the Rerun viewer
 #[derive(Args)]

@@ -1,5 +1,6 @@
 //! `stillbase import`
 
+mod answer;
 mod judge;
 mod table;
 mod ways;
@@ -8,21 +9,22 @@ use std::f64::consts::TAU;
 use std::path::{Path as FilePath, PathBuf};
 
 use clap::Args;
-use serde::Serialize;
 use stillbase::files::{check_new, finish_all, made};
 use stillbase::mechanics::dynamics::Surroundings;
-use stillbase::mechanics::machine::{self, Inertia, Machine};
+use stillbase::mechanics::machine::{Inertia, Machine};
 use stillbase::mechanics::planar::Vector;
+use stillbase::planning::Motion;
 use stillbase::planning::curves::Samples;
-use stillbase::planning::motion::Motion;
 use stillbase::planning::pose_constant::Planes;
 use stillbase::session::scenario::{Scenario, Task, TaskKind};
 
 use super::columns::{Content, Read, samples};
+use super::exit::say;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, above_zero, pose_constant, read};
-use super::output::{Format, fixed, say};
-use judge::{Account, Judge, Proposal};
+use super::output::{Format, fixed};
+use answer::Answer;
+use judge::Judge;
 use table::table;
 use ways::{Asked, Keep, Ways, of_drives, of_tip};
 
@@ -75,35 +77,6 @@ pub struct Import {
     format: Format,
 }
 
-#[derive(Serialize)]
-struct Answer {
-    file: String,
-    machine: String,
-    /// `drives` or `tip`.
-    content: &'static str,
-    samples: usize,
-    start: f64,
-    duration: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    smoothed_at: Option<f64>,
-    /// Greatest change of a sample by smoothing, rad or m.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    smoothed_by: Option<f64>,
-    /// How far the second derivative of each column can be trusted, rad/s² or m/s².
-    uncertainty: Vec<f64>,
-    /// Least and greatest b of the samples themselves, rad: the spline between them may go beyond; none for the end effector.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    b_samples: Option<[f64; 2]>,
-    /// For the end effector: with minimum-norm rates; none where these cannot follow.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    given: Option<Account>,
-    feasible: bool,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    reason: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    proposal: Option<Proposal>,
-}
-
 impl Import {
     /// Runs it.
     pub fn run(&self) -> Result<(), Failure> {
@@ -111,7 +84,7 @@ impl Import {
         for file in files.iter().flatten() {
             check_new(file, self.force)?;
         }
-        let machine = self.settings.apply(machine::find(&self.machine, None)?)?;
+        let machine = self.settings.apply(stillbase::files::machine(&self.machine, None)?)?;
         let name = self.file.display().to_string();
         let found = samples(&read(&self.file)?, &name, &machine, self.columns, self.gaps)?;
         for (column, turns) in found.names.iter().zip(&found.unwrapped).filter(|(_, turns)| **turns > 0) {

@@ -4,17 +4,17 @@ use std::ffi::OsString;
 use std::path::Path;
 
 use clap::Args;
-use stillbase::mechanics::machine::{self, Inertia, Machine};
+use stillbase::mechanics::machine::{Inertia, Machine};
 use stillbase::mechanics::planar::Vector;
 use stillbase::planning::pose_constant::plane_map;
 use stillbase::planning::reactionless::PlaneMap;
 use stillbase::session::scenario::{Change, PLACE, POSE_CONSTANT, STEP, Scenario};
 use stillbase::settings::change;
 use stillbase::settings::range::{Range, clipped};
-use stillbase::settings::text::{self, MOST_BYTES};
+use stillbase::settings::text::MOST_BYTES;
 
+use super::exit::say;
 use super::failure::Failure;
-use super::output::say;
 
 /// The scenario of a command that is given none: the paper's reactionless case.
 pub const DEFAULT_SCENARIO: &str = "case-3";
@@ -74,7 +74,7 @@ impl MachineArgument {
     /// # Errors
     /// If there is no such machine, or it is not valid.
     pub fn load(&self) -> Result<Machine, Failure> {
-        self.settings.apply(machine::find(&self.name, None)?)
+        self.settings.apply(stillbase::files::machine(&self.name, None)?)
     }
 }
 
@@ -83,7 +83,7 @@ impl MachineArgument {
 /// # Errors
 /// If there is no such scenario, or its machine is not valid.
 pub fn scenario(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
-    let scenario = set(Scenario::find(name)?, settings)?;
+    let scenario = set(stillbase::files::scenario(name)?, settings)?;
     tell_unused(&scenario);
     Ok(scenario)
 }
@@ -236,7 +236,7 @@ pub fn above_zero(text: &str) -> Result<f64, String> {
 /// # Errors
 /// If it cannot be read.
 pub fn read(file: &Path) -> Result<String, Failure> {
-    text::read(file).map_err(|e| {
+    stillbase::files::text::read(file).map_err(|e| {
         let why = format!("{e}: want a plain file that can be read, of at most {MOST_BYTES} bytes");
         Failure::wrong_input(why).of(file.display())
     })

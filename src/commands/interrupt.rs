@@ -23,7 +23,7 @@ pub fn watch() {
 /// Signals that whoever started the program wants ignored, as `nohup` does: bit 0 is signal 1.
 #[cfg(unix)]
 fn ignored() -> u64 {
-    let status = stillbase::settings::text::read(std::path::Path::new("/proc/self/status")).unwrap_or_default();
+    let status = stillbase::files::text::read(std::path::Path::new("/proc/self/status")).unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }

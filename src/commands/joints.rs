@@ -9,13 +9,13 @@ use stillbase::mechanics::joint_forces::{AxialMoments, Joints, KEPT, Pin, PinPea
 use stillbase::mechanics::machine::{Inertia, Machine};
 use stillbase::mechanics::planar::cross;
 use stillbase::session::replay_if;
-use stillbase::simulation::audit::Audit;
 use stillbase::simulation::frame::Frame;
 
 use super::csv_file::Csv;
+use super::exit::say;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, Table, check_size, fixed, say};
+use super::output::{Format, Table, check_size, fixed};
 use super::simulate::trusted;
 
 /// Say what every pin and bearing carries over a run, how near change points come, and what tilts the base
@@ -254,7 +254,7 @@ fn answer(scenario: &str, last: &Frame, machine: &Machine, joints: &Joints, tall
         pins,
         transmission: Inertia::pairs(machine.drives()).zip(&tally.pairs).map(pair).collect(),
         tilt: TiltAnswer { flat: axial.is_flat(), x, y, motion, residual: axial.residual() },
-        audit_failed: Audit::fault(last).map(|lamp| lamp.to_string()),
+        audit_failed: last.fault().map(|lamp| lamp.to_string()),
     }
 }
 

@@ -9,6 +9,7 @@ mod compare;
 mod csv_file;
 mod design;
 pub(crate) mod dynamics;
+mod exit;
 mod export;
 pub(crate) mod failure;
 #[cfg(feature = "ui")]
@@ -34,8 +35,8 @@ pub use check::Check;
 pub use compare::Compare;
 pub use design::Design;
 pub use dynamics::Dynamics;
+pub use exit::{exit_code, usage};
 pub use export::Export;
-pub use failure::{exit_code, usage};
 #[cfg(feature = "ui")]
 pub use figures::Figures;
 #[cfg(feature = "record")]

@@ -69,8 +69,8 @@ impl Open {
 fn record_instead(scenario: Scenario, why: &str) -> Result<(), Failure> {
     use stillbase::files::free_name;
 
+    use super::exit::say;
     use super::headless::{record_with_bar, unpictured};
-    use super::output::say;
 
     let file = free_name(&scenario.name, "rrd");
     say(format!("{}; recording {} without a window instead", why.trim_end_matches('.'), scenario.name));

@@ -7,7 +7,7 @@ use std::io::{self, Write};
 use serde::Serialize;
 use serde_json::ser::Formatter;
 use stillbase::session::Refusal;
-use stillbase::settings::text::{brief, plain};
+use stillbase::settings::text::plain;
 
 use super::failure::Failure;
 
@@ -62,16 +62,6 @@ fn spelled(c: char) -> String {
         Cow::Borrowed(same) => same.into(),
         Cow::Owned(_) => format!("\\u{:04x}", u32::from(c)),
     }
-}
-
-/// A message on standard error, in one line.
-pub fn say(message: impl Display) {
-    let message = message.to_string();
-    let line = message.lines().map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join(" ");
-    let line = brief(&line);
-    let line = plain(&line);
-    // Nobody is left to tell when standard error is closed.
-    let _ = writeln!(io::stderr(), "stillbase: {line}");
 }
 
 /// A number with fixed decimals, without a sign on zero; powers of ten where decimals would run away.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use stillbase::files::{check_new, write_new};
-use stillbase::mechanics::machine::{self, Inertia};
+use stillbase::mechanics::machine::Inertia;
 use stillbase::mechanics::planar::Vector;
 use stillbase::planning::following::Blocked;
 use stillbase::planning::off_plane::least_reaction::{FixedB, Verdicts};
@@ -16,11 +16,12 @@ use stillbase::session::scenario::{Change, Scenario, Task, TaskKind};
 use stillbase::session::{Refusal, Run, settled};
 use stillbase::simulation::plant::Plant;
 
+use super::exit::say;
 use super::failure::Failure;
 use super::input::{
     DEFAULT_SCENARIO, Settings, above_zero, change_task, no_use, planes_of, point, pose_constant, scenario,
 };
-use super::output::{Format, Table, fixed, say};
+use super::output::{Format, Table, fixed};
 use super::reach::OfMend;
 
 /// Plan a motion through points: which b serves them, along what, how fast, at what cost
@@ -381,7 +382,7 @@ impl Plan {
 
     /// The scenario that the arguments ask for.
     fn scenario(&self) -> Result<Scenario, Failure> {
-        let as_machine = machine::find(&self.name, None);
+        let as_machine = stillbase::files::machine(&self.name, None);
         let known = Scenario::builtin(&self.name).is_some();
         let mut scenario = match as_machine {
             Ok(machine) if !known => {

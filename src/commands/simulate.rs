@@ -13,9 +13,10 @@ use stillbase::simulation::frame::Frame;
 use stillbase::simulation::signals::{Signal, signals};
 
 use super::csv_file::Csv;
+use super::exit::say;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, check_size, fixed, say, yes};
+use super::output::{Format, check_size, fixed, yes};
 
 /// Run a scenario and print every signal over time as CSV
 #[derive(Args)]

@@ -8,9 +8,10 @@ use stillbase::files::{NewFile, WriteError, check_new};
 use stillbase::session::felt;
 use stillbase::study::spectrum::{Limit, Spectrum, SpectrumError, Verdict, Window};
 
+use super::exit::say;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, Table, fixed, say, shown, yes};
+use super::output::{Format, Table, fixed, shown, yes};
 use super::simulate::trusted;
 
 /// Say at which frequencies a run shakes its base, and whether that keeps within jitter limits

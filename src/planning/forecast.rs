@@ -3,7 +3,7 @@
 use crate::mechanics::dynamics::{Surroundings, inverse_with_wrench};
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::PerDrive;
-use crate::planning::motion::Motion;
+use crate::planning::Motion;
 use crate::planning::timing::limits::{Limit, Limits, Quantity};
 
 /// Peaks and sums over a motion, from the model's own dynamics.

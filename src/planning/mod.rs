@@ -16,7 +16,9 @@ pub mod motion;
 pub mod off_plane;
 pub mod pose_constant;
 pub mod reactionless;
+mod reference;
 pub mod timing;
 
 pub use forecast::Forecast;
-pub use motion::{Motion, Reference};
+pub use motion::Motion;
+pub use reference::Reference;

@@ -1,27 +1,8 @@
-//! [`Motion`]: a path and a timing make the [`Reference`] that control follows.
+//! [`Motion`]: a path and a timing make the [`Reference`](super::Reference) that control follows.
 
-use crate::mechanics::planar::{DriveAngles, PerDrive};
+use super::reference::Reference;
 use crate::planning::curves::Path;
 use crate::planning::timing::{Profile, TimeLaw};
-
-/// Where the machine should be, and how it should move there.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reference {
-    /// rad.
-    pub q: DriveAngles,
-    /// rad/s.
-    pub qd: PerDrive,
-    /// rad/s².
-    pub qdd: PerDrive,
-}
-
-impl Reference {
-    /// At rest.
-    pub fn at_rest(q: DriveAngles) -> Self {
-        let still = PerDrive::zeros(q.len());
-        Self { q, qd: still, qdd: still }
-    }
-}
 
 /// A path run through once, from rest to rest unless it is given otherwise.
 #[derive(Clone, Debug, PartialEq)]

@@ -55,7 +55,7 @@ impl Rehearsal {
         })?;
         let last = run.frame();
         Ok(Self {
-            fault: crate::simulation::audit::Audit::fault(&last).map(|lamp| lamp.to_string()),
+            fault: last.fault().map(|lamp| lamp.to_string()),
             name: scenario.name.clone(),
             title: if scenario.title.is_empty() { scenario.name.clone() } else { scenario.title.clone() },
             root: EntityPath::new(vec![EntityPathPart::new(scenario.name.as_str())]),

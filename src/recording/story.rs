@@ -12,7 +12,7 @@ use crate::picture::scene::palette::Palette;
 use crate::session::Edit;
 use crate::session::scenario::Task;
 use crate::session::verdict::Verdict;
-use crate::simulation::frame::{Audit, Frame, Peaks, Phase, Reach};
+use crate::simulation::frame::{Frame, Peaks, Phase, Reach};
 
 /// Events and phases of a case.
 #[derive(Debug)]
@@ -140,7 +140,7 @@ impl Story {
             }
             _ => {}
         }
-        if let (false, Some(lamp)) = (self.faulty, Audit::fault(frame)) {
+        if let (false, Some(lamp)) = (self.faulty, frame.fault()) {
             self.faulty = true;
             let text = format!("audit failed: {} ({}) {:.1e} {}", lamp.name, lamp.meaning, lamp.value, lamp.unit);
             self.add(at, text, TextLogLevel::ERROR, self.palette.reaction);

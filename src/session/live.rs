@@ -6,10 +6,13 @@
 
 use std::sync::Arc;
 
+use super::changes::{Failed, in_order};
 use super::edit::{Edit, TimedEdit};
-use super::run::{self, Failed, MAX_FRAMES, Refusal, Run, in_order};
+use super::refusal::Refusal;
+use super::replay;
+use super::run::Run;
 use super::script::Script;
-use crate::session::scenario::{MAX_TIME, Scenario};
+use crate::session::scenario::{MAX_FRAMES, MAX_TIME, Scenario};
 use crate::simulation::frame::Frame;
 
 /// Everything that makes a run: what undo restores and what is saved.
@@ -565,6 +568,6 @@ fn perform(document: &Document, known: Option<&Run>, patient: bool) -> Result<(R
     let mut frames = Vec::with_capacity(document.end as usize + 1);
     let see = |_: &Run, frame: &Frame| frames.push(*frame);
     let end = |_: &Run, _: &[TimedEdit]| Ok(document.end);
-    let run = run::perform(&document.scenario, &document.script.to_vec(), (end, patient), known, see)?;
+    let run = replay::perform(&document.scenario, &document.script.to_vec(), (end, patient), known, see)?;
     Ok((run, frames))
 }

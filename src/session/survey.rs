@@ -1,7 +1,8 @@
 //! What is wrong with the edits of a file, as far as that takes neither a plan nor a motion.
 
-use super::run::{Refusal, changed, opening, order_of};
-use super::{Edit, TimedEdit};
+use super::changes::{changed, opening, order_of};
+use super::edit::{Edit, TimedEdit};
+use super::refusal::Refusal;
 use crate::session::scenario::Scenario;
 
 /// Looks at every edit of a scenario in the order of steps: whether its numbers and what it sets may stand there.

@@ -7,7 +7,7 @@
 //! | moment past the wheel | what is left of n_B for the base once a reaction wheel has taken its part: by this the base is quiet |
 
 use crate::session::scenario::Scenario;
-use crate::simulation::audit::{Audit, Lamp};
+use crate::simulation::audit::Lamp;
 use crate::simulation::frame::{Frame, Phase, Reach};
 
 /// Farther than this from its target an end effector misses it, m.
@@ -74,7 +74,7 @@ impl Verdict {
             tilt: peaks.tilt,
             miss: (frame.tip - frame.target.at).norm(),
             past_limit: (by > PAST).then(|| (name(angle), by)),
-            fault: Audit::fault(frame),
+            fault: frame.fault(),
             // A target that cannot be reached is told of where it is set.
             ended: frame.phase == Phase::Rest && !matches!(frame.target.reach, Reach::Outside { .. }),
         }

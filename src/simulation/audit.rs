@@ -9,7 +9,8 @@
 //! | step | what two ways of taking a step show: the moment that the base feels, f_B, torques, the end effector, as a share of their peaks |
 //! | plane | b with the b that was aimed at |
 
-use crate::simulation::frame::{Frame, Peaks, Tally};
+use super::peaks::Peaks;
+use super::tally::Tally;
 
 /// What should be zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -72,11 +73,6 @@ impl Audit {
             lamp("step", "error of moment, force, torques, tip", self.step, Some(STEP), "of the peak"),
             lamp("plane", "b − b aimed at", self.plane, None, "rad"),
         ]
-    }
-
-    /// The first figure that is not where it should be.
-    pub fn fault(frame: &Frame) -> Option<Lamp> {
-        frame.audit.lamps(&frame.peaks, &frame.tally).into_iter().find(|lamp| !lamp.is_good())
     }
 }
 

@@ -12,7 +12,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, Units, Vector};
-use crate::planning::motion::Reference;
+use crate::planning::Reference;
 use crate::settings::range::Check;
 use crate::simulation::plant::{Body, Each, is_default};
 

@@ -3,6 +3,7 @@
 pub mod audit;
 pub mod control;
 pub mod frame;
+mod peaks;
 pub mod plant;
 pub mod signals;
 mod simulator;

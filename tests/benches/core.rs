@@ -65,7 +65,7 @@ fn smoothing_of_samples(bencher: Bencher) {
 fn reference_of_samples(bencher: Bencher) {
     let samples = swinging();
     let path = Path::Table(samples.path(0.0).expect("a path"));
-    let motion = stillbase::planning::motion::Motion { path, profile: Profile::running(samples.duration()) };
+    let motion = stillbase::planning::Motion { path, profile: Profile::running(samples.duration()) };
     let mut t = 0.0;
     bencher.bench_local(|| {
         t = (t + 0.731) % 20.0;

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use proptest::sample::select;
-use stillbase::mechanics::machine::{FileError, Machine, MachineError, builtins, parse, read, to_toml};
+use stillbase::mechanics::machine::{FileError, Machine, MachineError, builtins, parse, to_toml};
 
 const NINE_LINK: &str = include_str!("../../assets/machines/nine-link.toml");
 
@@ -246,6 +246,6 @@ fn settings_that_no_file_can_hold_are_refused() {
 #[test]
 fn a_file_that_cannot_be_read_is_named() {
     let missing = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("no-such-machine.toml");
-    let error = read(&missing).expect_err("no file");
+    let error = stillbase::files::machine(&missing.display().to_string(), None).expect_err("no file");
     assert!(matches!(error, FileError::Unreadable { .. }) && error.to_string().contains("no-such-machine.toml"));
 }

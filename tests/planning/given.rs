@@ -12,9 +12,9 @@ use stillbase::planning::curves::spline::{Knots, NOISE_GAIN};
 use stillbase::planning::curves::{Path, Samples};
 use stillbase::planning::following::Rule;
 use stillbase::planning::following::nearest::{Deviation, nearest_b, same_tip, turned};
-use stillbase::planning::motion::{Motion, Reference};
 use stillbase::planning::pose_constant::Planes;
 use stillbase::planning::timing::Profile;
+use stillbase::planning::{Motion, Reference};
 use stillbase::session::scenario::{Scenario, Task, TaskKind};
 use stillbase::session::{Edit, Refusal, Run, Session, replay};
 use stillbase::simulation::frame::Frame;
@@ -528,7 +528,8 @@ mod commands {
         let worst = |rate: &str| {
             folder.ends(0, &["export", "case-1", "--rate", rate, "-o", "out.csv", "--force"]);
             folder.ends(0, &["import", "out.csv", "-o", "in.toml", "--force"]);
-            let read = Scenario::find(&folder.0.join("in-given.toml").display().to_string()).expect("a scenario");
+            let read =
+                stillbase::files::scenario(&folder.0.join("in-given.toml").display().to_string()).expect("a scenario");
             let again = Run::new(&read).expect("it can start").plan().motion.clone();
             let mut worst = [0.0_f64; 3];
             for i in 0..=2000 {
@@ -753,7 +754,7 @@ mod commands {
         for (text, words) in [
             (String::new(), vec!["own.csv:1: nothing here: want a header t,q1,q2,q3"]),
             (lines[1..].join("\n"), vec!["own.csv:1: no header"]),
-            (with(1, "t,q1,q3"), vec!["own.csv:1: no column q2 among t, q1, q3"]),
+            (with(1, "t,q1,q3"), vec!["own.csv:1: no column q2 among \"t\", \"q1\", \"q3\""]),
             (with(1, "q0,q1,q2,q3"), vec!["own.csv:1: no column t"]),
             (with(1, "t,q1,q2,q2"), vec!["own.csv:1: columns 3 and 4 are both q2"]),
             (with(1, "t,q1 (turns),q2,q3"), vec!["own.csv:1: column q1: unit \"turns\": want one of rad"]),

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
 use stillbase::mechanics::machine::{Inertia, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
-use stillbase::planning::motion::Motion;
+use stillbase::planning::Motion;
 use stillbase::planning::off_plane::Price;
 use stillbase::planning::off_plane::price::{
     FloatingBase, PoseLaw, PriceError, bang_bang_in_b, joint_line, least_change, nearest_planes,

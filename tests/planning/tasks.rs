@@ -360,7 +360,7 @@ fn the_scenarios_that_come_along_do_what_they_say() {
         let planned = ["case-3", "circle", "drift", "pick-up", "friction"];
         assert_eq!(quiet, planned.contains(&name), "{name}: {}", forecast.moment);
         let end = stillbase::session::replay(&scenario, |_, _| {}).expect("it runs").frame();
-        let fault = stillbase::simulation::audit::Audit::fault(&end);
+        let fault = end.fault();
         assert!(fault.is_none(), "{name}: {fault:?}");
         let done = end.peaks.moment < 1e-5 * end.peaks.torque_sum;
         assert_eq!(done, ["case-3", "circle", "drift"].contains(&name), "{name}: {}", end.peaks.moment);

@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
+use stillbase::files::text::read;
 use stillbase::files::{NewFile, WriteError, finish_all, made, write_new};
-use stillbase::settings::text::{MOST_BYTES, brief, plain, read};
+use stillbase::settings::text::{MOST_BYTES, brief, plain};
 
 /// A folder of one test.
 struct Folder(PathBuf);

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use stillbase::mechanics::kinematics::{acceleration, end_effector, velocity};
 use stillbase::mechanics::machine::{Inertia, builtin};
 use stillbase::mechanics::planar::{PerDrive, Vector, cross};
-use stillbase::planning::motion::Motion;
+use stillbase::planning::Motion;
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Run, TimedEdit, replay};
 use stillbase::simulation::frame::{Frame, Phase};

@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector, cross};
+use stillbase::planning::Motion;
 use stillbase::planning::curves::Path;
-use stillbase::planning::motion::Motion;
 use stillbase::planning::timing::TimeLaw;
 use stillbase::session::replay;
 use stillbase::session::scenario::Scenario;
@@ -247,8 +247,7 @@ fn only_case_3_leaves_a_spacecraft_alone() {
     let moved = ["case-1", "case-2", "case-3"].map(|name| {
         let mut scenario = Scenario::builtin(name).expect("built in");
         scenario.base = Base { com: [0.15, -0.1], ..free() };
-        let end =
-            replay(&scenario, |_, f| assert!(stillbase::simulation::audit::Audit::fault(f).is_none(), "{:?}", f.audit));
+        let end = replay(&scenario, |_, f| assert!(f.fault().is_none(), "{:?}", f.audit));
         let tally = end.expect("runs").frame().tally;
         (tally.shift, tally.tilt)
     });
@@ -269,7 +268,7 @@ fn a_wheel_cancels_until_it_saturates() {
             if f.tally.saturated.is_none() {
                 wheel_momentum = wheel_momentum.max(off.abs());
             }
-            assert!(stillbase::simulation::audit::Audit::fault(f).is_none(), "{:?}", f.audit);
+            assert!(f.fault().is_none(), "{:?}", f.audit);
         });
         let f = run.expect("runs").frame();
         assert!(wheel_momentum < 1e-9, "{wheel_momentum}");
@@ -334,7 +333,7 @@ proptest! {
             }
         });
         let end = run.expect("runs").frame();
-        let fault = stillbase::simulation::audit::Audit::fault(&end);
+        let fault = end.fault();
         prop_assert!(fault.is_none(), "{fault:?}");
         prop_assert!(end.tally.wheel_rate <= top * (1.0 + 1e-13));
         // One that has reached it without a weak motor stays there for a while.

@@ -4,8 +4,8 @@
 
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive};
+use stillbase::planning::Motion;
 use stillbase::planning::curves::Path;
-use stillbase::planning::motion::Motion;
 use stillbase::planning::timing::Profile;
 use stillbase::planning::timing::profile::Span;
 use stillbase::session::replay;
@@ -339,7 +339,7 @@ fn circle(coulomb: f64, step: f64, quick: bool) -> Vec<f64> {
         }
     });
     let end = run.expect("runs").frame();
-    assert!(stillbase::simulation::audit::Audit::fault(&end).is_none(), "{:?}", end.audit);
+    assert!(end.fault().is_none(), "{:?}", end.audit);
     moments
 }
 

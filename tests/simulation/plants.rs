@@ -5,7 +5,6 @@ use stillbase::mechanics::machine::builtin;
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, TimedEdit, replay};
 use stillbase::settings::change;
-use stillbase::simulation::audit::Audit;
 use stillbase::simulation::control::Control;
 use stillbase::simulation::frame::Frame;
 use stillbase::simulation::plant::{BaseKind, Contacts, Each, Friction};
@@ -38,7 +37,7 @@ fn frames(scenario: &Scenario) -> Vec<Frame> {
 fn last(scenario: &Scenario) -> Frame {
     let frames = frames(scenario);
     let last = frames[frames.len() - 1];
-    assert!(Audit::fault(&last).is_none(), "{:?} {:?}", last.audit, Audit::fault(&last));
+    assert!(last.fault().is_none(), "{:?} {:?}", last.audit, last.fault());
     last
 }
 
@@ -245,7 +244,7 @@ fn an_edit_that_changes_nothing_leaves_no_trace() {
         assert!((a.base.angle - b.base.angle).abs() < 1e-11 && (a.wheel.rate - b.wheel.rate).abs() < 1e-9);
         assert!(a.torque.minus(&b.torque).max_abs() < 1e-8, "{} s: {:?} {:?}", a.time, a.torque, b.torque);
     }
-    let fault = Audit::fault(&edited[edited.len() - 1]);
+    let fault = edited[edited.len() - 1].fault();
     assert!(fault.is_none(), "{fault:?}");
 }
 
@@ -380,7 +379,7 @@ fn what_is_shown_does_not_depend_on_the_step() {
         scenario.step *= 0.1;
         let fine: Vec<Frame> = frames(&scenario).into_iter().step_by(10).collect();
         let end = shown[shown.len() - 1];
-        assert!(Audit::fault(&end).is_none(), "{name} {text}: {:?}", end.audit);
+        assert!(end.fault().is_none(), "{name} {text}: {:?}", end.audit);
         let peaks = end.peaks;
         for (a, b) in shown.iter().zip(&fine) {
             let torque = a.torque.minus(&b.torque).max_abs();

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
 use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse};
 use stillbase::mechanics::planar::Vector;
-use stillbase::planning::motion::Motion;
+use stillbase::planning::Motion;
 use stillbase::session::Run;
 use stillbase::session::scenario::Scenario;
 use stillbase::session::scenario::{Spread, Tolerance, default_spreads};
@@ -324,8 +324,7 @@ fn sensitivities_are_derivatives() {
         let machine = ensemble.machine_of(deviations).expect("possible");
         let (inertia, gravity) = (Inertia::of(&machine), machine.gravity());
         let around = Surroundings { gravity, force: Vector::default() };
-        let wrench =
-            |r: &stillbase::planning::motion::Reference| base_wrench(&inertia, &r.q.units(), &r.qd, &r.qdd, &around);
+        let wrench = |r: &stillbase::planning::Reference| base_wrench(&inertia, &r.q.units(), &r.qd, &r.qdd, &around);
         ensemble.references().iter().map(wrench).map(|w| (w.total().moment, w.dynamic.force)).collect()
     };
     for (p, share) in shares.parameters.iter().enumerate() {

@@ -2,8 +2,8 @@
 
 use egui::Ui;
 
-use super::Row;
 use super::fold::{Knob, Of, Slide, fold, segments, switch};
+use crate::app::widgets::Row;
 use crate::app::{Command, Look};
 use crate::picture::scene::palette::Palette;
 use crate::session::Session;

@@ -2,10 +2,10 @@
 
 use egui::Ui;
 
-use super::Row;
 use super::fold::{Knob, Of, Slide, choose, fold};
 use super::plant::Gain;
 use crate::app::Command;
+use crate::app::widgets::Row;
 use crate::picture::scene::palette::Palette;
 use crate::session::Session;
 use crate::simulation::control::{Control, Law};

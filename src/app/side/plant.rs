@@ -3,8 +3,8 @@
 use egui::Ui;
 
 use super::fold::{Knob, Of, Slide, choose, fold, once, something, switch};
-use super::{Row, note, unit};
 use crate::app::Command;
+use crate::app::widgets::{Row, note, unit};
 use crate::mechanics::machine::{Link, Machine};
 use crate::picture::scene::palette::Palette;
 use crate::session::Session;

@@ -3,9 +3,9 @@
 use serde::Serialize;
 use stillbase::mechanics::dynamics::{Surroundings, angular_momentum};
 use stillbase::mechanics::machine::{Inertia, Machine};
+use stillbase::planning::Motion;
 use stillbase::planning::following::nearest::Deviation;
 use stillbase::planning::forecast::Forecast;
-use stillbase::planning::motion::Motion;
 use stillbase::planning::pose_constant::Planes;
 use stillbase::planning::timing::Limits;
 use stillbase::session::replay;

@@ -1,6 +1,6 @@
 //! The answer as a table.
 
-use super::Answer;
+use super::answer::Answer;
 use super::judge::Account;
 use crate::commands::output::{Table, fixed, yes};
 

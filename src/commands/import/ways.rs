@@ -2,11 +2,11 @@
 
 use clap::ValueEnum;
 use stillbase::mechanics::planar::DriveAngles;
+use stillbase::planning::Motion;
 use stillbase::planning::curves::path::minimum_norm_curve;
 use stillbase::planning::curves::{Path, Samples};
 use stillbase::planning::following::nearest::{nearest_b, same_tip, turned};
 use stillbase::planning::following::{Rule, trace};
-use stillbase::planning::motion::Motion;
 use stillbase::planning::reactionless::{BSet, between};
 use stillbase::planning::timing::Profile;
 use stillbase::session::scenario::{Task, TaskKind};

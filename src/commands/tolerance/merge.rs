@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 
 use stillbase::study::tolerance::Outcome;
 
-use super::OUTCOMES;
-use super::rows::{Head, Part, Study, Writer};
+use super::rows::{Head, OUTCOMES, Part, Study, Writer};
 use crate::commands::failure::Failure;
 
 /// Puts parts together, in whatever order they are named, and gives what their machines come to.

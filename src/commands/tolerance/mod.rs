@@ -19,9 +19,10 @@ use stillbase::study::tolerance::{Agreement, Bands, Ensemble, Outcome, Shares, T
 use self::parallel::Mode;
 use self::report::{Answer, Compared, Distributions, Drawn, Merged, Yields};
 use self::rows::{Head, OUTCOME_COLUMNS, Study, Writer};
+use crate::commands::exit::say;
 use crate::commands::failure::Failure;
 use crate::commands::input::{DEFAULT_SCENARIO, Settings, scenario};
-use crate::commands::output::{Format, say};
+use crate::commands::output::Format;
 
 /// Vary a machine within its tolerances and see what its base feels
 ///
@@ -99,9 +100,6 @@ pub struct Tolerance {
 
 /// Machines of which all results are kept at once.
 const MOST_AT_ONCE: u64 = 20_000_000;
-
-/// How many numbers each machine comes to.
-const OUTCOMES: usize = 4;
 
 fn samples(text: &str) -> Result<u64, String> {
     let count = text.trim().parse().ok().filter(|n| (1..=MAX_SAMPLES).contains(n));

@@ -17,9 +17,7 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 use stillbase::files::{NewFile, WriteError};
-use stillbase::settings::text;
 
-use super::OUTCOMES;
 use super::seal::{self, BEFORE, End, Sealing, UNSEALED};
 use crate::commands::failure::Failure;
 
@@ -64,6 +62,9 @@ pub struct Head {
     /// Names of the columns after the sample's, with units.
     pub columns: Vec<String>,
 }
+
+/// How many numbers each machine comes to.
+pub const OUTCOMES: usize = 4;
 
 /// The last columns: what each machine comes to.
 pub const OUTCOME_COLUMNS: [&str; OUTCOMES] = ["peak moment N m", "peak force N", "rms moment N m", "rms force N"];
@@ -396,7 +397,7 @@ fn plain_file(file: &Path) -> Result<(Kind, File), Failure> {
     let kind = kind_of(file)?;
     let unreadable = |e| Failure::wrong_input(format!("{e}: want a plain file that can be read")).of(file.display());
     // To open a pipe would already wait for its other end.
-    let there = std::fs::metadata(file).and_then(|there| text::check(&there, u64::MAX));
+    let there = std::fs::metadata(file).and_then(|there| stillbase::files::text::check(&there, u64::MAX));
     there.map_err(unreadable)?;
     Ok((kind, File::open(file).map_err(unreadable)?))
 }

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::MAX_PINS;
+use super::pins::MAX_PINS;
 
 /// Why statics does not determine the forces in a machine.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

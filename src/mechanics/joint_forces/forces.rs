@@ -1,7 +1,9 @@
 //! Forces of the pins at one instant.
 
-use super::structure::{Body, Closure, Step, lever};
-use super::{FLAT, Joints, MAX_PINS};
+use super::block::together;
+use super::joints::Joints;
+use super::pins::{FLAT, MAX_PINS};
+use super::tree::SolveStep;
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Units, Vector, cross};
 
@@ -53,12 +55,6 @@ impl Forces {
     }
 }
 
-/// The most closures solved together: each holds two links, so 3 pins each beside one at B.
-const MOST: usize = MAX_PINS / 3;
-
-/// Closure forces of a block, in its order.
-type Block = [Vector; MOST];
-
 impl Joints {
     /// Force of every pin for a motion, and the torques of the drives, with pins that turn freely. On a base that moves,
     /// gravity is g − p̈_B.
@@ -82,10 +78,10 @@ impl Joints {
         for k in 0..self.drives {
             turn[k] = Vector::new(-qd[k] * qd[k], qdd[k]) * e[k];
         }
-        let bodies = &self.bodies[..];
+        let links = &self.links[..];
         // From B outwards: acceleration of each root less gravity. What each link asks of its root for itself.
         let (mut root, mut force, mut moment) = ([zero; MAX_PINS], [zero; MAX_PINS], [0.0; MAX_PINS]);
-        for (j, body) in bodies.iter().enumerate() {
+        for (j, body) in links.iter().enumerate() {
             let (drive, arm) = body.arm;
             root[j] = match body.parent {
                 Some(p) => root[p] + turn[drive] * arm,
@@ -100,12 +96,12 @@ impl Joints {
         }
         // What a pin's friction takes from one side it gives to the other.
         for &(from, to) in &self.rubbing {
-            let f = couple(bodies[from].drive, bodies[to].drive);
+            let f = couple(links[from].drive, links[to].drive);
             moment[from] -= f;
             moment[to] += f;
         }
         // And inwards: with all that hangs on it.
-        for (j, body) in bodies.iter().enumerate().rev() {
+        for (j, body) in links.iter().enumerate().rev() {
             if let Some(p) = body.parent {
                 let (drive, arm) = body.arm;
                 moment[p] += arm * cross(e[drive], force[j]);
@@ -122,7 +118,7 @@ impl Joints {
             let closure = &self.closures[c];
             out.forces[closure.pin] = lambda;
             for &(j, w) in &closure.levers {
-                moment[j] -= w * cross(e[bodies[j].drive], lambda);
+                moment[j] -= w * cross(e[links[j].drive], lambda);
             }
             for &(j, sense) in &closure.carried {
                 force[j] -= lambda * sense;
@@ -130,8 +126,8 @@ impl Joints {
         };
         for step in &self.steps {
             match step {
-                Step::Pair { closure, rows: [(i, v), (j, w)] } => {
-                    let (ek, el) = (e[bodies[*i].drive], e[bodies[*j].drive]);
+                SolveStep::Pair { closure, rows: [(i, v), (j, w)] } => {
+                    let (ek, el) = (e[links[*i].drive], e[links[*j].drive]);
                     let mut sine = cross(ek, el);
                     if sine.abs() < FLAT {
                         out.undefined |= self.closures[*closure].reaches;
@@ -140,8 +136,8 @@ impl Joints {
                     let lambda = (el * (moment[*i] / v) - ek * (moment[*j] / w)) / sine;
                     apply(*closure, lambda, &mut force, &mut moment);
                 }
-                Step::Together { closures, rows } => {
-                    let (lambdas, regular) = together(bodies, &self.closures, closures, rows, e, &moment);
+                SolveStep::Together { closures, rows } => {
+                    let (lambdas, regular) = together(links, &self.closures, closures, rows, e, &moment);
                     for (&c, &lambda) in closures.iter().zip(&lambdas) {
                         if !regular {
                             out.undefined |= self.closures[c].reaches;
@@ -151,7 +147,7 @@ impl Joints {
                 }
             }
         }
-        for (j, body) in bodies.iter().enumerate() {
+        for (j, body) in links.iter().enumerate() {
             out.forces[body.link] = force[j];
             if body.driven {
                 out.torque[body.drive] += moment[j];
@@ -165,48 +161,4 @@ impl Joints {
         let at_base = self.pins.iter().zip(forces.bounded()).filter(|(pin, _)| pin.from.is_none());
         -at_base.map(|(_, f)| f).sum::<Vector>()
     }
-}
-
-/// Closure forces of a block by elimination with row pivots, and whether no pivot vanished.
-pub(super) fn together(
-    bodies: &[Body],
-    closures: &[Closure],
-    open: &[usize],
-    rows: &[usize],
-    e: &Units,
-    moment: &[f64],
-) -> (Block, bool) {
-    let n = rows.len();
-    let mut a = [[0.0; 2 * MOST + 1]; 2 * MOST];
-    for (row, &j) in a.iter_mut().zip(rows) {
-        let ej = e[bodies[j].drive];
-        // Rows of unit size, so that pivots compare with 1.
-        let size = open.iter().fold(0.0_f64, |m, &c| m.max(lever(&closures[c], j).abs()));
-        let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
-        for (i, &c) in open.iter().enumerate() {
-            let w = scale * lever(&closures[c], j);
-            (row[2 * i], row[2 * i + 1]) = (-w * ej.im, w * ej.re);
-        }
-        row[2 * MOST] = scale * moment[j];
-    }
-    let mut regular = true;
-    for i in 0..n {
-        let p = (i..n).max_by(|&p, &q| a[p][i].abs().total_cmp(&a[q][i].abs())).unwrap_or(i);
-        a.swap(i, p);
-        if a[i][i].abs() < FLAT {
-            regular = false;
-            a[i][i] = FLAT.copysign(a[i][i]);
-        }
-        let pivot = a[i];
-        for row in &mut a[i + 1..n] {
-            let factor = row[i] / pivot[i];
-            row.iter_mut().zip(&pivot).skip(i).for_each(|(x, y)| *x -= factor * y);
-        }
-    }
-    let mut x = [0.0; 2 * MOST];
-    for i in (0..n).rev() {
-        let known: f64 = (i + 1..n).map(|l| a[i][l] * x[l]).sum();
-        x[i] = (a[i][2 * MOST] - known) / a[i][i];
-    }
-    (std::array::from_fn(|i| Vector::new(x[2 * i], x[2 * i + 1])), regular)
 }

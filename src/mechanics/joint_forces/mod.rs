@@ -36,101 +36,21 @@
 //! Where sin(q_k − q_l) → 0 the parallelogram is flat and its forces grow like 1/|sin|, while τ stays finite. Below
 //! [`FLAT`] they are undefined.
 
+mod block;
 mod error;
 mod forces;
 mod inside;
+mod joints;
+mod pins;
 mod structure;
 mod tilt;
 mod transmission;
+mod tree;
 
 pub use error::JointsError;
 pub use forces::Forces;
 pub use inside::{Inside, KEPT, PinPeak, Watch};
+pub use joints::Joints;
+pub use pins::{FLAT, MAX_PINS, Pin};
 pub use tilt::{AxialMoments, Tilt};
 pub use transmission::{ChangePoint, Parallelogram, ahead, nearest, transmission};
-
-use crate::mechanics::machine::{Chain, Machine};
-use structure::{Body, Closure, Step};
-
-/// The most pins of a machine whose forces are told.
-pub const MAX_PINS: usize = 32;
-
-/// |sin(q_k − q_l)| below which the forces of a parallelogram are undefined: rounding alone changes them by 1e-7 there.
-pub const FLAT: f64 = 1e-9;
-
-/// A pin or bearing.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Pin {
-    /// Its two links: `B-1`, `1-5`, `6-7`.
-    pub name: String,
-    /// The link that exerts the force; none: the base.
-    pub from: Option<usize>,
-    /// The link that the force acts on.
-    pub to: usize,
-    /// Where it is.
-    pub at: Chain,
-    /// Whether it closes a loop, rather than attaching a link.
-    pub closes: bool,
-}
-
-/// The pins of a machine, and all of it that their forces depend on.
-#[derive(Clone, Debug)]
-pub struct Joints {
-    drives: usize,
-    pins: Vec<Pin>,
-    bodies: Vec<Body>,
-    closures: Vec<Closure>,
-    /// Bodies on both sides of each pin whose links follow different drives.
-    rubbing: Vec<(usize, usize)>,
-    steps: Vec<Step>,
-    parallelograms: Vec<Parallelogram>,
-}
-
-impl Joints {
-    /// Reads the structure of a machine.
-    ///
-    /// # Errors
-    /// If statics does not determine the forces: closures too many or too few, or a drive that turns nobody knows what.
-    pub fn of(machine: &Machine) -> Result<Self, JointsError> {
-        let pins = pins(machine);
-        if pins.len() > MAX_PINS {
-            return Err(JointsError::TooMany { count: pins.len() });
-        }
-        let bodies = structure::bodies(machine)?;
-        let mut closures = structure::closures(machine, &bodies);
-        let steps = structure::steps(machine, &bodies, &closures)?;
-        structure::spread(&bodies, &mut closures, &steps);
-        let parallelograms = transmission::parallelograms(&pins[machine.links().len()..], &bodies, &closures);
-        let body = |link: usize| bodies.iter().position(|b| b.link == link);
-        let sides = pins.iter().filter_map(|pin| Some((body(pin.from?)?, body(pin.to)?)));
-        let rubbing = sides.filter(|(a, b)| bodies[*a].drive != bodies[*b].drive).collect();
-        Ok(Self { drives: machine.drives(), pins, bodies, closures, rubbing, steps, parallelograms })
-    }
-
-    /// The pins: where each link is attached, in the order of links, then the closures.
-    pub fn pins(&self) -> &[Pin] {
-        &self.pins
-    }
-
-    /// The closures that are parallelograms of two drives.
-    pub fn parallelograms(&self) -> &[Parallelogram] {
-        &self.parallelograms
-    }
-}
-
-/// The pins of any machine, whether or not their forces can be told.
-fn pins(machine: &Machine) -> Vec<Pin> {
-    let name = |link: Option<usize>| link.map_or("B", |j| machine.links()[j].name.as_str());
-    let mut pins: Vec<Pin> = Vec::with_capacity(machine.links().len() + machine.loops().len());
-    let attached = machine.parts().iter().enumerate().map(|(j, part)| (part.parent, j, part.root, false));
-    let closed = machine.loops().iter().map(|c| (Some(c.a), c.b, machine.parts()[c.a].point(c.at_a), true));
-    for (from, to, at, closes) in attached.chain(closed) {
-        let mut called = format!("{}-{}", name(from), name(Some(to)));
-        // Two pins between the same links need two names.
-        while pins.iter().any(|p| p.name == called) {
-            called.push('\'');
-        }
-        pins.push(Pin { name: called, from, to, at, closes });
-    }
-    pins
-}

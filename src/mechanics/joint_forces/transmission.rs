@@ -9,8 +9,8 @@
 
 use std::f64::consts::PI;
 
-use super::Pin;
-use super::structure::{Body, Closure};
+use super::pins::Pin;
+use super::tree::{CutClosure, TreeLink};
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{PerDrive, Units, cross};
 
@@ -80,9 +80,9 @@ fn arrival(way: f64, rate: f64) -> Option<f64> {
 }
 
 /// Which closures close a loop of two drives.
-pub(super) fn parallelograms(pins: &[Pin], bodies: &[Body], closures: &[Closure]) -> Vec<Parallelogram> {
-    let of = |(pin, closure): (&Pin, &Closure)| {
-        let mut drives: Vec<usize> = closure.levers.iter().map(|(j, _)| bodies[*j].drive).collect();
+pub(super) fn parallelograms(pins: &[Pin], links: &[TreeLink], closures: &[CutClosure]) -> Vec<Parallelogram> {
+    let of = |(pin, closure): (&Pin, &CutClosure)| {
+        let mut drives: Vec<usize> = closure.levers.iter().map(|(j, _)| links[*j].drive).collect();
         drives.sort_unstable();
         drives.dedup();
         let [k, l] = drives[..] else { return None };

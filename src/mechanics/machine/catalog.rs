@@ -1,9 +1,10 @@
 //! The machines that come with the program.
 
-use std::path::Path;
 use std::sync::LazyLock;
 
-use super::{FileError, Machine, MachineError, parse, read};
+use super::error::MachineError;
+use super::file::{FileError, parse};
+use super::model::Machine;
 use crate::settings::range::shortened;
 
 static BUILTINS: LazyLock<Vec<Machine>> = LazyLock::new(|| {
@@ -26,23 +27,17 @@ pub fn builtin(name: &str) -> Option<&'static Machine> {
     builtins().iter().find(|m| m.name() == name)
 }
 
-/// A machine by built-in name or by file; a relative file is looked up beside `folder` if there is one.
+/// A machine by built-in name, where no file is looked for.
 ///
 /// # Errors
-/// If it is neither, or the file is not a machine.
-pub fn find(name: &str, folder: Option<&Path>) -> Result<Machine, FileError> {
-    if let Some(machine) = builtin(name) {
-        return Ok(machine.clone());
-    }
-    let file = folder.map_or_else(|| name.into(), |f| f.join(name));
-    match read(&file) {
-        Err(FileError::Unreadable { source, .. })
-            if source.kind() == std::io::ErrorKind::NotFound && !name.ends_with(".toml") =>
-        {
-            let known = builtins().iter().map(Machine::name).collect::<Vec<_>>().join(", ");
-            let error = MachineError::Syntax(format!("no such machine: want {known}, or a TOML file"));
-            Err(FileError::Wrong { file: shortened(name, 300), line: None, error })
-        }
-        other => other,
-    }
+/// If there is none of that name: which there are.
+pub fn named(name: &str) -> Result<Machine, FileError> {
+    builtin(name).cloned().ok_or_else(|| unknown(name))
+}
+
+/// That nothing is called so.
+pub fn unknown(name: &str) -> FileError {
+    let known = builtins().iter().map(Machine::name).collect::<Vec<_>>().join(", ");
+    let error = MachineError::Syntax(format!("no such machine: want {known}, or a TOML file"));
+    FileError::Wrong { file: shortened(name, 300), line: None, error }
 }

@@ -211,3 +211,12 @@ impl MachineError {
         }
     }
 }
+
+/// Names as a message lists them.
+pub(super) fn quoted<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let mut known: Vec<String> = names.take(21).map(|n| format!("{:?}", clipped(n))).collect();
+    if known.len() > 20 {
+        known[20] = "…".into();
+    }
+    known.join(", ")
+}

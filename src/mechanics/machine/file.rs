@@ -37,16 +37,6 @@ fn named(file: &Path) -> String {
     shortened(&file.display().to_string(), 300)
 }
 
-/// Reads a machine from a file.
-///
-/// # Errors
-/// If it cannot be read or is not a machine.
-pub fn read(file: &Path) -> Result<Machine, FileError> {
-    let text =
-        crate::settings::text::read(file).map_err(|source| FileError::Unreadable { file: file.into(), source })?;
-    parse(&text, &file.display().to_string())
-}
-
 /// Reads a machine from text; `file` is what errors call it.
 ///
 /// # Errors

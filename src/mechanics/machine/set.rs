@@ -1,6 +1,8 @@
 //! One setting of a machine by key, as `--set` and edits name it.
 
+use super::error::quoted;
 use super::{Length, Machine, MachineError, MachineSpec, Place};
+use crate::settings::range::{clipped, shortened};
 
 const KEYS: &str = "link.NAME.(com|com_normal|mass|inertia|length|axial), length.NAME, \
                     payload.(mass|inertia|offset|axial), gravity, limits.ANGLE, \
@@ -77,7 +79,7 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &str) -> Result<(), MachineE
         place: Place::new(&[&key]),
         what,
         name: name.into(),
-        known: super::quoted(known.into_iter()),
+        known: quoted(known.into_iter()),
     };
     match *key.split('.').collect::<Vec<_>>() {
         ["link", name, field] => {
@@ -149,9 +151,9 @@ fn set_link_length(spec: &mut MachineSpec, j: usize, metres: f64) -> Result<(), 
     if !others.is_empty() {
         let plural = if others.len() > 1 { "links" } else { "link" };
         return Err(MachineError::SharedLength {
-            link: super::clipped(&spec.links[j].name),
-            length: super::clipped(&name),
-            sharers: format!("{plural} {}", super::shortened(&others.join(", "), 200)),
+            link: clipped(&spec.links[j].name),
+            length: clipped(&name),
+            sharers: format!("{plural} {}", shortened(&others.join(", "), 200)),
         });
     }
     spec.lengths.insert(name, metres);

@@ -19,9 +19,9 @@ const STEP: [f64; 2] = [f64::from_bits(0x3FF9_21FB_5440_0000) / 32.0, f64::from_
 /// (cos, sin) of every step.
 static TURN: [[f64; 2]; STEPS] = turn();
 
-/// (cos q, sin q), q in rad, each within 2e-16; NaN of what is not finite.
+/// e(q) = (cos q, sin q), q in rad, each within 2e-16; NaN of what is not finite.
 #[inline]
-pub(super) fn unit(q: f64) -> Vector {
+pub fn unit(q: f64) -> Vector {
     if q.abs() < LARGEST {
         near(q)
     } else {

@@ -11,9 +11,9 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector};
+use crate::planning::curves::PathPoint;
 use crate::planning::curves::curve::{Curve, CurvePoint};
 use crate::planning::curves::low_pass::LowPass;
-use crate::planning::curves::path::PathPoint;
 use crate::planning::curves::spline::{FEWEST, Knots};
 use crate::planning::curves::table::Table;
 use crate::settings::range::{Range, Short};

@@ -4,10 +4,12 @@ pub mod curve;
 pub mod given;
 pub mod low_pass;
 pub mod path;
+mod point;
 pub mod spline;
 pub mod table;
 
 pub use curve::{Curve, CurveError, CurvePoint};
 pub use given::Samples;
 pub use path::{Path, PathError};
+pub use point::PathPoint;
 pub use table::Table;

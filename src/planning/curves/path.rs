@@ -6,33 +6,9 @@ use crate::mechanics::kinematics::{acceleration, closest_turn, end_effector, min
 use crate::mechanics::machine::Chain;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 use crate::planning::curves::curve::{Curve, CurvePoint};
+use crate::planning::curves::point::PathPoint;
 use crate::planning::curves::table::Table;
-use crate::planning::motion::Reference;
 use crate::planning::reactionless::{PlaneMap, PlanePoint};
-use crate::planning::timing::law::Progress;
-
-/// A pose on a path and how it changes with s.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PathPoint {
-    /// q, rad.
-    pub q: DriveAngles,
-    /// dq/ds, rad.
-    pub first: PerDrive,
-    /// d²q/ds², rad.
-    pub second: PerDrive,
-}
-
-impl PathPoint {
-    /// The reference where the path is passed with given rates of s: q̇ = q′ ṡ, q̈ = q″ ṡ² + q′ s̈.
-    #[inline]
-    pub fn timed(&self, p: &Progress) -> Reference {
-        Reference {
-            q: self.q,
-            qd: self.first.scaled(p.rate),
-            qdd: self.second.scaled(p.rate * p.rate).plus(p.acceleration, &self.first),
-        }
-    }
-}
 
 /// A path of the drives.
 #[derive(Clone, Debug, PartialEq)]

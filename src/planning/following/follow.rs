@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
-use crate::planning::motion::Reference;
+use crate::planning::Reference;
 use crate::planning::pose_constant::{Planes, Reach};
 use crate::planning::reactionless::PlanePoint;
 

@@ -18,12 +18,12 @@
 use crate::mechanics::kinematics::{acceleration, end_effector, velocity};
 use crate::mechanics::machine::{Chain, Inertia};
 use crate::mechanics::planar::{DriveAngles, PerDrive};
+use crate::planning::Motion;
 use crate::planning::curves::curve::{Curve, CurvePoint};
 use crate::planning::curves::given::Samples;
 use crate::planning::curves::table::Table;
 use crate::planning::following::trace;
 use crate::planning::following::trace::{Blocked, Rule};
-use crate::planning::motion::Motion;
 use crate::planning::reactionless::{BSet, PlaneMap};
 
 /// How far two motions of one timing are apart.

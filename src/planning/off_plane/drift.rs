@@ -8,8 +8,9 @@ use thiserror::Error;
 use crate::mechanics::kinematics::{acceleration, end_effector};
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
+use crate::planning::curves::PathPoint;
 use crate::planning::curves::curve::{Curve, CurvePoint};
-use crate::planning::curves::path::{PathPoint, by_pieces};
+use crate::planning::curves::path::by_pieces;
 use crate::planning::curves::table::Table;
 use crate::planning::off_plane::null_space::{lines, momentum_row_rate, rates, solve};
 

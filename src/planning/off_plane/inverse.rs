@@ -9,8 +9,8 @@
 //! w′ = F_1 a_1′ + F_2 a_2′ and w″ = F_1 a_1″ + F_2 a_2″ − Σ_k c_k e^{i (u_k · a + v_k)} (u_k · a′)².
 
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, cross, unit};
+use crate::planning::curves::PathPoint;
 use crate::planning::curves::curve::CurvePoint;
-use crate::planning::curves::path::PathPoint;
 use crate::planning::reactionless::{PlaneMap, PlanePoint};
 
 /// (a_1′, a_2′) and (a_1″, a_2″) at a pose for given w′ and w″; not finite where det ∂(x, y)/∂(a_1, a_2) = 0.

@@ -24,7 +24,7 @@ use crate::mechanics::dynamics::mass_matrix;
 use crate::mechanics::kinematics::column;
 use crate::mechanics::machine::{BALANCED, Inertia};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Units, Vector};
-use crate::planning::curves::path::PathPoint;
+use crate::planning::curves::PathPoint;
 use crate::planning::curves::table::Table;
 
 /// D_k = Σ_l H_lk at a pose, kg m², (A3).

@@ -21,7 +21,8 @@ use thiserror::Error;
 
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
-use crate::planning::curves::path::{Path, PathPoint};
+use crate::planning::curves::PathPoint;
+use crate::planning::curves::path::Path;
 use crate::planning::curves::table::Table;
 use crate::planning::reactionless::{BSet, NoReach, PlaneMap, PlanePoint};
 use crate::planning::timing::law::TimeLaw;

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::reach::BSet;
+use super::b_set::BSet;
 
 /// Beyond so many decimals nobody types a number.
 pub const MOST_DECIMALS: usize = 12;

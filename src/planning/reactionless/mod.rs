@@ -12,6 +12,7 @@
 //! | b* | b/Σλ: turns the whole workspace, (15) | rad |
 //! | u_k, v_k | q_k = b* + u_k · a + v_k | 1, rad |
 
+mod b_set;
 mod boundary;
 mod change;
 mod decimal;
@@ -21,10 +22,11 @@ mod poses;
 mod quadrilateral;
 mod reach;
 
+pub use b_set::BSet;
 pub use boundary::{Boundary, ChangeCurve, Curve, Extent, Line, Loop, Nearest, Vertex};
 pub use change::{ChangePoint, PAIRS};
 pub use decimal::{Decimal, between, metres, metres_apart};
 pub use dexterity::Dexterity;
 pub use plane::{AngleDefinition, Limit, NotAPlaneMap, PlaneMap, PlanePoint, SLACK, WIDEST};
 pub use poses::Poses;
-pub use reach::{BSet, NoReach};
+pub use reach::NoReach;

@@ -4,8 +4,6 @@
 //! and the optimum is known in closed form; elsewhere it is a time-optimal path parameterisation, and with limits on
 //! jerk a feasible motion near it.
 
-use thiserror::Error;
-
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::PerDrive;
@@ -13,80 +11,15 @@ use crate::planning::curves::path::Path;
 use crate::planning::timing::keep::{greatest, kept};
 use crate::planning::timing::law::Progress;
 use crate::planning::timing::limits::{Constraints, Limit, Limits, Quantity, Row};
+use crate::planning::timing::outcome::{Fastest, TimeError};
 use crate::planning::timing::profile::{Profile, Span};
+use crate::planning::timing::s_curve::s_curve;
 use crate::planning::timing::smooth;
 use crate::planning::timing::topp::{Blocked, Grid, PAST, Sweep, UNLIMITED};
 use crate::planning::timing::usage::Shares;
 
 /// Spaces of the grid on a curve to begin with, if nobody says otherwise.
 pub const SPACES: usize = 600;
-
-/// The fastest motion on a path.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Fastest {
-    /// When it is where.
-    pub profile: Profile,
-    /// T/T* − 1, T* the least time without limits on jerk: a bound on what a better motion with them could gain. Only
-    /// where jerk was to be limited, and something besides it limits.
-    pub gap: Option<f64>,
-    /// Which limits lead, for what share of T, the greatest share first.
-    pub limiting: Vec<(Limit, f64)>,
-}
-
-/// Why there is no fastest motion.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum TimeError {
-    /// Nothing limits.
-    #[error(
-        "no limit acts on the motion at s = {s:.3}: want torque, speed or acceleration limits of the drives that move"
-    )]
-    Unlimited {
-        /// How far along.
-        s: f64,
-    },
-    /// Only speeds are limited.
-    #[error("only speeds are limited, and the motion would jump to them: want torque or acceleration limits too")]
-    SpeedOnly,
-    /// Jerk was to be limited.
-    #[error(
-        "no drive that moves has a limit on its jerk: want jerk_limit of a drive, such as drive.1.jerk_limit=900, or the law without it"
-    )]
-    NoJerkLimit,
-    /// A drive cannot hold the machine up.
-    #[error(
-        "drive {drive} needs {torque:.3} N m to hold still at s = {s:.3} and has {limit}: want a higher torque limit, \
-         or a path elsewhere"
-    )]
-    Static {
-        /// Counted from 1.
-        drive: usize,
-        /// How far along.
-        s: f64,
-        /// N m.
-        torque: f64,
-        /// N m.
-        limit: f64,
-    },
-    /// No rate is right.
-    #[error("the limits leave no way past s = {s:.3}: want higher limits, or a path elsewhere")]
-    Stuck {
-        /// How far along.
-        s: f64,
-    },
-    /// The grid.
-    #[error("the stations do not rise from 0 to 1: want two or more that do")]
-    Stations,
-    /// Unlike numbers of drives.
-    #[error("a path of {path} drives, a model of {model} and limits of {limits}: want one number of drives")]
-    Drives {
-        /// Of the path.
-        path: usize,
-        /// Of the model.
-        model: usize,
-        /// Of the limits.
-        limits: usize,
-    },
-}
 
 /// The fastest motion on a path within a machine's limits; `smooth`: those on jerk too. On a curve the grid begins with
 /// [`stations`] of [`SPACES`] and the path's own places, is made finer where what is limited changes much, and the motion
@@ -240,41 +173,6 @@ fn straight(step: &PerDrive, model: &Inertia, limits: &Limits, smooth: bool) -> 
     let time = |spans: [Span; 7]| spans.iter().map(|s| s.time).sum::<f64>();
     let gap = without.filter(|_| smooth).map(|w| (profile.duration() / time(w) - 1.0).max(0.0));
     Ok(Fastest { profile, gap, limiting: shares.sorted() })
-}
-
-/// The fastest way from 0 to 1, from rest to rest, with |ṡ| ≤ v, |s̈| ≤ a, |s⃛| ≤ j, all above 0, any of them infinite:
-/// jerk up, constant s̈, jerk down, constant ṡ, and the same backwards; phases that do not occur take no time. `None` if
-/// both s̈ and s⃛ are unlimited.
-pub fn s_curve(v: f64, a: f64, j: f64) -> Option<[Span; 7]> {
-    if a.is_infinite() && j.is_infinite() {
-        return None;
-    }
-    // The peak rate if v does not cut it: with constant s̈ between the jerks, or without.
-    let with_constant = 2.0 * a * (a / j) * (a / j) <= 1.0;
-    let free = if a.is_finite() && with_constant {
-        let p = a * (a / j);
-        2.0 * a / (p + (p * p + 4.0 * a).sqrt())
-    } else {
-        (0.25 * j).cbrt()
-    };
-    let peak = v.min(free);
-    // s̈ reaches a, or turns before.
-    let up = if j.is_infinite() { 0.0 } else { (peak / j).sqrt().min(a / j) };
-    let constant = if a.is_infinite() { 0.0 } else { (peak / a - up).max(0.0) };
-    // Not cut by v, it does not cruise, whatever rounding says.
-    let cruise = if peak < free { (1.0 / peak - 2.0 * up - constant).max(0.0) } else { 0.0 };
-    let top = if j.is_infinite() { a } else { (j * up).min(a) };
-    let jerk = if j.is_infinite() { 0.0 } else { j };
-    let span = |time, acceleration, jerk| Span { time, acceleration, jerk };
-    Some([
-        span(up, 0.0, jerk),
-        span(constant, top, 0.0),
-        span(up, top, -jerk),
-        span(cruise, 0.0, 0.0),
-        span(up, 0.0, -jerk),
-        span(constant, -top, 0.0),
-        span(up, -top, jerk),
-    ])
 }
 
 fn curved(

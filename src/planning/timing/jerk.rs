@@ -19,7 +19,8 @@
 //! coefficients each, so a step costs time in proportion to the nodes. It is a local optimum that it comes to.
 
 use crate::mechanics::planar::PerDrive;
-use crate::planning::curves::path::{Path, PathPoint};
+use crate::planning::curves::PathPoint;
+use crate::planning::curves::path::Path;
 use crate::planning::timing::law::Progress;
 use crate::planning::timing::limits::{Constraints, MAX_ROWS, Row};
 use crate::planning::timing::profile::Profile;

@@ -2,7 +2,7 @@
 
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Inertia;
-use crate::planning::motion::Motion;
+use crate::planning::Motion;
 use crate::planning::timing::law::Progress;
 use crate::planning::timing::limits::Limits;
 use crate::planning::timing::profile::{Profile, after};

@@ -16,7 +16,8 @@ use std::fmt;
 use crate::mechanics::dynamics::{Surroundings, holding_torque, inverse, mass_matrix};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::{MAX_DRIVES, PerDrive};
-use crate::planning::curves::path::{Path, PathPoint};
+use crate::planning::curves::PathPoint;
+use crate::planning::curves::path::Path;
 use crate::planning::timing::law::Progress;
 
 /// What of a drive is limited.

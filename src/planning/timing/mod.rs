@@ -5,13 +5,17 @@ mod jerk;
 mod keep;
 pub mod law;
 pub mod limits;
+mod outcome;
 pub mod profile;
+mod s_curve;
 mod smooth;
 mod topp;
 pub mod usage;
 
-pub use fastest::{Fastest, TimeError, fastest};
+pub use fastest::fastest;
 pub use law::{Progress, TimeLaw};
 pub use limits::Limits;
+pub use outcome::{Fastest, TimeError};
 pub use profile::Profile;
+pub use s_curve::s_curve;
 pub use usage::Usage;

@@ -6,14 +6,15 @@
 
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Inertia;
+use crate::planning::Motion;
 use crate::planning::curves::path::Path;
-use crate::planning::motion::Motion;
-use crate::planning::timing::fastest::{Fastest, TimeError, s_curve};
 use crate::planning::timing::jerk::{Program, eased, uneased};
 use crate::planning::timing::keep::greatest;
 use crate::planning::timing::law::Progress;
 use crate::planning::timing::limits::Constraints;
+use crate::planning::timing::outcome::{Fastest, TimeError};
 use crate::planning::timing::profile::{Profile, Span};
+use crate::planning::timing::s_curve::s_curve;
 use crate::planning::timing::topp::Grid;
 use crate::planning::timing::usage::{Demand, Usage};
 

@@ -3,8 +3,8 @@
 use crate::mechanics::dynamics::{Surroundings, holding_torque, inverse};
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::PerDrive;
+use crate::planning::Motion;
 use crate::planning::curves::path::Path;
-use crate::planning::motion::Motion;
 use crate::planning::timing::law::Progress;
 use crate::planning::timing::limits::{Limit, Limits, Quantity};
 

@@ -182,7 +182,7 @@ pub const PLACE: Range = Range::either_way(1e6, "m");
 /// Where a pose constant may lie: two hundred turns and more keep all its digits.
 pub const POSE_CONSTANT: Range = Range::either_way(1e3, "rad");
 /// How long a motion may take, whether it is told to or finds its time itself.
-pub const TIME: Range = Range::new(1e-5, super::MAX_TIME, "s");
+pub const TIME: Range = Range::new(1e-5, super::bounds::MAX_TIME, "s");
 const ANGLE: Range = Range::either_way(1e3, "rad");
 const BLEND: Range = Range::new(0.0, 1.0, "");
 const CYCLES: Range = Range::new(1.0, 100.0, "");

@@ -12,7 +12,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Each, is_default};
+use super::each::{Each, is_default};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::MAX_DRIVES;
 
@@ -62,6 +62,19 @@ pub struct Contacts {
 }
 
 impl Contacts {
+    /// Slower than this a contact does not slide, rad/s.
+    pub(crate) const STILL: f64 = 1e-12;
+
+    /// What every contact does in a state of motion.
+    pub(crate) fn grips(&self, qd: &[f64]) -> Grip {
+        let mut grip = [0; MAX_CONTACTS];
+        for i in (0..self.len()).filter(|i| self.sticks(*i)) {
+            let v = self.sliding(i, qd);
+            grip[i] = if v.abs() < Self::STILL { 0 } else { v.signum() as i8 };
+        }
+        grip
+    }
+
     /// Those of a machine; `base` is the index of the base among what turns, if it does.
     pub fn of(machine: &Machine, friction: &Friction, base: Option<usize>) -> Self {
         let n = machine.drives();

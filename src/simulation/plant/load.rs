@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::is_default;
+use super::each::is_default;
 use crate::mechanics::machine::{Machine, MachineError, Payload};
 
 /// A payload that the model lacks, and when it is held.

@@ -17,7 +17,7 @@
 use std::collections::VecDeque;
 
 use crate::mechanics::planar::{DriveAngles, PerDrive};
-use crate::planning::motion::Reference;
+use crate::planning::Reference;
 use crate::simulation::control::{Control, Controller, Reading};
 use crate::simulation::plant::{Command, Spin, Wheel};
 

@@ -9,24 +9,12 @@
 //! A part of a step that holds such an instant is cut there, as often as there are instants; a part on whose way a
 //! contact turned and turned back is halved until the first of the two is found.
 
-use super::Simulation;
-use super::stride::{Leg, Off, Part, Piece};
+use super::pace::{Leg, Off, Part, Piece};
+use super::simulation::Simulation;
 use crate::simulation::plant::{Contacts, Grip, MAX_CONTACTS, Slope};
 
 /// The most cuts of one part of a step.
 const MOST: usize = 100;
-/// Slower than this a contact does not slide, rad/s.
-const STILL: f64 = 1e-12;
-
-/// What every contact does in a state of motion.
-pub(super) fn grips(contacts: &Contacts, qd: &[f64]) -> Grip {
-    let mut grip = [0; MAX_CONTACTS];
-    for i in (0..contacts.len()).filter(|i| contacts.sticks(*i)) {
-        let v = contacts.sliding(i, qd);
-        grip[i] = if v.abs() < STILL { 0 } else { v.signum() as i8 };
-    }
-    grip
-}
 
 /// What may happen on a part of a step.
 enum Event {
@@ -81,7 +69,7 @@ impl Simulation {
 
     /// The same by more than what two that end together may differ by.
     fn is_long_over(&self, i: usize, grip: &Grip, at: &Leg) -> bool {
-        let least = if grip[i] == 0 { -1e-6 * self.body().contacts().coulomb(i) } else { -STILL };
+        let least = if grip[i] == 0 { -1e-6 * self.body().contacts().coulomb(i) } else { -Contacts::STILL };
         self.left(i, grip, at) < least
     }
 
@@ -168,7 +156,7 @@ impl Simulation {
             }
             // The Illinois rule; from a start at rest, halving until it has moved.
             let straight = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
-            let halving = low.1 <= STILL * scale || n % 8 == 7;
+            let halving = low.1 <= Contacts::STILL * scale || n % 8 == 7;
             let to = if halving { 0.5 * (low.0 + high.0) } else { straight.clamp(low.0, high.0) };
             let there = self.part(from, to, piece);
             let left = self.left(i, &from.grip, &there.end);
@@ -207,7 +195,7 @@ impl Simulation {
             let way = f64::from(leg.grip[i]);
             let (v, a) = (way * contacts.sliding(i, &leg.slope.qd), way * contacts.sliding(i, &leg.slope.qdd));
             let away = a * self.body().resists(i) > 1e-10 * contacts.coulomb(i);
-            if way != 0.0 && v < STILL && !away {
+            if way != 0.0 && v < Contacts::STILL && !away {
                 leg.grip[i] = 0;
                 changed = true;
             }

@@ -27,7 +27,7 @@ use super::parameter::{Parameter, parameters};
 use crate::mechanics::dynamics::{Surroundings, base_wrench};
 use crate::mechanics::machine::{Inertia, Machine, MachineError};
 use crate::mechanics::planar::{MAX_DRIVES, Vector};
-use crate::planning::motion::{Motion, Reference};
+use crate::planning::{Motion, Reference};
 use crate::session::scenario::Spread;
 
 /// What one machine comes to on the motion.

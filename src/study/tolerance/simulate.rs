@@ -3,7 +3,6 @@
 use super::ensemble::Outcome;
 use crate::mechanics::machine::Machine;
 use crate::session::{Refusal, Run};
-use crate::simulation::audit::Audit;
 use crate::simulation::plant::{Load, Plant};
 use crate::simulation::{Guide, Setup, Simulation};
 
@@ -33,7 +32,7 @@ pub fn simulate(planned: &Run, plant: &Machine) -> Result<Outcome, Refusal> {
         force += weight * frame.wrench.dynamic.force.norm_sqr();
         weights += weight;
         if frame.step >= last {
-            if let Some(lamp) = Audit::fault(&frame) {
+            if let Some(lamp) = frame.fault() {
                 return Err(Refusal::Untrusted { why: lamp.to_string() });
             }
             return Ok(Outcome {

@@ -4,7 +4,7 @@ use super::{Handle, Stage, ViewOptions, label, point};
 use crate::mechanics::planar::{Units, Vector};
 use crate::picture::scene::palette::{Palette, faded};
 use crate::picture::scene::{Anchor, Line, Marker, Scene};
-use crate::planning::motion::Motion;
+use crate::planning::Motion;
 use crate::session::Run;
 use crate::session::scenario::Shape;
 

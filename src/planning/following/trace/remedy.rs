@@ -1,7 +1,8 @@
 //! What would help where a curve cannot be followed: another b, or a part of it.
 
+use super::rule::{Blocked, Rule, Stop};
 use super::track::Track;
-use super::{Blocked, Rule, STATIONS, Stop, at, common_b, is_feasible, part, starts, tables, whole};
+use super::walk::{STATIONS, at, common_b, is_feasible, part, starts, tables, whole};
 use crate::mechanics::planar::unit;
 use crate::planning::curves::curve::Curve;
 use crate::planning::reactionless::{BSet, Decimal, PlaneMap};

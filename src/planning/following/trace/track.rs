@@ -1,9 +1,9 @@
 //! A curve on a plane, followed step by step: poses with derivatives, and what stops them.
 
-use super::{Halt, Rule, Stop, crossed};
+use super::rule::{Halt, Rule, Stop, crossed};
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
+use crate::planning::curves::PathPoint;
 use crate::planning::curves::curve::{Curve, CurvePoint};
-use crate::planning::curves::path::PathPoint;
 use crate::planning::curves::table::Table;
 use crate::planning::off_plane::inverse::rates;
 use crate::planning::reactionless::{PlaneMap, PlanePoint, SLACK};

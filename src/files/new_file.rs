@@ -1,6 +1,4 @@
-//! Writing files so that nothing is lost: never over another without being told to, and never half.
-
-pub mod fault;
+//! [`NewFile`]: a file that appears whole or not at all, and replaces nothing unasked.
 
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
@@ -11,7 +9,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use thiserror::Error;
 
-use fault::Step;
+use super::fault::Step;
 
 /// Why a file was not written.
 #[derive(Debug, Error)]
@@ -150,7 +148,7 @@ impl Draft {
         let mut parts = making();
         for attempt in 0..1000 {
             let part = part_of(&file, attempt);
-            fault::at(Step::Fallible)?;
+            super::fault::at(Step::Fallible)?;
             let out = match OpenOptions::new().read(true).write(true).create_new(true).open(&part) {
                 Err(e) if e.kind() == ErrorKind::AlreadyExists => continue,
                 out => out?,
@@ -181,9 +179,9 @@ struct Checked(File);
 
 impl Write for Checked {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if fault::is_due(Step::Fallible) {
+        if super::fault::is_due(Step::Fallible) {
             self.0.write_all(&bytes[..bytes.len() / 2])?;
-            fault::strike()?;
+            super::fault::strike()?;
         }
         self.0.write(bytes)
     }
@@ -255,8 +253,11 @@ impl NewFile {
 
     /// Everything on the disk, under whatever name.
     fn settle(&mut self) -> Result<(), WriteError> {
-        let settled =
-            self.out.flush().and_then(|()| fault::at(Step::Fallible)).and_then(|()| self.out.get_ref().0.sync_all());
+        let settled = self
+            .out
+            .flush()
+            .and_then(|()| super::fault::at(Step::Fallible))
+            .and_then(|()| self.out.get_ref().0.sync_all());
         settled.map_err(|source| self.failed(source))
     }
 
@@ -266,7 +267,7 @@ impl NewFile {
         check_new(&self.asked, self.force)?;
         let before = if keep && self.force { aside(part, file) } else { None };
         let named = |()| if self.force { fs::rename(part, file) } else { link(part, file) };
-        match fault::at(Step::Fallible).and_then(named) {
+        match super::fault::at(Step::Fallible).and_then(named) {
             Ok(()) => Ok(Taken { file: file.clone(), before }),
             Err(error) => {
                 before.map(fs::remove_file);
@@ -283,7 +284,7 @@ impl NewFile {
 fn link(part: &Path, file: &Path) -> io::Result<()> {
     match fs::hard_link(part, file) {
         Ok(()) => {
-            if fault::at(Step::Tidy).is_ok() {
+            if super::fault::at(Step::Tidy).is_ok() {
                 // It goes with the draft otherwise.
                 let _ = fs::remove_file(part);
             }
@@ -350,7 +351,7 @@ pub fn finish_all<const N: usize>(mut files: [NewFile; N]) -> Result<(), WriteEr
     }
     drop(parts);
     for file in &files {
-        let synced = fault::at(Step::Fallible).and_then(|()| sync(folder_of(&file.draft.file)));
+        let synced = super::fault::at(Step::Fallible).and_then(|()| sync(folder_of(&file.draft.file)));
         synced.map_err(|source| WriteError::Unsynced { file: file.asked.clone(), source })?;
     }
     Ok(())

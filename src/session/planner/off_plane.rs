@@ -1,12 +1,13 @@
 //! Motions that leave their plane knowingly: a change of b, the least reaction, and zero momentum on any machine.
 
-use super::{Plan, Refusal, curves, dynamics_of, elsewhere, keeps_rules, refusal, serve, slowed, timed};
+use super::along::{curves, refusal, serve, slowed, timed};
+use super::plan::{Plan, dynamics_of, keeps_rules};
 use crate::mechanics::planar::{DriveAngles, Vector};
+use crate::planning::Motion;
 use crate::planning::curves::path::Chained;
 use crate::planning::curves::{Curve, CurvePoint, Path};
 use crate::planning::following::trace;
 use crate::planning::forecast::Forecast;
-use crate::planning::motion::Motion;
 use crate::planning::off_plane::drift::zero_momentum_curve;
 use crate::planning::off_plane::least_reaction::Goal;
 use crate::planning::off_plane::price::{INWARDS, bang_bang_in_b, joint_line, least_change, nearest_poses};
@@ -14,6 +15,7 @@ use crate::planning::off_plane::{LeastReaction, Price};
 use crate::planning::pose_constant::{Planes, Unreachable};
 use crate::planning::reactionless::PlanePoint;
 use crate::planning::timing::{Limits, Profile, TimeLaw};
+use crate::session::refusal::Refusal;
 use crate::session::scenario::{Least, Scenario};
 
 /// From A on the plane of the task to B on another, along a straight joint line; a limit on |n_B| sets the time.
@@ -124,7 +126,7 @@ pub fn least_reaction(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refu
         Some(why) => Err(Refusal::LeastReaction(why)),
         None => {
             let refusal = serve(task, planes, &task.points()[..1]).err();
-            Err(refusal.map_or(Refusal::Task("A has no pose".into()), |refusal| elsewhere(scenario, planes, refusal)))
+            Err(refusal.unwrap_or_else(|| Refusal::Task("A has no pose".into())))
         }
     }
 }

@@ -1,13 +1,15 @@
 //! Motions given by samples: of the drives as they are, of the end effector with the redundancy resolved.
 
-use super::{Plan, Refusal, dynamics_of, keeps_rules, start};
+use super::along::start;
+use super::plan::{Plan, dynamics_of, keeps_rules};
+use crate::planning::Motion;
 use crate::planning::curves::Path;
 use crate::planning::curves::path::minimum_norm_curve;
 use crate::planning::following::{Rule, trace};
 use crate::planning::forecast::Forecast;
-use crate::planning::motion::Motion;
 use crate::planning::pose_constant::Planes;
 use crate::planning::timing::{Limits, Profile};
+use crate::session::refusal::Refusal;
 use crate::session::scenario::{Scenario, TaskKind};
 
 /// Instants at which a motion is looked at for each of its samples, at least, and at most in all.

@@ -1,164 +1,21 @@
-//! From a task to a motion: poses for its points, a path through them, and when to be where.
+//! Along curves and joint lines, on a plane or by least rates.
 
-mod given;
-mod off_plane;
-
-use super::Refusal;
-use super::run::allowed;
+use super::plan::{Pace, Plan, dynamics_of, keeps_rules};
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{DriveAngles, Vector};
+use crate::planning::Motion;
 use crate::planning::curves::path::{Chained, SameTip, minimum_norm_curve};
 use crate::planning::curves::{Curve, Path};
 use crate::planning::following::{Rule, trace};
-use crate::planning::forecast::Forecast;
-use crate::planning::motion::Motion;
-use crate::planning::off_plane::Price;
-use crate::planning::off_plane::least_reaction::Verdicts;
 use crate::planning::pose_constant::{Mend, Planes, Unreachable};
 use crate::planning::reactionless::{Decimal, PlanePoint};
-use crate::planning::timing::limits::Limit;
 use crate::planning::timing::{Limits, Profile, TimeLaw, Usage, fastest};
+use crate::session::refusal::Refusal;
 use crate::session::scenario::{Corners, Scenario, Shape, Task, TaskKind};
 
-/// A planned task.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Plan {
-    /// What the machine is to do.
-    pub motion: Motion,
-    /// What it will cost.
-    pub forecast: Forecast,
-    /// For the fastest motion: what holds it back.
-    pub pace: Option<Pace>,
-    /// For a change of b: its price.
-    pub price: Option<Price>,
-    /// For the least reaction: what other ways would cost.
-    pub verdicts: Option<Verdicts>,
-    /// For motions of zero momentum: the drives at the start and after each cycle, rad.
-    pub cycles: Vec<DriveAngles>,
-    /// T with corners rounded off as the task asks, s, where it would take longer than resting at them: the motion rests.
-    pub blended: Option<f64>,
-}
-
-impl Pace {
-    /// T/T* − 1, T* the least time without limits on jerk; for a law with such limits, where something besides them limits.
-    pub fn gap(&self) -> Option<f64> {
-        self.unlimited.filter(|least| *least > 0.0).map(|least| (self.taken / least - 1.0).max(0.0))
-    }
-}
-
-impl Plan {
-    /// The largest |Δq_k| between the start and the end of each cycle, rad.
-    pub fn drift(&self) -> impl Iterator<Item = f64> {
-        let first = self.cycles.first();
-        self.cycles.iter().skip(1).filter_map(move |q| Some(q.0.minus(&first?.0).max_abs()))
-    }
-
-    /// Rest where the end effector is as near to A as the plane of the task lets it be: for a run that waits.
-    pub fn rest(scenario: &Scenario, planes: &Planes) -> Self {
-        let (task, map) = (&scenario.task, planes.map());
-        let p = task.points()[0];
-        let pose = map.poses(p, task.b).iter().next().copied();
-        let a = pose.map_or_else(|| map.clamp(planes.boundary().nearest(p, task.b, p).a), |pose| pose.a);
-        let q = DriveAngles::from(map.lift(PlanePoint { a, b: task.b }));
-        let path = Path::JointLine { from: q, to: q };
-        Self::of(scenario, Motion::new(path, TimeLaw::Quintic, task.time))
-    }
-
-    fn of(scenario: &Scenario, motion: Motion) -> Self {
-        let (model, around) = dynamics_of(scenario);
-        let forecast = Forecast::of(&motion, &model, &around, &Limits::of(&scenario.machine));
-        Self { motion, forecast, pace: None, price: None, verdicts: None, cycles: Vec::new(), blended: None }
-    }
-}
-
-/// Refuses a motion that passes a joint limit, or a change point to keep off, which rates alone do not know of.
-fn keeps_rules(scenario: &Scenario, motion: &Motion) -> Result<(), Refusal> {
-    const LOOKS: usize = 1000;
-    let looks = (100 * motion.path.parts()).clamp(LOOKS, 100_000);
-    let mut last: Option<DriveAngles> = None;
-    for i in 0..=looks {
-        let s = i as f64 / looks as f64;
-        let q = motion.path.at(s).q;
-        let before = last.replace(q).filter(|_| scenario.task.keep_off_change_points);
-        for (k, l) in Inertia::pairs(q.len()) {
-            let side = |q: &DriveAngles| (q[k] - q[l]).sin();
-            if before.is_some_and(|before| side(&before) * side(&q) < 0.0) {
-                return Err(Refusal::Task(format!(
-                    "{:.1} % along, drives {} and {} become parallel, a change point: want another path or b, or \
-                     keep_off_change_points = false",
-                    100.0 * s,
-                    k + 1,
-                    l + 1,
-                )));
-            }
-        }
-        for (k, angle) in scenario.machine.angles().iter().enumerate() {
-            let a = q[angle.to] - q[angle.from] + angle.offset;
-            let past = (angle.limits.start() - a).max(a - angle.limits.end());
-            if past > 1e-6 {
-                return Err(Refusal::Task(format!(
-                    "{:.1} % along, a{} would pass its {} limit: want another path, another b, or wider limits",
-                    100.0 * s,
-                    k + 1,
-                    if a > *angle.limits.end() { "upper" } else { "lower" },
-                )));
-            }
-        }
-    }
-    Ok(())
-}
-
-/// What control believes in.
-fn dynamics_of(scenario: &Scenario) -> (Inertia, Surroundings) {
-    let around = Surroundings { gravity: scenario.machine.gravity(), force: Vector::default() };
-    (Inertia::of(&scenario.machine), around)
-}
-
-/// What holds the fastest motion back.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Pace {
-    /// T, s.
-    pub taken: f64,
-    /// The least time without limits on jerk, s, where there are any.
-    pub unlimited: Option<f64>,
-    /// The limit that leads for the greatest share of the first part.
-    pub leading: Option<Limit>,
-}
-
-/// Plans the task of a scenario.
-///
-/// # Errors
-/// Which point, part of the path or setting is in the way, and what would do.
-pub fn plan(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
-    let task = &scenario.task;
-    let plan = if task.samples.is_some() || task.kind == TaskKind::Given {
-        given::given(scenario, planes)
-    } else {
-        match task.kind {
-            TaskKind::ChangeB => off_plane::change_b(scenario, planes),
-            TaskKind::LeastReaction => off_plane::least_reaction(scenario, planes),
-            TaskKind::ZeroMomentum => off_plane::zero_momentum(scenario, planes),
-            TaskKind::Reactionless | TaskKind::MinimumNorm | TaskKind::SameTip | TaskKind::Given => {
-                along(scenario, planes)
-            }
-        }
-    }?;
-    let found = task.law.is_fastest() || (task.kind == TaskKind::ChangeB && task.moment_limit.is_some());
-    let time = plan.motion.duration();
-    // A path that goes nowhere takes no time.
-    if found && time != 0.0 && time < scenario.step {
-        return Err(Refusal::Task(format!(
-            "the limits let the motion take {time:.1e} s: want at least one step, {} s, with lower limits or a smaller \
-             step",
-            scenario.step
-        )));
-    }
-    allowed(time).map(|()| plan)
-}
-
 /// A path through the points of a task, and its timing.
-fn along(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
+pub(super) fn along(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
     let task = &scenario.task;
     let motion = |scenario: &Scenario| -> Result<(Motion, Option<Pace>), Refusal> {
         let (motion, pace) = timed(scenario, parts(scenario, planes)?)?;
@@ -181,14 +38,12 @@ fn along(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
 }
 
 /// The paths of a task from rest to rest, each with its length.
-fn parts(scenario: &Scenario, planes: &Planes) -> Result<Vec<(Path, f64)>, Refusal> {
+pub(super) fn parts(scenario: &Scenario, planes: &Planes) -> Result<Vec<(Path, f64)>, Refusal> {
     let task = &scenario.task;
     let points = task.points();
     match (task.kind, task.shape()) {
         (TaskKind::Reactionless, _) => reactionless(task, planes).map_err(|refusal| proved(task, planes, refusal)),
-        (TaskKind::MinimumNorm, _) => {
-            minimum_norm(scenario, planes, &points).map_err(|refusal| elsewhere(scenario, planes, refusal))
-        }
+        (TaskKind::MinimumNorm, _) => minimum_norm(scenario, planes, &points),
         _ => {
             if !task.via.is_empty() || task.closed {
                 let why = "same-tip goes straight from A to B: want no points between and an open path";
@@ -204,7 +59,7 @@ fn parts(scenario: &Scenario, planes: &Planes) -> Result<Vec<(Path, f64)>, Refus
 }
 
 /// The path of a task that holds its b.
-fn reactionless(task: &Task, planes: &Planes) -> Result<Vec<(Path, f64)>, Refusal> {
+pub(super) fn reactionless(task: &Task, planes: &Planes) -> Result<Vec<(Path, f64)>, Refusal> {
     match task.shape() {
         Shape::JointLine => joint_lines(task, planes, &task.points()),
         _ => on_plane(task, planes, &task.points()),
@@ -212,7 +67,7 @@ fn reactionless(task: &Task, planes: &Planes) -> Result<Vec<(Path, f64)>, Refusa
 }
 
 /// A refusal that proposes only what has been tried: points that share a b may still be joined by no path on its plane.
-fn proved(task: &Task, planes: &Planes, refusal: Refusal) -> Refusal {
+pub(super) fn proved(task: &Task, planes: &Planes, refusal: Refusal) -> Refusal {
     let at = |task: &Task, b: f64| Task { b, ..task.clone() };
     let goes = |task: &Task| reactionless(task, planes);
     // Where a path is stopped on one plane, what is said then knows of another.
@@ -245,17 +100,8 @@ fn proved(task: &Task, planes: &Planes, refusal: Refusal) -> Refusal {
     }
 }
 
-/// A refusal for a b that does not reach A, of a task that leaves its plane: the b nearest to it with which it can be
-/// planned.
-fn elsewhere(scenario: &Scenario, planes: &Planes, refusal: Refusal) -> Refusal {
-    // The law has no say in where a path goes.
-    let law = TimeLaw::Quintic;
-    let at = |b: f64| Scenario { task: Task { b, law, ..scenario.task.clone() }, ..scenario.clone() };
-    tried(planes, refusal, |b| plan(&at(b), planes).map(|_| ()))
-}
-
 /// A refusal for a b that does not reach a point: the b nearest to it with which the whole path goes, or what stops it.
-fn tried(planes: &Planes, refusal: Refusal, goes: impl Fn(f64) -> Result<(), Refusal>) -> Refusal {
+pub(super) fn tried(planes: &Planes, refusal: Refusal, goes: impl Fn(f64) -> Result<(), Refusal>) -> Refusal {
     let Refusal::Unreachable {
         point,
         unreachable: Unreachable::OnThisPlane { x, y, b, nearest_b: Some(nearest), shown_b: Some(shown), .. },
@@ -291,7 +137,7 @@ fn tried(planes: &Planes, refusal: Refusal, goes: impl Fn(f64) -> Result<(), Ref
 }
 
 /// The parts of a path, each from rest to rest: by a law in their share of the time, or as fast as they can.
-fn timed(scenario: &Scenario, parts: Vec<(Path, f64)>) -> Result<(Motion, Option<Pace>), Refusal> {
+pub(super) fn timed(scenario: &Scenario, parts: Vec<(Path, f64)>) -> Result<(Motion, Option<Pace>), Refusal> {
     let task = &scenario.task;
     let total: f64 = parts.iter().map(|(_, length)| length).sum();
     let (model, around) = dynamics_of(scenario);
@@ -330,7 +176,12 @@ fn timed(scenario: &Scenario, parts: Vec<(Path, f64)>) -> Result<(Motion, Option
 }
 
 /// A motion as slow as the limits of the drives want it, whatever the timing of its path.
-fn slowed(motion: Motion, model: &Inertia, around: &Surroundings, limits: &Limits) -> Result<Motion, Refusal> {
+pub(super) fn slowed(
+    motion: Motion,
+    model: &Inertia,
+    around: &Surroundings,
+    limits: &Limits,
+) -> Result<Motion, Refusal> {
     const SAMPLES: usize = 2000;
     motion.slowed(model, around, limits).ok_or_else(|| {
         let usage = Usage::of(&motion, model, around, limits, SAMPLES);
@@ -340,23 +191,23 @@ fn slowed(motion: Motion, model: &Inertia, around: &Surroundings, limits: &Limit
 }
 
 /// Poses of the points on the plane of the task.
-fn serve(task: &Task, planes: &Planes, points: &[Vector]) -> Result<Vec<PlanePoint>, Refusal> {
+pub(super) fn serve(task: &Task, planes: &Planes, points: &[Vector]) -> Result<Vec<PlanePoint>, Refusal> {
     planes.serve(points, task.b).map_err(|(i, unreachable)| refusal(task, i, unreachable))
 }
 
-fn refusal(task: &Task, i: usize, unreachable: Unreachable) -> Refusal {
+pub(super) fn refusal(task: &Task, i: usize, unreachable: Unreachable) -> Refusal {
     match unreachable {
         Unreachable::NoCommonPlane(why) => Refusal::NoCommonPlane { said: why.in_words(&|i| task.name_of(i)), why },
         unreachable => Refusal::Unreachable { point: task.name_of(i), unreachable },
     }
 }
 
-fn lifted(planes: &Planes, poses: &[PlanePoint]) -> Vec<DriveAngles> {
+pub(super) fn lifted(planes: &Planes, poses: &[PlanePoint]) -> Vec<DriveAngles> {
     poses.iter().map(|x| DriveAngles::from(planes.map().lift(*x))).collect()
 }
 
 /// Straight lines of joint space from pose to pose; their corners a stop or a blend.
-fn joint_lines(task: &Task, planes: &Planes, points: &[Vector]) -> Result<Vec<(Path, f64)>, Refusal> {
+pub(super) fn joint_lines(task: &Task, planes: &Planes, points: &[Vector]) -> Result<Vec<(Path, f64)>, Refusal> {
     let mut poses = serve(task, planes, points)?;
     if task.keep_off_change_points {
         same_side(task, planes, &poses)?;
@@ -382,7 +233,7 @@ fn joint_lines(task: &Task, planes: &Planes, points: &[Vector]) -> Result<Vec<(P
 }
 
 /// Refuses poses between which two drives would become parallel.
-fn same_side(task: &Task, planes: &Planes, poses: &[PlanePoint]) -> Result<(), Refusal> {
+pub(super) fn same_side(task: &Task, planes: &Planes, poses: &[PlanePoint]) -> Result<(), Refusal> {
     for (i, w) in poses.windows(2).enumerate() {
         let [from, to] = [w[0], w[1]].map(|x| planes.map().lift(x));
         for [k, l] in [[0, 1], [0, 2], [1, 2]] {
@@ -427,7 +278,7 @@ pub fn curves(task: &Task, points: &[Vector]) -> Result<Vec<Curve>, Refusal> {
 }
 
 /// The end effector's curves followed on the plane of the task.
-fn on_plane(task: &Task, planes: &Planes, points: &[Vector]) -> Result<Vec<(Path, f64)>, Refusal> {
+pub(super) fn on_plane(task: &Task, planes: &Planes, points: &[Vector]) -> Result<Vec<(Path, f64)>, Refusal> {
     let curves = curves(task, points)?;
     let rule = Rule { keep_off_change_points: task.keep_off_change_points };
     // Where even single points fail, they are the clearer reason.
@@ -441,7 +292,7 @@ fn on_plane(task: &Task, planes: &Planes, points: &[Vector]) -> Result<Vec<(Path
 
 /// A pose of A on the plane of the task: A and B on one sheet, as for the reactionless motion to compare with, or else A
 /// alone.
-fn start(task: &Task, planes: &Planes, points: &[Vector]) -> Result<DriveAngles, Refusal> {
+pub(super) fn start(task: &Task, planes: &Planes, points: &[Vector]) -> Result<DriveAngles, Refusal> {
     let ends = [points[0], points[points.len() - 1]];
     let start = planes.serve(&ends, task.b).or_else(|_| planes.serve(&ends[..1], task.b));
     let start = start.map_err(|(i, unreachable)| refusal(task, i, unreachable))?;
@@ -449,7 +300,11 @@ fn start(task: &Task, planes: &Planes, points: &[Vector]) -> Result<DriveAngles,
 }
 
 /// Minimum-norm joint rates along the end effector's curves, from the pose of A on the plane of the task.
-fn minimum_norm(scenario: &Scenario, planes: &Planes, points: &[Vector]) -> Result<Vec<(Path, f64)>, Refusal> {
+pub(super) fn minimum_norm(
+    scenario: &Scenario,
+    planes: &Planes,
+    points: &[Vector],
+) -> Result<Vec<(Path, f64)>, Refusal> {
     let task = &scenario.task;
     let mut q = start(task, planes, points)?;
     let mut parts = Vec::new();

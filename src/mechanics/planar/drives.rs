@@ -1,35 +1,13 @@
-//! Words of the plane: complex vectors, small per-drive vectors, wrenches, poses.
-//!
-//! A vector (x, y) of the plane of motion is the complex number x + iy, in base axes, with B as origin.
-
-mod sincos;
+//! One number for each drive, and drive angles.
 
 use std::ops::{Deref, DerefMut};
 
-use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
-/// A vector of the plane, x + iy.
-pub type Vector = Complex<f64>;
+use super::{Vector, unit};
 
 /// The most drives a machine can have.
 pub const MAX_DRIVES: usize = 8;
-
-/// e(q) = (cos q, sin q).
-#[inline]
-pub fn unit(q: f64) -> Vector {
-    sincos::unit(q)
-}
-
-/// a × b, the component out of the plane.
-pub fn cross(a: Vector, b: Vector) -> f64 {
-    a.re * b.im - a.im * b.re
-}
-
-/// a · b.
-pub fn dot(a: Vector, b: Vector) -> f64 {
-    a.re * b.re + a.im * b.im
-}
 
 /// One number for each drive, without allocation. Reads and writes as a slice of the machine's drives.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -191,21 +169,3 @@ impl Deref for DriveAngles {
 
 /// The unit vectors e(q_k): the only trigonometry the dynamics needs.
 pub type Units = [Vector; MAX_DRIVES];
-
-/// A force at B and a moment about B.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Wrench {
-    /// N.
-    pub force: Vector,
-    /// N m, out of the plane.
-    pub moment: f64,
-}
-
-/// Where a body is and how it is turned.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Pose2 {
-    /// m.
-    pub at: Vector,
-    /// rad.
-    pub angle: f64,
-}

@@ -1,102 +1,54 @@
-//! The plant under control, advanced by a fixed step with the classical fourth-order rule; within a step by as many
-//! parts as it takes (`stride`), cut where contacts stick or slip (`sticking`).
-//!
-//! The simulation reads no clock. Control is evaluated in every stage. The base wrench is taken from the plant's own
-//! accelerations, never from the planned motion, so that a zero is found and not assumed.
-
-mod pilot;
-mod sticking;
-mod stride;
+//! [`Simulation`]: a run in progress, its present instant, and what is true then.
 
 use crate::mechanics::dynamics::{self, Surroundings};
 use crate::mechanics::joint_forces::{Inside, Watch};
 use crate::mechanics::kinematics::{end_effector, transmission};
 use crate::mechanics::machine::{Machine, MachineError, RelativeAngle};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Vector};
-use crate::planning::following::Follower;
-use crate::planning::motion::{Motion, Reference};
+use crate::planning::Reference;
 use crate::planning::pose_constant::plane_map;
 use crate::planning::reactionless::PlaneMap;
-use crate::simulation::control::{Control, Controller, Reading};
+use crate::simulation::control::{Controller, Reading};
 use crate::simulation::frame::{Audit, Frame, Peaks, Phase, Reach, Tally, Target};
-use crate::simulation::plant::{Base, Body, Friction, Grip, Load, MAX_CONTACTS, Plant, Slope, State};
+use crate::simulation::plant::{Base, Body, Friction, Grip, Load, MAX_CONTACTS, Slope, State};
 
-use pilot::Pilot;
-use sticking::grips;
-use stride::Pace;
-
-/// What leads the machine.
-#[derive(Clone, Debug)]
-pub enum Guide {
-    /// A planned motion that began at a time, s.
-    Motion {
-        /// The plan.
-        motion: Motion,
-        /// s.
-        start: f64,
-    },
-    /// The pointer and the slider.
-    Follow(Follower),
-}
-
-impl Guide {
-    /// The reference at a time, s.
-    fn at(&self, time: f64) -> Reference {
-        match self {
-            Self::Motion { motion, start } => motion.at(time - start),
-            Self::Follow(follower) => follower.reference(0.0),
-        }
-    }
-}
-
-/// What a simulation is made of.
-#[derive(Clone, Copy, Debug)]
-pub struct Setup<'a> {
-    /// The machine that control believes in.
-    pub model: &'a Machine,
-    /// What differs in the machine that moves.
-    pub plant: &'a Plant,
-    /// What it stands on.
-    pub base: &'a Base,
-    /// Control.
-    pub control: &'a Control,
-    /// Fixed step, s.
-    pub step: f64,
-}
+use super::guide::{Guide, Setup};
+use super::pace::Pace;
+use super::pilot::Pilot;
 
 /// A run in progress.
 #[derive(Clone, Debug)]
 pub struct Simulation {
     /// Without the payload that comes and goes, and with it.
-    bodies: Box<[Body; 2]>,
-    load: Load,
-    loaded: bool,
-    pilot: Pilot,
+    pub(super) bodies: Box<[Body; 2]>,
+    pub(super) load: Load,
+    pub(super) loaded: bool,
+    pub(super) pilot: Pilot,
     /// m_j a_jk of each link, `drives` after `drives`, kg m, and of each with the payload.
-    link_moments: [Vec<Vector>; 2],
+    pub(super) link_moments: [Vec<Vector>; 2],
     /// What pins carry, likewise.
-    inside: [Watch; 2],
+    pub(super) inside: [Watch; 2],
     /// Differences of the points that each closure joins.
-    closures: Vec<[f64; MAX_DRIVES]>,
-    lambda: PerDrive,
-    map: Option<PlaneMap>,
-    angles: Vec<RelativeAngle>,
-    drives: usize,
-    dt: f64,
-    step: u64,
-    guide: Guide,
-    state: State,
-    grip: Grip,
+    pub(super) closures: Vec<[f64; MAX_DRIVES]>,
+    pub(super) lambda: PerDrive,
+    pub(super) map: Option<PlaneMap>,
+    pub(super) angles: Vec<RelativeAngle>,
+    pub(super) drives: usize,
+    pub(super) dt: f64,
+    pub(super) step: u64,
+    pub(super) guide: Guide,
+    pub(super) state: State,
+    pub(super) grip: Grip,
     /// Torques of stuck contacts, N m.
-    taken: [f64; MAX_CONTACTS],
-    now: Slope,
-    reference: Reference,
+    pub(super) taken: [f64; MAX_CONTACTS],
+    pub(super) now: Slope,
+    pub(super) reference: Reference,
     /// What energy and momenta less their sources were at the start.
     ground: Ground,
-    peaks: Peaks,
-    tally: Tally,
+    pub(super) peaks: Peaks,
+    pub(super) tally: Tally,
     /// How finely steps are taken, and with which errors.
-    pace: Pace,
+    pub(super) pace: Pace,
 }
 
 /// What audits start from.
@@ -192,7 +144,7 @@ impl Simulation {
     /// Takes the present instant as where audits start.
     fn begin(&mut self) {
         self.prepare();
-        self.grip = grips(self.body().contacts(), &self.body().rates(&self.state));
+        self.grip = self.body().contacts().grips(&self.body().rates(&self.state));
         self.look();
         self.ground = self.sources(self.body(), &self.now);
         self.include();
@@ -272,7 +224,7 @@ impl Simulation {
         let (pose, velocity) = (before.base, before.base_velocity);
         let state = self.body().state(&q, &qd, pose, velocity, turning);
         self.state = state.in_books_of(&self.state);
-        self.grip = grips(self.body().contacts(), &self.body().rates(&self.state));
+        self.grip = self.body().contacts().grips(&self.body().rates(&self.state));
         self.look();
         self.ground = self.sources(self.body(), &self.now).less(&off);
         self.include();
@@ -306,7 +258,7 @@ impl Simulation {
     }
 
     /// q_k − θ, rad.
-    fn relative(&self, k: usize) -> f64 {
+    pub(super) fn relative(&self, k: usize) -> f64 {
         self.state.q[k] - self.now.base.angle
     }
 
@@ -320,7 +272,13 @@ impl Simulation {
 
     /// What a state leads to, with a reference.
     #[inline]
-    fn instant(&self, state: &State, reference: &Reference, grip: &Grip, taken: &mut [f64; MAX_CONTACTS]) -> Slope {
+    pub(super) fn instant(
+        &self,
+        state: &State,
+        reference: &Reference,
+        grip: &Grip,
+        taken: &mut [f64; MAX_CONTACTS],
+    ) -> Slope {
         let n = self.drives;
         self.body().instant(state, grip, taken, |e, rates, base, velocity| {
             let reading = reading(n, state, e, rates, base, velocity);
@@ -405,7 +363,7 @@ impl Simulation {
     }
 
     /// What links move in, in axes that move with the base: its acceleration adds to gravity.
-    fn field(&self) -> Surroundings {
+    pub(super) fn field(&self) -> Surroundings {
         let around = *self.body().around();
         Surroundings { gravity: around.gravity - self.now.base_acceleration, ..around }
     }

@@ -1,0 +1,125 @@
+//! What a person asks for.
+
+use crate::picture::scene::Measure;
+use crate::picture::scene::palette::Theme;
+use crate::picture::scene::views::ViewKind;
+use crate::session::scenario::Scenario;
+use crate::session::{Edit, Session};
+
+/// What a person can ask for.
+#[derive(Clone, Debug)]
+pub enum Command {
+    /// Change the machine, the run or its parameters.
+    Edit(Edit),
+    /// The drag is over: the next edit is an undo of its own.
+    EndGesture,
+    /// Let time pass, or stop it.
+    TogglePlay,
+    /// Show an instant, s.
+    Seek(f64),
+    /// Move by steps; time stops.
+    Step(i64),
+    /// Play faster or slower: simulated seconds a second.
+    Speed(f64),
+    /// Replace everything by another scenario.
+    Open(Box<Scenario>),
+    /// Open a saved session or scenario.
+    OpenFile(std::path::PathBuf),
+    /// Save the session.
+    SaveFile(std::path::PathBuf),
+    /// Write a recording for the Rerun viewer.
+    Record(std::path::PathBuf),
+    /// Take back.
+    Undo,
+    /// Bring back.
+    Redo,
+    /// One of the linked views.
+    View(ViewKind),
+    /// Shade the workspace by a measure of dexterity, or not.
+    Dexterity(Option<Measure>),
+    /// Show everything.
+    Fit,
+    /// Light or dark.
+    Theme(Theme),
+    /// Show how A would be held on the plane of another b, rad.
+    Preview(Option<f64>),
+    /// Take up the pencil, or lay it down.
+    Draw(bool),
+    /// Show or hide runs side by side.
+    Compare(bool),
+    /// Show or hide the study of tolerances.
+    Study(bool),
+    /// Show or hide what pins carry.
+    Pins(bool),
+    /// What is done to the table of runs.
+    Board(OnBoard),
+    /// Put the second cursor at a time, s, or away.
+    Mark(Option<f64>),
+    /// Show or hide snapshots along the motion.
+    Snapshots(bool),
+    /// Take up the hand that pushes the end effector, or lay it down.
+    Push(bool),
+    /// Exaggerate the motion of the base as much as it takes to be seen, or show it as it is.
+    Exaggerate(bool),
+    /// Let b go on past the band that serves the points, and turn them along with it.
+    TurnTask(bool),
+    /// One of the paper's cases, by name.
+    Case(&'static str),
+    /// Take the machine back from the hand that led it.
+    BackToPath,
+    /// Say what was typed and cannot be taken.
+    Refuse(String),
+    /// Show or hide the keys.
+    Help(bool),
+    /// Show or hide the dialog for a file.
+    Dialog(Option<FileDialog>),
+}
+
+/// What can be done to the table of runs.
+#[derive(Clone, Debug)]
+pub enum OnBoard {
+    /// By a column.
+    Sort(usize),
+    /// Lay a row over plots and scene, or not.
+    Show(usize, bool),
+    /// Keep the session's own run.
+    Keep,
+    /// Add a scenario.
+    Add(Box<Scenario>),
+    /// Take a kept row away.
+    Remove(usize),
+    /// Open a row's scenario in the session.
+    Open(usize),
+}
+
+/// Asking for a file name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FileDialog {
+    /// Why.
+    pub purpose: Purpose,
+    /// What is typed so far.
+    pub path: String,
+}
+
+/// What a file name is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// Read a session.
+    Open,
+    /// Write the session.
+    Save,
+    /// Write a recording.
+    Record,
+}
+
+impl FileDialog {
+    /// A file name that is free, for a dialog to start from.
+    pub fn suggest(session: &Session, purpose: Purpose) -> Self {
+        let ending = if purpose == Purpose::Record { "rrd" } else { "toml" };
+        let name = match purpose {
+            Purpose::Open => String::new(),
+            _ => crate::files::free_name(&session.scenario().name, ending).display().to_string(),
+        };
+        Self { purpose, path: name }
+    }
+}

@@ -1,0 +1,152 @@
+//! How the session is shown, and what a person is about to do.
+
+use crate::app::FileDialog;
+use crate::picture::scene::Measure;
+use crate::picture::scene::camera::Camera;
+use crate::picture::scene::palette::{Palette, Theme, palette};
+use crate::picture::scene::stage::{Handle, Refused};
+use crate::picture::scene::views::{Grip, ViewKind, Views};
+use crate::planning::reactionless::Decimal;
+use crate::session::{Edit, Refusal, Session};
+use std::sync::Arc;
+
+/// Something that was refused.
+#[derive(Clone, Debug)]
+pub struct Wish {
+    /// The curve that was asked for, and where it stops.
+    pub curve: Option<Arc<Refused>>,
+    /// The same with another b, rad, that would do, as it is shown.
+    pub remedy: Option<(Edit, Decimal)>,
+}
+
+impl Wish {
+    pub(super) fn of(edit: &Edit, refusal: &Refusal) -> Self {
+        let curve = Refused::of(refusal);
+        let remedy = match (edit, refusal.mending_b().zip(refusal.shown_b())) {
+            (Edit::SetTask { change }, Some((b, shown))) => {
+                let mut change = change.clone();
+                change.insert("b".into(), b.into());
+                Some((Edit::SetTask { change }, shown))
+            }
+            _ => None,
+        };
+        Self { curve: curve.map(Arc::new), remedy }
+    }
+}
+
+/// How things are shown: no part of the session.
+#[derive(Clone, Debug)]
+pub struct Look {
+    /// Light or dark.
+    pub theme: Theme,
+    /// Which of the linked views.
+    pub view: ViewKind,
+    /// From where each view is seen, in the order of [`ViewKind::ALL`].
+    pub cameras: [Camera; 4],
+    /// The workspace is shaded by |det|.
+    pub dexterity: Option<Measure>,
+    /// Simulated seconds a second.
+    pub speed: f64,
+    /// Under the pointer.
+    pub hot: Option<Handle>,
+    /// Being dragged.
+    pub grabbed: Option<Grip>,
+    /// Where the pointer holds the target, m.
+    pub held: Option<[f64; 2]>,
+    /// The force at the end effector before a hand pushes, N.
+    pub force: Option<[f64; 2]>,
+    /// Runs stand side by side.
+    pub compare: bool,
+    /// The study of tolerances is on display.
+    pub study: bool,
+    /// What pins carry is on display.
+    pub pins: bool,
+    /// The second cursor, s.
+    pub mark: Option<f64>,
+    /// Snapshots along the motion are on display.
+    pub snapshots: bool,
+    /// The keys are on display.
+    pub help: bool,
+    /// A file is being asked for.
+    pub dialog: Option<FileDialog>,
+    /// The present drag has changed something.
+    pub dragged: bool,
+    /// What the pencil has drawn so far, m; none while it lies down.
+    pub stroke: Option<Vec<[f64; 2]>>,
+    /// The hand that pushes is taken up.
+    pub pushing: bool,
+    /// Past the band that serves the points, b turns them along.
+    pub turn_task: bool,
+    /// Motion of the base is exaggerated.
+    pub exaggerate: bool,
+    /// How many times it takes for that motion to be seen.
+    pub seen_at: f64,
+    /// The b under the pointer in the chart of which b, rad.
+    pub preview: Option<f64>,
+    /// What was asked for last and refused.
+    pub refused: Option<Wish>,
+    /// The last thing to say, and whether it is bad news.
+    pub message: Option<(String, bool)>,
+}
+
+impl Look {
+    /// A flat view of everything.
+    pub fn new(theme: Theme, views: &Views) -> Self {
+        Self {
+            theme,
+            view: ViewKind::default(),
+            cameras: ViewKind::ALL.map(|kind| views.camera(kind)),
+            dexterity: None,
+            speed: 1.0,
+            hot: None,
+            grabbed: None,
+            held: None,
+            force: None,
+            compare: false,
+            study: false,
+            pins: false,
+            mark: None,
+            snapshots: false,
+            help: false,
+            dialog: None,
+            dragged: false,
+            stroke: None,
+            pushing: false,
+            turn_task: false,
+            exaggerate: true,
+            seen_at: 1.0,
+            preview: None,
+            refused: None,
+            message: None,
+        }
+    }
+
+    /// Colours.
+    pub fn palette(&self) -> Palette {
+        palette(self.theme)
+    }
+
+    /// How many times the motion of the base is shown.
+    pub fn sway(&self) -> f64 {
+        if self.exaggerate { self.seen_at } else { 1.0 }
+    }
+
+    /// The view in use.
+    pub fn camera(&self) -> &Camera {
+        &self.cameras[self.view as usize]
+    }
+
+    pub(super) fn camera_mut(&mut self) -> &mut Camera {
+        &mut self.cameras[self.view as usize]
+    }
+}
+
+/// What a slider of b does: while time runs the machine follows; paused it is posed, as far as the points of the task
+/// stay where they are, or else with them.
+pub(super) fn set_b(session: &Session, look: &Look, b: f64) -> Edit {
+    if session.is_playing() && session.is_at_end() {
+        return Edit::SlideB { b };
+    }
+    let stays = |b: f64| session.serving(b).unwrap_or(b);
+    Edit::PoseB { b: if session.is_live() || look.turn_task { b } else { stays(b) } }
+}

@@ -1,0 +1,59 @@
+//! How the program ends: why, in one line, and its exit status.
+
+use std::fmt::Display;
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+use stillbase::settings::text::{brief, plain};
+
+use super::failure::Failure;
+
+/// A message on standard error, in one line.
+pub fn say(message: impl Display) {
+    let message = message.to_string();
+    let line = message.lines().map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join(" ");
+    let line = brief(&line);
+    let line = plain(&line);
+    // Nobody is left to tell when standard error is closed.
+    let _ = writeln!(io::stderr(), "stillbase: {line}");
+}
+
+/// Says why, in one line, and gives the exit status.
+pub fn exit_code(done: Result<(), Failure>) -> ExitCode {
+    match done {
+        Ok(()) | Err(Failure::ReaderGone) => ExitCode::SUCCESS,
+        Err(Failure::NoAnswer(why)) => {
+            say(why);
+            ExitCode::from(1)
+        }
+        Err(Failure::WrongInput(why)) => {
+            say(why);
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Answers a command line that asks for help or cannot be read.
+pub fn usage(error: &clap::Error) -> ExitCode {
+    if !error.use_stderr() {
+        // Nobody is left to tell when help cannot be printed.
+        let _ = error.print();
+        return ExitCode::SUCCESS;
+    }
+    exit_code(Err(Failure::WrongInput(in_one_line(&error.render().to_string()))))
+}
+
+/// What is wrong and the tips, without the usage that follows.
+fn in_one_line(rendered: &str) -> String {
+    let parts = rendered.split("\n\n").filter(|p| !p.starts_with("Usage:") && !p.starts_with("For more information"));
+    let mut line = String::new();
+    for part in parts {
+        let words: Vec<&str> = part.split_whitespace().collect();
+        if !line.is_empty() {
+            line.push_str("; ");
+        }
+        line.push_str(&words.join(" "));
+    }
+    // Negative numbers have been padded with a space, see `words`.
+    format!("{}; see --help", line.strip_prefix("error: ").unwrap_or(&line).replace("' -", "'-"))
+}

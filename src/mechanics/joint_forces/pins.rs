@@ -1,0 +1,41 @@
+//! The pins of a machine by name, whether or not their forces can be told.
+
+use crate::mechanics::machine::{Chain, Machine};
+
+/// The most pins of a machine whose forces are told.
+pub const MAX_PINS: usize = 32;
+
+/// |sin(q_k − q_l)| below which the forces of a parallelogram are undefined: rounding alone changes them by 1e-7 there.
+pub const FLAT: f64 = 1e-9;
+
+/// A pin or bearing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pin {
+    /// Its two links: `B-1`, `1-5`, `6-7`.
+    pub name: String,
+    /// The link that exerts the force; none: the base.
+    pub from: Option<usize>,
+    /// The link that the force acts on.
+    pub to: usize,
+    /// Where it is.
+    pub at: Chain,
+    /// Whether it closes a loop, rather than attaching a link.
+    pub closes: bool,
+}
+
+/// Where each link is attached, in the order of links, then the closures.
+pub(super) fn pins(machine: &Machine) -> Vec<Pin> {
+    let name = |link: Option<usize>| link.map_or("B", |j| machine.links()[j].name.as_str());
+    let mut pins: Vec<Pin> = Vec::with_capacity(machine.links().len() + machine.loops().len());
+    let attached = machine.parts().iter().enumerate().map(|(j, part)| (part.parent, j, part.root, false));
+    let closed = machine.loops().iter().map(|c| (Some(c.a), c.b, machine.parts()[c.a].point(c.at_a), true));
+    for (from, to, at, closes) in attached.chain(closed) {
+        let mut called = format!("{}-{}", name(from), name(Some(to)));
+        // Two pins between the same links need two names.
+        while pins.iter().any(|p| p.name == called) {
+            called.push('\'');
+        }
+        pins.push(Pin { name: called, from, to, at, closes });
+    }
+    pins
+}

@@ -1,0 +1,63 @@
+//! The tree of links that is left when every closure is cut, and what the closures do to it.
+
+use crate::mechanics::planar::Vector;
+
+/// A link with whatever it holds, parents before children.
+#[derive(Clone, Debug)]
+pub struct TreeLink {
+    /// Which link, and which pin attaches it.
+    pub link: usize,
+    /// Place of its parent among the links; none: the base.
+    pub parent: Option<usize>,
+    /// Drive whose orientation it has.
+    pub drive: usize,
+    /// Drive of its parent, and how far along that its root is, signed, m.
+    pub arm: (usize, f64),
+    /// Σ m, kg.
+    pub mass: f64,
+    /// Σ m c about the root, kg m, c complex along the link.
+    pub first: Vector,
+    /// Σ I + m |c|² about the root, kg m².
+    pub second: f64,
+    /// How far along the link the end effector is, signed, m; 0 where it is on another.
+    pub tip: Option<f64>,
+    /// Whether a drive turns it.
+    pub driven: bool,
+}
+
+/// A closure as forces see it: λ acts on the second link, −λ on the first.
+#[derive(Clone, Debug)]
+pub struct CutClosure {
+    /// The pin it is.
+    pub pin: usize,
+    /// Links on whose roots λ has a moment, and its lever w, m.
+    pub levers: Vec<(usize, f64)>,
+    /// Links whose roots carry ±λ.
+    pub carried: Vec<(usize, f64)>,
+    /// Pins that depend on it, one bit each.
+    pub reaches: u32,
+}
+
+/// What is solved at once.
+#[derive(Clone, Debug)]
+pub enum SolveStep {
+    /// One closure from two links, each with its lever.
+    Pair {
+        /// The closure.
+        closure: usize,
+        /// The links.
+        rows: [(usize, f64); 2],
+    },
+    /// Closures that do not come apart, from twice as many links.
+    Together {
+        /// The closures.
+        closures: Vec<usize>,
+        /// The links.
+        rows: Vec<usize>,
+    },
+}
+
+/// Lever of a closure's force about the root of a body, m.
+pub fn lever(closure: &CutClosure, body: usize) -> f64 {
+    closure.levers.iter().find(|(j, _)| *j == body).map_or(0.0, |(_, w)| *w)
+}

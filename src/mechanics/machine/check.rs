@@ -1,0 +1,245 @@
+//! From a description to a [`Machine`]: names looked up, roots and loops resolved, or what is wrong.
+
+use super::error::{MachineError, Place, Step, quoted};
+use super::inertia::Inertia;
+use super::model::{Loop, Machine, Part, RelativeAngle};
+use super::numbers::{LENGTH, PLACE, check_numbers, within};
+use super::spec::{Angle, Attach, Closure, Length, MachineSpec, Point, Station};
+use crate::mechanics::planar::MAX_DRIVES;
+use crate::settings::range::{Short, clipped, shortened};
+
+/// How far, m, the two points of a closure may lie apart.
+pub const CLOSURE_TOLERANCE: f64 = 1e-9;
+
+impl Machine {
+    /// Checks a description.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, and what would be right.
+    pub fn new(spec: MachineSpec) -> Result<Self, MachineError> {
+        let names = Names::of(&spec)?;
+        check_numbers(&spec)?;
+        let mut parts = resolve(&spec, &names)?;
+        let closures = spec.closures.iter().enumerate();
+        let loops = closures.map(|(i, c)| resolve_closure(&spec, &names, &parts, i, c)).collect::<Result<_, _>>()?;
+        let end = spec.end_effector.as_ref().ok_or(MachineError::NoEndEffector)?;
+        let (tip_link, s) = locate(&spec, &names, end, &|| Place::new(&[&"end_effector"]))?;
+        let tip = parts[tip_link].point(s);
+        let angles = resolve_angles(&spec, &names)?;
+        add_pins(&spec, &names, &mut parts)?;
+        let machine = Self { spec, parts, tip, tip_link, angles, loops };
+        machine.check_inertia()?;
+        Ok(machine)
+    }
+
+    fn check_inertia(&self) -> Result<(), MachineError> {
+        let inertia = Inertia::of(self);
+        match (0..self.drives()).find(|&k| inertia.diagonal(k).partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater)) {
+            Some(k) => Err(MachineError::Massless { drive: self.spec.drives[k].name.clone() }),
+            None => Ok(()),
+        }
+    }
+}
+
+struct Names<'a> {
+    drives: Vec<&'a str>,
+    links: Vec<&'a str>,
+}
+
+impl<'a> Names<'a> {
+    fn of(spec: &'a MachineSpec) -> Result<Self, MachineError> {
+        let n = spec.drives.len();
+        if n == 0 || n > MAX_DRIVES {
+            return Err(MachineError::Count { what: "drives", count: n, want: format!("1 to {MAX_DRIVES}") });
+        }
+        if spec.links.is_empty() {
+            return Err(MachineError::Count { what: "links", count: 0, want: "at least one".into() });
+        }
+        let drives = unique("drive", spec.drives.iter().map(|d| d.name.as_str()))?;
+        let links = unique("link", spec.links.iter().map(|l| l.name.as_str()))?;
+        unique("angle", spec.angles.iter().map(|a| a.name.as_str()))?;
+        Ok(Self { drives, links })
+    }
+
+    fn drive(&self, name: &str, place: impl Fn() -> Place) -> Result<usize, MachineError> {
+        look_up("drive", &self.drives, name, place)
+    }
+
+    fn link(&self, name: &str, place: impl Fn() -> Place) -> Result<usize, MachineError> {
+        look_up("link", &self.links, name, place)
+    }
+}
+
+fn unique<'a>(what: &'static str, names: impl Iterator<Item = &'a str>) -> Result<Vec<&'a str>, MachineError> {
+    let mut seen: Vec<&str> = Vec::new();
+    for (i, name) in names.enumerate() {
+        if seen.contains(&name) {
+            return Err(MachineError::Duplicate { place: Place::new(&[&what, &i, &"name"]), name: name.into() });
+        }
+        seen.push(name);
+    }
+    Ok(seen)
+}
+
+fn look_up(what: &'static str, names: &[&str], name: &str, place: impl Fn() -> Place) -> Result<usize, MachineError> {
+    names.iter().position(|n| *n == name).ok_or_else(|| MachineError::Unknown {
+        place: place(),
+        what,
+        name: name.into(),
+        known: quoted(names.iter().copied()),
+    })
+}
+
+/// Length of a link, m.
+fn length_of(spec: &MachineSpec, i: usize) -> Result<f64, MachineError> {
+    let place = || Place::new(&[&"link", &i, &"length"]);
+    match &spec.links[i].length {
+        Length::Metres(l) => within(LENGTH, *l, place).map(|()| *l),
+        Length::Named(name) => named_length(spec, name, place),
+    }
+}
+
+fn named_length(spec: &MachineSpec, name: &str, place: impl Fn() -> Place) -> Result<f64, MachineError> {
+    spec.lengths.get(name).copied().ok_or_else(|| MachineError::Unknown {
+        place: place(),
+        what: "length",
+        name: name.into(),
+        known: quoted(spec.lengths.keys().map(String::as_str)),
+    })
+}
+
+/// A point of a link: which link, and how far from its root, m.
+fn locate(
+    spec: &MachineSpec,
+    names: &Names,
+    point: &Point,
+    place: &dyn Fn() -> Place,
+) -> Result<(usize, f64), MachineError> {
+    let under = |key: &str| {
+        let mut p = place();
+        p.0.push(Step::Key(key.into()));
+        p
+    };
+    let link = names.link(&point.link, || under("link"))?;
+    let s = match &point.at {
+        Station::Metres(s) => within(PLACE, *s, || under("at")).map(|()| *s)?,
+        Station::Named(name) => match name.as_str() {
+            "tip" => length_of(spec, link)?,
+            "root" => 0.0,
+            name => match name.strip_prefix('-') {
+                Some(name) => -named_length(spec, name, || under("at"))?,
+                None => named_length(spec, name, || under("at"))?,
+            },
+        },
+    };
+    Ok((link, s))
+}
+
+fn resolve(spec: &MachineSpec, names: &Names) -> Result<Vec<Part>, MachineError> {
+    let mut parents = Vec::with_capacity(spec.links.len());
+    for (i, link) in spec.links.iter().enumerate() {
+        let place = || Place::new(&[&"link", &i, &"attach"]);
+        parents.push(match &link.attach {
+            Attach::Base(word) if word == "base" => None,
+            Attach::Base(word) => {
+                let known = "\"base\", or { link = \"…\", at = \"tip\" }".into();
+                return Err(MachineError::Unknown { place: place(), what: "attachment", name: word.clone(), known });
+            }
+            Attach::On(point) => Some(locate(spec, names, point, &place)?),
+        });
+    }
+    let mut parts = Vec::with_capacity(spec.links.len());
+    for (i, link) in spec.links.iter().enumerate() {
+        // Walk from the link to the base; a walk longer than the number of links runs in a circle.
+        let (mut root, mut at, mut chain) = ([0.0; MAX_DRIVES], i, vec![spec.links[i].name.as_str()]);
+        while let Some((parent, s)) = parents[at] {
+            chain.push(&spec.links[parent].name);
+            if chain.len() > spec.links.len() {
+                return Err(MachineError::Cycle {
+                    place: Place::new(&[&"link", &i, &"attach"]),
+                    link: clipped(&link.name),
+                    chain: shortened(&chain.join(" on "), 200),
+                });
+            }
+            let on = &spec.links[parent];
+            let drive = names.drive(&on.drive, || Place::new(&[&"link", &parent, &"drive"]))?;
+            root[drive] += f64::from(on.direction) * s;
+            at = parent;
+        }
+        parts.push(Part {
+            drive: names.drive(&link.drive, || Place::new(&[&"link", &i, &"drive"]))?,
+            sign: f64::from(link.direction),
+            length: length_of(spec, i)?,
+            root,
+            parent: parents[i].map(|(p, _)| p),
+            at: parents[i].map_or(0.0, |(_, s)| s),
+            pins: Vec::new(),
+        });
+    }
+    Ok(parts)
+}
+
+fn resolve_closure(
+    spec: &MachineSpec,
+    names: &Names,
+    parts: &[Part],
+    i: usize,
+    closure: &Closure,
+) -> Result<Loop, MachineError> {
+    let (a, s) = locate(spec, names, &closure.a, &|| Place::new(&[&"closure", &i, &"a"]))?;
+    let (b, t) = locate(spec, names, &closure.b, &|| Place::new(&[&"closure", &i, &"b"]))?;
+    let (p, r) = (parts[a].point(s), parts[b].point(t));
+    let gap: Vec<String> = (0..spec.drives.len())
+        .filter(|&k| (p[k] - r[k]).abs() > CLOSURE_TOLERANCE)
+        .map(|k| format!("{:.6} m along drive {}", p[k] - r[k], clipped(&spec.drives[k].name)))
+        .collect();
+    if gap.is_empty() {
+        return Ok(Loop { a, at_a: s, b, at_b: t });
+    }
+    let say = |point: &Point| match &point.at {
+        Station::Metres(s) => format!("{} m of link {}", Short(*s), clipped(&point.link)),
+        Station::Named(name) => format!("{} of link {}", clipped(name), clipped(&point.link)),
+    };
+    Err(MachineError::OpenLoop {
+        place: Place::new(&[&"closure", &i]),
+        a: say(&closure.a),
+        b: say(&closure.b),
+        gap: gap.join(" and "),
+    })
+}
+
+fn resolve_angles(spec: &MachineSpec, names: &Names) -> Result<Vec<RelativeAngle>, MachineError> {
+    let angle = |(i, a): (usize, &Angle)| {
+        Ok(RelativeAngle {
+            name: a.name.clone(),
+            to: names.drive(&a.to, || Place::new(&[&"angle", &i, &"to"]))?,
+            from: names.drive(&a.from, || Place::new(&[&"angle", &i, &"from"]))?,
+            offset: a.offset,
+            limits: a.min..=a.max,
+        })
+    };
+    spec.angles.iter().enumerate().map(angle).collect()
+}
+
+/// Collects where other links are pinned to each link, so that it can be drawn as long as it must be.
+fn add_pins(spec: &MachineSpec, names: &Names, parts: &mut [Part]) -> Result<(), MachineError> {
+    let nowhere = || Place::default();
+    for part in parts.iter_mut() {
+        part.pins.push(0.0);
+    }
+    for link in &spec.links {
+        if let Attach::On(point) = &link.attach {
+            let (j, s) = locate(spec, names, point, &nowhere)?;
+            parts[j].pins.push(s);
+        }
+    }
+    for point in spec.closures.iter().flat_map(|c| [&c.a, &c.b]) {
+        let (j, s) = locate(spec, names, point, &nowhere)?;
+        parts[j].pins.push(s);
+    }
+    for part in parts.iter_mut() {
+        part.pins.sort_by(f64::total_cmp);
+        part.pins.dedup();
+    }
+    Ok(())
+}

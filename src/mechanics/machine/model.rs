@@ -1,0 +1,157 @@
+//! [`Machine`]: a description that has been checked, with what follows from it.
+
+use std::ops::RangeInclusive;
+
+use super::Chain;
+use super::spec::{Link, MachineSpec};
+use crate::mechanics::planar::{MAX_DRIVES, Vector};
+
+/// A valid machine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Machine {
+    pub(super) spec: MachineSpec,
+    pub(super) parts: Vec<Part>,
+    pub(super) tip: Chain,
+    pub(super) tip_link: usize,
+    pub(super) angles: Vec<RelativeAngle>,
+    pub(super) loops: Vec<Loop>,
+}
+
+/// What is derived of a link.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// The drive whose orientation it has, counted from 0.
+    pub drive: usize,
+    /// ±1: along or against e(q).
+    pub sign: f64,
+    /// Root to tip, m.
+    pub length: f64,
+    /// Its root.
+    pub root: Chain,
+    /// The link its root is pinned to; none: the base.
+    pub parent: Option<usize>,
+    /// How far from the root of that link, m; 0 on the base.
+    pub at: f64,
+    /// Where pins sit along it, m from the root, in rising order and without repetition.
+    pub pins: Vec<f64>,
+}
+
+/// A relative joint angle, resolved: a = q_to − q_from + offset.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RelativeAngle {
+    /// Its name.
+    pub name: String,
+    /// Drive, counted from 0.
+    pub to: usize,
+    /// Drive, counted from 0.
+    pub from: usize,
+    /// rad.
+    pub offset: f64,
+    /// rad.
+    pub limits: RangeInclusive<f64>,
+}
+
+/// A closure, resolved: a point of link `a` is pinned to a point of link `b`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Loop {
+    /// A link.
+    pub a: usize,
+    /// Where on it, m from its root.
+    pub at_a: f64,
+    /// Another link.
+    pub b: usize,
+    /// Where on that, m from its root.
+    pub at_b: f64,
+}
+
+impl Part {
+    /// The point `s` metres from the root.
+    pub fn point(&self, s: f64) -> Chain {
+        let mut c = self.root;
+        c[self.drive] += self.sign * s;
+        c
+    }
+}
+
+impl Machine {
+    /// What it was made of.
+    pub fn spec(&self) -> &MachineSpec {
+        &self.spec
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.spec.name
+    }
+
+    /// Number of drives n.
+    pub fn drives(&self) -> usize {
+        self.spec.drives.len()
+    }
+
+    /// Its links as described.
+    pub fn links(&self) -> &[Link] {
+        &self.spec.links
+    }
+
+    /// Its links as resolved, in the same order.
+    pub fn parts(&self) -> &[Part] {
+        &self.parts
+    }
+
+    /// The end effector as a sum of unit vectors, (14).
+    pub fn tip(&self) -> &Chain {
+        &self.tip
+    }
+
+    /// The link that carries the end effector.
+    pub fn tip_link(&self) -> usize {
+        self.tip_link
+    }
+
+    /// Relative joint angles and their limits.
+    pub fn angles(&self) -> &[RelativeAngle] {
+        &self.angles
+    }
+
+    /// Its closures as resolved, in the order of the file.
+    pub fn loops(&self) -> &[Loop] {
+        &self.loops
+    }
+
+    /// Acceleration of gravity, m/s².
+    pub fn gravity(&self) -> Vector {
+        Vector::new(self.spec.gravity[0], self.spec.gravity[1])
+    }
+
+    /// Total mass with payload, kg.
+    pub fn mass(&self) -> f64 {
+        self.spec.links.iter().map(|l| l.mass).sum::<f64>() + self.spec.payload.mass
+    }
+
+    /// The CM of link j as Σ_k a_jk e(q_k), complex where the CM lies off the link's axis.
+    pub fn com_chain(&self, j: usize) -> [Vector; MAX_DRIVES] {
+        let (link, part) = (&self.spec.links[j], &self.parts[j]);
+        let mut a = part.root.map(|w| Vector::new(w, 0.0));
+        a[part.drive] += part.sign * Vector::new(link.com, link.com_normal);
+        a
+    }
+
+    /// For every pin that closes a loop, how its one description differs from the other: a sum of unit vectors that is
+    /// zero in every pose.
+    pub fn closure_gaps(&self) -> Vec<Chain> {
+        let gap = |l: &Loop| {
+            let (a, b) = (self.parts[l.a].point(l.at_a), self.parts[l.b].point(l.at_b));
+            std::array::from_fn(|k| a[k] - b[k])
+        };
+        self.loops.iter().map(gap).collect()
+    }
+
+    /// The centre of mass of the payload as a sum of unit vectors, complex where it lies off the link's axis.
+    pub fn payload_chain(&self) -> [Vector; MAX_DRIVES] {
+        let (part, [along, left]) = (&self.parts[self.tip_link], self.spec.payload.offset);
+        let mut a = self.tip.map(|w| Vector::new(w, 0.0));
+        a[part.drive] += part.sign * Vector::new(along, left);
+        a
+    }
+}

@@ -1,0 +1,90 @@
+//! Where the numbers of a machine may lie.
+
+use super::error::{MachineError, Place};
+use super::spec::{MachineSpec, Payload};
+use crate::settings::range::{Range, Want};
+
+/// The largest number of a machine, in SI units: beyond it, products of them would not be finite.
+const MOST: f64 = 1e6;
+/// The least of those that nothing works without: below it, quotients would not be.
+const LEAST: f64 = 1e-9;
+
+const GRAVITY: Range = Range::either_way(MOST, "m/s²");
+pub(super) const LENGTH: Range = Range::new(1e-6, MOST, "m");
+pub(super) const PLACE: Range = Range::either_way(MOST, "m");
+/// Links may be all but without mass.
+const MASS: Range = Range::new(1e-15, MOST, "kg");
+const LOAD: Range = Range::new(0.0, MOST, "kg");
+const INERTIA: Range = Range::new(0.0, MOST, "kg m²");
+const TORQUE_LIMIT: Range = Range::new(LEAST, MOST, "N m");
+const SPEED_LIMIT: Range = Range::new(LEAST, MOST, "rad/s");
+const ACCELERATION_LIMIT: Range = Range::new(LEAST, MOST, "rad/s²");
+const JERK_LIMIT: Range = Range::new(LEAST, 1e9, "rad/s³");
+
+/// The largest joint limit either way, rad: each further turn is one more winding of the same workspace.
+pub const MAX_ANGLE: f64 = 25.2;
+const ANGLE: Range = Range::either_way(MAX_ANGLE, "rad, four turns");
+
+pub(super) fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {
+    for (i, &value) in spec.gravity.iter().enumerate() {
+        within(GRAVITY, value, || Place::new(&[&"gravity", &i]))?;
+    }
+    for (name, &value) in &spec.lengths {
+        within(LENGTH, value, || Place::new(&[&"lengths", name]))?;
+    }
+    let Payload { mass, inertia, offset, axial } = spec.payload;
+    within(LOAD, mass, || Place::new(&[&"payload", &"mass"]))?;
+    within(INERTIA, inertia, || Place::new(&[&"payload", &"inertia"]))?;
+    within(PLACE, axial, || Place::new(&[&"payload", &"axial"]))?;
+    for (i, &value) in offset.iter().enumerate() {
+        within(PLACE, value, || Place::new(&[&"payload", &"offset", &i]))?;
+    }
+    for (i, drive) in spec.drives.iter().enumerate() {
+        for (key, value, range) in [
+            ("torque_limit", drive.torque_limit, TORQUE_LIMIT),
+            ("speed_limit", drive.speed_limit, SPEED_LIMIT),
+            ("acceleration_limit", drive.acceleration_limit, ACCELERATION_LIMIT),
+            ("jerk_limit", drive.jerk_limit, JERK_LIMIT),
+        ] {
+            value.map_or(Ok(()), |value| within(range, value, || Place::new(&[&"drive", &i, &key])))?;
+        }
+    }
+    for (i, link) in spec.links.iter().enumerate() {
+        for (key, value, range) in [
+            ("mass", link.mass, MASS),
+            ("inertia", link.inertia, INERTIA),
+            ("com", link.com, PLACE),
+            ("com_normal", link.com_normal, PLACE),
+            ("axial", link.axial, PLACE),
+        ] {
+            within(range, value, || Place::new(&[&"link", &i, &key]))?;
+        }
+        if !matches!(link.direction, -1 | 1) {
+            let place = Place::new(&[&"link", &i, &"direction"]);
+            return Err(MachineError::OutOfRange { place, value: link.direction.into(), want: Want::Words("1 or -1") });
+        }
+    }
+    for (i, angle) in spec.angles.iter().enumerate() {
+        for (key, value) in [("offset", angle.offset), ("min", angle.min), ("max", angle.max)] {
+            within(ANGLE, value, || Place::new(&[&"angle", &i, &key]))?;
+        }
+        if angle.min > angle.max {
+            let place = Place::new(&[&"angle", &i, &"max"]);
+            return Err(MachineError::OutOfRange {
+                place,
+                value: angle.max,
+                want: Want::Words("a limit not below min"),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Refuses a number that is none, or out of the range of its key.
+pub(super) fn within(range: Range, value: f64, place: impl Fn() -> Place) -> Result<(), MachineError> {
+    match value.is_finite() {
+        true if range.contains(value) => Ok(()),
+        true => Err(MachineError::OutOfRange { place: place(), value, want: Want::Within(range) }),
+        false => Err(MachineError::NotFinite { place: place(), value, unit: range.unit() }),
+    }
+}

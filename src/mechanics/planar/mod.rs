@@ -1,0 +1,11 @@
+//! Words of the plane: complex vectors, small per-drive vectors, wrenches, poses.
+//!
+//! A vector (x, y) of the plane of motion is the complex number x + iy, in base axes, with B as origin.
+
+mod drives;
+mod sincos;
+mod vector;
+
+pub use drives::{DriveAngles, MAX_DRIVES, PerDrive, Units};
+pub use sincos::unit;
+pub use vector::{Pose2, Vector, Wrench, cross, dot};

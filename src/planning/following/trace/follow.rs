@@ -1,0 +1,35 @@
+//! Curves followed, or the reason why not.
+
+use super::remedy::blocked;
+use super::rule::{Blocked, Halt, Rule, Stop};
+use super::walk::{starts, tables};
+use crate::planning::curves::{Curve, Table};
+use crate::planning::reactionless::PlaneMap;
+
+/// Follows curves that join end to end on the plane b: a table of nodes for each. Of several poses at the start, the one
+/// that can, nearest to `prefer`.
+///
+/// # Errors
+/// Where it is stopped and by what, and what would help.
+pub fn follow(
+    map: &PlaneMap,
+    curves: &[Curve],
+    b: f64,
+    prefer: Option<[f64; 2]>,
+    rule: Rule,
+) -> Result<Vec<Table>, Box<Blocked>> {
+    let Some(first) = curves.first() else { return Ok(Vec::new()) };
+    let mut farthest: Option<Halt> = None;
+    for start in starts(map, first.at(0.0).p, b, prefer) {
+        match tables(map, curves, b, start, rule) {
+            Ok(tables) => return Ok(tables),
+            Err(stopped) => {
+                if farthest.is_none_or(|f| stopped.0 > f.0) {
+                    farthest = Some(stopped);
+                }
+            }
+        }
+    }
+    let (s, _, stop) = farthest.unwrap_or((0.0, [0.0; 2], Stop::Start));
+    Err(Box::new(blocked(map, curves, b, rule, s, stop)))
+}

@@ -1,0 +1,14 @@
+//! Curves of the end effector followed on a plane b = const, continuously and on one sheet, or the reason why not.
+//!
+//! Source: (15), (16). On a sheet, where det ∂(x, y)/∂(a_1, a_2) keeps its sign, each point has one pose that continues
+//! the last one; a curve is reactionless if and only if it can be followed so.
+
+mod follow;
+mod remedy;
+mod rule;
+mod track;
+mod walk;
+
+pub use follow::follow;
+pub use rule::{Blocked, Halt, Rule, Stop};
+pub use walk::{common_b, is_feasible, part, walk};

@@ -1,0 +1,116 @@
+//! What a curve must keep to be followed, and what stops it.
+
+use thiserror::Error;
+
+use crate::mechanics::planar::Vector;
+use crate::planning::reactionless::{Decimal, PAIRS, PlaneMap};
+
+/// What ends a sheet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stop {
+    /// A relative angle at its limit.
+    Limit {
+        /// Which angle: 0 for a_1, 1 for a_2.
+        angle: usize,
+        /// At its greatest value, else at its least.
+        upper: bool,
+    },
+    /// det = 0: two poses meet and vanish.
+    Fold,
+    /// Two drives parallel, where pins would bear unbounded forces; only if the path is to keep off it.
+    ChangePoint {
+        /// The drives, counted from 0.
+        drives: [usize; 2],
+    },
+    /// The curve's first point has no pose on this plane.
+    Start,
+}
+
+/// A curve that cannot be followed on its plane.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{}", self.in_words())]
+pub struct Blocked {
+    /// b, rad.
+    pub b: f64,
+    /// How far along the whole curve, 0 to 1 by length.
+    pub s: f64,
+    /// The first point that cannot be passed, m.
+    pub at: Vector,
+    /// What stops it there.
+    pub stop: Stop,
+    /// Whether no pose of this plane reaches the curve just beyond: it leaves the workspace, not only the sheet.
+    pub leaves_workspace: bool,
+    /// The pose constant nearest to b at which the whole curve can be followed, rad.
+    pub nearest_b: Option<f64>,
+    /// The same as it is shown: rounded to where the curve can still be followed.
+    pub shown_b: Option<Decimal>,
+    /// Whether some b reaches each single point of the curve, if not the curve as a whole.
+    pub some_b_reaches_all: bool,
+    /// From where to where the longest part runs that can be followed on this plane, 0 to 1 by length; one of less than
+    /// 0.6 % may be missed.
+    pub longest: Option<[f64; 2]>,
+    /// The whole curve, m, to be drawn.
+    pub curve: Vec<Vector>,
+}
+
+impl std::fmt::Display for Stop {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Limit { angle, upper } => {
+                write!(f, "a{} at its {} limit", angle + 1, if *upper { "upper" } else { "lower" })
+            }
+            Self::Fold => f.write_str("a fold, det = 0"),
+            Self::ChangePoint { drives: [k, l] } => {
+                write!(f, "a change point, drives {} and {} parallel", k + 1, l + 1)
+            }
+            Self::Start => f.write_str("no pose at its first point"),
+        }
+    }
+}
+
+impl Blocked {
+    fn in_words(&self) -> String {
+        let where_to = if self.leaves_workspace { ", the boundary of the reactionless workspace" } else { "" };
+        let remedy = match (self.shown_b, self.some_b_reaches_all) {
+            (Some(b), _) => format!("b = {b} rad would do"),
+            (None, false) => "no b reaches all of it".into(),
+            (None, true) => "each point has a b in common with the others, but no b lets it be followed".into(),
+        };
+        let part = match self.longest {
+            Some([from, to]) if to - from > 1e-3 => {
+                format!("; on this plane it can be followed from {:.1} to {:.1} %", 100.0 * from, 100.0 * to)
+            }
+            _ => String::new(),
+        };
+        format!(
+            "the path stops at ({:.3}, {:.3}) m, {:.1} % along, at b = {:.4} rad: {}{where_to}; {remedy}{part}",
+            self.at.re,
+            self.at.im,
+            100.0 * self.s,
+            self.b,
+            self.stop,
+        )
+    }
+}
+
+/// What a followed path must keep to besides its sheet and the limits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rule {
+    /// Keeps sin(q_k − q_l) from changing sign for every pair of drives.
+    pub keep_off_change_points: bool,
+}
+
+impl Rule {
+    pub(super) fn keeps_side(self, map: &PlaneMap, from: [f64; 2], to: [f64; 2]) -> bool {
+        !self.keep_off_change_points || crossed(map, from, to).is_none()
+    }
+}
+
+/// The pair of drives that becomes parallel between two poses, counted from 0.
+pub(super) fn crossed(map: &PlaneMap, from: [f64; 2], to: [f64; 2]) -> Option<[usize; 2]> {
+    let (x, y) = (map.sines(from), map.sines(to));
+    PAIRS.into_iter().zip(x.into_iter().zip(y)).find(|(_, (x, y))| x * y < 0.0).map(|(pair, _)| pair)
+}
+
+/// How far a curve can be followed: to which s, to which pose, and what stops it there.
+pub type Halt = (f64, [f64; 2], Stop);

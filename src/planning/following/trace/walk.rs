@@ -1,0 +1,101 @@
+//! Curves walked along from a pose, and whether they can be.
+
+use super::rule::{Halt, Rule};
+use super::track::Track;
+use crate::mechanics::planar::{Vector, unit};
+use crate::planning::curves::{Curve, Table};
+use crate::planning::reactionless::{BSet, PlaneMap};
+
+/// Stations at which a curve is tried for other b, or for its longest part.
+pub(super) const STATIONS: usize = 96;
+
+/// Poses on a plane along a curve, from a pose at its start.
+///
+/// # Errors
+/// How far it gets, the last pose, and what stops it.
+pub fn walk(
+    map: &PlaneMap,
+    curve: &Curve,
+    b: f64,
+    start: [f64; 2],
+    rule: Rule,
+    stations: usize,
+) -> Result<[f64; 2], Halt> {
+    let track = Track { map, b, turn: unit(-map.turn(b)), curve, rule };
+    let mut a = start;
+    for i in 0..stations {
+        let s = |i: usize| i as f64 / stations as f64;
+        a = track.advance(a, s(i), s(i + 1))?;
+    }
+    Ok(a)
+}
+
+/// The poses of a point on a plane, those nearest to a wish first.
+pub(super) fn starts(map: &PlaneMap, p: Vector, b: f64, prefer: Option<[f64; 2]>) -> Vec<[f64; 2]> {
+    let mut starts: Vec<[f64; 2]> = map.poses(p, b).iter().map(|x| x.a).collect();
+    if let Some(wish) = prefer {
+        let far = |a: &[f64; 2]| (a[0] - wish[0]).hypot(a[1] - wish[1]);
+        starts.sort_by(|x, y| far(x).total_cmp(&far(y)));
+    }
+    starts
+}
+
+pub(super) fn tables(
+    map: &PlaneMap,
+    curves: &[Curve],
+    b: f64,
+    start: [f64; 2],
+    rule: Rule,
+) -> Result<Vec<Table>, Halt> {
+    let turn = unit(-map.turn(b));
+    let mut a = start;
+    let mut tables = Vec::with_capacity(curves.len());
+    for (i, curve) in curves.iter().enumerate() {
+        let track = Track { map, b, turn, curve, rule };
+        let table = track.table(a).map_err(|(s, a, stop)| (whole(curves, i, s), a, stop))?;
+        a = table.nodes().last().map_or(a, |last| map.project(&last.q).a);
+        tables.push(table);
+    }
+    Ok(tables)
+}
+
+/// s over all curves, by length, of a place on one of them.
+pub(super) fn whole(curves: &[Curve], i: usize, s: f64) -> f64 {
+    let length = |c: &Curve| c.length();
+    let before: f64 = curves[..i].iter().map(length).sum();
+    (before + s * curves[i].length()) / curves.iter().map(length).sum::<f64>()
+}
+
+/// The curve and its s, of an s over all of them.
+pub fn part(curves: &[Curve], s: f64) -> (usize, f64) {
+    let total: f64 = curves.iter().map(Curve::length).sum();
+    let mut left = s * total;
+    for (i, curve) in curves.iter().enumerate() {
+        if left <= curve.length() || i + 1 == curves.len() {
+            return (i, (left / curve.length()).clamp(0.0, 1.0));
+        }
+        left -= curve.length();
+    }
+    (0, 0.0)
+}
+
+pub(super) fn at(curves: &[Curve], s: f64) -> Vector {
+    let (i, s) = part(curves, s);
+    curves[i].at(s).p
+}
+
+/// Whether curves can be followed on a plane from any pose at their start.
+pub fn is_feasible(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule) -> bool {
+    let Some(first) = curves.first() else { return true };
+    let stations = (STATIONS / curves.len()).max(8);
+    starts(map, first.at(0.0).p, b, None)
+        .into_iter()
+        .any(|start| curves.iter().try_fold(start, |a, curve| walk(map, curve, b, a, rule, stations).ok()).is_some())
+}
+
+/// The b that reach every single one of evenly spaced points of the curves.
+pub fn common_b(map: &PlaneMap, curves: &[Curve], points: usize) -> BSet {
+    let n = points.max(2) - 1;
+    let sets: Option<Vec<BSet>> = (0..=n).map(|i| map.reach(at(curves, i as f64 / n as f64)).ok()).collect();
+    sets.map_or(BSet { intervals: Vec::new(), period: map.period() }, |sets| BSet::overlap(&sets))
+}

@@ -1,0 +1,174 @@
+//! A scenario as edits leave it, and edits in their order.
+
+use crate::planning::reactionless::PlanePoint;
+use std::sync::Arc;
+
+use super::edit::{Edit, TimedEdit};
+use super::refusal::Refusal;
+use super::scenario::Scenario;
+use crate::mechanics::machine::Machine;
+use crate::planning::pose_constant::Planes;
+use crate::settings::change;
+use crate::settings::range::shortened;
+
+/// A scenario with a parameter set; nothing is planned, and whether all fits together is for [`checked`] to say.
+pub(super) fn changed(scenario: &Scenario, edit: &Edit) -> Result<Scenario, Refusal> {
+    let mut scenario = scenario.clone();
+    match edit {
+        Edit::Push { x, y } => {
+            scenario.plant.force = [*x, *y];
+        }
+        Edit::SetPlant { change } => {
+            scenario.plant = change::with(&scenario.plant, change).map_err(|why| wrong("plant", &why))?;
+        }
+        Edit::SetBase { change } => {
+            scenario.base = change::with(&scenario.base, change).map_err(|why| wrong("base", &why))?;
+        }
+        Edit::SetControl { change } => {
+            scenario.control = change::with(&scenario.control, change).map_err(|why| wrong("control", &why))?;
+        }
+        Edit::SetTolerance { change } => {
+            scenario.tolerance = change::with(&scenario.tolerance, change).map_err(|why| wrong("tolerance", &why))?;
+        }
+        Edit::SetMachine { key, value } => scenario.machine = scenario.machine.set(key, value)?,
+        Edit::SetTime { time } => scenario.task.time = *time,
+        Edit::CompareB { b } => scenario.compare_b = *b,
+        Edit::SetTask { change } => {
+            scenario.task = scenario.task.with(change).map_err(|why| wrong("task", &why))?;
+        }
+        Edit::PoseB { .. } | Edit::DragTarget { .. } | Edit::SlideB { .. } => {}
+    }
+    Ok(scenario)
+}
+
+pub(super) fn wrong(of: &str, why: &str) -> Refusal {
+    Refusal::Task(format!("{of}: {why}"))
+}
+
+/// A scenario that an edit of its keys has left sound.
+pub(super) fn checked(scenario: Scenario, edit: &Edit) -> Result<Scenario, Refusal> {
+    match edit {
+        Edit::Push { .. }
+        | Edit::SetPlant { .. }
+        | Edit::SetBase { .. }
+        | Edit::SetControl { .. }
+        | Edit::SetTolerance { .. }
+        | Edit::SetTask { .. } => sound(scenario, edit.part()),
+        _ => Ok(scenario),
+    }
+}
+
+pub(super) fn sound(scenario: Scenario, of: &str) -> Result<Scenario, Refusal> {
+    scenario.check(of).map_err(|why| Refusal::Task(why.to_string()))?;
+    Ok(scenario)
+}
+
+/// A scenario as an edit before its first step leaves it; planes are made if a pose needs them, and kept.
+pub(super) fn amended(
+    scenario: &Scenario,
+    edit: &Edit,
+    planes: &mut Option<(Machine, Arc<Planes>)>,
+) -> Result<Scenario, Refusal> {
+    edit.check(scenario.step)?;
+    let Edit::PoseB { b } = edit else { return changed(scenario, edit) };
+    let known = planes.take().filter(|(machine, _)| *machine == scenario.machine);
+    let planes = match known {
+        Some(known) => planes.insert(known),
+        None => planes.insert((scenario.machine.clone(), Arc::new(Planes::of(&scenario.machine)?))),
+    };
+    Ok(posed(scenario, &planes.1, *b))
+}
+
+/// The task on another plane: its points keep their places while one plane serves all; beyond that they turn with the
+/// workspace.
+pub(super) fn posed(scenario: &Scenario, planes: &Planes, b: f64) -> Scenario {
+    let mut scenario = scenario.clone();
+    if let Some(task) = scenario.task.posed(&scenario.machine, b) {
+        return Scenario { task, ..scenario };
+    }
+    scenario.task.b = b;
+    let points = scenario.task.points();
+    if let (Err(_), Some(turned)) = (planes.serve(&points, b), planes.serve_turned(&points, b)) {
+        let place = |at: &PlanePoint| {
+            let p = planes.map().forward(at.a, at.b);
+            [p.re, p.im]
+        };
+        if let [from, via @ .., to] = &turned[..] {
+            (scenario.task.from, scenario.task.to) = (place(from), place(to));
+            scenario.task.via = via.iter().map(place).collect();
+        }
+    }
+    scenario
+}
+
+/// How many edits come before the first step, up to the first that leads the machine.
+pub(super) fn opening<'a>(script: impl IntoIterator<Item = &'a TimedEdit>) -> usize {
+    script.into_iter().take_while(|e| e.step == 0 && !e.edit.leads()).count()
+}
+
+/// Places of edits in the order of their steps; those of one step stay in theirs.
+pub(super) fn order_of(edits: &[TimedEdit]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..edits.len()).collect();
+    order.sort_by_key(|i| edits[*i].step);
+    order
+}
+
+/// Edits in the order of their steps; those of one step stay in theirs.
+pub(super) fn in_order(edits: &[TimedEdit]) -> Vec<TimedEdit> {
+    order_of(edits).into_iter().map(|i| edits[i].clone()).collect()
+}
+
+/// Why a script cannot be carried out, and which of its edits is to blame, counted from 0, if it is one.
+pub(super) struct Failed {
+    edit: Option<usize>,
+    refusal: Refusal,
+}
+
+impl Failed {
+    pub(super) fn at(edit: usize, refusal: Refusal) -> Self {
+        Self { edit: Some(edit), refusal }
+    }
+
+    /// Why.
+    pub(super) fn refusal(self) -> Refusal {
+        self.refusal
+    }
+
+    /// Why, with the entry of the file that the script was made of.
+    pub(super) fn named(self, edits: &[TimedEdit]) -> Refusal {
+        let order = order_of(edits);
+        match self.edit.and_then(|i| order.get(i)).and_then(|&i| Some((i, edits.get(i)?))) {
+            Some((i, timed)) => Refusal::Edit {
+                entry: i + 1,
+                step: timed.step,
+                title: shortened(&timed.edit.title(), 80),
+                refusal: Box::new(self.refusal),
+            },
+            None => self.refusal,
+        }
+    }
+}
+
+impl<E: Into<Refusal>> From<E> for Failed {
+    fn from(error: E) -> Self {
+        Self { edit: None, refusal: error.into() }
+    }
+}
+
+/// A scenario with the edits before its first step made, up to the first that leads the machine, and their number; it
+/// carries no edits any more.
+pub(super) fn folded(
+    scenario: &Scenario,
+    script: &[TimedEdit],
+    planes: &mut Option<(Machine, Arc<Planes>)>,
+) -> Result<(Scenario, usize), Failed> {
+    let count = opening(script);
+    // With its edits, each copy of it would cost as much as all of them.
+    let mut ground = scenario.without_edits();
+    for (i, timed) in script[..count].iter().enumerate() {
+        ground = amended(&ground, &timed.edit, planes).map_err(|refusal| Failed::at(i, refusal))?;
+    }
+    // What stands between two of them need not fit together.
+    let ground = if count > 0 { sound(ground, "the scenario")? } else { ground };
+    Ok((ground, count))
+}

@@ -1,0 +1,11 @@
+//! From a task to a motion: poses for its points, a path through them, and when to be where.
+
+mod along;
+mod choose;
+mod given;
+mod off_plane;
+mod plan;
+
+pub use along::curves;
+pub(super) use choose::plan;
+pub use plan::Plan;

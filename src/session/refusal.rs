@@ -1,0 +1,192 @@
+//! [`Refusal`]: why a scenario cannot start, or an edit cannot apply.
+
+use thiserror::Error;
+
+use crate::mechanics::machine::MachineError;
+use crate::planning::curves::{CurveError, PathError};
+use crate::planning::following::Blocked;
+use crate::planning::off_plane::drift::DriftError;
+use crate::planning::off_plane::least_reaction::LeastReactionError;
+use crate::planning::off_plane::price::PriceError;
+use crate::planning::pose_constant::{NoCommon, PlaneError, Unreachable};
+use crate::planning::reactionless::Decimal;
+use crate::planning::timing::TimeError;
+use crate::session::scenario::{MAX_FRAMES, MAX_STEPS, MAX_TIME, ordinal};
+use crate::settings::range::{Check, Short, Want};
+
+/// Why a scenario cannot start or an edit cannot apply; nothing has changed then.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum Refusal {
+    /// The machine has no reactionless planes of the kind the task needs.
+    #[error(transparent)]
+    NoPlanes(#[from] PlaneError),
+    /// A or B cannot be reached there.
+    #[error("{point} {unreachable}")]
+    Unreachable {
+        /// `A`, `1`, `2` … `B`.
+        point: String,
+        /// Why, and what would do.
+        unreachable: Unreachable,
+    },
+    /// No plane serves all points.
+    #[error("{said}")]
+    NoCommonPlane {
+        /// In words, points by their names.
+        said: String,
+        /// Why, and what would mend it.
+        why: NoCommon,
+    },
+    /// The path.
+    #[error(transparent)]
+    Path(#[from] PathError),
+    /// The points give no curve.
+    #[error(transparent)]
+    Curve(#[from] CurveError),
+    /// The curve cannot be followed on the plane.
+    #[error(transparent)]
+    Blocked(#[from] Box<Blocked>),
+    /// The task asks for something that does not fit together.
+    #[error("{0}")]
+    Task(String),
+    /// b has no price here.
+    #[error(transparent)]
+    Price(#[from] PriceError),
+    /// The redundancy cannot be resolved so.
+    #[error(transparent)]
+    LeastReaction(#[from] LeastReactionError),
+    /// The end effector's curve cannot be followed at zero momentum.
+    #[error(transparent)]
+    Drift(#[from] DriftError),
+    /// The fastest law.
+    #[error(transparent)]
+    Time(#[from] TimeError),
+    /// The machine.
+    #[error(transparent)]
+    Machine(#[from] MachineError),
+    /// The numbers have blown up.
+    #[error(
+        "the simulation diverges at {time:.3} s: want smaller gains, a smaller step, a lighter payload, or softer springs, dampers and \
+             friction"
+    )]
+    Diverged {
+        /// s.
+        time: f64,
+    },
+    /// An audit of the run has failed.
+    #[error("audit failed: {why}; want a smaller step")]
+    Untrusted {
+        /// Which, and by how much.
+        why: String,
+    },
+    /// The motion in progress does not fit into new limits.
+    #[error("the motion in progress would leave {key} = {value}: want wider limits, or set them at its start")]
+    LeavesLimits {
+        /// Which.
+        key: String,
+        /// What was given.
+        value: String,
+    },
+    /// A number out of range.
+    #[error("{what} is {}: want {want}", Short(*value))]
+    OutOfRange {
+        /// Which.
+        what: String,
+        /// What was given.
+        value: f64,
+        /// What would be right.
+        want: Want,
+    },
+    /// The motion takes longer than any may.
+    #[error("the motion would take {}: want at most {MAX_TIME} s, with higher limits or a shorter way", seconds(*time))]
+    TooLong {
+        /// s.
+        time: f64,
+    },
+    /// The run has more steps than any may.
+    #[error("{} s in steps of {} s are {steps} steps: want at most {MAX_STEPS}, with longer steps or a shorter duration", Short(*time), Short(*step))]
+    TooManySteps {
+        /// s.
+        time: f64,
+        /// s.
+        step: f64,
+        /// How many.
+        steps: u64,
+    },
+    /// A session keeps no more frames.
+    #[error(
+        "a session keeps {MAX_FRAMES} frames and an hour at most, and this one is full at {time:.3} s: want an earlier \
+         instant, or the start, to go on from; `simulate` and `headless` run longer"
+    )]
+    Full {
+        /// s.
+        time: f64,
+    },
+    /// What a run would write.
+    #[error(
+        "{rows} rows of {columns} numbers are up to {:.1} GB: want at most {:.0} GB, with fewer rows or a shorter duration",
+        bytes / 1e9, most / 1e9
+    )]
+    TooLarge {
+        /// How many.
+        rows: u64,
+        /// Numbers in each.
+        columns: usize,
+        /// At most.
+        bytes: f64,
+        /// How many there may be.
+        most: f64,
+    },
+    /// One of the edits of a scenario.
+    #[error("the {} [[edit]], {title} at step {step}: {refusal}", ordinal(*entry))]
+    Edit {
+        /// Which, counted from 1 in the order of the file.
+        entry: usize,
+        /// When.
+        step: u64,
+        /// What it would do.
+        title: String,
+        /// Why it cannot.
+        refusal: Box<Refusal>,
+    },
+}
+
+/// A time for a message.
+fn seconds(time: f64) -> String {
+    if time < 1e9 { format!("{time:.0} s") } else { "more than 1e9 s".into() }
+}
+
+/// A time that a motion finds itself obeys the same bound as one that it is given.
+///
+/// # Errors
+/// If it is longer than any motion may take, or no number.
+pub(super) fn allowed(time: f64) -> Result<(), Refusal> {
+    if time <= MAX_TIME { Ok(()) } else { Err(Refusal::TooLong { time }) }
+}
+
+impl From<Check> for Refusal {
+    fn from(Check { key, value, want, .. }: Check) -> Self {
+        Self::OutOfRange { what: key.into(), value, want }
+    }
+}
+
+impl Refusal {
+    /// The pose constant nearest to the present one that would do, rad, if another b is all it takes.
+    pub fn mending_b(&self) -> Option<f64> {
+        match self {
+            Self::Edit { refusal, .. } => refusal.mending_b(),
+            Self::Blocked(blocked) => blocked.nearest_b,
+            Self::Unreachable { unreachable: Unreachable::OnThisPlane { nearest_b, .. }, .. } => *nearest_b,
+            _ => None,
+        }
+    }
+
+    /// The same as it is shown: rounded to where it still does.
+    pub fn shown_b(&self) -> Option<Decimal> {
+        match self {
+            Self::Edit { refusal, .. } => refusal.shown_b(),
+            Self::Blocked(blocked) => blocked.shown_b,
+            Self::Unreachable { unreachable: Unreachable::OnThisPlane { shown_b, .. }, .. } => *shown_b,
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Runs from their start to their end, with everything that was done to them.
+
+use crate::session::Refusal;
+use crate::session::Run;
+use crate::session::TimedEdit;
+use crate::session::changes::Failed;
+use crate::session::changes::folded;
+use crate::session::changes::in_order;
+use crate::session::scenario::Scenario;
+use crate::simulation::audit::Lamp;
+use crate::simulation::frame::Frame;
+/// A scenario with the edits before its first step made part of it, and the others left out, and how many those others are.
+///
+/// # Errors
+/// If an edit cannot be made.
+pub fn settled(scenario: &Scenario) -> Result<(Scenario, usize), Refusal> {
+    let script = in_order(&scenario.edits);
+    let (ground, count) = folded(scenario, &script, &mut None).map_err(|failed| failed.named(&scenario.edits))?;
+    Ok((ground, script.len() - count))
+}
+
+/// Frames of a scenario with its edits, from the first to the last step, one at a time.
+///
+/// # Errors
+/// If it cannot start, or an edit cannot apply.
+pub fn replay(scenario: &Scenario, see: impl FnMut(&Run, &Frame)) -> Result<Run, Refusal> {
+    replay_if(scenario, |_| Ok(()), see)
+}
+
+/// The same, unless what knows the last step has something against it before the first.
+///
+/// # Errors
+/// As [`replay`], and if it is refused.
+pub fn replay_if(
+    scenario: &Scenario,
+    allow: impl FnOnce(u64) -> Result<(), Refusal>,
+    see: impl FnMut(&Run, &Frame),
+) -> Result<Run, Refusal> {
+    let end = |run: &Run, script: &[TimedEdit]| {
+        let last = run.whole(script)?;
+        allow(last).map(|()| last).map_err(Failed::from)
+    };
+    let done = perform(scenario, &in_order(&scenario.edits), (end, false), None, see);
+    done.map_err(|failed| failed.named(&scenario.edits))
+}
+
+/// What shakes the base at every step of a scenario: f_Bx and f_By of motion, N, and the moment that it feels, N m; and
+/// the first audit that the run has failed.
+///
+/// # Errors
+/// As [`replay`].
+pub fn felt(scenario: &Scenario) -> Result<([Vec<f64>; 3], Option<Lamp>), Refusal> {
+    let mut course: [Vec<f64>; 3] = Default::default();
+    let run = replay(scenario, |_, frame| {
+        let force = frame.wrench.dynamic.force;
+        let now = [force.re, force.im, frame.felt_moment()];
+        course.iter_mut().zip(now).for_each(|(all, x)| all.push(x));
+    })?;
+    Ok((course, run.frame().fault()))
+}
+
+/// Runs a scenario, as edits at the start leave it, to a last step, with a script in order, and shows every frame. A task
+/// that does not fit its machine is refused, or, with patience, waits at its first step.
+pub(super) fn perform(
+    scenario: &Scenario,
+    script: &[TimedEdit],
+    (end, patient): (impl FnOnce(&Run, &[TimedEdit]) -> Result<u64, Failed>, bool),
+    known: Option<&Run>,
+    mut see: impl FnMut(&Run, &Frame),
+) -> Result<Run, Failed> {
+    let (mut run, begun) = Run::begin(scenario, script, known)?;
+    if let Some(waiting) = run.waiting() {
+        if !patient {
+            return Err(waiting.why.clone().into());
+        }
+        see(&run, &run.frame());
+        return Ok(run);
+    }
+    let end = end(&run, script)?;
+    let mut edits = script.iter().enumerate().skip(begun).peekable();
+    loop {
+        let step = run.simulation().step_count();
+        while let Some((i, timed)) = edits.next_if(|(_, e)| e.step <= step) {
+            run.apply(&timed.edit).map_err(|refusal| Failed::at(i, refusal))?;
+        }
+        let frame = run.frame();
+        if !frame.is_finite() {
+            return Err(Refusal::Diverged { time: frame.time }.into());
+        }
+        see(&run, &frame);
+        if step >= end {
+            return Ok(run);
+        }
+        run.advance();
+    }
+}

@@ -1,0 +1,41 @@
+//! The scenarios that come with the program.
+
+use super::definition::Scenario;
+
+/// How many of the scenarios that come along are the paper's cases; they stand first.
+const CASES: usize = 3;
+
+/// The scenarios that come along: the paper's three cases, what planning can do besides, and plants and bases that are
+/// not ideal.
+const BUILTIN: [(&str, &str); 12] = [
+    ("case-1", include_str!("../../../assets/scenarios/case-1.toml")),
+    ("case-2", include_str!("../../../assets/scenarios/case-2.toml")),
+    ("case-3", include_str!("../../../assets/scenarios/case-3.toml")),
+    ("circle", include_str!("../../../assets/scenarios/circle.toml")),
+    ("change-b", include_str!("../../../assets/scenarios/change-b.toml")),
+    ("least-reaction", include_str!("../../../assets/scenarios/least-reaction.toml")),
+    ("drift", include_str!("../../../assets/scenarios/drift.toml")),
+    ("spacecraft", include_str!("../../../assets/scenarios/spacecraft.toml")),
+    ("bench-top", include_str!("../../../assets/scenarios/bench-top.toml")),
+    ("pick-up", include_str!("../../../assets/scenarios/pick-up.toml")),
+    ("friction", include_str!("../../../assets/scenarios/friction.toml")),
+    ("wheel", include_str!("../../../assets/scenarios/wheel.toml")),
+];
+
+impl Scenario {
+    /// The names of the built-in scenarios, the paper's cases first.
+    pub fn builtin_names() -> impl Iterator<Item = &'static str> {
+        BUILTIN.iter().map(|(name, _)| *name)
+    }
+
+    /// The names of the paper's cases.
+    pub fn cases() -> impl Iterator<Item = &'static str> {
+        Self::builtin_names().take(CASES)
+    }
+
+    /// A built-in scenario.
+    pub fn builtin(name: &str) -> Option<Self> {
+        let (name, text) = BUILTIN.iter().find(|(n, _)| *n == name)?;
+        Some(Self::parse(text, name, None).expect("the scenarios that come along are valid"))
+    }
+}

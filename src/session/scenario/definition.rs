@@ -1,0 +1,111 @@
+//! [`Scenario`]: what a run starts from.
+
+use super::bounds::{MAX_TIME, STEP};
+use super::error::ScenarioError;
+use super::task::{POSE_CONSTANT, Task};
+use super::tolerance::Tolerance;
+use crate::mechanics::machine::{Machine, MachineError};
+use crate::session::TimedEdit;
+use crate::settings::range::{Check, Range};
+use crate::simulation::Setup;
+use crate::simulation::control::Control;
+use crate::simulation::plant::{Base, Plant};
+
+/// What a run starts from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scenario {
+    /// Short name: `case-3`.
+    pub name: String,
+    /// A line about it.
+    pub title: String,
+    /// The machine that control believes in.
+    pub machine: Machine,
+    /// What differs in the machine that moves.
+    pub plant: Plant,
+    /// What it stands on.
+    pub base: Base,
+    /// The task.
+    pub task: Task,
+    /// What the motors are told.
+    pub control: Control,
+    /// Fixed step, s.
+    pub step: f64,
+    /// Bound on |b̈| while b is slid, rad/s².
+    pub pose_acceleration: f64,
+    /// Pose constant of a second workspace to compare with, rad.
+    pub compare_b: Option<f64>,
+    /// Time that a headless run covers, s; by default that of the planned motion.
+    pub duration: Option<f64>,
+    /// How machines that are built differ from it.
+    pub tolerance: Tolerance,
+    /// What was done, in the order of steps.
+    pub edits: Vec<TimedEdit>,
+}
+
+impl Scenario {
+    /// Whether every number is in its range; `file` is what errors call it.
+    ///
+    /// # Errors
+    /// The first that is not.
+    pub fn check(&self, file: &str) -> Result<(), ScenarioError> {
+        if let Some(Check { key, value, want, .. }) = self.checks().into_iter().find(|check| !check.ok) {
+            return Err(ScenarioError::OutOfRange { file: file.into(), line: None, key: key.into(), value, want });
+        }
+        let named = self.plant.machine(&self.machine).map(|_| ());
+        named.map_err(|error| ScenarioError::Machine { file: format!("{file}: plant"), line: None, error })
+    }
+
+    /// Every number with its key, and whether it may stand there.
+    fn checks(&self) -> Vec<Check> {
+        let n = self.machine.drives();
+        let mut list = vec![STEP.check("step", self.step)];
+        list.extend(DURATION.check_some("duration", self.duration));
+        list.push(POSE_ACCELERATION.check("pose_acceleration", self.pose_acceleration));
+        list.extend(POSE_CONSTANT.check_some("compare_b", self.compare_b));
+        list.extend(self.task.checks(self.step));
+        list.extend(self.control.checks(n, self.step));
+        list.extend(self.plant.checks(n));
+        list.extend(self.base.checks());
+        list
+    }
+
+    /// The machine that moves, with what it holds at the start.
+    ///
+    /// # Errors
+    /// If what differs leaves no valid machine.
+    pub fn plant_machine(&self) -> Result<Machine, MachineError> {
+        let (machine, load) = (self.plant.machine(&self.machine)?, &self.plant.payload);
+        if load.is_held(0.0, 0.5 * self.step) { load.held_by(&machine) } else { Ok(machine) }
+    }
+
+    /// The same before anything was done to it.
+    pub(crate) fn without_edits(&self) -> Self {
+        let Self { name, title, machine, plant, base, task, control, step, .. } = self;
+        let Self { pose_acceleration, compare_b, duration, tolerance, .. } = self;
+        Self {
+            name: name.clone(),
+            title: title.clone(),
+            machine: machine.clone(),
+            plant: plant.clone(),
+            base: *base,
+            task: task.clone(),
+            control: *control,
+            step: *step,
+            pose_acceleration: *pose_acceleration,
+            compare_b: *compare_b,
+            duration: *duration,
+            tolerance: tolerance.clone(),
+            edits: Vec::new(),
+        }
+    }
+
+    /// What a simulation of it is made of.
+    pub fn setup(&self) -> Setup<'_> {
+        let Self { machine: model, plant, base, control, step, .. } = self;
+        Setup { model, plant, base, control, step: *step }
+    }
+}
+
+const DURATION: Range = Range::new(0.0, MAX_TIME, "s");
+
+const POSE_ACCELERATION: Range = Range::new(1e-6, 1e6, "rad/s²");

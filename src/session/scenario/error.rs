@@ -1,0 +1,75 @@
+//! What can be wrong with a scenario: which file, line and key.
+
+use thiserror::Error;
+
+use super::bounds::ordinal;
+use crate::mechanics::machine::{FileError, MachineError};
+use crate::settings::range::{Short, Want};
+use crate::settings::text::MOST_BYTES;
+
+/// Why a file is not a scenario.
+#[derive(Debug, Error)]
+pub enum ScenarioError {
+    /// The file itself.
+    #[error("{file}: {source}: want a plain file that can be read, of at most {MOST_BYTES} bytes")]
+    Unreadable {
+        /// The file.
+        file: String,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// Not TOML, or not of a scenario.
+    #[error("{file}{}: {message}", at(*line))]
+    Syntax {
+        /// The file.
+        file: String,
+        /// Line, counted from 1.
+        line: Option<usize>,
+        /// What.
+        message: String,
+    },
+    /// A number out of range.
+    #[error("{file}{}: {key} is {}: want {want}", at(*line), Short(*value))]
+    OutOfRange {
+        /// The file.
+        file: String,
+        /// Line, counted from 1, where it is known.
+        line: Option<usize>,
+        /// Which.
+        key: String,
+        /// What stands there.
+        value: f64,
+        /// What would be right.
+        want: Want,
+    },
+    /// Its machine.
+    #[error("{file}{}: machine: {error}", at(*line))]
+    Machine {
+        /// The file.
+        file: String,
+        /// Line, counted from 1, where it is known.
+        line: Option<usize>,
+        /// What.
+        error: MachineError,
+    },
+    /// One of its edits.
+    #[error("{file}{}: the {} [[edit]]: {message}", at(*line), ordinal(*entry))]
+    Edit {
+        /// The file.
+        file: String,
+        /// Line, counted from 1, where it is known.
+        line: Option<usize>,
+        /// Which, counted from 1.
+        entry: usize,
+        /// What.
+        message: String,
+    },
+    /// Its machine's file.
+    #[error(transparent)]
+    MachineFile(#[from] FileError),
+}
+
+/// A line behind the name of its file.
+fn at(line: Option<usize>) -> String {
+    line.map(|line| format!(":{line}")).unwrap_or_default()
+}

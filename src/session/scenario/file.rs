@@ -1,0 +1,220 @@
+//! Scenarios as TOML, in and out.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::definition::Scenario;
+use super::error::ScenarioError;
+use super::task::Task;
+use super::tolerance::Tolerance;
+use crate::mechanics::machine::{self, FileError, Machine, MachineSpec, Place, Step};
+use crate::session::{TimedEdit, survey};
+use crate::settings::change;
+use crate::settings::range::{clipped, shortened};
+use crate::simulation::control::Control;
+use crate::simulation::plant::{Base, Plant, is_default};
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    name: Option<String>,
+    #[serde(default)]
+    title: String,
+    machine: MachineRef,
+    /// Settings of the machine, as on the command line: `payload.mass=0.5`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    set: Vec<String>,
+    #[serde(default = "one_millisecond")]
+    step: f64,
+    duration: Option<f64>,
+    #[serde(default = "default_pose_acceleration")]
+    pose_acceleration: f64,
+    compare_b: Option<f64>,
+    task: Task,
+    #[serde(default, skip_serializing_if = "is_default")]
+    control: Control,
+    #[serde(default, skip_serializing_if = "is_default")]
+    plant: Plant,
+    #[serde(default, skip_serializing_if = "is_default")]
+    base: Base,
+    #[serde(default, skip_serializing_if = "Tolerance::is_empty")]
+    tolerance: Tolerance,
+    /// As they stand there, so that a wrong one can be named.
+    #[serde(default, rename = "edit", skip_serializing_if = "Vec::is_empty")]
+    edits: Vec<toml::Table>,
+}
+
+fn one_millisecond() -> f64 {
+    0.001
+}
+
+fn default_pose_acceleration() -> f64 {
+    2.0
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(untagged, expecting = "want the name of a machine, a file, or a whole machine as a table")]
+enum MachineRef {
+    Name(String),
+    Inline(Box<MachineSpec>),
+}
+
+/// The most characters of what somebody else's reader says of a file.
+const MOST_WORDS: usize = 300;
+
+/// Looks up a machine by name or file.
+pub type FindMachine<'a> = &'a dyn Fn(&str) -> Result<Machine, FileError>;
+
+impl Scenario {
+    /// Reads a scenario from text; `label` is what errors call it, `find` looks up a machine that
+    /// does not come with the program.
+    ///
+    /// # Errors
+    /// If it is not a scenario.
+    pub fn parse(text: &str, label: &str, find: Option<FindMachine>) -> Result<Self, ScenarioError> {
+        let file: File = toml::from_str(text).map_err(|e| ScenarioError::Syntax {
+            file: label.into(),
+            line: e.span().map(|s| machine::line_of(text, s.start)),
+            message: shortened(e.message(), MOST_WORDS),
+        })?;
+        let line_of = |key: &str| machine::line_of_place(text, &Place::of_key(key));
+        // A key that is left out may stand as such a number until it is filled in, so it has to be seen here.
+        if let Some(key) =
+            text.parse().ok().and_then(|table| change::not_finite(&table)).filter(|key| key.starts_with("task"))
+        {
+            let message = format!("{key} is not a finite number: want one");
+            return Err(ScenarioError::Syntax { file: label.into(), line: line_of(&key), message });
+        }
+        let machine = match file.machine {
+            MachineRef::Name(name) => find.map_or_else(|| machine::named(&name), |find| find(&name))?,
+            MachineRef::Inline(spec) => Machine::new(*spec).map_err(|error| {
+                let place = error.place().cloned().unwrap_or_default().under("machine");
+                ScenarioError::Machine { file: label.into(), line: machine::line_of_place(text, &place), error }
+            })?,
+        };
+        let wrong = |message: String| ScenarioError::Syntax { file: label.into(), line: line_of("set"), message };
+        let mut settings = Vec::with_capacity(file.set.len());
+        for setting in &file.set {
+            let pair = setting.split_once('=').map(|(key, value)| (key.trim(), value.trim()));
+            settings.push(pair.ok_or_else(|| wrong(format!("set: {:?}: want KEY=VALUE", clipped(setting))))?);
+        }
+        let machine = match settings.is_empty() {
+            true => machine,
+            false => machine.set_all(settings).map_err(|error| {
+                let (file, line) = (label.into(), line_of("set"));
+                ScenarioError::Machine { file, line, error }
+            })?,
+        };
+        let stem = Path::new(label).file_stem().map_or_else(|| label.into(), |s| s.to_string_lossy().into_owned());
+        let task = file.task.completed(&machine).map_err(|key| ScenarioError::Syntax {
+            file: label.into(),
+            line: line_of("task"),
+            message: format!("missing field `{key}`"),
+        })?;
+        let mut edits = Vec::with_capacity(file.edits.len());
+        let wrong_edit = |(i, message): (usize, String)| {
+            let place = Place::new(&[&"edit", &i]);
+            let (file, line) = (label.into(), machine::line_of_place(text, &place));
+            ScenarioError::Edit { file, line, entry: i + 1, message: shortened(&message, MOST_WORDS) }
+        };
+        for (i, entry) in file.edits.into_iter().enumerate() {
+            edits.push(TimedEdit::from_table(entry).map_err(|why| wrong_edit((i, why)))?);
+        }
+        let scenario = Self {
+            name: file.name.unwrap_or(stem),
+            title: file.title,
+            machine,
+            plant: file.plant,
+            base: file.base,
+            control: file.control,
+            step: file.step,
+            pose_acceleration: file.pose_acceleration,
+            compare_b: file.compare_b,
+            duration: file.duration,
+            task,
+            tolerance: file.tolerance,
+            edits,
+        };
+        scenario.check(label).map_err(|error| scenario.with_line(error, text))?;
+        survey(&scenario).map_err(wrong_edit)?;
+        Ok(scenario)
+    }
+
+    /// An error of [`check`](Self::check) with the line of its key in a text.
+    fn with_line(&self, error: ScenarioError, text: &str) -> ScenarioError {
+        let line_of = |place: Place| machine::line_of_place(text, &place);
+        match error {
+            ScenarioError::OutOfRange { file, key, value, want, .. } => {
+                let line = line_of(Place::of_key(&key));
+                ScenarioError::OutOfRange { file, line, key, value, want }
+            }
+            ScenarioError::Machine { file, error, .. } => {
+                let file = file.trim_end_matches(": plant").to_owned();
+                // What differs goes by the names of links and lengths, not by their places in the machine.
+                let place = error.place().map_or_else(Place::default, |place| match place.0.as_slice() {
+                    [Step::Key(word), Step::At(i), rest @ ..] if word == "link" => {
+                        let name = self.machine.links().get(*i).map_or("", |link| link.name.as_str());
+                        Place(
+                            [Step::Key("link".into()), Step::Key(name.into())]
+                                .into_iter()
+                                .chain(rest.iter().cloned())
+                                .collect(),
+                        )
+                    }
+                    [Step::Key(word), rest @ ..] if word == "lengths" => {
+                        Place(std::iter::once(Step::Key("length".into())).chain(rest.iter().cloned()).collect())
+                    }
+                    [Step::Key(key)] => Place::of_key(key),
+                    _ => place.clone(),
+                });
+                ScenarioError::Machine { file, line: line_of(place.under("plant")), error }
+            }
+            other => other,
+        }
+    }
+
+    /// The scenario as TOML, so that [`parse`](Self::parse) gives an equal one. A built-in machine is named, any
+    /// other is written out.
+    ///
+    /// # Panics
+    /// Never: every scenario can be written.
+    pub fn to_toml(&self) -> String {
+        let machine = match machine::builtin(self.machine.name()) {
+            Some(known) if *known == self.machine => MachineRef::Name(self.machine.name().into()),
+            _ => MachineRef::Inline(Box::new(self.machine.spec().clone())),
+        };
+        let Self {
+            name,
+            title,
+            machine: _,
+            plant,
+            base,
+            task,
+            control,
+            step,
+            pose_acceleration,
+            compare_b,
+            duration,
+            tolerance,
+            edits,
+        } = self.clone();
+        let file = File {
+            name: Some(name),
+            title,
+            machine,
+            set: Vec::new(),
+            step,
+            duration,
+            pose_acceleration,
+            compare_b,
+            task,
+            control,
+            plant,
+            base,
+            tolerance,
+            edits: edits.iter().map(TimedEdit::to_table).collect(),
+        };
+        toml::to_string(&file).expect("a scenario is plain data")
+    }
+}

@@ -1,0 +1,73 @@
+//! One number for all drives, or one for each; and keys that are left out.
+
+use serde::{Deserialize, Serialize};
+
+use crate::mechanics::planar::PerDrive;
+use crate::settings::range::Check;
+
+/// One number for all drives, or one for each.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged, expecting = "want one number for all drives, or a list with one for each")]
+pub enum Each {
+    /// The same for all.
+    All(f64),
+    /// In the order of the drives.
+    Own(PerDrive),
+}
+
+impl Default for Each {
+    fn default() -> Self {
+        Self::All(0.0)
+    }
+}
+
+impl Each {
+    /// The value of every one of `n` drives; a list that is too short goes on with its last.
+    pub fn of(&self, n: usize) -> PerDrive {
+        PerDrive::from_fn(n, |k| match self {
+            Self::All(x) => *x,
+            Self::Own(list) => list.get(k).or(list.last()).copied().unwrap_or(0.0),
+        })
+    }
+
+    /// All values that stand there.
+    pub fn values(&self) -> Vec<f64> {
+        match self {
+            Self::All(x) => vec![*x],
+            Self::Own(list) => list.to_vec(),
+        }
+    }
+
+    /// A check that fails if it is a list, but not one number for each of `n` drives.
+    pub(crate) fn misfit(&self, n: usize, key: &'static str) -> Option<Check> {
+        let count = self.values().len();
+        let fits = matches!(self, Self::All(_)) || count == n;
+        let want = "one number, or a list with one for each drive; its length is given";
+        (!fits).then(|| Check::words(key, count as f64, false, want))
+    }
+
+    /// The same with the value of drive `k` of `n` changed.
+    #[must_use]
+    pub fn with(&self, n: usize, k: usize, value: f64) -> Self {
+        let mut list = self.of(n);
+        if let Some(slot) = list.get_mut(k) {
+            *slot = value;
+        }
+        match list.iter().all(|x| *x == value) {
+            true => Self::All(value),
+            false => Self::Own(list),
+        }
+    }
+
+    /// As it would stand in a file.
+    pub fn to_value(self) -> toml::Value {
+        match self {
+            Self::All(x) => x.into(),
+            Self::Own(list) => list.to_vec().into(),
+        }
+    }
+}
+
+pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}

@@ -1,0 +1,121 @@
+//! What a step is made of, and how finely it is taken.
+
+use crate::simulation::frame::{Peaks, Tally};
+use crate::simulation::plant::{Grip, MAX_CONTACTS, Slope, State};
+
+/// Where a step has come to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Leg {
+    /// Since the step began, s.
+    pub at: f64,
+    pub state: State,
+    pub slope: Slope,
+    pub grip: Grip,
+    /// Torques of stuck contacts, N m.
+    pub taken: [f64; MAX_CONTACTS],
+}
+
+/// A part of a step in which the reference is smooth.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Piece {
+    pub(super) from: f64,
+    pub to: f64,
+    /// Times of the motion that belong to it, s.
+    pub(super) window: [f64; 2],
+}
+
+/// How far two answers are apart, or how far they may be: the moment that the base feels, N m, dynamic f_B, N, motor
+/// torques, N m, the end effector, m.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Off(pub(super) [f64; 4]);
+
+impl Off {
+    /// More than any yard.
+    pub const BEYOND: Self = Self([f64::INFINITY; 4]);
+
+    #[inline]
+    pub fn worse(self, other: Self) -> Self {
+        Self(std::array::from_fn(
+            |i| if other.0[i] > self.0[i] || other.0[i].is_nan() { other.0[i] } else { self.0[i] },
+        ))
+    }
+
+    /// The largest share of a yard; what is no number is more than any.
+    pub fn share(self, yard: &Self) -> f64 {
+        let share = |i: usize| if self.0[i].is_nan() { f64::INFINITY } else { self.0[i] / yard.0[i] };
+        (0..4).map(share).fold(0.0, f64::max)
+    }
+
+    /// What errors are shares of: peaks, or what must be small beside the torques, the pull and the arm to count as none.
+    pub fn yard(peaks: &Peaks, reach: f64) -> Self {
+        let (torque, pull) = (peaks.torque_sum.max(LEAST), peaks.inertial_pull.max(LEAST));
+        let part = |peak: f64, all: f64| peak.max(QUIET * all);
+        Self([part(peaks.moment, torque), part(peaks.force, pull), torque, TIP * reach.max(LEAST)])
+    }
+}
+
+/// Moments and forces below this share of torques and pull are judged as if they were as large.
+pub(super) const QUIET: f64 = 1e-4;
+
+/// Errors of the end effector are shares of this part of the arm.
+pub(super) const TIP: f64 = 1e-2;
+
+/// N m, N, m: less is nothing.
+pub(super) const LEAST: f64 = 1e-6;
+
+/// How far things may have strayed from where they should be: the end effector and B, m, and the base, rad.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Drift {
+    pub(super) tip: f64,
+    pub(super) shift: f64,
+    pub(super) tilt: f64,
+}
+
+/// What errors have come to so far, and how many parts steps are taken in.
+#[derive(Clone, Debug)]
+pub(super) struct Pace {
+    pub(super) parts: u32,
+    /// The most by which two answers have differed.
+    pub(super) worst: Off,
+    /// What halving has found, added up.
+    pub(super) drift: Drift,
+    /// What the reference asks for, before the run has shown its own peaks.
+    pub(super) expected: Peaks,
+    /// Until when that counts, s.
+    pub(super) until: f64,
+    /// When the reference jumps or bends, in times of the motion, s.
+    pub(super) kinks: Vec<f64>,
+    /// Where q̈ of the reference changes by less, it only bends, rad/s².
+    pub(super) level: f64,
+}
+
+impl Pace {
+    pub fn new(drives: usize) -> Self {
+        let (worst, drift) = Default::default();
+        Self { parts: 1, worst, drift, expected: Peaks::zero(drives), until: 0.0, kinks: Vec::new(), level: 0.0 }
+    }
+
+    /// Goes on where another was: errors made before stay.
+    pub fn resume(&mut self, other: &Self) {
+        (self.parts, self.worst, self.drift) = (other.parts, other.worst, other.drift);
+    }
+
+    /// The error of what is shown, as a share of a yard.
+    pub fn error(&self, yard: &Off, tally: &Tally, reach: f64) -> f64 {
+        let Drift { tip, shift, tilt } = self.drift;
+        let least = QUIET * reach.max(LEAST);
+        let drift =
+            (tip / (TIP * reach.max(LEAST))).max(shift / tally.shift.max(least)).max(tilt / tally.tilt.max(QUIET));
+        let worst = self.worst.share(yard);
+        if drift > worst || drift.is_nan() { drift } else { worst }
+    }
+}
+
+/// A part by the classical rule.
+pub(super) struct Part {
+    pub end: Leg,
+    /// The slope of the last stage.
+    pub last: Slope,
+    /// Those between, where contacts can stick.
+    pub between: [Slope; 2],
+}
