@@ -43,7 +43,7 @@ pub enum Command {
     Theme(Theme),
     /// Show how A would be held on the plane of another b, rad.
     Preview(Option<f64>),
-    /// Take up the pencil, or lay it down.
+    /// Start or stop drawing a path with the pointer.
     Draw(bool),
     /// Show or hide runs side by side.
     Compare(bool),

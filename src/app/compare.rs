@@ -34,7 +34,7 @@ pub fn show(ui: &mut Ui, board: &Board, look: &Look, commands: &mut Vec<Command>
     Panel::bottom("compare").exact_size(height).resizable(false).frame(frame).show(ui, |ui| {
         ui.horizontal(|ui| {
             ui.label(RichText::new("Side by side").font(bold(13.5)));
-            let words = "one task, several ways; tick a row to lay it over plots and scene, click a head to sort";
+            let words = "the same task done in several ways: tick a row to draw it in plots and scene, click a column title to sort";
             ui.add(Label::new(RichText::new(words).font(plain(11.5)).color(colour(p.dim))).truncate());
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| buttons(ui, board, commands));
         });

@@ -245,7 +245,7 @@ impl Desk {
             Command::SaveFile(path) => return self.save(&path).map(Some),
             Command::Record(path) => return self.record(&path).map(Some),
             Command::Undo => {
-                let title = self.session.undo_title().map(|t| format!("took back: {t}"));
+                let title = self.session.undo_title().map(|t| format!("undone: {t}"));
                 self.session.undo().map_err(refused)?;
                 self.foresee();
                 return Ok(title);

@@ -71,7 +71,7 @@ pub struct Look {
     pub dialog: Option<FileDialog>,
     /// The present drag has changed something.
     pub dragged: bool,
-    /// What the pencil has drawn so far, m; none while it lies down.
+    /// What has been drawn so far, m; none while nobody draws.
     pub stroke: Option<Vec<[f64; 2]>>,
     /// The hand that pushes is taken up.
     pub pushing: bool,

@@ -342,7 +342,7 @@ fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
         false => format!("{time} s  ·  τ {torque}  ·  n_B {moment} N m"),
     };
     for (words, tip) in [
-        (of.to_owned(), "What the run comes to, the line at the bottom tells"),
+        (of.to_owned(), "The line at the bottom says what the run comes to"),
         (figures, "Its duration, its largest |τ| and its largest |n_B|"),
     ] {
         let words = RichText::new(words).font(plain(11.0)).color(colour(p.dim));

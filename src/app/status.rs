@@ -158,7 +158,7 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &Look, commands
                     }
                     (None, Reach::Outside { .. }) => ("the target is outside, whatever b".into(), p.ink),
                     (None, _) if look.stroke.is_some() => {
-                        ("draw with the pointer  ·  Esc lays the pencil down".into(), p.ink)
+                        ("draw with the pointer  ·  Esc stops drawing".into(), p.ink)
                     }
                     (None, _) if look.pushing => {
                         ("pull at the end effector to push it, 20 N for each metre  ·  U lets go".into(), p.ink)

@@ -171,7 +171,7 @@ fn listed(text: &str) -> toml::Value {
     if value.is_str() { list().unwrap_or(value) } else { value }
 }
 
-/// A value as it would stand in a file; what is none there is text.
+/// A value as it would stand in a file: text where TOML knows no other reading.
 fn toml_value(text: &str) -> toml::Value {
     let read = format!("x = {text}").parse::<Change>().ok().and_then(|mut table| table.remove("x"));
     read.unwrap_or_else(|| toml::Value::String(text.into()))

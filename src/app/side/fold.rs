@@ -78,7 +78,7 @@ pub fn fold(
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let differs = back.is_some();
             if let Some(edit) = back
-                && undo(ui, p, &format!("{title} back to normal"), "All of this back to normal")
+                && undo(ui, p, &format!("{title} back to normal"), "Put everything here back to normal")
             {
                 once(commands, edit);
             }
