@@ -5,11 +5,11 @@ use egui_plot::LineStyle;
 
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
-use super::{Command, Look, OnBoard};
+use super::{Command, OnBoard, ViewState};
 use crate::picture::scene::palette::{Palette, faded};
 use crate::picture::scene::stage::signed;
 use crate::session::scenario::Scenario;
-use crate::study::comparison::{Board, COLUMNS, Column, Entry};
+use crate::study::comparison::{COLUMNS, Column, Comparison, Entry};
 
 /// How the lines of a row look in plots, and how strong they are: told apart without colour, which means something.
 pub fn line_style(entry: usize) -> (LineStyle, f32) {
@@ -25,7 +25,7 @@ pub fn line_style(entry: usize) -> (LineStyle, f32) {
 }
 
 /// Draws it.
-pub fn show(ui: &mut Ui, board: &Board, look: &Look, commands: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, board: &Comparison, look: &ViewState, commands: &mut Vec<Command>) {
     let p = look.palette();
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 16, right: 16, top: 8, bottom: 8 });
     let rows = board.entries().len() as f32;
@@ -43,7 +43,7 @@ pub fn show(ui: &mut Ui, board: &Board, look: &Look, commands: &mut Vec<Command>
     });
 }
 
-fn buttons(ui: &mut Ui, board: &Board, commands: &mut Vec<Command>) {
+fn buttons(ui: &mut Ui, board: &Comparison, commands: &mut Vec<Command>) {
     let close = ui.button("Close").on_hover_text("C");
     if close.clicked() {
         commands.push(Command::Compare(false));
@@ -65,7 +65,7 @@ fn buttons(ui: &mut Ui, board: &Board, commands: &mut Vec<Command>) {
 }
 
 /// Columns in which something stands.
-fn columns(board: &Board) -> Vec<(usize, &'static Column)> {
+fn columns(board: &Comparison) -> Vec<(usize, &'static Column)> {
     let runs = || board.entries().iter().filter_map(|e| e.outcome.as_ref().ok());
     let moves = runs().any(|r| r.summary.base_shift > 0.0 || r.summary.base_tilt > 0.0);
     let stands = |c: &Column| runs().any(|r| (c.value)(&r.summary).is_some());
@@ -73,7 +73,7 @@ fn columns(board: &Board) -> Vec<(usize, &'static Column)> {
     all.filter(|(_, c)| stands(c) && (moves || !matches!(c.key, "base_shift" | "base_tilt"))).collect()
 }
 
-fn table(ui: &mut Ui, p: &Palette, board: &Board, commands: &mut Vec<Command>) {
+fn table(ui: &mut Ui, p: &Palette, board: &Comparison, commands: &mut Vec<Command>) {
     let columns = columns(board);
     ui.spacing_mut().button_padding = egui::vec2(0.0, 0.0);
     Grid::new("runs").num_columns(columns.len() + 3).spacing([14.0, 5.0]).min_col_width(0.0).show(ui, |ui| {
@@ -90,7 +90,7 @@ fn table(ui: &mut Ui, p: &Palette, board: &Board, commands: &mut Vec<Command>) {
     });
 }
 
-fn head(ui: &mut Ui, p: &Palette, board: &Board, i: usize, column: &Column, commands: &mut Vec<Command>) {
+fn head(ui: &mut Ui, p: &Palette, board: &Comparison, i: usize, column: &Column, commands: &mut Vec<Command>) {
     let arrow = match board.sorted() {
         Some((sorted, down)) if sorted == i => [" ↑", " ↓"][usize::from(down)],
         _ => "",

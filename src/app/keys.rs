@@ -3,7 +3,7 @@
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use super::theme::{bold, colour};
-use super::{Command, FileDialog, Look, Purpose};
+use super::{Command, FileDialog, Purpose, ViewState};
 use crate::picture::scene::Measure;
 use crate::session::Session;
 use crate::session::scenario::Scenario;
@@ -42,7 +42,7 @@ const KEYS: [(&str, &str); 30] = [
 ];
 
 /// Turns keys into commands; while text is typed only shortcuts with Ctrl count.
-pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Command>) {
+pub fn read(ctx: &Context, session: &Session, look: &ViewState, commands: &mut Vec<Command>) {
     let typing = ctx.egui_wants_keyboard_input() || look.dialog.is_some();
     let chord =
         |modifiers: Modifiers, key| ctx.input_mut(|i| i.consume_shortcut(&KeyboardShortcut::new(modifiers, key)));
@@ -111,7 +111,7 @@ pub fn read(ctx: &Context, session: &Session, look: &Look, commands: &mut Vec<Co
 }
 
 /// The card of keys.
-pub fn help(ctx: &Context, look: &Look, commands: &mut Vec<Command>) {
+pub fn help(ctx: &Context, look: &ViewState, commands: &mut Vec<Command>) {
     if !look.help {
         return;
     }

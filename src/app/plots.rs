@@ -5,7 +5,7 @@ use egui_plot::{GridMark, Line, LineStyle, Plot, PlotPoint, PlotPoints, Points, 
 
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
-use super::{Command, Look, set_b};
+use super::{Command, ViewState, set_b};
 use crate::mechanics::planar::Vector;
 use crate::picture::scene::palette::{Palette, faded};
 use crate::picture::scene::stage::{round_up, signed};
@@ -14,7 +14,7 @@ use crate::session::Session;
 use crate::session::scenario::Scenario;
 use crate::simulation::frame::{Frame as Instant, REACTIONLESS};
 use crate::simulation::signals::Signal;
-use crate::study::comparison::{Board, Difference};
+use crate::study::comparison::{Comparison, Difference};
 
 /// A plot: title, unit, the signals it holds by path, and the least half-range of its axis.
 struct Chart {
@@ -79,8 +79,8 @@ pub fn show(
     ui: &mut Ui,
     session: &Session,
     signals: &[Signal],
-    board: Option<&Board>,
-    look: &Look,
+    board: Option<&Comparison>,
+    look: &ViewState,
     commands: &mut Vec<Command>,
 ) {
     let p = look.palette();
@@ -192,7 +192,7 @@ fn time_plot(
     chart: &Chart,
     lines: &[&Signal],
     session: &Session,
-    board: Option<&Board>,
+    board: Option<&Comparison>,
     mark: Option<f64>,
     shown: &std::ops::RangeInclusive<f64>,
     height: f32,
@@ -345,7 +345,7 @@ fn thinned(frames: &[Instant], signal: &Signal, times: f64) -> Vec<[f64; 2]> {
 }
 
 /// Fig. 3: q_1 against b for A and B, or for the target; a click chooses b.
-fn which_b(ui: &mut Ui, p: &Palette, session: &Session, look: &Look, height: f32, commands: &mut Vec<Command>) {
+fn which_b(ui: &mut Ui, p: &Palette, session: &Session, look: &ViewState, height: f32, commands: &mut Vec<Command>) {
     let Some(planes) = session.run().planes() else { return };
     let (task, now) = (&session.scenario().task, session.frame());
     let named: Vec<String> = (0..task.via.len() + 2).map(|i| task.name_of(i)).collect();

@@ -14,13 +14,13 @@ use egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Ui};
 
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
-use super::{Command, Look, path, set_b};
+use super::{Command, ViewState, path, set_b};
 use crate::mechanics::machine::{Inertia, MAX_ANGLE};
 use crate::picture::scene::palette::Palette;
 use crate::session::{Edit, Session};
 
 /// Draws it.
-pub fn show(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, session: &Session, look: &ViewState, commands: &mut Vec<Command>) {
     let p = look.palette();
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 16, right: 10, top: 12, bottom: 8 });
     Panel::left("side").exact_size(262.0).resizable(false).frame(frame).show(ui, |ui| {
@@ -38,7 +38,7 @@ pub fn show(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Comm
     });
 }
 
-fn pose_constant(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Command>) {
+fn pose_constant(ui: &mut Ui, session: &Session, look: &ViewState, commands: &mut Vec<Command>) {
     let (scenario, p) = (session.scenario(), &look.palette());
     let period = session.run().planes().map_or(std::f64::consts::TAU, |p| p.map().period());
     ui.label(RichText::new("POSE CONSTANT").font(bold(11.0)).color(colour(p.dim)));

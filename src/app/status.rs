@@ -3,7 +3,7 @@
 use egui::{Align, Layout, Margin, Panel, RichText, Sense, Ui, vec2};
 
 use super::theme::{bold, colour, plain};
-use super::{Command, Look};
+use super::{Command, ViewState};
 use crate::picture::scene::palette::{Palette, faded};
 use crate::picture::scene::stage::signed;
 use crate::picture::scene::views::Views;
@@ -12,7 +12,7 @@ use crate::session::{Edit, Session};
 use crate::simulation::frame::{Frame, Reach};
 
 /// Bad news, in full, over the lower edge of the viewport, with the way out if there is one.
-pub fn news(ctx: &egui::Context, session: &Session, look: &Look, commands: &mut Vec<Command>) {
+pub fn news(ctx: &egui::Context, session: &Session, look: &ViewState, commands: &mut Vec<Command>) {
     let fault = fault(session.frame());
     let waits = session.run().waiting();
     let waiting = waits.map(|waiting| format!("The run waits: {}", waiting.why));
@@ -89,7 +89,7 @@ fn fault(frame: &Frame) -> Option<String> {
 }
 
 /// Draws it.
-pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &Look, commands: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &ViewState, commands: &mut Vec<Command>) {
     let p = look.palette();
     let frame = egui::Frame::new().fill(colour(p.panel)).inner_margin(Margin::symmetric(16, 0));
     Panel::bottom("status").exact_size(30.0).resizable(false).frame(frame).show(ui, |ui| {
@@ -157,9 +157,7 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &Look, commands
                         ("the target is beyond a fold or a change point".into(), p.ink)
                     }
                     (None, Reach::Outside { .. }) => ("the target is outside, whatever b".into(), p.ink),
-                    (None, _) if look.stroke.is_some() => {
-                        ("draw with the pointer  ·  Esc stops drawing".into(), p.ink)
-                    }
+                    (None, _) if look.stroke.is_some() => ("draw with the pointer  ·  Esc stops drawing".into(), p.ink),
                     (None, _) if look.pushing => {
                         ("pull at the end effector to push it, 20 N for each metre  ·  U lets go".into(), p.ink)
                     }

@@ -8,7 +8,7 @@ use super::plots::base_plot;
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::widgets::send;
-use super::{Command, Look};
+use super::{Command, ViewState};
 use crate::picture::scene::palette::{Palette, faded};
 use crate::picture::scene::stage::signed;
 use crate::session::Edit;
@@ -19,7 +19,7 @@ use crate::study::tolerance::Study;
 const HEIGHT: f32 = 268.0;
 
 /// Draws it.
-pub fn show(ui: &mut Ui, study: &Result<Study, String>, time: f64, look: &Look, commands: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, study: &Result<Study, String>, time: f64, look: &ViewState, commands: &mut Vec<Command>) {
     let p = look.palette();
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 16, right: 16, top: 8, bottom: 8 });
     let height = HEIGHT.min(0.45 * ui.available_height());

@@ -5,7 +5,7 @@ use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{Align2, Button, Color32, Frame, Margin, Rect, RichText, Stroke, Ui, pos2, vec2};
 
 use super::theme::{colour, plain};
-use super::{Command, Look};
+use super::{Command, ViewState};
 use crate::picture::scene::palette::Palette;
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::picture::scene::{Measure, dexterity};
@@ -14,7 +14,7 @@ use crate::picture::scene::{Measure, dexterity};
 const ONE_ROW: f32 = 740.0;
 
 /// The bar above the scene: which view, and what can be done and shown in it.
-pub fn bar(ui: &mut Ui, look: &Look, commands: &mut Vec<Command>) {
+pub fn bar(ui: &mut Ui, look: &ViewState, commands: &mut Vec<Command>) {
     let p = look.palette();
     let frame =
         Frame::new().fill(colour(p.background)).inner_margin(Margin { left: 14, right: 14, top: 10, bottom: 6 });
@@ -35,7 +35,7 @@ pub fn bar(ui: &mut Ui, look: &Look, commands: &mut Vec<Command>) {
     });
 }
 
-fn views(ui: &mut Ui, p: &Palette, look: &Look, commands: &mut Vec<Command>) {
+fn views(ui: &mut Ui, p: &Palette, look: &ViewState, commands: &mut Vec<Command>) {
     let frame = Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.line))).corner_radius(8).inner_margin(3);
     frame.show(ui, |ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
@@ -51,7 +51,7 @@ fn views(ui: &mut Ui, p: &Palette, look: &Look, commands: &mut Vec<Command>) {
 }
 
 /// In the scene's lower corners: what can be done or the key to the shade, and the grid's width.
-pub fn corners(ui: &mut Ui, rect: Rect, look: &Look, views: &Views, commands: &mut Vec<Command>) {
+pub fn corners(ui: &mut Ui, rect: Rect, look: &ViewState, views: &Views, commands: &mut Vec<Command>) {
     let p = look.palette();
     let low = rect.bottom() - 16.0;
     let grid = ui.painter().text(
@@ -83,7 +83,7 @@ fn segment(ui: &mut Ui, p: &Palette, text: &str, chosen: bool) -> egui::Response
 }
 
 /// What can be done and shown; what the view does not have is left out.
-fn toggles(ui: &mut Ui, p: &Palette, look: &Look, commands: &mut Vec<Command>) {
+fn toggles(ui: &mut Ui, p: &Palette, look: &ViewState, commands: &mut Vec<Command>) {
     if !look.view.shows_machine() {
         return;
     }

@@ -5,14 +5,14 @@ use crate::app::widgets::name;
 use egui::{Align, ComboBox, Frame, Layout, Margin, Panel, Response, RichText, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use super::theme::{bold, colour, plain};
-use super::{Command, FileDialog, Look, Purpose};
+use super::{Command, FileDialog, Purpose, ViewState};
 use crate::mechanics::machine;
 use crate::picture::scene::palette::Theme;
 use crate::session::Session;
 use crate::session::scenario::Scenario;
 
 /// Draws it.
-pub fn show(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, session: &Session, look: &ViewState, commands: &mut Vec<Command>) {
     let p = look.palette();
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin::symmetric(16, 0));
     Panel::top("top").exact_size(44.0).resizable(false).frame(frame).show(ui, |ui| {
@@ -96,7 +96,7 @@ fn same_work(a: &Scenario, b: &Scenario) -> bool {
     a.task == b.task && a.plant == b.plant && a.base == b.base && a.control == b.control
 }
 
-fn transport(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Command>) {
+fn transport(ui: &mut Ui, session: &Session, look: &ViewState, commands: &mut Vec<Command>) {
     let start = [Icon::Bar(-5.0), Icon::Left(-4.0)];
     if icon(ui, look, "Start", "To the start (Home)", &start).clicked() {
         commands.push(Command::Seek(0.0));
@@ -123,7 +123,7 @@ fn transport(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Com
     name(&response.response.on_hover_text("Simulated seconds a second"), "Speed");
 }
 
-fn timeline(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Command>) {
+fn timeline(ui: &mut Ui, session: &Session, look: &ViewState, commands: &mut Vec<Command>) {
     let p = look.palette();
     let (mut time, length) = (session.frame().time, session.length().max(1e-3));
     // A narrow window keeps its room for the slider.
@@ -143,7 +143,7 @@ fn timeline(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Comm
 }
 
 /// Laid out from the right.
-fn right_end(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Command>) {
+fn right_end(ui: &mut Ui, session: &Session, look: &ViewState, commands: &mut Vec<Command>) {
     let p = look.palette();
     let quiet = |text: &str| RichText::new(text.to_owned()).color(colour(p.dim));
     let help = ui.add(egui::Button::new(quiet("?")).frame(false)).on_hover_text("Keys (F1)");
@@ -171,7 +171,7 @@ enum Icon {
     Right(f32),
 }
 
-fn icon(ui: &mut Ui, look: &Look, label: &str, tip: &str, parts: &[Icon]) -> Response {
+fn icon(ui: &mut Ui, look: &ViewState, label: &str, tip: &str, parts: &[Icon]) -> Response {
     let p = look.palette();
     let (rect, response) = ui.allocate_exact_size(vec2(28.0, 26.0), Sense::click());
     if response.hovered() || response.has_focus() {
@@ -197,7 +197,7 @@ fn icon(ui: &mut Ui, look: &Look, label: &str, tip: &str, parts: &[Icon]) -> Res
 }
 
 /// Asks for a file name.
-pub fn dialog(ctx: &egui::Context, look: &mut Look, commands: &mut Vec<Command>) {
+pub fn dialog(ctx: &egui::Context, look: &mut ViewState, commands: &mut Vec<Command>) {
     let Some(mut dialog) = look.dialog.clone() else { return };
     let (title, verb) = match dialog.purpose {
         Purpose::Open => ("Open a session", "Open"),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use egui::{CentralPanel, CursorIcon, Frame, PointerButton, Pos2, Rect, Sense, Ui, Vec2};
 
 use super::widgets::name;
-use super::{Command, Look, set_b, switch};
+use super::{Command, ViewState, set_b, switch};
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::picture::paint::{Spot, paint, words};
 use crate::picture::scene::stage::{Handle, Other, ViewOptions, signed};
@@ -14,15 +14,15 @@ use crate::picture::scene::views::{Aim, ViewKind, Views};
 use crate::session::scenario::Task;
 use crate::session::{Edit, Session};
 use crate::simulation::frame::Frame as Instant;
-use crate::study::comparison::Board;
+use crate::study::comparison::Comparison;
 
 /// Draws it and reads the pointer.
 pub fn show(
     ui: &mut Ui,
     session: &Session,
     views: &Views,
-    board: Option<&Board>,
-    look: &mut Look,
+    board: Option<&Comparison>,
+    look: &mut ViewState,
     commands: &mut Vec<Command>,
 ) {
     CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
@@ -81,7 +81,7 @@ fn snapshots(session: &Session) -> Vec<DriveAngles> {
 }
 
 /// The runs that are laid over, at a time, s, the motion of their bases so many times as far.
-fn others(board: &Board, time: f64, times: f64) -> Vec<Other> {
+fn others(board: &Comparison, time: f64, times: f64) -> Vec<Other> {
     let other = |(i, run): (usize, &crate::study::comparison::Compared)| {
         let frame = swayed(run.at(time)?, times);
         Some(Other { name: (i + 1).to_string(), q: frame.q, base: frame.base })
@@ -101,7 +101,7 @@ fn point_at(
     spot: &Spot,
     (session, frame): (&Session, &Instant),
     views: &Views,
-    look: &mut Look,
+    look: &mut ViewState,
     commands: &mut Vec<Command>,
 ) {
     let view = look.view;
@@ -119,7 +119,7 @@ fn point_at(
         look.grabbed = ui.input(|i| i.pointer.press_origin()).and_then(under);
         look.force = Some(session.scenario().plant.force);
     }
-    let ask = |grip, pos: Pos2, look: &mut Look| {
+    let ask = |grip, pos: Pos2, look: &mut ViewState| {
         let edit = match views.aim(view, &grip, frame, &spot.pointer(pos), session.b_aim())? {
             Aim::Target([x, y]) => {
                 look.held = Some([x, y]);
@@ -205,7 +205,7 @@ fn link_name(
     spot: &Spot,
     (session, frame): (&Session, &Instant),
     views: &Views,
-    look: &Look,
+    look: &ViewState,
 ) {
     let free = look.view.shows_machine() && look.hot.is_none() && look.grabbed.is_none();
     let Some(pos) = response.hover_pos().filter(|_| free && !response.dragged()) else { return };
@@ -218,7 +218,14 @@ fn link_name(
 }
 
 /// A path drawn by hand: from where the button goes down to where it comes up.
-fn draw(ui: &Ui, response: &egui::Response, spot: &Spot, views: &Views, look: &mut Look, commands: &mut Vec<Command>) {
+fn draw(
+    ui: &Ui,
+    response: &egui::Response,
+    spot: &Spot,
+    views: &Views,
+    look: &mut ViewState,
+    commands: &mut Vec<Command>,
+) {
     ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
     let Some(stroke) = &mut look.stroke else { return };
     let place = |pos| spot.pointer(pos).ray()?.at_height(views.stage().handle_height());
@@ -248,7 +255,7 @@ fn cursor(handle: Handle, held: bool) -> CursorIcon {
     }
 }
 
-fn move_camera(ui: &Ui, response: &egui::Response, rect: Rect, look: &mut Look) {
+fn move_camera(ui: &Ui, response: &egui::Response, rect: Rect, look: &mut ViewState) {
     let height = f64::from(rect.height().max(1.0));
     let delta = response.drag_delta();
     if look.grabbed.is_none() && delta != Vec2::ZERO {

@@ -1,4 +1,4 @@
-//! A real window around a [`Desk`], in a winit event loop of our own.
+//! A real window around a [`AppState`], in a winit event loop of our own.
 
 use std::cell::Cell;
 use std::path::PathBuf;
@@ -8,7 +8,7 @@ use std::time::Instant;
 use thiserror::Error;
 use winit::event_loop::{ControlFlow, EventLoop};
 
-use crate::app::{Command, Desk};
+use crate::app::{AppState, Command};
 use crate::picture::render::Renderer;
 use crate::picture::render::offscreen::{Gpu, NoAdapter};
 use crate::picture::scene::palette::Theme;
@@ -46,7 +46,7 @@ pub enum WindowError {
 /// If there is no display, library or adapter, or the scenario cannot start.
 pub fn run(scenario: Scenario, theme: Theme) -> Result<(), WindowError> {
     check_libraries()?;
-    let mut desk = Desk::open_or_explain(scenario, theme)?;
+    let mut desk = AppState::open_or_explain(scenario, theme)?;
     if desk.look().message.is_none() && desk.session().run().waiting().is_none() {
         desk.carry_out(Command::TogglePlay);
     }
@@ -122,7 +122,7 @@ fn check_libraries() -> Result<(), WindowError> {
 
 /// The desk as eframe wants it; tests drive it without a window.
 pub struct App {
-    desk: Desk,
+    desk: AppState,
     clock: Clock,
 }
 
@@ -137,7 +137,7 @@ pub enum Clock {
 
 impl App {
     /// Around a desk; `None` if eframe has no graphics adapter, or one whose shaders read no lists.
-    pub fn new(cc: &eframe::CreationContext<'_>, desk: Desk, clock: Clock) -> Option<Self> {
+    pub fn new(cc: &eframe::CreationContext<'_>, desk: AppState, clock: Clock) -> Option<Self> {
         let state = cc.wgpu_render_state.as_ref()?;
         if state.device.limits().max_storage_buffers_per_shader_stage == 0 {
             return None;
@@ -148,12 +148,12 @@ impl App {
     }
 
     /// What it shows.
-    pub fn desk(&self) -> &Desk {
+    pub fn app_state(&self) -> &AppState {
         &self.desk
     }
 
     /// The same, to be told what to do.
-    pub fn desk_mut(&mut self) -> &mut Desk {
+    pub fn app_state_mut(&mut self) -> &mut AppState {
         &mut self.desk
     }
 }

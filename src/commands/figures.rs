@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::Args;
-use stillbase::app::{Command, Desk, OnBoard};
+use stillbase::app::{AppState, Command, OnBoard};
 use stillbase::files::write_new;
 use stillbase::picture::canvas::Canvas;
 use stillbase::picture::render::offscreen::Picture;
@@ -71,7 +71,7 @@ impl Figures {
         Ok(())
     }
 
-    fn window(&self, name: &str, desk: &mut Desk) -> Result<(), Failure> {
+    fn window(&self, name: &str, desk: &mut AppState) -> Result<(), Failure> {
         let mut canvas = Canvas::new([1440, 900], 1.0).map_err(Failure::no_answer)?;
         self.write(name, canvas.draw(|ui| desk.ui(ui)).map_err(Failure::no_answer)?)
     }
@@ -90,9 +90,9 @@ fn limit() -> (String, Value) {
 }
 
 /// A scenario run through once, shown at an instant.
-fn desk(scenario: &str, theme: Theme, view: ViewKind, time: f64) -> Result<Desk, Failure> {
+fn desk(scenario: &str, theme: Theme, view: ViewKind, time: f64) -> Result<AppState, Failure> {
     let scenario = stillbase::files::scenario(scenario)?;
-    let mut desk = Desk::new(scenario, theme)?;
+    let mut desk = AppState::new(scenario, theme)?;
     let task_time = desk.session().length();
     for command in [Command::Seek(task_time), Command::Seek(time), Command::View(view)] {
         desk.carry_out(command);

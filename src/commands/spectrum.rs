@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 use stillbase::files::{NewFile, WriteError, check_new};
 use stillbase::session::felt;
-use stillbase::study::spectrum::{Limit, Spectrum, SpectrumError, Verdict, Window};
+use stillbase::study::spectrum::{JitterLimit, JitterVerdict, Spectrum, SpectrumError, Window};
 
 use super::exit::say;
 use super::failure::Failure;
@@ -37,10 +37,10 @@ pub struct SpectrumOf {
     scenario: String,
     /// The greatest density of n_B that will do, N m/√Hz: one number, or pairs FREQUENCY:LIMIT
     #[arg(long, value_name = "f:v,…")]
-    limit_moment: Option<Limit>,
+    limit_moment: Option<JitterLimit>,
     /// The greatest density of f_Bx and of f_By that will do, N/√Hz: one number, or pairs FREQUENCY:LIMIT
     #[arg(long, value_name = "f:v,…")]
-    limit_force: Option<Limit>,
+    limit_force: Option<JitterLimit>,
     /// How samples are weighted: hann, or rectangular
     #[arg(long, value_name = "WINDOW", default_value = "hann")]
     window: Window,
@@ -82,7 +82,7 @@ struct Axis {
     /// As the window weighs the samples: where the cumulative RMS ends.
     weighted_rms: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
-    limit: Option<Verdict>,
+    limit: Option<JitterVerdict>,
 }
 
 #[derive(Serialize)]
@@ -125,7 +125,7 @@ impl SpectrumOf {
             Axes { force_x: of(&course.force_x)?, force_y: of(&course.force_y)?, moment: of(&course.moment)? };
         // Of the run itself: a window weighs its middle.
         let rms = |samples: &[f64]| (samples.iter().map(|x| x * x).sum::<f64>() / samples.len() as f64).sqrt();
-        let axis = |unit, samples: &[f64], spectrum: &Spectrum, limit: &Option<Limit>| {
+        let axis = |unit, samples: &[f64], spectrum: &Spectrum, limit: &Option<JitterLimit>| {
             let verdict = limit.as_ref().map(|limit| spectrum.against(limit).ok_or_else(|| beyond(limit, spectrum)));
             let (rms, weighted_rms) = (rms(samples), spectrum.rms());
             Ok::<_, Failure>(Axis { unit, rms, weighted_rms, limit: verdict.transpose()? })
@@ -157,7 +157,7 @@ impl SpectrumOf {
     }
 }
 
-fn beyond(limit: &Limit, spectrum: &Spectrum) -> Failure {
+fn beyond(limit: &JitterLimit, spectrum: &Spectrum) -> Failure {
     let ends = [limit.points().first(), limit.points().last()].map(|p| p.map_or(0.0, |p| p.0));
     let [first, last] = [spectrum.frequency.get(1), spectrum.frequency.last()].map(|f| f.copied().unwrap_or(0.0));
     Failure::wrong_input(format!(

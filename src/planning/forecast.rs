@@ -4,7 +4,7 @@ use crate::mechanics::dynamics::{Surroundings, inverse_with_wrench};
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::PerDrive;
 use crate::planning::Motion;
-use crate::planning::timing::limits::{Limit, Limits, Quantity};
+use crate::planning::timing::limits::{DriveLimit, LimitedQuantity, Limits};
 
 /// Peaks and sums over a motion, from the model's own dynamics.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +26,7 @@ pub struct Forecast {
     /// Root of the mean of the dynamic |f_B|², N.
     pub force_rms: f64,
     /// The limit of a drive that is passed by most, and by what factor; none if all are kept.
-    pub over: Option<(Limit, f64)>,
+    pub over: Option<(DriveLimit, f64)>,
     /// Least and greatest b on the way, rad.
     pub b: [f64; 2],
     /// Mean of b over time, rad.
@@ -83,14 +83,16 @@ impl Forecast {
             };
             most(&mut sum.torque, &torque);
             most(&mut sum.speed, &r.qd);
-            for (quantity, values) in
-                [(Quantity::Torque, &torque), (Quantity::Speed, &r.qd), (Quantity::Acceleration, &r.qdd)]
-            {
+            for (quantity, values) in [
+                (LimitedQuantity::Torque, &torque),
+                (LimitedQuantity::Speed, &r.qd),
+                (LimitedQuantity::Acceleration, &r.qdd),
+            ] {
                 for (drive, (x, limit)) in values.iter().zip(limits.on(quantity).iter()).enumerate() {
                     let factor = x.abs() / limit;
                     // What rounding passes by is none.
                     if factor > PASSED && sum.over.is_none_or(|(_, most)| factor > most) {
-                        sum.over = Some((Limit { quantity, drive }, factor));
+                        sum.over = Some((DriveLimit { quantity, drive }, factor));
                     }
                 }
             }

@@ -5,7 +5,7 @@ use thiserror::Error;
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::Vector;
 use crate::planning::reactionless::{
-    AngleDefinition, BSet, Boundary, Decimal, Limit, NoReach, NotAPlaneMap, PlaneMap, PlanePoint, Poses, metres,
+    AngleDefinition, AngleLimit, BSet, Boundary, Decimal, NoReach, NotAPlaneMap, PlaneMap, PlanePoint, Poses, metres,
 };
 
 /// The reactionless planes of a machine, with the boundary of their workspace.
@@ -433,7 +433,8 @@ pub fn plane_map(machine: &Machine) -> Result<PlaneMap, PlaneError> {
     let lambda = Inertia::of(machine).lambda();
     let angle =
         |a: &crate::mechanics::machine::RelativeAngle| AngleDefinition { to: a.to, from: a.from, offset: a.offset };
-    let limit = |a: &crate::mechanics::machine::RelativeAngle| Limit { min: *a.limits.start(), max: *a.limits.end() };
+    let limit =
+        |a: &crate::mechanics::machine::RelativeAngle| AngleLimit { min: *a.limits.start(), max: *a.limits.end() };
     Ok(PlaneMap::new(
         [tip[0], tip[1], tip[2]],
         [lambda[0], lambda[1], lambda[2]],

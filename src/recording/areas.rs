@@ -13,7 +13,7 @@ use crate::picture::scene::Rgba;
 use crate::picture::scene::linkage::Linkage;
 use crate::picture::scene::palette::{Palette, faded};
 use crate::planning::pose_constant::Planes;
-use crate::planning::reactionless::{Limit, PlaneMap};
+use crate::planning::reactionless::{AngleLimit, PlaneMap};
 use crate::simulation::frame::Frame;
 
 /// Cells of a workspace along each angle.
@@ -138,7 +138,7 @@ impl Areas {
 
 /// The point of the workspace, not turned, at shares of the ranges of a_1 and a_2.
 fn within(map: &PlaneMap, shares: [f64; 2]) -> Vector {
-    let between = |l: Limit, share: f64| l.min + (l.max - l.min) * share;
+    let between = |l: AngleLimit, share: f64| l.min + (l.max - l.min) * share;
     map.forward_unturned([0, 1].map(|i| between(map.limits()[i], shares[i])))
 }
 

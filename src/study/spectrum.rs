@@ -141,11 +141,17 @@ impl Spectrum {
     }
 
     /// How the density stands against a limit; `None` if no line above 0 Hz lies where the limit is defined.
-    pub fn against(&self, limit: &Limit) -> Option<Verdict> {
+    pub fn against(&self, limit: &JitterLimit) -> Option<JitterVerdict> {
         let lines = self.frequency.iter().zip(&self.density).skip(1);
         let ratios = lines.filter_map(|(f, density)| {
             let limit = limit.at(*f)?;
-            Some(Verdict { frequency: *f, density: *density, limit, ratio: density / limit, within: *density <= limit })
+            Some(JitterVerdict {
+                frequency: *f,
+                density: *density,
+                limit,
+                ratio: density / limit,
+                within: *density <= limit,
+            })
         });
         ratios.max_by(|a, b| a.ratio.total_cmp(&b.ratio))
     }
@@ -153,7 +159,7 @@ impl Spectrum {
 
 /// A spectrum against its limit, where it comes nearest to it or passes it most.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Verdict {
+pub struct JitterVerdict {
     /// Hz.
     pub frequency: f64,
     /// A there, unit/√Hz.
@@ -168,12 +174,12 @@ pub struct Verdict {
 
 /// A jitter limit: the greatest amplitude spectral density that will do, by frequency.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Limit {
+pub struct JitterLimit {
     /// Frequency, Hz, rising, and limit, unit/√Hz.
     points: Vec<(f64, f64)>,
 }
 
-impl Limit {
+impl JitterLimit {
     /// The limit at a frequency, Hz, between two points as a straight line of log against log. One point is a limit at
     /// every frequency; of several, none holds below the first or above the last.
     pub fn at(&self, frequency: f64) -> Option<f64> {
@@ -196,7 +202,7 @@ impl Limit {
     }
 }
 
-impl FromStr for Limit {
+impl FromStr for JitterLimit {
     type Err = String;
 
     /// One number for all frequencies, or pairs `f:v,f:v` with rising f.

@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, pos2};
 use egui_kittest::{Harness, kittest::NodeT as _, kittest::Queryable as _};
-use stillbase::app::Desk;
+use stillbase::app::AppState;
 use stillbase::app::window::{App, Clock};
 use stillbase::mechanics::planar::{PerDrive, unit};
 use stillbase::picture::scene::palette::Theme;
@@ -29,7 +29,7 @@ fn desk(case: &str, theme: Theme) -> Option<Desktop> {
 /// The same of any scenario and height: what is scrolled out of view cannot be found.
 fn desk_of(scenario: Scenario, theme: Theme, height: f32) -> Option<Desktop> {
     drop(gpu()?);
-    let desk = Desk::new(scenario, theme).expect("it starts");
+    let desk = AppState::new(scenario, theme).expect("it starts");
     Some(
         Harness::builder()
             .with_size([1280.0, height])
@@ -40,18 +40,18 @@ fn desk_of(scenario: Scenario, theme: Theme, height: f32) -> Option<Desktop> {
 }
 
 fn session(h: &Desktop) -> &stillbase::session::Session {
-    h.state().desk().session()
+    h.state().app_state().session()
 }
 
 /// Where a point of the plane of handles is on the screen.
 fn on_screen(h: &Desktop, x: f64, y: f64) -> egui::Pos2 {
-    seen(h, [x, y, h.state().desk().stage().handle_height()])
+    seen(h, [x, y, h.state().app_state().stage().handle_height()])
 }
 
 /// Where a point of the scene is on the screen.
 fn seen(h: &Desktop, point: [f64; 3]) -> egui::Pos2 {
     let rect = h.get_by_label_contains("Scene:").rect();
-    let desk = h.state().desk();
+    let desk = h.state().app_state();
     let aspect = f64::from(rect.width() / rect.height());
     let [u, v] = desk.look().camera().project(point, aspect).expect("in front of the eye");
     rect.min + egui::vec2(u as f32 * rect.width(), v as f32 * rect.height())
@@ -231,7 +231,7 @@ fn opening_an_odd_scenario_changes_nothing_in_it() {
     if gpu().is_none() {
         return;
     }
-    let desk = Desk::new(scenario.clone(), Theme::Dark).expect("it starts");
+    let desk = AppState::new(scenario.clone(), Theme::Dark).expect("it starts");
     let mut h: Desktop = Harness::builder()
         .with_size([1280.0, 800.0])
         .wgpu()
@@ -272,7 +272,7 @@ fn views_are_linked() {
     // The slice of the tower, pulled up by 0.2 rad at rest: posed there.
     h.get_by_label("Tower").click();
     h.run_steps(3);
-    let tower = h.state().desk().views().tower().expect("three drives").clone();
+    let tower = h.state().app_state().views().tower().expect("three drives").clone();
     let up = |x: f64, y: f64, b: f64| [x, y, b * tower.rise()];
     let (from, to) = (seen(&h, up(0.1, -0.1, 2.4)), seen(&h, up(0.1, -0.1, 2.6)));
     drag(&mut h, from, to);
@@ -297,10 +297,10 @@ fn views_are_linked() {
         h.key_press(Key::V);
         h.run_steps(2);
     }
-    assert_eq!(h.state().desk().look().view, ViewKind::Joints);
+    assert_eq!(h.state().app_state().look().view, ViewKind::Joints);
     // The dot in its plane: the end effector goes where that pose has it, without a reaction.
     let (frame, map) = (*session(&h).frame(), *session(&h).run().planes().expect("three drives").map());
-    let space = h.state().desk().views().joints().expect("three drives").clone();
+    let space = h.state().app_state().views().joints().expect("three drives").clone();
     let at = |q: [f64; 3]| space.point(q, frame.b_reference);
     let a = [frame.a[0] + 0.4, frame.a[1] + 0.3];
     let (from, to) = (at([frame.q[0], frame.q[1], frame.q[2]]), at(map.lift(PlanePoint { a, b: frame.b_reference })));
@@ -386,7 +386,7 @@ fn a_refused_path_shows_where_and_what_b_would_do() {
         ("to".to_owned(), vec![0.0, 0.5].into()),
     ]);
     let before = session(&h).scenario().task.clone();
-    h.state_mut().desk_mut().carry_out(stillbase::app::Command::Edit(Edit::SetTask { change }));
+    h.state_mut().app_state_mut().carry_out(stillbase::app::Command::Edit(Edit::SetTask { change }));
     h.run_steps(2);
     assert_eq!(session(&h).scenario().task, before, "nothing has changed");
     assert!(h.query_by_label_contains("the path stops at (0.418, 1.116) m").is_some());
@@ -394,7 +394,7 @@ fn a_refused_path_shows_where_and_what_b_would_do() {
     h.get_by_label_contains("take b").click();
     h.run_steps(3);
     let task = &session(&h).scenario().task;
-    let message = &h.state().desk().look().message;
+    let message = &h.state().app_state().look().message;
     assert!((task.b - 2.5256).abs() < 1e-3 && task.to == [0.0, 0.5], "{task:?} {message:?}");
     assert!(h.query_by_label_contains("the path stops").is_none());
 }
@@ -424,7 +424,7 @@ fn a_path_is_drawn_by_hand() {
     let task = &session(&h).scenario().task;
     assert_eq!(task.shape(), stillbase::session::scenario::Shape::Freehand);
     assert!(task.points().len() > 20, "{}", task.points().len());
-    assert!(h.state().desk().look().stroke.is_none(), "the pencil is laid down");
+    assert!(h.state().app_state().look().stroke.is_none(), "the pencil is laid down");
     h.get_by_label("Play").click();
     h.run_steps(70);
     let f = session(&h).frame();
@@ -442,8 +442,8 @@ fn a_scenario_that_cannot_be_planned_is_explained() {
     let keys = "shape = 'line'\nfrom = [0.42, 1.12]\nto = [0.0, 0.5]";
     let task = scenario.task.with(&toml::from_str(keys).expect("keys")).expect("a task");
     let asked = Scenario { task: task.clone(), ..scenario };
-    assert!(Desk::new(asked.clone(), Theme::Dark).is_err());
-    let mut desk = Desk::open_or_explain(asked, Theme::Dark).expect("explained");
+    assert!(AppState::new(asked.clone(), Theme::Dark).is_err());
+    let mut desk = AppState::open_or_explain(asked, Theme::Dark).expect("explained");
     let (words, bad) = desk.look().message.clone().expect("a reason");
     assert!(bad && words.contains("the path stops at"), "{words}");
     let (edit, _) = desk.look().refused.as_ref().and_then(|wish| wish.remedy.clone()).expect("another b would do");
@@ -487,7 +487,7 @@ fn runs_stand_side_by_side() {
     h.run_steps(3);
     h.key_press(Key::C);
     h.run_steps(2);
-    let board = |h: &Desktop| h.state().desk().board().cloned();
+    let board = |h: &Desktop| h.state().app_state().board().cloned();
     assert_eq!(board(&h).expect("on display").entries().len(), 5);
     h.get_by_label("Lay over: Reactionless").click();
     h.run_steps(2);
@@ -511,7 +511,7 @@ fn runs_stand_side_by_side() {
 
     h.key_press(Key::S);
     h.run_steps(2);
-    assert!(h.state().desk().look().snapshots);
+    assert!(h.state().app_state().look().snapshots);
     let plot = h.get_by_label_contains("Torque over time").rect();
     h.event(egui::Event::ModifiersChanged(Modifiers::SHIFT));
     h.hover_at(plot.center());
@@ -522,11 +522,11 @@ fn runs_stand_side_by_side() {
     h.step();
     h.event(egui::Event::ModifiersChanged(Modifiers::NONE));
     h.run_steps(2);
-    assert!(h.state().desk().look().mark.is_some(), "a second cursor");
+    assert!(h.state().app_state().look().mark.is_some(), "a second cursor");
     assert!(h.query_all_by_label_contains("Δτ").count() > 0, "differences");
     h.key_press(Key::Escape);
     h.run_steps(2);
-    assert!(h.state().desk().look().mark.is_none());
+    assert!(h.state().app_state().look().mark.is_none());
 }
 
 /// Whatever differs in the plant is switched on, set and taken back in its section.
@@ -571,7 +571,7 @@ fn a_link_that_differs_is_named() {
     let Some(mut h) = desk_of(scenario, Theme::Light, 1700.0) else { return };
     h.run_steps(3);
     assert!(h.query_by_label("2 differences").is_some(), "it opens unfolded");
-    let reach = h.state().desk().stage().linkage().reach();
+    let reach = h.state().app_state().stage().linkage().reach();
     assert!((reach - 1.27).abs() < 1e-9, "drawn as it is: {reach}");
     h.get_by_label("link 5 mass back to normal").click();
     h.run_steps(2);
@@ -579,7 +579,7 @@ fn a_link_that_differs_is_named() {
     h.get_by_label("length l1 back to normal").click();
     h.run_steps(2);
     assert!(session(&h).scenario().plant.length.is_empty());
-    assert!((h.state().desk().stage().linkage().reach() - 1.26).abs() < 1e-9);
+    assert!((h.state().app_state().stage().linkage().reach() - 1.26).abs() < 1e-9);
 }
 
 /// A base that floats is chosen, seen and plotted, and its motion exaggerated until it is seen.
@@ -594,23 +594,23 @@ fn a_base_that_moves_is_seen_to_move() {
     h.run_steps(2);
     assert_eq!(session(&h).scenario().base.kind, BaseKind::Free);
     assert!(h.query_by_label_contains("Base over time").is_some());
-    let foreseen = h.state().desk().look().sway();
+    let foreseen = h.state().app_state().look().sway();
     h.get_by_label("Play").click();
     h.run_steps(70);
     let f = *session(&h).frame();
     assert!(f.base.angle.abs() > 1e-3, "{:?}", f.base);
-    assert_eq!(h.state().desk().look().sway(), foreseen, "known before it plays, so that nothing jumps");
+    assert_eq!(h.state().app_state().look().sway(), foreseen, "known before it plays, so that nothing jumps");
     let moved = foreseen * (f.tally.shift + f.tally.tilt * 1.26);
     assert!((0.04..0.13).contains(&moved), "{moved} m is seen, {foreseen} times");
     // The ring's knob is where it is drawn, and pulling it there asks for the same b.
     let shown = swayed(&f, foreseen);
-    let stage = h.state().desk().stage().clone();
+    let stage = h.state().app_state().stage().clone();
     let at = stage.handle(Handle::Ring, &shown).expect("three drives");
     let b = stage.ring_b([at[0], at[1]], f.b_reference, &shown).expect("three drives");
     assert!((b - f.b_reference).abs() < 1e-12);
     h.key_press(Key::X);
     h.run_steps(2);
-    assert_eq!(h.state().desk().look().sway(), 1.0);
+    assert_eq!(h.state().app_state().look().sway(), 1.0);
     h.get_by_label("Base back to normal").click();
     h.run_steps(2);
     assert_eq!(session(&h).scenario().base, Base::default());
@@ -626,7 +626,7 @@ fn a_hand_pushes_the_end_effector() {
     let (from, to) = (on_screen(&h, tip.re, tip.im), on_screen(&h, tip.re - 0.2, tip.im));
     h.key_press(Key::U);
     h.run_steps(2);
-    assert!(h.state().desk().look().pushing);
+    assert!(h.state().app_state().look().pushing);
     pull(&mut h, from, to);
     let pushed = session(&h).scenario().plant.force;
     assert!((pushed[0] + 4.0).abs() < 0.5 && pushed[1].abs() < 0.5, "{pushed:?} N for 0.2 m");
@@ -674,7 +674,7 @@ fn tolerances_are_shown_and_set() {
     assert!(h.query_by_label_contains("keep within limits").is_some());
     h.key_press(Key::C);
     h.run_steps(2);
-    assert!(h.query_by_label_contains("Histogram").is_none() && h.state().desk().board().is_some());
+    assert!(h.query_by_label_contains("Histogram").is_none() && h.state().app_state().board().is_some());
     h.key_press(Key::I);
     h.run_steps(2);
     assert!(h.query_by_label_contains("Pin forces over time").is_some());
@@ -726,7 +726,7 @@ fn a_release_counts_where_the_button_came_up() {
         arrive(&mut h, how, [at(0.307), at(0.32), at(0.33)]);
         said.push(session(&h).frame().b);
         // The ring's knob, a little on; then the hand goes across the picture.
-        let stage = h.state().desk().stage().clone();
+        let stage = h.state().app_state().stage().clone();
         let knob = |b: f64| {
             let p = stage.ring_radius() * unit(session(&h).run().planes().expect("planes").map().turn(b));
             on_screen(&h, p.re, p.im)
@@ -798,13 +798,13 @@ fn b_leaves_the_task_as_it_is() {
     {
         let before = session(&h).to_scenario();
         type_into(&mut h, "b rad", text);
-        let (said, bad) = h.state().desk().look().message.clone().unwrap_or_else(|| panic!("{text} is refused"));
+        let (said, bad) = h.state().app_state().look().message.clone().unwrap_or_else(|| panic!("{text} is refused"));
         assert!(bad && said.contains(words), "{said}");
         assert_eq!(session(&h).to_scenario(), before, "{text}");
     }
     type_into(&mut h, "b rad", "2.5");
     assert!((session(&h).frame().b - 2.5).abs() < 1e-9);
-    assert!(h.state().desk().look().message.is_none());
+    assert!(h.state().app_state().look().message.is_none());
     h.get_by_label("turn the task too").click();
     h.run_steps(2);
     h.get_by_role_and_label(Role::Slider, "b slider").set_value_accesskit(3.6);
@@ -816,7 +816,7 @@ fn b_leaves_the_task_as_it_is() {
     h.key_press(Key::Num3);
     h.run_steps(70);
     let period = session(&h).run().planes().expect("planes").map().period();
-    h.state_mut().desk_mut().carry_out(stillbase::app::Command::Edit(Edit::SlideB { b: 2.4 + period }));
+    h.state_mut().app_state_mut().carry_out(stillbase::app::Command::Edit(Edit::SlideB { b: 2.4 + period }));
     h.run_steps(2);
     assert!((session(&h).b_aim() - 2.4 - period).abs() < 1e-9);
     let value = h.get_by_role_and_label(Role::Slider, "b slider").accesskit_node().numeric_value();
@@ -849,11 +849,11 @@ fn a_hand_is_named_and_let_go() {
         assert!(session(&h).is_live(), "the hand comes back");
     }
     let gravity = Edit::SetMachine { key: "gravity".into(), value: "0,-9.81".into() };
-    h.state_mut().desk_mut().carry_out(stillbase::app::Command::Edit(gravity));
+    h.state_mut().app_state_mut().carry_out(stillbase::app::Command::Edit(gravity));
     h.key_press(Key::Num3);
     h.run_steps(2);
     assert_eq!(session(&h).to_scenario().machine, Scenario::builtin("case-3").expect("built in").machine);
-    assert!(h.state().desk().look().message.is_none());
+    assert!(h.state().app_state().look().message.is_none());
     // Another machine that somebody has chosen stays, and that is said.
     let case = Scenario::builtin("case-3").expect("built in");
     let other = stillbase::mechanics::machine::builtins().iter().find(|m| m.name() == "nine-link-table-1");
@@ -864,10 +864,10 @@ fn a_hand_is_named_and_let_go() {
         )
     });
     let open = stillbase::app::Command::Open(Box::new(Scenario { machine: other.clone(), ..case }));
-    h.state_mut().desk_mut().carry_out(open);
+    h.state_mut().app_state_mut().carry_out(open);
     h.key_press(Key::Num3);
     h.run_steps(2);
-    let (said, bad) = h.state().desk().look().message.clone().expect("it is said");
+    let (said, bad) = h.state().app_state().look().message.clone().expect("it is said");
     assert!(!bad && said.contains(other.name()), "{said}");
     assert_eq!(session(&h).scenario().machine.name(), other.name());
 }
@@ -922,12 +922,12 @@ fn lists_close_and_links_are_named() {
         h.key_press(Key::Escape);
         h.run_steps(3);
         assert!(!egui::Popup::is_any_open(&h.ctx), "{list} closes");
-        assert!(h.state().desk().look().pushing, "Esc was for the list");
+        assert!(h.state().app_state().look().pushing, "Esc was for the list");
     }
     h.key_press(Key::U);
     let frame = *session(&h).frame();
     let e = frame.q.units();
-    let stage = h.state().desk().stage().clone();
+    let stage = h.state().app_state().stage().clone();
     for (i, bar) in stage.linkage().bars().iter().enumerate() {
         let [from, to] = bar.ends(&e);
         // Where no other link lies on it.
@@ -935,9 +935,9 @@ fn lists_close_and_links_are_named() {
         let alone = free.map(|p| seen(&h, p)).find(|at| {
             let scene = h.get_by_label_contains("Scene:").rect();
             let pair = |v: egui::Vec2| [f64::from(v.x), f64::from(v.y)];
-            let camera = *h.state().desk().look().camera();
+            let camera = *h.state().app_state().look().camera();
             let pointer = Pointer { camera, size: pair(scene.size()), at: pair(*at - scene.min) };
-            let views = h.state().desk().views();
+            let views = h.state().app_state().views();
             views.link_at(&frame, &pointer) == Some(i) && views.pick(ViewKind::Flat, &frame, &pointer).is_none()
         });
         h.hover_at(alone.unwrap_or_else(|| panic!("{} is seen somewhere", bar.name)));
@@ -953,7 +953,7 @@ fn limits_apply_and_the_run_waits() {
     let Some(mut h) = desk("case-3", Theme::Dark) else { return };
     h.run_steps(2);
     let red = |h: &Desktop| {
-        let desk = h.state().desk();
+        let desk = h.state().app_state();
         let scene = desk.stage().scene(session(h).frame(), &Default::default());
         let named = scene.labels.iter().filter(|l| l.colour == desk.look().palette().reaction);
         named.map(|l| l.text.clone()).collect::<Vec<_>>()

@@ -19,7 +19,7 @@ use stillbase::planning::following::{Rule, trace};
 use stillbase::planning::off_plane::LeastReaction;
 use stillbase::planning::off_plane::least_reaction::Goal;
 use stillbase::planning::pose_constant::plane_map;
-use stillbase::planning::reactionless::{AngleDefinition, Boundary, Limit, PlaneMap};
+use stillbase::planning::reactionless::{AngleDefinition, AngleLimit, Boundary, PlaneMap};
 use stillbase::planning::timing::{Limits, Profile, TimeLaw, fastest};
 use stillbase::session::scenario::Scenario;
 use stillbase::session::scenario::default_spreads;
@@ -194,7 +194,7 @@ fn record_three_cases(bencher: Bencher) {
 /// The nine-link machine within other limits.
 fn folded(limits: [[f64; 2]; 2]) -> PlaneMap {
     let map = plane_map(builtin("nine-link").expect("built in")).expect("three drives");
-    map.with_limits(limits.map(|[min, max]| Limit { min, max })).expect("limits")
+    map.with_limits(limits.map(|[min, max]| AngleLimit { min, max })).expect("limits")
 }
 
 /// The boundary where the map folds: up to six poses a point.
@@ -225,7 +225,7 @@ fn folded_boundary_of_any_limits(bencher: Bencher) {
 fn folded_boundary_of_equal_arms(bencher: Bencher) {
     let angles = [(1, 0, 0.0), (2, 1, std::f64::consts::PI)];
     let angles = angles.map(|(to, from, offset)| AngleDefinition { to, from, offset });
-    let turn = Limit { min: 0.0, max: std::f64::consts::TAU };
+    let turn = AngleLimit { min: 0.0, max: std::f64::consts::TAU };
     let map = PlaneMap::new([0.5, -0.5, -0.5], [1.0, 0.117, 0.128], angles, [turn; 2]).expect("a map");
     bencher.bench_local(|| Boundary::of(black_box(&map)));
 }

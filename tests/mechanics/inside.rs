@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use stillbase::mechanics::machine::builtin;
 use stillbase::mechanics::planar::{Vector, cross, dot, unit};
 use stillbase::planning::pose_constant::plane_map;
-use stillbase::planning::reactionless::{AngleDefinition, Boundary, Curve, Limit, Line, PlaneMap, Vertex};
+use stillbase::planning::reactionless::{AngleDefinition, AngleLimit, Boundary, Curve, Line, PlaneMap, Vertex};
 
 use crate::planning::change_points::{change_curves_are_sound, parts_add_up, parts_hold_the_poses_on_their_side};
 
@@ -15,7 +15,7 @@ pub const B: f64 = 2.4;
 
 pub fn within(limits: [[f64; 2]; 2]) -> PlaneMap {
     let map = plane_map(builtin("nine-link").unwrap()).unwrap();
-    map.with_limits(limits.map(|[min, max]| Limit { min, max })).unwrap()
+    map.with_limits(limits.map(|[min, max]| AngleLimit { min, max })).unwrap()
 }
 
 /// Limits that make every kind of curve: none folded, folded once, overlapping, with holes, more than a turn.
@@ -45,7 +45,7 @@ fn machines() -> impl Strategy<Value = PlaneMap> {
             let (to, from) = if flip[i] { (a, b) } else { (b, a) };
             AngleDefinition { to, from, offset: offset[i] }
         });
-        PlaneMap::new(c, [1.0, l[0], l[1]], angles, limits.map(|[min, max]| Limit { min, max })).unwrap()
+        PlaneMap::new(c, [1.0, l[0], l[1]], angles, limits.map(|[min, max]| AngleLimit { min, max })).unwrap()
     })
 }
 
@@ -478,7 +478,8 @@ fn other_proportions_and_special_ones() {
     for (key, value) in [("length.l1", "0.9"), ("length.l5", "0.2"), ("length.l9", "1.1"), ("length.l3", "0.7")] {
         let machine = builtin("nine-link").unwrap().set_all([(key, value)]).unwrap();
         for limits in [CASES[0], CASES[3]] {
-            let map = plane_map(&machine).unwrap().with_limits(limits.map(|[min, max]| Limit { min, max })).unwrap();
+            let map =
+                plane_map(&machine).unwrap().with_limits(limits.map(|[min, max]| AngleLimit { min, max })).unwrap();
             counts_agree(&map, 600, 200);
             parts_add_up(&map);
         }
@@ -488,7 +489,7 @@ fn other_proportions_and_special_ones() {
     for c in [[0.0; 3], [0.5, 0.5, 0.0], [0.5; 3]] {
         for lambda in [[1.0; 3], [1.0, 0.0, 1.0]] {
             for w in [PI, TAU] {
-                let map = PlaneMap::new(c, lambda, angles, [Limit { min: 0.0, max: w }; 2]).unwrap();
+                let map = PlaneMap::new(c, lambda, angles, [AngleLimit { min: 0.0, max: w }; 2]).unwrap();
                 let boundary = Boundary::of(&map);
                 assert!(boundary.areas_by_poses().iter().all(|a| a.is_finite()));
                 assert!(boundary.distance(Vector::new(0.2, 0.3), 0.4).is_finite());

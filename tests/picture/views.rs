@@ -13,7 +13,7 @@ use stillbase::picture::scene::tower::Tower;
 use stillbase::picture::scene::views::{Aim, Grip, ViewKind, Views};
 use stillbase::picture::scene::wall::Wall;
 use stillbase::picture::scene::{Line, Scene};
-use stillbase::planning::reactionless::Limit;
+use stillbase::planning::reactionless::AngleLimit;
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Session};
 use stillbase::simulation::frame::Frame;
@@ -458,7 +458,7 @@ fn the_key_to_dexterity_is_its_range() {
     let session = open("case-3");
     let map = *session.run().planes().expect("three drives").map();
     let [l1, l2] = map.limits();
-    let at = |l: Limit, i: u32| l.min + (l.max - l.min) * f64::from(i) / 300.0;
+    let at = |l: AngleLimit, i: u32| l.min + (l.max - l.min) * f64::from(i) / 300.0;
     let poses = || (0..=300).flat_map(|i| (0..=300).map(move |j| [at(l1, i), at(l2, j)]));
     for measure in Measure::ALL {
         let [least, most] = measure.range(&map);

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use proptest::prelude::*;
 use stillbase::mechanics::machine::{Inertia, builtin};
 use stillbase::mechanics::planar::{Vector, cross, dot, unit};
-use stillbase::planning::reactionless::{AngleDefinition, Boundary, Curve, Limit, PlaneMap};
+use stillbase::planning::reactionless::{AngleDefinition, AngleLimit, Boundary, Curve, PlaneMap};
 
 const B: f64 = 2.4;
 
@@ -17,13 +17,13 @@ fn machine(name: &str) -> PlaneMap {
         [0, 1, 2].map(|k| machine.tip()[k]),
         [0, 1, 2].map(|k| lambda[k]),
         [0, 1].map(|i| AngleDefinition { to: angle(i).to, from: angle(i).from, offset: angle(i).offset }),
-        [0, 1].map(|i| Limit { min: *angle(i).limits.start(), max: *angle(i).limits.end() }),
+        [0, 1].map(|i| AngleLimit { min: *angle(i).limits.start(), max: *angle(i).limits.end() }),
     )
     .unwrap()
 }
 
 fn within(limits: [[f64; 2]; 2]) -> PlaneMap {
-    machine("nine-link-table-1").with_limits(limits.map(|[min, max]| Limit { min, max })).unwrap()
+    machine("nine-link-table-1").with_limits(limits.map(|[min, max]| AngleLimit { min, max })).unwrap()
 }
 
 /// Limits that make every kind of curve: none folded, folded once, overlapping, with holes.
@@ -54,7 +54,7 @@ fn machines() -> impl Strategy<Value = PlaneMap> {
             let (to, from) = if flip[i] { (a, b) } else { (b, a) };
             AngleDefinition { to, from, offset: offset[i] }
         });
-        PlaneMap::new(c, [1.0, l[0], l[1]], angles, limits.map(|[min, max]| Limit { min, max })).unwrap()
+        PlaneMap::new(c, [1.0, l[0], l[1]], angles, limits.map(|[min, max]| AngleLimit { min, max })).unwrap()
     })
 }
 
@@ -385,7 +385,7 @@ fn degenerate_machines_do_no_harm() {
     for c in [[0.0; 3], [0.5, 0.0, 0.0], [0.5, 0.5, 0.0], [0.5; 3], [1.0, -0.5, -0.5]] {
         for lambda in [[1.0, 0.0, 0.0], [1.0; 3], [1.0, 0.0, 1.0], [1.0, 2.0, 2.0]] {
             for w in [PI, TAU] {
-                let map = PlaneMap::new(c, lambda, angles, [Limit { min: 0.0, max: w }; 2]).unwrap();
+                let map = PlaneMap::new(c, lambda, angles, [AngleLimit { min: 0.0, max: w }; 2]).unwrap();
                 let boundary = Boundary::of(&map);
                 assert!(boundary.area().is_finite() && boundary.sheet_area().is_finite());
                 assert!(!boundary.loops().is_empty() && boundary.loops().iter().all(|l| !l.vertices().is_empty()));
@@ -395,7 +395,7 @@ fn degenerate_machines_do_no_harm() {
         }
     }
     // A thousand turns are refused, with how many would do.
-    let wide = [Limit { min: -3000.0, max: 4000.0 }, Limit { min: 0.0, max: 1.0 }];
+    let wide = [AngleLimit { min: -3000.0, max: 4000.0 }, AngleLimit { min: 0.0, max: 1.0 }];
     let refused = within(CASES[0]).with_limits(wide).expect_err("too wide").to_string();
     assert!(refused.contains("a1 may turn by 7000.00 rad") && refused.contains("eight turns"), "{refused}");
     let boundary = Boundary::of(&within(CASES[0]));

@@ -11,7 +11,7 @@ use stillbase::planning::off_plane::least_reaction::{FixedB, Goal, LeastReaction
 use stillbase::planning::off_plane::pose_course::PoseCourse;
 use stillbase::planning::off_plane::{Corridor, LeastReaction};
 use stillbase::planning::pose_constant::plane_map;
-use stillbase::planning::reactionless::{Limit, NoReach, PlaneMap, PlanePoint};
+use stillbase::planning::reactionless::{AngleLimit, NoReach, PlaneMap, PlanePoint};
 use stillbase::planning::timing::TimeLaw;
 
 use crate::support::close;
@@ -53,7 +53,7 @@ fn in_spaces(from: Vector, to: Vector, b: f64, end: Option<f64>, goal: Goal, spa
 }
 
 /// n_B of the dynamics at T = 1 s, N m.
-fn moment(path: &stillbase::planning::curves::Table, u: f64) -> f64 {
+fn moment(path: &stillbase::planning::curves::PathTable, u: f64) -> f64 {
     let at = path.at(u);
     let model = Inertia::of(nine_link());
     base_wrench(&model, &at.q.units(), &at.first, &at.second, &Surroundings::default()).total().moment
@@ -82,7 +82,7 @@ fn the_corridor_is_what_the_points_reach() {
 #[test]
 fn the_corridor_keeps_to_its_sheet() {
     let (map, _) = parts();
-    let wide = map.with_limits([Limit { min: -0.5, max: 5.5 }; 2]).expect("limits");
+    let wide = map.with_limits([AngleLimit { min: -0.5, max: 5.5 }; 2]).expect("limits");
     let mut folds = 0;
     for b in [1.8, 2.4, 2.8] {
         for start in &wide.poses(A, b) {
@@ -346,7 +346,7 @@ fn what_cannot_be_planned_says_why() {
 #[test]
 fn any_line_is_planned_or_refused() {
     let (map, model) = parts();
-    let wide = map.with_limits([Limit { min: -0.6, max: 4.5 }; 2]).expect("limits");
+    let wide = map.with_limits([AngleLimit { min: -0.6, max: 4.5 }; 2]).expect("limits");
     let mut noise = 1u64;
     let mut next = |low: f64, high: f64| {
         noise = noise.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -449,7 +449,7 @@ fn twin(low: &[f64], high: &[f64], start: f64, peak: bool) -> f64 {
 fn excess(cases: usize, seed: u64) -> Vec<f64> {
     let (map, model) = parts();
     let d = model.diagonal(0);
-    let wide = map.with_limits([Limit { min: -0.6, max: 4.5 }; 2]).expect("limits");
+    let wide = map.with_limits([AngleLimit { min: -0.6, max: 4.5 }; 2]).expect("limits");
     let mut noise = crate::support::Noise::of(seed);
     let (mut all, mut done) = (Vec::with_capacity(cases), 0);
     while done < cases {

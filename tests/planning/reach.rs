@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use serde_json::Value;
 use stillbase::mechanics::machine::{Inertia, builtin};
 use stillbase::mechanics::planar::Vector;
-use stillbase::planning::reactionless::{AngleDefinition, BSet, Limit, NoReach, PlaneMap, PlanePoint, SLACK};
+use stillbase::planning::reactionless::{AngleDefinition, AngleLimit, BSet, NoReach, PlaneMap, PlanePoint, SLACK};
 
 fn planning() -> Value {
     serde_json::from_str(include_str!("../reference/planning.json")).unwrap()
@@ -18,8 +18,8 @@ fn numbers(v: &Value) -> Vec<f64> {
     v.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
 }
 
-fn limits(bounds: [f64; 4]) -> [Limit; 2] {
-    [Limit { min: bounds[0], max: bounds[1] }, Limit { min: bounds[2], max: bounds[3] }]
+fn limits(bounds: [f64; 4]) -> [AngleLimit; 2] {
+    [AngleLimit { min: bounds[0], max: bounds[1] }, AngleLimit { min: bounds[2], max: bounds[3] }]
 }
 
 fn builtin_map(name: &str, bounds: [f64; 4]) -> PlaneMap {
@@ -91,7 +91,7 @@ fn brute_force_poses(map: &PlaneMap, p: Vector, b: f64) -> Vec<[f64; 2]> {
     let [first, second] = map.limits();
     let mut found: Vec<[f64; 2]> = Vec::new();
     let n = 24;
-    let start = |l: Limit, i: usize| l.min + (l.max - l.min) * (i as f64 + 0.5) / f64::from(n);
+    let start = |l: AngleLimit, i: usize| l.min + (l.max - l.min) * (i as f64 + 0.5) / f64::from(n);
     for i in 0..n as usize {
         for j in 0..n as usize {
             let mut a = [start(first, i), start(second, j)];
@@ -169,7 +169,7 @@ prop_compose! {
             AngleDefinition { to, from, offset: offsets[i] }
         });
         let c = c.map(|(c, negative)| if negative { -c } else { c });
-        let limits = [0, 1].map(|i| Limit { min: from[i], max: from[i] + width[i] });
+        let limits = [0, 1].map(|i| AngleLimit { min: from[i], max: from[i] + width[i] });
         PlaneMap::new(c, lambda, angles, limits).unwrap()
     }
 }
@@ -373,7 +373,7 @@ proptest! {
 /// Lengths in equal steps and points at such distances: rhombi, kites and flat quadrilaterals among them.
 fn even_map(c: [i32; 3], template: PlaneMap, narrow: [bool; 2]) -> PlaneMap {
     let l = template.limits();
-    let limits = [0, 1].map(|i| if narrow[i] { l[i] } else { Limit { min: l[i].min, max: l[i].min + TAU } });
+    let limits = [0, 1].map(|i| if narrow[i] { l[i] } else { AngleLimit { min: l[i].min, max: l[i].min + TAU } });
     PlaneMap::new(c.map(|c| 0.25 * f64::from(c)), template.lambda(), template.angles(), limits).unwrap()
 }
 

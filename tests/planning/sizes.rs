@@ -5,11 +5,11 @@ use std::f64::consts::TAU;
 use stillbase::mechanics::machine::builtin;
 use stillbase::mechanics::planar::Vector;
 use stillbase::planning::pose_constant::plane_map;
-use stillbase::planning::reactionless::{AngleDefinition, Boundary, Limit, NoReach, NotAPlaneMap, PlaneMap};
+use stillbase::planning::reactionless::{AngleDefinition, AngleLimit, Boundary, NoReach, NotAPlaneMap, PlaneMap};
 
 use crate::support::Noise;
 
-fn map(c: [f64; 3], lambda: [f64; 3], limits: [Limit; 2], offsets: [f64; 2]) -> Result<PlaneMap, NotAPlaneMap> {
+fn map(c: [f64; 3], lambda: [f64; 3], limits: [AngleLimit; 2], offsets: [f64; 2]) -> Result<PlaneMap, NotAPlaneMap> {
     let angles =
         [(1, 0, offsets[0]), (2, 1, offsets[1])].map(|(to, from, offset)| AngleDefinition { to, from, offset });
     PlaneMap::new(c, lambda, angles, limits)
@@ -24,7 +24,7 @@ fn scale(cases: usize, seed: u64) {
         let offsets = [noise.between(-3.0, 3.0), noise.between(-3.0, 3.0)];
         let limits = [0, 1].map(|_| {
             let min = noise.between(-3.0, 3.0);
-            Limit { min, max: min + noise.between(0.3, 0.9 * TAU) }
+            AngleLimit { min, max: min + noise.between(0.3, 0.9 * TAU) }
         });
         let size = 10f64.powf(noise.between(-6.0, 6.0));
         let one = map(c, lambda, limits, offsets).expect("a map");
@@ -103,7 +103,7 @@ fn one_length_of_any_size_has_a_right_area_or_is_refused() {
 fn sheets(map: &PlaneMap) -> f64 {
     let [s, t] = map.limits();
     let n = 200;
-    let at = |l: Limit, i: usize| l.min + (l.max - l.min) * (i as f64 + 0.5) / f64::from(n);
+    let at = |l: AngleLimit, i: usize| l.min + (l.max - l.min) * (i as f64 + 0.5) / f64::from(n);
     let sum: f64 = (0..n as usize)
         .flat_map(|i| (0..n as usize).map(move |j| (i, j)))
         .map(|(i, j)| map.det([at(s, i), at(t, j)]).abs())

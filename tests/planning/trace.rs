@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use stillbase::mechanics::kinematics::end_effector;
 use stillbase::mechanics::machine::{Machine, builtin};
 use stillbase::mechanics::planar::{PerDrive, Vector};
-use stillbase::planning::curves::{Curve, Table};
+use stillbase::planning::curves::{Curve, PathTable};
 use stillbase::planning::following::{Blocked, Rule, Stop, trace};
 use stillbase::planning::pose_constant::Planes;
 
@@ -27,12 +27,12 @@ fn v(x: f64, y: f64) -> Vector {
     Vector::new(x, y)
 }
 
-fn follow(planes: &Planes, curves: &[Curve], b: f64) -> Result<Vec<Table>, Box<Blocked>> {
+fn follow(planes: &Planes, curves: &[Curve], b: f64) -> Result<Vec<PathTable>, Box<Blocked>> {
     trace::follow(planes.map(), curves, b, None, Rule::default())
 }
 
 /// The end effector is on the curve, b is kept, and derivatives are those of q(s).
-fn assert_follows(table: &Table, curve: &Curve, b: f64) {
+fn assert_follows(table: &PathTable, curve: &Curve, b: f64) {
     let lambda = planes().map().lambda();
     for i in 0..=400 {
         let s = f64::from(i) / 400.0;

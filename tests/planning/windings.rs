@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use stillbase::mechanics::machine::builtin;
 use stillbase::mechanics::planar::Vector;
 use stillbase::planning::pose_constant::plane_map;
-use stillbase::planning::reactionless::{AngleDefinition, Boundary, Limit, PlaneMap, WIDEST};
+use stillbase::planning::reactionless::{AngleDefinition, AngleLimit, Boundary, PlaneMap, WIDEST};
 
 use crate::support::Noise;
 
@@ -22,22 +22,22 @@ fn any_map(noise: &mut Noise) -> PlaneMap {
         let [to, from] = if noise.sign() > 0.0 { [hub, other] } else { [other, hub] };
         AngleDefinition { to, from, offset: noise.between(-3.0, 3.0) }
     });
-    PlaneMap::new(c, lambda, angles, [Limit { min: 0.0, max: 1.0 }; 2]).expect("a map")
+    PlaneMap::new(c, lambda, angles, [AngleLimit { min: 0.0, max: 1.0 }; 2]).expect("a map")
 }
 
-fn any_limits(noise: &mut Noise, turns: [f64; 2]) -> [Limit; 2] {
+fn any_limits(noise: &mut Noise, turns: [f64; 2]) -> [AngleLimit; 2] {
     turns.map(|turns| {
         let width = (TAU * noise.between(0.1, turns)).min(WIDEST);
         let min = noise.between(-0.5 * WIDEST, 0.5 * WIDEST - width);
-        Limit { min, max: min + width }
+        AngleLimit { min, max: min + width }
     })
 }
 
 /// Limits in pieces of a turn at most.
-fn tiles(limit: Limit) -> Vec<Limit> {
+fn tiles(limit: AngleLimit) -> Vec<AngleLimit> {
     let n = ((limit.max - limit.min) / TAU).ceil() as usize;
     let ends = |i: usize| if i == n { limit.max } else { limit.min + TAU * i as f64 };
-    (0..n).map(|i| Limit { min: ends(i), max: ends(i + 1) }).collect()
+    (0..n).map(|i| AngleLimit { min: ends(i), max: ends(i + 1) }).collect()
 }
 
 /// All poses of a point, tile by tile.
@@ -48,7 +48,7 @@ fn by_tiles(map: &PlaneMap, p: Vector, b: f64) -> Vec<[f64; 2]> {
         for (j, t) in tiles(second).into_iter().enumerate() {
             let turn = [TAU * i as f64, TAU * j as f64];
             // The tile moved back to where the first one is; all drives then stand turned by the same angle.
-            let back = |l: Limit, turn: f64| Limit { min: l.min - turn, max: l.max - turn };
+            let back = |l: AngleLimit, turn: f64| AngleLimit { min: l.min - turn, max: l.max - turn };
             let tile = map.with_limits([back(s, turn[0]), back(t, turn[1])]).expect("one turn");
             let u = map.u();
             let turned = u[0][0] * turn[0] + u[0][1] * turn[1];
@@ -75,14 +75,14 @@ fn every_pose(cases: usize, seed: u64) -> usize {
             any_map(&mut noise)
         };
         let map = map.with_limits(any_limits(&mut noise, [8.02; 2])).expect("up to eight turns");
-        let share = |noise: &mut Noise, l: Limit| l.min + noise.between(0.0, 1.0) * (l.max - l.min);
+        let share = |noise: &mut Noise, l: AngleLimit| l.min + noise.between(0.0, 1.0) * (l.max - l.min);
         let a = map.limits().map(|l| share(&mut noise, l));
         let b = noise.between(-20.0, 20.0);
         let p = map.forward(a, b);
         let poses = map.poses(p, b);
         assert!(poses.iter().any(|f| (f.a[0] - a[0]).hypot(f.a[1] - a[1]) < 1e-6), "case {case}: {a:?} is one of them");
         // Where two poses meet, at a fold or on a limit, rounding decides.
-        let near = |l: Limit, a: f64| (a - l.min).abs().min((l.max - a).abs()) < 1e-6;
+        let near = |l: AngleLimit, a: f64| (a - l.min).abs().min((l.max - a).abs()) < 1e-6;
         if poses.iter().any(|f| map.det(f.a).abs() < 1e-5 || (0..2).any(|i| near(map.limits()[i], f.a[i]))) {
             continue;
         }
@@ -111,7 +111,7 @@ fn every_pose_of_every_winding_is_found_often() {
 /// ∫ |det| da by Gauss's two-point rule.
 fn quadrature(map: &PlaneMap) -> f64 {
     let [a1, a2] = map.limits();
-    let places = |l: Limit| -> Vec<f64> {
+    let places = |l: AngleLimit| -> Vec<f64> {
         let n = (40.0 * (l.max - l.min) / TAU).ceil().max(20.0) as usize;
         let place = |i: usize, s: f64| l.min + (l.max - l.min) * (i as f64 + 0.5 + s * 0.5 / 3f64.sqrt()) / n as f64;
         (0..n).flat_map(|i| [place(i, -1.0), place(i, 1.0)]).collect()
@@ -147,7 +147,7 @@ fn boundaries(cases: usize, seed: u64, turns: f64) {
             let p = Vector::new(noise.between(-size, size), noise.between(-size, size));
             let poses = map.poses(p, b);
             // On a curve the count is that of a side.
-            let near = |l: Limit, a: f64| (a - l.min).abs().min((l.max - a).abs()) < 1e-6;
+            let near = |l: AngleLimit, a: f64| (a - l.min).abs().min((l.max - a).abs()) < 1e-6;
             if poses.iter().any(|f| map.det(f.a).abs() < 1e-5 || (0..2).any(|i| near(map.limits()[i], f.a[i]))) {
                 continue;
             }
@@ -174,7 +174,7 @@ fn areas_and_counts_hold_for_many_turns_often() {
 fn eight_turns_are_not_cut_to_five() {
     let map = plane_map(builtin("nine-link").expect("built in")).expect("a map");
     let [_, second] = map.limits();
-    let wide = map.with_limits([Limit { min: -25.0, max: 25.0 }, second]).expect("eight turns");
+    let wide = map.with_limits([AngleLimit { min: -25.0, max: 25.0 }, second]).expect("eight turns");
     let boundary = Boundary::of(&wide);
     assert!((boundary.sheet_area() - 11.251_772).abs() < 1e-5, "{}", boundary.sheet_area());
 }

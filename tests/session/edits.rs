@@ -577,7 +577,7 @@ fn a_target_outlives_a_change_of_the_machine() {
     let planes = session.run().planes().expect("three drives").clone();
     let free = planes
         .map()
-        .with_limits([planes.map().limits()[0], stillbase::planning::reactionless::Limit { min: 0.0, max: 3.0 }])
+        .with_limits([planes.map().limits()[0], stillbase::planning::reactionless::AngleLimit { min: 0.0, max: 3.0 }])
         .expect("limits");
     let at = free.forward([1.2, 2.6], 2.4);
     do_it(&mut session, drag(at.re, at.im));

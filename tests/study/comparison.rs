@@ -3,26 +3,35 @@
 use stillbase::session::scenario::{Scenario, TaskKind};
 use stillbase::session::{Edit, TimedEdit};
 use stillbase::simulation::signals::signals;
-use stillbase::study::comparison::{COLUMNS, Compared, Difference, SLOWER, Way, alternatives};
+use stillbase::study::comparison::{Alternative, COLUMNS, Compared, Difference, SLOWER, alternatives};
 
 fn scenario(name: &str) -> Scenario {
     Scenario::builtin(name).expect("built in")
 }
 
-fn run(way: Way, of: &str) -> Compared {
+fn run(way: Alternative, of: &str) -> Compared {
     Compared::of(way.of(&scenario(of))).expect("it runs")
 }
 
 /// The ways of case 3 are the paper's three cases, a wheel and patience.
 #[test]
 fn the_ways_of_case_3_are_the_cases() {
-    let ways: Vec<Way> = alternatives(&scenario("case-3")).into_iter().map(|(way, _)| way).collect();
-    assert_eq!(ways, [Way::Reactionless, Way::StraightLine, Way::OtherPose, Way::Wheel, Way::Slowly]);
-    for (way, case) in [(Way::Reactionless, "case-3"), (Way::StraightLine, "case-1")] {
+    let ways: Vec<Alternative> = alternatives(&scenario("case-3")).into_iter().map(|(way, _)| way).collect();
+    assert_eq!(
+        ways,
+        [
+            Alternative::Reactionless,
+            Alternative::StraightLine,
+            Alternative::OtherPose,
+            Alternative::Wheel,
+            Alternative::Slowly
+        ]
+    );
+    for (way, case) in [(Alternative::Reactionless, "case-3"), (Alternative::StraightLine, "case-1")] {
         let (got, want) = (run(way, "case-3").summary, Compared::of(scenario(case)).expect("it runs").summary);
         assert_eq!((got.peak_moment, got.energy, got.peak_torque), (want.peak_moment, want.energy, want.peak_torque));
     }
-    let (other, case_2) = (run(Way::OtherPose, "case-3").summary, scenario("case-2"));
+    let (other, case_2) = (run(Alternative::OtherPose, "case-3").summary, scenario("case-2"));
     let case_2 = Compared::of(case_2).expect("it runs").summary;
     assert!(
         (other.peak_moment / case_2.peak_moment - 1.0).abs() < 1e-3,
@@ -37,7 +46,7 @@ fn the_ways_of_case_3_are_the_cases() {
 fn patience_divides_by_the_square_and_not_the_turn() {
     let mut free = scenario("case-1");
     free.base.kind = stillbase::simulation::plant::BaseKind::Free;
-    let (quick, slow) = (run_of(&free, Way::StraightLine), run_of(&free, Way::Slowly));
+    let (quick, slow) = (run_of(&free, Alternative::StraightLine), run_of(&free, Alternative::Slowly));
     let (quick, slow) = (quick.summary, slow.summary);
     assert!((slow.time - SLOWER * quick.time).abs() < 1e-9);
     assert!((quick.peak_moment / slow.peak_moment / SLOWER.powi(2) - 1.0).abs() < 1e-3);
@@ -45,14 +54,14 @@ fn patience_divides_by_the_square_and_not_the_turn() {
     assert!((quick.base_tilt / slow.base_tilt - 1.0).abs() < 1e-6, "{} {}", quick.base_tilt, slow.base_tilt);
 }
 
-fn run_of(scenario: &Scenario, way: Way) -> Compared {
+fn run_of(scenario: &Scenario, way: Alternative) -> Compared {
     Compared::of(way.of(scenario)).expect("it runs")
 }
 
 /// A wheel that is large enough takes all of it; one that is not says when it stopped.
 #[test]
 fn the_wheel_says_when_it_saturates() {
-    let ample = run(Way::Wheel, "case-3").summary;
+    let ample = run(Alternative::Wheel, "case-3").summary;
     assert!(
         !ample.reactionless
             && ample.verdict.quiet
@@ -61,19 +70,19 @@ fn the_wheel_says_when_it_saturates() {
     );
     let mut small = scenario("case-3");
     small.base.wheel = Some(toml::from_str("torque_limit = 0.5").expect("a wheel"));
-    let small_run = run_of(&small, Way::Wheel).summary;
+    let small_run = run_of(&small, Alternative::Wheel).summary;
     assert!(!small_run.reactionless && small_run.saturated_at.is_some_and(|t| t > 0.0 && t < 0.5));
     // What the arm transmits is told beside what is left.
     assert!(ample.peak_moment < 1e-9 && ample.peak_arm_moment.is_some_and(|n| n > 1.0));
     // The others go without it.
-    assert!(run_of(&small, Way::StraightLine).summary.wheel_rate.is_none());
+    assert!(run_of(&small, Alternative::StraightLine).summary.wheel_rate.is_none());
 }
 
 /// What is none of the others stands first; what cannot be done is refused in words, and the rest goes on.
 #[test]
 fn a_task_of_its_own_kind_stands_first() {
     let ways = alternatives(&scenario("least-reaction"));
-    assert_eq!(ways[0].0, Way::AsGiven);
+    assert_eq!(ways[0].0, Alternative::AsGiven);
     assert_eq!(ways[0].1.task.kind, TaskKind::LeastReaction);
     let outcomes: Vec<bool> = ways.into_iter().map(|(_, s)| Compared::of(s).is_ok()).collect();
     assert!(outcomes[0] && outcomes.contains(&false) && outcomes.iter().filter(|ok| **ok).count() >= 4);
@@ -86,19 +95,19 @@ fn ways_leave_hands_out() {
     let at = |step, edit| TimedEdit { step, edit };
     led.edits = vec![at(0, Edit::plant("payload.mass", 0.2)), at(200, Edit::Push { x: 3.0, y: 0.0 })];
     let ways = alternatives(&led);
-    assert_eq!(ways[0].0, Way::AsGiven, "the hand makes it another run");
+    assert_eq!(ways[0].0, Alternative::AsGiven, "the hand makes it another run");
     assert_eq!(ways[0].1.edits.len(), 2);
     // What was set at the start is part of the ground that all ways stand on.
     assert!(ways.iter().skip(1).all(|(_, s)| s.edits.is_empty() && s.plant.payload.mass == 0.2));
     led.edits = vec![at(0, Edit::task("time", 2.0)), at(0, Edit::task("kind", "minimum-norm"))];
-    let slowly = Way::Slowly.of(&led);
-    assert_eq!((slowly.task.time, Way::Reactionless.of(&led).task.kind), (8.0, TaskKind::Reactionless));
+    let slowly = Alternative::Slowly.of(&led);
+    assert_eq!((slowly.task.time, Alternative::Reactionless.of(&led).task.kind), (8.0, TaskKind::Reactionless));
 }
 
 /// RMS, impulse and peak agree with the frames by another rule.
 #[test]
 fn the_table_agrees_with_the_frames() {
-    let run = run(Way::StraightLine, "case-3");
+    let run = run(Alternative::StraightLine, "case-3");
     let h = 0.001;
     // Simpson's rule.
     let sum = |f: &dyn Fn(usize) -> f64| {
@@ -146,7 +155,7 @@ fn long_runs_are_thinned() {
 /// Two cursors: every signal at both, and the difference.
 #[test]
 fn two_instants_differ_by_their_signals() {
-    let run = run(Way::StraightLine, "case-3");
+    let run = run(Alternative::StraightLine, "case-3");
     let table = signals(run.machine());
     let (a, b) = (run.at(0.2).expect("a frame"), run.at(0.7).expect("a frame"));
     let list: Vec<Difference> = table.iter().map(|signal| Difference::of(signal, a, b)).collect();
@@ -160,8 +169,8 @@ fn two_instants_differ_by_their_signals() {
 /// The board keeps what it is given, follows the task, sorts both ways and gives its table away.
 #[test]
 fn a_board_follows_sorts_and_keeps() {
-    use stillbase::study::comparison::Board;
-    let mut board = Board::of(&scenario("case-3"));
+    use stillbase::study::comparison::Comparison;
+    let mut board = Comparison::of(&scenario("case-3"));
     assert_eq!(board.entries().len(), 5);
     board.show(1, true);
     board.keep(scenario("case-2")).expect("it runs");
@@ -171,7 +180,7 @@ fn a_board_follows_sorts_and_keeps() {
     assert_eq!(board.shown().map(|(i, _)| i).collect::<Vec<_>>(), [1, 5, 6]);
 
     let column = COLUMNS.iter().position(|c| c.key == "peak_moment").expect("a column");
-    let values = |board: &Board| -> Vec<f64> {
+    let values = |board: &Comparison| -> Vec<f64> {
         let value =
             |i: usize| board.entries()[i].outcome.as_ref().ok().and_then(|r| (COLUMNS[column].value)(&r.summary));
         board.order().into_iter().filter_map(value).collect()

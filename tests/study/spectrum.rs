@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use std::f64::consts::TAU;
-use stillbase::study::spectrum::{LEAST, Limit, Spectrum, SpectrumError, Window};
+use stillbase::study::spectrum::{JitterLimit, LEAST, Spectrum, SpectrumError, Window};
 
 /// The one-sided density by its definition, a sum for each line.
 fn by_definition(x: &[f64], step: f64, weight: impl Fn(usize) -> f64) -> Vec<f64> {
@@ -72,16 +72,16 @@ fn a_tone_stands_at_its_frequency_with_its_power() {
 
 #[test]
 fn limits_are_straight_in_logarithms() {
-    let limit: Limit = "1:0.1, 10:0.01,1000:1".parse().expect("a limit");
+    let limit: JitterLimit = "1:0.1, 10:0.01,1000:1".parse().expect("a limit");
     assert_eq!(limit.at(0.5), None);
     assert_eq!(limit.at(1000.1), None);
     for (f, want) in [(1.0, 0.1), (10.0, 0.01), (1000.0, 1.0), (10_f64.sqrt(), 10_f64.powf(-1.5)), (100.0, 0.1)] {
         assert!((limit.at(f).expect("within") / want - 1.0).abs() < 1e-12, "{f}");
     }
-    let flat: Limit = "0.2".parse().expect("a limit");
+    let flat: JitterLimit = "0.2".parse().expect("a limit");
     assert_eq!((flat.at(1e-9), flat.at(1e9)), (Some(0.2), Some(0.2)));
     for text in ["", "x", "-1", "0", "nan", "inf", "1:2", "2:1,1:1", "1:1,1:2", "0:1,1:1", "1:0,2:1", "1:1,2"] {
-        assert!(text.parse::<Limit>().is_err(), "{text}");
+        assert!(text.parse::<JitterLimit>().is_err(), "{text}");
     }
 }
 

@@ -4,7 +4,7 @@ use egui::Ui;
 
 use super::fold::{Knob, Of, Slide, fold, segments, switch};
 use crate::app::widgets::Row;
-use crate::app::{Command, Look};
+use crate::app::{Command, ViewState};
 use crate::picture::scene::palette::Palette;
 use crate::session::Session;
 use crate::simulation::plant::{Base, BaseKind, Wheel};
@@ -18,7 +18,7 @@ const KINDS: [(BaseKind, &str, &str); 3] = [
 ];
 
 /// Draws it.
-pub fn show(ui: &mut Ui, session: &Session, look: &Look, commands: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, session: &Session, look: &ViewState, commands: &mut Vec<Command>) {
     let (base, p) = (&session.scenario().base, &look.palette());
     let word = KINDS.iter().find(|k| k.0 == base.kind).map_or("", |k| k.1);
     let summary = if base.wheel.is_some() { format!("{word}, with a wheel") } else { word.to_owned() };

@@ -73,8 +73,9 @@ impl Measure {
 fn greatest(map: &PlaneMap, value: impl Fn([f64; 2]) -> f64) -> f64 {
     let [l1, l2] = map.limits();
     let at = |i: i32, j: i32| {
-        let share =
-            |l: crate::planning::reactionless::Limit, i: i32| l.min + f64::from(i) / f64::from(GRID) * (l.max - l.min);
+        let share = |l: crate::planning::reactionless::AngleLimit, i: i32| {
+            l.min + f64::from(i) / f64::from(GRID) * (l.max - l.min)
+        };
         [share(l1, i), share(l2, j)]
     };
     let poses = (0..=GRID).flat_map(|i| (0..=GRID).map(move |j| at(i, j)));

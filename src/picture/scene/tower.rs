@@ -16,7 +16,7 @@ use super::{Anchor, Label, Line, Marker, Mesh, Model, Scene, Solid};
 use crate::mechanics::machine::place_of;
 use crate::mechanics::planar::{Vector, unit};
 use crate::planning::pose_constant::Planes;
-use crate::planning::reactionless::{BSet, Limit, PlaneMap};
+use crate::planning::reactionless::{AngleLimit, BSet, PlaneMap};
 use crate::session::Run;
 use crate::simulation::frame::{Frame, Reach};
 
@@ -392,7 +392,7 @@ impl Tower {
 /// A workspace before it is turned, over a grid of (a_1, a_2). A shell lies over the grid of the walls, an area under it.
 fn sheet(map: &PlaneMap) -> Mesh {
     let [l1, l2] = map.limits();
-    let share = |l: Limit, i: u32| l.min + f64::from(i) / f64::from(CELLS) * (l.max - l.min);
+    let share = |l: AngleLimit, i: u32| l.min + f64::from(i) / f64::from(CELLS) * (l.max - l.min);
     let mut mesh = Mesh { shell: true, ..Mesh::default() };
     for (i, j) in (0..=CELLS).flat_map(|i| (0..=CELLS).map(move |j| (i, j))) {
         mesh.positions.push(point(map.forward_unturned([share(l1, i), share(l2, j)]), 0.0));

@@ -15,7 +15,7 @@ use crate::planning::curves::PathPoint;
 use crate::planning::curves::curve::{Curve, CurvePoint};
 use crate::planning::curves::low_pass::LowPass;
 use crate::planning::curves::spline::{FEWEST, Knots};
-use crate::planning::curves::table::Table;
+use crate::planning::curves::table::PathTable;
 use crate::settings::range::{Range, Short};
 
 /// The most samples.
@@ -258,7 +258,7 @@ impl Samples {
     }
 
     /// The path of the drives over s = t/T, every column a drive, rad, all turned by as much, rad.
-    pub fn path(&self, turn: f64) -> Option<Table> {
+    pub fn path(&self, turn: f64) -> Option<PathTable> {
         let rates = self.rates();
         let node = |i: usize| {
             let n = self.columns();
@@ -266,7 +266,7 @@ impl Samples {
             let [first, second] = [0, 1].map(|j| PerDrive::from_fn(n, |k| rates[k][i][j]));
             PathPoint { q, first, second }
         };
-        (!rates.is_empty()).then(|| Table::new(self.stations(), (0..self.count()).map(node).collect())).flatten()
+        (!rates.is_empty()).then(|| PathTable::new(self.stations(), (0..self.count()).map(node).collect())).flatten()
     }
 
     /// The curve of the end effector over s = t/T, the columns x and y, m.

@@ -12,4 +12,4 @@ pub use curve::{Curve, CurveError, CurvePoint};
 pub use given::Samples;
 pub use path::{Path, PathError};
 pub use point::PathPoint;
-pub use table::Table;
+pub use table::PathTable;

@@ -7,7 +7,7 @@ use crate::mechanics::machine::Chain;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 use crate::planning::curves::curve::{Curve, CurvePoint};
 use crate::planning::curves::point::PathPoint;
-use crate::planning::curves::table::Table;
+use crate::planning::curves::table::PathTable;
 use crate::planning::reactionless::{PlaneMap, PlanePoint};
 
 /// A path of the drives.
@@ -23,7 +23,7 @@ pub enum Path {
         to: DriveAngles,
     },
     /// By its nodes: integrated, or followed on a plane.
-    Table(Table),
+    Table(PathTable),
     /// A curve of (a_1, a_2) on the plane of a pose constant: reactionless.
     OnPlane {
         /// Lifts it.
@@ -245,16 +245,16 @@ pub fn minimum_norm_path(
     tip: &Chain,
     start: DriveAngles,
     curve: impl Fn(f64) -> CurvePoint,
-) -> Result<Table, PathError> {
+) -> Result<PathTable, PathError> {
     let nodes = minimum_norm_nodes(tip, start, &curve, SPACES)?;
-    Table::even(nodes).ok_or(PathError::Singular { s: 0.0 })
+    PathTable::even(nodes).ok_or(PathError::Singular { s: 0.0 })
 }
 
 /// The same along a curve of pieces, each with spaces of its own: an integration across a joint is not exact.
 ///
 /// # Errors
 /// If the Jacobian loses rank on the way.
-pub fn minimum_norm_curve(tip: &Chain, start: DriveAngles, curve: &Curve) -> Result<Table, PathError> {
+pub fn minimum_norm_curve(tip: &Chain, start: DriveAngles, curve: &Curve) -> Result<PathTable, PathError> {
     let piece = |q: DriveAngles, [from, to]: [f64; 2], at: &dyn Fn(f64) -> CurvePoint, spaces: usize| {
         minimum_norm_nodes(tip, q, &at, spaces).map_err(|error| match error {
             PathError::Singular { s } => PathError::Singular { s: from + s * (to - from) },
@@ -270,7 +270,7 @@ pub(in crate::planning) fn by_pieces<E>(
     start: DriveAngles,
     spaces: usize,
     follow: impl Fn(DriveAngles, [f64; 2], &dyn Fn(f64) -> CurvePoint, usize) -> Result<Vec<PathPoint>, E>,
-) -> Result<Option<Table>, E> {
+) -> Result<Option<PathTable>, E> {
     let joints: Vec<f64> = curve.joints().collect();
     // Many pieces are short, as those between samples.
     let least = if joints.len() > 200 { 1 } else { 16 };
@@ -294,7 +294,7 @@ pub(in crate::planning) fn by_pieces<E>(
             });
         }
     }
-    Ok(Table::new(stations, nodes))
+    Ok(PathTable::new(stations, nodes))
 }
 
 fn minimum_norm_nodes(
@@ -344,7 +344,7 @@ fn minimum_norm_nodes(
 ///
 /// # Errors
 /// If the Jacobian loses rank on the way.
-pub fn tip_line(tip: &Chain, start: DriveAngles, to: Vector) -> Result<Table, PathError> {
+pub fn tip_line(tip: &Chain, start: DriveAngles, to: Vector) -> Result<PathTable, PathError> {
     let from = end_effector(tip, &start.units());
     let way = to - from;
     minimum_norm_path(tip, start, |s| CurvePoint { p: from + s * way, first: way, second: Vector::default() })

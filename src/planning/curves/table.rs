@@ -6,14 +6,14 @@ use crate::planning::curves::PathPoint;
 /// Nodes of a path at s from 0 to 1, in order, joined by quintics that keep q, q′ and q″; the quintic's error falls with
 /// the sixth power of the spacing. Between nodes of one pose constant b, b is kept to rounding.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Table {
+pub struct PathTable {
     s: Vec<f64>,
     nodes: Vec<PathPoint>,
     /// For each of as many even parts of 0..1 as there are spaces, the space in which it begins.
     guide: Vec<u32>,
 }
 
-impl Table {
+impl PathTable {
     /// Nodes spaced evenly in s; at least two, all of one number of drives.
     pub fn even(nodes: Vec<PathPoint>) -> Option<Self> {
         let spaces = nodes.len().checked_sub(1).filter(|n| *n > 0)?;

@@ -21,7 +21,7 @@ use crate::mechanics::planar::{DriveAngles, PerDrive};
 use crate::planning::Motion;
 use crate::planning::curves::curve::{Curve, CurvePoint};
 use crate::planning::curves::given::Samples;
-use crate::planning::curves::table::Table;
+use crate::planning::curves::table::PathTable;
 use crate::planning::following::trace;
 use crate::planning::following::trace::{Blocked, Rule};
 use crate::planning::reactionless::{BSet, PlaneMap};
@@ -72,7 +72,7 @@ pub fn turned(lambda: &PerDrive, samples: &Samples, b: f64) -> Option<Samples> {
 }
 
 /// The curve of the end effector over s = t/T that a path of the drives through samples makes.
-pub fn tip_curve(tip: &Chain, path: &Table) -> Option<Curve> {
+pub fn tip_curve(tip: &Chain, path: &PathTable) -> Option<Curve> {
     let nodes: Vec<CurvePoint> = path
         .nodes()
         .iter()

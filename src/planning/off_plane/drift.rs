@@ -11,7 +11,7 @@ use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 use crate::planning::curves::PathPoint;
 use crate::planning::curves::curve::{Curve, CurvePoint};
 use crate::planning::curves::path::by_pieces;
-use crate::planning::curves::table::Table;
+use crate::planning::curves::table::PathTable;
 use crate::planning::off_plane::null_space::{lines, momentum_row_rate, rates, solve};
 
 /// Why a motion of zero momentum does not follow a curve.
@@ -77,8 +77,8 @@ pub fn zero_momentum_path(
     model: &Inertia,
     start: DriveAngles,
     curve: impl Fn(f64) -> CurvePoint,
-) -> Result<Table, DriftError> {
-    Table::even(round(model, start, &curve, SPACES, 1)?).ok_or(DriftError::Singular { s: 0.0, cycle: 1 })
+) -> Result<PathTable, DriftError> {
+    PathTable::even(round(model, start, &curve, SPACES, 1)?).ok_or(DriftError::Singular { s: 0.0, cycle: 1 })
 }
 
 /// The same along a curve of pieces, each with spaces of its own, for the given time round.
@@ -90,7 +90,7 @@ pub fn zero_momentum_curve(
     start: DriveAngles,
     curve: &Curve,
     cycle: usize,
-) -> Result<Table, DriftError> {
+) -> Result<PathTable, DriftError> {
     let piece = |q: DriveAngles, [from, to]: [f64; 2], at: &dyn Fn(f64) -> CurvePoint, spaces: usize| {
         round(model, q, &at, spaces, cycle).map_err(|error| match error {
             DriftError::Singular { s, cycle } => DriftError::Singular { s: from + s * (to - from), cycle },
@@ -167,7 +167,7 @@ pub struct Drift {
     /// q at the start and after each cycle, rad.
     pub ends: Vec<DriveAngles>,
     /// The first cycle.
-    pub first: Table,
+    pub first: PathTable,
 }
 
 impl Drift {
@@ -211,7 +211,7 @@ pub fn drift_in(
     let end = |nodes: &[PathPoint]| nodes.last().map_or(start, |node| node.q);
     let first = round(model, start, &curve, spaces, 1)?;
     let mut ends = vec![start, end(&first)];
-    let first = Table::even(first).ok_or(DriftError::Singular { s: 0.0, cycle: 1 })?;
+    let first = PathTable::even(first).ok_or(DriftError::Singular { s: 0.0, cycle: 1 })?;
     for cycle in 2..=cycles {
         ends.push(end(&round(model, ends[cycle - 1], &curve, spaces, cycle)?));
     }

@@ -19,7 +19,7 @@ use crate::mechanics::machine::{Chain, Inertia};
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::curves::curve::CurvePoint;
 use crate::planning::curves::path::{PathError, minimum_norm_path};
-use crate::planning::curves::table::Table;
+use crate::planning::curves::table::PathTable;
 use crate::planning::off_plane::corridor::{Corridor, CorridorError};
 use crate::planning::off_plane::inverse::pose_along;
 use crate::planning::off_plane::pose_course::{PoseCourse, Reaction};
@@ -53,7 +53,7 @@ pub enum Goal {
 pub struct LeastReaction {
     corridor: Corridor,
     course: PoseCourse,
-    path: Table,
+    path: PathTable,
     inertia: f64,
 }
 
@@ -166,7 +166,7 @@ impl LeastReaction {
     }
 
     /// The drives over u = t/T; rates are q′/T, accelerations q″/T².
-    pub fn path(&self) -> &Table {
+    pub fn path(&self) -> &PathTable {
         &self.path
     }
 
@@ -193,7 +193,7 @@ impl LeastReaction {
         Verdicts { fixed, minimum_norm, least: self.reaction(duration) }
     }
 
-    fn judge(&self, path: &Table, duration: f64) -> MinimumNorm {
+    fn judge(&self, path: &PathTable, duration: f64) -> MinimumNorm {
         let map = self.corridor.map();
         let scale = self.inertia / (duration * duration);
         let n_b = |u: f64| scale * map.project_rates(&path.at(u).second).1.abs();
@@ -259,7 +259,7 @@ fn followed(
     corridor: &Corridor,
     curve: impl Fn(f64) -> CurvePoint,
     course: &PoseCourse,
-) -> Result<Table, LeastReactionError> {
+) -> Result<PathTable, LeastReactionError> {
     let (map, stations) = (corridor.map(), corridor.stations());
     let mut from = corridor.start().a;
     let mut nodes = Vec::with_capacity(stations.len());
@@ -274,17 +274,17 @@ fn followed(
     }
     let nothing = LeastReactionError::NotFollowed { u: 0.0 };
     let reach = map.c().iter().map(|c| c.abs()).sum::<f64>();
-    let off = |table: &Table, u: f64, p: Vector| {
+    let off = |table: &PathTable, u: f64, p: Vector| {
         let at = map.project(&table.at(u).q);
         (map.forward(at.a, at.b) - p).norm()
     };
     for step in [STATIONS / 2, STATIONS / 4] {
-        let table = Table::even(nodes.iter().step_by(step).copied().collect()).ok_or(nothing.clone())?;
+        let table = PathTable::even(nodes.iter().step_by(step).copied().collect()).ok_or(nothing.clone())?;
         if stations.iter().all(|station| off(&table, station.u, station.point.p) <= ON_CURVE * reach) {
             return Ok(table);
         }
     }
-    let mut table = Table::even(nodes.clone()).ok_or(nothing.clone())?;
+    let mut table = PathTable::even(nodes.clone()).ok_or(nothing.clone())?;
     let mut u: Vec<f64> = stations.iter().map(|station| station.u).collect();
     for round in 0..=HALVINGS {
         let mut worst = (0.0, 0.0);
@@ -321,7 +321,7 @@ fn followed(
         finer.push(1.0);
         finer_nodes.push(nodes[nodes.len() - 1]);
         (u, nodes) = (finer, finer_nodes);
-        table = Table::new(u.clone(), nodes.clone()).ok_or(nothing.clone())?;
+        table = PathTable::new(u.clone(), nodes.clone()).ok_or(nothing.clone())?;
     }
     Ok(table)
 }

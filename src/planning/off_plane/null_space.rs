@@ -25,7 +25,7 @@ use crate::mechanics::kinematics::column;
 use crate::mechanics::machine::{BALANCED, Inertia};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Units, Vector};
 use crate::planning::curves::PathPoint;
-use crate::planning::curves::table::Table;
+use crate::planning::curves::table::PathTable;
 
 /// D_k = Σ_l H_lk at a pose, kg m², (A3).
 #[inline]
@@ -101,7 +101,7 @@ const STEPS: usize = 4;
 /// A motion of zero momentum from a pose, any number of drives: q′ is the wanted direction w, rad, as far as it transmits
 /// nothing, by the fourth-order rule. On an invariant machine it is a straight line. `None` unless pose and direction are
 /// of the machine and finite.
-pub fn motion(model: &Inertia, start: DriveAngles, w: &PerDrive) -> Option<Table> {
+pub fn motion(model: &Inertia, start: DriveAngles, w: &PerDrive) -> Option<PathTable> {
     let n = model.drives();
     if start.len() != n || w.len() != n || !start.iter().chain(w.iter()).all(|x| x.is_finite()) {
         return None;
@@ -120,7 +120,7 @@ pub fn motion(model: &Inertia, start: DriveAngles, w: &PerDrive) -> Option<Table
         let k4 = slope(&q.plus(h, &k3));
         q = q.plus(h / 6.0, &k1).plus(h / 3.0, &k2).plus(h / 3.0, &k3).plus(h / 6.0, &k4);
     }
-    Table::even(nodes)
+    PathTable::even(nodes)
 }
 
 /// q, q′ = w − σ D and q″ = −σ′ D − σ D′, with σ = (D · w)/(D · D).

@@ -23,7 +23,7 @@ use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use crate::planning::curves::PathPoint;
 use crate::planning::curves::path::Path;
-use crate::planning::curves::table::Table;
+use crate::planning::curves::table::PathTable;
 use crate::planning::reactionless::{BSet, NoReach, PlaneMap, PlanePoint};
 use crate::planning::timing::law::TimeLaw;
 
@@ -273,7 +273,7 @@ pub fn joint_line(map: &PlaneMap, [from, to]: [PlanePoint; 2]) -> Path {
 /// with joints that start and stop smoothly. Its parameter is u = t/T, so rates are q′/T and accelerations q″/T².
 ///
 /// b″ jumps at u = 0, ½ and 1. At ½ it is that of the first half; the next number after ½ begins the second.
-pub fn bang_bang_in_b(map: &PlaneMap, [from, to]: [PlanePoint; 2]) -> Option<Table> {
+pub fn bang_bang_in_b(map: &PlaneMap, [from, to]: [PlanePoint; 2]) -> Option<PathTable> {
     let step = [to.a[0] - from.a[0], to.a[1] - from.a[1]];
     let delta_b = to.b - from.b;
     let point = |share: [f64; 3], turn: [f64; 3]| {
@@ -290,5 +290,5 @@ pub fn bang_bang_in_b(map: &PlaneMap, [from, to]: [PlanePoint; 2]) -> Option<Tab
         point([1.0, 0.0, 0.0], [1.0, 0.0, -4.0]),
     ];
     // No number lies between the two nodes of the kink, so the quintic between them is never asked.
-    Table::new(vec![0.0, 0.5, 0.5f64.next_up(), 1.0], nodes)
+    PathTable::new(vec![0.0, 0.5, 0.5f64.next_up(), 1.0], nodes)
 }

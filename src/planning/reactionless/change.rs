@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use super::plane::{Limit, PlaneMap};
+use super::plane::{AngleLimit, PlaneMap};
 
 /// The pairs (k, l) of drives, counted from 0, in whose order sides are given.
 pub const PAIRS: [[usize; 2]; 3] = [[0, 1], [1, 2], [0, 2]];
@@ -49,7 +49,7 @@ impl Difference {
     }
 
     /// Least and greatest within limits.
-    pub fn range(&self, limits: [Limit; 2]) -> [f64; 2] {
+    pub fn range(&self, limits: [AngleLimit; 2]) -> [f64; 2] {
         let ends = |j: usize| [self.n[j] * limits[j].min, self.n[j] * limits[j].max];
         let [first, second] = [ends(0), ends(1)];
         [
@@ -59,7 +59,7 @@ impl Difference {
     }
 
     /// The ends, within limits, of the line at so many half turns.
-    pub fn segment(&self, limits: [Limit; 2], half_turns: f64) -> Option<[[f64; 2]; 2]> {
+    pub fn segment(&self, limits: [AngleLimit; 2], half_turns: f64) -> Option<[[f64; 2]; 2]> {
         let level = self.level(half_turns);
         // The coordinate that runs along it: a_2 where a_1 is constant, else a_1.
         let run = usize::from(self.n[1] == 0.0);

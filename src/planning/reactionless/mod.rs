@@ -27,6 +27,6 @@ pub use boundary::{Boundary, ChangeCurve, Curve, Extent, Line, Loop, Nearest, Ve
 pub use change::{ChangePoint, PAIRS};
 pub use decimal::{Decimal, between, metres, metres_apart};
 pub use dexterity::Dexterity;
-pub use plane::{AngleDefinition, Limit, NotAPlaneMap, PlaneMap, PlanePoint, SLACK, WIDEST};
+pub use plane::{AngleDefinition, AngleLimit, NotAPlaneMap, PlaneMap, PlanePoint, SLACK, WIDEST};
 pub use poses::Poses;
 pub use reach::NoReach;

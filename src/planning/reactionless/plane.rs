@@ -9,14 +9,14 @@ use crate::mechanics::planar::{Vector, cross, unit};
 
 /// Bounds of a relative joint angle, rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limit {
+pub struct AngleLimit {
     /// Least.
     pub min: f64,
     /// Greatest.
     pub max: f64,
 }
 
-impl Limit {
+impl AngleLimit {
     /// Whether an angle lies within, give or take `slack`, rad.
     pub fn contains(&self, angle: f64, slack: f64) -> bool {
         angle >= self.min - slack && angle <= self.max + slack
@@ -49,7 +49,7 @@ pub struct PlaneMap {
     c: [f64; 3],
     lambda: [f64; 3],
     angles: [AngleDefinition; 2],
-    limits: [Limit; 2],
+    limits: [AngleLimit; 2],
     lambda_sum: f64,
     u: [[f64; 2]; 3],
     v: [f64; 3],
@@ -112,7 +112,7 @@ impl PlaneMap {
         c: [f64; 3],
         lambda: [f64; 3],
         angles: [AngleDefinition; 2],
-        limits: [Limit; 2],
+        limits: [AngleLimit; 2],
     ) -> Result<Self, NotAPlaneMap> {
         let lambda_sum: f64 = lambda.iter().sum();
         let finite = c.iter().chain(&lambda).all(|x| x.is_finite())
@@ -179,7 +179,7 @@ impl PlaneMap {
     }
 
     /// Bounds of a_1 and a_2.
-    pub fn limits(&self) -> [Limit; 2] {
+    pub fn limits(&self) -> [AngleLimit; 2] {
         self.limits
     }
 
@@ -187,8 +187,8 @@ impl PlaneMap {
     ///
     /// # Errors
     /// If they are no bounds, or more than [`WIDEST`] apart.
-    pub fn with_limits(mut self, limits: [Limit; 2]) -> Result<Self, NotAPlaneMap> {
-        for (angle, Limit { min, max }) in limits.into_iter().enumerate() {
+    pub fn with_limits(mut self, limits: [AngleLimit; 2]) -> Result<Self, NotAPlaneMap> {
+        for (angle, AngleLimit { min, max }) in limits.into_iter().enumerate() {
             if !(min.is_finite() && max.is_finite() && min <= max) {
                 return Err(NotAPlaneMap::OutOfRange);
             }

@@ -20,7 +20,7 @@ mod folds;
 
 use std::f64::consts::{PI, TAU};
 
-use super::plane::{Limit, PlaneMap};
+use super::plane::{AngleLimit, PlaneMap};
 use crate::mechanics::planar::{Vector, unit};
 
 /// A point whose distance misses the reach of the arms by less than this share of it counts as reached: rounding.
@@ -137,7 +137,7 @@ pub(super) struct Quadrilateral {
     /// b = b_0 − Σλ arg w + λ_x α + λ_y β.
     b_0: f64,
     /// Bounds of α and β.
-    limits: [Limit; 2],
+    limits: [AngleLimit; 2],
     /// Which a_i is α, and which β.
     index: [usize; 2],
     /// α = sign a + shift, β likewise.
@@ -162,9 +162,9 @@ impl Quadrilateral {
         let sign = angles.map(|a| if a.to == shared { -1.0 } else { 1.0 });
         let shift = [0, 1].map(|i| half_turn[other[i]] - half_turn[shared] - sign[i] * angles[i].offset);
         let limits = [0, 1].map(|i| {
-            let Limit { min, max } = map.limits()[i];
+            let AngleLimit { min, max } = map.limits()[i];
             let ends = [min, max].map(|a| sign[i] * a + shift[i]);
-            Limit { min: ends[0].min(ends[1]) - slack, max: ends[0].max(ends[1]) + slack }
+            AngleLimit { min: ends[0].min(ends[1]) - slack, max: ends[0].max(ends[1]) + slack }
         });
 
         let length = c.map(f64::abs);
@@ -382,7 +382,7 @@ impl Quadrilateral {
         }
         let Some((pieces, count)) = self.pieces() else { return };
         let cuts = self.cuts();
-        let Limit { min, max } = self.limits[0];
+        let AngleLimit { min, max } = self.limits[0];
         for piece in &pieces[..count] {
             let [from, to] = piece.ends;
             let last = ((max - from) / TAU).floor();
@@ -504,7 +504,7 @@ impl Quadrilateral {
         for beta in lifts(PI, second) {
             line([[first.min, beta], [first.max, beta]], [first.min, first.max]);
         }
-        let difference = Limit { min: first.min - second.max, max: first.max - second.min };
+        let difference = AngleLimit { min: first.min - second.max, max: first.max - second.min };
         for difference in lifts(PI, difference) {
             let [from, to] = [first.min.max(second.min + difference), first.max.min(second.max + difference)];
             line([[from, from - difference], [to, to - difference]], [0.0; 2]);
@@ -543,7 +543,7 @@ impl Quadrilateral {
 }
 
 /// The angles between two bounds that are `angle` give or take whole turns.
-fn lifts(angle: f64, bound: Limit) -> impl Iterator<Item = f64> {
+fn lifts(angle: f64, bound: AngleLimit) -> impl Iterator<Item = f64> {
     let first = ((bound.min - angle) / TAU).ceil();
     let count = ((bound.max - angle) / TAU).floor() - first + 1.0;
     // As a cast: a negative count is none.

@@ -10,12 +10,12 @@ use crate::mechanics::planar::PerDrive;
 use crate::planning::curves::path::Path;
 use crate::planning::timing::keep::{greatest, kept};
 use crate::planning::timing::law::Progress;
-use crate::planning::timing::limits::{Constraints, Limit, Limits, Quantity, Row};
+use crate::planning::timing::limits::{ConstraintRow, Constraints, DriveLimit, LimitedQuantity, Limits};
 use crate::planning::timing::outcome::{Fastest, TimeError};
 use crate::planning::timing::profile::{Profile, Span};
 use crate::planning::timing::s_curve::s_curve;
 use crate::planning::timing::smooth;
-use crate::planning::timing::topp::{Blocked, Grid, PAST, Sweep, UNLIMITED};
+use crate::planning::timing::topp::{Grid, NoSpeed, PAST, Sweep, UNLIMITED};
 use crate::planning::timing::usage::Shares;
 
 /// Spaces of the grid on a curve to begin with, if nobody says otherwise.
@@ -76,7 +76,7 @@ fn planned(
     stations: Option<&[f64]>,
 ) -> Result<Fastest, TimeError> {
     let drives = (path.at(0.0).q.len(), model.drives(), limits.torque.len());
-    let alike = Quantity::ALL.iter().all(|quantity| limits.on(*quantity).len() == drives.1);
+    let alike = LimitedQuantity::ALL.iter().all(|quantity| limits.on(*quantity).len() == drives.1);
     if drives.0 != drives.1 || !alike {
         return Err(TimeError::Drives { path: drives.0, model: drives.1, limits: drives.2 });
     }
@@ -95,12 +95,12 @@ fn planned(
         let bound = curved(path, &constraints, &grid, grid.fastest());
         return if smooth { smooth::smooth(path, model, around, &constraints, &grid, bound) } else { bound };
     }
-    let stretch = |at: &Progress| constraints.stretch(path, at);
+    let stretches = |at: &Progress| constraints.stretches(path, at);
     let (mut grid, found) = Grid::new(path, &constraints, dense(path)).fastest_refined(path, &constraints);
     let mut bound = curved(path, &constraints, &grid, found);
     for _ in 0..MENDINGS {
         let Ok(found) = &bound else { break };
-        let past: Vec<f64> = found.profile.phases().map(|phase| greatest(std::iter::once(phase), stretch)).collect();
+        let past: Vec<f64> = found.profile.phases().map(|phase| greatest(std::iter::once(phase), stretches)).collect();
         if past.len() + 1 != grid.s.len() || past.iter().all(|past| *past <= 1.0 + PAST) {
             break;
         }
@@ -112,7 +112,7 @@ fn planned(
         return smooth::smooth(path, model, around, &constraints, &grid, bound);
     }
     let found = bound?;
-    let profile = kept(&found.profile, stretch).ok_or(TimeError::Stuck { s: 0.0 })?;
+    let profile = kept(&found.profile, stretches).ok_or(TimeError::Stuck { s: 0.0 })?;
     Ok(Fastest { profile, ..found })
 }
 
@@ -143,18 +143,18 @@ fn nowhere() -> Fastest {
 }
 
 /// The least of limits on derivatives of s along a straight line, and whose it is.
-fn least(step: &PerDrive, quantity: Quantity, limit: impl Fn(usize) -> f64) -> (f64, Limit) {
-    let of = |drive: usize| (limit(drive) / step[drive].abs(), Limit { quantity, drive });
+fn least(step: &PerDrive, quantity: LimitedQuantity, limit: impl Fn(usize) -> f64) -> (f64, DriveLimit) {
+    let of = |drive: usize| (limit(drive) / step[drive].abs(), DriveLimit { quantity, drive });
     let moving = (0..step.len()).filter(|k| step[*k] != 0.0).map(of);
-    moving.fold((f64::INFINITY, Limit { quantity, drive: 0 }), |a, b| if b.0 < a.0 { b } else { a })
+    moving.fold((f64::INFINITY, DriveLimit { quantity, drive: 0 }), |a, b| if b.0 < a.0 { b } else { a })
 }
 
 fn straight(step: &PerDrive, model: &Inertia, limits: &Limits, smooth: bool) -> Result<Fastest, TimeError> {
-    let speed = least(step, Quantity::Speed, |k| limits.speed[k]);
-    let torque = least(step, Quantity::Torque, |k| limits.torque[k] / model.diagonal(k));
-    let wanted = least(step, Quantity::Acceleration, |k| limits.acceleration[k]);
+    let speed = least(step, LimitedQuantity::Speed, |k| limits.speed[k]);
+    let torque = least(step, LimitedQuantity::Torque, |k| limits.torque[k] / model.diagonal(k));
+    let wanted = least(step, LimitedQuantity::Acceleration, |k| limits.acceleration[k]);
     let acceleration = if torque.0 <= wanted.0 { torque } else { wanted };
-    let jerk = least(step, Quantity::Jerk, |k| limits.jerk[k]);
+    let jerk = least(step, LimitedQuantity::Jerk, |k| limits.jerk[k]);
     let without = s_curve(speed.0, acceleration.0, f64::INFINITY);
     let spans = match (smooth, without) {
         (true, _) if jerk.0.is_infinite() => return Err(TimeError::NoJerkLimit),
@@ -179,7 +179,7 @@ fn curved(
     path: &Path,
     constraints: &Constraints,
     grid: &Grid,
-    found: Result<Sweep, Blocked>,
+    found: Result<Sweep, NoSpeed>,
 ) -> Result<Fastest, TimeError> {
     let stations = &grid.s;
     if grid.rows.iter().all(|r| r.a == 0.0 && r.c == 0.0) {
@@ -200,8 +200,8 @@ fn curved(
 }
 
 /// What stands in the way.
-fn explain(grid: &Grid, constraints: &Constraints, blocked: Blocked) -> TimeError {
-    let (Blocked::At(i) | Blocked::Rest(i)) = blocked;
+fn explain(grid: &Grid, constraints: &Constraints, blocked: NoSpeed) -> TimeError {
+    let (NoSpeed::At(i) | NoSpeed::Rest(i)) = blocked;
     let near = [i, (i + 1).min(grid.s.len() - 1)];
     for i in near {
         for (row, limit) in grid.rows_at(i).iter().zip(constraints.rows()) {
@@ -215,27 +215,27 @@ fn explain(grid: &Grid, constraints: &Constraints, blocked: Blocked) -> TimeErro
 }
 
 /// Which limits lead, for what share of the time.
-fn leading(path: &Path, grid: &Grid, constraints: &Constraints, x: &[f64]) -> Vec<(Limit, f64)> {
+fn leading(path: &Path, grid: &Grid, constraints: &Constraints, x: &[f64]) -> Vec<(DriveLimit, f64)> {
     let mut shares = Shares::default();
     for i in 0..x.len() - 1 {
         let way = grid.s[i + 1] - grid.s[i];
         let u = (x[i + 1] - x[i]) / (2.0 * way);
-        let mut most: Option<(f64, Limit)> = None;
-        let mut take = |part: f64, limit: Limit| {
+        let mut most: Option<(f64, DriveLimit)> = None;
+        let mut take = |part: f64, limit: DriveLimit| {
             if most.is_none_or(|(m, _)| part > m) {
                 most = Some((part, limit));
             }
         };
         for i in [i, i + 1] {
             for (row, limit) in grid.rows_at(i).iter().zip(constraints.rows()) {
-                take(Row::value(row, u, x[i]).abs(), *limit);
+                take(ConstraintRow::value(row, u, x[i]).abs(), *limit);
             }
         }
         let fastest = if x[i] / grid.cap[i] > x[i + 1] / grid.cap[i + 1] { i } else { i + 1 };
         let part = (x[fastest] / grid.cap[fastest]).sqrt();
         if most.is_none_or(|(m, _)| part > m) {
             let drive = constraints.fastest_drive(&path.at(grid.s[fastest]));
-            most = Some((part, Limit { quantity: Quantity::Speed, drive }));
+            most = Some((part, DriveLimit { quantity: LimitedQuantity::Speed, drive }));
         }
         if let Some((_, limit)) = most {
             shares.add(limit, 2.0 * way / (x[i].sqrt() + x[i + 1].sqrt()));

@@ -22,7 +22,7 @@ use crate::mechanics::planar::PerDrive;
 use crate::planning::curves::PathPoint;
 use crate::planning::curves::path::Path;
 use crate::planning::timing::law::Progress;
-use crate::planning::timing::limits::{Constraints, MAX_ROWS, Row};
+use crate::planning::timing::limits::{ConstraintRow, Constraints, MAX_ROWS};
 use crate::planning::timing::profile::Profile;
 
 /// Where limits are kept in every space, as shares of it, each with half of its weight: two points of Gauss.
@@ -132,7 +132,7 @@ impl Program {
         let (each, spaces) = (linear + 1 + jerked.len(), nodes.len() - 1);
         let mut places = Vec::with_capacity(2 * spaces);
         let mut sides = Vec::with_capacity(2 * spaces * each);
-        let mut rows = [Row::default(); MAX_ROWS];
+        let mut rows = [ConstraintRow::default(); MAX_ROWS];
         let rows = &mut rows[..linear];
         for i in 0..spaces {
             let (h, shares) = (nodes[i + 1] - nodes[i], [share(&nodes, i), share(&nodes, i + 1)]);

@@ -16,24 +16,35 @@ const INSIDE: f64 = 1e-6;
 /// What rounding may need.
 const SPARE: f64 = 1e-9;
 
-/// The greatest of a quantity that is smooth within every phase, over all of them.
+/// The greatest of several quantities that are each smooth within every phase, over all phases. The greatest of them is
+/// not smooth where one takes over from another, so each is looked at by itself.
 ///
-/// Its peak between three instants is taken to be that of the parabola through them; phases in which that could be the
+/// A peak between three instants is taken to be that of the parabola through them; phases in which one could be the
 /// greatest of all are looked at closely.
-pub(super) fn greatest(phases: impl Iterator<Item = (Progress, f64)>, of: impl Fn(&Progress) -> f64) -> f64 {
+pub(super) fn greatest<const N: usize>(
+    phases: impl Iterator<Item = (Progress, f64)>,
+    of: impl Fn(&Progress) -> [f64; N],
+) -> f64 {
     let mut most: f64 = 0.0;
     for (from, time) in phases {
         let at = |u: f64| of(&after(&from, u.clamp(INSIDE, 1.0 - INSIDE) * time));
         let three = [at(0.0), at(0.5), at(1.0)];
-        let seen = three.into_iter().fold(0.0, f64::max);
-        let spread = seen - three.into_iter().fold(f64::INFINITY, f64::min);
-        if crest(three).max(seen) + 0.25 * spread <= most || spread <= SPARE * seen {
+        let before = most;
+        let mut close = false;
+        for k in 0..N {
+            let own = three.map(|values| values[k]);
+            let seen = own.into_iter().fold(0.0, f64::max);
+            let spread = seen - own.into_iter().fold(f64::INFINITY, f64::min);
             most = most.max(seen);
-            continue;
+            close |= spread > SPARE * seen && crest(own).max(seen) + 0.25 * spread > before;
         }
-        let near: [f64; CLOSE + 1] = std::array::from_fn(|i| at(i as f64 / CLOSE as f64));
-        let crests = near.windows(3).map(|w| crest([w[0], w[1], w[2]]));
-        most = crests.chain(near).fold(most, f64::max);
+        if close {
+            let near: [[f64; N]; CLOSE + 1] = std::array::from_fn(|i| at(i as f64 / CLOSE as f64));
+            for w in near.windows(3) {
+                let tops = (0..N).map(|k| crest([w[0][k], w[1][k], w[2][k]]));
+                most = tops.fold(most, f64::max);
+            }
+        }
     }
     most
 }
@@ -45,10 +56,10 @@ fn crest([a, b, c]: [f64; 3]) -> f64 {
     if bend < 0.0 && slope.abs() <= -bend { b - 0.5 * slope * slope / bend } else { a.max(b).max(c) }
 }
 
-/// A profile slowed down by the least factor with which every limit is kept; `stretch` is that factor at one instant.
-/// `None` if no time is enough.
-pub(super) fn kept(profile: &Profile, stretch: impl Fn(&Progress) -> f64) -> Option<Profile> {
-    let factor = greatest(profile.phases(), stretch);
+/// A profile slowed down by the least factor with which every limit is kept; `stretches` are those factors at one
+/// instant, one a limit. `None` if no time is enough.
+pub(super) fn kept<const N: usize>(profile: &Profile, stretches: impl Fn(&Progress) -> [f64; N]) -> Option<Profile> {
+    let factor = greatest(profile.phases(), stretches);
     // Rounding is not worth another profile.
     let needed = factor > 1.0 + SPARE;
     factor.is_finite().then(|| if needed { profile.stretched(factor * (1.0 + SPARE)) } else { profile.clone() })
@@ -71,8 +82,8 @@ impl Motion {
             let time = time / parts as f64;
             (0..parts).map(move |i| (after(&from, i as f64 * time), time))
         };
-        let stretch = |at: &Progress| Demand::of(&self.path, model, around, &limits, at).stretch(&limits);
-        let factor = greatest(self.profile.phases().flat_map(cut), stretch);
+        let stretches = |at: &Progress| Demand::of(&self.path, model, around, &limits, at).stretches(&limits);
+        let factor = greatest(self.profile.phases().flat_map(cut), stretches);
         let by = if factor > 1.0 + SPARE { factor * (1.0 + SPARE) } else { 1.0 };
         let profile = if by > 1.0 { self.profile.stretched(by) } else { self.profile.clone() };
         factor.is_finite().then(|| Self { path: self.path.clone(), profile })

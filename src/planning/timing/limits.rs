@@ -22,7 +22,7 @@ use crate::planning::timing::law::Progress;
 
 /// What of a drive is limited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
+pub enum LimitedQuantity {
     /// τ_k, N m.
     Torque,
     /// q̇_k, rad/s.
@@ -33,27 +33,27 @@ pub enum Quantity {
     Jerk,
 }
 
-impl Quantity {
+impl LimitedQuantity {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Torque, Self::Speed, Self::Acceleration, Self::Jerk];
 }
 
 /// A limit of a drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Limit {
+pub struct DriveLimit {
     /// Of what.
-    pub quantity: Quantity,
+    pub quantity: LimitedQuantity,
     /// Of which drive, counted from 0.
     pub drive: usize,
 }
 
-impl fmt::Display for Limit {
+impl fmt::Display for DriveLimit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let what = match self.quantity {
-            Quantity::Torque => "torque",
-            Quantity::Speed => "speed",
-            Quantity::Acceleration => "acceleration",
-            Quantity::Jerk => "jerk",
+            LimitedQuantity::Torque => "torque",
+            LimitedQuantity::Speed => "speed",
+            LimitedQuantity::Acceleration => "acceleration",
+            LimitedQuantity::Jerk => "jerk",
         };
         write!(f, "{what} of drive {}", self.drive + 1)
     }
@@ -94,19 +94,19 @@ impl Limits {
     }
 
     /// The limits on one quantity.
-    pub fn on(&self, quantity: Quantity) -> &PerDrive {
+    pub fn on(&self, quantity: LimitedQuantity) -> &PerDrive {
         match quantity {
-            Quantity::Torque => &self.torque,
-            Quantity::Speed => &self.speed,
-            Quantity::Acceleration => &self.acceleration,
-            Quantity::Jerk => &self.jerk,
+            LimitedQuantity::Torque => &self.torque,
+            LimitedQuantity::Speed => &self.speed,
+            LimitedQuantity::Acceleration => &self.acceleration,
+            LimitedQuantity::Jerk => &self.jerk,
         }
     }
 }
 
 /// One two-sided constraint at a place of a path: |a u + c x + g| ≤ 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Row {
+pub struct ConstraintRow {
     /// Of u = s̈, s².
     pub a: f64,
     /// Of x = ṡ², s².
@@ -115,7 +115,7 @@ pub struct Row {
     pub g: f64,
 }
 
-impl Row {
+impl ConstraintRow {
     /// The quantity as a part of its limit.
     #[inline]
     pub fn value(&self, u: f64, x: f64) -> f64 {
@@ -123,7 +123,7 @@ impl Row {
     }
 }
 
-impl Row {
+impl ConstraintRow {
     /// The factor on time with which the limit is just kept: all but what is there at rest falls with its square.
     /// Infinite where no time is enough.
     #[inline]
@@ -150,7 +150,7 @@ pub struct Constraints<'a> {
     limits: &'a Limits,
     /// Where torque is D_k q̈_k in every pose: 1/limit of q̈_k from both.
     constant: Option<PerDrive>,
-    rows: Vec<Limit>,
+    rows: Vec<DriveLimit>,
 }
 
 impl<'a> Constraints<'a> {
@@ -161,8 +161,8 @@ impl<'a> Constraints<'a> {
         let constant = model.is_invariant() && weightless && around.force.norm_sqr() == 0.0;
         let by_torque = |k: usize| limits.torque[k] / model.diagonal(k);
         let limited = |quantity| move |drive: &usize| limits.on(quantity)[*drive].is_finite();
-        let of = |quantity| move |drive| Limit { quantity, drive };
-        let (torque, acceleration) = (Quantity::Torque, Quantity::Acceleration);
+        let of = |quantity| move |drive| DriveLimit { quantity, drive };
+        let (torque, acceleration) = (LimitedQuantity::Torque, LimitedQuantity::Acceleration);
         let rows = if constant {
             // Both limit q̈_k; the lower one is enough.
             let lower = |k| if by_torque(k) <= limits.acceleration[k] { torque } else { acceleration };
@@ -177,7 +177,7 @@ impl<'a> Constraints<'a> {
     }
 
     /// What each row limits, in the order of [`at`](Self::at).
-    pub fn rows(&self) -> &[Limit] {
+    pub fn rows(&self) -> &[DriveLimit] {
         &self.rows
     }
 
@@ -193,12 +193,12 @@ impl<'a> Constraints<'a> {
 
     /// The rows at a point of a path, as many as [`rows`](Self::rows), and the greatest x that speeds allow, 1/s².
     #[inline]
-    pub fn at(&self, point: &PathPoint, rows: &mut [Row]) -> f64 {
+    pub fn at(&self, point: &PathPoint, rows: &mut [ConstraintRow]) -> f64 {
         let PathPoint { q, first, second } = point;
         if let Some(per) = &self.constant {
             for (row, limit) in rows.iter_mut().zip(&self.rows) {
                 let (k, per) = (limit.drive, per[limit.drive]);
-                *row = Row { a: per * first[k], c: per * second[k], g: 0.0 };
+                *row = ConstraintRow { a: per * first[k], c: per * second[k], g: 0.0 };
             }
         } else {
             let e = q.units();
@@ -210,8 +210,8 @@ impl<'a> Constraints<'a> {
                 let k = limit.drive;
                 let per = 1.0 / self.limits.on(limit.quantity)[k];
                 *row = match limit.quantity {
-                    Quantity::Torque => Row { a: per * a[k], c: per * c[k], g: per * g[k] },
-                    _ => Row { a: per * first[k], c: per * second[k], g: 0.0 },
+                    LimitedQuantity::Torque => ConstraintRow { a: per * a[k], c: per * c[k], g: per * g[k] },
+                    _ => ConstraintRow { a: per * first[k], c: per * second[k], g: 0.0 },
                 };
             }
         }
@@ -219,13 +219,21 @@ impl<'a> Constraints<'a> {
         1.0 / (slow * slow)
     }
 
-    /// The factor on time with which a place on a path, passed so, just keeps every limit but those on jerk.
-    pub(super) fn stretch(&self, path: &Path, at: &Progress) -> f64 {
-        let mut rows = [Row::default(); MAX_ROWS];
+    /// The factors on time with which a place on a path, passed so, just keeps each limit but those on jerk.
+    pub(super) fn stretches(&self, path: &Path, at: &Progress) -> [f64; MAX_ROWS + MAX_DRIVES] {
+        let mut rows = [ConstraintRow::default(); MAX_ROWS];
         let rows = &mut rows[..self.rows.len()];
-        let x = at.rate * at.rate;
-        let cap = self.at(&path.at(at.s), rows);
-        rows.iter().map(|row| row.stretch(at.acceleration, x)).fold((x / cap).sqrt(), f64::max)
+        let point = path.at(at.s);
+        self.at(&point, rows);
+        let mut factors = [0.0; MAX_ROWS + MAX_DRIVES];
+        let (by_row, by_speed) = factors.split_at_mut(MAX_ROWS);
+        for (factor, row) in by_row.iter_mut().zip(rows) {
+            *factor = row.stretch(at.acceleration, at.rate * at.rate);
+        }
+        for (factor, (first, limit)) in by_speed.iter_mut().zip(point.first.iter().zip(self.limits.speed.iter())) {
+            *factor = (first * at.rate).abs() / limit;
+        }
+        factors
     }
 
     /// The drive whose limit on speed is nearest, whatever ṡ.

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::limits::Limit;
+use super::limits::DriveLimit;
 use super::profile::Profile;
 
 /// The fastest motion on a path.
@@ -14,7 +14,7 @@ pub struct Fastest {
     /// where jerk was to be limited, and something besides it limits.
     pub gap: Option<f64>,
     /// Which limits lead, for what share of T, the greatest share first.
-    pub limiting: Vec<(Limit, f64)>,
+    pub limiting: Vec<(DriveLimit, f64)>,
 }
 
 /// Why there is no fastest motion.

@@ -70,14 +70,14 @@ pub(super) fn smooth(
         let share = (s - grid.s[i]) / (grid.s[i + 1] - grid.s[i]);
         (from * from + share * (to * to - from * from)) / (slope * slope)
     };
-    let stretch = |at: &Progress| Demand::of(path, model, around, limits, at).stretch(limits);
+    let stretches = |at: &Progress| Demand::of(path, model, around, limits, at).stretches(limits);
     let (mut nodes, mut timing, mut best) = (nodes, None, None::<Profile>);
     for _ in 0..=MENDINGS {
         let solved = Program::new(path, constraints, nodes, most).solve(fastest, timing.as_ref());
         let Some(found) = solved else { break };
         let profile = found.profile();
         let mut phases = profile.phases();
-        let past: Vec<f64> = (1..found.nodes.len()).map(|_| greatest(phases.by_ref().take(3), stretch)).collect();
+        let past: Vec<f64> = (1..found.nodes.len()).map(|_| greatest(phases.by_ref().take(3), stretches)).collect();
         drop(phases);
         let most = past.iter().copied().fold(0.0, f64::max);
         if most.is_finite() && most > 0.0 {
@@ -93,7 +93,7 @@ pub(super) fn smooth(
         timing = Some(found);
     }
     // The law that is best where jerk alone counts serves where all else fails.
-    let profile = best.or_else(|| by_law(stretch)).ok_or_else(stuck)?;
+    let profile = best.or_else(|| by_law(stretches)).ok_or_else(stuck)?;
     let gap = bound.map(|b| profile.duration() / b.profile.duration() - 1.0);
     let motion = Motion { path: path.clone(), profile };
     let limiting = Usage::of(&motion, model, around, limits, INSTANTS).leading;
@@ -101,14 +101,14 @@ pub(super) fn smooth(
 }
 
 /// The law of least jerk in the time that keeps all limits.
-fn by_law(stretch: impl Fn(&Progress) -> f64) -> Option<Profile> {
+fn by_law<const N: usize>(stretches: impl Fn(&Progress) -> [f64; N]) -> Option<Profile> {
     let spans = s_curve(f64::INFINITY, f64::INFINITY, 32.0)?;
     let cut = |span: &Span| {
         let (time, from) = (span.time / PARTS as f64, *span);
         (0..PARTS).map(move |i| Span { time, acceleration: from.acceleration + i as f64 * time * from.jerk, ..from })
     };
     let law = Profile::of_spans(&spans.iter().flat_map(cut).collect::<Vec<_>>());
-    let factor = greatest(law.phases(), stretch);
+    let factor = greatest(law.phases(), stretches);
     (factor > 0.0 && factor.is_finite()).then(|| law.stretched(factor * (1.0 + SPARE)))
 }
 

@@ -10,7 +10,7 @@
 //! exact to second order.
 
 use crate::planning::curves::path::Path;
-use crate::planning::timing::limits::{Constraints, MAX_ROWS, Row};
+use crate::planning::timing::limits::{ConstraintRow, Constraints, MAX_ROWS};
 
 /// The greatest x that counts as limited, 1/s².
 pub(super) const UNLIMITED: f64 = 1e20;
@@ -32,14 +32,14 @@ pub(super) struct Grid {
     pub(super) s: Vec<f64>,
     /// Rows in one.
     pub(super) m: usize,
-    pub(super) rows: Vec<Row>,
+    pub(super) rows: Vec<ConstraintRow>,
     /// The greatest x that speeds allow.
     pub(super) cap: Vec<f64>,
 }
 
 /// Where the sweeps end without a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Blocked {
+pub(super) enum NoSpeed {
     /// No x is controllable at this station.
     At(usize),
     /// The start, at rest, is not; or nothing moves from here.
@@ -58,7 +58,7 @@ impl Grid {
     /// Rows of one more station, which s does not hold yet.
     fn push(&mut self, path: &Path, constraints: &Constraints, s: f64) {
         let from = self.rows.len();
-        self.rows.resize(from + self.m, Row::default());
+        self.rows.resize(from + self.m, ConstraintRow::default());
         let cap = constraints.at(&path.at(s), &mut self.rows[from..]);
         self.cap.push(cap.min(10.0 * UNLIMITED));
     }
@@ -83,7 +83,7 @@ impl Grid {
     }
 
     /// The fastest motion on a grid that is made finer wherever what is limited changes much within a space.
-    pub(super) fn fastest_refined(mut self, path: &Path, constraints: &Constraints) -> (Self, Result<Sweep, Blocked>) {
+    pub(super) fn fastest_refined(mut self, path: &Path, constraints: &Constraints) -> (Self, Result<Sweep, NoSpeed>) {
         let mut found = self.fastest();
         for _ in 0..ROUNDS {
             let Ok(sweep) = &found else { break };
@@ -99,7 +99,7 @@ impl Grid {
 
     /// The same motion on a grid that is made finer where its profile passes a limit between two stations: `past` is by
     /// what factor on time, for each space.
-    pub(super) fn mended(self, path: &Path, constraints: &Constraints, past: &[f64]) -> (Self, Result<Sweep, Blocked>) {
+    pub(super) fn mended(self, path: &Path, constraints: &Constraints, past: &[f64]) -> (Self, Result<Sweep, NoSpeed>) {
         let parts: Vec<usize> = (0..past.len())
             .map(|i| {
                 let wide = self.s[i + 1] - self.s[i] > LEAST_SPACE;
@@ -120,8 +120,9 @@ impl Grid {
             let (here, there) = (self.rows_at(i), self.rows_at(i + 1));
             // By how much a quantity changes over the space, as a part of its limit, but for what x itself makes of it.
             let high = x[i].max(x[i + 1]);
-            let change =
-                |(a, b): (&Row, &Row)| ((b.a - a.a) * u).abs() + ((b.c - a.c) * high).abs() + (b.g - a.g).abs();
+            let change = |(a, b): (&ConstraintRow, &ConstraintRow)| {
+                ((b.a - a.a) * u).abs() + ((b.c - a.c) * high).abs() + (b.g - a.g).abs()
+            };
             let rows = here.iter().zip(there).map(change).fold(0.0, f64::max);
             let speed = (high / self.cap[i]).sqrt() - (high / self.cap[i + 1]).sqrt();
             let parts = (rows.max(speed.abs()) / CHANGE).ceil();
@@ -132,12 +133,12 @@ impl Grid {
         (parts, most)
     }
 
-    pub(super) fn rows_at(&self, i: usize) -> &[Row] {
+    pub(super) fn rows_at(&self, i: usize) -> &[ConstraintRow] {
         &self.rows[i * self.m..(i + 1) * self.m]
     }
 
     /// The fastest motion from rest to rest.
-    pub(super) fn fastest(&self) -> Result<Sweep, Blocked> {
+    pub(super) fn fastest(&self) -> Result<Sweep, NoSpeed> {
         let flat = vec![0.0; self.s.len().saturating_sub(1)];
         let first = Sweep { x: self.sweep(&flat)?, rise: flat };
         let rise = self.rises(&first.x);
@@ -152,19 +153,19 @@ impl Grid {
     }
 
     /// Two sweeps over the grid: x at every station of the fastest motion with given rises of u.
-    fn sweep(&self, rise: &[f64]) -> Result<Vec<f64>, Blocked> {
+    fn sweep(&self, rise: &[f64]) -> Result<Vec<f64>, NoSpeed> {
         let n = self.s.len();
         let mut x = vec![0.0; n];
         let mut reach = vec![[0.0; 2]; n];
         let mut space = Space::new();
         for i in (0..rise.len()).rev() {
             space.set(self, i, rise[i], reach[i + 1]);
-            let least = space.least().ok_or(Blocked::At(i))?;
-            let greatest = space.greatest().filter(|x| *x >= least).ok_or(Blocked::At(i))?;
+            let least = space.least().ok_or(NoSpeed::At(i))?;
+            let greatest = space.greatest().filter(|x| *x >= least).ok_or(NoSpeed::At(i))?;
             reach[i] = [least, greatest];
         }
         if reach[0][0] > 0.0 {
-            return Err(Blocked::Rest(0));
+            return Err(NoSpeed::Rest(0));
         }
         for i in 0..rise.len() {
             space.set(self, i, rise[i], reach[i + 1]);
@@ -172,7 +173,7 @@ impl Grid {
             let [least, most] = reach[i + 1];
             x[i + 1] = (x[i] + 2.0 * (self.s[i + 1] - self.s[i]) * u).clamp(least, most);
             if x[i] == 0.0 && x[i + 1] == 0.0 {
-                return Err(Blocked::Rest(i));
+                return Err(NoSpeed::Rest(i));
             }
         }
         Ok(x)
@@ -244,8 +245,8 @@ impl Space {
         self.x = [0.0, grid.cap[i]];
         let (here, there) = (grid.rows_at(i), grid.rows_at(i + 1));
         // a u + c (x + 2 Δ u) at the far end.
-        let near = here.iter().map(|r| Row { g: r.g - 0.5 * rise * r.a, ..*r });
-        let far = there.iter().map(|r| Row { a: r.a + twice * r.c, c: r.c, g: r.g + 0.5 * rise * r.a });
+        let near = here.iter().map(|r| ConstraintRow { g: r.g - 0.5 * rise * r.a, ..*r });
+        let far = there.iter().map(|r| ConstraintRow { a: r.a + twice * r.c, c: r.c, g: r.g + 0.5 * rise * r.a });
         let all = || near.clone().chain(far.clone());
         let floor = NO_PART * all().fold(0.0, |m: f64, r| m.max(r.a.abs()));
         self.strips[0] = Strip { low: arrive[0] / twice, high: arrive[1] / twice, slope: -1.0 / twice };

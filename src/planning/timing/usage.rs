@@ -2,11 +2,11 @@
 
 use crate::mechanics::dynamics::{Surroundings, holding_torque, inverse};
 use crate::mechanics::machine::Inertia;
-use crate::mechanics::planar::PerDrive;
+use crate::mechanics::planar::{MAX_DRIVES, PerDrive};
 use crate::planning::Motion;
 use crate::planning::curves::path::Path;
 use crate::planning::timing::law::Progress;
-use crate::planning::timing::limits::{Limit, Limits, Quantity};
+use crate::planning::timing::limits::{DriveLimit, LimitedQuantity, Limits};
 
 /// A limit counts as active when this much of it, or more, is used.
 pub const ACTIVE: f64 = 1.0 - 1e-3;
@@ -21,9 +21,9 @@ pub struct Usage {
     /// When, s.
     pub when: f64,
     /// Of which limit; none where there are no limits.
-    pub limit: Option<Limit>,
+    pub limit: Option<DriveLimit>,
     /// Which limit is used furthest, for what share of T, the greatest share first.
-    pub leading: Vec<(Limit, f64)>,
+    pub leading: Vec<(DriveLimit, f64)>,
 }
 
 impl Usage {
@@ -57,20 +57,20 @@ impl Usage {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Shares([PerLimit; 4]);
 
-type PerLimit = [f64; crate::mechanics::planar::MAX_DRIVES];
+type PerLimit = [f64; MAX_DRIVES];
 
 impl Shares {
     #[inline]
-    pub(super) fn add(&mut self, limit: Limit, share: f64) {
+    pub(super) fn add(&mut self, limit: DriveLimit, share: f64) {
         self.0[limit.quantity as usize][limit.drive] += share;
     }
 
     /// Those above 0, of a whole, the greatest first.
-    pub(super) fn sorted(&self) -> Vec<(Limit, f64)> {
+    pub(super) fn sorted(&self) -> Vec<(DriveLimit, f64)> {
         let whole: f64 = self.0.iter().flatten().sum();
-        let each = Quantity::ALL.into_iter().flat_map(|quantity| {
+        let each = LimitedQuantity::ALL.into_iter().flat_map(|quantity| {
             let of = self.0[quantity as usize];
-            (0..of.len()).map(move |drive| (Limit { quantity, drive }, of[drive] / whole))
+            (0..of.len()).map(move |drive| (DriveLimit { quantity, drive }, of[drive] / whole))
         });
         let mut found: Vec<_> = each.filter(|(_, share)| *share > 0.0).collect();
         found.sort_by(|a, b| b.1.total_cmp(&a.1));
@@ -110,31 +110,31 @@ impl Demand {
     }
 
     /// The limit that is used furthest and the part of it that is used; `None` without limits.
-    pub(super) fn furthest(&self, limits: &Limits) -> Option<(f64, Limit)> {
-        let mut furthest: Option<(f64, Limit)> = None;
-        for quantity in Quantity::ALL {
+    pub(super) fn furthest(&self, limits: &Limits) -> Option<(f64, DriveLimit)> {
+        let mut furthest: Option<(f64, DriveLimit)> = None;
+        for quantity in LimitedQuantity::ALL {
             let asked = match quantity {
-                Quantity::Torque => self.holding.plus(1.0, &self.moving),
-                Quantity::Speed => self.speed,
-                Quantity::Acceleration => self.acceleration,
-                Quantity::Jerk => self.jerk,
+                LimitedQuantity::Torque => self.holding.plus(1.0, &self.moving),
+                LimitedQuantity::Speed => self.speed,
+                LimitedQuantity::Acceleration => self.acceleration,
+                LimitedQuantity::Jerk => self.jerk,
             };
             for (drive, (asked, limit)) in asked.iter().zip(limits.on(quantity).iter()).enumerate() {
                 let part = asked.abs() / limit;
                 if limit.is_finite() && furthest.is_none_or(|(most, _)| part > most) {
-                    furthest = Some((part, Limit { quantity, drive }));
+                    furthest = Some((part, DriveLimit { quantity, drive }));
                 }
             }
         }
         furthest
     }
 
-    /// The factor on time with which the instant just keeps every limit: rates fall with its first, accelerations and
-    /// the torque of motion with its second, jerks with its third power. Infinite where no time is enough, because
+    /// The factors on time with which the instant just keeps each limit: rates fall with their first, accelerations and
+    /// the torque of motion with their second, jerks with their third power. Infinite where no time is enough, because
     /// holding still already takes all of a torque.
-    pub(super) fn stretch(&self, limits: &Limits) -> f64 {
-        let mut factor: f64 = 0.0;
-        for k in 0..self.speed.len() {
+    pub(super) fn stretches(&self, limits: &Limits) -> [f64; 4 * MAX_DRIVES] {
+        let mut factors = [0.0; 4 * MAX_DRIVES];
+        for (k, of) in factors.chunks_exact_mut(4).enumerate().take(self.speed.len()) {
             let (hold, moving, limit) = (self.holding[k], self.moving[k], limits.torque[k]);
             // Room on the side to which the motion pushes.
             let room = limit - hold * moving.signum();
@@ -145,12 +145,11 @@ impl Demand {
             } else {
                 f64::INFINITY
             };
-            factor = factor
-                .max(if hold.abs() > limit { f64::INFINITY } else { torque })
-                .max(self.speed[k].abs() / limits.speed[k])
-                .max((self.acceleration[k].abs() / limits.acceleration[k]).sqrt())
-                .max((self.jerk[k].abs() / limits.jerk[k]).cbrt());
+            of[0] = if hold.abs() > limit { f64::INFINITY } else { torque };
+            of[1] = self.speed[k].abs() / limits.speed[k];
+            of[2] = (self.acceleration[k].abs() / limits.acceleration[k]).sqrt();
+            of[3] = (self.jerk[k].abs() / limits.jerk[k]).cbrt();
         }
-        factor
+        factors
     }
 }

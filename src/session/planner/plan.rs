@@ -13,7 +13,7 @@ use crate::planning::pose_constant::Planes;
 use crate::planning::reactionless::PlanePoint;
 use crate::planning::timing::Limits;
 use crate::planning::timing::TimeLaw;
-use crate::planning::timing::limits::Limit;
+use crate::planning::timing::limits::DriveLimit;
 use crate::session::Refusal;
 use crate::session::scenario::Scenario;
 /// A planned task.
@@ -43,7 +43,7 @@ pub struct Pace {
     /// The least time without limits on jerk, s, where there are any.
     pub unlimited: Option<f64>,
     /// The limit that leads for the greatest share of the first part.
-    pub leading: Option<Limit>,
+    pub leading: Option<DriveLimit>,
 }
 
 impl Pace {

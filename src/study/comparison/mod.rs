@@ -1,14 +1,14 @@
 //! Runs side by side: the same task done in other ways, or any scenarios, on one time axis.
 
-mod board;
+mod alternative;
 mod difference;
+mod entries;
 mod summary;
-mod way;
 
-pub use board::{Board, Entry};
+pub use alternative::{Alternative, SLOWER};
 pub use difference::Difference;
+pub use entries::{Comparison, Entry};
 pub use summary::{COLUMNS, Column, Summary};
-pub use way::{SLOWER, Way};
 
 use crate::mechanics::machine::Machine;
 use crate::session::scenario::Scenario;
@@ -73,8 +73,9 @@ impl Compared {
 }
 
 /// The ways to do a scenario's task, each with its scenario; as it is given only if that is none of the others.
-pub fn alternatives(scenario: &Scenario) -> Vec<(Way, Scenario)> {
-    let mut all: Vec<(Way, Scenario)> = Way::ALL.into_iter().map(|way| (way, way.of(scenario))).collect();
+pub fn alternatives(scenario: &Scenario) -> Vec<(Alternative, Scenario)> {
+    let mut all: Vec<(Alternative, Scenario)> =
+        Alternative::ALL.into_iter().map(|way| (way, way.of(scenario))).collect();
     // A wheel makes no other way of the task, but for the one that is about it.
     let given = |s: &Scenario| s.task == scenario.task && s.base.kind == scenario.base.kind;
     if scenario.edits.is_empty() && all.iter().skip(1).any(|(_, s)| given(s)) {

@@ -8,7 +8,7 @@
 //! | δ | deviations of the parameters | their own |
 
 use super::deviate::CHUNK;
-use super::parameter::{Parameter, Quantity};
+use super::parameter::{Parameter, VariedQuantity};
 use crate::mechanics::machine::{Inertia, Machine, MachineError};
 use crate::mechanics::planar::{MAX_DRIVES, Vector};
 
@@ -66,7 +66,7 @@ pub(super) struct Term {
 
 /// A link, or the payload.
 #[derive(Clone, Debug)]
-pub(super) struct Body {
+pub(super) struct LinkConstants {
     pub drive: usize,
     pub sign: f64,
     pub mass: Term,
@@ -85,29 +85,29 @@ pub(super) struct Body {
 ///
 /// # Errors
 /// If a length cannot vary alone, because a closure holds it against a number.
-pub(super) fn bodies(machine: &Machine, parameters: &[Parameter]) -> Result<Vec<Body>, MachineError> {
+pub(super) fn bodies(machine: &Machine, parameters: &[Parameter]) -> Result<Vec<LinkConstants>, MachineError> {
     let spec = machine.spec();
     let find = |quantity| parameters.iter().position(|p| p.quantity == quantity);
     let term = |nominal, quantity| Term { nominal, parameter: find(quantity) };
     let nothing = Term { nominal: 0.0, parameter: None };
-    let mut bodies: Vec<Body> = (spec.links.iter().zip(machine.parts()).enumerate())
-        .map(|(j, (link, part))| Body {
+    let mut bodies: Vec<LinkConstants> = (spec.links.iter().zip(machine.parts()).enumerate())
+        .map(|(j, (link, part))| LinkConstants {
             drive: part.drive,
             sign: part.sign,
-            mass: term(link.mass, Quantity::Mass(j)),
-            inertia: term(link.inertia, Quantity::Inertia(j)),
-            com: term(link.com, Quantity::Com(j)),
-            com_normal: term(link.com_normal, Quantity::ComNormal(j)),
+            mass: term(link.mass, VariedQuantity::Mass(j)),
+            inertia: term(link.inertia, VariedQuantity::Inertia(j)),
+            com: term(link.com, VariedQuantity::Com(j)),
+            com_normal: term(link.com_normal, VariedQuantity::ComNormal(j)),
             root: part.root,
             on: Vec::new(),
             stretch: Vec::new(),
         })
         .collect();
-    bodies.push(Body {
+    bodies.push(LinkConstants {
         drive: machine.parts()[machine.tip_link()].drive,
         sign: 1.0,
-        mass: term(spec.payload.mass, Quantity::PayloadMass),
-        inertia: term(spec.payload.inertia, Quantity::PayloadInertia),
+        mass: term(spec.payload.mass, VariedQuantity::PayloadMass),
+        inertia: term(spec.payload.inertia, VariedQuantity::PayloadInertia),
         com: nothing,
         com_normal: nothing,
         root: *machine.tip(),
@@ -115,7 +115,7 @@ pub(super) fn bodies(machine: &Machine, parameters: &[Parameter]) -> Result<Vec<
         stretch: Vec::new(),
     });
     for (p, parameter) in parameters.iter().enumerate() {
-        if !matches!(parameter.quantity, Quantity::Length(_)) {
+        if !matches!(parameter.quantity, VariedQuantity::Length(_)) {
             continue;
         }
         // A root is affine in every length, so a length twice as long shows how, to rounding.
@@ -132,7 +132,7 @@ pub(super) fn bodies(machine: &Machine, parameters: &[Parameter]) -> Result<Vec<
             }
         }
     }
-    let varies = |body: &Body| {
+    let varies = |body: &LinkConstants| {
         let terms = [body.mass, body.inertia, body.com, body.com_normal];
         let moved = !body.stretch.is_empty() && (body.mass.nominal != 0.0 || body.mass.parameter.is_some());
         moved || terms.iter().any(|t| t.parameter.is_some())
@@ -159,7 +159,13 @@ fn each(f: impl Fn(usize) -> f64) -> Lanes {
 
 /// θ of the bodies that vary, of one block of machines, into `theta`; `deviations` by parameter, then by machine.
 #[inline]
-pub(super) fn evaluate(n: usize, bodies: &[Body], deviations: &[[f64; CHUNK]], block: usize, theta: &mut [Lanes]) {
+pub(super) fn evaluate(
+    n: usize,
+    bodies: &[LinkConstants],
+    deviations: &[[f64; CHUNK]],
+    block: usize,
+    theta: &mut [Lanes],
+) {
     theta.iter_mut().for_each(|t| *t = [0.0; LANES]);
     let delta = |p: usize| -> &Lanes { &deviations[p].as_chunks().0[block] };
     let of = |term: &Term| match term.parameter {

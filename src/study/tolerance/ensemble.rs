@@ -20,7 +20,7 @@ use std::collections::BTreeMap;
 use nalgebra::DVector;
 
 use super::ToleranceError;
-use super::constants::{self, Body, LANES, Lanes, count, evaluate, unit};
+use super::constants::{self, LANES, Lanes, LinkConstants, count, evaluate, unit};
 use super::deviate::{CHUNK, Draws};
 use super::moments::Moments;
 use super::parameter::{Parameter, parameters};
@@ -48,7 +48,7 @@ pub struct Outcome {
 pub struct Ensemble {
     machine: Machine,
     parameters: Vec<Parameter>,
-    bodies: Vec<Body>,
+    bodies: Vec<LinkConstants>,
     seed: u64,
     references: Vec<Reference>,
     time: Vec<f64>,
@@ -57,12 +57,12 @@ pub struct Ensemble {
     /// φ and ψ of every constant, instants after instants.
     influence: Vec<Vec<(f64, Vector)>>,
     moments: Moments,
-    table: Table,
+    table: MotionTable,
 }
 
 /// What a machine needs at each instant, packed.
 #[derive(Clone, Debug)]
-struct Table {
+struct MotionTable {
     /// Constants that n_B hangs on, and those that f_B does.
     moment: Vec<usize>,
     force: Vec<usize>,
@@ -94,7 +94,7 @@ impl Ensemble {
         let wrenches = |inertia: &Inertia| references.iter().map(|r| wrench(inertia, r, &around)).collect::<Vec<_>>();
         let nominal = wrenches(&inertia);
         let influence: Vec<_> = (0..count(n)).map(|i| wrenches(&unit(n, i, &inertia))).collect();
-        let table = Table::of((n, parameters.len()), &bodies, &nominal, &influence, &moments.varies);
+        let table = MotionTable::of((n, parameters.len()), &bodies, &nominal, &influence, &moments.varies);
         let machine = machine.clone();
         Ok(Self { machine, parameters, bodies, seed, references, time, nominal, influence, moments, table })
     }
@@ -207,10 +207,10 @@ fn wrench(inertia: &Inertia, r: &Reference, around: &Surroundings) -> (f64, Vect
     (wrench.total().moment, wrench.dynamic.force)
 }
 
-impl Table {
+impl MotionTable {
     fn of(
         (n, parameters): (usize, usize),
-        bodies: &[Body],
+        bodies: &[LinkConstants],
         nominal: &[(f64, Vector)],
         influence: &[Vec<(f64, Vector)>],
         varies: &[bool],

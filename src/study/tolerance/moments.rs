@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::constants::{Body, Term, count, coupling, diagonal, first};
+use super::constants::{LinkConstants, Term, count, coupling, diagonal, first};
 use super::parameter::Parameter;
 
 /// Parameters of a monomial, rising, each as often as its power; [`NONE`] fills the rest.
@@ -77,7 +77,7 @@ pub(super) struct Moments {
 }
 
 impl Moments {
-    pub fn of(n: usize, bodies: &[Body], parameters: &[Parameter]) -> Self {
+    pub fn of(n: usize, bodies: &[LinkConstants], parameters: &[Parameter]) -> Self {
         let theta = polynomials(n, bodies);
         let mut monomials: Vec<Monomial> = theta.iter().flat_map(|p| p.0.keys().copied()).collect();
         monomials.sort_unstable();
@@ -106,7 +106,7 @@ impl Moments {
 }
 
 /// θ of the bodies that vary.
-fn polynomials(n: usize, bodies: &[Body]) -> Vec<Polynomial> {
+fn polynomials(n: usize, bodies: &[LinkConstants]) -> Vec<Polynomial> {
     let mut theta = vec![Polynomial::default(); count(n)];
     for body in bodies {
         let [m, spin, u, v] = [&body.mass, &body.inertia, &body.com, &body.com_normal].map(Polynomial::of);

@@ -21,7 +21,7 @@ use crate::session::scenario::{Amount, Spread};
 
 /// What of a machine a parameter is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Quantity {
+pub(super) enum VariedQuantity {
     Com(usize),
     ComNormal(usize),
     Mass(usize),
@@ -32,7 +32,7 @@ pub(super) enum Quantity {
     PayloadInertia,
 }
 
-impl Quantity {
+impl VariedQuantity {
     fn unit(self) -> &'static str {
         match self {
             Self::Com(_) | Self::ComNormal(_) | Self::Length(_) => "m",
@@ -68,7 +68,7 @@ pub struct Parameter {
     /// Share of the stated distribution that is impossible, such as a mass below zero. The rest is drawn from as if
     /// every impossible draw were drawn again; mean and deviation are of that rest.
     pub cut: f64,
-    pub(super) quantity: Quantity,
+    pub(super) quantity: VariedQuantity,
     /// Counted over all numbers of the machine that could vary, so that what one draws does not hang on the others.
     pub(super) stream: u64,
     /// σ or h, in the parameter's unit.
@@ -78,21 +78,21 @@ pub struct Parameter {
 }
 
 /// Every number of a machine that can vary, in a fixed order.
-fn everything(spec: &MachineSpec) -> Vec<(Quantity, String, f64)> {
+fn everything(spec: &MachineSpec) -> Vec<(VariedQuantity, String, f64)> {
     let mut all = Vec::new();
     for (j, link) in spec.links.iter().enumerate() {
         all.extend([
-            (Quantity::Com(j), format!("link.{}.com", link.name), link.com),
-            (Quantity::ComNormal(j), format!("link.{}.com_normal", link.name), link.com_normal),
-            (Quantity::Mass(j), format!("link.{}.mass", link.name), link.mass),
-            (Quantity::Inertia(j), format!("link.{}.inertia", link.name), link.inertia),
+            (VariedQuantity::Com(j), format!("link.{}.com", link.name), link.com),
+            (VariedQuantity::ComNormal(j), format!("link.{}.com_normal", link.name), link.com_normal),
+            (VariedQuantity::Mass(j), format!("link.{}.mass", link.name), link.mass),
+            (VariedQuantity::Inertia(j), format!("link.{}.inertia", link.name), link.inertia),
         ]);
     }
     for (i, (name, metres)) in spec.lengths.iter().enumerate() {
-        all.push((Quantity::Length(i), format!("length.{name}"), *metres));
+        all.push((VariedQuantity::Length(i), format!("length.{name}"), *metres));
     }
-    all.push((Quantity::PayloadMass, "payload.mass".into(), spec.payload.mass));
-    all.push((Quantity::PayloadInertia, "payload.inertia".into(), spec.payload.inertia));
+    all.push((VariedQuantity::PayloadMass, "payload.mass".into(), spec.payload.mass));
+    all.push((VariedQuantity::PayloadInertia, "payload.inertia".into(), spec.payload.inertia));
     all
 }
 
@@ -154,7 +154,7 @@ const MOST: f64 = 1e6;
 
 impl Parameter {
     fn new(
-        quantity: Quantity,
+        quantity: VariedQuantity,
         key: String,
         nominal: f64,
         spread: Spread,
@@ -208,17 +208,17 @@ impl Parameter {
     /// Sets this number of a machine.
     pub(super) fn set(&self, spec: &mut MachineSpec, value: f64) {
         match self.quantity {
-            Quantity::Com(j) => spec.links[j].com = value,
-            Quantity::ComNormal(j) => spec.links[j].com_normal = value,
-            Quantity::Mass(j) => spec.links[j].mass = value,
-            Quantity::Inertia(j) => spec.links[j].inertia = value,
-            Quantity::Length(i) => {
+            VariedQuantity::Com(j) => spec.links[j].com = value,
+            VariedQuantity::ComNormal(j) => spec.links[j].com_normal = value,
+            VariedQuantity::Mass(j) => spec.links[j].mass = value,
+            VariedQuantity::Inertia(j) => spec.links[j].inertia = value,
+            VariedQuantity::Length(i) => {
                 if let Some(metres) = spec.lengths.values_mut().nth(i) {
                     *metres = value;
                 }
             }
-            Quantity::PayloadMass => spec.payload.mass = value,
-            Quantity::PayloadInertia => spec.payload.inertia = value,
+            VariedQuantity::PayloadMass => spec.payload.mass = value,
+            VariedQuantity::PayloadInertia => spec.payload.inertia = value,
         }
     }
 

@@ -67,7 +67,8 @@ pub(super) fn area_of(map: &PlaneMap, b: f64, name: &str, z: f64, colour: Rgba) 
 pub(super) fn roomiest(planes: &Planes, boundary: &[Vec<Vector>]) -> Option<Vector> {
     let map = planes.map();
     let [l1, l2] = map.limits();
-    let at = |l: crate::planning::reactionless::Limit, i: i32| l.min + (f64::from(i) + 0.5) / 20.0 * (l.max - l.min);
+    let at =
+        |l: crate::planning::reactionless::AngleLimit, i: i32| l.min + (f64::from(i) + 0.5) / 20.0 * (l.max - l.min);
     let far = 0.35 * map.c().iter().map(|c| c.abs()).sum::<f64>();
     let outline: Vec<Vector> = boundary.iter().flat_map(|l| l.iter().step_by(4).copied()).collect();
     let room = |p: &Vector| outline.iter().fold(f64::INFINITY, |m, q| m.min((p - q).norm_sqr()));

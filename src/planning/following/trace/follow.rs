@@ -3,7 +3,7 @@
 use super::remedy::blocked;
 use super::rule::{Blocked, Halt, Rule, Stop};
 use super::walk::{starts, tables};
-use crate::planning::curves::{Curve, Table};
+use crate::planning::curves::{Curve, PathTable};
 use crate::planning::reactionless::PlaneMap;
 
 /// Follows curves that join end to end on the plane b: a table of nodes for each. Of several poses at the start, the one
@@ -17,7 +17,7 @@ pub fn follow(
     b: f64,
     prefer: Option<[f64; 2]>,
     rule: Rule,
-) -> Result<Vec<Table>, Box<Blocked>> {
+) -> Result<Vec<PathTable>, Box<Blocked>> {
     let Some(first) = curves.first() else { return Ok(Vec::new()) };
     let mut farthest: Option<Halt> = None;
     for start in starts(map, first.at(0.0).p, b, prefer) {

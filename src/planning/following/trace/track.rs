@@ -4,7 +4,7 @@ use super::rule::{Halt, Rule, Stop, crossed};
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use crate::planning::curves::PathPoint;
 use crate::planning::curves::curve::{Curve, CurvePoint};
-use crate::planning::curves::table::Table;
+use crate::planning::curves::table::PathTable;
 use crate::planning::off_plane::inverse::rates;
 use crate::planning::reactionless::{PlaneMap, PlanePoint, SLACK};
 
@@ -92,7 +92,7 @@ impl Track<'_> {
     }
 
     /// Nodes along the curve, each space halved until its quintic does.
-    pub fn table(&self, start: [f64; 2]) -> Result<Table, Halt> {
+    pub fn table(&self, start: [f64; 2]) -> Result<PathTable, Halt> {
         let (mut stations, mut nodes) = (vec![0.0], vec![self.jet(start, 0.0)]);
         let joints: Vec<f64> = self.curve.joints().collect();
         let mut ahead: Vec<f64> = Vec::with_capacity(64);
@@ -122,7 +122,7 @@ impl Track<'_> {
         let lifted = nodes.iter().map(|jet| self.lifted(jet)).collect();
         let last = stations.len() - 1;
         stations[last] = 1.0;
-        Table::new(stations, lifted).ok_or((0.0, start, Stop::Start))
+        PathTable::new(stations, lifted).ok_or((0.0, start, Stop::Start))
     }
 
     /// How far the point halfway between two nodes lies from their quintic, rad.

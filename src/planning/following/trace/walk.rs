@@ -3,7 +3,7 @@
 use super::rule::{Halt, Rule};
 use super::track::Track;
 use crate::mechanics::planar::{Vector, unit};
-use crate::planning::curves::{Curve, Table};
+use crate::planning::curves::{Curve, PathTable};
 use crate::planning::reactionless::{BSet, PlaneMap};
 
 /// Stations at which a curve is tried for other b, or for its longest part.
@@ -46,7 +46,7 @@ pub(super) fn tables(
     b: f64,
     start: [f64; 2],
     rule: Rule,
-) -> Result<Vec<Table>, Halt> {
+) -> Result<Vec<PathTable>, Halt> {
     let turn = unit(-map.turn(b));
     let mut a = start;
     let mut tables = Vec::with_capacity(curves.len());

@@ -6,7 +6,7 @@
 
 use super::determinant::{Determinant, INSET, upright};
 use crate::mechanics::planar::{Vector, cross, dot};
-use crate::planning::reactionless::{Limit, PlaneMap};
+use crate::planning::reactionless::{AngleLimit, PlaneMap};
 
 /// A curve in (a_1, a_2) whose image can bound the workspace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,7 +67,7 @@ impl Surface {
                 if det.vanishes(from, way) { INSET } else { 0.0 }
             });
             if limit.max - limit.min > 4.0 * INSET {
-                *limit = Limit { min: limit.min + low, max: limit.max - high };
+                *limit = AngleLimit { min: limit.min + low, max: limit.max - high };
             }
         }
         // Drawn in, limits are still limits.

@@ -1,4 +1,4 @@
-//! [`Board`]: a table of runs under somebody's hands.
+//! [`Comparison`]: a table of runs under somebody's hands.
 
 use std::sync::Arc;
 
@@ -21,13 +21,13 @@ pub struct Entry {
 
 /// Runs side by side: the ways of one task, and what was kept.
 #[derive(Clone, Debug)]
-pub struct Board {
+pub struct Comparison {
     task: Scenario,
     entries: Vec<Entry>,
     sort: Option<(usize, bool)>,
 }
 
-impl Board {
+impl Comparison {
     /// The ways of a scenario's task.
     pub fn of(scenario: &Scenario) -> Self {
         let mut board = Self { task: scenario.clone(), entries: Vec::new(), sort: None };

@@ -1,4 +1,4 @@
-//! [`Way`]: other ways to do the same task.
+//! [`Alternative`]: other ways to do the same task.
 
 use crate::planning::timing::TimeLaw;
 use crate::session::scenario::{Change, Scenario, Shape, TaskKind, Value};
@@ -7,7 +7,7 @@ use crate::simulation::plant::Wheel;
 
 /// A way to bring the end effector from A to B.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Way {
+pub enum Alternative {
     /// As the scenario says.
     AsGiven,
     /// On one plane of joint space: the base feels nothing.
@@ -22,16 +22,16 @@ pub enum Way {
     Slowly,
 }
 
-/// How many times longer [`Way::Slowly`] takes: forces and moments fall with the square.
+/// How many times longer [`Alternative::Slowly`] takes: forces and moments fall with the square.
 pub const SLOWER: f64 = 4.0;
 
-/// The wheel of [`Way::Wheel`], if the base has none: of a size that a satellite of a few hundred kilograms carries.
+/// The wheel of [`Alternative::Wheel`], if the base has none: of a size that a satellite of a few hundred kilograms carries.
 const WHEEL: Wheel = Wheel { inertia: 0.02, torque_limit: Some(2.0), speed_limit: Some(300.0) };
 
 /// How far drive 1 ends from where the reactionless motion would have it, rad, if the task does not say; as in case 2.
 const OTHER_POSE: f64 = -0.2375;
 
-impl Way {
+impl Alternative {
     /// All of them.
     pub const ALL: [Self; 6] =
         [Self::AsGiven, Self::Reactionless, Self::StraightLine, Self::OtherPose, Self::Wheel, Self::Slowly];

@@ -12,14 +12,14 @@ use std::sync::Arc;
 
 /// Something that was refused.
 #[derive(Clone, Debug)]
-pub struct Wish {
+pub struct RefusedEdit {
     /// The curve that was asked for, and where it stops.
     pub curve: Option<Arc<Refused>>,
     /// The same with another b, rad, that would do, as it is shown.
     pub remedy: Option<(Edit, Decimal)>,
 }
 
-impl Wish {
+impl RefusedEdit {
     pub(super) fn of(edit: &Edit, refusal: &Refusal) -> Self {
         let curve = Refused::of(refusal);
         let remedy = match (edit, refusal.mending_b().zip(refusal.shown_b())) {
@@ -36,7 +36,7 @@ impl Wish {
 
 /// How things are shown: no part of the session.
 #[derive(Clone, Debug)]
-pub struct Look {
+pub struct ViewState {
     /// Light or dark.
     pub theme: Theme,
     /// Which of the linked views.
@@ -84,12 +84,12 @@ pub struct Look {
     /// The b under the pointer in the chart of which b, rad.
     pub preview: Option<f64>,
     /// What was asked for last and refused.
-    pub refused: Option<Wish>,
+    pub refused: Option<RefusedEdit>,
     /// The last thing to say, and whether it is bad news.
     pub message: Option<(String, bool)>,
 }
 
-impl Look {
+impl ViewState {
     /// A flat view of everything.
     pub fn new(theme: Theme, views: &Views) -> Self {
         Self {
@@ -143,7 +143,7 @@ impl Look {
 
 /// What a slider of b does: while time runs the machine follows; paused it is posed, as far as the points of the task
 /// stay where they are, or else with them.
-pub(super) fn set_b(session: &Session, look: &Look, b: f64) -> Edit {
+pub(super) fn set_b(session: &Session, look: &ViewState, b: f64) -> Edit {
     if session.is_playing() && session.is_at_end() {
         return Edit::SlideB { b };
     }

@@ -1,10 +1,12 @@
-//! The [`Desk`]: a session, how it is shown, and what carries out commands. Every window, test and figure has one.
+//! The [`AppState`]: a session, how it is shown, and what carries out commands. Every window, test and figure has one.
 
 use crate::app::widgets;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::{Command, Look, OnBoard, Wish, compare, keys, order, plots, side, status, study, theme, top, viewport};
+use super::{
+    Command, OnBoard, RefusedEdit, ViewState, compare, keys, order, plots, side, status, study, theme, top, viewport,
+};
 use crate::mechanics::machine::Machine;
 use crate::picture::scene::palette::Theme;
 use crate::picture::scene::stage::Stage;
@@ -15,18 +17,18 @@ use crate::session::{Edit, Refusal, Session};
 use crate::settings::text::brief;
 use crate::simulation::frame::Tally;
 use crate::simulation::signals::{Signal, signals};
-use crate::study::comparison::Board;
+use crate::study::comparison::Comparison;
 use crate::study::tolerance::Study;
 
 /// A session on display.
-pub struct Desk {
+pub struct AppState {
     session: Session,
     views: Arc<Views>,
     signals: Vec<Signal>,
     stage_of: (Machine, String),
-    look: Look,
+    look: ViewState,
     /// Runs side by side, while they are on display.
-    board: Option<Board>,
+    board: Option<Comparison>,
     /// Tolerances and what they were found for, while they are on display.
     study: Option<(Scenario, Result<Study, String>)>,
     /// What the planned motion will have come to.
@@ -43,7 +45,7 @@ const MOST_AHEAD: f64 = 20_000.0;
 /// The most wall time that one repaint makes up for, s: after a pause of the program time does not jump.
 const MOST_OWED: f64 = 0.1;
 
-impl Desk {
+impl AppState {
     /// Opens a scenario.
     ///
     /// # Errors
@@ -54,7 +56,7 @@ impl Desk {
 
     fn around(session: Session, theme: Theme) -> Self {
         let views = Views::of(session.run());
-        let look = Look::new(theme, &views);
+        let look = ViewState::new(theme, &views);
         let mut desk = Self {
             signals: signals(&session.scenario().machine),
             stage_of: stage_key(&session),
@@ -98,12 +100,12 @@ impl Desk {
     }
 
     /// How it is shown.
-    pub fn look(&self) -> &Look {
+    pub fn look(&self) -> &ViewState {
         &self.look
     }
 
     /// Runs side by side, while they are on display.
-    pub fn board(&self) -> Option<&Board> {
+    pub fn board(&self) -> Option<&Comparison> {
         self.board.as_ref()
     }
 
@@ -193,7 +195,7 @@ impl Desk {
         match command {
             Command::Edit(edit) => {
                 if let Err(refusal) = self.session.apply(edit.clone()) {
-                    self.look.refused = Some(Wish::of(&edit, &refusal));
+                    self.look.refused = Some(RefusedEdit::of(&edit, &refusal));
                     return Err(refusal.to_string());
                 }
                 self.look.refused = None;
@@ -315,7 +317,7 @@ impl Desk {
         let scenario = found.map_err(|e| brief(&e.to_string()).into_owned())?;
         let change = scenario.task.whole();
         if let Err(refusal) = self.session.switch(scenario) {
-            self.look.refused = Some(Wish::of(&Edit::SetTask { change }, &refusal));
+            self.look.refused = Some(RefusedEdit::of(&Edit::SetTask { change }, &refusal));
             return Err(refusal.to_string());
         }
         self.foresee();
@@ -405,7 +407,7 @@ impl Desk {
         if !self.look.compare {
             self.board = None;
         } else if self.board.is_none() {
-            self.board = Some(Board::of(self.session.scenario()));
+            self.board = Some(Comparison::of(self.session.scenario()));
         }
         // Not while something is dragged: every way is planned and run anew.
         if let (Some(board), None) = (&mut self.board, self.look.grabbed) {
