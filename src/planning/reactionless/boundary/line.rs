@@ -2,7 +2,7 @@
 
 use super::arrangement::Portion;
 use super::span::{Curve, Span, Surface};
-use crate::mechanics::planar::{Vector, unit};
+use crate::mechanics::planar::{Vector, cross, unit};
 use crate::planning::reactionless::PlaneMap;
 
 /// Chords between vertices keep this near to the curve, m.
@@ -57,8 +57,13 @@ impl Loop {
 
     pub(super) fn of(on: &Surface, spans: &[Span], chain: &[Portion]) -> Self {
         let (vertices, portions) = chords(on, spans, chain);
-        let area = chain.iter().map(|p| on.swept(&spans[p.span], p.from, p.to)).sum();
-        Self { vertices, portions, area }
+        let swept: f64 = chain.iter().map(|p| on.swept(&spans[p.span], p.from, p.to)).sum();
+        // Slivers too thin to tell their sides apart leave gaps: what a gap sweeps about the base is far more than they
+        // hold.
+        let [starts, ends] = [0, 1].map(|end| move |p: &Portion| on.at(&spans[p.span], [p.from, p.to][end]));
+        let after = chain.iter().cycle().skip(1);
+        let gaps: f64 = chain.iter().zip(after).map(|(p, next)| 0.5 * cross(ends(p), starts(next))).sum();
+        Self { vertices, portions, area: swept + gaps }
     }
 
     pub(super) fn without_area(self) -> Self {
