@@ -132,18 +132,28 @@ impl Twin {
         (s + rise * (t - start), rise, self.pieces.get(i + 1).map_or(f64::INFINITY, |p| p.0))
     }
 
-    /// Angles less those at the start, and rates, at given times, from rest; and how often a contact stopped.
-    fn run(&self, times: &[f64]) -> (Vec<(Vector, Vector)>, usize) {
+    /// Angles less those at the start, and rates, at given times, from rest; how often a contact stopped; the largest
+    /// rate at any event.
+    fn run(&self, times: &[f64]) -> (Vec<(Vector, Vector)>, usize, f64) {
         let n = self.inertia.len();
         let (mut t, mut q, mut v) = (0.0, vec![0.0; n], vec![0.0; n]);
         let (mut ways, mut seen, mut stops) = (vec![0_i8; self.contacts.len()], Vec::new(), 0);
-        let mut events = 0;
+        let (mut events, mut fastest) = (0, 1e-3_f64);
         for until in times {
             while t < *until {
                 events += 1;
                 assert!(events < 10_000, "the twin comes to no end at {t} s");
                 let (s, rise, end) = self.asked(t);
-                let mode = self.mode(&ways, s, rise);
+                let mut mode = self.mode(&ways, s, rise);
+                // What has just come loose and is driven back stops so soon that its root is not found.
+                for (i, (w, _)) in self.contacts.iter().enumerate() {
+                    let way = f64::from(mode.ways[i]);
+                    let (rate, gain) = (way * dot(w, &v), way * dot(w, &mode.acceleration));
+                    if rate > 1e-14 && rate < -1e-13 * gain {
+                        ways[i] = 0;
+                        mode = self.mode(&ways, s, rise);
+                    }
+                }
                 ways.clone_from(&mode.ways);
                 let span = end.min(*until) - t;
                 let rate = |i: usize, x: f64| {
@@ -185,8 +195,11 @@ impl Twin {
                     let (a, j) = (mode.acceleration[k], mode.slope[k]);
                     q[k] += step * (v[k] + step * (a / 2.0 + step * j / 6.0));
                     v[k] += step * (a + step * j / 2.0);
+                    fastest = fastest.max(v[k].abs());
                 }
                 t = if step == span { end.min(*until) } else { t + step };
+                let against = |j: usize| f64::from(ways[j]) * dot(&self.contacts[j].0, &v) < -1e-9;
+                assert!(!(0..ways.len()).any(against), "the twin slides against its own friction at {t} s");
                 if let Some(i) = first.1.filter(|_| step == first.0) {
                     // Others may stop with it.
                     let still = |j: usize| dot(&self.contacts[j].0, &v).abs() < 1e-11;
@@ -196,7 +209,7 @@ impl Twin {
             }
             seen.push((q.clone(), v.clone()));
         }
-        (seen, stops)
+        (seen, stops, fastest)
     }
 }
 
@@ -273,13 +286,12 @@ fn against_the_twin(case: u64) -> (f64, usize) {
         pieces: pieces.collect(),
     };
     let times: Vec<f64> = (1..=STEPS).map(|i| i as f64 * STEP).collect();
-    let (exact, stops) = twin.run(&times);
+    let (exact, stops, fastest) = twin.run(&times);
 
     let plant = Plant { friction, ..Plant::default() };
     let control: stillbase::simulation::control::Control = toml::from_str("kp = 0.0\nkd = 0.0").expect("valid");
     let setup = Setup { model: &machine, plant: &plant, base: &base, control: &control, step: STEP };
     let mut simulation = Simulation::new(&setup, Guide::Motion { motion, start: 0.0 }).expect("valid");
-    let fastest = exact.iter().flat_map(|(_, v)| v).fold(1e-3, |m: f64, v| m.max(v.abs()));
     let mut off: f64 = 0.0;
     for (q, v) in &exact {
         simulation.advance();
@@ -317,6 +329,15 @@ fn contacts_are_those_of_the_exact_twin() {
 }
 
 const CASES: u64 = 150;
+
+/// Contacts that end within a few digits of each other, or of the end of a part: each lost momentum, by up to the whole
+/// of a contact's.
+#[test]
+fn contacts_that_end_almost_together_are_told_apart() {
+    for case in [2800, 2984, 3616, 5181, 8369, 12765, 23170, 29021, 33247, 45125, 47018, 47928] {
+        many(case..case + 1);
+    }
+}
 
 #[test]
 #[ignore = "long: a hundred thousand machines"]

@@ -141,8 +141,25 @@ impl Simulation {
         Off::BEYOND
     }
 
-    /// Where a contact stops or comes loose on a part that passes it, unless something else is sooner.
-    fn found(&self, i: usize, from: &Leg, part: Part, piece: &Piece) -> Cut {
+    /// Where the first of all contacts stops or comes loose on a part on which one does, unless something else is sooner.
+    fn found(&self, mut i: usize, from: &Leg, mut part: Part, piece: &Piece) -> Cut {
+        let contacts = self.body().contacts();
+        // Each search ends before the one it began with, so that of contacts that end almost together the first is found.
+        for _ in 0..2 * contacts.len() {
+            part = self.cut(i, from, part, piece);
+            let mut others = (0..contacts.len()).filter(|j| *j != i && contacts.sticks(*j));
+            let h = part.end.at - from.at;
+            match others.find(|j| self.is_long_over(*j, &from.grip, &part.end)) {
+                Some(sooner) => i = sooner,
+                None if h > 1e-7 * self.dt() && self.turns_back(from, &part) => break,
+                None => return Cut::Here(part),
+            }
+        }
+        Cut::Sooner(from.at + 0.5 * (part.end.at - from.at))
+    }
+
+    /// A part cut where a contact that is over at its end just is.
+    fn cut(&self, i: usize, from: &Leg, part: Part, piece: &Piece) -> Part {
         let holds = from.grip[i] == 0;
         let scale = if holds { self.body().contacts().coulomb(i) } else { 1.0 };
         let mut low = (from.at, self.left(i, &from.grip, from).max(0.0));
@@ -175,15 +192,7 @@ impl Simulation {
                 }
             }
         }
-        let (contacts, h) = (self.body().contacts(), best.end.at - from.at);
-        let mut others = (0..contacts.len()).filter(|j| *j != i && contacts.sticks(*j));
-        if others.any(|j| self.is_long_over(j, &from.grip, &best.end)) {
-            return Cut::Sooner(best.end.at);
-        }
-        match h > 1e-7 * self.dt() && self.turns_back(from, &best) {
-            true => Cut::Sooner(from.at + 0.5 * h),
-            false => Cut::Here(best),
-        }
+        best
     }
 
     /// A contact that does not slide, and would not go the way it is said to slide, is stuck or goes the other way. True
