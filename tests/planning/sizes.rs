@@ -16,8 +16,8 @@ fn map(c: [f64; 3], lambda: [f64; 3], limits: [AngleLimit; 2], offsets: [f64; 2]
 }
 
 /// The same machine seen from below, and with its drives counted from the other end.
-fn twins(c: [f64; 3], lambda: [f64; 3], limits: [Limit; 2], offsets: [f64; 2]) -> [PlaneMap; 2] {
-    let turned = limits.map(|l| Limit { min: -l.max, max: -l.min });
+fn twins(c: [f64; 3], lambda: [f64; 3], limits: [AngleLimit; 2], offsets: [f64; 2]) -> [PlaneMap; 2] {
+    let turned = limits.map(|l| AngleLimit { min: -l.max, max: -l.min });
     let below = map(c, lambda, turned, offsets.map(|x| -x)).expect("a map");
     let angles = [(0, 1, -offsets[1]), (1, 2, -offsets[0])];
     let angles = angles.map(|(from, to, offset)| AngleDefinition { to, from, offset });
@@ -95,8 +95,8 @@ fn slivers_do_not_change_an_area() {
     let c = [0.531698363952129, -0.30915562106960787, 0.7541660374847151];
     let lambda = [1.0, 0.8040251462454151, 0.6688754843363212];
     let limits = [
-        Limit { min: 0.7217204116827065, max: 2.6388096340784077 },
-        Limit { min: 0.802195524572598, max: 3.391502698099948 },
+        AngleLimit { min: 0.7217204116827065, max: 2.6388096340784077 },
+        AngleLimit { min: 0.802195524572598, max: 3.391502698099948 },
     ];
     let offsets = [-1.00476023685831, -1.5905881217888227];
     for i in 0..60 {
