@@ -15,7 +15,7 @@ use crate::picture::scene::views::{ViewKind, Views};
 use crate::session::scenario::Scenario;
 use crate::session::{Edit, Refusal, Session};
 use crate::settings::text::brief;
-use crate::simulation::frame::Tally;
+use crate::simulation::frame::Totals;
 use crate::simulation::signals::{Signal, signals};
 use crate::study::comparison::Comparison;
 use crate::study::tolerance::Study;
@@ -32,7 +32,7 @@ pub struct AppState {
     /// Tolerances and what they were found for, while they are on display.
     study: Option<(Scenario, Result<Study, String>)>,
     /// What the planned motion will have come to.
-    foreseen: Tally,
+    foreseen: Totals,
     /// Wall time not yet turned into steps, s.
     owed: f64,
     dressed: Option<Theme>,
@@ -61,7 +61,7 @@ impl AppState {
             signals: signals(&session.scenario().machine),
             stage_of: stage_key(&session),
             views: Arc::new(views),
-            foreseen: Tally::default(),
+            foreseen: Totals::default(),
             session,
             look,
             board: None,
@@ -352,7 +352,7 @@ impl AppState {
 
     /// Runs ahead to where the planned motion ends, to know how far the base will move.
     fn foresee(&mut self) {
-        self.foreseen = Tally::default();
+        self.foreseen = Totals::default();
         let scenario = self.session.scenario();
         let steps = (self.session.run().planned_time() / scenario.step).ceil();
         if scenario.base.moves() && !self.session.is_live() && steps <= MOST_AHEAD {
@@ -367,7 +367,7 @@ impl AppState {
     /// How many times the motion of the base has to be shown to be seen: as far as it is known, of the whole run.
     fn adjust(&mut self) {
         let reach = self.views.stage().linkage().reach();
-        let newest = self.session.frames().last().map_or_else(Tally::default, |frame| frame.tally);
+        let newest = self.session.frames().last().map_or_else(Totals::default, |frame| frame.tally);
         let motion = [newest.shift.max(self.foreseen.shift), newest.tilt.max(self.foreseen.tilt)];
         self.look.seen_at = match self.session.scenario().base.moves() {
             true => exaggeration(motion, reach),

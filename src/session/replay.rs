@@ -7,7 +7,7 @@ use crate::session::changes::Failed;
 use crate::session::changes::folded;
 use crate::session::changes::in_order;
 use crate::session::scenario::Scenario;
-use crate::simulation::audit::Lamp;
+use crate::simulation::audit::AuditFigure;
 use crate::simulation::frame::Frame;
 /// A scenario with the edits before its first step made part of it, and the others left out, and how many those others are.
 ///
@@ -49,7 +49,7 @@ pub fn replay_if(
 ///
 /// # Errors
 /// As [`replay`].
-pub fn felt(scenario: &Scenario) -> Result<([Vec<f64>; 3], Option<Lamp>), Refusal> {
+pub fn felt(scenario: &Scenario) -> Result<([Vec<f64>; 3], Option<AuditFigure>), Refusal> {
     let mut course: [Vec<f64>; 3] = Default::default();
     let run = replay(scenario, |_, frame| {
         let force = frame.wrench.dynamic.force;

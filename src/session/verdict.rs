@@ -7,7 +7,7 @@
 //! | moment past the wheel | what is left of n_B for the base once a reaction wheel has taken its part: by this the base is quiet |
 
 use crate::session::scenario::Scenario;
-use crate::simulation::audit::Lamp;
+use crate::simulation::audit::AuditFigure;
 use crate::simulation::frame::{Frame, Phase, Reach};
 
 /// Farther than this from its target an end effector misses it, m.
@@ -44,7 +44,7 @@ pub struct Verdict {
     /// A relative joint angle that passed its limit, and by how much at most, rad.
     pub past_limit: Option<(String, f64)>,
     /// The first audit that failed: then nothing of this can be trusted.
-    pub fault: Option<Lamp>,
+    pub fault: Option<AuditFigure>,
     /// Whether the guide has come to its end, where it can.
     ended: bool,
 }

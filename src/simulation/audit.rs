@@ -10,7 +10,7 @@
 //! | plane | b with the b that was aimed at |
 
 use super::peaks::Peaks;
-use super::tally::Tally;
+use super::tally::Totals;
 
 /// What should be zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -31,7 +31,7 @@ pub struct Audit {
 
 /// One figure of an audit beside what it may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lamp {
+pub struct AuditFigure {
     /// One or two words.
     pub name: &'static str,
     /// What it compares.
@@ -44,7 +44,7 @@ pub struct Lamp {
     pub unit: &'static str,
 }
 
-impl Lamp {
+impl AuditFigure {
     /// Whether the figure is where it should be; one that is no number never is.
     pub fn is_good(&self) -> bool {
         self.limit.is_none_or(|limit| self.value <= limit)
@@ -59,12 +59,13 @@ const STEP: f64 = 1e-3;
 
 impl Audit {
     /// Every figure beside what it may be, by the measure of what the run has moved.
-    pub fn lamps(&self, peaks: &Peaks, tally: &Tally) -> [Lamp; 6] {
+    pub fn lamps(&self, peaks: &Peaks, tally: &Totals) -> [AuditFigure; 6] {
         let time = tally.time.max(1e-3);
         let pull = (peaks.inertial_pull * time).max(1e-6);
         let turn = (peaks.torque_sum * time).max(1e-6);
         let energy = tally.energy.max(1e-3);
-        let lamp = |name, meaning, value: f64, limit, unit| Lamp { name, meaning, value: value.abs(), limit, unit };
+        let lamp =
+            |name, meaning, value: f64, limit, unit| AuditFigure { name, meaning, value: value.abs(), limit, unit };
         [
             lamp("momentum", "momentum + ∫ f_B dt", self.momentum, Some(SHARE * pull), "kg m/s"),
             lamp("angular", "angular momentum + ∫ n_B dt", self.angular, Some(SHARE * turn), "kg m²/s"),
@@ -76,7 +77,7 @@ impl Audit {
     }
 }
 
-impl std::fmt::Display for Lamp {
+impl std::fmt::Display for AuditFigure {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{}: {} is {:.1e} {}", self.name, self.meaning, self.value, self.unit)?;
         match self.limit {

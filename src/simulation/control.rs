@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, Units, Vector};
 use crate::planning::Reference;
 use crate::settings::range::Check;
-use crate::simulation::plant::{Body, Each, is_default};
+use crate::simulation::plant::{Each, MovingBody, is_default};
 
 /// Control as a file states it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -157,12 +157,12 @@ pub struct Controller {
     kp: PerDrive,
     kd: PerDrive,
     /// The model, and the model with the payload.
-    models: Box<[Body; 2]>,
+    models: Box<[MovingBody; 2]>,
 }
 
 impl Controller {
     /// For a machine of `n` drives.
-    pub fn new(control: &Control, n: usize, models: [Body; 2]) -> Self {
+    pub fn new(control: &Control, n: usize, models: [MovingBody; 2]) -> Self {
         Self { law: control.law, kp: control.kp.of(n), kd: control.kd.of(n), models: Box::new(models) }
     }
 

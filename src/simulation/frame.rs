@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::audit::Lamp;
+use super::audit::AuditFigure;
 use crate::mechanics::dynamics::BaseWrench;
 use crate::mechanics::joint_forces::Inside;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector, unit};
@@ -13,7 +13,7 @@ pub use crate::planning::pose_constant::Reach;
 pub use crate::planning::reactionless::Dexterity;
 pub use crate::simulation::audit::Audit;
 pub use crate::simulation::peaks::{Peaks, REACTIONLESS};
-pub use crate::simulation::tally::Tally;
+pub use crate::simulation::tally::Totals;
 
 /// One instant of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,7 +75,7 @@ pub struct Frame {
     /// The largest values so far.
     pub peaks: Peaks,
     /// Sums so far.
-    pub tally: Tally,
+    pub tally: Totals,
     /// What should be zero.
     pub audit: Audit,
 }
@@ -105,7 +105,7 @@ impl Phase {
 
 impl Frame {
     /// The first figure of the audit that is not where it should be.
-    pub fn fault(&self) -> Option<Lamp> {
+    pub fn fault(&self) -> Option<AuditFigure> {
         self.audit.lamps(&self.peaks, &self.tally).into_iter().find(|lamp| !lamp.is_good())
     }
 

@@ -1,11 +1,11 @@
-//! [`Tally`]: what a run has come to so far, summed over time: root mean squares, impulses, energy, motion of the base.
+//! [`Totals`]: what a run has come to so far, summed over time: root mean squares, impulses, energy, motion of the base.
 
 use crate::mechanics::dynamics::BaseWrench;
 use crate::simulation::plant::Slope;
 
 /// Sums over a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Tally {
+pub struct Totals {
     /// Time covered, s.
     pub time: f64,
     /// ∫ |f_B|² dt of the dynamic part, N² s.
@@ -42,7 +42,7 @@ struct Integrands {
     wheel: f64,
 }
 
-impl Tally {
+impl Totals {
     /// Takes in one more instant, with what the manipulator transmits, at a time, s, by the trapezoidal rule.
     pub(crate) fn include(&mut self, x: &Slope, wrench: &BaseWrench, time: f64) {
         let turning = x.qd.get(x.torque.len()).copied().unwrap_or(0.0);

@@ -10,7 +10,7 @@ use stillbase::planning::timing::Profile;
 use stillbase::planning::timing::profile::Span;
 use stillbase::session::replay;
 use stillbase::session::scenario::Scenario;
-use stillbase::simulation::plant::{Base, BaseKind, Body, Contacts, Each, Friction, Plant};
+use stillbase::simulation::plant::{Base, BaseKind, Contacts, Each, Friction, MovingBody, Plant};
 use stillbase::simulation::{Guide, Setup, Simulation};
 
 /// Numbers that are the same in every run.
@@ -389,7 +389,7 @@ fn what_sticking_takes_is_an_error() {
     let friction = Friction { coulomb: Each::All(1.0), ..Friction::default() };
     for kind in [BaseKind::Fixed, BaseKind::Free] {
         let (q, base) = (DriveAngles::from([1.7, 3.7, 2.2]), Base { kind, ..Base::default() });
-        let body = Body::of(machine, &friction, &base, &q).expect("valid");
+        let body = MovingBody::of(machine, &friction, &base, &q).expect("valid");
         let state = body.state(&q, &PerDrive::from([0.1, 0.2, -0.3]), Default::default(), Default::default(), 0.0);
         let stuck = body.stuck(state, &[0; stillbase::simulation::plant::MAX_CONTACTS]);
         assert!(

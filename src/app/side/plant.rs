@@ -9,7 +9,7 @@ use crate::mechanics::machine::{Link, Machine};
 use crate::picture::scene::palette::Palette;
 use crate::session::Session;
 use crate::session::scenario::Value;
-use crate::simulation::plant::{Deviation, Each, Plant};
+use crate::simulation::plant::{Each, LinkDifference, Plant};
 
 const KEYS: [&str; 6] = ["torque_limits", "force", "payload", "friction", "length", "link"];
 
@@ -285,7 +285,7 @@ fn link(ui: &mut Ui, plant: &Plant, model: &Machine, p: &Palette, commands: &mut
     ui.indent("link", |ui| link_rows(ui, link, &differs, p, commands));
 }
 
-fn link_rows(ui: &mut Ui, link: &Link, differs: &Deviation, p: &Palette, commands: &mut Vec<Command>) {
+fn link_rows(ui: &mut Ui, link: &Link, differs: &LinkDifference, p: &Palette, commands: &mut Vec<Command>) {
     let rows = [
         ("mass", "mass", "kg", "Mass m_j of the link", differs.mass, link.mass, 1e-3..=100.0),
         (

@@ -1,4 +1,4 @@
-//! [`Body`]: everything that moves, collapsed into constants, and its equations of motion.
+//! [`MovingBody`]: everything that moves, collapsed into constants, and its equations of motion.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -17,7 +17,7 @@
 //! π̇_k = ∂T/∂q_k + Q_k, and P and L change by outer forces only: a free base keeps both to the last digit. Gravity
 //! has no lever about R.
 
-use super::{Base, BaseKind, Command, Contacts, Friction, Grip, MAX_CONTACTS, Slope, Spin, State};
+use super::{Base, BaseKind, ContactStates, Contacts, Friction, MAX_CONTACTS, MotorCommand, Slope, Spin, State};
 use crate::mechanics::dynamics::{BaseWrench, Factors, Surroundings, base_wrench, by_drives, first};
 use crate::mechanics::machine::{Inertia, Machine, MachineError};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Units, Vector, cross, dot};
@@ -35,7 +35,7 @@ struct Support {
 
 /// Everything that moves.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Body {
+pub struct MovingBody {
     /// The manipulator with what it holds.
     arm: Inertia,
     /// All that turns: about B on a fixed base, about R on one that moves.
@@ -58,7 +58,7 @@ pub struct Body {
     base: (f64, Vector),
 }
 
-impl Body {
+impl MovingBody {
     /// Constants of a machine with what it holds, on its base; `start` is the pose of rest that a compliant base is
     /// preloaded for.
     ///
@@ -197,9 +197,9 @@ impl Body {
     pub fn instant(
         &self,
         state: &State,
-        grip: &Grip,
+        grip: &ContactStates,
         taken: &mut [f64; MAX_CONTACTS],
-        control: impl FnOnce(&Units, &PerDrive, Pose2, Vector) -> Command,
+        control: impl FnOnce(&Units, &PerDrive, Pose2, Vector) -> MotorCommand,
     ) -> Slope {
         by_drives!(self.whole.drives, instant_of(self, state, grip, taken, control))
     }
@@ -315,17 +315,17 @@ impl Body {
     }
 }
 
-fn outer_padded<const N: usize>(body: &Body, e: &Units, hold: (Vector, f64)) -> PerDrive {
+fn outer_padded<const N: usize>(body: &MovingBody, e: &Units, hold: (Vector, f64)) -> PerDrive {
     body.outer::<N>(e, hold).into()
 }
 
 #[inline]
 fn instant_of<const N: usize>(
-    body: &Body,
+    body: &MovingBody,
     state: &State,
-    grip: &Grip,
+    grip: &ContactStates,
     taken: &mut [f64; MAX_CONTACTS],
-    control: impl FnOnce(&Units, &PerDrive, Pose2, Vector) -> Command,
+    control: impl FnOnce(&Units, &PerDrive, Pose2, Vector) -> MotorCommand,
 ) -> Slope {
     let n = body.arm.drives;
     let e = DriveAngles(state.q).units();
@@ -366,7 +366,7 @@ fn instant_of<const N: usize>(
         velocity = drift + swing;
         turning = rate[N - 1];
     }
-    let Command { torque, spin, rotor } = control(&e, &qd, base, velocity);
+    let MotorCommand { torque, spin, rotor } = control(&e, &qd, base, velocity);
 
     // Generalised forces: outer ones, whose sum changes L, and torques between the drives and the base.
     let (hold, moment) = body.held(base, velocity, turning);
@@ -448,7 +448,7 @@ fn instant_of<const N: usize>(
     }
 }
 
-impl Body {
+impl MovingBody {
     /// Rates of a state, rad/s.
     pub fn rates(&self, state: &State) -> PerDrive {
         let e = DriveAngles(state.q).units();
@@ -475,7 +475,7 @@ impl Body {
     /// torques between the two sides, which change no momentum of the whole. That is rounding, and the error of a step;
     /// it is booked nowhere, so that audits see it if it is more.
     #[must_use]
-    pub fn stuck(&self, mut state: State, grip: &Grip) -> State {
+    pub fn stuck(&self, mut state: State, grip: &ContactStates) -> State {
         let still = |i: &usize| self.contacts.sticks(*i) && grip[*i] == 0;
         if !(0..self.contacts.len()).any(|i| still(&i)) {
             return state;
@@ -503,11 +503,11 @@ impl Body {
     }
 }
 
-impl Body {
+impl MovingBody {
     /// A state without torques.
     pub fn still(&self, state: &State) -> Slope {
         let n = self.arm.drives;
-        self.instant(state, &[0; MAX_CONTACTS], &mut [0.0; MAX_CONTACTS], |_, _, _, _| Command {
+        self.instant(state, &[0; MAX_CONTACTS], &mut [0.0; MAX_CONTACTS], |_, _, _, _| MotorCommand {
             torque: PerDrive::zeros(n),
             spin: Spin::default(),
             rotor: 0.0,

@@ -31,13 +31,13 @@ pub struct Plant {
     pub length: BTreeMap<String, f64>,
     /// Links that differ.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub link: BTreeMap<String, Deviation>,
+    pub link: BTreeMap<String, LinkDifference>,
 }
 
 /// What differs in a link: its true values, where they are not the model's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Deviation {
+pub struct LinkDifference {
     /// kg.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mass: Option<f64>,

@@ -52,7 +52,7 @@ struct Contact {
 }
 
 /// What a contact does: 0 stuck, ±1 sliding that way.
-pub type Grip = [i8; MAX_CONTACTS];
+pub type ContactStates = [i8; MAX_CONTACTS];
 
 /// Every contact of a machine that has friction: the bearings first.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,7 +66,7 @@ impl Contacts {
     pub(crate) const STILL: f64 = 1e-12;
 
     /// What every contact does in a state of motion.
-    pub(crate) fn grips(&self, qd: &[f64]) -> Grip {
+    pub(crate) fn grips(&self, qd: &[f64]) -> ContactStates {
         let mut grip = [0; MAX_CONTACTS];
         for i in (0..self.len()).filter(|i| self.sticks(*i)) {
             let v = self.sliding(i, qd);
@@ -138,7 +138,7 @@ impl Contacts {
 
     /// Friction of one pin between links that follow drives `from` and `to`, N m, against q̇_to − q̇_from; `taken` holds
     /// the torques of stuck contacts. Pins between the same two drives turn alike, so each has an equal part.
-    pub fn couple(&self, from: usize, to: usize, qd: &[f64], grip: &Grip, taken: &[f64; MAX_CONTACTS]) -> f64 {
+    pub fn couple(&self, from: usize, to: usize, qd: &[f64], grip: &ContactStates, taken: &[f64; MAX_CONTACTS]) -> f64 {
         let pins = self.list.iter().enumerate().skip(self.bearings);
         let ends = |c: &Contact| (c.minus.min(c.plus), c.minus.max(c.plus));
         let Some((i, c)) = pins.into_iter().find(|(_, c)| ends(c) == (from.min(to), from.max(to))) else { return 0.0 };
@@ -160,7 +160,7 @@ impl Contacts {
     /// Friction of all that slides, added to generalised forces, N m; the power it takes, W. Bearings also in
     /// `bearing`, drive by drive.
     #[inline]
-    pub fn slide(&self, grip: &Grip, qd: &[f64], force: &mut [f64], bearing: &mut [f64]) -> f64 {
+    pub fn slide(&self, grip: &ContactStates, qd: &[f64], force: &mut [f64], bearing: &mut [f64]) -> f64 {
         let mut lost = 0.0;
         for (i, c) in self.list.iter().enumerate() {
             let v = self.sliding(i, qd);
@@ -180,7 +180,7 @@ impl Contacts {
     /// unless a contact has begun to slide since the step did. Bounded sweeps: exact in one where contacts do not act on each other.
     pub fn hold(
         &self,
-        grip: &Grip,
+        grip: &ContactStates,
         (qd, free): (&[f64], &[f64]),
         solve: impl Fn(&[f64; MAX_DRIVES]) -> [f64; MAX_DRIVES],
         force: &mut [f64],

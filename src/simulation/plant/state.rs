@@ -27,7 +27,7 @@ pub struct State {
 
 /// What the motors and the wheel do.
 #[derive(Clone, Copy, Debug)]
-pub struct Command {
+pub struct MotorCommand {
     /// τ_k, N m.
     pub torque: PerDrive,
     /// Of the wheel.

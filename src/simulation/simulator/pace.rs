@@ -1,23 +1,23 @@
 //! What a step is made of, and how finely it is taken.
 
-use crate::simulation::frame::{Peaks, Tally};
-use crate::simulation::plant::{Grip, MAX_CONTACTS, Slope, State};
+use crate::simulation::frame::{Peaks, Totals};
+use crate::simulation::plant::{ContactStates, MAX_CONTACTS, Slope, State};
 
 /// Where a step has come to.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Leg {
+pub(super) struct StepState {
     /// Since the step began, s.
     pub at: f64,
     pub state: State,
     pub slope: Slope,
-    pub grip: Grip,
+    pub grip: ContactStates,
     /// Torques of stuck contacts, N m.
     pub taken: [f64; MAX_CONTACTS],
 }
 
 /// A part of a step in which the reference is smooth.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Piece {
+pub(super) struct Segment {
     pub(super) from: f64,
     pub to: f64,
     /// Times of the motion that belong to it, s.
@@ -27,9 +27,9 @@ pub(super) struct Piece {
 /// How far two answers are apart, or how far they may be: the moment that the base feels, N m, dynamic f_B, N, motor
 /// torques, N m, the end effector, m.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Off(pub(super) [f64; 4]);
+pub(super) struct Mismatch(pub(super) [f64; 4]);
 
-impl Off {
+impl Mismatch {
     /// More than any yard.
     pub const BEYOND: Self = Self([f64::INFINITY; 4]);
 
@@ -65,7 +65,7 @@ pub(super) const LEAST: f64 = 1e-6;
 
 /// How far things may have strayed from where they should be: the end effector and B, m, and the base, rad.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Drift {
+pub(super) struct Stray {
     pub(super) tip: f64,
     pub(super) shift: f64,
     pub(super) tilt: f64,
@@ -73,12 +73,12 @@ pub(super) struct Drift {
 
 /// What errors have come to so far, and how many parts steps are taken in.
 #[derive(Clone, Debug)]
-pub(super) struct Pace {
+pub(super) struct StepControl {
     pub(super) parts: u32,
     /// The most by which two answers have differed.
-    pub(super) worst: Off,
+    pub(super) worst: Mismatch,
     /// What halving has found, added up.
-    pub(super) drift: Drift,
+    pub(super) drift: Stray,
     /// What the reference asks for, before the run has shown its own peaks.
     pub(super) expected: Peaks,
     /// Until when that counts, s.
@@ -89,7 +89,7 @@ pub(super) struct Pace {
     pub(super) level: f64,
 }
 
-impl Pace {
+impl StepControl {
     pub fn new(drives: usize) -> Self {
         let (worst, drift) = Default::default();
         Self { parts: 1, worst, drift, expected: Peaks::zero(drives), until: 0.0, kinks: Vec::new(), level: 0.0 }
@@ -101,8 +101,8 @@ impl Pace {
     }
 
     /// The error of what is shown, as a share of a yard.
-    pub fn error(&self, yard: &Off, tally: &Tally, reach: f64) -> f64 {
-        let Drift { tip, shift, tilt } = self.drift;
+    pub fn error(&self, yard: &Mismatch, tally: &Totals, reach: f64) -> f64 {
+        let Stray { tip, shift, tilt } = self.drift;
         let least = QUIET * reach.max(LEAST);
         let drift =
             (tip / (TIP * reach.max(LEAST))).max(shift / tally.shift.max(least)).max(tilt / tally.tilt.max(QUIET));
@@ -112,8 +112,8 @@ impl Pace {
 }
 
 /// A part by the classical rule.
-pub(super) struct Part {
-    pub end: Leg,
+pub(super) struct Substep {
+    pub end: StepState,
     /// The slope of the last stage.
     pub last: Slope,
     /// Those between, where contacts can stick.

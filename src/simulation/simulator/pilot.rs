@@ -1,4 +1,4 @@
-//! [`Pilot`]: control as it runs, all the time or sampled: encoders, delay, torque limits, and the wheel.
+//! [`ControlLoop`]: control as it runs, all the time or sampled: encoders, delay, torque limits, and the wheel.
 //!
 //! # What is measured
 //! | quantity | how |
@@ -19,11 +19,11 @@ use std::collections::VecDeque;
 use crate::mechanics::planar::{DriveAngles, PerDrive};
 use crate::planning::Reference;
 use crate::simulation::control::{Control, Controller, Reading};
-use crate::simulation::plant::{Command, Spin, Wheel};
+use crate::simulation::plant::{MotorCommand, Spin, Wheel};
 
 /// Control as it runs.
 #[derive(Clone, Debug)]
-pub struct Pilot {
+pub struct ControlLoop {
     controller: Controller,
     limits: Option<PerDrive>,
     wheel: Option<Wheel>,
@@ -53,7 +53,7 @@ struct Sampling {
     held: Option<PerDrive>,
 }
 
-impl Pilot {
+impl ControlLoop {
     /// A controller at `step` s; motors give no more than `limits`, N m.
     pub fn new(
         controller: Controller,
@@ -154,7 +154,7 @@ impl Pilot {
 
     /// What motors and wheel do at this instant; Ω in rad/s.
     #[inline(always)]
-    pub fn command(&self, reference: &Reference, reading: &Reading, loaded: bool, wheel_rate: f64) -> Command {
+    pub fn command(&self, reference: &Reference, reading: &Reading, loaded: bool, wheel_rate: f64) -> MotorCommand {
         let wanted = match &self.sampling {
             Some(Sampling { held: Some(held), .. }) => *held,
             _ => self.controller.torque(reference, reading, loaded),
@@ -167,6 +167,6 @@ impl Pilot {
             Some(wheel) => wheel.give(-torque.iter().sum::<f64>(), wheel_rate, self.wheel_room),
             None => Spin::default(),
         };
-        Command { torque, spin, rotor: self.rotor() }
+        MotorCommand { torque, spin, rotor: self.rotor() }
     }
 }

@@ -9,21 +9,21 @@ use crate::planning::Reference;
 use crate::planning::pose_constant::plane_map;
 use crate::planning::reactionless::PlaneMap;
 use crate::simulation::control::{Controller, Reading};
-use crate::simulation::frame::{Audit, Frame, Peaks, Phase, Reach, Tally, Target};
-use crate::simulation::plant::{Base, Body, Friction, Grip, Load, MAX_CONTACTS, Slope, State};
+use crate::simulation::frame::{Audit, Frame, Peaks, Phase, Reach, Target, Totals};
+use crate::simulation::plant::{Base, ContactStates, Friction, Load, MAX_CONTACTS, MovingBody, Slope, State};
 
 use super::guide::{Guide, Setup};
-use super::pace::Pace;
-use super::pilot::Pilot;
+use super::pace::StepControl;
+use super::pilot::ControlLoop;
 
 /// A run in progress.
 #[derive(Clone, Debug)]
 pub struct Simulation {
     /// Without the payload that comes and goes, and with it.
-    pub(super) bodies: Box<[Body; 2]>,
+    pub(super) bodies: Box<[MovingBody; 2]>,
     pub(super) load: Load,
     pub(super) loaded: bool,
-    pub(super) pilot: Pilot,
+    pub(super) pilot: ControlLoop,
     /// m_j a_jk of each link, `drives` after `drives`, kg m, and of each with the payload.
     pub(super) link_moments: [Vec<Vector>; 2],
     /// What pins carry, likewise.
@@ -38,28 +38,28 @@ pub struct Simulation {
     pub(super) step: u64,
     pub(super) guide: Guide,
     pub(super) state: State,
-    pub(super) grip: Grip,
+    pub(super) grip: ContactStates,
     /// Torques of stuck contacts, N m.
     pub(super) taken: [f64; MAX_CONTACTS],
     pub(super) now: Slope,
     pub(super) reference: Reference,
     /// What energy and momenta less their sources were at the start.
-    ground: Ground,
+    ground: Baseline,
     pub(super) peaks: Peaks,
-    pub(super) tally: Tally,
+    pub(super) tally: Totals,
     /// How finely steps are taken, and with which errors.
-    pub(super) pace: Pace,
+    pub(super) pace: StepControl,
 }
 
 /// What audits start from.
 #[derive(Clone, Copy, Debug, Default)]
-struct Ground {
+struct Baseline {
     energy: f64,
     momentum: Vector,
     angular: f64,
 }
 
-impl Ground {
+impl Baseline {
     fn less(self, other: &Self) -> Self {
         Self {
             energy: self.energy - other.energy,
@@ -88,7 +88,7 @@ impl Simulation {
         let force = Vector::new(plant.force[0], plant.force[1]);
         let start = &reference.q;
         let holding = load.held_by(&machine)?;
-        let body = |m: &Machine| Body::of(m, &plant.friction, setup.base, start).map(|b| b.pushed(force));
+        let body = |m: &Machine| MovingBody::of(m, &plant.friction, setup.base, start).map(|b| b.pushed(force));
         let empty = body(&machine)?;
         let first = load.is_held(0.0, 0.5 * setup.step);
         // The springs are preloaded for what is held at the start.
@@ -96,7 +96,7 @@ impl Simulation {
         let bodies = if first { [empty.preloaded_as(&with), with] } else { [empty.clone(), with.preloaded_as(&empty)] };
         let fixed = Base::default();
         let known = if setup.control.knows_base { setup.base } else { &fixed };
-        let model = |m: &Machine| Body::of(m, &Friction::default(), known, start);
+        let model = |m: &Machine| MovingBody::of(m, &Friction::default(), known, start);
         let models = [model(setup.model)?, model(&load.held_by(setup.model)?)?];
         let models = match (first, models) {
             (true, [empty, with]) => [empty.preloaded_as(&with), with],
@@ -108,7 +108,7 @@ impl Simulation {
             .torque_limits
             .then(|| PerDrive::from_fn(n, |k| setup.model.spec().drives[k].torque_limit.unwrap_or(f64::INFINITY)));
         let controller = Controller::new(setup.control, n, models);
-        let pilot = Pilot::new(controller, setup.control, setup.step, limits, setup.base.wheel);
+        let pilot = ControlLoop::new(controller, setup.control, setup.step, limits, setup.base.wheel);
         let loaded = usize::from(first);
         let state = bodies[loaded].state(&reference.q, &reference.qd, Pose2::default(), Vector::default(), 0.0);
         let now = bodies[loaded].still(&state);
@@ -132,10 +132,10 @@ impl Simulation {
             taken: [0.0; MAX_CONTACTS],
             now,
             reference,
-            ground: Ground::default(),
+            ground: Baseline::default(),
             peaks: Peaks::zero(n),
-            tally: Tally::default(),
-            pace: Pace::new(n),
+            tally: Totals::default(),
+            pace: StepControl::new(n),
         };
         sim.begin();
         Ok(sim)
@@ -151,14 +151,14 @@ impl Simulation {
     }
 
     /// Energy and momenta of a body less what has come in and gone out: these do not change.
-    fn sources(&self, body: &Body, x: &Slope) -> Ground {
+    fn sources(&self, body: &MovingBody, x: &Slope) -> Baseline {
         let (p, h) = body.arm_momentum(x);
         let energy = x.kinetic + body.potential(x) - self.state.work + self.state.lost;
-        Ground { energy, momentum: p + self.state.impulse.0, angular: h + self.state.impulse.1 }
+        Baseline { energy, momentum: p + self.state.impulse.0, angular: h + self.state.impulse.1 }
     }
 
     /// What moves now.
-    pub(crate) fn body(&self) -> &Body {
+    pub(crate) fn body(&self) -> &MovingBody {
         &self.bodies[usize::from(self.loaded)]
     }
 
@@ -216,7 +216,7 @@ impl Simulation {
     }
 
     /// The same positions and rates on the body of now; what audits compare with goes on from here.
-    fn carry_over(&mut self, before: &Slope, body: &Body) {
+    fn carry_over(&mut self, before: &Slope, body: &MovingBody) {
         let n = self.drives;
         let off = self.sources(body, before).less(&self.ground);
         let (q, qd) = (self.state.drives(n), before.qd.first(n));
@@ -276,7 +276,7 @@ impl Simulation {
         &self,
         state: &State,
         reference: &Reference,
-        grip: &Grip,
+        grip: &ContactStates,
         taken: &mut [f64; MAX_CONTACTS],
     ) -> Slope {
         let n = self.drives;

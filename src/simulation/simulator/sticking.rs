@@ -9,9 +9,9 @@
 //! A part of a step that holds such an instant is cut there, as often as there are instants; a part on whose way a
 //! contact turned and turned back is halved until the first of the two is found.
 
-use super::pace::{Leg, Off, Part, Piece};
+use super::pace::{Mismatch, Segment, StepState, Substep};
 use super::simulation::Simulation;
-use crate::simulation::plant::{Contacts, Grip, MAX_CONTACTS, Slope};
+use crate::simulation::plant::{ContactStates, Contacts, MAX_CONTACTS, Slope};
 
 /// The most cuts of one part of a step.
 const MOST: usize = 100;
@@ -28,7 +28,7 @@ enum Event {
 #[expect(clippy::large_enum_variant, reason = "a step allocates nothing")]
 enum Cut {
     /// To its end, where the contact that was looked for stops or comes loose.
-    Here(Part),
+    Here(Substep),
     /// Not so far: something else is sooner, at this time since the step began at the latest, s.
     Sooner(f64),
 }
@@ -45,7 +45,7 @@ impl Simulation {
     }
 
     /// Slides contacts that cannot hold.
-    pub(super) fn release(&self, slope: &Slope, grip: &mut Grip, taken: &[f64; MAX_CONTACTS]) {
+    pub(super) fn release(&self, slope: &Slope, grip: &mut ContactStates, taken: &[f64; MAX_CONTACTS]) {
         let contacts = self.body().contacts();
         for i in (0..contacts.len()).filter(|i| contacts.sticks(*i)) {
             if grip[i] == 0 && self.spare(i, slope, taken) < -0.5e-9 * contacts.coulomb(i) {
@@ -55,26 +55,26 @@ impl Simulation {
     }
 
     /// Rate of a contact along the way it slides, rad/s, or what a stuck one has to spare, N m: below zero that is over.
-    fn left(&self, i: usize, grip: &Grip, at: &Leg) -> f64 {
+    fn left(&self, i: usize, grip: &ContactStates, at: &StepState) -> f64 {
         match grip[i] {
             0 => self.spare(i, &at.slope, &at.taken),
             way => f64::from(way) * self.body().contacts().sliding(i, &at.slope.qd),
         }
     }
 
-    fn is_over(&self, i: usize, grip: &Grip, at: &Leg) -> bool {
+    fn is_over(&self, i: usize, grip: &ContactStates, at: &StepState) -> bool {
         let least = if grip[i] == 0 { -0.5e-9 * self.body().contacts().coulomb(i) } else { 0.0 };
         self.left(i, grip, at) < least
     }
 
     /// The same by more than what two that end together may differ by.
-    fn is_long_over(&self, i: usize, grip: &Grip, at: &Leg) -> bool {
+    fn is_long_over(&self, i: usize, grip: &ContactStates, at: &StepState) -> bool {
         let least = if grip[i] == 0 { -1e-6 * self.body().contacts().coulomb(i) } else { -Contacts::STILL };
         self.left(i, grip, at) < least
     }
 
     /// What happens on a part, if anything: the contact that seems to be first.
-    fn event(&self, from: &Leg, part: &Part) -> Option<Event> {
+    fn event(&self, from: &StepState, part: &Substep) -> Option<Event> {
         let contacts = self.body().contacts();
         let able = || (0..contacts.len()).filter(|i| contacts.sticks(*i));
         let over = able().filter(|i| self.is_over(*i, &from.grip, &part.end)).map(|i| {
@@ -88,7 +88,7 @@ impl Simulation {
     }
 
     /// Whether a contact stops, or comes loose, on the way of a part and goes back to what it did.
-    fn turns_back(&self, from: &Leg, part: &Part) -> bool {
+    fn turns_back(&self, from: &StepState, part: &Substep) -> bool {
         let contacts = self.body().contacts();
         let h = part.end.at - from.at;
         (0..contacts.len()).filter(|i| contacts.sticks(*i)).any(|i| {
@@ -105,8 +105,8 @@ impl Simulation {
     }
 
     /// Goes on to a time since the step began, s, cut where contacts stick or slip; the most by which two answers differ.
-    pub(super) fn contact(&self, leg: &mut Leg, to: f64, piece: &Piece) -> Off {
-        let mut worst = Off::default();
+    pub(super) fn contact(&self, leg: &mut StepState, to: f64, piece: &Segment) -> Mismatch {
+        let mut worst = Mismatch::default();
         let mut reach = to - leg.at;
         for _ in 0..MOST {
             // The reference may have jumped.
@@ -138,11 +138,11 @@ impl Simulation {
         }
         // More than can be followed: finer parts are tried, and if they fail the audits see what is taken out here.
         *leg = self.part(leg, to, piece).end;
-        Off::BEYOND
+        Mismatch::BEYOND
     }
 
     /// Where the first of all contacts stops or comes loose on a part on which one does, unless something else is sooner.
-    fn found(&self, mut i: usize, from: &Leg, mut part: Part, piece: &Piece) -> Cut {
+    fn found(&self, mut i: usize, from: &StepState, mut part: Substep, piece: &Segment) -> Cut {
         let contacts = self.body().contacts();
         // Each search ends before the one it began with, so that of contacts that end almost together the first is found.
         for _ in 0..2 * contacts.len() {
@@ -159,7 +159,7 @@ impl Simulation {
     }
 
     /// A part cut where a contact that is over at its end just is.
-    fn cut(&self, i: usize, from: &Leg, part: Part, piece: &Piece) -> Part {
+    fn cut(&self, i: usize, from: &StepState, part: Substep, piece: &Segment) -> Substep {
         let holds = from.grip[i] == 0;
         let scale = if holds { self.body().contacts().coulomb(i) } else { 1.0 };
         let mut low = (from.at, self.left(i, &from.grip, from).max(0.0));
@@ -197,7 +197,7 @@ impl Simulation {
 
     /// A contact that does not slide, and would not go the way it is said to slide, is stuck or goes the other way. True
     /// if there was one.
-    fn settle(&self, leg: &mut Leg, piece: &Piece) -> bool {
+    fn settle(&self, leg: &mut StepState, piece: &Segment) -> bool {
         let contacts = self.body().contacts();
         let mut changed = false;
         for i in (0..contacts.len()).filter(|i| contacts.sticks(*i)) {
@@ -216,14 +216,14 @@ impl Simulation {
     }
 
     /// After a part: contacts that have stopped stick, and those that cannot hold slide.
-    fn turn(&self, leg: &mut Leg, piece: &Piece) {
+    fn turn(&self, leg: &mut StepState, piece: &Segment) {
         if !self.settle(leg, piece) {
             self.release(&leg.slope, &mut leg.grip, &leg.taken);
         }
     }
 
     /// Holds what is stuck, as far as its law allows.
-    fn hold(&self, leg: &mut Leg, piece: &Piece) {
+    fn hold(&self, leg: &mut StepState, piece: &Segment) {
         leg.state = self.body().stuck(leg.state, &leg.grip);
         leg.slope = self.slope(&leg.state, leg.at, piece, &leg.grip, &mut leg.taken);
         self.release(&leg.slope, &mut leg.grip, &leg.taken);

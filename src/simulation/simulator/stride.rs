@@ -15,13 +15,13 @@
 //! figure `step` of the audit. All of it depends on the run alone, so a replay takes the same parts.
 
 use super::guide::Guide;
-use super::pace::{Leg, Off, Part, Piece};
+use super::pace::{Mismatch, Segment, StepState, Substep};
 use super::simulation::Simulation;
 use crate::mechanics::kinematics::end_effector;
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::{Motion, Reference};
 use crate::simulation::frame::Peaks;
-use crate::simulation::plant::{Body, Grip, MAX_CONTACTS, Slope, State};
+use crate::simulation::plant::{ContactStates, MAX_CONTACTS, MovingBody, Slope, State};
 
 /// How far two answers may differ, as a share of the peaks of what is shown.
 const FINE: f64 = 2e-5;
@@ -70,7 +70,7 @@ impl Simulation {
     }
 
     /// How far two answers may differ now.
-    pub(super) fn yard(&self) -> Off {
+    pub(super) fn yard(&self) -> Mismatch {
         let mut peaks = self.peaks;
         let wanted = &self.pace.expected;
         // At first half of what the reference asks for: there are no peaks yet.
@@ -81,12 +81,12 @@ impl Simulation {
             peaks.force = of(peaks.force, wanted.force);
             peaks.inertial_pull = of(peaks.inertial_pull, wanted.inertial_pull);
         }
-        Off::yard(&peaks, self.reach())
+        Mismatch::yard(&peaks, self.reach())
     }
 
     /// The reference at a time since the step began, s, as the piece has it.
     #[inline]
-    pub(super) fn aim(&self, at: f64, piece: &Piece) -> Reference {
+    pub(super) fn aim(&self, at: f64, piece: &Segment) -> Reference {
         match &self.guide {
             Guide::Motion { motion, start } => {
                 // The end of the step is where the next one begins, to the last digit.
@@ -117,9 +117,11 @@ impl Simulation {
     }
 
     /// The piece that begins at a time since the step did, s, and whether it ends on a kink.
-    fn piece(&self, from: f64) -> (Piece, bool) {
+    fn piece(&self, from: f64) -> (Segment, bool) {
         let (all, none) = ([f64::NEG_INFINITY, f64::INFINITY], (self.dt, false));
-        let Guide::Motion { start, .. } = &self.guide else { return (Piece { from, to: none.0, window: all }, none.1) };
+        let Guide::Motion { start, .. } = &self.guide else {
+            return (Segment { from, to: none.0, window: all }, none.1);
+        };
         let (t0, near, beside) = (self.time() - start, NEAR * self.dt, BESIDE * self.dt);
         let mut window = all;
         if let Some(kink) = self.kink_at(t0 + from) {
@@ -128,18 +130,18 @@ impl Simulation {
         let kinks = &self.pace.kinks;
         let next = kinks.get(kinks.partition_point(|kink| *kink <= t0 + from + near));
         let Some(kink) = next.filter(|kink| **kink <= t0 + self.dt + near) else {
-            return (Piece { from, to: self.dt, window }, false);
+            return (Segment { from, to: self.dt, window }, false);
         };
         window[1] = kink - beside;
         let to = if *kink >= t0 + self.dt - near { self.dt } else { kink - t0 };
-        (Piece { from, to, window }, true)
+        (Segment { from, to, window }, true)
     }
 
     /// A whole step, and whether the slope at its end is that with which the next one begins.
-    pub(super) fn stride(&mut self) -> (Leg, bool) {
+    pub(super) fn stride(&mut self) -> (StepState, bool) {
         let yard = self.yard();
         let looked_at = stands_for(self.step);
-        let mut leg = Leg { at: 0.0, state: self.state, slope: self.now, grip: self.grip, taken: self.taken };
+        let mut leg = StepState { at: 0.0, state: self.state, slope: self.now, grip: self.grip, taken: self.taken };
         let mut parts = 1;
         for count in 1..=MOST_PIECES {
             let (mut piece, mut kinked) = self.piece(leg.at);
@@ -161,7 +163,7 @@ impl Simulation {
     }
 
     /// A piece, and in how many parts of a step the next one should go on.
-    fn pass(&mut self, from: &Leg, piece: &Piece, yard: &Off, looked_at: Option<f64>) -> (Leg, u32) {
+    fn pass(&mut self, from: &StepState, piece: &Segment, yard: &Mismatch, looked_at: Option<f64>) -> (StepState, u32) {
         let share = (piece.to - piece.from) / self.dt;
         let count = |parts: u32| (f64::from(parts) * share - 1e-9).ceil().max(1.0) as u32;
         let mut parts = self.pace.parts;
@@ -198,8 +200,8 @@ impl Simulation {
     }
 
     /// A piece in equal parts, and the most by which two answers differ.
-    fn walk(&self, from: &Leg, piece: &Piece, parts: u32) -> (Leg, Off) {
-        let (mut leg, mut worst) = (*from, Off::default());
+    fn walk(&self, from: &StepState, piece: &Segment, parts: u32) -> (StepState, Mismatch) {
+        let (mut leg, mut worst) = (*from, Mismatch::default());
         let sticks = self.body().contacts().stick();
         for i in 1..=parts {
             let share = f64::from(i) / f64::from(parts);
@@ -218,10 +220,10 @@ impl Simulation {
     }
 
     /// How far apart two answers for one instant are.
-    pub(super) fn apart(&self, a: &Slope, b: &Slope) -> Off {
+    pub(super) fn apart(&self, a: &Slope, b: &Slope) -> Mismatch {
         let felt = |x: &Slope| x.wrench.total().moment - x.spin.torque;
         let tip = |x: &Slope| tip(self.body(), x);
-        Off([
+        Mismatch([
             (felt(a) - felt(b)).abs(),
             (a.wrench.dynamic.force - b.wrench.dynamic.force).norm(),
             a.torque.minus(&b.torque).max_abs(),
@@ -233,7 +235,7 @@ impl Simulation {
 impl Simulation {
     /// One step of the classical rule to a time since the step began, s.
     #[inline]
-    pub(super) fn part(&self, from: &Leg, to: f64, piece: &Piece) -> Part {
+    pub(super) fn part(&self, from: &StepState, to: f64, piece: &Segment) -> Substep {
         let (h, middle) = (to - from.at, 0.5 * (from.at + to));
         let (state, k1, grip, mut taken) = (&from.state, &from.slope, &from.grip, from.taken);
         let half_way = self.aim(middle, piece);
@@ -246,7 +248,7 @@ impl Simulation {
             state = self.body().stuck(state, grip);
         }
         let slope = self.instant(&state, &there, grip, &mut taken);
-        Part { end: Leg { at: to, state, slope, grip: *grip, taken }, last: k4, between: [k2, k3] }
+        Substep { end: StepState { at: to, state, slope, grip: *grip, taken }, last: k4, between: [k2, k3] }
     }
 
     /// What a state leads to, at a time since the step began, s.
@@ -254,8 +256,8 @@ impl Simulation {
         &self,
         state: &State,
         at: f64,
-        piece: &Piece,
-        grip: &Grip,
+        piece: &Segment,
+        grip: &ContactStates,
         taken: &mut [f64; MAX_CONTACTS],
     ) -> Slope {
         self.instant(state, &self.aim(at, piece), grip, taken)
@@ -264,7 +266,7 @@ impl Simulation {
 
 /// Where the end effector is, m.
 #[inline]
-fn tip(body: &Body, x: &Slope) -> Vector {
+fn tip(body: &MovingBody, x: &Slope) -> Vector {
     x.base.at + end_effector(&body.arm().tip, &x.e)
 }
 
