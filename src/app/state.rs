@@ -360,14 +360,14 @@ impl AppState {
             while (run.simulation().step_count() as f64) < steps {
                 run.advance();
             }
-            self.foreseen = run.frame().tally;
+            self.foreseen = run.frame().totals;
         }
     }
 
     /// How many times the motion of the base has to be shown to be seen: as far as it is known, of the whole run.
     fn adjust(&mut self) {
         let reach = self.views.stage().linkage().reach();
-        let newest = self.session.frames().last().map_or_else(Totals::default, |frame| frame.tally);
+        let newest = self.session.frames().last().map_or_else(Totals::default, |frame| frame.totals);
         let motion = [newest.shift.max(self.foreseen.shift), newest.tilt.max(self.foreseen.tilt)];
         self.look.seen_at = match self.session.scenario().base.moves() {
             true => exaggeration(motion, reach),

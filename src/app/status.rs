@@ -45,7 +45,7 @@ pub fn news(ctx: &egui::Context, session: &Session, look: &ViewState, commands: 
 fn lamps(ui: &mut Ui, frame: &Frame, p: &Palette) {
     ui.add_space(4.0);
     ui.spacing_mut().item_spacing.x = 1.0;
-    for lamp in frame.audit.lamps(&frame.peaks, &frame.tally) {
+    for lamp in frame.audit.figures(&frame.peaks, &frame.totals) {
         let good = lamp.is_good();
         let (dot, response) = ui.allocate_exact_size(vec2(12.0, 18.0), Sense::hover());
         let tone = colour(if good { faded(p.zero, 0.75) } else { p.reaction });

@@ -174,14 +174,14 @@ impl JointsCommand {
             check_new(file, self.force)?;
         }
         let n = machine.drives();
-        let mut tally = Tally::new(pins.len(), Inertia::pairs(n).count());
+        let mut totals = Tally::new(pins.len(), Inertia::pairs(n).count());
         let (mut csv, mut written) = (None, Ok(()));
         let columns = if self.output.is_some() { 2 * pins.len() + 3 } else { 0 };
         let run = replay_if(
             &scenario,
             |last| check_size(last + 1, columns, false),
             |_, frame| {
-                tally.include(frame);
+                totals.include(frame);
                 if self.output.is_some() && written.is_ok() {
                     written = self.csv(&mut csv, pins).and_then(|csv| csv.row(row(frame, pins.len())));
                 }
@@ -192,7 +192,7 @@ impl JointsCommand {
         if let Some(csv) = csv {
             csv.finish()?;
         }
-        let answer = answer(&scenario.name, &run.frame(), &machine, &joints, &tally);
+        let answer = answer(&scenario.name, &run.frame(), &machine, &joints, &totals);
         self.format.print(&answer, human)?;
         trusted(&answer.scenario, answer.audit_failed)
     }
@@ -220,7 +220,7 @@ fn row(frame: &Frame, pins: usize) -> impl Iterator<Item = Option<f64>> {
     [Some(frame.time)].into_iter().chain(forces).chain([Some(tilt.re), Some(tilt.im)])
 }
 
-fn answer(scenario: &str, last: &Frame, machine: &Machine, joints: &Joints, tally: &Tally) -> Answer {
+fn answer(scenario: &str, last: &Frame, machine: &Machine, joints: &Joints, totals: &Tally) -> Answer {
     let axial = AxialMoments::of(machine);
     let link = |j: usize| machine.links()[j].name.clone();
     let pin = |(pin, seen): (&Pin, &PinPeak)| PinAnswer {
@@ -232,7 +232,7 @@ fn answer(scenario: &str, last: &Frame, machine: &Machine, joints: &Joints, tall
         mean: seen.mean,
         undefined_steps: seen.undefined,
     };
-    let pins: Vec<PinAnswer> = joints.pins().iter().zip(&tally.pins).map(pin).collect();
+    let pins: Vec<PinAnswer> = joints.pins().iter().zip(&totals.pins).map(pin).collect();
     let none = Extreme { value: 0.0, time: 0.0 };
     let pair = |((k, l), sine): ((usize, usize), &Sine)| {
         let seen = sine.least.unwrap_or(none);
@@ -246,13 +246,13 @@ fn answer(scenario: &str, last: &Frame, machine: &Machine, joints: &Joints, tall
             passed: sine.passed,
         }
     };
-    let [x, y, motion] = tally.tilt.map(|seen| seen.unwrap_or(none));
+    let [x, y, motion] = totals.tilt.map(|seen| seen.unwrap_or(none));
     Answer {
         scenario: scenario.into(),
         steps: last.step,
         worst: pins.iter().max_by(|a, b| a.peak.total_cmp(&b.peak)).map_or(String::new(), |p| p.name.clone()),
         pins,
-        transmission: Inertia::pairs(machine.drives()).zip(&tally.pairs).map(pair).collect(),
+        transmission: Inertia::pairs(machine.drives()).zip(&totals.pairs).map(pair).collect(),
         tilt: TiltAnswer { flat: axial.is_flat(), x, y, motion, residual: axial.residual() },
         audit_failed: last.fault().map(|lamp| lamp.to_string()),
     }

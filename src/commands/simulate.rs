@@ -87,26 +87,28 @@ struct Past {
 impl Outcome {
     fn of(scenario: &Scenario, last: &Frame) -> Self {
         let verdict = Verdict::of(scenario, last);
-        let tally = &last.tally;
+        let totals = &last.totals;
         Self {
             steps: last.step,
             peak_torque: last.peaks.torque.to_vec(),
             peak_base_force: verdict.force,
             peak_base_moment: verdict.arm_moment,
-            rms_base_force: tally.force_rms(),
-            rms_base_moment: tally.arm_moment_rms(),
+            rms_base_force: totals.force_rms(),
+            rms_base_moment: totals.arm_moment_rms(),
             peak_moment_past_wheel: verdict.past_wheel,
-            rms_moment_past_wheel: verdict.past_wheel.map(|_| tally.moment_rms()),
+            rms_moment_past_wheel: verdict.past_wheel.map(|_| totals.moment_rms()),
             peak_tilt: verdict.tilt,
-            base_shift: tally.shift,
-            base_tilt: tally.tilt,
+            base_shift: totals.shift,
+            base_tilt: totals.tilt,
             miss: verdict.miss,
             sentence: verdict.sentence(),
             remarks: verdict.remarks().into_iter().map(|r| r.long).collect(),
             past_limit: verdict.past_limit.map(|(angle, by)| Past { angle, by }),
             moved: verdict.moved,
             reactionless: verdict.reactionless,
-            audit: Columns(last.audit.lamps(&last.peaks, &last.tally).map(|l| (l.name.to_owned(), l.value)).to_vec()),
+            audit: Columns(
+                last.audit.figures(&last.peaks, &last.totals).map(|l| (l.name.to_owned(), l.value)).to_vec(),
+            ),
             audit_failed: verdict.fault.map(|lamp| lamp.to_string()),
         }
     }

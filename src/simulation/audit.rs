@@ -10,7 +10,7 @@
 //! | plane | b with the b that was aimed at |
 
 use super::peaks::Peaks;
-use super::tally::Totals;
+use super::totals::Totals;
 
 /// What should be zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -59,11 +59,11 @@ const STEP: f64 = 1e-3;
 
 impl Audit {
     /// Every figure beside what it may be, by the measure of what the run has moved.
-    pub fn lamps(&self, peaks: &Peaks, tally: &Totals) -> [AuditFigure; 6] {
-        let time = tally.time.max(1e-3);
+    pub fn figures(&self, peaks: &Peaks, totals: &Totals) -> [AuditFigure; 6] {
+        let time = totals.time.max(1e-3);
         let pull = (peaks.inertial_pull * time).max(1e-6);
         let turn = (peaks.torque_sum * time).max(1e-6);
-        let energy = tally.energy.max(1e-3);
+        let energy = totals.energy.max(1e-3);
         let lamp =
             |name, meaning, value: f64, limit, unit| AuditFigure { name, meaning, value: value.abs(), limit, unit };
         [

@@ -13,7 +13,7 @@ pub use crate::planning::pose_constant::Reach;
 pub use crate::planning::reactionless::Dexterity;
 pub use crate::simulation::audit::Audit;
 pub use crate::simulation::peaks::{Peaks, REACTIONLESS};
-pub use crate::simulation::tally::Totals;
+pub use crate::simulation::totals::Totals;
 
 /// One instant of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,7 +75,7 @@ pub struct Frame {
     /// The largest values so far.
     pub peaks: Peaks,
     /// Sums so far.
-    pub tally: Totals,
+    pub totals: Totals,
     /// What should be zero.
     pub audit: Audit,
 }
@@ -106,7 +106,7 @@ impl Phase {
 impl Frame {
     /// The first figure of the audit that is not where it should be.
     pub fn fault(&self) -> Option<AuditFigure> {
-        self.audit.lamps(&self.peaks, &self.tally).into_iter().find(|lamp| !lamp.is_good())
+        self.audit.figures(&self.peaks, &self.totals).into_iter().find(|lamp| !lamp.is_good())
     }
 
     /// Whether the machine is anywhere at all: a run that has blown up is not.

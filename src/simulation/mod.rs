@@ -7,6 +7,6 @@ mod peaks;
 pub mod plant;
 pub mod signals;
 mod simulator;
-pub mod tally;
+pub mod totals;
 
 pub use simulator::{Guide, Setup, Simulation};

@@ -88,10 +88,10 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
         ("moment/dynamic", "n_B dyn", "base moment, from motion", "N m", |f| f.wrench.dynamic.moment),
         ("moment/felt", "n felt", "moment that the base feels: n_B less a wheel's", "N m", |f| f.felt_moment()),
         ("moment/wheel", "τ_w", "torque of the reaction wheel", "N m", |f| f.wheel.torque),
-        ("moment/rms", "n rms", "root mean square of the moment so far", "N m", |f| f.tally.moment_rms()),
+        ("moment/rms", "n rms", "root mean square of the moment so far", "N m", |f| f.totals.moment_rms()),
         ("moment/static", "n_B stat", "base moment, from weight", "N m", |f| f.wrench.statical.moment),
         ("force/dynamic", "|f_B|", "base force, from motion", "N", |f| f.wrench.dynamic.force.norm()),
-        ("force/rms", "f rms", "root mean square of |f_B| so far", "N", |f| f.tally.force_rms()),
+        ("force/rms", "f rms", "root mean square of |f_B| so far", "N", |f| f.totals.force_rms()),
         ("force/dynamic_x", "f_Bx", "base force along x, from motion", "N", |f| f.wrench.dynamic.force.re),
         ("force/dynamic_y", "f_By", "base force along y, from motion", "N", |f| f.wrench.dynamic.force.im),
         ("force/static_x", "f_Bx stat", "base force along x, from weight", "N", |f| f.wrench.statical.force.re),
@@ -112,8 +112,8 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
         ("base_velocity/x", "ẋ_B", "velocity of the base, x", "m/s", |f| f.base_velocity.re),
         ("base_velocity/y", "ẏ_B", "velocity of the base, y", "m/s", |f| f.base_velocity.im),
         ("wheel/rate", "Ω", "rate of the reaction wheel", "rad/s", |f| f.wheel.rate),
-        ("impulse/force", "∫|f|dt", "impulse of |f_B| so far", "N s", |f| f.tally.force_impulse),
-        ("angular_impulse/moment", "∫|n|dt", "impulse of the moment so far", "N m s", |f| f.tally.moment_impulse),
+        ("impulse/force", "∫|f|dt", "impulse of |f_B| so far", "N s", |f| f.totals.force_impulse),
+        ("angular_impulse/moment", "∫|n|dt", "impulse of the moment so far", "N m s", |f| f.totals.moment_impulse),
         ("payload/held", "held", "1 while the payload unknown to the model is held", "1", |f| {
             f64::from(u8::from(f.loaded))
         }),
@@ -121,7 +121,7 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
             f64::from(u8::from(f.wheel.saturated))
         }),
         ("energy/kinetic", "T", "kinetic energy", "J", |f| f.kinetic),
-        ("energy/motors", "W motors", "energy that motors took, none given back", "J", |f| f.tally.energy),
+        ("energy/motors", "W motors", "energy that motors took, none given back", "J", |f| f.totals.energy),
         ("audit_energy/balance", "ΔE − W", "energy gained less work done, plus losses", "J", |f| f.audit.energy),
         ("audit_momentum/linear", "p + ∫f dt", "momentum and impulse on the base", "kg m/s", |f| f.audit.momentum),
         ("audit_angular/about_o", "h + ∫n dt", "angular momentum and its impulse", "kg m²/s", |f| f.audit.angular),

@@ -600,7 +600,7 @@ fn a_base_that_moves_is_seen_to_move() {
     let f = *session(&h).frame();
     assert!(f.base.angle.abs() > 1e-3, "{:?}", f.base);
     assert_eq!(h.state().app_state().look().sway(), foreseen, "known before it plays, so that nothing jumps");
-    let moved = foreseen * (f.tally.shift + f.tally.tilt * 1.26);
+    let moved = foreseen * (f.totals.shift + f.totals.tilt * 1.26);
     assert!((0.04..0.13).contains(&moved), "{moved} m is seen, {foreseen} times");
     // The ring's knob is where it is drawn, and pulling it there asks for the same b.
     let shown = swayed(&f, foreseen);

@@ -22,7 +22,7 @@ fn with(scenario: &Scenario, change: &str) -> Scenario {
 fn typed_back(shapes: &[&str], cases: usize, seed: u64) -> [usize; 3] {
     let base = Scenario { compare_b: None, ..Scenario::builtin("case-3").expect("built in") };
     let mut noise = Noise::of(seed);
-    let mut tally = [0; 3];
+    let mut totals = [0; 3];
     let mut refused = 0;
     while refused < cases {
         let mut coordinate = || (100.0 * noise.between(-1.0, 1.0)).round() / 100.0;
@@ -39,10 +39,10 @@ fn typed_back(shapes: &[&str], cases: usize, seed: u64) -> [usize; 3] {
             let x = number(&words, " m to (").expect("x");
             let y = number(&words[words.find(" m to (").expect("a point")..], ", ").expect("y");
             tries.push(with(&task, &format!("{name} = [{x:?}, {y:?}]\nb = {b:?}")));
-            tally[0] += 1;
+            totals[0] += 1;
         } else if let Some(b) = number(&words, "; b = ").or_else(|| number(&words, "want b = ")) {
             tries.push(with(&task, &format!("b = {b:?}")));
-            tally[1] += 1;
+            totals[1] += 1;
         } else if words.contains("want b from ") && shape == "joint-line" {
             for range in words[words.find("want b ").expect("a range")..].split("from ").skip(1) {
                 let low = range.split(' ').next().expect("an end");
@@ -51,9 +51,9 @@ fn typed_back(shapes: &[&str], cases: usize, seed: u64) -> [usize; 3] {
                     with(&task, &format!("b = {}", b.parse::<f64>().map(|b| format!("{b:?}")).expect("a number")))
                 }));
             }
-            tally[1] += 1;
+            totals[1] += 1;
         } else {
-            tally[2] += 1;
+            totals[2] += 1;
         }
         for proposed in tries {
             if let Err(again) = Run::new(&proposed) {
@@ -73,7 +73,7 @@ fn typed_back(shapes: &[&str], cases: usize, seed: u64) -> [usize; 3] {
             assert!(Run::new(&exact).is_ok(), "from {from:?} to {to:?}: {mend:?}");
         }
     }
-    tally
+    totals
 }
 
 #[test]

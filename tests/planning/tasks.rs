@@ -364,8 +364,8 @@ fn the_scenarios_that_come_along_do_what_they_say() {
         assert!(fault.is_none(), "{name}: {fault:?}");
         let done = end.peaks.moment < 1e-5 * end.peaks.torque_sum;
         assert_eq!(done, ["case-3", "circle", "drift"].contains(&name), "{name}: {}", end.peaks.moment);
-        assert_eq!(end.tally.tilt > 1e-6, ["spacecraft", "bench-top"].contains(&name), "{name}");
-        assert_eq!(end.tally.saturated.is_some(), name == "wheel");
+        assert_eq!(end.totals.tilt > 1e-6, ["spacecraft", "bench-top"].contains(&name), "{name}");
+        assert_eq!(end.totals.saturated.is_some(), name == "wheel");
     }
     let words = Run::new(&task("kind = 'change-b'\nvia = [[0.5, 0.6]]")).expect_err("no points between").to_string();
     assert!(words.contains("no points between"), "{words}");

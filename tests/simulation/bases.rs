@@ -234,7 +234,7 @@ fn a_stiff_base_is_a_fixed_one() {
             ..Base::default()
         };
         scenario.step = 2e-4;
-        let tilt = replay(&scenario, |_, _| {}).expect("runs").frame().tally.tilt;
+        let tilt = replay(&scenario, |_, _| {}).expect("runs").frame().totals.tilt;
         // Quasi-static: n_B / k.
         tilt * k / fixed - 1.0
     });
@@ -248,8 +248,8 @@ fn only_case_3_leaves_a_spacecraft_alone() {
         let mut scenario = Scenario::builtin(name).expect("built in");
         scenario.base = Base { com: [0.15, -0.1], ..free() };
         let end = replay(&scenario, |_, f| assert!(f.fault().is_none(), "{:?}", f.audit));
-        let tally = end.expect("runs").frame().tally;
-        (tally.shift, tally.tilt)
+        let totals = end.expect("runs").frame().totals;
+        (totals.shift, totals.tilt)
     });
     assert!(moved[0].0 > 1e-3 && moved[0].1 > 1e-2 && moved[1].1 > 1e-2, "{moved:?}");
     assert!(moved[2].0 < 1e-12 && moved[2].1 < 1e-12, "{moved:?}");
@@ -265,7 +265,7 @@ fn a_wheel_cancels_until_it_saturates() {
         let run = replay(&scenario, |_, f| {
             // What the wheel holds is what the manipulator has.
             let off = f.wheel.rate * wheel.inertia + f.angular_momentum;
-            if f.tally.saturated.is_none() {
+            if f.totals.saturated.is_none() {
                 wheel_momentum = wheel_momentum.max(off.abs());
             }
             assert!(f.fault().is_none(), "{:?}", f.audit);
@@ -275,13 +275,13 @@ fn a_wheel_cancels_until_it_saturates() {
         f
     };
     let ample = with(Wheel { inertia: 0.002, ..Wheel::default() });
-    assert!(ample.peaks.is_quiet() && !ample.peaks.is_reactionless() && ample.tally.saturated.is_none());
-    assert!(ample.peaks.moment < 1e-9 && ample.tally.wheel_rate > 50.0, "{}", ample.tally.wheel_rate);
+    assert!(ample.peaks.is_quiet() && !ample.peaks.is_reactionless() && ample.totals.saturated.is_none());
+    assert!(ample.peaks.moment < 1e-9 && ample.totals.wheel_rate > 50.0, "{}", ample.totals.wheel_rate);
     let weak = with(Wheel { inertia: 0.002, torque_limit: Some(0.5), ..Wheel::default() });
     assert!((weak.peaks.moment - (1.0891 - 0.5)).abs() < 1e-3, "{}", weak.peaks.moment);
     let slow = with(Wheel { inertia: 0.002, speed_limit: Some(20.0), ..Wheel::default() });
-    assert!(slow.tally.saturated.is_some_and(|t| t > 0.05 && t < 0.5), "{:?}", slow.tally.saturated);
-    assert!(slow.tally.wheel_rate <= 20.0 * (1.0 + 1e-14), "{}", slow.tally.wheel_rate);
+    assert!(slow.totals.saturated.is_some_and(|t| t > 0.05 && t < 0.5), "{:?}", slow.totals.saturated);
+    assert!(slow.totals.wheel_rate <= 20.0 * (1.0 + 1e-14), "{}", slow.totals.wheel_rate);
 }
 
 /// A light wheel whose torque would carry it past its limit within a step, on any base.
@@ -335,9 +335,9 @@ proptest! {
         let end = run.expect("runs").frame();
         let fault = end.fault();
         prop_assert!(fault.is_none(), "{fault:?}");
-        prop_assert!(end.tally.wheel_rate <= top * (1.0 + 1e-13));
+        prop_assert!(end.totals.wheel_rate <= top * (1.0 + 1e-13));
         // One that has reached it without a weak motor stays there for a while.
-        prop_assert!(stayed > 0 || end.tally.wheel_rate < top * (1.0 - 1e-13) || torque.is_some(), "{end:?}");
+        prop_assert!(stayed > 0 || end.totals.wheel_rate < top * (1.0 - 1e-13) || torque.is_some(), "{end:?}");
     }
 }
 
@@ -349,9 +349,9 @@ fn a_light_wheel_stops_at_its_limit() {
         scenario.step = step;
         scenario.base.wheel = Some(Wheel { inertia: 1e-4, torque_limit: None, speed_limit: Some(5.0) });
         let end = replay(&scenario, |_, _| {}).expect("runs").frame();
-        assert!(end.tally.wheel_rate <= 5.0 * (1.0 + 1e-14), "{}", end.tally.wheel_rate);
+        assert!(end.totals.wheel_rate <= 5.0 * (1.0 + 1e-14), "{}", end.totals.wheel_rate);
         // It saturates in the step in which it reaches the limit.
-        (end.tally.saturated.expect("it saturates"), end.peaks.moment, step)
+        (end.totals.saturated.expect("it saturates"), end.peaks.moment, step)
     });
     for (time, moment, step) in &ends[..2] {
         assert!((time - ends[2].0).abs() < 1.5 * step, "{ends:?}");

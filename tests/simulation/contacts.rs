@@ -305,7 +305,7 @@ fn against_the_twin(case: u64) -> (f64, usize) {
     }
     let end = simulation.frame();
     assert!(end.audit.angular.abs() < 1e-9 * (1.0 + end.peaks.torque_sum), "case {case}: {:?}", end.audit);
-    assert!(end.audit.energy.abs() < 1e-8 * (1e-3 + end.tally.energy), "case {case}: {:?}", end.audit);
+    assert!(end.audit.energy.abs() < 1e-8 * (1e-3 + end.totals.energy), "case {case}: {:?}", end.audit);
     (off, stops)
 }
 

@@ -126,8 +126,8 @@ fn losses_are_in_the_balance() {
             "[plant.friction]\nviscous = 0.1\ncoulomb = 0.1\npin_viscous = 0.01\n[base]\nkind = \"{base}\"\ncom = [0.1, 0.0]"
         );
         let end = last(&case("case-1", &text));
-        assert!(end.tally.energy > 0.1);
-        assert!(end.audit.energy.abs() < 1e-7 * end.tally.energy, "{base}: {:?}", end.audit);
+        assert!(end.totals.energy > 0.1);
+        assert!(end.audit.energy.abs() < 1e-7 * end.totals.energy, "{base}: {:?}", end.audit);
         if base == "free" {
             assert!(end.momentum.norm() < 1e-12 && end.angular_momentum.abs() < 1e-12);
         }

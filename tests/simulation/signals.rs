@@ -121,8 +121,8 @@ fn values_are_the_frame_s() {
         is("base/y", frame.base.at.im);
         is("attitude/base", frame.base.angle);
         is("energy/kinetic", frame.kinetic);
-        let (tally, audit) = (frame.tally, frame.audit);
-        is("energy/motors", tally.energy);
+        let (totals, audit) = (frame.totals, frame.audit);
+        is("energy/motors", totals.energy);
         is("audit_energy/balance", audit.energy);
         is("audit_momentum/linear", audit.momentum);
         is("audit_angular/about_o", audit.angular);
@@ -131,14 +131,14 @@ fn values_are_the_frame_s() {
         is("audit_plane/b", audit.plane);
         is("moment/felt", still.moment + moving.moment - frame.wheel.torque);
         is("moment/wheel", frame.wheel.torque);
-        is("moment/rms", tally.moment_rms());
-        is("force/rms", tally.force_rms());
+        is("moment/rms", totals.moment_rms());
+        is("force/rms", totals.force_rms());
         is("attitude_rate/base", frame.base_rate);
         is("base_velocity/x", frame.base_velocity.re);
         is("base_velocity/y", frame.base_velocity.im);
         is("wheel/rate", frame.wheel.rate);
-        is("impulse/force", tally.force_impulse);
-        is("angular_impulse/moment", tally.moment_impulse);
+        is("impulse/force", totals.force_impulse);
+        is("angular_impulse/moment", totals.moment_impulse);
         is("payload/held", 1.0);
         is("wheel_saturated/now", 0.0);
         // The determinant by differences of the end effector along the plane, the others by the Jacobian's columns.

@@ -52,7 +52,7 @@ struct Contact {
 }
 
 /// What a contact does: 0 stuck, ±1 sliding that way.
-pub type ContactStates = [i8; MAX_CONTACTS];
+pub type SlipDirections = [i8; MAX_CONTACTS];
 
 /// Every contact of a machine that has friction: the bearings first.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,13 +66,13 @@ impl Contacts {
     pub(crate) const STILL: f64 = 1e-12;
 
     /// What every contact does in a state of motion.
-    pub(crate) fn grips(&self, qd: &[f64]) -> ContactStates {
-        let mut grip = [0; MAX_CONTACTS];
+    pub(crate) fn slips(&self, qd: &[f64]) -> SlipDirections {
+        let mut slip = [0; MAX_CONTACTS];
         for i in (0..self.len()).filter(|i| self.sticks(*i)) {
             let v = self.sliding(i, qd);
-            grip[i] = if v.abs() < Self::STILL { 0 } else { v.signum() as i8 };
+            slip[i] = if v.abs() < Self::STILL { 0 } else { v.signum() as i8 };
         }
-        grip
+        slip
     }
 
     /// Those of a machine; `base` is the index of the base among what turns, if it does.
@@ -138,11 +138,18 @@ impl Contacts {
 
     /// Friction of one pin between links that follow drives `from` and `to`, N m, against q̇_to − q̇_from; `taken` holds
     /// the torques of stuck contacts. Pins between the same two drives turn alike, so each has an equal part.
-    pub fn couple(&self, from: usize, to: usize, qd: &[f64], grip: &ContactStates, taken: &[f64; MAX_CONTACTS]) -> f64 {
+    pub fn couple(
+        &self,
+        from: usize,
+        to: usize,
+        qd: &[f64],
+        slip: &SlipDirections,
+        taken: &[f64; MAX_CONTACTS],
+    ) -> f64 {
         let pins = self.list.iter().enumerate().skip(self.bearings);
         let ends = |c: &Contact| (c.minus.min(c.plus), c.minus.max(c.plus));
         let Some((i, c)) = pins.into_iter().find(|(_, c)| ends(c) == (from.min(to), from.max(to))) else { return 0.0 };
-        let held = if c.coulomb > 0.0 && grip[i] == 0 { taken[i] } else { c.coulomb * f64::from(grip[i]) };
+        let held = if c.coulomb > 0.0 && slip[i] == 0 { taken[i] } else { c.coulomb * f64::from(slip[i]) };
         let against = c.viscous * self.sliding(i, qd) + held;
         if c.plus == to { against / c.pins } else { -against / c.pins }
     }
@@ -160,11 +167,11 @@ impl Contacts {
     /// Friction of all that slides, added to generalised forces, N m; the power it takes, W. Bearings also in
     /// `bearing`, drive by drive.
     #[inline]
-    pub fn slide(&self, grip: &ContactStates, qd: &[f64], force: &mut [f64], bearing: &mut [f64]) -> f64 {
+    pub fn slide(&self, slip: &SlipDirections, qd: &[f64], force: &mut [f64], bearing: &mut [f64]) -> f64 {
         let mut lost = 0.0;
         for (i, c) in self.list.iter().enumerate() {
             let v = self.sliding(i, qd);
-            let f = c.viscous * v + c.coulomb * f64::from(grip[i]);
+            let f = c.viscous * v + c.coulomb * f64::from(slip[i]);
             lost += f * v;
             self.apply(i, f, force);
             if i < self.bearings {
@@ -180,7 +187,7 @@ impl Contacts {
     /// unless a contact has begun to slide since the step did. Bounded sweeps: exact in one where contacts do not act on each other.
     pub fn hold(
         &self,
-        grip: &ContactStates,
+        slip: &SlipDirections,
         (qd, free): (&[f64], &[f64]),
         solve: impl Fn(&[f64; MAX_DRIVES]) -> [f64; MAX_DRIVES],
         force: &mut [f64],
@@ -188,7 +195,7 @@ impl Contacts {
         taken: &mut [f64; MAX_CONTACTS],
     ) -> f64 {
         const SWEEPS: usize = 2000;
-        let stuck = |i: &usize| self.list[*i].coulomb > 0.0 && grip[*i] == 0;
+        let stuck = |i: &usize| self.list[*i].coulomb > 0.0 && slip[*i] == 0;
         if !(0..self.list.len()).any(|i| stuck(&i)) {
             return 0.0;
         }

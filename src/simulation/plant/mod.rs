@@ -4,20 +4,20 @@
 //! as files and edits state it. A [`MovingBody`] is what all of it comes to: constants of everything that moves.
 
 mod base;
-mod body;
 mod differences;
 mod each;
 mod friction;
 mod load;
+mod moving_body;
 mod state;
 mod wheel;
 
 pub use base::{Base, BaseKind};
-pub use body::MovingBody;
 pub use differences::{LinkDifference, MAX_PAYLOAD, Plant};
 pub use each::Each;
 pub(crate) use each::is_default;
-pub use friction::{ContactStates, Contacts, Friction, MAX_CONTACTS};
+pub use friction::{Contacts, Friction, MAX_CONTACTS, SlipDirections};
 pub use load::Load;
+pub use moving_body::MovingBody;
 pub use state::{MotorCommand, Slope, State};
 pub use wheel::{Spin, Wheel};

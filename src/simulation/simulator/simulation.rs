@@ -10,11 +10,11 @@ use crate::planning::pose_constant::plane_map;
 use crate::planning::reactionless::PlaneMap;
 use crate::simulation::control::{Controller, Reading};
 use crate::simulation::frame::{Audit, Frame, Peaks, Phase, Reach, Target, Totals};
-use crate::simulation::plant::{Base, ContactStates, Friction, Load, MAX_CONTACTS, MovingBody, Slope, State};
+use crate::simulation::plant::{Base, Friction, Load, MAX_CONTACTS, MovingBody, SlipDirections, Slope, State};
 
+use super::control_loop::ControlLoop;
 use super::guide::{Guide, Setup};
-use super::pace::StepControl;
-use super::pilot::ControlLoop;
+use super::step_control::StepControl;
 
 /// A run in progress.
 #[derive(Clone, Debug)]
@@ -23,7 +23,7 @@ pub struct Simulation {
     pub(super) bodies: Box<[MovingBody; 2]>,
     pub(super) load: Load,
     pub(super) loaded: bool,
-    pub(super) pilot: ControlLoop,
+    pub(super) control_loop: ControlLoop,
     /// m_j a_jk of each link, `drives` after `drives`, kg m, and of each with the payload.
     pub(super) link_moments: [Vec<Vector>; 2],
     /// What pins carry, likewise.
@@ -38,7 +38,7 @@ pub struct Simulation {
     pub(super) step: u64,
     pub(super) guide: Guide,
     pub(super) state: State,
-    pub(super) grip: ContactStates,
+    pub(super) slip: SlipDirections,
     /// Torques of stuck contacts, N m.
     pub(super) taken: [f64; MAX_CONTACTS],
     pub(super) now: Slope,
@@ -46,9 +46,9 @@ pub struct Simulation {
     /// What energy and momenta less their sources were at the start.
     ground: Baseline,
     pub(super) peaks: Peaks,
-    pub(super) tally: Totals,
+    pub(super) totals: Totals,
     /// How finely steps are taken, and with which errors.
-    pub(super) pace: StepControl,
+    pub(super) step_control: StepControl,
 }
 
 /// What audits start from.
@@ -108,7 +108,7 @@ impl Simulation {
             .torque_limits
             .then(|| PerDrive::from_fn(n, |k| setup.model.spec().drives[k].torque_limit.unwrap_or(f64::INFINITY)));
         let controller = Controller::new(setup.control, n, models);
-        let pilot = ControlLoop::new(controller, setup.control, setup.step, limits, setup.base.wheel);
+        let control_loop = ControlLoop::new(controller, setup.control, setup.step, limits, setup.base.wheel);
         let loaded = usize::from(first);
         let state = bodies[loaded].state(&reference.q, &reference.qd, Pose2::default(), Vector::default(), 0.0);
         let now = bodies[loaded].still(&state);
@@ -116,7 +116,7 @@ impl Simulation {
             bodies: Box::new(bodies),
             load,
             loaded: first,
-            pilot,
+            control_loop,
             link_moments: [&machine, &holding].map(link_moments),
             inside: [&machine, &holding].map(Watch::of),
             closures: machine.closure_gaps(),
@@ -128,14 +128,14 @@ impl Simulation {
             step: 0,
             guide,
             state,
-            grip: [0; MAX_CONTACTS],
+            slip: [0; MAX_CONTACTS],
             taken: [0.0; MAX_CONTACTS],
             now,
             reference,
             ground: Baseline::default(),
             peaks: Peaks::zero(n),
-            tally: Totals::default(),
-            pace: StepControl::new(n),
+            totals: Totals::default(),
+            step_control: StepControl::new(n),
         };
         sim.begin();
         Ok(sim)
@@ -144,7 +144,7 @@ impl Simulation {
     /// Takes the present instant as where audits start.
     fn begin(&mut self) {
         self.prepare();
-        self.grip = self.body().contacts().grips(&self.body().rates(&self.state));
+        self.slip = self.body().contacts().slips(&self.body().rates(&self.state));
         self.look();
         self.ground = self.sources(self.body(), &self.now);
         self.include();
@@ -202,10 +202,10 @@ impl Simulation {
     pub fn change(&mut self, setup: &Setup) -> Result<(), MachineError> {
         let fresh = Self::new(setup, self.guide.clone())?;
         let old = std::mem::replace(self, fresh);
-        let Self { step, guide, state, peaks, tally, pace, ground, now, pilot, bodies, .. } = old;
-        (self.step, self.guide, self.peaks, self.tally) = (step, guide, peaks, tally);
-        self.pace.resume(&pace);
-        self.pilot.resume(&pilot, step, &now.torque);
+        let Self { step, guide, state, peaks, totals, step_control, ground, now, control_loop, bodies, .. } = old;
+        (self.step, self.guide, self.peaks, self.totals) = (step, guide, peaks, totals);
+        self.step_control.resume(&step_control);
+        self.control_loop.resume(&control_loop, step, &now.torque);
         for body in self.bodies.iter_mut() {
             *body = body.clone().preloaded_as(&bodies[0]);
         }
@@ -224,7 +224,7 @@ impl Simulation {
         let (pose, velocity) = (before.base, before.base_velocity);
         let state = self.body().state(&q, &qd, pose, velocity, turning);
         self.state = state.in_books_of(&self.state);
-        self.grip = self.body().contacts().grips(&self.body().rates(&self.state));
+        self.slip = self.body().contacts().slips(&self.body().rates(&self.state));
         self.look();
         self.ground = self.sources(self.body(), &self.now).less(&off);
         self.include();
@@ -241,7 +241,7 @@ impl Simulation {
         let qd = PerDrive::from_fn(n, |k| reference.qd[k] + turning);
         let state = self.body().state(&q, &qd, base, velocity, turning);
         self.state = state.in_books_of(&self.state);
-        self.pilot.forget();
+        self.control_loop.forget();
         self.begin();
     }
 
@@ -276,30 +276,30 @@ impl Simulation {
         &self,
         state: &State,
         reference: &Reference,
-        grip: &ContactStates,
+        slip: &SlipDirections,
         taken: &mut [f64; MAX_CONTACTS],
     ) -> Slope {
         let n = self.drives;
-        self.body().instant(state, grip, taken, |e, rates, base, velocity| {
+        self.body().instant(state, slip, taken, |e, rates, base, velocity| {
             let reading = reading(n, state, e, rates, base, velocity);
-            self.pilot.command(reference, &reading, self.loaded, state.wheel)
+            self.control_loop.command(reference, &reading, self.loaded, state.wheel)
         })
     }
 
     /// Advances by one step.
     pub fn advance(&mut self) {
-        let (leg, goes_on) = self.stride();
-        (self.state, self.grip) = (leg.state, leg.grip);
+        let (reached, goes_on) = self.take_step();
+        (self.state, self.slip) = (reached.state, reached.slip);
         self.step += 1;
         if let Guide::Follow(follower) = &mut self.guide {
             follower.advance();
         }
-        if goes_on && self.pilot.is_steady() && matches!(self.guide, Guide::Motion { .. }) {
+        if goes_on && self.control_loop.is_steady() && matches!(self.guide, Guide::Motion { .. }) {
             // The end of the step has been looked at already.
-            (self.now, self.taken) = (leg.slope, leg.taken);
+            (self.now, self.taken) = (reached.slope, reached.taken);
             self.reference = self.aim_now();
         } else {
-            self.taken = leg.taken;
+            self.taken = reached.taken;
             self.look();
         }
         let held = self.load.is_held(self.time(), 0.5 * self.dt);
@@ -319,18 +319,19 @@ impl Simulation {
         let n = self.drives;
         // Sampled control reads first.
         let body = &self.bodies[usize::from(self.loaded)];
-        let (state, pilot, reference, loaded) = (&self.state, &mut self.pilot, &self.reference, self.loaded);
+        let (state, control_loop, reference, loaded) =
+            (&self.state, &mut self.control_loop, &self.reference, self.loaded);
         let mut taken = self.taken;
         let step = self.step;
-        self.now = body.instant(state, &self.grip, &mut taken, |e, rates, base, velocity| {
+        self.now = body.instant(state, &self.slip, &mut taken, |e, rates, base, velocity| {
             let reading = reading(n, state, e, rates, base, velocity);
-            pilot.sample(step, reference, &reading, loaded, state.wheel);
-            pilot.command(reference, &reading, loaded, state.wheel)
+            control_loop.sample(step, reference, &reading, loaded, state.wheel);
+            control_loop.command(reference, &reading, loaded, state.wheel)
         });
         self.taken = taken;
-        let mut grip = self.grip;
-        self.release(&self.now, &mut grip, &taken);
-        self.grip = grip;
+        let mut slip = self.slip;
+        self.release(&self.now, &mut slip, &taken);
+        self.slip = slip;
     }
 
     /// Takes the present instant into peaks and sums.
@@ -359,7 +360,7 @@ impl Simulation {
         };
         let time = self.time();
         self.peaks.include(&now);
-        self.tally.include(x, &wrench, time);
+        self.totals.include(x, &wrench, time);
     }
 
     /// What links move in, in axes that move with the base: its acceleration adds to gravity.
@@ -377,7 +378,7 @@ impl Simulation {
             angular: off.angular,
             energy: off.energy,
             closure: self.closures.iter().map(gap).fold(0.0, f64::max),
-            step: self.pace.error(&self.yard(), &self.tally, self.reach()),
+            step: self.step_control.error(&self.measure(), &self.totals, self.reach()),
             plane,
         }
     }
@@ -387,7 +388,7 @@ impl Simulation {
         let (x, n) = (&self.now, self.drives);
         let around = self.field();
         let contacts = self.body().contacts();
-        let couple = |from, to| contacts.couple(from, to, &x.qd, &self.grip, &self.taken);
+        let couple = |from, to| contacts.couple(from, to, &x.qd, &self.slip, &self.taken);
         self.inside[usize::from(self.loaded)].at(&x.e, &x.qd.first(n), &x.qdd.first(n), &around, couple)
     }
 
@@ -442,7 +443,7 @@ impl Simulation {
             inside: self.inside(),
             phase,
             peaks: self.peaks,
-            tally: self.tally,
+            totals: self.totals,
             audit: self.audited(b - b_reference),
         }
     }

@@ -101,25 +101,25 @@ const fn column(
 impl Summary {
     /// Of a run's last frame.
     pub fn of(scenario: &Scenario, last: &Frame) -> Self {
-        let (peaks, tally, verdict) = (&last.peaks, &last.tally, Verdict::of(scenario, last));
+        let (peaks, totals, verdict) = (&last.peaks, &last.totals, Verdict::of(scenario, last));
         Self {
             name: scenario.name.clone(),
             title: scenario.title.clone(),
             time: last.time,
             peak_force: peaks.force,
-            rms_force: tally.force_rms(),
-            force_impulse: tally.force_impulse,
+            rms_force: totals.force_rms(),
+            force_impulse: totals.force_impulse,
             peak_arm_moment: verdict.past_wheel.map(|_| verdict.arm_moment),
             peak_moment: peaks.moment,
-            rms_moment: tally.moment_rms(),
-            moment_impulse: tally.moment_impulse,
-            base_shift: tally.shift,
-            base_tilt: tally.tilt,
+            rms_moment: totals.moment_rms(),
+            moment_impulse: totals.moment_impulse,
+            base_shift: totals.shift,
+            base_tilt: totals.tilt,
             miss: verdict.miss,
             peak_torque: peaks.torque.max_abs(),
-            energy: tally.energy,
-            wheel_rate: scenario.base.wheel.map(|_| tally.wheel_rate),
-            saturated_at: tally.saturated,
+            energy: totals.energy,
+            wheel_rate: scenario.base.wheel.map(|_| totals.wheel_rate),
+            saturated_at: totals.saturated,
             reactionless: verdict.reactionless,
             fault: verdict.fault.map(|lamp| lamp.to_string()),
             verdict,

@@ -107,7 +107,7 @@ impl Stage {
         let rim = (0..=72).map(|i| point(b + unit(TAU * f64::from(i) / 72.0) * radius, z)).collect();
         let line = |points, width| Line { on_top: true, ..self.floor_line("wheel", points, width, colour) };
         scene.lines.push(line(rim, 2.0));
-        let mark = unit(frame.tally.wheel_turn.rem_euclid(TAU));
+        let mark = unit(frame.totals.wheel_turn.rem_euclid(TAU));
         for i in 0..3 {
             let spoke = mark * unit(TAU * f64::from(i) / 3.0);
             scene.lines.push(line(vec![point(b + spoke * (0.72 * radius), z), point(b + spoke * radius, z)], 1.6));
@@ -192,11 +192,11 @@ impl Stage {
             true => signed(1e3 * x, (2 - (1e3 * peak).log10().floor() as i32).clamp(0, 9) as usize),
             false => "0".into(),
         };
-        let words = match frame.tally.shift > SILENT || frame.tally.tilt > SILENT {
+        let words = match frame.totals.shift > SILENT || frame.totals.tilt > SILENT {
             true => format!(
                 "base {} mm, {} mrad",
-                written(at.norm() / times, frame.tally.shift),
-                written(angle / times, frame.tally.tilt)
+                written(at.norm() / times, frame.totals.shift),
+                written(angle / times, frame.totals.tilt)
             ),
             false => "base at rest".into(),
         };

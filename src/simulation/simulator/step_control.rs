@@ -1,7 +1,7 @@
 //! What a step is made of, and how finely it is taken.
 
 use crate::simulation::frame::{Peaks, Totals};
-use crate::simulation::plant::{ContactStates, MAX_CONTACTS, Slope, State};
+use crate::simulation::plant::{MAX_CONTACTS, SlipDirections, Slope, State};
 
 /// Where a step has come to.
 #[derive(Clone, Copy, Debug)]
@@ -10,12 +10,12 @@ pub(super) struct StepState {
     pub at: f64,
     pub state: State,
     pub slope: Slope,
-    pub grip: ContactStates,
+    pub slip: SlipDirections,
     /// Torques of stuck contacts, N m.
     pub taken: [f64; MAX_CONTACTS],
 }
 
-/// A part of a step in which the reference is smooth.
+/// The part of a step in which the reference is smooth.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Segment {
     pub(super) from: f64,
@@ -30,7 +30,7 @@ pub(super) struct Segment {
 pub(super) struct Mismatch(pub(super) [f64; 4]);
 
 impl Mismatch {
-    /// More than any yard.
+    /// More than any measure.
     pub const BEYOND: Self = Self([f64::INFINITY; 4]);
 
     #[inline]
@@ -40,17 +40,17 @@ impl Mismatch {
         ))
     }
 
-    /// The largest share of a yard; what is no number is more than any.
-    pub fn share(self, yard: &Self) -> f64 {
-        let share = |i: usize| if self.0[i].is_nan() { f64::INFINITY } else { self.0[i] / yard.0[i] };
+    /// The largest share of a measure; what is no number is more than any.
+    pub fn share(self, measure: &Self) -> f64 {
+        let share = |i: usize| if self.0[i].is_nan() { f64::INFINITY } else { self.0[i] / measure.0[i] };
         (0..4).map(share).fold(0.0, f64::max)
     }
 
     /// What errors are shares of: peaks, or what must be small beside the torques, the pull and the arm to count as none.
-    pub fn yard(peaks: &Peaks, reach: f64) -> Self {
+    pub fn measure(peaks: &Peaks, reach: f64) -> Self {
         let (torque, pull) = (peaks.torque_sum.max(LEAST), peaks.inertial_pull.max(LEAST));
-        let part = |peak: f64, all: f64| peak.max(QUIET * all);
-        Self([part(peaks.moment, torque), part(peaks.force, pull), torque, TIP * reach.max(LEAST)])
+        let substep = |peak: f64, all: f64| peak.max(QUIET * all);
+        Self([substep(peaks.moment, torque), substep(peaks.force, pull), torque, TIP * reach.max(LEAST)])
     }
 }
 
@@ -71,10 +71,10 @@ pub(super) struct Stray {
     pub(super) tilt: f64,
 }
 
-/// What errors have come to so far, and how many parts steps are taken in.
+/// What errors have come to so far, and how many substeps steps are taken in.
 #[derive(Clone, Debug)]
 pub(super) struct StepControl {
-    pub(super) parts: u32,
+    pub(super) substeps: u32,
     /// The most by which two answers have differed.
     pub(super) worst: Mismatch,
     /// What halving has found, added up.
@@ -92,26 +92,26 @@ pub(super) struct StepControl {
 impl StepControl {
     pub fn new(drives: usize) -> Self {
         let (worst, drift) = Default::default();
-        Self { parts: 1, worst, drift, expected: Peaks::zero(drives), until: 0.0, kinks: Vec::new(), level: 0.0 }
+        Self { substeps: 1, worst, drift, expected: Peaks::zero(drives), until: 0.0, kinks: Vec::new(), level: 0.0 }
     }
 
     /// Goes on where another was: errors made before stay.
     pub fn resume(&mut self, other: &Self) {
-        (self.parts, self.worst, self.drift) = (other.parts, other.worst, other.drift);
+        (self.substeps, self.worst, self.drift) = (other.substeps, other.worst, other.drift);
     }
 
-    /// The error of what is shown, as a share of a yard.
-    pub fn error(&self, yard: &Mismatch, tally: &Totals, reach: f64) -> f64 {
+    /// The error of what is shown, as a share of a measure.
+    pub fn error(&self, measure: &Mismatch, totals: &Totals, reach: f64) -> f64 {
         let Stray { tip, shift, tilt } = self.drift;
         let least = QUIET * reach.max(LEAST);
         let drift =
-            (tip / (TIP * reach.max(LEAST))).max(shift / tally.shift.max(least)).max(tilt / tally.tilt.max(QUIET));
-        let worst = self.worst.share(yard);
+            (tip / (TIP * reach.max(LEAST))).max(shift / totals.shift.max(least)).max(tilt / totals.tilt.max(QUIET));
+        let worst = self.worst.share(measure);
         if drift > worst || drift.is_nan() { drift } else { worst }
     }
 }
 
-/// A part by the classical rule.
+/// A substep by the classical rule.
 pub(super) struct Substep {
     pub end: StepState,
     /// The slope of the last stage.

@@ -17,7 +17,7 @@
 //! π̇_k = ∂T/∂q_k + Q_k, and P and L change by outer forces only: a free base keeps both to the last digit. Gravity
 //! has no lever about R.
 
-use super::{Base, BaseKind, ContactStates, Contacts, Friction, MAX_CONTACTS, MotorCommand, Slope, Spin, State};
+use super::{Base, BaseKind, Contacts, Friction, MAX_CONTACTS, MotorCommand, SlipDirections, Slope, Spin, State};
 use crate::mechanics::dynamics::{BaseWrench, Factors, Surroundings, base_wrench, by_drives, first};
 use crate::mechanics::machine::{Inertia, Machine, MachineError};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Units, Vector, cross, dot};
@@ -197,11 +197,11 @@ impl MovingBody {
     pub fn instant(
         &self,
         state: &State,
-        grip: &ContactStates,
+        slip: &SlipDirections,
         taken: &mut [f64; MAX_CONTACTS],
         control: impl FnOnce(&Units, &PerDrive, Pose2, Vector) -> MotorCommand,
     ) -> Slope {
-        by_drives!(self.whole.drives, instant_of(self, state, grip, taken, control))
+        by_drives!(self.whole.drives, instant_of(self, state, slip, taken, control))
     }
 
     /// What the manipulator transmits to its base, in its two parts. On a base that nothing holds weight is not carried:
@@ -323,7 +323,7 @@ fn outer_padded<const N: usize>(body: &MovingBody, e: &Units, hold: (Vector, f64
 fn instant_of<const N: usize>(
     body: &MovingBody,
     state: &State,
-    grip: &ContactStates,
+    slip: &SlipDirections,
     taken: &mut [f64; MAX_CONTACTS],
     control: impl FnOnce(&Units, &PerDrive, Pose2, Vector) -> MotorCommand,
 ) -> Slope {
@@ -387,14 +387,14 @@ fn instant_of<const N: usize>(
         momentum_rate = body.mass * body.around.gravity + body.around.force + hold;
     }
     if !body.contacts.is_empty() {
-        loss += body.contacts.slide(grip, &rate, &mut force, &mut friction);
+        loss += body.contacts.slide(slip, &rate, &mut force, &mut friction);
         let free = factors.solve(std::array::from_fn(|k| force[k] - v[k]));
         let solve = |x: &[f64; MAX_DRIVES]| {
             let mut padded = [0.0; MAX_DRIVES];
             padded[..N].copy_from_slice(&factors.solve(*first::<N, _>(x)));
             padded
         };
-        loss += body.contacts.hold(grip, (&rate, &free), solve, &mut force, &mut friction, taken);
+        loss += body.contacts.hold(slip, (&rate, &free), solve, &mut force, &mut friction, taken);
     }
     let acceleration = factors.solve(std::array::from_fn(|k| force[k] - v[k]));
     let qdd = PerDrive::from(acceleration);
@@ -475,8 +475,8 @@ impl MovingBody {
     /// torques between the two sides, which change no momentum of the whole. That is rounding, and the error of a step;
     /// it is booked nowhere, so that audits see it if it is more.
     #[must_use]
-    pub fn stuck(&self, mut state: State, grip: &ContactStates) -> State {
-        let still = |i: &usize| self.contacts.sticks(*i) && grip[*i] == 0;
+    pub fn stuck(&self, mut state: State, slip: &SlipDirections) -> State {
+        let still = |i: &usize| self.contacts.sticks(*i) && slip[*i] == 0;
         if !(0..self.contacts.len()).any(|i| still(&i)) {
             return state;
         }

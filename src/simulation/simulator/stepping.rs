@@ -1,37 +1,37 @@
-//! How a step is taken: in pieces that end on the kinks of the reference, each in as many parts as it needs.
+//! How a step is taken: in segments that end on the kinks of the reference, each in as many substeps as it needs.
 //!
 //! # Method
-//! The classical rule leaves two answers at the end of a part: the slope of its last stage and the slope of where it
-//! comes to, which the next part begins with. What the two show differs by more than the error of the part, by far
+//! The classical rule leaves two answers at the end of a substep: the slope of its last stage and the slope of where it
+//! comes to, which the next substep begins with. What the two show differs by more than the error of the substep, by far
 //! where nothing is stiff, so that looking at it costs next to nothing and can be done everywhere. Where they differ by
-//! more than [`FINE`] of the peaks of what is shown, the piece is done again in twice as many parts, until they agree or
+//! more than [`FINE`] of the peaks of what is shown, the segment is done again in twice as many substeps, until they agree or
 //! what two such runs come to does, up to [`MOST_PARTS`]; the next step begins with as many, and goes back when it can.
 //! So stiff gains, springs and friction, and kinks that nobody can foresee, as of motors that saturate, cost more steps
 //! where they are and none elsewhere; everything else costs what four stages cost.
 //!
 //! Errors of forces and torques fade as control takes them up; those of where things are may add up. So every
-//! [`HALVED_EVERY`]-th step is done in twice as many parts besides, and by how far end effector and base then stand
+//! [`HALVED_EVERY`]-th step is done in twice as many substeps besides, and by how far end effector and base then stand
 //! elsewhere is taken to happen at every step. The worse of the two, the worst disagreement and what adds up, is the
-//! figure `step` of the audit. All of it depends on the run alone, so a replay takes the same parts.
+//! figure `step` of the audit. All of it depends on the run alone, so a replay takes the same substeps.
 
 use super::guide::Guide;
-use super::pace::{Mismatch, Segment, StepState, Substep};
 use super::simulation::Simulation;
+use super::step_control::{Mismatch, Segment, StepState, Substep};
 use crate::mechanics::kinematics::end_effector;
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::{Motion, Reference};
 use crate::simulation::frame::Peaks;
-use crate::simulation::plant::{ContactStates, MAX_CONTACTS, MovingBody, Slope, State};
+use crate::simulation::plant::{MAX_CONTACTS, MovingBody, SlipDirections, Slope, State};
 
 /// How far two answers may differ, as a share of the peaks of what is shown.
 const FINE: f64 = 2e-5;
-/// The most parts of a step.
+/// The most substeps of a step.
 const MOST_PARTS: u32 = 64;
 /// How often small errors are measured by halving, in steps.
 const HALVED_EVERY: u64 = 64;
-/// The most pieces of a step.
+/// The most segments of a step.
 const MOST_PIECES: usize = 64;
-/// Kinks nearer to an end of a piece than this share of a step are at it, and how far beside them they are looked at.
+/// Kinks nearer to an end of a segment than this share of a step are at it, and how far beside them they are looked at.
 const NEAR: f64 = 1e-7;
 const BESIDE: f64 = 1e-8;
 /// A change of q̈ below this share of its peak is a bend, and no jump.
@@ -42,11 +42,11 @@ impl Simulation {
     pub(super) fn prepare(&mut self) {
         let n = self.drives;
         let (mut expected, mut level) = (Peaks::zero(n), 0.0_f64);
-        self.pace.kinks.clear();
-        self.pace.until = 0.0;
+        self.step_control.kinks.clear();
+        self.step_control.until = 0.0;
         if let Guide::Motion { motion, start } = &self.guide {
-            self.pace.kinks = motion.kinks();
-            self.pace.until = start + 0.25 * motion.duration();
+            self.step_control.kinks = motion.kinks();
+            self.step_control.until = start + 0.25 * motion.duration();
             let (arm, around) = (self.body().arm(), self.body().around());
             for i in 0..=16 {
                 let r = motion.at(f64::from(i) / 16.0 * motion.duration());
@@ -61,7 +61,7 @@ impl Simulation {
                 expected.inertial_pull = expected.inertial_pull.max(pull);
             }
         }
-        (self.pace.expected, self.pace.level) = (expected, level);
+        (self.step_control.expected, self.step_control.level) = (expected, level);
     }
 
     /// How far the arm reaches at most, m.
@@ -70,28 +70,28 @@ impl Simulation {
     }
 
     /// How far two answers may differ now.
-    pub(super) fn yard(&self) -> Mismatch {
+    pub(super) fn measure(&self) -> Mismatch {
         let mut peaks = self.peaks;
-        let wanted = &self.pace.expected;
+        let wanted = &self.step_control.expected;
         // At first half of what the reference asks for: there are no peaks yet.
-        if self.time() < self.pace.until {
+        if self.time() < self.step_control.until {
             let of = |seen: f64, wanted: f64| seen.max(0.5 * wanted);
             peaks.torque_sum = of(peaks.torque_sum, wanted.torque_sum);
             peaks.moment = of(peaks.moment, wanted.moment);
             peaks.force = of(peaks.force, wanted.force);
             peaks.inertial_pull = of(peaks.inertial_pull, wanted.inertial_pull);
         }
-        Mismatch::yard(&peaks, self.reach())
+        Mismatch::measure(&peaks, self.reach())
     }
 
-    /// The reference at a time since the step began, s, as the piece has it.
+    /// The reference at a time since the step began, s, as the segment has it.
     #[inline]
-    pub(super) fn aim(&self, at: f64, piece: &Segment) -> Reference {
+    pub(super) fn aim(&self, at: f64, segment: &Segment) -> Reference {
         match &self.guide {
             Guide::Motion { motion, start } => {
                 // The end of the step is where the next one begins, to the last digit.
                 let time = if at >= self.dt { (self.step + 1) as f64 * self.dt } else { self.time() + at };
-                beside(motion, time - start, piece.window, self.pace.level)
+                beside(motion, time - start, segment.window, self.step_control.level)
             }
             Guide::Follow(follower) => follower.reference(at),
         }
@@ -103,7 +103,7 @@ impl Simulation {
             Guide::Motion { motion, start } => {
                 let t = self.time() - start;
                 let after = self.kink_at(t).map_or(f64::NEG_INFINITY, |kink| kink + BESIDE * self.dt);
-                beside(motion, t, [after, f64::INFINITY], self.pace.level)
+                beside(motion, t, [after, f64::INFINITY], self.step_control.level)
             }
             Guide::Follow(follower) => follower.reference(0.0),
         }
@@ -111,13 +111,13 @@ impl Simulation {
 
     /// The last kink at a time of the motion, s, or as near as makes no difference.
     fn kink_at(&self, t: f64) -> Option<f64> {
-        let (kinks, near) = (&self.pace.kinks, NEAR * self.dt);
+        let (kinks, near) = (&self.step_control.kinks, NEAR * self.dt);
         let next = kinks.partition_point(|kink| *kink <= t + near);
         next.checked_sub(1).map(|i| kinks[i]).filter(|kink| *kink >= t - near)
     }
 
-    /// The piece that begins at a time since the step did, s, and whether it ends on a kink.
-    fn piece(&self, from: f64) -> (Segment, bool) {
+    /// The segment that begins at a time since the step did, s, and whether it ends on a kink.
+    fn segment(&self, from: f64) -> (Segment, bool) {
         let (all, none) = ([f64::NEG_INFINITY, f64::INFINITY], (self.dt, false));
         let Guide::Motion { start, .. } = &self.guide else {
             return (Segment { from, to: none.0, window: all }, none.1);
@@ -127,7 +127,7 @@ impl Simulation {
         if let Some(kink) = self.kink_at(t0 + from) {
             window[0] = kink + beside;
         }
-        let kinks = &self.pace.kinks;
+        let kinks = &self.step_control.kinks;
         let next = kinks.get(kinks.partition_point(|kink| *kink <= t0 + from + near));
         let Some(kink) = next.filter(|kink| **kink <= t0 + self.dt + near) else {
             return (Segment { from, to: self.dt, window }, false);
@@ -138,85 +138,91 @@ impl Simulation {
     }
 
     /// A whole step, and whether the slope at its end is that with which the next one begins.
-    pub(super) fn stride(&mut self) -> (StepState, bool) {
-        let yard = self.yard();
+    pub(super) fn take_step(&mut self) -> (StepState, bool) {
+        let measure = self.measure();
         let looked_at = stands_for(self.step);
-        let mut leg = StepState { at: 0.0, state: self.state, slope: self.now, grip: self.grip, taken: self.taken };
-        let mut parts = 1;
+        let mut reached = StepState { at: 0.0, state: self.state, slope: self.now, slip: self.slip, taken: self.taken };
+        let mut substeps = 1;
         for count in 1..=MOST_PIECES {
-            let (mut piece, mut kinked) = self.piece(leg.at);
+            let (mut segment, mut kinked) = self.segment(reached.at);
             if count == MOST_PIECES {
-                (piece.to, piece.window[1], kinked) = (self.dt, f64::INFINITY, true);
+                (segment.to, segment.window[1], kinked) = (self.dt, f64::INFINITY, true);
             }
-            if leg.at > 0.0 {
-                leg.slope = self.slope(&leg.state, leg.at, &piece, &leg.grip, &mut leg.taken);
+            if reached.at > 0.0 {
+                reached.slope = self.slope(&reached.state, reached.at, &segment, &reached.slip, &mut reached.taken);
             }
-            let (end, most) = self.pass(&leg, &piece, &yard, looked_at);
-            parts = parts.max(most);
-            leg = end;
-            if piece.to >= self.dt {
-                self.pace.parts = parts.min(4 * self.pace.parts);
-                return (leg, !kinked);
+            let (end, most) = self.pass(&reached, &segment, &measure, looked_at);
+            substeps = substeps.max(most);
+            reached = end;
+            if segment.to >= self.dt {
+                self.step_control.substeps = substeps.min(4 * self.step_control.substeps);
+                return (reached, !kinked);
             }
         }
-        (leg, false)
+        (reached, false)
     }
 
-    /// A piece, and in how many parts of a step the next one should go on.
-    fn pass(&mut self, from: &StepState, piece: &Segment, yard: &Mismatch, looked_at: Option<f64>) -> (StepState, u32) {
-        let share = (piece.to - piece.from) / self.dt;
-        let count = |parts: u32| (f64::from(parts) * share - 1e-9).ceil().max(1.0) as u32;
-        let mut parts = self.pace.parts;
-        let (mut leg, mut off) = self.walk(from, piece, count(parts));
+    /// A segment, and in how many substeps of a step the next one should go on.
+    fn pass(
+        &mut self,
+        from: &StepState,
+        segment: &Segment,
+        measure: &Mismatch,
+        looked_at: Option<f64>,
+    ) -> (StepState, u32) {
+        let share = (segment.to - segment.from) / self.dt;
+        let count = |substeps: u32| (f64::from(substeps) * share - 1e-9).ceil().max(1.0) as u32;
+        let mut substeps = self.step_control.substeps;
+        let (mut reached, mut off) = self.walk(from, segment, count(substeps));
         let mut error = off;
         // Nobody takes up errors while motors give all they have.
-        let full = self.pilot.is_full(&from.slope.torque) || self.pilot.is_full(&leg.slope.torque);
+        let full = self.control_loop.is_full(&from.slope.torque) || self.control_loop.is_full(&reached.slope.torque);
         let fine = if full { 0.02 * FINE } else { FINE };
-        while off.share(yard) > fine && error.share(yard) > fine && parts < MOST_PARTS {
-            parts *= 2;
-            if count(parts) == count(parts / 2) {
+        while off.share(measure) > fine && error.share(measure) > fine && substeps < MOST_PARTS {
+            substeps *= 2;
+            if count(substeps) == count(substeps / 2) {
                 continue;
             }
-            let coarse = leg.slope;
-            (leg, off) = self.walk(from, piece, count(parts));
-            error = self.apart(&leg.slope, &coarse);
+            let coarse = reached.slope;
+            (reached, off) = self.walk(from, segment, count(substeps));
+            error = self.apart(&reached.slope, &coarse);
         }
         // Of two bounds the smaller.
-        if off.share(yard) < error.share(yard) {
+        if off.share(measure) < error.share(measure) {
             error = off;
         }
-        self.pace.worst = self.pace.worst.worse(error);
+        self.step_control.worst = self.step_control.worst.worse(error);
         if let Some(steps) = looked_at {
-            let (finer, _) = self.walk(from, piece, 2 * count(parts));
-            let (a, b) = (&leg.slope, &finer.slope);
-            let (each, drift) = (16.0 / 15.0 * steps, &mut self.pace.drift);
+            let (finer, _) = self.walk(from, segment, 2 * count(substeps));
+            let (a, b) = (&reached.slope, &finer.slope);
+            let (each, drift) = (16.0 / 15.0 * steps, &mut self.step_control.drift);
             drift.tip += each * (tip(&self.bodies[0], a) - tip(&self.bodies[0], b)).norm();
             drift.shift += each * (a.base.at - b.base.at).norm();
             drift.tilt += each * (a.base.angle - b.base.angle).abs();
         }
         // Half as many make about eight times the difference.
-        let next = if off.share(yard) < fine / 16.0 { (parts / 2).max(1) } else { parts };
-        (leg, next)
+        let next = if off.share(measure) < fine / 16.0 { (substeps / 2).max(1) } else { substeps };
+        (reached, next)
     }
 
-    /// A piece in equal parts, and the most by which two answers differ.
-    fn walk(&self, from: &StepState, piece: &Segment, parts: u32) -> (StepState, Mismatch) {
-        let (mut leg, mut worst) = (*from, Mismatch::default());
+    /// A segment in equal substeps, and the most by which two answers differ.
+    fn walk(&self, from: &StepState, segment: &Segment, substeps: u32) -> (StepState, Mismatch) {
+        let (mut reached, mut worst) = (*from, Mismatch::default());
         let sticks = self.body().contacts().stick();
-        for i in 1..=parts {
-            let share = f64::from(i) / f64::from(parts);
-            let to = if i == parts { piece.to } else { piece.from + share * (piece.to - piece.from) };
+        for i in 1..=substeps {
+            let share = f64::from(i) / f64::from(substeps);
+            let to = if i == substeps { segment.to } else { segment.from + share * (segment.to - segment.from) };
             let off = match sticks {
-                true => self.contact(&mut leg, to, piece),
+                true => self.contact(&mut reached, to, segment),
                 false => {
-                    let part = self.part(&leg, to, piece);
-                    leg = part.end;
-                    self.apart(&part.last, &leg.slope)
+                    let substep = self.substep(&reached, to, segment);
+                    reached = substep.end;
+                    self.apart(&substep.last, &reached.slope)
                 }
             };
             worst = worst.worse(off);
         }
-        (leg, worst)
+        (reached, worst)
     }
 
     /// How far apart two answers for one instant are.
@@ -235,20 +241,20 @@ impl Simulation {
 impl Simulation {
     /// One step of the classical rule to a time since the step began, s.
     #[inline]
-    pub(super) fn part(&self, from: &StepState, to: f64, piece: &Segment) -> Substep {
+    pub(super) fn substep(&self, from: &StepState, to: f64, segment: &Segment) -> Substep {
         let (h, middle) = (to - from.at, 0.5 * (from.at + to));
-        let (state, k1, grip, mut taken) = (&from.state, &from.slope, &from.grip, from.taken);
-        let half_way = self.aim(middle, piece);
-        let k2 = self.instant(&state.along(k1, 0.5 * h), &half_way, grip, &mut taken);
-        let k3 = self.instant(&state.along(&k2, 0.5 * h), &half_way, grip, &mut taken);
-        let there = self.aim(to, piece);
-        let k4 = self.instant(&state.along(&k3, h), &there, grip, &mut taken);
+        let (state, k1, slip, mut taken) = (&from.state, &from.slope, &from.slip, from.taken);
+        let half_way = self.aim(middle, segment);
+        let k2 = self.instant(&state.along(k1, 0.5 * h), &half_way, slip, &mut taken);
+        let k3 = self.instant(&state.along(&k2, 0.5 * h), &half_way, slip, &mut taken);
+        let there = self.aim(to, segment);
+        let k4 = self.instant(&state.along(&k3, h), &there, slip, &mut taken);
         let mut state = state.stepped([k1, &k2, &k3, &k4], h);
         if self.body().contacts().stick() {
-            state = self.body().stuck(state, grip);
+            state = self.body().stuck(state, slip);
         }
-        let slope = self.instant(&state, &there, grip, &mut taken);
-        Substep { end: StepState { at: to, state, slope, grip: *grip, taken }, last: k4, between: [k2, k3] }
+        let slope = self.instant(&state, &there, slip, &mut taken);
+        Substep { end: StepState { at: to, state, slope, slip: *slip, taken }, last: k4, between: [k2, k3] }
     }
 
     /// What a state leads to, at a time since the step began, s.
@@ -256,11 +262,11 @@ impl Simulation {
         &self,
         state: &State,
         at: f64,
-        piece: &Segment,
-        grip: &ContactStates,
+        segment: &Segment,
+        slip: &SlipDirections,
         taken: &mut [f64; MAX_CONTACTS],
     ) -> Slope {
-        self.instant(state, &self.aim(at, piece), grip, taken)
+        self.instant(state, &self.aim(at, segment), slip, taken)
     }
 }
 
