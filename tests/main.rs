@@ -1,15 +1,11 @@
-//! All tests, one binary: the folders are those of the sources.
+//! All tests that need no GPU, one binary: the folders are those of the sources. Those that draw are in `drawn.rs`.
 
-#[cfg(feature = "window")]
-mod app;
 /// The program's own modules, so that what they read is tried in process.
 #[cfg(feature = "cli")]
 #[allow(dead_code, unused_imports, reason = "the tests use a few of them")]
 #[path = "../src/commands/mod.rs"]
 mod commands;
 mod fuzz;
-#[cfg(feature = "render")]
-mod gpu;
 mod layers;
 mod mechanics;
 mod picture;

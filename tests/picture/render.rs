@@ -1,12 +1,44 @@
 //! Pictures hold what the scene says, measured in pixels.
 
-use crate::gpu::{fresh, gpu};
 use std::f32::consts::PI;
 use std::sync::Arc;
 use stillbase::picture::render::offscreen::{NoPicture, Picture};
 use stillbase::picture::render::{Renderer, View};
 use stillbase::picture::scene::palette::{Theme, faded, palette};
 use stillbase::picture::scene::{Area, Line, Marker, Mesh, Model, Rgba, Scene, Solid, mesh};
+
+use crate::Test;
+use crate::gpu::{fresh, gpu};
+
+pub const TESTS: &[Test] = tests![
+    an_empty_scene_is_its_background,
+    a_solid_from_above_keeps_its_colour,
+    bevels_are_darker_than_tops_but_keep_their_hue,
+    the_nearer_solid_hides_the_other_whatever_the_order,
+    a_hairline_of_background_sets_solids_off,
+    an_area_lies_over_what_is_behind_it,
+    a_ghost_shows_what_lies_behind_it_through_one_layer,
+    a_model_is_uploaded_when_it_changes,
+    a_line_is_as_wide_as_it_says,
+    a_slanted_line_is_as_wide_too,
+    joins_have_neither_gaps_nor_knots,
+    dashes_take_their_share_and_go_round_corners,
+    dashes_as_long_as_wide_are_dots,
+    solids_hide_lines_below_and_not_those_on_top,
+    a_line_through_the_eye_is_cut_in_front_of_it,
+    the_workspace_of_the_nine_link_machine_has_its_area,
+    turning_rotates_the_workspace,
+    overlapping_sheets_gather,
+    markers_are_round_and_may_be_hollow,
+    a_clear_background_stays_clear_and_colours_straight,
+    the_same_scene_is_the_same_picture_to_the_byte,
+    a_steady_state_allocates_nothing_on_the_gpu,
+    the_picture_reaches_any_target_unchanged,
+    a_renderer_may_live_in_a_windows_callbacks,
+    nonsense_is_survived,
+    a_png_holds_the_picture,
+    demonstration_pictures_are_not_empty,
+];
 
 const WHITE: Rgba = [1.0; 4];
 const BLACK: Rgba = [0.0, 0.0, 0.0, 1.0];
@@ -105,9 +137,8 @@ fn column(picture: &Picture, x: u32) -> impl Iterator<Item = [u8; 4]> {
     (0..picture.height).map(move |y| picture.pixel(x, y).unwrap())
 }
 
-#[test]
 fn an_empty_scene_is_its_background() {
-    let Some(mut gpu) = gpu() else { return };
+    let mut gpu = gpu();
     for theme in [Theme::Dark, Theme::Light] {
         let background = palette(theme).background;
         let picture = gpu.picture(&empty(background), &flat([0.0; 2], 1.0, 16)).unwrap();
@@ -115,9 +146,8 @@ fn an_empty_scene_is_its_background() {
     }
 }
 
-#[test]
 fn a_solid_from_above_keeps_its_colour() {
-    let Some(mut gpu) = gpu() else { return };
+    let mut gpu = gpu();
     let mut scene = empty(BLACK);
     scene.model = Arc::new(Model { meshes: vec![mesh::bar(-0.5, 0.5, 0.2, 0.1, 0.02)] });
     for theme in [Theme::Dark, Theme::Light] {
@@ -130,9 +160,8 @@ fn a_solid_from_above_keeps_its_colour() {
     }
 }
 
-#[test]
 fn bevels_are_darker_than_tops_but_keep_their_hue() {
-    let Some(mut gpu) = gpu() else { return };
+    let mut gpu = gpu();
     let mut scene = empty(BLACK);
     scene.model = Arc::new(Model { meshes: vec![mesh::cylinder(0.8, 0.6, 0.2)] });
     scene.solids = vec![solid(0, placed(0.0, [0.0; 3]), RED)];
@@ -143,9 +172,8 @@ fn bevels_are_darker_than_tops_but_keep_their_hue() {
     assert!(f32::from(shaded) > 0.6 * f32::from(top));
 }
 
-#[test]
 fn the_nearer_solid_hides_the_other_whatever_the_order() {
-    let Some(mut gpu) = gpu() else { return };
+    let mut gpu = gpu();
     let mut scene = empty(BLACK);
     scene.model = Arc::new(Model { meshes: vec![mesh::cylinder(0.8, 0.1, 0.0), mesh::bar(-0.5, 0.5, 0.2, 0.1, 0.0)] });
     let (low, high) = (solid(0, placed(0.0, [0.0; 3]), RED), solid(1, placed(0.0, [0.0, 0.0, 0.2]), WHITE));
@@ -157,9 +185,8 @@ fn the_nearer_solid_hides_the_other_whatever_the_order() {
     }
 }
 
-#[test]
 fn a_hairline_of_background_sets_solids_off() {
-    let Some(mut gpu) = gpu() else { return };
+    let mut gpu = gpu();
     let mut scene = empty(BLACK);
     scene.model = Arc::new(Model { meshes: vec![mesh::cylinder(0.9, 0.1, 0.0), mesh::cylinder(0.4, 0.1, 0.02)] });
     scene.solids = vec![solid(0, placed(0.0, [0.0; 3]), WHITE), solid(1, placed(0.0, [0.0, 0.0, 0.2]), WHITE)];
@@ -172,9 +199,8 @@ fn a_hairline_of_background_sets_solids_off() {
     assert!(row[44..85].iter().all(|&level| level > 250));
 }
 
-#[test]
 fn an_area_lies_over_what_is_behind_it() {
-    let Some(mut gpu) = gpu() else { return };
+    let mut gpu = gpu();
     let mut scene = empty(BLACK);
     scene.model = Arc::new(Model { meshes: vec![mesh::cylinder(2.0, 0.1, 0.0)] });
     scene.solids = vec![solid(0, placed(0.0, [0.0; 3]), RED)];
@@ -185,9 +211,8 @@ fn an_area_lies_over_what_is_behind_it() {
     }
 }
 
-#[test]
 fn a_ghost_shows_what_lies_behind_it_through_one_layer() {
-    let Some(mut gpu) = gpu() else { return };
+    let mut gpu = gpu();
     let mut scene = empty(BLACK);
     scene.model = Arc::new(Model { meshes: vec![mesh::cylinder(0.8, 0.1, 0.0)] });
     let ghost = solid(0, placed(0.0, [0.0, 0.0, 0.2]), faded(WHITE, 0.5));
@@ -200,9 +225,8 @@ fn a_ghost_shows_what_lies_behind_it_through_one_layer() {
     assert_close(twice.pixel(32, 32).unwrap(), [0.9, 0.6, 0.55, 1.0], 2);
 }
 
-#[test]
 fn a_model_is_uploaded_when_it_changes() {
-    let Some(mut gpu) = gpu() else { return };
+    let mut gpu = gpu();
     let mut scene = empty(BLACK);
     scene.solids = vec![solid(0, placed(0.0, [0.0; 3]), WHITE)];
     for radius in [0.5, 0.25, 0.75] {
@@ -214,9 +238,8 @@ fn a_model_is_uploaded_when_it_changes() {
     }
 }
 
-#[test]
 fn a_line_is_as_wide_as_it_says() {
-    let Some(mut gpu) = gpu() else { return };
+    let mut gpu = gpu();
     for (width, scale) in [(3.0, 1.0), (1.0, 1.0), (0.5, 1.0), (1.5, 2.0), (7.3, 1.0)] {
         for shift in [0.0, 0.003, 0.007] {
             let mut scene = empty(BLACK);
@@ -229,9 +252,8 @@ fn a_line_is_as_wide_as_it_says() {
     }
 }
 
-#[test]
 fn a_slanted_line_is_as_wide_too() {
-    let Some(mut gpu) = gpu() else { return };
+    let mut gpu = gpu();
     let mut scene = empty(BLACK);
     for angle in [0.3f32, 0.7, 1.2, 2.0] {
         let (s, c) = angle.sin_cos();
@@ -244,9 +266,8 @@ fn a_slanted_line_is_as_wide_too() {
     }
 }
 
-#[test]
 fn joins_have_neither_gaps_nor_knots() {
-    let Some(mut gpu) = gpu() else { return };
+    let mut gpu = gpu();
     // Half opaque, many vertices, sharp and blunt corners: a pixel drawn twice would be brighter than 0.5.
     let mut scene = empty(BLACK);
     let circle = (0..=200).map(|k| ((k % 200) as f32 / 100.0 * PI).sin_cos()).map(|(s, c)| [0.6 * c, 0.6 * s, 0.0]);
@@ -266,9 +287,8 @@ fn joins_have_neither_gaps_nor_knots() {
     }
 }
 
-#[test]
 fn dashes_take_their_share_and_go_round_corners() {
-    let Some(mut gpu) = gpu() else { return };
+    let mut gpu = gpu();
     let mut scene = empty(BLACK);
     let straight = [[-0.8f32, 0.0, 0.0], [0.8, 0.0, 0.0]];
     let cut: Vec<_> = (0..=40).map(|k| [-0.8 + 0.04 * k as f32, 0.0, 0.0]).collect();
@@ -288,9 +308,8 @@ fn dashes_take_their_share_and_go_round_corners() {
     assert!(worst <= Some(3), "{worst:?}");
 }
 
-#[test]
 fn dashes_as_long_as_wide_are_dots() {
-    let Some(mut gpu) = gpu() else { return };
+    let mut gpu = gpu();
     let mut scene = empty(BLACK);
     scene.lines = vec![Line { dash: Some([10.0, 30.0]), ..line(&[[-0.8, 0.0, 0.0], [0.8, 0.0, 0.0]], 10.0, WHITE) }];
     let picture = gpu.picture(&scene, &flat([0.0; 2], 1.0, 200)).unwrap();
@@ -298,9 +317,8 @@ fn dashes_as_long_as_wide_are_dots() {
     assert!((got - 1.0).abs() < 0.02, "{got}");
 }
 
-#[test]
 fn solids_hide_lines_below_and_not_those_on_top() {
-    let Some(mut gpu) = gpu() else { return };
+    let mut gpu = gpu();
     let mut scene = empty(BLACK);
     scene.model = Arc::new(Model { meshes: vec![mesh::cylinder(0.5, 0.1, 0.0)] });
     scene.solids = vec![solid(0, placed(0.0, [0.0; 3]), RED)];
@@ -318,9 +336,8 @@ fn solids_hide_lines_below_and_not_those_on_top() {
     }
 }
 
-#[test]
 fn a_line_through_the_eye_is_cut_in_front_of_it() {
-    let Some(mut gpu) = gpu() else { return };
+    let mut gpu = gpu();
     let mut scene = empty(BLACK);
     // From in front of the eye to far behind it, and one wholly behind.
     scene.lines = vec![
@@ -335,9 +352,8 @@ fn a_line_through_the_eye_is_cut_in_front_of_it() {
     assert!((0..100).all(|x| coverage(column(&picture, x)) < 5.0 || x > 90), "the line folded over");
 }
 
-#[test]
 fn the_workspace_of_the_nine_link_machine_has_its_area() {
-    let Some(mut gpu) = gpu() else { return };
+    let mut gpu = gpu();
     let mut scene = empty(BLACK);
     let (half, side) = (1.3, 1000);
     for b in [2.4, 0.3] {
@@ -349,9 +365,8 @@ fn the_workspace_of_the_nine_link_machine_has_its_area() {
     }
 }
 
-#[test]
 fn turning_rotates_the_workspace() {
-    let Some(mut gpu) = gpu() else { return };
+    let mut gpu = gpu();
     let mut scene = empty(BLACK);
     let view = flat([0.0; 2], 1.3, 300);
     let area = nine_link(2.4);
@@ -368,9 +383,8 @@ fn turning_rotates_the_workspace() {
     assert_ne!(before, after);
 }
 
-#[test]
 fn overlapping_sheets_gather() {
-    let Some(mut gpu) = gpu() else { return };
+    let mut gpu = gpu();
     let mut scene = empty(BLACK);
     let area = Area { colour: faded(WHITE, 0.25), ..nine_link(2.4) };
     let view = flat([0.6, 0.6], 0.05, 20);
@@ -381,9 +395,8 @@ fn overlapping_sheets_gather() {
     }
 }
 
-#[test]
 fn markers_are_round_and_may_be_hollow() {
-    let Some(mut gpu) = gpu() else { return };
+    let mut gpu = gpu();
     let mut scene = empty(BLACK);
     scene.model = Arc::new(Model { meshes: vec![mesh::cylinder(0.9, 0.5, 0.0)] });
     scene.solids = vec![solid(0, placed(0.0, [0.0; 3]), BLACK)];
@@ -398,9 +411,8 @@ fn markers_are_round_and_may_be_hollow() {
     }
 }
 
-#[test]
 fn a_clear_background_stays_clear_and_colours_straight() {
-    let Some(mut gpu) = gpu() else { return };
+    let mut gpu = gpu();
     let mut scene = empty([0.0; 4]);
     scene.markers = vec![disc([0.0; 3], 8.0, faded(RED, 0.5), [0.0; 4], 0.0)];
     let picture = gpu.picture(&scene, &flat([0.0; 2], 1.0, 33)).unwrap();
@@ -408,9 +420,8 @@ fn a_clear_background_stays_clear_and_colours_straight() {
     assert_close(picture.pixel(16, 16).unwrap(), faded(RED, 0.5), 2);
 }
 
-#[test]
 fn the_same_scene_is_the_same_picture_to_the_byte() {
-    let (Some(mut gpu), Some(mut other)) = (gpu(), fresh()) else { return };
+    let (mut gpu, mut other) = (gpu(), fresh());
     for (scene, view) in demo() {
         let picture = gpu.picture(&scene, &view).unwrap();
         assert!(picture == gpu.picture(&scene, &view).unwrap());
@@ -418,9 +429,8 @@ fn the_same_scene_is_the_same_picture_to_the_byte() {
     }
 }
 
-#[test]
 fn a_steady_state_allocates_nothing_on_the_gpu() {
-    let Some(mut gpu) = fresh() else { return };
+    let mut gpu = fresh();
     let (scene, view) = demo().remove(0);
     let mut allocated = || {
         gpu.picture(&scene, &view).unwrap();
@@ -436,9 +446,8 @@ fn a_steady_state_allocates_nothing_on_the_gpu() {
     }
 }
 
-#[test]
 fn the_picture_reaches_any_target_unchanged() {
-    let Some(mut gpu) = gpu() else { return };
+    let mut gpu = gpu();
     let (scene, view) = demo().remove(2);
     let expected = gpu.picture(&scene, &view).unwrap();
     use wgpu::TextureFormat::{Bgra8Unorm, Bgra8UnormSrgb, Rgba8Unorm, Rgba8UnormSrgb};
@@ -478,15 +487,13 @@ fn the_picture_reaches_any_target_unchanged() {
     }
 }
 
-#[test]
 fn a_renderer_may_live_in_a_windows_callbacks() {
     fn shared<T: Send + Sync + 'static>() {}
     shared::<Renderer>();
 }
 
-#[test]
 fn nonsense_is_survived() {
-    let Some(mut gpu) = gpu() else { return };
+    let mut gpu = gpu();
     let mut scene = empty(BLACK);
     let nan = [f32::NAN; 3];
     let bad = Mesh {
@@ -516,7 +523,6 @@ fn nonsense_is_survived() {
     }
 }
 
-#[test]
 fn a_png_holds_the_picture() {
     let picture = Picture { width: 2, height: 1, rgba: vec![1, 2, 3, 255, 4, 5, 6, 128] };
     let bytes = picture.to_png().unwrap();
@@ -626,9 +632,8 @@ fn demo() -> Vec<(Scene, View)> {
 }
 
 /// Leaves the demonstration pictures where `STILLBASE_PICTURES` names a folder, for eyes to judge.
-#[test]
 fn demonstration_pictures_are_not_empty() {
-    let Some(mut gpu) = gpu() else { return };
+    let mut gpu = gpu();
     for (k, (scene, view)) in demo().iter().enumerate() {
         let picture = gpu.picture(scene, view).unwrap();
         let drawn = all(&picture).filter(|pixel| *pixel != bytes(scene.background)).count();

@@ -1,0 +1,291 @@
+//! Files through the window: opened, saved, recorded and dropped, good and bad.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable as _;
+use stillbase::app::Command;
+use stillbase::picture::scene::palette::Theme;
+use stillbase::session::Edit;
+use stillbase::session::scenario::Scenario;
+
+use super::{Desktop, desk, hold, session};
+use crate::Test;
+use crate::folder::Folder;
+
+pub const TESTS: &[Test] = tests![
+    a_session_is_saved_and_opened_as_it_was,
+    what_is_no_scenario_is_refused_and_changes_nothing,
+    a_file_that_is_dropped_is_opened,
+    nothing_is_written_over,
+    what_cannot_be_written_is_said,
+    a_run_is_recorded_whole_or_not,
+    a_dialog_that_is_left_does_nothing,
+];
+
+/// A file that is dropped: its name.
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        fs::read(&self.0).map_err(|e| e.to_string())
+    }
+}
+
+fn drop_on(h: &mut Desktop, path: &Path) {
+    h.input_mut().dropped_files.push(Arc::new(Dropped(path.into())));
+    h.run_steps(3);
+}
+
+/// Which dialog, and how one comes to it.
+#[derive(Clone, Copy, Debug)]
+enum Ask {
+    Open,
+    Save,
+    Record,
+}
+
+/// Opens the dialog by its keys.
+fn ask(h: &mut Desktop, what: Ask) {
+    match what {
+        Ask::Open => h.key_press_modifiers(Modifiers::COMMAND, Key::O),
+        Ask::Save => h.key_press_modifiers(Modifiers::COMMAND, Key::S),
+        Ask::Record => h.key_press(Key::R),
+    }
+    h.run_steps(3);
+    assert!(h.query_by_label("File name").is_some(), "{what:?}: the name is asked for");
+}
+
+/// Types a name over what stands there, and presses Enter.
+fn answer(h: &mut Desktop, path: &Path) {
+    h.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    h.step();
+    h.event(egui::Event::Text(path.display().to_string()));
+    h.run_steps(2);
+    h.key_press(Key::Enter);
+    h.run_steps(4);
+}
+
+fn name_file(h: &mut Desktop, what: Ask, path: &Path) {
+    ask(h, what);
+    answer(h, path);
+}
+
+/// What the window says, if it is good news.
+#[track_caller]
+fn done(h: &Desktop, words: &str) {
+    let (said, bad) = h.state().app_state().look().message.clone().expect("it is said");
+    assert!(!bad && said.contains(words), "{said:?} does not say {words:?}");
+    assert!(h.query_by_label("File name").is_none(), "the dialog has gone");
+}
+
+/// Refused with these words, on the screen; `dialog` says whether another name can be typed at once.
+#[track_caller]
+fn refused(h: &Desktop, words: &str, dialog: bool) {
+    let (said, bad) =
+        h.state().app_state().look().message.clone().unwrap_or_else(|| panic!("nothing said about {words:?}"));
+    assert!(bad && said.contains(words), "{said:?} does not say {words:?}");
+    assert!(h.query_by_label(&said).is_some(), "{said} is on the screen");
+    assert_eq!(h.query_by_label("File name").is_some(), dialog, "{said}");
+}
+
+fn a_session_is_saved_and_opened_as_it_was() {
+    let folder = Folder::new("window");
+    let file = folder.path("mine.toml");
+    let mut h = desk("case-3", Theme::Dark);
+    h.step();
+    hold(&mut h);
+    h.key_press(Key::Space);
+    h.run_steps(20);
+    h.key_press(Key::Space);
+    h.run_steps(2);
+    let saved = session(&h).to_scenario();
+    name_file(&mut h, Ask::Save, &file);
+    done(&h, "saved");
+    assert_eq!(Scenario::parse(&fs::read_to_string(&file).expect("written"), "mine", None).expect("valid"), saved);
+    assert_eq!(folder.names(), ["mine.toml"], "nothing is left beside it");
+    h.key_press(Key::Num1);
+    h.run_steps(3);
+    assert_eq!(session(&h).scenario().name, "case-1");
+    name_file(&mut h, Ask::Open, &file);
+    done(&h, "opened");
+    assert_eq!(session(&h).to_scenario(), saved);
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    h.run_steps(3);
+    assert_eq!(session(&h).scenario().name, "case-1", "opening is an undo of its own");
+}
+
+/// Bad files: what each is, and what is said about it.
+fn bad(folder: &Folder) -> [(PathBuf, &'static str); 7] {
+    let case = include_str!("../../assets/scenarios/case-3.toml");
+    [
+        (folder.file("noise.toml", b"\x00\xff\xfe nonsense"), "UTF-8"),
+        (folder.file("empty.toml", b""), "machine"),
+        (folder.file("cut.toml", &case.as_bytes()[..case.len() / 2]), "cut.toml"),
+        (folder.file("odd.toml", case.replace("b = 2.4", "b = 2.4\nc = 1.0").as_bytes()), "odd.toml:"),
+        (folder.file("far.toml", case.replace("to = [0.55, 0.90]", "to = [5.5, 0.90]").as_bytes()), "5.5"),
+        (folder.path("nowhere.toml"), "nowhere.toml"),
+        (folder.0.clone(), "folder"),
+    ]
+}
+
+fn what_is_no_scenario_is_refused_and_changes_nothing() {
+    let folder = Folder::new("window");
+    let mut h = desk("case-3", Theme::Dark);
+    h.step();
+    hold(&mut h);
+    for (file, words) in bad(&folder) {
+        let (before, frames) = (session(&h).to_scenario(), session(&h).frames().to_vec());
+        name_file(&mut h, Ask::Open, &file);
+        refused(&h, words, true);
+        assert_eq!(session(&h).to_scenario(), before, "{}", file.display());
+        h.key_press(Key::Escape);
+        h.run_steps(2);
+        drop_on(&mut h, &file);
+        refused(&h, words, false);
+        assert_eq!(session(&h).to_scenario(), before, "{}", file.display());
+        assert!(session(&h).frames() == &frames[..]);
+    }
+    // What is good can be opened all the same.
+    drop_on(&mut h, &folder.file("good.toml", include_bytes!("../../assets/scenarios/case-1.toml")));
+    done(&h, "opened");
+    assert_eq!(session(&h).scenario().name, "case-1");
+}
+
+fn a_file_that_is_dropped_is_opened() {
+    let folder = Folder::new("window");
+    let mut h = desk("case-3", Theme::Dark);
+    h.step();
+    let file = folder.file("one.toml", include_bytes!("../../assets/scenarios/spacecraft.toml"));
+    // While a dialog asks for a name too, and while time runs.
+    for (dialog, plays) in [(false, false), (true, false), (false, true)] {
+        h.key_press(Key::Num3);
+        h.run_steps(2);
+        h.key_press(Key::Space);
+        h.run_steps(2);
+        assert_eq!(session(&h).scenario().name, "case-3");
+        if dialog {
+            ask(&mut h, Ask::Open);
+        }
+        if plays {
+            h.key_press(Key::Home);
+            h.key_press(Key::Space);
+            h.run_steps(5);
+        }
+        drop_on(&mut h, &file);
+        done(&h, "opened");
+        assert_eq!(session(&h).to_scenario(), Scenario::builtin("spacecraft").expect("built in"));
+    }
+    assert_eq!(folder.names(), ["one.toml"]);
+}
+
+/// A file that is there stays as it is, whatever it is; the dialog stays for another name.
+fn nothing_is_written_over() {
+    let folder = Folder::new("window");
+    for (ending, what) in [("toml", Ask::Save), ("rrd", Ask::Record)] {
+        let (mine, other) = (format!("mine.{ending}"), format!("other.{ending}"));
+        let file = folder.file(&mine, b"somebody's own work");
+        let mut h = desk("case-3", Theme::Dark);
+        h.step();
+        name_file(&mut h, what, &file);
+        refused(&h, "exists: want another name", true);
+        assert_eq!(fs::read(&file).expect("still there"), b"somebody's own work");
+        answer(&mut h, &folder.path(&other));
+        done(&h, &other);
+        // Not even what has just been written, by who asks for it twice.
+        let written = fs::read(folder.path(&other)).expect("written");
+        hold(&mut h);
+        name_file(&mut h, what, &folder.path(&other));
+        refused(&h, "exists: want another name", true);
+        assert_eq!(fs::read(folder.path(&other)).expect("still there"), written);
+    }
+    assert_eq!(folder.names(), ["mine.rrd", "mine.toml", "other.rrd", "other.toml"]);
+}
+
+fn what_cannot_be_written_is_said() {
+    let folder = Folder::new("window");
+    let plain = folder.file("plain", b"no folder");
+    let sub = folder.path("sub");
+    fs::create_dir(&sub).expect("a folder");
+    let long = folder.path(&"x".repeat(300));
+    for what in [Ask::Save, Ask::Record] {
+        let mut h = desk("case-3", Theme::Dark);
+        h.step();
+        let before = session(&h).to_scenario();
+        ask(&mut h, what);
+        for (path, words) in [
+            (folder.path("missing/run.toml"), "no folder"),
+            (sub.clone(), "sub"),
+            (plain.join("run.toml"), "run.toml"),
+            (long.clone(), "xxx"),
+            #[cfg(target_os = "linux")]
+            ("/dev/full".into(), "/dev/full"),
+        ] {
+            answer(&mut h, &path);
+            refused(&h, words, true);
+            assert_eq!(session(&h).to_scenario(), before);
+            assert_eq!(folder.names(), ["plain", "sub"], "{what:?} {}", path.display());
+        }
+    }
+}
+
+/// What is recorded is what has been seen; one that exists is left alone in `nothing_is_written_over`.
+fn a_run_is_recorded_whole_or_not() {
+    let folder = Folder::new("window");
+    let mut h = desk("case-1", Theme::Dark);
+    h.step();
+    for (name, played) in [("start.rrd", false), ("end.rrd", true)] {
+        if played {
+            h.key_press(Key::Space);
+            h.run_steps(70);
+        }
+        name_file(&mut h, Ask::Record, &folder.path(name));
+        done(&h, "with reactions");
+        let bytes = fs::read(folder.path(name)).expect("written");
+        assert!(bytes.starts_with(b"RRF2") && bytes.len() > 100_000, "{name}: {} bytes", bytes.len());
+    }
+    assert_eq!(folder.names(), ["end.rrd", "start.rrd"]);
+    // What waits has no run to record, and says so.
+    h.key_press(Key::Num3);
+    h.run_steps(2);
+    h.state_mut()
+        .app_state_mut()
+        .carry_out(Command::Edit(Edit::SetMachine { key: "limits.a1".into(), value: "0,2.618".into() }));
+    h.run_steps(2);
+    assert!(session(&h).run().waiting().is_some());
+    name_file(&mut h, Ask::Record, &folder.path("waits.rrd"));
+    refused(&h, "B", true);
+    assert_eq!(folder.names(), ["end.rrd", "start.rrd"]);
+}
+
+fn a_dialog_that_is_left_does_nothing() {
+    let folder = Folder::new("window");
+    for what in [Ask::Open, Ask::Save, Ask::Record] {
+        for cancel in [true, false] {
+            let mut h = desk("case-3", Theme::Dark);
+            h.step();
+            let before = session(&h).to_scenario();
+            ask(&mut h, what);
+            h.key_press_modifiers(Modifiers::COMMAND, Key::A);
+            h.step();
+            h.event(egui::Event::Text(folder.path("never.toml").display().to_string()));
+            h.run_steps(2);
+            match cancel {
+                true => h.get_by_label("Cancel").click(),
+                false => h.key_press(Key::Escape),
+            }
+            h.run_steps(3);
+            assert!(h.query_by_label("File name").is_none(), "{what:?}");
+            assert_eq!(session(&h).to_scenario(), before);
+            assert!(h.state().app_state().look().message.is_none());
+        }
+    }
+    assert!(folder.names().is_empty());
+}

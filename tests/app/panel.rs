@@ -1,0 +1,248 @@
+//! Panels: what they show, set and take back.
+
+use egui::Key;
+use egui::accesskit::Role;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use stillbase::mechanics::planar::PerDrive;
+use stillbase::picture::scene::palette::Theme;
+use stillbase::picture::scene::pointer::Pointer;
+use stillbase::picture::scene::stage::Handle;
+use stillbase::picture::scene::sway::swayed;
+use stillbase::picture::scene::views::ViewKind;
+use stillbase::session::scenario::Scenario;
+use stillbase::simulation::plant::{Base, BaseKind, Each, Plant};
+
+use super::{Desktop, desk, desk_of, hold, on_screen, seen, session};
+use crate::Test;
+
+pub const TESTS: &[Test] = tests![
+    what_differs_is_set_and_taken_back,
+    a_link_that_differs_is_named,
+    a_base_that_moves_is_seen_to_move,
+    lamps_tell_the_audit,
+    tolerances_are_shown_and_set,
+    the_bar_covers_nothing,
+    the_panel_holds_still,
+    lists_close_and_links_are_named,
+    the_fonts_have_every_letter,
+];
+
+/// Whatever differs in the plant is switched on, set and taken back in its section.
+fn what_differs_is_set_and_taken_back() {
+    let mut h = desk_of(Scenario::builtin("case-3").expect("built in"), Theme::Dark, 1700.0);
+    h.step();
+    assert!(h.query_by_label("payload").is_none(), "folded while all is as the model");
+    assert!(h.query_by_label("as the model").is_some());
+    hold(&mut h);
+    assert!(h.query_by_label("1 difference").is_some());
+    for label in ["friction", "torque limits", "force"] {
+        h.get_by_label(label).click();
+        h.run_steps(2);
+    }
+    h.get_by_role_and_label(Role::Slider, "Coulomb slider").set_value_accesskit(0.05);
+    h.run_steps(2);
+    h.get_by_label("viscous per drive").click();
+    h.run_steps(2);
+    let plant = session(&h).scenario().plant.clone();
+    assert_eq!(plant.friction.viscous, Each::Own(PerDrive::from_fn(3, |_| 0.02)));
+    assert!((plant.friction.coulomb.of(3)[2] - 0.05).abs() < 1e-3 && plant.torque_limits && plant.force == [2.0, 0.0]);
+    assert!(h.query_by_label("4 differences").is_some());
+    assert!(h.query_by_label_contains("Friction over time").is_some(), "friction has a plot where there is some");
+    // One at a time, then all.
+    h.get_by_label("Coulomb back to normal").click();
+    h.run_steps(2);
+    assert_eq!(session(&h).scenario().plant.friction.coulomb, Each::All(0.0));
+    h.get_by_label("Plant back to normal").click();
+    h.run_steps(2);
+    assert_eq!(session(&h).scenario().plant, Plant::default());
+    assert!(h.query_by_label("payload").is_some(), "it does not fold under the hand");
+    assert!(h.query_by_label_contains("Friction over time").is_none());
+}
+
+/// A link and a length that differ show what they would be in the model.
+fn a_link_that_differs_is_named() {
+    let text = include_str!("../../assets/scenarios/case-3.toml")
+        .replace("[task]", "[plant.link.5]\nmass = 2.5\n\n[plant.length]\nl1 = 0.51\n\n[task]");
+    let scenario = Scenario::parse(&text, "differs", None).expect("right");
+    let mut h = desk_of(scenario, Theme::Light, 1700.0);
+    h.run_steps(3);
+    assert!(h.query_by_label("2 differences").is_some(), "it opens unfolded");
+    let reach = h.state().app_state().stage().linkage().reach();
+    assert!((reach - 1.27).abs() < 1e-9, "drawn as it is: {reach}");
+    h.get_by_label("link 5 mass back to normal").click();
+    h.run_steps(2);
+    assert!(session(&h).scenario().plant.link.get("5").is_none_or(|d| d.mass.is_none()));
+    h.get_by_label("length l1 back to normal").click();
+    h.run_steps(2);
+    assert!(session(&h).scenario().plant.length.is_empty());
+    assert!((h.state().app_state().stage().linkage().reach() - 1.26).abs() < 1e-9);
+}
+
+/// A base that floats is chosen, seen and plotted, and its motion exaggerated until it is seen.
+fn a_base_that_moves_is_seen_to_move() {
+    let mut h = desk_of(Scenario::builtin("case-1").expect("built in"), Theme::Dark, 1700.0);
+    h.step();
+    assert!(h.query_by_label_contains("Base over time").is_none());
+    h.get_by_label("Base section").click();
+    h.run_steps(2);
+    h.get_by_label("free").click();
+    h.run_steps(2);
+    assert_eq!(session(&h).scenario().base.kind, BaseKind::Free);
+    assert!(h.query_by_label_contains("Base over time").is_some());
+    let foreseen = h.state().app_state().look().sway();
+    h.get_by_label("Play").click();
+    h.run_steps(70);
+    let f = *session(&h).frame();
+    assert!(f.base.angle.abs() > 1e-3, "{:?}", f.base);
+    assert_eq!(h.state().app_state().look().sway(), foreseen, "known before it plays, so that nothing jumps");
+    let moved = foreseen * (f.totals.shift + f.totals.tilt * 1.26);
+    assert!((0.04..0.13).contains(&moved), "{moved} m is seen, {foreseen} times");
+    // The ring's knob is where it is drawn, and pulling it there asks for the same b.
+    let shown = swayed(&f, foreseen);
+    let stage = h.state().app_state().stage().clone();
+    let at = stage.handle(Handle::Ring, &shown).expect("three drives");
+    let b = stage.ring_b([at[0], at[1]], f.b_reference, &shown).expect("three drives");
+    assert!((b - f.b_reference).abs() < 1e-12);
+    h.key_press(Key::X);
+    h.run_steps(2);
+    assert_eq!(h.state().app_state().look().sway(), 1.0);
+    h.get_by_label("Base back to normal").click();
+    h.run_steps(2);
+    assert_eq!(session(&h).scenario().base, Base::default());
+}
+
+/// Six lamps say how far every audited figure is from zero.
+fn lamps_tell_the_audit() {
+    let mut h = desk("case-3", Theme::Light);
+    h.get_by_label("Play").click();
+    h.run_steps(70);
+    for figure in ["momentum", "angular", "energy", "loops", "step", "plane"] {
+        let words = format!("audit {figure}:");
+        let lamp = h.get_by_label_contains(&words);
+        assert!(lamp.accesskit_node().label().is_some_and(|label| label.ends_with(", good")), "{figure}");
+    }
+    assert!(h.query_by_label_contains("cannot be trusted").is_none());
+    let lamp = h.get_by_label_contains("audit energy:").rect().center();
+    h.hover_at(lamp);
+    h.run_steps(60);
+    assert!(h.query_by_label_contains("energy − work + losses").is_some(), "its figure is under the pointer");
+}
+
+/// Tolerances by key: the panel shows them, a spread is set by its number, and they make room for runs side by side.
+fn tolerances_are_shown_and_set() {
+    let mut h = desk("case-3", Theme::Dark);
+    h.run_steps(3);
+    h.key_press(Key::T);
+    h.run_steps(2);
+    assert!(h.query_by_label("Histogram of peaks of the base moment over machines, N m").is_some());
+    assert!(h.query_by_label_contains("20000 machines, 41 numbers vary in each").is_some());
+    h.get_by_label("Spread of limit on |n_B|, N m").set_value_accesskit(0.01);
+    h.run_steps(3);
+    assert_eq!(session(&h).scenario().tolerance.moment_limit, Some(0.01));
+    assert!(h.query_by_label_contains("keep within limits").is_some());
+    h.key_press(Key::C);
+    h.run_steps(2);
+    assert!(h.query_by_label_contains("Histogram").is_none() && h.state().app_state().board().is_some());
+    h.key_press(Key::I);
+    h.run_steps(2);
+    assert!(h.query_by_label_contains("Pin forces over time").is_some());
+}
+
+/// The bar stands above the scene: in the default view nothing of the workspace, the machine or the target is covered.
+fn the_bar_covers_nothing() {
+    for (width, height) in [(1280.0, 800.0), (960.0, 600.0), (1440.0, 900.0)] {
+        let mut h = desk("case-3", Theme::Dark);
+        h.set_size(egui::vec2(width, height));
+        h.run_steps(4);
+        let scene = h.get_by_label_contains("Scene:").rect();
+        for label in ["2D", "Tower", "draw a path", "side by side"] {
+            let rect = h.get_by_label(label).rect();
+            assert!(rect.bottom() <= scene.top() && rect.right() <= scene.right(), "{label} {rect} {scene}");
+        }
+        let planes = session(&h).run().planes().expect("planes").clone();
+        for p in planes.boundary().turned(planes.map().turn(2.4)).iter().flatten() {
+            let at = on_screen(&h, p[0], p[1]);
+            assert!(scene.contains(at), "{p:?} at {at} in {scene}, {width} by {height}");
+        }
+    }
+}
+
+/// Choosing what the machine stands on, or what it holds, moves nothing away from under the pointer.
+fn the_panel_holds_still() {
+    let mut h = desk_of(Scenario::builtin("case-3").expect("built in"), Theme::Dark, 1700.0);
+    h.run_steps(2);
+    h.get_by_label("Base section").click();
+    h.run_steps(2);
+    let top = |h: &Desktop| ["Plant section", "Base section"].map(|label| h.get_by_label(label).rect().top());
+    let before = top(&h);
+    for kind in ["compliant", "free", "fixed"] {
+        h.get_by_label(kind).click();
+        h.run_steps(3);
+        assert_eq!(top(&h), before, "{kind}");
+    }
+}
+
+/// A list closes with Esc and nothing else does; a link says its name.
+fn lists_close_and_links_are_named() {
+    let mut h = desk("case-3", Theme::Dark);
+    h.run_steps(2);
+    h.key_press(Key::U);
+    h.run_steps(2);
+    for list in ["Scenario", "Machine", "Speed", "Shape"] {
+        h.get_by_label(list).click();
+        h.run_steps(3);
+        assert!(egui::Popup::is_any_open(&h.ctx), "{list} opens");
+        h.key_press(Key::Escape);
+        h.run_steps(3);
+        assert!(!egui::Popup::is_any_open(&h.ctx), "{list} closes");
+        assert!(h.state().app_state().look().pushing, "Esc was for the list");
+    }
+    h.key_press(Key::U);
+    let frame = *session(&h).frame();
+    let e = frame.q.units();
+    let stage = h.state().app_state().stage().clone();
+    for (i, bar) in stage.linkage().bars().iter().enumerate() {
+        let [from, to] = bar.ends(&e);
+        // Where no other link lies on it.
+        let free = (1..20).map(|k| f64::from(k) / 20.0).map(|t| [0, 1, 2].map(|j| from[j] + t * (to[j] - from[j])));
+        let alone = free.map(|p| seen(&h, p)).find(|at| {
+            let scene = h.get_by_label_contains("Scene:").rect();
+            let pair = |v: egui::Vec2| [f64::from(v.x), f64::from(v.y)];
+            let camera = *h.state().app_state().look().camera();
+            let pointer = Pointer { camera, size: pair(scene.size()), at: pair(*at - scene.min) };
+            let views = h.state().app_state().views();
+            views.link_at(&frame, &pointer) == Some(i) && views.pick(ViewKind::Flat, &frame, &pointer).is_none()
+        });
+        h.hover_at(alone.unwrap_or_else(|| panic!("{} is seen somewhere", bar.name)));
+        h.run_steps(40);
+        let words = format!("link {}, drive {}", bar.name, bar.drive + 1);
+        assert!(h.query_by_label_contains(&words).is_some(), "{words}");
+    }
+}
+
+/// Every letter that the sources can put on the screen is in the fonts that come along.
+fn the_fonts_have_every_letter() {
+    let mut h = desk("case-3", Theme::Dark);
+    h.step();
+    let mut letters = std::collections::BTreeSet::new();
+    let mut folders = vec![std::path::PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/src"))];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                folders.extend((!path.ends_with("commands") && !path.ends_with("headless")).then_some(path));
+            } else if path.extension().is_some_and(|e| e == "rs") {
+                let text = std::fs::read_to_string(path).expect("readable");
+                let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
+                letters.extend(code.flat_map(str::chars).filter(|c| !c.is_ascii()));
+            }
+        }
+    }
+    assert!(letters.len() > 30, "{letters:?}");
+    for family in [egui::FontFamily::Proportional, egui::FontFamily::Name("bold".into())] {
+        let font = egui::FontId::new(13.0, family);
+        let missing: Vec<char> =
+            letters.iter().copied().filter(|c| !h.ctx.fonts_mut(|fonts| fonts.has_glyph(&font, *c))).collect();
+        assert!(missing.is_empty(), "{font:?}: {missing:?}");
+    }
+}

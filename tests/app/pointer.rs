@@ -1,0 +1,315 @@
+//! The pointer in the scene: it drags, draws and pushes.
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, pos2};
+use egui_kittest::kittest::Queryable as _;
+use stillbase::mechanics::planar::unit;
+use stillbase::picture::scene::palette::Theme;
+use stillbase::session::Edit;
+use stillbase::session::scenario::Scenario;
+use stillbase::simulation::frame::Reach;
+
+use super::{Desktop, desk, drag, on_screen, pull, session};
+use crate::Test;
+
+pub const TESTS: &[Test] = tests![
+    dragging_the_target_moves_the_machine_on_its_plane,
+    a_target_outside_says_why_and_what_b_would_do,
+    escape_cancels_a_drag_and_takes_it_back,
+    waypoints_are_handles,
+    a_path_is_drawn_by_hand,
+    a_hand_pushes_the_end_effector,
+    a_hand_is_named_and_let_go,
+    a_release_counts_where_the_button_came_up,
+];
+
+fn dragging_the_target_moves_the_machine_on_its_plane() {
+    let mut h = desk("case-3", Theme::Dark);
+    h.step();
+    let (from, to) = (on_screen(&h, 0.55, 0.9), on_screen(&h, 0.62, 0.55));
+    h.get_by_label("Play").click();
+    h.run_steps(70);
+    drag(&mut h, from, to);
+    h.run_steps(120);
+    let f = session(&h).frame();
+    assert_eq!(f.target.reach, Reach::Inside);
+    assert!((f.tip.re - 0.62).abs() < 2e-3 && (f.tip.im - 0.55).abs() < 2e-3, "{:?}", f.tip);
+    assert!(f.peaks.is_reactionless(), "n_B stays at zero: {:?}", f.peaks);
+    assert!((f.b - 2.4).abs() < 1e-11);
+}
+
+fn a_target_outside_says_why_and_what_b_would_do() {
+    let mut h = desk("case-3", Theme::Light);
+    h.get_by_label("Play").click();
+    h.run_steps(70);
+    let (from, to) = (on_screen(&h, 0.55, 0.9), on_screen(&h, 0.9, 0.85));
+    drag(&mut h, from, to);
+    h.run_steps(120);
+    let f = *session(&h).frame();
+    let Reach::Outside { nearest, mending_b, .. } = f.target.reach else { panic!("{:?}", f.target) };
+    assert!((nearest - f.tip).norm() < 1e-6, "the machine waits at the nearest point");
+    let b = mending_b.expect("another plane reaches it");
+    let planes = session(&h).run().planes().expect("three drives").clone();
+    assert!(
+        !planes.map().poses(f.target.at, b + 1e-9).is_empty() || !planes.map().poses(f.target.at, b - 1e-9).is_empty()
+    );
+    assert!(h.query_by_label_contains("outside").is_some());
+    h.snapshot("outside-light");
+    h.get_by_label_contains("go to b").click();
+    h.run_steps(150);
+    let f = session(&h).frame();
+    assert_eq!(f.target.reach, Reach::Inside, "the way out leads there");
+    assert!((f.b - b).abs() < 1e-6);
+}
+
+fn escape_cancels_a_drag_and_takes_it_back() {
+    let mut h = desk("case-3", Theme::Dark);
+    h.step();
+    // The handle is where it is drawn: on the end effector, at A.
+    let (from, to) = (on_screen(&h, 0.5, 0.5), on_screen(&h, 0.6, 0.3));
+    h.hover_at(from);
+    h.step();
+    h.drag_at(from);
+    h.step();
+    for i in 1..=5 {
+        h.hover_at(from + (to - from) * (i as f32 / 5.0));
+        h.step();
+    }
+    assert!(matches!(session(&h).script().last().map(|e| &e.edit), Some(Edit::DragTarget { .. })));
+    h.key_press(Key::Escape);
+    h.step();
+    h.drop_at(to);
+    h.run_steps(100);
+    let f = session(&h).frame();
+    assert!((f.tip - nalgebra::Complex::new(0.6, 0.3)).norm() > 0.1, "{}", f.tip);
+}
+
+/// A point of the path goes where it is dragged; where the target covers it, by its name.
+fn waypoints_are_handles() {
+    let mut h = desk("case-3", Theme::Dark);
+    h.step();
+    let points = |h: &Desktop| session(h).scenario().task.points();
+    // At rest at A the target covers A, so B is taken as it is and A by its letter.
+    let (from, to) = (on_screen(&h, 0.55, 0.90), on_screen(&h, 0.60, 0.75));
+    drag(&mut h, from, to);
+    assert!((points(&h)[1].re - 0.60).abs() < 2e-3 && (points(&h)[1].im - 0.75).abs() < 2e-3, "{:?}", points(&h));
+    let letter = egui::vec2(-17.0, 0.0);
+    let (from, to) = (on_screen(&h, 0.50, 0.50) + letter, on_screen(&h, 0.45, 0.45));
+    drag(&mut h, from, to);
+    assert!((points(&h)[0].re - 0.45).abs() < 2e-3 && (points(&h)[0].im - 0.45).abs() < 2e-3, "{:?}", points(&h));
+    assert!(!session(&h).is_live(), "nobody leads the machine");
+    assert!((session(&h).frame().tip - points(&h)[0]).norm() < 1e-9, "it waits at A");
+    // Each drag is one undo.
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    h.run_steps(2);
+    assert_eq!(points(&h)[0].re, 0.5);
+
+    // Twice in the open: one more point; Delete over it: one less.
+    let place = on_screen(&h, 0.62, 0.62);
+    for _ in 0..2 {
+        h.drag_at(place);
+        h.drop_at(place);
+        h.step();
+    }
+    h.run_steps(2);
+    assert_eq!(points(&h).len(), 3, "{:?}", points(&h));
+    assert!((points(&h)[1].re - 0.62).abs() < 2e-3 && (points(&h)[1].im - 0.62).abs() < 2e-3);
+    assert!(h.query_by_label("1 x m").is_some(), "the panel lists it");
+    h.hover_at(place);
+    h.run_steps(2);
+    h.key_press(Key::Delete);
+    h.run_steps(2);
+    assert_eq!(points(&h).len(), 2);
+}
+
+/// Drawn with the pencil, a path is followed.
+fn a_path_is_drawn_by_hand() {
+    let mut h = desk("case-3", Theme::Dark);
+    h.step();
+    h.key_press(Key::P);
+    h.run_steps(2);
+    let curve = |t: f64| (0.5 + 0.12 * (2.0 * t).sin(), 0.5 + 0.3 * t);
+    let at = |h: &Desktop, t: f64| {
+        let (x, y) = curve(t);
+        on_screen(h, x, y)
+    };
+    h.hover_at(at(&h, 0.0));
+    h.step();
+    h.drag_at(at(&h, 0.0));
+    h.step();
+    for i in 1..=30 {
+        h.hover_at(at(&h, f64::from(i) / 30.0));
+        h.step();
+    }
+    h.drop_at(at(&h, 1.0));
+    h.run_steps(3);
+    let task = &session(&h).scenario().task;
+    assert_eq!(task.shape(), stillbase::session::scenario::Shape::Freehand);
+    assert!(task.points().len() > 20, "{}", task.points().len());
+    assert!(h.state().app_state().look().stroke.is_none(), "the pencil is laid down");
+    h.get_by_label("Play").click();
+    h.run_steps(70);
+    let f = session(&h).frame();
+    let (x, y) = curve(1.0);
+    assert!((f.tip.re - x).hypot(f.tip.im - y) < 5e-3 && f.peaks.is_reactionless(), "{:?}", f.tip);
+}
+
+/// With Alt the end effector is pushed while time passes; letting go ends the push, and all of it is one undo.
+fn a_hand_pushes_the_end_effector() {
+    let mut h = desk("case-3", Theme::Dark);
+    h.get_by_label("Play").click();
+    h.run_steps(70);
+    let tip = session(&h).frame().tip;
+    let (from, to) = (on_screen(&h, tip.re, tip.im), on_screen(&h, tip.re - 0.2, tip.im));
+    h.key_press(Key::U);
+    h.run_steps(2);
+    assert!(h.state().app_state().look().pushing);
+    pull(&mut h, from, to);
+    let pushed = session(&h).scenario().plant.force;
+    assert!((pushed[0] + 4.0).abs() < 0.5 && pushed[1].abs() < 0.5, "{pushed:?} N for 0.2 m");
+    h.run_steps(10);
+    assert!((session(&h).frame().tip - tip).norm() > 1e-3, "it gives way: {}", session(&h).frame().tip);
+    assert!(session(&h).frame().peaks.moment > 0.1, "a force that nobody planned reaches the base");
+    h.drop_at(to);
+    h.run_steps(60);
+    assert_eq!(session(&h).scenario().plant.force, [0.0; 2]);
+    assert!((session(&h).frame().tip - tip).norm() < 1e-3, "and returns");
+    let again = stillbase::session::replay(&session(&h).to_scenario(), |_, _| {}).expect("it runs");
+    assert_eq!(again.frame(), session(&h).run().frame(), "the push is in the script");
+}
+
+/// Led by hand, the panel says so and leads back; the paper's cases come back whole.
+fn a_hand_is_named_and_let_go() {
+    let mut h = desk("case-3", Theme::Dark);
+    h.run_steps(2);
+    let band = "A and B: b from";
+    assert!(h.query_by_label_contains(band).is_some() && h.query_by_label("led by hand").is_none());
+    let (from, to) = (on_screen(&h, 0.5, 0.5), on_screen(&h, 0.45, 0.62));
+    drag(&mut h, from, to);
+    h.run_steps(20);
+    assert!(session(&h).is_live() && h.query_by_label("led by hand").is_some());
+    assert!(h.query_by_label_contains(band).is_none() && h.query_by_label("planned").is_none());
+    for by_key in [true, false] {
+        match by_key {
+            true => h.key_press(Key::B),
+            false => h.get_by_label("back to the path").click(),
+        }
+        h.run_steps(3);
+        assert!(!session(&h).is_live() && h.query_by_label_contains(band).is_some());
+        assert_eq!(session(&h).frame().step, 0);
+        assert!(session(&h).script().is_empty(), "{:?}", session(&h).script());
+        h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        h.run_steps(3);
+        assert!(session(&h).is_live(), "the hand comes back");
+    }
+    let gravity = Edit::SetMachine { key: "gravity".into(), value: "0,-9.81".into() };
+    h.state_mut().app_state_mut().carry_out(stillbase::app::Command::Edit(gravity));
+    h.key_press(Key::Num3);
+    h.run_steps(2);
+    assert_eq!(session(&h).to_scenario().machine, Scenario::builtin("case-3").expect("built in").machine);
+    assert!(h.state().app_state().look().message.is_none());
+    // Another machine that somebody has chosen stays, and that is said.
+    let case = Scenario::builtin("case-3").expect("built in");
+    let other = stillbase::mechanics::machine::builtins().iter().find(|m| m.name() == "nine-link-table-1");
+    let other = other.unwrap_or_else(|| {
+        panic!(
+            "{:?}",
+            stillbase::mechanics::machine::builtins().iter().map(|m| m.name().to_owned()).collect::<Vec<_>>()
+        )
+    });
+    let open = stillbase::app::Command::Open(Box::new(Scenario { machine: other.clone(), ..case }));
+    h.state_mut().app_state_mut().carry_out(open);
+    h.key_press(Key::Num3);
+    h.run_steps(2);
+    let (said, bad) = h.state().app_state().look().message.clone().expect("it is said");
+    assert!(!bad && said.contains(other.name()), "{said}");
+    assert_eq!(session(&h).scenario().machine.name(), other.name());
+}
+
+/// How a drag arrives: a frame for each event, its release together with what comes after, or all of it at once.
+#[derive(Clone, Copy, PartialEq)]
+enum Arrival {
+    Slowly,
+    ReleasedLate,
+    AtOnce,
+}
+
+/// A drag after which the pointer goes elsewhere.
+fn arrive(h: &mut Desktop, how: Arrival, [from, to, after]: [egui::Pos2; 3]) {
+    let button = |pos, pressed| egui::Event::PointerButton {
+        pos,
+        button: egui::PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    let moved = egui::Event::PointerMoved;
+    let begun = [moved(from), button(from, true), moved(from + 0.5 * (to - from)), moved(to)];
+    let rest = [button(to, false), moved(after)];
+    for event in begun.into_iter().chain(rest.clone()) {
+        h.input_mut().events.push(event.clone());
+        let waits = match how {
+            Arrival::Slowly => false,
+            Arrival::ReleasedLate => event == rest[0],
+            Arrival::AtOnce => event != rest[1],
+        };
+        if !waits {
+            h.step();
+        }
+    }
+    h.run_steps(4);
+}
+
+/// On a slow display press, drag, release and what the hand does then may come in one frame: each counts where it was.
+fn a_release_counts_where_the_button_came_up() {
+    let outcome = |how: Arrival| {
+        let mut h = desk("case-3", Theme::Dark);
+        h.run_steps(2);
+        let mut said = Vec::new();
+        let slider = h.get_by_role_and_label(Role::Slider, "b slider").rect();
+        let [low, high] = [slider.left() + 8.0, slider.right() - 8.0];
+        let at = |share: f32| pos2(low + share * (high - low), slider.center().y);
+        arrive(&mut h, how, [at(0.307), at(0.32), at(0.33)]);
+        said.push(session(&h).frame().b);
+        // The ring's knob, a little on; then the hand goes across the picture.
+        let stage = h.state().app_state().stage().clone();
+        let knob = |b: f64| {
+            let p = stage.ring_radius() * unit(session(&h).run().planes().expect("planes").map().turn(b));
+            on_screen(&h, p.re, p.im)
+        };
+        let way = [knob(session(&h).frame().b), knob(2.3), on_screen(&h, 0.5, -0.3)];
+        arrive(&mut h, how, way);
+        said.push(session(&h).frame().b);
+        let way = [(0.55, 0.9), (0.57, 0.8), (0.3, 0.3)].map(|(x, y)| on_screen(&h, x, y));
+        arrive(&mut h, how, way);
+        let to = session(&h).scenario().task.to;
+        said.extend(to);
+        let time = h.get_by_role_and_label(Role::Slider, "Time").rect();
+        let at = |share: f32| pos2(time.left() + 8.0 + share * (time.width() - 16.0), time.center().y);
+        arrive(&mut h, how, [at(0.0), at(0.4), at(0.9)]);
+        said.push(session(&h).frame().time);
+        h.key_press(Key::Home);
+        h.run_steps(2);
+        h.key_press(Key::P);
+        h.run_steps(2);
+        let way = [(0.5, 0.5), (0.5, 0.8), (0.1, 0.2)].map(|(x, y)| on_screen(&h, x, y));
+        arrive(&mut h, how, way);
+        said.extend(session(&h).scenario().task.to);
+        h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        h.run_steps(2);
+        let way = [(0.5, 0.5), (0.45, 0.6), (0.2, 0.8)].map(|(x, y)| on_screen(&h, x, y));
+        arrive(&mut h, how, way);
+        let target = session(&h).frame().target.at;
+        said.extend([target.re, target.im]);
+        said
+    };
+    let slowly = outcome(Arrival::Slowly);
+    assert!((slowly[1] - 2.3).abs() < 0.02 && (slowly[2] - 0.57).abs() < 2e-3, "{slowly:?}");
+    assert!((slowly[4] - 0.4).abs() < 0.02 && (slowly[6] - 0.8).abs() < 2e-3, "{slowly:?}");
+    assert!((slowly[7] - 0.45).abs() < 2e-3 && (slowly[8] - 0.6).abs() < 2e-3, "{slowly:?}");
+    for how in [Arrival::ReleasedLate, Arrival::AtOnce] {
+        let all = outcome(how);
+        for (i, (x, y)) in slowly.iter().zip(&all).enumerate() {
+            assert!((x - y).abs() < 1e-9, "number {i}: {x} slowly, {y} {}", how == Arrival::AtOnce);
+        }
+    }
+}

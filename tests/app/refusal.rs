@@ -1,0 +1,115 @@
+//! What cannot be is said in the window, with a way out.
+
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable as _;
+use stillbase::app::AppState;
+use stillbase::picture::scene::palette::Theme;
+use stillbase::session::Edit;
+use stillbase::session::scenario::Scenario;
+
+use super::{Desktop, desk, desk_of, drag, on_screen, session, type_into};
+use crate::Test;
+
+pub const TESTS: &[Test] = tests![
+    opening_an_odd_scenario_changes_nothing_in_it,
+    a_refused_path_shows_where_and_what_b_would_do,
+    a_scenario_that_cannot_be_planned_is_explained,
+    limits_apply_and_the_run_waits,
+];
+
+fn opening_an_odd_scenario_changes_nothing_in_it() {
+    let text = include_str!("../../assets/scenarios/case-3.toml")
+        .replace("time = 1.0", "time = 20.0")
+        .replace("[task]", "[control]\nkp = 20000.0\nkd = 1500.0\n\n[plant.payload]\nmass = 3.0\n\n[task]")
+        .replace("compare_b = 5.0", "compare_b = 77.0");
+    let scenario = Scenario::parse(&text, "odd", None).expect("odd but right");
+    let mut h = desk_of(scenario.clone(), Theme::Dark, 800.0);
+    h.run_steps(5);
+    assert!(session(&h).script().is_empty(), "{:?}", session(&h).script());
+    assert_eq!(session(&h).to_scenario(), scenario);
+}
+
+/// What cannot be followed is refused, shown, and mended by a button.
+fn a_refused_path_shows_where_and_what_b_would_do() {
+    let mut h = desk("case-3", Theme::Dark);
+    h.step();
+    let change = stillbase::session::scenario::Change::from_iter([
+        ("shape".to_owned(), "line".into()),
+        ("from".to_owned(), vec![0.42, 1.12].into()),
+        ("to".to_owned(), vec![0.0, 0.5].into()),
+    ]);
+    let before = session(&h).scenario().task.clone();
+    h.state_mut().app_state_mut().carry_out(stillbase::app::Command::Edit(Edit::SetTask { change }));
+    h.run_steps(2);
+    assert_eq!(session(&h).scenario().task, before, "nothing has changed");
+    assert!(h.query_by_label_contains("the path stops at (0.418, 1.116) m").is_some());
+    h.snapshot("refused-dark");
+    h.get_by_label_contains("take b").click();
+    h.run_steps(3);
+    let task = &session(&h).scenario().task;
+    let message = &h.state().app_state().look().message;
+    assert!((task.b - 2.5256).abs() < 1e-3 && task.to == [0.0, 0.5], "{task:?} {message:?}");
+    assert!(h.query_by_label_contains("the path stops").is_none());
+}
+
+/// A scenario that cannot be planned still opens: the machine, what was asked for, and the way out.
+fn a_scenario_that_cannot_be_planned_is_explained() {
+    let scenario = Scenario::builtin("case-3").expect("built in");
+    let keys = "shape = 'line'\nfrom = [0.42, 1.12]\nto = [0.0, 0.5]";
+    let task = scenario.task.with(&toml::from_str(keys).expect("keys")).expect("a task");
+    let asked = Scenario { task: task.clone(), ..scenario };
+    assert!(AppState::new(asked.clone(), Theme::Dark).is_err());
+    let mut desk = AppState::open_or_explain(asked, Theme::Dark).expect("explained");
+    let (words, bad) = desk.look().message.clone().expect("a reason");
+    assert!(bad && words.contains("the path stops at"), "{words}");
+    let (edit, _) = desk.look().refused.as_ref().and_then(|wish| wish.remedy.clone()).expect("another b would do");
+    desk.carry_out(stillbase::app::Command::Edit(edit));
+    let done = &desk.session().scenario().task;
+    assert_eq!((done.points(), done.shape()), (task.points(), task.shape()));
+}
+
+/// A joint limit applies whatever the task: what no longer fits turns red, the run waits, and there are two ways out.
+fn limits_apply_and_the_run_waits() {
+    let mut h = desk("case-3", Theme::Dark);
+    h.run_steps(2);
+    let red = |h: &Desktop| {
+        let desk = h.state().app_state();
+        let scene = desk.stage().scene(session(h).frame(), &Default::default());
+        let named = scene.labels.iter().filter(|l| l.colour == desk.look().palette().reaction);
+        named.map(|l| l.text.clone()).collect::<Vec<_>>()
+    };
+    for way_out in ["take b", "take back", "by hand"] {
+        type_into(&mut h, "a₁ greatest °", "150");
+        let limit = *session(&h).scenario().machine.angles()[0].limits.end();
+        assert!((limit - 150f64.to_radians()).abs() < 1e-12, "{limit}");
+        let waiting = session(&h).run().waiting().cloned().expect("B does not fit");
+        let [(1, Some(b))] = waiting.points[..] else { panic!("{waiting:?}") };
+        assert_eq!(red(&h), ["B".to_owned(), format!("b = {b} rad would reach it")]);
+        assert!(h.query_by_label_contains("The run waits: B").is_some() && h.query_by_label("waits").is_some());
+        if way_out == "take b" {
+            h.snapshot("waits-dark");
+        }
+        h.key_press(Key::Space);
+        h.run_steps(10);
+        assert_eq!(session(&h).frame().step, 0, "time stands still");
+        match way_out {
+            "take b" => h.get_by_label_contains("take b").click(),
+            "take back" => h.key_press_modifiers(Modifiers::COMMAND, Key::Z),
+            _ => {
+                let (from, to) = (on_screen(&h, 0.55, 0.9), on_screen(&h, 0.55, 0.7));
+                drag(&mut h, from, to);
+            }
+        }
+        h.run_steps(3);
+        assert!(session(&h).run().waiting().is_none(), "{way_out}: {:?}", session(&h).run().waiting());
+        assert!(red(&h).is_empty() && h.query_by_label_contains("The run waits").is_none());
+        h.key_press(Key::Space);
+        h.run_steps(70);
+        assert!(session(&h).frame().step > 900 && session(&h).frame().peaks.is_reactionless(), "{way_out}");
+        h.key_press(Key::Num3);
+        h.run_steps(2);
+        h.key_press(Key::Space);
+        h.key_press(Key::Home);
+        h.run_steps(2);
+    }
+}

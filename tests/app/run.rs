@@ -1,0 +1,153 @@
+//! Time and b: played, stepped, taken back, and what it looks like.
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, pos2};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use stillbase::picture::scene::palette::Theme;
+use stillbase::session::Edit;
+
+use super::{desk, hold, session, type_into};
+use crate::Test;
+
+pub const TESTS: &[Test] = tests![
+    playing_case_3_ends_at_b_without_a_reaction,
+    sliding_b_poses_at_rest_and_costs_a_moment_in_motion,
+    keys_play_step_and_take_back,
+    nothing_is_repainted_at_rest,
+    case_1_in_motion_looks_as_it_should,
+    b_leaves_the_task_as_it_is,
+];
+
+fn playing_case_3_ends_at_b_without_a_reaction() {
+    let mut h = desk("case-3", Theme::Dark);
+    h.get_by_label("Play").click();
+    h.run_steps(70);
+    let f = session(&h).frame();
+    assert_eq!(f.step, 1000, "the run stops by itself where the motion ends");
+    assert!((f.tip.re - 0.55).abs() < 1e-6 && (f.tip.im - 0.9).abs() < 1e-6, "{:?}", f.tip);
+    assert!(f.peaks.is_reactionless());
+    assert!(h.query_by_label("reactionless").is_some());
+    assert!(h.query_by_label("Pause").is_some(), "time still runs: sliding b now would move the machine");
+    h.key_press(Key::Space);
+    h.run_steps(2);
+    h.key_press(Key::Space);
+    h.run_steps(3);
+    assert!(session(&h).frame().step < 200, "paused and played again, it starts over");
+}
+
+fn sliding_b_poses_at_rest_and_costs_a_moment_in_motion() {
+    let mut h = desk("case-3", Theme::Dark);
+    h.step();
+    h.get_by_role_and_label(Role::Slider, "b slider").set_value_accesskit(2.6);
+    h.run_steps(2);
+    assert!((session(&h).frame().b - 2.6).abs() < 1e-9);
+    assert_eq!(session(&h).frame().step, 0, "at rest it is posed");
+    h.get_by_label("Play").click();
+    h.run_steps(70);
+    assert!(session(&h).frame().peaks.is_reactionless());
+    // The motion is over but time runs: now the machine follows.
+    h.get_by_role_and_label(Role::Slider, "b slider").set_value_accesskit(2.4);
+    h.run_steps(100);
+    let f = session(&h).frame();
+    assert!((f.b - 2.4).abs() < 1e-6, "{}", f.b);
+    assert!(f.peaks.moment > 1.0, "the price of b: {}", f.peaks.moment);
+    assert!(matches!(session(&h).script().last().map(|e| &e.edit), Some(Edit::SlideB { .. })));
+}
+
+fn keys_play_step_and_take_back() {
+    let mut h = desk("case-3", Theme::Dark);
+    h.step();
+    h.key_press(Key::ArrowRight);
+    h.step();
+    assert_eq!(session(&h).frame().step, 1);
+    h.key_press_modifiers(Modifiers::SHIFT, Key::ArrowRight);
+    h.step();
+    assert_eq!(session(&h).frame().step, 11);
+    h.key_press(Key::Home);
+    h.step();
+    assert_eq!(session(&h).frame().step, 0);
+    hold(&mut h);
+    h.get_by_role_and_label(Role::Slider, "payload mass slider").set_value_accesskit(0.5);
+    h.run_steps(2);
+    assert!(session(&h).scenario().plant.payload.mass > 0.49);
+    for _ in 0..2 {
+        h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        h.run_steps(2);
+    }
+    assert_eq!(session(&h).scenario().plant.payload.mass, 0.0);
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Y);
+    h.run_steps(2);
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Y);
+    h.run_steps(2);
+    assert!(session(&h).scenario().plant.payload.mass > 0.49);
+    h.key_press(Key::Num1);
+    h.run_steps(2);
+    assert_eq!(session(&h).scenario().name, "case-1");
+    h.key_press(Key::F1);
+    h.run_steps(2);
+    assert!(h.query_by_label("play, pause, start over").is_some());
+}
+
+fn nothing_is_repainted_at_rest() {
+    let mut h = desk("case-3", Theme::Dark);
+    // `run` fails if the desk keeps asking for another repaint.
+    h.run();
+    h.hover_at(pos2(640.0, 400.0));
+    h.run();
+}
+
+fn case_1_in_motion_looks_as_it_should() {
+    let mut h = desk("case-1", Theme::Dark);
+    h.get_by_label("Play").click();
+    h.run_steps(32);
+    h.key_press(Key::Space);
+    h.run_steps(4);
+    assert!(h.query_by_label("reacts on its base").is_some());
+    h.snapshot("case-1-dark");
+    h.get_by_label("3D").click();
+    h.run_steps(4);
+    h.snapshot("case-1-dark-3d");
+}
+
+/// Paused, b stops where it would move A and B, unless that is asked for; what is typed and cannot be is said.
+fn b_leaves_the_task_as_it_is() {
+    let mut h = desk("case-3", Theme::Dark);
+    h.run_steps(2);
+    let points = session(&h).scenario().task.points();
+    let ends = session(&h).run().planes().expect("planes").common(&points).expect("a band").intervals[0];
+    for (asked, stops) in [(3.6, ends[1]), (0.9, ends[0])] {
+        h.get_by_role_and_label(Role::Slider, "b slider").set_value_accesskit(asked);
+        h.run_steps(2);
+        let task = &session(&h).scenario().task;
+        assert!((task.b - stops).abs() < 1e-5, "{} for {asked}: it stops at {stops}", task.b);
+        assert_eq!(task.points(), points);
+    }
+    for (text, words) in
+        [("abc", "\"abc\" changes nothing"), ("-3", "from 0.000 to"), ("9e9", "from 0.000 to"), ("3.6", "A and B")]
+    {
+        let before = session(&h).to_scenario();
+        type_into(&mut h, "b rad", text);
+        let (said, bad) = h.state().app_state().look().message.clone().unwrap_or_else(|| panic!("{text} is refused"));
+        assert!(bad && said.contains(words), "{said}");
+        assert_eq!(session(&h).to_scenario(), before, "{text}");
+    }
+    type_into(&mut h, "b rad", "2.5");
+    assert!((session(&h).frame().b - 2.5).abs() < 1e-9);
+    assert!(h.state().app_state().look().message.is_none());
+    h.get_by_label("turn the task too").click();
+    h.run_steps(2);
+    h.get_by_role_and_label(Role::Slider, "b slider").set_value_accesskit(3.6);
+    h.run_steps(2);
+    let task = session(&h).scenario().task.clone();
+    assert!((task.b - 3.6).abs() < 1e-9 && (task.points()[0] - points[0]).norm() > 0.1, "{task:?}");
+    assert!(h.query_by_label_contains("Scenario").is_some());
+    // In motion it goes round and round; a whole turn is not shown.
+    h.key_press(Key::Num3);
+    h.run_steps(70);
+    let period = session(&h).run().planes().expect("planes").map().period();
+    h.state_mut().app_state_mut().carry_out(stillbase::app::Command::Edit(Edit::SlideB { b: 2.4 + period }));
+    h.run_steps(2);
+    assert!((session(&h).b_aim() - 2.4 - period).abs() < 1e-9);
+    let value = h.get_by_role_and_label(Role::Slider, "b slider").accesskit_node().numeric_value();
+    assert!(value.is_some_and(|b| (b - 2.4).abs() < 1e-9), "{value:?}");
+}

@@ -1,0 +1,131 @@
+//! The linked views, and runs side by side.
+
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable as _;
+use stillbase::picture::scene::palette::Theme;
+use stillbase::picture::scene::views::ViewKind;
+use stillbase::planning::reactionless::PlanePoint;
+
+use super::{Desktop, desk, drag, seen, session};
+use crate::Test;
+
+pub const TESTS: &[Test] =
+    tests![views_are_linked, dexterity_is_shown_with_its_key_where_there_is_a_workspace, runs_stand_side_by_side,];
+
+/// Pulling in one view moves the session, so all of them follow.
+fn views_are_linked() {
+    let mut h = desk("case-3", Theme::Dark);
+    h.step();
+    // The slice of the tower, pulled up by 0.2 rad at rest: posed there.
+    h.get_by_label("Tower").click();
+    h.run_steps(3);
+    let tower = h.state().app_state().views().tower().expect("three drives").clone();
+    let up = |x: f64, y: f64, b: f64| [x, y, b * tower.rise()];
+    let (from, to) = (seen(&h, up(0.1, -0.1, 2.4)), seen(&h, up(0.1, -0.1, 2.6)));
+    drag(&mut h, from, to);
+    h.run_steps(2);
+    let f = *session(&h).frame();
+    assert!((f.b - 2.6).abs() < 0.01 && f.step == 0, "{} rad at step {}", f.b, f.step);
+    // A click on the bar of A chooses that b; a single undo takes it back.
+    let bar = seen(&h, up(0.5, 0.5, 2.25));
+    h.hover_at(bar);
+    h.step();
+    h.drag_at(bar);
+    h.step();
+    h.drop_at(bar);
+    h.run_steps(2);
+    let chosen = session(&h).frame().b;
+    assert!((chosen - 2.25).abs() < 0.01, "{chosen}");
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    h.run_steps(2);
+    assert!((session(&h).frame().b - f.b).abs() < 1e-9);
+    // V goes back around to the machine by way of 2D and 3D; joint space comes third.
+    for _ in 0..3 {
+        h.key_press(Key::V);
+        h.run_steps(2);
+    }
+    assert_eq!(h.state().app_state().look().view, ViewKind::Joints);
+    // The dot in its plane: the end effector goes where that pose has it, without a reaction.
+    let (frame, map) = (*session(&h).frame(), *session(&h).run().planes().expect("three drives").map());
+    let space = h.state().app_state().views().joints().expect("three drives").clone();
+    let at = |q: [f64; 3]| space.point(q, frame.b_reference);
+    let a = [frame.a[0] + 0.4, frame.a[1] + 0.3];
+    let (from, to) = (at([frame.q[0], frame.q[1], frame.q[2]]), at(map.lift(PlanePoint { a, b: frame.b_reference })));
+    let (from, to) = (seen(&h, from), seen(&h, to));
+    drag(&mut h, from, to);
+    h.run_steps(120);
+    let f = session(&h).frame();
+    assert!((f.a[0] - a[0]).hypot(f.a[1] - a[1]) < 0.03, "{:?} for {a:?}", f.a);
+    assert!(f.peaks.is_reactionless() && (f.b - frame.b).abs() < 1e-11);
+}
+
+fn dexterity_is_shown_with_its_key_where_there_is_a_workspace() {
+    let mut h = desk("case-3", Theme::Light);
+    h.step();
+    assert!(h.query_by_label("|det|").is_none());
+    h.get_by_label("dexterity").click();
+    h.run_steps(3);
+    assert!(h.query_by_label("|det|").is_some() && h.query_by_label("0.139 m²").is_some());
+    h.get_by_label("Tower").click();
+    h.run_steps(3);
+    assert!(h.query_by_label("dexterity").is_none());
+    h.get_by_label("3D").click();
+    h.run_steps(3);
+    // One measure after the other, then none.
+    for symbol in ["√det JJ*", "|τ|/|F|"] {
+        h.key_press(Key::J);
+        h.run_steps(3);
+        assert!(h.query_by_label(symbol).is_some(), "{symbol}");
+    }
+    h.key_press(Key::J);
+    h.run_steps(3);
+    assert!(h.query_by_label("dexterity").is_some() && h.query_by_label("|det|").is_none());
+}
+
+/// Runs side by side: by key, a row laid over, sorted by its head, this run kept; a second cursor shows differences.
+fn runs_stand_side_by_side() {
+    let mut h = desk("case-1", Theme::Dark);
+    h.run_steps(3);
+    h.key_press(Key::C);
+    h.run_steps(2);
+    let board = |h: &Desktop| h.state().app_state().board().cloned();
+    assert_eq!(board(&h).expect("on display").entries().len(), 5);
+    h.get_by_label("Lay over: Reactionless").click();
+    h.run_steps(2);
+    assert_eq!(board(&h).expect("on display").shown().count(), 1);
+    h.get_by_label("Sort by largest moment that the base feels").click();
+    h.run_steps(2);
+    assert_eq!(board(&h).expect("on display").sorted(), Some((1, false)));
+    h.get_by_label("Keep this run").click();
+    h.run_steps(2);
+    assert!(board(&h).expect("on display").entries()[5].kept);
+    h.get_by_label("Remove case-1").click();
+    h.run_steps(2);
+    assert_eq!(board(&h).expect("on display").entries().len(), 5);
+    // The other way opens in place of this one.
+    h.get_by_label("Open Reactionless").click();
+    h.run_steps(2);
+    assert_eq!(session(&h).scenario().task.kind, stillbase::session::scenario::TaskKind::Reactionless);
+    h.key_press(Key::C);
+    h.run_steps(2);
+    assert!(board(&h).is_none());
+
+    h.key_press(Key::S);
+    h.run_steps(2);
+    assert!(h.state().app_state().look().snapshots);
+    let plot = h.get_by_label_contains("Torque over time").rect();
+    h.event(egui::Event::ModifiersChanged(Modifiers::SHIFT));
+    h.hover_at(plot.center());
+    h.step();
+    h.drag_at(plot.center());
+    h.step();
+    h.drop_at(plot.center());
+    h.step();
+    h.event(egui::Event::ModifiersChanged(Modifiers::NONE));
+    h.run_steps(2);
+    assert!(h.state().app_state().look().mark.is_some(), "a second cursor");
+    assert!(h.query_all_by_label_contains("Δτ").count() > 0, "differences");
+    h.key_press(Key::Escape);
+    h.run_steps(2);
+    assert!(h.state().app_state().look().mark.is_none());
+}
