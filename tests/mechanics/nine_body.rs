@@ -221,6 +221,20 @@ impl NineBody {
         }
     }
 
+    /// End effector and centre of mass, m, from B.
+    pub fn places(&self, q: [f64; 3]) -> [[f64; 2]; 2] {
+        let lumps = self.lumps(&self.links(q, [0.0; 3], [0.0; 3]));
+        let total: f64 = lumps.iter().map(|p| p.mass).sum();
+        let com: Vector2<f64> = lumps.iter().map(|p| p.mass / total * p.point.r).sum();
+        [lumps[9].point.r.into(), com.into()]
+    }
+
+    /// m (g − a) of every link and of the payload, N: what each does to all that holds it.
+    pub fn pulls(&self, q: [f64; 3], qd: [f64; 3], qdd: [f64; 3]) -> [[f64; 2]; 10] {
+        let gravity = Vector2::from(self.gravity);
+        self.lumps(&self.links(q, qd, qdd)).map(|lump| (lump.mass * (gravity - lump.point.a)).into())
+    }
+
     /// Generic recursive Newton–Euler: `(torque, [f_x, f_y, n_B])`, the wrench transmitted to the base.
     ///
     /// The closing pins are cut; their forces do no work, so projecting the tree's joint torques on the three

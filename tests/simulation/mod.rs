@@ -3,5 +3,6 @@
 mod bases;
 mod contacts;
 mod convergence;
+mod meaning;
 mod plants;
 mod signals;
