@@ -6,15 +6,15 @@
 //! constant* b has its *reactionless workspace*; changing b only turns it.
 //!
 //! # A tour
-//! A [`Machine`](machine::Machine) is data, checked. It collapses into a few constants, its
-//! [`Inertia`](machine::Inertia), and these say whether it is balanced:
+//! A [`Machine`](mechanics::machine::Machine) is data, checked. It collapses into a few constants, its
+//! [`Inertia`](mechanics::machine::Inertia), and these say whether it is balanced:
 //! ```
 //! use stillbase::mechanics::machine::{self, Inertia};
 //! let machine = machine::builtin("nine-link").expect("built in");
 //! let inertia = Inertia::of(machine);
 //! assert!(inertia.is_force_balanced() && inertia.is_invariant());
 //! ```
-//! [`balance::design`] finds the centres of mass that make a machine so, Eqs (7)–(10):
+//! [`design`](mechanics::balance::design) finds the centres of mass that make a machine so, Eqs (7)–(10):
 //! ```
 //! # use stillbase::mechanics::balance::{design, Preset};
 //! # use stillbase::mechanics::machine;
@@ -23,7 +23,7 @@
 //! assert!((exact.links()[0].com - -0.2214384).abs() < 1e-7);
 //! # Ok::<(), stillbase::mechanics::balance::DesignError>(())
 //! ```
-//! Its planes ([`pose_constant::Planes`]) know which b reach a point, where, and how far the workspace goes:
+//! Its planes ([`Planes`](planning::pose_constant::Planes)) know which b reach a point, where, and how far the workspace goes:
 //! ```
 //! # use stillbase::mechanics::machine;
 //! # use stillbase::mechanics::planar::Vector;
@@ -48,8 +48,8 @@
 //! let blocked = trace::follow(planes.map(), &line, 2.9, None, Rule::default()).expect_err("B is on other planes");
 //! assert!((blocked.nearest_b.expect("2.4 and others") - 2.6610727).abs() < 1e-4);
 //! ```
-//! A [`Scenario`](scenario::Scenario) sets a task; a [`Run`](session::Run) carries it out step by step and gives a
-//! [`Frame`](frame::Frame) of everything true at each instant:
+//! A [`Scenario`](session::scenario::Scenario) sets a task; a [`Run`](session::Run) carries it out step by step and gives a
+//! [`Frame`](simulation::frame::Frame) of everything true at each instant:
 //! ```
 //! # use stillbase::session::scenario::Scenario;
 //! # use stillbase::session::replay;
@@ -86,6 +86,17 @@
 //! | `recording` | the same picture for Rerun (feature `record`) |
 //! | `app` | the window (features `ui`, `window`) |
 //! | `commands` | the program's subcommands, one file each |
+//!
+//! # Where to add something
+//! | what | write it in | then |
+//! |---|---|---|
+//! | a signal | a row of the table in `simulation/signals.rs` | plots, recordings and CSV have it; a chart of its own is a row in `picture` |
+//! | a setting | a field with its range beside the part that it sets: `simulation/control.rs`, `simulation/plant/`, `session/scenario/task.rs` | files, `--set` and edits know it; a row of the window's panel in `app/side/` |
+//! | something to see | an item of the scene, in `picture/scene/stage/` | window, figures and recordings show it |
+//! | a time law | a variant in `planning/timing/law.rs` | a line of the window's list in `app/path.rs` |
+//! | a subcommand | a file in `commands/` and a line of the list in its `mod.rs` | help and exit status follow |
+//! | an edit | a variant in `session/edit.rs`, what it does in `session/run.rs` | saving, undo and replay follow; the tests draw it at random |
+//! | a fault to refuse | a variant of the nearest error, with what, where and what would be right | |
 //!
 //! The core builds without any feature: no GPU, no window, no Rerun, and it reads no clock.
 #![warn(missing_docs)]

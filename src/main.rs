@@ -4,7 +4,7 @@ mod commands;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::Parser;
 
 /// Zero reaction manipulators: design, plan, simulate, see and record what a robot arm does to its base.
 ///
@@ -13,32 +13,9 @@ use clap::{Parser, Subcommand};
 #[command(name = "stillbase", version, args_conflicts_with_subcommands = true, after_help = EXAMPLES)]
 struct Arguments {
     #[command(subcommand)]
-    command: Option<Command>,
+    command: Option<commands::Subcommand>,
     #[command(flatten)]
     open: commands::Open,
-}
-
-#[derive(Subcommand)]
-enum Command {
-    #[cfg(feature = "record")]
-    Headless(commands::Headless),
-    Simulate(commands::Simulate),
-    Compare(commands::Compare),
-    Joints(commands::JointsCommand),
-    Machines(commands::Machines),
-    Check(commands::Check),
-    Design(commands::Design),
-    Dynamics(commands::Dynamics),
-    Reach(commands::Reach),
-    Pose(commands::Pose),
-    Plan(commands::Plan),
-    Workspace(commands::Workspace),
-    Import(commands::Import),
-    Export(commands::Export),
-    Tolerance(commands::Tolerance),
-    Spectrum(commands::SpectrumOf),
-    #[cfg(feature = "ui")]
-    Figures(commands::Figures),
 }
 
 const EXAMPLES: &str = "\
@@ -61,27 +38,6 @@ fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => return commands::usage(&error),
     };
-    let done = match arguments.command {
-        None => arguments.open.run(),
-        #[cfg(feature = "record")]
-        Some(Command::Headless(command)) => command.run(),
-        Some(Command::Simulate(command)) => command.run(),
-        Some(Command::Compare(command)) => command.run(),
-        Some(Command::Joints(command)) => command.run(),
-        Some(Command::Machines(command)) => command.run(),
-        Some(Command::Check(command)) => command.run(),
-        Some(Command::Design(command)) => command.run(),
-        Some(Command::Dynamics(command)) => command.run(),
-        Some(Command::Reach(command)) => command.run(),
-        Some(Command::Pose(command)) => command.run(),
-        Some(Command::Plan(command)) => command.run(),
-        Some(Command::Workspace(command)) => command.run(),
-        Some(Command::Import(command)) => command.run(),
-        Some(Command::Export(command)) => command.run(),
-        Some(Command::Tolerance(command)) => command.run(),
-        Some(Command::Spectrum(command)) => command.run(),
-        #[cfg(feature = "ui")]
-        Some(Command::Figures(command)) => command.run(),
-    };
+    let done = arguments.command.map_or_else(|| arguments.open.run(), |command| command.run());
     commands::exit_code(done)
 }

@@ -1,6 +1,6 @@
 //! Panels, plots and the viewport: the same pixels in a window, in a test and in a figure.
 //!
-//! Everything here reads a [`Session`] and gives back [`Command`]s; the [`AppState`] carries them out. Nothing is computed
+//! Everything here reads a [`Session`](crate::session::Session) and gives back [`Command`]s; the [`AppState`] carries them out. Nothing is computed
 //! and nothing is changed in between.
 
 mod command;

@@ -31,26 +31,52 @@ mod spectrum;
 pub(crate) mod tolerance;
 mod workspace;
 
-pub use check::Check;
-pub use compare::Compare;
-pub use design::Design;
-pub use dynamics::Dynamics;
 pub use exit::{exit_code, usage};
-pub use export::Export;
-#[cfg(feature = "ui")]
-pub use figures::Figures;
-#[cfg(feature = "record")]
-pub use headless::Headless;
-pub use import::Import;
 pub use input::words;
 pub use interrupt::watch;
-pub use joints::JointsCommand;
-pub use machines::Machines;
 pub use open::Open;
-pub use plan::Plan;
-pub use pose::Pose;
-pub use reach::Reach;
-pub use simulate::Simulate;
-pub use spectrum::SpectrumOf;
-pub use tolerance::Tolerance;
-pub use workspace::Workspace;
+
+use failure::Failure;
+
+/// The subcommands from one list: the name of each and what reads its words and runs.
+macro_rules! subcommands {
+    ($($(#[$gate:meta])? $name:ident: $file:ident::$command:ident,)*) => {
+        /// What the program can be asked to do.
+        #[derive(clap::Subcommand)]
+        pub enum Subcommand {
+            $($(#[$gate])? $name($file::$command),)*
+        }
+
+        impl Subcommand {
+            /// Does it.
+            pub fn run(&self) -> Result<(), Failure> {
+                match self {
+                    $($(#[$gate])? Self::$name(command) => command.run(),)*
+                }
+            }
+        }
+    };
+}
+
+// In the order of the help.
+subcommands! {
+    #[cfg(feature = "record")]
+    Headless: headless::Headless,
+    Simulate: simulate::Simulate,
+    Compare: compare::Compare,
+    Joints: joints::JointsCommand,
+    Machines: machines::Machines,
+    Check: check::Check,
+    Design: design::Design,
+    Dynamics: dynamics::Dynamics,
+    Reach: reach::Reach,
+    Pose: pose::Pose,
+    Plan: plan::Plan,
+    Workspace: workspace::Workspace,
+    Import: import::Import,
+    Export: export::Export,
+    Tolerance: tolerance::Tolerance,
+    Spectrum: spectrum::SpectrumOf,
+    #[cfg(feature = "ui")]
+    Figures: figures::Figures,
+}

@@ -1,4 +1,4 @@
-//! [`Motion`]: a path and a timing make the [`Reference`](super::Reference) that control follows.
+//! [`Motion`]: a path and a timing make the [`Reference`] that control follows.
 
 use super::reference::Reference;
 use crate::planning::curves::Path;

@@ -125,6 +125,23 @@ fn every_wing_is_listed() {
     let tree = Tree::read();
     let found: BTreeSet<&str> = tree.files.values().map(|s| wing(&s.name)).filter(|w| *w != "lib").collect();
     assert_eq!(found, WINGS.iter().copied().collect());
+    // The map of the source has a row for each but the program's first file, in this order.
+    let map = include_str!("../../src/lib.rs");
+    let places: Vec<usize> = WINGS[..WINGS.len() - 1]
+        .iter()
+        .map(|wing| {
+            map.find(&format!("//! | [`{wing}`]"))
+                .or(map.find(&format!("//! | `{wing}`")))
+                .unwrap_or_else(|| panic!("{wing} is not on the map"))
+        })
+        .collect();
+    assert!(places.is_sorted(), "{places:?}");
+    // What it says of files is there.
+    for word in
+        map.split('`').filter(|word| word.contains('/') && *word != "src/" && !word.contains([' ', '*', '=', '{']))
+    {
+        assert!(std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/src")).join(word).exists(), "no {word}");
+    }
 }
 
 /// Wings whose files still use each other.
