@@ -825,6 +825,17 @@ proptest! {
     }
 }
 
+/// The same on a rounded corner, found at random.
+#[test]
+fn limits_are_kept_where_another_takes_over_on_a_corner() {
+    let points = [
+        Vector::new(0.69325473983, 0.59504065298),
+        Vector::new(0.62290694010, 0.33853777108),
+        Vector::new(0.50570575564, 0.16979811276),
+    ];
+    judge(&points, 0, 10f64.powf(-1.4709914710159915), &drives(None, f64::INFINITY), false).expect("sound");
+}
+
 /// A scenario through points with straight lines of the end effector, rounded off or not.
 fn through(points: &[Vector], blend: Option<f64>, law: &str) -> Option<Scenario> {
     let mut scenario = Scenario::builtin("case-3").expect("built in");
