@@ -7,7 +7,8 @@ use stillbase::planning::off_plane::null_space::is_integrable;
 
 use super::failure::Failure;
 use super::input::MachineArgument;
-use super::output::{Format, Table, fixed, yes};
+use super::output::{Format, Table, yes};
+use stillbase::settings::number::fixed;
 
 /// Say whether a machine is force balanced and its mass matrix invariant, Eqs (7), (8)
 #[derive(Args)]

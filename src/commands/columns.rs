@@ -9,7 +9,8 @@ use stillbase::mechanics::machine::Machine;
 use stillbase::planning::curves::Samples;
 use stillbase::planning::curves::given::MAX_SAMPLES;
 use stillbase::planning::curves::spline::FEWEST;
-use stillbase::settings::range::{Short, clipped, shortened};
+use stillbase::settings::number::Short;
+use stillbase::settings::range::{clipped, shortened};
 
 use super::failure::Failure;
 

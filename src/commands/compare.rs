@@ -11,7 +11,8 @@ use stillbase::study::comparison::{COLUMNS, Compared, Summary, alternatives};
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, Table, fixed};
+use super::output::{Format, Table};
+use stillbase::settings::number::fixed;
 
 /// Compare runs: one task done in several ways, or any scenarios, by what reaches the base and what it costs
 ///

@@ -14,7 +14,8 @@ use super::check::Balance;
 use super::exit::say;
 use super::failure::Failure;
 use super::input::MachineArgument;
-use super::output::{Format, Table, fixed};
+use super::output::{Format, Table};
+use stillbase::settings::number::fixed;
 
 /// Place the links' centres of mass so that the base feels no force and the mass matrix is invariant, Eq. (10)
 ///

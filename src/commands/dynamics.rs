@@ -13,7 +13,8 @@ use stillbase::settings::range::shortened;
 
 use super::failure::Failure;
 use super::input::{MachineArgument, read};
-use super::output::{Format, Table, fixed};
+use super::output::{Format, Table};
+use stillbase::settings::number::fixed;
 
 /// Torques, and what the base feels, of given states of motion, Eqs (1) to (6)
 ///

@@ -14,8 +14,9 @@ use stillbase::session::{Run, replay_if, settled};
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{Settings, scenario};
-use super::output::{Format, check_size, fixed};
+use super::output::{Format, check_size};
 use super::simulate::trusted;
+use stillbase::settings::number::fixed;
 
 /// Write a motion as CSV at the rate of a controller: angles, rates, accelerations, feed-forward torques
 ///

@@ -13,7 +13,8 @@ use stillbase::settings::text::plain;
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{Settings, scenario};
-use super::output::{Format, Table, fixed};
+use super::output::{Format, Table};
+use stillbase::settings::number::fixed;
 
 /// Simulate scenarios without a window and record them for the Rerun viewer
 #[derive(Args)]

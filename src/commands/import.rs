@@ -22,9 +22,10 @@ use super::columns::{Content, Read, samples};
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, above_zero, pose_constant, read};
-use super::output::{Format, fixed};
+use super::output::Format;
 use answer::Answer;
 use judge::Judge;
+use stillbase::settings::number::fixed;
 use table::table;
 use ways::{Asked, Keep, Ways, of_drives, of_tip};
 

@@ -15,8 +15,9 @@ use super::csv_file::Csv;
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, Table, check_size, fixed};
+use super::output::{Format, Table, check_size};
 use super::simulate::trusted;
+use stillbase::settings::number::{fixed, shown};
 
 /// Say what every pin and bearing carries over a run, how near change points come, and what tilts the base
 #[derive(Args)]
@@ -258,16 +259,11 @@ fn answer(scenario: &str, last: &Frame, machine: &Machine, joints: &Joints, tota
     }
 }
 
-/// Newtons: three decimals, or three digits where they would hide it.
-fn newtons(x: f64) -> String {
-    if x != 0.0 && x < 1e-3 { format!("{x:.1e}") } else { fixed(x, 3) }
-}
-
 fn human(answer: &Answer) -> String {
     let mut pins = Table::new(["pin", "on link", "peak N", "at s", "mean N"]);
     let mut undefined = 0;
     for pin in &answer.pins {
-        pins.row([pin.name.clone(), pin.to.clone(), newtons(pin.peak), fixed(pin.time, 3), newtons(pin.mean)]);
+        pins.row([pin.name.clone(), pin.to.clone(), shown(pin.peak, 3), fixed(pin.time, 3), shown(pin.mean, 3)]);
         undefined = undefined.max(pin.undefined_steps);
     }
     let mut text =

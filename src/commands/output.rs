@@ -64,27 +64,6 @@ fn spelled(c: char) -> String {
     }
 }
 
-/// A number with fixed decimals, without a sign on zero; powers of ten where decimals would run away.
-pub fn fixed(x: f64, decimals: usize) -> String {
-    if x.abs() >= 1e9 {
-        return format!("{x:.3e}");
-    }
-    let text = format!("{x:.decimals$}");
-    match text.strip_prefix('-') {
-        Some(rest) if rest.bytes().all(|b| matches!(b, b'0' | b'.')) => rest.into(),
-        _ => text,
-    }
-}
-
-/// A number with fixed decimals, or in powers of ten where these would show nothing of it; rounding's noise is zero.
-pub fn shown(x: f64, decimals: usize) -> String {
-    let text = fixed(x, decimals);
-    match x.abs() >= 1e-12 && text.bytes().all(|b| matches!(b, b'0' | b'.')) {
-        true => format!("{x:.1e}"),
-        false => text,
-    }
-}
-
 /// `yes` or `no`.
 pub fn yes(is_so: bool) -> &'static str {
     if is_so { "yes" } else { "no" }

@@ -21,8 +21,9 @@ use super::failure::Failure;
 use super::input::{
     DEFAULT_SCENARIO, Settings, above_zero, change_task, no_use, planes_of, point, pose_constant, scenario,
 };
-use super::output::{Format, Table, fixed};
+use super::output::{Format, Table};
 use super::reach::OfMend;
+use stillbase::settings::number::fixed;
 
 /// Plan a motion through points: which b serves them, along what, how fast, at what cost
 ///

@@ -8,7 +8,8 @@ use stillbase::planning::reactionless::{PlaneMap, PlanePoint};
 
 use super::failure::Failure;
 use super::input::{MachineArgument, planes_of, point, pose_constant};
-use super::output::{Format, Table, fixed};
+use super::output::{Format, Table};
+use stillbase::settings::number::fixed;
 
 /// The poses that put the end effector on a point without leaving the plane b = const, and what each is good for
 ///

@@ -8,7 +8,8 @@ use stillbase::planning::reactionless::BSet;
 
 use super::failure::Failure;
 use super::input::{MachineArgument, planes_of, point};
-use super::output::{Format, Table, fixed};
+use super::output::{Format, Table};
+use stillbase::settings::number::fixed;
 
 /// The pose constants b whose reactionless workspace holds a point, and those that hold all points
 ///

@@ -16,7 +16,8 @@ use super::csv_file::Csv;
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, check_size, fixed, yes};
+use super::output::{Format, check_size, yes};
+use stillbase::settings::number::fixed;
 
 /// Run a scenario and print every signal over time as CSV
 #[derive(Args)]

@@ -11,8 +11,9 @@ use stillbase::study::spectrum::{JitterLimit, JitterVerdict, Spectrum, SpectrumE
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, Table, fixed, shown, yes};
+use super::output::{Format, Table, yes};
 use super::simulate::trusted;
+use stillbase::settings::number::{fixed, shown};
 
 /// Say at which frequencies a run shakes its base, and whether that keeps within jitter limits
 ///

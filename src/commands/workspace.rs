@@ -7,8 +7,9 @@ use stillbase::planning::reactionless::{Boundary, ChangeCurve, PAIRS, PlaneMap};
 
 use super::failure::Failure;
 use super::input::{MachineArgument, planes_of, point, pose_constant};
-use super::output::{Format, Table, fixed, yes};
+use super::output::{Format, Table, yes};
 use super::pose::Row;
+use stillbase::settings::number::fixed;
 
 /// The reactionless workspace of b: its exact boundary and area, what lies inside, Eqs (15), (16)
 ///

@@ -12,7 +12,8 @@ use crate::planning::pose_constant::{NoCommon, PlaneError, Unreachable};
 use crate::planning::reactionless::Decimal;
 use crate::planning::timing::TimeError;
 use crate::session::scenario::{MAX_FRAMES, MAX_STEPS, MAX_TIME, ordinal};
-use crate::settings::range::{Check, Short, Want};
+use crate::settings::number::Short;
+use crate::settings::range::{Check, Want};
 
 /// Why a scenario cannot start or an edit cannot apply; nothing has changed then.
 #[derive(Clone, Debug, PartialEq, Error)]

@@ -7,6 +7,7 @@
 //! | moment past the wheel | what is left of n_B for the base once a reaction wheel has taken its part: by this the base is quiet |
 
 use crate::session::scenario::Scenario;
+use crate::settings::number::significant;
 use crate::simulation::audit::AuditFigure;
 use crate::simulation::frame::{Frame, Phase, Reach};
 
@@ -130,46 +131,39 @@ impl Verdict {
             add("never moved", "the arm never moved, so this says nothing of how it moves".into());
         }
         if let Some(left) = self.past_wheel.filter(|_| self.quiet && !self.reactionless) {
-            let all = figure(self.arm_moment);
-            let long =
-                format!("the arm transmits up to {all} N m; the wheel takes it up and leaves {} N m", figure(left));
+            let all = significant(self.arm_moment);
+            let long = format!(
+                "the arm transmits up to {all} N m; the wheel takes it up and leaves {} N m",
+                significant(left)
+            );
             add("the wheel takes it up", long);
         }
         if self.tilt > TILT {
             let long = format!(
                 "the verdict is of the plane: links at different heights tilt the base by up to {} N m besides",
-                figure(self.tilt)
+                significant(self.tilt)
             );
             add("tilts its base", long);
         }
         if let Some((angle, by)) = &self.past_limit {
-            add("past a joint limit", format!("{angle} passes its limit by up to {} rad", figure(*by)));
+            add("past a joint limit", format!("{angle} passes its limit by up to {} rad", significant(*by)));
         }
         if over && (self.miss > MISS || self.miss.is_nan()) {
-            add("off its target", format!("ends {} m from its target", figure(self.miss)));
+            add("off its target", format!("ends {} m from its target", significant(self.miss)));
         }
         all
     }
 
     /// `reactionless: peak |n_B| 1.2e-15 N m, peak |f_B| 3.1e-14 N; ends 0.0200 m from its target`.
     pub fn sentence(&self) -> String {
-        let mut text = format!("{}: peak |n_B| {} N m", self.word(), figure(self.arm_moment));
+        let mut text = format!("{}: peak |n_B| {} N m", self.word(), significant(self.arm_moment));
         if let Some(left) = self.past_wheel {
-            text += &format!(", past the wheel {} N m", figure(left));
+            text += &format!(", past the wheel {} N m", significant(left));
         }
-        text += &format!(", peak |f_B| {} N", figure(self.force));
+        text += &format!(", peak |f_B| {} N", significant(self.force));
         if let Some(lamp) = &self.fault {
             text += &format!("; audit failed: {lamp}");
         }
         self.remarks().into_iter().fold(text, |text, remark| format!("{text}; {}", remark.long))
-    }
-}
-
-/// A number with the digits that matter: tiny and huge ones in powers of ten.
-fn figure(x: f64) -> String {
-    match x.abs() {
-        0.0 => "0".into(),
-        a if !(1e-3..1e6).contains(&a) => format!("{x:.1e}"),
-        _ => format!("{x:.4}"),
     }
 }

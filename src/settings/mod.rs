@@ -1,5 +1,6 @@
 //! How a value is named, bounded and shown: changes by key, ranges, text from outside.
 
 pub mod change;
+pub mod number;
 pub mod range;
 pub mod text;

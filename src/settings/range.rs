@@ -1,5 +1,6 @@
 //! [`Range`]: where the number of a key may lie. Each key has one, stated once beside it; checks and messages read it.
 
+use crate::settings::number::Short;
 use std::borrow::Cow;
 use std::fmt;
 
@@ -94,22 +95,6 @@ impl fmt::Display for Want {
         match self {
             Self::Within(range) => range.fmt(f),
             Self::Words(words) => f.write_str(words),
-        }
-    }
-}
-
-/// A number in as many digits as it needs, but never in hundreds of them: 1e300 stays 1e300.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Short(pub f64);
-
-impl fmt::Display for Short {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self(x) = *self;
-        match x.abs() {
-            _ if x.is_nan() => f.write_str("not a number"),
-            f64::INFINITY => f.write_str(if x > 0.0 { "infinite" } else { "-infinite" }),
-            size if size == 0.0 || (1e-5..1e7).contains(&size) => write!(f, "{x}"),
-            _ => write!(f, "{x:e}"),
         }
     }
 }

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use stillbase::mechanics::machine::builtin;
 use stillbase::session::scenario::{MAX_STEPS, MAX_TIME, Scenario};
 use stillbase::session::{Edit, Refusal, Run, Session, TimedEdit, replay, replay_if};
-use stillbase::settings::range::Short;
+use stillbase::settings::number::Short;
 
 const CASE_3: &str = include_str!("../../assets/scenarios/case-3.toml");
 

@@ -2,7 +2,8 @@
 
 use super::answer::Answer;
 use super::judge::Account;
-use crate::commands::output::{Table, fixed, yes};
+use crate::commands::output::{Table, yes};
+use stillbase::settings::number::fixed;
 
 /// Given and proposed side by side.
 pub fn table(answer: &Answer) -> String {

@@ -4,7 +4,8 @@ use serde::Serialize;
 use stillbase::study::tolerance::{Agreement, Bands, Histogram, Outcome, Parameter, Quantiles, Shares, Yield};
 
 use super::rows::Study;
-use crate::commands::output::{Table, fixed, shown};
+use crate::commands::output::Table;
+use stillbase::settings::number::{fixed, shown};
 
 /// A quantity over all machines.
 #[derive(Serialize)]

@@ -6,7 +6,8 @@ use super::model::{Loop, Machine, Part, RelativeAngle};
 use super::numbers::{LENGTH, PLACE, check_numbers, within};
 use super::spec::{Angle, Attach, Closure, Length, MachineSpec, Point, Station};
 use crate::mechanics::planar::MAX_DRIVES;
-use crate::settings::range::{Short, clipped, shortened};
+use crate::settings::number::Short;
+use crate::settings::range::{clipped, shortened};
 
 /// How far, m, the two points of a closure may lie apart.
 pub const CLOSURE_TOLERANCE: f64 = 1e-9;

@@ -4,7 +4,8 @@ use std::fmt;
 
 use thiserror::Error;
 
-use crate::settings::range::{Short, Want, clipped};
+use crate::settings::number::Short;
+use crate::settings::range::{Want, clipped};
 
 /// A place in a machine file: a path of keys and positions, such as `link[4].mass`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -16,7 +16,8 @@ use crate::planning::curves::curve::{Curve, CurvePoint};
 use crate::planning::curves::low_pass::LowPass;
 use crate::planning::curves::spline::{FEWEST, Knots};
 use crate::planning::curves::table::PathTable;
-use crate::settings::range::{Range, Short};
+use crate::settings::number::Short;
+use crate::settings::range::Range;
 
 /// The most samples.
 pub const MAX_SAMPLES: usize = 20_000;

@@ -4,7 +4,8 @@ use thiserror::Error;
 
 use super::bounds::ordinal;
 use crate::mechanics::machine::{FileError, MachineError};
-use crate::settings::range::{Short, Want};
+use crate::settings::number::Short;
+use crate::settings::range::Want;
 use crate::settings::text::MOST_BYTES;
 
 /// Why a file is not a scenario.

@@ -1,0 +1,49 @@
+//! How numbers are written.
+
+use std::fmt;
+
+/// A number in as many digits as it needs, but never in hundreds of them: 1e300 stays 1e300.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Short(pub f64);
+
+impl fmt::Display for Short {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(x) = *self;
+        match x.abs() {
+            _ if x.is_nan() => f.write_str("not a number"),
+            f64::INFINITY => f.write_str(if x > 0.0 { "infinite" } else { "-infinite" }),
+            size if size == 0.0 || (1e-5..1e7).contains(&size) => write!(f, "{x}"),
+            _ => write!(f, "{x:e}"),
+        }
+    }
+}
+
+/// A number with fixed decimals, without a sign on zero; powers of ten where decimals would run away.
+pub fn fixed(x: f64, decimals: usize) -> String {
+    if x.abs() >= 1e9 {
+        return format!("{x:.3e}");
+    }
+    let text = format!("{x:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(rest) if rest.bytes().all(|b| matches!(b, b'0' | b'.')) => rest.into(),
+        _ => text,
+    }
+}
+
+/// A number with fixed decimals, or in powers of ten where these would show nothing of it; rounding's noise is zero.
+pub fn shown(x: f64, decimals: usize) -> String {
+    let text = fixed(x, decimals);
+    match x.abs() >= 1e-12 && text.bytes().all(|b| matches!(b, b'0' | b'.')) {
+        true => format!("{x:.1e}"),
+        false => text,
+    }
+}
+
+/// A number with the digits that matter: tiny and huge ones in powers of ten.
+pub fn significant(x: f64) -> String {
+    match x.abs() {
+        0.0 => "0".into(),
+        a if !(1e-3..1e6).contains(&a) => format!("{x:.1e}"),
+        _ => format!("{x:.4}"),
+    }
+}
