@@ -338,12 +338,19 @@ fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
     };
     let [time, torque, moment] = [forecast.time, torque, forecast.moment].map(|x| signed(x, 3));
     let figures = match waits {
-        true => "other limits or points or another b would do".into(),
+        true => "change limits, points or b".into(),
         false => format!("{time} s  ·  τ {torque}  ·  n_B {moment} N m"),
     };
     for (words, tip) in [
         (of.to_owned(), "The line at the bottom says what the run comes to"),
-        (figures, "Its duration, its largest |τ| and its largest |n_B|"),
+        (
+            figures,
+            if waits {
+                "With other limits, points or another b it goes on"
+            } else {
+                "Its duration, its largest |τ| and its largest |n_B|"
+            },
+        ),
     ] {
         let words = RichText::new(words).font(plain(11.0)).color(colour(p.dim));
         ui.add(egui::Label::new(words).truncate()).on_hover_text(tip);
