@@ -66,6 +66,7 @@
 //! assets/*.toml ─→ Machine ─→ Inertia (g, C, J) ─┐
 //! slider · drag · key · script ─→ Edit ─→ Session ┴─→ Motion ─→ Simulation ─→ Frame
 //! Frame ─→ signals ─→ plots │ Rerun scalars │ CSV
+//! signals ─→ charts ─→ plots │ layout and series of a recording
 //! Frame + Machine ─→ Stage ─→ Scene ─→ render ─→ window │ picture      Scene ─→ Rerun entities
 //! pointer ─→ camera ray ─→ Handle ─→ Edit
 //! ```
@@ -81,7 +82,7 @@
 //! | [`simulation`] | what then happens: plant, control, the step, frames, the audit, signals |
 //! | [`session`] | what a person did: scenarios, edits, runs, undo, replay, the verdict |
 //! | [`study`] | many runs: side by side, around a nominal machine, by frequency |
-//! | [`picture`] | what it looks like: scenes as plain data; what paints them (features `render`, `ui`) |
+//! | [`picture`] | what it looks like: scenes as plain data, the table of charts; what paints them (features `render`, `ui`) |
 //! | [`files`] | files that appear whole or not at all |
 //! | `recording` | the same picture for Rerun (feature `record`) |
 //! | `app` | the window (features `ui`, `window`) |
@@ -90,7 +91,7 @@
 //! # Where to add something
 //! | what | write it in | then |
 //! |---|---|---|
-//! | a signal | a row of the table in `simulation/signals.rs` | plots, recordings and CSV have it; a chart of its own is a row in `picture` |
+//! | a signal | a row of the table in `simulation/signals.rs` | plots, recordings and CSV have it; a chart of its own is a row of `picture/charts.rs` |
 //! | a setting | a field with its range beside the part that it sets: `simulation/control.rs`, `simulation/plant/`, `session/scenario/task.rs` | files, `--set` and edits know it; a row of the window's panel in `app/side/` |
 //! | something to see | an item of the scene, in `picture/scene/stage/` | window, figures and recordings show it |
 //! | a time law | a variant in `planning/timing/law.rs` | a line of the window's list in `app/path.rs` |

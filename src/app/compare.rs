@@ -6,8 +6,8 @@ use egui_plot::LineStyle;
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::{Command, OnBoard, ViewState};
+use crate::picture::numbers::signed;
 use crate::picture::scene::palette::{Palette, faded};
-use crate::picture::scene::stage::signed;
 use crate::session::scenario::Scenario;
 use crate::study::comparison::{COLUMNS, Column, Comparison, Entry};
 

@@ -7,65 +7,14 @@ use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::{Command, ViewState, set_b};
 use crate::mechanics::planar::Vector;
+use crate::picture::charts::{self, Chart, charts};
+use crate::picture::numbers::{round_up, signed};
 use crate::picture::scene::palette::{Palette, faded};
-use crate::picture::scene::stage::{round_up, signed};
 use crate::planning::reactionless::PlanePoint;
 use crate::session::Session;
-use crate::session::scenario::Scenario;
-use crate::simulation::frame::{Frame as Instant, REACTIONLESS};
+use crate::simulation::frame::Frame as Instant;
 use crate::simulation::signals::Signal;
 use crate::study::comparison::{Comparison, Difference};
-
-/// A plot: title, unit, the signals it holds by path, and the least half-range of its axis.
-struct Chart {
-    title: &'static str,
-    unit: &'static str,
-    groups: &'static [&'static str],
-    least: f64,
-    centred: bool,
-    /// What SI values are multiplied by.
-    times: f64,
-}
-
-const CHARTS: [Chart; 5] = [
-    Chart { title: "Torque", unit: "N m", groups: &["torque"], least: 0.1, centred: true, times: 1.0 },
-    Chart { title: "Base moment", unit: "N m", groups: &["moment/total"], least: 0.5, centred: true, times: 1.0 },
-    Chart {
-        title: "Base force",
-        unit: "N, from motion",
-        groups: &["force/dynamic"],
-        least: 0.5,
-        centred: true,
-        times: 1.0,
-    },
-    Chart { title: "Drive angles", unit: "rad", groups: &["angle"], least: 0.5, centred: false, times: 1.0 },
-    Chart { title: "Pose constant", unit: "rad", groups: &["pose/b"], least: 0.1, centred: false, times: 1.0 },
-];
-
-/// With a reaction wheel: what the machine transmits, and what of it the base feels.
-const WITH_WHEEL: Chart = Chart { groups: &["moment/total", "moment/felt"], ..CHARTS[1] };
-/// With friction.
-const FRICTION: Chart =
-    Chart { title: "Friction", unit: "N m", groups: &["friction"], least: 0.01, centred: true, times: 1.0 };
-/// On a base that moves.
-const BASE: Chart =
-    Chart { title: "Base", unit: "mm, mrad", groups: &["base", "attitude"], least: 0.01, centred: true, times: 1e3 };
-
-/// Inside the machine.
-const PINS: Chart =
-    Chart { title: "Pin forces", unit: "N", groups: &["pin/worst"], least: 1.0, centred: false, times: 1.0 };
-
-/// The plots that have something to tell of a scenario.
-fn charts(scenario: &Scenario, pins: bool) -> Vec<Chart> {
-    let [torque, moment, force, angles, b] = CHARTS;
-    let wheel = scenario.base.wheel.is_some();
-    let mut list = vec![torque, if wheel { WITH_WHEEL } else { moment }, force];
-    list.extend(Some(BASE).filter(|_| scenario.base.moves()));
-    list.extend(Some(FRICTION).filter(|_| scenario.plant.friction != Default::default()));
-    list.extend(Some(PINS).filter(|_| pins));
-    list.extend([angles, b]);
-    list
-}
 
 /// The least height of a plot that has three numbers beside it.
 const THREE_NUMBERS: f32 = 50.0;
@@ -87,7 +36,8 @@ pub fn show(
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 14, right: 14, top: 10, bottom: 8 });
     let width = (0.27 * ui.available_width()).clamp(336.0, 376.0);
     Panel::right("plots").exact_size(width).resizable(false).frame(frame).show(ui, |ui| {
-        let charts = charts(session.scenario(), look.pins);
+        let mut charts = charts(session.scenario());
+        charts.retain(|chart| chart.in_window(look.pins));
         let rows = charts.len() as f32 + 1.6;
         let height = ((ui.available_height() - 32.0 * (charts.len() as f32 + 1.0)) / rows).max(44.0);
         let end = session.frames().last().map_or(0.0, |f| f.time).max(session.length());
@@ -98,7 +48,7 @@ pub fn show(
         // Where there is no room for all of them, they scroll.
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             for chart in &charts {
-                let lines: Vec<&Signal> = signals.iter().filter(|s| belongs(s, chart)).collect();
+                let lines: Vec<&Signal> = signals.iter().filter(|s| chart.holds(s)).collect();
                 let marked = look.mark.map(|time| instant(session, time));
                 header(ui, &p, chart, &lines, session.frame(), marked);
                 time_plot(ui, &p, chart, &lines, session, board, look.mark, &shown, height, commands);
@@ -106,10 +56,6 @@ pub fn show(
             which_b(ui, &p, session, look, height * 1.6 + 14.0, commands);
         });
     });
-}
-
-fn belongs(signal: &Signal, chart: &Chart) -> bool {
-    chart.groups.iter().any(|g| signal.path == *g || signal.group() == *g)
 }
 
 /// The frame at a time, s, or the nearest.
@@ -168,21 +114,9 @@ fn unit_of(chart: &Chart, signal: &Signal) -> String {
     if chart.times == 1e3 { format!("m{}", signal.unit) } else { signal.unit.into() }
 }
 
-/// A signal's colour; a reaction is red where it is one, by the peaks up to the instant that is asked about.
+/// A signal's colour, by the peaks up to an instant.
 fn tone(p: &Palette, signal: &Signal, now: &Instant) -> Color32 {
-    colour(match (signal.drive, signal.group()) {
-        (Some(k), _) => p.drive(k),
-        (None, "pose") => p.amber,
-        (None, "base") if signal.path.ends_with('y') => p.dim,
-        (None, "attitude") => p.reaction,
-        (None, "moment") if signal.path == "moment/felt" && now.peaks.moment > REACTIONLESS * now.peaks.torque_sum => {
-            p.ink
-        }
-        (None, "moment") if now.peaks.moment <= REACTIONLESS * now.peaks.torque_sum => p.zero,
-        (None, "force") if now.peaks.force <= REACTIONLESS * now.peaks.inertial_pull => p.zero,
-        (None, "moment" | "force") => p.reaction,
-        _ => p.ink,
-    })
+    colour(charts::colour(signal, p, &now.peaks))
 }
 
 #[allow(clippy::too_many_arguments, reason = "each is one thing the plot shows")]
@@ -219,7 +153,7 @@ fn time_plot(
             laid_over.push((i, signal, points));
         }
     }
-    let (low, high) = range(chart, low, high);
+    let [low, high] = chart.range(low, high);
     let amber = colour(p.amber);
     let decimals = if high - low < 0.05 {
         3
@@ -299,22 +233,6 @@ pub(super) fn base_plot<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
 
 fn marks(values: &[f64], step: f64) -> Vec<GridMark> {
     values.iter().map(|v| GridMark { value: *v, step_size: step }).collect()
-}
-
-/// Bounds that hold still: rounded outwards, and never so tight that rounding noise looks like a signal.
-fn range(chart: &Chart, low: f64, high: f64) -> (f64, f64) {
-    if chart.centred {
-        let most = round_up(low.abs().max(high.abs()).max(chart.least));
-        let most = if most.is_finite() { most } else { chart.least };
-        return (-most, most);
-    }
-    if !(low.is_finite() && high.is_finite()) {
-        return (0.0, 1.0);
-    }
-    let step = round_up((high - low).max(chart.least) / 2.0);
-    let bottom = (low / step).floor() * step;
-    let count = ((high - bottom) / step).ceil().max(1.0);
-    (bottom, bottom + count * step)
 }
 
 fn visible<'a>(session: &'a Session, shown: &std::ops::RangeInclusive<f64>) -> &'a [Instant] {

@@ -8,9 +8,9 @@ use super::{
     Command, OnBoard, RefusedEdit, ViewState, compare, keys, order, plots, side, status, study, theme, top, viewport,
 };
 use crate::mechanics::machine::Machine;
+use crate::picture::scene::exaggeration::exaggeration;
 use crate::picture::scene::palette::Theme;
 use crate::picture::scene::stage::Stage;
-use crate::picture::scene::sway::exaggeration;
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::session::scenario::Scenario;
 use crate::session::{Edit, Refusal, Session};

@@ -4,8 +4,8 @@ use egui::{Align, Layout, Margin, Panel, RichText, Sense, Ui, vec2};
 
 use super::theme::{bold, colour, plain};
 use super::{Command, ViewState};
+use crate::picture::numbers::signed;
 use crate::picture::scene::palette::{Palette, faded};
-use crate::picture::scene::stage::signed;
 use crate::picture::scene::views::Views;
 use crate::session::verdict::Verdict;
 use crate::session::{Edit, Session};

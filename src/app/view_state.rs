@@ -3,9 +3,10 @@
 use crate::app::FileDialog;
 use crate::picture::scene::Measure;
 use crate::picture::scene::camera::Camera;
+use crate::picture::scene::options::{Handle, Refused};
 use crate::picture::scene::palette::{Palette, Theme, palette};
-use crate::picture::scene::stage::{Handle, Refused};
-use crate::picture::scene::views::{Grip, ViewKind, Views};
+use crate::picture::scene::pick::Pick;
+use crate::picture::scene::views::{ViewKind, Views};
 use crate::planning::reactionless::Decimal;
 use crate::session::{Edit, Refusal, Session};
 use std::sync::Arc;
@@ -50,7 +51,7 @@ pub struct ViewState {
     /// Under the pointer.
     pub hot: Option<Handle>,
     /// Being dragged.
-    pub grabbed: Option<Grip>,
+    pub grabbed: Option<Pick>,
     /// Where the pointer holds the target, m.
     pub held: Option<[f64; 2]>,
     /// The force at the end effector before a hand pushes, N.

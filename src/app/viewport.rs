@@ -7,10 +7,12 @@ use egui::{CentralPanel, CursorIcon, Frame, PointerButton, Pos2, Rect, Sense, Ui
 use super::widgets::name;
 use super::{Command, ViewState, set_b, switch};
 use crate::mechanics::planar::{DriveAngles, Vector};
+use crate::picture::numbers::signed;
 use crate::picture::paint::{Spot, paint, words};
-use crate::picture::scene::stage::{Handle, Other, ViewOptions, signed};
-use crate::picture::scene::sway::swayed;
-use crate::picture::scene::views::{Aim, ViewKind, Views};
+use crate::picture::scene::exaggeration::exaggerated;
+use crate::picture::scene::options::{Handle, Other, ViewOptions};
+use crate::picture::scene::pick::Aim;
+use crate::picture::scene::views::{ViewKind, Views};
 use crate::session::scenario::Task;
 use crate::session::{Edit, Session};
 use crate::simulation::frame::Frame as Instant;
@@ -32,7 +34,7 @@ pub fn show(
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         name(&response, "Scene: the machine, its reactionless workspace and its target");
         // What the pointer meets is what is seen.
-        let shown = swayed(session.frame(), look.sway());
+        let shown = exaggerated(session.frame(), look.sway());
         let spot = Spot { rect, camera: *look.camera() };
         if look.stroke.is_some() && look.view.shows_machine() {
             draw(ui, &response, &spot, views, look, commands);
@@ -51,9 +53,11 @@ pub fn show(
             refused: look.refused.as_ref().and_then(|r| r.curve.clone()),
             snapshots: if look.snapshots { snapshots(session) } else { Vec::new() },
             others: board.map_or_else(Vec::new, |board| others(board, session.frame().time, look.sway())),
-            sway: look.sway(),
+            exaggeration: look.sway(),
             push: force(session),
             pin_forces: look.pins,
+            invites: true,
+            scale: None,
         };
         let scene = Arc::new(views.scene(look.view, session.frame(), &options, look.camera()));
         paint(ui, rect, &scene, look.camera());
@@ -83,7 +87,7 @@ fn snapshots(session: &Session) -> Vec<DriveAngles> {
 /// The runs that are laid over, at a time, s, the motion of their bases so many times as far.
 fn others(board: &Comparison, time: f64, times: f64) -> Vec<Other> {
     let other = |(i, run): (usize, &crate::study::comparison::Compared)| {
-        let frame = swayed(run.at(time)?, times);
+        let frame = exaggerated(run.at(time)?, times);
         Some(Other { name: (i + 1).to_string(), q: frame.q, base: frame.base })
     };
     board.shown().filter_map(other).collect()

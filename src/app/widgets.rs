@@ -6,8 +6,8 @@ use egui::{Align, DragValue, Layout, Response, RichText, Slider, SliderClamping,
 
 use super::command::Command;
 use super::theme::{bold, colour, plain};
+use crate::picture::numbers::signed;
 use crate::picture::scene::palette::Palette;
-use crate::picture::scene::stage::signed;
 use crate::session::Edit;
 
 /// Tells a screen reader what a widget is.

@@ -2,6 +2,8 @@
 
 #[cfg(feature = "ui")]
 pub mod canvas;
+pub mod charts;
+pub mod numbers;
 #[cfg(feature = "ui")]
 pub mod paint;
 #[cfg(feature = "render")]

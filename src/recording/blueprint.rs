@@ -5,33 +5,32 @@
 //! backgrounds, so the rows are written here.
 
 use rerun::blueprint::components::{
-    ActiveTab, BackgroundKind, ColumnShare, ContainerKind, Corner2D, GridSpacing, IncludedContent, LinkAxis, LoopMode,
-    PanelState, PlayState, QueryExpression, RootContainer, RowShare, ViewClass,
+    ActiveTab, BackgroundKind, ColumnShare, ContainerKind, Corner2D, IncludedContent, LinkAxis, LoopMode, PanelState,
+    PlayState, QueryExpression, RootContainer, RowShare, ViewClass,
 };
 use rerun::blueprint::datatypes::{TextLogColumn, TextLogColumnKind, TimelineColumn};
-use rerun::components::{Plane3D, Range1D};
+use rerun::components::Range1D;
 use rerun::external::re_sdk_types::blueprint::archetypes as view;
 use rerun::external::re_sdk_types::blueprint::components::VisualizerInstructionId;
 use rerun::external::uuid::Uuid;
 use rerun::{AsComponents, EntityPath, SeriesLines};
 
-use super::Hash;
 use super::eye::Eye;
-use super::rehearsal::Rehearsal;
+use super::forecast::Forecast;
+use super::hash::Hash;
 use super::store::{Store, StoreError, TIME};
 use super::style::{Both, colour, series_name, under};
+use crate::picture::charts::{Chart, Place};
 use crate::picture::scene::Rgba;
-use crate::picture::scene::camera::Orbit;
-use crate::picture::scene::linkage::mix;
-use crate::picture::scene::palette::{Palette, Theme, faded, palette};
+use crate::picture::scene::palette::{Palette, Theme, mix, palette};
 
 /// Writes the layout and has the viewer open with it.
 ///
 /// # Errors
 /// If it cannot be written.
-pub fn lay_out(store: &mut Store, cases: &[Rehearsal], pictured: bool) -> Result<(), StoreError> {
+pub fn lay_out(store: &mut Store, cases: &[Forecast], pictured: bool) -> Result<(), StoreError> {
     let mut layout =
-        Layout { store, palette: palette(Theme::Dark), tab: String::new(), axes: Axes::of(cases), pictured };
+        Layout { store, palette: palette(Theme::Dark), tab: String::new(), charts: shared(cases), pictured };
     let mut tabs = Vec::new();
     if cases.len() > 1 {
         tabs.push(layout.comparison(cases)?);
@@ -59,41 +58,21 @@ pub fn lay_out(store: &mut Store, cases: &[Rehearsal], pictured: bool) -> Result
     layout.store.activate_layout()
 }
 
-/// Ranges that plots of all cases share, so that they can be compared, and so that noise is not shown as if it were
-/// something.
-struct Axes {
-    /// |n_B|, N m.
-    moment: f64,
-    /// |f_B|, N.
-    force: f64,
-    /// b, rad.
-    b: [f64; 2],
-}
-
-impl Axes {
-    fn of(cases: &[Rehearsal]) -> Self {
-        let largest = |of: fn(&Rehearsal) -> f64| cases.iter().map(of).fold(0.0, f64::max);
-        // Where nothing reaches the base, what would if nothing cancelled gives the scale.
-        let scale = |peak: f64, whole: f64| match peak > 1e-6 * whole {
-            true => 1.08 * marked(peak),
-            false if whole > 0.0 => 1.08 * marked(whole),
-            false => 1.0,
-        };
-        let low = cases.iter().map(|c| c.b[0]).fold(f64::INFINITY, f64::min);
-        let high = cases.iter().map(|c| c.b[1]).fold(f64::NEG_INFINITY, f64::max);
-        let margin = (0.1 * (high - low)).max(0.05);
-        Self {
-            moment: scale(largest(|c| c.peaks.moment), largest(|c| c.peaks.torque_sum)),
-            force: scale(largest(|c| c.peaks.force), largest(|c| c.peaks.inertial_pull)),
-            b: [low - margin, high + margin],
+/// The charts of all cases with the ranges that they share, so that they can be compared.
+fn shared(cases: &[Forecast]) -> Vec<(Chart, [f64; 2])> {
+    let mut all: Vec<(Chart, [f64; 2])> = Vec::new();
+    for (chart, [low, high]) in cases.iter().flat_map(|case| &case.charts) {
+        match all.iter_mut().find(|(known, _)| known.title == chart.title) {
+            Some((_, range)) => *range = [range[0].min(*low), range[1].max(*high)],
+            None => all.push((*chart, [*low, *high])),
         }
     }
-}
-
-/// The next bound at which a low plot still has room for its marks: they stand at powers of ten.
-fn marked(x: f64) -> f64 {
-    let decade = 10f64.powf(x.log10().floor());
-    [1.0, 2.0, 3.0].map(|m| m * decade).into_iter().find(|bound| *bound > x).unwrap_or(10.0 * decade)
+    for (chart, range) in &mut all {
+        let [low, high] = chart.range(range[0], range[1]);
+        let margin = 0.06 * (high - low);
+        *range = [low - margin, high + margin];
+    }
+    all
 }
 
 /// A view or container.
@@ -107,7 +86,7 @@ struct Layout<'a> {
     palette: Palette,
     /// The tab that is being laid out: the name of its case, or none where all are side by side.
     tab: String,
-    axes: Axes,
+    charts: Vec<(Chart, [f64; 2])>,
     pictured: bool,
 }
 
@@ -180,7 +159,7 @@ impl Layout<'_> {
     }
 
     /// Several cases side by side: scenes above, what differs below.
-    fn comparison(&mut self, cases: &[Rehearsal]) -> Result<Part, StoreError> {
+    fn comparison(&mut self, cases: &[Forecast]) -> Result<Part, StoreError> {
         let scenes = cases.iter().map(|case| self.scene(case, &case.title)).collect::<Result<Vec<_>, _>>()?;
         let mut top = self.container(ContainerKind::Horizontal, "Scenes", &scenes, &vec![1.0; scenes.len()])?;
         if self.pictured {
@@ -189,16 +168,18 @@ impl Layout<'_> {
                 self.container(ContainerKind::Horizontal, "Pictures", &pictures, &vec![1.0; pictures.len()])?;
             top = self.container(ContainerKind::Tabs, "", &[top, pictures], &[])?;
         }
-        let axes = [-self.axes.moment, self.axes.moment];
-        let moment = self.compared(cases, "Base moment n_B  N m", "moment/total", Some(axes))?;
-        let b = self.compared(cases, "Pose constant b  rad", "pose/b", Some(self.axes.b))?;
-        let events = self.events(cases)?;
-        let bottom = self.container(ContainerKind::Horizontal, "", &[moment, b, events], &[1.2, 1.0, 1.0])?;
+        let compared: Vec<_> = self.charts.iter().filter(|(chart, _)| chart.compared).copied().collect();
+        let mut below = Vec::new();
+        for (chart, range) in compared {
+            below.push(self.compared(cases, &chart, range)?);
+        }
+        below.push(self.events(cases)?);
+        let bottom = self.container(ContainerKind::Horizontal, "", &below, &vec![1.0; below.len()])?;
         self.container(ContainerKind::Vertical, "All cases", &[top, bottom], &[1.25, 1.0])
     }
 
     /// One case: scene left, plots right, events below.
-    fn case(&mut self, case: &Rehearsal) -> Result<Part, StoreError> {
+    fn case(&mut self, case: &Forecast) -> Result<Part, StoreError> {
         self.tab.clone_from(&case.name);
         let mut scenes = vec![self.scene(case, "Scene")?];
         if self.pictured {
@@ -211,18 +192,9 @@ impl Layout<'_> {
             }
         }
         let scene = self.container(ContainerKind::Tabs, "", &scenes, &[])?;
-        let Axes { moment, force, b } = self.axes;
-        let moment = Some([-moment, moment]);
-        let plots = [
-            self.plot(case, "Torque  N m", &["torque/**"], None)?,
-            self.plot(case, "Base moment n_B  N m", &["moment/total"], moment)?,
-            self.plot(case, "Base force |f_B|  N", &["force/dynamic"], Some([-0.05 * force, force]))?,
-            self.plot(case, "Drive angles  rad", &["angle/**"], None)?,
-            self.plot(case, "Pose constant  rad", &["pose/**"], Some(b))?,
-        ];
-        let plots = self.container(ContainerKind::Vertical, "Drives and base", &plots, &[1.2, 1.0, 1.0, 1.0, 1.0])?;
-        let inside = self.inside(case)?;
-        let plots = self.container(ContainerKind::Tabs, "", &[plots, inside], &[])?;
+        let beside = self.plots(case, "Drives and base", |place| place == Place::Beside)?;
+        let inside = self.plots(case, "Inside", |place| place != Place::Beside)?;
+        let plots = self.container(ContainerKind::Tabs, "", &[beside, inside], &[])?;
         let top = self.container(ContainerKind::Horizontal, "", &[scene, plots], &[1.25, 1.0])?;
         let events = self.events(std::slice::from_ref(case))?;
         let phase = self.view("StateTimeline", "Phase", &under(&case.root, "phase"), &["$origin/**".into()], &[])?;
@@ -230,41 +202,35 @@ impl Layout<'_> {
         self.container(ContainerKind::Vertical, &case.title, &[top, bottom], &[3.0, 1.0])
     }
 
-    /// Pins in one plot, what tilts the base, and how near change points are.
-    fn inside(&mut self, case: &Rehearsal) -> Result<Part, StoreError> {
-        let has = |path: &str| case.signals.iter().any(|s| path.split('/').next() == Some(s.group()));
-        let plots = [
-            ("Pin forces  N", "pin/**", 1.6),
-            ("Tilting moment  N m", "tilt/**", 1.0),
-            ("Transmission |sin(q_k − q_l)|", "transmission/**", 1.0),
-            ("To the nearest change point  rad", "change_point/distance", 1.0),
-        ];
-        let (mut parts, mut shares) = (Vec::new(), Vec::new());
-        for (name, signals, share) in plots.into_iter().filter(|(_, signals, _)| has(signals)) {
-            parts.push(self.plot(case, name, &[signals], None)?);
-            shares.push(share);
+    /// The charts of a case that stand in some places, one below the other.
+    fn plots(&mut self, case: &Forecast, name: &str, stands: fn(Place) -> bool) -> Result<Part, StoreError> {
+        let mut parts = Vec::new();
+        for (chart, _) in case.charts.iter().filter(|(chart, _)| stands(chart.place)) {
+            parts.push(self.plot(case, chart)?);
         }
-        self.container(ContainerKind::Vertical, "Inside", &parts, &shares)
+        self.container(ContainerKind::Vertical, name, &parts, &vec![1.0; parts.len()])
     }
 
-    fn scene(&mut self, case: &Rehearsal, name: &str) -> Result<Part, StoreError> {
+    fn range_of(&self, chart: &Chart) -> Option<[f64; 2]> {
+        self.charts.iter().find(|(known, _)| known.title == chart.title).map(|(_, range)| *range)
+    }
+
+    fn scene(&mut self, case: &Forecast, name: &str) -> Result<Part, StoreError> {
         let background = view::Background::new(BackgroundKind::SolidColor).with_color(colour(self.palette.background));
-        let grid = view::LineGrid3D::new()
-            .with_visible(true)
-            .with_spacing(GridSpacing(0.1.into()))
-            .with_plane(Plane3D::new([0.0, 0.0, 1.0], -0.02 * case.reach as f32))
-            .with_stroke_width(0.7)
-            .with_color(colour(faded(self.palette.line, 0.6)));
-        let eye = eye(case.reach).controls();
+        // The scene has a grid of its own.
+        let grid = view::LineGrid3D::new().with_visible(false);
+        let eye = case.scene.controls();
         let properties: [(&str, &dyn AsComponents); 3] =
             [("Background", &background), ("LineGrid3D", &grid), ("EyeControls3D", &eye)];
-        let contents = ["machine", "com", "end_effector", "target", "plan", "workspace", "reaction"];
-        let contents: Vec<_> = contents.iter().map(|part| format!("$origin/{part}/**")).collect();
+        // Everything of the case but what has a view of its own.
+        let others = ["signals", "events", "phase", "view", "joint_space", "tower"];
+        let without = others.iter().map(|part| format!("- $origin/{part}/**"));
+        let contents: Vec<_> = ["$origin/**".to_owned()].into_iter().chain(without).collect();
         self.view("3D", name, &case.root, &contents, &properties)
     }
 
     /// What was drawn offscreen.
-    fn pictures(&mut self, case: &Rehearsal, name: &str) -> Result<Part, StoreError> {
+    fn pictures(&mut self, case: &Forecast, name: &str) -> Result<Part, StoreError> {
         self.view("2D", name, &under(&case.root, "view"), &["$origin/**".into()], &[])
     }
 
@@ -278,16 +244,11 @@ impl Layout<'_> {
         self.view("3D", name, origin, &["$origin/**".into()], &properties)
     }
 
-    fn plot(
-        &mut self,
-        case: &Rehearsal,
-        name: &str,
-        signals: &[&str],
-        range: Option<[f64; 2]>,
-    ) -> Result<Part, StoreError> {
-        let contents: Vec<_> = signals.iter().map(|s| format!("$origin/{s}")).collect();
-        let name = titled(name, case, signals);
-        self.time_series(&name, &under(&case.root, "signals"), &contents, range, false)
+    fn plot(&mut self, case: &Forecast, chart: &Chart) -> Result<Part, StoreError> {
+        let held = case.signals.iter().filter(|signal| chart.holds(signal));
+        let contents: Vec<_> = held.map(|signal| format!("$origin/{}", signal.path)).collect();
+        let range = self.range_of(chart);
+        self.time_series(&titled(chart, case), &under(&case.root, "signals"), &contents, range, false)
     }
 
     fn time_series(
@@ -307,18 +268,13 @@ impl Layout<'_> {
     }
 
     /// The same signal of every case in one plot, each named by its case.
-    fn compared(
-        &mut self,
-        cases: &[Rehearsal],
-        name: &str,
-        signal: &str,
-        range: Option<[f64; 2]>,
-    ) -> Result<Part, StoreError> {
+    fn compared(&mut self, cases: &[Forecast], chart: &Chart, range: [f64; 2]) -> Result<Part, StoreError> {
+        let signal = chart.signals[0];
         let paths: Vec<_> = cases.iter().map(|case| under(&case.root, &format!("signals/{signal}"))).collect();
         let contents: Vec<_> = paths.iter().map(|p| p.to_string()).collect();
         let legend = cases.len() <= LEGEND;
-        let range = range.map(|range| if legend { with_room(range, cases.len()) } else { range });
-        let plot = self.time_series(name, &EntityPath::root(), &contents, range, legend)?;
+        let range = if legend { with_room(range, cases.len()) } else { range };
+        let plot = self.time_series(&name_of(chart), &EntityPath::root(), &contents, Some(range), legend)?;
         for (i, (case, path)) in cases.iter().zip(&paths).enumerate() {
             let rgba = case_colour(i, case.peaks.is_reactionless(), &self.palette);
             let unit = case.signals.iter().find(|s| s.path == signal).map_or(String::new(), series_name);
@@ -335,7 +291,7 @@ impl Layout<'_> {
         Ok(plot)
     }
 
-    fn events(&mut self, cases: &[Rehearsal]) -> Result<Part, StoreError> {
+    fn events(&mut self, cases: &[Forecast]) -> Result<Part, StoreError> {
         let shown = |kind, visible: bool| TextLogColumn { visible: visible.into(), kind };
         let columns = view::TextLogColumns::new()
             .with_timeline_columns([TimelineColumn { visible: true.into(), timeline: TIME.into() }])
@@ -349,22 +305,19 @@ impl Layout<'_> {
     }
 }
 
+/// Title and unit.
+fn name_of(chart: &Chart) -> String {
+    [chart.title, &chart.si_unit()].join("  ").trim_end().to_owned()
+}
+
 /// The title of a plot with the colours of what it shows: a legend would cover the curves of so low a plot. Of one series
 /// the title says everything already, and of many the pointer tells which is which.
-fn titled(name: &str, case: &Rehearsal, signals: &[&str]) -> String {
-    let shown = |path: &str| signals.iter().any(|s| s.strip_suffix("**").map_or(*s == path, |of| path.starts_with(of)));
-    let all: Vec<_> = case.signals.iter().filter(|signal| shown(&signal.path)).collect();
+fn titled(chart: &Chart, case: &Forecast) -> String {
+    let all: Vec<_> = case.signals.iter().filter(|signal| chart.holds(signal)).collect();
     let of_drives = all.len() == COLOURS.len() && all.iter().enumerate().all(|(k, signal)| signal.drive == Some(k));
-    let words: Vec<String> = match &all[..] {
-        _ if of_drives => {
-            all.iter().zip(COLOURS).map(|(signal, colour)| format!("{} {colour}", signal.symbol)).collect()
-        }
-        [now, wanted] if wanted.path == format!("{}_reference", now.path) => {
-            vec![now.symbol.clone(), format!("{} pale", wanted.symbol)]
-        }
-        _ => Vec::new(),
-    };
-    [name.to_owned()].into_iter().chain(words).collect::<Vec<_>>().join("  ·  ")
+    let words = all.iter().zip(COLOURS).map(|(signal, colour)| format!("{} {colour}", signal.symbol));
+    let words: Vec<String> = if of_drives { words.collect() } else { Vec::new() };
+    [name_of(chart)].into_iter().chain(words).collect::<Vec<_>>().join("  ·  ")
 }
 
 /// What the colours of the first drives are called.
@@ -383,9 +336,4 @@ fn case_colour(i: usize, quiet: bool, palette: &Palette) -> Rgba {
         true => palette.zero,
         false => mix(palette.reaction, palette.amber, 0.9 * (i % 3) as f32 / 2.0),
     }
-}
-
-/// From the front and above, so near that the arm and its workspaces fill the view.
-fn eye(reach: f64) -> Eye {
-    Eye::upright(Orbit { centre: [-0.12 * reach, 0.06 * reach, 0.0], distance: 1.6 * reach, yaw: 0.3, pitch: 0.95 })
 }

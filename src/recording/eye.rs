@@ -27,9 +27,14 @@ impl Eye {
         Self { orbit, axes: [0, 1, 2] }
     }
 
-    /// Unit vector from the scene towards it, in its own coordinates.
-    pub fn direction(&self) -> [f64; 3] {
-        Camera::Orbit(self.orbit).eye_direction().map(f64::from)
+    /// What looks at the scene from there.
+    pub fn camera(&self) -> Camera {
+        Camera::Orbit(self.orbit)
+    }
+
+    /// A pixel in the middle of the picture, m.
+    pub fn pixel(&self) -> f32 {
+        (self.orbit.distance * HALF_HEIGHT / HALF_PIXELS) as f32
     }
 
     /// From its own coordinates to those of the recording.
@@ -43,7 +48,7 @@ impl Eye {
 
     /// A shift on the screen, px, y down, as one in its own coordinates.
     pub fn shift(&self, [right, down]: [f32; 2]) -> [f32; 3] {
-        let unit = (self.orbit.distance * HALF_HEIGHT / HALF_PIXELS) as f32;
+        let unit = self.pixel();
         let (yaw, pitch) = (self.orbit.yaw as f32, self.orbit.pitch as f32);
         let across = [yaw.cos(), yaw.sin(), 0.0];
         let up = [-yaw.sin() * pitch.sin(), yaw.cos() * pitch.sin(), pitch.cos()];
@@ -53,7 +58,7 @@ impl Eye {
     /// For the layout.
     pub fn controls(&self) -> EyeControls3D {
         let Orbit { centre, distance, .. } = self.orbit;
-        let towards = self.direction();
+        let towards = self.camera().eye_direction().map(f64::from);
         let at = |p: [f64; 3]| self.place(p).map(|x| x as f32);
         EyeControls3D::new()
             .with_kind(Eye3DKind::Orbital)

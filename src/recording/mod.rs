@@ -5,8 +5,9 @@
 //! | entity | what |
 //! |---|---|
 //! | `machine/base`, `machine/link/<name>` | meshes that never change; transforms |
-//! | `machine/joints`, `com`, `end_effector`, `target` | points; `end_effector/path` is the whole trail |
-//! | `plan/path`, `plan/waypoints` | where the end effector is to go; gone while the pointer leads |
+//! | `machine/joints` | one mesh, and where each pin is |
+//! | `com`, `end_effector`, `target` | where they are; `end_effector/path` is the whole trail |
+//! | `plan/path`, `plan/waypoints`, `plan/start` | where the end effector is to go; gone while the pointer leads |
 //! | `workspace/<b>` | a reactionless workspace and its boundary; b turns it |
 //! | `workspace/<b>/folds`, `…/cusps`, `…/inner_limits`, `…/change_points` | curves inside, where there are any |
 //! | `joint_space` | q as coordinates: the plane of b within the limits, the planned path, the pose |
@@ -16,28 +17,29 @@
 //! | `events`, `phase` | what happened |
 //! | `view` | offscreen pictures |
 //!
-//! Signals have a row at every step, bodies and points at most 200 a second. Machine, scenario, version and verdict are
+//! Whatever a [`Scene`](crate::picture::scene::Scene) of the window holds is an entity, by its own name, and what an
+//! item says stays is written once; the plots are the window's [`charts`](crate::picture::charts). So a new item of the
+//! scene, or a new signal in a chart, is recorded without a word here.
+//!
+//! Signals have a row at every step, what moves at most 200 a second. Machine, scenario, version and verdict are
 //! properties of the recording. The same scenarios give the same recording, whenever and wherever it is made.
 
-mod areas;
-mod axes;
 mod blueprint;
-mod body;
 mod dashes;
+mod events;
 mod eye;
-mod film;
-mod inside;
-mod joints;
-mod planned;
-mod reaction;
+mod forecast;
+mod hash;
+mod options;
+mod pictures;
 mod recorder;
-mod rehearsal;
 mod rows;
+mod space;
+mod stop;
 mod store;
-mod story;
 mod style;
-mod tip;
-mod tower;
+
+pub use options::{Options, Pictures};
 
 use std::path::{Path, PathBuf};
 
@@ -48,34 +50,12 @@ use crate::files::{NewFile, WriteError};
 use crate::session::Refusal;
 use crate::session::scenario::Scenario;
 use crate::session::verdict::Verdict;
-use film::Film;
-use reaction::Scale;
-use recorder::{Set, Stop};
-use rehearsal::Rehearsal;
+use forecast::Forecast;
+use hash::Hash;
+use pictures::Series;
+use recorder::Set;
+use stop::Stop;
 use store::{Store, StoreError};
-
-/// Offscreen pictures to take on the way.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pictures {
-    /// Pictures a second of simulated time.
-    pub fps: f64,
-    /// Pixels a row.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-    /// Arrows show what the pins carry.
-    pub pin_forces: bool,
-}
-
-/// What to record, and over what.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Options {
-    /// Pictures, if any. Where there is nothing to draw with, the recording goes without and says so in its
-    /// [`notes`](Recording::notes).
-    pub pictures: Option<Pictures>,
-    /// Replace a file that is there.
-    pub force: bool,
-}
 
 /// A scenario that was recorded.
 #[derive(Clone, Debug, PartialEq)]
@@ -103,7 +83,7 @@ pub struct Recording {
 /// How far the recording has got.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress<'a> {
-    /// Steps done, of all scenarios. Each counts twice: it is rehearsed, for the scales, and recorded.
+    /// Steps done, of all scenarios. Each counts twice: it is run for the scales, and recorded.
     pub done: u64,
     /// Steps to do.
     pub of: u64,
@@ -184,9 +164,9 @@ const MOST_PICTURES: f64 = 1e5;
 const MOST_PIXELS: f64 = 1.5e11;
 
 /// Refuses more pictures than anybody would wait for.
-fn check_film(scenarios: &[Scenario], cases: &[Rehearsal], options: &Options) -> Result<(), RecordError> {
+fn check_pictures(scenarios: &[Scenario], cases: &[Forecast], options: &Options) -> Result<(), RecordError> {
     let Some(p) = options.pictures else { return Ok(()) };
-    let of_case = |(scenario, case): (&Scenario, &Rehearsal)| {
+    let of_case = |(scenario, case): (&Scenario, &Forecast)| {
         let steps = case.steps as f64;
         steps.min(steps * scenario.step * p.fps) + 1.0
     };
@@ -204,21 +184,6 @@ fn check_film(scenarios: &[Scenario], cases: &[Rehearsal], options: &Options) ->
 /// About how many steps a run has.
 fn steps(scenario: &Scenario) -> u64 {
     (scenario.duration.unwrap_or(scenario.task.time) / scenario.step).round() as u64
-}
-
-/// FNV-1a of words, one after another.
-struct Hash(u128);
-
-impl Hash {
-    fn new() -> Self {
-        Self(0x6c62_272e_07bb_0142_62b8_2175_6295_c58d)
-    }
-
-    fn add(&mut self, word: &str) {
-        for byte in word.bytes().chain([0]) {
-            self.0 = (self.0 ^ u128::from(byte)).wrapping_mul(0x0100_0000_0000_0000_0000_013b);
-        }
-    }
 }
 
 /// What tells this recording from others: everything that goes into it.
@@ -252,17 +217,18 @@ fn write(
     for scenario in scenarios {
         let mut tick = |step| progress(Progress { done: before + step, of: 2 * total, what: &scenario.name });
         let refused = |refusal| RecordError::Refused { scenario: scenario.name.clone(), refusal };
-        cases.push(Rehearsal::of(scenario, &mut tick).map_err(refused)?);
+        cases.push(Forecast::of(scenario, &mut tick).map_err(refused)?);
         before += steps(scenario);
     }
     // Now it is known.
     let total: u64 = cases.iter().map(|case| case.steps).sum();
     before = total;
-    check_film(scenarios, &cases, options)?;
+    check_pictures(scenarios, &cases, options)?;
     let mut store = Store::open(to, digest(scenarios, options)).map_err(because)?;
-    let mut film = Film::of(options.pictures);
-    let pictured = film.is_loaded();
-    let mut set = Set { store: &mut store, film: &mut film, scale: Scale::of(&cases), several: scenarios.len() > 1 };
+    let mut pictures = Series::of(options.pictures);
+    let pictured = pictures.is_wanted();
+    let scale = forecast::scale(&cases);
+    let mut set = Set { store: &mut store, pictures: &mut pictures, scale, several: scenarios.len() > 1 };
     let mut recordings = Vec::with_capacity(scenarios.len());
     // The layout stands first, so that no viewer begins with one of its own.
     let laid_out = blueprint::lay_out(set.store, &cases, pictured).map_err(Stop::from);
@@ -284,7 +250,7 @@ fn write(
                 peak_base_moment: verdict.arm_moment,
                 reactionless: verdict.reactionless,
                 verdict,
-                notes: set.film.notes().into_iter().chain(fault).collect(),
+                notes: set.pictures.notes().into_iter().chain(fault).collect(),
             });
         }
         Ok(())

@@ -6,64 +6,45 @@ use rerun::components::{Scalar, Text};
 use rerun::external::re_log_types::EntityPathPart;
 use rerun::{AnyValues, EntityPath, Scalars, SeriesLines, ViewCoordinates};
 
-use super::areas::Areas;
-use super::body::Body;
-use super::film::Film;
-use super::joints::Joints;
-use super::planned;
-use super::reaction::{Drawing, Scale};
-use super::rehearsal::Rehearsal;
-use super::store::{Clock, Instant, Store, StoreError};
-use super::story::Story;
-use super::style::{colour, series_name, signal_colour, under};
-use super::tip::Tip;
-use super::tower::Tower;
-use crate::picture::scene::palette::{Palette, Theme, palette};
+use super::events::Events;
+use super::forecast::Forecast;
+use super::pictures::Series;
+use super::rows::Thinned;
+use super::space::Space;
+use super::stop::Stop;
+use super::store::{Clock, Instant, Store};
+use super::style::{colour, lines, series_name, under};
+use crate::mechanics::machine::Machine;
+use crate::picture::charts;
+use crate::picture::scene::joint_space::JointSpace;
+use crate::picture::scene::options::ViewOptions;
+use crate::picture::scene::palette::{Palette, Theme, mix, palette};
+use crate::picture::scene::reaction::Scale;
+use crate::picture::scene::stage::Stage;
+use crate::picture::scene::tower::Tower;
+use crate::picture::scene::{Scene, point};
 use crate::planning::pose_constant::Planes;
 use crate::session::scenario::Scenario;
 use crate::session::verdict::Verdict;
-use crate::session::{Edit, Plan, Refusal, Run, replay};
+use crate::session::{Edit, Plan, Run, replay};
 use crate::simulation::frame::{Frame, Peaks};
 use crate::simulation::signals::Signal;
 
 /// Rows that gather before they are written.
 const BATCH: usize = 8192;
 
-/// Bodies and points have a row this often, s; a screen shows no more.
-const BODY_TIME: f64 = 0.005;
+/// What moves has a row this often, s; a screen shows no more.
+const ROW_TIME: f64 = 0.005;
 
-/// Reactions are drawn this often, s.
-const REACTION_TIME: f64 = 0.01;
-
-/// Why a case was not recorded.
-#[derive(Debug)]
-pub enum Stop {
-    /// It cannot run.
-    Refused {
-        /// Which.
-        scenario: String,
-        /// Why.
-        refusal: Refusal,
-    },
-    /// The pictures asked for cannot be.
-    #[cfg_attr(not(feature = "render"), expect(dead_code, reason = "nothing to draw them with"))]
-    Pictures(String),
-    /// It cannot be written.
-    Store(StoreError),
-}
-
-impl<E: Into<StoreError>> From<E> for Stop {
-    fn from(error: E) -> Self {
-        Self::Store(error.into())
-    }
-}
+/// Points of a trail, at most.
+const TRAIL: usize = 16_384;
 
 /// What the cases of one recording share.
 pub struct Set<'a> {
     /// Where everything goes.
     pub store: &'a mut Store,
     /// Pictures on the way.
-    pub film: &'a mut Film,
+    pub pictures: &'a mut Series,
     /// Of reactions.
     pub scale: Scale,
     /// More than one case: events say of which they are.
@@ -77,15 +58,15 @@ pub struct Set<'a> {
 pub fn record(
     set: &mut Set<'_>,
     scenario: &Scenario,
-    rehearsal: &Rehearsal,
+    forecast: &Forecast,
     tick: &mut dyn FnMut(u64),
 ) -> Result<(Peaks, Verdict), Stop> {
-    let mut recorder = Recorder::new(set, scenario, rehearsal)?;
+    let mut recorder = Recorder::new(set, scenario, forecast)?;
     let mut failure = None;
     let run = replay(scenario, |run, frame| {
         if failure.is_none() {
             failure = recorder.see(run, frame).err();
-            if frame.step.is_multiple_of(64) || frame.step == rehearsal.steps {
+            if frame.step.is_multiple_of(64) || frame.step == forecast.steps {
                 tick(frame.step);
             }
         }
@@ -99,30 +80,69 @@ pub fn record(
 
 struct Recorder<'a> {
     store: &'a mut Store,
-    film: &'a mut Film,
+    pictures: &'a mut Series,
     scenario: &'a Scenario,
-    rehearsal: &'a Rehearsal,
+    forecast: &'a Forecast,
     root: &'a EntityPath,
     palette: Palette,
-    /// Machine and workspaces stay what they are: their geometry holds for good.
+    options: ViewOptions,
+    /// Nothing that the views show for good changes on the way.
     lasting: bool,
     /// Edits that have applied.
     edits: usize,
     clock: Clock,
     series: Vec<Vec<f64>>,
-    body_every: u64,
-    reaction_every: u64,
-    body: Option<Body>,
-    areas: Areas,
-    /// The plan stays what it is.
-    planned: bool,
-    /// Whose drawings joint space and tower are: the planes, and whether a planned motion leads.
-    drawn: Option<(Arc<Planes>, bool)>,
-    joints: Option<Joints>,
+    row_every: u64,
+    views: Option<Views>,
+    /// The b that the run begins with, rad.
+    first_b: f64,
+    machine: Space,
+    joints: Option<Space>,
+    tower: Option<Space>,
+    trail: Thinned<[f32; 3]>,
+    events: Events,
+}
+
+/// What is drawn from, and of what it was made.
+struct Views {
+    stage: Stage,
+    joints: Option<JointSpace>,
     tower: Option<Tower>,
-    tip: Tip,
-    reactions: Drawing,
-    story: Story,
+    machine: Machine,
+    plant: Option<Machine>,
+    planes: Option<Arc<Planes>>,
+    leads: bool,
+    compared: Option<f64>,
+}
+
+impl Views {
+    fn of(run: &Run, b: [f64; 2]) -> Self {
+        let scenario = run.scenario();
+        Self {
+            stage: Stage::of(run),
+            joints: JointSpace::over(run, b),
+            tower: Tower::over(run, b),
+            machine: scenario.machine.clone(),
+            plant: scenario.plant.machine(&scenario.machine).ok(),
+            planes: run.planes().cloned(),
+            leads: run.motion().is_some(),
+            compared: scenario.compare_b,
+        }
+    }
+
+    fn are_of(&self, run: &Run) -> bool {
+        let scenario = run.scenario();
+        let planes = match (&self.planes, run.planes()) {
+            (Some(known), Some(now)) => Arc::ptr_eq(known, now),
+            (None, None) => true,
+            _ => false,
+        };
+        planes
+            && self.leads == run.motion().is_some()
+            && self.compared == scenario.compare_b
+            && self.machine == scenario.machine
+            && self.plant == scenario.plant.machine(&scenario.machine).ok()
+    }
 }
 
 impl Instant {
@@ -132,88 +152,68 @@ impl Instant {
 }
 
 impl<'a> Recorder<'a> {
-    fn new(set: &'a mut Set<'_>, scenario: &'a Scenario, rehearsal: &'a Rehearsal) -> Result<Self, Stop> {
-        let Set { store, film, scale, several } = set;
-        let (palette, root) = (palette(Theme::Dark), &rehearsal.root);
+    fn new(set: &'a mut Set<'_>, scenario: &'a Scenario, forecast: &'a Forecast) -> Result<Self, Stop> {
+        let Set { store, pictures, scale, several } = set;
+        let (palette, root) = (palette(Theme::Dark), &forecast.root);
         store.fixed(root, &ViewCoordinates::RIGHT_HAND_Z_UP())?;
-        for signal in &rehearsal.signals {
+        for signal in &forecast.signals {
             let style = SeriesLines::new()
                 .with_names([series_name(signal)])
-                .with_colors([colour(signal_colour(signal, &palette))])
+                .with_colors([colour(charts::colour(signal, &palette, &forecast.peaks))])
                 .with_widths([if signal.path.contains("reference") { 0.8 } else { 1.6 }]);
             store.fixed(&path_of(root, signal), &style)?;
         }
-        let every = |time: f64| (time / scenario.step).round().max(1.0) as u64;
-        let reshapes = |edit: &Edit| match edit {
-            Edit::SetMachine { .. } | Edit::CompareB { .. } => true,
+        let changes = |edit: &Edit| match edit {
+            Edit::SetMachine { .. } | Edit::CompareB { .. } | Edit::PoseB { .. } => true,
             Edit::SetPlant { change } => ["length", "link"].iter().any(|key| change.contains_key(*key)),
-            _ => false,
+            edit => edit.leads(),
         };
-        let leads = |edit: &Edit| edit.leads() || matches!(edit, Edit::PoseB { .. } | Edit::SetMachine { .. });
-        let later = |which: &dyn Fn(&Edit) -> bool| scenario.edits.iter().any(|e| e.step > 0 && which(&e.edit));
         let prefix = if *several { format!("{} · ", scenario.name) } else { String::new() };
+        let space = |path: &str, eye| Space::new(under(root, path), eye, palette.background);
         Ok(Self {
-            tip: Tip::show(store, root, rehearsal.reach, &palette)?,
-            reactions: Drawing::show(store, root, *scale, palette, besides(scenario))?,
-            story: Story::new(prefix, palette),
+            machine: Space::new(root.clone(), forecast.scene, palette.background),
+            joints: forecast.joints.map(|eye| space("joint_space", eye)),
+            tower: forecast.tower.map(|eye| space("tower", eye)),
+            trail: Thinned::new(1, TRAIL),
+            events: Events::new(prefix, palette),
+            options: ViewOptions { invites: false, scale: Some(*scale), ..ViewOptions::default() },
             store,
-            film,
+            pictures,
             scenario,
-            rehearsal,
+            forecast,
             root,
             palette,
-            lasting: !later(&reshapes),
-            planned: !later(&leads),
-            drawn: None,
-            joints: None,
-            tower: None,
+            lasting: !scenario.edits.iter().any(|e| e.step > 0 && changes(&e.edit)),
             edits: 0,
             clock: Clock::default(),
-            series: vec![Vec::new(); rehearsal.signals.len()],
-            body_every: every(BODY_TIME),
-            reaction_every: every(REACTION_TIME),
-            body: None,
-            areas: Areas::new(root, palette),
+            series: vec![Vec::new(); forecast.signals.len()],
+            row_every: (ROW_TIME / scenario.step).round().max(1.0) as u64,
+            views: None,
+            first_b: 0.0,
         })
     }
 
     /// One instant.
     fn see(&mut self, run: &Run, frame: &Frame) -> Result<(), Stop> {
-        let (at, last) = (Instant::of(frame), frame.step == self.rehearsal.steps);
+        let (at, last) = (Instant::of(frame), frame.step == self.forecast.steps);
         if frame.step == 0 {
-            self.story.start(at, &self.rehearsal.title, self.scenario.machine.name());
-            self.story.plan(at, &run.scenario().task, run.planned_time());
+            self.events.start(at, &self.forecast.title, self.scenario.machine.name());
+            self.events.plan(at, &run.scenario().task, run.planned_time());
         }
-        let redrawn = (self.edited(at) || self.body.is_none()) && self.show(at, run, frame)?;
-        self.story.note(at, frame);
+        let redrawn = (self.edited(at) || self.views.is_none()) && self.prepare(run, frame);
+        self.events.note(at, frame);
         self.clock.push(at);
-        for (series, signal) in self.series.iter_mut().zip(&self.rehearsal.signals) {
+        for (series, signal) in self.series.iter_mut().zip(&self.forecast.signals) {
             series.push(signal.value(frame));
         }
-        if let Some(body) = &mut self.body {
-            let (reach, top) = (body.linkage().reach(), body.linkage().top());
-            if last || frame.step.is_multiple_of(self.body_every) {
-                body.place(at, frame);
-                self.areas.place(at, frame);
-                self.tip.place(at, frame, top, last);
-            }
-            // What is drawn anew stands in its place from then on.
-            if last || redrawn || frame.step.is_multiple_of(self.body_every) {
-                if let Some(joints) = &mut self.joints {
-                    joints.place(at, frame);
-                }
-                if let Some(tower) = &mut self.tower {
-                    tower.place(at, frame);
-                }
-            }
-            if last || frame.step.is_multiple_of(self.reaction_every) {
-                self.reactions.place(at, frame, reach, top);
-            }
+        // What is drawn anew stands in its place from then on.
+        if last || redrawn || frame.step.is_multiple_of(self.row_every) {
+            self.draw(at, frame, last)?;
         }
-        if self.film.is_due(frame, self.scenario.step) {
-            self.film.take(at, run, frame)?;
+        if let Some(views) = self.views.as_ref().filter(|_| self.pictures.is_due(frame, self.scenario.step)) {
+            self.pictures.take(at, &views.stage, frame, &self.options)?;
         }
-        if self.clock.len() >= BATCH || self.film.is_full() {
+        if self.clock.len() >= BATCH || self.pictures.is_full() {
             self.flush()?;
         }
         Ok(())
@@ -223,104 +223,78 @@ impl<'a> Recorder<'a> {
     fn edited(&mut self, at: Instant) -> bool {
         let before = self.edits;
         while let Some(timed) = self.scenario.edits.get(self.edits).filter(|e| e.step <= at.step) {
-            self.story.edit(at, &timed.edit);
+            self.events.edit(at, &timed.edit);
             self.edits += 1;
         }
         self.edits > before
     }
 
-    /// Machine and workspaces, as far as they have changed; whether joint space and tower have.
-    fn show(&mut self, at: Instant, run: &Run, frame: &Frame) -> Result<bool, Stop> {
-        let since = if self.lasting { None } else { Some(at) };
-        let Scenario { machine: model, plant, base, .. } = run.scenario();
-        // A machine with other lengths is drawn as it is.
-        let machine = &plant.machine(model).unwrap_or_else(|_| model.clone());
-        let (store, root, palette) = (&mut *self.store, self.root, &self.palette);
-        let same = |body: &Body| body.shows(machine);
-        let body = match self.body.take().filter(same) {
-            Some(body) => body,
-            None => Body::show(store, root, since, (machine, base.moves()), frame, palette)?,
-        };
-        if let Some(planes) = run.planes() {
-            let compare = run.scenario().compare_b;
-            let path = planned::points(run);
-            self.areas.show(
-                store,
-                (at, since),
-                planes,
-                body.linkage(),
-                (frame.b_reference, compare, frame.base),
-                &path,
-            )?;
+    /// Makes the views again if what they show has changed; whether it has.
+    fn prepare(&mut self, run: &Run, frame: &Frame) -> bool {
+        let force = run.scenario().plant.force;
+        self.options.push = Some(force).filter(|force| *force != [0.0; 2]);
+        match &mut self.views {
+            Some(views) if views.are_of(run) => {
+                views.stage.refresh(run);
+                return false;
+            }
+            Some(_) => {}
+            None => {
+                // Workspaces go by the b that they begin with.
+                self.first_b = frame.b_reference;
+            }
         }
-        let above = [body.linkage().reach(), body.linkage().top()];
-        self.body = Some(body);
-        self.film.cut();
-        self.show_plan(at, run, frame, above)
+        let named = |b: f64| format!("workspace/{b:.3}");
+        let own = named(self.first_b);
+        let other = run.scenario().compare_b.map(named);
+        let other = other.map(|other| if other == own { format!("{other} compared") } else { other });
+        let names = other.map(|other| ("workspace/compared", other)).into_iter().chain([("workspace", own)]);
+        self.machine.rename(names.collect());
+        self.views = Some(Views::of(run, self.forecast.b));
+        true
     }
 
-    /// The plan, joint space and tower, if they have changed; above a machine of a reach and a height, m.
-    fn show_plan(&mut self, at: Instant, run: &Run, frame: &Frame, above: [f64; 2]) -> Result<bool, Stop> {
-        let leads = run.motion().is_some();
-        let known = |(planes, led): &(Arc<Planes>, bool)| {
-            *led == leads && run.planes().is_some_and(|now| Arc::ptr_eq(planes, now))
-        };
-        if self.drawn.as_ref().is_some_and(known) {
-            return Ok(false);
+    /// Everything that is to be seen at an instant.
+    fn draw(&mut self, at: Instant, frame: &Frame, last: bool) -> Result<(), Stop> {
+        let Some(views) = &self.views else { return Ok(()) };
+        let when = (at, if self.lasting { None } else { Some(at) });
+        let tip = point(frame.tip, views.stage.handle_height());
+        self.trail.push(|| tip, last);
+        self.machine.draw(self.store, when, &views.stage.scene(frame, &self.options))?;
+        let scene = |view: Option<Scene>| view.unwrap_or_else(|| Scene::new(self.palette.background, Arc::default()));
+        if let (Some(space), Some(eye)) = (&mut self.joints, self.forecast.joints) {
+            let view = views.joints.as_ref().map(|view| view.scene(frame, &self.options, &eye.camera()));
+            space.draw(self.store, when, &scene(view))?;
         }
-        self.drawn = run.planes().map(|planes| (planes.clone(), leads));
-        let since = if self.planned { None } else { Some(at) };
-        let (store, root, palette) = (&mut *self.store, self.root, &self.palette);
-        planned::show(store, root, since, run, above, palette)?;
-        // What has gathered of the last drawing belongs before this one.
-        if let Some(joints) = &mut self.joints {
-            joints.write(store)?;
+        if let (Some(space), Some(eye)) = (&mut self.tower, self.forecast.tower) {
+            let view = views.tower.as_ref().map(|view| view.scene(frame, &self.options, &eye.camera()));
+            space.draw(self.store, when, &scene(view))?;
         }
-        if let Some(tower) = &mut self.tower {
-            tower.write(store)?;
-        }
-        let range = self.rehearsal.b;
-        self.joints = match &self.rehearsal.joints {
-            Some(eye) => Joints::show(store, root, since, (run, frame.b_reference, range), eye, palette)?,
-            None => None,
-        };
-        self.tower = match &self.rehearsal.tower {
-            Some(eye) => Tower::show(store, root, since, (run, range), eye, palette)?,
-            None => None,
-        };
-        Ok(true)
+        Ok(())
     }
 
     /// Writes what has gathered.
     fn flush(&mut self) -> Result<(), Stop> {
         let clock = self.clock.columns();
         self.clock.clear();
-        for (series, signal) in self.series.iter_mut().zip(&self.rehearsal.signals) {
+        for (series, signal) in self.series.iter_mut().zip(&self.forecast.signals) {
             let values = Scalars::new(std::mem::take(series)).columns_of_unit_batches()?;
             self.store.columns(&clock, &path_of(self.root, signal), values)?;
         }
-        if let Some(body) = &mut self.body {
-            body.write(self.store, self.root)?;
+        for space in [Some(&mut self.machine), self.joints.as_mut(), self.tower.as_mut()].into_iter().flatten() {
+            space.write(self.store)?;
         }
-        self.areas.write(self.store)?;
-        if let Some(joints) = &mut self.joints {
-            joints.write(self.store)?;
-        }
-        if let Some(tower) = &mut self.tower {
-            tower.write(self.store)?;
-        }
-        self.tip.write(self.store, self.root)?;
-        self.reactions.write(self.store, self.root)?;
-        self.film.write(self.store, &under(self.root, "view"))
+        self.pictures.write(self.store, &under(self.root, "view"))
     }
 
     /// What is known only at the end.
     fn finish(mut self, run: &Run) -> Result<(Peaks, Verdict), Stop> {
         let frame = &run.frame();
         self.flush()?;
-        self.tip.write_trail(self.store, self.root, &self.palette)?;
+        let trail = lines([self.trail.take()], 1.8, mix(self.palette.ink, self.palette.dim, 0.5));
+        self.store.fixed(&under(self.root, "end_effector/path"), &trail)?;
         let verdict = Verdict::of(run.scenario(), frame);
-        self.story.write(self.store, self.root, (Instant::of(frame), &frame.peaks, &verdict))?;
+        self.events.write(self.store, self.root, (Instant::of(frame), &frame.peaks, &verdict))?;
         let path = EntityPath::properties() / EntityPathPart::new(self.scenario.name.as_str());
         self.store.fixed(&path, &properties(self.scenario, (&frame.peaks, &verdict), run.plan()))?;
         Ok((frame.peaks, verdict))
@@ -373,15 +347,4 @@ fn properties(scenario: &Scenario, (peaks, verdict): (&Peaks, &Verdict), plan: &
         }
     }
     all
-}
-
-/// What the base carries besides what comes of motion.
-fn besides(scenario: &Scenario) -> &'static str {
-    let pushes = |edit: &Edit| match edit {
-        Edit::Push { .. } => true,
-        Edit::SetPlant { change } => change.contains_key("force"),
-        _ => false,
-    };
-    let pushed = scenario.plant.force != [0.0; 2] || scenario.edits.iter().any(|timed| pushes(&timed.edit));
-    if pushed { "its weight and pushes" } else { "its weight" }
 }

@@ -25,6 +25,11 @@ impl<T: Clone + PartialEq> Track<T> {
         }
     }
 
+    /// Whether there never was a row.
+    pub fn is_new(&self) -> bool {
+        self.last.is_none()
+    }
+
     /// What holds now.
     pub fn last(&self) -> Option<&T> {
         self.last.as_ref()

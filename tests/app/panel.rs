@@ -4,10 +4,10 @@ use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use stillbase::mechanics::planar::PerDrive;
+use stillbase::picture::scene::exaggeration::exaggerated;
+use stillbase::picture::scene::options::Handle;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::pointer::Pointer;
-use stillbase::picture::scene::stage::Handle;
-use stillbase::picture::scene::sway::swayed;
 use stillbase::picture::scene::views::ViewKind;
 use stillbase::session::scenario::Scenario;
 use stillbase::simulation::plant::{Base, BaseKind, Each, Plant};
@@ -98,7 +98,7 @@ fn a_base_that_moves_is_seen_to_move() {
     let moved = foreseen * (f.totals.shift + f.totals.tilt * 1.26);
     assert!((0.04..0.13).contains(&moved), "{moved} m is seen, {foreseen} times");
     // The ring's knob is where it is drawn, and pulling it there asks for the same b.
-    let shown = swayed(&f, foreseen);
+    let shown = exaggerated(&f, foreseen);
     let stage = h.state().app_state().stage().clone();
     let at = stage.handle(Handle::Ring, &shown).expect("three drives");
     let b = stage.ring_b([at[0], at[1]], f.b_reference, &shown).expect("three drives");

@@ -11,7 +11,7 @@ use stillbase::mechanics::dynamics::{Surroundings, base_wrench, inverse_with_wre
 use stillbase::mechanics::joint_forces::Joints;
 use stillbase::mechanics::machine::{Inertia, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
-use stillbase::picture::scene::stage::ViewOptions;
+use stillbase::picture::scene::options::ViewOptions;
 use stillbase::picture::scene::views::{ViewKind, Views};
 use stillbase::planning::curves::path::tip_line;
 use stillbase::planning::curves::{Curve, CurvePoint, Path, Samples};

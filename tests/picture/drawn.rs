@@ -5,8 +5,8 @@ use stillbase::picture::render::View;
 use stillbase::picture::render::offscreen::Picture;
 use stillbase::picture::scene::Measure;
 use stillbase::picture::scene::camera::Camera;
+use stillbase::picture::scene::options::ViewOptions;
 use stillbase::picture::scene::palette::{Theme, palette};
-use stillbase::picture::scene::stage::ViewOptions;
 use stillbase::picture::scene::views::{ViewKind, Views};
 use stillbase::picture::scene::wall::Wall;
 use stillbase::session::Session;
@@ -107,7 +107,7 @@ fn every_layer_of_a_shell_counts() {
         views.scene(ViewKind::Tower, session.frame(), &ViewOptions::default(), &views.camera(ViewKind::Tower));
     (scene.areas, scene.lines, scene.markers) = Default::default();
     scene.background = [0.0, 0.0, 0.0, 1.0];
-    scene.solids.retain(|s| s.name == "tower");
+    scene.solids.retain(|s| s.name == "wall");
     scene.solids[0].mesh = 0;
     scene.solids[0].colour = [1.0, 1.0, 1.0, 0.2];
     scene.model =
@@ -118,7 +118,7 @@ fn every_layer_of_a_shell_counts() {
     for mirrored in [false, true] {
         // Looked at through a mirror, every face turns its other side; what is seen does not change.
         if mirrored {
-            scene.solids[0].world_from_mesh[0].iter_mut().for_each(|x| *x = -*x);
+            scene.solids[0].world_from_item[0].iter_mut().for_each(|x| *x = -*x);
         }
         let picture = gpu.picture(&scene, &view(&camera, [201, 201])).expect("a picture");
         levels.push(picture.pixel(100, 100).expect("the middle")[0]);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use stillbase::picture::render::offscreen::{NoPicture, Picture};
 use stillbase::picture::render::{Renderer, View};
 use stillbase::picture::scene::palette::{Theme, faded, palette};
-use stillbase::picture::scene::{Area, Line, Marker, Mesh, Model, Rgba, Scene, Solid, mesh};
+use stillbase::picture::scene::{Area, Changes, Line, Marker, Mesh, Model, Rgba, Scene, Solid, mesh};
 
 use crate::Test;
 use crate::gpu::{fresh, gpu};
@@ -83,15 +83,16 @@ fn placed(angle: f32, [x, y, z]: [f32; 3]) -> [[f32; 4]; 4] {
 }
 
 fn solid(mesh: usize, world_from_mesh: [[f32; 4]; 4], colour: Rgba) -> Solid {
-    Solid { name: format!("solid/{mesh}"), mesh, world_from_mesh, colour }
+    let name = format!("solid/{mesh}").into();
+    Solid { name, mesh, world_from_item: world_from_mesh, colour, changes: Changes::Nothing }
 }
 
 fn line(points: &[[f32; 3]], width: f32, colour: Rgba) -> Line {
-    Line { name: "line".into(), points: points.to_vec(), width, colour, dash: None, on_top: false }
+    Line::new("line", [points.to_vec()], width, colour)
 }
 
 fn disc(at: [f32; 3], radius: f32, fill: Rgba, stroke: Rgba, stroke_width: f32) -> Marker {
-    Marker { name: "marker".into(), at, radius, fill, stroke, stroke_width }
+    Marker::disc("marker", at, radius, fill).edged(stroke, stroke_width)
 }
 
 /// Eq. (16) with Table I's lengths and λ: the end effector is c_1 e(q_1) + c_2 e(q_2) + c_3 e(q_3) at b* + the rest.
@@ -220,7 +221,7 @@ fn a_ghost_shows_what_lies_behind_it_through_one_layer() {
     let view = flat([0.0; 2], 1.0, 65);
     let once = gpu.picture(&scene, &view).unwrap();
     assert_close(once.pixel(32, 32).unwrap(), [0.9, 0.6, 0.55, 1.0], 2);
-    scene.solids.push(Solid { world_from_mesh: placed(0.0, [0.0, 0.0, 0.4]), ..ghost });
+    scene.solids.push(Solid { world_from_item: placed(0.0, [0.0, 0.0, 0.4]), ..ghost });
     let twice = gpu.picture(&scene, &view).unwrap();
     assert_close(twice.pixel(32, 32).unwrap(), [0.9, 0.6, 0.55, 1.0], 2);
 }
@@ -327,7 +328,7 @@ fn solids_hide_lines_below_and_not_those_on_top() {
         (below.clone(), RED),
         (Line { on_top: true, ..below.clone() }, WHITE),
         // On the very face of the solid: the bias decides for the line.
-        (Line { points: vec![[-0.9, 0.0, 0.1], [0.9, 0.0, 0.1]], ..below }, WHITE),
+        (Line { strips: [vec![[-0.9, 0.0, 0.1], [0.9, 0.0, 0.1]]].into(), ..below }, WHITE),
     ] {
         scene.lines = vec![line];
         let picture = gpu.picture(&scene, &flat([0.0; 2], 1.0, 65)).unwrap();

@@ -6,12 +6,14 @@ use proptest::prelude::*;
 use stillbase::mechanics::joint_forces::Joints;
 use stillbase::mechanics::machine::{builtins, place_of};
 use stillbase::mechanics::planar::{DriveAngles, Pose2, Vector, unit};
+use stillbase::picture::numbers::round_up;
 use stillbase::picture::scene::camera::{Camera, Flat, Orbit};
+use stillbase::picture::scene::exaggeration::{exaggerated, exaggeration};
 use stillbase::picture::scene::linkage::Linkage;
+use stillbase::picture::scene::options::{Handle, ViewOptions};
 use stillbase::picture::scene::palette::{Theme, palette};
-use stillbase::picture::scene::stage::{Handle, Stage, ViewOptions, round_up};
-use stillbase::picture::scene::sway::{exaggeration, swayed};
-use stillbase::picture::scene::{Scene, Solid};
+use stillbase::picture::scene::stage::Stage;
+use stillbase::picture::scene::{Line, Scene, Solid, place};
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Session};
 use stillbase::simulation::frame::Reach;
@@ -38,18 +40,24 @@ fn mm(p: [f32; 3]) -> String {
 /// One line a thing: what it is and where, without grid, holes of pins, colours and sizes.
 fn as_text(scene: &Scene) -> String {
     let mut text = String::new();
-    for s in scene.solids.iter().filter(|s| !s.name.ends_with("/hole")) {
-        let [along, .., at] = s.world_from_mesh;
+    for s in scene.solids.iter().filter(|s| !s.name.ends_with("/holes")) {
+        let [along, .., at] = s.world_from_item;
         let angle = f64::from(along[1].atan2(along[0])).to_degrees();
         let _ = writeln!(text, "solid {} at {} turned {:.1}°", s.name, mm([at[0], at[1], at[2]]), angle + 0.0);
     }
     for a in &scene.areas {
         let _ = writeln!(text, "area {} turned {:.3}", a.name, a.turn);
     }
-    for l in scene.lines.iter().filter(|l| l.name != "grid") {
-        let (first, last) = (l.points[0], l.points[l.points.len() - 1]);
-        let ends = if first == last { "closed".into() } else { format!("{} to {}", mm(first), mm(last)) };
-        let _ = writeln!(text, "line {} {ends}", l.name);
+    for l in scene.lines.iter().filter(|l| !l.name.starts_with("grid")) {
+        for strip in l.strips.iter() {
+            let [first, last] = [strip[0], strip[strip.len() - 1]].map(|p| place(&l.world_from_item, p));
+            let ends = if strip[0] == strip[strip.len() - 1] {
+                "closed".into()
+            } else {
+                format!("{} to {}", mm(first), mm(last))
+            };
+            let _ = writeln!(text, "line {} {ends}", l.name);
+        }
     }
     for m in &scene.markers {
         let _ = writeln!(text, "marker {} at {}", m.name, mm(m.at));
@@ -67,44 +75,44 @@ fn scene_of(session: &Session) -> Scene {
 /// Two pictures in words.
 #[test]
 fn case_3_at_its_start() {
-    let want = r#"solid ghost/1 at (0.000, 0.000) turned 96.7°
-solid ghost/5 at (-0.058, 0.497) turned 32.8°
-solid ghost/9 at (0.328, 0.746) turned -55.1°
-solid base/plate at (0.000, 0.000) turned 0.0°
-solid base/drive/1 at (0.000, 0.000) turned 0.0°
-solid base/drive/2 at (0.000, 0.000) turned 0.0°
-solid base/drive/3 at (0.000, 0.000) turned 0.0°
-solid link/1 at (0.000, 0.000) turned 96.7°
-solid link/2 at (0.000, 0.000) turned -147.2°
-solid link/3 at (0.000, 0.000) turned 124.9°
-solid link/4 at (-0.151, -0.098) turned 96.7°
-solid link/5 at (-0.058, 0.497) turned 32.8°
-solid link/6 at (-0.114, 0.164) turned 96.7°
-solid link/7 at (-0.058, 0.497) turned 124.9°
-solid link/8 at (-0.173, 0.661) turned 32.8°
-solid link/9 at (0.328, 0.746) turned -55.1°
-solid joint/1 at (-0.058, 0.497) turned 0.0°
-solid joint/2 at (-0.151, -0.098) turned 0.0°
-solid joint/3 at (-0.114, 0.164) turned 0.0°
-solid joint/4 at (-0.209, 0.399) turned 0.0°
-solid joint/5 at (0.328, 0.746) turned 0.0°
-solid joint/6 at (-0.173, 0.661) turned 0.0°
-solid joint/7 at (0.214, 0.910) turned 0.0°
-solid base/cap at (0.000, 0.000) turned 0.0°
+    let want = r#"solid plan/start/1 at (0.000, 0.000) turned 96.7°
+solid plan/start/5 at (-0.058, 0.497) turned 32.8°
+solid plan/start/9 at (0.328, 0.746) turned -55.1°
+solid machine/base at (0.000, 0.000) turned 0.0°
+solid machine/base/drive/1 at (0.000, 0.000) turned 0.0°
+solid machine/base/drive/2 at (0.000, 0.000) turned 0.0°
+solid machine/base/drive/3 at (0.000, 0.000) turned 0.0°
+solid machine/link/1 at (0.000, 0.000) turned 96.7°
+solid machine/link/2 at (0.000, 0.000) turned -147.2°
+solid machine/link/3 at (0.000, 0.000) turned 124.9°
+solid machine/link/4 at (-0.151, -0.098) turned 96.7°
+solid machine/link/5 at (-0.058, 0.497) turned 32.8°
+solid machine/link/6 at (-0.114, 0.164) turned 96.7°
+solid machine/link/7 at (-0.058, 0.497) turned 124.9°
+solid machine/link/8 at (-0.173, 0.661) turned 32.8°
+solid machine/link/9 at (0.328, 0.746) turned -55.1°
+solid machine/joints at (-0.058, 0.497) turned 0.0°
+solid machine/joints at (-0.151, -0.098) turned 0.0°
+solid machine/joints at (-0.114, 0.164) turned 0.0°
+solid machine/joints at (-0.209, 0.399) turned 0.0°
+solid machine/joints at (0.328, 0.746) turned 0.0°
+solid machine/joints at (-0.173, 0.661) turned 0.0°
+solid machine/joints at (0.214, 0.910) turned 0.0°
+solid machine/base/cap at (0.000, 0.000) turned 0.0°
 area workspace/compared turned 4.017
 area workspace turned 1.928
 line workspace/compared/boundary closed
 line workspace/boundary closed
-line workspace/change-point (0.091, -0.244) to (-0.041, 0.659)
-line ring (0.149, 0.000) to (0.149, 0.000)
-line ring/b (0.149, 0.000) to (-0.052, 0.139)
-line path (0.500, 0.500) to (0.550, 0.900)
+line workspace/change_points (0.091, -0.244) to (-0.041, 0.659)
+line b_ring (0.149, 0.000) to (0.149, 0.000)
+line b_ring/b (0.149, 0.000) to (-0.052, 0.139)
+line plan/path (0.500, 0.500) to (0.550, 0.900)
 line com (-0.018, 0.000) to (0.018, 0.000)
 line com (0.000, -0.018) to (0.000, 0.018)
-marker ring/knob at (-0.052, 0.139)
-marker waypoint/A at (0.500, 0.500)
-marker waypoint/B at (0.550, 0.900)
-marker end-effector at (0.500, 0.500)
+marker b_ring/knob at (-0.052, 0.139)
+marker plan/waypoints at (0.500, 0.500)
+marker plan/waypoints at (0.550, 0.900)
+marker end_effector at (0.500, 0.500)
 marker target at (0.500, 0.500)
 label "b = 5.000 rad" at (-0.498, 0.095)
 label "reactionless workspace" at (0.329, 0.386)
@@ -124,8 +132,8 @@ label "drag me" at (0.500, 0.500)
 #[test]
 fn a_target_outside() {
     let want = r#"line target/gap (0.324, 1.218) to (0.200, 1.150)
-marker ring/knob at (-0.052, 0.139)
-marker end-effector at (0.324, 1.218)
+marker b_ring/knob at (-0.052, 0.139)
+marker end_effector at (0.324, 1.218)
 marker target at (0.200, 1.150)
 marker target/nearest at (0.324, 1.218)
 label "b = 5.000 rad" at (-0.498, 0.095)
@@ -141,7 +149,9 @@ label "b = 2.648 rad would reach it" at (0.200, 1.150)
 "#;
     let text: String = as_text(&scene_of(&dragged_outside()))
         .lines()
-        .filter(|l| ["line target", "marker", "label", "line path", "line reaction"].iter().any(|w| l.starts_with(w)))
+        .filter(|l| {
+            ["line target", "marker", "label", "line plan/path", "line reaction"].iter().any(|w| l.starts_with(w))
+        })
         .map(|l| format!("{l}\n"))
         .collect();
     assert_eq!(text, want);
@@ -154,23 +164,23 @@ fn count(scene: &Scene, what: impl Fn(&Solid) -> bool) -> usize {
 #[test]
 fn a_picture_has_every_part_of_the_machine() {
     let scene = scene_of(&open("case-3"));
-    assert_eq!(count(&scene, |s| s.name.starts_with("link/")), 9);
+    assert_eq!(count(&scene, |s| s.name.starts_with("machine/link/")), 9);
     // 1-5-7, 2-4, 3-6, 4-5, 6-7-8, 5-9 and 8-9; the three drives share B.
-    assert_eq!(count(&scene, |s| s.name.starts_with("joint/") && !s.name.ends_with("/hole")), 7);
-    assert_eq!(count(&scene, |s| s.name.starts_with("base/drive/")), 3);
-    assert_eq!(count(&scene, |s| s.name.starts_with("ghost/")), 3, "the arms at the start of the motion");
+    assert_eq!(count(&scene, |s| s.name == "machine/joints"), 7);
+    assert_eq!(count(&scene, |s| s.name.starts_with("machine/base/drive/")), 3);
+    assert_eq!(count(&scene, |s| s.name.starts_with("plan/start/")), 3, "the arms at the start of the motion");
     assert!(scene.solids.iter().all(|s| s.mesh < scene.model.meshes.len()));
     assert!(scene.model.meshes.iter().all(|m| !m.triangles.is_empty()));
     // The workspace of the task and the one to compare with.
-    let turns: Vec<_> = scene.areas.iter().map(|a| (a.name.as_str(), a.turn)).collect();
+    let turns: Vec<_> = scene.areas.iter().map(|a| (a.name.as_ref(), a.turn)).collect();
     let session = open("case-3");
     let map = *session.run().planes().expect("three drives").map();
     let turn = |b: f64| map.turn(b) as f32;
     assert_eq!(turns, [("workspace/compared", turn(5.0)), ("workspace", turn(2.4))]);
     // Led by hand, there is no ghost and no path of a plan.
     let led = scene_of(&dragged_outside());
-    assert_eq!(count(&led, |s| s.name.starts_with("ghost/")), 0);
-    assert!(led.lines.iter().all(|l| l.name != "path"));
+    assert_eq!(count(&led, |s| s.name.starts_with("plan/start/")), 0);
+    assert!(led.lines.iter().all(|l| l.name != "plan/path"));
 }
 
 /// Handles are where their markers are, in every state of the target.
@@ -199,7 +209,7 @@ fn handles_go_with_their_base() {
 fn check_handles(session: &Session) {
     let (stage, frame) = (Stage::of(session.run()), session.frame());
     let scene = stage.scene(frame, &ViewOptions::default());
-    for (handle, name) in [(Handle::Target, "target"), (Handle::Ring, "ring/knob")] {
+    for (handle, name) in [(Handle::Target, "target"), (Handle::Ring, "b_ring/knob")] {
         let marker = scene.markers.iter().find(|m| m.name == name).expect("a marker");
         let at = stage.handle(handle, frame).expect("three drives");
         assert_eq!(at.map(|x| x as f32), marker.at, "{name} at {} s", frame.time);
@@ -212,7 +222,7 @@ fn check_handles(session: &Session) {
     let next = stage.ring_b([x, y], frame.b_reference + 1.1 * period, frame).expect("three drives");
     assert!((next - b - period).abs() < 1e-12);
     // The end effector is marked where it is.
-    let marker = scene.markers.iter().find(|m| m.name == "end-effector").expect("a marker");
+    let marker = scene.markers.iter().find(|m| m.name == "end_effector").expect("a marker");
     assert_eq!([marker.at[0], marker.at[1]], [frame.tip.re as f32, frame.tip.im as f32]);
 }
 
@@ -226,7 +236,7 @@ fn a_held_target_is_drawn_under_the_pointer() {
     let target = scene.markers.iter().find(|m| m.name == "target").expect("a marker");
     assert_eq!([target.at[0], target.at[1]], [0.1, 1.2]);
     let gap = scene.lines.iter().find(|l| l.name == "target/gap").expect("a line");
-    assert_eq!(gap.points[1], target.at);
+    assert_eq!(gap.points()[1], target.at);
 }
 
 /// The words about the reaction: green and zero on the reactionless path, red with its number off it.
@@ -244,8 +254,9 @@ fn reactions_are_said() {
         let sign = if moment < 0.0 { "−" } else { "" };
         assert_eq!(said.text == "n_B 0.000 N m", still);
         assert!(still || said.text == format!("n_B {sign}{:.3} N m", moment.abs()), "{}", said.text);
-        assert_eq!(scene.lines.iter().any(|l| l.name == "reaction/moment"), !still);
-        assert!(scene.lines.iter().all(|l| l.name != "reaction/force"), "balanced: no force");
+        let drawn = |name: &str| scene.lines.iter().any(|l| l.name == name && !l.strips.is_empty());
+        assert_eq!(drawn("reaction/moment"), !still);
+        assert!(!drawn("reaction/force"), "balanced: no force");
         assert!(scene.labels.iter().any(|l| l.text == "centre of mass at rest in B"));
     }
 }
@@ -259,19 +270,19 @@ fn pins_show_what_they_carry() {
     let (run, frame) = (session.run(), session.frame());
     let stage = Stage::of(run);
     let joints = Joints::of(&run.scenario().machine).expect("determinate");
-    assert!(scene_of(&session).lines.iter().all(|l| !l.name.starts_with("pin/")));
+    assert!(scene_of(&session).lines.iter().all(|l| !l.name.starts_with("pin_forces/")));
     let scene = stage.scene(frame, &ViewOptions { pin_forces: true, ..ViewOptions::default() });
     let worst = frame.inside.worst_pin().expect("one");
     let per_newton = 0.25 * stage.linkage().reach() / round_up(frame.inside.worst);
     for (i, pin) in joints.pins().iter().enumerate() {
         let force = frame.inside.pin(i).expect("defined");
-        let Some(shaft) = scene.lines.iter().find(|l| l.name == format!("pin/{}", pin.name)) else {
+        let Some(shaft) = scene.lines.iter().find(|l| l.name == format!("pin_forces/{}", pin.name)) else {
             assert!(force.norm() * per_newton <= 0.004 * stage.linkage().reach(), "{}", pin.name);
             continue;
         };
         let at = place_of(&pin.at, &frame.q.units());
         let want = [at, at + force * per_newton];
-        for (got, want) in shaft.points.iter().zip(want) {
+        for (got, want) in shaft.strips[0].iter().zip(want) {
             assert!((f64::from(got[0]) - want.re).hypot(f64::from(got[1]) - want.im) < 1e-6, "{}", pin.name);
         }
         let p = palette(Theme::Dark);
@@ -290,11 +301,11 @@ fn nothing_drawn_is_lost() {
             for dexterity in [Some(stillbase::picture::scene::Measure::Det), None] {
                 let options = ViewOptions { theme, dexterity, ..ViewOptions::default() };
                 let scene = Stage::of(session.run()).scene(session.frame(), &options);
-                let points = scene.lines.iter().flat_map(|l| &l.points).chain(scene.markers.iter().map(|m| &m.at));
-                let points = points.chain(scene.labels.iter().map(|l| &l.at)).copied();
+                let points = scene.lines.iter().flat_map(Line::points).chain(scene.markers.iter().map(|m| m.at));
+                let points = points.chain(scene.labels.iter().map(|l| l.at));
                 assert!(points.flatten().all(f32::is_finite));
-                assert!(scene.solids.iter().all(|s| s.world_from_mesh.iter().flatten().all(|x| x.is_finite())));
-                assert!(scene.lines.iter().all(|l| l.points.len() > 1), "a line has two ends");
+                assert!(scene.solids.iter().all(|s| s.world_from_item.iter().flatten().all(|x| x.is_finite())));
+                assert!(scene.lines.iter().flat_map(|l| l.strips.iter()).all(|s| s.len() > 1), "a line has two ends");
                 assert!(scene.labels.iter().all(|l| !l.text.is_empty()));
             }
         }
@@ -302,7 +313,7 @@ fn nothing_drawn_is_lost() {
 }
 
 fn placed(solid: &Solid, s: f64) -> Vector {
-    let [x, _, _, at] = solid.world_from_mesh.map(|c| [f64::from(c[0]), f64::from(c[1])]);
+    let [x, _, _, at] = solid.world_from_item.map(|c| [f64::from(c[0]), f64::from(c[1])]);
     Vector::new(at[0] + s * x[0], at[1] + s * x[1])
 }
 
@@ -317,7 +328,7 @@ proptest! {
         let e = DriveAngles::from(q).units();
         let solids = linkage.solids(&e, Pose2::default(), false, &palette(Theme::Dark));
         for (part, link) in machine.parts().iter().zip(machine.links()) {
-            let solid = solids.iter().find(|s| s.name == format!("link/{}", link.name)).expect("every link");
+            let solid = solids.iter().find(|s| s.name == format!("machine/link/{}", link.name)).expect("every link");
             let mesh = &linkage.model.meshes[solid.mesh];
             let xs = || mesh.positions.iter().map(|p| f64::from(p[0]));
             let (from, to) = (xs().fold(f64::INFINITY, f64::min), xs().fold(f64::NEG_INFINITY, f64::max));
@@ -329,7 +340,7 @@ proptest! {
         }
         // The arm that carries the end effector ends in it.
         let last = &machine.links()[machine.tip_link()].name;
-        let solid = solids.iter().find(|s| s.name == format!("link/{last}")).expect("the last arm");
+        let solid = solids.iter().find(|s| s.name == format!("machine/link/{last}")).expect("the last arm");
         let tip = placed(solid, machine.parts()[machine.tip_link()].length);
         prop_assert!((tip - place_of(machine.tip(), &e)).norm() < 1e-6);
         // A joint is drawn on every pin off B: each lies on a joint, and each joint on a pin.
@@ -338,7 +349,7 @@ proptest! {
             .filter(|p| p.norm() > 1e-9)
             .collect();
         let joints: Vec<Vector> = solids.iter()
-            .filter(|s| s.name.starts_with("joint/"))
+            .filter(|s| s.name == "machine/joints")
             .map(|s| placed(s, 0.0))
             .collect();
         for (some, others) in [(&pins, &joints), (&joints, &pins)] {
@@ -466,14 +477,21 @@ fn all_of_the_machine_goes_with_its_base() {
     };
     let stage = Stage::of(session.run());
     for times in [1.0, 20.0] {
-        let options = ViewOptions { sway: times, ..Default::default() };
+        let options = ViewOptions { exaggeration: times, ..Default::default() };
         let (moved, unmoved) = (stage.scene(f, &options), stage.scene(&still, &options));
         let (at, turn) = (f.base.at * times, unit(f.base.angle * times));
         let seen = |scene: &Scene, name: &str| {
-            let solid = scene.solids.iter().find(|s| s.name == name).expect("a solid").world_from_mesh[3];
+            let solid = scene.solids.iter().find(|s| s.name == name).expect("a solid").world_from_item[3];
             Vector::new(f64::from(solid[0]), f64::from(solid[1]))
         };
-        for name in ["link/1", "link/5", "link/9", "joint/4", "base/plate", "base/body"] {
+        for name in [
+            "machine/link/1",
+            "machine/link/5",
+            "machine/link/9",
+            "machine/joints",
+            "machine/base",
+            "machine/base/body",
+        ] {
             let want = at + seen(&unmoved, name) * turn;
             assert!((seen(&moved, name) - want).norm() < 1e-6, "{name} at {times} times");
         }
@@ -484,7 +502,7 @@ fn all_of_the_machine_goes_with_its_base() {
         assert!((unit(more) - turn).norm() < 1e-6);
         let mark = |scene: &Scene, name: &str| scene.markers.iter().find(|m| m.name == name).expect("a marker").at;
         assert_eq!(mark(&moved, "target"), mark(&unmoved, "target"), "it stays where it was set");
-        assert!(mark(&moved, "payload") != mark(&moved, "end-effector"));
+        assert!(mark(&moved, "payload") != mark(&moved, "end_effector"));
         let ghost = |scene: &Scene| scene.lines.iter().any(|l| l.name == "unmoved");
         assert!(ghost(&moved) && !ghost(&unmoved), "a ghost where there is a difference");
         assert!(moved.labels.iter().any(|l| l.text.ends_with("shown ×20")) == (times == 20.0));
@@ -519,8 +537,8 @@ proptest! {
     fn exaggeration_moves_all_alike(times in 1.0..100.0f64) {
         let session = floating();
         let frame = session.frame();
-        prop_assert_eq!(swayed(frame, 1.0), *frame);
-        let more = swayed(frame, times);
+        prop_assert_eq!(exaggerated(frame, 1.0), *frame);
+        let more = exaggerated(frame, times);
         prop_assert!((more.in_base(more.tip) - frame.in_base(frame.tip)).norm() < 1e-12);
         prop_assert!((more.in_base(more.com) - frame.in_base(frame.com)).norm() < 1e-12);
         for k in 0..3 {
@@ -540,8 +558,8 @@ fn a_miss_is_shown_and_said() {
     let miss = 1e3 * (tip - goal).norm();
     assert!(miss > 1.0, "{miss} mm");
     let stage = Stage::of(session.run());
-    for sway in [1.0, 20.0] {
-        let scene = stage.scene(f, &ViewOptions { sway, ..Default::default() });
+    for times in [1.0, 20.0] {
+        let scene = stage.scene(f, &ViewOptions { exaggeration: times, ..Default::default() });
         let said = |words: &str| scene.labels.iter().any(|l| l.text == words);
         assert!(said(&format!("{:.3}, {:.3} m", goal.re, goal.im)), "the ring's own place");
         for words in [format!("end effector {:.3}, {:.3} m", tip.re, tip.im), format!("{miss:.1} mm off")] {
@@ -549,7 +567,7 @@ fn a_miss_is_shown_and_said() {
         }
         let line = scene.lines.iter().find(|l| l.name == "target/miss").expect("a line between");
         let at = |name: &str| scene.markers.iter().find(|m| m.name == name).expect("a marker").at;
-        assert_eq!(line.points, [at("end-effector"), at("target")]);
+        assert_eq!(line.points(), [at("end_effector"), at("target")]);
     }
     let still = scene_of(&open("case-3"));
     assert!(still.lines.iter().all(|l| l.name != "target/miss"));

@@ -6,13 +6,14 @@ use stillbase::picture::scene::Measure;
 use stillbase::picture::scene::axes::{Axis, sliding};
 use stillbase::picture::scene::camera::Camera;
 use stillbase::picture::scene::joint_space::JointSpace;
+use stillbase::picture::scene::options::{Handle, ViewOptions};
 use stillbase::picture::scene::palette::{Theme, palette};
+use stillbase::picture::scene::pick::{Aim, Pick};
 use stillbase::picture::scene::pointer::Pointer;
-use stillbase::picture::scene::stage::{Handle, ViewOptions};
 use stillbase::picture::scene::tower::Tower;
-use stillbase::picture::scene::views::{Aim, Grip, ViewKind, Views};
+use stillbase::picture::scene::views::{ViewKind, Views};
 use stillbase::picture::scene::wall::Wall;
-use stillbase::picture::scene::{Line, Scene};
+use stillbase::picture::scene::{Line, Scene, place};
 use stillbase::planning::reactionless::AngleLimit;
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Session};
@@ -67,11 +68,13 @@ fn the_slice_is_the_workspace_at_its_height() {
         let (tower, scene) = tower_of(&session);
         let (frame, planes) = (session.frame(), session.run().planes().expect("three drives"));
         let loops = planes.boundary().turned(frame.b_reference);
-        assert_eq!(lines(&scene, "slice/boundary").count(), loops.len());
-        for (line, want) in lines(&scene, "slice/boundary").zip(&loops) {
-            assert_eq!(line.points.len(), want.len() + 1, "closed");
-            assert_eq!(line.points.first(), line.points.last());
-            for (got, want) in line.points.iter().zip(want) {
+        let outline = lines(&scene, "slice/boundary").next().expect("an outline");
+        assert_eq!(outline.strips.len(), loops.len());
+        for (strip, want) in outline.strips.iter().zip(&loops) {
+            assert_eq!(strip.len(), want.len() + 1, "closed");
+            assert_eq!(strip.first(), strip.last());
+            let there: Vec<_> = strip.iter().map(|p| place(&outline.world_from_item, *p)).collect();
+            for (got, want) in there.iter().zip(want) {
                 let miss = (f64::from(got[0]) - want[0]).hypot(f64::from(got[1]) - want[1]);
                 assert!(miss < 1e-6, "{got:?} and {want:?}");
                 assert!((b_at(&tower, frame, got[2]) - frame.b_reference).abs() < 1e-6);
@@ -79,7 +82,7 @@ fn the_slice_is_the_workspace_at_its_height() {
         }
         // Its fill is that workspace too, vertex by vertex.
         let fill = scene.solids.iter().find(|s| s.name == "slice").expect("a fill");
-        let m = fill.world_from_mesh;
+        let m = fill.world_from_item;
         assert!((b_at(&tower, frame, m[3][2]) - frame.b_reference).abs() < 1e-6);
         for p in scene.model.meshes[fill.mesh].positions.iter().step_by(101) {
             let at: [f32; 2] = std::array::from_fn(|r| (0..3).map(|c| m[c][r] * p[c]).sum::<f32>());
@@ -99,8 +102,8 @@ fn the_wall_stands_on_the_boundary_at_every_height() {
     for session in [open("case-3"), posed("case-3", -3.3)] {
         let (tower, scene) = tower_of(&session);
         let (frame, boundary) = (session.frame(), session.run().planes().expect("three drives").boundary());
-        let solid = scene.solids.iter().find(|s| s.name == "tower").expect("the wall");
-        let (mesh, m) = (&scene.model.meshes[solid.mesh], solid.world_from_mesh);
+        let solid = scene.solids.iter().find(|s| s.name == "wall").expect("the wall");
+        let (mesh, m) = (&scene.model.meshes[solid.mesh], solid.world_from_item);
         assert!(mesh.shell && mesh.positions.len() > 5_000);
         assert_eq!(mesh.positions.len(), mesh.normals.len());
         let mut heights = [f64::INFINITY, f64::NEG_INFINITY];
@@ -174,8 +177,9 @@ fn bars_end_where_b_stops_reaching_the_point() {
         [("reach/A", 0.5, 0.5, [1.6495370969, 2.9012991061]), ("reach/B", 0.55, 0.9, [2.2157496582, 2.6610727211])]
     {
         let bars: Vec<_> = lines(&scene, name).collect();
-        let [bar] = bars[..] else { panic!("{name}: {} bars", bars.len()) };
-        for (p, b) in bar.points.iter().zip(want) {
+        let [bar] = bars[..] else { panic!("{name}: {} lines", bars.len()) };
+        assert_eq!(bar.strips.len(), 1, "{name}: one bar");
+        for (p, b) in bar.points().iter().zip(want) {
             assert!((b_at(&tower, frame, p[2]) - b).abs() < 1e-6);
             assert!((f64::from(p[0]) - x).hypot(f64::from(p[1]) - y) < 1e-6);
         }
@@ -218,10 +222,11 @@ fn the_planes_polygon_keeps_b_and_the_limits() {
         let (frame, map) = (session.frame(), *session.run().planes().expect("three drives").map());
         let outlines: Vec<_> = lines(&scene, "plane/boundary").collect();
         let [outline] = outlines[..] else { panic!("one plane") };
-        assert_eq!(outline.points.len(), 5);
-        assert_eq!(outline.points[0], outline.points[4]);
+        let outline = outline.points();
+        assert_eq!(outline.len(), 5);
+        assert_eq!(outline[0], outline[4]);
         let mut corners = 0;
-        for p in &outline.points[..4] {
+        for p in &outline[..4] {
             let at = map.project(&space.angles(p.map(f64::from), frame.b_reference));
             assert!((at.b - frame.b_reference).abs() < 1e-6, "{} and {}", at.b, frame.b_reference);
             let limits = map.limits();
@@ -232,17 +237,17 @@ fn the_planes_polygon_keeps_b_and_the_limits() {
         assert_eq!(corners, 4, "the plane reaches as far as the limits");
         // The fill is that polygon.
         let plane = scene.solids.iter().find(|s| s.name == "plane").expect("a fill");
-        let shift = plane.world_from_mesh[3];
+        let shift = plane.world_from_item[3];
         for p in &scene.model.meshes[plane.mesh].positions {
             let p: [f32; 3] = std::array::from_fn(|i| p[i] + shift[i]);
             let near = |q: &[f32; 3]| q.iter().zip(p).all(|(q, p)| (q - p).abs() < 2e-6);
-            assert!(outline.points.iter().any(near), "{p:?}");
+            assert!(outline.iter().any(near), "{p:?}");
         }
         // Turning all drives alike keeps the limits: the prism's edges run along (1, 1, 1).
-        let edges: Vec<_> = lines(&scene, "prism/edge").collect();
-        assert_eq!(edges.len(), 4);
-        for edge in edges {
-            let d: [f32; 3] = std::array::from_fn(|i| edge.points[1][i] - edge.points[0][i]);
+        let edges = lines(&scene, "limits").next().expect("edges");
+        assert_eq!(edges.strips.len(), 4);
+        for edge in edges.strips.iter() {
+            let d: [f32; 3] = std::array::from_fn(|i| edge[1][i] - edge[0][i]);
             assert!((d[0] - d[1]).abs() < 1e-5 && (d[0] - d[2]).abs() < 1e-5 && d[0] > 1.0);
         }
     }
@@ -269,7 +274,7 @@ fn the_pose_is_where_the_drives_are() {
         let (b, map) = (session.frame().b_reference, *session.run().planes().expect("three drives").map());
         let path = lines(&scene, "path").next().expect("a path");
         let off = |p: &[f32; 3]| (map.project(&space.angles(p.map(f64::from), b)).b - b).abs();
-        let farthest = path.points.iter().map(off).fold(0.0, f64::max);
+        let farthest = path.points().iter().map(off).fold(0.0, f64::max);
         assert_eq!(farthest < 1e-6, flat, "{case}: {farthest}");
     }
 }
@@ -376,8 +381,8 @@ fn the_machines_handles_are_found_in_both_views() {
         for handle in [Handle::Target, Handle::Ring] {
             let at = views.stage().handle(handle, frame).expect("three drives");
             let here = pointer(camera, at);
-            assert_eq!(views.pick(kind, frame, &here), Some(Grip { handle, at }));
-            match views.aim(kind, &Grip { handle, at }, frame, &here, 2.4) {
+            assert_eq!(views.pick(kind, frame, &here), Some(Pick { handle, at }));
+            match views.aim(kind, &Pick { handle, at }, frame, &here, 2.4) {
                 Some(Aim::Target([x, y])) => assert!((x - 0.5).hypot(y - 0.5) < 1e-6),
                 Some(Aim::B(b)) => assert!((b - 2.4).abs() < 1e-6),
                 Some(Aim::Waypoint(..) | Aim::Push(_)) => panic!("not asked for"),
@@ -402,11 +407,11 @@ fn nothing_drawn_is_lost() {
             for (theme, camera) in [Theme::Dark, Theme::Light].into_iter().zip(cameras(views.camera(kind))) {
                 let options = ViewOptions { theme, ..ViewOptions::default() };
                 let scene = views.scene(kind, session.frame(), &options, &camera);
-                let points = scene.lines.iter().flat_map(|l| &l.points).chain(scene.markers.iter().map(|m| &m.at));
-                let points = points.chain(scene.labels.iter().map(|l| &l.at)).copied();
+                let points = scene.lines.iter().flat_map(Line::points).chain(scene.markers.iter().map(|m| m.at));
+                let points = points.chain(scene.labels.iter().map(|l| l.at));
                 assert!(points.flatten().all(f32::is_finite));
                 assert!(scene.solids.iter().all(|s| s.mesh < scene.model.meshes.len()));
-                assert!(scene.lines.iter().all(|l| l.points.len() > 1), "a line has two ends");
+                assert!(scene.lines.iter().flat_map(|l| l.strips.iter()).all(|s| s.len() > 1), "a line has two ends");
                 assert!(scene.lines.len() < 1_000 && scene.labels.len() < 60);
                 assert!(scene.labels.iter().all(|l| !l.text.is_empty()));
             }
@@ -442,12 +447,14 @@ fn the_grid_is_behind() {
     for camera in cameras(tower.camera()) {
         let scene = tower.scene(session.frame(), &ViewOptions::default(), &camera);
         let eye = camera.eye_direction();
-        for line in lines(&scene, "grid") {
+        let walls: Vec<_> = ["axes/grid", "axes/edges"].iter().flat_map(|name| lines(&scene, name)).collect();
+        assert_eq!(walls.len(), 2);
+        for strip in walls.iter().flat_map(|line| line.strips.iter()) {
             let on_wall = (0..2).any(|i| {
                 let side = if eye[i] >= 0.0 { -1.0 } else { 1.0 };
-                line.points.iter().all(|p| p[i] * side > 0.0 && p[i] == line.points[0][i])
+                strip.iter().all(|p| p[i] * side > 0.0 && p[i] == strip[0][i])
             });
-            assert!(on_wall || line.points.iter().all(|p| p[2] == 0.0), "{:?}", line.points);
+            assert!(on_wall || strip.iter().all(|p| p[2] == 0.0), "{strip:?}");
         }
     }
 }
@@ -475,7 +482,7 @@ fn the_key_to_dexterity_is_its_range() {
         let options = ViewOptions { dexterity, ..ViewOptions::default() };
         let scene = views.scene(ViewKind::Flat, session.frame(), &options, &camera);
         let shades: Vec<_> =
-            scene.areas.iter().map(|a| (a.name.as_str(), a.shade.map(|s| [s.empty, s.full]))).collect();
+            scene.areas.iter().map(|a| (a.name.as_ref(), a.shade.map(|s| [s.empty, s.full]))).collect();
         let range = dexterity.map(|measure| measure.range(&map).map(|x| x as f32));
         assert_eq!(shades, [("workspace/compared", None), ("workspace", range)]);
     }

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use stillbase::mechanics::kinematics::end_effector;
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{PerDrive, Vector, unit};
-use stillbase::picture::scene::stage::ViewOptions;
+use stillbase::picture::scene::options::ViewOptions;
 use stillbase::picture::scene::views::Views;
 use stillbase::planning::curves::given::SamplesError;
 use stillbase::planning::curves::low_pass::LowPass;
@@ -324,10 +324,11 @@ fn a_given_motion_lives_in_a_session() {
     let see = |session: &Session| {
         let views = Views::of(session.run());
         let scene = views.stage().scene(session.frame(), &ViewOptions::default());
-        assert!(scene.lines.iter().any(|line| line.name == "path"));
-        let marker = |name: &str| scene.markers.iter().find(|m| m.name == name).expect("a marker").at;
-        for (name, share) in [("waypoint/A", 0.0), ("waypoint/B", 1.0)] {
-            let (at, want) = (marker(name), session.run().on_path(share));
+        assert!(scene.lines.iter().any(|line| line.name == "plan/path"));
+        let places: Vec<_> = scene.markers.iter().filter(|m| m.name == "plan/waypoints").map(|m| m.at).collect();
+        assert_eq!(places.len(), 2);
+        for (at, share) in places.into_iter().zip([0.0, 1.0]) {
+            let want = session.run().on_path(share);
             assert!((f64::from(at[0]) - want.re).hypot(f64::from(at[1]) - want.im) < 1e-6);
         }
     };

@@ -217,7 +217,7 @@ impl<'a> Knob<'a> {
         let called = called.unwrap_or_else(|| row.label.to_owned());
         let mut value = now;
         let differs = now != normal;
-        let written = |x: f64| crate::picture::scene::stage::signed(x, row.decimals);
+        let written = |x: f64| crate::picture::numbers::signed(x, row.decimals);
         let mut responses = Vec::new();
         ui.horizontal(|ui| {
             ui.label(row.label).on_hover_text(row.tip);

@@ -1,7 +1,7 @@
 //! What the renderers share: the frame's uniform, the pipeline they agree on, and lists of things in GPU memory.
 
-use super::View;
 use super::shader::twin;
+use super::view::View;
 use crate::picture::scene::Rgba;
 use bytemuck::{Pod, Zeroable as _};
 use std::num::NonZeroU64;

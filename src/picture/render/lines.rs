@@ -1,9 +1,9 @@
 //! Polylines as antialiased ribbons of constant width on the screen.
 
-use super::View;
 use super::kit::{ENTRIES, Kit, List, Recipe, Upload};
 use super::shader::{Shader, embedded, twin};
-use crate::picture::scene::{Line, Scene};
+use super::view::View;
+use crate::picture::scene::{IN_PLACE, Line, Scene, place};
 
 twin! {
     /// One segment, with the vertices beside it.
@@ -76,13 +76,23 @@ impl Lines {
     }
 
     fn add(&mut self, line: &Line, view: &View) {
-        let Line { name: _, points, width, colour, dash, on_top: _ } = line;
+        if line.width.is_nan() || line.width <= 0.0 || line.colour[3] <= 0.0 {
+            return;
+        }
+        line.strips.iter().for_each(|strip| self.add_strip(strip, line, view));
+    }
+
+    fn add_strip(&mut self, strip: &[[f32; 3]], line: &Line, view: &View) {
+        let Line { name: _, strips: _, world_from_item, width, colour, dash, on_top: _, changes: _ } = line;
         self.path.clear();
-        self.path.extend(points.iter().filter(|p| p.iter().all(|x| x.is_finite())));
+        self.path.extend(strip.iter().filter(|p| p.iter().all(|x| x.is_finite())));
+        if *world_from_item != IN_PLACE {
+            self.path.iter_mut().for_each(|p| *p = place(world_from_item, *p));
+        }
         self.path.dedup();
         let path = &self.path;
         let n = path.len();
-        if n < 2 || width.is_nan() || *width <= 0.0 || colour[3] <= 0.0 {
+        if n < 2 {
             return;
         }
         let closed = n > 2 && path[0] == path[n - 1];

@@ -13,45 +13,15 @@ mod markers;
 pub mod offscreen;
 mod shader;
 mod solids;
+mod view;
 mod workspace;
 
 pub use shader::Twin;
+pub use view::View;
 
 use crate::picture::scene::Scene;
 use kit::Upload;
 use wgpu::util::StagingBelt;
-
-/// From where a scene is seen, and how large.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct View {
-    /// Clip space from world space, column-major, depth 0..1.
-    pub clip_from_world: [[f32; 4]; 4],
-    /// Unit vector from the scene towards the eye, in the world.
-    pub eye_direction: [f32; 3],
-    /// Width and height, physical pixels.
-    pub size_px: [u32; 2],
-    /// Physical pixels in a logical one: widths and radii in the scene are logical.
-    pub pixels_per_point: f32,
-}
-
-impl View {
-    /// Where a world point lies on the screen in physical pixels, y down; `None` at or behind the eye.
-    pub fn project(&self, [x, y, z]: [f32; 3]) -> Option<[f32; 2]> {
-        let m = &self.clip_from_world;
-        let clip = |row: usize| m[0][row] * x + m[1][row] * y + m[2][row] * z + m[3][row];
-        let [width, height] = self.size_px.map(|n| n as f32);
-        let w = clip(3);
-        (w > 0.0).then(|| [(0.5 + 0.5 * clip(0) / w) * width, (0.5 - 0.5 * clip(1) / w) * height])
-    }
-
-    /// Distance on the screen, physical pixels; 0 where a point is behind the eye.
-    fn pixels_between(&self, a: [f32; 3], b: [f32; 3]) -> f32 {
-        match (self.project(a), self.project(b)) {
-            (Some(a), Some(b)) => (b[0] - a[0]).hypot(b[1] - a[1]),
-            _ => 0.0,
-        }
-    }
-}
 
 /// Pipelines and memory for drawing one scene at a time.
 pub struct Renderer {

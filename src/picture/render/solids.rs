@@ -155,7 +155,7 @@ impl Solids {
         let mut last = None;
         for k in &self.order {
             let (mesh, at) = (solids[*k].mesh, self.list.items.len() as u32);
-            self.list.items.push(Instance { world_from_mesh: solids[*k].world_from_mesh, colour: solids[*k].colour });
+            self.list.items.push(Instance { world_from_mesh: solids[*k].world_from_item, colour: solids[*k].colour });
             match self.runs.last_mut() {
                 Some(run) if last == Some((layer(k), mesh)) => run.instances.end = at + 1,
                 _ => self.runs.push(Run { mesh, instances: at..at + 1 }),

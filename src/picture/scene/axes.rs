@@ -1,8 +1,8 @@
 //! A box with three labelled axes: a quiet grid on the walls that are behind, ticks on the edges that are in front.
 
 use super::palette::{Palette, faded};
-use super::stage::signed;
-use super::{Anchor, Label, Line, Rgba, Scene};
+use super::{Anchor, Changes, Label, Line, Rgba, Scene};
+use crate::picture::numbers::signed;
 
 /// One direction of the box: what it shows and over which range.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,6 +22,9 @@ pub struct Axis {
     /// A value that is set off, and its colour.
     pub now: Option<(f64, Rgba)>,
 }
+
+/// The mark of now on each axis.
+const NOW: [&str; 3] = ["axes/now/1", "axes/now/2", "axes/now/3"];
 
 /// The most marks on one axis.
 const MARKS: usize = 40;
@@ -99,39 +102,39 @@ impl<'a> Sight<'a> {
     }
 }
 
-/// Draws a box as seen from a direction, a unit vector from the scene towards the eye.
-pub fn draw(scene: &mut Scene, palette: &Palette, axes: &[Axis; 3], eye: [f64; 3]) {
+/// Draws a box as seen from a direction, a unit vector from the scene towards the eye; it stands still, or slides along.
+pub fn draw(scene: &mut Scene, palette: &Palette, axes: &[Axis; 3], eye: [f64; 3], stands: Changes) {
     let sight = Sight::new(axes, eye);
-    let at = |p: [f64; 3]| p.map(|x| x as f32);
-    let line = |name: &str, ends: [[f64; 3]; 2], width, colour| Line {
-        name: name.into(),
-        points: ends.map(at).to_vec(),
-        width,
-        colour,
-        dash: None,
-        on_top: false,
-    };
+    let (mut grid, mut edges, mut ticks) = (Vec::new(), Vec::new(), Vec::new());
     // Each wall by the axis it stands across: lines along one of its axes at the marks of the other.
     for wall in 0..3 {
         for (across, along) in [((wall + 1) % 3, (wall + 2) % 3), ((wall + 2) % 3, (wall + 1) % 3)] {
-            let [from, to] = axes[along].ends;
-            let grid = axes[across].marks().map(|v| (axes[across].place(v), faded(palette.line, 0.7)));
-            for (place, colour) in grid.chain(axes[across].ends.map(|e| (e, palette.line))) {
+            let ends_at = |place: f64| {
                 let mut ends = [sight.back; 2];
-                for (end, x) in ends.iter_mut().zip([from, to]) {
+                for (end, x) in ends.iter_mut().zip(axes[along].ends) {
                     (end[across], end[along]) = (place, x);
                 }
-                scene.lines.push(line("grid", ends, 1.0, colour));
-            }
+                ends.map(|p| p.map(|x| x as f32)).to_vec()
+            };
+            grid.extend(axes[across].marks().map(|v| ends_at(axes[across].place(v))));
+            edges.extend(axes[across].ends.map(ends_at));
         }
     }
+    let first = scene.lines.len();
     for (k, axis) in axes.iter().enumerate() {
-        mark(scene, palette, &sight, k, axis);
+        mark(scene, &mut ticks, palette, &sight, k, axis);
     }
+    let box_lines = [
+        Line::new("axes/grid", grid, 1.0, faded(palette.line, 0.7)),
+        Line::new("axes/edges", edges, 1.0, palette.line),
+        Line::new("axes/ticks", ticks, 1.0, palette.dim),
+    ];
+    let box_lines = box_lines.map(|line| Line { changes: stands, ..line });
+    scene.lines.splice(first..first, box_lines);
 }
 
 /// Marks, their values, the title and the value of now on the edge of axis k.
-fn mark(scene: &mut Scene, palette: &Palette, sight: &Sight, k: usize, axis: &Axis) {
+fn mark(scene: &mut Scene, ticks: &mut Vec<Vec<[f32; 3]>>, palette: &Palette, sight: &Sight, k: usize, axis: &Axis) {
     let (edge, out) = sight.edge(k);
     let [dx, dy] = sight.on_screen(out);
     let longest = sight.axes.iter().map(Axis::length).fold(0.0, f64::max);
@@ -141,32 +144,28 @@ fn mark(scene: &mut Scene, palette: &Palette, sight: &Sight, k: usize, axis: &Ax
         p[k] = axis.place(value);
         [0, 1, 2].map(|i| (p[i] + off * longest * out[i] / size) as f32)
     };
-    let tick = |value: f64, length: f64, colour, width| Line {
-        name: "axis/tick".into(),
-        points: vec![place(value, 0.0), place(value, length)],
-        width,
-        colour,
-        dash: None,
-        on_top: false,
-    };
+    let tick = |value: f64, length: f64| vec![place(value, 0.0), place(value, length)];
     let beside = |distance: f64| [(distance * dx) as f32, (0.8 * distance * dy) as f32];
     let anchor = if k == 2 { Anchor::Left } else { Anchor::Centre };
-    let label = |at, offset, text, colour, size| Label { at, offset, text, colour, size, anchor };
+    let label = |name: &'static str, at, offset, text: String, colour, size| {
+        Label::new(name, at, offset, text, colour, size, anchor)
+    };
     let upright = k == 2;
     for value in axis.marks() {
-        scene.lines.push(tick(value, 0.012, palette.dim, 1.0));
+        ticks.push(tick(value, 0.012));
         // The value of now takes the place of a mark.
         let room = if upright { 0.07 } else { 0.062 };
         if axis.now.is_some_and(|(now, _)| (now - value).abs() < room * (axis.values[1] - axis.values[0])) {
             continue;
         }
         let offset = if upright { [9.0, 0.0] } else { beside(19.0) };
-        scene.labels.push(label(place(value, 0.012), offset, signed(value, axis.decimals), palette.dim, 11.5));
+        let text = signed(value, axis.decimals);
+        scene.labels.push(label("axes/words", place(value, 0.012), offset, text, palette.dim, 11.5));
     }
     if let Some((now, colour)) = axis.now {
-        scene.lines.push(tick(now, 0.022, colour, 2.0));
+        scene.lines.push(Line::new(NOW[k], [tick(now, 0.022)], 2.0, colour));
         let offset = if upright { [9.0, 0.0] } else { beside(19.0) };
-        scene.labels.push(label(place(now, 0.022), offset, signed(now, 3), colour, 12.5));
+        scene.labels.push(label("axes/now/words", place(now, 0.022), offset, signed(now, 3), colour, 12.5));
     }
     // The title stands over the upright axis, and beyond the far ends of the others.
     let (at, offset) = match upright {
@@ -179,8 +178,7 @@ fn mark(scene: &mut Scene, palette: &Palette, sight: &Sight, k: usize, axis: &Ax
             (place(beyond, 0.012), beside(if shared { 48.0 } else { 19.0 }))
         }
     };
-    let anchor = Anchor::Centre;
-    scene.labels.push(Label { at, offset, text: axis.title.into(), colour: axis.colour, size: 12.5, anchor });
+    scene.labels.push(Label::new("axes/titles", at, offset, axis.title, axis.colour, 12.5, Anchor::Centre));
 }
 
 /// The range of `width`, about `home` where it can be, that holds a range with a `margin` to its ends; of a range that is

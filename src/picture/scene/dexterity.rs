@@ -1,7 +1,6 @@
 //! Dexterity as a shade of the workspace: three measures of a pose, the same for every b.
 
-use super::linkage::mix;
-use super::palette::{Palette, faded};
+use super::palette::{Palette, faded, mix};
 use super::{Measure, Rgba};
 use crate::planning::reactionless::PlaneMap;
 

@@ -9,11 +9,13 @@ use std::sync::Arc;
 
 use super::axes::{self, Axis};
 use super::camera::{Camera, Orbit};
+use super::course::stations;
+use super::options::{Handle, ViewOptions};
 use super::palette::{Palette, faded, palette};
+use super::pick::{Aim, NEAR, Pick};
 use super::pointer::{Pointer, dot};
-use super::stage::{Handle, ViewOptions, looks, round_up, signed};
-use super::views::{Aim, GRIP, Grip};
-use super::{Anchor, Label, Line, Marker, Mesh, Model, Scene, Solid};
+use super::{Anchor, Changes, IN_PLACE, Label, Line, Marker, Mesh, Model, Pose, Scene, Solid, Strips};
+use crate::picture::numbers::{degrees, round_up};
 use crate::planning::pose_constant::Planes;
 use crate::planning::reactionless::PlanePoint;
 use crate::session::Run;
@@ -24,6 +26,8 @@ const SPAN: f64 = 3.0;
 const MARGIN: f64 = 0.4;
 /// Where the span lies while the present b is well inside, rad.
 const HOME: f64 = 2.5;
+/// Changes of b from which on they are what there is to see, rad.
+const BESIDE: f64 = 0.3;
 /// Neighbouring planes lie at multiples of this, rad.
 const NEIGHBOURS: f64 = 0.5;
 /// Room around the prism, rad.
@@ -40,27 +44,54 @@ pub struct JointSpace {
     model: Arc<Model>,
     /// The drive shown along each axis of the scene, counted from 0.
     drives: [usize; 3],
+    /// The outline of the parallelogram.
+    outline: Strips,
     /// (a_1, a_2) of the parallelogram's corners, in order, rad.
     corners: [[f64; 2]; 4],
-    /// q of the planned motion, rad.
-    course: Vec<[f64; 3]>,
+    /// q of the planned motion along the axes of the scene, as it is where the origin is q = 0; none without a plan.
+    course: Strips,
+    /// The b that are shown, rad, where they do not slide along with the present one.
+    fixed: Option<[f64; 2]>,
+    /// b changes so much that this is what there is to see.
+    travels: bool,
 }
 
 impl JointSpace {
     /// Prepares a run for drawing; to be made again when its machine or plan changes.
     pub fn of(run: &Run) -> Option<Self> {
+        Self::showing(run, None)
+    }
+
+    /// For a whole run, whose b lie in a range, rad: it shows all of them and stands still, with q itself as coordinates.
+    pub fn over(run: &Run, [low, high]: [f64; 2]) -> Option<Self> {
+        let width = SPAN.max(high - low + 2.0 * MARGIN);
+        let space = Self::showing(run, Some(axes::covering([low, high], HOME, width, MARGIN)))?;
+        Some(Self { travels: high - low > BESIDE, ..space })
+    }
+
+    fn showing(run: &Run, fixed: Option<[f64; 2]>) -> Option<Self> {
         let planes = run.planes()?.clone();
         let map = planes.map();
         let lambda = map.lambda();
         let up = (0..3).max_by(|i, j| lambda[*i].total_cmp(&lambda[*j]))?;
         let [a1, a2] = map.limits();
         let corners = [[a1.min, a2.min], [a1.max, a2.min], [a1.max, a2.max], [a1.min, a2.max]];
-        let course = run.motion().map_or_else(Vec::new, |motion| {
+        let drives = [1, 2, 3].map(|i| (up + i) % 3);
+        let course = run.motion().map(|motion| {
             let at = |s: f64| motion.path.at(s).q;
-            looks(motion).map(at).map(|q| [q[0], q[1], q[2]]).collect()
+            stations(motion).map(at).map(|q| drives.map(|k| q[k] as f32)).collect()
         });
-        let mut space =
-            Self { model: Arc::default(), drives: [1, 2, 3].map(|i| (up + i) % 3), corners, course, planes };
+        let course = course.into_iter().collect();
+        let mut space = Self {
+            model: Arc::default(),
+            outline: Strips::default(),
+            travels: false,
+            drives,
+            corners,
+            course,
+            planes,
+            fixed,
+        };
         let [low, high] = space.window(HOME);
         let ring = |b: f64| corners.map(|a| space.point(space.planes.map().lift(PlanePoint { a, b }), HOME));
         let (own, bottom, top) = (ring(HOME), ring(low), ring(high));
@@ -71,17 +102,13 @@ impl JointSpace {
         let faces = [[own[0], own[1], own[2]], [own[0], own[2], own[3]]];
         let meshes = vec![shell(faces), shell(sides)];
         space.model = Arc::new(Model { meshes });
+        space.outline = [space.polygon(HOME, HOME)].into();
         Some(space)
     }
 
     /// The least and the greatest b that are shown, rad.
     pub fn window(&self, b: f64) -> [f64; 2] {
-        axes::sliding(b, HOME, SPAN, MARGIN)
-    }
-
-    /// For a whole run, whose b lie in a range: the b that are shown, rad.
-    pub fn window_over(&self, b: [f64; 2]) -> [f64; 2] {
-        axes::covering(b, HOME, SPAN.max(b[1] - b[0] + 2.0 * MARGIN), MARGIN)
+        self.fixed.unwrap_or_else(|| axes::sliding(b, HOME, SPAN, MARGIN))
     }
 
     /// The drive shown along each axis of the scene, counted from 0; the last one points up.
@@ -90,26 +117,17 @@ impl JointSpace {
     }
 
     /// q at the corners of a plane, in order, rad.
-    pub fn corners(&self, b: f64) -> [[f64; 3]; 4] {
+    fn corners(&self, b: f64) -> [[f64; 3]; 4] {
         self.corners.map(|a| self.planes.map().lift(PlanePoint { a, b }))
-    }
-
-    /// q along the planned motion, rad.
-    pub fn planned(&self) -> &[[f64; 3]] {
-        &self.course
-    }
-
-    /// The axes of the box over a window of b, with q itself as coordinates.
-    pub fn frame_box(&self, palette: &Palette, window: [f64; 2]) -> [Axis; 3] {
-        self.axes_of(palette, self.bounds_of(window, [0.0; 3]), [0.0; 3])
     }
 
     /// q at the scene's origin while the present pose constant is b, in the order of the drives, rad.
     pub fn origin(&self, b: f64) -> [f64; 3] {
+        if self.fixed.is_some() {
+            return [0.0; 3];
+        }
         let [low, high] = self.window(b);
-        let map = self.planes.map();
-        let [a1, a2] = map.limits();
-        map.lift(PlanePoint { a: [a1, a2].map(|l| 0.5 * (l.min + l.max)), b: 0.5 * (low + high) })
+        self.middle(0.5 * (low + high))
     }
 
     /// Where q lies in the scene while the present pose constant is b.
@@ -127,10 +145,22 @@ impl JointSpace {
         q
     }
 
-    /// A view of the whole prism.
+    /// A view of the whole prism, or of all that a run shows.
     pub fn camera(&self) -> Camera {
+        if self.fixed.is_some() {
+            return self.camera_over();
+        }
         let size = self.bounds(HOME).iter().map(|[from, to]| (to - from) * (to - from)).sum::<f64>().sqrt();
         Camera::Orbit(Orbit { centre: [0.0, 0.0, -0.06 * size], distance: 1.85 * size, yaw: 1.85, pitch: 0.66 })
+    }
+
+    /// Where b changes much the path runs along (1, 1, 1), which is seen from its side.
+    fn camera_over(&self) -> Camera {
+        let ends = self.bounds(HOME);
+        let size = ends.iter().map(|[from, to]| (to - from) * (to - from)).sum::<f64>().sqrt();
+        let [x, y, z] = ends.map(|[from, to]| 0.5 * (from + to));
+        let (yaw, distance) = if self.travels { (-0.45, 1.2 * size) } else { (1.85, 1.05 * size) };
+        Camera::Orbit(Orbit { centre: [x, y, z - 0.05 * size], distance, yaw, pitch: 0.66 })
     }
 
     /// Ends of the box along the scene's axes.
@@ -172,22 +202,22 @@ impl JointSpace {
     }
 
     /// What the pointer can take hold of: the pose's dot, the plane.
-    pub fn pick(&self, frame: &Frame, pointer: &Pointer) -> Option<Grip> {
+    pub fn pick(&self, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
         let (b, dot) = (frame.b_reference, self.pose(frame));
-        if pointer.distance(dot).is_some_and(|d| d < GRIP) {
-            return Some(Grip { handle: Handle::Target, at: dot });
+        if pointer.distance(dot).is_some_and(|d| d < NEAR) {
+            return Some(Pick { handle: Handle::Target, at: dot });
         }
         let at = self.on_plane(b, pointer)?;
         let a = self.planes.map().project(&self.angles(at, b)).a;
         let limits = self.planes.map().limits();
         let inside = (0..2).all(|i| limits[i].contains(a[i], 0.0));
-        inside.then_some(Grip { handle: Handle::Plane, at })
+        inside.then_some(Pick { handle: Handle::Plane, at })
     }
 
-    /// What pulling at a grip asks for: the dot within its plane, the plane along its normal.
-    pub fn aim(&self, grip: &Grip, frame: &Frame, pointer: &Pointer) -> Option<Aim> {
+    /// What pulling at something asks for: the dot within its plane, the plane along its normal.
+    pub fn aim(&self, pick: &Pick, frame: &Frame, pointer: &Pointer) -> Option<Aim> {
         let (b, map) = (frame.b_reference, self.planes.map());
-        match grip.handle {
+        match pick.handle {
             Handle::Target => {
                 let at = self.on_plane(b, pointer)?;
                 let p = map.forward(map.clamp(map.project(&self.angles(at, b)).a), b);
@@ -195,8 +225,8 @@ impl JointSpace {
             }
             Handle::Plane => {
                 let normal = self.normal();
-                let s = pointer.ray()?.along_line(grip.at, normal)?;
-                let at = [0, 1, 2].map(|i| grip.at[i] + s * normal[i]);
+                let s = pointer.ray()?.along_line(pick.at, normal)?;
+                let at = [0, 1, 2].map(|i| pick.at[i] + s * normal[i]);
                 let [low, high] = self.window(b);
                 Some(Aim::B(self.b_at(at, b).clamp(low, high)))
             }
@@ -208,60 +238,44 @@ impl JointSpace {
     pub fn scene(&self, frame: &Frame, options: &ViewOptions, camera: &Camera) -> Scene {
         let palette = palette(options.theme);
         let b = frame.b_reference;
-        let [low, high] = self.window(b);
-        // The meshes were made on the plane HOME and about it, each with its origin.
-        let along = |b: f64, home: f64| {
-            let shift = (self.planes.map().turn(b - home)) as f32;
-            [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [shift, shift, shift, 1.0]]
-        };
         let hot = options.hot == Some(Handle::Plane);
-        let solid =
-            |name: &str, mesh, world_from_mesh, colour| Solid { name: name.into(), mesh, world_from_mesh, colour };
-        let mut scene = Scene {
-            background: palette.background,
-            model: self.model.clone(),
-            areas: Vec::new(),
-            solids: vec![
-                solid("prism", 1, along(0.0, 0.0), faded(palette.dim, 0.07)),
-                solid("plane", 0, along(b, 0.5 * (low + high)), faded(palette.amber, if hot { 0.42 } else { 0.34 })),
-            ],
-            lines: Vec::new(),
-            markers: Vec::new(),
-            labels: Vec::new(),
+        let solid = |name: &'static str, mesh, world_from_item, colour, changes| Solid {
+            name: name.into(),
+            mesh,
+            world_from_item,
+            colour,
+            changes,
         };
+        let mut scene = Scene::new(palette.background, self.model.clone());
+        // The meshes were made on the plane HOME and about it, where they are seen while b is HOME.
+        let plane = self.shifted(self.point(self.middle(b), b), self.point(self.middle(HOME), HOME));
+        scene.solids = vec![
+            solid("prism", 1, IN_PLACE, faded(palette.dim, 0.07), Changes::Nothing),
+            solid("plane", 0, plane, faded(palette.amber, if hot { 0.42 } else { 0.34 }), Changes::Pose),
+        ];
         let eye = camera.eye_direction().map(f64::from);
         let axes = self.axes(&palette, frame);
-        axes::draw(&mut scene, &palette, &axes, eye);
+        axes::draw(&mut scene, &palette, &axes, eye, self.stands());
         self.prism(&mut scene, &palette, b);
         self.neighbours(&mut scene, &palette, b);
-        self.plane(&mut scene, &palette, frame, hot);
+        self.plane(&mut scene, &palette, frame, plane, hot);
         self.drops(&mut scene, &palette, frame, eye);
         self.course(&mut scene, &palette, b);
         let hot = options.hot == Some(Handle::Target);
         let at = self.pose(frame).map(|x| x as f32);
-        let disc = |name: &str, radius, fill, stroke_width| Marker {
-            name: name.into(),
-            at,
-            radius,
-            fill,
-            stroke: palette.ink,
-            stroke_width,
-        };
-        scene.markers.push(disc("pose", 4.5, palette.ink, 0.0));
-        scene.markers.push(disc("target", if hot { 12.0 } else { 10.0 }, faded(palette.ink, 0.0), 2.0));
+        scene.markers.push(Marker::disc("pose", at, 4.5, palette.ink));
+        let ring = Marker::disc("target", at, if hot { 12.0 } else { 10.0 }, faded(palette.ink, 0.0));
+        scene.markers.push(ring.edged(palette.ink, 2.0));
         scene
+    }
+
+    /// What may change of what stands about the present plane.
+    fn stands(&self) -> Changes {
+        if self.fixed.is_some() { Changes::Nothing } else { Changes::Shape }
     }
 
     fn axes(&self, palette: &Palette, frame: &Frame) -> [Axis; 3] {
         let (bounds, origin) = (self.bounds(frame.b_reference), self.origin(frame.b_reference));
-        let mut axes = self.axes_of(palette, bounds, origin);
-        for (axis, k) in axes.iter_mut().zip(self.drives) {
-            axis.now = Some((frame.relative(k), palette.drive(k)));
-        }
-        axes
-    }
-
-    fn axes_of(&self, palette: &Palette, bounds: [[f64; 2]; 3], origin: [f64; 3]) -> [Axis; 3] {
         let longest = bounds.iter().map(|[from, to]| to - from).fold(0.0, f64::max);
         [0, 1, 2].map(|i| {
             let (k, [from, to]) = (self.drives[i], bounds[i]);
@@ -272,7 +286,7 @@ impl JointSpace {
                 values: [from + origin[k], to + origin[k]],
                 step: round_up(longest / 10.0),
                 decimals: 0,
-                now: None,
+                now: Some((frame.relative(k), palette.drive(k))),
             }
         })
     }
@@ -285,43 +299,32 @@ impl JointSpace {
 
     fn prism(&self, scene: &mut Scene, palette: &Palette, b: f64) {
         let [bottom, top] = self.window(b).map(|edge| self.polygon(edge, b));
-        for (from, to) in bottom.iter().zip(&top).take(4) {
-            scene.lines.push(line("prism/edge", vec![*from, *to], 1.0, faded(palette.dim, 0.6)));
-        }
-    }
-
-    /// The b of neighbouring planes in a window, rad.
-    pub fn neighbours_in(&self, [low, high]: [f64; 2]) -> impl Iterator<Item = f64> + use<> {
-        let first = (low / NEIGHBOURS).ceil();
-        (0..80).map(move |i| (first + f64::from(i)) * NEIGHBOURS).take_while(move |b| *b <= high)
+        let edges: Vec<_> = bottom.iter().zip(&top).take(4).map(|(from, to)| vec![*from, *to]).collect();
+        let line = Line::new("limits", edges, 1.0, faded(palette.dim, 0.6));
+        scene.lines.push(Line { changes: self.stands(), ..line });
     }
 
     fn neighbours(&self, scene: &mut Scene, palette: &Palette, b: f64) {
-        for of in self.neighbours_in(self.window(b)) {
-            let mut outline = line("neighbour", self.polygon(of, b), 1.0, faded(palette.amber, 0.3));
-            outline.on_top = true;
-            scene.lines.push(outline);
-        }
+        let [low, high] = self.window(b);
+        let first = (low / NEIGHBOURS).ceil();
+        let others = (0..80).map(|i| (first + f64::from(i)) * NEIGHBOURS).take_while(|of| *of <= high);
+        let outlines: Vec<_> = others.map(|of| self.polygon(of, b)).collect();
+        let line = Line::new("planes", outlines, 1.0, faded(palette.amber, 0.3)).on_top();
+        scene.lines.push(Line { changes: self.stands(), ..line });
     }
 
-    fn plane(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, hot: bool) {
+    fn plane(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, pose: Pose, hot: bool) {
         let b = frame.b_reference;
         let polygon = self.polygon(b, b);
         // Outside a corner that the pose leaves free.
         let taken = [0, 1].iter().all(|i| (frame.a[*i] - self.corners[2][*i]).abs() < 0.8);
         let (corner, other) = if taken { (polygon[0], polygon[2]) } else { (polygon[2], polygon[0]) };
-        scene.labels.push(Label {
-            at: [0, 1, 2].map(|k| corner[k] + 0.1 * (corner[k] - other[k])),
-            offset: [0.0; 2],
-            text: format!("b = {b:.3} rad"),
-            colour: palette.amber,
-            size: 12.5,
-            anchor: Anchor::Centre,
-        });
+        let at = [0, 1, 2].map(|k| corner[k] + 0.1 * (corner[k] - other[k]));
+        let text = format!("b = {b:.3} rad");
+        scene.labels.push(Label::new("plane/label", at, [0.0; 2], text, palette.amber, 12.5, Anchor::Centre));
         self.limits(scene, palette, &polygon);
-        let mut outline = line("plane/boundary", polygon, if hot { 3.2 } else { 2.0 }, palette.amber);
-        outline.on_top = true;
-        scene.lines.push(outline);
+        let outline = Line::new("plane/boundary", self.outline.clone(), if hot { 3.2 } else { 2.0 }, palette.amber);
+        scene.lines.push(outline.on_top().moving(pose));
     }
 
     /// Which limit each side of the polygon is.
@@ -329,79 +332,59 @@ impl JointSpace {
         for (i, ends) in polygon.windows(2).enumerate() {
             // Sides run along a_1 and a_2 in turn, at a limit of the other.
             let fixed = 1 - i % 2;
-            scene.labels.push(Label {
-                // A little outside.
-                at: [0, 1, 2]
-                    .map(|k| 0.5 * (1.13 * (ends[0][k] + ends[1][k]) - 0.13 * (polygon[0][k] + polygon[2][k]))),
-                offset: [0.0; 2],
-                text: format!("{} = {}°", ["a₁", "a₂"][fixed], degrees(self.corners[i][fixed])),
-                colour: palette.dim,
-                size: 10.5,
-                anchor: Anchor::Centre,
-            });
+            // A little outside.
+            let at =
+                [0, 1, 2].map(|k| 0.5 * (1.13 * (ends[0][k] + ends[1][k]) - 0.13 * (polygon[0][k] + polygon[2][k])));
+            let text = format!("{} = {}°", ["a₁", "a₂"][fixed], degrees(self.corners[i][fixed]));
+            scene.labels.push(Label::new("plane/limits", at, [0.0; 2], text, palette.dim, 10.5, Anchor::Centre));
         }
     }
 
     /// From the pose straight to the walls behind it, each in the colour of its drive.
     fn drops(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, eye: [f64; 3]) {
+        const NAMES: [&str; 3] = ["pose/drop/1", "pose/drop/2", "pose/drop/3"];
         let (at, bounds) = (self.pose(frame), self.bounds(frame.b_reference));
         for i in 0..3 {
             let mut foot = at;
             foot[i] = bounds[i][usize::from(eye[i] < 0.0)];
             let colour = palette.drive(self.drives[i]);
             let ends = [at, foot].map(|p| p.map(|x| x as f32));
-            let mut drop = line("pose/drop", ends.to_vec(), 1.3, faded(colour, 0.75));
-            drop.dash = Some([3.0, 3.0]);
-            scene.lines.push(drop);
-            scene.markers.push(Marker {
-                name: "pose/foot".into(),
-                at: ends[1],
-                radius: 2.5,
-                fill: colour,
-                stroke: colour,
-                stroke_width: 0.0,
-            });
+            let drop = Line::new(NAMES[i], [ends.to_vec()], 1.3, faded(colour, 0.75));
+            scene.lines.push(drop.dashed(3.0, 3.0));
+            scene.markers.push(Marker::disc("pose/feet", ends[1], 2.5, colour));
         }
     }
 
     fn course(&self, scene: &mut Scene, palette: &Palette, b: f64) {
-        let points: Vec<[f32; 3]> = self.course.iter().map(|q| self.point(*q, b).map(|x| x as f32)).collect();
-        let (Some(&first), Some(&last)) = (points.first(), points.last()) else { return };
-        let mut path = line("path", points, 2.0, palette.ink);
-        (path.dash, path.on_top) = (Some([2.0, 3.5]), true);
-        scene.lines.push(path);
+        let Some(points) = self.course.first().filter(|points| points.len() > 1) else { return };
+        let pose = self.shifted(self.point([0.0; 3], b), [0.0; 3]);
+        let path = Line::new("path", self.course.clone(), 2.0, palette.ink).dashed(2.0, 3.5).on_top();
+        let changes = if self.fixed.is_some() { Changes::Nothing } else { Changes::Pose };
+        scene.lines.push(Line { world_from_item: pose, changes, ..path });
+        let [first, last] = [points[0], points[points.len() - 1]].map(|p| super::place(&pose, p));
         let ends = [("A", first, Anchor::Right, -11.0), ("B", last, Anchor::Left, 11.0)];
         // A closed path has one end.
         let closed = first.iter().zip(last).all(|(s, t)| (s - t).abs() < 1e-3);
         for (name, at, anchor, aside) in ends.into_iter().take(if closed { 1 } else { 2 }) {
-            scene.markers.push(Marker {
-                name: format!("waypoint/{name}"),
-                at,
-                radius: 4.5,
-                fill: palette.background,
-                stroke: palette.ink,
-                stroke_width: 1.6,
-            });
-            scene.labels.push(Label {
-                at,
-                offset: [aside, -10.0],
-                text: name.into(),
-                colour: palette.ink,
-                size: 13.0,
-                anchor,
-            });
+            scene.markers.push(Marker::disc("path/ends", at, 4.5, palette.background).edged(palette.ink, 1.6));
+            scene.labels.push(Label::new("path/names", at, [aside, -10.0], name, palette.ink, 13.0, anchor));
         }
     }
-}
 
-fn line(name: &str, points: Vec<[f32; 3]>, width: f32, colour: super::Rgba) -> Line {
-    Line { name: name.into(), points, width, colour, dash: None, on_top: false }
-}
+    /// q at the middle of a plane, rad.
+    fn middle(&self, b: f64) -> [f64; 3] {
+        let [a1, a2] = self.planes.map().limits();
+        self.planes.map().lift(PlanePoint { a: [a1, a2].map(|l| 0.5 * (l.min + l.max)), b })
+    }
 
-/// An angle in whole degrees, or with a digit where it has one.
-fn degrees(angle: f64) -> String {
-    let text = signed(angle.to_degrees(), 1);
-    text.strip_suffix(".0").map_or_else(|| text.clone(), Into::into)
+    /// The pose of what was made at one point of the scene and stands at another.
+    fn shifted(&self, to: [f64; 3], from: [f64; 3]) -> Pose {
+        let mut pose = IN_PLACE;
+        for i in 0..3 {
+            pose[3][i] = (to[i] - from[i]) as f32;
+        }
+        pose
+    }
 }
 
 /// Triangles as an open shell, each with its own normal.

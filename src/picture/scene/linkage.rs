@@ -5,9 +5,8 @@
 use std::sync::Arc;
 
 use super::mesh::{bar, cylinder};
-use super::palette::{Palette, faded};
-use super::stage::PLATE;
-use super::{Mesh, Model, Rgba, Solid};
+use super::palette::{Palette, faded, mix};
+use super::{Changes, Mesh, Model, Name, Rgba, Solid, posed};
 use crate::mechanics::machine::{Chain, Machine, place_of};
 use crate::mechanics::planar::{Pose2, Units, Vector, unit};
 
@@ -18,6 +17,9 @@ pub struct Linkage {
     pub model: Arc<Model>,
     bars: Vec<Bar>,
     pins: Vec<Pin>,
+    /// Of all pins: they are as long as their layers want.
+    pin: usize,
+    hole: usize,
     motors: Vec<Motor>,
     plate: usize,
     body: usize,
@@ -31,6 +33,7 @@ pub struct Linkage {
 pub struct Bar {
     /// The link's name.
     pub name: String,
+    item: Name,
     /// Mesh, along x from the link's root.
     pub mesh: usize,
     /// Drive it follows, counted from 0.
@@ -48,19 +51,23 @@ pub struct Bar {
 
 #[derive(Clone, Debug)]
 struct Pin {
-    mesh: usize,
-    hole: usize,
     at: Chain,
-    z: f64,
-    hole_z: f64,
+    /// From where to where, m.
+    z: [f64; 2],
+    /// How many times as long as the mesh.
+    stretch: f64,
 }
 
 #[derive(Clone, Debug)]
 struct Motor {
+    name: Name,
     mesh: usize,
     drive: usize,
     z: f64,
 }
+
+/// Half the length and half the width of a plate that moves, parts of the reach.
+pub const PLATE: [f64; 2] = [0.2, 0.105];
 
 /// Parts of the machine's reach.
 const BAR_RADIUS: f64 = 0.0135;
@@ -95,6 +102,7 @@ impl Linkage {
             }
             bars.push(Bar {
                 name: link.name.clone(),
+                item: format!("machine/link/{}", link.name).into(),
                 mesh: add(mesh),
                 drive: part.drive,
                 carries_tip: carries[j],
@@ -107,16 +115,18 @@ impl Linkage {
         }
         let mut pins = Vec::new();
         let radius = 0.62 * THIN_BAR_RADIUS * reach;
+        let shortest = height + 2.0 * gap;
+        let pin = add(cylinder(1.25 * radius, shortest, 0.15 * radius));
+        let hole = add(cylinder(0.7 * radius, 0.2 * gap, 0.0));
         for (at, low, high) in joints(machine) {
-            let (bottom, top) = (layer(low) - gap, layer(high) + height + gap);
-            let mesh = add(cylinder(1.25 * radius, top - bottom, 0.15 * radius));
-            let hole = add(cylinder(0.7 * radius, 0.2 * gap, 0.0));
-            pins.push(Pin { mesh, hole, at, z: bottom, hole_z: top });
+            let z = [layer(low) - gap, layer(high) + height + gap];
+            pins.push(Pin { at, z, stretch: (z[1] - z[0]) / shortest });
         }
         let n = machine.drives();
         let (drive_height, drive_radius) = (0.05 * reach, 0.042 * reach);
         let motors = (0..n)
             .map(|k| Motor {
+                name: format!("machine/base/drive/{}", k + 1).into(),
                 mesh: add(cylinder(drive_radius * (1.0 + 0.12 * k as f64), 0.92 * drive_height, 0.1 * drive_height)),
                 drive: k,
                 z: -gap - (k + 1) as f64 * drive_height,
@@ -128,7 +138,19 @@ impl Linkage {
         let body = add(bar(width - length, length - width, width, 0.3 * drive_height, 0.05 * drive_height));
         let top = layer(n - 1) + height;
         let cap = add(cylinder(0.6 * drive_radius, top + 2.0 * gap, 0.2 * gap));
-        Self { model: Arc::new(Model { meshes }), bars, pins, motors, plate, body, cap, reach, top: top + 2.0 * gap }
+        Self {
+            model: Arc::new(Model { meshes }),
+            bars,
+            pins,
+            pin,
+            hole,
+            motors,
+            plate,
+            body,
+            cap,
+            reach,
+            top: top + 2.0 * gap,
+        }
     }
 
     /// The farthest the end effector gets from B, m.
@@ -156,40 +178,42 @@ impl Linkage {
         &self.bars
     }
 
-    /// Where the tops of the pins are, m.
-    pub fn pins(&self, e: &Units) -> impl Iterator<Item = (Vector, f64)> {
-        self.pins.iter().map(|pin| (place_of(&pin.at, e), pin.hole_z))
-    }
-
     /// Everything, in the colours of the palette, on a base in a pose.
     pub fn solids(&self, e: &Units, base: Pose2, moves: bool, palette: &Palette) -> Vec<Solid> {
         let mut solids = Vec::with_capacity(self.bars.len() + 2 * self.pins.len() + self.motors.len() + 2);
-        let upright = |name: String, mesh, at: Vector, z, colour| Solid {
-            name,
-            mesh,
-            world_from_mesh: placed(base.at + at, Vector::new(1.0, 0.0), z),
-            colour,
+        let upright = |name: Name, mesh, at: Vector, z, colour, changes| {
+            let world_from_item = posed(base.at + at, Vector::new(1.0, 0.0), z);
+            Solid { name, mesh, world_from_item, colour, changes }
         };
         let grey = mix(palette.dim, palette.line, 0.65);
-        let origin = Vector::default();
         let under = self.bottom();
-        solids.push(upright("base/plate".into(), self.plate, origin, under, grey));
+        let with_base = if moves { Changes::Pose } else { Changes::Nothing };
+        let turned = |name: Name, mesh, z, colour| Solid {
+            name,
+            mesh,
+            world_from_item: posed(base.at, unit(base.angle), z),
+            colour,
+            changes: with_base,
+        };
+        solids.push(turned("machine/base".into(), self.plate, under, grey));
         if moves {
-            let world_from_mesh = placed(base.at, unit(base.angle), under - 0.002 * self.reach);
             let colour = mix(grey, palette.line, 0.5);
-            solids.push(Solid { name: "base/body".into(), mesh: self.body, world_from_mesh, colour });
+            solids.push(turned("machine/base/body".into(), self.body, under - 0.002 * self.reach, colour));
         }
         for motor in &self.motors {
             let colour = mix(palette.drive(motor.drive), grey, 0.45);
-            solids.push(upright(format!("base/drive/{}", motor.drive + 1), motor.mesh, origin, motor.z, colour));
+            solids.push(turned(motor.name.clone(), motor.mesh, motor.z, colour));
         }
         solids.extend(self.bars.iter().map(|bar| bar.solid(e, base.at, palette.drive(bar.drive))));
-        for (i, pin) in self.pins.iter().enumerate() {
+        for pin in &self.pins {
             let at = place_of(&pin.at, e);
-            solids.push(upright(format!("joint/{}", i + 1), pin.mesh, at, pin.z, palette.ink));
-            solids.push(upright(format!("joint/{}/hole", i + 1), pin.hole, at, pin.hole_z, palette.background));
+            let mut solid = upright("machine/joints".into(), self.pin, at, pin.z[0], palette.ink, Changes::Pose);
+            solid.world_from_item[2][2] = pin.stretch as f32;
+            solids.push(solid);
+            let colour = palette.background;
+            solids.push(upright("machine/joints/holes".into(), self.hole, at, pin.z[1], colour, Changes::Pose));
         }
-        solids.push(upright("base/cap".into(), self.cap, origin, 0.0, grey));
+        solids.push(turned("machine/base/cap".into(), self.cap, 0.0, grey));
         solids
     }
 
@@ -204,12 +228,13 @@ impl Linkage {
             .collect()
     }
 
-    /// The arms that carry the end effector, as a ghost of another pose.
-    pub fn ghost(&self, e: &Units, palette: &Palette, alpha: f32) -> Vec<Solid> {
+    /// The arms that carry the end effector, as a ghost of another pose that has a name.
+    pub fn ghost(&self, name: &str, e: &Units, palette: &Palette, alpha: f32) -> Vec<Solid> {
         let carriers = self.bars.iter().filter(|b| b.carries_tip);
         carriers
             .map(|bar| Solid {
-                name: format!("ghost/{}", bar.name),
+                name: format!("{name}/{}", bar.name).into(),
+                changes: Changes::Nothing,
                 ..bar.solid(e, Vector::default(), faded(palette.drive(bar.drive), alpha))
             })
             .collect()
@@ -244,8 +269,13 @@ impl Bar {
 
     fn solid(&self, e: &Units, base: Vector, colour: Rgba) -> Solid {
         let (at, along, z) = self.pose(e);
-        let at = base + at;
-        Solid { name: format!("link/{}", self.name), mesh: self.mesh, world_from_mesh: placed(at, along, z), colour }
+        Solid {
+            name: self.item.clone(),
+            mesh: self.mesh,
+            world_from_item: posed(base + at, along, z),
+            colour,
+            changes: Changes::Pose,
+        }
     }
 }
 
@@ -288,15 +318,4 @@ fn append(to: &mut Mesh, other: &Mesh, shift: [f64; 3]) {
     to.positions.extend(other.positions.iter().map(|p| [0, 1, 2].map(|i| p[i] + shift[i] as f32)));
     to.normals.extend(&other.normals);
     to.triangles.extend(other.triangles.iter().map(|t| t.map(|v| v + first)));
-}
-
-/// world_from_mesh of something at a point, its x axis along a unit vector.
-fn placed(at: Vector, along: Vector, z: f64) -> [[f32; 4]; 4] {
-    let (c, s) = (along.re as f32, along.im as f32);
-    [[c, s, 0.0, 0.0], [-s, c, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [at.re as f32, at.im as f32, z as f32, 1.0]]
-}
-
-/// a towards b by a share of 0..1.
-pub fn mix(a: Rgba, b: Rgba, share: f32) -> Rgba {
-    [0, 1, 2, 3].map(|i| a[i] + (b[i] - a[i]) * share)
 }

@@ -2,24 +2,32 @@
 //!
 //! A [`Scene`] holds solids, lines, areas, markers and labels in world coordinates (metres; x and y in the plane of
 //! motion, z along the drive axis, towards the viewer of the flat view). Numbers turn from `f64` into `f32` here and
-//! nowhere else. Colours are sRGB with straight alpha, as in the palette, and sizes called `px` are logical pixels.
+//! nowhere else. Every item has a name, which is also its path in a recording, a pose `world_from_item`, and says what of
+//! it [may change](Changes): geometry is made once, afterwards only poses change. Colours are sRGB with straight alpha, as in the palette, and sizes called `px` are logical pixels.
 
+pub mod arrow;
 pub mod axes;
 pub mod camera;
+pub mod course;
 pub mod dexterity;
+pub mod exaggeration;
 pub mod joint_space;
 pub mod linkage;
 pub mod mesh;
+pub mod options;
 pub mod palette;
+pub mod pick;
 pub mod pointer;
 pub mod reaction;
 pub mod stage;
-pub mod sway;
 pub mod tower;
 pub mod views;
 pub mod wall;
 
+use std::borrow::Cow;
 use std::sync::Arc;
+
+use crate::mechanics::planar::Vector;
 
 /// sRGB red, green, blue and straight alpha, each 0..1.
 pub type Rgba = [f32; 4];
@@ -44,26 +52,73 @@ pub struct Model {
     pub meshes: Vec<Mesh>,
 }
 
-/// One mesh, placed and coloured.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Solid {
-    /// What it is, for tests and recordings: `link/5`, `joint/3`, `base/1`.
-    pub name: String,
-    /// Which mesh of the [`Model`].
-    pub mesh: usize,
-    /// world_from_mesh, column-major.
-    pub world_from_mesh: [[f32; 4]; 4],
-    /// Colour under full light; alpha below 1 blends (ghosts).
-    pub colour: Rgba,
+/// A name in parts, `machine/link/5`: of an item in its picture, and of its entity in a recording.
+pub type Name = Cow<'static, str>;
+
+/// world_from_item, column-major.
+pub type Pose = [[f32; 4]; 4];
+
+/// An item whose own coordinates are the world's.
+pub const IN_PLACE: Pose = posed_at([1.0, 0.0], [0.0; 3]);
+
+const fn posed_at([c, s]: [f32; 2], [x, y, z]: [f32; 3]) -> Pose {
+    [[c, s, 0.0, 0.0], [-s, c, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [x, y, z, 1.0]]
 }
 
-/// A polyline of constant width on the screen.
+/// The pose of an item whose origin is at a point, m, and whose x axis lies along a unit vector.
+pub fn posed(at: Vector, along: Vector, z: f64) -> Pose {
+    posed_at([along.re as f32, along.im as f32], point(at, z))
+}
+
+/// A point of an item in the world.
+pub fn place(pose: &Pose, p: [f32; 3]) -> [f32; 3] {
+    [0, 1, 2].map(|r| pose[0][r] * p[0] + pose[1][r] * p[1] + pose[2][r] * p[2] + pose[3][r])
+}
+
+/// A point of the plane of motion at a height, m.
+pub fn point(p: Vector, z: f64) -> [f32; 3] {
+    [p.re as f32, p.im as f32, z as f32]
+}
+
+/// What of an item may change before the picture is prepared anew.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Changes {
+    /// It stays as and where it is.
+    Nothing,
+    /// It moves: its geometry, colour and size stay.
+    Pose,
+    /// Anything, and it may be gone.
+    #[default]
+    Shape,
+}
+
+/// One mesh, placed and coloured. Several of one name share a mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solid {
+    /// What it is: `machine/link/5`.
+    pub name: Name,
+    /// Which mesh of the [`Model`].
+    pub mesh: usize,
+    /// world_from_item, column-major.
+    pub world_from_item: Pose,
+    /// Colour under full light; alpha below 1 blends (ghosts).
+    pub colour: Rgba,
+    /// What may change of it.
+    pub changes: Changes,
+}
+
+/// Polylines that never change once made.
+pub type Strips = Arc<[Vec<[f32; 3]>]>;
+
+/// Polylines of constant width on the screen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
     /// What it is.
-    pub name: String,
-    /// Vertices, m. A closed line repeats its first point.
-    pub points: Vec<[f32; 3]>,
+    pub name: Name,
+    /// Vertices of each, m. A closed one repeats its first point; none at all is a line that is not to be seen now.
+    pub strips: Strips,
+    /// world_from_item, column-major.
+    pub world_from_item: Pose,
     /// Width, px.
     pub width: f32,
     /// Colour.
@@ -72,6 +127,53 @@ pub struct Line {
     pub dash: Option<[f32; 2]>,
     /// Drawn over everything, or hidden by solids in front of it.
     pub on_top: bool,
+    /// What may change of it.
+    pub changes: Changes,
+}
+
+impl Line {
+    /// A solid line that is drawn anew whenever it changes, hidden by what is in front of it.
+    pub fn new(name: impl Into<Name>, strips: impl Into<Strips>, width: f32, colour: Rgba) -> Self {
+        Self {
+            name: name.into(),
+            strips: strips.into(),
+            world_from_item: IN_PLACE,
+            width,
+            colour,
+            dash: None,
+            on_top: false,
+            changes: Changes::Shape,
+        }
+    }
+
+    /// In dashes and gaps, px.
+    #[must_use]
+    pub fn dashed(self, dash: f32, gap: f32) -> Self {
+        Self { dash: Some([dash, gap]), ..self }
+    }
+
+    /// Over everything.
+    #[must_use]
+    pub fn on_top(self) -> Self {
+        Self { on_top: true, ..self }
+    }
+
+    /// It stays as and where it is.
+    #[must_use]
+    pub fn still(self) -> Self {
+        Self { changes: Changes::Nothing, ..self }
+    }
+
+    /// It keeps its shape and stands in a pose.
+    #[must_use]
+    pub fn moving(self, world_from_item: Pose) -> Self {
+        Self { changes: Changes::Pose, world_from_item, ..self }
+    }
+
+    /// Its vertices in the world, strip by strip.
+    pub fn points(&self) -> Vec<[f32; 3]> {
+        self.strips.iter().flatten().map(|p| place(&self.world_from_item, *p)).collect()
+    }
 }
 
 /// A reactionless workspace as Eq. (16) states it: for `(a_1, a_2)` in the rectangle,
@@ -79,7 +181,7 @@ pub struct Line {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Area {
     /// What it is.
-    pub name: String,
+    pub name: Name,
     /// `c_k`, m.
     pub c: [f32; 3],
     /// `u_k`, rad per rad.
@@ -100,6 +202,14 @@ pub struct Area {
     pub colour: Rgba,
     /// Shades the fill by a measure of dexterity.
     pub shade: Option<Shade>,
+}
+
+impl Area {
+    /// Where its plane stands before Eq. (16) is turned.
+    pub fn world_from_item(&self) -> Pose {
+        let [x, y] = self.at;
+        posed_at([self.turn.cos(), self.turn.sin()], [x, y, self.z])
+    }
 }
 
 /// A colour that a fill turns into as a measure of dexterity grows.
@@ -127,12 +237,12 @@ pub enum Measure {
     TorquePerForce = 2,
 }
 
-/// A disc or ring of constant size on the screen: a joint dot, a handle, the end effector.
+/// A disc or ring of constant size on the screen: a joint dot, a handle, the end effector. Several may have one name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Marker {
-    /// What it is; handles that can be dragged are found by [`name`](Self::name) in the pick.
-    pub name: String,
-    /// Centre, m.
+    /// What it is.
+    pub name: Name,
+    /// Centre, m: all of its pose.
     pub at: [f32; 3],
     /// Outer radius, px.
     pub radius: f32,
@@ -142,6 +252,19 @@ pub struct Marker {
     pub stroke: Rgba,
     /// Width of the edge, px.
     pub stroke_width: f32,
+}
+
+impl Marker {
+    /// A disc without an edge.
+    pub fn disc(name: impl Into<Name>, at: [f32; 3], radius: f32, fill: Rgba) -> Self {
+        Self { name: name.into(), at, radius, fill, stroke: fill, stroke_width: 0.0 }
+    }
+
+    /// With an edge.
+    #[must_use]
+    pub fn edged(self, stroke: Rgba, stroke_width: f32) -> Self {
+        Self { stroke, stroke_width, ..self }
+    }
 }
 
 /// Where a label's anchor lies on its box.
@@ -155,9 +278,11 @@ pub enum Anchor {
     Right,
 }
 
-/// Text beside a point.
+/// Text beside a point. Several may have one name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Label {
+    /// Of what: `plan/names`.
+    pub name: Name,
     /// Point it belongs to, m.
     pub at: [f32; 3],
     /// Shift on the screen, px; y down.
@@ -170,6 +295,21 @@ pub struct Label {
     pub size: f32,
     /// Which side of the text holds the anchor.
     pub anchor: Anchor,
+}
+
+impl Label {
+    /// Text of a colour and size beside a point.
+    pub fn new(
+        name: impl Into<Name>,
+        at: [f32; 3],
+        offset: [f32; 2],
+        text: impl Into<String>,
+        colour: Rgba,
+        size: f32,
+        anchor: Anchor,
+    ) -> Self {
+        Self { name: name.into(), at, offset, text: text.into(), colour, size, anchor }
+    }
 }
 
 /// Everything there is to draw at one instant.
@@ -189,4 +329,19 @@ pub struct Scene {
     pub markers: Vec<Marker>,
     /// Words, over everything; drawn by whoever owns a font.
     pub labels: Vec<Label>,
+}
+
+impl Scene {
+    /// Nothing yet, in front of a background.
+    pub fn new(background: Rgba, model: Arc<Model>) -> Self {
+        Self {
+            background,
+            model,
+            areas: Vec::new(),
+            solids: Vec::new(),
+            lines: Vec::new(),
+            markers: Vec::new(),
+            labels: Vec::new(),
+        }
+    }
 }

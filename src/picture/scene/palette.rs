@@ -76,6 +76,11 @@ pub fn faded([r, g, b, a]: Rgba, alpha: f32) -> Rgba {
     [r, g, b, a * alpha]
 }
 
+/// a towards b by a share of 0..1.
+pub fn mix(a: Rgba, b: Rgba, share: f32) -> Rgba {
+    [0, 1, 2, 3].map(|i| a[i] + (b[i] - a[i]) * share)
+}
+
 const fn hex(rgb: u32) -> Rgba {
     [((rgb >> 16) & 0xff) as f32 / 255.0, ((rgb >> 8) & 0xff) as f32 / 255.0, (rgb & 0xff) as f32 / 255.0, 1.0]
 }

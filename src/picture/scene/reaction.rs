@@ -7,8 +7,8 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::Rgba;
 use super::palette::Palette;
-use super::stage::signed;
 use crate::mechanics::planar::Vector;
+use crate::picture::numbers::{round_up, signed};
 use crate::simulation::frame::{Frame, REACTIONLESS};
 
 /// A full arrow, parts of the machine's reach.
@@ -19,6 +19,22 @@ pub const RADIUS: f64 = 0.17;
 pub const FULL: f64 = 1.5 * FRAC_PI_2;
 /// The least arrow, parts of the reach, and the least sweep, rad, that can be seen.
 const LEAST: (f64, f64) = (0.004, 0.02);
+
+/// What a full arrow and a full arc stand for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    /// N of a full arrow.
+    pub newtons: f64,
+    /// N m of a full arc.
+    pub newton_metres: f64,
+}
+
+impl Scale {
+    /// Round numbers that hold the largest force and moment that are shown.
+    pub fn of(force: f64, moment: f64) -> Self {
+        Self { newtons: round_up(force.max(1e-3)), newton_metres: round_up(moment.max(1e-3)) }
+    }
+}
 
 /// What reaches the base at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]

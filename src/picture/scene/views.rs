@@ -4,20 +4,19 @@
 use super::Scene;
 use super::camera::Camera;
 use super::joint_space::JointSpace;
+use super::options::{Handle, ViewOptions};
+use super::pick::{Aim, NEAR, Pick};
 use super::pointer::Pointer;
-use super::stage::{Handle, PULL, Stage, ViewOptions};
+use super::stage::{PULL, Stage};
 use super::tower::Tower;
 use crate::session::Run;
 use crate::simulation::frame::Frame;
 
-/// How near to a handle the pointer takes hold of it, px.
-pub const GRIP: f64 = 20.0;
+/// How near to a handle the pointer takes hold of it, px: a point of the path.
+const NEAR_POINT: f64 = 9.0;
 
-/// The same for a point of the path, px.
-const POINT_GRIP: f64 = 9.0;
-
-/// The same for a link, px.
-const LINK_GRIP: f64 = 6.0;
+/// The same of a link.
+const NEAR_LINK: f64 = 6.0;
 
 /// How far to the left of a point its name stands, px.
 const NAME: f64 = 17.0;
@@ -89,28 +88,6 @@ impl ViewKind {
     }
 }
 
-/// What the pointer has taken hold of, and where.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Grip {
-    /// What.
-    pub handle: Handle,
-    /// In the scene.
-    pub at: [f64; 3],
-}
-
-/// What pulling at a grip asks of the session.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Aim {
-    /// The end effector at a point, m.
-    Target([f64; 2]),
-    /// The pose constant, rad.
-    B(f64),
-    /// A point of the path, counted from A, at a place, m.
-    Waypoint(usize, [f64; 2]),
-    /// A force at the end effector, N.
-    Push([f64; 2]),
-}
-
 /// What stays the same from frame to frame in all views.
 #[derive(Clone, Debug)]
 pub struct Views {
@@ -166,33 +143,33 @@ impl Views {
     }
 
     /// The end effector, if it is under the pointer.
-    pub fn pick_tip(&self, frame: &Frame, pointer: &Pointer) -> Option<Grip> {
+    pub fn pick_tip(&self, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
         let at = self.stage.handle(Handle::Tip, frame)?;
-        (pointer.distance(at)? < 1.5 * GRIP).then_some(Grip { handle: Handle::Tip, at })
+        (pointer.distance(at)? < 1.5 * NEAR).then_some(Pick { handle: Handle::Tip, at })
     }
 
     /// The number of the link under the pointer in the machine's view, in a frame as shown; the uppermost of several.
     pub fn link_at(&self, frame: &Frame, pointer: &Pointer) -> Option<usize> {
         let (e, at) = (frame.q.units(), frame.base.at);
         let near = |ends: [[f64; 3]; 2]| {
-            pointer.distance_to_segment(ends.map(|[x, y, z]| [x + at.re, y + at.im, z])).is_some_and(|d| d < LINK_GRIP)
+            pointer.distance_to_segment(ends.map(|[x, y, z]| [x + at.re, y + at.im, z])).is_some_and(|d| d < NEAR_LINK)
         };
         let bars = self.stage.linkage().bars().iter().enumerate();
         bars.filter(|(_, bar)| near(bar.ends(&e))).max_by_key(|(_, bar)| bar.drive).map(|(i, _)| i)
     }
 
     /// What is under the pointer and can be pulled at, in a frame as shown.
-    pub fn pick(&self, kind: ViewKind, frame: &Frame, pointer: &Pointer) -> Option<Grip> {
+    pub fn pick(&self, kind: ViewKind, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
         match (kind, &self.joints, &self.tower) {
             (ViewKind::Joints, Some(joints), _) => joints.pick(frame, pointer),
             (ViewKind::Tower, _, Some(tower)) => tower.pick(frame, pointer),
             _ => {
-                let grips = [Handle::Target, Handle::Ring].into_iter().filter_map(|handle| {
+                let picks = [Handle::Target, Handle::Ring].into_iter().filter_map(|handle| {
                     let at = self.stage.handle(handle, frame)?;
-                    Some((Grip { handle, at }, pointer.distance(at)?))
+                    Some((Pick { handle, at }, pointer.distance(at)?))
                 });
-                let near = grips.filter(|(_, d)| *d < GRIP);
-                let first = near.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(grip, _)| grip);
+                let near = picks.filter(|(_, d)| *d < NEAR);
+                let first = near.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick);
                 // Where the target covers a point of the path, the point is held by its name, to the left of it.
                 let points = self.stage.waypoints().filter_map(|i| {
                     let handle = Handle::Waypoint(i);
@@ -201,21 +178,21 @@ impl Views {
                     let name = (pointer.at[0] - x + NAME).hypot(pointer.at[1] - y);
                     let own = (pointer.at[0] - x).hypot(pointer.at[1] - y);
                     let off = if first.is_some() { name } else { own.min(name) };
-                    (off < POINT_GRIP).then_some((Grip { handle, at }, off))
+                    (off < NEAR_POINT).then_some((Pick { handle, at }, off))
                 });
-                points.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(grip, _)| grip).or(first)
+                points.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick).or(first)
             }
         }
     }
 
-    /// What pulling at a grip asks for; `b` is the pose constant that the machine is sent to, rad.
-    pub fn aim(&self, kind: ViewKind, grip: &Grip, frame: &Frame, pointer: &Pointer, b: f64) -> Option<Aim> {
+    /// What pulling at something asks for; `b` is the pose constant that the machine is sent to, rad.
+    pub fn aim(&self, kind: ViewKind, pick: &Pick, frame: &Frame, pointer: &Pointer, b: f64) -> Option<Aim> {
         match (kind, &self.joints, &self.tower) {
-            (ViewKind::Joints, Some(joints), _) => joints.aim(grip, frame, pointer),
-            (ViewKind::Tower, _, Some(tower)) => tower.aim(grip, frame, pointer),
+            (ViewKind::Joints, Some(joints), _) => joints.aim(pick, frame, pointer),
+            (ViewKind::Tower, _, Some(tower)) => tower.aim(pick, frame, pointer),
             _ => {
                 let at = pointer.ray()?.at_height(self.stage.handle_height())?;
-                match grip.handle {
+                match pick.handle {
                     Handle::Target => Some(Aim::Target(at)),
                     Handle::Ring => self.stage.ring_b(at, b, frame).map(Aim::B),
                     Handle::Tip => Some(Aim::Push([PULL * (at[0] - frame.tip.re), PULL * (at[1] - frame.tip.im)])),

@@ -3,60 +3,89 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use super::reaction::head;
-use super::{Stage, ViewOptions, brief_number, label, point, signed};
+use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::{Pose2, Units, Vector, unit};
-use crate::picture::scene::linkage::mix;
-use crate::picture::scene::palette::{Palette, faded};
-use crate::picture::scene::{Anchor, Line, Marker, Rgba, Scene};
+use crate::picture::numbers::{signed, three_digits};
+use crate::picture::scene::arrow::head;
+use crate::picture::scene::linkage::{Linkage, PLATE};
+use crate::picture::scene::options::ViewOptions;
+use crate::picture::scene::palette::{Palette, faded, mix};
+use crate::picture::scene::{Anchor, Label, Line, Marker, Pose, Scene, point, posed};
+use crate::session::Run;
 use crate::simulation::frame::Frame;
 use crate::simulation::plant::{Base, BaseKind, Load};
 
 /// What a stage knows of base and payload; it can change without a new stage.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Ground {
-    pub base: Base,
-    pub load: Load,
+#[derive(Clone, Debug)]
+pub struct Ground {
+    base: Base,
+    load: Load,
     /// No gravity.
-    pub weightless: bool,
+    weightless: bool,
+    /// Drive that the link with the end effector follows, and which way.
+    holder: (usize, f64),
+    /// Of a base that floats: outlines and ribs of its panels, before it moves.
+    panels: [Vec<Vec<[f32; 3]>>; 2],
 }
 
 /// Newtons for each metre that a hand pulls.
 pub const PULL: f64 = 20.0;
 
-/// Half the length and half the width of the plate, parts of the reach.
-pub(in crate::picture::scene) const PLATE: [f64; 2] = [0.2, 0.105];
-
 /// Motion of the base below this is not spoken of, m and rad.
 const SILENT: f64 = 1e-12;
 
-impl Stage {
-    fn floor_line(&self, name: &str, points: Vec<[f32; 3]>, width: f32, colour: Rgba) -> Line {
-        Line { name: name.into(), points, width, colour, dash: None, on_top: false }
+impl Ground {
+    /// Of a run whose machine is built like this.
+    pub fn of(run: &Run, plant: &Machine, linkage: &Linkage) -> Self {
+        let scenario = run.scenario();
+        let holder = &plant.parts()[plant.tip_link()];
+        Self {
+            base: scenario.base,
+            load: scenario.plant.payload,
+            weightless: scenario.machine.gravity().norm() == 0.0,
+            holder: (holder.drive, holder.sign),
+            panels: panels(linkage),
+        }
+    }
+
+    /// Takes over what has changed of base and payload.
+    pub fn refresh(&mut self, run: &Run) {
+        let scenario = run.scenario();
+        (self.base, self.load) = (scenario.base, scenario.plant.payload);
+        self.weightless = scenario.machine.gravity().norm() == 0.0;
+    }
+
+    /// Whether the base can move.
+    pub fn moves(&self) -> bool {
+        self.base.moves()
+    }
+
+    /// What a base carries besides what motion makes, in words.
+    pub fn rest(&self, options: &ViewOptions) -> &'static str {
+        match options.push {
+            Some([x, y]) if x.hypot(y) > 0.0 && self.weightless => "the push",
+            Some([x, y]) if x.hypot(y) > 0.0 => "its weight with the push",
+            _ => "its weight",
+        }
     }
 
     /// Glyphs under the machine: panels of a spacecraft, or springs between the plate and the ground.
-    pub(super) fn ground(&self, scene: &mut Scene, palette: &Palette, frame: &Frame) {
-        let reach = self.linkage.reach();
-        let (z, top) = (self.linkage.bottom(), self.handle_height());
+    pub fn draw(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Frame) {
+        let reach = linkage.reach();
+        let (z, top) = (linkage.bottom(), linkage.top());
         let place = |p: Vector| frame.base.at + p * unit(frame.base.angle);
         let [length, width] = PLATE.map(|part| part * reach);
-        match self.ground.base.kind {
+        match self.base.kind {
             BaseKind::Fixed => {}
             BaseKind::Free => {
                 let edge = mix(palette.dim, palette.line, 0.4);
-                for side in [-1.0, 1.0] {
-                    let at = |x: f64, y: f64| point(place(Vector::new(side * x * reach, y * reach)), z);
-                    let (near, far, half) = (PLATE[0] + 0.035, PLATE[0] + 0.19, 0.075);
-                    let panel = vec![at(near, -half), at(far, -half), at(far, half), at(near, half), at(near, -half)];
-                    scene.lines.push(self.floor_line("base/panel", panel, 1.6, edge));
-                    scene.lines.push(self.floor_line("base/panel", vec![at(PLATE[0], 0.0), at(far, 0.0)], 1.6, edge));
-                    for i in 1..3 {
-                        let x = near + f64::from(i) * (far - near) / 3.0;
-                        let rib = vec![at(x, -half), at(x, half)];
-                        scene.lines.push(self.floor_line("base/panel", rib, 1.0, faded(edge, 0.7)));
-                    }
-                }
+                let with_base = posed(frame.base.at, unit(frame.base.angle), 0.0);
+                let [outlines, ribs] = &self.panels;
+                let line = |name: &'static str, strips: &[Vec<[f32; 3]>], width, colour| {
+                    Line::new(name, strips, width, colour).moving(with_base)
+                };
+                scene.lines.push(line("machine/base/panels", outlines, 1.6, edge));
+                scene.lines.push(line("machine/base/panels/ribs", ribs, 1.0, faded(edge, 0.7)));
             }
             BaseKind::Compliant => {
                 let colour = mix(palette.dim, palette.ink, 0.2);
@@ -65,84 +94,77 @@ impl Stage {
                     (Vector::new(length, 0.0), Vector::new(1.0, 0.0)),
                     (Vector::new(0.0, -width), Vector::new(0.0, -1.0)),
                 ];
+                let (mut springs, mut walls, mut hatches) = (Vec::new(), Vec::new(), Vec::new());
                 for (from, out) in ends {
                     let foot = from + out * (0.13 * reach);
-                    scene.lines.push(self.floor_line(
-                        "base/spring",
-                        spring(place(from), foot, 0.018 * reach, z),
-                        1.6,
-                        colour,
-                    ));
+                    springs.push(spring(place(from), foot, 0.018 * reach, z));
                     let across = out * Vector::new(0.0, 1.0) * (0.04 * reach);
-                    let wall = vec![point(foot - across, z), point(foot + across, z)];
-                    scene.lines.push(self.floor_line("base/foot", wall, 2.2, colour));
-                    for i in -2..=2 {
+                    walls.push(vec![point(foot - across, z), point(foot + across, z)]);
+                    hatches.extend((-2..=2).map(|i| {
                         let at = foot + across * (0.45 * f64::from(i));
-                        let hatch = vec![point(at, z), point(at + (out - across * (4.0 / reach)) * (0.014 * reach), z)];
-                        scene.lines.push(self.floor_line("base/foot", hatch, 1.0, faded(colour, 0.8)));
-                    }
+                        vec![point(at, z), point(at + (out - across * (4.0 / reach)) * (0.014 * reach), z)]
+                    }));
                 }
+                scene.lines.push(Line::new("springs", springs, 1.6, colour));
+                scene.lines.push(Line::new("springs/feet", walls, 2.2, colour).still());
+                scene.lines.push(Line::new("springs/feet/ground", hatches, 1.0, faded(colour, 0.8)).still());
             }
         }
-        if self.ground.base.moves() {
-            let [x, y] = self.ground.base.com;
-            scene.markers.push(Marker {
-                name: "base/com".into(),
-                at: point(place(Vector::new(x, y)), top),
-                radius: 4.5,
-                fill: faded(palette.background, 0.6),
-                stroke: palette.dim,
-                stroke_width: 1.8,
-            });
+        if self.base.moves() {
+            let [x, y] = self.base.com;
+            let at = point(place(Vector::new(x, y)), top);
+            let disc = Marker::disc("base_com", at, 4.5, faded(palette.background, 0.6));
+            scene.markers.push(disc.edged(palette.dim, 1.8));
         }
-        if self.ground.base.wheel.is_some() {
-            self.wheel(scene, palette, frame);
+        if self.base.wheel.is_some() {
+            self.wheel(scene, linkage, palette, frame);
         }
     }
 
-    fn wheel(&self, scene: &mut Scene, palette: &Palette, frame: &Frame) {
-        let (z, radius) = (self.handle_height(), 0.082 * self.linkage.reach());
-        let b = frame.base.at;
+    fn wheel(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Frame) {
+        let (z, radius) = (linkage.top(), 0.082 * linkage.reach());
         let colour = if frame.wheel.saturated { palette.reaction } else { palette.dim };
-        let rim = (0..=72).map(|i| point(b + unit(TAU * f64::from(i) / 72.0) * radius, z)).collect();
-        let line = |points, width| Line { on_top: true, ..self.floor_line("wheel", points, width, colour) };
-        scene.lines.push(line(rim, 2.0));
-        let mark = unit(frame.totals.wheel_turn.rem_euclid(TAU));
-        for i in 0..3 {
-            let spoke = mark * unit(TAU * f64::from(i) / 3.0);
-            scene.lines.push(line(vec![point(b + spoke * (0.72 * radius), z), point(b + spoke * radius, z)], 1.6));
-        }
-        scene.markers.push(Marker {
-            name: "wheel/mark".into(),
-            at: point(b + mark * radius, z),
-            radius: 4.0,
-            fill: colour,
-            stroke: palette.background,
-            stroke_width: 1.0,
-        });
+        let spun = unit(frame.totals.wheel_turn.rem_euclid(TAU));
+        let pose: Pose = posed(frame.base.at, spun, z);
+        let on = |angle: f64, share: f64| point(unit(angle) * (share * radius), 0.0);
+        let rim: Vec<_> = (0..=72).map(|i| on(TAU * f64::from(i) / 72.0, 1.0)).collect();
+        let spokes = (0..3).map(|i| TAU * f64::from(i) / 3.0).map(|angle| vec![on(angle, 0.72), on(angle, 1.0)]);
+        // Its colour tells whether it saturates.
+        let line = |name: &'static str, strips: Vec<_>, width| Line {
+            world_from_item: pose,
+            ..Line::new(name, strips, width, colour).on_top()
+        };
+        scene.lines.push(line("wheel", vec![rim], 2.0));
+        scene.lines.push(line("wheel/spokes", spokes.collect(), 1.6));
+        let at = point(frame.base.at + spun * radius, z);
+        scene.markers.push(Marker::disc("wheel/mark", at, 4.0, colour).edged(palette.background, 1.0));
     }
 
     /// What the plant holds and the model does not know of, and what pushes.
-    pub(super) fn burden(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, options: &ViewOptions) {
-        let z = self.handle_height();
+    pub fn load(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Frame, options: &ViewOptions) {
+        let z = linkage.top();
         if frame.loaded {
             let (drive, sign) = self.holder;
-            let [x, y] = self.ground.load.offset;
+            let [x, y] = self.load.offset;
             let at = frame.tip + frame.q.units()[drive] * Vector::new(x, y) * sign;
             if (at - frame.tip).norm() > 1e-9 {
                 let stem = vec![point(frame.tip, z), point(at, z)];
-                scene.lines.push(Line { on_top: true, ..self.floor_line("payload", stem, 2.0, palette.ink) });
+                scene.lines.push(Line::new("payload/stem", [stem], 2.0, palette.ink).on_top());
             }
-            scene.markers.push(Marker {
-                name: "payload".into(),
-                at: point(at, z),
-                radius: (5.0 + 5.0 * self.ground.load.mass.sqrt()).min(12.0) as f32,
-                fill: mix(palette.background, palette.ink, 0.55),
-                stroke: palette.ink,
-                stroke_width: 1.6,
-            });
-            let words = format!("{} kg", brief_number(self.ground.load.mass));
-            scene.labels.push(label(at, z, [0.0, -22.0], &words, palette.dim, 11.5, Anchor::Centre));
+            let radius = (5.0 + 5.0 * self.load.mass.sqrt()).min(12.0) as f32;
+            let disc = Marker::disc("payload", point(at, z), radius, mix(palette.background, palette.ink, 0.55));
+            scene.markers.push(disc.edged(palette.ink, 1.6));
+            let words = format!("{} kg", three_digits(self.load.mass));
+            let offset = [0.0, -22.0];
+            scene.labels.push(Label::new(
+                "payload/mass",
+                point(at, z),
+                offset,
+                words,
+                palette.dim,
+                11.5,
+                Anchor::Centre,
+            ));
         }
         let Some([x, y]) = options.push else { return };
         let force = Vector::new(x, y);
@@ -150,31 +172,28 @@ impl Stage {
         if size < 1e-9 {
             return;
         }
-        let reach = self.linkage.reach();
+        let reach = linkage.reach();
         let along = force / size;
         let to = frame.tip + along * (size / PULL).clamp(0.03 * reach, 0.6 * reach);
-        let line = |points| Line { on_top: true, ..self.floor_line("push", points, 2.6, palette.amber) };
-        scene.lines.push(line(vec![point(frame.tip, z), point(to, z)]));
-        scene.lines.push(line(head(to, along, 0.025 * reach, z)));
+        let arrow = [vec![point(frame.tip, z), point(to, z)], head(to, along, 0.025 * reach, z)];
+        scene.lines.push(Line::new("push", arrow, 2.6, palette.amber).on_top());
         let words = format!("{size:.2} N");
-        let side = if along.re < 0.0 { (-8.0, Anchor::Right) } else { (8.0, Anchor::Left) };
-        scene.labels.push(label(to, z, [side.0, 0.0], &words, palette.amber, 12.5, side.1));
+        let (aside, anchor) = if along.re < 0.0 { (-8.0, Anchor::Right) } else { (8.0, Anchor::Left) };
+        scene.labels.push(Label::new("push/size", point(to, z), [aside, 0.0], words, palette.amber, 12.5, anchor));
     }
 
     /// Where base and machine would be, had the base not moved; nothing if it has not.
-    pub(super) fn unmoved(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, times: f64) {
+    pub fn unmoved(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Frame, times: f64) {
         let Pose2 { at, angle } = frame.base;
-        let reach = self.linkage.reach();
-        if !self.ground.base.moves() {
+        let reach = linkage.reach();
+        if !self.base.moves() {
             return;
         }
         if at.norm() + angle.abs() * reach > 0.002 * reach {
-            let (z, colour) = (self.linkage.floor(), faded(palette.dim, 0.75));
-            let line = |points| Line { dash: Some([3.0, 3.0]), ..self.floor_line("unmoved", points, 1.2, colour) };
+            let (z, colour) = (linkage.floor(), faded(palette.dim, 0.75));
             let mut e: Units = frame.q.units();
             e.iter_mut().for_each(|e| *e *= unit(-angle));
-            let arms = self.linkage.outlines(&e).map(|ends| line(ends.map(|p| point(p, z)).to_vec()));
-            scene.lines.extend(arms.collect::<Vec<_>>());
+            let mut strips: Vec<_> = linkage.outlines(&e).map(|ends| ends.map(|p| point(p, z)).to_vec()).collect();
             let [length, width] = PLATE.map(|part| part * reach);
             let straight = length - width;
             let cap = |side: f64| {
@@ -183,9 +202,10 @@ impl Stage {
                         + unit(side * (-FRAC_PI_2 + std::f64::consts::PI * f64::from(i) / 16.0)) * side * width
                 })
             };
-            let mut outline: Vec<_> = cap(1.0).chain(cap(-1.0)).map(|p| point(p, self.linkage.bottom())).collect();
+            let mut outline: Vec<_> = cap(1.0).chain(cap(-1.0)).map(|p| point(p, linkage.bottom())).collect();
             outline.extend(outline.first().copied());
-            scene.lines.push(line(outline));
+            strips.push(outline);
+            scene.lines.push(Line::new("unmoved", strips, 1.2, colour).dashed(3.0, 3.0));
         }
         // As many digits as the peak so far has; they do not change as it comes to rest.
         let written = |x: f64, peak: f64| match peak > SILENT {
@@ -202,16 +222,27 @@ impl Stage {
         };
         let shown = if times == 1.0 { String::new() } else { format!(" · shown ×{times}") };
         let at = Vector::new(0.2 * reach, -0.11 * reach);
-        scene.labels.push(label(
-            at,
-            self.handle_height(),
-            [0.0, -17.0],
-            &format!("{words}{shown}"),
-            palette.dim,
-            11.5,
-            Anchor::Left,
-        ));
+        let text = format!("{words}{shown}");
+        let at = point(at, linkage.top());
+        scene.labels.push(Label::new("base_motion", at, [0.0, -17.0], text, palette.dim, 11.5, Anchor::Left));
     }
+}
+
+/// Outlines and ribs of the panels of a base that floats, before it moves.
+fn panels(linkage: &Linkage) -> [Vec<Vec<[f32; 3]>>; 2] {
+    let (reach, z) = (linkage.reach(), linkage.bottom());
+    let (near, far, half) = (PLATE[0] + 0.035, PLATE[0] + 0.19, 0.075);
+    let (mut outlines, mut ribs) = (Vec::new(), Vec::new());
+    for side in [-1.0, 1.0] {
+        let at = |x: f64, y: f64| point(Vector::new(side * x * reach, y * reach), z);
+        outlines.push(vec![at(near, -half), at(far, -half), at(far, half), at(near, half), at(near, -half)]);
+        outlines.push(vec![at(PLATE[0], 0.0), at(far, 0.0)]);
+        ribs.extend((1..3).map(|i| {
+            let x = near + f64::from(i) * (far - near) / 3.0;
+            vec![at(x, -half), at(x, half)]
+        }));
+    }
+    [outlines, ribs]
 }
 
 /// A zigzag between two points.

@@ -2,98 +2,76 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::{Stage, ViewOptions, label, point, round_up};
 use crate::mechanics::planar::{Vector, unit};
+use crate::picture::numbers::round_number;
+use crate::picture::scene::arrow::head;
+use crate::picture::scene::linkage::Linkage;
+use crate::picture::scene::options::ViewOptions;
 use crate::picture::scene::palette::Palette;
-use crate::picture::scene::reaction::{ARROW, RADIUS, Reaction};
-use crate::picture::scene::{Anchor, Line, Scene};
+use crate::picture::scene::reaction::{ARROW, RADIUS, Reaction, Scale};
+use crate::picture::scene::{Anchor, Label, Line, Scene, Strips, point, posed};
 use crate::simulation::frame::Frame;
 
-/// The two barbs of an arrow head at a point, along a unit vector.
-pub(super) fn head(at: Vector, along: Vector, size: f64, z: f64) -> Vec<[f32; 3]> {
-    let barb = |turn: f64| at - along * unit(turn) * size;
-    vec![point(barb(0.5), z), point(at, z), point(barb(-0.5), z)]
-}
-
-pub(super) fn brief(x: f64) -> String {
-    format!("{x:.6}").trim_end_matches('0').trim_end_matches('.').into()
-}
-
-impl Stage {
-    /// A force arrow and a moment arc at B, in proportion, with their scale in words.
-    pub(super) fn reaction(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, options: &ViewOptions) {
-        let (z, reach) = (self.handle_height(), self.linkage.reach());
-        let (b, felt) = (frame.base.at, Reaction::of(frame));
-        let line = |name: &str, points: Vec<[f32; 3]>| Line {
-            name: name.into(),
-            points,
-            width: 3.0,
-            colour: palette.reaction,
-            dash: None,
-            on_top: true,
-        };
-        let newtons = round_up(frame.peaks.force.max(felt.force.norm()).max(1e-3));
-        let arrow = felt.arrow(newtons).map(|parts| parts * reach);
-        if let Some(arrow) = arrow {
-            scene.lines.push(line("reaction/force", vec![point(b, z), point(b + arrow, z)]));
-            scene.lines.push(line("reaction/force", head(b + arrow, arrow / arrow.norm(), 0.025 * reach, z)));
-        }
-        let full = round_up(frame.peaks.moment.max(1e-3));
-        let (sweep, radius) = (felt.sweep(full), RADIUS * reach);
-        if let Some(sweep) = sweep {
+/// A force arrow and a moment arc at B, in proportion, with their scale in words; `rest` names what else the base
+/// carries.
+pub fn draw(scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Frame, options: &ViewOptions, rest: &str) {
+    let (z, reach) = (linkage.top(), linkage.reach());
+    let (b, felt) = (frame.base.at, Reaction::of(frame));
+    let so_far = || Scale::of(frame.peaks.force.max(felt.force.norm()), frame.peaks.moment);
+    let Scale { newtons, newton_metres } = options.scale.unwrap_or_else(so_far);
+    let at_b = posed(b, Vector::new(1.0, 0.0), z);
+    // Where nothing is to be seen, it is said to be nothing.
+    let mut line = |name: &'static str, strips: Vec<Vec<[f32; 3]>>| {
+        let line = Line::new(name, Strips::from(strips), 3.0, palette.reaction).on_top();
+        scene.lines.push(Line { world_from_item: at_b, ..line });
+    };
+    let arrow = felt.arrow(newtons).map(|parts| parts * reach);
+    line(
+        "reaction/force",
+        arrow.map_or_else(Vec::new, |arrow| {
+            let shaft = vec![[0.0; 3], point(arrow, 0.0)];
+            vec![shaft, head(arrow, arrow / arrow.norm(), 0.025 * reach, 0.0)]
+        }),
+    );
+    let (sweep, radius) = (felt.sweep(newton_metres), RADIUS * reach);
+    line(
+        "reaction/moment",
+        sweep.map_or_else(Vec::new, |sweep| {
             let n = ((sweep.abs() * 24.0).ceil() as usize).max(2);
-            let from = -FRAC_PI_2;
-            let arc: Vec<_> =
-                (0..=n).map(|i| point(b + unit(from + sweep * i as f64 / n as f64) * radius, z)).collect();
-            scene.lines.push(line("reaction/moment", arc));
-            let end = unit(from + sweep);
-            let along = end * Vector::new(0.0, sweep.signum());
-            scene.lines.push(line("reaction/moment", head(b + end * radius, along, 0.025 * reach, z)));
-        }
-        let com = frame.com;
-        let arm = 0.014 * reach;
-        for d in [Vector::new(arm, 0.0), Vector::new(0.0, arm)] {
-            scene.lines.push(Line {
-                name: "com".into(),
-                points: vec![point(com - d, z), point(com + d, z)],
-                width: 1.8,
-                colour: palette.ink,
-                dash: None,
-                on_top: true,
-            });
-        }
-        let at = Vector::new(0.2 * reach, -0.11 * reach);
-        let off = (com - b).norm();
-        let still = off < 1e-6 * reach;
-        let com_words = if still {
-            "centre of mass at rest in B".into()
-        } else {
-            format!("centre of mass {:.2} mm off B", 1e3 * off)
-        };
-        let scale: Vec<String> = [
-            arrow.map(|_| format!("arrow: {:.3} m = {} N", ARROW * reach, brief(newtons))),
-            sweep.map(|_| format!("arc: 135° = {} N m", brief(full))),
-        ]
-        .into_iter()
-        .flatten()
-        .collect();
-        let of = match options.push {
-            Some([x, y]) if x.hypot(y) > 0.0 && self.ground.weightless => "the push",
-            Some([x, y]) if x.hypot(y) > 0.0 => "its weight with the push",
-            _ => "its weight",
-        };
-        let [force, moment] = felt.readings(palette).map(|(text, tone)| (text, tone, 13.0));
-        let rows = [
-            force,
-            moment,
-            (felt.beside(of).unwrap_or_default(), palette.dim, 11.5),
-            (com_words, palette.dim, 11.5),
-            (scale.join(" · "), palette.dim, 11.5),
-        ];
-        let mut down = 0.0;
-        for (text, colour, size) in rows.into_iter().filter(|(t, ..)| !t.is_empty()) {
-            scene.labels.push(label(at, z, [0.0, down], &text, colour, size, Anchor::Left));
-            down += 17.0;
-        }
+            let on = |share: f64| unit(-FRAC_PI_2 + sweep * share) * radius;
+            let arc = (0..=n).map(|i| point(on(i as f64 / n as f64), 0.0)).collect();
+            let along = on(1.0) / radius * Vector::new(0.0, sweep.signum());
+            vec![arc, head(on(1.0), along, 0.025 * reach, 0.0)]
+        }),
+    );
+    let com = frame.com;
+    let arm = (0.014 * reach) as f32;
+    let cross = [vec![[-arm, 0.0, 0.0], [arm, 0.0, 0.0]], vec![[0.0, -arm, 0.0], [0.0, arm, 0.0]]];
+    let at_com = posed(com, Vector::new(1.0, 0.0), z);
+    scene.lines.push(Line::new("com", cross, 1.8, palette.ink).on_top().moving(at_com));
+    let off = (com - b).norm();
+    let still = off < 1e-6 * reach;
+    let com_words =
+        if still { "centre of mass at rest in B".into() } else { format!("centre of mass {:.2} mm off B", 1e3 * off) };
+    let scale: Vec<String> = [
+        arrow.map(|_| format!("arrow: {:.3} m = {} N", ARROW * reach, round_number(newtons))),
+        sweep.map(|_| format!("arc: 135° = {} N m", round_number(newton_metres))),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    let [force, moment] = felt.readings(palette).map(|(text, tone)| (text, tone, 13.0));
+    let rows = [
+        force,
+        moment,
+        (felt.beside(rest).unwrap_or_default(), palette.dim, 11.5),
+        (com_words, palette.dim, 11.5),
+        (scale.join(" · "), palette.dim, 11.5),
+    ];
+    let at = point(Vector::new(0.2 * reach, -0.11 * reach), z);
+    let mut down = 0.0;
+    for (text, colour, size) in rows.into_iter().filter(|(t, ..)| !t.is_empty()) {
+        scene.labels.push(Label::new("reaction/words", at, [0.0, down], text, colour, size, Anchor::Left));
+        down += 17.0;
     }
 }

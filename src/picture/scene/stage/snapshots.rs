@@ -1,69 +1,39 @@
 //! Other poses beside the present one: snapshots along the motion as in Fig. 5, and other runs at the same instant.
 
-use super::{Stage, ViewOptions, label, point};
-use crate::mechanics::planar::{DriveAngles, Pose2, Vector, unit};
+use crate::mechanics::planar::{Vector, unit};
+use crate::picture::scene::linkage::Linkage;
+use crate::picture::scene::options::ViewOptions;
 use crate::picture::scene::palette::{Palette, faded};
-use crate::picture::scene::{Anchor, Line, Scene};
+use crate::picture::scene::{Anchor, Label, Line, Scene, point};
 
-/// Another run at the present instant.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Other {
-    /// Its number in the table.
-    pub name: String,
-    /// Absolute drive angles, rad.
-    pub q: DriveAngles,
-    /// Its base.
-    pub base: Pose2,
-}
-
-impl Stage {
-    /// The links that carry the end effector at instants along the motion, the later the stronger.
-    pub(super) fn snapshots(&self, scene: &mut Scene, palette: &Palette, options: &ViewOptions) {
-        let z = self.handle_height();
-        let last = options.snapshots.len().saturating_sub(1).max(1) as f32;
-        for (i, q) in options.snapshots.iter().enumerate() {
-            let strength = 0.35 + 0.55 * i as f32 / last;
-            for (drive, [from, to]) in self.linkage.skeleton(&q.units()) {
-                scene.lines.push(Line {
-                    name: format!("snapshot/{}", i + 1),
-                    points: vec![point(from, z), point(to, z)],
-                    width: 1.8,
-                    colour: faded(palette.drive(drive), strength),
-                    dash: None,
-                    on_top: true,
-                });
-            }
+/// The links that carry the end effector at instants along the motion, the later the stronger.
+pub fn snapshots(scene: &mut Scene, linkage: &Linkage, palette: &Palette, options: &ViewOptions) {
+    let z = linkage.top();
+    let last = options.snapshots.len().saturating_sub(1).max(1) as f32;
+    for (i, q) in options.snapshots.iter().enumerate() {
+        let strength = 0.35 + 0.55 * i as f32 / last;
+        for (drive, ends) in linkage.skeleton(&q.units()) {
+            let (strip, colour) = (ends.map(|p| point(p, z)).to_vec(), faded(palette.drive(drive), strength));
+            scene.lines.push(Line::new(format!("snapshot/{}", i + 1), [strip], 1.8, colour).on_top());
         }
     }
+}
 
-    /// Other runs as thin skeletons, dashed, with their numbers.
-    pub(super) fn others(&self, scene: &mut Scene, palette: &Palette, options: &ViewOptions) {
-        let z = self.handle_height();
-        for other in &options.others {
-            let mut tip = Vector::default();
-            let turned = |p: Vector| other.base.at + p;
-            for (_, [from, to]) in self.linkage.skeleton(&other.q.units()) {
-                tip = turned(to);
-                scene.lines.push(Line {
-                    name: format!("other/{}", other.name),
-                    points: vec![point(turned(from), z), point(tip, z)],
-                    width: 1.6,
-                    colour: faded(palette.ink, 0.8),
-                    dash: Some([5.0, 3.0]),
-                    on_top: true,
-                });
-            }
-            let size = 0.03 * self.linkage.reach();
-            let mark = [-1.0, 1.0].map(|side| other.base.at + side * size * unit(other.base.angle));
-            scene.lines.push(Line {
-                name: format!("other/{}/base", other.name),
-                points: mark.map(|p| point(p, z)).to_vec(),
-                width: 1.6,
-                colour: faded(palette.ink, 0.8),
-                dash: None,
-                on_top: true,
-            });
-            scene.labels.push(label(tip, z, [8.0, 12.0], &other.name, palette.ink, 12.0, Anchor::Left));
-        }
+/// Other runs as thin skeletons, dashed, with their numbers.
+pub fn others(scene: &mut Scene, linkage: &Linkage, palette: &Palette, options: &ViewOptions) {
+    let (z, colour) = (linkage.top(), faded(palette.ink, 0.8));
+    for other in &options.others {
+        let base = other.base.at;
+        let skeleton = linkage.skeleton(&other.q.units());
+        let tip = skeleton.last().map_or(base, |(_, [_, to])| base + to);
+        let strips: Vec<_> =
+            skeleton.iter().map(|(_, ends)| ends.map(|p: Vector| point(base + p, z)).to_vec()).collect();
+        let name = format!("other/{}", other.name);
+        let size = 0.03 * linkage.reach();
+        let mark = [-1.0, 1.0].map(|side| point(base + side * size * unit(other.base.angle), z)).to_vec();
+        scene.lines.push(Line::new(format!("{name}/base"), [mark], 1.6, colour).on_top());
+        scene.lines.push(Line::new(name, strips, 1.6, colour).dashed(5.0, 3.0).on_top());
+        let (at, offset) = (point(tip, z), [8.0, 12.0]);
+        scene.labels.push(Label::new("other", at, offset, &other.name, palette.ink, 12.0, Anchor::Left));
     }
 }

@@ -1,6 +1,7 @@
 //! How much the motion of a base is exaggerated, so that it can be seen.
 
 use crate::mechanics::planar::{Pose2, unit};
+use crate::picture::numbers::round_up;
 use crate::simulation::frame::Frame;
 
 /// Height of a picture of the whole machine, as parts of its reach.
@@ -22,11 +23,11 @@ pub fn exaggeration([shift, tilt]: [f64; 2], reach: f64) -> f64 {
         return 1.0;
     }
     let wanted = SEEN * PICTURE * reach / motion;
-    if wanted <= 1.0 { 1.0 } else { super::stage::round_up(wanted).min(MOST) }
+    if wanted <= 1.0 { 1.0 } else { round_up(wanted).min(MOST) }
 }
 
 /// A frame as it would be, had the base moved so many times as far: drives, end effector and centre of mass go along.
-pub fn swayed(frame: &Frame, times: f64) -> Frame {
+pub fn exaggerated(frame: &Frame, times: f64) -> Frame {
     if times == 1.0 {
         return *frame;
     }

@@ -2,16 +2,14 @@
 
 use rerun::{EncodedImage, EntityPath};
 
-use super::Pictures;
-use super::recorder::Stop;
+use super::options::Pictures;
+use super::stop::Stop;
 use super::store::{Clock, Instant, Store};
 #[cfg(feature = "render")]
 use crate::picture::render::offscreen::{NoAdapter, NoPicture, Picture};
 #[cfg(all(feature = "render", not(feature = "ui")))]
 use crate::picture::render::{View, offscreen::Gpu};
-use crate::picture::scene::stage::{INVITATION, Stage, ViewOptions};
-use crate::picture::scene::{Scene, camera::Camera};
-use crate::session::Run;
+use crate::picture::scene::{Scene, camera::Camera, options::ViewOptions, stage::Stage};
 use crate::simulation::frame::Frame;
 
 /// Bytes that are gathered before they are written.
@@ -19,13 +17,13 @@ const ROLL: usize = 4 << 20;
 
 /// Draws scenes: with their words, where there is a font.
 #[cfg(feature = "ui")]
-struct Easel(crate::picture::canvas::Canvas);
+struct Painter(crate::picture::canvas::Canvas);
 
 #[cfg(all(feature = "render", not(feature = "ui")))]
-struct Easel(Gpu, View);
+struct Painter(Gpu, View);
 
 #[cfg(feature = "render")]
-impl Easel {
+impl Painter {
     fn new(wanted: Pictures) -> Result<Self, NoAdapter> {
         let size = [wanted.width, wanted.height];
         // As large as in a window of this height, down to what is still read.
@@ -59,49 +57,45 @@ impl Easel {
 }
 
 /// Takes pictures, if any are wanted and there is something to draw with.
-pub struct Film {
+pub struct Series {
     wanted: Option<Pictures>,
     note: Option<String>,
     #[cfg(feature = "render")]
-    easel: Option<Easel>,
-    #[cfg(feature = "render")]
-    stage: Option<Stage>,
+    painter: Option<Painter>,
     /// Pictures of the case at hand.
     taken: u64,
     clock: Clock,
     pictures: Vec<Vec<u8>>,
 }
 
-impl Film {
+impl Series {
     /// Looks for something to draw with.
     pub fn of(wanted: Option<Pictures>) -> Self {
-        let mut film = Self {
+        let mut series = Self {
             wanted,
             note: None,
             #[cfg(feature = "render")]
-            easel: None,
-            #[cfg(feature = "render")]
-            stage: None,
+            painter: None,
             taken: 0,
             clock: Clock::default(),
             pictures: Vec::new(),
         };
         if let Some(wanted) = wanted {
-            film.load(wanted);
+            series.prepare(wanted);
         }
-        film
+        series
     }
 
     #[cfg(feature = "render")]
-    fn load(&mut self, wanted: Pictures) {
-        match Easel::new(wanted) {
-            Ok(easel) => self.easel = Some(easel),
+    fn prepare(&mut self, wanted: Pictures) {
+        match Painter::new(wanted) {
+            Ok(painter) => self.painter = Some(painter),
             Err(why) => self.go_without(&why.to_string()),
         }
     }
 
     #[cfg(not(feature = "render"))]
-    fn load(&mut self, _: Pictures) {
+    fn prepare(&mut self, _: Pictures) {
         self.go_without("built without the feature `render`");
     }
 
@@ -111,7 +105,7 @@ impl Film {
     }
 
     /// Whether there will be pictures.
-    pub fn is_loaded(&self) -> bool {
+    pub fn is_wanted(&self) -> bool {
         self.wanted.is_some()
     }
 
@@ -128,24 +122,14 @@ impl Film {
         self.wanted.is_some_and(|p| frame.time + 0.5 * step >= self.taken as f64 / p.fps)
     }
 
-    /// Something has changed that stays the same from picture to picture: machine, plan, workspaces.
-    pub fn cut(&mut self) {
-        #[cfg(feature = "render")]
-        {
-            self.stage = None;
-        }
-    }
-
     /// Takes one.
     #[cfg(feature = "render")]
-    pub fn take(&mut self, at: Instant, run: &Run, frame: &Frame) -> Result<(), Stop> {
-        let (Some(wanted), Some(easel)) = (self.wanted, &mut self.easel) else { return Ok(()) };
-        let stage = self.stage.get_or_insert_with(|| Stage::of(run));
-        let options = ViewOptions { pin_forces: wanted.pin_forces, ..ViewOptions::default() };
-        let mut scene = stage.scene(frame, &options);
-        scene.labels.retain(|label| label.text != INVITATION);
+    pub fn take(&mut self, at: Instant, stage: &Stage, frame: &Frame, options: &ViewOptions) -> Result<(), Stop> {
+        let (Some(wanted), Some(painter)) = (self.wanted, &mut self.painter) else { return Ok(()) };
+        let options = ViewOptions { pin_forces: wanted.pin_forces, ..options.clone() };
+        let scene = stage.scene(frame, &options);
         let failed = |why: &dyn std::fmt::Display| Stop::Pictures(why.to_string());
-        let picture = easel.draw(scene, &Camera::flat(stage.linkage().reach())).map_err(|why| failed(&why))?;
+        let picture = painter.draw(scene, &Camera::flat(stage.linkage().reach())).map_err(|why| failed(&why))?;
         if [picture.width, picture.height] != [wanted.width, wanted.height] {
             let most = picture.width.max(picture.height);
             return Err(failed(&NoPicture::Size { width: wanted.width, height: wanted.height, most }));
@@ -158,7 +142,7 @@ impl Film {
     }
 
     #[cfg(not(feature = "render"))]
-    pub fn take(&mut self, _: Instant, _: &Run, _: &Frame) -> Result<(), Stop> {
+    pub fn take(&mut self, _: Instant, _: &Stage, _: &Frame, _: &ViewOptions) -> Result<(), Stop> {
         Ok(())
     }
 

@@ -16,7 +16,7 @@ use crate::simulation::frame::{Frame, Peaks, Phase, Reach};
 
 /// Events and phases of a case.
 #[derive(Debug)]
-pub struct Story {
+pub struct Events {
     /// Tells the events of several cases apart.
     prefix: String,
     palette: Palette,
@@ -53,7 +53,7 @@ struct Event {
     rgba: Rgba,
 }
 
-impl Story {
+impl Events {
     /// Nothing has happened yet.
     pub fn new(prefix: String, palette: Palette) -> Self {
         let peak = (Instant { step: 0, nanos: 0 }, 0.0);
@@ -140,9 +140,9 @@ impl Story {
             }
             _ => {}
         }
-        if let (false, Some(lamp)) = (self.faulty, frame.fault()) {
+        if let (false, Some(fault)) = (self.faulty, frame.fault()) {
             self.faulty = true;
-            let text = format!("audit failed: {} ({}) {:.1e} {}", lamp.name, lamp.meaning, lamp.value, lamp.unit);
+            let text = format!("audit failed: {} ({}) {:.1e} {}", fault.name, fault.meaning, fault.value, fault.unit);
             self.add(at, text, TextLogLevel::ERROR, self.palette.reaction);
         }
     }

@@ -1,0 +1,162 @@
+//! The one table of charts: which signals a plot holds, its title, unit and range, and the colours of its lines. The
+//! window's plots and the recording's are these.
+
+use super::numbers::round_up;
+use super::scene::Rgba;
+use super::scene::palette::{Palette, mix};
+use crate::session::scenario::Scenario;
+use crate::simulation::frame::{Peaks, REACTIONLESS};
+use crate::simulation::signals::Signal;
+
+/// A plot of signals over time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chart {
+    /// What it shows.
+    pub title: &'static str,
+    /// Unit of the values as the window shows them.
+    pub unit: &'static str,
+    /// The signals it holds: paths, or groups of them.
+    pub signals: &'static [&'static str],
+    /// The least half of its range, or the least range where it is not about zero; in the unit of the window.
+    pub least: f64,
+    /// The range is about zero.
+    pub centred: bool,
+    /// What SI values are multiplied by in the window.
+    pub times: f64,
+    /// Where it is to be seen.
+    pub place: Place,
+    /// The cases of a recording are laid over each other in it.
+    pub compared: bool,
+}
+
+/// Where a chart is to be seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Beside the scene, in the window and in recordings.
+    Beside,
+    /// In the window where somebody asks what the pins carry; in recordings, among what is inside the machine.
+    Pins,
+    /// In recordings only, among what is inside the machine.
+    Inside,
+}
+
+const PLAIN: Chart = Chart {
+    title: "",
+    unit: "",
+    signals: &[],
+    least: 0.1,
+    centred: true,
+    times: 1.0,
+    place: Place::Beside,
+    compared: false,
+};
+
+const TORQUE: Chart = Chart { title: "Torque", unit: "N m", signals: &["torque"], ..PLAIN };
+const MOMENT: Chart =
+    Chart { title: "Base moment", unit: "N m", signals: &["moment/total"], least: 0.5, compared: true, ..PLAIN };
+/// What the machine transmits, and what of it the base feels past its reaction wheel.
+const MOMENT_PAST_WHEEL: Chart = Chart { signals: &["moment/total", "moment/felt"], ..MOMENT };
+const FORCE: Chart =
+    Chart { title: "Base force", unit: "N, from motion", signals: &["force/dynamic"], least: 0.5, ..PLAIN };
+const BASE: Chart =
+    Chart { title: "Base", unit: "mm, mrad", signals: &["base", "attitude"], least: 0.01, times: 1e3, ..PLAIN };
+const FRICTION: Chart = Chart { title: "Friction", unit: "N m", signals: &["friction"], least: 0.01, ..PLAIN };
+const PINS: Chart = Chart {
+    title: "Pin forces",
+    unit: "N",
+    signals: &["pin/worst"],
+    least: 1.0,
+    centred: false,
+    place: Place::Pins,
+    ..PLAIN
+};
+const ANGLES: Chart =
+    Chart { title: "Drive angles", unit: "rad", signals: &["angle"], least: 0.5, centred: false, ..PLAIN };
+const POSE: Chart =
+    Chart { title: "Pose constant", unit: "rad", signals: &["pose/b"], centred: false, compared: true, ..PLAIN };
+const INSIDE: Chart = Chart { place: Place::Inside, centred: false, ..PLAIN };
+const EACH_PIN: Chart = Chart { title: "Force of each pin", unit: "N", signals: &["pin"], least: 1.0, ..INSIDE };
+const TILT: Chart = Chart { title: "Tilting moment", unit: "N m", signals: &["tilt"], centred: true, ..INSIDE };
+const TRANSMISSION: Chart =
+    Chart { title: "Transmission |sin(q_k − q_l)|", unit: "1", signals: &["transmission"], ..INSIDE };
+const CHANGE_POINT: Chart =
+    Chart { title: "To the nearest change point", unit: "rad", signals: &["change_point/distance"], ..INSIDE };
+
+/// The charts that have something to tell of a scenario, in the order in which they stand.
+pub fn charts(scenario: &Scenario) -> Vec<Chart> {
+    let wheel = scenario.base.wheel.is_some();
+    let rubs = scenario.plant.friction != Default::default();
+    let mut list = vec![TORQUE, if wheel { MOMENT_PAST_WHEEL } else { MOMENT }, FORCE];
+    list.extend(Some(BASE).filter(|_| scenario.base.moves()));
+    list.extend(Some(FRICTION).filter(|_| rubs));
+    list.extend([PINS, ANGLES, POSE, EACH_PIN, TILT, TRANSMISSION, CHANGE_POINT]);
+    list
+}
+
+impl Chart {
+    /// Whether the window shows it; `pins` where somebody asks what they carry.
+    pub fn in_window(&self, pins: bool) -> bool {
+        match self.place {
+            Place::Beside => true,
+            Place::Pins => pins,
+            Place::Inside => false,
+        }
+    }
+
+    /// Whether it holds a signal.
+    pub fn holds(&self, signal: &Signal) -> bool {
+        self.signals.iter().any(|of| signal.path == *of || signal.group() == *of)
+    }
+
+    /// Its unit where values are in SI units; empty for none.
+    pub fn si_unit(&self) -> String {
+        match (self.times == 1.0, self.unit) {
+            (_, "1") => String::new(),
+            (true, unit) => unit.into(),
+            // All of them are in thousandths.
+            (false, unit) => unit.split(", ").map(|u| u.strip_prefix('m').unwrap_or(u)).collect::<Vec<_>>().join(", "),
+        }
+    }
+
+    /// Bounds of its axis that hold still: rounded outwards about values from `low` to `high`, and never so tight that
+    /// rounding noise looks like a signal.
+    pub fn range(&self, low: f64, high: f64) -> [f64; 2] {
+        if self.centred {
+            let most = round_up(low.abs().max(high.abs()).max(self.least));
+            let most = if most.is_finite() { most } else { self.least };
+            return [-most, most];
+        }
+        if !(low.is_finite() && high.is_finite()) {
+            return [0.0, 1.0];
+        }
+        let step = round_up((high - low).max(self.least) / 2.0);
+        let bottom = (low / step).floor() * step;
+        let count = ((high - bottom) / step).ceil().max(1.0);
+        [bottom, bottom + count * step]
+    }
+}
+
+/// The colour of a signal in every chart; a reaction is red where it is one and green where it is none, by the peaks up
+/// to the instant that is asked about.
+pub fn colour(signal: &Signal, palette: &Palette, peaks: &Peaks) -> Rgba {
+    let paler = |rgba| mix(rgba, palette.dim, 0.6);
+    let reaction = |real: bool| if real { palette.reaction } else { palette.zero };
+    let turns = peaks.moment > REACTIONLESS * peaks.torque_sum;
+    let pulls = peaks.force > REACTIONLESS * peaks.inertial_pull;
+    match (signal.drive, signal.group(), signal.path.as_str()) {
+        (Some(k), "reference", _) => paler(palette.drive(k)),
+        (Some(k), ..) => palette.drive(k),
+        (None, _, "pose/b_reference") => paler(palette.amber),
+        (None, "pose", _) => palette.amber,
+        (None, "base", "base/y") => palette.dim,
+        (None, "attitude", _) => palette.reaction,
+        (None, _, "moment/total") => reaction(turns),
+        (None, _, "moment/felt") if turns => palette.ink,
+        (None, _, "moment/felt") => palette.zero,
+        (None, "moment", _) => paler(palette.reaction),
+        (None, _, "force/dynamic") => reaction(pulls),
+        (None, "force", _) => paler(palette.reaction),
+        (None, _, "reactionless/now") => palette.zero,
+        _ => palette.ink,
+    }
+}

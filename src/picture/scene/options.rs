@@ -1,0 +1,110 @@
+//! What a person has chosen to see, and what can be dragged.
+
+use std::sync::Arc;
+
+use super::Measure;
+use super::palette::Theme;
+use super::reaction::Scale;
+use crate::mechanics::planar::{DriveAngles, Pose2, Vector};
+use crate::session::Refusal;
+
+/// What a person has chosen to see.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ViewOptions {
+    /// Light or dark.
+    pub theme: Theme,
+    /// The workspace is shaded by this measure.
+    pub dexterity: Option<Measure>,
+    /// Somebody can drag things, and is told so.
+    pub invites: bool,
+    /// The pointer is on this handle, or drags it.
+    pub hot: Option<Handle>,
+    /// Where the pointer holds what it drags, m.
+    pub held: Option<[f64; 2]>,
+    /// A pose constant to show A, or the target, on, rad.
+    pub preview_b: Option<f64>,
+    /// What the pointer has drawn so far, m.
+    pub stroke: Vec<[f64; 2]>,
+    /// What was asked for last and refused.
+    pub refused: Option<Arc<Refused>>,
+    /// Poses along the motion, in the order of time, as in Fig. 5.
+    pub snapshots: Vec<DriveAngles>,
+    /// Other runs at the same instant.
+    pub others: Vec<Other>,
+    /// Arrows show what the pins carry.
+    pub pin_forces: bool,
+    /// How many times as far as it moves the base is shown to move.
+    pub exaggeration: f64,
+    /// A force at the end effector, N.
+    pub push: Option<[f64; 2]>,
+    /// What a full arrow and arc of a reaction stand for; none goes by the largest so far.
+    pub scale: Option<Scale>,
+}
+
+impl Default for ViewOptions {
+    fn default() -> Self {
+        Self {
+            theme: Theme::Dark,
+            dexterity: None,
+            invites: true,
+            hot: None,
+            held: None,
+            preview_b: None,
+            stroke: Vec::new(),
+            refused: None,
+            snapshots: Vec::new(),
+            others: Vec::new(),
+            pin_forces: false,
+            exaggeration: 1.0,
+            push: None,
+            scale: None,
+        }
+    }
+}
+
+/// What can be dragged in the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Handle {
+    /// The end effector's target.
+    Target,
+    /// The end effector, to be pushed.
+    Tip,
+    /// The knob of the b ring.
+    Ring,
+    /// The plane b = const, in joint space or as a slice of the tower.
+    Plane,
+    /// A bar of the tower: the b that reach a point.
+    Bar,
+    /// A point of the planned path, counted from A.
+    Waypoint(usize),
+}
+
+/// Another run at the present instant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Other {
+    /// Its number in the table.
+    pub name: String,
+    /// Absolute drive angles, rad.
+    pub q: DriveAngles,
+    /// Its base.
+    pub base: Pose2,
+}
+
+/// What somebody asked for and did not get: a curve, m, and where it cannot be followed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refused {
+    /// m.
+    pub curve: Vec<Vector>,
+    /// m.
+    pub at: Vector,
+    /// Why, in a few words.
+    pub why: String,
+}
+
+impl Refused {
+    /// The curve of a refusal, if it is of one.
+    pub fn of(refusal: &Refusal) -> Option<Self> {
+        let Refusal::Blocked(blocked) = refusal else { return None };
+        Some(Self { curve: blocked.curve.clone(), at: blocked.at, why: blocked.stop.to_string() })
+    }
+}

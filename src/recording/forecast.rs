@@ -1,0 +1,103 @@
+//! A run before it is recorded: its extremes decide the layout and the scales, which stand at the head of the file, and
+//! a scenario that cannot run is refused before anything is written.
+
+use rerun::EntityPath;
+use rerun::external::re_log_types::EntityPathPart;
+
+use super::eye::Eye;
+use crate::picture::charts::{Chart, charts};
+use crate::picture::scene::camera::{Camera, Orbit};
+use crate::picture::scene::joint_space::JointSpace;
+use crate::picture::scene::linkage::Linkage;
+use crate::picture::scene::reaction::Scale;
+use crate::picture::scene::tower::Tower;
+use crate::session::scenario::Scenario;
+use crate::session::{Refusal, replay};
+use crate::simulation::frame::Peaks;
+use crate::simulation::signals::{Signal, signals};
+
+/// What a run will come to.
+#[derive(Debug)]
+pub struct Forecast {
+    /// Name of the scenario.
+    pub name: String,
+    /// A line about it.
+    pub title: String,
+    /// Where its entities are.
+    pub root: EntityPath,
+    /// Steps.
+    pub steps: u64,
+    /// The largest of everything.
+    pub peaks: Peaks,
+    /// The first audit that fails, in words.
+    pub fault: Option<String>,
+    /// Least and greatest b, rad.
+    pub b: [f64; 2],
+    /// What it records.
+    pub signals: Vec<Signal>,
+    /// The charts that tell something of it, with the least and the greatest value in each.
+    pub charts: Vec<(Chart, [f64; 2])>,
+    /// From where the machine is seen.
+    pub scene: Eye,
+    /// From where joint space is seen, if there are planes.
+    pub joints: Option<Eye>,
+    /// From where the tower is seen.
+    pub tower: Option<Eye>,
+}
+
+impl Forecast {
+    /// Runs a scenario.
+    ///
+    /// # Errors
+    /// If it cannot start, or one of its edits cannot apply.
+    pub fn of(scenario: &Scenario, tick: &mut dyn FnMut(u64)) -> Result<Self, Refusal> {
+        let none = [f64::INFINITY, f64::NEG_INFINITY];
+        let wider = |range: &mut [f64; 2], x: f64| *range = [range[0].min(x), range[1].max(x)];
+        let signals = signals(&scenario.machine);
+        let mut charts: Vec<_> = charts(scenario).into_iter().map(|chart| (chart, none)).collect();
+        charts.retain(|(chart, _)| signals.iter().any(|signal| chart.holds(signal)));
+        let held = |signal: &Signal| charts.iter().position(|(chart, _)| chart.holds(signal));
+        let drawn: Vec<_> = signals.iter().filter_map(|signal| Some((held(signal)?, signal.clone()))).collect();
+        let mut b = none;
+        let run = replay(scenario, |_, frame| {
+            wider(&mut b, frame.b);
+            drawn.iter().for_each(|(i, signal)| wider(&mut charts[*i].1, signal.value(frame)));
+            if frame.step.is_multiple_of(1024) {
+                tick(frame.step);
+            }
+        })?;
+        let last = run.frame();
+        let reach = Linkage::of(&run.scenario().machine).reach();
+        let orbit = |camera: Camera| match camera {
+            Camera::Orbit(orbit) => Some(orbit),
+            Camera::Flat(_) => None,
+        };
+        let joints = JointSpace::over(&run, b)
+            .and_then(|space| Some(Eye { orbit: orbit(space.camera())?, axes: space.drives() }));
+        Ok(Self {
+            fault: last.fault().map(|fault| fault.to_string()),
+            name: scenario.name.clone(),
+            title: if scenario.title.is_empty() { scenario.name.clone() } else { scenario.title.clone() },
+            root: EntityPath::new(vec![EntityPathPart::new(scenario.name.as_str())]),
+            steps: last.step,
+            peaks: last.peaks,
+            b,
+            signals,
+            charts,
+            scene: near(reach),
+            joints,
+            tower: Tower::over(&run, b).and_then(|tower| orbit(tower.camera())).map(Eye::upright),
+        })
+    }
+}
+
+/// What full arrows and arcs stand for in all of them, so that they can be compared.
+pub fn scale(cases: &[Forecast]) -> Scale {
+    let largest = |of: fn(&Forecast) -> f64| cases.iter().map(of).fold(0.0, f64::max);
+    Scale::of(largest(|c| c.peaks.force), largest(|c| c.peaks.moment))
+}
+
+/// From the front and above, so near that the arm and its workspaces fill the view.
+fn near(reach: f64) -> Eye {
+    Eye::upright(Orbit { centre: [-0.04 * reach, 0.06 * reach, 0.0], distance: 1.75 * reach, yaw: 0.3, pitch: 0.95 })
+}
