@@ -186,7 +186,13 @@ impl Export {
                 let place = [f.base.at.re, f.base.at.im, f.base.angle];
                 let rates = [f.base_velocity.re, f.base_velocity.im, f.base_rate];
                 let base = place.into_iter().chain(rates).map(|x| x + 0.0).filter(|_| scenario.base.moves());
-                rows.push(std::iter::once(f.time).chain(all).chain([f.tip.re, f.tip.im, f.b]).chain(base).collect());
+                rows.push(
+                    std::iter::once(f.time)
+                        .chain(all)
+                        .chain([f.end_effector.re, f.end_effector.im, f.b])
+                        .chain(base)
+                        .collect(),
+                );
             }
         })
         .map_err(|e| Failure::from(e).of(&scenario.name))?;

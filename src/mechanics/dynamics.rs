@@ -184,7 +184,9 @@ fn holding_torque_of<const N: usize>(inertia: &Inertia, e: &Units, around: &Surr
 #[inline(always)]
 fn hold<const N: usize>(inertia: &Inertia, e: &[Vector; N], around: &Surroundings) -> [f64; N] {
     // (i e) · a = e × a for a unit vector e turned by a right angle
-    std::array::from_fn(|k| -cross(inertia.g[k] * e[k], around.gravity) - inertia.tip[k] * cross(e[k], around.force))
+    std::array::from_fn(|k| {
+        -cross(inertia.g[k] * e[k], around.gravity) - inertia.end_effector[k] * cross(e[k], around.force)
+    })
 }
 
 /// Motor torques for given accelerations, (4), N m.
@@ -263,7 +265,7 @@ pub(crate) fn wrench_with<const N: usize>(
         let ge = inertia.g[k] * e[k];
         first += ge;
         pull -= ge * Vector::new(-qd[k] * qd[k], qdd[k]);
-        tip += e[k] * inertia.tip[k];
+        tip += e[k] * inertia.end_effector[k];
     }
     BaseWrench {
         statical: Wrench {

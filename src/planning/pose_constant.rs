@@ -429,7 +429,7 @@ pub fn plane_map(machine: &Machine) -> Result<PlaneMap, PlaneError> {
     if machine.drives() != 3 {
         return Err(shape());
     }
-    let tip = machine.tip();
+    let tip = machine.end_effector();
     let lambda = Inertia::of(machine).lambda();
     let angle =
         |a: &crate::mechanics::machine::RelativeAngle| AngleDefinition { to: a.to, from: a.from, offset: a.offset };

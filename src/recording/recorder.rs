@@ -258,7 +258,7 @@ impl<'a> Recorder<'a> {
     fn draw(&mut self, at: Instant, frame: &Frame, last: bool) -> Result<(), Stop> {
         let Some(views) = &self.views else { return Ok(()) };
         let when = (at, if self.lasting { None } else { Some(at) });
-        let tip = point(frame.tip, views.stage.handle_height());
+        let tip = point(frame.end_effector, views.stage.handle_height());
         self.trail.push(|| tip, last);
         self.machine.draw(self.store, when, &views.stage.scene(frame, &self.options))?;
         let scene = |view: Option<Scene>| view.unwrap_or_else(|| Scene::new(self.palette.background, Arc::default()));

@@ -139,7 +139,7 @@ impl Run {
 
     /// Where a pose has the end effector, m.
     pub fn place(&self, q: &DriveAngles) -> Vector {
-        crate::mechanics::kinematics::end_effector(self.scenario.machine.tip(), &q.units())
+        crate::mechanics::kinematics::end_effector(self.scenario.machine.end_effector(), &q.units())
     }
 
     /// Where the end effector is after a share of the planned time, m.

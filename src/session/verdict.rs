@@ -73,7 +73,7 @@ impl Verdict {
             past_wheel: scenario.base.wheel.map(|_| peaks.moment),
             force: peaks.force,
             tilt: peaks.tilt,
-            miss: (frame.tip - frame.target.at).norm(),
+            miss: (frame.end_effector - frame.target.at).norm(),
             past_limit: (by > PAST).then(|| (name(angle), by)),
             fault: frame.fault(),
             // A target that cannot be reached is told of where it is set.

@@ -57,7 +57,7 @@ pub struct Frame {
     /// Centre of mass of manipulator and payload, m.
     pub com: Vector,
     /// End effector, m.
-    pub tip: Vector,
+    pub end_effector: Vector,
     /// What the end effector is sent to, in the axes of the base at the start.
     pub target: Target,
     /// Whether the payload that the model lacks is held.

@@ -33,7 +33,7 @@ fn dragging_the_target_moves_the_machine_on_its_plane() {
     h.run_steps(120);
     let f = session(&h).frame();
     assert_eq!(f.target.reach, Reach::Inside);
-    assert!((f.tip.re - 0.62).abs() < 2e-3 && (f.tip.im - 0.55).abs() < 2e-3, "{:?}", f.tip);
+    assert!((f.end_effector.re - 0.62).abs() < 2e-3 && (f.end_effector.im - 0.55).abs() < 2e-3, "{:?}", f.end_effector);
     assert!(f.peaks.is_reactionless(), "n_B stays at zero: {:?}", f.peaks);
     assert!((f.b - 2.4).abs() < 1e-11);
 }
@@ -47,7 +47,7 @@ fn a_target_outside_says_why_and_what_b_would_do() {
     h.run_steps(120);
     let f = *session(&h).frame();
     let Reach::Outside { nearest, mending_b, .. } = f.target.reach else { panic!("{:?}", f.target) };
-    assert!((nearest - f.tip).norm() < 1e-6, "the machine waits at the nearest point");
+    assert!((nearest - f.end_effector).norm() < 1e-6, "the machine waits at the nearest point");
     let b = mending_b.expect("another plane reaches it");
     let planes = session(&h).run().planes().expect("three drives").clone();
     assert!(
@@ -81,7 +81,7 @@ fn escape_cancels_a_drag_and_takes_it_back() {
     h.drop_at(to);
     h.run_steps(100);
     let f = session(&h).frame();
-    assert!((f.tip - nalgebra::Complex::new(0.6, 0.3)).norm() > 0.1, "{}", f.tip);
+    assert!((f.end_effector - nalgebra::Complex::new(0.6, 0.3)).norm() > 0.1, "{}", f.end_effector);
 }
 
 /// A point of the path goes where it is dragged; where the target covers it, by its name.
@@ -98,7 +98,7 @@ fn waypoints_are_handles() {
     drag(&mut h, from, to);
     assert!((points(&h)[0].re - 0.45).abs() < 2e-3 && (points(&h)[0].im - 0.45).abs() < 2e-3, "{:?}", points(&h));
     assert!(!session(&h).is_live(), "nobody leads the machine");
-    assert!((session(&h).frame().tip - points(&h)[0]).norm() < 1e-9, "it waits at A");
+    assert!((session(&h).frame().end_effector - points(&h)[0]).norm() < 1e-9, "it waits at A");
     // Each drag is one undo.
     h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     h.run_steps(2);
@@ -151,7 +151,11 @@ fn a_path_is_drawn_by_hand() {
     h.run_steps(70);
     let f = session(&h).frame();
     let (x, y) = curve(1.0);
-    assert!((f.tip.re - x).hypot(f.tip.im - y) < 5e-3 && f.peaks.is_reactionless(), "{:?}", f.tip);
+    assert!(
+        (f.end_effector.re - x).hypot(f.end_effector.im - y) < 5e-3 && f.peaks.is_reactionless(),
+        "{:?}",
+        f.end_effector
+    );
 }
 
 /// With Alt the end effector is pushed while time passes; letting go ends the push, and all of it is one undo.
@@ -159,7 +163,7 @@ fn a_hand_pushes_the_end_effector() {
     let mut h = desk("case-3", Theme::Dark);
     h.get_by_label("Play").click();
     h.run_steps(70);
-    let tip = session(&h).frame().tip;
+    let tip = session(&h).frame().end_effector;
     let (from, to) = (on_screen(&h, tip.re, tip.im), on_screen(&h, tip.re - 0.2, tip.im));
     h.key_press(Key::U);
     h.run_steps(2);
@@ -168,12 +172,16 @@ fn a_hand_pushes_the_end_effector() {
     let pushed = session(&h).scenario().plant.force;
     assert!((pushed[0] + 4.0).abs() < 0.5 && pushed[1].abs() < 0.5, "{pushed:?} N for 0.2 m");
     h.run_steps(10);
-    assert!((session(&h).frame().tip - tip).norm() > 1e-3, "it gives way: {}", session(&h).frame().tip);
+    assert!(
+        (session(&h).frame().end_effector - tip).norm() > 1e-3,
+        "it gives way: {}",
+        session(&h).frame().end_effector
+    );
     assert!(session(&h).frame().peaks.moment > 0.1, "a force that nobody planned reaches the base");
     h.drop_at(to);
     h.run_steps(60);
     assert_eq!(session(&h).scenario().plant.force, [0.0; 2]);
-    assert!((session(&h).frame().tip - tip).norm() < 1e-3, "and returns");
+    assert!((session(&h).frame().end_effector - tip).norm() < 1e-3, "and returns");
     let again = stillbase::session::replay(&session(&h).to_scenario(), |_, _| {}).expect("it runs");
     assert_eq!(again.frame(), session(&h).run().frame(), "the push is in the script");
 }

@@ -24,7 +24,7 @@ fn playing_case_3_ends_at_b_without_a_reaction() {
     h.run_steps(70);
     let f = session(&h).frame();
     assert_eq!(f.step, 1000, "the run stops by itself where the motion ends");
-    assert!((f.tip.re - 0.55).abs() < 1e-6 && (f.tip.im - 0.9).abs() < 1e-6, "{:?}", f.tip);
+    assert!((f.end_effector.re - 0.55).abs() < 1e-6 && (f.end_effector.im - 0.9).abs() < 1e-6, "{:?}", f.end_effector);
     assert!(f.peaks.is_reactionless());
     assert!(h.query_by_label("reactionless").is_some());
     assert!(h.query_by_label("Pause").is_some(), "time still runs: sliding b now would move the machine");

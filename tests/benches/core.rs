@@ -246,7 +246,7 @@ fn folded_distance(bencher: Bencher) {
 /// The line of the end effector in case 1.
 fn tip_path() -> Path {
     let start = DriveAngles::from([1.6875182179, 3.7146223682, 2.1801769897]);
-    let tip = builtin("nine-link").expect("built in").tip();
+    let tip = builtin("nine-link").expect("built in").end_effector();
     Path::Table(tip_line(tip, start, Vector::new(0.55, 0.90)).expect("regular"))
 }
 

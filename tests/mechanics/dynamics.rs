@@ -112,7 +112,7 @@ proptest! {
         close("centre of mass", &xy(centre_of_mass(&inertia, &e)), &twin.com, 1e-11);
         close("momentum", &xy(linear_momentum(&inertia, &e, &s.qd)), &twin.linear_momentum, 1e-11);
         close("angular momentum", &[angular_momentum(&inertia, &e, &s.qd)], &[twin.angular_momentum], 1e-11);
-        close("end effector", &xy(end_effector(machine.tip(), &e)), &twin.end_effector, 1e-13);
+        close("end effector", &xy(end_effector(machine.end_effector(), &e)), &twin.end_effector, 1e-13);
         let (kinetic, potential) = energy(&inertia, &e, &s.qd, machine.gravity());
         close("energy", &[kinetic + potential], &[body.energy(q, qd)], 1e-11);
         close("mass matrix", &matrix(&inertia, &s), body.mass_matrix(q).as_slice(), 1e-11);
@@ -202,9 +202,9 @@ proptest! {
         let (without, loose) = inverse_with_wrench(&inertia, &e, &s.qd, &s.qdd, &free);
         let (with, wrench) = inverse_with_wrench(&inertia, &e, &s.qd, &s.qdd, &held);
         let work = with.plus(-1.0, &without).dot(&s.qd);
-        close("virtual work", &[work], &[-dot(force, velocity(machine.tip(), &e, &s.qd))], 1e-9);
+        close("virtual work", &[work], &[-dot(force, velocity(machine.end_effector(), &e, &s.qd))], 1e-9);
         close("force", &xy(wrench.total().force - loose.total().force), &[fx, fy], 1e-9);
-        let moment = cross(end_effector(machine.tip(), &e), force);
+        let moment = cross(end_effector(machine.end_effector(), &e), force);
         close("moment", &[wrench.total().moment - loose.total().moment], &[moment], 1e-9);
         close("forward", &forward(&inertia, &e, &s.qd, &with, &held), &s.qdd, 1e-8);
     }

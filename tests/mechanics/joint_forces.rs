@@ -93,8 +93,8 @@ fn assert_each_link_balances(machine: &Machine, s: &State, around: &Surroundings
         let (r, a) = moving(&machine.com_chain(j), s);
         let mut sum = link.mass * (around.gravity - a);
         let mut moment = -link.inertia * s.qdd[drive];
-        if j == machine.tip_link() {
-            let tip = machine.tip();
+        if j == machine.end_link() {
+            let tip = machine.end_effector();
             let at = place_of(tip, &e);
             let f = payload.mass * (around.gravity - acceleration(tip, &e, &s.qd, &s.qdd)) + around.force;
             sum += f;
@@ -234,7 +234,7 @@ proptest! {
             (-at(2.0 * h, a) + 16.0 * at(h, a) - 30.0 * at(0.0, a) + 16.0 * at(-h, a) - at(-2.0 * h, a)) / (12.0 * h * h)
         };
         let payload = machine.spec().payload;
-        let tip = machine.tip().map(|w| Vector::new(w, 0.0));
+        let tip = machine.end_effector().map(|w| Vector::new(w, 0.0));
         let links = machine.links().iter().enumerate().map(|(j, l)| (l.mass, l.axial, machine.com_chain(j)));
         let mut sum = [0.0; 3];
         let mut add = |r: Vector, z: f64, f: Vector| {

@@ -223,7 +223,7 @@ fn check_handles(session: &Session) {
     assert!((next - b - period).abs() < 1e-12);
     // The end effector is marked where it is.
     let marker = scene.markers.iter().find(|m| m.name == "end_effector").expect("a marker");
-    assert_eq!([marker.at[0], marker.at[1]], [frame.tip.re as f32, frame.tip.im as f32]);
+    assert_eq!([marker.at[0], marker.at[1]], [frame.end_effector.re as f32, frame.end_effector.im as f32]);
 }
 
 /// While the pointer holds the target, the handle is under it, even if the frame lags behind.
@@ -339,10 +339,10 @@ proptest! {
             }
         }
         // The arm that carries the end effector ends in it.
-        let last = &machine.links()[machine.tip_link()].name;
+        let last = &machine.links()[machine.end_link()].name;
         let solid = solids.iter().find(|s| s.name == format!("machine/link/{last}")).expect("the last arm");
-        let tip = placed(solid, machine.parts()[machine.tip_link()].length);
-        prop_assert!((tip - place_of(machine.tip(), &e)).norm() < 1e-6);
+        let tip = placed(solid, machine.parts()[machine.end_link()].length);
+        prop_assert!((tip - place_of(machine.end_effector(), &e)).norm() < 1e-6);
         // A joint is drawn on every pin off B: each lies on a joint, and each joint on a pin.
         let pins: Vec<Vector> = machine.parts().iter()
             .flat_map(|p| p.pins.iter().map(|s| place_of(&p.point(*s), &e)))
@@ -472,7 +472,7 @@ fn all_of_the_machine_goes_with_its_base() {
     let still = {
         let mut still = *f;
         still.q.0.iter_mut().for_each(|q| *q -= f.base.angle);
-        (still.tip, still.com, still.base) = (f.in_base(f.tip), f.in_base(f.com), Pose2::default());
+        (still.end_effector, still.com, still.base) = (f.in_base(f.end_effector), f.in_base(f.com), Pose2::default());
         still
     };
     let stage = Stage::of(session.run());
@@ -539,13 +539,13 @@ proptest! {
         let frame = session.frame();
         prop_assert_eq!(exaggerated(frame, 1.0), *frame);
         let more = exaggerated(frame, times);
-        prop_assert!((more.in_base(more.tip) - frame.in_base(frame.tip)).norm() < 1e-12);
+        prop_assert!((more.in_base(more.end_effector) - frame.in_base(frame.end_effector)).norm() < 1e-12);
         prop_assert!((more.in_base(more.com) - frame.in_base(frame.com)).norm() < 1e-12);
         for k in 0..3 {
             prop_assert!((more.relative(k) - frame.relative(k)).abs() < 1e-12);
         }
-        let tip = more.base.at + stillbase::mechanics::kinematics::end_effector(session.scenario().machine.tip(), &more.q.units());
-        prop_assert!((more.tip - tip).norm() < 1e-12);
+        let tip = more.base.at + stillbase::mechanics::kinematics::end_effector(session.scenario().machine.end_effector(), &more.q.units());
+        prop_assert!((more.end_effector - tip).norm() < 1e-12);
     }
 }
 
@@ -554,7 +554,7 @@ proptest! {
 fn a_miss_is_shown_and_said() {
     let session = floating();
     let f = session.frame();
-    let (goal, tip) = (f.in_base(f.tip), f.tip);
+    let (goal, tip) = (f.in_base(f.end_effector), f.end_effector);
     let miss = 1e3 * (tip - goal).norm();
     assert!(miss > 1.0, "{miss} mm");
     let stage = Stage::of(session.run());

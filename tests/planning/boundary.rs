@@ -14,7 +14,7 @@ fn machine(name: &str) -> PlaneMap {
     let lambda = Inertia::of(machine).lambda();
     let angle = |i: usize| &machine.angles()[i];
     PlaneMap::new(
-        [0, 1, 2].map(|k| machine.tip()[k]),
+        [0, 1, 2].map(|k| machine.end_effector()[k]),
         [0, 1, 2].map(|k| lambda[k]),
         [0, 1].map(|i| AngleDefinition { to: angle(i).to, from: angle(i).from, offset: angle(i).offset }),
         [0, 1].map(|i| AngleLimit { min: *angle(i).limits.start(), max: *angle(i).limits.end() }),

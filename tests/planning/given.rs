@@ -212,7 +212,7 @@ fn scenario(kind: TaskKind, samples: &Samples, b: Option<f64>) -> Scenario {
 }
 
 fn tip(r: &Reference) -> Vector {
-    end_effector(machine().tip(), &r.q.units())
+    end_effector(machine().end_effector(), &r.q.units())
 }
 
 /// As a person writes it: nothing but the kind and the rows.
@@ -398,7 +398,7 @@ proptest! {
         };
         let distance = |b: f64| {
             let moved = turned(&lambda, &given, b).expect("finite");
-            Deviation::between(machine().tip(), &model, &motion(&given), &motion(&moved), 20_000)
+            Deviation::between(machine().end_effector(), &model, &motion(&given), &motion(&moved), 20_000)
         };
         let best = distance(mean);
         for b in [mean - off, mean + off] {
@@ -424,9 +424,10 @@ fn the_end_effector_is_kept_on_the_nearest_plane_that_reaches_it() {
     let planes = Planes::of(machine).expect("three drives");
     let (map, given) = (planes.map(), swinging(150));
     let as_given = motion(&given);
-    let moved = |b: f64| same_tip(map, machine.tip(), &given, b, Rule::default()).ok().flatten();
-    let far = |b: f64| moved(b).map(|m| Deviation::between(machine.tip(), &model, &as_given, &motion(&m), 3000));
-    let (b, rms) = nearest_b(map, machine.tip(), &model, &given, Rule::default()).expect("some plane does");
+    let moved = |b: f64| same_tip(map, machine.end_effector(), &given, b, Rule::default()).ok().flatten();
+    let far =
+        |b: f64| moved(b).map(|m| Deviation::between(machine.end_effector(), &model, &as_given, &motion(&m), 3000));
+    let (b, rms) = nearest_b(map, machine.end_effector(), &model, &given, Rule::default()).expect("some plane does");
     let best = far(b).expect("it does");
     assert!((best.rms / rms - 1.0).abs() < 1e-3, "{} {rms}", best.rms);
     assert!(best.tip < 1e-6 && best.rms > 1e-3, "{best:?}");
@@ -444,7 +445,7 @@ fn the_end_effector_is_kept_on_the_nearest_plane_that_reaches_it() {
     }
     // A motion that is on a plane already is its own nearest.
     let on = moved(b).expect("it does");
-    let (same, rms) = nearest_b(map, machine.tip(), &model, &on, Rule::default()).expect("its own");
+    let (same, rms) = nearest_b(map, machine.end_effector(), &model, &on, Rule::default()).expect("its own");
     assert!((same - b).abs() < 1e-6 && rms < 1e-6, "{same} {b} {rms}");
 }
 

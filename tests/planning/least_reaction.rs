@@ -145,12 +145,12 @@ fn a_feasible_b_stays() {
             let plan = plan(A, B, b, None, goal);
             assert!(plan.course().is_constant());
             assert_eq!((plan.reaction(1.0).peak, plan.reaction(1.0).rms), (0.0, 0.0));
-            let verdicts = plan.compare(nine_link().tip(), line(A, B), 1.0);
+            let verdicts = plan.compare(nine_link().end_effector(), line(A, B), 1.0);
             assert_eq!(verdicts.fixed, FixedB::Serves);
             for i in 0..=300 {
                 let u = f64::from(i) / 300.0;
                 assert!(moment(plan.path(), u).abs() < 1e-9, "b = {b}, u = {u}");
-                let tip = end_effector(nine_link().tip(), &plan.path().at(u).q.units());
+                let tip = end_effector(nine_link().end_effector(), &plan.path().at(u).q.units());
                 assert!((tip - line(A, B)(u).p).norm() < 1e-10);
             }
         }
@@ -176,7 +176,7 @@ fn the_course_keeps_its_corridor() {
                 let at = plan.path().at(u);
                 let point = map.project(&at.q);
                 let curve = line(from, to)(u);
-                let tip = end_effector(nine_link().tip(), &at.q.units());
+                let tip = end_effector(nine_link().end_effector(), &at.q.units());
                 assert!((tip - curve.p).norm() < 1e-9, "u = {u}: {:e}", (tip - curve.p).norm());
                 assert!(map.limits().iter().zip(point.a).all(|(l, a)| l.contains(a, 1e-9)), "u = {u}: {point:?}");
                 let [low, high] = map.reach(curve.p).expect("reached").near(on).intervals[0];
@@ -257,7 +257,7 @@ fn least_is_less_than_the_others() {
         let (x, y) = (rms.reaction(1.0), peak.reaction(1.0));
         assert!(x.rms <= y.rms * (1.0 + 1e-5) && y.peak <= x.peak * (1.0 + 1e-5), "{x:?} {y:?}");
         assert!(y.peak < 0.99 * x.peak, "the goals differ: {x:?} {y:?}");
-        let verdicts = rms.compare(nine_link().tip(), line(A, to), 1.0);
+        let verdicts = rms.compare(nine_link().end_effector(), line(A, to), 1.0);
         assert!(matches!(verdicts.fixed, FixedB::Leaves { u, low, high } if u > 0.0 && !(low..=high).contains(&b)));
         let other = verdicts.minimum_norm.expect("regular");
         assert!(x.rms < other.reaction.rms && y.peak < other.reaction.peak, "{x:?} {y:?} {other:?}");
@@ -273,7 +273,7 @@ fn least_is_less_than_the_others() {
 #[test]
 fn minimum_norm_is_that_of_case_1() {
     let plan = plan(A, B, 2.4, None, Goal::Rms);
-    let other = plan.compare(nine_link().tip(), line(A, B), 1.0).minimum_norm.expect("regular");
+    let other = plan.compare(nine_link().end_effector(), line(A, B), 1.0).minimum_norm.expect("regular");
     assert!((other.reaction.peak - 1.0891).abs() < 1e-4, "{other:?}");
     assert!(other.keeps_limits);
 }
@@ -292,7 +292,7 @@ fn the_inverse_has_its_own_derivatives() {
         let acceleration = ahead.first.minus(&back.first).scaled(0.5 / h);
         close("q′", &on.first, &rate, 1e-6);
         close("q″", &on.second, &acceleration, 1e-6);
-        assert!((end_effector(nine_link().tip(), &on.q.units()) - curve(u).p).norm() < 1e-12);
+        assert!((end_effector(nine_link().end_effector(), &on.q.units()) - curve(u).p).norm() < 1e-12);
     }
 }
 
@@ -374,7 +374,7 @@ fn any_line_is_planned_or_refused() {
                     let u = f64::from(i) / 100.0;
                     let at = plan.path().at(u);
                     let on = map.project(&at.q);
-                    let off = (end_effector(nine_link().tip(), &at.q.units()) - curve(u).p).norm();
+                    let off = (end_effector(nine_link().end_effector(), &at.q.units()) - curve(u).p).norm();
                     assert!(off < 1e-5, "line {k}, u = {u}: {off:e} m");
                     assert!(map.det(on.a) * det > 0.0, "line {k}, u = {u}");
                     assert!(

@@ -121,7 +121,7 @@ proptest! {
         let q = angles(&[0.4, 0.4 + a[0], 0.4 + a[0] + a[1] - std::f64::consts::PI]);
         let Some(qd) = rates(&model, &q, Vector::new(v[0], v[1]), momentum) else { return Ok(()) };
         let e = q.units();
-        prop_assert!((velocity(nine_link().tip(), &e, &qd) - Vector::new(v[0], v[1])).norm() < 1e-10);
+        prop_assert!((velocity(nine_link().end_effector(), &e, &qd) - Vector::new(v[0], v[1])).norm() < 1e-10);
         prop_assert!((angular_momentum(&model, &e, &qd) - momentum).abs() < 1e-10);
     }
 
@@ -225,7 +225,7 @@ fn a_point_mass_has_its_bearing() {
     assert!(is_integrable(&model) && !model.is_invariant());
     assert!(twist(&model, &[0.3, 1.9, 3.1].into()) < 1e-12);
     let mut q = angles(&[0.3, 1.2, 1.9]);
-    let bearing = |q: &DriveAngles| end_effector(machine.tip(), &q.units()).arg();
+    let bearing = |q: &DriveAngles| end_effector(machine.end_effector(), &q.units()).arg();
     let from = bearing(&q);
     let mut last = NullSpace::of(&model, &q).basis()[0];
     for _ in 0..1000 {
@@ -244,7 +244,7 @@ fn a_point_mass_has_its_bearing() {
 }
 
 fn round(radius: f64) -> impl Fn(f64) -> stillbase::planning::curves::CurvePoint + Clone {
-    let at = end_effector(nine_link().tip(), &DriveAngles::from(Q).units());
+    let at = end_effector(nine_link().end_effector(), &DriveAngles::from(Q).units());
     circle(at + Vector::new(radius, 0.0), at)
 }
 
@@ -265,7 +265,7 @@ fn another_machine_drifts() {
     let steps: Vec<f64> = drift.ends.windows(2).map(|w| w[1].0.minus(&w[0].0).max_abs()).collect();
     assert!(steps.iter().all(|step| *step > 1e-3), "{steps:?}");
     assert!(drift.total().max_abs() > 5.0 * steps[0], "{steps:?}: it adds up");
-    let tip = nine_link().tip();
+    let tip = nine_link().end_effector();
     let at = end_effector(tip, &drift.ends[0].units());
     assert!(drift.ends.iter().all(|q| (end_effector(tip, &q.units()) - at).norm() < 1e-12));
 
@@ -308,7 +308,7 @@ fn a_cycle_is_a_path_of_zero_moment() {
         let s = f64::from(i) / 1000.0;
         let at = table.at(s);
         let e = at.q.units();
-        assert!((end_effector(nine_link().tip(), &e) - curve(s).p).norm() < 1e-10, "s = {s}");
+        assert!((end_effector(nine_link().end_effector(), &e) - curve(s).p).norm() < 1e-10, "s = {s}");
         assert!(angular_momentum(&model, &e, &at.first).abs() < 1e-8, "s = {s}");
         let (rate, acceleration) = (1.7, -2.3);
         let qdd = at.second.scaled(rate * rate).plus(acceleration, &at.first);

@@ -27,7 +27,7 @@ fn builtin_map(name: &str, bounds: [f64; 4]) -> PlaneMap {
     let lambda = Inertia::of(machine).lambda();
     let angles: Vec<_> =
         machine.angles().iter().map(|a| AngleDefinition { to: a.to, from: a.from, offset: a.offset }).collect();
-    let tip = [0, 1, 2].map(|k| machine.tip()[k]);
+    let tip = [0, 1, 2].map(|k| machine.end_effector()[k]);
     PlaneMap::new(tip, [lambda[0], lambda[1], lambda[2]], [angles[0], angles[1]], limits(bounds)).unwrap()
 }
 

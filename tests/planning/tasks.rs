@@ -50,11 +50,11 @@ fn every_shape_is_reactionless() {
         assert!(frames.iter().all(|f| f.q_reference.0.minus(&f.q.0).max_abs() < 1e-4), "{text}");
         let points = scenario.task.points();
         let end = if closed { points[0] } else { points[points.len() - 1] };
-        assert!((last.tip - end).norm() < 1e-4, "{text}: {}", last.tip);
+        assert!((last.end_effector - end).norm() < 1e-4, "{text}: {}", last.end_effector);
         // Points at which the path must be: all but those whose corner is rounded or smoothed.
         let exact = !text.contains("blend") && !text.contains("freehand");
         for p in points.iter().filter(|_| exact) {
-            let nearest = frames.iter().map(|f| (f.tip - p).norm()).fold(f64::INFINITY, f64::min);
+            let nearest = frames.iter().map(|f| (f.end_effector - p).norm()).fold(f64::INFINITY, f64::min);
             assert!(nearest < 3e-3, "{text}: passes {p} at {nearest}");
         }
         let forecast = &run.plan().forecast;
@@ -218,8 +218,8 @@ fn what_is_drawn_is_followed() {
     let (run, frames) = run(&scenario);
     let drawn = curves(&scenario.task, &scenario.task.points()).expect("a curve");
     for frame in frames.iter().step_by(50) {
-        let s = drawn[0].nearest(frame.tip, 4000);
-        assert!((drawn[0].at(s).p - frame.tip).norm() < 1e-6);
+        let s = drawn[0].nearest(frame.end_effector, 4000);
+        assert!((drawn[0].at(s).p - frame.end_effector).norm() < 1e-6);
     }
     let end = run.plan().motion.at(run.planned_time()).q;
     assert!((run.place(&end) - Vector::new(0.55, 0.9)).norm() < 1e-10);
@@ -293,7 +293,7 @@ fn the_price_of_b_is_what_was_said() {
         let last = frames[frames.len() - 1];
         assert!((last.peaks.moment - peak).abs() < 0.02 * peak, "{law}: {} {peak}", last.peaks.moment);
         assert!(last.peaks.force < 1e-9 && !last.peaks.is_reactionless());
-        assert!((last.tip - scenario().task.points()[0]).norm() > 0.5);
+        assert!((last.end_effector - scenario().task.points()[0]).norm() > 0.5);
     }
     // Where A and B share a plane, nothing has to change.
     let (free, frames) = run(&task("kind = 'change-b'"));
@@ -344,7 +344,7 @@ fn zero_momentum_drifts_only_without_invariance() {
     let last = frames[frames.len() - 1];
     assert!(last.peaks.moment < 1e-5 * last.peaks.torque_sum, "{:?}", last.peaks);
     assert!(frames.iter().all(|f| f.angular_momentum.abs() < 1e-6));
-    assert!((last.tip - run.scenario().task.points()[0]).norm() < 1e-6);
+    assert!((last.end_effector - run.scenario().task.points()[0]).norm() < 1e-6);
     assert!(last.q.0.minus(&run.plan().cycles[3].0).max_abs() < 1e-6);
 }
 

@@ -34,12 +34,12 @@ fn line() -> Path {
 
 /// Case 1: the straight line of the end effector.
 fn tip_path() -> Path {
-    Path::Table(tip_line(nine_link().tip(), Q_A.into(), Vector::new(0.55, 0.90)).expect("regular"))
+    Path::Table(tip_line(nine_link().end_effector(), Q_A.into(), Vector::new(0.55, 0.90)).expect("regular"))
 }
 
 /// Case 2.
 fn same_tip() -> Path {
-    Path::SameTip(SameTip::new(nine_link().tip(), Q_A.into(), Q_B.into(), 1.45).expect("in reach"))
+    Path::SameTip(SameTip::new(nine_link().end_effector(), Q_A.into(), Q_B.into(), 1.45).expect("in reach"))
 }
 
 /// q_k = c_k + r_k sin(w_k s + p_k), by its nodes.

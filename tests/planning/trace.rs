@@ -37,7 +37,7 @@ fn assert_follows(table: &PathTable, curve: &Curve, b: f64) {
     for i in 0..=400 {
         let s = f64::from(i) / 400.0;
         let at = table.at(s);
-        let miss = (end_effector(machine().tip(), &at.q.units()) - curve.at(s).p).norm();
+        let miss = (end_effector(machine().end_effector(), &at.q.units()) - curve.at(s).p).norm();
         assert!(miss < 1e-10, "s {s}: {miss}");
         let kept = |x: &PerDrive| x.iter().zip(lambda).map(|(x, l)| l * x).sum::<f64>();
         assert!((kept(&at.q.0) - b).abs() < 1e-12, "s {s}");

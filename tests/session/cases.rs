@@ -110,11 +110,11 @@ fn case_3_torque_is_one_line() {
 #[test]
 fn case_1_keeps_to_its_line_with_least_rates() {
     let case = &CASES[0];
-    let tip = case.scenario.machine.tip();
+    let tip = case.scenario.machine.end_effector();
     let [a, b] = [Vector::new(0.50, 0.50), Vector::new(0.55, 0.90)];
     for frame in &case.frames {
         let s = case.motion().profile.at(frame.time).s;
-        assert!((frame.tip - (a + s * (b - a))).norm() < 1e-10, "at {} s: {}", frame.time, frame.tip);
+        assert!((frame.end_effector - (a + s * (b - a))).norm() < 1e-10, "at {} s: {}", frame.time, frame.end_effector);
         // The null vector of J: rates along it move no end effector. Least rates have none of it.
         let e = frame.q.units();
         let c = |k: usize, l: usize| tip[k] * tip[l] * cross(e[k], e[l]);
@@ -130,7 +130,7 @@ fn case_1_keeps_to_its_line_with_least_rates() {
 fn case_2_takes_the_end_effector_of_case_3_another_way() {
     let [_, second, third] = &*CASES;
     for (x, y) in second.frames.iter().zip(&third.frames) {
-        assert!((x.tip - y.tip).norm() < 1e-10, "at {} s", x.time);
+        assert!((x.end_effector - y.end_effector).norm() < 1e-10, "at {} s", x.time);
     }
     close("drive 1", &[second.last().q[0]], &[1.45], 1e-10);
     assert!((second.last().peaks.moment - 0.4853).abs() < 5e-5, "{}", second.last().peaks.moment);
@@ -322,7 +322,7 @@ struct FirstOrder {
 
 impl FirstOrder {
     fn of(case: &Performed) -> Self {
-        let tip = case.scenario.machine.tip();
+        let tip = case.scenario.machine.end_effector();
         let control = case.scenario.control;
         let (kp, kd) = (control.kp.of(1)[0], control.kd.of(1)[0]);
         let planned = |t: f64| {
@@ -387,12 +387,12 @@ fn a_known_payload_reacts_as_its_own_momentum() {
     // With its payload the machine reaches A and B on other planes.
     loaded.task.b = 2.6;
     let loaded = Performed::of(loaded);
-    let tip = loaded.scenario.machine.tip();
+    let tip = loaded.scenario.machine.end_effector();
     let (bare, lambda) = (Inertia::of(builtin("nine-link").expect("built in")), &CASES[0].inertia().lambda());
     for f in &loaded.frames {
         let a = acceleration(tip, &f.q.units(), &f.qd, &f.qdd);
         close("force", &xy(f.wrench.dynamic.force), &xy(-0.4 * a), 1e-11);
-        let want = -bare.diagonal(0) * lambda.dot(&f.qdd) - 0.4 * cross(f.tip, a);
+        let want = -bare.diagonal(0) * lambda.dot(&f.qdd) - 0.4 * cross(f.end_effector, a);
         close("moment", &[f.wrench.dynamic.moment], &[want], 1e-11);
     }
 }

@@ -68,7 +68,7 @@ fn a_target_outlives_a_change_of_the_machine() {
     do_it(&mut session, set("limits.a2", "0,3"));
     settle(&mut session);
     assert_eq!(session.frame().target.reach, Reach::Inside);
-    assert!((session.frame().tip - at).norm() < 1e-9);
+    assert!((session.frame().end_effector - at).norm() < 1e-9);
     one_path(&session);
 }
 
@@ -171,7 +171,7 @@ fn outside_the_machine_waits_at_the_nearest_point_and_b_mends_it() {
     let f = *session.frame();
     let Reach::Outside { nearest, mending_b, .. } = f.target.reach else { panic!("{:?}", f.target) };
     assert_eq!(f.target.at, target, "the handle stays under the pointer");
-    assert!((f.tip - nearest).norm() < 1e-9, "the machine waits at the nearest point");
+    assert!((f.end_effector - nearest).norm() < 1e-9, "the machine waits at the nearest point");
     let planes = session.run().planes().expect("three drives").clone();
     let loops = planes.boundary().turned(2.4);
     assert!(off_boundary(&loops, nearest) < 2e-5, "{:e} m off the boundary", off_boundary(&loops, nearest));
@@ -184,7 +184,7 @@ fn outside_the_machine_waits_at_the_nearest_point_and_b_mends_it() {
     do_it(&mut session, slide(b));
     settle(&mut session);
     let f = session.frame();
-    assert!((f.tip - target).norm() < 1e-6, "{:e} m off after mending", (f.tip - target).norm());
+    assert!((f.end_effector - target).norm() < 1e-6, "{:e} m off after mending", (f.end_effector - target).norm());
     // A little less does not do.
     let short = b - 1e-3 * (b - 2.4).signum();
     assert!(planes.map().poses(target, short).is_empty(), "b = {short} would do");
@@ -211,7 +211,7 @@ fn sliding_on_carries_the_end_effector() {
     let (end, held) = (session.frame(), carried[carried.len() / 2]);
     assert!((end.b - 3.4).abs() < 1e-9);
     assert!((end.a[0] - held.a[0]).abs() < 1e-3 && (end.a[1] - held.a[1]).abs() < 1e-3, "{:?} {:?}", end.a, held.a);
-    assert!((end.target.at - end.tip).norm() < 1e-6, "the target goes with it");
+    assert!((end.target.at - end.end_effector).norm() < 1e-6, "the target goes with it");
     one_path(&session);
 }
 
@@ -232,7 +232,7 @@ fn a_settled_session_stands_still() {
     assert!(session.is_moving());
     session.tick(100_000);
     assert!(!session.is_moving() && session.frames().len() < frames + 4000);
-    assert!((session.frame().tip - Vector::new(0.6, 0.7)).norm() < 1e-9);
+    assert!((session.frame().end_effector - Vector::new(0.6, 0.7)).norm() < 1e-9);
 }
 
 #[test]

@@ -174,7 +174,7 @@ fn absurd_edits_leave_finite_frames() {
         session.tick(150);
         for f in session.frames() {
             let finite = f.q.iter().chain(f.qdd.iter()).chain(f.torque.iter()).all(|x| x.is_finite());
-            assert!(finite && f.b.is_finite() && f.tip.re.is_finite(), "{edit:?}: {f:?}");
+            assert!(finite && f.b.is_finite() && f.end_effector.re.is_finite(), "{edit:?}: {f:?}");
         }
         one_path(&session);
     }

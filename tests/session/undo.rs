@@ -119,7 +119,7 @@ fn undo_of_a_drag_goes_back_to_the_last_target() {
     session.undo().expect("an inverse");
     assert_eq!(session.script().last().expect("undo").edit, drag(0.55, 0.6));
     settle(&mut session);
-    assert!((session.frame().tip - Vector::new(0.55, 0.6)).norm() < 1e-9);
+    assert!((session.frame().end_effector - Vector::new(0.55, 0.6)).norm() < 1e-9);
     one_path(&session);
 }
 

@@ -369,8 +369,8 @@ fn b_is_relative_to_the_base() {
         let relative = PerDrive::from_fn(3, |k| f.relative(k));
         assert!((f.b - model.lambda().dot(&relative)).abs() < 1e-12);
         let e = DriveAngles(f.q.0).units();
-        let tip = f.base.at + stillbase::mechanics::kinematics::end_effector(scenario.machine.tip(), &e);
-        assert!((f.tip - tip).norm() < 1e-14);
+        let tip = f.base.at + stillbase::mechanics::kinematics::end_effector(scenario.machine.end_effector(), &e);
+        assert!((f.end_effector - tip).norm() < 1e-14);
     })
     .expect("runs");
 }

@@ -24,7 +24,7 @@ fn nine_link() -> &'static Machine {
 }
 
 fn tip() -> &'static stillbase::mechanics::machine::Chain {
-    nine_link().tip()
+    nine_link().end_effector()
 }
 
 fn line() -> Path {

@@ -389,7 +389,7 @@ fn what_is_shown_does_not_depend_on_the_step() {
                 ("torque", torque, peaks.torque_sum),
                 ("f_B", force, peaks.force.max(1e-4 * peaks.inertial_pull)),
                 ("n_B", moment, peaks.moment.max(1e-4 * peaks.torque_sum)),
-                ("tip", (a.tip - b.tip).norm(), 0.01),
+                ("tip", (a.end_effector - b.end_effector).norm(), 0.01),
             ] {
                 assert!(off <= 1e-3 * peak, "{name} {text}: {what} at {} s is {off:e} off, peak {peak:e}", a.time);
             }

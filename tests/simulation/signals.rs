@@ -65,7 +65,7 @@ fn a_frame_agrees_with_itself() {
     let (mut torque, mut moment, mut force) = (0.0_f64, 0.0_f64, 0.0_f64);
     let see = |_: &Run, f: &Frame| {
         let e = f.q.units();
-        assert_eq!(f.tip, stillbase::mechanics::kinematics::end_effector(scenario.machine.tip(), &e));
+        assert_eq!(f.end_effector, stillbase::mechanics::kinematics::end_effector(scenario.machine.end_effector(), &e));
         assert_eq!(f.b, model.lambda().dot(&f.q));
         assert_eq!(f.com, stillbase::mechanics::dynamics::centre_of_mass(&plant, &e));
         assert_eq!(f.transmission, stillbase::mechanics::kinematics::transmission(&e, 3));

@@ -120,8 +120,8 @@ impl Judge {
         let run = replay(scenario, |_, _| {}).map_err(|refusal| refusal.to_string())?;
         let peaks = run.frame().peaks;
         let motion = &run.plan().motion;
-        let deviation =
-            given.map(|given| Deviation::between(self.machine.tip(), &self.model, given, motion, self.instants));
+        let deviation = given
+            .map(|given| Deviation::between(self.machine.end_effector(), &self.model, given, motion, self.instants));
         let account = self.account(motion);
         Ok(Proposal {
             way: candidate.way,

@@ -50,16 +50,19 @@ pub fn of_drives(asked: &Asked, judge: &Judge, samples: &Samples) -> Result<Ways
     let mut candidates = Vec::new();
     let mut blocked = None;
     if asked.keep != Some(Keep::Joints) {
-        let mut add = |b: f64, why: String| match same_tip(map, judge.machine.tip(), samples, b, Rule::default()) {
-            Ok(moved) => {
-                let made = moved.and_then(task).map(|task| Candidate { way: "same-tip", why, task });
-                candidates.extend(made);
-                None
-            }
-            Err(blocked) => Some(blocked),
-        };
-        let near =
-            asked.b.is_none().then(|| nearest_b(map, judge.machine.tip(), &judge.model, samples, Rule::default()));
+        let mut add =
+            |b: f64, why: String| match same_tip(map, judge.machine.end_effector(), samples, b, Rule::default()) {
+                Ok(moved) => {
+                    let made = moved.and_then(task).map(|task| Candidate { way: "same-tip", why, task });
+                    candidates.extend(made);
+                    None
+                }
+                Err(blocked) => Some(blocked),
+            };
+        let near = asked
+            .b
+            .is_none()
+            .then(|| nearest_b(map, judge.machine.end_effector(), &judge.model, samples, Rule::default()));
         blocked = match near.flatten() {
             Some((b, _)) => {
                 let why = "of all b that reach every point of its path, the one that moves the drives least";
@@ -118,7 +121,7 @@ pub fn of_tip(asked: &Asked, judge: &Judge, samples: &Samples) -> Result<Ways, F
     let starts = planes.serve(&[samples.point(0)], b).ok().and_then(|poses| poses.first().copied());
     let usual = starts.and_then(|pose| {
         let q = DriveAngles::from(map.lift(pose));
-        let table = minimum_norm_curve(judge.machine.tip(), q, &curves[0]).ok()?;
+        let table = minimum_norm_curve(judge.machine.end_effector(), q, &curves[0]).ok()?;
         Some(Motion { path: Path::Table(table), profile: Profile::running(samples.duration()) })
     });
     let candidates = followed.map_err(|stop| stop.to_string()).map(|(b, why)| {

@@ -33,8 +33,8 @@ pub fn links(machine: &Machine) -> Result<Vec<TreeLink>, JointsError> {
             tip: None,
             driven: driven[j],
         };
-        if j == machine.tip_link() {
-            let tip = machine.tip()[part.drive] - part.root[part.drive];
+        if j == machine.end_link() {
+            let tip = machine.end_effector()[part.drive] - part.root[part.drive];
             body.tip = Some(tip);
             let held = tip + part.sign * Vector::new(payload.offset[0], payload.offset[1]);
             body.mass += payload.mass;

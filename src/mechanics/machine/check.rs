@@ -28,7 +28,7 @@ impl Machine {
         let tip = parts[tip_link].point(s);
         let angles = resolve_angles(&spec, &names)?;
         add_pins(&spec, &names, &mut parts)?;
-        let machine = Self { spec, parts, tip, tip_link, angles, loops };
+        let machine = Self { spec, parts, end_effector: tip, end_link: tip_link, angles, loops };
         machine.check_inertia()?;
         Ok(machine)
     }

@@ -19,7 +19,7 @@ pub struct Inertia {
     pub(crate) g: [Vector; MAX_DRIVES],
     pub(crate) c: [[Vector; MAX_DRIVES]; MAX_DRIVES],
     pub(crate) spin: [f64; MAX_DRIVES],
-    pub(crate) tip: Chain,
+    pub(crate) end_effector: Chain,
 }
 
 impl Inertia {
@@ -32,13 +32,13 @@ impl Inertia {
             g: [zero; MAX_DRIVES],
             c: [[zero; MAX_DRIVES]; MAX_DRIVES],
             spin: [0.0; MAX_DRIVES],
-            tip: *machine.tip(),
+            end_effector: *machine.end_effector(),
         };
         for (j, (link, part)) in machine.links().iter().zip(machine.parts()).enumerate() {
             sum.add(link.mass, link.inertia, part.drive, &machine.com_chain(j));
         }
         let payload = machine.spec().payload;
-        let held_by = machine.parts()[machine.tip_link()].drive;
+        let held_by = machine.parts()[machine.end_link()].drive;
         sum.add(payload.mass, payload.inertia, held_by, &machine.payload_chain());
         sum
     }

@@ -11,8 +11,8 @@ use crate::mechanics::planar::{MAX_DRIVES, Vector};
 pub struct Machine {
     pub(super) spec: MachineSpec,
     pub(super) parts: Vec<Part>,
-    pub(super) tip: Chain,
-    pub(super) tip_link: usize,
+    pub(super) end_effector: Chain,
+    pub(super) end_link: usize,
     pub(super) angles: Vec<RelativeAngle>,
     pub(super) loops: Vec<Loop>,
 }
@@ -100,13 +100,13 @@ impl Machine {
     }
 
     /// The end effector as a sum of unit vectors, (14).
-    pub fn tip(&self) -> &Chain {
-        &self.tip
+    pub fn end_effector(&self) -> &Chain {
+        &self.end_effector
     }
 
     /// The link that carries the end effector.
-    pub fn tip_link(&self) -> usize {
-        self.tip_link
+    pub fn end_link(&self) -> usize {
+        self.end_link
     }
 
     /// Relative joint angles and their limits.
@@ -149,8 +149,8 @@ impl Machine {
 
     /// The centre of mass of the payload as a sum of unit vectors, complex where it lies off the link's axis.
     pub fn payload_chain(&self) -> [Vector; MAX_DRIVES] {
-        let (part, [along, left]) = (&self.parts[self.tip_link], self.spec.payload.offset);
-        let mut a = self.tip.map(|w| Vector::new(w, 0.0));
+        let (part, [along, left]) = (&self.parts[self.end_link], self.spec.payload.offset);
+        let mut a = self.end_effector.map(|w| Vector::new(w, 0.0));
         a[part.drive] += part.sign * Vector::new(along, left);
         a
     }

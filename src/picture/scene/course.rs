@@ -42,6 +42,6 @@ pub fn stations(motion: &Motion) -> impl Iterator<Item = f64> {
 pub fn target_handle(frame: &Frame) -> Vector {
     match frame.target.reach {
         Reach::Outside { .. } => frame.target.at,
-        Reach::Inside | Reach::Carried => frame.in_base(frame.tip),
+        Reach::Inside | Reach::Carried => frame.in_base(frame.end_effector),
     }
 }

@@ -36,5 +36,5 @@ pub fn exaggerated(frame: &Frame, times: f64) -> Frame {
     let moved = |p| base.at + frame.in_base(p) * unit(base.angle);
     let mut q = frame.q;
     q.0.iter_mut().for_each(|q| *q += more);
-    Frame { base, q, tip: moved(frame.tip), com: moved(frame.com), ..*frame }
+    Frame { base, q, end_effector: moved(frame.end_effector), com: moved(frame.com), ..*frame }
 }

@@ -282,7 +282,7 @@ impl Bar {
 /// Which links carry the end effector.
 fn carriers(machine: &Machine) -> Vec<bool> {
     let mut carries = vec![false; machine.links().len()];
-    let mut at = Some(machine.tip_link());
+    let mut at = Some(machine.end_link());
     while let Some(j) = at {
         carries[j] = true;
         at = machine.parts()[j].parent;
@@ -310,7 +310,7 @@ fn joints(machine: &Machine) -> Vec<(Chain, usize, usize)> {
 }
 
 fn reach_of(machine: &Machine) -> f64 {
-    machine.tip().iter().map(|w| w.abs()).sum::<f64>().max(1e-6)
+    machine.end_effector().iter().map(|w| w.abs()).sum::<f64>().max(1e-6)
 }
 
 fn append(to: &mut Mesh, other: &Mesh, shift: [f64; 3]) {

@@ -76,7 +76,7 @@ impl Stage {
     /// the workspace, m, positive inside. `None` for a machine without planes.
     pub fn standing(&self, frame: &Frame) -> Option<(usize, f64)> {
         let boundary = self.workspace.as_ref()?.planes().boundary();
-        let at = frame.in_base(frame.tip);
+        let at = frame.in_base(frame.end_effector);
         Some((boundary.pose_count(at, frame.b), boundary.distance(at, frame.b)))
     }
 
@@ -103,7 +103,7 @@ impl Stage {
                 let p = frame.base.at + unit(turn) * self.ring_radius();
                 Some([p.re, p.im, z])
             }
-            Handle::Tip => Some([frame.tip.re, frame.tip.im, z]),
+            Handle::Tip => Some([frame.end_effector.re, frame.end_effector.im, z]),
             Handle::Waypoint(i) => {
                 let (.., p) = self.plan.as_ref()?.waypoints.iter().find(|(number, ..)| *number == i)?;
                 Some([p.re, p.im, z])
@@ -129,7 +129,7 @@ impl Stage {
     pub fn scene(&self, frame: &Frame, options: &ViewOptions) -> Scene {
         let palette = palette(options.theme);
         let shown = exaggerated(frame, options.exaggeration);
-        let (frame, true_tip) = (&shown, frame.tip);
+        let (frame, true_tip) = (&shown, frame.end_effector);
         let (linkage, z) = (&self.linkage, self.handle_height());
         let mut scene = Scene::new(palette.background, linkage.model.clone());
         self.bodies(&mut scene, &palette, frame, options);

@@ -106,7 +106,7 @@ impl Tower {
                 wall.mesh(HEIGHT * radius),
             ],
         });
-        let tip = *run.scenario().machine.tip();
+        let tip = *run.scenario().machine.end_effector();
         let course: Vec<(Vector, f64)> = run.motion().map_or_else(Vec::new, |motion| {
             let at = |s: f64| motion.path.at(s).q;
             stations(motion).map(at).map(|q| (place_of(&tip, &q.units()), planes.map().project(&q).b)).collect()
@@ -328,7 +328,7 @@ impl Tower {
         let outside = matches!(frame.target.reach, Reach::Outside { .. });
         let held = options.held.filter(|_| outside).map(|[x, y]| Vector::new(x, y));
         let at = held.unwrap_or_else(|| target_handle(frame));
-        let tip = point(frame.in_base(frame.tip), z);
+        let tip = point(frame.in_base(frame.end_effector), z);
         if outside {
             let gap = Line::new("target/gap", [vec![tip, point(at, z)]], 1.4, palette.dim);
             scene.lines.push(gap.dashed(4.0, 4.0).on_top());

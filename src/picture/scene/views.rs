@@ -195,7 +195,10 @@ impl Views {
                 match pick.handle {
                     Handle::Target => Some(Aim::Target(at)),
                     Handle::Ring => self.stage.ring_b(at, b, frame).map(Aim::B),
-                    Handle::Tip => Some(Aim::Push([PULL * (at[0] - frame.tip.re), PULL * (at[1] - frame.tip.im)])),
+                    Handle::Tip => Some(Aim::Push([
+                        PULL * (at[0] - frame.end_effector.re),
+                        PULL * (at[1] - frame.end_effector.im),
+                    ])),
                     Handle::Waypoint(i) => Some(Aim::Waypoint(i, at)),
                     Handle::Plane | Handle::Bar => None,
                 }

@@ -111,8 +111,8 @@ fn round(
     if drives != 3 || start.len() != 3 {
         return Err(DriftError::Drives { drives });
     }
-    let reach = model.tip.iter().map(|c| c.abs()).sum::<f64>();
-    let miss = (curve(0.0).p - end_effector(&model.tip, &start.units())).norm();
+    let reach = model.end_effector.iter().map(|c| c.abs()).sum::<f64>();
+    let miss = (curve(0.0).p - end_effector(&model.end_effector, &start.units())).norm();
     if miss.is_nan() || miss > 1e-8 * reach {
         return Err(DriftError::Start { miss });
     }
@@ -137,7 +137,7 @@ fn round(
         q = DriveAngles(q.0.plus(h / 6.0, &k1).plus(h / 3.0, &k2).plus(h / 3.0, &k3).plus(h / 6.0, &k4));
         let goal = curve((i + 1) as f64 * h).p;
         for j in 0..CORRECTIONS {
-            let gap = goal - end_effector(&model.tip, &q.units());
+            let gap = goal - end_effector(&model.end_effector, &q.units());
             if j == 0 && (gap.is_nan() || gap.norm() > OFF_CURVE * reach) {
                 return Err(singular(s));
             }
@@ -155,7 +155,7 @@ fn node(model: &Inertia, q: &DriveAngles, point: &CurvePoint) -> Option<PathPoin
     let e = q.units();
     let (lines, scale) = lines(model, &e)?;
     let first = solve(&lines, point.first, 0.0)?;
-    let bent = acceleration(&model.tip, &e, &first, &PerDrive::zeros(3));
+    let bent = acceleration(&model.end_effector, &e, &first, &PerDrive::zeros(3));
     let turned = momentum_row_rate(model, &e, &first).dot(&first);
     let second = solve(&lines, point.second - bent, -turned / scale)?;
     Some(PathPoint { q: *q, first, second })
@@ -202,7 +202,7 @@ pub fn drift_in(
     cycles: usize,
     spaces: usize,
 ) -> Result<Drift, DriftError> {
-    let reach = model.tip.iter().map(|c| c.abs()).sum::<f64>();
+    let reach = model.end_effector.iter().map(|c| c.abs()).sum::<f64>();
     let gap = (curve(1.0).p - curve(0.0).p).norm();
     if gap.is_nan() || gap > 1e-10 * reach {
         return Err(DriftError::Open { gap });

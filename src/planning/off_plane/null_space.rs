@@ -148,9 +148,9 @@ pub(super) fn lines(model: &Inertia, e: &Units) -> Option<(Matrix3<f64>, f64)> {
         return None;
     }
     let d = momentum_row(model, e);
-    let reach = model.tip.iter().map(|c| c.abs()).sum::<f64>();
+    let reach = model.end_effector.iter().map(|c| c.abs()).sum::<f64>();
     let scale = d.dot(&d).sqrt() / reach;
-    let j = [0, 1, 2].map(|k| column(&model.tip, e, k));
+    let j = [0, 1, 2].map(|k| column(&model.end_effector, e, k));
     let m =
         Matrix3::new(j[0].re, j[1].re, j[2].re, j[0].im, j[1].im, j[2].im, d[0] / scale, d[1] / scale, d[2] / scale);
     (m.determinant().abs() > 1e-9 * reach.powi(3)).then_some((m, scale))

@@ -53,7 +53,7 @@ pub(super) fn parts(scenario: &Scenario, planes: &Planes) -> Result<Vec<(Path, f
                 return Err(Refusal::Task("same-tip: want two points".into()));
             };
             let first_to = task.first_drive_to.unwrap_or(from[0]);
-            Ok(vec![(Path::SameTip(SameTip::new(scenario.machine.tip(), from, to, first_to)?), 1.0)])
+            Ok(vec![(Path::SameTip(SameTip::new(scenario.machine.end_effector(), from, to, first_to)?), 1.0)])
         }
     }
 }
@@ -309,7 +309,7 @@ pub(super) fn minimum_norm(
     let mut q = start(task, planes, points)?;
     let mut parts = Vec::new();
     for curve in curves(task, points)? {
-        let table = minimum_norm_curve(scenario.machine.tip(), q, &curve)?;
+        let table = minimum_norm_curve(scenario.machine.end_effector(), q, &curve)?;
         q = table.nodes().last().map_or(q, |last| last.q);
         parts.push((Path::Table(table), curve.length()));
     }

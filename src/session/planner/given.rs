@@ -46,7 +46,7 @@ pub fn given(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
         (TaskKind::MinimumNorm, 2) => {
             let ends = [samples.point(0), samples.point(samples.count() - 1)];
             let q = start(task, planes, &ends)?;
-            minimum_norm_curve(scenario.machine.tip(), q, &samples.curve().ok_or_else(unsound)?)?
+            minimum_norm_curve(scenario.machine.end_effector(), q, &samples.curve().ok_or_else(unsound)?)?
         }
         (TaskKind::Given, _) => {
             return refuse(format!(

@@ -116,7 +116,7 @@ pub fn least_reaction(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refu
             Ok(plan) => {
                 let motion = Motion { path: Path::Table(plan.path().clone()), profile: Profile::even(task.time) };
                 keeps_rules(scenario, &motion)?;
-                let verdicts = plan.compare(scenario.machine.tip(), &curve, task.time);
+                let verdicts = plan.compare(scenario.machine.end_effector(), &curve, task.time);
                 return Ok(Plan { verdicts: Some(verdicts), ..Plan::of(scenario, motion) });
             }
             Err(why) => refused = Some(refused.unwrap_or(why)),

@@ -247,7 +247,7 @@ impl Task {
         let mut task = self.settled();
         if let Some([first, last]) = task.end_poses(machine) {
             let place = |q: &DriveAngles| {
-                let p = end_effector(machine.tip(), &q.units());
+                let p = end_effector(machine.end_effector(), &q.units());
                 [p.re, p.im]
             };
             task.place_ends([place(&first), place(&last)]);

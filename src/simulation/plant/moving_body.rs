@@ -72,7 +72,7 @@ impl MovingBody {
         let nothing = [Vector::default(); MAX_DRIVES];
         if !base.moves() {
             let contacts = Contacts::of(machine, friction, None);
-            let (lever, tip) = (arm.g, real(&arm.tip));
+            let (lever, tip) = (arm.g, real(&arm.end_effector));
             let whole = arm.clone();
             let (mass, support, base) = (arm.mass, Support::default(), (0.0, Vector::default()));
             return Ok(Self {
@@ -108,7 +108,7 @@ impl MovingBody {
             }
         }
         let anchor = g.map(|g| -g / mass);
-        let mut tip = real(&arm.tip);
+        let mut tip = real(&arm.end_effector);
         tip.iter_mut().zip(&anchor).for_each(|(tip, anchor)| *tip += anchor);
         let support = match base.kind {
             BaseKind::Compliant => {

@@ -400,7 +400,7 @@ impl Simulation {
         let relative = PerDrive::from_fn(n, |k| self.relative(k));
         let (phase, target, b_reference) = match &self.guide {
             Guide::Motion { motion, .. } => {
-                let end = end_effector(&arm.tip, &motion.path.at(1.0).q.units());
+                let end = end_effector(&arm.end_effector, &motion.path.at(1.0).q.units());
                 let phase = if self.has_arrived() { Phase::Rest } else { Phase::Motion };
                 (phase, Target { at: end, reach: Reach::Inside }, self.lambda.dot(&self.reference.q))
             }
@@ -434,7 +434,7 @@ impl Simulation {
             momentum,
             angular_momentum,
             com: x.base.at + dynamics::centre_of_mass(arm, &x.e),
-            tip: x.base.at + end_effector(&arm.tip, &x.e),
+            end_effector: x.base.at + end_effector(&arm.end_effector, &x.e),
             target,
             loaded: self.loaded,
             kinetic: x.kinetic,

@@ -66,7 +66,7 @@ impl Simulation {
 
     /// How far the arm reaches at most, m.
     pub(super) fn reach(&self) -> f64 {
-        self.body().arm().tip.iter().map(|l| l.abs()).sum()
+        self.body().arm().end_effector.iter().map(|l| l.abs()).sum()
     }
 
     /// How far two answers may differ now.
@@ -273,7 +273,7 @@ impl Simulation {
 /// Where the end effector is, m.
 #[inline]
 fn tip(body: &MovingBody, x: &Slope) -> Vector {
-    x.base.at + end_effector(&body.arm().tip, &x.e)
+    x.base.at + end_effector(&body.arm().end_effector, &x.e)
 }
 
 /// For how many steps a step that is looked at stands; at first more often, so that short runs are seen too.

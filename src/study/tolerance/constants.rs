@@ -42,7 +42,7 @@ pub(super) fn unit(n: usize, i: usize, like: &Inertia) -> Inertia {
         g: [zero; MAX_DRIVES],
         c: [[zero; MAX_DRIVES]; MAX_DRIVES],
         spin: [0.0; MAX_DRIVES],
-        tip: like.tip,
+        end_effector: like.end_effector,
     };
     let one = |imaginary: bool| if imaginary { Vector::new(0.0, 1.0) } else { Vector::new(1.0, 0.0) };
     if i < 2 * n {
@@ -104,13 +104,13 @@ pub(super) fn bodies(machine: &Machine, parameters: &[Parameter]) -> Result<Vec<
         })
         .collect();
     bodies.push(LinkConstants {
-        drive: machine.parts()[machine.tip_link()].drive,
+        drive: machine.parts()[machine.end_link()].drive,
         sign: 1.0,
         mass: term(spec.payload.mass, VariedQuantity::PayloadMass),
         inertia: term(spec.payload.inertia, VariedQuantity::PayloadInertia),
         com: nothing,
         com_normal: nothing,
-        root: *machine.tip(),
+        root: *machine.end_effector(),
         on: Vec::new(),
         stretch: Vec::new(),
     });
@@ -120,7 +120,7 @@ pub(super) fn bodies(machine: &Machine, parameters: &[Parameter]) -> Result<Vec<
         }
         // A root is affine in every length, so a length twice as long shows how, to rounding.
         let longer = parameter.changed(machine, 2.0 * parameter.nominal)?;
-        let roots = longer.parts().iter().map(|part| &part.root).chain([longer.tip()]);
+        let roots = longer.parts().iter().map(|part| &part.root).chain([longer.end_effector()]);
         for (body, root) in bodies.iter_mut().zip(roots) {
             for (k, (far, near)) in root.iter().zip(&body.root).enumerate() {
                 // Whole bars, forwards or backwards: nothing is lost by rounding the quotient, but its noise.

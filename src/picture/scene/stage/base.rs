@@ -38,7 +38,7 @@ impl Ground {
     /// Of a run whose machine is built like this.
     pub fn of(run: &Run, plant: &Machine, linkage: &Linkage) -> Self {
         let scenario = run.scenario();
-        let holder = &plant.parts()[plant.tip_link()];
+        let holder = &plant.parts()[plant.end_link()];
         Self {
             base: scenario.base,
             load: scenario.plant.payload,
@@ -146,9 +146,9 @@ impl Ground {
         if frame.loaded {
             let (drive, sign) = self.holder;
             let [x, y] = self.load.offset;
-            let at = frame.tip + frame.q.units()[drive] * Vector::new(x, y) * sign;
-            if (at - frame.tip).norm() > 1e-9 {
-                let stem = vec![point(frame.tip, z), point(at, z)];
+            let at = frame.end_effector + frame.q.units()[drive] * Vector::new(x, y) * sign;
+            if (at - frame.end_effector).norm() > 1e-9 {
+                let stem = vec![point(frame.end_effector, z), point(at, z)];
                 scene.lines.push(Line::new("payload/stem", [stem], 2.0, palette.ink).on_top());
             }
             let radius = (5.0 + 5.0 * self.load.mass.sqrt()).min(12.0) as f32;
@@ -174,8 +174,8 @@ impl Ground {
         }
         let reach = linkage.reach();
         let along = force / size;
-        let to = frame.tip + along * (size / PULL).clamp(0.03 * reach, 0.6 * reach);
-        let arrow = [vec![point(frame.tip, z), point(to, z)], head(to, along, 0.025 * reach, z)];
+        let to = frame.end_effector + along * (size / PULL).clamp(0.03 * reach, 0.6 * reach);
+        let arrow = [vec![point(frame.end_effector, z), point(to, z)], head(to, along, 0.025 * reach, z)];
         scene.lines.push(Line::new("push", arrow, 2.6, palette.amber).on_top());
         let words = format!("{size:.2} N");
         let (aside, anchor) = if along.re < 0.0 { (-8.0, Anchor::Right) } else { (8.0, Anchor::Left) };

@@ -27,7 +27,7 @@ pub struct Plan {
 impl Plan {
     /// Of a run, if a plan leads it; drawn at a height, m.
     pub fn of(run: &Run, z: f64) -> Option<Self> {
-        let (tip, motion) = (*run.scenario().machine.tip(), run.motion()?);
+        let (tip, motion) = (*run.scenario().machine.end_effector(), run.motion()?);
         let place = |s: f64| place_of(&tip, &motion.path.at(s).q.units());
         // What waits has points, but no path.
         let points: Vec<Vector> = match run.waiting() {

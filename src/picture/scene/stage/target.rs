@@ -20,7 +20,7 @@ fn place(p: Vector) -> String {
 
 /// The end effector and its target at a height, m; the end effector truly is at `true_tip`, whatever is exaggerated.
 pub fn draw(scene: &mut Scene, palette: &Palette, frame: &Frame, options: &ViewOptions, true_tip: Vector, z: f64) {
-    let tip = frame.tip;
+    let tip = frame.end_effector;
     let hot = options.hot == Some(Handle::Target);
     let outside = matches!(frame.target.reach, Reach::Outside { .. });
     let held = options.held.filter(|_| outside).map(|[x, y]| Vector::new(x, y));
