@@ -144,14 +144,10 @@ fn every_wing_is_listed() {
     }
 }
 
-/// Wings whose files still use each other.
-const TANGLED: [&str; 2] = ["picture", "recording"];
-
 #[test]
 fn no_files_use_each_other() {
     let tree = Tree::read();
-    let mut imports = tree.imports();
-    imports.retain(|file, _| !TANGLED.contains(&wing(file)));
+    let imports = tree.imports();
     let tied = circle(&imports);
     let names = |file: &&str| {
         imports[file]
