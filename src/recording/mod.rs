@@ -26,6 +26,7 @@
 
 mod blueprint;
 mod dashes;
+mod entity;
 mod events;
 mod eye;
 mod forecast;

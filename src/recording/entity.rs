@@ -1,0 +1,402 @@
+//! One entity of a recording: what it shows for good, and the rows that gather of what changes.
+
+use std::f32::consts::TAU;
+use std::sync::Arc;
+
+use rerun::{Clear, EntityPath, InstancePoses3D, LineStrips3D, Mesh3D, Points3D, Quaternion, Radius, Transform3D};
+
+use super::dashes::dashed;
+use super::eye::Eye;
+use super::rows::Track;
+use super::store::{Instant, Store, StoreError};
+use super::style::{colour, solid};
+use crate::picture::scene::{Area, Changes, Model, Pose, Rgba, Strips};
+
+/// Cells of a workspace along each angle.
+const CELLS: u32 = 40;
+/// The most dashes and gaps of a line that lasts, and of one that is drawn anew again and again.
+const LASTING: f32 = 400.0;
+const PASSING: f32 = 13.0;
+/// Poses nearer to each other than this are one, m and parts of a turn.
+const SAME: f32 = 2e-6;
+
+/// A pose about z: cosine and sine, and a shift, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rigid {
+    pub along: [f32; 2],
+    pub at: [f32; 3],
+}
+
+impl Rigid {
+    pub const HOME: Self = Self { along: [1.0, 0.0], at: [0.0; 3] };
+
+    pub fn of(pose: &Pose) -> Self {
+        Self { along: [pose[0][0], pose[0][1]], at: [pose[3][0], pose[3][1], pose[3][2]] }
+    }
+
+    pub fn shifted(at: [f32; 3]) -> Self {
+        Self { at, ..Self::HOME }
+    }
+
+    /// A point of the world in this pose's own coordinates.
+    pub fn inside(&self, p: [f32; 3]) -> [f32; 3] {
+        let [c, s] = self.along;
+        let d = [0, 1, 2].map(|i| p[i] - self.at[i]);
+        [c * d[0] + s * d[1], c * d[1] - s * d[0], d[2]]
+    }
+
+    /// This pose seen from another.
+    pub fn within(&self, outer: &Self) -> Self {
+        let ([c, s], [x, y]) = (outer.along, self.along);
+        Self { along: [c * x + s * y, c * y - s * x], at: outer.inside(self.at) }
+    }
+
+    pub fn is_near(&self, other: &Self) -> bool {
+        let near = |a: f32, b: f32| (a - b).abs() < SAME;
+        self.at.into_iter().zip(other.at).chain(self.along.into_iter().zip(other.along)).all(|(a, b)| near(a, b))
+    }
+
+    pub fn turn(&self) -> Quaternion {
+        let half = 0.5 * f64::from(self.along[1]).atan2(f64::from(self.along[0]));
+        Quaternion::from_xyzw([0.0, 0.0, half.sin() as f32, half.cos() as f32])
+    }
+}
+
+/// What items are drawn as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Solid,
+    Area,
+    Line,
+    Marker,
+    Label,
+}
+
+/// A point on the screen: where, its radius, px, its colour, and its words.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dot {
+    pub at: [f32; 3],
+    pub radius: f32,
+    pub rgba: Rgba,
+    pub text: String,
+}
+
+/// Lines with their width, px, colour and dashes.
+#[derive(Clone, Debug)]
+pub struct Strokes {
+    pub strips: Strips,
+    pub width: f32,
+    pub rgba: Rgba,
+    pub dash: Option<[f32; 2]>,
+}
+
+impl PartialEq for Strokes {
+    fn eq(&self, other: &Self) -> bool {
+        (self.width, self.rgba, self.dash) == (other.width, other.rgba, other.dash)
+            && (Arc::ptr_eq(&self.strips, &other.strips) || self.strips == other.strips)
+    }
+}
+
+/// What an entity shows that can change at any instant.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    Strokes(Strokes),
+    Dots(Vec<Dot>),
+    Instances(Vec<[f32; 3]>),
+}
+
+/// What an entity shows until somebody says otherwise.
+#[derive(Clone, Debug)]
+pub enum Lasting {
+    Mesh(Arc<Model>, usize, Rgba),
+    Sheet(Area),
+    Strokes(Strokes),
+    Ring { radius: f32, width: f32, rgba: Rgba },
+}
+
+impl PartialEq for Lasting {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Mesh(a, i, rgba), Self::Mesh(b, k, other)) => {
+                rgba == other && (i == k && Arc::ptr_eq(a, b) || a.meshes[*i] == b.meshes[*k])
+            }
+            (Self::Sheet(a), Self::Sheet(b)) => a == b,
+            (Self::Strokes(a), Self::Strokes(b)) => a == b,
+            (Self::Ring { radius: a, .. }, Self::Ring { radius: b, .. }) => a == b,
+            _ => false,
+        }
+    }
+}
+
+/// One entity.
+#[derive(Debug)]
+pub struct Entity {
+    pub kind: Kind,
+    pub path: EntityPath,
+    /// Its ancestors, nearest first, that may stand in a pose.
+    pub ancestors: Vec<String>,
+    /// In the scene at hand: what it shows, and where it stands.
+    pub lasting: Option<Lasting>,
+    pub shape: Option<Shape>,
+    pub pose: Option<(Rigid, Changes)>,
+    /// Where each of several of one name is, and how many times as high as its mesh.
+    pub placed: Vec<(Rigid, f32)>,
+    pub is_there: bool,
+    /// What has been written, and the rows that gather.
+    pub written: Option<Lasting>,
+    pub stands: bool,
+    pub shapes: Track<Option<Shape>>,
+    pub poses: Track<Rigid>,
+}
+
+impl Entity {
+    pub fn new(kind: Kind, path: EntityPath, name: &str) -> Self {
+        let cuts = name.match_indices('/').map(|(i, _)| i).collect::<Vec<_>>();
+        Self {
+            kind,
+            path,
+            ancestors: cuts.into_iter().rev().map(|i| name[..i].to_owned()).collect(),
+            lasting: None,
+            shape: None,
+            pose: None,
+            placed: Vec::new(),
+            is_there: false,
+            written: None,
+            stands: false,
+            shapes: Track::new(),
+            poses: Track::new(),
+        }
+    }
+
+    pub fn begin(&mut self) {
+        (self.lasting, self.shape, self.pose, self.is_there) = (None, None, None, false);
+        self.placed.clear();
+    }
+
+    pub fn dot(&mut self, dot: Dot) {
+        match &mut self.shape {
+            Some(Shape::Dots(dots)) => dots.push(dot),
+            _ => self.shape = Some(Shape::Dots(vec![dot])),
+        }
+    }
+
+    /// Several of one name share a mesh, and none of their poses is the entity's.
+    pub fn share(&mut self) {
+        if self.placed.len() > 1 || self.placed.iter().any(|(_, stretch)| *stretch != 1.0) {
+            self.shape = Some(Shape::Instances(self.placed.iter().map(|(pose, _)| pose.at).collect()));
+            self.pose = None;
+        }
+    }
+
+    /// Writes what is new of it in the scene at hand, within the pose of what it is part of.
+    pub fn note(
+        &mut self,
+        store: &mut Store,
+        (at, since): (Instant, Option<Instant>),
+        outer: &Rigid,
+        eye: &Eye,
+    ) -> Result<(), StoreError> {
+        if !self.is_there {
+            if self.written.take().is_some() {
+                store.shape(Some(at), &self.path, &Clear::flat())?;
+                self.write_poses(store, eye)?;
+                (self.poses, self.stands) = (Track::new(), false);
+            }
+            if matches!(self.shapes.last(), Some(Some(_))) {
+                self.shapes.push(at, None);
+            }
+            return Ok(());
+        }
+        if let Some(lasting) = self.lasting.take()
+            && self.written.as_ref() != Some(&lasting)
+        {
+            self.write_lasting(store, since, &lasting, eye)?;
+            self.written = Some(lasting);
+        }
+        if let Some((pose, changes)) = self.pose {
+            let pose = pose.within(outer);
+            // What is part of something else stays where it is within it, but for rounding.
+            let is_part = *outer != Rigid::HOME;
+            let same = |last: &Rigid| if is_part { last.is_near(&pose) } else { *last == pose };
+            let known = self.poses.last().is_some_and(same);
+            let never = self.poses.last().is_none() && !self.stands;
+            let at_home = never && pose.is_near(&Rigid::HOME);
+            match (changes, since) {
+                _ if known || at_home => {}
+                (Changes::Nothing, None) if never => {
+                    store.fixed(&self.path, &transform(&[pose], eye))?;
+                    self.stands = true;
+                }
+                (Changes::Nothing, None) => {}
+                _ => self.poses.push(at, pose),
+            }
+        }
+        if let Some(mut shape) = self.shape.take() {
+            match &mut shape {
+                Shape::Dots(dots) => dots.iter_mut().for_each(|dot| dot.at = eye.place(outer.inside(dot.at))),
+                Shape::Instances(places) => places.iter_mut().for_each(|p| *p = eye.place(outer.inside(*p))),
+                Shape::Strokes(_) => {}
+            }
+            if self.shapes.is_new() && self.kind == Kind::Label {
+                let style = Points3D::update_fields().with_radii([Radius::ZERO]).with_show_labels(true);
+                store.fixed(&self.path, &style)?;
+            }
+            self.shapes.push(at, Some(shape));
+        }
+        Ok(())
+    }
+
+    pub fn write_lasting(
+        &self,
+        store: &mut Store,
+        since: Option<Instant>,
+        lasting: &Lasting,
+        eye: &Eye,
+    ) -> Result<(), StoreError> {
+        match lasting {
+            Lasting::Mesh(model, mesh, rgba) => {
+                store.shape(since, &self.path, &solid(&model.meshes[*mesh], *rgba, eye))?;
+                if self.pose.is_none() {
+                    let scales = self.placed.iter().map(|(_, stretch)| [1.0, 1.0, *stretch]);
+                    let scales = InstancePoses3D::update_fields().with_scales(scales);
+                    store.shape(since, &self.path, &scales)?;
+                }
+                Ok(())
+            }
+            Lasting::Sheet(area) => store.shape(since, &self.path, &sheet(area)),
+            Lasting::Strokes(strokes) => {
+                let lines = LineStrips3D::new(strokes.drawn(eye, LASTING))
+                    .with_radii([Radius::new_ui_points(0.5 * strokes.width)])
+                    .with_colors([colour(strokes.rgba)]);
+                store.shape(since, &self.path, &lines)
+            }
+            Lasting::Ring { radius, width, rgba } => {
+                let on = |i: u8| TAU * f32::from(i) / 48.0;
+                let ring = (0..=48).map(on).map(|a| [radius * a.cos(), radius * a.sin(), 0.0]);
+                let lines = LineStrips3D::new([ring.map(|p| eye.place(p)).collect::<Vec<_>>()])
+                    .with_radii([Radius::new_ui_points(0.5 * width)])
+                    .with_colors([colour(*rgba)]);
+                store.shape(since, &self.path, &lines)
+            }
+        }
+    }
+
+    /// Writes the poses that have gathered.
+    pub fn write_poses(&mut self, store: &mut Store, eye: &Eye) -> Result<(), StoreError> {
+        let (clock, poses) = self.poses.take();
+        if !poses.is_empty() {
+            let columns = transform_rows(&poses, eye).columns_of_unit_batches()?;
+            store.columns(&clock.columns(), &self.path, columns)?;
+        }
+        Ok(())
+    }
+
+    pub fn write(&mut self, store: &mut Store, eye: &Eye) -> Result<(), StoreError> {
+        self.write_poses(store, eye)?;
+        let (clock, rows) = self.shapes.take();
+        if rows.is_empty() {
+            return Ok(());
+        }
+        let (mut strokes, mut dots, mut places) = (Vec::new(), Vec::new(), Vec::<[f32; 3]>::new());
+        let mut lengths = Vec::with_capacity(rows.len());
+        for row in &rows {
+            lengths.push(match row {
+                Some(Shape::Strokes(row)) => {
+                    let drawn = row.drawn(eye, PASSING);
+                    let n = drawn.len();
+                    strokes.extend(drawn.into_iter().map(|strip| (strip, row.width, row.rgba)));
+                    n
+                }
+                Some(Shape::Dots(row)) => {
+                    dots.extend(row);
+                    row.len()
+                }
+                Some(Shape::Instances(row)) => {
+                    places.extend(row);
+                    row.len()
+                }
+                None => 0,
+            });
+        }
+        let clock = clock.columns();
+        match self.kind {
+            Kind::Line => {
+                let radii = strokes.iter().map(|(_, width, _)| Radius::new_ui_points(0.5 * width)).collect::<Vec<_>>();
+                let colours = strokes.iter().map(|(.., rgba)| colour(*rgba)).collect::<Vec<_>>();
+                let lines = LineStrips3D::update_fields()
+                    .with_strips(strokes.into_iter().map(|(strip, ..)| strip))
+                    .with_radii(radii)
+                    .with_colors(colours);
+                store.columns(&clock, &self.path, lines.columns(lengths)?)
+            }
+            Kind::Solid | Kind::Area => {
+                let instances = InstancePoses3D::update_fields().with_translations(places);
+                store.columns(&clock, &self.path, instances.columns(lengths)?)
+            }
+            Kind::Label => {
+                let words = Points3D::update_fields()
+                    .with_positions(dots.iter().map(|dot| dot.at))
+                    .with_labels(dots.iter().map(|dot| dot.text.as_str()))
+                    .with_colors(dots.iter().map(|dot| colour(dot.rgba)));
+                store.columns(&clock, &self.path, words.columns(lengths)?)
+            }
+            Kind::Marker => {
+                let points = Points3D::update_fields()
+                    .with_positions(dots.iter().map(|dot| dot.at))
+                    .with_radii(dots.iter().map(|dot| Radius::new_ui_points(dot.radius)))
+                    .with_colors(dots.iter().map(|dot| colour(dot.rgba)));
+                store.columns(&clock, &self.path, points.columns(lengths)?)
+            }
+        }
+    }
+}
+
+impl Strokes {
+    /// In dashes where it has some: the viewer knows none.
+    pub fn drawn(&self, eye: &Eye, most: f32) -> Vec<Vec<[f32; 3]>> {
+        let strips = self.strips.iter().filter(|strip| strip.len() > 1);
+        let placed = |strip: &Vec<[f32; 3]>| strip.iter().map(|p| eye.place(*p)).collect::<Vec<_>>();
+        match self.dash {
+            None => strips.map(placed).collect(),
+            Some([dash, gap]) => {
+                let length = 0.5 * (dash + gap) * eye.pixel();
+                strips.flat_map(|strip| dashed(&placed(strip), length, most)).collect()
+            }
+        }
+    }
+}
+
+pub fn transform(poses: &[Rigid], eye: &Eye) -> Transform3D {
+    let mut transform = Transform3D::update_fields();
+    if let Some(pose) = poses.first() {
+        transform = transform.with_translation(eye.place(pose.at));
+        if pose.along != Rigid::HOME.along {
+            transform = transform.with_quaternion(pose.turn());
+        }
+    }
+    transform
+}
+
+/// One row for each pose; their turns where any of them turns.
+pub fn transform_rows(poses: &[Rigid], eye: &Eye) -> Transform3D {
+    let rows = Transform3D::update_fields().with_many_translation(poses.iter().map(|pose| eye.place(pose.at)));
+    match poses.iter().any(|pose| pose.along != Rigid::HOME.along) {
+        true => rows.with_many_quaternion(poses.iter().map(Rigid::turn)),
+        false => rows,
+    }
+}
+
+/// A workspace that is neither turned nor shifted.
+fn sheet(area: &Area) -> Mesh3D {
+    let share = |i: u32| i as f32 / CELLS as f32;
+    let at = |i: u32, j: u32| {
+        let a = [0, 1].map(|k| area.a_min[k] + (area.a_max[k] - area.a_min[k]) * share([i, j][k]));
+        let angle = |k: usize| area.u[k][0] * a[0] + area.u[k][1] * a[1] + area.v[k];
+        let sum = |of: fn(f32) -> f32| (0..3).map(|k| area.c[k] * of(angle(k))).sum::<f32>();
+        [sum(f32::cos), sum(f32::sin), 0.0]
+    };
+    let corners = (0..=CELLS).flat_map(|i| (0..=CELLS).map(move |j| at(i, j)));
+    let cells = (0..CELLS).flat_map(|i| (0..CELLS).map(move |j| i * (CELLS + 1) + j));
+    let triangles = cells.flat_map(|c| [[c, c + CELLS + 1, c + 1], [c + 1, c + CELLS + 1, c + CELLS + 2]]);
+    Mesh3D::new(corners).with_triangle_indices(triangles).with_albedo_factor(colour(area.colour).0)
+}
