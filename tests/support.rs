@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use serde_json::Value;
-use stillbase::mechanics::machine::{Machine, Station, builtin};
+use stillbase::mechanics::machine::{Machine, PlaceOnLink, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 
 use crate::mechanics::nine_body::NineBody;
@@ -75,7 +75,7 @@ pub fn body_of(machine: &Machine) -> NineBody {
     let spec = machine.spec();
     assert_eq!(spec.links.len(), 9);
     assert!(spec.links.iter().all(|l| l.com_normal == 0.0) && spec.payload.inertia == 0.0, "the twin has neither");
-    assert!(matches!(&spec.end_effector.as_ref().expect("one").at, Station::Named(n) if n == "tip"));
+    assert!(matches!(&spec.end_effector.as_ref().expect("one").at, PlaceOnLink::Named(n) if n == "tip"));
     let of = |f: &dyn Fn(usize) -> f64| std::array::from_fn(f);
     NineBody {
         length: of(&|j| machine.parts()[j].length),

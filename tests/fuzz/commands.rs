@@ -105,7 +105,7 @@ fn parts() {
     for (target, ending) in [("parquet", "parquet"), ("parts", "csv")] {
         let (part, whole) = (named("part", ending), named("whole", ending));
         let head = rows::Head {
-            study: rows::Study { samples: 40, seed: 1, problem: 7 },
+            study: rows::StudyId { samples: 40, seed: 1, problem: 7 },
             columns: ["a", "peak_moment N m", "peak_force N", "rms_moment N m", "rms_force N"]
                 .map(String::from)
                 .to_vec(),

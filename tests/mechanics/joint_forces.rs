@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use proptest::prelude::*;
 use stillbase::mechanics::dynamics::{Surroundings, inverse_with_wrench};
 use stillbase::mechanics::joint_forces::{
-    AxialMoments, FLAT, Forces, Inside, Joints, JointsError, KEPT, Pin, PinPeak, Watch, ahead, nearest,
+    AxialMoments, FLAT, Forces, Inside, Joints, JointsError, KEPT, Pin, PinLoads, PinPeak, ahead, nearest,
 };
 use stillbase::mechanics::kinematics::{acceleration, transmission};
 use stillbase::mechanics::machine::{Chain, Inertia, Machine, builtin, parse, place_of};
@@ -442,7 +442,7 @@ fn machines_of_any_number_of_drives() {
         close("torque", &forces.torque().expect("defined"), &exact.0, 1e-12);
         close("f_B", &xy(joints.on_base(&forces)), &xy(exact.1.total().force), 1e-12);
         // A frame keeps the first of them, and the worst of all.
-        let inside = Watch::of(&machine).at(&s.q.units(), &s.qd, &s.qdd, &around, |_, _| 0.0);
+        let inside = PinLoads::of(&machine).at(&s.q.units(), &s.qd, &s.qdd, &around, |_, _| 0.0);
         assert_eq!((inside.pins(), inside.worst), (joints.pins().len().min(KEPT), forces.worst().0));
         assert!((0..20).all(|i| inside.pin(i) == forces.get(i).filter(|_| i < KEPT)));
     }
@@ -511,7 +511,7 @@ fn a_frame_keeps_what_the_joints_say() {
     let machine = builtin("nine-link").expect("built in").set("link.5.axial", "0.02").expect("valid");
     let s = State::of([1.6, 3.9, 2.5], [-0.3, 0.9, 1.7], [-1.0, 2.0, 4.0]);
     let around = Surroundings { gravity: Vector::new(0.0, -9.81), force: Vector::default() };
-    let see = |machine: &Machine, s: &State| Watch::of(machine).at(&s.q.units(), &s.qd, &s.qdd, &around, |_, _| 0.0);
+    let see = |machine: &Machine, s: &State| PinLoads::of(machine).at(&s.q.units(), &s.qd, &s.qdd, &around, |_, _| 0.0);
     let (inside, forces) = (see(&machine, &s), s.forces(&machine, &around));
     assert_eq!(inside.pins(), 12);
     for i in 0..KEPT {

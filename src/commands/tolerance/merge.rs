@@ -4,17 +4,17 @@ use std::path::{Path, PathBuf};
 
 use stillbase::study::tolerance::Outcome;
 
-use super::rows::{Head, OUTCOMES, Part, Study, Writer};
+use super::rows::{Head, OUTCOMES, StudyId, StudyPart, Writer};
 use crate::commands::failure::Failure;
 
 /// Puts parts together, in whatever order they are named, and gives what their machines come to.
 ///
 /// # Errors
 /// If a part is of another study, or samples are there twice or missing.
-pub fn merge(parts: &[PathBuf], whole: &Path, force: bool) -> Result<(Study, Vec<Outcome>), Failure> {
+pub fn merge(parts: &[PathBuf], whole: &Path, force: bool) -> Result<(StudyId, Vec<Outcome>), Failure> {
     let mut opened = Vec::with_capacity(parts.len());
     for file in parts {
-        let part = Part::open(file)?;
+        let part = StudyPart::open(file)?;
         opened.push((part.first_sample()?, part));
     }
     let Some((_, reference)) = opened.first() else { return Err(Failure::wrong_input("--merge: want parts")) };

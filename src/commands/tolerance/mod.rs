@@ -18,7 +18,7 @@ use stillbase::study::tolerance::{Agreement, Bands, Ensemble, Outcome, Shares, T
 
 use self::parallel::Mode;
 use self::report::{Answer, Compared, Distributions, Drawn, Merged, Yields};
-use self::rows::{Head, OUTCOME_COLUMNS, Study, Writer};
+use self::rows::{Head, OUTCOME_COLUMNS, StudyId, Writer};
 use crate::commands::exit::say;
 use crate::commands::failure::Failure;
 use crate::commands::input::{DEFAULT_SCENARIO, Settings, scenario};
@@ -208,7 +208,7 @@ impl Tolerance {
         let seed = section.seed.unwrap_or(1);
         let motion = &run.plan().motion;
         let ensemble = Ensemble::new(&plant, motion, self.instants as usize, &section.spreads, seed)?;
-        let study = Study { samples, seed, problem: self.problem(&scenario, &section) };
+        let study = StudyId { samples, seed, problem: self.problem(&scenario, &section) };
         let (outcomes, tracking) = self.evaluate(&ensemble, &run, &study, range.clone())?;
         let Some(distributions) = Distributions::of(&outcomes) else {
             return Err(Failure::no_answer("no machine was drawn"));
@@ -248,7 +248,7 @@ impl Tolerance {
         &self,
         ensemble: &Ensemble,
         run: &Run,
-        study: &Study,
+        study: &StudyId,
         range: Range<u64>,
     ) -> Result<(Vec<Outcome>, Vec<Outcome>), Failure> {
         let parameters = ensemble.parameters();

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use stillbase::study::tolerance::{Agreement, Bands, Histogram, Outcome, Parameter, Quantiles, Shares, Yield};
 
-use super::rows::Study;
+use super::rows::StudyId;
 use crate::commands::output::Table;
 use stillbase::settings::number::{fixed, shown};
 
@@ -277,7 +277,7 @@ const SHOWN: usize = 12;
 
 impl Answer {
     /// As text.
-    pub fn text(&self, study: &Study, nominal: &Outcome) -> String {
+    pub fn text(&self, study: &StudyId, nominal: &Outcome) -> String {
         let [from, to] = self.shard;
         let mode = if self.simulated { "each simulated" } else { "perfect tracking" };
         let which = match to - from == study.samples {

@@ -23,7 +23,7 @@ use crate::commands::failure::Failure;
 
 /// Which study rows belong to. Its text heads the column of samples in a CSV file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Study {
+pub struct StudyId {
     /// Machines of the whole study.
     pub samples: u64,
     /// Which random machines.
@@ -32,14 +32,14 @@ pub struct Study {
     pub problem: u64,
 }
 
-impl fmt::Display for Study {
+impl fmt::Display for StudyId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { samples, seed, problem } = self;
         write!(f, "sample of {samples} seed {seed} problem {problem:016x}{BEFORE}{UNSEALED}")
     }
 }
 
-impl Study {
+impl StudyId {
     fn parse(text: &str) -> Option<Self> {
         let ["sample", "of", samples, "seed", seed, "problem", problem, "check", _] =
             *text.splitn(9, ' ').collect::<Vec<_>>()
@@ -58,7 +58,7 @@ impl Study {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Head {
     /// Of which study.
-    pub study: Study,
+    pub study: StudyId,
     /// Names of the columns after the sample's, with units.
     pub columns: Vec<String>,
 }
@@ -250,7 +250,7 @@ impl Groups {
 }
 
 /// A file of rows, opened.
-pub struct Part {
+pub struct StudyPart {
     /// Its name.
     pub file: PathBuf,
     /// What it holds.
@@ -263,7 +263,7 @@ enum Reader {
     Parquet(Box<SerializedFileReader<File>>),
 }
 
-impl Part {
+impl StudyPart {
     /// Opens a file, sees that it is as it was written, and reads its head.
     ///
     /// # Errors
@@ -307,7 +307,7 @@ impl Part {
                 let line = line(&mut reader).filter(|line| !line.is_empty()).ok_or_else(|| foreign(file))?;
                 let mut head = csv::ReaderBuilder::new().has_headers(false).from_reader(&line[..]);
                 let names = head.records().next().and_then(Result::ok).ok_or_else(|| foreign(file))?;
-                let study = names.get(0).and_then(Study::parse);
+                let study = names.get(0).and_then(StudyId::parse);
                 (study, names.iter().skip(1).map(str::to_owned).collect::<Vec<_>>(), Reader::Csv(reader))
             }
             Kind::Parquet => {
@@ -315,7 +315,7 @@ impl Part {
                 let about = reader.metadata().file_metadata();
                 let entries = about.key_value_metadata().map_or(&[][..], Vec::as_slice);
                 let text = entries.iter().find(|e| e.key == STUDY_KEY).and_then(|e| e.value.as_deref());
-                let study = text.and_then(Study::parse);
+                let study = text.and_then(StudyId::parse);
                 let fields = about.schema().get_fields();
                 let is = |field: &Type, physical| {
                     let required = field.is_primitive() && !field.is_optional();
@@ -479,7 +479,7 @@ fn rows_of(group: &RowGroupMetaData) -> Option<usize> {
 }
 
 /// What is wrong with a row that no machine has.
-fn plausible(study: &Study, names: &[String], sample: u64, row: &[f64]) -> Result<(), String> {
+fn plausible(study: &StudyId, names: &[String], sample: u64, row: &[f64]) -> Result<(), String> {
     if sample >= study.samples {
         return Err(format!("sample {sample} of a study of {}: want numbers below it", study.samples));
     }

@@ -56,12 +56,12 @@ impl Inside {
 
 /// Looks into a machine while it moves.
 #[derive(Clone, Debug)]
-pub struct Watch {
+pub struct PinLoads {
     joints: Option<Joints>,
     axial: AxialMoments,
 }
 
-impl Watch {
+impl PinLoads {
     /// For a machine; where statics does not determine the forces of pins, what tilts the base only.
     pub fn of(machine: &Machine) -> Self {
         Self { joints: Joints::of(machine).ok(), axial: AxialMoments::of(machine) }

@@ -49,7 +49,7 @@ mod tree;
 
 pub use error::JointsError;
 pub use forces::Forces;
-pub use inside::{Inside, KEPT, PinPeak, Watch};
+pub use inside::{Inside, KEPT, PinLoads, PinPeak};
 pub use joints::Joints;
 pub use pins::{FLAT, MAX_PINS, Pin};
 pub use tilt::{AxialMoments, Tilt};

@@ -1,10 +1,10 @@
 //! From a description to a [`Machine`]: names looked up, roots and loops resolved, or what is wrong.
 
-use super::error::{MachineError, Place, Step, quoted};
+use super::error::{MachineError, Place, PlaceStep, quoted};
 use super::inertia::Inertia;
-use super::model::{Loop, Machine, Part, RelativeAngle};
+use super::model::{Loop, Machine, RelativeAngle, ResolvedLink};
 use super::numbers::{LENGTH, PLACE, check_numbers, within};
-use super::spec::{Angle, Attach, Closure, Length, MachineSpec, Point, Station};
+use super::spec::{Angle, Attach, Closure, Length, MachineSpec, PlaceOnLink, Point};
 use crate::mechanics::planar::MAX_DRIVES;
 use crate::settings::number::Short;
 use crate::settings::range::{clipped, shortened};
@@ -118,13 +118,13 @@ fn locate(
 ) -> Result<(usize, f64), MachineError> {
     let under = |key: &str| {
         let mut p = place();
-        p.0.push(Step::Key(key.into()));
+        p.0.push(PlaceStep::Key(key.into()));
         p
     };
     let link = names.link(&point.link, || under("link"))?;
     let s = match &point.at {
-        Station::Metres(s) => within(PLACE, *s, || under("at")).map(|()| *s)?,
-        Station::Named(name) => match name.as_str() {
+        PlaceOnLink::Metres(s) => within(PLACE, *s, || under("at")).map(|()| *s)?,
+        PlaceOnLink::Named(name) => match name.as_str() {
             "tip" => length_of(spec, link)?,
             "root" => 0.0,
             name => match name.strip_prefix('-') {
@@ -136,7 +136,7 @@ fn locate(
     Ok((link, s))
 }
 
-fn resolve(spec: &MachineSpec, names: &Names) -> Result<Vec<Part>, MachineError> {
+fn resolve(spec: &MachineSpec, names: &Names) -> Result<Vec<ResolvedLink>, MachineError> {
     let mut parents = Vec::with_capacity(spec.links.len());
     for (i, link) in spec.links.iter().enumerate() {
         let place = || Place::new(&[&"link", &i, &"attach"]);
@@ -167,7 +167,7 @@ fn resolve(spec: &MachineSpec, names: &Names) -> Result<Vec<Part>, MachineError>
             root[drive] += f64::from(on.direction) * s;
             at = parent;
         }
-        parts.push(Part {
+        parts.push(ResolvedLink {
             drive: names.drive(&link.drive, || Place::new(&[&"link", &i, &"drive"]))?,
             sign: f64::from(link.direction),
             length: length_of(spec, i)?,
@@ -183,7 +183,7 @@ fn resolve(spec: &MachineSpec, names: &Names) -> Result<Vec<Part>, MachineError>
 fn resolve_closure(
     spec: &MachineSpec,
     names: &Names,
-    parts: &[Part],
+    parts: &[ResolvedLink],
     i: usize,
     closure: &Closure,
 ) -> Result<Loop, MachineError> {
@@ -198,8 +198,8 @@ fn resolve_closure(
         return Ok(Loop { a, at_a: s, b, at_b: t });
     }
     let say = |point: &Point| match &point.at {
-        Station::Metres(s) => format!("{} m of link {}", Short(*s), clipped(&point.link)),
-        Station::Named(name) => format!("{} of link {}", clipped(name), clipped(&point.link)),
+        PlaceOnLink::Metres(s) => format!("{} m of link {}", Short(*s), clipped(&point.link)),
+        PlaceOnLink::Named(name) => format!("{} of link {}", clipped(name), clipped(&point.link)),
     };
     Err(MachineError::OpenLoop {
         place: Place::new(&[&"closure", &i]),
@@ -223,7 +223,7 @@ fn resolve_angles(spec: &MachineSpec, names: &Names) -> Result<Vec<RelativeAngle
 }
 
 /// Collects where other links are pinned to each link, so that it can be drawn as long as it must be.
-fn add_pins(spec: &MachineSpec, names: &Names, parts: &mut [Part]) -> Result<(), MachineError> {
+fn add_pins(spec: &MachineSpec, names: &Names, parts: &mut [ResolvedLink]) -> Result<(), MachineError> {
     let nowhere = || Place::default();
     for part in parts.iter_mut() {
         part.pins.push(0.0);

@@ -9,11 +9,11 @@ use crate::settings::range::{Want, clipped};
 
 /// A place in a machine file: a path of keys and positions, such as `link[4].mass`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Place(pub Vec<Step>);
+pub struct Place(pub Vec<PlaceStep>);
 
 /// One step of a [`Place`].
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum PlaceStep {
     /// A key of a table.
     Key(String),
     /// A position in an array, counted from 0.
@@ -31,7 +31,7 @@ impl Place {
         let steps = key.split('.').flat_map(|part| {
             let (name, position) = part.split_once('[').unwrap_or((part, ""));
             let position = position.trim_end_matches(']').parse().ok().and_then(|i: usize| i.checked_sub(1));
-            std::iter::once(Step::Key(name.into())).chain(position.map(Step::At))
+            std::iter::once(PlaceStep::Key(name.into())).chain(position.map(PlaceStep::At))
         });
         Self(steps.collect())
     }
@@ -39,28 +39,28 @@ impl Place {
     /// The same place in a table that holds this one under a key.
     #[must_use]
     pub fn under(self, key: &str) -> Self {
-        Self(std::iter::once(Step::Key(key.into())).chain(self.0).collect())
+        Self(std::iter::once(PlaceStep::Key(key.into())).chain(self.0).collect())
     }
 }
 
 /// What can be a step of a place.
 pub trait AsStep {
     /// The step.
-    fn step(&self) -> Step;
+    fn step(&self) -> PlaceStep;
 }
 impl AsStep for &str {
-    fn step(&self) -> Step {
-        Step::Key((*self).into())
+    fn step(&self) -> PlaceStep {
+        PlaceStep::Key((*self).into())
     }
 }
 impl AsStep for String {
-    fn step(&self) -> Step {
-        Step::Key(self.clone())
+    fn step(&self) -> PlaceStep {
+        PlaceStep::Key(self.clone())
     }
 }
 impl AsStep for usize {
-    fn step(&self) -> Step {
-        Step::At(*self)
+    fn step(&self) -> PlaceStep {
+        PlaceStep::At(*self)
     }
 }
 
@@ -68,9 +68,9 @@ impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, step) in self.0.iter().enumerate() {
             match step {
-                Step::Key(k) if i == 0 => f.write_str(&clipped(k))?,
-                Step::Key(k) => write!(f, ".{}", clipped(k))?,
-                Step::At(i) => write!(f, "[{}]", i + 1)?,
+                PlaceStep::Key(k) if i == 0 => f.write_str(&clipped(k))?,
+                PlaceStep::Key(k) => write!(f, ".{}", clipped(k))?,
+                PlaceStep::At(i) => write!(f, "[{}]", i + 1)?,
             }
         }
         Ok(())

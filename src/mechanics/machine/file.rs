@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 use toml::de::{DeTable, DeValue};
 
-use super::{Machine, MachineError, MachineSpec, Place, Step};
+use super::{Machine, MachineError, MachineSpec, Place, PlaceStep};
 use crate::settings::range::shortened;
 use crate::settings::text::MOST_BYTES;
 
@@ -70,9 +70,9 @@ pub(crate) fn line_of_place(text: &str, place: &Place) -> Option<usize> {
     let mut at: Option<&DeValue> = None;
     for step in &place.0 {
         let next = match (step, at) {
-            (Step::Key(k), None) => table.get_ref().get(k.as_str()),
-            (Step::Key(k), Some(DeValue::Table(t))) => t.get(k.as_str()),
-            (Step::At(i), Some(DeValue::Array(a))) => a.get(*i),
+            (PlaceStep::Key(k), None) => table.get_ref().get(k.as_str()),
+            (PlaceStep::Key(k), Some(DeValue::Table(t))) => t.get(k.as_str()),
+            (PlaceStep::At(i), Some(DeValue::Array(a))) => a.get(*i),
             _ => None,
         };
         let Some(next) = next else { break };

@@ -10,7 +10,7 @@ use crate::mechanics::planar::{MAX_DRIVES, Vector};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Machine {
     pub(super) spec: MachineSpec,
-    pub(super) parts: Vec<Part>,
+    pub(super) parts: Vec<ResolvedLink>,
     pub(super) end_effector: Chain,
     pub(super) end_link: usize,
     pub(super) angles: Vec<RelativeAngle>,
@@ -19,7 +19,7 @@ pub struct Machine {
 
 /// What is derived of a link.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Part {
+pub struct ResolvedLink {
     /// The drive whose orientation it has, counted from 0.
     pub drive: usize,
     /// ±1: along or against e(q).
@@ -64,7 +64,7 @@ pub struct Loop {
     pub at_b: f64,
 }
 
-impl Part {
+impl ResolvedLink {
     /// The point `s` metres from the root.
     pub fn point(&self, s: f64) -> Chain {
         let mut c = self.root;
@@ -95,7 +95,7 @@ impl Machine {
     }
 
     /// Its links as resolved, in the same order.
-    pub fn parts(&self) -> &[Part] {
+    pub fn parts(&self) -> &[ResolvedLink] {
         &self.parts
     }
 

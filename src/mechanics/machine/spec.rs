@@ -157,20 +157,20 @@ pub struct Point {
     pub link: String,
     /// How far from its root.
     #[serde(default)]
-    pub at: Station,
+    pub at: PlaceOnLink,
 }
 
 /// A place along a link, from its root towards its tip.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "want a place along the link: \"tip\", \"root\", a number in m, or a named length")]
-pub enum Station {
+pub enum PlaceOnLink {
     /// m.
     Metres(f64),
     /// `"tip"`, `"root"`, a named length, or `"-name"` for backwards.
     Named(String),
 }
 
-impl Default for Station {
+impl Default for PlaceOnLink {
     fn default() -> Self {
         Self::Named("tip".into())
     }

@@ -16,7 +16,7 @@ use crate::planning::timing::profile::{Profile, Span};
 use crate::planning::timing::s_curve::s_curve;
 use crate::planning::timing::smooth;
 use crate::planning::timing::topp::{Grid, NoSpeed, PAST, Sweep, UNLIMITED};
-use crate::planning::timing::usage::Shares;
+use crate::planning::timing::usage::TimeShares;
 
 /// Spaces of the grid on a curve to begin with, if nobody says otherwise.
 pub const SPACES: usize = 600;
@@ -165,7 +165,7 @@ fn straight(step: &PerDrive, model: &Inertia, limits: &Limits, smooth: bool) -> 
         return Err(if speed.0.is_finite() { TimeError::SpeedOnly } else { TimeError::Unlimited { s: 0.0 } });
     };
     let profile = Profile::of_spans(&spans);
-    let mut shares = Shares::default();
+    let mut shares = TimeShares::default();
     for (i, span) in spans.iter().enumerate() {
         let leads = [jerk, acceleration, jerk, speed, jerk, acceleration, jerk][i];
         shares.add(leads.1, span.time);
@@ -216,7 +216,7 @@ fn explain(grid: &Grid, constraints: &Constraints, blocked: NoSpeed) -> TimeErro
 
 /// Which limits lead, for what share of the time.
 fn leading(path: &Path, grid: &Grid, constraints: &Constraints, x: &[f64]) -> Vec<(DriveLimit, f64)> {
-    let mut shares = Shares::default();
+    let mut shares = TimeShares::default();
     for i in 0..x.len() - 1 {
         let way = grid.s[i + 1] - grid.s[i];
         let u = (x[i + 1] - x[i]) / (2.0 * way);

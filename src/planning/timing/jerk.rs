@@ -111,7 +111,7 @@ struct Place {
 }
 
 /// The program on given nodes.
-pub(super) struct Program {
+pub(super) struct JerkProgram {
     nodes: Vec<f64>,
     places: Vec<Place>,
     sides: Vec<Side>,
@@ -123,7 +123,7 @@ pub(super) struct Program {
     bent: Vec<f64>,
 }
 
-impl Program {
+impl JerkProgram {
     /// Of a path on nodes θ that rise from 0 to 1; θ̇² is to stay below `most`.
     pub(super) fn new(path: &Path, constraints: &Constraints, nodes: Vec<f64>, most: f64) -> Self {
         let limits = constraints.limits();

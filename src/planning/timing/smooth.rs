@@ -8,7 +8,7 @@ use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Inertia;
 use crate::planning::Motion;
 use crate::planning::curves::path::Path;
-use crate::planning::timing::jerk::{Program, eased, uneased};
+use crate::planning::timing::jerk::{JerkProgram, eased, uneased};
 use crate::planning::timing::keep::greatest;
 use crate::planning::timing::law::Progress;
 use crate::planning::timing::limits::Constraints;
@@ -73,7 +73,7 @@ pub(super) fn smooth(
     let stretches = |at: &Progress| Demand::of(path, model, around, limits, at).stretches(limits);
     let (mut nodes, mut timing, mut best) = (nodes, None, None::<Profile>);
     for _ in 0..=MENDINGS {
-        let solved = Program::new(path, constraints, nodes, most).solve(fastest, timing.as_ref());
+        let solved = JerkProgram::new(path, constraints, nodes, most).solve(fastest, timing.as_ref());
         let Some(found) = solved else { break };
         let profile = found.profile();
         let mut phases = profile.phases();

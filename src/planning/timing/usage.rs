@@ -32,7 +32,7 @@ impl Usage {
     /// Torques come from the inverse dynamics (4) along the motion, not from what planned it.
     pub fn of(motion: &Motion, model: &Inertia, around: &Surroundings, limits: &Limits, samples: usize) -> Self {
         let mut usage = Self { active: 0.0, most: 0.0, when: 0.0, limit: None, leading: Vec::new() };
-        let mut shares = Shares::default();
+        let mut shares = TimeShares::default();
         for i in 0..samples {
             let t = (i as f64 + 0.5) / samples as f64 * motion.duration();
             let demand = Demand::of(&motion.path, model, around, limits, &motion.profile.at(t));
@@ -55,11 +55,11 @@ impl Usage {
 
 /// Time, or shares of it, for each limit.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Shares([PerLimit; 4]);
+pub(super) struct TimeShares([PerLimit; 4]);
 
 type PerLimit = [f64; MAX_DRIVES];
 
-impl Shares {
+impl TimeShares {
     #[inline]
     pub(super) fn add(&mut self, limit: DriveLimit, share: f64) {
         self.0[limit.quantity as usize][limit.drive] += share;

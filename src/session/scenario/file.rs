@@ -8,7 +8,7 @@ use super::definition::Scenario;
 use super::error::ScenarioError;
 use super::task::Task;
 use super::tolerance::Tolerance;
-use crate::mechanics::machine::{self, FileError, Machine, MachineSpec, Place, Step};
+use crate::mechanics::machine::{self, FileError, Machine, MachineSpec, Place, PlaceStep};
 use crate::session::{TimedEdit, survey};
 use crate::settings::change;
 use crate::settings::range::{clipped, shortened};
@@ -153,19 +153,19 @@ impl Scenario {
                 let file = file.trim_end_matches(": plant").to_owned();
                 // What differs goes by the names of links and lengths, not by their places in the machine.
                 let place = error.place().map_or_else(Place::default, |place| match place.0.as_slice() {
-                    [Step::Key(word), Step::At(i), rest @ ..] if word == "link" => {
+                    [PlaceStep::Key(word), PlaceStep::At(i), rest @ ..] if word == "link" => {
                         let name = self.machine.links().get(*i).map_or("", |link| link.name.as_str());
                         Place(
-                            [Step::Key("link".into()), Step::Key(name.into())]
+                            [PlaceStep::Key("link".into()), PlaceStep::Key(name.into())]
                                 .into_iter()
                                 .chain(rest.iter().cloned())
                                 .collect(),
                         )
                     }
-                    [Step::Key(word), rest @ ..] if word == "lengths" => {
-                        Place(std::iter::once(Step::Key("length".into())).chain(rest.iter().cloned()).collect())
+                    [PlaceStep::Key(word), rest @ ..] if word == "lengths" => {
+                        Place(std::iter::once(PlaceStep::Key("length".into())).chain(rest.iter().cloned()).collect())
                     }
-                    [Step::Key(key)] => Place::of_key(key),
+                    [PlaceStep::Key(key)] => Place::of_key(key),
                     _ => place.clone(),
                 });
                 ScenarioError::Machine { file, line: line_of(place.under("plant")), error }

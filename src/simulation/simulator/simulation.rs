@@ -1,7 +1,7 @@
 //! [`Simulation`]: a run in progress, its present instant, and what is true then.
 
 use crate::mechanics::dynamics::{self, Surroundings};
-use crate::mechanics::joint_forces::{Inside, Watch};
+use crate::mechanics::joint_forces::{Inside, PinLoads};
 use crate::mechanics::kinematics::{end_effector, transmission};
 use crate::mechanics::machine::{Machine, MachineError, RelativeAngle};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Vector};
@@ -27,7 +27,7 @@ pub struct Simulation {
     /// m_j a_jk of each link, `drives` after `drives`, kg m, and of each with the payload.
     pub(super) link_moments: [Vec<Vector>; 2],
     /// What pins carry, likewise.
-    pub(super) inside: [Watch; 2],
+    pub(super) inside: [PinLoads; 2],
     /// Differences of the points that each closure joins.
     pub(super) closures: Vec<[f64; MAX_DRIVES]>,
     pub(super) lambda: PerDrive,
@@ -118,7 +118,7 @@ impl Simulation {
             loaded: first,
             control_loop,
             link_moments: [&machine, &holding].map(link_moments),
-            inside: [&machine, &holding].map(Watch::of),
+            inside: [&machine, &holding].map(PinLoads::of),
             closures: machine.closure_gaps(),
             lambda,
             map: plane_map(setup.model).ok(),
