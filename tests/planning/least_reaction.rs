@@ -394,9 +394,9 @@ fn twin(low: &[f64], high: &[f64], start: f64, peak: bool) -> f64 {
     use clarabel::algebra::CscMatrix;
     use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};
     let n = low.len() - 1;
-    let square = (n * n) as f64;
-    // Unknowns: b of each station less the start's, then b″ of each, then the peak.
-    let top = 2 * (n + 1);
+    // Unknowns: b of each station less the start's, b″ of each, b′ halfway between, then the peak.
+    let (rate, top) = (2 * (n + 1), 3 * n + 2);
+    let h = 1.0 / n as f64;
     let (mut rows, mut columns, mut values, mut right) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut row = |entries: &[(usize, f64)], bound: f64| {
         for (j, value) in entries {
@@ -407,14 +407,16 @@ fn twin(low: &[f64], high: &[f64], start: f64, peak: bool) -> f64 {
         right.push(bound);
     };
     row(&[(0, 1.0)], 0.0);
-    for i in 0..=n {
-        // At rest at both ends: mirrored there.
-        let (before, after) = (if i == 0 { 1 } else { i - 1 }, if i == n { n - 1 } else { i + 1 });
-        let entries = [(before, -square), (i, 2.0 * square), (after, -square), (n + 1 + i, 1.0)];
-        let merged = [(before, -2.0 * square), (i, 2.0 * square), (n + 1 + i, 1.0)];
-        row(if before == after { &merged } else { &entries }, 0.0);
+    for i in 0..n {
+        row(&[(i + 1, 1.0), (i, -1.0), (rate + i, -h)], 0.0);
     }
-    let equal = n + 2;
+    // At rest at both ends.
+    row(&[(rate, 1.0), (n + 1, -0.5 * h)], 0.0);
+    for i in 1..n {
+        row(&[(rate + i, 1.0), (rate + i - 1, -1.0), (n + 1 + i, -h)], 0.0);
+    }
+    row(&[(rate + n - 1, -1.0), (2 * n + 1, -0.5 * h)], 0.0);
+    let equal = 2 * n + 2;
     for i in 1..=n {
         if high[i].is_finite() {
             row(&[(i, 1.0)], high[i] - start);
@@ -468,17 +470,27 @@ fn excess(cases: usize, seed: u64) -> Vec<f64> {
             continue;
         }
         done += 1;
-        let stations: Vec<_> = plan.corridor().stations().iter().step_by(4).collect();
-        let [low, high]: [Vec<f64>; 2] =
-            [stations.iter().map(|s| s.low).collect(), stations.iter().map(|s| s.high).collect()];
-        let want = twin(&low, &high, start.b, goal == Goal::Peak);
+        let least = |corridor: &Corridor, every: usize| {
+            let stations = corridor.stations().iter().step_by(every);
+            let (low, high): (Vec<f64>, Vec<f64>) = stations.map(|s| (s.low, s.high)).unzip();
+            twin(&low, &high, start.b, goal == Goal::Peak)
+        };
         let felt = plan.reaction(1.0);
         let got = if goal == Goal::Peak { felt.peak } else { felt.rms } / d;
+        // A twin of few stations finds too little, as it does not know what is between: then more of them.
+        let mut want = least(plan.corridor(), 4);
+        if got > 1.01 * want {
+            want = least(plan.corridor(), 1);
+        }
+        if got > 1.01 * want {
+            let count = 12 * (plan.corridor().stations().len() - 1);
+            want = least(&Corridor::along(&map, &curve, start, count).expect("as before"), 1);
+        }
         let over = got / want - 1.0;
         if over > 0.01 {
             println!("case {done}: {goal:?} {got} for {want}, from {start:?} by {}", curve(1.0).p - from);
         }
-        // Every fourth station bounds it from below, but for its own differences.
+        // It bounds the plan from below, but for its own differences.
         assert!(over > -0.01, "case {done}: {goal:?} {got} for {want}: the twin is worse");
         all.push(over);
         for i in 0..=400 {
@@ -489,6 +501,35 @@ fn excess(cases: usize, seed: u64) -> Vec<f64> {
         }
     }
     all
+}
+
+/// A fold that begins between two stations makes a corner. What is least there is that of the twin below with 9217
+/// stations.
+#[test]
+fn corners_between_stations_cost_no_more_than_a_hundredth() {
+    let (map, model) = parts();
+    let d = model.diagonal(0);
+    let map = map.with_limits([AngleLimit { min: -0.6, max: 4.5 }; 2]).expect("limits");
+    for (a, b, by, least) in [
+        (
+            [1.7547481297041707, -0.44546580942027864],
+            -2.200078533982224,
+            [0.01813891584671834, 0.02676044661191657],
+            0.42901,
+        ),
+        (
+            [4.470239930368325, 0.4240140778735474],
+            2.211174149884206,
+            [0.021504845888788926, -0.030021034429100535],
+            0.07666,
+        ),
+    ] {
+        let from = map.forward(a, b);
+        let curve = line(from, from + Vector::new(by[0], by[1]));
+        let plan = LeastReaction::plan(&map, &model, &curve, PlanePoint { a, b }, None, Goal::Peak).expect("it can");
+        let over = plan.reaction(1.0).peak / d / least - 1.0;
+        assert!((0.0..0.01).contains(&over), "{over} from {a:?}");
+    }
 }
 
 /// Within 1 % of what is least, however little that is.
@@ -506,6 +547,6 @@ fn it_is_within_a_hundredth_of_the_least_often() {
     let at = |share: f64| all[(share * (all.len() - 1) as f64) as usize];
     let quantiles = [0.5, 0.9, 0.99, 0.999, 1.0].map(at);
     println!("{quantiles:?}");
-    // Where a fold bursts into the corridor the drives must keep further off: seldom, and then by more.
-    assert!(quantiles[2] < 0.01, "{quantiles:?}");
+    // Also where a fold bursts into the corridor.
+    assert!(quantiles[4] < 0.01, "{quantiles:?}");
 }

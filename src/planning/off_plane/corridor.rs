@@ -18,6 +18,16 @@ const JUMP: f64 = 0.2;
 const NEAR: f64 = 0.05;
 /// Steps of b below this are rounding, rad.
 const FLAT: f64 = 1e-11;
+/// An end of the corridor that moves so many times further between two stations than beside them jumps there.
+const SUDDEN: f64 = 4.0;
+/// By no less than this, rad.
+const LEAP: f64 = 1e-6;
+/// How often the place of a jump is halved.
+const HALVINGS: usize = 24;
+/// Stations from a jump to the next even one, each twice as far from it as the one before.
+const GRADES: i32 = 10;
+/// So many jumps are looked at more closely.
+const JUMPS: usize = 32;
 
 /// What b may be at one instant.
 #[derive(Clone, Debug)]
@@ -42,6 +52,8 @@ pub struct Corridor {
     map: PlaneMap,
     start: PlanePoint,
     stations: Vec<Station>,
+    /// Between the even ones, where an end of the corridor jumps.
+    between: Vec<Station>,
 }
 
 /// Why there is no corridor.
@@ -127,6 +139,11 @@ impl Station {
         own.min_by(|x, y| far(x).total_cmp(&far(y))).map(|x| PlanePoint { a: x.a, b })
     }
 
+    /// b_min or b_max, rad.
+    fn end(&self, side: usize) -> f64 {
+        [self.low, self.high][side]
+    }
+
     /// The b furthest from both ends; b itself where there are none.
     fn middle(&self, b: f64) -> f64 {
         if self.low.is_finite() { 0.5 * (self.low + self.high) } else { b }
@@ -137,6 +154,11 @@ impl Station {
 fn off(x: f64, b: f64, map: &PlaneMap) -> f64 {
     let gap = (x - b).abs();
     (gap - map.period() * (gap / map.period()).round()).abs()
+}
+
+/// From one end of a corridor to another; nothing between two that are endless.
+fn gap(x: f64, y: f64) -> f64 {
+    if x == y { 0.0 } else { (x - y).abs() }
 }
 
 impl Corridor {
@@ -181,7 +203,68 @@ impl Corridor {
             at = station.pose(map, b).ok_or(CorridorError::Ends { u })?;
             stations.push(station);
         }
-        Ok(Self { map: *map, start, stations })
+        let mut corridor = Self { map: *map, start, stations, between: Vec::new() };
+        corridor.between = corridor.jumps().into_iter().flat_map(|jump| corridor.beside(&curve, jump)).collect();
+        Ok(corridor)
+    }
+
+    /// The spaces between stations in which an end of the corridor jumps, as where a fold begins, and which end.
+    fn jumps(&self) -> Vec<(usize, usize)> {
+        let step = |k: usize, side: usize| gap(self.stations[k].end(side), self.stations[k + 1].end(side));
+        let last = self.stations.len() - 2;
+        let sudden = |&(k, side): &(usize, usize)| {
+            let beside = [k.checked_sub(1), (k < last).then_some(k + 1)];
+            let most = beside.into_iter().flatten().map(|k| step(k, side)).fold(0.0, f64::max);
+            step(k, side) > SUDDEN * most + LEAP
+        };
+        (0..=last).flat_map(|k| [(k, 0), (k, 1)]).filter(sudden).take(JUMPS).collect()
+    }
+
+    /// Stations on the narrower side of a jump, ever nearer to it: what passes there passes close to a corner that the even
+    /// ones do not show.
+    fn beside(&self, curve: impl Fn(f64) -> CurvePoint, (k, side): (usize, usize)) -> Vec<Station> {
+        let [before, after] = [&self.stations[k], &self.stations[k + 1]];
+        let ends = [before.end(side), after.end(side)];
+        let (mut low, mut high) = (before.u, after.u);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            let Some(station) = self.at(&curve, middle) else { break };
+            let [to_before, to_after] = ends.map(|end| gap(station.end(side), end));
+            if to_before <= to_after {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let narrows = if side == 0 { ends[1] > ends[0] } else { ends[1] < ends[0] };
+        let (corner, even) = if narrows { (high, after.u) } else { (low, before.u) };
+        if corner == even {
+            return Vec::new();
+        }
+        let graded = (1..=GRADES).map(|j| corner + (even - corner) * 0.5_f64.powi(j));
+        graded.chain([corner]).filter_map(|u| self.at(&curve, u)).collect()
+    }
+
+    /// The corridor at any u; `None` if the sheet does not reach it.
+    pub(super) fn at(&self, curve: impl Fn(f64) -> CurvePoint, u: f64) -> Option<Station> {
+        let count = self.stations.len() - 1;
+        let det = self.map.det(self.start.a);
+        let k = ((u * count as f64) as usize).min(count - 1);
+        [k, k + 1].into_iter().find_map(|k| {
+            let near = &self.stations[k];
+            let pose = near.pose(&self.map, near.middle(self.start.b))?;
+            station(&self.map, u, curve(u), pose, det).ok()
+        })
+    }
+
+    /// Keeps a station between the even ones.
+    pub(super) fn keep(&mut self, station: Station) {
+        self.between.push(station);
+    }
+
+    /// Stations between the even ones, in no order.
+    pub(super) fn between(&self) -> &[Station] {
+        &self.between
     }
 
     /// The stations, from u = 0 to 1.
@@ -201,7 +284,9 @@ impl Corridor {
 
     /// The first station at which a b, rad, lies outside; `None` if it can be kept all the way.
     pub fn leaves(&self, b: f64) -> Option<&Station> {
-        self.stations.iter().find(|s| !(s.low - SLACK <= b && b <= s.high + SLACK))
+        let outside = |s: &&Station| !(s.low - SLACK <= b && b <= s.high + SLACK);
+        let all = self.stations.iter().chain(&self.between);
+        all.filter(outside).min_by(|x, y| x.u.total_cmp(&y.u))
     }
 }
 

@@ -35,9 +35,14 @@ pub const MAX_SPACES: usize = 512;
 const ON_CURVE: f64 = 1e-10;
 /// The same near a fold, where spaces between nodes are halved so often to keep it.
 const NEAR_CURVE: f64 = 1e-8;
-const HALVINGS: usize = 6;
+const HALVINGS: usize = 12;
+/// For each station no more nodes than this.
+const CROWD: usize = 16;
 /// Further off it counts as not followed.
 const AWAY: f64 = 1e-6;
+
+/// How often a corridor is looked at between its stations before the course keeps farther from its ends.
+const LOOKS: usize = 4;
 
 /// What is to be least.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -128,7 +133,7 @@ impl LeastReaction {
     ) -> Result<Self, LeastReactionError> {
         let inertia = Price::of(model, 0.0)?.inertia();
         let spaces = spaces.clamp(2, MAX_SPACES);
-        let corridor = Corridor::along(map, &curve, start, spaces * STATIONS)?;
+        let mut corridor = Corridor::along(map, &curve, start, spaces * STATIONS)?;
         let stations = corridor.stations();
         let size: f64 = map.c().iter().map(|c| c.abs()).sum();
         for station in [&stations[0], &stations[stations.len() - 1]] {
@@ -149,12 +154,24 @@ impl LeastReaction {
         }
         let mut refused = None;
         // Too near to a fold the drives cannot follow: then farther from it, at a cost.
-        for ease in [1.0, 2.0, 8.0, 64.0, f64::INFINITY] {
-            let course = least_course(&corridor, end, goal == Goal::Peak, spaces, ease)
-                .map_err(|solver| LeastReactionError::NoCourse { solver })?;
-            match followed(&corridor, &curve, &course) {
-                Ok(path) => return Ok(Self { corridor, course, path, inertia }),
-                Err(why) => refused = Some(why),
+        for ease in [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, f64::INFINITY] {
+            for _ in 0..LOOKS {
+                let course = least_course(&corridor, end, goal == Goal::Peak, spaces, ease)
+                    .map_err(|solver| LeastReactionError::NoCourse { solver })?;
+                let why = match followed(&corridor, &curve, &course) {
+                    Ok(path) => return Ok(Self { corridor, course, path, inertia }),
+                    Err(why) => why,
+                };
+                // Past an end of the corridor that no station shows, as where a fold begins between two?
+                let place = match &why {
+                    LeastReactionError::NotFollowed { u } => corridor.at(&curve, *u),
+                    _ => None,
+                };
+                refused = Some(why);
+                match place.filter(|s| !(s.low..=s.high).contains(&course.at(s.u)[0])) {
+                    Some(station) => corridor.keep(station),
+                    None => break,
+                }
             }
         }
         Err(refused.unwrap_or(LeastReactionError::NotFollowed { u: 0.0 }))
@@ -304,14 +321,17 @@ fn followed(
             let b = course.at(middle);
             let missing = LeastReactionError::NotFollowed { u: middle };
             let from = [i, i + 1].map(|i| map.project(&nodes[i].q).a);
-            let on = from.into_iter().find_map(|from| pose_along(map, &point, b, from));
+            let on = from.into_iter().find_map(|from| pose_along(map, &point, b, from)).or_else(|| {
+                // Near a fold, from the corridor's own pose.
+                pose_along(map, &point, b, corridor.at(&curve, middle)?.pose(map, b[0])?.a)
+            });
             finer.push(middle);
             finer_nodes.push(on.ok_or(missing)?.1);
         }
         if worst.0 == 0.0 {
             break;
         }
-        if round == HALVINGS {
+        if round == HALVINGS || finer.len() > CROWD * stations.len() {
             return if worst.0 > AWAY * reach {
                 Err(LeastReactionError::NotFollowed { u: worst.1 })
             } else {

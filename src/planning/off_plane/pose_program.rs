@@ -25,7 +25,7 @@ const ROUNDS: usize = 4;
 /// What a smooth course may add to the least peak, as a part of it.
 const SPARE: f64 = 1e-7;
 
-/// Between which b − b_0 the course must stay at each station.
+/// Between which b − b_0 the course must stay at each station, the even ones first.
 type Walls = Vec<[f64; 2]>;
 
 /// The course of least ∫ b″² du, or of least peak of |b″|, that stays within the corridor at every station and, to second
@@ -83,7 +83,7 @@ fn kept_within(
 /// How far a course passes the ends of its corridor, at stations and halfway between them, rad.
 fn past(corridor: &Corridor, course: &PoseCourse) -> f64 {
     let stations = corridor.stations();
-    let at = stations.iter().map(|s| {
+    let at = stations.iter().chain(corridor.between()).map(|s| {
         let b = course.at(s.u)[0];
         (s.low - b).max(b - s.high)
     });
@@ -181,7 +181,8 @@ fn squared(mut program: Program, spaces: usize) -> Program {
     program
 }
 
-/// What holds of every course, with room for more unknowns behind; walls at every so-manyth station.
+/// What holds of every course, with room for more unknowns behind; walls at every so-manyth even station, and at those
+/// between.
 fn program(corridor: &Corridor, walls: &Walls, end: Option<f64>, spaces: usize, every: usize, more: usize) -> Program {
     let start = corridor.start().b;
     let h = 1.0 / spaces as f64;
@@ -197,13 +198,17 @@ fn program(corridor: &Corridor, walls: &Walls, end: Option<f64>, spaces: usize, 
         program.equal([(v + 3, 1.0), (v, -1.0), (w, -h / 2.0), (w + 3, -h / 2.0)], 0.0);
         program.equal([(b + 3, 1.0), (b, -1.0), (v, -h), (w, -h * h / 3.0), (w + 3, -h * h / 6.0)], 0.0);
     }
-    for (k, [low, high]) in walls.iter().enumerate().skip(every).step_by(every) {
-        let i = (k / STATIONS).min(spaces - 1);
-        let d = (k - i * STATIONS) as f64 / STATIONS as f64 * h;
+    let even = corridor.stations().len();
+    let besides = corridor.between().iter().map(|s| s.u * (even - 1) as f64).zip(&walls[even..]);
+    let stations = walls[..even].iter().enumerate().skip(every).step_by(every).map(|(k, wall)| (k as f64, wall));
+    for (k, [low, high]) in stations.chain(besides) {
+        let place = k / STATIONS as f64;
+        let i = (place as usize).min(spaces - 1);
+        let d = (place - i as f64) * h;
         let cubic = d * d * d / (6.0 * h);
         let [b, v, w] = [3 * i, 3 * i + 1, 3 * i + 2];
         let row = |s: f64| [(b, s), (v, s * d), (w, s * (d * d / 2.0 - cubic)), (w + 3, s * cubic)];
-        if k + 1 < walls.len() || end.is_none() {
+        if k + 1.0 < even as f64 || end.is_none() {
             program.at_most(row(1.0), *high);
             program.at_most(row(-1.0), -low);
         }
@@ -217,11 +222,10 @@ fn walls(corridor: &Corridor, end: Option<f64>, share: f64, extra: f64) -> Walls
     let stations = corridor.stations();
     let (first, last) = (&stations[0], &stations[stations.len() - 1]);
     let (b_0, b_1) = (corridor.start().b, end.unwrap_or(0.0));
-    let wall = |(k, station): (usize, &Station)| {
+    let wall = |station: &Station, bulges: [f64; 2]| {
         let tenth = 0.1 * (station.high - station.low);
         let inset = |side: usize, gap: [f64; 2]| {
-            let bulge = bulge(corridor, k, side).unwrap_or(0.0);
-            let whole = share * MARGIN.min(tenth) + (bulge + HAIR + extra).min(tenth);
+            let whole = share * MARGIN.min(tenth) + (bulges[side] + HAIR + extra).min(tenth);
             let from = |gap: f64, u: f64| whole.min(gap.max(0.0) + whole * (u / GROWING).powi(3));
             from(gap[0], station.u).min(if end.is_some() { from(gap[1], 1.0 - station.u) } else { whole })
         };
@@ -230,5 +234,9 @@ fn walls(corridor: &Corridor, end: Option<f64>, share: f64, extra: f64) -> Walls
             station.high - inset(1, [first.high - b_0, last.high - b_1]) - b_0,
         ]
     };
-    stations.iter().enumerate().map(wall).collect()
+    let even = stations.iter().enumerate().map(|(k, station)| {
+        let bulges = [0, 1].map(|side| bulge(corridor, k, side).unwrap_or(0.0));
+        wall(station, bulges)
+    });
+    even.chain(corridor.between().iter().map(|station| wall(station, [0.0; 2]))).collect()
 }
