@@ -4,8 +4,7 @@ use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 
 use super::Command;
 use super::theme::{colour, plain};
-use super::widgets::name;
-use super::widgets::{Row, note, section, send, unit};
+use super::widgets::{Row, name, note, section, send, unit};
 use crate::mechanics::planar::Vector;
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::Palette;

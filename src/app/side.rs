@@ -1,10 +1,6 @@
 //! The panel on the left: pose constant, limits, motion, plant, base, control, balance.
 
-use crate::app::widgets::Row;
-use crate::app::widgets::note;
-use crate::app::widgets::section;
-use crate::app::widgets::send;
-use crate::app::widgets::unit;
+use crate::app::widgets::{Row, note, section, send, unit};
 mod base;
 mod control;
 mod fold;

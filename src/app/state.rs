@@ -1,12 +1,12 @@
 //! The [`AppState`]: a session, how it is shown, and what carries out commands. Every window, test and figure has one.
 
-use crate::app::widgets;
 use std::path::Path;
 use std::sync::Arc;
 
 use super::{
     Command, OnBoard, RefusedEdit, ViewState, compare, keys, order, plots, side, status, study, theme, top, viewport,
 };
+use crate::app::widgets;
 use crate::mechanics::machine::Machine;
 use crate::picture::scene::exaggeration::exaggeration;
 use crate::picture::scene::palette::Theme;

@@ -6,14 +6,12 @@ use egui_plot::{Bar, BarChart, FilledArea, GridMark, Line, LineStyle, Plot, Plot
 
 use super::plots::base_plot;
 use super::theme::{bold, colour, plain};
-use super::widgets::name;
-use super::widgets::send;
+use super::widgets::{name, send};
 use super::{Command, ViewState};
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::{Palette, faded};
 use crate::session::Edit;
-use crate::session::scenario::{Amount, Spread};
-use crate::session::scenario::{Change, Value};
+use crate::session::scenario::{Amount, Change, Spread, Value};
 use crate::study::tolerance::Study;
 
 const HEIGHT: f32 = 268.0;

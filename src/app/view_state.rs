@@ -1,5 +1,7 @@
 //! How the session is shown, and what a person is about to do.
 
+use std::sync::Arc;
+
 use crate::app::FileDialog;
 use crate::picture::scene::Measure;
 use crate::picture::scene::camera::Camera;
@@ -9,7 +11,6 @@ use crate::picture::scene::pick::Pick;
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::planning::reactionless::Decimal;
 use crate::session::{Edit, Refusal, Session};
-use std::sync::Arc;
 
 /// Something that was refused.
 #[derive(Clone, Debug)]

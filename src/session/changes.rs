@@ -1,6 +1,5 @@
 //! A scenario as edits leave it, and edits in their order.
 
-use crate::planning::reactionless::PlanePoint;
 use std::sync::Arc;
 
 use super::edit::{Edit, TimedEdit};
@@ -8,6 +7,7 @@ use super::refusal::Refusal;
 use super::scenario::Scenario;
 use crate::mechanics::machine::Machine;
 use crate::planning::pose_constant::Planes;
+use crate::planning::reactionless::PlanePoint;
 use crate::settings::change;
 use crate::settings::range::shortened;
 

@@ -1,12 +1,8 @@
 //! Runs from their start to their end, with everything that was done to them.
 
-use crate::session::Refusal;
-use crate::session::Run;
-use crate::session::TimedEdit;
-use crate::session::changes::Failed;
-use crate::session::changes::folded;
-use crate::session::changes::in_order;
+use crate::session::changes::{Failed, folded, in_order};
 use crate::session::scenario::Scenario;
+use crate::session::{Refusal, Run, TimedEdit};
 use crate::simulation::audit::AuditFigure;
 use crate::simulation::frame::Frame;
 /// A scenario with the edits before its first step made part of it, and the others left out, and how many those others are.

@@ -1,8 +1,5 @@
 //! A [`Run`]: a scenario in motion. Window and headless advance the same one, so they cannot differ.
 
-use crate::session::changes::amended;
-use crate::session::changes::changed;
-use crate::session::changes::checked;
 use std::sync::Arc;
 
 use super::changes::{Failed, folded};
@@ -15,6 +12,7 @@ use crate::planning::following::Follower;
 use crate::planning::following::follow::Bounds;
 use crate::planning::pose_constant::Planes;
 use crate::planning::reactionless::Decimal;
+use crate::session::changes::{amended, changed, checked};
 use crate::session::scenario::{MAX_STEPS, Scenario};
 use crate::settings::change;
 use crate::simulation::frame::Frame;

@@ -1,8 +1,9 @@
 //! [`Range`]: where the number of a key may lie. Each key has one, stated once beside it; checks and messages read it.
 
-use crate::settings::number::Short;
 use std::borrow::Cow;
 use std::fmt;
+
+use crate::settings::number::Short;
 
 /// The numbers from one to another, both included, and their unit.
 #[derive(Clone, Copy, Debug, PartialEq)]

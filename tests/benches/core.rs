@@ -21,8 +21,7 @@ use stillbase::planning::off_plane::least_reaction::Goal;
 use stillbase::planning::pose_constant::plane_map;
 use stillbase::planning::reactionless::{AngleDefinition, AngleLimit, Boundary, PlaneMap};
 use stillbase::planning::timing::{Limits, Profile, TimeLaw, fastest};
-use stillbase::session::scenario::Scenario;
-use stillbase::session::scenario::default_spreads;
+use stillbase::session::scenario::{Scenario, default_spreads};
 use stillbase::session::{Run, Session, replay};
 use stillbase::study::tolerance::{CHUNK, Ensemble};
 

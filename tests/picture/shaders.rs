@@ -1,8 +1,9 @@
 //! Every shader is valid, and every struct it shares with Rust lies alike on both sides.
 
-use naga::{AddressSpace, TypeInner, valid};
 use std::collections::BTreeSet;
 use std::path::Path;
+
+use naga::{AddressSpace, TypeInner, valid};
 use stillbase::picture::render::TWINS;
 
 /// Names and modules of all shaders in the repository.

@@ -2,7 +2,6 @@
 //! pulled at is what is meant.
 
 use stillbase::mechanics::planar::Vector;
-use stillbase::picture::scene::Measure;
 use stillbase::picture::scene::axes::{Axis, sliding};
 use stillbase::picture::scene::camera::Camera;
 use stillbase::picture::scene::joint_space::JointSpace;
@@ -13,7 +12,7 @@ use stillbase::picture::scene::pointer::Pointer;
 use stillbase::picture::scene::tower::Tower;
 use stillbase::picture::scene::views::{ViewKind, Views};
 use stillbase::picture::scene::wall::Wall;
-use stillbase::picture::scene::{Line, Scene, place};
+use stillbase::picture::scene::{Line, Measure, Scene, place};
 use stillbase::planning::reactionless::AngleLimit;
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Session};

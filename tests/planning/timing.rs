@@ -6,17 +6,15 @@ use stillbase::mechanics::dynamics::{Surroundings, holding_torque, inverse, mass
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::planning::Motion;
-use stillbase::planning::curves::PathPoint;
 use stillbase::planning::curves::path::{SameTip, tip_line};
-use stillbase::planning::curves::{Curve, Path, PathTable};
+use stillbase::planning::curves::{Curve, Path, PathPoint, PathTable};
 use stillbase::planning::following::{Rule, trace};
 use stillbase::planning::pose_constant::Planes;
 use stillbase::planning::timing::fastest::{fastest_at, stations};
 use stillbase::planning::timing::limits::{DriveLimit, LimitedQuantity};
 use stillbase::planning::timing::profile::Span;
-use stillbase::planning::timing::s_curve;
 use stillbase::planning::timing::usage::ACTIVE;
-use stillbase::planning::timing::{Fastest, Limits, Profile, Progress, TimeError, TimeLaw, Usage, fastest};
+use stillbase::planning::timing::{Fastest, Limits, Profile, Progress, TimeError, TimeLaw, Usage, fastest, s_curve};
 use stillbase::session::scenario::{Scenario, Task, Value};
 use stillbase::session::{Run, replay};
 

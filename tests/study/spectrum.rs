@@ -1,7 +1,8 @@
 //! Spectra: Parseval, known tones, white noise, limits.
 
-use proptest::prelude::*;
 use std::f64::consts::TAU;
+
+use proptest::prelude::*;
 use stillbase::study::spectrum::{JitterLimit, LEAST, Spectrum, SpectrumError, Window};
 
 /// The one-sided density by its definition, a sum for each line.

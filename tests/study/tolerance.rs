@@ -8,8 +8,7 @@ use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse};
 use stillbase::mechanics::planar::Vector;
 use stillbase::planning::Motion;
 use stillbase::session::Run;
-use stillbase::session::scenario::Scenario;
-use stillbase::session::scenario::{Spread, Tolerance, default_spreads};
+use stillbase::session::scenario::{Scenario, Spread, Tolerance, default_spreads};
 use stillbase::study::tolerance::{
     Agreement, Bands, CHUNK, Ensemble, Histogram, Outcome, Quantiles, Shares, ToleranceError, Yield, inverse_normal,
     simulate,

@@ -4,8 +4,7 @@ use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 
 use crate::app::Command;
 use crate::app::theme::{bold, colour, plain};
-use crate::app::widgets::name;
-use crate::app::widgets::{Row, send};
+use crate::app::widgets::{Row, name, send};
 use crate::picture::scene::palette::Palette;
 use crate::session::Edit;
 use crate::session::scenario::{Change, Value};

@@ -1,11 +1,13 @@
 //! What the renderers share: the frame's uniform, the pipeline they agree on, and lists of things in GPU memory.
 
+use std::num::NonZeroU64;
+
+use bytemuck::{Pod, Zeroable as _};
+use wgpu::util::StagingBelt;
+
 use super::shader::twin;
 use super::view::View;
 use crate::picture::scene::Rgba;
-use bytemuck::{Pod, Zeroable as _};
-use std::num::NonZeroU64;
-use wgpu::util::StagingBelt;
 
 /// Colours are sRGB values, written and blended as they are.
 pub(super) const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;

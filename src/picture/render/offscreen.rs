@@ -1,9 +1,10 @@
 //! Pictures without a window.
 
-use super::{Renderer, View};
-use crate::picture::scene::Scene;
 use std::io;
 use std::path::Path;
+
+use super::{Renderer, View};
+use crate::picture::scene::Scene;
 
 /// Why there is nothing to draw with.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -1,12 +1,14 @@
 //! Bars, joints and base: instanced meshes in a calm light.
 
-use super::kit::{ENTRIES, Kit, List, Recipe, Upload};
-use super::shader::{Shader, embedded, twin};
-use crate::picture::scene::{Model, Scene};
-use bytemuck::Zeroable as _;
 use std::mem::offset_of;
 use std::ops::Range;
 use std::sync::Arc;
+
+use bytemuck::Zeroable as _;
+
+use super::kit::{ENTRIES, Kit, List, Recipe, Upload};
+use super::shader::{Shader, embedded, twin};
+use crate::picture::scene::{Model, Scene};
 
 twin! {
     /// A vertex of a mesh, padded as WGSL lays it out.

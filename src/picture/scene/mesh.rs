@@ -7,8 +7,9 @@
 //! Sizes from outside are never trusted: negative and non-finite ones count as zero, a bevel takes at most half of the
 //! radius and a third of the height. A mesh without volume has no triangles.
 
-use super::Mesh;
 use std::f64::consts::{PI, TAU};
+
+use super::Mesh;
 
 /// Chords in a full turn; the polygon's area falls short of the circle's by [`polygon_factor`].
 pub const SEGMENTS: usize = 64;

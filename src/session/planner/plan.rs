@@ -2,18 +2,15 @@
 
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Inertia;
-use crate::mechanics::planar::DriveAngles;
-use crate::mechanics::planar::Vector;
-use crate::planning::Forecast;
-use crate::planning::Motion;
+use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::curves::Path;
 use crate::planning::off_plane::Price;
 use crate::planning::off_plane::least_reaction::Verdicts;
 use crate::planning::pose_constant::Planes;
 use crate::planning::reactionless::PlanePoint;
-use crate::planning::timing::Limits;
-use crate::planning::timing::TimeLaw;
 use crate::planning::timing::limits::DriveLimit;
+use crate::planning::timing::{Limits, TimeLaw};
+use crate::planning::{Forecast, Motion};
 use crate::session::Refusal;
 use crate::session::scenario::Scenario;
 /// A planned task.
