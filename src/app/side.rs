@@ -1,6 +1,5 @@
 //! The panel on the left: pose constant, limits, motion, plant, base, control, balance.
 
-use crate::app::widgets::{Row, note, section, send, unit};
 mod base;
 mod control;
 mod fold;
@@ -9,7 +8,7 @@ mod plant;
 use egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Ui};
 
 use super::theme::{bold, colour, plain};
-use super::widgets::name;
+use super::widgets::{Row, name, note, section, send, unit};
 use super::{Command, ViewState, path, set_b};
 use crate::mechanics::machine::{Inertia, MAX_ANGLE};
 use crate::picture::scene::palette::Palette;

@@ -45,7 +45,7 @@ pub struct ViewState {
     pub view: ViewKind,
     /// From where each view is seen, in the order of [`ViewKind::ALL`].
     pub cameras: [Camera; 4],
-    /// The workspace is shaded by |det|.
+    /// The workspace is shaded by this measure.
     pub dexterity: Option<Measure>,
     /// Simulated seconds a second.
     pub speed: f64,

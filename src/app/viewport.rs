@@ -66,7 +66,7 @@ pub fn show(
     });
 }
 
-/// A hand that pulls less differently is not asked again, N.
+/// Smaller changes of the pulling force send no new edit, N.
 const LEAST_PUSH: f64 = 0.02;
 
 /// How many snapshots stand along a motion, as in Fig. 5.

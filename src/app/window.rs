@@ -1,4 +1,4 @@
-//! A real window around a [`AppState`], in a winit event loop of our own.
+//! A real window around an [`AppState`], in a winit event loop of our own.
 
 use std::cell::Cell;
 use std::path::PathBuf;

@@ -23,7 +23,7 @@ pub fn replay(scenario: &Scenario, see: impl FnMut(&Run, &Frame)) -> Result<Run,
     replay_if(scenario, |_| Ok(()), see)
 }
 
-/// The same, unless what knows the last step has something against it before the first.
+/// The same, `check` is told the last step and may refuse before the first before the first.
 ///
 /// # Errors
 /// As [`replay`], and if it is refused.

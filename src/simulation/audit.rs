@@ -71,7 +71,7 @@ impl Audit {
             lamp("angular", "angular momentum + ∫ n_B dt", self.angular, Some(SHARE * turn), "kg m²/s"),
             lamp("energy", "energy − work + losses", self.energy, Some(SHARE * energy), "J"),
             lamp("loops", "pins that close loops", self.closure, Some(1e-8), "m"),
-            lamp("step", "error of moment, force, torques, tip", self.step, Some(STEP), "of the peak"),
+            lamp("step", "error of moment, force, torques, end effector", self.step, Some(STEP), "of the peak"),
             lamp("plane", "b − b aimed at", self.plane, None, "rad"),
         ]
     }

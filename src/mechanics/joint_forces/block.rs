@@ -7,10 +7,10 @@ use crate::mechanics::planar::{Units, Vector};
 /// The most closures solved together: each holds two links, so 3 pins each beside one at B.
 pub(super) const MOST: usize = MAX_PINS / 3;
 
-/// CutClosure forces of a block, in its order.
+/// Forces of the cut closures of a block, in its order.
 pub(super) type Block = [Vector; MOST];
 
-/// CutClosure forces of a block by elimination with row pivots, and whether no pivot vanished.
+/// Forces of the cut closures of a block by elimination with row pivots, and whether no pivot vanished.
 pub(super) fn together(
     links: &[TreeLink],
     closures: &[CutClosure],

@@ -81,17 +81,17 @@ impl Joints {
         let links = &self.links[..];
         // From B outwards: acceleration of each root less gravity. What each link asks of its root for itself.
         let (mut root, mut force, mut moment) = ([zero; MAX_PINS], [zero; MAX_PINS], [0.0; MAX_PINS]);
-        for (j, body) in links.iter().enumerate() {
-            let (drive, arm) = body.arm;
-            root[j] = match body.parent {
+        for (j, link) in links.iter().enumerate() {
+            let (drive, arm) = link.arm;
+            root[j] = match link.parent {
                 Some(p) => root[p] + turn[drive] * arm,
                 None => -around.gravity,
             };
-            force[j] = root[j] * body.mass + body.first * turn[body.drive];
-            moment[j] = body.second * qdd[body.drive] + cross(body.first * e[body.drive], root[j]);
-            if let Some(tip) = body.tip {
+            force[j] = root[j] * link.mass + link.first * turn[link.drive];
+            moment[j] = link.second * qdd[link.drive] + cross(link.first * e[link.drive], root[j]);
+            if let Some(along) = link.end_effector {
                 force[j] -= around.force;
-                moment[j] -= tip * cross(e[body.drive], around.force);
+                moment[j] -= along * cross(e[link.drive], around.force);
             }
         }
         // What a pin's friction takes from one side it gives to the other.
@@ -101,9 +101,9 @@ impl Joints {
             moment[to] += f;
         }
         // And inwards: with all that hangs on it.
-        for (j, body) in links.iter().enumerate().rev() {
-            if let Some(p) = body.parent {
-                let (drive, arm) = body.arm;
+        for (j, link) in links.iter().enumerate().rev() {
+            if let Some(p) = link.parent {
+                let (drive, arm) = link.arm;
                 moment[p] += arm * cross(e[drive], force[j]);
                 force[p] += force[j];
             }
@@ -147,10 +147,10 @@ impl Joints {
                 }
             }
         }
-        for (j, body) in links.iter().enumerate() {
-            out.forces[body.link] = force[j];
-            if body.driven {
-                out.torque[body.drive] += moment[j];
+        for (j, link) in links.iter().enumerate() {
+            out.forces[link.link] = force[j];
+            if link.driven {
+                out.torque[link.drive] += moment[j];
             }
         }
         out

@@ -19,8 +19,7 @@
 //! # Method
 //! Cut every closure. What is left is a tree, in which each link's root carries the link and all that hangs on it. A
 //! drive turns the links at B that follow it; on the others acts no couple but the friction of their pins, which is
-//! known, so their moments fix the closure forces:
-//! Σ_c w_jc e_j × λ_c = μ_j. The levers w are constants of the machine. In the nine-link machine six links and three
+//! known, so their moments fix the closure forces: Σ_c w_jc e_j × λ_c = μ_j. The levers w are constants of the machine. In the nine-link machine six links and three
 //! closures give six equations in six numbers, and they fall into three pairs: each parallelogram has two links that no
 //! drive turns, of drives k and l, and λ = (x_k e_l − x_l e_k) / sin(q_l − q_k) with x = μ/w. Loops that do not
 //! come apart like that are solved together. The torques come out besides.

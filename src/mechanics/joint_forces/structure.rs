@@ -7,7 +7,7 @@ use super::tree::{CutClosure, SolveStep, TreeLink, lever};
 use crate::mechanics::machine::{CLOSURE_TOLERANCE, Machine};
 use crate::mechanics::planar::{Units, Vector, unit};
 
-/// Links of a machine as links, parents before children.
+/// The machine's links as a tree, parents first, each with what it holds.
 pub fn links(machine: &Machine) -> Result<Vec<TreeLink>, JointsError> {
     let driven = driven(machine)?;
     let mut order: Vec<usize> = Vec::with_capacity(driven.len());
@@ -19,10 +19,10 @@ pub fn links(machine: &Machine) -> Result<Vec<TreeLink>, JointsError> {
     }
     let place = |j: usize| order.iter().position(|i| *i == j);
     let payload = machine.spec().payload;
-    let body = |&j: &usize| {
+    let held_by = |&j: &usize| {
         let (link, part) = (&machine.links()[j], &machine.parts()[j]);
         let com = part.sign * Vector::new(link.com, link.com_normal);
-        let mut body = TreeLink {
+        let mut own = TreeLink {
             link: j,
             parent: part.parent.and_then(place),
             drive: part.drive,
@@ -30,20 +30,20 @@ pub fn links(machine: &Machine) -> Result<Vec<TreeLink>, JointsError> {
             mass: link.mass,
             first: link.mass * com,
             second: link.inertia + link.mass * com.norm_sqr(),
-            tip: None,
+            end_effector: None,
             driven: driven[j],
         };
         if j == machine.end_link() {
             let tip = machine.end_effector()[part.drive] - part.root[part.drive];
-            body.tip = Some(tip);
+            own.end_effector = Some(tip);
             let held = tip + part.sign * Vector::new(payload.offset[0], payload.offset[1]);
-            body.mass += payload.mass;
-            body.first += payload.mass * held;
-            body.second += payload.inertia + payload.mass * held.norm_sqr();
+            own.mass += payload.mass;
+            own.first += payload.mass * held;
+            own.second += payload.inertia + payload.mass * held.norm_sqr();
         }
-        body
+        own
     };
-    Ok(order.iter().map(body).collect())
+    Ok(order.iter().map(held_by).collect())
 }
 
 /// Whether a drive turns each link: those at B that follow it, or its only one.

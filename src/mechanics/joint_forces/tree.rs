@@ -5,7 +5,7 @@ use crate::mechanics::planar::Vector;
 /// A link with whatever it holds, parents before children.
 #[derive(Clone, Debug)]
 pub struct TreeLink {
-    /// Which link, and which pin attaches it.
+    /// Which link of the machine; the pin of the same number attaches it.
     pub link: usize,
     /// Place of its parent among the links; none: the base.
     pub parent: Option<usize>,
@@ -19,8 +19,8 @@ pub struct TreeLink {
     pub first: Vector,
     /// Σ I + m |c|² about the root, kg m².
     pub second: f64,
-    /// How far along the link the end effector is, signed, m; 0 where it is on another.
-    pub tip: Option<f64>,
+    /// How far along the link the end effector is, signed, m; none where it is on another.
+    pub end_effector: Option<f64>,
     /// Whether a drive turns it.
     pub driven: bool,
 }
@@ -57,7 +57,7 @@ pub enum SolveStep {
     },
 }
 
-/// Lever of a closure's force about the root of a body, m.
-pub fn lever(closure: &CutClosure, body: usize) -> f64 {
-    closure.levers.iter().find(|(j, _)| *j == body).map_or(0.0, |(_, w)| *w)
+/// Lever of a closure's force about the root of a link, m.
+pub fn lever(closure: &CutClosure, link: usize) -> f64 {
+    closure.levers.iter().find(|(j, _)| *j == link).map_or(0.0, |(_, w)| *w)
 }

@@ -1,4 +1,4 @@
-//! Words of the plane: complex vectors, small per-drive vectors, wrenches, poses.
+//! Plane algebra: complex vectors, small per-drive vectors, wrenches, poses.
 //!
 //! A vector (x, y) of the plane of motion is the complex number x + iy, in base axes, with B as origin.
 

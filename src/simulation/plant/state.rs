@@ -99,7 +99,7 @@ impl State {
         k.into_iter().zip(w).fold(*self, |state, (x, w)| state.along(x, w))
     }
 
-    /// The same in the books of another: its wheel, work, losses and impulse.
+    /// This state with the sums of another: wheel, work, loss and impulse: its wheel, work, losses and impulse.
     #[must_use]
     pub fn in_books_of(self, other: &Self) -> Self {
         let Self { wheel, work, lost, impulse, .. } = *other;

@@ -1,4 +1,4 @@
-//! The plant under control, advanced by a fixed step with the classical fourth-order rule; within a step by as many
+//! The plant under control, advanced by a fixed step with classical fourth-order Runge–Kutta; within a step by as many
 //! substeps as it takes (`stepping`), cut where contacts stick or slip (`sticking`).
 //!
 //! The simulation reads no clock. Control is evaluated in every stage. The base wrench is taken from the plant's own

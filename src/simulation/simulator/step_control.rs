@@ -30,7 +30,7 @@ pub(super) struct Segment {
 pub(super) struct Mismatch(pub(super) [f64; 4]);
 
 impl Mismatch {
-    /// More than any measure.
+    /// Larger than any tolerance.
     pub const BEYOND: Self = Self([f64::INFINITY; 4]);
 
     #[inline]
@@ -49,8 +49,8 @@ impl Mismatch {
     /// What errors are shares of: peaks, or what must be small beside the torques, the pull and the arm to count as none.
     pub fn measure(peaks: &Peaks, reach: f64) -> Self {
         let (torque, pull) = (peaks.torque_sum.max(LEAST), peaks.inertial_pull.max(LEAST));
-        let substep = |peak: f64, all: f64| peak.max(QUIET * all);
-        Self([substep(peaks.moment, torque), substep(peaks.force, pull), torque, TIP * reach.max(LEAST)])
+        let scale = |peak: f64, all: f64| peak.max(QUIET * all);
+        Self([scale(peaks.moment, torque), scale(peaks.force, pull), torque, TIP * reach.max(LEAST)])
     }
 }
 
@@ -60,7 +60,7 @@ pub(super) const QUIET: f64 = 1e-4;
 /// Errors of the end effector are shares of this part of the arm.
 pub(super) const TIP: f64 = 1e-2;
 
-/// N m, N, m: less is nothing.
+/// Values below this count as zero: N m, N, m.
 pub(super) const LEAST: f64 = 1e-6;
 
 /// How far things may have strayed from where they should be: the end effector and B, m, and the base, rad.
@@ -111,7 +111,7 @@ impl StepControl {
     }
 }
 
-/// A substep by the classical rule.
+/// A substep by classical fourth-order Runge–Kutta.
 pub(super) struct Substep {
     pub end: StepState,
     /// The slope of the last stage.

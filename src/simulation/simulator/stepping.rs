@@ -1,11 +1,11 @@
 //! How a step is taken: in segments that end on the kinks of the reference, each in as many substeps as it needs.
 //!
 //! # Method
-//! The classical rule leaves two answers at the end of a substep: the slope of its last stage and the slope of where it
-//! comes to, which the next substep begins with. What the two show differs by more than the error of the substep, by far
-//! where nothing is stiff, so that looking at it costs next to nothing and can be done everywhere. Where they differ by
-//! more than [`FINE`] of the peaks of what is shown, the segment is done again in twice as many substeps, until they agree or
-//! what two such runs come to does, up to [`MOST_PARTS`]; the next step begins with as many, and goes back when it can.
+//! Classical fourth-order Runge–Kutta gives two slopes at the end of a substep: that of its last stage, and that of the
+//! state it comes to, which the next substep begins with anyway. They differ by more than the error of the substep, so
+//! their difference is an estimate of it that costs next to nothing. Where it is more than [`FINE`] of the peaks of what
+//! is shown, the segment is done again in twice as many substeps, until the estimate, or the difference between two such
+//! runs, is small enough, up to [`MOST_SUBSTEPS`]; the next step begins with as many, and goes back when it can.
 //! So stiff gains, springs and friction, and kinks that nobody can foresee, as of motors that saturate, cost more steps
 //! where they are and none elsewhere; everything else costs what four stages cost.
 //!
@@ -26,11 +26,11 @@ use crate::simulation::plant::{MAX_CONTACTS, MovingBody, SlipDirections, Slope, 
 /// How far two answers may differ, as a share of the peaks of what is shown.
 const FINE: f64 = 2e-5;
 /// The most substeps of a step.
-const MOST_PARTS: u32 = 64;
+const MOST_SUBSTEPS: u32 = 64;
 /// How often small errors are measured by halving, in steps.
 const HALVED_EVERY: u64 = 64;
 /// The most segments of a step.
-const MOST_PIECES: usize = 64;
+const MOST_SEGMENTS: usize = 64;
 /// Kinks nearer to an end of a segment than this share of a step are at it, and how far beside them they are looked at.
 const NEAR: f64 = 1e-7;
 const BESIDE: f64 = 1e-8;
@@ -143,9 +143,9 @@ impl Simulation {
         let looked_at = stands_for(self.step);
         let mut reached = StepState { at: 0.0, state: self.state, slope: self.now, slip: self.slip, taken: self.taken };
         let mut substeps = 1;
-        for count in 1..=MOST_PIECES {
+        for count in 1..=MOST_SEGMENTS {
             let (mut segment, mut kinked) = self.segment(reached.at);
-            if count == MOST_PIECES {
+            if count == MOST_SEGMENTS {
                 (segment.to, segment.window[1], kinked) = (self.dt, f64::INFINITY, true);
             }
             if reached.at > 0.0 {
@@ -175,10 +175,10 @@ impl Simulation {
         let mut substeps = self.step_control.substeps;
         let (mut reached, mut off) = self.walk(from, segment, count(substeps));
         let mut error = off;
-        // Nobody takes up errors while motors give all they have.
+        // While motors give all they have, feedback corrects no errors: the tolerance is 50 times tighter.
         let full = self.control_loop.is_full(&from.slope.torque) || self.control_loop.is_full(&reached.slope.torque);
         let fine = if full { 0.02 * FINE } else { FINE };
-        while off.share(measure) > fine && error.share(measure) > fine && substeps < MOST_PARTS {
+        while off.share(measure) > fine && error.share(measure) > fine && substeps < MOST_SUBSTEPS {
             substeps *= 2;
             if count(substeps) == count(substeps / 2) {
                 continue;
@@ -276,7 +276,8 @@ fn tip(body: &MovingBody, x: &Slope) -> Vector {
     x.base.at + end_effector(&body.arm().end_effector, &x.e)
 }
 
-/// For how many steps a step that is looked at stands; at first more often, so that short runs are seen too.
+/// How many steps the error measured at this one stands for, if it is measured; at first more often, so that short runs
+/// are judged too.
 fn stands_for(step: u64) -> Option<f64> {
     match step {
         0 => Some(1.0),

@@ -54,7 +54,8 @@ impl Simulation {
         }
     }
 
-    /// Rate of a contact along the way it slides, rad/s, or what a stuck one has to spare, N m: below zero that is over.
+    /// What is left until a contact's state ends: its rate along the way it slides, rad/s, or what a stuck one could still
+    /// hold, N m; below zero it has ended.
     fn left(&self, i: usize, slip: &SlipDirections, at: &StepState) -> f64 {
         match slip[i] {
             0 => self.spare(i, &at.slope, &at.taken),
@@ -67,7 +68,7 @@ impl Simulation {
         self.left(i, slip, at) < least
     }
 
-    /// The same by more than what two that end together may differ by.
+    /// Whether it has ended by more than two that end together may differ by.
     fn is_long_over(&self, i: usize, slip: &SlipDirections, at: &StepState) -> bool {
         let least = if slip[i] == 0 { -1e-6 * self.body().contacts().coulomb(i) } else { -Contacts::STILL };
         self.left(i, slip, at) < least
@@ -158,7 +159,7 @@ impl Simulation {
         Cut::Sooner(from.at + 0.5 * (substep.end.at - from.at))
     }
 
-    /// A substep cut where a contact that is over at its end just is.
+    /// A substep cut at the instant at which a contact's state ends.
     fn cut(&self, i: usize, from: &StepState, substep: Substep, segment: &Segment) -> Substep {
         let holds = from.slip[i] == 0;
         let scale = if holds { self.body().contacts().coulomb(i) } else { 1.0 };

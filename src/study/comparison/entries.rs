@@ -6,7 +6,7 @@ use super::{COLUMNS, Compared, alternatives};
 use crate::session::Refusal;
 use crate::session::scenario::Scenario;
 
-/// One row of the board.
+/// One row of the comparison.
 #[derive(Clone, Debug)]
 pub struct Entry {
     /// What it is called.
