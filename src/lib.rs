@@ -91,11 +91,11 @@
 //! # Where to add something
 //! | what | write it in | then |
 //! |---|---|---|
-//! | a signal | a row of the table in `simulation/signals.rs` | plots, recordings and CSV have it; a chart of its own is a row of `picture/charts.rs` |
-//! | a setting | a field with its range beside the part that it sets: `simulation/control.rs`, `simulation/plant/`, `session/scenario/task.rs` | files, `--set` and edits know it; a row of the window's panel in `app/side/` |
-//! | something to see | an item of the scene, in `picture/scene/stage/` | window, figures and recordings show it |
-//! | a time law | a variant in `planning/timing/law.rs` | a line of the window's list in `app/path.rs` |
-//! | a subcommand | a file in `commands/` and a line of the list in its `mod.rs` | help and exit status follow |
+//! | a signal | a field of `simulation/frame.rs` if it is new, and a row of the table in `simulation/signals.rs` | recordings and CSV have it; a chart of its own is a row of `picture/charts.rs` |
+//! | a setting | a field with its range beside the part that it sets: `simulation/control.rs`, `simulation/plant/`, `session/scenario/task.rs`; of machines `mechanics/machine/` | files, `--set` and edits know it; a row and a key of the window's panel in `app/side/`, a line of the README |
+//! | something to see | an item of the scene, in `picture/scene/stage/` (joint space and tower are scenes of their own) | window, figures and recordings show it; what can be switched on is an option in `picture/scene/options.rs` |
+//! | a time law | a variant in `planning/timing/law.rs` | files, commands and the window know it by its words there |
+//! | a subcommand | a file in `commands/`, its `mod` and a line of the list in `mod.rs` | help and exit status follow; a line of the README |
 //! | an edit | a variant in `session/edit.rs`, what it does in `session/run.rs` | saving, undo and replay follow; the tests draw it at random |
 //! | a fault to refuse | a variant of the nearest error, with what, where and what would be right | |
 //!

@@ -78,7 +78,7 @@ pub fn body_of(machine: &Machine) -> NineBody {
     assert!(matches!(&spec.end_effector.as_ref().expect("one").at, PlaceOnLink::Named(n) if n == "tip"));
     let of = |f: &dyn Fn(usize) -> f64| std::array::from_fn(f);
     NineBody {
-        length: of(&|j| machine.parts()[j].length),
+        length: of(&|j| machine.resolved_links()[j].length),
         mass: of(&|j| spec.links[j].mass),
         inertia: of(&|j| spec.links[j].inertia),
         com: of(&|j| spec.links[j].com),

@@ -34,14 +34,6 @@ const SHAPES: [Choice<Shape>; 5] = [
     (Shape::Freehand, "freehand", "Freehand", "As drawn with the pointer: P, then drag"),
 ];
 
-const LAWS: [Choice<TimeLaw>; 5] = [
-    (TimeLaw::Quintic, "quintic", "Quintic", "Acceleration begins and ends at zero; peaks 5.7735/T²"),
-    (TimeLaw::Septic, "septic", "Septic", "Jerk begins and ends at zero too; peaks 7.5132/T²"),
-    (TimeLaw::Trapezoidal, "trapezoidal", "Trapezoidal", "A third speeding up, a third cruising, a third braking"),
-    (TimeLaw::Fastest, "fastest", "Fastest", "As fast as torque, speed and acceleration limits allow"),
-    (TimeLaw::FastestSmooth, "fastest-smooth", "Fastest, smooth", "The same with limits on jerk"),
-];
-
 /// The most points that are listed.
 const LISTED: usize = 8;
 
@@ -53,13 +45,20 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
     choose(ui, session, ("Redundancy", "kind"), &KINDS, task.kind, 2.0 * half, commands);
     ui.horizontal(|ui| {
         choose(ui, session, ("Shape", "shape"), &SHAPES, task.shape(), half - 16.0, commands);
-        choose(ui, session, ("Time law", "law"), &LAWS, task.law, half - 16.0, commands);
+        choose(ui, session, ("Time law", "law"), &laws(), task.law, half - 16.0, commands);
     });
     time(ui, session, p, commands);
     points(ui, session, task, p, commands);
     corners(ui, task, p, commands);
     off_plane(ui, session, task, p, commands);
     costs(ui, session, p);
+}
+
+fn laws() -> [Choice<TimeLaw>; TimeLaw::ALL.len()] {
+    TimeLaw::ALL.map(|law| {
+        let [word, words, tip] = law.words();
+        (law, word, words, tip)
+    })
 }
 
 fn choose<T: Copy + PartialEq>(

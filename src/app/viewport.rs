@@ -215,7 +215,7 @@ fn link_name(
     let Some(pos) = response.hover_pos().filter(|_| free && !response.dragged()) else { return };
     let machine = &session.scenario().machine;
     let Some(i) = views.link_at(frame, &spot.pointer(pos)) else { return };
-    let (link, part) = (&machine.links()[i], &machine.parts()[i]);
+    let (link, part) = (&machine.links()[i], &machine.resolved_links()[i]);
     let drive = part.drive + 1;
     let words = format!("link {}, drive {drive}\n{} m, {} kg", link.name, signed(part.length, 3), signed(link.mass, 2));
     response.clone().on_hover_text_at_pointer(words);

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use stillbase::files::{check_new, write_new};
@@ -12,6 +13,7 @@ use stillbase::planning::off_plane::least_reaction::{FixedB, Verdicts};
 use stillbase::planning::off_plane::price::FloatingBase;
 use stillbase::planning::pose_constant::Planes;
 use stillbase::planning::reactionless::BSet;
+use stillbase::planning::timing::TimeLaw;
 use stillbase::session::scenario::{Change, Scenario, Task, TaskKind};
 use stillbase::session::{Refusal, Run, settled};
 use stillbase::simulation::plant::Plant;
@@ -61,8 +63,8 @@ pub struct Plan {
     #[arg(long, value_name = "DISTANCE", value_parser = above_zero)]
     blend: Option<f64>,
     /// Time law
-    #[arg(long, value_enum)]
-    law: Option<Law>,
+    #[arg(long, value_name = "LAW", value_parser = laws())]
+    law: Option<String>,
     /// Time, s, for the laws that do not find it themselves
     #[arg(long, value_name = "T", value_parser = above_zero)]
     time: Option<f64>,
@@ -121,15 +123,12 @@ enum ShapeName {
     Freehand,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum Law {
-    Quintic,
-    Septic,
-    Trapezoidal,
-    /// As fast as torque, speed and acceleration limits allow
-    Fastest,
-    /// The same with jerk limits
-    FastestSmooth,
+/// Every time law by its name in files.
+fn laws() -> PossibleValuesParser {
+    PossibleValuesParser::new(TimeLaw::ALL.map(|law| {
+        let [word, _, does] = law.words();
+        PossibleValue::new(word).help(does)
+    }))
 }
 
 #[derive(Serialize)]
@@ -413,7 +412,7 @@ impl Plan {
         let words = [
             ("kind", self.kind.and_then(|k| word(k.to_possible_value()))),
             ("shape", self.shape.and_then(|s| word(s.to_possible_value()))),
-            ("law", self.law.and_then(|l| word(l.to_possible_value()))),
+            ("law", self.law.clone()),
         ];
         for (key, value) in words.into_iter().filter_map(|(key, value)| Some((key, value?))) {
             change.insert(key.into(), value.into());

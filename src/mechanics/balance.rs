@@ -91,7 +91,7 @@ pub fn conditions(machine: &Machine) -> (DMatrix<f64>, DVector<f64>) {
     let (n, links) = (machine.drives(), machine.links());
     let pairs: Vec<_> = Inertia::pairs(n).collect();
     let mut a = DMatrix::zeros(n + pairs.len(), links.len());
-    for (j, (link, part)) in links.iter().zip(machine.parts()).enumerate() {
+    for (j, (link, part)) in links.iter().zip(machine.resolved_links()).enumerate() {
         let moment = link.mass * part.sign;
         a[(part.drive, j)] = moment;
         for (row, &(k, l)) in pairs.iter().enumerate() {

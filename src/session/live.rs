@@ -59,7 +59,7 @@ pub struct Session {
     gesture: bool,
     /// Whether the gesture's parameter edits apply at the present step; the first one decides.
     gesture_now: Option<bool>,
-    /// The run as it was before the last edit of the script, until the next step: where the gesture's next word in
+    /// The run as it was before the last edit of the script, until the next step: where the gesture's next edit in
     /// the same step starts from.
     unedited: Option<Run>,
 }

@@ -164,7 +164,7 @@ fn inside(machine: &Machine) -> Vec<Signal> {
         for (i, pin) in joints.pins().iter().enumerate().take(KEPT) {
             let path = format!("pin/{}", pin.name);
             let (symbol, label) = (format!("F {}", pin.name), format!("force of pin {}", pin.name));
-            let drive = Some(machine.parts()[pin.to].drive);
+            let drive = Some(machine.resolved_links()[pin.to].drive);
             add(path, symbol, label, "N", drive, Quantity::PerIndex(i, |f, i| f.inside.size(i)));
         }
         let worst = Quantity::Whole(|f| f.inside.worst);

@@ -85,7 +85,7 @@ fn twin() -> nine_body::NineBody {
     let machine = builtin("nine-link").expect("built in");
     let each = |f: fn(&stillbase::mechanics::machine::Link) -> f64| std::array::from_fn(|j| f(&machine.links()[j]));
     nine_body::NineBody {
-        length: std::array::from_fn(|j| machine.parts()[j].length),
+        length: std::array::from_fn(|j| machine.resolved_links()[j].length),
         mass: each(|l| l.mass),
         inertia: each(|l| l.inertia),
         com: each(|l| l.com),

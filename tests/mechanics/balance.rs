@@ -183,7 +183,7 @@ fn serial_arm_is_balanced_although_its_conditions_lose_rank() {
         // m_j l_cj = −l_j Σ of the masses further out.
         for j in 0..links {
             let outer: f64 = (j + 1..links).map(|i| machine.links()[i].mass).sum();
-            let want = -machine.parts()[j].length * outer / machine.links()[j].mass;
+            let want = -machine.resolved_links()[j].length * outer / machine.links()[j].mass;
             assert!((designed.links()[j].com - want).abs() < 1e-14, "{links} links, link {}", j + 1);
         }
     }

@@ -89,7 +89,7 @@ fn assert_each_link_balances(machine: &Machine, s: &State, around: &Surroundings
     let size = forces.worst().0.max(1.0);
     let mut carried = PerDrive::zeros(machine.drives());
     for (j, link) in machine.links().iter().enumerate() {
-        let drive = machine.parts()[j].drive;
+        let drive = machine.resolved_links()[j].drive;
         let (r, a) = moving(&machine.com_chain(j), s);
         let mut sum = link.mass * (around.gravity - a);
         let mut moment = -link.inertia * s.qdd[drive];
@@ -158,7 +158,7 @@ proptest! {
         let (joints, e) = (Joints::of(&machine).expect("determinate"), s.q.units());
         let forces = s.forces(&machine, &around(&machine, Vector::default()));
         let (mut power, mut scale) = (0.0, 1e-9);
-        for (j, part) in machine.parts().iter().enumerate() {
+        for (j, part) in machine.resolved_links().iter().enumerate() {
             let rate = |c: &Chain| (0..3).map(|k| Vector::new(0.0, s.qd[k] * c[k]) * e[k]).sum::<Vector>();
             for (i, pin) in joints.pins().iter().enumerate().filter(|(_, p)| p.to == j || p.from == Some(j)) {
                 // Velocity as this link has it, from where the pin lies along it.
@@ -319,7 +319,7 @@ fn pins_are_named_by_their_links() {
     // Either description puts a closure in the same place.
     let machine = builtin("nine-link").expect("built in");
     for (pin, c) in joints.pins()[9..].iter().zip(machine.loops()) {
-        let b = machine.parts()[c.b].point(c.at_b);
+        let b = machine.resolved_links()[c.b].point(c.at_b);
         assert!(pin.at.iter().zip(&b).all(|(x, y)| (x - y).abs() < 1e-12));
     }
 }
@@ -435,7 +435,7 @@ fn machines_of_any_number_of_drives() {
             qdd: PerDrive::from_fn(n, |k| 3.0 * k as f64 - 2.0),
         };
         let around = around(&machine, Vector::new(-2.0, 5.0));
-        let bases = machine.parts().iter().map(|p| p.parent.is_none().then_some(p.drive));
+        let bases = machine.resolved_links().iter().map(|p| p.parent.is_none().then_some(p.drive));
         assert_each_link_balances(&machine, &s, &around, &bases.collect::<Vec<_>>());
         let exact = inverse_with_wrench(&Inertia::of(&machine), &s.q.units(), &s.qd, &s.qdd, &around);
         let forces = s.forces(&machine, &around);
@@ -496,7 +496,7 @@ fn a_force_balanced_machine_may_tilt_its_base() {
     assert!(axial.tilt(&s.q.units(), &s.qd, &s.qdd, &none).total().norm() < 1e-12);
     // A storey for each drive: a couple, although f_B = 0.
     let storeys: Vec<(String, String)> = (0..9)
-        .map(|j| (format!("link.{}.axial", j + 1), format!("{}", 0.02 * machine.parts()[j].drive as f64)))
+        .map(|j| (format!("link.{}.axial", j + 1), format!("{}", 0.02 * machine.resolved_links()[j].drive as f64)))
         .collect();
     let storeys = machine.set_all(storeys.iter().map(|(k, v)| (k.as_str(), v.as_str()))).expect("valid");
     let axial = AxialMoments::of(&storeys);

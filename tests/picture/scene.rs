@@ -327,7 +327,7 @@ proptest! {
         let linkage = Linkage::of(machine);
         let e = DriveAngles::from(q).units();
         let solids = linkage.solids(&e, Pose2::default(), false, &palette(Theme::Dark));
-        for (part, link) in machine.parts().iter().zip(machine.links()) {
+        for (part, link) in machine.resolved_links().iter().zip(machine.links()) {
             let solid = solids.iter().find(|s| s.name == format!("machine/link/{}", link.name)).expect("every link");
             let mesh = &linkage.model.meshes[solid.mesh];
             let xs = || mesh.positions.iter().map(|p| f64::from(p[0]));
@@ -341,10 +341,10 @@ proptest! {
         // The arm that carries the end effector ends in it.
         let last = &machine.links()[machine.end_link()].name;
         let solid = solids.iter().find(|s| s.name == format!("machine/link/{last}")).expect("the last arm");
-        let tip = placed(solid, machine.parts()[machine.end_link()].length);
+        let tip = placed(solid, machine.resolved_links()[machine.end_link()].length);
         prop_assert!((tip - place_of(machine.end_effector(), &e)).norm() < 1e-6);
         // A joint is drawn on every pin off B: each lies on a joint, and each joint on a pin.
-        let pins: Vec<Vector> = machine.parts().iter()
+        let pins: Vec<Vector> = machine.resolved_links().iter()
             .flat_map(|p| p.pins.iter().map(|s| place_of(&p.point(*s), &e)))
             .filter(|p| p.norm() > 1e-9)
             .collect();

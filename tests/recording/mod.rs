@@ -261,7 +261,7 @@ fn links_stand_where_the_machine_is() {
     let contents = Contents::of(&folder.file("one.rrd"));
     let mut frames = Vec::new();
     replay(&scenario, |_, frame| frames.push(*frame)).expect("it runs");
-    for (j, part) in scenario.machine.parts().iter().enumerate() {
+    for (j, part) in scenario.machine.resolved_links().iter().enumerate() {
         let path = format!("/case-2/machine/link/{}", scenario.machine.links()[j].name);
         let chunks = contents.at(&path);
         let moving = chunks.iter().find(|c| !c.is_static()).expect("transforms");
@@ -816,7 +816,7 @@ fn a_base_that_moves_is_recorded_as_it_moves() {
     let contents = Contents::of(&folder.file("one.rrd"));
     let mut frames = Vec::new();
     replay(&scenario, |_, frame| frames.push(*frame)).expect("it runs");
-    let part = &scenario.machine.parts()[4];
+    let part = &scenario.machine.resolved_links()[4];
     let places = |path: &str| contents.vectors(path, "Transform3D:translation");
     let (steps, at) = places("/case-1/machine/link/5");
     for (step, at) in steps.iter().zip(&at) {

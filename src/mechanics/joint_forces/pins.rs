@@ -27,8 +27,8 @@ pub struct Pin {
 pub(super) fn pins(machine: &Machine) -> Vec<Pin> {
     let name = |link: Option<usize>| link.map_or("B", |j| machine.links()[j].name.as_str());
     let mut pins: Vec<Pin> = Vec::with_capacity(machine.links().len() + machine.loops().len());
-    let attached = machine.parts().iter().enumerate().map(|(j, part)| (part.parent, j, part.root, false));
-    let closed = machine.loops().iter().map(|c| (Some(c.a), c.b, machine.parts()[c.a].point(c.at_a), true));
+    let attached = machine.resolved_links().iter().enumerate().map(|(j, part)| (part.parent, j, part.root, false));
+    let closed = machine.loops().iter().map(|c| (Some(c.a), c.b, machine.resolved_links()[c.a].point(c.at_a), true));
     for (from, to, at, closes) in attached.chain(closed) {
         let mut called = format!("{}-{}", name(from), name(Some(to)));
         // Two pins between the same links need two names.

@@ -13,20 +13,22 @@ pub fn links(machine: &Machine) -> Result<Vec<TreeLink>, JointsError> {
     let mut order: Vec<usize> = Vec::with_capacity(driven.len());
     while order.len() < driven.len() {
         // Machines have no cycles, so each round finds at least one.
-        let ready = |j: usize| machine.parts()[j].parent.is_none_or(|p| order.contains(&p));
+        let ready = |j: usize| machine.resolved_links()[j].parent.is_none_or(|p| order.contains(&p));
         let next: Vec<usize> = (0..driven.len()).filter(|j| !order.contains(j) && ready(*j)).collect();
         order.extend(next);
     }
     let place = |j: usize| order.iter().position(|i| *i == j);
     let payload = machine.spec().payload;
     let held_by = |&j: &usize| {
-        let (link, part) = (&machine.links()[j], &machine.parts()[j]);
+        let (link, part) = (&machine.links()[j], &machine.resolved_links()[j]);
         let com = part.sign * Vector::new(link.com, link.com_normal);
         let mut own = TreeLink {
             link: j,
             parent: part.parent.and_then(place),
             drive: part.drive,
-            arm: part.parent.map_or((0, 0.0), |p| (machine.parts()[p].drive, machine.parts()[p].sign * part.at)),
+            arm: part
+                .parent
+                .map_or((0, 0.0), |p| (machine.resolved_links()[p].drive, machine.resolved_links()[p].sign * part.at)),
             mass: link.mass,
             first: link.mass * com,
             second: link.inertia + link.mass * com.norm_sqr(),
@@ -48,7 +50,7 @@ pub fn links(machine: &Machine) -> Result<Vec<TreeLink>, JointsError> {
 
 /// Whether a drive turns each link: those at B that follow it, or its only one.
 fn driven(machine: &Machine) -> Result<Vec<bool>, JointsError> {
-    let parts = machine.parts();
+    let parts = machine.resolved_links();
     let mut driven: Vec<bool> = parts.iter().map(|p| p.parent.is_none()).collect();
     for k in 0..machine.drives() {
         let followers: Vec<usize> = (0..parts.len()).filter(|&j| parts[j].drive == k).collect();
@@ -78,7 +80,7 @@ pub fn closures(machine: &Machine, links: &[TreeLink]) -> Vec<CutClosure> {
         let (mut levers, mut carried) = (vec![0.0; links.len()], vec![0.0; links.len()]);
         for (link, s, sense) in [(closure.a, closure.at_a, -1.0), (closure.b, closure.at_b, 1.0)] {
             // Along each link down to the base: from where the force comes in to the root.
-            let (mut at, mut along) = (place(link), machine.parts()[link].sign * s);
+            let (mut at, mut along) = (place(link), machine.resolved_links()[link].sign * s);
             while let Some(j) = at {
                 levers[j] += sense * along;
                 carried[j] += sense;

@@ -34,11 +34,11 @@ impl Inertia {
             spin: [0.0; MAX_DRIVES],
             end_effector: *machine.end_effector(),
         };
-        for (j, (link, part)) in machine.links().iter().zip(machine.parts()).enumerate() {
+        for (j, (link, part)) in machine.links().iter().zip(machine.resolved_links()).enumerate() {
             sum.add(link.mass, link.inertia, part.drive, &machine.com_chain(j));
         }
         let payload = machine.spec().payload;
-        let held_by = machine.parts()[machine.end_link()].drive;
+        let held_by = machine.resolved_links()[machine.end_link()].drive;
         sum.add(payload.mass, payload.inertia, held_by, &machine.payload_chain());
         sum
     }

@@ -95,7 +95,7 @@ impl Machine {
     }
 
     /// Its links as resolved, in the same order.
-    pub fn parts(&self) -> &[ResolvedLink] {
+    pub fn resolved_links(&self) -> &[ResolvedLink] {
         &self.parts
     }
 

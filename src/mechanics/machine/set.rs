@@ -36,7 +36,7 @@ impl Machine {
         let two = |[a, b]: [f64; 2]| format!("{a},{b}");
         match *key.split('.').collect::<Vec<_>>() {
             ["link", name, field] => {
-                let (link, part) = (&spec.links[named(name)?], &self.parts()[named(name)?]);
+                let (link, part) = (&spec.links[named(name)?], &self.resolved_links()[named(name)?]);
                 Some(match field {
                     "com" => link.com,
                     "com_normal" => link.com_normal,

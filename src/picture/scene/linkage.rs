@@ -90,7 +90,7 @@ impl Linkage {
             meshes.len() - 1
         };
         let mut bars = Vec::new();
-        for (j, (link, part)) in machine.links().iter().zip(machine.parts()).enumerate() {
+        for (j, (link, part)) in machine.links().iter().zip(machine.resolved_links()).enumerate() {
             let radius = reach * if carries[j] { BAR_RADIUS } else { THIN_BAR_RADIUS };
             let ends = part.pins.iter().copied().chain([part.length]);
             let (from, to) = ends.fold((0.0_f64, 0.0_f64), |(a, b), s| (a.min(s), b.max(s)));
@@ -285,7 +285,7 @@ fn carriers(machine: &Machine) -> Vec<bool> {
     let mut at = Some(machine.end_link());
     while let Some(j) = at {
         carries[j] = true;
-        at = machine.parts()[j].parent;
+        at = machine.resolved_links()[j].parent;
     }
     carries
 }
@@ -293,7 +293,7 @@ fn carriers(machine: &Machine) -> Vec<bool> {
 /// Distinct pins: where they are, and the lowest and highest drive whose links they join.
 fn joints(machine: &Machine) -> Vec<(Chain, usize, usize)> {
     let mut joints: Vec<(Chain, usize, usize)> = Vec::new();
-    for part in machine.parts() {
+    for part in machine.resolved_links() {
         for &s in &part.pins {
             let at = part.point(s);
             if at.iter().all(|w| *w == 0.0) {

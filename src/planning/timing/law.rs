@@ -46,6 +46,19 @@ impl TimeLaw {
     /// All of them.
     pub const ALL: [Self; 5] = [Self::Quintic, Self::Septic, Self::Trapezoidal, Self::Fastest, Self::FastestSmooth];
 
+    /// Its name in files and commands, its name on the screen, and what it does.
+    pub fn words(self) -> [&'static str; 3] {
+        match self {
+            Self::Quintic => ["quintic", "Quintic", "Acceleration begins and ends at zero; peaks 5.7735/T²"],
+            Self::Septic => ["septic", "Septic", "Jerk begins and ends at zero too; peaks 7.5132/T²"],
+            Self::Trapezoidal => {
+                ["trapezoidal", "Trapezoidal", "A third speeding up, a third cruising, a third braking"]
+            }
+            Self::Fastest => ["fastest", "Fastest", "As fast as torque, speed and acceleration limits allow"],
+            Self::FastestSmooth => ["fastest-smooth", "Fastest, smooth", "The same with limits on jerk"],
+        }
+    }
+
     /// Whether the machine's limits set T, and not somebody's choice.
     pub fn is_fastest(self) -> bool {
         matches!(self, Self::Fastest | Self::FastestSmooth)

@@ -101,7 +101,7 @@ pub fn least_reaction(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refu
         TimeLaw::Trapezoidal => {
             return Err(Refusal::Task("least-reaction wants a smooth law: quintic or septic".into()));
         }
-        law => law,
+        law @ (TimeLaw::Quintic | TimeLaw::Septic) => law,
     };
     let curves = curves(task, &task.points())?;
     let curve = whole(&curves, law);

@@ -242,8 +242,8 @@ impl Contacts {
 
 /// The drives that the two sides of every pin follow.
 fn pins(machine: &Machine) -> Vec<(usize, usize)> {
-    let drive = |j: usize| machine.parts()[j].drive;
-    let hinges = machine.parts().iter().filter_map(|part| Some((drive(part.parent?), part.drive)));
+    let drive = |j: usize| machine.resolved_links()[j].drive;
+    let hinges = machine.resolved_links().iter().filter_map(|part| Some((drive(part.parent?), part.drive)));
     let closures = machine.loops().iter().map(|l| (drive(l.a), drive(l.b)));
     hinges.chain(closures).filter(|(k, l)| k != l).collect()
 }

@@ -91,7 +91,7 @@ impl State {
         }
     }
 
-    /// The classical rule: a time `h` later by slopes at the start, twice half-way, and at the end.
+    /// Classical fourth-order Runge–Kutta: a time `h` later by slopes at the start, twice half-way, and at the end.
     #[inline(always)]
     #[must_use]
     pub fn stepped(&self, k: [&Slope; 4], h: f64) -> Self {

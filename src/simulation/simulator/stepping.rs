@@ -239,7 +239,7 @@ impl Simulation {
 }
 
 impl Simulation {
-    /// One step of the classical rule to a time since the step began, s.
+    /// One step of classical Runge–Kutta to a time since the step began, s.
     #[inline]
     pub(super) fn substep(&self, from: &StepState, to: f64, segment: &Segment) -> Substep {
         let (h, middle) = (to - from.at, 0.5 * (from.at + to));

@@ -90,7 +90,7 @@ pub(super) fn bodies(machine: &Machine, parameters: &[Parameter]) -> Result<Vec<
     let find = |quantity| parameters.iter().position(|p| p.quantity == quantity);
     let term = |nominal, quantity| Term { nominal, parameter: find(quantity) };
     let nothing = Term { nominal: 0.0, parameter: None };
-    let mut bodies: Vec<LinkConstants> = (spec.links.iter().zip(machine.parts()).enumerate())
+    let mut bodies: Vec<LinkConstants> = (spec.links.iter().zip(machine.resolved_links()).enumerate())
         .map(|(j, (link, part))| LinkConstants {
             drive: part.drive,
             sign: part.sign,
@@ -104,7 +104,7 @@ pub(super) fn bodies(machine: &Machine, parameters: &[Parameter]) -> Result<Vec<
         })
         .collect();
     bodies.push(LinkConstants {
-        drive: machine.parts()[machine.end_link()].drive,
+        drive: machine.resolved_links()[machine.end_link()].drive,
         sign: 1.0,
         mass: term(spec.payload.mass, VariedQuantity::PayloadMass),
         inertia: term(spec.payload.inertia, VariedQuantity::PayloadInertia),
@@ -120,7 +120,7 @@ pub(super) fn bodies(machine: &Machine, parameters: &[Parameter]) -> Result<Vec<
         }
         // A root is affine in every length, so a length twice as long shows how, to rounding.
         let longer = parameter.changed(machine, 2.0 * parameter.nominal)?;
-        let roots = longer.parts().iter().map(|part| &part.root).chain([longer.end_effector()]);
+        let roots = longer.resolved_links().iter().map(|part| &part.root).chain([longer.end_effector()]);
         for (body, root) in bodies.iter_mut().zip(roots) {
             for (k, (far, near)) in root.iter().zip(&body.root).enumerate() {
                 // Whole bars, forwards or backwards: nothing is lost by rounding the quotient, but its noise.

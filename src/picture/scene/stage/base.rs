@@ -38,7 +38,7 @@ impl Ground {
     /// Of a run whose machine is built like this.
     pub fn of(run: &Run, plant: &Machine, linkage: &Linkage) -> Self {
         let scenario = run.scenario();
-        let holder = &plant.parts()[plant.end_link()];
+        let holder = &plant.resolved_links()[plant.end_link()];
         Self {
             base: scenario.base,
             load: scenario.plant.payload,
