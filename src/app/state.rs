@@ -57,7 +57,7 @@ impl AppState {
     fn around(session: Session, theme: Theme) -> Self {
         let views = Views::of(session.run());
         let look = ViewState::new(theme, &views);
-        let mut desk = Self {
+        let mut app_state = Self {
             signals: signals(&session.scenario().machine),
             stage_of: stage_key(&session),
             views: Arc::new(views),
@@ -70,9 +70,9 @@ impl AppState {
             dressed: None,
             fonts: false,
         };
-        desk.foresee();
-        desk.adjust();
-        desk
+        app_state.foresee();
+        app_state.adjust();
+        app_state
     }
 
     /// Opens a scenario; where its task cannot be planned, its machine with the paper's task, and what is in the way.
@@ -82,16 +82,16 @@ impl AppState {
     /// If not even that can start.
     pub fn open_or_explain(scenario: Scenario, theme: Theme) -> Result<Self, Refusal> {
         let refusal = match Self::new(scenario.clone(), theme) {
-            Ok(desk) => return Ok(desk),
+            Ok(app_state) => return Ok(app_state),
             Err(refusal) => refusal,
         };
         let (change, known) = (scenario.task.whole(), Scenario::builtin("case-3"));
         let ground = known.map(|known| Scenario { task: known.task, edits: Vec::new(), ..scenario.clone() });
-        let Some(Ok(mut desk)) = ground.map(|ground| Self::new(ground, theme)) else {
+        let Some(Ok(mut app_state)) = ground.map(|ground| Self::new(ground, theme)) else {
             return Session::open_waiting(scenario).map_or(Err(refusal), |session| Ok(Self::around(session, theme)));
         };
-        desk.carry_out(Command::Edit(Edit::SetTask { change }));
-        Ok(desk)
+        app_state.carry_out(Command::Edit(Edit::SetTask { change }));
+        Ok(app_state)
     }
 
     /// The session.

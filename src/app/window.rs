@@ -46,9 +46,9 @@ pub enum WindowError {
 /// If there is no display, library or adapter, or the scenario cannot start.
 pub fn run(scenario: Scenario, theme: Theme) -> Result<(), WindowError> {
     check_libraries()?;
-    let mut desk = AppState::open_or_explain(scenario, theme)?;
-    if desk.look().message.is_none() && desk.session().run().waiting().is_none() {
-        desk.carry_out(Command::TogglePlay);
+    let mut app_state = AppState::open_or_explain(scenario, theme)?;
+    if app_state.look().message.is_none() && app_state.session().run().waiting().is_none() {
+        app_state.carry_out(Command::TogglePlay);
     }
     let event_loop = EventLoop::<eframe::UserEvent>::with_user_event()
         .build()
@@ -66,7 +66,7 @@ pub fn run(scenario: Scenario, theme: Theme) -> Result<(), WindowError> {
     let opened = Rc::new(Cell::new(false));
     let seen = opened.clone();
     let create: eframe::AppCreator<'_> = Box::new(move |cc| {
-        let app = App::new(cc, desk, Clock::Wall(None)).ok_or("no graphics adapter")?;
+        let app = App::new(cc, app_state, Clock::Wall(None)).ok_or("no graphics adapter")?;
         seen.set(true);
         Ok(Box::new(app))
     });
@@ -120,9 +120,9 @@ fn check_libraries() -> Result<(), WindowError> {
     Ok(())
 }
 
-/// The desk as eframe wants it; tests drive it without a window.
+/// The application as eframe wants it; tests drive it without a window.
 pub struct App {
-    desk: AppState,
+    app_state: AppState,
     clock: Clock,
 }
 
@@ -136,25 +136,25 @@ pub enum Clock {
 }
 
 impl App {
-    /// Around a desk; `None` if eframe has no graphics adapter, or one whose shaders read no lists.
-    pub fn new(cc: &eframe::CreationContext<'_>, desk: AppState, clock: Clock) -> Option<Self> {
+    /// Around a state; `None` if eframe has no graphics adapter, or one whose shaders read no lists.
+    pub fn new(cc: &eframe::CreationContext<'_>, app_state: AppState, clock: Clock) -> Option<Self> {
         let state = cc.wgpu_render_state.as_ref()?;
         if state.device.limits().max_storage_buffers_per_shader_stage == 0 {
             return None;
         }
         let renderer = Renderer::new(&state.device, state.target_format);
         state.renderer.write().callback_resources.insert(renderer);
-        Some(Self { desk, clock })
+        Some(Self { app_state, clock })
     }
 
     /// What it shows.
     pub fn app_state(&self) -> &AppState {
-        &self.desk
+        &self.app_state
     }
 
     /// The same, to be told what to do.
     pub fn app_state_mut(&mut self) -> &mut AppState {
-        &mut self.desk
+        &mut self.app_state
     }
 }
 
@@ -167,11 +167,11 @@ impl eframe::App for App {
                 last.replace(now).map_or(0.0, |last| (now - last).as_secs_f64())
             }
         };
-        self.desk.pass(wall);
+        self.app_state.pass(wall);
         let dropped: Option<PathBuf> = ui.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_path_buf()));
         if let Some(path) = dropped {
-            self.desk.carry_out(Command::OpenFile(path));
+            self.app_state.carry_out(Command::OpenFile(path));
         }
-        self.desk.ui(ui);
+        self.app_state.ui(ui);
     }
 }

@@ -50,30 +50,30 @@ impl Figures {
     /// Draws them all.
     pub fn run(&self) -> Result<(), Failure> {
         for (name, scenario, theme, view, time) in WINDOWS {
-            let mut desk = desk(scenario, theme, view, time)?;
-            self.window(name, &mut desk)?;
+            let mut app_state = opened(scenario, theme, view, time)?;
+            self.window(name, &mut app_state)?;
         }
-        let mut ways = desk("case-1", Theme::Dark, ViewKind::Flat, 0.62)?;
+        let mut ways = opened("case-1", Theme::Dark, ViewKind::Flat, 0.62)?;
         let over = [0, 2].map(|row| Command::Board(OnBoard::Show(row, true)));
         [Command::Compare(true), Command::Snapshots(true)].into_iter().chain(over).for_each(|c| ways.carry_out(c));
         self.window("compare-dark.png", &mut ways)?;
-        let mut machines = desk("case-3", Theme::Dark, ViewKind::Flat, 0.62)?;
+        let mut machines = opened("case-3", Theme::Dark, ViewKind::Flat, 0.62)?;
         machines.carry_out(Command::Edit(Edit::SetTolerance { change: Change::from_iter([limit()]) }));
         machines.carry_out(Command::Study(true));
         self.window("tolerances-dark.png", &mut machines)?;
         for (name, scenario, theme, view, time) in SCENES {
-            let desk = desk(scenario, theme, view, time)?;
-            let (options, camera) = (ViewOptions { theme, ..ViewOptions::default() }, desk.views().camera(view));
-            let scene = Arc::new(desk.views().scene(view, desk.session().frame(), &options, &camera));
+            let app_state = opened(scenario, theme, view, time)?;
+            let (options, camera) = (ViewOptions { theme, ..ViewOptions::default() }, app_state.views().camera(view));
+            let scene = Arc::new(app_state.views().scene(view, app_state.session().frame(), &options, &camera));
             let mut canvas = Canvas::new([1200, 1000], 1.25).map_err(Failure::no_answer)?;
             self.write(name, canvas.scene(&scene, &camera).map_err(Failure::no_answer)?)?;
         }
         Ok(())
     }
 
-    fn window(&self, name: &str, desk: &mut AppState) -> Result<(), Failure> {
+    fn window(&self, name: &str, app_state: &mut AppState) -> Result<(), Failure> {
         let mut canvas = Canvas::new([1440, 900], 1.0).map_err(Failure::no_answer)?;
-        self.write(name, canvas.draw(|ui| desk.ui(ui)).map_err(Failure::no_answer)?)
+        self.write(name, canvas.draw(|ui| app_state.ui(ui)).map_err(Failure::no_answer)?)
     }
 
     fn write(&self, name: &str, picture: Picture) -> Result<(), Failure> {
@@ -90,12 +90,12 @@ fn limit() -> (String, Value) {
 }
 
 /// A scenario run through once, shown at an instant.
-fn desk(scenario: &str, theme: Theme, view: ViewKind, time: f64) -> Result<AppState, Failure> {
+fn opened(scenario: &str, theme: Theme, view: ViewKind, time: f64) -> Result<AppState, Failure> {
     let scenario = stillbase::files::scenario(scenario)?;
-    let mut desk = AppState::new(scenario, theme)?;
-    let task_time = desk.session().length();
+    let mut app_state = AppState::new(scenario, theme)?;
+    let task_time = app_state.session().length();
     for command in [Command::Seek(task_time), Command::Seek(time), Command::View(view)] {
-        desk.carry_out(command);
+        app_state.carry_out(command);
     }
-    Ok(desk)
+    Ok(app_state)
 }

@@ -16,8 +16,8 @@ use rerun::external::uuid::Uuid;
 use rerun::{AsComponents, EntityPath, SeriesLines};
 
 use super::eye::Eye;
-use super::forecast::Forecast;
 use super::hash::Hash;
+use super::preview::Preview;
 use super::store::{Store, StoreError, TIME};
 use super::style::{Both, colour, series_name, under};
 use crate::picture::charts::{Chart, Place};
@@ -28,7 +28,7 @@ use crate::picture::scene::palette::{Palette, Theme, mix, palette};
 ///
 /// # Errors
 /// If it cannot be written.
-pub fn lay_out(store: &mut Store, cases: &[Forecast], pictured: bool) -> Result<(), StoreError> {
+pub fn lay_out(store: &mut Store, cases: &[Preview], pictured: bool) -> Result<(), StoreError> {
     let mut layout =
         Layout { store, palette: palette(Theme::Dark), tab: String::new(), charts: shared(cases), pictured };
     let mut tabs = Vec::new();
@@ -59,7 +59,7 @@ pub fn lay_out(store: &mut Store, cases: &[Forecast], pictured: bool) -> Result<
 }
 
 /// The charts of all cases with the ranges that they share, so that they can be compared.
-fn shared(cases: &[Forecast]) -> Vec<(Chart, [f64; 2])> {
+fn shared(cases: &[Preview]) -> Vec<(Chart, [f64; 2])> {
     let mut all: Vec<(Chart, [f64; 2])> = Vec::new();
     for (chart, [low, high]) in cases.iter().flat_map(|case| &case.charts) {
         match all.iter_mut().find(|(known, _)| known.title == chart.title) {
@@ -159,7 +159,7 @@ impl Layout<'_> {
     }
 
     /// Several cases side by side: scenes above, what differs below.
-    fn comparison(&mut self, cases: &[Forecast]) -> Result<Part, StoreError> {
+    fn comparison(&mut self, cases: &[Preview]) -> Result<Part, StoreError> {
         let scenes = cases.iter().map(|case| self.scene(case, &case.title)).collect::<Result<Vec<_>, _>>()?;
         let mut top = self.container(ContainerKind::Horizontal, "Scenes", &scenes, &vec![1.0; scenes.len()])?;
         if self.pictured {
@@ -179,7 +179,7 @@ impl Layout<'_> {
     }
 
     /// One case: scene left, plots right, events below.
-    fn case(&mut self, case: &Forecast) -> Result<Part, StoreError> {
+    fn case(&mut self, case: &Preview) -> Result<Part, StoreError> {
         self.tab.clone_from(&case.name);
         let mut scenes = vec![self.scene(case, "Scene")?];
         if self.pictured {
@@ -203,7 +203,7 @@ impl Layout<'_> {
     }
 
     /// The charts of a case that stand in some places, one below the other.
-    fn plots(&mut self, case: &Forecast, name: &str, stands: fn(Place) -> bool) -> Result<Part, StoreError> {
+    fn plots(&mut self, case: &Preview, name: &str, stands: fn(Place) -> bool) -> Result<Part, StoreError> {
         let mut parts = Vec::new();
         for (chart, _) in case.charts.iter().filter(|(chart, _)| stands(chart.place)) {
             parts.push(self.plot(case, chart)?);
@@ -215,7 +215,7 @@ impl Layout<'_> {
         self.charts.iter().find(|(known, _)| known.title == chart.title).map(|(_, range)| *range)
     }
 
-    fn scene(&mut self, case: &Forecast, name: &str) -> Result<Part, StoreError> {
+    fn scene(&mut self, case: &Preview, name: &str) -> Result<Part, StoreError> {
         let background = view::Background::new(BackgroundKind::SolidColor).with_color(colour(self.palette.background));
         // The scene has a grid of its own.
         let grid = view::LineGrid3D::new().with_visible(false);
@@ -230,7 +230,7 @@ impl Layout<'_> {
     }
 
     /// What was drawn offscreen.
-    fn pictures(&mut self, case: &Forecast, name: &str) -> Result<Part, StoreError> {
+    fn pictures(&mut self, case: &Preview, name: &str) -> Result<Part, StoreError> {
         self.view("2D", name, &under(&case.root, "view"), &["$origin/**".into()], &[])
     }
 
@@ -244,7 +244,7 @@ impl Layout<'_> {
         self.view("3D", name, origin, &["$origin/**".into()], &properties)
     }
 
-    fn plot(&mut self, case: &Forecast, chart: &Chart) -> Result<Part, StoreError> {
+    fn plot(&mut self, case: &Preview, chart: &Chart) -> Result<Part, StoreError> {
         let held = case.signals.iter().filter(|signal| chart.holds(signal));
         let contents: Vec<_> = held.map(|signal| format!("$origin/{}", signal.path)).collect();
         let range = self.range_of(chart);
@@ -268,7 +268,7 @@ impl Layout<'_> {
     }
 
     /// The same signal of every case in one plot, each named by its case.
-    fn compared(&mut self, cases: &[Forecast], chart: &Chart, range: [f64; 2]) -> Result<Part, StoreError> {
+    fn compared(&mut self, cases: &[Preview], chart: &Chart, range: [f64; 2]) -> Result<Part, StoreError> {
         let signal = chart.signals[0];
         let paths: Vec<_> = cases.iter().map(|case| under(&case.root, &format!("signals/{signal}"))).collect();
         let contents: Vec<_> = paths.iter().map(|p| p.to_string()).collect();
@@ -291,7 +291,7 @@ impl Layout<'_> {
         Ok(plot)
     }
 
-    fn events(&mut self, cases: &[Forecast]) -> Result<Part, StoreError> {
+    fn events(&mut self, cases: &[Preview]) -> Result<Part, StoreError> {
         let shown = |kind, visible: bool| TextLogColumn { visible: visible.into(), kind };
         let columns = view::TextLogColumns::new()
             .with_timeline_columns([TimelineColumn { visible: true.into(), timeline: TIME.into() }])
@@ -312,7 +312,7 @@ fn name_of(chart: &Chart) -> String {
 
 /// The title of a plot with the colours of what it shows: a legend would cover the curves of so low a plot. Of one series
 /// the title says everything already, and of many the pointer tells which is which.
-fn titled(chart: &Chart, case: &Forecast) -> String {
+fn titled(chart: &Chart, case: &Preview) -> String {
     let all: Vec<_> = case.signals.iter().filter(|signal| chart.holds(signal)).collect();
     let of_drives = all.len() == COLOURS.len() && all.iter().enumerate().all(|(k, signal)| signal.drive == Some(k));
     let words = all.iter().zip(COLOURS).map(|(signal, colour)| format!("{} {colour}", signal.symbol));

@@ -29,10 +29,10 @@ mod dashes;
 mod entity;
 mod events;
 mod eye;
-mod forecast;
 mod hash;
 mod options;
 mod pictures;
+mod preview;
 mod recorder;
 mod rows;
 mod space;
@@ -51,9 +51,9 @@ use crate::files::{NewFile, WriteError};
 use crate::session::Refusal;
 use crate::session::scenario::Scenario;
 use crate::session::verdict::Verdict;
-use forecast::Forecast;
 use hash::Hash;
 use pictures::Series;
+use preview::Preview;
 use recorder::Set;
 use stop::Stop;
 use store::{Store, StoreError};
@@ -165,9 +165,9 @@ const MOST_PICTURES: f64 = 1e5;
 const MOST_PIXELS: f64 = 1.5e11;
 
 /// Refuses more pictures than anybody would wait for.
-fn check_pictures(scenarios: &[Scenario], cases: &[Forecast], options: &Options) -> Result<(), RecordError> {
+fn check_pictures(scenarios: &[Scenario], cases: &[Preview], options: &Options) -> Result<(), RecordError> {
     let Some(p) = options.pictures else { return Ok(()) };
-    let of_case = |(scenario, case): (&Scenario, &Forecast)| {
+    let of_case = |(scenario, case): (&Scenario, &Preview)| {
         let steps = case.steps as f64;
         steps.min(steps * scenario.step * p.fps) + 1.0
     };
@@ -218,7 +218,7 @@ fn write(
     for scenario in scenarios {
         let mut tick = |step| progress(Progress { done: before + step, of: 2 * total, what: &scenario.name });
         let refused = |refusal| RecordError::Refused { scenario: scenario.name.clone(), refusal };
-        cases.push(Forecast::of(scenario, &mut tick).map_err(refused)?);
+        cases.push(Preview::of(scenario, &mut tick).map_err(refused)?);
         before += steps(scenario);
     }
     // Now it is known.
@@ -228,7 +228,7 @@ fn write(
     let mut store = Store::open(to, digest(scenarios, options)).map_err(because)?;
     let mut pictures = Series::of(options.pictures);
     let pictured = pictures.is_wanted();
-    let scale = forecast::scale(&cases);
+    let scale = preview::scale(&cases);
     let mut set = Set { store: &mut store, pictures: &mut pictures, scale, several: scenarios.len() > 1 };
     let mut recordings = Vec::with_capacity(scenarios.len());
     // The layout stands first, so that no viewer begins with one of its own.

@@ -7,8 +7,8 @@ use rerun::external::re_log_types::EntityPathPart;
 use rerun::{AnyValues, EntityPath, Scalars, SeriesLines, ViewCoordinates};
 
 use super::events::Events;
-use super::forecast::Forecast;
 use super::pictures::Series;
+use super::preview::Preview;
 use super::rows::Thinned;
 use super::space::Space;
 use super::stop::Stop;
@@ -58,7 +58,7 @@ pub struct Set<'a> {
 pub fn record(
     set: &mut Set<'_>,
     scenario: &Scenario,
-    forecast: &Forecast,
+    forecast: &Preview,
     tick: &mut dyn FnMut(u64),
 ) -> Result<(Peaks, Verdict), Stop> {
     let mut recorder = Recorder::new(set, scenario, forecast)?;
@@ -82,7 +82,7 @@ struct Recorder<'a> {
     store: &'a mut Store,
     pictures: &'a mut Series,
     scenario: &'a Scenario,
-    forecast: &'a Forecast,
+    forecast: &'a Preview,
     root: &'a EntityPath,
     palette: Palette,
     options: ViewOptions,
@@ -152,7 +152,7 @@ impl Instant {
 }
 
 impl<'a> Recorder<'a> {
-    fn new(set: &'a mut Set<'_>, scenario: &'a Scenario, forecast: &'a Forecast) -> Result<Self, Stop> {
+    fn new(set: &'a mut Set<'_>, scenario: &'a Scenario, forecast: &'a Preview) -> Result<Self, Stop> {
         let Set { store, pictures, scale, several } = set;
         let (palette, root) = (palette(Theme::Dark), &forecast.root);
         store.fixed(root, &ViewCoordinates::RIGHT_HAND_Z_UP())?;

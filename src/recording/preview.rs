@@ -18,7 +18,7 @@ use crate::simulation::signals::{Signal, signals};
 
 /// What a run will come to.
 #[derive(Debug)]
-pub struct Forecast {
+pub struct Preview {
     /// Name of the scenario.
     pub name: String,
     /// A line about it.
@@ -45,7 +45,7 @@ pub struct Forecast {
     pub tower: Option<Eye>,
 }
 
-impl Forecast {
+impl Preview {
     /// Runs a scenario.
     ///
     /// # Errors
@@ -92,8 +92,8 @@ impl Forecast {
 }
 
 /// What full arrows and arcs stand for in all of them, so that they can be compared.
-pub fn scale(cases: &[Forecast]) -> Scale {
-    let largest = |of: fn(&Forecast) -> f64| cases.iter().map(of).fold(0.0, f64::max);
+pub fn scale(cases: &[Preview]) -> Scale {
+    let largest = |of: fn(&Preview) -> f64| cases.iter().map(of).fold(0.0, f64::max);
     Scale::of(largest(|c| c.peaks.force), largest(|c| c.peaks.moment))
 }
 
