@@ -147,7 +147,7 @@ fn point_at(
     if let Some(grip) = look.grabbed {
         ui.ctx().set_cursor_icon(cursor(grip.handle, true));
         // The last movement may come together with the release.
-        let pushes = grip.handle == Handle::Tip;
+        let pushes = grip.handle == Handle::EndEffector;
         // A hand that pushes a machine in motion pulls on while it holds still.
         let pulls = pushes && session.is_moving();
         let moved = response.drag_delta() != Vec2::ZERO || (look.dragged && response.drag_stopped()) || pulls;
@@ -254,8 +254,8 @@ fn cursor(handle: Handle, held: bool) -> CursorIcon {
     match (handle, held) {
         (Handle::Bar, _) => CursorIcon::PointingHand,
         (Handle::Plane, _) => CursorIcon::ResizeVertical,
-        (Handle::Target | Handle::Tip | Handle::Ring | Handle::Waypoint(_), true) => CursorIcon::Grabbing,
-        (Handle::Target | Handle::Tip | Handle::Ring | Handle::Waypoint(_), false) => CursorIcon::Grab,
+        (Handle::Target | Handle::EndEffector | Handle::Ring | Handle::Waypoint(_), true) => CursorIcon::Grabbing,
+        (Handle::Target | Handle::EndEffector | Handle::Ring | Handle::Waypoint(_), false) => CursorIcon::Grab,
     }
 }
 

@@ -22,7 +22,7 @@ use crate::simulation::plant::{Each, MovingBody, is_default};
 pub struct Control {
     /// What is computed.
     #[serde(default, skip_serializing_if = "is_default")]
-    pub law: Law,
+    pub law: ControlLaw,
     /// K_p, s⁻², one for all drives or one for each.
     #[serde(default = "stiff")]
     pub kp: Each,
@@ -48,7 +48,7 @@ pub struct Control {
 /// What a controller computes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Law {
+pub enum ControlLaw {
     /// From the whole model.
     #[default]
     ComputedTorque,
@@ -74,7 +74,7 @@ fn is_yes(flag: &bool) -> bool {
 impl Default for Control {
     fn default() -> Self {
         Self {
-            law: Law::ComputedTorque,
+            law: ControlLaw::ComputedTorque,
             kp: stiff(),
             kd: critical(),
             knows_base: true,
@@ -153,7 +153,7 @@ pub struct Reading<'a> {
 /// A law with its gains and the model it believes in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Controller {
-    law: Law,
+    law: ControlLaw,
     kp: PerDrive,
     kd: PerDrive,
     /// The model, and the model with the payload.
@@ -188,8 +188,8 @@ impl Controller {
         let correction = PerDrive::from_fn(n, |k| {
             self.kd[k] * (reference.qd[k] - reading.qd[k]) + self.kp[k] * (reference.q[k] - reading.q[k])
         });
-        let model = &self.models[usize::from(loaded && self.law == Law::PayloadCompensation)];
-        if self.law == Law::Pd {
+        let model = &self.models[usize::from(loaded && self.law == ControlLaw::PayloadCompensation)];
+        if self.law == ControlLaw::Pd {
             return PerDrive::from_fn(n, |k| model.arm().diagonal(k) * correction[k]);
         }
         let commanded = reference.qdd.plus(1.0, &correction);

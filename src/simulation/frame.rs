@@ -6,7 +6,7 @@ use super::audit::AuditFigure;
 use crate::mechanics::dynamics::BaseWrench;
 use crate::mechanics::joint_forces::Inside;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector, unit};
-use crate::simulation::plant::Spin;
+use crate::simulation::plant::WheelState;
 
 pub use crate::planning::following::follow::Target;
 pub use crate::planning::pose_constant::Reach;
@@ -49,7 +49,7 @@ pub struct Frame {
     /// What the manipulator transmits to its base.
     pub wrench: BaseWrench,
     /// What a reaction wheel in the base does.
-    pub wheel: Spin,
+    pub wheel: WheelState,
     /// Linear momentum of all that moves, the base too if it does, kg m/s.
     pub momentum: Vector,
     /// Its angular momentum about the origin, where B is at the start, kg m²/s; without the wheel.

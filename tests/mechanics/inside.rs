@@ -7,7 +7,9 @@ use proptest::prelude::*;
 use stillbase::mechanics::machine::builtin;
 use stillbase::mechanics::planar::{Vector, cross, dot, unit};
 use stillbase::planning::pose_constant::plane_map;
-use stillbase::planning::reactionless::{AngleDefinition, AngleLimit, Boundary, Curve, Line, PlaneMap, Vertex};
+use stillbase::planning::reactionless::{
+    AngleDefinition, AngleLimit, Boundary, BoundaryCurve, BoundaryLine, PlaneMap, Vertex,
+};
 
 use crate::planning::change_points::{change_curves_are_sound, parts_add_up, parts_hold_the_poses_on_their_side};
 
@@ -229,7 +231,7 @@ fn areas_by_poses_match_a_raster() {
 /// A point of a curve between two of its vertices: on folds brought back to det = 0 across the fold.
 fn between(map: &PlaneMap, [from, to]: [Vertex; 2], t: f64) -> [f64; 2] {
     let mut a = [0, 1].map(|j| from.a[j] + t * (to.a[j] - from.a[j]));
-    if from.curve == Curve::Fold {
+    if from.curve == BoundaryCurve::Fold {
         for _ in 0..6 {
             let (g, det) = (slopes(map, a), map.det(a));
             let norm = g[0] * g[0] + g[1] * g[1];
@@ -248,7 +250,7 @@ fn slopes(map: &PlaneMap, a: [f64; 2]) -> [f64; 2] {
     })
 }
 
-pub fn check_line(map: &PlaneMap, line: &Line) {
+pub fn check_line(map: &PlaneMap, line: &BoundaryLine) {
     for w in line.vertices().windows(2) {
         assert!((map.forward_unturned(w[0].a) - w[0].at).norm() < 1e-12);
         assert!((w[1].a[0] - w[0].a[0]).hypot(w[1].a[1] - w[0].a[1]) < 0.36);
@@ -272,7 +274,7 @@ fn folds_turn_back_at_their_cusps() {
         for fold in &folds {
             check_line(&map, fold);
             let v = fold.vertices();
-            assert!(v.iter().all(|v| v.curve == Curve::Fold && map.det(v.a).abs() < 1e-12));
+            assert!(v.iter().all(|v| v.curve == BoundaryCurve::Fold && map.det(v.a).abs() < 1e-12));
             let ends = [v[0].a, v[v.len() - 1].a];
             if fold.is_closed() {
                 assert_eq!(ends[0], ends[1]);

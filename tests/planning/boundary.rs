@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use proptest::prelude::*;
 use stillbase::mechanics::machine::{Inertia, builtin};
 use stillbase::mechanics::planar::{Vector, cross, dot, unit};
-use stillbase::planning::reactionless::{AngleDefinition, AngleLimit, Boundary, Curve, PlaneMap};
+use stillbase::planning::reactionless::{AngleDefinition, AngleLimit, Boundary, BoundaryCurve, PlaneMap};
 
 const B: f64 = 2.4;
 
@@ -187,13 +187,13 @@ fn check_loops(map: &PlaneMap, boundary: &Boundary) {
             perimeter += (next.at - vertex.at).norm();
             assert!((map.forward_unturned(vertex.a) - vertex.at).norm() < 1e-12);
             match vertex.curve {
-                Curve::Limit { angle, upper } => {
+                BoundaryCurve::Limit { angle, upper } => {
                     let limit = map.limits()[angle];
                     let at = if upper { limit.max } else { limit.min };
                     assert!((vertex.a[angle] - at).abs() < 1e-9, "{vertex:?}");
                 }
-                Curve::Fold => assert!(map.det(vertex.a).abs() < 1e-9 * scale, "{vertex:?}"),
-                Curve::Change { .. } => panic!("the whole workspace ends at no change point: {vertex:?}"),
+                BoundaryCurve::Fold => assert!(map.det(vertex.a).abs() < 1e-9 * scale, "{vertex:?}"),
+                BoundaryCurve::Change { .. } => panic!("the whole workspace ends at no change point: {vertex:?}"),
             }
             assert!((0..2).all(|i| map.limits()[i].contains(vertex.a[i], 1e-9)), "{vertex:?}");
         }
@@ -241,7 +241,7 @@ fn half_turns_have_the_area_of_the_closed_form() {
         let [outline] = boundary.loops() else { panic!("{} loops", boundary.loops().len()) };
         let mut changes = 0;
         for (i, v) in outline.vertices().iter().enumerate() {
-            assert!(v.curve != Curve::Fold);
+            assert!(v.curve != BoundaryCurve::Fold);
             changes += usize::from(v.curve != outline.vertices()[(i + 1) % outline.vertices().len()].curve);
         }
         assert_eq!(changes, 4);
@@ -283,7 +283,7 @@ fn chords_keep_within_1e_5_of_the_curve() {
             for (i, from) in v.iter().enumerate() {
                 let to = v[(i + 1) % v.len()];
                 // A limit is straight in (a_1, a_2), so points between two of its vertices are known.
-                if from.curve != to.curve || from.curve == Curve::Fold {
+                if from.curve != to.curve || from.curve == BoundaryCurve::Fold {
                     continue;
                 }
                 for t in [0.25, 0.5, 0.75] {
@@ -426,7 +426,7 @@ fn what_it_contains_newton_finds() {
             let v = l.vertices();
             for (i, from) in v.iter().enumerate().step_by(10) {
                 let to = v[(i + 1) % v.len()];
-                if from.curve != to.curve || from.curve == Curve::Fold {
+                if from.curve != to.curve || from.curve == BoundaryCurve::Fold {
                     continue;
                 }
                 let on = map.forward_unturned([0, 1].map(|j| 0.5 * (from.a[j] + to.a[j])));

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Matrix2, Matrix2x3};
 use stillbase::mechanics::planar::{Vector, unit};
-use stillbase::planning::reactionless::{Boundary, Curve, PAIRS, PlaneMap, PlanePoint};
+use stillbase::planning::reactionless::{Boundary, BoundaryCurve, PAIRS, PlaneMap, PlanePoint};
 
 use crate::mechanics::inside::{B, CASES, check_line, from_curves, share, size, spread, within};
 
@@ -25,7 +25,7 @@ fn parts_of_the_default_workspace_on_either_side() {
     for b in [&near, &far] {
         assert!((b.area() - b.sheet_area()).abs() < 1e-13);
         assert_eq!((b.loops().len(), b.sheets()), (1, 1));
-        assert!(b.loops()[0].vertices().iter().any(|v| v.curve == Curve::Change { pair: 2 }));
+        assert!(b.loops()[0].vertices().iter().any(|v| v.curve == BoundaryCurve::Change { pair: 2 }));
     }
     for (x, y) in [(0.5, 0.5), (0.55, 0.9)] {
         let p = Vector::new(x, y);
@@ -108,7 +108,7 @@ pub fn change_curves_are_sound(map: &PlaneMap) {
         let v = curve.line.vertices();
         assert_eq!([v[0].a, v[v.len() - 1].a], curve.ends);
         for v in v {
-            assert_eq!(v.curve, Curve::Change { pair: curve.pair });
+            assert_eq!(v.curve, BoundaryCurve::Change { pair: curve.pair });
             assert!(map.sines(v.a)[curve.pair].abs() < 1e-12);
             assert!((0..2).all(|i| map.limits()[i].contains(v.a[i], 1e-9)));
         }

@@ -94,7 +94,9 @@ fn a_line_out_of_the_workspace_stops_at_the_boundary() {
     let inside = |s: f64| planes.boundary().contains(line.at(s).p, B);
     assert!(inside(blocked.s - 1e-6) && !inside(blocked.s + 1e-6), "{}", blocked.s);
     let at = planes.boundary().nearest(line.at(blocked.s + 1e-4).p, B, line.at(blocked.s).p);
-    let stillbase::planning::reactionless::Curve::Limit { angle, upper } = at.curve else { panic!("no folds here") };
+    let stillbase::planning::reactionless::BoundaryCurve::Limit { angle, upper } = at.curve else {
+        panic!("no folds here")
+    };
     assert_eq!(blocked.stop, Stop::Limit { angle, upper });
     let longest = blocked.longest.expect("a part is inside");
     assert!(longest[0] == 0.0 && (longest[1] - blocked.s).abs() < 1e-6, "{longest:?}");

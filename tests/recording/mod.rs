@@ -363,7 +363,7 @@ fn what_runs_inside_a_workspace_turns_with_it() {
     let boundary = planes.boundary();
     let height = 0.0;
     // Before they are turned and shifted: their transform is the workspace's.
-    let flat = |line: &stillbase::planning::reactionless::Line| -> Vec<[f64; 3]> {
+    let flat = |line: &stillbase::planning::reactionless::BoundaryLine| -> Vec<[f64; 3]> {
         line.turned(0.0).iter().map(|[x, y]| [*x, *y, height]).collect()
     };
     for (name, curves) in [("folds", boundary.fold_curves()), ("inner_limits", boundary.inner_limits())] {

@@ -156,7 +156,7 @@ proptest! {
             scenario.base.com = com;
             scenario.plant.payload.mass = payload;
             // PD knows no weight: it is the same controller in both.
-            scenario.control.law = if knows { stillbase::simulation::control::Law::ComputedTorque } else { stillbase::simulation::control::Law::Pd };
+            scenario.control.law = if knows { stillbase::simulation::control::ControlLaw::ComputedTorque } else { stillbase::simulation::control::ControlLaw::Pd };
             scenario.control.kp = Each::All(400.0);
             scenario.duration = Some(0.4);
             run(&scenario)

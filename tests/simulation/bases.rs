@@ -179,7 +179,7 @@ fn momentum_is_kept_for_an_hour() {
         kd: stillbase::simulation::plant::Each::All(0.0),
         ..Control::default()
     };
-    let control = Control { law: stillbase::simulation::control::Law::Pd, ..zero };
+    let control = Control { law: stillbase::simulation::control::ControlLaw::Pd, ..zero };
     // Turning at the start: a guide that is in full motion when it begins.
     let path = Path::JointLine { from: [1.6, 3.5, 2.0].into(), to: [2.1, 4.4, 3.2].into() };
     let guide = Guide::Motion { motion: Motion::new(path, TimeLaw::Quintic, 2.0), start: -1.0 };

@@ -8,14 +8,14 @@ use crate::app::Command;
 use crate::app::widgets::Row;
 use crate::picture::scene::palette::Palette;
 use crate::session::Session;
-use crate::simulation::control::{Control, Law};
+use crate::simulation::control::{Control, ControlLaw};
 
 const KEYS: [&str; 7] = ["law", "kp", "kd", "knows_base", "rate", "delay", "encoder"];
 
-const LAWS: [(Law, &str, &str); 3] = [
-    (Law::ComputedTorque, "computed-torque", "Computed torque"),
-    (Law::PayloadCompensation, "payload-compensation", "… with the payload"),
-    (Law::Pd, "pd", "PD"),
+const LAWS: [(ControlLaw, &str, &str); 3] = [
+    (ControlLaw::ComputedTorque, "computed-torque", "Computed torque"),
+    (ControlLaw::PayloadCompensation, "payload-compensation", "… with the payload"),
+    (ControlLaw::Pd, "pd", "PD"),
 ];
 
 /// Steps between samples that are offered; a rate must fit the simulation's step.
@@ -30,9 +30,9 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
     let (control, step, n) = (&scenario.control, scenario.step, scenario.machine.drives());
     let law = LAWS.iter().find(|l| l.0 == control.law);
     let mut summary = match control.law {
-        Law::ComputedTorque => "computed torque".to_owned(),
-        Law::PayloadCompensation => "with the payload".to_owned(),
-        Law::Pd => "PD".to_owned(),
+        ControlLaw::ComputedTorque => "computed torque".to_owned(),
+        ControlLaw::PayloadCompensation => "with the payload".to_owned(),
+        ControlLaw::Pd => "PD".to_owned(),
     };
     if control.is_sampled() {
         summary += ", sampled";

@@ -2,7 +2,7 @@
 
 use super::error::{MachineError, Place, PlaceStep, quoted};
 use super::inertia::Inertia;
-use super::model::{Loop, Machine, RelativeAngle, ResolvedLink};
+use super::model::{Machine, RelativeAngle, ResolvedClosure, ResolvedLink};
 use super::numbers::{LENGTH, PLACE, check_numbers, within};
 use super::spec::{Angle, Attach, Closure, Length, MachineSpec, PlaceOnLink, Point};
 use crate::mechanics::planar::MAX_DRIVES;
@@ -186,7 +186,7 @@ fn resolve_closure(
     parts: &[ResolvedLink],
     i: usize,
     closure: &Closure,
-) -> Result<Loop, MachineError> {
+) -> Result<ResolvedClosure, MachineError> {
     let (a, s) = locate(spec, names, &closure.a, &|| Place::new(&[&"closure", &i, &"a"]))?;
     let (b, t) = locate(spec, names, &closure.b, &|| Place::new(&[&"closure", &i, &"b"]))?;
     let (p, r) = (parts[a].point(s), parts[b].point(t));
@@ -195,7 +195,7 @@ fn resolve_closure(
         .map(|k| format!("{:.6} m along drive {}", p[k] - r[k], clipped(&spec.drives[k].name)))
         .collect();
     if gap.is_empty() {
-        return Ok(Loop { a, at_a: s, b, at_b: t });
+        return Ok(ResolvedClosure { a, at_a: s, b, at_b: t });
     }
     let say = |point: &Point| match &point.at {
         PlaceOnLink::Metres(s) => format!("{} m of link {}", Short(*s), clipped(&point.link)),

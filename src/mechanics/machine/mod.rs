@@ -29,6 +29,6 @@ pub use error::{MachineError, Place, PlaceStep};
 pub use file::{FileError, parse, to_toml};
 pub(crate) use file::{line_of, line_of_place};
 pub use inertia::{BALANCED, Inertia};
-pub use model::{Loop, Machine, RelativeAngle, ResolvedLink};
+pub use model::{Machine, RelativeAngle, ResolvedClosure, ResolvedLink};
 pub use numbers::MAX_ANGLE;
 pub use spec::{Angle, Attach, Closure, Drive, Length, Link, MachineSpec, Payload, PlaceOnLink, Point};

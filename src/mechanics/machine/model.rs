@@ -14,7 +14,7 @@ pub struct Machine {
     pub(super) end_effector: Chain,
     pub(super) end_link: usize,
     pub(super) angles: Vec<RelativeAngle>,
-    pub(super) loops: Vec<Loop>,
+    pub(super) loops: Vec<ResolvedClosure>,
 }
 
 /// What is derived of a link.
@@ -53,7 +53,7 @@ pub struct RelativeAngle {
 
 /// A closure, resolved: a point of link `a` is pinned to a point of link `b`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Loop {
+pub struct ResolvedClosure {
     /// A link.
     pub a: usize,
     /// Where on it, m from its root.
@@ -115,7 +115,7 @@ impl Machine {
     }
 
     /// Its closures as resolved, in the order of the file.
-    pub fn loops(&self) -> &[Loop] {
+    pub fn loops(&self) -> &[ResolvedClosure] {
         &self.loops
     }
 
@@ -140,7 +140,7 @@ impl Machine {
     /// For every pin that closes a loop, how its one description differs from the other: a sum of unit vectors that is
     /// zero in every pose.
     pub fn closure_gaps(&self) -> Vec<Chain> {
-        let gap = |l: &Loop| {
+        let gap = |l: &ResolvedClosure| {
             let (a, b) = (self.parts[l.a].point(l.at_a), self.parts[l.b].point(l.at_b));
             std::array::from_fn(|k| a[k] - b[k])
         };

@@ -230,7 +230,7 @@ impl JointSpace {
                 let [low, high] = self.window(b);
                 Some(Aim::B(self.b_at(at, b).clamp(low, high)))
             }
-            Handle::Ring | Handle::Bar | Handle::Tip | Handle::Waypoint(_) => None,
+            Handle::Ring | Handle::Bar | Handle::EndEffector | Handle::Waypoint(_) => None,
         }
     }
 

@@ -68,7 +68,7 @@ pub enum Handle {
     /// The end effector's target.
     Target,
     /// The end effector, to be pushed.
-    Tip,
+    EndEffector,
     /// The knob of the b ring.
     Ring,
     /// The plane b = const, in joint space or as a slice of the tower.

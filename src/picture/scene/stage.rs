@@ -103,7 +103,7 @@ impl Stage {
                 let p = frame.base.at + unit(turn) * self.ring_radius();
                 Some([p.re, p.im, z])
             }
-            Handle::Tip => Some([frame.end_effector.re, frame.end_effector.im, z]),
+            Handle::EndEffector => Some([frame.end_effector.re, frame.end_effector.im, z]),
             Handle::Waypoint(i) => {
                 let (.., p) = self.plan.as_ref()?.waypoints.iter().find(|(number, ..)| *number == i)?;
                 Some([p.re, p.im, z])

@@ -144,8 +144,8 @@ impl Views {
 
     /// The end effector, if it is under the pointer.
     pub fn pick_tip(&self, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
-        let at = self.stage.handle(Handle::Tip, frame)?;
-        (pointer.distance(at)? < 1.5 * NEAR).then_some(Pick { handle: Handle::Tip, at })
+        let at = self.stage.handle(Handle::EndEffector, frame)?;
+        (pointer.distance(at)? < 1.5 * NEAR).then_some(Pick { handle: Handle::EndEffector, at })
     }
 
     /// The number of the link under the pointer in the machine's view, in a frame as shown; the uppermost of several.
@@ -195,7 +195,7 @@ impl Views {
                 match pick.handle {
                     Handle::Target => Some(Aim::Target(at)),
                     Handle::Ring => self.stage.ring_b(at, b, frame).map(Aim::B),
-                    Handle::Tip => Some(Aim::Push([
+                    Handle::EndEffector => Some(Aim::Push([
                         PULL * (at[0] - frame.end_effector.re),
                         PULL * (at[1] - frame.end_effector.im),
                     ])),

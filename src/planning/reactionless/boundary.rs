@@ -27,10 +27,10 @@ mod span;
 
 use arrangement::{Arrangement, Portion, Strand};
 use cycle::Cycle;
-pub use line::{Line, Loop, Vertex};
+pub use line::{BoundaryLine, BoundaryLoop, Vertex};
 use region::Region;
 pub use sides::ChangeCurve;
-pub use span::Curve;
+pub use span::BoundaryCurve;
 use span::Surface;
 
 use super::PlaneMap;
@@ -45,7 +45,7 @@ pub struct Boundary {
     on: Surface,
     cycle: Cycle,
     strands: Vec<Strand>,
-    loops: Vec<Loop>,
+    loops: Vec<BoundaryLoop>,
     cusps: Vec<Vertex>,
     area: f64,
     sheet_area: f64,
@@ -72,7 +72,7 @@ pub struct Nearest {
     /// Its plane coordinates, rad.
     pub a: [f64; 2],
     /// What stops the end effector there.
-    pub curve: Curve,
+    pub curve: BoundaryCurve,
     /// m.
     pub distance: f64,
 }
@@ -103,13 +103,14 @@ impl Boundary {
         let arrangement = Arrangement::of(&on, &cycle);
         let strands = arrangement.strands();
         let chains = arrangement.chain(arrangement.level(&strands, 1));
-        let mut loops: Vec<Loop> = chains.iter().map(|chain| Loop::of(&on, &cycle.spans, chain)).collect();
+        let mut loops: Vec<BoundaryLoop> =
+            chains.iter().map(|chain| BoundaryLoop::of(&on, &cycle.spans, chain)).collect();
         loops.sort_by(|a, b| b.area().total_cmp(&a.area()));
         if loops.is_empty() {
             return Self::curve(on, region);
         }
-        let area = loops.iter().map(Loop::area).sum();
-        let cusp = |a: [f64; 2]| Vertex { a, at: on.map.forward_unturned(a), curve: Curve::Fold };
+        let area = loops.iter().map(BoundaryLoop::area).sum();
+        let cusp = |a: [f64; 2]| Vertex { a, at: on.map.forward_unturned(a), curve: BoundaryCurve::Fold };
         let cusps = folds.cusps.into_iter().map(cusp).collect();
         Self { on, cycle, strands, loops, cusps, area, sheet_area, interior_singularity, flat: false }
     }
@@ -118,7 +119,7 @@ impl Boundary {
     fn curve(on: Surface, region: &Region) -> Self {
         let spans = region.outline(&on);
         let chain: Vec<Portion> = (0..spans.len()).map(|span| Portion { span, from: 0.0, to: 1.0 }).collect();
-        let outline = Loop::of(&on, &spans, &chain).without_area();
+        let outline = BoundaryLoop::of(&on, &spans, &chain).without_area();
         Self {
             loops: vec![outline],
             on,
@@ -133,7 +134,7 @@ impl Boundary {
     }
 
     /// The closed curves that bound the workspace, the largest first, never none.
-    pub fn loops(&self) -> &[Loop] {
+    pub fn loops(&self) -> &[BoundaryLoop] {
         &self.loops
     }
 

@@ -23,7 +23,7 @@ mod quadrilateral;
 mod reach;
 
 pub use b_set::BSet;
-pub use boundary::{Boundary, ChangeCurve, Curve, Extent, Line, Loop, Nearest, Vertex};
+pub use boundary::{Boundary, BoundaryCurve, BoundaryLine, BoundaryLoop, ChangeCurve, Extent, Nearest, Vertex};
 pub use change::{ChangePoint, PAIRS};
 pub use decimal::{Decimal, between, metres, metres_apart};
 pub use dexterity::Dexterity;

@@ -20,4 +20,4 @@ pub use friction::{Contacts, Friction, MAX_CONTACTS, SlipDirections};
 pub use load::Load;
 pub use moving_body::MovingBody;
 pub use state::{MotorCommand, Slope, State};
-pub use wheel::{Spin, Wheel};
+pub use wheel::{Wheel, WheelState};

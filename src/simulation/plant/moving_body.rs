@@ -17,7 +17,7 @@
 //! π̇_k = ∂T/∂q_k + Q_k, and P and L change by outer forces only: a free base keeps both to the last digit. Gravity
 //! has no lever about R.
 
-use super::{Base, BaseKind, Contacts, Friction, MAX_CONTACTS, MotorCommand, SlipDirections, Slope, Spin, State};
+use super::{Base, BaseKind, Contacts, Friction, MAX_CONTACTS, MotorCommand, SlipDirections, Slope, State, WheelState};
 use crate::mechanics::dynamics::{BaseWrench, Factors, Surroundings, base_wrench, by_drives, first};
 use crate::mechanics::machine::{Inertia, Machine, MachineError};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Units, Vector, cross, dot};
@@ -509,7 +509,7 @@ impl MovingBody {
         let n = self.arm.drives;
         self.instant(state, &[0; MAX_CONTACTS], &mut [0.0; MAX_CONTACTS], |_, _, _, _| MotorCommand {
             torque: PerDrive::zeros(n),
-            spin: Spin::default(),
+            spin: WheelState::default(),
             rotor: 0.0,
         })
     }

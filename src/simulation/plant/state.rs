@@ -1,6 +1,6 @@
 //! [`State`]: positions and momenta of everything that moves, and the [`Slope`] that it leads to.
 
-use super::Spin;
+use super::WheelState;
 use crate::mechanics::dynamics::BaseWrench;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, Units, Vector, cross};
 
@@ -31,7 +31,7 @@ pub struct MotorCommand {
     /// τ_k, N m.
     pub torque: PerDrive,
     /// Of the wheel.
-    pub spin: Spin,
+    pub spin: WheelState,
     /// The wheel's rotor, kg m²; 0 for none.
     pub rotor: f64,
 }
@@ -50,7 +50,7 @@ pub struct Slope {
     /// Friction of the bearings against them, N m.
     pub friction: PerDrive,
     /// Of the wheel.
-    pub spin: Spin,
+    pub spin: WheelState,
     /// p_B and θ.
     pub base: Pose2,
     /// ṗ_B, m/s.

@@ -49,7 +49,7 @@ impl Default for Wheel {
 
 /// What a wheel does at an instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Spin {
+pub struct WheelState {
     /// Ω, rad/s.
     pub rate: f64,
     /// τ_w, N m.
@@ -70,10 +70,10 @@ impl Wheel {
 
     /// What it gives of a wanted torque, N m, at a rate, rad/s, with what room there is in this step.
     #[inline]
-    pub fn give(&self, wanted: f64, rate: f64, room: [f64; 2]) -> Spin {
+    pub fn give(&self, wanted: f64, rate: f64, room: [f64; 2]) -> WheelState {
         // A run that has blown up has no room, and says so by what is no number.
         let torque = if rate.is_finite() { wanted.max(room[0]).min(room[1]) } else { f64::NAN };
-        Spin { rate, torque, saturated: torque != wanted }
+        WheelState { rate, torque, saturated: torque != wanted }
     }
 
     pub(crate) fn checks(&self) -> impl Iterator<Item = Check> {

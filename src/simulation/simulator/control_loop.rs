@@ -19,7 +19,7 @@ use std::collections::VecDeque;
 use crate::mechanics::planar::{DriveAngles, PerDrive};
 use crate::planning::Reference;
 use crate::simulation::control::{Control, Controller, Reading};
-use crate::simulation::plant::{MotorCommand, Spin, Wheel};
+use crate::simulation::plant::{MotorCommand, Wheel, WheelState};
 
 /// Control as it runs.
 #[derive(Clone, Debug)]
@@ -165,7 +165,7 @@ impl ControlLoop {
         };
         let spin = match &self.wheel {
             Some(wheel) => wheel.give(-torque.iter().sum::<f64>(), wheel_rate, self.wheel_room),
-            None => Spin::default(),
+            None => WheelState::default(),
         };
         MotorCommand { torque, spin, rotor: self.rotor() }
     }

@@ -39,7 +39,7 @@ impl Workspace {
     pub fn of(planes: &Arc<Planes>, compared: Option<f64>, radius: f64) -> Self {
         let boundary = planes.boundary();
         let loops: Vec<Vec<Vector>> = boundary.turned(0.0).into_iter().map(vectors).collect();
-        let drawn = |lines: &mut dyn Iterator<Item = &reactionless::Line>| -> Strips {
+        let drawn = |lines: &mut dyn Iterator<Item = &reactionless::BoundaryLine>| -> Strips {
             lines
                 .map(|line| {
                     let mut points = vectors(line.turned(0.0));

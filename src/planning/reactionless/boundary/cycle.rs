@@ -8,7 +8,7 @@ const ROWS: usize = 64;
 
 /// Axis-parallel bounds of a span, m.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Bounds {
+pub(super) struct CycleBounds {
     pub low: Vector,
     pub high: Vector,
 }
@@ -16,7 +16,7 @@ pub(super) struct Bounds {
 #[derive(Clone, Debug)]
 pub(super) struct Cycle {
     pub spans: Vec<Span>,
-    pub bounds: Vec<Bounds>,
+    pub bounds: Vec<CycleBounds>,
     /// Where each row begins in `members`, and one more.
     rows: Vec<u32>,
     /// Spans by row, each in all rows that it passes through.
@@ -28,12 +28,12 @@ pub(super) struct Cycle {
 impl Cycle {
     /// `unit` is that of the map, m.
     pub fn of(spans: Vec<Span>, unit: f64) -> Self {
-        let bounds: Vec<Bounds> = spans
+        let bounds: Vec<CycleBounds> = spans
             .iter()
             .map(|s| {
                 let slack = s.deviation + 1e-12 * unit;
                 let [a, b] = s.at;
-                Bounds {
+                CycleBounds {
                     low: Vector::new(a.re.min(b.re) - slack, a.im.min(b.im) - slack),
                     high: Vector::new(a.re.max(b.re) + slack, a.im.max(b.im) + slack),
                 }
@@ -43,7 +43,7 @@ impl Cycle {
         let high = bounds.iter().map(|b| b.high.im).fold(f64::NEG_INFINITY, f64::max);
         let per_metre = ROWS as f64 / (high - low);
         let mut cycle = Self { spans, bounds, rows: vec![0; ROWS + 1], members: Vec::new(), low, per_metre };
-        let passed = |cycle: &Self, b: &Bounds| cycle.row(b.low.im)..=cycle.row(b.high.im);
+        let passed = |cycle: &Self, b: &CycleBounds| cycle.row(b.low.im)..=cycle.row(b.high.im);
         for b in &cycle.bounds.clone() {
             passed(&cycle, b).for_each(|row| cycle.rows[row + 1] += 1);
         }

@@ -8,7 +8,7 @@ use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
 use super::determinant::upright;
-use super::span::{Curve, Span, Surface};
+use super::span::{BoundaryCurve, Span, Surface};
 
 /// Cells and spans are no longer than this, rad.
 const STEP: f64 = 0.35;
@@ -200,12 +200,12 @@ impl Cell {
         let points: Vec<_> = self.points().collect();
         if let [a, b] = points[..] {
             let ends = if forward(a, b, halfway(a, b)) { [a, b] } else { [b, a] };
-            spans.push(on.straight(Curve::Fold, ends));
+            spans.push(on.straight(BoundaryCurve::Fold, ends));
             return;
         }
         let middle = halfway(self.low, self.high);
         let (ways_in, ways_out): (Vec<_>, Vec<_>) = points.into_iter().partition(|&a| forward(a, middle, a));
-        spans.extend(ways_in.into_iter().zip(ways_out).map(|(from, to)| on.straight(Curve::Fold, [from, to])));
+        spans.extend(ways_in.into_iter().zip(ways_out).map(|(from, to)| on.straight(BoundaryCurve::Fold, [from, to])));
     }
 
     fn quarters(&self, on: &Surface) -> [Self; 4] {

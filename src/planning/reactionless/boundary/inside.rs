@@ -2,8 +2,8 @@
 
 use super::Boundary;
 use super::arrangement::{Arrangement, Portion};
-use super::line::{Line, Vertex};
-use super::span::Curve;
+use super::line::{BoundaryLine, Vertex};
+use super::span::BoundaryCurve;
 use crate::mechanics::planar::{Vector, unit};
 
 impl Boundary {
@@ -41,10 +41,10 @@ impl Boundary {
 
     /// The folds: images of det ∂(x, y)/∂(a_1, a_2) = 0 within the limits, whole, whether they bound the workspace or
     /// run inside. Two poses meet on them; they turn back at [`cusps`](Self::cusps).
-    pub fn fold_curves(&self) -> Vec<Line> {
+    pub fn fold_curves(&self) -> Vec<BoundaryLine> {
         let spans = &self.cycle.spans;
         let mut chains: Vec<Vec<Portion>> = Vec::new();
-        for (i, span) in spans.iter().enumerate().filter(|(_, s)| s.curve == Curve::Fold && !self.flat) {
+        for (i, span) in spans.iter().enumerate().filter(|(_, s)| s.curve == BoundaryCurve::Fold && !self.flat) {
             let portion = Portion { span: i, from: 0.0, to: 1.0 };
             let follows = |last: &Portion| last.span + 1 == i && spans[last.span].ends[1] == span.ends[0];
             match chains.last_mut() {
@@ -52,7 +52,7 @@ impl Boundary {
                 _ => chains.push(vec![portion]),
             }
         }
-        chains.iter().map(|chain| Line::of(&self.on, spans, chain)).collect()
+        chains.iter().map(|chain| BoundaryLine::of(&self.on, spans, chain)).collect()
     }
 
     /// Where folds turn back in the workspace: three poses meet.
@@ -62,10 +62,10 @@ impl Boundary {
 
     /// Images of limits that run inside the workspace, where one pose more or less reaches a point, from crossing to
     /// crossing.
-    pub fn inner_limits(&self) -> Vec<Line> {
+    pub fn inner_limits(&self) -> Vec<BoundaryLine> {
         let spans = &self.cycle.spans;
-        let is_limit = |p: &Portion| spans[p.span].curve != Curve::Fold;
+        let is_limit = |p: &Portion| spans[p.span].curve != BoundaryCurve::Fold;
         let inner = self.strands.iter().filter(|s| s.right > 0 && s.parts.iter().all(is_limit));
-        inner.map(|s| Line::of(&self.on, spans, &s.parts)).collect()
+        inner.map(|s| BoundaryLine::of(&self.on, spans, &s.parts)).collect()
     }
 }

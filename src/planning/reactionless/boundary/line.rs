@@ -1,7 +1,7 @@
 //! Curves as vertices and chords that keep near them.
 
 use super::arrangement::Portion;
-use super::span::{Curve, Span, Surface};
+use super::span::{BoundaryCurve, Span, Surface};
 use crate::mechanics::planar::{Vector, cross, unit};
 use crate::planning::reactionless::PlaneMap;
 
@@ -23,12 +23,12 @@ pub struct Vertex {
     /// Before the workspace is turned, m.
     pub at: Vector,
     /// Where it lies.
-    pub curve: Curve,
+    pub curve: BoundaryCurve,
 }
 
 /// A closed curve, the workspace on its left. The last vertex is joined to the first.
 #[derive(Clone, Debug)]
-pub struct Loop {
+pub struct BoundaryLoop {
     vertices: Vec<Vertex>,
     /// From each vertex to the next.
     portions: Vec<Portion>,
@@ -38,12 +38,12 @@ pub struct Loop {
 /// A curve of the workspace from one end to the other, each chord within 1e-5 m of it. Across folds and limits, more
 /// poses are on its left.
 #[derive(Clone, Debug)]
-pub struct Line {
+pub struct BoundaryLine {
     vertices: Vec<Vertex>,
     closed: bool,
 }
 
-impl Loop {
+impl BoundaryLoop {
     /// Points of the curve, each chord within 1e-5 m of it; within 1e-5 of the reach below a metre, 1e-8 of it above
     /// a kilometre.
     pub fn vertices(&self) -> &[Vertex] {
@@ -79,7 +79,7 @@ impl Loop {
     }
 }
 
-impl Line {
+impl BoundaryLine {
     /// Points of the curve from end to end; a closed one ends where it begins.
     pub fn vertices(&self) -> &[Vertex] {
         &self.vertices

@@ -2,7 +2,7 @@
 
 use super::determinant::INSET;
 use super::fold::{self, Folds};
-use super::span::{Curve, Span, Surface};
+use super::span::{BoundaryCurve, Span, Surface};
 use crate::mechanics::planar::{Vector, dot};
 
 /// Longest span along an edge, rad.
@@ -16,12 +16,12 @@ pub(super) struct HalfPlane {
     pub n: [f64; 2],
     pub level: f64,
     /// What the line between is.
-    pub curve: Curve,
+    pub curve: BoundaryCurve,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Edge {
-    curve: Curve,
+    curve: BoundaryCurve,
     ends: [[f64; 2]; 2],
     /// The line of a cut; limits have their own zeros of det.
     cut: Option<HalfPlane>,
@@ -199,7 +199,7 @@ impl Edge {
             return half.zeros(on, self.ends);
         }
         // All along the limit first: the folds end in the very same numbers.
-        let Curve::Limit { angle: fixed, .. } = self.curve else { return Vec::new() };
+        let BoundaryCurve::Limit { angle: fixed, .. } = self.curve else { return Vec::new() };
         let (other, level) = (1 - fixed, self.ends[0][fixed]);
         let whole = on.map.limits()[other];
         let [from, to] = self.ends.map(|a| a[other]);
@@ -214,17 +214,17 @@ impl Edge {
 }
 
 /// The curve of an edge of the limits, counter-clockwise from a_2 at its least.
-fn side(edge: usize) -> Curve {
+fn side(edge: usize) -> BoundaryCurve {
     [
-        Curve::Limit { angle: 1, upper: false },
-        Curve::Limit { angle: 0, upper: true },
-        Curve::Limit { angle: 1, upper: true },
-        Curve::Limit { angle: 0, upper: false },
+        BoundaryCurve::Limit { angle: 1, upper: false },
+        BoundaryCurve::Limit { angle: 0, upper: true },
+        BoundaryCurve::Limit { angle: 1, upper: true },
+        BoundaryCurve::Limit { angle: 0, upper: false },
     ][edge % 4]
 }
 
 /// Spans along a straight part of an edge.
-pub(super) fn along(on: &Surface, curve: Curve, [from, to]: [[f64; 2]; 2]) -> impl Iterator<Item = Span> {
+pub(super) fn along(on: &Surface, curve: BoundaryCurve, [from, to]: [[f64; 2]; 2]) -> impl Iterator<Item = Span> {
     let run = (to[0] - from[0]).abs() + (to[1] - from[1]).abs();
     let n = (run / STEP).ceil() as usize;
     let point = move |i: usize| match i {

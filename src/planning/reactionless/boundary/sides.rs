@@ -3,9 +3,9 @@
 use std::ops::RangeInclusive;
 
 use super::arrangement::Portion;
-use super::line::Line;
+use super::line::BoundaryLine;
 use super::region::{HalfPlane, Region, along};
-use super::span::{Curve, Span, Surface};
+use super::span::{BoundaryCurve, Span, Surface};
 use super::{Boundary, THIN};
 use crate::planning::reactionless::PlaneMap;
 use crate::planning::reactionless::change::{Difference, PAIRS, TOUCH};
@@ -20,7 +20,7 @@ pub struct ChangeCurve {
     /// (a_1, a_2) at its ends, rad.
     pub ends: [[f64; 2]; 2],
     /// The curve.
-    pub line: Line,
+    pub line: BoundaryLine,
 }
 
 impl Boundary {
@@ -40,7 +40,7 @@ impl Boundary {
                 let half = HalfPlane {
                     n: difference.n.map(|n| sign * n),
                     level: sign * difference.level(at),
-                    curve: Curve::Change { pair },
+                    curve: BoundaryCurve::Change { pair },
                 };
                 region = region.within(&on, half);
             }
@@ -69,9 +69,9 @@ impl Boundary {
             for half_turns in sides.clone().skip(1) {
                 let difference = Difference::of(&self.on.map, pair);
                 let Some(ends) = difference.segment(self.on.map.limits(), f64::from(half_turns)) else { continue };
-                let spans: Vec<Span> = along(&self.on, Curve::Change { pair }, ends).collect();
+                let spans: Vec<Span> = along(&self.on, BoundaryCurve::Change { pair }, ends).collect();
                 let chain: Vec<Portion> = (0..spans.len()).map(|span| Portion { span, from: 0.0, to: 1.0 }).collect();
-                let line = Line::of(&self.on, &spans, &chain);
+                let line = BoundaryLine::of(&self.on, &spans, &chain);
                 curves.push(ChangeCurve { pair, half_turns, ends, line });
             }
         }

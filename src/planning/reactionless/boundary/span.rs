@@ -10,7 +10,7 @@ use crate::planning::reactionless::{AngleLimit, PlaneMap};
 
 /// A curve in (a_1, a_2) whose image can bound the workspace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Curve {
+pub enum BoundaryCurve {
     /// An angle at its limit.
     Limit {
         /// Which angle: 0 for a_1, 1 for a_2.
@@ -29,7 +29,7 @@ pub enum Curve {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Span {
-    pub curve: Curve,
+    pub curve: BoundaryCurve,
     /// The coordinate that runs straight.
     chart: usize,
     pub ends: [[f64; 2]; 2],
@@ -75,7 +75,7 @@ impl Surface {
     }
 
     /// A straight piece along one coordinate.
-    pub fn straight(&self, curve: Curve, ends: [[f64; 2]; 2]) -> Span {
+    pub fn straight(&self, curve: BoundaryCurve, ends: [[f64; 2]; 2]) -> Span {
         let [from, to] = ends;
         let chart = usize::from((to[1] - from[1]).abs() > (to[0] - from[0]).abs());
         let run = to[chart] - from[chart];
@@ -116,7 +116,7 @@ impl Surface {
         }
         let slopes = gradients.map(|g| -g[chart] / g[1 - chart]);
         let at = ends.map(|a| self.map.forward_unturned(a));
-        let mut span = Span { curve: Curve::Fold, chart, ends, at, slopes, solved: true, deviation: 0.0 };
+        let mut span = Span { curve: BoundaryCurve::Fold, chart, ends, at, slopes, solved: true, deviation: 0.0 };
         let middle = self.jet(&span, 0.5).a;
         let gradient = self.det.gradient(middle);
         let smooth = (slopes[1] - slopes[0]).abs() < 0.5
@@ -267,8 +267,8 @@ impl Surface {
     pub fn swept(&self, span: &Span, from: f64, to: f64) -> f64 {
         let whole = self.gauss(span, from, to);
         match span.curve {
-            Curve::Limit { .. } | Curve::Change { .. } => whole,
-            Curve::Fold => self.refined(span, from, to, whole, 8),
+            BoundaryCurve::Limit { .. } | BoundaryCurve::Change { .. } => whole,
+            BoundaryCurve::Fold => self.refined(span, from, to, whole, 8),
         }
     }
 
@@ -301,8 +301,8 @@ impl Span {
     /// How many more poses reach the left side than the right.
     pub fn weight(&self) -> i32 {
         match self.curve {
-            Curve::Limit { .. } | Curve::Change { .. } => 1,
-            Curve::Fold => 2,
+            BoundaryCurve::Limit { .. } | BoundaryCurve::Change { .. } => 1,
+            BoundaryCurve::Fold => 2,
         }
     }
 
