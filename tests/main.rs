@@ -5,6 +5,8 @@
 #[allow(dead_code, unused_imports, reason = "the tests use a few of them")]
 #[path = "../src/commands/mod.rs"]
 mod commands;
+#[cfg(any(feature = "cli", feature = "record"))]
+mod folder;
 mod fuzz;
 mod layers;
 mod mechanics;

@@ -1,9 +1,10 @@
-//! What several tests share: reference files, the twin of a machine, comparison by scale.
+//! What several tests share: reference files, the twin of a machine, states and planes at random, comparison by scale.
 
 use proptest::prelude::*;
 use serde_json::Value;
 use stillbase::mechanics::machine::{Machine, PlaceOnLink, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
+use stillbase::planning::reactionless::{AngleDefinition, AngleLimit, PlaneMap};
 
 use crate::mechanics::nine_body::NineBody;
 
@@ -120,5 +121,40 @@ impl Noise {
 
     pub fn sign(&mut self) -> f64 {
         if self.between(-1.0, 1.0) < 0.0 { -1.0 } else { 1.0 }
+    }
+}
+
+/// Random limits, some folded, some not.
+pub fn limits() -> impl Strategy<Value = [[f64; 2]; 2]> {
+    let limit = || (-4.0..4.0, 0.05..6.2).prop_map(|(min, width)| [min, min + width]);
+    (limit(), limit()).prop_map(|(a1, a2)| [a1, a2])
+}
+
+/// Random machines: any proportions, any two angles that join all three drives.
+pub fn machines() -> impl Strategy<Value = PlaneMap> {
+    let angles = (0..3_usize, 1..3_usize, any::<[bool; 2]>(), [-3.0..3.0, -3.0..3.0]);
+    let c = [-1.0..1.0, -1.0..1.0, -1.0..1.0];
+    (c, [0.05..2.0, 0.05..2.0], angles, limits()).prop_map(|(c, l, (first, skip, flip, offset), limits)| {
+        let pairs = [(0, 1), (1, 2), (0, 2)];
+        let angles = [0, 1].map(|i| {
+            let (a, b) = pairs[(first + i * skip) % 3];
+            let (to, from) = if flip[i] { (a, b) } else { (b, a) };
+            AngleDefinition { to, from, offset: offset[i] }
+        });
+        PlaneMap::new(c, [1.0, l[0], l[1]], angles, limits.map(|[min, max]| AngleLimit { min, max })).unwrap()
+    })
+}
+
+/// A state of motion.
+#[derive(Clone, Copy, Debug)]
+pub struct State {
+    pub q: DriveAngles,
+    pub qd: PerDrive,
+    pub qdd: PerDrive,
+}
+
+impl State {
+    pub fn new(q: [f64; 3], qd: [f64; 3], qdd: [f64; 3]) -> Self {
+        Self { q: q.into(), qd: qd.into(), qdd: qdd.into() }
     }
 }

@@ -70,10 +70,9 @@ impl Session {
     /// # Errors
     /// If it cannot start, or one of its edits cannot apply. A session that was saved while it waited waits again.
     pub fn open(scenario: Scenario) -> Result<Self, Refusal> {
-        let mut ground = scenario;
-        let edits = std::mem::take(&mut ground.edits);
-        let patient = !edits.is_empty();
-        Self::replayed(ground, in_order(&edits), patient).map_err(|failed| failed.named(&edits))
+        // A saved session may have waited; a task that has just been written has not.
+        let patient = !scenario.edits.is_empty();
+        Self::opened(scenario, patient)
     }
 
     /// The same; a task that does not fit its machine waits, and [`Run::waiting`] says why.
@@ -81,9 +80,12 @@ impl Session {
     /// # Errors
     /// If a value is out of range, the machine has no reactionless planes, or one of its edits cannot apply.
     pub fn open_waiting(scenario: Scenario) -> Result<Self, Refusal> {
-        let mut ground = scenario;
+        Self::opened(scenario, true)
+    }
+
+    fn opened(mut ground: Scenario, patient: bool) -> Result<Self, Refusal> {
         let edits = std::mem::take(&mut ground.edits);
-        Self::replayed(ground, in_order(&edits), true).map_err(|failed| failed.named(&edits))
+        Self::replayed(ground, in_order(&edits), patient).map_err(|failed| failed.named(&edits))
     }
 
     fn replayed(ground: Scenario, script: Vec<TimedEdit>, patient: bool) -> Result<Self, Failed> {

@@ -10,21 +10,9 @@ use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Units, Vector, cross, dot};
 
 use crate::mechanics::nine_body::NineBody;
-use crate::support::{angles, any_body, array, body_of, close, dynamics, machine_of, numbers, three, xy};
-
-/// A state of motion.
-#[derive(Clone, Copy, Debug)]
-struct State {
-    q: DriveAngles,
-    qd: PerDrive,
-    qdd: PerDrive,
-}
+use crate::support::{State, angles, any_body, array, body_of, close, dynamics, machine_of, numbers, three, xy};
 
 impl State {
-    fn new(q: [f64; 3], qd: [f64; 3], qdd: [f64; 3]) -> Self {
-        Self { q: q.into(), qd: qd.into(), qdd: qdd.into() }
-    }
-
     fn e(&self) -> Units {
         self.q.units()
     }

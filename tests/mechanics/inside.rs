@@ -11,6 +11,8 @@ use stillbase::planning::reactionless::{
     AngleDefinition, AngleLimit, Boundary, BoundaryCurve, BoundaryLine, PlaneMap, Vertex,
 };
 
+use crate::support::{limits, machines};
+
 use crate::planning::change_points::{change_curves_are_sound, parts_add_up, parts_hold_the_poses_on_their_side};
 
 pub const B: f64 = 2.4;
@@ -30,26 +32,6 @@ pub const CASES: [[[f64; 2]; 2]; 7] = [
     [[0.0, PI], [0.0, TAU]],
     [[0.3, 8.0], [-1.0, 6.5]],
 ];
-
-fn limits() -> impl Strategy<Value = [[f64; 2]; 2]> {
-    let limit = || (-4.0..4.0, 0.05..6.2).prop_map(|(min, width)| [min, min + width]);
-    (limit(), limit()).prop_map(|(a1, a2)| [a1, a2])
-}
-
-/// Random machines: any proportions, any two angles that join all three drives.
-fn machines() -> impl Strategy<Value = PlaneMap> {
-    let angles = (0..3_usize, 1..3_usize, any::<[bool; 2]>(), [-3.0..3.0, -3.0..3.0]);
-    let c = [-1.0..1.0, -1.0..1.0, -1.0..1.0];
-    (c, [0.05..2.0, 0.05..2.0], angles, limits()).prop_map(|(c, l, (first, skip, flip, offset), limits)| {
-        let pairs = [(0, 1), (1, 2), (0, 2)];
-        let angles = [0, 1].map(|i| {
-            let (a, b) = pairs[(first + i * skip) % 3];
-            let (to, from) = if flip[i] { (a, b) } else { (b, a) };
-            AngleDefinition { to, from, offset: offset[i] }
-        });
-        PlaneMap::new(c, [1.0, l[0], l[1]], angles, limits.map(|[min, max]| AngleLimit { min, max })).unwrap()
-    })
-}
 
 pub fn size(map: &PlaneMap) -> f64 {
     map.c().iter().map(|c| c.abs()).sum()

@@ -11,21 +11,9 @@ use stillbase::mechanics::kinematics::{acceleration, transmission};
 use stillbase::mechanics::machine::{Chain, Inertia, Machine, builtin, parse, place_of};
 use stillbase::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, cross, dot, unit};
 
-use crate::support::{any_body, close, machine_of, three, xy};
-
-/// A state of motion.
-#[derive(Clone, Copy, Debug)]
-struct State {
-    q: DriveAngles,
-    qd: PerDrive,
-    qdd: PerDrive,
-}
+use crate::support::{State, any_body, close, machine_of, three, xy};
 
 impl State {
-    fn of(q: [f64; 3], qd: [f64; 3], qdd: [f64; 3]) -> Self {
-        Self { q: q.into(), qd: qd.into(), qdd: qdd.into() }
-    }
-
     fn forces(&self, machine: &Machine, around: &Surroundings) -> Forces {
         let joints = Joints::of(machine).expect("determinate");
         joints.forces(&self.q.units(), &self.qd, &self.qdd, around)
@@ -40,7 +28,7 @@ impl State {
 fn any_state() -> impl Strategy<Value = State> {
     let three = |x: f64| prop::array::uniform3(-x..x);
     (three(6.0), three(4.0), three(12.0))
-        .prop_map(|(q, qd, qdd)| State::of(q, qd, qdd))
+        .prop_map(|(q, qd, qdd)| State::new(q, qd, qdd))
         .prop_filter("near a change point", |s| transmission(&s.q.units(), 3) > 0.02)
 }
 
@@ -329,7 +317,7 @@ fn pins_are_named_by_their_links() {
 fn forces_grow_towards_a_change_point() {
     let machine = builtin("nine-link").expect("built in");
     let none = Surroundings::default();
-    let at = |gap: f64| State::of([1.6, 3.9, 1.6 + gap], [-0.3, 0.9, 1.7], [-1.0, 2.0, 4.0]);
+    let at = |gap: f64| State::new([1.6, 3.9, 1.6 + gap], [-0.3, 0.9, 1.7], [-1.0, 2.0, 4.0]);
     let torque = |gap: f64| {
         let s = at(gap);
         let exact = inverse_with_wrench(&Inertia::of(machine), &s.q.units(), &s.qd, &s.qdd, &none).0;
@@ -350,7 +338,7 @@ fn at_a_change_point_some_forces_are_undefined() {
     let machine = builtin("nine-link").expect("built in");
     let joints = Joints::of(machine).expect("determinate");
     let named = |q: [f64; 3]| -> Vec<String> {
-        let s = State::of(q, [-0.3, 0.9, 1.7], [-1.0, 2.0, 4.0]);
+        let s = State::new(q, [-0.3, 0.9, 1.7], [-1.0, 2.0, 4.0]);
         let forces = s.forces(machine, &Surroundings::default());
         assert!(forces.bounded().iter().all(|f| f.re.is_finite() && f.im.is_finite()));
         let undefined: Vec<usize> = (0..12).filter(|&i| forces.get(i).is_none()).collect();
@@ -366,7 +354,7 @@ fn at_a_change_point_some_forces_are_undefined() {
     assert_eq!(named([1.6, 3.9, 1.6 + 0.5 * FLAT]).len(), 5);
     assert!(named([1.6, 3.9, 1.6 + 2.0 * FLAT]).is_empty());
     // What is undefined does not touch what is not: the others are the limits from either side.
-    let s = |gap: f64| State::of([1.6, 3.9, 1.6 + gap], [-0.3, 0.9, 1.7], [-1.0, 2.0, 4.0]);
+    let s = |gap: f64| State::new([1.6, 3.9, 1.6 + gap], [-0.3, 0.9, 1.7], [-1.0, 2.0, 4.0]);
     let (on, near) =
         (s(0.0).forces(machine, &Surroundings::default()), s(1e-7).forces(machine, &Surroundings::default()));
     for i in (0..12).filter(|&i| on.get(i).is_some()) {
@@ -484,7 +472,7 @@ fn what_statics_does_not_determine_is_refused() {
 #[test]
 fn a_force_balanced_machine_may_tilt_its_base() {
     let machine = builtin("nine-link").expect("built in");
-    let s = State::of([1.6, 3.9, 2.5], [-0.3, 0.9, 1.7], [-1.0, 2.0, 4.0]);
+    let s = State::new([1.6, 3.9, 2.5], [-0.3, 0.9, 1.7], [-1.0, 2.0, 4.0]);
     let none = Surroundings::default();
     assert!(AxialMoments::of(machine).is_flat());
     assert_eq!(AxialMoments::of(machine).tilt(&s.q.units(), &s.qd, &s.qdd, &none).total(), Vector::default());
@@ -509,7 +497,7 @@ fn a_force_balanced_machine_may_tilt_its_base() {
 #[test]
 fn a_frame_keeps_what_the_joints_say() {
     let machine = builtin("nine-link").expect("built in").set("link.5.axial", "0.02").expect("valid");
-    let s = State::of([1.6, 3.9, 2.5], [-0.3, 0.9, 1.7], [-1.0, 2.0, 4.0]);
+    let s = State::new([1.6, 3.9, 2.5], [-0.3, 0.9, 1.7], [-1.0, 2.0, 4.0]);
     let around = Surroundings { gravity: Vector::new(0.0, -9.81), force: Vector::default() };
     let see = |machine: &Machine, s: &State| PinLoads::of(machine).at(&s.q.units(), &s.qd, &s.qdd, &around, |_, _| 0.0);
     let (inside, forces) = (see(&machine, &s), s.forces(&machine, &around));
@@ -519,7 +507,7 @@ fn a_frame_keeps_what_the_joints_say() {
         assert!(inside.size(i) <= inside.worst);
     }
     assert_eq!((inside.worst, inside.worst_pin()), (forces.worst().0, Some(forces.worst().1)));
-    let flat = see(&machine, &State::of([1.6, 3.9, 1.6], [-0.3, 0.9, 1.7], [-1.0, 2.0, 4.0]));
+    let flat = see(&machine, &State::new([1.6, 3.9, 1.6], [-0.3, 0.9, 1.7], [-1.0, 2.0, 4.0]));
     assert!(flat.pin(0).is_none() && flat.pin(1).is_some() && flat.size(0).is_finite() && flat.worst > 1e6);
     let mut spec = machine.spec().clone();
     spec.closures.pop();

@@ -7,6 +7,8 @@ use stillbase::mechanics::machine::{Inertia, builtin};
 use stillbase::mechanics::planar::{Vector, cross, dot, unit};
 use stillbase::planning::reactionless::{AngleDefinition, AngleLimit, Boundary, BoundaryCurve, PlaneMap};
 
+use crate::support::{limits, machines};
+
 const B: f64 = 2.4;
 
 fn machine(name: &str) -> PlaneMap {
@@ -36,27 +38,6 @@ const CASES: [[[f64; 2]; 2]; 7] = [
     [[-0.8, 1.1], [2.0, 5.5]],
     [[0.0, 1.5 * PI], [-0.5 * PI, PI]],
 ];
-
-/// Random limits, some folded, some not.
-fn limits() -> impl Strategy<Value = [[f64; 2]; 2]> {
-    let limit = || (-4.0..4.0, 0.05..6.2).prop_map(|(min, width)| [min, min + width]);
-    (limit(), limit()).prop_map(|(a1, a2)| [a1, a2])
-}
-
-/// Random machines: any proportions, any two angles that join all three drives.
-fn machines() -> impl Strategy<Value = PlaneMap> {
-    let angles = (0..3_usize, 1..3_usize, any::<[bool; 2]>(), [-3.0..3.0, -3.0..3.0]);
-    let c = [-1.0..1.0, -1.0..1.0, -1.0..1.0];
-    (c, [0.05..2.0, 0.05..2.0], angles, limits()).prop_map(|(c, l, (first, skip, flip, offset), limits)| {
-        let pairs = [(0, 1), (1, 2), (0, 2)];
-        let angles = [0, 1].map(|i| {
-            let (a, b) = pairs[(first + i * skip) % 3];
-            let (to, from) = if flip[i] { (a, b) } else { (b, a) };
-            AngleDefinition { to, from, offset: offset[i] }
-        });
-        PlaneMap::new(c, [1.0, l[0], l[1]], angles, limits.map(|[min, max]| AngleLimit { min, max })).unwrap()
-    })
-}
 
 /// The point at shares (s, t) of the limits.
 fn share(map: &PlaneMap, s: f64, t: f64) -> [f64; 2] {

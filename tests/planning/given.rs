@@ -452,32 +452,13 @@ fn the_end_effector_is_kept_on_the_nearest_plane_that_reaches_it() {
 /// The commands, as scripts see them.
 #[cfg(feature = "cli")]
 mod commands {
-    use std::path::{Path, PathBuf};
-    use std::process::{Command, Output, Stdio};
-    use std::sync::atomic::{AtomicU32, Ordering};
 
     use serde_json::Value;
 
     use super::*;
-
-    /// A folder of one test.
-    struct Folder(PathBuf);
+    use crate::folder::Folder;
 
     impl Folder {
-        fn new() -> Self {
-            static COUNT: AtomicU32 = AtomicU32::new(0);
-            let name = format!("given-{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
-            let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-            std::fs::create_dir_all(&path).expect("a folder");
-            Self(path)
-        }
-        fn file(&self, name: &str, content: &str) {
-            std::fs::write(self.0.join(name), content).expect("a file");
-        }
-        fn run(&self, args: &[&str]) -> Output {
-            let mut command = Command::new(env!("CARGO_BIN_EXE_stillbase"));
-            command.args(args).current_dir(&self.0).stdin(Stdio::null()).output().expect("the program starts")
-        }
         /// What is printed, and what is said, by a command that ends with a status.
         #[track_caller]
         fn ends(&self, status: i32, args: &[&str]) -> (String, String) {
@@ -490,12 +471,6 @@ mod commands {
         fn object(&self, args: &[&str]) -> Value {
             let (printed, _) = self.ends(0, &[args, &["--json"]].concat());
             serde_json::from_str(&printed).expect("one object")
-        }
-    }
-
-    impl Drop for Folder {
-        fn drop(&mut self) {
-            let _ = std::fs::remove_dir_all(&self.0);
         }
     }
 
@@ -524,7 +499,7 @@ mod commands {
     #[test]
     fn a_file_comes_in_and_goes_out_as_it_was() {
         // Smooth all along: case 1 at ever higher rates, read again, against case 1 itself.
-        let folder = Folder::new();
+        let folder = Folder::new("given");
         let run = Run::new(&Scenario::builtin("case-1").expect("built in")).expect("it can start");
         let exact = &run.plan().motion;
         let worst = |rate: &str| {
@@ -561,7 +536,7 @@ mod commands {
 
     #[test]
     fn an_export_is_the_motion_with_the_torques_it_needs() {
-        let folder = Folder::new();
+        let folder = Folder::new("given");
         let (columns, rows) = exported(&folder, &["case-3", "--rate", "300"]);
         let head = "t,q1,q2,q3,qd1,qd2,qd3,qdd1,qdd2,qdd3,tau_ff1,tau_ff2,tau_ff3,x,y,b";
         assert_eq!(columns.join(","), head);
@@ -603,9 +578,9 @@ mod commands {
 
     #[test]
     fn an_import_reports_and_proposes() {
-        let folder = Folder::new();
+        let folder = Folder::new("given");
         let (given, model) = (swinging(150), Inertia::of(machine()));
-        folder.file("own.csv", &of(&given, "t,q1,q2,q3", &[1.0; 4]));
+        folder.file("own.csv", of(&given, "t,q1,q2,q3", &[1.0; 4]));
         let answer = folder.object(&["import", "own.csv", "-o", "quiet.toml"]);
         let own = &answer["given"];
         // n_B = −D_1 b̈, in closed form.
@@ -636,10 +611,10 @@ mod commands {
 
         // The same motion in other units, wrapped, with other columns about it, is the same motion.
         let degrees = 180.0 / std::f64::consts::PI;
-        folder.file("units.csv", &of(&given, "Time (ms),q1 (deg),q2 [deg],q3_deg", &[1e3, degrees, degrees, degrees]));
+        folder.file("units.csv", of(&given, "Time (ms),q1 (deg),q2 [deg],q3_deg", &[1e3, degrees, degrees, degrees]));
         let wrap = |q: f64| q - std::f64::consts::TAU * (q / std::f64::consts::TAU).round();
         let row = |row: &[f64]| vec![9.0, wrap(row[3]), wrap(row[2]), row[0], wrap(row[1])];
-        folder.file("wrapped.csv", &csv("note,q3,q2,t,q1", given.rows().map(row)).replace(',', ";"));
+        folder.file("wrapped.csv", csv("note,q3,q2,t,q1", given.rows().map(row)).replace(',', ";"));
         for file in ["units.csv", "wrapped.csv"] {
             let again = folder.object(&["import", file]);
             for key in ["peak_base_moment", "rms_base_moment", "b_mean"] {
@@ -659,7 +634,7 @@ mod commands {
         let spun = samples(&uneven(100), |t| {
             [0.9, 1.0, 1.1].iter().zip([1.7, 3.7, 2.2]).map(|(w, q)| q + 2.5 * w * ramp(t)).collect()
         });
-        folder.file("spun.csv", &of(&spun, "t,q1,q2,q3", &[1.0; 4]));
+        folder.file("spun.csv", of(&spun, "t,q1,q2,q3", &[1.0; 4]));
         let answer = folder.object(&["import", "spun.csv"]);
         assert_eq!(answer["proposal"]["way"], "turned");
         assert!(answer["proposal"]["why"].as_str().expect("words").contains("no b reaches all of it"), "{answer}");
@@ -667,7 +642,7 @@ mod commands {
         assert!(said.contains("no b reaches all of it"), "{said}");
         // Where the arm only turns as a whole, nothing is left.
         let stiff = samples(&uneven(100), |t| [1.7, 3.7, 2.2].map(|q| q + 2.5 * ramp(t)).to_vec());
-        folder.file("stiff.csv", &of(&stiff, "t,q1,q2,q3", &[1.0; 4]));
+        folder.file("stiff.csv", of(&stiff, "t,q1,q2,q3", &[1.0; 4]));
         let (_, said) = folder.ends(1, &["import", "stiff.csv"]);
         assert!(said.contains("nothing of the motion is left"), "{said}");
         let (_, said) = folder.ends(1, &["import", "spun.csv", "--keep", "tip"]);
@@ -676,8 +651,8 @@ mod commands {
 
     #[test]
     fn x_and_y_are_resolved_on_a_plane_or_refused() {
-        let folder = Folder::new();
-        folder.file("own.csv", &of(&elliptic(200), "t,x (mm),y (mm)", &[1.0, 1e3, 1e3]));
+        let folder = Folder::new("given");
+        folder.file("own.csv", of(&elliptic(200), "t,x (mm),y (mm)", &[1.0, 1e3, 1e3]));
         let answer = folder.object(&["import", "own.csv", "-o", "own.toml"]);
         assert_eq!((&answer["content"], &answer["proposal"]["way"]), (&Value::from("tip"), &Value::from("on-plane")));
         assert!(
@@ -691,7 +666,7 @@ mod commands {
         let (_, said) = folder.ends(1, &["import", "own.csv", "--b", "5"]);
         assert!(said.contains("rad would do"), "{said}");
         let far = samples(&uneven(60), |t| vec![0.5 - 1.1 * t, 0.5 - 0.7 * t]);
-        folder.file("far.csv", &of(&far, "t,x,y", &[1.0; 3]));
+        folder.file("far.csv", of(&far, "t,x,y", &[1.0; 3]));
         let out = folder.run(&["import", "far.csv", "--json", "-o", "far.toml"]);
         let answer: Value = serde_json::from_slice(&out.stdout).expect("an object all the same");
         assert_eq!((out.status.code(), &answer["feasible"]), (Some(1), &Value::Bool(false)));
@@ -700,14 +675,14 @@ mod commands {
                 && !folder.0.join("far.toml").exists()
         );
         // A machine that is not balanced transmits all the same, and is told so.
-        folder.file("own-q.csv", &of(&swinging(150), "t,q1,q2,q3", &[1.0; 4]));
+        folder.file("own-q.csv", of(&swinging(150), "t,q1,q2,q3", &[1.0; 4]));
         let (_, said) = folder.ends(1, &["import", "own-q.csv", "--set", "link.5.com=0"]);
         assert!(said.contains("not balanced"), "{said}");
     }
 
     #[test]
     fn noise_is_noticed_and_smoothed_away() {
-        let folder = Folder::new();
+        let folder = Folder::new("given");
         let tremble = noise(4500);
         let rough = csv(
             "t,q1,q2,q3",
@@ -743,7 +718,7 @@ mod commands {
 
     #[test]
     fn what_is_wrong_is_said_with_file_line_and_column() {
-        let folder = Folder::new();
+        let folder = Folder::new("given");
         let good = of(&swinging(40), "t,q1,q2,q3", &[1.0; 4]);
         let lines: Vec<&str> = good.lines().collect();
         let with = |line: usize, text: &str| {
@@ -785,7 +760,7 @@ mod commands {
                 assert!(said.contains(word), "{said:?} lacks {word:?}");
             }
         }
-        folder.file("own.csv", &without(10..12));
+        folder.file("own.csv", without(10..12));
         folder.ends(0, &["import", "own.csv", "--gaps"]);
         let (_, said) = folder.ends(2, &["import", "none.csv"]);
         assert!(said.contains("none.csv"), "{said}");

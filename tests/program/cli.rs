@@ -3,9 +3,10 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
-use std::sync::atomic::{AtomicU32, Ordering};
 
 use serde_json::{Value, json};
+
+use crate::folder::Folder;
 
 fn stillbase_in(folder: &Path, args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_stillbase"))
@@ -82,37 +83,9 @@ fn joined(values: &Value) -> String {
     numbers(values).iter().map(f64::to_string).collect::<Vec<_>>().join(",")
 }
 
-/// A folder of one test.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new() -> Self {
-        static COUNT: AtomicU32 = AtomicU32::new(0);
-        let name = format!("cli-{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
-        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-        fs::create_dir_all(&path).expect("a folder");
-        Self(path)
-    }
-    fn file(&self, name: &str, content: &str) -> String {
-        let path = self.0.join(name);
-        fs::write(&path, content).expect("a file");
-        path.display().to_string()
-    }
-    fn path(&self, name: &str) -> String {
-        self.0.join(name).display().to_string()
-    }
-    fn names(&self) -> Vec<String> {
-        let name = |e: std::io::Result<fs::DirEntry>| e.expect("entry").file_name().to_string_lossy().into_owned();
-        let mut names: Vec<String> = fs::read_dir(&self.0).expect("folder").map(name).collect();
-        names.sort();
-        names
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
+/// A file as a word of a command line.
+fn word(file: std::path::PathBuf) -> String {
+    file.display().to_string()
 }
 
 const NINE_LINK: &str = include_str!("../../assets/machines/nine-link.toml");
@@ -178,8 +151,8 @@ fn design_gives_the_known_centres_of_mass() {
 
 #[test]
 fn a_designed_machine_can_be_checked_and_is_not_overwritten() {
-    let folder = Folder::new();
-    let file = folder.path("still.toml");
+    let folder = Folder::new("cli");
+    let file = word(folder.path("still.toml"));
     prints(&["design", "nine-link-table-1", "--set", "link.9.mass=0.4", "-o", &file]);
     let (made, check) = (fs::read_to_string(&file).expect("file"), object(&["check", &file]));
     assert_eq!((&check["force_balanced"], &check["invariant"]), (&json!(true), &json!(true)));
@@ -193,7 +166,7 @@ fn a_designed_machine_can_be_checked_and_is_not_overwritten() {
 
 #[test]
 fn dynamics_agrees_with_independent_software() {
-    let folder = Folder::new();
+    let folder = Folder::new("cli");
     let reference: Value = serde_json::from_str(include_str!("../reference/dynamics.json")).expect("reference");
     for case in reference["cases"].as_array().expect("cases") {
         let mut settings = vec![format!("gravity={}", joined(&case["gravity"]))];
@@ -204,7 +177,7 @@ fn dynamics_agrees_with_independent_software() {
         settings.push(format!("payload.mass={}", case["payload"]));
         let samples = case["samples"].as_array().expect("samples");
         let state = |s: &Value| json!({"q": s["q"], "qd": s["qd"], "qdd": s["qdd"]});
-        let states = folder.file("states.json", &Value::from_iter(samples.iter().map(state)).to_string());
+        let states = word(folder.file("states.json", Value::from_iter(samples.iter().map(state)).to_string()));
         let mut args = vec!["dynamics", "nine-link-table-1", "--states", &states];
         args.extend(settings.iter().flat_map(|s| ["--set", s.as_str()]));
         let results = object(&args)["results"].clone();
@@ -219,9 +192,9 @@ fn dynamics_agrees_with_independent_software() {
 
 #[test]
 fn states_that_do_not_fit_are_named_by_line() {
-    let folder = Folder::new();
+    let folder = Folder::new("cli");
     let refused = |content: &str, words: &[&str]| {
-        let file = folder.file("states.json", content);
+        let file = word(folder.file("states.json", content));
         fails(&["dynamics", "nine-link", "--states", &file], 2, words);
     };
     refused(
@@ -232,7 +205,7 @@ fn states_that_do_not_fit_are_named_by_line() {
     refused("[{\"q\": [0, 1, NaN]}]", &["states.json:1"]);
     refused("{}", &["states.json:1", "want [{"]);
     refused("[{\"q\": [0, 1, 2], \"qd\": [1e200, 0, 0], \"qdd\": [0, 0, 0]}]", &["not a finite number"]);
-    fails(&["dynamics", "nine-link", "--states", &folder.path("none.json")], 2, &["none.json"]);
+    fails(&["dynamics", "nine-link", "--states", &word(folder.path("none.json"))], 2, &["none.json"]);
 }
 
 #[test]
@@ -519,8 +492,8 @@ fn joints_tells_that_a_change_point_is_passed() {
 
 #[test]
 fn joints_writes_forces_as_csv_and_says_why_there_are_none() {
-    let folder = Folder::new();
-    let file = folder.path("pins.csv");
+    let folder = Folder::new("cli");
+    let file = word(folder.path("pins.csv"));
     prints(&["joints", "case-3", "-o", &file]);
     let mut reader = csv::Reader::from_path(&file).expect("a file");
     assert_eq!(reader.headers().expect("a head").len(), 1 + 24 + 2);
@@ -538,27 +511,27 @@ fn joints_writes_forces_as_csv_and_says_why_there_are_none() {
         1,
     );
     assert!(open.len() < NINE_LINK.len());
-    let machine = folder.file("open.toml", &open);
+    let machine = word(folder.file("open.toml", &open));
     let scenario =
         fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenarios/case-3.toml")).expect("it");
-    let scenario = folder.file("open-case.toml", &scenario.replace("\"nine-link\"", &format!("{machine:?}")));
+    let scenario = word(folder.file("open-case.toml", scenario.replace("\"nine-link\"", &format!("{machine:?}"))));
     fails(&["joints", &scenario], 1, &["nothing holds 6", "want 3 closures"]);
     fails(&["joints", "case-9"], 2, &["case-9"]);
 }
 
 #[test]
 fn simulate_writes_a_whole_file_or_none() {
-    let folder = Folder::new();
-    let file = folder.path("case.csv");
+    let folder = Folder::new("cli");
+    let file = word(folder.path("case.csv"));
     let with_json = object(&["simulate", "case-1", "-o", &file]);
     let written = fs::read_to_string(&file).expect("file");
     assert_eq!(written.lines().count(), 1 + numbers(&with_json["time"]).len());
     fails(&["simulate", "case-3", "-o", &file], 2, &["case.csv exists", "--force"]);
     assert_eq!(fs::read_to_string(&file).expect("file"), written);
     // Nothing is left of a run that is refused half-way.
-    fails(&["simulate", "case-1", "--set", "limits.a1=0,0.1", "-o", &folder.path("new.csv")], 1, &["case-1"]);
-    fails(&["simulate", "-o", &folder.path("no/folder.csv")], 2, &["no folder"]);
-    fails(&["simulate", "-o", &folder.path(".")], 2, &["is a folder"]);
+    fails(&["simulate", "case-1", "--set", "limits.a1=0,0.1", "-o", &word(folder.path("new.csv"))], 1, &["case-1"]);
+    fails(&["simulate", "-o", &word(folder.path("no/folder.csv"))], 2, &["no folder"]);
+    fails(&["simulate", "-o", &word(folder.path("."))], 2, &["is a folder"]);
     assert_eq!(folder.names(), ["case.csv"]);
     prints(&["simulate", "case-3", "--every", "500", "-o", &file, "--force"]);
     assert_eq!(fs::read_to_string(&file).expect("file").lines().count(), 4);
@@ -568,11 +541,11 @@ fn simulate_writes_a_whole_file_or_none() {
 #[cfg(unix)]
 #[test]
 fn a_link_is_written_through() {
-    let folder = Folder::new();
-    let real = folder.file("real.csv", "old");
-    let (link, dangling) = (folder.path("link.csv"), folder.path("dangling.csv"));
+    let folder = Folder::new("cli");
+    let real = word(folder.file("real.csv", "old"));
+    let (link, dangling) = (word(folder.path("link.csv")), word(folder.path("dangling.csv")));
     std::os::unix::fs::symlink(&real, &link).expect("a link");
-    std::os::unix::fs::symlink(folder.path("nothing"), &dangling).expect("a link");
+    std::os::unix::fs::symlink(word(folder.path("nothing")), &dangling).expect("a link");
     fails(&["simulate", "-o", &link], 2, &["link.csv exists"]);
     fails(&["simulate", "-o", &dangling], 2, &["dangling.csv exists"]);
     prints(&["simulate", "-o", &link, "--force"]);
@@ -592,7 +565,7 @@ fn a_full_disk_and_a_closed_pipe_are_no_panic() {
         fails(&["simulate", "-o", "/dev/full", "--force"], 2, &["/dev/full is no plain file"]);
     }
     // No file may grow beyond four kilobytes here, and to try is an error and not the end.
-    let folder = Folder::new();
+    let folder = Folder::new("cli");
     let limited = "trap '' XFSZ; ulimit -f 8; exec \"$0\" simulate -o x.csv";
     let mut shell = Command::new("sh");
     let out = shell.args(["-c", limited, env!("CARGO_BIN_EXE_stillbase")]).current_dir(&folder.0).output().expect("sh");
@@ -646,9 +619,9 @@ fn wrong_settings_say_what_would_be_right() {
 /// Damages to the nine-link machine's file, and what is said of each.
 #[test]
 fn a_damaged_machine_file_is_named_with_its_line() {
-    let folder = Folder::new();
+    let folder = Folder::new("cli");
     let check = |text: &str, words: &[&str]| {
-        fails(&["check", &folder.file("arm.toml", text)], 2, words);
+        fails(&["check", &word(folder.file("arm.toml", text))], 2, words);
     };
     let damage = |from: &str, to: &str, words: &[&str]| {
         let at = NINE_LINK.find(from).unwrap_or_else(|| panic!("{from}"));
@@ -680,8 +653,8 @@ fn a_damaged_machine_file_is_named_with_its_line() {
 #[cfg(feature = "record")]
 #[test]
 fn headless_reports_the_three_cases() {
-    let folder = Folder::new();
-    let file = folder.path("cases.rrd");
+    let folder = Folder::new("cli");
+    let file = word(folder.path("cases.rrd"));
     let got = object(&["headless", "-o", &file])["recordings"].clone();
     let rows = got.as_array().expect("list");
     let names: Vec<&str> = rows.iter().filter_map(|r| r["scenario"].as_str()).collect();
@@ -713,16 +686,16 @@ fn headless_reports_the_three_cases() {
 #[cfg(feature = "record")]
 #[test]
 fn headless_refuses_wrong_input_before_it_runs() {
-    let folder = Folder::new();
-    let taken = folder.file("taken.rrd", "mine");
-    let free = folder.path("free.rrd");
+    let folder = Folder::new("cli");
+    let taken = word(folder.file("taken.rrd", "mine"));
+    let free = word(folder.path("free.rrd"));
     fails(&["headless", "-o", &taken], 2, &["taken.rrd", "exists", "--force"]);
     assert_eq!(fs::read_to_string(&taken).expect("file"), "mine");
     fails(&["headless", "/nonexistent.toml", "-o", &free], 2, &["/nonexistent.toml"]);
     fails(&["headless", "case-1", "case-1", "-o", &free], 2, &["case-1", "different names"]);
     fails(&["headless", "-o", &free, "--fps", "0"], 2, &["--fps", "above 0"]);
     fails(&["headless", "-o", &free, "--fps", "30", "--size", "0x800"], 2, &["--size", "16 to 8192"]);
-    fails(&["headless", "-o", &folder.path("none/x.rrd")], 2, &["no folder"]);
+    fails(&["headless", "-o", &word(folder.path("none/x.rrd"))], 2, &["no folder"]);
     fails(&["headless", "case-3", "-o", &free, "--set", "limits.a1=0,0.1"], 1, &["case-3", "A (0.500, 0.500) m"]);
     fails(&["headless"], 2, &["--output <FILE.rrd>"]);
     assert_eq!(folder.names(), ["taken.rrd"]);
@@ -730,9 +703,9 @@ fn headless_refuses_wrong_input_before_it_runs() {
 
 #[test]
 fn a_scenario_file_is_named_with_its_line() {
-    let folder = Folder::new();
+    let folder = Folder::new("cli");
     let case = include_str!("../../assets/scenarios/case-3.toml");
-    let refused = |text: &str, words: &[&str]| fails(&["simulate", &folder.file("my.toml", text)], 2, words);
+    let refused = |text: &str, words: &[&str]| fails(&["simulate", &word(folder.file("my.toml", text))], 2, words);
     refused(&case.replace("time = 1.0", "tiem = 1.0"), &["my.toml:12:", "unknown field `tiem`"]);
     refused(&case.replace("time = 1.0", "time = -1.0"), &["my.toml", "task.time is -1"]);
     refused(&case.replace("nine-link", "ten-link"), &["ten-link", "no such machine"]);
@@ -743,8 +716,8 @@ fn a_scenario_file_is_named_with_its_line() {
 /// Two drives have no plane of (a1, a2): the questions about planes have no answer, the others do.
 #[test]
 fn a_machine_of_two_drives_is_checked_but_has_no_planes() {
-    let folder = Folder::new();
-    let file = folder.file("two.toml", TWO_LINK);
+    let folder = Folder::new("cli");
+    let file = word(folder.file("two.toml", TWO_LINK));
     let balance = object(&["check", &file]);
     assert_eq!(balance["coupling_coefficients"].as_array().map(Vec::len), Some(1));
     let designed = object(&["design", &file]);
@@ -787,8 +760,8 @@ at = "tip"
 #[cfg(all(target_os = "linux", feature = "record", feature = "window"))]
 #[test]
 fn without_a_display_it_records_and_names_the_file() {
-    let folder = Folder::new();
-    let taken = folder.file("case-3.rrd", "mine");
+    let folder = Folder::new("cli");
+    let taken = word(folder.file("case-3.rrd", "mine"));
     let out = Command::new(env!("CARGO_BIN_EXE_stillbase"))
         .env_remove("DISPLAY")
         .env_remove("WAYLAND_DISPLAY")
@@ -820,7 +793,7 @@ fn without_a_graphics_driver_it_records_and_says_what_is_missing() {
     let mut number = String::new();
     let out = display.stdout.take().expect("piped");
     std::io::BufRead::read_line(&mut std::io::BufReader::new(out), &mut number).expect("its number");
-    let folder = Folder::new();
+    let folder = Folder::new("cli");
     let out = Command::new(env!("CARGO_BIN_EXE_stillbase"))
         .env("DISPLAY", format!(":{}", number.trim()))
         .env_remove("WAYLAND_DISPLAY")
@@ -869,7 +842,7 @@ fn tables_show_units_and_the_same_numbers() {
 /// A plan says what it takes, its scenario does just that, and the fastest straight line is the closed form.
 #[test]
 fn plan_says_what_its_scenario_then_does() {
-    let folder = Folder::new();
+    let folder = Folder::new("cli");
     let file = folder.0.join("plan.toml");
     let name = file.to_str().expect("UTF-8");
     let arguments = ["plan", "nine-link", "0.5,0.5", "0.6,0.7", "0.55,0.9", "--shape", "spline", "--b", "2.4"];
@@ -1208,7 +1181,7 @@ fn what_is_simulated_on_a_base_that_moves_has_its_pose() {
 /// The spline goes beyond its samples: what is said of them is what they hold.
 #[test]
 fn import_tells_the_b_of_samples_from_that_of_the_spline() {
-    let folder = Folder::new();
+    let folder = Folder::new("cli");
     let lambda = numbers(&object(&["check", "nine-link"])["lambda"]);
     // A motion with few samples, from rest to rest.
     let q = |s: f64| [1.7 - 0.3 * s, 3.7 + 0.4 * s, 2.2 + 0.5 * s];
@@ -1226,7 +1199,7 @@ fn import_tells_the_b_of_samples_from_that_of_the_spline() {
         all.push((0..3).map(|k| lambda[k] * q(s)[k]).sum::<f64>());
         csv += &format!("{t},{},{},{}\n", q(s)[0], q(s)[1], q(s)[2]);
     }
-    let file = folder.file("few.csv", &csv);
+    let file = word(folder.file("few.csv", &csv));
     let out = stillbase(&["import", &file, "--json"]);
     let got: Value = serde_json::from_str(text(&out.stdout)).expect("an object");
     let (low, high) = all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), b| (l.min(*b), h.max(*b)));
@@ -1297,10 +1270,10 @@ fn the_step_is_set_by_key() {
     for (pair, word) in [("step=0.02", "step is 0.02: want 0.00001 to 0.01 s"), ("step=fast", "0.00001 to 0.01 s")] {
         fails(&["simulate", "case-3", "--set", pair], 2, &[word]);
     }
-    let folder = Folder::new();
+    let folder = Folder::new("cli");
     let case = include_str!("../../assets/scenarios/case-3.toml");
     let edit = "[[edit]]\nstep = 300\ndo = \"push\"\nx = 5.0\ny = 0.0\n";
-    let file = folder.file("pushed.toml", &format!("{case}\n{edit}"));
+    let file = word(folder.file("pushed.toml", format!("{case}\n{edit}")));
     let miss =
         |step: &str| object(&["simulate", &file, "--set", step, "--every", "100000"])["verdict"]["miss"].as_f64();
     let (a, b) = (miss("step=0.001").expect("a number"), miss("step=0.0005").expect("a number"));
@@ -1338,9 +1311,9 @@ fn plants_bases_and_control_are_set_by_key() {
 /// A number that is none is refused where it stands.
 #[test]
 fn a_time_that_is_no_number_is_refused() {
-    let folder = Folder::new();
+    let folder = Folder::new("cli");
     let case = include_str!("../../assets/scenarios/case-3.toml").replace("time = 1.0", "time = nan");
-    fails(&["simulate", &folder.file("odd.toml", &case)], 2, &["odd.toml:", "task.time is not a finite number"]);
+    fails(&["simulate", &word(folder.file("odd.toml", &case))], 2, &["odd.toml:", "task.time is not a finite number"]);
 }
 
 /// The ways of a task as a table, as JSON, as CSV and as one row that cannot be.
@@ -1352,8 +1325,8 @@ fn compare_tells_ways_apart() {
     assert_eq!(ways, ["reactionless", "straight-line", "other-pose", "wheel", "slowly"]);
     assert!((runs[1]["peak_moment"].as_f64().expect("a number") - 1.0891).abs() < 1e-4);
     assert!(runs[0]["reactionless"] == json!(true) && runs[0]["wheel_rate"].is_null());
-    let folder = Folder::new();
-    let file = folder.path("table.csv");
+    let folder = Folder::new("cli");
+    let file = word(folder.path("table.csv"));
     assert!(
         prints(&["compare", "least-reaction", "-o", &file]).contains("reactionless: B (0.550, 0.900) m is outside")
     );
@@ -1391,9 +1364,9 @@ fn what_a_kind_ignores_is_refused_or_told() {
         fails(&args, 2, &words);
     }
     prints(&["simulate", "case-1", "--set", "base.mass=50", "--set", "base.kind=free", "--every", "1000"]);
-    let folder = Folder::new();
+    let folder = Folder::new("cli");
     let case = include_str!("../../assets/scenarios/case-3.toml");
-    let file = folder.file("own.toml", &case.replace("time = 1.0", "cycles = 3\ntime = 1.0"));
+    let file = word(folder.file("own.toml", case.replace("time = 1.0", "cycles = 3\ntime = 1.0")));
     let out = stillbase(&["simulate", &file, "--every", "1000"]);
     let said = text(&out.stderr);
     assert!(out.status.code() == Some(0) && said.contains("note: case-3: task.cycles has no use there"), "{said}");
@@ -1403,9 +1376,9 @@ fn what_a_kind_ignores_is_refused_or_told() {
 /// What would never end, or fill the disk, is refused with the number, at once.
 #[test]
 fn what_would_never_end_is_refused() {
-    let folder = Folder::new();
+    let folder = Folder::new("cli");
     let began = std::time::Instant::now();
-    let out = folder.path("x.csv");
+    let out = word(folder.path("x.csv"));
     fails(
         &["simulate", "circle", "--set", "task.b=-2.3e18", "-o", &out],
         2,
@@ -1420,10 +1393,10 @@ fn what_would_never_end_is_refused() {
     fails(&["simulate", "circle", "--set", "drive.1.speed_limit=1e-9", "-o", &out], 1, &["at most 3600 s"]);
     fails(&["simulate", "case-3", "--set", "drive.1.torque_limit=1e-300"], 2, &["torque_limit is 1e-300", "1e-9 to"]);
     let case = include_str!("../../assets/scenarios/case-3.toml");
-    let long = folder.file("long.toml", &case.replace("[task]", "duration = 3600\n[task]"));
+    let long = word(folder.file("long.toml", case.replace("[task]", "duration = 3600\n[task]")));
     fails(&["simulate", &long, "-o", &out], 2, &["GB: want at most 4 GB"]);
     fails(&["simulate", &long, "--json", "--every", "4"], 2, &["GB: want at most 1 GB"]);
-    let fine = folder.file("fine.toml", &case.replace("[task]", "duration = 3600\nstep = 1e-5\n[task]"));
+    let fine = word(folder.file("fine.toml", case.replace("[task]", "duration = 3600\nstep = 1e-5\n[task]")));
     fails(&["compare", &fine], 1, &["360000000 steps: want at most 4000000"]);
     for command in ["simulate", "joints", "spectrum"] {
         fails(&[command, &fine], 2, &["360000000 steps: want at most 4000000"]);

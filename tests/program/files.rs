@@ -3,42 +3,21 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Write;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::path::Path;
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use stillbase::files::text::read;
 use stillbase::files::{NewFile, WriteError, finish_all, made, write_new};
 use stillbase::settings::text::{MOST_BYTES, brief, plain};
 
-/// A folder of one test.
-struct Folder(PathBuf);
+use crate::folder::Folder;
 
 impl Folder {
-    fn new(name: &str) -> Self {
-        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("files-{name}-{}", std::process::id()));
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).expect("a folder");
-        Self(path)
-    }
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.join(name)
-    }
     /// Every file, also hidden ones, with what it holds.
     fn all(&self) -> BTreeMap<String, Vec<u8>> {
         let entries = fs::read_dir(&self.0).expect("the folder").map(|entry| entry.expect("an entry").path());
         entries.map(|p| (p.file_name().expect("a name").to_string_lossy().into_owned(), bytes(&p))).collect()
-    }
-    fn names(&self) -> Vec<String> {
-        self.all().into_keys().collect()
-    }
-    fn command(&self, args: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_stillbase"));
-        command.args(args).current_dir(&self.0).stdin(Stdio::null());
-        command
-    }
-    fn run(&self, args: &[&str]) -> Output {
-        self.command(args).output().expect("it starts")
     }
     /// What a run says that ends with a status.
     fn said(&self, args: &[&str], status: i32) -> String {
@@ -46,12 +25,6 @@ impl Folder {
         let said = String::from_utf8(out.stderr).expect("UTF-8");
         assert_eq!(out.status.code(), Some(status), "{args:?}: {said}");
         said
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
     }
 }
 
@@ -73,7 +46,7 @@ fn nothing_steers_a_terminal_and_long_messages_keep_both_ends() {
 /// Of many who write under one name, one has it; what it wrote stands there, and the others are told.
 #[test]
 fn of_many_who_take_a_name_one_has_it() {
-    let folder = Folder::new("race");
+    let folder = Folder::new("files-race");
     for round in 0..64 {
         let file = folder.path(&format!("{round}.csv"));
         let start = std::sync::Barrier::new(16);
@@ -103,7 +76,7 @@ fn of_many_who_take_a_name_one_has_it() {
 
 #[test]
 fn files_that_belong_together_appear_together() {
-    let folder = Folder::new("pair");
+    let folder = Folder::new("files-pair");
     let [a, b] = ["a", "b"].map(|name| folder.path(name));
     let pair = |force| [made(&a, b"new a", force).expect("a"), made(&b, b"new b", force).expect("b")];
     // Somebody takes the second name in the meantime.
@@ -125,7 +98,7 @@ fn files_that_belong_together_appear_together() {
 
 #[test]
 fn what_was_left_over_is_swept_and_what_is_being_made_is_not() {
-    let folder = Folder::new("sweep");
+    let folder = Folder::new("files-sweep");
     let stale = [".x.rrd.1-0.stillbase.part", ".ünlauter name.csv.4000000000-12.stillbase.part"];
     let others = [".x.rrd.1-0.part", "x.1-0.stillbase.part", ".x.rrd.a-0.stillbase.part", ".1-.stillbase.part"];
     for name in stale.iter().chain(&others) {
@@ -188,7 +161,7 @@ fn whatever_ends_the_program_leaves_nothing() {
         assert_eq!(folder.names(), [""; 0], "after {signal}");
     }
     // What is to be ignored is: nohup.
-    let folder = Folder::new("nohup");
+    let folder = Folder::new("files-nohup");
     let mut shell = Command::new("sh");
     shell.args(["-c", "trap '' HUP; exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_stillbase")]).args(LONG);
     let mut child = started(shell.current_dir(&folder.0), &folder);
@@ -452,7 +425,7 @@ fn a_forged_part_is_bounded() {
 #[cfg(unix)]
 #[test]
 fn only_plain_files_of_a_bounded_size_are_read() {
-    let folder = Folder::new("plain");
+    let folder = Folder::new("files-plain");
     let made = Command::new("mkfifo").arg(folder.path("pipe")).status().expect("mkfifo");
     assert!(made.success());
     let large = fs::File::create(folder.path("large")).expect("a file");
@@ -496,7 +469,7 @@ fn only_plain_files_of_a_bounded_size_are_read() {
 /// Names from outside are spelled out wherever they are printed, and long ones are cut.
 #[test]
 fn names_from_outside_do_nothing_to_a_terminal() {
-    let folder = Folder::new("names");
+    let folder = Folder::new("files-names");
     let evil = "\\u001B]0;title\\u0007\\u009B2J\\u202Eevil\\r";
     let machine = include_str!("../../assets/machines/nine-link.toml");
     let named = |text: String| text.replace("name = \"nine-link\"", &format!("name = \"{evil}\""));

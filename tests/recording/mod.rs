@@ -17,32 +17,7 @@ use stillbase::session::{Edit, TimedEdit, replay};
 use stillbase::simulation::frame::Frame;
 use stillbase::simulation::signals::signals;
 
-/// A folder that goes when the test ends.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("stillbase-{name}-{}", std::process::id()));
-        let _ = std::fs::remove_dir_all(&path);
-        std::fs::create_dir_all(&path).expect("a temporary folder");
-        Self(path)
-    }
-
-    fn file(&self, name: &str) -> PathBuf {
-        self.0.join(name)
-    }
-
-    fn names(&self) -> Vec<String> {
-        let entries = std::fs::read_dir(&self.0).expect("the folder");
-        entries.map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned()).collect()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
+use crate::folder::Folder;
 
 /// Everything in a file, store by store.
 struct Contents {
@@ -170,18 +145,18 @@ fn short(name: &str) -> Scenario {
 fn quietly(_: Progress) {}
 
 fn record_in(folder: &Folder, name: &str, scenarios: &[Scenario]) -> Result<Vec<Recording>, RecordError> {
-    record(scenarios, &folder.file(name), &Options::default(), &mut quietly)
+    record(scenarios, &folder.path(name), &Options::default(), &mut quietly)
 }
 
 #[test]
 fn signals_are_the_frames_at_every_step() {
     let folder = Folder::new("signals");
     let mut heard = Vec::new();
-    let recordings = record(&cases(), &folder.file("cases.rrd"), &Options::default(), &mut |p| {
+    let recordings = record(&cases(), &folder.path("cases.rrd"), &Options::default(), &mut |p| {
         heard.push((p.done, p.of, p.what.to_owned()));
     })
     .expect("three cases");
-    let contents = Contents::of(&folder.file("cases.rrd"));
+    let contents = Contents::of(&folder.path("cases.rrd"));
     for (scenario, recording) in cases().iter().zip(&recordings) {
         let mut frames: Vec<Frame> = Vec::new();
         replay(scenario, |_, frame| frames.push(*frame)).expect("it runs");
@@ -197,7 +172,7 @@ fn signals_are_the_frames_at_every_step() {
         }
         let last = frames.last().expect("frames").peaks;
         assert_eq!(recording.scenario, scenario.name);
-        assert_eq!(recording.file, folder.file("cases.rrd"));
+        assert_eq!(recording.file, folder.path("cases.rrd"));
         assert_eq!(recording.steps, 1000);
         assert_eq!(recording.peak_torque, last.torque.to_vec());
         assert_eq!(recording.peak_base_moment, last.moment);
@@ -213,7 +188,7 @@ fn signals_are_the_frames_at_every_step() {
 fn geometry_is_static_and_bodies_move_under_their_case() {
     let folder = Folder::new("entities");
     record_in(&folder, "one.rrd", &[short("case-3")]).expect("a case");
-    let contents = Contents::of(&folder.file("one.rrd"));
+    let contents = Contents::of(&folder.path("one.rrd"));
     let has = |path: &str, component: &'static str, fixed: bool| {
         let chunks = contents.at(path);
         let with = chunks.iter().filter(|c| c.components().contains_component(component.into()));
@@ -258,7 +233,7 @@ fn links_stand_where_the_machine_is() {
     let folder = Folder::new("links");
     let scenario = short("case-2");
     record_in(&folder, "one.rrd", std::slice::from_ref(&scenario)).expect("a case");
-    let contents = Contents::of(&folder.file("one.rrd"));
+    let contents = Contents::of(&folder.path("one.rrd"));
     let mut frames = Vec::new();
     replay(&scenario, |_, frame| frames.push(*frame)).expect("it runs");
     for (j, part) in scenario.machine.resolved_links().iter().enumerate() {
@@ -292,7 +267,7 @@ fn what_happened_and_what_was_run_is_told() {
     let folder = Folder::new("told");
     let scenario = Scenario::builtin("case-1").expect("built in");
     record_in(&folder, "one.rrd", std::slice::from_ref(&scenario)).expect("a case");
-    let contents = Contents::of(&folder.file("one.rrd"));
+    let contents = Contents::of(&folder.path("one.rrd"));
     let property = |name: &'static str| contents.texts("/__properties/case-1", name);
     let [text] = &property("scenario")[..] else { panic!("one scenario") };
     assert_eq!(Scenario::parse(text, "recorded", None).expect("a scenario"), scenario);
@@ -329,7 +304,7 @@ fn the_plan_is_drawn_from_point_to_point() {
     let folder = Folder::new("plan");
     let scenario = folded();
     record_in(&folder, "one.rrd", std::slice::from_ref(&scenario)).expect("a case");
-    let contents = Contents::of(&folder.file("one.rrd"));
+    let contents = Contents::of(&folder.path("one.rrd"));
     let (steps, places) = contents.vectors("/case-3/plan/waypoints", "Points3D:positions");
     assert_eq!(steps, [0], "once");
     let points = scenario.task.points();
@@ -358,7 +333,7 @@ fn what_runs_inside_a_workspace_turns_with_it() {
     let folder = Folder::new("inside");
     let (plain, scenario) = (short("case-2"), folded());
     record_in(&folder, "two.rrd", &[plain, scenario.clone()]).expect("two cases");
-    let contents = Contents::of(&folder.file("two.rrd"));
+    let contents = Contents::of(&folder.path("two.rrd"));
     let planes = stillbase::planning::pose_constant::Planes::of(&scenario.machine).expect("planes");
     let boundary = planes.boundary();
     let height = 0.0;
@@ -391,7 +366,7 @@ fn joint_space_has_the_drive_angles_as_coordinates() {
     let mut scenario = Scenario::builtin("change-b").expect("built in");
     scenario.duration = Some(0.5);
     record_in(&folder, "one.rrd", std::slice::from_ref(&scenario)).expect("a case");
-    let contents = Contents::of(&folder.file("one.rrd"));
+    let contents = Contents::of(&folder.path("one.rrd"));
     let mut frames = Vec::new();
     let run = replay(&scenario, |_, frame| frames.push(*frame)).expect("it runs");
     let root = "/change-b/joint_space";
@@ -426,7 +401,7 @@ fn the_slice_of_the_tower_lies_at_the_height_of_b() {
     let mut scenario = Scenario::builtin("change-b").expect("built in");
     scenario.duration = Some(0.5);
     record_in(&folder, "two.rrd", &[scenario.clone(), short("case-3")]).expect("two cases");
-    let contents = Contents::of(&folder.file("two.rrd"));
+    let contents = Contents::of(&folder.path("two.rrd"));
     let mut frames = Vec::new();
     let run = replay(&scenario, |_, frame| frames.push(*frame)).expect("it runs");
     let root = "/change-b/tower";
@@ -486,7 +461,7 @@ fn what_was_foreseen_is_told() {
         smooth.machine = smooth.machine.set(&format!("drive.{k}.jerk_limit"), "900").expect("a limit");
     }
     record_in(&folder, "four.rrd", &scenarios).expect("four cases");
-    let contents = Contents::of(&folder.file("four.rrd"));
+    let contents = Contents::of(&folder.path("four.rrd"));
     for scenario in &scenarios {
         let run = stillbase::session::Run::new(scenario).expect("it runs");
         let plan = run.plan();
@@ -514,7 +489,7 @@ fn what_was_foreseen_is_told() {
 fn the_layout_comes_along_and_is_activated() {
     let folder = Folder::new("layout");
     record_in(&folder, "two.rrd", &[short("case-1"), short("case-3")]).expect("two cases");
-    let contents = Contents::of(&folder.file("two.rrd"));
+    let contents = Contents::of(&folder.path("two.rrd"));
     assert_eq!(contents.activated, 1);
     let layouts: Vec<_> = contents.stores.iter().filter(|(id, _)| id.kind() == StoreKind::Blueprint).collect();
     let [(_, chunks)] = layouts[..] else { panic!("one layout") };
@@ -562,7 +537,7 @@ fn a_view_has_its_identifier_for_good_and_shares_it_with_nothing() {
     for (i, names) in sets.iter().enumerate() {
         let scenarios: Vec<_> = names.iter().map(|name| short(name)).collect();
         record_in(&folder, &format!("{i}.rrd"), &scenarios).expect("cases");
-        let parts = parts(&Contents::of(&folder.file(&format!("{i}.rrd"))));
+        let parts = parts(&Contents::of(&folder.path(&format!("{i}.rrd"))));
         let ids: std::collections::BTreeSet<_> = parts.iter().map(|(id, ..)| id).collect();
         assert_eq!(ids.len(), parts.len(), "no two parts of a layout share an identifier");
         let mut views: BTreeMap<(String, String), std::collections::BTreeSet<String>> = BTreeMap::new();
@@ -592,8 +567,8 @@ fn pictures_stand_beside_each_other_and_in_their_case() {
     let options =
         Options { pictures: Some(Pictures { fps: 10.0, width: 64, height: 40, pin_forces: false }), force: false };
     let cases = [short("case-1"), short("case-3")];
-    record(&cases, &folder.file("two.rrd"), &options, &mut quietly).expect("two cases");
-    let parts = parts(&Contents::of(&folder.file("two.rrd")));
+    record(&cases, &folder.path("two.rrd"), &options, &mut quietly).expect("two cases");
+    let parts = parts(&Contents::of(&folder.path("two.rrd")));
     for case in cases {
         let origin = format!("/{}/view", case.name);
         assert_eq!(parts.iter().filter(|(_, class, from)| class == "2D" && *from == origin).count(), 2, "{origin}");
@@ -613,7 +588,7 @@ fn a_gesture_is_one_event() {
     scenario.edits.extend((0..5).map(|i| drag(500 + 16 * i, 0.52 + 0.001 * i as f64)));
     scenario.edits.push(drag(840, 0.55));
     record_in(&folder, "one.rrd", std::slice::from_ref(&scenario)).expect("an edited case");
-    let told = Contents::of(&folder.file("one.rrd")).texts("/case-3/events", "TextLog:text");
+    let told = Contents::of(&folder.path("one.rrd")).texts("/case-3/events", "TextLog:text");
     let edits: Vec<&str> =
         told.iter().map(String::as_str).filter(|e| ["push", "let", "drag"].iter().any(|w| e.starts_with(w))).collect();
     assert_eq!(
@@ -654,11 +629,11 @@ fn recording_again_gives_the_same_recording() {
     for name in ["a.rrd", "b.rrd"] {
         record_in(&folder, name, &scenarios).expect("two cases");
     }
-    assert_eq!(data(&folder.file("a.rrd")), data(&folder.file("b.rrd")));
+    assert_eq!(data(&folder.path("a.rrd")), data(&folder.path("b.rrd")));
     let mut other = short("case-2");
     other.control.kp = stillbase::simulation::plant::Each::All(100.0);
     record_in(&folder, "c.rrd", &[short("case-1"), other]).expect("two cases");
-    let ids = |name: &str| Contents::of(&folder.file(name)).stores.into_keys().collect::<Vec<_>>();
+    let ids = |name: &str| Contents::of(&folder.path(name)).stores.into_keys().collect::<Vec<_>>();
     assert_ne!(ids("a.rrd"), ids("c.rrd"), "another recording has another name");
 }
 
@@ -673,7 +648,7 @@ fn edits_on_the_way_are_recorded() {
         edit(60, Edit::SetMachine { key: "limits.a1".into(), value: "0.4,2.7".into() }),
     ];
     record_in(&folder, "edited.rrd", &[scenario]).expect("an edited case");
-    let contents = Contents::of(&folder.file("edited.rrd"));
+    let contents = Contents::of(&folder.path("edited.rrd"));
     let events = contents.texts("/case-3/events", "TextLog:text");
     for part in ["drag target to 3.000", "compare with b = 1.000 rad", "set limits.a1", "the target is outside"] {
         assert!(events.iter().any(|e| e.starts_with(part)), "{part} in {events:?}");
@@ -710,7 +685,7 @@ fn edits_on_the_way_are_recorded() {
 #[test]
 fn a_file_is_never_replaced_unasked_and_never_left_half() {
     let folder = Folder::new("refused");
-    let file = folder.file("there.rrd");
+    let file = folder.path("there.rrd");
     std::fs::write(&file, "mine").expect("a file");
     let refused = record_in(&folder, "there.rrd", &[short("case-3")]);
     assert!(matches!(refused, Err(RecordError::Write(WriteError::Exists(f))) if f == file));
@@ -732,10 +707,10 @@ fn a_file_is_never_replaced_unasked_and_never_left_half() {
 #[test]
 fn a_folder_that_cannot_be_written_is_named() {
     let folder = Folder::new("unwritable");
-    std::fs::write(folder.file("plain"), "").expect("a file");
+    std::fs::write(folder.path("plain"), "").expect("a file");
     for name in ["no/such/folder.rrd", "plain/inside.rrd"] {
         let error = record_in(&folder, name, &[short("case-3")]).expect_err("nowhere to write");
-        assert!(matches!(&error, RecordError::Write(WriteError::NoFolder { file, .. }) if *file == folder.file(name)));
+        assert!(matches!(&error, RecordError::Write(WriteError::NoFolder { file, .. }) if *file == folder.path(name)));
         assert!(error.to_string().contains(name), "{error}");
     }
     let error = record(&[short("case-3")], &folder.0, &Options { force: true, pictures: None }, &mut quietly);
@@ -762,7 +737,7 @@ fn what_cannot_be_recorded_is_said() {
         Pictures { fps: 30.0, width: 0, height: 10, pin_forces: false },
     ] {
         let options = Options { pictures: Some(pictures), force: false };
-        let refused = record(&[short("case-1")], &folder.file("x.rrd"), &options, &mut quietly);
+        let refused = record(&[short("case-1")], &folder.path("x.rrd"), &options, &mut quietly);
         assert!(matches!(refused, Err(RecordError::Pictures(_))), "{pictures:?}");
     }
     assert!(folder.names().is_empty());
@@ -773,7 +748,7 @@ fn names_with_slashes_and_blanks_stay_one_case() {
     let folder = Folder::new("names");
     let scenario = Scenario { name: "a/b c".into(), ..short("case-3") };
     record_in(&folder, "x.rrd", &[scenario]).expect("a case");
-    let contents = Contents::of(&folder.file("x.rrd"));
+    let contents = Contents::of(&folder.path("x.rrd"));
     let of_case = contents.recording().iter().filter(|c| !c.entity_path().is_property());
     assert!(of_case.into_iter().all(|c| c.entity_path().iter().next().is_some_and(|p| p.unescaped_str() == "a/b c")));
 }
@@ -784,8 +759,8 @@ fn pictures_come_at_their_times_or_it_is_said_why_not() {
     let folder = Folder::new("pictures");
     let options =
         Options { pictures: Some(Pictures { fps: 30.0, width: 64, height: 40, pin_forces: false }), force: false };
-    let recordings = record(&[short("case-3")], &folder.file("x.rrd"), &options, &mut quietly).expect("a case");
-    let contents = Contents::of(&folder.file("x.rrd"));
+    let recordings = record(&[short("case-3")], &folder.path("x.rrd"), &options, &mut quietly).expect("a case");
+    let contents = Contents::of(&folder.path("x.rrd"));
     let chunks = contents.at("/case-3/view");
     if stillbase::picture::render::offscreen::Gpu::new().is_err() {
         assert!(chunks.is_empty() && recordings[0].notes[0].starts_with("recorded without pictures"));
@@ -798,7 +773,7 @@ fn pictures_come_at_their_times_or_it_is_said_why_not() {
     assert_eq!(contents.texts("/case-3/view", "EncodedImage:media_type"), vec!["image/png"; 4]);
     let huge =
         Options { pictures: Some(Pictures { fps: 30.0, width: u32::MAX, height: 1, pin_forces: false }), force: false };
-    let refused = record(&[short("case-3")], &folder.file("y.rrd"), &huge, &mut quietly);
+    let refused = record(&[short("case-3")], &folder.path("y.rrd"), &huge, &mut quietly);
     assert!(matches!(refused, Err(RecordError::Pictures(_))));
     assert_eq!(folder.names(), ["x.rrd"]);
 }
@@ -813,7 +788,7 @@ fn a_base_that_moves_is_recorded_as_it_moves() {
     scenario.plant.payload =
         stillbase::simulation::plant::Load { mass: 0.3, from: 0.02, until: Some(0.06), ..Default::default() };
     record_in(&folder, "one.rrd", std::slice::from_ref(&scenario)).expect("a case");
-    let contents = Contents::of(&folder.file("one.rrd"));
+    let contents = Contents::of(&folder.path("one.rrd"));
     let mut frames = Vec::new();
     replay(&scenario, |_, frame| frames.push(*frame)).expect("it runs");
     let part = &scenario.machine.resolved_links()[4];
@@ -861,7 +836,7 @@ fn the_reaction_is_the_same_in_the_window() {
         scenario.plant.payload.mass = mass;
         let file = format!("{name}-{gravity}-{mass}.rrd");
         record_in(&folder, &file, std::slice::from_ref(&scenario)).expect("recorded");
-        let contents = Contents::of(&folder.file(&file));
+        let contents = Contents::of(&folder.path(&file));
         let mut frames: Vec<Frame> = Vec::new();
         let run = replay(&scenario, |_, frame| frames.push(*frame)).expect("it runs");
         let stage = Stage::of(&run);
@@ -947,7 +922,7 @@ fn all_that_the_window_draws_is_recorded_in_its_colour() {
     for (i, scenario) in [short("case-1"), folded(), floating, sprung, outside].into_iter().enumerate() {
         let file = format!("{i}.rrd");
         record_in(&folder, &file, std::slice::from_ref(&scenario)).expect("recorded");
-        let contents = Contents::of(&folder.file(&file));
+        let contents = Contents::of(&folder.path(&file));
         let mut frames: Vec<Frame> = Vec::new();
         let run = replay(&scenario, |_, frame| frames.push(*frame)).expect("it runs");
         let views = Views::of(&run);
@@ -1024,7 +999,7 @@ fn all_that_the_window_plots_is_in_the_layout() {
     for (i, scenario) in [short("case-1"), short("case-3"), floating].into_iter().enumerate() {
         let file = format!("{i}.rrd");
         record_in(&folder, &file, std::slice::from_ref(&scenario)).expect("recorded");
-        let contents = Contents::of(&folder.file(&file));
+        let contents = Contents::of(&folder.path(&file));
         let layouts = contents.stores.iter().filter(|(id, _)| id.kind() == StoreKind::Blueprint);
         let chunks: Vec<&Chunk> = layouts.flat_map(|(_, chunks)| chunks).collect();
         let text = |chunk: &Chunk, component: &'static str| -> Vec<String> {
