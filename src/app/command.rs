@@ -52,7 +52,7 @@ pub enum Command {
     /// Show or hide what pins carry.
     Pins(bool),
     /// What is done to the table of runs.
-    Board(OnBoard),
+    Comparison(ComparisonCommand),
     /// Put the second cursor at a time, s, or away.
     Mark(Option<f64>),
     /// Show or hide snapshots along the motion.
@@ -77,7 +77,7 @@ pub enum Command {
 
 /// What can be done to the table of runs.
 #[derive(Clone, Debug)]
-pub enum OnBoard {
+pub enum ComparisonCommand {
     /// By a column.
     Sort(usize),
     /// Lay a row over plots and scene, or not.

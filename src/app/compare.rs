@@ -5,7 +5,7 @@ use egui_plot::LineStyle;
 
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
-use super::{Command, OnBoard, ViewState};
+use super::{Command, ComparisonCommand, ViewState};
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::{Palette, faded};
 use crate::session::scenario::Scenario;
@@ -25,10 +25,10 @@ pub fn line_style(entry: usize) -> (LineStyle, f32) {
 }
 
 /// Draws it.
-pub fn show(ui: &mut Ui, board: &Comparison, look: &ViewState, commands: &mut Vec<Command>) {
-    let p = look.palette();
+pub fn show(ui: &mut Ui, comparison: &Comparison, view_state: &ViewState, commands: &mut Vec<Command>) {
+    let p = view_state.palette();
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 16, right: 16, top: 8, bottom: 8 });
-    let rows = board.entries().len() as f32;
+    let rows = comparison.entries().len() as f32;
     let most = (0.42 * ui.available_height()).max(120.0);
     let height = (76.0 + 27.5 * rows).min(most);
     Panel::bottom("compare").exact_size(height).resizable(false).frame(frame).show(ui, |ui| {
@@ -36,28 +36,28 @@ pub fn show(ui: &mut Ui, board: &Comparison, look: &ViewState, commands: &mut Ve
             ui.label(RichText::new("Side by side").font(bold(13.5)));
             let words = "the same task done in several ways: tick a row to draw it in plots and scene, click a column title to sort";
             ui.add(Label::new(RichText::new(words).font(plain(11.5)).color(colour(p.dim))).truncate());
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| buttons(ui, board, commands));
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| buttons(ui, comparison, commands));
         });
         ui.add_space(2.0);
-        ScrollArea::both().auto_shrink([false, false]).show(ui, |ui| table(ui, &p, board, commands));
+        ScrollArea::both().auto_shrink([false, false]).show(ui, |ui| table(ui, &p, comparison, commands));
     });
 }
 
-fn buttons(ui: &mut Ui, board: &Comparison, commands: &mut Vec<Command>) {
+fn buttons(ui: &mut Ui, comparison: &Comparison, commands: &mut Vec<Command>) {
     let close = ui.button("Close").on_hover_text("C");
     if close.clicked() {
         commands.push(Command::Compare(false));
     }
     if ui.button("Copy").on_hover_text("The table, for a spreadsheet").clicked() {
-        ui.ctx().copy_text(board.to_text());
+        ui.ctx().copy_text(comparison.to_text());
     }
     if ui.button("Keep this run").on_hover_text("Also as it was led by hand; stays when the task changes").clicked() {
-        commands.push(Command::Board(OnBoard::Keep));
+        commands.push(Command::Comparison(ComparisonCommand::Keep));
     }
     let add = egui::ComboBox::from_id_salt("add run").selected_text("Add…").width(84.0).show_ui(ui, |ui| {
         for scenario in Scenario::builtin_names().filter_map(Scenario::builtin) {
             if ui.selectable_label(false, &scenario.title).clicked() {
-                commands.push(Command::Board(OnBoard::Add(Box::new(scenario))));
+                commands.push(Command::Comparison(ComparisonCommand::Add(Box::new(scenario))));
             }
         }
     });
@@ -65,33 +65,33 @@ fn buttons(ui: &mut Ui, board: &Comparison, commands: &mut Vec<Command>) {
 }
 
 /// Columns in which something stands.
-fn columns(board: &Comparison) -> Vec<(usize, &'static Column)> {
-    let runs = || board.entries().iter().filter_map(|e| e.outcome.as_ref().ok());
+fn columns(comparison: &Comparison) -> Vec<(usize, &'static Column)> {
+    let runs = || comparison.entries().iter().filter_map(|e| e.outcome.as_ref().ok());
     let moves = runs().any(|r| r.summary.base_shift > 0.0 || r.summary.base_tilt > 0.0);
     let stands = |c: &Column| runs().any(|r| (c.value)(&r.summary).is_some());
     let all = COLUMNS.iter().enumerate();
     all.filter(|(_, c)| stands(c) && (moves || !matches!(c.key, "base_shift" | "base_tilt"))).collect()
 }
 
-fn table(ui: &mut Ui, p: &Palette, board: &Comparison, commands: &mut Vec<Command>) {
-    let columns = columns(board);
+fn table(ui: &mut Ui, p: &Palette, comparison: &Comparison, commands: &mut Vec<Command>) {
+    let columns = columns(comparison);
     ui.spacing_mut().button_padding = egui::vec2(0.0, 0.0);
     Grid::new("runs").num_columns(columns.len() + 3).spacing([14.0, 5.0]).min_col_width(0.0).show(ui, |ui| {
         ui.label("");
         ui.label(RichText::new("run").font(plain(11.5)).color(colour(p.dim)));
         for (i, column) in &columns {
-            head(ui, p, board, *i, column, commands);
+            head(ui, p, comparison, *i, column, commands);
         }
         ui.end_row();
-        for i in board.order() {
-            row(ui, p, i, &board.entries()[i], &columns, commands);
+        for i in comparison.order() {
+            row(ui, p, i, &comparison.entries()[i], &columns, commands);
             ui.end_row();
         }
     });
 }
 
-fn head(ui: &mut Ui, p: &Palette, board: &Comparison, i: usize, column: &Column, commands: &mut Vec<Command>) {
-    let arrow = match board.sorted() {
+fn head(ui: &mut Ui, p: &Palette, comparison: &Comparison, i: usize, column: &Column, commands: &mut Vec<Command>) {
+    let arrow = match comparison.sorted() {
         Some((sorted, down)) if sorted == i => [" ↑", " ↓"][usize::from(down)],
         _ => "",
     };
@@ -103,7 +103,7 @@ fn head(ui: &mut Ui, p: &Palette, board: &Comparison, i: usize, column: &Column,
         name(&head, &format!("Sort by {}", column.meaning));
         let head = head.on_hover_cursor(CursorIcon::PointingHand);
         if head.on_hover_text(format!("{}, {}; click to sort", column.meaning, column.unit)).clicked() {
-            commands.push(Command::Board(OnBoard::Sort(i)));
+            commands.push(Command::Comparison(ComparisonCommand::Sort(i)));
         }
     });
 }
@@ -114,7 +114,7 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &Entry, columns: &[(usize, &Co
         let tick = ui.add_enabled(entry.outcome.is_ok(), egui::Checkbox::without_text(&mut shown));
         name(&tick, &format!("Lay over: {}", entry.title));
         if tick.on_hover_text("Lay over plots and scene").changed() {
-            commands.push(Command::Board(OnBoard::Show(i, shown)));
+            commands.push(Command::Comparison(ComparisonCommand::Show(i, shown)));
         }
         let (rect, _) = ui.allocate_exact_size(egui::vec2(30.0, 12.0), Sense::hover());
         if shown {
@@ -132,13 +132,13 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &Entry, columns: &[(usize, &Co
         name(&label, &format!("Open {}", entry.title));
         let label = label.on_hover_cursor(CursorIcon::PointingHand);
         if label.on_hover_text("Open this run in place of the present one").clicked() {
-            commands.push(Command::Board(OnBoard::Open(i)));
+            commands.push(Command::Comparison(ComparisonCommand::Open(i)));
         }
         if entry.kept {
             let remove = ui.small_button("×");
             name(&remove, &format!("Remove {}", entry.title));
             if remove.on_hover_text("Take it away").clicked() {
-                commands.push(Command::Board(OnBoard::Remove(i)));
+                commands.push(Command::Comparison(ComparisonCommand::Remove(i)));
             }
         }
     });

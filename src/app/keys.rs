@@ -42,8 +42,8 @@ const KEYS: [(&str, &str); 30] = [
 ];
 
 /// Turns keys into commands; while text is typed only shortcuts with Ctrl count.
-pub fn read(ctx: &Context, session: &Session, look: &ViewState, commands: &mut Vec<Command>) {
-    let typing = ctx.egui_wants_keyboard_input() || look.dialog.is_some();
+pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
+    let typing = ctx.egui_wants_keyboard_input() || view_state.dialog.is_some();
     let chord =
         |modifiers: Modifiers, key| ctx.input_mut(|i| i.consume_shortcut(&KeyboardShortcut::new(modifiers, key)));
     let ctrl = Modifiers::COMMAND;
@@ -59,16 +59,16 @@ pub fn read(ctx: &Context, session: &Session, look: &ViewState, commands: &mut V
         }
     }
     if chord(Modifiers::NONE, Key::F1) {
-        commands.push(Command::Help(!look.help));
+        commands.push(Command::Help(!view_state.help));
     }
     // While something is dragged or a list is open, Esc belongs to that.
-    let taken = look.grabbed.is_some() || egui::Popup::is_any_open(ctx);
+    let taken = view_state.grabbed.is_some() || egui::Popup::is_any_open(ctx);
     if !taken && chord(Modifiers::NONE, Key::Escape) {
-        commands.push(match (&look.dialog, &look.stroke) {
+        commands.push(match (&view_state.dialog, &view_state.stroke) {
             (Some(_), _) => Command::Dialog(None),
             (None, Some(_)) => Command::Draw(false),
-            (None, None) if look.mark.is_some() => Command::Mark(None),
-            (None, None) if look.pushing && !look.help => Command::Push(false),
+            (None, None) if view_state.mark.is_some() => Command::Mark(None),
+            (None, None) if view_state.pushing && !view_state.help => Command::Push(false),
             (None, None) => Command::Help(false),
         });
     }
@@ -85,18 +85,18 @@ pub fn read(ctx: &Context, session: &Session, look: &ViewState, commands: &mut V
         (plain, Key::ArrowRight, Command::Step(1)),
         (plain, Key::Home, Command::Seek(0.0)),
         (plain, Key::End, Command::Seek(session.length())),
-        (plain, Key::V, Command::View(look.view.next())),
-        (plain, Key::J, Command::Dexterity(Measure::after(look.dexterity))),
+        (plain, Key::V, Command::View(view_state.view.next())),
+        (plain, Key::J, Command::Dexterity(Measure::after(view_state.dexterity))),
         (plain, Key::F, Command::Fit),
-        (plain, Key::C, Command::Compare(!look.compare)),
-        (plain, Key::S, Command::Snapshots(!look.snapshots)),
-        (plain, Key::T, Command::Study(!look.study)),
-        (plain, Key::I, Command::Pins(!look.pins)),
-        (plain, Key::P, Command::Draw(look.stroke.is_none())),
-        (plain, Key::U, Command::Push(!look.pushing)),
+        (plain, Key::C, Command::Compare(!view_state.compare)),
+        (plain, Key::S, Command::Snapshots(!view_state.snapshots)),
+        (plain, Key::T, Command::Study(!view_state.study)),
+        (plain, Key::I, Command::Pins(!view_state.pins)),
+        (plain, Key::P, Command::Draw(view_state.stroke.is_none())),
+        (plain, Key::U, Command::Push(!view_state.pushing)),
         (plain, Key::B, Command::BackToPath),
-        (plain, Key::X, Command::Exaggerate(!look.exaggerate)),
-        (plain, Key::L, Command::Theme(super::theme::other(look.theme))),
+        (plain, Key::X, Command::Exaggerate(!view_state.exaggerates_base)),
+        (plain, Key::L, Command::Theme(super::theme::other(view_state.theme))),
         (plain, Key::R, Command::Dialog(Some(FileDialog::suggest(session, Purpose::Record)))),
     ] {
         if chord(modifiers, key) {
@@ -111,11 +111,11 @@ pub fn read(ctx: &Context, session: &Session, look: &ViewState, commands: &mut V
 }
 
 /// The card of keys.
-pub fn help(ctx: &Context, look: &ViewState, commands: &mut Vec<Command>) {
-    if !look.help {
+pub fn help(ctx: &Context, view_state: &ViewState, commands: &mut Vec<Command>) {
+    if !view_state.help {
         return;
     }
-    let p = look.palette();
+    let p = view_state.palette();
     let mut open = true;
     egui::Window::new("Keys")
         .open(&mut open)

@@ -22,7 +22,7 @@ mod widgets;
 #[cfg(feature = "window")]
 pub mod window;
 
-pub use command::{Command, FileDialog, OnBoard, Purpose};
+pub use command::{Command, ComparisonCommand, FileDialog, Purpose};
 pub use state::AppState;
 use view_state::set_b;
 pub use view_state::{RefusedEdit, ViewState};

@@ -328,7 +328,7 @@ fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
     let scenario = session.scenario();
     let ideal = scenario.plant == Default::default() && !scenario.base.moves();
     let waits = session.run().waiting().is_some();
-    let of = match (session.is_live(), ideal) {
+    let of = match (session.is_led(), ideal) {
         _ if waits => "the run waits, nothing is planned",
         (true, _) => "led by hand; planned was",
         (false, true) => "planned",

@@ -28,20 +28,20 @@ pub fn show(
     ui: &mut Ui,
     session: &Session,
     signals: &[Signal],
-    board: Option<&Comparison>,
-    look: &ViewState,
+    comparison: Option<&Comparison>,
+    view_state: &ViewState,
     commands: &mut Vec<Command>,
 ) {
-    let p = look.palette();
+    let p = view_state.palette();
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 14, right: 14, top: 10, bottom: 8 });
     let width = (0.27 * ui.available_width()).clamp(336.0, 376.0);
     Panel::right("plots").exact_size(width).resizable(false).frame(frame).show(ui, |ui| {
         let mut charts = charts(session.scenario());
-        charts.retain(|chart| chart.in_window(look.pins));
+        charts.retain(|chart| chart.in_window(view_state.pins));
         let rows = charts.len() as f32 + 1.6;
         let height = ((ui.available_height() - 32.0 * (charts.len() as f32 + 1.0)) / rows).max(44.0);
         let end = session.frames().last().map_or(0.0, |f| f.time).max(session.length());
-        let end = if session.is_live() { end.max(1.0) } else { end };
+        let end = if session.is_led() { end.max(1.0) } else { end };
         // Scrubbed far back, the plots go along.
         let end = end.min((session.frame().time + 0.5 * WINDOW).max(WINDOW));
         let shown = (end - WINDOW).max(0.0)..=end;
@@ -49,11 +49,11 @@ pub fn show(
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             for chart in &charts {
                 let lines: Vec<&Signal> = signals.iter().filter(|s| chart.holds(s)).collect();
-                let marked = look.mark.map(|time| instant(session, time));
+                let marked = view_state.mark.map(|time| instant(session, time));
                 header(ui, &p, chart, &lines, session.frame(), marked);
-                time_plot(ui, &p, chart, &lines, session, board, look.mark, &shown, height, commands);
+                time_plot(ui, &p, chart, &lines, session, comparison, view_state.mark, &shown, height, commands);
             }
-            which_b(ui, &p, session, look, height * 1.6 + 14.0, commands);
+            which_b(ui, &p, session, view_state, height * 1.6 + 14.0, commands);
         });
     });
 }
@@ -126,7 +126,7 @@ fn time_plot(
     chart: &Chart,
     lines: &[&Signal],
     session: &Session,
-    board: Option<&Comparison>,
+    comparison: Option<&Comparison>,
     mark: Option<f64>,
     shown: &std::ops::RangeInclusive<f64>,
     height: f32,
@@ -143,7 +143,7 @@ fn time_plot(
         drawn.push((signal, points));
     }
     let mut laid_over = Vec::new();
-    for (i, run) in board.iter().flat_map(|board| board.shown()) {
+    for (i, run) in comparison.iter().flat_map(|comparison| comparison.shown()) {
         for signal in lines {
             let frames = &run.frames[..run.frames.partition_point(|f| f.time <= *shown.end())];
             let points = thinned(frames, signal, chart.times);
@@ -263,11 +263,18 @@ fn thinned(frames: &[Instant], signal: &Signal, times: f64) -> Vec<[f64; 2]> {
 }
 
 /// Fig. 3: q_1 against b for A and B, or for the target; a click chooses b.
-fn which_b(ui: &mut Ui, p: &Palette, session: &Session, look: &ViewState, height: f32, commands: &mut Vec<Command>) {
+fn which_b(
+    ui: &mut Ui,
+    p: &Palette,
+    session: &Session,
+    view_state: &ViewState,
+    height: f32,
+    commands: &mut Vec<Command>,
+) {
     let Some(planes) = session.run().planes() else { return };
     let (task, now) = (&session.scenario().task, session.frame());
     let named: Vec<String> = (0..task.via.len() + 2).map(|i| task.name_of(i)).collect();
-    let points: Vec<(&str, Vector)> = match session.is_live() {
+    let points: Vec<(&str, Vector)> = match session.is_led() {
         true => vec![("target", now.target.at)],
         false => named.iter().map(String::as_str).zip(task.points()).collect(),
     };
@@ -352,12 +359,12 @@ fn which_b(ui: &mut Ui, p: &Palette, session: &Session, look: &ViewState, height
         });
     name(&response.response, "Which b: q1 against b of each point");
     let preview = response.inner.filter(|_| response.response.hovered());
-    if preview != look.preview {
+    if preview != view_state.preview {
         commands.push(Command::Preview(preview));
     }
     let held = response.response.dragged() || response.response.clicked();
     if let (true, Some(b)) = (held, response.inner) {
-        commands.push(Command::Edit(set_b(session, look, b)));
+        commands.push(Command::Edit(set_b(session, view_state, b)));
     }
     if response.response.drag_stopped() || response.response.clicked() {
         commands.push(Command::EndGesture);

@@ -15,26 +15,26 @@ use crate::picture::scene::palette::Palette;
 use crate::session::{Edit, Session};
 
 /// Draws it.
-pub fn show(ui: &mut Ui, session: &Session, look: &ViewState, commands: &mut Vec<Command>) {
-    let p = look.palette();
+pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
+    let p = view_state.palette();
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 16, right: 10, top: 12, bottom: 8 });
     Panel::left("side").exact_size(262.0).resizable(false).frame(frame).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.set_width(ui.available_width() - 6.0);
-            pose_constant(ui, session, look, commands);
+            pose_constant(ui, session, view_state, commands);
             limits(ui, session, &p, commands);
             gravity(ui, session, &p, commands);
             path::show(ui, session, &p, commands);
             plant::show(ui, session, &p, commands);
-            base::show(ui, session, look, commands);
+            base::show(ui, session, view_state, commands);
             control::show(ui, session, &p, commands);
             balance(ui, session, &p);
         });
     });
 }
 
-fn pose_constant(ui: &mut Ui, session: &Session, look: &ViewState, commands: &mut Vec<Command>) {
-    let (scenario, p) = (session.scenario(), &look.palette());
+fn pose_constant(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
+    let (scenario, p) = (session.scenario(), &view_state.palette());
     let period = session.run().planes().map_or(std::f64::consts::TAU, |p| p.map().period());
     ui.label(RichText::new("POSE CONSTANT").font(bold(11.0)).color(colour(p.dim)));
     // Whole turns of the machine are kept, and not shown.
@@ -48,7 +48,7 @@ fn pose_constant(ui: &mut Ui, session: &Session, look: &ViewState, commands: &mu
     let row = Row { label: "b", unit: "rad", tip: &tip, decimals: 3, speed: 0.005, range: 0.0..=period };
     let responses = row.with_slider(ui, p, &mut shown);
     let asked = turns + shown;
-    let edit = set_b(session, look, asked);
+    let edit = set_b(session, view_state, asked);
     let typed = responses[0].changed() && !responses[0].dragged();
     let stops = matches!(edit, Edit::PoseB { b } if b != asked);
     let serving = session.run().planes().and_then(|planes| planes.common(&scenario.task.points()));
@@ -61,7 +61,7 @@ fn pose_constant(ui: &mut Ui, session: &Session, look: &ViewState, commands: &mu
     } else {
         send(commands, &responses, || edit);
     }
-    if session.is_live() {
+    if session.is_led() {
         ui.horizontal(|ui| {
             ui.label(RichText::new("led by hand").font(plain(11.0)).color(colour(p.amber)));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -79,7 +79,7 @@ fn pose_constant(ui: &mut Ui, session: &Session, look: &ViewState, commands: &mu
             None => format!("{who} share no b"),
         };
         note(ui, p, &text);
-        let mut turn = look.turn_task;
+        let mut turn = view_state.turn_task;
         let words = RichText::new("turn the task too").font(plain(11.0)).color(colour(p.dim));
         let tip = format!("Past the b that serve {who}, where b stops: turn the points along with their workspace");
         if ui.checkbox(&mut turn, words).on_hover_text(tip).changed() {

@@ -4,7 +4,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::{
-    Command, OnBoard, RefusedEdit, ViewState, compare, keys, order, plots, side, status, study, theme, top, viewport,
+    Command, ComparisonCommand, RefusedEdit, ViewState, compare, keys, order, plots, side, status, study, theme, top,
+    viewport,
 };
 use crate::app::widgets;
 use crate::mechanics::machine::Machine;
@@ -26,9 +27,9 @@ pub struct AppState {
     views: Arc<Views>,
     signals: Vec<Signal>,
     stage_of: (Machine, String),
-    look: ViewState,
+    view_state: ViewState,
     /// Runs side by side, while they are on display.
-    board: Option<Comparison>,
+    comparison: Option<Comparison>,
     /// Tolerances and what they were found for, while they are on display.
     study: Option<(Scenario, Result<Study, String>)>,
     /// What the planned motion will have come to.
@@ -56,15 +57,15 @@ impl AppState {
 
     fn around(session: Session, theme: Theme) -> Self {
         let views = Views::of(session.run());
-        let look = ViewState::new(theme, &views);
+        let view_state = ViewState::new(theme, &views);
         let mut app_state = Self {
             signals: signals(&session.scenario().machine),
             stage_of: stage_key(&session),
             views: Arc::new(views),
             foreseen: Totals::default(),
             session,
-            look,
-            board: None,
+            view_state,
+            comparison: None,
             study: None,
             owed: 0.0,
             dressed: None,
@@ -100,13 +101,13 @@ impl AppState {
     }
 
     /// How it is shown.
-    pub fn look(&self) -> &ViewState {
-        &self.look
+    pub fn view_state(&self) -> &ViewState {
+        &self.view_state
     }
 
     /// Runs side by side, while they are on display.
-    pub fn board(&self) -> Option<&Comparison> {
-        self.board.as_ref()
+    pub fn comparison(&self) -> Option<&Comparison> {
+        self.comparison.as_ref()
     }
 
     /// What scenes are made from.
@@ -126,7 +127,7 @@ impl AppState {
             return;
         }
         let dt = self.session.scenario().step;
-        self.owed += wall.clamp(0.0, MOST_OWED) * self.look.speed;
+        self.owed += wall.clamp(0.0, MOST_OWED) * self.view_state.speed;
         let steps = (self.owed / dt).floor();
         self.owed -= steps * dt;
         self.session.tick(steps as u64);
@@ -137,25 +138,25 @@ impl AppState {
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         self.dress(ui.ctx());
         let mut commands = Vec::new();
-        keys::read(ui.ctx(), &self.session, &self.look, &mut commands);
-        top::show(ui, &self.session, &self.look, &mut commands);
-        status::show(ui, &self.session, &self.views, &self.look, &mut commands);
-        if let Some(board) = &self.board {
-            compare::show(ui, board, &self.look, &mut commands);
+        keys::read(ui.ctx(), &self.session, &self.view_state, &mut commands);
+        top::show(ui, &self.session, &self.view_state, &mut commands);
+        status::show(ui, &self.session, &self.views, &self.view_state, &mut commands);
+        if let Some(comparison) = &self.comparison {
+            compare::show(ui, comparison, &self.view_state, &mut commands);
         }
         if let Some((_, study)) = &self.study {
-            study::show(ui, study, self.session.frame().time, &self.look, &mut commands);
+            study::show(ui, study, self.session.frame().time, &self.view_state, &mut commands);
         }
-        side::show(ui, &self.session, &self.look, &mut commands);
-        plots::show(ui, &self.session, &self.signals, self.board.as_ref(), &self.look, &mut commands);
-        viewport::show(ui, &self.session, &self.views, self.board.as_ref(), &mut self.look, &mut commands);
-        status::news(ui.ctx(), &self.session, &self.look, &mut commands);
-        keys::help(ui.ctx(), &self.look, &mut commands);
-        top::dialog(ui.ctx(), &mut self.look, &mut commands);
+        side::show(ui, &self.session, &self.view_state, &mut commands);
+        plots::show(ui, &self.session, &self.signals, self.comparison.as_ref(), &self.view_state, &mut commands);
+        viewport::show(ui, &self.session, &self.views, self.comparison.as_ref(), &mut self.view_state, &mut commands);
+        status::news(ui.ctx(), &self.session, &self.view_state, &mut commands);
+        keys::help(ui.ctx(), &self.view_state, &mut commands);
+        top::dialog(ui.ctx(), &mut self.view_state, &mut commands);
         commands.extend(widgets::refused_entry(ui.ctx()).map(Command::Refuse));
         if commands.iter().any(|c| !matches!(c, Command::EndGesture | Command::Preview(_))) {
-            self.look.message = None;
-            self.look.refused = None;
+            self.view_state.message = None;
+            self.view_state.refused = None;
         }
         if !commands.is_empty() {
             ui.ctx().request_repaint();
@@ -174,9 +175,9 @@ impl AppState {
             ctx.add_plugin(order::Order::default());
             self.fonts = true;
         }
-        if self.dressed != Some(self.look.theme) {
-            theme::apply(ctx, self.look.theme);
-            self.dressed = Some(self.look.theme);
+        if self.dressed != Some(self.view_state.theme) {
+            theme::apply(ctx, self.view_state.theme);
+            self.dressed = Some(self.view_state.theme);
         }
     }
 
@@ -184,8 +185,8 @@ impl AppState {
     pub fn carry_out(&mut self, command: Command) {
         match self.attempt(command) {
             Ok(None) => {}
-            Ok(Some(news)) => self.look.message = Some((news, false)),
-            Err(problem) => self.look.message = Some((problem, true)),
+            Ok(Some(news)) => self.view_state.message = Some((news, false)),
+            Err(problem) => self.view_state.message = Some((problem, true)),
         }
         self.refresh();
     }
@@ -195,27 +196,27 @@ impl AppState {
         match command {
             Command::Edit(edit) => {
                 if let Err(refusal) = self.session.apply(edit.clone()) {
-                    self.look.refused = Some(RefusedEdit::of(&edit, &refusal));
+                    self.view_state.refused = Some(RefusedEdit::of(&edit, &refusal));
                     return Err(refusal.to_string());
                 }
-                self.look.refused = None;
+                self.view_state.refused = None;
                 // A hand that pushes asks many times a second, and nobody knows how long.
                 if !matches!(edit, Edit::Push { .. }) {
                     self.foresee();
                 }
                 // What a drag has changed, Esc takes back.
-                self.look.dragged |= self.look.grabbed.is_some();
+                self.view_state.dragged |= self.view_state.grabbed.is_some();
             }
-            Command::Preview(b) => self.look.preview = b,
+            Command::Preview(b) => self.view_state.preview = b,
             Command::Draw(draw) => {
-                self.look.stroke = draw.then(Vec::new);
-                self.look.pushing &= !draw;
+                self.view_state.stroke = draw.then(Vec::new);
+                self.view_state.pushing &= !draw;
             }
             Command::Push(push) => {
-                self.look.pushing = push;
-                self.look.stroke = self.look.stroke.take().filter(|_| !push);
+                self.view_state.pushing = push;
+                self.view_state.stroke = self.view_state.stroke.take().filter(|_| !push);
             }
-            Command::Exaggerate(on) => self.look.exaggerate = on,
+            Command::Exaggerate(on) => self.view_state.exaggerates_base = on,
             Command::EndGesture => self.session.end_gesture(),
             Command::TogglePlay if self.session.is_playing() => self.session.pause(),
             Command::TogglePlay => self.session.play(),
@@ -224,7 +225,7 @@ impl AppState {
                 self.session.seek(time);
             }
             Command::Step(steps) => self.session.step_by(steps),
-            Command::Speed(speed) => self.look.speed = speed,
+            Command::Speed(speed) => self.view_state.speed = speed,
             Command::Open(scenario) => {
                 self.session.switch(*scenario).map_err(refused)?;
                 self.foresee();
@@ -232,7 +233,7 @@ impl AppState {
             }
             Command::Case(name) => return self.case(name),
             Command::BackToPath => {
-                if self.session.is_live() {
+                if self.session.is_led() {
                     self.session.apply(Edit::SetTask { change: Default::default() }).map_err(refused)?;
                     self.session.end_gesture();
                     self.session.pause();
@@ -241,7 +242,7 @@ impl AppState {
                     return Ok(Some("back on the planned path, at its start".into()));
                 }
             }
-            Command::TurnTask(turn) => self.look.turn_task = turn,
+            Command::TurnTask(turn) => self.view_state.turn_task = turn,
             Command::Refuse(why) => return Err(why),
             Command::OpenFile(path) => return self.open(&path).map(Some),
             Command::SaveFile(path) => return self.save(&path).map(Some),
@@ -258,38 +259,42 @@ impl AppState {
                 self.foresee();
                 return Ok(title);
             }
-            Command::View(view) => self.look.view = view,
-            Command::Dexterity(shown) => self.look.dexterity = shown,
-            Command::Fit => *self.look.camera_mut() = self.views.camera(self.look.view),
-            Command::Theme(theme) => self.look.theme = theme,
-            Command::Help(help) => self.look.help = help,
-            Command::Mark(time) => self.look.mark = time,
-            Command::Snapshots(shown) => self.look.snapshots = shown,
+            Command::View(view) => self.view_state.view = view,
+            Command::Dexterity(shown) => self.view_state.dexterity = shown,
+            Command::Fit => *self.view_state.camera_mut() = self.views.camera(self.view_state.view),
+            Command::Theme(theme) => self.view_state.theme = theme,
+            Command::Help(help) => self.view_state.help = help,
+            Command::Mark(time) => self.view_state.mark = time,
+            Command::Snapshots(shown) => self.view_state.snapshots = shown,
             // There is room for one of them.
-            Command::Compare(compare) => (self.look.compare, self.look.study) = (compare, self.look.study && !compare),
-            Command::Study(study) => (self.look.study, self.look.compare) = (study, self.look.compare && !study),
-            Command::Pins(shown) => self.look.pins = shown,
-            Command::Board(on) => return self.on_board(on),
-            Command::Dialog(dialog) => self.look.dialog = dialog,
+            Command::Compare(compare) => {
+                (self.view_state.compare, self.view_state.study) = (compare, self.view_state.study && !compare)
+            }
+            Command::Study(study) => {
+                (self.view_state.study, self.view_state.compare) = (study, self.view_state.compare && !study)
+            }
+            Command::Pins(shown) => self.view_state.pins = shown,
+            Command::Comparison(on) => return self.change_comparison(on),
+            Command::Dialog(dialog) => self.view_state.dialog = dialog,
         }
         Ok(None)
     }
 
-    fn on_board(&mut self, on: OnBoard) -> Result<Option<String>, String> {
-        let Some(board) = &mut self.board else { return Ok(None) };
+    fn change_comparison(&mut self, on: ComparisonCommand) -> Result<Option<String>, String> {
+        let Some(comparison) = &mut self.comparison else { return Ok(None) };
         match on {
-            OnBoard::Sort(column) => board.sort_by(column),
-            OnBoard::Show(entry, shown) => board.show(entry, shown),
-            OnBoard::Remove(entry) => board.remove(entry),
-            OnBoard::Add(scenario) => board.keep(*scenario).map_err(|why| why.to_string())?,
-            OnBoard::Keep => {
+            ComparisonCommand::Sort(column) => comparison.sort_by(column),
+            ComparisonCommand::Show(entry, shown) => comparison.show(entry, shown),
+            ComparisonCommand::Remove(entry) => comparison.remove(entry),
+            ComparisonCommand::Add(scenario) => comparison.keep(*scenario).map_err(|why| why.to_string())?,
+            ComparisonCommand::Keep => {
                 let mut scenario = self.session.to_scenario();
                 scenario.duration = Some(self.session.length());
-                board.keep(scenario).map_err(|why| why.to_string())?;
+                comparison.keep(scenario).map_err(|why| why.to_string())?;
                 return Ok(Some("kept this run to compare with".into()));
             }
-            OnBoard::Open(entry) => {
-                let run = board.entries().get(entry).and_then(|e| e.outcome.as_ref().ok()).cloned();
+            ComparisonCommand::Open(entry) => {
+                let run = comparison.entries().get(entry).and_then(|e| e.outcome.as_ref().ok()).cloned();
                 if let Some(run) = run {
                     self.session.switch(run.scenario.clone()).map_err(|why| why.to_string())?;
                     self.foresee();
@@ -317,11 +322,11 @@ impl AppState {
         let scenario = found.map_err(|e| brief(&e.to_string()).into_owned())?;
         let change = scenario.task.whole();
         if let Err(refusal) = self.session.switch(scenario) {
-            self.look.refused = Some(RefusedEdit::of(&Edit::SetTask { change }, &refusal));
+            self.view_state.refused = Some(RefusedEdit::of(&Edit::SetTask { change }, &refusal));
             return Err(refusal.to_string());
         }
         self.foresee();
-        self.look.dialog = None;
+        self.view_state.dialog = None;
         Ok(format!("opened {}", path.display()))
     }
 
@@ -329,7 +334,7 @@ impl AppState {
         check_name(path)?;
         crate::files::write_new(path, self.session.to_scenario().to_toml().as_bytes(), false)
             .map_err(|e| e.to_string())?;
-        self.look.dialog = None;
+        self.view_state.dialog = None;
         Ok(format!("saved {}", whole(path)))
     }
 
@@ -340,7 +345,7 @@ impl AppState {
         let mut scenario = self.session.to_scenario();
         scenario.duration = Some(self.session.length());
         let done = crate::recording::record(&[scenario], path, &options, &mut |_| {}).map_err(|e| e.to_string())?;
-        self.look.dialog = None;
+        self.view_state.dialog = None;
         let verdict = if done.iter().all(|r| r.reactionless) { "reactionless" } else { "with reactions" };
         Ok(format!("recorded {} ({verdict}); open it with the Rerun viewer", whole(path)))
     }
@@ -355,7 +360,7 @@ impl AppState {
         self.foreseen = Totals::default();
         let scenario = self.session.scenario();
         let steps = (self.session.run().planned_time() / scenario.step).ceil();
-        if scenario.base.moves() && !self.session.is_live() && steps <= MOST_AHEAD {
+        if scenario.base.moves() && !self.session.is_led() && steps <= MOST_AHEAD {
             let mut run = self.session.run().clone();
             while (run.simulation().step_count() as f64) < steps {
                 run.advance();
@@ -368,8 +373,8 @@ impl AppState {
     fn adjust(&mut self) {
         let reach = self.views.stage().linkage().reach();
         let newest = self.session.frames().last().map_or_else(Totals::default, |frame| frame.totals);
-        let motion = [newest.shift.max(self.foreseen.shift), newest.tilt.max(self.foreseen.tilt)];
-        self.look.seen_at = match self.session.scenario().base.moves() {
+        let motion = [newest.shift.max(self.foreseen.shift), newest.base_angle.max(self.foreseen.base_angle)];
+        self.view_state.enough_exaggeration = match self.session.scenario().base.moves() {
             true => exaggeration(motion, reach),
             false => 1.0,
         };
@@ -382,7 +387,7 @@ impl AppState {
             let views = Views::of(self.session.run());
             for kind in ViewKind::ALL {
                 // A camera that nobody has moved goes on showing everything.
-                let camera = &mut self.look.cameras[kind as usize];
+                let camera = &mut self.view_state.cameras[kind as usize];
                 if *camera == self.views.camera(kind) {
                     *camera = views.camera(kind);
                 }
@@ -393,9 +398,10 @@ impl AppState {
         }
         Arc::make_mut(&mut self.views).refresh(self.session.run());
         self.adjust();
-        if !self.look.study {
+        if !self.view_state.study {
             self.study = None;
-        } else if self.look.grabbed.is_none() && self.study.as_ref().is_none_or(|(of, _)| of != self.session.scenario())
+        } else if self.view_state.grabbed.is_none()
+            && self.study.as_ref().is_none_or(|(of, _)| of != self.session.scenario())
         {
             let run = self.session.run();
             let study = match run.waiting() {
@@ -404,18 +410,18 @@ impl AppState {
             };
             self.study = Some((self.session.scenario().clone(), study));
         }
-        if !self.look.compare {
-            self.board = None;
-        } else if self.board.is_none() {
-            self.board = Some(Comparison::of(self.session.scenario()));
+        if !self.view_state.compare {
+            self.comparison = None;
+        } else if self.comparison.is_none() {
+            self.comparison = Some(Comparison::of(self.session.scenario()));
         }
         // Not while something is dragged: every way is planned and run anew.
-        if let (Some(board), None) = (&mut self.board, self.look.grabbed) {
-            let ours = board.entries().iter().any(|e| {
+        if let (Some(comparison), None) = (&mut self.comparison, self.view_state.grabbed) {
+            let ours = comparison.entries().iter().any(|e| {
                 e.outcome.as_ref().is_ok_and(|run| run.scenario.task == self.session.scenario().task && !e.kept)
             });
-            if !ours || !same_ground(board.task(), self.session.scenario()) {
-                board.follow(self.session.scenario());
+            if !ours || !same_ground(comparison.task(), self.session.scenario()) {
+                comparison.follow(self.session.scenario());
             }
         }
     }

@@ -12,22 +12,22 @@ use crate::session::{Edit, Session};
 use crate::simulation::frame::{Frame, Reach};
 
 /// Bad news, in full, over the lower edge of the viewport, with the way out if there is one.
-pub fn news(ctx: &egui::Context, session: &Session, look: &ViewState, commands: &mut Vec<Command>) {
+pub fn news(ctx: &egui::Context, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
     let fault = fault(session.frame());
     let waits = session.run().waiting();
     let waiting = waits.map(|waiting| format!("The run waits: {}", waiting.why));
-    let text = match (&look.message, &fault, &waiting, &look.dialog) {
+    let text = match (&view_state.message, &fault, &waiting, &view_state.dialog) {
         (Some((text, true)), _, _, None) | (_, Some(text), _, None) | (_, _, Some(text), None) => text,
         _ => return,
     };
-    let p = look.palette();
+    let p = view_state.palette();
     let frame =
         egui::Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.reaction))).corner_radius(8).inner_margin(10);
     egui::Area::new(egui::Id::unique("news")).anchor(egui::Align2::CENTER_BOTTOM, [-40.0, -42.0]).show(ctx, |ui| {
         frame.show(ui, |ui| {
             ui.set_max_width((0.42 * ctx.content_rect().width()).max(320.0));
             ui.add(egui::Label::new(RichText::new(text).font(plain(12.0)).color(colour(p.ink))).wrap());
-            let remedy = look.refused.as_ref().and_then(|wish| wish.remedy.clone());
+            let remedy = view_state.refused.as_ref().and_then(|wish| wish.remedy.clone());
             let mends = waits.filter(|_| waiting.as_ref() == Some(text));
             let mends = mends.and_then(|waiting| waiting.why.mending_b().zip(waiting.why.shown_b()));
             let mends = mends.map(|(b, shown)| (Edit::task("b", b), shown));
@@ -41,7 +41,7 @@ pub fn news(ctx: &egui::Context, session: &Session, look: &ViewState, commands: 
     });
 }
 
-/// What should be zero: a quiet dot for each figure, red where it is not.
+/// What should be zero: a dim dot for each figure, red where it is not.
 fn lamps(ui: &mut Ui, frame: &Frame, p: &Palette) {
     ui.add_space(4.0);
     ui.spacing_mut().item_spacing.x = 1.0;
@@ -89,8 +89,8 @@ fn fault(frame: &Frame) -> Option<String> {
 }
 
 /// Draws it.
-pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &ViewState, commands: &mut Vec<Command>) {
-    let p = look.palette();
+pub fn show(ui: &mut Ui, session: &Session, views: &Views, view_state: &ViewState, commands: &mut Vec<Command>) {
+    let p = view_state.palette();
     let frame = egui::Frame::new().fill(colour(p.panel)).inner_margin(Margin::symmetric(16, 0));
     Panel::bottom("status").exact_size(30.0).resizable(false).frame(frame).show(ui, |ui| {
         ui.horizontal_centered(|ui| {
@@ -100,7 +100,7 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &ViewState, com
             let tone = colour(if verdict.is_good() && !waits { p.zero } else { p.reaction });
             let (dot, _) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), egui::Sense::hover());
             ui.painter().circle_filled(dot.center(), 4.5, tone);
-            let word = match (verdict.word(), f.is_quiet()) {
+            let word = match (verdict.word(), f.base_feels_nothing()) {
                 _ if waits => "waits",
                 ("not reactionless", false) => "reacts on its base",
                 ("not reactionless", true) => "has reacted on its base",
@@ -123,7 +123,7 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &ViewState, com
             }
             let b = session.run().planes().map_or(f.b, |planes| f.b.rem_euclid(planes.map().period()));
             facts += &format!("  ·  b {b:.3} rad");
-            let bad_news = matches!(look.message, Some((_, true)));
+            let bad_news = matches!(view_state.message, Some((_, true)));
             if let Some((poses, distance)) =
                 views.stage().standing(f).filter(|_| !bad_news && ui.available_width() > 460.0)
             {
@@ -136,7 +136,7 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &ViewState, com
             }
             ui.label(RichText::new(facts).font(plain(12.0)).color(colour(p.dim)));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                let (text, tone) = match (&look.message, f.target.reach) {
+                let (text, tone) = match (&view_state.message, f.target.reach) {
                     (Some((_, true)), _) => (String::new(), p.reaction),
                     (Some((text, false)), _) => (text.clone(), p.ink),
                     (None, _) if session.is_full() => {
@@ -157,14 +157,16 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, look: &ViewState, com
                         ("the target is beyond a fold or a change point".into(), p.ink)
                     }
                     (None, Reach::Outside { .. }) => ("the target is outside, whatever b".into(), p.ink),
-                    (None, _) if look.stroke.is_some() => ("draw with the pointer  ·  Esc stops drawing".into(), p.ink),
-                    (None, _) if look.pushing => {
+                    (None, _) if view_state.stroke.is_some() => {
+                        ("draw with the pointer  ·  Esc stops drawing".into(), p.ink)
+                    }
+                    (None, _) if view_state.pushing => {
                         ("pull at the end effector to push it, 20 N for each metre  ·  U lets go".into(), p.ink)
                     }
-                    (None, _) if session.is_live() => {
+                    (None, _) if session.is_led() => {
                         ("led by hand  ·  B goes back to the path  ·  F1 keys".into(), p.dim)
                     }
-                    (None, _) if look.view.shows_machine() => {
+                    (None, _) if view_state.view.shows_machine() => {
                         ("drag the target, a point or the b ring  ·  Space plays  ·  F1 keys".into(), p.dim)
                     }
                     (None, _) => ("Space plays  ·  F1 keys".into(), p.dim),

@@ -17,8 +17,14 @@ use crate::study::tolerance::Study;
 const HEIGHT: f32 = 268.0;
 
 /// Draws it.
-pub fn show(ui: &mut Ui, study: &Result<Study, String>, time: f64, look: &ViewState, commands: &mut Vec<Command>) {
-    let p = look.palette();
+pub fn show(
+    ui: &mut Ui,
+    study: &Result<Study, String>,
+    time: f64,
+    view_state: &ViewState,
+    commands: &mut Vec<Command>,
+) {
+    let p = view_state.palette();
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 16, right: 16, top: 8, bottom: 8 });
     let height = HEIGHT.min(0.45 * ui.available_height());
     Panel::bottom("study").exact_size(height).resizable(false).frame(frame).show(ui, |ui| {

@@ -14,35 +14,35 @@ use crate::picture::scene::{Measure, dexterity};
 const ONE_ROW: f32 = 740.0;
 
 /// The bar above the scene: which view, and what can be done and shown in it.
-pub fn bar(ui: &mut Ui, look: &ViewState, commands: &mut Vec<Command>) {
-    let p = look.palette();
+pub fn bar(ui: &mut Ui, view_state: &ViewState, commands: &mut Vec<Command>) {
+    let p = view_state.palette();
     let frame =
         Frame::new().fill(colour(p.background)).inner_margin(Margin { left: 14, right: 14, top: 10, bottom: 6 });
     frame.show(ui, |ui| {
         ui.set_width(ui.available_width());
-        let views = |ui: &mut Ui, commands: &mut Vec<Command>| views(ui, &p, look, commands);
+        let views = |ui: &mut Ui, commands: &mut Vec<Command>| views(ui, &p, view_state, commands);
         if ui.available_width() >= ONE_ROW {
             ui.horizontal(|ui| {
                 views(ui, commands);
                 ui.add_space(14.0);
-                toggles(ui, &p, look, commands);
+                toggles(ui, &p, view_state, commands);
             });
         } else {
             views(ui, commands);
             ui.add_space(4.0);
-            toggles(ui, &p, look, commands);
+            toggles(ui, &p, view_state, commands);
         }
     });
 }
 
-fn views(ui: &mut Ui, p: &Palette, look: &ViewState, commands: &mut Vec<Command>) {
+fn views(ui: &mut Ui, p: &Palette, view_state: &ViewState, commands: &mut Vec<Command>) {
     let frame = Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.line))).corner_radius(8).inner_margin(3);
     frame.show(ui, |ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         ui.horizontal(|ui| {
             for view in ViewKind::ALL {
                 let words = format!("{} (V)", view.explanation());
-                if segment(ui, p, view.name(), look.view == view).on_hover_text(words).clicked() {
+                if segment(ui, p, view.name(), view_state.view == view).on_hover_text(words).clicked() {
                     commands.push(Command::View(view));
                 }
             }
@@ -51,13 +51,13 @@ fn views(ui: &mut Ui, p: &Palette, look: &ViewState, commands: &mut Vec<Command>
 }
 
 /// In the scene's lower corners: what can be done or the key to the shade, and the grid's width.
-pub fn corners(ui: &mut Ui, rect: Rect, look: &ViewState, views: &Views, commands: &mut Vec<Command>) {
-    let p = look.palette();
+pub fn corners(ui: &mut Ui, rect: Rect, view_state: &ViewState, views: &Views, commands: &mut Vec<Command>) {
+    let p = view_state.palette();
     let low = rect.bottom() - 16.0;
     let grid = ui.painter().text(
         pos2(rect.right() - 14.0, low),
         Align2::RIGHT_CENTER,
-        look.view.grid(),
+        view_state.view.grid(),
         plain(11.5),
         colour(p.dim),
     );
@@ -66,10 +66,10 @@ pub fn corners(ui: &mut Ui, rect: Rect, look: &ViewState, views: &Views, command
     let room = Rect::from_min_max(left - vec2(0.0, 12.0), pos2(grid.left() - 12.0, low + 12.0));
     let layout = egui::Layout::left_to_right(egui::Align::Center);
     let mut corner = ui.new_child(egui::UiBuilder::new().max_rect(room).layout(layout));
-    match look.dexterity.filter(|_| look.view.shows_machine()) {
+    match view_state.dexterity.filter(|_| view_state.view.shows_machine()) {
         Some(measure) => key(&mut corner, &p, measure, views, commands),
         None => {
-            let words = RichText::new(look.view.invitation()).font(plain(11.5)).color(colour(p.dim));
+            let words = RichText::new(view_state.view.invitation()).font(plain(11.5)).color(colour(p.dim));
             corner.add(egui::Label::new(words).truncate());
         }
     }
@@ -83,8 +83,8 @@ fn segment(ui: &mut Ui, p: &Palette, text: &str, chosen: bool) -> egui::Response
 }
 
 /// What can be done and shown; what the view does not have is left out.
-fn toggles(ui: &mut Ui, p: &Palette, look: &ViewState, commands: &mut Vec<Command>) {
-    if !look.view.shows_machine() {
+fn toggles(ui: &mut Ui, p: &Palette, view_state: &ViewState, commands: &mut Vec<Command>) {
+    if !view_state.view.shows_machine() {
         return;
     }
     ui.horizontal_wrapped(|ui| {
@@ -93,25 +93,30 @@ fn toggles(ui: &mut Ui, p: &Palette, look: &ViewState, commands: &mut Vec<Comman
             (
                 "draw a path",
                 "Draw the end effector's path with the pointer (P)",
-                look.stroke.is_some(),
+                view_state.stroke.is_some(),
                 Command::Draw as fn(bool) -> Command,
             ),
             (
                 "push",
                 "Push the end effector with the pointer, 20 N for each metre (U; or hold Alt)",
-                look.pushing,
+                view_state.pushing,
                 Command::Push,
             ),
             (
                 "dexterity",
                 "Shade the workspace by how well the end effector moves (J)",
-                look.dexterity.is_some(),
+                view_state.dexterity.is_some(),
                 |on| Command::Dexterity(on.then_some(Measure::Det)),
             ),
-            ("snapshots", "Poses along the motion, as in Fig. 5 (S)", look.snapshots, Command::Snapshots),
-            ("pins", "What pins and bearings carry (I)", look.pins, Command::Pins),
-            ("tolerances", "What the bases of many machines feel, and the spectrum (T)", look.study, Command::Study),
-            ("side by side", "The same task done in other ways (C)", look.compare, Command::Compare),
+            ("snapshots", "Poses along the motion, as in Fig. 5 (S)", view_state.snapshots, Command::Snapshots),
+            ("pins", "What pins and bearings carry (I)", view_state.pins, Command::Pins),
+            (
+                "tolerances",
+                "What the bases of many machines feel, and the spectrum (T)",
+                view_state.study,
+                Command::Study,
+            ),
+            ("side by side", "The same task done in other ways (C)", view_state.compare, Command::Compare),
         ] {
             let mut now = on;
             let words = RichText::new(words).font(plain(11.5)).color(colour(if on { p.ink } else { p.dim }));

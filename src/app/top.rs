@@ -12,8 +12,8 @@ use crate::session::Session;
 use crate::session::scenario::Scenario;
 
 /// Draws it.
-pub fn show(ui: &mut Ui, session: &Session, look: &ViewState, commands: &mut Vec<Command>) {
-    let p = look.palette();
+pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
+    let p = view_state.palette();
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin::symmetric(16, 0));
     Panel::top("top").exact_size(44.0).resizable(false).frame(frame).show(ui, |ui| {
         ui.horizontal_centered(|ui| {
@@ -22,11 +22,11 @@ pub fn show(ui: &mut Ui, session: &Session, look: &ViewState, commands: &mut Vec
             machines(ui, session, commands);
             scenarios(ui, session, commands);
             ui.add_space(8.0);
-            transport(ui, session, look, commands);
+            transport(ui, session, view_state, commands);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                right_end(ui, session, look, commands);
+                right_end(ui, session, view_state, commands);
                 ui.add_space(10.0);
-                timeline(ui, session, look, commands);
+                timeline(ui, session, view_state, commands);
             });
         });
     });
@@ -96,26 +96,26 @@ fn same_work(a: &Scenario, b: &Scenario) -> bool {
     a.task == b.task && a.plant == b.plant && a.base == b.base && a.control == b.control
 }
 
-fn transport(ui: &mut Ui, session: &Session, look: &ViewState, commands: &mut Vec<Command>) {
+fn transport(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
     let start = [Icon::Bar(-5.0), Icon::Left(-4.0)];
-    if icon(ui, look, "Start", "To the start (Home)", &start).clicked() {
+    if icon(ui, view_state, "Start", "To the start (Home)", &start).clicked() {
         commands.push(Command::Seek(0.0));
     }
     let (label, shape): (_, &[Icon]) = match session.is_playing() {
         true => ("Pause", &[Icon::Bar(-3.0), Icon::Bar(3.0)]),
         false => ("Play", &[Icon::Right(-4.0)]),
     };
-    if icon(ui, look, label, &format!("{label} (Space)"), shape).clicked() {
+    if icon(ui, view_state, label, &format!("{label} (Space)"), shape).clicked() {
         commands.push(Command::TogglePlay);
     }
-    if icon(ui, look, "Step", "One step on (→)", &[Icon::Right(-6.0), Icon::Bar(5.0)]).clicked() {
+    if icon(ui, view_state, "Step", "One step on (→)", &[Icon::Right(-6.0), Icon::Bar(5.0)]).clicked() {
         commands.push(Command::Step(1));
     }
     let text = |s: f64| format!("{s}×");
-    let combo = ComboBox::from_id_salt("speed").selected_text(text(look.speed)).width(58.0);
+    let combo = ComboBox::from_id_salt("speed").selected_text(text(view_state.speed)).width(58.0);
     let response = combo.show_ui(ui, |ui| {
         for speed in [0.05, 0.1, 0.25, 0.5, 1.0, 2.0] {
-            if ui.selectable_label(speed == look.speed, text(speed)).clicked() {
+            if ui.selectable_label(speed == view_state.speed, text(speed)).clicked() {
                 commands.push(Command::Speed(speed));
             }
         }
@@ -123,8 +123,8 @@ fn transport(ui: &mut Ui, session: &Session, look: &ViewState, commands: &mut Ve
     name(&response.response.on_hover_text("Simulated seconds a second"), "Speed");
 }
 
-fn timeline(ui: &mut Ui, session: &Session, look: &ViewState, commands: &mut Vec<Command>) {
-    let p = look.palette();
+fn timeline(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
+    let p = view_state.palette();
     let (mut time, length) = (session.frame().time, session.length().max(1e-3));
     // A narrow window keeps its room for the slider.
     let text = match ui.available_width() > 200.0 {
@@ -143,17 +143,17 @@ fn timeline(ui: &mut Ui, session: &Session, look: &ViewState, commands: &mut Vec
 }
 
 /// Laid out from the right.
-fn right_end(ui: &mut Ui, session: &Session, look: &ViewState, commands: &mut Vec<Command>) {
-    let p = look.palette();
-    let quiet = |text: &str| RichText::new(text.to_owned()).color(colour(p.dim));
-    let help = ui.add(egui::Button::new(quiet("?")).frame(false)).on_hover_text("Keys (F1)");
+fn right_end(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
+    let p = view_state.palette();
+    let dim = |text: &str| RichText::new(text.to_owned()).color(colour(p.dim));
+    let help = ui.add(egui::Button::new(dim("?")).frame(false)).on_hover_text("Keys (F1)");
     name(&help, "Help");
     if help.clicked() {
-        commands.push(Command::Help(!look.help));
+        commands.push(Command::Help(!view_state.help));
     }
-    let word = if look.theme == Theme::Dark { "Light" } else { "Dark" };
-    if ui.add(egui::Button::new(quiet(word)).frame(false)).on_hover_text("Light or dark (L)").clicked() {
-        commands.push(Command::Theme(other(look.theme)));
+    let word = if view_state.theme == Theme::Dark { "Light" } else { "Dark" };
+    if ui.add(egui::Button::new(dim(word)).frame(false)).on_hover_text("Light or dark (L)").clicked() {
+        commands.push(Command::Theme(other(view_state.theme)));
     }
     let record = egui::Button::new(RichText::new("     Record")).frame(false);
     let record = ui.add(record).on_hover_text("Write this run for the Rerun viewer (R)");
@@ -171,8 +171,8 @@ enum Icon {
     Right(f32),
 }
 
-fn icon(ui: &mut Ui, look: &ViewState, label: &str, tip: &str, parts: &[Icon]) -> Response {
-    let p = look.palette();
+fn icon(ui: &mut Ui, view_state: &ViewState, label: &str, tip: &str, parts: &[Icon]) -> Response {
+    let p = view_state.palette();
     let (rect, response) = ui.allocate_exact_size(vec2(28.0, 26.0), Sense::click());
     if response.hovered() || response.has_focus() {
         ui.painter().rect_filled(rect, 6.0, colour(p.line));
@@ -197,8 +197,8 @@ fn icon(ui: &mut Ui, look: &ViewState, label: &str, tip: &str, parts: &[Icon]) -
 }
 
 /// Asks for a file name.
-pub fn dialog(ctx: &egui::Context, look: &mut ViewState, commands: &mut Vec<Command>) {
-    let Some(mut dialog) = look.dialog.clone() else { return };
+pub fn dialog(ctx: &egui::Context, view_state: &mut ViewState, commands: &mut Vec<Command>) {
+    let Some(mut dialog) = view_state.dialog.clone() else { return };
     let (title, verb) = match dialog.purpose {
         Purpose::Open => ("Open a session", "Open"),
         Purpose::Save => ("Save the session", "Save"),
@@ -236,9 +236,9 @@ pub fn dialog(ctx: &egui::Context, look: &mut ViewState, commands: &mut Vec<Comm
                     ui.label(RichText::new("or drop a file on the window").weak());
                 }
             });
-            if let Some((text, true)) = &look.message {
+            if let Some((text, true)) = &view_state.message {
                 ui.label(RichText::new(text).color(ui.visuals().error_fg_color));
             }
         });
-    look.dialog = open.then_some(dialog);
+    view_state.dialog = open.then_some(dialog);
 }

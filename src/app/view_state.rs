@@ -80,9 +80,9 @@ pub struct ViewState {
     /// Past the band that serves the points, b turns them along.
     pub turn_task: bool,
     /// Motion of the base is exaggerated.
-    pub exaggerate: bool,
+    pub exaggerates_base: bool,
     /// How many times it takes for that motion to be seen.
-    pub seen_at: f64,
+    pub enough_exaggeration: f64,
     /// The b under the pointer in the chart of which b, rad.
     pub preview: Option<f64>,
     /// What was asked for last and refused.
@@ -115,8 +115,8 @@ impl ViewState {
             stroke: None,
             pushing: false,
             turn_task: false,
-            exaggerate: true,
-            seen_at: 1.0,
+            exaggerates_base: true,
+            enough_exaggeration: 1.0,
             preview: None,
             refused: None,
             message: None,
@@ -129,8 +129,8 @@ impl ViewState {
     }
 
     /// How many times the motion of the base is shown.
-    pub fn sway(&self) -> f64 {
-        if self.exaggerate { self.seen_at } else { 1.0 }
+    pub fn base_exaggeration(&self) -> f64 {
+        if self.exaggerates_base { self.enough_exaggeration } else { 1.0 }
     }
 
     /// The view in use.
@@ -145,10 +145,10 @@ impl ViewState {
 
 /// What a slider of b does: while time runs the machine follows; paused it is posed, as far as the points of the task
 /// stay where they are, or else with them.
-pub(super) fn set_b(session: &Session, look: &ViewState, b: f64) -> Edit {
+pub(super) fn set_b(session: &Session, view_state: &ViewState, b: f64) -> Edit {
     if session.is_playing() && session.is_at_end() {
         return Edit::SlideB { b };
     }
     let stays = |b: f64| session.serving(b).unwrap_or(b);
-    Edit::PoseB { b: if session.is_live() || look.turn_task { b } else { stays(b) } }
+    Edit::PoseB { b: if session.is_led() || view_state.turn_task { b } else { stays(b) } }
 }

@@ -23,46 +23,48 @@ pub fn show(
     ui: &mut Ui,
     session: &Session,
     views: &Views,
-    board: Option<&Comparison>,
-    look: &mut ViewState,
+    comparison: Option<&Comparison>,
+    view_state: &mut ViewState,
     commands: &mut Vec<Command>,
 ) {
     CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
         // The bar stands above the scene, so that it covers nothing of it.
         ui.spacing_mut().item_spacing.y = 0.0;
-        switch::bar(ui, look, commands);
+        switch::bar(ui, view_state, commands);
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         name(&response, "Scene: the machine, its reactionless workspace and its target");
         // What the pointer meets is what is seen.
-        let shown = exaggerated(session.frame(), look.sway());
-        let spot = Spot { rect, camera: *look.camera() };
-        if look.stroke.is_some() && look.view.shows_machine() {
-            draw(ui, &response, &spot, views, look, commands);
+        let shown = exaggerated(session.frame(), view_state.base_exaggeration());
+        let spot = Spot { rect, camera: *view_state.camera() };
+        if view_state.stroke.is_some() && view_state.view.shows_machine() {
+            draw(ui, &response, &spot, views, view_state, commands);
         } else {
-            point_at(ui, &response, &spot, (session, &shown), views, look, commands);
-            link_name(&response, &spot, (session, &shown), views, look);
-            move_camera(ui, &response, rect, look);
+            point_at(ui, &response, &spot, (session, &shown), views, view_state, commands);
+            link_name(&response, &spot, (session, &shown), views, view_state);
+            move_camera(ui, &response, rect, view_state);
         }
         let options = ViewOptions {
-            theme: look.theme,
-            dexterity: look.dexterity,
-            hot: look.grabbed.map(|grip| grip.handle).or(look.hot),
-            held: look.held,
-            preview_b: look.preview,
-            stroke: look.stroke.clone().unwrap_or_default(),
-            refused: look.refused.as_ref().and_then(|r| r.curve.clone()),
-            snapshots: if look.snapshots { snapshots(session) } else { Vec::new() },
-            others: board.map_or_else(Vec::new, |board| others(board, session.frame().time, look.sway())),
-            exaggeration: look.sway(),
+            theme: view_state.theme,
+            dexterity: view_state.dexterity,
+            hot: view_state.grabbed.map(|grip| grip.handle).or(view_state.hot),
+            held: view_state.held,
+            preview_b: view_state.preview,
+            stroke: view_state.stroke.clone().unwrap_or_default(),
+            refused: view_state.refused.as_ref().and_then(|r| r.curve.clone()),
+            snapshots: if view_state.snapshots { snapshots(session) } else { Vec::new() },
+            others: comparison.map_or_else(Vec::new, |comparison| {
+                others(comparison, session.frame().time, view_state.base_exaggeration())
+            }),
+            exaggeration: view_state.base_exaggeration(),
             push: force(session),
-            pin_forces: look.pins,
+            pin_forces: view_state.pins,
             invites: true,
             scale: None,
         };
-        let scene = Arc::new(views.scene(look.view, session.frame(), &options, look.camera()));
-        paint(ui, rect, &scene, look.camera());
-        words(ui, &Spot { rect, camera: *look.camera() }, &scene);
-        switch::corners(ui, rect, look, views, commands);
+        let scene = Arc::new(views.scene(view_state.view, session.frame(), &options, view_state.camera()));
+        paint(ui, rect, &scene, view_state.camera());
+        words(ui, &Spot { rect, camera: *view_state.camera() }, &scene);
+        switch::corners(ui, rect, view_state, views, commands);
     });
 }
 
@@ -75,7 +77,7 @@ const SNAPSHOTS: usize = 9;
 /// Poses at equal intervals of time: as planned, or as run where a hand leads.
 fn snapshots(session: &Session) -> Vec<DriveAngles> {
     let share = |i: usize| i as f64 / (SNAPSHOTS - 1) as f64;
-    if session.is_live() {
+    if session.is_led() {
         let frames = session.frames();
         let at = |i: usize| frames[(share(i) * (frames.len() - 1) as f64).round() as usize].q;
         return (0..SNAPSHOTS).map(at).collect();
@@ -85,12 +87,12 @@ fn snapshots(session: &Session) -> Vec<DriveAngles> {
 }
 
 /// The runs that are laid over, at a time, s, the motion of their bases so many times as far.
-fn others(board: &Comparison, time: f64, times: f64) -> Vec<Other> {
+fn others(comparison: &Comparison, time: f64, times: f64) -> Vec<Other> {
     let other = |(i, run): (usize, &crate::study::comparison::Compared)| {
         let frame = exaggerated(run.at(time)?, times);
         Some(Other { name: (i + 1).to_string(), q: frame.q, base: frame.base })
     };
-    board.shown().filter_map(other).collect()
+    comparison.shown().filter_map(other).collect()
 }
 
 /// What pushes at the end effector, N, as far as it is known of the instant on display.
@@ -105,31 +107,31 @@ fn point_at(
     spot: &Spot,
     (session, frame): (&Session, &Instant),
     views: &Views,
-    look: &mut ViewState,
+    view_state: &mut ViewState,
     commands: &mut Vec<Command>,
 ) {
-    let view = look.view;
+    let view = view_state.view;
     // A hand pushes with Alt, or while its tool is taken up.
-    let pushes = view.shows_machine() && (look.pushing || ui.input(|i| i.modifiers.alt));
+    let pushes = view.shows_machine() && (view_state.pushing || ui.input(|i| i.modifiers.alt));
     let under = |pos: Pos2| match pushes {
         true => views.pick_tip(frame, &spot.pointer(pos)),
         false => views.pick(view, frame, &spot.pointer(pos)),
     };
-    if look.grabbed.is_none() {
-        look.hot = response.hover_pos().and_then(under).map(|grip| grip.handle);
+    if view_state.grabbed.is_none() {
+        view_state.hot = response.hover_pos().and_then(under).map(|grip| grip.handle);
     }
     if response.drag_started_by(PointerButton::Primary) {
         // A drag begins where the button went down, not where it was noticed.
-        look.grabbed = ui.input(|i| i.pointer.press_origin()).and_then(under);
-        look.force = Some(session.scenario().plant.force);
+        view_state.grabbed = ui.input(|i| i.pointer.press_origin()).and_then(under);
+        view_state.force = Some(session.scenario().plant.force);
     }
-    let ask = |grip, pos: Pos2, look: &mut ViewState| {
+    let ask = |grip, pos: Pos2, view_state: &mut ViewState| {
         let edit = match views.aim(view, &grip, frame, &spot.pointer(pos), session.b_aim())? {
             Aim::Target([x, y]) => {
-                look.held = Some([x, y]);
+                view_state.held = Some([x, y]);
                 Edit::DragTarget { x, y }
             }
-            Aim::B(b) => set_b(session, look, b),
+            Aim::B(b) => set_b(session, view_state, b),
             Aim::Push([x, y]) => {
                 let [now_x, now_y] = session.scenario().plant.force;
                 if (x - now_x).hypot(y - now_y) < LEAST_PUSH {
@@ -138,52 +140,52 @@ fn point_at(
                 Edit::Push { x, y }
             }
             Aim::Waypoint(i, [x, y]) => {
-                look.held = Some([x, y]);
+                view_state.held = Some([x, y]);
                 Edit::SetTask { change: session.scenario().task.moving(i, Vector::new(x, y))? }
             }
         };
         Some(Command::Edit(edit))
     };
-    if let Some(grip) = look.grabbed {
+    if let Some(grip) = view_state.grabbed {
         ui.ctx().set_cursor_icon(cursor(grip.handle, true));
         // The last movement may come together with the release.
         let pushes = grip.handle == Handle::EndEffector;
         // A hand that pushes a machine in motion pulls on while it holds still.
         let pulls = pushes && session.is_moving();
-        let moved = response.drag_delta() != Vec2::ZERO || (look.dragged && response.drag_stopped()) || pulls;
+        let moved = response.drag_delta() != Vec2::ZERO || (view_state.dragged && response.drag_stopped()) || pulls;
         if let Some(pos) = response.interact_pointer_pos().filter(|_| moved) {
-            commands.extend(ask(grip, pos, look));
+            commands.extend(ask(grip, pos, view_state));
             if pushes && !session.is_playing() {
                 commands.push(Command::TogglePlay);
             }
         }
         let let_go = ui.input(|i| i.key_pressed(egui::Key::Escape));
         if response.drag_stopped() || let_go {
-            look.grabbed = None;
-            if pushes && look.dragged {
+            view_state.grabbed = None;
+            if pushes && view_state.dragged {
                 // Back to the force that was there before the hand.
-                let [x, y] = look.force.take().unwrap_or_default();
+                let [x, y] = view_state.force.take().unwrap_or_default();
                 commands.push(Command::Edit(Edit::Push { x, y }));
             }
             commands.push(Command::EndGesture);
-            if let_go && look.dragged {
+            if let_go && view_state.dragged {
                 commands.push(Command::Undo);
             }
-            look.dragged = false;
+            view_state.dragged = false;
         }
-    } else if let Some(hot) = look.hot {
+    } else if let Some(hot) = view_state.hot {
         ui.ctx().set_cursor_icon(cursor(hot, false));
     }
     // A bar needs no dragging: a click chooses.
     if let Some(pos) = response.interact_pointer_pos().filter(|_| response.clicked_by(PointerButton::Primary))
         && let Some(grip) = under(pos).filter(|grip| grip.handle == Handle::Bar)
-        && let Some(edit) = ask(grip, pos, look)
+        && let Some(edit) = ask(grip, pos, view_state)
     {
         commands.extend([edit, Command::EndGesture]);
     }
     let task = &session.scenario().task;
     // Twice in the open: one more point of the path.
-    let twice = response.double_clicked_by(PointerButton::Primary) && look.hot.is_none() && view.shows_machine();
+    let twice = response.double_clicked_by(PointerButton::Primary) && view_state.hot.is_none() && view.shows_machine();
     if let Some(pos) = response.interact_pointer_pos().filter(|_| twice)
         && let Some([x, y]) = spot.pointer(pos).ray().and_then(|ray| ray.at_height(views.stage().handle_height()))
         && let Some(change) = task.adding(Vector::new(x, y))
@@ -192,14 +194,14 @@ fn point_at(
     }
     let typing = ui.ctx().egui_wants_keyboard_input();
     let out = !typing && ui.input(|i| i.key_pressed(egui::Key::Delete) || i.key_pressed(egui::Key::Backspace));
-    if let (Some(Handle::Waypoint(i)), None, true) = (look.hot, look.grabbed, out)
+    if let (Some(Handle::Waypoint(i)), None, true) = (view_state.hot, view_state.grabbed, out)
         && let Some(change) = task.removing(i)
     {
         commands.extend([Command::Edit(Edit::SetTask { change }), Command::EndGesture]);
-        look.hot = None;
+        view_state.hot = None;
     }
-    if look.grabbed.is_none() {
-        look.held = None;
+    if view_state.grabbed.is_none() {
+        view_state.held = None;
     }
 }
 
@@ -209,9 +211,9 @@ fn link_name(
     spot: &Spot,
     (session, frame): (&Session, &Instant),
     views: &Views,
-    look: &ViewState,
+    view_state: &ViewState,
 ) {
-    let free = look.view.shows_machine() && look.hot.is_none() && look.grabbed.is_none();
+    let free = view_state.view.shows_machine() && view_state.hot.is_none() && view_state.grabbed.is_none();
     let Some(pos) = response.hover_pos().filter(|_| free && !response.dragged()) else { return };
     let machine = &session.scenario().machine;
     let Some(i) = views.link_at(frame, &spot.pointer(pos)) else { return };
@@ -227,11 +229,11 @@ fn draw(
     response: &egui::Response,
     spot: &Spot,
     views: &Views,
-    look: &mut ViewState,
+    view_state: &mut ViewState,
     commands: &mut Vec<Command>,
 ) {
     ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
-    let Some(stroke) = &mut look.stroke else { return };
+    let Some(stroke) = &mut view_state.stroke else { return };
     let place = |pos| spot.pointer(pos).ray()?.at_height(views.stage().handle_height());
     if response.drag_started_by(PointerButton::Primary) {
         stroke.clear();
@@ -259,16 +261,16 @@ fn cursor(handle: Handle, held: bool) -> CursorIcon {
     }
 }
 
-fn move_camera(ui: &Ui, response: &egui::Response, rect: Rect, look: &mut ViewState) {
+fn move_camera(ui: &Ui, response: &egui::Response, rect: Rect, view_state: &mut ViewState) {
     let height = f64::from(rect.height().max(1.0));
     let delta = response.drag_delta();
-    if look.grabbed.is_none() && delta != Vec2::ZERO {
+    if view_state.grabbed.is_none() && delta != Vec2::ZERO {
         let (x, y) = (f64::from(delta.x) / height, f64::from(delta.y) / height);
         let aspect = f64::from(rect.width()) / height;
-        let pans = look.view == ViewKind::Flat
+        let pans = view_state.view == ViewKind::Flat
             || !response.dragged_by(PointerButton::Primary)
             || ui.input(|i| i.modifiers.shift);
-        let camera = look.camera_mut();
+        let camera = view_state.camera_mut();
         if pans {
             camera.pan(x, y, aspect);
         } else {
@@ -281,7 +283,7 @@ fn move_camera(ui: &Ui, response: &egui::Response, rect: Rect, look: &mut ViewSt
         if (factor - 1.0).abs() > 1e-6 {
             let place = (pos - rect.min) / rect.size();
             let aspect = f64::from(rect.width() / rect.height().max(1.0));
-            look.camera_mut().zoom(factor, [f64::from(place.x), f64::from(place.y)], aspect);
+            view_state.camera_mut().zoom(factor, [f64::from(place.x), f64::from(place.y)], aspect);
         }
     }
 }

@@ -93,7 +93,7 @@ impl Row<'_> {
     /// A slider alone.
     pub fn slider(&self, ui: &mut Ui, value: &mut f64, logarithmic: bool) -> Response {
         ui.spacing_mut().slider_width = ui.available_width();
-        // The knob's size follows the row's height.
+        // The field's size follows the row's height.
         ui.spacing_mut().interact_size.y = 15.0;
         let slider = Slider::new(value, self.range.clone()).clamping(SliderClamping::Edits).show_value(false);
         let slider = ui.add(slider.smart_aim(false).logarithmic(logarithmic));

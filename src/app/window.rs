@@ -47,7 +47,7 @@ pub enum WindowError {
 pub fn run(scenario: Scenario, theme: Theme) -> Result<(), WindowError> {
     check_libraries()?;
     let mut app_state = AppState::open_or_explain(scenario, theme)?;
-    if app_state.look().message.is_none() && app_state.session().run().waiting().is_none() {
+    if app_state.view_state().message.is_none() && app_state.session().run().waiting().is_none() {
         app_state.carry_out(Command::TogglePlay);
     }
     let event_loop = EventLoop::<eframe::UserEvent>::with_user_event()

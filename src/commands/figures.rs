@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::Args;
-use stillbase::app::{AppState, Command, OnBoard};
+use stillbase::app::{AppState, Command, ComparisonCommand};
 use stillbase::files::write_new;
 use stillbase::picture::canvas::Canvas;
 use stillbase::picture::render::offscreen::Picture;
@@ -54,7 +54,7 @@ impl Figures {
             self.window(name, &mut app_state)?;
         }
         let mut ways = opened("case-1", Theme::Dark, ViewKind::Flat, 0.62)?;
-        let over = [0, 2].map(|row| Command::Board(OnBoard::Show(row, true)));
+        let over = [0, 2].map(|row| Command::Comparison(ComparisonCommand::Show(row, true)));
         [Command::Compare(true), Command::Snapshots(true)].into_iter().chain(over).for_each(|c| ways.carry_out(c));
         self.window("compare-dark.png", &mut ways)?;
         let mut machines = opened("case-3", Theme::Dark, ViewKind::Flat, 0.62)?;

@@ -165,7 +165,7 @@ impl Import {
                             break;
                         }
                         Ok(proposal) => {
-                            answer.reason = Some(judge.not_quiet(&proposal, answer.given.as_ref()));
+                            answer.reason = Some(judge.why_not_reactionless(&proposal, answer.given.as_ref()));
                         }
                         Err(why) => answer.reason = Some(why),
                     }

@@ -135,13 +135,13 @@ impl Sine {
 }
 
 /// What a run is asked about.
-struct Tally {
+struct Extremes {
     pins: Vec<PinPeak>,
     pairs: Vec<Sine>,
     tilt: [Option<Extreme>; 3],
 }
 
-impl Tally {
+impl Extremes {
     fn new(pins: usize, pairs: usize) -> Self {
         Self { pins: vec![PinPeak::default(); pins], pairs: vec![Sine::default(); pairs], tilt: [None; 3] }
     }
@@ -175,7 +175,7 @@ impl JointsCommand {
             check_new(file, self.force)?;
         }
         let n = machine.drives();
-        let mut totals = Tally::new(pins.len(), Inertia::pairs(n).count());
+        let mut totals = Extremes::new(pins.len(), Inertia::pairs(n).count());
         let (mut csv, mut written) = (None, Ok(()));
         let columns = if self.output.is_some() { 2 * pins.len() + 3 } else { 0 };
         let run = replay_if(
@@ -221,7 +221,7 @@ fn row(frame: &Frame, pins: usize) -> impl Iterator<Item = Option<f64>> {
     [Some(frame.time)].into_iter().chain(forces).chain([Some(tilt.re), Some(tilt.im)])
 }
 
-fn answer(scenario: &str, last: &Frame, machine: &Machine, joints: &Joints, totals: &Tally) -> Answer {
+fn answer(scenario: &str, last: &Frame, machine: &Machine, joints: &Joints, totals: &Extremes) -> Answer {
     let axial = AxialMoments::of(machine);
     let link = |j: usize| machine.links()[j].name.clone();
     let pin = |(pin, seen): (&Pin, &PinPeak)| PinAnswer {

@@ -16,7 +16,7 @@ use stillbase::planning::reactionless::BSet;
 use stillbase::planning::timing::TimeLaw;
 use stillbase::session::scenario::{Change, Scenario, Task, TaskKind};
 use stillbase::session::{Refusal, Run, settled};
-use stillbase::simulation::plant::Plant;
+use stillbase::simulation::plant::PlantDifferences;
 
 use super::exit::say;
 use super::failure::Failure;
@@ -374,7 +374,7 @@ impl Plan {
         if self.base.is_some() && task.kind != TaskKind::ChangeB {
             return Err(no_use("--base", "the kind change-b: only a change of b turns the base"));
         }
-        if scenario.plant != Plant::default() || scenario.base.moves() {
+        if scenario.plant != PlantDifferences::default() || scenario.base.moves() {
             say("note: a plan is of the model; what differs in the plant or the base shows in `simulate`");
         }
         Ok(())

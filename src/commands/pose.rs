@@ -69,7 +69,7 @@ impl Row {
             det: dexterity.det,
             manipulability: dexterity.manipulability,
             worst_torque_per_force: dexterity.worst_torque_per_force,
-            transmission: map.transmission(pose.a),
+            transmission: map.least_transmission(pose.a),
             side: map.sines(pose.a).map(sign),
         }
     }

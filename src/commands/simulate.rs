@@ -100,7 +100,7 @@ impl Outcome {
             rms_moment_past_wheel: verdict.past_wheel.map(|_| totals.moment_rms()),
             peak_tilt: verdict.tilt,
             base_shift: totals.shift,
-            base_tilt: totals.tilt,
+            base_tilt: totals.base_angle,
             miss: verdict.miss,
             sentence: verdict.sentence(),
             remarks: verdict.remarks().into_iter().map(|r| r.long).collect(),

@@ -75,6 +75,6 @@ pub fn two_link_rates(ck: f64, cl: f64, ek: Vector, el: Vector, v: Vector) -> Op
 }
 
 /// How well force passes through the parallelograms: min |sin(q_k − q_l)| over the pairs, 0 at a change point.
-pub fn transmission(e: &Units, n: usize) -> f64 {
+pub fn least_transmission(e: &Units, n: usize) -> f64 {
     crate::mechanics::machine::Inertia::pairs(n).fold(1.0, |m, (k, l)| m.min(cross(e[k], e[l]).abs()))
 }

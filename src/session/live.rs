@@ -190,7 +190,7 @@ impl Session {
     /// Length of the time line, s: the planned motion, or as far as the run has got.
     pub fn length(&self) -> f64 {
         let done = self.run.simulation().time();
-        if self.is_live() { done } else { done.max(self.run.planned_time()) }
+        if self.is_led() { done } else { done.max(self.run.planned_time()) }
     }
 
     /// The pose constant that the machine is sent to, rad; on display, if it was scrubbed back, what it was then.
@@ -214,7 +214,7 @@ impl Session {
     }
 
     /// Whether somebody has led the machine off its planned motion.
-    pub fn is_live(&self) -> bool {
+    pub fn is_led(&self) -> bool {
         self.document.script.is_led()
     }
 
@@ -237,7 +237,7 @@ impl Session {
     /// Shows an instant, s, as far as the run has got or the planned motion goes.
     pub fn seek(&mut self, time: f64) {
         let step = (time / self.scenario().step).round().max(0.0) as usize;
-        if !self.is_live() {
+        if !self.is_led() {
             let planned = (self.run.planned_time() / self.scenario().step - 1e-6).ceil() as usize;
             while self.frames.len() <= step.min(planned) && self.has_room() {
                 self.advance_run();
@@ -316,9 +316,9 @@ impl Session {
     fn concerns_now(&self, edit: &Edit) -> bool {
         match edit {
             Edit::DragTarget { .. } | Edit::SlideB { .. } | Edit::Push { .. } => true,
-            Edit::PoseB { .. } => self.is_live(),
+            Edit::PoseB { .. } => self.is_led(),
             // Whoever leads the machine finds other limits where he is.
-            edit if edit.sets_limits() && self.is_live() && self.run.waiting().is_none() => true,
+            edit if edit.sets_limits() && self.is_led() && self.run.waiting().is_none() => true,
             // The path that the machine is on cannot change its time, nor can it move to another base.
             edit if edit.is_of_the_whole() => false,
             // A slider that set the machine in motion goes on as it began.
@@ -401,7 +401,7 @@ impl Session {
         let mut document = self.document.clone();
         let mut script: Vec<TimedEdit> =
             self.edits.iter().filter(|e| !e.edit.is_replaced_by(&timed.edit)).cloned().collect();
-        if matches!(timed.edit, Edit::SetTask { .. }) && self.is_live() {
+        if matches!(timed.edit, Edit::SetTask { .. }) && self.is_led() {
             // To plan is to take the machine back from the hand that led it. What was set on the way stays.
             let mut kept: Vec<TimedEdit> = Vec::with_capacity(script.len());
             for e in script.drain(..).filter(|e| !e.edit.leads()) {
@@ -522,7 +522,7 @@ impl Session {
     fn return_to(&mut self, document: &Document) -> Result<(), Refusal> {
         self.restore(document.clone(), true)?;
         self.playing = false;
-        if self.is_live() {
+        if self.is_led() {
             self.cursor = self.frames.len() - 1;
         }
         Ok(())

@@ -2,6 +2,7 @@
 
 mod changes;
 mod edit;
+mod edit_check;
 mod live;
 mod planner;
 mod refusal;
@@ -9,13 +10,12 @@ mod replay;
 mod run;
 pub mod scenario;
 mod script;
-mod survey;
 pub mod verdict;
 
 pub use edit::{Edit, TimedEdit};
+pub(crate) use edit_check::check_edits;
 pub use live::Session;
 pub use planner::{Plan, curves};
 pub use refusal::Refusal;
 pub use replay::{felt, replay, replay_if, settled};
 pub use run::{Run, Waiting};
-pub(crate) use survey::survey;

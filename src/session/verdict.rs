@@ -4,7 +4,7 @@
 //! | quantity | is |
 //! |---|---|
 //! | n_B, f_B | what the arm transmits to its base: by these it is called reactionless |
-//! | moment past the wheel | what is left of n_B for the base once a reaction wheel has taken its part: by this the base is quiet |
+//! | moment past the wheel | what is left of n_B for the base once a reaction wheel has taken its part: by this the base feels nothing |
 
 use crate::session::scenario::Scenario;
 use crate::settings::number::significant;
@@ -29,7 +29,7 @@ pub struct Verdict {
     /// Whether the arm transmits nothing: neither n_B nor dynamic f_B.
     pub reactionless: bool,
     /// Whether the base feels nothing, past a reaction wheel if it has one.
-    pub quiet: bool,
+    pub base_feels_nothing: bool,
     /// Whether the arm has moved at all.
     pub moved: bool,
     /// Largest |n_B|, N m.
@@ -67,7 +67,7 @@ impl Verdict {
         let name = |i: usize| scenario.machine.angles().get(i).map_or_else(String::new, |a| a.name.clone());
         Self {
             reactionless: peaks.is_reactionless(),
-            quiet: peaks.is_quiet(),
+            base_feels_nothing: peaks.base_feels_nothing(),
             moved: peaks.rate > STILL,
             arm_moment: peaks.arm_moment,
             past_wheel: scenario.base.wheel.map(|_| peaks.moment),
@@ -88,15 +88,15 @@ impl Verdict {
 
     /// Whether the base was left alone, by the arm or by a wheel.
     pub fn is_good(&self) -> bool {
-        self.fault.is_none() && (self.reactionless || self.quiet)
+        self.fault.is_none() && (self.reactionless || self.base_feels_nothing)
     }
 
-    /// `reactionless`, `not reactionless`, `quiet past the wheel`, or `untrusted`.
+    /// `reactionless`, `not reactionless`, `reactionless past the wheel`, or `untrusted`.
     pub fn word(&self) -> &'static str {
-        match (&self.fault, self.reactionless, self.quiet) {
+        match (&self.fault, self.reactionless, self.base_feels_nothing) {
             (Some(_), ..) => "untrusted",
             (None, true, _) => "reactionless",
-            (None, false, true) => "quiet past the wheel",
+            (None, false, true) => "reactionless past the wheel",
             (None, false, false) => "not reactionless",
         }
     }
@@ -130,7 +130,7 @@ impl Verdict {
         if over && !self.moved {
             add("never moved", "the arm never moved, so this says nothing of how it moves".into());
         }
-        if let Some(left) = self.past_wheel.filter(|_| self.quiet && !self.reactionless) {
+        if let Some(left) = self.past_wheel.filter(|_| self.base_feels_nothing && !self.reactionless) {
             let all = significant(self.arm_moment);
             let long = format!(
                 "the arm transmits up to {all} N m; the wheel takes it up and leaves {} N m",

@@ -36,6 +36,12 @@ pub fn covers(later: &Table, earlier: &Table) -> bool {
     })
 }
 
+/// The change that takes out every key of a value, whatever keys it has: [`with`] makes all of it default.
+pub fn to_defaults<T: Serialize>(value: &T) -> Table {
+    let table = Table::try_from(value).unwrap_or_default();
+    table.into_iter().map(|(key, _)| (key, DEFAULT.into())).collect()
+}
+
 /// A change of one key, its parts joined by dots.
 pub fn one(key: &str, value: impl Into<Value>) -> Table {
     match key.split_once('.') {

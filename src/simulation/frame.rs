@@ -135,7 +135,7 @@ impl Frame {
     }
 
     /// Whether the base feels nothing at this instant, by the measure of the run's peaks.
-    pub fn is_quiet(&self) -> bool {
+    pub fn base_feels_nothing(&self) -> bool {
         self.felt_moment().abs() <= self.peaks.no_moment().max(1e-15)
             && self.wrench.dynamic.force.norm() <= self.peaks.no_force().max(1e-15)
     }

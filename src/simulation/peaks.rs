@@ -78,7 +78,7 @@ impl Peaks {
     }
 
     /// What the base feels, past a reaction wheel if it has one, by the same measure.
-    pub fn is_quiet(&self) -> bool {
+    pub fn base_feels_nothing(&self) -> bool {
         self.moment <= self.no_moment() && self.force <= self.no_force()
     }
 }

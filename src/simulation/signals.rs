@@ -138,7 +138,9 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
             |f| f.dexterity.worst_torque_per_force,
         ),
         ("transmission/least", "min |sin|", "least |sin(q_k − q_l)|, 0 at a change point", "1", |f| f.transmission),
-        ("reactionless/now", "quiet", "1 while the base feels nothing", "1", |f| f64::from(u8::from(f.is_quiet()))),
+        ("reactionless/now", "reactionless", "1 while the base feels nothing", "1", |f| {
+            f64::from(u8::from(f.base_feels_nothing()))
+        }),
     ];
     for (path, symbol, label, unit, value) in whole {
         table.push(Signal {
@@ -183,7 +185,7 @@ fn inside(machine: &Machine) -> Vec<Signal> {
         let symbol = format!("|sin(q{} − q{})|", subscript(k + 1), subscript(l + 1));
         let label = format!("transmission of drives {a} and {b}, 0 at a change point");
         let value = Quantity::PerIndex(MAX_DRIVES * k + l, |f, pair| {
-            joint_forces::transmission(&f.q.units(), pair / MAX_DRIVES, pair % MAX_DRIVES)
+            joint_forces::pair_transmission(&f.q.units(), pair / MAX_DRIVES, pair % MAX_DRIVES)
         });
         add(format!("transmission/{pair}"), symbol, label, "1", None, value);
     }

@@ -23,7 +23,7 @@ pub struct Totals {
     /// Largest |p_B|, m.
     pub shift: f64,
     /// Largest |θ|, rad.
-    pub tilt: f64,
+    pub base_angle: f64,
     /// Largest |Ω| of a reaction wheel, rad/s.
     pub wheel_rate: f64,
     /// ∫ Ω dt of a reaction wheel, rad.
@@ -64,7 +64,7 @@ impl Totals {
         self.energy += h * (now.power + was.power);
         self.wheel_turn += h * (now.wheel + was.wheel);
         self.shift = self.shift.max(x.base.at.norm());
-        self.tilt = self.tilt.max(x.base.angle.abs());
+        self.base_angle = self.base_angle.max(x.base.angle.abs());
         self.wheel_rate = self.wheel_rate.max(x.spin.rate.abs());
         if x.spin.saturated && self.saturated.is_none() {
             self.saturated = Some(time);

@@ -81,7 +81,7 @@ fn name_file(h: &mut Desktop, what: Ask, path: &Path) {
 /// What the window says, if it is good news.
 #[track_caller]
 fn done(h: &Desktop, words: &str) {
-    let (said, bad) = h.state().app_state().look().message.clone().expect("it is said");
+    let (said, bad) = h.state().app_state().view_state().message.clone().expect("it is said");
     assert!(!bad && said.contains(words), "{said:?} does not say {words:?}");
     assert!(h.query_by_label("File name").is_none(), "the dialog has gone");
 }
@@ -90,7 +90,7 @@ fn done(h: &Desktop, words: &str) {
 #[track_caller]
 fn refused(h: &Desktop, words: &str, dialog: bool) {
     let (said, bad) =
-        h.state().app_state().look().message.clone().unwrap_or_else(|| panic!("nothing said about {words:?}"));
+        h.state().app_state().view_state().message.clone().unwrap_or_else(|| panic!("nothing said about {words:?}"));
     assert!(bad && said.contains(words), "{said:?} does not say {words:?}");
     assert!(h.query_by_label(&said).is_some(), "{said} is on the screen");
     assert_eq!(h.query_by_label("File name").is_some(), dialog, "{said}");
@@ -284,7 +284,7 @@ fn a_dialog_that_is_left_does_nothing() {
             h.run_steps(3);
             assert!(h.query_by_label("File name").is_none(), "{what:?}");
             assert_eq!(session(&h).to_scenario(), before);
-            assert!(h.state().app_state().look().message.is_none());
+            assert!(h.state().app_state().view_state().message.is_none());
         }
     }
     assert!(folder.names().is_empty());

@@ -50,7 +50,7 @@ fn seen(h: &Desktop, point: [f64; 3]) -> egui::Pos2 {
     let rect = h.get_by_label_contains("Scene:").rect();
     let desk = h.state().app_state();
     let aspect = f64::from(rect.width() / rect.height());
-    let [u, v] = desk.look().camera().project(point, aspect).expect("in front of the eye");
+    let [u, v] = desk.view_state().camera().project(point, aspect).expect("in front of the eye");
     rect.min + egui::vec2(u as f32 * rect.width(), v as f32 * rect.height())
 }
 

@@ -10,13 +10,15 @@ use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::pointer::Pointer;
 use stillbase::picture::scene::views::ViewKind;
 use stillbase::session::scenario::Scenario;
-use stillbase::simulation::plant::{Base, BaseKind, Each, Plant};
+use stillbase::simulation::control::Control;
+use stillbase::simulation::plant::{Base, BaseKind, Each, PlantDifferences};
 
 use super::{Desktop, desk, desk_of, hold, on_screen, seen, session};
 use crate::Test;
 
 pub const TESTS: &[Test] = tests![
     what_differs_is_set_and_taken_back,
+    every_setting_goes_back_to_normal,
     a_link_that_differs_is_named,
     a_base_that_moves_is_seen_to_move,
     lamps_tell_the_audit,
@@ -54,9 +56,54 @@ fn what_differs_is_set_and_taken_back() {
     assert_eq!(session(&h).scenario().plant.friction.coulomb, Each::All(0.0));
     h.get_by_label("Plant back to normal").click();
     h.run_steps(2);
-    assert_eq!(session(&h).scenario().plant, Plant::default());
+    assert_eq!(session(&h).scenario().plant, PlantDifferences::default());
     assert!(h.query_by_label("payload").is_some(), "it does not fold under the hand");
     assert!(h.query_by_label_contains("Friction over time").is_none());
+}
+
+/// Whatever keys plant, base and control have, each section takes all of them back. A field that is added fails to
+/// compile here until it has a value that is not its default.
+fn every_setting_goes_back_to_normal() {
+    let mut scenario = Scenario::builtin("case-3").expect("built in");
+    let plant: PlantDifferences = toml::from_str(
+        "torque_limits = true\nforce = [1.0, 0.0]\npayload.mass = 0.2\nfriction.viscous = 0.01\nlength.l1 = 0.51\n\
+         link.5.mass = 1.1",
+    )
+    .expect("a plant");
+    let base: Base = toml::from_str(
+        "kind = \"compliant\"\nmass = 30.0\ninertia = 2.0\ncom = [0.1, 0.0]\nstiffness = [1e4, 1e4, 1e3]\n\
+         damping = [100.0, 100.0, 5.0]\nwheel.inertia = 0.02",
+    )
+    .expect("a base");
+    let control: Control = toml::from_str(
+        "law = \"pd\"\nkp = 300.0\nkd = 30.0\nknows_base = false\nrate = 200.0\ndelay = 0.002\nencoder = 4096.0",
+    )
+    .expect("control");
+    {
+        let normal = PlantDifferences::default();
+        let PlantDifferences { torque_limits, force, payload, friction, length, link } = &plant;
+        assert!(*torque_limits != normal.torque_limits && *force != normal.force && *payload != normal.payload);
+        assert!(*friction != normal.friction && *length != normal.length && *link != normal.link);
+        let normal = Base::default();
+        let Base { kind, mass, inertia, com, stiffness, damping, wheel } = base;
+        assert!(kind != normal.kind && mass != normal.mass && inertia != normal.inertia && com != normal.com);
+        assert!(stiffness != normal.stiffness && damping != normal.damping && wheel != normal.wheel);
+        let normal = Control::default();
+        let Control { law, kp, kd, knows_base, rate, delay, encoder } = control;
+        assert!(law != normal.law && kp != normal.kp && kd != normal.kd && knows_base != normal.knows_base);
+        assert!(rate != normal.rate && delay != normal.delay && encoder != normal.encoder);
+    }
+    (scenario.plant, scenario.base, scenario.control) = (plant, base, control);
+    let mut h = desk_of(scenario, Theme::Dark, 1700.0);
+    h.step();
+    for section in ["Plant", "Base", "Control"] {
+        h.get_by_label(&format!("{section} back to normal")).click();
+        h.run_steps(2);
+    }
+    let now = session(&h).scenario();
+    assert_eq!(now.plant, PlantDifferences::default());
+    assert_eq!(now.base, Base::default());
+    assert_eq!(now.control, Control::default());
 }
 
 /// A link and a length that differ show what they would be in the model.
@@ -89,15 +136,19 @@ fn a_base_that_moves_is_seen_to_move() {
     h.run_steps(2);
     assert_eq!(session(&h).scenario().base.kind, BaseKind::Free);
     assert!(h.query_by_label_contains("Base over time").is_some());
-    let foreseen = h.state().app_state().look().sway();
+    let foreseen = h.state().app_state().view_state().base_exaggeration();
     h.get_by_label("Play").click();
     h.run_steps(70);
     let f = *session(&h).frame();
     assert!(f.base.angle.abs() > 1e-3, "{:?}", f.base);
-    assert_eq!(h.state().app_state().look().sway(), foreseen, "known before it plays, so that nothing jumps");
-    let moved = foreseen * (f.totals.shift + f.totals.tilt * 1.26);
+    assert_eq!(
+        h.state().app_state().view_state().base_exaggeration(),
+        foreseen,
+        "known before it plays, so that nothing jumps"
+    );
+    let moved = foreseen * (f.totals.shift + f.totals.base_angle * 1.26);
     assert!((0.04..0.13).contains(&moved), "{moved} m is seen, {foreseen} times");
-    // The ring's knob is where it is drawn, and pulling it there asks for the same b.
+    // The ring's field is where it is drawn, and pulling it there asks for the same b.
     let shown = exaggerated(&f, foreseen);
     let stage = h.state().app_state().stage().clone();
     let at = stage.handle(Handle::Ring, &shown).expect("three drives");
@@ -105,7 +156,7 @@ fn a_base_that_moves_is_seen_to_move() {
     assert!((b - f.b_reference).abs() < 1e-12);
     h.key_press(Key::X);
     h.run_steps(2);
-    assert_eq!(h.state().app_state().look().sway(), 1.0);
+    assert_eq!(h.state().app_state().view_state().base_exaggeration(), 1.0);
     h.get_by_label("Base back to normal").click();
     h.run_steps(2);
     assert_eq!(session(&h).scenario().base, Base::default());
@@ -142,7 +193,7 @@ fn tolerances_are_shown_and_set() {
     assert!(h.query_by_label_contains("keep within limits").is_some());
     h.key_press(Key::C);
     h.run_steps(2);
-    assert!(h.query_by_label_contains("Histogram").is_none() && h.state().app_state().board().is_some());
+    assert!(h.query_by_label_contains("Histogram").is_none() && h.state().app_state().comparison().is_some());
     h.key_press(Key::I);
     h.run_steps(2);
     assert!(h.query_by_label_contains("Pin forces over time").is_some());
@@ -195,7 +246,7 @@ fn lists_close_and_links_are_named() {
         h.key_press(Key::Escape);
         h.run_steps(3);
         assert!(!egui::Popup::is_any_open(&h.ctx), "{list} closes");
-        assert!(h.state().app_state().look().pushing, "Esc was for the list");
+        assert!(h.state().app_state().view_state().pushing, "Esc was for the list");
     }
     h.key_press(Key::U);
     let frame = *session(&h).frame();
@@ -208,7 +259,7 @@ fn lists_close_and_links_are_named() {
         let alone = free.map(|p| seen(&h, p)).find(|at| {
             let scene = h.get_by_label_contains("Scene:").rect();
             let pair = |v: egui::Vec2| [f64::from(v.x), f64::from(v.y)];
-            let camera = *h.state().app_state().look().camera();
+            let camera = *h.state().app_state().view_state().camera();
             let pointer = Pointer { camera, size: pair(scene.size()), at: pair(*at - scene.min) };
             let views = h.state().app_state().views();
             views.link_at(&frame, &pointer) == Some(i) && views.pick(ViewKind::Flat, &frame, &pointer).is_none()

@@ -97,7 +97,7 @@ fn waypoints_are_handles() {
     let (from, to) = (on_screen(&h, 0.50, 0.50) + letter, on_screen(&h, 0.45, 0.45));
     drag(&mut h, from, to);
     assert!((points(&h)[0].re - 0.45).abs() < 2e-3 && (points(&h)[0].im - 0.45).abs() < 2e-3, "{:?}", points(&h));
-    assert!(!session(&h).is_live(), "nobody leads the machine");
+    assert!(!session(&h).is_led(), "nobody leads the machine");
     assert!((session(&h).frame().end_effector - points(&h)[0]).norm() < 1e-9, "it waits at A");
     // Each drag is one undo.
     h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
@@ -146,7 +146,7 @@ fn a_path_is_drawn_by_hand() {
     let task = &session(&h).scenario().task;
     assert_eq!(task.shape(), stillbase::session::scenario::Shape::Freehand);
     assert!(task.points().len() > 20, "{}", task.points().len());
-    assert!(h.state().app_state().look().stroke.is_none(), "the pencil is laid down");
+    assert!(h.state().app_state().view_state().stroke.is_none(), "the pencil is laid down");
     h.get_by_label("Play").click();
     h.run_steps(70);
     let f = session(&h).frame();
@@ -167,7 +167,7 @@ fn a_hand_pushes_the_end_effector() {
     let (from, to) = (on_screen(&h, tip.re, tip.im), on_screen(&h, tip.re - 0.2, tip.im));
     h.key_press(Key::U);
     h.run_steps(2);
-    assert!(h.state().app_state().look().pushing);
+    assert!(h.state().app_state().view_state().pushing);
     pull(&mut h, from, to);
     let pushed = session(&h).scenario().plant.force;
     assert!((pushed[0] + 4.0).abs() < 0.5 && pushed[1].abs() < 0.5, "{pushed:?} N for 0.2 m");
@@ -195,7 +195,7 @@ fn a_hand_is_named_and_let_go() {
     let (from, to) = (on_screen(&h, 0.5, 0.5), on_screen(&h, 0.45, 0.62));
     drag(&mut h, from, to);
     h.run_steps(20);
-    assert!(session(&h).is_live() && h.query_by_label("led by hand").is_some());
+    assert!(session(&h).is_led() && h.query_by_label("led by hand").is_some());
     assert!(h.query_by_label_contains(band).is_none() && h.query_by_label("planned").is_none());
     for by_key in [true, false] {
         match by_key {
@@ -203,19 +203,19 @@ fn a_hand_is_named_and_let_go() {
             false => h.get_by_label("back to the path").click(),
         }
         h.run_steps(3);
-        assert!(!session(&h).is_live() && h.query_by_label_contains(band).is_some());
+        assert!(!session(&h).is_led() && h.query_by_label_contains(band).is_some());
         assert_eq!(session(&h).frame().step, 0);
         assert!(session(&h).script().is_empty(), "{:?}", session(&h).script());
         h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
         h.run_steps(3);
-        assert!(session(&h).is_live(), "the hand comes back");
+        assert!(session(&h).is_led(), "the hand comes back");
     }
     let gravity = Edit::SetMachine { key: "gravity".into(), value: "0,-9.81".into() };
     h.state_mut().app_state_mut().carry_out(stillbase::app::Command::Edit(gravity));
     h.key_press(Key::Num3);
     h.run_steps(2);
     assert_eq!(session(&h).to_scenario().machine, Scenario::builtin("case-3").expect("built in").machine);
-    assert!(h.state().app_state().look().message.is_none());
+    assert!(h.state().app_state().view_state().message.is_none());
     // Another machine that somebody has chosen stays, and that is said.
     let case = Scenario::builtin("case-3").expect("built in");
     let other = stillbase::mechanics::machine::builtins().iter().find(|m| m.name() == "nine-link-table-1");
@@ -229,7 +229,7 @@ fn a_hand_is_named_and_let_go() {
     h.state_mut().app_state_mut().carry_out(open);
     h.key_press(Key::Num3);
     h.run_steps(2);
-    let (said, bad) = h.state().app_state().look().message.clone().expect("it is said");
+    let (said, bad) = h.state().app_state().view_state().message.clone().expect("it is said");
     assert!(!bad && said.contains(other.name()), "{said}");
     assert_eq!(session(&h).scenario().machine.name(), other.name());
 }
@@ -278,13 +278,13 @@ fn a_release_counts_where_the_button_came_up() {
         let at = |share: f32| pos2(low + share * (high - low), slider.center().y);
         arrive(&mut h, how, [at(0.307), at(0.32), at(0.33)]);
         said.push(session(&h).frame().b);
-        // The ring's knob, a little on; then the hand goes across the picture.
+        // The ring's field, a little on; then the hand goes across the picture.
         let stage = h.state().app_state().stage().clone();
-        let knob = |b: f64| {
+        let field = |b: f64| {
             let p = stage.ring_radius() * unit(session(&h).run().planes().expect("planes").map().turn(b));
             on_screen(&h, p.re, p.im)
         };
-        let way = [knob(session(&h).frame().b), knob(2.3), on_screen(&h, 0.5, -0.3)];
+        let way = [field(session(&h).frame().b), field(2.3), on_screen(&h, 0.5, -0.3)];
         arrive(&mut h, how, way);
         said.push(session(&h).frame().b);
         let way = [(0.55, 0.9), (0.57, 0.8), (0.3, 0.3)].map(|(x, y)| on_screen(&h, x, y));

@@ -47,7 +47,7 @@ fn a_refused_path_shows_where_and_what_b_would_do() {
     h.get_by_label_contains("take b").click();
     h.run_steps(3);
     let task = &session(&h).scenario().task;
-    let message = &h.state().app_state().look().message;
+    let message = &h.state().app_state().view_state().message;
     assert!((task.b - 2.5256).abs() < 1e-3 && task.to == [0.0, 0.5], "{task:?} {message:?}");
     assert!(h.query_by_label_contains("the path stops").is_none());
 }
@@ -60,9 +60,10 @@ fn a_scenario_that_cannot_be_planned_is_explained() {
     let asked = Scenario { task: task.clone(), ..scenario };
     assert!(AppState::new(asked.clone(), Theme::Dark).is_err());
     let mut desk = AppState::open_or_explain(asked, Theme::Dark).expect("explained");
-    let (words, bad) = desk.look().message.clone().expect("a reason");
+    let (words, bad) = desk.view_state().message.clone().expect("a reason");
     assert!(bad && words.contains("the path stops at"), "{words}");
-    let (edit, _) = desk.look().refused.as_ref().and_then(|wish| wish.remedy.clone()).expect("another b would do");
+    let (edit, _) =
+        desk.view_state().refused.as_ref().and_then(|wish| wish.remedy.clone()).expect("another b would do");
     desk.carry_out(stillbase::app::Command::Edit(edit));
     let done = &desk.session().scenario().task;
     assert_eq!((done.points(), done.shape()), (task.points(), task.shape()));
@@ -75,7 +76,7 @@ fn limits_apply_and_the_run_waits() {
     let red = |h: &Desktop| {
         let desk = h.state().app_state();
         let scene = desk.stage().scene(session(h).frame(), &Default::default());
-        let named = scene.labels.iter().filter(|l| l.colour == desk.look().palette().reaction);
+        let named = scene.labels.iter().filter(|l| l.colour == desk.view_state().palette().reaction);
         named.map(|l| l.text.clone()).collect::<Vec<_>>()
     };
     for way_out in ["take b", "take back", "by hand"] {

@@ -44,7 +44,7 @@ fn views_are_linked() {
         h.key_press(Key::V);
         h.run_steps(2);
     }
-    assert_eq!(h.state().app_state().look().view, ViewKind::Joints);
+    assert_eq!(h.state().app_state().view_state().view, ViewKind::Joints);
     // The dot in its plane: the end effector goes where that pose has it, without a reaction.
     let (frame, map) = (*session(&h).frame(), *session(&h).run().planes().expect("three drives").map());
     let space = h.state().app_state().views().joints().expect("three drives").clone();
@@ -88,31 +88,31 @@ fn runs_stand_side_by_side() {
     h.run_steps(3);
     h.key_press(Key::C);
     h.run_steps(2);
-    let board = |h: &Desktop| h.state().app_state().board().cloned();
-    assert_eq!(board(&h).expect("on display").entries().len(), 5);
+    let comparison = |h: &Desktop| h.state().app_state().comparison().cloned();
+    assert_eq!(comparison(&h).expect("on display").entries().len(), 5);
     h.get_by_label("Lay over: Reactionless").click();
     h.run_steps(2);
-    assert_eq!(board(&h).expect("on display").shown().count(), 1);
+    assert_eq!(comparison(&h).expect("on display").shown().count(), 1);
     h.get_by_label("Sort by largest moment that the base feels").click();
     h.run_steps(2);
-    assert_eq!(board(&h).expect("on display").sorted(), Some((1, false)));
+    assert_eq!(comparison(&h).expect("on display").sorted(), Some((1, false)));
     h.get_by_label("Keep this run").click();
     h.run_steps(2);
-    assert!(board(&h).expect("on display").entries()[5].kept);
+    assert!(comparison(&h).expect("on display").entries()[5].kept);
     h.get_by_label("Remove case-1").click();
     h.run_steps(2);
-    assert_eq!(board(&h).expect("on display").entries().len(), 5);
+    assert_eq!(comparison(&h).expect("on display").entries().len(), 5);
     // The other way opens in place of this one.
     h.get_by_label("Open Reactionless").click();
     h.run_steps(2);
     assert_eq!(session(&h).scenario().task.kind, stillbase::session::scenario::TaskKind::Reactionless);
     h.key_press(Key::C);
     h.run_steps(2);
-    assert!(board(&h).is_none());
+    assert!(comparison(&h).is_none());
 
     h.key_press(Key::S);
     h.run_steps(2);
-    assert!(h.state().app_state().look().snapshots);
+    assert!(h.state().app_state().view_state().snapshots);
     let plot = h.get_by_label_contains("Torque over time").rect();
     h.event(egui::Event::ModifiersChanged(Modifiers::SHIFT));
     h.hover_at(plot.center());
@@ -123,9 +123,9 @@ fn runs_stand_side_by_side() {
     h.step();
     h.event(egui::Event::ModifiersChanged(Modifiers::NONE));
     h.run_steps(2);
-    assert!(h.state().app_state().look().mark.is_some(), "a second cursor");
+    assert!(h.state().app_state().view_state().mark.is_some(), "a second cursor");
     assert!(h.query_all_by_label_contains("Δτ").count() > 0, "differences");
     h.key_press(Key::Escape);
     h.run_steps(2);
-    assert!(h.state().app_state().look().mark.is_none());
+    assert!(h.state().app_state().view_state().mark.is_none());
 }

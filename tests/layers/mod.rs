@@ -65,7 +65,7 @@ const EDGES: &[(&str, &[&str])] = &[
         "std::fs",
         &[
             "commands/tolerance/rows.rs",
-            "commands/tolerance/seal.rs",
+            "commands/tolerance/checksum.rs",
             "files/new_file.rs",
             "picture/render/offscreen.rs",
             "picture/render/shader.rs",

@@ -7,7 +7,7 @@ use stillbase::mechanics::dynamics::{Surroundings, inverse_with_wrench};
 use stillbase::mechanics::joint_forces::{
     AxialMoments, FLAT, Forces, Inside, Joints, JointsError, KEPT, Pin, PinLoads, PinPeak, ahead, nearest,
 };
-use stillbase::mechanics::kinematics::{acceleration, transmission};
+use stillbase::mechanics::kinematics::{acceleration, least_transmission};
 use stillbase::mechanics::machine::{Chain, Inertia, Machine, builtin, parse, place_of};
 use stillbase::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, cross, dot, unit};
 
@@ -29,7 +29,7 @@ fn any_state() -> impl Strategy<Value = State> {
     let three = |x: f64| prop::array::uniform3(-x..x);
     (three(6.0), three(4.0), three(12.0))
         .prop_map(|(q, qd, qdd)| State::new(q, qd, qdd))
-        .prop_filter("near a change point", |s| transmission(&s.q.units(), 3) > 0.02)
+        .prop_filter("near a change point", |s| least_transmission(&s.q.units(), 3) > 0.02)
 }
 
 /// The same with what the twin has not: CMs off the axis, inertia of the payload, heights.
@@ -133,7 +133,7 @@ proptest! {
         let e = s.q.units();
         let forces = joints.forces(&e, &s.qd, &s.qdd, &around);
         let (torque, wrench) = inverse_with_wrench(&Inertia::of(&machine), &e, &s.qd, &s.qdd, &around);
-        let tolerance = 1e-10 / transmission(&e, 3);
+        let tolerance = 1e-10 / least_transmission(&e, 3);
         close("torque", &forces.torque().expect("defined"), &torque, tolerance);
         close("f_B", &xy(joints.on_base(&forces)), &xy(wrench.total().force), tolerance);
         let sum: f64 = forces.torque().expect("defined").iter().sum();
@@ -204,7 +204,7 @@ proptest! {
             let other = others.pins().iter().find(same).unwrap_or_else(|| panic!("no pin {}", pin.name));
             let l = others.pins().iter().position(|p| p == other).expect("found");
             let sign = if other.to == pin.to { 1.0 } else { -1.0 };
-            close(&pin.name, &xy(sign * b.bounded()[l]), &xy(a.bounded()[i]), 1e-8 / transmission(&s.q.units(), 3));
+            close(&pin.name, &xy(sign * b.bounded()[l]), &xy(a.bounded()[i]), 1e-8 / least_transmission(&s.q.units(), 3));
         }
         assert_each_link_balances(&other, &s, &around(&other, force), &AT_B);
     }
@@ -268,7 +268,7 @@ proptest! {
             prop_assert_eq!(&now, &start);
         }
         let (k, l) = least.drives;
-        prop_assert!((transmission(&s.q.units(), 3) - least.distance.sin()).abs() < 1e-12);
+        prop_assert!((least_transmission(&s.q.units(), 3) - least.distance.sin()).abs() < 1e-12);
         prop_assert!(((s.q[k] - s.q[l]).sin().abs() - least.distance.sin()).abs() < 1e-12);
     }
 }

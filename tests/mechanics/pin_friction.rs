@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use stillbase::mechanics::dynamics::Surroundings;
 use stillbase::mechanics::joint_forces::Joints;
-use stillbase::mechanics::kinematics::transmission;
+use stillbase::mechanics::kinematics::least_transmission;
 use stillbase::mechanics::planar::{DriveAngles, PerDrive};
 use stillbase::session::replay;
 use stillbase::session::scenario::Scenario;
@@ -41,7 +41,7 @@ type Motion = ([f64; 3], [f64; 3], [f64; 3]);
 fn any_motion() -> impl Strategy<Value = Motion> {
     let three = |x: f64| prop::array::uniform3(-x..x);
     (three(6.0), three(4.0), three(12.0))
-        .prop_filter("near a change point", |(q, ..)| transmission(&DriveAngles::from(*q).units(), 3) > 0.02)
+        .prop_filter("near a change point", |(q, ..)| least_transmission(&DriveAngles::from(*q).units(), 3) > 0.02)
 }
 
 /// Any couples in the pins and in the bearings of any machine in any motion: forces, torques and moment of 27 equations.

@@ -56,7 +56,7 @@ fn straight_lines_meet_change_points_where_the_sine_changes_sign() {
         };
         met += 1;
         let there = at(change.share);
-        assert!(map.sines(there)[change.pair].abs() < 1e-12 && map.transmission(there) < 1e-12);
+        assert!(map.sines(there)[change.pair].abs() < 1e-12 && map.least_transmission(there) < 1e-12);
         let [k, l] = PAIRS[change.pair];
         let q = map.lift(PlanePoint { a: there, b: 0.7 });
         assert!((q[l] - q[k] - f64::from(change.half_turns) * PI).abs() < 1e-12);

@@ -5,10 +5,10 @@ use stillbase::mechanics::kinematics::end_effector;
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, Vector, unit};
 use stillbase::planning::curves::CurvePoint;
+use stillbase::planning::off_plane::b_course::BCourse;
 use stillbase::planning::off_plane::corridor::CorridorError;
 use stillbase::planning::off_plane::inverse::pose_along;
 use stillbase::planning::off_plane::least_reaction::{FixedB, Goal, LeastReactionError};
-use stillbase::planning::off_plane::pose_course::PoseCourse;
 use stillbase::planning::off_plane::{Corridor, LeastReaction};
 use stillbase::planning::pose_constant::plane_map;
 use stillbase::planning::reactionless::{AngleLimit, NoReach, PlaneMap, PlanePoint};
@@ -298,7 +298,7 @@ fn the_inverse_has_its_own_derivatives() {
 
 #[test]
 fn courses_are_cubic_between_nodes() {
-    let course = PoseCourse::constant(1.5);
+    let course = BCourse::constant(1.5);
     assert_eq!(course.at(0.3), [1.5, 0.0, 0.0]);
     let plan = plan(A, B, 1.75, None, Goal::Rms);
     for i in 1..100 {

@@ -6,11 +6,11 @@ use stillbase::mechanics::dynamics::{Surroundings, angular_momentum, base_wrench
 use stillbase::mechanics::kinematics::{end_effector, velocity};
 use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
+use stillbase::planning::off_plane::b_integral::BIntegral;
 use stillbase::planning::off_plane::drift::{DriftError, circle, drift, drift_in, zero_momentum_path};
 use stillbase::planning::off_plane::null_space::{
     NullSpace, is_integrable, momentum_row, momentum_row_rate, motion, projected, rates, twist,
 };
-use stillbase::planning::off_plane::pose_integral::PoseIntegral;
 
 /// A pose in the middle of the joint limits.
 const Q: [f64; 3] = [1.6875182179, 3.7146223682, 2.1801769897];
@@ -129,7 +129,7 @@ proptest! {
     #[test]
     fn two_drives_have_a_pose_constant(q in [-4.0..4.0f64, -4.0..4.0], way in -9.0..9.0f64, off in -0.15..0.15f64) {
         let model = serial(2, off);
-        let integral = PoseIntegral::of(&model).expect("two drives");
+        let integral = BIntegral::of(&model).expect("two drives");
         let slope = |q: [f64; 2]| {
             let d = momentum_row(&model, &angles(&q).units());
             [-d[1] / (d[0] + d[1]), d[0] / (d[0] + d[1])]
@@ -160,7 +160,7 @@ proptest! {
 fn pose_integral_is_its_quadrature() {
     for off in [-0.1, 0.0, 0.08] {
         let model = serial(2, off);
-        let integral = PoseIntegral::of(&model).expect("two drives");
+        let integral = BIntegral::of(&model).expect("two drives");
         for delta in [-11.0, -3.2, 0.4, 3.1, 3.2, 7.0] {
             let n = 4000;
             let share = |i: i32| {
@@ -180,9 +180,9 @@ fn pose_integral_is_its_quadrature() {
     )
     .expect("valid");
     let model = Inertia::of(&machine);
-    let (d, b) = (model.diagonals(), PoseIntegral::of(&model).expect("two drives"));
+    let (d, b) = (model.diagonals(), BIntegral::of(&model).expect("two drives"));
     assert!((b.b([1.0, 9.0]) - (d[0] + 9.0 * d[1]) / (d[0] + d[1])).abs() < 1e-14);
-    assert_eq!(PoseIntegral::of(&Inertia::of(nine_link())), None);
+    assert_eq!(BIntegral::of(&Inertia::of(nine_link())), None);
 }
 
 /// An invariant machine has a b, and so has any with two drives; another has none, and says so in nearly every pose.
@@ -345,7 +345,7 @@ fn motions_along_the_null_space_transmit_nothing() {
             assert!(rate.minus(&on.first).max_abs() < 1e-5, "{drives} drives, s = {s}");
             assert!(projected(&model, &on.q, &w).minus(&on.first).max_abs() < 1e-8, "{drives} drives, s = {s}");
         }
-        if let Some(integral) = PoseIntegral::of(&model) {
+        if let Some(integral) = BIntegral::of(&model) {
             let b = table.nodes().iter().map(|node| integral.b([node.q[0], node.q[1]]));
             assert!(b.clone().all(|b| (b - integral.b([start[0], start[1]])).abs() < 1e-10));
         }

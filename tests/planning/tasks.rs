@@ -188,12 +188,12 @@ fn a_new_path_ends_following() {
     session.apply(Edit::DragTarget { x: 0.6, y: 0.7 }).expect("follows");
     session.end_gesture();
     session.tick(400);
-    assert!(session.is_live());
+    assert!(session.is_led());
     session.apply(Edit::task("shape", "line")).expect("feasible");
-    assert!(!session.is_live());
+    assert!(!session.is_led());
     assert_eq!(session.frames().len(), 1);
     session.undo().expect("taken back");
-    assert!(session.is_live());
+    assert!(session.is_led());
 }
 
 /// Slid while at rest, b turns all points of a path when no plane serves them any more.
@@ -364,7 +364,7 @@ fn the_scenarios_that_come_along_do_what_they_say() {
         assert!(fault.is_none(), "{name}: {fault:?}");
         let done = end.peaks.moment < 1e-5 * end.peaks.torque_sum;
         assert_eq!(done, ["case-3", "circle", "drift"].contains(&name), "{name}: {}", end.peaks.moment);
-        assert_eq!(end.totals.tilt > 1e-6, ["spacecraft", "bench-top"].contains(&name), "{name}");
+        assert_eq!(end.totals.base_angle > 1e-6, ["spacecraft", "bench-top"].contains(&name), "{name}");
         assert_eq!(end.totals.saturated.is_some(), name == "wheel");
     }
     let words = Run::new(&task("kind = 'change-b'\nvia = [[0.5, 0.6]]")).expect_err("no points between").to_string();

@@ -22,7 +22,7 @@ fn a_drag_at_the_start_outlives_parameters() {
             session.end_gesture();
             session.tick(ticks);
             do_it(&mut session, parameter.clone());
-            assert!(session.is_live());
+            assert!(session.is_led());
             settle(&mut session);
             let f = session.frame();
             assert_eq!(f.target.at, Vector::new(0.6, 0.6), "{parameter:?} after {ticks} ticks");
@@ -276,7 +276,7 @@ fn settings_outlive_following() {
     session.end_gesture();
     session.tick(50);
     do_it(&mut session, Edit::task("shape", "line"));
-    assert!(!session.is_live());
+    assert!(!session.is_led());
     assert_eq!(session.scenario().plant.payload.mass, 0.3);
     one_path(&session);
 }

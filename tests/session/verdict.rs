@@ -52,12 +52,15 @@ fn a_wheel_does_not_make_an_arm_reactionless() {
     assert_eq!(verdict.arm_moment, peak(Frame::base_moment));
     assert_eq!(verdict.past_wheel, Some(peak(Frame::felt_moment)));
     assert!((verdict.arm_moment - 1.0891).abs() < 1e-3 && verdict.past_wheel.is_some_and(|n| n < 1e-9));
-    assert!(!verdict.reactionless && verdict.quiet && verdict.is_good());
-    assert_eq!((verdict.word(), verdict.answer().as_str()), ("quiet past the wheel", "no, the wheel takes it up"));
+    assert!(!verdict.reactionless && verdict.base_feels_nothing && verdict.is_good());
+    assert_eq!(
+        (verdict.word(), verdict.answer().as_str()),
+        ("reactionless past the wheel", "no, the wheel takes it up")
+    );
     // One that is too weak leaves the base something: no praise.
     scenario.base.wheel = Some(Wheel { inertia: 0.002, torque_limit: Some(0.5), ..Wheel::default() });
     let (weak, _) = run(&scenario);
-    assert!(!weak.quiet && weak.past_wheel.is_some_and(|n| (n - 0.5891).abs() < 1e-3), "{weak:?}");
+    assert!(!weak.base_feels_nothing && weak.past_wheel.is_some_and(|n| (n - 0.5891).abs() < 1e-3), "{weak:?}");
     assert_eq!((weak.word(), weak.answer().as_str()), ("not reactionless", "no"));
     assert!(weak.sentence().contains("peak |n_B| 1.0891 N m, past the wheel 0.5891 N m"), "{}", weak.sentence());
 }

@@ -10,7 +10,7 @@ use stillbase::session::replay;
 use stillbase::session::scenario::Scenario;
 use stillbase::simulation::control::Control;
 use stillbase::simulation::frame::Frame;
-use stillbase::simulation::plant::{Base, BaseKind, Plant, Wheel};
+use stillbase::simulation::plant::{Base, BaseKind, PlantDifferences, Wheel};
 use stillbase::simulation::{Guide, Setup, Simulation};
 
 use crate::support::{array, planning};
@@ -24,12 +24,12 @@ fn line(from: [f64; 3], to: [f64; 3], time: f64) -> Guide {
     Guide::Motion { motion: Motion::new(path, TimeLaw::Quintic, time), start: 0.0 }
 }
 
-fn begun(model: &Machine, plant: &Plant, base: &Base, control: &Control, guide: Guide) -> Simulation {
+fn begun(model: &Machine, plant: &PlantDifferences, base: &Base, control: &Control, guide: Guide) -> Simulation {
     Simulation::new(&Setup { model, plant, base, control, step: 0.001 }, guide).expect("valid")
 }
 
 fn run(model: &Machine, base: &Base, guide: Guide, steps: u64, mut see: impl FnMut(&Frame)) -> Frame {
-    let mut simulation = begun(model, &Plant::default(), base, &Control::default(), guide);
+    let mut simulation = begun(model, &PlantDifferences::default(), base, &Control::default(), guide);
     see(&simulation.frame());
     for _ in 0..steps {
         simulation.advance();
@@ -85,7 +85,7 @@ proptest! {
         let control = Control { knows_base, ..Control::default() };
         let from = [1.7 + from[0], 3.7 + from[1], 2.2 + from[2]];
         let to = [from[0] + by[0], from[1] + by[1], from[2] + by[2]];
-        let mut simulation = begun(model, &Plant::default(), &base, &control, line(from, to, 1.0));
+        let mut simulation = begun(model, &PlantDifferences::default(), &base, &control, line(from, to, 1.0));
         let start = simulation.frame();
         let (body, d) = (Inertia::of(model), Inertia::of(model).diagonals());
         let reduced = mass * body.mass() / (mass + body.mass());
@@ -117,7 +117,7 @@ proptest! {
         let model = builtin("nine-link-table-1").expect("built in").set_all(settings).expect("valid");
         let kind = if compliant { BaseKind::Compliant } else { BaseKind::Free };
         let base = Base { kind, com: rho, ..Base::default() };
-        let plant = Plant { force, ..toml::from_str("payload.mass = 0.3\npayload.offset = [0.05, -0.02]").expect("plant") };
+        let plant = PlantDifferences { force, ..toml::from_str("payload.mass = 0.3\npayload.offset = [0.05, -0.02]").expect("plant") };
         let guide = line([1.7, 3.7, 2.2], [1.4, 4.2, 3.0], 0.5);
         let (control, step) = (Control::default(), 1e-4);
         let setup = Setup { model: &model, plant: &plant, base: &base, control: &control, step };
@@ -183,7 +183,7 @@ fn momentum_is_kept_for_an_hour() {
     // Turning at the start: a guide that is in full motion when it begins.
     let path = Path::JointLine { from: [1.6, 3.5, 2.0].into(), to: [2.1, 4.4, 3.2].into() };
     let guide = Guide::Motion { motion: Motion::new(path, TimeLaw::Quintic, 2.0), start: -1.0 };
-    let (plant, step) = (Plant::default(), 0.01);
+    let (plant, step) = (PlantDifferences::default(), 0.01);
     let setup = Setup { model: &model, plant: &plant, base: &base, control: &control, step };
     let mut simulation = Simulation::new(&setup, guide).expect("valid");
     let start = simulation.frame();
@@ -234,7 +234,7 @@ fn a_stiff_base_is_a_fixed_one() {
             ..Base::default()
         };
         scenario.step = 2e-4;
-        let tilt = replay(&scenario, |_, _| {}).expect("runs").frame().totals.tilt;
+        let tilt = replay(&scenario, |_, _| {}).expect("runs").frame().totals.base_angle;
         // Quasi-static: n_B / k.
         tilt * k / fixed - 1.0
     });
@@ -249,7 +249,7 @@ fn only_case_3_leaves_a_spacecraft_alone() {
         scenario.base = Base { com: [0.15, -0.1], ..free() };
         let end = replay(&scenario, |_, f| assert!(f.fault().is_none(), "{:?}", f.audit));
         let totals = end.expect("runs").frame().totals;
-        (totals.shift, totals.tilt)
+        (totals.shift, totals.base_angle)
     });
     assert!(moved[0].0 > 1e-3 && moved[0].1 > 1e-2 && moved[1].1 > 1e-2, "{moved:?}");
     assert!(moved[2].0 < 1e-12 && moved[2].1 < 1e-12, "{moved:?}");
@@ -275,7 +275,7 @@ fn a_wheel_cancels_until_it_saturates() {
         f
     };
     let ample = with(Wheel { inertia: 0.002, ..Wheel::default() });
-    assert!(ample.peaks.is_quiet() && !ample.peaks.is_reactionless() && ample.totals.saturated.is_none());
+    assert!(ample.peaks.base_feels_nothing() && !ample.peaks.is_reactionless() && ample.totals.saturated.is_none());
     assert!(ample.peaks.moment < 1e-9 && ample.totals.wheel_rate > 50.0, "{}", ample.totals.wheel_rate);
     let weak = with(Wheel { inertia: 0.002, torque_limit: Some(0.5), ..Wheel::default() });
     assert!((weak.peaks.moment - (1.0891 - 0.5)).abs() < 1e-3, "{}", weak.peaks.moment);

@@ -10,7 +10,7 @@ use stillbase::planning::timing::Profile;
 use stillbase::planning::timing::profile::Span;
 use stillbase::session::replay;
 use stillbase::session::scenario::Scenario;
-use stillbase::simulation::plant::{Base, BaseKind, Contacts, Each, Friction, MovingBody, Plant};
+use stillbase::simulation::plant::{Base, BaseKind, Contacts, Each, Friction, MovingBody, PlantDifferences};
 use stillbase::simulation::{Guide, Setup, Simulation};
 
 /// Numbers that are the same in every run.
@@ -288,7 +288,7 @@ fn against_the_twin(case: u64) -> (f64, usize) {
     let times: Vec<f64> = (1..=STEPS).map(|i| i as f64 * STEP).collect();
     let (exact, stops, fastest) = twin.run(&times);
 
-    let plant = Plant { friction, ..Plant::default() };
+    let plant = PlantDifferences { friction, ..PlantDifferences::default() };
     let control: stillbase::simulation::control::Control = toml::from_str("kp = 0.0\nkd = 0.0").expect("valid");
     let setup = Setup { model: &machine, plant: &plant, base: &base, control: &control, step: STEP };
     let mut simulation = Simulation::new(&setup, Guide::Motion { motion, start: 0.0 }).expect("valid");

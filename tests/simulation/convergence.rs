@@ -9,7 +9,7 @@ use stillbase::planning::curves::path::{SameTip, tip_line};
 use stillbase::planning::curves::{Path, PathError, PathPoint};
 use stillbase::planning::timing::TimeLaw;
 use stillbase::simulation::control::Control;
-use stillbase::simulation::plant::{Base, Plant};
+use stillbase::simulation::plant::{Base, PlantDifferences};
 use stillbase::simulation::{Guide, Setup, Simulation};
 
 use crate::support::close;
@@ -57,7 +57,7 @@ fn order_is_the_slope() {
     assert!((order(&points) - 4.0).abs() < 1e-12);
 }
 
-fn simulated(model: &Machine, plant: &Plant, step: f64, guide: Guide) -> Simulation {
+fn simulated(model: &Machine, plant: &PlantDifferences, step: f64, guide: Guide) -> Simulation {
     let (base, control) = (Base::default(), Control::default());
     Simulation::new(&Setup { model, plant, base: &base, control: &control, step }, guide).expect("valid")
 }
@@ -66,7 +66,7 @@ fn simulated(model: &Machine, plant: &Plant, step: f64, guide: Guide) -> Simulat
 fn state_after(dt: f64) -> [f64; 6] {
     let settings = [("link.1.com", "0.1"), ("link.9.mass", "0.9"), ("gravity", "1,-9.81")];
     let model = builtin("nine-link-table-1").expect("built in").set_all(settings).expect("valid");
-    let plant: Plant = toml::from_str("payload.mass = 0.4\nlink.2.com = 0.05").expect("valid");
+    let plant: PlantDifferences = toml::from_str("payload.mass = 0.4\nlink.2.com = 0.05").expect("valid");
     assert!(!stillbase::mechanics::machine::Inertia::of(&model).is_invariant());
     let motion = Motion::new(line(), TimeLaw::Quintic, 1.0);
     let guide = Guide::Motion { motion, start: 0.0 };
@@ -105,7 +105,7 @@ fn integrator_is_of_order_four() {
 fn energy_balance_is_of_order_four() {
     let off = |dt: f64| {
         let model = nine_link().set("gravity", "0,-9.81").expect("valid");
-        let plant: Plant = toml::from_str("payload.mass = 0.5").expect("valid");
+        let plant: PlantDifferences = toml::from_str("payload.mass = 0.5").expect("valid");
         let motion = Motion::new(line(), TimeLaw::Quintic, 1.0);
         let mut simulation = simulated(&model, &plant, dt, Guide::Motion { motion, start: 0.0 });
         for _ in 0..(0.6 / dt).round() as u64 {

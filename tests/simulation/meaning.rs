@@ -332,11 +332,11 @@ fn laws(runs: &[Told; 5]) -> Verdict {
     wheel.wheel()?;
     let load = &pick_up.scenario.plant.payload;
     for i in (50..1000).step_by(100) {
-        near("quiet", &[quiet.at("reactionless/now", i)], &[1.0], 0.0)?;
+        near("reactionless", &[quiet.at("reactionless/now", i)], &[1.0], 0.0)?;
         let time = i as f64 * pick_up.scenario.step;
         let held = f64::from(u8::from(load.from < time && load.until.is_some_and(|until| time < until)));
         near("held", &[pick_up.at("payload/held", i)], &[held], 0.0)?;
-        near("quiet until then", &[pick_up.at("reactionless/now", i)], &[1.0 - held], 0.0).or_else(|why| {
+        near("reactionless until then", &[pick_up.at("reactionless/now", i)], &[1.0 - held], 0.0).or_else(|why| {
             // What control does about the errors of that time outlasts it.
             if time > load.from { Ok(()) } else { Err(why) }
         })?;

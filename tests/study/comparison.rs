@@ -64,7 +64,7 @@ fn the_wheel_says_when_it_saturates() {
     let ample = run(Alternative::Wheel, "case-3").summary;
     assert!(
         !ample.reactionless
-            && ample.verdict.quiet
+            && ample.verdict.base_feels_nothing
             && ample.saturated_at.is_none()
             && ample.wheel_rate.is_some_and(|rate| rate > 5.0)
     );
@@ -166,46 +166,46 @@ fn two_instants_differ_by_their_signals() {
     }
 }
 
-/// The board keeps what it is given, follows the task, sorts both ways and gives its table away.
+/// A comparison keeps what it is given, follows the task, sorts both ways and gives its table away.
 #[test]
-fn a_board_follows_sorts_and_keeps() {
+fn a_comparison_follows_sorts_and_keeps() {
     use stillbase::study::comparison::Comparison;
-    let mut board = Comparison::of(&scenario("case-3"));
-    assert_eq!(board.entries().len(), 5);
-    board.show(1, true);
-    board.keep(scenario("case-2")).expect("it runs");
-    board.keep(scenario("case-2")).expect("it runs");
-    let titles: Vec<&str> = board.entries().iter().map(|e| e.title.as_str()).collect();
+    let mut comparison = Comparison::of(&scenario("case-3"));
+    assert_eq!(comparison.entries().len(), 5);
+    comparison.show(1, true);
+    comparison.keep(scenario("case-2")).expect("it runs");
+    comparison.keep(scenario("case-2")).expect("it runs");
+    let titles: Vec<&str> = comparison.entries().iter().map(|e| e.title.as_str()).collect();
     assert_eq!(titles[5..], ["case-2", "case-2 2"]);
-    assert_eq!(board.shown().map(|(i, _)| i).collect::<Vec<_>>(), [1, 5, 6]);
+    assert_eq!(comparison.shown().map(|(i, _)| i).collect::<Vec<_>>(), [1, 5, 6]);
 
     let column = COLUMNS.iter().position(|c| c.key == "peak_moment").expect("a column");
-    let values = |board: &Comparison| -> Vec<f64> {
+    let values = |comparison: &Comparison| -> Vec<f64> {
         let value =
-            |i: usize| board.entries()[i].outcome.as_ref().ok().and_then(|r| (COLUMNS[column].value)(&r.summary));
-        board.order().into_iter().filter_map(value).collect()
+            |i: usize| comparison.entries()[i].outcome.as_ref().ok().and_then(|r| (COLUMNS[column].value)(&r.summary));
+        comparison.order().into_iter().filter_map(value).collect()
     };
-    board.sort_by(column);
-    assert!(values(&board).is_sorted());
-    board.sort_by(column);
-    assert!(values(&board).is_sorted_by(|a, b| a >= b));
-    board.sort_by(column);
-    assert_eq!(board.order(), (0..7).collect::<Vec<_>>());
+    comparison.sort_by(column);
+    assert!(values(&comparison).is_sorted());
+    comparison.sort_by(column);
+    assert!(values(&comparison).is_sorted_by(|a, b| a >= b));
+    comparison.sort_by(column);
+    assert_eq!(comparison.order(), (0..7).collect::<Vec<_>>());
 
-    let text = board.to_text();
+    let text = comparison.to_text();
     assert_eq!(text.lines().count(), 8);
     assert!(text.lines().all(|line| line.split('\t').count() == COLUMNS.len() + 1));
 
     // Another task: its ways are run, what was ticked stays so, what was kept stays.
     let mut other = scenario("case-3");
-    assert!(!board.follow(&other));
+    assert!(!comparison.follow(&other));
     other.task.time = 2.0;
-    assert!(board.follow(&other));
-    assert_eq!(board.entries().len(), 7);
-    assert!(board.entries()[1].shown && board.entries()[5].kept);
-    assert_eq!(board.entries()[1].outcome.as_ref().map(|r| r.summary.time), Ok(2.0));
-    board.remove(0);
-    assert_eq!(board.entries().len(), 7, "only what was kept can be taken away");
-    board.remove(6);
-    assert_eq!(board.entries().len(), 6);
+    assert!(comparison.follow(&other));
+    assert_eq!(comparison.entries().len(), 7);
+    assert!(comparison.entries()[1].shown && comparison.entries()[5].kept);
+    assert_eq!(comparison.entries()[1].outcome.as_ref().map(|r| r.summary.time), Ok(2.0));
+    comparison.remove(0);
+    assert_eq!(comparison.entries().len(), 7, "only what was kept can be taken away");
+    comparison.remove(6);
+    assert_eq!(comparison.entries().len(), 6);
 }

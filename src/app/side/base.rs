@@ -2,14 +2,12 @@
 
 use egui::Ui;
 
-use super::fold::{Knob, Of, Slide, fold, segments, switch};
+use super::fold::{NumberField, Section, Slide, fold, segments, switch};
 use crate::app::widgets::Row;
 use crate::app::{Command, ViewState};
 use crate::picture::scene::palette::Palette;
 use crate::session::Session;
 use crate::simulation::plant::{Base, BaseKind, Wheel};
-
-const KEYS: [&str; 7] = ["kind", "mass", "inertia", "com", "stiffness", "damping", "wheel"];
 
 const KINDS: [(BaseKind, &str, &str); 3] = [
     (BaseKind::Fixed, "fixed", "It cannot move"),
@@ -18,17 +16,17 @@ const KINDS: [(BaseKind, &str, &str); 3] = [
 ];
 
 /// Draws it.
-pub fn show(ui: &mut Ui, session: &Session, look: &ViewState, commands: &mut Vec<Command>) {
-    let (base, p) = (&session.scenario().base, &look.palette());
+pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
+    let (base, p) = (&session.scenario().base, &view_state.palette());
     let word = KINDS.iter().find(|k| k.0 == base.kind).map_or("", |k| k.1);
     let summary = if base.wheel.is_some() { format!("{word}, with a wheel") } else { word.to_owned() };
-    let back = (*base != Base::default()).then(|| Of::Base.clear(&KEYS));
+    let back = (*base != Base::default()).then(|| Section::Base.all_back(base));
     fold(ui, p, ("Base", &summary), back, commands, |ui, commands| {
         let word = |kind: BaseKind| KINDS.iter().find(|k| k.0 == kind).map_or("fixed", |k| k.1);
-        segments(ui, p, &KINDS, base.kind, commands, |kind| Of::Base.set(&["kind"], word(kind)));
+        segments(ui, p, &KINDS, base.kind, commands, |kind| Section::Base.set(&["kind"], word(kind)));
         if base.moves() {
             body(ui, base, p, commands);
-            let mut seen = look.exaggerate;
+            let mut seen = view_state.exaggerates_base;
             let tip = "Show the motion of the base so many times larger that it is seen (X)";
             if ui.checkbox(&mut seen, "exaggerate its motion").on_hover_text(tip).changed() {
                 commands.push(Command::Exaggerate(seen));
@@ -48,7 +46,8 @@ fn body(ui: &mut Ui, base: &Base, p: &Palette, commands: &mut Vec<Command>) {
         speed: 0.2,
         range: 0.1..=1000.0,
     };
-    Knob::of(mass, base.mass, normal.mass).show(ui, p, Slide::Logarithmic, commands, |x| Of::Base.set(&["mass"], x));
+    NumberField::of(mass, base.mass, normal.mass)
+        .show(ui, p, Slide::Logarithmic, commands, |x| Section::Base.set(&["mass"], x));
     let inertia = Row {
         label: "base inertia",
         unit: "kg m²",
@@ -57,15 +56,15 @@ fn body(ui: &mut Ui, base: &Base, p: &Palette, commands: &mut Vec<Command>) {
         speed: 0.02,
         range: 0.01..=1000.0,
     };
-    Knob::of(inertia, base.inertia, normal.inertia)
-        .show(ui, p, Slide::Logarithmic, commands, |x| Of::Base.set(&["inertia"], x));
+    NumberField::of(inertia, base.inertia, normal.inertia)
+        .show(ui, p, Slide::Logarithmic, commands, |x| Section::Base.set(&["inertia"], x));
     for (i, label) in ["CM x", "CM y"].into_iter().enumerate() {
         let tip = "ρ: centre of mass of the base, seen from B in the base's axes";
         let row = Row { label, unit: "m", tip, decimals: 3, speed: 0.002, range: -2.0..=2.0 };
-        Knob::of(row, base.com[i], 0.0).show(ui, p, Slide::No, commands, |x| {
+        NumberField::of(row, base.com[i], 0.0).show(ui, p, Slide::No, commands, |x| {
             let mut com = base.com;
             com[i] = x;
-            Of::Base.set(&["com"], com.to_vec())
+            Section::Base.set(&["com"], com.to_vec())
         });
     }
     if base.kind != BaseKind::Compliant {
@@ -79,15 +78,15 @@ fn body(ui: &mut Ui, base: &Base, p: &Palette, commands: &mut Vec<Command>) {
         for (i, axis) in ["x", "y", "θ"].into_iter().enumerate() {
             let label = format!("{word} {axis}");
             let tip = match i {
-                2 => format!("{what} against tilt θ of the base"),
+                2 => format!("{what} against the angle θ of the base"),
                 _ => format!("{what} along {axis}"),
             };
             let row =
                 Row { label: &label, unit: units[i], tip: &tip, decimals: 0, speed: most / 1e4, range: 0.0..=most };
-            Knob::of(row, now[i], normal[i]).show(ui, p, Slide::No, commands, |x| {
+            NumberField::of(row, now[i], normal[i]).show(ui, p, Slide::No, commands, |x| {
                 let mut all = now;
                 all[i] = x;
-                Of::Base.set(&[key], all.to_vec())
+                Section::Base.set(&[key], all.to_vec())
             });
         }
     }
@@ -97,15 +96,15 @@ fn wheel(ui: &mut Ui, base: &Base, p: &Palette, commands: &mut Vec<Command>) {
     let normal = Wheel::default();
     let tip = "A wheel in the base that takes up the moment of the machine while it can";
     switch(ui, ("reaction wheel", tip), base.wheel.is_some(), commands, |on| match on {
-        true => Of::Base.set(&["wheel", "inertia"], normal.inertia),
-        false => Of::Base.back(&["wheel"]),
+        true => Section::Base.set(&["wheel", "inertia"], normal.inertia),
+        false => Section::Base.back(&["wheel"]),
     });
     let Some(wheel) = &base.wheel else { return };
     ui.indent("wheel", |ui| {
         let tip = "Inertia of the rotor about its axis";
         let row = Row { label: "rotor", unit: "kg m²", tip, decimals: 4, speed: 0.0001, range: 1e-4..=10.0 };
-        Knob::of(row, wheel.inertia, normal.inertia)
-            .show(ui, p, Slide::No, commands, |x| Of::Base.set(&["wheel", "inertia"], x));
+        NumberField::of(row, wheel.inertia, normal.inertia)
+            .show(ui, p, Slide::No, commands, |x| Section::Base.set(&["wheel", "inertia"], x));
         for (key, label, unit, tip, now, usual) in [
             (
                 "torque_limit",
@@ -126,8 +125,8 @@ fn wheel(ui: &mut Ui, base: &Base, p: &Palette, commands: &mut Vec<Command>) {
         ] {
             ui.horizontal(|ui| {
                 let on = switch(ui, (label, tip), now.is_some(), commands, |on| match on {
-                    true => Of::Base.set(&["wheel", key], usual),
-                    false => Of::Base.back(&["wheel", key]),
+                    true => Section::Base.set(&["wheel", key], usual),
+                    false => Section::Base.back(&["wheel", key]),
                 });
                 if on {
                     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -136,7 +135,7 @@ fn wheel(ui: &mut Ui, base: &Base, p: &Palette, commands: &mut Vec<Command>) {
                         let range = 0.01 * usual..=1e4 * usual;
                         let row = Row { label, unit, tip, decimals: 2, speed: usual / 200.0, range };
                         let response = row.number(ui, &mut value);
-                        super::send(commands, &[response], || Of::Base.set(&["wheel", key], value));
+                        super::send(commands, &[response], || Section::Base.set(&["wheel", key], value));
                     });
                 }
             });

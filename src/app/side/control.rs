@@ -2,15 +2,13 @@
 
 use egui::Ui;
 
-use super::fold::{Knob, Of, Slide, choose, fold};
+use super::fold::{NumberField, Section, Slide, choose, fold};
 use super::plant::Gain;
 use crate::app::Command;
 use crate::app::widgets::Row;
 use crate::picture::scene::palette::Palette;
 use crate::session::Session;
 use crate::simulation::control::{Control, ControlLaw};
-
-const KEYS: [&str; 7] = ["law", "kp", "kd", "knows_base", "rate", "delay", "encoder"];
 
 const LAWS: [(ControlLaw, &str, &str); 3] = [
     (ControlLaw::ComputedTorque, "computed-torque", "Computed torque"),
@@ -37,13 +35,13 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
     if control.is_sampled() {
         summary += ", sampled";
     }
-    let back = (*control != Control::default()).then(|| Of::Control.clear(&KEYS));
+    let back = (*control != Control::default()).then(|| Section::Control.all_back(control));
     fold(ui, p, ("Control", &summary), back, commands, |ui, commands| {
         let laws: Vec<(&str, String)> = LAWS.iter().map(|l| (l.1, l.2.to_owned())).collect();
         let tip = "Computed torque, from the model; the same with the payload in the model while it is held; or PD, from \
                    the errors alone";
         choose(ui, ("law", tip), &laws, &law.map_or("", |l| l.1), commands, |word| {
-            Some(Of::Control.set(&["law"], *word))
+            Some(Section::Control.set(&["law"], *word))
         });
         let kp = Gain {
             label: "Kp",
@@ -53,16 +51,16 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
             most: 2000.0,
             normal: 400.0,
         };
-        kp.show(ui, (Of::Control, &["kp"]), &control.kp, n, p, commands);
+        kp.show(ui, (Section::Control, &["kp"]), &control.kp, n, p, commands);
         let tip = "Velocity gain K_d; equal on all drives, errors stay on the plane";
         let kd = Gain { label: "Kd", unit: "s⁻¹", tip, most: 200.0, normal: 40.0, ..kp };
-        kd.show(ui, (Of::Control, &["kd"]), &control.kd, n, p, commands);
+        kd.show(ui, (Section::Control, &["kd"]), &control.kd, n, p, commands);
         sampling(ui, control, step, p, commands);
         if scenario.base.moves() {
             let mut knows = control.knows_base;
             let tip = "Its model includes the base that moves; otherwise it takes the base to be fixed";
             if ui.checkbox(&mut knows, "knows the base").on_hover_text(tip).changed() {
-                super::fold::once(commands, Of::Control.set(&["knows_base"], knows));
+                super::fold::once(commands, Section::Control.set(&["knows_base"], knows));
             }
         }
     });
@@ -79,7 +77,7 @@ fn sampling(ui: &mut Ui, control: &Control, step: f64, p: &Palette, commands: &m
     rates.extend(PERIODS.map(|n| 1.0 / (f64::from(n) * step)).map(|x| (x, hertz(x))));
     offered(&mut rates, control.rate, hertz(control.rate));
     let tip = "How often torques are computed, and held between; a whole number of the simulation's steps";
-    choose(ui, ("rate", tip), &rates, &control.rate, commands, |x| Some(Of::Control.set(&["rate"], *x)));
+    choose(ui, ("rate", tip), &rates, &control.rate, commands, |x| Some(Section::Control.set(&["rate"], *x)));
     let row = Row {
         label: "delay",
         unit: "ms",
@@ -88,12 +86,12 @@ fn sampling(ui: &mut Ui, control: &Control, step: f64, p: &Palette, commands: &m
         speed: 1e3 * step,
         range: 0.0..=100.0,
     };
-    Knob::of(row, 1e3 * control.delay, 0.0)
-        .show(ui, p, Slide::No, commands, |x| Of::Control.set(&["delay"], (1e-3 * x / step).round() * step));
+    NumberField::of(row, 1e3 * control.delay, 0.0)
+        .show(ui, p, Slide::No, commands, |x| Section::Control.set(&["delay"], (1e-3 * x / step).round() * step));
     let words = |x: f64| format!("{x} counts");
     let mut counts = vec![(0.0, "exact".to_owned())];
     counts.extend(COUNTS.map(|x| (x, words(x))));
     offered(&mut counts, control.encoder, words(control.encoder));
     let tip = "Counts of the encoders in a turn; rates are their differences";
-    choose(ui, ("encoder", tip), &counts, &control.encoder, commands, |x| Some(Of::Control.set(&["encoder"], *x)));
+    choose(ui, ("encoder", tip), &counts, &control.encoder, commands, |x| Some(Section::Control.set(&["encoder"], *x)));
 }

@@ -1,6 +1,7 @@
 //! Sections that fold, switches, and numbers that know what is normal.
 
 use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
+use serde::Serialize;
 
 use crate::app::Command;
 use crate::app::theme::{bold, colour, plain};
@@ -8,16 +9,17 @@ use crate::app::widgets::{Row, name, send};
 use crate::picture::scene::palette::Palette;
 use crate::session::Edit;
 use crate::session::scenario::{Change, Value};
+use crate::settings::change;
 
 /// What a setting belongs to.
 #[derive(Clone, Copy)]
-pub enum Of {
+pub enum Section {
     Plant,
     Base,
     Control,
 }
 
-impl Of {
+impl Section {
     /// A key, by its parts, set to a value; the word `default` takes it out.
     pub fn set(self, path: &[&str], value: impl Into<Value>) -> Edit {
         let Some((last, outer)) = path.split_last() else { return self.change(Change::new()) };
@@ -31,9 +33,9 @@ impl Of {
         self.set(path, "default")
     }
 
-    /// Several keys back to normal.
-    pub fn clear(self, keys: &[&str]) -> Edit {
-        self.change(keys.iter().map(|key| ((*key).to_owned(), Value::from("default"))).collect())
+    /// All keys of what it now holds back to normal.
+    pub fn all_back<T: Serialize>(self, now: &T) -> Edit {
+        self.change(change::to_defaults(now))
     }
 
     /// Several keys at once.
@@ -194,7 +196,7 @@ pub enum Slide {
 }
 
 /// A number that has a normal value.
-pub struct Knob<'a> {
+pub struct NumberField<'a> {
     pub row: Row<'a>,
     pub now: f64,
     pub normal: f64,
@@ -206,7 +208,7 @@ pub struct Knob<'a> {
     pub called: Option<String>,
 }
 
-impl<'a> Knob<'a> {
+impl<'a> NumberField<'a> {
     pub fn of(row: Row<'a>, now: f64, normal: f64) -> Self {
         Self { row, now, normal, beside: false, back: None, called: None }
     }

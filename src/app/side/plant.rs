@@ -2,20 +2,18 @@
 
 use egui::Ui;
 
-use super::fold::{Knob, Of, Slide, choose, fold, once, something, switch};
+use super::fold::{NumberField, Section, Slide, choose, fold, once, something, switch};
 use crate::app::Command;
 use crate::app::widgets::{Row, note, unit};
 use crate::mechanics::machine::{Link, Machine};
 use crate::picture::scene::palette::Palette;
 use crate::session::Session;
 use crate::session::scenario::Value;
-use crate::simulation::plant::{Each, LinkDifference, Plant};
-
-const KEYS: [&str; 6] = ["torque_limits", "force", "payload", "friction", "length", "link"];
+use crate::simulation::plant::{Each, LinkDifference, PlantDifferences};
 
 /// How much differs.
-fn count(plant: &Plant) -> usize {
-    let Plant { torque_limits, force, payload, friction, length, link } = plant;
+fn count(plant: &PlantDifferences) -> usize {
+    let PlantDifferences { torque_limits, force, payload, friction, length, link } = plant;
     let single = [*torque_limits, *force != [0.0; 2], payload.is_some(), *friction != Default::default()];
     single.into_iter().filter(|x| *x).count() + length.len() + link.len()
 }
@@ -28,7 +26,7 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
         1 => "1 difference".into(),
         n => format!("{n} differences"),
     };
-    let back = (*plant != Plant::default()).then(|| Of::Plant.clear(&KEYS));
+    let back = (*plant != PlantDifferences::default()).then(|| Section::Plant.all_back(plant));
     fold(ui, p, ("Plant", &summary), back, commands, |ui, commands| {
         payload(ui, plant, p, commands);
         friction(ui, plant, model, p, commands);
@@ -39,29 +37,32 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
     });
 }
 
-fn payload(ui: &mut Ui, plant: &Plant, p: &Palette, commands: &mut Vec<Command>) {
+fn payload(ui: &mut Ui, plant: &PlantDifferences, p: &Palette, commands: &mut Vec<Command>) {
     const HELD: f64 = 0.3;
     let load = &plant.payload;
     let tip = "A mass at the end effector that control does not know of: it unbalances the machine";
     let on = something(ui, ("payload", tip), load.is_some(), commands, |on| match on {
-        true => Of::Plant.set(&["payload", "mass"], HELD),
-        false => Of::Plant.back(&["payload"]),
+        true => Section::Plant.set(&["payload", "mass"], HELD),
+        false => Section::Plant.back(&["payload"]),
     });
     if !on {
         return;
     }
-    let of = |key: &'static str| move |x: f64| Of::Plant.set(&["payload", key], x);
-    let knob = |label, unit, tip, decimals, speed, range, now| Knob {
+    let of = |key: &'static str| move |x: f64| Section::Plant.set(&["payload", key], x);
+    let field = |label, unit, tip, decimals, speed, range, now| NumberField {
         called: Some(format!("payload {label}")),
-        ..Knob::of(Row { label, unit, tip, decimals, speed, range }, now, 0.0)
+        ..NumberField::of(Row { label, unit, tip, decimals, speed, range }, now, 0.0)
     };
     ui.indent("payload", |ui| {
         let tip = "Mass m_p of the payload";
-        let mass =
-            Knob { normal: load.mass, called: None, ..knob("payload mass", "kg", tip, 2, 0.01, 0.01..=2.0, load.mass) };
+        let mass = NumberField {
+            normal: load.mass,
+            called: None,
+            ..field("payload mass", "kg", tip, 2, 0.01, 0.01..=2.0, load.mass)
+        };
         mass.show(ui, p, Slide::Linear, commands, of("mass"));
         let tip = "Inertia I_p of the payload about its own centre of mass";
-        knob("inertia", "kg m²", tip, 4, 0.0005, 0.0..=1.0, load.inertia).show(
+        field("inertia", "kg m²", tip, 4, 0.0005, 0.0..=1.0, load.inertia).show(
             ui,
             p,
             Slide::No,
@@ -72,19 +73,19 @@ fn payload(ui: &mut Ui, plant: &Plant, p: &Palette, commands: &mut Vec<Command>)
             (0, "offset along", "Its centre of mass from the end effector, along the last link"),
             (1, "offset across", "Its centre of mass from the end effector, to the left of the last link"),
         ] {
-            knob(label, "m", tip, 3, 0.002, -1.0..=1.0, load.offset[i]).show(ui, p, Slide::No, commands, |x| {
+            field(label, "m", tip, 3, 0.002, -1.0..=1.0, load.offset[i]).show(ui, p, Slide::No, commands, |x| {
                 let mut offset = load.offset;
                 offset[i] = x;
-                Of::Plant.set(&["payload", "offset"], offset.to_vec())
+                Section::Plant.set(&["payload", "offset"], offset.to_vec())
             });
         }
         let tip = "When it is picked up, by a hand that moves with it";
-        knob("from", "s", tip, 2, 0.01, 0.0..=60.0, load.from).show(ui, p, Slide::No, commands, of("from"));
+        field("from", "s", tip, 2, 0.01, 0.0..=60.0, load.from).show(ui, p, Slide::No, commands, of("from"));
         let tip = "When it is let go; otherwise it is held to the end";
         ui.horizontal(|ui| {
             let on = switch(ui, ("until", tip), load.until.is_some(), commands, |on| match on {
-                true => Of::Plant.set(&["payload", "until"], load.from + 0.5),
-                false => Of::Plant.back(&["payload", "until"]),
+                true => Section::Plant.set(&["payload", "until"], load.from + 0.5),
+                false => Section::Plant.back(&["payload", "until"]),
             });
             if on {
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -99,19 +100,19 @@ fn payload(ui: &mut Ui, plant: &Plant, p: &Palette, commands: &mut Vec<Command>)
                         range: load.from + 0.01..=load.from + 60.0,
                     };
                     let response = row.number(ui, &mut until);
-                    super::send(commands, &[response], || Of::Plant.set(&["payload", "until"], until));
+                    super::send(commands, &[response], || Section::Plant.set(&["payload", "until"], until));
                 });
             }
         });
     });
 }
 
-fn friction(ui: &mut Ui, plant: &Plant, model: &Machine, p: &Palette, commands: &mut Vec<Command>) {
+fn friction(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette, commands: &mut Vec<Command>) {
     let f = &plant.friction;
     let tip = "Friction in the bearings of the drives and in the pins, unknown to control";
     let on = something(ui, ("friction", tip), *f != Default::default(), commands, |on| match on {
-        true => Of::Plant.set(&["friction", "viscous"], 0.02),
-        false => Of::Plant.back(&["friction"]),
+        true => Section::Plant.set(&["friction", "viscous"], 0.02),
+        false => Section::Plant.back(&["friction"]),
     });
     if !on {
         return;
@@ -125,14 +126,14 @@ fn friction(ui: &mut Ui, plant: &Plant, model: &Machine, p: &Palette, commands: 
             most: 0.5,
             normal: 0.0,
         };
-        viscous.show(ui, (Of::Plant, &["friction", "viscous"]), &f.viscous, model.drives(), p, commands);
+        viscous.show(ui, (Section::Plant, &["friction", "viscous"]), &f.viscous, model.drives(), p, commands);
         let coulomb = Gain {
             label: "Coulomb",
             unit: "N m",
             tip: "Torque τ_C against sliding; a drive at rest sticks until more than that pulls",
             ..viscous
         };
-        coulomb.show(ui, (Of::Plant, &["friction", "coulomb"]), &f.coulomb, model.drives(), p, commands);
+        coulomb.show(ui, (Section::Plant, &["friction", "coulomb"]), &f.coulomb, model.drives(), p, commands);
         for (label, key, in_unit, tip, now) in [
             (
                 "pins viscous",
@@ -150,7 +151,8 @@ fn friction(ui: &mut Ui, plant: &Plant, model: &Machine, p: &Palette, commands: 
             ),
         ] {
             let row = Row { label, unit: in_unit, tip, decimals: 4, speed: 0.0005, range: 0.0..=1.0 };
-            Knob::of(row, now, 0.0).show(ui, p, Slide::No, commands, |x| Of::Plant.set(&["friction", key], x));
+            NumberField::of(row, now, 0.0)
+                .show(ui, p, Slide::No, commands, |x| Section::Plant.set(&["friction", key], x));
         }
     });
 }
@@ -167,15 +169,15 @@ pub struct Gain<'a> {
 }
 
 impl Gain<'_> {
-    fn knob<'a>(&'a self, label: &'a str, now: f64) -> Knob<'a> {
+    fn field<'a>(&'a self, label: &'a str, now: f64) -> NumberField<'a> {
         let Self { unit, tip, decimals, most, normal, .. } = *self;
-        Knob::of(Row { label, unit, tip, decimals, speed: most / 1000.0, range: 0.0..=most }, now, normal)
+        NumberField::of(Row { label, unit, tip, decimals, speed: most / 1000.0, range: 0.0..=most }, now, normal)
     }
 
     pub fn show(
         &self,
         ui: &mut Ui,
-        (of, path): (Of, &[&str]),
+        (of, path): (Section, &[&str]),
         each: &Each,
         n: usize,
         p: &Palette,
@@ -184,12 +186,12 @@ impl Gain<'_> {
         let values = each.of(n);
         match each {
             Each::All(now) => {
-                self.knob(self.label, *now).show(ui, p, Slide::Linear, commands, |x| of.set(path, x));
+                self.field(self.label, *now).show(ui, p, Slide::Linear, commands, |x| of.set(path, x));
             }
             Each::Own(_) => {
                 for k in 0..n {
                     let label = format!("{} {}", self.label, k + 1);
-                    self.knob(&label, values[k]).show(ui, p, Slide::No, commands, |x| {
+                    self.field(&label, values[k]).show(ui, p, Slide::No, commands, |x| {
                         let mut list = values.to_vec();
                         list[k] = x;
                         of.set(path, list)
@@ -208,11 +210,11 @@ impl Gain<'_> {
     }
 }
 
-fn limits(ui: &mut Ui, plant: &Plant, model: &Machine, p: &Palette, commands: &mut Vec<Command>) {
+fn limits(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette, commands: &mut Vec<Command>) {
     let tip = "Motors give no more than the drives' torque limits, whatever control asks for";
     let on = switch(ui, ("torque limits", tip), plant.torque_limits, commands, |on| match on {
-        true => Of::Plant.set(&["torque_limits"], true),
-        false => Of::Plant.back(&["torque_limits"]),
+        true => Section::Plant.set(&["torque_limits"], true),
+        false => Section::Plant.back(&["torque_limits"]),
     });
     if on {
         let limit = |d: &crate::mechanics::machine::Drive| d.torque_limit.map_or("none".into(), |t| format!("{t}"));
@@ -221,11 +223,11 @@ fn limits(ui: &mut Ui, plant: &Plant, model: &Machine, p: &Palette, commands: &m
     }
 }
 
-fn force(ui: &mut Ui, plant: &Plant, p: &Palette, commands: &mut Vec<Command>) {
+fn force(ui: &mut Ui, plant: &PlantDifferences, p: &Palette, commands: &mut Vec<Command>) {
     let tip = "A constant force F at the end effector; or push it by hand: Alt and drag, or U";
     let on = something(ui, ("force", tip), plant.force != [0.0; 2], commands, |on| match on {
-        true => Of::Plant.set(&["force"], vec![2.0, 0.0]),
-        false => Of::Plant.back(&["force"]),
+        true => Section::Plant.set(&["force"], vec![2.0, 0.0]),
+        false => Section::Plant.back(&["force"]),
     });
     if !on {
         return;
@@ -240,11 +242,11 @@ fn force(ui: &mut Ui, plant: &Plant, p: &Palette, commands: &mut Vec<Command>) {
                 speed: 0.05,
                 range: -50.0..=50.0,
             };
-            let knob = Knob::of(row, plant.force[i], 0.0);
-            knob.show(ui, p, Slide::No, commands, |x| {
+            let field = NumberField::of(row, plant.force[i], 0.0);
+            field.show(ui, p, Slide::No, commands, |x| {
                 let mut force = plant.force;
                 force[i] = x;
-                Of::Plant.set(&["force"], force.to_vec())
+                Section::Plant.set(&["force"], force.to_vec())
             });
         }
     });
@@ -274,7 +276,7 @@ fn pick(
     }
 }
 
-fn link(ui: &mut Ui, plant: &Plant, model: &Machine, p: &Palette, commands: &mut Vec<Command>) {
+fn link(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette, commands: &mut Vec<Command>) {
     const WHAT: &str = "a link differs";
     let known = |name: &str| model.links().iter().find(|link| link.name == name);
     let now = chosen(ui, WHAT, plant.link.keys().next(), |name| known(name).is_some());
@@ -320,19 +322,19 @@ fn link_rows(ui: &mut Ui, link: &Link, differs: &LinkDifference, p: &Palette, co
         let path = ["link", link.name.as_str(), key];
         let called = Some(format!("link {} {label}", link.name));
         let row = Row { label, unit, tip, decimals: 3, speed: 0.002, range };
-        let knob = Knob {
+        let field = NumberField {
             row,
             now: now.unwrap_or(normal),
             normal,
             beside: now.is_some(),
-            back: Some(Of::Plant.back(&path)),
+            back: Some(Section::Plant.back(&path)),
             called,
         };
-        knob.show(ui, p, Slide::No, commands, |x| Of::Plant.set(&path, x));
+        field.show(ui, p, Slide::No, commands, |x| Section::Plant.set(&path, x));
     }
 }
 
-fn length(ui: &mut Ui, plant: &Plant, model: &Machine, p: &Palette, commands: &mut Vec<Command>) {
+fn length(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette, commands: &mut Vec<Command>) {
     const WHAT: &str = "a length differs";
     let lengths = &model.spec().lengths;
     if lengths.is_empty() {
@@ -349,13 +351,13 @@ fn length(ui: &mut Ui, plant: &Plant, model: &Machine, p: &Palette, commands: &m
         let called = Some(format!("length {now}"));
         let row = Row { label: &now, unit: "m", tip, decimals: 4, speed: 0.0005, range: 0.01..=10.0 };
         let value = differs.copied().unwrap_or(*normal);
-        let back = Some(Of::Plant.back(&path));
-        Knob { row, now: value, normal: *normal, beside: differs.is_some(), back, called }.show(
+        let back = Some(Section::Plant.back(&path));
+        NumberField { row, now: value, normal: *normal, beside: differs.is_some(), back, called }.show(
             ui,
             p,
             Slide::No,
             commands,
-            |x| Of::Plant.set(&path, x),
+            |x| Section::Plant.set(&path, x),
         );
     });
 }

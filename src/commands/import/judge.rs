@@ -1,4 +1,4 @@
-//! What motions of a machine do to its base, and whether a proposal is as quiet as it is meant to be.
+//! What motions of a machine do to its base, and whether a proposed motion has no reactions, as it is meant to.
 
 use serde::Serialize;
 use stillbase::mechanics::dynamics::{Surroundings, angular_momentum};
@@ -138,7 +138,7 @@ impl Judge {
     }
 
     /// Why holding b is not enough.
-    pub fn not_quiet(&self, proposal: &Proposal, given: Option<&Account>) -> String {
+    pub fn why_not_reactionless(&self, proposal: &Proposal, given: Option<&Account>) -> String {
         let most = |a: &Account| a.peak_torque.iter().fold(0.0, |m: f64, x| m.max(*x));
         if given.is_some_and(|given| most(&proposal.account) < 1e-6 * most(given)) {
             return "on a plane nothing of the motion is left: all of it turns the arm as a whole".into();

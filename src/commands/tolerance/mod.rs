@@ -1,10 +1,10 @@
 //! `stillbase tolerance`
 
+mod checksum;
 pub(crate) mod merge;
 mod parallel;
 mod report;
 pub(crate) mod rows;
-mod seal;
 
 use std::ops::Range;
 use std::path::PathBuf;

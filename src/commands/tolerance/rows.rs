@@ -18,7 +18,7 @@ use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 use stillbase::files::{NewFile, WriteError};
 
-use super::seal::{self, BEFORE, End, Sealing, UNSEALED};
+use super::checksum::{self, BEFORE, BLANK, CheckedFile, End};
 use crate::commands::failure::Failure;
 
 /// Which study rows belong to. Its text heads the column of samples in a CSV file.
@@ -35,7 +35,7 @@ pub struct StudyId {
 impl fmt::Display for StudyId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { samples, seed, problem } = self;
-        write!(f, "sample of {samples} seed {seed} problem {problem:016x}{BEFORE}{UNSEALED}")
+        write!(f, "sample of {samples} seed {seed} problem {problem:016x}{BEFORE}{BLANK}")
     }
 }
 
@@ -117,14 +117,14 @@ const STUDY_KEY: &str = "stillbase.study";
 /// Writes rows.
 pub enum Writer {
     /// One line a row.
-    Csv(Box<csv::Writer<Sealing>>),
+    Csv(Box<csv::Writer<CheckedFile>>),
     /// Columns, a group of rows at a time.
     Parquet(Box<Groups>),
 }
 
 /// A Parquet file in the making.
 pub struct Groups {
-    writer: SerializedFileWriter<Sealing>,
+    writer: SerializedFileWriter<CheckedFile>,
     file: PathBuf,
     samples: Vec<i64>,
     columns: Vec<Vec<f64>>,
@@ -137,7 +137,7 @@ impl Writer {
     /// If it cannot be made.
     pub fn create(file: &Path, force: bool, head: &Head) -> Result<Self, Failure> {
         let kind = kind_of(file)?;
-        let out = Sealing::new(NewFile::create(file, force)?);
+        let out = CheckedFile::new(NewFile::create(file, force)?);
         match kind {
             Kind::Csv => {
                 let mut writer = csv::Writer::from_writer(out);
@@ -192,7 +192,7 @@ fn parquet_failure(file: &Path) -> impl Fn(ParquetError) -> Failure + use<> {
 }
 
 impl Groups {
-    fn create(out: Sealing, head: &Head) -> Result<Self, Failure> {
+    fn create(out: CheckedFile, head: &Head) -> Result<Self, Failure> {
         let file = out.path().to_owned();
         let failed = parquet_failure(&file);
         let column = |name: &str, physical| {
@@ -271,7 +271,7 @@ impl StudyPart {
     pub fn open(file: &Path) -> Result<Self, Failure> {
         let (kind, mut opened) = plain_file(file)?;
         let unreadable = |e| Failure::wrong_input(e).of(file.display());
-        match seal::holds(&mut opened, kind.end()).map_err(unreadable)? {
+        match checksum::holds(&mut opened, kind.end()).map_err(unreadable)? {
             Some(true) => Self::load(file),
             Some(false) => {
                 let why =

@@ -52,4 +52,4 @@ pub use inside::{Inside, KEPT, PinLoads, PinPeak};
 pub use joints::Joints;
 pub use pins::{FLAT, MAX_PINS, Pin};
 pub use tilt::{AxialMoments, Tilt};
-pub use transmission::{ChangePoint, Parallelogram, ahead, nearest, transmission};
+pub use transmission::{ChangePointDistance, Parallelogram, ahead, nearest, pair_transmission};

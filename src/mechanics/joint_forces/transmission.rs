@@ -32,7 +32,7 @@ impl Parallelogram {
 
 /// Where a pair of drives lines up.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ChangePoint {
+pub struct ChangePointDistance {
     /// The drives, counted from 0.
     pub drives: (usize, usize),
     /// |q_k − q_l − mπ|, rad.
@@ -42,7 +42,7 @@ pub struct ChangePoint {
 }
 
 /// |sin(q_k − q_l)|.
-pub fn transmission(e: &Units, k: usize, l: usize) -> f64 {
+pub fn pair_transmission(e: &Units, k: usize, l: usize) -> f64 {
     cross(e[k], e[l]).abs()
 }
 
@@ -52,23 +52,23 @@ fn off(angle: f64) -> f64 {
 }
 
 /// The change point that turning one drive least reaches; `None` for one drive.
-pub fn nearest(q: &[f64], qd: &PerDrive) -> Option<ChangePoint> {
+pub fn nearest(q: &[f64], qd: &PerDrive) -> Option<ChangePointDistance> {
     let all = Inertia::pairs(q.len()).map(|(k, l)| {
         let (past, rate) = (off(q[k] - q[l]), qd[k] - qd[l]);
-        ChangePoint { drives: (k, l), distance: past.abs(), time: arrival(-past, rate) }
+        ChangePointDistance { drives: (k, l), distance: past.abs(), time: arrival(-past, rate) }
     });
     all.min_by(|a, b| a.distance.total_cmp(&b.distance))
 }
 
 /// The change point that the present rates reach first, with the distance that the pair has to go; `None` where no two
 /// drives turn against each other.
-pub fn ahead(q: &[f64], qd: &PerDrive) -> Option<ChangePoint> {
+pub fn ahead(q: &[f64], qd: &PerDrive) -> Option<ChangePointDistance> {
     let all = Inertia::pairs(q.len()).filter_map(|(k, l)| {
         let (past, rate) = (off(q[k] - q[l]), qd[k] - qd[l]);
         // Towards the nearest multiple of π, or from it to the next.
         let way = if past * rate <= 0.0 { -past } else { PI.copysign(rate) - past };
         let time = arrival(way, rate)?;
-        Some(ChangePoint { drives: (k, l), distance: way.abs(), time: Some(time) })
+        Some(ChangePointDistance { drives: (k, l), distance: way.abs(), time: Some(time) })
     });
     all.min_by(|a, b| a.time.unwrap_or(0.0).total_cmp(&b.time.unwrap_or(0.0)))
 }

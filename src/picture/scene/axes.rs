@@ -1,4 +1,4 @@
-//! A box with three labelled axes: a quiet grid on the walls that are behind, ticks on the edges that are in front.
+//! A box with three labelled axes: a faint grid on the walls that are behind, ticks on the edges that are in front.
 
 use super::palette::{Palette, faded};
 use super::{Anchor, Changes, Label, Line, Rgba, Scene};

@@ -17,8 +17,8 @@ const NOISE: f64 = 1e-10;
 const MOST: f64 = 1e6;
 
 /// The least of 1, 2, 5, 10 … with which the greatest motion of a run, m and rad, is seen on a machine of a reach, m.
-pub fn exaggeration([shift, tilt]: [f64; 2], reach: f64) -> f64 {
-    let motion = shift + tilt * reach;
+pub fn exaggeration([shift, angle]: [f64; 2], reach: f64) -> f64 {
+    let motion = shift + angle * reach;
     if !(motion > NOISE * reach && motion.is_finite()) {
         return 1.0;
     }

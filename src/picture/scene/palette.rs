@@ -24,7 +24,7 @@ pub struct Palette {
     pub line: Rgba,
     /// Text.
     pub ink: Rgba,
-    /// Quiet text.
+    /// Text of less weight.
     pub dim: Rgba,
     /// Drives 1, 2, 3; further drives repeat them.
     pub drives: [Rgba; 3],

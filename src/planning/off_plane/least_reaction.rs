@@ -20,10 +20,10 @@ use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::curves::curve::CurvePoint;
 use crate::planning::curves::path::{PathError, minimum_norm_path};
 use crate::planning::curves::table::PathTable;
+use crate::planning::off_plane::b_course::{BCourse, Reaction};
+use crate::planning::off_plane::b_program::{STATIONS, least_course};
 use crate::planning::off_plane::corridor::{Corridor, CorridorError};
 use crate::planning::off_plane::inverse::pose_along;
-use crate::planning::off_plane::pose_course::{PoseCourse, Reaction};
-use crate::planning::off_plane::pose_program::{STATIONS, least_course};
 use crate::planning::off_plane::price::{Price, PriceError};
 use crate::planning::reactionless::{PlaneMap, PlanePoint, SLACK, between};
 
@@ -57,7 +57,7 @@ pub enum Goal {
 #[derive(Clone, Debug)]
 pub struct LeastReaction {
     corridor: Corridor,
-    course: PoseCourse,
+    course: BCourse,
     path: PathTable,
     inertia: f64,
 }
@@ -147,7 +147,7 @@ impl LeastReaction {
         }
         let stays = end.is_none_or(|end| end == start.b) && corridor.leaves(start.b).is_none();
         if stays {
-            let course = PoseCourse::constant(start.b);
+            let course = BCourse::constant(start.b);
             if let Ok(path) = followed(&corridor, &curve, &course) {
                 return Ok(Self { corridor, course, path, inertia });
             }
@@ -178,7 +178,7 @@ impl LeastReaction {
     }
 
     /// b over u.
-    pub fn course(&self) -> &PoseCourse {
+    pub fn course(&self) -> &BCourse {
         &self.course
     }
 
@@ -275,7 +275,7 @@ pub struct MinimumNorm {
 fn followed(
     corridor: &Corridor,
     curve: impl Fn(f64) -> CurvePoint,
-    course: &PoseCourse,
+    course: &BCourse,
 ) -> Result<PathTable, LeastReactionError> {
     let (map, stations) = (corridor.map(), corridor.stations());
     let mut from = corridor.start().a;

@@ -1,14 +1,14 @@
 //! Off the planes: the price of b, the least reaction, zero momentum with its drift, and machines of two drives.
 
+pub mod b_course;
+pub mod b_integral;
+mod b_program;
 mod convex;
 pub mod corridor;
 pub mod drift;
 pub mod inverse;
 pub mod least_reaction;
 pub mod null_space;
-pub mod pose_course;
-pub mod pose_integral;
-mod pose_program;
 pub mod price;
 
 pub use corridor::Corridor;

@@ -87,7 +87,7 @@ impl PlaneMap {
     }
 
     /// How well force passes through the parallelograms: min |sin(q_k − q_l)|, 0 at a change point.
-    pub fn transmission(&self, a: [f64; 2]) -> f64 {
+    pub fn least_transmission(&self, a: [f64; 2]) -> f64 {
         self.sines(a).iter().fold(1.0, |least: f64, s| least.min(s.abs()))
     }
 

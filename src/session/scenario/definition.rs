@@ -9,7 +9,7 @@ use crate::session::TimedEdit;
 use crate::settings::range::{Check, Range};
 use crate::simulation::Setup;
 use crate::simulation::control::Control;
-use crate::simulation::plant::{Base, Plant};
+use crate::simulation::plant::{Base, PlantDifferences};
 
 /// What a run starts from.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,7 +21,7 @@ pub struct Scenario {
     /// The machine that control believes in.
     pub machine: Machine,
     /// What differs in the machine that moves.
-    pub plant: Plant,
+    pub plant: PlantDifferences,
     /// What it stands on.
     pub base: Base,
     /// The task.

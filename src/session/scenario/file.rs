@@ -9,11 +9,11 @@ use super::error::ScenarioError;
 use super::task::Task;
 use super::tolerance::Tolerance;
 use crate::mechanics::machine::{self, FileError, Machine, MachineSpec, Place, PlaceStep};
-use crate::session::{TimedEdit, survey};
+use crate::session::{TimedEdit, check_edits};
 use crate::settings::change;
 use crate::settings::range::{clipped, shortened};
 use crate::simulation::control::Control;
-use crate::simulation::plant::{Base, Plant, is_default};
+use crate::simulation::plant::{Base, PlantDifferences, is_default};
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -35,7 +35,7 @@ struct File {
     #[serde(default, skip_serializing_if = "is_default")]
     control: Control,
     #[serde(default, skip_serializing_if = "is_default")]
-    plant: Plant,
+    plant: PlantDifferences,
     #[serde(default, skip_serializing_if = "is_default")]
     base: Base,
     #[serde(default, skip_serializing_if = "Tolerance::is_empty")]
@@ -137,7 +137,7 @@ impl Scenario {
             edits,
         };
         scenario.check(label).map_err(|error| scenario.with_line(error, text))?;
-        survey(&scenario).map_err(wrong_edit)?;
+        check_edits(&scenario).map_err(wrong_edit)?;
         Ok(scenario)
     }
 

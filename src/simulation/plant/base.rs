@@ -27,10 +27,10 @@ pub struct Base {
     /// ρ: its centre of mass seen from B, in its own axes, m.
     #[serde(default, skip_serializing_if = "is_default")]
     pub com: [f64; 2],
-    /// Springs of a compliant base: along x and y, N/m, and against tilt, N m/rad.
+    /// Springs of a compliant base: along x and y, N/m, and against rotation, N m/rad.
     #[serde(default = "springs", skip_serializing_if = "is_springs")]
     pub stiffness: [f64; 3],
-    /// Dampers of a compliant base: along x and y, N s/m, and against tilt, N m s.
+    /// Dampers of a compliant base: along x and y, N s/m, and against rotation, N m s.
     #[serde(default = "dampers", skip_serializing_if = "is_dampers")]
     pub damping: [f64; 3],
     /// A reaction wheel in it.

@@ -1,4 +1,4 @@
-//! [`Plant`]: what differs in the machine that moves.
+//! [`PlantDifferences`]: what differs in the machine that moves.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use crate::settings::range::{Check, Range};
 /// What differs in the machine that moves.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Plant {
+pub struct PlantDifferences {
     /// Whether motors give no more than the drives' torque limits.
     #[serde(default, skip_serializing_if = "is_default")]
     pub torque_limits: bool,
@@ -52,7 +52,7 @@ pub struct LinkDifference {
     pub com_normal: Option<f64>,
 }
 
-impl Plant {
+impl PlantDifferences {
     /// The machine that moves, without the payload that comes and goes.
     ///
     /// # Errors

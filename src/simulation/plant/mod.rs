@@ -1,6 +1,6 @@
 //! The plant: how the machine that moves differs from the one that control believes in, and what it stands on.
 //!
-//! A [`Plant`] says what differs, a [`Base`] what the machine stands on, a [`Wheel`] what else turns there: plain data,
+//! A [`PlantDifferences`] says what differs, a [`Base`] what the machine stands on, a [`Wheel`] what else turns there: plain data,
 //! as files and edits state it. A [`MovingBody`] is what all of it comes to: constants of everything that moves.
 
 mod base;
@@ -13,7 +13,7 @@ mod state;
 mod wheel;
 
 pub use base::{Base, BaseKind};
-pub use differences::{LinkDifference, MAX_PAYLOAD, Plant};
+pub use differences::{LinkDifference, MAX_PAYLOAD, PlantDifferences};
 pub use each::Each;
 pub(crate) use each::is_default;
 pub use friction::{Contacts, Friction, MAX_CONTACTS, SlipDirections};

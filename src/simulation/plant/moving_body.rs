@@ -228,9 +228,9 @@ impl MovingBody {
         }
         let (lever, _) = self.seen(&self.anchor, &x.e, &x.qd);
         let Support { stiffness: [kx, ky, kt], preload: (force, moment), .. } = self.support;
-        let (p, tilt) = (x.base.at, x.base.angle);
-        weight(self.mass * (p - lever)) - dot(force, p) - moment * tilt
-            + 0.5 * (kx * p.re * p.re + ky * p.im * p.im + kt * tilt * tilt)
+        let (p, angle) = (x.base.at, x.base.angle);
+        weight(self.mass * (p - lever)) - dot(force, p) - moment * angle
+            + 0.5 * (kx * p.re * p.re + ky * p.im * p.im + kt * angle * angle)
     }
 
     /// Momentum of all that moves, kg m/s, and its angular momentum about the origin, kg m²/s, from rates.

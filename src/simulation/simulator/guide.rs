@@ -4,7 +4,7 @@ use crate::mechanics::machine::Machine;
 use crate::planning::following::Follower;
 use crate::planning::{Motion, Reference};
 use crate::simulation::control::Control;
-use crate::simulation::plant::{Base, Plant};
+use crate::simulation::plant::{Base, PlantDifferences};
 
 /// What leads the machine.
 #[derive(Clone, Debug)]
@@ -36,7 +36,7 @@ pub struct Setup<'a> {
     /// The machine that control believes in.
     pub model: &'a Machine,
     /// What differs in the machine that moves.
-    pub plant: &'a Plant,
+    pub plant: &'a PlantDifferences,
     /// What it stands on.
     pub base: &'a Base,
     /// Control.

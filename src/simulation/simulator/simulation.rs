@@ -2,7 +2,7 @@
 
 use crate::mechanics::dynamics::{self, Surroundings};
 use crate::mechanics::joint_forces::{Inside, PinLoads};
-use crate::mechanics::kinematics::{end_effector, transmission};
+use crate::mechanics::kinematics::{end_effector, least_transmission};
 use crate::mechanics::machine::{Machine, MachineError, RelativeAngle};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Vector};
 use crate::planning::Reference;
@@ -439,7 +439,7 @@ impl Simulation {
             loaded: self.loaded,
             kinetic: x.kinetic,
             dexterity: self.map.map_or_else(Default::default, |map| map.dexterity_at(&x.e)),
-            transmission: transmission(&x.e, n),
+            transmission: least_transmission(&x.e, n),
             inside: self.inside(),
             phase,
             peaks: self.peaks,

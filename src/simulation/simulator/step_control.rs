@@ -49,13 +49,13 @@ impl Mismatch {
     /// What errors are shares of: peaks, or what must be small beside the torques, the pull and the arm to count as none.
     pub fn measure(peaks: &Peaks, reach: f64) -> Self {
         let (torque, pull) = (peaks.torque_sum.max(LEAST), peaks.inertial_pull.max(LEAST));
-        let scale = |peak: f64, all: f64| peak.max(QUIET * all);
+        let scale = |peak: f64, all: f64| peak.max(LEAST_SHARE * all);
         Self([scale(peaks.moment, torque), scale(peaks.force, pull), torque, TIP * reach.max(LEAST)])
     }
 }
 
 /// Moments and forces below this share of torques and pull are judged as if they were as large.
-pub(super) const QUIET: f64 = 1e-4;
+pub(super) const LEAST_SHARE: f64 = 1e-4;
 
 /// Errors of the end effector are shares of this part of the arm.
 pub(super) const TIP: f64 = 1e-2;
@@ -68,7 +68,7 @@ pub(super) const LEAST: f64 = 1e-6;
 pub(super) struct Stray {
     pub(super) tip: f64,
     pub(super) shift: f64,
-    pub(super) tilt: f64,
+    pub(super) angle: f64,
 }
 
 /// What errors have come to so far, and how many substeps steps are taken in.
@@ -102,10 +102,11 @@ impl StepControl {
 
     /// The error of what is shown, as a share of a measure.
     pub fn error(&self, measure: &Mismatch, totals: &Totals, reach: f64) -> f64 {
-        let Stray { tip, shift, tilt } = self.drift;
-        let least = QUIET * reach.max(LEAST);
-        let drift =
-            (tip / (TIP * reach.max(LEAST))).max(shift / totals.shift.max(least)).max(tilt / totals.tilt.max(QUIET));
+        let Stray { tip, shift, angle } = self.drift;
+        let least = LEAST_SHARE * reach.max(LEAST);
+        let drift = (tip / (TIP * reach.max(LEAST)))
+            .max(shift / totals.shift.max(least))
+            .max(angle / totals.base_angle.max(LEAST_SHARE));
         let worst = self.worst.share(measure);
         if drift > worst || drift.is_nan() { drift } else { worst }
     }

@@ -198,7 +198,7 @@ impl Simulation {
             let (each, drift) = (16.0 / 15.0 * steps, &mut self.step_control.drift);
             drift.tip += each * (tip(&self.bodies[0], a) - tip(&self.bodies[0], b)).norm();
             drift.shift += each * (a.base.at - b.base.at).norm();
-            drift.tilt += each * (a.base.angle - b.base.angle).abs();
+            drift.angle += each * (a.base.angle - b.base.angle).abs();
         }
         // Half as many make about eight times the difference.
         let next = if off.share(measure) < fine / 16.0 { (substeps / 2).max(1) } else { substeps };

@@ -30,9 +30,9 @@ pub struct Comparison {
 impl Comparison {
     /// The ways of a scenario's task.
     pub fn of(scenario: &Scenario) -> Self {
-        let mut board = Self { task: scenario.clone(), entries: Vec::new(), sort: None };
-        board.fill();
-        board
+        let mut comparison = Self { task: scenario.clone(), entries: Vec::new(), sort: None };
+        comparison.fill();
+        comparison
     }
 
     fn fill(&mut self) {

@@ -3,7 +3,7 @@
 use super::ensemble::Outcome;
 use crate::mechanics::machine::Machine;
 use crate::session::{Refusal, Run};
-use crate::simulation::plant::{Load, Plant};
+use crate::simulation::plant::{Load, PlantDifferences};
 use crate::simulation::{Guide, Setup, Simulation};
 
 /// Simulates a planned motion, control and all, with another machine as plant.
@@ -16,7 +16,7 @@ pub fn simulate(planned: &Run, plant: &Machine) -> Result<Outcome, Refusal> {
     // What it holds at the start is part of the varied machine; what comes later is not.
     let load = scenario.plant.payload;
     let payload = if load.is_held(0.0, 0.5 * scenario.step) { Load::default() } else { load };
-    let rest = Plant { payload, ..scenario.plant.clone() };
+    let rest = PlantDifferences { payload, ..scenario.plant.clone() };
     let setup = Setup { plant: &rest, ..scenario.setup() };
     let mut simulation = Simulation::of_machine(&setup, plant.clone(), guide)?;
     let last = planned.last_step();

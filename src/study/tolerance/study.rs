@@ -4,7 +4,7 @@ use super::{Agreement, Bands, CHUNK, Ensemble, Histogram, Outcome, Quantiles, Sh
 use crate::session::scenario::{Scenario, Tolerance};
 use crate::session::{Run, felt};
 use crate::simulation::control::Control;
-use crate::simulation::plant::Plant;
+use crate::simulation::plant::PlantDifferences;
 use crate::study::spectrum::{Spectrum, Window};
 
 /// Instants at which a motion is looked at.
@@ -102,7 +102,7 @@ impl Study {
 
 /// What a scenario has that perfect tracking on a fixed base leaves out.
 pub fn left_out(scenario: &Scenario) -> Vec<&'static str> {
-    let Plant { torque_limits, force, payload, friction, length, link } = &scenario.plant;
+    let PlantDifferences { torque_limits, force, payload, friction, length, link } = &scenario.plant;
     let known = Control { kp: scenario.control.kp, kd: scenario.control.kd, ..Control::default() };
     let always = payload.is_held(0.0, 0.5 * scenario.step) && payload.until.is_none();
     let all = [

@@ -212,11 +212,11 @@ impl Ground {
             true => signed(1e3 * x, (2 - (1e3 * peak).log10().floor() as i32).clamp(0, 9) as usize),
             false => "0".into(),
         };
-        let words = match frame.totals.shift > SILENT || frame.totals.tilt > SILENT {
+        let words = match frame.totals.shift > SILENT || frame.totals.base_angle > SILENT {
             true => format!(
                 "base {} mm, {} mrad",
                 written(at.norm() / times, frame.totals.shift),
-                written(angle / times, frame.totals.tilt)
+                written(angle / times, frame.totals.base_angle)
             ),
             false => "base at rest".into(),
         };

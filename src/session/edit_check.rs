@@ -9,7 +9,7 @@ use crate::session::scenario::Scenario;
 ///
 /// # Errors
 /// The entry to blame, counted from 0, and what is wrong with it.
-pub(crate) fn survey(scenario: &Scenario) -> Result<(), (usize, String)> {
+pub(crate) fn check_edits(scenario: &Scenario) -> Result<(), (usize, String)> {
     let edits = &scenario.edits;
     if edits.is_empty() {
         return Ok(());

@@ -1,5 +1,5 @@
-//! The seal of a file of samples: a checksum of all its bytes, which stands in the words that name its study. While it is
-//! reckoned, zeros stand in its place.
+//! The checksum of a file of samples, over all its bytes. It stands in the text that names the study; while it is computed,
+//! zeros stand in its place.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -7,15 +7,15 @@ use std::path::Path;
 
 use stillbase::files::{NewFile, WriteError};
 
-/// What stands before the seal.
+/// The text before the checksum.
 pub const BEFORE: &str = " check ";
 
-/// What stands where a seal is to come.
-pub const UNSEALED: &str = "0000000000000000";
+/// What stands where the checksum will come.
+pub const BLANK: &str = "0000000000000000";
 
-const DIGITS: u64 = UNSEALED.len() as u64;
+const DIGITS: u64 = BLANK.len() as u64;
 
-/// Where in a file its seal is looked for.
+/// Where in a file its checksum is looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     /// In its first bytes.
@@ -24,7 +24,7 @@ pub enum End {
     Tail,
 }
 
-/// Bytes at either end among which the seal is.
+/// The checksum is within so many bytes of that end.
 const NEAR: u64 = 1 << 16;
 
 /// A sum in the manner of FNV-1a, over words of eight bytes: each step keeps different sums different, so no single word
@@ -68,33 +68,33 @@ impl Checksum {
     }
 }
 
-/// Where the digits of a seal begin among the bytes at an end, and what they say. Names of columns may look like it, but
+/// Where the digits of a checksum begin among the bytes at an end, and what they say. Names of columns may look like it, but
 /// do not stand as near to the end.
 fn find(bytes: &[u8], end: End) -> Option<(u64, u64)> {
     let before = BEFORE.as_bytes();
     let digits = |at: usize| {
-        let text = bytes.get(at..at + UNSEALED.len())?;
+        let text = bytes.get(at..at + BLANK.len())?;
         // Each value has one spelling, so that no bit of it can change unseen.
         let spelled = text.iter().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f'));
         u64::from_str_radix(std::str::from_utf8(text).ok().filter(|_| spelled)?, 16).ok()
     };
-    let seal = |(i, window): (usize, &[u8])| {
+    let found = |(i, window): (usize, &[u8])| {
         let at = i + before.len();
         (window == before).then(|| Some((at as u64, digits(at)?)))?
     };
     let mut windows = bytes.windows(before.len()).enumerate();
-    if end == End::Head { windows.find_map(seal) } else { windows.rev().find_map(seal) }
+    if end == End::Head { windows.find_map(found) } else { windows.rev().find_map(found) }
 }
 
-/// A file in the making that will be sealed.
-pub struct Sealing {
+/// A file being written, which gets its checksum at the end.
+pub struct CheckedFile {
     out: NewFile,
     sum: Checksum,
     /// What was written first.
     head: Vec<u8>,
 }
 
-impl Sealing {
+impl CheckedFile {
     /// Nothing is written yet.
     pub fn new(out: NewFile) -> Self {
         Self { out, sum: Checksum::new(), head: Vec::new() }
@@ -105,18 +105,18 @@ impl Sealing {
         self.out.path()
     }
 
-    /// Seals the file and puts it under its name.
+    /// Writes the checksum and puts it under its name.
     ///
     /// # Errors
     /// If not everything could be written.
     pub fn finish(mut self, end: End) -> Result<(), WriteError> {
-        if let Err(source) = self.seal(end) {
+        if let Err(source) = self.write_checksum(end) {
             return Err(WriteError::Failed { file: self.out.path().into(), source });
         }
         self.out.finish()
     }
 
-    fn seal(&mut self, end: End) -> io::Result<()> {
+    fn write_checksum(&mut self, end: End) -> io::Result<()> {
         let (from, bytes) = match end {
             End::Head => (0, std::mem::take(&mut self.head)),
             End::Tail => self.out.tail(NEAR)?,
@@ -126,7 +126,7 @@ impl Sealing {
     }
 }
 
-impl Write for Sealing {
+impl Write for CheckedFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let count = self.out.write(bytes)?;
         self.sum.add(&bytes[..count]);
@@ -139,7 +139,7 @@ impl Write for Sealing {
     }
 }
 
-/// Whether a file has a seal at an end, and it is that of its bytes.
+/// Whether the checksum at an end of a file is that of its bytes; `None` where there is none.
 ///
 /// # Errors
 /// If it cannot be read.

@@ -9,7 +9,7 @@
 
 /// b over u = t/T: cubic pieces, b″ continuous.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PoseCourse {
+pub struct BCourse {
     /// b, b′, b″ at even u.
     nodes: Vec<[f64; 3]>,
 }
@@ -23,7 +23,7 @@ pub struct Reaction {
     pub rms: f64,
 }
 
-impl PoseCourse {
+impl BCourse {
     /// The same b throughout.
     pub fn constant(b: f64) -> Self {
         Self { nodes: vec![[b, 0.0, 0.0]; 2] }

@@ -18,7 +18,7 @@ use crate::mechanics::planar::{Vector, unit};
 ///
 /// Unlike (13) it is not scaled by D_1: for a constant mass matrix it is (D_1 q_1 + D_2 q_2)/(D_1 + D_2).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PoseIntegral {
+pub struct BIntegral {
     /// ½ (H_22 − H_11)/√(S² − 4R²).
     gain: f64,
     /// √((S − 2R)/(S + 2R)).
@@ -28,7 +28,7 @@ pub struct PoseIntegral {
     coupling: Vector,
 }
 
-impl PoseIntegral {
+impl BIntegral {
     /// Of a machine; `None` unless it has two drives and a positive definite mass matrix.
     pub fn of(model: &Inertia) -> Option<Self> {
         if model.drives() != 2 {

@@ -2,9 +2,9 @@
 //!
 //! b″ is linear between even nodes; b and b′ of the nodes are unknowns too, bound together by exact integration.
 
+use crate::planning::off_plane::b_course::BCourse;
 use crate::planning::off_plane::convex::Program;
 use crate::planning::off_plane::corridor::{Corridor, Station};
-use crate::planning::off_plane::pose_course::PoseCourse;
 use crate::planning::reactionless::SLACK;
 
 /// Stations of the corridor in each piece.
@@ -37,7 +37,7 @@ pub(super) fn least_course(
     peak: bool,
     spaces: usize,
     ease: f64,
-) -> Result<PoseCourse, String> {
+) -> Result<BCourse, String> {
     let value = |share: f64| value(corridor, &walls(corridor, end, share, 0.0), end, peak, spaces);
     // What is to be least is convex in the share of the margin, so that a chord bounds what a share of it costs.
     let free = value(0.0)?;
@@ -63,7 +63,7 @@ fn kept_within(
     peak: bool,
     spaces: usize,
     share: f64,
-) -> Result<PoseCourse, String> {
+) -> Result<BCourse, String> {
     let mut extra = 0.0;
     let mut rounds = 0;
     loop {
@@ -81,7 +81,7 @@ fn kept_within(
 }
 
 /// How far a course passes the ends of its corridor, at stations and halfway between them, rad.
-fn past(corridor: &Corridor, course: &PoseCourse) -> f64 {
+fn past(corridor: &Corridor, course: &BCourse) -> f64 {
     let stations = corridor.stations();
     let at = stations.iter().chain(corridor.between()).map(|s| {
         let b = course.at(s.u)[0];
@@ -117,13 +117,7 @@ fn bulge(corridor: &Corridor, k: usize, side: usize) -> Option<f64> {
 }
 
 /// Unknowns b − b_0, b′, b″ of each node, side by side, so that every row has few of them.
-fn solved(
-    corridor: &Corridor,
-    walls: &Walls,
-    end: Option<f64>,
-    peak: bool,
-    spaces: usize,
-) -> Result<PoseCourse, String> {
+fn solved(corridor: &Corridor, walls: &Walls, end: Option<f64>, peak: bool, spaces: usize) -> Result<BCourse, String> {
     let mut least = program(corridor, walls, end, spaces, 1, 0);
     if peak {
         // First the peak alone; then of all courses with that peak the smoothest.
@@ -135,7 +129,7 @@ fn solved(
     }
     let x = squared(least, spaces).solve()?;
     let second = (0..=spaces).map(|i| x[3 * i + 2]).collect();
-    Ok(PoseCourse::integrated(corridor.start().b, second, end))
+    Ok(BCourse::integrated(corridor.start().b, second, end))
 }
 
 /// What is least: the root of ∫ b″² du, or the peak of |b″|.
