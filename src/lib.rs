@@ -23,7 +23,8 @@
 //! assert!((exact.links()[0].com - -0.2214384).abs() < 1e-7);
 //! # Ok::<(), stillbase::mechanics::balance::DesignError>(())
 //! ```
-//! Its planes ([`Planes`](planning::pose_constant::Planes)) know which b reach a point, where, and how far the workspace goes:
+//! Its planes ([`Planes`](planning::pose_constant::Planes)) know which b reach a point, where, and how far the
+//! workspace goes:
 //! ```
 //! # use stillbase::mechanics::machine;
 //! # use stillbase::mechanics::planar::Vector;
@@ -48,8 +49,8 @@
 //! let blocked = trace::follow(planes.map(), &line, 2.9, None, Rule::default()).expect_err("B is on other planes");
 //! assert!((blocked.nearest_b.expect("2.4 and others") - 2.6610727).abs() < 1e-4);
 //! ```
-//! A [`Scenario`](session::scenario::Scenario) sets a task; a [`Run`](session::Run) carries it out step by step and gives a
-//! [`Frame`](simulation::frame::Frame) of everything true at each instant:
+//! A [`Scenario`](session::scenario::Scenario) sets a task; a [`Run`](session::Run) carries it out step by step and
+//! gives a [`Frame`](simulation::frame::Frame) of everything true at each instant:
 //! ```
 //! # use stillbase::session::scenario::Scenario;
 //! # use stillbase::session::replay;
@@ -58,8 +59,8 @@
 //! assert!(run.frame().peaks.is_reactionless());
 //! # Ok::<(), stillbase::session::Refusal>(())
 //! ```
-//! A [`Session`](session::Session) is a run under somebody's hands: every change is an [`Edit`](session::Edit), so it
-//! can be saved, undone and replayed to the very same frames.
+//! A [`Session`](session::Session) is a run that a person changes while it goes on: every change is an
+//! [`Edit`](session::Edit), so it can be saved, undone and replayed to the very same frames.
 //!
 //! # What flows
 //! ```text
@@ -82,22 +83,27 @@
 //! | [`simulation`] | what then happens: plant, control, the step, frames, the audit, signals |
 //! | [`session`] | what a person did: scenarios, edits, runs, undo, replay, the verdict |
 //! | [`study`] | many runs: side by side, around a nominal machine, by frequency |
-//! | [`picture`] | what it looks like: scenes as plain data, the table of charts; what paints them (features `render`, `ui`) |
+//! | [`picture`] | scenes as plain data, the table of charts, and what paints them (features `render`, `ui`) |
 //! | [`files`] | files that appear whole or not at all |
 //! | `recording` | the same picture for Rerun (feature `record`) |
 //! | `app` | the window (features `ui`, `window`) |
 //! | `commands` | the program's subcommands, one file each |
 //!
 //! # Where to add something
-//! | what | write it in | then |
-//! |---|---|---|
-//! | a signal | a field of `simulation/frame.rs` if it is new, and a row of the table in `simulation/signals.rs` | recordings and CSV have it; a chart of its own is a row of `picture/charts.rs` |
-//! | a setting | a field with its range beside the part that it sets: `simulation/control.rs`, `simulation/plant/`, `session/scenario/task.rs`; of machines `mechanics/machine/` | files, `--set` and edits know it; a row and a key of the window's panel in `app/side/`, a line of the README |
-//! | something to see | an item of the scene, in `picture/scene/stage/` (joint space and tower are scenes of their own) | window, figures and recordings show it; what can be switched on is an option in `picture/scene/options.rs` |
-//! | a time law | a variant in `planning/timing/law.rs` | files, commands and the window know it by its words there |
-//! | a subcommand | a file in `commands/`, its `mod` and a line of the list in `mod.rs` | help and exit status follow; a line of the README |
-//! | an edit | a variant in `session/edit.rs`, what it does in `session/run.rs` | saving, undo and replay follow; the tests draw it at random |
-//! | a fault to refuse | a variant of the nearest error, with what, where and what would be right | |
+//! * **A signal**: a field of `simulation/frame.rs` if it is new, and a row of the table in `simulation/signals.rs`.
+//!   Recordings and CSV have it then; a chart of its own is a row of `picture/charts.rs`.
+//! * **A setting**: a field with its range beside the part that it sets: `simulation/control.rs`, `simulation/plant/`,
+//!   `session/scenario/task.rs`; of machines `mechanics/machine/`. Files, `--set` and edits know it then; write a row
+//!   of the window's panel in `app/side/` and a line of the README.
+//! * **Something to see**: an item of the scene, in `picture/scene/stage/` (joint space and tower are scenes of their
+//!   own). Window, figures and recordings show it then; what can be switched on is an option in
+//!   `picture/scene/options.rs`.
+//! * **A time law**: a variant in `planning/timing/law.rs`. Files, commands and the window know it by its words there.
+//! * **A subcommand**: a file in `commands/`, its `mod` and a line of the list in `mod.rs`. Help and exit status
+//!   follow; write a line of the README.
+//! * **An edit**: a variant in `session/edit.rs`, and what it does in `session/run.rs`. Saving, undo and replay follow;
+//!   the tests draw it at random.
+//! * **An error**: a variant of the nearest error type that says what is wrong, where, and what would be right.
 //!
 //! The core builds without any feature: no GPU, no window, no Rerun, and it reads no clock.
 #![warn(missing_docs)]

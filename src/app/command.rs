@@ -29,17 +29,17 @@ pub enum Command {
     SaveFile(std::path::PathBuf),
     /// Write a recording for the Rerun viewer.
     Record(std::path::PathBuf),
-    /// Take back.
+    /// Undo the last edit.
     Undo,
-    /// Bring back.
+    /// Redo what was undone last.
     Redo,
-    /// One of the linked views.
+    /// Show one of the linked views.
     View(ViewKind),
     /// Shade the workspace by a measure of dexterity, or not.
     Dexterity(Option<Measure>),
-    /// Show everything.
+    /// Point the camera so that everything is seen.
     Fit,
-    /// Light or dark.
+    /// Light or dark colours.
     Theme(Theme),
     /// Show how A would be held on the plane of another b, rad.
     Preview(Option<f64>),
@@ -51,23 +51,23 @@ pub enum Command {
     Study(bool),
     /// Show or hide what pins carry.
     Pins(bool),
-    /// What is done to the table of runs.
+    /// Change the table of runs.
     Comparison(ComparisonCommand),
     /// Put the second cursor at a time, s, or away.
     Mark(Option<f64>),
     /// Show or hide snapshots along the motion.
     Snapshots(bool),
-    /// Take up the hand that pushes the end effector, or lay it down.
+    /// Let the pointer push the end effector when it drags it, or no longer.
     Push(bool),
     /// Exaggerate the motion of the base as much as it takes to be seen, or show it as it is.
     Exaggerate(bool),
-    /// Let b go on past the band that serves the points, and turn them along with it.
+    /// Let b leave the range that serves the points of the task, and turn the points along with it.
     TurnTask(bool),
-    /// One of the paper's cases, by name.
+    /// Open one of the paper's cases, by name.
     Case(&'static str),
-    /// Take the machine back from the hand that led it.
+    /// Put the machine back at the start of its planned path.
     BackToPath,
-    /// Say what was typed and cannot be taken.
+    /// Show why a number that was typed is refused.
     Refuse(String),
     /// Show or hide the keys.
     Help(bool),
@@ -78,9 +78,9 @@ pub enum Command {
 /// What can be done to the table of runs.
 #[derive(Clone, Debug)]
 pub enum ComparisonCommand {
-    /// By a column.
+    /// Sort by a column, counted from 0.
     Sort(usize),
-    /// Lay a row over plots and scene, or not.
+    /// Draw a row's run in plots and scene, or no longer.
     Show(usize, bool),
     /// Keep the session's own run.
     Keep,
@@ -95,7 +95,7 @@ pub enum ComparisonCommand {
 /// Asking for a file name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileDialog {
-    /// Why.
+    /// What the file is for.
     pub purpose: Purpose,
     /// What is typed so far.
     pub path: String,

@@ -11,7 +11,7 @@ use crate::picture::scene::palette::{Palette, faded};
 use crate::session::scenario::Scenario;
 use crate::study::comparison::{COLUMNS, Column, Comparison, Entry};
 
-/// How the lines of a row look in plots, and how strong they are: told apart without colour, which means something.
+/// Dashes and opacity of a row's lines in plots. Rows differ by these, because colour says what is plotted.
 pub fn line_style(entry: usize) -> (LineStyle, f32) {
     let styles = [
         LineStyle::Dashed { length: 7.0 },
@@ -24,7 +24,7 @@ pub fn line_style(entry: usize) -> (LineStyle, f32) {
     (styles[entry % styles.len()], if entry >= styles.len() { 0.45 } else { 0.7 })
 }
 
-/// Draws it.
+/// Draws this panel.
 pub fn show(ui: &mut Ui, comparison: &Comparison, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 16, right: 16, top: 8, bottom: 8 });
@@ -48,10 +48,14 @@ fn buttons(ui: &mut Ui, comparison: &Comparison, commands: &mut Vec<Command>) {
     if close.clicked() {
         commands.push(Command::Compare(false));
     }
-    if ui.button("Copy").on_hover_text("The table, for a spreadsheet").clicked() {
+    if ui.button("Copy").on_hover_text("Copies the table as text, for a spreadsheet").clicked() {
         ui.ctx().copy_text(comparison.to_text());
     }
-    if ui.button("Keep this run").on_hover_text("Also as it was led by hand; stays when the task changes").clicked() {
+    if ui
+        .button("Keep this run")
+        .on_hover_text("Adds the session's run, also if you led it by hand; the row stays when the task changes")
+        .clicked()
+    {
         commands.push(Command::Comparison(ComparisonCommand::Keep));
     }
     let add = egui::ComboBox::from_id_salt("add run").selected_text("Add…").width(84.0).show_ui(ui, |ui| {
@@ -113,7 +117,7 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &Entry, columns: &[(usize, &Co
     ui.horizontal(|ui| {
         let tick = ui.add_enabled(entry.outcome.is_ok(), egui::Checkbox::without_text(&mut shown));
         name(&tick, &format!("Lay over: {}", entry.title));
-        if tick.on_hover_text("Lay over plots and scene").changed() {
+        if tick.on_hover_text("Draw this run in plots and scene").changed() {
             commands.push(Command::Comparison(ComparisonCommand::Show(i, shown)));
         }
         let (rect, _) = ui.allocate_exact_size(egui::vec2(30.0, 12.0), Sense::hover());
@@ -137,7 +141,7 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &Entry, columns: &[(usize, &Co
         if entry.kept {
             let remove = ui.small_button("×");
             name(&remove, &format!("Remove {}", entry.title));
-            if remove.on_hover_text("Take it away").clicked() {
+            if remove.on_hover_text("Remove this row").clicked() {
                 commands.push(Command::Comparison(ComparisonCommand::Remove(i)));
             }
         }

@@ -14,28 +14,28 @@ const KEYS: [(&str, &str); 30] = [
     ("Shift ← →", "ten steps"),
     ("Home  End", "start, newest instant"),
     ("1  2  3", "the paper's cases, as they are in the paper"),
-    ("B", "led by hand: back to the path"),
+    ("B", "put the machine back on its planned path"),
     ("V", "2D, 3D, joint space, tower of workspaces"),
     ("J", "shade the workspace by dexterity, one measure after the other"),
     ("C", "the same task done in other ways, side by side"),
     ("T", "tolerances: what the bases of many machines feel, and the spectrum"),
     ("S", "snapshots along the motion"),
-    ("I", "inside: what pins carry"),
+    ("I", "inside the machine: what the pins carry"),
     ("Shift click plot", "a second cursor: plots show differences; Esc takes it away"),
     ("F", "show everything"),
     ("X", "exaggerate the motion of the base, or show it as it is"),
     ("L", "light or dark"),
     ("R", "record for the Rerun viewer"),
-    ("Ctrl Z  Ctrl Y", "take back, bring back"),
+    ("Ctrl Z  Ctrl Y", "undo, redo"),
     ("Ctrl S  Ctrl O", "save, open a session"),
     ("drag target", "the machine follows on its plane"),
-    ("drag A, B, 1 …", "the path goes elsewhere; by the name where the target covers it"),
-    ("double click", "one more point of the path"),
+    ("drag A, B, 1 …", "move a point of the path; where the target covers it, drag its name"),
+    ("double click", "add a point to the path"),
     ("Delete", "leave out the point under the pointer"),
     ("P, then drag", "draw a path"),
     ("Alt drag, or U, drag", "push the end effector, 20 N for each metre"),
     ("drag b ring", "the workspace turns"),
-    ("drag plane, slice", "b, in joint space and in the tower"),
+    ("drag plane, slice", "change b, in joint space and in the tower"),
     ("drag elsewhere", "pan in 2D, else orbit; Shift pans"),
     ("wheel", "zoom"),
     ("F1  Esc", "this card; close a card or a list, cancel a drag"),
@@ -61,7 +61,7 @@ pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: 
     if chord(Modifiers::NONE, Key::F1) {
         commands.push(Command::Help(!view_state.help));
     }
-    // While something is dragged or a list is open, Esc belongs to that.
+    // While something is dragged or a list is open, Esc ends that and nothing else.
     let taken = view_state.grabbed.is_some() || egui::Popup::is_any_open(ctx);
     if !taken && chord(Modifiers::NONE, Key::Escape) {
         commands.push(match (&view_state.dialog, &view_state.stroke) {

@@ -1,7 +1,7 @@
 //! Panels, plots and the viewport: the same pixels in a window, in a test and in a figure.
 //!
-//! Everything here reads a [`Session`](crate::session::Session) and gives back [`Command`]s; the [`AppState`] carries them out. Nothing is computed
-//! and nothing is changed in between.
+//! Everything here reads a [`Session`](crate::session::Session) and gives back [`Command`]s, which the [`AppState`]
+//! carries out at the end of the pass. Nothing is computed here.
 
 mod command;
 mod compare;

@@ -1,8 +1,8 @@
 //! Pointer events in the order in which they happened.
 //!
-//! egui looks at the pointer once a frame, at its last position. On a slow or remote display one frame may bring a press,
-//! a drag, a release and whatever the hand did afterwards; the widget would then be let go where the pointer is now, not
-//! where the button came up. So a frame is given no more than one change of a button, and nothing after it.
+//! egui looks at the pointer once a frame, at its last position. On a slow or remote display one frame may bring a
+//! press, a drag, a release and whatever the hand did afterwards; the widget would then be let go where the pointer is
+//! now, not where the button came up. So a frame is given no more than one change of a button, and nothing after it.
 
 use egui::{Context, Event, Plugin, RawInput, Ui};
 

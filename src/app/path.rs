@@ -21,7 +21,12 @@ const KINDS: [Choice<TaskKind>; 7] = [
     (TaskKind::MinimumNorm, "minimum-norm", "Minimum-norm rates", "The usual inverse, q̇ = J⁺ẋ (case 1)"),
     (TaskKind::LeastReaction, "least-reaction", "Least reaction", "Any path, b changing as little as it must"),
     (TaskKind::ChangeB, "change-b", "Change b, at a price", "From A on one plane to B on another: n_B = −D₁ b̈"),
-    (TaskKind::ZeroMomentum, "zero-momentum", "Zero momentum", "Reactionless on any machine; closed paths may drift"),
+    (
+        TaskKind::ZeroMomentum,
+        "zero-momentum",
+        "Zero momentum",
+        "Reactionless on any machine; on a closed path the joints may drift",
+    ),
     (TaskKind::SameTip, "same-tip", "Drive 1 apart", "The end effector as in case 3, drive 1 elsewhere (case 2)"),
     (TaskKind::Given, "given", "As given", "By samples over time, from a file: stillbase import"),
 ];
@@ -37,7 +42,7 @@ const SHAPES: [Choice<Shape>; 5] = [
 /// The most points that are listed.
 const LISTED: usize = 8;
 
-/// Draws it.
+/// Draws this panel.
 pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
     section(ui, p, "Path");
     let task = &session.scenario().task;
@@ -77,7 +82,7 @@ fn choose<T: Copy + PartialEq>(
             if ui.selectable_label(*value == now, *words).on_hover_text(*tip).clicked() && *value != now {
                 let mut change = Change::from_iter([(key.to_owned(), Value::String((*word).into()))]);
                 if *word == "arc" && session.scenario().task.via.is_empty() {
-                    // Through what has been the middle of the path.
+                    // The arc goes through the middle of the path so far.
                     let p = session.run().on_path(0.5);
                     change.insert("via".into(), vec![vec![p.re, p.im]].into());
                 }
@@ -104,10 +109,11 @@ fn set(commands: &mut Vec<Command>, key: &str, value: impl Into<Value>) {
 fn time(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
     if session.scenario().task.law.is_fastest() {
         let pace = session.run().plan().pace;
-        let leads = pace.and_then(|p| p.leading).map_or(String::new(), |limit| format!(", {limit} leads"));
+        let held_back =
+            pace.and_then(|p| p.leading).map_or(String::new(), |limit| format!(", held back by the {limit}"));
         let gap = pace.and_then(|p| p.gap()).filter(|gap| *gap > 5e-4);
-        let gap = gap.map_or(String::new(), |gap| format!(", {:.1} % over unlimited jerk", 100.0 * gap));
-        note(ui, p, &format!("T = {} s{leads}{gap}", signed(session.run().planned_time(), 3)));
+        let gap = gap.map_or(String::new(), |gap| format!(", {:.1} % longer than with unlimited jerk", 100.0 * gap));
+        note(ui, p, &format!("T = {} s{held_back}{gap}", signed(session.run().planned_time(), 3)));
         if let Some(blended) = session.run().plan().blended {
             note(ui, p, &format!("rests at its corners: rounded off it would take {} s", signed(blended, 3)));
         }
@@ -120,10 +126,10 @@ fn time(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>
     send(commands, &responses, || Edit::SetTime { time });
 }
 
-/// The points, to be typed, put in order and taken out.
+/// The points of the path: to type, reorder and remove.
 fn points(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
     if let Some(samples) = &task.samples {
-        note(ui, p, &format!("{} samples say where to be when", samples.count()));
+        note(ui, p, &format!("{} samples give the motion over time", samples.count()));
         return;
     }
     let all = task.points();
@@ -191,7 +197,7 @@ fn points(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &m
     if response.clicked() {
         let last = all.len() - 1;
         let middle = 0.5 * (all[last - 1] + all[last]);
-        // Where the machine can go for certain: on the path, if it is known there.
+        // The new point is on the path where there is one, so that the machine can reach it.
         let at = if all.len() == 2 { session.run().on_path(0.5) } else { middle };
         change(commands, task.adding(at), false);
     }
@@ -324,15 +330,15 @@ fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
         let words = format!("{limit} passes its limit, {} times", signed(factor, 2));
         ui.add(egui::Label::new(RichText::new(words).font(plain(11.0)).color(colour(p.reaction))).wrap());
     }
-    // Plans are of the model; what the plant and the base make of them the status line tells.
+    // A plan is for the model on a fixed base; the status line shows what plant and base do.
     let scenario = session.scenario();
     let ideal = scenario.plant == Default::default() && !scenario.base.moves();
     let waits = session.run().waiting().is_some();
     let of = match (session.is_led(), ideal) {
         _ if waits => "the run waits, nothing is planned",
-        (true, _) => "led by hand; planned was",
+        (true, _) => "led by hand; the plan was",
         (false, true) => "planned",
-        (false, false) => "planned, as the model on a fixed base",
+        (false, false) => "planned, for the model on a fixed base",
     };
     let [time, torque, moment] = [forecast.time, torque, forecast.moment].map(|x| signed(x, 3));
     let figures = match waits {
@@ -344,7 +350,7 @@ fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
         (
             figures,
             if waits {
-                "With other limits, points or another b it goes on"
+                "It goes on once the limits, the points or b let it"
             } else {
                 "Its duration, its largest |τ| and its largest |n_B|"
             },

@@ -23,7 +23,7 @@ const WINDOW: f64 = 12.0;
 /// The most points of a line.
 const POINTS: usize = 600;
 
-/// Draws it.
+/// Draws this panel.
 pub fn show(
     ui: &mut Ui,
     session: &Session,
@@ -42,7 +42,7 @@ pub fn show(
         let height = ((ui.available_height() - 32.0 * (charts.len() as f32 + 1.0)) / rows).max(44.0);
         let end = session.frames().last().map_or(0.0, |f| f.time).max(session.length());
         let end = if session.is_led() { end.max(1.0) } else { end };
-        // Scrubbed far back, the plots go along.
+        // Where an instant far back is shown, the plots show the time around it.
         let end = end.min((session.frame().time + 0.5 * WINDOW).max(WINDOW));
         let shown = (end - WINDOW).max(0.0)..=end;
         // Where there is no room for all of them, they scroll.

@@ -14,7 +14,7 @@ use crate::mechanics::machine::{Inertia, MAX_ANGLE};
 use crate::picture::scene::palette::Palette;
 use crate::session::{Edit, Session};
 
-/// Draws it.
+/// Draws this panel.
 pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 16, right: 10, top: 12, bottom: 8 });
@@ -37,7 +37,7 @@ fn pose_constant(ui: &mut Ui, session: &Session, view_state: &ViewState, command
     let (scenario, p) = (session.scenario(), &view_state.palette());
     let period = session.run().planes().map_or(std::f64::consts::TAU, |p| p.map().period());
     ui.label(RichText::new("POSE CONSTANT").font(bold(11.0)).color(colour(p.dim)));
-    // Whole turns of the machine are kept, and not shown.
+    // Shown is b within one period; the turns of the machine stay as they are.
     let b = session.b_aim();
     let turns = (b / period).floor() * period;
     let mut shown = b - turns;
@@ -66,7 +66,7 @@ fn pose_constant(ui: &mut Ui, session: &Session, view_state: &ViewState, command
             ui.label(RichText::new("led by hand").font(plain(11.0)).color(colour(p.amber)));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let words = RichText::new("back to the path").font(plain(11.0));
-                let tip = "Takes the machine back from the hand, to the start of its planned path (B)";
+                let tip = "Puts the machine back at the start of its planned path (B)";
                 if ui.add(egui::Button::new(words)).on_hover_text(tip).clicked() {
                     commands.push(Command::BackToPath);
                 }
@@ -107,7 +107,7 @@ fn pose_constant(ui: &mut Ui, session: &Session, view_state: &ViewState, command
                 let row = Row {
                     label: "compare b",
                     unit: "rad",
-                    tip: "Its pose constant",
+                    tip: "Pose constant of the second workspace",
                     decimals: 3,
                     speed: 0.005,
                     range: -50.0..=50.0,
@@ -155,7 +155,7 @@ fn limits(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comman
                     }
                 }
                 send(commands, &changed, || {
-                    // An end that was not touched keeps its last bit.
+                    // The end that was not changed keeps its exact value.
                     let rad = |k: usize, was: f64| if ends[k] == old[k] { was } else { ends[k].to_radians() };
                     let value = format!("{},{}", rad(0, *angle.limits.start()), rad(1, *angle.limits.end()));
                     Edit::SetMachine { key: format!("limits.{}", angle.name), value }

@@ -32,7 +32,7 @@ pub struct AppState {
     comparison: Option<Comparison>,
     /// Tolerances and what they were found for, while they are on display.
     study: Option<(Scenario, Result<Study, String>)>,
-    /// What the planned motion will have come to.
+    /// Totals of the planned motion, simulated ahead: how far the base will move.
     foreseen: Totals,
     /// Wall time not yet turned into steps, s.
     owed: f64,
@@ -87,8 +87,8 @@ impl AppState {
             Err(refusal) => refusal,
         };
         let (change, known) = (scenario.task.whole(), Scenario::builtin("case-3"));
-        let ground = known.map(|known| Scenario { task: known.task, edits: Vec::new(), ..scenario.clone() });
-        let Some(Ok(mut app_state)) = ground.map(|ground| Self::new(ground, theme)) else {
+        let fallback = known.map(|known| Scenario { task: known.task, edits: Vec::new(), ..scenario.clone() });
+        let Some(Ok(mut app_state)) = fallback.map(|fallback| Self::new(fallback, theme)) else {
             return Session::open_waiting(scenario).map_or(Err(refusal), |session| Ok(Self::around(session, theme)));
         };
         app_state.carry_out(Command::Edit(Edit::SetTask { change }));
@@ -181,7 +181,7 @@ impl AppState {
         }
     }
 
-    /// Carries out one command. What cannot be done is said and changes nothing.
+    /// Carries out one command. A command that cannot be carried out changes nothing; a message says why.
     pub fn carry_out(&mut self, command: Command) {
         match self.attempt(command) {
             Ok(None) => {}
@@ -200,7 +200,7 @@ impl AppState {
                     return Err(refusal.to_string());
                 }
                 self.view_state.refused = None;
-                // A hand that pushes asks many times a second, and nobody knows how long.
+                // A push sends an edit many times a second for as long as it lasts: too often to run ahead each time.
                 if !matches!(edit, Edit::Push { .. }) {
                     self.foresee();
                 }
@@ -254,7 +254,7 @@ impl AppState {
                 return Ok(title);
             }
             Command::Redo => {
-                let title = self.session.redo_title().map(|t| format!("brought back: {t}"));
+                let title = self.session.redo_title().map(|t| format!("redone: {t}"));
                 self.session.redo().map_err(refused)?;
                 self.foresee();
                 return Ok(title);
@@ -266,7 +266,7 @@ impl AppState {
             Command::Help(help) => self.view_state.help = help,
             Command::Mark(time) => self.view_state.mark = time,
             Command::Snapshots(shown) => self.view_state.snapshots = shown,
-            // There is room for one of them.
+            // The window has room for one of the two panels.
             Command::Compare(compare) => {
                 (self.view_state.compare, self.view_state.study) = (compare, self.view_state.study && !compare)
             }
@@ -291,7 +291,7 @@ impl AppState {
                 let mut scenario = self.session.to_scenario();
                 scenario.duration = Some(self.session.length());
                 comparison.keep(scenario).map_err(|why| why.to_string())?;
-                return Ok(Some("kept this run to compare with".into()));
+                return Ok(Some("added this run to the comparison".into()));
             }
             ComparisonCommand::Open(entry) => {
                 let run = comparison.entries().get(entry).and_then(|e| e.outcome.as_ref().ok()).cloned();
@@ -304,7 +304,7 @@ impl AppState {
         Ok(None)
     }
 
-    /// One of the paper's cases: whole, or with another machine that somebody has chosen, which is then said.
+    /// Opens one of the paper's cases. A machine that was chosen in the window stays, and the message says so.
     fn case(&mut self, name: &str) -> Result<Option<String>, String> {
         let Some(case) = Scenario::builtin(name) else { return Ok(None) };
         let present = &self.session.scenario().machine;
@@ -369,7 +369,7 @@ impl AppState {
         }
     }
 
-    /// How many times the motion of the base has to be shown to be seen: as far as it is known, of the whole run.
+    /// Finds how many times the motion of the base has to be enlarged to be seen, from as much of the run as is known.
     fn adjust(&mut self) {
         let reach = self.views.stage().linkage().reach();
         let newest = self.session.frames().last().map_or_else(Totals::default, |frame| frame.totals);
@@ -386,7 +386,7 @@ impl AppState {
         if key != self.stage_of {
             let views = Views::of(self.session.run());
             for kind in ViewKind::ALL {
-                // A camera that nobody has moved goes on showing everything.
+                // A camera that was not moved goes on showing everything.
                 let camera = &mut self.view_state.cameras[kind as usize];
                 if *camera == self.views.camera(kind) {
                     *camera = views.camera(kind);
@@ -415,12 +415,12 @@ impl AppState {
         } else if self.comparison.is_none() {
             self.comparison = Some(Comparison::of(self.session.scenario()));
         }
-        // Not while something is dragged: every way is planned and run anew.
+        // Not during a drag: all runs of the table are planned and simulated again.
         if let (Some(comparison), None) = (&mut self.comparison, self.view_state.grabbed) {
             let ours = comparison.entries().iter().any(|e| {
                 e.outcome.as_ref().is_ok_and(|run| run.scenario.task == self.session.scenario().task && !e.kept)
             });
-            if !ours || !same_ground(comparison.task(), self.session.scenario()) {
+            if !ours || !same_but_task(comparison.task(), self.session.scenario()) {
                 comparison.follow(self.session.scenario());
             }
         }
@@ -441,7 +441,7 @@ fn whole(path: &Path) -> String {
 }
 
 /// Whether two scenarios differ in their tasks at most.
-fn same_ground(a: &Scenario, b: &Scenario) -> bool {
+fn same_but_task(a: &Scenario, b: &Scenario) -> bool {
     a.machine == b.machine && a.plant == b.plant && a.control == b.control && a.base == b.base && a.step == b.step
 }
 

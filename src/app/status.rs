@@ -27,13 +27,13 @@ pub fn news(ctx: &egui::Context, session: &Session, view_state: &ViewState, comm
         frame.show(ui, |ui| {
             ui.set_max_width((0.42 * ctx.content_rect().width()).max(320.0));
             ui.add(egui::Label::new(RichText::new(text).font(plain(12.0)).color(colour(p.ink))).wrap());
-            let remedy = view_state.refused.as_ref().and_then(|wish| wish.remedy.clone());
+            let remedy = view_state.refused.as_ref().and_then(|refused| refused.remedy.clone());
             let mends = waits.filter(|_| waiting.as_ref() == Some(text));
             let mends = mends.and_then(|waiting| waiting.why.mending_b().zip(waiting.why.shown_b()));
             let mends = mends.map(|(b, shown)| (Edit::task("b", b), shown));
             if let Some((edit, b)) = remedy.or(mends) {
                 let way_out = ui.button(format!("take b = {b} rad"));
-                if way_out.on_hover_text("The same on the nearest plane that allows it").clicked() {
+                if way_out.on_hover_text("Asks for the same on the nearest plane that allows it").clicked() {
                     commands.extend([Command::Edit(edit), Command::EndGesture]);
                 }
             }
@@ -42,27 +42,27 @@ pub fn news(ctx: &egui::Context, session: &Session, view_state: &ViewState, comm
 }
 
 /// What should be zero: a dim dot for each figure, red where it is not.
-fn lamps(ui: &mut Ui, frame: &Frame, p: &Palette) {
+fn audit_dots(ui: &mut Ui, frame: &Frame, p: &Palette) {
     ui.add_space(4.0);
     ui.spacing_mut().item_spacing.x = 1.0;
-    for lamp in frame.audit.figures(&frame.peaks, &frame.totals) {
-        let good = lamp.is_good();
+    for figure in frame.audit.figures(&frame.peaks, &frame.totals) {
+        let good = figure.is_good();
         let (dot, response) = ui.allocate_exact_size(vec2(12.0, 18.0), Sense::hover());
         let tone = colour(if good { faded(p.zero, 0.75) } else { p.reaction });
         ui.painter().circle_filled(dot.center(), if good { 2.8 } else { 4.2 }, tone);
-        let word = if good { "good" } else { "not as it should be" };
-        let words = format!("audit {}: {} {}, {word}", lamp.name, power(lamp.value), lamp.unit);
+        let word = if good { "good" } else { "too large" };
+        let words = format!("audit {}: {} {}, {word}", figure.name, power(figure.value), figure.unit);
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &words));
-        let limit = match lamp.limit {
-            Some(limit) => format!("should be at most {} {}", power(limit), lamp.unit),
+        let limit = match figure.limit {
+            Some(limit) => format!("should be at most {} {}", power(limit), figure.unit),
             None => "tells how well the plane is held; no limit".into(),
         };
         response.on_hover_text(format!(
             "{}: {}\n{} {}, {limit}",
-            lamp.name,
-            lamp.meaning,
-            power(lamp.value),
-            lamp.unit
+            figure.name,
+            figure.meaning,
+            power(figure.value),
+            figure.unit
         ));
     }
     ui.spacing_mut().item_spacing.x = 8.0;
@@ -76,19 +76,19 @@ fn power(x: f64) -> String {
 
 /// What an audit that fails has to say, loudly.
 fn fault(frame: &Frame) -> Option<String> {
-    let lamp = frame.fault()?;
-    let limit = lamp.limit.unwrap_or_default();
+    let figure = frame.fault()?;
+    let limit = figure.limit.unwrap_or_default();
     Some(format!(
         "This run cannot be trusted: {} ({}) is off by {} {}, at most {} is right. A smaller step or softer gains help.",
-        lamp.name,
-        lamp.meaning,
-        power(lamp.value),
-        lamp.unit,
+        figure.name,
+        figure.meaning,
+        power(figure.value),
+        figure.unit,
         power(limit)
     ))
 }
 
-/// Draws it.
+/// Draws this panel.
 pub fn show(ui: &mut Ui, session: &Session, views: &Views, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
     let frame = egui::Frame::new().fill(colour(p.panel)).inner_margin(Margin::symmetric(16, 0));
@@ -112,7 +112,7 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, view_state: &ViewStat
                 let long: Vec<&str> = remarks.iter().map(|r| r.long.as_str()).collect();
                 told.on_hover_text(long.join("\n"));
             }
-            lamps(ui, f, &p);
+            audit_dots(ui, f, &p);
             let mut facts = format!("peak |n_B| {:.3} N m", verdict.arm_moment);
             // Two quantities: what the arm transmits, and what a wheel leaves of it.
             if let Some(left) = verdict.past_wheel {
@@ -145,7 +145,9 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, view_state: &ViewStat
                     (None, Reach::Outside { mending_b: Some(b), shown_b: Some(shown), .. }) => {
                         let way_out = ui.button(format!("go to b = {shown} rad"));
                         if way_out
-                            .on_hover_text("Another plane reaches the target; getting there costs a moment")
+                            .on_hover_text(
+                                "On that plane the target can be reached; to go there exerts a moment on the base",
+                            )
                             .clicked()
                         {
                             commands.push(Command::Edit(Edit::SlideB { b }));
@@ -156,12 +158,12 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, view_state: &ViewStat
                     (None, Reach::Outside { other_sheet: true, .. }) => {
                         ("the target is beyond a fold or a change point".into(), p.ink)
                     }
-                    (None, Reach::Outside { .. }) => ("the target is outside, whatever b".into(), p.ink),
+                    (None, Reach::Outside { .. }) => ("no b reaches the target".into(), p.ink),
                     (None, _) if view_state.stroke.is_some() => {
                         ("draw with the pointer  ·  Esc stops drawing".into(), p.ink)
                     }
                     (None, _) if view_state.pushing => {
-                        ("pull at the end effector to push it, 20 N for each metre  ·  U lets go".into(), p.ink)
+                        ("drag the end effector to push it, 20 N for each metre  ·  U lets go".into(), p.ink)
                     }
                     (None, _) if session.is_led() => {
                         ("led by hand  ·  B goes back to the path  ·  F1 keys".into(), p.dim)

@@ -16,7 +16,7 @@ use crate::study::tolerance::Study;
 
 const HEIGHT: f32 = 268.0;
 
-/// Draws it.
+/// Draws this panel.
 pub fn show(
     ui: &mut Ui,
     study: &Result<Study, String>,
@@ -73,7 +73,7 @@ fn summary(study: &Study) -> String {
         text += ", not for the mean of |f_B|, which is a norm";
     }
     if !study.left_out.is_empty() {
-        text += &format!("  ·  left out: {}; `stillbase tolerance --simulate` has it", study.left_out.join(", "));
+        text += &format!("  ·  left out: {}; `stillbase tolerance --simulate` includes it", study.left_out.join(", "));
     }
     text
 }
@@ -176,13 +176,13 @@ fn row(ui: &mut Ui, p: &Palette, label: &str, unit: &str, tip: &str, value: &mut
     .inner
 }
 
-/// A plot that nobody can touch, with a little air above and below.
+/// A plot that cannot be dragged or zoomed, with some space above and below.
 fn bare<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
     base_plot(id, p, height).sense(Sense::hover()).set_margin_fraction(vec2(0.0, 0.05))
 }
 
-/// n_B over time, less that of the nominal machine: 5 to 95 % and 25 to 75 % of the machines, the mean, and one deviation
-/// to first order.
+/// n_B over time, less that of the nominal machine: 5 to 95 % and 25 to 75 % of the machines, the mean, and one
+/// deviation to first order.
 fn band(ui: &mut Ui, p: &Palette, study: &Study, time: f64) {
     title(ui, p, "n_B off nominal", "N m; 5–95, 25–75 %; dashed σ");
     let (x, band) = (&study.bands.time, &study.bands.moment);

@@ -1,5 +1,5 @@
-//! The bar above the scene, with the switch between views and what can be done and shown; and the scene's lower corners:
-//! the key to the shade of the workspace, and the grid's width.
+//! The bar above the scene, with the switch between views and what can be done and shown; and the scene's lower
+//! corners: the key to the shade of the workspace, and the grid's width.
 
 use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{Align2, Button, Color32, Frame, Margin, Rect, RichText, Stroke, Ui, pos2, vec2};

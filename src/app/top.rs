@@ -11,7 +11,7 @@ use crate::picture::scene::palette::Theme;
 use crate::session::Session;
 use crate::session::scenario::Scenario;
 
-/// Draws it.
+/// Draws this panel.
 pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin::symmetric(16, 0));
@@ -37,7 +37,7 @@ fn machines(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
     let changed = machine::builtins().iter().any(|m| m.name() == present.name() && m != present);
     let current = if changed { format!("{} *", present.name()) } else { present.name().to_owned() };
     let tip = if changed {
-        "The machine, changed from the one of that name"
+        "The machine; it differs from the built-in one of this name"
     } else {
         "The machine: three coaxial drives at B, nine links"
     };
@@ -84,7 +84,7 @@ fn scenarios(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
     });
     let tip = match changed {
         true => {
-            "What the machine does, changed from the scenario of that name: keys 1, 2, 3 bring the paper's cases back"
+            "What the machine does; it differs from the built-in scenario of this name: keys 1, 2, 3 bring the paper's cases back"
         }
         false => "What the machine does: keys 1, 2, 3",
     };

@@ -12,7 +12,7 @@ use crate::picture::scene::views::{ViewKind, Views};
 use crate::planning::reactionless::Decimal;
 use crate::session::{Edit, Refusal, Session};
 
-/// Something that was refused.
+/// An edit that was refused.
 #[derive(Clone, Debug)]
 pub struct RefusedEdit {
     /// The curve that was asked for, and where it stops.
@@ -49,15 +49,15 @@ pub struct ViewState {
     pub dexterity: Option<Measure>,
     /// Simulated seconds a second.
     pub speed: f64,
-    /// Under the pointer.
+    /// What the pointer is over.
     pub hot: Option<Handle>,
-    /// Being dragged.
+    /// What is being dragged.
     pub grabbed: Option<Pick>,
     /// Where the pointer holds the target, m.
     pub held: Option<[f64; 2]>,
     /// The force at the end effector before a hand pushes, N.
     pub force: Option<[f64; 2]>,
-    /// Runs stand side by side.
+    /// The table of runs is on display.
     pub compare: bool,
     /// The study of tolerances is on display.
     pub study: bool,
@@ -75,13 +75,13 @@ pub struct ViewState {
     pub dragged: bool,
     /// What has been drawn so far, m; none while nobody draws.
     pub stroke: Option<Vec<[f64; 2]>>,
-    /// The hand that pushes is taken up.
+    /// Dragging the end effector pushes it.
     pub pushing: bool,
-    /// Past the band that serves the points, b turns them along.
+    /// b may leave the range that serves the points of the task, and turns them along.
     pub turn_task: bool,
-    /// Motion of the base is exaggerated.
+    /// The motion of the base is shown enlarged.
     pub exaggerates_base: bool,
-    /// How many times it takes for that motion to be seen.
+    /// How many times that motion has to be enlarged to be seen.
     pub enough_exaggeration: f64,
     /// The b under the pointer in the chart of which b, rad.
     pub preview: Option<f64>,
@@ -143,8 +143,8 @@ impl ViewState {
     }
 }
 
-/// What a slider of b does: while time runs the machine follows; paused it is posed, as far as the points of the task
-/// stay where they are, or else with them.
+/// The edit that a slider of b asks for: while time runs, that the machine follows it; paused, that it is put on the
+/// plane b, or on the nearest one that serves the points of the task unless these may turn along.
 pub(super) fn set_b(session: &Session, view_state: &ViewState, b: f64) -> Edit {
     if session.is_playing() && session.is_at_end() {
         return Edit::SlideB { b };

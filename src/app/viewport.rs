@@ -33,7 +33,7 @@ pub fn show(
         switch::bar(ui, view_state, commands);
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         name(&response, "Scene: the machine, its reactionless workspace and its target");
-        // What the pointer meets is what is seen.
+        // The pointer works on the machine as it is drawn, enlarged motion of the base included.
         let shown = exaggerated(session.frame(), view_state.base_exaggeration());
         let spot = Spot { rect, camera: *view_state.camera() };
         if view_state.stroke.is_some() && view_state.view.shows_machine() {
@@ -46,7 +46,7 @@ pub fn show(
         let options = ViewOptions {
             theme: view_state.theme,
             dexterity: view_state.dexterity,
-            hot: view_state.grabbed.map(|grip| grip.handle).or(view_state.hot),
+            hot: view_state.grabbed.map(|pick| pick.handle).or(view_state.hot),
             held: view_state.held,
             preview_b: view_state.preview,
             stroke: view_state.stroke.clone().unwrap_or_default(),
@@ -74,7 +74,7 @@ const LEAST_PUSH: f64 = 0.02;
 /// How many snapshots stand along a motion, as in Fig. 5.
 const SNAPSHOTS: usize = 9;
 
-/// Poses at equal intervals of time: as planned, or as run where a hand leads.
+/// Poses at equal intervals of time: as planned, or as run where the machine was led by hand.
 fn snapshots(session: &Session) -> Vec<DriveAngles> {
     let share = |i: usize| i as f64 / (SNAPSHOTS - 1) as f64;
     if session.is_led() {
@@ -111,22 +111,22 @@ fn point_at(
     commands: &mut Vec<Command>,
 ) {
     let view = view_state.view;
-    // A hand pushes with Alt, or while its tool is taken up.
+    // Dragging pushes with Alt held, or after U.
     let pushes = view.shows_machine() && (view_state.pushing || ui.input(|i| i.modifiers.alt));
     let under = |pos: Pos2| match pushes {
         true => views.pick_tip(frame, &spot.pointer(pos)),
         false => views.pick(view, frame, &spot.pointer(pos)),
     };
     if view_state.grabbed.is_none() {
-        view_state.hot = response.hover_pos().and_then(under).map(|grip| grip.handle);
+        view_state.hot = response.hover_pos().and_then(under).map(|pick| pick.handle);
     }
     if response.drag_started_by(PointerButton::Primary) {
         // A drag begins where the button went down, not where it was noticed.
         view_state.grabbed = ui.input(|i| i.pointer.press_origin()).and_then(under);
         view_state.force = Some(session.scenario().plant.force);
     }
-    let ask = |grip, pos: Pos2, view_state: &mut ViewState| {
-        let edit = match views.aim(view, &grip, frame, &spot.pointer(pos), session.b_aim())? {
+    let ask = |pick, pos: Pos2, view_state: &mut ViewState| {
+        let edit = match views.aim(view, &pick, frame, &spot.pointer(pos), session.b_aim())? {
             Aim::Target([x, y]) => {
                 view_state.held = Some([x, y]);
                 Edit::DragTarget { x, y }
@@ -146,15 +146,15 @@ fn point_at(
         };
         Some(Command::Edit(edit))
     };
-    if let Some(grip) = view_state.grabbed {
-        ui.ctx().set_cursor_icon(cursor(grip.handle, true));
+    if let Some(pick) = view_state.grabbed {
+        ui.ctx().set_cursor_icon(cursor(pick.handle, true));
         // The last movement may come together with the release.
-        let pushes = grip.handle == Handle::EndEffector;
-        // A hand that pushes a machine in motion pulls on while it holds still.
+        let pushes = pick.handle == Handle::EndEffector;
+        // A push goes on while the pointer stands still and the machine moves on.
         let pulls = pushes && session.is_moving();
         let moved = response.drag_delta() != Vec2::ZERO || (view_state.dragged && response.drag_stopped()) || pulls;
         if let Some(pos) = response.interact_pointer_pos().filter(|_| moved) {
-            commands.extend(ask(grip, pos, view_state));
+            commands.extend(ask(pick, pos, view_state));
             if pushes && !session.is_playing() {
                 commands.push(Command::TogglePlay);
             }
@@ -163,7 +163,7 @@ fn point_at(
         if response.drag_stopped() || let_go {
             view_state.grabbed = None;
             if pushes && view_state.dragged {
-                // Back to the force that was there before the hand.
+                // Back to the force that acted before the push.
                 let [x, y] = view_state.force.take().unwrap_or_default();
                 commands.push(Command::Edit(Edit::Push { x, y }));
             }
@@ -178,13 +178,13 @@ fn point_at(
     }
     // A bar needs no dragging: a click chooses.
     if let Some(pos) = response.interact_pointer_pos().filter(|_| response.clicked_by(PointerButton::Primary))
-        && let Some(grip) = under(pos).filter(|grip| grip.handle == Handle::Bar)
-        && let Some(edit) = ask(grip, pos, view_state)
+        && let Some(pick) = under(pos).filter(|pick| pick.handle == Handle::Bar)
+        && let Some(edit) = ask(pick, pos, view_state)
     {
         commands.extend([edit, Command::EndGesture]);
     }
     let task = &session.scenario().task;
-    // Twice in the open: one more point of the path.
+    // A double click beside all handles adds a point to the path.
     let twice = response.double_clicked_by(PointerButton::Primary) && view_state.hot.is_none() && view.shows_machine();
     if let Some(pos) = response.interact_pointer_pos().filter(|_| twice)
         && let Some([x, y]) = spot.pointer(pos).ray().and_then(|ray| ray.at_height(views.stage().handle_height()))

@@ -48,7 +48,7 @@ impl Row<'_> {
         let shown = ui.style().number_formatter.format(*value, self.decimals..=self.decimals);
         let refused = Cell::new(None);
         let read = |text: &str| {
-            // Nobody has typed anything: what a file says keeps its last bit.
+            // Nothing was typed: the value of the file stays exact.
             if text == shown {
                 return None;
             }
@@ -58,7 +58,7 @@ impl Row<'_> {
             .custom_parser(read)
             .speed(self.speed)
             .range(self.range.clone())
-            // What a file says stays as it is until somebody changes it.
+            // A value of a file stays as it is until it is changed here.
             .clamp_existing_to_range(false)
             .fixed_decimals(self.decimals)
             .update_while_editing(false);

@@ -78,13 +78,13 @@ pub fn run(scenario: Scenario, theme: Theme) -> Result<(), WindowError> {
 
 /// Why nothing could be drawn on a display that is there.
 fn what_is_missing() -> String {
-    // SAFETY: the loader of the graphics drivers, which has been tried a moment ago in the same way; its initialisers do
-    // nothing but set up its own state.
+    // SAFETY: the loader of the graphics drivers, which has been tried a moment ago in the same way; its initialisers
+    // do nothing but set up its own state.
     if cfg!(target_os = "linux") && unsafe { libloading::Library::new("libvulkan.so.1") }.is_err() {
         return "libvulkan.so.1 is missing: install it with `apt-get install libvulkan1`".into();
     }
     match Gpu::new() {
-        // What was tried in vain helps nobody.
+        // The list of drivers that were tried would not help a reader.
         Err(NoAdapter::Missing(_)) => "no graphics driver answers; on Debian and its kin one in software comes with \
                                        `apt-get install mesa-vulkan-drivers`"
             .into(),

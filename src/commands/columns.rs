@@ -1,5 +1,5 @@
-//! Samples from a CSV file of a person's own: columns by name and unit, and every wrong thing with its file, line and
-//! column.
+//! Samples read from a CSV file: columns are found by name and unit, and whatever is wrong is named with its file, line
+//! and column.
 
 use std::f64::consts::{PI, TAU};
 use std::fmt::Display;
@@ -92,7 +92,7 @@ pub fn samples(
         rows.push(row);
         places.push(line);
         if rows.len() > MAX_SAMPLES {
-            return Err(at(line, &format!("more than {MAX_SAMPLES} rows: want fewer; every second one will do")));
+            return Err(at(line, &format!("more than {MAX_SAMPLES} rows: want fewer, such as every second one")));
         }
     }
     if rows.len() < FEWEST {

@@ -16,7 +16,8 @@ use stillbase::settings::number::fixed;
 
 /// Compare runs: one task done in several ways, or any scenarios, by what reaches the base and what it costs
 ///
-/// One scenario: its task on a reactionless path, on a straight line (case 1), with another pose at the end (case 2), on a straight line with a reaction wheel, and slowly. Several: just these.
+/// One scenario: its task on a reactionless path, on a straight line (case 1), with another pose at the end (case 2),
+/// on a straight line with a reaction wheel, and slowly. Several: just these.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:

@@ -9,7 +9,7 @@ use stillbase::settings::text::plain;
 use super::exit::say;
 use super::failure::Failure;
 
-/// CSV in the making.
+/// A CSV file that is being written.
 pub struct Csv {
     writer: csv::Writer<Sink>,
     row: Vec<Option<f64>>,

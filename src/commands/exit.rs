@@ -14,7 +14,7 @@ pub fn say(message: impl Display) {
     let line = message.lines().map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join(" ");
     let line = brief(&line);
     let line = plain(&line);
-    // Nobody is left to tell when standard error is closed.
+    // When standard error is closed, there is no place for a message.
     let _ = writeln!(io::stderr(), "stillbase: {line}");
 }
 
@@ -36,7 +36,7 @@ pub fn exit_code(done: Result<(), Failure>) -> ExitCode {
 /// Answers a command line that asks for help or cannot be read.
 pub fn usage(error: &clap::Error) -> ExitCode {
     if !error.use_stderr() {
-        // Nobody is left to tell when help cannot be printed.
+        // When help cannot be printed, there is no place for a message.
         let _ = error.print();
         return ExitCode::SUCCESS;
     }

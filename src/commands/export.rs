@@ -20,9 +20,10 @@ use stillbase::settings::number::fixed;
 
 /// Write a motion as CSV at the rate of a controller: angles, rates, accelerations, feed-forward torques
 ///
-/// Columns are t, q, qd, qdd, tau_ff of each drive, x, y of the end effector, and b; SI and radians, every digit. What is
-/// simulated on a base that moves has base_x, base_y, theta and their rates base_xd, base_yd, thetad besides: q is absolute,
-/// an encoder reads q - theta. The first row is the start and the last one the end, also where the rate does not divide the duration.
+/// Columns are t, q, qd, qdd, tau_ff of each drive, x, y of the end effector, and b; SI and radians, every digit. What
+/// is simulated on a base that moves has base_x, base_y, theta and their rates base_xd, base_yd, thetad besides: q is
+/// absolute, an encoder reads q - theta. The first row is the start and the last one the end, also where the rate does
+/// not divide the duration.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -35,8 +36,8 @@ pub struct Export {
     /// Rows a second
     #[arg(long, value_name = "HZ", default_value = "1000", value_parser = rate)]
     rate: f64,
-    /// The planned reference with the torques that the model needs for it, or what the simulated machine does (its torque
-    /// columns are tau1, tau2 …)
+    /// The planned reference with the torques that the model needs for it, or what the simulated machine does (its
+    /// torque columns are tau1, tau2 …)
     #[arg(long, value_enum, default_value = "reference")]
     what: What,
     /// Write the CSV to this file instead of standard output
@@ -82,7 +83,7 @@ struct Answer {
 }
 
 impl Export {
-    /// Runs it.
+    /// Writes the motion as CSV.
     pub fn run(&self) -> Result<(), Failure> {
         if let Some(file) = &self.output {
             check_new(file, self.force)?;
@@ -92,14 +93,14 @@ impl Export {
         let drives = scenario.machine.drives();
         let (rows, duration, audit_failed) = match self.what {
             What::Reference => {
-                let (ground, later) = settled(&scenario)?;
+                let (start, later) = settled(&scenario)?;
                 if later > 0 {
                     say(format!("note: {later} edits after the start are no part of the reference; --what simulated"));
                 }
-                if ground.base.moves() {
-                    say("note: tau_ff is of the model on a fixed base; --what simulated has what control asks for");
+                if start.base.moves() {
+                    say("note: tau_ff is of the model on a fixed base; --what simulated gives what control asks for");
                 }
-                let (rows, duration) = self.reference(&Run::new(&ground).map_err(|e| Failure::from(e).of(&name))?)?;
+                let (rows, duration) = self.reference(&Run::new(&start).map_err(|e| Failure::from(e).of(&name))?)?;
                 (rows, duration, None)
             }
             What::Simulated => self.simulated(&scenario)?,

@@ -31,10 +31,11 @@ use ways::{Asked, Keep, Ways, of_drives, of_tip};
 
 /// Read a motion of your own from CSV, report what it does to the base, and propose the nearest reactionless one
 ///
-/// The file has a header: t,q1,q2,q3 for absolute drive angles, or t,x,y for the end effector, in any order, with units if
-/// wanted: "t (ms)", "q1 (deg)", "x (mm)"; without them s, rad, m. Other columns are left alone. A quintic spline goes
-/// through every sample. The proposal keeps the timing and holds b: with the end effector where it was if some plane
-/// reaches all of its path, else with the arm turned as a whole. It is simulated before it is called reactionless.
+/// The file has a header: t,q1,q2,q3 for absolute drive angles, or t,x,y for the end effector, in any order, with units
+/// if wanted: "t (ms)", "q1 (deg)", "x (mm)"; without them s, rad, m. Other columns are left alone. A quintic spline
+/// goes through every sample. The proposal keeps the timing and holds b: with the end effector where it was if some
+/// plane reaches all of its path, else with the arm turned as a whole. It is simulated before it is called
+/// reactionless.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -59,8 +60,8 @@ pub struct Import {
     /// Which columns to take, where a file has both; by default the drives
     #[arg(long, value_enum)]
     columns: Option<Content>,
-    /// What the proposal keeps of given drive angles: the end effector's motion, or the relative joint angles; by default
-    /// the end effector's, if some plane reaches all of it
+    /// What the proposal keeps of given drive angles: the end effector's motion, or the relative joint angles; by
+    /// default the end effector's, if some plane reaches all of it
     #[arg(long, value_enum)]
     keep: Option<Keep>,
     /// Let the spline bridge gaps in time
@@ -79,7 +80,7 @@ pub struct Import {
 }
 
 impl Import {
-    /// Runs it.
+    /// Reads the samples, prints what they do to the base, and writes the proposal if asked.
     pub fn run(&self) -> Result<(), Failure> {
         let files = self.output.as_deref().map(|file| [file.to_owned(), beside(file)]);
         for file in files.iter().flatten() {
@@ -212,7 +213,7 @@ impl Import {
                      few digits or samples{}",
                     fixed(*uncertainty, 4),
                     fixed(peak, 4),
-                    if self.smooth.is_some() { "" } else { "; --smooth HZ takes what is faster out" },
+                    if self.smooth.is_some() { "" } else { "; --smooth HZ removes higher frequencies" },
                 ));
             }
         }
@@ -234,8 +235,8 @@ impl Import {
     }
 }
 
-/// The angles of single drives lifted by whole turns where that brings the first pose within the joint limits: a file may
-/// hold angles that were wrapped.
+/// The angles of single drives lifted by whole turns where that brings the first pose within the joint limits: a file
+/// may hold angles that were wrapped.
 fn within_limits(machine: &Machine, samples: &Samples) -> Samples {
     let first = samples.values(0);
     let mut lift = vec![0.0; samples.columns()];

@@ -22,11 +22,13 @@ pub const DEFAULT_SCENARIO: &str = "case-3";
 /// Changes of the machine.
 #[derive(Args, Default)]
 pub struct Settings {
-    /// Change the machine, as often as needed: link.5.com=-0.02 (m), link.5.axial=0.02 (m), link.9.mass=0.3 (kg), length.l1=0.6 (m),
-    /// payload.mass=0.1 (kg, known to control), gravity=0,-9.81 (m/s²), limits.a1=0.4,2.7 (rad), drive.1.torque_limit=20 (N m), drive.1.speed_limit=3 (rad/s), drive.1.acceleration_limit=40 (rad/s²), drive.1.jerk_limit=900 (rad/s³),
-    /// and, where a scenario is asked for and not a machine alone: task.shape=spline, task.time=2 (s), plant.payload.mass=0.1 (kg, unknown to control),
-    /// plant.friction.coulomb=0.2 (N m), plant.link.5.com=-0.02 (m), base.kind=free, base.mass=40 (kg),
-    /// control.law=pd, control.kp=400,300,300 (s⁻²), step=0.0005 (s, 0.00001 to 0.01), and every other key of a scenario file
+    /// Change the machine, as often as needed: link.5.com=-0.02 (m), link.5.axial=0.02 (m), link.9.mass=0.3 (kg),
+    /// length.l1=0.6 (m), payload.mass=0.1 (kg, known to control), gravity=0,-9.81 (m/s²), limits.a1=0.4,2.7 (rad),
+    /// drive.1.torque_limit=20 (N m), drive.1.speed_limit=3 (rad/s), drive.1.acceleration_limit=40 (rad/s²),
+    /// drive.1.jerk_limit=900 (rad/s³), and, where a scenario is asked for and not a machine alone: task.shape=spline,
+    /// task.time=2 (s), plant.payload.mass=0.1 (kg, unknown to control), plant.friction.coulomb=0.2 (N m),
+    /// plant.link.5.com=-0.02 (m), base.kind=free, base.mass=40 (kg), control.law=pd, control.kp=400,300,300 (s⁻²),
+    /// step=0.0005 (s, 0.00001 to 0.01), and every other key of a scenario file
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
     pairs: Vec<(String, String)>,
 }
@@ -129,12 +131,13 @@ pub fn set(mut scenario: Scenario, settings: &Settings) -> Result<Scenario, Fail
     Ok(scenario)
 }
 
-/// Refuses what would be passed over in silence.
+/// The failure of an option that would have no effect here.
 pub fn no_use(what: &str, want: &str) -> Failure {
     Failure::wrong_input(format!("{what} has no use here: want {want}"))
 }
 
-/// Tells which keys of a scenario's own file have no say in its task; some always stand there.
+/// Notes on standard error which keys of a scenario's file have no effect in its task, but for those that every file
+/// has.
 fn tell_unused(scenario: &Scenario) {
     let standing = ["kind", "from", "to", "b", "time", "law"];
     let keys = Change::try_from(&scenario.task).unwrap_or_default();
@@ -171,7 +174,7 @@ fn listed(text: &str) -> toml::Value {
     if value.is_str() { list().unwrap_or(value) } else { value }
 }
 
-/// A value as it would stand in a file: text where TOML knows no other reading.
+/// A value as it would stand in a file: text where it is no other TOML value.
 fn toml_value(text: &str) -> toml::Value {
     let read = format!("x = {text}").parse::<Change>().ok().and_then(|mut table| table.remove("x"));
     read.unwrap_or_else(|| toml::Value::String(text.into()))

@@ -1,4 +1,4 @@
-//! Interrupt, hang-up and termination: files in the making go before the program does.
+//! On interrupt, hang-up and termination: half-written files are removed before the program ends.
 
 /// Watches for signals that end the program, in a thread of its own.
 #[cfg(unix)]
@@ -9,7 +9,7 @@ pub fn watch() {
 
     let ignored = ignored();
     let heard = [SIGINT, SIGHUP, SIGTERM].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
-    // Without it, files in the making are swept by whoever writes beside them next.
+    // Without it, half-written files stay until the next run that writes to their folder.
     let Ok(mut signals) = Signals::new(heard) else { return };
     let wait = move || {
         if let Some(signal) = signals.forever().next() {
@@ -20,7 +20,7 @@ pub fn watch() {
     let _ = std::thread::Builder::new().name("signals".into()).spawn(wait);
 }
 
-/// Signals that whoever started the program wants ignored, as `nohup` does: bit 0 is signal 1.
+/// Signals that the program was started to ignore, as with `nohup`: bit 0 is signal 1.
 #[cfg(unix)]
 fn ignored() -> u64 {
     let status = stillbase::files::text::read(std::path::Path::new("/proc/self/status")).unwrap_or_default();

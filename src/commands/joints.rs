@@ -30,7 +30,8 @@ pub struct JointsCommand {
     /// A built-in scenario (case-1, spacecraft …; an unknown name lists them all) or a TOML file
     #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
     scenario: String,
-    /// Write the force of every pin over time to this file, as CSV: x and y in base axes, of the first link on the second
+    /// Write the force of every pin over time to this file, as CSV: x and y in base axes, of the first link on the
+    /// second
     #[arg(short, long, value_name = "FILE.csv")]
     output: Option<PathBuf>,
     /// Replace the file if it exists

@@ -48,7 +48,7 @@ macro_rules! subcommands {
         }
 
         impl Subcommand {
-            /// Does it.
+            /// Runs the subcommand.
             pub fn run(&self) -> Result<(), Failure> {
                 match self {
                     $($(#[$gate])? Self::$name(command) => command.run(),)*

@@ -1,4 +1,4 @@
-//! Standard output: one JSON object, or a calm table. Standard error: messages.
+//! Standard output: one JSON object, or a table. Standard error: messages.
 
 use std::borrow::Cow;
 use std::fmt::{self, Display};
@@ -115,8 +115,8 @@ impl Display for Table {
     }
 }
 
-/// The most bytes that a command writes, and the most where all of them are held in memory: more are asked for by a slip
-/// of the hand.
+/// The most bytes that a command writes, and the most where all of them are held in memory: more are asked for by a
+/// slip of the hand.
 const MOST_BYTES: [f64; 2] = [4e9, 1e9];
 /// What a number takes, at most.
 const A_NUMBER: f64 = 20.0;

@@ -71,7 +71,8 @@ pub struct Plan {
     /// How often a closed path is run through, for zero-momentum
     #[arg(long, value_name = "N")]
     cycles: Option<u32>,
-    /// Pose constant at the last point, rad: for change-b by default the nearest that serves it, for least-reaction free
+    /// Pose constant at the last point, rad: for change-b by default the nearest that serves it, for least-reaction
+    /// free
     #[arg(long, value_name = "B", value_parser = pose_constant)]
     b_to: Option<f64>,
     /// Bound on |n_B| while b changes, N m, for change-b: it sets the time
@@ -134,7 +135,7 @@ fn laws() -> PossibleValuesParser {
 #[derive(Serialize)]
 struct Answer {
     feasible: bool,
-    /// Why not.
+    /// Why there is no plan.
     #[serde(skip_serializing_if = "Option::is_none")]
     reason: Option<String>,
     scenario: String,
@@ -393,13 +394,13 @@ impl Plan {
                 let with = Scenario { machine, name: "plan".into(), title: String::new(), compare_b: None, ..own };
                 super::input::set(with, &self.settings)?
             }
-            // What is wrong with a file is said by whoever it was meant for.
+            // The reader of machines or of scenarios says what is wrong with the file, by what it was meant to be.
             _ => {
-                let (ground, later) = settled(&scenario(&self.name, &self.settings)?)?;
+                let (start, later) = settled(&scenario(&self.name, &self.settings)?)?;
                 if later > 0 {
                     say(format!("note: {later} edits after the start are no part of the plan"));
                 }
-                ground
+                start
             }
         };
         let mut change = Change::new();
@@ -437,8 +438,8 @@ impl Plan {
         change_task(&mut scenario, &change)?;
         self.check_use(&scenario)?;
         if self.b.is_none() && !self.points.is_empty() {
-            // The middle of the widest range that serves all points, as far from every edge as it gets; kinds that leave
-            // the plane can do with one that serves the first.
+            // The middle of the widest range that serves all points, as far from every edge as it gets; kinds that
+            // leave the plane can do with one that serves the first.
             let planes = Planes::of(&scenario.machine)?;
             let points = scenario.task.points();
             let alone = (scenario.task.kind != TaskKind::Reactionless).then(|| planes.common(&points[..1])).flatten();

@@ -134,7 +134,7 @@ impl<T: Serialize> Serialize for Columns<T> {
 }
 
 impl Simulate {
-    /// Runs it.
+    /// Simulates the scenario and writes its signals as CSV, or the verdict.
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = scenario(&self.scenario, &self.settings)?;
         let table = signals(&scenario.machine);

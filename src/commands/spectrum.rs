@@ -18,8 +18,9 @@ use stillbase::settings::number::{fixed, shown};
 /// Say at which frequencies a run shakes its base, and whether that keeps within jitter limits
 ///
 /// The scenario is simulated; dynamic f_Bx and f_By and the whole n_B of every step are transformed. Amplitude spectral
-/// densities are one-sided; the cumulative RMS adds them up from 0 Hz. It ends at the RMS of the samples without a window;
-/// with one at the weighted RMS, in which samples count as the window weighs them: Hann counts the middle of the record most.
+/// densities are one-sided; the cumulative RMS adds them up from 0 Hz. It ends at the RMS of the samples without a
+/// window; with one at the weighted RMS, in which samples count as the window weighs them: Hann counts the middle of
+/// the record most.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -110,7 +111,7 @@ impl From<SpectrumError> for Failure {
 }
 
 impl SpectrumOf {
-    /// Runs it.
+    /// Prints the spectra, and how they stand against limits.
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = scenario(&self.scenario, &self.settings)?;
         if let Some(file) = &self.output {

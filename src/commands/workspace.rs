@@ -13,8 +13,10 @@ use stillbase::settings::number::fixed;
 
 /// The reactionless workspace of b: its exact boundary and area, what lies inside, Eqs (15), (16)
 ///
-/// It is the region that the end effector reaches while b is held; b only turns it. Vertices lie on the boundary to 1e-9 m and chords to 1e-5 m; outer loops run counter-clockwise.
-/// The area of all sheets, ∫|det|, exceeds the region's where several poses reach one point. Folds, where two poses meet, turn back at cusps; at change points sin(q_k − q_l) = 0 and the linkage goes flat.
+/// It is the region that the end effector reaches while b is held; b only turns it. Vertices lie on the boundary to
+/// 1e-9 m and chords to 1e-5 m; outer loops run counter-clockwise. The area of all sheets, ∫|det|, exceeds the region's
+/// where several poses reach one point. Folds, where two poses meet, turn back at cusps; at change points sin(q_k −
+/// q_l) = 0 and the linkage goes flat.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -27,7 +29,8 @@ pub struct Workspace {
     /// Pose constant b, rad
     #[arg(long, value_name = "B", value_parser = pose_constant)]
     b: f64,
-    /// Also tell of a point, m, as often as needed: its poses, its distance from the boundary (negative outside), the dexterity of each pose
+    /// Also tell of a point, m, as often as needed: its poses, its distance from the boundary (negative outside), the
+    /// dexterity of each pose
     #[arg(long, value_name = "X,Y", value_parser = point)]
     at: Vec<Vector>,
     #[command(flatten)]

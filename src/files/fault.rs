@@ -1,5 +1,5 @@
-//! Faults on purpose, so that tests can see what becomes of files: the n-th step of writing fails, or the program ends
-//! there at once. Only debug builds have them.
+//! Faults that tests ask for, to see what becomes of files: the n-th step of writing fails, or the program ends there
+//! at once. Only debug builds have them.
 
 use std::io;
 #[cfg(debug_assertions)]
@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicBool, AtomicI64, Ordering::Relaxed};
 pub(super) enum Step {
     /// Begin, write, sync, take a name: each can fail.
     Fallible,
-    /// Tidying up, of which a failure is nothing: the program can only end there.
+    /// Tidying up, where a failure does no harm: the program can only end there.
     Tidy,
 }
 
@@ -35,7 +35,7 @@ pub(super) fn is_due(step: Step) -> bool {
     (step == Step::Fallible || ENDS.load(Relaxed)) && LEFT.fetch_sub(1, Relaxed) == 1
 }
 
-/// The fault.
+/// Makes the wanted fault happen.
 #[cfg(debug_assertions)]
 pub(super) fn strike() -> io::Result<()> {
     if ENDS.load(Relaxed) {

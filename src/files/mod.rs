@@ -1,4 +1,4 @@
-//! Writing files so that nothing is lost: never over another without being told to, and never half.
+//! Files written so that nothing is lost: whole or not at all, and over another one only when asked to.
 
 pub mod fault;
 mod find;

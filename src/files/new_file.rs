@@ -36,7 +36,7 @@ pub enum WriteError {
     Failed {
         /// The file.
         file: PathBuf,
-        /// Why.
+        /// The system's reason.
         source: io::Error,
     },
     /// It is there, but the disk may not know it yet.
@@ -44,7 +44,7 @@ pub enum WriteError {
     Unsynced {
         /// The file.
         file: PathBuf,
-        /// Why.
+        /// The system's reason.
         source: io::Error,
     },
 }
@@ -110,15 +110,15 @@ fn is_part(name: &OsStr) -> bool {
     number.is_some_and(|(process, attempt)| counted(process) && counted(attempt))
 }
 
-/// Removes what programs that were killed have left in a folder. Who makes a file holds a lock on it, which ends with the
-/// program whatever ends it.
+/// Removes what programs that were killed have left in a folder. Who makes a file holds a lock on it, which ends with
+/// the program whatever ends it.
 fn sweep(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     let plain = |entry: &fs::DirEntry| entry.file_type().is_ok_and(|kind| kind.is_file());
     for entry in entries.flatten().filter(|entry| is_part(&entry.file_name()) && plain(entry)) {
         let Ok(part) = File::open(entry.path()) else { continue };
         if part.try_lock().is_ok() {
-            // Where it cannot be removed, it is somebody else's.
+            // Where it cannot be removed, it belongs to another user.
             let _ = fs::remove_file(entry.path());
         }
     }
@@ -153,7 +153,7 @@ impl Draft {
                 Err(e) if e.kind() == ErrorKind::AlreadyExists => continue,
                 out => out?,
             };
-            // Somebody else's sweep may have come between; and where there are no locks, nobody sweeps.
+            // Another program may have removed it in between; where files cannot be locked, none are removed.
             let swept = matches!(out.try_lock(), Err(TryLockError::WouldBlock)) || part.symlink_metadata().is_err();
             if !swept {
                 parts.insert(part.clone());
@@ -324,8 +324,8 @@ impl Taken {
     }
 }
 
-/// Puts files that belong together under their names: all, or none. They take them in their order, so where the last one
-/// is, all are.
+/// Puts files that belong together under their names: all, or none. They take them in their order, so where the last
+/// one is, all are.
 ///
 /// # Errors
 /// If not everything could be written, or another file has taken a name meanwhile.

@@ -57,7 +57,7 @@ pub enum DesignError {
     /// The number of penalties is not the number of links.
     #[error("{count} penalties for {links} links: want one a link")]
     Penalties {
-        /// How many.
+        /// Penalties that were given.
         count: usize,
         /// Links of the machine.
         links: usize,

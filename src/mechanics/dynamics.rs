@@ -7,7 +7,8 @@
 //! | H_kl | mass matrix, Re Z_kl + δ_kl J_k | kg m² |
 //! | V_k | velocity terms, −Σ_l Im Z_kl q̇_l² | N m |
 //! | τ | H q̈ + V − γᵀ g − Jᵀ F | N m |
-//! | f_B, n_B | what the manipulator transmits to its base: dynamic −Σ g_k (i q̈_k − q̇_k²) e_k and −d/dt(D q̇); static M g and r_CM × M g | N, N m |
+//! | f_B | force on the base: dynamic −Σ g_k (i q̈_k − q̇_k²) e_k, static M g | N |
+//! | n_B | moment on the base about B: dynamic −d/dt(D q̇), static r_CM × M g | N m |
 //!
 //! # Source
 //! (4) with the sign of gravity put right: with g the acceleration of (1), the torque is H q̈ + V − γᵀ g.

@@ -47,7 +47,7 @@ impl Canvas {
         Ok(Self { gpu, egui, ctx: egui::Context::default(), texture, view, screen, fonts: false })
     }
 
-    /// What somebody draws with egui.
+    /// Draws what a function makes with egui.
     ///
     /// # Errors
     /// If the picture cannot be read back.

@@ -94,7 +94,7 @@ pub fn charts(scenario: &Scenario) -> Vec<Chart> {
 }
 
 impl Chart {
-    /// Whether the window shows it; `pins` where somebody asks what they carry.
+    /// Whether the window shows it; `pins` where the forces of pins are switched on.
     pub fn in_window(&self, pins: bool) -> bool {
         match self.place {
             Place::Beside => true,

@@ -114,7 +114,7 @@ pub fn paint(ui: &Ui, rect: Rect, scene: &Arc<Scene>, camera: &Camera) {
     ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, paint));
 }
 
-/// A scene with its words, filling everything, that nobody can touch.
+/// A scene with its words over the whole surface, without input.
 pub fn still(ui: &mut Ui, scene: &Arc<Scene>, camera: &Camera) {
     CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
         let rect = ui.max_rect();

@@ -7,9 +7,9 @@ use crate::planning::timing::{Profile, TimeLaw};
 /// A path run through once, from rest to rest unless it is given otherwise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
-    /// Where.
+    /// The path that is followed.
     pub path: Path,
-    /// When.
+    /// How far along it the motion is at each time.
     pub profile: Profile,
 }
 

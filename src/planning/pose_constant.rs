@@ -19,7 +19,7 @@ pub struct Planes {
 /// Whether a target can be reached on the present plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reach {
-    /// It can.
+    /// The target can be reached.
     Inside,
     /// It cannot; the machine waits at the nearest point that it can reach without leaving the plane.
     Outside {
@@ -42,12 +42,12 @@ pub enum PlaneError {
     /// Not three drives.
     #[error("{drives} drives and {angles} relative angles: reactionless workspaces in the plane want three and two")]
     Shape {
-        /// How many.
+        /// Drives of the machine.
         drives: usize,
-        /// How many.
+        /// Its relative joint angles.
         angles: usize,
     },
-    /// The numbers.
+    /// The lengths, λ or limits give no plane coordinates.
     #[error(transparent)]
     Map(#[from] NotAPlaneMap),
 }
@@ -62,7 +62,7 @@ pub enum Unreachable {
         x: f64,
         /// m.
         y: f64,
-        /// Why.
+        /// Why no b reaches it.
         reason: NoReach,
     },
     /// Not on this plane.

@@ -14,7 +14,7 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// At rest.
+    /// The reference that rests at a pose.
     pub fn at_rest(q: DriveAngles) -> Self {
         let still = PerDrive::zeros(q.len());
         Self { q, qd: still, qdd: still }

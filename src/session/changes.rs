@@ -129,7 +129,7 @@ impl Failed {
         Self { edit: Some(edit), refusal }
     }
 
-    /// Why.
+    /// The refusal alone.
     pub(super) fn refusal(self) -> Refusal {
         self.refusal
     }
@@ -163,12 +163,12 @@ pub(super) fn folded(
     planes: &mut Option<(Machine, Arc<Planes>)>,
 ) -> Result<(Scenario, usize), Failed> {
     let count = opening(script);
-    // With its edits, each copy of it would cost as much as all of them.
-    let mut ground = scenario.without_edits();
+    // Every copy below would copy its edits too.
+    let mut start = scenario.without_edits();
     for (i, timed) in script[..count].iter().enumerate() {
-        ground = amended(&ground, &timed.edit, planes).map_err(|refusal| Failed::at(i, refusal))?;
+        start = amended(&start, &timed.edit, planes).map_err(|refusal| Failed::at(i, refusal))?;
     }
-    // What stands between two of them need not fit together.
-    let ground = if count > 0 { sound(ground, "the scenario")? } else { ground };
-    Ok((ground, count))
+    // Only the scenario after all of these edits has to be valid, not those in between.
+    let start = if count > 0 { sound(start, "the scenario")? } else { start };
+    Ok((start, count))
 }

@@ -85,7 +85,7 @@ pub enum Edit {
 pub struct TimedEdit {
     /// Steps since the start.
     pub step: u64,
-    /// What.
+    /// The edit.
     #[serde(flatten)]
     pub edit: Edit,
 }
@@ -159,7 +159,8 @@ impl Edit {
         found.into_iter().find(|check| !check.ok).map_or(Ok(()), Err)
     }
 
-    /// Whether it is of the run as a whole and has no meaning at a later step.
+    /// Whether it sets the task, its time, the base or the tolerances: these hold for the whole run, from its first
+    /// step.
     pub fn is_of_the_whole(&self) -> bool {
         matches!(self, Self::SetTask { .. } | Self::SetTime { .. } | Self::SetBase { .. } | Self::SetTolerance { .. })
     }
@@ -167,12 +168,12 @@ impl Edit {
     /// Why an edit [of the start](Self::is_of_the_start) is refused later.
     pub(super) const AT_START: &str = "task, time and base can change only before the first step: want step = 0";
 
-    /// Whether it changes what a motion is planned from, so that it has no say once time runs.
+    /// Whether it changes what a motion is planned from, so that it can stand only before the first step.
     pub(super) fn is_of_the_start(&self) -> bool {
         self.is_of_the_whole() && !matches!(self, Self::SetTolerance { .. })
     }
 
-    /// Whether a later edit makes this one void, so that a drag keeps only its last word.
+    /// Whether a later edit sets all that this one sets, so that only the last edit of a drag is kept.
     pub fn is_replaced_by(&self, later: &Self) -> bool {
         match (self, later) {
             (Self::SetMachine { key: a, .. }, Self::SetMachine { key: b, .. }) => a == b,

@@ -1,4 +1,4 @@
-//! What is wrong with the edits of a file, as far as that takes neither a plan nor a motion.
+//! What is wrong with the edits of a file, as far as it can be told without planning or simulating.
 
 use super::changes::{changed, opening, order_of};
 use super::edit::{Edit, TimedEdit};
@@ -18,7 +18,7 @@ pub(crate) fn check_edits(scenario: &Scenario) -> Result<(), (usize, String)> {
     let script: Vec<&TimedEdit> = order.iter().map(|i| &edits[*i]).collect();
     let opening = opening(script.iter().copied());
     let mut now = scenario.without_edits();
-    // What stands between two edits before the first step need not fit together, but what they come to must.
+    // Edits before the first step need to give a valid scenario together, not one by one.
     let mut unsound = None;
     for (place, (entry, timed)) in order.iter().zip(&script).enumerate() {
         let of_entry = |why: String| (*entry, why);

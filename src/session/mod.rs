@@ -3,7 +3,7 @@
 mod changes;
 mod edit;
 mod edit_check;
-mod live;
+mod interactive;
 mod planner;
 mod refusal;
 mod replay;
@@ -14,7 +14,7 @@ pub mod verdict;
 
 pub use edit::{Edit, TimedEdit};
 pub(crate) use edit_check::check_edits;
-pub use live::Session;
+pub use interactive::Session;
 pub use planner::{Plan, curves};
 pub use refusal::Refusal;
 pub use replay::{felt, replay, replay_if, settled};

@@ -37,7 +37,7 @@ pub enum Refusal {
         /// Why, and what would mend it.
         why: NoCommon,
     },
-    /// The path.
+    /// The path cannot be made.
     #[error(transparent)]
     Path(#[from] PathError),
     /// The points give no curve.
@@ -61,7 +61,7 @@ pub enum Refusal {
     /// The fastest law.
     #[error(transparent)]
     Time(#[from] TimeError),
-    /// The machine.
+    /// The machine would not be valid.
     #[error(transparent)]
     Machine(#[from] MachineError),
     /// The numbers have blown up.
@@ -82,7 +82,7 @@ pub enum Refusal {
     /// The motion in progress does not fit into new limits.
     #[error("the motion in progress would leave {key} = {value}: want wider limits, or set them at its start")]
     LeavesLimits {
-        /// Which.
+        /// Key of the limit.
         key: String,
         /// What was given.
         value: String,
@@ -90,7 +90,7 @@ pub enum Refusal {
     /// A number out of range.
     #[error("{what} is {}: want {want}", Short(*value))]
     OutOfRange {
-        /// Which.
+        /// Key of the number.
         what: String,
         /// What was given.
         value: f64,
@@ -110,7 +110,7 @@ pub enum Refusal {
         time: f64,
         /// s.
         step: f64,
-        /// How many.
+        /// Steps of the run.
         steps: u64,
     },
     /// A session keeps no more frames.
@@ -128,11 +128,11 @@ pub enum Refusal {
         bytes / 1e9, most / 1e9
     )]
     TooLarge {
-        /// How many.
+        /// Rows that would be written.
         rows: u64,
         /// Numbers in each.
         columns: usize,
-        /// At most.
+        /// Bytes that these take at most.
         bytes: f64,
         /// How many there may be.
         most: f64,
@@ -142,7 +142,7 @@ pub enum Refusal {
     Edit {
         /// Which, counted from 1 in the order of the file.
         entry: usize,
-        /// When.
+        /// The step at which it applies.
         step: u64,
         /// What it would do.
         title: String,

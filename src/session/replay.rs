@@ -5,14 +5,15 @@ use crate::session::scenario::Scenario;
 use crate::session::{Refusal, Run, TimedEdit};
 use crate::simulation::audit::AuditFigure;
 use crate::simulation::frame::Frame;
-/// A scenario with the edits before its first step made part of it, and the others left out, and how many those others are.
+/// A scenario with the edits before its first step made part of it, and the others left out, and how many those others
+/// are.
 ///
 /// # Errors
 /// If an edit cannot be made.
 pub fn settled(scenario: &Scenario) -> Result<(Scenario, usize), Refusal> {
     let script = in_order(&scenario.edits);
-    let (ground, count) = folded(scenario, &script, &mut None).map_err(|failed| failed.named(&scenario.edits))?;
-    Ok((ground, script.len() - count))
+    let (start, count) = folded(scenario, &script, &mut None).map_err(|failed| failed.named(&scenario.edits))?;
+    Ok((start, script.len() - count))
 }
 
 /// Frames of a scenario with its edits, from the first to the last step, one at a time.
@@ -23,7 +24,7 @@ pub fn replay(scenario: &Scenario, see: impl FnMut(&Run, &Frame)) -> Result<Run,
     replay_if(scenario, |_| Ok(()), see)
 }
 
-/// The same, `check` is told the last step and may refuse before the first before the first.
+/// The same; `check` is given the number of the last step before the run begins, and may refuse it.
 ///
 /// # Errors
 /// As [`replay`], and if it is refused.
@@ -55,8 +56,8 @@ pub fn felt(scenario: &Scenario) -> Result<([Vec<f64>; 3], Option<AuditFigure>),
     Ok((course, run.frame().fault()))
 }
 
-/// Runs a scenario, as edits at the start leave it, to a last step, with a script in order, and shows every frame. A task
-/// that does not fit its machine is refused, or, with patience, waits at its first step.
+/// Runs a scenario, as edits at the start leave it, to a last step, with a script in order, and shows every frame. A
+/// task that does not fit its machine is refused, or, with patience, waits at its first step.
 pub(super) fn perform(
     scenario: &Scenario,
     script: &[TimedEdit],

@@ -1,4 +1,4 @@
-//! A [`Run`]: a scenario in motion. Window and headless advance the same one, so they cannot differ.
+//! A [`Run`]: a scenario in motion. The window and the commands advance the same one, so they cannot differ.
 
 use std::sync::Arc;
 
@@ -23,7 +23,8 @@ use crate::simulation::{Guide, Simulation};
 pub struct Waiting {
     /// What is in the way.
     pub why: Refusal,
-    /// Points that the plane of the task does not serve, counted from A, and the nearest b of each that would, rad, as printed.
+    /// Points that the plane of the task does not serve, counted from A, and the nearest b of each that would, rad, as
+    /// printed.
     pub points: Vec<(usize, Option<Decimal>)>,
 }
 
@@ -72,9 +73,9 @@ impl Run {
         known: Option<&Self>,
     ) -> Result<(Self, usize), Failed> {
         let mut planes = known.and_then(|run| Some((run.scenario.machine.clone(), run.planes.clone()?)));
-        let (ground, count) = folded(scenario, script, &mut planes)?;
-        let known = planes.filter(|(machine, _)| *machine == ground.machine).map(|(_, planes)| planes);
-        Ok((Self::patient(&ground, known)?, count))
+        let (start, count) = folded(scenario, script, &mut planes)?;
+        let known = planes.filter(|(machine, _)| *machine == start.machine).map(|(_, planes)| planes);
+        Ok((Self::patient(&start, known)?, count))
     }
 
     fn with_planes(scenario: &Scenario, known: Option<Arc<Planes>>) -> Result<Self, Refusal> {
@@ -158,7 +159,7 @@ impl Run {
         self.simulation.frame()
     }
 
-    /// One step.
+    /// Advances by one step.
     pub fn advance(&mut self) {
         self.simulation.advance();
     }

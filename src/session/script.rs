@@ -22,7 +22,7 @@ struct Entry {
 
 impl Drop for Entry {
     fn drop(&mut self) {
-        // One after the other: a chain that drops itself would go as deep as it is long.
+        // In a loop: dropping the chain recursively could overflow the stack.
         let mut next = self.before.take();
         while let Some(mut entry) = next.and_then(Arc::into_inner) {
             next = entry.before.take();

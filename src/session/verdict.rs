@@ -4,7 +4,7 @@
 //! | quantity | is |
 //! |---|---|
 //! | n_B, f_B | what the arm transmits to its base: by these it is called reactionless |
-//! | moment past the wheel | what is left of n_B for the base once a reaction wheel has taken its part: by this the base feels nothing |
+//! | moment past the wheel | what a reaction wheel leaves of n_B for the base: by this the base feels nothing |
 
 use crate::session::scenario::Scenario;
 use crate::settings::number::significant;
@@ -76,12 +76,12 @@ impl Verdict {
             miss: (frame.end_effector - frame.target.at).norm(),
             past_limit: (by > PAST).then(|| (name(angle), by)),
             fault: frame.fault(),
-            // A target that cannot be reached is told of where it is set.
+            // For a target that cannot be reached, the window says so at the target.
             ended: frame.phase == Phase::Rest && !matches!(frame.target.reach, Reach::Outside { .. }),
         }
     }
 
-    /// Whether nothing more can be wished: reactionless, and nothing to be known beside it.
+    /// Whether it is reactionless and there are no remarks.
     pub fn is_clean(&self) -> bool {
         self.reactionless && self.fault.is_none() && self.remarks().is_empty()
     }
@@ -140,7 +140,7 @@ impl Verdict {
         }
         if self.tilt > TILT {
             let long = format!(
-                "the verdict is of the plane: links at different heights tilt the base by up to {} N m besides",
+                "links at different heights tilt the base by up to {} N m, which this verdict leaves out",
                 significant(self.tilt)
             );
             add("tilts its base", long);
@@ -161,8 +161,8 @@ impl Verdict {
             text += &format!(", past the wheel {} N m", significant(left));
         }
         text += &format!(", peak |f_B| {} N", significant(self.force));
-        if let Some(lamp) = &self.fault {
-            text += &format!("; audit failed: {lamp}");
+        if let Some(figure) = &self.fault {
+            text += &format!("; audit failed: {figure}");
         }
         self.remarks().into_iter().fold(text, |text, remark| format!("{text}; {}", remark.long))
     }

@@ -87,7 +87,7 @@ impl Check {
 pub enum Want {
     /// A number in a range.
     Within(Range),
-    /// Something else.
+    /// What no range can say, in words.
     Words(&'static str),
 }
 
@@ -100,10 +100,10 @@ impl fmt::Display for Want {
     }
 }
 
-/// The most characters of somebody's text that a message repeats.
+/// The most characters of given text that a message repeats.
 const MOST_TEXT: usize = 80;
 
-/// Somebody's text as a message repeats it: its beginning, on one line, without what a terminal would obey.
+/// Given text as a message repeats it: its beginning, on one line, without what a terminal would obey.
 pub fn clipped(text: &str) -> String {
     shortened(text, MOST_TEXT)
 }

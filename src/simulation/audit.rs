@@ -6,7 +6,7 @@
 //! | angular | its angular momentum about the origin with −∫ (n_B + p_B × f_B) dt |
 //! | energy | what is there with what motors, wheel and outer force brought and friction took |
 //! | closure | the two points of every pin that closes a loop |
-//! | step | what two ways of taking a step show: the moment that the base feels, f_B, torques, the end effector, as a share of their peaks |
+//! | step | moment that the base feels, f_B, torques and end effector, from two ways to take a step, by their peaks |
 //! | plane | b with the b that was aimed at |
 
 use super::peaks::Peaks;

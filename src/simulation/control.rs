@@ -1,4 +1,4 @@
-//! Control: what the motors are told, by somebody who believes in the model.
+//! Control: the torques that the motors are told to give, computed from a model that may differ from the plant.
 //!
 //! | law | τ |
 //! |---|---|
@@ -166,7 +166,7 @@ impl Controller {
         Self { law: control.law, kp: control.kp.of(n), kd: control.kd.of(n), models: Box::new(models) }
     }
 
-    /// Believes that a compliant base is preloaded as another controller does.
+    /// Takes over what another controller assumes of the preload of a compliant base.
     pub(crate) fn preload_as(&mut self, other: &Self) {
         for model in self.models.iter_mut() {
             *model = model.clone().preloaded_as(&other.models[0]);

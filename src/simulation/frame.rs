@@ -93,7 +93,7 @@ pub enum Phase {
 }
 
 impl Phase {
-    /// One word.
+    /// Its name in one word.
     pub fn name(self) -> &'static str {
         match self {
             Self::Motion => "motion",
@@ -106,7 +106,7 @@ impl Phase {
 impl Frame {
     /// The first figure of the audit that is not where it should be.
     pub fn fault(&self) -> Option<AuditFigure> {
-        self.audit.figures(&self.peaks, &self.totals).into_iter().find(|lamp| !lamp.is_good())
+        self.audit.figures(&self.peaks, &self.totals).into_iter().find(|figure| !figure.is_good())
     }
 
     /// Whether the machine is anywhere at all: a run that has blown up is not.

@@ -28,7 +28,7 @@ pub struct Peaks {
 }
 
 impl Peaks {
-    /// Nothing yet.
+    /// The peaks of a run that has not begun.
     pub fn zero(drives: usize) -> Self {
         Self {
             torque: PerDrive::zeros(drives),
@@ -72,7 +72,8 @@ impl Peaks {
         REACTIONLESS * self.inertial_pull + ROUNDING * self.weight
     }
 
-    /// What the arm does: peak |n_B| at most 1e-6 of peak Σ|τ_k|, and peak dynamic |f_B| at most 1e-6 of peak Σ m_j |a_cj|.
+    /// What the arm does: peak |n_B| at most 1e-6 of peak Σ|τ_k|, and peak dynamic |f_B| at most 1e-6 of peak Σ m_j
+    /// |a_cj|.
     pub fn is_reactionless(&self) -> bool {
         self.arm_moment <= self.no_moment() && self.force <= self.no_force()
     }

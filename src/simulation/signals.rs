@@ -126,7 +126,9 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
         ("audit_momentum/linear", "p + ∫f dt", "momentum and impulse on the base", "kg m/s", |f| f.audit.momentum),
         ("audit_angular/about_o", "h + ∫n dt", "angular momentum and its impulse", "kg m²/s", |f| f.audit.angular),
         ("audit_closure/worst", "gap", "worst gap in a pin that closes a loop", "m", |f| f.audit.closure),
-        ("audit_step/worst", "h err", "error by the size of the step, as a share of the peaks", "1", |f| f.audit.step),
+        ("audit_step/worst", "h err", "error from the size of the step, as a share of the peaks", "1", |f| {
+            f.audit.step
+        }),
         ("audit_plane/b", "b − b ref", "distance from the plane", "rad", |f| f.audit.plane),
         ("dexterity/det", "|det|", "|det| of ∂(x, y)/∂(a₁, a₂) on the plane", "m²", |f| f.dexterity.det),
         ("dexterity/manipulability", "w", "manipulability √det J J*", "m²", |f| f.dexterity.manipulability),

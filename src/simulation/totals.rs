@@ -1,4 +1,5 @@
-//! [`Totals`]: what a run has come to so far, summed over time: root mean squares, impulses, energy, motion of the base.
+//! [`Totals`]: what a run has come to so far, summed over time: root mean squares, impulses, energy, motion of the
+//! base.
 
 use crate::mechanics::dynamics::BaseWrench;
 use crate::simulation::plant::Slope;

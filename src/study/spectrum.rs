@@ -63,7 +63,7 @@ pub enum SpectrumError {
     /// Too few samples to tell frequencies apart.
     #[error("{count} samples make no spectrum: want at least {least}, with a longer record or a smaller step")]
     TooFew {
-        /// How many.
+        /// Samples that were given.
         count: usize,
         /// How many it takes.
         least: usize,
@@ -71,7 +71,7 @@ pub enum SpectrumError {
     /// A sample, or the time between two.
     #[error("sample {index} is not finite: want a run that does not diverge")]
     NotFinite {
-        /// Which.
+        /// The sample, counted from 0.
         index: usize,
     },
     /// The time between two samples.

@@ -11,7 +11,7 @@ use stillbase::picture::scene::palette::Theme;
 use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
 
-use super::{Desktop, desk, hold, session};
+use super::{Window, hold, session, window};
 use crate::Test;
 use crate::folder::Folder;
 
@@ -39,7 +39,7 @@ impl egui::DroppedFile for Dropped {
     }
 }
 
-fn drop_on(h: &mut Desktop, path: &Path) {
+fn drop_on(h: &mut Window, path: &Path) {
     h.input_mut().dropped_files.push(Arc::new(Dropped(path.into())));
     h.run_steps(3);
 }
@@ -53,7 +53,7 @@ enum Ask {
 }
 
 /// Opens the dialog by its keys.
-fn ask(h: &mut Desktop, what: Ask) {
+fn ask(h: &mut Window, what: Ask) {
     match what {
         Ask::Open => h.key_press_modifiers(Modifiers::COMMAND, Key::O),
         Ask::Save => h.key_press_modifiers(Modifiers::COMMAND, Key::S),
@@ -64,7 +64,7 @@ fn ask(h: &mut Desktop, what: Ask) {
 }
 
 /// Types a name over what stands there, and presses Enter.
-fn answer(h: &mut Desktop, path: &Path) {
+fn answer(h: &mut Window, path: &Path) {
     h.key_press_modifiers(Modifiers::COMMAND, Key::A);
     h.step();
     h.event(egui::Event::Text(path.display().to_string()));
@@ -73,14 +73,14 @@ fn answer(h: &mut Desktop, path: &Path) {
     h.run_steps(4);
 }
 
-fn name_file(h: &mut Desktop, what: Ask, path: &Path) {
+fn name_file(h: &mut Window, what: Ask, path: &Path) {
     ask(h, what);
     answer(h, path);
 }
 
 /// What the window says, if it is good news.
 #[track_caller]
-fn done(h: &Desktop, words: &str) {
+fn done(h: &Window, words: &str) {
     let (said, bad) = h.state().app_state().view_state().message.clone().expect("it is said");
     assert!(!bad && said.contains(words), "{said:?} does not say {words:?}");
     assert!(h.query_by_label("File name").is_none(), "the dialog has gone");
@@ -88,7 +88,7 @@ fn done(h: &Desktop, words: &str) {
 
 /// Refused with these words, on the screen; `dialog` says whether another name can be typed at once.
 #[track_caller]
-fn refused(h: &Desktop, words: &str, dialog: bool) {
+fn refused(h: &Window, words: &str, dialog: bool) {
     let (said, bad) =
         h.state().app_state().view_state().message.clone().unwrap_or_else(|| panic!("nothing said about {words:?}"));
     assert!(bad && said.contains(words), "{said:?} does not say {words:?}");
@@ -99,7 +99,7 @@ fn refused(h: &Desktop, words: &str, dialog: bool) {
 fn a_session_is_saved_and_opened_as_it_was() {
     let folder = Folder::new("window");
     let file = folder.path("mine.toml");
-    let mut h = desk("case-3", Theme::Dark);
+    let mut h = window("case-3", Theme::Dark);
     h.step();
     hold(&mut h);
     h.key_press(Key::Space);
@@ -138,7 +138,7 @@ fn bad(folder: &Folder) -> [(PathBuf, &'static str); 7] {
 
 fn what_is_no_scenario_is_refused_and_changes_nothing() {
     let folder = Folder::new("window");
-    let mut h = desk("case-3", Theme::Dark);
+    let mut h = window("case-3", Theme::Dark);
     h.step();
     hold(&mut h);
     for (file, words) in bad(&folder) {
@@ -161,7 +161,7 @@ fn what_is_no_scenario_is_refused_and_changes_nothing() {
 
 fn a_file_that_is_dropped_is_opened() {
     let folder = Folder::new("window");
-    let mut h = desk("case-3", Theme::Dark);
+    let mut h = window("case-3", Theme::Dark);
     h.step();
     let file = folder.file("one.toml", include_bytes!("../../assets/scenarios/spacecraft.toml"));
     // While a dialog asks for a name too, and while time runs.
@@ -192,7 +192,7 @@ fn nothing_is_written_over() {
     for (ending, what) in [("toml", Ask::Save), ("rrd", Ask::Record)] {
         let (mine, other) = (format!("mine.{ending}"), format!("other.{ending}"));
         let file = folder.file(&mine, b"somebody's own work");
-        let mut h = desk("case-3", Theme::Dark);
+        let mut h = window("case-3", Theme::Dark);
         h.step();
         name_file(&mut h, what, &file);
         refused(&h, "exists: want another name", true);
@@ -216,7 +216,7 @@ fn what_cannot_be_written_is_said() {
     fs::create_dir(&sub).expect("a folder");
     let long = folder.path(&"x".repeat(300));
     for what in [Ask::Save, Ask::Record] {
-        let mut h = desk("case-3", Theme::Dark);
+        let mut h = window("case-3", Theme::Dark);
         h.step();
         let before = session(&h).to_scenario();
         ask(&mut h, what);
@@ -239,7 +239,7 @@ fn what_cannot_be_written_is_said() {
 /// What is recorded is what has been seen; one that exists is left alone in `nothing_is_written_over`.
 fn a_run_is_recorded_whole_or_not() {
     let folder = Folder::new("window");
-    let mut h = desk("case-1", Theme::Dark);
+    let mut h = window("case-1", Theme::Dark);
     h.step();
     for (name, played) in [("start.rrd", false), ("end.rrd", true)] {
         if played {
@@ -269,7 +269,7 @@ fn a_dialog_that_is_left_does_nothing() {
     let folder = Folder::new("window");
     for what in [Ask::Open, Ask::Save, Ask::Record] {
         for cancel in [true, false] {
-            let mut h = desk("case-3", Theme::Dark);
+            let mut h = window("case-3", Theme::Dark);
             h.step();
             let before = session(&h).to_scenario();
             ask(&mut h, what);

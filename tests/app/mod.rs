@@ -1,4 +1,4 @@
-//! The desk as a person meets it: widgets by label, the pointer in the scene, keys, and what it looks like.
+//! The window, driven as a person does: widgets by label, the pointer in the scene, keys; and pictures of it.
 
 mod files;
 mod panel;
@@ -19,49 +19,49 @@ use crate::Test;
 
 pub const TESTS: [&[Test]; 6] = [files::TESTS, panel::TESTS, pointer::TESTS, refusal::TESTS, run::TESTS, view::TESTS];
 
-type Desktop = Harness<'static, App>;
+type Window = Harness<'static, App>;
 
-/// A desk of 1280 by 800 on which every repaint lasts 20 ms.
-fn desk(case: &str, theme: Theme) -> Desktop {
-    desk_of(Scenario::builtin(case).expect("built in"), theme, 800.0)
+/// A window of 1280 by 800 on which every repaint lasts 20 ms.
+fn window(case: &str, theme: Theme) -> Window {
+    window_of(Scenario::builtin(case).expect("built in"), theme, 800.0)
 }
 
 /// The same of any scenario and height: what is scrolled out of view cannot be found.
-fn desk_of(scenario: Scenario, theme: Theme, height: f32) -> Desktop {
-    let desk = AppState::new(scenario, theme).expect("it starts");
+fn window_of(scenario: Scenario, theme: Theme, height: f32) -> Window {
+    let app_state = AppState::new(scenario, theme).expect("it starts");
     Harness::builder()
         .with_size([1280.0, height])
         .with_step_dt(0.02)
         .wgpu()
-        .build_eframe(move |cc| App::new(cc, desk, Clock::Fixed(0.02)).expect("kittest draws with wgpu"))
+        .build_eframe(move |cc| App::new(cc, app_state, Clock::Fixed(0.02)).expect("kittest draws with wgpu"))
 }
 
-fn session(h: &Desktop) -> &stillbase::session::Session {
+fn session(h: &Window) -> &stillbase::session::Session {
     h.state().app_state().session()
 }
 
 /// Where a point of the plane of handles is on the screen.
-fn on_screen(h: &Desktop, x: f64, y: f64) -> egui::Pos2 {
+fn on_screen(h: &Window, x: f64, y: f64) -> egui::Pos2 {
     seen(h, [x, y, h.state().app_state().stage().handle_height()])
 }
 
 /// Where a point of the scene is on the screen.
-fn seen(h: &Desktop, point: [f64; 3]) -> egui::Pos2 {
+fn seen(h: &Window, point: [f64; 3]) -> egui::Pos2 {
     let rect = h.get_by_label_contains("Scene:").rect();
-    let desk = h.state().app_state();
+    let app_state = h.state().app_state();
     let aspect = f64::from(rect.width() / rect.height());
-    let [u, v] = desk.view_state().camera().project(point, aspect).expect("in front of the eye");
+    let [u, v] = app_state.view_state().camera().project(point, aspect).expect("in front of the eye");
     rect.min + egui::vec2(u as f32 * rect.width(), v as f32 * rect.height())
 }
 
-fn drag(h: &mut Desktop, from: egui::Pos2, to: egui::Pos2) {
+fn drag(h: &mut Window, from: egui::Pos2, to: egui::Pos2) {
     pull(h, from, to);
     h.drop_at(to);
     h.step();
 }
 
 /// A drag that is not let go.
-fn pull(h: &mut Desktop, from: egui::Pos2, to: egui::Pos2) {
+fn pull(h: &mut Window, from: egui::Pos2, to: egui::Pos2) {
     h.hover_at(from);
     h.step();
     h.drag_at(from);
@@ -73,7 +73,7 @@ fn pull(h: &mut Desktop, from: egui::Pos2, to: egui::Pos2) {
 }
 
 /// Opens the plant's section and has it hold a payload.
-fn hold(h: &mut Desktop) {
+fn hold(h: &mut Window) {
     h.get_by_label("Plant section").click();
     h.run_steps(2);
     h.get_by_label("payload").click();
@@ -82,7 +82,7 @@ fn hold(h: &mut Desktop) {
 }
 
 /// Types into a field and leaves it.
-fn type_into(h: &mut Desktop, label: &str, text: &str) {
+fn type_into(h: &mut Window, label: &str, text: &str) {
     h.get_by_label(label).click();
     h.run_steps(2);
     h.event(egui::Event::Text(text.into()));

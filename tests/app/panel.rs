@@ -13,7 +13,7 @@ use stillbase::session::scenario::Scenario;
 use stillbase::simulation::control::Control;
 use stillbase::simulation::plant::{Base, BaseKind, Each, PlantDifferences};
 
-use super::{Desktop, desk, desk_of, hold, on_screen, seen, session};
+use super::{Window, hold, on_screen, seen, session, window, window_of};
 use crate::Test;
 
 pub const TESTS: &[Test] = tests![
@@ -21,7 +21,7 @@ pub const TESTS: &[Test] = tests![
     every_setting_goes_back_to_normal,
     a_link_that_differs_is_named,
     a_base_that_moves_is_seen_to_move,
-    lamps_tell_the_audit,
+    dots_tell_the_audit,
     tolerances_are_shown_and_set,
     the_bar_covers_nothing,
     the_panel_holds_still,
@@ -31,7 +31,7 @@ pub const TESTS: &[Test] = tests![
 
 /// Whatever differs in the plant is switched on, set and taken back in its section.
 fn what_differs_is_set_and_taken_back() {
-    let mut h = desk_of(Scenario::builtin("case-3").expect("built in"), Theme::Dark, 1700.0);
+    let mut h = window_of(Scenario::builtin("case-3").expect("built in"), Theme::Dark, 1700.0);
     h.step();
     assert!(h.query_by_label("payload").is_none(), "folded while all is as the model");
     assert!(h.query_by_label("as the model").is_some());
@@ -94,7 +94,7 @@ fn every_setting_goes_back_to_normal() {
         assert!(rate != normal.rate && delay != normal.delay && encoder != normal.encoder);
     }
     (scenario.plant, scenario.base, scenario.control) = (plant, base, control);
-    let mut h = desk_of(scenario, Theme::Dark, 1700.0);
+    let mut h = window_of(scenario, Theme::Dark, 1700.0);
     h.step();
     for section in ["Plant", "Base", "Control"] {
         h.get_by_label(&format!("{section} back to normal")).click();
@@ -111,7 +111,7 @@ fn a_link_that_differs_is_named() {
     let text = include_str!("../../assets/scenarios/case-3.toml")
         .replace("[task]", "[plant.link.5]\nmass = 2.5\n\n[plant.length]\nl1 = 0.51\n\n[task]");
     let scenario = Scenario::parse(&text, "differs", None).expect("right");
-    let mut h = desk_of(scenario, Theme::Light, 1700.0);
+    let mut h = window_of(scenario, Theme::Light, 1700.0);
     h.run_steps(3);
     assert!(h.query_by_label("2 differences").is_some(), "it opens unfolded");
     let reach = h.state().app_state().stage().linkage().reach();
@@ -127,7 +127,7 @@ fn a_link_that_differs_is_named() {
 
 /// A base that floats is chosen, seen and plotted, and its motion exaggerated until it is seen.
 fn a_base_that_moves_is_seen_to_move() {
-    let mut h = desk_of(Scenario::builtin("case-1").expect("built in"), Theme::Dark, 1700.0);
+    let mut h = window_of(Scenario::builtin("case-1").expect("built in"), Theme::Dark, 1700.0);
     h.step();
     assert!(h.query_by_label_contains("Base over time").is_none());
     h.get_by_label("Base section").click();
@@ -162,26 +162,26 @@ fn a_base_that_moves_is_seen_to_move() {
     assert_eq!(session(&h).scenario().base, Base::default());
 }
 
-/// Six lamps say how far every audited figure is from zero.
-fn lamps_tell_the_audit() {
-    let mut h = desk("case-3", Theme::Light);
+/// Six dots say how far every audited figure is from zero.
+fn dots_tell_the_audit() {
+    let mut h = window("case-3", Theme::Light);
     h.get_by_label("Play").click();
     h.run_steps(70);
     for figure in ["momentum", "angular", "energy", "loops", "step", "plane"] {
         let words = format!("audit {figure}:");
-        let lamp = h.get_by_label_contains(&words);
-        assert!(lamp.accesskit_node().label().is_some_and(|label| label.ends_with(", good")), "{figure}");
+        let dot = h.get_by_label_contains(&words);
+        assert!(dot.accesskit_node().label().is_some_and(|label| label.ends_with(", good")), "{figure}");
     }
     assert!(h.query_by_label_contains("cannot be trusted").is_none());
-    let lamp = h.get_by_label_contains("audit energy:").rect().center();
-    h.hover_at(lamp);
+    let dot = h.get_by_label_contains("audit energy:").rect().center();
+    h.hover_at(dot);
     h.run_steps(60);
     assert!(h.query_by_label_contains("energy − work + losses").is_some(), "its figure is under the pointer");
 }
 
 /// Tolerances by key: the panel shows them, a spread is set by its number, and they make room for runs side by side.
 fn tolerances_are_shown_and_set() {
-    let mut h = desk("case-3", Theme::Dark);
+    let mut h = window("case-3", Theme::Dark);
     h.run_steps(3);
     h.key_press(Key::T);
     h.run_steps(2);
@@ -202,7 +202,7 @@ fn tolerances_are_shown_and_set() {
 /// The bar stands above the scene: in the default view nothing of the workspace, the machine or the target is covered.
 fn the_bar_covers_nothing() {
     for (width, height) in [(1280.0, 800.0), (960.0, 600.0), (1440.0, 900.0)] {
-        let mut h = desk("case-3", Theme::Dark);
+        let mut h = window("case-3", Theme::Dark);
         h.set_size(egui::vec2(width, height));
         h.run_steps(4);
         let scene = h.get_by_label_contains("Scene:").rect();
@@ -220,11 +220,11 @@ fn the_bar_covers_nothing() {
 
 /// Choosing what the machine stands on, or what it holds, moves nothing away from under the pointer.
 fn the_panel_holds_still() {
-    let mut h = desk_of(Scenario::builtin("case-3").expect("built in"), Theme::Dark, 1700.0);
+    let mut h = window_of(Scenario::builtin("case-3").expect("built in"), Theme::Dark, 1700.0);
     h.run_steps(2);
     h.get_by_label("Base section").click();
     h.run_steps(2);
-    let top = |h: &Desktop| ["Plant section", "Base section"].map(|label| h.get_by_label(label).rect().top());
+    let top = |h: &Window| ["Plant section", "Base section"].map(|label| h.get_by_label(label).rect().top());
     let before = top(&h);
     for kind in ["compliant", "free", "fixed"] {
         h.get_by_label(kind).click();
@@ -235,7 +235,7 @@ fn the_panel_holds_still() {
 
 /// A list closes with Esc and nothing else does; a link says its name.
 fn lists_close_and_links_are_named() {
-    let mut h = desk("case-3", Theme::Dark);
+    let mut h = window("case-3", Theme::Dark);
     h.run_steps(2);
     h.key_press(Key::U);
     h.run_steps(2);
@@ -273,7 +273,7 @@ fn lists_close_and_links_are_named() {
 
 /// Every letter that the sources can put on the screen is in the fonts that come along.
 fn the_fonts_have_every_letter() {
-    let mut h = desk("case-3", Theme::Dark);
+    let mut h = window("case-3", Theme::Dark);
     h.step();
     let mut letters = std::collections::BTreeSet::new();
     let mut folders = vec![std::path::PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/src"))];

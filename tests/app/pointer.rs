@@ -9,7 +9,7 @@ use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
 use stillbase::simulation::frame::Reach;
 
-use super::{Desktop, desk, drag, on_screen, pull, session};
+use super::{Window, drag, on_screen, pull, session, window};
 use crate::Test;
 
 pub const TESTS: &[Test] = tests![
@@ -24,7 +24,7 @@ pub const TESTS: &[Test] = tests![
 ];
 
 fn dragging_the_target_moves_the_machine_on_its_plane() {
-    let mut h = desk("case-3", Theme::Dark);
+    let mut h = window("case-3", Theme::Dark);
     h.step();
     let (from, to) = (on_screen(&h, 0.55, 0.9), on_screen(&h, 0.62, 0.55));
     h.get_by_label("Play").click();
@@ -39,7 +39,7 @@ fn dragging_the_target_moves_the_machine_on_its_plane() {
 }
 
 fn a_target_outside_says_why_and_what_b_would_do() {
-    let mut h = desk("case-3", Theme::Light);
+    let mut h = window("case-3", Theme::Light);
     h.get_by_label("Play").click();
     h.run_steps(70);
     let (from, to) = (on_screen(&h, 0.55, 0.9), on_screen(&h, 0.9, 0.85));
@@ -63,7 +63,7 @@ fn a_target_outside_says_why_and_what_b_would_do() {
 }
 
 fn escape_cancels_a_drag_and_takes_it_back() {
-    let mut h = desk("case-3", Theme::Dark);
+    let mut h = window("case-3", Theme::Dark);
     h.step();
     // The handle is where it is drawn: on the end effector, at A.
     let (from, to) = (on_screen(&h, 0.5, 0.5), on_screen(&h, 0.6, 0.3));
@@ -86,9 +86,9 @@ fn escape_cancels_a_drag_and_takes_it_back() {
 
 /// A point of the path goes where it is dragged; where the target covers it, by its name.
 fn waypoints_are_handles() {
-    let mut h = desk("case-3", Theme::Dark);
+    let mut h = window("case-3", Theme::Dark);
     h.step();
-    let points = |h: &Desktop| session(h).scenario().task.points();
+    let points = |h: &Window| session(h).scenario().task.points();
     // At rest at A the target covers A, so B is taken as it is and A by its letter.
     let (from, to) = (on_screen(&h, 0.55, 0.90), on_screen(&h, 0.60, 0.75));
     drag(&mut h, from, to);
@@ -124,12 +124,12 @@ fn waypoints_are_handles() {
 
 /// Drawn with the pencil, a path is followed.
 fn a_path_is_drawn_by_hand() {
-    let mut h = desk("case-3", Theme::Dark);
+    let mut h = window("case-3", Theme::Dark);
     h.step();
     h.key_press(Key::P);
     h.run_steps(2);
     let curve = |t: f64| (0.5 + 0.12 * (2.0 * t).sin(), 0.5 + 0.3 * t);
-    let at = |h: &Desktop, t: f64| {
+    let at = |h: &Window, t: f64| {
         let (x, y) = curve(t);
         on_screen(h, x, y)
     };
@@ -160,7 +160,7 @@ fn a_path_is_drawn_by_hand() {
 
 /// With Alt the end effector is pushed while time passes; letting go ends the push, and all of it is one undo.
 fn a_hand_pushes_the_end_effector() {
-    let mut h = desk("case-3", Theme::Dark);
+    let mut h = window("case-3", Theme::Dark);
     h.get_by_label("Play").click();
     h.run_steps(70);
     let tip = session(&h).frame().end_effector;
@@ -188,7 +188,7 @@ fn a_hand_pushes_the_end_effector() {
 
 /// Led by hand, the panel says so and leads back; the paper's cases come back whole.
 fn a_hand_is_named_and_let_go() {
-    let mut h = desk("case-3", Theme::Dark);
+    let mut h = window("case-3", Theme::Dark);
     h.run_steps(2);
     let band = "A and B: b from";
     assert!(h.query_by_label_contains(band).is_some() && h.query_by_label("led by hand").is_none());
@@ -243,7 +243,7 @@ enum Arrival {
 }
 
 /// A drag after which the pointer goes elsewhere.
-fn arrive(h: &mut Desktop, how: Arrival, [from, to, after]: [egui::Pos2; 3]) {
+fn arrive(h: &mut Window, how: Arrival, [from, to, after]: [egui::Pos2; 3]) {
     let button = |pos, pressed| egui::Event::PointerButton {
         pos,
         button: egui::PointerButton::Primary,
@@ -270,7 +270,7 @@ fn arrive(h: &mut Desktop, how: Arrival, [from, to, after]: [egui::Pos2; 3]) {
 /// On a slow display press, drag, release and what the hand does then may come in one frame: each counts where it was.
 fn a_release_counts_where_the_button_came_up() {
     let outcome = |how: Arrival| {
-        let mut h = desk("case-3", Theme::Dark);
+        let mut h = window("case-3", Theme::Dark);
         h.run_steps(2);
         let mut said = Vec::new();
         let slider = h.get_by_role_and_label(Role::Slider, "b slider").rect();

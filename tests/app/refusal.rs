@@ -1,4 +1,4 @@
-//! What cannot be is said in the window, with a way out.
+//! Refused edits: the window says why, and what would help.
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
@@ -7,7 +7,7 @@ use stillbase::picture::scene::palette::Theme;
 use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
 
-use super::{Desktop, desk, desk_of, drag, on_screen, session, type_into};
+use super::{Window, drag, on_screen, session, type_into, window, window_of};
 use crate::Test;
 
 pub const TESTS: &[Test] = tests![
@@ -23,7 +23,7 @@ fn opening_an_odd_scenario_changes_nothing_in_it() {
         .replace("[task]", "[control]\nkp = 20000.0\nkd = 1500.0\n\n[plant.payload]\nmass = 3.0\n\n[task]")
         .replace("compare_b = 5.0", "compare_b = 77.0");
     let scenario = Scenario::parse(&text, "odd", None).expect("odd but right");
-    let mut h = desk_of(scenario.clone(), Theme::Dark, 800.0);
+    let mut h = window_of(scenario.clone(), Theme::Dark, 800.0);
     h.run_steps(5);
     assert!(session(&h).script().is_empty(), "{:?}", session(&h).script());
     assert_eq!(session(&h).to_scenario(), scenario);
@@ -31,7 +31,7 @@ fn opening_an_odd_scenario_changes_nothing_in_it() {
 
 /// What cannot be followed is refused, shown, and mended by a button.
 fn a_refused_path_shows_where_and_what_b_would_do() {
-    let mut h = desk("case-3", Theme::Dark);
+    let mut h = window("case-3", Theme::Dark);
     h.step();
     let change = stillbase::session::scenario::Change::from_iter([
         ("shape".to_owned(), "line".into()),
@@ -59,24 +59,24 @@ fn a_scenario_that_cannot_be_planned_is_explained() {
     let task = scenario.task.with(&toml::from_str(keys).expect("keys")).expect("a task");
     let asked = Scenario { task: task.clone(), ..scenario };
     assert!(AppState::new(asked.clone(), Theme::Dark).is_err());
-    let mut desk = AppState::open_or_explain(asked, Theme::Dark).expect("explained");
-    let (words, bad) = desk.view_state().message.clone().expect("a reason");
+    let mut app_state = AppState::open_or_explain(asked, Theme::Dark).expect("explained");
+    let (words, bad) = app_state.view_state().message.clone().expect("a reason");
     assert!(bad && words.contains("the path stops at"), "{words}");
     let (edit, _) =
-        desk.view_state().refused.as_ref().and_then(|wish| wish.remedy.clone()).expect("another b would do");
-    desk.carry_out(stillbase::app::Command::Edit(edit));
-    let done = &desk.session().scenario().task;
+        app_state.view_state().refused.as_ref().and_then(|wish| wish.remedy.clone()).expect("another b would do");
+    app_state.carry_out(stillbase::app::Command::Edit(edit));
+    let done = &app_state.session().scenario().task;
     assert_eq!((done.points(), done.shape()), (task.points(), task.shape()));
 }
 
 /// A joint limit applies whatever the task: what no longer fits turns red, the run waits, and there are two ways out.
 fn limits_apply_and_the_run_waits() {
-    let mut h = desk("case-3", Theme::Dark);
+    let mut h = window("case-3", Theme::Dark);
     h.run_steps(2);
-    let red = |h: &Desktop| {
-        let desk = h.state().app_state();
-        let scene = desk.stage().scene(session(h).frame(), &Default::default());
-        let named = scene.labels.iter().filter(|l| l.colour == desk.view_state().palette().reaction);
+    let red = |h: &Window| {
+        let app_state = h.state().app_state();
+        let scene = app_state.stage().scene(session(h).frame(), &Default::default());
+        let named = scene.labels.iter().filter(|l| l.colour == app_state.view_state().palette().reaction);
         named.map(|l| l.text.clone()).collect::<Vec<_>>()
     };
     for way_out in ["take b", "take back", "by hand"] {

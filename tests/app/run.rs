@@ -1,4 +1,4 @@
-//! Time and b: played, stepped, taken back, and what it looks like.
+//! Time and b in the window: played, stepped, undone, and how it looks.
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, pos2};
@@ -6,7 +6,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::Edit;
 
-use super::{desk, hold, session, type_into};
+use super::{hold, session, type_into, window};
 use crate::Test;
 
 pub const TESTS: &[Test] = tests![
@@ -19,7 +19,7 @@ pub const TESTS: &[Test] = tests![
 ];
 
 fn playing_case_3_ends_at_b_without_a_reaction() {
-    let mut h = desk("case-3", Theme::Dark);
+    let mut h = window("case-3", Theme::Dark);
     h.get_by_label("Play").click();
     h.run_steps(70);
     let f = session(&h).frame();
@@ -36,7 +36,7 @@ fn playing_case_3_ends_at_b_without_a_reaction() {
 }
 
 fn sliding_b_poses_at_rest_and_costs_a_moment_in_motion() {
-    let mut h = desk("case-3", Theme::Dark);
+    let mut h = window("case-3", Theme::Dark);
     h.step();
     h.get_by_role_and_label(Role::Slider, "b slider").set_value_accesskit(2.6);
     h.run_steps(2);
@@ -55,7 +55,7 @@ fn sliding_b_poses_at_rest_and_costs_a_moment_in_motion() {
 }
 
 fn keys_play_step_and_take_back() {
-    let mut h = desk("case-3", Theme::Dark);
+    let mut h = window("case-3", Theme::Dark);
     h.step();
     h.key_press(Key::ArrowRight);
     h.step();
@@ -89,15 +89,15 @@ fn keys_play_step_and_take_back() {
 }
 
 fn nothing_is_repainted_at_rest() {
-    let mut h = desk("case-3", Theme::Dark);
-    // `run` fails if the desk keeps asking for another repaint.
+    let mut h = window("case-3", Theme::Dark);
+    // `run` fails if the window keeps asking for another repaint.
     h.run();
     h.hover_at(pos2(640.0, 400.0));
     h.run();
 }
 
 fn case_1_in_motion_looks_as_it_should() {
-    let mut h = desk("case-1", Theme::Dark);
+    let mut h = window("case-1", Theme::Dark);
     h.get_by_label("Play").click();
     h.run_steps(32);
     h.key_press(Key::Space);
@@ -111,7 +111,7 @@ fn case_1_in_motion_looks_as_it_should() {
 
 /// Paused, b stops where it would move A and B, unless that is asked for; what is typed and cannot be is said.
 fn b_leaves_the_task_as_it_is() {
-    let mut h = desk("case-3", Theme::Dark);
+    let mut h = window("case-3", Theme::Dark);
     h.run_steps(2);
     let points = session(&h).scenario().task.points();
     let ends = session(&h).run().planes().expect("planes").common(&points).expect("a band").intervals[0];

@@ -6,7 +6,7 @@ use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::views::ViewKind;
 use stillbase::planning::reactionless::PlanePoint;
 
-use super::{Desktop, desk, drag, seen, session};
+use super::{Window, drag, seen, session, window};
 use crate::Test;
 
 pub const TESTS: &[Test] =
@@ -14,7 +14,7 @@ pub const TESTS: &[Test] =
 
 /// Pulling in one view moves the session, so all of them follow.
 fn views_are_linked() {
-    let mut h = desk("case-3", Theme::Dark);
+    let mut h = window("case-3", Theme::Dark);
     h.step();
     // The slice of the tower, pulled up by 0.2 rad at rest: posed there.
     h.get_by_label("Tower").click();
@@ -60,7 +60,7 @@ fn views_are_linked() {
 }
 
 fn dexterity_is_shown_with_its_key_where_there_is_a_workspace() {
-    let mut h = desk("case-3", Theme::Light);
+    let mut h = window("case-3", Theme::Light);
     h.step();
     assert!(h.query_by_label("|det|").is_none());
     h.get_by_label("dexterity").click();
@@ -84,11 +84,11 @@ fn dexterity_is_shown_with_its_key_where_there_is_a_workspace() {
 
 /// Runs side by side: by key, a row laid over, sorted by its head, this run kept; a second cursor shows differences.
 fn runs_stand_side_by_side() {
-    let mut h = desk("case-1", Theme::Dark);
+    let mut h = window("case-1", Theme::Dark);
     h.run_steps(3);
     h.key_press(Key::C);
     h.run_steps(2);
-    let comparison = |h: &Desktop| h.state().app_state().comparison().cloned();
+    let comparison = |h: &Window| h.state().app_state().comparison().cloned();
     assert_eq!(comparison(&h).expect("on display").entries().len(), 5);
     h.get_by_label("Lay over: Reactionless").click();
     h.run_steps(2);

@@ -1,4 +1,5 @@
-//! Whatever comes from outside ends in an answer or in a short error: no panic, no endless loop, no gigabytes.
+//! Files and arguments changed at random: each ends in an answer or a short error, without panic, endless loop or
+//! gigabytes.
 //!
 //! Inputs are good ones with numbers, keys, lines and bytes changed, as a seed decides: a failure prints its seed and
 //! number, and is made again by them. What has failed once stays in `tests/corpus` and is tried first.

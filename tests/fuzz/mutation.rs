@@ -1,4 +1,4 @@
-//! Good input turned bad, as dice decide.
+//! Good input with numbers, keys, lines and bytes changed at random.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};

@@ -1,4 +1,4 @@
-//! What a machine is.
+//! Tests of `src/mechanics`: machines, kinematics, dynamics, pin forces and balance.
 
 mod balance;
 mod dynamics;

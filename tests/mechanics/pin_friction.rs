@@ -44,7 +44,8 @@ fn any_motion() -> impl Strategy<Value = Motion> {
         .prop_filter("near a change point", |(q, ..)| least_transmission(&DriveAngles::from(*q).units(), 3) > 0.02)
 }
 
-/// Any couples in the pins and in the bearings of any machine in any motion: forces, torques and moment of 27 equations.
+/// Any couples in the pins and in the bearings of any machine in any motion: forces, torques and moment of 27
+/// equations.
 fn couples_are_in_the_balance(cases: u32) {
     let given = (any_body(), any_motion(), prop::array::uniform3(-3.0..3.0), prop::array::uniform3(-3.0..3.0));
     let check = |(body, (q, qd, qdd), each, bearing): (NineBody, Motion, [f64; 3], [f64; 3])| {
@@ -108,8 +109,8 @@ fn any_way() -> impl Strategy<Value = Way> {
 }
 
 /// One frame of a run: the couples of pins that slide are those of the law; what Coulomb friction takes in pairs that
-/// stick, or have only just begun to slide, is unknown: one number each, within its bound, that has to explain the torques
-/// and all twelve pins.
+/// stick, or have only just begun to slide, is unknown: one number each, within its bound, that has to explain the
+/// torques and all twelve pins.
 fn check_frame(body: &NineBody, friction: &Friction, frame: &Frame) {
     let (q, qd, qdd) = (three(&frame.q.0), three(&frame.qd), three(&frame.qdd));
     let slide = PAIRS.map(|(k, l)| qd[l] - qd[k]);

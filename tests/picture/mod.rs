@@ -1,4 +1,4 @@
-//! What it looks like.
+//! Tests of `src/picture`: scenes, charts, meshes, and what the renderer draws.
 
 mod mesh;
 mod scene;

@@ -1,4 +1,4 @@
-//! The redundant mode: closed forms, convergence, and what nothing else does better.
+//! The least reaction: against closed forms and other solvers, and how it converges.
 
 use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
 use stillbase::mechanics::kinematics::end_effector;
@@ -388,8 +388,8 @@ fn any_line_is_planned_or_refused() {
     assert!(planned >= 20, "{planned} of 24");
 }
 
-/// The least ∫ b″² or peak of |b″| within the ends of a corridor, by second differences at even u: another discretisation,
-/// without any distance from the ends.
+/// The least ∫ b″² or peak of |b″| within the ends of a corridor, by second differences at even u: another
+/// discretisation, without any distance from the ends.
 fn twin(low: &[f64], high: &[f64], start: f64, peak: bool) -> f64 {
     use clarabel::algebra::CscMatrix;
     use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};

@@ -1,4 +1,4 @@
-//! Where it may go, and when.
+//! Tests of `src/planning`: planes and workspaces, curves, timing, ways off the plane.
 
 mod boundary;
 pub mod change_points;

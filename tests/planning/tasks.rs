@@ -403,7 +403,8 @@ fn dragging_can_keep_off_change_points() {
     }
 }
 
-/// Motions whose rates alone are given stay on their curve across the joints of a spline, and keep limits or are refused.
+/// Motions whose rates alone are given stay on their curve across the joints of a spline, and keep limits or are
+/// refused.
 #[test]
 fn rates_follow_splines_too() {
     let zigzag: Vec<String> = (1..16)

@@ -455,8 +455,8 @@ fn usage_tells_violations() {
     const { assert!(ACTIVE < 1.0 && ACTIVE >= 0.999) }
 }
 
-/// T of the fastest way from 0 to 1 over all phase durations, by search: up, constant, down to a rate; the same or other
-/// phases down from it.
+/// T of the fastest way from 0 to 1 over all phase durations, by search: up, constant, down to a rate; the same or
+/// other phases down from it.
 fn searched(v: f64, a: f64, j: f64) -> f64 {
     let (n, rates) = (40, 400);
     // Ways to the rate j up (up + constant): how long each takes.

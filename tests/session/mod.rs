@@ -1,4 +1,4 @@
-//! What a person did.
+//! Tests of `src/session`: scenarios, edits, undo, replay and the verdict.
 
 mod bounds;
 mod cases;

@@ -1,4 +1,4 @@
-//! One path: whatever is done to a session by hand, its script replayed headless gives the very same frames.
+//! Whatever is done to a session, its script replayed without a window gives the very same frames.
 
 use stillbase::mechanics::machine::builtin;
 use stillbase::session::scenario::Scenario;

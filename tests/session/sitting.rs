@@ -1,4 +1,4 @@
-//! Sittings drawn at random: edits of every kind, on every base and plant, between anything that is done to time.
+//! Sessions drawn at random: edits of every kind, on every base and plant, between anything that is done to time.
 
 use std::collections::BTreeSet;
 

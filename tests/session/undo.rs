@@ -1,4 +1,4 @@
-//! What is done is taken back, and brought back.
+//! Undo and redo: of every kind of edit, at rest and in motion.
 
 use stillbase::mechanics::planar::Vector;
 use stillbase::session::scenario::Scenario;
@@ -214,7 +214,7 @@ fn scrubbing_back_and_editing_replaces_the_later_script() {
     assert_eq!(session.script(), full.1);
 }
 
-/// Another machine on the desk is one more thing to undo.
+/// Another machine in the window is one more thing to undo.
 #[test]
 fn switching_scenarios_is_undone() {
     let mut session = open(coarse());

@@ -1,4 +1,4 @@
-//! What a run is called, and what is said beside it.
+//! The verdict on a run, and its remarks.
 
 use proptest::prelude::*;
 use stillbase::session::scenario::Scenario;
@@ -142,8 +142,8 @@ fn a_session_has_a_verdict_at_any_time() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
-    /// Free fall is weightlessness: whatever gravity does to a base that nothing holds, arm and base do to each other what
-    /// they do without it.
+    /// Free fall is weightlessness: whatever gravity does to a base that nothing holds, arm and base do to each other
+    /// what they do without it.
     #[test]
     fn free_fall_transmits_what_weightlessness_does(
         gravity in prop::array::uniform2(-12.0..12.0_f64),

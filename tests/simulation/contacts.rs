@@ -1,6 +1,6 @@
 //! Stick and slip against an exact twin: machines of constant inertia under forces that are straight lines in time, so
-//! that rates are parabolas between events and every event is a root in closed form. What is stuck and what slides at an
-//! instant is found by Gauss's principle, by trying every way it could be; the library projects.
+//! that rates are parabolas between events and every event is a root in closed form. What is stuck and what slides at
+//! an instant is found by Gauss's principle, by trying every way it could be; the library projects.
 
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive};
@@ -226,7 +226,8 @@ const STEP: f64 = 0.01;
 const STEPS: usize = 3;
 
 /// Friction of bearings on a fixed or a free base, under a feed-forward that reverses
-/// several times a step; the largest difference of rates, as a share of the largest rate, and how often contacts stopped.
+/// several times a step; the largest difference of rates, as a share of the largest rate, and how often contacts
+/// stopped.
 fn against_the_twin(case: u64) -> (f64, usize) {
     let mut dice = Dice::new(case + 1);
     let mut machine: Machine = builtin("nine-link").expect("built in").clone();

@@ -1,5 +1,6 @@
-//! What signals mean: each obeys a law that is written down here anew, from nine rigid bodies, from differences and sums
-//! over time, from geometry and from what the scenarios say. The table of signals is not asked which field it reads.
+//! What signals mean: each obeys a law that is written down here anew, from nine rigid bodies, from differences and
+//! sums over time, from geometry and from what the scenarios say. The table of signals is not asked which field it
+//! reads.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,4 +1,4 @@
-//! What then happens.
+//! Tests of `src/simulation`: plants, control, the step, friction, signals and audits.
 
 mod bases;
 mod contacts;

@@ -361,8 +361,8 @@ fn lengths_differ_together() {
     assert!(why.contains("l77"), "{why}");
 }
 
-/// Stiff gains, stiff springs, motions that jump, friction that reverses: what is shown at every step is what a tenth of
-/// the step shows, to a thousandth of its peak, and the audits say so; also where a run is short.
+/// Stiff gains, stiff springs, motions that jump, friction that reverses: what is shown at every step is what a tenth
+/// of the step shows, to a thousandth of its peak, and the audits say so; also where a run is short.
 #[test]
 fn what_is_shown_does_not_depend_on_the_step() {
     for (name, text) in [

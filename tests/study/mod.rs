@@ -1,4 +1,4 @@
-//! Many runs.
+//! Tests of `src/study`: runs side by side, tolerances and spectra.
 
 mod comparison;
 mod spectrum;

@@ -277,7 +277,8 @@ fn bands_are_those_of_many_samples() {
     assert!(agreement.sampling.worst < agreement.sampled_tolerance, "{:?}", agreement.sampling);
 }
 
-/// As tolerances shrink, first order comes right at its rate: what the exact variance has beyond it goes with the square.
+/// As tolerances shrink, first order comes right at its rate: what the exact variance has beyond it goes with the
+/// square.
 #[test]
 fn first_order_is_the_limit_of_small_tolerances() {
     let motion = motion("case-1");
@@ -445,8 +446,8 @@ fn what_cannot_vary_is_refused() {
     assert!(matches!(refused(&[("link.1.com", "normal:1e9")]), ToleranceError::TooWide { .. }));
 }
 
-/// What a window shows of tolerances: shares of a whole, quantiles in order, a yield by the limit, the run's frequencies,
-/// and what perfect tracking leaves out.
+/// What a window shows of tolerances: shares of a whole, quantiles in order, a yield by the limit, the run's
+/// frequencies, and what perfect tracking leaves out.
 #[test]
 fn a_study_is_of_one_piece() {
     use stillbase::session::Run;

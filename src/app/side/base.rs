@@ -1,4 +1,4 @@
-//! What the machine stands on.
+//! The section *Base* of the panel on the left: what the machine stands on.
 
 use egui::Ui;
 
@@ -15,7 +15,7 @@ const KINDS: [(BaseKind, &str, &str); 3] = [
     (BaseKind::Free, "free", "It floats, as a spacecraft does"),
 ];
 
-/// Draws it.
+/// Draws this section.
 pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
     let (base, p) = (&session.scenario().base, &view_state.palette());
     let word = KINDS.iter().find(|k| k.0 == base.kind).map_or("", |k| k.1);
@@ -27,7 +27,7 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
         if base.moves() {
             body(ui, base, p, commands);
             let mut seen = view_state.exaggerates_base;
-            let tip = "Show the motion of the base so many times larger that it is seen (X)";
+            let tip = "Show the motion of the base enlarged, so that it can be seen (X)";
             if ui.checkbox(&mut seen, "exaggerate its motion").on_hover_text(tip).changed() {
                 commands.push(Command::Exaggerate(seen));
             }

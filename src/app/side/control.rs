@@ -1,4 +1,4 @@
-//! What the motors are told.
+//! The section *Control* of the panel on the left: what the motors are told.
 
 use egui::Ui;
 
@@ -22,7 +22,7 @@ const PERIODS: [u32; 11] = [1, 2, 4, 5, 8, 10, 20, 25, 40, 50, 100];
 /// Counts of encoders that are offered.
 const COUNTS: [f64; 6] = [1024.0, 4096.0, 16384.0, 65536.0, 262_144.0, 1_048_576.0];
 
-/// Draws it.
+/// Draws this section.
 pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
     let scenario = session.scenario();
     let (control, step, n) = (&scenario.control, scenario.step, scenario.machine.drives());
@@ -46,13 +46,13 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
         let kp = Gain {
             label: "Kp",
             unit: "s⁻²",
-            tip: "Position gain K_p; equal on all drives, errors stay on the plane",
+            tip: "Position gain K_p; equal gains on all drives keep errors on the plane",
             decimals: 0,
             most: 2000.0,
             normal: 400.0,
         };
         kp.show(ui, (Section::Control, &["kp"]), &control.kp, n, p, commands);
-        let tip = "Velocity gain K_d; equal on all drives, errors stay on the plane";
+        let tip = "Velocity gain K_d; equal gains on all drives keep errors on the plane";
         let kd = Gain { label: "Kd", unit: "s⁻¹", tip, most: 200.0, normal: 40.0, ..kp };
         kd.show(ui, (Section::Control, &["kd"]), &control.kd, n, p, commands);
         sampling(ui, control, step, p, commands);

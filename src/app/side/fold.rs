@@ -1,4 +1,4 @@
-//! Sections that fold, switches, and numbers that know what is normal.
+//! What the sections of the panel are made of: heads that fold, switches, and numbers with a normal value.
 
 use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 use serde::Serialize;
@@ -11,7 +11,7 @@ use crate::session::Edit;
 use crate::session::scenario::{Change, Value};
 use crate::settings::change;
 
-/// What a setting belongs to.
+/// The section of the panel, and of a scenario, that a setting belongs to.
 #[derive(Clone, Copy)]
 pub enum Section {
     Plant,
@@ -94,7 +94,7 @@ pub fn fold(
     }
 }
 
-/// A small sign that takes something back.
+/// A small button that takes something back; whether it was clicked.
 pub fn undo(ui: &mut Ui, p: &Palette, label: &str, tip: &str) -> bool {
     let sign = RichText::new("↺").font(plain(13.0)).color(colour(p.amber));
     let response = ui.add(Button::new(sign).frame(false).min_size(egui::vec2(14.0, 18.0)));
@@ -102,7 +102,7 @@ pub fn undo(ui: &mut Ui, p: &Palette, label: &str, tip: &str) -> bool {
     response.on_hover_text(tip).clicked()
 }
 
-/// A switch; whether it is on.
+/// A switch that sends an edit; whether it is on.
 pub fn switch(
     ui: &mut Ui,
     (label, tip): (&str, &str),
@@ -117,15 +117,16 @@ pub fn switch(
     on
 }
 
-/// A switch for something that is there while it is not nothing: held down, a slider may pass nothing.
-pub fn something(
+/// A switch for a setting that counts as on while it is not zero. While the pointer is down it stays on, so that a
+/// slider that passes zero does not hide itself.
+pub fn switch_nonzero(
     ui: &mut Ui,
     words: (&str, &str),
     there: bool,
     commands: &mut Vec<Command>,
     to: impl FnOnce(bool) -> Edit,
 ) -> bool {
-    let id = egui::Id::unique(("something", words.0));
+    let id = egui::Id::unique(("switch_nonzero", words.0));
     let was = ui.data(|d| d.get_temp::<bool>(id)).unwrap_or_default();
     let held = ui.input(|i| i.pointer.any_down() || i.pointer.any_released());
     let on = there || (was && held);
@@ -204,7 +205,7 @@ pub struct NumberField<'a> {
     pub beside: bool,
     /// What takes it back; none: setting the normal value does.
     pub back: Option<Edit>,
-    /// What it is called where its label alone would not do.
+    /// Its name for screen readers, where several fields have the same label.
     pub called: Option<String>,
 }
 

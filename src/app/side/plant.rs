@@ -1,8 +1,9 @@
-//! What differs in the machine that moves: payload, friction, torque limits, links, lengths, a force.
+//! The section *Plant* of the panel on the left, what differs in the machine that moves: payload, friction, torque
+//! limits, links, lengths, a force.
 
 use egui::Ui;
 
-use super::fold::{NumberField, Section, Slide, choose, fold, once, something, switch};
+use super::fold::{NumberField, Section, Slide, choose, fold, once, switch, switch_nonzero};
 use crate::app::Command;
 use crate::app::widgets::{Row, note, unit};
 use crate::mechanics::machine::{Link, Machine};
@@ -18,7 +19,7 @@ fn count(plant: &PlantDifferences) -> usize {
     single.into_iter().filter(|x| *x).count() + length.len() + link.len()
 }
 
-/// Draws it.
+/// Draws this section.
 pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
     let (plant, model) = (&session.scenario().plant, &session.scenario().machine);
     let summary = match count(plant) {
@@ -41,7 +42,7 @@ fn payload(ui: &mut Ui, plant: &PlantDifferences, p: &Palette, commands: &mut Ve
     const HELD: f64 = 0.3;
     let load = &plant.payload;
     let tip = "A mass at the end effector that control does not know of: it unbalances the machine";
-    let on = something(ui, ("payload", tip), load.is_some(), commands, |on| match on {
+    let on = switch_nonzero(ui, ("payload", tip), load.is_some(), commands, |on| match on {
         true => Section::Plant.set(&["payload", "mass"], HELD),
         false => Section::Plant.back(&["payload"]),
     });
@@ -110,7 +111,7 @@ fn payload(ui: &mut Ui, plant: &PlantDifferences, p: &Palette, commands: &mut Ve
 fn friction(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette, commands: &mut Vec<Command>) {
     let f = &plant.friction;
     let tip = "Friction in the bearings of the drives and in the pins, unknown to control";
-    let on = something(ui, ("friction", tip), *f != Default::default(), commands, |on| match on {
+    let on = switch_nonzero(ui, ("friction", tip), *f != Default::default(), commands, |on| match on {
         true => Section::Plant.set(&["friction", "viscous"], 0.02),
         false => Section::Plant.back(&["friction"]),
     });
@@ -225,7 +226,7 @@ fn limits(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette, c
 
 fn force(ui: &mut Ui, plant: &PlantDifferences, p: &Palette, commands: &mut Vec<Command>) {
     let tip = "A constant force F at the end effector; or push it by hand: Alt and drag, or U";
-    let on = something(ui, ("force", tip), plant.force != [0.0; 2], commands, |on| match on {
+    let on = switch_nonzero(ui, ("force", tip), plant.force != [0.0; 2], commands, |on| match on {
         true => Section::Plant.set(&["force"], vec![2.0, 0.0]),
         false => Section::Plant.back(&["force"]),
     });
@@ -252,7 +253,7 @@ fn force(ui: &mut Ui, plant: &PlantDifferences, p: &Palette, commands: &mut Vec<
     });
 }
 
-/// What is chosen in a list of what may differ: what somebody chose, or else the first that does.
+/// The link or length that a list shows: the one chosen last, or else the first that differs.
 fn chosen(ui: &Ui, what: &str, first: Option<&String>, exists: impl Fn(&str) -> bool) -> String {
     let taken = ui.data(|d| d.get_temp::<String>(egui::Id::unique(("differs", what))));
     taken.filter(|name| name.is_empty() || exists(name)).or_else(|| first.cloned()).unwrap_or_default()

@@ -1,4 +1,4 @@
-//! What an import comes to.
+//! The answer of `stillbase import`.
 
 use serde::Serialize;
 
@@ -20,7 +20,8 @@ pub(super) struct Answer {
     pub(super) smoothed_by: Option<f64>,
     /// How far the second derivative of each column can be trusted, rad/s² or m/s².
     pub(super) uncertainty: Vec<f64>,
-    /// Least and greatest b of the samples themselves, rad: the spline between them may go beyond; none for the end effector.
+    /// Least and greatest b of the samples themselves, rad: the spline between them may go beyond; none for the end
+    /// effector.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) b_samples: Option<[f64; 2]>,
     /// For the end effector: with minimum-norm rates; none where these cannot follow.

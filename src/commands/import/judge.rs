@@ -47,7 +47,7 @@ pub struct Proposal {
     pub rms_deviation: f64,
     #[serde(flatten)]
     pub account: Account,
-    /// As simulated.
+    /// Largest |n_B| when it is simulated, N m.
     pub simulated_peak_base_moment: f64,
     pub simulated_peak_base_force: f64,
     pub reactionless: bool,

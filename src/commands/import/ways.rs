@@ -28,11 +28,11 @@ pub struct Asked {
     pub keep: Option<Keep>,
 }
 
-/// What samples come to.
+/// The motion that samples give, and what might be proposed in its place.
 pub struct Ways {
     /// The motion as given; for the end effector with minimum-norm rates, if these can follow.
     pub given: Option<Motion>,
-    /// Or why there is none.
+    /// What might be proposed, or why nothing can be.
     pub candidates: Result<Vec<Candidate>, String>,
 }
 

@@ -1,5 +1,5 @@
-//! The checksum of a file of samples, over all its bytes. It stands in the text that names the study; while it is computed,
-//! zeros stand in its place.
+//! The checksum of a file of samples, over all its bytes. It stands in the text that names the study; while it is
+//! computed, zeros stand in its place.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -27,8 +27,8 @@ pub enum End {
 /// The checksum is within so many bytes of that end.
 const NEAR: u64 = 1 << 16;
 
-/// A sum in the manner of FNV-1a, over words of eight bytes: each step keeps different sums different, so no single word
-/// changes without it.
+/// A sum in the manner of FNV-1a, over words of eight bytes: each step keeps different sums different, so no single
+/// word changes without it.
 struct Checksum {
     sum: u64,
     /// What does not yet fill a word.
@@ -68,8 +68,8 @@ impl Checksum {
     }
 }
 
-/// Where the digits of a checksum begin among the bytes at an end, and what they say. Names of columns may look like it, but
-/// do not stand as near to the end.
+/// Where the digits of a checksum begin among the bytes at an end, and what they say. Names of columns may look like
+/// it, but do not stand as near to the end.
 fn find(bytes: &[u8], end: End) -> Option<(u64, u64)> {
     let before = BEFORE.as_bytes();
     let digits = |at: usize| {

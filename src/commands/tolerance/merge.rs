@@ -1,4 +1,4 @@
-//! Shards put together: the whole, exactly, or why not.
+//! Puts the shards of a study together, or says which of them are missing, doubled or of another study.
 
 use std::path::{Path, PathBuf};
 

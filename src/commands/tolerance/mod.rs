@@ -128,7 +128,7 @@ impl From<ToleranceError> for Failure {
 }
 
 impl Tolerance {
-    /// Runs it.
+    /// Draws and judges the machines, or merges parts.
     pub fn run(&self) -> Result<(), Failure> {
         match self.merge.is_empty() {
             true => self.study(),

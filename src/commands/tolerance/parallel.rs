@@ -8,7 +8,7 @@ use stillbase::mechanics::machine::Machine;
 use stillbase::session::{Refusal, Run};
 use stillbase::study::tolerance::{CHUNK, Ensemble, Outcome, Sampler, simulate};
 
-/// Chunks of a wave, for each thread: enough that nobody waits long for the slowest.
+/// Chunks of a wave, for each thread: enough that no thread waits long for the slowest.
 const CHUNKS: usize = 32;
 
 /// How outcomes come about.
@@ -22,7 +22,7 @@ pub enum Mode<'a> {
 
 /// Some samples, one after another.
 pub struct Batch {
-    /// Which.
+    /// Their numbers.
     pub samples: Range<u64>,
     /// What each comes to.
     pub outcomes: Vec<Outcome>,

@@ -241,7 +241,7 @@ pub struct Answer {
     pub yields: Yields,
     /// Which tolerance matters.
     pub shares: Shares,
-    /// Over time.
+    /// n_B and |f_B| over time.
     pub bands: Bands,
     /// Of first order with all orders.
     pub agreement: Agreement,

@@ -251,7 +251,7 @@ impl Groups {
 
 /// A file of rows, opened.
 pub struct StudyPart {
-    /// Its name.
+    /// Path of the file.
     pub file: PathBuf,
     /// What it holds.
     pub head: Head,
@@ -274,8 +274,7 @@ impl StudyPart {
         match checksum::holds(&mut opened, kind.end()).map_err(unreadable)? {
             Some(true) => Self::load(file),
             Some(false) => {
-                let why =
-                    "its bytes are not those that its checksum is of: it was changed or damaged: want it made again";
+                let why = "its checksum does not fit its bytes, so it was changed or damaged: want it written again";
                 Err(Failure::wrong_input(why).of(file.display()))
             }
             None => Err(foreign(file)),
@@ -464,7 +463,7 @@ fn group_of(
     if whole { Ok((samples, columns)) } else { Err(foreign(file)) }
 }
 
-/// What the Parquet reader makes of a file: it panics on some that nobody wrote, which is a refusal here.
+/// What the Parquet reader makes of a file: it panics on some damaged files, which are refused here.
 fn guarded<T>(file: &Path, read: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
     let hook = panic::take_hook();
     panic::set_hook(Box::new(|_| {}));

@@ -1,4 +1,4 @@
-//! Why the forces of pins cannot be told.
+//! Why the forces of pins cannot be computed.
 
 use thiserror::Error;
 
@@ -10,7 +10,7 @@ pub enum JointsError {
     /// More pins than there is room for.
     #[error("{count} pins: want at most {MAX_PINS}")]
     TooMany {
-        /// How many.
+        /// Pins of the machine.
         count: usize,
     },
     /// A drive without a link at B, and several that follow it.

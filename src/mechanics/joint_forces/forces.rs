@@ -48,16 +48,16 @@ impl Forces {
         (worst.0.sqrt(), worst.1)
     }
 
-    /// τ less the friction of the drives' bearings, N m, from the moments that the links at B ask for; `None` at a change
-    /// point, where [`inverse`](crate::mechanics::dynamics::inverse) knows it for pins without friction.
+    /// τ less the friction of the drives' bearings, N m, from the moments that the links at B ask for; `None` at a
+    /// change point, where [`inverse`](crate::mechanics::dynamics::inverse) knows it for pins without friction.
     pub fn torque(&self) -> Option<PerDrive> {
         (self.undefined == 0).then_some(self.torque)
     }
 }
 
 impl Joints {
-    /// Force of every pin for a motion, and the torques of the drives, with pins that turn freely. On a base that moves,
-    /// gravity is g − p̈_B.
+    /// Force of every pin for a motion, and the torques of the drives, with pins that turn freely. On a base that
+    /// moves, gravity is g − p̈_B.
     pub fn forces(&self, e: &Units, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> Forces {
         self.forces_with(e, qd, qdd, around, |_, _| 0.0)
     }

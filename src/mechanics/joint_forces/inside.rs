@@ -1,4 +1,4 @@
-//! What a frame keeps of the inside of the machine, and what a run makes of it.
+//! The pin forces that a frame keeps, and their peaks and means over a run.
 
 use super::{AxialMoments, Forces, Joints, Tilt};
 use crate::mechanics::dynamics::Surroundings;
@@ -37,8 +37,8 @@ impl Inside {
         (i < usize::from(self.known) && self.undefined & 1 << i == 0).then(|| self.pins[i])
     }
 
-    /// Its size, N, finite always: at a change point what it would be at |sin(q_k − q_l)| = [`FLAT`](super::FLAT); 0 for
-    /// pins that are not kept.
+    /// Its size, N, finite always: at a change point what it would be at |sin(q_k − q_l)| = [`FLAT`](super::FLAT); 0
+    /// for pins that are not kept.
     pub fn size(&self, i: usize) -> f64 {
         self.pins.get(i).map_or(0.0, |f| f.norm())
     }
@@ -90,7 +90,7 @@ impl PinLoads {
     }
 }
 
-/// What a run makes of one pin.
+/// Peak and mean of the force of one pin over a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PinPeak {
     /// The largest force, N, of the instants at which it is defined.

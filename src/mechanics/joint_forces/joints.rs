@@ -24,7 +24,8 @@ impl Joints {
     /// Reads the structure of a machine.
     ///
     /// # Errors
-    /// If statics does not determine the forces: closures too many or too few, or a drive that turns nobody knows what.
+    /// If statics does not determine the forces: closures too many or too few, or a drive of which the file does not
+    /// tell what link it turns.
     pub fn of(machine: &Machine) -> Result<Self, JointsError> {
         let pins = pins(machine);
         if pins.len() > MAX_PINS {

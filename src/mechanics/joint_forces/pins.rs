@@ -1,8 +1,8 @@
-//! The pins of a machine by name, whether or not their forces can be told.
+//! The pins of a machine by name, whether or not statics determines their forces.
 
 use crate::mechanics::machine::{Chain, Machine};
 
-/// The most pins of a machine whose forces are told.
+/// The most pins of a machine whose forces are computed.
 pub const MAX_PINS: usize = 32;
 
 /// |sin(q_k − q_l)| below which the forces of a parallelogram are undefined: rounding alone changes them by 1e-7 there.

@@ -83,7 +83,7 @@ impl AxialMoments {
         }
     }
 
-    /// Whether all heights are zero, so that nothing can tilt: the plane model, or one that was never told.
+    /// Whether all heights are zero, so that nothing can tilt: the machine file gives none.
     pub fn is_flat(&self) -> bool {
         self.flat
     }

@@ -30,7 +30,7 @@ impl Parallelogram {
     }
 }
 
-/// Where a pair of drives lines up.
+/// How far a pair of drives is from a change point, where the two line up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChangePointDistance {
     /// The drives, counted from 0.

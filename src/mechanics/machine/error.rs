@@ -83,7 +83,7 @@ pub enum MachineError {
     /// Not a number where one is needed.
     #[error("{place} is {}: want a finite number, {unit}", Short(*value))]
     NotFinite {
-        /// Where.
+        /// Where in the machine file.
         place: Place,
         /// What stands there.
         value: f64,
@@ -93,7 +93,7 @@ pub enum MachineError {
     /// A number of the wrong sign or size.
     #[error("{place} is {}: want {want}", Short(*value))]
     OutOfRange {
-        /// Where.
+        /// Where in the machine file.
         place: Place,
         /// What stands there.
         value: f64,
@@ -103,7 +103,7 @@ pub enum MachineError {
     /// A name that nothing has.
     #[error("{place} names the {what} {:?}, which does not exist: want one of {known}", clipped(name))]
     Unknown {
-        /// Where.
+        /// Where in the machine file.
         place: Place,
         /// Drive, link, length …
         what: &'static str,
@@ -115,7 +115,7 @@ pub enum MachineError {
     /// Two of the same name.
     #[error("{place} is {:?}, which is taken: want a name of its own", clipped(name))]
     Duplicate {
-        /// Where.
+        /// Where in the machine file.
         place: Place,
         /// The name.
         name: String,
@@ -133,11 +133,11 @@ pub enum MachineError {
     /// Links that hang on each other in a circle.
     #[error("{place}: link {link:?} hangs on itself ({chain}): want a chain that ends at \"base\"")]
     Cycle {
-        /// Where.
+        /// Where in the machine file.
         place: Place,
         /// A link of the circle.
         link: String,
-        /// The circle.
+        /// The links of the circle, in order.
         chain: String,
     },
     /// A closure whose two points are not one.
@@ -145,11 +145,11 @@ pub enum MachineError {
         "{place}: {a} and {b} are not one point in every pose, they differ by {gap}: want a parallelogram that closes"
     )]
     OpenLoop {
-        /// Where.
+        /// Where in the machine file.
         place: Place,
-        /// One description.
+        /// The point as one link has it.
         a: String,
-        /// The other.
+        /// The point as the other has it.
         b: String,
         /// The difference, as a sum of the drives' unit vectors.
         gap: String,
@@ -172,7 +172,7 @@ pub enum MachineError {
         link: String,
         /// The name of the length.
         length: String,
-        /// The others.
+        /// The other links that share it.
         sharers: String,
     },
     /// A key of `--set` or of an edit that nothing answers to.

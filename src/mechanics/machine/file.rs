@@ -17,7 +17,7 @@ pub enum FileError {
     Unreadable {
         /// The file.
         file: PathBuf,
-        /// Why.
+        /// The system's reason.
         source: std::io::Error,
     },
     /// It is not a machine.
@@ -27,7 +27,7 @@ pub enum FileError {
         file: String,
         /// Line, counted from 1, where it is known.
         line: Option<usize>,
-        /// What.
+        /// What is wrong.
         error: MachineError,
     },
 }

@@ -1,4 +1,4 @@
-//! The textures a scene is drawn into, and the way from there onto somebody else's target.
+//! The textures a scene is drawn into, and how that picture is copied onto the target of a window or figure.
 
 use super::kit::{COLOUR, DEPTH, SAMPLES};
 use super::shader::{Shader, embedded};

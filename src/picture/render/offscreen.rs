@@ -53,7 +53,7 @@ pub enum NoPicture {
 pub struct Picture {
     /// Pixels a row.
     pub width: u32,
-    /// Rows.
+    /// Rows of pixels.
     pub height: u32,
     /// 4 width height bytes.
     pub rgba: Vec<u8>,

@@ -102,7 +102,8 @@ impl<'a> Sight<'a> {
     }
 }
 
-/// Draws a box as seen from a direction, a unit vector from the scene towards the eye; it stands still, or slides along.
+/// Draws a box as seen from a direction, a unit vector from the scene towards the eye; it stands still, or slides
+/// along.
 pub fn draw(scene: &mut Scene, palette: &Palette, axes: &[Axis; 3], eye: [f64; 3], stands: Changes) {
     let sight = Sight::new(axes, eye);
     let (mut grid, mut edges, mut ticks) = (Vec::new(), Vec::new(), Vec::new());
@@ -181,8 +182,8 @@ fn mark(scene: &mut Scene, ticks: &mut Vec<Vec<[f32; 3]>>, palette: &Palette, si
     scene.labels.push(Label::new("axes/titles", at, offset, axis.title, axis.colour, 12.5, Anchor::Centre));
 }
 
-/// The range of `width`, about `home` where it can be, that holds a range with a `margin` to its ends; of a range that is
-/// wider, its lower part.
+/// The range of `width`, about `home` where it can be, that holds a range with a `margin` to its ends; of a range that
+/// is wider, its lower part.
 pub fn covering([low, high]: [f64; 2], home: f64, width: f64, margin: f64) -> [f64; 2] {
     let middle = home.max(high + margin - 0.5 * width).min(low - margin + 0.5 * width);
     [middle - 0.5 * width, middle + 0.5 * width]

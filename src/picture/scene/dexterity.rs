@@ -8,10 +8,10 @@ use crate::planning::reactionless::PlaneMap;
 const GRID: i32 = 24;
 
 impl Measure {
-    /// In the order in which they come by.
+    /// All of them, in the order in which key J shows them.
     pub const ALL: [Self; 3] = [Self::Det, Self::Manipulability, Self::TorquePerForce];
 
-    /// None, each of them, and none again.
+    /// The measure after one, or after none; none after the last.
     pub fn after(now: Option<Self>) -> Option<Self> {
         match now {
             None => Some(Self::Det),
@@ -19,7 +19,7 @@ impl Measure {
         }
     }
 
-    /// What a key says.
+    /// Its symbol in the legend.
     pub fn symbol(self) -> &'static str {
         match self {
             Self::Det => "|det|",

@@ -62,7 +62,8 @@ impl JointSpace {
         Self::showing(run, None)
     }
 
-    /// For a whole run, whose b lie in a range, rad: it shows all of them and stands still, with q itself as coordinates.
+    /// For a whole run, whose b lie in a range, rad: it shows all of them and stands still, with q itself as
+    /// coordinates.
     pub fn over(run: &Run, [low, high]: [f64; 2]) -> Option<Self> {
         let width = SPAN.max(high - low + 2.0 * MARGIN);
         let space = Self::showing(run, Some(axes::covering([low, high], HOME, width, MARGIN)))?;

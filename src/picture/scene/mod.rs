@@ -2,8 +2,9 @@
 //!
 //! A [`Scene`] holds solids, lines, areas, markers and labels in world coordinates (metres; x and y in the plane of
 //! motion, z along the drive axis, towards the viewer of the flat view). Numbers turn from `f64` into `f32` here and
-//! nowhere else. Every item has a name, which is also its path in a recording, a pose `world_from_item`, and says what of
-//! it [may change](Changes): geometry is made once, afterwards only poses change. Colours are sRGB with straight alpha, as in the palette, and sizes called `px` are logical pixels.
+//! nowhere else. Every item has a name, which is also its path in a recording, a pose `world_from_item`, and says what
+//! of it [may change](Changes): geometry is made once, afterwards only poses change. Colours are sRGB with straight
+//! alpha, as in the palette, and sizes called `px` are logical pixels.
 
 pub mod arrow;
 pub mod axes;
@@ -152,7 +153,7 @@ impl Line {
         Self { dash: Some([dash, gap]), ..self }
     }
 
-    /// Over everything.
+    /// The same line, drawn over everything.
     #[must_use]
     pub fn on_top(self) -> Self {
         Self { on_top: true, ..self }
@@ -177,7 +178,8 @@ impl Line {
 }
 
 /// A reactionless workspace as Eq. (16) states it: for `(a_1, a_2)` in the rectangle,
-/// `x + iy = B + e^{i turn} Σ_k c_k e^{i (u_k · a + v_k)}`. The renderer evaluates it per vertex and knows nothing more.
+/// `x + iy = B + e^{i turn} Σ_k c_k e^{i (u_k · a + v_k)}`. The renderer evaluates it per vertex and knows nothing
+/// more.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Area {
     /// What it is.
@@ -248,7 +250,7 @@ pub struct Marker {
     pub radius: f32,
     /// Inside; alpha 0 leaves it hollow.
     pub fill: Rgba,
-    /// Edge.
+    /// Colour of the edge.
     pub stroke: Rgba,
     /// Width of the edge, px.
     pub stroke_width: f32,
@@ -315,7 +317,7 @@ impl Label {
 /// Everything there is to draw at one instant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// Behind everything.
+    /// Colour behind everything.
     pub background: Rgba,
     /// Meshes that the solids refer to.
     pub model: Arc<Model>,
@@ -327,7 +329,7 @@ pub struct Scene {
     pub lines: Vec<Line>,
     /// Handles and dots, over everything.
     pub markers: Vec<Marker>,
-    /// Words, over everything; drawn by whoever owns a font.
+    /// Words, over everything; drawn by egui, which has the fonts.
     pub labels: Vec<Label>,
 }
 

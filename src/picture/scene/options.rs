@@ -15,7 +15,7 @@ pub struct ViewOptions {
     pub theme: Theme,
     /// The workspace is shaded by this measure.
     pub dexterity: Option<Measure>,
-    /// Somebody can drag things, and is told so.
+    /// The scene says what can be dragged.
     pub invites: bool,
     /// The pointer is on this handle, or drags it.
     pub hot: Option<Handle>,
@@ -90,7 +90,7 @@ pub struct Other {
     pub base: Pose2,
 }
 
-/// What somebody asked for and did not get: a curve, m, and where it cannot be followed.
+/// A curve that was asked for and refused, and where it cannot be followed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refused {
     /// m.

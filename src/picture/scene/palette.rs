@@ -22,7 +22,7 @@ pub struct Palette {
     pub panel: Rgba,
     /// Hairlines and the grid.
     pub line: Rgba,
-    /// Text.
+    /// Colour of text.
     pub ink: Rgba,
     /// Text of less weight.
     pub dim: Rgba,

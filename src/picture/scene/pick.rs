@@ -8,7 +8,7 @@ pub const NEAR: f64 = 20.0;
 /// What the pointer has taken hold of, and where.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pick {
-    /// What.
+    /// What is held.
     pub handle: Handle,
     /// In the scene.
     pub at: [f64; 3],

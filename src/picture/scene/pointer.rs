@@ -5,7 +5,7 @@ use super::camera::{Camera, Ray};
 /// A place in a picture, and the camera that took it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pointer {
-    /// From where.
+    /// The camera.
     pub camera: Camera,
     /// Width and height of the picture, px.
     pub size: [f64; 2],

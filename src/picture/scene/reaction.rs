@@ -1,7 +1,7 @@
-//! What reaches the base at an instant: the one thing that every picture of it draws, words and colours alike.
+//! What reaches the base at an instant, with its words and colours: every view and every recording draws this.
 //!
-//! Drawn is what motion makes: the force without what merely hangs or pushes, which shakes nothing and is told beside it,
-//! and the moment that the base feels. Each of the two has a colour of its own.
+//! The arrow is the force of the motion; constant forces, of weight and pushes, are written beside it. The arc is the
+//! moment that the base feels. Force and moment have a colour each.
 
 use std::f64::consts::FRAC_PI_2;
 

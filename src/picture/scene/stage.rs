@@ -19,7 +19,7 @@ use super::{Line, Measure, Scene, Strips, point};
 use crate::mechanics::planar::{DriveAngles, Vector, unit};
 use crate::session::Run;
 use crate::simulation::frame::Frame;
-use base::Ground;
+use base::BaseStage;
 use path::Plan;
 use pins::Pins;
 use workspace::Workspace;
@@ -31,7 +31,7 @@ const GRID: f64 = 0.1;
 #[derive(Clone, Debug)]
 pub struct Stage {
     linkage: Linkage,
-    ground: Ground,
+    base: BaseStage,
     workspace: Option<Workspace>,
     plan: Option<Plan>,
     pins: Pins,
@@ -48,7 +48,7 @@ impl Stage {
         let linkage = Linkage::of(&plant);
         let compared = run.scenario().compare_b;
         Self {
-            ground: Ground::of(run, &plant, &linkage),
+            base: BaseStage::of(run, &plant, &linkage),
             workspace: run.planes().map(|planes| Workspace::of(planes, compared, ring_radius(&linkage))),
             plan: Plan::of(run, linkage.top()),
             pins: Pins::of(&plant),
@@ -59,7 +59,7 @@ impl Stage {
 
     /// Takes over what has changed of base and payload.
     pub fn refresh(&mut self, run: &Run) {
-        self.ground.refresh(run);
+        self.base.refresh(run);
     }
 
     /// The machine's body.
@@ -134,8 +134,8 @@ impl Stage {
         let mut scene = Scene::new(palette.background, linkage.model.clone());
         self.bodies(&mut scene, &palette, frame, options);
         self.draw_grid(&mut scene, &palette);
-        self.ground.unmoved(&mut scene, linkage, &palette, frame, options.exaggeration);
-        self.ground.draw(&mut scene, linkage, &palette, frame);
+        self.base.unmoved(&mut scene, linkage, &palette, frame, options.exaggeration);
+        self.base.draw(&mut scene, linkage, &palette, frame);
         if let Some(workspace) = &self.workspace {
             workspace.draw(&mut scene, linkage, &palette, frame, options);
             workspace.ring(&mut scene, &palette, frame, options, z);
@@ -147,12 +147,12 @@ impl Stage {
         snapshots::others(&mut scene, linkage, &palette, options);
         let blocked = self.plan.as_ref().and_then(Plan::blocked);
         path::by_hand(&mut scene, &palette, options, blocked, z);
-        reaction::draw(&mut scene, linkage, &palette, frame, options, self.ground.rest(options));
+        reaction::draw(&mut scene, linkage, &palette, frame, options, self.base.rest(options));
         if options.pin_forces {
             self.pins.draw(&mut scene, linkage, &palette, frame);
         }
         target::draw(&mut scene, &palette, frame, options, true_tip, z);
-        self.ground.load(&mut scene, linkage, &palette, frame, options);
+        self.base.load(&mut scene, linkage, &palette, frame, options);
         scene
     }
 
@@ -170,7 +170,7 @@ impl Stage {
             }
         }
         let units = frame.q.units();
-        scene.solids.extend(self.linkage.solids(&units, frame.base, self.ground.moves(), palette));
+        scene.solids.extend(self.linkage.solids(&units, frame.base, self.base.moves(), palette));
     }
 
     fn draw_grid(&self, scene: &mut Scene, palette: &Palette) {

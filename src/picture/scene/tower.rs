@@ -81,8 +81,8 @@ impl Tower {
         Self::showing(run, SPAN, None)
     }
 
-    /// For a whole run, whose b lie in a range: it shows [`SPAN`] or more, up to [`MOST`], and stands still. Its wall is
-    /// a few thousand triangles.
+    /// For a whole run, whose b lie in a range: it shows [`SPAN`] or more, up to [`MOST`], and stands still. Its wall
+    /// is a few thousand triangles.
     pub fn over(run: &Run, b: [f64; 2]) -> Option<Self> {
         let span = (b[1] - b[0] + 2.0 * MARGIN * SPAN).clamp(SPAN, MOST);
         Self::showing(run, span, Some(axes::covering(b, 0.5 * span, span, MARGIN * SPAN)))
@@ -141,7 +141,8 @@ impl Tower {
         HEIGHT * self.radius / self.span
     }
 
-    /// The least and the greatest b that are shown, rad: from 0 while the present one lies well inside, else moved along.
+    /// The least and the greatest b that are shown, rad: from 0 while the present one lies well inside, else moved
+    /// along.
     pub fn window(&self, b: f64) -> [f64; 2] {
         self.fixed.unwrap_or_else(|| axes::sliding(b, 0.5 * self.span, self.span, MARGIN * self.span))
     }
@@ -341,7 +342,8 @@ impl Tower {
     }
 }
 
-/// A workspace before it is turned, over a grid of (a_1, a_2). A shell lies over the grid of the walls, an area under it.
+/// A workspace before it is turned, over a grid of (a_1, a_2). A shell lies over the grid of the walls, an area under
+/// it.
 fn sheet(map: &PlaneMap, cells: u32) -> Mesh {
     let [l1, l2] = map.limits();
     let share = |l: AngleLimit, i: u32| l.min + f64::from(i) / f64::from(cells) * (l.max - l.min);

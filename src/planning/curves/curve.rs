@@ -123,8 +123,8 @@ impl Curve {
     }
 
     /// Straight lines through points. Corners are rounded by a curve that begins and ends `blend` from the corner, or
-    /// as far as half of the shorter line; where `blend` is 0, and where the line turns back, the curve ends and another
-    /// begins.
+    /// as far as half of the shorter line; where `blend` is 0, and where the line turns back, the curve ends and
+    /// another begins.
     ///
     /// # Errors
     /// If there are fewer than two, or two neighbours are one.
@@ -203,8 +203,8 @@ impl Curve {
         Self::spline(&knots, closed && knots.len() > 2)
     }
 
-    /// Through places that are passed at given s with given derivatives by s, joined by quintics: s is the caller's, such
-    /// as t/T. `None` if the s do not rise from 0 to 1, or differ in number from the places.
+    /// Through places that are passed at given s with given derivatives by s, joined by quintics: s is the caller's,
+    /// such as t/T. `None` if the s do not rise from 0 to 1, or differ in number from the places.
     pub fn through(stations: &[f64], nodes: &[CurvePoint]) -> Option<Self> {
         let last = stations.len().checked_sub(1).filter(|n| *n > 0 && nodes.len() == stations.len())?;
         if stations[0] != 0.0 || stations[last] != 1.0 || !stations.windows(2).all(|w| w[0] < w[1]) {

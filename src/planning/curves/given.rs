@@ -1,9 +1,9 @@
 //! A motion given by samples over time: of the drive angles, or of the end effector.
 //!
-//! The samples are joined by a quintic [spline](crate::planning::curves::spline): through every sample, four continuous derivatives,
-//! nothing assumed of its ends, which need not rest. Its parameter is s = t/T, so a motion takes it with
-//! [`Profile::running`](crate::planning::timing::Profile::running). As a spline is linear in its samples, angles that lie on a plane
-//! b = const stay on it between them.
+//! The samples are joined by a quintic [spline](crate::planning::curves::spline) through every sample, with four
+//! continuous derivatives; nothing is assumed of its ends, which need not rest. Its parameter is s = t/T, so a motion
+//! takes it with [`Profile::running`](crate::planning::timing::Profile::running). As a spline is linear in its samples,
+//! angles that lie on a plane b = const stay on it between them.
 
 use std::sync::Arc;
 
@@ -41,14 +41,14 @@ pub struct Samples {
 /// Why rows are no samples. Rows are counted from 0, columns too; column 0 is the time.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SamplesError {
-    /// Not enough.
+    /// Fewer samples than a spline takes.
     #[error("{got} samples: want at least {FEWEST}, because the spline's ends take six")]
     TooFew {
         /// How many there are.
         got: usize,
     },
-    /// Too many.
-    #[error("{got} samples: want at most {MAX_SAMPLES}; every second one will do")]
+    /// More samples than [`MAX_SAMPLES`].
+    #[error("{got} samples: want at most {MAX_SAMPLES}, such as every second one")]
     TooMany {
         /// How many there are.
         got: usize,
@@ -56,7 +56,7 @@ pub enum SamplesError {
     /// A row of another length.
     #[error("sample {} has {got} numbers: want {want}, a time and the values, at most {MAX_DRIVES}", row + 1)]
     Ragged {
-        /// Which.
+        /// Row, counted from 0.
         row: usize,
         /// How many it has.
         got: usize,
@@ -66,17 +66,17 @@ pub enum SamplesError {
     /// Not a number.
     #[error("sample {}, number {}: want a finite number", row + 1, column + 1)]
     NotFinite {
-        /// Which.
+        /// Row, counted from 0.
         row: usize,
-        /// Which.
+        /// Column, counted from 0.
         column: usize,
     },
     /// Out of range.
     #[error("sample {}, number {} is {}: want {range}", row + 1, column + 1, Short(*value))]
     OutOfRange {
-        /// Which.
+        /// Row, counted from 0.
         row: usize,
-        /// Which.
+        /// Column, counted from 0.
         column: usize,
         /// What stands there.
         value: f64,
@@ -88,7 +88,7 @@ pub enum SamplesError {
         "sample {} is at {} s, the one before at {} s: want times that rise", row + 1, Short(*time), Short(*before)
     )]
     NotRising {
-        /// Which.
+        /// Row, counted from 0.
         row: usize,
         /// s.
         time: f64,
@@ -221,7 +221,8 @@ impl Samples {
         Self::new(&rows).unwrap_or_else(|_| self.clone())
     }
 
-    /// Smoothed without delay: half of the amplitude is left at the cut-off, Hz; see [`crate::planning::curves::low_pass`].
+    /// Smoothed without delay: half of the amplitude is left at the cut-off, Hz; see
+    /// [`crate::planning::curves::low_pass`].
     ///
     /// # Errors
     /// If the cut-off is not below half of the mean rate.

@@ -12,7 +12,8 @@
 //! Whittaker's graduation with third differences: min Σ w (y − f)² + Ω⁻⁶ Σ H (D f)². With c = H D f it is
 //! (H⁻¹ + Ω⁻⁶ D w⁻¹ Dᵀ) c = D y and f = y − Ω⁻⁶ w⁻¹ Dᵀ c, seven diagonals; this form takes a small correction away from
 //! y instead of finding f among large numbers. For even spacing a wave of frequency f keeps
-//! 1/(1 + (sin(πfh)/sin(πf_c h))⁶) of its amplitude, half of it at f_c, and no phase is shifted. Parabolas pass unchanged.
+//! 1/(1 + (sin(πfh)/sin(πf_c h))⁶) of its amplitude, half of it at f_c, and no phase is shifted. Parabolas pass
+//! unchanged.
 
 /// How many diagonals the matrix has on either side.
 const BAND: usize = 3;

@@ -26,7 +26,7 @@ pub enum Path {
     Table(PathTable),
     /// A curve of (a_1, a_2) on the plane of a pose constant: reactionless.
     OnPlane {
-        /// Lifts it.
+        /// Gives the drive angles of (a_1, a_2) and b.
         map: PlaneMap,
         /// rad.
         b: f64,
@@ -136,7 +136,7 @@ impl Path {
         }
     }
 
-    /// Places so dense that a path changes little from one to the next, if it knows of some; both ends in any case.
+    /// Places so dense that a path changes little from one to the next, where its kind has such; both ends always.
     pub fn places(&self) -> Vec<f64> {
         match self {
             Self::Table(table) => table.stations().to_vec(),
@@ -232,8 +232,8 @@ fn joint_line(from: &DriveAngles, to: &DriveAngles, s: f64) -> PathPoint {
 
 /// Spaces between the nodes of an integrated path; the quintic's error is below 1e-13 rad on a straight line.
 const SPACES: usize = 256;
-/// How far off its curve the integration may end up in a space, as a part of the arm, before it is put back onto it; far
-/// less where the Jacobian is regular.
+/// How far off its curve the integration may end up in a space, as a part of the arm, before it is put back onto it;
+/// far less where the Jacobian is regular.
 const OFF_CURVE: f64 = 1e-6;
 
 /// Follows a curve of the end effector with minimum-norm rates, q′ = J⁺ p′, by the fourth-order rule from a pose at its

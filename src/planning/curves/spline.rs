@@ -9,9 +9,9 @@
 //!
 //! # Source
 //! On each space the quintic of Hermite through (y, m, M) at both ends; equal y⃛ and equal y⁗ from both sides of every
-//! inner sample are two linear equations for its m and M, a symmetric block-tridiagonal system. At both ends m and M are
-//! those of the polynomial through the six samples next to the end, so that nothing is assumed of how the motion begins
-//! or stops. The error of y falls with h⁶, that of ẏ with h⁵, that of ÿ with h⁴.
+//! inner sample are two linear equations for its m and M, a symmetric block-tridiagonal system. At both ends m and M
+//! are those of the polynomial through the six samples next to the end, so that nothing is assumed of how the motion
+//! begins or stops. The error of y falls with h⁶, that of ẏ with h⁵, that of ÿ with h⁴.
 //!
 //! # Noise
 //! Nothing is taken away: independent errors of σ in evenly spaced samples come out as errors of ÿ with a root mean

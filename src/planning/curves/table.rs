@@ -3,8 +3,8 @@
 use crate::mechanics::planar::PerDrive;
 use crate::planning::curves::PathPoint;
 
-/// Nodes of a path at s from 0 to 1, in order, joined by quintics that keep q, q′ and q″; the quintic's error falls with
-/// the sixth power of the spacing. Between nodes of one pose constant b, b is kept to rounding.
+/// Nodes of a path at s from 0 to 1, in order, joined by quintics that keep q, q′ and q″; the quintic's error falls
+/// with the sixth power of the spacing. Between nodes of one pose constant b, b is kept to rounding.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathTable {
     s: Vec<f64>,

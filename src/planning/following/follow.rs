@@ -1,7 +1,7 @@
 //! Following the pointer and the slider: a smooth reference that stays on its plane.
 //!
 //! The reference moves in plane coordinates (a_1, a_2, b). Acceleration is constant over a step and bounded: the
-//! vector (ä_1, ä_2) as a whole, never component by component, and b̈ on its own. While nobody slides b it is not
+//! vector (ä_1, ä_2) as a whole, never component by component, and b̈ on its own. While b is not slid it is not
 //! touched at all, so the motion is reactionless to the last bit of b.
 
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use crate::planning::reactionless::PlanePoint;
 pub struct Target {
     /// m.
     pub at: Vector,
-    /// Verdict.
+    /// Whether it can be reached.
     pub reach: Reach,
 }
 

@@ -1,4 +1,5 @@
-//! On a plane: a curve followed on one sheet, or why not; the nearest motion to a given one; the pointer and the slider.
+//! On a plane: a curve followed on one sheet, or why not; the nearest motion to a given one; the pointer and the
+//! slider.
 
 pub mod follow;
 pub mod nearest;

@@ -9,11 +9,11 @@
 //! | b̄ | mean of b(t) over time | rad |
 //!
 //! # Source
-//! In the metric of kinetic energy the normal of the planes is D⁻¹λ ∝ (1, …, 1): the nearest pose on a plane is the pose
-//! turned as a whole by (b − b(t))/Σλ. Its distance is |b − b(t)|/Σλ, so that of all constant b the nearest is b̄. This
-//! turns the end effector with the arm. To keep the end effector instead, the pose moves along the null space of its
-//! Jacobian onto the plane, (16) inverted, where b reaches every point of its path; of these b the nearest, in the same
-//! metric, is found by search.
+//! In the metric of kinetic energy the normal of the planes is D⁻¹λ ∝ (1, …, 1): the nearest pose on a plane is the
+//! pose turned as a whole by (b − b(t))/Σλ. Its distance is |b − b(t)|/Σλ, so that of all constant b the nearest is b̄.
+//! This turns the end effector with the arm. To keep the end effector instead, the pose moves along the null space of
+//! its Jacobian onto the plane, (16) inverted, where b reaches every point of its path; of these b the nearest, in the
+//! same metric, is found by search.
 
 use crate::mechanics::kinematics::{acceleration, end_effector, velocity};
 use crate::mechanics::machine::{Chain, Inertia};
@@ -85,8 +85,8 @@ pub fn tip_curve(tip: &Chain, path: &PathTable) -> Option<Curve> {
     Curve::through(path.stations(), &nodes)
 }
 
-/// The constant b whose motion with the same end effector is nearest to the given one, rad, and its ‖Δq‖, rad; `None` if
-/// none can be followed. Judged by some two hundred of the samples.
+/// The constant b whose motion with the same end effector is nearest to the given one, rad, and its ‖Δq‖, rad; `None`
+/// if none can be followed. Judged by some two hundred of the samples.
 pub fn nearest_b(map: &PlaneMap, tip: &Chain, model: &Inertia, samples: &Samples, rule: Rule) -> Option<(f64, f64)> {
     const TRIES: usize = 32;
     let thin = samples.thinned(JUDGED);

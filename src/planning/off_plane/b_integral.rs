@@ -8,8 +8,8 @@
 //! | S | H_11 + H_22, above 2R as H is positive definite | kg m² |
 //!
 //! # Source
-//! D q̇ = (D_1 + D_2) (q̇_1 + D_2/(D_1 + D_2) δ̇), and D_2/(D_1 + D_2) = ½ + ½ (H_22 − H_11)/(S + 2R cos(δ + φ)) depends on
-//! δ alone. So b = q_1 + ∫_0^δ D_2/(D_1 + D_2) dδ, and angular momentum is (D_1 + D_2) ḃ.
+//! D q̇ = (D_1 + D_2) (q̇_1 + D_2/(D_1 + D_2) δ̇), and D_2/(D_1 + D_2) = ½ + ½ (H_22 − H_11)/(S + 2R cos(δ + φ))
+//! depends on δ alone. So b = q_1 + ∫_0^δ D_2/(D_1 + D_2) dδ, and angular momentum is (D_1 + D_2) ḃ.
 
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{Vector, unit};

@@ -1,4 +1,5 @@
-//! The program behind the least reaction: which course of b within a corridor has the least ∫ b″² or the least peak of b″.
+//! The program behind the least reaction: which course of b within a corridor has the least ∫ b″² or the least peak of
+//! b″.
 //!
 //! b″ is linear between even nodes; b and b′ of the nodes are unknowns too, bound together by exact integration.
 
@@ -9,10 +10,10 @@ use crate::planning::reactionless::SLACK;
 
 /// Stations of the corridor in each piece.
 pub(super) const STATIONS: usize = 8;
-/// Where only the value of a program is wanted, it keeps every second station.
-const PILOT: usize = 2;
-/// b would keep this far from the corridor's ends, rad, or a tenth of its width: at a fold the joints would be infinitely
-/// fast.
+/// Stations are thinned by this where only the value of a program is wanted.
+const EVERY_SECOND: usize = 2;
+/// b would keep this far from the corridor's ends, rad, or a tenth of its width: at a fold the joints would be
+/// infinitely fast.
 const MARGIN: f64 = 1e-3;
 /// Of that margin no more is kept than raises what is to be least by this part.
 const COST: f64 = 4e-3;
@@ -28,9 +29,9 @@ const SPARE: f64 = 1e-7;
 /// Between which b − b_0 the course must stay at each station, the even ones first.
 type Walls = Vec<[f64; 2]>;
 
-/// The course of least ∫ b″² du, or of least peak of |b″|, that stays within the corridor at every station and, to second
-/// order, between them; or a word on why there is none. The corridor has [`STATIONS`] stations for each of the spaces.
-/// `ease` is how many times [`COST`] the distance from the corridor's ends may cost.
+/// The course of least ∫ b″² du, or of least peak of |b″|, that stays within the corridor at every station and, to
+/// second order, between them; or a word on why there is none. The corridor has [`STATIONS`] stations for each of the
+/// spaces. `ease` is how many times [`COST`] the distance from the corridor's ends may cost.
 pub(super) fn least_course(
     corridor: &Corridor,
     end: Option<f64>,
@@ -91,7 +92,7 @@ fn past(corridor: &Corridor, course: &BCourse) -> f64 {
         let b = course.at(0.5 * (w[0].u + w[1].u))[0];
         let side = |side: usize, ends: [f64; 2]| {
             let bulges = [k, k + 1].map(|k| bulge(corridor, k, side));
-            // Across a jump nobody knows what is between.
+            // Across a jump of the corridor there is nothing to interpolate.
             let [Some(i), Some(j)] = bulges else { return f64::NEG_INFINITY };
             let sense = [1.0, -1.0][side];
             sense * (0.5 * (ends[0] + ends[1]) - b) + i.min(j)
@@ -135,9 +136,9 @@ fn solved(corridor: &Corridor, walls: &Walls, end: Option<f64>, peak: bool, spac
 /// What is least: the root of ∫ b″² du, or the peak of |b″|.
 fn value(corridor: &Corridor, walls: &Walls, end: Option<f64>, peak: bool, spaces: usize) -> Result<f64, String> {
     if peak {
-        return least_peak(corridor, walls, end, spaces, PILOT);
+        return least_peak(corridor, walls, end, spaces, EVERY_SECOND);
     }
-    let x = squared(program(corridor, walls, end, spaces, PILOT, 0), spaces).solve()?;
+    let x = squared(program(corridor, walls, end, spaces, EVERY_SECOND, 0), spaces).solve()?;
     let square = |i: usize| {
         let (x, y) = (x[3 * i + 2], x[3 * i + 5]);
         (x * x + x * y + y * y) / (3.0 * spaces as f64)
@@ -210,8 +211,8 @@ fn program(corridor: &Corridor, walls: &Walls, end: Option<f64>, spaces: usize, 
     program
 }
 
-/// The corridor less a share of the margin, and what it may be narrower between stations. Where a given end of the course
-/// lies within that, it grows from there.
+/// The corridor less a share of the margin, and what it may be narrower between stations. Where a given end of the
+/// course lies within that, it grows from there.
 fn walls(corridor: &Corridor, end: Option<f64>, share: f64, extra: f64) -> Walls {
     let stations = corridor.stations();
     let (first, last) = (&stations[0], &stations[stations.len() - 1]);

@@ -1,8 +1,8 @@
 //! The corridor of b along a motion of the end effector: between which b_min and b_max the drives can serve each of its
 //! points on the sheet of the start pose, within the joint limits.
 //!
-//! On one sheet q = q(x, y, b): once the end effector's motion is given, b is all that is left to choose. The self-motion
-//! of each point, cut where b turns back, gives the ends exactly: joint limits or folds.
+//! On one sheet q = q(x, y, b): once the end effector's motion is given, b is all that is left to choose. The
+//! self-motion of each point, cut where b turns back, gives the ends exactly: joint limits or folds.
 
 use thiserror::Error;
 
@@ -92,7 +92,7 @@ pub enum CorridorError {
         x: f64,
         /// m.
         y: f64,
-        /// Why.
+        /// Why no b reaches the point.
         reason: NoReach,
     },
     /// Other poses only.
@@ -162,8 +162,8 @@ fn gap(x: f64, y: f64) -> f64 {
 }
 
 impl Corridor {
-    /// Follows the sheet of a start pose along a motion p(u), u = t/T from 0 to 1, with `count` + 1 stations. Where joint
-    /// limits part the corridor in two, it is the part nearer to the middle of the corridor just before.
+    /// Follows the sheet of a start pose along a motion p(u), u = t/T from 0 to 1, with `count` + 1 stations. Where
+    /// joint limits part the corridor in two, it is the part nearer to the middle of the corridor just before.
     ///
     /// # Errors
     /// If the pose does not fit the motion's start, or where the sheet ends.
@@ -220,8 +220,8 @@ impl Corridor {
         (0..=last).flat_map(|k| [(k, 0), (k, 1)]).filter(sudden).take(JUMPS).collect()
     }
 
-    /// Stations on the narrower side of a jump, ever nearer to it: what passes there passes close to a corner that the even
-    /// ones do not show.
+    /// Stations on the narrower side of a jump, ever nearer to it: what passes there passes close to a corner that the
+    /// even ones do not show.
     fn beside(&self, curve: impl Fn(f64) -> CurvePoint, (k, side): (usize, usize)) -> Vec<Station> {
         let [before, after] = [&self.stations[k], &self.stations[k + 1]];
         let ends = [before.end(side), after.end(side)];
@@ -301,7 +301,8 @@ fn station(map: &PlaneMap, u: f64, point: CurvePoint, near: PlanePoint, det: f64
     for branch in map.self_motion(p, SAMPLES) {
         for mut line in sheets(map, branch) {
             let (low, high) = (line[0].b, line[line.len() - 1].b);
-            // Folds end a part, so that inside it det has one sign; a sheet may have shrunk to a point, where it is anything.
+            // Folds end a part, so that inside it det has one sign; a sheet may have shrunk to a point, where it is
+            // anything.
             let own = map.det(inside(&line));
             if own * det < 0.0 && high - low > FLAT {
                 continue;

@@ -1,7 +1,7 @@
 //! Drift: a closed path of the end effector, followed at zero angular momentum time after time.
 //!
-//! D(q) q̇ = 0 is nonholonomic where D depends on the pose: the end effector comes back, the joints do not. On an invariant
-//! machine they do, to rounding. It is why the paper wants invariance, (8).
+//! D(q) q̇ = 0 is nonholonomic where D depends on the pose: the end effector comes back, the joints do not. On an
+//! invariant machine they do, to rounding. It is why the paper wants invariance, (8).
 
 use thiserror::Error;
 
@@ -17,10 +17,10 @@ use crate::planning::off_plane::null_space::{lines, momentum_row_rate, rates, so
 /// Why a motion of zero momentum does not follow a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum DriftError {
-    /// Not three.
+    /// The machine has not three drives.
     #[error("{drives} drives: a curve in the plane at zero momentum takes three")]
     Drives {
-        /// How many.
+        /// Drives of the machine.
         drives: usize,
     },
     /// The start is elsewhere.
@@ -67,9 +67,9 @@ const ON_CURVE: f64 = 1e-14;
 /// How far off a single step may leave it, as a part of the arm; further off it has jumped over a singular pose.
 const OFF_CURVE: f64 = 1e-4;
 
-/// Follows a curve of the end effector at zero angular momentum, [J; D] q′ = [p′; 0], by the fourth-order rule; after each
-/// step the end effector is put back onto the curve by rates of zero momentum. Any time law, from rest to rest, keeps the
-/// moment at zero.
+/// Follows a curve of the end effector at zero angular momentum, [J; D] q′ = [p′; 0], by the fourth-order rule; after
+/// each step the end effector is put back onto the curve by rates of zero momentum. Any time law, from rest to rest,
+/// keeps the moment at zero.
 ///
 /// # Errors
 /// If there are not three drives, the start is not on the curve, or [J; D] loses rank.

@@ -24,8 +24,8 @@ pub(in crate::planning) fn rates(map: &PlaneMap, a: [f64; 2], first: Vector, sec
     [ad, solve(second + inward)]
 }
 
-/// The pose that has the end effector on a point of a curve at b = `[b, b′, b″]`, found continuously from the pose `from`,
-/// and how it moves along. Derivatives are by the parameter of the curve.
+/// The pose that has the end effector on a point of a curve at b = `[b, b′, b″]`, found continuously from the pose
+/// `from`, and how it moves along. Derivatives are by the parameter of the curve.
 ///
 /// `None` where [`PlaneMap::follow`] finds no such pose, or where det ∂(x, y)/∂(a_1, a_2) = 0.
 pub fn pose_along(map: &PlaneMap, point: &CurvePoint, b: [f64; 3], from: [f64; 2]) -> Option<(PlanePoint, PathPoint)> {

@@ -93,7 +93,7 @@ pub enum LeastReactionError {
         /// The solver's word.
         solver: String,
     },
-    /// Not followed.
+    /// The drives cannot follow the course of b.
     #[error("the drives cannot follow the course of b at u = {u:.3}: it comes too near a fold")]
     NotFollowed {
         /// t/T.
@@ -102,8 +102,8 @@ pub enum LeastReactionError {
 }
 
 impl LeastReaction {
-    /// Plans b along a motion of the end effector p(u), u = t/T, that starts from a pose and rests at both ends; `end` is
-    /// b at the end, rad, if it is not free.
+    /// Plans b along a motion of the end effector p(u), u = t/T, that starts from a pose and rests at both ends; `end`
+    /// is b at the end, rad, if it is not free.
     ///
     /// # Errors
     /// If the machine has no b, the sheet of the pose does not reach along the motion, or no smooth course fits.

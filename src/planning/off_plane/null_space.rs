@@ -1,8 +1,8 @@
 //! Why invariance matters: motions of zero angular momentum on machines whose mass matrix depends on the pose.
 //!
-//! At each pose the rates with D(q) · q̇ = 0 transmit no moment: n − 1 directions. Where D is constant they are the planes
-//! b = const, and a closed path of the end effector brings the joints back. Where it is not, they fit together to no
-//! surface (for three drives and more): each time the end effector comes round, the joints have drifted.
+//! At each pose the rates with D(q) · q̇ = 0 transmit no moment: n − 1 directions. Where D is constant they are the
+//! planes b = const, and a closed path of the end effector brings the joints back. Where it is not, they fit together
+//! to no surface (for three drives and more): each time the end effector comes round, the joints have drifted.
 //!
 //! # Symbols
 //! | letter | meaning | shape, unit |
@@ -13,10 +13,10 @@
 //! | dD | ∂D_k/∂q_m − ∂D_m/∂q_k = −2 Im Z_km | n×n, kg m² |
 //!
 //! # Source
-//! D_k = J_k + Σ_l Re Z_kl, so ∂D_k/∂q_m = −Im Z_km for m ≠ k and ∂D_k/∂q_k = Σ_{l≠k} Im Z_kl. By Frobenius, D q̇ = 0 is
-//! integrable where D ∧ dD = 0. For three drives that 3-form is
-//! 2 Im[(H_11 C_23 − C_21 C_13) e^{i(q_3−q_2)} + (H_22 C_31 − C_32 C_21) e^{i(q_1−q_3)} + (H_33 C_12 − C_13 C_32) e^{i(q_2−q_1)}]:
-//! it vanishes in all poses only if its coefficients do, and where H is positive definite only if every C_kl is zero.
+//! D_k = J_k + Σ_l Re Z_kl, so ∂D_k/∂q_m = −Im Z_km for m ≠ k and ∂D_k/∂q_k = Σ_{l≠k} Im Z_kl. By Frobenius, D q̇ = 0
+//! is integrable where D ∧ dD = 0. For three drives that 3-form is 2 Im[(H_11 C_23 − C_21 C_13) e^{i(q_3−q_2)} + (H_22
+//! C_31 − C_32 C_21) e^{i(q_1−q_3)} + (H_33 C_12 − C_13 C_32) e^{i(q_2−q_1)}]: it vanishes in all poses only if its
+//! coefficients do, and where H is positive definite only if every C_kl is zero.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -98,9 +98,9 @@ const SPACES: usize = 256;
 /// Steps of its integration from node to node.
 const STEPS: usize = 4;
 
-/// A motion of zero momentum from a pose, any number of drives: q′ is the wanted direction w, rad, as far as it transmits
-/// nothing, by the fourth-order rule. On an invariant machine it is a straight line. `None` unless pose and direction are
-/// of the machine and finite.
+/// A motion of zero momentum from a pose, any number of drives: q′ is the wanted direction w, rad, as far as it
+/// transmits nothing, by the fourth-order rule. On an invariant machine it is a straight line. `None` unless pose and
+/// direction are of the machine and finite.
 pub fn motion(model: &Inertia, start: DriveAngles, w: &PerDrive) -> Option<PathTable> {
     let n = model.drives();
     if start.len() != n || w.len() != n || !start.iter().chain(w.iter()).all(|x| x.is_finite()) {
@@ -162,7 +162,8 @@ pub(super) fn solve(lines: &Matrix3<f64>, v: Vector, h: f64) -> Option<PerDrive>
 }
 
 /// How far D q̇ = 0 is from being integrable at a pose, (kg m²)²: the largest component of D ∧ dD,
-/// 2 |D_j Im Z_kl + D_k Im Z_lj + D_l Im Z_jk| over three drives j, k, l. 0 for one or two drives, and where D is constant.
+/// 2 |D_j Im Z_kl + D_k Im Z_lj + D_l Im Z_jk| over three drives j, k, l. 0 for one or two drives, and where D is
+/// constant.
 pub fn twist(model: &Inertia, q: &DriveAngles) -> f64 {
     let (n, e) = (model.drives(), q.units());
     let d = momentum_row(model, &e);

@@ -1,7 +1,8 @@
 //! The price of b: what the base feels when a motion leaves its plane, stated before it starts.
 //!
 //! A machine whose mass matrix is constant transmits n_B = −D_1 b̈ and nothing else, whatever its other coordinates do.
-//! So a motion from a pose of one b to a pose of another has a price that depends on Δb, on the time and on the law alone.
+//! So a motion from a pose of one b to a pose of another has a price that depends on Δb, on the time and on the law
+//! alone.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -179,8 +180,9 @@ impl Price {
         self.time(PoseLaw::BangBang, limit)
     }
 
-    /// By how much a base that floats freely and rests at first is turned in the end, whatever the path, the law and the
-    /// time: Δθ = −D_1 Δb/(I_b + μ|ρ|² + ΣD_k), rad. Here Δb is that of the angles between drives and base, q_k − θ.
+    /// By how much a base that floats freely and rests at first is turned in the end, whatever the path, the law and
+    /// the time: Δθ = −D_1 Δb/(I_b + μ|ρ|² + ΣD_k), rad. Here Δb is that of the angles between drives and base, q_k −
+    /// θ.
     ///
     /// # Errors
     /// If the machine's mass matrix is not constant, its centre of mass moves, or the base is none.
@@ -204,8 +206,8 @@ impl Price {
     }
 }
 
-/// The b of two sets that lie nearest to each other on the real line, lifted by whole turns so that the first is as near
-/// as can be to `near`, rad. Where the sets overlap both are the common b nearest to it. `None` if a set is empty.
+/// The b of two sets that lie nearest to each other on the real line, lifted by whole turns so that the first is as
+/// near as can be to `near`, rad. Where the sets overlap both are the common b nearest to it. `None` if a set is empty.
 pub fn nearest_planes(from: &BSet, to: &BSet, near: f64) -> Option<[f64; 2]> {
     let common = BSet::overlap(&[from.clone(), to.clone()]);
     if let Some(b) = common.nearest(near) {
@@ -238,8 +240,8 @@ pub fn nearest_poses(map: &PlaneMap, points: [Vector; 2], b: [f64; 2]) -> Option
 }
 
 /// Poses of two points, m, at the b of each that lie nearest together: the move with the least price. Where the points
-/// share a plane it is free, at the common b nearest to `near`, rad. Of several poses the two nearest together are taken,
-/// as a straight joint line may pass from sheet to sheet.
+/// share a plane it is free, at the common b nearest to `near`, rad. Of several poses the two nearest together are
+/// taken, as a straight joint line may pass from sheet to sheet.
 ///
 /// # Errors
 /// Which point (0 or 1) cannot be reached, and why.
@@ -263,14 +265,14 @@ pub fn least_change(map: &PlaneMap, points: [Vector; 2], near: f64) -> Result<[P
     Err((usize::from(!map.poses(points[0], first).is_empty()), NoReach::Limits))
 }
 
-/// The straight joint line between two poses, whatever their b; with any law b goes as the law does. Limits on (a_1, a_2)
-/// form a box, so that the line keeps those that its ends keep.
+/// The straight joint line between two poses, whatever their b; with any law b goes as the law does. Limits on (a_1,
+/// a_2) form a box, so that the line keeps those that its ends keep.
 pub fn joint_line(map: &PlaneMap, [from, to]: [PlanePoint; 2]) -> Path {
     Path::JointLine { from: DriveAngles::from(map.lift(from)), to: DriveAngles::from(map.lift(to)) }
 }
 
-/// A move in which only b is bang-bang over the whole of T, while (a_1, a_2) go by the quintic law: the least peak of n_B
-/// with joints that start and stop smoothly. Its parameter is u = t/T, so rates are q′/T and accelerations q″/T².
+/// A move in which only b is bang-bang over the whole of T, while (a_1, a_2) go by the quintic law: the least peak of
+/// n_B with joints that start and stop smoothly. Its parameter is u = t/T, so rates are q′/T and accelerations q″/T².
 ///
 /// b″ jumps at u = 0, ½ and 1. At ½ it is that of the first half; the next number after ½ begins the second.
 pub fn bang_bang_in_b(map: &PlaneMap, [from, to]: [PlanePoint; 2]) -> Option<PathTable> {

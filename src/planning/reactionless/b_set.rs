@@ -8,7 +8,8 @@ const TOUCH: f64 = 1e-11;
 /// A set of pose constants: disjoint closed intervals on the circle of b.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BSet {
-    /// [b_min, b_max] in order, rad: b_min in [0, period), b_max ≥ b_min may exceed it; the whole circle is [0, period].
+    /// [b_min, b_max] in order, rad: b_min in [0, period), b_max ≥ b_min may exceed it; the whole circle is [0,
+    /// period].
     pub intervals: Vec<[f64; 2]>,
     /// Circumference of the circle, 2π Σλ, rad.
     pub period: f64,

@@ -100,8 +100,8 @@ impl PlaneMap {
     /// The first change point on the straight line in (a_1, a_2) from one pose to another, or in a step; `None` if
     /// there is none.
     ///
-    /// Ending on a change point meets it; beginning on one does not, so that a chain of lines meets each but once. Poses
-    /// within 1e-9 rad are on it.
+    /// Ending on a change point meets it; beginning on one does not, so that a chain of lines meets each but once.
+    /// Poses within 1e-9 rad are on it.
     pub fn change_between(&self, from: [f64; 2], to: [f64; 2]) -> Option<ChangePoint> {
         let of_pair = |pair: usize| {
             let difference = Difference::of(self, pair);

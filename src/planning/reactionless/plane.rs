@@ -10,9 +10,9 @@ use crate::mechanics::planar::{Vector, cross, unit};
 /// Bounds of a relative joint angle, rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AngleLimit {
-    /// Least.
+    /// Least angle.
     pub min: f64,
-    /// Greatest.
+    /// Greatest angle.
     pub max: f64,
 }
 
@@ -26,9 +26,9 @@ impl AngleLimit {
 /// a = q_to − q_from + offset; drives counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AngleDefinition {
-    /// Drive.
+    /// The drive whose angle is added.
     pub to: usize,
-    /// Drive.
+    /// The drive whose angle is subtracted.
     pub from: usize,
     /// rad.
     pub offset: f64,

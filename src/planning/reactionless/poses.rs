@@ -91,7 +91,8 @@ impl Poses {
 }
 
 impl PlaneMap {
-    /// All poses within the limits that put the end effector on `p`, m, on the plane `b`, rad: every elbow, every sheet.
+    /// All poses within the limits that put the end effector on `p`, m, on the plane `b`, rad: every elbow, every
+    /// sheet.
     ///
     /// b is not wrapped: Σ λ_k q_k of the lifted pose is `b`. Limits count as kept when passed by [`SLACK`]; the poses
     /// returned keep them. Empty where there is none: [`reach`](Self::reach) says why. Poses that form a continuum (an

@@ -53,8 +53,8 @@ enum Path {
     Line,
 }
 
-/// One elbow over one interval of feasible α. The parameter s in [0, π] runs through it as α = mid − half cos s, so that
-/// γ is smooth in s where the curve turns back.
+/// One elbow over one interval of feasible α. The parameter s in [0, π] runs through it as α = mid − half cos s, so
+/// that γ is smooth in s where the curve turns back.
 #[derive(Clone, Copy, Debug)]
 struct Graph {
     sigma: f64,

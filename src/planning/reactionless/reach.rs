@@ -1,4 +1,5 @@
-//! Which planes contain a point: the pose constants at which it can be reached, and the self-motion between them, Fig. 3.
+//! Which planes contain a point: the pose constants at which it can be reached, and the self-motion between them, Fig.
+//! 3.
 //!
 //! Source: (13)–(16). Two points are joined by a reactionless path if and only if their sets overlap; the same for any
 //! number of points.
@@ -11,8 +12,8 @@ use super::plane::{PlaneMap, PlanePoint, SLACK};
 use super::quadrilateral::{Arc, Quadrilateral, ROUNDING, Site};
 use crate::mechanics::planar::Vector;
 
-/// At corners of the limits and where the arms are flat, rounding of the point moves the curve by its root: a pose there
-/// belongs to a curve that passes as near as this, rad.
+/// At corners of the limits and where the arms are flat, rounding of the point moves the curve by its root: a pose
+/// there belongs to a curve that passes as near as this, rad.
 const CUT_OFF: f64 = 1e-6;
 
 /// Why no b reaches a point.
@@ -99,7 +100,8 @@ impl PlaneMap {
         }
     }
 
-    /// b of the pose that (a_1, a_2) has when the workspace is turned so that the end effector is on `p`, whole turns aside.
+    /// b of the pose that (a_1, a_2) has when the workspace is turned so that the end effector is on `p`, whole turns
+    /// aside.
     fn b_of(&self, p: Vector, a: [f64; 2]) -> f64 {
         self.lambda_sum() * (p * self.forward_unturned(a).conj()).arg()
     }

@@ -1,7 +1,7 @@
 //! The fastest motion on a path, from rest to rest, that the drives can do.
 //!
-//! On a straight joint line, with constant diagonal mass matrix and nothing to hold up, every limit is one on s̈, ṡ or s⃛
-//! and the optimum is known in closed form; elsewhere it is a time-optimal path parameterisation, and with limits on
+//! On a straight joint line, with constant diagonal mass matrix and nothing to hold up, every limit is one on s̈, ṡ or
+//! s⃛ and the optimum is known in closed form; elsewhere it is a time-optimal path parameterisation, and with limits on
 //! jerk a feasible motion near it.
 
 use crate::mechanics::dynamics::Surroundings;
@@ -18,12 +18,12 @@ use crate::planning::timing::smooth;
 use crate::planning::timing::topp::{Grid, NoSpeed, PAST, Sweep, UNLIMITED};
 use crate::planning::timing::usage::TimeShares;
 
-/// Spaces of the grid on a curve to begin with, if nobody says otherwise.
+/// Spaces of the grid on a curve to begin with, unless the caller gives another number.
 pub const SPACES: usize = 600;
 
 /// The fastest motion on a path within a machine's limits; `smooth`: those on jerk too. On a curve the grid begins with
-/// [`stations`] of [`SPACES`] and the path's own places, is made finer where what is limited changes much, and the motion
-/// is slowed down by what limits are passed by between its stations, so that it keeps them everywhere.
+/// [`stations`] of [`SPACES`] and the path's own places, is made finer where what is limited changes much, and the
+/// motion is slowed down by what limits are passed by between its stations, so that it keeps them everywhere.
 ///
 /// # Errors
 /// If nothing limits the motion, or the limits leave none.

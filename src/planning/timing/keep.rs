@@ -1,4 +1,4 @@
-//! Limits kept everywhere, not only where they were looked at: by how much a motion must be slowed down.
+//! By how much a motion must be slowed down to keep its limits everywhere, not only at the nodes of its plan.
 
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Inertia;
@@ -69,7 +69,8 @@ pub(super) fn kept<const N: usize>(profile: &Profile, stretches: impl Fn(&Progre
 const LOOKS: usize = 2000;
 
 impl Motion {
-    /// The motion as slow as the limits of the drives on torque, speed and acceleration want it. `None` if no time is enough.
+    /// The motion as slow as the limits of the drives on torque, speed and acceleration want it. `None` if no time is
+    /// enough.
     ///
     /// Its timing is to be by phases, as those of the fastest motions are.
     #[must_use]

@@ -34,8 +34,8 @@ pub enum TimeLaw {
     Septic,
     /// A third of T at s̈ = 4.5, a third at the rate 1.5/T, a third at −4.5.
     Trapezoidal,
-    /// As fast as the machine's limits on torque, speed and acceleration allow. In a given T: half of it at s̈ = 4, half
-    /// at −4, which is the least peak that any law has.
+    /// As fast as the machine's limits on torque, speed and acceleration allow. In a given T: half of it at s̈ = 4,
+    /// half at −4, which is the least peak that any law has.
     Fastest,
     /// As fast as the machine's limits allow, those on jerk included. In a given T: s⃛ is 32, −32, 32 for a quarter, a
     /// half, a quarter of it, which is the least peak that any law has; acceleration peaks at 8.
@@ -59,7 +59,7 @@ impl TimeLaw {
         }
     }
 
-    /// Whether the machine's limits set T, and not somebody's choice.
+    /// Whether the machine's limits set T, and not the task.
     pub fn is_fastest(self) -> bool {
         matches!(self, Self::Fastest | Self::FastestSmooth)
     }

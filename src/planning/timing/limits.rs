@@ -8,8 +8,8 @@
 //! | a, c, g | a limited quantity, as a part of its limit, is a u + c x + g | s², s², 1 |
 //!
 //! # Source
-//! With q̇ = q′ ṡ and q̈ = q′ s̈ + q″ ṡ² in (4): τ = (H q′) s̈ + (H q″ + V(q, q′)) ṡ² − γᵀ g − Jᵀ F, since V is of second
-//! degree in the rates.
+//! With q̇ = q′ ṡ and q̈ = q′ s̈ + q″ ṡ² in (4): τ = (H q′) s̈ + (H q″ + V(q, q′)) ṡ² − γᵀ g − Jᵀ F, since V is of
+//! second degree in the rates.
 
 use std::fmt;
 
@@ -41,7 +41,7 @@ impl LimitedQuantity {
 /// A limit of a drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DriveLimit {
-    /// Of what.
+    /// What is limited.
     pub quantity: LimitedQuantity,
     /// Of which drive, counted from 0.
     pub drive: usize,

@@ -57,7 +57,7 @@ pub enum TimeError {
         /// How far along.
         s: f64,
     },
-    /// The grid.
+    /// The stations do not rise from 0 to 1.
     #[error("the stations do not rise from 0 to 1: want two or more that do")]
     Stations,
     /// Unlike numbers of drives.

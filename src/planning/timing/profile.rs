@@ -118,8 +118,8 @@ impl Profile {
         Self::from_starts(vec![(0.0, Progress { rate: 1.0 / duration, ..Progress::still(0.0) })], duration)
     }
 
-    /// s = t/T, both ends included: for paths that hold their timing themselves and need not be at rest where they begin
-    /// and end. After T the motion stands.
+    /// s = t/T, both ends included: for paths that hold their timing themselves and need not be at rest where they
+    /// begin and end. After T the motion stands.
     pub fn running(duration: f64) -> Self {
         Self { duration, shape: Shape::Running }
     }
@@ -158,9 +158,9 @@ impl Profile {
         Self::from_starts(starts, t)
     }
 
-    /// Through stations s that rise from 0 to 1 with given squares of the rate x = ṡ², 1/s², and between them with s̈ of
-    /// constant slope in time that rises by as much as is given for each space, 1/s²; none given: constant s̈. `None` if
-    /// two neighbours are both at rest, which no time would join, or the lengths differ.
+    /// Through stations s that rise from 0 to 1 with given squares of the rate x = ṡ², 1/s², and between them with s̈
+    /// of constant slope in time that rises by as much as is given for each space, 1/s²; none given: constant s̈.
+    /// `None` if two neighbours are both at rest, which no time would join, or the lengths differ.
     pub fn through(stations: &[f64], x: &[f64], rise: &[f64]) -> Option<Self> {
         let spaces = stations.len().checked_sub(1).filter(|n| *n > 0 && x.len() == stations.len())?;
         let mut starts = Vec::with_capacity(spaces);
@@ -266,8 +266,8 @@ impl Profile {
         }
     }
 
-    /// Times at which s̈ jumps or bends, both ends among them, s, in order: where a step of a simulation must end. Small
-    /// jumps, as between the stations of a timing that follows a curve, are left out.
+    /// Times at which s̈ jumps or bends, both ends among them, s, in order: where a step of a simulation must end.
+    /// Small jumps, as between the stations of a timing that follows a curve, are left out.
     pub fn kinks(&self) -> Vec<f64> {
         let whole = self.duration;
         match &self.shape {

@@ -3,8 +3,8 @@
 use super::profile::Span;
 
 /// The fastest way from 0 to 1, from rest to rest, with |ṡ| ≤ v, |s̈| ≤ a, |s⃛| ≤ j, all above 0, any of them infinite:
-/// jerk up, constant s̈, jerk down, constant ṡ, and the same backwards; phases that do not occur take no time. `None` if
-/// both s̈ and s⃛ are unlimited.
+/// jerk up, constant s̈, jerk down, constant ṡ, and the same backwards; phases that do not occur take no time. `None`
+/// if both s̈ and s⃛ are unlimited.
 pub fn s_curve(v: f64, a: f64, j: f64) -> Option<[Span; 7]> {
     if a.is_infinite() && j.is_infinite() {
         return None;

@@ -1,8 +1,8 @@
 //! Limits on jerk along a curve: a motion near the best, proved by checking it, and how far it is from a bound.
 //!
-//! With jerk limited the fastest motion on a curve is no convex problem: [`crate::planning::timing::jerk`] finds a local optimum on nodes
-//! that are dense where the motion without those limits takes its time, and where the path bends. What its pieces pass
-//! limits by between the places where they are kept is mended by slowing all of it down.
+//! With jerk limited the fastest motion on a curve is no convex problem: [`crate::planning::timing::jerk`] finds a
+//! local optimum on nodes, which are dense where the motion without those limits is slow and where the path bends.
+//! Where the motion passes a limit between the nodes, all of it is slowed down until it keeps that limit.
 
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Inertia;
@@ -20,8 +20,8 @@ use crate::planning::timing::usage::{Demand, Usage};
 
 /// Instants for the account of what limits.
 const INSTANTS: usize = 2000;
-/// Spaces between nodes: over the time of the motion without limits on jerk, over θ, for each space of its grid, for each
-/// e-fold nearer to an end until very near, and at least between two joints of the path.
+/// Spaces between nodes: over the time of the motion without limits on jerk, over θ, for each space of its grid, for
+/// each e-fold nearer to an end until very near, and at least between two joints of the path.
 const BY_TIME: f64 = 200.0;
 const BY_PLACE: f64 = 80.0;
 const BY_SPACE: f64 = 0.1;

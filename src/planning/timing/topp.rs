@@ -1,9 +1,9 @@
 //! Time-optimal path parameterisation: the greatest rate that limits allow everywhere on a path.
 //!
-//! With x = ṡ² and u = s̈ the motion is x′ = 2 u, and every limit is linear in (u, x). Over a space Δ of the grid u has a
-//! mean u_i, so x_{i+1} = x_i + 2 Δ u_i exactly; rows are kept at both ends of the space. Backwards from rest at the end,
-//! the *controllable* x at each station, from which the end can be reached, are an interval; forwards from rest, the
-//! greatest u that stays within them makes the fastest motion (reachability analysis, Pham & Pham 2018).
+//! With x = ṡ² and u = s̈ the motion is x′ = 2 u, and every limit is linear in (u, x). Over a space Δ of the grid u has
+//! a mean u_i, so x_{i+1} = x_i + 2 Δ u_i exactly; rows are kept at both ends of the space. Backwards from rest at the
+//! end, the *controllable* x at each station, from which the end can be reached, are an interval; forwards from rest,
+//! the greatest u that stays within them makes the fastest motion (reachability analysis, Pham & Pham 2018).
 //!
 //! A first pass takes u as constant over a space, so that a limit is met at one end of it and T is exact to first order
 //! in Δ. A second one lets u rise over the space by as much as the first pass has it rise there: met at both ends, T

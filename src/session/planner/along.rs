@@ -70,7 +70,7 @@ pub(super) fn reactionless(task: &Task, planes: &Planes) -> Result<Vec<(Path, f6
 pub(super) fn proved(task: &Task, planes: &Planes, refusal: Refusal) -> Refusal {
     let at = |task: &Task, b: f64| Task { b, ..task.clone() };
     let goes = |task: &Task| reactionless(task, planes);
-    // Where a path is stopped on one plane, what is said then knows of another.
+    // A refusal of a path on one plane may name another plane.
     let another = |why: &Refusal| match why {
         Refusal::Blocked(blocked) => blocked.nearest_b.zip(blocked.shown_b),
         _ => None,
@@ -120,7 +120,7 @@ pub(super) fn tried(planes: &Planes, refusal: Refusal, goes: impl Fn(f64) -> Res
         }
         Err(stopped) => stopped,
     };
-    // Where the path is stopped on one plane, what is said then knows of another.
+    // A refusal of the path on one plane may name another plane.
     if let Refusal::Blocked(blocked) = &stopped
         && let Some((nearest, shown)) = blocked.nearest_b.zip(blocked.shown_b)
     {
@@ -149,7 +149,7 @@ pub(super) fn timed(scenario: &Scenario, parts: Vec<(Path, f64)>) -> Result<(Mot
             let fastest = fastest(path, &model, &around, &limits, task.law == TimeLaw::FastestSmooth)?;
             let profile = fastest.profile;
             let time = profile.duration();
-            // Of parts that go nowhere nothing limits any.
+            // Parts that do not move have no limit.
             let least = fastest.gap.map(|gap| time / (1.0 + gap)).or((time == 0.0).then_some(0.0));
             let pace = pace.get_or_insert(Pace { unlimited: Some(0.0), ..Pace::default() });
             pace.unlimited = pace.unlimited.zip(least).map(|(sum, least)| sum + least);
@@ -215,7 +215,7 @@ pub(super) fn joint_lines(task: &Task, planes: &Planes, points: &[Vector]) -> Re
     let a = |x: &PlanePoint| Vector::new(x.a[0], x.a[1]);
     if task.corners == Corners::Blend && (poses.len() > 2 || task.closed) {
         let corners: Vec<Vector> = poses.iter().map(a).collect();
-        // The way back to the first point is the curve's own, so that what is wrong is said of points that were given.
+        // The curve closes itself, so that an error names points that were given.
         let curves = Curve::polyline(&corners, task.closed, task.blend)?;
         let path = |curve: Curve| {
             let length = curve.length();
@@ -227,7 +227,7 @@ pub(super) fn joint_lines(task: &Task, planes: &Planes, points: &[Vector]) -> Re
     let q = lifted(planes, &poses);
     let way = |i: usize| (a(&poses[i + 1]) - a(&poses[i])).norm();
     let line = |i: usize| (Path::JointLine { from: q[i], to: q[i + 1] }, way(i).max(1e-12));
-    // A point twice in a row is no way.
+    // The same point twice in a row makes no path.
     let moving = (0..q.len() - 1).filter(|i| q.len() == 2 || way(*i) > 1e-12);
     Ok(moving.map(line).collect())
 }
@@ -281,7 +281,7 @@ pub fn curves(task: &Task, points: &[Vector]) -> Result<Vec<Curve>, Refusal> {
 pub(super) fn on_plane(task: &Task, planes: &Planes, points: &[Vector]) -> Result<Vec<(Path, f64)>, Refusal> {
     let curves = curves(task, points)?;
     let rule = Rule { keep_off_change_points: task.keep_off_change_points };
-    // Where even single points fail, they are the clearer reason.
+    // Where single points cannot be reached, they are the clearer reason.
     let prefer = match task.shape() {
         Shape::Freehand => None,
         _ => serve(task, planes, points)?.first().map(|pose| pose.a),
@@ -290,8 +290,8 @@ pub(super) fn on_plane(task: &Task, planes: &Planes, points: &[Vector]) -> Resul
     Ok(tables.into_iter().zip(&curves).map(|(table, curve)| (Path::Table(table), curve.length())).collect())
 }
 
-/// A pose of A on the plane of the task: A and B on one sheet, as for the reactionless motion to compare with, or else A
-/// alone.
+/// A pose of A on the plane of the task: A and B on one sheet, as for the reactionless motion to compare with, or else
+/// A alone.
 pub(super) fn start(task: &Task, planes: &Planes, points: &[Vector]) -> Result<DriveAngles, Refusal> {
     let ends = [points[0], points[points.len() - 1]];
     let start = planes.serve(&ends, task.b).or_else(|_| planes.serve(&ends[..1], task.b));

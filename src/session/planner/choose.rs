@@ -54,7 +54,7 @@ fn directly(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
 /// A refusal for a b that does not reach A, of a task that leaves its plane: the b nearest to it with which it can be
 /// planned.
 fn elsewhere(scenario: &Scenario, planes: &Planes, refusal: Refusal) -> Refusal {
-    // The law has no say in where a path goes.
+    // Where a path goes does not depend on the time law.
     let law = TimeLaw::Quintic;
     let at = |b: f64| Scenario { task: Task { b, law, ..scenario.task.clone() }, ..scenario.clone() };
     tried(planes, refusal, |b| directly(&at(b), planes).map(|_| ()))

@@ -28,7 +28,8 @@ pub struct Plan {
     pub verdicts: Option<Verdicts>,
     /// For motions of zero momentum: the drives at the start and after each cycle, rad.
     pub cycles: Vec<DriveAngles>,
-    /// T with corners rounded off as the task asks, s, where it would take longer than resting at them: the motion rests.
+    /// T with corners rounded off as the task asks, s, where it would take longer than resting at them: the motion
+    /// rests.
     pub blended: Option<f64>,
 }
 
@@ -44,7 +45,8 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// T/T* − 1, T* the least time without limits on jerk; for a law with such limits, where something besides them limits.
+    /// T/T* − 1, T* the least time without limits on jerk; for a law with such limits, where something besides them
+    /// limits.
     pub fn gap(&self) -> Option<f64> {
         self.unlimited.filter(|least| *least > 0.0).map(|least| (self.taken / least - 1.0).max(0.0))
     }

@@ -16,7 +16,7 @@ pub enum ScenarioError {
     Unreadable {
         /// The file.
         file: String,
-        /// Why.
+        /// The system's reason.
         source: std::io::Error,
     },
     /// Not TOML, or not of a scenario.
@@ -26,7 +26,7 @@ pub enum ScenarioError {
         file: String,
         /// Line, counted from 1.
         line: Option<usize>,
-        /// What.
+        /// What is wrong.
         message: String,
     },
     /// A number out of range.
@@ -36,21 +36,21 @@ pub enum ScenarioError {
         file: String,
         /// Line, counted from 1, where it is known.
         line: Option<usize>,
-        /// Which.
+        /// The key of the number.
         key: String,
         /// What stands there.
         value: f64,
         /// What would be right.
         want: Want,
     },
-    /// Its machine.
+    /// Its machine is not valid.
     #[error("{file}{}: machine: {error}", at(*line))]
     Machine {
         /// The file.
         file: String,
         /// Line, counted from 1, where it is known.
         line: Option<usize>,
-        /// What.
+        /// What is wrong.
         error: MachineError,
     },
     /// One of its edits.
@@ -62,7 +62,7 @@ pub enum ScenarioError {
         line: Option<usize>,
         /// Which, counted from 1.
         entry: usize,
-        /// What.
+        /// What is wrong.
         message: String,
     },
     /// Its machine's file.

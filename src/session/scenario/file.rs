@@ -60,7 +60,7 @@ enum MachineRef {
     Inline(Box<MachineSpec>),
 }
 
-/// The most characters of what somebody else's reader says of a file.
+/// The most characters of an error of the TOML reader.
 const MOST_WORDS: usize = 300;
 
 /// Looks up a machine by name or file.

@@ -66,8 +66,8 @@ pub struct Task {
     /// Where drive 1 ends, rad; for `same-tip`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_drive_to: Option<f64>,
-    /// T, s; for the laws that do not find it themselves. By default 1 s, or as long as samples take; another T stretches
-    /// them.
+    /// T, s; for the laws that do not find it themselves. By default 1 s, or as long as samples take; another T
+    /// stretches them.
     #[serde(default = "missing")]
     pub time: f64,
     /// Time law.
@@ -388,7 +388,7 @@ impl Task {
 
     /// The change that visits the points of a curve drawn by hand, m.
     pub fn drawing(points: &[Vector]) -> Option<Change> {
-        // Few enough to be kept in a file; the shape of the hand's line is all that counts.
+        // Few enough to be kept in a file and to keep the shape of the line that was drawn.
         let every = points.len().div_ceil(400).max(1);
         let mut thin: Vec<Vector> = points.iter().step_by(every).copied().collect();
         thin.extend(points.last().filter(|last| thin.last() != Some(last)));

@@ -26,7 +26,7 @@ pub const MAX_SAMPLES: u64 = 1_000_000_000;
 pub struct Tolerance {
     /// Which random machines.
     pub seed: Option<u64>,
-    /// How many.
+    /// How many machines are drawn.
     pub samples: Option<u64>,
     /// The greatest |n_B| that will do, N m.
     pub moment_limit: Option<f64>,

@@ -1,4 +1,4 @@
-//! One number for all drives, or one for each; and keys that are left out.
+//! [`Each`]: one number for all drives, or one for each.
 
 use serde::{Deserialize, Serialize};
 

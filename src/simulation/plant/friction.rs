@@ -136,20 +136,21 @@ impl Contacts {
         self.list[i].coulomb
     }
 
-    /// Friction of one pin between links that follow drives `from` and `to`, N m, against q̇_to − q̇_from; `taken` holds
-    /// the torques of stuck contacts. Pins between the same two drives turn alike, so each has an equal part.
+    /// Friction of one pin between links that follow drives `from` and `to`, N m, against q̇_to − q̇_from;
+    /// `stuck_torque` holds the torques of stuck contacts. Pins between the same two drives turn alike, so each has an
+    /// equal part.
     pub fn couple(
         &self,
         from: usize,
         to: usize,
         qd: &[f64],
         slip: &SlipDirections,
-        taken: &[f64; MAX_CONTACTS],
+        stuck_torque: &[f64; MAX_CONTACTS],
     ) -> f64 {
         let pins = self.list.iter().enumerate().skip(self.bearings);
         let ends = |c: &Contact| (c.minus.min(c.plus), c.minus.max(c.plus));
         let Some((i, c)) = pins.into_iter().find(|(_, c)| ends(c) == (from.min(to), from.max(to))) else { return 0.0 };
-        let held = if c.coulomb > 0.0 && slip[i] == 0 { taken[i] } else { c.coulomb * f64::from(slip[i]) };
+        let held = if c.coulomb > 0.0 && slip[i] == 0 { stuck_torque[i] } else { c.coulomb * f64::from(slip[i]) };
         let against = c.viscous * self.sliding(i, qd) + held;
         if c.plus == to { against / c.pins } else { -against / c.pins }
     }
@@ -183,8 +184,9 @@ impl Contacts {
 
     /// The torques of stuck contacts, that nothing stuck may move: each |f| ≤ τ_C with v̇ = 0, or at its bound against
     /// v̇. `solve` gives accelerations for generalised forces, `free` those without these torques. Adds to `force`;
-    /// `taken` holds the torques, before as a first guess, after as found; gives the power they take, W, which is none
-    /// unless a contact has begun to slide since the step did. Bounded sweeps: exact in one where contacts do not act on each other.
+    /// `stuck_torque` holds the torques, before as a first guess, after as found; gives the power they take, W, which
+    /// is none unless a contact has begun to slide since the step did. The number of sweeps is bounded; one is exact
+    /// where contacts do not act on each other.
     pub fn hold(
         &self,
         slip: &SlipDirections,
@@ -192,7 +194,7 @@ impl Contacts {
         solve: impl Fn(&[f64; MAX_DRIVES]) -> [f64; MAX_DRIVES],
         force: &mut [f64],
         bearing: &mut [f64],
-        taken: &mut [f64; MAX_CONTACTS],
+        stuck_torque: &mut [f64; MAX_CONTACTS],
     ) -> f64 {
         const SWEEPS: usize = 2000;
         let stuck = |i: &usize| self.list[*i].coulomb > 0.0 && slip[*i] == 0;
@@ -203,10 +205,10 @@ impl Contacts {
         qdd[..free.len()].copy_from_slice(free);
         // From what held a moment ago.
         for (i, contact) in self.list.iter().enumerate() {
-            taken[i] = if stuck(&i) { taken[i].clamp(-contact.coulomb, contact.coulomb) } else { 0.0 };
-            if taken[i] != 0.0 {
+            stuck_torque[i] = if stuck(&i) { stuck_torque[i].clamp(-contact.coulomb, contact.coulomb) } else { 0.0 };
+            if stuck_torque[i] != 0.0 {
                 let mut unit = [0.0; MAX_DRIVES];
-                self.apply(i, taken[i], &mut unit[..free.len()]);
+                self.apply(i, stuck_torque[i], &mut unit[..free.len()]);
                 qdd.iter_mut().zip(&solve(&unit)).for_each(|(a, r)| *a += r);
             }
         }
@@ -218,9 +220,9 @@ impl Contacts {
                 let response = solve(&unit);
                 let give = -self.sliding(i, &response[..free.len()]);
                 let limit = self.list[i].coulomb;
-                let f = (taken[i] + self.sliding(i, &qdd[..free.len()]) / give).clamp(-limit, limit);
-                let more = f - taken[i];
-                taken[i] = f;
+                let f = (stuck_torque[i] + self.sliding(i, &qdd[..free.len()]) / give).clamp(-limit, limit);
+                let more = f - stuck_torque[i];
+                stuck_torque[i] = f;
                 qdd.iter_mut().zip(&response).for_each(|(a, r)| *a += more * r);
                 change = change.max(more.abs() / limit);
             }
@@ -230,10 +232,10 @@ impl Contacts {
         }
         let mut lost = 0.0;
         for i in (0..self.list.len()).filter(stuck) {
-            self.apply(i, taken[i], force);
-            lost += taken[i] * self.sliding(i, qd);
+            self.apply(i, stuck_torque[i], force);
+            lost += stuck_torque[i] * self.sliding(i, qd);
             if i < self.bearings {
-                bearing[self.list[i].plus] += taken[i];
+                bearing[self.list[i].plus] += stuck_torque[i];
             }
         }
         lost
@@ -243,7 +245,7 @@ impl Contacts {
 /// The drives that the two sides of every pin follow.
 fn pins(machine: &Machine) -> Vec<(usize, usize)> {
     let drive = |j: usize| machine.resolved_links()[j].drive;
-    let hinges = machine.resolved_links().iter().filter_map(|part| Some((drive(part.parent?), part.drive)));
+    let attachments = machine.resolved_links().iter().filter_map(|part| Some((drive(part.parent?), part.drive)));
     let closures = machine.loops().iter().map(|l| (drive(l.a), drive(l.b)));
-    hinges.chain(closures).filter(|(k, l)| k != l).collect()
+    attachments.chain(closures).filter(|(k, l)| k != l).collect()
 }

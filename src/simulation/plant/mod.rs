@@ -1,7 +1,8 @@
 //! The plant: how the machine that moves differs from the one that control believes in, and what it stands on.
 //!
-//! A [`PlantDifferences`] says what differs, a [`Base`] what the machine stands on, a [`Wheel`] what else turns there: plain data,
-//! as files and edits state it. A [`MovingBody`] is what all of it comes to: constants of everything that moves.
+//! A [`PlantDifferences`] says what differs, a [`Base`] what the machine stands on, a [`Wheel`] what else turns there:
+//! plain data, as files and edits state it. A [`MovingBody`] is what all of it comes to: constants of everything that
+//! moves.
 
 mod base;
 mod differences;

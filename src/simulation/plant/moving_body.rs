@@ -151,7 +151,7 @@ impl MovingBody {
         &self.around
     }
 
-    /// What rubs.
+    /// The contacts with friction.
     pub fn contacts(&self) -> &Contacts {
         &self.contacts
     }
@@ -198,14 +198,14 @@ impl MovingBody {
         &self,
         state: &State,
         slip: &SlipDirections,
-        taken: &mut [f64; MAX_CONTACTS],
+        stuck_torque: &mut [f64; MAX_CONTACTS],
         control: impl FnOnce(&Units, &PerDrive, Pose2, Vector) -> MotorCommand,
     ) -> Slope {
-        by_drives!(self.whole.drives, instant_of(self, state, slip, taken, control))
+        by_drives!(self.whole.drives, instant_of(self, state, slip, stuck_torque, control))
     }
 
-    /// What the manipulator transmits to its base, in its two parts. On a base that nothing holds weight is not carried:
-    /// what it and the fall leave of each other is motion.
+    /// What the manipulator transmits to its base, in its two parts. On a base that nothing holds weight is not
+    /// carried: what it and the fall leave of each other is motion.
     pub fn transmitted(&self, x: &Slope) -> BaseWrench {
         let mut wrench = x.wrench;
         if self.falls {
@@ -324,7 +324,7 @@ fn instant_of<const N: usize>(
     body: &MovingBody,
     state: &State,
     slip: &SlipDirections,
-    taken: &mut [f64; MAX_CONTACTS],
+    stuck_torque: &mut [f64; MAX_CONTACTS],
     control: impl FnOnce(&Units, &PerDrive, Pose2, Vector) -> MotorCommand,
 ) -> Slope {
     let n = body.arm.drives;
@@ -394,7 +394,7 @@ fn instant_of<const N: usize>(
             padded[..N].copy_from_slice(&factors.solve(*first::<N, _>(x)));
             padded
         };
-        loss += body.contacts.hold(slip, (&rate, &free), solve, &mut force, &mut friction, taken);
+        loss += body.contacts.hold(slip, (&rate, &free), solve, &mut force, &mut friction, stuck_torque);
     }
     let acceleration = factors.solve(std::array::from_fn(|k| force[k] - v[k]));
     let qdd = PerDrive::from(acceleration);

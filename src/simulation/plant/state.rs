@@ -1,4 +1,4 @@
-//! [`State`]: positions and momenta of everything that moves, and the [`Slope`] that it leads to.
+//! [`State`]: positions and momenta of everything that moves, and its [`Slope`]: how it changes.
 
 use super::WheelState;
 use crate::mechanics::dynamics::BaseWrench;
@@ -36,7 +36,7 @@ pub struct MotorCommand {
     pub rotor: f64,
 }
 
-/// What a state leads to.
+/// How a state changes, with the torques and forces that make it change.
 #[derive(Clone, Copy, Debug)]
 pub struct Slope {
     /// e(q_k), of a base that moves last.
@@ -99,9 +99,9 @@ impl State {
         k.into_iter().zip(w).fold(*self, |state, (x, w)| state.along(x, w))
     }
 
-    /// This state with the sums of another: wheel, work, loss and impulse: its wheel, work, losses and impulse.
+    /// This state with the wheel rate, the work, the losses and the impulse of another.
     #[must_use]
-    pub fn in_books_of(self, other: &Self) -> Self {
+    pub fn with_sums_of(self, other: &Self) -> Self {
         let Self { wheel, work, lost, impulse, .. } = *other;
         Self { wheel, work, lost, impulse, ..self }
     }

@@ -11,8 +11,9 @@
 //!
 //! # At the top rate
 //! Ω never passes its limit, not even within a step: in each step of h seconds the wheel gives no more than
-//! J (Ω_top − Ω)/h either way, which brings it to the limit by the step's end and leaves it there. So the step in which the
-//! limit is reached has the right impulse, spread evenly over what is left of it, and the next ones give nothing outwards.
+//! J (Ω_top − Ω)/h either way, which brings it to the limit by the step's end and leaves it there. So the step in which
+//! the limit is reached has the right impulse, spread evenly over what is left of it, and the next ones give nothing
+//! outwards.
 
 use serde::{Deserialize, Serialize};
 
@@ -71,7 +72,7 @@ impl Wheel {
     /// What it gives of a wanted torque, N m, at a rate, rad/s, with what room there is in this step.
     #[inline]
     pub fn give(&self, wanted: f64, rate: f64, room: [f64; 2]) -> WheelState {
-        // A run that has blown up has no room, and says so by what is no number.
+        // In a run that diverges the torque becomes NaN, so that the run counts as failed.
         let torque = if rate.is_finite() { wanted.max(room[0]).min(room[1]) } else { f64::NAN };
         WheelState { rate, torque, saturated: torque != wanted }
     }

@@ -4,15 +4,15 @@
 //! | quantity | how |
 //! |---|---|
 //! | q_k − θ | by encoders, rounded to a count, at the instants of sampling |
-//! | q̇_k − θ̇ | from the last two readings of the encoders; before there are two, the reference's own rate stands for it |
+//! | q̇_k − θ̇ | from the last two readings of the encoders; until there are two, the rate of the reference |
 //! | p_B, θ and their rates | by other instruments (gyroscopes, a star tracker), exactly, at the same instants |
 //!
 //! All that control knows of the machine comes from these: also e(q) and q̇, at which it evaluates its model.
 //!
 //! # Before the first torque
 //! A torque comes into effect `delay` after its reading. Until the first does, the motors do what they did while the
-//! machine stood there: they hold the pose against what the model knows of weight. In motion, when control is changed on
-//! the way, they keep the last torque.
+//! machine stood there: they hold the pose against what the model knows of weight. In motion, when control is changed
+//! on the way, they keep the last torque.
 
 use std::collections::VecDeque;
 
@@ -78,7 +78,8 @@ impl ControlLoop {
         Self { controller, limits, wheel, wheel_room: [0.0; 2], step, sampling }
     }
 
-    /// Once a step: sees how much the wheel can still take up, and reads and computes, if it samples and its time has come.
+    /// Once a step: sees how much the wheel can still take up, and reads and computes, if it samples and its time has
+    /// come.
     pub fn sample(&mut self, step: u64, reference: &Reference, reading: &Reading, loaded: bool, wheel_rate: f64) {
         self.wheel_room = self.wheel.map_or([0.0; 2], |wheel| wheel.room(wheel_rate, self.step));
         let Some(sampling) = &mut self.sampling else { return };
@@ -114,8 +115,8 @@ impl ControlLoop {
         }
     }
 
-    /// Goes on at a step where another was, with what that has under way and the torque that the motors give; what it has
-    /// from before its own start is forgotten.
+    /// Goes on at a step where another was, with what that has under way and the torque that the motors give; what it
+    /// has from before its own start is forgotten.
     pub fn resume(&mut self, other: &Self, step: u64, torque: &PerDrive) {
         self.controller.preload_as(&other.controller);
         self.forget();

@@ -39,7 +39,7 @@ pub struct Setup<'a> {
     pub plant: &'a PlantDifferences,
     /// What it stands on.
     pub base: &'a Base,
-    /// Control.
+    /// How the motors are controlled.
     pub control: &'a Control,
     /// Fixed step, s.
     pub step: f64,

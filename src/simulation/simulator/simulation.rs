@@ -40,11 +40,11 @@ pub struct Simulation {
     pub(super) state: State,
     pub(super) slip: SlipDirections,
     /// Torques of stuck contacts, N m.
-    pub(super) taken: [f64; MAX_CONTACTS],
+    pub(super) stuck_torque: [f64; MAX_CONTACTS],
     pub(super) now: Slope,
     pub(super) reference: Reference,
     /// What energy and momenta less their sources were at the start.
-    ground: Baseline,
+    baseline: Baseline,
     pub(super) peaks: Peaks,
     pub(super) totals: Totals,
     /// How finely steps are taken, and with which errors.
@@ -91,7 +91,7 @@ impl Simulation {
         let body = |m: &Machine| MovingBody::of(m, &plant.friction, setup.base, start).map(|b| b.pushed(force));
         let empty = body(&machine)?;
         let first = load.is_held(0.0, 0.5 * setup.step);
-        // The springs are preloaded for what is held at the start.
+        // The springs are preloaded for the load that is held at the start.
         let with = body(&holding)?;
         let bodies = if first { [empty.preloaded_as(&with), with] } else { [empty.clone(), with.preloaded_as(&empty)] };
         let fixed = Base::default();
@@ -129,10 +129,10 @@ impl Simulation {
             guide,
             state,
             slip: [0; MAX_CONTACTS],
-            taken: [0.0; MAX_CONTACTS],
+            stuck_torque: [0.0; MAX_CONTACTS],
             now,
             reference,
-            ground: Baseline::default(),
+            baseline: Baseline::default(),
             peaks: Peaks::zero(n),
             totals: Totals::default(),
             step_control: StepControl::new(n),
@@ -146,7 +146,7 @@ impl Simulation {
         self.prepare();
         self.slip = self.body().contacts().slips(&self.body().rates(&self.state));
         self.look();
-        self.ground = self.sources(self.body(), &self.now);
+        self.baseline = self.sources(self.body(), &self.now);
         self.include();
     }
 
@@ -202,7 +202,7 @@ impl Simulation {
     pub fn change(&mut self, setup: &Setup) -> Result<(), MachineError> {
         let fresh = Self::new(setup, self.guide.clone())?;
         let old = std::mem::replace(self, fresh);
-        let Self { step, guide, state, peaks, totals, step_control, ground, now, control_loop, bodies, .. } = old;
+        let Self { step, guide, state, peaks, totals, step_control, baseline, now, control_loop, bodies, .. } = old;
         (self.step, self.guide, self.peaks, self.totals) = (step, guide, peaks, totals);
         self.step_control.resume(&step_control);
         self.control_loop.resume(&control_loop, step, &now.torque);
@@ -210,7 +210,7 @@ impl Simulation {
             *body = body.clone().preloaded_as(&bodies[0]);
         }
         self.loaded = self.load.is_held(self.time(), 0.5 * self.dt);
-        (self.state, self.now, self.ground) = (state, now, ground);
+        (self.state, self.now, self.baseline) = (state, now, baseline);
         self.carry_over(&now, &bodies[usize::from(old.loaded)]);
         Ok(())
     }
@@ -218,15 +218,15 @@ impl Simulation {
     /// The same positions and rates on the body of now; what audits compare with goes on from here.
     fn carry_over(&mut self, before: &Slope, body: &MovingBody) {
         let n = self.drives;
-        let off = self.sources(body, before).less(&self.ground);
+        let off = self.sources(body, before).less(&self.baseline);
         let (q, qd) = (self.state.drives(n), before.qd.first(n));
         let turning = before.qd.get(n).copied().unwrap_or(0.0);
         let (pose, velocity) = (before.base, before.base_velocity);
         let state = self.body().state(&q, &qd, pose, velocity, turning);
-        self.state = state.in_books_of(&self.state);
+        self.state = state.with_sums_of(&self.state);
         self.slip = self.body().contacts().slips(&self.body().rates(&self.state));
         self.look();
-        self.ground = self.sources(self.body(), &self.now).less(&off);
+        self.baseline = self.sources(self.body(), &self.now).less(&off);
         self.include();
     }
 
@@ -240,7 +240,7 @@ impl Simulation {
         let q = DriveAngles(PerDrive::from_fn(n, |k| reference.q[k] + base.angle));
         let qd = PerDrive::from_fn(n, |k| reference.qd[k] + turning);
         let state = self.body().state(&q, &qd, base, velocity, turning);
-        self.state = state.in_books_of(&self.state);
+        self.state = state.with_sums_of(&self.state);
         self.control_loop.forget();
         self.begin();
     }
@@ -277,10 +277,10 @@ impl Simulation {
         state: &State,
         reference: &Reference,
         slip: &SlipDirections,
-        taken: &mut [f64; MAX_CONTACTS],
+        stuck_torque: &mut [f64; MAX_CONTACTS],
     ) -> Slope {
         let n = self.drives;
-        self.body().instant(state, slip, taken, |e, rates, base, velocity| {
+        self.body().instant(state, slip, stuck_torque, |e, rates, base, velocity| {
             let reading = reading(n, state, e, rates, base, velocity);
             self.control_loop.command(reference, &reading, self.loaded, state.wheel)
         })
@@ -296,10 +296,10 @@ impl Simulation {
         }
         if goes_on && self.control_loop.is_steady() && matches!(self.guide, Guide::Motion { .. }) {
             // The end of the step has been looked at already.
-            (self.now, self.taken) = (reached.slope, reached.taken);
+            (self.now, self.stuck_torque) = (reached.slope, reached.stuck_torque);
             self.reference = self.aim_now();
         } else {
-            self.taken = reached.taken;
+            self.stuck_torque = reached.stuck_torque;
             self.look();
         }
         let held = self.load.is_held(self.time(), 0.5 * self.dt);
@@ -321,16 +321,16 @@ impl Simulation {
         let body = &self.bodies[usize::from(self.loaded)];
         let (state, control_loop, reference, loaded) =
             (&self.state, &mut self.control_loop, &self.reference, self.loaded);
-        let mut taken = self.taken;
+        let mut stuck_torque = self.stuck_torque;
         let step = self.step;
-        self.now = body.instant(state, &self.slip, &mut taken, |e, rates, base, velocity| {
+        self.now = body.instant(state, &self.slip, &mut stuck_torque, |e, rates, base, velocity| {
             let reading = reading(n, state, e, rates, base, velocity);
             control_loop.sample(step, reference, &reading, loaded, state.wheel);
             control_loop.command(reference, &reading, loaded, state.wheel)
         });
-        self.taken = taken;
+        self.stuck_torque = stuck_torque;
         let mut slip = self.slip;
-        self.release(&self.now, &mut slip, &taken);
+        self.release(&self.now, &mut slip, &stuck_torque);
         self.slip = slip;
     }
 
@@ -371,7 +371,7 @@ impl Simulation {
 
     /// What should be zero now.
     fn audited(&self, plane: f64) -> Audit {
-        let off = self.sources(self.body(), &self.now).less(&self.ground);
+        let off = self.sources(self.body(), &self.now).less(&self.baseline);
         let gap = |chain: &[f64; MAX_DRIVES]| crate::mechanics::machine::place_of(chain, &self.now.e).norm();
         Audit {
             momentum: off.momentum.norm(),
@@ -388,7 +388,7 @@ impl Simulation {
         let (x, n) = (&self.now, self.drives);
         let around = self.field();
         let contacts = self.body().contacts();
-        let couple = |from, to| contacts.couple(from, to, &x.qd, &self.slip, &self.taken);
+        let couple = |from, to| contacts.couple(from, to, &x.qd, &self.slip, &self.stuck_torque);
         self.inside[usize::from(self.loaded)].at(&x.e, &x.qd.first(n), &x.qdd.first(n), &around, couple)
     }
 

@@ -12,7 +12,7 @@ pub(super) struct StepState {
     pub slope: Slope,
     pub slip: SlipDirections,
     /// Torques of stuck contacts, N m.
-    pub taken: [f64; MAX_CONTACTS],
+    pub stuck_torque: [f64; MAX_CONTACTS],
 }
 
 /// The part of a step in which the reference is smooth.
@@ -46,7 +46,8 @@ impl Mismatch {
         (0..4).map(share).fold(0.0, f64::max)
     }
 
-    /// What errors are shares of: peaks, or what must be small beside the torques, the pull and the arm to count as none.
+    /// What errors are shares of: peaks, or what must be small beside the torques, the pull and the arm to count as
+    /// none.
     pub fn measure(peaks: &Peaks, reach: f64) -> Self {
         let (torque, pull) = (peaks.torque_sum.max(LEAST), peaks.inertial_pull.max(LEAST));
         let scale = |peak: f64, all: f64| peak.max(LEAST_SHARE * all);

@@ -3,11 +3,11 @@
 //! # Method
 //! Classical fourth-order Runge–Kutta gives two slopes at the end of a substep: that of its last stage, and that of the
 //! state it comes to, which the next substep begins with anyway. They differ by more than the error of the substep, so
-//! their difference is an estimate of it that costs next to nothing. Where it is more than [`FINE`] of the peaks of what
-//! is shown, the segment is done again in twice as many substeps, until the estimate, or the difference between two such
-//! runs, is small enough, up to [`MOST_SUBSTEPS`]; the next step begins with as many, and goes back when it can.
-//! So stiff gains, springs and friction, and kinks that nobody can foresee, as of motors that saturate, cost more steps
-//! where they are and none elsewhere; everything else costs what four stages cost.
+//! their difference is an estimate of it that costs next to nothing. Where it is more than [`FINE`] of the peaks of
+//! what is shown, the segment is done again in twice as many substeps, until the estimate, or the difference between
+//! two such runs, is small enough, up to [`MOST_SUBSTEPS`]; the next step begins with as many, and goes back when it
+//! can. So stiff gains, springs and friction, and kinks that nobody can foresee, as of motors that saturate, cost more
+//! steps where they are and none elsewhere; everything else costs what four stages cost.
 //!
 //! Errors of forces and torques fade as control takes them up; those of where things are may add up. So every
 //! [`HALVED_EVERY`]-th step is done in twice as many substeps besides, and by how far end effector and base then stand
@@ -141,7 +141,8 @@ impl Simulation {
     pub(super) fn take_step(&mut self) -> (StepState, bool) {
         let measure = self.measure();
         let looked_at = stands_for(self.step);
-        let mut reached = StepState { at: 0.0, state: self.state, slope: self.now, slip: self.slip, taken: self.taken };
+        let mut reached =
+            StepState { at: 0.0, state: self.state, slope: self.now, slip: self.slip, stuck_torque: self.stuck_torque };
         let mut substeps = 1;
         for count in 1..=MOST_SEGMENTS {
             let (mut segment, mut kinked) = self.segment(reached.at);
@@ -149,7 +150,8 @@ impl Simulation {
                 (segment.to, segment.window[1], kinked) = (self.dt, f64::INFINITY, true);
             }
             if reached.at > 0.0 {
-                reached.slope = self.slope(&reached.state, reached.at, &segment, &reached.slip, &mut reached.taken);
+                reached.slope =
+                    self.slope(&reached.state, reached.at, &segment, &reached.slip, &mut reached.stuck_torque);
             }
             let (end, most) = self.pass(&reached, &segment, &measure, looked_at);
             substeps = substeps.max(most);
@@ -243,18 +245,18 @@ impl Simulation {
     #[inline]
     pub(super) fn substep(&self, from: &StepState, to: f64, segment: &Segment) -> Substep {
         let (h, middle) = (to - from.at, 0.5 * (from.at + to));
-        let (state, k1, slip, mut taken) = (&from.state, &from.slope, &from.slip, from.taken);
+        let (state, k1, slip, mut stuck_torque) = (&from.state, &from.slope, &from.slip, from.stuck_torque);
         let half_way = self.aim(middle, segment);
-        let k2 = self.instant(&state.along(k1, 0.5 * h), &half_way, slip, &mut taken);
-        let k3 = self.instant(&state.along(&k2, 0.5 * h), &half_way, slip, &mut taken);
+        let k2 = self.instant(&state.along(k1, 0.5 * h), &half_way, slip, &mut stuck_torque);
+        let k3 = self.instant(&state.along(&k2, 0.5 * h), &half_way, slip, &mut stuck_torque);
         let there = self.aim(to, segment);
-        let k4 = self.instant(&state.along(&k3, h), &there, slip, &mut taken);
+        let k4 = self.instant(&state.along(&k3, h), &there, slip, &mut stuck_torque);
         let mut state = state.stepped([k1, &k2, &k3, &k4], h);
         if self.body().contacts().stick() {
             state = self.body().stuck(state, slip);
         }
-        let slope = self.instant(&state, &there, slip, &mut taken);
-        Substep { end: StepState { at: to, state, slope, slip: *slip, taken }, last: k4, between: [k2, k3] }
+        let slope = self.instant(&state, &there, slip, &mut stuck_torque);
+        Substep { end: StepState { at: to, state, slope, slip: *slip, stuck_torque }, last: k4, between: [k2, k3] }
     }
 
     /// What a state leads to, at a time since the step began, s.
@@ -264,9 +266,9 @@ impl Simulation {
         at: f64,
         segment: &Segment,
         slip: &SlipDirections,
-        taken: &mut [f64; MAX_CONTACTS],
+        stuck_torque: &mut [f64; MAX_CONTACTS],
     ) -> Slope {
-        self.instant(state, &self.aim(at, segment), slip, taken)
+        self.instant(state, &self.aim(at, segment), slip, stuck_torque)
     }
 }
 
@@ -286,8 +288,8 @@ fn stands_for(step: u64) -> Option<f64> {
     }
 }
 
-/// The reference of a motion, as it is within a window of its times, s; where q̈ changes by no more than `level`, rad/s²,
-/// to get there, as it is.
+/// The reference of a motion, as it is within a window of its times, s; where q̈ changes by no more than `level`,
+/// rad/s², to get there, as it is.
 #[inline]
 fn beside(motion: &Motion, t: f64, [after, before]: [f64; 2], level: f64) -> Reference {
     let within = t.max(after).min(before);

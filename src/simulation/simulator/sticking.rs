@@ -1,9 +1,9 @@
-//! Stick and slip: within a step, the instants at which a Coulomb contact stops, reverses or comes loose are found and stepped to, so
-//! that the result does not depend on where steps happen to end.
+//! Stick and slip: within a step, the instants at which a Coulomb contact stops, reverses or comes loose are found and
+//! stepped to, so that the result does not depend on where steps happen to end.
 //!
 //! | event | is where | then |
 //! |---|---|---|
-//! | a sliding contact stops | its rate of sliding passes zero | stuck, if no more than τ_C is needed to hold it, else it slides on the other way |
+//! | a sliding contact stops | its rate of sliding passes zero | sticks if τ_C can hold it, else slides the other way |
 //! | a stuck contact comes loose | what holds it passes τ_C | it slides |
 //!
 //! A substep that holds such an instant is cut there, as often as there are instants; a substep on whose way a
@@ -35,30 +35,30 @@ enum Cut {
 
 impl Simulation {
     /// How much a stuck contact could hold beyond what it does, N m; below zero it comes loose, by what is missing.
-    fn spare(&self, i: usize, slope: &Slope, taken: &[f64; MAX_CONTACTS]) -> f64 {
+    fn spare(&self, i: usize, slope: &Slope, stuck_torque: &[f64; MAX_CONTACTS]) -> f64 {
         let contacts = self.body().contacts();
         let most = contacts.coulomb(i);
-        let away = contacts.sliding(i, &slope.qdd) * taken[i].signum() * self.body().resists(i);
+        let away = contacts.sliding(i, &slope.qdd) * stuck_torque[i].signum() * self.body().resists(i);
         // Held to rounding.
         let away = if away < 1e-9 * most { 0.0 } else { away };
-        most - taken[i].abs() - away
+        most - stuck_torque[i].abs() - away
     }
 
     /// Slides contacts that cannot hold.
-    pub(super) fn release(&self, slope: &Slope, slip: &mut SlipDirections, taken: &[f64; MAX_CONTACTS]) {
+    pub(super) fn release(&self, slope: &Slope, slip: &mut SlipDirections, stuck_torque: &[f64; MAX_CONTACTS]) {
         let contacts = self.body().contacts();
         for i in (0..contacts.len()).filter(|i| contacts.sticks(*i)) {
-            if slip[i] == 0 && self.spare(i, slope, taken) < -0.5e-9 * contacts.coulomb(i) {
-                slip[i] = if taken[i] > 0.0 { 1 } else { -1 };
+            if slip[i] == 0 && self.spare(i, slope, stuck_torque) < -0.5e-9 * contacts.coulomb(i) {
+                slip[i] = if stuck_torque[i] > 0.0 { 1 } else { -1 };
             }
         }
     }
 
-    /// What is left until a contact's state ends: its rate along the way it slides, rad/s, or what a stuck one could still
-    /// hold, N m; below zero it has ended.
+    /// What is left until a contact's state ends: its rate along the way it slides, rad/s, or what a stuck one could
+    /// still hold, N m; below zero it has ended.
     fn left(&self, i: usize, slip: &SlipDirections, at: &StepState) -> f64 {
         match slip[i] {
-            0 => self.spare(i, &at.slope, &at.taken),
+            0 => self.spare(i, &at.slope, &at.stuck_torque),
             way => f64::from(way) * self.body().contacts().sliding(i, &at.slope.qd),
         }
     }
@@ -105,7 +105,8 @@ impl Simulation {
         })
     }
 
-    /// Goes on to a time since the step began, s, cut where contacts stick or slip; the most by which two answers differ.
+    /// Goes on to a time since the step began, s, cut where contacts stick or slip; the most by which two answers
+    /// differ.
     pub(super) fn contact(&self, reached: &mut StepState, to: f64, segment: &Segment) -> Mismatch {
         let mut worst = Mismatch::default();
         let mut reach = to - reached.at;
@@ -142,10 +143,12 @@ impl Simulation {
         Mismatch::BEYOND
     }
 
-    /// Where the first of all contacts stops or comes loose on a substep on which one does, unless something else is sooner.
+    /// Where the first of all contacts stops or comes loose on a substep on which one does, unless something else is
+    /// sooner.
     fn found(&self, mut i: usize, from: &StepState, mut substep: Substep, segment: &Segment) -> Cut {
         let contacts = self.body().contacts();
-        // Each search ends before the one it began with, so that of contacts that end almost together the first is found.
+        // Each search ends before the one it began with, so that of contacts that end almost together the first is
+        // found.
         for _ in 0..2 * contacts.len() {
             substep = self.cut(i, from, substep, segment);
             let mut others = (0..contacts.len()).filter(|j| *j != i && contacts.sticks(*j));
@@ -196,8 +199,8 @@ impl Simulation {
         best
     }
 
-    /// A contact that does not slide, and would not go the way it is said to slide, is stuck or goes the other way. True
-    /// if there was one.
+    /// A contact that does not slide, and would not go the way it is said to slide, is stuck or goes the other way.
+    /// True if there was one.
     fn settle(&self, reached: &mut StepState, segment: &Segment) -> bool {
         let contacts = self.body().contacts();
         let mut changed = false;
@@ -219,15 +222,15 @@ impl Simulation {
     /// After a substep: contacts that have stopped stick, and those that cannot hold slide.
     fn turn(&self, reached: &mut StepState, segment: &Segment) {
         if !self.settle(reached, segment) {
-            self.release(&reached.slope, &mut reached.slip, &reached.taken);
+            self.release(&reached.slope, &mut reached.slip, &reached.stuck_torque);
         }
     }
 
     /// Holds what is stuck, as far as its law allows.
     fn hold(&self, reached: &mut StepState, segment: &Segment) {
         reached.state = self.body().stuck(reached.state, &reached.slip);
-        reached.slope = self.slope(&reached.state, reached.at, segment, &reached.slip, &mut reached.taken);
-        self.release(&reached.slope, &mut reached.slip, &reached.taken);
+        reached.slope = self.slope(&reached.state, reached.at, segment, &reached.slip, &mut reached.stuck_torque);
+        self.release(&reached.slope, &mut reached.slip, &reached.stuck_torque);
     }
 }
 

@@ -25,7 +25,8 @@ pub enum Alternative {
 /// How many times longer [`Alternative::Slowly`] takes: forces and moments fall with the square.
 pub const SLOWER: f64 = 4.0;
 
-/// The wheel of [`Alternative::Wheel`], if the base has none: of a size that a satellite of a few hundred kilograms carries.
+/// The wheel of [`Alternative::Wheel`], if the base has none: of a size that a satellite of a few hundred kilograms
+/// carries.
 const WHEEL: Wheel = Wheel { inertia: 0.02, torque_limit: Some(2.0), speed_limit: Some(300.0) };
 
 /// How far drive 1 ends from where the reactionless motion would have it, rad, if the task does not say; as in case 2.
@@ -65,10 +66,10 @@ impl Alternative {
         if self == Self::AsGiven {
             return scenario.clone();
         }
-        // What was set before the first step is the task; a hand on the way, or another plant, would be another run.
-        let ground = settled(scenario).map_or_else(|_| scenario.clone(), |(ground, _)| ground);
-        let scenario = &ground;
-        let mut other = ground.clone();
+        // Edits before the first step belong to the task; later ones would make it another run.
+        let start = settled(scenario).map_or_else(|_| scenario.clone(), |(start, _)| start);
+        let scenario = &start;
+        let mut other = start.clone();
         other.name = format!("{}-{}", scenario.name, self.name());
         other.title = format!("{} · {}", scenario.title, self.title());
         other.edits.clear();
@@ -79,7 +80,7 @@ impl Alternative {
             Self::AsGiven => {}
             Self::Reactionless => {
                 set("kind", word("reactionless"));
-                // What joins the points is left as it is where this kind knows it.
+                // The shape stays where this kind of task has it.
                 if matches!(scenario.task.shape(), Shape::Line) && scenario.task.shape.is_none() {
                     set("shape", word("joint-line"));
                 }

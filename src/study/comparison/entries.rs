@@ -1,4 +1,4 @@
-//! [`Comparison`]: a table of runs under somebody's hands.
+//! [`Comparison`]: a table of runs that a person extends, sorts and draws over the present run.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ pub struct Entry {
     pub outcome: Result<Arc<Compared>, String>,
     /// Whether it is laid over plots and scene.
     pub shown: bool,
-    /// Put there by hand: it stays when the task changes.
+    /// Added by a person: it stays when the task changes.
     pub kept: bool,
 }
 

@@ -75,11 +75,11 @@ pub const COLUMNS: [Column; 15] = [
     column("peak_force", "peak f", "largest force on the base, from motion", "N", 4, |s| Some(s.peak_force)),
     column("rms_force", "rms f", "its root mean square", "N", 4, |s| Some(s.rms_force)),
     column("force_impulse", "∫|f|dt", "its impulse", "N s", 4, |s| Some(s.force_impulse)),
-    column("base_shift", "shift", "largest way of the base", "m", 5, |s| Some(s.base_shift)),
+    column("base_shift", "shift", "largest displacement of the base", "m", 5, |s| Some(s.base_shift)),
     column("base_tilt", "angle", "largest angle of the base", "rad", 5, |s| Some(s.base_tilt)),
-    column("miss", "miss", "from the end effector to its target at the end", "m", 5, |s| Some(s.miss)),
+    column("miss", "miss", "distance of the end effector from its target at the end", "m", 5, |s| Some(s.miss)),
     column("peak_torque", "peak τ", "largest torque of any drive", "N m", 4, |s| Some(s.peak_torque)),
-    column("energy", "energy", "what motors took, none given back", "J", 4, |s| Some(s.energy)),
+    column("energy", "energy", "energy that motors took, none given back", "J", 4, |s| Some(s.energy)),
     column("wheel_rate", "wheel", "largest rate of the reaction wheel", "rad/s", 1, |s| s.wheel_rate),
     column("saturated_at", "saturates", "when the wheel could give no more", "s", 3, |s| s.saturated_at),
     column("peak_arm_moment", "peak n_B", "largest moment of the arm, before the wheel", "N m", 4, |s| {
@@ -121,7 +121,7 @@ impl Summary {
             wheel_rate: scenario.base.wheel.map(|_| totals.wheel_rate),
             saturated_at: totals.saturated,
             reactionless: verdict.reactionless,
-            fault: verdict.fault.map(|lamp| lamp.to_string()),
+            fault: verdict.fault.map(|figure| figure.to_string()),
             verdict,
         }
     }

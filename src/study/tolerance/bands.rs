@@ -71,8 +71,8 @@ const MOST: u64 = 4096;
 const KEPT: u64 = 4_000_000;
 
 impl Bands {
-    /// Of an ensemble, percentiles of its first `samples` machines, or 4096 if that is less, or fewer where instants are
-    /// many.
+    /// Of an ensemble, percentiles of its first `samples` machines, or 4096 if that is less, or fewer where instants
+    /// are many.
     pub fn of(ensemble: &Ensemble, samples: u64) -> Self {
         let count = ensemble.time().len();
         let samples = samples.clamp(1, MOST).min((KEPT / count as u64).max(100));
@@ -179,7 +179,7 @@ impl ForceBand {
 /// How far two courses are apart, in standard deviations of the instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Gap {
-    /// The most.
+    /// The greatest distance.
     pub worst: f64,
     /// When, s.
     pub time: f64,
@@ -187,7 +187,7 @@ pub struct Gap {
     pub share: f64,
 }
 
-/// Where first order says something else than all orders do.
+/// Where results to first order differ from those of all orders.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Agreement {
     /// From how many standard deviations on two exact courses count as apart.
@@ -209,7 +209,7 @@ pub struct Agreement {
 }
 
 impl Agreement {
-    /// Of bands.
+    /// The agreement of bands.
     pub fn of(bands: &Bands) -> Self {
         let Bands { time, samples, moment, force } = bands;
         let tolerance = 0.05;

@@ -11,7 +11,7 @@ use rand_chacha::rand_core::{RngCore, SeedableRng};
 /// Samples drawn together; chunk c holds samples c · CHUNK and on.
 pub const CHUNK: usize = 256;
 
-/// The generator.
+/// The generator of random numbers.
 #[derive(Clone, Debug)]
 pub(super) struct Draws {
     rng: ChaCha8Rng,

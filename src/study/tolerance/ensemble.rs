@@ -99,7 +99,7 @@ impl Ensemble {
         Ok(Self { machine, parameters, bodies, seed, references, time, nominal, influence, moments, table })
     }
 
-    /// What varies.
+    /// The parameters that vary.
     pub fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }

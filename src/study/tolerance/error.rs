@@ -51,6 +51,6 @@ pub enum ToleranceError {
         unit: &'static str,
     },
     /// A length that a closure holds.
-    #[error("a varied machine would not be one: {0}")]
+    #[error("a varied machine would not be valid: {0}")]
     Machine(MachineError),
 }

@@ -13,7 +13,7 @@
 //!
 //! | what | modules |
 //! |---|---|
-//! | what varies, by which spread | [`Tolerance`](crate::session::scenario::Tolerance), [`Spread`](crate::session::scenario::Spread), [`Parameter`] |
+//! | what varies, by which spread | [`Parameter`]; `Tolerance` and `Spread` of [scenarios](crate::session::scenario) |
 //! | random machines, a million a second | [`Ensemble`], [`Sampler`], [`Outcome`] |
 //! | means and deviations over time, exact, first-order and sampled | [`Bands`], [`Agreement`] |
 //! | which tolerance matters | [`Share`] |

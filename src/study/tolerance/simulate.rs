@@ -9,7 +9,7 @@ use crate::simulation::{Guide, Setup, Simulation};
 /// Simulates a planned motion, control and all, with another machine as plant.
 ///
 /// # Errors
-/// If the numbers blow up, or an audit fails: a study with figures in it that nobody vouches for is none.
+/// If the numbers blow up, or an audit fails: a study must not hold figures of a run that failed its audit.
 pub fn simulate(planned: &Run, plant: &Machine) -> Result<Outcome, Refusal> {
     let scenario = planned.scenario();
     let guide = Guide::Motion { motion: planned.plan().motion.clone(), start: 0.0 };

@@ -17,10 +17,10 @@ use crate::simulation::plant::{Base, BaseKind, Load};
 
 /// What a stage knows of base and payload; it can change without a new stage.
 #[derive(Clone, Debug)]
-pub struct Ground {
+pub struct BaseStage {
     base: Base,
     load: Load,
-    /// No gravity.
+    /// Whether there is no gravity.
     weightless: bool,
     /// Drive that the link with the end effector follows, and which way.
     holder: (usize, f64),
@@ -34,7 +34,7 @@ pub const PULL: f64 = 20.0;
 /// Motion of the base below this is not spoken of, m and rad.
 const SILENT: f64 = 1e-12;
 
-impl Ground {
+impl BaseStage {
     /// Of a run whose machine is built like this.
     pub fn of(run: &Run, plant: &Machine, linkage: &Linkage) -> Self {
         let scenario = run.scenario();

@@ -6,8 +6,8 @@ use super::walk::{starts, tables};
 use crate::planning::curves::{Curve, PathTable};
 use crate::planning::reactionless::PlaneMap;
 
-/// Follows curves that join end to end on the plane b: a table of nodes for each. Of several poses at the start, the one
-/// that can, nearest to `prefer`.
+/// Follows curves that join end to end on the plane b: a table of nodes for each. Of several poses at the start, the
+/// one that can, nearest to `prefer`.
 ///
 /// # Errors
 /// Where it is stopped and by what, and what would help.

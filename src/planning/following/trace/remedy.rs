@@ -33,8 +33,8 @@ pub(super) fn blocked(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, s: f
     }
 }
 
-/// The b nearest to a given one at which curves can be followed, among those that reach each point; and the same rounded
-/// to where they still can.
+/// The b nearest to a given one at which curves can be followed, among those that reach each point; and the same
+/// rounded to where they still can.
 fn nearest_b(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, common: &BSet) -> Option<(f64, Option<Decimal>)> {
     const TRIES: usize = 24;
     let can = |b: f64| is_feasible(map, curves, b, rule);

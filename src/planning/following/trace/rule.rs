@@ -74,7 +74,7 @@ impl Blocked {
         let remedy = match (self.shown_b, self.some_b_reaches_all) {
             (Some(b), _) => format!("b = {b} rad would do"),
             (None, false) => "no b reaches all of it".into(),
-            (None, true) => "each point has a b in common with the others, but no b lets it be followed".into(),
+            (None, true) => "some b reaches every point of it, but with no b can it be followed".into(),
         };
         let part = match self.longest {
             Some([from, to]) if to - from > 1e-3 => {

@@ -30,11 +30,11 @@ pub fn walk(
     Ok(a)
 }
 
-/// The poses of a point on a plane, those nearest to a wish first.
+/// The poses of a point on a plane, those nearest to `prefer` first.
 pub(super) fn starts(map: &PlaneMap, p: Vector, b: f64, prefer: Option<[f64; 2]>) -> Vec<[f64; 2]> {
     let mut starts: Vec<[f64; 2]> = map.poses(p, b).iter().map(|x| x.a).collect();
-    if let Some(wish) = prefer {
-        let far = |a: &[f64; 2]| (a[0] - wish[0]).hypot(a[1] - wish[1]);
+    if let Some(wanted) = prefer {
+        let far = |a: &[f64; 2]| (a[0] - wanted[0]).hypot(a[1] - wanted[1]);
         starts.sort_by(|x, y| far(x).total_cmp(&far(y)));
     }
     starts

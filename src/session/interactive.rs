@@ -1,8 +1,8 @@
 //! A [`Session`]: a scenario, what was done to it, and every frame so far.
 //!
-//! The window owns one and only sends it [`Edit`]s and transport commands; headless replays the same edits
-//! ([`replay`]). Because a run is a function of scenario and edits, undo, scrubbing and saving need no snapshots of
-//! state: the run is made again.
+//! The window owns one and only sends it [`Edit`]s and transport commands (play, pause, seek); [`replay`] carries out
+//! the same edits without a window. Because a run is a function of scenario and edits, undo, scrubbing and saving need
+//! no snapshots of state: the run is made again.
 
 use std::sync::Arc;
 
@@ -37,13 +37,14 @@ struct Change {
 }
 
 impl Change {
-    /// Whether it is of the run as a whole: that has no meaning at a later step.
+    /// Whether it changes the task or the base: the motion is then planned anew, so it can stand only before the first
+    /// step.
     fn plans(&self) -> bool {
         self.edit.as_ref().is_some_and(|e| matches!(e.edit, Edit::SetTask { .. } | Edit::SetBase { .. }))
     }
 }
 
-/// A run under somebody's hands.
+/// A run that a person edits while it goes on.
 #[derive(Clone, Debug)]
 pub struct Session {
     document: Document,
@@ -83,17 +84,17 @@ impl Session {
         Self::opened(scenario, true)
     }
 
-    fn opened(mut ground: Scenario, patient: bool) -> Result<Self, Refusal> {
-        let edits = std::mem::take(&mut ground.edits);
-        Self::replayed(ground, in_order(&edits), patient).map_err(|failed| failed.named(&edits))
+    fn opened(mut scenario: Scenario, patient: bool) -> Result<Self, Refusal> {
+        let edits = std::mem::take(&mut scenario.edits);
+        Self::replayed(scenario, in_order(&edits), patient).map_err(|failed| failed.named(&edits))
     }
 
-    fn replayed(ground: Scenario, script: Vec<TimedEdit>, patient: bool) -> Result<Self, Failed> {
+    fn replayed(scenario: Scenario, script: Vec<TimedEdit>, patient: bool) -> Result<Self, Failed> {
         let known: Script = script.iter().cloned().collect();
         let runs = known.is_led() || script.last().is_some_and(|e| e.step > 0);
         let end = match runs {
             true => {
-                let run = Run::begin(&ground, &script, None)?.0;
+                let run = Run::begin(&scenario, &script, None)?.0;
                 let end = match run.waiting() {
                     Some(_) => {
                         let known = run.scenario().duration.map_or(0, |_| run.last_step());
@@ -109,7 +110,7 @@ impl Session {
             }
             false => 0,
         };
-        let mut session = Self::of(Document { scenario: Arc::new(ground), script: known, end }, patient)?;
+        let mut session = Self::of(Document { scenario: Arc::new(scenario), script: known, end }, patient)?;
         session.cursor = 0;
         Ok(session)
     }
@@ -317,9 +318,9 @@ impl Session {
         match edit {
             Edit::DragTarget { .. } | Edit::SlideB { .. } | Edit::Push { .. } => true,
             Edit::PoseB { .. } => self.is_led(),
-            // Whoever leads the machine finds other limits where he is.
+            // A machine that is led by hand has the new limits from the present step on.
             edit if edit.sets_limits() && self.is_led() && self.run.waiting().is_none() => true,
-            // The path that the machine is on cannot change its time, nor can it move to another base.
+            // A motion in progress cannot change its time or its base.
             edit if edit.is_of_the_whole() => false,
             // A slider that set the machine in motion goes on as it began.
             _ => self.gesture_now.unwrap_or_else(|| self.is_running()),
@@ -348,7 +349,7 @@ impl Session {
         let joins = self.gesture
             && remade.is_none()
             && document.script.last().is_some_and(|e| e.step == timed.step && e.edit.is_replaced_by(&timed.edit));
-        // What is replaced must leave no trace, so the next word starts from where the last one started.
+        // An edit that replaces the one before starts from the run before that one, so that it leaves no trace.
         let unedited = match (&remade, &self.unedited) {
             (Some((run, _)), _) => run.clone(),
             (None, Some(run)) if joins => {
@@ -402,7 +403,7 @@ impl Session {
         let mut script: Vec<TimedEdit> =
             self.edits.iter().filter(|e| !e.edit.is_replaced_by(&timed.edit)).cloned().collect();
         if matches!(timed.edit, Edit::SetTask { .. }) && self.is_led() {
-            // To plan is to take the machine back from the hand that led it. What was set on the way stays.
+            // A new plan puts a machine that was led back on its path: the edits that led it go, the settings stay.
             let mut kept: Vec<TimedEdit> = Vec::with_capacity(script.len());
             for e in script.drain(..).filter(|e| !e.edit.leads()) {
                 if e.step > 0 && matches!(e.edit, Edit::PoseB { .. }) {
@@ -414,7 +415,7 @@ impl Session {
             script = kept;
             document.end = 0;
         }
-        // Who leads the machine from the start does so from where this puts it.
+        // An edit that leads the machine from the start does so from where this one puts it.
         let place = script.iter().position(|e| e.step > 0 || e.edit.leads());
         let says_nothing = matches!(&timed.edit, Edit::SetTask { change } if change.is_empty());
         if !says_nothing {
