@@ -88,10 +88,10 @@ fn areas_go_with_the_square_of_lengths_and_b_stays_often() {
     scale(100_000, 31);
 }
 
-/// A fold that cuts off a corner of the limits by 1e-5 rad leaves a sliver of 1e-13 m, whose sides rounding decides:
-/// whether it counts or not, the rest of the workspace is as large.
+/// A fold that cuts off a corner of the limits by 1e-5 rad leaves a sliver 1e-13 m wide and 1e-5 m long, whose sides
+/// rounding hides: at any size the workspace is as large, reaches as far, and has its poses at as many points.
 #[test]
-fn slivers_do_not_change_an_area() {
+fn slivers_change_neither_an_area_nor_a_distance() {
     let c = [0.531698363952129, -0.30915562106960787, 0.7541660374847151];
     let lambda = [1.0, 0.8040251462454151, 0.6688754843363212];
     let limits = [
@@ -99,11 +99,18 @@ fn slivers_do_not_change_an_area() {
         AngleLimit { min: 0.802195524572598, max: 3.391502698099948 },
     ];
     let offsets = [-1.00476023685831, -1.5905881217888227];
+    // The corner is the tip of the sliver, and nearest to where the tip points.
+    let corner = map(c, lambda, limits, offsets).expect("a map").forward_unturned([limits[0].min, limits[1].min]);
+    let beyond = Vector::new(0.462_886_138_6, 1.742_615_586_5);
     for i in 0..60 {
         let size = 1.03_f64.powi(i - 30);
-        let area = Boundary::of(&map(c.map(|c| c * size), lambda, limits, offsets).expect("a map")).area();
-        let off = area / (size * size) - 0.151_212_014_18;
+        let boundary = Boundary::of(&map(c.map(|c| c * size), lambda, limits, offsets).expect("a map"));
+        let off = boundary.area() / (size * size) - 0.151_212_014_18;
         assert!(off.abs() < 1e-10, "{off:e} at {size}");
+        let off = boundary.distance(beyond * size, 0.0) / size + (beyond - corner).norm();
+        assert!(off.abs() < 1e-9, "{off:e} at {size}");
+        let off = boundary.areas_by_poses().iter().sum::<f64>() - boundary.sheet_area();
+        assert!(off.abs() < 1e-10 * size * size, "{off:e} at {size}");
     }
 }
 

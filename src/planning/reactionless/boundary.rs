@@ -15,6 +15,7 @@
 //! | areas | m² |
 
 mod arrangement;
+mod balance;
 mod cycle;
 mod determinant;
 mod distance;

@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use super::balance::{self, Course};
 use super::cycle::Cycle;
 use super::span::{Span, Surface};
 use crate::mechanics::planar::{Vector, cross, dot};
@@ -90,13 +91,9 @@ impl<'a> Arrangement<'a> {
 
     /// All curves, cut where they cross each other.
     pub fn strands(&self) -> Vec<Strand> {
-        let chord = |p: &Portion| {
-            let span = &self.spans[p.span];
-            (self.on.at(span, p.to) - self.on.at(span, p.from)).norm()
-        };
         let strand = |parts: Vec<Portion>| {
             // The longest parts first: the shortest may lie in a sliver too narrow to tell its sides apart.
-            let mut order: Vec<(f64, &Portion)> = parts.iter().map(|p| (chord(p), p)).collect();
+            let mut order: Vec<(f64, &Portion)> = parts.iter().map(|p| (self.chord(p), p)).collect();
             order.sort_by(|a, b| b.0.total_cmp(&a.0));
             let mut verdicts = order.iter().take(5).map(|(_, portion)| self.sides(portion));
             let first = verdicts.next().unwrap_or(Err([0; 2]));
@@ -105,7 +102,44 @@ impl<'a> Arrangement<'a> {
                 first.or_else(|unclean| verdicts.find_map(Result::ok).ok_or(unclean)).unwrap_or_else(|unclean| unclean);
             Strand { parts, left, right }
         };
-        self.uncrossed().into_iter().map(strand).collect()
+        let mut strands: Vec<Strand> = self.uncrossed().into_iter().map(strand).collect();
+        self.settle(&mut strands);
+        strands
+    }
+
+    /// Sides that no sample told apart, by those of the strands around.
+    fn settle(&self, strands: &mut [Strand]) {
+        let weight = |s: &Strand| self.spans[s.parts[0].span].weight();
+        if strands.iter().all(|s| s.left - s.right == weight(s)) {
+            return;
+        }
+        let mut nodes: Vec<Vector> = Vec::new();
+        let mut node = |p: &Portion, t: f64| {
+            let at = self.on.at(&self.spans[p.span], t);
+            nodes.iter().position(|n| (n - at).norm() < JOINT * self.unit).unwrap_or_else(|| {
+                nodes.push(at);
+                nodes.len() - 1
+            })
+        };
+        let mut course = |s: &Strand| {
+            let (first, last) = (s.parts[0], s.parts[s.parts.len() - 1]);
+            Course {
+                ends: [node(&first, first.from), node(&last, last.to)],
+                weight: weight(s),
+                sides: [s.left, s.right],
+                length: s.parts.iter().map(|p| self.chord(p)).sum(),
+            }
+        };
+        let mut courses: Vec<Course> = strands.iter().map(&mut course).collect();
+        balance::settle(&mut courses);
+        for (strand, course) in strands.iter_mut().zip(courses) {
+            [strand.left, strand.right] = course.sides;
+        }
+    }
+
+    fn chord(&self, p: &Portion) -> f64 {
+        let span = &self.spans[p.span];
+        (self.on.at(span, p.to) - self.on.at(span, p.from)).norm()
     }
 
     /// All curves from crossing to crossing.
