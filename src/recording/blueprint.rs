@@ -1,5 +1,5 @@
-//! The layout that a recording opens with: scene left, joint space and tower behind it, plots by unit right, events below; several cases side by side
-//! first, and each in a tab of its own.
+//! The layout that a recording opens with: scene left, joint space and tower behind it, plots by unit right, events
+//! below; several cases side by side first, and each in a tab of its own.
 //!
 //! Views are rows of a store of their own. The SDK's builders reach neither the eye of a 3D view, nor axis ranges, nor
 //! backgrounds, so the rows are written here.
@@ -19,7 +19,8 @@ use super::eye::Eye;
 use super::hash::Hash;
 use super::preview::Preview;
 use super::store::{Store, StoreError, TIME};
-use super::style::{Both, colour, series_name, under};
+use super::style::{Together, colour, series_name, under};
+use super::topic::Topic;
 use crate::picture::charts::{Chart, Place};
 use crate::picture::scene::Rgba;
 use crate::picture::scene::palette::{Palette, Theme, mix, palette};
@@ -144,7 +145,8 @@ impl Layout<'_> {
         properties: &[(&str, &dyn AsComponents)],
     ) -> Result<Part, StoreError> {
         let from = origin.to_string();
-        let words: Vec<&str> = [from.as_str()].into_iter().chain(contents.iter().map(String::as_str)).collect();
+        // Charts of one case can be of the same entities.
+        let words: Vec<&str> = [name, from.as_str()].into_iter().chain(contents.iter().map(String::as_str)).collect();
         let id = self.id(class, &words);
         let path = EntityPath::from(format!("view/{id}"));
         let query = view::ViewContents::new(contents.iter().map(|q| QueryExpression(q.as_str().into())));
@@ -244,11 +246,30 @@ impl Layout<'_> {
         self.view("3D", name, origin, &["$origin/**".into()], &properties)
     }
 
+    /// The series of a chart; those that share an entity with them are hidden.
     fn plot(&mut self, case: &Preview, chart: &Chart) -> Result<Part, StoreError> {
-        let held = case.signals.iter().filter(|signal| chart.holds(signal));
-        let contents: Vec<_> = held.map(|signal| format!("$origin/{}", signal.path)).collect();
+        let held = |topic: &&Topic| topic.signals.iter().any(|signal| chart.holds(signal));
+        let topics: Vec<_> = case.topics.iter().filter(held).collect();
+        let contents: Vec<_> = topics.iter().map(|topic| format!("$origin/{}", topic.name)).collect();
         let range = self.range_of(chart);
-        self.time_series(&titled(chart, case), &under(&case.root, "signals"), &contents, range, false)
+        let plot = self.time_series(&titled(chart, case), &under(&case.root, "signals"), &contents, range, false)?;
+        for topic in topics {
+            let shown: Vec<bool> = topic.signals.iter().map(|signal| chart.holds(signal)).collect();
+            if shown.contains(&false) {
+                let style = SeriesLines::update_fields().with_visible_series(shown);
+                self.draw_as(&plot, &topic.path(&case.root), 0, &style)?;
+            }
+        }
+        Ok(plot)
+    }
+
+    /// How the series of an entity look in a plot.
+    fn draw_as(&mut self, plot: &Part, path: &EntityPath, i: usize, style: &SeriesLines) -> Result<(), StoreError> {
+        let base = view::ViewContents::blueprint_base_visualizer_path_for_entity(plot.id, path);
+        let id = VisualizerInstructionId::new_deterministic(path, i);
+        let instruction = under(&base, &id.0.to_string());
+        self.store.layout(&instruction, &Together(&[&view::VisualizerInstruction::new("SeriesLines"), style]))?;
+        self.store.layout(&base, &view::ActiveVisualizers::new([id]))
     }
 
     fn time_series(
@@ -269,24 +290,19 @@ impl Layout<'_> {
 
     /// The same signal of every case in one plot, each named by its case.
     fn compared(&mut self, cases: &[Preview], chart: &Chart, range: [f64; 2]) -> Result<Part, StoreError> {
-        let signal = chart.signals[0];
-        let paths: Vec<_> = cases.iter().map(|case| under(&case.root, &format!("signals/{signal}"))).collect();
-        let contents: Vec<_> = paths.iter().map(|p| p.to_string()).collect();
+        let of = |case: &Preview| case.topics.iter().find(|topic| topic.name == chart.signals[0]).cloned();
+        let topics: Vec<_> = cases.iter().filter_map(|case| Some((case, of(case)?))).collect();
+        let contents: Vec<_> = topics.iter().map(|(case, topic)| topic.path(&case.root).to_string()).collect();
         let legend = cases.len() <= LEGEND;
         let range = if legend { with_room(range, cases.len()) } else { range };
         let plot = self.time_series(&name_of(chart), &EntityPath::root(), &contents, Some(range), legend)?;
-        for (i, (case, path)) in cases.iter().zip(&paths).enumerate() {
+        for (i, (case, topic)) in topics.iter().enumerate() {
             let rgba = case_colour(i, case.peaks.is_reactionless(), &self.palette);
-            let unit = case.signals.iter().find(|s| s.path == signal).map_or(String::new(), series_name);
             let style = SeriesLines::new()
-                .with_names([format!("{} · {unit}", case.name)])
+                .with_names(topic.signals.iter().map(|signal| format!("{} · {}", case.name, series_name(signal))))
                 .with_colors([colour(rgba)])
                 .with_widths([1.8]);
-            let base = view::ViewContents::blueprint_base_visualizer_path_for_entity(plot.id, path);
-            let id = VisualizerInstructionId::new_deterministic(path, i);
-            let instruction = under(&base, &id.0.to_string());
-            self.store.layout(&instruction, &Both(&view::VisualizerInstruction::new("SeriesLines"), &style))?;
-            self.store.layout(&base, &view::ActiveVisualizers::new([id]))?;
+            self.draw_as(&plot, &topic.path(&case.root), i, &style)?;
         }
         Ok(plot)
     }
@@ -313,7 +329,8 @@ fn name_of(chart: &Chart) -> String {
 /// The title of a plot with the colours of what it shows: a legend would cover the curves of so low a plot. Of one series
 /// the title says everything already, and of many the pointer tells which is which.
 fn titled(chart: &Chart, case: &Preview) -> String {
-    let all: Vec<_> = case.signals.iter().filter(|signal| chart.holds(signal)).collect();
+    let signals = case.topics.iter().flat_map(|topic| &topic.signals);
+    let all: Vec<_> = signals.filter(|signal| chart.holds(signal)).collect();
     let of_drives = all.len() == COLOURS.len() && all.iter().enumerate().all(|(k, signal)| signal.drive == Some(k));
     let words = all.iter().zip(COLOURS).map(|(signal, colour)| format!("{} {colour}", signal.symbol));
     let words: Vec<String> = if of_drives { words.collect() } else { Vec::new() };

@@ -1,15 +1,17 @@
-//! One entity of a recording: what it shows for good, and the rows that gather of what changes.
+//! One entity of a recording: the shape that it keeps, and the rows of what changes, kept until they are written.
 
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
-use rerun::{Clear, EntityPath, InstancePoses3D, LineStrips3D, Mesh3D, Points3D, Quaternion, Radius, Transform3D};
+use rerun::{
+    AsComponents, Clear, EntityPath, InstancePoses3D, LineStrips3D, Mesh3D, Points3D, Quaternion, Radius, Transform3D,
+};
 
 use super::dashes::dashed;
 use super::eye::Eye;
 use super::rows::Track;
 use super::store::{Instant, Store, StoreError};
-use super::style::{colour, solid};
+use super::style::{Together, colour, solid};
 use crate::picture::scene::{Area, Changes, Model, Pose, Rgba, Strips};
 
 /// Cells of a workspace along each angle.
@@ -207,12 +209,8 @@ impl Entity {
             }
             return Ok(());
         }
-        if let Some(lasting) = self.lasting.take()
-            && self.written.as_ref() != Some(&lasting)
-        {
-            self.write_lasting(store, since, &lasting, eye)?;
-            self.written = Some(lasting);
-        }
+        let lasting = self.lasting.take().filter(|lasting| self.written.as_ref() != Some(lasting));
+        let mut stands = None;
         if let Some((pose, changes)) = self.pose {
             let pose = pose.within(outer);
             // What is part of something else stays where it is within it, but for rounding.
@@ -224,12 +222,20 @@ impl Entity {
             match (changes, since) {
                 _ if known || at_home => {}
                 (Changes::Nothing, None) if never => {
-                    store.fixed(&self.path, &transform(&[pose], eye))?;
+                    stands = Some(transform(&[pose], eye));
                     self.stands = true;
                 }
                 (Changes::Nothing, None) => {}
                 _ => self.poses.push(at, pose),
             }
+        }
+        match (lasting, stands) {
+            (Some(lasting), stands) => {
+                self.write_lasting(store, since, &lasting, stands.as_ref(), eye)?;
+                self.written = Some(lasting);
+            }
+            (None, Some(stands)) => store.fixed(&self.path, &stands)?,
+            (None, None) => {}
         }
         if let Some(mut shape) = self.shape.take() {
             match &mut shape {
@@ -237,48 +243,46 @@ impl Entity {
                 Shape::Instances(places) => places.iter_mut().for_each(|p| *p = eye.place(outer.inside(*p))),
                 Shape::Strokes(_) => {}
             }
-            if self.shapes.is_new() && self.kind == Kind::Label {
-                let style = Points3D::update_fields().with_radii([Radius::ZERO]).with_show_labels(true);
-                store.fixed(&self.path, &style)?;
-            }
             self.shapes.push(at, Some(shape));
         }
         Ok(())
     }
 
-    pub fn write_lasting(
+    /// Writes what it shows until somebody says otherwise, and where it stands for good.
+    fn write_lasting(
         &self,
         store: &mut Store,
         since: Option<Instant>,
         lasting: &Lasting,
+        stands: Option<&Transform3D>,
         eye: &Eye,
     ) -> Result<(), StoreError> {
-        match lasting {
-            Lasting::Mesh(model, mesh, rgba) => {
-                store.shape(since, &self.path, &solid(&model.meshes[*mesh], *rgba, eye))?;
-                if self.pose.is_none() {
-                    let scales = self.placed.iter().map(|(_, stretch)| [1.0, 1.0, *stretch]);
-                    let scales = InstancePoses3D::update_fields().with_scales(scales);
-                    store.shape(since, &self.path, &scales)?;
-                }
-                Ok(())
-            }
-            Lasting::Sheet(area) => store.shape(since, &self.path, &sheet(area)),
-            Lasting::Strokes(strokes) => {
-                let lines = LineStrips3D::new(strokes.drawn(eye, LASTING))
+        let scales = self.pose.is_none().then(|| {
+            let scales = self.placed.iter().map(|(_, stretch)| [1.0, 1.0, *stretch]);
+            InstancePoses3D::update_fields().with_scales(scales)
+        });
+        let looks: Box<dyn AsComponents> = match lasting {
+            Lasting::Mesh(model, mesh, rgba) => Box::new(solid(&model.meshes[*mesh], *rgba, eye)),
+            Lasting::Sheet(area) => Box::new(sheet(area)),
+            Lasting::Strokes(strokes) => Box::new(
+                LineStrips3D::new(strokes.drawn(eye, LASTING))
                     .with_radii([Radius::new_ui_points(0.5 * strokes.width)])
-                    .with_colors([colour(strokes.rgba)]);
-                store.shape(since, &self.path, &lines)
-            }
+                    .with_colors([colour(strokes.rgba)]),
+            ),
             Lasting::Ring { radius, width, rgba } => {
                 let on = |i: u8| TAU * f32::from(i) / 48.0;
                 let ring = (0..=48).map(on).map(|a| [radius * a.cos(), radius * a.sin(), 0.0]);
-                let lines = LineStrips3D::new([ring.map(|p| eye.place(p)).collect::<Vec<_>>()])
-                    .with_radii([Radius::new_ui_points(0.5 * width)])
-                    .with_colors([colour(*rgba)]);
-                store.shape(since, &self.path, &lines)
+                Box::new(
+                    LineStrips3D::new([ring.map(|p| eye.place(p)).collect::<Vec<_>>()])
+                        .with_radii([Radius::new_ui_points(0.5 * width)])
+                        .with_colors([colour(*rgba)]),
+                )
             }
-        }
+        };
+        let mut all = vec![&*looks];
+        all.extend(stands.map(|stands| stands as &dyn AsComponents));
+        all.extend(scales.as_ref().filter(|_| matches!(lasting, Lasting::Mesh(..))).map(|s| s as &dyn AsComponents));
+        store.shape(since, &self.path, &Together(&all))
     }
 
     /// Writes the poses that have gathered.
@@ -338,7 +342,10 @@ impl Entity {
                     .with_positions(dots.iter().map(|dot| dot.at))
                     .with_labels(dots.iter().map(|dot| dot.text.as_str()))
                     .with_colors(dots.iter().map(|dot| colour(dot.rgba)));
-                store.columns(&clock, &self.path, words.columns(lengths)?)
+                // One radius for all of a row: no dot.
+                let dotless = Points3D::update_fields().with_radii(rows.iter().map(|_| Radius::ZERO));
+                let columns = words.columns(lengths)?.chain(dotless.columns_of_unit_batches()?);
+                store.columns(&clock, &self.path, columns)
             }
             Kind::Marker => {
                 let points = Points3D::update_fields()

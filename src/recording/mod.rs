@@ -13,16 +13,19 @@
 //! | `joint_space` | q as coordinates: the plane of b within the limits, the planned path, the pose |
 //! | `tower` | all workspaces, b as height: the wall, the present slice, and which b reach the task's points |
 //! | `reaction/force`, `reaction/moment` | what reaches the base, in proportion; the scale stands beside it |
-//! | `signals/<path>` | every row of the table of [`signals`](crate::simulation::signals), at every step |
+//! | `signals/<topic>` | every row of the table of [`signals`](crate::simulation::signals), at every step, as a series |
 //! | `events`, `phase` | what happened |
 //! | `view` | offscreen pictures |
 //!
-//! Whatever a [`Scene`](crate::picture::scene::Scene) of the window holds is an entity, by its own name, and what an
-//! item says stays is written once; the plots are the window's [`charts`](crate::picture::charts). So a new item of the
-//! scene, or a new signal in a chart, is recorded without a word here.
+//! Each item of the [`Scene`](crate::picture::scene::Scene) that the window opens with is an entity, by its own name; the
+//! plots are the window's [`charts`](crate::picture::charts). So a new item of the scene, or a new signal in a chart, is
+//! recorded without a change here. What a person first has to switch on in the window is not recorded: snapshots of the
+//! arm, and the forces of the pins, of which pictures can show the latter (`pin_forces`). Nor are the marks that invite a
+//! person to drag something.
 //!
-//! Signals have a row at every step, what moves at most 200 a second. Machine, scenario, version and verdict are
-//! properties of the recording. The same scenarios give the same recording, whenever and wherever it is made.
+//! What an item says never changes is written once; what moves has at most 200 rows a second, and a signal has a row at
+//! every step. Machine, scenario, version and verdict are properties of the recording. The same scenarios give the same
+//! recording, whenever and wherever it is made.
 
 mod blueprint;
 mod dashes;
@@ -39,6 +42,7 @@ mod space;
 mod stop;
 mod store;
 mod style;
+mod topic;
 
 pub use options::{Options, Pictures};
 

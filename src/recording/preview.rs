@@ -1,10 +1,11 @@
-//! A run before it is recorded: its extremes decide the layout and the scales, which stand at the head of the file, and
-//! a scenario that cannot run is refused before anything is written.
+//! Runs a scenario once before it is recorded. Its extremes decide the layout and the scales, which stand at the head of
+//! the file; and a scenario that cannot run is refused before anything is written.
 
 use rerun::EntityPath;
 use rerun::external::re_log_types::EntityPathPart;
 
 use super::eye::Eye;
+use super::topic::Topic;
 use crate::picture::charts::{Chart, charts};
 use crate::picture::scene::camera::{Camera, Orbit};
 use crate::picture::scene::joint_space::JointSpace;
@@ -33,8 +34,8 @@ pub struct Preview {
     pub fault: Option<String>,
     /// Least and greatest b, rad.
     pub b: [f64; 2],
-    /// What it records.
-    pub signals: Vec<Signal>,
+    /// The signals that it records.
+    pub topics: Vec<Topic>,
     /// The charts that tell something of it, with the least and the greatest value in each.
     pub charts: Vec<(Chart, [f64; 2])>,
     /// From where the machine is seen.
@@ -54,7 +55,9 @@ impl Preview {
         let none = [f64::INFINITY, f64::NEG_INFINITY];
         let wider = |range: &mut [f64; 2], x: f64| *range = [range[0].min(x), range[1].max(x)];
         let signals = signals(&scenario.machine);
-        let mut charts: Vec<_> = charts(scenario).into_iter().map(|chart| (chart, none)).collect();
+        let charts = charts(scenario);
+        let topics = Topic::all(signals.clone(), &charts);
+        let mut charts: Vec<_> = charts.into_iter().map(|chart| (chart, none)).collect();
         charts.retain(|(chart, _)| signals.iter().any(|signal| chart.holds(signal)));
         let held = |signal: &Signal| charts.iter().position(|(chart, _)| chart.holds(signal));
         let drawn: Vec<_> = signals.iter().filter_map(|signal| Some((held(signal)?, signal.clone()))).collect();
@@ -82,7 +85,7 @@ impl Preview {
             steps: last.step,
             peaks: last.peaks,
             b,
-            signals,
+            topics,
             charts,
             scene: near(reach),
             joints,

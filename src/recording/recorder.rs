@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rerun::components::{Scalar, Text};
 use rerun::external::re_log_types::EntityPathPart;
-use rerun::{AnyValues, EntityPath, Scalars, SeriesLines, ViewCoordinates};
+use rerun::{AnyValues, EntityPath, ViewCoordinates};
 
 use super::events::Events;
 use super::pictures::Series;
@@ -13,9 +13,9 @@ use super::rows::Thinned;
 use super::space::Space;
 use super::stop::Stop;
 use super::store::{Clock, Instant, Store};
-use super::style::{colour, lines, series_name, under};
+use super::style::{lines, under};
+use super::topic::Topic;
 use crate::mechanics::machine::Machine;
-use crate::picture::charts;
 use crate::picture::scene::joint_space::JointSpace;
 use crate::picture::scene::options::ViewOptions;
 use crate::picture::scene::palette::{Palette, Theme, mix, palette};
@@ -28,7 +28,6 @@ use crate::session::scenario::Scenario;
 use crate::session::verdict::Verdict;
 use crate::session::{Edit, Plan, Run, replay};
 use crate::simulation::frame::{Frame, Peaks};
-use crate::simulation::signals::Signal;
 
 /// Rows that gather before they are written.
 const BATCH: usize = 8192;
@@ -91,7 +90,7 @@ struct Recorder<'a> {
     /// Edits that have applied.
     edits: usize,
     clock: Clock,
-    series: Vec<Vec<f64>>,
+    topics: Vec<Topic>,
     row_every: u64,
     views: Option<Views>,
     /// The b that the run begins with, rad.
@@ -156,12 +155,8 @@ impl<'a> Recorder<'a> {
         let Set { store, pictures, scale, several } = set;
         let (palette, root) = (palette(Theme::Dark), &forecast.root);
         store.fixed(root, &ViewCoordinates::RIGHT_HAND_Z_UP())?;
-        for signal in &forecast.signals {
-            let style = SeriesLines::new()
-                .with_names([series_name(signal)])
-                .with_colors([colour(charts::colour(signal, &palette, &forecast.peaks))])
-                .with_widths([if signal.path.contains("reference") { 0.8 } else { 1.6 }]);
-            store.fixed(&path_of(root, signal), &style)?;
+        for topic in &forecast.topics {
+            topic.style(store, root, &palette, &forecast.peaks)?;
         }
         let changes = |edit: &Edit| match edit {
             Edit::SetMachine { .. } | Edit::CompareB { .. } | Edit::PoseB { .. } => true,
@@ -186,7 +181,7 @@ impl<'a> Recorder<'a> {
             lasting: !scenario.edits.iter().any(|e| e.step > 0 && changes(&e.edit)),
             edits: 0,
             clock: Clock::default(),
-            series: vec![Vec::new(); forecast.signals.len()],
+            topics: forecast.topics.clone(),
             row_every: (ROW_TIME / scenario.step).round().max(1.0) as u64,
             views: None,
             first_b: 0.0,
@@ -203,9 +198,7 @@ impl<'a> Recorder<'a> {
         let redrawn = (self.edited(at) || self.views.is_none()) && self.prepare(run, frame);
         self.events.note(at, frame);
         self.clock.push(at);
-        for (series, signal) in self.series.iter_mut().zip(&self.forecast.signals) {
-            series.push(signal.value(frame));
-        }
+        self.topics.iter_mut().for_each(|topic| topic.push(frame));
         // What is drawn anew stands in its place from then on.
         if last || redrawn || frame.step.is_multiple_of(self.row_every) {
             self.draw(at, frame, last)?;
@@ -275,12 +268,10 @@ impl<'a> Recorder<'a> {
 
     /// Writes what has gathered.
     fn flush(&mut self) -> Result<(), Stop> {
-        let clock = self.clock.columns();
-        self.clock.clear();
-        for (series, signal) in self.series.iter_mut().zip(&self.forecast.signals) {
-            let values = Scalars::new(std::mem::take(series)).columns_of_unit_batches()?;
-            self.store.columns(&clock, &path_of(self.root, signal), values)?;
+        for topic in &mut self.topics {
+            topic.write(self.store, self.root, &self.clock)?;
         }
+        self.clock.clear();
         for space in [Some(&mut self.machine), self.joints.as_mut(), self.tower.as_mut()].into_iter().flatten() {
             space.write(self.store)?;
         }
@@ -299,10 +290,6 @@ impl<'a> Recorder<'a> {
         self.store.fixed(&path, &properties(self.scenario, (&frame.peaks, &verdict), run.plan()))?;
         Ok((frame.peaks, verdict))
     }
-}
-
-fn path_of(root: &EntityPath, signal: &Signal) -> EntityPath {
-    under(root, &format!("signals/{}", signal.path))
 }
 
 /// All that the run can be made of again, what was foreseen, and what came of it.

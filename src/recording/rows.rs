@@ -1,4 +1,4 @@
-//! Rows that gather until they are written.
+//! Rows of an entity, kept until they are written.
 
 use super::store::{Clock, Instant};
 
@@ -11,12 +11,12 @@ pub struct Track<T> {
 }
 
 impl<T: Clone + PartialEq> Track<T> {
-    /// No row.
+    /// Without a row.
     pub fn new() -> Self {
         Self { clock: Clock::default(), rows: Vec::new(), last: None }
     }
 
-    /// What holds from an instant on.
+    /// Adds a row at an instant, unless it equals the last one.
     pub fn push(&mut self, at: Instant, row: T) {
         if self.last.as_ref() != Some(&row) {
             self.clock.push(at);
@@ -25,23 +25,18 @@ impl<T: Clone + PartialEq> Track<T> {
         }
     }
 
-    /// Whether there never was a row.
-    pub fn is_new(&self) -> bool {
-        self.last.is_none()
-    }
-
-    /// What holds now.
+    /// The last row there was.
     pub fn last(&self) -> Option<&T> {
         self.last.as_ref()
     }
 
-    /// The rows since the last time.
+    /// Hands over the rows since it was last asked, with their instants.
     pub fn take(&mut self) -> (Clock, Vec<T>) {
         (std::mem::take(&mut self.clock), std::mem::take(&mut self.rows))
     }
 }
 
-/// Every so many items, and never more than so many: past that, every other goes.
+/// Keeps every n-th item, and at most `most` of them: when there are more, it drops every other one and doubles n.
 #[derive(Debug)]
 pub struct Thinned<T> {
     items: Vec<T>,
@@ -51,12 +46,12 @@ pub struct Thinned<T> {
 }
 
 impl<T> Thinned<T> {
-    /// No item.
+    /// Nothing kept so far, to keep every n-th item from now on.
     pub fn new(every: u64, most: usize) -> Self {
         Self { items: Vec::new(), every: every.max(1), seen: 0, most }
     }
 
-    /// One more; the last one of all is kept whatever its turn.
+    /// Takes the next item, and keeps it if it is the n-th or the last of all.
     pub fn push(&mut self, item: impl FnOnce() -> T, last: bool) {
         if self.seen.is_multiple_of(self.every) || last {
             self.items.push(item());
@@ -72,7 +67,7 @@ impl<T> Thinned<T> {
         self.seen += 1;
     }
 
-    /// What was kept.
+    /// Hands over what was kept.
     pub fn take(&mut self) -> Vec<T> {
         std::mem::take(&mut self.items)
     }

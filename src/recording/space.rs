@@ -1,5 +1,5 @@
-//! One space of a recording, drawn from its [`Scene`]s: each item of a scene is an entity, or a row of one with others of
-//! its name. What an item says stays is written once, the rest when it changes.
+//! One space of a recording, drawn from its [`Scene`]s: each item of a scene is an entity; items of one name share it.
+//! What an item says never changes is written once, the rest when it changes.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -27,7 +27,7 @@ pub struct Space {
     root: EntityPath,
     eye: Eye,
     background: Rgba,
-    /// Names of items, and what entities have in their place.
+    /// How names of items begin, and how the paths of their entities begin instead.
     renamed: Vec<(&'static str, String)>,
     entities: Vec<Entity>,
     /// Their places by name, for each kind.
@@ -50,7 +50,8 @@ impl Space {
         }
     }
 
-    /// From now on items whose names begin so are entities whose paths begin otherwise; the first that fits counts.
+    /// Puts items under other paths from now on: an item whose name is the first of a pair, or lies under it, becomes the
+    /// entity with the second of the pair in its place. Of several pairs that fit, the first counts.
     pub fn rename(&mut self, renamed: Vec<(&'static str, String)>) {
         self.renamed = renamed;
     }
@@ -82,7 +83,8 @@ impl Space {
         entity
     }
 
-    /// Writes what is new of a scene: what stays for good, or from an instant on if it may not stay; and notes the rest.
+    /// Writes the shapes of a scene that are not in the recording yet: for all times, or from the instant `since` on. Poses
+    /// and shapes that can change gather as rows until [`Space::write`].
     ///
     /// # Errors
     /// If it cannot be written.

@@ -1,4 +1,4 @@
-//! Why a case was not recorded.
+//! Why recording a case stopped.
 
 use super::store::StoreError;
 use crate::session::Refusal;

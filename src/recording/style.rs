@@ -49,11 +49,11 @@ pub fn lines(strips: impl IntoIterator<Item = Vec<[f32; 3]>>, width: f32, rgba: 
     LineStrips3D::new(strips).with_radii([Radius::new_ui_points(0.5 * width)]).with_colors([colour(rgba)])
 }
 
-/// Two archetypes in one row.
-pub struct Both<'a>(pub &'a dyn AsComponents, pub &'a dyn AsComponents);
+/// Several archetypes as one row of an entity.
+pub struct Together<'a>(pub &'a [&'a dyn AsComponents]);
 
-impl AsComponents for Both<'_> {
+impl AsComponents for Together<'_> {
     fn as_serialized_batches(&self) -> Vec<SerializedComponentBatch> {
-        [self.0, self.1].map(|a| a.as_serialized_batches()).concat()
+        self.0.iter().flat_map(|archetype| archetype.as_serialized_batches()).collect()
     }
 }

@@ -1,0 +1,106 @@
+//! Topics: signals that share an entity. Each row of an entity has an identifier and two times, 18 bytes in the file
+//! where a value has 8; signals of one entity share them.
+
+use rerun::{EntityPath, Scalars, SeriesLines};
+
+use super::store::{Clock, Store, StoreError};
+use super::style::{colour, series_name, under};
+use crate::picture::charts::{self, Chart};
+use crate::picture::scene::palette::Palette;
+use crate::simulation::frame::{Frame, Peaks};
+use crate::simulation::signals::Signal;
+
+/// Entities of several groups of signals. Any other group is an entity by its own name; so is a signal that is compared
+/// with those of other cases, because a legend names all series of an entity, the hidden ones too.
+const TOPICS: [(&str, &[&str]); 4] = [
+    ("drives", &["torque", "friction", "angle", "reference", "error", "rate", "acceleration", "joint", "pose"]),
+    (
+        "reaction",
+        &["moment", "force", "tilt", "momentum", "angular_momentum", "impulse", "angular_impulse", "reactionless"],
+    ),
+    (
+        "motion",
+        &[
+            "com",
+            "tip",
+            "target",
+            "base",
+            "base_velocity",
+            "attitude",
+            "attitude_rate",
+            "wheel",
+            "wheel_saturated",
+            "payload",
+        ],
+    ),
+    ("inside", &["pin", "transmission", "change_point", "dexterity", "torque_per_force", "energy", "audit"]),
+];
+
+/// Signals of one entity, and their values at the steps since the last time that they were written.
+#[derive(Clone, Debug)]
+pub struct Topic {
+    /// The entity under `signals`.
+    pub name: String,
+    /// Its series, in the order of the table of signals.
+    pub signals: Vec<Signal>,
+    /// Row by row.
+    values: Vec<f64>,
+}
+
+impl Topic {
+    /// All signals by topic.
+    pub fn all(signals: Vec<Signal>, charts: &[Chart]) -> Vec<Self> {
+        let mut topics: Vec<Self> = Vec::new();
+        for signal in signals {
+            let group = signal.group();
+            let group = if group.starts_with("audit_") { "audit" } else { group };
+            let of = TOPICS.iter().find(|(_, groups)| groups.contains(&group));
+            let is_compared = charts.iter().any(|chart| chart.compared && chart.signals[0] == signal.path);
+            let name = if is_compared { &signal.path } else { of.map_or(group, |(name, _)| name) }.to_owned();
+            match topics.iter_mut().find(|topic| topic.name == name) {
+                Some(topic) => topic.signals.push(signal),
+                None => topics.push(Self { name, signals: vec![signal], values: Vec::new() }),
+            }
+        }
+        topics
+    }
+
+    /// Where it is in the recording.
+    pub fn path(&self, root: &EntityPath) -> EntityPath {
+        under(root, &format!("signals/{}", self.name))
+    }
+
+    /// Names, colours and widths of its series.
+    ///
+    /// # Errors
+    /// If they cannot be written.
+    pub fn style(
+        &self,
+        store: &mut Store,
+        root: &EntityPath,
+        palette: &Palette,
+        peaks: &Peaks,
+    ) -> Result<(), StoreError> {
+        let width = |signal: &Signal| if signal.path.contains("reference") { 0.8 } else { 1.6 };
+        let style = SeriesLines::new()
+            .with_names(self.signals.iter().map(series_name))
+            .with_colors(self.signals.iter().map(|signal| colour(charts::colour(signal, palette, peaks))))
+            .with_widths(self.signals.iter().map(width));
+        store.fixed(&self.path(root), &style)
+    }
+
+    /// One more row.
+    pub fn push(&mut self, frame: &Frame) {
+        self.values.extend(self.signals.iter().map(|signal| signal.value(frame)));
+    }
+
+    /// Writes the rows since the last time, at the instants of a clock.
+    ///
+    /// # Errors
+    /// If they cannot be written.
+    pub fn write(&mut self, store: &mut Store, root: &EntityPath, clock: &Clock) -> Result<(), StoreError> {
+        let rows = Scalars::new(std::mem::take(&mut self.values));
+        let rows = rows.columns(std::iter::repeat_n(self.signals.len(), clock.len()))?;
+        store.columns(&clock.columns(), &self.path(root), rows)
+    }
+}

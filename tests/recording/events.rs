@@ -1,0 +1,141 @@
+//! What a recording says in words: events, phases, properties.
+
+use super::*;
+
+#[test]
+fn what_happened_and_what_was_run_is_told() {
+    let folder = Folder::new("told");
+    let scenario = Scenario::builtin("case-1").expect("built in");
+    record_in(&folder, "one.rrd", std::slice::from_ref(&scenario)).expect("a case");
+    let contents = Contents::of(&folder.path("one.rrd"));
+    let property = |name: &'static str| contents.texts("/__properties/case-1", name);
+    let [text] = &property("scenario")[..] else { panic!("one scenario") };
+    assert_eq!(Scenario::parse(text, "recorded", None).expect("a scenario"), scenario);
+    let [text] = &property("machine")[..] else { panic!("one machine") };
+    assert_eq!(stillbase::mechanics::machine::parse(text, "recorded").expect("a machine"), scenario.machine);
+    assert_eq!(property("version"), [env!("CARGO_PKG_VERSION")]);
+    assert!(property("verdict")[0].starts_with("not reactionless: peak |n_B| 1.0891 N m"), "{:?}", property("verdict"));
+    let events = contents.texts("/case-1/events", "TextLog:text");
+    for part in [
+        "start: Case 1",
+        "plan: minimum-norm, line, quintic, 2 points, T = 1.000 s",
+        "peak |n_B| 1.0891 N m",
+        "end of motion",
+        "peak |τ| 2.42",
+        "not reactionless",
+    ] {
+        assert!(events.iter().any(|e| e.starts_with(part)), "{part} in {events:?}");
+    }
+    assert_eq!(contents.texts("/case-1/phase", "StateChange:state"), ["motion", "rest"]);
+}
+
+#[test]
+fn what_was_foreseen_is_told() {
+    let folder = Folder::new("foreseen");
+    let names = ["change-b", "circle", "drift", "circle"];
+    let mut scenarios =
+        names.map(|name| Scenario { duration: Some(0.02), ..Scenario::builtin(name).expect("built in") });
+    // The last with limits on jerk.
+    let smooth = &mut scenarios[3];
+    (smooth.name, smooth.task.law) = ("smooth".into(), TimeLaw::FastestSmooth);
+    for k in 1..=3 {
+        smooth.machine = smooth.machine.set(&format!("drive.{k}.jerk_limit"), "900").expect("a limit");
+    }
+    record_in(&folder, "four.rrd", &scenarios).expect("four cases");
+    let contents = Contents::of(&folder.path("four.rrd"));
+    for scenario in &scenarios {
+        let run = stillbase::session::Run::new(scenario).expect("it runs");
+        let plan = run.plan();
+        let told = |name: &'static str| contents.numbers(&format!("/__properties/{}", scenario.name), name);
+        assert_eq!(told("forecast_time"), [plan.forecast.time]);
+        assert_eq!(told("forecast_peak_base_moment"), [plan.forecast.moment]);
+        assert_eq!(told("forecast_moment_impulse"), [plan.forecast.impulse]);
+        let price: Vec<f64> = plan.price.iter().map(|p| p.delta_b()).collect();
+        assert_eq!((told("delta_b"), price.len()), (price.clone(), usize::from(scenario.name == "change-b")));
+        let least: Vec<f64> = plan.price.iter().map(|p| p.least_peak(plan.forecast.time)).collect();
+        assert_eq!(told("least_peak_base_moment"), least);
+        let gap: Vec<f64> = plan.pace.iter().filter_map(|pace| pace.gap()).collect();
+        assert_eq!((told("gap"), gap.len()), (gap.clone(), usize::from(scenario.name == "smooth")));
+        let drift = told("drift_2");
+        assert_eq!(drift.len(), if scenario.name == "drift" { scenario.task.cycles as usize } else { 0 });
+        if let (Some(drift), Some([start, .., end])) = (drift.last(), plan.cycles.get(..)) {
+            assert_eq!(*drift, end[1] - start[1]);
+        }
+    }
+    let limit = contents.texts("/__properties/circle", "limit");
+    assert!(limit.iter().any(|l| l.contains("of drive")), "{limit:?}");
+}
+
+#[test]
+fn a_gesture_is_one_event() {
+    let folder = Folder::new("gestures");
+    let mut scenario = short("case-3");
+    scenario.duration = Some(0.9);
+    let push = |step, x: f64| TimedEdit { step, edit: Edit::Push { x, y: 0.0 } };
+    let drag = |step, x: f64| TimedEdit { step, edit: Edit::DragTarget { x, y: 0.8 } };
+    // A frame brings an edit; a still hand brings none for a while; then the pointer leads, rests, and leads again.
+    scenario.edits = (0..10).map(|i| push(16 * i, 0.1 + 0.01 * i as f64)).collect();
+    scenario.edits.extend([push(450, 0.05), push(466, 0.0), push(470, 0.02), push(480, 0.0)]);
+    scenario.edits.extend((0..5).map(|i| drag(500 + 16 * i, 0.52 + 0.001 * i as f64)));
+    scenario.edits.push(drag(840, 0.55));
+    record_in(&folder, "one.rrd", std::slice::from_ref(&scenario)).expect("an edited case");
+    let told = Contents::of(&folder.path("one.rrd")).texts("/case-3/events", "TextLog:text");
+    let edits: Vec<&str> =
+        told.iter().map(String::as_str).filter(|e| ["push", "let", "drag"].iter().any(|w| e.starts_with(w))).collect();
+    assert_eq!(
+        edits,
+        [
+            "push with up to 0.19 N, within 0.450 s",
+            "let go",
+            "push with 0.02, 0.00 N",
+            "let go",
+            "drag target to 0.524, 0.800 m, within 0.064 s",
+            "drag target to 0.550, 0.800 m",
+        ]
+    );
+}
+
+#[test]
+fn edits_on_the_way_are_recorded() {
+    let folder = Folder::new("edits");
+    let mut scenario = short("case-3");
+    let edit = |step, edit| TimedEdit { step, edit };
+    scenario.edits = vec![
+        edit(22, Edit::DragTarget { x: 3.0, y: 0.0 }),
+        edit(40, Edit::CompareB { b: Some(1.0) }),
+        edit(60, Edit::SetMachine { key: "limits.a1".into(), value: "0.4,2.7".into() }),
+    ];
+    record_in(&folder, "edited.rrd", &[scenario]).expect("an edited case");
+    let contents = Contents::of(&folder.path("edited.rrd"));
+    let events = contents.texts("/case-3/events", "TextLog:text");
+    for part in ["drag target to 3.000", "compare with b = 1.000 rad", "set limits.a1", "the target is outside"] {
+        assert!(events.iter().any(|e| e.starts_with(part)), "{part} in {events:?}");
+    }
+    let steps = |path: &str, component: &'static str| -> Vec<i64> {
+        let chunks = contents.at(path).into_iter().filter(|c| c.components().contains_component(component.into()));
+        chunks.flat_map(|c| c.timelines()[&TimelineName::from("step")].times_raw().to_vec()).collect()
+    };
+    // What changes on the way is not static: with other limits workspaces are others from step 60 on, links are not.
+    assert_eq!(steps("/case-3/machine/link/1", "Mesh3D:vertex_positions"), [0]);
+    assert_eq!(steps("/case-3/workspace/2.400", "Mesh3D:vertex_positions"), [0, 60]);
+    assert_eq!(steps("/case-3/workspace/5.000", "Mesh3D:vertex_positions"), [0]);
+    assert_eq!(steps("/case-3/workspace/5.000", "Clear:is_recursive"), [40]);
+    assert_eq!(steps("/case-3/workspace/1.000", "Mesh3D:vertex_positions"), [40, 60]);
+    // The plan is there until the pointer leads.
+    for (path, component) in [
+        ("plan/path", "LineStrips3D:strips"),
+        ("joint_space/path", "LineStrips3D:strips"),
+        ("tower/reach/B", "LineStrips3D:strips"),
+    ] {
+        assert_eq!(steps(&format!("/case-3/{path}"), component), [0], "{path}");
+    }
+    for path in ["plan/path", "plan/start/1", "joint_space/path", "tower/reach/B", "tower/path"] {
+        assert_eq!(steps(&format!("/case-3/{path}"), "Clear:is_recursive"), [22], "{path}");
+    }
+    assert_eq!(steps("/case-3/tower/wall", "Mesh3D:vertex_positions"), [0, 60]);
+    assert_eq!(steps("/case-3/joint_space/plane", "Mesh3D:vertex_positions"), [0, 60]);
+    // Also between the instants at which bodies have their rows.
+    let moved = steps("/case-3/joint_space/pose", "Points3D:positions");
+    assert!(moved.windows(2).all(|w| w[0] < w[1]) && moved[4..7] == [20, 22, 25], "{moved:?}");
+    assert_eq!(contents.texts("/case-3/phase", "StateChange:state"), ["motion", "follow"]);
+}

@@ -1,0 +1,107 @@
+//! The file: the same each time, whole or not there at all, and refused with a reason.
+
+use super::*;
+
+/// Chunks without their identifiers.
+fn data(file: &std::path::Path) -> Vec<(String, Vec<String>)> {
+    let contents = Contents::of(file);
+    contents
+        .stores
+        .iter()
+        .map(|(id, chunks)| {
+            let rows = chunks.iter().map(|c| {
+                let mut columns: Vec<String> =
+                    c.components().values().map(|x| format!("{} {:?}", x.descriptor, x.list_array)).collect();
+                columns.sort();
+                format!("{} {:?} {columns:?}", c.entity_path(), c.row_ids().collect::<Vec<_>>())
+            });
+            (id.to_string(), rows.collect())
+        })
+        .collect()
+}
+
+#[test]
+fn recording_again_gives_the_same_recording() {
+    let folder = Folder::new("again");
+    let scenarios = [short("case-1"), short("case-2")];
+    for name in ["a.rrd", "b.rrd"] {
+        record_in(&folder, name, &scenarios).expect("two cases");
+    }
+    assert_eq!(data(&folder.path("a.rrd")), data(&folder.path("b.rrd")));
+    let mut other = short("case-2");
+    other.control.kp = stillbase::simulation::plant::Each::All(100.0);
+    record_in(&folder, "c.rrd", &[short("case-1"), other]).expect("two cases");
+    let ids = |name: &str| Contents::of(&folder.path(name)).stores.into_keys().collect::<Vec<_>>();
+    assert_ne!(ids("a.rrd"), ids("c.rrd"), "another recording has another name");
+}
+
+#[test]
+fn a_file_is_never_replaced_unasked_and_never_left_half() {
+    let folder = Folder::new("refused");
+    let file = folder.path("there.rrd");
+    std::fs::write(&file, "mine").expect("a file");
+    let refused = record_in(&folder, "there.rrd", &[short("case-3")]);
+    assert!(matches!(refused, Err(RecordError::Write(WriteError::Exists(f))) if f == file));
+    assert_eq!(std::fs::read(&file).expect("the file"), b"mine");
+
+    let unplannable =
+        Scenario { task: stillbase::session::scenario::Task { b: 9.0, ..short("case-3").task }, ..short("case-3") };
+    let force = Options { force: true, ..Options::default() };
+    let refused = record(&[short("case-1"), unplannable], &file, &force, &mut quietly);
+    assert!(matches!(&refused, Err(RecordError::Refused { scenario, .. }) if scenario == "case-3"), "{refused:?}");
+    assert_eq!(std::fs::read(&file).expect("the file"), b"mine", "what was there is there still");
+    assert_eq!(folder.names(), ["there.rrd"], "nothing half written beside");
+
+    record(&[short("case-3")], &file, &force, &mut quietly).expect("it may replace it");
+    assert!(!Contents::of(&file).recording().is_empty());
+    assert_eq!(folder.names(), ["there.rrd"]);
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_named() {
+    let folder = Folder::new("unwritable");
+    std::fs::write(folder.path("plain"), "").expect("a file");
+    for name in ["no/such/folder.rrd", "plain/inside.rrd"] {
+        let error = record_in(&folder, name, &[short("case-3")]).expect_err("nowhere to write");
+        assert!(matches!(&error, RecordError::Write(WriteError::NoFolder { file, .. }) if *file == folder.path(name)));
+        assert!(error.to_string().contains(name), "{error}");
+    }
+    let error = record(&[short("case-3")], &folder.0, &Options { force: true, pictures: None }, &mut quietly);
+    assert!(matches!(error, Err(RecordError::Write(WriteError::IsFolder(_)))), "a folder is no file");
+    assert_eq!(folder.names(), ["plain"]);
+    // Where not even root can write.
+    #[cfg(target_os = "linux")]
+    {
+        let file = PathBuf::from("/proc/case.rrd");
+        let error = record(&[short("case-3")], &file, &Options::default(), &mut quietly).expect_err("nowhere to write");
+        assert!(matches!(&error, RecordError::Write(WriteError::Failed { file: named, .. }) if *named == file));
+    }
+}
+
+#[test]
+fn what_cannot_be_recorded_is_said() {
+    let folder = Folder::new("said");
+    assert!(matches!(record_in(&folder, "x.rrd", &[]), Err(RecordError::Nothing)));
+    let twice = record_in(&folder, "x.rrd", &[short("case-1"), short("case-1")]);
+    assert!(matches!(twice, Err(RecordError::SameName(name)) if name == "case-1"));
+    for pictures in [
+        Pictures { fps: 0.0, width: 10, height: 10, pin_forces: false },
+        Pictures { fps: f64::NAN, width: 10, height: 10, pin_forces: false },
+        Pictures { fps: 30.0, width: 0, height: 10, pin_forces: false },
+    ] {
+        let options = Options { pictures: Some(pictures), force: false };
+        let refused = record(&[short("case-1")], &folder.path("x.rrd"), &options, &mut quietly);
+        assert!(matches!(refused, Err(RecordError::Pictures(_))), "{pictures:?}");
+    }
+    assert!(folder.names().is_empty());
+}
+
+#[test]
+fn names_with_slashes_and_blanks_stay_one_case() {
+    let folder = Folder::new("names");
+    let scenario = Scenario { name: "a/b c".into(), ..short("case-3") };
+    record_in(&folder, "x.rrd", &[scenario]).expect("a case");
+    let contents = Contents::of(&folder.path("x.rrd"));
+    let of_case = contents.recording().iter().filter(|c| !c.entity_path().is_property());
+    assert!(of_case.into_iter().all(|c| c.entity_path().iter().next().is_some_and(|p| p.unescaped_str() == "a/b c")));
+}

@@ -1,0 +1,37 @@
+//! Series of a recording against the frames of the run.
+
+use super::*;
+
+#[test]
+fn signals_are_the_frames_at_every_step() {
+    let folder = Folder::new("signals");
+    let mut heard = Vec::new();
+    let recordings = record(&cases(), &folder.path("cases.rrd"), &Options::default(), &mut |p| {
+        heard.push((p.done, p.of, p.what.to_owned()));
+    })
+    .expect("three cases");
+    let contents = Contents::of(&folder.path("cases.rrd"));
+    for (scenario, recording) in cases().iter().zip(&recordings) {
+        let mut frames: Vec<Frame> = Vec::new();
+        replay(scenario, |_, frame| frames.push(*frame)).expect("it runs");
+        assert_eq!(frames.len(), 1001);
+        for signal in signals(&scenario.machine) {
+            let (steps, nanos, values) = contents.signal(&scenario.name, &signal);
+            assert!(steps.iter().copied().eq(0..=1000), "{}: a row at every step", signal.path);
+            assert!(nanos.iter().copied().eq((0..=1000).map(|i| i * 1_000_000)), "{}: and its time", signal.path);
+            let expected: Vec<f64> = frames.iter().map(|f| signal.value(f)).collect();
+            assert_eq!(values, expected, "{} of {}", signal.path, scenario.name);
+        }
+        let last = frames.last().expect("frames").peaks;
+        assert_eq!(recording.scenario, scenario.name);
+        assert_eq!(recording.file, folder.path("cases.rrd"));
+        assert_eq!(recording.steps, 1000);
+        assert_eq!(recording.peak_torque, last.torque.to_vec());
+        assert_eq!(recording.peak_base_moment, last.moment);
+        assert_eq!(recording.peak_base_force, last.force);
+        assert_eq!(recording.reactionless, scenario.name == "case-3");
+        assert!(recording.notes.is_empty());
+    }
+    assert!(heard.windows(2).all(|w| w[0].0 <= w[1].0), "progress only grows");
+    assert_eq!(heard.last(), Some(&(6000, 6000, "case-3".to_owned())));
+}
