@@ -1,0 +1,187 @@
+//! `machines`, `check` and `design`, and machines from files and settings.
+
+use super::*;
+
+#[test]
+fn machines_are_listed() {
+    let all = object(&["machines"]);
+    assert_eq!(keys(&all), ["machines"]);
+    let first = &all["machines"][0];
+    assert_eq!(keys(first), ["drives", "links", "name", "summary"]);
+    assert_eq!(first["name"], "nine-link");
+    assert_eq!((&first["drives"], &first["links"]), (&json!(3), &json!(9)));
+    let names: Vec<&str> =
+        all["machines"].as_array().expect("list").iter().filter_map(|m| m["name"].as_str()).collect();
+    let table = prints(&["machines"]);
+    assert!(names.contains(&"nine-link-table-1") && names.iter().all(|n| table.contains(n)));
+}
+
+#[test]
+fn check_reports_table_1_as_printed_and_re_solved() {
+    let (printed, want) = (object(&["check", "nine-link-table-1"]), &planning()["table_1"]);
+    assert_eq!(
+        keys(&printed),
+        [
+            "coupling_coefficients",
+            "force_balanced",
+            "gamma_coefficients",
+            "h",
+            "integrable",
+            "invariant",
+            "lambda",
+            "mass"
+        ]
+    );
+    for (key, reference) in [
+        ("gamma_coefficients", "gamma_coefficients"),
+        ("coupling_coefficients", "coupling_coefficients"),
+        ("h", "h"),
+        ("lambda", "lambda_"),
+    ] {
+        near(&printed[key], &want[reference], 1e-8, key);
+    }
+    assert_eq!((&printed["force_balanced"], &printed["invariant"]), (&json!(false), &json!(false)));
+    let solved = object(&["check", "nine-link"]);
+    assert_eq!((&solved["force_balanced"], &solved["invariant"]), (&json!(true), &json!(true)));
+    near(&solved["mass"], &json!(16.05), 1e-14, "mass");
+}
+
+#[test]
+fn design_gives_the_known_centres_of_mass() {
+    let known = planning()["design"].clone();
+    for (preset, i) in [("as-printed", 0), ("table-1", 1), ("minimum-norm", 2)] {
+        let by_name = object(&["design", "nine-link-table-1", "--preset", preset]);
+        assert_eq!(keys(&by_name), ["com", "coupling_coefficients", "gamma_coefficients", "h", "lambda"]);
+        near(&by_name["com"], &known[i]["com"], 5e-9, preset);
+        let penalty = joined(&known[i]["penalty"]);
+        near(&object(&["design", "nine-link-table-1", "--penalty", &penalty])["com"], &known[i]["com"], 5e-9, preset);
+    }
+    let usual = object(&["design", "nine-link-table-1"]);
+    near(&usual["h"], &known[1]["h"], 5e-9, "H");
+    near(&usual["lambda"], &known[1]["lambda_"], 5e-9, "λ");
+}
+
+#[test]
+fn a_designed_machine_can_be_checked_and_is_not_overwritten() {
+    let folder = Folder::new("cli");
+    let file = word(folder.path("still.toml"));
+    prints(&["design", "nine-link-table-1", "--set", "link.9.mass=0.4", "-o", &file]);
+    let (made, check) = (fs::read_to_string(&file).expect("file"), object(&["check", &file]));
+    assert_eq!((&check["force_balanced"], &check["invariant"]), (&json!(true), &json!(true)));
+    assert!(made.contains("name = \"still\""), "a machine of its own name: {made}");
+    fails(&["design", "nine-link", "-o", &file], 2, &[&file, "--force"]);
+    assert_eq!(fs::read_to_string(&file).expect("file"), made);
+    prints(&["design", "nine-link", "-o", &file, "--force"]);
+    assert_ne!(fs::read_to_string(&file).expect("file"), made);
+    assert_eq!(folder.names(), ["still.toml"]);
+}
+
+#[test]
+fn settings_change_the_machine_before_anything_is_planned() {
+    let checked = |set: &[&str]| object(&[&["check", "nine-link"], set].concat());
+    near(&checked(&["--set", "payload.mass=0.4"])["mass"], &json!(16.45), 1e-14, "mass");
+    let moved = checked(&["--set", "link.5.com=-0.02", "--set", "link.9.mass=0.3"]);
+    assert_eq!((&moved["force_balanced"], &moved["invariant"]), (&json!(false), &json!(false)));
+    // Two settings that are wrong alone are right together: they are checked once, at the end.
+    checked(&["--set", "limits.a1=4,5", "--set", "limits.a1=0.4,2.7"]);
+    let run = |set: &[&str]| object(&[&["simulate", "case-3", "--every", "1000"], set].concat());
+    // Control knows the payload, so the torques change; and the machine is balanced no longer.
+    let loaded = run(&["--set", "payload.mass=0.1"]);
+    assert_eq!(loaded["verdict"]["reactionless"], false);
+    assert!(loaded["verdict"]["peak_base_force"].as_f64() > Some(0.1), "{}", loaded["verdict"]);
+    let narrow = ["simulate", "case-3", "--set", "limits.a1=0.4,2.7"];
+    fails(&narrow, 1, &["case-3", "B (0.550, 0.900) m"]);
+}
+
+#[test]
+fn wrong_settings_say_what_would_be_right() {
+    let refused = |set: &str, words: &[&str]| fails(&["check", "nine-link", "--set", set], 2, words);
+    refused("link.5.mass=NaN", &["link[5].mass is not a number", "want a finite number, kg"]);
+    refused("link.5.mass=-1", &["link[5].mass is -1", "want 1e-15 to 1000000 kg"]);
+    refused("link.5.mass=much", &["link.5.mass=\"much\"", "want one number"]);
+    refused("link.5.length=0.7", &["l5", "link 8", "parallelogram", "length.l5"]);
+    refused("link.99.mass=1", &["\"99\"", "want one of \"1\""]);
+    refused("link.5.colour=1", &["link.5.colour", "want one of"]);
+    refused("gravity=9.81", &["want two numbers"]);
+    refused("limits.a1=2,1", &["max", "not below min"]);
+    refused("mass", &["want KEY=VALUE"]);
+    fails(&["check", "no-such-machine"], 2, &["no-such-machine", "nine-link-table-1", "TOML"]);
+    fails(&["check", "no-such-file.toml"], 2, &["no-such-file.toml"]);
+}
+
+/// Damages to the nine-link machine's file, and what is said of each.
+#[test]
+fn a_damaged_machine_file_is_named_with_its_line() {
+    let folder = Folder::new("cli");
+    let check = |text: &str, words: &[&str]| {
+        fails(&["check", &word(folder.file("arm.toml", text))], 2, words);
+    };
+    let damage = |from: &str, to: &str, words: &[&str]| {
+        let at = NINE_LINK.find(from).unwrap_or_else(|| panic!("{from}"));
+        let line = format!("arm.toml:{}:", NINE_LINK[..at].matches('\n').count() + 1);
+        check(&NINE_LINK.replacen(from, to, 1), &[&[line.as_str()], words].concat());
+    };
+    damage("mass = 1.45", "mass = nan", &["link[2].mass is not a number"]);
+    damage("mass = 1.45", "mass = -1.45", &["link[2].mass is -1.45", "1e-15 to 1000000 kg"]);
+    damage("mass = 1.45", "weight = 1.45", &["unknown field `weight`"]);
+    damage("mass = 1.45", "mass = ", &[]);
+    damage(
+        "[[closure]]\na = { link = \"4\"",
+        "[[closure]]\na = { link = \"6\"",
+        &["closure[1]", "parallelogram that closes"],
+    );
+    damage("attach = { link = \"3\"", "attach = { link = \"6\"", &["link[6].attach", "hangs on itself"]);
+    damage(
+        "drive = \"3\"\nattach = \"base\"",
+        "drive = \"4\"\nattach = \"base\"",
+        &["drive \"4\"", "\"1\", \"2\", \"3\""],
+    );
+    let end = NINE_LINK.find("[end_effector]").expect("end effector");
+    let angles = NINE_LINK.find("# Relative joint angles").expect("angles");
+    check(&[&NINE_LINK[..end], &NINE_LINK[angles..]].concat(), &["arm.toml: no end effector", "want [end_effector]"]);
+    check(&NINE_LINK.replacen("com = 0.20158885517910255\n", "", 1), &["arm.toml:", "missing field `com`"]);
+    check("\u{0}", &["arm.toml:1:"]);
+}
+
+/// Two drives have no plane of (a1, a2): the questions about planes have no answer, the others do.
+#[test]
+fn a_machine_of_two_drives_is_checked_but_has_no_planes() {
+    let folder = Folder::new("cli");
+    let file = word(folder.file("two.toml", TWO_LINK));
+    let balance = object(&["check", &file]);
+    assert_eq!(balance["coupling_coefficients"].as_array().map(Vec::len), Some(1));
+    let designed = object(&["design", &file]);
+    assert_eq!(numbers(&designed["com"]).len(), 2);
+    fails(&["design", &file, "--preset", "table-1"], 2, &["9 penalties for 2 links"]);
+    fails(&["design", &file, "--penalty", "1,-1"], 2, &["'-1'", "1e-6 to 1e6"]);
+    fails(&["reach", &file, "0.5,0.5"], 1, &["2 drives", "want three"]);
+    fails(&["pose", &file, "0.5,0.5", "--b", "1"], 1, &["2 drives"]);
+    fails(&["workspace", &file, "--b", "1"], 1, &["2 drives"]);
+}
+
+const TWO_LINK: &str = r#"
+name = "two"
+[[drive]]
+name = "shoulder"
+[[drive]]
+name = "elbow"
+[[link]]
+name = "upper"
+drive = "shoulder"
+attach = "base"
+length = 0.4
+mass = 2.0
+inertia = 0.03
+com = 0.2
+[[link]]
+name = "forearm"
+drive = "elbow"
+attach = { link = "upper", at = "tip" }
+length = 0.3
+mass = 1.0
+inertia = 0.01
+com = 0.15
+[end_effector]
+link = "forearm"
+at = "tip"
+"#;
