@@ -715,9 +715,10 @@ fn limits_are_kept_where_another_takes_over() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// Any waves, any limits, with and without balance: rest to rest within all limits, and one of them active.
+    /// Any waves, any limits, with and without balance: rest to rest within all limits, and one of them active. Two
+    /// hundred of them: each is judged by a grid eight times as dense, and a thousand are in the long test.
     #[test]
     fn random_curves_keep_random_limits(
         r in prop::array::uniform3(0.05..0.8_f64),
@@ -798,10 +799,10 @@ fn judge(points: &[Vector], shape: usize, blend: f64, limits: &Limits, smooth: b
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(ProptestConfig::with_cases(400))]
 
     /// Limits are kept to 1e-6 between the stations too, and no more than 0.5 % is lost to a converged grid, however
-    /// tightly corners are rounded off.
+    /// tightly corners are rounded off. Four hundred of them; a thousand of either law are in the long test.
     #[test]
     fn fastest_motions_keep_their_limits_and_are_the_best(
         points in anywhere(4), shape in 0..3_usize, blend in -4.0..-1.0_f64, speed in prop::option::of(1.0..6.0_f64),
@@ -811,9 +812,9 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(8))]
+    #![proptest_config(ProptestConfig::with_cases(60))]
 
-    /// And those on jerk too.
+    /// And those on jerk too: sixty, as each takes a third of a second in a debug build.
     #[test]
     fn smooth_motions_keep_their_limits(
         points in anywhere(4), shape in 0..3_usize, blend in -4.0..-1.0_f64, jerk in 2.5..4.0_f64,
@@ -869,10 +870,10 @@ fn rounded_corners_are_never_slower_than_rests() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(500))]
+    #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
-    #[ignore = "long: 500 plans of either law, some minutes in a release build"]
+    #[ignore = "long: a thousand plans of either law, some minutes in a release build"]
     fn rounded_corners_are_never_slower_than_rests_anywhere(points in anywhere(5), blend in -4.0..-1.0_f64) {
         for law in ["fastest", "fastest-smooth"] {
             if let Some((rounded, resting)) = never_slower(&points, 10f64.powf(blend), law) {
@@ -882,12 +883,26 @@ proptest! {
     }
 
     #[test]
-    #[ignore = "long: 500 motions of either law, some minutes in a release build"]
+    #[ignore = "long: a thousand motions of either law, some minutes in a release build"]
     fn fastest_motions_keep_their_limits_anywhere(
         points in anywhere(5), shape in 0..3_usize, blend in -4.0..-1.0_f64, jerk in 2.5..4.0_f64,
         speed in prop::option::of(1.0..6.0_f64), smooth in any::<bool>(),
     ) {
         judge(&points, shape, 10f64.powf(blend), &drives(speed, 10f64.powf(jerk)), smooth)?;
+    }
+
+    #[test]
+    #[ignore = "long: a thousand waves, two minutes in a debug build"]
+    fn random_curves_keep_random_limits_anywhere(
+        r in prop::array::uniform3(0.05..0.8_f64),
+        w in prop::array::uniform3(0.5..9.0_f64),
+        p in prop::array::uniform3(0.0..6.3_f64),
+        torque in prop::array::uniform3(6.0..40.0_f64),
+        speed in prop::array::uniform3(0.5..20.0_f64),
+        acceleration in prop::array::uniform3(5.0..80.0_f64),
+        heavy in any::<bool>(),
+    ) {
+        random_curve([r, w, p], [torque, speed, acceleration], heavy)?;
     }
 }
 

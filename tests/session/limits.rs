@@ -35,11 +35,80 @@ fn limit((i, from, to): (usize, f64, f64)) -> Edit {
     Edit::SetMachine { key: format!("limits.a{i}"), value: format!("{from},{to}") }
 }
 
+/// A session in which both limits are set at some step, playing or not, led by hand or not.
+fn apply(
+    one: (usize, f64, f64),
+    other: (usize, f64, f64),
+    steps: u64,
+    plays: bool,
+    leads: bool,
+) -> Result<(), TestCaseError> {
+    let mut session = open(coarse());
+    session.play();
+    session.tick(steps);
+    if leads {
+        session.apply(Edit::DragTarget { x: 0.52, y: 0.7 }).expect("any place");
+        session.end_gesture();
+        session.tick(25);
+    }
+    if !plays {
+        session.pause();
+    }
+    let before = (session.to_scenario(), session.frames().to_vec());
+    for set in [one, other] {
+        session.apply(limit(set)).expect("limits always apply");
+        session.end_gesture();
+        let now = session.scenario().machine.angles()[set.0 - 1].limits.clone();
+        prop_assert_eq!((*now.start(), *now.end()), (set.1, set.2));
+    }
+    let saved = session.to_scenario();
+    let replayed = stillbase::session::replay(&saved, |_, _| {});
+    if let Some(waiting) = session.run().waiting().cloned() {
+        prop_assert!(!leads, "whoever leads goes on");
+        let (b, planes) = (session.scenario().task.b, session.run().planes().expect("planes").clone());
+        let points = session.scenario().task.points();
+        for (i, p) in points.iter().enumerate() {
+            let served = !planes.map().poses(*p, b).is_empty();
+            prop_assert_eq!(served, waiting.points.iter().all(|(n, _)| *n != i));
+        }
+        for (i, would_do) in &waiting.points {
+            if let Some(b) = would_do {
+                prop_assert!(!planes.map().poses(points[*i], b.value()).is_empty(), "{} at {}", i, b);
+            }
+        }
+        let at = session.frames().to_vec();
+        session.play();
+        session.tick(50);
+        session.step_by(5);
+        session.seek(0.5);
+        prop_assert_eq!(session.frames(), &at[..], "time stands still");
+        prop_assert!(session.frame().is_finite());
+        prop_assert_eq!(session.apply(Edit::DragTarget { x: 0.5, y: 0.6 }), Err(waiting.why.clone()));
+        prop_assert_eq!(replayed.err(), Some(waiting.why.clone()), "headless it is refused");
+        let again =
+            Session::open(Scenario::parse(&saved.to_toml(), "saved", None).expect("readable")).expect("it waits");
+        prop_assert_eq!(again.run().waiting(), Some(&waiting));
+        prop_assert_eq!(again.frames(), &at[..]);
+    } else {
+        let run = replayed.expect("what runs here runs headless");
+        prop_assert_eq!(run.frame(), session.run().frame());
+    }
+    if session.run().waiting().is_some() || !plays {
+        session.pause();
+        session.undo().expect("taken back");
+        session.undo().expect("taken back");
+        prop_assert_eq!(session.to_scenario(), before.0);
+        prop_assert!(session.frames() == &before.1[..], "the same frames");
+    }
+    Ok(())
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig::with_cases(300))]
 
     /// Joint limits always apply, at rest, under way and in the hand. A task that does not fit them waits: with the b
-    /// that would do, without time, saved and opened as it is, refused headless, and whole again with wider limits.
+    /// that would do, without time, saved and opened as it is, refused headless, and whole again with wider limits. Three
+    /// hundred: each takes a tenth of a second in a debug build. A thousand are in the long test.
     #[test]
     fn limits_always_apply(
         one in limits(),
@@ -48,61 +117,22 @@ proptest! {
         plays: bool,
         leads: bool,
     ) {
-        let mut session = open(coarse());
-        session.play();
-        session.tick(steps);
-        if leads {
-            session.apply(Edit::DragTarget { x: 0.52, y: 0.7 }).expect("any place");
-            session.end_gesture();
-            session.tick(25);
-        }
-        if !plays {
-            session.pause();
-        }
-        let before = (session.to_scenario(), session.frames().to_vec());
-        for set in [one, other] {
-            session.apply(limit(set)).expect("limits always apply");
-            session.end_gesture();
-            let now = session.scenario().machine.angles()[set.0 - 1].limits.clone();
-            prop_assert_eq!((*now.start(), *now.end()), (set.1, set.2));
-        }
-        let saved = session.to_scenario();
-        let replayed = stillbase::session::replay(&saved, |_, _| {});
-        if let Some(waiting) = session.run().waiting().cloned() {
-            prop_assert!(!leads, "whoever leads goes on");
-            let (b, planes) = (session.scenario().task.b, session.run().planes().expect("planes").clone());
-            let points = session.scenario().task.points();
-            for (i, p) in points.iter().enumerate() {
-                let served = !planes.map().poses(*p, b).is_empty();
-                prop_assert_eq!(served, waiting.points.iter().all(|(n, _)| *n != i));
-            }
-            for (i, would_do) in &waiting.points {
-                if let Some(b) = would_do {
-                    prop_assert!(!planes.map().poses(points[*i], b.value()).is_empty(), "{} at {}", i, b);
-                }
-            }
-            let at = session.frames().to_vec();
-            session.play();
-            session.tick(50);
-            session.step_by(5);
-            session.seek(0.5);
-            prop_assert_eq!(session.frames(), &at[..], "time stands still");
-            prop_assert!(session.frame().is_finite());
-            prop_assert_eq!(session.apply(Edit::DragTarget { x: 0.5, y: 0.6 }), Err(waiting.why.clone()));
-            prop_assert_eq!(replayed.err(), Some(waiting.why.clone()), "headless it is refused");
-            let again = Session::open(Scenario::parse(&saved.to_toml(), "saved", None).expect("readable")).expect("it waits");
-            prop_assert_eq!(again.run().waiting(), Some(&waiting));
-            prop_assert_eq!(again.frames(), &at[..]);
-        } else {
-            let run = replayed.expect("what runs here runs headless");
-            prop_assert_eq!(run.frame(), session.run().frame());
-        }
-        if session.run().waiting().is_some() || !plays {
-            session.pause();
-            session.undo().expect("taken back");
-            session.undo().expect("taken back");
-            prop_assert_eq!(session.to_scenario(), before.0);
-            prop_assert!(session.frames() == &before.1[..], "the same frames");
-        }
+        apply(one, other, steps, plays, leads)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    #[test]
+    #[ignore = "long: a thousand sessions, two minutes in a debug build"]
+    fn limits_always_apply_often(
+        one in limits(),
+        other in limits(),
+        steps in 1..100u64,
+        plays: bool,
+        leads: bool,
+    ) {
+        apply(one, other, steps, plays, leads)?;
     }
 }

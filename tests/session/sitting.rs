@@ -221,21 +221,41 @@ impl Act {
     }
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, max_shrink_iters: 200, ..ProptestConfig::default() })]
+/// Replayed and opened again, a sitting gives equal frames.
+fn sit(start: Scenario, acts: &[Act]) -> Result<(), TestCaseError> {
+    let mut session = open(start);
+    for act in acts {
+        act.perform(&mut session);
+        let waits = session.run().waiting().is_some();
+        prop_assert!(waits || session.script().iter().all(|e| e.step < session.frames().len() as u64));
+    }
+    one_path(&session);
+    Ok(())
+}
 
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, max_shrink_iters: 200, ..ProptestConfig::default() })]
+
+    /// Three hundred: a sitting takes a tenth of a second in a debug build. A thousand are in the long test.
     #[test]
     fn any_sitting_replayed_gives_equal_frames(
         start in any_start(),
         acts in prop::collection::vec(any_act(), 1..24),
     ) {
-        let mut session = open(start);
-        for act in &acts {
-            act.perform(&mut session);
-            let waits = session.run().waiting().is_some();
-            prop_assert!(waits || session.script().iter().all(|e| e.step < session.frames().len() as u64));
-        }
-        one_path(&session);
+        sit(start, &acts)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 1000, max_shrink_iters: 200, ..ProptestConfig::default() })]
+
+    #[test]
+    #[ignore = "long: a thousand sittings, two minutes in a debug build"]
+    fn any_sitting_replayed_gives_equal_frames_often(
+        start in any_start(),
+        acts in prop::collection::vec(any_act(), 1..24),
+    ) {
+        sit(start, &acts)?;
     }
 }
 

@@ -329,7 +329,7 @@ fn contacts_are_those_of_the_exact_twin() {
     assert!(stops > 3 * CASES as usize && busiest >= 10, "{stops} {busiest}");
 }
 
-const CASES: u64 = 150;
+const CASES: u64 = 1000;
 
 /// Contacts that end within a few digits of each other, or of the end of a part: each lost momentum, by up to the whole
 /// of a contact's.
