@@ -77,7 +77,7 @@
 //!
 //! | folder | what stands there |
 //! |---|---|
-//! | [`settings`] | how a value is named, bounded and shown: changes by key, ranges, text from outside |
+//! | [`settings`] | how a value is named, bounded and shown: keys, changes by key, ranges, text from outside |
 //! | [`mechanics`] | what a machine is: planar algebra, links and drives, kinematics, dynamics, pin forces, balance |
 //! | [`planning`] | where it may go, and when: reactionless planes and workspaces, curves, timing, ways off the plane |
 //! | [`simulation`] | what then happens: plant, control, the step, frames, the audit, signals |
@@ -92,9 +92,10 @@
 //! # Where to add something
 //! * **A signal**: a field of `simulation/frame.rs` if it is new, and a row of the table in `simulation/signals.rs`.
 //!   Recordings and CSV have it then; a chart of its own is a row of `picture/charts.rs`.
-//! * **A setting**: a field with its range beside the part that it sets: `simulation/control.rs`, `simulation/plant/`,
-//!   `session/scenario/task.rs`; of machines `mechanics/machine/`. Files, `--set` and edits know it then; write a row
-//!   of the window's panel in `app/side/` and a line of the README.
+//! * **A setting**: a field, and its row in the `KEYS` beside the part that it sets: `simulation/control.rs`,
+//!   `simulation/plant/`, `session/scenario/task.rs`; of machines `mechanics/machine/ranges.rs`, and its line in `set.rs`.
+//!   The row says type, range, default, meaning and when it has an effect; files, `--set`, edits, *All settings* in the
+//!   window, `stillbase keys` and the page of the guide follow. A row of its own in the panel stands in `app/side/`.
 //! * **Something to see**: an item of the scene, in `picture/scene/stage/` (joint space and tower are scenes of their
 //!   own). Window, figures and recordings show it then; what can be switched on is an option in
 //!   `picture/scene/options.rs`.

@@ -94,7 +94,7 @@ fn choose<T: Copy + PartialEq>(
                         change.extend(["samples", "turn"].map(|key| (key.into(), "default".into())));
                     }
                 }
-                commands.extend([Command::Edit(Edit::SetTask { change }), Command::EndGesture]);
+                commands.extend([Command::Edit(Edit::of("task", change)), Command::EndGesture]);
             }
         }
     });
@@ -103,7 +103,7 @@ fn choose<T: Copy + PartialEq>(
 
 /// Sets one key of the task, as an undo of its own.
 fn set(commands: &mut Vec<Command>, key: &str, value: impl Into<Value>) {
-    commands.extend([Command::Edit(Edit::task(key, value)), Command::EndGesture]);
+    commands.extend([Command::Edit(Edit::at(&["task", key], value)), Command::EndGesture]);
 }
 
 fn time(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
@@ -121,9 +121,9 @@ fn time(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>
     }
     let mut time = session.scenario().task.time;
     let tip = "Duration T from A to B: peaks of torque go with 1/T²";
-    let row = Row { label: "time T", unit: "s", tip, decimals: 2, speed: 0.01, range: 0.1..=10.0 };
+    let row = Row { tip, ..Row::of("time T", "task.time").sliding(0.1..=10.0) };
     let responses = row.with_slider(ui, p, &mut time);
-    send(commands, &responses, || Edit::SetTime { time });
+    send(commands, &responses, || Edit::set("task.time", time));
 }
 
 /// The points of the path: to type, reorder and remove.
@@ -139,7 +139,7 @@ fn points(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &m
     }
     let change = |commands: &mut Vec<Command>, change: Option<Change>, lasts: bool| {
         if let Some(change) = change {
-            commands.push(Command::Edit(Edit::SetTask { change }));
+            commands.push(Command::Edit(Edit::of("task", change)));
         }
         if !lasts {
             commands.push(Command::EndGesture);
@@ -171,14 +171,9 @@ fn points(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &m
                 let mut xy = [at.re, at.im];
                 let mut responses = Vec::new();
                 for (axis, word) in [(1, "y"), (0, "x")] {
-                    let row = Row {
-                        label: &format!("{label} {word}"),
-                        unit: "m",
-                        tip: "A point of the path; drag it in the scene, or type",
-                        decimals: 3,
-                        speed: 0.002,
-                        range: -10.0..=10.0,
-                    };
+                    let label = format!("{label} {word}");
+                    let tip = "A point of the path; drag it in the scene, or type";
+                    let row = Row { tip, ..Row::of(&label, "task.from").with(3, 0.002) };
                     responses.push(row.number(ui, &mut xy[axis]));
                 }
                 if responses.iter().any(|r| r.changed()) {
@@ -234,10 +229,9 @@ fn corners(ui: &mut Ui, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
                     let measure = if task.shape() == Shape::JointLine { "rad" } else { "m" };
                     unit(ui, p, measure);
                     let mut distance = task.blend;
-                    let tip = "How far from the corner its blend begins";
-                    let row = Row { label: "blend", unit: measure, tip, decimals: 3, speed: 0.002, range: 0.001..=1.0 };
+                    let row = Row { unit: measure, ..Row::of("blend", "task.blend").with(3, 0.002) };
                     let response = row.number(ui, &mut distance);
-                    send(commands, &[response], || Edit::task("blend", distance));
+                    send(commands, &[response], || Edit::set("task.blend", distance));
                 });
             }
         });
@@ -250,10 +244,9 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
     match task.kind {
         TaskKind::ChangeB => {
             let mut b_to = plan.forecast.b_end;
-            let tip = "Pose constant at B; by default the one that changes b least";
-            let row = Row { label: "b at B", unit: "rad", tip, decimals: 3, speed: 0.005, range: -50.0..=50.0 };
+            let row = Row::of("b at B", "task.b_to").with(3, 0.005);
             let response = row.show(ui, p, &mut b_to);
-            send(commands, &[response], || Edit::task("b_to", b_to));
+            send(commands, &[response], || Edit::set("task.b_to", b_to));
             let mut limited = task.moment_limit.is_some();
             let mut limit = task.moment_limit.unwrap_or((0.5 * plan.forecast.moment).max(0.1));
             ui.horizontal(|ui| {
@@ -265,16 +258,9 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                     unit(ui, p, "N m");
                     if limited {
-                        let row = Row {
-                            label: "n_B at most",
-                            unit: "N m",
-                            tip,
-                            decimals: 2,
-                            speed: 0.02,
-                            range: 0.01..=100.0,
-                        };
+                        let row = Row::of("n_B at most", "task.moment_limit").with(2, 0.02);
                         let response = row.number(ui, &mut limit);
-                        send(commands, &[response], || Edit::task("moment_limit", limit));
+                        send(commands, &[response], || Edit::set("task.moment_limit", limit));
                     }
                 });
             });
@@ -307,10 +293,9 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
         }
         TaskKind::ZeroMomentum => {
             let mut cycles = f64::from(task.cycles);
-            let tip = "How often a closed path is run through";
-            let row = Row { label: "cycles", unit: "", tip, decimals: 0, speed: 0.05, range: 1.0..=100.0 };
+            let row = Row::of("cycles", "task.cycles").with(0, 0.05);
             let response = row.show(ui, p, &mut cycles);
-            send(commands, &[response], || Edit::task("cycles", cycles.round() as i64));
+            send(commands, &[response], || Edit::set("task.cycles", cycles.round() as i64));
             if task.closed {
                 let every = (task.cycles as usize).div_ceil(10).max(1);
                 let rounds: Vec<String> = plan.drift().skip(every - 1).step_by(every).map(|d| signed(d, 3)).collect();

@@ -1,5 +1,6 @@
-//! The panel on the left: pose constant, limits, motion, plant, base, control, balance.
+//! The panel on the left: pose constant, limits, motion, plant, base, control, balance, and all settings by key.
 
+mod all;
 mod base;
 mod control;
 mod fold;
@@ -12,7 +13,9 @@ use super::widgets::{Row, name, note, section, send, unit};
 use super::{Command, ViewState, path, set_b};
 use crate::mechanics::machine::{Inertia, MAX_ANGLE};
 use crate::picture::scene::palette::Palette;
+use crate::session::scenario::Value;
 use crate::session::{Edit, Session};
+use crate::settings::change::DEFAULT;
 
 /// Draws this panel.
 pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
@@ -29,6 +32,7 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
             base::show(ui, session, view_state, commands);
             control::show(ui, session, &p, commands);
             balance(ui, session, &p);
+            all::show(ui, session, &p, commands);
         });
     });
 }
@@ -45,7 +49,8 @@ fn pose_constant(ui: &mut Ui, session: &Session, view_state: &ViewState, command
         "b = q₁ + λ₂ q₂ + λ₃ q₃, Eq. (13), give or take whole periods of {period:.3} rad; {b:.3} rad as it is. Changing \
          it turns the reactionless workspace."
     );
-    let row = Row { label: "b", unit: "rad", tip: &tip, decimals: 3, speed: 0.005, range: 0.0..=period };
+    let row =
+        Row { label: "b", unit: "rad", tip: &tip, decimals: 3, speed: 0.005, range: 0.0..=period, slide: 0.0..=period };
     let responses = row.with_slider(ui, p, &mut shown);
     let asked = turns + shown;
     let edit = set_b(session, view_state, asked);
@@ -98,22 +103,16 @@ fn pose_constant(ui: &mut Ui, session: &Session, view_state: &ViewState, command
     ui.horizontal(|ui| {
         let tick = ui.checkbox(&mut shown, "compare").on_hover_text("A second workspace, as in Fig. 4");
         if tick.changed() {
-            commands.push(Command::Edit(Edit::CompareB { b: shown.then_some(other) }));
+            commands
+                .push(Command::Edit(Edit::set("compare_b", if shown { Value::from(other) } else { DEFAULT.into() })));
             commands.push(Command::EndGesture);
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if shown {
                 unit(ui, p, "rad");
-                let row = Row {
-                    label: "compare b",
-                    unit: "rad",
-                    tip: "Pose constant of the second workspace",
-                    decimals: 3,
-                    speed: 0.005,
-                    range: -50.0..=50.0,
-                };
+                let row = Row::of("compare b", "compare_b").with(3, 0.005);
                 let response = row.number(ui, &mut other);
-                send(commands, &[response], || Edit::CompareB { b: Some(other) });
+                send(commands, &[response], || Edit::set("compare_b", other));
             }
         });
     });
@@ -147,6 +146,7 @@ fn limits(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comman
                         tip: "Joint limit; the workspace is what (a₁, a₂) within them reach",
                         decimals: 1,
                         speed: 0.5,
+                        slide: range.clone(),
                         range,
                     };
                     changed.push(row.number(ui, &mut ends[end]));
@@ -157,8 +157,8 @@ fn limits(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comman
                 send(commands, &changed, || {
                     // The end that was not changed keeps its exact value.
                     let rad = |k: usize, was: f64| if ends[k] == old[k] { was } else { ends[k].to_radians() };
-                    let value = format!("{},{}", rad(0, *angle.limits.start()), rad(1, *angle.limits.end()));
-                    Edit::SetMachine { key: format!("limits.{}", angle.name), value }
+                    let ends = [rad(0, *angle.limits.start()), rad(1, *angle.limits.end())];
+                    Edit::at(&["limits", &angle.name], ends.to_vec())
                 });
             });
         });
@@ -170,12 +170,9 @@ fn gravity(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comma
     // From zero, so that no gravity reads 0.00 and not −0.00.
     let mut down = 0.0 - gravity.im;
     let tip = "Acceleration of gravity along −y; known to control";
-    let row = Row { label: "gravity", unit: "m/s²", tip, decimals: 2, speed: 0.05, range: 0.0..=20.0 };
+    let row = Row { tip, slide: 0.0..=20.0, ..Row::of("gravity", "gravity").with(2, 0.05) };
     let responses = row.with_slider(ui, p, &mut down);
-    send(commands, &responses, || Edit::SetMachine {
-        key: "gravity".into(),
-        value: format!("{},{}", gravity.re, 0.0 - down),
-    });
+    send(commands, &responses, || Edit::set("gravity", vec![gravity.re, 0.0 - down]));
 }
 
 fn balance(ui: &mut Ui, session: &Session, p: &Palette) {

@@ -91,7 +91,7 @@ impl AppState {
         let Some(Ok(mut app_state)) = fallback.map(|fallback| Self::new(fallback, theme)) else {
             return Session::open_waiting(scenario).map_or(Err(refusal), |session| Ok(Self::around(session, theme)));
         };
-        app_state.carry_out(Command::Edit(Edit::SetTask { change }));
+        app_state.carry_out(Command::Edit(Edit::of("task", change)));
         Ok(app_state)
     }
 
@@ -234,7 +234,7 @@ impl AppState {
             Command::Case(name) => return self.case(name),
             Command::BackToPath => {
                 if self.session.is_led() {
-                    self.session.apply(Edit::SetTask { change: Default::default() }).map_err(refused)?;
+                    self.session.apply(Edit::of("task", Default::default())).map_err(refused)?;
                     self.session.end_gesture();
                     self.session.pause();
                     self.session.seek(0.0);
@@ -322,7 +322,7 @@ impl AppState {
         let scenario = found.map_err(|e| brief(&e.to_string()).into_owned())?;
         let change = scenario.task.whole();
         if let Err(refusal) = self.session.switch(scenario) {
-            self.view_state.refused = Some(RefusedEdit::of(&Edit::SetTask { change }, &refusal));
+            self.view_state.refused = Some(RefusedEdit::of(&Edit::of("task", change), &refusal));
             return Err(refusal.to_string());
         }
         self.foresee();

@@ -30,7 +30,7 @@ pub fn news(ctx: &egui::Context, session: &Session, view_state: &ViewState, comm
             let remedy = view_state.refused.as_ref().and_then(|refused| refused.remedy.clone());
             let mends = waits.filter(|_| waiting.as_ref() == Some(text));
             let mends = mends.and_then(|waiting| waiting.why.mending_b().zip(waiting.why.shown_b()));
-            let mends = mends.map(|(b, shown)| (Edit::task("b", b), shown));
+            let mends = mends.map(|(b, shown)| (Edit::set("task.b", b), shown));
             if let Some((edit, b)) = remedy.or(mends) {
                 let way_out = ui.button(format!("take b = {b} rad"));
                 if way_out.on_hover_text("Asks for the same on the nearest plane that allows it").clicked() {

@@ -148,14 +148,14 @@ fn spreads(ui: &mut Ui, p: &Palette, study: &Study, commands: &mut Vec<Command>)
                 // The defaults are written out with the first change, so that the others stay.
                 let mut change: Change = spreads.iter().map(|(key, spread)| (key.clone(), spread.to_value())).collect();
                 change.insert(key.clone(), spread.with(amount).to_value());
-                Edit::SetTolerance { change }
+                Edit::of("tolerance", change)
             });
         }
         let mut limit = study.tolerance.moment_limit.unwrap_or(0.0);
         let response = row(ui, p, "limit on |n_B|", "N m", "moment_limit: zero for none", &mut limit);
         send(commands, &[response], || {
             let value = if limit > 0.0 { Value::from(limit) } else { Value::from("default") };
-            Edit::SetTolerance { change: Change::from_iter([("moment_limit".to_owned(), value)]) }
+            Edit::set("tolerance.moment_limit", value)
         });
     });
 }

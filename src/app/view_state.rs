@@ -24,14 +24,11 @@ pub struct RefusedEdit {
 impl RefusedEdit {
     pub(super) fn of(edit: &Edit, refusal: &Refusal) -> Self {
         let curve = Refused::of(refusal);
-        let remedy = match (edit, refusal.mending_b().zip(refusal.shown_b())) {
-            (Edit::SetTask { change }, Some((b, shown))) => {
-                let mut change = change.clone();
-                change.insert("b".into(), b.into());
-                Some((Edit::SetTask { change }, shown))
-            }
-            _ => None,
-        };
+        let remedy = edit.part("task").zip(refusal.mending_b().zip(refusal.shown_b())).map(|(change, (b, shown))| {
+            let mut change = change.clone();
+            change.insert("b".into(), b.into());
+            (Edit::of("task", change), shown)
+        });
         Self { curve: curve.map(Arc::new), remedy }
     }
 }

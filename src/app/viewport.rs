@@ -141,7 +141,7 @@ fn point_at(
             }
             Aim::Waypoint(i, [x, y]) => {
                 view_state.held = Some([x, y]);
-                Edit::SetTask { change: session.scenario().task.moving(i, Vector::new(x, y))? }
+                Edit::of("task", session.scenario().task.moving(i, Vector::new(x, y))?)
             }
         };
         Some(Command::Edit(edit))
@@ -190,14 +190,14 @@ fn point_at(
         && let Some([x, y]) = spot.pointer(pos).ray().and_then(|ray| ray.at_height(views.stage().handle_height()))
         && let Some(change) = task.adding(Vector::new(x, y))
     {
-        commands.extend([Command::Edit(Edit::SetTask { change }), Command::EndGesture]);
+        commands.extend([Command::Edit(Edit::of("task", change)), Command::EndGesture]);
     }
     let typing = ui.ctx().egui_wants_keyboard_input();
     let out = !typing && ui.input(|i| i.key_pressed(egui::Key::Delete) || i.key_pressed(egui::Key::Backspace));
     if let (Some(Handle::Waypoint(i)), None, true) = (view_state.hot, view_state.grabbed, out)
         && let Some(change) = task.removing(i)
     {
-        commands.extend([Command::Edit(Edit::SetTask { change }), Command::EndGesture]);
+        commands.extend([Command::Edit(Edit::of("task", change)), Command::EndGesture]);
         view_state.hot = None;
     }
     if view_state.grabbed.is_none() {
@@ -247,7 +247,7 @@ fn draw(
         let points: Vec<Vector> = stroke.iter().map(|[x, y]| Vector::new(*x, *y)).collect();
         commands.push(Command::Draw(false));
         if let Some(change) = Task::drawing(&points) {
-            commands.extend([Command::Edit(Edit::SetTask { change }), Command::EndGesture]);
+            commands.extend([Command::Edit(Edit::of("task", change)), Command::EndGesture]);
         }
     }
 }

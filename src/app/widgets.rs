@@ -1,6 +1,7 @@
 //! What the panels are made of: rows of numbers, section titles, notes, and names for screen readers.
 
 use std::cell::Cell;
+use std::ops::RangeInclusive;
 
 use egui::{Align, DragValue, Layout, Response, RichText, Slider, SliderClamping, Ui};
 
@@ -9,6 +10,8 @@ use super::theme::{bold, colour, plain};
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::Palette;
 use crate::session::Edit;
+use crate::session::scenario::key_of;
+use crate::settings::key::Key;
 
 /// Tells a screen reader what a widget is.
 pub fn name(response: &Response, label: &str) {
@@ -27,8 +30,37 @@ pub(super) struct Row<'a> {
     pub unit: &'a str,
     pub tip: &'a str,
     pub decimals: usize,
+    /// By how much a drag of one point changes it.
     pub speed: f64,
-    pub range: std::ops::RangeInclusive<f64>,
+    /// What may be typed.
+    pub range: RangeInclusive<f64>,
+    /// What a slider goes through.
+    pub slide: RangeInclusive<f64>,
+}
+
+/// What a setting means, by its path.
+pub(super) fn tip_of(path: &str) -> &'static str {
+    key_of(path).map_or("", |key| key.words)
+}
+
+impl<'a> Row<'a> {
+    /// The row of a setting, by its path: unit, range and tip are those of its key.
+    pub fn of(label: &'a str, path: &str) -> Self {
+        let key = key_of(path);
+        let range = key.and_then(Key::range).map_or(f64::MIN..=f64::MAX, |range| range.low()..=range.high());
+        let (unit, tip) = key.map_or(("", ""), |key| (key.unit(), key.words));
+        Self { label, unit, tip, decimals: 2, speed: 0.01, slide: range.clone(), range }
+    }
+
+    /// The same with decimals, and how fast a drag changes it.
+    pub fn with(self, decimals: usize, speed: f64) -> Self {
+        Self { decimals, speed, ..self }
+    }
+
+    /// The same with what a slider goes through.
+    pub fn sliding(self, slide: RangeInclusive<f64>) -> Self {
+        Self { slide, ..self }
+    }
 }
 
 impl Row<'_> {
@@ -95,7 +127,7 @@ impl Row<'_> {
         ui.spacing_mut().slider_width = ui.available_width();
         // The field's size follows the row's height.
         ui.spacing_mut().interact_size.y = 15.0;
-        let slider = Slider::new(value, self.range.clone()).clamping(SliderClamping::Edits).show_value(false);
+        let slider = Slider::new(value, self.slide.clone()).clamping(SliderClamping::Edits).show_value(false);
         let slider = ui.add(slider.smart_aim(false).logarithmic(logarithmic));
         ui.spacing_mut().interact_size.y = 22.0;
         name(&slider, &format!("{} slider", self.label));

@@ -58,7 +58,7 @@ impl Figures {
         [Command::Compare(true), Command::Snapshots(true)].into_iter().chain(over).for_each(|c| ways.carry_out(c));
         self.window("compare-dark.png", &mut ways)?;
         let mut machines = opened("case-3", Theme::Dark, ViewKind::Flat, 0.62)?;
-        machines.carry_out(Command::Edit(Edit::SetTolerance { change: Change::from_iter([limit()]) }));
+        machines.carry_out(Command::Edit(Edit::of("tolerance", Change::from_iter([limit()]))));
         machines.carry_out(Command::Study(true));
         self.window("tolerances-dark.png", &mut machines)?;
         for (name, scenario, theme, view, time) in SCENES {

@@ -8,9 +8,9 @@ use stillbase::mechanics::machine::{Inertia, Machine};
 use stillbase::mechanics::planar::Vector;
 use stillbase::planning::pose_constant::plane_map;
 use stillbase::planning::reactionless::PlaneMap;
-use stillbase::session::scenario::{Change, PLACE, POSE_CONSTANT, STEP, Scenario};
+use stillbase::session::scenario::{Change, PLACE, POSE_CONSTANT, Scenario};
 use stillbase::settings::change;
-use stillbase::settings::range::{Range, clipped};
+use stillbase::settings::range::Range;
 use stillbase::settings::text::MOST_BYTES;
 
 use super::exit::say;
@@ -19,16 +19,12 @@ use super::failure::Failure;
 /// The scenario of a command that is given none: the paper's reactionless case.
 pub const DEFAULT_SCENARIO: &str = "case-3";
 
-/// Changes of the machine.
+/// Settings that the command line lays over a machine or a scenario.
 #[derive(Args, Default)]
 pub struct Settings {
-    /// Change the machine, as often as needed: link.5.com=-0.02 (m), link.5.axial=0.02 (m), link.9.mass=0.3 (kg),
-    /// length.l1=0.6 (m), payload.mass=0.1 (kg, known to control), gravity=0,-9.81 (m/s²), limits.a1=0.4,2.7 (rad),
-    /// drive.1.torque_limit=20 (N m), drive.1.speed_limit=3 (rad/s), drive.1.acceleration_limit=40 (rad/s²),
-    /// drive.1.jerk_limit=900 (rad/s³), and, where a scenario is asked for and not a machine alone: task.shape=spline,
-    /// task.time=2 (s), plant.payload.mass=0.1 (kg, unknown to control), plant.friction.coulomb=0.2 (N m),
-    /// plant.link.5.com=-0.02 (m), base.kind=free, base.mass=40 (kg), control.law=pd, control.kp=400,300,300 (s⁻²),
-    /// step=0.0005 (s, 0.00001 to 0.01), and every other key of a scenario file
+    /// Set a key, as often as needed: of the machine, such as link.5.com=-0.02 (m), or of a scenario, such as task.time=2
+    /// (s), plant.payload.mass=0.1 (kg) or base.kind=free; the word `default` takes a key out, and `stillbase keys` lists
+    /// all of them with units, ranges and defaults
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
     pairs: Vec<(String, String)>,
 }
@@ -58,6 +54,17 @@ impl Settings {
             .set_all(self.pairs.iter().map(|(k, v)| (k.as_str(), v.as_str())))
             .map_err(|e| Failure::wrong_input(e).of("--set"))
     }
+
+    /// Whether a key is set.
+    pub fn sets(&self, key: &str) -> bool {
+        self.pairs.iter().any(|(given, _)| given == key)
+    }
+
+    /// All of them as they would stand in a file; the last word on a key counts.
+    fn change(&self) -> Change {
+        let one = |(key, value): &(String, String)| change::one(key, change::value(value));
+        self.pairs.iter().map(one).fold(Change::new(), |all, one| change::join(all, &one))
+    }
 }
 
 /// The machine that a command is about.
@@ -80,52 +87,29 @@ impl MachineArgument {
     }
 }
 
-/// A scenario by name or file, its machine and plant changed before anything is planned.
+/// A scenario by name or file, with settings laid over it before anything is planned.
 ///
 /// # Errors
-/// If there is no such scenario, or its machine is not valid.
+/// If there is no such scenario or setting, or what comes out is not valid.
 pub fn scenario(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
     let scenario = set(stillbase::files::scenario(name)?, settings)?;
-    tell_unused(&scenario);
+    for (path, want) in scenario.idle_keys() {
+        say(format!("note: {}: {path} has no use there: want {want}", scenario.name));
+    }
     Ok(scenario)
 }
 
-/// A scenario with its machine, plant and task changed.
+/// A scenario with settings laid over it.
 ///
 /// # Errors
-/// If there is no such setting, or its machine is not valid.
-pub fn set(mut scenario: Scenario, settings: &Settings) -> Result<Scenario, Failure> {
-    let parts = ["task", "plant", "base", "control"];
-    let part = |key: &str| parts.iter().position(|part| key.split_once('.').is_some_and(|(head, _)| head == *part));
-    let (steps, others): (Vec<_>, Vec<_>) = settings.pairs.iter().cloned().partition(|(key, _)| key == "step");
-    for (_, value) in steps {
-        let step = value.parse().ok().filter(|step: &f64| step.is_finite());
-        let wrong =
-            || Failure::wrong_input(format!("step is {:?}: want a step of {STEP}", clipped(&value))).of("--set");
-        step_by(&mut scenario, step.ok_or_else(wrong)?);
-    }
-    let (own, model): (Vec<_>, Vec<_>) = others.into_iter().partition(|(key, _)| part(key).is_some());
-    scenario.machine = Settings { pairs: model }.apply(scenario.machine)?;
-    let mut changes = std::array::from_fn::<_, 4, _>(|_| Change::new());
-    for (key, value) in own {
-        let (Some(i), Some((_, rest))) = (part(&key), key.split_once('.')) else { continue };
-        changes[i] = change::join(std::mem::take(&mut changes[i]), &change::one(rest, listed(&value)));
-    }
-    let [task, plant, base, control] = changes;
-    let wrong = |of: &str, why: String| Failure::wrong_input(format!("{of}: {why}")).of("--set");
-    scenario.plant = change::with(&scenario.plant, &plant).map_err(|why| wrong("plant", why))?;
-    scenario.base = change::with(&scenario.base, &base).map_err(|why| wrong("base", why))?;
-    scenario.control = change::with(&scenario.control, &control).map_err(|why| wrong("control", why))?;
-    change_task(&mut scenario, &task).map_err(|e| e.of("--set"))?;
+/// If there is no such setting, it has no effect, or what comes out is not valid.
+pub fn set(scenario: Scenario, settings: &Settings) -> Result<Scenario, Failure> {
+    let change = settings.change();
+    let scenario = scenario.with(&change).map_err(|why| Failure::wrong_input(why).of("--set"))?;
     scenario.check("--set")?;
-    for key in task.keys() {
-        if let Some(want) = scenario.task.unused(key) {
-            return Err(no_use(&format!("task.{key}"), want).of("--set"));
-        }
-    }
-    for key in base.keys() {
-        if let Some(want) = scenario.base.unused(key) {
-            return Err(no_use(&format!("base.{key}"), want).of("--set"));
+    for (path, value) in change::leaves(&change) {
+        if let Some(want) = scenario.idle(&path).filter(|_| value.as_str() != Some(change::DEFAULT)) {
+            return Err(no_use(&path, want).of("--set"));
         }
     }
     Ok(scenario)
@@ -136,48 +120,17 @@ pub fn no_use(what: &str, want: &str) -> Failure {
     Failure::wrong_input(format!("{what} has no use here: want {want}"))
 }
 
-/// Notes on standard error which keys of a scenario's file have no effect in its task, but for those that every file
-/// has.
-fn tell_unused(scenario: &Scenario) {
-    let standing = ["kind", "from", "to", "b", "time", "law"];
-    let keys = Change::try_from(&scenario.task).unwrap_or_default();
-    for (key, _) in keys.iter().filter(|(key, _)| !standing.contains(&key.as_str())) {
-        if let Some(want) = scenario.task.unused(key) {
-            say(format!("note: {}: task.{key} has no use there: want {want}", scenario.name));
-        }
-    }
-}
-
-/// Another step, s; edits stay at their times.
-fn step_by(scenario: &mut Scenario, step: f64) {
-    let ratio = scenario.step / step;
-    scenario.edits.iter_mut().for_each(|edit| edit.step = (edit.step as f64 * ratio).round() as u64);
-    scenario.step = step;
-}
-
 /// Changes keys of a scenario's task.
 ///
 /// # Errors
 /// If there is no such key, or its value is out of range.
 pub fn change_task(scenario: &mut Scenario, change: &Change) -> Result<(), Failure> {
     if !change.is_empty() {
-        scenario.task = scenario.task.with(change).map_err(|why| Failure::wrong_input(format!("task: {why}")))?;
+        let task = scenario.task.with(change, &scenario.machine);
+        scenario.task = task.map_err(|why| Failure::wrong_input(format!("task: {why}")))?;
         scenario.check("task")?;
     }
     Ok(())
-}
-
-/// A value as it would stand in a file; several numbers parted by commas are a list.
-fn listed(text: &str) -> toml::Value {
-    let value = toml_value(text);
-    let list = || text.contains(',').then(|| toml_value(&format!("[{text}]"))).filter(toml::Value::is_array);
-    if value.is_str() { list().unwrap_or(value) } else { value }
-}
-
-/// A value as it would stand in a file: text where it is no other TOML value.
-fn toml_value(text: &str) -> toml::Value {
-    let read = format!("x = {text}").parse::<Change>().ok().and_then(|mut table| table.remove("x"));
-    read.unwrap_or_else(|| toml::Value::String(text.into()))
 }
 
 /// The reactionless planes of a machine; says so if b is only nearly constant.

@@ -20,6 +20,7 @@ mod import;
 pub(crate) mod input;
 mod interrupt;
 mod joints;
+mod keys;
 mod machines;
 mod open;
 mod output;
@@ -66,6 +67,7 @@ subcommands! {
     Compare: compare::Compare,
     Joints: joints::JointsCommand,
     Machines: machines::Machines,
+    Keys: keys::Keys,
     Check: check::Check,
     Design: design::Design,
     Dynamics: dynamics::Dynamics,

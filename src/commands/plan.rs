@@ -367,7 +367,7 @@ impl Plan {
             (self.blend.is_some(), "blend"),
             (self.time.is_some(), "time"),
         ] {
-            if let Some(want) = task.unused(key).filter(|_| given) {
+            if let Some(want) = scenario.idle(&format!("task.{key}")).filter(|_| given) {
                 let option = if key == "from" { "X,Y".into() } else { format!("--{}", key.replace('_', "-")) };
                 return Err(no_use(&option, want));
             }
@@ -437,9 +437,9 @@ impl Plan {
         }
         change_task(&mut scenario, &change)?;
         self.check_use(&scenario)?;
-        if self.b.is_none() && !self.points.is_empty() {
-            // The middle of the widest range that serves all points, as far from every edge as it gets; kinds that
-            // leave the plane can do with one that serves the first.
+        if self.b.is_none() && !self.settings.sets("task.b") && !self.points.is_empty() {
+            // The middle of the widest range that serves all points, as far from every edge as it gets; kinds that leave
+            // the plane can do with one that serves the first.
             let planes = Planes::of(&scenario.machine)?;
             let points = scenario.task.points();
             let alone = (scenario.task.kind != TaskKind::Reactionless).then(|| planes.common(&points[..1])).flatten();

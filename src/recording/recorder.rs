@@ -159,9 +159,12 @@ impl<'a> Recorder<'a> {
             topic.style(store, root, &palette, &forecast.peaks)?;
         }
         let changes = |edit: &Edit| match edit {
-            Edit::SetMachine { .. } | Edit::CompareB { .. } | Edit::PoseB { .. } => true,
-            Edit::SetPlant { change } => ["length", "link"].iter().any(|key| change.contains_key(*key)),
-            edit => edit.leads(),
+            Edit::PoseB { .. } => true,
+            edit => {
+                let plant = edit.part("plant");
+                let bars = plant.is_some_and(|plant| ["length", "link"].iter().any(|key| plant.contains_key(*key)));
+                bars || edit.sets_machine() || edit.sets(&["compare_b"]) || edit.leads()
+            }
         };
         let prefix = if *several { format!("{} · ", scenario.name) } else { String::new() };
         let space = |path: &str, eye| Space::new(under(root, path), eye, palette.background);

@@ -8,7 +8,6 @@ use super::scenario::Scenario;
 use crate::mechanics::machine::Machine;
 use crate::planning::pose_constant::Planes;
 use crate::planning::reactionless::PlanePoint;
-use crate::settings::change;
 use crate::settings::range::shortened;
 
 /// A scenario with a parameter set; nothing is planned, and whether all fits together is for [`checked`] to say.
@@ -18,42 +17,16 @@ pub(super) fn changed(scenario: &Scenario, edit: &Edit) -> Result<Scenario, Refu
         Edit::Push { x, y } => {
             scenario.plant.force = [*x, *y];
         }
-        Edit::SetPlant { change } => {
-            scenario.plant = change::with(&scenario.plant, change).map_err(|why| wrong("plant", &why))?;
-        }
-        Edit::SetBase { change } => {
-            scenario.base = change::with(&scenario.base, change).map_err(|why| wrong("base", &why))?;
-        }
-        Edit::SetControl { change } => {
-            scenario.control = change::with(&scenario.control, change).map_err(|why| wrong("control", &why))?;
-        }
-        Edit::SetTolerance { change } => {
-            scenario.tolerance = change::with(&scenario.tolerance, change).map_err(|why| wrong("tolerance", &why))?;
-        }
-        Edit::SetMachine { key, value } => scenario.machine = scenario.machine.set(key, value)?,
-        Edit::SetTime { time } => scenario.task.time = *time,
-        Edit::CompareB { b } => scenario.compare_b = *b,
-        Edit::SetTask { change } => {
-            scenario.task = scenario.task.with(change).map_err(|why| wrong("task", &why))?;
-        }
+        Edit::Set { change } => scenario = scenario.with(change)?,
         Edit::PoseB { .. } | Edit::DragTarget { .. } | Edit::SlideB { .. } => {}
     }
     Ok(scenario)
 }
 
-pub(super) fn wrong(of: &str, why: &str) -> Refusal {
-    Refusal::Task(format!("{of}: {why}"))
-}
-
-/// A scenario that an edit of its keys has left sound.
+/// A scenario that an edit of its settings has left sound.
 pub(super) fn checked(scenario: Scenario, edit: &Edit) -> Result<Scenario, Refusal> {
     match edit {
-        Edit::Push { .. }
-        | Edit::SetPlant { .. }
-        | Edit::SetBase { .. }
-        | Edit::SetControl { .. }
-        | Edit::SetTolerance { .. }
-        | Edit::SetTask { .. } => sound(scenario, edit.part()),
+        Edit::Push { .. } | Edit::Set { .. } => sound(scenario, edit.name()),
         _ => Ok(scenario),
     }
 }
@@ -69,7 +42,7 @@ pub(super) fn amended(
     edit: &Edit,
     planes: &mut Option<(Machine, Arc<Planes>)>,
 ) -> Result<Scenario, Refusal> {
-    edit.check(scenario.step)?;
+    edit.check()?;
     let Edit::PoseB { b } = edit else { return changed(scenario, edit) };
     let known = planes.take().filter(|(machine, _)| *machine == scenario.machine);
     let planes = match known {

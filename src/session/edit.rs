@@ -3,9 +3,13 @@
 use serde::de::Error as _;
 use serde::{Deserialize, Serialize};
 
-use crate::session::scenario::{MAX_STEPS, PLACE, POSE_CONSTANT, TIME};
+use toml::{Table, Value};
+
+use super::older;
+use crate::mechanics::machine::PARTS;
+use crate::session::scenario::{MAX_STEPS, PLACE, POSE_CONSTANT};
 use crate::settings::change;
-use crate::settings::range::Check;
+use crate::settings::range::{Check, shortened};
 
 /// One change. It can be saved, replayed and undone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -35,48 +39,11 @@ pub enum Edit {
         /// N.
         y: f64,
     },
-    /// Keys of the plant, as in a scenario file: payload, friction, links that differ; `default` takes a key out.
-    SetPlant {
-        /// Such as `{ payload = { mass = 0.3 } }`.
-        change: toml::Table,
-    },
-    /// Keys of what the machine stands on, during the whole run.
-    SetBase {
-        /// Such as `{ kind = "free" }`.
-        change: toml::Table,
-    },
-    /// Keys of control: law, gains, rate, delay.
-    SetControl {
-        /// Such as `{ kp = 400.0 }`.
-        change: toml::Table,
-    },
-    /// Keys of the tolerances, as in a scenario file: spreads, seed, limits; they change no run.
-    SetTolerance {
-        /// Such as `{ moment_limit = 0.01, "link.*.com" = { normal = 0.0005 } }`.
-        change: toml::Table,
-    },
-    /// One setting of the machine, by the keys of `--set`.
-    SetMachine {
-        /// Such as `limits.a1`.
-        key: String,
-        /// Such as `0,3.14`.
-        value: String,
-    },
-    /// Duration T of the planned motion, s.
-    SetTime {
-        /// s.
-        time: f64,
-    },
-    /// Keys of the task, as in a scenario file: points, shape, law and so on; `default` takes a key out.
-    SetTask {
-        /// Such as `{ shape = "spline", via = [[0.6, 0.7]] }`.
-        change: toml::Table,
-    },
-    /// The workspace to compare with; none hides it.
-    CompareB {
-        /// rad.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        b: Option<f64>,
+    /// Settings laid over the scenario, as a file has them: of task, plant, base, control, tolerance, machine and of the
+    /// scenario itself; `default` takes a key out.
+    Set {
+        /// Such as `{ task = { shape = "spline" }, link = { 5 = { com = -0.02 } } }`.
+        change: Table,
     },
 }
 
@@ -93,7 +60,7 @@ pub struct TimedEdit {
 impl<'de> Deserialize<'de> for TimedEdit {
     /// By hand, because a flattened enum would accept keys that it does not know.
     fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        Self::from_table(toml::Table::deserialize(from)?).map_err(D::Error::custom)
+        Self::from_table(Table::deserialize(from)?).map_err(D::Error::custom)
     }
 }
 
@@ -102,11 +69,14 @@ impl TimedEdit {
     ///
     /// # Errors
     /// What is wrong with it, and what would be right.
-    pub fn from_table(mut table: toml::Table) -> Result<Self, String> {
+    pub fn from_table(mut table: Table) -> Result<Self, String> {
         let step = table.remove("step").ok_or("missing field `step`")?;
         let step = step.as_integer().and_then(|n| u64::try_from(n).ok()).filter(|n| *n <= MAX_STEPS);
         let step = step.ok_or_else(|| format!("step: want a whole number of steps, 0 to {MAX_STEPS}"))?;
-        let edit = Edit::deserialize(table).map_err(|e| e.message().to_owned())?;
+        let edit = match older::settings(&mut table)? {
+            Some(change) => Edit::Set { change },
+            None => Edit::deserialize(table).map_err(|e| e.message().to_owned())?,
+        };
         Ok(Self { step, edit })
     }
 
@@ -114,46 +84,94 @@ impl TimedEdit {
     ///
     /// # Panics
     /// Never: every edit can be written.
-    pub fn to_table(&self) -> toml::Table {
-        toml::Table::try_from(self).expect("an edit is plain data")
+    pub fn to_table(&self) -> Table {
+        Table::try_from(self).expect("an edit is plain data")
     }
 }
 
 impl Edit {
-    /// One key of the task.
-    pub fn task(key: &str, value: impl Into<toml::Value>) -> Self {
-        Self::SetTask { change: change::one(key, value) }
+    /// One setting by its path, such as `plant.payload.mass`.
+    pub fn set(path: &str, value: impl Into<Value>) -> Self {
+        Self::Set { change: change::one(path, value) }
     }
 
-    /// One key of the plant, its parts joined by dots.
-    pub fn plant(key: &str, value: impl Into<toml::Value>) -> Self {
-        Self::SetPlant { change: change::one(key, value) }
+    /// One setting by the parts of its path.
+    pub fn at(path: &[&str], value: impl Into<Value>) -> Self {
+        Self::Set { change: change::at(path, value) }
     }
 
-    /// One key of what the machine stands on.
-    pub fn base(key: &str, value: impl Into<toml::Value>) -> Self {
-        Self::SetBase { change: change::one(key, value) }
+    /// Settings of one part, such as `task`.
+    pub fn of(part: &str, change: Table) -> Self {
+        Self::Set { change: Table::from_iter([(part.to_owned(), change.into())]) }
     }
 
-    /// One key of control.
-    pub fn control(key: &str, value: impl Into<toml::Value>) -> Self {
-        Self::SetControl { change: change::one(key, value) }
+    /// What it sets.
+    fn settings(&self) -> Option<&Table> {
+        match self {
+            Self::Set { change } => Some(change),
+            _ => None,
+        }
     }
 
-    /// Whether its own numbers may stand there, for a step, s; what it changes is checked where that is known.
+    /// What it sets of a part.
+    pub fn part(&self, part: &str) -> Option<&Table> {
+        self.settings()?.get(part)?.as_table()
+    }
+
+    /// A number of the scenario's own that it sets.
+    pub(super) fn own_number(&self, key: &str) -> Option<f64> {
+        self.settings()?.get(key)?.as_float()
+    }
+
+    /// Takes a key of the scenario's own out of what it sets; as a change of its own, if it is there.
+    pub(super) fn take(&mut self, key: &str) -> Option<Table> {
+        let Self::Set { change } = self else { return None };
+        Some(Table::from_iter([(key.to_owned(), change.remove(key)?)]))
+    }
+
+    /// Whether it is an edit of settings without any.
+    pub(super) fn sets_nothing(&self) -> bool {
+        self.settings().is_some_and(Table::is_empty)
+    }
+
+    /// Whether it sets something of one of these parts.
+    pub fn sets(&self, parts: &[&str]) -> bool {
+        self.settings().is_some_and(|change| change.keys().any(|key| parts.contains(&key.as_str())))
+    }
+
+    /// Whether it sets where the path goes, or sends a machine that is led back to it: anything of the task but its time.
+    pub(super) fn sets_path(&self) -> bool {
+        self.part("task").is_some_and(|task| task.is_empty() || task.keys().any(|key| key != "time"))
+    }
+
+    /// Whether it sets something of these parts and of nothing else.
+    fn sets_only(&self, parts: &[&str]) -> bool {
+        self.settings().is_some_and(|change| change.keys().all(|key| parts.contains(&key.as_str())))
+    }
+
+    /// Whether no motion depends on what it sets.
+    pub(super) fn is_aside(&self) -> bool {
+        self.sets_only(&["tolerance", "duration"])
+    }
+
+    /// Whether it sets nothing but the b to compare with.
+    pub(super) fn compares(&self) -> bool {
+        self.sets_only(&["compare_b"])
+    }
+
+    /// Whether it changes the machine.
+    pub fn sets_machine(&self) -> bool {
+        self.sets(&PARTS)
+    }
+
+    /// Whether its own numbers may stand there; what it sets is checked where the rest of the scenario is known.
     ///
     /// # Errors
     /// The first that may not.
-    pub fn check(&self, step: f64) -> Result<(), Check> {
+    pub fn check(&self) -> Result<(), Check> {
         let found: Vec<Check> = match self {
             Self::DragTarget { x, y } => vec![PLACE.check("x", *x), PLACE.check("y", *y)],
-            Self::SlideB { b } | Self::PoseB { b } | Self::CompareB { b: Some(b) } => {
-                vec![POSE_CONSTANT.check("b", *b)]
-            }
-            Self::SetTime { time } => {
-                let enough = Check::words("time", *time, *time >= step, "one step or more, s");
-                vec![TIME.check("time", *time), enough]
-            }
+            Self::SlideB { b } | Self::PoseB { b } => vec![POSE_CONSTANT.check("b", *b)],
             _ => Vec::new(),
         };
         found.into_iter().find(|check| !check.ok).map_or(Ok(()), Err)
@@ -162,44 +180,36 @@ impl Edit {
     /// Whether it sets the task, its time, the base or the tolerances: these hold for the whole run, from its first
     /// step.
     pub fn is_of_the_whole(&self) -> bool {
-        matches!(self, Self::SetTask { .. } | Self::SetTime { .. } | Self::SetBase { .. } | Self::SetTolerance { .. })
+        self.is_of_the_start() || self.is_aside()
     }
 
     /// Why an edit [of the start](Self::is_of_the_start) is refused later.
-    pub(super) const AT_START: &str = "task, time and base can change only before the first step: want step = 0";
+    pub(super) const AT_START: &str = "task, time, base and step can change only before the first step: want step = 0";
 
     /// Whether it changes what a motion is planned from, so that it can stand only before the first step.
     pub(super) fn is_of_the_start(&self) -> bool {
-        self.is_of_the_whole() && !matches!(self, Self::SetTolerance { .. })
+        self.sets(&["task", "base", "step"])
     }
 
     /// Whether a later edit sets all that this one sets, so that only the last edit of a drag is kept.
     pub fn is_replaced_by(&self, later: &Self) -> bool {
         match (self, later) {
-            (Self::SetMachine { key: a, .. }, Self::SetMachine { key: b, .. }) => a == b,
-            (Self::SetTask { change: a }, Self::SetTask { change: b })
-            | (Self::SetPlant { change: a }, Self::SetPlant { change: b })
-            | (Self::SetBase { change: a }, Self::SetBase { change: b })
-            | (Self::SetControl { change: a }, Self::SetControl { change: b })
-            | (Self::SetTolerance { change: a }, Self::SetTolerance { change: b }) => change::covers(b, a),
+            (Self::Set { change: earlier }, Self::Set { change: later }) => change::covers(later, earlier),
             _ => std::mem::discriminant(self) == std::mem::discriminant(later),
         }
     }
 
     /// Which part of a scenario it changes, for messages.
-    pub(super) fn part(&self) -> &'static str {
+    pub(super) fn name(&self) -> &str {
         match self {
             Self::DragTarget { .. } => "target",
             Self::SlideB { .. } | Self::PoseB { .. } => "b",
             Self::Push { .. } => "push",
-            Self::SetPlant { .. } => "plant",
-            Self::SetBase { .. } => "base",
-            Self::SetControl { .. } => "control",
-            Self::SetTolerance { .. } => "tolerance",
-            Self::SetMachine { .. } => "machine",
-            Self::SetTime { .. } => "time",
-            Self::SetTask { .. } => "task",
-            Self::CompareB { .. } => "compare b",
+            Self::Set { change } => match change.keys().next() {
+                Some(part) if PARTS.contains(&part.as_str()) => "machine",
+                Some(part) => part,
+                None => "settings",
+            },
         }
     }
 
@@ -210,15 +220,20 @@ impl Edit {
 
     /// Whether it sets limits of joints.
     pub fn sets_limits(&self) -> bool {
-        matches!(self, Self::SetMachine { key, .. } if key.starts_with("limits."))
+        self.sets(&["limits"])
+    }
+
+    /// The first joint limit that it sets, as it would be typed.
+    pub(super) fn limits(&self) -> Option<(String, String)> {
+        let (name, value) = self.part("limits")?.iter().next()?;
+        Some((format!("limits.{name}"), change::typed(value)))
     }
 
     /// Whether it changes the force at the end effector.
     pub fn pushes(&self) -> bool {
         match self {
             Self::Push { .. } => true,
-            Self::SetPlant { change } => change.contains_key("force"),
-            _ => false,
+            edit => edit.part("plant").is_some_and(|change| change.contains_key("force")),
         }
     }
 
@@ -230,42 +245,45 @@ impl Edit {
             Self::PoseB { b } => format!("pose at b = {b:.3} rad"),
             Self::Push { x: 0.0, y: 0.0 } => "let go".into(),
             Self::Push { x, y } => format!("push with {x:.2}, {y:.2} N"),
-            Self::SetPlant { change } => listed("plant", change),
-            Self::SetBase { change } => listed("base", change),
-            Self::SetControl { change } => listed("control", change),
-            Self::SetTolerance { change } => listed("tolerance", change),
-            Self::SetMachine { key, value } => format!("set {key} to {value}"),
-            Self::SetTime { time } => format!("set motion time to {time:.3} s"),
-            Self::SetTask { change } => task_title(change),
-            Self::CompareB { b: Some(b) } => format!("compare with b = {b:.3} rad"),
-            Self::CompareB { b: None } => "stop comparing".into(),
+            Self::Set { change } => title_of(change),
         }
     }
 }
 
-/// What a change of the task does.
-fn task_title(change: &toml::Table) -> String {
-    if ["from", "via", "to"].iter().any(|key| change.contains_key(*key)) {
-        return "move waypoints".into();
+/// What settings do.
+fn title_of(change: &Table) -> String {
+    let task = change.get("task").and_then(Value::as_table).filter(|_| change.len() == 1);
+    match task {
+        Some(task) if ["from", "via", "to"].iter().any(|key| task.contains_key(*key)) => {
+            return "move waypoints".into();
+        }
+        Some(task) if task.is_empty() => return "go back to the path".into(),
+        _ => {}
     }
-    if change.is_empty() {
-        return "go back to the path".into();
+    match change.get("compare_b").filter(|_| change.len() == 1) {
+        Some(Value::Float(b)) => return format!("compare with b = {b:.3} rad"),
+        Some(_) => return "stop comparing".into(),
+        None => {}
     }
-    let say = |(key, value): (&String, &toml::Value)| {
-        let value = value.as_str().map_or_else(|| value.to_string(), Into::into);
-        format!("{} to {value}", key.replace('_', " "))
-    };
-    format!("set {}", change.iter().map(say).collect::<Vec<_>>().join(", "))
-}
-
-/// What a change of keys does.
-fn listed(of: &str, change: &toml::Table) -> String {
-    let say = |(key, value): (String, String)| match value.as_str() {
-        "default" => format!("{} back to normal", key.replace(['_', '.'], " ")),
-        _ => {
-            let short = value.parse().map_or(value.clone(), |x: f64| format!("{}", (x * 1e6).round() / 1e6));
-            format!("{} to {short}", key.replace(['_', '.'], " "))
+    let one = |(path, value): (String, &Value)| {
+        let number = value.as_float().or_else(|| value.as_integer().map(|x| x as f64));
+        let back = value.as_str() == Some(change::DEFAULT);
+        match (path.as_str(), number) {
+            ("task.time", Some(time)) => format!("motion time to {time:.3} s"),
+            // The task is what most edits are of: it goes without saying.
+            (path, number) => {
+                let of_machine = path.split('.').next().is_some_and(|part| PARTS.contains(&part));
+                let words = match of_machine {
+                    true => path.to_owned(),
+                    false => path.strip_prefix("task.").unwrap_or(path).replace(['_', '.'], " "),
+                };
+                match number {
+                    _ if back => format!("{words} back to normal"),
+                    Some(x) => format!("{words} to {}", (x * 1e6).round() / 1e6),
+                    None => format!("{words} to {}", shortened(&change::typed(value), 60)),
+                }
+            }
         }
     };
-    format!("set {of} {}", change::listed(change).into_iter().map(say).collect::<Vec<_>>().join(", "))
+    format!("set {}", change::leaves(change).into_iter().map(one).collect::<Vec<_>>().join(", "))
 }

@@ -27,15 +27,13 @@ pub(crate) fn check_edits(scenario: &Scenario) -> Result<(), (usize, String)> {
         {
             return Err(wrong);
         }
-        timed.edit.check(now.step).map_err(|check| of_entry(Refusal::from(check).to_string()))?;
+        timed.edit.check().map_err(|check| of_entry(Refusal::from(check).to_string()))?;
         if matches!(timed.edit, Edit::DragTarget { .. } | Edit::SlideB { .. } | Edit::PoseB { .. }) {
             continue;
         }
-        if place >= opening && timed.edit.is_of_the_start() {
-            return Err(of_entry(Edit::AT_START.into()));
-        }
         now = changed(&now, &timed.edit).map_err(|why| of_entry(why.to_string()))?;
-        match now.check(timed.edit.part()) {
+        match now.check(timed.edit.name()) {
+            Ok(()) if place >= opening && timed.edit.is_of_the_start() => return Err(of_entry(Edit::AT_START.into())),
             Ok(()) => unsound = None,
             Err(why) if place >= opening => return Err(of_entry(why.to_string())),
             Err(why) => unsound = unsound.or_else(|| Some(of_entry(why.to_string()))),

@@ -40,7 +40,7 @@ impl Change {
     /// Whether it changes the task or the base: the motion is then planned anew, so it can stand only before the first
     /// step.
     fn plans(&self) -> bool {
-        self.edit.as_ref().is_some_and(|e| matches!(e.edit, Edit::SetTask { .. } | Edit::SetBase { .. }))
+        self.edit.as_ref().is_some_and(|e| e.edit.sets_path() || e.edit.sets(&["base"]))
     }
 }
 
@@ -383,13 +383,13 @@ impl Session {
         let timed = TimedEdit { step: 0, edit };
         let document = self.amended(&timed);
         match &timed.edit {
-            Edit::SetTolerance { .. } => {
+            edit if edit.is_aside() => {
                 self.run.apply(&timed.edit)?;
                 self.edits = document.script.to_vec();
                 self.document = document;
             }
             edit => {
-                let patient = matches!(edit, Edit::SetMachine { .. }) || self.run.waiting().is_some();
+                let patient = edit.sets_machine() || self.run.waiting().is_some();
                 self.restore(document, patient)?;
             }
         }
@@ -400,9 +400,19 @@ impl Session {
     /// The document with an edit before the first step.
     fn amended(&self, timed: &TimedEdit) -> Document {
         let mut document = self.document.clone();
+        let mut timed = timed.clone();
+        if let Some(change) = timed.edit.take("duration") {
+            // A saved session says there how long it took, so no edit may say otherwise.
+            if let Ok(scenario) = document.scenario.with(&change) {
+                document.scenario = Arc::new(scenario);
+            }
+            if timed.edit.sets_nothing() {
+                return document;
+            }
+        }
         let mut script: Vec<TimedEdit> =
             self.edits.iter().filter(|e| !e.edit.is_replaced_by(&timed.edit)).cloned().collect();
-        if matches!(timed.edit, Edit::SetTask { .. }) && self.is_led() {
+        if timed.edit.sets_path() && self.is_led() {
             // A new plan puts a machine that was led back on its path: the edits that led it go, the settings stay.
             let mut kept: Vec<TimedEdit> = Vec::with_capacity(script.len());
             for e in script.drain(..).filter(|e| !e.edit.leads()) {
@@ -417,7 +427,7 @@ impl Session {
         }
         // An edit that leads the machine from the start does so from where this one puts it.
         let place = script.iter().position(|e| e.step > 0 || e.edit.leads());
-        let says_nothing = matches!(&timed.edit, Edit::SetTask { change } if change.is_empty());
+        let says_nothing = timed.edit.part("task").is_some_and(toml::Table::is_empty);
         if !says_nothing {
             script.insert(place.unwrap_or(script.len()), timed.clone());
         }
@@ -560,7 +570,7 @@ impl Session {
         scenario.edits.clone_from(&self.edits);
         scenario.duration = match self.document.end {
             0 => self.scenario().duration,
-            end => Some(end as f64 * scenario.step),
+            end => Some(end as f64 * self.scenario().step),
         };
         scenario
     }

@@ -4,6 +4,7 @@ mod changes;
 mod edit;
 mod edit_check;
 mod interactive;
+mod older;
 mod planner;
 mod refusal;
 mod replay;

@@ -11,7 +11,7 @@ use crate::planning::off_plane::price::PriceError;
 use crate::planning::pose_constant::{NoCommon, PlaneError, Unreachable};
 use crate::planning::reactionless::Decimal;
 use crate::planning::timing::TimeError;
-use crate::session::scenario::{MAX_FRAMES, MAX_STEPS, MAX_TIME, ordinal};
+use crate::session::scenario::{MAX_FRAMES, MAX_STEPS, MAX_TIME, SettingError, ordinal};
 use crate::settings::number::Short;
 use crate::settings::range::{Check, Want};
 
@@ -188,6 +188,15 @@ impl Refusal {
             Self::Blocked(blocked) => blocked.shown_b,
             Self::Unreachable { unreachable: Unreachable::OnThisPlane { shown_b, .. }, .. } => *shown_b,
             _ => None,
+        }
+    }
+}
+
+impl From<SettingError> for Refusal {
+    fn from(error: SettingError) -> Self {
+        match error {
+            SettingError::Machine(error) => error.into(),
+            other => Self::Task(other.to_string()),
         }
     }
 }

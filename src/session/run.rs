@@ -14,7 +14,6 @@ use crate::planning::pose_constant::Planes;
 use crate::planning::reactionless::Decimal;
 use crate::session::changes::{amended, changed, checked};
 use crate::session::scenario::{MAX_STEPS, Scenario};
-use crate::settings::change;
 use crate::simulation::frame::Frame;
 use crate::simulation::{Guide, Simulation};
 
@@ -169,8 +168,7 @@ impl Run {
     /// # Errors
     /// If it cannot apply; then nothing has changed.
     pub fn apply(&mut self, edit: &Edit) -> Result<(), Refusal> {
-        if matches!(edit, Edit::SetTolerance { .. }) {
-            // Nothing of the run depends on it.
+        if edit.is_aside() {
             self.scenario = checked(changed(&self.scenario, edit)?, edit)?;
             return Ok(());
         }
@@ -181,7 +179,7 @@ impl Run {
             *self = Self::with_planes(&scenario, known)?;
             return Ok(());
         }
-        edit.check(self.scenario.step)?;
+        edit.check()?;
         match edit {
             Edit::DragTarget { x, y } => {
                 let mut follower = self.follower()?;
@@ -198,15 +196,9 @@ impl Run {
                 follower.pose_at(*b);
                 self.simulation.place(Guide::Follow(follower));
             }
-            Edit::CompareB { b } => self.scenario.compare_b = *b,
-            Edit::SetTolerance { .. } => {}
-            Edit::Push { .. }
-            | Edit::SetPlant { .. }
-            | Edit::SetBase { .. }
-            | Edit::SetControl { .. }
-            | Edit::SetMachine { .. }
-            | Edit::SetTime { .. }
-            | Edit::SetTask { .. } => self.set(edit)?,
+            // No motion depends on it.
+            edit if edit.compares() => self.scenario = checked(changed(&self.scenario, edit)?, edit)?,
+            Edit::Push { .. } | Edit::Set { .. } => self.set(edit)?,
         }
         Ok(())
     }
@@ -222,12 +214,13 @@ impl Run {
             return Err(Refusal::Task(Edit::AT_START.into()));
         }
         let scenario = checked(changed(&self.scenario, edit)?, edit)?;
-        if let (Edit::SetMachine { key, value }, true) = (edit, self.leaves_limits(&scenario)) {
-            return Err(Refusal::LeavesLimits { key: key.clone(), value: value.clone() });
+        if let Some((key, value)) = edit.limits().filter(|_| self.leaves_limits(&scenario)) {
+            return Err(Refusal::LeavesLimits { key, value });
         }
         let mut simulation = self.simulation.clone();
         simulation.change(&scenario.setup())?;
-        if scenario.machine != self.scenario.machine {
+        let bound = scenario.pose_acceleration != self.scenario.pose_acceleration;
+        if scenario.machine != self.scenario.machine || bound {
             let keep_off = scenario.task.keep_off_change_points;
             let planes = Arc::new(Planes::of(&scenario.machine)?.keeping_off_change_points(keep_off));
             if let Guide::Follow(old) = self.simulation.guide() {
@@ -293,14 +286,7 @@ impl Run {
             Edit::SlideB { .. } => Edit::SlideB { b: b_aim() },
             Edit::PoseB { .. } => Edit::PoseB { b: b_aim() },
             Edit::Push { .. } => Edit::Push { x: scenario.plant.force[0], y: scenario.plant.force[1] },
-            Edit::SetPlant { change } => Edit::SetPlant { change: change::only(&scenario.plant, change) },
-            Edit::SetBase { change } => Edit::SetBase { change: change::only(&scenario.base, change) },
-            Edit::SetControl { change } => Edit::SetControl { change: change::only(&scenario.control, change) },
-            Edit::SetTolerance { change } => Edit::SetTolerance { change: change::only(&scenario.tolerance, change) },
-            Edit::SetMachine { key, .. } => Edit::SetMachine { key: key.clone(), value: scenario.machine.get(key)? },
-            Edit::SetTime { .. } => Edit::SetTime { time: scenario.task.time },
-            Edit::SetTask { change } => Edit::SetTask { change: scenario.task.only(change) },
-            Edit::CompareB { .. } => Edit::CompareB { b: scenario.compare_b },
+            Edit::Set { change } => Edit::Set { change: scenario.only(change)? },
         })
     }
 }

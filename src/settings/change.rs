@@ -7,7 +7,7 @@ use toml::{Table, Value};
 use crate::settings::range::shortened;
 
 /// The word that takes a key out, so that its default returns.
-const DEFAULT: &str = "default";
+pub const DEFAULT: &str = "default";
 
 /// A value with some of its keys changed; tables inside it are changed key by key, and the word `default` takes a key
 /// out.
@@ -15,6 +15,14 @@ const DEFAULT: &str = "default";
 /// # Errors
 /// What key or value is wrong, and what would be right.
 pub fn with<T: Serialize + DeserializeOwned>(value: &T, change: &Table) -> Result<T, String> {
+    with_as(value, change)
+}
+
+/// The same, read as another type.
+///
+/// # Errors
+/// As [`with`].
+pub fn with_as<T: Serialize, U: DeserializeOwned>(value: &T, change: &Table) -> Result<U, String> {
     if let Some(key) = not_finite(change) {
         return Err(format!("{key} is not a finite number: want one"));
     }
@@ -36,18 +44,39 @@ pub fn covers(later: &Table, earlier: &Table) -> bool {
     })
 }
 
-/// The change that takes out every key of a value, whatever keys it has: [`with`] makes all of it default.
-pub fn to_defaults<T: Serialize>(value: &T) -> Table {
-    let table = Table::try_from(value).unwrap_or_default();
-    table.into_iter().map(|(key, _)| (key, DEFAULT.into())).collect()
-}
-
 /// A change of one key, its parts joined by dots.
 pub fn one(key: &str, value: impl Into<Value>) -> Table {
-    match key.split_once('.') {
-        Some((head, rest)) => Table::from_iter([(head.to_owned(), Value::Table(one(rest, value)))]),
-        None => Table::from_iter([(key.to_owned(), value.into())]),
-    }
+    at(&key.split('.').collect::<Vec<_>>(), value)
+}
+
+/// A change of one key, by its parts.
+pub fn at(path: &[&str], value: impl Into<Value>) -> Table {
+    let Some((last, outer)) = path.split_last() else { return Table::new() };
+    let innermost = Table::from_iter([((*last).to_owned(), value.into())]);
+    outer.iter().rev().fold(innermost, |inner, key| Table::from_iter([((*key).to_owned(), Value::Table(inner))]))
+}
+
+/// A value as it would stand in a file: text where TOML knows no other reading, and a list of several numbers parted by
+/// commas.
+pub fn value(text: &str) -> Value {
+    let read = |text: &str| {
+        let table: Option<Table> = format!("x = {text}").parse().ok();
+        // More than one line would be more than one value.
+        table.filter(|table| table.len() == 1).and_then(|mut table| table.remove("x"))
+    };
+    // Such as `.5` and `5.`, which TOML does not take.
+    let number = |text: &str| text.trim().parse::<f64>().ok().map(Value::Float);
+    let text = text.trim();
+    let list = || {
+        let several = text.contains(',').then(|| read(&format!("[{text}]"))).flatten();
+        several.or_else(|| {
+            text.contains(',')
+                .then(|| text.split(',').map(number).collect::<Option<Vec<_>>>())
+                .flatten()
+                .map(Value::Array)
+        })
+    };
+    read(text).or_else(|| number(text)).or_else(list).unwrap_or_else(|| Value::String(text.into()))
 }
 
 /// Two changes as one; the second has the last word.
@@ -77,18 +106,29 @@ pub fn not_finite(table: &Table) -> Option<String> {
     })
 }
 
-/// Every key of a change with its value, as `a.b = 1`.
-pub fn listed(change: &Table) -> Vec<(String, String)> {
+/// Every value of a table with its path, its keys joined by dots.
+pub fn leaves(table: &Table) -> Vec<(String, &Value)> {
     let mut list = Vec::new();
-    for (key, value) in change {
+    for (key, value) in table {
         match value {
             Value::Table(inner) => {
-                list.extend(listed(inner).into_iter().map(|(rest, value)| (format!("{key}.{rest}"), value)));
+                list.extend(leaves(inner).into_iter().map(|(rest, value)| (format!("{key}.{rest}"), value)));
             }
-            value => list.push((key.clone(), value.as_str().map_or_else(|| value.to_string(), Into::into))),
+            value => list.push((key.clone(), value)),
         }
     }
     list
+}
+
+/// A value as it would be typed.
+pub fn typed(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Array(items) if items.iter().all(|item| !item.is_array() && !item.is_table()) => {
+            items.iter().map(typed).collect::<Vec<_>>().join(",")
+        }
+        value => value.to_string(),
+    }
 }
 
 fn lay(table: &mut Table, change: &Table) {
@@ -121,7 +161,6 @@ fn pick(table: &Table, change: &Table) -> Table {
     let picked = |(key, value): (&String, &Value)| {
         let now = match (value, table.get(key)) {
             (Value::Table(change), Some(Value::Table(inner))) => Value::Table(pick(inner, change)),
-            (Value::Table(change), None) => Value::Table(pick(&Table::new(), change)),
             (_, now) => now.cloned().unwrap_or_else(|| DEFAULT.into()),
         };
         (key.clone(), now)

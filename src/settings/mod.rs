@@ -1,6 +1,7 @@
 //! How a value is named, bounded and shown: changes by key, ranges, text from outside.
 
 pub mod change;
+pub mod key;
 pub mod number;
 pub mod range;
 pub mod text;

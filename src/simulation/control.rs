@@ -13,7 +13,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, Units, Vector};
 use crate::planning::Reference;
-use crate::settings::range::Check;
+use crate::settings::key::{Holds, Key};
+use crate::settings::range::{Check, Range};
 use crate::simulation::plant::{Each, MovingBody, is_default};
 
 /// Control as a file states it.
@@ -44,6 +45,54 @@ pub struct Control {
     #[serde(default, skip_serializing_if = "is_default")]
     pub encoder: f64,
 }
+
+/// Every key of `[control]`.
+pub const KEYS: [Key; 7] = [
+    Key::new(
+        "control.law",
+        Holds::Choice(&["computed-torque", "payload-compensation", "pd"]),
+        "computed-torque",
+        "What control computes: torques from the model, the same with the payload in it while it is held, or PD from the \
+         errors alone.",
+    ),
+    Key::new(
+        "control.kp",
+        Holds::PerDrive(Range::new(0.0, 1e10, "s⁻²")),
+        "400",
+        "Position gain K_p, at most 1/step²; equal on all drives, errors stay on the plane.",
+    ),
+    Key::new(
+        "control.kd",
+        Holds::PerDrive(Range::new(0.0, 2e5, "s⁻¹")),
+        "40",
+        "Velocity gain K_d, at most 2/step; equal on all drives, errors stay on the plane.",
+    ),
+    Key::new(
+        "control.knows_base",
+        Holds::Switch,
+        "true",
+        "Whether the model of control includes the base that moves; otherwise control takes the base to be fixed.",
+    )
+    .when("base.kind = free or compliant: a fixed base does not move"),
+    Key::number(
+        "control.rate",
+        Range::new(0.0, 1e5, "Hz"),
+        "0",
+        "How often torques are computed, and held between; a whole number of steps lies between two, and 0 is all the time.",
+    ),
+    Key::number(
+        "control.delay",
+        Range::new(0.0, 1.0, "s"),
+        "0",
+        "From reading the encoders to the torque, a whole number of steps.",
+    ),
+    Key::number(
+        "control.encoder",
+        Range::new(0.0, 1e12, "counts"),
+        "0",
+        "Counts of the encoders in a turn, 16 or more; rates are their differences, and 0 is exact.",
+    ),
+];
 
 /// What a controller computes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -96,38 +145,25 @@ impl Control {
         if self.rate > 0.0 { ((1.0 / (self.rate * step)).round() as u64).max(1) } else { 1 }
     }
 
-    /// Every number with its key, what it should be, and whether it is.
-    pub(crate) fn checks(&self, n: usize, step: f64) -> Vec<Check> {
+    /// What no range says: how its numbers fit the step, s, and the drives of a machine with `n` of them.
+    pub(crate) fn fits(&self, n: usize, step: f64) -> Vec<Check> {
         let mut list = Vec::new();
         for (key, gain, most, want) in [
             ("control.kp", self.kp, 1.0 / (step * step), "0 to 1/step² s⁻², one number or one for each drive"),
             ("control.kd", self.kd, 2.0 / step, "0 to 2/step s⁻¹, one number or one for each drive"),
         ] {
-            let ok = |x: f64| (0.0..=most).contains(&x);
-            list.extend(gain.values().into_iter().map(|x| Check::words(key, x, ok(x), want)));
+            list.extend(gain.values().into_iter().map(|x| Check::words(key, x, x <= most, want)));
             list.extend(gain.misfit(n, key));
         }
         let whole = |steps: f64| (steps - steps.round()).abs() < 1e-6 * steps.max(1.0);
         let steps = if self.rate > 0.0 { 1.0 / (self.rate * step) } else { 1.0 };
+        let period = (1.0 - 1e-9..1e9).contains(&steps) && whole(steps);
+        let (delay, encoder) = (self.delay, self.encoder);
+        let counts = encoder == 0.0 || encoder >= 16.0;
         list.extend([
-            Check::words(
-                "control.rate",
-                self.rate,
-                self.rate >= 0.0 && (1.0 - 1e-9..1e9).contains(&steps) && whole(steps),
-                "0, or a rate whose period is a whole number of steps, Hz",
-            ),
-            Check::words(
-                "control.delay",
-                self.delay,
-                (0.0..=1.0).contains(&self.delay) && whole(self.delay / step),
-                "0 to 1 s, a whole number of steps",
-            ),
-            Check::words(
-                "control.encoder",
-                self.encoder,
-                self.encoder == 0.0 || (16.0..=1e12).contains(&self.encoder),
-                "0, or 16 to 1e12 counts in a turn",
-            ),
+            Check::words("control.rate", self.rate, period, "0, or a rate whose period is a whole number of steps, Hz"),
+            Check::words("control.delay", delay, whole(delay / step), "0 to 1 s, a whole number of steps"),
+            Check::words("control.encoder", encoder, counts, "0, or 16 to 1e12 counts in a turn"),
         ]);
         list
     }

@@ -257,7 +257,7 @@ fn a_run_is_recorded_whole_or_not() {
     h.run_steps(2);
     h.state_mut()
         .app_state_mut()
-        .carry_out(Command::Edit(Edit::SetMachine { key: "limits.a1".into(), value: "0,2.618".into() }));
+        .carry_out(Command::Edit(Edit::set("limits.a1", stillbase::settings::change::value("0,2.618"))));
     h.run_steps(2);
     assert!(session(&h).run().waiting().is_some());
     name_file(&mut h, Ask::Record, &folder.path("waits.rrd"));

@@ -210,7 +210,7 @@ fn a_hand_is_named_and_let_go() {
         h.run_steps(3);
         assert!(session(&h).is_led(), "the hand comes back");
     }
-    let gravity = Edit::SetMachine { key: "gravity".into(), value: "0,-9.81".into() };
+    let gravity = Edit::set("gravity", stillbase::settings::change::value("0,-9.81"));
     h.state_mut().app_state_mut().carry_out(stillbase::app::Command::Edit(gravity));
     h.key_press(Key::Num3);
     h.run_steps(2);

@@ -39,7 +39,7 @@ fn a_refused_path_shows_where_and_what_b_would_do() {
         ("to".to_owned(), vec![0.0, 0.5].into()),
     ]);
     let before = session(&h).scenario().task.clone();
-    h.state_mut().app_state_mut().carry_out(stillbase::app::Command::Edit(Edit::SetTask { change }));
+    h.state_mut().app_state_mut().carry_out(stillbase::app::Command::Edit(Edit::of("task", change)));
     h.run_steps(2);
     assert_eq!(session(&h).scenario().task, before, "nothing has changed");
     assert!(h.query_by_label_contains("the path stops at (0.418, 1.116) m").is_some());
@@ -56,7 +56,7 @@ fn a_refused_path_shows_where_and_what_b_would_do() {
 fn a_scenario_that_cannot_be_planned_is_explained() {
     let scenario = Scenario::builtin("case-3").expect("built in");
     let keys = "shape = 'line'\nfrom = [0.42, 1.12]\nto = [0.0, 0.5]";
-    let task = scenario.task.with(&toml::from_str(keys).expect("keys")).expect("a task");
+    let task = scenario.task.with(&toml::from_str(keys).expect("keys"), &scenario.machine).expect("a task");
     let asked = Scenario { task: task.clone(), ..scenario };
     assert!(AppState::new(asked.clone(), Theme::Dark).is_err());
     let mut app_state = AppState::open_or_explain(asked, Theme::Dark).expect("explained");

@@ -339,7 +339,7 @@ fn a_given_motion_lives_in_a_session() {
     assert!(task.moving(0, at).is_none() && task.adding(at).is_none() && task.removing(0).is_none());
     let drawn = Task::drawing(&[at, 2.0 * at]).expect("two points");
     let before = session.run().plan().clone();
-    assert!(matches!(session.apply(Edit::SetTask { change: drawn }), Err(Refusal::Task(_))));
+    assert!(matches!(session.apply(Edit::of("task", drawn)), Err(Refusal::Task(_))));
     assert_eq!(session.run().plan(), &before);
 
     // Posed on another plane it turns as a whole; stretched in time its peaks go with 1/T².
@@ -355,13 +355,13 @@ fn a_given_motion_lives_in_a_session() {
         assert!((x.q[1] - x.q[0] - y.q[1] + y.q[0]).abs() < 1e-12);
     }
     see(&session);
-    session.apply(Edit::SetTime { time: 3.0 }).expect("slower");
+    session.apply(Edit::set("task.time", 3.0)).expect("slower");
     session.end_gesture();
     assert!((4.0 * session.run().plan().forecast.moment / peak - 1.0).abs() < 1e-6);
     session.undo().expect("back");
     assert_eq!(session.run().plan(), &turned);
     // What the machine weighs does not turn it.
-    session.apply(Edit::SetMachine { key: "payload.mass".into(), value: "0.3".into() }).expect("heavier");
+    session.apply(Edit::set("payload.mass", stillbase::settings::change::value("0.3"))).expect("heavier");
     session.end_gesture();
     assert_eq!(session.run().plan().motion, turned.motion);
     session.undo().expect("back");
@@ -377,7 +377,7 @@ fn a_given_motion_lives_in_a_session() {
     // Another kind takes the machine back; the samples go with their kind.
     let change = [("kind", "reactionless"), ("samples", "default"), ("turn", "default")];
     let change = change.into_iter().map(|(key, value)| (key.to_owned(), value.into())).collect();
-    session.apply(Edit::SetTask { change }).expect("from its first to its last point");
+    session.apply(Edit::of("task", change)).expect("from its first to its last point");
     assert!(session.scenario().task.samples.is_none() && session.run().plan().forecast.moment < 1e-9);
 }
 

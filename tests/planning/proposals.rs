@@ -15,7 +15,7 @@ fn number(text: &str, before: &str) -> Option<f64> {
 
 fn with(scenario: &Scenario, change: &str) -> Scenario {
     let change: Change = toml::from_str(change).expect("keys");
-    Scenario { task: scenario.task.with(&change).expect("a task"), ..scenario.clone() }
+    Scenario { task: scenario.task.with(&change, &scenario.machine).expect("a task"), ..scenario.clone() }
 }
 
 /// Refused tasks between random points, and what became of what was proposed: points, b, and how often nothing was.

@@ -14,7 +14,7 @@ fn scenario() -> Scenario {
 fn task(text: &str) -> Scenario {
     let base = scenario();
     let change: Change = toml::from_str(text).expect("keys and values");
-    Scenario { task: base.task.with(&change).expect("a task"), ..base }
+    Scenario { task: base.task.with(&change, &base.machine).expect("a task"), ..base }
 }
 
 fn run(scenario: &Scenario) -> (Run, Vec<Frame>) {
@@ -124,8 +124,8 @@ fn the_least_move_mends() {
 /// Moved, added, taken out, brought forward: the task has the points that it should.
 #[test]
 fn waypoints_are_edited_as_lists() {
-    let task = scenario().task;
-    let with = |task: &Task, change: Option<Change>| task.with(&change.expect("possible")).expect("a task");
+    let Scenario { task, machine, .. } = scenario();
+    let with = |task: &Task, change: Option<Change>| task.with(&change.expect("possible"), &machine).expect("a task");
     let p = Vector::new(0.6, 0.7);
     let three = with(&task, task.adding(p));
     assert_eq!(three.points(), [Vector::new(0.5, 0.5), p, Vector::new(0.55, 0.9)]);
@@ -149,7 +149,7 @@ fn planning_is_done_by_edits() {
     session.play();
     session.tick(300);
     let before = session.frames().to_vec();
-    session.apply(Edit::task("shape", "line")).expect("feasible");
+    session.apply(Edit::set("task.shape", "line")).expect("feasible");
     session.end_gesture();
     assert_eq!(session.frames().len(), before.len(), "the display stays where it was");
     assert_ne!(session.frame().q, before[300].q);
@@ -158,14 +158,14 @@ fn planning_is_done_by_edits() {
     let task = session.scenario().task.clone();
     let outside = task.moving(1, Vector::new(1.1, 0.3)).expect("a point");
     let frames = session.frames().to_vec();
-    let refusal = session.apply(Edit::SetTask { change: outside }).expect_err("outside of every plane of A");
+    let refusal = session.apply(Edit::of("task", outside)).expect_err("outside of every plane of A");
     assert!(matches!(refusal, Refusal::NoCommonPlane { .. } | Refusal::Unreachable { .. }), "{refusal}");
     assert_eq!((session.frames(), &session.scenario().task), (&frames[..], &task));
-    let nonsense = session.apply(Edit::task("shape", "square")).expect_err("no such shape").to_string();
+    let nonsense = session.apply(Edit::set("task.shape", "square")).expect_err("no such shape").to_string();
     assert!(nonsense.contains("square") && nonsense.contains("spline"), "{nonsense}");
 
     let inside = task.adding(Vector::new(0.6, 0.7)).expect("a point");
-    session.apply(Edit::SetTask { change: inside }).expect("feasible");
+    session.apply(Edit::of("task", inside)).expect("feasible");
     session.end_gesture();
     assert_eq!(session.scenario().task.points().len(), 3);
 
@@ -189,7 +189,7 @@ fn a_new_path_ends_following() {
     session.end_gesture();
     session.tick(400);
     assert!(session.is_led());
-    session.apply(Edit::task("shape", "line")).expect("feasible");
+    session.apply(Edit::set("task.shape", "line")).expect("feasible");
     assert!(!session.is_led());
     assert_eq!(session.frames().len(), 1);
     session.undo().expect("taken back");

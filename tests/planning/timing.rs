@@ -847,7 +847,7 @@ fn through(points: &[Vector], blend: Option<f64>, law: &str) -> Option<Scenario>
     let words = [("shape", "line"), ("law", law), ("corners", if blend.is_some() { "blend" } else { "stop" })];
     change.extend(words.map(|(key, word)| (key.to_owned(), word.into())));
     change.extend(blend.map(|blend| ("blend".to_owned(), blend.into())));
-    scenario.task = scenario.task.with(&change).ok()?;
+    scenario.task = scenario.task.with(&change, &scenario.machine).ok()?;
     Some(scenario)
 }
 
@@ -935,7 +935,7 @@ fn closed_joint_lines_name_given_points() {
     let mut scenario = through(&points, Some(0.05), "quintic").expect("a task");
     let change =
         [("shape", "joint-line".into()), ("closed", true.into())].map(|(k, v): (&str, Value)| (k.to_owned(), v));
-    scenario.task = scenario.task.with(&change.into_iter().collect()).expect("a task");
+    scenario.task = scenario.task.with(&change.into_iter().collect(), &scenario.machine).expect("a task");
     let error = Run::new(&scenario).expect_err("no way from a point to itself").to_string();
     assert!(error.contains("points 3 and 1 are the same"), "{error}");
 }

@@ -11,7 +11,8 @@ fn help_names_every_command_with_units_and_examples() {
     for command in names {
         assert!(all.contains(&format!("\n  {command} ")), "{command}");
         let help = prints(&[command, "--help"]);
-        assert!(command == "figures" || help.contains("--set <KEY=VALUE>") && help.contains("--json"), "{command}");
+        let sets = ["figures", "keys"].contains(&command) || help.contains("--set <KEY=VALUE>");
+        assert!(sets && (command == "figures" || help.contains("--json")), "{command}");
         assert!(command == "machines" || help.contains("Example"), "{command}");
     }
     assert!(prints(&["--version"]).starts_with("stillbase "));

@@ -102,8 +102,8 @@ fn edits_on_the_way_are_recorded() {
     let edit = |step, edit| TimedEdit { step, edit };
     scenario.edits = vec![
         edit(22, Edit::DragTarget { x: 3.0, y: 0.0 }),
-        edit(40, Edit::CompareB { b: Some(1.0) }),
-        edit(60, Edit::SetMachine { key: "limits.a1".into(), value: "0.4,2.7".into() }),
+        edit(40, Edit::set("compare_b", 1.0)),
+        edit(60, Edit::set("limits.a1", stillbase::settings::change::value("0.4,2.7"))),
     ];
     record_in(&folder, "edited.rrd", &[scenario]).expect("an edited case");
     let contents = Contents::of(&folder.path("edited.rrd"));

@@ -137,9 +137,9 @@ fn machines_inside_a_scenario_are_named_with_their_lines() {
     let said = |text: &str| Scenario::parse(text, "own.toml", None).expect_err("wrong").to_string();
     let lines = CASE_3.lines().count();
     let error = said(&format!("{CASE_3}[plant.link.5]\ncom = 0.0\nmass = -3.0\n"));
-    assert!(error.starts_with(&format!("own.toml:{}: machine: link[5].mass is -3", lines + 3)), "{error}");
+    assert!(error.starts_with(&format!("own.toml:{}: plant.link.5.mass is -3", lines + 3)), "{error}");
     let error = said(&format!("{CASE_3}[plant.length]\nl1 = 0.5\nl2 = 1e300\n"));
-    assert!(error.starts_with(&format!("own.toml:{}: machine: lengths.l2 is 1e300", lines + 3)), "{error}");
+    assert!(error.starts_with(&format!("own.toml:{}: plant.length.l2 is 1e300", lines + 3)), "{error}");
     let error = said(&format!("{CASE_3}[plant.link.55]\nmass = 3.0\n"));
     assert!(error.starts_with(&format!("own.toml:{}: ", lines + 2)) && error.contains("\"55\""), "{error}");
     let error = said(&CASE_3.replace("[task]", "set = [\"link.5.mass=-1\"]\n[task]"));

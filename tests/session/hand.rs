@@ -12,8 +12,12 @@ use super::{coarse, do_it, drag, gains, one_path, open, scenario, set, settle, s
 /// A target dragged before the first step outlives a change of parameters, in motion or at rest.
 #[test]
 fn a_drag_at_the_start_outlives_parameters() {
-    let parameters =
-        [gains(500.0, 45.0), Edit::plant("payload.mass", 0.05), set("limits.a1", "0.1,3"), set("gravity", "0,-9.81")];
+    let parameters = [
+        gains(500.0, 45.0),
+        Edit::set("plant.payload.mass", 0.05),
+        set("limits.a1", "0.1,3"),
+        set("gravity", "0,-9.81"),
+    ];
     for parameter in parameters {
         // At once, in motion, and at rest.
         for ticks in [0, 30, 100_000] {
@@ -39,10 +43,10 @@ fn a_parameter_set_at_rest_is_the_last_word() {
     do_it(&mut session, drag(0.6, 0.6));
     session.end_gesture();
     session.tick(20);
-    do_it(&mut session, Edit::plant("payload.mass", 0.3));
+    do_it(&mut session, Edit::set("plant.payload.mass", 0.3));
     session.end_gesture();
     settle(&mut session);
-    do_it(&mut session, Edit::plant("payload.mass", 0.1));
+    do_it(&mut session, Edit::set("plant.payload.mass", 0.1));
     assert_eq!(session.scenario().plant.payload.mass, 0.1);
     settle(&mut session);
     one_path(&session);
@@ -78,7 +82,7 @@ fn the_time_of_a_motion_can_be_set_while_it_runs() {
     let mut session = open(coarse());
     session.play();
     session.tick(100);
-    do_it(&mut session, Edit::SetTime { time: 2.0 });
+    do_it(&mut session, Edit::set("task.time", 2.0));
     assert!(session.is_moving());
     assert_eq!(session.length(), 2.0);
     settle(&mut session);
@@ -272,10 +276,10 @@ fn settings_outlive_following() {
     do_it(&mut session, drag(0.6, 0.7));
     session.tick(200);
     session.end_gesture();
-    do_it(&mut session, Edit::plant("payload.mass", 0.3));
+    do_it(&mut session, Edit::set("plant.payload.mass", 0.3));
     session.end_gesture();
     session.tick(50);
-    do_it(&mut session, Edit::task("shape", "line"));
+    do_it(&mut session, Edit::set("task.shape", "line"));
     assert!(!session.is_led());
     assert_eq!(session.scenario().plant.payload.mass, 0.3);
     one_path(&session);

@@ -32,7 +32,7 @@ fn limits() -> impl Strategy<Value = (usize, f64, f64)> {
 }
 
 fn limit((i, from, to): (usize, f64, f64)) -> Edit {
-    Edit::SetMachine { key: format!("limits.a{i}"), value: format!("{from},{to}") }
+    Edit::set(&format!("limits.a{i}"), vec![from, to])
 }
 
 /// A session in which both limits are set at some step, playing or not, led by hand or not.

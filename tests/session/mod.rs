@@ -5,6 +5,7 @@ mod cases;
 mod hand;
 mod limits;
 mod replay;
+mod settings;
 mod sitting;
 mod undo;
 mod verdict;
@@ -14,7 +15,7 @@ use stillbase::session::{Edit, Session, TimedEdit, replay};
 use stillbase::simulation::frame::Frame;
 
 fn gains(kp: f64, kd: f64) -> Edit {
-    Edit::SetControl { change: toml::Table::from_iter([("kp".into(), kp.into()), ("kd".into(), kd.into())]) }
+    Edit::of("control", toml::Table::from_iter([("kp".into(), kp.into()), ("kd".into(), kd.into())]))
 }
 
 fn scenario() -> Scenario {
@@ -39,7 +40,13 @@ fn slide(b: f64) -> Edit {
 }
 
 fn set(key: &str, value: &str) -> Edit {
-    Edit::SetMachine { key: key.into(), value: value.into() }
+    // As floating-point numbers, in which machines hold them.
+    let numbers: Option<Vec<f64>> = value.split(',').map(|x| x.parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[one]) => Edit::set(key, one),
+        Some(several) => Edit::set(key, several.to_vec()),
+        None => Edit::set(key, value),
+    }
 }
 
 fn do_it(session: &mut Session, edit: Edit) {

@@ -21,7 +21,7 @@ fn a_played_case_is_its_replay() {
 #[test]
 fn a_sitting_replayed_gives_equal_frames() {
     let mut session = open(coarse());
-    do_it(&mut session, Edit::SetTime { time: 0.8 });
+    do_it(&mut session, Edit::set("task.time", 0.8));
     do_it(&mut session, Edit::PoseB { b: 2.5 });
     session.end_gesture();
     session.play();
@@ -31,7 +31,7 @@ fn a_sitting_replayed_gives_equal_frames() {
         session.tick([1, 0, 4, 0, 0, 2, 7, 1, 0, 3, 3, 5][i as usize]);
     }
     session.end_gesture();
-    do_it(&mut session, Edit::plant("payload.mass", 0.2));
+    do_it(&mut session, Edit::set("plant.payload.mass", 0.2));
     session.tick(11);
     do_it(&mut session, gains(300.0, 30.0));
     session.tick(2);
@@ -40,7 +40,7 @@ fn a_sitting_replayed_gives_equal_frames() {
     do_it(&mut session, slide(2.7));
     session.tick(40);
     do_it(&mut session, set("gravity", "0,-9.81"));
-    do_it(&mut session, Edit::CompareB { b: Some(4.0) });
+    do_it(&mut session, Edit::set("compare_b", 4.0));
     session.tick(5);
     do_it(&mut session, drag(1.5, 1.5));
     session.tick(90);
@@ -61,13 +61,13 @@ fn refused_edits_change_nothing() {
         drag(0.5, f64::INFINITY),
         slide(f64::NAN),
         Edit::PoseB { b: f64::INFINITY },
-        Edit::plant("payload.mass", -0.1),
-        Edit::plant("payload.mass", f64::NAN),
+        Edit::set("plant.payload.mass", -0.1),
+        Edit::set("plant.payload.mass", f64::NAN),
         gains(-1.0, 10.0),
         gains(100.0, f64::NAN),
-        Edit::SetTime { time: 0.0 },
-        Edit::SetTime { time: f64::NAN },
-        Edit::CompareB { b: Some(f64::NAN) },
+        Edit::set("task.time", 0.0),
+        Edit::set("task.time", f64::NAN),
+        Edit::set("compare_b", f64::NAN),
         set("limits.a1", "2,1"),
         set("limits.a7", "0,1"),
         set("link.1.mass", "-3"),
@@ -112,7 +112,7 @@ fn refused_edits_change_nothing() {
 #[test]
 fn a_session_saved_at_its_start_runs_to_the_end_of_its_motion() {
     let mut session = open(coarse());
-    do_it(&mut session, Edit::SetTime { time: 1.6 });
+    do_it(&mut session, Edit::set("task.time", 1.6));
     let frames = replayed(&session);
     assert_eq!(frames.len(), 401);
     assert_eq!(frames[400].phase, Phase::Rest);
@@ -123,7 +123,7 @@ fn a_session_saved_at_its_start_runs_to_the_end_of_its_motion() {
 #[test]
 fn edits_of_a_file_are_put_in_order() {
     let at = |step, edit| TimedEdit { step, edit };
-    let edits = vec![at(120, slide(2.5)), at(40, drag(0.6, 0.6)), at(0, Edit::plant("payload.mass", 0.1))];
+    let edits = vec![at(120, slide(2.5)), at(40, drag(0.6, 0.6)), at(0, Edit::set("plant.payload.mass", 0.1))];
     let scrambled = Scenario { edits: edits.clone(), ..coarse() };
     let mut sorted = scrambled.clone();
     sorted.edits.sort_by_key(|e| e.step);
@@ -158,7 +158,7 @@ fn an_edit_after_the_end_is_refused() {
 #[test]
 fn what_a_motion_is_planned_from_is_set_before_the_first_step() {
     let mut scenario = coarse();
-    scenario.edits = vec![stillbase::session::TimedEdit { step: 100, edit: Edit::SetTime { time: 2.0 } }];
+    scenario.edits = vec![stillbase::session::TimedEdit { step: 100, edit: Edit::set("task.time", 2.0) }];
     let refusal = stillbase::session::replay(&scenario, |_, _| {}).expect_err("too late");
     assert!(refusal.to_string().contains("before the first step"), "{refusal}");
     let file = Scenario::parse(&scenario.to_toml(), "late.toml", None).expect_err("too late").to_string();
@@ -194,8 +194,8 @@ fn an_inline_machine_is_saved_with_its_session() {
 /// In whatever order settings were made, the last word of each holds, and what stood between them need not be possible.
 #[test]
 fn the_order_of_settings_does_not_matter() {
-    let task = |key: &str, value: &str| Edit::task(key, value);
-    let to = |x: f64, y: f64| Edit::SetTask { change: [("to".to_owned(), vec![x, y].into())].into_iter().collect() };
+    let task = |key: &str, value: &str| Edit::set(&format!("task.{key}"), value);
+    let to = |x: f64, y: f64| Edit::of("task", [("to".to_owned(), vec![x, y].into())].into_iter().collect());
     for [first, second, third] in [
         [set("drive.3.jerk_limit", "900"), task("law", "fastest-smooth"), set("drive.3.jerk_limit", "800")],
         [task("kind", "minimum-norm"), to(0.3, 1.0), task("kind", "least-reaction")],
@@ -221,13 +221,13 @@ fn tolerances_change_no_frame() {
     let before = session.frames().to_vec();
     let spread = toml::Value::Table(toml::Table::from_iter([("normal".into(), 0.001.into())]));
     let change = toml::Table::from_iter([("link.*.com".into(), spread), ("moment_limit".into(), 0.02.into())]);
-    do_it(&mut session, Edit::SetTolerance { change: change.clone() });
+    do_it(&mut session, Edit::of("tolerance", change.clone()));
     assert_eq!(session.frames(), &before[..]);
     let tolerance = &session.scenario().tolerance;
     assert_eq!((tolerance.moment_limit, tolerance.spreads.len()), (Some(0.02), 1));
     let saved = Scenario::parse(&session.to_scenario().to_toml(), "saved", None).expect("valid");
     assert_eq!(stillbase::session::settled(&saved).expect("set").0.tolerance, *tolerance);
-    let wrong = Edit::SetTolerance { change: toml::Table::from_iter([("link.*.com".into(), "much".into())]) };
+    let wrong = Edit::of("tolerance", toml::Table::from_iter([("link.*.com".into(), "much".into())]));
     assert!(session.apply(wrong).is_err());
     session.undo().expect("taken back");
     assert!(session.scenario().tolerance.is_empty());
@@ -258,7 +258,7 @@ fn a_session_that_blew_up_opens_again() {
         session.play();
         session.tick(20);
         let change = stillbase::settings::change::one("friction.viscous", 1e4);
-        session.apply(Edit::SetPlant { change }).expect("within its range");
+        session.apply(Edit::of("plant", change)).expect("within its range");
         session.end_gesture();
         session.tick(300);
         session.seek(1.0);

@@ -6,8 +6,9 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree as _;
 use proptest::test_runner::TestRunner;
 use stillbase::mechanics::planar::PerDrive;
-use stillbase::session::scenario::Scenario;
+use stillbase::session::scenario::{Scenario, keys};
 use stillbase::session::{Edit, Session, TimedEdit};
+use stillbase::settings::key::Key;
 use stillbase::simulation::plant::{BaseKind, Each, Friction, Wheel};
 
 use super::{coarse, drag, gains, one_path, open, set, slide, state};
@@ -26,29 +27,22 @@ enum Act {
     StepBy(i64),
 }
 
-/// The name that a file has for an edit. A kind that is new does not compile until it has one here, and is then missed
-/// by `every_kind_of_edit_is_drawn` until it is drawn.
-fn name(edit: &Edit) -> &'static str {
+/// What an edit is of: its kind, and for settings the part they stand in. A kind that is new does not compile until it has
+/// a name here, and is then missed by `every_kind_of_edit_is_drawn` until it is drawn.
+fn name(edit: &Edit) -> String {
     match edit {
-        Edit::DragTarget { .. } => "drag-target",
-        Edit::SlideB { .. } => "slide-b",
-        Edit::PoseB { .. } => "pose-b",
-        Edit::Push { .. } => "push",
-        Edit::SetPlant { .. } => "set-plant",
-        Edit::SetBase { .. } => "set-base",
-        Edit::SetControl { .. } => "set-control",
-        Edit::SetTolerance { .. } => "set-tolerance",
-        Edit::SetMachine { .. } => "set-machine",
-        Edit::SetTime { .. } => "set-time",
-        Edit::SetTask { .. } => "set-task",
-        Edit::CompareB { .. } => "compare-b",
+        Edit::DragTarget { .. } => "drag-target".into(),
+        Edit::SlideB { .. } => "slide-b".into(),
+        Edit::PoseB { .. } => "pose-b".into(),
+        Edit::Push { .. } => "push".into(),
+        Edit::Set { change } => change.keys().next().cloned().unwrap_or_default(),
     }
 }
 
 /// Keys of the plant: payloads, friction, limits of torque, links and lengths that differ, and what cannot be.
 fn any_plant() -> impl Strategy<Value = Edit> {
     let number = |key: &'static str, range: std::ops::Range<f64>| {
-        range.prop_map(move |x| Edit::plant(key, (x * 1e4).round() / 1e4)).boxed()
+        range.prop_map(move |x| Edit::set(&format!("plant.{key}"), (x * 1e4).round() / 1e4)).boxed()
     };
     prop_oneof![
         3 => number("payload.mass", 0.0..0.5),
@@ -58,48 +52,48 @@ fn any_plant() -> impl Strategy<Value = Edit> {
         1 => number("friction.coulomb", 0.0..0.3),
         1 => number("friction.pin_viscous", 0.0..0.05),
         1 => number("friction.pin_coulomb", 0.0..0.02),
-        1 => any::<bool>().prop_map(|on| Edit::plant("torque_limits", on)),
+        1 => any::<bool>().prop_map(|on| Edit::set("plant.torque_limits", on)),
         1 => number("link.5.mass", 0.5..3.0),
         1 => number("length.l1", 0.49..0.51),
-        1 => (-5.0..5.0, -5.0..5.0).prop_map(|(x, y)| Edit::plant("force", vec![x, y])),
-        1 => prop::sample::select(vec!["payload.mass", "friction.coulomb", "force"]).prop_map(|key| Edit::plant(key, "default")),
-        1 => Just(Edit::plant("payload.mass", f64::NAN)),
+        1 => (-5.0..5.0, -5.0..5.0).prop_map(|(x, y)| Edit::set("plant.force", vec![x, y])),
+        1 => prop::sample::select(vec!["payload.mass", "friction.coulomb", "force"]).prop_map(|key| Edit::set(&format!("plant.{key}"), "default")),
+        1 => Just(Edit::set("plant.payload.mass", f64::NAN)),
     ]
 }
 
 fn any_base() -> impl Strategy<Value = Edit> {
     prop_oneof![
-        3 => prop::sample::select(vec!["fixed", "compliant", "free"]).prop_map(|kind| Edit::base("kind", kind)),
-        1 => (5.0..80.0).prop_map(|mass: f64| Edit::base("mass", mass)),
-        1 => (-0.2..0.2, -0.2..0.2).prop_map(|(x, y)| Edit::base("com", vec![x, y])),
-        1 => (0.2..2.0).prop_map(|most: f64| Edit::base("wheel.torque_limit", most)),
-        1 => Just(Edit::base("wheel", "default")),
-        1 => Just(Edit::base("mass", -1.0)),
+        3 => prop::sample::select(vec!["fixed", "compliant", "free"]).prop_map(|kind| Edit::set("base.kind", kind)),
+        1 => (5.0..80.0).prop_map(|mass: f64| Edit::set("base.mass", mass)),
+        1 => (-0.2..0.2, -0.2..0.2).prop_map(|(x, y)| Edit::set("base.com", vec![x, y])),
+        1 => (0.2..2.0).prop_map(|most: f64| Edit::set("base.wheel.torque_limit", most)),
+        1 => Just(Edit::set("base.wheel", "default")),
+        1 => Just(Edit::set("base.mass", -1.0)),
     ]
 }
 
 fn any_control() -> impl Strategy<Value = Edit> {
     prop_oneof![
         2 => (100.0..600.0, 10.0..50.0).prop_map(|(kp, kd)| gains(kp, kd)),
-        1 => (0..4i64).prop_map(|steps| Edit::control("delay", 0.004 * steps as f64)),
-        1 => prop::sample::select(vec![0.0, 125.0, 250.0]).prop_map(|rate| Edit::control("rate", rate)),
-        1 => prop::sample::select(vec![0.0, 4096.0, 1e6]).prop_map(|counts| Edit::control("encoder", counts)),
-        1 => prop::sample::select(vec!["computed-torque", "payload-compensation", "pd"]).prop_map(|law| Edit::control("law", law)),
-        1 => any::<bool>().prop_map(|knows| Edit::control("knows_base", knows)),
-        1 => Just(Edit::control("delay", 0.001)),
+        1 => (0..4i64).prop_map(|steps| Edit::set("control.delay", 0.004 * steps as f64)),
+        1 => prop::sample::select(vec![0.0, 125.0, 250.0]).prop_map(|rate| Edit::set("control.rate", rate)),
+        1 => prop::sample::select(vec![0.0, 4096.0, 1e6]).prop_map(|counts| Edit::set("control.encoder", counts)),
+        1 => prop::sample::select(vec!["computed-torque", "payload-compensation", "pd"]).prop_map(|law| Edit::set("control.law", law)),
+        1 => any::<bool>().prop_map(|knows| Edit::set("control.knows_base", knows)),
+        1 => Just(Edit::set("control.delay", 0.001)),
     ]
 }
 
 fn any_task() -> impl Strategy<Value = Edit> {
     prop_oneof![
-        2 => (0.3..0.7, 0.4..1.0).prop_map(|(x, y)| Edit::task("to", vec![x, y])),
-        1 => (0.5..0.6, 0.5..0.9).prop_map(|(x, y)| Edit::task("via", vec![vec![x, y]])),
-        1 => prop::sample::select(vec!["joint-line", "line", "spline"]).prop_map(|shape| Edit::task("shape", shape)),
-        1 => prop::sample::select(vec!["reactionless", "minimum-norm", "change-b"]).prop_map(|kind| Edit::task("kind", kind)),
-        1 => prop::sample::select(vec!["quintic", "trapezoidal", "fastest"]).prop_map(|law| Edit::task("law", law)),
-        1 => (2.2..2.7).prop_map(|b: f64| Edit::task("b", b)),
-        1 => Just(Edit::SetTask { change: toml::Table::new() }),
-        1 => Just(Edit::task("shape", "none")),
+        2 => (0.3..0.7, 0.4..1.0).prop_map(|(x, y)| Edit::set("task.to", vec![x, y])),
+        1 => (0.5..0.6, 0.5..0.9).prop_map(|(x, y)| Edit::set("task.via", vec![vec![x, y]])),
+        1 => prop::sample::select(vec!["joint-line", "line", "spline"]).prop_map(|shape| Edit::set("task.shape", shape)),
+        1 => prop::sample::select(vec!["reactionless", "minimum-norm", "change-b"]).prop_map(|kind| Edit::set("task.kind", kind)),
+        1 => prop::sample::select(vec!["quintic", "trapezoidal", "fastest"]).prop_map(|law| Edit::set("task.law", law)),
+        1 => (2.2..2.7).prop_map(|b: f64| Edit::set("task.b", b)),
+        1 => Just(Edit::of("task", toml::Table::new())),
+        1 => Just(Edit::set("task.shape", "none")),
     ]
 }
 
@@ -108,14 +102,16 @@ fn any_machine() -> impl Strategy<Value = Edit> {
         2 => (1..3usize, 0.0..0.5, 2.5..3.1).prop_map(|(i, min, max)| set(&format!("limits.a{i}"), &format!("{min},{max}"))),
         1 => (-10.0..10.0).prop_map(|g| set("gravity", &format!("0,{g}"))),
         1 => (0.2..1.0).prop_map(|mass: f64| set("link.9.mass", &mass.to_string())),
+        1 => (0.4..0.6).prop_map(|metres: f64| set("length.l1", &metres.to_string())),
+        1 => (0.0..0.4).prop_map(|mass: f64| set("payload.mass", &mass.to_string())),
+        1 => (1..4usize, 5.0..40.0).prop_map(|(k, most): (usize, f64)| set(&format!("drive.{k}.torque_limit"), &most.to_string())),
+        1 => (1..4usize).prop_map(|k| Edit::set(&format!("drive.{k}.speed_limit"), "default")),
         1 => Just(set("limits.a1", "3,1")),
     ]
 }
 
 fn any_edit() -> impl Strategy<Value = Edit> {
-    let spread = |key: &str, value: toml::Value| Edit::SetTolerance {
-        change: toml::Table::from_iter([(key.to_owned(), value)]),
-    };
+    let spread = |key: &str, value: toml::Value| Edit::at(&["tolerance", key], value);
     prop_oneof![
         6 => (-0.2..1.0, -0.2..1.2).prop_map(|(x, y)| drag(x, y)),
         3 => (1.8..3.2).prop_map(slide),
@@ -129,8 +125,11 @@ fn any_edit() -> impl Strategy<Value = Edit> {
         3 => any_task(),
         1 => (0.001..0.1).prop_map(move |most: f64| spread("moment_limit", most.into())),
         1 => Just(spread("link.*.com", toml::Value::Table(toml::Table::from_iter([("normal".into(), 0.001.into())])))),
-        1 => (0.3..1.5).prop_map(|time| Edit::SetTime { time }),
-        1 => prop::option::of(0.0..7.0).prop_map(|b| Edit::CompareB { b }),
+        1 => (0.3..1.5).prop_map(|time| Edit::set("task.time", time)),
+        1 => prop::sample::select(vec![0.002, 0.004, 0.005]).prop_map(|step| Edit::set("step", step)),
+        1 => (0.3..1.5).prop_map(|time| Edit::set("duration", time)),
+        1 => (0.5..5.0).prop_map(|most| Edit::set("pose_acceleration", most)),
+        1 => prop::option::of(0.0..7.0).prop_map(|b| Edit::set("compare_b", b.map_or_else(|| "default".into(), toml::Value::from))),
     ]
 }
 
@@ -264,8 +263,12 @@ proptest! {
 fn every_kind_of_edit_is_drawn() {
     let entry = toml::Table::from_iter([("step".to_owned(), 0.into()), ("do".to_owned(), "nothing".into())]);
     let known = TimedEdit::from_table(entry).expect_err("there is no such edit");
-    let known: BTreeSet<&str> = known.split('`').skip(3).step_by(2).collect();
-    assert!(known.len() >= 12, "{known:?}");
+    let kinds: BTreeSet<String> = known.split('`').skip(3).step_by(2).map(str::to_owned).collect();
+    assert_eq!(kinds.len(), 5, "{kinds:?}");
+    // Settings by the parts of the table of keys.
+    let part = |key: &Key| key.path.split('.').next().map(str::to_owned);
+    let known: BTreeSet<String> =
+        kinds.iter().filter(|kind| *kind != "set").cloned().chain(keys().filter_map(part)).collect();
     let mut runner = TestRunner::deterministic();
     let edits = any_edit();
     let mut draw = || edits.new_tree(&mut runner).expect("a value").current();
@@ -273,7 +276,8 @@ fn every_kind_of_edit_is_drawn() {
     assert_eq!(drawn.iter().map(name).collect::<BTreeSet<_>>(), known);
     for edit in &drawn {
         let written = TimedEdit { step: 0, edit: edit.clone() }.to_table();
-        assert_eq!(written["do"].as_str(), Some(name(edit)), "files call it so");
+        let word = if matches!(edit, Edit::Set { .. }) { "set".into() } else { name(edit) };
+        assert_eq!(written["do"].as_str(), Some(word.as_str()), "files call it so");
     }
     let mut runner = TestRunner::deterministic();
     let starts = any_start();

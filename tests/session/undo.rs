@@ -12,15 +12,15 @@ fn undo_at_rest_restores_and_redo_brings_back() {
     let mut session = open(coarse());
     settle(&mut session);
     let edits = [
-        Edit::plant("payload.mass", 0.3),
+        Edit::set("plant.payload.mass", 0.3),
         gains(900.0, 60.0),
         set("limits.a2", "0.3,3"),
         drag(0.6, 0.6),
-        Edit::plant("payload.mass", 0.1),
+        Edit::set("plant.payload.mass", 0.1),
         Edit::PoseB { b: 2.3 },
         slide(2.5),
-        Edit::CompareB { b: None },
-        Edit::SetTime { time: 2.0 },
+        Edit::set("compare_b", "default"),
+        Edit::set("task.time", 2.0),
     ];
     let mut states = vec![state(&session)];
     for edit in edits.clone() {
@@ -52,11 +52,11 @@ fn undo_at_rest_restores_and_redo_brings_back() {
 #[test]
 fn undo_in_motion_appends_the_inverse() {
     let pairs = [
-        (Edit::plant("payload.mass", 0.3), Edit::plant("payload.mass", "default")),
+        (Edit::set("plant.payload.mass", 0.3), Edit::set("plant.payload", "default")),
         (gains(900.0, 60.0), gains(400.0, 40.0)),
         (set("limits.a2", "0.3,3"), set("limits.a2", "0,3.141592653589793")),
         (slide(2.5), slide(2.4)),
-        (Edit::CompareB { b: None }, Edit::CompareB { b: Some(5.0) }),
+        (Edit::set("compare_b", "default"), Edit::set("compare_b", 5.0)),
     ];
     for (edit, inverse) in pairs {
         let mut session = open(coarse());
@@ -83,7 +83,7 @@ fn undo_in_motion_appends_the_inverse() {
 /// What concerns the run as a whole is taken back as a whole, and the run goes on.
 #[test]
 fn undo_in_motion_of_a_pose_or_a_time_makes_the_run_again() {
-    for edit in [Edit::PoseB { b: 2.5 }, Edit::SetTime { time: 1.4 }] {
+    for edit in [Edit::PoseB { b: 2.5 }, Edit::set("task.time", 1.4)] {
         let mut session = open(coarse());
         session.play();
         session.tick(60);

@@ -352,7 +352,10 @@ fn circle(coulomb: f64, step: f64, quick: bool) -> Vec<f64> {
     scenario.plant.friction.coulomb = Each::All(coulomb);
     scenario.step = step;
     if quick {
-        scenario.task = scenario.task.with(&"law = \"quintic\"\ntime = 0.6".parse().expect("TOML")).expect("a task");
+        scenario.task = scenario
+            .task
+            .with(&"law = \"quintic\"\ntime = 0.6".parse().expect("TOML"), &scenario.machine)
+            .expect("a task");
     }
     let (mut moments, each) = (Vec::new(), (1e-3 / step).round() as u64);
     let run = replay(&scenario, |_, f| {

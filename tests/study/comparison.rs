@@ -93,13 +93,13 @@ fn a_task_of_its_own_kind_stands_first() {
 fn ways_leave_hands_out() {
     let mut led = scenario("case-3");
     let at = |step, edit| TimedEdit { step, edit };
-    led.edits = vec![at(0, Edit::plant("payload.mass", 0.2)), at(200, Edit::Push { x: 3.0, y: 0.0 })];
+    led.edits = vec![at(0, Edit::set("plant.payload.mass", 0.2)), at(200, Edit::Push { x: 3.0, y: 0.0 })];
     let ways = alternatives(&led);
     assert_eq!(ways[0].0, Alternative::AsGiven, "the hand makes it another run");
     assert_eq!(ways[0].1.edits.len(), 2);
     // What was set at the start is part of the ground that all ways stand on.
     assert!(ways.iter().skip(1).all(|(_, s)| s.edits.is_empty() && s.plant.payload.mass == 0.2));
-    led.edits = vec![at(0, Edit::task("time", 2.0)), at(0, Edit::task("kind", "minimum-norm"))];
+    led.edits = vec![at(0, Edit::set("task.time", 2.0)), at(0, Edit::set("task.kind", "minimum-norm"))];
     let slowly = Alternative::Slowly.of(&led);
     assert_eq!((slowly.task.time, Alternative::Reactionless.of(&led).task.kind), (8.0, TaskKind::Reactionless));
 }

@@ -422,7 +422,7 @@ fn a_scenario_keeps_its_tolerances() {
         ("sead = 1", "sead"),
         ("seed = -1", "0 or more"),
         ("samples = 0", "from 1"),
-        ("moment_limit = \"x\"", "above 0"),
+        ("moment_limit = \"x\"", "1e-12 to 1e12 N m"),
         ("\"link.*.com\" = { gaussian = 1 }", "normal = 0.0005"),
         ("\"link.*.com\" = { normal = -1 }", "0 or more"),
         ("\"link.*.com\" = { normal = 1, uniform = 1 }", "link.*.com"),

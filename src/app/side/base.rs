@@ -20,7 +20,7 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
     let (base, p) = (&session.scenario().base, &view_state.palette());
     let word = KINDS.iter().find(|k| k.0 == base.kind).map_or("", |k| k.1);
     let summary = if base.wheel.is_some() { format!("{word}, with a wheel") } else { word.to_owned() };
-    let back = (*base != Base::default()).then(|| Section::Base.all_back(base));
+    let back = (*base != Base::default()).then(|| Section::Base.all_back());
     fold(ui, p, ("Base", &summary), back, commands, |ui, commands| {
         let word = |kind: BaseKind| KINDS.iter().find(|k| k.0 == kind).map_or("fixed", |k| k.1);
         segments(ui, p, &KINDS, base.kind, commands, |kind| Section::Base.set(&["kind"], word(kind)));
@@ -38,29 +38,16 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
 
 fn body(ui: &mut Ui, base: &Base, p: &Palette, commands: &mut Vec<Command>) {
     let normal = Base::default();
-    let mass = Row {
-        label: "base mass",
-        unit: "kg",
-        tip: "m_b of the base without the machine",
-        decimals: 1,
-        speed: 0.2,
-        range: 0.1..=1000.0,
-    };
-    NumberField::of(mass, base.mass, normal.mass)
-        .show(ui, p, Slide::Logarithmic, commands, |x| Section::Base.set(&["mass"], x));
-    let inertia = Row {
-        label: "base inertia",
-        unit: "kg m²",
-        tip: "I_b about the base's own centre of mass",
-        decimals: 2,
-        speed: 0.02,
-        range: 0.01..=1000.0,
-    };
-    NumberField::of(inertia, base.inertia, normal.inertia)
-        .show(ui, p, Slide::Logarithmic, commands, |x| Section::Base.set(&["inertia"], x));
+    for (label, key, decimals, now, normal) in
+        [("base mass", "mass", 1, base.mass, normal.mass), ("base inertia", "inertia", 2, base.inertia, normal.inertia)]
+    {
+        let row = Row::of(label, &format!("base.{key}")).with(decimals, 2.0 * 0.1_f64.powi(decimals as i32));
+        let slide = 0.1_f64.powi(decimals as i32)..=1000.0;
+        NumberField::of(row.sliding(slide), now, normal)
+            .show(ui, p, Slide::Logarithmic, commands, |x| Section::Base.set(&[key], x));
+    }
     for (i, label) in ["CM x", "CM y"].into_iter().enumerate() {
-        let tip = "ρ: centre of mass of the base, seen from B in the base's axes";
-        let row = Row { label, unit: "m", tip, decimals: 3, speed: 0.002, range: -2.0..=2.0 };
+        let row = Row::of(label, "base.com").with(3, 0.002);
         NumberField::of(row, base.com[i], 0.0).show(ui, p, Slide::No, commands, |x| {
             let mut com = base.com;
             com[i] = x;
@@ -81,8 +68,8 @@ fn body(ui: &mut Ui, base: &Base, p: &Palette, commands: &mut Vec<Command>) {
                 2 => format!("{what} against the angle θ of the base"),
                 _ => format!("{what} along {axis}"),
             };
-            let row =
-                Row { label: &label, unit: units[i], tip: &tip, decimals: 0, speed: most / 1e4, range: 0.0..=most };
+            let row = Row::of(&label, &format!("base.{key}")).with(0, most / 1e4);
+            let row = Row { unit: units[i], tip: &tip, ..row };
             NumberField::of(row, now[i], normal[i]).show(ui, p, Slide::No, commands, |x| {
                 let mut all = now;
                 all[i] = x;
@@ -101,8 +88,7 @@ fn wheel(ui: &mut Ui, base: &Base, p: &Palette, commands: &mut Vec<Command>) {
     });
     let Some(wheel) = &base.wheel else { return };
     ui.indent("wheel", |ui| {
-        let tip = "Inertia of the rotor about its axis";
-        let row = Row { label: "rotor", unit: "kg m²", tip, decimals: 4, speed: 0.0001, range: 1e-4..=10.0 };
+        let row = Row::of("rotor", "base.wheel.inertia").with(4, 0.0001);
         NumberField::of(row, wheel.inertia, normal.inertia)
             .show(ui, p, Slide::No, commands, |x| Section::Base.set(&["wheel", "inertia"], x));
         for (key, label, unit, tip, now, usual) in [
@@ -132,8 +118,8 @@ fn wheel(ui: &mut Ui, base: &Base, p: &Palette, commands: &mut Vec<Command>) {
                     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                         super::unit(ui, p, unit);
                         let mut value = now.unwrap_or(usual);
-                        let range = 0.01 * usual..=1e4 * usual;
-                        let row = Row { label, unit, tip, decimals: 2, speed: usual / 200.0, range };
+                        let row = Row::of(label, &format!("base.wheel.{key}")).with(2, usual / 200.0);
+                        let row = Row { tip, ..row };
                         let response = row.number(ui, &mut value);
                         super::send(commands, &[response], || Section::Base.set(&["wheel", key], value));
                     });

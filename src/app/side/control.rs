@@ -5,7 +5,7 @@ use egui::Ui;
 use super::fold::{NumberField, Section, Slide, choose, fold};
 use super::plant::Gain;
 use crate::app::Command;
-use crate::app::widgets::Row;
+use crate::app::widgets::{Row, tip_of};
 use crate::picture::scene::palette::Palette;
 use crate::session::Session;
 use crate::simulation::control::{Control, ControlLaw};
@@ -35,30 +35,20 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
     if control.is_sampled() {
         summary += ", sampled";
     }
-    let back = (*control != Control::default()).then(|| Section::Control.all_back(control));
+    let back = (*control != Control::default()).then(|| Section::Control.all_back());
     fold(ui, p, ("Control", &summary), back, commands, |ui, commands| {
         let laws: Vec<(&str, String)> = LAWS.iter().map(|l| (l.1, l.2.to_owned())).collect();
-        let tip = "Computed torque, from the model; the same with the payload in the model while it is held; or PD, from \
-                   the errors alone";
-        choose(ui, ("law", tip), &laws, &law.map_or("", |l| l.1), commands, |word| {
+        choose(ui, ("law", tip_of("control.law")), &laws, &law.map_or("", |l| l.1), commands, |word| {
             Some(Section::Control.set(&["law"], *word))
         });
-        let kp = Gain {
-            label: "Kp",
-            unit: "s⁻²",
-            tip: "Position gain K_p; equal gains on all drives keep errors on the plane",
-            decimals: 0,
-            most: 2000.0,
-            normal: 400.0,
-        };
-        kp.show(ui, (Section::Control, &["kp"]), &control.kp, n, p, commands);
-        let tip = "Velocity gain K_d; equal gains on all drives keep errors on the plane";
-        let kd = Gain { label: "Kd", unit: "s⁻¹", tip, most: 200.0, normal: 40.0, ..kp };
-        kd.show(ui, (Section::Control, &["kd"]), &control.kd, n, p, commands);
+        let kp = Gain { label: "Kp", path: &["control", "kp"], decimals: 0, most: 2000.0, normal: 400.0 };
+        kp.show(ui, &control.kp, n, p, commands);
+        let kd = Gain { label: "Kd", path: &["control", "kd"], most: 200.0, normal: 40.0, ..kp };
+        kd.show(ui, &control.kd, n, p, commands);
         sampling(ui, control, step, p, commands);
         if scenario.base.moves() {
             let mut knows = control.knows_base;
-            let tip = "Its model includes the base that moves; otherwise it takes the base to be fixed";
+            let tip = tip_of("control.knows_base");
             if ui.checkbox(&mut knows, "knows the base").on_hover_text(tip).changed() {
                 super::fold::once(commands, Section::Control.set(&["knows_base"], knows));
             }
@@ -76,22 +66,20 @@ fn sampling(ui: &mut Ui, control: &Control, step: f64, p: &Palette, commands: &m
     let mut rates = vec![(0.0, "all the time".to_owned())];
     rates.extend(PERIODS.map(|n| 1.0 / (f64::from(n) * step)).map(|x| (x, hertz(x))));
     offered(&mut rates, control.rate, hertz(control.rate));
-    let tip = "How often torques are computed, and held between; a whole number of the simulation's steps";
-    choose(ui, ("rate", tip), &rates, &control.rate, commands, |x| Some(Section::Control.set(&["rate"], *x)));
-    let row = Row {
-        label: "delay",
-        unit: "ms",
-        tip: "From reading the encoders to the torque; a whole number of the simulation's steps",
-        decimals: 1,
-        speed: 1e3 * step,
-        range: 0.0..=100.0,
-    };
+    choose(ui, ("rate", tip_of("control.rate")), &rates, &control.rate, commands, |x| {
+        Some(Section::Control.set(&["rate"], *x))
+    });
+    let delay = Row::of("delay", "control.delay");
+    let milliseconds = |seconds: &f64| 1e3 * seconds;
+    let range = milliseconds(delay.range.start())..=milliseconds(delay.range.end());
+    let row = Row { unit: "ms", slide: range.clone(), range, ..delay.with(1, 1e3 * step) };
     NumberField::of(row, 1e3 * control.delay, 0.0)
         .show(ui, p, Slide::No, commands, |x| Section::Control.set(&["delay"], (1e-3 * x / step).round() * step));
     let words = |x: f64| format!("{x} counts");
     let mut counts = vec![(0.0, "exact".to_owned())];
     counts.extend(COUNTS.map(|x| (x, words(x))));
     offered(&mut counts, control.encoder, words(control.encoder));
-    let tip = "Counts of the encoders in a turn; rates are their differences";
-    choose(ui, ("encoder", tip), &counts, &control.encoder, commands, |x| Some(Section::Control.set(&["encoder"], *x)));
+    choose(ui, ("encoder", tip_of("control.encoder")), &counts, &control.encoder, commands, |x| {
+        Some(Section::Control.set(&["encoder"], *x))
+    });
 }

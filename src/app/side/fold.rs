@@ -1,15 +1,14 @@
 //! What the sections of the panel are made of: heads that fold, switches, and numbers with a normal value.
 
 use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
-use serde::Serialize;
 
 use crate::app::Command;
 use crate::app::theme::{bold, colour, plain};
 use crate::app::widgets::{Row, name, send};
 use crate::picture::scene::palette::Palette;
 use crate::session::Edit;
-use crate::session::scenario::{Change, Value};
-use crate::settings::change;
+use crate::session::scenario::Value;
+use crate::settings::change::DEFAULT;
 
 /// The section of the panel, and of a scenario, that a setting belongs to.
 #[derive(Clone, Copy)]
@@ -20,31 +19,27 @@ pub enum Section {
 }
 
 impl Section {
+    fn word(self) -> &'static str {
+        match self {
+            Self::Plant => "plant",
+            Self::Base => "base",
+            Self::Control => "control",
+        }
+    }
+
     /// A key, by its parts, set to a value; the word `default` takes it out.
     pub fn set(self, path: &[&str], value: impl Into<Value>) -> Edit {
-        let Some((last, outer)) = path.split_last() else { return self.change(Change::new()) };
-        let innermost = Change::from_iter([((*last).to_owned(), value.into())]);
-        let wrap = |inner, key: &&str| Change::from_iter([((*key).to_owned(), Value::Table(inner))]);
-        self.change(outer.iter().rev().fold(innermost, wrap))
+        Edit::at(&[&[self.word()], path].concat(), value)
     }
 
     /// A key back to normal.
     pub fn back(self, path: &[&str]) -> Edit {
-        self.set(path, "default")
+        self.set(path, DEFAULT)
     }
 
-    /// All keys of what it now holds back to normal.
-    pub fn all_back<T: Serialize>(self, now: &T) -> Edit {
-        self.change(change::to_defaults(now))
-    }
-
-    /// Several keys at once.
-    pub fn change(self, change: Change) -> Edit {
-        match self {
-            Self::Plant => Edit::SetPlant { change },
-            Self::Base => Edit::SetBase { change },
-            Self::Control => Edit::SetControl { change },
-        }
+    /// All keys back to normal.
+    pub fn all_back(self) -> Edit {
+        self.back(&[])
     }
 }
 

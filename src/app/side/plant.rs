@@ -5,11 +5,11 @@ use egui::Ui;
 
 use super::fold::{NumberField, Section, Slide, choose, fold, once, switch, switch_nonzero};
 use crate::app::Command;
-use crate::app::widgets::{Row, note, unit};
+use crate::app::widgets::{Row, note, tip_of, unit};
 use crate::mechanics::machine::{Link, Machine};
 use crate::picture::scene::palette::Palette;
-use crate::session::Session;
 use crate::session::scenario::Value;
+use crate::session::{Edit, Session};
 use crate::simulation::plant::{Each, LinkDifference, PlantDifferences};
 
 /// How much differs.
@@ -27,7 +27,7 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
         1 => "1 difference".into(),
         n => format!("{n} differences"),
     };
-    let back = (*plant != PlantDifferences::default()).then(|| Section::Plant.all_back(plant));
+    let back = (*plant != PlantDifferences::default()).then(|| Section::Plant.all_back());
     fold(ui, p, ("Plant", &summary), back, commands, |ui, commands| {
         payload(ui, plant, p, commands);
         friction(ui, plant, model, p, commands);
@@ -41,8 +41,7 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
 fn payload(ui: &mut Ui, plant: &PlantDifferences, p: &Palette, commands: &mut Vec<Command>) {
     const HELD: f64 = 0.3;
     let load = &plant.payload;
-    let tip = "A mass at the end effector that control does not know of: it unbalances the machine";
-    let on = switch_nonzero(ui, ("payload", tip), load.is_some(), commands, |on| match on {
+    let on = switch_nonzero(ui, ("payload", tip_of("plant.payload.mass")), load.is_some(), commands, |on| match on {
         true => Section::Plant.set(&["payload", "mass"], HELD),
         false => Section::Plant.back(&["payload"]),
     });
@@ -50,39 +49,30 @@ fn payload(ui: &mut Ui, plant: &PlantDifferences, p: &Palette, commands: &mut Ve
         return;
     }
     let of = |key: &'static str| move |x: f64| Section::Plant.set(&["payload", key], x);
-    let field = |label, unit, tip, decimals, speed, range, now| NumberField {
+    let field = |label, key: &str, now| NumberField {
         called: Some(format!("payload {label}")),
-        ..NumberField::of(Row { label, unit, tip, decimals, speed, range }, now, 0.0)
+        ..NumberField::of(Row::of(label, &format!("plant.payload.{key}")).with(3, 0.002), now, 0.0)
     };
     ui.indent("payload", |ui| {
-        let tip = "Mass m_p of the payload";
-        let mass = NumberField {
-            normal: load.mass,
-            called: None,
-            ..field("payload mass", "kg", tip, 2, 0.01, 0.01..=2.0, load.mass)
-        };
-        mass.show(ui, p, Slide::Linear, commands, of("mass"));
-        let tip = "Inertia I_p of the payload about its own centre of mass";
-        field("inertia", "kg m²", tip, 4, 0.0005, 0.0..=1.0, load.inertia).show(
-            ui,
-            p,
-            Slide::No,
-            commands,
-            of("inertia"),
-        );
+        let row = Row::of("payload mass", "plant.payload.mass").sliding(0.01..=2.0);
+        NumberField::of(row, load.mass, load.mass).show(ui, p, Slide::Linear, commands, of("mass"));
+        let inertia = field("inertia", "inertia", load.inertia);
+        NumberField { row: inertia.row.with(4, 0.0005), ..inertia }.show(ui, p, Slide::No, commands, of("inertia"));
         for (i, label, tip) in [
             (0, "offset along", "Its centre of mass from the end effector, along the last link"),
             (1, "offset across", "Its centre of mass from the end effector, to the left of the last link"),
         ] {
-            field(label, "m", tip, 3, 0.002, -1.0..=1.0, load.offset[i]).show(ui, p, Slide::No, commands, |x| {
+            let field = field(label, "offset", load.offset[i]);
+            NumberField { row: Row { tip, ..field.row }, ..field }.show(ui, p, Slide::No, commands, |x| {
                 let mut offset = load.offset;
                 offset[i] = x;
                 Section::Plant.set(&["payload", "offset"], offset.to_vec())
             });
         }
-        let tip = "When it is picked up, by a hand that moves with it";
-        field("from", "s", tip, 2, 0.01, 0.0..=60.0, load.from).show(ui, p, Slide::No, commands, of("from"));
-        let tip = "When it is let go; otherwise it is held to the end";
+        field("height", "axial", load.axial).show(ui, p, Slide::No, commands, of("axial"));
+        let from = field("from", "from", load.from);
+        NumberField { row: from.row.with(2, 0.01), ..from }.show(ui, p, Slide::No, commands, of("from"));
+        let tip = tip_of("plant.payload.until");
         ui.horizontal(|ui| {
             let on = switch(ui, ("until", tip), load.until.is_some(), commands, |on| match on {
                 true => Section::Plant.set(&["payload", "until"], load.from + 0.5),
@@ -92,14 +82,7 @@ fn payload(ui: &mut Ui, plant: &PlantDifferences, p: &Palette, commands: &mut Ve
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                     unit(ui, p, "s");
                     let mut until = load.until.unwrap_or_default();
-                    let row = Row {
-                        label: "until",
-                        unit: "s",
-                        tip,
-                        decimals: 2,
-                        speed: 0.01,
-                        range: load.from + 0.01..=load.from + 60.0,
-                    };
+                    let row = Row::of("until", "plant.payload.until");
                     let response = row.number(ui, &mut until);
                     super::send(commands, &[response], || Section::Plant.set(&["payload", "until"], until));
                 });
@@ -119,39 +102,15 @@ fn friction(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette,
         return;
     }
     ui.indent("friction", |ui| {
-        let viscous = Gain {
-            label: "viscous",
-            unit: "N m s",
-            tip: "Torque c·v against the rate of a drive relative to the base",
-            decimals: 3,
-            most: 0.5,
-            normal: 0.0,
-        };
-        viscous.show(ui, (Section::Plant, &["friction", "viscous"]), &f.viscous, model.drives(), p, commands);
-        let coulomb = Gain {
-            label: "Coulomb",
-            unit: "N m",
-            tip: "Torque τ_C against sliding; a drive at rest sticks until more than that pulls",
-            ..viscous
-        };
-        coulomb.show(ui, (Section::Plant, &["friction", "coulomb"]), &f.coulomb, model.drives(), p, commands);
-        for (label, key, in_unit, tip, now) in [
-            (
-                "pins viscous",
-                "pin_viscous",
-                "N m s",
-                "In every pin, against the rate between its two links",
-                f.pin_viscous,
-            ),
-            (
-                "pins Coulomb",
-                "pin_coulomb",
-                "N m",
-                "In every pin, against sliding; a pin at rest sticks",
-                f.pin_coulomb,
-            ),
-        ] {
-            let row = Row { label, unit: in_unit, tip, decimals: 4, speed: 0.0005, range: 0.0..=1.0 };
+        let path = &["plant", "friction", "viscous"];
+        let viscous = Gain { label: "viscous", path, decimals: 3, most: 0.5, normal: 0.0 };
+        viscous.show(ui, &f.viscous, model.drives(), p, commands);
+        let coulomb = Gain { label: "Coulomb", path: &["plant", "friction", "coulomb"], ..viscous };
+        coulomb.show(ui, &f.coulomb, model.drives(), p, commands);
+        for (label, key, now) in
+            [("pins viscous", "pin_viscous", f.pin_viscous), ("pins Coulomb", "pin_coulomb", f.pin_coulomb)]
+        {
+            let row = Row::of(label, &format!("plant.friction.{key}")).with(4, 0.0005);
             NumberField::of(row, now, 0.0)
                 .show(ui, p, Slide::No, commands, |x| Section::Plant.set(&["friction", key], x));
         }
@@ -162,32 +121,25 @@ fn friction(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette,
 #[derive(Clone, Copy)]
 pub struct Gain<'a> {
     pub label: &'a str,
-    pub unit: &'a str,
-    pub tip: &'a str,
+    /// Path of its setting, by its parts.
+    pub path: &'a [&'a str],
     pub decimals: usize,
+    /// Where the slider ends.
     pub most: f64,
     pub normal: f64,
 }
 
 impl Gain<'_> {
     fn field<'a>(&'a self, label: &'a str, now: f64) -> NumberField<'a> {
-        let Self { unit, tip, decimals, most, normal, .. } = *self;
-        NumberField::of(Row { label, unit, tip, decimals, speed: most / 1000.0, range: 0.0..=most }, now, normal)
+        let row = Row::of(label, &self.path.join(".")).with(self.decimals, self.most / 1000.0);
+        NumberField::of(row.sliding(0.0..=self.most), now, self.normal)
     }
 
-    pub fn show(
-        &self,
-        ui: &mut Ui,
-        (of, path): (Section, &[&str]),
-        each: &Each,
-        n: usize,
-        p: &Palette,
-        commands: &mut Vec<Command>,
-    ) {
+    pub fn show(&self, ui: &mut Ui, each: &Each, n: usize, p: &Palette, commands: &mut Vec<Command>) {
         let values = each.of(n);
         match each {
             Each::All(now) => {
-                self.field(self.label, *now).show(ui, p, Slide::Linear, commands, |x| of.set(path, x));
+                self.field(self.label, *now).show(ui, p, Slide::Linear, commands, |x| Edit::at(self.path, x));
             }
             Each::Own(_) => {
                 for k in 0..n {
@@ -195,7 +147,7 @@ impl Gain<'_> {
                     self.field(&label, values[k]).show(ui, p, Slide::No, commands, |x| {
                         let mut list = values.to_vec();
                         list[k] = x;
-                        of.set(path, list)
+                        Edit::at(self.path, list)
                     });
                 }
             }
@@ -206,17 +158,17 @@ impl Gain<'_> {
         super::name(&tick, &format!("{} per drive", self.label));
         if tick.changed() {
             let value = if own { values.to_vec().into() } else { Value::Float(values[0]) };
-            once(commands, of.set(path, value));
+            once(commands, Edit::at(self.path, value));
         }
     }
 }
 
 fn limits(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette, commands: &mut Vec<Command>) {
-    let tip = "Motors give no more than the drives' torque limits, whatever control asks for";
-    let on = switch(ui, ("torque limits", tip), plant.torque_limits, commands, |on| match on {
-        true => Section::Plant.set(&["torque_limits"], true),
-        false => Section::Plant.back(&["torque_limits"]),
-    });
+    let on =
+        switch(ui, ("torque limits", tip_of("plant.torque_limits")), plant.torque_limits, commands, |on| match on {
+            true => Section::Plant.set(&["torque_limits"], true),
+            false => Section::Plant.back(&["torque_limits"]),
+        });
     if on {
         let limit = |d: &crate::mechanics::machine::Drive| d.torque_limit.map_or("none".into(), |t| format!("{t}"));
         let all: Vec<String> = model.spec().drives.iter().map(limit).collect();
@@ -235,14 +187,7 @@ fn force(ui: &mut Ui, plant: &PlantDifferences, p: &Palette, commands: &mut Vec<
     }
     ui.indent("force", |ui| {
         for (i, label) in ["force x", "force y"].into_iter().enumerate() {
-            let row = Row {
-                label,
-                unit: "N",
-                tip: "F at the end effector, in the axes of the base at the start",
-                decimals: 2,
-                speed: 0.05,
-                range: -50.0..=50.0,
-            };
+            let row = Row::of(label, "plant.force").with(2, 0.05);
             let field = NumberField::of(row, plant.force[i], 0.0);
             field.show(ui, p, Slide::No, commands, |x| {
                 let mut force = plant.force;
@@ -289,40 +234,15 @@ fn link(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette, com
 }
 
 fn link_rows(ui: &mut Ui, link: &Link, differs: &LinkDifference, p: &Palette, commands: &mut Vec<Command>) {
-    let rows = [
-        ("mass", "mass", "kg", "Mass m_j of the link", differs.mass, link.mass, 1e-3..=100.0),
-        (
-            "com",
-            "CM along",
-            "m",
-            "l_c: centre of mass along the link, from its root",
-            differs.com,
-            link.com,
-            -5.0..=5.0,
-        ),
-        (
-            "com_normal",
-            "CM off axis",
-            "m",
-            "Centre of mass to the left of the link's axis",
-            differs.com_normal,
-            link.com_normal,
-            -5.0..=5.0,
-        ),
-        (
-            "inertia",
-            "inertia",
-            "kg m²",
-            "Inertia I_j about the link's own centre of mass",
-            differs.inertia,
-            link.inertia,
-            0.0..=100.0,
-        ),
-    ];
-    for (key, label, unit, tip, now, normal, range) in rows {
+    for (key, label, now, normal) in [
+        ("mass", "mass", differs.mass, link.mass),
+        ("com", "CM along", differs.com, link.com),
+        ("com_normal", "CM off axis", differs.com_normal, link.com_normal),
+        ("inertia", "inertia", differs.inertia, link.inertia),
+    ] {
         let path = ["link", link.name.as_str(), key];
         let called = Some(format!("link {} {label}", link.name));
-        let row = Row { label, unit, tip, decimals: 3, speed: 0.002, range };
+        let row = Row::of(label, &format!("plant.link.*.{key}")).with(3, 0.002);
         let field = NumberField {
             row,
             now: now.unwrap_or(normal),
@@ -350,7 +270,7 @@ fn length(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette, c
     let path = ["length", now.as_str()];
     ui.indent("length", |ui| {
         let called = Some(format!("length {now}"));
-        let row = Row { label: &now, unit: "m", tip, decimals: 4, speed: 0.0005, range: 0.01..=10.0 };
+        let row = Row { tip, ..Row::of(&now, "plant.length.*").with(4, 0.0005) };
         let value = differs.copied().unwrap_or(*normal);
         let back = Some(Section::Plant.back(&path));
         NumberField { row, now: value, normal: *normal, beside: differs.is_some(), back, called }.show(

@@ -3,7 +3,7 @@
 use super::error::{MachineError, Place, PlaceStep, quoted};
 use super::inertia::Inertia;
 use super::model::{Machine, RelativeAngle, ResolvedClosure, ResolvedLink};
-use super::numbers::{LENGTH, PLACE, check_numbers, within};
+use super::ranges::{LENGTH, PLACE, check_numbers, within};
 use super::spec::{Angle, Attach, Closure, Length, MachineSpec, PlaceOnLink, Point};
 use crate::mechanics::planar::MAX_DRIVES;
 use crate::settings::number::Short;

@@ -18,7 +18,7 @@ mod error;
 mod file;
 mod inertia;
 mod model;
-mod numbers;
+pub mod ranges;
 mod set;
 mod spec;
 
@@ -30,5 +30,6 @@ pub use file::{FileError, parse, to_toml};
 pub(crate) use file::{line_of, line_of_place};
 pub use inertia::{BALANCED, Inertia};
 pub use model::{Machine, RelativeAngle, ResolvedClosure, ResolvedLink};
-pub use numbers::MAX_ANGLE;
+pub use ranges::MAX_ANGLE;
+pub use set::PARTS;
 pub use spec::{Angle, Attach, Closure, Drive, Length, Link, MachineSpec, Payload, PlaceOnLink, Point};

@@ -1,15 +1,21 @@
-//! One setting of a machine by key, as `--set` and edits name it.
+//! Settings of a machine by key, as files, edits and `--set` name them.
+
+use toml::{Table, Value};
 
 use super::error::quoted;
 use super::{Length, Machine, MachineError, MachineSpec, Place};
+use crate::settings::change::{self, DEFAULT};
 use crate::settings::range::{clipped, shortened};
+
+/// The tables and keys of a scenario that set its machine.
+pub const PARTS: [&str; 6] = ["link", "length", "payload", "gravity", "limits", "drive"];
 
 const KEYS: &str = "link.NAME.(com|com_normal|mass|inertia|length|axial), length.NAME, \
                     payload.(mass|inertia|offset|axial), gravity, limits.ANGLE, \
                     drive.NAME.(torque|speed|acceleration|jerk)_limit";
 
 impl Machine {
-    /// A machine with one setting changed; `value` is one number, or two parted by a comma.
+    /// A machine with one setting changed; `value` is one number, two parted by a comma, or the word `default`.
     ///
     /// # Errors
     /// If there is no such key, the value cannot be read, or the machine would no longer be valid.
@@ -24,20 +30,33 @@ impl Machine {
     pub fn set_all<'a>(&self, pairs: impl IntoIterator<Item = (&'a str, &'a str)>) -> Result<Self, MachineError> {
         let mut spec = self.spec().clone();
         for (key, value) in pairs {
-            assign(&mut spec, key, value)?;
+            assign(&mut spec, key, &change::value(value))?;
         }
         Self::new(spec)
     }
 
-    /// The value of a setting, as [`set`](Self::set) would take it; `None` if there is no such key.
-    pub fn get(&self, key: &str) -> Option<String> {
+    /// The same with the settings as tables: `{ link = { 5 = { com = -0.02 } } }`.
+    ///
+    /// # Errors
+    /// As [`set`](Self::set).
+    pub fn with(&self, change: &Table) -> Result<Self, MachineError> {
+        let mut spec = self.spec().clone();
+        for (key, value) in change::leaves(change) {
+            assign(&mut spec, &key, value)?;
+        }
+        Self::new(spec)
+    }
+
+    /// What a setting holds; the word `default` for one that is not there, `None` if there is no such key.
+    pub fn value(&self, key: &str) -> Option<Value> {
         let spec = self.spec();
         let named = |name: &str| spec.links.iter().position(|l| l.name == name);
-        let two = |[a, b]: [f64; 2]| format!("{a},{b}");
-        match *key.split('.').collect::<Vec<_>>() {
+        let two = |pair: [f64; 2]| Value::from(pair.to_vec());
+        let some = |x: Option<f64>| x.map_or_else(|| DEFAULT.into(), Value::from);
+        Some(match *key.split('.').collect::<Vec<_>>() {
             ["link", name, field] => {
                 let (link, part) = (&spec.links[named(name)?], &self.resolved_links()[named(name)?]);
-                Some(match field {
+                Value::from(match field {
                     "com" => link.com,
                     "com_normal" => link.com_normal,
                     "mass" => link.mass,
@@ -46,34 +65,34 @@ impl Machine {
                     "length" => part.length,
                     _ => return None,
                 })
-                .map(|x| x.to_string())
             }
-            ["length", name] => spec.lengths.get(name).map(f64::to_string),
-            ["payload", "mass"] => Some(spec.payload.mass.to_string()),
-            ["payload", "inertia"] => Some(spec.payload.inertia.to_string()),
-            ["payload", "offset"] => Some(two(spec.payload.offset)),
-            ["payload", "axial"] => Some(spec.payload.axial.to_string()),
-            ["gravity"] => Some(two(spec.gravity)),
-            ["limits", name] => spec.angles.iter().find(|a| a.name == name).map(|a| two([a.min, a.max])),
+            ["length", name] => (*spec.lengths.get(name)?).into(),
+            ["payload", "mass"] => spec.payload.mass.into(),
+            ["payload", "inertia"] => spec.payload.inertia.into(),
+            ["payload", "offset"] => two(spec.payload.offset),
+            ["payload", "axial"] => spec.payload.axial.into(),
+            ["gravity"] => two(spec.gravity),
+            ["limits", name] => spec.angles.iter().find(|a| a.name == name).map(|a| two([a.min, a.max]))?,
             ["drive", name, field] => {
                 let drive = spec.drives.iter().find(|d| d.name == name)?;
                 match field {
-                    "torque_limit" => drive.torque_limit,
-                    "speed_limit" => drive.speed_limit,
-                    "acceleration_limit" => drive.acceleration_limit,
-                    "jerk_limit" => drive.jerk_limit,
-                    _ => None,
+                    "torque_limit" => some(drive.torque_limit),
+                    "speed_limit" => some(drive.speed_limit),
+                    "acceleration_limit" => some(drive.acceleration_limit),
+                    "jerk_limit" => some(drive.jerk_limit),
+                    _ => return None,
                 }
-                .map(|x| x.to_string())
             }
-            _ => None,
-        }
+            _ => return None,
+        })
     }
 }
 
-fn assign(spec: &mut MachineSpec, key: &str, value: &str) -> Result<(), MachineError> {
+fn assign(spec: &mut MachineSpec, key: &str, value: &Value) -> Result<(), MachineError> {
     let one = || number(key, value);
     let two = || pair(key, value);
+    let two_or_zero = || if is_default(value) { Ok([0.0; 2]) } else { two() };
+    let one_or_zero = || if is_default(value) { Ok(0.0) } else { one() };
     let unknown = || MachineError::UnknownKey { key: key.into(), known: KEYS.into() };
     let nobody = |what: &'static str, name: &str, known: Vec<&str>| MachineError::Unknown {
         place: Place::new(&[&key]),
@@ -90,25 +109,25 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &str) -> Result<(), MachineE
                 return set_link_length(spec, j, one()?);
             }
             let link = &mut spec.links[j];
-            *match field {
-                "com" => &mut link.com,
-                "com_normal" => &mut link.com_normal,
-                "mass" => &mut link.mass,
-                "inertia" => &mut link.inertia,
-                "axial" => &mut link.axial,
+            match field {
+                "com" => link.com = one()?,
+                "com_normal" => link.com_normal = one_or_zero()?,
+                "mass" => link.mass = one()?,
+                "inertia" => link.inertia = one()?,
+                "axial" => link.axial = one_or_zero()?,
                 _ => return Err(unknown()),
-            } = one()?;
+            }
         }
         ["length", name] => {
             let known = spec.lengths.keys().map(String::as_str).collect();
             let missing = nobody("length", name, known);
             *spec.lengths.get_mut(name).ok_or(missing)? = one()?;
         }
-        ["payload", "mass"] => spec.payload.mass = one()?,
-        ["payload", "inertia"] => spec.payload.inertia = one()?,
-        ["payload", "offset"] => spec.payload.offset = two()?,
-        ["payload", "axial"] => spec.payload.axial = one()?,
-        ["gravity"] => spec.gravity = two()?,
+        ["payload", "mass"] => spec.payload.mass = one_or_zero()?,
+        ["payload", "inertia"] => spec.payload.inertia = one_or_zero()?,
+        ["payload", "offset"] => spec.payload.offset = two_or_zero()?,
+        ["payload", "axial"] => spec.payload.axial = one_or_zero()?,
+        ["gravity"] => spec.gravity = two_or_zero()?,
         ["limits", name] => {
             let known = spec.angles.iter().map(|a| a.name.as_str()).collect();
             let missing = nobody("angle", name, known);
@@ -125,7 +144,7 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &str) -> Result<(), MachineE
                 "acceleration_limit" => &mut drive.acceleration_limit,
                 "jerk_limit" => &mut drive.jerk_limit,
                 _ => return Err(unknown()),
-            } = Some(one()?);
+            } = if is_default(value) { None } else { Some(one()?) };
         }
         _ => return Err(unknown()),
     }
@@ -160,16 +179,27 @@ fn set_link_length(spec: &mut MachineSpec, j: usize, metres: f64) -> Result<(), 
     Ok(())
 }
 
-fn number(key: &str, value: &str) -> Result<f64, MachineError> {
-    value.trim().parse().map_err(|_| MachineError::BadValue {
-        key: key.into(),
-        value: value.into(),
-        want: "one number",
-    })
+fn is_default(value: &Value) -> bool {
+    value.as_str() == Some(DEFAULT)
 }
 
-fn pair(key: &str, value: &str) -> Result<[f64; 2], MachineError> {
-    let bad = || MachineError::BadValue { key: key.into(), value: value.into(), want: "two numbers, A,B" };
-    let (a, b) = value.split_once(',').ok_or_else(bad)?;
-    Ok([a.trim().parse().map_err(|_| bad())?, b.trim().parse().map_err(|_| bad())?])
+fn bad(key: &str, value: &Value, want: &'static str) -> MachineError {
+    let value = value.as_str().map_or_else(|| value.to_string(), Into::into);
+    MachineError::BadValue { key: key.into(), value, want }
+}
+
+fn as_number(value: &Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|x| x as f64))
+}
+
+fn number(key: &str, value: &Value) -> Result<f64, MachineError> {
+    as_number(value).ok_or_else(|| bad(key, value, "one number"))
+}
+
+fn pair(key: &str, value: &Value) -> Result<[f64; 2], MachineError> {
+    let both = value.as_array().and_then(|list| match &list[..] {
+        [a, b] => Some([as_number(a)?, as_number(b)?]),
+        _ => None,
+    });
+    both.ok_or_else(|| bad(key, value, "two numbers, A,B"))
 }

@@ -78,7 +78,7 @@ pub(super) fn proved(task: &Task, planes: &Planes, refusal: Refusal) -> Refusal 
     match refusal {
         Refusal::NoCommonPlane { mut why, .. } => {
             if let Some((mend, mut shown)) = why.mend.and_then(|mend| Some((mend, mend.shown?))) {
-                let moved = task.moving(mend.point, shown.point()).and_then(|change| task.with(&change).ok());
+                let moved = task.moved(mend.point, shown.point());
                 let result = moved.as_ref().map(|moved| goes(&at(moved, shown.b.value())));
                 shown.does = match result {
                     Some(Ok(_)) => true,

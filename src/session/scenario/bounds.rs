@@ -11,6 +11,12 @@ pub const MAX_STEPS: u64 = 4_000_000;
 /// What a step may be.
 pub const STEP: Range = Range::new(1e-5, 0.01, "s");
 
+/// How long a run may be told to take.
+pub(super) const DURATION: Range = Range::new(0.0, MAX_TIME, "s");
+
+/// Where a bound on |b̈| may lie.
+pub(super) const POSE_ACCELERATION: Range = Range::new(1e-6, 1e6, "rad/s²");
+
 /// 1st, 2nd, 3rd, 4th …
 pub(crate) fn ordinal(n: usize) -> String {
     let ending = match (n % 10, n % 100) {

@@ -1,12 +1,11 @@
 //! [`Scenario`]: what a run starts from.
 
-use super::bounds::{MAX_TIME, STEP};
 use super::error::ScenarioError;
-use super::task::{POSE_CONSTANT, Task};
+use super::task::Task;
 use super::tolerance::Tolerance;
 use crate::mechanics::machine::{Machine, MachineError};
 use crate::session::TimedEdit;
-use crate::settings::range::{Check, Range};
+use crate::settings::range::Check;
 use crate::simulation::Setup;
 use crate::simulation::control::Control;
 use crate::simulation::plant::{Base, PlantDifferences};
@@ -55,20 +54,6 @@ impl Scenario {
         named.map_err(|error| ScenarioError::Machine { file: format!("{file}: plant"), line: None, error })
     }
 
-    /// Every number with its key, and whether it may stand there.
-    fn checks(&self) -> Vec<Check> {
-        let n = self.machine.drives();
-        let mut list = vec![STEP.check("step", self.step)];
-        list.extend(DURATION.check_some("duration", self.duration));
-        list.push(POSE_ACCELERATION.check("pose_acceleration", self.pose_acceleration));
-        list.extend(POSE_CONSTANT.check_some("compare_b", self.compare_b));
-        list.extend(self.task.checks(self.step));
-        list.extend(self.control.checks(n, self.step));
-        list.extend(self.plant.checks(n));
-        list.extend(self.base.checks());
-        list
-    }
-
     /// The machine that moves, with what it holds at the start.
     ///
     /// # Errors
@@ -105,7 +90,3 @@ impl Scenario {
         Setup { model, plant, base, control, step: *step }
     }
 }
-
-const DURATION: Range = Range::new(0.0, MAX_TIME, "s");
-
-const POSE_ACCELERATION: Range = Range::new(1e-6, 1e6, "rad/s²");

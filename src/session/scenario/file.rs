@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::definition::Scenario;
 use super::error::ScenarioError;
-use super::task::Task;
+use super::task::StatedTask;
 use super::tolerance::Tolerance;
 use crate::mechanics::machine::{self, FileError, Machine, MachineSpec, Place, PlaceStep};
 use crate::session::{TimedEdit, check_edits};
@@ -17,7 +17,7 @@ use crate::simulation::plant::{Base, PlantDifferences, is_default};
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct File<T> {
     name: Option<String>,
     #[serde(default)]
     title: String,
@@ -31,7 +31,7 @@ struct File {
     #[serde(default = "default_pose_acceleration")]
     pose_acceleration: f64,
     compare_b: Option<f64>,
-    task: Task,
+    task: T,
     #[serde(default, skip_serializing_if = "is_default")]
     control: Control,
     #[serde(default, skip_serializing_if = "is_default")]
@@ -73,7 +73,7 @@ impl Scenario {
     /// # Errors
     /// If it is not a scenario.
     pub fn parse(text: &str, label: &str, find: Option<FindMachine>) -> Result<Self, ScenarioError> {
-        let file: File = toml::from_str(text).map_err(|e| ScenarioError::Syntax {
+        let file: File<StatedTask> = toml::from_str(text).map_err(|e| ScenarioError::Syntax {
             file: label.into(),
             line: e.span().map(|s| machine::line_of(text, s.start)),
             message: shortened(e.message(), MOST_WORDS),

@@ -7,6 +7,7 @@ mod catalog;
 mod definition;
 mod error;
 mod file;
+mod settings;
 mod task;
 mod tolerance;
 
@@ -15,5 +16,6 @@ pub use bounds::{MAX_STEPS, MAX_TIME, STEP};
 pub use definition::Scenario;
 pub use error::ScenarioError;
 pub use file::FindMachine;
+pub use settings::{KEYS, SettingError, key_of, keys};
 pub use task::{Change, Corners, Least, MAX_POINTS, PLACE, POSE_CONSTANT, Shape, TIME, Task, TaskKind, Value};
 pub use tolerance::{Amount, MAX_SAMPLES, Spread, Tolerance, default_spreads};

@@ -8,12 +8,19 @@ use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use crate::planning::curves::Samples;
 use crate::planning::timing::TimeLaw;
 use crate::settings::change;
+use crate::settings::key::{Holds, Key};
 use crate::settings::range::{Check, Range};
 
 /// What the machine is to do.
+pub type Task = Keys<[f64; 2], f64>;
+
+/// A task as a file states it: points, b and time may be left out where samples have them.
+pub(super) type StatedTask = Keys<Option<[f64; 2]>, Option<f64>>;
+
+/// The keys of a task, with what stands for a point, m, and for a number that a file may leave out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Task {
+pub struct Keys<P, X> {
     /// What becomes of the redundancy: three drives, two coordinates of the end effector.
     pub kind: TaskKind,
     /// What joins the points; by default what suits the kind.
@@ -27,14 +34,14 @@ pub struct Task {
     #[serde(default, skip_serializing_if = "is_default")]
     pub turn: f64,
     /// A, m; by default where samples begin.
-    #[serde(default = "missing_point")]
-    pub from: [f64; 2],
+    #[serde(default)]
+    pub from: P,
     /// Points between A and B, in order, m.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub via: Vec<[f64; 2]>,
     /// B, m; by default where samples end.
-    #[serde(default = "missing_point")]
-    pub to: [f64; 2],
+    #[serde(default)]
+    pub to: P,
     /// Returns from B to A.
     #[serde(default, skip_serializing_if = "is_false")]
     pub closed: bool,
@@ -48,8 +55,8 @@ pub struct Task {
     #[serde(default, skip_serializing_if = "is_false")]
     pub keep_off_change_points: bool,
     /// Pose constant at A, rad; samples of drive angles have their own.
-    #[serde(default = "missing")]
-    pub b: f64,
+    #[serde(default)]
+    pub b: X,
     /// Pose constant at B, rad: for `change-b` by default the one that B allows with the least change, for
     /// `least-reaction` free.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -68,8 +75,8 @@ pub struct Task {
     pub first_drive_to: Option<f64>,
     /// T, s; for the laws that do not find it themselves. By default 1 s, or as long as samples take; another T
     /// stretches them.
-    #[serde(default = "missing")]
-    pub time: f64,
+    #[serde(default)]
+    pub time: X,
     /// Time law.
     #[serde(default)]
     pub law: TimeLaw,
@@ -141,15 +148,6 @@ pub enum Least {
     Peak,
 }
 
-/// What stands for a key that a file leaves out, until it is known; no file can hold it.
-fn missing() -> f64 {
-    f64::NAN
-}
-
-fn missing_point() -> [f64; 2] {
-    [f64::NAN; 2]
-}
-
 fn default_blend() -> f64 {
     0.03
 }
@@ -183,10 +181,172 @@ pub const PLACE: Range = Range::either_way(1e6, "m");
 pub const POSE_CONSTANT: Range = Range::either_way(1e3, "rad");
 /// How long a motion may take, whether it is told to or finds its time itself.
 pub const TIME: Range = Range::new(1e-5, super::bounds::MAX_TIME, "s");
+
+const SAMPLED: &str = "no samples, which say where to go";
+const CURVED: &str = "points, and the kind reactionless, minimum-norm, least-reaction or zero-momentum";
+const STRAIGHT: &str = "the shape line or joint-line: others have no corners";
+
+/// Every key of `[task]`.
+pub const KEYS: [Key; 19] = [
+    Key::new(
+        "task.kind",
+        Holds::Choice(&[
+            "reactionless",
+            "minimum-norm",
+            "same-tip",
+            "least-reaction",
+            "change-b",
+            "zero-momentum",
+            "given",
+        ]),
+        Key::REQUIRED,
+        "What becomes of the redundancy of three drives over two coordinates of the end effector.",
+    ),
+    Key::new(
+        "task.shape",
+        Holds::Choice(&["joint-line", "line", "arc", "spline", "freehand"]),
+        Key::NONE,
+        "What joins the points; by default what suits the kind.",
+    )
+    .when(CURVED),
+    Key::new(
+        "task.samples",
+        Holds::Rows,
+        Key::NONE,
+        "The motion over time: rows of t, s, and all drive angles, rad, or of t, x, y, m.",
+    ),
+    Key::number("task.turn", ANGLE, "0", "By how much samples of drive angles are turned as a whole.")
+        .when("samples of drive angles"),
+    Key::new("task.from", Holds::List(2, PLACE), Key::REQUIRED, "The point A; by default where samples begin.")
+        .when(SAMPLED),
+    Key::new("task.via", Holds::Points(PLACE), "[]", "Points between A and B, in order, at most 2000."),
+    Key::new("task.to", Holds::List(2, PLACE), Key::REQUIRED, "The point B; by default where samples end.")
+        .when(SAMPLED),
+    Key::new("task.closed", Holds::Switch, "false", "Whether the path returns from B to A."),
+    Key::new("task.corners", Holds::Choice(&["stop", "blend"]), "stop", "Whether the motion rests at corners or rounds them off.")
+        .when(STRAIGHT),
+    Key::number(
+        "task.blend",
+        Range::new(0.0, 1.0, "m, rad"),
+        "0.03",
+        "How far from a corner its blend begins: in m, for joint lines in rad.",
+    )
+    .when("corners = blend, and the shape line or joint-line: others have no corners"),
+    Key::new(
+        "task.keep_off_change_points",
+        Holds::Switch,
+        "false",
+        "Keeps to one side of every change point, where two drives are parallel and pin forces grow without bound.",
+    ),
+    Key::number("task.b", POSE_CONSTANT, Key::REQUIRED, "Pose constant b at A: which reactionless plane.")
+        .when("task.turn, for samples of drive angles have their own b"),
+    Key::number(
+        "task.b_to",
+        POSE_CONSTANT,
+        Key::NONE,
+        "Pose constant b at B: for change-b by default the one that B allows with the least change, for least-reaction free.",
+    )
+    .when("the kind change-b or least-reaction"),
+    Key::number(
+        "task.moment_limit",
+        Range::new(1e-9, 1e9, "N m"),
+        Key::NONE,
+        "Bound on |n_B| while b changes; the motion takes as long as that wants, T or longer.",
+    )
+    .when("the kind change-b"),
+    Key::new(
+        "task.cycles",
+        Holds::Whole(Range::new(1.0, 100.0, "")),
+        "1",
+        "How often a closed path is run through.",
+    )
+    .when("the kind zero-momentum"),
+    Key::new(
+        "task.least",
+        Holds::Choice(&["mean-square", "peak"]),
+        "mean-square",
+        "What to keep small: the root of the mean square of n_B, or its peak.",
+    )
+    .when("the kind least-reaction"),
+    Key::number("task.first_drive_to", ANGLE, Key::NONE, "Where drive 1 ends.").when("the kind same-tip"),
+    Key::number(
+        "task.time",
+        TIME,
+        "1",
+        "Duration T from A to B; by default 1 s, or as long as samples take, and another T stretches them.",
+    )
+    .when("another law: the fastest ones find the time"),
+    Key::new(
+        "task.law",
+        Holds::Choice(&["quintic", "septic", "trapezoidal", "fastest", "fastest-smooth"]),
+        "quintic",
+        "Time law: how the motion goes from A to B.",
+    )
+    .when("no samples, which say when to be where"),
+];
+
 const ANGLE: Range = Range::either_way(1e3, "rad");
-const BLEND: Range = Range::new(0.0, 1.0, "");
-const CYCLES: Range = Range::new(1.0, 100.0, "");
-const MOMENT_LIMIT: Range = Range::new(1e-9, 1e9, "N m");
+
+impl StatedTask {
+    /// The task as a file means it for a machine: what it leaves out is filled in from its samples.
+    ///
+    /// # Errors
+    /// Which key is missing.
+    pub(super) fn completed(self, machine: &Machine) -> Result<Task, &'static str> {
+        let Self { kind, shape, samples, turn, from, via, to, closed, corners, blend, .. } = self;
+        let Self { keep_off_change_points, b, b_to, moment_limit, cycles, least, first_drive_to, time, law, .. } = self;
+        let ends = samples.as_ref().and_then(|samples| ends_of(samples, turn, machine));
+        let [first, last] = ends.map_or([None; 2], |ends| ends.places.map(Some));
+        Ok(Task {
+            from: from.or(first).ok_or("from")?,
+            to: to.or(last).ok_or("to")?,
+            b: b.or(ends.and_then(|ends| ends.b)).ok_or("b")?,
+            time: time.or(samples.as_ref().map(Samples::duration)).unwrap_or(1.0),
+            kind,
+            shape,
+            samples,
+            turn,
+            via,
+            closed,
+            corners,
+            blend,
+            keep_off_change_points,
+            b_to,
+            moment_limit,
+            cycles,
+            least,
+            first_drive_to,
+            law,
+        })
+    }
+}
+
+/// What samples say of the ends of a path.
+#[derive(Clone, Copy)]
+struct Ends {
+    /// A and B, m.
+    places: [[f64; 2]; 2],
+    /// Pose constant at A, rad, where samples have their own.
+    b: Option<f64>,
+}
+
+/// The ends of samples of the end effector, or of the drives, turned as a whole, rad; `None` if there are none for this
+/// machine.
+fn ends_of(samples: &Samples, turn: f64, machine: &Machine) -> Option<Ends> {
+    let last = samples.count() - 1;
+    if samples.columns() == 2 {
+        return Some(Ends { places: [0, last].map(|i| [samples.point(i).re, samples.point(i).im]), b: None });
+    }
+    let pose = |i: usize| DriveAngles(PerDrive::from_fn(samples.columns(), |k| samples.values(i)[k] + turn));
+    let place = |q: &DriveAngles| {
+        let p = end_effector(machine.end_effector(), &q.units());
+        [p.re, p.im]
+    };
+    (samples.columns() == machine.drives()).then(|| {
+        let [first, last] = [pose(0), pose(last)];
+        Ends { places: [place(&first), place(&last)], b: Some(Inertia::of(machine).lambda().dot(&first)) }
+    })
+}
 
 impl Task {
     /// A task by samples, on the plane b, rad, where they are of the end effector; those of the drives have their own.
@@ -194,119 +354,49 @@ impl Task {
     /// # Errors
     /// Which key is missing: `b` for samples of the end effector without one.
     pub fn sampled(kind: TaskKind, samples: Samples, b: Option<f64>, machine: &Machine) -> Result<Self, &'static str> {
-        let task = Self {
+        let task = StatedTask {
             kind,
             shape: None,
             samples: Some(samples),
             turn: 0.0,
-            from: missing_point(),
+            from: None,
             via: Vec::new(),
-            to: missing_point(),
+            to: None,
             closed: false,
             corners: Corners::default(),
             blend: default_blend(),
             keep_off_change_points: false,
-            b: b.unwrap_or_else(missing),
+            b,
             b_to: None,
             moment_limit: None,
             cycles: once(),
             least: Least::default(),
             first_drive_to: None,
-            time: missing(),
+            time: None,
             law: TimeLaw::default(),
         };
         task.completed(machine)
     }
 
-    /// The task with what its file leaves out and what follows from its samples alone.
-    fn settled(mut self) -> Self {
-        let samples = self.samples.as_ref();
-        if self.time.is_nan() {
-            self.time = samples.map_or(1.0, Samples::duration);
-        }
-        if let Some(samples) = samples.filter(|samples| samples.columns() == 2) {
-            let place = |i| [samples.point(i).re, samples.point(i).im];
-            self.place_ends([place(0), place(samples.count() - 1)]);
-        }
-        self
-    }
-
-    fn place_ends(&mut self, ends: [[f64; 2]; 2]) {
-        for (own, end) in [&mut self.from, &mut self.to].into_iter().zip(ends) {
-            if own.iter().all(|x| x.is_nan()) {
-                *own = end;
-            }
-        }
-    }
-
-    /// The task as a file means it for a machine: what it leaves out is filled in from its samples.
-    ///
-    /// # Errors
-    /// Which key is missing.
-    pub(super) fn completed(self, machine: &Machine) -> Result<Self, &'static str> {
-        let mut task = self.settled();
-        if let Some([first, last]) = task.end_poses(machine) {
-            let place = |q: &DriveAngles| {
-                let p = end_effector(machine.end_effector(), &q.units());
-                [p.re, p.im]
-            };
-            task.place_ends([place(&first), place(&last)]);
-            if task.b.is_nan() {
-                task.b = Inertia::of(machine).lambda().dot(&first);
-            }
-        }
-        let missing = [
-            ("from", task.from.iter().all(|x| x.is_nan())),
-            ("to", task.to.iter().all(|x| x.is_nan())),
-            ("b", task.b.is_nan()),
-        ];
-        match missing.into_iter().find(|(_, is)| *is) {
-            Some((key, _)) => Err(key),
-            None => Ok(task),
-        }
-    }
-
-    /// Where samples of the drive angles begin and end; `None` if there are none for this machine.
-    fn end_poses(&self, machine: &Machine) -> Option<[DriveAngles; 2]> {
-        let samples = self.samples.as_ref().filter(|samples| samples.columns() == machine.drives())?;
-        let pose = |i: usize| DriveAngles(PerDrive::from_fn(samples.columns(), |k| samples.values(i)[k] + self.turn));
-        Some([pose(0), pose(samples.count() - 1)])
-    }
-
     /// Samples turned as a whole to begin on the plane b, rad, if they are of the drives of a machine; what else a task
     /// with samples has is left to its plan. `None` for a task without samples.
     pub(crate) fn posed(&self, machine: &Machine, b: f64) -> Option<Self> {
-        self.samples.as_ref()?;
+        let samples = self.samples.as_ref()?;
         let mut task = Self { b, ..self.clone() };
-        if let Some([first, _]) = self.end_poses(machine) {
-            let lambda = Inertia::of(machine).lambda();
-            task.turn += (b - lambda.dot(&first)) / lambda.iter().sum::<f64>();
-            (task.from, task.to) = (missing_point(), missing_point());
+        if let Some(Ends { b: Some(own), .. }) = ends_of(samples, self.turn, machine) {
+            task.turn += (b - own) / Inertia::of(machine).lambda().iter().sum::<f64>();
+            [task.from, task.to] = ends_of(samples, task.turn, machine)?.places;
         }
-        task.completed(machine).ok()
+        Some(task)
     }
 
-    /// Every number with its key, and whether it may stand there, for a step, s.
-    pub(super) fn checks(&self, step: f64) -> Vec<Check> {
-        let place = |key: &'static str, [x, y]: [f64; 2]| [PLACE.check(key, x), PLACE.check(key, y)];
-        let mut list = vec![
-            TIME.check("task.time", self.time),
-            Check::words("task.time", self.time, self.time >= step, "one step or more, s"),
-            CYCLES.check("task.cycles", self.cycles.into()),
-            BLEND.check("task.blend", self.blend),
-            POSE_CONSTANT.check("task.b", self.b),
-            ANGLE.check("task.turn", self.turn),
-        ];
-        list.extend(MOMENT_LIMIT.check_some("task.moment_limit", self.moment_limit));
-        list.extend(POSE_CONSTANT.check_some("task.b_to", self.b_to));
-        list.extend(ANGLE.check_some("task.first_drive_to", self.first_drive_to));
-        list.extend(place("task.from", self.from));
-        list.extend(place("task.to", self.to));
+    /// What no range says: how its numbers fit together, and a step, s.
+    pub(super) fn fits(&self, step: f64) -> Vec<Check> {
         let (count, enough) = (self.via.len(), self.via.len() <= MAX_POINTS);
-        list.push(Check::words("task.via", count as f64, enough, "at most 2000 points between A and B"));
-        let via = self.via.iter().enumerate().flat_map(|(i, p)| p.map(|x| (i, x))).find(|(_, x)| !PLACE.contains(*x));
-        list.extend(via.map(|(i, x)| PLACE.check(format!("task.via[{}]", i + 1), x)));
-        list
+        vec![
+            Check::words("task.time", self.time, self.time >= step, "one step or more, s"),
+            Check::words("task.via", count as f64, enough, "at most 2000 points between A and B"),
+        ]
     }
 
     /// All points in order, A first and B last, m.
@@ -345,6 +435,15 @@ impl Task {
     /// The points, unless samples say where to go.
     fn movable(&self) -> Option<Vec<Vector>> {
         self.samples.is_none().then(|| self.points())
+    }
+
+    /// The task with a point elsewhere, m; `None` where samples say where to go, or for no such point.
+    pub fn moved(&self, point: usize, to: Vector) -> Option<Self> {
+        let mut points = self.movable()?;
+        *points.get_mut(point)? = to;
+        let mut places = points.iter().map(|p| [p.re, p.im]);
+        let (from, to) = (places.next()?, places.next_back()?);
+        Some(Self { from, via: places.collect(), to, ..self.clone() })
     }
 
     /// The change that moves a point, m; as all such changes, none where samples say where to go.
@@ -398,31 +497,28 @@ impl Task {
         Some(change)
     }
 
-    /// What a key would want to have a say in this task, if it has none as things are.
-    pub fn unused(&self, key: &str) -> Option<&'static str> {
+    /// Whether a key of this part has an effect as things are.
+    pub fn uses(&self, key: &str) -> bool {
         use TaskKind::{ChangeB, LeastReaction, MinimumNorm, Reactionless, SameTip, ZeroMomentum};
         let kind = |kinds: &[TaskKind]| kinds.contains(&self.kind);
         let samples = self.samples.as_ref().map(Samples::columns);
         let curved = kind(&[Reactionless, MinimumNorm, LeastReaction, ZeroMomentum]) && samples.is_none();
         let straight = curved && matches!(self.shape(), Shape::JointLine | Shape::Line);
-        let (used, want) = match key {
-            "from" | "to" => (samples.is_none(), "no samples, which say where to go"),
-            "shape" => (curved, "points, and the kind reactionless, minimum-norm, least-reaction or zero-momentum"),
-            "corners" => (straight, "the shape line or joint-line: others have no corners"),
-            "blend" if straight => (self.corners == Corners::Blend, "corners = blend"),
-            "blend" => (false, "the shape line or joint-line: others have no corners"),
-            "b" => (samples.is_none_or(|n| n == 2), "task.turn, for samples of drive angles have their own b"),
-            "b_to" => (kind(&[ChangeB, LeastReaction]), "the kind change-b or least-reaction"),
-            "moment_limit" => (kind(&[ChangeB]), "the kind change-b"),
-            "cycles" => (kind(&[ZeroMomentum]), "the kind zero-momentum"),
-            "least" => (kind(&[LeastReaction]), "the kind least-reaction"),
-            "first_drive_to" => (kind(&[SameTip]), "the kind same-tip"),
-            "turn" => (samples.is_some_and(|n| n != 2), "samples of drive angles"),
-            "law" => (samples.is_none(), "no samples, which say when to be where"),
-            "time" => (!self.law.is_fastest(), "another law: the fastest ones find the time"),
-            _ => return None,
-        };
-        (!used).then_some(want)
+        match key {
+            "from" | "to" | "law" => samples.is_none(),
+            "shape" => curved,
+            "corners" => straight,
+            "blend" => straight && self.corners == Corners::Blend,
+            "b" => samples.is_none_or(|columns| columns == 2),
+            "b_to" => kind(&[ChangeB, LeastReaction]),
+            "moment_limit" => kind(&[ChangeB]),
+            "cycles" => kind(&[ZeroMomentum]),
+            "least" => kind(&[LeastReaction]),
+            "first_drive_to" => kind(&[SameTip]),
+            "turn" => samples.is_some_and(|columns| columns != 2),
+            "time" => !self.law.is_fastest(),
+            _ => true,
+        }
     }
 
     /// What joins the points.
@@ -446,12 +542,18 @@ impl Task {
         format!("{kind}, {shape}{closed}, {law}, {} points", self.via.len() + 2)
     }
 
-    /// The task with some of its keys changed, as they stand in a file; the word `default` takes a key out.
+    /// The task with some of its keys changed, as they stand in a file, for a machine; the word `default` takes a key
+    /// out.
     ///
     /// # Errors
     /// What key or value is wrong, and what would be right.
-    pub fn with(&self, change: &Change) -> Result<Self, String> {
-        change::with(self, change).map(Self::settled)
+    pub fn with(&self, change: &Change, machine: &Machine) -> Result<Self, String> {
+        // Samples may be many: they are written out only where the change is of them.
+        let kept = if change.contains_key("samples") { None } else { self.samples.clone() };
+        let plain = if kept.is_some() { &Self { samples: None, ..self.clone() } } else { self };
+        let mut stated: StatedTask = change::with_as(plain, change)?;
+        stated.samples = kept.or(stated.samples);
+        stated.completed(machine).map_err(|key| format!("missing field `{key}`"))
     }
 
     /// What these keys hold now, so that [`with`](Self::with) brings it back.

@@ -6,6 +6,9 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use crate::settings::key::{Holds, Key};
+use crate::settings::range::Range;
+
 /// The most samples of one study.
 pub const MAX_SAMPLES: u64 = 1_000_000_000;
 
@@ -36,7 +39,56 @@ pub struct Tolerance {
     pub spreads: BTreeMap<String, Spread>,
 }
 
+/// Every key of `[tolerance]`; in a file a key of a spread is one word in quotes, such as `"link.*.com"`.
+pub const KEYS: [Key; 11] = [
+    Key::new("tolerance.seed", Holds::Whole(Range::new(0.0, i64::MAX as f64, "")), Key::NONE, "Which random machines."),
+    Key::new("tolerance.samples", Holds::Whole(SAMPLES), Key::NONE, "How many random machines."),
+    Key::number("tolerance.moment_limit", LIMIT_MOMENT, Key::NONE, "The greatest |n_B| that will do."),
+    Key::number("tolerance.force_limit", LIMIT_FORCE, Key::NONE, "The greatest dynamic |f_B| that will do."),
+    Key::new(
+        "tolerance.link.*.com",
+        Holds::Spread("m"),
+        Key::NONE,
+        "How a link's centre of mass varies along the link.",
+    ),
+    Key::new(
+        "tolerance.link.*.com_normal",
+        Holds::Spread("m"),
+        Key::NONE,
+        "How a link's centre of mass varies across the link.",
+    ),
+    Key::new("tolerance.link.*.mass", Holds::Spread("kg"), Key::NONE, "How a link's mass varies."),
+    Key::new("tolerance.link.*.inertia", Holds::Spread("kg m²"), Key::NONE, "How a link's inertia varies."),
+    Key::new(
+        "tolerance.length.*",
+        Holds::Spread("m"),
+        Key::NONE,
+        "How a named length varies, in all bars that share it.",
+    ),
+    Key::new("tolerance.payload.mass", Holds::Spread("kg"), Key::NONE, "How the payload's mass varies."),
+    Key::new("tolerance.payload.inertia", Holds::Spread("kg m²"), Key::NONE, "How the payload's inertia varies."),
+];
+
+const SAMPLES: Range = Range::new(1.0, MAX_SAMPLES as f64, "");
+const LIMIT_MOMENT: Range = Range::new(1e-12, 1e12, "N m");
+const LIMIT_FORCE: Range = Range::new(1e-12, 1e12, "N");
+
 impl Tolerance {
+    /// A change as `[tolerance]` has it, where the key of a spread is one word: `{ link = { 5 = { mass = … } } }` becomes
+    /// `{ "link.5.mass" = … }`.
+    pub(super) fn flat(change: &toml::Table) -> toml::Table {
+        let mut flat = toml::Table::new();
+        for (key, value) in change {
+            match value {
+                toml::Value::Table(inner) if !inner.contains_key("normal") && !inner.contains_key("uniform") => {
+                    flat.extend(Self::flat(inner).into_iter().map(|(rest, value)| (format!("{key}.{rest}"), value)));
+                }
+                value => drop(flat.insert(key.clone(), value.clone())),
+            }
+        }
+        flat
+    }
+
     /// Whether it says nothing.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
@@ -172,8 +224,8 @@ impl TryFrom<Section> for Tolerance {
             match key.as_str() {
                 "seed" => tolerance.seed = Some(whole(&key, &value, 0)?),
                 "samples" => tolerance.samples = Some(whole(&key, &value, 1)?),
-                "moment_limit" => tolerance.moment_limit = Some(positive(&key, &value)?),
-                "force_limit" => tolerance.force_limit = Some(positive(&key, &value)?),
+                "moment_limit" => tolerance.moment_limit = Some(within(&key, &value, LIMIT_MOMENT)?),
+                "force_limit" => tolerance.force_limit = Some(within(&key, &value, LIMIT_FORCE)?),
                 _ => {
                     let spread = in_words(&value)
                         .and_then(|text| text.parse().ok())
@@ -189,8 +241,11 @@ impl TryFrom<Section> for Tolerance {
 const SECTION: &str = "want { normal = 0.0005 } or { uniform = \"1%\" }, 0 or more, for a key such as \"link.*.com\"; \
                        or seed, samples, moment_limit, force_limit";
 
-/// A spread of a file, written as on the command line.
+/// A spread of a file, as it is written on the command line: `normal:0.0005`.
 fn in_words(value: &toml::Value) -> Option<String> {
+    if let toml::Value::String(text) = value {
+        return Some(text.clone());
+    }
     let table = value.as_table().filter(|table| table.len() == 1)?;
     let (word, amount) = table.iter().next()?;
     let amount = match amount {
@@ -211,10 +266,9 @@ fn whole(key: &str, value: &toml::Value, least: u64) -> Result<u64, String> {
     })
 }
 
-fn positive(key: &str, value: &toml::Value) -> Result<f64, String> {
+fn within(key: &str, value: &toml::Value, range: Range) -> Result<f64, String> {
     let number = value.as_float().or_else(|| value.as_integer().map(|x| x as f64));
-    let ok = number.filter(|x| x.is_finite() && *x > 0.0);
-    ok.ok_or_else(|| format!("tolerance: {key} is {value}: want a number above 0"))
+    number.filter(|x| range.contains(*x)).ok_or_else(|| format!("tolerance: {key} is {value}: want a number, {range}"))
 }
 
 impl From<Tolerance> for Section {

@@ -3,13 +3,50 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Wheel, is_default};
-use crate::settings::range::{Check, Range};
+use crate::settings::key::{Holds, Key};
+use crate::settings::range::Range;
 
-const MASS: Range = Range::new(1e-9, 1e6, "kg");
-const INERTIA: Range = Range::new(1e-9, 1e6, "kg m²");
-const COM: Range = Range::either_way(1e3, "m");
-const STIFFNESS: Range = Range::new(0.0, 1e9, "N/m, N m/rad");
-const DAMPING: Range = Range::new(0.0, 1e9, "N s/m, N m s");
+/// Every key of `[base]`; those of `[base.wheel]` follow in [`Wheel`]'s.
+pub const KEYS: [Key; 6] = [
+    Key::new(
+        "base.kind",
+        Holds::Choice(&["fixed", "compliant", "free"]),
+        "fixed",
+        "How the base is held: it cannot move, it stands on springs and dampers, or it floats as a spacecraft does.",
+    ),
+    Key::number("base.mass", Range::new(1e-9, 1e6, "kg"), "40", "Mass m_b of the base.").when(MOVES),
+    Key::number(
+        "base.inertia",
+        Range::new(1e-9, 1e6, "kg m²"),
+        "3",
+        "Inertia I_b of the base about its own centre of mass.",
+    )
+    .when(MOVES),
+    Key::new(
+        "base.com",
+        Holds::List(2, Range::either_way(1e3, "m")),
+        "0,0",
+        "Centre of mass ρ of the base, seen from B along the base's own axes.",
+    )
+    .when(MOVES),
+    Key::new(
+        "base.stiffness",
+        Holds::List(3, Range::new(0.0, 1e9, "N/m, N m/rad")),
+        "20000,20000,2000",
+        "Springs under the base: along x and y, and against turning.",
+    )
+    .when(COMPLIANT),
+    Key::new(
+        "base.damping",
+        Holds::List(3, Range::new(0.0, 1e9, "N s/m, N m s")),
+        "200,200,10",
+        "Dampers under the base: along x and y, and against turning.",
+    )
+    .when(COMPLIANT),
+];
+
+const MOVES: &str = "base.kind = free or compliant: a fixed base does not move";
+const COMPLIANT: &str = "base.kind = compliant";
 
 /// What the machine stands on.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -96,23 +133,12 @@ impl Base {
         self.kind != BaseKind::Fixed
     }
 
-    /// What a key would want to have a say, if it has none as things are.
-    pub fn unused(&self, key: &str) -> Option<&'static str> {
-        let (used, want) = match key {
-            "mass" | "inertia" | "com" => (self.moves(), "base.kind = free or compliant: a fixed base does not move"),
-            "stiffness" | "damping" => (self.kind == BaseKind::Compliant, "base.kind = compliant"),
-            _ => return None,
-        };
-        (!used).then_some(want)
-    }
-
-    /// Every number with its key, what it should be, and whether it is.
-    pub(crate) fn checks(&self) -> Vec<Check> {
-        let mut list = vec![MASS.check("base.mass", self.mass), INERTIA.check("base.inertia", self.inertia)];
-        list.extend(self.com.map(|x| COM.check("base.com", x)));
-        list.extend(self.stiffness.map(|x| STIFFNESS.check("base.stiffness", x)));
-        list.extend(self.damping.map(|x| DAMPING.check("base.damping", x)));
-        list.extend(self.wheel.iter().flat_map(Wheel::checks));
-        list
+    /// Whether a key of this part has an effect as things are.
+    pub fn uses(&self, key: &str) -> bool {
+        match key {
+            "mass" | "inertia" | "com" => self.moves(),
+            "stiffness" | "damping" => self.kind == BaseKind::Compliant,
+            _ => true,
+        }
     }
 }

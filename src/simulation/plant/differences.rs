@@ -7,7 +7,9 @@ use serde::{Deserialize, Serialize};
 use super::each::is_default;
 use super::friction::Friction;
 use super::load::Load;
+use crate::mechanics::machine::ranges::{INERTIA as LINK_INERTIA, LENGTH, MASS as LINK_MASS, PLACE as LINK_PLACE};
 use crate::mechanics::machine::{Machine, MachineError};
+use crate::settings::key::{Holds, Key};
 use crate::settings::range::{Check, Range};
 
 /// What differs in the machine that moves.
@@ -72,33 +74,22 @@ impl PlantDifferences {
         }
     }
 
-    /// Every number with its key, what it should be, and whether it is.
-    pub(crate) fn checks(&self, n: usize) -> Vec<Check> {
+    /// Whether a key of this part has an effect as things are.
+    pub fn uses(&self, key: &str) -> bool {
+        match key.strip_prefix("payload.") {
+            Some("mass" | "inertia") | None => true,
+            Some(_) => self.payload.is_some(),
+        }
+    }
+
+    /// What no range says: how its numbers fit together, and the drives of a machine with `n` of them.
+    pub(crate) fn fits(&self, n: usize) -> Vec<Check> {
         let (load, friction) = (&self.payload, &self.friction);
-        let mut list = vec![
-            MASS.check("plant.payload.mass", load.mass),
-            INERTIA.check("plant.payload.inertia", load.inertia),
-            PLACE.check("plant.payload.offset", load.offset[0]),
-            PLACE.check("plant.payload.offset", load.offset[1]),
-            PLACE.check("plant.payload.axial", load.axial),
-            TIME.check("plant.payload.from", load.from),
-            FORCE.check("plant.force", self.force[0]),
-            FORCE.check("plant.force", self.force[1]),
-            VISCOUS.check("plant.friction.pin_viscous", friction.pin_viscous),
-            COULOMB.check("plant.friction.pin_coulomb", friction.pin_coulomb),
-        ];
-        if let Some(until) = load.until {
-            list.push(TIME.check("plant.payload.until", until));
-            let want = "later than plant.payload.from, s";
-            list.push(Check::words("plant.payload.until", until, until > load.from, want));
-        }
-        for (key, each, range) in [
-            ("plant.friction.viscous", friction.viscous, VISCOUS),
-            ("plant.friction.coulomb", friction.coulomb, COULOMB),
-        ] {
-            list.extend(each.values().into_iter().map(|x| range.check(key, x)));
-            list.extend(each.misfit(n, key));
-        }
+        let later =
+            |until| Check::words("plant.payload.until", until, until > load.from, "later than plant.payload.from, s");
+        let mut list: Vec<Check> = load.until.map(later).into_iter().collect();
+        list.extend(friction.viscous.misfit(n, "plant.friction.viscous"));
+        list.extend(friction.coulomb.misfit(n, "plant.friction.coulomb"));
         list
     }
 }
@@ -106,10 +97,98 @@ impl PlantDifferences {
 /// The heaviest unknown payload, kg; also the bound on its inertia, kg m², and on friction.
 pub const MAX_PAYLOAD: f64 = 1e4;
 
-const MASS: Range = Range::new(0.0, MAX_PAYLOAD, "kg");
-const INERTIA: Range = Range::new(0.0, MAX_PAYLOAD, "kg m²");
-const PLACE: Range = Range::either_way(1e3, "m");
-const TIME: Range = Range::new(0.0, 1e6, "s");
-const FORCE: Range = Range::either_way(1e6, "N");
+const FRICTION_TORQUE: Range = Range::new(0.0, MAX_PAYLOAD, "N m");
 const VISCOUS: Range = Range::new(0.0, MAX_PAYLOAD, "N m s");
-const COULOMB: Range = Range::new(0.0, MAX_PAYLOAD, "N m");
+const TIME: Range = Range::new(0.0, 1e6, "s");
+const PLACE: Range = Range::either_way(1e3, "m");
+const PAYLOAD: &str = "plant.payload.mass or plant.payload.inertia above 0";
+
+/// Every key of `[plant]`.
+pub const KEYS: [Key; 17] = [
+    Key::new(
+        "plant.torque_limits",
+        Holds::Switch,
+        "false",
+        "Whether motors give no more than the drives' torque limits, whatever control asks for.",
+    ),
+    Key::new(
+        "plant.force",
+        Holds::List(2, Range::either_way(1e6, "N")),
+        "0,0",
+        "A constant force F at the end effector, along the axes of the base as they are at the start.",
+    ),
+    Key::number(
+        "plant.payload.mass",
+        Range::new(0.0, MAX_PAYLOAD, "kg"),
+        "0",
+        "Mass of a payload that control does not know of; it adds to the machine's own and unbalances it.",
+    ),
+    Key::number(
+        "plant.payload.inertia",
+        Range::new(0.0, MAX_PAYLOAD, "kg m²"),
+        "0",
+        "Inertia of the payload about its own centre of mass.",
+    ),
+    Key::new(
+        "plant.payload.offset",
+        Holds::List(2, PLACE),
+        "0,0",
+        "Centre of mass of the payload, seen from the end effector: along the link that holds it, and to its left.",
+    )
+    .when(PAYLOAD),
+    Key::number("plant.payload.axial", PLACE, "0", "Height of the payload's centre of mass along the drives' axis.")
+        .when(PAYLOAD),
+    Key::number("plant.payload.from", TIME, "0", "When the payload is picked up, by a hand that moves with it.")
+        .when(PAYLOAD),
+    Key::number("plant.payload.until", TIME, Key::NONE, "When the payload is let go; otherwise it is held to the end.")
+        .when(PAYLOAD),
+    Key::new(
+        "plant.friction.viscous",
+        Holds::PerDrive(VISCOUS),
+        "0",
+        "Viscous friction in the bearings of the drives: a torque against the rate relative to the base.",
+    ),
+    Key::new(
+        "plant.friction.coulomb",
+        Holds::PerDrive(FRICTION_TORQUE),
+        "0",
+        "Coulomb friction in the bearings of the drives; a drive at rest sticks until more than this pulls.",
+    ),
+    Key::number(
+        "plant.friction.pin_viscous",
+        VISCOUS,
+        "0",
+        "Viscous friction in every pin, against the rate between its two links.",
+    ),
+    Key::number(
+        "plant.friction.pin_coulomb",
+        FRICTION_TORQUE,
+        "0",
+        "Coulomb friction in every pin; a pin at rest sticks.",
+    ),
+    Key::number(
+        "plant.length.*",
+        LENGTH,
+        Key::NONE,
+        "True length of all bars that share a named length, where the model's is another.",
+    ),
+    Key::number("plant.link.*.mass", LINK_MASS, Key::NONE, "True mass of a link, where the model's is another."),
+    Key::number(
+        "plant.link.*.inertia",
+        LINK_INERTIA,
+        Key::NONE,
+        "True inertia of a link about its own centre of mass, where the model's is another.",
+    ),
+    Key::number(
+        "plant.link.*.com",
+        LINK_PLACE,
+        Key::NONE,
+        "True place of a link's centre of mass along the link, from its root, where the model's is another.",
+    ),
+    Key::number(
+        "plant.link.*.com_normal",
+        LINK_PLACE,
+        Key::NONE,
+        "True place of a link's centre of mass off the link's axis, to the left, where the model's is another.",
+    ),
+];

@@ -13,12 +13,12 @@ mod moving_body;
 mod state;
 mod wheel;
 
-pub use base::{Base, BaseKind};
-pub use differences::{LinkDifference, MAX_PAYLOAD, PlantDifferences};
+pub use base::{Base, BaseKind, KEYS as BASE_KEYS};
+pub use differences::{KEYS, LinkDifference, MAX_PAYLOAD, PlantDifferences};
 pub use each::Each;
 pub(crate) use each::is_default;
 pub use friction::{Contacts, Friction, MAX_CONTACTS, SlipDirections};
 pub use load::Load;
 pub use moving_body::MovingBody;
 pub use state::{MotorCommand, Slope, State};
-pub use wheel::{Wheel, WheelState};
+pub use wheel::{KEYS as WHEEL_KEYS, Wheel, WheelState};

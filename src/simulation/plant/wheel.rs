@@ -17,11 +17,30 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::settings::range::{Check, Range};
+use crate::settings::key::Key;
+use crate::settings::range::Range;
 
-const INERTIA: Range = Range::new(1e-9, 1e6, "kg m²");
-const TORQUE_LIMIT: Range = Range::new(1e-9, 1e6, "N m");
-const SPEED_LIMIT: Range = Range::new(1e-9, 1e6, "rad/s");
+/// Every key of `[base.wheel]`.
+pub const KEYS: [Key; 3] = [
+    Key::number(
+        "base.wheel.inertia",
+        Range::new(1e-9, 1e6, "kg m²"),
+        Key::NONE,
+        "Inertia of a reaction wheel's rotor about its axis; a wheel is there if one of its keys is, by default with 0.02 kg m².",
+    ),
+    Key::number(
+        "base.wheel.torque_limit",
+        Range::new(1e-9, 1e6, "N m"),
+        Key::NONE,
+        "The greatest torque of the wheel's motor, either way.",
+    ),
+    Key::number(
+        "base.wheel.speed_limit",
+        Range::new(1e-9, 1e6, "rad/s"),
+        Key::NONE,
+        "The greatest rate of the wheel, either way.",
+    ),
+];
 
 /// A reaction wheel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -75,12 +94,5 @@ impl Wheel {
         // In a run that diverges the torque becomes NaN, so that the run counts as failed.
         let torque = if rate.is_finite() { wanted.max(room[0]).min(room[1]) } else { f64::NAN };
         WheelState { rate, torque, saturated: torque != wanted }
-    }
-
-    pub(crate) fn checks(&self) -> impl Iterator<Item = Check> {
-        let inertia = INERTIA.check("base.wheel.inertia", self.inertia);
-        let torque = TORQUE_LIMIT.check_some("base.wheel.torque_limit", self.torque_limit);
-        let speed = SPEED_LIMIT.check_some("base.wheel.speed_limit", self.speed_limit);
-        std::iter::once(inertia).chain(torque).chain(speed)
     }
 }

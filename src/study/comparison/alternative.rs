@@ -108,7 +108,7 @@ impl Alternative {
             }
             set("time", (SLOWER * scenario.task.time).into());
         }
-        if let Ok(task) = scenario.task.with(&change) {
+        if let Ok(task) = scenario.task.with(&change, &scenario.machine) {
             other.task = task;
         }
         if self == Self::Slowly {

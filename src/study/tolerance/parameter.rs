@@ -18,6 +18,7 @@ use super::ToleranceError;
 use super::deviate::inverse_normal;
 use crate::mechanics::machine::{Machine, MachineError, MachineSpec};
 use crate::session::scenario::{Amount, Spread};
+use crate::settings::key::names;
 
 /// What of a machine a parameter is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,18 +95,6 @@ fn everything(spec: &MachineSpec) -> Vec<(VariedQuantity, String, f64)> {
     all.push((VariedQuantity::PayloadMass, "payload.mass".into(), spec.payload.mass));
     all.push((VariedQuantity::PayloadInertia, "payload.inertia".into(), spec.payload.inertia));
     all
-}
-
-/// Whether a key names a number, `*` standing for any name.
-fn names(pattern: &str, key: &str) -> bool {
-    let (mut pattern, mut key) = (pattern.split('.'), key.split('.'));
-    loop {
-        match (pattern.next(), key.next()) {
-            (None, None) => return true,
-            (Some(p), Some(k)) if p == k || p == "*" => {}
-            _ => return false,
-        }
-    }
 }
 
 /// The numbers of a machine that vary; where several keys name one, the one without `*` counts.

@@ -2,6 +2,7 @@
 
 use super::error::{MachineError, Place};
 use super::spec::{MachineSpec, Payload};
+use crate::settings::key::{Holds, Key};
 use crate::settings::range::{Range, Want};
 
 /// The largest number of a machine, in SI units: beyond it, products of them would not be finite.
@@ -10,12 +11,12 @@ const MOST: f64 = 1e6;
 const LEAST: f64 = 1e-9;
 
 const GRAVITY: Range = Range::either_way(MOST, "m/s²");
-pub(super) const LENGTH: Range = Range::new(1e-6, MOST, "m");
-pub(super) const PLACE: Range = Range::either_way(MOST, "m");
+pub(crate) const LENGTH: Range = Range::new(1e-6, MOST, "m");
+pub(crate) const PLACE: Range = Range::either_way(MOST, "m");
 /// Links may be all but without mass.
-const MASS: Range = Range::new(1e-15, MOST, "kg");
+pub(crate) const MASS: Range = Range::new(1e-15, MOST, "kg");
 const LOAD: Range = Range::new(0.0, MOST, "kg");
-const INERTIA: Range = Range::new(0.0, MOST, "kg m²");
+pub(crate) const INERTIA: Range = Range::new(0.0, MOST, "kg m²");
 const TORQUE_LIMIT: Range = Range::new(LEAST, MOST, "N m");
 const SPEED_LIMIT: Range = Range::new(LEAST, MOST, "rad/s");
 const ACCELERATION_LIMIT: Range = Range::new(LEAST, MOST, "rad/s²");
@@ -24,6 +25,57 @@ const JERK_LIMIT: Range = Range::new(LEAST, 1e9, "rad/s³");
 /// The largest joint limit either way, rad: each further turn is one more winding of the same workspace.
 pub const MAX_ANGLE: f64 = 25.2;
 const ANGLE: Range = Range::either_way(MAX_ANGLE, "rad, four turns");
+
+/// Every key of a machine that can be set by itself; its links, drives and angles go by their names.
+pub const KEYS: [Key; 17] = [
+    Key::number(
+        "link.*.com",
+        PLACE,
+        Key::REQUIRED,
+        "Place l_c of a link's centre of mass along the link, from its root.",
+    ),
+    Key::number(
+        "link.*.com_normal",
+        PLACE,
+        "0",
+        "Place of a link's centre of mass off the link's axis, to the left of the direction root to tip.",
+    ),
+    Key::number("link.*.mass", MASS, Key::REQUIRED, "Mass of a link."),
+    Key::number("link.*.inertia", INERTIA, Key::REQUIRED, "Inertia of a link about its own centre of mass."),
+    Key::number("link.*.length", LENGTH, Key::REQUIRED, "Length of a link that shares it with no other."),
+    Key::number(
+        "link.*.axial",
+        PLACE,
+        "0",
+        "Height of a link's centre of mass along the drives' axis; it decides which moments tilt the base.",
+    ),
+    Key::number("length.*", LENGTH, Key::REQUIRED, "A named length, of all bars that share it."),
+    Key::number("payload.mass", LOAD, "0", "Mass held at the end effector, known to control."),
+    Key::number("payload.inertia", INERTIA, "0", "Inertia of the payload about its own centre of mass."),
+    Key::new(
+        "payload.offset",
+        Holds::List(2, PLACE),
+        "0,0",
+        "Centre of mass of the payload, seen from the end effector: along the link that holds it, and to its left.",
+    ),
+    Key::number("payload.axial", PLACE, "0", "Height of the payload's centre of mass along the drives' axis."),
+    Key::new("gravity", Holds::List(2, GRAVITY), "0,0", "Acceleration of gravity along the axes of the base."),
+    Key::new("limits.*", Holds::List(2, ANGLE), Key::REQUIRED, "Least and greatest value of a relative joint angle."),
+    Key::number("drive.*.torque_limit", TORQUE_LIMIT, Key::NONE, "The greatest torque of a drive, either way."),
+    Key::number("drive.*.speed_limit", SPEED_LIMIT, Key::NONE, "The greatest rate of a drive, either way."),
+    Key::number(
+        "drive.*.acceleration_limit",
+        ACCELERATION_LIMIT,
+        Key::NONE,
+        "The greatest acceleration that is asked of a drive, either way.",
+    ),
+    Key::number(
+        "drive.*.jerk_limit",
+        JERK_LIMIT,
+        Key::NONE,
+        "The greatest jerk that is asked of a drive, either way, by time laws that keep jerk in bounds.",
+    ),
+];
 
 pub(super) fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {
     for (i, &value) in spec.gravity.iter().enumerate() {

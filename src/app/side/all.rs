@@ -1,0 +1,92 @@
+//! Every setting there is, by its key: to be found, read and typed.
+
+use egui::{Align, Label, Layout, RichText, TextEdit, Ui};
+
+use super::fold::{fold, once, undo};
+use crate::app::Command;
+use crate::app::theme::{colour, plain};
+use crate::app::widgets::{name, note};
+use crate::picture::scene::palette::Palette;
+use crate::session::{Edit, Session};
+use crate::settings::change::{self, DEFAULT};
+use crate::settings::key::{Holds, Key};
+
+/// The most rows that are shown at once.
+const SHOWN: usize = 24;
+
+/// Draws it.
+pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
+    fold(ui, p, ("All settings", "by key"), None, commands, |ui, commands| {
+        let id = egui::Id::unique("settings sought");
+        let mut sought = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_default();
+        let field = TextEdit::singleline(&mut sought).hint_text("search: friction, limit, link.5 …");
+        let response = ui.add(field.desired_width(f32::INFINITY));
+        name(&response, "Search the settings");
+        ui.data_mut(|d| d.insert_temp(id, sought.clone()));
+        let word = sought.trim().to_lowercase();
+        let scenario = session.scenario();
+        let found = scenario.settings().into_iter().filter(|(path, key, _)| {
+            // Rows come from files alone.
+            key.holds != Holds::Rows && (path.contains(&word) || key.words.to_lowercase().contains(&word))
+        });
+        let mut count = 0;
+        for (path, key, value) in found {
+            count += 1;
+            if count <= SHOWN {
+                row(ui, p, (&path, key), &change::typed(&value), scenario.idle(&path), commands);
+            }
+        }
+        match count {
+            0 => note(ui, p, "no key contains this"),
+            n if n > SHOWN => note(ui, p, &format!("and {} more: search for them", n - SHOWN)),
+            _ => {}
+        }
+    });
+}
+
+fn row(
+    ui: &mut Ui,
+    p: &Palette,
+    (path, key): (&str, &Key),
+    now: &str,
+    wants: Option<&str>,
+    commands: &mut Vec<Command>,
+) {
+    let wants = wants.map_or_else(String::new, |wants| format!("\nNo effect as things are: that takes {wants}."));
+    let tip = format!("{}\n{}.{wants}", key.words, key.holds);
+    ui.horizontal(|ui| {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let unit = RichText::new(key.unit()).font(plain(10.5)).color(colour(p.dim));
+            ui.add_sized([40.0, 18.0], Label::new(unit).halign(Align::LEFT).truncate());
+            let id = ui.scope_id().with(path);
+            let kept = ui.data(|d| d.get_temp::<String>(id));
+            let shown = if now == DEFAULT { "" } else { now };
+            let mut text = kept.clone().unwrap_or_else(|| shown.to_owned());
+            let hint = if key.default.is_empty() { "" } else { key.default };
+            let field = TextEdit::singleline(&mut text).id(id.with("field")).hint_text(hint).desired_width(92.0);
+            let response = ui.add(field.font(plain(11.5))).on_hover_text(&tip);
+            name(&response, path);
+            if response.has_focus() {
+                ui.data_mut(|d| d.insert_temp(id, text.clone()));
+            } else if kept.is_some() {
+                ui.data_mut(|d| d.remove_temp::<String>(id));
+                let cancelled = ui.input(|i| i.key_pressed(egui::Key::Escape));
+                if text.trim() != shown && !cancelled {
+                    let parts: Vec<&str> = path.split('.').collect();
+                    let typed = if text.trim().is_empty() { DEFAULT.into() } else { change::value(&text) };
+                    once(commands, Edit::at(&parts, typed));
+                }
+            }
+            let usual =
+                shown.is_empty() || key.default.is_empty() || change::value(key.default) == change::value(shown);
+            if !usual && undo(ui, p, &format!("{path} back to normal"), &format!("Back to normal: {}", key.default)) {
+                let parts: Vec<&str> = path.split('.').collect();
+                once(commands, Edit::at(&parts, DEFAULT));
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                let ink = colour(if wants.is_empty() { p.ink } else { p.dim });
+                ui.add(Label::new(RichText::new(path).font(plain(11.0)).color(ink)).truncate()).on_hover_text(tip);
+            });
+        });
+    });
+}

@@ -1,0 +1,119 @@
+//! `stillbase keys`
+
+use std::fmt::Write as _;
+
+use clap::Args;
+use serde::Serialize;
+use stillbase::session::scenario::KEYS;
+use stillbase::settings::key::Key;
+
+use super::failure::Failure;
+use super::output::Format;
+
+/// List the settings: what each means, its unit, range and default, and when it has an effect
+///
+/// Each key is the same in a scenario's file, after `--set`, in an edit and in the window. `*` stands for a name: of a
+/// link, a length, a drive or a relative angle of the machine.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  stillbase keys friction
+  stillbase keys base. --json")]
+pub struct Keys {
+    /// Only the keys that contain this, in their name or in what is said of them
+    #[arg(value_name = "WORD")]
+    word: Option<String>,
+    /// As a page of documentation
+    #[arg(long, conflicts_with = "json")]
+    markdown: bool,
+    #[command(flatten)]
+    format: Format,
+}
+
+#[derive(Serialize)]
+struct Answer {
+    keys: Vec<Row>,
+}
+
+#[derive(Serialize)]
+struct Row {
+    key: &'static str,
+    holds: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unit: Option<&'static str>,
+    /// What stands there if nothing is given; none for what has to be given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    default: Option<&'static str>,
+    words: &'static str,
+    /// What it wants to have an effect.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    when: Option<&'static str>,
+    #[serde(skip)]
+    part: &'static str,
+}
+
+impl Keys {
+    /// Prints them.
+    pub fn run(&self) -> Result<(), Failure> {
+        let word = self.word.as_deref().unwrap_or_default().to_lowercase();
+        let asked = |key: &&Key| key.path.contains(&word) || key.words.to_lowercase().contains(&word);
+        let some = |text: &'static str| (!text.is_empty()).then_some(text);
+        let of_part = |&(part, keys): &(&'static str, &'static [Key])| {
+            keys.iter().filter(asked).map(move |key| Row {
+                key: key.path,
+                holds: key.holds.to_string(),
+                unit: some(key.unit()),
+                default: some(key.default),
+                words: key.words,
+                when: some(key.when),
+                part,
+            })
+        };
+        let keys: Vec<Row> = KEYS.iter().flat_map(of_part).collect();
+        if keys.is_empty() {
+            let word = stillbase::settings::range::clipped(&word);
+            return Err(Failure::no_answer(format!("no key contains {word:?}: `stillbase keys` lists all of them")));
+        }
+        self.format
+            .print(&Answer { keys }, |answer| if self.markdown { page(&answer.keys) } else { list(&answer.keys) })
+    }
+}
+
+/// Part by part, a line of each key and what it means below.
+fn list(rows: &[Row]) -> String {
+    let mut text = String::new();
+    for rows in rows.chunk_by(|a, b| a.part == b.part) {
+        let Some(first) = rows.first() else { continue };
+        let _ = writeln!(text, "{}{}\n", if text.is_empty() { "" } else { "\n" }, first.part);
+        for row in rows {
+            let _ = writeln!(text, "  {} = {}", row.key, row.default.unwrap_or("(has to be given)"));
+            let _ = writeln!(text, "      {}\n      Holds {}.", row.words, row.holds);
+            if let Some(when) = row.when {
+                let _ = writeln!(text, "      Has an effect with {when}.");
+            }
+        }
+    }
+    text
+}
+
+/// The page of the guide.
+fn page(rows: &[Row]) -> String {
+    let mut text = String::from(
+        "# Every setting\n\nEach key is the same in a scenario's file, after `--set` on the command line, in an edit of a \
+         saved session, and in the window under *All settings*. In a key, `*` stands for a name: of a link, a named length, \
+         a drive or a relative angle of the machine. The word `default` takes a key out, so that what stands there by \
+         default returns. Numbers outside their range are refused, with the range; a key without an effect is told.\n\n\
+         `stillbase keys WORD` prints these on the command line. This page is what `stillbase keys --markdown` writes.\n",
+    );
+    for rows in rows.chunk_by(|a, b| a.part == b.part) {
+        let Some(first) = rows.first() else { continue };
+        let _ = write!(text, "\n## {}\n\n| key | default | holds | meaning |\n|---|---|---|---|\n", first.part);
+        for row in rows {
+            let cell = |words: &str| words.replace('|', "\\|");
+            let default = row.default.map_or_else(|| "has to be given".into(), |default| format!("`{default}`"));
+            let when = row.when.map_or_else(String::new, |when| format!(" Has an effect with {}.", cell(when)));
+            let _ = writeln!(text, "| `{}` | {default} | {} | {}{when} |", row.key, cell(&row.holds), cell(row.words));
+        }
+    }
+    text
+}

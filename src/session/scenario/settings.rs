@@ -1,0 +1,287 @@
+//! The settings of a scenario as one tree: every key of a file but its name, its title and what was done.
+
+use toml::{Table, Value};
+
+use super::bounds::{DURATION, POSE_ACCELERATION, STEP};
+use super::definition::Scenario;
+use super::task::{self, POSE_CONSTANT};
+use super::tolerance::{self, Tolerance};
+use crate::mechanics::machine::{self, PARTS, ranges};
+use crate::settings::change::{self, DEFAULT};
+use crate::settings::key::{self, Key};
+use crate::settings::range::{Check, Range, clipped};
+use crate::simulation::{control, plant};
+
+/// The keys that stand alone.
+const OWN: [Key; 4] = [
+    Key::number("step", STEP, "0.001", "Fixed step of the simulation."),
+    Key::number(
+        "duration",
+        DURATION,
+        Key::NONE,
+        "Time that a recording and every command that runs to the end covers; by default that of the planned motion.",
+    ),
+    Key::number("pose_acceleration", POSE_ACCELERATION, "2", "Bound on |b̈| while b is slid by hand."),
+    Key::number("compare_b", POSE_CONSTANT, Key::NONE, "Pose constant of a second workspace to compare with."),
+];
+
+/// Every key, part by part: the scenario's own, task, control, plant, base and wheel, machine, tolerance.
+pub const KEYS: [(&str, &[Key]); 8] = [
+    ("The scenario itself", &OWN),
+    ("Task", &task::KEYS),
+    ("Control", &control::KEYS),
+    ("Plant: what differs in the machine that moves", &plant::KEYS),
+    ("Base", &plant::BASE_KEYS),
+    ("Reaction wheel", &plant::WHEEL_KEYS),
+    ("Machine", &ranges::KEYS),
+    ("Tolerances", &tolerance::KEYS),
+];
+
+/// Every key.
+pub fn keys() -> impl Iterator<Item = &'static Key> {
+    KEYS.iter().flat_map(|(_, keys)| keys.iter())
+}
+
+/// The key of a path, such as `plant.link.5.com`.
+pub fn key_of(path: &str) -> Option<&'static Key> {
+    keys().find(|key| key.matches(path))
+}
+
+/// The parts of a scenario that are tables of their own.
+const TABLES: [&str; 5] = ["task", "control", "plant", "base", "tolerance"];
+
+/// Why settings cannot be laid over a scenario.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SettingError {
+    /// What is wrong, with its part.
+    #[error("{part}: {why}")]
+    Part {
+        /// Such as `plant`.
+        part: String,
+        /// What, and what would be right.
+        why: String,
+    },
+    /// What is wrong with the machine.
+    #[error(transparent)]
+    Machine(#[from] machine::MachineError),
+    /// No such part.
+    #[error("there is no setting {key}: want one of {}, {}", KEYS[0].1.iter().map(|key| key.path).collect::<Vec<_>>().join(", "), TABLES.iter().chain(&PARTS).map(|part| format!("{part}…")).collect::<Vec<_>>().join(", "))]
+    Unknown {
+        /// The key.
+        key: String,
+    },
+}
+
+impl Scenario {
+    /// The scenario with settings laid over it, as they stand in a file; the word `default` takes a key out. Whether
+    /// all of it fits together is for [`check`](Self::check) to say. Edits stay at their times where the step changes.
+    ///
+    /// # Errors
+    /// Which key or value is wrong, and what would be right.
+    pub fn with(&self, change: &Table) -> Result<Self, SettingError> {
+        let mut scenario = self.clone();
+        scenario.lay(change)?;
+        Ok(scenario)
+    }
+
+    fn lay(&mut self, change: &Table) -> Result<(), SettingError> {
+        let of_machine: Table = change
+            .iter()
+            .filter(|(key, _)| PARTS.contains(&key.as_str()))
+            .map(|(k, v)| (k.clone(), v.clone()))
+            .collect();
+        if !of_machine.is_empty() {
+            self.machine = self.machine.with(&of_machine)?;
+        }
+        for (part, value) in change.iter().filter(|(key, _)| !PARTS.contains(&key.as_str())) {
+            let wrong = |why: String| SettingError::Part { part: part.clone(), why };
+            let default = Table::new();
+            let inner = || match value {
+                Value::Table(inner) => Ok(inner),
+                Value::String(word) if word == DEFAULT => Ok(&default),
+                _ => Err(wrong(format!("it is {}: want keys such as {part}.… = …", clipped(&value.to_string())))),
+            };
+            let all = value.as_str() == Some(DEFAULT);
+            match part.as_str() {
+                "task" => self.task = self.task.with(inner()?, &self.machine).map_err(wrong)?,
+                "control" if all => self.control = Default::default(),
+                "plant" if all => self.plant = Default::default(),
+                "base" if all => self.base = Default::default(),
+                "tolerance" if all => self.tolerance = Default::default(),
+                "control" => self.control = change::with(&self.control, inner()?).map_err(wrong)?,
+                "plant" => self.plant = change::with(&self.plant, inner()?).map_err(wrong)?,
+                "base" => self.base = change::with(&self.base, inner()?).map_err(wrong)?,
+                "tolerance" => {
+                    self.tolerance = change::with(&self.tolerance, &Tolerance::flat(inner()?)).map_err(wrong)?;
+                }
+                "step" => self.step_by(number(value, STEP).map_err(wrong)?.unwrap_or(0.001)),
+                "duration" => self.duration = number(value, DURATION).map_err(wrong)?,
+                "pose_acceleration" => {
+                    self.pose_acceleration = number(value, POSE_ACCELERATION).map_err(wrong)?.unwrap_or(2.0);
+                }
+                "compare_b" => self.compare_b = number(value, POSE_CONSTANT).map_err(wrong)?,
+                _ => return Err(SettingError::Unknown { key: clipped(part) }),
+            }
+        }
+        Ok(())
+    }
+
+    /// Another step, s; edits stay at their times.
+    fn step_by(&mut self, step: f64) {
+        // Edits are counted in the steps that the last of them sets.
+        let own = self.edits.iter().rev().find_map(|timed| timed.edit.own_number("step")).unwrap_or(self.step);
+        self.edits.retain_mut(|timed| timed.edit.take("step").is_none() || !timed.edit.sets_nothing());
+        let ratio = own / step;
+        if ratio != 1.0 {
+            self.edits.iter_mut().for_each(|edit| edit.step = (edit.step as f64 * ratio).round() as u64);
+        }
+        self.step = step;
+    }
+
+    /// What the keys of a change hold now, so that [`with`](Self::with) brings it back; `None` if one of them is not
+    /// there.
+    pub fn only(&self, change: &Table) -> Option<Table> {
+        let mut now = Table::new();
+        for (part, value) in change {
+            let old = match (part.as_str(), value) {
+                ("task", Value::Table(inner)) => change::only(&self.task, inner).into(),
+                ("control", Value::Table(inner)) => change::only(&self.control, inner).into(),
+                ("plant", Value::Table(inner)) => change::only(&self.plant, inner).into(),
+                ("base", Value::Table(inner)) => change::only(&self.base, inner).into(),
+                ("tolerance", Value::Table(inner)) => change::only(&self.tolerance, &Tolerance::flat(inner)).into(),
+                ("step", _) => self.step.into(),
+                ("duration", _) => self.duration.map_or_else(|| DEFAULT.into(), Value::from),
+                ("pose_acceleration", _) => self.pose_acceleration.into(),
+                ("compare_b", _) => self.compare_b.map_or_else(|| DEFAULT.into(), Value::from),
+                (key, value) if PARTS.contains(&key) => {
+                    let whole = change::one(key, value.clone());
+                    for (path, _) in change::leaves(&whole) {
+                        now = change::join(now, &change::one(&path, self.machine.value(&path)?));
+                    }
+                    continue;
+                }
+                _ => return None,
+            };
+            now.insert(part.clone(), old);
+        }
+        Some(now)
+    }
+
+    /// Its own settings as a file states them, without machine, samples and edits.
+    fn stated(&self) -> Table {
+        let task = if self.task.samples.is_some() {
+            Table::try_from(&task::Task { samples: None, ..self.task.clone() })
+        } else {
+            Table::try_from(&self.task)
+        };
+        let parts = [
+            ("task", task),
+            ("control", Table::try_from(self.control)),
+            ("plant", Table::try_from(&self.plant)),
+            ("base", Table::try_from(self.base)),
+            ("tolerance", Table::try_from(&self.tolerance)),
+        ];
+        let mut all: Table =
+            parts.into_iter().filter_map(|(part, table)| Some((part.to_owned(), Value::Table(table.ok()?)))).collect();
+        let own = [
+            ("step", Some(self.step)),
+            ("duration", self.duration),
+            ("pose_acceleration", Some(self.pose_acceleration)),
+            ("compare_b", self.compare_b),
+        ];
+        all.extend(own.into_iter().filter_map(|(key, value)| Some((key.to_owned(), value?.into()))));
+        all
+    }
+
+    /// What a setting holds now; the word `default` where nothing stands. `None` if there is no such key.
+    pub fn value(&self, path: &str) -> Option<Value> {
+        self.value_in(&self.stated(), path)
+    }
+
+    fn value_in(&self, stated: &Table, path: &str) -> Option<Value> {
+        if path.split('.').next().is_some_and(|part| PARTS.contains(&part)) {
+            return self.machine.value(path);
+        }
+        let key = key_of(path)?;
+        let found = match path.strip_prefix("tolerance.") {
+            // There a key is one word.
+            Some(key) => stated.get("tolerance").and_then(|part| part.get(key)),
+            None => {
+                let (first, rest) = path.split_once('.').unwrap_or((path, ""));
+                let rest = rest.split('.').filter(|part| !part.is_empty());
+                rest.fold(stated.get(first), |now, part| now.and_then(|now| now.get(part)))
+            }
+        };
+        Some(match found {
+            Some(value) => value.clone(),
+            None if [Key::NONE, Key::REQUIRED].contains(&key.default) => DEFAULT.into(),
+            None => change::value(key.default),
+        })
+    }
+
+    /// Every setting that this scenario has, with its key and what it holds: `*` becomes each name of its machine.
+    pub fn settings(&self) -> Vec<(String, &'static Key, Value)> {
+        let spec = self.machine.spec();
+        let names = |pattern: &str| -> Vec<&str> {
+            match pattern.split(".*").next().unwrap_or_default() {
+                "link" | "plant.link" => spec.links.iter().map(|link| link.name.as_str()).collect(),
+                "length" | "plant.length" => spec.lengths.keys().map(String::as_str).collect(),
+                "limits" => spec.angles.iter().map(|angle| angle.name.as_str()).collect(),
+                "drive" => spec.drives.iter().map(|drive| drive.name.as_str()).collect(),
+                _ => vec!["*"],
+            }
+        };
+        let stated = self.stated();
+        let paths = keys().flat_map(|key| match key.path.contains('*') {
+            true => names(key.path).into_iter().map(|name| (key.path.replacen('*', name, 1), key)).collect(),
+            false => vec![(key.path.to_owned(), key)],
+        });
+        paths.filter_map(|(path, key)| Some((path.clone(), key, self.value_in(&stated, &path)?))).collect()
+    }
+
+    /// What a key would want to have an effect, if it has none as things are.
+    pub fn idle(&self, path: &str) -> Option<&'static str> {
+        let used = match path.split_once('.') {
+            Some(("task", key)) => self.task.uses(key),
+            Some(("base", key)) => self.base.uses(key),
+            Some(("control", "knows_base")) => self.base.moves(),
+            Some(("plant", key)) => self.plant.uses(key),
+            _ => true,
+        };
+        if used { None } else { key_of(path).map(|key| key.when) }
+    }
+
+    /// The keys that are given and have no effect, with what each would want; some always stand there.
+    pub fn idle_keys(&self) -> Vec<(String, &'static str)> {
+        const STANDING: [&str; 7] =
+            ["task.kind", "task.from", "task.to", "task.b", "task.time", "task.law", "control.knows_base"];
+        let stated = self.stated();
+        let given = change::leaves(&stated).into_iter().map(|(path, _)| path);
+        given
+            .filter(|path| !STANDING.contains(&path.as_str()))
+            .filter_map(|path| Some((self.idle(&path)?, path)))
+            .map(|(want, path)| (path, want))
+            .collect()
+    }
+
+    /// Every number with its key, and whether it may stand there.
+    pub(super) fn checks(&self) -> Vec<Check> {
+        let n = self.machine.drives();
+        let stated = self.stated();
+        let mut list: Vec<Check> = KEYS.iter().flat_map(|(_, keys)| key::checks(keys, "", &stated)).collect();
+        list.extend(self.task.fits(self.step));
+        list.extend(self.control.fits(n, self.step));
+        list.extend(self.plant.fits(n));
+        list
+    }
+}
+
+/// A number of the scenario's own; none for the word `default`.
+fn number(value: &Value, range: Range) -> Result<Option<f64>, String> {
+    match value {
+        Value::String(word) if word == DEFAULT => Ok(None),
+        Value::Float(x) => Ok(Some(*x)),
+        Value::Integer(x) => Ok(Some(*x as f64)),
+        other => Err(format!("it is {}: want a number, {range}", clipped(&change::typed(other)))),
+    }
+}

@@ -1,0 +1,153 @@
+//! [`Key`]: one setting of a scenario, and all that is known of it. Each stands once, in the table of its part; files,
+//! `--set`, edits, the window's rows, their ranges and tips, and the reference of all keys are read from there.
+
+use std::fmt;
+
+use toml::{Table, Value};
+
+use super::range::{Check, Range};
+
+/// One setting.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Key {
+    /// Its parts joined by dots; `*` stands for the name of a link, a length, a drive or an angle.
+    pub path: &'static str,
+    /// What it holds.
+    pub holds: Holds,
+    /// What stands there if a file leaves it out, as it would be typed; [`NONE`](Self::NONE) for nothing,
+    /// [`REQUIRED`](Self::REQUIRED) if it has to be given.
+    pub default: &'static str,
+    /// What it means, in a sentence.
+    pub words: &'static str,
+    /// When it has an effect; empty for always.
+    pub when: &'static str,
+}
+
+/// What a key holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Holds {
+    /// A number.
+    Number(Range),
+    /// A whole number.
+    Whole(Range),
+    /// One number for all drives, or a list with one for each.
+    PerDrive(Range),
+    /// So many numbers, parted by commas.
+    List(usize, Range),
+    /// Points x, y.
+    Points(Range),
+    /// One of these words.
+    Choice(&'static [&'static str]),
+    /// `true` or `false`.
+    Switch,
+    /// How a value varies: `normal:` or `uniform:` and an amount, in its unit or in percent.
+    Spread(&'static str),
+    /// Rows of numbers, from a file.
+    Rows,
+}
+
+impl Key {
+    /// The default of a key that may be absent.
+    pub const NONE: &'static str = "none";
+    /// The default of a key that has to be given.
+    pub const REQUIRED: &'static str = "";
+
+    /// A key that always has an effect.
+    pub const fn new(path: &'static str, holds: Holds, default: &'static str, words: &'static str) -> Self {
+        Self { path, holds, default, words, when: "" }
+    }
+
+    /// A number.
+    pub const fn number(path: &'static str, range: Range, default: &'static str, words: &'static str) -> Self {
+        Self::new(path, Holds::Number(range), default, words)
+    }
+
+    /// The same with what it wants to have an effect.
+    #[must_use]
+    pub const fn when(self, when: &'static str) -> Self {
+        Self { when, ..self }
+    }
+
+    /// Whether a path is of this key.
+    pub fn matches(&self, path: &str) -> bool {
+        names(self.path, path)
+    }
+
+    /// Where its numbers may lie, if it holds any.
+    pub const fn range(&self) -> Option<Range> {
+        match self.holds {
+            Holds::Number(range)
+            | Holds::Whole(range)
+            | Holds::PerDrive(range)
+            | Holds::List(_, range)
+            | Holds::Points(range) => Some(range),
+            Holds::Choice(_) | Holds::Switch | Holds::Spread(_) | Holds::Rows => None,
+        }
+    }
+
+    /// The unit of its numbers.
+    pub const fn unit(&self) -> &'static str {
+        match self.holds {
+            Holds::Spread(unit) => unit,
+            _ => match self.range() {
+                Some(range) => range.unit(),
+                None => "",
+            },
+        }
+    }
+}
+
+impl fmt::Display for Holds {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(range) => range.fmt(f),
+            Self::Whole(range) => write!(f, "a whole number, {range}"),
+            Self::PerDrive(range) => write!(f, "{range}, for all drives or a list with one for each"),
+            Self::List(count, range) => write!(f, "{count} numbers, each {range}"),
+            Self::Points(range) => write!(f, "points x, y, each {range}"),
+            Self::Choice(words) => f.write_str(&words.join(", ")),
+            Self::Switch => f.write_str("true or false"),
+            Self::Spread(unit) => write!(f, "normal:σ or uniform:half-width, in {unit} or %"),
+            Self::Rows => f.write_str("rows of numbers"),
+        }
+    }
+}
+
+/// Whether a pattern, in which `*` stands for any name, is of a path.
+pub fn names(pattern: &str, path: &str) -> bool {
+    let (mut pattern, mut path) = (pattern.split('.'), path.split('.'));
+    loop {
+        match (pattern.next(), path.next()) {
+            (None, None) => return true,
+            (Some(p), Some(k)) if p == k || p == "*" => {}
+            _ => return false,
+        }
+    }
+}
+
+/// Every number of a table, by the keys of a part; `at` is where the table stands.
+pub fn checks(keys: &[Key], at: &str, table: &Table) -> Vec<Check> {
+    let mut list = Vec::new();
+    for (name, value) in table {
+        let path = if at.is_empty() { name.clone() } else { format!("{at}.{name}") };
+        if let Value::Table(inner) = value {
+            list.extend(checks(keys, &path, inner));
+        } else if let Some(range) = keys.iter().find(|key| key.matches(&path)).and_then(Key::range) {
+            numbers(&path, value, range, &mut list);
+        }
+    }
+    list
+}
+
+fn numbers(path: &str, value: &Value, range: Range, list: &mut Vec<Check>) {
+    match value {
+        Value::Float(x) => list.push(range.check(path.to_owned(), *x)),
+        Value::Integer(x) => list.push(range.check(path.to_owned(), *x as f64)),
+        // Of a list of points each goes by its place.
+        Value::Array(items) if items.iter().any(Value::is_array) => {
+            items.iter().enumerate().for_each(|(i, item)| numbers(&format!("{path}[{}]", i + 1), item, range, list));
+        }
+        Value::Array(items) => items.iter().for_each(|item| numbers(path, item, range, list)),
+        _ => {}
+    }
+}
