@@ -19,6 +19,7 @@ use crate::Test;
 pub const TESTS: &[Test] = tests![
     what_differs_is_set_and_taken_back,
     every_setting_goes_back_to_normal,
+    any_setting_is_found_and_typed,
     a_link_that_differs_is_named,
     a_base_that_moves_is_seen_to_move,
     dots_tell_the_audit,
@@ -104,6 +105,47 @@ fn every_setting_goes_back_to_normal() {
     assert_eq!(now.plant, PlantDifferences::default());
     assert_eq!(now.base, Base::default());
     assert_eq!(now.control, Control::default());
+}
+
+/// Every setting is found by its key, typed with its whole range, and refused beyond it with that range.
+fn any_setting_is_found_and_typed() {
+    let mut h = window_of(Scenario::builtin("case-3").expect("built in"), Theme::Dark, 1700.0);
+    h.run_steps(2);
+    h.get_by_label("All settings section").click();
+    h.run_steps(2);
+    assert!(h.query_by_label_contains("more: search for them").is_some());
+    let mut write = |key: &str, text: &str| {
+        h.get_by_label("Search the settings").focus();
+        h.run_steps(2);
+        h.key_press_modifiers(egui::Modifiers::COMMAND, Key::A);
+        h.event(egui::Event::Text(key.into()));
+        h.run_steps(2);
+        h.get_by_role_and_label(Role::TextInput, key).focus();
+        h.run_steps(2);
+        h.key_press_modifiers(egui::Modifiers::COMMAND, Key::A);
+        if text.is_empty() {
+            h.key_press(Key::Backspace);
+        } else {
+            h.event(egui::Event::Text(text.into()));
+        }
+        h.run_steps(2);
+        h.key_press(Key::Enter);
+        h.run_steps(3);
+        let said =
+            ["want 1e-9", "expected one of"].iter().any(|words| h.query_by_label_contains(words).is_some());
+        (session(&h).scenario().clone(), said)
+    };
+    let machine = |scenario: &Scenario, key: &str| scenario.value(key).and_then(|value| value.as_float());
+    assert_eq!(machine(&write("link.9.mass", "0.5").0, "link.9.mass"), Some(0.5));
+    assert_eq!(write("control.delay", "0.003").0.control.delay, 0.003);
+    assert_eq!(write("control.delay", "").0.control.delay, 0.0, "nothing is what stands there by default");
+    assert_eq!(write("plant.force", "1, -2").0.plant.force, [1.0, -2.0]);
+    assert_eq!(write("tolerance.moment_limit", "0.01").0.tolerance.moment_limit, Some(0.01));
+    let (scenario, said) = write("base.mass", "-3");
+    assert_eq!((scenario.base.mass, said), (40.0, true));
+    let (scenario, said) = write("base.kind", "flying");
+    assert_eq!((scenario.base.kind, said), (BaseKind::Fixed, true));
+    assert_eq!(write("base.kind", "free").0.base.kind, BaseKind::Free);
 }
 
 /// A link and a length that differ show what they would be in the model.

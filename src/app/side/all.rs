@@ -7,9 +7,13 @@ use crate::app::Command;
 use crate::app::theme::{colour, plain};
 use crate::app::widgets::{name, note};
 use crate::picture::scene::palette::Palette;
+use crate::session::scenario::{KEYS, Value};
 use crate::session::{Edit, Session};
 use crate::settings::change::{self, DEFAULT};
 use crate::settings::key::{Holds, Key};
+
+/// What the title above a part says already.
+const HEADED: [&str; 6] = ["task.", "control.", "plant.", "base.wheel.", "base.", "tolerance."];
 
 /// The most rows that are shown at once.
 const SHOWN: usize = 24;
@@ -29,12 +33,18 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
             // Rows come from files alone.
             key.holds != Holds::Rows && (path.contains(&word) || key.words.to_lowercase().contains(&word))
         });
-        let mut count = 0;
+        let (mut count, mut part) = (0, "");
         for (path, key, value) in found {
             count += 1;
-            if count <= SHOWN {
-                row(ui, p, (&path, key), &change::typed(&value), scenario.idle(&path), commands);
+            if count > SHOWN {
+                continue;
             }
+            let of = KEYS.iter().find(|(_, keys)| keys.contains(key)).map_or("", |(part, _)| *part);
+            if of != std::mem::replace(&mut part, of) {
+                ui.add_space(2.0);
+                note(ui, p, of);
+            }
+            row(ui, p, (&path, key), &value, scenario.idle(&path), commands);
         }
         match count {
             0 => note(ui, p, "no key contains this"),
@@ -48,22 +58,23 @@ fn row(
     ui: &mut Ui,
     p: &Palette,
     (path, key): (&str, &Key),
-    now: &str,
+    value: &Value,
     wants: Option<&str>,
     commands: &mut Vec<Command>,
 ) {
+    let now = change::typed(value);
     let wants = wants.map_or_else(String::new, |wants| format!("\nNo effect as things are: that takes {wants}."));
-    let tip = format!("{}\n{}.{wants}", key.words, key.holds);
+    let tip = format!("{path}\n{}\n{}.{wants}", key.words, key.holds);
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let unit = RichText::new(key.unit()).font(plain(10.5)).color(colour(p.dim));
             ui.add_sized([40.0, 18.0], Label::new(unit).halign(Align::LEFT).truncate());
             let id = ui.scope_id().with(path);
             let kept = ui.data(|d| d.get_temp::<String>(id));
-            let shown = if now == DEFAULT { "" } else { now };
+            let shown = if now == DEFAULT { "" } else { now.as_str() };
             let mut text = kept.clone().unwrap_or_else(|| shown.to_owned());
             let hint = if key.default.is_empty() { "" } else { key.default };
-            let field = TextEdit::singleline(&mut text).id(id.with("field")).hint_text(hint).desired_width(92.0);
+            let field = TextEdit::singleline(&mut text).id(id.with("field")).hint_text(hint).desired_width(72.0);
             let response = ui.add(field.font(plain(11.5))).on_hover_text(&tip);
             name(&response, path);
             if response.has_focus() {
@@ -85,7 +96,8 @@ fn row(
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 let ink = colour(if wants.is_empty() { p.ink } else { p.dim });
-                ui.add(Label::new(RichText::new(path).font(plain(11.0)).color(ink)).truncate()).on_hover_text(tip);
+                let name = HEADED.iter().find_map(|part| path.strip_prefix(part)).unwrap_or(path);
+                ui.add(Label::new(RichText::new(name).font(plain(11.0)).color(ink)).truncate()).on_hover_text(tip);
             });
         });
     });
