@@ -5,6 +5,8 @@
 //! constant, and move only on the planes q₁ + λ₂ q₂ + λ₃ q₃ = b of joint space, and no moment does either. Each *pose
 //! constant* b has its *reactionless workspace*; changing b only turns it.
 //!
+//! How the program is used, its window and its commands, stands in the [`guide`].
+//!
 //! # A tour
 //! A [`Machine`](mechanics::machine::Machine) is data, checked. It collapses into a few constants, its
 //! [`Inertia`](mechanics::machine::Inertia), and these say whether it is balanced:
@@ -77,6 +79,7 @@
 //!
 //! | folder | what stands there |
 //! |---|---|
+//! | [`guide`] | how the program is used, page by page; no code |
 //! | [`settings`] | how a value is named, bounded and shown: keys, changes by key, ranges, text from outside |
 //! | [`mechanics`] | what a machine is: planar algebra, links and drives, kinematics, dynamics, pin forces, balance |
 //! | [`planning`] | where it may go, and when: reactionless planes and workspaces, curves, timing, ways off the plane |
@@ -101,10 +104,12 @@
 //!   `picture/scene/options.rs`.
 //! * **A time law**: a variant in `planning/timing/law.rs`. Files, commands and the window know it by its words there.
 //! * **A subcommand**: a file in `commands/`, its `mod` and a line of the list in `mod.rs`. Help and exit status
-//!   follow; write a line of the README.
+//!   follow; write a line of `guide/command_line.md`.
 //! * **An edit**: a variant in `session/edit.rs`, and what it does in `session/run.rs`. Saving, undo and replay follow;
 //!   the tests draw it at random.
 //! * **An error**: a variant of the nearest error type that says what is wrong, where, and what would be right.
+//! * **A page of the guide**: a file in `guide/`, its name in `guide/mod.rs`, and a line of `guide/README.md`. Its
+//!   commands are run as tests.
 //!
 //! The core builds without any feature: no GPU, no window, no Rerun, and it reads no clock.
 #![warn(missing_docs)]
@@ -112,6 +117,7 @@
 #[cfg(feature = "ui")]
 pub mod app;
 pub mod files;
+pub mod guide;
 pub mod mechanics;
 pub mod picture;
 pub mod planning;

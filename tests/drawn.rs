@@ -23,6 +23,8 @@ mod app;
 mod folder;
 mod gpu;
 mod picture {
+    #[cfg(all(feature = "window", feature = "cli"))]
+    pub mod committed;
     pub mod drawn;
     pub mod render;
 }
@@ -32,6 +34,8 @@ fn main() -> ExitCode {
     let mut tests = [picture::drawn::TESTS, picture::render::TESTS].concat();
     #[cfg(feature = "window")]
     tests.extend(app::TESTS.concat());
+    #[cfg(all(feature = "window", feature = "cli"))]
+    tests.extend(picture::committed::TESTS);
     if let Some(why) = gpu::missing() {
         eprintln!("tests that draw {}: {why}", if required { "fail" } else { "are ignored" });
     }

@@ -8,6 +8,7 @@ mod commands;
 #[cfg(any(feature = "cli", feature = "record"))]
 mod folder;
 mod fuzz;
+mod guide;
 mod layers;
 mod mechanics;
 mod picture;

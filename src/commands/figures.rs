@@ -4,10 +4,11 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::Args;
+use clap::builder::PossibleValuesParser;
 use stillbase::app::{AppState, Command, ComparisonCommand};
 use stillbase::files::write_new;
 use stillbase::picture::canvas::Canvas;
-use stillbase::picture::render::offscreen::Picture;
+use stillbase::picture::render::offscreen::{NoAdapter, NoPicture, Picture};
 use stillbase::picture::scene::options::ViewOptions;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::views::ViewKind;
@@ -17,10 +18,13 @@ use stillbase::session::scenario::{Change, Value};
 use super::exit::say;
 use super::failure::Failure;
 
-/// Draw the pictures of the documentation: the window in both themes, joint space and the tower, without a display
+/// Draw the pictures of the documentation in both themes, without a display: the window, joint space and the tower
 #[derive(Args)]
-#[command(after_help = "Example:\n  stillbase figures -o assets/pictures --force")]
+#[command(after_help = "Examples:\n  stillbase figures -o assets/pictures --force\n  stillbase figures window tower")]
 pub struct Figures {
+    /// Which pictures; none: all
+    #[arg(value_name = "PICTURE", value_parser = PossibleValuesParser::new(PICTURES.map(|(name, ..)| name)))]
+    pictures: Vec<String>,
     /// The folder to write to
     #[arg(short, long, value_name = "FOLDER", default_value = ".")]
     output: PathBuf,
@@ -29,54 +33,44 @@ pub struct Figures {
     force: bool,
 }
 
-/// The window: name, scenario, theme, view, instant in s.
-const WINDOWS: [(&str, &str, Theme, ViewKind, f64); 5] = [
-    ("spacecraft-dark.png", "spacecraft", Theme::Dark, ViewKind::Flat, 0.75),
-    ("window-dark.png", "case-3", Theme::Dark, ViewKind::Flat, 0.62),
-    ("window-light.png", "case-3", Theme::Light, ViewKind::Flat, 0.62),
-    ("case-1-dark.png", "case-1", Theme::Dark, ViewKind::Flat, 0.25),
-    ("space-dark.png", "case-3", Theme::Dark, ViewKind::Space, 0.62),
-];
+/// What a picture shows.
+enum Shown {
+    /// The window after these commands.
+    Window(fn() -> Vec<Command>),
+    /// A view alone.
+    Scene(ViewKind),
+}
 
-/// The scene alone.
-const SCENES: [(&str, &str, Theme, ViewKind, f64); 4] = [
-    ("tower-dark.png", "case-3", Theme::Dark, ViewKind::Tower, 0.62),
-    ("tower-light.png", "case-3", Theme::Light, ViewKind::Tower, 0.62),
-    ("joints-dark.png", "case-1", Theme::Dark, ViewKind::Joints, 0.5),
-    ("joints-light.png", "case-1", Theme::Light, ViewKind::Joints, 0.5),
+/// A picture: name, scenario, instant in s, what of it is shown.
+const PICTURES: [(&str, &str, f64, Shown); 6] = [
+    ("window", "case-3", 0.62, Shown::Window(Vec::new)),
+    ("spacecraft", "spacecraft", 0.75, Shown::Window(Vec::new)),
+    ("compare", "case-1", 0.62, Shown::Window(side_by_side)),
+    ("tolerances", "case-3", 0.62, Shown::Window(study)),
+    ("tower", "case-3", 0.62, Shown::Scene(ViewKind::Tower)),
+    ("joints", "case-1", 0.5, Shown::Scene(ViewKind::Joints)),
 ];
 
 impl Figures {
-    /// Draws them all.
+    /// Draws those that are asked for.
     pub fn run(&self) -> Result<(), Failure> {
-        for (name, scenario, theme, view, time) in WINDOWS {
-            let mut app_state = opened(scenario, theme, view, time)?;
-            self.window(name, &mut app_state)?;
-        }
-        let mut ways = opened("case-1", Theme::Dark, ViewKind::Flat, 0.62)?;
-        let over = [0, 2].map(|row| Command::Comparison(ComparisonCommand::Show(row, true)));
-        [Command::Compare(true), Command::Snapshots(true)].into_iter().chain(over).for_each(|c| ways.carry_out(c));
-        self.window("compare-dark.png", &mut ways)?;
-        let mut machines = opened("case-3", Theme::Dark, ViewKind::Flat, 0.62)?;
-        machines.carry_out(Command::Edit(Edit::of("tolerance", Change::from_iter([limit()]))));
-        machines.carry_out(Command::Study(true));
-        self.window("tolerances-dark.png", &mut machines)?;
-        for (name, scenario, theme, view, time) in SCENES {
-            let app_state = opened(scenario, theme, view, time)?;
-            let (options, camera) = (ViewOptions { theme, ..ViewOptions::default() }, app_state.views().camera(view));
-            let scene = Arc::new(app_state.views().scene(view, app_state.session().frame(), &options, &camera));
-            let mut canvas = Canvas::new([1200, 1000], 1.25).map_err(Failure::no_answer)?;
-            self.write(name, canvas.scene(&scene, &camera).map_err(Failure::no_answer)?)?;
+        let asked = |name: &str| self.pictures.is_empty() || self.pictures.iter().any(|picture| picture == name);
+        for (name, scenario, time, shown) in PICTURES.iter().filter(|(name, ..)| asked(name)) {
+            let mut app_state = opened(scenario, *time)?;
+            if let Shown::Window(commands) = shown {
+                commands().into_iter().for_each(|command| app_state.carry_out(command));
+            }
+            // Both themes on one canvas, which knows its fonts.
+            let mut canvas = shown.canvas().map_err(Failure::no_answer)?;
+            for (theme, word) in [(Theme::Dark, "dark"), (Theme::Light, "light")] {
+                let picture = shown.draw(&mut canvas, &mut app_state, theme).map_err(Failure::no_answer)?;
+                self.write(&format!("{name}-{word}.png"), &picture)?;
+            }
         }
         Ok(())
     }
 
-    fn window(&self, name: &str, app_state: &mut AppState) -> Result<(), Failure> {
-        let mut canvas = Canvas::new([1440, 900], 1.0).map_err(Failure::no_answer)?;
-        self.write(name, canvas.draw(|ui| app_state.ui(ui)).map_err(Failure::no_answer)?)
-    }
-
-    fn write(&self, name: &str, picture: Picture) -> Result<(), Failure> {
+    fn write(&self, name: &str, picture: &Picture) -> Result<(), Failure> {
         let file = self.output.join(name);
         write_new(&file, &picture.to_png().map_err(Failure::no_answer)?, self.force)?;
         say(format!("wrote {}", file.display()));
@@ -84,18 +78,47 @@ impl Figures {
     }
 }
 
-/// A limit on |n_B| of 10 mN m.
-fn limit() -> (String, Value) {
-    ("moment_limit".into(), 0.01.into())
+impl Shown {
+    fn canvas(&self) -> Result<Canvas, NoAdapter> {
+        match self {
+            Self::Window(_) => Canvas::new([1440, 900], 1.0),
+            Self::Scene(_) => Canvas::new([1200, 1000], 1.25),
+        }
+    }
+
+    fn draw(&self, canvas: &mut Canvas, app_state: &mut AppState, theme: Theme) -> Result<Picture, NoPicture> {
+        match *self {
+            Self::Window(_) => {
+                app_state.carry_out(Command::Theme(theme));
+                canvas.draw(|ui| app_state.ui(ui))
+            }
+            Self::Scene(view) => {
+                let (options, camera) =
+                    (ViewOptions { theme, ..ViewOptions::default() }, app_state.views().camera(view));
+                let scene = Arc::new(app_state.views().scene(view, app_state.session().frame(), &options, &camera));
+                canvas.scene(&scene, &camera)
+            }
+        }
+    }
+}
+
+/// Two of the other ways laid over plots and scene, and snapshots along the motion.
+fn side_by_side() -> Vec<Command> {
+    let show = |row| Command::Comparison(ComparisonCommand::Show(row, true));
+    vec![Command::Compare(true), Command::Snapshots(true), show(0), show(2)]
+}
+
+/// Tolerances against a limit on |n_B| of 10 mN m.
+fn study() -> Vec<Command> {
+    let limit: (String, Value) = ("moment_limit".into(), 0.01.into());
+    vec![Command::Edit(Edit::of("tolerance", Change::from_iter([limit]))), Command::Study(true)]
 }
 
 /// A scenario run through once, shown at an instant.
-fn opened(scenario: &str, theme: Theme, view: ViewKind, time: f64) -> Result<AppState, Failure> {
+fn opened(scenario: &str, time: f64) -> Result<AppState, Failure> {
     let scenario = stillbase::files::scenario(scenario)?;
-    let mut app_state = AppState::new(scenario, theme)?;
+    let mut app_state = AppState::new(scenario, Theme::Dark)?;
     let task_time = app_state.session().length();
-    for command in [Command::Seek(task_time), Command::Seek(time), Command::View(view)] {
-        app_state.carry_out(command);
-    }
+    [Command::Seek(task_time), Command::Seek(time)].into_iter().for_each(|command| app_state.carry_out(command));
     Ok(app_state)
 }

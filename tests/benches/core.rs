@@ -1,6 +1,6 @@
 //! Speed of the core: medians, and in the same run a generic recursive Newton–Euler to compare with.
 //!
-//! `cargo bench` runs them; the table in README.md is made from its output.
+//! `cargo bench` runs them; the table in `src/guide/speed.md` is made from its output.
 
 #[path = "../mechanics/nine_body.rs"]
 #[allow(dead_code, unused_imports, reason = "the bench uses one function of the twin")]

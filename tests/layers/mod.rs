@@ -9,6 +9,8 @@ use source::{Source, Tree};
 
 /// From the bottom to the edges: a wing uses those before it only.
 const WINGS: &[&str] = &[
+    // Pages for people; no code.
+    "guide",
     "settings",
     "mechanics",
     "planning",

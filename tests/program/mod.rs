@@ -2,6 +2,8 @@
 
 mod dynamics;
 mod files;
+#[cfg(unix)]
+mod guide;
 mod headless;
 mod help;
 mod joints;

@@ -30,27 +30,6 @@ fn plan_says_what_its_scenario_then_does() {
     near(&free["b"], &json!(0.5 * (common[0] + common[1])), 1e-12, "b");
 }
 
-/// What the README shows of planning is what is said, and what is proposed there works as printed.
-#[test]
-fn the_readme_shows_what_plan_says() {
-    let readme = include_str!("../../README.md");
-    let mut shown = 0;
-    for (i, line) in readme.lines().enumerate() {
-        let Some(words) = line.strip_prefix("$ stillbase plan nine-link ").filter(|words| !words.contains(" -o "))
-        else {
-            continue;
-        };
-        let arguments: Vec<&str> = ["plan", "nine-link"].into_iter().chain(words.split(' ')).collect();
-        let said = readme.lines().nth(i + 1).expect("an answer").strip_prefix("stillbase: ");
-        let out = stillbase(&arguments);
-        assert_eq!(out.status.success(), said.is_none(), "{line}");
-        let Some(said) = said else { continue };
-        assert_eq!(text(&out.stderr).trim(), format!("stillbase: {said}"), "{line}");
-        shown += 1;
-    }
-    assert_eq!(shown, 2);
-}
-
 #[test]
 fn plan_refuses_with_where_why_and_what_would_do() {
     let arguments = ["plan", "nine-link", "0.42,1.12", "0,0.5", "--shape", "line", "--b", "2.4"];
