@@ -79,7 +79,7 @@ impl MassMatrix {
 
 // What follows works on arrays of the machine's own size: padding to MAX_DRIVES at every step would cost more than
 // the arithmetic.
-type Square<const N: usize> = [[f64; N]; N];
+pub(crate) type Square<const N: usize> = [[f64; N]; N];
 
 /// The first N of a padded array.
 #[inline]
@@ -97,7 +97,7 @@ fn solve_padded<const N: usize>(h: &MassMatrix, x: &PerDrive) -> PerDrive {
 }
 
 #[inline(always)]
-fn times<const N: usize>(h: &Square<N>, x: &[f64; N]) -> [f64; N] {
+pub(crate) fn times<const N: usize>(h: &Square<N>, x: &[f64; N]) -> [f64; N] {
     std::array::from_fn(|k| (0..N).map(|l| h[k][l] * x[l]).sum())
 }
 
@@ -155,7 +155,7 @@ fn mass_matrix_of<const N: usize>(inertia: &Inertia, e: &Units, qd: &PerDrive) -
 }
 
 #[inline(always)]
-fn assemble<const N: usize>(inertia: &Inertia, e: &[Vector; N], qd: &[f64; N]) -> (Square<N>, [f64; N]) {
+pub(crate) fn assemble<const N: usize>(inertia: &Inertia, e: &[Vector; N], qd: &[f64; N]) -> (Square<N>, [f64; N]) {
     let mut h = [[0.0; N]; N];
     let mut v = [0.0; N];
     for k in 0..N {
@@ -204,10 +204,21 @@ fn inverse_of<const N: usize>(
     qdd: &PerDrive,
     around: &Surroundings,
 ) -> PerDrive {
-    let (e, qd, qdd) = (first::<N, _>(e), first(qd.padded()), first(qdd.padded()));
+    torques(inertia, first::<N, _>(e), first(qd.padded()), first(qdd.padded()), around).into()
+}
+
+/// The same at the machine's own size.
+#[inline(always)]
+pub(crate) fn torques<const N: usize>(
+    inertia: &Inertia,
+    e: &[Vector; N],
+    qd: &[f64; N],
+    qdd: &[f64; N],
+    around: &Surroundings,
+) -> [f64; N] {
     let (h, v) = assemble(inertia, e, qd);
     let (inertial, holding) = (times(&h, qdd), hold(inertia, e, around));
-    PerDrive::from(std::array::from_fn::<_, N, _>(|k| inertial[k] + v[k] + holding[k]))
+    std::array::from_fn(|k| inertial[k] + v[k] + holding[k])
 }
 
 /// Accelerations for given motor torques, rad/s².

@@ -11,7 +11,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, Units, Vector};
+use crate::mechanics::dynamics::torques;
+use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Units, Vector};
 use crate::planning::Reference;
 use crate::settings::key::{Holds, Key};
 use crate::settings::range::{Check, Range};
@@ -215,6 +216,48 @@ impl Controller {
         let rates = PerDrive::zeros(reading.rates.len());
         let at_rest = Reading { qd: still, rates: &rates, velocity: Vector::default(), ..*reading };
         self.torque(&Reference::at_rest(reading.q), &at_rest, loaded)
+    }
+
+    /// The same as [`torque`](Self::torque) at the machine's own size, of angles and rates that are known exactly, on a
+    /// base that `MOVES` or not; zero beyond the drives.
+    #[inline]
+    pub(crate) fn torque_at<const N: usize, const MOVES: bool>(
+        &self,
+        reference: &Reference,
+        q: &[f64; N],
+        (e, rate): (&[Vector; N], &[f64; N]),
+        (base, velocity): (Pose2, Vector),
+        loaded: bool,
+    ) -> [f64; N] {
+        let n = if MOVES { N - 1 } else { N };
+        let (aim, aim_rate) = (reference.q.0.array::<N>(), reference.qd.array::<N>());
+        let (kp, kd) = (self.kp.array::<N>(), self.kd.array::<N>());
+        let (angle, turning) = if MOVES { (base.angle, rate[N - 1]) } else { (0.0, 0.0) };
+        let (mut own, mut wanted) = ([0.0; N], [0.0; N]);
+        for k in 0..n {
+            own[k] = rate[k] - turning;
+            wanted[k] = kd[k] * (aim_rate[k] - own[k]) + kp[k] * (aim[k] - (q[k] - angle));
+        }
+        let model = &self.models[usize::from(loaded && self.law == ControlLaw::PayloadCompensation)];
+        if self.law == ControlLaw::Pd {
+            return std::array::from_fn(|k| if k < n { model.arm().diagonal(k) * wanted[k] } else { 0.0 });
+        }
+        let aim_acceleration = reference.qdd.array::<N>();
+        (0..n).for_each(|k| wanted[k] += aim_acceleration[k]);
+        if !MOVES {
+            return torques(model.arm(), e, &own, &wanted, model.around());
+        }
+        if model.moves() {
+            let mut units = [Vector::default(); MAX_DRIVES];
+            units[..N].copy_from_slice(e);
+            let (wanted, rate) = (PerDrive::of_array(n, wanted), PerDrive::from(*rate));
+            return *model.torque_for(&wanted, &units, &rate, base, velocity).array();
+        }
+        // In the base's own axes.
+        let turn = e[N - 1].conj();
+        let mut torque = torques(model.arm(), &e.map(|e| e * turn), &own, &wanted, model.around());
+        torque[N - 1] = 0.0;
+        torque
     }
 
     /// Motor torques, N m; `loaded` while the plant holds its payload.

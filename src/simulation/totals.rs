@@ -2,6 +2,7 @@
 //! base.
 
 use crate::mechanics::dynamics::BaseWrench;
+use crate::mechanics::planar::length;
 use crate::simulation::plant::Slope;
 
 /// Sums over a run.
@@ -44,13 +45,14 @@ struct Integrands {
 }
 
 impl Totals {
-    /// Takes in one more instant, with what the manipulator transmits, at a time, s, by the trapezoidal rule.
-    pub(crate) fn include(&mut self, x: &Slope, wrench: &BaseWrench, time: f64) {
+    /// Takes in one more instant, with what the manipulator transmits and its dynamic |f_B|, N, at a time, s, by the
+    /// trapezoidal rule.
+    pub(crate) fn include(&mut self, x: &Slope, wrench: &BaseWrench, force: f64, time: f64) {
         let turning = x.qd.get(x.torque.len()).copied().unwrap_or(0.0);
         let powers = x.torque.iter().zip(x.qd.iter()).map(|(t, qd)| (t * (qd - turning)).abs());
         let wheel = (x.spin.torque * (x.spin.rate - turning)).abs();
         let now = Integrands {
-            force: wrench.dynamic.force.norm(),
+            force,
             arm_moment: wrench.total().moment.abs(),
             moment: (wrench.total().moment - x.spin.torque).abs(),
             power: powers.sum::<f64>() + wheel,
@@ -64,7 +66,7 @@ impl Totals {
         self.moment_impulse += h * (now.moment + was.moment);
         self.energy += h * (now.power + was.power);
         self.wheel_turn += h * (now.wheel + was.wheel);
-        self.shift = self.shift.max(x.base.at.norm());
+        self.shift = self.shift.max(length(x.base.at));
         self.base_angle = self.base_angle.max(x.base.angle.abs());
         self.wheel_rate = self.wheel_rate.max(x.spin.rate.abs());
         if x.spin.saturated && self.saturated.is_none() {

@@ -91,6 +91,28 @@ impl PerDrive {
     }
 }
 
+impl PerDrive {
+    /// The first N of the padded array.
+    #[inline]
+    pub(crate) fn array<const N: usize>(&self) -> &[f64; N] {
+        const { assert!(N <= MAX_DRIVES) }
+        &self.values.as_chunks().0[0]
+    }
+
+    /// The same to change.
+    #[inline]
+    pub(crate) fn array_mut<const N: usize>(&mut self) -> &mut [f64; N] {
+        const { assert!(N <= MAX_DRIVES) }
+        &mut self.values.as_chunks_mut().0[0]
+    }
+
+    /// The first `n` of an array that is zero beyond them.
+    #[inline]
+    pub(crate) fn of_array<const N: usize>(n: usize, values: [f64; N]) -> Self {
+        Self { len: n, ..Self::from(values) }
+    }
+}
+
 impl<const N: usize> From<[f64; N]> for PerDrive {
     #[inline]
     fn from(values: [f64; N]) -> Self {

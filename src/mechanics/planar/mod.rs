@@ -8,4 +8,4 @@ mod vector;
 
 pub use drives::{DriveAngles, MAX_DRIVES, PerDrive, Units};
 pub use sincos::unit;
-pub use vector::{Pose2, Vector, Wrench, cross, dot};
+pub use vector::{Pose2, Vector, Wrench, cross, dot, length};

@@ -16,6 +16,12 @@ pub fn dot(a: Vector, b: Vector) -> f64 {
     a.re * b.re + a.im * b.im
 }
 
+/// |v|, by squares: a third of the time of a length that no square can overflow.
+#[inline]
+pub fn length(v: Vector) -> f64 {
+    v.norm_sqr().sqrt()
+}
+
 /// A force at B and a moment about B.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Wrench {

@@ -10,6 +10,7 @@ mod each;
 mod friction;
 mod load;
 mod moving_body;
+mod stage;
 mod state;
 mod wheel;
 
@@ -20,5 +21,6 @@ pub(crate) use each::is_default;
 pub use friction::{Contacts, Friction, MAX_CONTACTS, SlipDirections};
 pub use load::Load;
 pub use moving_body::MovingBody;
-pub use state::{MotorCommand, Slope, State};
+pub(crate) use stage::{Command, Point, Rates, Stage};
+pub use state::{Slope, State};
 pub use wheel::{KEYS as WHEEL_KEYS, Wheel, WheelState};

@@ -17,8 +17,8 @@
 //! π̇_k = ∂T/∂q_k + Q_k, and P and L change by outer forces only: a free base keeps both to the last digit. Gravity
 //! has no lever about R.
 
-use super::{Base, BaseKind, Contacts, Friction, MAX_CONTACTS, MotorCommand, SlipDirections, Slope, State, WheelState};
-use crate::mechanics::dynamics::{BaseWrench, Factors, Surroundings, base_wrench, by_drives, first};
+use super::{Base, BaseKind, Contacts, Friction, SlipDirections, Slope, State};
+use crate::mechanics::dynamics::{BaseWrench, Surroundings, by_drives, first};
 use crate::mechanics::machine::{Inertia, Machine, MachineError};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Units, Vector, cross, dot};
 
@@ -26,9 +26,9 @@ const I: Vector = Vector::new(0.0, 1.0);
 
 /// What holds a base that moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Support {
+pub(super) struct Support {
     stiffness: [f64; 3],
-    damping: [f64; 3],
+    pub(super) damping: [f64; 3],
     /// What it gives at the start pose, N, N m.
     preload: (Vector, f64),
 }
@@ -37,23 +37,21 @@ struct Support {
 #[derive(Clone, Debug, PartialEq)]
 pub struct MovingBody {
     /// The manipulator with what it holds.
-    arm: Inertia,
+    pub(super) arm: Inertia,
     /// All that turns: about B on a fixed base, about R on one that moves.
-    whole: Inertia,
-    moves: bool,
+    pub(super) whole: Inertia,
+    pub(super) moves: bool,
     /// Whether nothing holds the base, so that weight is not carried.
     falls: bool,
     /// M_t, kg.
-    mass: f64,
-    /// Lever of gravity about what the coordinates refer to: g_k on a fixed base, none on one that moves.
-    lever: [Vector; MAX_DRIVES],
+    pub(super) mass: f64,
     /// B seen from R.
-    anchor: [Vector; MAX_DRIVES],
+    pub(super) anchor: [Vector; MAX_DRIVES],
     /// The end effector seen from B on a fixed base, from R on one that moves.
-    tip: [Vector; MAX_DRIVES],
-    support: Support,
-    contacts: Contacts,
-    around: Surroundings,
+    pub(super) tip: [Vector; MAX_DRIVES],
+    pub(super) support: Support,
+    pub(super) contacts: Contacts,
+    pub(super) around: Surroundings,
     /// Base mass times ρ, and base mass: for its own momentum.
     base: (f64, Vector),
 }
@@ -72,7 +70,7 @@ impl MovingBody {
         let nothing = [Vector::default(); MAX_DRIVES];
         if !base.moves() {
             let contacts = Contacts::of(machine, friction, None);
-            let (lever, tip) = (arm.g, real(&arm.end_effector));
+            let tip = real(&arm.end_effector);
             let whole = arm.clone();
             let (mass, support, base) = (arm.mass, Support::default(), (0.0, Vector::default()));
             return Ok(Self {
@@ -81,7 +79,6 @@ impl MovingBody {
                 moves: false,
                 falls: false,
                 mass,
-                lever,
                 anchor: nothing,
                 tip,
                 support,
@@ -122,7 +119,7 @@ impl MovingBody {
         let contacts = Contacts::of(machine, friction, Some(n));
         let (kind, base) = (base.kind, (base.mass, base.mass * rho));
         let falls = kind == BaseKind::Free;
-        Ok(Self { arm, whole, moves: true, falls, mass, lever: nothing, anchor, tip, support, contacts, around, base })
+        Ok(Self { arm, whole, moves: true, falls, mass, anchor, tip, support, contacts, around, base })
     }
 
     /// The same with another force at the end effector, N.
@@ -161,6 +158,11 @@ impl MovingBody {
         self.moves
     }
 
+    /// How many directions turn: the drives, and a base that moves.
+    pub(crate) fn turning(&self) -> usize {
+        self.whole.drives
+    }
+
     /// The state of given angles and rates of the drives, pose and rates of the base.
     pub fn state(&self, q: &DriveAngles, qd: &PerDrive, base: Pose2, velocity: Vector, turning: f64) -> State {
         let n = q.len();
@@ -189,19 +191,6 @@ impl MovingBody {
             let arm = chain[k] * e[k];
             (p + arm, v + I * arm * qd[k])
         })
-    }
-
-    /// Rates, torques, accelerations and base wrench of a state. `control` is asked for the torques, given unit
-    /// vectors and rates of all that turns, and pose and velocity of B.
-    #[inline]
-    pub fn instant(
-        &self,
-        state: &State,
-        slip: &SlipDirections,
-        stuck_torque: &mut [f64; MAX_CONTACTS],
-        control: impl FnOnce(&Units, &PerDrive, Pose2, Vector) -> MotorCommand,
-    ) -> Slope {
-        by_drives!(self.whole.drives, instant_of(self, state, slip, stuck_torque, control))
     }
 
     /// What the manipulator transmits to its base, in its two parts. On a base that nothing holds weight is not
@@ -291,15 +280,19 @@ impl MovingBody {
     }
 
     /// Generalised forces of weight, of the force at the end effector and of the support, N m, the moment on the base
-    /// last.
+    /// last. Weight has no lever about what a base that moves is referred to.
     #[inline(always)]
-    fn outer<const N: usize>(&self, e: &Units, (hold, moment): (Vector, f64)) -> [f64; N] {
-        let mut outer = std::array::from_fn(|k| {
-            cross(self.lever[k] * e[k], self.around.gravity)
-                + cross(self.tip[k] * e[k], self.around.force)
-                + cross(self.anchor[k] * e[k], hold)
+    pub(super) fn outer<const N: usize, const MOVES: bool>(
+        &self,
+        e: &[Vector; N],
+        (hold, moment): (Vector, f64),
+    ) -> [f64; N] {
+        let Surroundings { gravity, force } = self.around;
+        let mut outer = std::array::from_fn(|k| match MOVES {
+            true => cross(self.tip[k] * e[k], force) + cross(self.anchor[k] * e[k], hold),
+            false => cross(self.arm.g[k] * e[k], gravity) + cross(e[k] * self.arm.end_effector[k], force),
         });
-        if self.moves {
+        if MOVES {
             outer[N - 1] += moment;
         }
         outer
@@ -307,7 +300,7 @@ impl MovingBody {
 
     /// Force and moment of the support on a base that moves, N, N m.
     #[inline(always)]
-    fn held(&self, base: Pose2, velocity: Vector, turning: f64) -> (Vector, f64) {
+    pub(super) fn held(&self, base: Pose2, velocity: Vector, turning: f64) -> (Vector, f64) {
         let Support { stiffness: k, damping: c, preload: (force, moment) } = &self.support;
         let (p, v) = (base.at, velocity);
         let force = force - Vector::new(k[0] * p.re + c[0] * v.re, k[1] * p.im + c[1] * v.im);
@@ -316,135 +309,9 @@ impl MovingBody {
 }
 
 fn outer_padded<const N: usize>(body: &MovingBody, e: &Units, hold: (Vector, f64)) -> PerDrive {
-    body.outer::<N>(e, hold).into()
-}
-
-#[inline]
-fn instant_of<const N: usize>(
-    body: &MovingBody,
-    state: &State,
-    slip: &SlipDirections,
-    stuck_torque: &mut [f64; MAX_CONTACTS],
-    control: impl FnOnce(&Units, &PerDrive, Pose2, Vector) -> MotorCommand,
-) -> Slope {
-    let n = body.arm.drives;
-    let e = DriveAngles(state.q).units();
-    // Mass matrix and the part of the couplings that rates act through.
-    let (mut h, mut im) = ([[0.0; N]; N], [[0.0; N]; N]);
-    for k in 0..N {
-        h[k][k] = body.whole.c[k][k].re + body.whole.spin[k];
-        for l in k + 1..N {
-            let z = body.whole.c[k][l] * (e[k].conj() * e[l]);
-            h[k][l] = z.re;
-            h[l][k] = z.re;
-            im[k][l] = z.im;
-        }
-    }
-    let factors = Factors::of(&h);
-    let mut momenta = *first::<N, _>(state.momenta.padded());
-    if body.moves {
-        momenta[N - 1] -= momenta[..N - 1].iter().sum::<f64>();
-    }
-    let rate = factors.solve(momenta);
-    let (mut gain, mut v) = ([0.0; N], [0.0; N]);
-    for k in 0..N {
-        for l in k + 1..N {
-            let x = im[k][l] * rate[k] * rate[l];
-            gain[k] += x;
-            gain[l] -= x;
-            v[k] -= im[k][l] * (rate[l] * rate[l]);
-            v[l] += im[k][l] * (rate[k] * rate[k]);
-        }
-    }
-    let qd = PerDrive::from(rate);
-    let (mut base, mut velocity, mut turning) = (Pose2::default(), Vector::default(), 0.0);
-    let mut drift = Vector::default();
-    if body.moves {
-        drift = state.momentum / body.mass;
-        let (lever, swing) = body.seen(&body.anchor, &e, &qd);
-        base = Pose2 { at: state.place + lever, angle: state.q[N - 1] };
-        velocity = drift + swing;
-        turning = rate[N - 1];
-    }
-    let MotorCommand { torque, spin, rotor } = control(&e, &qd, base, velocity);
-
-    // Generalised forces: outer ones, whose sum changes L, and torques between the drives and the base.
-    let (hold, moment) = body.held(base, velocity, turning);
-    let mut force = body.outer::<N>(&e, (hold, moment - spin.torque));
-    let external: f64 = force.iter().sum();
-    let (_, tip_velocity) = body.seen(&body.tip, &e, &qd);
-    let mut power = dot(body.around.force, tip_velocity + drift) + spin.torque * (spin.rate - turning);
-    for k in 0..n.min(N) {
-        force[k] += torque[k];
-        power += torque[k] * (rate[k] - turning);
-    }
-    let mut friction = PerDrive::zeros(n);
-    let (mut loss, mut momentum_rate) = (0.0, Vector::default());
-    if body.moves {
-        force[N - 1] -= torque.iter().sum::<f64>();
-        let c = &body.support.damping;
-        loss += c[0] * velocity.re.powi(2) + c[1] * velocity.im.powi(2) + c[2] * turning * turning;
-        momentum_rate = body.mass * body.around.gravity + body.around.force + hold;
-    }
-    if !body.contacts.is_empty() {
-        loss += body.contacts.slide(slip, &rate, &mut force, &mut friction);
-        let free = factors.solve(std::array::from_fn(|k| force[k] - v[k]));
-        let solve = |x: &[f64; MAX_DRIVES]| {
-            let mut padded = [0.0; MAX_DRIVES];
-            padded[..N].copy_from_slice(&factors.solve(*first::<N, _>(x)));
-            padded
-        };
-        loss += body.contacts.hold(slip, (&rate, &free), solve, &mut force, &mut friction, stuck_torque);
-    }
-    let acceleration = factors.solve(std::array::from_fn(|k| force[k] - v[k]));
-    let qdd = PerDrive::from(acceleration);
-    let mut momenta_rate = PerDrive::from(std::array::from_fn::<_, N, _>(|k| gain[k] + force[k]));
-    if body.moves {
-        momenta_rate[N - 1] = external;
-    }
-    // The wrench from the accelerations and not from the torques, so that a zero is found and not assumed.
-    let mut base_acceleration = Vector::default();
-    let wrench = if body.moves {
-        let pull: Vector =
-            (0..N).map(|k| body.anchor[k] * e[k] * Vector::new(-rate[k] * rate[k], acceleration[k])).sum();
-        base_acceleration = momentum_rate / body.mass + pull;
-        let mut wrench = base_wrench(&body.arm, &e, &qd.first(n), &qdd.first(n), &body.around);
-        let lever = crate::mechanics::dynamics::first_moment(&body.arm, &e);
-        wrench.dynamic.force -= body.arm.mass * base_acceleration;
-        wrench.dynamic.moment -= cross(lever, base_acceleration);
-        wrench
-    } else {
-        let rate_of: f64 = (0..N).map(|k| (0..N).map(|l| h[k][l] * acceleration[l]).sum::<f64>() + v[k]).sum();
-        crate::mechanics::dynamics::wrench_with(
-            &body.arm,
-            first::<N, _>(&e),
-            &rate,
-            &acceleration,
-            &body.around,
-            rate_of,
-        )
-    };
-    let kinetic = 0.5 * (0..N).map(|k| momenta[k] * rate[k]).sum::<f64>()
-        + 0.5 * dot(state.momentum, drift)
-        + 0.5 * rotor * spin.rate * spin.rate;
-    Slope {
-        e,
-        qd,
-        qdd,
-        torque,
-        friction,
-        spin,
-        base,
-        base_velocity: velocity,
-        base_acceleration,
-        wrench,
-        kinetic,
-        power,
-        loss,
-        momenta_rate,
-        place_rate: drift,
-        momentum_rate,
-        wheel_rate: if rotor > 0.0 { spin.torque / rotor } else { 0.0 },
+    match body.moves {
+        true => body.outer::<N, true>(first(e), hold).into(),
+        false => body.outer::<N, false>(first(e), hold).into(),
     }
 }
 
@@ -500,17 +367,5 @@ impl MovingBody {
             }
         }
         state
-    }
-}
-
-impl MovingBody {
-    /// A state without torques.
-    pub fn still(&self, state: &State) -> Slope {
-        let n = self.arm.drives;
-        self.instant(state, &[0; MAX_CONTACTS], &mut [0.0; MAX_CONTACTS], |_, _, _, _| MotorCommand {
-            torque: PerDrive::zeros(n),
-            spin: WheelState::default(),
-            rotor: 0.0,
-        })
     }
 }

@@ -2,7 +2,7 @@
 
 use super::WheelState;
 use crate::mechanics::dynamics::BaseWrench;
-use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, Units, Vector, cross};
+use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, Units, Vector};
 
 /// Positions and momenta of everything that moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,17 +23,6 @@ pub struct State {
     pub lost: f64,
     /// ∫ dynamic f_B dt, N s, and the moment of it all about the origin, N m s.
     pub impulse: (Vector, f64),
-}
-
-/// What the motors and the wheel do.
-#[derive(Clone, Copy, Debug)]
-pub struct MotorCommand {
-    /// τ_k, N m.
-    pub torque: PerDrive,
-    /// Of the wheel.
-    pub spin: WheelState,
-    /// The wheel's rotor, kg m²; 0 for none.
-    pub rotor: f64,
 }
 
 /// How a state changes, with the torques and forces that make it change.
@@ -72,33 +61,6 @@ pub struct Slope {
 }
 
 impl State {
-    /// The state a time `h` later along the slope of an instant, s.
-    #[inline(always)]
-    #[must_use]
-    pub fn along(&self, x: &Slope, h: f64) -> Self {
-        Self {
-            q: self.q.plus(h, &x.qd),
-            momenta: self.momenta.plus(h, &x.momenta_rate),
-            place: self.place + h * x.place_rate,
-            momentum: self.momentum + h * x.momentum_rate,
-            wheel: self.wheel + h * x.wheel_rate,
-            work: self.work + h * x.power,
-            lost: self.lost + h * x.loss,
-            impulse: (
-                self.impulse.0 + h * x.wrench.dynamic.force,
-                self.impulse.1 + h * (x.wrench.dynamic.moment + cross(x.base.at, x.wrench.dynamic.force)),
-            ),
-        }
-    }
-
-    /// Classical fourth-order Runge–Kutta: a time `h` later by slopes at the start, twice half-way, and at the end.
-    #[inline(always)]
-    #[must_use]
-    pub fn stepped(&self, k: [&Slope; 4], h: f64) -> Self {
-        let w = [h / 6.0, h / 3.0, h / 3.0, h / 6.0];
-        k.into_iter().zip(w).fold(*self, |state, (x, w)| state.along(x, w))
-    }
-
     /// This state with the wheel rate, the work, the losses and the impulse of another.
     #[must_use]
     pub fn with_sums_of(self, other: &Self) -> Self {

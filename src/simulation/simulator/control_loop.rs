@@ -16,10 +16,10 @@
 
 use std::collections::VecDeque;
 
-use crate::mechanics::planar::{DriveAngles, PerDrive};
+use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector};
 use crate::planning::Reference;
 use crate::simulation::control::{Control, Controller, Reading};
-use crate::simulation::plant::{MotorCommand, Wheel, WheelState};
+use crate::simulation::plant::{Command, Point, Wheel, WheelState};
 
 /// Control as it runs.
 #[derive(Clone, Debug)]
@@ -153,21 +153,28 @@ impl ControlLoop {
         self.wheel.map_or(0.0, |wheel| wheel.inertia)
     }
 
-    /// What motors and wheel do at this instant; Ω in rad/s.
-    #[inline(always)]
-    pub fn command(&self, reference: &Reference, reading: &Reading, loaded: bool, wheel_rate: f64) -> MotorCommand {
-        let wanted = match &self.sampling {
-            Some(Sampling { held: Some(held), .. }) => *held,
-            _ => self.controller.torque(reference, reading, loaded),
+    /// What motors and wheel do at this instant, from angles and rates that are known exactly, at the machine's own
+    /// size, on a base that `MOVES` or not.
+    #[inline]
+    pub(super) fn command<const N: usize, const MOVES: bool>(
+        &self,
+        reference: &Reference,
+        at: &Point<N>,
+        motion: (&[Vector; N], &[f64; N]),
+        base: (Pose2, Vector),
+        loaded: bool,
+    ) -> Command<N> {
+        let mut torque = match &self.sampling {
+            Some(Sampling { held: Some(held), .. }) => *held.array(),
+            _ => self.controller.torque_at::<N, MOVES>(reference, &at.q, motion, base, loaded),
         };
-        let torque = match &self.limits {
-            Some(limits) => PerDrive::from_fn(wanted.len(), |k| wanted[k].clamp(-limits[k], limits[k])),
-            None => wanted,
-        };
+        if let Some(limits) = &self.limits {
+            torque.iter_mut().zip(limits.iter()).for_each(|(t, limit)| *t = t.clamp(-limit, *limit));
+        }
         let spin = match &self.wheel {
-            Some(wheel) => wheel.give(-torque.iter().sum::<f64>(), wheel_rate, self.wheel_room),
+            Some(wheel) => wheel.give(-torque.iter().sum::<f64>(), at.wheel, self.wheel_room),
             None => WheelState::default(),
         };
-        MotorCommand { torque, spin, rotor: self.rotor() }
+        Command { torque, spin, rotor: self.rotor() }
     }
 }

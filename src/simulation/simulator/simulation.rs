@@ -1,20 +1,20 @@
 //! [`Simulation`]: a run in progress, its present instant, and what is true then.
 
-use crate::mechanics::dynamics::{self, Surroundings};
+use crate::mechanics::dynamics::{self, Surroundings, by_drives};
 use crate::mechanics::joint_forces::{Inside, PinLoads};
 use crate::mechanics::kinematics::{end_effector, least_transmission};
 use crate::mechanics::machine::{Machine, MachineError, RelativeAngle};
-use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Vector};
+use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Vector, length};
 use crate::planning::Reference;
 use crate::planning::pose_constant::plane_map;
 use crate::planning::reactionless::PlaneMap;
 use crate::simulation::control::{Controller, Reading};
 use crate::simulation::frame::{Audit, Frame, Peaks, Phase, Reach, Target, Totals};
-use crate::simulation::plant::{Base, Friction, Load, MAX_CONTACTS, MovingBody, SlipDirections, Slope, State};
+use crate::simulation::plant::{Base, Friction, Load, MAX_CONTACTS, MovingBody, Point, SlipDirections, Slope, State};
 
 use super::control_loop::ControlLoop;
 use super::guide::{Guide, Setup};
-use super::step_control::StepControl;
+use super::step_control::{StepControl, StepState};
 
 /// A run in progress.
 #[derive(Clone, Debug)]
@@ -270,36 +270,19 @@ impl Simulation {
         }
     }
 
-    /// What a state leads to, with a reference.
-    #[inline]
-    pub(super) fn instant(
-        &self,
-        state: &State,
-        reference: &Reference,
-        slip: &SlipDirections,
-        stuck_torque: &mut [f64; MAX_CONTACTS],
-    ) -> Slope {
-        let n = self.drives;
-        self.body().instant(state, slip, stuck_torque, |e, rates, base, velocity| {
-            let reading = reading(n, state, e, rates, base, velocity);
-            self.control_loop.command(reference, &reading, self.loaded, state.wheel)
-        })
-    }
-
     /// Advances by one step.
     pub fn advance(&mut self) {
-        let (reached, goes_on) = self.take_step();
-        (self.state, self.slip) = (reached.state, reached.slip);
+        let mut reached = self.here();
+        let goes_on = self.take_step(&mut reached);
+        (self.state, self.slip, self.stuck_torque) = (reached.state, reached.slip, reached.stuck_torque);
         self.step += 1;
         if let Guide::Follow(follower) = &mut self.guide {
             follower.advance();
         }
         if goes_on && self.control_loop.is_steady() && matches!(self.guide, Guide::Motion { .. }) {
             // The end of the step has been looked at already.
-            (self.now, self.stuck_torque) = (reached.slope, reached.stuck_torque);
-            self.reference = self.aim_now();
+            (self.now, self.reference) = (reached.slope, reached.aim);
         } else {
-            self.stuck_torque = reached.stuck_torque;
             self.look();
         }
         let held = self.load.is_held(self.time(), 0.5 * self.dt);
@@ -313,22 +296,27 @@ impl Simulation {
         }
     }
 
+    /// Where a step begins.
+    pub(super) fn here(&self) -> StepState {
+        StepState {
+            at: 0.0,
+            state: self.state,
+            slope: self.now,
+            aim: self.reference,
+            slip: self.slip,
+            stuck_torque: self.stuck_torque,
+        }
+    }
+
     /// Takes in the present instant: control, slope, wrench of the plant's own motion.
     fn look(&mut self) {
         self.reference = self.aim_now();
-        let n = self.drives;
-        // Sampled control reads first.
-        let body = &self.bodies[usize::from(self.loaded)];
-        let (state, control_loop, reference, loaded) =
-            (&self.state, &mut self.control_loop, &self.reference, self.loaded);
-        let mut stuck_torque = self.stuck_torque;
-        let step = self.step;
-        self.now = body.instant(state, &self.slip, &mut stuck_torque, |e, rates, base, velocity| {
-            let reading = reading(n, state, e, rates, base, velocity);
-            control_loop.sample(step, reference, &reading, loaded, state.wheel);
-            control_loop.command(reference, &reading, loaded, state.wheel)
-        });
-        self.stuck_torque = stuck_torque;
+        let size = self.body().turning();
+        match self.body().moves() {
+            true => by_drives!(size, look_moving(self)),
+            false => by_drives!(size, look_fixed(self)),
+        }
+        let stuck_torque = self.stuck_torque;
         let mut slip = self.slip;
         self.release(&self.now, &mut slip, &stuck_torque);
         self.slip = slip;
@@ -353,14 +341,14 @@ impl Simulation {
             arm_moment: total.abs(),
             moment: (total - x.spin.torque).abs(),
             inertial_pull: dynamics::inertial_pull(&self.link_moments[loaded], &x.e, &qd, &qdd),
-            weight: x.wrench.statical.force.norm(),
+            weight: length(x.wrench.statical.force),
             rate: qd.iter().fold(0.0, |most, qd| most.max((qd - turning).abs())),
             tilt: self.inside[loaded].tilt(&x.e, &qd, &qdd, &self.field()),
             past_limit: self.angles.iter().enumerate().map(past).fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a }),
         };
         let time = self.time();
         self.peaks.include(&now);
-        self.totals.include(x, &wrench, time);
+        self.totals.include(x, &wrench, now.force, time);
     }
 
     /// What links move in, in axes that move with the base: its acceleration adds to gravity.
@@ -449,25 +437,35 @@ impl Simulation {
     }
 }
 
-/// What encoders and tachometers read, exactly.
-#[inline(always)]
-fn reading<'a>(
-    n: usize,
-    state: &State,
-    e: &'a crate::mechanics::planar::Units,
-    rates: &'a PerDrive,
-    base: Pose2,
-    velocity: Vector,
-) -> Reading<'a> {
-    let turning = rates.get(n).copied().unwrap_or(0.0);
-    Reading {
-        q: DriveAngles(PerDrive::from_fn(n, |k| state.q[k] - base.angle)),
-        qd: PerDrive::from_fn(n, |k| rates[k] - turning),
-        e,
-        rates,
-        base,
-        velocity,
-    }
+fn look_fixed<const N: usize>(simulation: &mut Simulation) {
+    look_of::<N, false>(simulation);
+}
+
+fn look_moving<const N: usize>(simulation: &mut Simulation) {
+    look_of::<N, true>(simulation);
+}
+
+/// The slope of now. Sampled control reads first: what encoders and tachometers show, exactly.
+fn look_of<const N: usize, const MOVES: bool>(simulation: &mut Simulation) {
+    let Simulation { bodies, control_loop, reference, state, slip, stuck_torque, loaded, step, .. } = simulation;
+    let body = &bodies[usize::from(*loaded)];
+    let (at, n) = (Point::<N>::of(state), reference.q.len());
+    let stage = body.stage::<N, MOVES>(&at, slip, stuck_torque, |e, rate, base, velocity| {
+        let mut units = [Vector::default(); MAX_DRIVES];
+        units[..N].copy_from_slice(e);
+        let turning = if MOVES { rate[N - 1] } else { 0.0 };
+        let reading = Reading {
+            q: DriveAngles(PerDrive::from_fn(n, |k| at.q[k] - base.angle)),
+            qd: PerDrive::from_fn(n, |k| rate[k] - turning),
+            e: &units,
+            rates: &PerDrive::from(*rate),
+            base,
+            velocity,
+        };
+        control_loop.sample(*step, reference, &reading, *loaded, at.wheel);
+        control_loop.command::<N, MOVES>(reference, &at, (e, rate), (base, velocity), *loaded)
+    });
+    simulation.now = stage.slope(n);
 }
 
 /// m_j a_jk of every link and of the machine's own payload, kg m.

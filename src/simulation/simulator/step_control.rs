@@ -1,5 +1,6 @@
 //! What a step is made of, and how finely it is taken.
 
+use crate::planning::Reference;
 use crate::simulation::frame::{Peaks, Totals};
 use crate::simulation::plant::{MAX_CONTACTS, SlipDirections, Slope, State};
 
@@ -10,6 +11,8 @@ pub(super) struct StepState {
     pub at: f64,
     pub state: State,
     pub slope: Slope,
+    /// What control aims at.
+    pub aim: Reference,
     pub slip: SlipDirections,
     /// Torques of stuck contacts, N m.
     pub stuck_torque: [f64; MAX_CONTACTS],
@@ -116,8 +119,8 @@ impl StepControl {
 /// A substep by classical fourth-order Runge–Kutta.
 pub(super) struct Substep {
     pub end: StepState,
-    /// The slope of the last stage.
-    pub last: Slope,
-    /// Those between, where contacts can stick.
-    pub between: [Slope; 2],
+    /// The slopes between and of the last stage, where contacts can stick.
+    pub stages: [Slope; 3],
+    /// How far apart the last stage and the end are.
+    pub off: Mismatch,
 }

@@ -17,11 +17,12 @@
 use super::guide::Guide;
 use super::simulation::Simulation;
 use super::step_control::{Mismatch, Segment, StepState, Substep};
+use crate::mechanics::dynamics::by_drives;
 use crate::mechanics::kinematics::end_effector;
-use crate::mechanics::planar::{DriveAngles, Vector};
+use crate::mechanics::planar::{DriveAngles, Vector, length};
 use crate::planning::{Motion, Reference};
 use crate::simulation::frame::Peaks;
-use crate::simulation::plant::{MAX_CONTACTS, MovingBody, SlipDirections, Slope, State};
+use crate::simulation::plant::{MAX_CONTACTS, MovingBody, Point, Rates, SlipDirections, Slope, Stage};
 
 /// How far two answers may differ, as a share of the peaks of what is shown.
 const FINE: f64 = 2e-5;
@@ -137,12 +138,10 @@ impl Simulation {
         (Segment { from, to, window }, true)
     }
 
-    /// A whole step, and whether the slope at its end is that with which the next one begins.
-    pub(super) fn take_step(&mut self) -> (StepState, bool) {
+    /// A whole step, from here to its end; whether the slope there is that with which the next one begins.
+    pub(super) fn take_step(&mut self, reached: &mut StepState) -> bool {
         let measure = self.measure();
         let looked_at = stands_for(self.step);
-        let mut reached =
-            StepState { at: 0.0, state: self.state, slope: self.now, slip: self.slip, stuck_torque: self.stuck_torque };
         let mut substeps = 1;
         for count in 1..=MOST_SEGMENTS {
             let (mut segment, mut kinked) = self.segment(reached.at);
@@ -150,32 +149,31 @@ impl Simulation {
                 (segment.to, segment.window[1], kinked) = (self.dt, f64::INFINITY, true);
             }
             if reached.at > 0.0 {
-                reached.slope =
-                    self.slope(&reached.state, reached.at, &segment, &reached.slip, &mut reached.stuck_torque);
+                self.look_again(reached, &segment);
             }
-            let (end, most) = self.pass(&reached, &segment, &measure, looked_at);
-            substeps = substeps.max(most);
-            reached = end;
+            let from = *reached;
+            substeps = substeps.max(self.pass(&from, &segment, &measure, looked_at, reached));
             if segment.to >= self.dt {
                 self.step_control.substeps = substeps.min(4 * self.step_control.substeps);
-                return (reached, !kinked);
+                return !kinked;
             }
         }
-        (reached, false)
+        false
     }
 
-    /// A segment, and in how many substeps of a step the next one should go on.
+    /// A segment, to its end; in how many substeps of a step the next one should go on.
     fn pass(
         &mut self,
         from: &StepState,
         segment: &Segment,
         measure: &Mismatch,
         looked_at: Option<f64>,
-    ) -> (StepState, u32) {
+        reached: &mut StepState,
+    ) -> u32 {
         let share = (segment.to - segment.from) / self.dt;
         let count = |substeps: u32| (f64::from(substeps) * share - 1e-9).ceil().max(1.0) as u32;
         let mut substeps = self.step_control.substeps;
-        let (mut reached, mut off) = self.walk(from, segment, count(substeps));
+        let mut off = self.walk(from, segment, count(substeps), reached);
         let mut error = off;
         // While motors give all they have, feedback corrects no errors: the tolerance is 50 times tighter.
         let full = self.control_loop.is_full(&from.slope.torque) || self.control_loop.is_full(&reached.slope.torque);
@@ -186,7 +184,7 @@ impl Simulation {
                 continue;
             }
             let coarse = reached.slope;
-            (reached, off) = self.walk(from, segment, count(substeps));
+            off = self.walk(from, segment, count(substeps), reached);
             error = self.apart(&reached.slope, &coarse);
         }
         // Of two bounds the smaller.
@@ -195,7 +193,8 @@ impl Simulation {
         }
         self.step_control.worst = self.step_control.worst.worse(error);
         if let Some(steps) = looked_at {
-            let (finer, _) = self.walk(from, segment, 2 * count(substeps));
+            let mut finer = *from;
+            self.walk(from, segment, 2 * count(substeps), &mut finer);
             let (a, b) = (&reached.slope, &finer.slope);
             let (each, drift) = (16.0 / 15.0 * steps, &mut self.step_control.drift);
             drift.tip += each * (tip(&self.bodies[0], a) - tip(&self.bodies[0], b)).norm();
@@ -203,28 +202,30 @@ impl Simulation {
             drift.angle += each * (a.base.angle - b.base.angle).abs();
         }
         // Half as many make about eight times the difference.
-        let next = if off.share(measure) < fine / 16.0 { (substeps / 2).max(1) } else { substeps };
-        (reached, next)
+        if off.share(measure) < fine / 16.0 { (substeps / 2).max(1) } else { substeps }
     }
 
-    /// A segment in equal substeps, and the most by which two answers differ.
-    fn walk(&self, from: &StepState, segment: &Segment, substeps: u32) -> (StepState, Mismatch) {
-        let (mut reached, mut worst) = (*from, Mismatch::default());
+    /// A segment in equal substeps, to its end; the most by which two answers differ.
+    fn walk(&self, from: &StepState, segment: &Segment, substeps: u32, reached: &mut StepState) -> Mismatch {
         let sticks = self.body().contacts().stick();
+        if substeps == 1 && !sticks {
+            return self.smooth(from, segment.to, segment, reached);
+        }
+        let mut worst = Mismatch::default();
+        *reached = *from;
         for i in 1..=substeps {
             let share = f64::from(i) / f64::from(substeps);
             let to = if i == substeps { segment.to } else { segment.from + share * (segment.to - segment.from) };
             let off = match sticks {
-                true => self.contact(&mut reached, to, segment),
+                true => self.contact(reached, to, segment),
                 false => {
-                    let substep = self.substep(&reached, to, segment);
-                    reached = substep.end;
-                    self.apart(&substep.last, &reached.slope)
+                    let from = *reached;
+                    self.smooth(&from, to, segment, reached)
                 }
             };
             worst = worst.worse(off);
         }
-        (reached, worst)
+        worst
     }
 
     /// How far apart two answers for one instant are.
@@ -242,34 +243,132 @@ impl Simulation {
 
 impl Simulation {
     /// One step of classical Runge–Kutta to a time since the step began, s.
-    #[inline]
     pub(super) fn substep(&self, from: &StepState, to: f64, segment: &Segment) -> Substep {
-        let (h, middle) = (to - from.at, 0.5 * (from.at + to));
-        let (state, k1, slip, mut stuck_torque) = (&from.state, &from.slope, &from.slip, from.stuck_torque);
-        let half_way = self.aim(middle, segment);
-        let k2 = self.instant(&state.along(k1, 0.5 * h), &half_way, slip, &mut stuck_torque);
-        let k3 = self.instant(&state.along(&k2, 0.5 * h), &half_way, slip, &mut stuck_torque);
-        let there = self.aim(to, segment);
-        let k4 = self.instant(&state.along(&k3, h), &there, slip, &mut stuck_torque);
-        let mut state = state.stepped([k1, &k2, &k3, &k4], h);
-        if self.body().contacts().stick() {
-            state = self.body().stuck(state, slip);
-        }
-        let slope = self.instant(&state, &there, slip, &mut stuck_torque);
-        Substep { end: StepState { at: to, state, slope, slip: *slip, stuck_torque }, last: k4, between: [k2, k3] }
+        let (mut end, mut stages) = (*from, [from.slope; 3]);
+        let off = self.stepped(from, to, segment, Some(&mut stages), &mut end);
+        Substep { end, stages, off }
     }
 
-    /// What a state leads to, at a time since the step began, s.
-    pub(super) fn slope(
+    /// The same where nothing can stick: how far apart two answers are.
+    fn smooth(&self, from: &StepState, to: f64, segment: &Segment, end: &mut StepState) -> Mismatch {
+        self.stepped(from, to, segment, None, end)
+    }
+
+    #[inline]
+    fn stepped(&self, from: &StepState, to: f64, segment: &Segment, stages: Kept<'_>, end: &mut StepState) -> Mismatch {
+        let size = self.body().turning();
+        match self.body().moves() {
+            true => by_drives!(size, stepped_moving(self, from, to, segment, stages, end)),
+            false => by_drives!(size, stepped_fixed(self, from, to, segment, stages, end)),
+        }
+    }
+
+    /// Takes the slope where a step has come to anew: the reference, or what is stuck, is another.
+    pub(super) fn look_again(&self, here: &mut StepState, segment: &Segment) {
+        here.aim = self.aim(here.at, segment);
+        let size = self.body().turning();
+        here.slope = match self.body().moves() {
+            true => by_drives!(size, slope_moving(self, here)),
+            false => by_drives!(size, slope_fixed(self, here)),
+        };
+    }
+
+    /// What a point leads to, with a reference.
+    fn stage<const N: usize, const MOVES: bool>(
         &self,
-        state: &State,
-        at: f64,
-        segment: &Segment,
+        at: &Point<N>,
+        aim: &Reference,
         slip: &SlipDirections,
         stuck_torque: &mut [f64; MAX_CONTACTS],
-    ) -> Slope {
-        self.instant(state, &self.aim(at, segment), slip, stuck_torque)
+    ) -> Stage<N> {
+        self.body().stage::<N, MOVES>(at, slip, stuck_torque, |e, rate, base, velocity| {
+            self.control_loop.command::<N, MOVES>(aim, at, (e, rate), (base, velocity), self.loaded)
+        })
     }
+}
+
+/// Where slopes of stages are to be kept.
+type Kept<'a> = Option<&'a mut [Slope; 3]>;
+
+fn stepped_fixed<const N: usize>(
+    simulation: &Simulation,
+    from: &StepState,
+    to: f64,
+    segment: &Segment,
+    stages: Kept<'_>,
+    end: &mut StepState,
+) -> Mismatch {
+    stepped_of::<N, false>(simulation, from, to, segment, stages, end)
+}
+
+fn stepped_moving<const N: usize>(
+    simulation: &Simulation,
+    from: &StepState,
+    to: f64,
+    segment: &Segment,
+    stages: Kept<'_>,
+    end: &mut StepState,
+) -> Mismatch {
+    stepped_of::<N, true>(simulation, from, to, segment, stages, end)
+}
+
+#[inline(always)]
+fn stepped_of<const N: usize, const MOVES: bool>(
+    simulation: &Simulation,
+    from: &StepState,
+    to: f64,
+    segment: &Segment,
+    stages: Kept<'_>,
+    end: &mut StepState,
+) -> Mismatch {
+    let (h, middle) = (to - from.at, 0.5 * (from.at + to));
+    let (state, slip, stuck_torque) = (&from.state, &from.slip, &mut end.stuck_torque);
+    *stuck_torque = from.stuck_torque;
+    let body = simulation.body();
+    let k1 = Rates::of(&from.slope);
+    let aim = simulation.aim(middle, segment);
+    let k2 = simulation.stage::<N, MOVES>(&Point::along(state, &k1, 0.5 * h), &aim, slip, stuck_torque);
+    let k3 = simulation.stage::<N, MOVES>(&Point::along(state, &k2.rates, 0.5 * h), &aim, slip, stuck_torque);
+    let aim = simulation.aim(to, segment);
+    let k4 = simulation.stage::<N, MOVES>(&Point::along(state, &k3.rates, h), &aim, slip, stuck_torque);
+    let mut state = Rates::stepped(state, [&k1, &k2.rates, &k3.rates, &k4.rates], h);
+    if body.contacts().stick() {
+        state = body.stuck(state, slip);
+    }
+    let last = simulation.stage::<N, MOVES>(&Point::of(&state), &aim, slip, stuck_torque);
+    let drives = body.arm().drives();
+    if let Some(stages) = stages {
+        *stages = [&k2, &k3, &k4].map(|k| k.slope(drives));
+    }
+    (end.at, end.state, end.slope, end.aim, end.slip) = (to, state, last.slope(drives), aim, *slip);
+    between(body, &k4, &last)
+}
+
+/// How far apart two answers for one instant are.
+#[inline(always)]
+fn between<const N: usize>(body: &MovingBody, a: &Stage<N>, b: &Stage<N>) -> Mismatch {
+    let felt = |x: &Stage<N>| x.wrench.total().moment - x.spin.torque;
+    let arm = &body.arm().end_effector;
+    let tip = |x: &Stage<N>| x.base.at + (0..N).map(|k| x.e[k] * arm[k]).sum::<Vector>();
+    Mismatch([
+        (felt(a) - felt(b)).abs(),
+        length(a.wrench.dynamic.force - b.wrench.dynamic.force),
+        (0..N).fold(0.0, |most: f64, k| most.max((a.torque[k] - b.torque[k]).abs())),
+        length(tip(a) - tip(b)),
+    ])
+}
+
+fn slope_fixed<const N: usize>(simulation: &Simulation, at: &mut StepState) -> Slope {
+    slope_of::<N, false>(simulation, at)
+}
+
+fn slope_moving<const N: usize>(simulation: &Simulation, at: &mut StepState) -> Slope {
+    slope_of::<N, true>(simulation, at)
+}
+
+fn slope_of<const N: usize, const MOVES: bool>(simulation: &Simulation, at: &mut StepState) -> Slope {
+    let stage = simulation.stage::<N, MOVES>(&Point::of(&at.state), &at.aim, &at.slip, &mut at.stuck_torque);
+    stage.slope(simulation.drives)
 }
 
 /// Where the end effector is, m.

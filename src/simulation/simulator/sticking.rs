@@ -97,7 +97,7 @@ impl Simulation {
             if way == 0.0 {
                 let loose =
                     |x: &Slope| self.body().resists(i) * contacts.sliding(i, &x.qdd).abs() > 1e-6 * contacts.coulomb(i);
-                return substep.between.iter().chain([&substep.last]).any(loose);
+                return substep.stages.iter().any(loose);
             }
             let rate = |x: &Slope| way * contacts.sliding(i, &x.qd);
             let bend = |x: &Slope| h * way * contacts.sliding(i, &x.qdd);
@@ -130,7 +130,7 @@ impl Simulation {
                     }
                 },
             };
-            worst = worst.worse(self.apart(&substep.last, &substep.end.slope));
+            worst = worst.worse(substep.off);
             *reached = substep.end;
             if reached.at >= to {
                 self.turn(reached, segment);
@@ -229,7 +229,7 @@ impl Simulation {
     /// Holds what is stuck, as far as its law allows.
     fn hold(&self, reached: &mut StepState, segment: &Segment) {
         reached.state = self.body().stuck(reached.state, &reached.slip);
-        reached.slope = self.slope(&reached.state, reached.at, segment, &reached.slip, &mut reached.stuck_torque);
+        self.look_again(reached, segment);
         self.release(&reached.slope, &mut reached.slip, &reached.stuck_torque);
     }
 }

@@ -1,0 +1,330 @@
+//! [`Stage`]: what a state leads to, at the machine's own size. Steps are made of these: padding to [`MAX_DRIVES`] and
+//! copying would cost more than the arithmetic.
+//!
+//! Everything that appears twice is made once: the unit vectors and the mass matrix serve rates, torques, accelerations
+//! and base wrench; whether the base moves is settled when this is compiled.
+
+use super::{MAX_CONTACTS, MovingBody, SlipDirections, Slope, State, WheelState};
+use crate::mechanics::dynamics::{BaseWrench, Factors, assemble, by_drives, first, times, wrench_with};
+use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Pose2, Vector, cross, dot, unit};
+
+/// What of a [`State`] the equations of motion depend on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Point<const N: usize> {
+    pub q: [f64; N],
+    pub momenta: [f64; N],
+    pub place: Vector,
+    pub momentum: Vector,
+    pub wheel: f64,
+}
+
+/// The rate of each part of a [`State`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rates<const N: usize> {
+    /// q̇, rad/s.
+    pub q: [f64; N],
+    pub momenta: [f64; N],
+    pub place: Vector,
+    pub momentum: Vector,
+    pub wheel: f64,
+    /// W.
+    pub work: f64,
+    /// W.
+    pub lost: f64,
+    /// Dynamic f_B, N, and its moment about the origin, N m.
+    pub impulse: (Vector, f64),
+}
+
+/// What motors and wheel do: torques, zero beyond the drives, N m; the wheel, and its rotor, kg m².
+pub(crate) struct Command<const N: usize> {
+    pub torque: [f64; N],
+    pub spin: WheelState,
+    pub rotor: f64,
+}
+
+/// As [`Slope`].
+pub(crate) struct Stage<const N: usize> {
+    pub e: [Vector; N],
+    pub acceleration: [f64; N],
+    pub torque: [f64; N],
+    pub friction: [f64; N],
+    pub spin: WheelState,
+    pub base: Pose2,
+    pub base_velocity: Vector,
+    pub base_acceleration: Vector,
+    pub wrench: BaseWrench,
+    pub kinetic: f64,
+    pub rates: Rates<N>,
+}
+
+impl<const N: usize> Point<N> {
+    #[inline(always)]
+    pub fn of(state: &State) -> Self {
+        let State { place, momentum, wheel, .. } = *state;
+        Self { q: *state.q.array(), momenta: *state.momenta.array(), place, momentum, wheel }
+    }
+
+    /// A time `h` after a state along a slope, s.
+    #[inline(always)]
+    pub fn along(from: &State, x: &Rates<N>, h: f64) -> Self {
+        let (q, momenta) = (from.q.array::<N>(), from.momenta.array::<N>());
+        Self {
+            q: std::array::from_fn(|k| q[k] + h * x.q[k]),
+            momenta: std::array::from_fn(|k| momenta[k] + h * x.momenta[k]),
+            place: from.place + h * x.place,
+            momentum: from.momentum + h * x.momentum,
+            wheel: from.wheel + h * x.wheel,
+        }
+    }
+}
+
+impl<const N: usize> Rates<N> {
+    #[inline(always)]
+    pub fn of(x: &Slope) -> Self {
+        Self {
+            q: *x.qd.array(),
+            momenta: *x.momenta_rate.array(),
+            place: x.place_rate,
+            momentum: x.momentum_rate,
+            wheel: x.wheel_rate,
+            work: x.power,
+            lost: x.loss,
+            impulse: impulse(&x.wrench, x.base.at),
+        }
+    }
+
+    /// Classical fourth-order Runge–Kutta: a time `h` later by slopes at the start, twice half-way, and at the end, s.
+    #[inline(always)]
+    pub fn stepped(from: &State, k: [&Self; 4], h: f64) -> State {
+        let w = [h / 6.0, h / 3.0, h / 3.0, h / 6.0];
+        let mut state = *from;
+        let (q, momenta) = (state.q.array_mut::<N>(), state.momenta.array_mut::<N>());
+        for (x, w) in k.into_iter().zip(w) {
+            (0..N).for_each(|k| q[k] += w * x.q[k]);
+            (0..N).for_each(|k| momenta[k] += w * x.momenta[k]);
+            state.place += w * x.place;
+            state.momentum += w * x.momentum;
+            state.wheel += w * x.wheel;
+            state.work += w * x.work;
+            state.lost += w * x.lost;
+            state.impulse = (state.impulse.0 + w * x.impulse.0, state.impulse.1 + w * x.impulse.1);
+        }
+        state
+    }
+}
+
+#[inline(always)]
+fn impulse(wrench: &BaseWrench, at: Vector) -> (Vector, f64) {
+    let force = wrench.dynamic.force;
+    (force, wrench.dynamic.moment + cross(at, force))
+}
+
+/// i v.
+#[inline(always)]
+fn turned(v: Vector) -> Vector {
+    Vector::new(-v.im, v.re)
+}
+
+impl<const N: usize> Stage<N> {
+    /// Padded, as it is kept.
+    #[inline(always)]
+    pub fn slope(&self, drives: usize) -> Slope {
+        let mut e = [Vector::default(); MAX_DRIVES];
+        e[..N].copy_from_slice(&self.e);
+        let Rates { q, momenta, place, momentum, wheel, work, lost, .. } = self.rates;
+        Slope {
+            e,
+            qd: PerDrive::from(q),
+            qdd: PerDrive::from(self.acceleration),
+            torque: PerDrive::of_array(drives, self.torque),
+            friction: PerDrive::of_array(drives, self.friction),
+            spin: self.spin,
+            base: self.base,
+            base_velocity: self.base_velocity,
+            base_acceleration: self.base_acceleration,
+            wrench: self.wrench,
+            kinetic: self.kinetic,
+            power: work,
+            loss: lost,
+            momenta_rate: PerDrive::from(momenta),
+            place_rate: place,
+            momentum_rate: momentum,
+            wheel_rate: wheel,
+        }
+    }
+}
+
+impl MovingBody {
+    /// A state without torques.
+    pub fn still(&self, state: &State) -> Slope {
+        match self.moves {
+            true => by_drives!(self.whole.drives, still_moving(self, state)),
+            false => by_drives!(self.whole.drives, still_fixed(self, state)),
+        }
+    }
+
+    /// Rates, torques, accelerations and base wrench of a state, on a base that `MOVES` or not. `control` is asked for
+    /// the torques, given unit vectors and rates of all that turns, and pose and velocity of B.
+    #[inline]
+    pub(crate) fn stage<const N: usize, const MOVES: bool>(
+        &self,
+        at: &Point<N>,
+        slip: &SlipDirections,
+        stuck_torque: &mut [f64; MAX_CONTACTS],
+        control: impl FnOnce(&[Vector; N], &[f64; N], Pose2, Vector) -> Command<N>,
+    ) -> Stage<N> {
+        let n = if MOVES { N - 1 } else { N };
+        let mut e = [Vector::default(); N];
+        e.iter_mut().zip(at.q).for_each(|(e, q)| *e = unit(q));
+        // Mass matrix and the part of the couplings that rates act through.
+        let (mut h, mut im) = ([[0.0; N]; N], [[0.0; N]; N]);
+        for k in 0..N {
+            h[k][k] = self.whole.c[k][k].re + self.whole.spin[k];
+            for l in k + 1..N {
+                let z = self.whole.c[k][l] * (e[k].conj() * e[l]);
+                h[k][l] = z.re;
+                h[l][k] = z.re;
+                im[k][l] = z.im;
+            }
+        }
+        let factors = Factors::of(&h);
+        let mut momenta = at.momenta;
+        if MOVES {
+            momenta[N - 1] -= momenta[..N - 1].iter().sum::<f64>();
+        }
+        let rate = factors.solve(momenta);
+        let (mut gain, mut v) = ([0.0; N], [0.0; N]);
+        for k in 0..N {
+            for l in k + 1..N {
+                let x = im[k][l] * rate[k] * rate[l];
+                gain[k] += x;
+                gain[l] -= x;
+                v[k] -= im[k][l] * (rate[l] * rate[l]);
+                v[l] += im[k][l] * (rate[k] * rate[k]);
+            }
+        }
+        let (mut base, mut velocity, mut turning, mut drift) =
+            (Pose2::default(), Vector::default(), 0.0, Vector::default());
+        let mut anchor = [Vector::default(); N];
+        if MOVES {
+            drift = at.momentum / self.mass;
+            anchor = std::array::from_fn(|k| self.anchor[k] * e[k]);
+            let lever: Vector = anchor.iter().sum();
+            let swing: Vector = (0..N).map(|k| turned(anchor[k]) * rate[k]).sum();
+            base = Pose2 { at: at.place + lever, angle: at.q[N - 1] };
+            velocity = drift + swing;
+            turning = rate[N - 1];
+        }
+        let Command { torque, spin, rotor } = control(&e, &rate, base, velocity);
+
+        // Generalised forces: outer ones, whose sum changes L, and torques between the drives and the base.
+        let tip = |k: usize| if MOVES { self.tip[k] * e[k] } else { e[k] * self.arm.end_effector[k] };
+        let (mut hold, mut moment) = Default::default();
+        if MOVES {
+            (hold, moment) = self.held(base, velocity, turning);
+            moment -= spin.torque;
+        }
+        let mut force = self.outer::<N, MOVES>(&e, (hold, moment));
+        let external: f64 = force.iter().sum();
+        let tip_velocity: Vector = (0..N).map(|k| turned(tip(k)) * rate[k]).sum();
+        let mut power = dot(self.around.force, tip_velocity + drift) + spin.torque * (spin.rate - turning);
+        for k in 0..n {
+            force[k] += torque[k];
+            power += torque[k] * (rate[k] - turning);
+        }
+        let mut friction = [0.0; N];
+        let (mut loss, mut momentum_rate) = (0.0, Vector::default());
+        if MOVES {
+            force[N - 1] -= torque[..N - 1].iter().sum::<f64>();
+            let c = &self.support.damping;
+            loss += c[0] * velocity.re.powi(2) + c[1] * velocity.im.powi(2) + c[2] * turning * turning;
+            momentum_rate = self.mass * self.around.gravity + self.around.force + hold;
+        }
+        if !self.contacts.is_empty() {
+            loss += self.rub(slip, (&rate, &v), &factors, &mut force, &mut friction, stuck_torque);
+        }
+        let acceleration = factors.solve(std::array::from_fn(|k| force[k] - v[k]));
+        let mut momenta_rate: [f64; N] = std::array::from_fn(|k| gain[k] + force[k]);
+        // The wrench from the accelerations and not from the torques, so that a zero is found and not assumed.
+        let mut base_acceleration = Vector::default();
+        let mut wrench;
+        if MOVES {
+            momenta_rate[N - 1] = external;
+            let pull: Vector = (0..N).map(|k| anchor[k] * Vector::new(-rate[k] * rate[k], acceleration[k])).sum();
+            base_acceleration = momentum_rate / self.mass + pull;
+            // The constants of the arm are zero where the base has its place.
+            let (h, v) = assemble(&self.arm, &e, &rate);
+            let inertial = times(&h, &acceleration);
+            let change = (0..N).map(|k| inertial[k] + v[k]).sum();
+            wrench = wrench_with(&self.arm, &e, &rate, &acceleration, &self.around, change);
+            let lever: Vector = (0..N).map(|k| self.arm.g[k] * e[k]).sum();
+            wrench.dynamic.force -= self.arm.mass * base_acceleration;
+            wrench.dynamic.moment -= cross(lever, base_acceleration);
+        } else {
+            let inertial = times(&h, &acceleration);
+            let change = (0..N).map(|k| inertial[k] + v[k]).sum();
+            wrench = wrench_with(&self.arm, &e, &rate, &acceleration, &self.around, change);
+        }
+        let kinetic = 0.5 * (0..N).map(|k| momenta[k] * rate[k]).sum::<f64>()
+            + 0.5 * dot(at.momentum, drift)
+            + 0.5 * rotor * spin.rate * spin.rate;
+        Stage {
+            e,
+            acceleration,
+            torque,
+            friction,
+            spin,
+            base,
+            base_velocity: velocity,
+            base_acceleration,
+            wrench,
+            kinetic,
+            rates: Rates {
+                q: rate,
+                momenta: momenta_rate,
+                place: drift,
+                momentum: momentum_rate,
+                wheel: if rotor > 0.0 { spin.torque / rotor } else { 0.0 },
+                work: power,
+                lost: loss,
+                impulse: impulse(&wrench, base.at),
+            },
+        }
+    }
+
+    /// Adds friction to generalised forces, and that of the bearings to `friction`; the power it takes, W. `v` are the
+    /// velocity terms.
+    #[inline(never)]
+    fn rub<const N: usize>(
+        &self,
+        slip: &SlipDirections,
+        (rate, v): (&[f64; N], &[f64; N]),
+        factors: &Factors<N>,
+        force: &mut [f64; N],
+        friction: &mut [f64; N],
+        stuck_torque: &mut [f64; MAX_CONTACTS],
+    ) -> f64 {
+        let loss = self.contacts.slide(slip, rate, force, friction);
+        let free = factors.solve(std::array::from_fn(|k| force[k] - v[k]));
+        let solve = |x: &[f64; MAX_DRIVES]| {
+            let mut padded = [0.0; MAX_DRIVES];
+            padded[..N].copy_from_slice(&factors.solve(*first::<N, _>(x)));
+            padded
+        };
+        loss + self.contacts.hold(slip, (rate, &free), solve, force, friction, stuck_torque)
+    }
+}
+
+fn still_fixed<const N: usize>(body: &MovingBody, state: &State) -> Slope {
+    still_of::<N, false>(body, state)
+}
+
+fn still_moving<const N: usize>(body: &MovingBody, state: &State) -> Slope {
+    still_of::<N, true>(body, state)
+}
+
+fn still_of<const N: usize, const MOVES: bool>(body: &MovingBody, state: &State) -> Slope {
+    let mut stuck_torque = [0.0; MAX_CONTACTS];
+    let none = |_: &_, _: &_, _, _| Command { torque: [0.0; N], spin: WheelState::default(), rotor: 0.0 };
+    body.stage::<N, MOVES>(&Point::of(state), &[0; MAX_CONTACTS], &mut stuck_torque, none).slope(body.arm.drives)
+}
