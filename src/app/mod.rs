@@ -5,6 +5,7 @@
 
 mod command;
 mod compare;
+pub mod jobs;
 mod keys;
 mod order;
 mod path;

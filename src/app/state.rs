@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use super::jobs::{AtOnce, Job, Poll, Ticket, Workers};
 use super::{
     Command, ComparisonCommand, RefusedEdit, ViewState, compare, keys, order, plots, side, status, study, theme, top,
     viewport,
@@ -18,7 +19,7 @@ use crate::session::{Edit, Refusal, Session};
 use crate::settings::text::brief;
 use crate::simulation::frame::Totals;
 use crate::simulation::signals::{Signal, signals};
-use crate::study::comparison::Comparison;
+use crate::study::comparison::{Comparison, Outcome, run_ways};
 use crate::study::tolerance::Study;
 
 /// A session on display.
@@ -32,6 +33,11 @@ pub struct AppState {
     comparison: Option<Comparison>,
     /// Tolerances and what they were found for, while they are on display.
     study: Option<(Scenario, Result<Study, String>)>,
+    /// Who works beside the window, and what is under way.
+    workers: Arc<dyn Workers + Send + Sync>,
+    jobs: Jobs,
+    /// Woken when a job has ended.
+    ctx: Option<egui::Context>,
     /// Totals of the planned motion, simulated ahead: how far the base will move.
     foreseen: Totals,
     /// Wall time not yet turned into steps, s.
@@ -40,8 +46,27 @@ pub struct AppState {
     fonts: bool,
 }
 
+/// A job that may be stopped on the way, and has no result then.
+type JobOf<T> = Job<Option<T>>;
+
+/// What is under way beside the window; studies and runs side by side with the scenario that they are of.
+#[derive(Default)]
+struct Jobs {
+    /// A study, or why there is none.
+    study: Option<(Scenario, JobOf<Result<Study, String>>)>,
+    /// Runs side by side.
+    ways: Option<(Scenario, JobOf<Vec<Outcome>>)>,
+    /// What to say when the recording is there.
+    recording: Option<Job<Result<String, String>>>,
+    /// How far the base will move.
+    foreseen: Option<Job<Totals>>,
+}
+
 /// The most steps that are run ahead to see how far the base will move.
 const MOST_AHEAD: f64 = 20_000.0;
+
+/// How soon progress is shown again.
+const SHOWN_AGAIN: std::time::Duration = std::time::Duration::from_millis(100);
 
 /// The most wall time that one repaint makes up for, s: after a pause of the program time does not jump.
 const MOST_OWED: f64 = 0.1;
@@ -67,6 +92,9 @@ impl AppState {
             view_state,
             comparison: None,
             study: None,
+            workers: Arc::new(AtOnce),
+            jobs: Jobs::default(),
+            ctx: None,
             owed: 0.0,
             dressed: None,
             fonts: false,
@@ -74,6 +102,87 @@ impl AppState {
         app_state.foresee();
         app_state.adjust();
         app_state
+    }
+
+    /// The same with somebody who works beside it.
+    #[must_use]
+    pub fn with_workers(self, workers: impl Workers + Send + Sync + 'static) -> Self {
+        Self { workers: Arc::new(workers), ..self }
+    }
+
+    /// Starts work beside the window.
+    fn start<T: Send + 'static>(&self, work: impl FnOnce(&Ticket) -> T + Send + 'static) -> Job<T> {
+        let ctx = self.ctx.clone();
+        let wake = move || {
+            if let Some(ctx) = ctx {
+                ctx.request_repaint();
+            }
+        };
+        Job::start(&*self.workers, wake, work)
+    }
+
+    /// What is under way and how far it is, for the line at the bottom.
+    fn under_way(&self) -> Option<(&'static str, f64)> {
+        let study = self.jobs.study.as_ref().map(|(_, job)| ("drawing machines", job.progress()));
+        let ways = self.jobs.ways.as_ref().map(|(_, job)| ("running the ways of the task", job.progress()));
+        let recording = self.jobs.recording.as_ref().map(|job| ("recording", job.progress()));
+        recording.or(study).or(ways)
+    }
+
+    /// Takes what jobs have done; whether one has ended.
+    fn collect(&mut self) -> bool {
+        let mut ended = false;
+        if let Some((of, job)) = self.jobs.study.take() {
+            match job.poll() {
+                Poll::Working => self.jobs.study = Some((of, job)),
+                Poll::Done(study) => {
+                    self.study = study.map(|study| (of, study)).or(self.study.take());
+                    ended = true;
+                }
+                Poll::Broken => {
+                    self.study = Some((of, Err("the study broke off: this is a fault of the program".into())));
+                    ended = true;
+                }
+            }
+        }
+        if let Some((of, job)) = self.jobs.ways.take() {
+            match job.poll() {
+                Poll::Working => self.jobs.ways = Some((of, job)),
+                Poll::Done(ways) => {
+                    if let (Some(comparison), Some(ways)) = (&mut self.comparison, ways) {
+                        comparison.follow_with(&of, ways);
+                    }
+                    ended = true;
+                }
+                Poll::Broken => ended = true,
+            }
+        }
+        if let Some(job) = self.jobs.recording.take() {
+            match job.poll() {
+                Poll::Working => self.jobs.recording = Some(job),
+                Poll::Done(said) => {
+                    self.view_state.message = Some(said.map_or_else(|why| (why, true), |news| (news, false)));
+                    ended = true;
+                }
+                Poll::Broken => {
+                    let why = "the recording broke off: this is a fault of the program";
+                    self.view_state.message = Some((why.into(), true));
+                    ended = true;
+                }
+            }
+        }
+        if let Some(job) = self.jobs.foreseen.take() {
+            match job.poll() {
+                Poll::Working => self.jobs.foreseen = Some(job),
+                Poll::Done(totals) => {
+                    self.foreseen = totals;
+                    self.adjust();
+                    ended = true;
+                }
+                Poll::Broken => ended = true,
+            }
+        }
+        ended
     }
 
     /// Opens a scenario; where its task cannot be planned, its machine with the paper's task, and what is in the way.
@@ -137,14 +246,18 @@ impl AppState {
     /// One pass of the user interface; commands are carried out at its end.
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         self.dress(ui.ctx());
+        if self.collect() {
+            ui.ctx().request_repaint();
+        }
         let mut commands = Vec::new();
         keys::read(ui.ctx(), &self.session, &self.view_state, &mut commands);
         top::show(ui, &self.session, &self.view_state, &mut commands);
-        status::show(ui, &self.session, &self.views, &self.view_state, &mut commands);
+        status::show(ui, &self.session, &self.views, &self.view_state, self.under_way(), &mut commands);
         if let Some(comparison) = &self.comparison {
             compare::show(ui, comparison, &self.view_state, &mut commands);
         }
-        if let Some((_, study)) = &self.study {
+        if self.view_state.study {
+            let study = self.study.as_ref().map(|(_, study)| study);
             study::show(ui, study, self.session.frame().time, &self.view_state, &mut commands);
         }
         side::show(ui, &self.session, &self.view_state, &mut commands);
@@ -166,10 +279,13 @@ impl AppState {
         }
         if self.session.is_moving() {
             ui.ctx().request_repaint();
+        } else if self.under_way().is_some() {
+            ui.ctx().request_repaint_after(SHOWN_AGAIN);
         }
     }
 
     fn dress(&mut self, ctx: &egui::Context) {
+        self.ctx.get_or_insert_with(|| ctx.clone());
         if !self.fonts {
             theme::install_fonts(ctx);
             ctx.add_plugin(order::Order::default());
@@ -246,7 +362,7 @@ impl AppState {
             Command::Refuse(why) => return Err(why),
             Command::OpenFile(path) => return self.open(&path).map(Some),
             Command::SaveFile(path) => return self.save(&path).map(Some),
-            Command::Record(path) => return self.record(&path).map(Some),
+            Command::Record(path) => return self.record(&path),
             Command::Undo => {
                 let title = self.session.undo_title().map(|t| format!("undone: {t}"));
                 self.session.undo().map_err(refused)?;
@@ -339,19 +455,38 @@ impl AppState {
     }
 
     #[cfg(feature = "record")]
-    fn record(&mut self, path: &Path) -> Result<String, String> {
+    fn record(&mut self, path: &Path) -> Result<Option<String>, String> {
         check_name(path)?;
+        if self.jobs.recording.is_some() {
+            return Err("one recording is under way: want it to end first".into());
+        }
         let options = crate::recording::Options { pictures: None, force: false };
         let mut scenario = self.session.to_scenario();
         scenario.duration = Some(self.session.length());
-        let done = crate::recording::record(&[scenario], path, &options, &mut |_| {}).map_err(|e| e.to_string())?;
+        let path = path.to_owned();
+        let job = self.start(move |ticket| {
+            let mut told = |progress: crate::recording::Progress| {
+                ticket.goes_on(progress.done as f64 / progress.of.max(1) as f64);
+            };
+            let done = crate::recording::record(&[scenario], &path, &options, &mut told).map_err(|e| e.to_string())?;
+            let verdict = if done.iter().all(|r| r.reactionless) { "reactionless" } else { "with reactions" };
+            Ok(format!("recorded {} ({verdict}); open it with the Rerun viewer", whole(&path)))
+        });
+        // What is done at once says at once how it went, with the dialog still open where it failed.
+        match job.poll() {
+            Poll::Done(Err(why)) => return Err(why),
+            Poll::Done(Ok(news)) => {
+                self.view_state.dialog = None;
+                return Ok(Some(news));
+            }
+            Poll::Working | Poll::Broken => self.jobs.recording = Some(job),
+        }
         self.view_state.dialog = None;
-        let verdict = if done.iter().all(|r| r.reactionless) { "reactionless" } else { "with reactions" };
-        Ok(format!("recorded {} ({verdict}); open it with the Rerun viewer", whole(path)))
+        Ok(None)
     }
 
     #[cfg(not(feature = "record"))]
-    fn record(&mut self, _path: &Path) -> Result<String, String> {
+    fn record(&mut self, _path: &Path) -> Result<Option<String>, String> {
         Err("this build cannot record: build it with the feature `record`".into())
     }
 
@@ -360,12 +495,20 @@ impl AppState {
         self.foreseen = Totals::default();
         let scenario = self.session.scenario();
         let steps = (self.session.run().planned_time() / scenario.step).ceil();
+        self.jobs.foreseen = None;
         if scenario.base.moves() && !self.session.is_led() && steps <= MOST_AHEAD {
             let mut run = self.session.run().clone();
-            while (run.simulation().step_count() as f64) < steps {
-                run.advance();
-            }
-            self.foreseen = run.frame().totals;
+            let job = self.start(move |ticket| {
+                let mut wanted = true;
+                while wanted && (run.simulation().step_count() as f64) < steps {
+                    run.advance();
+                    let done = run.simulation().step_count();
+                    wanted = !done.is_multiple_of(256) || ticket.goes_on(done as f64 / steps);
+                }
+                run.frame().totals
+            });
+            self.jobs.foreseen = Some(job);
+            self.collect();
         }
     }
 
@@ -398,32 +541,64 @@ impl AppState {
         }
         Arc::make_mut(&mut self.views).refresh(self.session.run());
         self.adjust();
+        self.refresh_study();
+        self.refresh_comparison();
+        self.collect();
+    }
+
+    /// Studies the run on display, if its last study is of another; only the newest counts.
+    fn refresh_study(&mut self) {
         if !self.view_state.study {
-            self.study = None;
-        } else if self.view_state.grabbed.is_none()
-            && self.study.as_ref().is_none_or(|(of, _)| of != self.session.scenario())
-        {
-            let run = self.session.run();
-            let study = match run.waiting() {
-                Some(waiting) => Err(waiting.why.to_string()),
-                None => Study::of(run).map_err(|why| why.to_string()),
-            };
-            self.study = Some((self.session.scenario().clone(), study));
+            (self.study, self.jobs.study) = (None, None);
+            return;
         }
-        if !self.view_state.compare {
-            self.comparison = None;
-        } else if self.comparison.is_none() {
-            self.comparison = Some(Comparison::of(self.session.scenario()));
+        let scenario = self.session.scenario();
+        let known = self.jobs.study.as_ref().map(|(of, _)| of).or(self.study.as_ref().map(|(of, _)| of));
+        if self.view_state.grabbed.is_some() || known == Some(scenario) {
+            return;
         }
-        // Not during a drag: all runs of the table are planned and simulated again.
-        if let (Some(comparison), None) = (&mut self.comparison, self.view_state.grabbed) {
-            let ours = comparison.entries().iter().any(|e| {
-                e.outcome.as_ref().is_ok_and(|run| run.scenario.task == self.session.scenario().task && !e.kept)
-            });
-            if !ours || !same_but_task(comparison.task(), self.session.scenario()) {
-                comparison.follow(self.session.scenario());
+        self.jobs.study = None;
+        match self.session.run().waiting() {
+            Some(waiting) => self.study = Some((scenario.clone(), Err(waiting.why.to_string()))),
+            None => {
+                let run = self.session.run().clone();
+                let job = self.start(move |ticket| {
+                    let study = Study::watched(&run, &mut |done| ticket.goes_on(done));
+                    study.map_err(|why| why.to_string()).transpose()
+                });
+                self.jobs.study = Some((scenario.clone(), job));
             }
         }
+    }
+
+    /// Runs the ways of the task on display, if those of the table are of another. Not during a drag.
+    fn refresh_comparison(&mut self) {
+        if !self.view_state.compare {
+            (self.comparison, self.jobs.ways) = (None, None);
+            return;
+        }
+        let scenario = self.session.scenario();
+        let first = self.comparison.is_none();
+        let comparison = self.comparison.get_or_insert_with(|| Comparison::empty(scenario));
+        let ours = comparison
+            .entries()
+            .iter()
+            .any(|e| e.outcome.as_ref().is_ok_and(|run| run.scenario.task == scenario.task && !e.kept));
+        let task = comparison.task();
+        let stale = first || (task != scenario && (!ours || !same_but_task(task, scenario)));
+        let wanted = match &self.jobs.ways {
+            Some((of, _)) => of != scenario,
+            None => stale,
+        };
+        if !wanted || (!first && self.view_state.grabbed.is_some()) {
+            return;
+        }
+        let of = scenario.clone();
+        let job = self.start({
+            let of = of.clone();
+            move |ticket| run_ways(&of, &mut |done| ticket.goes_on(done))
+        });
+        self.jobs.ways = Some((of, job));
     }
 }
 

@@ -89,7 +89,14 @@ fn fault(frame: &Frame) -> Option<String> {
 }
 
 /// Draws this panel.
-pub fn show(ui: &mut Ui, session: &Session, views: &Views, view_state: &ViewState, commands: &mut Vec<Command>) {
+pub fn show(
+    ui: &mut Ui,
+    session: &Session,
+    views: &Views,
+    view_state: &ViewState,
+    under_way: Option<(&str, f64)>,
+    commands: &mut Vec<Command>,
+) {
     let p = view_state.palette();
     let frame = egui::Frame::new().fill(colour(p.panel)).inner_margin(Margin::symmetric(16, 0));
     Panel::bottom("status").exact_size(30.0).resizable(false).frame(frame).show(ui, |ui| {
@@ -138,6 +145,10 @@ pub fn show(ui: &mut Ui, session: &Session, views: &Views, view_state: &ViewStat
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let (text, tone) = match (&view_state.message, f.target.reach) {
                     (Some((_, true)), _) => (String::new(), p.reaction),
+                    _ if under_way.is_some() => {
+                        let (what, done) = under_way.unwrap_or_default();
+                        (format!("{what}, {:.0} %", 100.0 * done), p.dim)
+                    }
                     (Some((text, false)), _) => (text.clone(), p.ink),
                     (None, _) if session.is_full() => {
                         ("this session is full: save or record it, then start over".into(), p.reaction)

@@ -19,7 +19,7 @@ const HEIGHT: f32 = 268.0;
 /// Draws this panel.
 pub fn show(
     ui: &mut Ui,
-    study: &Result<Study, String>,
+    study: Option<&Result<Study, String>>,
     time: f64,
     view_state: &ViewState,
     commands: &mut Vec<Command>,
@@ -31,8 +31,9 @@ pub fn show(
         ui.horizontal(|ui| {
             ui.label(RichText::new("Tolerances").font(bold(13.5)));
             let words = match study {
-                Ok(study) => summary(study),
-                Err(_) => String::new(),
+                Some(Ok(study)) => summary(study),
+                Some(Err(_)) => String::new(),
+                None => "drawing machines …".into(),
             };
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 if ui.button("Close").on_hover_text("T").clicked() {
@@ -44,10 +45,11 @@ pub fn show(
             });
         });
         match study {
-            Err(why) => {
+            None => {}
+            Some(Err(why)) => {
                 ui.label(RichText::new(why).color(colour(p.reaction)));
             }
-            Ok(study) => {
+            Some(Ok(study)) => {
                 ScrollArea::horizontal().auto_shrink([false, false]).show(ui, |ui| {
                     ui.horizontal_top(|ui| columns(ui, &p, study, time, commands));
                 });

@@ -8,6 +8,7 @@ use std::time::Instant;
 use thiserror::Error;
 use winit::event_loop::{ControlFlow, EventLoop};
 
+use crate::app::jobs::Threads;
 use crate::app::{AppState, Command};
 use crate::picture::render::Renderer;
 use crate::picture::render::offscreen::{Gpu, NoAdapter};
@@ -46,7 +47,7 @@ pub enum WindowError {
 /// If there is no display, library or adapter, or the scenario cannot start.
 pub fn run(scenario: Scenario, theme: Theme) -> Result<(), WindowError> {
     check_libraries()?;
-    let mut app_state = AppState::open_or_explain(scenario, theme)?;
+    let mut app_state = AppState::open_or_explain(scenario, theme)?.with_workers(Threads);
     if app_state.view_state().message.is_none() && app_state.session().run().waiting().is_none() {
         app_state.carry_out(Command::TogglePlay);
     }

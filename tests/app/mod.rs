@@ -1,6 +1,7 @@
 //! The window, driven as a person does: widgets by label, the pointer in the scene, keys; and pictures of it.
 
 mod files;
+mod jobs;
 mod panel;
 mod pointer;
 mod refusal;
@@ -17,7 +18,8 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 6] = [files::TESTS, panel::TESTS, pointer::TESTS, refusal::TESTS, run::TESTS, view::TESTS];
+pub const TESTS: [&[Test]; 7] =
+    [files::TESTS, jobs::TESTS, panel::TESTS, pointer::TESTS, refusal::TESTS, run::TESTS, view::TESTS];
 
 type Window = Harness<'static, App>;
 

@@ -239,7 +239,7 @@ pub const KEYS: [Key; 19] = [
         "Keeps to one side of every change point, where two drives are parallel and pin forces grow without bound.",
     ),
     Key::number("task.b", POSE_CONSTANT, Key::REQUIRED, "Pose constant b at A: which reactionless plane.")
-        .when("task.turn, for samples of drive angles have their own b"),
+        .when("no samples of drive angles, which have their own b: task.turn turns them"),
     Key::number(
         "task.b_to",
         POSE_CONSTANT,

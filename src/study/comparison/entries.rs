@@ -27,27 +27,47 @@ pub struct Comparison {
     sort: Option<(usize, bool)>,
 }
 
+/// What a way is called, and its run, or why there is none.
+pub type Outcome = (String, Result<Arc<Compared>, String>);
+
+/// Runs the ways of a scenario's task; `goes_on` hears how much is done, from 0 to 1, and says whether the rest is
+/// wanted. `None` if it is not.
+pub fn run_ways(scenario: &Scenario, goes_on: &mut dyn FnMut(f64) -> bool) -> Option<Vec<Outcome>> {
+    let ways = alternatives(scenario);
+    let count = ways.len() as f64;
+    let run = |(i, (way, scenario)): (usize, (_, Scenario))| {
+        let way: super::Alternative = way;
+        goes_on(i as f64 / count).then(|| {
+            let outcome = Compared::of(scenario).map(Arc::new).map_err(|why| why.to_string());
+            (way.title().to_owned(), outcome)
+        })
+    };
+    ways.into_iter().enumerate().map(run).collect()
+}
+
 impl Comparison {
     /// The ways of a scenario's task.
     pub fn of(scenario: &Scenario) -> Self {
-        let mut comparison = Self { task: scenario.clone(), entries: Vec::new(), sort: None };
-        comparison.fill();
+        let mut comparison = Self::empty(scenario);
+        comparison.follow_with(scenario, run_ways(scenario, &mut |_| true).unwrap_or_default());
         comparison
     }
 
-    fn fill(&mut self) {
+    /// One without any run yet.
+    pub fn empty(scenario: &Scenario) -> Self {
+        Self { task: scenario.clone(), entries: Vec::new(), sort: None }
+    }
+
+    /// Puts other runs of the ways of a task in place of its own; what was kept, shown and sorted stays so.
+    pub fn follow_with(&mut self, scenario: &Scenario, ways: Vec<Outcome>) {
+        self.task = scenario.clone();
         let shown: Vec<String> = self.entries.iter().filter(|e| e.shown).map(|e| e.title.clone()).collect();
         let kept: Vec<Entry> = self.entries.drain(..).filter(|e| e.kept).collect();
-        self.entries = alternatives(&self.task)
-            .into_iter()
-            .map(|(way, scenario)| {
-                let outcome = Compared::of(scenario).map(Arc::new).map_err(|why| why.to_string());
-                let title = way.title().to_owned();
-                let shown = outcome.is_ok() && shown.contains(&title);
-                Entry { title, outcome, shown, kept: false }
-            })
-            .chain(kept)
-            .collect();
+        let own = ways.into_iter().map(|(title, outcome)| {
+            let shown = outcome.is_ok() && shown.contains(&title);
+            Entry { title, outcome, shown, kept: false }
+        });
+        self.entries = own.chain(kept).collect();
     }
 
     /// Runs the ways again if the task has changed; whether it had.
@@ -55,8 +75,7 @@ impl Comparison {
         if self.task == *scenario {
             return false;
         }
-        self.task = scenario.clone();
-        self.fill();
+        self.follow_with(scenario, run_ways(scenario, &mut |_| true).unwrap_or_default());
         true
     }
 

@@ -7,7 +7,7 @@ mod summary;
 
 pub use alternative::{Alternative, SLOWER};
 pub use difference::Difference;
-pub use entries::{Comparison, Entry};
+pub use entries::{Comparison, Entry, Outcome, run_ways};
 pub use summary::{COLUMNS, Column, Summary};
 
 use crate::mechanics::machine::Machine;

@@ -51,6 +51,14 @@ impl Study {
     /// # Errors
     /// If nothing varies, a key or spread is wrong, or a length cannot vary alone.
     pub fn of(run: &Run) -> Result<Self, ToleranceError> {
+        Self::watched(run, &mut |_| true).map(|study| study.expect("nobody stopped it"))
+    }
+
+    /// The same; `goes_on` hears how much is done, from 0 to 1, and says whether the rest is wanted. `None` if it is not.
+    ///
+    /// # Errors
+    /// As [`of`](Self::of).
+    pub fn watched(run: &Run, goes_on: &mut dyn FnMut(f64) -> bool) -> Result<Option<Self>, ToleranceError> {
         let scenario = run.scenario();
         let plant = scenario.plant_machine().map_err(ToleranceError::Machine)?;
         let tolerance = scenario.tolerance.clone();
@@ -58,7 +66,11 @@ impl Study {
         let ensemble = Ensemble::new(&plant, &run.plan().motion, INSTANTS, &tolerance.spreads_or_default(), seed)?;
         let mut sampler = ensemble.sampler();
         let mut outcomes: Vec<Outcome> = Vec::with_capacity(samples as usize + CHUNK);
-        for chunk in 0..samples.div_ceil(CHUNK as u64) {
+        let chunks = samples.div_ceil(CHUNK as u64);
+        for chunk in 0..chunks {
+            if !goes_on(chunk as f64 / chunks as f64) {
+                return Ok(None);
+            }
             outcomes.extend(sampler.outcomes(chunk));
         }
         outcomes.truncate(samples as usize);
@@ -82,7 +94,7 @@ impl Study {
         let bands = Bands::of(&ensemble, samples);
         let mut shares = Shares::of(&ensemble).parameters;
         shares.sort_by(|a, b| b.moment_share.total_cmp(&a.moment_share));
-        Ok(Self {
+        Ok(Some(Self {
             samples,
             parameters: ensemble.parameters().len(),
             agreement: Agreement::of(&bands),
@@ -96,7 +108,7 @@ impl Study {
             spectra: spectra(run),
             left_out: left_out(scenario),
             tolerance,
-        })
+        }))
     }
 }
 
