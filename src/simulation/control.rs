@@ -11,8 +11,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::mechanics::dynamics::torques;
-use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Units, Vector};
+use crate::mechanics::dynamics::{by_drives, first, torques};
+use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, Units, Vector};
 use crate::planning::Reference;
 use crate::settings::key::{Holds, Key};
 use crate::settings::range::{Check, Range};
@@ -218,13 +218,22 @@ impl Controller {
         self.torque(&Reference::at_rest(reading.q), &at_rest, loaded)
     }
 
-    /// The same as [`torque`](Self::torque) at the machine's own size, of angles and rates that are known exactly, on a
-    /// base that `MOVES` or not; zero beyond the drives.
-    #[inline]
+    /// Motor torques, N m; `loaded` while the plant holds its payload.
+    pub fn torque(&self, reference: &Reference, reading: &Reading, loaded: bool) -> PerDrive {
+        let size = reading.rates.len();
+        match size > reading.q.len() {
+            true => by_drives!(size, torque_moving(self, reference, reading, loaded)),
+            false => by_drives!(size, torque_fixed(self, reference, reading, loaded)),
+        }
+    }
+
+    /// The same at the machine's own size, of angles and rates relative to the base, on one that `MOVES` or not; zero
+    /// beyond the drives.
+    #[inline(always)]
     pub(crate) fn torque_at<const N: usize, const MOVES: bool>(
         &self,
         reference: &Reference,
-        q: &[f64; N],
+        (q, qd): (&[f64; N], &[f64; N]),
         (e, rate): (&[Vector; N], &[f64; N]),
         (base, velocity): (Pose2, Vector),
         loaded: bool,
@@ -232,54 +241,55 @@ impl Controller {
         let n = if MOVES { N - 1 } else { N };
         let (aim, aim_rate) = (reference.q.0.array::<N>(), reference.qd.array::<N>());
         let (kp, kd) = (self.kp.array::<N>(), self.kd.array::<N>());
-        let (angle, turning) = if MOVES { (base.angle, rate[N - 1]) } else { (0.0, 0.0) };
-        let (mut own, mut wanted) = ([0.0; N], [0.0; N]);
+        let mut wanted = [0.0; N];
         for k in 0..n {
-            own[k] = rate[k] - turning;
-            wanted[k] = kd[k] * (aim_rate[k] - own[k]) + kp[k] * (aim[k] - (q[k] - angle));
+            wanted[k] = kd[k] * (aim_rate[k] - qd[k]) + kp[k] * (aim[k] - q[k]);
         }
         let model = &self.models[usize::from(loaded && self.law == ControlLaw::PayloadCompensation)];
         if self.law == ControlLaw::Pd {
             return std::array::from_fn(|k| if k < n { model.arm().diagonal(k) * wanted[k] } else { 0.0 });
         }
-        let aim_acceleration = reference.qdd.array::<N>();
-        (0..n).for_each(|k| wanted[k] += aim_acceleration[k]);
+        let acceleration = reference.qdd.array::<N>();
+        (0..n).for_each(|k| wanted[k] += acceleration[k]);
         if !MOVES {
-            return torques(model.arm(), e, &own, &wanted, model.around());
+            return torques(model.arm(), e, qd, &wanted, model.around());
         }
         if model.moves() {
-            let mut units = [Vector::default(); MAX_DRIVES];
-            units[..N].copy_from_slice(e);
-            let (wanted, rate) = (PerDrive::of_array(n, wanted), PerDrive::from(*rate));
-            return *model.torque_for(&wanted, &units, &rate, base, velocity).array();
+            return model.torque_for(&wanted, e, rate, base, velocity);
         }
         // In the base's own axes.
         let turn = e[N - 1].conj();
-        let mut torque = torques(model.arm(), &e.map(|e| e * turn), &own, &wanted, model.around());
+        let mut torque = torques(model.arm(), &e.map(|e| e * turn), qd, &wanted, model.around());
         torque[N - 1] = 0.0;
         torque
     }
+}
 
-    /// Motor torques, N m; `loaded` while the plant holds its payload.
-    #[inline]
-    pub fn torque(&self, reference: &Reference, reading: &Reading, loaded: bool) -> PerDrive {
-        let n = reading.q.len();
-        let correction = PerDrive::from_fn(n, |k| {
-            self.kd[k] * (reference.qd[k] - reading.qd[k]) + self.kp[k] * (reference.q[k] - reading.q[k])
-        });
-        let model = &self.models[usize::from(loaded && self.law == ControlLaw::PayloadCompensation)];
-        if self.law == ControlLaw::Pd {
-            return PerDrive::from_fn(n, |k| model.arm().diagonal(k) * correction[k]);
-        }
-        let commanded = reference.qdd.plus(1.0, &correction);
-        if model.moves() {
-            return model.torque_for(&commanded, reading.e, reading.rates, reading.base, reading.velocity);
-        }
-        // In the base's own axes.
-        let mut e = *reading.e;
-        if let Some(turn) = (reading.rates.len() > n).then(|| reading.e[n].conj()) {
-            e[..n].iter_mut().for_each(|e| *e *= turn);
-        }
-        crate::mechanics::dynamics::inverse(model.arm(), &e, &reading.qd, &commanded, model.around())
-    }
+fn torque_fixed<const N: usize>(
+    control: &Controller,
+    reference: &Reference,
+    reading: &Reading,
+    loaded: bool,
+) -> PerDrive {
+    torque_of::<N, false>(control, reference, reading, loaded)
+}
+
+fn torque_moving<const N: usize>(
+    control: &Controller,
+    reference: &Reference,
+    reading: &Reading,
+    loaded: bool,
+) -> PerDrive {
+    torque_of::<N, true>(control, reference, reading, loaded)
+}
+
+fn torque_of<const N: usize, const MOVES: bool>(
+    control: &Controller,
+    reference: &Reference,
+    reading: &Reading,
+    loaded: bool,
+) -> PerDrive {
+    let (own, all) = ((reading.q.0.array(), reading.qd.array()), (first(reading.e), reading.rates.array()));
+    let base = (reading.base, reading.velocity);
+    PerDrive::of_array(reading.q.len(), control.torque_at::<N, MOVES>(reference, own, all, base, loaded))
 }

@@ -18,7 +18,7 @@
 //! has no lever about R.
 
 use super::{Base, BaseKind, Contacts, Friction, SlipDirections, Slope, State};
-use crate::mechanics::dynamics::{BaseWrench, Surroundings, by_drives, first};
+use crate::mechanics::dynamics::{BaseWrench, Surroundings, assemble, times};
 use crate::mechanics::machine::{Inertia, Machine, MachineError};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Units, Vector, cross, dot};
 
@@ -253,30 +253,27 @@ impl MovingBody {
         self.whole.c[n][n].re + self.whole.spin[n] + g.norm_sqr() / self.mass
     }
 
-    /// The torques that would give the drives these accelerations relative to the base, rad/s², in this state of
-    /// motion: what a controller that knows everything computes.
-    pub fn torque_for(
+    /// The torques that would give the drives these accelerations relative to a base that moves, rad/s², in this state
+    /// of motion: what a controller that knows everything computes; zero beyond the drives.
+    #[inline]
+    pub(crate) fn torque_for<const N: usize>(
         &self,
-        commanded: &PerDrive,
-        e: &Units,
-        qd: &PerDrive,
+        commanded: &[f64; N],
+        e: &[Vector; N],
+        rate: &[f64; N],
         base: Pose2,
         velocity: Vector,
-    ) -> PerDrive {
-        let n = commanded.len();
-        let (h, v) = crate::mechanics::dynamics::mass_matrix(&self.whole, e, qd);
-        let hold = self.held(base, velocity, qd.get(n).copied().unwrap_or(0.0));
-        let outer = by_drives!(self.whole.drives, outer_padded(self, e, hold));
-        let mut qdd = PerDrive::from_fn(self.whole.drives, |k| commanded.get(k).copied().unwrap_or(0.0));
-        if self.moves {
-            // Torques between drives and base cancel, so the base turns by what outer forces leave.
-            let sum = |x: &PerDrive| x.iter().sum::<f64>();
-            let all: f64 = (0..=n).map(|k| h.momentum_row(k)).sum();
-            let turn = (sum(&outer) - sum(&h.times(&qdd)) - sum(&v)) / all;
-            qdd.iter_mut().for_each(|a| *a += turn);
-        }
-        let inertial = h.times(&qdd);
-        PerDrive::from_fn(n, |k| inertial[k] + v[k] - outer[k])
+    ) -> [f64; N] {
+        let (h, v) = assemble(&self.whole, e, rate);
+        let outer = self.outer::<N, true>(e, self.held(base, velocity, rate[N - 1]));
+        // Torques between drives and base cancel, so the base turns by what outer forces leave.
+        let sum = |x: &[f64; N]| x.iter().sum::<f64>();
+        let all: f64 = (0..N).map(|k| (0..N).map(|l| h[l][k]).sum::<f64>()).sum();
+        let turn = (sum(&outer) - sum(&times(&h, commanded)) - sum(&v)) / all;
+        let inertial = times(&h, &commanded.map(|a| a + turn));
+        let mut torque = std::array::from_fn(|k| inertial[k] + v[k] - outer[k]);
+        torque[N - 1] = 0.0;
+        torque
     }
 
     /// Generalised forces of weight, of the force at the end effector and of the support, N m, the moment on the base
@@ -305,13 +302,6 @@ impl MovingBody {
         let (p, v) = (base.at, velocity);
         let force = force - Vector::new(k[0] * p.re + c[0] * v.re, k[1] * p.im + c[1] * v.im);
         (force, moment - k[2] * base.angle - c[2] * turning)
-    }
-}
-
-fn outer_padded<const N: usize>(body: &MovingBody, e: &Units, hold: (Vector, f64)) -> PerDrive {
-    match body.moves {
-        true => body.outer::<N, true>(first(e), hold).into(),
-        false => body.outer::<N, false>(first(e), hold).into(),
     }
 }
 

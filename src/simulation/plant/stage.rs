@@ -64,15 +64,15 @@ impl<const N: usize> Point<N> {
         Self { q: *state.q.array(), momenta: *state.momenta.array(), place, momentum, wheel }
     }
 
-    /// A time `h` after a state along a slope, s.
+    /// A time `h` after a state along a slope, s, on a base that `MOVES` or not.
     #[inline(always)]
-    pub fn along(from: &State, x: &Rates<N>, h: f64) -> Self {
+    pub fn along<const MOVES: bool>(from: &State, x: &Rates<N>, h: f64) -> Self {
         let (q, momenta) = (from.q.array::<N>(), from.momenta.array::<N>());
         Self {
             q: std::array::from_fn(|k| q[k] + h * x.q[k]),
             momenta: std::array::from_fn(|k| momenta[k] + h * x.momenta[k]),
-            place: from.place + h * x.place,
-            momentum: from.momentum + h * x.momentum,
+            place: if MOVES { from.place + h * x.place } else { from.place },
+            momentum: if MOVES { from.momentum + h * x.momentum } else { from.momentum },
             wheel: from.wheel + h * x.wheel,
         }
     }
@@ -95,15 +95,17 @@ impl<const N: usize> Rates<N> {
 
     /// Classical fourth-order Runge–Kutta: a time `h` later by slopes at the start, twice half-way, and at the end, s.
     #[inline(always)]
-    pub fn stepped(from: &State, k: [&Self; 4], h: f64) -> State {
+    pub fn stepped<const MOVES: bool>(from: &State, k: [&Self; 4], h: f64) -> State {
         let w = [h / 6.0, h / 3.0, h / 3.0, h / 6.0];
         let mut state = *from;
         let (q, momenta) = (state.q.array_mut::<N>(), state.momenta.array_mut::<N>());
         for (x, w) in k.into_iter().zip(w) {
             (0..N).for_each(|k| q[k] += w * x.q[k]);
             (0..N).for_each(|k| momenta[k] += w * x.momenta[k]);
-            state.place += w * x.place;
-            state.momentum += w * x.momentum;
+            if MOVES {
+                state.place += w * x.place;
+                state.momentum += w * x.momentum;
+            }
             state.wheel += w * x.wheel;
             state.work += w * x.work;
             state.lost += w * x.lost;

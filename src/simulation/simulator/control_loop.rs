@@ -155,7 +155,7 @@ impl ControlLoop {
 
     /// What motors and wheel do at this instant, from angles and rates that are known exactly, at the machine's own
     /// size, on a base that `MOVES` or not.
-    #[inline]
+    #[inline(always)]
     pub(super) fn command<const N: usize, const MOVES: bool>(
         &self,
         reference: &Reference,
@@ -166,7 +166,15 @@ impl ControlLoop {
     ) -> Command<N> {
         let mut torque = match &self.sampling {
             Some(Sampling { held: Some(held), .. }) => *held.array(),
-            _ => self.controller.torque_at::<N, MOVES>(reference, &at.q, motion, base, loaded),
+            _ => {
+                let (mut q, mut qd) = (at.q, *motion.1);
+                if MOVES {
+                    let (n, rate) = (N - 1, motion.1);
+                    (0..n).for_each(|k| (q[k], qd[k]) = (q[k] - base.0.angle, qd[k] - rate[n]));
+                    (q[n], qd[n]) = (0.0, 0.0);
+                }
+                self.controller.torque_at::<N, MOVES>(reference, (&q, &qd), motion, base, loaded)
+            }
         };
         if let Some(limits) = &self.limits {
             torque.iter_mut().zip(limits.iter()).for_each(|(t, limit)| *t = t.clamp(-limit, *limit));

@@ -327,11 +327,11 @@ fn stepped_of<const N: usize, const MOVES: bool>(
     let body = simulation.body();
     let k1 = Rates::of(&from.slope);
     let aim = simulation.aim(middle, segment);
-    let k2 = simulation.stage::<N, MOVES>(&Point::along(state, &k1, 0.5 * h), &aim, slip, stuck_torque);
-    let k3 = simulation.stage::<N, MOVES>(&Point::along(state, &k2.rates, 0.5 * h), &aim, slip, stuck_torque);
+    let k2 = simulation.stage::<N, MOVES>(&Point::along::<MOVES>(state, &k1, 0.5 * h), &aim, slip, stuck_torque);
+    let k3 = simulation.stage::<N, MOVES>(&Point::along::<MOVES>(state, &k2.rates, 0.5 * h), &aim, slip, stuck_torque);
     let aim = simulation.aim(to, segment);
-    let k4 = simulation.stage::<N, MOVES>(&Point::along(state, &k3.rates, h), &aim, slip, stuck_torque);
-    let mut state = Rates::stepped(state, [&k1, &k2.rates, &k3.rates, &k4.rates], h);
+    let k4 = simulation.stage::<N, MOVES>(&Point::along::<MOVES>(state, &k3.rates, h), &aim, slip, stuck_torque);
+    let mut state = Rates::stepped::<MOVES>(state, [&k1, &k2.rates, &k3.rates, &k4.rates], h);
     if body.contacts().stick() {
         state = body.stuck(state, slip);
     }
