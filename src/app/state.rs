@@ -20,7 +20,7 @@ use crate::settings::text::brief;
 use crate::simulation::frame::Totals;
 use crate::simulation::signals::{Signal, signals};
 use crate::study::comparison::{Comparison, Outcome, run_ways};
-use crate::study::tolerance::Study;
+use crate::study::tolerance::{Study, ToleranceError};
 
 /// A session on display.
 pub struct AppState {
@@ -65,8 +65,8 @@ struct Jobs {
 /// The most steps that are run ahead to see how far the base will move.
 const MOST_AHEAD: f64 = 20_000.0;
 
-/// How soon progress is shown again.
-const SHOWN_AGAIN: std::time::Duration = std::time::Duration::from_millis(100);
+/// How soon progress is shown again, s.
+const SHOWN_AGAIN: f32 = 0.1;
 
 /// The most wall time that one repaint makes up for, s: after a pause of the program time does not jump.
 const MOST_OWED: f64 = 0.1;
@@ -280,7 +280,7 @@ impl AppState {
         if self.session.is_moving() {
             ui.ctx().request_repaint();
         } else if self.under_way().is_some() {
-            ui.ctx().request_repaint_after(SHOWN_AGAIN);
+            ui.ctx().request_repaint_after_secs(SHOWN_AGAIN);
         }
     }
 
@@ -562,9 +562,9 @@ impl AppState {
             Some(waiting) => self.study = Some((scenario.clone(), Err(waiting.why.to_string()))),
             None => {
                 let run = self.session.run().clone();
-                let job = self.start(move |ticket| {
-                    let study = Study::watched(&run, &mut |done| ticket.goes_on(done));
-                    study.map_err(|why| why.to_string()).transpose()
+                let job = self.start(move |ticket| match Study::watched(&run, &mut |done| ticket.goes_on(done)) {
+                    Err(ToleranceError::Stopped) => None,
+                    study => Some(study.map_err(|why| why.to_string())),
                 });
                 self.jobs.study = Some((scenario.clone(), job));
             }

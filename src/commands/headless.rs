@@ -14,6 +14,7 @@ use super::exit::say;
 use super::failure::Failure;
 use super::input::{Settings, scenario};
 use super::output::{Format, Table};
+use super::simulate::trusted;
 use stillbase::settings::number::fixed;
 
 /// Simulate scenarios without a window and record them for the Rerun viewer
@@ -76,6 +77,8 @@ struct Row {
     #[serde(skip_serializing_if = "Option::is_none")]
     peak_moment_past_wheel: Option<f64>,
     reactionless: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    audit_failed: Option<String>,
     verdict: String,
     #[serde(skip)]
     answer: String,
@@ -94,6 +97,7 @@ impl From<Recording> for Row {
             peak_base_moment: recording.peak_base_moment,
             peak_moment_past_wheel: recording.verdict.past_wheel,
             reactionless: recording.reactionless,
+            audit_failed: recording.verdict.fault.as_ref().map(ToString::to_string),
             verdict: recording.verdict.sentence(),
             answer: recording.verdict.answer(),
             remarks: recording.verdict.remarks().into_iter().map(|r| r.long).collect(),
@@ -114,7 +118,8 @@ impl Headless {
         for row in &answer.recordings {
             row.remarks.iter().for_each(|remark| say(format!("{}: {remark}", row.scenario)));
         }
-        self.format.print(&answer, table)
+        self.format.print(&answer, table)?;
+        answer.recordings.iter().try_for_each(|row| trusted(&row.scenario, row.audit_failed.clone()))
     }
 
     fn scenarios(&self) -> Result<Vec<Scenario>, Failure> {

@@ -20,9 +20,9 @@ Examples:
   stillbase keys friction
   stillbase keys base. --json")]
 pub struct Keys {
-    /// Only the keys that contain this, in their name or in what is said of them
+    /// Only the keys with all of these in their name, such as link.5.com, or in what is said of them, such as Hz
     #[arg(value_name = "WORD")]
-    word: Option<String>,
+    words: Vec<String>,
     /// As a page of documentation
     #[arg(long, conflicts_with = "json")]
     markdown: bool,
@@ -55,8 +55,11 @@ struct Row {
 impl Keys {
     /// Prints them.
     pub fn run(&self) -> Result<(), Failure> {
-        let word = self.word.as_deref().unwrap_or_default().to_lowercase();
-        let asked = |key: &&Key| key.path.contains(&word) || key.words.to_lowercase().contains(&word);
+        let sought: Vec<String> = self.words.iter().flat_map(|w| w.split_whitespace()).map(str::to_lowercase).collect();
+        let asked = |key: &&Key| {
+            let all = format!("{} {} {} {}", key.path, key.words, key.holds, key.when).to_lowercase();
+            sought.iter().all(|word| all.contains(word) || key.matches(word))
+        };
         let some = |text: &'static str| (!text.is_empty()).then_some(text);
         let of_part = |&(part, keys): &(&'static str, &'static [Key])| {
             keys.iter().filter(asked).map(move |key| Row {
@@ -71,8 +74,9 @@ impl Keys {
         };
         let keys: Vec<Row> = KEYS.iter().flat_map(of_part).collect();
         if keys.is_empty() {
-            let word = stillbase::settings::range::clipped(&word);
-            return Err(Failure::no_answer(format!("no key contains {word:?}: `stillbase keys` lists all of them")));
+            let words = stillbase::settings::range::clipped(&sought.join(" "));
+            let why = format!("nothing is said of {words:?} in the list of keys: `stillbase keys` prints all of it");
+            return Err(Failure::no_answer(why));
         }
         self.format
             .print(&Answer { keys }, |answer| if self.markdown { page(&answer.keys) } else { list(&answer.keys) })

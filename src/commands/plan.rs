@@ -27,6 +27,9 @@ use super::output::{Format, Table};
 use super::reach::OfMend;
 use stillbase::settings::number::fixed;
 
+/// What a plan of a machine is called until a file gives it a name.
+const NAMELESS: &str = "plan";
+
 /// Plan a motion through points: which b serves them, along what, how fast, at what cost
 ///
 /// What cannot be followed is refused before anything moves, with the first point of failure, its reason, the nearest b
@@ -269,7 +272,7 @@ impl Plan {
         if let Some(file) = &self.output {
             check_new(file, self.force)?;
         }
-        let scenario = self.scenario()?;
+        let mut scenario = self.scenario()?;
         planes_of(&scenario.machine)?;
         let planes = Planes::of(&scenario.machine)?;
         let common = planes.common(&scenario.task.points()).map_or(Vec::new(), |set: BSet| set.intervals);
@@ -331,6 +334,11 @@ impl Plan {
                 answer.blended = plan.blended;
                 self.format.print(&answer, table)?;
                 if let Some(file) = &self.output {
+                    // Several plans can stand in one recording or table then.
+                    if scenario.name == NAMELESS {
+                        scenario.name =
+                            file.file_stem().map_or_else(|| NAMELESS.into(), |s| s.to_string_lossy().into());
+                    }
                     write_new(file, scenario.to_toml().as_bytes(), self.force)?;
                     say(format!("wrote {}", file.display()));
                 }
@@ -391,7 +399,7 @@ impl Plan {
                     return Err(Failure::wrong_input("a machine alone is no task: want points X,Y, or a scenario"));
                 }
                 let own = scenario(DEFAULT_SCENARIO, &Settings::default())?;
-                let with = Scenario { machine, name: "plan".into(), title: String::new(), compare_b: None, ..own };
+                let with = Scenario { machine, name: NAMELESS.into(), title: String::new(), compare_b: None, ..own };
                 super::input::set(with, &self.settings)?
             }
             // The reader of machines or of scenarios says what is wrong with the file, by what it was meant to be.

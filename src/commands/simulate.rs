@@ -16,7 +16,7 @@ use super::csv_file::Csv;
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, check_size, yes};
+use super::output::{Format, check_size};
 use stillbase::settings::number::fixed;
 
 /// Run a scenario and print every signal over time as CSV
@@ -71,6 +71,8 @@ struct Outcome {
     past_limit: Option<Past>,
     moved: bool,
     reactionless: bool,
+    #[serde(skip)]
+    answer: String,
     sentence: String,
     remarks: Vec<String>,
     audit: Columns<f64>,
@@ -102,6 +104,7 @@ impl Outcome {
             base_shift: totals.shift,
             base_tilt: totals.base_angle,
             miss: verdict.miss,
+            answer: verdict.answer(),
             sentence: verdict.sentence(),
             remarks: verdict.remarks().into_iter().map(|r| r.long).collect(),
             past_limit: verdict.past_limit.map(|(angle, by)| Past { angle, by }),
@@ -175,7 +178,7 @@ impl Simulate {
                 fixed(verdict.peak_base_moment, 6),
                 past.map_or_else(String::new, |n| format!(" past the wheel {} N m,", fixed(n, 6))),
                 fixed(verdict.peak_base_force, 6),
-                yes(verdict.reactionless),
+                verdict.answer,
             ));
             for remark in &verdict.remarks {
                 say(format!("{}: {remark}", scenario.name));

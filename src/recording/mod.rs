@@ -244,7 +244,6 @@ fn write(
         for (scenario, case) in scenarios.iter().zip(&cases) {
             let mut tick = |step| progress(Progress { done: before + step, of: 2 * total, what: &scenario.name });
             let (peaks, verdict) = recorder::record(&mut set, scenario, case, &mut tick)?;
-            let fault = case.fault.iter().map(|why| format!("{}: audit failed: {why}", scenario.name));
             before += case.steps;
             recordings.push(Recording {
                 scenario: scenario.name.clone(),
@@ -255,7 +254,7 @@ fn write(
                 peak_base_moment: verdict.arm_moment,
                 reactionless: verdict.reactionless,
                 verdict,
-                notes: set.pictures.notes().into_iter().chain(fault).collect(),
+                notes: set.pictures.notes(),
             });
         }
         Ok(())

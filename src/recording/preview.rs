@@ -30,8 +30,6 @@ pub struct Preview {
     pub steps: u64,
     /// The largest of everything.
     pub peaks: Peaks,
-    /// The first audit that fails, in words.
-    pub fault: Option<String>,
     /// Least and greatest b, rad.
     pub b: [f64; 2],
     /// The signals that it records.
@@ -78,7 +76,6 @@ impl Preview {
         let joints = JointSpace::over(&run, b)
             .and_then(|space| Some(Eye { orbit: orbit(space.camera())?, axes: space.drives() }));
         Ok(Self {
-            fault: last.fault().map(|fault| fault.to_string()),
             name: scenario.name.clone(),
             title: if scenario.title.is_empty() { scenario.name.clone() } else { scenario.title.clone() },
             root: EntityPath::new(vec![EntityPathPart::new(scenario.name.as_str())]),

@@ -26,7 +26,7 @@ const STILL: f64 = 1e-9;
 /// What a run comes to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
-    /// Whether the arm transmits nothing: neither n_B nor dynamic f_B.
+    /// Whether the arm transmits nothing, neither n_B nor dynamic f_B, and no audit has failed.
     pub reactionless: bool,
     /// Whether the base feels nothing, past a reaction wheel if it has one.
     pub base_feels_nothing: bool,
@@ -66,7 +66,7 @@ impl Verdict {
         let (by, angle) = peaks.past_limit;
         let name = |i: usize| scenario.machine.angles().get(i).map_or_else(String::new, |a| a.name.clone());
         Self {
-            reactionless: peaks.is_reactionless(),
+            reactionless: peaks.is_reactionless() && frame.fault().is_none(),
             base_feels_nothing: peaks.base_feels_nothing(),
             moved: peaks.rate > STILL,
             arm_moment: peaks.arm_moment,

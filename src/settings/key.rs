@@ -5,6 +5,7 @@ use std::fmt;
 
 use toml::{Table, Value};
 
+use super::change::DEFAULT;
 use super::range::{Check, Range};
 
 /// One setting.
@@ -93,6 +94,31 @@ impl Key {
                 Some(range) => range.unit(),
                 None => "",
             },
+        }
+    }
+}
+
+impl Holds {
+    /// Whether a value is of the kind that is held; the word `default` always is.
+    pub fn takes(&self, value: &Value) -> bool {
+        let number = |value: &Value| value.is_float() || value.is_integer();
+        let list = |value: &Value, count: Option<usize>| {
+            let fits = |list: &Vec<Value>| count.is_none_or(|n| list.len() == n) && list.iter().all(number);
+            value.as_array().is_some_and(fits)
+        };
+        if value.as_str() == Some(DEFAULT) {
+            return true;
+        }
+        match self {
+            Self::Number(_) => number(value),
+            Self::Whole(_) => value.is_integer(),
+            Self::PerDrive(_) => number(value) || list(value, None),
+            Self::List(count, _) => list(value, Some(*count)),
+            Self::Points(_) => value.as_array().is_some_and(|points| points.iter().all(|p| list(p, Some(2)))),
+            Self::Choice(words) => value.as_str().is_some_and(|word| words.contains(&word)),
+            Self::Switch => value.is_bool(),
+            Self::Spread(_) => value.is_table(),
+            Self::Rows => true,
         }
     }
 }

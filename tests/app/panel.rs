@@ -131,7 +131,8 @@ fn any_setting_is_found_and_typed() {
         h.run_steps(2);
         h.key_press(Key::Enter);
         h.run_steps(3);
-        let said = ["want 1e-9", "expected one of"].iter().any(|words| h.query_by_label_contains(words).is_some());
+        let said =
+            ["want 1e-9", "want fixed, compliant, free"].iter().any(|words| h.query_by_label_contains(words).is_some());
         (session(&h).scenario().clone(), said)
     };
     let machine = |scenario: &Scenario, key: &str| scenario.value(key).and_then(|value| value.as_float());

@@ -59,7 +59,7 @@ const CRATES: &[(&str, &[&str])] = &[
 const EDGES: &[(&str, &[&str])] = &[
     ("std::time", &["picture/render/shader.rs", "app/window.rs"]),
     ("std::env", &["main.rs", "app/window.rs"]),
-    ("std::thread", &["commands/interrupt.rs", "commands/tolerance/parallel.rs", "recording/store.rs"]),
+    ("std::thread", &["app/jobs.rs", "commands/interrupt.rs", "commands/tolerance/parallel.rs", "recording/store.rs"]),
     ("std::net", &[]),
     ("std::process", &["commands/exit.rs", "files/fault.rs", "files/new_file.rs", "main.rs"]),
     // Text comes in at one place; everything else of the core takes it from there.

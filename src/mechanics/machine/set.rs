@@ -193,7 +193,8 @@ fn as_number(value: &Value) -> Option<f64> {
 }
 
 fn number(key: &str, value: &Value) -> Result<f64, MachineError> {
-    as_number(value).ok_or_else(|| bad(key, value, "one number"))
+    let want = if is_default(value) { "one number: there is no default" } else { "one number" };
+    as_number(value).ok_or_else(|| bad(key, value, want))
 }
 
 fn pair(key: &str, value: &Value) -> Result<[f64; 2], MachineError> {

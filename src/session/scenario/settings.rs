@@ -61,6 +61,16 @@ pub enum SettingError {
         /// What, and what would be right.
         why: String,
     },
+    /// A value that a key does not take.
+    #[error("{path} is {value:?}: want {want}")]
+    Value {
+        /// The key.
+        path: String,
+        /// What was given.
+        value: String,
+        /// What would be right.
+        want: String,
+    },
     /// What is wrong with the machine.
     #[error(transparent)]
     Machine(#[from] machine::MachineError),
@@ -94,7 +104,7 @@ impl Scenario {
             self.machine = self.machine.with(&of_machine)?;
         }
         for (part, value) in change.iter().filter(|(key, _)| !PARTS.contains(&key.as_str())) {
-            let wrong = |why: String| SettingError::Part { part: part.clone(), why };
+            let wrong = |why: String| blame(part, value).unwrap_or(SettingError::Part { part: part.clone(), why });
             let default = Table::new();
             let inner = || match value {
                 Value::Table(inner) => Ok(inner),
@@ -274,6 +284,27 @@ impl Scenario {
         list.extend(self.plant.fits(n));
         list
     }
+}
+
+/// The first value under a part that its key does not take.
+fn blame(part: &str, value: &Value) -> Option<SettingError> {
+    let whole = change::one(part, value.clone());
+    change::leaves(&whole).into_iter().find_map(|(path, value)| {
+        let said = |want: String| {
+            let value = clipped(&change::typed(value));
+            Some(SettingError::Value { path: clipped(&path), value, want })
+        };
+        match key_of(&path) {
+            Some(key) if key.holds.takes(value) => None,
+            Some(key) if key.unit().is_empty() => said(key.holds.to_string()),
+            Some(key) => said(format!("{} (a number without its unit)", key.holds)),
+            None => {
+                let below = |key: &&Key| key.path.starts_with(&format!("{path}."));
+                let below: Vec<&str> = keys().filter(below).map(|key| key.path).collect();
+                if below.is_empty() { None } else { said(format!("a value for {}", below.join(", "))) }
+            }
+        }
+    })
 }
 
 /// A number of the scenario's own; none for the word `default`.

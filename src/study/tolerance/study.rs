@@ -51,14 +51,14 @@ impl Study {
     /// # Errors
     /// If nothing varies, a key or spread is wrong, or a length cannot vary alone.
     pub fn of(run: &Run) -> Result<Self, ToleranceError> {
-        Self::watched(run, &mut |_| true).map(|study| study.expect("nobody stopped it"))
+        Self::watched(run, &mut |_| true)
     }
 
-    /// The same; `goes_on` hears how much is done, from 0 to 1, and says whether the rest is wanted. `None` if it is not.
+    /// The same; `goes_on` hears how much is done, from 0 to 1, and says whether the rest is wanted.
     ///
     /// # Errors
-    /// As [`of`](Self::of).
-    pub fn watched(run: &Run, goes_on: &mut dyn FnMut(f64) -> bool) -> Result<Option<Self>, ToleranceError> {
+    /// As [`of`](Self::of), or [`ToleranceError::Stopped`] if it is not.
+    pub fn watched(run: &Run, goes_on: &mut dyn FnMut(f64) -> bool) -> Result<Self, ToleranceError> {
         let scenario = run.scenario();
         let plant = scenario.plant_machine().map_err(ToleranceError::Machine)?;
         let tolerance = scenario.tolerance.clone();
@@ -69,7 +69,7 @@ impl Study {
         let chunks = samples.div_ceil(CHUNK as u64);
         for chunk in 0..chunks {
             if !goes_on(chunk as f64 / chunks as f64) {
-                return Ok(None);
+                return Err(ToleranceError::Stopped);
             }
             outcomes.extend(sampler.outcomes(chunk));
         }
@@ -94,7 +94,7 @@ impl Study {
         let bands = Bands::of(&ensemble, samples);
         let mut shares = Shares::of(&ensemble).parameters;
         shares.sort_by(|a, b| b.moment_share.total_cmp(&a.moment_share));
-        Ok(Some(Self {
+        Ok(Self {
             samples,
             parameters: ensemble.parameters().len(),
             agreement: Agreement::of(&bands),
@@ -108,7 +108,7 @@ impl Study {
             spectra: spectra(run),
             left_out: left_out(scenario),
             tolerance,
-        }))
+        })
     }
 }
 
