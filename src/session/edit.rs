@@ -120,7 +120,7 @@ impl Edit {
 
     /// A number of the scenario's own that it sets.
     pub(super) fn own_number(&self, key: &str) -> Option<f64> {
-        self.settings()?.get(key)?.as_float()
+        change::number(self.settings()?.get(key)?)
     }
 
     /// Takes a key of the scenario's own out of what it sets; as a change of its own, if it is there.
@@ -266,7 +266,7 @@ fn title_of(change: &Table) -> String {
         None => {}
     }
     let one = |(path, value): (String, &Value)| {
-        let number = value.as_float().or_else(|| value.as_integer().map(|x| x as f64));
+        let number = change::number(value);
         let back = value.as_str() == Some(change::DEFAULT);
         match (path.as_str(), number) {
             ("task.time", Some(time)) => format!("motion time to {time:.3} s"),

@@ -120,9 +120,13 @@ pub fn leaves(table: &Table) -> Vec<(String, &Value)> {
     list
 }
 
+/// A number, whole or not.
+pub fn number(value: &Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|x| x as f64))
+}
+
 /// Whether two values say the same: 2 is 2.0.
 pub fn same(a: &Value, b: &Value) -> bool {
-    let number = |value: &Value| value.as_float().or_else(|| value.as_integer().map(|x| x as f64));
     match (a, b) {
         (Value::Array(a), Value::Array(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b)),
         _ => number(a).zip(number(b)).map_or(a == b, |(a, b)| a == b),

@@ -5,7 +5,7 @@ use std::fmt;
 
 use toml::{Table, Value};
 
-use super::change::DEFAULT;
+use super::change::{self, DEFAULT};
 use super::range::{Check, Range};
 
 /// One setting.
@@ -101,7 +101,7 @@ impl Key {
 impl Holds {
     /// Whether a value is of the kind that is held; the word `default` always is.
     pub fn takes(&self, value: &Value) -> bool {
-        let number = |value: &Value| value.is_float() || value.is_integer();
+        let number = |value: &Value| change::number(value).is_some();
         let list = |value: &Value, count: Option<usize>| {
             let fits = |list: &Vec<Value>| count.is_none_or(|n| list.len() == n) && list.iter().all(number);
             value.as_array().is_some_and(fits)
@@ -167,13 +167,11 @@ pub fn checks(keys: &[Key], at: &str, table: &Table) -> Vec<Check> {
 
 fn numbers(path: &str, value: &Value, range: Range, list: &mut Vec<Check>) {
     match value {
-        Value::Float(x) => list.push(range.check(path.to_owned(), *x)),
-        Value::Integer(x) => list.push(range.check(path.to_owned(), *x as f64)),
         // Of a list of points each goes by its place.
         Value::Array(items) if items.iter().any(Value::is_array) => {
             items.iter().enumerate().for_each(|(i, item)| numbers(&format!("{path}[{}]", i + 1), item, range, list));
         }
         Value::Array(items) => items.iter().for_each(|item| numbers(path, item, range, list)),
-        _ => {}
+        value => list.extend(change::number(value).map(|x| range.check(path.to_owned(), x))),
     }
 }

@@ -83,16 +83,13 @@ fn row(
                 ui.data_mut(|d| d.remove_temp::<String>(id));
                 let cancelled = ui.input(|i| i.key_pressed(egui::Key::Escape));
                 if text.trim() != shown && !cancelled {
-                    let parts: Vec<&str> = path.split('.').collect();
                     let typed = if text.trim().is_empty() { DEFAULT.into() } else { change::value(&text) };
-                    once(commands, Edit::at(&parts, typed));
+                    once(commands, Edit::set(path, typed));
                 }
             }
-            let usual =
-                shown.is_empty() || key.default.is_empty() || change::value(key.default) == change::value(shown);
+            let usual = shown.is_empty() || key.default.is_empty() || change::same(&change::value(key.default), value);
             if !usual && undo(ui, p, &format!("{path} back to normal"), &format!("Back to normal: {}", key.default)) {
-                let parts: Vec<&str> = path.split('.').collect();
-                once(commands, Edit::at(&parts, DEFAULT));
+                once(commands, Edit::set(path, DEFAULT));
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 let ink = colour(if wants.is_empty() { p.ink } else { p.dim });

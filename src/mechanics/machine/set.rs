@@ -188,18 +188,14 @@ fn bad(key: &str, value: &Value, want: &'static str) -> MachineError {
     MachineError::BadValue { key: key.into(), value, want }
 }
 
-fn as_number(value: &Value) -> Option<f64> {
-    value.as_float().or_else(|| value.as_integer().map(|x| x as f64))
-}
-
 fn number(key: &str, value: &Value) -> Result<f64, MachineError> {
     let want = if is_default(value) { "one number: there is no default" } else { "one number" };
-    as_number(value).ok_or_else(|| bad(key, value, want))
+    change::number(value).ok_or_else(|| bad(key, value, want))
 }
 
 fn pair(key: &str, value: &Value) -> Result<[f64; 2], MachineError> {
     let both = value.as_array().and_then(|list| match &list[..] {
-        [a, b] => Some([as_number(a)?, as_number(b)?]),
+        [a, b] => Some([change::number(a)?, change::number(b)?]),
         _ => None,
     });
     both.ok_or_else(|| bad(key, value, "two numbers, A,B"))

@@ -311,8 +311,8 @@ fn blame(part: &str, value: &Value) -> Option<SettingError> {
 fn number(value: &Value, range: Range) -> Result<Option<f64>, String> {
     match value {
         Value::String(word) if word == DEFAULT => Ok(None),
-        Value::Float(x) => Ok(Some(*x)),
-        Value::Integer(x) => Ok(Some(*x as f64)),
-        other => Err(format!("it is {}: want a number, {range}", clipped(&change::typed(other)))),
+        _ => change::number(value)
+            .map(Some)
+            .ok_or_else(|| format!("it is {}: want a number, {range}", clipped(&change::typed(value)))),
     }
 }

@@ -6,6 +6,7 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use crate::settings::change;
 use crate::settings::key::{Holds, Key};
 use crate::settings::range::Range;
 
@@ -267,8 +268,9 @@ fn whole(key: &str, value: &toml::Value, least: u64) -> Result<u64, String> {
 }
 
 fn within(key: &str, value: &toml::Value, range: Range) -> Result<f64, String> {
-    let number = value.as_float().or_else(|| value.as_integer().map(|x| x as f64));
-    number.filter(|x| range.contains(*x)).ok_or_else(|| format!("tolerance: {key} is {value}: want a number, {range}"))
+    change::number(value)
+        .filter(|x| range.contains(*x))
+        .ok_or_else(|| format!("tolerance: {key} is {value}: want a number, {range}"))
 }
 
 impl From<Tolerance> for Section {
