@@ -30,6 +30,26 @@ macro_rules! by_drives {
             _ => $f::<8>($($arg),*),
         }
     };
+    ($n:expr, $moves:expr, $f:ident($($arg:expr),*)) => {
+        match ($n, $moves) {
+            (1, false) => $f::<1, false>($($arg),*),
+            (2, false) => $f::<2, false>($($arg),*),
+            (3, false) => $f::<3, false>($($arg),*),
+            (4, false) => $f::<4, false>($($arg),*),
+            (5, false) => $f::<5, false>($($arg),*),
+            (6, false) => $f::<6, false>($($arg),*),
+            (7, false) => $f::<7, false>($($arg),*),
+            (_, false) => $f::<8, false>($($arg),*),
+            (1, true) => $f::<1, true>($($arg),*),
+            (2, true) => $f::<2, true>($($arg),*),
+            (3, true) => $f::<3, true>($($arg),*),
+            (4, true) => $f::<4, true>($($arg),*),
+            (5, true) => $f::<5, true>($($arg),*),
+            (6, true) => $f::<6, true>($($arg),*),
+            (7, true) => $f::<7, true>($($arg),*),
+            (_, true) => $f::<8, true>($($arg),*),
+        }
+    };
 }
 pub(crate) use by_drives;
 

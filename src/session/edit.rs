@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use super::older;
-use crate::mechanics::machine::PARTS;
+use crate::mechanics::machine::{PARTS, is_of_machine};
 use crate::session::scenario::{MAX_STEPS, PLACE, POSE_CONSTANT};
 use crate::settings::change;
 use crate::settings::range::{Check, shortened};
@@ -206,7 +206,7 @@ impl Edit {
             Self::SlideB { .. } | Self::PoseB { .. } => "b",
             Self::Push { .. } => "push",
             Self::Set { change } => match change.keys().next() {
-                Some(part) if PARTS.contains(&part.as_str()) => "machine",
+                Some(part) if is_of_machine(part) => "machine",
                 Some(part) => part,
                 None => "settings",
             },
@@ -272,8 +272,7 @@ fn title_of(change: &Table) -> String {
             ("task.time", Some(time)) => format!("motion time to {time:.3} s"),
             // The task is what most edits are of: it goes without saying.
             (path, number) => {
-                let of_machine = path.split('.').next().is_some_and(|part| PARTS.contains(&part));
-                let words = match of_machine {
+                let words = match is_of_machine(path) {
                     true => path.to_owned(),
                     false => path.strip_prefix("task.").unwrap_or(path).replace(['_', '.'], " "),
                 };

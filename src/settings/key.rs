@@ -151,14 +151,11 @@ pub fn names(pattern: &str, path: &str) -> bool {
     }
 }
 
-/// Every number of a table, by the keys of a part; `at` is where the table stands.
-pub fn checks(keys: &[Key], at: &str, table: &Table) -> Vec<Check> {
+/// Every number of a table, and whether its key takes it.
+pub fn checks(key_of: impl Fn(&str) -> Option<&'static Key>, table: &Table) -> Vec<Check> {
     let mut list = Vec::new();
-    for (name, value) in table {
-        let path = if at.is_empty() { name.clone() } else { format!("{at}.{name}") };
-        if let Value::Table(inner) = value {
-            list.extend(checks(keys, &path, inner));
-        } else if let Some(range) = keys.iter().find(|key| key.matches(&path)).and_then(Key::range) {
+    for (path, value) in change::leaves(table) {
+        if let Some(range) = key_of(&path).and_then(Key::range) {
             numbers(&path, value, range, &mut list);
         }
     }

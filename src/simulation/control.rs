@@ -221,10 +221,7 @@ impl Controller {
     /// Motor torques, N m; `loaded` while the plant holds its payload.
     pub fn torque(&self, reference: &Reference, reading: &Reading, loaded: bool) -> PerDrive {
         let size = reading.rates.len();
-        match size > reading.q.len() {
-            true => by_drives!(size, torque_moving(self, reference, reading, loaded)),
-            false => by_drives!(size, torque_fixed(self, reference, reading, loaded)),
-        }
+        by_drives!(size, size > reading.q.len(), torque_of(self, reference, reading, loaded))
     }
 
     /// The same at the machine's own size, of angles and rates relative to the base, on one that `MOVES` or not; zero
@@ -265,24 +262,7 @@ impl Controller {
     }
 }
 
-fn torque_fixed<const N: usize>(
-    control: &Controller,
-    reference: &Reference,
-    reading: &Reading,
-    loaded: bool,
-) -> PerDrive {
-    torque_of::<N, false>(control, reference, reading, loaded)
-}
-
-fn torque_moving<const N: usize>(
-    control: &Controller,
-    reference: &Reference,
-    reading: &Reading,
-    loaded: bool,
-) -> PerDrive {
-    torque_of::<N, true>(control, reference, reading, loaded)
-}
-
+#[inline(never)]
 fn torque_of<const N: usize, const MOVES: bool>(
     control: &Controller,
     reference: &Reference,

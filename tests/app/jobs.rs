@@ -13,6 +13,7 @@ use stillbase::picture::scene::palette::Theme;
 use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
 
+use super::screen::Screen;
 use super::{Window, session};
 use crate::Test;
 use crate::folder::Folder;
@@ -51,7 +52,7 @@ fn window(case: &str, workers: &Waiting) -> Window {
     Harness::builder()
         .with_size([1280.0, 800.0])
         .with_step_dt(0.02)
-        .wgpu()
+        .renderer(Screen::new())
         .build_eframe(move |cc| App::new(cc, app_state, Clock::Fixed(0.02)).expect("kittest draws with wgpu"))
 }
 

@@ -6,6 +6,7 @@ mod panel;
 mod pointer;
 mod refusal;
 mod run;
+mod screen;
 mod view;
 
 use egui::Key;
@@ -21,6 +22,8 @@ use crate::Test;
 pub const TESTS: [&[Test]; 7] =
     [files::TESTS, jobs::TESTS, panel::TESTS, pointer::TESTS, refusal::TESTS, run::TESTS, view::TESTS];
 
+use screen::Screen;
+
 type Window = Harness<'static, App>;
 
 /// A window of 1280 by 800 on which every repaint lasts 20 ms.
@@ -34,7 +37,7 @@ fn window_of(scenario: Scenario, theme: Theme, height: f32) -> Window {
     Harness::builder()
         .with_size([1280.0, height])
         .with_step_dt(0.02)
-        .wgpu()
+        .renderer(Screen::new())
         .build_eframe(move |cc| App::new(cc, app_state, Clock::Fixed(0.02)).expect("kittest draws with wgpu"))
 }
 

@@ -183,6 +183,7 @@ fn whatever_ends_the_program_leaves_nothing() {
 }
 
 /// Every command that writes, what it writes and what it reads.
+#[cfg(debug_assertions)]
 const WRITERS: [(&[&str], &[&str]); 13] = [
     (&["design", "nine-link", "-o", "x.toml"], &["x.toml"]),
     (&["export", "case-3", "--rate", "20", "-o", "x.csv"], &["x.csv"]),

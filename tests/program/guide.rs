@@ -37,7 +37,7 @@ fn shell(folder: &Path, line: &str) -> (String, bool) {
 /// What the shell is given for a line of a page: `cargo run` is the program.
 fn command(line: &str) -> String {
     let line = line.split(" # ").next().unwrap_or(line).trim();
-    match line.strip_prefix("cargo run --release") {
+    match line.strip_prefix("cargo run") {
         Some(rest) => format!("stillbase{}", rest.trim_start().strip_prefix("--").unwrap_or(rest)),
         None => line.to_owned(),
     }
@@ -88,7 +88,7 @@ fn tried(page: &str, run: Run) -> usize {
         match (block.kind, run) {
             ("sh", _) | ("sh long" | "sh window", Run::Everything) => {
                 for line in block.text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#')) {
-                    let ours = line.starts_with("stillbase") || line.starts_with("cargo run --release");
+                    let ours = line.starts_with("stillbase") || line.starts_with("cargo run");
                     let cargo = ["cargo test", "cargo doc", "cargo bench"].iter().any(|start| line.starts_with(start));
                     assert!(
                         ours || cargo && block.kind == "sh long",

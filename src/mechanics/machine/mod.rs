@@ -31,5 +31,5 @@ pub(crate) use file::{line_of, line_of_place};
 pub use inertia::{BALANCED, Inertia};
 pub use model::{Machine, RelativeAngle, ResolvedClosure, ResolvedLink};
 pub use ranges::MAX_ANGLE;
-pub use set::PARTS;
+pub use set::{PARTS, is_of_machine};
 pub use spec::{Angle, Attach, Closure, Drive, Length, Link, MachineSpec, Payload, PlaceOnLink, Point};

@@ -10,6 +10,11 @@ use crate::settings::range::{clipped, shortened};
 /// The tables and keys of a scenario that set its machine.
 pub const PARTS: [&str; 6] = ["link", "length", "payload", "gravity", "limits", "drive"];
 
+/// Whether a setting, such as `link.5.com`, is of the machine.
+pub fn is_of_machine(path: &str) -> bool {
+    PARTS.contains(&path.split('.').next().unwrap_or_default())
+}
+
 const KEYS: &str = "link.NAME.(com|com_normal|mass|inertia|length|axial), length.NAME, \
                     payload.(mass|inertia|offset|axial), gravity, limits.ANGLE, \
                     drive.NAME.(torque|speed|acceleration|jerk)_limit";

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use super::bounds::{USUAL_POSE_ACCELERATION, USUAL_STEP};
 use super::definition::Scenario;
 use super::error::ScenarioError;
 use super::task::StatedTask;
@@ -25,10 +26,10 @@ struct File<T> {
     /// Settings of the machine, as on the command line: `payload.mass=0.5`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     set: Vec<String>,
-    #[serde(default = "one_millisecond")]
+    #[serde(default = "usual_step")]
     step: f64,
     duration: Option<f64>,
-    #[serde(default = "default_pose_acceleration")]
+    #[serde(default = "usual_pose_acceleration")]
     pose_acceleration: f64,
     compare_b: Option<f64>,
     task: T,
@@ -45,12 +46,12 @@ struct File<T> {
     edits: Vec<toml::Table>,
 }
 
-fn one_millisecond() -> f64 {
-    0.001
+const fn usual_step() -> f64 {
+    USUAL_STEP
 }
 
-fn default_pose_acceleration() -> f64 {
-    2.0
+const fn usual_pose_acceleration() -> f64 {
+    USUAL_POSE_ACCELERATION
 }
 
 #[derive(Serialize, Deserialize)]

@@ -1,12 +1,14 @@
 //! The settings of a scenario as one tree: every key of a file but its name, its title and what was done.
 
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 
-use super::bounds::{DURATION, POSE_ACCELERATION, STEP};
+use super::bounds::{DURATION, POSE_ACCELERATION, STEP, USUAL_POSE_ACCELERATION, USUAL_STEP};
 use super::definition::Scenario;
 use super::task::{self, POSE_CONSTANT};
 use super::tolerance::{self, Tolerance};
-use crate::mechanics::machine::{self, PARTS, ranges};
+use crate::mechanics::machine::{self, PARTS, is_of_machine, ranges};
 use crate::settings::change::{self, DEFAULT};
 use crate::settings::key::{self, Key};
 use crate::settings::range::{Check, Range, clipped};
@@ -95,41 +97,29 @@ impl Scenario {
     }
 
     fn lay(&mut self, change: &Table) -> Result<(), SettingError> {
-        let of_machine: Table = change
-            .iter()
-            .filter(|(key, _)| PARTS.contains(&key.as_str()))
-            .map(|(k, v)| (k.clone(), v.clone()))
-            .collect();
+        let (of_machine, own): (Table, Table) = change.clone().into_iter().partition(|(key, _)| is_of_machine(key));
         if !of_machine.is_empty() {
             self.machine = self.machine.with(&of_machine)?;
         }
-        for (part, value) in change.iter().filter(|(key, _)| !PARTS.contains(&key.as_str())) {
+        for (part, value) in &own {
             let wrong = |why: String| blame(part, value).unwrap_or(SettingError::Part { part: part.clone(), why });
-            let default = Table::new();
-            let inner = || match value {
-                Value::Table(inner) => Ok(inner),
-                Value::String(word) if word == DEFAULT => Ok(&default),
-                _ => Err(wrong(format!("it is {}: want keys such as {part}.… = …", clipped(&value.to_string())))),
-            };
-            let all = value.as_str() == Some(DEFAULT);
-            match part.as_str() {
-                "task" => self.task = self.task.with(inner()?, &self.machine).map_err(wrong)?,
-                "control" if all => self.control = Default::default(),
-                "plant" if all => self.plant = Default::default(),
-                "base" if all => self.base = Default::default(),
-                "tolerance" if all => self.tolerance = Default::default(),
-                "control" => self.control = change::with(&self.control, inner()?).map_err(wrong)?,
-                "plant" => self.plant = change::with(&self.plant, inner()?).map_err(wrong)?,
-                "base" => self.base = change::with(&self.base, inner()?).map_err(wrong)?,
-                "tolerance" => {
-                    self.tolerance = change::with(&self.tolerance, &Tolerance::flat(inner()?)).map_err(wrong)?;
+            match (part.as_str(), value) {
+                ("task", Value::Table(change)) => self.task = self.task.with(change, &self.machine).map_err(wrong)?,
+                ("task", _) => return Err(wrong("a task as a whole has no usual value: want task.… = …".into())),
+                ("control", _) => self.control = laid(&self.control, value).map_err(wrong)?,
+                ("plant", _) => self.plant = laid(&self.plant, value).map_err(wrong)?,
+                ("base", _) => self.base = laid(&self.base, value).map_err(wrong)?,
+                ("tolerance", Value::Table(change)) => {
+                    self.tolerance = change::with(&self.tolerance, &Tolerance::flat(change)).map_err(wrong)?;
                 }
-                "step" => self.step_by(number(value, STEP).map_err(wrong)?.unwrap_or(0.001)),
-                "duration" => self.duration = number(value, DURATION).map_err(wrong)?,
-                "pose_acceleration" => {
-                    self.pose_acceleration = number(value, POSE_ACCELERATION).map_err(wrong)?.unwrap_or(2.0);
+                ("tolerance", _) => self.tolerance = laid(&self.tolerance, value).map_err(wrong)?,
+                ("step", _) => self.step_by(number(value, STEP).map_err(wrong)?.unwrap_or(USUAL_STEP)),
+                ("duration", _) => self.duration = number(value, DURATION).map_err(wrong)?,
+                ("pose_acceleration", _) => {
+                    let given = number(value, POSE_ACCELERATION).map_err(wrong)?;
+                    self.pose_acceleration = given.unwrap_or(USUAL_POSE_ACCELERATION);
                 }
-                "compare_b" => self.compare_b = number(value, POSE_CONSTANT).map_err(wrong)?,
+                ("compare_b", _) => self.compare_b = number(value, POSE_CONSTANT).map_err(wrong)?,
                 _ => return Err(SettingError::Unknown { key: clipped(part) }),
             }
         }
@@ -151,28 +141,22 @@ impl Scenario {
     /// What the keys of a change hold now, so that [`with`](Self::with) brings it back; `None` if one of them is not
     /// there.
     pub fn only(&self, change: &Table) -> Option<Table> {
-        let mut now = Table::new();
-        for (part, value) in change {
-            let old = match (part.as_str(), value) {
-                ("task", Value::Table(inner)) => change::only(&self.task, inner).into(),
-                ("control", Value::Table(inner)) => change::only(&self.control, inner).into(),
-                ("plant", Value::Table(inner)) => change::only(&self.plant, inner).into(),
-                ("base", Value::Table(inner)) => change::only(&self.base, inner).into(),
-                ("tolerance", Value::Table(inner)) => change::only(&self.tolerance, &Tolerance::flat(inner)).into(),
-                ("step", _) => self.step.into(),
-                ("duration", _) => self.duration.map_or_else(|| DEFAULT.into(), Value::from),
-                ("pose_acceleration", _) => self.pose_acceleration.into(),
-                ("compare_b", _) => self.compare_b.map_or_else(|| DEFAULT.into(), Value::from),
-                (key, value) if PARTS.contains(&key) => {
-                    let whole = change::one(key, value.clone());
-                    for (path, _) in change::leaves(&whole) {
-                        now = change::join(now, &change::one(&path, self.machine.value(&path)?));
-                    }
-                    continue;
-                }
-                _ => return None,
-            };
-            now.insert(part.clone(), old);
+        let (of_machine, mut own): (Table, Table) = change.clone().into_iter().partition(|(key, _)| is_of_machine(key));
+        let known = |part: &String| TABLES.contains(&part.as_str()) || OWN.iter().any(|key| key.path == part);
+        if !own.keys().all(known) {
+            return None;
+        }
+        if let Some(Value::Table(tolerance)) = own.get_mut("tolerance") {
+            *tolerance = Tolerance::flat(tolerance);
+        }
+        let mut stated = self.stated();
+        // Long, so put in only where it is asked for.
+        if change::leaves(&own).iter().any(|(path, _)| path == "task.samples") {
+            stated.insert("task".into(), Table::try_from(&self.task).ok()?.into());
+        }
+        let mut now = change::only(&stated, &own);
+        for (path, _) in change::leaves(&of_machine) {
+            now = change::join(now, &change::one(&path, self.machine.value(&path)?));
         }
         Some(now)
     }
@@ -209,7 +193,7 @@ impl Scenario {
     }
 
     fn value_in(&self, stated: &Table, path: &str) -> Option<Value> {
-        if path.split('.').next().is_some_and(|part| PARTS.contains(&part)) {
+        if is_of_machine(path) {
             return self.machine.value(path);
         }
         let key = key_of(path)?;
@@ -269,8 +253,7 @@ impl Scenario {
         let given = change::leaves(&stated).into_iter().map(|(path, _)| path);
         given
             .filter(|path| !STANDING.contains(&path.as_str()))
-            .filter_map(|path| Some((self.idle(&path)?, path)))
-            .map(|(want, path)| (path, want))
+            .filter_map(|path| self.idle(&path).map(|want| (path, want)))
             .collect()
     }
 
@@ -278,11 +261,20 @@ impl Scenario {
     pub(super) fn checks(&self) -> Vec<Check> {
         let n = self.machine.drives();
         let stated = self.stated();
-        let mut list: Vec<Check> = KEYS.iter().flat_map(|(_, keys)| key::checks(keys, "", &stated)).collect();
+        let mut list = key::checks(key_of, &stated);
         list.extend(self.task.fits(self.step));
         list.extend(self.control.fits(n, self.step));
         list.extend(self.plant.fits(n));
         list
+    }
+}
+
+/// A part with settings laid over it; the word `default` takes all of them out.
+fn laid<T: Serialize + DeserializeOwned + Default>(now: &T, value: &Value) -> Result<T, String> {
+    match value {
+        Value::Table(change) => change::with(now, change),
+        Value::String(word) if word == DEFAULT => Ok(T::default()),
+        _ => Err(format!("it is {}: want its keys with their values, or {DEFAULT}", clipped(&value.to_string()))),
     }
 }
 

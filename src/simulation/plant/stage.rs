@@ -159,10 +159,7 @@ impl<const N: usize> Stage<N> {
 impl MovingBody {
     /// A state without torques.
     pub fn still(&self, state: &State) -> Slope {
-        match self.moves {
-            true => by_drives!(self.whole.drives, still_moving(self, state)),
-            false => by_drives!(self.whole.drives, still_fixed(self, state)),
-        }
+        by_drives!(self.whole.drives, self.moves, still_of(self, state))
     }
 
     /// Rates, torques, accelerations and base wrench of a state, on a base that `MOVES` or not. `control` is asked for
@@ -317,14 +314,7 @@ impl MovingBody {
     }
 }
 
-fn still_fixed<const N: usize>(body: &MovingBody, state: &State) -> Slope {
-    still_of::<N, false>(body, state)
-}
-
-fn still_moving<const N: usize>(body: &MovingBody, state: &State) -> Slope {
-    still_of::<N, true>(body, state)
-}
-
+#[inline(never)]
 fn still_of<const N: usize, const MOVES: bool>(body: &MovingBody, state: &State) -> Slope {
     let mut stuck_torque = [0.0; MAX_CONTACTS];
     let none = |_: &_, _: &_, _, _| Command { torque: [0.0; N], spin: WheelState::default(), rotor: 0.0 };

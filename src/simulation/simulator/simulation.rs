@@ -312,10 +312,7 @@ impl Simulation {
     fn look(&mut self) {
         self.reference = self.aim_now();
         let size = self.body().turning();
-        match self.body().moves() {
-            true => by_drives!(size, look_moving(self)),
-            false => by_drives!(size, look_fixed(self)),
-        }
+        by_drives!(size, self.body().moves(), look_of(self));
         let stuck_torque = self.stuck_torque;
         let mut slip = self.slip;
         self.release(&self.now, &mut slip, &stuck_torque);
@@ -437,15 +434,8 @@ impl Simulation {
     }
 }
 
-fn look_fixed<const N: usize>(simulation: &mut Simulation) {
-    look_of::<N, false>(simulation);
-}
-
-fn look_moving<const N: usize>(simulation: &mut Simulation) {
-    look_of::<N, true>(simulation);
-}
-
 /// The slope of now. Sampled control reads first: what encoders and tachometers show, exactly.
+#[inline(never)]
 fn look_of<const N: usize, const MOVES: bool>(simulation: &mut Simulation) {
     let Simulation { bodies, control_loop, reference, state, slip, stuck_torque, loaded, step, .. } = simulation;
     let body = &bodies[usize::from(*loaded)];

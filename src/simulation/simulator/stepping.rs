@@ -257,20 +257,14 @@ impl Simulation {
     #[inline]
     fn stepped(&self, from: &StepState, to: f64, segment: &Segment, stages: Kept<'_>, end: &mut StepState) -> Mismatch {
         let size = self.body().turning();
-        match self.body().moves() {
-            true => by_drives!(size, stepped_moving(self, from, to, segment, stages, end)),
-            false => by_drives!(size, stepped_fixed(self, from, to, segment, stages, end)),
-        }
+        by_drives!(size, self.body().moves(), stepped_of(self, from, to, segment, stages, end))
     }
 
     /// Takes the slope where a step has come to anew: the reference, or what is stuck, is another.
     pub(super) fn look_again(&self, here: &mut StepState, segment: &Segment) {
         here.aim = self.aim(here.at, segment);
         let size = self.body().turning();
-        here.slope = match self.body().moves() {
-            true => by_drives!(size, slope_moving(self, here)),
-            false => by_drives!(size, slope_fixed(self, here)),
-        };
+        here.slope = by_drives!(size, self.body().moves(), slope_of(self, here));
     }
 
     /// What a point leads to, with a reference.
@@ -290,29 +284,7 @@ impl Simulation {
 /// Where slopes of stages are to be kept.
 type Kept<'a> = Option<&'a mut [Slope; 3]>;
 
-fn stepped_fixed<const N: usize>(
-    simulation: &Simulation,
-    from: &StepState,
-    to: f64,
-    segment: &Segment,
-    stages: Kept<'_>,
-    end: &mut StepState,
-) -> Mismatch {
-    stepped_of::<N, false>(simulation, from, to, segment, stages, end)
-}
-
-fn stepped_moving<const N: usize>(
-    simulation: &Simulation,
-    from: &StepState,
-    to: f64,
-    segment: &Segment,
-    stages: Kept<'_>,
-    end: &mut StepState,
-) -> Mismatch {
-    stepped_of::<N, true>(simulation, from, to, segment, stages, end)
-}
-
-#[inline(always)]
+#[inline(never)]
 fn stepped_of<const N: usize, const MOVES: bool>(
     simulation: &Simulation,
     from: &StepState,
@@ -358,14 +330,7 @@ fn between<const N: usize>(body: &MovingBody, a: &Stage<N>, b: &Stage<N>) -> Mis
     ])
 }
 
-fn slope_fixed<const N: usize>(simulation: &Simulation, at: &mut StepState) -> Slope {
-    slope_of::<N, false>(simulation, at)
-}
-
-fn slope_moving<const N: usize>(simulation: &Simulation, at: &mut StepState) -> Slope {
-    slope_of::<N, true>(simulation, at)
-}
-
+#[inline(never)]
 fn slope_of<const N: usize, const MOVES: bool>(simulation: &Simulation, at: &mut StepState) -> Slope {
     let stage = simulation.stage::<N, MOVES>(&Point::of(&at.state), &at.aim, &at.slip, &mut at.stuck_torque);
     stage.slope(simulation.drives)
