@@ -31,6 +31,8 @@ pub enum Command {
     Record(std::path::PathBuf),
     /// Undo the last edit.
     Undo,
+    /// Undo what has been done since there were so many changes to undo: what a drag did that is given up.
+    TakeBack(usize),
     /// Redo what was undone last.
     Redo,
     /// Show one of the linked views.
@@ -69,10 +71,107 @@ pub enum Command {
     BackToPath,
     /// Show why a number that was typed is refused.
     Refuse(String),
+    /// Stop what is under way beside the window.
+    Cancel(Activity),
     /// Show or hide the keys.
     Help(bool),
     /// Show or hide the dialog for a file.
     Dialog(Option<FileDialog>),
+}
+
+impl Command {
+    /// Whether it reads or changes the session, not only how that is shown: it waits while the session is being changed.
+    pub(super) fn is_of_session(&self) -> bool {
+        match self {
+            Self::Edit(_)
+            | Self::EndGesture
+            | Self::TogglePlay
+            | Self::Seek(_)
+            | Self::Step(_)
+            | Self::Open(_)
+            | Self::OpenFile(_)
+            | Self::SaveFile(_)
+            | Self::Record(_)
+            | Self::Undo
+            | Self::TakeBack(_)
+            | Self::Redo
+            | Self::Comparison(ComparisonCommand::Keep | ComparisonCommand::Open(_))
+            | Self::Case(_)
+            | Self::BackToPath => true,
+            Self::Speed(_)
+            | Self::View(_)
+            | Self::Dexterity(_)
+            | Self::Fit
+            | Self::Theme(_)
+            | Self::Preview(_)
+            | Self::Draw(_)
+            | Self::Compare(_)
+            | Self::Study(_)
+            | Self::Pins(_)
+            | Self::Comparison(_)
+            | Self::Mark(_)
+            | Self::Snapshots(_)
+            | Self::Push(_)
+            | Self::Exaggerate(_)
+            | Self::TurnTask(_)
+            | Self::Refuse(_)
+            | Self::Cancel(_)
+            | Self::Help(_)
+            | Self::Dialog(_) => false,
+        }
+    }
+}
+
+/// What can be under way beside the window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Activity {
+    /// A change of the session.
+    Change,
+    /// A session is opened.
+    Opening,
+    /// The session is saved.
+    Saving,
+    /// A recording is written.
+    Recording,
+    /// Machines of a study of tolerances are drawn.
+    Study,
+    /// The ways of the task run side by side.
+    Ways,
+    /// A run that is kept beside them.
+    Kept,
+}
+
+impl Activity {
+    /// What it does, for the line at the bottom.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Change => "making the run again",
+            Self::Opening => "opening",
+            Self::Saving => "saving",
+            Self::Recording => "recording",
+            Self::Study => "drawing machines",
+            Self::Ways => "running the ways of the task",
+            Self::Kept => "running one more beside them",
+        }
+    }
+
+    /// Whether it stops when it is told to.
+    pub(super) fn can_stop(self) -> bool {
+        self != Self::Saving
+    }
+
+    /// What to say when it has been cancelled.
+    pub(super) fn cancelled(self) -> &'static str {
+        match self {
+            Self::Change => "cancelled: nothing has changed",
+            Self::Opening => "cancelled: nothing was opened",
+            Self::Saving => "",
+            Self::Recording => "cancelled: no file is left",
+            Self::Study => "cancelled: no machines were drawn for the run as it is",
+            Self::Ways => "cancelled: the ways of the task were not run again",
+            Self::Kept => "cancelled: no run was added",
+        }
+    }
 }
 
 /// What can be done to the table of runs.

@@ -92,6 +92,11 @@ impl<T: Send + 'static> Job<T> {
         f64::from(self.shared.done.load(Ordering::Relaxed)) / 1e3
     }
 
+    /// Waits for its result; a job that broke off has none.
+    pub fn wait(self) -> Option<T> {
+        self.result.recv().ok()
+    }
+
     /// Whether its result is there; a job that broke off has none.
     pub fn poll(&self) -> Poll<T> {
         match self.result.try_recv() {

@@ -3,8 +3,11 @@
 //! Everything here reads a [`Session`](crate::session::Session) and gives back [`Command`]s, which the [`AppState`]
 //! carries out at the end of the pass. Nothing is computed here.
 
+mod background;
+mod change;
 mod command;
 mod compare;
+mod facts;
 pub mod jobs;
 mod keys;
 mod order;
@@ -23,7 +26,7 @@ mod widgets;
 #[cfg(feature = "window")]
 pub mod window;
 
-pub use command::{Command, ComparisonCommand, FileDialog, Purpose};
+pub use command::{Activity, Command, ComparisonCommand, FileDialog, Purpose};
 pub use state::AppState;
 use view_state::set_b;
 pub use view_state::{RefusedEdit, ViewState};

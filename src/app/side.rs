@@ -8,36 +8,37 @@ mod plant;
 
 use egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Ui};
 
+use super::facts::Facts;
 use super::theme::{bold, colour, plain};
 use super::widgets::{Row, name, note, section, send, unit};
 use super::{Command, ViewState, path, set_b};
-use crate::mechanics::machine::{Inertia, MAX_ANGLE};
+use crate::mechanics::machine::MAX_ANGLE;
 use crate::picture::scene::palette::Palette;
 use crate::session::scenario::Value;
 use crate::session::{Edit, Session};
 use crate::settings::change::DEFAULT;
 
 /// Draws this panel.
-pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 16, right: 10, top: 12, bottom: 8 });
     Panel::left("side").exact_size(262.0).resizable(false).frame(frame).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.set_width(ui.available_width() - 6.0);
-            pose_constant(ui, session, view_state, commands);
+            pose_constant(ui, session, facts, view_state, commands);
             limits(ui, session, &p, commands);
             gravity(ui, session, &p, commands);
             path::show(ui, session, &p, commands);
             plant::show(ui, session, &p, commands);
             base::show(ui, session, view_state, commands);
             control::show(ui, session, &p, commands);
-            balance(ui, session, &p);
-            all::show(ui, session, &p, commands);
+            balance(ui, session, facts, &p);
+            all::show(ui, facts, &p, commands);
         });
     });
 }
 
-fn pose_constant(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
+fn pose_constant(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewState, commands: &mut Vec<Command>) {
     let (scenario, p) = (session.scenario(), &view_state.palette());
     let period = session.run().planes().map_or(std::f64::consts::TAU, |p| p.map().period());
     ui.label(RichText::new("POSE CONSTANT").font(bold(11.0)).color(colour(p.dim)));
@@ -56,9 +57,9 @@ fn pose_constant(ui: &mut Ui, session: &Session, view_state: &ViewState, command
     let edit = set_b(session, view_state, asked);
     let typed = responses[0].changed() && !responses[0].dragged();
     let stops = matches!(edit, Edit::PoseB { b } if b != asked);
-    let serving = session.run().planes().and_then(|planes| planes.common(&scenario.task.points()));
+    let serving = session.run().common();
     if typed && stops {
-        let band = serving.as_ref().map_or_else(String::new, |common| common.near(shown).in_words());
+        let band = serving.map_or_else(String::new, |common| common.near(shown).in_words());
         let who = all_points(session);
         commands.push(Command::Refuse(format!(
             "b = {shown:.3} rad does not serve {who}, so nothing has changed: want {band}, or \"turn the task too\""
@@ -92,9 +93,8 @@ fn pose_constant(ui: &mut Ui, session: &Session, view_state: &ViewState, command
         }
     }
     if session.run().planes().is_some() {
-        let price = Inertia::of(&scenario.machine).diagonal(0) * scenario.pose_acceleration;
         // One line whatever the base, so that nothing below jumps.
-        let words = RichText::new(format!("in motion it costs up to {price:.2} N m")).font(plain(11.0));
+        let words = RichText::new(format!("in motion it costs up to {:.2} N m", facts.price)).font(plain(11.0));
         let tip = "The moment of D₁ b̈ on a fixed base; one that moves gives way";
         ui.add(egui::Label::new(words.color(colour(p.dim))).truncate()).on_hover_text(tip);
     }
@@ -175,36 +175,41 @@ fn gravity(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comma
     send(commands, &responses, || Edit::set("gravity", vec![gravity.re, 0.0 - down]));
 }
 
-fn balance(ui: &mut Ui, session: &Session, p: &Palette) {
+fn balance(ui: &mut Ui, session: &Session, facts: &Facts, p: &Palette) {
     section(ui, p, "Balance");
-    let machine = &session.scenario().machine;
-    let inertia = Inertia::of(machine);
+    let balance = &facts.balance;
     let rows = [
         (
             "γ",
             "kg m",
-            inertia.force_residual(),
-            inertia.is_force_balanced(),
+            balance.force,
             "Force balance, Eq. (7): largest |g_k|; zero means the centre of mass never moves",
         ),
         (
             "coupling",
             "kg m²",
-            inertia.invariance_residual(),
-            inertia.is_invariant(),
+            balance.coupling,
             "Invariance, Eq. (8): largest |C_kl|; zero means a constant mass matrix",
         ),
     ];
-    for (label, in_unit, value, good, tip) in rows {
+    for (label, in_unit, (value, good), tip) in rows {
         let tone = if good { p.zero } else { p.reaction };
         fact(ui, p, label, &format!("{value:.1e}"), in_unit, tone, tip);
     }
-    for k in 0..machine.drives() {
+    for (k, inertia) in balance.inertia.iter().enumerate() {
         let tip = "Inertia of the drive, D = H in Eq. (11)";
         let label = format!("D{}", ['₁', '₂', '₃', '₄', '₅', '₆', '₇', '₈'][k]);
-        fact(ui, p, &label, &format!("{:.4}", inertia.diagonal(k)), "kg m²", p.drive(k), tip);
+        fact(ui, p, &label, &format!("{inertia:.4}"), "kg m²", p.drive(k), tip);
     }
-    fact(ui, p, "mass", &format!("{:.2}", machine.mass()), "kg", p.ink, "All links, without the unknown payload");
+    fact(
+        ui,
+        p,
+        "mass",
+        &format!("{:.2}", session.scenario().machine.mass()),
+        "kg",
+        p.ink,
+        "All links, without the unknown payload",
+    );
 }
 
 fn fact(

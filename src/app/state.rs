@@ -1,43 +1,44 @@
 //! The [`AppState`]: a session, how it is shown, and what carries out commands. Every window, test and figure has one.
 
-use std::path::Path;
+mod work;
+
 use std::sync::Arc;
 
-use super::jobs::{AtOnce, Job, Poll, Ticket, Workers};
-use super::{
-    Command, ComparisonCommand, RefusedEdit, ViewState, compare, keys, order, plots, side, status, study, theme, top,
-    viewport,
-};
+use super::background::{Background, Opening};
+use super::change::{Change, Source};
+use super::facts::Facts;
+use super::{Activity, Command, ViewState, compare, keys, order, plots, side, status, study, theme, top, viewport};
 use crate::app::widgets;
 use crate::mechanics::machine::Machine;
 use crate::picture::scene::exaggeration::exaggeration;
 use crate::picture::scene::palette::Theme;
 use crate::picture::scene::stage::Stage;
 use crate::picture::scene::views::{ViewKind, Views};
-use crate::session::scenario::Scenario;
+use crate::session::scenario::{Scenario, Task};
 use crate::session::{Edit, Refusal, Session};
-use crate::settings::text::brief;
 use crate::simulation::frame::Totals;
+use crate::simulation::plant::PlantDifferences;
 use crate::simulation::signals::{Signal, signals};
-use crate::study::comparison::{Comparison, Outcome, run_ways};
-use crate::study::tolerance::{Study, ToleranceError};
+use crate::study::comparison::Comparison;
+use crate::study::tolerance::Study;
 
 /// A session on display.
 pub struct AppState {
     session: Session,
     views: Arc<Views>,
     signals: Vec<Signal>,
-    stage_of: (Machine, String),
+    stage_of: StageKey,
+    /// What panels say of the run that has to be found first.
+    facts: Facts,
     view_state: ViewState,
     /// Runs side by side, while they are on display.
     comparison: Option<Comparison>,
     /// Tolerances and what they were found for, while they are on display.
     study: Option<(Scenario, Result<Study, String>)>,
-    /// Who works beside the window, and what is under way.
-    workers: Arc<dyn Workers + Send + Sync>,
-    jobs: Jobs,
-    /// Woken when a job has ended.
-    ctx: Option<egui::Context>,
+    /// The run whose ways were not to be run.
+    declined: Option<Scenario>,
+    /// What is under way beside the window.
+    background: Background,
     /// Totals of the planned motion, simulated ahead: how far the base will move.
     foreseen: Totals,
     /// Wall time not yet turned into steps, s.
@@ -46,30 +47,14 @@ pub struct AppState {
     fonts: bool,
 }
 
-/// A job that may be stopped on the way, and has no result then.
-type JobOf<T> = Job<Option<T>>;
-
-/// What is under way beside the window; studies and runs side by side with the scenario that they are of.
-#[derive(Default)]
-struct Jobs {
-    /// A study, or why there is none.
-    study: Option<(Scenario, JobOf<Result<Study, String>>)>,
-    /// Runs side by side.
-    ways: Option<(Scenario, JobOf<Vec<Outcome>>)>,
-    /// What to say when the recording is there.
-    recording: Option<Job<Result<String, String>>>,
-    /// How far the base will move.
-    foreseen: Option<Job<Totals>>,
-}
-
-/// The most steps that are run ahead to see how far the base will move.
-const MOST_AHEAD: f64 = 20_000.0;
-
 /// How soon progress is shown again, s.
 const SHOWN_AGAIN: f32 = 0.1;
 
 /// The most wall time that one repaint makes up for, s: after a pause of the program time does not jump.
 const MOST_OWED: f64 = 0.1;
+
+/// The most steps that are done between two repaints: very short ones take longer than they last.
+const MOST_STEPS: f64 = 2000.0;
 
 impl AppState {
     /// Opens a scenario.
@@ -85,104 +70,24 @@ impl AppState {
         let view_state = ViewState::new(theme, &views);
         let mut app_state = Self {
             signals: signals(&session.scenario().machine),
-            stage_of: stage_key(&session),
+            stage_of: StageKey::of(&session),
+            facts: Facts::default(),
             views: Arc::new(views),
             foreseen: Totals::default(),
             session,
             view_state,
             comparison: None,
             study: None,
-            workers: Arc::new(AtOnce),
-            jobs: Jobs::default(),
-            ctx: None,
+            declined: None,
+            background: Background::default(),
             owed: 0.0,
             dressed: None,
             fonts: false,
         };
         app_state.foresee();
         app_state.adjust();
+        app_state.find();
         app_state
-    }
-
-    /// The same with somebody who works beside it.
-    #[must_use]
-    pub fn with_workers(self, workers: impl Workers + Send + Sync + 'static) -> Self {
-        Self { workers: Arc::new(workers), ..self }
-    }
-
-    /// Starts work beside the window.
-    fn start<T: Send + 'static>(&self, work: impl FnOnce(&Ticket) -> T + Send + 'static) -> Job<T> {
-        let ctx = self.ctx.clone();
-        let wake = move || {
-            if let Some(ctx) = ctx {
-                ctx.request_repaint();
-            }
-        };
-        Job::start(&*self.workers, wake, work)
-    }
-
-    /// What is under way and how far it is, for the line at the bottom.
-    fn under_way(&self) -> Option<(&'static str, f64)> {
-        let study = self.jobs.study.as_ref().map(|(_, job)| ("drawing machines", job.progress()));
-        let ways = self.jobs.ways.as_ref().map(|(_, job)| ("running the ways of the task", job.progress()));
-        let recording = self.jobs.recording.as_ref().map(|job| ("recording", job.progress()));
-        recording.or(study).or(ways)
-    }
-
-    /// Takes what jobs have done; whether one has ended.
-    fn collect(&mut self) -> bool {
-        let mut ended = false;
-        if let Some((of, job)) = self.jobs.study.take() {
-            match job.poll() {
-                Poll::Working => self.jobs.study = Some((of, job)),
-                Poll::Done(study) => {
-                    self.study = study.map(|study| (of, study)).or(self.study.take());
-                    ended = true;
-                }
-                Poll::Broken => {
-                    self.study = Some((of, Err("the study broke off: this is a fault of the program".into())));
-                    ended = true;
-                }
-            }
-        }
-        if let Some((of, job)) = self.jobs.ways.take() {
-            match job.poll() {
-                Poll::Working => self.jobs.ways = Some((of, job)),
-                Poll::Done(ways) => {
-                    if let (Some(comparison), Some(ways)) = (&mut self.comparison, ways) {
-                        comparison.follow_with(&of, ways);
-                    }
-                    ended = true;
-                }
-                Poll::Broken => ended = true,
-            }
-        }
-        if let Some(job) = self.jobs.recording.take() {
-            match job.poll() {
-                Poll::Working => self.jobs.recording = Some(job),
-                Poll::Done(said) => {
-                    self.view_state.message = Some(said.map_or_else(|why| (why, true), |news| (news, false)));
-                    ended = true;
-                }
-                Poll::Broken => {
-                    let why = "the recording broke off: this is a fault of the program";
-                    self.view_state.message = Some((why.into(), true));
-                    ended = true;
-                }
-            }
-        }
-        if let Some(job) = self.jobs.foreseen.take() {
-            match job.poll() {
-                Poll::Working => self.jobs.foreseen = Some(job),
-                Poll::Done(totals) => {
-                    self.foreseen = totals;
-                    self.adjust();
-                    ended = true;
-                }
-                Poll::Broken => ended = true,
-            }
-        }
-        ended
     }
 
     /// Opens a scenario; where its task cannot be planned, its machine with the paper's task, and what is in the way.
@@ -229,9 +134,20 @@ impl AppState {
         &self.views
     }
 
+    /// Whether something is under way beside the window.
+    pub fn is_working(&self) -> bool {
+        self.background.is_busy()
+    }
+
+    /// What is under way beside the window, as far as it is spoken of.
+    pub fn under_way(&self) -> Vec<Activity> {
+        self.background.all_under_way().map(|(activity, _)| activity).collect()
+    }
+
     /// Lets wall time pass, s.
     pub fn pass(&mut self, wall: f64) {
-        if !self.session.is_moving() {
+        // While the session is being changed, time stands: what is made has to fit what is shown.
+        if !self.session.is_moving() || self.background.is_changing() {
             self.owed = 0.0;
             return;
         }
@@ -239,8 +155,9 @@ impl AppState {
         self.owed += wall.clamp(0.0, MOST_OWED) * self.view_state.speed;
         let steps = (self.owed / dt).floor();
         self.owed -= steps * dt;
-        self.session.tick(steps as u64);
+        self.session.tick(steps.min(MOST_STEPS) as u64);
         self.adjust();
+        self.find();
     }
 
     /// One pass of the user interface; commands are carried out at its end.
@@ -249,10 +166,13 @@ impl AppState {
         if self.collect() {
             ui.ctx().request_repaint();
         }
+        self.catch_up();
+        self.background.count();
         let mut commands = Vec::new();
         keys::read(ui.ctx(), &self.session, &self.view_state, &mut commands);
-        top::show(ui, &self.session, &self.view_state, &mut commands);
-        status::show(ui, &self.session, &self.views, &self.view_state, self.under_way(), &mut commands);
+        top::show(ui, &self.session, &self.facts, &self.view_state, &mut commands);
+        let under_way = self.background.under_way();
+        status::show(ui, &self.session, &self.facts, &self.view_state, under_way, &mut commands);
         if let Some(comparison) = &self.comparison {
             compare::show(ui, comparison, &self.view_state, &mut commands);
         }
@@ -260,7 +180,7 @@ impl AppState {
             let study = self.study.as_ref().map(|(_, study)| study);
             study::show(ui, study, self.session.frame().time, &self.view_state, &mut commands);
         }
-        side::show(ui, &self.session, &self.view_state, &mut commands);
+        side::show(ui, &self.session, &self.facts, &self.view_state, &mut commands);
         plots::show(ui, &self.session, &self.signals, self.comparison.as_ref(), &self.view_state, &mut commands);
         viewport::show(ui, &self.session, &self.views, self.comparison.as_ref(), &mut self.view_state, &mut commands);
         status::news(ui.ctx(), &self.session, &self.view_state, &mut commands);
@@ -277,15 +197,15 @@ impl AppState {
         for command in commands {
             self.carry_out(command);
         }
-        if self.session.is_moving() {
+        if self.session.is_moving() && !self.background.is_changing() {
             ui.ctx().request_repaint();
-        } else if self.under_way().is_some() {
+        } else if self.background.is_busy() {
             ui.ctx().request_repaint_after_secs(SHOWN_AGAIN);
         }
     }
 
     fn dress(&mut self, ctx: &egui::Context) {
-        self.ctx.get_or_insert_with(|| ctx.clone());
+        self.background.wakes(ctx);
         if !self.fonts {
             theme::install_fonts(ctx);
             ctx.add_plugin(order::Order::default());
@@ -297,31 +217,31 @@ impl AppState {
         }
     }
 
-    /// Carries out one command. A command that cannot be carried out changes nothing; a message says why.
+    /// Carries out one command, after those before it. A command that cannot be carried out changes nothing; a message
+    /// says why.
     pub fn carry_out(&mut self, command: Command) {
-        match self.attempt(command) {
-            Ok(None) => {}
-            Ok(Some(news)) => self.view_state.message = Some((news, false)),
-            Err(problem) => self.view_state.message = Some((problem, true)),
+        self.collect();
+        self.catch_up();
+        if self.waits(&command) {
+            self.view_state.dragged |= self.view_state.grabbed.is_some() && matches!(command, Command::Edit(_));
+            self.background.after(command);
+        } else {
+            self.do_now(command);
         }
+    }
+
+    fn do_now(&mut self, command: Command) {
+        let done = self.attempt(command);
+        self.tell(done);
         self.refresh();
     }
 
     fn attempt(&mut self, command: Command) -> Result<Option<String>, String> {
-        let refused = |r: Refusal| r.to_string();
         match command {
             Command::Edit(edit) => {
-                if let Err(refusal) = self.session.apply(edit.clone()) {
-                    self.view_state.refused = Some(RefusedEdit::of(&edit, &refusal));
-                    return Err(refusal.to_string());
-                }
                 self.view_state.refused = None;
-                // A push sends an edit many times a second for as long as it lasts: too often to run ahead each time.
-                if !matches!(edit, Edit::Push { .. }) {
-                    self.foresee();
-                }
-                // What a drag has changed, Esc takes back.
-                self.view_state.dragged |= self.view_state.grabbed.is_some();
+                self.change(Change::Edit(edit));
+                self.view_state.dragged |= self.view_state.grabbed.is_some() && self.view_state.refused.is_none();
             }
             Command::Preview(b) => self.view_state.preview = b,
             Command::Draw(draw) => {
@@ -336,45 +256,25 @@ impl AppState {
             Command::EndGesture => self.session.end_gesture(),
             Command::TogglePlay if self.session.is_playing() => self.session.pause(),
             Command::TogglePlay => self.session.play(),
-            Command::Seek(time) => {
-                self.session.pause();
-                self.session.seek(time);
-            }
+            Command::Seek(time) => self.change(Change::Seek(time)),
             Command::Step(steps) => self.session.step_by(steps),
             Command::Speed(speed) => self.view_state.speed = speed,
             Command::Open(scenario) => {
-                self.session.switch(*scenario).map_err(refused)?;
-                self.foresee();
-                self.session.play();
+                self.open(Source::Scenario(scenario), Opening { plays: true, closes: false, news: None });
             }
-            Command::Case(name) => return self.case(name),
-            Command::BackToPath => {
-                if self.session.is_led() {
-                    self.session.apply(Edit::of("task", Default::default())).map_err(refused)?;
-                    self.session.end_gesture();
-                    self.session.pause();
-                    self.session.seek(0.0);
-                    self.foresee();
-                    return Ok(Some("back on the planned path, at its start".into()));
-                }
-            }
+            Command::Case(name) => self.open_case(name),
+            Command::BackToPath if self.session.is_led() => self.change(Change::BackToPath),
+            Command::BackToPath => {}
             Command::TurnTask(turn) => self.view_state.turn_task = turn,
             Command::Refuse(why) => return Err(why),
-            Command::OpenFile(path) => return self.open(&path).map(Some),
-            Command::SaveFile(path) => return self.save(&path).map(Some),
-            Command::Record(path) => return self.record(&path),
-            Command::Undo => {
-                let title = self.session.undo_title().map(|t| format!("undone: {t}"));
-                self.session.undo().map_err(refused)?;
-                self.foresee();
-                return Ok(title);
-            }
-            Command::Redo => {
-                let title = self.session.redo_title().map(|t| format!("redone: {t}"));
-                self.session.redo().map_err(refused)?;
-                self.foresee();
-                return Ok(title);
-            }
+            Command::OpenFile(path) => self.open_file(path),
+            Command::SaveFile(path) => self.save(&path)?,
+            Command::Record(path) => self.record(&path)?,
+            Command::Undo => self.change(Change::Undo),
+            Command::TakeBack(since) if self.session.undo_count() > since => self.change(Change::Undo),
+            Command::TakeBack(_) => {}
+            Command::Redo => self.change(Change::Redo),
+            Command::Cancel(activity) => return Ok(Some(self.cancel(activity))),
             Command::View(view) => self.view_state.view = view,
             Command::Dexterity(shown) => self.view_state.dexterity = shown,
             Command::Fit => *self.view_state.camera_mut() = self.views.camera(self.view_state.view),
@@ -390,126 +290,10 @@ impl AppState {
                 (self.view_state.study, self.view_state.compare) = (study, self.view_state.compare && !study)
             }
             Command::Pins(shown) => self.view_state.pins = shown,
-            Command::Comparison(on) => return self.change_comparison(on),
+            Command::Comparison(on) => self.change_comparison(on),
             Command::Dialog(dialog) => self.view_state.dialog = dialog,
         }
         Ok(None)
-    }
-
-    fn change_comparison(&mut self, on: ComparisonCommand) -> Result<Option<String>, String> {
-        let Some(comparison) = &mut self.comparison else { return Ok(None) };
-        match on {
-            ComparisonCommand::Sort(column) => comparison.sort_by(column),
-            ComparisonCommand::Show(entry, shown) => comparison.show(entry, shown),
-            ComparisonCommand::Remove(entry) => comparison.remove(entry),
-            ComparisonCommand::Add(scenario) => comparison.keep(*scenario).map_err(|why| why.to_string())?,
-            ComparisonCommand::Keep => {
-                let mut scenario = self.session.to_scenario();
-                scenario.duration = Some(self.session.length());
-                comparison.keep(scenario).map_err(|why| why.to_string())?;
-                return Ok(Some("added this run to the comparison".into()));
-            }
-            ComparisonCommand::Open(entry) => {
-                let run = comparison.entries().get(entry).and_then(|e| e.outcome.as_ref().ok()).cloned();
-                if let Some(run) = run {
-                    self.session.switch(run.scenario.clone()).map_err(|why| why.to_string())?;
-                    self.foresee();
-                }
-            }
-        }
-        Ok(None)
-    }
-
-    /// Opens one of the paper's cases. A machine that was chosen in the window stays, and the message says so.
-    fn case(&mut self, name: &str) -> Result<Option<String>, String> {
-        let Some(case) = Scenario::builtin(name) else { return Ok(None) };
-        let present = &self.session.scenario().machine;
-        let other = (present.name() != case.machine.name()).then(|| present.clone());
-        let news = other.as_ref().map(|machine| format!("{}, with the machine {}", case.title, machine.name()));
-        let scenario = Scenario { machine: other.unwrap_or_else(|| case.machine.clone()), ..case };
-        self.session.switch(scenario).map_err(|why| why.to_string())?;
-        self.foresee();
-        self.session.play();
-        Ok(news)
-    }
-
-    fn open(&mut self, path: &Path) -> Result<String, String> {
-        let found = crate::files::scenario(&path.display().to_string());
-        let scenario = found.map_err(|e| brief(&e.to_string()).into_owned())?;
-        let change = scenario.task.whole();
-        if let Err(refusal) = self.session.switch(scenario) {
-            self.view_state.refused = Some(RefusedEdit::of(&Edit::of("task", change), &refusal));
-            return Err(refusal.to_string());
-        }
-        self.foresee();
-        self.view_state.dialog = None;
-        Ok(format!("opened {}", path.display()))
-    }
-
-    fn save(&mut self, path: &Path) -> Result<String, String> {
-        check_name(path)?;
-        crate::files::write_new(path, self.session.to_scenario().to_toml().as_bytes(), false)
-            .map_err(|e| e.to_string())?;
-        self.view_state.dialog = None;
-        Ok(format!("saved {}", whole(path)))
-    }
-
-    #[cfg(feature = "record")]
-    fn record(&mut self, path: &Path) -> Result<Option<String>, String> {
-        check_name(path)?;
-        if self.jobs.recording.is_some() {
-            return Err("one recording is under way: want it to end first".into());
-        }
-        let options = crate::recording::Options { pictures: None, force: false };
-        let mut scenario = self.session.to_scenario();
-        scenario.duration = Some(self.session.length());
-        let path = path.to_owned();
-        let job = self.start(move |ticket| {
-            let mut told = |progress: crate::recording::Progress| {
-                ticket.goes_on(progress.done as f64 / progress.of.max(1) as f64);
-            };
-            let done = crate::recording::record(&[scenario], &path, &options, &mut told).map_err(|e| e.to_string())?;
-            let verdict = if done.iter().all(|r| r.reactionless) { "reactionless" } else { "with reactions" };
-            Ok(format!("recorded {} ({verdict}); open it with the Rerun viewer", whole(&path)))
-        });
-        // What is done at once says at once how it went, with the dialog still open where it failed.
-        match job.poll() {
-            Poll::Done(Err(why)) => return Err(why),
-            Poll::Done(Ok(news)) => {
-                self.view_state.dialog = None;
-                return Ok(Some(news));
-            }
-            Poll::Working | Poll::Broken => self.jobs.recording = Some(job),
-        }
-        self.view_state.dialog = None;
-        Ok(None)
-    }
-
-    #[cfg(not(feature = "record"))]
-    fn record(&mut self, _path: &Path) -> Result<Option<String>, String> {
-        Err("this build cannot record: build it with the feature `record`".into())
-    }
-
-    /// Runs ahead to where the planned motion ends, to know how far the base will move.
-    fn foresee(&mut self) {
-        self.foreseen = Totals::default();
-        let scenario = self.session.scenario();
-        let steps = (self.session.run().planned_time() / scenario.step).ceil();
-        self.jobs.foreseen = None;
-        if scenario.base.moves() && !self.session.is_led() && steps <= MOST_AHEAD {
-            let mut run = self.session.run().clone();
-            let job = self.start(move |ticket| {
-                let mut wanted = true;
-                while wanted && (run.simulation().step_count() as f64) < steps {
-                    run.advance();
-                    let done = run.simulation().step_count();
-                    wanted = !done.is_multiple_of(256) || ticket.goes_on(done as f64 / steps);
-                }
-                run.frame().totals
-            });
-            self.jobs.foreseen = Some(job);
-            self.collect();
-        }
     }
 
     /// Finds how many times the motion of the base has to be enlarged to be seen, from as much of the run as is known.
@@ -525,7 +309,7 @@ impl AppState {
 
     /// Makes the stage again when what it shows has changed.
     fn refresh(&mut self) {
-        let key = stage_key(&self.session);
+        let key = StageKey::of(&self.session);
         if key != self.stage_of {
             let views = Views::of(self.session.run());
             for kind in ViewKind::ALL {
@@ -541,88 +325,39 @@ impl AppState {
         }
         Arc::make_mut(&mut self.views).refresh(self.session.run());
         self.adjust();
+        self.find();
         self.refresh_study();
         self.refresh_comparison();
         self.collect();
     }
 
-    /// Studies the run on display, if its last study is of another; only the newest counts.
-    fn refresh_study(&mut self) {
-        if !self.view_state.study {
-            (self.study, self.jobs.study) = (None, None);
-            return;
-        }
-        let scenario = self.session.scenario();
-        let known = self.jobs.study.as_ref().map(|(of, _)| of).or(self.study.as_ref().map(|(of, _)| of));
-        if self.view_state.grabbed.is_some() || known == Some(scenario) {
-            return;
-        }
-        self.jobs.study = None;
-        match self.session.run().waiting() {
-            Some(waiting) => self.study = Some((scenario.clone(), Err(waiting.why.to_string()))),
-            None => {
-                let run = self.session.run().clone();
-                let job = self.start(move |ticket| match Study::watched(&run, &mut |done| ticket.goes_on(done)) {
-                    Err(ToleranceError::Stopped) => None,
-                    study => Some(study.map_err(|why| why.to_string())),
-                });
-                self.jobs.study = Some((scenario.clone(), job));
-            }
-        }
+    /// Finds what panels say of the run, where that has changed.
+    fn find(&mut self) {
+        self.facts.of(&self.session);
+        self.facts.stand(&self.session, &self.views);
     }
-
-    /// Runs the ways of the task on display, if those of the table are of another. Not during a drag.
-    fn refresh_comparison(&mut self) {
-        if !self.view_state.compare {
-            (self.comparison, self.jobs.ways) = (None, None);
-            return;
-        }
-        let scenario = self.session.scenario();
-        let first = self.comparison.is_none();
-        let comparison = self.comparison.get_or_insert_with(|| Comparison::empty(scenario));
-        let ours = comparison
-            .entries()
-            .iter()
-            .any(|e| e.outcome.as_ref().is_ok_and(|run| run.scenario.task == scenario.task && !e.kept));
-        let task = comparison.task();
-        let stale = first || (task != scenario && (!ours || !same_but_task(task, scenario)));
-        let wanted = match &self.jobs.ways {
-            Some((of, _)) => of != scenario,
-            None => stale,
-        };
-        if !wanted || (!first && self.view_state.grabbed.is_some()) {
-            return;
-        }
-        let of = scenario.clone();
-        let job = self.start({
-            let of = of.clone();
-            move |ticket| run_ways(&of, &mut |done| ticket.goes_on(done))
-        });
-        self.jobs.ways = Some((of, job));
-    }
-}
-
-/// A file that exists is not replaced from a window.
-fn check_name(path: &Path) -> Result<(), String> {
-    match path.exists() {
-        true => Err(format!("{} exists: want another name", path.display())),
-        false => Ok(()),
-    }
-}
-
-/// The whole name of a file, so that it can be found again.
-fn whole(path: &Path) -> String {
-    path.canonicalize().unwrap_or_else(|_| path.into()).display().to_string()
-}
-
-/// Whether two scenarios differ in their tasks at most.
-fn same_but_task(a: &Scenario, b: &Scenario) -> bool {
-    a.machine == b.machine && a.plant == b.plant && a.control == b.control && a.base == b.base && a.step == b.step
 }
 
 /// What a stage depends on.
-fn stage_key(session: &Session) -> (Machine, String) {
-    let s = session.scenario();
-    let differs = format!("{:?} {:?}", s.plant.length, s.plant.link);
-    (s.machine.clone(), format!("{:?} {:?} {} {differs}", s.task, s.compare_b, session.run().motion().is_some()))
+#[derive(PartialEq)]
+struct StageKey {
+    machine: Machine,
+    task: Task,
+    compare_b: Option<f64>,
+    on_path: bool,
+    plant: PlantDifferences,
+}
+
+impl StageKey {
+    fn of(session: &Session) -> Self {
+        let scenario = session.scenario();
+        let PlantDifferences { length, link, .. } = scenario.plant.clone();
+        Self {
+            machine: scenario.machine.clone(),
+            task: scenario.task.clone(),
+            compare_b: scenario.compare_b,
+            on_path: session.run().motion().is_some(),
+            plant: PlantDifferences { length, link, ..PlantDifferences::default() },
+        }
+    }
 }

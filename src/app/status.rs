@@ -2,11 +2,12 @@
 
 use egui::{Align, Layout, Margin, Panel, RichText, Sense, Ui, vec2};
 
+use super::facts::Facts;
 use super::theme::{bold, colour, plain};
-use super::{Command, ViewState};
+use super::widgets::name;
+use super::{Activity, Command, ViewState};
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::{Palette, faded};
-use crate::picture::scene::views::Views;
 use crate::session::verdict::Verdict;
 use crate::session::{Edit, Session};
 use crate::simulation::frame::{Frame, Reach};
@@ -92,9 +93,9 @@ fn fault(frame: &Frame) -> Option<String> {
 pub fn show(
     ui: &mut Ui,
     session: &Session,
-    views: &Views,
+    found: &Facts,
     view_state: &ViewState,
-    under_way: Option<(&str, f64)>,
+    under_way: Option<(Activity, f64)>,
     commands: &mut Vec<Command>,
 ) {
     let p = view_state.palette();
@@ -131,9 +132,7 @@ pub fn show(
             let b = session.run().planes().map_or(f.b, |planes| f.b.rem_euclid(planes.map().period()));
             facts += &format!("  ·  b {b:.3} rad");
             let bad_news = matches!(view_state.message, Some((_, true)));
-            if let Some((poses, distance)) =
-                views.stage().standing(f).filter(|_| !bad_news && ui.available_width() > 460.0)
-            {
+            if let Some((poses, distance)) = found.standing().filter(|_| !bad_news && ui.available_width() > 460.0) {
                 let many = if poses == 1 { "one pose".into() } else { format!("{poses} poses") };
                 facts += &format!("  ·  {many}");
                 // A narrow window keeps its room for what to do next.
@@ -143,12 +142,20 @@ pub fn show(
             }
             ui.label(RichText::new(facts).font(plain(12.0)).color(colour(p.dim)));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                if let Some((activity, done)) = under_way.filter(|_| !bad_news) {
+                    if activity.can_stop() {
+                        let stop = ui.button("Cancel").on_hover_text("Stops it; what is shown stays as it is");
+                        name(&stop, &format!("Cancel {}", activity.words()));
+                        if stop.clicked() {
+                            commands.push(Command::Cancel(activity));
+                        }
+                    }
+                    let text = format!("{}, {:.0} %", activity.words(), 100.0 * done);
+                    ui.add(egui::Label::new(RichText::new(text).font(plain(12.0)).color(colour(p.dim))).truncate());
+                    return;
+                }
                 let (text, tone) = match (&view_state.message, f.target.reach) {
                     (Some((_, true)), _) => (String::new(), p.reaction),
-                    _ if under_way.is_some() => {
-                        let (what, done) = under_way.unwrap_or_default();
-                        (format!("{what}, {:.0} %", 100.0 * done), p.dim)
-                    }
                     (Some((text, false)), _) => (text.clone(), p.ink),
                     (None, _) if session.is_full() => {
                         ("this session is full: save or record it, then start over".into(), p.reaction)

@@ -4,6 +4,7 @@ use crate::app::theme::other;
 use crate::app::widgets::name;
 use egui::{Align, ComboBox, Frame, Layout, Margin, Panel, Response, RichText, Sense, Shape, Stroke, Ui, pos2, vec2};
 
+use super::facts::Facts;
 use super::theme::{bold, colour, plain};
 use super::{Command, FileDialog, Purpose, ViewState};
 use crate::mechanics::machine;
@@ -12,15 +13,15 @@ use crate::session::Session;
 use crate::session::scenario::Scenario;
 
 /// Draws this panel.
-pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin::symmetric(16, 0));
     Panel::top("top").exact_size(44.0).resizable(false).frame(frame).show(ui, |ui| {
         ui.horizontal_centered(|ui| {
             ui.label(RichText::new("Stillbase").font(bold(17.0)));
             ui.add_space(6.0);
-            machines(ui, session, commands);
-            scenarios(ui, session, commands);
+            machines(ui, session, facts.machine_differs, commands);
+            scenarios(ui, session, facts.work_differs, commands);
             ui.add_space(8.0);
             transport(ui, session, view_state, commands);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -32,9 +33,8 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
     });
 }
 
-fn machines(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
+fn machines(ui: &mut Ui, session: &Session, changed: bool, commands: &mut Vec<Command>) {
     let present = &session.scenario().machine;
-    let changed = machine::builtins().iter().any(|m| m.name() == present.name() && m != present);
     let current = if changed { format!("{} *", present.name()) } else { present.name().to_owned() };
     let tip = if changed {
         "The machine; it differs from the built-in one of this name"
@@ -55,10 +55,9 @@ fn machines(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
     name(&response.response.on_hover_text(tip), "Machine");
 }
 
-fn scenarios(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
+fn scenarios(ui: &mut Ui, session: &Session, changed: bool, commands: &mut Vec<Command>) {
     let current = session.scenario();
     let shown = if current.title.is_empty() { &current.name } else { &current.title };
-    let changed = Scenario::builtin(&current.name).is_some_and(|builtin| !same_work(&builtin, current));
     let shown = if changed { format!("{shown} *") } else { shown.clone() };
     let combo = ComboBox::from_id_salt("scenario").selected_text(shown).width(196.0).truncate();
     let response = combo.show_ui(ui, |ui| {
@@ -89,11 +88,6 @@ fn scenarios(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
         false => "What the machine does: keys 1, 2, 3",
     };
     name(&response.response.on_hover_text(tip), "Scenario");
-}
-
-/// Whether two scenarios ask for the same, whatever the machine.
-fn same_work(a: &Scenario, b: &Scenario) -> bool {
-    a.task == b.task && a.plant == b.plant && a.base == b.base && a.control == b.control
 }
 
 fn transport(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {

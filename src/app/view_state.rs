@@ -70,6 +70,8 @@ pub struct ViewState {
     pub dialog: Option<FileDialog>,
     /// The present drag has changed something.
     pub dragged: bool,
+    /// How many changes there were to undo when it began.
+    pub undone_to: usize,
     /// What has been drawn so far, m; none while nobody draws.
     pub stroke: Option<Vec<[f64; 2]>>,
     /// Dragging the end effector pushes it.
@@ -109,6 +111,7 @@ impl ViewState {
             help: false,
             dialog: None,
             dragged: false,
+            undone_to: 0,
             stroke: None,
             pushing: false,
             turn_task: false,

@@ -124,6 +124,7 @@ fn point_at(
         // A drag begins where the button went down, not where it was noticed.
         view_state.grabbed = ui.input(|i| i.pointer.press_origin()).and_then(under);
         view_state.force = Some(session.scenario().plant.force);
+        view_state.undone_to = session.undo_count();
     }
     let ask = |pick, pos: Pos2, view_state: &mut ViewState| {
         let edit = match views.aim(view, &pick, frame, &spot.pointer(pos), session.b_aim())? {
@@ -169,7 +170,7 @@ fn point_at(
             }
             commands.push(Command::EndGesture);
             if let_go && view_state.dragged {
-                commands.push(Command::Undo);
+                commands.push(Command::TakeBack(view_state.undone_to));
             }
             view_state.dragged = false;
         }

@@ -175,4 +175,10 @@ impl eframe::App for App {
         }
         self.app_state.ui(ui);
     }
+
+    fn on_exit(&mut self) {
+        self.app_state.close();
+        // A recording that is not there yet leaves nothing half written.
+        drop(crate::files::abandon());
+    }
 }

@@ -120,6 +120,7 @@ impl From<Refusal> for Failure {
             | Refusal::TooLong { .. }
             | Refusal::Full { .. }
             | Refusal::Diverged { .. }
+            | Refusal::Stopped
             | Refusal::Untrusted { .. } => Self::no_answer(e),
             Refusal::Machine(_)
             | Refusal::OutOfRange { .. }

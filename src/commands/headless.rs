@@ -156,6 +156,7 @@ pub fn record_with_bar(scenarios: &[Scenario], file: &Path, options: &Options) -
         }
         bar.set_length(progress.of);
         bar.set_position(progress.done);
+        true
     });
     bar.finish_and_clear();
     let recordings = recordings?;

@@ -119,6 +119,9 @@ pub enum RecordError {
     /// The file.
     #[error(transparent)]
     Write(#[from] WriteError),
+    /// Whoever asked for it wants it no more.
+    #[error("the recording was stopped before its end: no file is left")]
+    Stopped,
     /// Rerun refuses the data.
     #[error("{}: {why}", file.display())]
     Data {
@@ -129,15 +132,17 @@ pub enum RecordError {
     },
 }
 
-/// Runs scenarios and records all of them in one file, which appears when it is complete.
+/// Runs scenarios and records all of them in one file, which appears when it is complete. `progress` hears how far it is
+/// and says whether the rest is still wanted.
 ///
 /// # Errors
-/// If a scenario cannot run, or the file exists and is not to be replaced, or cannot be written; no file is left then.
+/// If a scenario cannot run, or the file exists and is not to be replaced, or cannot be written, or is not wanted any
+/// more; no file is left then.
 pub fn record(
     scenarios: &[Scenario],
     file: &Path,
     options: &Options,
-    progress: &mut dyn FnMut(Progress),
+    progress: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<Vec<Recording>, RecordError> {
     check(scenarios, options)?;
     let to = NewFile::create(file, options.force)?;
@@ -186,6 +191,13 @@ fn check_pictures(scenarios: &[Scenario], cases: &[Preview], options: &Options) 
     }
 }
 
+fn stopped_or(scenario: String, refusal: Refusal) -> RecordError {
+    match refusal {
+        Refusal::Stopped => RecordError::Stopped,
+        refusal => RecordError::Refused { scenario, refusal },
+    }
+}
+
 /// About how many steps a run has.
 fn steps(scenario: &Scenario) -> u64 {
     (scenario.duration.unwrap_or(scenario.task.time) / scenario.step).round() as u64
@@ -210,7 +222,7 @@ fn write(
     to: NewFile,
     file: &Path,
     options: &Options,
-    progress: &mut dyn FnMut(Progress),
+    progress: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<Vec<Recording>, RecordError> {
     let because = |error| match error {
         StoreError::Write(source) => WriteError::Failed { file: file.into(), source }.into(),
@@ -221,7 +233,7 @@ fn write(
     let mut cases = Vec::with_capacity(scenarios.len());
     for scenario in scenarios {
         let mut tick = |step| progress(Progress { done: before + step, of: 2 * total, what: &scenario.name });
-        let refused = |refusal| RecordError::Refused { scenario: scenario.name.clone(), refusal };
+        let refused = |refusal| stopped_or(scenario.name.clone(), refusal);
         cases.push(Preview::of(scenario, &mut tick).map_err(refused)?);
         before += steps(scenario);
     }
@@ -267,7 +279,7 @@ fn write(
         Err(stop) => {
             store.abandon();
             Err(match stop {
-                Stop::Refused { scenario, refusal } => RecordError::Refused { scenario, refusal },
+                Stop::Refused { scenario, refusal } => stopped_or(scenario, refusal),
                 Stop::Pictures(why) => RecordError::Pictures(why),
                 Stop::Store(error) => because(error),
             })

@@ -13,7 +13,7 @@ use crate::picture::scene::linkage::Linkage;
 use crate::picture::scene::reaction::Scale;
 use crate::picture::scene::tower::Tower;
 use crate::session::scenario::Scenario;
-use crate::session::{Refusal, replay};
+use crate::session::{Refusal, replay_while};
 use crate::simulation::frame::Peaks;
 use crate::simulation::signals::{Signal, signals};
 
@@ -45,11 +45,11 @@ pub struct Preview {
 }
 
 impl Preview {
-    /// Runs a scenario.
+    /// Runs a scenario; `tick` hears of steps that are done, and says whether the rest is still wanted.
     ///
     /// # Errors
-    /// If it cannot start, or one of its edits cannot apply.
-    pub fn of(scenario: &Scenario, tick: &mut dyn FnMut(u64)) -> Result<Self, Refusal> {
+    /// If it cannot start, one of its edits cannot apply, or it is not wanted any more.
+    pub fn of(scenario: &Scenario, tick: &mut dyn FnMut(u64) -> bool) -> Result<Self, Refusal> {
         let none = [f64::INFINITY, f64::NEG_INFINITY];
         let wider = |range: &mut [f64; 2], x: f64| *range = [range[0].min(x), range[1].max(x)];
         let signals = signals(&scenario.machine);
@@ -60,12 +60,10 @@ impl Preview {
         let held = |signal: &Signal| charts.iter().position(|(chart, _)| chart.holds(signal));
         let drawn: Vec<_> = signals.iter().filter_map(|signal| Some((held(signal)?, signal.clone()))).collect();
         let mut b = none;
-        let run = replay(scenario, |_, frame| {
+        let run = replay_while(scenario, |_, frame| {
             wider(&mut b, frame.b);
             drawn.iter().for_each(|(i, signal)| wider(&mut charts[*i].1, signal.value(frame)));
-            if frame.step.is_multiple_of(1024) {
-                tick(frame.step);
-            }
+            !frame.step.is_multiple_of(1024) || tick(frame.step)
         })?;
         let last = run.frame();
         let reach = Linkage::of(&run.scenario().machine).reach();

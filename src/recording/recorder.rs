@@ -26,7 +26,7 @@ use crate::picture::scene::{Scene, point};
 use crate::planning::pose_constant::Planes;
 use crate::session::scenario::Scenario;
 use crate::session::verdict::Verdict;
-use crate::session::{Edit, Plan, Run, replay};
+use crate::session::{Edit, Plan, Run, replay_while};
 use crate::simulation::frame::{Frame, Peaks};
 
 /// Rows that gather before they are written.
@@ -50,30 +50,28 @@ pub struct Set<'a> {
     pub several: bool,
 }
 
-/// Runs a scenario and writes its entities; its peaks.
+/// Runs a scenario and writes its entities; its peaks. `tick` hears of steps that are done, and says whether the rest is
+/// still wanted.
 ///
 /// # Errors
-/// If it cannot run, be drawn or be written.
+/// If it cannot run, be drawn or be written, or is not wanted any more.
 pub fn record(
     set: &mut Set<'_>,
     scenario: &Scenario,
     forecast: &Preview,
-    tick: &mut dyn FnMut(u64),
+    tick: &mut dyn FnMut(u64) -> bool,
 ) -> Result<(Peaks, Verdict), Stop> {
     let mut recorder = Recorder::new(set, scenario, forecast)?;
     let mut failure = None;
-    let run = replay(scenario, |run, frame| {
-        if failure.is_none() {
-            failure = recorder.see(run, frame).err();
-            if frame.step.is_multiple_of(64) || frame.step == forecast.steps {
-                tick(frame.step);
-            }
-        }
+    let run = replay_while(scenario, |run, frame| {
+        failure = recorder.see(run, frame).err();
+        let told = frame.step.is_multiple_of(64) || frame.step == forecast.steps;
+        failure.is_none() && (!told || tick(frame.step))
     });
-    let run = run.map_err(|refusal| Stop::Refused { scenario: scenario.name.clone(), refusal })?;
-    match failure {
-        Some(stop) => Err(stop),
-        None => recorder.finish(&run),
+    match (failure, run) {
+        (Some(stop), _) => Err(stop),
+        (None, Ok(run)) => recorder.finish(&run),
+        (None, Err(refusal)) => Err(Stop::Refused { scenario: scenario.name.clone(), refusal }),
     }
 }
 

@@ -140,7 +140,7 @@ impl Edit {
     }
 
     /// Whether it sets where the path goes, or sends a machine that is led back to it: anything of the task but its time.
-    pub(super) fn sets_path(&self) -> bool {
+    pub fn sets_path(&self) -> bool {
         self.part("task").is_some_and(|task| task.is_empty() || task.keys().any(|key| key != "time"))
     }
 

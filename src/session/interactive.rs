@@ -7,24 +7,13 @@
 use std::sync::Arc;
 
 use super::changes::{Failed, in_order};
+use super::document::{Document, WORD, Watch};
 use super::edit::{Edit, TimedEdit};
 use super::refusal::Refusal;
-use super::replay;
 use super::run::Run;
 use super::script::Script;
 use crate::session::scenario::{MAX_FRAMES, MAX_TIME, Scenario};
 use crate::simulation::frame::Frame;
-
-/// Everything that makes a run: what undo restores and what is saved.
-#[derive(Clone, Debug)]
-struct Document {
-    /// Its edits are empty; they stand in `script`.
-    scenario: Arc<Scenario>,
-    /// None beyond `end`.
-    script: Script,
-    /// Steps done.
-    end: u64,
-}
 
 /// One step of history.
 #[derive(Clone, Debug)]
@@ -44,18 +33,19 @@ impl Change {
     }
 }
 
-/// A run that a person edits while it goes on.
+/// A run that a person edits while it goes on. A copy shares frames and history, so that it costs the same however long
+/// the session is; what takes long can be done to it beside the window.
 #[derive(Clone, Debug)]
 pub struct Session {
     document: Document,
     /// The script of the document, one after the other.
-    edits: Vec<TimedEdit>,
+    edits: Arc<Vec<TimedEdit>>,
     run: Run,
-    frames: Vec<Frame>,
+    frames: Arc<Vec<Frame>>,
     cursor: usize,
     playing: bool,
-    undo: Vec<Change>,
-    redo: Vec<Change>,
+    undo: Vec<Arc<Change>>,
+    redo: Vec<Arc<Change>>,
     /// Edits of one kind join into one undo while a gesture lasts.
     gesture: bool,
     /// Whether the gesture's parameter edits apply at the present step; the first one decides.
@@ -71,9 +61,17 @@ impl Session {
     /// # Errors
     /// If it cannot start, or one of its edits cannot apply. A session that was saved while it waited waits again.
     pub fn open(scenario: Scenario) -> Result<Self, Refusal> {
+        Self::open_while(scenario, &mut |_| true)
+    }
+
+    /// The same, while it is wanted.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open), and if it is not wanted any more.
+    pub fn open_while(scenario: Scenario, watch: Watch<'_>) -> Result<Self, Refusal> {
         // A saved session may have waited; a task that has just been written has not.
         let patient = !scenario.edits.is_empty();
-        Self::opened(scenario, patient)
+        Self::opened(scenario, patient, watch)
     }
 
     /// The same; a task that does not fit its machine waits, and [`Run::waiting`] says why.
@@ -81,15 +79,15 @@ impl Session {
     /// # Errors
     /// If a value is out of range, the machine has no reactionless planes, or one of its edits cannot apply.
     pub fn open_waiting(scenario: Scenario) -> Result<Self, Refusal> {
-        Self::opened(scenario, true)
+        Self::opened(scenario, true, &mut |_| true)
     }
 
-    fn opened(mut scenario: Scenario, patient: bool) -> Result<Self, Refusal> {
+    fn opened(mut scenario: Scenario, patient: bool, watch: Watch<'_>) -> Result<Self, Refusal> {
         let edits = std::mem::take(&mut scenario.edits);
-        Self::replayed(scenario, in_order(&edits), patient).map_err(|failed| failed.named(&edits))
+        Self::replayed(scenario, in_order(&edits), patient, watch).map_err(|failed| failed.named(&edits))
     }
 
-    fn replayed(scenario: Scenario, script: Vec<TimedEdit>, patient: bool) -> Result<Self, Failed> {
+    fn replayed(scenario: Scenario, script: Vec<TimedEdit>, patient: bool, watch: Watch<'_>) -> Result<Self, Failed> {
         let known: Script = script.iter().cloned().collect();
         let runs = known.is_led() || script.last().is_some_and(|e| e.step > 0);
         let end = match runs {
@@ -110,16 +108,16 @@ impl Session {
             }
             false => 0,
         };
-        let mut session = Self::of(Document { scenario: Arc::new(scenario), script: known, end }, patient)?;
+        let mut session = Self::of(Document { scenario: Arc::new(scenario), script: known, end }, patient, watch)?;
         session.cursor = 0;
         Ok(session)
     }
 
-    fn of(document: Document, patient: bool) -> Result<Self, Failed> {
-        let (run, frames) = perform(&document, None, patient)?;
+    fn of(document: Document, patient: bool, watch: Watch<'_>) -> Result<Self, Failed> {
+        let (run, frames) = document.perform(None, patient, watch)?;
         let cursor = frames.len() - 1;
         Ok(Self {
-            edits: document.script.to_vec(),
+            edits: Arc::new(document.script.to_vec()),
             document,
             run,
             frames,
@@ -209,7 +207,7 @@ impl Session {
             // Samples of the drives have a b of their own.
             return Some(task.b);
         }
-        let common = self.run.planes()?.common(&task.points())?;
+        let common = self.run.common()?;
         let nearest = common.nearest(b)?;
         Some(if nearest == b { b } else { common.inwards(nearest, 1e-6) })
     }
@@ -237,14 +235,31 @@ impl Session {
 
     /// Shows an instant, s, as far as the run has got or the planned motion goes.
     pub fn seek(&mut self, time: f64) {
+        self.seek_while(time, &mut |_| true);
+    }
+
+    /// The same, as far as it is wanted.
+    pub fn seek_while(&mut self, time: f64, watch: Watch<'_>) {
         let step = (time / self.scenario().step).round().max(0.0) as usize;
-        if !self.is_led() {
-            let planned = (self.run.planned_time() / self.scenario().step - 1e-6).ceil() as usize;
-            while self.frames.len() <= step.min(planned) && self.has_room() {
-                self.advance_run();
+        let ahead = self.steps_to(time);
+        for i in 1..=ahead {
+            if !self.has_room() || (i.is_multiple_of(WORD) && !watch(i as f64 / ahead as f64)) {
+                break;
             }
+            self.advance_run();
         }
         self.cursor = step.min(self.frames.len() - 1);
+    }
+
+    /// How many steps the run has still to do before it is at a time, s, of its planned motion.
+    fn steps_to(&self, time: f64) -> usize {
+        if self.is_led() {
+            return 0;
+        }
+        let step = self.scenario().step;
+        let planned = (self.run.planned_time() / step - 1e-6).ceil() as usize;
+        let to = (time / step).round().max(0.0) as usize;
+        (to.min(planned) + 1).saturating_sub(self.frames.len())
     }
 
     /// Moves the display by steps, either way; past the newest frame the run goes on.
@@ -282,7 +297,7 @@ impl Session {
         self.unedited = None;
         self.run.advance();
         let frame = self.run.frame();
-        self.frames.push(frame);
+        Arc::make_mut(&mut self.frames).push(frame);
         // A session can be opened again only as far as its run has numbers.
         if frame.is_finite() {
             self.document.end = frame.step;
@@ -296,16 +311,27 @@ impl Session {
     /// If it cannot apply; then nothing has changed. Joint limits always apply: where the task does not fit into them,
     /// the run waits.
     pub fn apply(&mut self, edit: Edit) -> Result<(), Refusal> {
+        self.apply_while(edit, &mut |_| true)
+    }
+
+    /// The same, while it is wanted.
+    ///
+    /// # Errors
+    /// As [`apply`](Self::apply), and if it is not wanted any more.
+    pub fn apply_while(&mut self, edit: Edit, watch: Watch<'_>) -> Result<(), Refusal> {
         let mut now = self.concerns_now(&edit);
         if let (true, Some(waiting)) = (now, self.run.waiting()) {
             return Err(waiting.why.clone());
         }
-        let done = if now { self.apply_now(edit.clone()) } else { self.amend(edit.clone()) };
+        let done = match now {
+            true => self.apply_now(edit.clone(), watch),
+            false => self.amend(edit.clone(), watch),
+        };
         match done {
-            Err(_) if now && edit.sets_limits() => {
+            Err(why) if now && edit.sets_limits() && why != Refusal::Stopped => {
                 // The motion in progress does not keep them: they hold from its start.
                 now = false;
-                self.amend(edit)?;
+                self.amend(edit, watch)?;
             }
             done => done?,
         }
@@ -327,13 +353,41 @@ impl Session {
         }
     }
 
+    /// Whether it takes more than the present step to apply an edit: the task is planned anew, and the run so far is made
+    /// again. How many steps that are.
+    pub fn steps_again(&self, edit: &Edit) -> Option<u64> {
+        match self.concerns_now(edit) {
+            true => (!self.is_at_end()).then_some(self.cursor as u64),
+            false => (!edit.is_aside()).then_some(self.document.end),
+        }
+    }
+
+    /// The same for what undo would do.
+    pub fn steps_of_undo(&self) -> Option<u64> {
+        self.undo.last().and_then(|change| self.steps_of(change, change.inverse.is_some()))
+    }
+
+    /// The same for what redo would do.
+    pub fn steps_of_redo(&self) -> Option<u64> {
+        self.redo.last().and_then(|change| self.steps_of(change, change.edit.is_some()))
+    }
+
+    fn steps_of(&self, change: &Change, appends: bool) -> Option<u64> {
+        (!(appends && self.is_running() && !change.plans())).then_some(change.before.end)
+    }
+
+    /// The same for showing an instant, s.
+    pub fn steps_of_seek(&self, time: f64) -> Option<u64> {
+        Some(self.steps_to(time) as u64).filter(|steps| *steps > 0)
+    }
+
     /// Whether the newest frame is on display and time passes.
     fn is_running(&self) -> bool {
         self.is_moving() && self.is_at_end()
     }
 
     /// At the present step; later frames, if the display was scrubbed back, are replaced.
-    fn apply_now(&mut self, edit: Edit) -> Result<(), Refusal> {
+    fn apply_now(&mut self, edit: Edit, watch: Watch<'_>) -> Result<(), Refusal> {
         if self.is_full() && self.is_at_end() && (edit.leads() || matches!(edit, Edit::Push { .. })) {
             return Err(Refusal::Full { time: self.run.simulation().time() });
         }
@@ -343,7 +397,7 @@ impl Session {
         if !self.is_at_end() {
             document.end = self.cursor as u64;
             document.script.cut(document.end);
-            remade = Some(perform(&document, Some(&self.run), false).map_err(Failed::refusal)?);
+            remade = Some(document.perform(Some(&self.run), false, watch).map_err(Failed::refusal)?);
         }
         let timed = TimedEdit { step: document.end, edit };
         let joins = self.gesture
@@ -361,8 +415,9 @@ impl Session {
         let inverse = unedited.inverse_of(&timed.edit);
         let mut run = unedited.clone();
         run.apply(&timed.edit)?;
-        self.edits.truncate(document.script.len());
-        self.edits.push(timed.clone());
+        let edits = Arc::make_mut(&mut self.edits);
+        edits.truncate(document.script.len());
+        edits.push(timed.clone());
         document.script.push(timed.clone());
         if let Some((_, frames)) = remade {
             self.frames = frames;
@@ -378,66 +433,28 @@ impl Session {
     }
 
     /// Before the first step, whatever has happened since: for a parameter, during the whole run.
-    fn amend(&mut self, edit: Edit) -> Result<(), Refusal> {
+    fn amend(&mut self, edit: Edit, watch: Watch<'_>) -> Result<(), Refusal> {
         let (before, inverse) = (self.document.clone(), self.run.inverse_of(&edit));
         let timed = TimedEdit { step: 0, edit };
-        let document = self.amended(&timed);
+        let document = self.document.amended(&timed);
         match &timed.edit {
             edit if edit.is_aside() => {
                 self.run.apply(&timed.edit)?;
-                self.edits = document.script.to_vec();
+                self.edits = Arc::new(document.script.to_vec());
                 self.document = document;
             }
             edit => {
                 let patient = edit.sets_machine() || self.run.waiting().is_some();
-                self.restore(document, patient)?;
+                self.restore(document, patient, watch)?;
             }
         }
         self.remember(before, timed, inverse);
         Ok(())
     }
 
-    /// The document with an edit before the first step.
-    fn amended(&self, timed: &TimedEdit) -> Document {
-        let mut document = self.document.clone();
-        let mut timed = timed.clone();
-        if let Some(change) = timed.edit.take("duration") {
-            // A saved session says there how long it took, so no edit may say otherwise.
-            if let Ok(scenario) = document.scenario.with(&change) {
-                document.scenario = Arc::new(scenario);
-            }
-            if timed.edit.sets_nothing() {
-                return document;
-            }
-        }
-        let mut script: Vec<TimedEdit> =
-            self.edits.iter().filter(|e| !e.edit.is_replaced_by(&timed.edit)).cloned().collect();
-        if timed.edit.sets_path() && self.is_led() {
-            // A new plan puts a machine that was led back on its path: the edits that led it go, the settings stay.
-            let mut kept: Vec<TimedEdit> = Vec::with_capacity(script.len());
-            for e in script.drain(..).filter(|e| !e.edit.leads()) {
-                if e.step > 0 && matches!(e.edit, Edit::PoseB { .. }) {
-                    continue;
-                }
-                kept.retain(|old| !old.edit.is_replaced_by(&e.edit));
-                kept.push(TimedEdit { step: 0, edit: e.edit });
-            }
-            script = kept;
-            document.end = 0;
-        }
-        // An edit that leads the machine from the start does so from where this one puts it.
-        let place = script.iter().position(|e| e.step > 0 || e.edit.leads());
-        let says_nothing = timed.edit.part("task").is_some_and(toml::Table::is_empty);
-        if !says_nothing {
-            script.insert(place.unwrap_or(script.len()), timed.clone());
-        }
-        document.script = document.script.replaced(script);
-        document
-    }
-
     /// The newest frame once more, after an edit.
     fn show_present(&mut self) {
-        if let Some(last) = self.frames.last_mut() {
+        if let Some(last) = Arc::make_mut(&mut self.frames).last_mut() {
             *last = self.run.frame();
         }
     }
@@ -448,12 +465,13 @@ impl Session {
             && self.undo.last().is_some_and(|c| c.edit.as_ref().is_some_and(|e| e.edit.is_replaced_by(&timed.edit)));
         match self.undo.last_mut() {
             Some(last) if joins => {
+                let last = Arc::make_mut(last);
                 last.title = timed.edit.title();
                 last.edit = Some(timed);
             }
             _ => {
                 let title = timed.edit.title();
-                self.undo.push(Change { before, edit: Some(timed), inverse, title });
+                self.undo.push(Arc::new(Change { before, edit: Some(timed), inverse, title }));
             }
         }
         self.gesture = true;
@@ -464,6 +482,11 @@ impl Session {
         self.gesture = false;
         self.gesture_now = None;
         self.unedited = None;
+    }
+
+    /// How many changes can be undone.
+    pub fn undo_count(&self) -> usize {
+        self.undo.len()
     }
 
     /// What undo would take back.
@@ -481,18 +504,26 @@ impl Session {
     /// # Errors
     /// If what was cannot be restored; then nothing has changed.
     pub fn undo(&mut self) -> Result<(), Refusal> {
+        self.undo_while(&mut |_| true)
+    }
+
+    /// The same, while it is wanted.
+    ///
+    /// # Errors
+    /// As [`undo`](Self::undo), and if it is not wanted any more.
+    pub fn undo_while(&mut self, watch: Watch<'_>) -> Result<(), Refusal> {
         self.end_gesture();
         let Some(change) = self.undo.last().cloned() else { return Ok(()) };
         let after = self.document.clone();
         let done = match &change.inverse {
             Some(inverse) if self.is_running() && !change.plans() => {
-                self.append(inverse.clone()).or_else(|_| self.return_to(&change.before))
+                self.append(inverse.clone(), watch).or_else(|why| self.instead(why, &change.before, watch))
             }
-            _ => self.return_to(&change.before),
+            _ => self.return_to(&change.before, watch),
         };
         done?;
         self.undo.pop();
-        self.redo.push(Change { before: after, ..change });
+        self.redo.push(Arc::new(Change { before: after, ..Change::clone(&change) }));
         Ok(())
     }
 
@@ -501,37 +532,50 @@ impl Session {
     /// # Errors
     /// If it cannot apply; then nothing has changed.
     pub fn redo(&mut self) -> Result<(), Refusal> {
+        self.redo_while(&mut |_| true)
+    }
+
+    /// The same, while it is wanted.
+    ///
+    /// # Errors
+    /// As [`redo`](Self::redo), and if it is not wanted any more.
+    pub fn redo_while(&mut self, watch: Watch<'_>) -> Result<(), Refusal> {
         self.end_gesture();
         let Some(change) = self.redo.last().cloned() else { return Ok(()) };
         let before = self.document.clone();
         let done = match &change.edit {
             Some(timed) if self.is_running() && !change.plans() => {
-                self.append(timed.edit.clone()).or_else(|_| self.return_to(&change.before))
+                self.append(timed.edit.clone(), watch).or_else(|why| self.instead(why, &change.before, watch))
             }
-            _ => self.return_to(&change.before),
+            _ => self.return_to(&change.before, watch),
         };
         done?;
         self.redo.pop();
-        self.undo.push(Change { before, ..change });
+        self.undo.push(Arc::new(Change { before, ..Change::clone(&change) }));
         Ok(())
     }
 
     /// Applies while time passes, without touching history.
-    fn append(&mut self, edit: Edit) -> Result<(), Refusal> {
+    fn append(&mut self, edit: Edit, watch: Watch<'_>) -> Result<(), Refusal> {
         if !self.concerns_now(&edit) {
-            return self.restore(self.amended(&TimedEdit { step: 0, edit }), false);
+            return self.restore(self.document.amended(&TimedEdit { step: 0, edit }), false, watch);
         }
         self.run.apply(&edit)?;
         let timed = TimedEdit { step: self.document.end, edit };
-        self.edits.push(timed.clone());
+        Arc::make_mut(&mut self.edits).push(timed.clone());
         self.document.script.push(timed);
         self.show_present();
         Ok(())
     }
 
+    /// What was, where the inverse cannot apply; not if the inverse is not wanted any more.
+    fn instead(&mut self, why: Refusal, document: &Document, watch: Watch<'_>) -> Result<(), Refusal> {
+        if why == Refusal::Stopped { Err(why) } else { self.return_to(document, watch) }
+    }
+
     /// What was, with time standing still.
-    fn return_to(&mut self, document: &Document) -> Result<(), Refusal> {
-        self.restore(document.clone(), true)?;
+    fn return_to(&mut self, document: &Document, watch: Watch<'_>) -> Result<(), Refusal> {
+        self.restore(document.clone(), true, watch)?;
         self.playing = false;
         if self.is_led() {
             self.cursor = self.frames.len() - 1;
@@ -541,10 +585,10 @@ impl Session {
 
     /// Makes the run of a document; the display stays where it is, if there is a frame. With patience, a task that does
     /// not fit its machine waits; the document stays whole, to go on where it was once it fits again.
-    fn restore(&mut self, document: Document, patient: bool) -> Result<(), Refusal> {
-        let (run, frames) = perform(&document, Some(&self.run), patient).map_err(Failed::refusal)?;
+    fn restore(&mut self, document: Document, patient: bool, watch: Watch<'_>) -> Result<(), Refusal> {
+        let (run, frames) = document.perform(Some(&self.run), patient, watch).map_err(Failed::refusal)?;
         self.playing &= run.waiting().is_none();
-        self.edits = document.script.to_vec();
+        self.edits = Arc::new(document.script.to_vec());
         (self.document, self.run, self.frames, self.unedited) = (document, run, frames, None);
         self.cursor = self.cursor.min(self.frames.len() - 1);
         Ok(())
@@ -555,32 +599,27 @@ impl Session {
     /// # Errors
     /// If it cannot start; then nothing has changed.
     pub fn switch(&mut self, scenario: Scenario) -> Result<(), Refusal> {
-        let title = format!("open {}", scenario.title);
-        let mut next = Self::open(scenario)?;
-        next.undo = std::mem::take(&mut self.undo);
-        next.undo.push(Change { before: self.document.clone(), edit: None, inverse: None, title });
-        *self = next;
+        self.take_over(Self::open(scenario)?);
         Ok(())
+    }
+
+    /// Replaces everything by another session that has just been opened; undo brings this one back.
+    pub fn take_over(&mut self, mut next: Self) {
+        let title = format!("open {}", next.document.scenario.title);
+        next.undo = std::mem::take(&mut self.undo);
+        next.undo.push(Arc::new(Change { before: self.document.clone(), edit: None, inverse: None, title }));
+        *self = next;
     }
 
     /// The session as a scenario: replayed or opened again, it gives equal frames. One that has not begun covers its
     /// motion.
     pub fn to_scenario(&self) -> Scenario {
         let mut scenario = Scenario::clone(&self.document.scenario);
-        scenario.edits.clone_from(&self.edits);
+        scenario.edits.clone_from(&*self.edits);
         scenario.duration = match self.document.end {
             0 => self.scenario().duration,
             end => Some(end as f64 * self.scenario().step),
         };
         scenario
     }
-}
-
-/// Runs a document from its start to its end.
-fn perform(document: &Document, known: Option<&Run>, patient: bool) -> Result<(Run, Vec<Frame>), Failed> {
-    let mut frames = Vec::with_capacity(document.end as usize + 1);
-    let see = |_: &Run, frame: &Frame| frames.push(*frame);
-    let end = |_: &Run, _: &[TimedEdit]| Ok(document.end);
-    let run = replay::perform(&document.scenario, &document.script.to_vec(), (end, patient), known, see)?;
-    Ok((run, frames))
 }

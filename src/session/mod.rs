@@ -1,6 +1,7 @@
 //! What a person did: a scenario, edits and what became of them, step by step; undo, replay, the verdict.
 
 mod changes;
+mod document;
 mod edit;
 mod edit_check;
 mod interactive;
@@ -13,10 +14,11 @@ pub mod scenario;
 mod script;
 pub mod verdict;
 
+pub use document::Watch;
 pub use edit::{Edit, TimedEdit};
 pub(crate) use edit_check::check_edits;
 pub use interactive::Session;
 pub use planner::{Plan, curves};
 pub use refusal::Refusal;
-pub use replay::{felt, replay, replay_if, settled};
+pub use replay::{felt, replay, replay_if, replay_while, settled};
 pub use run::{Run, Waiting};

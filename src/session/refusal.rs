@@ -137,6 +137,9 @@ pub enum Refusal {
         /// How many there may be.
         most: f64,
     },
+    /// Whoever asked for it wants it no more.
+    #[error("stopped before its end: nothing has changed")]
+    Stopped,
     /// One of the edits of a scenario.
     #[error("the {} [[edit]], {title} at step {step}: {refusal}", ordinal(*entry))]
     Edit {

@@ -5,6 +5,7 @@ use crate::session::scenario::Scenario;
 use crate::session::{Refusal, Run, TimedEdit};
 use crate::simulation::audit::AuditFigure;
 use crate::simulation::frame::Frame;
+
 /// A scenario with the edits before its first step made part of it, and the others left out, and how many those others
 /// are.
 ///
@@ -33,6 +34,26 @@ pub fn replay_if(
     allow: impl FnOnce(u64) -> Result<(), Refusal>,
     see: impl FnMut(&Run, &Frame),
 ) -> Result<Run, Refusal> {
+    let mut see = see;
+    whole(scenario, allow, |run, frame| {
+        see(run, frame);
+        true
+    })
+}
+
+/// The same as [`replay`]; `see` says of each frame whether the rest is still wanted.
+///
+/// # Errors
+/// As [`replay`], and [`Refusal::Stopped`] if it is not.
+pub fn replay_while(scenario: &Scenario, see: impl FnMut(&Run, &Frame) -> bool) -> Result<Run, Refusal> {
+    whole(scenario, |_| Ok(()), see)
+}
+
+fn whole(
+    scenario: &Scenario,
+    allow: impl FnOnce(u64) -> Result<(), Refusal>,
+    see: impl FnMut(&Run, &Frame) -> bool,
+) -> Result<Run, Refusal> {
     let end = |run: &Run, script: &[TimedEdit]| {
         let last = run.whole(script)?;
         allow(last).map(|()| last).map_err(Failed::from)
@@ -56,14 +77,15 @@ pub fn felt(scenario: &Scenario) -> Result<([Vec<f64>; 3], Option<AuditFigure>),
     Ok((course, run.frame().fault()))
 }
 
-/// Runs a scenario, as edits at the start leave it, to a last step, with a script in order, and shows every frame. A
-/// task that does not fit its machine is refused, or, with patience, waits at its first step.
+/// Runs a scenario, as edits at the start leave it, to a last step, with a script in order, and shows every frame to
+/// `see`, which says whether the rest is still wanted. A task that does not fit its machine is refused, or, with
+/// patience, waits at its first step.
 pub(super) fn perform(
     scenario: &Scenario,
     script: &[TimedEdit],
     (end, patient): (impl FnOnce(&Run, &[TimedEdit]) -> Result<u64, Failed>, bool),
     known: Option<&Run>,
-    mut see: impl FnMut(&Run, &Frame),
+    mut see: impl FnMut(&Run, &Frame) -> bool,
 ) -> Result<Run, Failed> {
     let (mut run, begun) = Run::begin(scenario, script, known)?;
     if let Some(waiting) = run.waiting() {
@@ -84,7 +106,9 @@ pub(super) fn perform(
         if !frame.is_finite() {
             return Err(Refusal::Diverged { time: frame.time }.into());
         }
-        see(&run, &frame);
+        if !see(&run, &frame) {
+            return Err(Refusal::Stopped.into());
+        }
         if step >= end {
             return Ok(run);
         }

@@ -1,6 +1,6 @@
 //! A [`Run`]: a scenario in motion. The window and the commands advance the same one, so they cannot differ.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::changes::{Failed, folded};
 use super::edit::{Edit, TimedEdit};
@@ -11,7 +11,7 @@ use crate::planning::Motion;
 use crate::planning::following::Follower;
 use crate::planning::following::follow::Bounds;
 use crate::planning::pose_constant::Planes;
-use crate::planning::reactionless::Decimal;
+use crate::planning::reactionless::{BSet, Decimal};
 use crate::session::changes::{amended, changed, checked};
 use crate::session::scenario::{MAX_STEPS, Scenario};
 use crate::simulation::frame::Frame;
@@ -46,10 +46,12 @@ impl Waiting {
 pub struct Run {
     scenario: Scenario,
     planes: Option<Arc<Planes>>,
-    plan: Plan,
+    plan: Arc<Plan>,
     /// Set where the task cannot be planned; the plan is then to rest.
     waiting: Option<Waiting>,
     simulation: Simulation,
+    /// The b that serve all points of the task, found when they are first asked for.
+    common: OnceLock<Option<BSet>>,
 }
 
 impl Run {
@@ -102,7 +104,8 @@ impl Run {
         };
         let guide = Guide::Motion { motion: plan.motion.clone(), start: 0.0 };
         let simulation = Simulation::new(&scenario.setup(), guide)?;
-        Ok(Self { scenario: scenario.clone(), planes: Some(planes), plan, waiting, simulation })
+        let (scenario, planes, plan) = (scenario.clone(), Some(planes), Arc::new(plan));
+        Ok(Self { scenario, planes, plan, waiting, simulation, common: OnceLock::new() })
     }
 
     /// Why it waits, if its task does not fit its machine.
@@ -118,6 +121,12 @@ impl Run {
     /// The machine's reactionless planes.
     pub fn planes(&self) -> Option<&Arc<Planes>> {
         self.planes.as_ref()
+    }
+
+    /// The b that serve all points of the task, if any do.
+    pub fn common(&self) -> Option<&BSet> {
+        let find = || self.planes.as_ref()?.common(&self.scenario.task.points());
+        self.common.get_or_init(find).as_ref()
     }
 
     /// The simulation.
@@ -148,7 +157,7 @@ impl Run {
     /// The planned motion, while it leads.
     pub fn motion(&self) -> Option<&Motion> {
         match self.simulation.guide() {
-            Guide::Motion { motion, .. } => Some(motion),
+            Guide::Motion { motion, .. } => Some(&**motion),
             Guide::Follow(_) => None,
         }
     }
@@ -233,7 +242,7 @@ impl Run {
                 }
                 simulation.lead(Guide::Follow(follower));
             }
-            self.planes = Some(planes);
+            (self.planes, self.common) = (Some(planes), OnceLock::new());
         }
         self.simulation = simulation;
         self.scenario = scenario;

@@ -6,15 +6,18 @@ use std::sync::{Arc, Mutex};
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use proptest::prelude::*;
+use proptest::test_runner::{Config, TestRunner};
 use stillbase::app::jobs::{AtOnce, Job, Poll, Threads, Workers};
 use stillbase::app::window::{App, Clock};
 use stillbase::app::{AppState, Command, ComparisonCommand};
+use stillbase::picture::scene::options::Handle;
 use stillbase::picture::scene::palette::Theme;
-use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
+use stillbase::session::{Edit, Session};
 
 use super::screen::Screen;
-use super::{Window, session};
+use super::{Window, pull, seen, session};
 use crate::Test;
 use crate::folder::Folder;
 
@@ -22,6 +25,12 @@ pub const TESTS: &[Test] = tests![
     studies_run_beside_the_window,
     the_ways_of_a_task_run_beside_the_window,
     a_recording_is_written_beside_the_window,
+    what_is_cancelled_is_stopped,
+    a_change_that_takes_long_is_made_beside_the_window,
+    of_a_drag_the_newest_edit_counts,
+    a_drag_that_is_given_up_takes_back_what_it_did,
+    a_file_is_opened_beside_the_window,
+    what_is_done_beside_equals_what_is_done_at_once,
     jobs_end_break_off_and_are_stopped,
 ];
 
@@ -94,8 +103,8 @@ fn the_ways_of_a_task_run_beside_the_window() {
     assert_eq!(entries(&h), Some(0), "an empty table, until the runs are there");
     // What is sorted and kept meanwhile stays so.
     tell(&mut h, Command::Comparison(ComparisonCommand::Keep));
-    assert_eq!(entries(&h), Some(1));
-    assert_eq!(workers.work(), 1);
+    assert_eq!(entries(&h), Some(0));
+    assert_eq!(workers.work(), 2);
     h.run_steps(3);
     let count = entries(&h).expect("a table");
     assert!(count > 3, "{count}");
@@ -131,6 +140,255 @@ fn a_recording_is_written_beside_the_window() {
     h.run_steps(2);
     assert!(file.exists());
     assert!(h.query_by_label_contains("recorded ").is_some());
+}
+
+fn what_is_cancelled_is_stopped() {
+    let workers = Waiting::default();
+    let folder = Folder::new("cancelled");
+    let mut h = window("case-3", &workers);
+    h.run_steps(2);
+    let cancel = |h: &mut Window, what: &str| {
+        h.get_by_label(&format!("Cancel {what}")).click();
+        h.run_steps(3);
+    };
+    if cfg!(feature = "record") {
+        tell(&mut h, Command::Record(folder.path("run.rrd")));
+        // Esc is for what is dragged or open: it stops no recording.
+        h.key_press(egui::Key::Escape);
+        h.run_steps(2);
+        cancel(&mut h, "recording");
+        assert!(h.query_by_label("cancelled: no file is left").is_some());
+        assert_eq!(workers.work(), 1);
+        h.run_steps(2);
+        assert!(folder.names().is_empty(), "{:?}", folder.names());
+    }
+    // A study: what is on display stays, and it is not begun again until something changes.
+    tell(&mut h, Command::Study(true));
+    cancel(&mut h, "drawing machines");
+    assert!(h.query_by_label_contains("cancelled: to change something").is_some());
+    assert_eq!(workers.work(), 1);
+    h.run_steps(3);
+    assert!(h.query_by_label_contains("To blame").is_none(), "nobody waits for it any more");
+    tell(&mut h, Command::Edit(Edit::set("task.time", 1.5)));
+    tell(&mut h, Command::EndGesture);
+    work_all(&mut h, &workers);
+    assert!(h.query_by_label_contains("To blame").is_some(), "the run has changed: it is studied");
+    tell(&mut h, Command::Edit(Edit::set("task.time", 1.6)));
+    tell(&mut h, Command::EndGesture);
+    cancel(&mut h, "drawing machines");
+    workers.work();
+    h.run_steps(2);
+    assert!(h.query_by_label_contains("To blame").is_some(), "the last study stays");
+    assert_eq!(workers.work(), 0, "and is not begun again");
+    // The ways of the task, the same.
+    tell(&mut h, Command::Compare(true));
+    cancel(&mut h, "running the ways of the task");
+    workers.work();
+    h.run_steps(2);
+    let entries = h.state().app_state().comparison().map(|c| c.entries().len());
+    assert_eq!((entries, workers.work()), (Some(0), 0));
+}
+
+/// Does all that there is to do, and what follows from it.
+fn work_all(h: &mut Window, workers: &Waiting) {
+    for _ in 0..8 {
+        workers.work();
+        h.run_steps(2);
+    }
+    assert!(!h.state().app_state().is_working());
+}
+
+fn a_change_that_takes_long_is_made_beside_the_window() {
+    let workers = Waiting::default();
+    let mut h = window("least-reaction", &workers);
+    h.run_steps(2);
+    let time = |h: &Window| session(h).scenario().task.time;
+    let was = time(&h);
+    tell(&mut h, Command::Edit(Edit::set("task.time", 1.7)));
+    tell(&mut h, Command::EndGesture);
+    assert_eq!(time(&h), was, "what was shown stays until the new run is there");
+    h.run_steps(8);
+    assert!(h.query_by_label("making the run again, 0 %").is_some(), "the line at the bottom says so");
+    // Meanwhile the window goes on: views turn, and what is done to the session waits for its turn.
+    tell(&mut h, Command::Snapshots(true));
+    assert!(h.state().app_state().view_state().snapshots);
+    tell(&mut h, Command::Undo);
+    assert_eq!(workers.work(), 1);
+    h.run_steps(1);
+    assert_eq!(time(&h), 1.7, "it has been made, and what waited is under way");
+    workers.work();
+    h.run_steps(2);
+    assert_eq!(time(&h), was);
+    assert_eq!(session(&h).redo_title(), Some("set motion time to 1.700 s"));
+    // Cancelled, nothing has changed, and what waited for it goes too.
+    tell(&mut h, Command::Edit(Edit::set("task.time", 1.8)));
+    tell(&mut h, Command::Edit(Edit::set("task.b", 2.45)));
+    h.run_steps(8);
+    h.get_by_label("Cancel making the run again").click();
+    h.run_steps(3);
+    assert!(h.query_by_label("cancelled: nothing has changed").is_some());
+    workers.work();
+    h.run_steps(2);
+    assert_eq!((time(&h), session(&h).undo_title()), (was, None));
+    assert!(!h.state().app_state().is_working());
+}
+
+fn of_a_drag_the_newest_edit_counts() {
+    let workers = Waiting::default();
+    let mut h = window("least-reaction", &workers);
+    h.run_steps(2);
+    let to = session(&h).scenario().task.points()[1];
+    for i in 1..=20 {
+        tell(&mut h, Command::Edit(Edit::set("task.to", vec![to.re - 1e-3 * f64::from(i), to.im])));
+    }
+    tell(&mut h, Command::EndGesture);
+    assert_eq!(workers.work(), 1, "the first");
+    h.run_steps(2);
+    assert_eq!(workers.work(), 1, "the last, and none between");
+    h.run_steps(2);
+    assert_eq!(workers.work(), 0);
+    assert_eq!(session(&h).scenario().task.points()[1].re, to.re - 0.02);
+    tell(&mut h, Command::Undo);
+    work_all(&mut h, &workers);
+    assert_eq!(session(&h).scenario().task.points()[1], to, "all of the drag is one undo");
+}
+
+fn a_drag_that_is_given_up_takes_back_what_it_did() {
+    let workers = Waiting::default();
+    let mut h = window("least-reaction", &workers);
+    h.run_steps(2);
+    tell(&mut h, Command::Edit(Edit::set("task.time", 1.5)));
+    tell(&mut h, Command::EndGesture);
+    work_all(&mut h, &workers);
+    let before = session(&h).to_scenario();
+    let handle = h.state().app_state().stage().handle(Handle::Waypoint(1), session(&h).frame()).expect("B");
+    let at = seen(&h, handle);
+    // B is held by its name where the target covers it.
+    let name = at - egui::vec2(17.0, 0.0);
+    pull(&mut h, name, name + egui::vec2(-14.0, 6.0));
+    assert!(h.state().app_state().view_state().grabbed.is_some(), "it is held");
+    h.key_press(egui::Key::Escape);
+    h.run_steps(2);
+    work_all(&mut h, &workers);
+    h.drop_at(name);
+    work_all(&mut h, &workers);
+    assert_eq!(session(&h).to_scenario(), before);
+}
+
+fn a_file_is_opened_beside_the_window() {
+    let workers = Waiting::default();
+    let folder = Folder::new("opened-beside");
+    let file = folder.path("mine.toml");
+    std::fs::write(&file, Scenario::builtin("circle").expect("built in").to_toml()).expect("a file");
+    let mut h = window("case-3", &workers);
+    h.run_steps(2);
+    tell(&mut h, Command::OpenFile(folder.path("none.toml")));
+    tell(&mut h, Command::OpenFile(file.clone()));
+    assert!(h.query_by_label("opening, 0 %").is_some());
+    // The session that is there can be worked with until then.
+    tell(&mut h, Command::Edit(Edit::SlideB { b: 2.5 }));
+    assert_eq!(session(&h).b_aim(), 2.5);
+    assert_eq!(session(&h).scenario().name, "case-3");
+    work_all(&mut h, &workers);
+    assert_eq!(session(&h).scenario().task, Scenario::builtin("circle").expect("built in").task);
+    let said = h.state().app_state().view_state().message.clone();
+    assert_eq!(said, Some((format!("opened {}", file.display()), false)), "of two only the newest counts");
+    tell(&mut h, Command::Undo);
+    work_all(&mut h, &workers);
+    assert_eq!(session(&h).b_aim(), 2.5, "undo brings back what was there");
+    // What cannot be opened is said when it is known, and nothing has changed.
+    tell(&mut h, Command::OpenFile(folder.path("none.toml")));
+    workers.work();
+    h.run_steps(2);
+    assert!(h.query_by_label_contains("none.toml").is_some());
+    assert_eq!(session(&h).b_aim(), 2.5);
+    // Bad news goes with the next thing that is done.
+    h.key_press(egui::Key::F);
+    h.run_steps(2);
+    tell(&mut h, Command::OpenFile(file));
+    h.get_by_label("Cancel opening").click();
+    h.run_steps(3);
+    work_all(&mut h, &workers);
+    assert_eq!(session(&h).b_aim(), 2.5);
+}
+
+/// What a person can do to a session, drawn at random; edits that follow each other are of different drags, so that each
+/// of them counts.
+fn any_commands() -> impl Strategy<Value = Vec<Command>> {
+    let number = |path: &'static str, range: std::ops::Range<f64>| {
+        range.prop_map(move |x| Edit::set(path, (x * 1e3).round() / 1e3)).boxed()
+    };
+    let edit = prop_oneof![
+        number("task.time", 0.3..0.9),
+        number("task.b", 2.2..2.7),
+        number("plant.payload.mass", 0.0..0.4),
+        number("plant.friction.viscous", 0.0..0.3),
+        (0.3..0.7, 0.4..1.0).prop_map(|(x, y)| Edit::set("task.to", vec![x, y])),
+        (0.3..0.7, 0.4..1.0).prop_map(|(x, y)| Edit::DragTarget { x, y }),
+        (2.0..2.8).prop_map(|b| Edit::SlideB { b }),
+        (2.0..2.8).prop_map(|b| Edit::PoseB { b }),
+        (0.1..0.6).prop_map(|least: f64| Edit::set("limits.a1", vec![least, 3.0])),
+        prop::sample::select(vec!["quintic", "fastest"]).prop_map(|law| Edit::set("task.law", law)),
+    ];
+    let command = prop_oneof![
+        8 => edit.prop_map(Command::Edit),
+        3 => Just(Command::Undo),
+        2 => Just(Command::Redo),
+        2 => Just(Command::TogglePlay),
+        2 => (0.0..0.8).prop_map(Command::Seek),
+        1 => (-30i64..30).prop_map(Command::Step),
+        1 => Just(Command::BackToPath),
+        1 => prop::sample::select(vec!["case-1", "case-2"]).prop_map(Command::Case),
+    ];
+    prop::collection::vec(command, 1..12)
+}
+
+/// Sixty sittings at random, with waits between what is done or without: frames, scenario and history are those of the
+/// program without threads.
+fn what_is_done_beside_equals_what_is_done_at_once() {
+    let start = || {
+        let mut scenario = Scenario::builtin("case-3").expect("built in");
+        scenario.step = 0.005;
+        AppState::new(scenario, Theme::Dark).expect("it starts")
+    };
+    let until_done = |app_state: &mut AppState| {
+        for _ in 0..6000 {
+            // Commands that wait are carried out with the next.
+            app_state.carry_out(Command::Preview(None));
+            if !app_state.is_working() {
+                return;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+        panic!("it does not end");
+    };
+    let mut runner = TestRunner::new(Config { cases: 60, failure_persistence: None, ..Config::default() });
+    let sitting = (any_commands(), prop::collection::vec(any::<bool>(), 12));
+    let result = runner.run(&sitting, |(commands, waits)| {
+        let (mut at_once, mut beside) = (start(), start().with_workers(Threads));
+        for (command, wait) in commands.into_iter().zip(waits) {
+            for app_state in [&mut at_once, &mut beside] {
+                app_state.carry_out(command.clone());
+                app_state.carry_out(Command::EndGesture);
+            }
+            // What is opened takes the place of all; until then one works with what is there.
+            if wait || matches!(command, Command::Case(_)) {
+                until_done(&mut beside);
+                at_once.pass(0.1);
+                beside.pass(0.1);
+            }
+        }
+        until_done(&mut beside);
+        let [one, other] = [&at_once, &beside].map(|app_state| app_state.session());
+        prop_assert_eq!(one.to_scenario(), other.to_scenario());
+        prop_assert!(one.frames() == other.frames(), "other frames");
+        prop_assert_eq!(one.frame().step, other.frame().step);
+        prop_assert_eq!(one.is_playing(), other.is_playing());
+        let history = |session: &Session| [session.undo_title(), session.redo_title()].map(|t| t.map(String::from));
+        prop_assert_eq!(history(one), history(other));
+        Ok(())
+    });
+    result.unwrap_or_else(|why| panic!("{why}"));
 }
 
 fn jobs_end_break_off_and_are_stopped() {

@@ -58,6 +58,36 @@ fn a_file_is_never_replaced_unasked_and_never_left_half() {
 }
 
 #[test]
+fn a_recording_that_is_stopped_leaves_no_file() {
+    let folder = Folder::new("stopped");
+    let (fresh, there) = (folder.path("fresh.rrd"), folder.path("there.rrd"));
+    std::fs::write(&there, "mine").expect("a file");
+    let force = Options { force: true, ..Options::default() };
+    // How often it asks, if it is never stopped.
+    let mut asked = 0;
+    record(&[short("case-3"), short("case-1")], &folder.path("whole.rrd"), &force, &mut |_| {
+        asked += 1;
+        true
+    })
+    .expect("it is not stopped");
+    std::fs::remove_file(folder.path("whole.rrd")).expect("it was written");
+    assert!(asked >= 8, "asked {asked} times");
+    for file in [&fresh, &there] {
+        for last in 0..asked {
+            let mut left = last;
+            let stopped = record(&[short("case-3"), short("case-1")], file, &force, &mut |_| {
+                assert!(left >= 0, "nobody is asked again who has said no");
+                left -= 1;
+                left >= 0
+            });
+            assert!(matches!(stopped, Err(RecordError::Stopped)), "{last}: {stopped:?}");
+            assert_eq!(folder.names(), ["there.rrd"], "{last}: nothing half written");
+        }
+    }
+    assert_eq!(std::fs::read(&there).expect("the file"), b"mine", "what was there is there still");
+}
+
+#[test]
 fn a_folder_that_cannot_be_written_is_named() {
     let folder = Folder::new("unwritable");
     std::fs::write(folder.path("plain"), "").expect("a file");

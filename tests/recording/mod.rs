@@ -173,7 +173,9 @@ fn short(name: &str) -> Scenario {
     scenario
 }
 
-fn quietly(_: Progress) {}
+fn quietly(_: Progress) -> bool {
+    true
+}
 
 fn record_in(folder: &Folder, name: &str, scenarios: &[Scenario]) -> Result<Vec<Recording>, RecordError> {
     record(scenarios, &folder.path(name), &Options::default(), &mut quietly)

@@ -23,7 +23,8 @@ fn nine_link() -> Machine {
 }
 
 fn motion(case: &str) -> Motion {
-    Run::new(&Scenario::builtin(case).expect("built in")).expect("it starts").plan().motion.clone()
+    let run = Run::new(&Scenario::builtin(case).expect("built in")).expect("it starts");
+    Motion::clone(&run.plan().motion)
 }
 
 /// The deviations of one machine of the chunk that was drawn last.

@@ -4,13 +4,13 @@ use egui::{Align, Label, Layout, RichText, TextEdit, Ui};
 
 use super::fold::{fold, once, undo};
 use crate::app::Command;
+use crate::app::facts::{Facts, Setting};
 use crate::app::theme::{colour, plain};
 use crate::app::widgets::{name, note};
 use crate::picture::scene::palette::Palette;
-use crate::session::scenario::{KEYS, Value};
-use crate::session::{Edit, Session};
+use crate::session::Edit;
+use crate::session::scenario::KEYS;
 use crate::settings::change::{self, DEFAULT};
-use crate::settings::key::{Holds, Key};
 
 /// What the title above a part says already.
 const HEADED: [&str; 6] = ["task.", "control.", "plant.", "base.wheel.", "base.", "tolerance."];
@@ -19,7 +19,7 @@ const HEADED: [&str; 6] = ["task.", "control.", "plant.", "base.wheel.", "base."
 const SHOWN: usize = 24;
 
 /// Draws it.
-pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, facts: &Facts, p: &Palette, commands: &mut Vec<Command>) {
     fold(ui, p, ("All settings", "by key"), None, commands, |ui, commands| {
         let id = egui::Id::unique("settings sought");
         let mut sought = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_default();
@@ -28,23 +28,18 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
         name(&response, "Search the settings");
         ui.data_mut(|d| d.insert_temp(id, sought.clone()));
         let word = sought.trim().to_lowercase();
-        let scenario = session.scenario();
-        let found = scenario.settings().into_iter().filter(|(path, key, _)| {
-            // Rows come from files alone.
-            key.holds != Holds::Rows && (path.contains(&word) || key.words.to_lowercase().contains(&word))
-        });
         let (mut count, mut part) = (0, "");
-        for (path, key, value) in found {
+        for setting in facts.settings().iter().filter(|setting| setting.text.contains(&word)) {
             count += 1;
             if count > SHOWN {
                 continue;
             }
-            let of = KEYS.iter().find(|(_, keys)| keys.contains(key)).map_or("", |(part, _)| *part);
+            let of = KEYS.iter().find(|(_, keys)| keys.contains(setting.key)).map_or("", |(part, _)| *part);
             if of != std::mem::replace(&mut part, of) {
                 ui.add_space(2.0);
                 note(ui, p, of);
             }
-            row(ui, p, (&path, key), &value, scenario.idle(&path), commands);
+            row(ui, p, setting, commands);
         }
         match count {
             0 => note(ui, p, "no key contains this"),
@@ -54,15 +49,8 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
     });
 }
 
-fn row(
-    ui: &mut Ui,
-    p: &Palette,
-    (path, key): (&str, &Key),
-    value: &Value,
-    wants: Option<&str>,
-    commands: &mut Vec<Command>,
-) {
-    let now = change::typed(value);
+fn row(ui: &mut Ui, p: &Palette, setting: &Setting, commands: &mut Vec<Command>) {
+    let Setting { path, key, typed: shown, usual, wants, .. } = setting;
     let wants = wants.map_or_else(String::new, |wants| format!("\nNo effect as things are: that takes {wants}."));
     let tip = format!("{path}\n{}\n{}.{wants}", key.words, key.holds);
     ui.horizontal(|ui| {
@@ -71,8 +59,7 @@ fn row(
             ui.add_sized([40.0, 18.0], Label::new(unit).halign(Align::LEFT).truncate());
             let id = ui.scope_id().with(path);
             let kept = ui.data(|d| d.get_temp::<String>(id));
-            let shown = if now == DEFAULT { "" } else { now.as_str() };
-            let mut text = kept.clone().unwrap_or_else(|| shown.to_owned());
+            let mut text = kept.clone().unwrap_or_else(|| shown.clone());
             let hint = if key.default.is_empty() { "" } else { key.default };
             let field = TextEdit::singleline(&mut text).id(id.with("field")).hint_text(hint).desired_width(72.0);
             let response = ui.add(field.font(plain(11.5))).on_hover_text(&tip);
@@ -82,18 +69,17 @@ fn row(
             } else if kept.is_some() {
                 ui.data_mut(|d| d.remove_temp::<String>(id));
                 let cancelled = ui.input(|i| i.key_pressed(egui::Key::Escape));
-                if text.trim() != shown && !cancelled {
+                if text.trim() != shown.as_str() && !cancelled {
                     let typed = if text.trim().is_empty() { DEFAULT.into() } else { change::value(&text) };
                     once(commands, Edit::set(path, typed));
                 }
             }
-            let usual = shown.is_empty() || key.default.is_empty() || change::same(&change::value(key.default), value);
             if !usual && undo(ui, p, &format!("{path} back to normal"), &format!("Back to normal: {}", key.default)) {
                 once(commands, Edit::set(path, DEFAULT));
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 let ink = colour(if wants.is_empty() { p.ink } else { p.dim });
-                let name = HEADED.iter().find_map(|part| path.strip_prefix(part)).unwrap_or(path);
+                let name = HEADED.iter().find_map(|part| path.strip_prefix(part)).unwrap_or(path.as_str());
                 ui.add(Label::new(RichText::new(name).font(plain(11.0)).color(ink)).truncate()).on_hover_text(tip);
             });
         });

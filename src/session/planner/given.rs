@@ -61,5 +61,13 @@ pub fn given(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
     let (model, around) = dynamics_of(scenario);
     let instants = (A_SAMPLE * samples.count()).clamp(INSTANTS.0, INSTANTS.1);
     let forecast = Forecast::at(&motion, &model, &around, &Limits::of(&scenario.machine), instants);
-    Ok(Plan { motion, forecast, pace: None, price: None, verdicts: None, cycles: Vec::new(), blended: None })
+    Ok(Plan {
+        motion: motion.into(),
+        forecast,
+        pace: None,
+        price: None,
+        verdicts: None,
+        cycles: Vec::new(),
+        blended: None,
+    })
 }

@@ -1,5 +1,7 @@
 //! [`Plan`]: a planned task, and what it will cost.
 
+use std::sync::Arc;
+
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{DriveAngles, Vector};
@@ -13,11 +15,12 @@ use crate::planning::timing::{Limits, TimeLaw};
 use crate::planning::{Forecast, Motion};
 use crate::session::Refusal;
 use crate::session::scenario::Scenario;
+
 /// A planned task.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// What the machine is to do.
-    pub motion: Motion,
+    pub motion: Arc<Motion>,
     /// What it will cost.
     pub forecast: Forecast,
     /// For the fastest motion: what holds it back.
@@ -73,7 +76,15 @@ impl Plan {
     pub(super) fn of(scenario: &Scenario, motion: Motion) -> Self {
         let (model, around) = dynamics_of(scenario);
         let forecast = Forecast::of(&motion, &model, &around, &Limits::of(&scenario.machine));
-        Self { motion, forecast, pace: None, price: None, verdicts: None, cycles: Vec::new(), blended: None }
+        Self {
+            motion: Arc::new(motion),
+            forecast,
+            pace: None,
+            price: None,
+            verdicts: None,
+            cycles: Vec::new(),
+            blended: None,
+        }
     }
 }
 

@@ -1,5 +1,7 @@
 //! What leads a machine, and what a simulation of it is made of.
 
+use std::sync::Arc;
+
 use crate::mechanics::machine::Machine;
 use crate::planning::following::Follower;
 use crate::planning::{Motion, Reference};
@@ -11,8 +13,8 @@ use crate::simulation::plant::{Base, PlantDifferences};
 pub enum Guide {
     /// A planned motion that began at a time, s.
     Motion {
-        /// The plan.
-        motion: Motion,
+        /// The plan; copies of a run share it.
+        motion: Arc<Motion>,
         /// s.
         start: f64,
     },

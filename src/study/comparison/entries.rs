@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::{COLUMNS, Compared, alternatives};
-use crate::session::Refusal;
 use crate::session::scenario::Scenario;
+use crate::session::{Refusal, Watch};
 
 /// One row of the comparison.
 #[derive(Clone, Debug)]
@@ -32,15 +32,19 @@ pub type Outcome = (String, Result<Arc<Compared>, String>);
 
 /// Runs the ways of a scenario's task; `goes_on` hears how much is done, from 0 to 1, and says whether the rest is
 /// wanted. `None` if it is not.
-pub fn run_ways(scenario: &Scenario, goes_on: &mut dyn FnMut(f64) -> bool) -> Option<Vec<Outcome>> {
+pub fn run_ways(scenario: &Scenario, goes_on: Watch<'_>) -> Option<Vec<Outcome>> {
     let ways = alternatives(scenario);
     let count = ways.len() as f64;
-    let run = |(i, (way, scenario)): (usize, (_, Scenario))| {
-        let way: super::Alternative = way;
-        goes_on(i as f64 / count).then(|| {
-            let outcome = Compared::of(scenario).map(Arc::new).map_err(|why| why.to_string());
-            (way.title().to_owned(), outcome)
-        })
+    let run = |(i, (way, scenario)): (usize, (super::Alternative, Scenario))| {
+        let share = |done: f64| (i as f64 + done) / count;
+        if !goes_on(share(0.0)) {
+            return None;
+        }
+        let outcome = match Compared::of_while(scenario, &mut |done| goes_on(share(done))) {
+            Err(Refusal::Stopped) => return None,
+            outcome => outcome.map(Arc::new).map_err(|why| why.to_string()),
+        };
+        Some((way.title().to_owned(), outcome))
     };
     ways.into_iter().enumerate().map(run).collect()
 }
@@ -88,8 +92,15 @@ impl Comparison {
     ///
     /// # Errors
     /// If it cannot be done.
-    pub fn keep(&mut self, mut scenario: Scenario) -> Result<(), Refusal> {
-        let own = scenario.name.clone();
+    pub fn keep(&mut self, scenario: Scenario) -> Result<(), Refusal> {
+        let run = Compared::of(scenario)?;
+        self.keep_run(run);
+        Ok(())
+    }
+
+    /// The same of a run that has been done.
+    pub fn keep_run(&mut self, mut run: Compared) {
+        let own = run.scenario.name.clone();
         let taken = |name: &str| self.entries.iter().any(|e| e.title == name);
         let mut title = own.clone();
         for count in 2.. {
@@ -98,10 +109,9 @@ impl Comparison {
             }
             title = format!("{own} {count}");
         }
-        scenario.name.clone_from(&title);
-        let run = Arc::new(Compared::of(scenario)?);
-        self.entries.push(Entry { title, outcome: Ok(run), shown: true, kept: true });
-        Ok(())
+        run.scenario.name.clone_from(&title);
+        run.summary.name.clone_from(&title);
+        self.entries.push(Entry { title, outcome: Ok(Arc::new(run)), shown: true, kept: true });
     }
 
     /// Takes a kept run away.

@@ -12,7 +12,7 @@ pub use summary::{COLUMNS, Column, Summary};
 
 use crate::mechanics::machine::Machine;
 use crate::session::scenario::Scenario;
-use crate::session::{Refusal, replay};
+use crate::session::{Refusal, Watch, replay_while};
 use crate::simulation::frame::Frame;
 
 /// The most frames that are kept of one run; a longer one keeps every second, third … of them, and its last.
@@ -35,8 +35,17 @@ impl Compared {
     /// # Errors
     /// If it cannot start, or one of its edits cannot apply.
     pub fn of(scenario: Scenario) -> Result<Self, Refusal> {
+        Self::of_while(scenario, &mut |_| true)
+    }
+
+    /// The same, while it is wanted.
+    ///
+    /// # Errors
+    /// As [`of`](Self::of), and if it is not wanted any more.
+    pub fn of_while(scenario: Scenario, watch: Watch<'_>) -> Result<Self, Refusal> {
         let (mut frames, mut every): (Vec<Frame>, u64) = (Vec::new(), 1);
-        let run = replay(&scenario, |_, frame| {
+        let run = replay_while(&scenario, |run, frame| {
+            let wanted = !frame.step.is_multiple_of(256) || watch(frame.step as f64 / run.last_step().max(1) as f64);
             if frame.step.is_multiple_of(every) {
                 if frames.len() >= MOST {
                     every *= 2;
@@ -46,6 +55,7 @@ impl Compared {
                     frames.push(*frame);
                 }
             }
+            wanted
         })?;
         let last = run.frame();
         if frames.last().is_none_or(|f| f.step != last.step) {

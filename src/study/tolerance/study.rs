@@ -13,8 +13,8 @@ pub const INSTANTS: usize = 200;
 /// Machines, if the scenario does not say how many.
 const SAMPLES: u64 = 20_000;
 
-/// The most machines: a window waits for them.
-const MOST: u64 = 200_000;
+/// The most machines: the peaks of all of them are kept.
+const MOST: u64 = 1_000_000;
 
 /// What tolerances do to a run.
 #[derive(Clone, Debug)]

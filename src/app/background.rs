@@ -1,0 +1,168 @@
+//! [`Background`]: what is under way beside the window.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use super::change::{Change, NotOpened};
+use super::jobs::{AtOnce, Job, Poll, Ticket, Workers};
+use super::{Activity, Command};
+use crate::session::scenario::Scenario;
+use crate::session::{Refusal, Session};
+use crate::simulation::frame::Totals;
+use crate::study::comparison::{Compared, Outcome};
+use crate::study::tolerance::Study;
+
+/// A job and what it is of, while it is under way.
+pub(super) type Slot<K, T> = Option<(K, Job<T>)>;
+
+/// What to do with a session that has been opened.
+#[derive(Clone, Debug)]
+pub(super) struct Opening {
+    /// Whether time passes at once.
+    pub plays: bool,
+    /// Whether the dialog closes that asked for it.
+    pub closes: bool,
+    /// What to say then.
+    pub news: Option<String>,
+}
+
+/// A session with a change made, or why it was not.
+pub(super) type Changed = (Session, Result<Option<String>, Refusal>);
+
+/// Frames that take some milliseconds to free.
+const LONG: usize = 20_000;
+
+/// Repaints for which a change is not spoken of: most are made by then.
+const UNSPOKEN: u32 = 6;
+
+/// What is under way, and who does it.
+pub(super) struct Background {
+    workers: Arc<dyn Workers + Send + Sync>,
+    /// Woken when a job has ended.
+    ctx: Option<egui::Context>,
+    /// A change of the session, made of a copy; and for how many repaints.
+    pub change: Slot<(Change, u32), Changed>,
+    /// What is to be done after that.
+    pub later: VecDeque<Command>,
+    /// A session that takes the place of the present one.
+    pub opening: Slot<Opening, Result<Session, NotOpened>>,
+    /// A study, or why there is none; nothing if it was stopped.
+    pub study: Slot<Scenario, Option<Result<Study, String>>>,
+    /// Runs side by side.
+    pub ways: Slot<Scenario, Option<Vec<Outcome>>>,
+    /// Runs to keep beside them, each with what to say when it is there.
+    pub kept: VecDeque<(Option<&'static str>, Job<Result<Compared, Refusal>>)>,
+    /// What to say when the recording is there.
+    pub recording: Slot<(), Result<String, String>>,
+    /// What to say when the session is saved.
+    pub saving: Slot<(), Result<String, String>>,
+    /// How far the base will move.
+    pub foreseen: Slot<(), Totals>,
+}
+
+impl Default for Background {
+    fn default() -> Self {
+        Self {
+            workers: Arc::new(AtOnce),
+            ctx: None,
+            change: None,
+            later: VecDeque::new(),
+            opening: None,
+            study: None,
+            ways: None,
+            kept: VecDeque::new(),
+            recording: None,
+            saving: None,
+            foreseen: None,
+        }
+    }
+}
+
+impl Background {
+    /// Has everything done by somebody from now on.
+    pub fn hire(&mut self, workers: impl Workers + Send + Sync + 'static) {
+        self.workers = Arc::new(workers);
+    }
+
+    /// Repaints this whenever a job has ended.
+    pub fn wakes(&mut self, ctx: &egui::Context) {
+        self.ctx.get_or_insert_with(|| ctx.clone());
+    }
+
+    /// Starts work beside the window.
+    pub fn start<T: Send + 'static>(&self, work: impl FnOnce(&Ticket) -> T + Send + 'static) -> Job<T> {
+        let ctx = self.ctx.clone();
+        let wake = move || {
+            if let Some(ctx) = ctx {
+                ctx.request_repaint();
+            }
+        };
+        Job::start(&*self.workers, wake, work)
+    }
+
+    /// Lets go of a session; of a long one where nobody waits for it.
+    pub fn let_go(&self, old: Session) {
+        if old.frames().len() > LONG {
+            drop(self.start(move |_| drop(old)));
+        }
+    }
+
+    /// Whether the session is being changed: what is done to it has to wait.
+    pub fn is_changing(&self) -> bool {
+        self.change.is_some() || !self.later.is_empty()
+    }
+
+    /// Does something to the session after all that waits already. Of a drag only the newest edit counts, and of
+    /// instants to show the newest.
+    pub fn after(&mut self, command: Command) {
+        let replaced = match (self.later.back(), &command) {
+            (Some(Command::Edit(earlier)), Command::Edit(later)) => earlier.is_replaced_by(later),
+            (Some(Command::Seek(_)), Command::Seek(_)) => true,
+            _ => false,
+        };
+        if replaced {
+            self.later.pop_back();
+        }
+        self.later.push_back(command);
+    }
+
+    /// One more repaint during which the session is being changed.
+    pub fn count(&mut self) {
+        if let Some(((_, shown), _)) = &mut self.change {
+            *shown += 1;
+        }
+    }
+
+    /// What is under way and how far it is, for the line at the bottom.
+    pub fn under_way(&self) -> Option<(Activity, f64)> {
+        self.all_under_way().next()
+    }
+
+    /// All that is under way, what matters most first.
+    pub fn all_under_way(&self) -> impl Iterator<Item = (Activity, f64)> {
+        let change = self.change.as_ref().filter(|((_, shown), _)| *shown > UNSPOKEN);
+        let change = change.map(|(_, job)| (Activity::Change, job.progress()));
+        let opening = self.opening.as_ref().map(|(_, job)| (Activity::Opening, job.progress()));
+        let recording = self.recording.as_ref().map(|(_, job)| (Activity::Recording, job.progress()));
+        let saving = self.saving.as_ref().map(|(_, job)| (Activity::Saving, job.progress()));
+        let study = self.study.as_ref().map(|(_, job)| (Activity::Study, job.progress()));
+        let ways = self.ways.as_ref().map(|(_, job)| (Activity::Ways, job.progress()));
+        let kept = self.kept.front().map(|(_, job)| (Activity::Kept, job.progress()));
+        [change, opening, saving, recording, study, ways, kept].into_iter().flatten()
+    }
+
+    /// Whether anything at all is under way.
+    pub fn is_busy(&self) -> bool {
+        self.is_changing() || self.foreseen.is_some() || self.under_way().is_some()
+    }
+}
+
+/// What a job has come to, with what it is of, once it has ended; nothing came of one that broke off.
+pub(super) fn ended<K, T: Send + 'static>(slot: &mut Slot<K, T>) -> Option<(K, Option<T>)> {
+    let result = match slot.as_ref()?.1.poll() {
+        Poll::Working => return None,
+        Poll::Done(result) => Some(result),
+        Poll::Broken => None,
+    };
+    slot.take().map(|(of, _)| (of, result))
+}

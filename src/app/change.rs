@@ -1,0 +1,125 @@
+//! [`Change`]: what a person does to a session that may take long: it can be made of a copy of the session beside the
+//! window, and of the session itself all the same.
+
+use std::path::PathBuf;
+
+use super::RefusedEdit;
+use crate::session::scenario::{Scenario, TaskKind};
+use crate::session::{Edit, Refusal, Session, Watch};
+use crate::settings::text::brief;
+
+/// A change of a session.
+#[derive(Clone, Debug)]
+pub(super) enum Change {
+    /// One edit.
+    Edit(Edit),
+    /// Takes the last one back.
+    Undo,
+    /// Brings it back.
+    Redo,
+    /// Shows an instant, s.
+    Seek(f64),
+    /// Puts the machine back at the start of its planned path.
+    BackToPath,
+}
+
+/// Steps that are done again within a few milliseconds.
+const QUICK: u64 = 1000;
+
+/// Points of a path that is planned within a few milliseconds.
+const FEW: usize = 8;
+
+impl Change {
+    /// Makes it; what there is to say then.
+    pub fn make(&self, session: &mut Session, watch: Watch<'_>) -> Result<Option<String>, Refusal> {
+        match self {
+            Self::Edit(edit) => session.apply_while(edit.clone(), watch)?,
+            Self::Undo => {
+                let title = session.undo_title().map(|title| format!("undone: {title}"));
+                session.undo_while(watch)?;
+                return Ok(title);
+            }
+            Self::Redo => {
+                let title = session.redo_title().map(|title| format!("redone: {title}"));
+                session.redo_while(watch)?;
+                return Ok(title);
+            }
+            Self::Seek(time) => {
+                session.pause();
+                session.seek_while(*time, watch);
+            }
+            Self::BackToPath => {
+                session.apply_while(Edit::of("task", Default::default()), watch)?;
+                session.end_gesture();
+                session.pause();
+                session.seek(0.0);
+                return Ok(Some("back on the planned path, at its start".into()));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Whether it is made within a few milliseconds, as far as one can know before.
+    pub fn is_quick(&self, session: &Session) -> bool {
+        let (steps, plans_as_before) = match self {
+            Self::Edit(edit) => {
+                // What is asked of path, plane and machine may be refused, and then a way out is sought.
+                let new = edit.sets_path() || edit.sets_machine() || matches!(edit, Edit::PoseB { .. });
+                (session.steps_again(edit), !new)
+            }
+            Self::Undo => (session.steps_of_undo(), false),
+            Self::Redo => (session.steps_of_redo(), false),
+            Self::Seek(time) => return session.steps_of_seek(*time).is_none_or(|steps| steps <= QUICK),
+            Self::BackToPath => (Some(0), false),
+        };
+        steps.is_none_or(|steps| steps <= QUICK && plans_as_before && plans_quickly(session.scenario()))
+    }
+}
+
+/// Whether a plan of it that succeeded before takes a few milliseconds at most: the least reaction, zero momentum over
+/// cycles and the fastest law take longer, and so do many points.
+fn plans_quickly(scenario: &Scenario) -> bool {
+    let task = &scenario.task;
+    let direct = match task.kind {
+        TaskKind::Reactionless | TaskKind::MinimumNorm | TaskKind::SameTip => true,
+        TaskKind::ChangeB => task.moment_limit.is_none(),
+        TaskKind::LeastReaction | TaskKind::ZeroMomentum | TaskKind::Given => false,
+    };
+    direct && task.samples.is_none() && !task.law.is_fastest() && task.points().len() <= FEW
+}
+
+/// Where a session comes from that is to be opened.
+#[derive(Clone, Debug)]
+pub(super) enum Source {
+    /// As it is.
+    Scenario(Box<Scenario>),
+    /// Read from a file.
+    File(PathBuf),
+}
+
+/// Why something was not opened.
+#[derive(Debug)]
+pub(super) struct NotOpened {
+    pub why: String,
+    pub refused: Option<RefusedEdit>,
+}
+
+impl Source {
+    /// Reads, plans and replays it.
+    pub fn open(self, watch: Watch<'_>) -> Result<Session, NotOpened> {
+        let (scenario, from_file) = match self {
+            Self::Scenario(scenario) => (*scenario, false),
+            Self::File(path) => {
+                let found = crate::files::scenario(&path.display().to_string());
+                let scenario =
+                    found.map_err(|why| NotOpened { why: brief(&why.to_string()).into_owned(), refused: None })?;
+                (scenario, true)
+            }
+        };
+        let change = scenario.task.whole();
+        Session::open_while(scenario, watch).map_err(|refusal| NotOpened {
+            why: refusal.to_string(),
+            refused: from_file.then(|| RefusedEdit::of(&Edit::of("task", change), &refusal)),
+        })
+    }
+}

@@ -1,0 +1,428 @@
+//! What the application starts beside the window, and what it does with what comes back.
+
+use std::path::{Path, PathBuf};
+
+use super::AppState;
+use crate::app::background::{Background, Opening, Slot, ended};
+use crate::app::change::{Change, NotOpened, Source};
+use crate::app::jobs::Workers;
+use crate::app::{Activity, Command, ComparisonCommand, RefusedEdit};
+use crate::session::scenario::Scenario;
+use crate::session::{Edit, Refusal, Session};
+use crate::simulation::frame::Totals;
+use crate::study::comparison::{Compared, Comparison, run_ways};
+use crate::study::tolerance::{Study, ToleranceError};
+
+/// The most steps that are run ahead to see how far the base will move.
+const MOST_AHEAD: f64 = 20_000.0;
+
+impl AppState {
+    /// The same with somebody who works beside it.
+    #[must_use]
+    pub fn with_workers(mut self, workers: impl Workers + Send + Sync + 'static) -> Self {
+        self.background.hire(workers);
+        self
+    }
+
+    /// Says how something went.
+    pub(super) fn tell(&mut self, said: Result<Option<String>, String>) {
+        match said {
+            Ok(None) => {}
+            Ok(Some(news)) => self.view_state.message = Some((news, false)),
+            Err(problem) => self.view_state.message = Some((problem, true)),
+        }
+    }
+
+    /// Takes what jobs have done; whether one has ended.
+    pub(super) fn collect(&mut self) -> bool {
+        let [changed, opened] = [self.collect_change(), self.collect_opening()];
+        let fault = |what: &str| format!("{what} broke off: this is a fault of the program");
+        let mut any = changed || opened;
+        if let Some((of, study)) = ended(&mut self.background.study) {
+            let study = study.unwrap_or_else(|| Some(Err(fault("the study"))));
+            self.study = study.map(|study| (of, study)).or(self.study.take());
+            any = true;
+        }
+        if let Some((of, ways)) = ended(&mut self.background.ways) {
+            if let (Some(comparison), Some(Some(ways))) = (&mut self.comparison, ways) {
+                comparison.follow_with(&of, ways);
+            }
+            any = true;
+        }
+        while let Some(first) = self.background.kept.pop_front() {
+            let mut first = Some(first);
+            let Some((news, run)) = ended(&mut first) else {
+                self.background.kept.extend(first);
+                self.background.kept.rotate_right(1);
+                break;
+            };
+            let run = run.map_or_else(|| Err(fault("the run")), |run| run.map_err(|why| why.to_string()));
+            let said = match (run, &mut self.comparison) {
+                (Ok(run), Some(comparison)) => {
+                    comparison.keep_run(run);
+                    Ok(news.map(String::from))
+                }
+                (run, _) => run.map(|_| None),
+            };
+            self.tell(said);
+            any = true;
+        }
+        for (slot, what) in [(&mut self.background.recording, "the recording"), (&mut self.background.saving, "saving")]
+        {
+            if let Some(((), said)) = ended(slot) {
+                let said = said.unwrap_or_else(|| Err(fault(what)));
+                self.view_state.message = Some(said.map_or_else(|why| (why, true), |news| (news, false)));
+                any = true;
+            }
+        }
+        if let Some(((), totals)) = ended(&mut self.background.foreseen) {
+            self.foreseen = totals.unwrap_or_default();
+            self.adjust();
+            any = true;
+        }
+        any
+    }
+
+    /// Changes the session: at once if that is quick, else beside the window, and what was shown stays until then.
+    pub(super) fn change(&mut self, change: Change) {
+        if change.is_quick(&self.session) {
+            let done = change.make(&mut self.session, &mut |_| true);
+            self.changed(&change, done);
+            return;
+        }
+        let mut next = self.session.clone();
+        let job = self.background.start({
+            let change = change.clone();
+            move |ticket| {
+                let done = change.make(&mut next, &mut |done| ticket.goes_on(done));
+                (next, done)
+            }
+        });
+        self.background.change = Some(((change, 0), job));
+        self.collect_change();
+    }
+
+    fn collect_change(&mut self) -> bool {
+        let Some(((change, _), made)) = ended(&mut self.background.change) else { return false };
+        match made {
+            Some((next, done)) => {
+                if done.is_ok() {
+                    let old = std::mem::replace(&mut self.session, next);
+                    self.background.let_go(old);
+                }
+                self.changed(&change, done);
+            }
+            None => self.tell(Err("the change broke off: this is a fault of the program; nothing has changed".into())),
+        }
+        true
+    }
+
+    /// After a change of the session, or its refusal.
+    fn changed(&mut self, change: &Change, done: Result<Option<String>, Refusal>) {
+        if let (Change::Edit(edit), Err(refusal)) = (change, &done) {
+            self.view_state.refused = Some(RefusedEdit::of(edit, refusal));
+        }
+        if done.is_ok() {
+            match change {
+                // A push sends an edit many times a second for as long as it lasts: too often to run ahead each time.
+                Change::Edit(Edit::Push { .. }) => self.view_state.refused = None,
+                Change::Edit(_) => {
+                    self.view_state.refused = None;
+                    self.foresee();
+                }
+                Change::Undo | Change::Redo | Change::BackToPath => self.foresee(),
+                Change::Seek(_) => {}
+            }
+        }
+        self.tell(done.map_err(|refusal| refusal.to_string()));
+        self.refresh();
+    }
+
+    /// Does what had to wait for a change of the session, up to the next that takes long.
+    pub(super) fn catch_up(&mut self) {
+        while self.background.change.is_none() {
+            let Some(command) = self.background.later.pop_front() else { return };
+            self.do_now(command);
+        }
+    }
+
+    /// Opens a session in place of the present one; only the newest counts.
+    pub(super) fn open(&mut self, source: Source, opening: Opening) {
+        self.background.opening = None;
+        let job = self.background.start(move |ticket| source.open(&mut |done| ticket.goes_on(done)));
+        self.background.opening = Some((opening, job));
+        self.collect_opening();
+    }
+
+    fn collect_opening(&mut self) -> bool {
+        // What is done to the present session comes first.
+        if self.background.is_changing() {
+            return false;
+        }
+        let Some((opening, opened)) = ended(&mut self.background.opening) else { return false };
+        let broken = || NotOpened { why: "opening broke off: this is a fault of the program".into(), refused: None };
+        match opened.unwrap_or_else(|| Err(broken())) {
+            Ok(next) => self.take_over(next, opening),
+            Err(NotOpened { why, refused }) => {
+                self.view_state.refused = refused;
+                self.tell(Err(why));
+            }
+        }
+        self.refresh();
+        true
+    }
+
+    fn take_over(&mut self, next: Session, Opening { plays, closes, news }: Opening) {
+        let old = self.session.clone();
+        self.session.take_over(next);
+        self.background.let_go(old);
+        self.foresee();
+        if plays {
+            self.session.play();
+        }
+        if closes {
+            self.view_state.dialog = None;
+        }
+        self.tell(Ok(news));
+    }
+
+    /// Opens one of the paper's cases. A machine that was chosen in the window stays, and the message says so.
+    pub(super) fn open_case(&mut self, name: &str) {
+        let Some(case) = Scenario::builtin(name) else { return };
+        let present = &self.session.scenario().machine;
+        let other = (present.name() != case.machine.name()).then(|| present.clone());
+        let news = other.as_ref().map(|machine| format!("{}, with the machine {}", case.title, machine.name()));
+        let scenario = Scenario { machine: other.unwrap_or_else(|| case.machine.clone()), ..case };
+        self.open(Source::Scenario(Box::new(scenario)), Opening { plays: true, closes: false, news });
+    }
+
+    /// Opens a file.
+    pub(super) fn open_file(&mut self, path: PathBuf) {
+        let news = Some(format!("opened {}", path.display()));
+        self.open(Source::File(path), Opening { plays: false, closes: true, news });
+    }
+
+    /// Starts to write a file; what is done at once says at once how it went, with the dialog still open where it failed.
+    fn write(
+        &mut self,
+        slot: fn(&mut Self) -> &mut Slot<(), Result<String, String>>,
+        job: crate::app::jobs::Job<Result<String, String>>,
+    ) {
+        *slot(self) = Some(((), job));
+        self.collect();
+        let failed = matches!(self.view_state.message, Some((_, true)));
+        if slot(self).is_some() || !failed {
+            self.view_state.dialog = None;
+        }
+    }
+
+    /// Saves the session.
+    pub(super) fn save(&mut self, path: &Path) -> Result<(), String> {
+        check_name(path)?;
+        if self.background.saving.is_some() {
+            return Err("one session is being saved: want that to end first".into());
+        }
+        let (scenario, path) = (self.session.to_scenario(), path.to_owned());
+        let job = self.background.start(move |_| {
+            let text = scenario.to_toml();
+            crate::files::write_new(&path, text.as_bytes(), false).map_err(|e| e.to_string())?;
+            Ok(format!("saved {}", whole(&path)))
+        });
+        self.write(|app_state| &mut app_state.background.saving, job);
+        Ok(())
+    }
+
+    /// Records the run.
+    #[cfg(feature = "record")]
+    pub(super) fn record(&mut self, path: &Path) -> Result<(), String> {
+        check_name(path)?;
+        if self.background.recording.is_some() {
+            return Err("one recording is under way: want it to end first".into());
+        }
+        let options = crate::recording::Options { pictures: None, force: false };
+        let mut scenario = self.session.to_scenario();
+        scenario.duration = Some(self.session.length());
+        let path = path.to_owned();
+        let job = self.background.start(move |ticket| {
+            let mut told =
+                |progress: crate::recording::Progress| ticket.goes_on(progress.done as f64 / progress.of.max(1) as f64);
+            let done = crate::recording::record(&[scenario], &path, &options, &mut told).map_err(|e| e.to_string())?;
+            let verdict = if done.iter().all(|r| r.reactionless) { "reactionless" } else { "with reactions" };
+            Ok(format!("recorded {} ({verdict}); open it with the Rerun viewer", whole(&path)))
+        });
+        self.write(|app_state| &mut app_state.background.recording, job);
+        Ok(())
+    }
+
+    #[cfg(not(feature = "record"))]
+    pub(super) fn record(&mut self, _path: &Path) -> Result<(), String> {
+        Err("this build cannot record: build it with the feature `record`".into())
+    }
+
+    /// Runs ahead to where the planned motion ends, to know how far the base will move.
+    pub(super) fn foresee(&mut self) {
+        self.foreseen = Totals::default();
+        let scenario = self.session.scenario();
+        let steps = (self.session.run().planned_time() / scenario.step).ceil();
+        self.background.foreseen = None;
+        if scenario.base.moves() && !self.session.is_led() && steps <= MOST_AHEAD {
+            let mut run = self.session.run().clone();
+            let job = self.background.start(move |ticket| {
+                let mut wanted = true;
+                while wanted && (run.simulation().step_count() as f64) < steps {
+                    run.advance();
+                    let done = run.simulation().step_count();
+                    wanted = !done.is_multiple_of(256) || ticket.goes_on(done as f64 / steps);
+                }
+                run.frame().totals
+            });
+            self.background.foreseen = Some(((), job));
+            self.collect();
+        }
+    }
+
+    /// Studies the run on display, if its last study is of another; only the newest counts.
+    pub(super) fn refresh_study(&mut self) {
+        if !self.view_state.study {
+            (self.study, self.background.study) = (None, None);
+            return;
+        }
+        let scenario = self.session.scenario();
+        let known = self.background.study.as_ref().map(|(of, _)| of).or(self.study.as_ref().map(|(of, _)| of));
+        if self.view_state.grabbed.is_some() || known == Some(scenario) {
+            return;
+        }
+        self.background.study = None;
+        match self.session.run().waiting() {
+            Some(waiting) => self.study = Some((scenario.clone(), Err(waiting.why.to_string()))),
+            None => {
+                let run = self.session.run().clone();
+                let job =
+                    self.background.start(move |ticket| match Study::watched(&run, &mut |done| ticket.goes_on(done)) {
+                        Err(ToleranceError::Stopped) => None,
+                        study => Some(study.map_err(|why| why.to_string())),
+                    });
+                self.background.study = Some((scenario.clone(), job));
+            }
+        }
+    }
+
+    /// Runs the ways of the task on display, if those of the table are of another. Not during a drag.
+    pub(super) fn refresh_comparison(&mut self) {
+        if !self.view_state.compare {
+            (self.comparison, self.background.ways, self.declined) = (None, None, None);
+            self.background.kept.clear();
+            return;
+        }
+        let scenario = self.session.scenario();
+        let first = self.comparison.is_none();
+        let comparison = self.comparison.get_or_insert_with(|| Comparison::empty(scenario));
+        let ours = comparison
+            .entries()
+            .iter()
+            .any(|e| e.outcome.as_ref().is_ok_and(|run| run.scenario.task == scenario.task && !e.kept));
+        let task = comparison.task();
+        let stale = first || (task != scenario && (!ours || !same_but_task(task, scenario)));
+        let wanted = match &self.background.ways {
+            Some((of, _)) => of != scenario,
+            None => stale && self.declined.as_ref() != Some(scenario),
+        };
+        if !wanted || (!first && self.view_state.grabbed.is_some()) {
+            return;
+        }
+        let of = scenario.clone();
+        let job = self.background.start({
+            let of = of.clone();
+            move |ticket| run_ways(&of, &mut |done| ticket.goes_on(done))
+        });
+        self.background.ways = Some((of, job));
+    }
+
+    pub(super) fn change_comparison(&mut self, on: ComparisonCommand) {
+        let Some(comparison) = &mut self.comparison else { return };
+        match on {
+            ComparisonCommand::Sort(column) => comparison.sort_by(column),
+            ComparisonCommand::Show(entry, shown) => comparison.show(entry, shown),
+            ComparisonCommand::Remove(entry) => comparison.remove(entry),
+            ComparisonCommand::Add(scenario) => self.keep(*scenario, None),
+            ComparisonCommand::Keep => {
+                let mut scenario = self.session.to_scenario();
+                scenario.duration = Some(self.session.length());
+                self.keep(scenario, Some("added this run to the comparison"));
+            }
+            ComparisonCommand::Open(entry) => {
+                let run = comparison.entries().get(entry).and_then(|e| e.outcome.as_ref().ok()).cloned();
+                if let Some(run) = run {
+                    let opening = Opening { plays: false, closes: false, news: None };
+                    self.open(Source::Scenario(Box::new(run.scenario.clone())), opening);
+                }
+            }
+        }
+    }
+
+    /// Runs a scenario to be kept beside the ways of the task.
+    fn keep(&mut self, scenario: Scenario, news: Option<&'static str>) {
+        let work =
+            move |ticket: &crate::app::jobs::Ticket| Compared::of_while(scenario, &mut |done| ticket.goes_on(done));
+        let job = self.background.start(work);
+        self.background.kept.push_back((news, job));
+        self.collect();
+    }
+
+    /// Ends the program's work: a session that is being saved is saved whole, all else is stopped.
+    pub(in crate::app) fn close(&mut self) {
+        if let Some((_, job)) = self.background.saving.take() {
+            // Nobody is left to tell.
+            let _ = job.wait();
+        }
+        self.background = Background::default();
+    }
+
+    /// Stops what is under way; what was shown stays.
+    pub(super) fn cancel(&mut self, activity: Activity) -> String {
+        match activity {
+            Activity::Change => {
+                self.background.change = None;
+                self.background.later.clear();
+                self.session.end_gesture();
+            }
+            Activity::Opening => self.background.opening = None,
+            Activity::Recording => self.background.recording = None,
+            Activity::Study => {
+                // It is not begun again until something changes.
+                if let Some((of, _)) = self.background.study.take() {
+                    let known = self.study.take().map(|(_, study)| study);
+                    let none = || Err("cancelled: to change something draws machines again".into());
+                    self.study = Some((of, known.unwrap_or_else(none)));
+                }
+            }
+            Activity::Ways => self.declined = self.background.ways.take().map(|(of, _)| of),
+            Activity::Kept => self.background.kept.clear(),
+            Activity::Saving => {}
+        }
+        activity.cancelled().into()
+    }
+
+    /// What waits while the session is being changed.
+    pub(super) fn waits(&self, command: &Command) -> bool {
+        self.background.is_changing() && command.is_of_session()
+    }
+}
+
+/// A file that exists is not replaced from a window.
+fn check_name(path: &Path) -> Result<(), String> {
+    match path.exists() {
+        true => Err(format!("{} exists: want another name", path.display())),
+        false => Ok(()),
+    }
+}
+
+/// The whole name of a file, so that it can be found again.
+fn whole(path: &Path) -> String {
+    path.canonicalize().unwrap_or_else(|_| path.into()).display().to_string()
+}
+
+/// Whether two scenarios differ in their tasks at most.
+fn same_but_task(a: &Scenario, b: &Scenario) -> bool {
+    a.machine == b.machine && a.plant == b.plant && a.control == b.control && a.base == b.base && a.step == b.step
+}

@@ -1,0 +1,85 @@
+//! A [`Document`]: everything that makes a run, and what an edit before its first step makes of it.
+
+use std::sync::Arc;
+
+use super::changes::Failed;
+use super::edit::{Edit, TimedEdit};
+use super::replay;
+use super::run::Run;
+use super::script::Script;
+use crate::session::scenario::Scenario;
+use crate::simulation::frame::Frame;
+
+/// Hears how much is done, from 0 to 1, and says whether the rest is still wanted.
+pub type Watch<'a> = &'a mut dyn FnMut(f64) -> bool;
+
+/// Frames between two words to whoever watches.
+pub(super) const WORD: usize = 256;
+
+/// Everything that makes a run: what undo restores and what is saved.
+#[derive(Clone, Debug)]
+pub(super) struct Document {
+    /// Its edits are empty; they stand in `script`.
+    pub scenario: Arc<Scenario>,
+    /// None beyond `end`.
+    pub script: Script,
+    /// Steps done.
+    pub end: u64,
+}
+
+impl Document {
+    /// Runs it from its start to its end.
+    pub fn perform(
+        &self,
+        known: Option<&Run>,
+        patient: bool,
+        watch: Watch<'_>,
+    ) -> Result<(Run, Arc<Vec<Frame>>), Failed> {
+        let mut frames = Vec::with_capacity(self.end as usize + 1);
+        let see = |_: &Run, frame: &Frame| {
+            frames.push(*frame);
+            !frames.len().is_multiple_of(WORD) || watch(frames.len() as f64 / (self.end + 1) as f64)
+        };
+        let end = |_: &Run, _: &[TimedEdit]| Ok(self.end);
+        let run = replay::perform(&self.scenario, &self.script.to_vec(), (end, patient), known, see)?;
+        Ok((run, Arc::new(frames)))
+    }
+
+    /// With an edit before the first step.
+    pub fn amended(&self, timed: &TimedEdit) -> Self {
+        let mut document = self.clone();
+        let mut timed = timed.clone();
+        if let Some(change) = timed.edit.take("duration") {
+            // A saved session says there how long it took, so no edit may say otherwise.
+            if let Ok(scenario) = document.scenario.with(&change) {
+                document.scenario = Arc::new(scenario);
+            }
+            if timed.edit.sets_nothing() {
+                return document;
+            }
+        }
+        let mut script = document.script.to_vec();
+        script.retain(|e| !e.edit.is_replaced_by(&timed.edit));
+        if timed.edit.sets_path() && document.script.is_led() {
+            // A new plan puts a machine that was led back on its path: the edits that led it go, the settings stay.
+            let mut kept: Vec<TimedEdit> = Vec::with_capacity(script.len());
+            for e in script.drain(..).filter(|e| !e.edit.leads()) {
+                if e.step > 0 && matches!(e.edit, Edit::PoseB { .. }) {
+                    continue;
+                }
+                kept.retain(|old| !old.edit.is_replaced_by(&e.edit));
+                kept.push(TimedEdit { step: 0, edit: e.edit });
+            }
+            script = kept;
+            document.end = 0;
+        }
+        // An edit that leads the machine from the start does so from where this one puts it.
+        let place = script.iter().position(|e| e.step > 0 || e.edit.leads());
+        let says_nothing = timed.edit.part("task").is_some_and(toml::Table::is_empty);
+        if !says_nothing {
+            script.insert(place.unwrap_or(script.len()), timed.clone());
+        }
+        document.script = document.script.replaced(script);
+        document
+    }
+}
