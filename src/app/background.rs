@@ -15,6 +15,9 @@ use crate::study::tolerance::Study;
 /// A job and what it is of, while it is under way.
 pub(super) type Slot<K, T> = Option<(K, Job<T>)>;
 
+/// A run to keep, with what to say when it is there.
+pub(super) type Keeping = (Option<&'static str>, Job<Result<Compared, Refusal>>);
+
 /// What to do with a session that has been opened.
 #[derive(Clone, Debug)]
 pub(super) struct Opening {
@@ -51,7 +54,7 @@ pub(super) struct Background {
     /// Runs side by side.
     pub ways: Slot<Scenario, Option<Vec<Outcome>>>,
     /// Runs to keep beside them, each with what to say when it is there.
-    pub kept: VecDeque<(Option<&'static str>, Job<Result<Compared, Refusal>>)>,
+    pub kept: VecDeque<Keeping>,
     /// What to say when the recording is there.
     pub recording: Slot<(), Result<String, String>>,
     /// What to say when the session is saved.

@@ -10,6 +10,7 @@ use crate::simulation::plant::{Base, PlantDifferences};
 
 /// What leads the machine.
 #[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant, reason = "each simulation has one, and reads it in every step")]
 pub enum Guide {
     /// A planned motion that began at a time, s.
     Motion {
