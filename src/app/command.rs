@@ -41,12 +41,20 @@ pub enum Command {
     Dexterity(Option<Measure>),
     /// Point the camera so that everything is seen.
     Fit,
+    /// Move the camera.
+    Look(Look),
     /// Light or dark colours.
     Theme(Theme),
     /// Show how A would be held on the plane of another b, rad.
     Preview(Option<f64>),
     /// Start or stop drawing a path with the pointer.
     Draw(bool),
+    /// Show or hide the panel of settings on the left.
+    Side(bool),
+    /// Show or hide the panel of plots on the right.
+    Plots(bool),
+    /// Show both panels, or nothing but the scene.
+    Panels(bool),
     /// Show or hide runs side by side.
     Compare(bool),
     /// Show or hide the study of tolerances.
@@ -73,6 +81,10 @@ pub enum Command {
     Refuse(String),
     /// Stop what is under way beside the window.
     Cancel(Activity),
+    /// Show no more hints, now and at the next start.
+    SkipHints,
+    /// Show or hide the list of commands.
+    Find(bool),
     /// Show or hide the keys.
     Help(bool),
     /// Show or hide the dialog for a file.
@@ -102,6 +114,12 @@ impl Command {
             | Self::View(_)
             | Self::Dexterity(_)
             | Self::Fit
+            | Self::Look(_)
+            | Self::Side(_)
+            | Self::Plots(_)
+            | Self::Panels(_)
+            | Self::SkipHints
+            | Self::Find(_)
             | Self::Theme(_)
             | Self::Preview(_)
             | Self::Draw(_)
@@ -172,6 +190,15 @@ impl Activity {
             Self::Kept => "cancelled: no run was added",
         }
     }
+}
+
+/// How the camera is moved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Look {
+    /// Around the scene to the right and up, rad; in 2D along it.
+    Turn([f64; 2]),
+    /// Nearer, so many times.
+    Zoom(f64),
 }
 
 /// What can be done to the table of runs.

@@ -1,140 +1,142 @@
 //! The keyboard, and the card that shows it.
 
-use egui::{Context, Key, KeyboardShortcut, Modifiers};
+use egui::{Context, Grid, Key, KeyboardShortcut, Modifiers, RichText, ScrollArea, TextEdit, Ui};
 
-use super::theme::{bold, colour};
-use super::{Command, FileDialog, Purpose, ViewState};
-use crate::picture::scene::Measure;
+use super::actions::{ACTIONS, Action, FINE_ACTIONS, GESTURES, Group, shown};
+use super::theme::{bold, colour, plain};
+use super::widgets::name;
+use super::{Command, ViewState, search};
+use crate::picture::scene::palette::Palette;
 use crate::session::Session;
-use crate::session::scenario::Scenario;
 
-const KEYS: [(&str, &str); 30] = [
-    ("Space", "play, pause, start over"),
-    ("← →", "one step back, one step on"),
-    ("Shift ← →", "ten steps"),
-    ("Home  End", "start, newest instant"),
-    ("1  2  3", "the paper's cases, as they are in the paper"),
-    ("B", "put the machine back on its planned path"),
-    ("V", "2D, 3D, joint space, tower of workspaces"),
-    ("J", "shade the workspace by dexterity, one measure after the other"),
-    ("C", "the same task done in other ways, side by side"),
-    ("T", "tolerances: what the bases of many machines feel, and the spectrum"),
-    ("S", "snapshots along the motion"),
-    ("I", "inside the machine: what the pins carry"),
-    ("Shift click plot", "a second cursor: plots show differences; Esc takes it away"),
-    ("F", "show everything"),
-    ("X", "exaggerate the motion of the base, or show it as it is"),
-    ("L", "light or dark"),
-    ("R", "record for the Rerun viewer"),
-    ("Ctrl Z  Ctrl Y", "undo, redo"),
-    ("Ctrl S  Ctrl O", "save, open a session"),
-    ("drag target", "the machine follows on its plane"),
-    ("drag A, B, 1 …", "move a point of the path; where the target covers it, drag its name"),
-    ("double click", "add a point to the path"),
-    ("Delete", "leave out the point under the pointer"),
-    ("P, then drag", "draw a path"),
-    ("Alt drag, or U, drag", "push the end effector, 20 N for each metre"),
-    ("drag b ring", "the workspace turns"),
-    ("drag plane, slice", "change b, in joint space and in the tower"),
-    ("drag elsewhere", "pan in 2D, else orbit; Shift pans"),
-    ("wheel", "zoom"),
-    ("F1  Esc", "this card; close a card or a list, cancel a drag"),
-];
-
-/// Turns keys into commands; while text is typed only shortcuts with Ctrl count.
+/// Turns keys into commands; while text is typed only what does not type counts: shortcuts with Ctrl that a field does
+/// not know, and F1.
 pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
-    let typing = ctx.egui_wants_keyboard_input() || view_state.dialog.is_some();
-    let chord =
-        |modifiers: Modifiers, key| ctx.input_mut(|i| i.consume_shortcut(&KeyboardShortcut::new(modifiers, key)));
-    let ctrl = Modifiers::COMMAND;
-    if !typing && (chord(ctrl | Modifiers::SHIFT, Key::Z) || chord(ctrl, Key::Y)) {
-        commands.push(Command::Redo);
-    }
-    if !typing && chord(ctrl, Key::Z) {
-        commands.push(Command::Undo);
-    }
-    for (key, purpose) in [(Key::S, Purpose::Save), (Key::O, Purpose::Open)] {
-        if chord(ctrl, key) {
-            commands.push(Command::Dialog(Some(FileDialog::suggest(session, purpose))));
-        }
-    }
-    if chord(Modifiers::NONE, Key::F1) {
-        commands.push(Command::Help(!view_state.help));
-    }
+    let typing = ctx.egui_wants_keyboard_input() || view_state.dialog.is_some() || view_state.finder.is_some();
+    let taken = |key: &KeyboardShortcut| ctx.input_mut(|i| i.consume_shortcut(key));
     // While something is dragged or a list is open, Esc ends that and nothing else.
-    let taken = view_state.grabbed.is_some() || egui::Popup::is_any_open(ctx);
-    if !taken && chord(Modifiers::NONE, Key::Escape) {
-        commands.push(match (&view_state.dialog, &view_state.stroke) {
-            (Some(_), _) => Command::Dialog(None),
-            (None, Some(_)) => Command::Draw(false),
-            (None, None) if view_state.mark.is_some() => Command::Mark(None),
-            (None, None) if view_state.pushing && !view_state.help => Command::Push(false),
-            (None, None) => Command::Help(false),
-        });
+    let busy = view_state.grabbed.is_some() || (view_state.finder.is_none() && egui::Popup::is_any_open(ctx));
+    if !busy && taken(&KeyboardShortcut::new(Modifiers::NONE, Key::Escape)) {
+        commands.push(escape(view_state));
     }
-    if typing {
-        return;
-    }
-    let shift = Modifiers::SHIFT;
-    let plain = Modifiers::NONE;
-    for (modifiers, key, command) in [
-        (plain, Key::Space, Command::TogglePlay),
-        (shift, Key::ArrowLeft, Command::Step(-10)),
-        (shift, Key::ArrowRight, Command::Step(10)),
-        (plain, Key::ArrowLeft, Command::Step(-1)),
-        (plain, Key::ArrowRight, Command::Step(1)),
-        (plain, Key::Home, Command::Seek(0.0)),
-        (plain, Key::End, Command::Seek(session.length())),
-        (plain, Key::V, Command::View(view_state.view.next())),
-        (plain, Key::J, Command::Dexterity(Measure::after(view_state.dexterity))),
-        (plain, Key::F, Command::Fit),
-        (plain, Key::C, Command::Compare(!view_state.compare)),
-        (plain, Key::S, Command::Snapshots(!view_state.snapshots)),
-        (plain, Key::T, Command::Study(!view_state.study)),
-        (plain, Key::I, Command::Pins(!view_state.pins)),
-        (plain, Key::P, Command::Draw(view_state.stroke.is_none())),
-        (plain, Key::U, Command::Push(!view_state.pushing)),
-        (plain, Key::B, Command::BackToPath),
-        (plain, Key::X, Command::Exaggerate(!view_state.exaggerates_base)),
-        (plain, Key::L, Command::Theme(super::theme::other(view_state.theme))),
-        (plain, Key::R, Command::Dialog(Some(FileDialog::suggest(session, Purpose::Record)))),
-    ] {
-        if chord(modifiers, key) {
-            commands.push(command);
+    let at_hand = |key: &KeyboardShortcut| !typing || beside_typing(key);
+    // Those with more keys held go first: a shortcut answers to one with Shift or Alt besides, too.
+    let mut all: Vec<(&Action, &KeyboardShortcut)> = ACTIONS
+        .iter()
+        .chain(FINE_ACTIONS)
+        .flat_map(|action| action.keys.iter().map(move |key| (action, key)))
+        .collect();
+    all.sort_by_key(|(_, key)| !(key.modifiers.shift || key.modifiers.alt));
+    for (action, key) in all.into_iter().filter(|(_, key)| at_hand(key)) {
+        if taken(key) {
+            commands.extend((action.command)(session, view_state));
         }
     }
-    for (key, name) in [Key::Num1, Key::Num2, Key::Num3].into_iter().zip(Scenario::cases()) {
-        if chord(plain, key) {
-            commands.push(Command::Case(name));
-        }
+    // What a held key moves is one undo.
+    let moves = [Key::ArrowLeft, Key::ArrowRight, Key::ArrowUp, Key::ArrowDown, Key::OpenBracket, Key::CloseBracket];
+    if !typing && view_state.grabbed.is_none() && ctx.input(|i| moves.iter().any(|key| i.key_released(*key))) {
+        commands.push(Command::EndGesture);
     }
 }
 
-/// The card of keys.
+/// Keys that no text field wants.
+fn beside_typing(key: &KeyboardShortcut) -> bool {
+    let own = [Key::S, Key::O, Key::K].contains(&key.logical_key);
+    (key.modifiers.command && own) || key.logical_key == Key::F1
+}
+
+/// What Esc closes.
+fn escape(view_state: &ViewState) -> Command {
+    match view_state {
+        ViewState { dialog: Some(_), .. } => Command::Dialog(None),
+        ViewState { finder: Some(_), .. } => Command::Find(false),
+        ViewState { help: true, .. } => Command::Help(false),
+        ViewState { stroke: Some(_), .. } => Command::Draw(false),
+        ViewState { mark: Some(_), .. } => Command::Mark(None),
+        ViewState { pushing: true, .. } => Command::Push(false),
+        _ => Command::SkipHints,
+    }
+}
+
+/// The card of keys and gestures, in groups, and what of it answers a few letters.
 pub fn help(ctx: &Context, view_state: &ViewState, commands: &mut Vec<Command>) {
     if !view_state.help {
         return;
     }
     let p = view_state.palette();
     let mut open = true;
-    egui::Window::new("Keys")
-        .open(&mut open)
-        .collapsible(false)
-        .resizable(false)
-        .anchor(egui::Align2::CENTER_CENTER, [0.0, 0.0])
-        .show(ctx, |ui| {
-            let room = (ctx.content_rect().height() - 120.0).max(160.0);
-            egui::ScrollArea::vertical().max_height(room).show(ui, |ui| {
-                egui::Grid::new("keys").num_columns(2).spacing([24.0, 7.0]).show(ui, |ui| {
-                    for (key, does) in KEYS {
-                        ui.label(egui::RichText::new(key).font(bold(13.0)));
-                        ui.label(egui::RichText::new(does).color(colour(p.dim)));
-                        ui.end_row();
+    let window = egui::Window::new("Keys and gestures").open(&mut open).collapsible(false).resizable(false);
+    window.anchor(egui::Align2::CENTER_CENTER, [0.0, 0.0]).show(ctx, |ui| {
+        let id = egui::Id::unique("keys sought");
+        let mut sought = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_default();
+        let field = ui.add(TextEdit::singleline(&mut sought).hint_text("search the keys").desired_width(f32::INFINITY));
+        name(&field, "Search the keys");
+        ui.data_mut(|d| d.insert_temp(id, sought.clone()));
+        ui.add_space(6.0);
+        let [width, height] = [ctx.content_rect().width(), ctx.content_rect().height()];
+        let room = (height - 190.0).max(160.0);
+        ScrollArea::vertical().max_height(room).min_scrolled_height(room).show(ui, |ui| {
+            let lines = sheet(&sought);
+            if lines.is_empty() {
+                ui.label(RichText::new("no key answers this").color(colour(p.dim)));
+            }
+            // Two columns where there is room for both.
+            if width >= 1000.0 {
+                let half = lines.iter().map(|(_, lines)| lines.len() + 2).sum::<usize>().div_ceil(2);
+                let mut before = 0;
+                let (left, right): (Vec<_>, Vec<_>) = lines.into_iter().partition(|(_, lines)| {
+                    before += lines.len() + 2;
+                    before <= half + 2
+                });
+                ui.horizontal_top(|ui| {
+                    for (i, column) in [left, right].into_iter().enumerate() {
+                        ui.vertical(|ui| groups(ui, &p, i, &column));
+                        ui.add_space(12.0);
                     }
                 });
-            });
+            } else {
+                groups(ui, &p, 0, &lines);
+            }
         });
+    });
     if !open {
         commands.push(Command::Help(false));
+    }
+}
+
+type Lines = Vec<(String, &'static str)>;
+
+/// What the card shows: titles, and below each its keys with what they do.
+fn sheet(sought: &str) -> Vec<(&'static str, Lines)> {
+    let answers = |keys: &str, does: &str| search::score(sought, &format!("{does} {keys}")).is_some();
+    let of = |group: Group| -> Lines {
+        let keyed = ACTIONS.iter().filter(|action| action.group == group && !action.keys.is_empty());
+        let lines = keyed.map(|action| (all_keys(action), action.name));
+        lines.filter(|(keys, does)| answers(keys, does)).collect()
+    };
+    let pointer = GESTURES.iter().filter(|(keys, does)| answers(keys, does));
+    let pointer = ("Pointer", pointer.map(|(keys, does)| ((*keys).to_owned(), *does)).collect::<Lines>());
+    let all = Group::ALL.into_iter().map(|group| (group.title(), of(group))).chain([pointer]);
+    all.filter(|(_, lines)| !lines.is_empty()).collect()
+}
+
+/// The keys of an action, each once.
+fn all_keys(action: &Action) -> String {
+    let mut keys: Vec<String> = action.keys.iter().map(shown).collect();
+    keys.dedup();
+    keys.join("  ")
+}
+
+fn groups(ui: &mut Ui, p: &Palette, column: usize, groups: &[(&str, Lines)]) {
+    for (title, lines) in groups {
+        ui.label(RichText::new(title.to_uppercase()).font(bold(11.0)).color(colour(p.dim)));
+        Grid::new((column, *title)).num_columns(2).spacing([18.0, 5.0]).show(ui, |ui| {
+            for (keys, does) in lines {
+                ui.label(RichText::new(keys).font(bold(12.5)));
+                ui.label(RichText::new(*does).font(plain(12.5)).color(colour(p.dim)));
+                ui.end_row();
+            }
+        });
+        ui.add_space(8.0);
     }
 }

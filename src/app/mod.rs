@@ -3,16 +3,21 @@
 //! Everything here reads a [`Session`](crate::session::Session) and gives back [`Command`]s, which the [`AppState`]
 //! carries out at the end of the pass. Nothing is computed here.
 
+pub mod actions;
 mod background;
 mod change;
 mod command;
 mod compare;
 mod facts;
+mod finder;
+mod intro;
 pub mod jobs;
 mod keys;
 mod order;
 mod path;
 mod plots;
+mod preferences;
+mod search;
 mod side;
 mod state;
 mod status;
@@ -26,7 +31,9 @@ mod widgets;
 #[cfg(feature = "window")]
 pub mod window;
 
-pub use command::{Activity, Command, ComparisonCommand, FileDialog, Purpose};
+pub use command::{Activity, Command, ComparisonCommand, FileDialog, Look, Purpose};
+use intro::Intro;
+pub use preferences::Preferences;
 pub use state::AppState;
 use view_state::set_b;
-pub use view_state::{RefusedEdit, ViewState};
+pub use view_state::{Finder, Panel, RefusedEdit, ViewState};

@@ -16,6 +16,8 @@ use crate::simulation::frame::Frame as Instant;
 use crate::simulation::signals::Signal;
 use crate::study::comparison::{Comparison, Difference};
 
+/// How wide the panel is made by itself, points.
+const USUAL: f32 = 336.0;
 /// The least height of a plot that has three numbers beside it.
 const THREE_NUMBERS: f32 = 50.0;
 /// The longest stretch of time shown at once, s.
@@ -23,7 +25,7 @@ const WINDOW: f64 = 12.0;
 /// The most points of a line.
 const POINTS: usize = 600;
 
-/// Draws this panel.
+/// Draws this panel; how wide it was made.
 pub fn show(
     ui: &mut Ui,
     session: &Session,
@@ -31,11 +33,13 @@ pub fn show(
     comparison: Option<&Comparison>,
     view_state: &ViewState,
     commands: &mut Vec<Command>,
-) {
+) -> Option<f32> {
     let p = view_state.palette();
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 14, right: 14, top: 10, bottom: 8 });
-    let width = (0.27 * ui.available_width()).clamp(336.0, 376.0);
-    Panel::right("plots").exact_size(width).resizable(false).frame(frame).show(ui, |ui| {
+    let most = (0.6 * ui.available_width()).max(USUAL);
+    let width = view_state.plots.width.unwrap_or(USUAL).min(most);
+    let panel = Panel::right("plots").default_size(width).size_range(260.0..=most).resizable(true);
+    let shown = panel.frame(frame).show(ui, |ui| {
         let mut charts = charts(session.scenario());
         charts.retain(|chart| chart.in_window(view_state.pins));
         let rows = charts.len() as f32 + 1.6;
@@ -56,6 +60,7 @@ pub fn show(
             which_b(ui, &p, session, view_state, height * 1.6 + 14.0, commands);
         });
     });
+    view_state.plots.made(shown.response.rect.width(), USUAL)
 }
 
 /// The frame at a time, s, or the nearest.

@@ -18,11 +18,24 @@ use crate::session::scenario::Value;
 use crate::session::{Edit, Session};
 use crate::settings::change::DEFAULT;
 
-/// Draws this panel.
-pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewState, commands: &mut Vec<Command>) {
+/// How wide it is made by itself, points.
+const USUAL: f32 = 262.0;
+
+/// Draws this panel; how wide it was made.
+pub fn show(
+    ui: &mut Ui,
+    session: &Session,
+    facts: &Facts,
+    view_state: &ViewState,
+    commands: &mut Vec<Command>,
+) -> Option<f32> {
     let p = view_state.palette();
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 16, right: 10, top: 12, bottom: 8 });
-    Panel::left("side").exact_size(262.0).resizable(false).frame(frame).show(ui, |ui| {
+    let panel = Panel::left("side")
+        .default_size(view_state.side.width.unwrap_or(USUAL))
+        .size_range(220.0..=480.0)
+        .resizable(true);
+    let shown = panel.frame(frame).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.set_width(ui.available_width() - 6.0);
             pose_constant(ui, session, facts, view_state, commands);
@@ -36,6 +49,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewStat
             all::show(ui, facts, &p, commands);
         });
     });
+    view_state.side.made(shown.response.rect.width(), USUAL)
 }
 
 fn pose_constant(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewState, commands: &mut Vec<Command>) {

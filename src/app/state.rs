@@ -7,7 +7,10 @@ use std::sync::Arc;
 use super::background::{Background, Opening};
 use super::change::{Change, Source};
 use super::facts::Facts;
-use super::{Activity, Command, ViewState, compare, keys, order, plots, side, status, study, theme, top, viewport};
+use super::{
+    Activity, Command, Finder, Intro, Panel, Preferences, ViewState, compare, finder, keys, order, plots, side, status,
+    study, theme, top, viewport,
+};
 use crate::app::widgets;
 use crate::mechanics::machine::Machine;
 use crate::picture::scene::exaggeration::exaggeration;
@@ -31,6 +34,9 @@ pub struct AppState {
     /// What panels say of the run that has to be found first.
     facts: Facts,
     view_state: ViewState,
+    /// What is left of the first minute, and whether it is to be shown at the next start.
+    intro: Option<Intro>,
+    hints: bool,
     /// Runs side by side, while they are on display.
     comparison: Option<Comparison>,
     /// Tolerances and what they were found for, while they are on display.
@@ -76,6 +82,8 @@ impl AppState {
             foreseen: Totals::default(),
             session,
             view_state,
+            intro: None,
+            hints: true,
             comparison: None,
             study: None,
             declined: None,
@@ -88,6 +96,34 @@ impl AppState {
         app_state.adjust();
         app_state.find();
         app_state
+    }
+
+    /// The same as a person likes it, with the first minute if that is still to come.
+    #[must_use]
+    pub fn with_preferences(mut self, liked: &Preferences) -> Self {
+        self.view_state.theme = liked.theme;
+        self.view_state.side = Panel { shown: liked.side, width: liked.side_width };
+        self.view_state.plots = Panel { shown: liked.plots, width: liked.plots_width };
+        self.hints = liked.hints;
+        let usual = Scenario::builtin("case-3").is_some_and(|case| case == *self.session.scenario());
+        if liked.hints && usual {
+            self.intro = Intro::beside(&self.session).ok();
+        }
+        self
+    }
+
+    /// How it is liked, to be remembered; of a window so large, points.
+    pub fn preferences(&self, size: [f32; 2]) -> Preferences {
+        let ViewState { theme, side, plots, .. } = self.view_state;
+        Preferences {
+            theme,
+            size,
+            hints: self.hints,
+            side: side.shown,
+            side_width: side.width,
+            plots: plots.shown,
+            plots_width: plots.width,
+        }
     }
 
     /// Opens a scenario; where its task cannot be planned, its machine with the paper's task, and what is in the way.
@@ -146,6 +182,10 @@ impl AppState {
 
     /// Lets wall time pass, s.
     pub fn pass(&mut self, wall: f64) {
+        if self.intro.as_mut().is_some_and(|intro| intro.rests(&self.session, wall)) {
+            self.session.seek(0.0);
+            self.session.play();
+        }
         // While the session is being changed, time stands: what is made has to fit what is shown.
         if !self.session.is_moving() || self.background.is_changing() {
             self.owed = 0.0;
@@ -180,11 +220,20 @@ impl AppState {
             let study = self.study.as_ref().map(|(_, study)| study);
             study::show(ui, study, self.session.frame().time, &self.view_state, &mut commands);
         }
-        side::show(ui, &self.session, &self.facts, &self.view_state, &mut commands);
-        plots::show(ui, &self.session, &self.signals, self.comparison.as_ref(), &self.view_state, &mut commands);
-        viewport::show(ui, &self.session, &self.views, self.comparison.as_ref(), &mut self.view_state, &mut commands);
+        let contrast = self.intro.as_ref().filter(|intro| intro.contrasts_in(ui.ctx().content_rect().width()));
+        if contrast.is_none() && self.view_state.side.shown {
+            self.view_state.side.width = side::show(ui, &self.session, &self.facts, &self.view_state, &mut commands);
+        }
+        if self.view_state.plots.shown {
+            let beside = contrast.and_then(Intro::beside_it).or(self.comparison.as_ref());
+            self.view_state.plots.width =
+                plots::show(ui, &self.session, &self.signals, beside, &self.view_state, &mut commands);
+        }
+        let both = (self.comparison.as_ref(), self.intro.as_ref());
+        viewport::show(ui, &self.session, &self.views, both, &mut self.view_state, &mut commands);
         status::news(ui.ctx(), &self.session, &self.view_state, &mut commands);
         keys::help(ui.ctx(), &self.view_state, &mut commands);
+        finder::show(ui.ctx(), &self.session, &mut self.view_state, &mut commands);
         top::dialog(ui.ctx(), &mut self.view_state, &mut commands);
         commands.extend(widgets::refused_entry(ui.ctx()).map(Command::Refuse));
         if commands.iter().any(|c| !matches!(c, Command::EndGesture | Command::Preview(_))) {
@@ -195,11 +244,19 @@ impl AppState {
             ui.ctx().request_repaint();
         }
         for command in commands {
+            let seen = self.intro.is_some().then(|| command.clone());
             self.carry_out(command);
+            let held = self.view_state.grabbed.is_some();
+            if let (Some(intro), Some(command)) = (&mut self.intro, seen) {
+                intro.sees(&command, &self.session, held);
+            }
+        }
+        if self.intro.as_ref().is_some_and(Intro::is_over) {
+            (self.intro, self.hints) = (None, false);
         }
         if self.session.is_moving() && !self.background.is_changing() {
             ui.ctx().request_repaint();
-        } else if self.background.is_busy() {
+        } else if self.background.is_busy() || self.intro.as_ref().is_some_and(Intro::is_resting) {
             ui.ctx().request_repaint_after_secs(SHOWN_AGAIN);
         }
     }
@@ -279,6 +336,17 @@ impl AppState {
             Command::Dexterity(shown) => self.view_state.dexterity = shown,
             Command::Fit => *self.view_state.camera_mut() = self.views.camera(self.view_state.view),
             Command::Theme(theme) => self.view_state.theme = theme,
+            Command::SkipHints => {
+                self.hints &= self.intro.is_none();
+                self.intro = None;
+            }
+            Command::Side(shown) => self.view_state.side.shown = shown,
+            Command::Plots(shown) => self.view_state.plots.shown = shown,
+            Command::Panels(shown) => {
+                (self.view_state.side.shown, self.view_state.plots.shown) = (shown, shown);
+            }
+            Command::Look(look) => self.view_state.look(look),
+            Command::Find(find) => self.view_state.finder = find.then(Finder::default),
             Command::Help(help) => self.view_state.help = help,
             Command::Mark(time) => self.view_state.mark = time,
             Command::Snapshots(shown) => self.view_state.snapshots = shown,

@@ -4,6 +4,7 @@ use crate::app::theme::other;
 use crate::app::widgets::name;
 use egui::{Align, ComboBox, Frame, Layout, Margin, Panel, Response, RichText, Sense, Shape, Stroke, Ui, pos2, vec2};
 
+use super::actions::SPEEDS;
 use super::facts::Facts;
 use super::theme::{bold, colour, plain};
 use super::{Command, FileDialog, Purpose, ViewState};
@@ -108,7 +109,7 @@ fn transport(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &
     let text = |s: f64| format!("{s}×");
     let combo = ComboBox::from_id_salt("speed").selected_text(text(view_state.speed)).width(58.0);
     let response = combo.show_ui(ui, |ui| {
-        for speed in [0.05, 0.1, 0.25, 0.5, 1.0, 2.0] {
+        for speed in SPEEDS {
             if ui.selectable_label(speed == view_state.speed, text(speed)).clicked() {
                 commands.push(Command::Speed(speed));
             }
@@ -144,6 +145,15 @@ fn right_end(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &
     name(&help, "Help");
     if help.clicked() {
         commands.push(Command::Help(!view_state.help));
+    }
+    // Where there is room it reads as what it is.
+    let words = if ui.ctx().content_rect().width() >= 1200.0 { "Search commands   Ctrl K" } else { "Ctrl K" };
+    let words = RichText::new(words).font(plain(12.0)).color(colour(p.dim));
+    let find = egui::Button::new(words).fill(colour(p.background)).stroke((1.0, colour(p.line))).corner_radius(8);
+    let find = ui.add(find).on_hover_text("Every command, by a few letters of its name (Ctrl K)");
+    name(&find, "Search commands");
+    if find.clicked() {
+        commands.push(Command::Find(true));
     }
     let word = if view_state.theme == Theme::Dark { "Light" } else { "Dark" };
     if ui.add(egui::Button::new(dim(word)).frame(false)).on_hover_text("Light or dark (L)").clicked() {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::app::FileDialog;
+use crate::app::{FileDialog, Look};
 use crate::picture::scene::Measure;
 use crate::picture::scene::camera::Camera;
 use crate::picture::scene::options::{Handle, Refused};
@@ -33,11 +33,40 @@ impl RefusedEdit {
     }
 }
 
+/// What is typed into the list, and which line is chosen.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Finder {
+    /// A few letters.
+    pub sought: String,
+    /// Counted from the top.
+    pub chosen: usize,
+}
+
+/// A panel beside the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Panel {
+    /// It is on display.
+    pub shown: bool,
+    /// How wide it was made, points of the screen; none as long as it was left alone.
+    pub width: Option<f32>,
+}
+
+impl Panel {
+    /// How wide it was made, given how wide it is and how wide it is made by itself.
+    pub(super) fn made(&self, now: f32, usual: f32) -> Option<f32> {
+        if self.width.is_some() || (now - usual).abs() > 1.0 { Some(now) } else { None }
+    }
+}
+
 /// How things are shown: no part of the session.
 #[derive(Clone, Debug)]
 pub struct ViewState {
     /// Light or dark.
     pub theme: Theme,
+    /// The panel of settings on the left is shown, and how wide it is liked.
+    pub side: Panel,
+    /// The panel of plots on the right.
+    pub plots: Panel,
     /// Which of the linked views.
     pub view: ViewKind,
     /// From where each view is seen, in the order of [`ViewKind::ALL`].
@@ -66,6 +95,8 @@ pub struct ViewState {
     pub snapshots: bool,
     /// The keys are on display.
     pub help: bool,
+    /// The list of commands, while it is on display.
+    pub finder: Option<Finder>,
     /// A file is being asked for.
     pub dialog: Option<FileDialog>,
     /// The present drag has changed something.
@@ -95,6 +126,8 @@ impl ViewState {
     pub fn new(theme: Theme, views: &Views) -> Self {
         Self {
             theme,
+            side: Panel { shown: true, width: None },
+            plots: Panel { shown: true, width: None },
             view: ViewKind::default(),
             cameras: ViewKind::ALL.map(|kind| views.camera(kind)),
             dexterity: None,
@@ -109,6 +142,7 @@ impl ViewState {
             mark: None,
             snapshots: false,
             help: false,
+            finder: None,
             dialog: None,
             dragged: false,
             undone_to: 0,
@@ -136,6 +170,16 @@ impl ViewState {
     /// The view in use.
     pub fn camera(&self) -> &Camera {
         &self.cameras[self.view as usize]
+    }
+
+    /// Moves the camera of the view in use.
+    pub(super) fn look(&mut self, look: Look) {
+        let camera = self.camera_mut();
+        match look {
+            Look::Turn([right, up]) if camera.is_flat() => camera.pan(-right, up, 1.0),
+            Look::Turn([right, up]) => camera.turn(right, up),
+            Look::Zoom(factor) => camera.zoom(factor, [0.5, 0.5], 1.0),
+        }
     }
 
     pub(super) fn camera_mut(&mut self) -> &mut Camera {

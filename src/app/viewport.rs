@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use egui::{CentralPanel, CursorIcon, Frame, PointerButton, Pos2, Rect, Sense, Ui, Vec2};
 
+use super::intro::Intro;
 use super::widgets::name;
 use super::{Command, ViewState, set_b, switch};
 use crate::mechanics::planar::{DriveAngles, Vector};
@@ -23,7 +24,7 @@ pub fn show(
     ui: &mut Ui,
     session: &Session,
     views: &Views,
-    comparison: Option<&Comparison>,
+    (comparison, intro): (Option<&Comparison>, Option<&Intro>),
     view_state: &mut ViewState,
     commands: &mut Vec<Command>,
 ) {
@@ -31,7 +32,17 @@ pub fn show(
         // The bar stands above the scene, so that it covers nothing of it.
         ui.spacing_mut().item_spacing.y = 0.0;
         switch::bar(ui, view_state, commands);
-        let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        let mut room = ui.available_size();
+        let intro = intro.filter(|_| view_state.view.shows_machine());
+        let both = intro.filter(|intro| intro.shows_both(room.x));
+        if let Some(intro) = both {
+            room.x *= 0.5;
+            let left = Rect::from_min_size(ui.cursor().min, room);
+            intro.show_straight(ui, left, session.frame(), view_state.camera(), view_state);
+        }
+        let whole = ui.available_rect_before_wrap();
+        let rect = Rect::from_min_max(whole.right_bottom() - room, whole.right_bottom());
+        let response = ui.allocate_rect(rect, Sense::click_and_drag());
         name(&response, "Scene: the machine, its reactionless workspace and its target");
         // The pointer works on the machine as it is drawn, enlarged motion of the base included.
         let shown = exaggerated(session.frame(), view_state.base_exaggeration());
@@ -59,12 +70,19 @@ pub fn show(
             push: force(session),
             pin_forces: view_state.pins,
             invites: true,
+            compares: both.is_none(),
             scale: None,
         };
         let scene = Arc::new(views.scene(view_state.view, session.frame(), &options, view_state.camera()));
-        paint(ui, rect, &scene, view_state.camera());
+        paint(ui, 0, rect, &scene, view_state.camera());
         words(ui, &Spot { rect, camera: *view_state.camera() }, &scene);
         switch::corners(ui, rect, view_state, views, commands);
+        if let Some(intro) = both {
+            intro.caption(ui, rect, session.frame(), view_state);
+        }
+        if let Some(intro) = intro {
+            intro.show_hint(ui.ctx(), rect, view_state, commands);
+        }
     });
 }
 

@@ -9,8 +9,9 @@ use thiserror::Error;
 use winit::event_loop::{ControlFlow, EventLoop};
 
 use crate::app::jobs::Threads;
-use crate::app::{AppState, Command};
-use crate::picture::render::Renderer;
+use crate::app::{AppState, Command, Preferences};
+use crate::files::preferences;
+use crate::picture::paint::Renderers;
 use crate::picture::render::offscreen::{Gpu, NoAdapter};
 use crate::picture::scene::palette::Theme;
 use crate::session::Refusal;
@@ -45,9 +46,12 @@ pub enum WindowError {
 ///
 /// # Errors
 /// If there is no display, library or adapter, or the scenario cannot start.
-pub fn run(scenario: Scenario, theme: Theme) -> Result<(), WindowError> {
+pub fn run(scenario: Scenario, theme: Option<Theme>) -> Result<(), WindowError> {
     check_libraries()?;
-    let mut app_state = AppState::open_or_explain(scenario, theme)?.with_workers(Threads);
+    let liked: Preferences = preferences::load();
+    let liked = Preferences { theme: theme.unwrap_or(liked.theme), ..liked }.sound();
+    let mut app_state =
+        AppState::open_or_explain(scenario, liked.theme)?.with_workers(Threads).with_preferences(&liked);
     if app_state.view_state().message.is_none() && app_state.session().run().waiting().is_none() {
         app_state.carry_out(Command::TogglePlay);
     }
@@ -59,7 +63,7 @@ pub fn run(scenario: Scenario, theme: Theme) -> Result<(), WindowError> {
         viewport: egui::ViewportBuilder::default()
             .with_title("Stillbase")
             .with_app_id("stillbase")
-            .with_inner_size([1440.0, 900.0])
+            .with_inner_size(liked.size)
             .with_min_inner_size([960.0, 600.0]),
         renderer: eframe::Renderer::Wgpu,
         ..Default::default()
@@ -67,7 +71,7 @@ pub fn run(scenario: Scenario, theme: Theme) -> Result<(), WindowError> {
     let opened = Rc::new(Cell::new(false));
     let seen = opened.clone();
     let create: eframe::AppCreator<'_> = Box::new(move |cc| {
-        let app = App::new(cc, app_state, Clock::Wall(None)).ok_or("no graphics adapter")?;
+        let app = App::new(cc, app_state, Clock::Wall(None)).ok_or("no graphics adapter")?.remembering(liked);
         seen.set(true);
         Ok(Box::new(app))
     });
@@ -125,7 +129,12 @@ fn check_libraries() -> Result<(), WindowError> {
 pub struct App {
     app_state: AppState,
     clock: Clock,
+    /// What is remembered, and when that was written last; nothing is in tests.
+    remembered: Option<(Preferences, Instant)>,
 }
+
+/// How soon a change is remembered, s.
+const REMEMBERED_AFTER: f32 = 1.0;
 
 /// Where wall time comes from.
 #[derive(Clone, Copy, Debug)]
@@ -143,9 +152,30 @@ impl App {
         if state.device.limits().max_storage_buffers_per_shader_stage == 0 {
             return None;
         }
-        let renderer = Renderer::new(&state.device, state.target_format);
-        state.renderer.write().callback_resources.insert(renderer);
-        Some(Self { app_state, clock })
+        let renderers = Renderers::new(&state.device, state.target_format);
+        state.renderer.write().callback_resources.insert(renderers);
+        Some(Self { app_state, clock, remembered: None })
+    }
+
+    /// The same, which writes down how it is liked when that changes.
+    fn remembering(self, liked: Preferences) -> Self {
+        Self { remembered: Some((liked, Instant::now())), ..self }
+    }
+
+    fn remember(&mut self, ctx: &egui::Context, at_once: bool) {
+        let size = ctx.content_rect().size();
+        let now = self.app_state.preferences([size.x, size.y]);
+        let Some((remembered, when)) = &mut self.remembered else { return };
+        if *remembered == now {
+            return;
+        }
+        // While an edge is dragged it is not written at every step.
+        if at_once || when.elapsed().as_secs_f32() >= REMEMBERED_AFTER {
+            preferences::save(&now);
+            (*remembered, *when) = (now, Instant::now());
+        } else {
+            ctx.request_repaint_after_secs(REMEMBERED_AFTER);
+        }
     }
 
     /// What it shows.
@@ -174,6 +204,7 @@ impl eframe::App for App {
             self.app_state.carry_out(Command::OpenFile(path));
         }
         self.app_state.ui(ui);
+        self.remember(ui.ctx(), false);
     }
 
     fn on_exit(&mut self) {

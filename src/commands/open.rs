@@ -25,9 +25,8 @@ pub struct Open {
 }
 
 #[cfg(feature = "window")]
-#[derive(Clone, Copy, Default, clap::ValueEnum)]
+#[derive(Clone, Copy, clap::ValueEnum)]
 enum ThemeName {
-    #[default]
     Dark,
     Light,
 }
@@ -53,7 +52,7 @@ impl Open {
             other => other,
         })?;
         #[cfg(feature = "window")]
-        let why = match stillbase::app::window::run(scenario.clone(), self.theme.unwrap_or_default().into()) {
+        let why = match stillbase::app::window::run(scenario.clone(), self.theme.map(Theme::from)) {
             Ok(()) => return Ok(()),
             Err(WindowError::Refused(refusal)) => return Err(Failure::from(refusal).of(&scenario.name)),
             // The window system says where in its source it gave up before it says why.

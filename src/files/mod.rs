@@ -3,6 +3,8 @@
 pub mod fault;
 mod find;
 mod new_file;
+#[cfg(feature = "window")]
+pub mod preferences;
 pub mod text;
 
 pub use find::{machine, scenario};

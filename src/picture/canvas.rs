@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use super::paint;
-use super::render::Renderer;
 use super::render::offscreen::{Gpu, NoAdapter, NoPicture, Picture};
 use super::scene::Scene;
 use super::scene::camera::Camera;
@@ -29,7 +28,7 @@ impl Canvas {
         let format = wgpu::TextureFormat::Rgba8Unorm;
         let device = gpu.device();
         let mut egui = egui_wgpu::Renderer::new(device, format, egui_wgpu::RendererOptions::PREDICTABLE);
-        egui.callback_resources.insert(Renderer::new(device, format));
+        egui.callback_resources.insert(paint::Renderers::new(device, format));
         let most = device.limits().max_texture_dimension_2d;
         let (width, height) = (width.clamp(1, most), height.clamp(1, most));
         let texture = device.create_texture(&wgpu::TextureDescriptor {

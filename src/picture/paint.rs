@@ -67,8 +67,31 @@ impl Spot {
     }
 }
 
+/// One renderer for each scene of a window; to stand among egui's callback resources.
+pub struct Renderers {
+    device: wgpu::Device,
+    format: wgpu::TextureFormat,
+    all: Vec<Renderer>,
+}
+
+impl Renderers {
+    /// `format` is that of the pass they draw in.
+    pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
+        Self { device: device.clone(), format, all: vec![Renderer::new(device, format)] }
+    }
+
+    /// Made when a scene of this number is drawn for the first time.
+    fn of(&mut self, number: usize) -> &mut Renderer {
+        while self.all.len() <= number {
+            self.all.push(Renderer::new(&self.device, self.format));
+        }
+        &mut self.all[number]
+    }
+}
+
 /// The scene as a callback that egui's renderer runs.
 struct Paint {
+    number: usize,
     scene: Arc<Scene>,
     view: View,
 }
@@ -82,8 +105,8 @@ impl egui_wgpu::CallbackTrait for Paint {
         encoder: &mut wgpu::CommandEncoder,
         resources: &mut egui_wgpu::CallbackResources,
     ) -> Vec<wgpu::CommandBuffer> {
-        if let Some(renderer) = resources.get_mut::<Renderer>() {
-            renderer.prepare(device, queue, encoder, &self.scene, &self.view);
+        if let Some(renderers) = resources.get_mut::<Renderers>() {
+            renderers.of(self.number).prepare(device, queue, encoder, &self.scene, &self.view);
         }
         Vec::new()
     }
@@ -94,14 +117,15 @@ impl egui_wgpu::CallbackTrait for Paint {
         pass: &mut wgpu::RenderPass<'static>,
         resources: &egui_wgpu::CallbackResources,
     ) {
-        if let Some(renderer) = resources.get::<Renderer>() {
+        if let Some(renderer) = resources.get::<Renderers>().and_then(|renderers| renderers.all.get(self.number)) {
             renderer.paint(pass);
         }
     }
 }
 
-/// Draws a scene into a rectangle; the [`Renderer`] must be among egui's callback resources.
-pub fn paint(ui: &Ui, rect: Rect, scene: &Arc<Scene>, camera: &Camera) {
+/// Draws a scene into a rectangle; [`Renderers`] must be among egui's callback resources. Scenes of one window are
+/// numbered from 0.
+pub fn paint(ui: &Ui, number: usize, rect: Rect, scene: &Arc<Scene>, camera: &Camera) {
     let pixels = ui.ctx().pixels_per_point();
     let aspect = f64::from(rect.width() / rect.height().max(1.0));
     let view = View {
@@ -110,7 +134,7 @@ pub fn paint(ui: &Ui, rect: Rect, scene: &Arc<Scene>, camera: &Camera) {
         size_px: [(rect.width() * pixels).round() as u32, (rect.height() * pixels).round() as u32],
         pixels_per_point: pixels,
     };
-    let paint = Paint { scene: scene.clone(), view };
+    let paint = Paint { number, scene: scene.clone(), view };
     ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, paint));
 }
 
@@ -118,7 +142,7 @@ pub fn paint(ui: &Ui, rect: Rect, scene: &Arc<Scene>, camera: &Camera) {
 pub fn still(ui: &mut Ui, scene: &Arc<Scene>, camera: &Camera) {
     CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
         let rect = ui.max_rect();
-        paint(ui, rect, scene, camera);
+        paint(ui, 0, rect, scene, camera);
         words(ui, &Spot { rect, camera: *camera }, scene);
     });
 }

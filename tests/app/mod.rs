@@ -1,6 +1,8 @@
 //! The window, driven as a person does: widgets by label, the pointer in the scene, keys; and pictures of it.
 
 mod files;
+mod finder;
+mod intro;
 mod jobs;
 mod panel;
 mod pointer;
@@ -19,8 +21,17 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 7] =
-    [files::TESTS, jobs::TESTS, panel::TESTS, pointer::TESTS, refusal::TESTS, run::TESTS, view::TESTS];
+pub const TESTS: [&[Test]; 9] = [
+    files::TESTS,
+    finder::TESTS,
+    intro::TESTS,
+    jobs::TESTS,
+    panel::TESTS,
+    pointer::TESTS,
+    refusal::TESTS,
+    run::TESTS,
+    view::TESTS,
+];
 
 use screen::Screen;
 

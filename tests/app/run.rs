@@ -85,7 +85,7 @@ fn keys_play_step_and_take_back() {
     assert_eq!(session(&h).scenario().name, "case-1");
     h.key_press(Key::F1);
     h.run_steps(2);
-    assert!(h.query_by_label("play, pause, start over").is_some());
+    assert!(h.query_by_label("Play, pause, start over").is_some());
 }
 
 fn nothing_is_repainted_at_rest() {

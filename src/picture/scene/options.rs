@@ -17,6 +17,8 @@ pub struct ViewOptions {
     pub dexterity: Option<Measure>,
     /// The scene says what can be dragged.
     pub invites: bool,
+    /// The second workspace, to compare with, is shown.
+    pub compares: bool,
     /// The pointer is on this handle, or drags it.
     pub hot: Option<Handle>,
     /// Where the pointer holds what it drags, m.
@@ -47,6 +49,7 @@ impl Default for ViewOptions {
             theme: Theme::Dark,
             dexterity: None,
             invites: true,
+            compares: true,
             hot: None,
             held: None,
             preview_b: None,

@@ -57,6 +57,12 @@ impl Stage {
         }
     }
 
+    /// The same without a workspace, for a run that is led otherwise.
+    #[must_use]
+    pub fn without_workspace(self) -> Self {
+        Self { workspace: None, ..self }
+    }
+
     /// Takes over what has changed of base and payload.
     pub fn refresh(&mut self, run: &Run) {
         self.base.refresh(run);

@@ -81,7 +81,7 @@ impl Workspace {
     /// The workspace to compare with, the own one, and the one that is looked at.
     pub fn draw(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Frame, options: &ViewOptions) {
         let (floor, map) = (linkage.floor(), self.planes.map());
-        if let Some(b) = self.compared {
+        if let Some(b) = self.compared.filter(|_| options.compares) {
             self.compared(scene, palette, b, frame.base, floor - 0.002 * linkage.reach());
         }
         self.own(scene, palette, frame, options, floor);

@@ -1,0 +1,274 @@
+//! Everything that can be asked for by name: its keys, where it lives in the window, and when it can be done. The
+//! keyboard, the list of commands and the card of keys are made from this table.
+
+use egui::{Key, KeyboardShortcut, Modifiers};
+
+use super::command::Look;
+use super::theme::other;
+use super::{Command, ComparisonCommand, FileDialog, Purpose, ViewState, set_b};
+use crate::picture::scene::Measure;
+use crate::picture::scene::views::ViewKind;
+use crate::session::scenario::Scenario;
+use crate::session::{Edit, Session};
+
+/// One thing that can be asked for.
+pub struct Action {
+    /// What it is about.
+    pub group: Group,
+    /// What it does.
+    pub name: &'static str,
+    /// The keys that ask for it; the first is shown.
+    pub keys: &'static [KeyboardShortcut],
+    /// Where it is found in the window.
+    pub place: &'static str,
+    /// What it asks for as things are; `None` while there is nothing to do.
+    pub command: fn(&Session, &ViewState) -> Option<Command>,
+}
+
+/// What actions are about, in the order in which they are listed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Group {
+    /// Time.
+    Run,
+    /// The machine and what it is to do.
+    Task,
+    /// How it is shown.
+    View,
+    /// What is found out about it.
+    Analysis,
+    /// Files and what was done.
+    File,
+}
+
+impl Group {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Run, Self::Task, Self::View, Self::Analysis, Self::File];
+
+    /// As a heading.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Run => "Run",
+            Self::Task => "Machine and task",
+            Self::View => "View",
+            Self::Analysis => "Analysis",
+            Self::File => "File, history and help",
+        }
+    }
+}
+
+const fn on(modifiers: Modifiers, key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(modifiers, key)
+}
+
+const PLAIN: Modifiers = Modifiers::NONE;
+const SHIFT: Modifiers = Modifiers::SHIFT;
+const CTRL: Modifiers = Modifiers::COMMAND;
+const FINE: Modifiers = Modifiers::COMMAND.plus(SHIFT);
+const ALT: Modifiers = Modifiers::ALT;
+
+/// By how far a key moves the target, m, and with Shift.
+const NUDGE: [f64; 2] = [0.01, 0.001];
+/// By how much a key turns b, rad, and with Shift.
+const TURN: [f64; 2] = [0.01, 0.001];
+/// By how much a key turns the view, rad, and how many times it magnifies.
+const ORBIT: f64 = 0.1;
+const ZOOM: f64 = 1.15;
+
+/// The target moved from where it is wanted, m.
+fn nudge(session: &Session, [x, y]: [f64; 2]) -> Option<Command> {
+    session.run().planes()?;
+    let now = session.frame().target.at;
+    Some(Command::Edit(Edit::DragTarget { x: now.re + x, y: now.im + y }))
+}
+
+fn turn(session: &Session, view_state: &ViewState, by: f64) -> Option<Command> {
+    session.run().planes()?;
+    Some(Command::Edit(set_b(session, view_state, session.b_aim() + by)))
+}
+
+fn case(i: usize) -> Option<Command> {
+    Scenario::cases().nth(i).map(Command::Case)
+}
+
+fn dialog(session: &Session, purpose: Purpose) -> Option<Command> {
+    Some(Command::Dialog(Some(FileDialog::suggest(session, purpose))))
+}
+
+/// What only a view of the machine has.
+fn of_machine(view_state: &ViewState, command: Command) -> Option<Command> {
+    view_state.view.shows_machine().then_some(command)
+}
+
+macro_rules! actions {
+    ($($group:ident, $name:literal, [$($key:expr),*], $place:literal, $command:expr;)+) => {
+        &[$(Action {
+            group: Group::$group, name: $name, keys: &[$($key),*], place: $place, command: $command,
+        }),+]
+    };
+}
+
+/// Every action.
+pub const ACTIONS: &[Action] = actions![
+    Run, "Play, pause, start over", [on(PLAIN, Key::Space)], "top bar", |_, _| Some(Command::TogglePlay);
+    Run, "One step on", [on(PLAIN, Key::ArrowRight)], "top bar", |_, _| Some(Command::Step(1));
+    Run, "One step back", [on(PLAIN, Key::ArrowLeft)], "keyboard", |_, _| Some(Command::Step(-1));
+    Run, "Ten steps on", [on(SHIFT, Key::ArrowRight)], "keyboard", |_, _| Some(Command::Step(10));
+    Run, "Ten steps back", [on(SHIFT, Key::ArrowLeft)], "keyboard", |_, _| Some(Command::Step(-10));
+    Run, "To the start", [on(PLAIN, Key::Home)], "top bar", |_, _| Some(Command::Seek(0.0));
+    Run, "To the newest instant", [on(PLAIN, Key::End)], "keyboard", |s, _| Some(Command::Seek(s.length()));
+    Run, "Twice as slow", [on(PLAIN, Key::Comma)], "top bar, speed", |_, v| slower(v);
+    Run, "Twice as fast", [on(PLAIN, Key::Period)], "top bar, speed", |_, v| faster(v);
+
+    Task, "The paper's case 1, as it is in the paper", [on(PLAIN, Key::Num1)], "top bar, scenario", |_, _| case(0);
+    Task, "The paper's case 2, as it is in the paper", [on(PLAIN, Key::Num2)], "top bar, scenario", |_, _| case(1);
+    Task, "The paper's case 3, as it is in the paper", [on(PLAIN, Key::Num3)], "top bar, scenario", |_, _| case(2);
+    Task, "Put the machine back on its planned path", [on(PLAIN, Key::B)], "left panel", |s, _| {
+        s.is_led().then_some(Command::BackToPath)
+    };
+    Task, "Target to the right by 10 mm; Shift: by 1 mm", [on(CTRL, Key::ArrowRight)], "scene", |s, _| {
+        nudge(s, [NUDGE[0], 0.0])
+    };
+    Task, "Target to the left by 10 mm; Shift: by 1 mm", [on(CTRL, Key::ArrowLeft)], "scene", |s, _| {
+        nudge(s, [-NUDGE[0], 0.0])
+    };
+    Task, "Target up by 10 mm; Shift: by 1 mm", [on(CTRL, Key::ArrowUp)], "scene", |s, _| nudge(s, [0.0, NUDGE[0]]);
+    Task, "Target down by 10 mm; Shift: by 1 mm", [on(CTRL, Key::ArrowDown)], "scene", |s, _| {
+        nudge(s, [0.0, -NUDGE[0]])
+    };
+    Task, "Turn b on by 0.01 rad; Shift: by 0.001 rad", [on(PLAIN, Key::CloseBracket)], "left panel", |s, v| {
+        turn(s, v, TURN[0])
+    };
+    Task, "Turn b back by 0.01 rad; Shift: by 0.001 rad", [on(PLAIN, Key::OpenBracket)], "left panel", |s, v| {
+        turn(s, v, -TURN[0])
+    };
+    Task, "Turn the task along with b", [], "left panel", |_, v| Some(Command::TurnTask(!v.turn_task));
+    Task, "Draw a path with the pointer", [on(PLAIN, Key::P)], "above the scene", |_, v| {
+        of_machine(v, Command::Draw(v.stroke.is_none()))
+    };
+    Task, "Push the end effector with the pointer", [on(PLAIN, Key::U)], "above the scene", |_, v| {
+        of_machine(v, Command::Push(!v.pushing))
+    };
+
+    View, "The next view: 2D, 3D, joint space, tower", [on(PLAIN, Key::V)], "above the scene", |_, v| {
+        Some(Command::View(v.view.next()))
+    };
+    View, "2D: the machine from above", [], "above the scene", |_, v| view(v, ViewKind::Flat);
+    View, "3D: the machine in space", [], "above the scene", |_, v| view(v, ViewKind::Space);
+    View, "Joint space", [], "above the scene", |_, v| view(v, ViewKind::Joints);
+    View, "Tower of workspaces", [], "above the scene", |_, v| view(v, ViewKind::Tower);
+    View, "Show everything", [on(PLAIN, Key::F)], "keyboard", |_, _| Some(Command::Fit);
+    View, "Zoom in", [on(PLAIN, Key::Plus), on(PLAIN, Key::Equals)], "scene, wheel", |_, _| {
+        Some(Command::Look(Look::Zoom(ZOOM)))
+    };
+    View, "Zoom out", [on(PLAIN, Key::Minus)], "scene, wheel", |_, _| Some(Command::Look(Look::Zoom(1.0 / ZOOM)));
+    View, "Turn or pan the view left", [on(ALT, Key::ArrowLeft)], "scene, drag", |_, _| look(-ORBIT, 0.0);
+    View, "Turn or pan the view right", [on(ALT, Key::ArrowRight)], "scene, drag", |_, _| look(ORBIT, 0.0);
+    View, "Turn or pan the view up", [on(ALT, Key::ArrowUp)], "scene, drag", |_, _| look(0.0, ORBIT);
+    View, "Turn or pan the view down", [on(ALT, Key::ArrowDown)], "scene, drag", |_, _| look(0.0, -ORBIT);
+    View, "Shade the workspace by dexterity, one measure after the other", [on(PLAIN, Key::J)], "above the scene",
+        |_, v| of_machine(v, Command::Dexterity(Measure::after(v.dexterity)));
+    View, "Snapshots along the motion", [on(PLAIN, Key::S)], "above the scene", |_, v| {
+        of_machine(v, Command::Snapshots(!v.snapshots))
+    };
+    View, "Exaggerate the motion of the base, or show it as it is", [on(PLAIN, Key::X)], "left panel, base", |s, v| {
+        s.scenario().base.moves().then_some(Command::Exaggerate(!v.exaggerates_base))
+    };
+    View, "Panel of settings on the left, shown or hidden", [on(PLAIN, Key::Num8)], "keyboard", |_, v| {
+        Some(Command::Side(!v.side.shown))
+    };
+    View, "Panel of plots on the right, shown or hidden", [on(PLAIN, Key::Num9)], "keyboard", |_, v| {
+        Some(Command::Plots(!v.plots.shown))
+    };
+    View, "Nothing but the scene, or all panels", [on(PLAIN, Key::Num0)], "keyboard", |_, v| {
+        Some(Command::Panels(!(v.side.shown || v.plots.shown)))
+    };
+    View, "Light or dark", [on(PLAIN, Key::L)], "top bar", |_, v| Some(Command::Theme(other(v.theme)));
+
+    Analysis, "The same task done in other ways, side by side", [on(PLAIN, Key::C)], "above the scene", |_, v| {
+        Some(Command::Compare(!v.compare))
+    };
+    Analysis, "Add this run to the runs side by side", [], "side by side", |_, v| {
+        v.compare.then_some(Command::Comparison(ComparisonCommand::Keep))
+    };
+    Analysis, "Tolerances: what the bases of many machines feel, and the spectrum", [on(PLAIN, Key::T)],
+        "above the scene", |_, v| Some(Command::Study(!v.study));
+    Analysis, "Inside the machine: what the pins carry", [on(PLAIN, Key::I)], "above the scene", |_, v| {
+        Some(Command::Pins(!v.pins))
+    };
+    Analysis, "Second cursor here, or away", [on(PLAIN, Key::M)], "plots, Shift click", |s, v| {
+        Some(Command::Mark(v.mark.is_none().then(|| s.frame().time)))
+    };
+
+    File, "Undo", [on(CTRL, Key::Z)], "keyboard", |s, _| s.undo_title().map(|_| Command::Undo);
+    File, "Redo", [on(CTRL, Key::Y), on(FINE, Key::Z)], "keyboard", |s, _| s.redo_title().map(|_| Command::Redo);
+    File, "Open a session or scenario", [on(CTRL, Key::O)], "top bar, scenario", |s, _| dialog(s, Purpose::Open);
+    File, "Save the session", [on(CTRL, Key::S)], "top bar, scenario", |s, _| dialog(s, Purpose::Save);
+    File, "Record for the Rerun viewer", [on(PLAIN, Key::R)], "top bar", |s, _| dialog(s, Purpose::Record);
+    File, "Find a command", [on(CTRL, Key::K)], "top bar", |_, v| Some(Command::Find(v.finder.is_none()));
+    File, "Keys and gestures", [on(PLAIN, Key::F1)], "top bar, ?", |_, v| Some(Command::Help(!v.help));
+];
+
+/// The same keys with Shift move by less.
+pub const FINE_ACTIONS: &[Action] = actions![
+    Task, "", [on(FINE, Key::ArrowRight)], "", |s, _| nudge(s, [NUDGE[1], 0.0]);
+    Task, "", [on(FINE, Key::ArrowLeft)], "", |s, _| nudge(s, [-NUDGE[1], 0.0]);
+    Task, "", [on(FINE, Key::ArrowUp)], "", |s, _| nudge(s, [0.0, NUDGE[1]]);
+    Task, "", [on(FINE, Key::ArrowDown)], "", |s, _| nudge(s, [0.0, -NUDGE[1]]);
+    Task, "", [on(SHIFT, Key::CloseBracket), on(SHIFT, Key::CloseCurlyBracket)], "", |s, v| turn(s, v, TURN[1]);
+    Task, "", [on(SHIFT, Key::OpenBracket), on(SHIFT, Key::OpenCurlyBracket)], "", |s, v| turn(s, v, -TURN[1]);
+];
+
+/// What the pointer does.
+pub const GESTURES: [(&str, &str); 12] = [
+    ("drag the target", "the machine follows on its plane"),
+    ("drag A, B, 1 …", "move a point of the path; where the target covers it, drag its name"),
+    ("double click", "add a point to the path"),
+    ("Delete", "leave out the point under the pointer"),
+    ("drag the b ring", "the workspace turns"),
+    ("drag plane, slice", "change b, in joint space and in the tower"),
+    ("Alt drag", "push the end effector, 20 N for each metre"),
+    ("drag elsewhere", "pan in 2D, else orbit; Shift pans"),
+    ("wheel", "zoom"),
+    ("click a plot", "show that instant"),
+    ("Shift click a plot", "a second cursor: plots show differences; Esc takes it away"),
+    ("Esc", "close what is open, cancel a drag"),
+];
+
+fn view(view_state: &ViewState, kind: ViewKind) -> Option<Command> {
+    (view_state.view != kind).then_some(Command::View(kind))
+}
+
+fn look(right: f64, up: f64) -> Option<Command> {
+    Some(Command::Look(Look::Turn([right, up])))
+}
+
+/// The speeds that a run is played at.
+pub const SPEEDS: [f64; 6] = [0.05, 0.1, 0.25, 0.5, 1.0, 2.0];
+
+fn slower(view_state: &ViewState) -> Option<Command> {
+    SPEEDS.into_iter().rev().find(|speed| *speed < view_state.speed).map(Command::Speed)
+}
+
+fn faster(view_state: &ViewState) -> Option<Command> {
+    SPEEDS.into_iter().find(|speed| *speed > view_state.speed).map(Command::Speed)
+}
+
+/// A key as it stands on the keyboard.
+pub fn shown(key: &KeyboardShortcut) -> String {
+    let m = key.modifiers;
+    let held = [(m.command || m.ctrl, "Ctrl "), (m.alt, "Alt "), (m.shift, "Shift ")];
+    let held: String = held.into_iter().filter(|(held, _)| *held).map(|(_, word)| word).collect();
+    held + match key.logical_key {
+        Key::ArrowLeft => "←",
+        Key::ArrowRight => "→",
+        Key::ArrowUp => "↑",
+        Key::ArrowDown => "↓",
+        Key::Comma => ",",
+        Key::Period => ".",
+        Key::OpenBracket => "[",
+        Key::CloseBracket => "]",
+        Key::Minus => "−",
+        Key::Plus | Key::Equals => "+",
+        other => other.name(),
+    }
+}

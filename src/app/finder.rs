@@ -1,0 +1,134 @@
+//! The list of commands: every action, scenario and machine, found by a few letters.
+
+use egui::{Align2, Area, Frame, Id, Key, Modifiers, Order, RichText, ScrollArea, TextEdit, Ui, vec2};
+
+use super::actions::{ACTIONS, shown};
+use super::theme::{bold, colour, plain};
+use super::widgets::name;
+use super::{Command, ViewState, search};
+use crate::mechanics::machine;
+use crate::picture::scene::palette::Palette;
+use crate::session::Session;
+use crate::session::scenario::Scenario;
+
+/// A line of the list.
+struct Entry {
+    title: String,
+    place: String,
+    keys: String,
+    command: Command,
+}
+
+/// The most lines that are kept.
+const MOST: usize = 60;
+
+/// What can be done now, in the order of the table.
+fn entries(session: &Session, view_state: &ViewState) -> Vec<Entry> {
+    let actions = ACTIONS.iter().filter_map(|action| {
+        let command = (action.command)(session, view_state)?;
+        let keys = action.keys.first().map(shown).unwrap_or_default();
+        Some(Entry { title: action.name.into(), place: action.place.into(), keys, command })
+    });
+    let scenarios = Scenario::builtin_names().filter_map(Scenario::builtin).map(|scenario| Entry {
+        title: format!("Scenario: {}", scenario.title),
+        place: "top bar, scenario".into(),
+        keys: String::new(),
+        command: Command::Open(Box::new(scenario)),
+    });
+    let present = session.scenario();
+    let machines = machine::builtins().iter().filter(|machine| **machine != present.machine).map(|machine| Entry {
+        title: format!("Machine: {}", machine.name()),
+        place: "top bar, machine".into(),
+        keys: String::new(),
+        command: Command::Open(Box::new(Scenario { machine: machine.clone(), edits: Vec::new(), ..present.clone() })),
+    });
+    actions.chain(scenarios).chain(machines).collect()
+}
+
+/// Those that answer what was typed, best first.
+fn found(mut entries: Vec<Entry>, sought: &str) -> Vec<Entry> {
+    let place = |entry: &Entry| search::score(sought, &format!("{} {}", entry.place, entry.keys)).map(|s| s / 4);
+    let mut scored: Vec<(i32, Entry)> = entries
+        .drain(..)
+        .filter_map(|entry| Some((search::score(sought, &entry.title).or_else(|| place(&entry))?, entry)))
+        .collect();
+    // Stable: among equals the order of the table stays.
+    scored.sort_by_key(|(score, _)| -score);
+    scored.into_iter().take(MOST).map(|(_, entry)| entry).collect()
+}
+
+/// Draws it.
+pub fn show(ctx: &egui::Context, session: &Session, view_state: &mut ViewState, commands: &mut Vec<Command>) {
+    let p = view_state.palette();
+    let Some(mut finder) = view_state.finder.clone() else { return };
+    let list = found(entries(session, view_state), &finder.sought);
+    finder.chosen = finder.chosen.min(list.len().saturating_sub(1));
+    let pressed = |key| ctx.input_mut(|i| i.consume_key(Modifiers::NONE, key));
+    let (up, down, enter) = (pressed(Key::ArrowUp), pressed(Key::ArrowDown), pressed(Key::Enter));
+    match (up, down, list.len()) {
+        (true, _, n) if n > 0 => finder.chosen = (finder.chosen + n - 1) % n,
+        (_, true, n) if n > 0 => finder.chosen = (finder.chosen + 1) % n,
+        _ => {}
+    }
+    let mut picked = enter.then_some(finder.chosen);
+    let width = (ctx.content_rect().width() - 80.0).clamp(280.0, 560.0);
+    let area = Area::new(Id::unique("finder")).order(Order::Foreground).anchor(Align2::CENTER_TOP, [0.0, 72.0]);
+    let frame = Frame::popup(&ctx.global_style()).fill(colour(p.panel)).inner_margin(10);
+    let shown = area.show(ctx, |ui| {
+        frame.show(ui, |ui| {
+            ui.set_width(width);
+            let field = TextEdit::singleline(&mut finder.sought).hint_text("What would you like to do?");
+            let field = ui.add(field.desired_width(f32::INFINITY).font(plain(15.0)).margin(vec2(8.0, 7.0)));
+            name(&field, "Find a command");
+            field.request_focus();
+            if field.changed() {
+                finder.chosen = 0;
+            }
+            ui.add_space(4.0);
+            let room = (ctx.content_rect().height() - 220.0).clamp(120.0, 420.0);
+            ScrollArea::vertical().max_height(room).auto_shrink([false, true]).show(ui, |ui| {
+                ui.spacing_mut().item_spacing.y = 1.0;
+                for (i, entry) in list.iter().enumerate() {
+                    let chosen = i == finder.chosen;
+                    let response = line(ui, &p, entry, chosen);
+                    if chosen && (up || down) {
+                        response.scroll_to_me(None);
+                    }
+                    if response.clicked() {
+                        picked = Some(i);
+                    }
+                }
+                if list.is_empty() {
+                    ui.label(RichText::new("no command answers this").color(colour(p.dim)));
+                }
+            });
+        });
+    });
+    let elsewhere = shown.response.clicked_elsewhere();
+    match picked.and_then(|i| list.into_iter().nth(i)) {
+        Some(entry) => commands.extend([Command::Find(false), entry.command, Command::EndGesture]),
+        None if elsewhere => commands.push(Command::Find(false)),
+        None => view_state.finder = Some(finder),
+    }
+}
+
+fn line(ui: &mut Ui, p: &Palette, entry: &Entry, chosen: bool) -> egui::Response {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 26.0), egui::Sense::click());
+    if chosen || response.hovered() {
+        ui.painter().rect_filled(rect, 6.0, colour(p.line));
+    }
+    // Painted, so that a screen reader is told of the line and not of its parts.
+    let middle = rect.center().y;
+    let write = |ui: &Ui, right: f32, text: &str, font, ink| {
+        ui.painter().text(egui::pos2(right, middle), Align2::RIGHT_CENTER, text, font, colour(ink)).left()
+    };
+    let left = write(ui, rect.right() - 8.0, &entry.keys, bold(12.0), p.ink);
+    let left = write(ui, left - 10.0, &entry.place, plain(11.5), p.dim);
+    let title = RichText::new(&entry.title).font(plain(13.0)).color(colour(p.ink));
+    let room = left - rect.left() - 20.0;
+    let title =
+        egui::WidgetText::from(title).into_galley(ui, Some(egui::TextWrapMode::Truncate), room, egui::TextStyle::Body);
+    ui.painter().galley(egui::pos2(rect.left() + 8.0, middle - 0.5 * title.size().y), title, colour(p.ink));
+    name(&response, &entry.title);
+    response
+}

@@ -1,0 +1,223 @@
+//! The first minute: the same task along a straight line and reactionless, side by side, over and over until it is
+//! touched; and three hints, each gone when it has been done.
+
+use std::sync::Arc;
+
+use egui::{Align2, Area, Frame, Id, RichText, Ui, vec2};
+
+use super::theme::{bold, colour, plain};
+use super::widgets::name;
+use super::{Command, ViewState};
+use crate::mechanics::planar::Vector;
+use crate::picture::numbers::signed;
+use crate::picture::paint::{Spot, paint, words};
+use crate::picture::scene::camera::Camera;
+use crate::picture::scene::options::ViewOptions;
+use crate::picture::scene::palette::Palette;
+use crate::picture::scene::stage::Stage;
+use crate::picture::scene::{Rgba, Scene};
+use crate::session::scenario::Scenario;
+use crate::session::{Edit, Refusal, Run, Session};
+use crate::simulation::frame::{Frame as Instant, Reach};
+use crate::study::comparison::Comparison;
+
+/// What is left of the first minute.
+pub struct Intro {
+    /// The same task straight; shown until the machine is touched.
+    straight: Option<Straight>,
+    /// The next hint, counted from 0.
+    hint: usize,
+    /// b when the last hint began, rad.
+    b: f64,
+    /// How long the run has rested at its end, s, and how often it was started over.
+    rested: f64,
+    rounds: u32,
+}
+
+/// The run that shakes its base.
+struct Straight {
+    run: Comparison,
+    stage: Stage,
+}
+
+/// What a hint asks for, and why.
+const HINTS: [(&str, &str); 3] = [
+    ("Drag the white ring.", "The arm follows without a reaction, as long as the ring stays inside the amber area."),
+    ("Now drag it out of the amber area.", "The arm waits at the edge, and says which pose constant b would reach it."),
+    ("Turn b: the slider on the left.", "The amber area turns. While time runs, the base feels what that costs."),
+];
+
+/// How long the run rests at its end before it starts over, s, and how often it does.
+const REST: f64 = 1.2;
+const ROUNDS: u32 = 20;
+/// How far a drawn base turns under a moment, rad for each N m: a soft mount, so that it can be seen.
+const SOFT: f64 = 0.03;
+/// The least width of two scenes beside each other.
+const BOTH: f32 = 680.0;
+
+impl Intro {
+    /// Beside a session on the built-in reactionless case.
+    ///
+    /// # Errors
+    /// If the straight line cannot be run.
+    pub fn beside(session: &Session) -> Result<Self, Refusal> {
+        let straight = match Scenario::builtin("case-1") {
+            Some(case) => {
+                let scenario = Scenario { compare_b: None, ..case };
+                let stage = Stage::of(&Run::new(&scenario)?).without_workspace();
+                let mut run = Comparison::empty(&scenario);
+                run.keep(scenario)?;
+                Some(Straight { run, stage })
+            }
+            None => None,
+        };
+        Ok(Self { straight, hint: 0, b: session.b_aim(), rested: 0.0, rounds: 0 })
+    }
+
+    /// Whether both runs are to be seen in a view so wide.
+    pub fn shows_both(&self, width: f32) -> bool {
+        self.straight.is_some() && width >= BOTH
+    }
+
+    /// Whether the contrast is on display in a window so wide, points; the scenes then take the room of the settings.
+    pub fn contrasts_in(&self, width: f32) -> bool {
+        self.straight.is_some() && width >= BOTH + 360.0
+    }
+
+    /// The straight run, for plots.
+    pub fn beside_it(&self) -> Option<&Comparison> {
+        self.straight.as_ref().map(|straight| &straight.run)
+    }
+
+    /// Wall time, s, passes while the session rests; whether the run is to start over.
+    pub fn rests(&mut self, session: &Session, wall: f64) -> bool {
+        let waits = self.straight.is_some() && session.is_at_end() && !session.is_moving() && self.rounds < ROUNDS;
+        self.rested = if waits && session.frame().time >= session.length() { self.rested + wall } else { 0.0 };
+        let over = self.rested > REST;
+        if over {
+            (self.rested, self.rounds) = (0.0, self.rounds + 1);
+        }
+        over
+    }
+
+    /// Whether it only waits to start over.
+    pub fn is_resting(&self) -> bool {
+        self.rested > 0.0
+    }
+
+    /// A command was carried out.
+    pub fn sees(&mut self, command: &Command, session: &Session, held: bool) {
+        let touches = match command {
+            Command::Edit(_) | Command::Open(_) | Command::OpenFile(_) | Command::Case(_) => !held,
+            Command::Draw(_) | Command::Push(_) | Command::Compare(true) | Command::Study(true) => true,
+            Command::View(view) => !view.shows_machine(),
+            Command::EndGesture => session.is_led() || (session.b_aim() - self.b).abs() > 1e-9,
+            _ => false,
+        };
+        if touches {
+            self.straight = None;
+        }
+        let frame = session.frame();
+        let done = match self.hint {
+            0 => matches!(command, Command::Edit(Edit::DragTarget { .. })) && session.is_led(),
+            1 => session.is_led() && frame.target.reach != Reach::Inside,
+            2 => (session.b_aim() - self.b).abs() > 0.05,
+            _ => false,
+        };
+        if done {
+            (self.hint, self.b) = (self.hint + 1, session.b_aim());
+        }
+    }
+
+    /// Whether everything has been done.
+    pub fn is_over(&self) -> bool {
+        self.straight.is_none() && self.hint >= HINTS.len()
+    }
+
+    /// Draws the straight run on the left of a view, with what both are about.
+    pub fn show_straight(&self, ui: &Ui, rect: egui::Rect, now: &Instant, camera: &Camera, view_state: &ViewState) {
+        let Some((straight, frame)) =
+            self.straight.as_ref().and_then(|straight| Some((straight, straight.run.shown().next()?.1.at(now.time)?)))
+        else {
+            return;
+        };
+        let p = view_state.palette();
+        let mut shown = *frame;
+        shown.base.angle = -SOFT * frame.wrench.total().moment;
+        // The ring stays where the tip is to be, on a base that is drawn turned.
+        shown.target.at = Vector::from_polar(1.0, shown.base.angle) * shown.target.at;
+        let options = ViewOptions { theme: view_state.theme, invites: false, ..Default::default() };
+        let scene: Arc<Scene> = Arc::new(straight.stage.scene(&shown, &options));
+        paint(ui, 1, rect, &scene, camera);
+        words(ui, &Spot { rect, camera: *camera }, &scene);
+        let turn = SOFT.to_degrees();
+        let words =
+            format!("Straight from A to B. The arm shakes its base (drawn as giving way {turn:.0}° for 1 N m).");
+        caption(ui, rect, &p, "Straight line", &words, frame.wrench.total().moment, p.reaction);
+        ui.painter().vline(rect.right(), rect.y_range(), egui::Stroke::new(1.0, colour(p.line)));
+    }
+
+    /// What the right half is about.
+    pub fn caption(&self, ui: &Ui, rect: egui::Rect, now: &Instant, view_state: &ViewState) {
+        let p = view_state.palette();
+        let words = "From A to B on one plane of joint space. The base feels nothing.";
+        caption(ui, rect, &p, "Reactionless path", words, now.wrench.total().moment, p.zero);
+    }
+
+    /// The present hint, over the lower right corner of the scene.
+    pub fn show_hint(
+        &self,
+        ctx: &egui::Context,
+        rect: egui::Rect,
+        view_state: &ViewState,
+        commands: &mut Vec<Command>,
+    ) {
+        let Some((title, why)) = HINTS.get(self.hint) else { return };
+        let p = view_state.palette();
+        let frame = Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.line))).corner_radius(10).inner_margin(14);
+        let width = 390.0_f32.min(rect.width() - 32.0);
+        let area = Area::new(Id::unique("hint")).pivot(Align2::RIGHT_BOTTOM);
+        area.fixed_pos(rect.right_bottom() - vec2(16.0, 40.0)).show(ctx, |ui| {
+            frame.show(ui, |ui| {
+                ui.set_width(width - 28.0);
+                ui.horizontal(|ui| {
+                    ui.label(RichText::new(*title).font(bold(14.0)).color(colour(p.ink)));
+                    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| dots(ui, &p, self.hint));
+                });
+                ui.add(egui::Label::new(RichText::new(*why).font(plain(12.0)).color(colour(p.dim))).wrap());
+                let skip = egui::Button::new(RichText::new("Esc: never again").font(plain(11.0)).color(colour(p.dim)));
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                    let skip = ui.add(skip.frame(false)).on_hover_text("No more hints, now and at the next start");
+                    name(&skip, "No more hints");
+                    if skip.clicked() {
+                        commands.push(Command::SkipHints);
+                    }
+                });
+            });
+        });
+    }
+}
+
+fn dots(ui: &mut Ui, p: &Palette, present: usize) {
+    for i in (0..HINTS.len()).rev() {
+        let (rect, _) = ui.allocate_exact_size(vec2(8.0, 8.0), egui::Sense::hover());
+        let tone = if i == present { p.amber } else { p.line };
+        ui.painter().circle_filled(rect.center(), 3.0, colour(tone));
+    }
+}
+
+/// A title over a scene and the moment on its base below.
+fn caption(ui: &Ui, rect: egui::Rect, p: &Palette, title: &str, about: &str, moment: f64, tone: Rgba) {
+    let painter = ui.painter().with_clip_rect(rect);
+    let left = rect.left() + 22.0;
+    let room = rect.width() - 40.0;
+    let title = painter.layout_no_wrap(title.into(), bold(16.0), colour(p.ink));
+    let about = painter.layout(about.into(), plain(12.0), colour(p.dim), room);
+    let below = rect.top() + 36.0 + about.size().y + 8.0;
+    painter.galley(egui::pos2(left, rect.top() + 12.0), title, colour(p.ink));
+    painter.galley(egui::pos2(left, rect.top() + 36.0), about, colour(p.dim));
+    let shown = signed(moment + 0.0, 2);
+    let number = painter.text(egui::pos2(left, below), Align2::LEFT_TOP, shown, bold(26.0), colour(tone));
+    let unit = number.right_bottom() + vec2(8.0, -4.0);
+    painter.text(unit, Align2::LEFT_BOTTOM, "N m   moment on the base, n_B", plain(12.0), colour(p.dim));
+}

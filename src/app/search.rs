@@ -1,0 +1,33 @@
+//! Finding a name from a few of its letters.
+
+/// How well a name answers what was typed, more is better; `None` if a word of it is not there. Each word has to be
+/// found with its letters in order: whole, at the beginnings of words, or scattered.
+pub fn score(sought: &str, name: &str) -> Option<i32> {
+    let name: Vec<char> = name.to_lowercase().chars().collect();
+    sought.split_whitespace().map(|word| score_of(&word.to_lowercase(), &name)).sum()
+}
+
+fn score_of(word: &str, name: &[char]) -> Option<i32> {
+    let word: Vec<char> = word.chars().collect();
+    let starts = |i: usize| i == 0 || !name[i - 1].is_alphanumeric();
+    let whole = name.windows(word.len()).enumerate().filter(|(_, part)| **part == *word).map(|(i, _)| i);
+    // A whole word is worth more than its beginning, and that more than its middle.
+    let ends = |i: usize| name.get(i + word.len()).is_none_or(|c| !c.is_alphanumeric());
+    let best = whole.map(|i| 60 + 40 * i32::from(starts(i)) + 10 * i32::from(starts(i) && ends(i)) - i.min(30) as i32);
+    best.max().or_else(|| scattered(&word, name, &starts))
+}
+
+/// Letters in order, those that begin a word or follow the one before counting more.
+fn scattered(word: &[char], name: &[char], starts: &dyn Fn(usize) -> bool) -> Option<i32> {
+    let (mut score, mut next, mut last) = (0, 0, None);
+    for letter in word {
+        // The beginning of a word ahead is meant rather than a letter in the middle of this one.
+        let from = |at: usize| (at..name.len()).filter(|i| name[*i] == *letter);
+        let beside = last.map(|last| last + 1).filter(|i| name.get(*i) == Some(letter));
+        let at = beside.or_else(|| from(next).find(|i| starts(*i))).or_else(|| from(next).next())?;
+        score += if beside.is_some() || starts(at) { 4 } else { 1 };
+        (next, last) = (at + 1, Some(at));
+    }
+    // A few letters strewn over a long name say little.
+    (score >= 3 * word.len() as i32).then_some(score)
+}

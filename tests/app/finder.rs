@@ -1,0 +1,160 @@
+//! The list of commands, the card of keys, and the keys that move the target, b and the view.
+
+use std::collections::HashSet;
+
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable as _;
+use stillbase::app::actions::{ACTIONS, FINE_ACTIONS};
+use stillbase::picture::scene::palette::Theme;
+use stillbase::picture::scene::views::ViewKind;
+
+use super::{Window, session, window};
+use crate::Test;
+
+pub const TESTS: &[Test] = tests![
+    every_command_is_found_by_a_few_letters,
+    the_list_of_commands_is_led_by_keys_alone,
+    a_list_of_commands_types_nothing_into_the_window,
+    no_key_asks_for_two_things,
+    the_card_of_keys_is_searched,
+    arrows_move_the_target_and_a_burst_is_one_undo,
+    brackets_turn_b,
+    the_view_is_turned_by_keys,
+];
+
+fn press(h: &mut Window, modifiers: Modifiers, key: Key) {
+    h.key_press_modifiers(modifiers, key);
+    h.run_steps(2);
+}
+
+fn type_text(h: &mut Window, text: &str) {
+    h.event(egui::Event::Text(text.into()));
+    h.run_steps(2);
+}
+
+fn every_command_is_found_by_a_few_letters() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    for (typed, first) in [
+        ("snap", "Snapshots along the motion"),
+        ("dark", "Light or dark"),
+        ("tol", "Tolerances: what the bases of many machines feel, and the spectrum"),
+        ("rec rerun", "Record for the Rerun viewer"),
+        ("tow", "Tower of workspaces"),
+        ("table 1", "Machine: nine-link-table-1"),
+    ] {
+        press(&mut h, Modifiers::COMMAND, Key::K);
+        type_text(&mut h, typed);
+        assert!(h.query_by_label(first).is_some(), "{typed}: {first} is not among what is found");
+        press(&mut h, Modifiers::NONE, Key::Escape);
+        assert!(h.query_by_label("Find a command").is_none_or(|_| h.state().app_state().view_state().finder.is_none()));
+    }
+    press(&mut h, Modifiers::COMMAND, Key::K);
+    type_text(&mut h, "qqxz");
+    assert!(h.query_by_label("no command answers this").is_some());
+}
+
+fn the_list_of_commands_is_led_by_keys_alone() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    press(&mut h, Modifiers::COMMAND, Key::K);
+    type_text(&mut h, "snap");
+    press(&mut h, Modifiers::NONE, Key::Enter);
+    let view_state = h.state().app_state().view_state();
+    assert!(view_state.snapshots && view_state.finder.is_none(), "the first line is carried out, the list closes");
+    // From the top upwards is the last line, and back.
+    press(&mut h, Modifiers::COMMAND, Key::K);
+    type_text(&mut h, "tower");
+    press(&mut h, Modifiers::NONE, Key::ArrowUp);
+    press(&mut h, Modifiers::NONE, Key::ArrowDown);
+    press(&mut h, Modifiers::NONE, Key::Enter);
+    assert_eq!(h.state().app_state().view_state().view, ViewKind::Tower);
+}
+
+fn a_list_of_commands_types_nothing_into_the_window() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let before = session(&h).to_scenario();
+    press(&mut h, Modifiers::COMMAND, Key::K);
+    for key in [Key::Num1, Key::V, Key::L, Key::Space, Key::ArrowRight, Key::S] {
+        press(&mut h, Modifiers::NONE, key);
+    }
+    press(&mut h, Modifiers::NONE, Key::Escape);
+    let view_state = h.state().app_state().view_state();
+    assert_eq!((view_state.theme, view_state.view, view_state.snapshots), (Theme::Dark, ViewKind::Flat, false));
+    assert_eq!(session(&h).to_scenario(), before);
+    assert!(!session(&h).is_playing() && session(&h).frame().time == 0.0);
+}
+
+fn no_key_asks_for_two_things() {
+    let mut seen = HashSet::new();
+    for action in ACTIONS.iter().chain(FINE_ACTIONS) {
+        for key in action.keys {
+            assert!(seen.insert(format!("{key:?}")), "{}: {key:?} is taken", action.name);
+        }
+    }
+    let names: HashSet<&str> = ACTIONS.iter().map(|action| action.name).collect();
+    assert_eq!(names.len(), ACTIONS.len(), "each name stands once");
+}
+
+fn the_card_of_keys_is_searched() {
+    let mut h = window("case-3", Theme::Dark);
+    press(&mut h, Modifiers::NONE, Key::F1);
+    assert!(h.query_by_label("Undo").is_some() && h.query_by_label("drag the b ring").is_some());
+    h.get_by_label("Search the keys").focus();
+    h.run_steps(2);
+    type_text(&mut h, "undo");
+    assert!(h.query_by_label("Undo").is_some() && h.query_by_label("drag the b ring").is_none());
+    press(&mut h, Modifiers::NONE, Key::Escape);
+    press(&mut h, Modifiers::NONE, Key::Escape);
+    assert!(!h.state().app_state().view_state().help);
+}
+
+fn arrows_move_the_target_and_a_burst_is_one_undo() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let before = session(&h).to_scenario();
+    let target = |h: &Window| session(h).frame().target.at;
+    let start = target(&h);
+    let ctrl = Modifiers::COMMAND;
+    for _ in 0..3 {
+        press(&mut h, ctrl, Key::ArrowUp);
+    }
+    press(&mut h, ctrl | Modifiers::SHIFT, Key::ArrowLeft);
+    h.run_steps(200);
+    let moved = target(&h) - start;
+    assert!((moved.im - 0.03).abs() < 1e-9 && (moved.re + 0.001).abs() < 1e-9, "{moved}");
+    assert!(session(&h).is_led());
+    for _ in 0..4 {
+        if session(&h).to_scenario() != before {
+            press(&mut h, ctrl, Key::Z);
+        }
+    }
+    assert_eq!(session(&h).to_scenario(), before, "undone as a whole");
+}
+
+fn brackets_turn_b() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let b = session(&h).b_aim();
+    press(&mut h, Modifiers::NONE, Key::CloseBracket);
+    assert!((session(&h).b_aim() - b - 0.01).abs() < 1e-9);
+    press(&mut h, Modifiers::SHIFT, Key::OpenBracket);
+    assert!((session(&h).b_aim() - b - 0.009).abs() < 1e-9);
+}
+
+fn the_view_is_turned_by_keys() {
+    let mut h = window("case-3", Theme::Dark);
+    for view in ["2D", "3D"] {
+        h.get_by_label(view).click();
+        h.run_steps(2);
+        let before = *h.state().app_state().view_state().camera();
+        press(&mut h, Modifiers::ALT, Key::ArrowRight);
+        let turned = *h.state().app_state().view_state().camera();
+        press(&mut h, Modifiers::NONE, Key::Plus);
+        let nearer = *h.state().app_state().view_state().camera();
+        assert!(before != turned && turned != nearer);
+        press(&mut h, Modifiers::NONE, Key::F);
+        assert_eq!(*h.state().app_state().view_state().camera(), before);
+    }
+}

@@ -1,0 +1,119 @@
+//! The first minute: the contrast until it is touched, hints until they are done, and what is remembered of it.
+
+use egui::{Key, pos2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use stillbase::app::window::{App, Clock};
+use stillbase::app::{AppState, Command, Preferences};
+use stillbase::picture::scene::palette::Theme;
+use stillbase::session::scenario::Scenario;
+
+use super::screen::Screen;
+use super::{Window, drag, on_screen, session};
+use crate::Test;
+
+pub const TESTS: &[Test] = tests![
+    the_first_start_shows_the_contrast_over_and_over,
+    hints_go_when_they_are_done,
+    hints_are_skipped_for_good,
+    only_the_built_in_case_has_a_first_minute,
+    how_the_window_is_liked_is_remembered,
+];
+
+fn window(case: &str, liked: &Preferences) -> Window {
+    let scenario = Scenario::builtin(case).expect("built in");
+    let app_state = AppState::new(scenario, Theme::Dark).expect("it starts").with_preferences(liked);
+    Harness::builder()
+        .with_size([1440.0, 900.0])
+        .with_step_dt(0.02)
+        .renderer(Screen::new())
+        .build_eframe(move |cc| App::new(cc, app_state, Clock::Fixed(0.02)).expect("kittest draws with wgpu"))
+}
+
+fn liked(h: &Window) -> Preferences {
+    h.state().app_state().preferences([1440.0, 900.0])
+}
+
+fn the_first_start_shows_the_contrast_over_and_over() {
+    let mut h = window("case-3", &Preferences::default());
+    h.state_mut().app_state_mut().carry_out(Command::TogglePlay);
+    h.run_steps(14);
+    assert!(h.query_by_label("POSE CONSTANT").is_none(), "the settings make room");
+    assert!(h.query_by_label("Drag the white ring.").is_some());
+    h.snapshot("first-minute-dark");
+    h.run_steps(45);
+    assert!(session(&h).is_at_end() && session(&h).frame().time > 0.99, "{}", session(&h).frame().time);
+    h.run_steps(80);
+    let time = session(&h).frame().time;
+    assert!(session(&h).is_playing() && time > 0.05 && time < 0.9, "it has started over: {time}");
+    assert!(liked(&h).hints, "nothing was done yet");
+}
+
+fn hints_go_when_they_are_done() {
+    let mut h = window("case-3", &Preferences::default());
+    h.run_steps(4);
+    let at = session(&h).frame().end_effector;
+    let from = on_screen(&h, at.re, at.im);
+    drag(&mut h, from, from + egui::vec2(14.0, -14.0));
+    h.run_steps(4);
+    assert!(h.query_by_label("POSE CONSTANT").is_some(), "touched: the settings are back");
+    assert!(h.query_by_label("Now drag it out of the amber area.").is_some());
+    let at = session(&h).frame().target.at;
+    let from = on_screen(&h, at.re, at.im);
+    drag(&mut h, from, from + egui::vec2(260.0, -40.0));
+    h.run_steps(4);
+    assert!(h.query_by_label("Turn b: the slider on the left.").is_some());
+    let b = session(&h).b_aim();
+    h.state_mut().app_state_mut().carry_out(Command::Edit(stillbase::session::Edit::PoseB { b: b + 0.2 }));
+    h.key_press(Key::F);
+    h.run_steps(4);
+    assert!(h.query_by_label("Turn b: the slider on the left.").is_none());
+    assert!(!liked(&h).hints, "done: never again");
+}
+
+fn hints_are_skipped_for_good() {
+    let mut h = window("case-3", &Preferences::default());
+    h.run_steps(3);
+    h.key_press(Key::Escape);
+    h.run_steps(3);
+    assert!(h.query_by_label("Drag the white ring.").is_none() && !liked(&h).hints);
+    let again = window("case-3", &liked(&h));
+    assert!(again.query_by_label("Drag the white ring.").is_none());
+}
+
+fn only_the_built_in_case_has_a_first_minute() {
+    let mut h = window("spacecraft", &Preferences::default());
+    h.run_steps(3);
+    assert!(h.query_by_label("Drag the white ring.").is_none());
+    // Esc there closes nothing and forgets nothing.
+    h.key_press(Key::Escape);
+    h.run_steps(3);
+    assert!(liked(&h).hints);
+}
+
+fn how_the_window_is_liked_is_remembered() {
+    let usual = Preferences { hints: false, ..Preferences::default() };
+    let mut h = window("case-3", &usual);
+    h.run_steps(3);
+    h.key_press(Key::L);
+    h.key_press(Key::Num8);
+    h.run_steps(3);
+    // The edge of the plots is dragged to the left.
+    let edge = 1440.0 - 336.0 + 2.0;
+    drag(&mut h, pos2(edge, 500.0), pos2(edge - 120.0, 500.0));
+    h.run_steps(3);
+    let now = liked(&h);
+    assert_eq!((now.theme, now.side, now.plots), (Theme::Light, false, true));
+    assert!((now.plots_width.expect("made wider") - 336.0 - 120.0).abs() < 6.0, "{:?}", now.plots_width);
+    assert_eq!(now.side_width, None, "left alone");
+    let text = toml::to_string(&now).expect("plain data");
+    let read: Preferences = toml::from_str(&text).expect("its own");
+    assert_eq!(read, now);
+    // What a stranger wrote is brought within what a window can be.
+    let strange: Preferences = toml::from_str("size = [nan, 1e9]\nplots_width = -4.0\nnew_key = 3").expect("read");
+    let sound = strange.sound();
+    assert_eq!((sound.size, sound.plots_width), ([1440.0, 16_000.0], Some(260.0)));
+    let mut again = window("case-3", &now);
+    again.run_steps(3);
+    assert!(again.query_by_label("POSE CONSTANT").is_none());
+}
