@@ -2,11 +2,13 @@
 
 use proptest::prelude::*;
 use serde_json::Value;
-use stillbase::mechanics::machine::{Machine, PlaceOnLink, builtin};
+use stillbase::mechanics::machine::{Machine, PlaceOnLink, builtin, parse};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::planning::reactionless::{AngleDefinition, AngleLimit, PlaneMap};
 
 use crate::mechanics::nine_body::NineBody;
+
+pub mod random;
 
 pub fn dynamics() -> Value {
     serde_json::from_str(include_str!("reference/dynamics.json")).expect("valid JSON")
@@ -14,6 +16,28 @@ pub fn dynamics() -> Value {
 
 pub fn planning() -> Value {
     serde_json::from_str(include_str!("reference/planning.json")).expect("valid JSON")
+}
+
+pub fn family() -> Value {
+    serde_json::from_str(include_str!("reference/family.json")).expect("valid JSON")
+}
+
+/// A machine of the reference.
+pub fn family_machine(name: &str) -> Machine {
+    let text = match name {
+        "two-drive" => include_str!("reference/family/two-drive.toml"),
+        "two-drive-balanced" => include_str!("reference/family/two-drive-balanced.toml"),
+        "serial-3r" => include_str!("reference/family/serial-3r.toml"),
+        "serial-3r-balanced" => include_str!("reference/family/serial-3r-balanced.toml"),
+        "four-drive" => include_str!("reference/family/four-drive.toml"),
+        "four-drive-balanced" => include_str!("reference/family/four-drive-balanced.toml"),
+        "nine-link-geared" => include_str!("reference/family/nine-link-geared.toml"),
+        "nine-link-geared-balanced" => include_str!("reference/family/nine-link-geared-balanced.toml"),
+        "nine-link-bare" => include_str!("reference/family/nine-link-bare.toml"),
+        "nine-link-bare-balanced" => include_str!("reference/family/nine-link-bare-balanced.toml"),
+        _ => panic!("no machine {name}"),
+    };
+    parse(text, name).expect("a machine")
 }
 
 /// Every number of a value, row by row.

@@ -91,9 +91,9 @@ impl Facts {
         self.balance = Balance {
             force: (inertia.force_residual(), inertia.is_force_balanced()),
             coupling: (inertia.invariance_residual(), inertia.is_invariant()),
-            inertia: (0..machine.drives()).map(|k| inertia.diagonal(k)).collect(),
+            inertia: (0..machine.drives()).map(|k| inertia.momentum(k)).collect(),
         };
-        self.price = inertia.diagonal(0) * scenario.pose_acceleration;
+        self.price = inertia.pose_inertia() * scenario.pose_acceleration;
         self.settings = OnceCell::new();
         self.of = Some(scenario.clone());
     }

@@ -33,6 +33,8 @@ pub struct Balance {
     pub coupling_coefficients: Vec<f64>,
     /// H_kk, kg m².
     pub h: Vec<f64>,
+    /// D_k where all C_kl vanish, kg m²; gears make it another than H_kk.
+    pub d: Vec<f64>,
     /// λ_k.
     pub lambda: Vec<f64>,
 }
@@ -45,6 +47,7 @@ impl Balance {
             gamma_coefficients: (0..n).map(|k| inertia.first_moment(k).re).collect(),
             coupling_coefficients: Inertia::pairs(n).map(|(k, l)| inertia.coupling(k, l).re).collect(),
             h: inertia.diagonals().to_vec(),
+            d: inertia.momenta().to_vec(),
             lambda: inertia.lambda().to_vec(),
         }
     }
@@ -52,9 +55,10 @@ impl Balance {
     /// One row a drive, then one a pair of drives.
     pub fn tables(&self, machine: &Machine) -> String {
         let drives = &machine.spec().drives;
-        let mut by_drive = Table::new(["drive", "g kg m", "H kg m²", "λ"]);
+        let mut by_drive = Table::new(["drive", "g kg m", "H kg m²", "D kg m²", "λ"]);
         for (k, drive) in drives.iter().enumerate() {
-            let row = [fixed(self.gamma_coefficients[k], 9), fixed(self.h[k], 9), fixed(self.lambda[k], 9)];
+            let [g, h, d, l] = [&self.gamma_coefficients, &self.h, &self.d, &self.lambda].map(|of| fixed(of[k], 9));
+            let row = [g, h, d, l];
             by_drive.row([drive.name.clone()].into_iter().chain(row));
         }
         if drives.len() < 2 {
@@ -103,6 +107,7 @@ impl Check {
                 yes(answer.force_balanced),
                 yes(answer.invariant),
                 match (answer.integrable, answer.invariant) {
+                    (_, true) if inertia.pose_inertia() == 0.0 => "none is needed: every motion is reactionless",
                     (true, true) => "b = Σ λ_k q_k",
                     (true, false) => "exists, though the mass matrix changes with the pose",
                     (false, _) => "none: zero momentum does not keep to surfaces of joint space",

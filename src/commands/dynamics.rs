@@ -16,7 +16,7 @@ use super::input::{MachineArgument, read};
 use super::output::{Format, Table};
 use stillbase::settings::number::fixed;
 
-/// Torques, and what the base feels, of given states of motion, Eqs (1) to (6)
+/// Torques of the motors, and what the base feels, of given states of motion, Eqs (1) to (6)
 ///
 /// Force and moment are what the manipulator transmits to its base, weight included; the moment is about B, positive
 /// counter-clockwise.
@@ -78,7 +78,7 @@ fn outcome(inertia: &Inertia, around: &Surroundings, q: &PerDrive, qd: &PerDrive
     let n = inertia.drives();
     Outcome {
         mass_matrix: (0..n).map(|k| (0..n).map(|l| h.get(k, l)).collect()).collect(),
-        torque: torque.to_vec(),
+        torque: inertia.motors().torques(&torque).to_vec(),
         base_force: [total.force.re, total.force.im],
         base_moment: total.moment,
         com: [com.re, com.im],

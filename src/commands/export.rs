@@ -155,7 +155,7 @@ impl Export {
             let t = if i == spaces { whole } else { i as f64 / self.rate };
             let r = motion.at(t);
             let e = r.q.units();
-            let torque = inverse(&model, &e, &r.qd, &r.qdd, &around);
+            let torque = model.motors().torques(&inverse(&model, &e, &r.qd, &r.qdd, &around));
             let p = run.place(&r.q);
             // Zeros without a sign.
             let all = r.q.iter().chain(r.qd.iter()).chain(r.qdd.iter()).chain(torque.iter()).map(|x| x + 0.0);

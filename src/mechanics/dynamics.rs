@@ -4,9 +4,10 @@
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | Z_kl | C_kl e^{i (q_l − q_k)} | kg m² |
-//! | H_kl | mass matrix, Re Z_kl + δ_kl J_k | kg m² |
+//! | H_kl | mass matrix, Re Z_kl + δ_kl J_k, and J r_k r_l of every rotor | kg m² |
 //! | V_k | velocity terms, −Σ_l Im Z_kl q̇_l² | N m |
-//! | τ | H q̈ + V − γᵀ g − Jᵀ F | N m |
+//! | τ | H q̈ + V − γᵀ g − Jᵀ F; motors in joints give A⁻ᵀ τ ([`Motors`](crate::mechanics::machine::Motors)) | N m |
+//! | D_k | Σ_l H_lk, and what rotors on the base leave; angular momentum about B is D q̇ | kg m² |
 //! | f_B | force on the base: dynamic −Σ g_k (i q̈_k − q̇_k²) e_k, static M g | N |
 //! | n_B | moment on the base about B: dynamic −d/dt(D q̇), static r_CM × M g | N m |
 //!
@@ -67,6 +68,7 @@ pub struct Surroundings {
 pub struct MassMatrix {
     n: usize,
     h: [[f64; MAX_DRIVES]; MAX_DRIVES],
+    taken_up: [f64; MAX_DRIVES],
 }
 
 impl MassMatrix {
@@ -75,9 +77,9 @@ impl MassMatrix {
         self.h[k][l]
     }
 
-    /// D_k = Σ_l H_lk, kg m², (A3).
+    /// D_k, kg m²: Σ_l H_lk, (A3), and what rotors on the base leave.
     pub fn momentum_row(&self, k: usize) -> f64 {
-        (0..self.n).map(|l| self.h[l][k]).sum()
+        (0..self.n).map(|l| self.h[l][k]).sum::<f64>() + self.taken_up[k]
     }
 
     /// H x.
@@ -171,7 +173,7 @@ fn mass_matrix_of<const N: usize>(inertia: &Inertia, e: &Units, qd: &PerDrive) -
     let (small, v) = assemble::<N>(inertia, first(e), first(qd.padded()));
     let mut h = [[0.0; MAX_DRIVES]; MAX_DRIVES];
     h.iter_mut().zip(small).for_each(|(to, from)| to[..N].copy_from_slice(&from));
-    (MassMatrix { n: N, h }, v.into())
+    (MassMatrix { n: N, h, taken_up: inertia.taken_up }, v.into())
 }
 
 #[inline(always)]
@@ -182,8 +184,9 @@ pub(crate) fn assemble<const N: usize>(inertia: &Inertia, e: &[Vector; N], qd: &
         h[k][k] = inertia.c[k][k].re + inertia.spin[k];
         for l in k + 1..N {
             let z = inertia.c[k][l] * (e[k].conj() * e[l]);
-            h[k][l] = z.re;
-            h[l][k] = z.re;
+            let coupled = z.re + inertia.gears[k][l];
+            h[k][l] = coupled;
+            h[l][k] = coupled;
             v[k] -= z.im * (qd[l] * qd[l]);
             v[l] += z.im * (qd[k] * qd[k]);
         }
@@ -210,7 +213,7 @@ fn hold<const N: usize>(inertia: &Inertia, e: &[Vector; N], around: &Surrounding
     })
 }
 
-/// Motor torques for given accelerations, (4), N m.
+/// Torques for given accelerations, (4), N m: those of the motors where all sit on the base.
 #[inline]
 pub fn inverse(inertia: &Inertia, e: &Units, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> PerDrive {
     by_drives!(inertia.drives, inverse_of(inertia, e, qd, qdd, around))
@@ -241,7 +244,7 @@ pub(crate) fn torques<const N: usize>(
     std::array::from_fn(|k| inertial[k] + v[k] + holding[k])
 }
 
-/// Accelerations for given motor torques, rad/s².
+/// Accelerations for given torques, rad/s².
 #[inline]
 pub fn forward(inertia: &Inertia, e: &Units, qd: &PerDrive, torque: &PerDrive, around: &Surroundings) -> PerDrive {
     by_drives!(inertia.drives, forward_of(inertia, e, qd, torque, around))
@@ -281,6 +284,17 @@ impl BaseWrench {
 #[inline]
 pub fn base_wrench(inertia: &Inertia, e: &Units, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> BaseWrench {
     inverse_with_wrench(inertia, e, qd, qdd, around).1
+}
+
+/// d/dt (D q̇) from H q̈, V and q̈.
+#[inline(always)]
+pub(crate) fn angular_rate<const N: usize>(
+    inertia: &Inertia,
+    inertial: &[f64; N],
+    v: &[f64; N],
+    qdd: &[f64; N],
+) -> f64 {
+    (0..N).map(|k| inertial[k] + v[k] + inertia.taken_up[k] * qdd[k]).sum()
 }
 
 #[inline(always)]
@@ -331,7 +345,7 @@ fn inverse_with_wrench_of<const N: usize>(
     let (e, qd, qdd) = (first::<N, _>(e), first(qd.padded()), first(qdd.padded()));
     let (h, v) = assemble(inertia, e, qd);
     let (inertial, holding) = (times(&h, qdd), hold(inertia, e, around));
-    let rate = (0..N).map(|k| inertial[k] + v[k]).sum();
+    let rate = angular_rate(inertia, &inertial, &v, qdd);
     let wrench = wrench_with(inertia, e, qd, qdd, around, rate);
     (PerDrive::from(std::array::from_fn::<_, N, _>(|k| inertial[k] + v[k] + holding[k])), wrench)
 }
@@ -362,7 +376,7 @@ fn forward_with_wrench_of<const N: usize>(
     let qdd = solve(&h, std::array::from_fn(|k| torque[k] - v[k] - holding[k]));
     // From the accelerations and not from the torques, so that the wrench is that of the motion.
     let inertial = times(&h, &qdd);
-    let rate = (0..N).map(|k| inertial[k] + v[k]).sum();
+    let rate = angular_rate(inertia, &inertial, &v, &qdd);
     (qdd.into(), wrench_with(inertia, e, qd, &qdd, around, rate))
 }
 
@@ -399,7 +413,7 @@ pub fn linear_momentum(inertia: &Inertia, e: &Units, qd: &PerDrive) -> Vector {
 /// Angular momentum about B, D q̇, kg m²/s, (6).
 pub fn angular_momentum(inertia: &Inertia, e: &Units, qd: &PerDrive) -> f64 {
     let (h, _) = mass_matrix(inertia, e, qd);
-    h.times(qd).iter().sum()
+    h.times(qd).iter().zip(qd.iter().zip(h.taken_up)).map(|(p, (qd, taken_up))| p + taken_up * qd).sum()
 }
 
 /// Kinetic energy ½ q̇ᵀ H q̇ and potential energy −M g · r_CM, J.

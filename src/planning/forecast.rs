@@ -11,9 +11,9 @@ use crate::planning::timing::limits::{DriveLimit, LimitedQuantity, Limits};
 pub struct Forecast {
     /// T, s.
     pub time: f64,
-    /// Largest |τ_k|, N m.
+    /// Largest torque of each motor, either way, N m.
     pub torque: PerDrive,
-    /// Largest |q̇_k|, rad/s.
+    /// Largest rate of each motor, rad/s: |q̇_k| of those on the base.
     pub speed: PerDrive,
     /// Largest |n_B|, N m.
     pub moment: f64,
@@ -78,15 +78,17 @@ impl Forecast {
         for i in 0..instants {
             let r = motion.at((i as f64 + 0.5) * dt);
             let (torque, wrench) = inverse_with_wrench(model, &r.q.units(), &r.qd, &r.qdd, around);
+            let motors = model.motors();
+            let (torque, rate, acceleration) = (motors.torques(&torque), motors.turns(&r.qd), motors.turns(&r.qdd));
             let most = |most: &mut PerDrive, x: &PerDrive| {
                 most.iter_mut().zip(x.iter()).for_each(|(m, x)| *m = m.max(x.abs()));
             };
             most(&mut sum.torque, &torque);
-            most(&mut sum.speed, &r.qd);
+            most(&mut sum.speed, &rate);
             for (quantity, values) in [
                 (LimitedQuantity::Torque, &torque),
-                (LimitedQuantity::Speed, &r.qd),
-                (LimitedQuantity::Acceleration, &r.qdd),
+                (LimitedQuantity::Speed, &rate),
+                (LimitedQuantity::Acceleration, &acceleration),
             ] {
                 for (drive, (x, limit)) in values.iter().zip(limits.on(quantity).iter()).enumerate() {
                     let factor = x.abs() / limit;

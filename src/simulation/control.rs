@@ -4,14 +4,16 @@
 //! |---|---|
 //! | computed torque | Ĥ (q̈_r + K_d ė + K_p e) + V̂ − γ̂ᵀ g |
 //! | with payload compensation | the same, with the payload that the plant holds in the model |
-//! | PD | D̂_k (K_d ė_k + K_p e_k) |
+//! | PD | D̂_k (K_d ė_k + K_p e_k), D̂_k what the motor turns |
 //!
-//! All in angles relative to the base, q_k − θ, as encoders read them. With equal gains on all drives the errors of an
+//! All in angles relative to the base, q_k − θ, as encoders read them. Gains and torques are of the motors: of one in a
+//! joint by its own angle, q_k − q_on. With equal gains on all drives the errors of an
 //! exact model obey Σ D_k e_k = const · decay, so they stay on the plane and transmit nothing; unequal gains leak.
 
 use serde::{Deserialize, Serialize};
 
 use crate::mechanics::dynamics::{by_drives, first, torques};
+use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, Units, Vector};
 use crate::planning::Reference;
 use crate::settings::key::{Holds, Key};
@@ -218,6 +220,12 @@ impl Controller {
         self.torque(&Reference::at_rest(reading.q), &at_rest, loaded)
     }
 
+    /// The manipulator that it believes in, without the payload.
+    #[inline]
+    pub(crate) fn arm(&self) -> &Inertia {
+        self.models[0].arm()
+    }
+
     /// Motor torques, N m; `loaded` while the plant holds its payload.
     pub fn torque(&self, reference: &Reference, reading: &Reading, loaded: bool) -> PerDrive {
         let size = reading.rates.len();
@@ -243,22 +251,47 @@ impl Controller {
             wanted[k] = kd[k] * (aim_rate[k] - qd[k]) + kp[k] * (aim[k] - q[k]);
         }
         let model = &self.models[usize::from(loaded && self.law == ControlLaw::PayloadCompensation)];
-        if self.law == ControlLaw::Pd {
-            return std::array::from_fn(|k| if k < n { model.arm().diagonal(k) * wanted[k] } else { 0.0 });
+        let motors = model.arm().motors();
+        if motors.in_joints() {
+            self.by_motors::<N>(n, (aim, aim_rate), (q, qd), &mut wanted);
         }
+        if self.law == ControlLaw::Pd {
+            return std::array::from_fn(|k| if k < n { model.arm().carried(k) * wanted[k] } else { 0.0 });
+        }
+        motors.drive(&mut wanted);
         let acceleration = reference.qdd.array::<N>();
         (0..n).for_each(|k| wanted[k] += acceleration[k]);
-        if !MOVES {
-            return torques(model.arm(), e, qd, &wanted, model.around());
-        }
-        if model.moves() {
-            return model.torque_for(&wanted, e, rate, base, velocity);
-        }
-        // In the base's own axes.
-        let turn = e[N - 1].conj();
-        let mut torque = torques(model.arm(), &e.map(|e| e * turn), qd, &wanted, model.around());
-        torque[N - 1] = 0.0;
+        let mut torque = if !MOVES {
+            torques(model.arm(), e, qd, &wanted, model.around())
+        } else if model.moves() {
+            model.torque_for(&wanted, e, rate, base, velocity)
+        } else {
+            // In the base's own axes.
+            let turn = e[N - 1].conj();
+            let mut torque = torques(model.arm(), &e.map(|e| e * turn), qd, &wanted, model.around());
+            torque[N - 1] = 0.0;
+            torque
+        };
+        motors.give(&mut torque);
         torque
+    }
+
+    /// What the gains make of the errors of the motors' own angles.
+    #[inline(never)]
+    fn by_motors<const N: usize>(
+        &self,
+        n: usize,
+        (aim, aim_rate): (&[f64; N], &[f64; N]),
+        (q, qd): (&[f64; N], &[f64; N]),
+        wanted: &mut [f64; N],
+    ) {
+        let motors = self.arm().motors();
+        let mut error: [f64; N] = std::array::from_fn(|k| aim[k] - q[k]);
+        let mut rate: [f64; N] = std::array::from_fn(|k| aim_rate[k] - qd[k]);
+        motors.turn(&mut error);
+        motors.turn(&mut rate);
+        let (kp, kd) = (self.kp.array::<N>(), self.kd.array::<N>());
+        (0..n).for_each(|k| wanted[k] = kd[k] * rate[k] + kp[k] * error[k]);
     }
 }
 

@@ -1,7 +1,9 @@
 //! Tests of `src/mechanics`: machines, kinematics, dynamics, pin forces and balance.
 
 mod balance;
+mod bodies;
 mod dynamics;
+mod family;
 pub mod inside;
 mod joint_forces;
 mod machine_file;

@@ -3,6 +3,7 @@
 mod bases;
 mod contacts;
 mod convergence;
+mod family;
 mod meaning;
 mod plants;
 mod signals;

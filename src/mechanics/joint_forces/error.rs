@@ -24,6 +24,15 @@ pub enum JointsError {
         /// Who follows it.
         links: String,
     },
+    /// A motor on a link of a loop turns links of a loop.
+    #[error(
+        "the motor of drive {drive} sits on a link of a loop and turns another loop: want it on a link that a drive \
+         turns, for forces of pins to be computed one loop after another"
+    )]
+    MotorInLoop {
+        /// The drive.
+        drive: String,
+    },
     /// Links whose orientation nothing holds.
     #[error(
         "{links} links that no drive turns, and {closures} closures, which hold the orientation of two each; nothing \

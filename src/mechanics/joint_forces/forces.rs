@@ -3,7 +3,7 @@
 use super::block::together;
 use super::joints::Joints;
 use super::pins::{FLAT, MAX_PINS};
-use super::tree::SolveStep;
+use super::tree::{SolveStep, Stator};
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Units, Vector, cross};
 
@@ -48,7 +48,7 @@ impl Forces {
         (worst.0.sqrt(), worst.1)
     }
 
-    /// τ less the friction of the drives' bearings, N m, from the moments that the links at B ask for; `None` at a
+    /// Torques of the motors less the friction of the drives' bearings, N m, from the moments that the links at B ask for; `None` at a
     /// change point, where [`inverse`](crate::mechanics::dynamics::inverse) knows it for pins without friction.
     pub fn torque(&self) -> Option<PerDrive> {
         (self.undefined == 0).then_some(self.torque)
@@ -108,6 +108,16 @@ impl Joints {
                 force[p] += force[j];
             }
         }
+        // A motor in a joint leans on the link that carries it; its rotor takes of both what it wants to turn.
+        let lean = |stator: &Stator, moment: &mut [f64]| {
+            let turned = links.iter().zip(&*moment).filter(|(l, _)| l.driven && l.drive == stator.drive);
+            let rotor: f64 = stator.rotor.rates.iter().zip(qdd.iter()).map(|(r, qdd)| r * qdd).sum();
+            let asked = turned.map(|(_, m)| m).sum::<f64>() + stator.rotor.inertia * rotor;
+            if let Some(link) = stator.link {
+                moment[link] += asked;
+            }
+        };
+        self.stators.iter().filter(|stator| stator.before).for_each(|stator| lean(stator, &mut moment));
         let mut out = Forces {
             len: self.pins.len(),
             forces: [zero; MAX_PINS],
@@ -147,11 +157,16 @@ impl Joints {
                 }
             }
         }
+        self.stators.iter().filter(|stator| !stator.before).for_each(|stator| lean(stator, &mut moment));
         for (j, link) in links.iter().enumerate() {
             out.forces[link.link] = force[j];
             if link.driven {
                 out.torque[link.drive] += moment[j];
             }
+        }
+        for Stator { drive, rotor, .. } in &self.stators {
+            let turning: f64 = rotor.rates.iter().zip(qdd.iter()).map(|(r, qdd)| r * qdd).sum();
+            out.torque[*drive] += rotor.inertia * rotor.rates[*drive] * turning;
         }
         out
     }

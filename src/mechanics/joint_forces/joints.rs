@@ -4,7 +4,7 @@ use super::error::JointsError;
 use super::pins::{MAX_PINS, Pin, pins};
 use super::structure;
 use super::transmission::{self, Parallelogram};
-use super::tree::{CutClosure, SolveStep, TreeLink};
+use super::tree::{CutClosure, SolveStep, Stator, TreeLink};
 use crate::mechanics::machine::Machine;
 
 /// The pins of a machine, and all of it that their forces depend on.
@@ -18,6 +18,8 @@ pub struct Joints {
     pub(super) rubbing: Vec<(usize, usize)>,
     pub(super) steps: Vec<SolveStep>,
     pub(super) parallelograms: Vec<Parallelogram>,
+    /// Motors with rotors or in joints, those before the drives that carry them.
+    pub(super) stators: Vec<Stator>,
 }
 
 impl Joints {
@@ -35,11 +37,12 @@ impl Joints {
         let mut closures = structure::closures(machine, &links);
         let steps = structure::steps(machine, &links, &closures)?;
         structure::spread(&links, &mut closures, &steps);
+        let stators = structure::stators(machine, &links, &closures)?;
         let parallelograms = transmission::parallelograms(&pins[machine.links().len()..], &links, &closures);
         let place = |link: usize| links.iter().position(|l| l.link == link);
         let sides = pins.iter().filter_map(|pin| Some((place(pin.from?)?, place(pin.to)?)));
         let rubbing = sides.filter(|(a, b)| links[*a].drive != links[*b].drive).collect();
-        Ok(Self { drives: machine.drives(), pins, links, closures, rubbing, steps, parallelograms })
+        Ok(Self { drives: machine.drives(), pins, links, closures, rubbing, steps, parallelograms, stators })
     }
 
     /// The pins: where each link is attached, in the order of links, then the closures.

@@ -18,7 +18,7 @@
 //!
 //! # Method
 //! Cut every closure. What is left is a tree, in which each link's root carries the link and all that hangs on it. A
-//! drive turns the links at B that follow it; on the others acts no couple but the friction of their pins, which is
+//! drive turns the links at B that follow it, or one in a joint; on the others acts no couple but the friction of their pins, which is
 //! known, so their moments fix the closure forces: Σ_c w_jc e_j × λ_c = μ_j. The levers w are constants of the machine.
 //! In the nine-link machine six links and three closures give six equations in six numbers, and they fall into three
 //! pairs: each parallelogram has two links that no drive turns, of drives k and l, and
@@ -26,8 +26,10 @@
 //! together. The torques of the drives follow from the same equations.
 //!
 //! # What is assumed
-//! All drives stand on the base. A drive without a link at B turns the one link that follows it by a belt, so its
-//! couple acts between that link and the base. Where several links share an axle, each attachment and each closure is a
+//! A motor sits on the base, or in a joint: on the link that what it turns hangs on, or else on the link that is turned
+//! by the drive which carries it. A drive on the base without a link at B turns the one link that follows it by a belt,
+//! so its couple acts between that link and the base. A rotor takes part of the couple to turn itself; its weight belongs
+//! to the link that carries it. Where several links share an axle, each attachment and each closure is a
 //! pin of its own, as the file has it. Each pin has its own friction, all alike; the torque that keeps the pins between
 //! two drives stuck is shared equally among them. Friction in the bearing of a drive acts between the base and the link
 //! that the drive turns: a couple in the pin between these two, which changes no force of any pin.

@@ -3,8 +3,8 @@
 use super::block::together;
 use super::error::JointsError;
 use super::pins::pins;
-use super::tree::{CutClosure, SolveStep, TreeLink, lever};
-use crate::mechanics::machine::{CLOSURE_TOLERANCE, Machine};
+use super::tree::{CutClosure, SolveStep, Stator, TreeLink, lever};
+use crate::mechanics::machine::{CLOSURE_TOLERANCE, Inertia, Machine};
 use crate::mechanics::planar::{Units, Vector, unit};
 
 /// The machine's links as a tree, parents first, each with what it holds.
@@ -54,9 +54,11 @@ fn driven(machine: &Machine) -> Result<Vec<bool>, JointsError> {
     let mut driven: Vec<bool> = parts.iter().map(|p| p.parent.is_none()).collect();
     for k in 0..machine.drives() {
         let followers: Vec<usize> = (0..parts.len()).filter(|&j| parts[j].drive == k).collect();
-        match followers[..] {
+        let hangs_on = |j: &usize| parts[*j].parent.is_some_and(|p| Some(parts[p].drive) == machine.motors().on(k));
+        let there: Vec<usize> = followers.iter().copied().filter(hangs_on).collect();
+        match (&followers[..], &there[..]) {
             _ if followers.iter().any(|&j| driven[j]) => {}
-            [only] => driven[only] = true,
+            ([only], _) | (_, [only]) => driven[*only] = true,
             _ => {
                 return Err(JointsError::Unattached {
                     drive: machine.spec().drives[k].name.clone(),
@@ -66,6 +68,35 @@ fn driven(machine: &Machine) -> Result<Vec<bool>, JointsError> {
         }
     }
     Ok(driven)
+}
+
+/// The motors that have rotors, or whose stators sit on links: on the one that what they turn hangs on, or else on the
+/// one that is turned by the drive which carries them.
+///
+/// # Errors
+/// If a motor sits on a link of a loop, and what it turns is in one too.
+pub fn stators(machine: &Machine, links: &[TreeLink], closures: &[CutClosure]) -> Result<Vec<Stator>, JointsError> {
+    let motors = machine.motors();
+    let rotors = Inertia::of(machine).rotors;
+    let wanted = (0..machine.drives()).filter(|&k| motors.on(k).is_some() || rotors[k].inertia > 0.0);
+    let mut order: Vec<usize> = wanted.collect();
+    // What a drive carries comes before it.
+    order.sort_by_key(|&k| std::cmp::Reverse((0..machine.drives()).filter(|&l| motors.carries(l, k)).count()));
+    let in_loop = |j: usize| closures.iter().any(|c| lever(c, j) != 0.0);
+    let mut stators: Vec<Stator> = Vec::with_capacity(order.len());
+    for drive in order {
+        let turned = (0..links.len()).filter(|&j| links[j].driven && links[j].drive == drive);
+        let hangs_on = |j: usize| links[j].parent.filter(|&p| Some(links[p].drive) == motors.on(drive));
+        let driven = |on: usize| (0..links.len()).find(|&j| links[j].driven && links[j].drive == on);
+        let link = turned.clone().find_map(hangs_on).or_else(|| motors.on(drive).and_then(driven));
+        let late = |s: &Stator| !s.before && s.link.is_some_and(|j| links[j].drive == drive);
+        let before = !turned.clone().any(in_loop) && !stators.iter().any(late);
+        if !before && link.is_some_and(|j| !links[j].driven) {
+            return Err(JointsError::MotorInLoop { drive: machine.spec().drives[drive].name.clone() });
+        }
+        stators.push(Stator { drive, link, rotor: rotors[drive], before });
+    }
+    Ok(stators)
 }
 
 fn names(machine: &Machine, links: impl IntoIterator<Item = usize>) -> String {

@@ -1,5 +1,6 @@
 //! The tree of links that is left when every closure is cut, and what the closures do to it.
 
+use crate::mechanics::machine::Turning;
 use crate::mechanics::planar::Vector;
 
 /// A link with whatever it holds, parents before children.
@@ -23,6 +24,19 @@ pub struct TreeLink {
     pub end_effector: Option<f64>,
     /// Whether a drive turns it.
     pub driven: bool,
+}
+
+/// A motor that has a rotor, or whose stator sits on a link.
+#[derive(Clone, Debug)]
+pub struct Stator {
+    /// The drive it turns.
+    pub drive: usize,
+    /// The link that carries it; none: the base.
+    pub link: Option<usize>,
+    /// Its rotor: inertia, kg m², and how it turns with the drives.
+    pub rotor: Turning,
+    /// Whether what its drive asks is known before the closures are.
+    pub before: bool,
 }
 
 /// A closure as forces see it: λ acts on the second link, −λ on the first.

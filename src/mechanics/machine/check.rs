@@ -3,8 +3,9 @@
 use super::error::{MachineError, Place, PlaceStep, quoted};
 use super::inertia::Inertia;
 use super::model::{Machine, RelativeAngle, ResolvedClosure, ResolvedLink};
+use super::motors::Motors;
 use super::ranges::{LENGTH, PLACE, check_numbers, within};
-use super::spec::{Angle, Attach, Closure, Length, MachineSpec, PlaceOnLink, Point};
+use super::spec::{Angle, Attach, Closure, Length, MachineSpec, PlaceOnLink, Point, Rotor};
 use crate::mechanics::planar::MAX_DRIVES;
 use crate::settings::number::Short;
 use crate::settings::range::{clipped, shortened};
@@ -17,7 +18,11 @@ impl Machine {
     ///
     /// # Errors
     /// The first thing that is wrong, and what would be right.
-    pub fn new(spec: MachineSpec) -> Result<Self, MachineError> {
+    pub fn new(mut spec: MachineSpec) -> Result<Self, MachineError> {
+        // A rotor that is none is written as none.
+        for drive in &mut spec.drives {
+            drive.rotor = drive.rotor.filter(|rotor| *rotor != Rotor::default());
+        }
         let names = Names::of(&spec)?;
         check_numbers(&spec)?;
         let mut parts = resolve(&spec, &names)?;
@@ -27,8 +32,9 @@ impl Machine {
         let (tip_link, s) = locate(&spec, &names, end, &|| Place::new(&[&"end_effector"]))?;
         let tip = parts[tip_link].point(s);
         let angles = resolve_angles(&spec, &names)?;
+        let motors = resolve_motors(&spec, &names)?;
         add_pins(&spec, &names, &mut parts)?;
-        let machine = Self { spec, parts, end_effector: tip, end_link: tip_link, angles, loops };
+        let machine = Self { spec, parts, end_effector: tip, end_link: tip_link, angles, loops, motors };
         machine.check_inertia()?;
         Ok(machine)
     }
@@ -216,10 +222,35 @@ fn resolve_angles(spec: &MachineSpec, names: &Names) -> Result<Vec<RelativeAngle
             to: names.drive(&a.to, || Place::new(&[&"angle", &i, &"to"]))?,
             from: names.drive(&a.from, || Place::new(&[&"angle", &i, &"from"]))?,
             offset: a.offset,
-            limits: a.min..=a.max,
+            limits: a.min.unwrap_or(f64::NEG_INFINITY)..=a.max.unwrap_or(f64::INFINITY),
         })
     };
     spec.angles.iter().enumerate().map(angle).collect()
+}
+
+/// What each motor's stator sits on; a walk longer than the number of drives runs in a circle.
+fn resolve_motors(spec: &MachineSpec, names: &Names) -> Result<Motors, MachineError> {
+    let mut on = Vec::with_capacity(spec.drives.len());
+    for (i, drive) in spec.drives.iter().enumerate() {
+        let place = || Place::new(&[&"drive", &i, &"on"]);
+        on.push(drive.on.as_ref().map(|name| names.drive(name, place)).transpose()?);
+    }
+    for (i, drive) in spec.drives.iter().enumerate() {
+        let (mut at, mut chain) = (i, vec![drive.name.as_str()]);
+        while let Some(next) = on[at] {
+            let met = chain.contains(&spec.drives[next].name.as_str());
+            chain.push(&spec.drives[next].name);
+            if met {
+                return Err(MachineError::StatorCycle {
+                    place: Place::new(&[&"drive", &i, &"on"]),
+                    drive: clipped(&drive.name),
+                    chain: shortened(&chain.join(" on "), 200),
+                });
+            }
+            at = next;
+        }
+    }
+    Ok(Motors::new(&on))
 }
 
 /// Collects where other links are pinned to each link, so that it can be drawn as long as it must be.

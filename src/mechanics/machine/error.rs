@@ -154,6 +154,30 @@ pub enum MachineError {
         /// The difference, as a sum of the drives' unit vectors.
         gap: String,
     },
+    /// A relative angle with one limit.
+    #[error("angle {:?} has only one limit: want both min and max, or neither to let it turn freely", clipped(angle))]
+    HalfLimited {
+        /// The angle.
+        angle: String,
+    },
+    /// Motors whose stators sit on each other in a circle.
+    #[error(
+        "{place}: the motor of drive {drive:?} sits on itself ({chain}): want a chain that ends on the base, without \"on\""
+    )]
+    StatorCycle {
+        /// Where in the machine file.
+        place: Place,
+        /// A drive of the circle.
+        drive: String,
+        /// The drives of the circle, in order.
+        chain: String,
+    },
+    /// More than one end effector.
+    #[error("{count} end effectors: want one, [end_effector]; machines with several hands are not there yet")]
+    SeveralEndEffectors {
+        /// How many there are.
+        count: usize,
+    },
     /// No end effector.
     #[error("no end effector: want [end_effector] with link = \"…\", at = \"tip\"")]
     NoEndEffector,
@@ -207,6 +231,7 @@ impl MachineError {
             | Self::Unknown { place, .. }
             | Self::Duplicate { place, .. }
             | Self::Cycle { place, .. }
+            | Self::StatorCycle { place, .. }
             | Self::OpenLoop { place, .. } => Some(place),
             _ => None,
         }

@@ -45,6 +45,11 @@ pub fn parse(text: &str, file: &str) -> Result<Machine, FileError> {
     let wrong = |line, error| FileError::Wrong { file: file.into(), line, error };
     let spec: MachineSpec = toml::from_str(text).map_err(|e| {
         let line = e.span().map(|span| line_of(text, span.start));
+        if let Some(DeValue::Array(several)) =
+            DeTable::parse(text).ok().as_ref().and_then(|table| Some(table.get_ref().get("end_effector")?.get_ref()))
+        {
+            return wrong(line, MachineError::SeveralEndEffectors { count: several.len() });
+        }
         wrong(line, MachineError::Syntax(shortened(e.message(), 300)))
     })?;
     Machine::new(spec).map_err(|e| wrong(e.place().and_then(|p| line_of_place(text, p)), e))

@@ -1,4 +1,5 @@
-//! Machines: coaxial drives at B, links that each keep the orientation of one drive, pins that close parallelograms.
+//! Machines: drives at B or in joints, links that each keep the orientation of one drive, pins that close
+//! parallelograms.
 //!
 //! A [`MachineSpec`] is what a file says; a [`Machine`] is one that has been checked, so every machine is valid:
 //! finite, positive masses, no cycles, every loop closed in every pose. To change a machine, change its spec
@@ -18,6 +19,7 @@ mod error;
 mod file;
 mod inertia;
 mod model;
+mod motors;
 pub mod ranges;
 mod set;
 mod spec;
@@ -28,8 +30,10 @@ pub use check::CLOSURE_TOLERANCE;
 pub use error::{MachineError, Place, PlaceStep};
 pub use file::{FileError, parse, to_toml};
 pub(crate) use file::{line_of, line_of_place};
+pub(crate) use inertia::Turning;
 pub use inertia::{BALANCED, Inertia};
 pub use model::{Machine, RelativeAngle, ResolvedClosure, ResolvedLink};
+pub use motors::Motors;
 pub use ranges::MAX_ANGLE;
 pub use set::{PARTS, is_of_machine};
-pub use spec::{Angle, Attach, Closure, Drive, Length, Link, MachineSpec, Payload, PlaceOnLink, Point};
+pub use spec::{Angle, Attach, Closure, Drive, Length, Link, MachineSpec, Payload, PlaceOnLink, Point, Rotor};

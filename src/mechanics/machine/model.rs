@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 
 use super::Chain;
+use super::motors::Motors;
 use super::spec::{Link, MachineSpec};
 use crate::mechanics::planar::{MAX_DRIVES, Vector};
 
@@ -15,6 +16,7 @@ pub struct Machine {
     pub(super) end_link: usize,
     pub(super) angles: Vec<RelativeAngle>,
     pub(super) loops: Vec<ResolvedClosure>,
+    pub(super) motors: Motors,
 }
 
 /// What is derived of a link.
@@ -117,6 +119,11 @@ impl Machine {
     /// Its closures as resolved, in the order of the file.
     pub fn loops(&self) -> &[ResolvedClosure] {
         &self.loops
+    }
+
+    /// Where its motors sit.
+    pub fn motors(&self) -> &Motors {
+        &self.motors
     }
 
     /// Acceleration of gravity, m/s².

@@ -18,6 +18,8 @@ pub(crate) const MASS: Range = Range::new(1e-15, MOST, "kg");
 const LOAD: Range = Range::new(0.0, MOST, "kg");
 pub(crate) const INERTIA: Range = Range::new(0.0, MOST, "kg m²");
 const TORQUE_LIMIT: Range = Range::new(LEAST, MOST, "N m");
+/// A gear is no lever of any length, and none of none.
+const RATIO: Range = Range::either_way(1e4, "");
 const SPEED_LIMIT: Range = Range::new(LEAST, MOST, "rad/s");
 const ACCELERATION_LIMIT: Range = Range::new(LEAST, MOST, "rad/s²");
 const JERK_LIMIT: Range = Range::new(LEAST, 1e9, "rad/s³");
@@ -27,7 +29,7 @@ pub const MAX_ANGLE: f64 = 25.2;
 const ANGLE: Range = Range::either_way(MAX_ANGLE, "rad, four turns");
 
 /// Every key of a machine that can be set by itself; its links, drives and angles go by their names.
-pub const KEYS: [Key; 17] = [
+pub const KEYS: [Key; 19] = [
     Key::number(
         "link.*.com",
         PLACE,
@@ -60,7 +62,24 @@ pub const KEYS: [Key; 17] = [
     ),
     Key::number("payload.axial", PLACE, "0", "Height of the payload's centre of mass along the drives' axis."),
     Key::new("gravity", Holds::List(2, GRAVITY), "0,0", "Acceleration of gravity along the axes of the base."),
-    Key::new("limits.*", Holds::List(2, ANGLE), Key::REQUIRED, "Least and greatest value of a relative joint angle."),
+    Key::new(
+        "limits.*",
+        Holds::List(2, ANGLE),
+        Key::NONE,
+        "Least and greatest value of a relative joint angle; without them it turns freely.",
+    ),
+    Key::number(
+        "drive.*.rotor.inertia",
+        INERTIA,
+        "0",
+        "Inertia of what turns in a drive's motor, about its own axis, before the gear.",
+    ),
+    Key::number(
+        "drive.*.rotor.ratio",
+        RATIO,
+        "1",
+        "Turns of the rotor for one turn of the drive, seen from the motor's stator; below 0 it turns the other way.",
+    ),
     Key::number("drive.*.torque_limit", TORQUE_LIMIT, Key::NONE, "The greatest torque of a drive, either way."),
     Key::number("drive.*.speed_limit", SPEED_LIMIT, Key::NONE, "The greatest rate of a drive, either way."),
     Key::number(
@@ -100,6 +119,16 @@ pub(super) fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {
         ] {
             value.map_or(Ok(()), |value| within(range, value, || Place::new(&[&"drive", &i, &key])))?;
         }
+        if let Some(rotor) = drive.rotor {
+            let place = |key: &'static str| Place::new(&[&"drive", &i, &"rotor", &key]);
+            within(INERTIA, rotor.inertia, || place("inertia"))?;
+            within(RATIO, rotor.ratio, || place("ratio"))?;
+            if rotor.ratio.abs() < LEAST {
+                let want =
+                    Want::Words("a gear ratio other than 0: 1 for a direct drive, below 0 to turn the other way");
+                return Err(MachineError::OutOfRange { place: place("ratio"), value: rotor.ratio, want });
+            }
+        }
     }
     for (i, link) in spec.links.iter().enumerate() {
         for (key, value, range) in [
@@ -117,16 +146,19 @@ pub(super) fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {
         }
     }
     for (i, angle) in spec.angles.iter().enumerate() {
-        for (key, value) in [("offset", angle.offset), ("min", angle.min), ("max", angle.max)] {
-            within(ANGLE, value, || Place::new(&[&"angle", &i, &key]))?;
+        for (key, value) in [("offset", Some(angle.offset)), ("min", angle.min), ("max", angle.max)] {
+            value.map_or(Ok(()), |value| within(ANGLE, value, || Place::new(&[&"angle", &i, &key])))?;
         }
-        if angle.min > angle.max {
-            let place = Place::new(&[&"angle", &i, &"max"]);
-            return Err(MachineError::OutOfRange {
-                place,
-                value: angle.max,
-                want: Want::Words("a limit not below min"),
-            });
+        match (angle.min, angle.max) {
+            (Some(min), Some(max)) if min > max => {
+                let place = Place::new(&[&"angle", &i, &"max"]);
+                let want = Want::Words("a limit not below min");
+                return Err(MachineError::OutOfRange { place, value: max, want });
+            }
+            (Some(_), None) | (None, Some(_)) => {
+                return Err(MachineError::HalfLimited { angle: angle.name.clone() });
+            }
+            _ => {}
         }
     }
     Ok(())

@@ -3,7 +3,7 @@
 use toml::{Table, Value};
 
 use super::error::quoted;
-use super::{Length, Machine, MachineError, MachineSpec, Place};
+use super::{Length, Machine, MachineError, MachineSpec, Place, Rotor};
 use crate::settings::change::{self, DEFAULT};
 use crate::settings::range::{clipped, shortened};
 
@@ -17,7 +17,7 @@ pub fn is_of_machine(path: &str) -> bool {
 
 const KEYS: &str = "link.NAME.(com|com_normal|mass|inertia|length|axial), length.NAME, \
                     payload.(mass|inertia|offset|axial), gravity, limits.ANGLE, \
-                    drive.NAME.(torque|speed|acceleration|jerk)_limit";
+                    drive.NAME.(torque|speed|acceleration|jerk)_limit, drive.NAME.rotor.(inertia|ratio)";
 
 impl Machine {
     /// A machine with one setting changed; `value` is one number, two parted by a comma, or the word `default`.
@@ -77,7 +77,18 @@ impl Machine {
             ["payload", "offset"] => two(spec.payload.offset),
             ["payload", "axial"] => spec.payload.axial.into(),
             ["gravity"] => two(spec.gravity),
-            ["limits", name] => spec.angles.iter().find(|a| a.name == name).map(|a| two([a.min, a.max]))?,
+            ["limits", name] => {
+                let angle = spec.angles.iter().find(|a| a.name == name)?;
+                angle.min.zip(angle.max).map_or_else(|| DEFAULT.into(), |(min, max)| two([min, max]))
+            }
+            ["drive", name, "rotor", field] => {
+                let rotor = spec.drives.iter().find(|d| d.name == name)?.rotor.unwrap_or_default();
+                Value::from(match field {
+                    "inertia" => rotor.inertia,
+                    "ratio" => rotor.ratio,
+                    _ => return None,
+                })
+            }
             ["drive", name, field] => {
                 let drive = spec.drives.iter().find(|d| d.name == name)?;
                 match field {
@@ -137,7 +148,18 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &Value) -> Result<(), Machin
             let known = spec.angles.iter().map(|a| a.name.as_str()).collect();
             let missing = nobody("angle", name, known);
             let angle = spec.angles.iter_mut().find(|a| a.name == name).ok_or(missing)?;
-            [angle.min, angle.max] = two()?;
+            [angle.min, angle.max] = if is_default(value) { [None; 2] } else { two()?.map(Some) };
+        }
+        ["drive", name, "rotor", field] => {
+            let known = spec.drives.iter().map(|d| d.name.as_str()).collect();
+            let missing = nobody("drive", name, known);
+            let drive = spec.drives.iter_mut().find(|d| d.name == name).ok_or(missing)?;
+            let rotor = drive.rotor.get_or_insert(Rotor::default());
+            match field {
+                "inertia" => rotor.inertia = one_or_zero()?,
+                "ratio" => rotor.ratio = if is_default(value) { Rotor::default().ratio } else { one()? },
+                _ => return Err(unknown()),
+            }
         }
         ["drive", name, field] => {
             let known = spec.drives.iter().map(|d| d.name.as_str()).collect();

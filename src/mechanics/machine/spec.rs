@@ -20,7 +20,7 @@ pub struct MachineSpec {
     /// A mass held at the end effector.
     #[serde(default, skip_serializing_if = "Payload::is_none")]
     pub payload: Payload,
-    /// The actuators, all at B on one axis.
+    /// The actuators: on the base, all at B on one axis, or in the joints.
     #[serde(default, rename = "drive")]
     pub drives: Vec<Drive>,
     /// The bars.
@@ -79,12 +79,18 @@ impl Payload {
     }
 }
 
-/// An actuator at B.
+/// An actuator. Its limits are of the motor's own angle: that between what it turns and what its stator sits on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Drive {
     /// Its name.
     pub name: String,
+    /// The drive on whose links its stator sits; none: on the base.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub on: Option<String>,
+    /// What turns in the motor, behind its gear; none: nothing that counts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rotor: Option<Rotor>,
     /// The greatest torque it gives either way, N m; none: unlimited.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub torque_limit: Option<f64>,
@@ -97,6 +103,27 @@ pub struct Drive {
     /// The greatest |q⃛| asked of it, rad/s³, by laws that keep jerk in bounds; none: unlimited.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub jerk_limit: Option<f64>,
+}
+
+/// What turns in a motor. Its mass belongs to the link that carries it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Rotor {
+    /// About its axis, kg m².
+    pub inertia: f64,
+    /// How often it turns, seen from its stator, for one turn of the drive; below 0 the other way round.
+    #[serde(default = "direct")]
+    pub ratio: f64,
+}
+
+fn direct() -> f64 {
+    1.0
+}
+
+impl Default for Rotor {
+    fn default() -> Self {
+        Self { inertia: 0.0, ratio: direct() }
+    }
 }
 
 /// A rigid bar, always parallel to the arm of one drive.
@@ -209,8 +236,10 @@ pub struct Angle {
     /// rad.
     #[serde(default, skip_serializing_if = "is_nought")]
     pub offset: f64,
-    /// Least value, rad.
-    pub min: f64,
+    /// Least value, rad; none: one turn from a half turn below 0, as without limits.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub min: Option<f64>,
     /// Greatest value, rad.
-    pub max: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max: Option<f64>,
 }

@@ -34,9 +34,10 @@ impl BIntegral {
         if model.drives() != 2 {
             return None;
         }
-        let (first, second, coupling) = (model.diagonal(0), model.diagonal(1), model.coupling(0, 1));
+        let (first, second, coupling) = (model.momentum(0), model.momentum(1), model.coupling(0, 1));
         let (sum, most) = (first + second, 2.0 * coupling.norm());
-        let definite = first * second > coupling.norm_sqr() && sum > most;
+        // Rotors count in H, and only then in D.
+        let definite = model.diagonal(0) * model.diagonal(1) > coupling.norm_sqr() && sum > most;
         definite.then(|| Self {
             gain: 0.5 * (second - first) / ((sum - most) * (sum + most)).sqrt(),
             k: ((sum - most) / (sum + most)).sqrt(),

@@ -13,7 +13,7 @@
 //! | dD | ∂D_k/∂q_m − ∂D_m/∂q_k = −2 Im Z_km | n×n, kg m² |
 //!
 //! # Source
-//! D_k = J_k + Σ_l Re Z_kl, so ∂D_k/∂q_m = −Im Z_km for m ≠ k and ∂D_k/∂q_k = Σ_{l≠k} Im Z_kl. By Frobenius, D q̇ = 0
+//! D_k = C_kk + J_k + Σ_l Re Z_kl, so ∂D_k/∂q_m = −Im Z_km for m ≠ k and ∂D_k/∂q_k = Σ_{l≠k} Im Z_kl. By Frobenius, D q̇ = 0
 //! is integrable where D ∧ dD = 0. For three drives that 3-form is 2 Im[(H_11 C_23 − C_21 C_13) e^{i(q_3−q_2)} + (H_22
 //! C_31 − C_32 C_21) e^{i(q_1−q_3)} + (H_33 C_12 − C_13 C_32) e^{i(q_2−q_1)}]: it vanishes in all poses only if its
 //! coefficients do, and where H is positive definite only if every C_kl is zero.
@@ -27,7 +27,7 @@ use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Units, Vector}
 use crate::planning::curves::PathPoint;
 use crate::planning::curves::table::PathTable;
 
-/// D_k = Σ_l H_lk at a pose, kg m², (A3).
+/// D_k at a pose, kg m², (A3).
 #[inline]
 pub fn momentum_row(model: &Inertia, e: &Units) -> PerDrive {
     let n = model.drives();
@@ -186,8 +186,10 @@ pub fn twist(model: &Inertia, q: &DriveAngles) -> f64 {
 pub fn is_integrable(model: &Inertia) -> bool {
     let n = model.drives();
     let whole: f64 = (0..n).map(|k| model.diagonal(k)).sum();
+    // Of D without its couplings: rotors count in H, not in D.
+    let own = model.momenta();
     let holds = |j: usize, k: usize, l: usize| {
-        let left = model.diagonal(j) * model.coupling(k, l) - model.coupling(k, j) * model.coupling(j, l);
+        let left = own[j] * model.coupling(k, l) - model.coupling(k, j) * model.coupling(j, l);
         left.norm() <= BALANCED * whole * whole
     };
     Inertia::pairs(n).all(|(k, l)| (0..n).filter(|j| *j != k && *j != l).all(|j| holds(j, k, l)))

@@ -125,7 +125,7 @@ impl Price {
         if !model.is_invariant() {
             return Err(PriceError::NotInvariant { residual: model.invariance_residual() });
         }
-        Ok(Self { inertia: model.diagonal(0), delta_b })
+        Ok(Self { inertia: model.pose_inertia(), delta_b })
     }
 
     /// The price of any motion from one pose to another: Δb = Σ λ_k Δq_k, in absolute drive angles.
@@ -181,7 +181,7 @@ impl Price {
     }
 
     /// By how much a base that floats freely and rests at first is turned in the end, whatever the path, the law and
-    /// the time: Δθ = −D_1 Δb/(I_b + μ|ρ|² + ΣD_k), rad. Here Δb is that of the angles between drives and base, q_k −
+    /// the time: Δθ = −D_1 Δb/(I_b + μ|ρ|² + Σ(C_kk + J_k) + ΣJ_rotor), rad. Here Δb is that of the angles between drives and base, q_k −
     /// θ.
     ///
     /// # Errors
@@ -197,8 +197,8 @@ impl Price {
             return Err(PriceError::Base);
         }
         let reduced = mass * model.mass() / (mass + model.mass());
-        let whole = inertia + reduced * com.norm_sqr() + model.diagonals().iter().sum::<f64>();
-        Ok(-model.diagonal(0) * self.delta_b / whole)
+        let whole = inertia + reduced * com.norm_sqr() + model.locked();
+        Ok(-model.pose_inertia() * self.delta_b / whole)
     }
 
     fn size(&self) -> f64 {

@@ -151,9 +151,11 @@ impl JerkProgram {
                 let side = |v, g| Side { v, g, ..Side::default() };
                 sides.extend(rows.iter().map(|row| side(sum(0.0, row.a / 3.0, row.c), row.g)));
                 sides.push(side(y.map(|y| y / cap.powf(1.5)), 0.0));
+                let motors = constraints.motors();
+                let [first, second, third] = [&point.first, &point.second, &third].map(|x| motors.turns(x));
                 sides.extend(jerked.iter().map(|k| {
                     let per = 1.0 / limits.jerk[*k];
-                    let (a, b, c) = (per * point.first[*k], per * point.second[*k], per * third[*k]);
+                    let (a, b, c) = (per * first[*k], per * second[*k], per * third[*k]);
                     side(sum(a / 3.0, b, c), a / 9.0)
                 }));
                 places.push(Place { theta, first: i, y, slope, weight: weight * h });

@@ -7,6 +7,8 @@
 //! | x, u | ṡ², s̈ | 1/s² |
 //! | a, c, g | a limited quantity, as a part of its limit, is a u + c x + g | s², s², 1 |
 //!
+//! All are of the motors' own angles, which for motors on the base are those of the drives.
+//!
 //! # Source
 //! With q̇ = q′ ṡ and q̈ = q′ s̈ + q″ ṡ² in (4): τ = (H q′) s̈ + (H q″ + V(q, q′)) ṡ² − γᵀ g − Jᵀ F, since V is of
 //! second degree in the rates.
@@ -14,7 +16,7 @@
 use std::fmt;
 
 use crate::mechanics::dynamics::{Surroundings, holding_torque, inverse, mass_matrix};
-use crate::mechanics::machine::{Inertia, Machine};
+use crate::mechanics::machine::{Inertia, Machine, Motors};
 use crate::mechanics::planar::{MAX_DRIVES, PerDrive};
 use crate::planning::curves::PathPoint;
 use crate::planning::curves::path::Path;
@@ -158,7 +160,7 @@ impl<'a> Constraints<'a> {
     pub fn new(model: &'a Inertia, around: &Surroundings, limits: &'a Limits) -> Self {
         let n = model.drives();
         let weightless = around.gravity.norm_sqr() == 0.0 || model.is_force_balanced();
-        let constant = model.is_invariant() && weightless && around.force.norm_sqr() == 0.0;
+        let constant = model.is_invariant() && weightless && around.force.norm_sqr() == 0.0 && model.is_decoupled();
         let by_torque = |k: usize| limits.torque[k] / model.diagonal(k);
         let limited = |quantity| move |drive: &usize| limits.on(quantity)[*drive].is_finite();
         let of = |quantity| move |drive| DriveLimit { quantity, drive };
@@ -186,6 +188,11 @@ impl<'a> Constraints<'a> {
         self.limits
     }
 
+    /// Where the motors sit whose limits these are.
+    pub fn motors(&self) -> &Motors {
+        self.model.motors()
+    }
+
     /// Whether the rows on a straight joint line are the same all along.
     pub fn is_constant(&self) -> bool {
         self.constant.is_some()
@@ -203,9 +210,11 @@ impl<'a> Constraints<'a> {
         } else {
             let e = q.units();
             let (h, _) = mass_matrix(self.model, &e, first);
-            let a = h.times(first);
-            let c = inverse(self.model, &e, first, second, &Surroundings::default());
-            let g = holding_torque(self.model, &e, &self.around);
+            let motors = self.model.motors();
+            let a = motors.torques(&h.times(first));
+            let c = motors.torques(&inverse(self.model, &e, first, second, &Surroundings::default()));
+            let g = motors.torques(&holding_torque(self.model, &e, &self.around));
+            let (first, second) = (motors.turns(first), motors.turns(second));
             for (row, limit) in rows.iter_mut().zip(&self.rows) {
                 let k = limit.drive;
                 let per = 1.0 / self.limits.on(limit.quantity)[k];
@@ -215,6 +224,7 @@ impl<'a> Constraints<'a> {
                 };
             }
         }
+        let first = self.model.motors().turns(first);
         let slow = self.limits.speed.iter().zip(first.iter()).fold(0.0, |m: f64, (v, d)| m.max(d.abs() / v));
         1.0 / (slow * slow)
     }
@@ -230,7 +240,8 @@ impl<'a> Constraints<'a> {
         for (factor, row) in by_row.iter_mut().zip(rows) {
             *factor = row.stretch(at.acceleration, at.rate * at.rate);
         }
-        for (factor, (first, limit)) in by_speed.iter_mut().zip(point.first.iter().zip(self.limits.speed.iter())) {
+        let first = self.model.motors().turns(&point.first);
+        for (factor, (first, limit)) in by_speed.iter_mut().zip(first.iter().zip(self.limits.speed.iter())) {
             *factor = (first * at.rate).abs() / limit;
         }
         factors
@@ -238,7 +249,8 @@ impl<'a> Constraints<'a> {
 
     /// The drive whose limit on speed is nearest, whatever ṡ.
     pub(super) fn fastest_drive(&self, point: &PathPoint) -> usize {
-        let part = |k: usize| point.first[k].abs() / self.limits.speed[k];
-        (0..point.first.len()).max_by(|k, l| part(*k).total_cmp(&part(*l))).unwrap_or(0)
+        let first = self.model.motors().turns(&point.first);
+        let part = |k: usize| first[k].abs() / self.limits.speed[k];
+        (0..first.len()).max_by(|k, l| part(*k).total_cmp(&part(*l))).unwrap_or(0)
     }
 }

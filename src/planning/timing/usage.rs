@@ -106,7 +106,10 @@ impl Demand {
             false => PerDrive::zeros(reference.qd.len()),
         };
         let holding = holding_torque(model, &e, around);
-        Self { holding, moving, speed: reference.qd, acceleration: reference.qdd, jerk }
+        let motors = model.motors();
+        let [holding, moving] = [holding, moving].map(|torque| motors.torques(&torque));
+        let [speed, acceleration, jerk] = [reference.qd, reference.qdd, jerk].map(|x| motors.turns(&x));
+        Self { holding, moving, speed, acceleration, jerk }
     }
 
     /// The limit that is used furthest and the part of it that is used; `None` without limits.

@@ -3,7 +3,7 @@
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | v | rate of sliding: q̇_k − θ̇ in the bearing of drive k, q̇_l − q̇_k in a pin | rad/s |
+//! | v | rate of sliding: q̇_k − θ̇ in the bearing of drive k, or q̇_k − q̇_on; q̇_l − q̇_k in a pin | rad/s |
 //! | f | friction torque against it: c v + τ_C sgn v while sliding, any |f| ≤ τ_C while stuck | N m |
 //!
 //! Friction is internal to its pair: what it takes from one side it gives to the other. Coulomb friction is not
@@ -20,10 +20,10 @@ use crate::mechanics::planar::MAX_DRIVES;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Friction {
-    /// Viscous friction between a drive and the base, N m s.
+    /// Viscous friction between a drive and what its stator sits on, N m s.
     #[serde(default, skip_serializing_if = "is_default")]
     pub viscous: Each,
-    /// Coulomb friction between a drive and the base, N m.
+    /// Coulomb friction between a drive and what its stator sits on, N m.
     #[serde(default, skip_serializing_if = "is_default")]
     pub coulomb: Each,
     /// Viscous friction of every pin, N m s.
@@ -80,7 +80,8 @@ impl Contacts {
         let n = machine.drives();
         let minus = base.unwrap_or(usize::MAX);
         let (viscous, coulomb) = (friction.viscous.of(n), friction.coulomb.of(n));
-        let bearing = |k| Contact { plus: k, minus, viscous: viscous[k], coulomb: coulomb[k], pins: 0.0 };
+        let stator = |k| machine.motors().on(k).unwrap_or(minus);
+        let bearing = |k| Contact { plus: k, minus: stator(k), viscous: viscous[k], coulomb: coulomb[k], pins: 0.0 };
         let rubs = |c: &Contact| c.viscous > 0.0 || c.coulomb > 0.0;
         let mut list: Vec<Contact> = (0..n).map(bearing).filter(rubs).collect();
         let bearings = list.len();

@@ -64,7 +64,7 @@ impl MovingBody {
     /// If a base that moves is one too many to turn.
     pub fn of(machine: &Machine, friction: &Friction, base: &Base, start: &DriveAngles) -> Result<Self, MachineError> {
         let n = machine.drives();
-        let arm = Inertia::of(machine);
+        let mut arm = Inertia::of(machine);
         let around = Surroundings { gravity: machine.gravity(), force: Vector::default() };
         let real = |chain: &[f64; MAX_DRIVES]| chain.map(|w| Vector::new(w, 0.0));
         let nothing = [Vector::default(); MAX_DRIVES];
@@ -91,6 +91,7 @@ impl MovingBody {
             let want = format!("at most {} on a base that moves", MAX_DRIVES - 1);
             return Err(MachineError::Count { what: "drives", count: n, want });
         }
+        arm.turn_base();
         let rho = Vector::new(base.com[0], base.com[1]);
         let mut whole = arm.clone();
         whole.drives = n + 1;
@@ -242,7 +243,10 @@ impl MovingBody {
         let qd = x.qd.first(n);
         let lever = crate::mechanics::dynamics::first_moment(&self.arm, &x.e);
         let p = crate::mechanics::dynamics::linear_momentum(&self.arm, &x.e, &qd) + self.arm.mass * x.base_velocity;
-        let h = crate::mechanics::dynamics::angular_momentum(&self.arm, &x.e, &qd);
+        let mut h = crate::mechanics::dynamics::angular_momentum(&self.arm, &x.e, &qd);
+        if self.moves {
+            h += self.arm.of_base(&x.qd);
+        }
         (p, h + cross(x.base.at, p) + cross(lever, x.base_velocity))
     }
 
@@ -250,7 +254,7 @@ impl MovingBody {
     fn base_spin(&self) -> f64 {
         let n = self.arm.drives;
         let g = -self.anchor[n] * self.mass;
-        self.whole.c[n][n].re + self.whole.spin[n] + g.norm_sqr() / self.mass
+        self.whole.c[n][n].re + self.whole.spin[n] - self.arm.spin[n] + g.norm_sqr() / self.mass
     }
 
     /// The torques that would give the drives these accelerations relative to a base that moves, rad/s², in this state

@@ -5,7 +5,7 @@
 //! and base wrench; whether the base moves is settled when this is compiled.
 
 use super::{MAX_CONTACTS, MovingBody, SlipDirections, Slope, State, WheelState};
-use crate::mechanics::dynamics::{BaseWrench, Factors, assemble, by_drives, first, times, wrench_with};
+use crate::mechanics::dynamics::{BaseWrench, Factors, angular_rate, assemble, by_drives, first, times, wrench_with};
 use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Pose2, Vector, cross, dot, unit};
 
 /// What of a [`State`] the equations of motion depend on.
@@ -181,8 +181,9 @@ impl MovingBody {
             h[k][k] = self.whole.c[k][k].re + self.whole.spin[k];
             for l in k + 1..N {
                 let z = self.whole.c[k][l] * (e[k].conj() * e[l]);
-                h[k][l] = z.re;
-                h[l][k] = z.re;
+                let coupled = z.re + self.whole.gears[k][l];
+                h[k][l] = coupled;
+                h[l][k] = coupled;
                 im[k][l] = z.im;
             }
         }
@@ -231,6 +232,9 @@ impl MovingBody {
             force[k] += torque[k];
             power += torque[k] * (rate[k] - turning);
         }
+        if self.arm.motors.in_joints() {
+            power += self.react::<N, MOVES>(&torque, &rate, &mut force);
+        }
         let mut friction = [0.0; N];
         let (mut loss, mut momentum_rate) = (0.0, Vector::default());
         if MOVES {
@@ -254,14 +258,14 @@ impl MovingBody {
             // The constants of the arm are zero where the base has its place.
             let (h, v) = assemble(&self.arm, &e, &rate);
             let inertial = times(&h, &acceleration);
-            let change = (0..N).map(|k| inertial[k] + v[k]).sum();
+            let change = angular_rate(&self.arm, &inertial, &v, &acceleration);
             wrench = wrench_with(&self.arm, &e, &rate, &acceleration, &self.around, change);
             let lever: Vector = (0..N).map(|k| self.arm.g[k] * e[k]).sum();
             wrench.dynamic.force -= self.arm.mass * base_acceleration;
             wrench.dynamic.moment -= cross(lever, base_acceleration);
         } else {
             let inertial = times(&h, &acceleration);
-            let change = (0..N).map(|k| inertial[k] + v[k]).sum();
+            let change = angular_rate(&self.arm, &inertial, &v, &acceleration);
             wrench = wrench_with(&self.arm, &e, &rate, &acceleration, &self.around, change);
         }
         let kinetic = 0.5 * (0..N).map(|k| momenta[k] * rate[k]).sum::<f64>()
@@ -289,6 +293,30 @@ impl MovingBody {
                 impulse: impulse(&wrench, base.at),
             },
         }
+    }
+
+    /// Motors in joints act back on the links that carry them, and not on the base; what that changes of their power, W.
+    #[inline(never)]
+    fn react<const N: usize, const MOVES: bool>(
+        &self,
+        torque: &[f64; N],
+        rate: &[f64; N],
+        force: &mut [f64; N],
+    ) -> f64 {
+        let n = if MOVES { N - 1 } else { N };
+        let mut power = 0.0;
+        let turning = if MOVES { rate[N - 1] } else { 0.0 };
+        for (k, torque) in torque.iter().enumerate().take(n) {
+            if let Some(on) = self.arm.motors.on(k) {
+                force[on] -= torque;
+                power -= torque * (rate[on] - turning);
+                if MOVES {
+                    // It is taken from the base below, as of all that sits there.
+                    force[N - 1] += torque;
+                }
+            }
+        }
+        power
     }
 
     /// Adds friction to generalised forces, and that of the bearings to `friction`; the power it takes, W. `v` are the

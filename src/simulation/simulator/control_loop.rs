@@ -16,7 +16,7 @@
 
 use std::collections::VecDeque;
 
-use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector};
+use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Vector};
 use crate::planning::Reference;
 use crate::simulation::control::{Control, Controller, Reading};
 use crate::simulation::plant::{Command, Point, Wheel, WheelState};
@@ -87,7 +87,11 @@ impl ControlLoop {
             let (mut e, mut rates, mut seen) = (*reading.e, *reading.rates, *reading);
             if sampling.count > 0.0 {
                 let (n, count) = (reading.q.len(), sampling.count);
-                seen.q = DriveAngles(PerDrive::from_fn(n, |k| (reading.q[k] / count).round() * count));
+                // An encoder sits on its motor.
+                let motors = self.controller.arm().motors();
+                let turned = motors.turns(&reading.q.0);
+                seen.q = DriveAngles(PerDrive::from_fn(n, |k| (turned[k] / count).round() * count));
+                motors.drive(&mut seen.q.0);
                 if let Some(last) = sampling.last.replace((step, seen.q)).filter(|(at, _)| *at < step) {
                     sampling.before = Some(last);
                 }
@@ -180,9 +184,26 @@ impl ControlLoop {
             torque.iter_mut().zip(limits.iter()).for_each(|(t, limit)| *t = t.clamp(-limit, *limit));
         }
         let spin = match &self.wheel {
-            Some(wheel) => wheel.give(-torque.iter().sum::<f64>(), at.wheel, self.wheel_room),
+            Some(wheel) => {
+                let feels = self.on_base::<N, MOVES>(&torque, reference);
+                wheel.give(-feels, at.wheel, self.wheel_room)
+            }
             None => WheelState::default(),
         };
         Command { torque, spin, rotor: self.rotor() }
+    }
+
+    /// What the motors' stators take from the base, N m, with what gears make of the accelerations that are wanted.
+    #[inline(always)]
+    fn on_base<const N: usize, const MOVES: bool>(&self, torque: &[f64; N], reference: &Reference) -> f64 {
+        let n = if MOVES { N - 1 } else { N };
+        let (arm, wanted) = (self.controller.arm(), reference.qdd.array::<N>());
+        let mut sum = torque.iter().sum::<f64>();
+        if arm.motors().in_joints() {
+            sum -= (0..n).filter(|k| arm.motors().on(*k).is_some()).map(|k| torque[k]).sum::<f64>();
+        }
+        let geared =
+            |k: usize| if arm.taken_up[k] != 0.0 || n >= MAX_DRIVES { arm.taken_up[k] } else { arm.gears[n][k] };
+        sum + (0..n).map(|k| geared(k) * wanted[k]).sum::<f64>()
     }
 }

@@ -56,6 +56,7 @@ impl Simulation {
                 let (torque, wrench) = crate::mechanics::dynamics::inverse_with_wrench(arm, &e, &r.qd, &r.qdd, around);
                 let moments = &self.link_moments[usize::from(self.loaded)];
                 let pull = crate::mechanics::dynamics::inertial_pull(moments, &e, &r.qd, &r.qdd);
+                let torque = arm.motors().torques(&torque);
                 expected.torque_sum = expected.torque_sum.max(torque.iter().map(|t| t.abs()).sum());
                 expected.force = expected.force.max(wrench.dynamic.force.norm());
                 expected.moment = expected.moment.max(wrench.total().moment.abs());

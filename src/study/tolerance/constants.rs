@@ -35,15 +35,7 @@ pub(super) fn coupling(n: usize, k: usize, l: usize) -> usize {
 
 /// The machine of which constant i is 1 and every other 0.
 pub(super) fn unit(n: usize, i: usize, like: &Inertia) -> Inertia {
-    let zero = Vector::default();
-    let mut unit = Inertia {
-        drives: n,
-        mass: 0.0,
-        g: [zero; MAX_DRIVES],
-        c: [[zero; MAX_DRIVES]; MAX_DRIVES],
-        spin: [0.0; MAX_DRIVES],
-        end_effector: like.end_effector,
-    };
+    let mut unit = Inertia::nothing(n, like.motors, like.end_effector);
     let one = |imaginary: bool| if imaginary { Vector::new(0.0, 1.0) } else { Vector::new(1.0, 0.0) };
     if i < 2 * n {
         unit.g[i / 2] = one(i % 2 == 1);

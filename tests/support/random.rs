@@ -1,0 +1,116 @@
+//! Machines of the family at random.
+
+use std::fmt::Write;
+
+use stillbase::mechanics::machine::{Machine, parse};
+
+use super::Noise;
+
+fn one_of(noise: &mut Noise, count: usize) -> usize {
+    (noise.between(0.0, count as f64) as usize).min(count - 1)
+}
+
+/// Drives with motors on the base or on another, and rotors of any gear and sense.
+fn drives(noise: &mut Noise, n: usize) -> String {
+    let mut text = String::new();
+    for k in 0..n {
+        writeln!(text, "[[drive]]\nname = \"{}\"", k + 1).unwrap();
+        // Any order: a motor may sit on a later drive, but in no circle.
+        if k + 1 < n && noise.between(0.0, 1.0) < 0.5 {
+            let on = k + 1 + one_of(noise, n - k - 1);
+            writeln!(text, "on = \"{}\"", on + 1).unwrap();
+        }
+        if noise.between(0.0, 1.0) < 0.6 {
+            let (inertia, ratio) = (noise.between(1e-6, 1e-4), noise.sign() * noise.between(1.0, 60.0));
+            writeln!(text, "rotor = {{ inertia = {inertia}, ratio = {ratio} }}").unwrap();
+        }
+    }
+    text
+}
+
+fn link(noise: &mut Noise, name: &str, drive: usize, attach: &str, length: f64, direction: i32) -> String {
+    let (mass, inertia) = (noise.between(0.1, 4.0), noise.between(1e-3, 0.1));
+    let com = noise.between(-0.3, 0.3);
+    let normal = if noise.between(0.0, 1.0) < 0.3 { noise.between(-0.1, 0.1) } else { 0.0 };
+    format!(
+        "[[link]]\nname = \"{name}\"\ndrive = \"{}\"\nattach = {attach}\ndirection = {direction}\nlength = {length}\n\
+         mass = {mass}\ninertia = {inertia}\ncom = {com}\ncom_normal = {normal}\n",
+        drive + 1
+    )
+}
+
+/// A tree of bars and parallelograms on one to eight drives.
+pub fn a_machine(noise: &mut Noise) -> Machine {
+    let n = 1 + one_of(noise, 8);
+    let mut text = String::from("name = \"random\"\ngravity = [1.2, -9.81]\n");
+    let (mut links, mut closures, mut count) = (String::new(), String::new(), 0);
+    let mut name = || {
+        count += 1;
+        format!("b{count}")
+    };
+    let mut places: Vec<String> = vec!["\"base\"".into()];
+    for k in 0..n {
+        let (own, length) = (name(), noise.between(0.1, 0.6));
+        let at = places[one_of(noise, places.len())].clone();
+        let direction = if noise.between(0.0, 1.0) < 0.3 { -1 } else { 1 };
+        links += &link(noise, &own, k, &at, length, direction);
+        places.push(format!("{{ link = \"{own}\", at = \"tip\" }}"));
+        places.push(format!("{{ link = \"{own}\", at = {} }}", noise.between(-0.2, 0.4)));
+    }
+    let loops = if n > 1 { one_of(noise, 3) } else { 0 };
+    for _ in 0..loops {
+        // Two bars from one point, and each again from the tip of the other.
+        let (k, l) = (one_of(noise, n), one_of(noise, n));
+        if k == l {
+            continue;
+        }
+        let [a, b, c, d] = [name(), name(), name(), name()];
+        let (first, second) = (noise.between(0.1, 0.5), noise.between(0.1, 0.5));
+        let at = places[one_of(noise, places.len())].clone();
+        let tip = |of: &str| format!("{{ link = \"{of}\", at = \"tip\" }}");
+        links += &link(noise, &a, k, &at, first, 1);
+        links += &link(noise, &b, l, &at, second, -1);
+        links += &link(noise, &c, l, &tip(&a), second, -1);
+        links += &link(noise, &d, k, &tip(&b), first, 1);
+        write!(closures, "[[closure]]\na = {}\nb = {}\n", tip(&c), tip(&d)).unwrap();
+        places.push(tip(&c));
+    }
+    if noise.between(0.0, 1.0) < 0.3 {
+        let (mass, inertia) = (noise.between(0.1, 1.0), noise.between(0.0, 0.01));
+        writeln!(text, "payload = {{ mass = {mass}, inertia = {inertia}, offset = [0.05, -0.02] }}").unwrap();
+    }
+    let end = places[1 + one_of(noise, places.len() - 1)].clone();
+    let inner = end.trim_start_matches('{').trim_end_matches('}').replace(", ", "\n");
+    let text = text + &drives(noise, n) + &links + &closures + "[end_effector]\n" + inner.trim() + "\n";
+    parse(&text, "random").unwrap_or_else(|why| panic!("{why}\n{text}"))
+}
+
+/// A chain of n bars, one drive each, with angles between neighbours; all but the last can be given counterweights.
+pub fn a_chain(noise: &mut Noise, n: usize) -> Machine {
+    let mut text = String::from("name = \"chain\"\n") + &drives(noise, n);
+    for k in 0..n {
+        let at = if k == 0 { "\"base\"".to_owned() } else { format!("{{ link = \"{k}\", at = \"tip\" }}") };
+        let (mass, inertia, length) = (noise.between(0.1, 4.0), noise.between(1e-3, 0.1), noise.between(0.1, 0.6));
+        write!(
+            text,
+            "[[link]]\nname = \"{0}\"\ndrive = \"{0}\"\nattach = {at}\nlength = {length}\nmass = {mass}\n\
+             inertia = {inertia}\ncom = {com}\n",
+            k + 1,
+            com = noise.between(-0.2, 0.2)
+        )
+        .unwrap();
+    }
+    writeln!(text, "[end_effector]\nlink = \"{n}\"").unwrap();
+    for k in 1..n {
+        let (low, width) = (noise.between(-3.0, 1.0), noise.between(0.5, 4.0));
+        write!(
+            text,
+            "[[angle]]\nname = \"a{k}\"\nto = \"{}\"\nfrom = \"{k}\"\noffset = {}\nmin = {low}\nmax = {}\n",
+            k + 1,
+            noise.between(-1.0, 1.0),
+            low + width
+        )
+        .unwrap();
+    }
+    parse(&text, "chain").unwrap_or_else(|why| panic!("{why}\n{text}"))
+}
