@@ -54,8 +54,14 @@ pub fn show(
 
 fn pose_constant(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewState, commands: &mut Vec<Command>) {
     let (scenario, p) = (session.scenario(), &view_state.palette());
-    let period = session.run().planes().map_or(std::f64::consts::TAU, |p| p.map().period());
     ui.label(RichText::new("POSE CONSTANT").font(bold(11.0)).color(colour(p.dim)));
+    if session.run().planes().is_none() {
+        let drives = scenario.machine.drives();
+        let many = if drives == 1 { "one drive".to_owned() } else { format!("{drives} drives") };
+        note(ui, p, &format!("{many}: b is chosen in the task; its slider, the workspace and dragging are for three"));
+        return;
+    }
+    let period = session.run().planes().map_or(std::f64::consts::TAU, |p| p.map().period());
     // Shown is b within one period; the turns of the machine stay as they are.
     let b = session.b_aim();
     let turns = (b / period).floor() * period;
@@ -146,8 +152,12 @@ fn limits(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comman
         let mut ends = [angle.limits.start().to_degrees(), angle.limits.end().to_degrees()];
         let old = ends;
         ui.horizontal(|ui| {
-            let symbol = ["a₁", "a₂"].get(i).copied().unwrap_or("a");
+            let symbol = ["a₁", "a₂", "a₃", "a₄", "a₅", "a₆", "a₇"].get(i).copied().unwrap_or("a");
             ui.label(symbol).on_hover_text("Relative joint angle: a₁ = q₂ − q₁, a₂ = q₃ − q₂ + π");
+            if !ends.iter().all(|end| end.is_finite()) {
+                ui.label(RichText::new("turns freely").color(colour(p.dim)));
+                return;
+            }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 unit(ui, p, "°");
                 let mut changed = Vec::new();
@@ -211,7 +221,7 @@ fn balance(ui: &mut Ui, session: &Session, facts: &Facts, p: &Palette) {
         fact(ui, p, label, &format!("{value:.1e}"), in_unit, tone, tip);
     }
     for (k, inertia) in balance.inertia.iter().enumerate() {
-        let tip = "Inertia of the drive, D = H in Eq. (11)";
+        let tip = "What the angular momentum has of the drive: D in Eq. (11), without what gears only add to H";
         let label = format!("D{}", ['₁', '₂', '₃', '₄', '₅', '₆', '₇', '₈'][k]);
         fact(ui, p, &label, &format!("{inertia:.4}"), "kg m²", p.drive(k), tip);
     }

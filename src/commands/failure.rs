@@ -8,6 +8,7 @@ use stillbase::mechanics::balance::DesignError;
 use stillbase::mechanics::joint_forces::JointsError;
 use stillbase::mechanics::machine::{FileError, MachineError};
 use stillbase::planning::pose_constant::{PlaneError, Unreachable};
+use stillbase::planning::pose_space::NoPoseSpace;
 use stillbase::session::Refusal;
 use stillbase::session::scenario::ScenarioError;
 
@@ -82,6 +83,11 @@ impl From<PlaneError> for Failure {
         Self::no_answer(e)
     }
 }
+impl From<NoPoseSpace> for Failure {
+    fn from(e: NoPoseSpace) -> Self {
+        Self::no_answer(e)
+    }
+}
 impl From<Unreachable> for Failure {
     fn from(e: Unreachable) -> Self {
         Self::no_answer(e)
@@ -109,6 +115,7 @@ impl From<Refusal> for Failure {
                 _ => Self::WrongInput(whole),
             },
             Refusal::NoPlanes(_)
+            | Refusal::NoPoseConstant(_)
             | Refusal::Unreachable { .. }
             | Refusal::Path(_)
             | Refusal::Time(_)

@@ -7,7 +7,8 @@ use clap::Args;
 use stillbase::mechanics::machine::{Inertia, Machine};
 use stillbase::mechanics::planar::Vector;
 use stillbase::planning::pose_constant::plane_map;
-use stillbase::planning::reactionless::PlaneMap;
+use stillbase::planning::pose_space::PoseSpace;
+use stillbase::planning::reactionless::{BSet, NoReach, PlaneMap};
 use stillbase::session::scenario::{Change, PLACE, POSE_CONSTANT, Scenario};
 use stillbase::settings::change;
 use stillbase::settings::range::Range;
@@ -133,12 +134,67 @@ pub fn change_task(scenario: &mut Scenario, change: &Change) -> Result<(), Failu
     Ok(())
 }
 
+/// What a machine has a b by: the planes of three drives, or the pose space of any other number.
+pub enum PoseConstants {
+    /// Three drives.
+    Plane(PlaneMap),
+    /// One, two, four and more.
+    Space(PoseSpace),
+}
+
+impl PoseConstants {
+    /// Of a machine; says so if b is only nearly constant.
+    ///
+    /// # Errors
+    /// If it has none.
+    pub fn of(machine: &Machine) -> Result<Self, Failure> {
+        if machine.drives() == 3 {
+            return planes_of(machine).map(Self::Plane);
+        }
+        let space = PoseSpace::of(machine)?;
+        note(machine);
+        Ok(Self::Space(space))
+    }
+
+    /// The b of a point, m.
+    ///
+    /// # Errors
+    /// If there is none.
+    pub fn reach(&self, p: Vector) -> Result<BSet, NoReach> {
+        match self {
+            Self::Plane(map) => map.reach(p),
+            Self::Space(space) => space.reach(p),
+        }
+    }
+
+    /// 2π Σλ, rad.
+    pub fn period(&self) -> f64 {
+        match self {
+            Self::Plane(map) => map.period(),
+            Self::Space(space) => space.period(),
+        }
+    }
+
+    /// The b that all points have in common; none if a point has none.
+    pub fn common(&self, points: &[Vector]) -> Option<BSet> {
+        let sets: Option<Vec<BSet>> = points.iter().map(|p| self.reach(*p).ok()).collect();
+        let common = BSet::overlap(&sets?);
+        (!common.intervals.is_empty()).then_some(common)
+    }
+}
+
 /// The reactionless planes of a machine; says so if b is only nearly constant.
 ///
 /// # Errors
 /// If it has none.
 pub fn planes_of(machine: &Machine) -> Result<PlaneMap, Failure> {
     let map = plane_map(machine)?;
+    note(machine);
+    Ok(map)
+}
+
+/// Says so if b is only nearly constant.
+fn note(machine: &Machine) {
     let inertia = Inertia::of(machine);
     if !inertia.is_invariant() {
         say(format!(
@@ -148,7 +204,6 @@ pub fn planes_of(machine: &Machine) -> Result<PlaneMap, Failure> {
             machine.name(),
         ));
     }
-    Ok(map)
 }
 
 /// The command line with a space before negative numbers and points, such as `-0.5,0.25`, so that they are not taken

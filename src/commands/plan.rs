@@ -11,7 +11,6 @@ use stillbase::mechanics::planar::Vector;
 use stillbase::planning::following::Blocked;
 use stillbase::planning::off_plane::least_reaction::{FixedB, Verdicts};
 use stillbase::planning::off_plane::price::FloatingBase;
-use stillbase::planning::pose_constant::Planes;
 use stillbase::planning::reactionless::BSet;
 use stillbase::planning::timing::TimeLaw;
 use stillbase::session::scenario::{Change, Scenario, Task, TaskKind};
@@ -21,7 +20,7 @@ use stillbase::simulation::plant::PlantDifferences;
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{
-    DEFAULT_SCENARIO, Settings, above_zero, change_task, no_use, planes_of, point, pose_constant, scenario,
+    DEFAULT_SCENARIO, PoseConstants, Settings, above_zero, change_task, no_use, point, pose_constant, scenario,
 };
 use super::output::{Format, Table};
 use super::reach::OfMend;
@@ -273,9 +272,13 @@ impl Plan {
             check_new(file, self.force)?;
         }
         let mut scenario = self.scenario()?;
-        planes_of(&scenario.machine)?;
-        let planes = Planes::of(&scenario.machine)?;
-        let common = planes.common(&scenario.task.points()).map_or(Vec::new(), |set: BSet| set.intervals);
+        let common = match PoseConstants::of(&scenario.machine) {
+            Ok(constants) => constants.common(&scenario.task.points()),
+            // What such a machine can do all the same, its plan says.
+            Err(_) if scenario.machine.drives() != 3 => None,
+            Err(why) => return Err(why),
+        };
+        let common = common.map_or(Vec::new(), |set: BSet| set.intervals);
         let mut answer = Answer {
             feasible: true,
             scenario: scenario.name.clone(),
@@ -448,10 +451,14 @@ impl Plan {
         if self.b.is_none() && !self.settings.sets("task.b") && !self.points.is_empty() {
             // The middle of the widest range that serves all points, as far from every edge as it gets; kinds that leave
             // the plane can do with one that serves the first.
-            let planes = Planes::of(&scenario.machine)?;
+            let constants = match PoseConstants::of(&scenario.machine) {
+                Err(_) if scenario.machine.drives() != 3 => None,
+                constants => Some(constants?),
+            };
             let points = scenario.task.points();
-            let alone = (scenario.task.kind != TaskKind::Reactionless).then(|| planes.common(&points[..1])).flatten();
-            let sets = planes.common(&points).or(alone).map_or(Vec::new(), |set| set.intervals);
+            let common = |points: &[Vector]| constants.as_ref()?.common(points);
+            let alone = (scenario.task.kind != TaskKind::Reactionless).then(|| common(&points[..1])).flatten();
+            let sets = common(&points).or(alone).map_or(Vec::new(), |set| set.intervals);
             let widest = sets.into_iter().max_by(|x, y| (x[1] - x[0]).total_cmp(&(y[1] - y[0])));
             scenario.task.b = widest.map_or(scenario.task.b, |[low, high]| 0.5 * (low + high));
         }

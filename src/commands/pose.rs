@@ -2,12 +2,15 @@
 
 use clap::Args;
 use serde::Serialize;
+use stillbase::mechanics::kinematics::least_transmission;
+use stillbase::mechanics::machine::Machine;
 use stillbase::mechanics::planar::Vector;
 use stillbase::planning::pose_constant::Unreachable;
-use stillbase::planning::reactionless::{PlaneMap, PlanePoint};
+use stillbase::planning::pose_space::PoseSpace;
+use stillbase::planning::reactionless::{BSet, NoReach, PlaneMap, PlanePoint};
 
 use super::failure::Failure;
-use super::input::{MachineArgument, planes_of, point, pose_constant};
+use super::input::{MachineArgument, PoseConstants, point, pose_constant};
 use super::output::{Format, Table};
 use stillbase::settings::number::fixed;
 
@@ -16,7 +19,8 @@ use stillbase::settings::number::fixed;
 /// Drive angles q are absolute and unwrapped: Σ λ_k q_k is b exactly as given. With --json each pose also has
 /// det = |det ∂(x, y)/∂(a_1, a_2)| (m²), 0 on a fold; manipulability = √det(J Jᵀ) of the Jacobian in absolute drive
 /// angles (m²); worst_torque_per_force, the largest singular value of J (N m/N); transmission = min |sin(q_k − q_l)|,
-/// 0 at a change point; and side, the signs of sin(q_2 − q_1), sin(q_3 − q_2) and sin(q_3 − q_1).
+/// 0 at a change point; and side, the signs of sin(q_2 − q_1), sin(q_3 − q_2) and sin(q_3 − q_1). These are of three
+/// drives; of four and more, which can take a point in many ways, it is the pose nearest to the middle of the limits.
 #[derive(Args)]
 #[command(after_help = "\
 Example:
@@ -37,6 +41,19 @@ pub struct Pose {
 #[derive(Serialize)]
 struct Answer {
     poses: Vec<Row>,
+}
+
+#[derive(Serialize)]
+struct AnswerOfSpace {
+    poses: Vec<OfSpace>,
+}
+
+/// A pose of a machine without a plane of three drives.
+#[derive(Serialize)]
+struct OfSpace {
+    q: Vec<f64>,
+    a: Vec<f64>,
+    transmission: f64,
 }
 
 /// A pose and its measures.
@@ -79,7 +96,10 @@ impl Pose {
     /// Prints every pose; none is no answer.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
-        let map = planes_of(&machine)?;
+        let map = match PoseConstants::of(&machine)? {
+            PoseConstants::Plane(map) => map,
+            PoseConstants::Space(space) => return self.of_space(&machine, &space),
+        };
         let poses = Row::all(&map, self.point, self.b);
         if poses.is_empty() {
             return Err(self.why_not(&map).into());
@@ -96,9 +116,39 @@ impl Pose {
         })
     }
 
+    /// With two drives every pose, with four and more the one nearest to the middle of the limits.
+    fn of_space(&self, machine: &Machine, space: &PoseSpace) -> Result<(), Failure> {
+        let poses: Vec<OfSpace> = space
+            .poses(self.point, self.b, &space.middle())
+            .iter()
+            .map(|q| OfSpace {
+                q: q.to_vec(),
+                a: machine.angles().iter().map(|a| q[a.to] - q[a.from] + a.offset).collect(),
+                transmission: least_transmission(&q.units(), q.len()),
+            })
+            .collect();
+        if poses.is_empty() {
+            return Err(self.no_pose(space.reach(self.point)).into());
+        }
+        self.format.print(&AnswerOfSpace { poses }, |answer| {
+            let drives = (1..=space.drives()).map(|k| format!("q_{k} rad"));
+            let names = machine.angles().iter().map(|a| format!("{} rad", a.name));
+            let mut table = Table::new(["pose".to_owned()].into_iter().chain(drives).chain(names));
+            for (i, pose) in answer.poses.iter().enumerate() {
+                let numbers = pose.q.iter().chain(&pose.a).map(|x| fixed(*x, 9));
+                table.row([(i + 1).to_string()].into_iter().chain(numbers));
+            }
+            table.to_string()
+        })
+    }
+
     fn why_not(&self, map: &PlaneMap) -> Unreachable {
+        self.no_pose(map.reach(self.point))
+    }
+
+    fn no_pose(&self, set: Result<BSet, NoReach>) -> Unreachable {
         let (x, y, b) = (self.point.re, self.point.im, self.b);
-        match map.reach(self.point) {
+        match set {
             Err(reason) => Unreachable::Anywhere { x, y, reason },
             Ok(set) => {
                 let nearest_b = set.nearest(self.b);

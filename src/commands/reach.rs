@@ -7,7 +7,7 @@ use stillbase::planning::pose_constant::{Mend, Planes, Unreachable};
 use stillbase::planning::reactionless::BSet;
 
 use super::failure::Failure;
-use super::input::{MachineArgument, planes_of, point};
+use super::input::{MachineArgument, PoseConstants, point};
 use super::output::{Format, Table};
 use stillbase::settings::number::fixed;
 
@@ -65,14 +65,15 @@ impl Reach {
     /// Prints the b of each point and of all; none in common is no answer.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
-        let map = planes_of(&machine)?;
+        let map = PoseConstants::of(&machine)?;
         let mut sets = Vec::with_capacity(self.points.len());
         for p in &self.points {
             let none = |reason| Unreachable::Anywhere { x: p.re, y: p.im, reason };
             sets.push(map.reach(*p).map_err(none)?);
         }
         let overlap = BSet::overlap(&sets).intervals;
-        let why = if overlap.is_empty() { Planes::of(&machine)?.no_common(&self.points) } else { None };
+        let three = overlap.is_empty() && matches!(map, PoseConstants::Plane(_));
+        let why = if three { Planes::of(&machine)?.no_common(&self.points) } else { None };
         let apart = overlap.is_empty();
         let of_point = |(p, set): (&Vector, BSet)| OfPoint { point: [p.re, p.im], intervals: set.intervals };
         let answer = Answer {

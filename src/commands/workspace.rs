@@ -3,10 +3,11 @@
 use clap::Args;
 use serde::Serialize;
 use stillbase::mechanics::planar::{Vector, unit};
+use stillbase::planning::pose_space::{Outline, PoseSpace};
 use stillbase::planning::reactionless::{Boundary, ChangeCurve, PAIRS, PlaneMap};
 
 use super::failure::Failure;
-use super::input::{MachineArgument, planes_of, point, pose_constant};
+use super::input::{MachineArgument, PoseConstants, point, pose_constant};
 use super::output::{Format, Table, yes};
 use super::pose::Row;
 use stillbase::settings::number::fixed;
@@ -15,7 +16,7 @@ use stillbase::settings::number::fixed;
 ///
 /// It is the region that the end effector reaches while b is held; b only turns it. Vertices lie on the boundary to
 /// 1e-9 m and chords to 1e-5 m; outer loops run counter-clockwise. The area of all sheets, ∫|det|, exceeds the region's
-/// where several poses reach one point. Folds, where two poses meet, turn back at cusps; at change points sin(q_k −
+/// where several poses reach one point. With two drives it is a curve, and --json has `curve` and `length`. Folds, where two poses meet, turn back at cusps; at change points sin(q_k −
 /// q_l) = 0 and the linkage goes flat.
 #[derive(Args)]
 #[command(after_help = "\
@@ -58,6 +59,19 @@ struct Answer {
     points: Vec<OfPoint>,
 }
 
+/// What machines of other than three drives have.
+#[derive(Serialize)]
+struct OfSpace {
+    area: f64,
+    length: f64,
+    x_min: f64,
+    x_max: f64,
+    y_min: f64,
+    y_max: f64,
+    loops: Vec<Vec<[f64; 2]>>,
+    curve: Vec<[f64; 2]>,
+}
+
 /// Change points of two drives, counted from 1.
 #[derive(Serialize)]
 struct OfChange {
@@ -91,7 +105,10 @@ impl Workspace {
     /// Prints area, extent and boundary, what lies inside, and what is asked of points.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
-        let map = planes_of(&machine)?;
+        let map = match PoseConstants::of(&machine)? {
+            PoseConstants::Plane(map) => map,
+            PoseConstants::Space(space) => return self.of_space(&space),
+        };
         let answer = self.answer(&map);
         self.format.print(&answer, |a| {
             let mut text = format!("{}\n{}", table(a).to_string().trim_start(), remarks(a));
@@ -100,6 +117,29 @@ impl Workspace {
                 text.push_str(&format!("\n{}", points(a, &names)));
             }
             text
+        })
+    }
+
+    /// Of any other number of drives: with two a curve.
+    fn of_space(&self, space: &PoseSpace) -> Result<(), Failure> {
+        if !self.at.is_empty() {
+            let why = "--at is for three drives: want `stillbase reach` and `stillbase pose` for a point";
+            return Err(Failure::wrong_input(why));
+        }
+        let Outline { area, length, extent: [x_min, x_max, y_min, y_max], loops, curve } = space.outline(self.b);
+        if loops.is_empty() && curve.is_empty() {
+            return Err(Failure::no_answer("the joint limits leave no pose: want wider ones"));
+        }
+        let answer = OfSpace { area, length, x_min, x_max, y_min, y_max, loops, curve };
+        self.format.print(&answer, |a| {
+            let mut table = Table::new(["", "", ""]).with_words(2);
+            let size =
+                if a.curve.is_empty() { ("area", a.area, "m²") } else { ("length of the curve", a.length, "m") };
+            let rest = [("x from", a.x_min), ("x to", a.x_max), ("y from", a.y_min), ("y to", a.y_max)];
+            for (name, value, unit) in [size].into_iter().chain(rest.map(|(name, x)| (name, x, "m"))) {
+                table.row([name.into(), fixed(value, 6), unit.into()]);
+            }
+            table.to_string().trim_start().to_owned()
         })
     }
 

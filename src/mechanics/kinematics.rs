@@ -6,7 +6,7 @@
 //! | p | end effector, Σ_k c_k e^{i q_k}; nine-link: l_1 e_1 − l_5 e_2 − l_9 e_3, (14) | m |
 //! | J_k | ∂p/∂q_k = i c_k e^{i q_k} | m |
 
-use nalgebra::Complex;
+use nalgebra::{Complex, Matrix3, Vector3};
 
 use crate::mechanics::machine::{Chain, place_of};
 use crate::mechanics::planar::{PerDrive, Units, Vector, cross, dot};
@@ -58,6 +58,39 @@ pub fn minimum_norm(tip: &Chain, e: &Units, n: usize, v: Vector, vd: Vector) -> 
     let my = Vector::new(2.0 * m[0] * y.re + (m[1] + m[2]) * y.im, (m[1] + m[2]) * y.re + 2.0 * m[3] * y.im);
     let yd = solve(vd - my);
     let qdd = PerDrive::from_fn(n, |k| dot(jd(k), y) + dot(j(k), yd));
+    Some((qd, qdd))
+}
+
+/// The least rates that give the end effector the velocity v, m/s, while Σ λ_k q_k stays, and their exact derivative
+/// for v̇: q̇ = Aᵀ (A Aᵀ)⁻¹ (v, 0) with A = [J; λ]. `None` where A has lost rank, as it always has for fewer than three
+/// drives.
+pub fn minimum_norm_held(
+    tip: &Chain,
+    lambda: &PerDrive,
+    e: &Units,
+    v: Vector,
+    vd: Vector,
+) -> Option<(PerDrive, PerDrive)> {
+    let n = lambda.len();
+    if n < 3 {
+        return None;
+    }
+    // λ as long as the arms, so that all rows are of one size.
+    let reach = tip.iter().map(|c| c.abs()).sum::<f64>();
+    let scale = reach / lambda.max_abs();
+    let row = |j: Vector, k: usize| Vector3::new(j.re, j.im, scale * lambda[k]);
+    let a = |k: usize| row(column(tip, e, k), k);
+    let gram = (0..n).fold(Matrix3::zeros(), |g, k| g + a(k) * a(k).transpose());
+    let inverse = gram.try_inverse().filter(|_| gram.determinant() > 1e-14 * gram.trace().powi(3))?;
+    let y = inverse * Vector3::new(v.re, v.im, 0.0);
+    let qd = PerDrive::from_fn(n, |k| a(k).dot(&y));
+    let ad = |k: usize| {
+        let jd = I * column(tip, e, k) * qd[k];
+        Vector3::new(jd.re, jd.im, 0.0)
+    };
+    let change = (0..n).fold(Matrix3::zeros(), |m, k| m + ad(k) * a(k).transpose());
+    let yd = inverse * (Vector3::new(vd.re, vd.im, 0.0) - (change + change.transpose()) * y);
+    let qdd = PerDrive::from_fn(n, |k| ad(k).dot(&y) + a(k).dot(&yd));
     Some((qd, qdd))
 }
 

@@ -40,7 +40,10 @@ pub enum Reach {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum PlaneError {
     /// Not three drives.
-    #[error("{drives} drives and {angles} relative angles: reactionless workspaces in the plane want three and two")]
+    #[error(
+        "this machine has {drives} drives and {angles} relative angles: dragging on a plane, sliding b and tasks off the \
+         plane are there for three drives and two angles"
+    )]
     Shape {
         /// Drives of the machine.
         drives: usize,

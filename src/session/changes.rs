@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::edit::{Edit, TimedEdit};
 use super::refusal::Refusal;
-use super::scenario::Scenario;
+use super::scenario::{Scenario, Task};
 use crate::mechanics::machine::Machine;
 use crate::planning::pose_constant::Planes;
 use crate::planning::reactionless::PlanePoint;
@@ -44,6 +44,11 @@ pub(super) fn amended(
 ) -> Result<Scenario, Refusal> {
     edit.check()?;
     let Edit::PoseB { b } = edit else { return changed(scenario, edit) };
+    if scenario.machine.drives() != 3 {
+        let posed = scenario.task.posed(&scenario.machine, *b);
+        let task = posed.unwrap_or_else(|| Task { b: *b, ..scenario.task.clone() });
+        return Ok(Scenario { task, ..scenario.clone() });
+    }
     let known = planes.take().filter(|(machine, _)| *machine == scenario.machine);
     let planes = match known {
         Some(known) => planes.insert(known),

@@ -9,6 +9,7 @@ use crate::planning::off_plane::drift::DriftError;
 use crate::planning::off_plane::least_reaction::LeastReactionError;
 use crate::planning::off_plane::price::PriceError;
 use crate::planning::pose_constant::{NoCommon, PlaneError, Unreachable};
+use crate::planning::pose_space::NoPoseSpace;
 use crate::planning::reactionless::Decimal;
 use crate::planning::timing::TimeError;
 use crate::session::scenario::{MAX_FRAMES, MAX_STEPS, MAX_TIME, SettingError, ordinal};
@@ -21,6 +22,9 @@ pub enum Refusal {
     /// The machine has no reactionless planes of the kind the task needs.
     #[error(transparent)]
     NoPlanes(#[from] PlaneError),
+    /// The machine has no b at all.
+    #[error(transparent)]
+    NoPoseConstant(#[from] NoPoseSpace),
     /// A or B cannot be reached there.
     #[error("{point} {unreachable}")]
     Unreachable {

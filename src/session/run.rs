@@ -6,7 +6,7 @@ use super::changes::{Failed, folded};
 use super::edit::{Edit, TimedEdit};
 use super::planner::{Plan, plan};
 use super::refusal::Refusal;
-use crate::mechanics::planar::{DriveAngles, Vector};
+use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use crate::planning::Motion;
 use crate::planning::following::Follower;
 use crate::planning::following::follow::Bounds;
@@ -28,7 +28,8 @@ pub struct Waiting {
 }
 
 impl Waiting {
-    fn of(scenario: &Scenario, planes: &Planes, why: Refusal) -> Self {
+    fn of(scenario: &Scenario, planes: Option<&Planes>, why: Refusal) -> Self {
+        let Some(planes) = planes else { return Self { why, points: Vec::new() } };
         let (task, map) = (&scenario.task, planes.map());
         let unserved = |(i, p): (usize, Vector)| {
             let would_do = || {
@@ -90,21 +91,24 @@ impl Run {
     /// At rest at the start of the task; where that cannot be planned, waiting.
     fn patient(scenario: &Scenario, known: Option<Arc<Planes>>) -> Result<Self, Refusal> {
         let planes = match known {
-            Some(planes) => planes,
-            None => Arc::new(Planes::of(&scenario.machine)?),
+            Some(planes) => Some(planes),
+            // A machine of three drives that lacks them says why; of others only some tasks want them.
+            None if scenario.machine.drives() == 3 => Some(Arc::new(Planes::of(&scenario.machine)?)),
+            None => None,
         };
         let keep_off = scenario.task.keep_off_change_points;
-        let planes = match planes.keep_off_change_points() == keep_off {
+        let planes = planes.map(|planes| match planes.keep_off_change_points() == keep_off {
             true => planes,
             false => Arc::new(Planes::clone(&planes).keeping_off_change_points(keep_off)),
-        };
-        let (plan, waiting) = match plan(scenario, &planes) {
+        });
+        let known = planes.as_deref();
+        let (plan, waiting) = match plan(scenario, known) {
             Ok(plan) => (plan, None),
-            Err(why) => (Plan::rest(scenario, &planes), Some(Waiting::of(scenario, &planes, why))),
+            Err(why) => (Plan::rest(scenario, known), Some(Waiting::of(scenario, known, why))),
         };
         let guide = Guide::Motion { motion: plan.motion.clone(), start: 0.0 };
         let simulation = Simulation::new(&scenario.setup(), guide)?;
-        let (scenario, planes, plan) = (scenario.clone(), Some(planes), Arc::new(plan));
+        let (scenario, plan) = (scenario.clone(), Arc::new(plan));
         Ok(Self { scenario, planes, plan, waiting, simulation, common: OnceLock::new() })
     }
 
@@ -229,7 +233,7 @@ impl Run {
         let mut simulation = self.simulation.clone();
         simulation.change(&scenario.setup())?;
         let bound = scenario.pose_acceleration != self.scenario.pose_acceleration;
-        if scenario.machine != self.scenario.machine || bound {
+        if self.planes.is_some() && (scenario.machine != self.scenario.machine || bound) {
             let keep_off = scenario.task.keep_off_change_points;
             let planes = Arc::new(Planes::of(&scenario.machine)?.keeping_off_change_points(keep_off));
             if let Guide::Follow(old) = self.simulation.guide() {
@@ -305,12 +309,16 @@ fn bounds(scenario: &Scenario, planes: &Planes) -> Bounds {
     const UNLIMITED: f64 = 30.0;
     let machine = &scenario.machine;
     let inertia = crate::mechanics::machine::Inertia::of(machine);
+    let asked = |of: usize| {
+        // Of what each motor turns, also through gears, where all couplings vanish.
+        let h = PerDrive::from_fn(machine.drives(), |k| {
+            (0..machine.drives()).map(|l| inertia.constant(k, l) * planes.map().u()[l][of]).sum()
+        });
+        inertia.motors().torques(&h)
+    };
+    let [first, second] = [asked(0), asked(1)];
     let joint = (0..machine.drives())
-        .filter_map(|k| {
-            let limit = machine.spec().drives[k].torque_limit?;
-            let [u, v] = planes.map().u()[k];
-            Some(limit / (inertia.diagonal(k) * u.hypot(v).max(1e-9)))
-        })
+        .filter_map(|k| Some(machine.spec().drives[k].torque_limit? / first[k].hypot(second[k]).max(1e-9)))
         .fold(UNLIMITED, f64::min);
     Bounds { joint, pose: scenario.pose_acceleration }
 }

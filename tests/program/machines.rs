@@ -14,6 +14,15 @@ fn machines_are_listed() {
         all["machines"].as_array().expect("list").iter().filter_map(|m| m["name"].as_str()).collect();
     let table = prints(&["machines"]);
     assert!(names.contains(&"nine-link-table-1") && names.iter().all(|n| table.contains(n)));
+    // Of one to eight drives each has two sentences and a task of its own, under its name.
+    assert!(names.len() >= 9, "{names:?}");
+    for machine in all["machines"].as_array().expect("list").iter().skip(2) {
+        let said = machine["summary"].as_str().expect("words");
+        assert!(said.matches(". ").count() == 1 && said.ends_with('.'), "{said}");
+        let name = machine["name"].as_str().expect("a name");
+        let task = stillbase::session::scenario::Scenario::builtin(name).expect("a task of its own");
+        assert_eq!(task.machine.name(), name);
+    }
 }
 
 #[test]
@@ -23,6 +32,7 @@ fn check_reports_table_1_as_printed_and_re_solved() {
         keys(&printed),
         [
             "coupling_coefficients",
+            "d",
             "force_balanced",
             "gamma_coefficients",
             "h",
@@ -51,7 +61,7 @@ fn design_gives_the_known_centres_of_mass() {
     let known = planning()["design"].clone();
     for (preset, i) in [("as-printed", 0), ("table-1", 1), ("minimum-norm", 2)] {
         let by_name = object(&["design", "nine-link-table-1", "--preset", preset]);
-        assert_eq!(keys(&by_name), ["com", "coupling_coefficients", "gamma_coefficients", "h", "lambda"]);
+        assert_eq!(keys(&by_name), ["com", "coupling_coefficients", "d", "gamma_coefficients", "h", "lambda"]);
         near(&by_name["com"], &known[i]["com"], 5e-9, preset);
         let penalty = joined(&known[i]["penalty"]);
         near(&object(&["design", "nine-link-table-1", "--penalty", &penalty])["com"], &known[i]["com"], 5e-9, preset);
@@ -145,7 +155,7 @@ fn a_damaged_machine_file_is_named_with_its_line() {
 
 /// Two drives have no plane of (a1, a2): the questions about planes have no answer, the others do.
 #[test]
-fn a_machine_of_two_drives_is_checked_but_has_no_planes() {
+fn a_machine_of_two_drives_has_a_curve_once_it_is_balanced() {
     let folder = Folder::new("cli");
     let file = word(folder.file("two.toml", TWO_LINK));
     let balance = object(&["check", &file]);
@@ -154,9 +164,34 @@ fn a_machine_of_two_drives_is_checked_but_has_no_planes() {
     assert_eq!(numbers(&designed["com"]).len(), 2);
     fails(&["design", &file, "--preset", "table-1"], 2, &["9 penalties for 2 links"]);
     fails(&["design", &file, "--penalty", "1,-1"], 2, &["'-1'", "1e-6 to 1e6"]);
-    fails(&["reach", &file, "0.5,0.5"], 1, &["2 drives", "want three"]);
-    fails(&["pose", &file, "0.5,0.5", "--b", "1"], 1, &["2 drives"]);
-    fails(&["workspace", &file, "--b", "1"], 1, &["2 drives"]);
+    let why = ["no pose constant b", "drives 1 and 2", "0.06 kg m²", "link forearm", "stillbase design"];
+    fails(&["reach", &file, "0.5,0.5"], 1, &why);
+    fails(&["pose", &file, "0.5,0.5", "--b", "1"], 1, &why);
+    fails(&["workspace", &file, "--b", "1"], 1, &why);
+    let balanced = word(folder.file("balanced.toml", ""));
+    prints(&["design", &file, "-o", &balanced, "--force"]);
+    // A point has a b for each elbow, and there a pose of its own; between them there is none.
+    let reach = object(&["reach", &balanced, "0.3,0.4"]);
+    let intervals = reach["points"][0]["intervals"].as_array().expect("a list");
+    assert_eq!(intervals.len(), 2);
+    for interval in intervals {
+        let [low, high] = [0, 1].map(|i| interval[i].as_f64().expect("a number"));
+        assert_eq!(low, high);
+        let poses = object(&["pose", &balanced, "0.3,0.4", "--b", &low.to_string()]);
+        assert_eq!(poses["poses"].as_array().map(Vec::len), Some(1));
+    }
+    fails(&["pose", &balanced, "0.3,0.4", "--b", "1"], 1, &["outside the reactionless workspace"]);
+    let workspace = object(&["workspace", &balanced, "--b", "1"]);
+    let curve = workspace["curve"].as_array().expect("points");
+    let length: f64 = curve
+        .windows(2)
+        .map(|w| {
+            let [a, b] = [&w[0], &w[1]].map(numbers);
+            (b[0] - a[0]).hypot(b[1] - a[1])
+        })
+        .sum();
+    near(&workspace["length"], &json!(length), 1e-4, "length");
+    assert_eq!(workspace["area"], json!(0.0));
 }
 
 const TWO_LINK: &str = r#"

@@ -2,7 +2,9 @@
 
 use thiserror::Error;
 
-use crate::mechanics::kinematics::{acceleration, closest_turn, end_effector, minimum_norm, two_link_rates, velocity};
+use crate::mechanics::kinematics::{
+    acceleration, closest_turn, end_effector, minimum_norm, minimum_norm_held, two_link_rates, velocity,
+};
 use crate::mechanics::machine::Chain;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 use crate::planning::curves::curve::{Curve, CurvePoint};
@@ -246,7 +248,7 @@ pub fn minimum_norm_path(
     start: DriveAngles,
     curve: impl Fn(f64) -> CurvePoint,
 ) -> Result<PathTable, PathError> {
-    let nodes = minimum_norm_nodes(tip, start, &curve, SPACES)?;
+    let nodes = least_rate_nodes(tip, None, start, &curve, SPACES)?;
     PathTable::even(nodes).ok_or(PathError::Singular { s: 0.0 })
 }
 
@@ -255,8 +257,22 @@ pub fn minimum_norm_path(
 /// # Errors
 /// If the Jacobian loses rank on the way.
 pub fn minimum_norm_curve(tip: &Chain, start: DriveAngles, curve: &Curve) -> Result<PathTable, PathError> {
+    least_rate_curve(tip, None, start, curve)
+}
+
+/// The same, with the least rates of those that keep Σ λ_k q_k, if it is `held`: of more than three drives, on the set
+/// of poses of a b.
+///
+/// # Errors
+/// If the Jacobian, with λ, loses rank on the way.
+pub fn least_rate_curve(
+    tip: &Chain,
+    held: Option<&PerDrive>,
+    start: DriveAngles,
+    curve: &Curve,
+) -> Result<PathTable, PathError> {
     let piece = |q: DriveAngles, [from, to]: [f64; 2], at: &dyn Fn(f64) -> CurvePoint, spaces: usize| {
-        minimum_norm_nodes(tip, q, &at, spaces).map_err(|error| match error {
+        least_rate_nodes(tip, held, q, &at, spaces).map_err(|error| match error {
             PathError::Singular { s } => PathError::Singular { s: from + s * (to - from) },
             other => other,
         })
@@ -297,17 +313,22 @@ pub(in crate::planning) fn by_pieces<E>(
     Ok(PathTable::new(stations, nodes))
 }
 
-fn minimum_norm_nodes(
+fn least_rate_nodes(
     tip: &Chain,
+    held: Option<&PerDrive>,
     start: DriveAngles,
     curve: &impl Fn(f64) -> CurvePoint,
     spaces: usize,
 ) -> Result<Vec<PathPoint>, PathError> {
     let off_curve = OFF_CURVE * tip.iter().map(|c| c.abs()).sum::<f64>();
     let n = start.len();
+    let rates = |q: &DriveAngles, v: Vector, vd: Vector| match held {
+        Some(lambda) => minimum_norm_held(tip, lambda, &q.units(), v, vd),
+        None => minimum_norm(tip, &q.units(), n, v, vd),
+    };
     let slope = |q: &DriveAngles, s: f64| {
         let way = curve(s);
-        minimum_norm(tip, &q.units(), n, way.first, way.second).ok_or(PathError::Singular { s })
+        rates(q, way.first, way.second).ok_or(PathError::Singular { s })
     };
     // Each space takes several steps, so that the integration is as exact as the quintics.
     const STEPS: usize = 4;
@@ -321,7 +342,7 @@ fn minimum_norm_nodes(
         if gap.is_nan() || gap.norm() > off_curve {
             return Err(PathError::Singular { s });
         }
-        let (back, _) = minimum_norm(tip, &q.units(), n, gap, Vector::default()).ok_or(PathError::Singular { s })?;
+        let (back, _) = rates(&q, gap, Vector::default()).ok_or(PathError::Singular { s })?;
         q = DriveAngles(q.0.plus(1.0, &back));
         let (first, second) = slope(&q, s)?;
         nodes.push(PathPoint { q, first, second });

@@ -16,9 +16,20 @@ use crate::session::scenario::{Corners, Scenario, Shape, Task, TaskKind};
 
 /// A path through the points of a task, and its timing.
 pub(super) fn along(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
+    along_parts(scenario, &|scenario| parts(scenario, planes))
+}
+
+/// Paths from rest to rest, each with its length.
+pub(super) type Parts = Vec<(Path, f64)>;
+
+/// The same with what finds the paths of a task.
+pub(super) fn along_parts(
+    scenario: &Scenario,
+    parts: &dyn Fn(&Scenario) -> Result<Parts, Refusal>,
+) -> Result<Plan, Refusal> {
     let task = &scenario.task;
     let motion = |scenario: &Scenario| -> Result<(Motion, Option<Pace>), Refusal> {
-        let (motion, pace) = timed(scenario, parts(scenario, planes)?)?;
+        let (motion, pace) = timed(scenario, parts(scenario)?)?;
         keeps_rules(scenario, &motion)?;
         Ok((motion, pace))
     };

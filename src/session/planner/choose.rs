@@ -2,7 +2,7 @@
 
 use super::along::{along, tried};
 use super::plan::Plan;
-use super::{given, off_plane};
+use super::{any_drives, given, off_plane};
 use crate::planning::pose_constant::Planes;
 use crate::planning::timing::TimeLaw;
 
@@ -13,14 +13,17 @@ use crate::session::scenario::{Scenario, Task, TaskKind};
 ///
 /// # Errors
 /// Which point, part of the path or setting is in the way, and what would do.
-pub fn plan(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
+pub fn plan(scenario: &Scenario, planes: Option<&Planes>) -> Result<Plan, Refusal> {
     let task = &scenario.task;
     let given = task.samples.is_some();
     let leaves_plane = !given && matches!(task.kind, TaskKind::MinimumNorm | TaskKind::LeastReaction);
-    let plan = directly(scenario, planes).map_err(|refusal| match leaves_plane {
-        true => elsewhere(scenario, planes, refusal),
-        false => refusal,
-    })?;
+    let plan = match planes {
+        None => any_drives::plan(scenario)?,
+        Some(planes) => directly(scenario, planes).map_err(|refusal| match leaves_plane {
+            true => elsewhere(scenario, planes, refusal),
+            false => refusal,
+        })?,
+    };
     let found = task.law.is_fastest() || (task.kind == TaskKind::ChangeB && task.moment_limit.is_some());
     let time = plan.motion.duration();
     // A path that goes nowhere takes no time.
@@ -38,7 +41,7 @@ pub fn plan(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
 fn directly(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
     let task = &scenario.task;
     if task.samples.is_some() || task.kind == TaskKind::Given {
-        given::given(scenario, planes)
+        given::given(scenario, Some(planes))
     } else {
         match task.kind {
             TaskKind::ChangeB => off_plane::change_b(scenario, planes),

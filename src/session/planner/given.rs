@@ -20,7 +20,7 @@ const INSTANTS: (usize, usize) = (2000, 100_000);
 ///
 /// # Errors
 /// If there are none, they do not fit the machine or the kind of the task, or cannot be followed.
-pub fn given(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
+pub fn given(scenario: &Scenario, planes: Option<&Planes>) -> Result<Plan, Refusal> {
     let (task, drives) = (&scenario.task, scenario.machine.drives());
     let refuse = |why: String| Err(Refusal::Task(why));
     let Some(samples) = &task.samples else {
@@ -34,18 +34,23 @@ pub fn given(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
         return refuse("samples say when to be where: want the law quintic, which has no say, or no samples".into());
     }
     let columns = samples.columns();
+    let only_drives = || {
+        let why = format!("samples of x and y are for three drives: want samples of the {drives} drive angles");
+        Refusal::Task(why)
+    };
     let unsound = || Refusal::Task("the samples give no spline: want times further apart".into());
     let table = match (task.kind, columns) {
         (TaskKind::Given, n) if n == drives => samples.path(task.turn).ok_or_else(unsound)?,
         (TaskKind::Given | TaskKind::Reactionless, 2) => {
             let curve = samples.curve().ok_or_else(unsound)?;
             let rule = Rule { keep_off_change_points: task.keep_off_change_points };
+            let planes = planes.ok_or_else(only_drives)?;
             let mut tables = trace::follow(planes.map(), &[curve], task.b, None, rule)?;
             tables.pop().ok_or_else(unsound)?
         }
         (TaskKind::MinimumNorm, 2) => {
             let ends = [samples.point(0), samples.point(samples.count() - 1)];
-            let q = start(task, planes, &ends)?;
+            let q = start(task, planes.ok_or_else(only_drives)?, &ends)?;
             minimum_norm_curve(scenario.machine.end_effector(), q, &samples.curve().ok_or_else(unsound)?)?
         }
         (TaskKind::Given, _) => {

@@ -1,6 +1,7 @@
 //! From a task to a motion: poses for its points, a path through them, and when to be where.
 
 mod along;
+mod any_drives;
 mod choose;
 mod given;
 mod off_plane;

@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Inertia;
-use crate::mechanics::planar::{DriveAngles, Vector};
+use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use crate::planning::curves::Path;
 use crate::planning::off_plane::Price;
 use crate::planning::off_plane::least_reaction::Verdicts;
 use crate::planning::pose_constant::Planes;
+use crate::planning::pose_space::PoseSpace;
 use crate::planning::reactionless::PlanePoint;
 use crate::planning::timing::limits::DriveLimit;
 use crate::planning::timing::{Limits, TimeLaw};
@@ -63,12 +64,21 @@ impl Plan {
     }
 
     /// Rest where the end effector is as near to A as the plane of the task lets it be: for a run that waits.
-    pub fn rest(scenario: &Scenario, planes: &Planes) -> Self {
-        let (task, map) = (&scenario.task, planes.map());
+    pub fn rest(scenario: &Scenario, planes: Option<&Planes>) -> Self {
+        let task = &scenario.task;
         let p = task.points()[0];
-        let pose = map.poses(p, task.b).iter().next().copied();
-        let a = pose.map_or_else(|| map.clamp(planes.boundary().nearest(p, task.b, p).a), |pose| pose.a);
-        let q = DriveAngles::from(map.lift(PlanePoint { a, b: task.b }));
+        let q = match planes {
+            Some(planes) => {
+                let map = planes.map();
+                let pose = map.poses(p, task.b).iter().next().copied();
+                let a = pose.map_or_else(|| map.clamp(planes.boundary().nearest(p, task.b, p).a), |pose| pose.a);
+                DriveAngles::from(map.lift(PlanePoint { a, b: task.b }))
+            }
+            None => match PoseSpace::nominal(&scenario.machine) {
+                Ok(space) => space.near(p, task.b).unwrap_or_else(|| space.lift(&space.middle(), task.b)),
+                Err(_) => DriveAngles(PerDrive::zeros(scenario.machine.drives())),
+            },
+        };
         let path = Path::JointLine { from: q, to: q };
         Self::of(scenario, Motion::new(path, TimeLaw::Quintic, task.time))
     }

@@ -300,7 +300,8 @@ impl StatedTask {
         Ok(Task {
             from: from.or(first).ok_or("from")?,
             to: to.or(last).ok_or("to")?,
-            b: b.or(ends.and_then(|ends| ends.b)).ok_or("b")?,
+            // With one or two drives a point says enough.
+            b: b.or(ends.and_then(|ends| ends.b)).or((machine.drives() < 3).then_some(0.0)).ok_or("b")?,
             time: time.or(samples.as_ref().map(Samples::duration)).unwrap_or(1.0),
             kind,
             shape,

@@ -1,0 +1,268 @@
+//! Poses of a point on the set of a b: all where no freedom is left but elbows, one that suits best where more is.
+
+use super::space::PoseSpace;
+use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
+use crate::planning::reactionless::{AngleDefinition, AngleLimit, PlaneMap};
+
+/// b of a pose of two drives may be off by this much, rad: what nine printed digits leave.
+const NEAR: f64 = 1e-6;
+/// Looks over the range of the joints that are left free, for one, two, three and more of them.
+const LOOKS: [usize; 5] = [33, 13, 7, 5, 3];
+/// From how many of these the nearest place is gone to where none will do, how often in each direction.
+const STARTS: usize = 4;
+const SWEEPS: usize = 3;
+/// How fast b's ends go with an angle at most, for a look to be worth it.
+const FAR: f64 = 4.0;
+
+impl PoseSpace {
+    /// Poses within the limits that put the end effector on `p`, m, at `b`, rad, which is not wrapped: with two and
+    /// three drives all of them, with more the ones nearest to the given relative angles on each elbow.
+    pub fn poses(&self, p: Vector, b: f64, near: &[f64]) -> Vec<DriveAngles> {
+        let mut poses: Vec<(f64, DriveAngles)> = Vec::new();
+        self.each_pose(p, b, near, |a| {
+            let far = a.iter().zip(near).map(|(a, near)| (a - near) * (a - near)).sum();
+            poses.push((far, self.lift(a, b)));
+            true
+        });
+        poses.sort_by(|x, y| x.0.total_cmp(&y.0));
+        if poses.is_empty() && self.drives() > 3 {
+            let held = self.held_for(p, &[b]);
+            held.map(|held| {
+                self.of_three(p, b, &held, &mut |a| {
+                    poses.push((0.0, self.lift(a, b)));
+                    true
+                })
+            });
+        }
+        let most = if self.drives() > 3 { 1 } else { poses.len() };
+        poses.into_iter().take(most).map(|(_, q)| q).collect()
+    }
+
+    /// Whether some pose is on the x axis at a distance from B, m, at one of these b.
+    pub(super) fn has_pose(&self, distance: f64, b: &[f64]) -> bool {
+        let p = Vector::new(distance, 0.0);
+        if self.drives() > 3 {
+            return self.held_for(p, b).is_some();
+        }
+        let mut any = false;
+        for b in b {
+            self.each_pose(p, *b, &self.middle(), |_| {
+                any = true;
+                false
+            });
+        }
+        any
+    }
+
+    /// Angles of the joints that are held, more than three drives, with which the three arms that are left reach p at b:
+    /// where no look finds any, by going to where they come nearest. What lies at the first two joints is not used.
+    fn held_for(&self, p: Vector, b: &[f64]) -> Option<PerDrive> {
+        let (n, first) = (self.joints.len(), 2);
+        let looks = LOOKS[(self.drives() - 4).min(LOOKS.len() - 1)];
+        let at = |i: usize, j: usize| {
+            let [low, high] = self.joints[i].limits;
+            low + (high - low) * (j as f64 + 0.5) / looks as f64
+        };
+        let count = looks.pow((n - first) as u32);
+        let mut seen: Vec<(f64, PerDrive)> = Vec::with_capacity(count);
+        for code in 0..count {
+            let mut held = self.middle();
+            let mut rest = code;
+            for i in first..n {
+                held[i] = at(i, rest % looks);
+                rest /= looks;
+            }
+            let off = self.off(p, b, &held);
+            if off == 0.0 {
+                return Some(held);
+            }
+            seen.push((off, held));
+        }
+        // Where it is much farther than the looks are apart, it does not come near between them.
+        let apart = (first..n).map(|i| at(i, 1) - at(i, 0)).fold(0.0, f64::max);
+        seen.retain(|(off, _)| *off <= FAR * apart);
+        seen.sort_by(|x, y| x.0.total_cmp(&y.0));
+        for (mut best, mut held) in seen.into_iter().take(STARTS) {
+            for _ in 0..if n - first > 1 { SWEEPS } else { 1 } {
+                let before = best;
+                for i in first..n {
+                    let [low, high] = self.joints[i].limits;
+                    let step = (high - low) / looks as f64;
+                    let on = |x: f64| {
+                        let mut there = held;
+                        there[i] = x;
+                        (self.off(p, b, &there), there)
+                    };
+                    let found = lowest(on, [(held[i] - step).max(low), (held[i] + step).min(high)]);
+                    if found.0 < best {
+                        (best, held) = found;
+                    }
+                    if best == 0.0 {
+                        return Some(held);
+                    }
+                }
+                if best >= before {
+                    break;
+                }
+            }
+        }
+        None
+    }
+
+    /// How far the nearest b is from what reaches p with these joints held, rad; infinite where nothing does.
+    fn off(&self, p: Vector, b: &[f64], held: &PerDrive) -> f64 {
+        let Some((map, shift)) = self.three(held) else { return f64::INFINITY };
+        let Ok(set) = map.reach(p) else { return f64::INFINITY };
+        let off = |b: &f64| set.nearest(b - shift).map_or(f64::INFINITY, |nearest| (nearest - (b - shift)).abs());
+        b.iter().map(off).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether any pose is at a distance from B, m.
+    pub(super) fn any_pose(&self, distance: f64) -> bool {
+        self.has_pose(distance, &[0.0])
+    }
+
+    /// Relative angles of poses, while more are wanted.
+    fn each_pose(&self, p: Vector, b: f64, near: &[f64], mut take: impl FnMut(&PerDrive) -> bool) {
+        match self.drives() {
+            1 => {
+                let place = self.place(&self.lift(&[], b));
+                if (place - p).norm() <= 1e-6 * self.farthest() {
+                    take(&PerDrive::zeros(0));
+                }
+            }
+            2 => self.elbows(p, b, take),
+            n => {
+                let held = n - 3;
+                let mut a = PerDrive::zeros(n - 1);
+                self.held(held, near, &mut a, &mut |a| self.of_three(p, b, a, &mut take));
+            }
+        }
+    }
+
+    /// Two drives: a point leaves two elbows, each with its own b.
+    fn elbows(&self, p: Vector, b: f64, mut take: impl FnMut(&PerDrive) -> bool) {
+        let [l, m] = [self.tip[0], self.tip[1]];
+        let cos = (p.norm_sqr() - l * l - m * m) / (2.0 * l * m);
+        if cos.is_nan() || cos.abs() > 1.0 + 1e-12 {
+            return;
+        }
+        let (joint, bend) = (&self.joints[0], cos.clamp(-1.0, 1.0).acos());
+        for sign in [1.0, -1.0] {
+            let between = sign * bend;
+            let first = (p * (l + m * unit(between)).conj()).arg();
+            let q = [first, first + between];
+            let own = joint.of(&q);
+            let [low, high] = joint.limits;
+            let tau = std::f64::consts::TAU;
+            let mut angle = own - tau * ((own - low + 1e-9) / tau).floor();
+            while angle <= high + 1e-9 {
+                let a = PerDrive::from([angle.clamp(low, high)]);
+                // The point is on this set if the pose with this angle is there at this b.
+                let miss = (self.place(&self.lift(&a, b)) - p).norm();
+                if miss <= NEAR * self.farthest() && !take(&a) {
+                    return;
+                }
+                angle += tau;
+            }
+            if bend == 0.0 {
+                return;
+            }
+        }
+    }
+
+    /// Every choice on a grid of the last joints, those nearest to what is wanted first.
+    fn held(&self, count: usize, near: &[f64], a: &mut PerDrive, take: &mut impl FnMut(&PerDrive) -> bool) -> bool {
+        let Some(i) = count.checked_sub(1) else { return take(a) };
+        // The outermost joints are held, so that the three arms that are left go from B.
+        let place = self.joints.len() - 1 - i;
+        let looks = LOOKS[(self.drives() - 4).min(LOOKS.len() - 1)];
+        let [low, high] = self.joints[place].limits;
+        let wanted = near.get(place).copied().unwrap_or(0.5 * (low + high)).clamp(low, high);
+        let mut grid = [0.0; 64];
+        let grid = &mut grid[..looks + 1];
+        grid[0] = wanted;
+        for (j, x) in grid[1..].iter_mut().enumerate() {
+            *x = low + (high - low) * (j as f64 + 0.5) / looks as f64;
+        }
+        grid[1..].sort_by(|x, y| (x - wanted).abs().total_cmp(&(y - wanted).abs()));
+        for x in grid.iter() {
+            a[place] = *x;
+            if !self.held(i, near, a, take) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// The poses of the three arms that are left when the last joints are held.
+    fn of_three(&self, p: Vector, b: f64, held: &PerDrive, take: &mut impl FnMut(&PerDrive) -> bool) -> bool {
+        let Some((map, shift)) = self.three(held) else { return true };
+        for pose in map.poses(p, b - shift).iter() {
+            let mut a = *held;
+            a[0] = pose.a[0];
+            a[1] = pose.a[1];
+            if !take(&a) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// The plane of the first two joints, with all others held, and what its b lacks.
+    fn three(&self, held: &PerDrive) -> Option<(PlaneMap, f64)> {
+        let n = self.drives();
+        let (mut of, mut delta, mut count) = ([0; MAX_DRIVES], [0.0; MAX_DRIVES], 1);
+        for (i, joint) in self.joints.iter().enumerate() {
+            let [near, far] = joint.ends;
+            if i < 2 {
+                of[far] = count;
+                count += 1;
+            } else {
+                of[far] = of[near];
+                delta[far] = delta[near] + joint.sense * (held[i] - joint.offset);
+            }
+        }
+        let (mut arm, mut lambda) = ([Vector::default(); 3], [0.0; 3]);
+        for k in 0..n {
+            arm[of[k]] += self.tip[k] * unit(delta[k]);
+            lambda[of[k]] += self.lambda[k];
+        }
+        let lean = arm.map(|l| l.arg());
+        let angle = |i: usize| {
+            let joint = &self.joints[i];
+            let [near, far] = joint.ends;
+            let (to, from) = if joint.sense > 0.0 { (far, near) } else { (near, far) };
+            let at = |k: usize| delta[k] - lean[of[k]];
+            AngleDefinition { to: of[to], from: of[from], offset: joint.offset + at(to) - at(from) }
+        };
+        let limit = |i: usize| AngleLimit { min: self.joints[i].limits[0], max: self.joints[i].limits[1] };
+        let map = PlaneMap::new(arm.map(|l| l.norm()), lambda, [angle(0), angle(1)], [limit(0), limit(1)]).ok()?;
+        // b = Σ Λ (Q' − lean) + Σ λ δ.
+        let shift =
+            (0..n).map(|k| self.lambda[k] * delta[k]).sum::<f64>() - (0..3).map(|i| lambda[i] * lean[i]).sum::<f64>();
+        Some((map, shift))
+    }
+}
+
+/// The least of a function between two places by golden sections, or the first place at which it is 0.
+fn lowest<T: Copy>(f: impl Fn(f64) -> (f64, T), [mut low, mut high]: [f64; 2]) -> (f64, T) {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let (mut x, mut y) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
+    let (mut fx, mut fy) = (f(x), f(y));
+    for _ in 0..16 {
+        if fx.0 == 0.0 || fy.0 == 0.0 {
+            break;
+        }
+        if fx.0 < fy.0 {
+            (high, y, fy) = (y, x, fx);
+            x = high - GOLDEN * (high - low);
+            fx = f(x);
+        } else {
+            (low, x, fx) = (x, y, fy);
+            y = low + GOLDEN * (high - low);
+            fy = f(y);
+        }
+    }
+    if fx.0 < fy.0 { fx } else { fy }
+}

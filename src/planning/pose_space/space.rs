@@ -1,0 +1,278 @@
+//! [`PoseSpace`]: coordinates (a, b) of the poses of any machine that has a pose constant.
+
+use std::f64::consts::{PI, TAU};
+
+use thiserror::Error;
+
+use crate::mechanics::machine::{Inertia, Machine};
+use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
+use crate::planning::reactionless::WIDEST;
+use crate::settings::number::Short;
+
+/// A relative joint angle between the drive that is nearer to drive 1 and the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Joint {
+    /// The drive nearer to drive 1, and the other, counted from 0.
+    pub(super) ends: [usize; 2],
+    /// 1 where the other one's angle is added.
+    pub(super) sense: f64,
+    /// rad.
+    pub(super) offset: f64,
+    /// Least and greatest angle, rad; one turn where there are no limits.
+    pub(super) limits: [f64; 2],
+    /// Its place among the machine's angles; none where the file names no angle that joins these drives.
+    pub(super) angle: Option<usize>,
+}
+
+impl Joint {
+    /// Least and greatest angle, rad.
+    pub fn limits(&self) -> [f64; 2] {
+        self.limits
+    }
+
+    /// Its place among the machine's angles; none where the file has no angle between these drives.
+    pub fn angle(&self) -> Option<usize> {
+        self.angle
+    }
+
+    /// The angle of a pose, rad.
+    pub fn of(&self, q: &[f64]) -> f64 {
+        self.sense * (q[self.ends[1]] - q[self.ends[0]]) + self.offset
+    }
+}
+
+/// The poses of a machine by its relative angles and b.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PoseSpace {
+    pub(super) tip: PerDrive,
+    pub(super) lambda: PerDrive,
+    pub(super) sum: f64,
+    /// Each after the joint that leads to its nearer drive.
+    pub(super) joints: Vec<Joint>,
+    inertia: f64,
+}
+
+/// Why a machine has no pose constant, in words.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum NoPoseSpace {
+    /// D depends on the pose.
+    #[error(
+        "this machine has no pose constant b: its angular momentum depends on the pose, because drives {} and {} are \
+         coupled by {} kg m², most of it through link {link}; `stillbase design` finds centres of mass that undo it",
+        .pair[0], .pair[1], Short(*residual)
+    )]
+    Varies {
+        /// The drives that are coupled most, counted from 1.
+        pair: [usize; 2],
+        /// |C_kl|, kg m².
+        residual: f64,
+        /// The link that contributes most.
+        link: String,
+    },
+    /// Every D_k is 0.
+    #[error("every motion of this machine is reactionless, as no drive turns the base: there is no b to hold")]
+    Free,
+    /// Turning the machine as a whole changes b the wrong way, or not at all.
+    #[error(
+        "turned as a whole, this machine changes b by Σλ = {}: want it above 0, with rotors that turn the other way less \
+         fast or lighter", Short(*sum)
+    )]
+    Sum {
+        /// Σλ.
+        sum: f64,
+    },
+    /// The relative angles bind each other.
+    #[error(
+        "angle {angle:?} joins drives that the angles before it join already: want at most one way between two drives \
+         for reactionless planes"
+    )]
+    Loop {
+        /// The angle.
+        angle: String,
+    },
+    /// Limits too far apart to count windings one by one.
+    #[error("angle {angle:?} may turn by {width:.2} rad: want limits at most eight turns apart, {WIDEST} rad")]
+    TooWide {
+        /// The angle.
+        angle: String,
+        /// max − min, rad.
+        width: f64,
+    },
+    /// An arm that is nothing, or all of them.
+    #[error("the arms reach {} m: want a reach of 1e-9 to 1e9 m", Short(*reach))]
+    Size {
+        /// Σ |c_k|, m.
+        reach: f64,
+    },
+}
+
+/// Couplings up to this share of the inertia of all are rounding of a table, not a machine that shakes.
+const ROUNDED: f64 = 1e-3;
+
+impl PoseSpace {
+    /// Of a machine whose D is constant.
+    ///
+    /// # Errors
+    /// Why it has no b.
+    pub fn of(machine: &Machine) -> Result<Self, NoPoseSpace> {
+        let inertia = Inertia::of(machine);
+        if inertia.invariance_residual() > ROUNDED * inertia.diagonals().iter().sum::<f64>() {
+            return Err(varies(machine, &inertia));
+        }
+        if inertia.pose_inertia() == 0.0 {
+            return Err(NoPoseSpace::Free);
+        }
+        Self::with(machine, inertia.lambda(), inertia.pose_inertia())
+    }
+
+    /// The same by what each drive has to turn alone, H_kk, where D depends on the pose or is nothing: its b only tells
+    /// poses of a point apart.
+    ///
+    /// # Errors
+    /// If the angles or arms give no coordinates.
+    pub fn nominal(machine: &Machine) -> Result<Self, NoPoseSpace> {
+        let inertia = Inertia::of(machine);
+        let h = inertia.diagonals();
+        Self::with(machine, h.scaled(1.0 / h[0]), h[0])
+    }
+
+    fn with(machine: &Machine, lambda: PerDrive, inertia: f64) -> Result<Self, NoPoseSpace> {
+        let n = machine.drives();
+        let sum: f64 = lambda.iter().sum();
+        if sum.partial_cmp(&1e-9) != Some(std::cmp::Ordering::Greater) {
+            return Err(NoPoseSpace::Sum { sum });
+        }
+        let tip = PerDrive::from_fn(n, |k| machine.end_effector()[k]);
+        let reach: f64 = tip.iter().map(|c| c.abs()).sum();
+        if !(1e-9..=1e9).contains(&reach) {
+            return Err(NoPoseSpace::Size { reach });
+        }
+        let joints = joints(machine)?;
+        Ok(Self { tip, lambda, sum, joints, inertia })
+    }
+
+    /// Number of drives.
+    pub fn drives(&self) -> usize {
+        self.tip.len()
+    }
+
+    /// λ_k.
+    pub fn lambda(&self) -> &PerDrive {
+        &self.lambda
+    }
+
+    /// n_B = −D_1 b̈, kg m².
+    pub fn inertia(&self) -> f64 {
+        self.inertia
+    }
+
+    /// The relative angles, n − 1 of them.
+    pub fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
+    /// Turning all drives once adds this to b and changes nothing else: 2π Σλ, rad.
+    pub fn period(&self) -> f64 {
+        TAU * self.sum
+    }
+
+    /// How far the arms reach at most, m.
+    pub fn farthest(&self) -> f64 {
+        self.tip.iter().map(|c| c.abs()).sum()
+    }
+
+    /// How near the longest arm lets them come to the base, m.
+    pub fn nearest(&self) -> f64 {
+        (2.0 * self.tip.max_abs() - self.farthest()).max(0.0)
+    }
+
+    /// Drive angles of relative angles on b. Never wrapped.
+    pub fn lift(&self, a: &[f64], b: f64) -> DriveAngles {
+        let mut q = self.unturned(a);
+        let turn = (b - self.lambda.dot(&q)) / self.sum;
+        q.iter_mut().for_each(|q| *q += turn);
+        DriveAngles(q)
+    }
+
+    /// Drive angles with drive 1 at 0.
+    pub(super) fn unturned(&self, a: &[f64]) -> PerDrive {
+        let mut q = PerDrive::zeros(self.drives());
+        for (joint, a) in self.joints.iter().zip(a) {
+            q[joint.ends[1]] = q[joint.ends[0]] + joint.sense * (a - joint.offset);
+        }
+        q
+    }
+
+    /// Relative angles of a pose, in the order of [`joints`](Self::joints).
+    pub fn angles(&self, q: &[f64]) -> PerDrive {
+        PerDrive::from_fn(self.joints.len(), |i| self.joints[i].of(q))
+    }
+
+    /// b of a pose, rad.
+    pub fn b(&self, q: &[f64]) -> f64 {
+        self.lambda.dot(q)
+    }
+
+    /// The end effector, m.
+    pub fn place(&self, q: &[f64]) -> Vector {
+        self.tip.iter().zip(q).map(|(c, q)| *c * unit(*q)).sum()
+    }
+
+    /// Relative angles in the middle of their limits, rad.
+    pub fn middle(&self) -> PerDrive {
+        PerDrive::from_fn(self.joints.len(), |i| 0.5 * (self.joints[i].limits[0] + self.joints[i].limits[1]))
+    }
+}
+
+/// The machine's angles as a tree that grows from drive 1; where they leave drives apart, a free joint between these.
+fn joints(machine: &Machine) -> Result<Vec<Joint>, NoPoseSpace> {
+    let n = machine.drives();
+    let mut joints: Vec<Joint> = Vec::with_capacity(n - 1);
+    let mut known = [false; MAX_DRIVES];
+    known[0] = true;
+    let mut used = vec![false; machine.angles().len()];
+    loop {
+        let next = machine.angles().iter().enumerate().find(|(i, a)| !used[*i] && known[a.to] != known[a.from]);
+        if let Some((i, a)) = next {
+            let (ends, sense) = if known[a.from] { ([a.from, a.to], 1.0) } else { ([a.to, a.from], -1.0) };
+            let limits = window(*a.limits.start(), *a.limits.end());
+            let width = limits[1] - limits[0];
+            if width > WIDEST {
+                return Err(NoPoseSpace::TooWide { angle: a.name.clone(), width });
+            }
+            known[ends[1]] = true;
+            used[i] = true;
+            joints.push(Joint { ends, sense, offset: a.offset, limits, angle: Some(i) });
+        } else if let Some(k) = (0..n).find(|k| !known[*k]) {
+            known[k] = true;
+            joints.push(Joint { ends: [0, k], sense: 1.0, offset: 0.0, limits: [-PI, PI], angle: None });
+        } else {
+            break;
+        }
+    }
+    match used.iter().position(|used| !used) {
+        Some(i) => Err(NoPoseSpace::Loop { angle: machine.angles()[i].name.clone() }),
+        None => Ok(joints),
+    }
+}
+
+/// Limits as they are; one turn about 0 where there are none.
+fn window(min: f64, max: f64) -> [f64; 2] {
+    if min.is_finite() && max.is_finite() { [min, max] } else { [-PI, PI] }
+}
+
+/// The drives that are coupled most, and the link that contributes most to that.
+fn varies(machine: &Machine, inertia: &Inertia) -> NoPoseSpace {
+    let n = machine.drives();
+    let coupled = |(k, l): &(usize, usize)| inertia.coupling(*k, *l).norm();
+    let (k, l) = Inertia::pairs(n).max_by(|x, y| coupled(x).total_cmp(&coupled(y))).unwrap_or((0, 0));
+    let whole = inertia.coupling(k, l);
+    let part = |j: &usize| {
+        let a = machine.com_chain(*j);
+        // As far as it adds to the sum, rather than taking from it.
+        (machine.links()[*j].mass * a[k].conj() * a[l] * whole.conj()).re
+    };
+    let most = (0..machine.links().len()).max_by(|i, j| part(i).total_cmp(&part(j))).unwrap_or(0);
+    let link = machine.links()[most].name.clone();
+    NoPoseSpace::Varies { pair: [k + 1, l + 1], residual: whole.norm(), link }
+}

@@ -1,0 +1,281 @@
+//! Pose constants of any number of drives: against the reference, against the plane of three, against poses at random,
+//! and against climbing along the freedoms that a point leaves.
+
+use std::f64::consts::TAU;
+
+use stillbase::mechanics::balance::design;
+use stillbase::mechanics::machine::Machine;
+use stillbase::mechanics::planar::{PerDrive, Vector};
+use stillbase::planning::pose_constant::plane_map;
+use stillbase::planning::pose_space::{NoPoseSpace, PoseSpace};
+
+use crate::support::random::a_chain;
+use crate::support::{Noise, close, family_machine};
+
+fn space(machine: &Machine) -> PoseSpace {
+    PoseSpace::of(machine).expect("D is constant")
+}
+
+/// A balanced chain of n drives with motors and rotors anywhere, of which Σλ is above 0.
+fn any_space(noise: &mut Noise, n: usize) -> (Machine, PoseSpace) {
+    loop {
+        let chain = a_chain(noise, n);
+        let machine = design(&chain, &vec![1.0; n]).expect("a chain can be balanced");
+        match PoseSpace::of(&machine) {
+            Ok(space) => return (machine, space),
+            Err(NoPoseSpace::Sum { .. }) => {}
+            Err(why) => panic!("{why}"),
+        }
+    }
+}
+
+fn any_pose(noise: &mut Noise, space: &PoseSpace) -> PerDrive {
+    PerDrive::from_fn(space.joints().len(), |i| {
+        let [low, high] = space.joints()[i].limits();
+        noise.between(low, high)
+    })
+}
+
+#[test]
+fn the_b_of_points_are_those_of_the_reference() {
+    for (name, p, want, period) in [
+        ("two-drive", [0.633, 0.353], vec![[1.949_217_091_1; 2]], 8.514_844_670_1),
+        ("serial-3r", [0.669, 0.673], vec![[0.705_917_6, 1.500_877_3]], 7.323_056),
+        ("nine-link-geared", [1.073, 0.450], vec![[1.549_380_9, 1.813_560_2]], 8.087_61),
+        ("four-drive", [1.141, 0.316], vec![[1.412_902_7, 1.980_405_8]], 8.172_88),
+        ("four-drive", [0.050, -0.539], vec![[6.227_433_9, 9.176_216_4]], 8.172_88),
+    ] {
+        let space = space(&family_machine(&format!("{name}-balanced")));
+        let set = space.reach(Vector::new(p[0], p[1])).expect("within reach");
+        assert_eq!(set.intervals.len(), want.len(), "{name}: {set:?}");
+        close(name, set.intervals.as_flattened(), want.as_flattened(), 1e-7);
+        close(name, &[set.period], &[period], 1e-6);
+    }
+}
+
+/// For three drives the plane knows it all in another way.
+#[test]
+fn with_three_drives_it_is_the_plane() {
+    let mut noise = Noise::of(11);
+    let (mut same, mut several) = (0, 0);
+    for i in 0..400 {
+        let (machine, space) = match i {
+            0..100 => {
+                let machine = family_machine(["serial-3r-balanced", "nine-link-geared-balanced"][i % 2]);
+                let space = space(&machine);
+                (machine, space)
+            }
+            _ => any_space(&mut noise, 3),
+        };
+        let Ok(map) = plane_map(&machine) else { continue };
+        let a = any_pose(&mut noise, &space);
+        let q = space.lift(&a, noise.between(-3.0, 3.0));
+        let p = space.place(&q);
+        let (own, want) = (space.reach(p).expect("a pose is there"), map.reach(p).expect("a pose is there"));
+        assert_eq!(own.intervals.len(), want.intervals.len(), "{i}: {p} {own:?} {want:?}");
+        close(&format!("{i}"), own.intervals.as_flattened(), want.intervals.as_flattened(), 1e-7);
+        same += 1;
+        several += usize::from(own.intervals.len() > 1);
+    }
+    assert!(same > 350 && several > 20, "{same}, {several}");
+}
+
+/// b of any pose lies in the set of its point, and a pose is found at every b well within it.
+#[test]
+fn poses_and_sets_agree() {
+    let mut noise = Noise::of(5);
+    for i in 0..120 {
+        let n = 1 + i % 6;
+        let (_, space) = any_space(&mut noise, n);
+        for _ in 0..20 {
+            let b = noise.between(-6.0, 6.0);
+            let q = space.lift(&any_pose(&mut noise, &space), b);
+            close("there and back", &[space.b(&q)], &[b], 1e-12);
+            let p = space.place(&q);
+            let set = space.reach(p).expect("a pose is there");
+            assert!(set.contains(b), "{n} drives at {p}: {b} in {set:?}");
+        }
+        if n > 4 {
+            continue;
+        }
+        let p = space.place(&space.lift(&any_pose(&mut noise, &space), 0.0));
+        for [low, high] in space.reach(p).expect("a pose is there").intervals {
+            let b = 0.5 * (low + high);
+            let poses = space.poses(p, b, &space.middle());
+            assert!(!poses.is_empty(), "{n} drives at {p}: no pose at {b} of [{low}, {high}]");
+            for q in poses {
+                close("b", &[space.b(&q)], &[b], 1e-9);
+                let miss = (space.place(&q) - p).norm();
+                assert!(miss < 2e-6 * space.farthest(), "{n} drives: {miss}");
+                for (joint, a) in space.joints().iter().zip(space.angles(&q).iter()) {
+                    assert!(*a >= joint.limits()[0] - 1e-9 && *a <= joint.limits()[1] + 1e-9);
+                }
+            }
+        }
+    }
+}
+
+/// Climbing b from random poses of a point, by small moves of the joints that keep the point: it comes to rest at an
+/// end of the set, and never beyond.
+#[test]
+fn climbing_ends_where_the_set_does() {
+    let mut noise = Noise::of(23);
+    let mut reached = 0;
+    for i in 0..24 {
+        let machine = match i % 4 {
+            0 => family_machine("four-drive-balanced"),
+            k => any_space(&mut noise, 3 + k).0,
+        };
+        let space = space(&machine);
+        let start = space.lift(&any_pose(&mut noise, &space), 0.0);
+        let p = space.place(&start);
+        let set = space.reach(p).expect("a pose is there");
+        for up in [1.0, -1.0] {
+            let (mut a, mut b) = (space.angles(&start), space.b(&start));
+            let mut step = 0.3;
+            while step > 1e-7 {
+                let better = (0..60).find_map(|_| {
+                    let wanted = PerDrive::from_fn(a.len(), |j| a[j] + step * noise.between(-1.0, 1.0));
+                    let there = projected(&space, p, &space.lift(&a, b), wanted)?;
+                    (up * (there.1 - b) > 0.0).then_some(there)
+                });
+                match better {
+                    Some(there) => (a, b) = there,
+                    None => step *= 0.5,
+                }
+            }
+            let period = set.period;
+            let gap = |x: f64| {
+                let by = (b - x).rem_euclid(period);
+                by.min(period - by)
+            };
+            assert!(set.contains(b) || set.intervals.iter().flatten().any(|x| gap(*x) < 1e-6), "{i}: {b} {set:?}");
+            let end = set.intervals.iter().map(|[low, high]| if up > 0.0 { *high } else { *low });
+            // Some hills are not the highest: most are.
+            reached += usize::from(end.map(gap).fold(f64::INFINITY, f64::min) < 2e-3);
+        }
+    }
+    assert!(reached > 36, "{reached} of 48");
+}
+
+/// Relative angles near wanted ones that keep the point, and their b, continued from a pose: two joints take up the
+/// miss. `None` beyond the limits.
+fn projected(space: &PoseSpace, p: Vector, from: &[f64], wanted: PerDrive) -> Option<(PerDrive, f64)> {
+    let mut a = wanted;
+    let within =
+        |a: &PerDrive| space.joints().iter().zip(a.iter()).all(|(j, a)| *a >= j.limits()[0] && *a <= j.limits()[1]);
+    for (a, joint) in a.iter_mut().zip(space.joints()) {
+        *a = a.clamp(joint.limits()[0], joint.limits()[1]);
+    }
+    let last = a.len() - 1;
+    // The distance from B is met by one joint; the turn of all by b.
+    let distance = |a: &PerDrive| space.place(&space.lift(a, 0.0)).norm() - p.norm();
+    for joint in [last, 0] {
+        let mut at = a;
+        for _ in 0..30 {
+            let miss = distance(&at);
+            let mut beside = at;
+            beside[joint] += 1e-6;
+            let slope = (distance(&beside) - miss) / 1e-6;
+            let by = -miss / slope;
+            if !by.is_finite() || by.abs() > 0.5 {
+                break;
+            }
+            at[joint] += by;
+            if by.abs() < 1e-14 {
+                break;
+            }
+        }
+        if distance(&at).abs() < 1e-11 && within(&at) {
+            let unturned = space.lift(&at, 0.0);
+            let turn = (p * space.place(&unturned).conj()).arg();
+            let near = from[0] - unturned[0];
+            let turn = turn + TAU * ((near - turn) / TAU).round();
+            let b = turn * space.lambda().iter().sum::<f64>();
+            return Some((at, b));
+        }
+    }
+    None
+}
+
+/// The set of poses of a b of two drives is a curve: its ends are those of the joint's limits, its length that of its
+/// chords.
+#[test]
+fn two_drives_have_a_curve() {
+    let mut noise = Noise::of(3);
+    for _ in 0..60 {
+        let (_, space) = any_space(&mut noise, 2);
+        let b = noise.between(-4.0, 4.0);
+        let outline = space.outline(b);
+        let [low, high] = space.joints()[0].limits();
+        let place = |a: f64| space.place(&space.lift(&[a], b));
+        let n = 20_000;
+        let chords: f64 = (0..n)
+            .map(|i| {
+                let at = |i: usize| place(low + (high - low) * i as f64 / f64::from(n as u32));
+                (at(i + 1) - at(i)).norm()
+            })
+            .sum();
+        close("length", &[outline.length], &[chords], 1e-5);
+        let ends = [outline.curve[0], *outline.curve.last().expect("points")];
+        for (end, a) in ends.iter().zip([low, high]) {
+            close("end", end, &[place(a).re, place(a).im], 1e-12);
+        }
+        for [x, y] in outline.curve.iter().step_by(17) {
+            assert!(space.reach(Vector::new(*x, *y)).expect("on the curve").contains(b));
+        }
+    }
+}
+
+/// Area and boundary of four drives, at b = 2.4 the reference's; what random poses reach lies inside, and points of the
+/// boundary are reached just there.
+#[test]
+fn the_workspace_of_four_drives() {
+    let space = space(&family_machine("four-drive-balanced"));
+    let outline = space.outline(2.4);
+    // The reference counts cells of a grid that random poses fall into, some of them cut by the boundary. Grids of 2, 4
+    // and 8 mm give 1.3588, 1.3657 and 1.3793 m²: what is left of them at 0 is 1.352.
+    close("area", &[outline.area], &[1.365], 1.2e-2);
+    close("area", &[outline.area], &[1.352], 1e-3);
+    close("extent", &outline.extent, &[-0.469_23, 0.982_23, -0.411_89, 1.283_28], 2e-5);
+    let polygon: f64 = outline.loops.iter().map(|line| signed(line)).sum();
+    close("polygon", &[polygon], &[outline.area], 1e-4);
+    let mut noise = Noise::of(9);
+    for _ in 0..100 {
+        let p = space.place(&space.lift(&any_pose(&mut noise, &space), 2.4));
+        let windings: f64 = outline.loops.iter().map(|line| winding(line, p)).sum();
+        let near = outline.loops.iter().flatten().any(|q| (Vector::new(q[0], q[1]) - p).norm() < 2e-3);
+        assert!(near || (windings - 1.0).abs() < 1e-9, "{p}: {windings}");
+    }
+    for line in &outline.loops {
+        for (i, q) in line.iter().enumerate().step_by(47) {
+            let p = Vector::new(q[0], q[1]);
+            assert!(space.reach(p).is_ok_and(|set| set.contains(2.4)), "{p}");
+            // Beside it, on one side only, there is no pose at this b.
+            let next = line[(i + 1) % line.len()];
+            let along = Vector::new(next[0] - q[0], next[1] - q[1]);
+            let outside = p + Vector::new(along.im, -along.re) / along.norm() * 1e-3;
+            let sharp = along.norm() < 1e-6;
+            assert!(sharp || !space.reach(outside).is_ok_and(|set| set.contains(2.4)), "{p} is inside");
+        }
+    }
+}
+
+fn signed(line: &[[f64; 2]]) -> f64 {
+    let pairs = line.iter().zip(line.iter().cycle().skip(1));
+    pairs.map(|(a, b)| 0.5 * (a[0] * b[1] - a[1] * b[0])).sum()
+}
+
+fn winding(line: &[[f64; 2]], p: Vector) -> f64 {
+    let at = |q: &[f64; 2]| Vector::new(q[0], q[1]) - p;
+    let pairs = line.iter().zip(line.iter().cycle().skip(1));
+    pairs.map(|(a, b)| (at(b) * at(a).conj()).arg()).sum::<f64>() / TAU
+}
+
+/// A machine that has no b says so, and why.
+#[test]
+fn without_b_it_says_why() {
+    let why = PoseSpace::of(&family_machine("four-drive")).expect_err("not balanced");
+    assert!(matches!(why, NoPoseSpace::Varies { .. }), "{why}");
+    assert!(why.to_string().contains("link") && why.to_string().contains("design"), "{why}");
+}
