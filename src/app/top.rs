@@ -40,15 +40,17 @@ fn machines(ui: &mut Ui, session: &Session, changed: bool, commands: &mut Vec<Co
     let tip = if changed {
         "The machine; it differs from the built-in one of this name"
     } else {
-        "The machine: three coaxial drives at B, nine links"
+        "The machine; another one of these brings a task that shows what it is for"
     };
     let combo = ComboBox::from_id_salt("machine").selected_text(&current).width(136.0).truncate();
     let response = combo.show_ui(ui, |ui| {
         for machine in machine::builtins() {
             let chosen = machine == present;
             if ui.selectable_label(chosen, machine.name()).on_hover_text(&machine.spec().summary).clicked() && !chosen {
-                // Everything that was set stays; what was done to the other machine does not.
-                let scenario = Scenario { machine: machine.clone(), edits: Vec::new(), ..session.scenario().clone() };
+                // Everything that was set stays; what was done to the other machine does not. Machines of another kind
+                // bring a task of their own.
+                let alike = || Scenario { machine: machine.clone(), edits: Vec::new(), ..session.scenario().clone() };
+                let scenario = Scenario::builtin(machine.name()).unwrap_or_else(alike);
                 commands.push(Command::Open(Box::new(scenario)));
             }
         }

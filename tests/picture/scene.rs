@@ -5,7 +5,7 @@ use std::fmt::Write;
 use proptest::prelude::*;
 use stillbase::mechanics::joint_forces::Joints;
 use stillbase::mechanics::machine::{builtins, place_of};
-use stillbase::mechanics::planar::{DriveAngles, Pose2, Vector, unit};
+use stillbase::mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector, unit};
 use stillbase::picture::numbers::round_up;
 use stillbase::picture::scene::camera::{Camera, Flat, Orbit};
 use stillbase::picture::scene::exaggeration::{exaggerated, exaggeration};
@@ -322,10 +322,10 @@ proptest! {
 
     /// Every bar's root, tip and pins lie where the machine has them, and its mesh is long enough for all of them.
     #[test]
-    fn bars_are_where_the_machine_has_them(q in prop::array::uniform3(-7.0..7.0), which in 0..builtins().len()) {
+    fn bars_are_where_the_machine_has_them(q in prop::array::uniform4(-7.0..7.0), which in 0..builtins().len()) {
         let machine = &builtins()[which];
         let linkage = Linkage::of(machine);
-        let e = DriveAngles::from(q).units();
+        let e = DriveAngles(PerDrive::from_fn(machine.drives(), |k| q[k])).units();
         let solids = linkage.solids(&e, Pose2::default(), false, &palette(Theme::Dark));
         for (part, link) in machine.resolved_links().iter().zip(machine.links()) {
             let solid = solids.iter().find(|s| s.name == format!("machine/link/{}", link.name)).expect("every link");

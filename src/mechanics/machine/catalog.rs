@@ -11,6 +11,13 @@ static BUILTINS: LazyLock<Vec<Machine>> = LazyLock::new(|| {
     [
         ("nine-link", include_str!("../../../assets/machines/nine-link.toml")),
         ("nine-link-table-1", include_str!("../../../assets/machines/nine-link-table-1.toml")),
+        ("two-drive", include_str!("../../../assets/machines/two-drive.toml")),
+        ("four-drive", include_str!("../../../assets/machines/four-drive.toml")),
+        ("serial-3r", include_str!("../../../assets/machines/serial-3r.toml")),
+        ("nine-link-geared", include_str!("../../../assets/machines/nine-link-geared.toml")),
+        ("counter-rotating", include_str!("../../../assets/machines/counter-rotating.toml")),
+        ("scara", include_str!("../../../assets/machines/scara.toml")),
+        ("space-arm", include_str!("../../../assets/machines/space-arm.toml")),
     ]
     .into_iter()
     .map(|(name, text)| parse(text, name).expect("the machines that come along are valid"))

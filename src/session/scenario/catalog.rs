@@ -5,9 +5,9 @@ use super::definition::Scenario;
 /// How many of the scenarios that come along are the paper's cases; they stand first.
 const CASES: usize = 3;
 
-/// The scenarios that come along: the paper's three cases, what planning can do besides, and plants and bases that are
-/// not ideal.
-const BUILTIN: [(&str, &str); 12] = [
+/// The scenarios that come along: the paper's three cases, what planning can do besides, plants and bases that are not
+/// ideal, and what each of the other machines shows, under the machine's name.
+const BUILTIN: [(&str, &str); 19] = [
     ("case-1", include_str!("../../../assets/scenarios/case-1.toml")),
     ("case-2", include_str!("../../../assets/scenarios/case-2.toml")),
     ("case-3", include_str!("../../../assets/scenarios/case-3.toml")),
@@ -20,6 +20,13 @@ const BUILTIN: [(&str, &str); 12] = [
     ("pick-up", include_str!("../../../assets/scenarios/pick-up.toml")),
     ("friction", include_str!("../../../assets/scenarios/friction.toml")),
     ("wheel", include_str!("../../../assets/scenarios/wheel.toml")),
+    ("two-drive", include_str!("../../../assets/scenarios/two-drive.toml")),
+    ("four-drive", include_str!("../../../assets/scenarios/four-drive.toml")),
+    ("serial-3r", include_str!("../../../assets/scenarios/serial-3r.toml")),
+    ("nine-link-geared", include_str!("../../../assets/scenarios/nine-link-geared.toml")),
+    ("counter-rotating", include_str!("../../../assets/scenarios/counter-rotating.toml")),
+    ("scara", include_str!("../../../assets/scenarios/scara.toml")),
+    ("space-arm", include_str!("../../../assets/scenarios/space-arm.toml")),
 ];
 
 impl Scenario {
