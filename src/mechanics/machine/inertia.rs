@@ -222,9 +222,8 @@ impl Inertia {
         if !self.motors.in_joints() {
             return self.diagonal(k);
         }
-        let all: Vec<usize> = (0..self.drives).filter(|l| self.motors.carries(k, *l)).collect();
-        let row = |i: &usize| all.iter().map(|j| self.constant(*i, *j)).sum::<f64>();
-        all.iter().map(row).sum()
+        let all = || (0..self.drives).filter(|l| self.motors.carries(k, *l));
+        all().map(|i| all().map(|j| self.constant(i, j)).sum::<f64>()).sum()
     }
 
     /// Whether H is its diagonal where all C_kl vanish, and every motor turns its drive alone: τ_k = H_kk q̈_k.
