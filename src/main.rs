@@ -28,7 +28,18 @@ Examples:
 
 Units are SI and angles are radians. Exit status: 0 done, 1 the question has no answer, 2 wrong input.";
 
+/// Graphics libraries that look for a display say on standard error that this is not set. A folder that is not there
+/// has no display either.
+fn name_runtime_folder() {
+    const FOLDER: &str = "XDG_RUNTIME_DIR";
+    if cfg!(target_os = "linux") && std::env::var_os(FOLDER).is_none_or(|folder| folder.is_empty()) {
+        // SAFETY: the program has just begun and has no other thread.
+        unsafe { std::env::set_var(FOLDER, "/nonexistent") };
+    }
+}
+
 fn main() -> ExitCode {
+    name_runtime_folder();
     commands::watch();
     #[cfg(debug_assertions)]
     if let Ok(wanted) = std::env::var("STILLBASE_FAULT") {

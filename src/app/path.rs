@@ -12,6 +12,7 @@ use crate::planning::off_plane::least_reaction::FixedB;
 use crate::planning::timing::TimeLaw;
 use crate::session::scenario::{Change, Corners, Least, Shape, Task, TaskKind, Value};
 use crate::session::{Edit, Session};
+use crate::settings::number::counted;
 
 /// A choice: what stands in a file, what stands on the screen, and what it means.
 type Choice<T> = (T, &'static str, &'static str, &'static str);
@@ -129,7 +130,7 @@ fn time(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>
 /// The points of the path: to type, reorder and remove.
 fn points(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
     if let Some(samples) = &task.samples {
-        note(ui, p, &format!("{} samples give the motion over time", samples.count()));
+        note(ui, p, &format!("the motion over time is given by {}", counted(samples.count(), "sample")));
         return;
     }
     let all = task.points();

@@ -12,6 +12,7 @@ use crate::picture::numbers::signed;
 use crate::picture::scene::palette::{Palette, faded};
 use crate::session::Edit;
 use crate::session::scenario::{Amount, Change, Spread, Value};
+use crate::settings::number::counted;
 use crate::study::tolerance::Study;
 
 const HEIGHT: f32 = 268.0;
@@ -60,8 +61,8 @@ pub fn show(
 
 /// Machines, what is typical, and how far first order can be trusted.
 fn summary(study: &Study) -> String {
-    let numbers = study.parameters;
-    let mut text = format!("{} machines, {numbers} numbers vary in each", study.samples);
+    let [machines, numbers] = [counted(study.samples, "machine"), counted(study.parameters, "number")];
+    let mut text = format!("{machines}, varied in {numbers} each");
     if let Some(yields) = &study.yields {
         let [low, high] = yields.interval.map(|x| 100.0 * x);
         text += &format!("  ·  {:.1} % keep within limits ({low:.1} to {high:.1} %)", 100.0 * yields.share);

@@ -1,4 +1,4 @@
-//! A real window around an [`AppState`], in a winit event loop of our own.
+//! A real window around an [`AppState`].
 
 use std::cell::Cell;
 use std::path::PathBuf;
@@ -6,7 +6,6 @@ use std::rc::Rc;
 use std::time::Instant;
 
 use thiserror::Error;
-use winit::event_loop::{ControlFlow, EventLoop};
 
 use crate::app::jobs::Threads;
 use crate::app::{AppState, Command, Preferences};
@@ -55,10 +54,6 @@ pub fn run(scenario: Scenario, theme: Option<Theme>) -> Result<(), WindowError> 
     if app_state.view_state().message.is_none() && app_state.session().run().waiting().is_none() {
         app_state.carry_out(Command::TogglePlay);
     }
-    let event_loop = EventLoop::<eframe::UserEvent>::with_user_event()
-        .build()
-        .map_err(|e| WindowError::NoDisplay(last_clause(&e.to_string())))?;
-    event_loop.set_control_flow(ControlFlow::Wait);
     let options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("Stillbase")
@@ -75,10 +70,16 @@ pub fn run(scenario: Scenario, theme: Option<Theme>) -> Result<(), WindowError> 
         seen.set(true);
         Ok(Box::new(app))
     });
-    let mut app = eframe::create_native("stillbase", options, create, &event_loop);
-    event_loop.run_app(&mut app).map_err(|e| WindowError::Failed(e.to_string()))?;
-    // Where eframe cannot draw, it ends its loop as if the window had been closed, and keeps the reason to itself.
-    if opened.get() { Ok(()) } else { Err(WindowError::NoAdapter(what_is_missing())) }
+    match eframe::run_native("stillbase", options, create) {
+        Err(eframe::Error::WinitEventLoop(why)) if !opened.get() => {
+            Err(WindowError::NoDisplay(last_clause(&why.to_string())))
+        }
+        Err(why @ eframe::Error::Winit(_)) => Err(WindowError::Failed(why.to_string())),
+        // Where eframe cannot draw, it may end as if the window had been closed, and keep the reason to itself.
+        _ if !opened.get() => Err(WindowError::NoAdapter(what_is_missing())),
+        Err(why) => Err(WindowError::Failed(why.to_string())),
+        Ok(()) => Ok(()),
+    }
 }
 
 /// Why nothing could be drawn on a display that is there.

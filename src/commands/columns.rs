@@ -9,7 +9,7 @@ use stillbase::mechanics::machine::Machine;
 use stillbase::planning::curves::Samples;
 use stillbase::planning::curves::given::MAX_SAMPLES;
 use stillbase::planning::curves::spline::FEWEST;
-use stillbase::settings::number::Short;
+use stillbase::settings::number::{Short, counted};
 use stillbase::settings::range::{clipped, shortened};
 
 use super::failure::Failure;
@@ -96,7 +96,10 @@ pub fn samples(
         }
     }
     if rows.len() < FEWEST {
-        return Err(Failure::wrong_input(format!("{file}: {} rows of numbers: want at least {FEWEST}", rows.len())));
+        return Err(Failure::wrong_input(format!(
+            "{file}: {} of numbers: want at least {FEWEST}",
+            counted(rows.len(), "row")
+        )));
     }
     if let Some((i, step, usual)) = gap(&rows).filter(|_| !gaps) {
         let why = format!(

@@ -4,15 +4,15 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::{Serialize, Serializer};
-use stillbase::files::{NewFile, WriteError, check_new};
+use stillbase::files::{NewFile, WriteError};
 use stillbase::session::scenario::Scenario;
 use stillbase::study::comparison::{COLUMNS, Compared, Summary, alternatives};
 
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, Table};
-use stillbase::settings::number::fixed;
+use super::output::{Format, Table, check_output};
+use stillbase::settings::number::{fixed, nine_digits};
 
 /// Compare runs: one task done in several ways, or any scenarios, by what reaches the base and what it costs
 ///
@@ -82,13 +82,10 @@ impl Serialize for Row {
 impl Compare {
     /// Runs all and prints a row of each.
     pub fn run(&self) -> Result<(), Failure> {
-        if let Some(file) = &self.output {
-            check_new(file, self.force)?;
-            let known = ["csv", "rrd"].iter().any(|e| file.extension().is_some_and(|x| x == *e));
-            if !known {
-                return Err(Failure::wrong_input("want a name that ends in .csv or .rrd").of(file.display()));
-            }
-        }
+        let ending = match &self.output {
+            Some(file) => check_output(file, self.force, &["csv", "rrd"])?,
+            None => "",
+        };
         let scenarios = self.scenarios()?;
         let (mut runs, mut good) = (Vec::new(), Vec::new());
         for (way, scenario) in scenarios {
@@ -110,7 +107,7 @@ impl Compare {
             return Err(Failure::NoAnswer(format!("none of these can be done: {why}")));
         }
         match &self.output {
-            Some(file) if file.extension().is_some_and(|x| x == "rrd") => self.record(&good, file)?,
+            Some(file) if ending == "rrd" => self.record(&good, file)?,
             Some(file) => self.csv(&runs, file)?,
             None => {}
         }
@@ -156,12 +153,12 @@ impl Compare {
             csv::ErrorKind::Io(source) => WriteError::Failed { file: file.into(), source }.into(),
             other => Failure::wrong_input(format!("CSV: {other:?}")),
         };
-        let heads = COLUMNS.iter().map(|c| format!("{} {}", c.key, c.unit));
+        let heads = COLUMNS.iter().map(|c| format!("{} {}", c.name(), c.unit));
         let head = ["scenario".to_owned()].into_iter().chain(heads).chain(["reactionless".into(), "refused".into()]);
         writer.write_record(head).map_err(failed)?;
         for row in runs {
             let values = COLUMNS.iter().map(|c| match &row.outcome {
-                Ok(summary) => (c.value)(summary).map_or_else(String::new, |x| (x + 0.0).to_string()),
+                Ok(summary) => (c.value)(summary).map_or_else(String::new, nine_digits),
                 Err(_) => String::new(),
             });
             let (verdict, why) = match &row.outcome {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use clap::builder::PossibleValue;
 use serde::Serialize;
-use stillbase::files::{check_new, write_new};
+use stillbase::files::write_new;
 use stillbase::mechanics::balance::{self, Preset};
 use stillbase::mechanics::machine::{Inertia, Machine, to_toml};
 
@@ -14,7 +14,7 @@ use super::check::Balance;
 use super::exit::say;
 use super::failure::Failure;
 use super::input::MachineArgument;
-use super::output::{Format, Table};
+use super::output::{Format, Table, check_output};
 use stillbase::settings::number::fixed;
 
 /// Place the links' centres of mass so that the base feels no force and the mass matrix is invariant, Eq. (10)
@@ -82,7 +82,7 @@ impl Design {
         let machine = self.machine.load()?;
         let (penalty, by) = self.penalty(machine.links().len())?;
         if let Some(file) = &self.output {
-            check_new(file, self.force)?;
+            check_output(file, self.force, &["toml"])?;
         }
         let designed = balance::design(&machine, &penalty)?;
         let answer = Answer {

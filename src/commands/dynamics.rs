@@ -14,7 +14,7 @@ use stillbase::settings::range::shortened;
 use super::failure::Failure;
 use super::input::{MachineArgument, read};
 use super::output::{Format, Table};
-use stillbase::settings::number::fixed;
+use stillbase::settings::number::{counted, fixed};
 
 /// Torques of the motors, and what the base feels, of given states of motion, Eqs (1) to (6)
 ///
@@ -114,7 +114,8 @@ pub fn states_in(text: &str, file: &str, machine: &Machine) -> Result<Vec<[PerDr
         .map(|(i, (state, line))| {
             let take = |name: &str, values: &[f64]| {
                 PerDrive::from_slice(values).filter(|v| v.len() == n).ok_or_else(|| {
-                    wrong(line, format!("state {}: {name} has {} numbers: want {n}, one a drive", i + 1, values.len()))
+                    let count = counted(values.len(), "number");
+                    wrong(line, format!("state {}: {name} has {count}: want {n}, one a drive", i + 1))
                 })
             };
             Ok([take("q", &state.q)?, take("qd", &state.qd)?, take("qdd", &state.qdd)?])

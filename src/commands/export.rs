@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use serde::Serialize;
-use stillbase::files::{check_new, write_new};
+use stillbase::files::write_new;
 use stillbase::mechanics::dynamics::{Surroundings, inverse};
 use stillbase::mechanics::machine::Inertia;
 use stillbase::mechanics::planar::Vector;
@@ -14,9 +14,9 @@ use stillbase::session::{Run, replay_if, settled};
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{Settings, scenario};
-use super::output::{Format, check_size};
+use super::output::{Format, check_output, check_size};
 use super::simulate::trusted;
-use stillbase::settings::number::fixed;
+use stillbase::settings::number::{counted, fixed};
 
 /// Write a motion as CSV at the rate of a controller: angles, rates, accelerations, feed-forward torques
 ///
@@ -86,7 +86,7 @@ impl Export {
     /// Writes the motion as CSV.
     pub fn run(&self) -> Result<(), Failure> {
         if let Some(file) = &self.output {
-            check_new(file, self.force)?;
+            check_output(file, self.force, &["csv"])?;
         }
         let scenario = scenario(&self.scenario, &self.settings)?;
         let name = scenario.name.clone();
@@ -95,7 +95,10 @@ impl Export {
             What::Reference => {
                 let (start, later) = settled(&scenario)?;
                 if later > 0 {
-                    say(format!("note: {later} edits after the start are no part of the reference; --what simulated"));
+                    say(format!(
+                        "note: the reference leaves out {} after the start; --what simulated",
+                        counted(later, "edit")
+                    ));
                 }
                 if start.base.moves() {
                     say("note: tau_ff is of the model on a fixed base; --what simulated gives what control asks for");
@@ -135,7 +138,7 @@ impl Export {
                 if self.format.json {
                     self.format.print(&answer, |_| String::new())?;
                 }
-                say(format!("wrote {}, {} rows", file.display(), answer.rows.len()));
+                say(format!("wrote {}, {}", file.display(), counted(answer.rows.len(), "row")));
             }
             None => self.format.print(&answer, |_| csv)?,
         }

@@ -9,6 +9,7 @@ use stillbase::mechanics::joint_forces::JointsError;
 use stillbase::mechanics::machine::{FileError, MachineError};
 use stillbase::planning::pose_constant::{PlaneError, Unreachable};
 use stillbase::planning::pose_space::NoPoseSpace;
+use stillbase::planning::timing::TimeError;
 use stillbase::session::Refusal;
 use stillbase::session::scenario::ScenarioError;
 
@@ -114,8 +115,13 @@ impl From<Refusal> for Failure {
                 Self::NoAnswer(_) => Self::NoAnswer(whole),
                 _ => Self::WrongInput(whole),
             },
+            // What limits the motion has yet to be said.
+            Refusal::Time(TimeError::NoJerkLimit | TimeError::Unlimited { .. } | TimeError::SpeedOnly) => {
+                Self::wrong_input(e)
+            }
             Refusal::NoPlanes(_)
             | Refusal::NoPoseConstant(_)
+            | Refusal::NoWay(_)
             | Refusal::Unreachable { .. }
             | Refusal::Path(_)
             | Refusal::Time(_)

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
-use stillbase::files::check_new;
 use stillbase::recording::{Options, Pictures, Progress, RecordError, Recording, record};
 use stillbase::session::scenario::Scenario;
 use stillbase::settings::text::plain;
@@ -13,7 +12,7 @@ use stillbase::settings::text::plain;
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{Settings, scenario};
-use super::output::{Format, Table};
+use super::output::{Format, Table, check_output};
 use super::simulate::trusted;
 use stillbase::settings::number::fixed;
 
@@ -77,6 +76,9 @@ struct Row {
     #[serde(skip_serializing_if = "Option::is_none")]
     peak_moment_past_wheel: Option<f64>,
     reactionless: bool,
+    /// The limit of a drive that is passed by most, and by what factor.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    over: Option<(String, f64)>,
     #[serde(skip_serializing_if = "Option::is_none")]
     audit_failed: Option<String>,
     verdict: String,
@@ -97,6 +99,7 @@ impl From<Recording> for Row {
             peak_base_moment: recording.peak_base_moment,
             peak_moment_past_wheel: recording.verdict.past_wheel,
             reactionless: recording.reactionless,
+            over: recording.verdict.over.map(|(limit, factor)| (limit.to_string(), factor)),
             audit_failed: recording.verdict.fault.as_ref().map(ToString::to_string),
             verdict: recording.verdict.sentence(),
             answer: recording.verdict.answer(),
@@ -109,7 +112,7 @@ impl Headless {
     /// Records and prints the peaks.
     pub fn run(&self) -> Result<(), Failure> {
         let scenarios = self.scenarios()?;
-        check_new(&self.output, self.force)?;
+        check_output(&self.output, self.force, &["rrd"])?;
         let [width, height] = self.size;
         let pictures = self.fps.map(|fps| Pictures { fps, width, height, pin_forces: self.pin_forces });
         let recordings = record_with_bar(&scenarios, &self.output, &Options { pictures, force: self.force })?;

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use std::path::{Path as FilePath, PathBuf};
 
 use clap::Args;
-use stillbase::files::{check_new, finish_all, made};
+use stillbase::files::{finish_all, made};
 use stillbase::mechanics::dynamics::Surroundings;
 use stillbase::mechanics::machine::{Inertia, Machine};
 use stillbase::mechanics::planar::Vector;
@@ -22,7 +22,7 @@ use super::columns::{Content, Read, samples};
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, above_zero, pose_constant, read};
-use super::output::Format;
+use super::output::{Format, check_output};
 use answer::Answer;
 use judge::Judge;
 use stillbase::settings::number::fixed;
@@ -84,7 +84,7 @@ impl Import {
     pub fn run(&self) -> Result<(), Failure> {
         let files = self.output.as_deref().map(|file| [file.to_owned(), beside(file)]);
         for file in files.iter().flatten() {
-            check_new(file, self.force)?;
+            check_output(file, self.force, &["toml"])?;
         }
         let machine = self.settings.apply(stillbase::files::machine(&self.machine, None)?)?;
         let name = self.file.display().to_string();

@@ -9,8 +9,9 @@ use stillbase::mechanics::planar::Vector;
 use stillbase::planning::pose_constant::plane_map;
 use stillbase::planning::pose_space::PoseSpace;
 use stillbase::planning::reactionless::{BSet, NoReach, PlaneMap};
-use stillbase::session::scenario::{Change, PLACE, POSE_CONSTANT, Scenario};
+use stillbase::session::scenario::{Change, PLACE, POSE_CONSTANT, Scenario, key_of};
 use stillbase::settings::change;
+use stillbase::settings::key::Key;
 use stillbase::settings::range::Range;
 use stillbase::settings::text::MOST_BYTES;
 
@@ -51,9 +52,23 @@ impl Settings {
         if self.pairs.is_empty() {
             return Ok(machine);
         }
-        machine
-            .set_all(self.pairs.iter().map(|(k, v)| (k.as_str(), v.as_str())))
-            .map_err(|e| Failure::wrong_input(e).of("--set"))
+        let machine = machine.set_all(self.pairs.iter().map(|(k, v)| (k.as_str(), v.as_str())));
+        let machine = machine.map_err(|e| Failure::wrong_input(e).of("--set"))?;
+        match self.pairs.iter().find(|(key, value)| value != change::DEFAULT && !machine.uses(key, false)) {
+            Some((key, _)) => Err(no_use(key, key_of(key).map_or("", |key| key.when)).of("--set")),
+            None => Ok(machine),
+        }
+    }
+
+    /// Refuses settings of tolerances, which have no use where no machines are drawn.
+    ///
+    /// # Errors
+    /// If there is one.
+    pub fn none_of_tolerance(&self) -> Result<(), Failure> {
+        let given = |(key, value): &&(String, String)| {
+            key.split('.').next() == Some("tolerance") && ![change::DEFAULT, Key::NONE].contains(&value.as_str())
+        };
+        self.pairs.iter().find(given).map_or(Ok(()), |(key, _)| Err(no_use(key, STUDY).of("--set")))
     }
 
     /// Whether a key is set.
@@ -88,11 +103,28 @@ impl MachineArgument {
     }
 }
 
+/// A scenario by name or file, with settings laid over it before anything is planned, for a command that draws no
+/// machines: what it says of tolerances is told to have no use.
+///
+/// # Errors
+/// As [`studied`], or if a setting is of tolerances.
+pub fn scenario(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
+    let scenario = studied(name, settings)?;
+    settings.none_of_tolerance()?;
+    if !scenario.tolerance.is_empty() {
+        say(format!("note: {}: tolerance has no use here: want {STUDY}", scenario.name));
+    }
+    Ok(scenario)
+}
+
+/// Where tolerances count.
+const STUDY: &str = "the command tolerance, or the window";
+
 /// A scenario by name or file, with settings laid over it before anything is planned.
 ///
 /// # Errors
 /// If there is no such scenario or setting, or what comes out is not valid.
-pub fn scenario(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
+pub fn studied(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
     let scenario = set(stillbase::files::scenario(name)?, settings)?;
     for (path, want) in scenario.idle_keys() {
         say(format!("note: {}: {path} has no use there: want {want}", scenario.name));
@@ -109,7 +141,8 @@ pub fn set(scenario: Scenario, settings: &Settings) -> Result<Scenario, Failure>
     let scenario = scenario.with(&change).map_err(|why| Failure::wrong_input(why).of("--set"))?;
     scenario.check("--set")?;
     for (path, value) in change::leaves(&change) {
-        if let Some(want) = scenario.idle(&path).filter(|_| value.as_str() != Some(change::DEFAULT)) {
+        let freed = value.as_str().is_some_and(|word| [change::DEFAULT, Key::NONE].contains(&word));
+        if let Some(want) = scenario.idle(&path).filter(|_| !freed) {
             return Err(no_use(&path, want).of("--set"));
         }
     }

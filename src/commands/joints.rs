@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::Serialize;
-use stillbase::files::check_new;
 use stillbase::mechanics::joint_forces::{AxialMoments, Joints, KEPT, Pin, PinPeak};
 use stillbase::mechanics::machine::{Inertia, Machine};
 use stillbase::mechanics::planar::cross;
@@ -15,9 +14,9 @@ use super::csv_file::Csv;
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, Table, check_size};
+use super::output::{Format, Table, check_output, check_size};
 use super::simulate::trusted;
-use stillbase::settings::number::{fixed, shown};
+use stillbase::settings::number::{counted, fixed, shown};
 
 /// Say what every pin and bearing carries over a run, how near change points come, and what tilts the base
 #[derive(Args)]
@@ -173,7 +172,7 @@ impl JointsCommand {
             say(format!("a run keeps the first {KEPT} of {} pins; the others are left out", joints.pins().len()));
         }
         if let Some(file) = &self.output {
-            check_new(file, self.force)?;
+            check_output(file, self.force, &["csv"])?;
         }
         let n = machine.drives();
         let mut totals = Extremes::new(pins.len(), Inertia::pairs(n).count());
@@ -267,12 +266,17 @@ fn human(answer: &Answer) -> String {
         pins.row([pin.name.clone(), pin.to.clone(), shown(pin.peak, 3), fixed(pin.time, 3), shown(pin.mean, 3)]);
         undefined = undefined.max(pin.undefined_steps);
     }
-    let mut text =
-        format!("{}, {} steps; the pin that carries most is {}\n\n", answer.scenario, answer.steps, answer.worst);
+    let mut text = format!(
+        "{}, {}; the pin that carries most is {}\n\n",
+        answer.scenario,
+        counted(answer.steps, "step"),
+        answer.worst
+    );
     text += &pins.to_string();
     if undefined > 0 {
         text += &format!(
-            "\n{undefined} steps lie at a change point, where forces are undefined; peak and mean leave them out\n"
+            "\nat a change point forces are undefined: peak and mean leave out {} there\n",
+            counted(undefined, "step")
         );
     }
     if !answer.transmission.is_empty() {

@@ -44,12 +44,18 @@ struct Row {
     /// What stands there if nothing is given; none for what has to be given.
     #[serde(skip_serializing_if = "Option::is_none")]
     default: Option<&'static str>,
+    /// What counts where nothing is given, if there is no default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    instead: Option<&'static str>,
     words: &'static str,
     /// What it wants to have an effect.
     #[serde(skip_serializing_if = "Option::is_none")]
     when: Option<&'static str>,
     #[serde(skip)]
     part: &'static str,
+    /// The default as a person reads it.
+    #[serde(skip)]
+    usual: String,
 }
 
 impl Keys {
@@ -67,9 +73,11 @@ impl Keys {
                 holds: key.holds.to_string(),
                 unit: some(key.unit()),
                 default: some(key.default),
+                instead: some(key.instead),
                 words: key.words,
                 when: some(key.when),
                 part,
+                usual: key.usual(),
             })
         };
         let keys: Vec<Row> = KEYS.iter().flat_map(of_part).collect();
@@ -91,6 +99,9 @@ fn list(rows: &[Row]) -> String {
         let _ = writeln!(text, "{}{}\n", if text.is_empty() { "" } else { "\n" }, first.part);
         for row in rows {
             let _ = writeln!(text, "  {} = {}", row.key, row.default.unwrap_or("(has to be given)"));
+            if let Some(instead) = row.instead {
+                let _ = writeln!(text, "      Without it: {instead}.");
+            }
             let _ = writeln!(text, "      {}\n      Holds {}.", row.words, row.holds);
             if let Some(when) = row.when {
                 let _ = writeln!(text, "      Has an effect with {when}.");
@@ -106,7 +117,7 @@ fn page(rows: &[Row]) -> String {
         "# Every setting\n\nEach key is the same in a scenario's file, after `--set` on the command line, in an edit of a \
          saved session, and in the window under *All settings*. In a key, `*` stands for a name: of a link, a named length, \
          a drive or a relative angle of the machine. The word `default` takes a key out, so that what stands there by \
-         default returns. Numbers outside their range are refused, with the range; a key without an effect is told.\n\n\
+         default returns; so does `none` where that is the default. Numbers outside their range are refused, with the range; a key without an effect is told.\n\n\
          `stillbase keys WORD` prints these on the command line. This page is what `stillbase keys --markdown` writes.\n",
     );
     for rows in rows.chunk_by(|a, b| a.part == b.part) {
@@ -114,7 +125,7 @@ fn page(rows: &[Row]) -> String {
         let _ = write!(text, "\n## {}\n\n| key | default | holds | meaning |\n|---|---|---|---|\n", first.part);
         for row in rows {
             let cell = |words: &str| words.replace('|', "\\|");
-            let default = row.default.map_or_else(|| "has to be given".into(), |default| format!("`{default}`"));
+            let default = cell(&row.usual);
             let when = row.when.map_or_else(String::new, |when| format!(" Has an effect with {}.", cell(when)));
             let _ = writeln!(text, "| `{}` | {default} | {} | {}{when} |", row.key, cell(&row.holds), cell(row.words));
         }

@@ -8,7 +8,7 @@ use stillbase::picture::scene::palette::Theme;
 use stillbase::session::scenario::Scenario;
 
 use super::failure::Failure;
-use super::input::{DEFAULT_SCENARIO, Settings, scenario};
+use super::input::{DEFAULT_SCENARIO, Settings, studied};
 
 /// What to open.
 #[derive(Args)]
@@ -44,7 +44,7 @@ impl From<ThemeName> for Theme {
 impl Open {
     /// Shows the scenario, or records it beside the reader.
     pub fn run(&self) -> Result<(), Failure> {
-        let scenario = scenario(&self.scenario, &self.settings).map_err(|failure| match failure {
+        let scenario = studied(&self.scenario, &self.settings).map_err(|failure| match failure {
             // Most likely a command mistyped.
             Failure::WrongInput(why) if !self.scenario.ends_with(".toml") => {
                 Failure::WrongInput(format!("{why}; `stillbase --help` lists the commands"))
@@ -67,6 +67,7 @@ impl Open {
 #[cfg(feature = "record")]
 fn record_instead(scenario: Scenario, why: &str) -> Result<(), Failure> {
     use stillbase::files::free_name;
+    use stillbase::settings::number::counted;
 
     use super::exit::say;
     use super::headless::{record_with_bar, unpictured};
@@ -74,7 +75,7 @@ fn record_instead(scenario: Scenario, why: &str) -> Result<(), Failure> {
     let file = free_name(&scenario.name, "rrd");
     say(format!("{}; recording {} without a window instead", why.trim_end_matches('.'), scenario.name));
     for done in record_with_bar(&[scenario], &file, &unpictured())? {
-        say(format!("wrote {}: {} steps, {}", done.file.display(), done.steps, done.verdict.sentence(),));
+        say(format!("wrote {}: {}, {}", done.file.display(), counted(done.steps, "step"), done.verdict.sentence()));
     }
     Ok(())
 }

@@ -3,9 +3,11 @@
 use std::borrow::Cow;
 use std::fmt::{self, Display};
 use std::io::{self, Write};
+use std::path::Path;
 
 use serde::Serialize;
 use serde_json::ser::Formatter;
+use stillbase::files::check_new;
 use stillbase::session::Refusal;
 use stillbase::settings::text::plain;
 
@@ -113,6 +115,19 @@ impl Display for Table {
         }
         Ok(())
     }
+}
+
+/// Refuses what [`check_new`] does, and a name whose ending promises something else than what is written.
+///
+/// # Errors
+/// Which endings there are.
+pub fn check_output(file: &Path, force: bool, endings: &[&'static str]) -> Result<&'static str, Failure> {
+    check_new(file, force)?;
+    let own = file.extension().unwrap_or_default();
+    endings.iter().copied().find(|ending| own.eq_ignore_ascii_case(ending)).ok_or_else(|| {
+        let endings: Vec<String> = endings.iter().map(|ending| format!(".{ending}")).collect();
+        Failure::wrong_input(format!("want a name that ends in {}", endings.join(" or "))).of(file.display())
+    })
 }
 
 /// The most bytes that a command writes, and the most where all of them are held in memory: more are asked for by a

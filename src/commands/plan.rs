@@ -1,11 +1,11 @@
 //! `stillbase plan`
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
-use stillbase::files::{check_new, write_new};
+use stillbase::files::{text, write_new};
 use stillbase::mechanics::machine::Inertia;
 use stillbase::mechanics::planar::Vector;
 use stillbase::planning::following::Blocked;
@@ -13,18 +13,18 @@ use stillbase::planning::off_plane::least_reaction::{FixedB, Verdicts};
 use stillbase::planning::off_plane::price::FloatingBase;
 use stillbase::planning::reactionless::BSet;
 use stillbase::planning::timing::TimeLaw;
-use stillbase::session::scenario::{Change, Scenario, Task, TaskKind};
+use stillbase::session::scenario::{Change, Content, Scenario, Task, TaskKind, content};
 use stillbase::session::{Refusal, Run, settled};
 use stillbase::simulation::plant::PlantDifferences;
 
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{
-    DEFAULT_SCENARIO, PoseConstants, Settings, above_zero, change_task, no_use, point, pose_constant, scenario,
+    DEFAULT_SCENARIO, PoseConstants, Settings, above_zero, change_task, no_use, point, pose_constant, scenario, studied,
 };
-use super::output::{Format, Table};
+use super::output::{Format, Table, check_output};
 use super::reach::OfMend;
-use stillbase::settings::number::fixed;
+use stillbase::settings::number::{counted, fixed};
 
 /// What a plan of a machine is called until a file gives it a name.
 const NAMELESS: &str = "plan";
@@ -269,7 +269,7 @@ impl Plan {
     /// Plans, prints, and writes the scenario if asked.
     pub fn run(&self) -> Result<(), Failure> {
         if let Some(file) = &self.output {
-            check_new(file, self.force)?;
+            check_output(file, self.force, &["toml"])?;
         }
         let mut scenario = self.scenario()?;
         let common = match PoseConstants::of(&scenario.machine) {
@@ -396,6 +396,11 @@ impl Plan {
     fn scenario(&self) -> Result<Scenario, Failure> {
         let as_machine = stillbase::files::machine(&self.name, None);
         let known = Scenario::builtin(&self.name).is_some();
+        // What is written keeps its tolerances for others.
+        let read = if self.output.is_some() { studied } else { scenario };
+        if self.output.is_none() {
+            self.settings.none_of_tolerance()?;
+        }
         let mut scenario = match as_machine {
             Ok(machine) if !known => {
                 if self.points.is_empty() {
@@ -406,10 +411,11 @@ impl Plan {
                 super::input::set(with, &self.settings)?
             }
             // The reader of machines or of scenarios says what is wrong with the file, by what it was meant to be.
+            Err(wrong) if meant(&self.name) == Some(Content::Machine) => return Err(wrong.into()),
             _ => {
-                let (start, later) = settled(&scenario(&self.name, &self.settings)?)?;
+                let (start, later) = settled(&read(&self.name, &self.settings)?)?;
                 if later > 0 {
-                    say(format!("note: {later} edits after the start are no part of the plan"));
+                    say(format!("note: the plan leaves out {} after the start", counted(later, "edit")));
                 }
                 start
             }
@@ -464,6 +470,11 @@ impl Plan {
         }
         Ok(scenario)
     }
+}
+
+/// What a file is meant to be, if there is one of that name.
+fn meant(name: &str) -> Option<Content> {
+    if Scenario::builtin(name).is_some() { None } else { content(&text::read(Path::new(name)).ok()?) }
 }
 
 fn table(answer: &Answer) -> String {

@@ -5,7 +5,6 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::{Serialize, Serializer};
-use stillbase::files::check_new;
 use stillbase::session::replay_if;
 use stillbase::session::scenario::Scenario;
 use stillbase::session::verdict::Verdict;
@@ -16,8 +15,8 @@ use super::csv_file::Csv;
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, check_size};
-use stillbase::settings::number::fixed;
+use super::output::{Format, check_output, check_size};
+use stillbase::settings::number::{counted, fixed};
 
 /// Run a scenario and print every signal over time as CSV
 #[derive(Args)]
@@ -69,6 +68,9 @@ struct Outcome {
     miss: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     past_limit: Option<Past>,
+    /// The limit of a drive that is passed by most, and by what factor.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    over: Option<(String, f64)>,
     moved: bool,
     reactionless: bool,
     #[serde(skip)]
@@ -108,6 +110,7 @@ impl Outcome {
             sentence: verdict.sentence(),
             remarks: verdict.remarks().into_iter().map(|r| r.long).collect(),
             past_limit: verdict.past_limit.map(|(angle, by)| Past { angle, by }),
+            over: verdict.over.map(|(limit, factor)| (limit.to_string(), factor)),
             moved: verdict.moved,
             reactionless: verdict.reactionless,
             audit: Columns(
@@ -142,7 +145,7 @@ impl Simulate {
         let scenario = scenario(&self.scenario, &self.settings)?;
         let table = signals(&scenario.machine);
         if let Some(file) = &self.output {
-            check_new(file, self.force)?;
+            check_output(file, self.force, &["csv"])?;
         }
         // Begun with the first step: what cannot start prints nothing.
         let mut csv = None;
@@ -172,9 +175,9 @@ impl Simulate {
         if !self.format.json {
             let past = verdict.peak_moment_past_wheel;
             say(format!(
-                "{}: {} steps, peak |n_B| {} N m,{} peak |f_B| {} N, reactionless: {}",
+                "{}: {}, peak |n_B| {} N m,{} peak |f_B| {} N, reactionless: {}",
                 scenario.name,
-                verdict.steps,
+                counted(verdict.steps, "step"),
                 fixed(verdict.peak_base_moment, 6),
                 past.map_or_else(String::new, |n| format!(" past the wheel {} N m,", fixed(n, 6))),
                 fixed(verdict.peak_base_force, 6),

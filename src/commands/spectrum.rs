@@ -4,16 +4,16 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::Serialize;
-use stillbase::files::{NewFile, WriteError, check_new};
+use stillbase::files::{NewFile, WriteError};
 use stillbase::session::felt;
 use stillbase::study::spectrum::{JitterLimit, JitterVerdict, Spectrum, SpectrumError, Window};
 
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, Table, yes};
+use super::output::{Format, Table, check_output, yes};
 use super::simulate::trusted;
-use stillbase::settings::number::{fixed, shown};
+use stillbase::settings::number::{counted, fixed, shown};
 
 /// Say at which frequencies a run shakes its base, and whether that keeps within jitter limits
 ///
@@ -115,7 +115,7 @@ impl SpectrumOf {
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = scenario(&self.scenario, &self.settings)?;
         if let Some(file) = &self.output {
-            check_new(file, self.force)?;
+            check_output(file, self.force, &["csv"])?;
         }
         if scenario.base.wheel.is_some() {
             say(format!("note: {}: n_B is what the reaction wheel leaves of it for the base", scenario.name));
@@ -203,8 +203,8 @@ fn text(answer: &Answer, spectra: &Axes<Spectrum>) -> String {
         let row = [name.to_owned(), unit.to_owned()].into_iter().chain(sizes);
         table.row(row.chain(frequencies));
     }
-    let (samples, step, resolution) = (answer.samples, answer.step, fixed(answer.resolution, 3));
-    let head = format!("{} · {samples} samples by {step} s, {window}, lines by {resolution} Hz", answer.scenario);
+    let (samples, step, resolution) = (counted(answer.samples, "sample"), answer.step, fixed(answer.resolution, 3));
+    let head = format!("{} · {samples} by {step} s, {window}, lines by {resolution} Hz", answer.scenario);
     let mut verdicts =
         Table::new(["limit", "unit", "kept", "worst at Hz", "density", "limit", "density/limit"]).with_words(1);
     let mut any = false;

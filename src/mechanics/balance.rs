@@ -17,6 +17,7 @@ use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
 use crate::mechanics::machine::{Inertia, Machine, MachineError};
+use crate::settings::number::counted;
 
 /// Penalties by name, for machines of nine links.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,7 +56,7 @@ impl Preset {
 #[derive(Debug, Error)]
 pub enum DesignError {
     /// The number of penalties is not the number of links.
-    #[error("{count} penalties for {links} links: want one a link")]
+    #[error("{count} penalties for {}: want one a link", counted(links, "link"))]
     Penalties {
         /// Penalties that were given.
         count: usize,

@@ -7,6 +7,7 @@ use crate::mechanics::planar::Vector;
 use crate::planning::reactionless::{
     AngleDefinition, AngleLimit, BSet, Boundary, Decimal, NoReach, NotAPlaneMap, PlaneMap, PlanePoint, Poses, metres,
 };
+use crate::settings::number::counted;
 
 /// The reactionless planes of a machine, with the boundary of their workspace.
 #[derive(Clone, Debug)]
@@ -41,8 +42,10 @@ pub enum Reach {
 pub enum PlaneError {
     /// Not three drives.
     #[error(
-        "this machine has {drives} drives and {angles} relative angles: dragging on a plane, sliding b and tasks off the \
-         plane are there for three drives and two angles"
+        "this machine has {} and {}: dragging on a plane, sliding b and tasks off the plane are there for three drives and \
+         two angles",
+        counted(drives, "drive"),
+        counted(angles, "relative angle")
     )]
     Shape {
         /// Drives of the machine.

@@ -103,9 +103,9 @@ impl Layout<'_> {
     /// by its identifier, also from one recording to the next, and shows nothing where that turns out to be of another
     /// class.
     fn id(&self, class: &str, words: &[&str]) -> Uuid {
-        let mut hash = Hash::new();
+        let mut hash = Hash::default();
         [class, &self.tab].iter().chain(words).for_each(|word| hash.add(word));
-        Uuid::from_u128(hash.0 & !VERSION_BITS | VERSION)
+        Uuid::from_u128(hash.number() & !VERSION_BITS | VERSION)
     }
 
     fn container(

@@ -205,7 +205,7 @@ fn steps(scenario: &Scenario) -> u64 {
 
 /// What tells this recording from others: everything that goes into it.
 fn digest(scenarios: &[Scenario], options: &Options) -> u128 {
-    let mut hash = Hash::new();
+    let mut hash = Hash::default();
     hash.add(env!("CARGO_PKG_VERSION"));
     for scenario in scenarios {
         hash.add(&scenario.to_toml());
@@ -214,7 +214,7 @@ fn digest(scenarios: &[Scenario], options: &Options) -> u128 {
     if let Some(p) = options.pictures {
         hash.add(&format!("{} {} {} {}", p.fps, p.width, p.height, p.pin_forces));
     }
-    hash.0
+    hash.number()
 }
 
 fn write(

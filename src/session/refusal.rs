@@ -14,7 +14,7 @@ use crate::planning::reactionless::Decimal;
 use crate::planning::timing::TimeError;
 use crate::session::scenario::{MAX_FRAMES, MAX_STEPS, MAX_TIME, SettingError, ordinal};
 use crate::settings::number::Short;
-use crate::settings::range::{Check, Want};
+use crate::settings::range::{Check, Want, refused};
 
 /// Why a scenario cannot start or an edit cannot apply; nothing has changed then.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -53,6 +53,9 @@ pub enum Refusal {
     /// The task asks for something that does not fit together.
     #[error("{0}")]
     Task(String),
+    /// What is asked for fits together, but there is no such motion.
+    #[error("{0}")]
+    NoWay(String),
     /// b has no price here.
     #[error(transparent)]
     Price(#[from] PriceError),
@@ -92,7 +95,7 @@ pub enum Refusal {
         value: String,
     },
     /// A number out of range.
-    #[error("{what} is {}: want {want}", Short(*value))]
+    #[error("{}", refused(what, *value, want))]
     OutOfRange {
         /// Key of the number.
         what: String,

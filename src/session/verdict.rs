@@ -6,16 +6,21 @@
 //! | n_B, f_B | what the arm transmits to its base: by these it is called reactionless |
 //! | moment past the wheel | what a reaction wheel leaves of n_B for the base: by this the base feels nothing |
 
+use crate::mechanics::planar::PerDrive;
+use crate::planning::timing::limits::{DriveLimit, LimitedQuantity, Limits};
 use crate::session::scenario::Scenario;
-use crate::settings::number::significant;
+use crate::settings::number::{Short, fixed, significant};
 use crate::simulation::audit::AuditFigure;
-use crate::simulation::frame::{Frame, Phase, Reach};
+use crate::simulation::frame::{Frame, Peaks, Phase, Reach};
 
 /// Farther than this from its target an end effector misses it, m.
 pub const MISS: f64 = 1e-4;
 
 /// By more than this a joint passes its limit, rad.
 pub const PAST: f64 = 1e-6;
+
+/// By more than this factor a drive passes its limit: less is what control adds to a motion that just keeps it.
+const OVER: f64 = 1.0 + 1e-3;
 
 /// A smaller tilting moment is none, N m.
 const TILT: f64 = 1e-9;
@@ -44,10 +49,24 @@ pub struct Verdict {
     pub miss: f64,
     /// A relative joint angle that passed its limit, and by how much at most, rad.
     pub past_limit: Option<(String, f64)>,
+    /// The limit of a drive on torque or speed that was passed by most, and by what factor.
+    pub over: Option<(DriveLimit, f64)>,
     /// The first audit that failed: then nothing of this can be trusted.
     pub fault: Option<AuditFigure>,
+    /// The end of the run and when the payload would be picked up, s, where that is not before.
+    never_held: Option<[f64; 2]>,
     /// Whether the guide has come to its end, where it can.
     ended: bool,
+}
+
+/// The limit on torque or speed that peaks pass by most.
+fn over(limits: &Limits, peaks: &Peaks) -> Option<(DriveLimit, f64)> {
+    let of = |quantity, peaks: PerDrive| {
+        let factors = PerDrive::from_fn(peaks.len(), |k| peaks[k] / limits.on(quantity)[k]);
+        (0..peaks.len()).map(move |drive| (DriveLimit { quantity, drive }, factors[drive]))
+    };
+    let all = of(LimitedQuantity::Torque, peaks.torque).chain(of(LimitedQuantity::Speed, peaks.rate));
+    all.filter(|(_, factor)| *factor > OVER).max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// Something to know beside a verdict: in two or three words, and in a sentence.
@@ -68,7 +87,8 @@ impl Verdict {
         Self {
             reactionless: peaks.is_reactionless() && frame.fault().is_none(),
             base_feels_nothing: peaks.base_feels_nothing(),
-            moved: peaks.rate > STILL,
+            moved: peaks.rate.iter().any(|rate| *rate > STILL),
+            over: over(&Limits::of(&scenario.machine), peaks),
             arm_moment: peaks.arm_moment,
             past_wheel: scenario.base.wheel.map(|_| peaks.moment),
             force: peaks.force,
@@ -76,6 +96,9 @@ impl Verdict {
             miss: (frame.end_effector - frame.target.at).norm(),
             past_limit: (by > PAST).then(|| (name(angle), by)),
             fault: frame.fault(),
+            never_held: Some([frame.time, scenario.plant.payload.from]).filter(|[end, from]| {
+                scenario.plant.payload.is_some() && *from >= end - 0.5 * scenario.step && *from > 0.0
+            }),
             // For a target that cannot be reached, the window says so at the target.
             ended: frame.phase == Phase::Rest && !matches!(frame.target.reach, Reach::Outside { .. }),
         }
@@ -130,6 +153,14 @@ impl Verdict {
         if over && !self.moved {
             add("never moved", "the arm never moved, so this says nothing of how it moves".into());
         }
+        if let Some([end, from]) = self.never_held.filter(|_| over) {
+            let long = format!(
+                "plant.payload.from is {} s, and the run ends at {} s: nothing is picked up",
+                Short(from),
+                fixed(end, 3)
+            );
+            add("payload never held", long);
+        }
         if let Some(left) = self.past_wheel.filter(|_| self.base_feels_nothing && !self.reactionless) {
             let all = significant(self.arm_moment);
             let long = format!(
@@ -147,6 +178,13 @@ impl Verdict {
         }
         if let Some((angle, by)) = &self.past_limit {
             add("past a joint limit", format!("{angle} passes its limit by up to {} rad", significant(*by)));
+        }
+        if let Some((limit, factor)) = self.over {
+            let short = match limit.quantity {
+                LimitedQuantity::Torque => "past a torque limit",
+                _ => "past a speed limit",
+            };
+            add(short, format!("the {limit} goes up to {} times its limit", significant(factor)));
         }
         if over && (self.miss > MISS || self.miss.is_nan()) {
             add("off its target", format!("ends {} m from its target", significant(self.miss)));

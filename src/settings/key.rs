@@ -22,6 +22,8 @@ pub struct Key {
     pub words: &'static str,
     /// When it has an effect; empty for always.
     pub when: &'static str,
+    /// Where nothing is the default: what then counts.
+    pub instead: &'static str,
 }
 
 /// What a key holds.
@@ -48,14 +50,14 @@ pub enum Holds {
 }
 
 impl Key {
-    /// The default of a key that may be absent.
+    /// The default of a key that may be absent; as a value it takes such a key out.
     pub const NONE: &'static str = "none";
     /// The default of a key that has to be given.
     pub const REQUIRED: &'static str = "";
 
     /// A key that always has an effect.
     pub const fn new(path: &'static str, holds: Holds, default: &'static str, words: &'static str) -> Self {
-        Self { path, holds, default, words, when: "" }
+        Self { path, holds, default, words, when: "", instead: "" }
     }
 
     /// A number.
@@ -67,6 +69,21 @@ impl Key {
     #[must_use]
     pub const fn when(self, when: &'static str) -> Self {
         Self { when, ..self }
+    }
+
+    /// The same with what counts where nothing is given.
+    #[must_use]
+    pub const fn instead(self, instead: &'static str) -> Self {
+        Self { instead, ..self }
+    }
+
+    /// Its default as a person reads it: what has to be given, what stands there, or what counts without it.
+    pub fn usual(&self) -> String {
+        match (self.default, self.instead) {
+            (Self::REQUIRED, _) => "has to be given".into(),
+            (default, "") => format!("`{default}`"),
+            (default, instead) => format!("`{default}`: {instead}"),
+        }
     }
 
     /// Whether a path is of this key.
@@ -133,7 +150,7 @@ impl fmt::Display for Holds {
             Self::Points(range) => write!(f, "points x, y, each {range}"),
             Self::Choice(words) => f.write_str(&words.join(", ")),
             Self::Switch => f.write_str("true or false"),
-            Self::Spread(unit) => write!(f, "normal:σ or uniform:half-width, in {unit} or %"),
+            Self::Spread(unit) => write!(f, "normal:σ or uniform:half-width, 0 or more, in {unit} or %"),
             Self::Rows => f.write_str("rows of numbers"),
         }
     }

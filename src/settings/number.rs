@@ -47,3 +47,19 @@ pub fn significant(x: f64) -> String {
         _ => format!("{x:.4}"),
     }
 }
+
+/// A count with what it counts: `1 step`, `2 steps`.
+pub fn counted(count: impl fmt::Display, one: &str) -> String {
+    let count = count.to_string();
+    let plural = if count == "1" { "" } else { "s" };
+    format!("{count} {one}{plural}")
+}
+
+/// A number with at most nine digits that matter; what rounding leaves of zero is zero.
+pub fn nine_digits(x: f64) -> String {
+    if x.abs() < 1e-12 {
+        return "0".into();
+    }
+    let rounded = format!("{x:.8e}").parse().unwrap_or(x);
+    Short(rounded).to_string()
+}

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::fmt;
 
-use crate::settings::number::Short;
+use crate::settings::number::{Short, counted};
 
 /// The numbers from one to another, both included, and their unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,6 +44,13 @@ impl Range {
         self.high
     }
 
+    /// The same with ends of nine digits: a quotient of typed numbers is read better so.
+    #[must_use]
+    pub fn rounded(&self) -> Self {
+        let nine = |x: f64| format!("{x:.8e}").parse().unwrap_or(x);
+        Self { low: nine(self.low), high: nine(self.high), ..*self }
+    }
+
     /// A number of this key, looked at.
     pub fn check(self, key: impl Into<Cow<'static, str>>, value: f64) -> Check {
         Check { key: key.into(), value, ok: self.contains(value), want: Want::Within(self) }
@@ -80,15 +87,43 @@ impl Check {
     pub fn words(key: impl Into<Cow<'static, str>>, value: f64, ok: bool, want: &'static str) -> Self {
         Self { key: key.into(), value, ok, want: Want::Words(want) }
     }
+
+    /// The same in words that depend on other numbers.
+    pub fn said(key: impl Into<Cow<'static, str>>, value: f64, ok: bool, want: impl FnOnce() -> String) -> Self {
+        let want = if ok { Want::Words("") } else { Want::Said(want()) };
+        Self { key: key.into(), value, ok, want }
+    }
+
+    /// A list that holds so many of something, which is too many or too few.
+    pub fn count(key: impl Into<Cow<'static, str>>, count: usize, of: &'static str, want: String) -> Self {
+        Self { key: key.into(), value: count as f64, ok: false, want: Want::Count { of, want } }
+    }
 }
 
 /// What would be right.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Want {
     /// A number in a range.
     Within(Range),
     /// What no range can say, in words.
     Words(&'static str),
+    /// The same with numbers that others decide.
+    Said(String),
+    /// Another number of things in a list.
+    Count {
+        /// What the list holds: `number`, `point`.
+        of: &'static str,
+        /// How many would be right.
+        want: String,
+    },
+}
+
+/// What is wrong with a number under a key, and what would be right.
+pub fn refused(key: &str, value: f64, want: &Want) -> String {
+    match want {
+        Want::Count { of, want } => format!("{key} has {}: want {want}", counted(value, of)),
+        _ => format!("{key} is {}: want {want}", Short(value)),
+    }
 }
 
 impl fmt::Display for Want {
@@ -96,6 +131,7 @@ impl fmt::Display for Want {
         match self {
             Self::Within(range) => range.fmt(f),
             Self::Words(words) => f.write_str(words),
+            Self::Said(want) | Self::Count { want, .. } => f.write_str(want),
         }
     }
 }

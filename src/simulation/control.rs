@@ -17,6 +17,7 @@ use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Pose2, Units, Vector};
 use crate::planning::Reference;
 use crate::settings::key::{Holds, Key};
+use crate::settings::number::{Short, nine_digits};
 use crate::settings::range::{Check, Range};
 use crate::simulation::plant::{Each, MovingBody, is_default};
 
@@ -62,13 +63,13 @@ pub const KEYS: [Key; 7] = [
         "control.kp",
         Holds::PerDrive(Range::new(0.0, 1e10, "s⁻²")),
         "400",
-        "Position gain K_p, at most 1/step²; equal on all drives, errors stay on the plane.",
+        "Position gain K_p, at most 1/step², 1e6 at 1 ms; equal on all drives, errors stay on the plane.",
     ),
     Key::new(
         "control.kd",
         Holds::PerDrive(Range::new(0.0, 2e5, "s⁻¹")),
         "40",
-        "Velocity gain K_d, at most 2/step; equal on all drives, errors stay on the plane.",
+        "Velocity gain K_d, at most 2/step, 2000 at 1 ms; equal on all drives, errors stay on the plane.",
     ),
     Key::new(
         "control.knows_base",
@@ -83,12 +84,7 @@ pub const KEYS: [Key; 7] = [
         "0",
         "How often torques are computed, and held between; a whole number of steps lies between two, and 0 is all the time.",
     ),
-    Key::number(
-        "control.delay",
-        Range::new(0.0, 1.0, "s"),
-        "0",
-        "From reading the encoders to the torque, a whole number of steps.",
-    ),
+    Key::number("control.delay", DELAY, "0", "From reading the encoders to the torque, a whole number of steps."),
     Key::number(
         "control.encoder",
         Range::new(0.0, 1e12, "counts"),
@@ -96,6 +92,8 @@ pub const KEYS: [Key; 7] = [
         "Counts of the encoders in a turn, 16 or more; rates are their differences, and 0 is exact.",
     ),
 ];
+
+const DELAY: Range = Range::new(0.0, 1.0, "s");
 
 /// What a controller computes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -151,11 +149,13 @@ impl Control {
     /// What no range says: how its numbers fit the step, s, and the drives of a machine with `n` of them.
     pub(crate) fn fits(&self, n: usize, step: f64) -> Vec<Check> {
         let mut list = Vec::new();
-        for (key, gain, most, want) in [
-            ("control.kp", self.kp, 1.0 / (step * step), "0 to 1/step² s⁻², one number or one for each drive"),
-            ("control.kd", self.kd, 2.0 / step, "0 to 2/step s⁻¹, one number or one for each drive"),
+        let at_step = |range: Range| format!("{range} at a step of {} s", Short(step));
+        for (key, gain, most) in [
+            ("control.kp", self.kp, Range::new(0.0, 1.0 / (step * step), "s⁻²")),
+            ("control.kd", self.kd, Range::new(0.0, 2.0 / step, "s⁻¹")),
         ] {
-            list.extend(gain.values().into_iter().map(|x| Check::words(key, x, x <= most, want)));
+            let all = gain.values().into_iter();
+            list.extend(all.map(|x| Check::said(key, x, most.contains(x), || at_step(most.rounded()))));
             list.extend(gain.misfit(n, key));
         }
         let whole = |steps: f64| (steps - steps.round()).abs() < 1e-6 * steps.max(1.0);
@@ -164,11 +164,32 @@ impl Control {
         let (delay, encoder) = (self.delay, self.encoder);
         let counts = encoder == 0.0 || encoder >= 16.0;
         list.extend([
-            Check::words("control.rate", self.rate, period, "0, or a rate whose period is a whole number of steps, Hz"),
-            Check::words("control.delay", delay, whole(delay / step), "0 to 1 s, a whole number of steps"),
+            Check::said("control.rate", self.rate, period, || rates(steps, step)),
+            Check::said("control.delay", delay, whole(delay / step), || delays(delay, step)),
             Check::words("control.encoder", encoder, counts, "0, or 16 to 1e12 counts in a turn"),
         ]);
         list
+    }
+}
+
+/// The rates, Hz, nearest to one of a sample every so many steps, of `step` s each.
+fn rates(steps: f64, step: f64) -> String {
+    let every = |steps: f64| nine_digits(1.0 / (steps * step));
+    let near = match steps {
+        steps if steps < 1.0 => format!("at most {} Hz, once in every step", every(1.0)),
+        steps if steps < 1e9 => format!("{} or {} Hz, whole steps apart", every(steps.ceil()), every(steps.floor())),
+        _ => format!("{} Hz or more", every(1e9)),
+    };
+    format!("0, or {near}, at a step of {} s", Short(step))
+}
+
+/// The delays, s, of whole steps nearest to one.
+fn delays(delay: f64, step: f64) -> String {
+    let near = [(delay / step).floor(), (delay / step).ceil()].map(|steps| steps * step);
+    let near = near.into_iter().filter(|x| DELAY.contains(*x)).map(nine_digits).collect::<Vec<_>>();
+    match near.is_empty() {
+        true => DELAY.to_string(),
+        false => format!("{} s, whole steps of {} s", near.join(" or "), Short(step)),
     }
 }
 

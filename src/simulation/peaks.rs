@@ -19,8 +19,8 @@ pub struct Peaks {
     pub inertial_pull: f64,
     /// Force of weight and of what is held against the end effector, N: rounding is a part of it.
     pub weight: f64,
-    /// |q̇_k − θ̇| of any drive, rad/s.
-    pub rate: f64,
+    /// |q̇_k − θ̇|, rad/s.
+    pub rate: PerDrive,
     /// The moment that tilts the base, from heights along the axis, N m.
     pub tilt: f64,
     /// By how much a relative joint angle has passed a limit, rad, and which, in the machine's order.
@@ -38,7 +38,7 @@ impl Peaks {
             moment: 0.0,
             inertial_pull: 0.0,
             weight: 0.0,
-            rate: 0.0,
+            rate: PerDrive::zeros(drives),
             tilt: 0.0,
             past_limit: (0.0, 0),
         }
@@ -55,7 +55,9 @@ impl Peaks {
         self.moment = worse(self.moment, now.moment);
         self.inertial_pull = worse(self.inertial_pull, now.inertial_pull);
         self.weight = worse(self.weight, now.weight);
-        self.rate = worse(self.rate, now.rate);
+        for (peak, rate) in self.rate.iter_mut().zip(now.rate.iter()) {
+            *peak = worse(*peak, rate.abs());
+        }
         self.tilt = worse(self.tilt, now.tilt);
         if now.past_limit.0 > self.past_limit.0 {
             self.past_limit = now.past_limit;

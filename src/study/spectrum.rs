@@ -22,6 +22,7 @@
 
 use std::str::FromStr;
 
+use crate::settings::number::counted;
 use realfft::RealFftPlanner;
 use serde::Serialize;
 use thiserror::Error;
@@ -61,7 +62,10 @@ impl FromStr for Window {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SpectrumError {
     /// Too few samples to tell frequencies apart.
-    #[error("{count} samples make no spectrum: want at least {least}, with a longer record or a smaller step")]
+    #[error(
+        "no spectrum comes of {}: want at least {least}, with a longer record or a smaller step",
+        counted(count, "sample")
+    )]
     TooFew {
         /// Samples that were given.
         count: usize,

@@ -228,7 +228,7 @@ fn tolerances_are_shown_and_set() {
     h.key_press(Key::T);
     h.run_steps(2);
     assert!(h.query_by_label("Histogram of peaks of the base moment over machines, N m").is_some());
-    assert!(h.query_by_label_contains("20000 machines, 41 numbers vary in each").is_some());
+    assert!(h.query_by_label_contains("20000 machines, varied in 41 numbers each").is_some());
     h.get_by_label("Spread of limit on |n_B|, N m").set_value_accesskit(0.01);
     h.run_steps(3);
     assert_eq!(session(&h).scenario().tolerance.moment_limit, Some(0.01));

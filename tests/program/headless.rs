@@ -121,3 +121,15 @@ fn without_a_graphics_driver_it_records_and_says_what_is_missing() {
     assert!(said.contains("graphics driver") || said.contains("libvulkan") || said.contains("window needs"), "{said}");
     assert!(folder.0.join("case-3.rrd").exists());
 }
+
+/// Where no folder for sockets is set, drawing says nothing in the words of others.
+#[cfg(all(feature = "record", target_os = "linux"))]
+#[test]
+fn drawing_without_a_runtime_folder_speaks_for_itself() {
+    let folder = Folder::new("cli");
+    let mut command = folder.command(&["headless", "case-3", "--fps", "2", "-o", "x.rrd", "--set", "duration=0.1"]);
+    let out = command.env_remove("XDG_RUNTIME_DIR").env_remove("DISPLAY").output().expect("the program starts");
+    let said = text(&out.stderr);
+    assert_eq!(out.status.code(), Some(0), "{said}");
+    assert!(said.lines().count() > 0 && said.lines().all(|line| line.starts_with("stillbase: ")), "{said}");
+}

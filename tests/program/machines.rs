@@ -106,8 +106,8 @@ fn settings_change_the_machine_before_anything_is_planned() {
 #[test]
 fn wrong_settings_say_what_would_be_right() {
     let refused = |set: &str, words: &[&str]| fails(&["check", "nine-link", "--set", set], 2, words);
-    refused("link.5.mass=NaN", &["link[5].mass is not a number", "want a finite number, kg"]);
-    refused("link.5.mass=-1", &["link[5].mass is -1", "want 1e-15 to 1000000 kg"]);
+    refused("link.5.mass=NaN", &["link.5.mass is not a number", "want a finite number, kg"]);
+    refused("link.5.mass=-1", &["link.5.mass is -1", "want 1e-15 to 1000000 kg"]);
     refused("link.5.mass=much", &["link.5.mass=\"much\"", "want one number"]);
     refused("link.5.length=0.7", &["l5", "link 8", "parallelogram", "length.l5"]);
     refused("link.99.mass=1", &["\"99\"", "want one of \"1\""]);
@@ -131,8 +131,8 @@ fn a_damaged_machine_file_is_named_with_its_line() {
         let line = format!("arm.toml:{}:", NINE_LINK[..at].matches('\n').count() + 1);
         check(&NINE_LINK.replacen(from, to, 1), &[&[line.as_str()], words].concat());
     };
-    damage("mass = 1.45", "mass = nan", &["link[2].mass is not a number"]);
-    damage("mass = 1.45", "mass = -1.45", &["link[2].mass is -1.45", "1e-15 to 1000000 kg"]);
+    damage("mass = 1.45", "mass = nan", &["link.2.mass is not a number"]);
+    damage("mass = 1.45", "mass = -1.45", &["link.2.mass is -1.45", "1e-15 to 1000000 kg"]);
     damage("mass = 1.45", "weight = 1.45", &["unknown field `weight`"]);
     damage("mass = 1.45", "mass = ", &[]);
     damage(
@@ -140,7 +140,7 @@ fn a_damaged_machine_file_is_named_with_its_line() {
         "[[closure]]\na = { link = \"6\"",
         &["closure[1]", "parallelogram that closes"],
     );
-    damage("attach = { link = \"3\"", "attach = { link = \"6\"", &["link[6].attach", "hangs on itself"]);
+    damage("attach = { link = \"3\"", "attach = { link = \"6\"", &["link.6.attach", "hangs on itself"]);
     damage(
         "drive = \"3\"\nattach = \"base\"",
         "drive = \"4\"\nattach = \"base\"",

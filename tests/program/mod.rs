@@ -6,6 +6,7 @@ mod files;
 mod guide;
 mod headless;
 mod help;
+mod input;
 mod joints;
 mod machines;
 mod plan;

@@ -190,7 +190,7 @@ fn plants_bases_and_control_are_set_by_key() {
         ("plant.payload.mass=-1", "plant.payload.mass is -1"),
         ("plant.link.77.mass=1", "77"),
         ("plant.length.l1=-1", "length"),
-        ("plant.friction.coulomb=1,2", "one for each drive"),
+        ("plant.friction.coulomb=1,2", "has 2 numbers: want one for all drives, or 3, one for each"),
         ("control.law=magic", "magic"),
         ("control.rate=333.3", "control.rate is 333.3"),
         ("control.delay=0.0005", "control.delay"),

@@ -52,7 +52,11 @@ pub fn show(ui: &mut Ui, facts: &Facts, p: &Palette, commands: &mut Vec<Command>
 fn row(ui: &mut Ui, p: &Palette, setting: &Setting, commands: &mut Vec<Command>) {
     let Setting { path, key, typed: shown, usual, wants, .. } = setting;
     let wants = wants.map_or_else(String::new, |wants| format!("\nNo effect as things are: that takes {wants}."));
-    let tip = format!("{path}\n{}\n{}.{wants}", key.words, key.holds);
+    let instead = match key.instead {
+        "" => String::new(),
+        instead => format!("\nWithout it: {instead}."),
+    };
+    let tip = format!("{path}\n{}\n{}.{instead}{wants}", key.words, key.holds);
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let unit = RichText::new(key.unit()).font(plain(10.5)).color(colour(p.dim));

@@ -3,7 +3,7 @@
 use super::answer::Answer;
 use super::judge::Account;
 use crate::commands::output::{Table, yes};
-use stillbase::settings::number::fixed;
+use stillbase::settings::number::{counted, fixed};
 
 /// Given and proposed side by side.
 pub fn table(answer: &Answer) -> String {
@@ -65,8 +65,8 @@ pub fn table(answer: &Answer) -> String {
         .zip(answer.smoothed_by)
         .map(|(at, by)| format!("smoothed at {} Hz, samples moved by up to {}\n", fixed(at, 3), fixed(by, 9)));
     format!(
-        "{} samples over {} s\n{}{}{}",
-        answer.samples,
+        "{} over {} s\n{}{}{}",
+        counted(answer.samples, "sample"),
         fixed(answer.duration, 6),
         smoothed.unwrap_or_default(),
         table.to_string().trim_start_matches('\n'),

@@ -11,7 +11,6 @@ use std::path::PathBuf;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use stillbase::files::check_new;
 use stillbase::session::scenario::{MAX_SAMPLES, Scenario, Spread, Tolerance as Section};
 use stillbase::session::{Run, settled};
 use stillbase::study::tolerance::{Agreement, Bands, Ensemble, Outcome, Shares, ToleranceError, simulate};
@@ -21,8 +20,9 @@ use self::report::{Answer, Compared, Distributions, Drawn, Merged, Yields};
 use self::rows::{Head, OUTCOME_COLUMNS, StudyId, Writer};
 use crate::commands::exit::say;
 use crate::commands::failure::Failure;
-use crate::commands::input::{DEFAULT_SCENARIO, Settings, scenario};
-use crate::commands::output::Format;
+use crate::commands::input::{DEFAULT_SCENARIO, Settings, studied};
+use crate::commands::output::{Format, check_output};
+use stillbase::settings::number::counted;
 
 /// Vary a machine within its tolerances and see what its base feels
 ///
@@ -138,7 +138,7 @@ impl Tolerance {
 
     fn put_together(&self) -> Result<(), Failure> {
         let Some(whole) = &self.output else { return Err(Failure::wrong_input("--merge: want -o FILE")) };
-        check_new(whole, self.force)?;
+        check_output(whole, self.force, &["parquet", "csv"])?;
         let (study, outcomes) = merge::merge(&self.merge, whole, self.force)?;
         let Some(distributions) = Distributions::of(&outcomes) else {
             return Err(Failure::no_answer("the parts hold no machine"));
@@ -168,9 +168,10 @@ impl Tolerance {
 
     fn study(&self) -> Result<(), Failure> {
         let name = self.scenario.as_deref().unwrap_or(DEFAULT_SCENARIO);
-        let (scenario, others) = settled(&scenario(name, &self.settings)?)?;
+        let (scenario, others) = settled(&studied(name, &self.settings)?)?;
         if others > 0 {
-            say(format!("note: {}: {others} edits in motion are left out; the planned motion counts", scenario.name));
+            let edits = counted(others, "edit");
+            say(format!("note: {}: the planned motion counts, without {edits} after its start", scenario.name));
         }
         let left_out = stillbase::study::tolerance::left_out(&scenario);
         if !left_out.is_empty() && !self.simulate {
@@ -200,8 +201,7 @@ impl Tolerance {
             return Err(Failure::wrong_input(why));
         }
         if let Some(file) = &self.output {
-            rows::check_name(file)?;
-            check_new(file, self.force)?;
+            check_output(file, self.force, &["parquet", "csv"])?;
         }
         let run = Run::new(&scenario).map_err(|e| Failure::from(e).of(&scenario.name))?;
         let plant = scenario.plant_machine()?;

@@ -5,7 +5,7 @@ use stillbase::study::tolerance::{Agreement, Bands, Histogram, Outcome, Paramete
 
 use super::rows::StudyId;
 use crate::commands::output::Table;
-use stillbase::settings::number::{fixed, shown};
+use stillbase::settings::number::{counted, fixed, shown};
 
 /// A quantity over all machines.
 #[derive(Serialize)]
@@ -208,7 +208,7 @@ pub struct Merged {
 impl Merged {
     /// As text.
     pub fn text(&self) -> String {
-        let head = format!("{} · {} machines, seed {}", self.file, self.samples, self.seed);
+        let head = format!("{} · {}, seed {}", self.file, counted(self.samples, "machine"), self.seed);
         let yields = self.yields.table().map(|t| format!("\n{t}")).unwrap_or_default();
         format!("{head}\n\n{}{yields}", self.distributions.table(None))
     }
@@ -281,14 +281,14 @@ impl Answer {
         let [from, to] = self.shard;
         let mode = if self.simulated { "each simulated" } else { "perfect tracking" };
         let which = match to - from == study.samples {
-            true => format!("{} machines", study.samples),
+            true => counted(study.samples, "machine"),
             false => format!("machines {from} to {} of {}", to - 1, study.samples),
         };
         let (seed, instants, time) = (study.seed, self.bands.time.len(), fixed(self.motion_time, 3));
         let mut text = format!(
-            "{} · {which}, {mode}, seed {seed}, {} numbers vary, {instants} instants in {time} s\n\n{}",
+            "{} · {which}, {mode}, seed {seed}, varied in {}, {instants} instants in {time} s\n\n{}",
             self.scenario,
-            self.parameters.len(),
+            counted(self.parameters.len(), "number"),
             self.distributions.table(Some(nominal)),
         );
         if let Some(yields) = self.yields.table() {
@@ -336,7 +336,7 @@ impl Answer {
             let sum = |f: fn(&stillbase::study::tolerance::Share) -> f64| percent(rest.iter().map(|s| f(s)).sum());
             let [moment, force] = [sum(|s| s.moment_share), sum(|s| s.force_share)];
             let empty = String::new;
-            table.row([format!("{} others", rest.len()), empty(), empty(), empty(), moment, empty(), force]);
+            table.row([counted(rest.len(), "other"), empty(), empty(), empty(), moment, empty(), force]);
         }
         table
     }

@@ -91,14 +91,6 @@ fn kind_of(file: &Path) -> Result<Kind, Failure> {
     }
 }
 
-/// Whether rows can be written under such a name.
-///
-/// # Errors
-/// If its ending is another.
-pub fn check_name(file: &Path) -> Result<(), Failure> {
-    kind_of(file).map(|_| ())
-}
-
 /// Rows of a Parquet row group.
 const GROUP: usize = 65_536;
 

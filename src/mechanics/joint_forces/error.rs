@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use super::pins::MAX_PINS;
+use crate::settings::number::counted;
 
 /// Why statics does not determine the forces in a machine.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -35,8 +36,10 @@ pub enum JointsError {
     },
     /// Links whose orientation nothing holds.
     #[error(
-        "{links} links that no drive turns, and {closures} closures, which hold the orientation of two each; nothing \
-         holds {loose}: want {wanted} closures"
+        "{} that no drive turns, and {}, which hold the orientation of two each; nothing holds {loose}: want {}",
+        counted(links, "link"),
+        counted(closures, "closure"),
+        counted(wanted, "closure")
     )]
     Missing {
         /// How many links no drive turns.
@@ -50,8 +53,11 @@ pub enum JointsError {
     },
     /// More closures than hold links.
     #[error(
-        "{closures} closures, which hold the orientation of two links each, and {links} links that no drive turns: want \
-         {wanted} closures, as redundant ones share their force in a way that only the links' elasticity decides"
+        "{}, which hold the orientation of two links each, and {} that no drive turns: want {}, as redundant ones \
+         share their force in a way that only the links' elasticity decides",
+        counted(closures, "closure"),
+        counted(links, "link"),
+        counted(wanted, "closure")
     )]
     Redundant {
         /// How many closures there are.

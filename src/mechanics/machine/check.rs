@@ -1,5 +1,6 @@
 //! From a description to a [`Machine`]: names looked up, roots and loops resolved, or what is wrong.
 
+use super::Chain;
 use super::error::{MachineError, Place, PlaceStep, quoted};
 use super::inertia::Inertia;
 use super::model::{Machine, RelativeAngle, ResolvedClosure, ResolvedLink};
@@ -23,18 +24,9 @@ impl Machine {
         for drive in &mut spec.drives {
             drive.rotor = drive.rotor.filter(|rotor| *rotor != Rotor::default());
         }
-        let names = Names::of(&spec)?;
-        check_numbers(&spec)?;
-        let mut parts = resolve(&spec, &names)?;
-        let closures = spec.closures.iter().enumerate();
-        let loops = closures.map(|(i, c)| resolve_closure(&spec, &names, &parts, i, c)).collect::<Result<_, _>>()?;
-        let end = spec.end_effector.as_ref().ok_or(MachineError::NoEndEffector)?;
-        let (tip_link, s) = locate(&spec, &names, end, &|| Place::new(&[&"end_effector"]))?;
-        let tip = parts[tip_link].point(s);
-        let angles = resolve_angles(&spec, &names)?;
-        let motors = resolve_motors(&spec, &names)?;
-        add_pins(&spec, &names, &mut parts)?;
-        let machine = Self { spec, parts, end_effector: tip, end_link: tip_link, angles, loops, motors };
+        let Parts { links, end_effector, end_link, angles, loops, motors } =
+            Parts::of(&spec).map_err(|error| error.named(&spec))?;
+        let machine = Self { spec, parts: links, end_effector, end_link, angles, loops, motors };
         machine.check_inertia()?;
         Ok(machine)
     }
@@ -45,6 +37,33 @@ impl Machine {
             Some(k) => Err(MachineError::Massless { drive: self.spec.drives[k].name.clone() }),
             None => Ok(()),
         }
+    }
+}
+
+/// What a description comes to.
+struct Parts {
+    links: Vec<ResolvedLink>,
+    end_effector: Chain,
+    end_link: usize,
+    angles: Vec<RelativeAngle>,
+    loops: Vec<ResolvedClosure>,
+    motors: Motors,
+}
+
+impl Parts {
+    fn of(spec: &MachineSpec) -> Result<Self, MachineError> {
+        let names = Names::of(spec)?;
+        check_numbers(spec)?;
+        let mut links = resolve(spec, &names)?;
+        let closures = spec.closures.iter().enumerate();
+        let loops = closures.map(|(i, c)| resolve_closure(spec, &names, &links, i, c)).collect::<Result<_, _>>()?;
+        let end = spec.end_effector.as_ref().ok_or(MachineError::NoEndEffector)?;
+        let (end_link, s) = locate(spec, &names, end, &|| Place::new(&[&"end_effector"]))?;
+        let end_effector = links[end_link].point(s);
+        let angles = resolve_angles(spec, &names)?;
+        let motors = resolve_motors(spec, &names)?;
+        add_pins(spec, &names, &mut links)?;
+        Ok(Self { links, end_effector, end_link, angles, loops, motors })
     }
 }
 

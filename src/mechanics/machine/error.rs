@@ -4,10 +4,11 @@ use std::fmt;
 
 use thiserror::Error;
 
+use super::spec::MachineSpec;
 use crate::settings::number::Short;
 use crate::settings::range::{Want, clipped};
 
-/// A place in a machine file: a path of keys and positions, such as `link[4].mass`.
+/// A place in a machine file: a path of keys and positions. It is shown as one types it, such as `link.5.mass`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Place(pub Vec<PlaceStep>);
 
@@ -18,6 +19,8 @@ pub enum PlaceStep {
     Key(String),
     /// A position in an array, counted from 0.
     At(usize),
+    /// The same of what has a name, by which keys call it.
+    Named(usize, String),
 }
 
 impl Place {
@@ -66,10 +69,18 @@ impl AsStep for usize {
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let [PlaceStep::Key(angle), PlaceStep::Named(_, name), PlaceStep::Key(end)] = &self.0[..]
+            && angle == "angle"
+            && ["min", "max"].contains(&end.as_str())
+        {
+            return write!(f, "limits.{} ({end})", clipped(name));
+        }
         for (i, step) in self.0.iter().enumerate() {
             match step {
+                // A file has a table of them, and a key is of one.
+                PlaceStep::Key(k) if i == 0 && k == "lengths" => f.write_str("length")?,
                 PlaceStep::Key(k) if i == 0 => f.write_str(&clipped(k))?,
-                PlaceStep::Key(k) => write!(f, ".{}", clipped(k))?,
+                PlaceStep::Key(name) | PlaceStep::Named(_, name) => write!(f, ".{}", clipped(name))?,
                 PlaceStep::At(i) => write!(f, "[{}]", i + 1)?,
             }
         }
@@ -223,6 +234,32 @@ pub enum MachineError {
 }
 
 impl MachineError {
+    /// The same with links, drives and angles by their names, as keys have them; what shares its name keeps its place.
+    pub(super) fn named(mut self, spec: &MachineSpec) -> Self {
+        let (Self::NotFinite { place, .. }
+        | Self::OutOfRange { place, .. }
+        | Self::Unknown { place, .. }
+        | Self::Cycle { place, .. }) = &mut self
+        else {
+            return self;
+        };
+        if let [PlaceStep::Key(list), step, ..] = &mut place.0[..]
+            && let PlaceStep::At(i) = *step
+        {
+            let names: Vec<&str> = match list.as_str() {
+                "link" => spec.links.iter().map(|link| link.name.as_str()).collect(),
+                "drive" => spec.drives.iter().map(|drive| drive.name.as_str()).collect(),
+                "angle" => spec.angles.iter().map(|angle| angle.name.as_str()).collect(),
+                _ => Vec::new(),
+            };
+            let own = names.get(i).filter(|own| names.iter().filter(|name| name == own).count() == 1);
+            if let Some(name) = own {
+                *step = PlaceStep::Named(i, (*name).to_owned());
+            }
+        }
+        self
+    }
+
     /// Where in the file, if it has a place.
     pub fn place(&self) -> Option<&Place> {
         match self {

@@ -77,7 +77,7 @@ pub(crate) fn line_of_place(text: &str, place: &Place) -> Option<usize> {
         let next = match (step, at) {
             (PlaceStep::Key(k), None) => table.get_ref().get(k.as_str()),
             (PlaceStep::Key(k), Some(DeValue::Table(t))) => t.get(k.as_str()),
-            (PlaceStep::At(i), Some(DeValue::Array(a))) => a.get(*i),
+            (PlaceStep::At(i) | PlaceStep::Named(i, _), Some(DeValue::Array(a))) => a.get(*i),
             _ => None,
         };
         let Some(next) = next else { break };

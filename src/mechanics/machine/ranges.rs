@@ -28,6 +28,8 @@ const JERK_LIMIT: Range = Range::new(LEAST, 1e9, "rad/s³");
 pub const MAX_ANGLE: f64 = 25.2;
 const ANGLE: Range = Range::either_way(MAX_ANGLE, "rad, four turns");
 
+const UNLIMITED: &str = "no limit";
+
 /// Every key of a machine that can be set by itself; its links, drives and angles go by their names.
 pub const KEYS: [Key; 19] = [
     Key::number(
@@ -59,15 +61,23 @@ pub const KEYS: [Key; 19] = [
         Holds::List(2, PLACE),
         "0,0",
         "Centre of mass of the payload, seen from the end effector: along the link that holds it, and to its left.",
-    ),
-    Key::number("payload.axial", PLACE, "0", "Height of the payload's centre of mass along the drives' axis."),
+    )
+    .when("payload.mass above 0"),
+    Key::number(
+        "payload.axial",
+        PLACE,
+        "0",
+        "Height of the payload's centre of mass, and of a force on the end effector, along the drives' axis.",
+    )
+    .when("payload.mass above 0, or a force on the end effector"),
     Key::new("gravity", Holds::List(2, GRAVITY), "0,0", "Acceleration of gravity along the axes of the base."),
     Key::new(
         "limits.*",
         Holds::List(2, ANGLE),
         Key::NONE,
         "Least and greatest value of a relative joint angle; without them it turns freely.",
-    ),
+    )
+    .instead(UNLIMITED),
     Key::number(
         "drive.*.rotor.inertia",
         INERTIA,
@@ -80,20 +90,24 @@ pub const KEYS: [Key; 19] = [
         "1",
         "Turns of the rotor for one turn of the drive, seen from the motor's stator; below 0 it turns the other way.",
     ),
-    Key::number("drive.*.torque_limit", TORQUE_LIMIT, Key::NONE, "The greatest torque of a drive, either way."),
-    Key::number("drive.*.speed_limit", SPEED_LIMIT, Key::NONE, "The greatest rate of a drive, either way."),
+    Key::number("drive.*.torque_limit", TORQUE_LIMIT, Key::NONE, "The greatest torque of a drive, either way.")
+        .instead(UNLIMITED),
+    Key::number("drive.*.speed_limit", SPEED_LIMIT, Key::NONE, "The greatest rate of a drive, either way.")
+        .instead(UNLIMITED),
     Key::number(
         "drive.*.acceleration_limit",
         ACCELERATION_LIMIT,
         Key::NONE,
         "The greatest acceleration that is asked of a drive, either way.",
-    ),
+    )
+    .instead(UNLIMITED),
     Key::number(
         "drive.*.jerk_limit",
         JERK_LIMIT,
         Key::NONE,
         "The greatest jerk that is asked of a drive, either way, by time laws that keep jerk in bounds.",
-    ),
+    )
+    .instead(UNLIMITED),
 ];
 
 pub(super) fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {

@@ -5,6 +5,7 @@ use toml::{Table, Value};
 use super::error::quoted;
 use super::{Length, Machine, MachineError, MachineSpec, Place, Rotor};
 use crate::settings::change::{self, DEFAULT};
+use crate::settings::key::Key;
 use crate::settings::range::{clipped, shortened};
 
 /// The tables and keys of a scenario that set its machine.
@@ -50,6 +51,22 @@ impl Machine {
             assign(&mut spec, &key, value)?;
         }
         Self::new(spec)
+    }
+
+    /// Whether a setting has an effect as things are; `pushed` if a force is held at the end effector.
+    pub fn uses(&self, key: &str, pushed: bool) -> bool {
+        match key {
+            "payload.offset" => self.spec().payload.mass > 0.0,
+            "payload.axial" => self.spec().payload.mass > 0.0 || pushed,
+            _ => true,
+        }
+    }
+
+    /// The settings that are given and have no effect.
+    pub fn idle_keys(&self, pushed: bool) -> impl Iterator<Item = &'static str> {
+        let payload = &self.spec().payload;
+        let given = [("payload.offset", payload.offset != [0.0; 2]), ("payload.axial", payload.axial != 0.0)];
+        given.into_iter().filter(move |(key, given)| *given && !self.uses(key, pushed)).map(|(key, _)| key)
     }
 
     /// What a setting holds; the word `default` for one that is not there, `None` if there is no such key.
@@ -171,7 +188,7 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &Value) -> Result<(), Machin
                 "acceleration_limit" => &mut drive.acceleration_limit,
                 "jerk_limit" => &mut drive.jerk_limit,
                 _ => return Err(unknown()),
-            } = if is_default(value) { None } else { Some(one()?) };
+            } = if is_default(value) || value.as_str() == Some(Key::NONE) { None } else { Some(one()?) };
         }
         _ => return Err(unknown()),
     }

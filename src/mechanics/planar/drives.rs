@@ -5,6 +5,7 @@ use std::ops::{Deref, DerefMut};
 use serde::{Deserialize, Serialize};
 
 use super::{Vector, unit};
+use crate::settings::number::counted;
 
 /// The most drives a machine can have.
 pub const MAX_DRIVES: usize = 8;
@@ -133,7 +134,7 @@ impl TryFrom<Vec<f64>> for PerDrive {
     type Error = String;
     fn try_from(v: Vec<f64>) -> Result<Self, String> {
         Self::from_slice(&v)
-            .ok_or_else(|| format!("{} numbers, where a machine has at most {MAX_DRIVES} drives", v.len()))
+            .ok_or_else(|| format!("{}, where a machine has at most {MAX_DRIVES} drives", counted(v.len(), "number")))
     }
 }
 

@@ -8,6 +8,7 @@ use std::f64::consts::TAU;
 use thiserror::Error;
 
 use crate::mechanics::planar::{Vector, cross, dot, unit};
+use crate::settings::number::counted;
 
 /// A place on a curve and how it changes with s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +49,7 @@ enum Shape {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum CurveError {
     /// Not enough points.
-    #[error("{got} points: want {want}")]
+    #[error("{}: want {want}", counted(got, "point"))]
     Count {
         /// How many there are.
         got: usize,

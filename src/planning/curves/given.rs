@@ -16,7 +16,7 @@ use crate::planning::curves::curve::{Curve, CurvePoint};
 use crate::planning::curves::low_pass::LowPass;
 use crate::planning::curves::spline::{FEWEST, Knots};
 use crate::planning::curves::table::PathTable;
-use crate::settings::number::Short;
+use crate::settings::number::{Short, counted};
 use crate::settings::range::Range;
 
 /// The most samples.
@@ -42,7 +42,7 @@ pub struct Samples {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SamplesError {
     /// Fewer samples than a spline takes.
-    #[error("{got} samples: want at least {FEWEST}, because the spline's ends take six")]
+    #[error("{}: want at least {FEWEST}, because the spline's ends take six", counted(got, "sample"))]
     TooFew {
         /// How many there are.
         got: usize,
@@ -54,7 +54,7 @@ pub enum SamplesError {
         got: usize,
     },
     /// A row of another length.
-    #[error("sample {} has {got} numbers: want {want}, a time and the values, at most {MAX_DRIVES}", row + 1)]
+    #[error("sample {} has {}: want {want}, a time and the values, at most {MAX_DRIVES}", row + 1, counted(got, "number"))]
     Ragged {
         /// Row, counted from 0.
         row: usize,

@@ -13,12 +13,13 @@ use crate::planning::curves::curve::{Curve, CurvePoint};
 use crate::planning::curves::path::by_pieces;
 use crate::planning::curves::table::PathTable;
 use crate::planning::off_plane::null_space::{lines, momentum_row_rate, rates, solve};
+use crate::settings::number::counted;
 
 /// Why a motion of zero momentum does not follow a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum DriftError {
     /// The machine has not three drives.
-    #[error("{drives} drives: a curve in the plane at zero momentum takes three")]
+    #[error("{}: a curve in the plane at zero momentum takes three", counted(drives, "drive"))]
     Drives {
         /// Drives of the machine.
         drives: usize,

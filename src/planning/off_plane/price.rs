@@ -27,6 +27,7 @@ use crate::planning::curves::path::Path;
 use crate::planning::curves::table::PathTable;
 use crate::planning::reactionless::{BSet, NoReach, PlaneMap, PlanePoint};
 use crate::planning::timing::law::TimeLaw;
+use crate::settings::number::counted;
 
 /// How b goes from rest to rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,7 +85,7 @@ pub enum PriceError {
         residual: f64,
     },
     /// Poses of another machine.
-    #[error("poses of {from} and {to} angles for a machine of {drives} drives: want {drives} each")]
+    #[error("poses of {from} and {to} angles for a machine of {}: want {drives} each", counted(drives, "drive"))]
     Drives {
         /// Of the first pose.
         from: usize,

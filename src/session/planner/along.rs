@@ -197,7 +197,7 @@ pub(super) fn slowed(
     motion.slowed(model, around, limits).ok_or_else(|| {
         let usage = Usage::of(&motion, model, around, limits, SAMPLES);
         let limit = usage.limit.map_or("a limit".into(), |limit| format!("the {limit}"));
-        Refusal::Task(format!("{limit} is passed however slow the motion is: want a higher one"))
+        Refusal::NoWay(format!("{limit} is passed however slow the motion is: want a higher one"))
     })
 }
 
@@ -252,7 +252,7 @@ pub(super) fn same_side(task: &Task, planes: &Planes, poses: &[PlanePoint]) -> R
             let turns = |q: &[f64; 3]| ((q[k] - q[l]) / std::f64::consts::PI).floor();
             if side(&from) * side(&to) < 0.0 || (turns(&from) != turns(&to) && side(&from) * side(&to) > 0.0) {
                 let between = [task.name_of(i), task.name_of(i + 1)];
-                return Err(Refusal::Task(format!(
+                return Err(Refusal::NoWay(format!(
                     "between {} and {} drives {} and {} become parallel, a change point: want points on one side of \
                      it, another b, or keep_off_change_points = false",
                     between[0],

@@ -37,7 +37,7 @@ pub fn change_b(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
     let motion = match (task.law, square) {
         (TimeLaw::Fastest, Some(square)) => {
             let table = bang_bang_in_b(planes.map(), ends);
-            let table = table.ok_or_else(|| Refusal::Task("A and B are too far apart".into()))?;
+            let table = table.ok_or_else(|| Refusal::NoWay("A and B are too far apart".into()))?;
             let motion = Motion { path: Path::Table(table), profile: Profile::even(2.0 * square.sqrt()) };
             // A short change of b leaves the joints little time.
             slowed(motion, &model, &around, &limits)?
@@ -70,7 +70,7 @@ fn ends(scenario: &Scenario, planes: &Planes) -> Result<[PlanePoint; 2], Refusal
                 let point = usize::from(!map.poses(points[0], task.b).is_empty());
                 let why = planes.serve(&points[point..=point], [task.b, b_to][point]);
                 Err(why.err().map_or_else(
-                    || Refusal::Task("A and B have no pose on their planes".into()),
+                    || Refusal::NoWay("A and B have no pose on their planes".into()),
                     |(_, unreachable)| refusal(task, if point == 0 { 0 } else { task.via.len() + 1 }, unreachable),
                 ))
             }
@@ -126,7 +126,7 @@ pub fn least_reaction(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refu
         Some(why) => Err(Refusal::LeastReaction(why)),
         None => {
             let refusal = serve(task, planes, &task.points()[..1]).err();
-            Err(refusal.unwrap_or_else(|| Refusal::Task("A has no pose".into())))
+            Err(refusal.unwrap_or_else(|| Refusal::NoWay("A has no pose".into())))
         }
     }
 }

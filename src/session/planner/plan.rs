@@ -110,7 +110,7 @@ pub(super) fn keeps_rules(scenario: &Scenario, motion: &Motion) -> Result<(), Re
         for (k, l) in Inertia::pairs(q.len()) {
             let side = |q: &DriveAngles| (q[k] - q[l]).sin();
             if before.is_some_and(|before| side(&before) * side(&q) < 0.0) {
-                return Err(Refusal::Task(format!(
+                return Err(Refusal::NoWay(format!(
                     "{:.1} % along, drives {} and {} become parallel, a change point: want another path or b, or \
                      keep_off_change_points = false",
                     100.0 * s,
@@ -123,7 +123,7 @@ pub(super) fn keeps_rules(scenario: &Scenario, motion: &Motion) -> Result<(), Re
             let a = q[angle.to] - q[angle.from] + angle.offset;
             let past = (angle.limits.start() - a).max(a - angle.limits.end());
             if past > 1e-6 {
-                return Err(Refusal::Task(format!(
+                return Err(Refusal::NoWay(format!(
                     "{:.1} % along, a{} would pass its {} limit: want another path, another b, or wider limits",
                     100.0 * s,
                     k + 1,

@@ -4,8 +4,7 @@ use thiserror::Error;
 
 use super::bounds::ordinal;
 use crate::mechanics::machine::{FileError, MachineError};
-use crate::settings::number::Short;
-use crate::settings::range::Want;
+use crate::settings::range::{Want, refused};
 use crate::settings::text::MOST_BYTES;
 
 /// Why a file is not a scenario.
@@ -30,7 +29,7 @@ pub enum ScenarioError {
         message: String,
     },
     /// A number out of range.
-    #[error("{file}{}: {key} is {}: want {want}", at(*line), Short(*value))]
+    #[error("{file}{}: {}", at(*line), refused(key, *value, want))]
     OutOfRange {
         /// The file.
         file: String,

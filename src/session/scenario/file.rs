@@ -64,6 +64,26 @@ enum MachineRef {
 /// The most characters of an error of the TOML reader.
 const MOST_WORDS: usize = 300;
 
+/// What a name or a file stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Content {
+    /// A machine.
+    Machine,
+    /// A scenario, which has one.
+    Scenario,
+}
+
+/// What a file is meant to be, by the tables that only one of the two has; `None` if it has neither or both.
+pub fn content(text: &str) -> Option<Content> {
+    let table: toml::Table = text.parse().ok()?;
+    let has = |keys: [&str; 2]| keys.iter().any(|key| table.contains_key(*key));
+    match (has(["link", "drive"]), has(["task", "machine"])) {
+        (true, false) => Some(Content::Machine),
+        (false, true) => Some(Content::Scenario),
+        _ => None,
+    }
+}
+
 /// Looks up a machine by name or file.
 pub type FindMachine<'a> = &'a dyn Fn(&str) -> Result<Machine, FileError>;
 
@@ -154,14 +174,9 @@ impl Scenario {
                 let file = file.trim_end_matches(": plant").to_owned();
                 // What differs goes by the names of links and lengths, not by their places in the machine.
                 let place = error.place().map_or_else(Place::default, |place| match place.0.as_slice() {
-                    [PlaceStep::Key(word), PlaceStep::At(i), rest @ ..] if word == "link" => {
-                        let name = self.machine.links().get(*i).map_or("", |link| link.name.as_str());
-                        Place(
-                            [PlaceStep::Key("link".into()), PlaceStep::Key(name.into())]
-                                .into_iter()
-                                .chain(rest.iter().cloned())
-                                .collect(),
-                        )
+                    [link, PlaceStep::Named(_, name), rest @ ..] => {
+                        let named = [link.clone(), PlaceStep::Key(name.clone())];
+                        Place(named.into_iter().chain(rest.iter().cloned()).collect())
                     }
                     [PlaceStep::Key(word), rest @ ..] if word == "lengths" => {
                         Place(std::iter::once(PlaceStep::Key("length".into())).chain(rest.iter().cloned()).collect())

@@ -15,7 +15,7 @@ pub(crate) use bounds::{MAX_FRAMES, ordinal};
 pub use bounds::{MAX_STEPS, MAX_TIME, STEP};
 pub use definition::Scenario;
 pub use error::ScenarioError;
-pub use file::FindMachine;
+pub use file::{Content, FindMachine, content};
 pub use settings::{KEYS, SettingError, key_of, keys};
 pub use task::{Change, Corners, Least, MAX_POINTS, PLACE, POSE_CONSTANT, Shape, TIME, Task, TaskKind, Value};
 pub use tolerance::{Amount, MAX_SAMPLES, Spread, Tolerance, default_spreads};

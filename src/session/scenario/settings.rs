@@ -10,7 +10,7 @@ use super::task::{self, POSE_CONSTANT};
 use super::tolerance::{self, Tolerance};
 use crate::mechanics::machine::{self, PARTS, is_of_machine, ranges};
 use crate::settings::change::{self, DEFAULT};
-use crate::settings::key::{self, Key};
+use crate::settings::key::{self, Holds, Key};
 use crate::settings::range::{Check, Range, clipped};
 use crate::simulation::{control, plant};
 
@@ -21,10 +21,12 @@ const OWN: [Key; 4] = [
         "duration",
         DURATION,
         Key::NONE,
-        "Time that a recording and every command that runs to the end covers; by default that of the planned motion.",
-    ),
+        "Time that a recording and every command that runs to the end covers.",
+    )
+    .instead("that of the planned motion"),
     Key::number("pose_acceleration", POSE_ACCELERATION, "2", "Bound on |b̈| while b is slid by hand."),
-    Key::number("compare_b", POSE_CONSTANT, Key::NONE, "Pose constant of a second workspace to compare with."),
+    Key::number("compare_b", POSE_CONSTANT, Key::NONE, "Pose constant of a second workspace to compare with.")
+        .instead("there is no second one"),
 ];
 
 /// Every key, part by part: the scenario's own, task, control, plant, base and wheel, machine, tolerance.
@@ -63,6 +65,9 @@ pub enum SettingError {
         /// What, and what would be right.
         why: String,
     },
+    /// What is wrong, with its key.
+    #[error("{0}")]
+    Said(String),
     /// A value that a key does not take.
     #[error("{path} is {value:?}: want {want}")]
     Value {
@@ -85,14 +90,19 @@ pub enum SettingError {
 }
 
 impl Scenario {
-    /// The scenario with settings laid over it, as they stand in a file; the word `default` takes a key out. Whether
+    /// The scenario with settings laid over it, as they stand in a file; the word `default` takes a key out, and so does
+    /// `none` where that is the default. Whether
     /// all of it fits together is for [`check`](Self::check) to say. Edits stay at their times where the step changes.
     ///
     /// # Errors
     /// Which key or value is wrong, and what would be right.
     pub fn with(&self, change: &Table) -> Result<Self, SettingError> {
         let mut scenario = self.clone();
-        scenario.lay(change)?;
+        let none = |value: &Value| value.as_str() == Some(Key::NONE);
+        match change::leaves(change).into_iter().any(|(_, value)| none(value)) {
+            true => scenario.lay(&freed("", change))?,
+            false => scenario.lay(change)?,
+        }
         Ok(scenario)
     }
 
@@ -102,10 +112,19 @@ impl Scenario {
             self.machine = self.machine.with(&of_machine)?;
         }
         for (part, value) in &own {
-            let wrong = |why: String| blame(part, value).unwrap_or(SettingError::Part { part: part.clone(), why });
+            let wrong = |why: String| {
+                blame(part, value).unwrap_or_else(|| match why.starts_with(&format!("{part}.")) {
+                    true => SettingError::Said(why),
+                    false => SettingError::Part { part: part.clone(), why },
+                })
+            };
             match (part.as_str(), value) {
                 ("task", Value::Table(change)) => self.task = self.task.with(change, &self.machine).map_err(wrong)?,
-                ("task", _) => return Err(wrong("a task as a whole has no usual value: want task.… = …".into())),
+                ("task", Value::String(word)) if word == DEFAULT => {
+                    let why = "a task as a whole has no usual value: want that of a key, such as task.time=default";
+                    return Err(SettingError::Part { part: part.clone(), why: why.into() });
+                }
+                ("task", _) => return Err(wrong("want its keys with their values".into())),
                 ("control", _) => self.control = laid(&self.control, value).map_err(wrong)?,
                 ("plant", _) => self.plant = laid(&self.plant, value).map_err(wrong)?,
                 ("base", _) => self.base = laid(&self.base, value).map_err(wrong)?,
@@ -240,9 +259,15 @@ impl Scenario {
             Some(("base", key)) => self.base.uses(key),
             Some(("control", "knows_base")) => self.base.moves(),
             Some(("plant", key)) => self.plant.uses(key),
+            Some(("payload", _)) => self.machine.uses(path, self.is_pushed()),
             _ => true,
         };
         if used { None } else { key_of(path).map(|key| key.when) }
+    }
+
+    /// Whether a force is held at the end effector at any time.
+    fn is_pushed(&self) -> bool {
+        self.plant.force != [0.0; 2] || self.edits.iter().any(|timed| timed.edit.pushes())
     }
 
     /// The keys that are given and have no effect, with what each would want; some always stand there.
@@ -250,8 +275,10 @@ impl Scenario {
         const STANDING: [&str; 7] =
             ["task.kind", "task.from", "task.to", "task.b", "task.time", "task.law", "control.knows_base"];
         let stated = self.stated();
+        let of_machine = self.machine.idle_keys(self.is_pushed()).map(str::to_owned);
         let given = change::leaves(&stated).into_iter().map(|(path, _)| path);
-        given
+        of_machine
+            .chain(given)
             .filter(|path| !STANDING.contains(&path.as_str()))
             .filter_map(|path| self.idle(&path).map(|want| (path, want)))
             .collect()
@@ -261,9 +288,13 @@ impl Scenario {
     pub(super) fn checks(&self) -> Vec<Check> {
         let n = self.machine.drives();
         let stated = self.stated();
-        let mut list = key::checks(key_of, &stated);
-        list.extend(self.task.fits(self.step));
-        list.extend(self.control.fits(n, self.step));
+        // What a step bounds is bounded more narrowly by it than by any range, if it is one itself.
+        let mut list = vec![STEP.check("step", self.step)];
+        if STEP.contains(self.step) {
+            list.extend(self.task.fits(self.step));
+            list.extend(self.control.fits(n, self.step));
+        }
+        list.extend(key::checks(key_of, &stated));
         list.extend(self.plant.fits(n));
         list
     }
@@ -278,6 +309,21 @@ fn laid<T: Serialize + DeserializeOwned + Default>(now: &T, value: &Value) -> Re
     }
 }
 
+/// A change with the word `default` for `none` where that is the default.
+fn freed(at: &str, change: &Table) -> Table {
+    let freed = |(key, value): (&String, &Value)| {
+        let path = if at.is_empty() { key.clone() } else { format!("{at}.{key}") };
+        let none = || key_of(&path).is_some_and(|key| key.default == Key::NONE);
+        let value = match value {
+            Value::Table(inner) => Value::Table(self::freed(&path, inner)),
+            Value::String(word) if word == Key::NONE && none() => DEFAULT.into(),
+            value => value.clone(),
+        };
+        (key.clone(), value)
+    };
+    change.iter().map(freed).collect()
+}
+
 /// The first value under a part that its key does not take.
 fn blame(part: &str, value: &Value) -> Option<SettingError> {
     let whole = change::one(part, value.clone());
@@ -288,7 +334,7 @@ fn blame(part: &str, value: &Value) -> Option<SettingError> {
         };
         match key_of(&path) {
             Some(key) if key.holds.takes(value) => None,
-            Some(key) if key.unit().is_empty() => said(key.holds.to_string()),
+            Some(key) if key.unit().is_empty() || matches!(key.holds, Holds::Spread(_)) => said(key.holds.to_string()),
             Some(key) => said(format!("{} (a number without its unit)", key.holds)),
             None => {
                 let below = |key: &&Key| key.path.starts_with(&format!("{path}."));

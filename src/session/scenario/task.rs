@@ -9,6 +9,7 @@ use crate::planning::curves::Samples;
 use crate::planning::timing::TimeLaw;
 use crate::settings::change;
 use crate::settings::key::{Holds, Key};
+use crate::settings::number::{Short, counted};
 use crate::settings::range::{Check, Range};
 
 /// What the machine is to do.
@@ -184,7 +185,9 @@ pub const TIME: Range = Range::new(1e-5, super::bounds::MAX_TIME, "s");
 
 const SAMPLED: &str = "no samples, which say where to go";
 const CURVED: &str = "points, and the kind reactionless, minimum-norm, least-reaction or zero-momentum";
-const STRAIGHT: &str = "the shape line or joint-line: others have no corners";
+const CORNERED: &str =
+    "three points or more, or a closed path, in the shape line or joint-line: others have no corners";
+const BLENDED: &str = "corners = blend, and three points or more, or a closed path, in the shape line or joint-line: others have no corners";
 
 /// Every key of `[task]`.
 pub const KEYS: [Key; 19] = [
@@ -206,15 +209,17 @@ pub const KEYS: [Key; 19] = [
         "task.shape",
         Holds::Choice(&["joint-line", "line", "arc", "spline", "freehand"]),
         Key::NONE,
-        "What joins the points; by default what suits the kind.",
+        "What joins the points.",
     )
-    .when(CURVED),
+    .when(CURVED)
+    .instead("joint-line for reactionless, line for the other kinds"),
     Key::new(
         "task.samples",
         Holds::Rows,
         Key::NONE,
         "The motion over time: rows of t, s, and all drive angles, rad, or of t, x, y, m.",
-    ),
+    )
+    .instead("points and a law say where to be when"),
     Key::number("task.turn", ANGLE, "0", "By how much samples of drive angles are turned as a whole.")
         .when("samples of drive angles"),
     Key::new("task.from", Holds::List(2, PLACE), Key::REQUIRED, "The point A; by default where samples begin.")
@@ -223,15 +228,20 @@ pub const KEYS: [Key; 19] = [
     Key::new("task.to", Holds::List(2, PLACE), Key::REQUIRED, "The point B; by default where samples end.")
         .when(SAMPLED),
     Key::new("task.closed", Holds::Switch, "false", "Whether the path returns from B to A."),
-    Key::new("task.corners", Holds::Choice(&["stop", "blend"]), "stop", "Whether the motion rests at corners or rounds them off.")
-        .when(STRAIGHT),
+    Key::new(
+        "task.corners",
+        Holds::Choice(&["stop", "blend"]),
+        "stop",
+        "Whether the motion rests at corners or rounds them off.",
+    )
+    .when(CORNERED),
     Key::number(
         "task.blend",
         Range::new(0.0, 1.0, "m, rad"),
         "0.03",
         "How far from a corner its blend begins: in m, for joint lines in rad.",
     )
-    .when("corners = blend, and the shape line or joint-line: others have no corners"),
+    .when(BLENDED),
     Key::new(
         "task.keep_off_change_points",
         Holds::Switch,
@@ -240,27 +250,19 @@ pub const KEYS: [Key; 19] = [
     ),
     Key::number("task.b", POSE_CONSTANT, Key::REQUIRED, "Pose constant b at A: which reactionless plane.")
         .when("no samples of drive angles, which have their own b: task.turn turns them"),
-    Key::number(
-        "task.b_to",
-        POSE_CONSTANT,
-        Key::NONE,
-        "Pose constant b at B: for change-b by default the one that B allows with the least change, for least-reaction free.",
-    )
-    .when("the kind change-b or least-reaction"),
+    Key::number("task.b_to", POSE_CONSTANT, Key::NONE, "Pose constant b at B.")
+        .when("the kind change-b or least-reaction")
+        .instead("for change-b the one that B allows with the least change, for least-reaction free"),
     Key::number(
         "task.moment_limit",
         Range::new(1e-9, 1e9, "N m"),
         Key::NONE,
         "Bound on |n_B| while b changes; the motion takes as long as that wants, T or longer.",
     )
-    .when("the kind change-b"),
-    Key::new(
-        "task.cycles",
-        Holds::Whole(Range::new(1.0, 100.0, "")),
-        "1",
-        "How often a closed path is run through.",
-    )
-    .when("the kind zero-momentum"),
+    .when("the kind change-b")
+    .instead("no bound"),
+    Key::new("task.cycles", Holds::Whole(Range::new(1.0, 100.0, "")), "1", "How often a closed path is run through.")
+        .when("the kind zero-momentum"),
     Key::new(
         "task.least",
         Holds::Choice(&["mean-square", "peak"]),
@@ -268,7 +270,9 @@ pub const KEYS: [Key; 19] = [
         "What to keep small: the root of the mean square of n_B, or its peak.",
     )
     .when("the kind least-reaction"),
-    Key::number("task.first_drive_to", ANGLE, Key::NONE, "Where drive 1 ends.").when("the kind same-tip"),
+    Key::number("task.first_drive_to", ANGLE, Key::NONE, "Where drive 1 ends.")
+        .when("the kind same-tip")
+        .instead("where it began"),
     Key::number(
         "task.time",
         TIME,
@@ -394,10 +398,10 @@ impl Task {
     /// What no range says: how its numbers fit together, and a step, s.
     pub(super) fn fits(&self, step: f64) -> Vec<Check> {
         let (count, enough) = (self.via.len(), self.via.len() <= MAX_POINTS);
-        vec![
-            Check::words("task.time", self.time, self.time >= step, "one step or more, s"),
-            Check::words("task.via", count as f64, enough, "at most 2000 points between A and B"),
-        ]
+        let want = || format!("one step or more, {} to {} s", Short(step), Short(TIME.high()));
+        let time = Check::said("task.time", self.time, self.time >= step, want);
+        let many = || Check::count("task.via", count, "point", format!("at most {MAX_POINTS} between A and B"));
+        std::iter::once(time).chain((!enough).then(many)).collect()
     }
 
     /// All points in order, A first and B last, m.
@@ -505,11 +509,12 @@ impl Task {
         let samples = self.samples.as_ref().map(Samples::columns);
         let curved = kind(&[Reactionless, MinimumNorm, LeastReaction, ZeroMomentum]) && samples.is_none();
         let straight = curved && matches!(self.shape(), Shape::JointLine | Shape::Line);
+        let cornered = straight && (self.closed || !self.via.is_empty());
         match key {
             "from" | "to" | "law" => samples.is_none(),
             "shape" => curved,
-            "corners" => straight,
-            "blend" => straight && self.corners == Corners::Blend,
+            "corners" => cornered,
+            "blend" => cornered && self.corners == Corners::Blend,
             "b" => samples.is_none_or(|columns| columns == 2),
             "b_to" => kind(&[ChangeB, LeastReaction]),
             "moment_limit" => kind(&[ChangeB]),
@@ -537,7 +542,7 @@ impl Task {
             [Value::try_from(self.kind).ok(), Value::try_from(self.shape()).ok(), Value::try_from(self.law).ok()]
                 .map(word);
         if let Some(samples) = &self.samples {
-            return format!("{kind}, {} samples", samples.count());
+            return format!("{kind}, {}", counted(samples.count(), "sample"));
         }
         let closed = if self.closed { ", closed" } else { "" };
         format!("{kind}, {shape}{closed}, {law}, {} points", self.via.len() + 2)

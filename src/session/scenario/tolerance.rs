@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::settings::change;
 use crate::settings::key::{Holds, Key};
-use crate::settings::range::Range;
+use crate::settings::range::{Range, clipped};
 
 /// The most samples of one study.
 pub const MAX_SAMPLES: u64 = 1_000_000_000;
@@ -42,33 +42,31 @@ pub struct Tolerance {
 
 /// Every key of `[tolerance]`; in a file a key of a spread is one word in quotes, such as `"link.*.com"`.
 pub const KEYS: [Key; 11] = [
-    Key::new("tolerance.seed", Holds::Whole(Range::new(0.0, i64::MAX as f64, "")), Key::NONE, "Which random machines."),
-    Key::new("tolerance.samples", Holds::Whole(SAMPLES), Key::NONE, "How many random machines."),
-    Key::number("tolerance.moment_limit", LIMIT_MOMENT, Key::NONE, "The greatest |n_B| that will do."),
-    Key::number("tolerance.force_limit", LIMIT_FORCE, Key::NONE, "The greatest dynamic |f_B| that will do."),
-    Key::new(
-        "tolerance.link.*.com",
-        Holds::Spread("m"),
-        Key::NONE,
-        "How a link's centre of mass varies along the link.",
-    ),
-    Key::new(
-        "tolerance.link.*.com_normal",
-        Holds::Spread("m"),
-        Key::NONE,
-        "How a link's centre of mass varies across the link.",
-    ),
-    Key::new("tolerance.link.*.mass", Holds::Spread("kg"), Key::NONE, "How a link's mass varies."),
-    Key::new("tolerance.link.*.inertia", Holds::Spread("kg m²"), Key::NONE, "How a link's inertia varies."),
-    Key::new(
-        "tolerance.length.*",
-        Holds::Spread("m"),
-        Key::NONE,
-        "How a named length varies, in all bars that share it.",
-    ),
-    Key::new("tolerance.payload.mass", Holds::Spread("kg"), Key::NONE, "How the payload's mass varies."),
-    Key::new("tolerance.payload.inertia", Holds::Spread("kg m²"), Key::NONE, "How the payload's inertia varies."),
+    Key::new("tolerance.seed", Holds::Whole(Range::new(0.0, i64::MAX as f64, "")), Key::NONE, "Which random machines.")
+        .instead("1"),
+    Key::new("tolerance.samples", Holds::Whole(SAMPLES), Key::NONE, "How many random machines.")
+        .instead("100000, or 1000 that are simulated"),
+    Key::number("tolerance.moment_limit", LIMIT_MOMENT, Key::NONE, "The greatest |n_B| that will do.")
+        .instead("no yield is counted by it"),
+    Key::number("tolerance.force_limit", LIMIT_FORCE, Key::NONE, "The greatest dynamic |f_B| that will do.")
+        .instead("no yield is counted by it"),
+    spread("tolerance.link.*.com", "m", "How a link's centre of mass varies along the link.")
+        .instead("normal:0.0005 if no spread is given at all"),
+    spread("tolerance.link.*.com_normal", "m", "How a link's centre of mass varies across the link.")
+        .instead("normal:0.0005 if no spread is given at all"),
+    spread("tolerance.link.*.mass", "kg", "How a link's mass varies.")
+        .instead("normal:0.5% if no spread is given at all"),
+    spread("tolerance.link.*.inertia", "kg m²", "How a link's inertia varies.")
+        .instead("normal:2% if no spread is given at all"),
+    spread("tolerance.length.*", "m", "How a named length varies, in all bars that share it.")
+        .instead("normal:0.00005 if no spread is given at all"),
+    spread("tolerance.payload.mass", "kg", "How the payload's mass varies.").instead("it does not"),
+    spread("tolerance.payload.inertia", "kg m²", "How the payload's inertia varies.").instead("it does not"),
 ];
+
+const fn spread(path: &'static str, unit: &'static str, words: &'static str) -> Key {
+    Key::new(path, Holds::Spread(unit), Key::NONE, words)
+}
 
 const SAMPLES: Range = Range::new(1.0, MAX_SAMPLES as f64, "");
 const LIMIT_MOMENT: Range = Range::new(1e-12, 1e12, "N m");
@@ -228,9 +226,9 @@ impl TryFrom<Section> for Tolerance {
                 "moment_limit" => tolerance.moment_limit = Some(within(&key, &value, LIMIT_MOMENT)?),
                 "force_limit" => tolerance.force_limit = Some(within(&key, &value, LIMIT_FORCE)?),
                 _ => {
-                    let spread = in_words(&value)
-                        .and_then(|text| text.parse().ok())
-                        .ok_or_else(|| format!("tolerance: {key:?} is {value}: {SECTION}"))?;
+                    let spread = in_words(&value).and_then(|text| text.parse().ok()).ok_or_else(|| {
+                        format!("tolerance.{} is {}: {SECTION}", clipped(&key), clipped(&change::typed(&value)))
+                    })?;
                     tolerance.spreads.insert(key, spread);
                 }
             }
@@ -262,15 +260,18 @@ fn whole(key: &str, value: &toml::Value, least: u64) -> Result<u64, String> {
     let whole = value.as_integer().and_then(|x| u64::try_from(x).ok());
     let ok = whole.filter(|x| *x >= least && (key == "seed" || *x <= MAX_SAMPLES));
     ok.ok_or_else(|| match key {
-        "seed" => format!("tolerance: {key} is {value}: want a whole number, 0 or more"),
-        _ => format!("tolerance: {key} is {value}: want a whole number from {least} to {MAX_SAMPLES}"),
+        "seed" => format!("tolerance.{key} is {}: want a whole number, 0 or more", clipped(&change::typed(value))),
+        _ => {
+            let given = clipped(&change::typed(value));
+            format!("tolerance.{key} is {given}: want a whole number from {least} to {MAX_SAMPLES}")
+        }
     })
 }
 
 fn within(key: &str, value: &toml::Value, range: Range) -> Result<f64, String> {
     change::number(value)
         .filter(|x| range.contains(*x))
-        .ok_or_else(|| format!("tolerance: {key} is {value}: want a number, {range}"))
+        .ok_or_else(|| format!("tolerance.{key} is {}: want a number, {range}", clipped(&change::typed(value))))
 }
 
 impl From<Tolerance> for Section {

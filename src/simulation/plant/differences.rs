@@ -10,6 +10,7 @@ use super::load::Load;
 use crate::mechanics::machine::ranges::{INERTIA as LINK_INERTIA, LENGTH, MASS as LINK_MASS, PLACE as LINK_PLACE};
 use crate::mechanics::machine::{Machine, MachineError};
 use crate::settings::key::{Holds, Key};
+use crate::settings::number::Short;
 use crate::settings::range::{Check, Range};
 
 /// What differs in the machine that moves.
@@ -85,8 +86,10 @@ impl PlantDifferences {
     /// What no range says: how its numbers fit together, and the drives of a machine with `n` of them.
     pub(crate) fn fits(&self, n: usize) -> Vec<Check> {
         let (load, friction) = (&self.payload, &self.friction);
-        let later =
-            |until| Check::words("plant.payload.until", until, until > load.from, "later than plant.payload.from, s");
+        let later = |until| {
+            let from = || format!("more than plant.payload.from, {} s", Short(load.from));
+            Check::said("plant.payload.until", until, until > load.from, from)
+        };
         let mut list: Vec<Check> = load.until.map(later).into_iter().collect();
         list.extend(friction.viscous.misfit(n, "plant.friction.viscous"));
         list.extend(friction.coulomb.misfit(n, "plant.friction.coulomb"));
@@ -101,6 +104,7 @@ const FRICTION_TORQUE: Range = Range::new(0.0, MAX_PAYLOAD, "N m");
 const VISCOUS: Range = Range::new(0.0, MAX_PAYLOAD, "N m s");
 const TIME: Range = Range::new(0.0, 1e6, "s");
 const PLACE: Range = Range::either_way(1e3, "m");
+const AS_MODEL: &str = "as the model has it";
 const PAYLOAD: &str = "plant.payload.mass or plant.payload.inertia above 0";
 
 /// Every key of `[plant]`.
@@ -140,8 +144,9 @@ pub const KEYS: [Key; 17] = [
         .when(PAYLOAD),
     Key::number("plant.payload.from", TIME, "0", "When the payload is picked up, by a hand that moves with it.")
         .when(PAYLOAD),
-    Key::number("plant.payload.until", TIME, Key::NONE, "When the payload is let go; otherwise it is held to the end.")
-        .when(PAYLOAD),
+    Key::number("plant.payload.until", TIME, Key::NONE, "When the payload is let go.")
+        .when(PAYLOAD)
+        .instead("it is held to the end"),
     Key::new(
         "plant.friction.viscous",
         Holds::PerDrive(VISCOUS),
@@ -166,29 +171,28 @@ pub const KEYS: [Key; 17] = [
         "0",
         "Coulomb friction in every pin; a pin at rest sticks.",
     ),
-    Key::number(
-        "plant.length.*",
-        LENGTH,
-        Key::NONE,
-        "True length of all bars that share a named length, where the model's is another.",
-    ),
-    Key::number("plant.link.*.mass", LINK_MASS, Key::NONE, "True mass of a link, where the model's is another."),
+    Key::number("plant.length.*", LENGTH, Key::NONE, "True length of all bars that share a named length.")
+        .instead(AS_MODEL),
+    Key::number("plant.link.*.mass", LINK_MASS, Key::NONE, "True mass of a link.").instead(AS_MODEL),
     Key::number(
         "plant.link.*.inertia",
         LINK_INERTIA,
         Key::NONE,
-        "True inertia of a link about its own centre of mass, where the model's is another.",
-    ),
+        "True inertia of a link about its own centre of mass.",
+    )
+    .instead(AS_MODEL),
     Key::number(
         "plant.link.*.com",
         LINK_PLACE,
         Key::NONE,
-        "True place of a link's centre of mass along the link, from its root, where the model's is another.",
-    ),
+        "True place of a link's centre of mass along the link, from its root.",
+    )
+    .instead(AS_MODEL),
     Key::number(
         "plant.link.*.com_normal",
         LINK_PLACE,
         Key::NONE,
-        "True place of a link's centre of mass off the link's axis, to the left, where the model's is another.",
-    ),
+        "True place of a link's centre of mass off the link's axis, to the left.",
+    )
+    .instead(AS_MODEL),
 ];

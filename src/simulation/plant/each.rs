@@ -42,8 +42,7 @@ impl Each {
     pub(crate) fn misfit(&self, n: usize, key: &'static str) -> Option<Check> {
         let count = self.values().len();
         let fits = matches!(self, Self::All(_)) || count == n;
-        let want = "one number, or a list with one for each drive; its length is given";
-        (!fits).then(|| Check::words(key, count as f64, false, want))
+        (!fits).then(|| Check::count(key, count, "number", format!("one for all drives, or {n}, one for each")))
     }
 
     /// The same with the value of drive `k` of `n` changed.

@@ -26,20 +26,23 @@ pub const KEYS: [Key; 3] = [
         "base.wheel.inertia",
         Range::new(1e-9, 1e6, "kg m²"),
         Key::NONE,
-        "Inertia of a reaction wheel's rotor about its axis; a wheel is there if one of its keys is, by default with 0.02 kg m².",
-    ),
+        "Inertia of a reaction wheel's rotor about its axis; a wheel is there if one of its keys is given.",
+    )
+    .instead("0.02 if another key of the wheel is given, or else there is no wheel"),
     Key::number(
         "base.wheel.torque_limit",
         Range::new(1e-9, 1e6, "N m"),
         Key::NONE,
         "The greatest torque of the wheel's motor, either way.",
-    ),
+    )
+    .instead("no limit"),
     Key::number(
         "base.wheel.speed_limit",
         Range::new(1e-9, 1e6, "rad/s"),
         Key::NONE,
         "The greatest rate of the wheel, either way.",
-    ),
+    )
+    .instead("no limit"),
 ];
 
 /// A reaction wheel.

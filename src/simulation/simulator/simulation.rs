@@ -339,7 +339,7 @@ impl Simulation {
             moment: (total - x.spin.torque).abs(),
             inertial_pull: dynamics::inertial_pull(&self.link_moments[loaded], &x.e, &qd, &qdd),
             weight: length(x.wrench.statical.force),
-            rate: qd.iter().fold(0.0, |most, qd| most.max((qd - turning).abs())),
+            rate: PerDrive::from_fn(self.drives, |k| qd[k] - turning),
             tilt: self.inside[loaded].tilt(&x.e, &qd, &qdd, &self.field()),
             past_limit: self.angles.iter().enumerate().map(past).fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a }),
         };

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::{COLUMNS, Compared, alternatives};
 use crate::session::scenario::Scenario;
 use crate::session::{Refusal, Watch};
+use crate::settings::number::nine_digits;
 
 /// One row of the comparison.
 #[derive(Clone, Debug)]
@@ -173,7 +174,7 @@ impl Comparison {
         for i in self.order() {
             let entry = &self.entries[i];
             let cells = COLUMNS.iter().map(|c| match &entry.outcome {
-                Ok(run) => (c.value)(&run.summary).map_or_else(String::new, |x| (x + 0.0).to_string()),
+                Ok(run) => (c.value)(&run.summary).map_or_else(String::new, nine_digits),
                 Err(_) => String::new(),
             });
             text += &([entry.title.clone()].into_iter().chain(cells).collect::<Vec<_>>().join("\t") + "\n");

@@ -52,7 +52,7 @@ pub struct Summary {
 /// A column of the table.
 #[derive(Clone, Copy, Debug)]
 pub struct Column {
-    /// Key in JSON and CSV.
+    /// Key in JSON.
     pub key: &'static str,
     /// Head of the column.
     pub head: &'static str,
@@ -86,6 +86,13 @@ pub const COLUMNS: [Column; 15] = [
         s.peak_arm_moment
     }),
 ];
+
+impl Column {
+    /// Its name in a CSV file, where it goes with its unit: an angle is called one.
+    pub fn name(&self) -> &'static str {
+        if self.key == "base_tilt" { "base_angle" } else { self.key }
+    }
+}
 
 const fn column(
     key: &'static str,
