@@ -1,6 +1,7 @@
 //! [`Background`]: what is under way beside the window.
 
 use std::collections::VecDeque;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::change::{Change, NotOpened};
@@ -27,6 +28,17 @@ pub(super) struct Opening {
     pub closes: bool,
     /// What to say then.
     pub news: Option<String>,
+    /// Where it comes from.
+    pub file: Option<File>,
+}
+
+/// A file that a session comes from.
+#[derive(Clone, Debug)]
+pub(super) enum File {
+    /// One that the person named.
+    Own(PathBuf),
+    /// One that the program left behind.
+    LeftBehind(PathBuf),
 }
 
 /// A session with a change made, or why it was not.
@@ -57,8 +69,8 @@ pub(super) struct Background {
     pub kept: VecDeque<Keeping>,
     /// What to say when the recording is there.
     pub recording: Slot<(), Result<String, String>>,
-    /// What to say when the session is saved.
-    pub saving: Slot<(), Result<String, String>>,
+    /// What to say when the session is saved, as it was after so many changes, and where.
+    pub saving: Slot<(u64, PathBuf), Result<String, String>>,
     /// How far the base will move.
     pub foreseen: Slot<(), Totals>,
 }

@@ -81,6 +81,12 @@ pub enum Command {
     Refuse(String),
     /// Stop what is under way beside the window.
     Cancel(Activity),
+    /// Ask whether the window may close with changes that are in no file, or ask no more.
+    AskToLeave(bool),
+    /// Close the window as it is.
+    Leave,
+    /// What becomes of a session that was left behind.
+    Recover(Recovery),
     /// Show no more hints, now and at the next start.
     SkipHints,
     /// Show or hide the list of commands.
@@ -102,6 +108,7 @@ impl Command {
             | Self::Step(_)
             | Self::Open(_)
             | Self::OpenFile(_)
+            | Self::Recover(_)
             | Self::SaveFile(_)
             | Self::Record(_)
             | Self::Undo
@@ -119,6 +126,8 @@ impl Command {
             | Self::Plots(_)
             | Self::Panels(_)
             | Self::SkipHints
+            | Self::AskToLeave(_)
+            | Self::Leave
             | Self::Find(_)
             | Self::Theme(_)
             | Self::Preview(_)
@@ -190,6 +199,17 @@ impl Activity {
             Self::Kept => "cancelled: no run was added",
         }
     }
+}
+
+/// What becomes of a session that was left behind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Recovery {
+    /// It is opened.
+    Open,
+    /// It is removed.
+    Forget,
+    /// It is offered again at the next start.
+    Later,
 }
 
 /// How the camera is moved.

@@ -17,6 +17,7 @@ mod order;
 mod path;
 mod plots;
 mod preferences;
+mod saving;
 mod search;
 mod side;
 mod state;
@@ -31,7 +32,7 @@ mod widgets;
 #[cfg(feature = "window")]
 pub mod window;
 
-pub use command::{Activity, Command, ComparisonCommand, FileDialog, Look, Purpose};
+pub use command::{Activity, Command, ComparisonCommand, FileDialog, Look, Purpose, Recovery};
 use intro::Intro;
 pub use preferences::Preferences;
 pub use state::AppState;

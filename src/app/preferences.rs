@@ -1,5 +1,7 @@
 //! [`Preferences`]: how a person likes the window, remembered from one start to the next.
 
+use std::path::PathBuf;
+
 use serde::{Deserialize, Serialize};
 
 use crate::picture::scene::palette::Theme;
@@ -22,6 +24,8 @@ pub struct Preferences {
     pub plots: bool,
     /// How wide it was made, points of the screen.
     pub plots_width: Option<f32>,
+    /// Files that were opened and saved, newest first.
+    pub recent: Vec<PathBuf>,
 }
 
 impl Default for Preferences {
@@ -34,6 +38,7 @@ impl Default for Preferences {
             side_width: None,
             plots: true,
             plots_width: None,
+            recent: Vec::new(),
         }
     }
 }
@@ -50,6 +55,7 @@ impl Preferences {
         ];
         self.side_width = self.side_width.filter(|w| w.is_finite()).map(|w| w.clamp(220.0, 480.0));
         self.plots_width = self.plots_width.filter(|w| w.is_finite()).map(|w| w.clamp(260.0, 1200.0));
+        self.recent.truncate(32);
         self
     }
 }

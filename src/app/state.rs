@@ -2,14 +2,16 @@
 
 mod work;
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::background::{Background, Opening};
+use super::background::{Background, File, Opening};
 use super::change::{Change, Source};
 use super::facts::Facts;
+use super::saving::{self, Saving};
 use super::{
-    Activity, Command, Finder, Intro, Panel, Preferences, ViewState, compare, finder, keys, order, plots, side, status,
-    study, theme, top, viewport,
+    Activity, Command, Finder, Intro, Panel, Preferences, Recovery, ViewState, compare, finder, keys, order, plots,
+    side, status, study, theme, top, viewport,
 };
 use crate::app::widgets;
 use crate::mechanics::machine::Machine;
@@ -37,6 +39,8 @@ pub struct AppState {
     /// What is left of the first minute, and whether it is to be shown at the next start.
     intro: Option<Intro>,
     hints: bool,
+    /// What of the session is in a file.
+    saving: Saving,
     /// Runs side by side, while they are on display.
     comparison: Option<Comparison>,
     /// Tolerances and what they were found for, while they are on display.
@@ -84,6 +88,7 @@ impl AppState {
             view_state,
             intro: None,
             hints: true,
+            saving: Saving::default(),
             comparison: None,
             study: None,
             declined: None,
@@ -105,11 +110,60 @@ impl AppState {
         self.view_state.side = Panel { shown: liked.side, width: liked.side_width };
         self.view_state.plots = Panel { shown: liked.plots, width: liked.plots_width };
         self.hints = liked.hints;
+        self.saving.recent.clone_from(&liked.recent);
         let usual = Scenario::builtin("case-3").is_some_and(|case| case == *self.session.scenario());
         if liked.hints && usual {
             self.intro = Intro::beside(&self.session).ok();
         }
         self
+    }
+
+    /// The same with a session that a program left behind: its file, and when that was written, in words.
+    #[must_use]
+    pub fn finding(mut self, left: Option<(PathBuf, String)>) -> Self {
+        self.saving.found = left;
+        self
+    }
+
+    /// What of the session is in a file: how many changes there were, and whether some are in no file of the person's
+    /// own.
+    pub fn changes(&self) -> (u64, bool) {
+        (self.saving.changes, self.saving.is_unsaved())
+    }
+
+    /// Whether the window may close as it is.
+    pub fn may_leave(&self) -> bool {
+        self.saving.leaves || !self.saving.is_unsaved()
+    }
+
+    /// Whether the window is to close.
+    pub fn wants_to_leave(&self) -> bool {
+        self.saving.leaves
+    }
+
+    /// What stands above the window: the scenario, marked where changes are in no file.
+    pub fn title(&self) -> String {
+        let scenario = self.session.scenario();
+        let name = if scenario.title.is_empty() { &scenario.name } else { &scenario.title };
+        let mark = if self.saving.is_unsaved() { " *" } else { "" };
+        format!("{}{mark} – Stillbase", crate::settings::text::brief(name))
+    }
+
+    /// The file of a session that was left behind, once it is not needed any more.
+    pub fn take_recovered(&mut self) -> Option<PathBuf> {
+        self.saving.recovered.take()
+    }
+
+    fn recover(&mut self, what: Recovery) {
+        let Some((file, _)) = self.saving.found.take() else { return };
+        match what {
+            Recovery::Open => {
+                let (from, news) = (Some(File::LeftBehind(file.clone())), Some("here is where you were".into()));
+                self.open(Source::File(file), Opening { plays: false, closes: false, news, file: from });
+            }
+            Recovery::Forget => self.saving.recovered = Some(file),
+            Recovery::Later => {}
+        }
     }
 
     /// How it is liked, to be remembered; of a window so large, points.
@@ -123,6 +177,7 @@ impl AppState {
             side_width: side.width,
             plots: plots.shown,
             plots_width: plots.width,
+            recent: self.saving.recent.clone(),
         }
     }
 
@@ -210,7 +265,7 @@ impl AppState {
         self.background.count();
         let mut commands = Vec::new();
         keys::read(ui.ctx(), &self.session, &self.view_state, &mut commands);
-        top::show(ui, &self.session, &self.facts, &self.view_state, &mut commands);
+        top::show(ui, &self.session, (&self.facts, &self.saving.recent), &self.view_state, &mut commands);
         let under_way = self.background.under_way();
         status::show(ui, &self.session, &self.facts, &self.view_state, under_way, &mut commands);
         if let Some(comparison) = &self.comparison {
@@ -233,6 +288,7 @@ impl AppState {
         viewport::show(ui, &self.session, &self.views, both, &mut self.view_state, &mut commands);
         status::news(ui.ctx(), &self.session, &self.view_state, &mut commands);
         keys::help(ui.ctx(), &self.view_state, &mut commands);
+        saving::show(ui.ctx(), &self.saving, &self.session, &self.view_state, &mut commands);
         finder::show(ui.ctx(), &self.session, &mut self.view_state, &mut commands);
         top::dialog(ui.ctx(), &mut self.view_state, &mut commands);
         commands.extend(widgets::refused_entry(ui.ctx()).map(Command::Refuse));
@@ -317,7 +373,7 @@ impl AppState {
             Command::Step(steps) => self.session.step_by(steps),
             Command::Speed(speed) => self.view_state.speed = speed,
             Command::Open(scenario) => {
-                self.open(Source::Scenario(scenario), Opening { plays: true, closes: false, news: None });
+                self.open(Source::Scenario(scenario), Opening { plays: true, closes: false, news: None, file: None });
             }
             Command::Case(name) => self.open_case(name),
             Command::BackToPath if self.session.is_led() => self.change(Change::BackToPath),
@@ -336,6 +392,9 @@ impl AppState {
             Command::Dexterity(shown) => self.view_state.dexterity = shown,
             Command::Fit => *self.view_state.camera_mut() = self.views.camera(self.view_state.view),
             Command::Theme(theme) => self.view_state.theme = theme,
+            Command::AskToLeave(asks) => self.saving.asks = asks,
+            Command::Leave => (self.saving.asks, self.saving.leaves) = (false, true),
+            Command::Recover(what) => self.recover(what),
             Command::SkipHints => {
                 self.hints &= self.intro.is_none();
                 self.intro = None;

@@ -1,5 +1,7 @@
 //! The bar at the top: machine, scenario, transport, recording.
 
+use std::path::PathBuf;
+
 use crate::app::theme::other;
 use crate::app::widgets::name;
 use egui::{Align, ComboBox, Frame, Layout, Margin, Panel, Response, RichText, Sense, Shape, Stroke, Ui, pos2, vec2};
@@ -14,7 +16,13 @@ use crate::session::Session;
 use crate::session::scenario::Scenario;
 
 /// Draws this panel.
-pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewState, commands: &mut Vec<Command>) {
+pub fn show(
+    ui: &mut Ui,
+    session: &Session,
+    (facts, recent): (&Facts, &[PathBuf]),
+    view_state: &ViewState,
+    commands: &mut Vec<Command>,
+) {
     let p = view_state.palette();
     let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin::symmetric(16, 0));
     Panel::top("top").exact_size(44.0).resizable(false).frame(frame).show(ui, |ui| {
@@ -22,7 +30,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewStat
             ui.label(RichText::new("Stillbase").font(bold(17.0)));
             ui.add_space(6.0);
             machines(ui, session, facts.machine_differs, commands);
-            scenarios(ui, session, facts.work_differs, commands);
+            scenarios(ui, session, recent, facts.work_differs, commands);
             ui.add_space(8.0);
             transport(ui, session, view_state, commands);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -58,7 +66,7 @@ fn machines(ui: &mut Ui, session: &Session, changed: bool, commands: &mut Vec<Co
     name(&response.response.on_hover_text(tip), "Machine");
 }
 
-fn scenarios(ui: &mut Ui, session: &Session, changed: bool, commands: &mut Vec<Command>) {
+fn scenarios(ui: &mut Ui, session: &Session, recent: &[PathBuf], changed: bool, commands: &mut Vec<Command>) {
     let current = session.scenario();
     let shown = if current.title.is_empty() { &current.name } else { &current.title };
     let shown = if changed { format!("{shown} *") } else { shown.clone() };
@@ -81,6 +89,15 @@ fn scenarios(ui: &mut Ui, session: &Session, changed: bool, commands: &mut Vec<C
         for (label, purpose) in [("Open…   Ctrl O", Purpose::Open), ("Save session…   Ctrl S", Purpose::Save)] {
             if ui.selectable_label(false, label).clicked() {
                 commands.push(Command::Dialog(Some(FileDialog::suggest(session, purpose))));
+            }
+        }
+        if !recent.is_empty() {
+            ui.separator();
+        }
+        for file in recent {
+            let shown = file.file_name().map_or_else(|| file.to_string_lossy(), |name| name.to_string_lossy());
+            if ui.selectable_label(false, format!("     {shown}")).on_hover_text(file.to_string_lossy()).clicked() {
+                commands.push(Command::OpenFile(file.clone()));
             }
         }
     });

@@ -1,11 +1,15 @@
 //! A real window around an [`AppState`].
 
+mod keeper;
+
 use std::cell::Cell;
 use std::path::PathBuf;
 use std::rc::Rc;
 use std::time::Instant;
 
 use thiserror::Error;
+
+use keeper::Keeper;
 
 use crate::app::jobs::Threads;
 use crate::app::{AppState, Command, Preferences};
@@ -49,8 +53,10 @@ pub fn run(scenario: Scenario, theme: Option<Theme>) -> Result<(), WindowError> 
     check_libraries()?;
     let liked: Preferences = preferences::load();
     let liked = Preferences { theme: theme.unwrap_or(liked.theme), ..liked }.sound();
-    let mut app_state =
-        AppState::open_or_explain(scenario, liked.theme)?.with_workers(Threads).with_preferences(&liked);
+    let mut app_state = AppState::open_or_explain(scenario, liked.theme)?
+        .with_workers(Threads)
+        .with_preferences(&liked)
+        .finding(keeper::found());
     if app_state.view_state().message.is_none() && app_state.session().run().waiting().is_none() {
         app_state.carry_out(Command::TogglePlay);
     }
@@ -66,7 +72,7 @@ pub fn run(scenario: Scenario, theme: Option<Theme>) -> Result<(), WindowError> 
     let opened = Rc::new(Cell::new(false));
     let seen = opened.clone();
     let create: eframe::AppCreator<'_> = Box::new(move |cc| {
-        let app = App::new(cc, app_state, Clock::Wall(None)).ok_or("no graphics adapter")?.remembering(liked);
+        let app = App::new(cc, app_state, Clock::Wall(None)).ok_or("no graphics adapter")?.kept(liked);
         seen.set(true);
         Ok(Box::new(app))
     });
@@ -130,12 +136,11 @@ fn check_libraries() -> Result<(), WindowError> {
 pub struct App {
     app_state: AppState,
     clock: Clock,
-    /// What is remembered, and when that was written last; nothing is in tests.
-    remembered: Option<(Preferences, Instant)>,
+    /// What stands above the window.
+    title: String,
+    /// Who writes down what is to last; nobody does in tests.
+    keeper: Option<Keeper>,
 }
-
-/// How soon a change is remembered, s.
-const REMEMBERED_AFTER: f32 = 1.0;
 
 /// Where wall time comes from.
 #[derive(Clone, Copy, Debug)]
@@ -155,28 +160,13 @@ impl App {
         }
         let renderers = Renderers::new(&state.device, state.target_format);
         state.renderer.write().callback_resources.insert(renderers);
-        Some(Self { app_state, clock, remembered: None })
+        Some(Self { app_state, clock, title: String::new(), keeper: None })
     }
 
-    /// The same, which writes down how it is liked when that changes.
-    fn remembering(self, liked: Preferences) -> Self {
-        Self { remembered: Some((liked, Instant::now())), ..self }
-    }
-
-    fn remember(&mut self, ctx: &egui::Context, at_once: bool) {
-        let size = ctx.content_rect().size();
-        let now = self.app_state.preferences([size.x, size.y]);
-        let Some((remembered, when)) = &mut self.remembered else { return };
-        if *remembered == now {
-            return;
-        }
-        // While an edge is dragged it is not written at every step.
-        if at_once || when.elapsed().as_secs_f32() >= REMEMBERED_AFTER {
-            preferences::save(&now);
-            (*remembered, *when) = (now, Instant::now());
-        } else {
-            ctx.request_repaint_after_secs(REMEMBERED_AFTER);
-        }
+    /// The same, which writes down what is to last.
+    fn kept(self, liked: Preferences) -> Self {
+        let keeper = Keeper::new(liked, &self.app_state);
+        Self { keeper: Some(keeper), ..self }
     }
 
     /// What it shows.
@@ -205,10 +195,26 @@ impl eframe::App for App {
             self.app_state.carry_out(Command::OpenFile(path));
         }
         self.app_state.ui(ui);
-        self.remember(ui.ctx(), false);
+        if let Some(keeper) = &mut self.keeper {
+            keeper.keep(ui.ctx(), &mut self.app_state);
+        }
+        if self.app_state.wants_to_leave() {
+            ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
+        } else if ui.input(|i| i.viewport().close_requested()) && !self.app_state.may_leave() {
+            ui.ctx().send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            self.app_state.carry_out(Command::AskToLeave(true));
+        }
+        let title = self.app_state.title();
+        if self.title != title {
+            ui.ctx().send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
+            self.title = title;
+        }
     }
 
     fn on_exit(&mut self) {
+        if let Some(keeper) = &mut self.keeper {
+            keeper.end();
+        }
         self.app_state.close();
         // A recording that is not there yet leaves nothing half written.
         drop(crate::files::abandon());

@@ -2,6 +2,8 @@
 
 pub mod fault;
 mod find;
+#[cfg(feature = "window")]
+pub mod journal;
 mod new_file;
 #[cfg(feature = "window")]
 pub mod preferences;

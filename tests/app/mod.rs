@@ -8,6 +8,7 @@ mod panel;
 mod pointer;
 mod refusal;
 mod run;
+mod saving;
 mod screen;
 mod view;
 
@@ -21,7 +22,8 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 9] = [
+pub const TESTS: [&[Test]; 10] = [
+    saving::TESTS,
     files::TESTS,
     finder::TESTS,
     intro::TESTS,

@@ -39,7 +39,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("egui_wgpu", &["picture/canvas", "picture/paint", "app"]),
     ("egui_plot", &["app"]),
     ("eframe", &["app/window"]),
-    ("directories", &["files/preferences"]),
+    ("directories", &["files/journal", "files/preferences"]),
     ("sha2", &["recording/hash"]),
     ("libloading", &["app/window"]),
     ("rerun", &["recording"]),
@@ -58,9 +58,18 @@ const CRATES: &[(&str, &[&str])] = &[
 
 /// Parts of the standard library that reach outside, and the files that are edges.
 const EDGES: &[(&str, &[&str])] = &[
-    ("std::time", &["picture/render/shader.rs", "app/window.rs"]),
+    ("std::time", &["picture/render/shader.rs", "app/window.rs", "app/window/keeper.rs", "files/journal.rs"]),
     ("std::env", &["main.rs", "app/window.rs"]),
-    ("std::thread", &["app/jobs.rs", "commands/interrupt.rs", "commands/tolerance/parallel.rs", "recording/store.rs"]),
+    (
+        "std::thread",
+        &[
+            "app/jobs.rs",
+            "app/window/keeper.rs",
+            "commands/interrupt.rs",
+            "commands/tolerance/parallel.rs",
+            "recording/store.rs",
+        ],
+    ),
     ("std::net", &[]),
     ("std::process", &["commands/exit.rs", "files/fault.rs", "files/new_file.rs", "main.rs"]),
     // Text comes in at one place; everything else of the core takes it from there.
@@ -70,6 +79,7 @@ const EDGES: &[(&str, &[&str])] = &[
             "commands/tolerance/rows.rs",
             "commands/tolerance/checksum.rs",
             "files/new_file.rs",
+            "files/journal.rs",
             "files/preferences.rs",
             "picture/render/offscreen.rs",
             "picture/render/shader.rs",

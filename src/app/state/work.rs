@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::AppState;
-use crate::app::background::{Background, Opening, Slot, ended};
+use crate::app::background::{Background, File, Opening, Slot, ended};
 use crate::app::change::{Change, NotOpened, Source};
 use crate::app::jobs::Workers;
 use crate::app::{Activity, Command, ComparisonCommand, RefusedEdit};
@@ -67,13 +67,19 @@ impl AppState {
             self.tell(said);
             any = true;
         }
-        for (slot, what) in [(&mut self.background.recording, "the recording"), (&mut self.background.saving, "saving")]
-        {
-            if let Some(((), said)) = ended(slot) {
-                let said = said.unwrap_or_else(|| Err(fault(what)));
-                self.view_state.message = Some(said.map_or_else(|why| (why, true), |news| (news, false)));
-                any = true;
+        if let Some(((), said)) = ended(&mut self.background.recording) {
+            let said = said.unwrap_or_else(|| Err(fault("the recording")));
+            self.tell(said.map(Some));
+            any = true;
+        }
+        if let Some(((changes, file), said)) = ended(&mut self.background.saving) {
+            let said = said.unwrap_or_else(|| Err(fault("saving")));
+            if said.is_ok() {
+                self.saving.saved = changes;
+                self.saving.uses(file);
             }
+            self.tell(said.map(Some));
+            any = true;
         }
         if let Some(((), totals)) = ended(&mut self.background.foreseen) {
             self.foreseen = totals.unwrap_or_default();
@@ -123,6 +129,7 @@ impl AppState {
             self.view_state.refused = Some(RefusedEdit::of(edit, refusal));
         }
         if done.is_ok() {
+            self.saving.changes += u64::from(!matches!(change, Change::Seek(_)));
             match change {
                 // A push sends an edit many times a second for as long as it lasts: too often to run ahead each time.
                 Change::Edit(Edit::Push { .. }) => self.view_state.refused = None,
@@ -172,7 +179,17 @@ impl AppState {
         true
     }
 
-    fn take_over(&mut self, next: Session, Opening { plays, closes, news }: Opening) {
+    fn take_over(&mut self, next: Session, Opening { plays, closes, news, file }: Opening) {
+        self.saving.opened();
+        match file {
+            Some(File::Own(file)) => self.saving.uses(file),
+            // It is in no file of the person's own yet.
+            Some(File::LeftBehind(file)) => {
+                self.saving.changes += 1;
+                self.saving.recovered = Some(file);
+            }
+            None => {}
+        }
         let old = self.session.clone();
         self.session.take_over(next);
         self.background.let_go(old);
@@ -193,22 +210,24 @@ impl AppState {
         let other = (present.name() != case.machine.name()).then(|| present.clone());
         let news = other.as_ref().map(|machine| format!("{}, with the machine {}", case.title, machine.name()));
         let scenario = Scenario { machine: other.unwrap_or_else(|| case.machine.clone()), ..case };
-        self.open(Source::Scenario(Box::new(scenario)), Opening { plays: true, closes: false, news });
+        self.open(Source::Scenario(Box::new(scenario)), Opening { plays: true, closes: false, news, file: None });
     }
 
     /// Opens a file.
     pub(super) fn open_file(&mut self, path: PathBuf) {
         let news = Some(format!("opened {}", path.display()));
-        self.open(Source::File(path), Opening { plays: false, closes: true, news });
+        let file = Some(File::Own(path.clone()));
+        self.open(Source::File(path), Opening { plays: false, closes: true, news, file });
     }
 
     /// Starts to write a file; what is done at once says at once how it went, with the dialog still open where it failed.
-    fn write(
+    fn write<K>(
         &mut self,
-        slot: fn(&mut Self) -> &mut Slot<(), Result<String, String>>,
+        slot: fn(&mut Self) -> &mut Slot<K, Result<String, String>>,
+        of: K,
         job: crate::app::jobs::Job<Result<String, String>>,
     ) {
-        *slot(self) = Some(((), job));
+        *slot(self) = Some((of, job));
         self.collect();
         let failed = matches!(self.view_state.message, Some((_, true)));
         if slot(self).is_some() || !failed {
@@ -223,12 +242,13 @@ impl AppState {
             return Err("one session is being saved: want that to end first".into());
         }
         let (scenario, path) = (self.session.to_scenario(), path.to_owned());
+        let of = (self.saving.changes, path.clone());
         let job = self.background.start(move |_| {
             let text = scenario.to_toml();
             crate::files::write_new(&path, text.as_bytes(), false).map_err(|e| e.to_string())?;
             Ok(format!("saved {}", whole(&path)))
         });
-        self.write(|app_state| &mut app_state.background.saving, job);
+        self.write(|app_state| &mut app_state.background.saving, of, job);
         Ok(())
     }
 
@@ -250,7 +270,7 @@ impl AppState {
             let verdict = if done.iter().all(|r| r.reactionless) { "reactionless" } else { "with reactions" };
             Ok(format!("recorded {} ({verdict}); open it with the Rerun viewer", whole(&path)))
         });
-        self.write(|app_state| &mut app_state.background.recording, job);
+        self.write(|app_state| &mut app_state.background.recording, (), job);
         Ok(())
     }
 
@@ -353,7 +373,7 @@ impl AppState {
             ComparisonCommand::Open(entry) => {
                 let run = comparison.entries().get(entry).and_then(|e| e.outcome.as_ref().ok()).cloned();
                 if let Some(run) = run {
-                    let opening = Opening { plays: false, closes: false, news: None };
+                    let opening = Opening { plays: false, closes: false, news: None, file: None };
                     self.open(Source::Scenario(Box::new(run.scenario.clone())), opening);
                 }
             }

@@ -1,0 +1,123 @@
+//! [`Saving`]: which of the changes of a session are in a file, and the questions about those that are not.
+
+use std::path::PathBuf;
+
+use egui::{Align2, Area, Frame, Id, Order, RichText};
+
+use super::theme::{bold, colour, plain};
+use super::{Command, FileDialog, Purpose, Recovery, ViewState};
+use crate::session::Session;
+
+/// How much of a session is in a file.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Saving {
+    /// Counts up with every change of the session.
+    pub changes: u64,
+    /// What the count was when it was opened or saved.
+    pub saved: u64,
+    /// The window was asked to close.
+    pub asks: bool,
+    /// It may close without saving.
+    pub leaves: bool,
+    /// A session that a program left behind, and when, in words.
+    pub found: Option<(PathBuf, String)>,
+    /// What was left behind and is open now, or is to be forgotten: its file is to go when a journal holds it again.
+    pub recovered: Option<PathBuf>,
+    /// Files that were opened and saved, newest first.
+    pub recent: Vec<PathBuf>,
+}
+
+/// How many files are remembered.
+const RECENT: usize = 8;
+
+impl Saving {
+    /// Whether something has changed that is in no file of the person's own.
+    pub fn is_unsaved(&self) -> bool {
+        self.changes != self.saved
+    }
+
+    /// The session is another one, as its file has it.
+    pub fn opened(&mut self) {
+        self.changes += 1;
+        self.saved = self.changes;
+    }
+
+    /// Remembers a file.
+    pub fn uses(&mut self, file: PathBuf) {
+        self.recent.retain(|other| *other != file);
+        self.recent.insert(0, file);
+        self.recent.truncate(RECENT);
+    }
+}
+
+/// Asks what to do with a session that was left behind, or with changes before the window closes.
+pub(super) fn show(
+    ctx: &egui::Context,
+    saving: &Saving,
+    session: &Session,
+    view_state: &ViewState,
+    commands: &mut Vec<Command>,
+) {
+    if saving.asks {
+        let changes = saving.changes - saving.saved;
+        let words = match changes {
+            1 => "One change of this session is in no file.".to_owned(),
+            n => format!("{n} changes of this session are in no file."),
+        };
+        let save = Command::Dialog(Some(FileDialog::suggest(session, Purpose::Save)));
+        card(
+            ctx,
+            view_state,
+            "Save before closing?",
+            &words,
+            commands,
+            [
+                ("Save…", vec![Command::AskToLeave(false), save]),
+                ("Close without saving", vec![Command::Leave]),
+                ("Cancel", vec![Command::AskToLeave(false)]),
+            ],
+        );
+    } else if let Some((_, when)) = &saving.found {
+        let words = format!("The program did not end in order {when}. What was done then is still there.");
+        card(
+            ctx,
+            view_state,
+            "Go on where you were?",
+            &words,
+            commands,
+            [
+                ("Open that session", vec![Command::Recover(Recovery::Open)]),
+                ("Forget it", vec![Command::Recover(Recovery::Forget)]),
+                ("Later", vec![Command::Recover(Recovery::Later)]),
+            ],
+        );
+    }
+}
+
+fn card<const N: usize>(
+    ctx: &egui::Context,
+    view_state: &ViewState,
+    title: &str,
+    words: &str,
+    commands: &mut Vec<Command>,
+    answers: [(&str, Vec<Command>); N],
+) {
+    let p = view_state.palette();
+    let frame = Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.amber))).corner_radius(10).inner_margin(16);
+    let area = Area::new(Id::unique("question")).order(Order::Foreground).anchor(Align2::CENTER_TOP, [0.0, 96.0]);
+    area.show(ctx, |ui| {
+        frame.show(ui, |ui| {
+            ui.set_width(430.0);
+            ui.label(RichText::new(title).font(bold(15.0)).color(colour(p.ink)));
+            ui.add(egui::Label::new(RichText::new(words).font(plain(12.5)).color(colour(p.dim))).wrap());
+            ui.add_space(6.0);
+            ui.horizontal(|ui| {
+                for (answer, asked) in answers {
+                    if ui.button(answer).clicked() {
+                        commands.extend(asked);
+                    }
+                }
+            });
+        });
+    });
+}

@@ -1,0 +1,119 @@
+//! [`Keeper`]: writes down how the window is liked, and the session into its journal.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use crate::app::jobs::{Job, Poll, Threads};
+use crate::app::{AppState, Preferences};
+use crate::files::journal::{self, Journal, Left};
+use crate::files::preferences;
+
+/// Writes what changes, beside the window and no more than once a second.
+pub struct Keeper {
+    liked: (Preferences, Instant),
+    journal: Option<Journal>,
+    /// The count of changes that the journal holds, and that is being written.
+    held: u64,
+    writing: Option<(u64, Job<bool>)>,
+    next: Instant,
+    /// What was left behind and goes when the journal holds it again.
+    going: Option<PathBuf>,
+}
+
+/// The least time between two writes.
+const EVERY: Duration = Duration::from_secs(1);
+/// A long session is copied so many times as seldom as that takes.
+const SELDOM: u32 = 50;
+
+impl Keeper {
+    /// What is liked is in its file already.
+    pub fn new(liked: Preferences, app_state: &AppState) -> Self {
+        let now = Instant::now();
+        let held = app_state.changes().0;
+        Self { liked: (liked, now), journal: None, held, writing: None, next: now, going: None }
+    }
+
+    /// After a repaint.
+    pub fn keep(&mut self, ctx: &egui::Context, app_state: &mut AppState) {
+        self.like(ctx, app_state);
+        self.write(ctx, app_state);
+    }
+
+    fn like(&mut self, ctx: &egui::Context, app_state: &AppState) {
+        let size = ctx.content_rect().size();
+        let now = app_state.preferences([size.x, size.y]);
+        let (liked, when) = &mut self.liked;
+        if *liked == now {
+            return;
+        }
+        // While an edge is dragged it is not written at every step.
+        if when.elapsed() >= EVERY {
+            preferences::save(&now);
+            self.liked = (now, Instant::now());
+        } else {
+            ctx.request_repaint_after(EVERY);
+        }
+    }
+
+    fn write(&mut self, ctx: &egui::Context, app_state: &mut AppState) {
+        if let Some((of, job)) = self.writing.take() {
+            match job.poll() {
+                Poll::Working => self.writing = Some((of, job)),
+                Poll::Done(written) => self.held = if written { of } else { self.held },
+                Poll::Broken => {}
+            }
+        }
+        self.going = app_state.take_recovered().or(self.going.take());
+        let (changes, _) = app_state.changes();
+        if changes == self.held {
+            self.going.take().iter().for_each(|file| journal::forget(file));
+            return;
+        }
+        let now = Instant::now();
+        if self.writing.is_some() || now < self.next {
+            ctx.request_repaint_after(EVERY);
+            return;
+        }
+        if self.journal.is_none() {
+            self.journal = journal::folder().and_then(|folder| Journal::begin(&folder));
+        }
+        self.next = now + EVERY;
+        let Some(file) = self.journal.as_ref().map(|journal| journal.file().to_owned()) else { return };
+        let scenario = app_state.session().to_scenario();
+        self.next += SELDOM * now.elapsed();
+        let wake = ctx.clone();
+        let job = Job::start(
+            &Threads,
+            move || wake.request_repaint(),
+            move |_| journal::write(&file, &scenario.to_toml()).is_ok(),
+        );
+        self.writing = Some((changes, job));
+    }
+
+    /// The window closes in order: nothing is to be offered at the next start.
+    pub fn end(&mut self) {
+        // What is being written would come back after it was removed.
+        while let Some((_, job)) = self.writing.take() {
+            if let Poll::Working = job.poll() {
+                std::thread::sleep(Duration::from_millis(2));
+                self.writing = Some((0, job));
+            }
+        }
+        if let Some(journal) = self.journal.take() {
+            journal.end();
+        }
+    }
+}
+
+/// The newest session that a program left behind, with when that was, in words.
+pub fn found() -> Option<(PathBuf, String)> {
+    let Left { file, when } = journal::left(&journal::folder()?).into_iter().next()?;
+    let ago = when.elapsed().unwrap_or_default().as_secs();
+    let words = match ago {
+        0..=119 => "a moment ago".into(),
+        120..=7199 => format!("{} minutes ago", ago / 60),
+        7200..=172_799 => format!("{} hours ago", ago / 3600),
+        _ => format!("{} days ago", ago / 86_400),
+    };
+    Some((file, words))
+}

@@ -1,0 +1,137 @@
+//! Nothing is lost: the journal of a session, what a program left behind, and changes that are in no file.
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use stillbase::app::window::{App, Clock};
+use stillbase::app::{AppState, Command};
+use stillbase::files::journal::{self, Journal};
+use stillbase::picture::scene::palette::Theme;
+use stillbase::session::Edit;
+use stillbase::session::scenario::Scenario;
+
+use super::screen::Screen;
+use super::{Window, session, window};
+use crate::Test;
+use crate::folder::Folder;
+
+pub const TESTS: &[Test] = tests![
+    what_a_program_left_behind_is_found,
+    programs_beside_each_other_keep_a_journal_each,
+    a_session_that_was_left_behind_is_offered_and_opened,
+    one_that_is_not_wanted_goes,
+    changes_in_no_file_are_marked_and_asked_for,
+];
+
+fn tell(h: &mut Window, command: Command) {
+    h.state_mut().app_state_mut().carry_out(command);
+    h.run_steps(3);
+}
+
+fn heavier() -> Command {
+    Command::Edit(Edit::set("plant.payload.mass", 0.3))
+}
+
+fn what_a_program_left_behind_is_found() {
+    let folder = Folder::new("journal");
+    assert!(journal::left(&folder.0).is_empty());
+    let mut h = window("case-3", Theme::Dark);
+    tell(&mut h, heavier());
+    let kept = session(&h).to_scenario();
+    let running = Journal::begin(&folder.0).expect("the folder can be written");
+    journal::write(running.file(), &kept.to_toml()).expect("written");
+    assert!(journal::left(&folder.0).is_empty(), "its program still runs");
+    // A program that is killed lets go of its lock and removes nothing.
+    drop(running);
+    let left = journal::left(&folder.0);
+    assert_eq!(left.len(), 1);
+    let text = std::fs::read_to_string(&left[0].file).expect("readable");
+    assert_eq!(Scenario::parse(&text, "left", None).expect("a session"), kept);
+    // The next program does not write over it.
+    let next = Journal::begin(&folder.0).expect("another");
+    assert_ne!(next.file(), left[0].file);
+    journal::write(next.file(), "").expect("written");
+    next.end();
+    assert_eq!(journal::left(&folder.0), left, "one that ended in order leaves nothing");
+    journal::forget(&left[0].file);
+    assert!(journal::left(&folder.0).is_empty());
+}
+
+fn programs_beside_each_other_keep_a_journal_each() {
+    let folder = Folder::new("journals");
+    let all: Vec<Journal> = (0..5).map(|_| Journal::begin(&folder.0).expect("one more")).collect();
+    for (i, one) in all.iter().enumerate() {
+        journal::write(one.file(), &i.to_string()).expect("written");
+    }
+    let texts: Vec<String> = all.iter().map(|one| std::fs::read_to_string(one.file()).expect("readable")).collect();
+    assert_eq!(texts, ["0", "1", "2", "3", "4"]);
+    all.into_iter().for_each(Journal::end);
+    assert_eq!(folder.names(), [""; 0], "nothing is left, locks included");
+}
+
+fn found(file: &std::path::Path) -> Window {
+    let scenario = Scenario::builtin("case-3").expect("built in");
+    let app_state = AppState::new(scenario, Theme::Dark).expect("it starts");
+    let app_state = app_state.finding(Some((file.into(), "3 minutes ago".into())));
+    Harness::builder()
+        .with_size([1280.0, 800.0])
+        .with_step_dt(0.02)
+        .renderer(Screen::new())
+        .build_eframe(move |cc| App::new(cc, app_state, Clock::Fixed(0.02)).expect("kittest draws with wgpu"))
+}
+
+fn a_session_that_was_left_behind_is_offered_and_opened() {
+    let folder = Folder::new("left");
+    let mut h = window("case-3", Theme::Dark);
+    tell(&mut h, heavier());
+    tell(&mut h, Command::Edit(Edit::DragTarget { x: 0.52, y: 0.6 }));
+    h.run_steps(20);
+    let kept = session(&h).to_scenario();
+    let file = folder.file("session-0.toml", kept.to_toml());
+    let mut h = found(&file);
+    h.run_steps(2);
+    assert!(h.query_by_label_contains("3 minutes ago").is_some());
+    h.get_by_label("Open that session").click();
+    h.run_steps(4);
+    assert_eq!(session(&h).to_scenario().edits, kept.edits);
+    assert!(h.query_by_label("Open that session").is_none());
+    assert!(h.state().app_state().changes().1, "it is in no file of the person's own");
+    assert_eq!(h.state_mut().app_state_mut().take_recovered(), Some(file), "which goes when a journal holds it");
+}
+
+fn one_that_is_not_wanted_goes() {
+    for (answer, goes) in [("Forget it", true), ("Later", false)] {
+        let folder = Folder::new("unwanted");
+        let file = folder.file("session-0.toml", "whatever");
+        let mut h = found(&file);
+        h.run_steps(2);
+        h.get_by_label(answer).click();
+        h.run_steps(3);
+        assert!(h.query_by_label(answer).is_none());
+        assert_eq!(h.state_mut().app_state_mut().take_recovered().is_some(), goes, "{answer}");
+        assert!(!h.state().app_state().changes().1);
+    }
+}
+
+fn changes_in_no_file_are_marked_and_asked_for() {
+    let folder = Folder::new("unsaved");
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let state = |h: &Window| (h.state().app_state().may_leave(), h.state().app_state().title());
+    assert_eq!(state(&h), (true, "Case 3 · reactionless – Stillbase".into()));
+    tell(&mut h, heavier());
+    assert_eq!(state(&h), (false, "Case 3 · reactionless * – Stillbase".into()));
+    tell(&mut h, Command::AskToLeave(true));
+    assert!(h.query_by_label("One change of this session is in no file.").is_some());
+    h.get_by_label("Cancel").click();
+    h.run_steps(3);
+    assert!(h.query_by_label("Save before closing?").is_none() && !h.state().app_state().wants_to_leave());
+    let file = folder.path("mine.toml");
+    tell(&mut h, Command::SaveFile(file.clone()));
+    assert!(state(&h).0, "saved");
+    assert_eq!(h.state().app_state().preferences([1280.0, 800.0]).recent, [file]);
+    tell(&mut h, Command::Undo);
+    tell(&mut h, Command::AskToLeave(true));
+    h.get_by_label("Close without saving").click();
+    h.run_steps(3);
+    assert!(h.state().app_state().wants_to_leave());
+}
