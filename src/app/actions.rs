@@ -6,6 +6,7 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 use super::command::Look;
 use super::theme::other;
 use super::{Command, ComparisonCommand, FileDialog, Purpose, ViewState, set_b};
+use crate::picture::charts::choice::Change;
 use crate::picture::scene::Measure;
 use crate::picture::scene::views::ViewKind;
 use crate::session::scenario::Scenario;
@@ -94,6 +95,16 @@ fn dialog(session: &Session, purpose: Purpose) -> Option<Command> {
     Some(Command::Dialog(Some(FileDialog::suggest(session, purpose))))
 }
 
+/// The time that plots show, so many times as close about the instant on display; all of it without a number.
+fn charts(session: &Session, view_state: &ViewState, factor: Option<f64>) -> Option<Command> {
+    let (extent, chosen) = (super::plots::extent(session), view_state.charts.range);
+    let range = match factor {
+        Some(factor) => extent.zoomed(extent.shown(chosen), session.frame().time, factor),
+        None => extent.all(chosen),
+    };
+    Some(Command::Charts(Change::Range(range)))
+}
+
 /// What only a view of the machine has.
 fn of_machine(view_state: &ViewState, command: Command) -> Option<Command> {
     view_state.view.shows_machine().then_some(command)
@@ -161,6 +172,11 @@ pub const ACTIONS: &[Action] = actions![
         Some(Command::Look(Look::Zoom(ZOOM)))
     };
     View, "Zoom out", [on(PLAIN, Key::Minus)], "scene, wheel", |_, _| Some(Command::Look(Look::Zoom(1.0 / ZOOM)));
+    View, "Plots closer to the instant shown", [on(ALT, Key::Plus), on(ALT, Key::Equals)], "plots, Ctrl wheel", |s, v| {
+        charts(s, v, Some(1.5))
+    };
+    View, "Plots from farther away", [on(ALT, Key::Minus)], "plots, Ctrl wheel", |s, v| charts(s, v, Some(1.0 / 1.5));
+    View, "Plots show all time", [on(ALT, Key::Num0)], "plots, double click", |s, v| charts(s, v, None);
     View, "Turn or pan the view left", [on(ALT, Key::ArrowLeft)], "scene, drag", |_, _| look(-ORBIT, 0.0);
     View, "Turn or pan the view right", [on(ALT, Key::ArrowRight)], "scene, drag", |_, _| look(ORBIT, 0.0);
     View, "Turn or pan the view up", [on(ALT, Key::ArrowUp)], "scene, drag", |_, _| look(0.0, ORBIT);
@@ -195,6 +211,10 @@ pub const ACTIONS: &[Action] = actions![
     Analysis, "Inside the machine: what the pins carry", [on(PLAIN, Key::I)], "above the scene", |_, v| {
         Some(Command::Pins(!v.pins))
     };
+    Analysis, "Plot any signal", [on(PLAIN, Key::A)], "below the plots", |_, _| Some(Command::LookFor);
+    Analysis, "Statistics of the time that plots show", [], "menu of a plot", |_, v| {
+        Some(Command::Charts(Change::Statistics(!v.charts.statistics)))
+    };
     Analysis, "Second cursor here, or away", [on(PLAIN, Key::M)], "plots, Shift click", |s, v| {
         Some(Command::Mark(v.mark.is_none().then(|| s.frame().time)))
     };
@@ -219,7 +239,7 @@ pub const FINE_ACTIONS: &[Action] = actions![
 ];
 
 /// What the pointer does.
-pub const GESTURES: [(&str, &str); 12] = [
+pub const GESTURES: [(&str, &str); 15] = [
     ("drag the target", "the machine follows on its plane"),
     ("drag A, B, 1 …", "move a point of the path; where the target covers it, drag its name"),
     ("double click", "add a point to the path"),
@@ -230,6 +250,9 @@ pub const GESTURES: [(&str, &str); 12] = [
     ("drag elsewhere", "pan in 2D, else orbit; Shift pans"),
     ("wheel", "zoom"),
     ("click a plot", "show that instant"),
+    ("Ctrl wheel, drag on a plot", "closer to a time, and along; a double click shows all"),
+    ("Shift drag on a plot", "plots show this time"),
+    ("right button on a plot", "its menu: curves, statistics, CSV, SVG, PNG"),
     ("Shift click a plot", "a second cursor: plots show differences; Esc takes it away"),
     ("Esc", "close what is open, cancel a drag"),
 ];

@@ -69,8 +69,8 @@ pub(super) struct Background {
     pub kept: VecDeque<Keeping>,
     /// What to say when the recording is there.
     pub recording: Slot<(), Result<String, String>>,
-    /// What to say when the session is saved, as it was after so many changes, and where.
-    pub saving: Slot<(u64, PathBuf), Result<String, String>>,
+    /// What to say when a file is saved; of a session, after how many changes, and where.
+    pub saving: Slot<Option<(u64, PathBuf)>, Result<String, String>>,
     /// How far the base will move.
     pub foreseen: Slot<(), Totals>,
 }

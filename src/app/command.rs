@@ -1,5 +1,6 @@
 //! What a person asks for.
 
+use crate::picture::charts::choice::Change;
 use crate::picture::scene::Measure;
 use crate::picture::scene::palette::Theme;
 use crate::picture::scene::views::ViewKind;
@@ -65,6 +66,12 @@ pub enum Command {
     Comparison(ComparisonCommand),
     /// Put the second cursor at a time, s, or away.
     Mark(Option<f64>),
+    /// Change what plots show.
+    Charts(Change),
+    /// Put the cursor where a signal to plot is sought.
+    LookFor,
+    /// Write the plot of a name to a file.
+    WritePlot(std::path::PathBuf, String, PlotFile),
     /// Show or hide snapshots along the motion.
     Snapshots(bool),
     /// Let the pointer push the end effector when it drags it, or no longer.
@@ -111,6 +118,7 @@ impl Command {
             | Self::Recover(_)
             | Self::SaveFile(_)
             | Self::Record(_)
+            | Self::WritePlot(..)
             | Self::Undo
             | Self::TakeBack(_)
             | Self::Redo
@@ -137,6 +145,8 @@ impl Command {
             | Self::Pins(_)
             | Self::Comparison(_)
             | Self::Mark(_)
+            | Self::Charts(_)
+            | Self::LookFor
             | Self::Snapshots(_)
             | Self::Push(_)
             | Self::Exaggerate(_)
@@ -248,7 +258,7 @@ pub struct FileDialog {
 }
 
 /// What a file name is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// Read a session.
     Open,
@@ -256,15 +266,45 @@ pub enum Purpose {
     Save,
     /// Write a recording.
     Record,
+    /// Write the plot of a name.
+    Plot(String, PlotFile),
+}
+
+/// How a plot is written to a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlotFile {
+    /// Every sample of the time shown.
+    Csv,
+    /// A drawing.
+    Svg,
+    /// A picture.
+    Png,
+}
+
+impl PlotFile {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Csv, Self::Svg, Self::Png];
+
+    /// What it is called.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Csv => "CSV",
+            Self::Svg => "SVG",
+            Self::Png => "PNG",
+        }
+    }
 }
 
 impl FileDialog {
     /// A file name that is free, for a dialog to start from.
     pub fn suggest(session: &Session, purpose: Purpose) -> Self {
-        let ending = if purpose == Purpose::Record { "rrd" } else { "toml" };
-        let name = match purpose {
+        let own = &session.scenario().name;
+        let free = |name: &str, ending: &str| crate::files::free_name(name, ending).display().to_string();
+        let name = match &purpose {
             Purpose::Open => String::new(),
-            _ => crate::files::free_name(&session.scenario().name, ending).display().to_string(),
+            Purpose::Save => free(own, "toml"),
+            Purpose::Record => free(own, "rrd"),
+            Purpose::Plot(plot, file) => free(&format!("{own} {}", plot.to_lowercase()), &file.words().to_lowercase()),
         };
         Self { purpose, path: name }
     }

@@ -1,28 +1,14 @@
 //! The table of runs at the bottom: the same task done in several ways, and what was kept.
 
-use egui::{Align, Button, CursorIcon, Frame, Grid, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui};
-use egui_plot::LineStyle;
-
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::{Command, ComparisonCommand, ViewState};
+use crate::picture::charts::figure::dashes;
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::{Palette, faded};
 use crate::session::scenario::Scenario;
 use crate::study::comparison::{COLUMNS, Column, Comparison, Entry};
-
-/// Dashes and opacity of a row's lines in plots. Rows differ by these, because colour says what is plotted.
-pub fn line_style(entry: usize) -> (LineStyle, f32) {
-    let styles = [
-        LineStyle::Dashed { length: 7.0 },
-        LineStyle::Dotted { spacing: 4.0 },
-        LineStyle::Dashed { length: 3.5 },
-        LineStyle::Dashed { length: 14.0 },
-        LineStyle::Dotted { spacing: 7.0 },
-        LineStyle::Solid,
-    ];
-    (styles[entry % styles.len()], if entry >= styles.len() { 0.45 } else { 0.7 })
-}
+use egui::{Align, Button, CursorIcon, Frame, Grid, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui};
 
 /// Draws this panel.
 pub fn show(ui: &mut Ui, comparison: &Comparison, view_state: &ViewState, commands: &mut Vec<Command>) {
@@ -122,8 +108,8 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &Entry, columns: &[(usize, &Co
         }
         let (rect, _) = ui.allocate_exact_size(egui::vec2(30.0, 12.0), Sense::hover());
         if shown {
-            let (style, strength) = line_style(i);
-            sample(ui, rect, style, colour(faded(p.ink, strength)));
+            let (dash, strength) = dashes(i);
+            sample(ui, rect, dash, colour(faded(p.ink, strength)));
         }
     });
     ui.horizontal(|ui| {
@@ -167,13 +153,12 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &Entry, columns: &[(usize, &Co
 }
 
 /// A short piece of a line as plots draw it.
-fn sample(ui: &Ui, rect: egui::Rect, style: LineStyle, tone: egui::Color32) {
+fn sample(ui: &Ui, rect: egui::Rect, dash: Option<[f32; 2]>, tone: egui::Color32) {
     let ends = [rect.left_center(), rect.right_center()];
     let stroke = egui::Stroke::new(1.6, tone);
-    let shapes = match style {
-        LineStyle::Dashed { length } => egui::Shape::dashed_line(&ends, stroke, length, 0.6 * length),
-        LineStyle::Dotted { spacing } => egui::Shape::dotted_line(&ends, tone, spacing, 1.1),
-        LineStyle::Solid => vec![egui::Shape::line_segment(ends, stroke)],
+    let shapes = match dash {
+        Some([on, off]) => egui::Shape::dashed_line(&ends, stroke, on, off),
+        None => vec![egui::Shape::line_segment(ends, stroke)],
     };
     ui.painter().extend(shapes);
 }

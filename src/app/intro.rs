@@ -144,8 +144,9 @@ impl Intro {
         let p = view_state.palette();
         let mut shown = *frame;
         shown.base.angle = -SOFT * frame.wrench.total().moment;
-        // The ring stays where the tip is to be, on a base that is drawn turned.
-        shown.target.at = Vector::from_polar(1.0, shown.base.angle) * shown.target.at;
+        // Tip and ring turn with a base that is drawn turned.
+        let turn = Vector::from_polar(1.0, shown.base.angle);
+        (shown.end_effector, shown.target.at) = (turn * shown.end_effector, turn * shown.target.at);
         let options = ViewOptions { theme: view_state.theme, invites: false, ..Default::default() };
         let scene: Arc<Scene> = Arc::new(straight.stage.scene(&shown, &options));
         paint(ui, 1, rect, &scene, camera);

@@ -15,7 +15,9 @@ pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: 
     let typing = ctx.egui_wants_keyboard_input() || view_state.dialog.is_some() || view_state.finder.is_some();
     let taken = |key: &KeyboardShortcut| ctx.input_mut(|i| i.consume_shortcut(key));
     // While something is dragged or a list is open, Esc ends that and nothing else.
-    let busy = view_state.grabbed.is_some() || (view_state.finder.is_none() && egui::Popup::is_any_open(ctx));
+    let busy = view_state.grabbed.is_some()
+        || (view_state.finder.is_none() && egui::Popup::is_any_open(ctx))
+        || super::plots::is_looking(ctx);
     if !busy && taken(&KeyboardShortcut::new(Modifiers::NONE, Key::Escape)) {
         commands.push(escape(view_state));
     }

@@ -32,7 +32,7 @@ mod widgets;
 #[cfg(feature = "window")]
 pub mod window;
 
-pub use command::{Activity, Command, ComparisonCommand, FileDialog, Look, Purpose, Recovery};
+pub use command::{Activity, Command, ComparisonCommand, FileDialog, Look, PlotFile, Purpose, Recovery};
 use intro::Intro;
 pub use preferences::Preferences;
 pub use state::AppState;

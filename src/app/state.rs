@@ -55,6 +55,8 @@ pub struct AppState {
     owed: f64,
     dressed: Option<Theme>,
     fonts: bool,
+    /// What plots show of the runs on display.
+    prepared: plots::Prepared,
 }
 
 /// How soon progress is shown again, s.
@@ -96,6 +98,7 @@ impl AppState {
             owed: 0.0,
             dressed: None,
             fonts: false,
+            prepared: plots::Prepared::default(),
         };
         app_state.foresee();
         app_state.adjust();
@@ -281,8 +284,9 @@ impl AppState {
         }
         if self.view_state.plots.shown {
             let beside = contrast.and_then(Intro::beside_it).or(self.comparison.as_ref());
-            self.view_state.plots.width =
-                plots::show(ui, &self.session, &self.signals, beside, &self.view_state, &mut commands);
+            let (session, signals, view_state) = (&self.session, &self.signals, &self.view_state);
+            let what = plots::Shown { session, signals, comparison: beside, view_state };
+            self.view_state.plots.width = plots::show(ui, &what, &mut self.prepared, &mut commands);
         }
         let both = (self.comparison.as_ref(), self.intro.as_ref());
         viewport::show(ui, &self.session, &self.views, both, &mut self.view_state, &mut commands);
@@ -408,6 +412,12 @@ impl AppState {
             Command::Find(find) => self.view_state.finder = find.then(Finder::default),
             Command::Help(help) => self.view_state.help = help,
             Command::Mark(time) => self.view_state.mark = time,
+            Command::Charts(change) => self.view_state.charts.change(change),
+            Command::LookFor => {
+                self.view_state.plots.shown = true;
+                self.prepared.look_for();
+            }
+            Command::WritePlot(path, plot, file) => self.write_plot(&path, &plot, file)?,
             Command::Snapshots(shown) => self.view_state.snapshots = shown,
             // The window has room for one of the two panels.
             Command::Compare(compare) => {

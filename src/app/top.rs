@@ -9,7 +9,7 @@ use egui::{Align, ComboBox, Frame, Layout, Margin, Panel, Response, RichText, Se
 use super::actions::SPEEDS;
 use super::facts::Facts;
 use super::theme::{bold, colour, plain};
-use super::{Command, FileDialog, Purpose, ViewState};
+use super::{Command, FileDialog, PlotFile, Purpose, ViewState};
 use crate::mechanics::machine;
 use crate::picture::scene::palette::Theme;
 use crate::session::Session;
@@ -222,10 +222,13 @@ fn icon(ui: &mut Ui, view_state: &ViewState, label: &str, tip: &str, parts: &[Ic
 /// Asks for a file name.
 pub fn dialog(ctx: &egui::Context, view_state: &mut ViewState, commands: &mut Vec<Command>) {
     let Some(mut dialog) = view_state.dialog.clone() else { return };
-    let (title, verb) = match dialog.purpose {
-        Purpose::Open => ("Open a session", "Open"),
-        Purpose::Save => ("Save the session", "Save"),
-        Purpose::Record => ("Record for the Rerun viewer", "Record"),
+    let (title, verb, hint) = match &dialog.purpose {
+        Purpose::Open => ("Open a session", "Open", "session.toml"),
+        Purpose::Save => ("Save the session", "Save", "session.toml"),
+        Purpose::Record => ("Record for the Rerun viewer", "Record", "run.rrd"),
+        Purpose::Plot(_, PlotFile::Csv) => ("Save the values of the time shown", "Save", "plot.csv"),
+        Purpose::Plot(_, PlotFile::Svg) => ("Save the plot as a drawing", "Save", "plot.svg"),
+        Purpose::Plot(_, PlotFile::Png) => ("Save the plot as a picture", "Save", "plot.png"),
     };
     let mut open = true;
     egui::Window::new(title)
@@ -234,7 +237,6 @@ pub fn dialog(ctx: &egui::Context, view_state: &mut ViewState, commands: &mut Ve
         .resizable(false)
         .anchor(egui::Align2::CENTER_TOP, [0.0, 120.0])
         .show(ctx, |ui| {
-            let hint = if dialog.purpose == Purpose::Record { "run.rrd" } else { "session.toml" };
             let edit = egui::TextEdit::singleline(&mut dialog.path).hint_text(hint).desired_width(380.0);
             let field = ui.add(edit);
             name(&field, "File name");
@@ -246,10 +248,11 @@ pub fn dialog(ctx: &egui::Context, view_state: &mut ViewState, commands: &mut Ve
                 let ready = !dialog.path.trim().is_empty();
                 if ui.add_enabled(ready, egui::Button::new(verb)).clicked() || (enter && ready) {
                     let path = dialog.path.trim().into();
-                    commands.push(match dialog.purpose {
+                    commands.push(match dialog.purpose.clone() {
                         Purpose::Open => Command::OpenFile(path),
                         Purpose::Save => Command::SaveFile(path),
                         Purpose::Record => Command::Record(path),
+                        Purpose::Plot(plot, file) => Command::WritePlot(path, plot, file),
                     });
                 }
                 if ui.button("Cancel").clicked() {

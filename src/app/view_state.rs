@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::app::{FileDialog, Look};
+use crate::picture::charts::choice::Choice;
 use crate::picture::scene::Measure;
 use crate::picture::scene::camera::Camera;
 use crate::picture::scene::options::{Handle, Refused};
@@ -91,6 +92,8 @@ pub struct ViewState {
     pub pins: bool,
     /// The second cursor, s.
     pub mark: Option<f64>,
+    /// What plots show.
+    pub charts: Choice,
     /// Snapshots along the motion are on display.
     pub snapshots: bool,
     /// The keys are on display.
@@ -140,6 +143,7 @@ impl ViewState {
             study: false,
             pins: false,
             mark: None,
+            charts: Choice::default(),
             snapshots: false,
             help: false,
             finder: None,

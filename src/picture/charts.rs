@@ -1,6 +1,13 @@
 //! The one table of charts: which signals a plot holds, its title, unit and range, and the colours of its lines. The
 //! window's plots and the recording's are these.
 
+pub mod choice;
+pub mod drawn;
+pub mod figure;
+pub mod range;
+pub mod search;
+pub mod svg;
+
 use super::numbers::round_up;
 use super::scene::Rgba;
 use super::scene::palette::{Palette, mix};
@@ -40,7 +47,8 @@ pub enum Place {
     Inside,
 }
 
-const PLAIN: Chart = Chart {
+/// A chart that holds nothing yet.
+pub const PLAIN: Chart = Chart {
     title: "",
     unit: "",
     signals: &[],

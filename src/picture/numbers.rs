@@ -33,3 +33,33 @@ pub fn degrees(angle: f64) -> String {
     let text = signed(angle.to_degrees(), 1);
     text.strip_suffix(".0").map_or_else(|| text.clone(), Into::into)
 }
+
+/// The round values from `low` to `high`, some `count` of them at most, and the step between two.
+pub fn spaced(low: f64, high: f64, count: f64) -> (Vec<f64>, f64) {
+    let width = high - low;
+    if !(width.is_finite() && width > 0.0 && low.abs().max(high.abs()) < 1e12 * width) {
+        return (Vec::new(), 1.0);
+    }
+    let step = round_up(width / count.max(1.0));
+    let (first, last) = ((low / step - 1e-6).ceil(), (high / step + 1e-6).floor());
+    let count = (last - first).clamp(-1.0, 40.0) as i64;
+    ((0..=count).map(|i| (first + i as f64) * step).collect(), step)
+}
+
+/// A number of which steps of a size can be told apart: with as many decimals as that takes, and with a power of ten
+/// where the step is far from 1.
+pub fn at_step(x: f64, step: f64) -> String {
+    if !x.is_finite() {
+        return "–".into();
+    }
+    let finest = step.abs().log10();
+    if !finest.is_finite() || (-6.5..6.5).contains(&finest) {
+        let decimals = if finest.is_finite() { (-finest - 1e-9).ceil().max(0.0) as usize } else { 3 };
+        return signed(x, decimals);
+    }
+    if x.abs() < 0.5 * step {
+        return "0".into();
+    }
+    let digits = (x.abs().log10().floor() - (finest + 1e-9).floor()).clamp(0.0, 15.0) as usize;
+    format!("{x:.digits$e}").replace('-', "−")
+}

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use super::changes::{Failed, in_order};
 use super::document::{Document, WORD, Watch};
 use super::edit::{Edit, TimedEdit};
+use super::made::Made;
 use super::refusal::Refusal;
 use super::run::Run;
 use super::script::Script;
@@ -42,6 +43,7 @@ pub struct Session {
     edits: Arc<Vec<TimedEdit>>,
     run: Run,
     frames: Arc<Vec<Frame>>,
+    made: Made,
     cursor: usize,
     playing: bool,
     undo: Vec<Arc<Change>>,
@@ -121,6 +123,7 @@ impl Session {
             document,
             run,
             frames,
+            made: Made::new(),
             cursor,
             playing: false,
             undo: Vec::new(),
@@ -139,6 +142,11 @@ impl Session {
     /// Every frame so far, one a step.
     pub fn frames(&self) -> &[Frame] {
         &self.frames
+    }
+
+    /// Which making of the run the frames are of.
+    pub fn made(&self) -> &Made {
+        &self.made
     }
 
     /// The scenario with everything that edits have set.
@@ -420,7 +428,7 @@ impl Session {
         edits.push(timed.clone());
         document.script.push(timed.clone());
         if let Some((_, frames)) = remade {
-            self.frames = frames;
+            (self.frames, self.made) = (frames, Made::new());
         }
         (self.document, self.run, self.unedited) = (document, run, Some(unedited));
         self.show_present();
@@ -457,6 +465,7 @@ impl Session {
         if let Some(last) = Arc::make_mut(&mut self.frames).last_mut() {
             *last = self.run.frame();
         }
+        self.made = self.made.changed_after(self.frames.len() - 1);
     }
 
     fn remember(&mut self, before: Document, timed: TimedEdit, inverse: Option<Edit>) {
@@ -589,7 +598,8 @@ impl Session {
         let (run, frames) = document.perform(Some(&self.run), patient, watch).map_err(Failed::refusal)?;
         self.playing &= run.waiting().is_none();
         self.edits = Arc::new(document.script.to_vec());
-        (self.document, self.run, self.frames, self.unedited) = (document, run, frames, None);
+        (self.document, self.run, self.unedited) = (document, run, None);
+        (self.frames, self.made) = (frames, Made::new());
         self.cursor = self.cursor.min(self.frames.len() - 1);
         Ok(())
     }

@@ -5,6 +5,7 @@ mod finder;
 mod intro;
 mod jobs;
 mod panel;
+mod plots;
 mod pointer;
 mod refusal;
 mod run;
@@ -22,13 +23,14 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 10] = [
+pub const TESTS: [&[Test]; 11] = [
     saving::TESTS,
     files::TESTS,
     finder::TESTS,
     intro::TESTS,
     jobs::TESTS,
     panel::TESTS,
+    plots::TESTS,
     pointer::TESTS,
     refusal::TESTS,
     run::TESTS,

@@ -377,3 +377,40 @@ fn tolerance_of_1024_machines_one_by_one(bencher: Bencher) {
         worst
     });
 }
+
+/// Torques of a million steps, as the window has them.
+fn million() -> stillbase::study::samples::Samples {
+    let count = 1_000_000;
+    let times = (0..count).map(|i| 1e-3 * f64::from(i)).collect();
+    let wave =
+        |k: i32| (0..count).map(move |i| f64::from(k) + (1e-4 * f64::from(i * k)).sin() + 0.1 * f64::from(i % 7));
+    stillbase::study::samples::Samples::of(times, (1..=3).map(|k| (format!("torque/{k}"), wave(k).collect())))
+}
+
+/// What a frame takes to draw a plot of three signals of a million samples each, 1000 pixels wide, while its range moves:
+/// lines, bounds, statistics and all that is painted.
+#[divan::bench]
+fn plot_of_three_million_samples(bencher: Bencher) {
+    use stillbase::picture::charts::choice::Choice;
+    use stillbase::picture::charts::drawn::Drawn;
+    use stillbase::picture::charts::figure::{Figure, Look};
+    use stillbase::picture::scene::palette::{Theme, palette};
+    let (samples, p) = (million(), palette(Theme::Dark));
+    let session = Session::open(Scenario::builtin("case-3").expect("built in")).expect("it can start");
+    let table = stillbase::simulation::signals::signals(&session.scenario().machine);
+    let plots = Choice::default().plots(session.scenario(), &table, false);
+    let (now, mut from) = (session.frame(), 0.0);
+    let look = Look { palette: &p, peaks: &now.peaks, now, mark: None, hover: None };
+    bencher.bench_local(|| {
+        from = (from + 0.37) % 100.0;
+        let drawn = Drawn::of(&plots[0], black_box(&samples), &[], [from, from + 900.0], 1000, true);
+        Figure::of(&plots[0], &drawn, [1060.0, 300.0], &look)
+    });
+}
+
+/// Making a million samples ready to be drawn, once.
+#[divan::bench(sample_count = 10, sample_size = 1)]
+fn pyramid_of_a_million_samples(bencher: Bencher) {
+    let values: Vec<f64> = (0..1_000_000).map(|i| (1e-4 * f64::from(i)).sin()).collect();
+    bencher.bench_local(|| black_box(&values).iter().copied().collect::<stillbase::study::series::Series>());
+}

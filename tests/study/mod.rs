@@ -1,5 +1,7 @@
-//! Tests of `src/study`: runs side by side, tolerances and spectra.
+//! Tests of `src/study`: runs side by side, samples, tolerances and spectra.
 
 mod comparison;
+mod samples;
+mod series;
 mod spectrum;
 mod tolerance;

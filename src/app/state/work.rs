@@ -6,7 +6,7 @@ use super::AppState;
 use crate::app::background::{Background, File, Opening, Slot, ended};
 use crate::app::change::{Change, NotOpened, Source};
 use crate::app::jobs::Workers;
-use crate::app::{Activity, Command, ComparisonCommand, RefusedEdit};
+use crate::app::{Activity, Command, ComparisonCommand, PlotFile, RefusedEdit, plots};
 use crate::session::scenario::Scenario;
 use crate::session::{Edit, Refusal, Session};
 use crate::simulation::frame::Totals;
@@ -72,9 +72,9 @@ impl AppState {
             self.tell(said.map(Some));
             any = true;
         }
-        if let Some(((changes, file), said)) = ended(&mut self.background.saving) {
+        if let Some((session, said)) = ended(&mut self.background.saving) {
             let said = said.unwrap_or_else(|| Err(fault("saving")));
-            if said.is_ok() {
+            if let (Ok(_), Some((changes, file))) = (&said, session) {
                 self.saving.saved = changes;
                 self.saving.uses(file);
             }
@@ -242,13 +242,30 @@ impl AppState {
             return Err("one session is being saved: want that to end first".into());
         }
         let (scenario, path) = (self.session.to_scenario(), path.to_owned());
-        let of = (self.saving.changes, path.clone());
+        let of = Some((self.saving.changes, path.clone()));
         let job = self.background.start(move |_| {
             let text = scenario.to_toml();
             crate::files::write_new(&path, text.as_bytes(), false).map_err(|e| e.to_string())?;
             Ok(format!("saved {}", whole(&path)))
         });
         self.write(|app_state| &mut app_state.background.saving, of, job);
+        Ok(())
+    }
+
+    /// Writes a plot to a file.
+    pub(super) fn write_plot(&mut self, path: &Path, plot: &str, file: PlotFile) -> Result<(), String> {
+        check_name(path)?;
+        if self.background.saving.is_some() {
+            return Err("one file is being saved: want that to end first".into());
+        }
+        let (session, signals, view_state) = (&self.session, &self.signals, &self.view_state);
+        let what = plots::Shown { session, signals, comparison: self.comparison.as_ref(), view_state };
+        let (content, path) = (plots::written(&what, &self.prepared, plot, file)?, path.to_owned());
+        let job = self.background.start(move |_| {
+            crate::files::write_new(&path, &content()?, false).map_err(|e| e.to_string())?;
+            Ok(format!("saved {}", whole(&path)))
+        });
+        self.write(|app_state| &mut app_state.background.saving, None, job);
         Ok(())
     }
 

@@ -1,0 +1,124 @@
+//! The line above a plot: its title and unit, and its curves by symbol with their values, each a switch.
+
+use egui::accesskit::Role;
+use egui::{Align, Button, Color32, CursorIcon, Label, Layout, RichText, Ui, WidgetInfo};
+
+use crate::app::Command;
+use crate::app::theme::{bold, colour, plain};
+use crate::picture::charts::choice::{Change, Curve, Plot};
+use crate::picture::charts::drawn::Drawn;
+use crate::picture::charts::figure::{Look, pen};
+use crate::picture::numbers::{at_step, signed};
+use crate::study::comparison::Difference;
+
+/// Its height.
+pub const TITLE: f32 = 17.0;
+/// The height of a row of statistics.
+pub const ROW: f32 = 14.0;
+
+/// The width of a symbol in such a row.
+const SYMBOL: f32 = 28.0;
+
+/// How much of a value there is room for: so many digits fewer, or none.
+const WORDIEST: usize = 0;
+const SYMBOLS_ONLY: usize = 3;
+
+/// Draws it.
+pub fn show(ui: &mut Ui, plot: &Plot<'_>, drawn: &Drawn, look: &Look<'_>, commands: &mut Vec<Command>) {
+    let p = look.palette;
+    ui.horizontal(|ui| {
+        ui.set_height(TITLE);
+        let gap = ui.spacing().item_spacing.x;
+        let wide =
+            |ui: &Ui, text: &str, font| gap + ui.painter().layout_no_wrap(text.into(), font, Color32::WHITE).size().x;
+        let values = |ui: &Ui, fewer: usize| -> f32 {
+            plot.curves.iter().map(|curve| wide(ui, &words(plot, curve, drawn, look, fewer), plain(11.5))).sum()
+        };
+        // Where there is no room for all, digits go first, then the unit, which the values tell under the pointer.
+        let (heading, unit) = (plot.heading(), plot.unit());
+        let room = ui.available_width() - wide(ui, &heading, bold(12.5));
+        let unit_wide = wide(ui, &unit, plain(11.5));
+        let fits = |fewer: &usize| values(ui, *fewer) + unit_wide <= room;
+        let fewer = (WORDIEST..SYMBOLS_ONLY).find(fits);
+        let fewer = fewer.or((values(ui, 2) <= room).then_some(2)).unwrap_or(SYMBOLS_ONLY);
+        ui.add(Label::new(RichText::new(heading).font(bold(12.5))).truncate());
+        if values(ui, fewer) + unit_wide <= room {
+            ui.label(RichText::new(unit).font(plain(11.5)).color(colour(p.dim)));
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            for (i, curve) in plot.curves.iter().enumerate().rev() {
+                switch(ui, plot, (i, curve), words(plot, curve, drawn, look, fewer), look, commands);
+            }
+        });
+    });
+}
+
+/// A curve's symbol with its value at the cursor, or with what it differs by from the second one.
+fn words(plot: &Plot<'_>, curve: &Curve<'_>, drawn: &Drawn, look: &Look<'_>, fewer: usize) -> String {
+    let (signal, thousandths) = (curve.signal, curve.times != 1.0);
+    // Of values in thousandths two digits do, and the plot says whose they are.
+    let symbol = if thousandths { signal.symbol.trim_end_matches("_B") } else { signal.symbol.as_str() };
+    if fewer >= SYMBOLS_ONLY {
+        return symbol.into();
+    }
+    let shown = |value: f64| match plot.own || curve.added {
+        true => at_step(curve.times * value, 5.0 * drawn.finest() * 10f64.powi(fewer as i32)),
+        false => signed(curve.times * value, if thousandths { 2 } else { 3 } - fewer),
+    };
+    match look.mark.map(|marked| Difference::of(signal, marked, look.now)) {
+        Some(d) => format!("Δ{symbol} {}", shown(d.by())),
+        None => format!("{symbol} {}", shown(signal.value(look.now))),
+    }
+}
+
+/// A curve's name, which switches it on and off.
+fn switch(
+    ui: &mut Ui,
+    plot: &Plot<'_>,
+    (i, curve): (usize, &Curve<'_>),
+    text: String,
+    look: &Look<'_>,
+    commands: &mut Vec<Command>,
+) {
+    let (p, signal) = (look.palette, curve.signal);
+    let tone = if curve.on { pen(plot, i, look).0 } else { p.dim };
+    let label = RichText::new(&text).font(plain(11.5)).color(colour(tone));
+    let label = if curve.on { label } else { label.strikethrough() };
+    ui.spacing_mut().button_padding = egui::Vec2::ZERO;
+    let button = ui.add(Button::new(label).frame(false).truncate());
+    let name = format!("{text}: {} in {}", signal.label, plot.title);
+    button.widget_info(|| WidgetInfo::selected(Role::Switch, true, curve.on, &name));
+    let at = |value: f64| signed(curve.times * value, 4);
+    let differs = look.mark.map_or_else(String::new, |marked| {
+        let d = Difference::of(signal, marked, look.now);
+        format!(": {} at the second cursor, {} now", at(d.from), at(d.to))
+    });
+    let unit = if curve.unit().is_empty() { String::new() } else { format!(", {}", curve.unit()) };
+    let verb = if curve.on { "away" } else { "back" };
+    let button = button.on_hover_cursor(CursorIcon::PointingHand);
+    if button.on_hover_text(format!("{}{unit}{differs}\nClick: {verb}", signal.label)).clicked() {
+        let change = Change::Show(plot.name.clone(), signal.path.clone(), !curve.on);
+        commands.push(Command::Charts(change));
+    }
+}
+
+/// What the curves come to in the time that is shown: a row each, in columns of one width.
+pub fn statistics(ui: &mut Ui, plot: &Plot<'_>, drawn: &Drawn, look: &Look<'_>) {
+    let p = look.palette;
+    let wide = (ui.available_width() - SYMBOL) / 4.0;
+    let cell = |ui: &mut Ui, wide: f32, text: String, tone| {
+        let label = Label::new(RichText::new(text).font(plain(10.0)).color(colour(tone))).truncate();
+        ui.add_sized([wide, ROW], label.halign(Align::LEFT));
+    };
+    for (i, curve) in plot.curves.iter().enumerate().filter(|(_, curve)| curve.on) {
+        let Some(Some(s)) = drawn.statistics.get(i) else { continue };
+        ui.spacing_mut().interact_size.y = ROW;
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 0.0;
+            cell(ui, SYMBOL, curve.signal.symbol.clone(), pen(plot, i, look).0);
+            for (word, value) in [("min", s.least), ("max", s.greatest), ("mean", s.mean), ("rms", s.rms)] {
+                cell(ui, wide, format!("{word} {}", at_step(value, 5.0 * drawn.finest())), p.dim);
+            }
+        });
+    }
+}

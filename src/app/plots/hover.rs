@@ -1,0 +1,78 @@
+//! The values under the pointer, in all plots at once.
+
+use egui::{Grid, Id, RichText, Ui};
+
+use super::shown::{Shown, nearest};
+use crate::app::theme::{bold, colour, plain};
+use crate::picture::charts::choice::Plot;
+use crate::picture::charts::drawn::Drawn;
+use crate::picture::charts::figure::{Look, pen};
+use crate::picture::numbers::{at_step, signed};
+use crate::session::Session;
+use crate::simulation::frame::Frame;
+
+fn id() -> Id {
+    Id::unique("time under the pointer")
+}
+
+/// The frame nearest to where the pointer was in the last pass.
+pub fn instant<'a>(ui: &Ui, session: &'a Session) -> Option<&'a Frame> {
+    let time: f64 = ui.data(|data| data.get_temp(id()))?;
+    Some(nearest(session, time))
+}
+
+/// Keeps where the pointer is for the next pass, which all plots show.
+pub fn remember(ui: &Ui, over: Option<f64>) {
+    let known: Option<f64> = ui.data(|data| data.get_temp(id()));
+    if known != over {
+        ui.data_mut(|data| match over {
+            Some(time) => _ = data.insert_temp(id(), time),
+            None => data.remove::<f64>(id()),
+        });
+        ui.ctx().request_repaint();
+    }
+}
+
+/// The values of all curves at an instant, in a card.
+pub fn card(ui: &mut Ui, shown: &Shown<'_>, plot: &Plot<'_>, drawn: &Drawn, look: &Look<'_>, frame: &Frame) {
+    let p = look.palette;
+    let dim = |text: String| RichText::new(text).font(plain(11.5)).color(colour(p.dim));
+    let number = |x: f64| at_step(x, drawn.finest());
+    let step = shown.session.scenario().step;
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(format!("{} s", at_step(frame.time, step))).font(bold(11.5)));
+        if let Some(marked) = look.mark {
+            ui.label(dim(format!("Δt {} s", at_step(frame.time - marked.time, step))));
+        }
+    });
+    Grid::new("values").num_columns(4).spacing([8.0, 2.0]).min_row_height(0.0).show(ui, |ui| {
+        if let Some(against) = plot.against {
+            ui.label(RichText::new(&against.symbol).font(bold(11.5)).color(colour(p.amber)));
+            ui.label(RichText::new(signed(against.value(frame), 4)).font(plain(11.5)));
+            ui.label(dim(against.unit.into()));
+            ui.end_row();
+        }
+        for (i, curve) in plot.curves.iter().enumerate().filter(|(_, curve)| curve.on) {
+            let tone = colour(pen(plot, i, look).0);
+            let value = |frame: &Frame| curve.times * curve.signal.value(frame);
+            ui.label(RichText::new(&curve.signal.symbol).font(bold(11.5)).color(tone));
+            ui.label(RichText::new(number(value(frame))).font(plain(11.5)));
+            ui.label(dim(curve.unit()));
+            if let Some(marked) = look.mark {
+                ui.label(dim(format!("Δ {}", number(value(frame) - value(marked)))));
+            }
+            ui.end_row();
+        }
+    });
+    let others = shown.comparison.into_iter().flat_map(|comparison| comparison.shown());
+    for (place, run) in others {
+        let Some(there) = run.at(frame.time) else { continue };
+        let each = plot.shown().filter_map(|curve| {
+            // Another machine may lack the drive.
+            let has = curve.signal.drive.is_none_or(|k| k < run.machine().drives());
+            let value = curve.times * curve.signal.value(there);
+            has.then(|| format!("{} {}", curve.signal.symbol, number(value)))
+        });
+        ui.label(dim(format!("run {}: {}", place + 1, each.collect::<Vec<_>>().join("  "))));
+    }
+}

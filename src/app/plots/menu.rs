@@ -1,0 +1,87 @@
+//! What else can be done with a plot: a button in its corner, and the right button of the mouse.
+
+use egui::accesskit::Role;
+use egui::{Align2, Button, Popup, Rect, Response, Sense, Ui, WidgetInfo, pos2, vec2};
+
+use super::prepared::{Prepared, extent};
+use super::search;
+use super::shown::Shown;
+use crate::app::theme::{bold, colour};
+use crate::app::{Command, FileDialog, PlotFile, Purpose};
+use crate::picture::charts::choice::{Change, Plot};
+
+/// Draws the button, and the menu where it is open.
+pub fn show(
+    ui: &mut Ui,
+    shown: &Shown<'_>,
+    what: (&Plot<'_>, &Prepared),
+    response: &Response,
+    commands: &mut Vec<Command>,
+) {
+    let corner = pos2(response.rect.right() - 24.0, response.rect.top());
+    let rect = Rect::from_min_size(corner, vec2(22.0, 16.0));
+    let button = ui.interact(rect, response.id.with("menu"), Sense::click());
+    let p = shown.view_state.palette();
+    button.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("{}: menu", what.0.title)));
+    // Out of sight until it is looked for; the keyboard finds it all the same.
+    let open = Popup::is_id_open(ui.ctx(), Popup::default_response_id(&button));
+    if response.contains_pointer() || button.contains_pointer() || button.has_focus() || open {
+        let lit = button.hovered() || button.has_focus() || open;
+        ui.painter().rect_filled(rect, 4.0, colour(if lit { p.line } else { p.panel }));
+        ui.painter().text(rect.center(), Align2::CENTER_CENTER, "⋯", bold(13.0), colour(p.ink));
+    }
+    response.context_menu(|ui| entries(ui, shown, what, commands));
+    Popup::menu(&button).show(|ui| entries(ui, shown, what, commands));
+}
+
+fn entries(ui: &mut Ui, shown: &Shown<'_>, (plot, prepared): (&Plot<'_>, &Prepared), commands: &mut Vec<Command>) {
+    let chosen = &shown.view_state.charts;
+    let extent = extent(shown.session);
+    let range = extent.shown(chosen.range);
+    ui.set_min_width(210.0);
+    if ui.button("Copy the values shown").clicked() {
+        let signals: Vec<_> = plot.against.into_iter().chain(plot.shown().map(|curve| curve.signal)).collect();
+        ui.ctx().copy_text(prepared.samples().csv(&signals, range));
+        ui.close();
+    }
+    for file in PlotFile::ALL {
+        if ui.button(format!("Save as {}…", file.words())).clicked() {
+            let purpose = Purpose::Plot(plot.name.clone(), file);
+            commands.push(Command::Dialog(Some(FileDialog::suggest(shown.session, purpose))));
+            ui.close();
+        }
+    }
+    ui.separator();
+    if ui.button("Add a curve…").clicked() {
+        search::start(ui.ctx(), search::Sought::Curve(plot.name.clone()));
+        ui.close();
+    }
+    for curve in plot.curves.iter().filter(|curve| curve.added && plot.curves.len() > 1) {
+        if ui.button(format!("Take {} out", curve.signal.symbol)).clicked() {
+            commands.push(Command::Charts(Change::Remove(plot.name.clone(), curve.signal.path.clone())));
+            ui.close();
+        }
+    }
+    if ui.button("Against another signal…").clicked() {
+        search::start(ui.ctx(), search::Sought::Across(plot.name.clone()));
+        ui.close();
+    }
+    if plot.against.is_some() && ui.button("Against time").clicked() {
+        commands.push(Command::Charts(Change::Against(plot.name.clone(), None)));
+        ui.close();
+    }
+    ui.separator();
+    let mut statistics = chosen.statistics;
+    if ui.checkbox(&mut statistics, "Statistics of the time shown").changed() {
+        commands.push(Command::Charts(Change::Statistics(statistics)));
+        ui.close();
+    }
+    if ui.add_enabled(chosen.range.is_some(), Button::new("Show all time   Alt 0")).clicked() {
+        commands.push(Command::Charts(Change::Range(extent.all(chosen.range))));
+        ui.close();
+    }
+    if ui.button("Put this plot away").clicked() {
+        commands.push(Command::Charts(Change::Close(plot.name.clone())));
+        ui.close();
+    }
+}

@@ -1,0 +1,71 @@
+//! The panel on the right: signals over time with one cursor, and which b serves a target.
+
+mod curve;
+mod header;
+mod hover;
+mod menu;
+mod prepared;
+mod search;
+mod shown;
+mod which_b;
+mod written;
+
+use egui::{Frame, Margin, Panel, Ui};
+
+use self::header::{ROW, TITLE};
+use super::Command;
+use super::theme::colour;
+use crate::picture::charts::figure::{BELOW, LEFT, Look};
+
+pub use prepared::{Prepared, extent};
+pub use search::is_looking;
+pub use shown::Shown;
+pub use which_b::base_plot;
+pub use written::written;
+
+/// How wide the panel is made by itself, points.
+const USUAL: f32 = 336.0;
+
+/// Draws this panel; how wide it was made.
+pub fn show(ui: &mut Ui, what: &Shown<'_>, prepared: &mut Prepared, commands: &mut Vec<Command>) -> Option<f32> {
+    let Shown { session, signals, view_state, .. } = *what;
+    let p = view_state.palette();
+    let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 14, right: 14, top: 10, bottom: 8 });
+    let most = (0.6 * ui.available_width()).max(USUAL);
+    let width = view_state.plots.width.unwrap_or(USUAL).min(most);
+    let panel = Panel::right("plots").default_size(width).size_range(260.0..=most).resizable(true);
+    let made = panel.frame(frame).show(ui, |ui| {
+        let plots = view_state.charts.plots(session.scenario(), signals, view_state.pins);
+        if prepared.is_to_look() {
+            search::focus(ui.ctx());
+        }
+        search::show(ui, what, &plots, commands);
+        let columns = ((ui.available_width() - LEFT) * ui.ctx().pixels_per_point()).clamp(16.0, 8192.0) as usize;
+        prepared.follow(session, what.comparison, &plots, &view_state.charts, columns);
+        let statistics = if view_state.charts.statistics { ROW } else { 0.0 };
+        let rows: usize = plots.iter().map(|plot| plot.shown().count()).sum();
+        let taken = (TITLE + BELOW + 13.0) * (plots.len() as f32 + 1.0) + statistics * rows as f32;
+        let height = ((ui.available_height() - taken) / (plots.len() as f32 + 1.6)).max(56.0);
+        let seen = hover::instant(ui, session);
+        // Where there is no room for all of them, they scroll.
+        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 3.0;
+            let mut over = None;
+            for (plot, drawn) in plots.iter().zip(prepared.drawn()) {
+                let marked = view_state.mark.map(|time| shown::instant(session, time));
+                let newest = session.frames().last().unwrap_or(session.frame());
+                let look = Look { palette: &p, peaks: &newest.peaks, now: session.frame(), mark: marked, hover: seen };
+                header::show(ui, plot, drawn, &look, commands);
+                let found = curve::show(ui, what, (plot, drawn, prepared), &look, height + BELOW, commands);
+                over = found.or(over);
+                if view_state.charts.statistics {
+                    header::statistics(ui, plot, drawn, &look);
+                }
+                ui.add_space(4.0);
+            }
+            hover::remember(ui, over);
+            which_b::show(ui, &p, session, view_state, height * 1.6 + BELOW, commands);
+        });
+    });
+    view_state.plots.made(made.response.rect.width(), USUAL)
+}

@@ -1,0 +1,125 @@
+//! What plots show, made when it changes and kept until then.
+
+use std::sync::Arc;
+
+use crate::picture::charts::choice::{Choice, Plot};
+use crate::picture::charts::drawn::Drawn;
+use crate::picture::charts::range::Extent;
+use crate::session::{Made, Session};
+use crate::simulation::frame::Frame;
+use crate::simulation::signals::Signal;
+use crate::study::comparison::{Compared, Comparison};
+use crate::study::samples::Samples;
+
+/// The samples of the runs on display, and what is drawn of them.
+#[derive(Default)]
+pub struct Prepared {
+    samples: Samples,
+    others: Vec<Other>,
+    key: Option<Key>,
+    drawn: Vec<Drawn>,
+    /// A signal is to be sought.
+    looks: bool,
+}
+
+/// A run that is laid over.
+struct Other {
+    place: usize,
+    run: Arc<Compared>,
+    made: Made,
+    samples: Samples,
+}
+
+/// All that the drawn lines depend on.
+#[derive(PartialEq)]
+struct Key {
+    made: Made,
+    count: usize,
+    last: Option<Frame>,
+    names: Vec<String>,
+    choice: Choice,
+    others: Vec<(usize, Made)>,
+    shown: [f64; 2],
+    columns: usize,
+}
+
+/// How much time there is to show of a session.
+pub fn extent(session: &Session) -> Extent {
+    let end = session.frames().last().map_or(0.0, |f| f.time).max(session.length());
+    Extent::of(if session.is_led() { end.max(1.0) } else { end }, session.frame().time)
+}
+
+impl Prepared {
+    /// Makes what has changed.
+    pub fn follow(
+        &mut self,
+        session: &Session,
+        comparison: Option<&Comparison>,
+        plots: &[Plot<'_>],
+        choice: &Choice,
+        columns: usize,
+    ) {
+        let shown = extent(session).shown(choice.range);
+        let mut wanted: Vec<&Signal> = Vec::new();
+        for plot in plots {
+            for signal in plot.curves.iter().map(|curve| curve.signal).chain(plot.against) {
+                if !wanted.iter().any(|known| known.path == signal.path) {
+                    wanted.push(signal);
+                }
+            }
+        }
+        self.samples.follow(session.made(), session.frames(), &wanted);
+        self.lay_over(comparison, &wanted);
+        let key = Key {
+            made: session.made().clone(),
+            count: session.frames().len(),
+            last: session.frames().last().copied(),
+            names: plots.iter().map(|plot| plot.name.clone()).collect(),
+            choice: choice.clone(),
+            others: self.others.iter().map(|other| (other.place, other.made.clone())).collect(),
+            shown,
+            columns,
+        };
+        if self.key.as_ref() == Some(&key) {
+            return;
+        }
+        let others: Vec<(usize, &Samples)> = self.others.iter().map(|other| (other.place, &other.samples)).collect();
+        let of = |plot: &Plot<'_>| Drawn::of(plot, &self.samples, &others, shown, columns, choice.statistics);
+        self.drawn = plots.iter().map(of).collect();
+        self.key = Some(key);
+    }
+
+    fn lay_over(&mut self, comparison: Option<&Comparison>, wanted: &[&Signal]) {
+        let mut known = std::mem::take(&mut self.others);
+        let entries = comparison.map_or(&[][..], Comparison::entries).iter().enumerate();
+        for (place, run) in entries.filter(|(_, e)| e.shown).filter_map(|(i, e)| Some((i, e.outcome.as_ref().ok()?))) {
+            let mut other = match known.iter().position(|other| Arc::ptr_eq(&other.run, run)) {
+                Some(i) => known.swap_remove(i),
+                None => Other { place, run: run.clone(), made: Made::new(), samples: Samples::default() },
+            };
+            other.place = place;
+            other.samples.follow(&other.made, &other.run.frames, wanted);
+            self.others.push(other);
+        }
+    }
+
+    /// Has a signal sought in the next pass.
+    pub fn look_for(&mut self) {
+        self.looks = true;
+    }
+
+    /// Whether one is to be sought now.
+    pub fn is_to_look(&mut self) -> bool {
+        std::mem::take(&mut self.looks)
+    }
+
+    /// What is drawn of each plot.
+    pub fn drawn(&self) -> &[Drawn] {
+        &self.drawn
+    }
+
+    /// The session's own samples.
+    pub fn samples(&self) -> &Samples {
+        &self.samples
+    }
+}

@@ -1,0 +1,186 @@
+//! The row below the plots: any signal found by what is typed, the second cursor, and plots that were put away.
+
+use egui::{
+    Align, Button, Context, Id, Key, Layout, Panel, Popup, PopupCloseBehavior, RichText, ScrollArea, TextEdit, Ui,
+};
+
+use super::prepared::extent;
+use super::shown::Shown;
+use crate::app::Command;
+use crate::app::theme::{bold, colour, plain};
+use crate::app::widgets::name;
+use crate::picture::charts::choice::{Change, Plot};
+use crate::picture::charts::search::search;
+use crate::picture::numbers::at_step;
+
+/// What the signal that is sought is for.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Sought {
+    /// A plot of its own.
+    #[default]
+    Plot,
+    /// A curve of the plot of this name.
+    Curve(String),
+    /// What the plot of this name is drawn over.
+    Across(String),
+}
+
+/// What is typed so far, and which answer is chosen.
+#[derive(Clone, Debug, Default)]
+struct Typed {
+    sought: Sought,
+    text: String,
+    place: usize,
+    /// The answers are on display.
+    open: bool,
+}
+
+/// Whether the answers are on display.
+pub fn is_looking(ctx: &Context) -> bool {
+    ctx.data(|data| data.get_temp::<Typed>(typed_id())).is_some_and(|typed| typed.open)
+}
+
+fn id() -> Id {
+    Id::unique("signal sought")
+}
+
+fn typed_id() -> Id {
+    Id::unique("text of the signal sought")
+}
+
+/// Puts the cursor into the field, for a plot of its own.
+pub fn focus(ctx: &Context) {
+    start(ctx, Sought::Plot);
+}
+
+/// Puts the cursor into the field.
+pub fn start(ctx: &Context, sought: Sought) {
+    ctx.data_mut(|data| data.insert_temp(typed_id(), Typed { sought, ..Typed::default() }));
+    ctx.memory_mut(|memory| memory.request_focus(id()));
+}
+
+/// Draws the row.
+pub fn show(ui: &mut Ui, shown: &Shown<'_>, plots: &[Plot<'_>], commands: &mut Vec<Command>) {
+    let frame = egui::Frame::new().inner_margin(egui::Margin { left: 0, right: 0, top: 6, bottom: 0 });
+    Panel::bottom("find a signal").resizable(false).show_separator_line(false).frame(frame).show(ui, |ui| {
+        ui.horizontal(|ui| {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                ui.spacing_mut().item_spacing.x = 6.0;
+                state(ui, shown, commands);
+                field(ui, shown, plots, commands);
+            });
+        });
+    });
+}
+
+/// What plots show besides: a way back to all time, the second cursor, plots that were put away.
+fn state(ui: &mut Ui, shown: &Shown<'_>, commands: &mut Vec<Command>) {
+    let (view_state, session) = (shown.view_state, shown.session);
+    let p = view_state.palette();
+    let small = |text: String, tone| RichText::new(text).font(plain(11.0)).color(colour(tone));
+    let step = session.scenario().step;
+    let button = |ui: &mut Ui, text: String, tone, label: &str, tip: &str| {
+        let button = ui.add(Button::new(small(text, tone)).frame(false)).on_hover_text(tip);
+        name(&button, label);
+        button.clicked()
+    };
+    if let Some(mark) = view_state.mark {
+        let text = format!("Δt {} s ×", at_step(session.frame().time - mark, step));
+        let tip = format!("The second cursor stands at {} s; click: away (Esc)", at_step(mark, step));
+        if button(ui, text, p.amber, "Put the second cursor away", &tip) {
+            commands.push(Command::Mark(None));
+        }
+    }
+    if let Some([from, to]) = view_state.charts.range {
+        let fine = 0.01 * (to - from);
+        let text = format!("{}–{} s ×", at_step(from, fine), at_step(to, fine));
+        if button(ui, text, p.dim, "Show all time", "The time that plots show; click: all of it (Alt 0)") {
+            commands.push(Command::Charts(Change::Range(extent(session).all(view_state.charts.range))));
+        }
+    }
+    let closed = view_state.charts.closed();
+    if closed > 0
+        && button(ui, format!("+{closed}"), p.dim, "Bring plots back", "Brings back the plots that were put away")
+    {
+        commands.push(Command::Charts(Change::Reopen));
+    }
+}
+
+fn field(ui: &mut Ui, shown: &Shown<'_>, plots: &[Plot<'_>], commands: &mut Vec<Command>) {
+    let p = shown.view_state.palette();
+    let mut typed: Typed = ui.data(|data| data.get_temp(typed_id())).unwrap_or_default();
+    let title =
+        |name: &String| plots.iter().find(|plot| plot.name == *name).map_or("it", |plot| &plot.title).to_owned();
+    let hint = match &typed.sought {
+        Sought::Plot => "+ plot a signal: name, symbol, unit".to_owned(),
+        Sought::Curve(plot) => format!("+ curve in {}", title(plot)),
+        Sought::Across(plot) => format!("{} against …", title(plot)),
+    };
+    // The arrows go through the answers, not through the text.
+    let focused = ui.memory(|memory| memory.has_focus(id()));
+    let pressed = |key| focused && ui.input_mut(|i| i.consume_key(egui::Modifiers::NONE, key));
+    let (up, down, enter) = (pressed(Key::ArrowUp), pressed(Key::ArrowDown), pressed(Key::Enter));
+    let edit = TextEdit::singleline(&mut typed.text).id(id()).hint_text(RichText::new(hint).font(plain(11.5)));
+    let response = ui.add(edit.font(plain(11.5)).desired_width(ui.available_width()));
+    name(&response, "Plot a signal");
+    if response.changed() {
+        typed.place = 0;
+    }
+    typed.open |= response.gained_focus();
+    let found = search(shown.signals, &typed.text);
+    typed.place = match (up, down) {
+        (true, _) => typed.place.saturating_sub(1),
+        (_, true) => typed.place + 1,
+        _ => typed.place,
+    }
+    .min(found.len().saturating_sub(1));
+    let mut chosen = found.get(typed.place).filter(|_| enter).map(|signal| signal.path.clone());
+    let answers = Popup::from_response(&response)
+        .open(typed.open)
+        .close_behavior(PopupCloseBehavior::IgnoreClicks)
+        .width(response.rect.width().max(280.0))
+        .show(|ui| {
+            ScrollArea::vertical().max_height(260.0).show(ui, |ui| {
+                if found.is_empty() {
+                    ui.label(RichText::new("no signal answers to all of this").font(plain(11.5)).color(colour(p.dim)));
+                }
+                for (i, signal) in found.iter().enumerate() {
+                    let row = ui.horizontal(|ui| {
+                        let symbol = RichText::new(&signal.symbol).font(bold(11.5));
+                        let answer = ui.selectable_label(i == typed.place, symbol);
+                        let unit = if signal.unit == "1" { "" } else { signal.unit };
+                        let words = format!("{}  {unit}", signal.label);
+                        name(&answer, &format!("{}, {}", signal.symbol, signal.label));
+                        ui.label(RichText::new(words).font(plain(11.5)).color(colour(p.dim)));
+                        answer
+                    });
+                    let answer = row.inner.on_hover_text(&signal.path);
+                    if i == typed.place && (up || down || response.changed()) {
+                        answer.scroll_to_me(None);
+                    }
+                    if answer.clicked() || row.response.interact(egui::Sense::click()).clicked() {
+                        chosen = Some(signal.path.clone());
+                    }
+                }
+            });
+        });
+    if let Some(path) = chosen {
+        let change = match typed.sought.clone() {
+            Sought::Plot => Change::Plot(path),
+            Sought::Curve(plot) => Change::Add(plot, path),
+            Sought::Across(plot) => Change::Against(plot, Some(path)),
+        };
+        commands.push(Command::Charts(change));
+        typed = Typed::default();
+        ui.memory_mut(|memory| memory.surrender_focus(id()));
+    } else {
+        // A press on an answer takes the focus away, and is one only with its release.
+        let (pressing, pressed) =
+            ui.input(|i| (i.pointer.any_down() || i.pointer.any_released(), i.pointer.any_pressed()));
+        let here = response.contains_pointer() || answers.is_some_and(|answers| answers.response.contains_pointer());
+        if (!response.has_focus() && !pressing) || (pressed && !here) {
+            typed = Typed::default();
+        }
+    }
+    ui.data_mut(|data| data.insert_temp(typed_id(), typed));
+}

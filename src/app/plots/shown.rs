@@ -1,0 +1,26 @@
+//! What the plots are of.
+
+use crate::app::ViewState;
+use crate::session::Session;
+use crate::simulation::frame::Frame;
+use crate::simulation::signals::Signal;
+use crate::study::comparison::Comparison;
+
+/// What is on display.
+pub struct Shown<'a> {
+    pub session: &'a Session,
+    pub signals: &'a [Signal],
+    pub comparison: Option<&'a Comparison>,
+    pub view_state: &'a ViewState,
+}
+
+/// The frame at a time, s, or the nearest before it.
+pub fn instant(session: &Session, time: f64) -> &Frame {
+    let frames = session.frames();
+    &frames[frames.partition_point(|f| f.time <= time + 1e-9).saturating_sub(1)]
+}
+
+/// The frame nearest to a time, s.
+pub fn nearest(session: &Session, time: f64) -> &Frame {
+    instant(session, time + 0.5 * session.scenario().step)
+}

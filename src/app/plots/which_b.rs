@@ -1,0 +1,154 @@
+//! Which b serves a target, or the points of the task.
+
+use egui::{RichText, Ui};
+use egui_plot::{GridMark, Line, LineStyle, Plot, PlotPoint, PlotPoints, Points, Span, VLine};
+
+use crate::app::theme::{bold, colour, plain};
+use crate::app::widgets::name;
+use crate::app::{Command, ViewState, set_b};
+use crate::mechanics::planar::Vector;
+use crate::picture::numbers::{round_up, signed};
+use crate::picture::scene::palette::{Palette, faded};
+use crate::planning::reactionless::PlanePoint;
+use crate::session::Session;
+
+/// Fig. 3: q_1 against b for A and B, or for the target; a click chooses b.
+pub fn show(
+    ui: &mut Ui,
+    p: &Palette,
+    session: &Session,
+    view_state: &ViewState,
+    height: f32,
+    commands: &mut Vec<Command>,
+) {
+    let Some(planes) = session.run().planes() else { return };
+    let (task, now) = (&session.scenario().task, session.frame());
+    let named: Vec<String> = (0..task.via.len() + 2).map(|i| task.name_of(i)).collect();
+    let points: Vec<(&str, Vector)> = match session.is_led() {
+        true => vec![("target", now.target.at)],
+        false => named.iter().map(String::as_str).zip(task.points()).collect(),
+    };
+    ui.horizontal(|ui| {
+        ui.set_height(16.0);
+        ui.label(RichText::new("Which b?").font(bold(12.5)));
+        let words = "q₁ against b, rad; click to choose";
+        ui.label(RichText::new(words).font(plain(11.5)).color(colour(p.dim)));
+    });
+    let map = planes.map();
+    let sets: Vec<_> = points.iter().filter_map(|(_, x)| map.reach(*x).ok()).collect();
+    let curves: Vec<_> = points.iter().map(|(name, x)| (*name, map.self_motion(*x, 96))).collect();
+    let common =
+        (sets.len() == points.len()).then(|| crate::planning::reactionless::BSet::overlap(&sets).near(now.b_reference));
+    let mut bounds = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
+    let lines: Vec<(&str, Vec<[f64; 2]>)> = curves
+        .iter()
+        .flat_map(|(name, branches)| branches.iter().map(move |branch| (*name, branch)))
+        .map(|(name, branch)| {
+            // The whole turn nearest to the present b.
+            let middle = branch.get(branch.len() / 2).map_or(0.0, |x| x.b);
+            let lift = map.period() * ((now.b_reference - middle) / map.period()).round();
+            let point = |x: &PlanePoint| {
+                let x = PlanePoint { b: x.b + lift, ..*x };
+                [x.b, map.lift(x)[0]]
+            };
+            (name, branch.iter().map(point).collect::<Vec<_>>())
+        })
+        .collect();
+    for [b, q] in lines.iter().flat_map(|(_, l)| l) {
+        bounds = [bounds[0].min(*b), bounds[1].max(*b), bounds[2].min(*q), bounds[3].max(*q)];
+    }
+    if lines.is_empty() {
+        bounds = [0.0, map.period(), -1.0, 1.0];
+    }
+    let empty = lines.is_empty();
+    let b_now = now.b_reference;
+    let [b_low, b_high] = [bounds[0].min(b_now) - 0.15, bounds[1].max(b_now) + 0.15];
+    let room = 0.18 * (bounds[3] - bounds[2]).max(0.5);
+    let [q_low, q_high] = [bounds[2] - room, bounds[3] + room];
+    let response = base_plot("which b", p, height - 16.0)
+        .show_axes([true, true])
+        .y_grid_spacer(move |_| marks(&spaced(q_low, q_high), q_high - q_low))
+        .x_grid_spacer(move |_| marks(&spaced(b_low, b_high), b_high - b_low))
+        .x_axis_formatter(|mark, _| signed(mark.value, 1))
+        .y_axis_formatter(|mark, _| signed(mark.value, 1))
+        .show(ui, |plot| {
+            plot.set_plot_bounds_x(b_low..=b_high);
+            plot.set_plot_bounds_y(q_low..=q_high);
+            for [from, to] in common.iter().flat_map(|c| &c.intervals) {
+                let fill = colour(faded(p.amber, 0.16));
+                let clear = egui::Stroke::NONE;
+                plot.span(Span::new("", *from..=*to).fill(fill).border(clear));
+            }
+            let last = points.len() - 1;
+            for (name, line) in lines {
+                // Of many points only the ends have room for a name.
+                let named = points.len() <= 4 || name == points[0].0 || name == points[last].0;
+                if let Some(end) = line.last().filter(|_| named) {
+                    let text = RichText::new(name).font(plain(11.5));
+                    let place = PlotPoint::new(end[0], end[1]);
+                    let text = egui_plot::Text::new("name", place, text).color(colour(p.ink));
+                    plot.text(text.anchor(egui::Align2::RIGHT_BOTTOM).allow_hover(false));
+                }
+                let line = Line::new(name.to_owned(), PlotPoints::from(line)).width(1.8);
+                let line = line.color(colour(if named { p.ink } else { faded(p.dim, 0.6) }));
+                plot.line(line.style(LineStyle::Solid).allow_hover(false));
+            }
+            if empty {
+                let place = PlotPoint::new(0.5 * (b_low + b_high), 0.5 * (q_low + q_high));
+                let text = RichText::new("no b reaches it").font(plain(12.0));
+                plot.text(egui_plot::Text::new("none", place, text).color(colour(p.dim)).allow_hover(false));
+            }
+            plot.vline(VLine::new("b", b_now).color(colour(p.amber)).width(1.6).allow_hover(false));
+            for (_, x) in &points {
+                for pose in map.poses(*x, b_now).iter() {
+                    let dot = vec![[b_now, map.lift(*pose)[0]]];
+                    plot.points(Points::new("pose", dot).radius(4.0).color(colour(p.amber)).allow_hover(false));
+                }
+            }
+            plot.pointer_coordinate().map(|c| c.x)
+        });
+    name(&response.response, "Which b: q1 against b of each point");
+    let preview = response.inner.filter(|_| response.response.hovered());
+    if preview != view_state.preview {
+        commands.push(Command::Preview(preview));
+    }
+    let held = response.response.dragged() || response.response.clicked();
+    if let (true, Some(b)) = (held, response.inner) {
+        commands.push(Command::Edit(set_b(session, view_state, b)));
+    }
+    if response.response.drag_stopped() || response.response.clicked() {
+        commands.push(Command::EndGesture);
+    }
+}
+
+/// A plot as the panels have it: without grid across, and without hands.
+pub fn base_plot<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
+    Plot::new(id.to_owned())
+        .height(height)
+        .show_background(false)
+        .show_axes([false, true])
+        .show_grid([false, true])
+        .grid_color(colour(faded(p.line, 0.9)))
+        .grid_fade(0.0)
+        .show_x(false)
+        .show_y(false)
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .allow_double_click_reset(false)
+        .sense(egui::Sense::click_and_drag())
+        .y_axis_min_width(46.0)
+        .set_margin_fraction(egui::Vec2::ZERO)
+}
+
+fn marks(values: &[f64], step: f64) -> Vec<GridMark> {
+    values.iter().map(|v| GridMark { value: *v, step_size: step }).collect()
+}
+
+/// Some three to five round values between bounds.
+fn spaced(low: f64, high: f64) -> Vec<f64> {
+    let step = round_up((high - low) / 5.0);
+    let first = (low / step).ceil() as i64;
+    (first..first + 12).map(|i| i as f64 * step).take_while(|v| *v <= high).collect()
+}

@@ -1,0 +1,59 @@
+//! A plot as a file.
+
+use super::prepared::{Prepared, extent};
+use super::shown::Shown;
+use crate::app::PlotFile;
+use crate::picture::canvas::Canvas;
+use crate::picture::charts::figure::{Figure, Look};
+use crate::picture::charts::svg::svg;
+use crate::picture::paint::figure::whole;
+use crate::simulation::signals::Signal;
+use crate::study::samples::Samples;
+
+/// Width and height of a picture of a plot.
+const SIZE: [f32; 2] = [720.0, 320.0];
+
+/// What makes the content of a file.
+type Content = Box<dyn FnOnce() -> Result<Vec<u8>, String> + Send>;
+
+/// What the file of a plot holds, to be made beside the window: it may take a while.
+///
+/// # Errors
+/// If there is no such plot any more.
+pub fn written(what: &Shown<'_>, prepared: &Prepared, name: &str, file: PlotFile) -> Result<Content, String> {
+    let Shown { session, signals, view_state, .. } = *what;
+    let plots = view_state.charts.plots(session.scenario(), signals, view_state.pins);
+    let found = plots.iter().zip(prepared.drawn()).find(|(plot, _)| plot.name == name);
+    let Some((plot, drawn)) = found else {
+        return Err(format!("there is no plot {name} any more: choose one that is shown"));
+    };
+    let newest = session.frames().last().unwrap_or(session.frame());
+    let mark = view_state.mark.map(|time| super::shown::instant(session, time));
+    let palette = view_state.palette();
+    let look = Look { palette: &palette, peaks: &newest.peaks, now: session.frame(), mark, hover: None };
+    let figure = Figure::of(plot, drawn, SIZE, &look);
+    Ok(match file {
+        PlotFile::Csv => {
+            let range = extent(session).shown(view_state.charts.range);
+            let shown = plot.against.into_iter().chain(plot.shown().map(|curve| curve.signal));
+            let (signals, samples): (Vec<Signal>, Samples) = (shown.cloned().collect(), prepared.samples().clone());
+            Box::new(move || Ok(samples.csv(&signals.iter().collect::<Vec<_>>(), range).into_bytes()))
+        }
+        PlotFile::Svg => Box::new(move || Ok(svg(&figure).into_bytes())),
+        PlotFile::Png => Box::new(move || png(&figure)),
+    })
+}
+
+fn png(figure: &Figure) -> Result<Vec<u8>, String> {
+    let mut canvas = Canvas::new(SIZE.map(|side| 2 * side as u32), 2.0).map_err(|why| why.to_string())?;
+    let mut dressed = false;
+    let picture = canvas.draw(|ui| {
+        // Type is there from the second pass on.
+        if std::mem::replace(&mut dressed, true) {
+            whole(ui.painter(), figure);
+        } else {
+            crate::picture::paint::install_fonts(ui.ctx());
+        }
+    });
+    picture.map_err(|why| why.to_string())?.to_png().map_err(|why| format!("no picture: {why}"))
+}

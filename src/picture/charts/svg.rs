@@ -1,0 +1,78 @@
+//! A figure as SVG: lines and words, nothing else.
+
+use std::fmt::Write as _;
+
+use super::figure::{Figure, Item, Words};
+use crate::picture::scene::Rgba;
+
+/// The file's text.
+pub fn svg(figure: &Figure) -> String {
+    let [width, height] = figure.size;
+    let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+    let _ = writeln!(
+        text,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} \
+         {height}\" font-family=\"DejaVu Sans, Verdana, sans-serif\">"
+    );
+    let [left, top, right, bottom] = figure.axes.sides;
+    let _ = writeln!(text, "<clipPath id=\"axes\">{}</clipPath>", rect([left, top, right, bottom + 4.0], ""));
+    let _ = writeln!(text, "{}", rect([0.0, 0.0, width, height], &paint("fill", figure.background)));
+    for item in &figure.items {
+        let _ = writeln!(text, "{}", element(item));
+    }
+    text + "</svg>\n"
+}
+
+fn rect([left, top, right, bottom]: [f32; 4], paint: &str) -> String {
+    let (width, height) = (right - left, bottom - top);
+    format!("<rect x=\"{left:.2}\" y=\"{top:.2}\" width=\"{width:.2}\" height=\"{height:.2}\"{paint}/>")
+}
+
+/// A colour, for `fill` or `stroke`.
+fn paint(what: &str, [r, g, b, a]: Rgba) -> String {
+    let [r, g, b] = [r, g, b].map(|x| (255.0 * x).round() as u8);
+    let opacity = if a < 1.0 { format!(" {what}-opacity=\"{a:.3}\"") } else { String::new() };
+    format!(" {what}=\"#{r:02x}{g:02x}{b:02x}\"{opacity}")
+}
+
+fn element(item: &Item) -> String {
+    match item {
+        Item::Line { points, width, colour, dash, inside } => {
+            let mut places = String::new();
+            for [x, y] in points {
+                let _ = write!(places, "{x:.2},{y:.2} ");
+            }
+            let dash = dash.map_or_else(String::new, |[on, off]| format!(" stroke-dasharray=\"{on} {off}\""));
+            let clip = if *inside { " clip-path=\"url(#axes)\"" } else { "" };
+            format!(
+                "<polyline points=\"{}\" fill=\"none\" stroke-width=\"{width}\" stroke-linejoin=\"round\"{}{dash}{clip}/>",
+                places.trim_end(),
+                paint("stroke", *colour)
+            )
+        }
+        Item::Dot { at: [x, y], radius, colour } => {
+            format!("<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{radius}\"{}/>", paint("fill", *colour))
+        }
+        Item::Area { sides, colour } => rect(*sides, &paint("fill", *colour)),
+        Item::Text { at: [x, y], anchor: [across, down], words } => {
+            let size = words.iter().fold(0.0_f32, |most, w| most.max(w.size));
+            // The base line, from the top of the type.
+            let base = y + size * (0.93 - 1.16 * down);
+            let anchor = if *across == 0.0 {
+                "start"
+            } else if *across == 1.0 {
+                "end"
+            } else {
+                "middle"
+            };
+            let spans: String = words.iter().map(span).collect();
+            format!("<text x=\"{x:.2}\" y=\"{base:.2}\" text-anchor=\"{anchor}\" xml:space=\"preserve\">{spans}</text>")
+        }
+    }
+}
+
+fn span(words: &Words) -> String {
+    let weight = if words.bold { " font-weight=\"bold\"" } else { "" };
+    let text = words.text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    format!("<tspan font-size=\"{}\"{weight}{}>{text}</tspan>", words.size, paint("fill", words.colour))
+}

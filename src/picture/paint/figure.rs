@@ -1,0 +1,51 @@
+//! The items of a figure painted by egui.
+
+use egui::text::{LayoutJob, TextFormat};
+use egui::{Painter, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
+
+use super::{bold, colour, plain};
+use crate::picture::charts::figure::{Axes, Figure, Item};
+
+/// Paints items whose places are counted from an origin.
+pub fn items(painter: &Painter, origin: Pos2, axes: &Axes, items: &[Item]) {
+    let [left, top, right, bottom] = axes.sides;
+    let at = |[x, y]: [f32; 2]| origin + vec2(x, y);
+    let within = Rect::from_min_max(at([left, top]), at([right, bottom + 4.0]));
+    let inner = painter.with_clip_rect(within.intersect(painter.clip_rect()));
+    for item in items {
+        match item {
+            Item::Line { points, width, colour: tone, dash, inside } => {
+                let points: Vec<Pos2> = points.iter().map(|p| at(*p)).collect();
+                let stroke = Stroke::new(*width, colour(*tone));
+                let painter = if *inside { &inner } else { painter };
+                match dash {
+                    None => _ = painter.add(Shape::line(points, stroke)),
+                    Some([on, off]) => painter.extend(Shape::dashed_line(&points, stroke, *on, *off)),
+                }
+            }
+            Item::Dot { at: place, radius, colour: tone } => {
+                painter.circle_filled(at(*place), *radius, colour(*tone));
+            }
+            Item::Area { sides: [left, top, right, bottom], colour: tone } => {
+                painter.rect_filled(Rect::from_min_max(at([*left, *top]), at([*right, *bottom])), 0.0, colour(*tone));
+            }
+            Item::Text { at: place, anchor: [across, down], words } => {
+                let mut job = LayoutJob::default();
+                for words in words {
+                    let font = if words.bold { bold(words.size) } else { plain(words.size) };
+                    job.append(&words.text, 0.0, TextFormat::simple(font, colour(words.colour)));
+                }
+                let galley = painter.layout_job(job);
+                let from = at(*place) - vec2(*across, *down) * galley.size();
+                painter.galley(from, galley, egui::Color32::PLACEHOLDER);
+            }
+        }
+    }
+}
+
+/// Paints a whole figure, its background too.
+pub fn whole(painter: &Painter, figure: &Figure) {
+    let [width, height] = figure.size;
+    painter.rect_filled(Rect::from_min_size(Pos2::ZERO, Vec2::new(width, height)), 0.0, colour(figure.background));
+    items(painter, pos2(0.0, 0.0), &figure.axes, &figure.items);
+}

@@ -1,0 +1,159 @@
+//! [`Samples`]: signals of a run over time, ready to be drawn at any scale, summed up and copied out.
+
+use std::fmt::Write as _;
+use std::ops::Range;
+
+use super::series::{Series, Statistics};
+use crate::session::Made;
+use crate::simulation::frame::Frame;
+use crate::simulation::signals::Signal;
+
+/// The samples of some signals of one run.
+#[derive(Clone, Debug, Default)]
+pub struct Samples {
+    /// Which making of the run they are of.
+    made: Option<Made>,
+    times: Vec<f64>,
+    series: Vec<(String, Series)>,
+}
+
+impl Samples {
+    /// Signals by path, whose samples were taken at times, s.
+    pub fn of(times: Vec<f64>, signals: impl IntoIterator<Item = (String, Series)>) -> Self {
+        let series = signals.into_iter().filter(|(_, series)| series.values().len() == times.len()).collect();
+        Self { made: None, times, series }
+    }
+
+    /// Takes what the frames have more than before; what has changed is taken again. Signals that are not wanted
+    /// any more are let go.
+    pub fn follow(&mut self, made: &Made, frames: &[Frame], wanted: &[&Signal]) {
+        let kept = self.made.as_ref().map_or(0, |known| made.kept_of(known));
+        self.made = Some(made.clone());
+        self.series.retain(|(path, _)| wanted.iter().any(|signal| signal.path == *path));
+        let known = kept.min(self.times.len()).min(frames.len());
+        self.times.truncate(known);
+        self.times.extend(frames[known..].iter().map(|frame| frame.time));
+        for signal in wanted {
+            let place = self.series.iter().position(|(path, _)| *path == signal.path).unwrap_or_else(|| {
+                self.series.push((signal.path.clone(), Series::default()));
+                self.series.len() - 1
+            });
+            let series = &mut self.series[place].1;
+            series.truncate(known);
+            for frame in &frames[series.values().len()..] {
+                series.push(signal.value(frame));
+            }
+        }
+    }
+
+    /// The samples of a signal.
+    pub fn series(&self, path: &str) -> Option<&Series> {
+        self.series.iter().find(|(known, _)| known == path).map(|(_, series)| series)
+    }
+
+    /// When each was taken, s.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// The samples from one time to another, s, both included.
+    pub fn within(&self, [from, to]: [f64; 2]) -> Range<usize> {
+        let start = self.times.partition_point(|t| *t < from - 1e-9);
+        start..self.times.partition_point(|t| *t <= to + 1e-9).max(start)
+    }
+
+    /// The same range with one sample more on each side, so that a line goes on to the edges.
+    fn beyond(&self, shown: [f64; 2]) -> Range<usize> {
+        let range = self.within(shown);
+        range.start.saturating_sub(1)..(range.end + 1).min(self.times.len())
+    }
+
+    /// The line of a signal over time, as it is drawn in so many columns of pixels: of each column the first, the least,
+    /// the greatest and the last sample, so that no peak is lost and the picture is that of all samples. Columns stand
+    /// still while the range moves.
+    pub fn line(&self, path: &str, shown: [f64; 2], columns: usize) -> Vec<[f64; 2]> {
+        let Some(series) = self.series(path) else { return Vec::new() };
+        let range = self.beyond(shown);
+        let point = |i: usize| Some([self.times[i], series.values()[i]]).filter(|p| p[1].is_finite());
+        if range.len() <= 4 * columns.max(1) || shown[1] <= shown[0] {
+            return range.filter_map(point).collect();
+        }
+        let width = (shown[1] - shown[0]) / columns.max(1) as f64;
+        let mut points = Vec::with_capacity(4 * columns + 8);
+        let mut from = range.start;
+        while from < range.end {
+            let column = (self.times[from] / width).floor();
+            let to = from + self.times[from..range.end].partition_point(|t| (t / width).floor() <= column).max(1);
+            if let Some([least, greatest]) = series.extremes(from..to) {
+                take(&mut points, [from, least, greatest, to - 1], point);
+            }
+            from = to;
+        }
+        points
+    }
+
+    /// One signal against another over a time, in at most about so many points. Of each stretch of samples those stand
+    /// for it where either is least or greatest.
+    pub fn line_against(&self, across: &str, path: &str, shown: [f64; 2], most: usize) -> Vec<[f64; 2]> {
+        let (Some(x), Some(y)) = (self.series(across), self.series(path)) else { return Vec::new() };
+        let range = self.within(shown);
+        let point = |i: usize| Some([x.values()[i], y.values()[i]]).filter(|p| p.iter().all(|x| x.is_finite()));
+        if range.len() <= most {
+            return range.filter_map(point).collect();
+        }
+        let size = (6 * range.len()).div_ceil(most.max(6));
+        let mut points = Vec::with_capacity(most + 12);
+        let mut from = range.start;
+        while from < range.end {
+            let to = ((from / size + 1) * size).min(range.end);
+            if let (Some([a, b]), Some([c, d])) = (x.extremes(from..to), y.extremes(from..to)) {
+                take(&mut points, [from, a, b, c, d, to - 1], point);
+            }
+            from = to;
+        }
+        points
+    }
+
+    /// The least and the greatest value of a signal over a time; none where there is no number.
+    pub fn bounds(&self, path: &str, shown: [f64; 2]) -> Option<[f64; 2]> {
+        let series = self.series(path)?;
+        Some(series.extremes(self.within(shown))?.map(|i| series.values()[i]))
+    }
+
+    /// What a signal comes to over a time.
+    pub fn statistics(&self, path: &str, shown: [f64; 2]) -> Option<Statistics> {
+        self.series(path)?.statistics(self.within(shown))
+    }
+
+    /// Every sample of a time as CSV, in SI units, with the head that `simulate` writes.
+    pub fn csv(&self, signals: &[&Signal], shown: [f64; 2]) -> String {
+        let mut text = String::from("time s");
+        let mut columns = Vec::new();
+        for signal in signals {
+            if let Some(series) = self.series(&signal.path) {
+                // Paths and units hold neither commas nor quotes.
+                let _ = write!(text, ",{} {}", signal.path, signal.unit);
+                columns.push(series.values());
+            }
+        }
+        text.push('\n');
+        for i in self.within(shown) {
+            let _ = write!(text, "{}", self.times[i] + 0.0);
+            for column in &columns {
+                let _ = write!(text, ",{}", column[i] + 0.0);
+            }
+            text.push('\n');
+        }
+        text
+    }
+}
+
+/// Adds points in the order of time, each once.
+fn take<const N: usize>(points: &mut Vec<[f64; 2]>, mut places: [usize; N], point: impl Fn(usize) -> Option<[f64; 2]>) {
+    places.sort_unstable();
+    for (k, i) in places.into_iter().enumerate() {
+        if k == 0 || places[k - 1] != i {
+            points.extend(point(i));
+        }
+    }
+}

@@ -1,0 +1,191 @@
+//! What a person chooses to see in plots, how signals are found, and plots as drawings.
+
+use proptest::prelude::*;
+use stillbase::mechanics::machine::builtin;
+use stillbase::picture::charts::choice::{Change, Choice};
+use stillbase::picture::charts::drawn::Drawn;
+use stillbase::picture::charts::figure::{Figure, Item, Look};
+use stillbase::picture::charts::range::Extent;
+use stillbase::picture::charts::search::search;
+use stillbase::picture::charts::svg::svg;
+use stillbase::picture::numbers::{at_step, spaced};
+use stillbase::picture::scene::palette::{Theme, palette};
+use stillbase::session::Session;
+use stillbase::session::scenario::Scenario;
+use stillbase::simulation::signals::{Signal, signals};
+use stillbase::study::samples::Samples;
+
+fn table() -> Vec<Signal> {
+    signals(builtin("nine-link").expect("built in"))
+}
+
+#[test]
+fn signals_are_found_by_name_symbol_path_and_unit() {
+    let table = table();
+    for (text, first) in [
+        ("tau1", "torque/1"),
+        ("τ₂", "torque/2"),
+        ("torque 3", "torque/3"),
+        ("moment/total", "moment/total"),
+        ("n_b", "moment/total"),
+        ("base moment", "moment/total"),
+        ("qddot2", "acceleration/2"),
+        ("theta", "attitude/base"),
+        ("pose const", "pose/b"),
+        ("kinetic", "energy/kinetic"),
+        ("end eff y", "tip/y"),
+        ("rad/s²", "rate/1"),
+        ("mnpl", "dexterity/manipulability"),
+    ] {
+        let found = search(&table, text);
+        let paths: Vec<&str> = found.iter().take(4).map(|s| s.path.as_str()).collect();
+        let unit = found.first().is_some_and(|s| s.unit == text);
+        assert!(paths.first() == Some(&first) || unit, "{text}: {paths:?}");
+    }
+    assert_eq!(search(&table, " ").len(), table.len());
+    assert!(search(&table, "torque of the moon").is_empty());
+    // Whatever stands there finds itself.
+    for signal in &table {
+        for words in [&signal.path, &signal.label, &signal.symbol] {
+            assert!(search(&table, words).iter().any(|s| s.path == signal.path), "{words}");
+        }
+    }
+}
+
+#[test]
+fn plots_are_what_was_chosen_and_remembered() {
+    let (scenario, table) = (Scenario::builtin("case-3").expect("built in"), table());
+    let mut choice = Choice::default();
+    let names = |choice: &Choice| -> Vec<String> {
+        choice.plots(&scenario, &table, false).into_iter().map(|plot| plot.name).collect()
+    };
+    assert_eq!(names(&choice), ["Torque", "Base moment", "Base force", "Drive angles", "Pose constant"]);
+    let plot = |name: &str| name.to_owned();
+    choice.change(Change::Show(plot("Torque"), plot("torque/2"), false));
+    choice.change(Change::Plot(plot("tip/y")));
+    choice.change(Change::Against(plot("plot 1"), Some(plot("tip/x"))));
+    choice.change(Change::Add(plot("Pose constant"), plot("pose/b_reference")));
+    choice.change(Change::Close(plot("Base force")));
+    choice.change(Change::Range(Some([0.2, 0.4])));
+    choice.change(Change::Range(Some([0.4, f64::NAN])));
+    assert_eq!(names(&choice), ["Torque", "Base moment", "Drive angles", "Pose constant", "plot 1"]);
+    let plots = choice.plots(&scenario, &table, false);
+    let on = |i: usize| -> Vec<&str> { plots[i].shown().map(|c| c.signal.path.as_str()).collect() };
+    assert_eq!((on(0), on(3)), (vec!["torque/1", "torque/3"], vec!["pose/b", "pose/b_reference"]));
+    assert_eq!(plots[4].heading(), "End effector, y against x");
+    assert_eq!((choice.range, choice.closed()), (None, 1));
+    // Plain data: kept in a file, it is the same.
+    choice.change(Change::Range(Some([0.2, 0.4])));
+    let kept = serde_json::to_string(&choice).expect("plain data");
+    assert_eq!(serde_json::from_str::<Choice>(&kept).expect("itself"), choice);
+    // And all of it can be taken back.
+    choice.change(Change::Show(plot("Torque"), plot("torque/2"), true));
+    choice.change(Change::Remove(plot("Pose constant"), plot("pose/b_reference")));
+    choice.change(Change::Close(plot("plot 1")));
+    choice.change(Change::Reopen);
+    choice.change(Change::Range(None));
+    assert_eq!(choice, Choice::default());
+    // A plot of what another machine has is kept, and not shown.
+    choice.change(Change::Plot(plot("torque/9")));
+    assert!(!names(&choice).contains(&plot("plot 1")) && choice.own.len() == 1);
+}
+
+proptest! {
+    /// Whatever hands do to the range, there is something to see in it, and the time under the pointer stays there.
+    #[test]
+    fn a_range_stays_within_the_run(
+        end in prop_oneof![1e-3..1.0_f64, 1.0..3000.0_f64],
+        now in 0.0..1.0_f64,
+        doings in prop::collection::vec((0..4_u8, 0.0..1.0_f64, 0.0..1.0_f64), 1..20),
+    ) {
+        let extent = Extent::of(end, now * end);
+        let mut chosen = None;
+        for (what, a, b) in doings {
+            let shown = extent.shown(chosen);
+            let at = |share: f64| shown[0] + share * (shown[1] - shown[0]);
+            match what {
+                0 => {
+                    let factor = (8.0 * (b - 0.5)).exp2();
+                    chosen = extent.zoomed(shown, at(a), factor);
+                    let next = extent.shown(chosen);
+                    let share = (at(a) - next[0]) / (next[1] - next[0]);
+                    let inside = next[0] > 1e-9 && next[1] < end - 1e-9 * end;
+                    prop_assert!(!inside || (share - a).abs() < 1e-6, "{} went to {}", a, share);
+                }
+                1 => chosen = Some(extent.panned(shown, (b - 0.5) * 3.0 * end)),
+                2 => chosen = extent.between(at(a), at(b)).or(chosen),
+                _ => chosen = extent.all(chosen),
+            }
+            let [from, to] = extent.shown(chosen);
+            prop_assert!(from >= -1e-9 && to <= end * (1.0 + 1e-9) && to > from, "{from} to {to} of {end}");
+        }
+        // Twice all is what it was at first, or all of it.
+        let once = extent.all(chosen);
+        let twice = extent.all(once);
+        prop_assert!(once.is_none() || twice.is_none());
+        prop_assert!(extent.is_all(extent.shown(once)) || extent.is_all(extent.shown(twice)) );
+    }
+
+    /// Numbers of an axis lie within it, at round places, and can be told apart.
+    #[test]
+    fn numbers_of_an_axis_differ(low in -1e3..1e3_f64, power in -9.0..6.0_f64, count in 2.0..9.0_f64) {
+        let high = low + 10f64.powf(power);
+        let (values, step) = spaced(low, high, count);
+        prop_assert!(values.len() <= count as usize + 1, "{values:?}");
+        prop_assert!(values.iter().all(|v| *v >= low - 1e-5 * step && *v <= high + 1e-5 * step));
+        let words: Vec<String> = values.iter().map(|v| at_step(*v, step)).collect();
+        for pair in words.windows(2) {
+            prop_assert!(pair[0] != pair[1], "{words:?} of {values:?} by {step}");
+        }
+    }
+}
+
+/// Read by a parser of XML: every curve that is on, its title and its numbers stand there, and nothing that is off.
+#[test]
+fn a_drawing_holds_what_the_plot_shows() {
+    let mut session = Session::open(Scenario::builtin("case-1").expect("built in")).expect("it starts");
+    session.seek(1.0);
+    let table = signals(&session.scenario().machine);
+    let mut choice = Choice::default();
+    choice.change(Change::Show("Torque".into(), "torque/2".into(), false));
+    choice.change(Change::Plot("transmission/12".into()));
+    let plots = choice.plots(session.scenario(), &table, false);
+    let mut samples = Samples::default();
+    let wanted: Vec<&Signal> = plots.iter().flat_map(|plot| plot.curves.iter().map(|c| c.signal)).collect();
+    samples.follow(session.made(), session.frames(), &wanted);
+    let p = palette(Theme::Light);
+    let look = Look { palette: &p, peaks: &session.frame().peaks, now: session.frame(), mark: None, hover: None };
+    for plot in [&plots[0], plots.last().expect("one's own")] {
+        let drawn = Drawn::of(plot, &samples, &[], [0.0, 1.0], 600, true);
+        let figure = Figure::of(plot, &drawn, [720.0, 320.0], &look);
+        let text = svg(&figure);
+        let opened = text.matches("<text").count();
+        assert_eq!(opened, text.matches("</text>").count());
+        assert_eq!(text.matches("<tspan").count(), text.matches("</tspan>").count());
+        assert!(text.contains(&plot.title.replace('&', "&amp;")) && text.ends_with("</svg>\n"), "{text}");
+        assert!(!text.contains("NaN") && !text.contains("inf"));
+        let curves =
+            figure.items.iter().filter(|i| matches!(i, Item::Line { points, .. } if points.len() > 100)).count();
+        assert_eq!(curves, plot.shown().count());
+        for curve in &plot.curves {
+            assert_eq!(text.contains(&curve.signal.symbol), curve.on, "{}", curve.signal.symbol);
+        }
+        // Every curve stays within its axes, which hold the greatest value of all samples.
+        let [left, top, right, bottom] = figure.axes.sides;
+        for item in &figure.items {
+            if let Item::Line { points, .. } = item {
+                assert!(
+                    points
+                        .iter()
+                        .all(|[x, y]| *x >= left - 0.1 && *x <= right + 0.1 && *y >= top && *y <= bottom + 4.0)
+                );
+            }
+        }
+        for (curve, statistics) in plot.curves.iter().zip(&drawn.statistics) {
+            let values: Vec<f64> = session.frames().iter().map(|f| curve.signal.value(f)).collect();
+            let mean = values.iter().sum::<f64>() / values.len() as f64;
+            let s = statistics.expect("numbers");
+            assert!((s.mean - mean).abs() < 1e-12 * s.rms.max(1e-300), "{} {mean}", s.mean);
+        }
+    }
+}
