@@ -127,6 +127,8 @@ pub const ACTIONS: &[Action] = actions![
     Run, "Ten steps back", [on(SHIFT, Key::ArrowLeft)], "keyboard", |_, _| Some(Command::Step(-10));
     Run, "To the start", [on(PLAIN, Key::Home)], "top bar", |_, _| Some(Command::Seek(0.0));
     Run, "To the newest instant", [on(PLAIN, Key::End)], "keyboard", |s, _| Some(Command::Seek(s.length()));
+    Run, "Play over and over, what plots show of it if a range was chosen", [on(PLAIN, Key::O)], "top bar, loop",
+        |_, v| Some(Command::Loop(!v.loops));
     Run, "Twice as slow", [on(PLAIN, Key::Comma)], "top bar, speed", |_, v| slower(v);
     Run, "Twice as fast", [on(PLAIN, Key::Period)], "top bar, speed", |_, v| faster(v);
 

@@ -22,6 +22,8 @@ pub enum Command {
     Step(i64),
     /// Play faster or slower: simulated seconds a second.
     Speed(f64),
+    /// Play over and over, or once.
+    Loop(bool),
     /// Replace everything by another scenario.
     Open(Box<Scenario>),
     /// Open a saved session or scenario.
@@ -126,6 +128,7 @@ impl Command {
             | Self::Case(_)
             | Self::BackToPath => true,
             Self::Speed(_)
+            | Self::Loop(_)
             | Self::View(_)
             | Self::Dexterity(_)
             | Self::Fit

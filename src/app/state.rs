@@ -244,6 +244,7 @@ impl AppState {
             self.session.seek(0.0);
             self.session.play();
         }
+        self.start_over();
         // While the session is being changed, time stands: what is made has to fit what is shown.
         if !self.session.is_moving() || self.background.is_changing() {
             self.owed = 0.0;
@@ -256,6 +257,23 @@ impl AppState {
         self.session.tick(steps.min(MOST_STEPS) as u64);
         self.adjust();
         self.find();
+    }
+
+    /// Where time goes back to while the run is played over and over: to the start, or to the beginning of the range that
+    /// was chosen in the plots.
+    fn start_over(&mut self) {
+        if !self.loops() || self.background.is_changing() {
+            return;
+        }
+        let [from, to] = self.view_state.charts.range.unwrap_or([0.0, f64::INFINITY]);
+        let now = self.session.frame().time;
+        if now > from && (now >= to || !self.session.is_moving()) {
+            self.session.seek(from);
+        }
+    }
+
+    fn loops(&self) -> bool {
+        self.view_state.loops && self.session.is_playing() && self.view_state.grabbed.is_none()
     }
 
     /// One pass of the user interface; commands are carried out at its end.
@@ -314,7 +332,7 @@ impl AppState {
         if self.intro.as_ref().is_some_and(Intro::is_over) {
             (self.intro, self.hints) = (None, false);
         }
-        if self.session.is_moving() && !self.background.is_changing() {
+        if (self.session.is_moving() || self.loops()) && !self.background.is_changing() {
             ui.ctx().request_repaint();
         } else if self.background.is_busy() || self.intro.as_ref().is_some_and(Intro::is_resting) {
             ui.ctx().request_repaint_after_secs(SHOWN_AGAIN);
@@ -376,6 +394,7 @@ impl AppState {
             Command::Seek(time) => self.change(Change::Seek(time)),
             Command::Step(steps) => self.session.step_by(steps),
             Command::Speed(speed) => self.view_state.speed = speed,
+            Command::Loop(loops) => self.view_state.loops = loops,
             Command::Open(scenario) => {
                 self.open(Source::Scenario(scenario), Opening { plays: true, closes: false, news: None, file: None });
             }

@@ -146,6 +146,12 @@ fn timeline(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
         false => format!("{time:.3} s"),
     };
     ui.label(RichText::new(text).font(plain(12.5)).color(colour(p.dim)));
+    let tone = if view_state.loops { p.amber } else { p.dim };
+    let words = RichText::new("loop").font(plain(12.5)).color(colour(tone));
+    let tip = "Play over and over, what plots show of it if a range was chosen there (O)";
+    if ui.add(egui::Button::selectable(view_state.loops, words).frame(false)).on_hover_text(tip).clicked() {
+        commands.push(Command::Loop(!view_state.loops));
+    }
     ui.spacing_mut().slider_width = (ui.available_width() - 16.0).max(60.0);
     ui.spacing_mut().interact_size.y = 15.0;
     let slider = egui::Slider::new(&mut time, 0.0..=length).show_value(false).step_by(session.scenario().step);

@@ -76,6 +76,8 @@ pub struct ViewState {
     pub dexterity: Option<Measure>,
     /// Simulated seconds a second.
     pub speed: f64,
+    /// The run is played over and over.
+    pub loops: bool,
     /// What the pointer is over.
     pub hot: Option<Handle>,
     /// What is being dragged.
@@ -135,6 +137,7 @@ impl ViewState {
             cameras: ViewKind::ALL.map(|kind| views.camera(kind)),
             dexterity: None,
             speed: 1.0,
+            loops: false,
             hot: None,
             grabbed: None,
             held: None,

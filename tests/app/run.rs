@@ -3,6 +3,8 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, pos2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use stillbase::app::Command;
+use stillbase::picture::charts;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::Edit;
 
@@ -15,6 +17,7 @@ pub const TESTS: &[Test] = tests![
     keys_play_step_and_take_back,
     nothing_is_repainted_at_rest,
     case_1_in_motion_looks_as_it_should,
+    a_run_is_played_over_and_over,
     b_leaves_the_task_as_it_is,
 ];
 
@@ -151,4 +154,27 @@ fn b_leaves_the_task_as_it_is() {
     assert!((session(&h).b_aim() - 2.4 - period).abs() < 1e-9);
     let value = h.get_by_role_and_label(Role::Slider, "b slider").accesskit_node().numeric_value();
     assert!(value.is_some_and(|b| (b - 2.4).abs() < 1e-9), "{value:?}");
+}
+
+fn a_run_is_played_over_and_over() {
+    let mut h = window("case-3", Theme::Dark);
+    h.get_by_label("loop").click();
+    h.get_by_label("Play").click();
+    h.run_steps(70);
+    let time = session(&h).frame().time;
+    assert!(session(&h).is_playing() && time > 0.1 && time < 0.6, "after 1.4 s it is under way again: {time}");
+    // A range of the plots is played alone.
+    h.state_mut().app_state_mut().carry_out(Command::Charts(charts::choice::Change::Range(Some([0.4, 0.6]))));
+    let mut seen = [f64::INFINITY, 0.0];
+    h.run_steps(30);
+    for _ in 0..40 {
+        h.step();
+        let time = session(&h).frame().time;
+        seen = [seen[0].min(time), seen[1].max(time)];
+    }
+    assert!(seen[0] >= 0.4 - 1e-9 && seen[1] <= 0.62 + 1e-9 && seen[1] > 0.58, "{seen:?}");
+    h.key_press(Key::O);
+    h.run_steps(2);
+    h.run_steps(80);
+    assert!(session(&h).frame().time > 0.99, "once more to the end");
 }
