@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::mechanics::machine::{Inertia, Machine};
+use crate::mechanics::machine::{Inertia, Machine, RelativeAngle};
 use crate::mechanics::planar::Vector;
 use crate::planning::reactionless::{
     AngleDefinition, AngleLimit, BSet, Boundary, Decimal, NoReach, NotAPlaneMap, PlaneMap, PlanePoint, Poses, metres,
@@ -53,6 +53,12 @@ pub enum PlaneError {
         /// Its relative joint angles.
         angles: usize,
     },
+    /// An angle that turns freely.
+    #[error(
+        "the angle {0} has no limits: the reactionless workspaces of three drives want some of both angles, such as \
+         limits.{0}=0,3.1416"
+    )]
+    Unlimited(String),
     /// The lengths, λ or limits give no plane coordinates.
     #[error(transparent)]
     Map(#[from] NotAPlaneMap),
@@ -435,12 +441,14 @@ pub fn plane_map(machine: &Machine) -> Result<PlaneMap, PlaneError> {
     if machine.drives() != 3 {
         return Err(shape());
     }
+    let bounded = |a: &RelativeAngle| a.limits.start().is_finite() && a.limits.end().is_finite();
+    if let Some(free) = [first, second].into_iter().find(|a| !bounded(a)) {
+        return Err(PlaneError::Unlimited(free.name.clone()));
+    }
     let tip = machine.end_effector();
     let lambda = Inertia::of(machine).lambda();
-    let angle =
-        |a: &crate::mechanics::machine::RelativeAngle| AngleDefinition { to: a.to, from: a.from, offset: a.offset };
-    let limit =
-        |a: &crate::mechanics::machine::RelativeAngle| AngleLimit { min: *a.limits.start(), max: *a.limits.end() };
+    let angle = |a: &RelativeAngle| AngleDefinition { to: a.to, from: a.from, offset: a.offset };
+    let limit = |a: &RelativeAngle| AngleLimit { min: *a.limits.start(), max: *a.limits.end() };
     Ok(PlaneMap::new(
         [tip[0], tip[1], tip[2]],
         [lambda[0], lambda[1], lambda[2]],

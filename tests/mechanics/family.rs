@@ -225,8 +225,8 @@ fn wrong_motors_are_named() {
         ("on = \"1\"", "on = \"2\"", "sits on itself (2 on 2)"),
         ("on = \"1\"", "on = \"7\"", "names the drive \"7\", which does not exist"),
         ("ratio = -30.0", "ratio = 0", "want a gear ratio other than 0"),
-        ("ratio = -30.0", "ratio = 1e9", "drive[2].rotor.ratio"),
-        ("inertia = 8.0e-5", "inertia = -1.0", "drive[2].rotor.inertia"),
+        ("ratio = -30.0", "ratio = 1e9", "drive.2.rotor.ratio"),
+        ("inertia = 8.0e-5", "inertia = -1.0", "drive.2.rotor.inertia"),
         ("max = -0.2", "", "angle \"a1\" has only one limit"),
         ("[end_effector]", "[[end_effector]]", "1 end effectors: want one"),
     ] {

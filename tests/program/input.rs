@@ -102,11 +102,20 @@ fn what_is_shown_as_a_default_is_taken() {
         let own = match path {
             _ if name("plant.length") => path.replace('*', "l1"),
             _ if name("plant.link") || name("drive") => path.replace('*', "1"),
+            _ if name("limits") => path.replace('*', "a1"),
             _ => path.to_owned(),
         };
         let pair = format!("{own}=none");
-        prints(&["simulate", case, "--every", "1000", "--set", &pair]);
-        if name("drive") {
+        if name("limits") {
+            fails(
+                &["simulate", case, "--set", &pair],
+                1,
+                &["the angle a1 has no limits", "such as limits.a1=0,3.1416"],
+            );
+        } else {
+            prints(&["simulate", case, "--every", "1000", "--set", &pair]);
+        }
+        if name("drive") || name("limits") {
             prints(&["check", "nine-link", "--set", &pair]);
         }
     }

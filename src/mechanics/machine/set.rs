@@ -165,7 +165,8 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &Value) -> Result<(), Machin
             let known = spec.angles.iter().map(|a| a.name.as_str()).collect();
             let missing = nobody("angle", name, known);
             let angle = spec.angles.iter_mut().find(|a| a.name == name).ok_or(missing)?;
-            [angle.min, angle.max] = if is_default(value) { [None; 2] } else { two()?.map(Some) };
+            [angle.min, angle.max] =
+                if is_default(value) || value.as_str() == Some(Key::NONE) { [None; 2] } else { two()?.map(Some) };
         }
         ["drive", name, "rotor", field] => {
             let known = spec.drives.iter().map(|d| d.name.as_str()).collect();
