@@ -186,7 +186,7 @@ pub fn show(
                     (None, _) if session.is_led() => {
                         ("led by hand  ·  B goes back to the path  ·  F1 keys".into(), p.dim)
                     }
-                    (None, _) if view_state.view.shows_machine() => {
+                    (None, _) if view_state.view.shows_machine() && session.run().planes().is_some() => {
                         ("drag the target, a point or the b ring  ·  Space plays  ·  F1 keys".into(), p.dim)
                     }
                     (None, _) => ("Space plays  ·  F1 keys".into(), p.dim),

@@ -69,7 +69,7 @@ pub fn show(
             exaggeration: view_state.base_exaggeration(),
             push: force(session),
             pin_forces: view_state.pins,
-            invites: true,
+            invites: session.run().planes().is_some(),
             compares: both.is_none(),
             scale: None,
         };
