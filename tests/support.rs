@@ -2,8 +2,11 @@
 
 use proptest::prelude::*;
 use serde_json::Value;
-use stillbase::mechanics::machine::{Machine, PlaceOnLink, builtin, parse};
+use stillbase::mechanics::kinematics::end_effector;
+use stillbase::mechanics::machine::{Chain, Machine, PlaceOnLink, builtin, parse};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
+use stillbase::planning::curves::path::{PathError, minimum_norm_path};
+use stillbase::planning::curves::{CurvePoint, PathTable};
 use stillbase::planning::reactionless::{AngleDefinition, AngleLimit, PlaneMap};
 
 use crate::mechanics::nine_body::NineBody;
@@ -20,6 +23,16 @@ pub fn planning() -> Value {
 
 pub fn family() -> Value {
     serde_json::from_str(include_str!("reference/family.json")).expect("valid JSON")
+}
+
+/// The straight line of the end effector from where a pose has it, with minimum-norm rates (case 1).
+pub fn tip_line(tip: &Chain, start: DriveAngles, to: Vector) -> Result<PathTable, PathError> {
+    let from = end_effector(tip, &start.units());
+    minimum_norm_path(tip, start, |s| CurvePoint {
+        p: from + s * (to - from),
+        first: to - from,
+        second: Vector::default(),
+    })
 }
 
 /// A machine of the reference.

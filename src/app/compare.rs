@@ -45,9 +45,9 @@ fn buttons(ui: &mut Ui, comparison: &Comparison, commands: &mut Vec<Command>) {
         commands.push(Command::Comparison(ComparisonCommand::Keep));
     }
     let add = egui::ComboBox::from_id_salt("add run").selected_text("Add…").width(84.0).show_ui(ui, |ui| {
-        for scenario in Scenario::builtin_names().filter_map(Scenario::builtin) {
+        for scenario in Scenario::builtins() {
             if ui.selectable_label(false, &scenario.title).clicked() {
-                commands.push(Command::Comparison(ComparisonCommand::Add(Box::new(scenario))));
+                commands.push(Command::Comparison(ComparisonCommand::Add(Box::new(scenario.clone()))));
             }
         }
     });

@@ -42,8 +42,6 @@ pub(super) struct Balance {
 #[derive(Default)]
 pub(super) struct Facts {
     of: Option<Scenario>,
-    /// The built-in scenario of the same name.
-    builtin: Option<(String, Option<Scenario>)>,
     /// Whether the machine differs from the built-in one of its name.
     pub machine_differs: bool,
     /// Whether the work differs from that of the built-in scenario of its name.
@@ -82,12 +80,7 @@ impl Facts {
         }
         let (machine, inertia) = (&scenario.machine, Inertia::of(&scenario.machine));
         self.machine_differs = builtins().iter().any(|m| m.name() == machine.name() && m != machine);
-        let builtin = match self.builtin.take() {
-            Some((name, builtin)) if name == scenario.name => builtin,
-            _ => Scenario::builtin(&scenario.name),
-        };
-        self.work_differs = builtin.as_ref().is_some_and(|builtin| !same_work(builtin, scenario));
-        self.builtin = Some((scenario.name.clone(), builtin));
+        self.work_differs = Scenario::builtin(&scenario.name).is_some_and(|builtin| !same_work(&builtin, scenario));
         self.balance = Balance {
             force: (inertia.force_residual(), inertia.is_force_balanced()),
             coupling: (inertia.invariance_residual(), inertia.is_invariant()),

@@ -4,6 +4,7 @@ use egui::{Align2, Area, Frame, Id, Key, Modifiers, Order, RichText, ScrollArea,
 
 use super::actions::{ACTIONS, shown};
 use super::theme::{bold, colour, plain};
+use super::top::with_machine;
 use super::widgets::name;
 use super::{Command, ViewState, search};
 use crate::mechanics::machine;
@@ -12,44 +13,45 @@ use crate::session::Session;
 use crate::session::scenario::Scenario;
 
 /// A line of the list.
-struct Entry {
+struct Entry<'a> {
     title: String,
-    place: String,
+    place: &'static str,
     keys: String,
-    command: Command,
+    /// Made for the line that is carried out alone.
+    command: Box<dyn FnOnce() -> Command + 'a>,
 }
 
 /// The most lines that are kept.
 const MOST: usize = 60;
 
 /// What can be done now, in the order of the table.
-fn entries(session: &Session, view_state: &ViewState) -> Vec<Entry> {
+fn entries<'a>(session: &'a Session, view_state: &ViewState) -> Vec<Entry<'a>> {
     let actions = ACTIONS.iter().filter_map(|action| {
         let command = (action.command)(session, view_state)?;
         let keys = action.keys.first().map(shown).unwrap_or_default();
-        Some(Entry { title: action.name.into(), place: action.place.into(), keys, command })
+        Some(Entry { title: action.name.into(), place: action.place, keys, command: Box::new(|| command) })
     });
-    let scenarios = Scenario::builtin_names().filter_map(Scenario::builtin).map(|scenario| Entry {
-        title: format!("Scenario: {}", scenario.title),
-        place: "top bar, scenario".into(),
+    let open = |title: String, place, scenario: Box<dyn FnOnce() -> Scenario + 'a>| Entry {
+        title,
+        place,
         keys: String::new(),
-        command: Command::Open(Box::new(scenario)),
+        command: Box::new(|| Command::Open(Box::new(scenario()))),
+    };
+    let scenarios = Scenario::builtins().map(|scenario| {
+        open(format!("Scenario: {}", scenario.title), "top bar, scenario", Box::new(|| scenario.clone()))
     });
-    let present = session.scenario();
-    let machines = machine::builtins().iter().filter(|machine| **machine != present.machine).map(|machine| Entry {
-        title: format!("Machine: {}", machine.name()),
-        place: "top bar, machine".into(),
-        keys: String::new(),
-        command: Command::Open(Box::new(Scenario { machine: machine.clone(), edits: Vec::new(), ..present.clone() })),
+    let present = &session.scenario().machine;
+    let machines = machine::builtins().iter().filter(move |machine| *machine != present).map(|machine| {
+        open(format!("Machine: {}", machine.name()), "top bar, machine", Box::new(|| with_machine(session, machine)))
     });
     actions.chain(scenarios).chain(machines).collect()
 }
 
 /// Those that answer what was typed, best first.
-fn found(mut entries: Vec<Entry>, sought: &str) -> Vec<Entry> {
+fn found<'a>(entries: Vec<Entry<'a>>, sought: &str) -> Vec<Entry<'a>> {
     let place = |entry: &Entry| search::score(sought, &format!("{} {}", entry.place, entry.keys)).map(|s| s / 4);
-    let mut scored: Vec<(i32, Entry)> = entries
-        .drain(..)
+    let mut scored: Vec<(i32, Entry<'a>)> = entries
+        .into_iter()
         .filter_map(|entry| Some((search::score(sought, &entry.title).or_else(|| place(&entry))?, entry)))
         .collect();
     // Stable: among equals the order of the table stays.
@@ -106,13 +108,13 @@ pub fn show(ctx: &egui::Context, session: &Session, view_state: &mut ViewState, 
     });
     let elsewhere = shown.response.clicked_elsewhere();
     match picked.and_then(|i| list.into_iter().nth(i)) {
-        Some(entry) => commands.extend([Command::Find(false), entry.command, Command::EndGesture]),
+        Some(entry) => commands.extend([Command::Find(false), (entry.command)(), Command::EndGesture]),
         None if elsewhere => commands.push(Command::Find(false)),
         None => view_state.finder = Some(finder),
     }
 }
 
-fn line(ui: &mut Ui, p: &Palette, entry: &Entry, chosen: bool) -> egui::Response {
+fn line(ui: &mut Ui, p: &Palette, entry: &Entry<'_>, chosen: bool) -> egui::Response {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 26.0), egui::Sense::click());
     if chosen || response.hovered() {
         ui.painter().rect_filled(rect, 6.0, colour(p.line));
@@ -123,7 +125,7 @@ fn line(ui: &mut Ui, p: &Palette, entry: &Entry, chosen: bool) -> egui::Response
         ui.painter().text(egui::pos2(right, middle), Align2::RIGHT_CENTER, text, font, colour(ink)).left()
     };
     let left = write(ui, rect.right() - 8.0, &entry.keys, bold(12.0), p.ink);
-    let left = write(ui, left - 10.0, &entry.place, plain(11.5), p.dim);
+    let left = write(ui, left - 10.0, entry.place, plain(11.5), p.dim);
     let title = RichText::new(&entry.title).font(plain(13.0)).color(colour(p.ink));
     let room = left - rect.left() - 20.0;
     let title =

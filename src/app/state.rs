@@ -240,13 +240,16 @@ impl AppState {
 
     /// Lets wall time pass, s.
     pub fn pass(&mut self, wall: f64) {
-        if self.intro.as_mut().is_some_and(|intro| intro.rests(&self.session, wall)) {
-            self.session.seek(0.0);
+        // While the session is being changed, time stands: what is made has to fit what is shown.
+        if self.background.is_changing() {
+            self.owed = 0.0;
+            return;
+        }
+        if let Some(from) = self.starts_over(wall) {
+            self.session.seek(from);
             self.session.play();
         }
-        self.start_over();
-        // While the session is being changed, time stands: what is made has to fit what is shown.
-        if !self.session.is_moving() || self.background.is_changing() {
+        if !self.session.is_moving() {
             self.owed = 0.0;
             return;
         }
@@ -259,17 +262,15 @@ impl AppState {
         self.find();
     }
 
-    /// Where time goes back to while the run is played over and over: to the start, or to the beginning of the range that
-    /// was chosen in the plots.
-    fn start_over(&mut self) {
-        if !self.loops() || self.background.is_changing() {
-            return;
+    /// Where time goes back to, if it does, s: to the start in the first minute; while the run is played over and over to
+    /// the start or to the beginning of the range that was chosen in the plots. After so much more wall time, s.
+    fn starts_over(&mut self, wall: f64) -> Option<f64> {
+        if self.intro.as_mut().is_some_and(|intro| intro.rests(&self.session, wall)) {
+            return Some(0.0);
         }
         let [from, to] = self.view_state.charts.range.unwrap_or([0.0, f64::INFINITY]);
         let now = self.session.frame().time;
-        if now > from && (now >= to || !self.session.is_moving()) {
-            self.session.seek(from);
-        }
+        (self.loops() && now > from && (now >= to || !self.session.is_moving())).then_some(from)
     }
 
     fn loops(&self) -> bool {

@@ -10,7 +10,7 @@ use super::actions::SPEEDS;
 use super::facts::Facts;
 use super::theme::{bold, colour, plain};
 use super::{Command, FileDialog, PlotFile, Purpose, ViewState};
-use crate::mechanics::machine;
+use crate::mechanics::machine::{self, Machine};
 use crate::picture::scene::palette::Theme;
 use crate::session::Session;
 use crate::session::scenario::Scenario;
@@ -55,15 +55,18 @@ fn machines(ui: &mut Ui, session: &Session, changed: bool, commands: &mut Vec<Co
         for machine in machine::builtins() {
             let chosen = machine == present;
             if ui.selectable_label(chosen, machine.name()).on_hover_text(&machine.spec().summary).clicked() && !chosen {
-                // Everything that was set stays; what was done to the other machine does not. Machines of another kind
-                // bring a task of their own.
-                let alike = || Scenario { machine: machine.clone(), edits: Vec::new(), ..session.scenario().clone() };
-                let scenario = Scenario::builtin(machine.name()).unwrap_or_else(alike);
-                commands.push(Command::Open(Box::new(scenario)));
+                commands.push(Command::Open(Box::new(with_machine(session, machine))));
             }
         }
     });
     name(&response.response.on_hover_text(tip), "Machine");
+}
+
+/// What is opened when a machine is chosen. Everything that was set stays; what was done to the other machine does not.
+/// Machines of another kind bring a task of their own.
+pub(super) fn with_machine(session: &Session, machine: &Machine) -> Scenario {
+    let alike = || Scenario { machine: machine.clone(), edits: Vec::new(), ..session.scenario().clone() };
+    Scenario::builtin(machine.name()).unwrap_or_else(alike)
 }
 
 fn scenarios(ui: &mut Ui, session: &Session, recent: &[PathBuf], changed: bool, commands: &mut Vec<Command>) {
@@ -73,7 +76,7 @@ fn scenarios(ui: &mut Ui, session: &Session, recent: &[PathBuf], changed: bool, 
     let combo = ComboBox::from_id_salt("scenario").selected_text(shown).width(196.0).truncate();
     let response = combo.show_ui(ui, |ui| {
         let cases = Scenario::cases().count();
-        for (i, builtin) in Scenario::builtin_names().filter_map(Scenario::builtin).enumerate() {
+        for (i, builtin) in Scenario::builtins().enumerate() {
             let chosen = builtin.name == current.name;
             let label =
                 if i < cases { format!("{}   {}", i + 1, builtin.title) } else { format!("     {}", builtin.title) };
@@ -81,7 +84,7 @@ fn scenarios(ui: &mut Ui, session: &Session, recent: &[PathBuf], changed: bool, 
                 commands.push(match Scenario::cases().find(|name| *name == builtin.name) {
                     Some(name) => Command::Case(name),
                     // These bring the machine that they are about.
-                    None => Command::Open(Box::new(builtin)),
+                    None => Command::Open(Box::new(builtin.clone())),
                 });
             }
         }

@@ -5,22 +5,17 @@ use std::path::PathBuf;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::write_new;
+use super::{text, write_new};
 
 /// Where it stands: `stillbase/preferences.toml` in the folder for settings, such as `~/.config`.
 pub fn file() -> Option<PathBuf> {
     Some(directories::ProjectDirs::from("", "", "stillbase")?.config_dir().join("preferences.toml"))
 }
 
-/// The largest file that is read.
-const MOST: u64 = 1 << 20;
-
 /// What was remembered; nothing if there is no file, or one that is not understood.
 pub fn load<T: DeserializeOwned + Default>() -> T {
-    let text = file().filter(|file| file.metadata().is_ok_and(|about| about.is_file() && about.len() <= MOST));
-    text.and_then(|file| std::fs::read_to_string(file).ok())
-        .and_then(|text| toml::from_str(&text).ok())
-        .unwrap_or_default()
+    let text = file().and_then(|file| text::read(&file).ok());
+    text.and_then(|text| toml::from_str(&text).ok()).unwrap_or_default()
 }
 
 /// Remembers; what cannot be written is forgotten, since nothing of a session depends on it.

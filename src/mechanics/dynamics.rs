@@ -20,35 +20,25 @@ use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Units, Vector, Wrench, cros
 /// Calls a function with the number of drives as a constant, so that its loops unroll.
 macro_rules! by_drives {
     ($n:expr, $f:ident($($arg:expr),*)) => {
-        match $n {
-            1 => $f::<1>($($arg),*),
-            2 => $f::<2>($($arg),*),
-            3 => $f::<3>($($arg),*),
-            4 => $f::<4>($($arg),*),
-            5 => $f::<5>($($arg),*),
-            6 => $f::<6>($($arg),*),
-            7 => $f::<7>($($arg),*),
-            _ => $f::<8>($($arg),*),
+        by_drives!(@ $n, $f, [], ($($arg),*))
+    };
+    // The same with whether the base moves.
+    ($n:expr, $moves:expr, $f:ident($($arg:expr),*)) => {
+        match $moves {
+            false => by_drives!(@ $n, $f, [false], ($($arg),*)),
+            true => by_drives!(@ $n, $f, [true], ($($arg),*)),
         }
     };
-    ($n:expr, $moves:expr, $f:ident($($arg:expr),*)) => {
-        match ($n, $moves) {
-            (1, false) => $f::<1, false>($($arg),*),
-            (2, false) => $f::<2, false>($($arg),*),
-            (3, false) => $f::<3, false>($($arg),*),
-            (4, false) => $f::<4, false>($($arg),*),
-            (5, false) => $f::<5, false>($($arg),*),
-            (6, false) => $f::<6, false>($($arg),*),
-            (7, false) => $f::<7, false>($($arg),*),
-            (_, false) => $f::<8, false>($($arg),*),
-            (1, true) => $f::<1, true>($($arg),*),
-            (2, true) => $f::<2, true>($($arg),*),
-            (3, true) => $f::<3, true>($($arg),*),
-            (4, true) => $f::<4, true>($($arg),*),
-            (5, true) => $f::<5, true>($($arg),*),
-            (6, true) => $f::<6, true>($($arg),*),
-            (7, true) => $f::<7, true>($($arg),*),
-            (_, true) => $f::<8, true>($($arg),*),
+    (@ $n:expr, $f:ident, [$($moves:literal)?], $args:tt) => {
+        match $n {
+            1 => $f::<1 $(, $moves)?> $args,
+            2 => $f::<2 $(, $moves)?> $args,
+            3 => $f::<3 $(, $moves)?> $args,
+            4 => $f::<4 $(, $moves)?> $args,
+            5 => $f::<5 $(, $moves)?> $args,
+            6 => $f::<6 $(, $moves)?> $args,
+            7 => $f::<7 $(, $moves)?> $args,
+            _ => $f::<8 $(, $moves)?> $args,
         }
     };
 }
@@ -348,36 +338,6 @@ fn inverse_with_wrench_of<const N: usize>(
     let rate = angular_rate(inertia, &inertial, &v, qdd);
     let wrench = wrench_with(inertia, e, qd, qdd, around, rate);
     (PerDrive::from(std::array::from_fn::<_, N, _>(|k| inertial[k] + v[k] + holding[k])), wrench)
-}
-
-/// Accelerations for given motor torques, and the base wrench of the motion they make, in one evaluation.
-#[inline]
-pub fn forward_with_wrench(
-    inertia: &Inertia,
-    e: &Units,
-    qd: &PerDrive,
-    torque: &PerDrive,
-    around: &Surroundings,
-) -> (PerDrive, BaseWrench) {
-    by_drives!(inertia.drives, forward_with_wrench_of(inertia, e, qd, torque, around))
-}
-
-#[inline]
-fn forward_with_wrench_of<const N: usize>(
-    inertia: &Inertia,
-    e: &Units,
-    qd: &PerDrive,
-    torque: &PerDrive,
-    around: &Surroundings,
-) -> (PerDrive, BaseWrench) {
-    let (e, qd, torque) = (first::<N, _>(e), first(qd.padded()), first::<N, _>(torque.padded()));
-    let (h, v) = assemble(inertia, e, qd);
-    let holding = hold(inertia, e, around);
-    let qdd = solve(&h, std::array::from_fn(|k| torque[k] - v[k] - holding[k]));
-    // From the accelerations and not from the torques, so that the wrench is that of the motion.
-    let inertial = times(&h, &qdd);
-    let rate = angular_rate(inertia, &inertial, &v, &qdd);
-    (qdd.into(), wrench_with(inertia, e, qd, &qdd, around, rate))
 }
 
 /// Σ_j m_j |a_cj|, N: what the links would transmit if nothing cancelled. `moments` holds m_j a_jk, kg m, all drives

@@ -13,7 +13,6 @@ pub struct Canvas {
     egui: egui_wgpu::Renderer,
     ctx: egui::Context,
     texture: wgpu::Texture,
-    view: wgpu::TextureView,
     screen: egui_wgpu::ScreenDescriptor,
     fonts: bool,
 }
@@ -31,19 +30,9 @@ impl Canvas {
         egui.callback_resources.insert(paint::Renderers::new(device, format));
         let most = device.limits().max_texture_dimension_2d;
         let (width, height) = (width.clamp(1, most), height.clamp(1, most));
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("canvas"),
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
-        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let texture = surface(device, [width, height], format);
         let screen = egui_wgpu::ScreenDescriptor { size_in_pixels: [width, height], pixels_per_point: scale };
-        Ok(Self { gpu, egui, ctx: egui::Context::default(), texture, view, screen, fonts: false })
+        Ok(Self { gpu, egui, ctx: egui::Context::default(), texture, screen, fonts: false })
     }
 
     /// Draws what a function makes with egui.
@@ -95,29 +84,52 @@ impl Canvas {
             }
         }
         let shapes = self.ctx.tessellate(output.shapes, output.pixels_per_point);
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let mut buffers = self.egui.update_buffers(&device, &queue, &mut encoder, &shapes, &self.screen);
-        let mut target = encoder
-            .begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("canvas"),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &self.view,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                        store: wgpu::StoreOp::Store,
-                    },
-                })],
-                ..Default::default()
-            })
-            .forget_lifetime();
-        self.egui.render(&mut target, &shapes, &self.screen);
-        drop(target);
-        buffers.push(encoder.finish());
-        queue.submit(buffers);
+        draw_shapes(&mut self.egui, (&device, &queue), &self.texture, &shapes, &self.screen);
         for id in output.textures_delta.free.drain() {
             self.egui.free_texture(&id);
         }
     }
+}
+
+/// A texture of a size in pixels that can be drawn on and read back.
+pub fn surface(device: &wgpu::Device, [width, height]: [u32; 2], format: wgpu::TextureFormat) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("canvas"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
+    })
+}
+
+/// Draws what egui has made over a whole [`surface`].
+pub fn draw_shapes(
+    egui: &mut egui_wgpu::Renderer,
+    (device, queue): (&wgpu::Device, &wgpu::Queue),
+    texture: &wgpu::Texture,
+    shapes: &[egui::ClippedPrimitive],
+    screen: &egui_wgpu::ScreenDescriptor,
+) {
+    let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let mut buffers = egui.update_buffers(device, queue, &mut encoder, shapes, screen);
+    let mut target = encoder
+        .begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("canvas"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
+        })
+        .forget_lifetime();
+    egui.render(&mut target, shapes, screen);
+    drop(target);
+    buffers.push(encoder.finish());
+    queue.submit(buffers);
 }

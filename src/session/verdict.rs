@@ -104,11 +104,6 @@ impl Verdict {
         }
     }
 
-    /// Whether it is reactionless and there are no remarks.
-    pub fn is_clean(&self) -> bool {
-        self.reactionless && self.fault.is_none() && self.remarks().is_empty()
-    }
-
     /// Whether the base was left alone, by the arm or by a wheel.
     pub fn is_good(&self) -> bool {
         self.fault.is_none() && (self.reactionless || self.base_feels_nothing)

@@ -55,11 +55,6 @@ impl Range {
     pub fn check(self, key: impl Into<Cow<'static, str>>, value: f64) -> Check {
         Check { key: key.into(), value, ok: self.contains(value), want: Want::Within(self) }
     }
-
-    /// The same for a key that may be absent.
-    pub fn check_some(self, key: &'static str, value: Option<f64>) -> Option<Check> {
-        value.map(|value| self.check(key, value))
-    }
 }
 
 impl fmt::Display for Range {

@@ -14,6 +14,7 @@ use crate::Test;
 pub const TESTS: &[Test] = tests![
     every_command_is_found_by_a_few_letters,
     the_list_of_commands_is_led_by_keys_alone,
+    a_machine_of_another_kind_brings_its_task,
     a_list_of_commands_types_nothing_into_the_window,
     no_key_asks_for_two_things,
     the_card_of_keys_is_searched,
@@ -69,6 +70,19 @@ fn the_list_of_commands_is_led_by_keys_alone() {
     press(&mut h, Modifiers::NONE, Key::ArrowDown);
     press(&mut h, Modifiers::NONE, Key::Enter);
     assert_eq!(h.state().app_state().view_state().view, ViewKind::Tower);
+}
+
+/// As the list of machines does it: one of another kind brings a task of its own.
+fn a_machine_of_another_kind_brings_its_task() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    press(&mut h, Modifiers::COMMAND, Key::K);
+    type_text(&mut h, "machine four");
+    press(&mut h, Modifiers::NONE, Key::Enter);
+    h.run_steps(4);
+    assert_eq!(session(&h).scenario().machine.drives(), 4);
+    assert_eq!(session(&h).scenario().name, "four-drive");
+    assert!(h.state().app_state().view_state().message.is_none());
 }
 
 fn a_list_of_commands_types_nothing_into_the_window() {

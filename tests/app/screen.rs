@@ -5,6 +5,7 @@ use std::sync::Arc;
 use egui::mutex::RwLock;
 use egui_kittest::TestRenderer;
 use egui_wgpu::{RenderState, Renderer, RendererOptions, ScreenDescriptor};
+use stillbase::picture::canvas::{draw_shapes, surface};
 use stillbase::picture::render::offscreen::Gpu;
 
 /// A GPU of its own for each window: a renderer keeps what was drawn on it.
@@ -50,40 +51,9 @@ impl TestRenderer for Screen {
         let size = ctx.content_rect().size() * ctx.pixels_per_point();
         let [width, height] = [size.x.round() as u32, size.y.round() as u32];
         let screen = ScreenDescriptor { size_in_pixels: [width, height], pixels_per_point: ctx.pixels_per_point() };
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("screen"),
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: *target_format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
-        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let texture = surface(device, [width, height], *target_format);
         let shapes = ctx.tessellate(output.shapes.clone(), ctx.pixels_per_point());
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let mut renderer = renderer.write();
-        let mut buffers = renderer.update_buffers(device, queue, &mut encoder, &shapes, &screen);
-        let mut pass = encoder
-            .begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("screen"),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &view,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                        store: wgpu::StoreOp::Store,
-                    },
-                })],
-                ..Default::default()
-            })
-            .forget_lifetime();
-        renderer.render(&mut pass, &shapes, &screen);
-        drop(pass);
-        buffers.push(encoder.finish());
-        queue.submit(buffers);
+        draw_shapes(&mut renderer.write(), (device, queue), &texture, &shapes, &screen);
         let picture = self.gpu.readback(&texture).map_err(|why| why.to_string())?;
         image::RgbaImage::from_raw(picture.width, picture.height, picture.rgba).ok_or_else(|| "no pixels".into())
     }

@@ -9,11 +9,12 @@ mod nine_body;
 use divan::{Bencher, black_box};
 use stillbase::mechanics::dynamics::{Surroundings, base_wrench, inverse_with_wrench};
 use stillbase::mechanics::joint_forces::Joints;
+use stillbase::mechanics::kinematics::end_effector;
 use stillbase::mechanics::machine::{Inertia, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::picture::scene::options::ViewOptions;
 use stillbase::picture::scene::views::{ViewKind, Views};
-use stillbase::planning::curves::path::tip_line;
+use stillbase::planning::curves::path::minimum_norm_path;
 use stillbase::planning::curves::{Curve, CurvePoint, Path, Samples};
 use stillbase::planning::following::{Rule, trace};
 use stillbase::planning::off_plane::LeastReaction;
@@ -247,7 +248,10 @@ fn folded_distance(bencher: Bencher) {
 fn tip_path() -> Path {
     let start = DriveAngles::from([1.6875182179, 3.7146223682, 2.1801769897]);
     let tip = builtin("nine-link").expect("built in").end_effector();
-    Path::Table(tip_line(tip, start, Vector::new(0.55, 0.90)).expect("regular"))
+    let from = end_effector(tip, &start.units());
+    let way = Vector::new(0.55, 0.90) - from;
+    let line = |s| CurvePoint { p: from + s * way, first: way, second: Vector::default() };
+    Path::Table(minimum_norm_path(tip, start, line).expect("regular"))
 }
 
 /// The fastest motion along a curve under limits on torque, on a grid of 1000 spaces.

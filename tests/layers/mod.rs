@@ -81,7 +81,6 @@ const EDGES: &[(&str, &[&str])] = &[
             "files/new_file.rs",
             "files/journal.rs",
             "files/preferences.rs",
-            "picture/render/offscreen.rs",
             "picture/render/shader.rs",
             "files/text.rs",
         ],

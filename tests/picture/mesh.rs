@@ -1,9 +1,14 @@
 //! Meshes are closed, oriented outwards and of the right volume.
 
 use std::collections::HashMap;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 use stillbase::picture::scene::Mesh;
-use stillbase::picture::scene::mesh::{bar, cylinder, polygon_factor, ring};
+use stillbase::picture::scene::mesh::{SEGMENTS, bar, cylinder, ring};
+
+/// Area of a regular polygon of [`SEGMENTS`] chords over that of its circle, N/(2π) sin(2π/N).
+pub fn polygon_factor() -> f64 {
+    (TAU / SEGMENTS as f64).sin() * SEGMENTS as f64 / TAU
+}
 
 fn vector(p: [f32; 3]) -> nalgebra::Vector3<f64> {
     nalgebra::Vector3::from(p.map(f64::from))

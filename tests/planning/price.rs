@@ -134,11 +134,11 @@ proptest! {
         for law in LAWS {
             let t = price.time(law, limit);
             prop_assert!((price.peak(law, t) - limit).abs() < 1e-12 * limit);
-            prop_assert!(t >= price.least_time(limit));
+            prop_assert!(t >= price.time(PoseLaw::BangBang, limit));
             prop_assert!((price.rms(law, t) / limit - law.rms() / law.peak()).abs() < 1e-12);
         }
         let want = 2.0 * (model.diagonal(0) * delta.abs() / limit).sqrt();
-        prop_assert!((price.least_time(limit) - want).abs() < 1e-12);
+        prop_assert!((price.time(PoseLaw::BangBang, limit) - want).abs() < 1e-12);
     }
 
     /// Against every pair of ends and of points in between, lifted by hand.

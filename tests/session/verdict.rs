@@ -29,6 +29,11 @@ fn shorts(verdict: &Verdict) -> Vec<String> {
     verdict.remarks().into_iter().map(|r| r.short).collect()
 }
 
+/// Reactionless, and nothing to remark.
+fn is_clean(verdict: &Verdict) -> bool {
+    verdict.reactionless && verdict.fault.is_none() && verdict.remarks().is_empty()
+}
+
 #[test]
 fn the_cases_of_the_paper_need_no_remark() {
     for name in ["case-1", "case-2", "case-3"] {
@@ -37,7 +42,7 @@ fn the_cases_of_the_paper_need_no_remark() {
         assert_eq!((verdict.arm_moment, verdict.past_wheel), (peak, None));
         assert_eq!(verdict.reactionless, name == "case-3");
         assert_eq!(verdict.answer(), if name == "case-3" { "yes" } else { "no" });
-        assert_eq!(verdict.is_clean(), name == "case-3", "{:?}", verdict.remarks());
+        assert_eq!(is_clean(&verdict), name == "case-3", "{:?}", verdict.remarks());
         assert!(verdict.sentence().starts_with(if name == "case-3" { "reactionless: " } else { "not reactionless: " }));
     }
 }
@@ -71,7 +76,7 @@ fn tilting_is_said_to_be_outside() {
     let (verdict, frames) = run(&case("case-3", &[("link.5.axial", "0.02"), ("link.9.axial", "0.04")], ""));
     let peak = frames.iter().map(|f| f.inside.tilt.total().norm()).fold(0.0, f64::max);
     assert!(peak > 0.01 && (verdict.tilt - peak).abs() < 1e-12, "{} {peak}", verdict.tilt);
-    assert!(verdict.reactionless && !verdict.is_clean());
+    assert!(verdict.reactionless && !is_clean(&verdict));
     assert_eq!(verdict.answer(), "yes, tilts its base");
     assert!(verdict.sentence().contains("heights"), "{}", verdict.sentence());
 }
@@ -81,7 +86,7 @@ fn tilting_is_said_to_be_outside() {
 fn an_arm_that_never_moves_is_not_praised() {
     let (verdict, frames) = run(&case("case-3", &[], "[plant.friction]\ncoulomb = 1e4"));
     assert!(frames.iter().all(|f| f.qd.max_abs() < 1e-12));
-    assert!(!verdict.moved && !verdict.is_clean());
+    assert!(!verdict.moved && !is_clean(&verdict));
     // Motors pull as hard as the error asks, and there is more of it than they have.
     assert_eq!(shorts(&verdict), ["never moved", "past a torque limit", "off its target"]);
     assert!(verdict.answer().starts_with("yes, never moved"), "{}", verdict.answer());
@@ -129,7 +134,7 @@ fn a_failed_audit_leaves_no_answer() {
     end.audit.energy = 1.0;
     let verdict = Verdict::of(&scenario, &end);
     assert_eq!((verdict.word(), verdict.answer().as_str()), ("untrusted", "untrusted"));
-    assert!(!verdict.is_good() && !verdict.is_clean() && verdict.sentence().contains("audit failed: energy"));
+    assert!(!verdict.is_good() && !is_clean(&verdict) && verdict.sentence().contains("audit failed: energy"));
 }
 
 /// A session on its way says what it knows and no more.

@@ -5,14 +5,14 @@ use stillbase::mechanics::kinematics::{end_effector, minimum_norm};
 use stillbase::mechanics::machine::{Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::planning::Motion;
-use stillbase::planning::curves::path::{SameTip, tip_line};
+use stillbase::planning::curves::path::SameTip;
 use stillbase::planning::curves::{Path, PathError, PathPoint};
 use stillbase::planning::timing::TimeLaw;
 use stillbase::simulation::control::Control;
 use stillbase::simulation::plant::{Base, PlantDifferences};
 use stillbase::simulation::{Guide, Setup, Simulation};
 
-use crate::support::close;
+use crate::support::{close, tip_line};
 
 /// q_A and q_B of Case 3, rad.
 const Q_A: [f64; 3] = [1.6875182179, 3.7146223682, 2.1801769897];

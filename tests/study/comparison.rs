@@ -3,7 +3,7 @@
 use stillbase::session::scenario::{Scenario, TaskKind};
 use stillbase::session::{Edit, TimedEdit};
 use stillbase::simulation::signals::signals;
-use stillbase::study::comparison::{Alternative, COLUMNS, Compared, Difference, SLOWER, alternatives};
+use stillbase::study::comparison::{Alternative, COLUMNS, Compared, Difference, SLOWER, alternatives, run_ways};
 
 fn scenario(name: &str) -> Scenario {
     Scenario::builtin(name).expect("built in")
@@ -170,7 +170,9 @@ fn two_instants_differ_by_their_signals() {
 #[test]
 fn a_comparison_follows_sorts_and_keeps() {
     use stillbase::study::comparison::Comparison;
-    let mut comparison = Comparison::of(&scenario("case-3"));
+    let mut comparison = Comparison::empty(&scenario("case-3"));
+    let ways = |scenario: &Scenario| run_ways(scenario, &mut |_| true).expect("not stopped");
+    comparison.follow_with(&scenario("case-3"), ways(&scenario("case-3")));
     assert_eq!(comparison.entries().len(), 5);
     comparison.show(1, true);
     comparison.keep(scenario("case-2")).expect("it runs");
@@ -198,9 +200,9 @@ fn a_comparison_follows_sorts_and_keeps() {
 
     // Another task: its ways are run, what was ticked stays so, what was kept stays.
     let mut other = scenario("case-3");
-    assert!(!comparison.follow(&other));
     other.task.time = 2.0;
-    assert!(comparison.follow(&other));
+    comparison.follow_with(&other, ways(&other));
+    assert_eq!(*comparison.task(), other);
     assert_eq!(comparison.entries().len(), 7);
     assert!(comparison.entries()[1].shown && comparison.entries()[5].kept);
     assert_eq!(comparison.entries()[1].outcome.as_ref().map(|r| r.summary.time), Ok(2.0));

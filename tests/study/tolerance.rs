@@ -455,7 +455,7 @@ fn a_study_is_of_one_piece() {
     use stillbase::study::tolerance::{Study, left_out};
     let mut scenario = stillbase::session::scenario::Scenario::builtin("case-3").expect("built in");
     scenario.tolerance = toml::from_str("samples = 3000\nmoment_limit = 0.01").expect("tolerances");
-    let study = Study::of(&Run::new(&scenario).expect("planned")).expect("something varies");
+    let study = Study::watched(&Run::new(&scenario).expect("planned"), &mut |_| true).expect("something varies");
     assert!((study.shares.iter().map(|s| s.moment_share).sum::<f64>() - 1.0).abs() < 1e-9);
     assert!(study.shares.is_sorted_by(|a, b| a.moment_share >= b.moment_share));
     assert!(study.moment.values.is_sorted() && study.moment_histogram.counts.iter().sum::<u64>() == 3000);

@@ -64,7 +64,7 @@ pub fn show(ui: &mut Ui, what: &Shown<'_>, prepared: &mut Prepared, commands: &m
                 ui.add_space(4.0);
             }
             hover::remember(ui, over);
-            which_b::show(ui, &p, session, view_state, height * 1.6 + BELOW, commands);
+            which_b::show(ui, &p, (session, &mut prepared.which_b), view_state, height * 1.6 + BELOW, commands);
         });
     });
     view_state.plots.made(made.response.rect.width(), USUAL)

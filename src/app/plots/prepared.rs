@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::which_b::Known;
 use crate::picture::charts::choice::{Choice, Plot};
 use crate::picture::charts::drawn::Drawn;
 use crate::picture::charts::range::Extent;
@@ -20,6 +21,8 @@ pub struct Prepared {
     drawn: Vec<Drawn>,
     /// A signal is to be sought.
     looks: bool,
+    /// Which b serves the points on display.
+    pub(super) which_b: Option<Known>,
 }
 
 /// A run that is laid over.

@@ -1,5 +1,7 @@
 //! Which b serves a target, or the points of the task.
 
+use std::sync::Arc;
+
 use egui::{RichText, Ui};
 use egui_plot::{GridMark, Line, LineStyle, Plot, PlotPoint, PlotPoints, Points, Span, VLine};
 
@@ -9,14 +11,42 @@ use crate::app::{Command, ViewState, set_b};
 use crate::mechanics::planar::Vector;
 use crate::picture::numbers::{round_up, signed};
 use crate::picture::scene::palette::{Palette, faded};
-use crate::planning::reactionless::PlanePoint;
+use crate::planning::pose_constant::Planes;
+use crate::planning::reactionless::{BSet, PlanePoint};
 use crate::session::Session;
+
+/// What is known of points on planes; found when these change, not whenever it is drawn.
+pub struct Known {
+    planes: Arc<Planes>,
+    points: Vec<Vector>,
+    /// Of each point the branches of its self-motion.
+    branches: Vec<Vec<Vec<PlanePoint>>>,
+    /// The b that serve all of them; none if one is on no plane.
+    common: Option<BSet>,
+}
+
+impl Known {
+    fn of(planes: &Arc<Planes>, points: Vec<Vector>) -> Self {
+        let map = planes.map();
+        let sets: Option<Vec<BSet>> = points.iter().map(|x| map.reach(*x).ok()).collect();
+        Self {
+            branches: points.iter().map(|x| map.self_motion(*x, 96)).collect(),
+            common: sets.map(|sets| BSet::overlap(&sets)),
+            planes: planes.clone(),
+            points,
+        }
+    }
+
+    fn is_of(&self, planes: &Arc<Planes>, points: &[Vector]) -> bool {
+        Arc::ptr_eq(&self.planes, planes) && self.points == points
+    }
+}
 
 /// Fig. 3: q_1 against b for A and B, or for the target; a click chooses b.
 pub fn show(
     ui: &mut Ui,
     p: &Palette,
-    session: &Session,
+    (session, known): (&Session, &mut Option<Known>),
     view_state: &ViewState,
     height: f32,
     commands: &mut Vec<Command>,
@@ -28,6 +58,11 @@ pub fn show(
         true => vec![("target", now.target.at)],
         false => named.iter().map(String::as_str).zip(task.points()).collect(),
     };
+    let places: Vec<Vector> = points.iter().map(|(_, x)| *x).collect();
+    let known = match known {
+        Some(found) if found.is_of(planes, &places) => found,
+        old => old.insert(Known::of(planes, places)),
+    };
     ui.horizontal(|ui| {
         ui.set_height(16.0);
         ui.label(RichText::new("Which b?").font(bold(12.5)));
@@ -35,14 +70,12 @@ pub fn show(
         ui.label(RichText::new(words).font(plain(11.5)).color(colour(p.dim)));
     });
     let map = planes.map();
-    let sets: Vec<_> = points.iter().filter_map(|(_, x)| map.reach(*x).ok()).collect();
-    let curves: Vec<_> = points.iter().map(|(name, x)| (*name, map.self_motion(*x, 96))).collect();
-    let common =
-        (sets.len() == points.len()).then(|| crate::planning::reactionless::BSet::overlap(&sets).near(now.b_reference));
+    let common = known.common.as_ref().map(|common| common.near(now.b_reference));
     let mut bounds = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
-    let lines: Vec<(&str, Vec<[f64; 2]>)> = curves
+    let lines: Vec<(&str, Vec<[f64; 2]>)> = points
         .iter()
-        .flat_map(|(name, branches)| branches.iter().map(move |branch| (*name, branch)))
+        .zip(&known.branches)
+        .flat_map(|((name, _), branches)| branches.iter().map(move |branch| (*name, branch)))
         .map(|(name, branch)| {
             // The whole turn nearest to the present b.
             let middle = branch.get(branch.len() / 2).map_or(0.0, |x| x.b);

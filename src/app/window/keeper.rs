@@ -22,6 +22,9 @@ pub struct Keeper {
 
 /// The least time between two writes.
 const EVERY: Duration = Duration::from_secs(1);
+/// How often and how long a write is waited for when the window closes.
+const LOOKS: u32 = 1000;
+const LOOK: Duration = Duration::from_millis(2);
 /// A long session is copied so many times as seldom as that takes.
 const SELDOM: u32 = 50;
 
@@ -92,12 +95,13 @@ impl Keeper {
 
     /// The window closes in order: nothing is to be offered at the next start.
     pub fn end(&mut self) {
-        // What is being written would come back after it was removed.
-        while let Some((_, job)) = self.writing.take() {
-            if let Poll::Working = job.poll() {
-                std::thread::sleep(Duration::from_millis(2));
-                self.writing = Some((0, job));
+        // What is being written would come back after it was removed. A disk that hangs is not waited for.
+        let busy = |job: &Job<bool>| matches!(job.poll(), Poll::Working);
+        for _ in 0..LOOKS {
+            if !self.writing.as_ref().is_some_and(|(_, job)| busy(job)) {
+                break;
             }
+            std::thread::sleep(LOOK);
         }
         if let Some(journal) = self.journal.take() {
             journal.end();

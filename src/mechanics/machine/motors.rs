@@ -49,6 +49,13 @@ impl Motors {
         self.in_joints
     }
 
+    /// Drives whose stators others carry, each with its carrier, carriers first.
+    #[inline(always)]
+    fn carried(&self) -> impl DoubleEndedIterator<Item = (usize, usize)> {
+        let drives = if self.in_joints { self.drives } else { 0 };
+        self.order[..drives].iter().filter_map(|&k| Some((k, self.on(k)?)))
+    }
+
     /// A x: angles, rates or accelerations of the motors from those of the drives. What lies beyond the drives stays.
     #[inline]
     #[must_use]
@@ -61,24 +68,16 @@ impl Motors {
     /// The same in place.
     #[inline(always)]
     pub(crate) fn turn(&self, x: &mut [f64]) {
-        if self.in_joints {
-            for &k in self.order[..self.drives].iter().rev() {
-                if let Some(on) = self.on(k) {
-                    x[k] -= x[on];
-                }
-            }
+        for (k, on) in self.carried().rev() {
+            x[k] -= x[on];
         }
     }
 
     /// A⁻¹ x in place: of the drives from those of the motors.
     #[inline(always)]
     pub(crate) fn drive(&self, x: &mut [f64]) {
-        if self.in_joints {
-            for &k in &self.order[..self.drives] {
-                if let Some(on) = self.on(k) {
-                    x[k] += x[on];
-                }
-            }
+        for (k, on) in self.carried() {
+            x[k] += x[on];
         }
     }
 
@@ -94,12 +93,8 @@ impl Motors {
     /// The same in place.
     #[inline(always)]
     pub(crate) fn give(&self, torque: &mut [f64]) {
-        if self.in_joints {
-            for &k in self.order[..self.drives].iter().rev() {
-                if let Some(on) = self.on(k) {
-                    torque[on] += torque[k];
-                }
-            }
+        for (k, on) in self.carried().rev() {
+            torque[on] += torque[k];
         }
     }
 
@@ -108,12 +103,8 @@ impl Motors {
     #[must_use]
     pub fn generalised(&self, torques: &PerDrive) -> PerDrive {
         let mut generalised = *torques;
-        if self.in_joints {
-            for &k in &self.order[..self.drives] {
-                if let Some(on) = self.on(k) {
-                    generalised[on] -= torques[k];
-                }
-            }
+        for (k, on) in self.carried() {
+            generalised[on] -= torques[k];
         }
         generalised
     }

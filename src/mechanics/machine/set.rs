@@ -165,8 +165,7 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &Value) -> Result<(), Machin
             let known = spec.angles.iter().map(|a| a.name.as_str()).collect();
             let missing = nobody("angle", name, known);
             let angle = spec.angles.iter_mut().find(|a| a.name == name).ok_or(missing)?;
-            [angle.min, angle.max] =
-                if is_default(value) || value.as_str() == Some(Key::NONE) { [None; 2] } else { two()?.map(Some) };
+            [angle.min, angle.max] = if is_none(value) { [None; 2] } else { two()?.map(Some) };
         }
         ["drive", name, "rotor", field] => {
             let known = spec.drives.iter().map(|d| d.name.as_str()).collect();
@@ -189,7 +188,7 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &Value) -> Result<(), Machin
                 "acceleration_limit" => &mut drive.acceleration_limit,
                 "jerk_limit" => &mut drive.jerk_limit,
                 _ => return Err(unknown()),
-            } = if is_default(value) || value.as_str() == Some(Key::NONE) { None } else { Some(one()?) };
+            } = if is_none(value) { None } else { Some(one()?) };
         }
         _ => return Err(unknown()),
     }
@@ -226,6 +225,11 @@ fn set_link_length(spec: &mut MachineSpec, j: usize, metres: f64) -> Result<(), 
 
 fn is_default(value: &Value) -> bool {
     value.as_str() == Some(DEFAULT)
+}
+
+/// Whether a value takes out what stands by default for nothing.
+fn is_none(value: &Value) -> bool {
+    is_default(value) || value.as_str() == Some(Key::NONE)
 }
 
 fn bad(key: &str, value: &Value, want: &'static str) -> MachineError {

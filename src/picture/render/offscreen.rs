@@ -1,7 +1,6 @@
 //! Pictures without a window.
 
 use std::io;
-use std::path::Path;
 
 use super::{Renderer, View};
 use crate::picture::scene::Scene;
@@ -72,11 +71,6 @@ impl Picture {
         let mut bytes = Vec::new();
         self.encode(&mut bytes)?;
         Ok(bytes)
-    }
-
-    /// Writes a PNG file, over one that is there.
-    pub fn write_png(&self, path: impl AsRef<Path>) -> io::Result<()> {
-        std::fs::write(path, self.to_png()?)
     }
 
     fn encode(&self, to: &mut Vec<u8>) -> Result<(), png::EncodingError> {

@@ -11,13 +11,8 @@ use std::f64::consts::{PI, TAU};
 
 use super::Mesh;
 
-/// Chords in a full turn; the polygon's area falls short of the circle's by [`polygon_factor`].
+/// Chords in a full turn; the polygon's area falls short of the circle's.
 pub const SEGMENTS: usize = 64;
-
-/// Area of the inscribed polygon of [`SEGMENTS`] chords over that of its circle, `(N / 2π) sin(2π / N)`.
-pub fn polygon_factor() -> f64 {
-    (TAU / SEGMENTS as f64).sin() * SEGMENTS as f64 / TAU
-}
 
 /// A bar with round ends: the points within `radius` of the segment from `(length_from, 0)` to `(length_to, 0)`,
 /// from z = 0 to `height`, its top and bottom edges bevelled by `bevel` so that shading shows them.

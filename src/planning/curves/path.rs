@@ -361,16 +361,6 @@ fn least_rate_nodes(
     Ok(nodes)
 }
 
-/// The straight line of the end effector from where a pose has it, with minimum-norm rates (case 1).
-///
-/// # Errors
-/// If the Jacobian loses rank on the way.
-pub fn tip_line(tip: &Chain, start: DriveAngles, to: Vector) -> Result<PathTable, PathError> {
-    let from = end_effector(tip, &start.units());
-    let way = to - from;
-    minimum_norm_path(tip, start, |s| CurvePoint { p: from + s * way, first: way, second: Vector::default() })
-}
-
 /// The end effector of a joint line, reached with drive 1 elsewhere and drives 2 and 3 following on one elbow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SameTip {

@@ -176,11 +176,6 @@ impl Price {
         if self.delta_b == 0.0 { 0.0 } else { (law.peak() * self.size() / limit.max(0.0)).sqrt() }
     }
 
-    /// The least time of any motion that keeps |n_B| ≤ `limit`, N m: 2 √(D_1 |Δb|/n_max), s.
-    pub fn least_time(&self, limit: f64) -> f64 {
-        self.time(PoseLaw::BangBang, limit)
-    }
-
     /// By how much a base that floats freely and rests at first is turned in the end, whatever the path, the law and
     /// the time: Δθ = −D_1 Δb/(I_b + μ|ρ|² + Σ(C_kk + J_k) + ΣJ_rotor), rad. Here Δb is that of the angles between drives and base, q_k −
     /// θ.

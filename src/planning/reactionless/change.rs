@@ -14,17 +14,6 @@ pub const PAIRS: [[usize; 2]; 3] = [[0, 1], [1, 2], [0, 2]];
 /// Poses this near to a change point are on it, rad.
 pub(super) const TOUCH: f64 = 1e-9;
 
-/// A change point on a straight line in (a_1, a_2).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ChangePoint {
-    /// Which of [`PAIRS`].
-    pub pair: usize,
-    /// m, where q_l − q_k = mπ.
-    pub half_turns: i32,
-    /// The share of the line before it, above 0, at most 1.
-    pub share: f64,
-}
-
 /// q_l − q_k = n · a + δ.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Difference {
@@ -95,28 +84,5 @@ impl PlaneMap {
     /// joined by a straight line in (a_1, a_2) that crosses no change point.
     pub fn sides(&self, a: [f64; 2]) -> [i32; 3] {
         [0, 1, 2].map(|pair| (Difference::of(self, pair).at(a) / PI).floor() as i32)
-    }
-
-    /// The first change point on the straight line in (a_1, a_2) from one pose to another, or in a step; `None` if
-    /// there is none.
-    ///
-    /// Ending on a change point meets it; beginning on one does not, so that a chain of lines meets each but once.
-    /// Poses within 1e-9 rad are on it.
-    pub fn change_between(&self, from: [f64; 2], to: [f64; 2]) -> Option<ChangePoint> {
-        let of_pair = |pair: usize| {
-            let difference = Difference::of(self, pair);
-            let [begin, end] = [from, to].map(|a| difference.at(a));
-            let way = (end - begin).signum();
-            // Counted in the direction of motion.
-            let half_turns = way * (((way * begin + TOUCH) / PI).floor() + 1.0);
-            let ahead = way * (half_turns * PI - begin);
-            let length = way * (end - begin);
-            (length > 0.0 && ahead <= length + TOUCH).then(|| ChangePoint {
-                pair,
-                half_turns: half_turns as i32,
-                share: (ahead / length).min(1.0),
-            })
-        };
-        (0..PAIRS.len()).filter_map(of_pair).min_by(|x, y| x.share.total_cmp(&y.share))
     }
 }

@@ -24,7 +24,7 @@ mod reach;
 
 pub use b_set::BSet;
 pub use boundary::{Boundary, BoundaryCurve, BoundaryLine, BoundaryLoop, ChangeCurve, Extent, Nearest, Vertex};
-pub use change::{ChangePoint, PAIRS};
+pub use change::PAIRS;
 pub use decimal::{Decimal, between, metres, metres_apart};
 pub use dexterity::Dexterity;
 pub use plane::{AngleDefinition, AngleLimit, NotAPlaneMap, PlaneMap, PlanePoint, SLACK, WIDEST};

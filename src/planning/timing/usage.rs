@@ -46,11 +46,6 @@ impl Usage {
         usage.leading = shares.sorted();
         usage
     }
-
-    /// How far beyond its limit the worst drive is asked to go, as a part of the limit; 0 if none is.
-    pub fn violation(&self) -> f64 {
-        (self.most - 1.0).max(0.0)
-    }
 }
 
 /// Time, or shares of it, for each limit.

@@ -40,7 +40,7 @@ fn reactionless(scenario: &Scenario) -> Result<Parts, Refusal> {
     let points = task.points();
     match task.shape() {
         Shape::JointLine => joint_lines(task, &space, &points, free),
-        _ if free => by_least_rates(scenario, free_start(task, &space, &points)?, None),
+        _ if free => by_least_rates(scenario, reached(task, &space, 0, points[0])?, None),
         _ if space.drives() < 4 => Err(Refusal::Task(format!(
             "while b is held the end effector of a machine with {} drives has its own way: want the shape joint-line",
             space.drives()
@@ -78,7 +78,7 @@ fn minimum_norm(scenario: &Scenario) -> Result<Parts, Refusal> {
     let points = task.points();
     let start = match PoseSpace::of(machine) {
         Ok(space) if space.drives() > 3 => posed(task, &space, 0, points[0], &space.middle())?,
-        _ => free_start(task, &PoseSpace::nominal(machine)?, &points)?,
+        _ => reached(task, &PoseSpace::nominal(machine)?, 0, points[0])?,
     };
     by_least_rates(scenario, start, None)
 }
@@ -123,8 +123,4 @@ fn reached(task: &Task, space: &PoseSpace, i: usize, p: Vector) -> Result<DriveA
     space.reach(p).map_err(anywhere)?;
     let none = || Refusal::Task(format!("no pose was found for {}: want another point", task.name_of(i)));
     space.near(p, task.b).ok_or_else(none)
-}
-
-fn free_start(task: &Task, space: &PoseSpace, points: &[Vector]) -> Result<DriveAngles, Refusal> {
-    reached(task, space, 0, points[0])
 }

@@ -66,13 +66,5 @@ pub fn given(scenario: &Scenario, planes: Option<&Planes>) -> Result<Plan, Refus
     let (model, around) = dynamics_of(scenario);
     let instants = (A_SAMPLE * samples.count()).clamp(INSTANTS.0, INSTANTS.1);
     let forecast = Forecast::at(&motion, &model, &around, &Limits::of(&scenario.machine), instants);
-    Ok(Plan {
-        motion: motion.into(),
-        forecast,
-        pace: None,
-        price: None,
-        verdicts: None,
-        cycles: Vec::new(),
-        blended: None,
-    })
+    Ok(Plan::foreseen(motion, forecast))
 }

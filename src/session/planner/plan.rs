@@ -86,6 +86,11 @@ impl Plan {
     pub(super) fn of(scenario: &Scenario, motion: Motion) -> Self {
         let (model, around) = dynamics_of(scenario);
         let forecast = Forecast::of(&motion, &model, &around, &Limits::of(&scenario.machine));
+        Self::foreseen(motion, forecast)
+    }
+
+    /// A motion and what was found of it, with nothing else to say.
+    pub(super) fn foreseen(motion: Motion, forecast: Forecast) -> Self {
         Self {
             motion: Arc::new(motion),
             forecast,

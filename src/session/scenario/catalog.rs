@@ -1,5 +1,7 @@
 //! The scenarios that come with the program.
 
+use std::sync::OnceLock;
+
 use super::definition::Scenario;
 
 /// How many of the scenarios that come along are the paper's cases; they stand first.
@@ -29,6 +31,9 @@ const BUILTIN: [(&str, &str); 19] = [
     ("space-arm", include_str!("../../../assets/scenarios/space-arm.toml")),
 ];
 
+/// Each is read when it is first asked for.
+static READ: [OnceLock<Scenario>; BUILTIN.len()] = [const { OnceLock::new() }; BUILTIN.len()];
+
 impl Scenario {
     /// The names of the built-in scenarios, the paper's cases first.
     pub fn builtin_names() -> impl Iterator<Item = &'static str> {
@@ -40,9 +45,18 @@ impl Scenario {
         Self::builtin_names().take(CASES)
     }
 
+    /// The built-in scenarios, the paper's cases first.
+    pub fn builtins() -> impl Iterator<Item = &'static Self> {
+        (0..BUILTIN.len()).map(read)
+    }
+
     /// A built-in scenario.
     pub fn builtin(name: &str) -> Option<Self> {
-        let (name, text) = BUILTIN.iter().find(|(n, _)| *n == name)?;
-        Some(Self::parse(text, name, None).expect("the scenarios that come along are valid"))
+        Self::builtin_names().position(|own| own == name).map(|place| read(place).clone())
     }
+}
+
+fn read(place: usize) -> &'static Scenario {
+    let (name, text) = BUILTIN[place];
+    READ[place].get_or_init(|| Scenario::parse(text, name, None).expect("the scenarios that come along are valid"))
 }

@@ -51,13 +51,6 @@ pub fn run_ways(scenario: &Scenario, goes_on: Watch<'_>) -> Option<Vec<Outcome>>
 }
 
 impl Comparison {
-    /// The ways of a scenario's task.
-    pub fn of(scenario: &Scenario) -> Self {
-        let mut comparison = Self::empty(scenario);
-        comparison.follow_with(scenario, run_ways(scenario, &mut |_| true).unwrap_or_default());
-        comparison
-    }
-
     /// One without any run yet.
     pub fn empty(scenario: &Scenario) -> Self {
         Self { task: scenario.clone(), entries: Vec::new(), sort: None }
@@ -73,15 +66,6 @@ impl Comparison {
             Entry { title, outcome, shown, kept: false }
         });
         self.entries = own.chain(kept).collect();
-    }
-
-    /// Runs the ways again if the task has changed; whether it had.
-    pub fn follow(&mut self, scenario: &Scenario) -> bool {
-        if self.task == *scenario {
-            return false;
-        }
-        self.follow_with(scenario, run_ways(scenario, &mut |_| true).unwrap_or_default());
-        true
     }
 
     /// The scenario whose ways stand there.

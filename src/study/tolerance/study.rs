@@ -46,18 +46,10 @@ pub struct Study {
 }
 
 impl Study {
-    /// Of a run's planned motion.
+    /// Of a run's planned motion; `goes_on` hears how much is done, from 0 to 1, and says whether the rest is wanted.
     ///
     /// # Errors
-    /// If nothing varies, a key or spread is wrong, or a length cannot vary alone.
-    pub fn of(run: &Run) -> Result<Self, ToleranceError> {
-        Self::watched(run, &mut |_| true)
-    }
-
-    /// The same; `goes_on` hears how much is done, from 0 to 1, and says whether the rest is wanted.
-    ///
-    /// # Errors
-    /// As [`of`](Self::of), or [`ToleranceError::Stopped`] if it is not.
+    /// If nothing varies, a key or spread is wrong, a length cannot vary alone, or the rest is not wanted.
     pub fn watched(run: &Run, goes_on: &mut dyn FnMut(f64) -> bool) -> Result<Self, ToleranceError> {
         let scenario = run.scenario();
         let plant = scenario.plant_machine().map_err(ToleranceError::Machine)?;
