@@ -13,7 +13,7 @@ use egui::{Align, Button, CursorIcon, Frame, Grid, Label, Layout, Margin, Panel,
 /// Draws this panel.
 pub fn show(ui: &mut Ui, comparison: &Comparison, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
-    let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 16, right: 16, top: 8, bottom: 8 });
+    let frame = Frame::new().inner_margin(Margin { left: 16, right: 16, top: 8, bottom: 8 });
     let rows = comparison.entries().len() as f32;
     let most = (0.42 * ui.available_height()).max(120.0);
     let height = (76.0 + 27.5 * rows).min(most);

@@ -30,7 +30,7 @@ pub fn show(
     commands: &mut Vec<Command>,
 ) -> Option<f32> {
     let p = view_state.palette();
-    let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 16, right: 10, top: 12, bottom: 8 });
+    let frame = Frame::new().inner_margin(Margin { left: 16, right: 10, top: 12, bottom: 8 });
     let panel = Panel::left("side")
         .default_size(view_state.side.width.unwrap_or(USUAL))
         .size_range(220.0..=480.0)

@@ -280,6 +280,13 @@ impl AppState {
     /// One pass of the user interface; commands are carried out at its end.
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         self.dress(ui.ctx());
+        // Panels lie on the cleared window and fill nothing; what fades out at their edges needs to know its colour.
+        let behind = egui::Frame::new().fill(ui.visuals().panel_fill);
+        let info = egui::UiStackInfo::new(egui::UiKind::Frame).with_frame(behind);
+        ui.scope_builder(egui::UiBuilder::new().ui_stack_info(info), |ui| self.panels(ui));
+    }
+
+    fn panels(&mut self, ui: &mut egui::Ui) {
         if self.collect() {
             ui.ctx().request_repaint();
         }

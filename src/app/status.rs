@@ -99,7 +99,7 @@ pub fn show(
     commands: &mut Vec<Command>,
 ) {
     let p = view_state.palette();
-    let frame = egui::Frame::new().fill(colour(p.panel)).inner_margin(Margin::symmetric(16, 0));
+    let frame = egui::Frame::new().inner_margin(Margin::symmetric(16, 0));
     Panel::bottom("status").exact_size(30.0).resizable(false).frame(frame).show(ui, |ui| {
         ui.horizontal_centered(|ui| {
             let f = session.frame();

@@ -26,7 +26,7 @@ pub fn show(
     commands: &mut Vec<Command>,
 ) {
     let p = view_state.palette();
-    let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 16, right: 16, top: 8, bottom: 8 });
+    let frame = Frame::new().inner_margin(Margin { left: 16, right: 16, top: 8, bottom: 8 });
     let height = HEIGHT.min(0.45 * ui.available_height());
     Panel::bottom("study").exact_size(height).resizable(false).frame(frame).show(ui, |ui| {
         ui.horizontal(|ui| {

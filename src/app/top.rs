@@ -23,8 +23,7 @@ pub fn show(
     view_state: &ViewState,
     commands: &mut Vec<Command>,
 ) {
-    let p = view_state.palette();
-    let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin::symmetric(16, 0));
+    let frame = Frame::new().inner_margin(Margin::symmetric(16, 0));
     Panel::top("top").exact_size(44.0).resizable(false).frame(frame).show(ui, |ui| {
         ui.horizontal_centered(|ui| {
             ui.label(RichText::new("Stillbase").font(bold(17.0)));

@@ -138,6 +138,8 @@ pub struct App {
     clock: Clock,
     /// What stands above the window.
     title: String,
+    /// Whether what it draws on encodes colours by itself.
+    encodes: bool,
     /// Who writes down what is to last; nobody does in tests.
     keeper: Option<Keeper>,
 }
@@ -160,7 +162,8 @@ impl App {
         }
         let renderers = Renderers::new(&state.device, state.target_format);
         state.renderer.write().callback_resources.insert(renderers);
-        Some(Self { app_state, clock, title: String::new(), keeper: None })
+        let encodes = state.target_format.is_srgb();
+        Some(Self { app_state, clock, title: String::new(), encodes, keeper: None })
     }
 
     /// The same, which writes down what is to last.
@@ -208,6 +211,14 @@ impl eframe::App for App {
         if self.title != title {
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
             self.title = title;
+        }
+    }
+
+    /// Panels lie on it: what is cleared need not be filled.
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        match self.encodes {
+            true => egui::Rgba::from(visuals.panel_fill).to_array(),
+            false => visuals.panel_fill.to_normalized_gamma_f32(),
         }
     }
 

@@ -84,7 +84,8 @@ impl Canvas {
             }
         }
         let shapes = self.ctx.tessellate(output.shapes, output.pixels_per_point);
-        draw_shapes(&mut self.egui, (&device, &queue), &self.texture, &shapes, &self.screen);
+        let behind = self.ctx.global_style().visuals.panel_fill;
+        draw_shapes(&mut self.egui, (&device, &queue), (&self.texture, behind), &shapes, &self.screen);
         for id in output.textures_delta.free.drain() {
             self.egui.free_texture(&id);
         }
@@ -105,15 +106,17 @@ pub fn surface(device: &wgpu::Device, [width, height]: [u32; 2], format: wgpu::T
     })
 }
 
-/// Draws what egui has made over a whole [`surface`].
+/// Draws what egui has made over a whole [`surface`] of one colour.
 pub fn draw_shapes(
     egui: &mut egui_wgpu::Renderer,
     (device, queue): (&wgpu::Device, &wgpu::Queue),
-    texture: &wgpu::Texture,
+    (texture, behind): (&wgpu::Texture, egui::Color32),
     shapes: &[egui::ClippedPrimitive],
     screen: &egui_wgpu::ScreenDescriptor,
 ) {
     let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    let [r, g, b, a] = behind.to_normalized_gamma_f32().map(f64::from);
+    let behind = wgpu::Color { r, g, b, a };
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let mut buffers = egui.update_buffers(device, queue, &mut encoder, shapes, screen);
     let mut target = encoder
@@ -123,7 +126,7 @@ pub fn draw_shapes(
                 view: &view,
                 depth_slice: None,
                 resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(behind), store: wgpu::StoreOp::Store },
             })],
             ..Default::default()
         })

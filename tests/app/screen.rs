@@ -53,7 +53,13 @@ impl TestRenderer for Screen {
         let screen = ScreenDescriptor { size_in_pixels: [width, height], pixels_per_point: ctx.pixels_per_point() };
         let texture = surface(device, [width, height], *target_format);
         let shapes = ctx.tessellate(output.shapes.clone(), ctx.pixels_per_point());
-        draw_shapes(&mut renderer.write(), (device, queue), &texture, &shapes, &screen);
+        draw_shapes(
+            &mut renderer.write(),
+            (device, queue),
+            (&texture, ctx.global_style().visuals.panel_fill),
+            &shapes,
+            &screen,
+        );
         let picture = self.gpu.readback(&texture).map_err(|why| why.to_string())?;
         image::RgbaImage::from_raw(picture.width, picture.height, picture.rgba).ok_or_else(|| "no pixels".into())
     }

@@ -14,7 +14,6 @@ use egui::{Frame, Margin, Panel, Ui};
 
 use self::header::{ROW, TITLE};
 use super::Command;
-use super::theme::colour;
 use crate::picture::charts::figure::{BELOW, LEFT, Look};
 
 pub use prepared::{Prepared, extent};
@@ -30,7 +29,7 @@ const USUAL: f32 = 336.0;
 pub fn show(ui: &mut Ui, what: &Shown<'_>, prepared: &mut Prepared, commands: &mut Vec<Command>) -> Option<f32> {
     let Shown { session, signals, view_state, .. } = *what;
     let p = view_state.palette();
-    let frame = Frame::new().fill(colour(p.panel)).inner_margin(Margin { left: 14, right: 14, top: 10, bottom: 8 });
+    let frame = Frame::new().inner_margin(Margin { left: 14, right: 14, top: 10, bottom: 8 });
     let most = (0.6 * ui.available_width()).max(USUAL);
     let width = view_state.plots.width.unwrap_or(USUAL).min(most);
     let panel = Panel::right("plots").default_size(width).size_range(260.0..=most).resizable(true);

@@ -1,0 +1,203 @@
+//! What a whole frame costs on the adapter at hand: the three cases in motion, at rest with the pointer moving, and the
+//! tower, at 1440 × 900 and twice that.
+//!
+//! `cargo bench --bench frame` prints the median of each part: the interface (the steps of the simulation that are due,
+//! panels, plots and scene), its shapes, what is sent to the adapter, and what the adapter draws, waited for. The last
+//! column is the scene alone, drawn again at the size it has in the window.
+
+use std::time::{Duration, Instant};
+
+use egui::epaint::Primitive;
+use egui_wgpu::{RendererOptions, ScreenDescriptor};
+use stillbase::app::{AppState, Command};
+use stillbase::picture::canvas::surface;
+use stillbase::picture::paint::{Renderers, install_fonts};
+use stillbase::picture::render::offscreen::Gpu;
+use stillbase::picture::render::{Renderer, View};
+use stillbase::picture::scene::options::ViewOptions;
+use stillbase::picture::scene::palette::Theme;
+use stillbase::picture::scene::views::{ViewKind, Views};
+use stillbase::session::scenario::Scenario;
+
+/// Between two frames.
+const PACE: f64 = 1.0 / 60.0;
+
+const FRAMES: usize = 60;
+
+/// What is done in a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Doing {
+    /// The motion plays.
+    Plays,
+    /// Nothing but the pointer moves.
+    Rests,
+}
+
+fn main() {
+    // Others of cargo's words are for benches with a harness.
+    let gpu = match Gpu::new() {
+        Ok(gpu) => gpu,
+        Err(why) => return println!("no frame is drawn: {why}"),
+    };
+    println!("{}; medians of {FRAMES} frames, ms", gpu.name());
+    let part = ["interface", "shapes", "upload", "draw", "frame", "scene alone"].map(|name| format!("{name:>11}"));
+    println!("{:34} {}", "", part.join(" "));
+    for (size, scale) in [([1440, 900], 1.0), ([2880, 1800], 2.0)] {
+        for case in ["case-1", "case-2", "case-3"] {
+            measure(&gpu, case, ViewKind::Flat, Doing::Plays, size, scale);
+        }
+        measure(&gpu, "case-3", ViewKind::Space, Doing::Plays, size, scale);
+        measure(&gpu, "case-3", ViewKind::Space, Doing::Rests, size, scale);
+        measure(&gpu, "case-3", ViewKind::Tower, Doing::Plays, size, scale);
+    }
+}
+
+fn measure(gpu: &Gpu, case: &str, view: ViewKind, doing: Doing, size: [u32; 2], scale: f32) {
+    let scenario = Scenario::builtin(case).expect("built in");
+    let mut app_state = AppState::new(scenario, Theme::Dark).expect("it starts");
+    app_state.carry_out(Command::View(view));
+    let mut screen = Screen::new(gpu, size, scale);
+    for i in 0..10 {
+        screen.frame(&mut app_state, i);
+    }
+    if doing == Doing::Plays {
+        app_state.carry_out(Command::TogglePlay);
+    }
+    let mut all: [Vec<Duration>; 6] = Default::default();
+    for i in 0..FRAMES {
+        let [interface, shapes, upload, draw] = screen.frame(&mut app_state, i);
+        let whole = interface + shapes + upload + draw;
+        let alone = screen.scene_alone(&app_state);
+        for (list, took) in all.iter_mut().zip([interface, shapes, upload, draw, whole, alone]) {
+            list.push(took);
+        }
+    }
+    let median = |mut list: Vec<Duration>| {
+        list.sort_unstable();
+        format!("{:11.2}", list[list.len() / 2].as_secs_f64() * 1e3)
+    };
+    let [width, height] = size;
+    println!("{:34} {}", format!("{case} {view:?} {doing:?} {width}x{height}"), all.map(median).join(" "));
+}
+
+struct Screen<'a> {
+    gpu: &'a Gpu,
+    egui: egui_wgpu::Renderer,
+    ctx: egui::Context,
+    texture: wgpu::Texture,
+    screen: ScreenDescriptor,
+    alone: Renderer,
+    viewport: egui::Rect,
+    now: f64,
+}
+
+impl<'a> Screen<'a> {
+    fn new(gpu: &'a Gpu, size: [u32; 2], scale: f32) -> Self {
+        let format = wgpu::TextureFormat::Rgba8Unorm;
+        let mut egui = egui_wgpu::Renderer::new(gpu.device(), format, RendererOptions::default());
+        egui.callback_resources.insert(Renderers::new(gpu.device(), format));
+        let ctx = egui::Context::default();
+        install_fonts(&ctx);
+        Self {
+            gpu,
+            egui,
+            ctx,
+            texture: surface(gpu.device(), size, format),
+            screen: ScreenDescriptor { size_in_pixels: size, pixels_per_point: scale },
+            alone: Renderer::new(gpu.device(), format),
+            viewport: egui::Rect::NOTHING,
+            now: 0.0,
+        }
+    }
+
+    fn wait(&self) {
+        self.gpu.device().poll(wgpu::PollType::wait_indefinitely()).expect("it draws");
+    }
+
+    /// Interface, shapes, upload and draw.
+    fn frame(&mut self, app_state: &mut AppState, i: usize) -> [Duration; 4] {
+        let begun = Instant::now();
+        app_state.pass(PACE);
+        let [width, height] = self.screen.size_in_pixels.map(|n| n as f32 / self.screen.pixels_per_point);
+        let mut input = egui::RawInput {
+            screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(width, height))),
+            time: Some(self.now),
+            ..Default::default()
+        };
+        self.now += PACE;
+        // Over the plots, where nothing is under it that a click would change.
+        input.events.push(egui::Event::PointerMoved(egui::pos2(0.3 * width + i as f32, 0.95 * height)));
+        if let Some(root) = input.viewports.get_mut(&egui::ViewportId::ROOT) {
+            root.native_pixels_per_point = Some(self.screen.pixels_per_point);
+        }
+        let mut output = self.ctx.run_ui(input, |ui| app_state.ui(ui));
+        let interface = begun.elapsed();
+
+        let begun = Instant::now();
+        let shapes = self.ctx.tessellate(output.shapes, output.pixels_per_point);
+        let took = begun.elapsed();
+        for shape in &shapes {
+            if let Primitive::Callback(callback) = &shape.primitive {
+                self.viewport = callback.rect;
+            }
+        }
+
+        let begun = Instant::now();
+        let (device, queue) = (self.gpu.device(), self.gpu.queue());
+        for (id, deltas) in output.textures_delta.set.drain() {
+            deltas.iter().for_each(|delta| self.egui.update_texture(device, queue, id, delta));
+        }
+        let mut encoder = device.create_command_encoder(&Default::default());
+        let mut buffers = self.egui.update_buffers(device, queue, &mut encoder, &shapes, &self.screen);
+        let target = self.texture.create_view(&Default::default());
+        let mut pass = encoder
+            .begin_render_pass(&wgpu::RenderPassDescriptor {
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &target,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color::WHITE),
+                        store: wgpu::StoreOp::Store,
+                    },
+                })],
+                ..Default::default()
+            })
+            .forget_lifetime();
+        self.egui.render(&mut pass, &shapes, &self.screen);
+        drop(pass);
+        buffers.push(encoder.finish());
+        queue.submit(buffers);
+        let upload = begun.elapsed();
+
+        let begun = Instant::now();
+        self.wait();
+        let drawn = begun.elapsed();
+        for id in output.textures_delta.free.drain() {
+            self.egui.free_texture(&id);
+        }
+        [interface, took, upload, drawn]
+    }
+
+    /// The scene once more, without the panels.
+    fn scene_alone(&mut self, app_state: &AppState) -> Duration {
+        let (session, view_state) = (app_state.session(), app_state.view_state());
+        let views = Views::of(session.run());
+        let options = ViewOptions { theme: Theme::Dark, ..ViewOptions::default() };
+        let camera = view_state.camera();
+        let scene = views.scene(view_state.view, session.frame(), &options, camera);
+        let (size, scale) = (self.viewport.size(), self.screen.pixels_per_point);
+        let view = View {
+            clip_from_world: camera.clip_from_world(f64::from(size.x / size.y)),
+            eye_direction: camera.eye_direction(),
+            size_px: [size.x, size.y].map(|n| (n * scale).round() as u32),
+            pixels_per_point: scale,
+        };
+        let begun = Instant::now();
+        let mut encoder = self.gpu.device().create_command_encoder(&Default::default());
+        self.alone.prepare(self.gpu.device(), self.gpu.queue(), &mut encoder, &scene, &view);
+        self.gpu.queue().submit([encoder.finish()]);
+        self.wait();
+        begun.elapsed()
+    }
+}
