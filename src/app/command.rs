@@ -2,6 +2,7 @@
 
 use crate::picture::charts::choice::Change;
 use crate::picture::scene::Measure;
+use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Theme;
 use crate::picture::scene::views::ViewKind;
 use crate::session::scenario::Scenario;
@@ -52,6 +53,8 @@ pub enum Command {
     Preview(Option<f64>),
     /// Start or stop drawing a path with the pointer.
     Draw(bool),
+    /// Show where in the panel of settings a thing of the scene stands.
+    Reveal(Handle),
     /// Show or hide the panel of settings on the left.
     Side(bool),
     /// Show or hide the panel of plots on the right.
@@ -133,6 +136,7 @@ impl Command {
             | Self::Dexterity(_)
             | Self::Fit
             | Self::Look(_)
+            | Self::Reveal(_)
             | Self::Side(_)
             | Self::Plots(_)
             | Self::Panels(_)

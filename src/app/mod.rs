@@ -5,6 +5,7 @@
 
 pub mod actions;
 mod background;
+mod card;
 mod change;
 mod command;
 mod compare;
@@ -15,6 +16,7 @@ pub mod jobs;
 mod keys;
 mod order;
 mod path;
+mod place;
 mod plots;
 mod preferences;
 mod saving;

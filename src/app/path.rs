@@ -2,11 +2,12 @@
 
 use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 
-use super::Command;
 use super::theme::{colour, plain};
 use super::widgets::{Row, name, note, section, send, unit};
+use super::{Command, place};
 use crate::mechanics::planar::Vector;
 use crate::picture::numbers::signed;
+use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Palette;
 use crate::planning::off_plane::least_reaction::FixedB;
 use crate::planning::timing::TimeLaw;
@@ -147,7 +148,7 @@ fn points(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &m
         }
     };
     for (i, at) in all.iter().enumerate() {
-        ui.horizontal(|ui| {
+        let row = |ui: &mut Ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
             let label = task.name_of(i);
             let unserved = session.run().waiting().is_some_and(|w| w.points.iter().any(|(n, _)| *n == i));
@@ -184,7 +185,8 @@ fn points(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &m
                     commands.push(Command::EndGesture);
                 }
             });
-        });
+        };
+        place::of(ui, Handle::Waypoint(i), p, |ui| ui.horizontal(row));
     }
     let plus = RichText::new("+ point").font(plain(11.5)).color(colour(p.dim));
     let response =

@@ -11,8 +11,9 @@ use egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Ui};
 use super::facts::Facts;
 use super::theme::{bold, colour, plain};
 use super::widgets::{Row, name, note, section, send, unit};
-use super::{Command, ViewState, path, set_b};
+use super::{Command, ViewState, path, place, set_b};
 use crate::mechanics::machine::MAX_ANGLE;
+use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Palette;
 use crate::session::scenario::Value;
 use crate::session::{Edit, Session};
@@ -38,8 +39,8 @@ pub fn show(
     let shown = panel.frame(frame).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.set_width(ui.available_width() - 6.0);
-            pose_constant(ui, session, facts, view_state, commands);
-            limits(ui, session, &p, commands);
+            place::of(ui, Handle::Ring, &p, |ui| pose_constant(ui, session, facts, view_state, commands));
+            place::of(ui, Handle::Joint(0), &p, |ui| limits(ui, session, &p, commands));
             gravity(ui, session, &p, commands);
             path::show(ui, session, &p, commands);
             plant::show(ui, session, &p, commands);

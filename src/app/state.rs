@@ -10,8 +10,8 @@ use super::change::{Change, Source};
 use super::facts::Facts;
 use super::saving::{self, Saving};
 use super::{
-    Activity, Command, Finder, Intro, Panel, Preferences, Recovery, ViewState, compare, finder, keys, order, plots,
-    side, status, study, theme, top, viewport,
+    Activity, Command, Finder, Intro, Panel, Preferences, Recovery, ViewState, compare, finder, keys, order, place,
+    plots, side, status, study, theme, top, viewport,
 };
 use crate::app::widgets;
 use crate::mechanics::machine::Machine;
@@ -306,8 +306,12 @@ impl AppState {
         }
         let contrast = self.intro.as_ref().filter(|intro| intro.contrasts_in(ui.ctx().content_rect().width()));
         if contrast.is_none() && self.view_state.side.shown {
+            if let Some(thing) = self.view_state.revealed.take() {
+                place::open(ui.ctx(), thing, &self.session);
+            }
             self.view_state.side.width = side::show(ui, &self.session, &self.facts, &self.view_state, &mut commands);
         }
+        self.view_state.lit = place::lit(ui.ctx());
         if self.view_state.plots.shown {
             let beside = contrast.and_then(Intro::beside_it).or(self.comparison.as_ref());
             let (session, signals, view_state) = (&self.session, &self.signals, &self.view_state);
@@ -429,6 +433,10 @@ impl AppState {
             Command::SkipHints => {
                 self.hints &= self.intro.is_none();
                 self.intro = None;
+            }
+            Command::Reveal(thing) => {
+                self.view_state.side.shown = true;
+                self.view_state.revealed = Some(thing);
             }
             Command::Side(shown) => self.view_state.side.shown = shown,
             Command::Plots(shown) => self.view_state.plots.shown = shown,

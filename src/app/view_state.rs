@@ -80,6 +80,10 @@ pub struct ViewState {
     pub loops: bool,
     /// What the pointer is over.
     pub hot: Option<Handle>,
+    /// What has its place in the panel under the pointer or the keyboard.
+    pub lit: Option<Handle>,
+    /// What is to be shown in the panel.
+    pub revealed: Option<Handle>,
     /// What is being dragged.
     pub grabbed: Option<Pick>,
     /// Where the pointer holds the target, m.
@@ -139,6 +143,8 @@ impl ViewState {
             speed: 1.0,
             loops: false,
             hot: None,
+            lit: None,
+            revealed: None,
             grabbed: None,
             held: None,
             force: None,

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use egui::{CentralPanel, CursorIcon, Frame, PointerButton, Pos2, Rect, Sense, Ui, Vec2};
+use egui::{CentralPanel, CursorIcon, Frame, PointerButton, PopupAnchor, Pos2, Rect, Sense, Tooltip, Ui, Vec2};
 
+use super::card::Card;
 use super::intro::Intro;
 use super::widgets::name;
-use super::{Command, ViewState, set_b, switch};
+use super::{Command, ViewState, place, set_b, switch};
 use crate::mechanics::planar::{DriveAngles, Vector};
-use crate::picture::numbers::signed;
 use crate::picture::paint::{Spot, paint, words};
 use crate::picture::scene::exaggeration::exaggerated;
 use crate::picture::scene::options::{Handle, Other, ViewOptions};
@@ -51,13 +51,13 @@ pub fn show(
             draw(ui, &response, &spot, views, view_state, commands);
         } else {
             point_at(ui, &response, &spot, (session, &shown), views, view_state, commands);
-            link_name(&response, &spot, (session, &shown), views, view_state);
+            tell(&response, session, views, view_state);
             move_camera(ui, &response, rect, view_state);
         }
         let options = ViewOptions {
             theme: view_state.theme,
             dexterity: view_state.dexterity,
-            hot: view_state.grabbed.map(|pick| pick.handle).or(view_state.hot),
+            hot: view_state.grabbed.map(|pick| pick.handle).or(view_state.hot).or(view_state.lit),
             held: view_state.held,
             preview_b: view_state.preview,
             stroke: view_state.stroke.clone().unwrap_or_default(),
@@ -88,6 +88,9 @@ pub fn show(
 
 /// Smaller changes of the pulling force send no new edit, N.
 const LEAST_PUSH: f64 = 0.02;
+
+/// How long the pointer is on a thing before it is told what that is, s.
+const TOLD_AFTER: f64 = 0.35;
 
 /// How many snapshots stand along a motion, as in Fig. 5.
 const SNAPSHOTS: usize = 9;
@@ -136,7 +139,11 @@ fn point_at(
         false => views.pick(view, frame, &spot.pointer(pos)),
     };
     if view_state.grabbed.is_none() {
-        view_state.hot = response.hover_pos().and_then(under).map(|pick| pick.handle);
+        let seen = |pos: Pos2| match pushes {
+            true => under(pos).map(|pick| pick.handle),
+            false => views.under(view, frame, &spot.pointer(pos)),
+        };
+        view_state.hot = response.hover_pos().and_then(seen);
     }
     if response.drag_started_by(PointerButton::Primary) {
         // A drag begins where the button went down, not where it was noticed.
@@ -202,9 +209,15 @@ fn point_at(
     {
         commands.extend([edit, Command::EndGesture]);
     }
+    if response.clicked_by(PointerButton::Primary)
+        && let Some(thing) = view_state.hot.filter(|thing| place::is_in_panel(*thing))
+    {
+        commands.push(Command::Reveal(thing));
+    }
     let task = &session.scenario().task;
     // A double click beside all handles adds a point to the path.
-    let twice = response.double_clicked_by(PointerButton::Primary) && view_state.hot.is_none() && view.shows_machine();
+    let beside = !view_state.hot.is_some_and(Handle::can_be_dragged);
+    let twice = response.double_clicked_by(PointerButton::Primary) && beside && view.shows_machine();
     if let Some(pos) = response.interact_pointer_pos().filter(|_| twice)
         && let Some([x, y]) = spot.pointer(pos).ray().and_then(|ray| ray.at_height(views.stage().handle_height()))
         && let Some(change) = task.adding(Vector::new(x, y))
@@ -224,22 +237,27 @@ fn point_at(
     }
 }
 
-/// Says which link is under the pointer, where nothing can be taken hold of.
-fn link_name(
-    response: &egui::Response,
-    spot: &Spot,
-    (session, frame): (&Session, &Instant),
-    views: &Views,
-    view_state: &ViewState,
-) {
-    let free = view_state.view.shows_machine() && view_state.hot.is_none() && view_state.grabbed.is_none();
-    let Some(pos) = response.hover_pos().filter(|_| free && !response.dragged()) else { return };
-    let machine = &session.scenario().machine;
-    let Some(i) = views.link_at(frame, &spot.pointer(pos)) else { return };
-    let (link, part) = (&machine.links()[i], &machine.resolved_links()[i]);
-    let drive = part.drive + 1;
-    let words = format!("link {}, drive {drive}\n{} m, {} kg", link.name, signed(part.length, 3), signed(link.mass, 2));
-    response.clone().on_hover_text_at_pointer(words);
+/// Says what is under the pointer, once that has been so for a while.
+fn tell(response: &egui::Response, session: &Session, views: &Views, view_state: &ViewState) {
+    let (ctx, id) = (&response.ctx, response.id.with("told of"));
+    let quiet = view_state.grabbed.is_none() && response.hovered() && !response.dragged();
+    let Some(thing) = view_state.hot.filter(|_| quiet) else {
+        ctx.data_mut(|data| data.remove_temp::<Option<(Handle, f64)>>(id));
+        return;
+    };
+    let now = ctx.input(|i| i.time);
+    let before =
+        ctx.data(|data| data.get_temp::<Option<(Handle, f64)>>(id)).flatten().filter(|(before, _)| *before == thing);
+    let since = before.map_or(now, |(_, since)| since);
+    ctx.data_mut(|data| data.insert_temp(id, Some((thing, since))));
+    let waits = since + TOLD_AFTER - now;
+    if waits > 0.0 {
+        ctx.request_repaint_after_secs(waits as f32);
+    } else if let Some(card) = Card::of(thing, session, views) {
+        let p = view_state.palette();
+        let tooltip = Tooltip::always_open(ctx.clone(), response.layer_id, id, PopupAnchor::Pointer).gap(18.0);
+        tooltip.show(|ui| card.show(ui, &p));
+    }
 }
 
 /// A path drawn by hand: from where the button goes down to where it comes up.
@@ -277,6 +295,8 @@ fn cursor(handle: Handle, held: bool) -> CursorIcon {
         (Handle::Plane, _) => CursorIcon::ResizeVertical,
         (Handle::Target | Handle::EndEffector | Handle::Ring | Handle::Waypoint(_), true) => CursorIcon::Grabbing,
         (Handle::Target | Handle::EndEffector | Handle::Ring | Handle::Waypoint(_), false) => CursorIcon::Grab,
+        (thing, _) if place::is_in_panel(thing) => CursorIcon::PointingHand,
+        _ => CursorIcon::Default,
     }
 }
 

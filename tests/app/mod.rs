@@ -2,6 +2,7 @@
 
 mod files;
 mod finder;
+mod hands;
 mod intro;
 mod jobs;
 mod panel;
@@ -23,10 +24,11 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 11] = [
+pub const TESTS: [&[Test]; 12] = [
     saving::TESTS,
     files::TESTS,
     finder::TESTS,
+    hands::TESTS,
     intro::TESTS,
     jobs::TESTS,
     panel::TESTS,

@@ -304,11 +304,11 @@ fn lists_close_and_links_are_named() {
             let camera = *h.state().app_state().view_state().camera();
             let pointer = Pointer { camera, size: pair(scene.size()), at: pair(*at - scene.min) };
             let views = h.state().app_state().views();
-            views.link_at(&frame, &pointer) == Some(i) && views.pick(ViewKind::Flat, &frame, &pointer).is_none()
+            views.under(ViewKind::Flat, &frame, &pointer) == Some(Handle::Link(i))
         });
         h.hover_at(alone.unwrap_or_else(|| panic!("{} is seen somewhere", bar.name)));
         h.run_steps(40);
-        let words = format!("link {}, drive {}", bar.name, bar.drive + 1);
+        let words = format!("link {}, turned by drive {}", bar.name, bar.drive + 1);
         assert!(h.query_by_label_contains(&words).is_some(), "{words}");
     }
 }

@@ -4,9 +4,10 @@ use egui::Ui;
 
 use super::fold::{NumberField, Section, Slide, fold, segments, switch};
 use crate::app::widgets::Row;
-use crate::app::{Command, ViewState};
+use crate::app::{Command, ViewState, place};
+use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Palette;
-use crate::session::Session;
+use crate::session::{Edit, Session};
 use crate::simulation::plant::{Base, BaseKind, Wheel};
 
 const KINDS: [(BaseKind, &str, &str); 3] = [
@@ -21,7 +22,18 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
     let word = KINDS.iter().find(|k| k.0 == base.kind).map_or("", |k| k.1);
     let summary = if base.wheel.is_some() { format!("{word}, with a wheel") } else { word.to_owned() };
     let back = (*base != Base::default()).then(|| Section::Base.all_back());
-    fold(ui, p, ("Base", &summary), back, commands, |ui, commands| {
+    place::of(ui, Handle::Base, p, |ui| section(ui, session, view_state, (&summary, back), commands));
+}
+
+fn section(
+    ui: &mut Ui,
+    session: &Session,
+    view_state: &ViewState,
+    (summary, back): (&str, Option<Edit>),
+    commands: &mut Vec<Command>,
+) {
+    let (base, p) = (&session.scenario().base, &view_state.palette());
+    fold(ui, p, ("Base", summary), back, commands, |ui, commands| {
         let word = |kind: BaseKind| KINDS.iter().find(|k| k.0 == kind).map_or("fixed", |k| k.1);
         segments(ui, p, &KINDS, base.kind, commands, |kind| Section::Base.set(&["kind"], word(kind)));
         if base.moves() {

@@ -3,6 +3,7 @@
 use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 
 use crate::app::Command;
+use crate::app::place;
 use crate::app::theme::{bold, colour, plain};
 use crate::app::widgets::{Row, name, send};
 use crate::picture::scene::palette::Palette;
@@ -57,7 +58,7 @@ pub fn fold(
     commands: &mut Vec<Command>,
     body: impl FnOnce(&mut Ui, &mut Vec<Command>),
 ) {
-    let id = egui::Id::unique(("fold", title));
+    let id = place::fold_id(title);
     let chosen = ui.data(|d| d.get_temp::<bool>(id));
     let mut open = chosen.unwrap_or(back.is_some());
     // Folded, they stand together.

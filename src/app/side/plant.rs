@@ -4,9 +4,10 @@
 use egui::Ui;
 
 use super::fold::{NumberField, Section, Slide, choose, fold, once, switch, switch_nonzero};
-use crate::app::Command;
 use crate::app::widgets::{Row, note, tip_of, unit};
+use crate::app::{Command, place};
 use crate::mechanics::machine::{Link, Machine};
+use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Palette;
 use crate::session::scenario::Value;
 use crate::session::{Edit, Session};
@@ -29,7 +30,7 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
     };
     let back = (*plant != PlantDifferences::default()).then(|| Section::Plant.all_back());
     fold(ui, p, ("Plant", &summary), back, commands, |ui, commands| {
-        payload(ui, plant, p, commands);
+        place::of(ui, Handle::Payload, p, |ui| payload(ui, plant, p, commands));
         friction(ui, plant, model, p, commands);
         limits(ui, plant, model, p, commands);
         force(ui, plant, p, commands);
@@ -200,7 +201,7 @@ fn force(ui: &mut Ui, plant: &PlantDifferences, p: &Palette, commands: &mut Vec<
 
 /// The link or length that a list shows: the one chosen last, or else the first that differs.
 fn chosen(ui: &Ui, what: &str, first: Option<&String>, exists: impl Fn(&str) -> bool) -> String {
-    let taken = ui.data(|d| d.get_temp::<String>(egui::Id::unique(("differs", what))));
+    let taken = ui.data(|d| d.get_temp::<String>(place::chosen_id(what)));
     taken.filter(|name| name.is_empty() || exists(name)).or_else(|| first.cloned()).unwrap_or_default()
 }
 
@@ -217,20 +218,23 @@ fn pick(
         (name, words)
     }));
     if let Some(name) = choose(ui, (what, tip), &choices, &now.to_owned(), commands, |_| None) {
-        ui.data_mut(|d| d.insert_temp(egui::Id::unique(("differs", what)), name));
+        ui.data_mut(|d| d.insert_temp(place::chosen_id(what), name));
         ui.ctx().request_repaint();
     }
 }
 
 fn link(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette, commands: &mut Vec<Command>) {
-    const WHAT: &str = "a link differs";
+    const WHAT: &str = place::LINKS;
     let known = |name: &str| model.links().iter().find(|link| link.name == name);
     let now = chosen(ui, WHAT, plant.link.keys().next(), |name| known(name).is_some());
     let names = model.links().iter().map(|link| (link.name.clone(), plant.link.contains_key(&link.name)));
     pick(ui, (WHAT, "A link that is not as the model has it; * marks those that differ"), names, &now, commands);
     let Some(link) = known(&now) else { return };
     let differs = plant.link.get(&now).copied().unwrap_or_default();
-    ui.indent("link", |ui| link_rows(ui, link, &differs, p, commands));
+    let number = model.links().iter().position(|other| other.name == link.name).unwrap_or_default();
+    place::of(ui, Handle::Link(number), p, |ui| {
+        ui.indent("link", |ui| link_rows(ui, link, &differs, p, commands));
+    });
 }
 
 fn link_rows(ui: &mut Ui, link: &Link, differs: &LinkDifference, p: &Palette, commands: &mut Vec<Command>) {

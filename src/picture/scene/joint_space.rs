@@ -231,7 +231,7 @@ impl JointSpace {
                 let [low, high] = self.window(b);
                 Some(Aim::B(self.b_at(at, b).clamp(low, high)))
             }
-            Handle::Ring | Handle::Bar | Handle::EndEffector | Handle::Waypoint(_) => None,
+            _ => None,
         }
     }
 

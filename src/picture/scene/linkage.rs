@@ -52,6 +52,8 @@ pub struct Bar {
 #[derive(Clone, Debug)]
 struct Pin {
     at: Chain,
+    /// The links that it joins.
+    links: Vec<usize>,
     /// From where to where, m.
     z: [f64; 2],
     /// How many times as long as the mesh.
@@ -75,6 +77,7 @@ const THIN_BAR_RADIUS: f64 = 0.0085;
 const BAR_HEIGHT: f64 = 0.016;
 const GAP: f64 = 0.004;
 const WEIGHT_RADIUS: f64 = 0.05;
+const DRIVE_RADIUS: f64 = 0.042;
 
 impl Linkage {
     /// The body of a machine.
@@ -118,12 +121,14 @@ impl Linkage {
         let shortest = height + 2.0 * gap;
         let pin = add(cylinder(1.25 * radius, shortest, 0.15 * radius));
         let hole = add(cylinder(0.7 * radius, 0.2 * gap, 0.0));
-        for (at, low, high) in joints(machine) {
+        for (at, links) in joints(machine) {
+            let drives = links.iter().map(|j| machine.resolved_links()[*j].drive);
+            let (low, high) = drives.fold((usize::MAX, 0), |(low, high), k| (low.min(k), high.max(k)));
             let z = [layer(low) - gap, layer(high) + height + gap];
-            pins.push(Pin { at, z, stretch: (z[1] - z[0]) / shortest });
+            pins.push(Pin { at, links, z, stretch: (z[1] - z[0]) / shortest });
         }
         let n = machine.drives();
-        let (drive_height, drive_radius) = (0.05 * reach, 0.042 * reach);
+        let (drive_height, drive_radius) = (0.05 * reach, DRIVE_RADIUS * reach);
         let motors = (0..n)
             .map(|k| Motor {
                 name: format!("machine/base/drive/{}", k + 1).into(),
@@ -173,9 +178,23 @@ impl Linkage {
         self.motors.iter().fold(0.0_f64, |m, motor| m.min(motor.z)) - 0.015 * self.reach
     }
 
+    /// Radius of the plate under the drives, m.
+    pub fn foot(&self) -> f64 {
+        2.0 * DRIVE_RADIUS * self.reach
+    }
+
     /// The links.
     pub fn bars(&self) -> &[Bar] {
         &self.bars
+    }
+
+    /// Where each pin is on a base that stands still, m, and the links that it joins.
+    pub fn joints(&self, e: &Units) -> impl Iterator<Item = ([f64; 3], &[usize])> {
+        let e = *e;
+        self.pins.iter().map(move |pin| {
+            let at = place_of(&pin.at, &e);
+            ([at.re, at.im, pin.z[1]], pin.links.as_slice())
+        })
     }
 
     /// Everything, in the colours of the palette, on a base in a pose.
@@ -253,6 +272,11 @@ impl Linkage {
 }
 
 impl Bar {
+    /// The name of its item in a picture.
+    pub fn item(&self) -> &Name {
+        &self.item
+    }
+
     /// The line along it as drawn on a base that stands still, from end to end, m.
     pub fn ends(&self, e: &Units) -> [[f64; 3]; 2] {
         let (root, along, z) = self.pose(e);
@@ -290,19 +314,19 @@ fn carriers(machine: &Machine) -> Vec<bool> {
     carries
 }
 
-/// Distinct pins: where they are, and the lowest and highest drive whose links they join.
-fn joints(machine: &Machine) -> Vec<(Chain, usize, usize)> {
-    let mut joints: Vec<(Chain, usize, usize)> = Vec::new();
-    for part in machine.resolved_links() {
+/// Distinct pins: where they are, and the links that they join.
+fn joints(machine: &Machine) -> Vec<(Chain, Vec<usize>)> {
+    let mut joints: Vec<(Chain, Vec<usize>)> = Vec::new();
+    for (j, part) in machine.resolved_links().iter().enumerate() {
         for &s in &part.pins {
             let at = part.point(s);
             if at.iter().all(|w| *w == 0.0) {
                 continue;
             }
             let same = |a: &Chain| a.iter().zip(&at).all(|(a, b)| (a - b).abs() < 1e-9);
-            match joints.iter_mut().find(|(a, ..)| same(a)) {
-                Some((_, low, high)) => (*low, *high) = ((*low).min(part.drive), (*high).max(part.drive)),
-                None => joints.push((at, part.drive, part.drive)),
+            match joints.iter_mut().find(|(a, _)| same(a)) {
+                Some((_, links)) => links.push(j),
+                None => joints.push((at, vec![j])),
             }
         }
     }

@@ -65,7 +65,7 @@ impl Default for ViewOptions {
     }
 }
 
-/// What can be dragged in the scene.
+/// What in the scene the pointer can be on: to be dragged, to be clicked, or to be told of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Handle {
     /// The end effector's target.
@@ -80,6 +80,36 @@ pub enum Handle {
     Bar,
     /// A point of the planned path, counted from A.
     Waypoint(usize),
+    /// A link, by its number in the machine.
+    Link(usize),
+    /// A pin that joins links, by its number in the [`Linkage`](super::linkage::Linkage).
+    Joint(usize),
+    /// What the machine stands on, with its drives.
+    Base,
+    /// What the plant holds and the model does not know of.
+    Payload,
+    /// The boundary of the reactionless workspace.
+    Boundary,
+    /// The arrow of the force on the base.
+    Force,
+    /// The arc of the moment on the base.
+    Moment,
+}
+
+impl Handle {
+    /// Whether the pointer can pull at it.
+    pub fn can_be_dragged(self) -> bool {
+        match self {
+            Self::Target | Self::EndEffector | Self::Ring | Self::Plane | Self::Bar | Self::Waypoint(_) => true,
+            Self::Link(_)
+            | Self::Joint(_)
+            | Self::Base
+            | Self::Payload
+            | Self::Boundary
+            | Self::Force
+            | Self::Moment => false,
+        }
+    }
 }
 
 /// Another run at the present instant.

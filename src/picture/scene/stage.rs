@@ -6,6 +6,7 @@ mod pins;
 mod reaction;
 mod snapshots;
 mod target;
+mod under;
 mod workspace;
 
 pub use base::PULL;
@@ -15,6 +16,7 @@ use super::exaggeration::exaggerated;
 use super::linkage::Linkage;
 use super::options::{Handle, ViewOptions};
 use super::palette::{Palette, faded, palette};
+use super::pointer::Pointer;
 use super::{Line, Measure, Scene, Strips, point};
 use crate::mechanics::planar::{DriveAngles, Vector, unit};
 use crate::session::Run;
@@ -114,8 +116,31 @@ impl Stage {
                 let (.., p) = self.plan.as_ref()?.waypoints.iter().find(|(number, ..)| *number == i)?;
                 Some([p.re, p.im, z])
             }
-            Handle::Plane | Handle::Bar => None,
+            _ => None,
         }
+    }
+
+    /// Where the payload is, m, while it is held.
+    pub fn payload(&self, frame: &Frame) -> Option<Vector> {
+        self.base.load_at(frame)
+    }
+
+    /// The number of the link under the pointer; the uppermost of several.
+    pub fn link_at(&self, frame: &Frame, pointer: &Pointer) -> Option<usize> {
+        under::link(&self.linkage, frame, pointer)
+    }
+
+    /// What is under the pointer that cannot be pulled at; the uppermost of several.
+    pub fn under(&self, frame: &Frame, pointer: &Pointer) -> Option<Handle> {
+        let load = || self.base.load_at(frame).filter(|at| under::payload(*at, &self.linkage, pointer));
+        let edge = || self.workspace.as_ref().filter(|w| under::line(&w.edge(frame, self.linkage.floor()), pointer));
+        load()
+            .map(|_| Handle::Payload)
+            .or_else(|| under::reaction(&self.linkage, frame, pointer))
+            .or_else(|| under::joint(&self.linkage, frame, pointer).map(Handle::Joint))
+            .or_else(|| self.link_at(frame, pointer).map(Handle::Link))
+            .or_else(|| under::base(&self.linkage, self.base.moves(), frame, pointer).then_some(Handle::Base))
+            .or_else(|| edge().map(|_| Handle::Boundary))
     }
 
     /// The b that a place of the ring's knob stands for in a frame as shown, nearest to the present one, rad.
@@ -176,7 +201,9 @@ impl Stage {
             }
         }
         let units = frame.q.units();
-        scene.solids.extend(self.linkage.solids(&units, frame.base, self.base.moves(), palette));
+        let mut solids = self.linkage.solids(&units, frame.base, self.base.moves(), palette);
+        under::light(&mut solids, &self.linkage, options.hot, palette);
+        scene.solids.extend(solids);
     }
 
     fn draw_grid(&self, scene: &mut Scene, palette: &Palette) {

@@ -209,7 +209,7 @@ impl Tower {
                 let near = bars.iter().map(|[from, to]| b.clamp(*from, *to));
                 near.min_by(|s, t| (s - b).abs().total_cmp(&(t - b).abs())).map(Aim::B)
             }
-            Handle::Ring | Handle::EndEffector | Handle::Waypoint(_) => None,
+            _ => None,
         }
     }
 

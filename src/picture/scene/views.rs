@@ -15,9 +15,6 @@ use crate::simulation::frame::Frame;
 /// How near to a handle the pointer takes hold of it, px: a point of the path.
 const NEAR_POINT: f64 = 9.0;
 
-/// The same of a link.
-const NEAR_LINK: f64 = 6.0;
-
 /// How far to the left of a point its name stands, px.
 const NAME: f64 = 17.0;
 
@@ -150,12 +147,13 @@ impl Views {
 
     /// The number of the link under the pointer in the machine's view, in a frame as shown; the uppermost of several.
     pub fn link_at(&self, frame: &Frame, pointer: &Pointer) -> Option<usize> {
-        let (e, at) = (frame.q.units(), frame.base.at);
-        let near = |ends: [[f64; 3]; 2]| {
-            pointer.distance_to_segment(ends.map(|[x, y, z]| [x + at.re, y + at.im, z])).is_some_and(|d| d < NEAR_LINK)
-        };
-        let bars = self.stage.linkage().bars().iter().enumerate();
-        bars.filter(|(_, bar)| near(bar.ends(&e))).max_by_key(|(_, bar)| bar.drive).map(|(i, _)| i)
+        self.stage.link_at(frame, pointer)
+    }
+
+    /// What is under the pointer, to be pulled at or not, in a frame as shown.
+    pub fn under(&self, kind: ViewKind, frame: &Frame, pointer: &Pointer) -> Option<Handle> {
+        let pulled = self.pick(kind, frame, pointer).map(|pick| pick.handle);
+        pulled.or_else(|| kind.shows_machine().then(|| self.stage.under(frame, pointer)).flatten())
     }
 
     /// What is under the pointer and can be pulled at, in a frame as shown.
@@ -200,7 +198,7 @@ impl Views {
                         PULL * (at[1] - frame.end_effector.im),
                     ])),
                     Handle::Waypoint(i) => Some(Aim::Waypoint(i, at)),
-                    Handle::Plane | Handle::Bar => None,
+                    _ => None,
                 }
             }
         }

@@ -8,7 +8,7 @@ use crate::mechanics::planar::{Pose2, Units, Vector, unit};
 use crate::picture::numbers::{signed, three_digits};
 use crate::picture::scene::arrow::head;
 use crate::picture::scene::linkage::{Linkage, PLATE};
-use crate::picture::scene::options::ViewOptions;
+use crate::picture::scene::options::{Handle, ViewOptions};
 use crate::picture::scene::palette::{Palette, faded, mix};
 use crate::picture::scene::{Anchor, Label, Line, Marker, Pose, Scene, point, posed};
 use crate::session::Run;
@@ -140,20 +140,25 @@ impl BaseStage {
         scene.markers.push(Marker::disc("wheel/mark", at, 4.0, colour).edged(palette.background, 1.0));
     }
 
+    /// Where the payload is, m, while it is held.
+    pub fn load_at(&self, frame: &Frame) -> Option<Vector> {
+        let (drive, sign) = self.holder;
+        let [x, y] = self.load.offset;
+        frame.loaded.then(|| frame.end_effector + frame.q.units()[drive] * Vector::new(x, y) * sign)
+    }
+
     /// What the plant holds and the model does not know of, and what pushes.
     pub fn load(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Frame, options: &ViewOptions) {
         let z = linkage.top();
-        if frame.loaded {
-            let (drive, sign) = self.holder;
-            let [x, y] = self.load.offset;
-            let at = frame.end_effector + frame.q.units()[drive] * Vector::new(x, y) * sign;
+        if let Some(at) = self.load_at(frame) {
             if (at - frame.end_effector).norm() > 1e-9 {
                 let stem = vec![point(frame.end_effector, z), point(at, z)];
                 scene.lines.push(Line::new("payload/stem", [stem], 2.0, palette.ink).on_top());
             }
+            let hot = options.hot == Some(Handle::Payload);
             let radius = (5.0 + 5.0 * self.load.mass.sqrt()).min(12.0) as f32;
             let disc = Marker::disc("payload", point(at, z), radius, mix(palette.background, palette.ink, 0.55));
-            scene.markers.push(disc.edged(palette.ink, 1.6));
+            scene.markers.push(disc.edged(palette.ink, if hot { 3.0 } else { 1.6 }));
             let words = format!("{} kg", three_digits(self.load.mass));
             let offset = [0.0, -22.0];
             scene.labels.push(Label::new(

@@ -6,7 +6,7 @@ use crate::mechanics::planar::{Vector, unit};
 use crate::picture::numbers::round_number;
 use crate::picture::scene::arrow::head;
 use crate::picture::scene::linkage::Linkage;
-use crate::picture::scene::options::ViewOptions;
+use crate::picture::scene::options::{Handle, ViewOptions};
 use crate::picture::scene::palette::Palette;
 use crate::picture::scene::reaction::{ARROW, RADIUS, Reaction, Scale};
 use crate::picture::scene::{Anchor, Label, Line, Scene, Strips, point, posed};
@@ -21,13 +21,15 @@ pub fn draw(scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Fra
     let Scale { newtons, newton_metres } = options.scale.unwrap_or_else(so_far);
     let at_b = posed(b, Vector::new(1.0, 0.0), z);
     // Where nothing is to be seen, it is said to be nothing.
-    let mut line = |name: &'static str, strips: Vec<Vec<[f32; 3]>>| {
-        let line = Line::new(name, Strips::from(strips), 3.0, palette.reaction).on_top();
+    let mut line = |name: &'static str, own: Handle, strips: Vec<Vec<[f32; 3]>>| {
+        let width = if options.hot == Some(own) { 5.0 } else { 3.0 };
+        let line = Line::new(name, Strips::from(strips), width, palette.reaction).on_top();
         scene.lines.push(Line { world_from_item: at_b, ..line });
     };
     let arrow = felt.arrow(newtons).map(|parts| parts * reach);
     line(
         "reaction/force",
+        Handle::Force,
         arrow.map_or_else(Vec::new, |arrow| {
             let shaft = vec![[0.0; 3], point(arrow, 0.0)];
             vec![shaft, head(arrow, arrow / arrow.norm(), 0.025 * reach, 0.0)]
@@ -36,6 +38,7 @@ pub fn draw(scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Fra
     let (sweep, radius) = (felt.sweep(newton_metres), RADIUS * reach);
     line(
         "reaction/moment",
+        Handle::Moment,
         sweep.map_or_else(Vec::new, |sweep| {
             let n = ((sweep.abs() * 24.0).ceil() as usize).max(2);
             let on = |share: f64| unit(-FRAC_PI_2 + sweep * share) * radius;

@@ -73,6 +73,13 @@ impl Workspace {
         &self.planes
     }
 
+    /// Its boundary at a height, m, where it is in a frame.
+    pub fn edge(&self, frame: &Frame, z: f64) -> Line {
+        let turn = self.planes.map().turn(frame.b_reference) + frame.base.angle;
+        let line = Line::new("workspace/boundary", self.boundary.clone(), 1.8, [0.0; 4]);
+        line.moving(posed(frame.base.at, unit(turn), z))
+    }
+
     /// From where to where a measure of dexterity is shaded.
     pub fn shaded(&self, measure: Measure) -> [f64; 2] {
         *self.dexterity[measure as usize].get_or_init(|| measure.range(self.planes.map()))
@@ -124,7 +131,8 @@ impl Workspace {
                 scene.lines.push(Line { dash, ..Line::new(name, strips.clone(), width, colour).moving(pose) });
             }
         };
-        line("workspace/boundary", &self.boundary, 1.8, palette.amber, None);
+        let width = if options.hot == Some(Handle::Boundary) { 3.0 } else { 1.8 };
+        line("workspace/boundary", &self.boundary, width, palette.amber, None);
         line("workspace/folds", &self.folds, 1.2, palette.amber, None);
         line("workspace/inner_limits", &self.limits, 1.2, faded(palette.amber, 0.55), None);
         line("workspace/change_points", &self.change_points, 1.2, faded(palette.dim, 0.8), Some([2.0, 4.0]));

@@ -1,0 +1,168 @@
+//! The card beside the pointer: what a thing of the scene is, with value and unit, and what can be done with it.
+
+use egui::{RichText, Ui};
+
+use super::theme::{bold, colour, plain};
+use crate::picture::numbers::{degrees, signed, three_digits};
+use crate::picture::scene::course::target_handle;
+use crate::picture::scene::options::Handle;
+use crate::picture::scene::palette::Palette;
+use crate::picture::scene::views::Views;
+use crate::session::Session;
+use crate::simulation::frame::Reach;
+use crate::simulation::plant::BaseKind;
+
+/// What is said of a thing.
+pub struct Card {
+    /// What it is.
+    pub title: String,
+    /// Its values with their units.
+    pub rows: Vec<String>,
+    /// What the pointer can do with it.
+    pub hint: String,
+}
+
+const SUBSCRIPTS: [char; 8] = ['₁', '₂', '₃', '₄', '₅', '₆', '₇', '₈'];
+
+impl Card {
+    fn new(title: impl Into<String>, rows: impl Into<Vec<String>>, hint: impl Into<String>) -> Self {
+        Self { title: title.into(), rows: rows.into(), hint: hint.into() }
+    }
+
+    /// Of a thing at the instant on display; none of what says itself what it is.
+    pub fn of(thing: Handle, session: &Session, views: &Views) -> Option<Self> {
+        let (scenario, frame) = (session.scenario(), session.frame());
+        let place = |x: f64, y: f64| format!("{}, {} m", signed(x, 3), signed(y, 3));
+        Some(match thing {
+            Handle::Link(i) => link(i, session)?,
+            Handle::Joint(i) => joint(i, session, views)?,
+            Handle::Base => base(session),
+            Handle::Target => {
+                let at = target_handle(frame);
+                let rows = match frame.target.reach {
+                    Reach::Inside | Reach::Carried => Vec::new(),
+                    Reach::Outside { nearest, .. } => vec![format!("waits at {}", place(nearest.re, nearest.im))],
+                };
+                let hint = match session.run().planes() {
+                    Some(_) => "drag: the machine follows, b stays",
+                    None => "",
+                };
+                Self::new(format!("target at {}", place(at.re, at.im)), rows, hint)
+            }
+            Handle::Waypoint(i) => {
+                let at = *scenario.task.points().get(i)?;
+                let title = format!("point {} of the path, {}", scenario.task.name_of(i), place(at.re, at.im));
+                Self::new(title, [], "drag to move it; Delete leaves it out\nclick: its row in the panel")
+            }
+            Handle::Payload => {
+                let load = scenario.plant.payload;
+                let mut rows = vec![format!("inertia {} kg m², unknown to control", three_digits(load.inertia))];
+                let [along, across] = load.offset;
+                if along.hypot(across) > 0.0 {
+                    rows.push(format!("{} m along, {} m across the last link", signed(along, 3), signed(across, 3)));
+                }
+                let title = format!("payload, {} kg", three_digits(load.mass));
+                Self::new(title, rows, "click: its rows in the panel")
+            }
+            Handle::Ring => {
+                let rows = vec![format!("moment on the base while it changes: {} N m", signed(frame.felt_moment(), 3))];
+                let title = format!("pose constant, b = {} rad", signed(frame.b_reference, 3));
+                Self::new(title, rows, "drag: turns the reactionless workspace\nclick: its row in the panel")
+            }
+            Handle::Boundary => {
+                let planes = session.run().planes()?;
+                let b = frame.b_reference.rem_euclid(planes.map().period());
+                let rows =
+                    vec![format!("encloses {} m² at b = {} rad", signed(planes.boundary().area(), 3), signed(b, 3))];
+                Self::new("boundary of the reactionless workspace", rows, "click: b in the panel")
+            }
+            Handle::Force => {
+                let (now, peak) = (frame.wrench.dynamic.force.norm(), frame.peaks.force);
+                let rows = vec![format!("largest so far {} N", signed(peak, 3))];
+                Self::new(format!("force on the base, f_B = {} N", signed(now, 3)), rows, "")
+            }
+            Handle::Moment => {
+                let rows = vec![format!("largest so far {} N m", signed(frame.peaks.moment, 3))];
+                let title = format!("moment on the base, n_B = {} N m", signed(frame.felt_moment(), 3));
+                Self::new(title, rows, "")
+            }
+            Handle::EndEffector | Handle::Plane | Handle::Bar => return None,
+        })
+    }
+
+    /// Draws what stands in it.
+    pub fn show(&self, ui: &mut Ui, p: &Palette) {
+        ui.spacing_mut().item_spacing.y = 3.0;
+        ui.label(RichText::new(&self.title).font(bold(12.5)).color(colour(p.ink)));
+        for row in &self.rows {
+            ui.label(RichText::new(row).font(plain(12.0)).color(colour(p.ink)));
+        }
+        if !self.hint.is_empty() {
+            ui.label(RichText::new(&self.hint).font(plain(11.5)).color(colour(p.dim)));
+        }
+    }
+}
+
+fn link(i: usize, session: &Session) -> Option<Card> {
+    let (scenario, frame) = (session.scenario(), session.frame());
+    let machine = &scenario.machine;
+    let (link, part) = (machine.links().get(i)?, machine.resolved_links().get(i)?);
+    let drive = part.drive;
+    let title = format!("link {}, turned by drive {}, {} kg", link.name, drive + 1, signed(link.mass, 2));
+    let mut rows = vec![
+        format!("{} m long, centre of mass at {} m", signed(part.length, 3), signed(link.com, 3)),
+        format!("q{} = {}°", SUBSCRIPTS.get(drive)?, degrees(frame.q[drive])),
+    ];
+    if scenario.plant.link.contains_key(&link.name) {
+        rows.push("the plant differs from this".into());
+    }
+    Some(Card::new(title, rows, "click: its rows in the panel"))
+}
+
+fn joint(i: usize, session: &Session, views: &Views) -> Option<Card> {
+    let (machine, frame) = (&session.scenario().machine, session.frame());
+    let (_, joined) = views.stage().linkage().joints(&frame.q.units()).nth(i)?;
+    let names: Vec<&str> = joined.iter().filter_map(|j| Some(machine.links().get(*j)?.name.as_str())).collect();
+    let (last, before) = names.split_last()?;
+    let title = match before {
+        [] => format!("pin of link {last}"),
+        before => format!("pin of links {} and {last}", before.join(", ")),
+    };
+    // The relative angles between drives that meet here.
+    let drives: Vec<usize> = joined.iter().map(|j| machine.resolved_links()[*j].drive).collect();
+    let angles = machine.angles().iter().enumerate();
+    let meets = angles.filter(|(_, angle)| drives.contains(&angle.to) && drives.contains(&angle.from));
+    let row = |(k, angle): (usize, &crate::mechanics::machine::RelativeAngle)| {
+        let now = degrees(frame.a[k]);
+        let [low, high] = [*angle.limits.start(), *angle.limits.end()];
+        match low.is_finite() && high.is_finite() {
+            true => format!("a{} = {now}°, may be {}° to {}°", SUBSCRIPTS[k], degrees(low), degrees(high)),
+            false => format!("a{} = {now}°, turns freely", SUBSCRIPTS[k]),
+        }
+    };
+    let rows: Vec<String> = meets.map(row).collect();
+    Some(Card::new(title, rows, "click: joint limits in the panel"))
+}
+
+fn base(session: &Session) -> Card {
+    let (base, frame) = (&session.scenario().base, session.frame());
+    let moved = |rows: &mut Vec<String>| {
+        let at = frame.base.at;
+        rows.push(format!(
+            "moved by {} mm, turned by {} mrad",
+            signed(1e3 * at.norm(), 2),
+            signed(1e3 * frame.base.angle, 2)
+        ));
+    };
+    let mut rows = Vec::new();
+    let title = match base.kind {
+        BaseKind::Fixed => "base, fixed".to_owned(),
+        BaseKind::Compliant => format!("base on springs, {} kg", three_digits(base.mass)),
+        BaseKind::Free => format!("base that floats, {} kg", three_digits(base.mass)),
+    };
+    if base.moves() {
+        moved(&mut rows);
+    }
+    rows.push(format!("it feels a moment of {} N m", signed(frame.felt_moment(), 3)));
+    Card::new(title, rows, "click: its section in the panel")
+}

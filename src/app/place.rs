@@ -1,0 +1,113 @@
+//! Where in the panel a thing of the scene stands: clicked in the scene, its place is opened, scrolled to and marked for
+//! a moment; with pointer or keyboard on its place, the thing lights up in the scene.
+
+use egui::{Align, Context, Id, Rect, Shape, Ui};
+
+use super::theme::colour;
+use crate::picture::scene::options::Handle;
+use crate::picture::scene::palette::{Palette, faded};
+use crate::session::Session;
+
+/// How long a place stays marked, s.
+const MARKED: f64 = 1.6;
+
+/// What the places of one pass share.
+#[derive(Clone, Copy, Default)]
+struct Places {
+    /// The place that is marked, and until when, s; the latter unknown as long as it was not seen.
+    marked: Option<(Handle, Option<f64>)>,
+    /// What the pointer's or the keyboard's place is of.
+    lit: Option<Handle>,
+}
+
+fn id() -> Id {
+    Id::unique("places")
+}
+
+/// Where the panel keeps whether a section is unfolded.
+pub fn fold_id(title: &str) -> Id {
+    Id::unique(("fold", title))
+}
+
+/// Where it keeps which link or length its list of differences shows.
+pub fn chosen_id(what: &str) -> Id {
+    Id::unique(("differs", what))
+}
+
+/// The list of links that differ from the model.
+pub const LINKS: &str = "a link differs";
+
+/// Whether a thing has a place in the panel.
+pub fn is_in_panel(thing: Handle) -> bool {
+    use Handle::{Base, Boundary, Joint, Link, Payload, Ring, Waypoint};
+    matches!(thing, Link(_) | Joint(_) | Base | Payload | Waypoint(_) | Ring | Boundary)
+}
+
+/// The thing whose place stands for it.
+fn standing_for(thing: Handle) -> Handle {
+    match thing {
+        Handle::Boundary => Handle::Ring,
+        Handle::Joint(_) => Handle::Joint(0),
+        thing => thing,
+    }
+}
+
+/// Opens the place of a thing; it is scrolled to and marked when it is drawn next.
+pub fn open(ctx: &Context, thing: Handle, session: &Session) {
+    let thing = standing_for(thing);
+    ctx.data_mut(|data| {
+        let section = match thing {
+            Handle::Link(_) | Handle::Payload => Some("Plant"),
+            Handle::Base => Some("Base"),
+            _ => None,
+        };
+        if let Some(title) = section {
+            data.insert_temp(fold_id(title), true);
+        }
+        if let Handle::Link(i) = thing
+            && let Some(link) = session.scenario().machine.links().get(i)
+        {
+            data.insert_temp(chosen_id(LINKS), link.name.clone());
+        }
+        data.insert_temp(id(), Places { marked: Some((thing, None)), lit: None });
+    });
+}
+
+/// What has its place under the pointer or the keyboard; to be asked once all places have been drawn.
+pub fn lit(ctx: &Context) -> Option<Handle> {
+    ctx.data_mut(|data| data.get_temp_mut_or_default::<Places>(id()).lit.take())
+}
+
+/// The place of a thing.
+pub fn of<R>(ui: &mut Ui, thing: Handle, p: &Palette, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let behind = ui.painter().add(Shape::Noop);
+    let shown = ui.scope(add);
+    let rect = shown.response.rect;
+    let focused = ui.memory(egui::Memory::focused).and_then(|id| ui.ctx().read_response(id));
+    // The limits of all joints share one place.
+    let alone = !matches!(thing, Handle::Joint(_));
+    let over = ui.rect_contains_pointer(rect) || focused.is_some_and(|r| r.has_focus() && rect.contains_rect(r.rect));
+    if alone && over {
+        ui.data_mut(|data| data.get_temp_mut_or_default::<Places>(id()).lit = Some(thing));
+    }
+    let marked = ui.data(|data| data.get_temp::<Places>(id())).and_then(|places| places.marked);
+    if let Some((_, until)) = marked.filter(|(of, _)| *of == thing) {
+        mark(ui, rect, behind, thing, until, p);
+    }
+    shown.inner
+}
+
+fn mark(ui: &Ui, rect: Rect, behind: egui::layers::ShapeIdx, thing: Handle, until: Option<f64>, p: &Palette) {
+    let now = ui.input(|i| i.time);
+    let until = until.unwrap_or_else(|| {
+        ui.scroll_to_rect(rect, Some(Align::Center));
+        now + MARKED
+    });
+    let marked = (now < until).then_some((thing, Some(until)));
+    ui.data_mut(|data| data.get_temp_mut_or_default::<Places>(id()).marked = marked);
+    if marked.is_some() {
+        let fill = colour(faded(p.amber, 0.22));
+        ui.painter().set(behind, Shape::rect_filled(rect.expand2(egui::vec2(6.0, 3.0)), 5.0, fill));
+        ui.ctx().request_repaint_after_secs((until - now) as f32);
+    }
+}

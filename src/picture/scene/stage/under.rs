@@ -1,0 +1,91 @@
+//! What of the machine and of what is drawn about it lies under the pointer, and how it is lit up.
+
+use super::reaction;
+use crate::mechanics::planar::{Vector, unit};
+use crate::picture::scene::linkage::{Linkage, PLATE};
+use crate::picture::scene::options::{Handle, ViewOptions};
+use crate::picture::scene::palette::{Palette, Theme, mix, palette};
+use crate::picture::scene::pointer::Pointer;
+use crate::picture::scene::{Line, Scene, Solid};
+use crate::simulation::frame::Frame;
+
+/// How near the pointer has to be, px: to a link, a line, a pin and a payload.
+const NEAR_LINK: f64 = 6.0;
+const NEAR_LINE: f64 = 5.0;
+const NEAR_PIN: f64 = 6.0;
+const NEAR_PAYLOAD: f64 = 12.0;
+
+/// How much lighter, or in a light picture darker, what the pointer is on is drawn.
+const LIT: f32 = 0.45;
+
+fn seen_near(pointer: &Pointer, at: [f64; 3], most: f64) -> bool {
+    pointer.distance(at).is_some_and(|d| d < most)
+}
+
+/// The number of the link under the pointer; the uppermost of several.
+pub fn link(linkage: &Linkage, frame: &Frame, pointer: &Pointer) -> Option<usize> {
+    let (e, at) = (frame.q.units(), frame.base.at);
+    let near = |ends: [[f64; 3]; 2]| {
+        let ends = ends.map(|[x, y, z]| [x + at.re, y + at.im, z]);
+        pointer.distance_to_segment(ends).is_some_and(|d| d < NEAR_LINK)
+    };
+    let bars = linkage.bars().iter().enumerate();
+    bars.filter(|(_, bar)| near(bar.ends(&e))).max_by_key(|(_, bar)| bar.drive).map(|(i, _)| i)
+}
+
+/// The number of the pin under the pointer.
+pub fn joint(linkage: &Linkage, frame: &Frame, pointer: &Pointer) -> Option<usize> {
+    let (e, at) = (frame.q.units(), frame.base.at);
+    linkage.joints(&e).position(|([x, y, z], _)| seen_near(pointer, [x + at.re, y + at.im, z], NEAR_PIN))
+}
+
+/// Whether the payload at a place is under the pointer.
+pub fn payload(at: Vector, linkage: &Linkage, pointer: &Pointer) -> bool {
+    seen_near(pointer, [at.re, at.im, linkage.top()], NEAR_PAYLOAD)
+}
+
+/// Whether what the machine stands on is.
+pub fn base(linkage: &Linkage, moves: bool, frame: &Frame, pointer: &Pointer) -> bool {
+    let Some([x, y]) = pointer.ray().and_then(|ray| ray.at_height(linkage.bottom())) else { return false };
+    let at = (Vector::new(x, y) - frame.base.at) * unit(-frame.base.angle);
+    let [length, width] = PLATE.map(|part| part * linkage.reach());
+    at.norm() < linkage.foot() || (moves && at.re.abs() < length && at.im.abs() < width)
+}
+
+/// The arrow or the arc of the reaction.
+pub fn reaction(linkage: &Linkage, frame: &Frame, pointer: &Pointer) -> Option<Handle> {
+    let palette = palette(Theme::Dark);
+    let mut drawn = Scene::new(palette.background, linkage.model.clone());
+    reaction::draw(&mut drawn, linkage, &palette, frame, &ViewOptions::default(), "");
+    let hit = |name: &str| drawn.lines.iter().any(|l| l.name == name && line(l, pointer));
+    let all = [("reaction/force", Handle::Force), ("reaction/moment", Handle::Moment)];
+    all.into_iter().find(|(name, _)| hit(name)).map(|(_, handle)| handle)
+}
+
+/// Whether a line is under the pointer.
+pub fn line(line: &Line, pointer: &Pointer) -> bool {
+    let m = line.world_from_item;
+    let placed =
+        |p: &[f32; 3]| [0, 1, 2].map(|i| f64::from(m[0][i] * p[0] + m[1][i] * p[1] + m[2][i] * p[2] + m[3][i]));
+    let near = |ends: [[f64; 3]; 2]| pointer.distance_to_segment(ends).is_some_and(|d| d < NEAR_LINE);
+    line.strips.iter().any(|strip| strip.windows(2).any(|pair| near([placed(&pair[0]), placed(&pair[1])])))
+}
+
+/// Lights up what the pointer is on.
+pub fn light(solids: &mut [Solid], linkage: &Linkage, hot: Option<Handle>, palette: &Palette) {
+    let of = |solid: &Solid| match hot {
+        Some(Handle::Link(i)) => linkage.bars().get(i).is_some_and(|bar| *bar.item() == solid.name),
+        Some(Handle::Base) => solid.name.starts_with("machine/base"),
+        _ => false,
+    };
+    for solid in solids.iter_mut().filter(|solid| of(solid)) {
+        solid.colour = mix(solid.colour, palette.ink, LIT);
+    }
+    // Pins come in the order of their numbers.
+    let mut pins = solids.iter_mut().filter(|solid| solid.name == "machine/joints");
+    if let Some(Handle::Joint(i)) = hot
+        && let Some(pin) = pins.nth(i)
+    {
+        pin.colour = palette.amber;
+    }
+}
