@@ -38,7 +38,7 @@ struct Varying {
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(1) @binding(0) var<storage, read> areas: array<Area>;
 
-const CELLS = 64u; // a side; the index buffer counts on it
+override CELLS: u32 = 64u; // a side; the index buffer counts on it
 
 @vertex
 fn vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) i: u32) -> Varying {

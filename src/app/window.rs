@@ -14,7 +14,7 @@ use keeper::Keeper;
 use crate::app::jobs::Threads;
 use crate::app::{AppState, Command, Preferences};
 use crate::files::preferences;
-use crate::picture::paint::Renderers;
+use crate::picture::paint::{Renderers, draw_drafts};
 use crate::picture::render::offscreen::{Gpu, NoAdapter};
 use crate::picture::scene::palette::Theme;
 use crate::session::Refusal;
@@ -73,6 +73,10 @@ pub fn run(scenario: Scenario, theme: Option<Theme>) -> Result<(), WindowError> 
     let seen = opened.clone();
     let create: eframe::AppCreator<'_> = Box::new(move |cc| {
         let app = App::new(cc, app_state, Clock::Wall(None)).ok_or("no graphics adapter")?.kept(liked);
+        let adapter = cc.wgpu_render_state.as_ref().map(|state| state.adapter.get_info().device_type);
+        if adapter == Some(wgpu::DeviceType::Cpu) {
+            draw_drafts(&cc.egui_ctx);
+        }
         seen.set(true);
         Ok(Box::new(app))
     });

@@ -7,6 +7,7 @@ pub mod figure;
 pub mod range;
 pub mod search;
 pub mod svg;
+pub mod thin;
 
 use super::numbers::round_up;
 use super::scene::Rgba;

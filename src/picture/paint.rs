@@ -8,7 +8,7 @@ use egui::{
     Align2, CentralPanel, Color32, FontData, FontDefinitions, FontFamily, FontId, Frame, Pos2, Rect, Ui, Vec2, vec2,
 };
 
-use super::render::{Renderer, View};
+use super::render::{Quality, Renderer, View};
 use super::scene::camera::Camera;
 use super::scene::palette::faded;
 use super::scene::pointer::Pointer;
@@ -69,25 +69,61 @@ impl Spot {
     }
 }
 
-/// One renderer for each scene of a window; to stand among egui's callback resources.
+/// The renderers of each scene of a window; to stand among egui's callback resources.
 pub struct Renderers {
     device: wgpu::Device,
     format: wgpu::TextureFormat,
-    all: Vec<Renderer>,
+    all: Vec<Place>,
+}
+
+/// Where a scene of a window is drawn: a renderer for each quality that was asked for.
+#[derive(Default)]
+struct Place {
+    fine: Option<Renderer>,
+    draft: Option<Renderer>,
+    /// What was drawn last.
+    last: Option<(Arc<Scene>, View, Quality)>,
 }
 
 impl Renderers {
     /// `format` is that of the pass they draw in.
     pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
-        Self { device: device.clone(), format, all: vec![Renderer::new(device, format)] }
+        Self { device: device.clone(), format, all: Vec::new() }
     }
 
-    /// Made when a scene of this number is drawn for the first time.
-    fn of(&mut self, number: usize) -> &mut Renderer {
-        while self.all.len() <= number {
-            self.all.push(Renderer::new(&self.device, self.format));
+    /// Draws a scene where it is not the one that was drawn last. Renderers are made when they are first needed.
+    fn prepare(&mut self, queue: &wgpu::Queue, encoder: &mut wgpu::CommandEncoder, asked: &Paint) {
+        while self.all.len() <= asked.number {
+            self.all.push(Place::default());
         }
-        &mut self.all[number]
+        let place = &mut self.all[asked.number];
+        let is_there = place.last.as_ref().is_some_and(|(scene, view, quality)| {
+            Arc::ptr_eq(scene, &asked.scene) && *view == asked.view && *quality == asked.quality
+        });
+        if is_there {
+            return;
+        }
+        let renderer = match asked.quality {
+            Quality::Fine => &mut place.fine,
+            Quality::Draft => &mut place.draft,
+        };
+        renderer.get_or_insert_with(|| Renderer::drawing(&self.device, self.format, asked.quality)).prepare(
+            &self.device,
+            queue,
+            encoder,
+            &asked.scene,
+            &asked.view,
+        );
+        place.last = Some((asked.scene.clone(), asked.view, asked.quality));
+    }
+
+    /// What was drawn last of a scene.
+    fn drawn(&self, number: usize) -> Option<&Renderer> {
+        let place = self.all.get(number)?;
+        match place.last.as_ref()?.2 {
+            Quality::Fine => place.fine.as_ref(),
+            Quality::Draft => place.draft.as_ref(),
+        }
     }
 }
 
@@ -96,19 +132,20 @@ struct Paint {
     number: usize,
     scene: Arc<Scene>,
     view: View,
+    quality: Quality,
 }
 
 impl egui_wgpu::CallbackTrait for Paint {
     fn prepare(
         &self,
-        device: &wgpu::Device,
+        _device: &wgpu::Device,
         queue: &wgpu::Queue,
         _screen: &egui_wgpu::ScreenDescriptor,
         encoder: &mut wgpu::CommandEncoder,
         resources: &mut egui_wgpu::CallbackResources,
     ) -> Vec<wgpu::CommandBuffer> {
         if let Some(renderers) = resources.get_mut::<Renderers>() {
-            renderers.of(self.number).prepare(device, queue, encoder, &self.scene, &self.view);
+            renderers.prepare(queue, encoder, self);
         }
         Vec::new()
     }
@@ -119,10 +156,47 @@ impl egui_wgpu::CallbackTrait for Paint {
         pass: &mut wgpu::RenderPass<'static>,
         resources: &egui_wgpu::CallbackResources,
     ) {
-        if let Some(renderer) = resources.get::<Renderers>().and_then(|renderers| renderers.all.get(self.number)) {
+        if let Some(renderer) = resources.get::<Renderers>().and_then(|renderers| renderers.drawn(self.number)) {
             renderer.paint(pass);
         }
     }
+}
+
+/// From now on what moves is drawn in draft, and finely once it rests: for windows that the processor draws.
+pub fn draw_drafts(ctx: &egui::Context) {
+    ctx.data_mut(|data| data.insert_temp(drafts_id(), true));
+}
+
+fn drafts_id() -> egui::Id {
+    egui::Id::unique("what moves is drawn in draft")
+}
+
+/// How long nothing moves before it is drawn finely, s.
+const SETTLED: f64 = 0.12;
+
+/// What was asked for in the pass before, and since when.
+#[derive(Clone)]
+struct Asked {
+    scene: Arc<Scene>,
+    view: View,
+    since: f64,
+}
+
+/// The scene of the pass before, if this one looks the same, and how finely it is to be drawn.
+fn settle(ctx: &egui::Context, number: usize, scene: &Arc<Scene>, view: &View) -> (Arc<Scene>, Quality) {
+    let id = egui::Id::unique("what a scene looked like").with(number);
+    let (now, before) = (ctx.input(|i| i.time), ctx.data(|data| data.get_temp::<Asked>(id)));
+    let same = before.filter(|before| before.view == *view && before.scene.looks_like(scene));
+    let asked = same.unwrap_or_else(|| Asked { scene: scene.clone(), view: *view, since: now });
+    let rest = SETTLED - (now - asked.since);
+    let drafts = ctx.data(|data| data.get_temp(drafts_id()).unwrap_or(false));
+    let quality = if drafts && rest > 0.0 { Quality::Draft } else { Quality::Fine };
+    if quality == Quality::Draft {
+        ctx.request_repaint_after_secs(rest as f32);
+    }
+    let scene = asked.scene.clone();
+    ctx.data_mut(|data| data.insert_temp(id, asked));
+    (scene, quality)
 }
 
 /// Draws a scene into a rectangle; [`Renderers`] must be among egui's callback resources. Scenes of one window are
@@ -136,7 +210,8 @@ pub fn paint(ui: &Ui, number: usize, rect: Rect, scene: &Arc<Scene>, camera: &Ca
         size_px: [(rect.width() * pixels).round() as u32, (rect.height() * pixels).round() as u32],
         pixels_per_point: pixels,
     };
-    let paint = Paint { number, scene: scene.clone(), view };
+    let (scene, quality) = settle(ui.ctx(), number, scene, &view);
+    let paint = Paint { number, scene, view, quality };
     ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, paint));
 }
 

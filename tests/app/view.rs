@@ -2,6 +2,7 @@
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
+use stillbase::picture::paint::draw_drafts;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::views::ViewKind;
 use stillbase::planning::reactionless::PlanePoint;
@@ -9,8 +10,36 @@ use stillbase::planning::reactionless::PlanePoint;
 use super::{Window, drag, seen, session, window};
 use crate::Test;
 
-pub const TESTS: &[Test] =
-    tests![views_are_linked, dexterity_is_shown_with_its_key_where_there_is_a_workspace, runs_stand_side_by_side,];
+pub const TESTS: &[Test] = tests![
+    what_moves_is_drawn_in_draft_and_finely_once_it_rests,
+    views_are_linked,
+    dexterity_is_shown_with_its_key_where_there_is_a_workspace,
+    runs_stand_side_by_side,
+];
+
+/// Where the processor draws, a repaint is asked for once it rests, and then the picture is what it is elsewhere.
+fn what_moves_is_drawn_in_draft_and_finely_once_it_rests() {
+    let picture = |drafts: bool, rests: bool| {
+        let mut h = window("case-3", Theme::Dark);
+        if drafts {
+            draw_drafts(&h.ctx);
+        }
+        h.step();
+        h.key_press(Key::Space);
+        h.run_steps(12);
+        if rests {
+            h.key_press(Key::Space);
+            // 0.12 s, of 20 ms each, and one to see it.
+            h.run_steps(9);
+        }
+        (h.render().expect("drawn"), session(&h).frame().step)
+    };
+    let ((fine, step), (draft, moving)) = (picture(false, false), picture(true, false));
+    assert_eq!(step, moving);
+    let differing = fine.pixels().zip(draft.pixels()).filter(|(a, b)| a != b).count();
+    assert!(differing > 500, "{differing}");
+    assert_eq!(picture(false, true), picture(true, true));
+}
 
 /// Pulling in one view moves the session, so all of them follow.
 fn views_are_linked() {

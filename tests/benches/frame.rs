@@ -2,8 +2,9 @@
 //! tower, at 1440 × 900 and twice that.
 //!
 //! `cargo bench --bench frame` prints the median of each part: the interface (the steps of the simulation that are due,
-//! panels, plots and scene), its shapes, what is sent to the adapter, and what the adapter draws, waited for. The last
-//! column is the scene alone, drawn again at the size it has in the window.
+//! panels, plots and scene), its shapes, what is sent to the adapter, and what the adapter draws, waited for; then the
+//! mean of the processor's time for a frame, all threads together, where the system tells it. The last column is the
+//! scene alone, drawn finely at the size it has in the window.
 
 use std::time::{Duration, Instant};
 
@@ -11,7 +12,7 @@ use egui::epaint::Primitive;
 use egui_wgpu::{RendererOptions, ScreenDescriptor};
 use stillbase::app::{AppState, Command};
 use stillbase::picture::canvas::surface;
-use stillbase::picture::paint::{Renderers, install_fonts};
+use stillbase::picture::paint::{Renderers, draw_drafts, install_fonts};
 use stillbase::picture::render::offscreen::Gpu;
 use stillbase::picture::render::{Renderer, View};
 use stillbase::picture::scene::options::ViewOptions;
@@ -40,7 +41,8 @@ fn main() {
         Err(why) => return println!("no frame is drawn: {why}"),
     };
     println!("{}; medians of {FRAMES} frames, ms", gpu.name());
-    let part = ["interface", "shapes", "upload", "draw", "frame", "scene alone"].map(|name| format!("{name:>11}"));
+    let part = ["interface", "shapes", "upload", "draw", "frame", "processor", "scene alone"]
+        .map(|name| format!("{name:>11}"));
     println!("{:34} {}", "", part.join(" "));
     for (size, scale) in [([1440, 900], 1.0), ([2880, 1800], 2.0)] {
         for case in ["case-1", "case-2", "case-3"] {
@@ -63,21 +65,34 @@ fn measure(gpu: &Gpu, case: &str, view: ViewKind, doing: Doing, size: [u32; 2], 
     if doing == Doing::Plays {
         app_state.carry_out(Command::TogglePlay);
     }
-    let mut all: [Vec<Duration>; 6] = Default::default();
+    let mut all: [Vec<Duration>; 5] = Default::default();
+    let begun = processor_time();
     for i in 0..FRAMES {
-        let [interface, shapes, upload, draw] = screen.frame(&mut app_state, i);
-        let whole = interface + shapes + upload + draw;
-        let alone = screen.scene_alone(&app_state);
-        for (list, took) in all.iter_mut().zip([interface, shapes, upload, draw, whole, alone]) {
+        let parts = screen.frame(&mut app_state, i);
+        let whole = parts.iter().sum();
+        let [interface, shapes, upload, draw] = parts;
+        for (list, took) in all.iter_mut().zip([interface, shapes, upload, draw, whole]) {
             list.push(took);
         }
     }
+    let spent = processor_time().zip(begun).map(|(now, begun)| (now - begun) / FRAMES as f64);
+    let alone: Vec<Duration> = (0..20).map(|_| screen.scene_alone(&app_state)).collect();
     let median = |mut list: Vec<Duration>| {
         list.sort_unstable();
         format!("{:11.2}", list[list.len() / 2].as_secs_f64() * 1e3)
     };
+    let spent = spent.map_or_else(|| format!("{:>11}", "-"), |ms| format!("{ms:11.2}"));
     let [width, height] = size;
-    println!("{:34} {}", format!("{case} {view:?} {doing:?} {width}x{height}"), all.map(median).join(" "));
+    let name = format!("{case} {view:?} {doing:?} {width}x{height}");
+    println!("{name:34} {} {spent} {}", all.map(median).join(" "), median(alone));
+}
+
+/// The processor's time of all threads of this program so far, ms; Linux counts it in hundredths of a second.
+fn processor_time() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/self/stat").ok()?;
+    let fields: Vec<&str> = text.rsplit_once(')')?.1.split_whitespace().collect();
+    let ticks = |i: usize| fields.get(i)?.parse::<f64>().ok();
+    Some(10.0 * (ticks(11)? + ticks(12)?))
 }
 
 struct Screen<'a> {
@@ -98,6 +113,10 @@ impl<'a> Screen<'a> {
         egui.callback_resources.insert(Renderers::new(gpu.device(), format));
         let ctx = egui::Context::default();
         install_fonts(&ctx);
+        // As the window does.
+        if gpu.adapter().get_info().device_type == wgpu::DeviceType::Cpu {
+            draw_drafts(&ctx);
+        }
         Self {
             gpu,
             egui,

@@ -8,6 +8,7 @@ use stillbase::picture::charts::figure::{Figure, Item, Look};
 use stillbase::picture::charts::range::Extent;
 use stillbase::picture::charts::search::search;
 use stillbase::picture::charts::svg::svg;
+use stillbase::picture::charts::thin::thinned;
 use stillbase::picture::numbers::{at_step, spaced};
 use stillbase::picture::scene::palette::{Theme, palette};
 use stillbase::session::Session;
@@ -164,8 +165,7 @@ fn a_drawing_holds_what_the_plot_shows() {
         assert_eq!(text.matches("<tspan").count(), text.matches("</tspan>").count());
         assert!(text.contains(&plot.title.replace('&', "&amp;")) && text.ends_with("</svg>\n"), "{text}");
         assert!(!text.contains("NaN") && !text.contains("inf"));
-        let curves =
-            figure.items.iter().filter(|i| matches!(i, Item::Line { points, .. } if points.len() > 100)).count();
+        let curves = figure.items.iter().filter(|i| matches!(i, Item::Line { points, .. } if points.len() > 2)).count();
         assert_eq!(curves, plot.shown().count());
         for curve in &plot.curves {
             assert_eq!(text.contains(&curve.signal.symbol), curve.on, "{}", curve.signal.symbol);
@@ -188,4 +188,57 @@ fn a_drawing_holds_what_the_plot_shows() {
             assert!((s.mean - mean).abs() < 1e-12 * s.rms.max(1e-300), "{} {mean}", s.mean);
         }
     }
+}
+
+fn away([x, y]: [f32; 2], [from, to]: [[f32; 2]; 2]) -> f32 {
+    let way = [to[0] - from[0], to[1] - from[1]];
+    let length = way[0] * way[0] + way[1] * way[1];
+    let share = ((x - from[0]) * way[0] + (y - from[1]) * way[1]) / length.max(1e-12);
+    let share = share.clamp(0.0, 1.0);
+    (x - from[0] - share * way[0]).hypot(y - from[1] - share * way[1])
+}
+
+/// Sums of steps: smooth curves where steps are alike, hair where they are not.
+fn walk() -> impl Strategy<Value = Vec<[f32; 2]>> {
+    let step = (0.0..1.5f32, -1.0..1.0f32, 0..4u8);
+    prop::collection::vec(step, 0..300).prop_map(|steps| {
+        let (mut at, mut slope) = ([0.0f32, 0.0], 0.0f32);
+        let mut place = |(across, up, kind): (f32, f32, u8)| {
+            slope = if kind == 0 { 30.0 * up } else { slope + 0.1 * up };
+            at = if kind == 1 { [at[0] - 0.3 * across, at[1]] } else { [at[0] + across, at[1] + slope * across] };
+            at
+        };
+        steps.into_iter().map(&mut place).collect()
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    /// What is left out lies on the line that is left, in its order, and the ends stay.
+    #[test]
+    fn a_thinned_line_passes_all_its_points(points in walk(), tolerance in 0.01..0.5f32) {
+        let thin = thinned(&points, tolerance);
+        prop_assert_eq!((thin.first(), thin.last()), (points.first(), points.last()));
+        prop_assert!(thin.len() <= points.len());
+        let mut stretch = 0;
+        for point in &points {
+            // On this stretch or on a later one.
+            let found = (stretch..thin.len().saturating_sub(1))
+                .find(|i| away(*point, [thin[*i], thin[*i + 1]]) <= 1.5 * tolerance + 1e-3);
+            prop_assert!(found.is_some() || thin.len() < 2, "{:?}", point);
+            stretch = found.unwrap_or(stretch);
+        }
+    }
+}
+
+/// A smooth curve needs few points, and hair all of them.
+#[test]
+fn a_thinned_line_is_as_long_as_its_shape_needs() {
+    let wave: Vec<[f32; 2]> = (0..1000).map(|i| [0.3 * i as f32, 40.0 * (0.02 * i as f32).sin()]).collect();
+    let count = thinned(&wave, 0.1).len();
+    assert!(count < 100, "{count}");
+    let hair: Vec<[f32; 2]> = (0..1000).map(|i| [0.3 * i as f32, if i % 2 == 0 { 0.0 } else { 30.0 }]).collect();
+    assert_eq!(thinned(&hair, 0.1), hair);
+    assert_eq!(thinned(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [1.0, 1.0]], 0.1), [[0.0, 0.0], [2.0, 2.0], [1.0, 1.0]]);
 }

@@ -3,7 +3,7 @@
 use std::f32::consts::PI;
 use std::sync::Arc;
 use stillbase::picture::render::offscreen::{NoPicture, Picture};
-use stillbase::picture::render::{Renderer, View};
+use stillbase::picture::render::{Quality, Renderer, View};
 use stillbase::picture::scene::palette::{Theme, faded, palette};
 use stillbase::picture::scene::{Area, Changes, Line, Marker, Mesh, Model, Rgba, Scene, Solid, mesh};
 
@@ -12,6 +12,7 @@ use crate::gpu::{fresh, gpu};
 
 pub const TESTS: &[Test] = tests![
     an_empty_scene_is_its_background,
+    a_draft_differs_at_edges_only,
     a_solid_from_above_keeps_its_colour,
     bevels_are_darker_than_tops_but_keep_their_hue,
     the_nearer_solid_hides_the_other_whatever_the_order,
@@ -632,6 +633,27 @@ fn demo() -> Vec<(Scene, View)> {
         (scene(Theme::Dark), round),
         (scene(Theme::Light), round),
     ]
+}
+
+/// One sample a pixel: edges are rougher, and all else is the same.
+fn a_draft_differs_at_edges_only() {
+    let mut gpu = gpu();
+    let (device, queue) = (gpu.device().clone(), gpu.queue().clone());
+    let mut draft = Renderer::drawing(&device, wgpu::TextureFormat::Rgba8Unorm, Quality::Draft);
+    for (scene, view) in demo() {
+        let fine = gpu.picture(&scene, &view).unwrap();
+        let mut encoder = device.create_command_encoder(&Default::default());
+        draft.prepare(&device, &queue, &mut encoder, &scene, &view);
+        queue.submit([encoder.finish()]);
+        let texture = draft.picture().cloned().unwrap();
+        let rough = gpu.readback(&texture).unwrap();
+        assert_eq!((rough.width, rough.height), (fine.width, fine.height));
+        let gap = |(a, b): ([u8; 4], [u8; 4])| (0..4).map(|k| a[k].abs_diff(b[k])).max().unwrap_or(0);
+        let gaps: Vec<u8> = all(&fine).zip(all(&rough)).map(gap).collect();
+        let share = |least: u8| gaps.iter().filter(|gap| **gap >= least).count() as f64 / gaps.len() as f64;
+        // Edges are a hundredth of the picture; one sample is off by less than half of what lies on either side.
+        assert!(share(8) > 0.001 && share(8) < 0.04 && share(64) < 0.012, "{} {}", share(8), share(64));
+    }
 }
 
 /// Leaves the demonstration pictures where `STILLBASE_PICTURES` names a folder, for eyes to judge.

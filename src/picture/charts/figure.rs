@@ -4,6 +4,7 @@
 use super::choice::Plot;
 use super::colour;
 use super::drawn::Drawn;
+use super::thin::thinned;
 use crate::picture::numbers::{at_step, spaced};
 use crate::picture::scene::Rgba;
 use crate::picture::scene::palette::{Palette, faded};
@@ -132,12 +133,15 @@ pub fn dashes(run: usize) -> (Option<[f32; 2]>, f32) {
 }
 
 const SMALL: f32 = 10.0;
+/// So far off a curve nobody sees, points.
+const UNSEEN: f32 = 0.1;
 
 /// Axes, curves and cursors.
 pub fn body(plot: &Plot<'_>, drawn: &Drawn, axes: &Axes, look: &Look<'_>) -> Vec<Item> {
     let p = look.palette;
     let [left, top, right, bottom] = axes.sides;
-    let mut items = Vec::new();
+    // Words last: what is inside the axes is painted in one go.
+    let (mut items, mut words) = (Vec::new(), Vec::new());
     let small = |text: String| vec![Words { text, size: SMALL, bold: false, colour: p.dim }];
     let line = |points: Vec<[f32; 2]>, width, colour, dash| Item::Line { points, width, colour, dash, inside: true };
     // As many values as have room, and two at least.
@@ -149,7 +153,7 @@ pub fn body(plot: &Plot<'_>, drawn: &Drawn, axes: &Axes, look: &Look<'_>) -> Vec
         let y = axes.place([axes.x[0], value])[1];
         items.push(line(vec![[left, y], [right, y]], 1.0, faded(p.line, 0.9), None));
         let text = small(at_step(value, step));
-        items.push(Item::Text { at: [left - 6.0, y], anchor: [1.0, 0.5], words: text });
+        words.push(Item::Text { at: [left - 6.0, y], anchor: [1.0, 0.5], words: text });
     }
     let (values, step) = spaced(axes.x[0], axes.x[1], f64::from(((right - left) / 52.0).clamp(2.0, 12.0)));
     let last = values.len().saturating_sub(1);
@@ -167,10 +171,11 @@ pub fn body(plot: &Plot<'_>, drawn: &Drawn, axes: &Axes, look: &Look<'_>) -> Vec
         // The outermost stay inside.
         let anchor = if x > right - 14.0 { 1.0 } else { 0.5 };
         let at = [if anchor == 1.0 { right + 2.0 } else { x }, bottom + 3.0];
-        items.push(Item::Text { at, anchor: [anchor, 0.0], words: small(text) });
+        words.push(Item::Text { at, anchor: [anchor, 0.0], words: small(text) });
     }
     for run in &drawn.lines {
-        let points = run.points.iter().map(|point| axes.place(*point)).collect();
+        let points: Vec<[f32; 2]> = run.points.iter().map(|point| axes.place(*point)).collect();
+        let points = thinned(&points, UNSEEN);
         let (tone, dash) = pen(plot, run.curve, look);
         items.push(match run.run {
             None => line(points, 1.8, tone, dash),
@@ -182,6 +187,7 @@ pub fn body(plot: &Plot<'_>, drawn: &Drawn, axes: &Axes, look: &Look<'_>) -> Vec
         });
     }
     items.extend(cursors(plot, axes, look));
+    items.extend(words);
     items
 }
 

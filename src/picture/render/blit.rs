@@ -1,12 +1,13 @@
 //! The textures a scene is drawn into, and how that picture is copied onto the target of a window or figure.
 
-use super::kit::{COLOUR, DEPTH, SAMPLES};
+use super::kit::{COLOUR, DEPTH};
 use super::shader::{Shader, embedded};
 
 /// Multisampled colour and depth, the picture they resolve to, and the picture's bind group.
 pub(super) struct Target {
     pub(super) size_px: [u32; 2],
-    pub(super) samples: wgpu::TextureView,
+    /// None where a pixel has one sample only.
+    pub(super) samples: Option<wgpu::TextureView>,
     pub(super) depth: wgpu::TextureView,
     pub(super) picture: wgpu::Texture,
     pub(super) picture_view: wgpu::TextureView,
@@ -83,7 +84,7 @@ impl Blit {
         self.shader.reload(device);
     }
 
-    pub(super) fn target(&self, device: &wgpu::Device, size_px: [u32; 2]) -> Target {
+    pub(super) fn target(&self, device: &wgpu::Device, size_px: [u32; 2], samples: u32) -> Target {
         let [width, height] = size_px;
         let texture = |label, format, sample_count, usage| {
             device.create_texture(&wgpu::TextureDescriptor {
@@ -98,8 +99,9 @@ impl Blit {
             })
         };
         let only_here = wgpu::TextureUsages::empty();
-        let samples = texture("scene samples", COLOUR, SAMPLES, only_here).create_view(&Default::default());
-        let depth = texture("scene depth", DEPTH, SAMPLES, only_here).create_view(&Default::default());
+        let depth = texture("scene depth", DEPTH, samples, only_here).create_view(&Default::default());
+        let several = || texture("scene samples", COLOUR, samples, only_here).create_view(&Default::default());
+        let samples = (samples > 1).then(several);
         let read = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
         let picture = texture("scene", COLOUR, 1, read);
         let picture_view = picture.create_view(&Default::default());

@@ -5,6 +5,7 @@ use std::num::NonZeroU64;
 use bytemuck::{Pod, Zeroable as _};
 use wgpu::util::StagingBelt;
 
+use super::quality::Quality;
 use super::shader::twin;
 use super::view::View;
 use crate::picture::scene::Rgba;
@@ -12,7 +13,6 @@ use crate::picture::scene::Rgba;
 /// Colours are sRGB values, written and blended as they are.
 pub(super) const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-pub(super) const SAMPLES: u32 = 4;
 
 twin! {
     /// The view, for every shader: group 0, binding 0.
@@ -47,6 +47,7 @@ pub(super) struct Kit {
     list_layout: wgpu::BindGroupLayout,
     frame: wgpu::Buffer,
     pub(super) frame_group: wgpu::BindGroup,
+    pub(super) quality: Quality,
 }
 
 /// The usual entry points.
@@ -58,6 +59,8 @@ pub(super) struct Recipe<'a> {
     pub(super) module: &'a wgpu::ShaderModule,
     /// Entry points of the vertex and the fragment stage.
     pub(super) entries: [&'a str; 2],
+    /// What the shader leaves open.
+    pub(super) constants: &'a [(&'a str, f64)],
     pub(super) vertices: Option<wgpu::VertexBufferLayout<'a>>,
     pub(super) topology: wgpu::PrimitiveTopology,
     pub(super) cull: Option<wgpu::Face>,
@@ -68,7 +71,7 @@ pub(super) struct Recipe<'a> {
 }
 
 impl Kit {
-    pub(super) fn new(device: &wgpu::Device) -> Self {
+    pub(super) fn new(device: &wgpu::Device, quality: Quality) -> Self {
         let layout = |label, visibility, ty| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
                 label: Some(label),
@@ -99,7 +102,7 @@ impl Kit {
             layout: &frame_layout,
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: frame.as_entire_binding() }],
         });
-        Self { pipeline_layout, list_layout, frame, frame_group }
+        Self { pipeline_layout, list_layout, frame, frame_group, quality }
     }
 
     pub(super) fn write_frame(&self, upload: &mut Upload, view: &View, background: Rgba) {
@@ -111,12 +114,13 @@ impl Kit {
 
     /// A way to build pipelines that outlives this borrow.
     pub(super) fn pipelines(&self) -> impl Fn(&wgpu::Device, Recipe) -> wgpu::RenderPipeline + Send + Sync + 'static {
-        let layout = self.pipeline_layout.clone();
+        let (layout, samples) = (self.pipeline_layout.clone(), self.quality.samples());
         move |device, recipe| {
             let Recipe {
                 label,
                 module,
                 entries: [vertex, fragment],
+                constants,
                 vertices,
                 topology,
                 cull,
@@ -130,7 +134,7 @@ impl Kit {
                 vertex: wgpu::VertexState {
                     module,
                     entry_point: Some(vertex),
-                    compilation_options: Default::default(),
+                    compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
                     buffers: if vertices.is_some() { std::slice::from_ref(&vertices) } else { &[] },
                 },
                 primitive: wgpu::PrimitiveState { topology, cull_mode: cull, ..Default::default() },
@@ -141,7 +145,7 @@ impl Kit {
                     stencil: Default::default(),
                     bias: Default::default(),
                 }),
-                multisample: wgpu::MultisampleState { count: SAMPLES, ..Default::default() },
+                multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
                 fragment: Some(wgpu::FragmentState {
                     module,
                     entry_point: Some(fragment),

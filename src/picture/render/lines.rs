@@ -43,6 +43,7 @@ impl Lines {
                     label,
                     module,
                     entries: ENTRIES,
+                    constants: &[],
                     vertices: None,
                     topology: wgpu::PrimitiveTopology::TriangleStrip,
                     cull: None,

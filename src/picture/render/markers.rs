@@ -30,6 +30,7 @@ impl Markers {
                 label: "markers",
                 module,
                 entries: ENTRIES,
+                constants: &[],
                 vertices: None,
                 topology: wgpu::PrimitiveTopology::TriangleStrip,
                 cull: None,

@@ -12,11 +12,13 @@ mod kit;
 mod lines;
 mod markers;
 pub mod offscreen;
+mod quality;
 mod shader;
 mod solids;
 mod view;
 mod workspace;
 
+pub use quality::Quality;
 pub use shader::Twin;
 pub use view::View;
 
@@ -39,7 +41,12 @@ pub struct Renderer {
 impl Renderer {
     /// `target_format` is that of the pass [`paint`](Self::paint) draws in; the pass has one sample and no depth.
     pub fn new(device: &wgpu::Device, target_format: wgpu::TextureFormat) -> Self {
-        let kit = kit::Kit::new(device);
+        Self::drawing(device, target_format, Quality::Fine)
+    }
+
+    /// The same, as finely as asked for.
+    pub fn drawing(device: &wgpu::Device, target_format: wgpu::TextureFormat, quality: Quality) -> Self {
+        let kit = kit::Kit::new(device, quality);
         Self {
             belt: StagingBelt::new(device.clone(), 1 << 18),
             solids: solids::Solids::new(device, &kit),
@@ -67,7 +74,7 @@ impl Renderer {
         self.blit.reload(device);
         let target = match self.target.take() {
             Some(target) if target.size_px == view.size_px => target,
-            _ => self.blit.target(device, view.size_px),
+            _ => self.blit.target(device, view.size_px, self.kit.quality.samples()),
         };
         let target = self.target.insert(target);
 
@@ -80,13 +87,15 @@ impl Renderer {
 
         let [r, g, b, a] = scene.background.map(f64::from);
         let background = wgpu::Color { r: r * a, g: g * a, b: b * a, a };
+        // Of several samples only what they come to is kept.
+        let store = if target.samples.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &target.samples,
+                view: target.samples.as_ref().unwrap_or(&target.picture_view),
                 depth_slice: None,
-                resolve_target: Some(&target.picture_view),
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(background), store: wgpu::StoreOp::Discard },
+                resolve_target: target.samples.as_ref().map(|_| &target.picture_view),
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(background), store },
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &target.depth,

@@ -96,6 +96,7 @@ impl Solids {
                     label,
                     module,
                     entries,
+                    constants: &[],
                     vertices: Some(wgpu::VertexBufferLayout {
                         array_stride: size_of::<Vertex>() as u64,
                         step_mode: wgpu::VertexStepMode::Vertex,

@@ -28,9 +28,6 @@ twin! {
     }
 }
 
-/// Cells a side; the shader counts on the same.
-const CELLS: u16 = 64;
-
 pub(super) struct Workspace {
     shader: Shader<wgpu::RenderPipeline>,
     list: List<Area>,
@@ -41,12 +38,13 @@ pub(super) struct Workspace {
 
 impl Workspace {
     pub(super) fn new(device: &wgpu::Device, kit: &Kit) -> Self {
-        let pipeline = kit.pipelines();
+        let (pipeline, cells) = (kit.pipelines(), kit.quality.cells());
         let build = move |device: &wgpu::Device, module: &wgpu::ShaderModule| {
             let recipe = Recipe {
                 label: "workspace",
                 module,
                 entries: ENTRIES,
+                constants: &[("CELLS", f64::from(cells))],
                 vertices: None,
                 topology: wgpu::PrimitiveTopology::TriangleList,
                 cull: None,
@@ -56,14 +54,14 @@ impl Workspace {
             };
             pipeline(device, recipe)
         };
-        let vertex = |column: u16, row: u16| row * (CELLS + 1) + column;
+        let vertex = |column: u16, row: u16| row * (cells + 1) + column;
         let cell = |column, row| {
             let [a, b] = [vertex(column, row), vertex(column + 1, row)];
             let [c, d] = [vertex(column, row + 1), vertex(column + 1, row + 1)];
             [a, b, d, a, d, c]
         };
         let corners: Vec<u16> =
-            (0..CELLS).flat_map(|row| (0..CELLS).flat_map(move |column| cell(column, row))).collect();
+            (0..cells).flat_map(|row| (0..cells).flat_map(move |column| cell(column, row))).collect();
         Self {
             shader: Shader::new(device, embedded!("workspace"), Box::new(build)),
             list: List::new(device, kit, "areas"),

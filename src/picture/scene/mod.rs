@@ -346,4 +346,12 @@ impl Scene {
             labels: Vec::new(),
         }
     }
+
+    /// Whether another one looks the same but for its words.
+    pub fn looks_like(&self, other: &Self) -> bool {
+        let Self { background, model, areas, solids, lines, markers, labels: _ } = self;
+        Arc::ptr_eq(model, &other.model)
+            && (background, areas, solids, markers) == (&other.background, &other.areas, &other.solids, &other.markers)
+            && *lines == other.lines
+    }
 }
