@@ -155,21 +155,21 @@ pub const ACTIONS: &[Action] = actions![
         turn(s, v, -TURN[0])
     };
     Task, "Turn the task along with b", [], "left panel", |_, v| Some(Command::TurnTask(!v.turn_task));
-    Task, "Draw a path with the pointer", [on(PLAIN, Key::P)], "above the scene", |_, v| {
+    Task, "Draw a path with the pointer", [on(PLAIN, Key::P)], "tool bar", |_, v| {
         of_machine(v, Command::Draw(v.stroke.is_none()))
     };
-    Task, "Push the end effector with the pointer", [on(PLAIN, Key::U)], "above the scene", |_, v| {
+    Task, "Push the end effector with the pointer", [on(PLAIN, Key::U)], "tool bar", |_, v| {
         of_machine(v, Command::Push(!v.pushing))
     };
 
-    View, "The next view: 2D, 3D, joint space, tower", [on(PLAIN, Key::V)], "above the scene", |_, v| {
+    View, "The next view: 2D, 3D, joint space, tower", [on(PLAIN, Key::V)], "tool bar", |_, v| {
         Some(Command::View(v.view.next()))
     };
-    View, "2D: the machine from above", [], "above the scene", |_, v| view(v, ViewKind::Flat);
-    View, "3D: the machine in space", [], "above the scene", |_, v| view(v, ViewKind::Space);
-    View, "Joint space", [], "above the scene", |_, v| view(v, ViewKind::Joints);
-    View, "Tower of workspaces", [], "above the scene", |_, v| view(v, ViewKind::Tower);
-    View, "Show everything", [on(PLAIN, Key::F)], "keyboard", |_, _| Some(Command::Fit);
+    View, "2D: the machine from above", [], "tool bar", |_, v| view(v, ViewKind::Flat);
+    View, "3D: the machine in space", [], "tool bar", |_, v| view(v, ViewKind::Space);
+    View, "Joint space", [], "tool bar", |_, v| view(v, ViewKind::Joints);
+    View, "Tower of workspaces", [], "tool bar", |_, v| view(v, ViewKind::Tower);
+    View, "Show everything", [on(PLAIN, Key::F)], "tool bar", |_, _| Some(Command::Fit);
     View, "Zoom in", [on(PLAIN, Key::Plus), on(PLAIN, Key::Equals)], "scene, wheel", |_, _| {
         Some(Command::Look(Look::Zoom(ZOOM)))
     };
@@ -183,9 +183,9 @@ pub const ACTIONS: &[Action] = actions![
     View, "Turn or pan the view right", [on(ALT, Key::ArrowRight)], "scene, drag", |_, _| look(ORBIT, 0.0);
     View, "Turn or pan the view up", [on(ALT, Key::ArrowUp)], "scene, drag", |_, _| look(0.0, ORBIT);
     View, "Turn or pan the view down", [on(ALT, Key::ArrowDown)], "scene, drag", |_, _| look(0.0, -ORBIT);
-    View, "Shade the workspace by dexterity, one measure after the other", [on(PLAIN, Key::J)], "above the scene",
+    View, "Shade the workspace by dexterity, one measure after the other", [on(PLAIN, Key::J)], "tool bar",
         |_, v| of_machine(v, Command::Dexterity(Measure::after(v.dexterity)));
-    View, "Snapshots along the motion", [on(PLAIN, Key::S)], "above the scene", |_, v| {
+    View, "Snapshots along the motion", [on(PLAIN, Key::S)], "tool bar", |_, v| {
         of_machine(v, Command::Snapshots(!v.snapshots))
     };
     View, "Exaggerate the motion of the base, or show it as it is", [on(PLAIN, Key::X)], "left panel, base", |s, v| {
@@ -202,15 +202,15 @@ pub const ACTIONS: &[Action] = actions![
     };
     View, "Light or dark", [on(PLAIN, Key::L)], "top bar", |_, v| Some(Command::Theme(other(v.theme)));
 
-    Analysis, "The same task done in other ways, side by side", [on(PLAIN, Key::C)], "above the scene", |_, v| {
+    Analysis, "The same task done in other ways, side by side", [on(PLAIN, Key::C)], "tool bar", |_, v| {
         Some(Command::Compare(!v.compare))
     };
     Analysis, "Add this run to the runs side by side", [], "side by side", |_, v| {
         v.compare.then_some(Command::Comparison(ComparisonCommand::Keep))
     };
     Analysis, "Tolerances: what the bases of many machines feel, and the spectrum", [on(PLAIN, Key::T)],
-        "above the scene", |_, v| Some(Command::Study(!v.study));
-    Analysis, "Inside the machine: what the pins carry", [on(PLAIN, Key::I)], "above the scene", |_, v| {
+        "tool bar", |_, v| Some(Command::Study(!v.study));
+    Analysis, "Inside the machine: what the pins carry", [on(PLAIN, Key::I)], "tool bar", |_, v| {
         Some(Command::Pins(!v.pins))
     };
     Analysis, "Plot any signal", [on(PLAIN, Key::A)], "below the plots", |_, _| Some(Command::LookFor);

@@ -79,6 +79,8 @@ pub enum Command {
     WritePlot(std::path::PathBuf, String, PlotFile),
     /// Show or hide snapshots along the motion.
     Snapshots(bool),
+    /// The pointer neither draws nor pushes.
+    TakeHold,
     /// Let the pointer push the end effector when it drags it, or no longer.
     Push(bool),
     /// Exaggerate the motion of the base as much as it takes to be seen, or show it as it is.
@@ -155,6 +157,7 @@ impl Command {
             | Self::Charts(_)
             | Self::LookFor
             | Self::Snapshots(_)
+            | Self::TakeHold
             | Self::Push(_)
             | Self::Exaggerate(_)
             | Self::TurnTask(_)

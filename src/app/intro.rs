@@ -165,6 +165,14 @@ impl Intro {
         caption(ui, rect, &p, "Reactionless path", words, now.wrench.total().moment, p.zero);
     }
 
+    /// What lies over a scene: the present hint, and while both runs are to be seen what they are about.
+    pub fn covers(&self, ctx: &egui::Context, rect: egui::Rect, both: bool) -> Vec<egui::Rect> {
+        let usual = egui::Rect::from_min_max(rect.right_bottom() - vec2(406.0, 140.0), rect.right_bottom());
+        let hint = HINTS.get(self.hint).map(|_| ctx.memory(|m| m.area_rect(Id::unique("hint"))).unwrap_or(usual));
+        let caption = egui::Rect::from_min_size(rect.min, vec2(rect.width().min(420.0), 108.0));
+        hint.into_iter().chain(both.then_some(caption)).collect()
+    }
+
     /// The present hint, over the lower right corner of the scene.
     pub fn show_hint(
         &self,

@@ -19,8 +19,10 @@ use crate::session::scenario::Value;
 use crate::session::{Edit, Session};
 use crate::settings::change::DEFAULT;
 
-/// How wide it is made by itself, points.
-const USUAL: f32 = 262.0;
+/// How wide it is made by itself, points: a share of the window, between these.
+const SHARE: f32 = 0.17;
+const NARROWEST: f32 = 262.0;
+const WIDEST: f32 = 320.0;
 
 /// Draws this panel; how wide it was made.
 pub fn show(
@@ -32,8 +34,9 @@ pub fn show(
 ) -> Option<f32> {
     let p = view_state.palette();
     let frame = Frame::new().inner_margin(Margin { left: 16, right: 10, top: 12, bottom: 8 });
-    let panel = Panel::left("side")
-        .default_size(view_state.side.width.unwrap_or(USUAL))
+    let usual = (SHARE * ui.ctx().content_rect().width()).clamp(NARROWEST, WIDEST).round();
+    let panel = Panel::left(("side", usual as u32))
+        .default_size(view_state.side.width.unwrap_or(usual))
         .size_range(220.0..=480.0)
         .resizable(true);
     let shown = panel.frame(frame).show(ui, |ui| {
@@ -50,7 +53,7 @@ pub fn show(
             all::show(ui, facts, &p, commands);
         });
     });
-    view_state.side.made(shown.response.rect.width(), USUAL)
+    view_state.side.made(shown.response.rect.width(), usual)
 }
 
 fn pose_constant(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewState, commands: &mut Vec<Command>) {

@@ -10,15 +10,15 @@ use super::change::{Change, Source};
 use super::facts::Facts;
 use super::saving::{self, Saving};
 use super::{
-    Activity, Command, Finder, Intro, Panel, Preferences, Recovery, ViewState, compare, finder, keys, order, place,
-    plots, side, status, study, theme, top, viewport,
+    Activity, Command, Finder, Framing, Intro, Panel, Preferences, Recovery, ViewState, compare, finder, keys, order,
+    place, plots, rail, side, status, study, theme, top, viewport,
 };
 use crate::app::widgets;
 use crate::mechanics::machine::Machine;
 use crate::picture::scene::exaggeration::exaggeration;
 use crate::picture::scene::palette::Theme;
 use crate::picture::scene::stage::Stage;
-use crate::picture::scene::views::{ViewKind, Views};
+use crate::picture::scene::views::Views;
 use crate::session::scenario::{Scenario, Task};
 use crate::session::{Edit, Refusal, Session};
 use crate::simulation::frame::Totals;
@@ -297,6 +297,7 @@ impl AppState {
         top::show(ui, &self.session, (&self.facts, &self.saving.recent), &self.view_state, &mut commands);
         let under_way = self.background.under_way();
         status::show(ui, &self.session, &self.facts, &self.view_state, under_way, &mut commands);
+        rail::show(ui, &self.view_state, &mut commands);
         if let Some(comparison) = &self.comparison {
             compare::show(ui, comparison, &self.view_state, &mut commands);
         }
@@ -399,6 +400,7 @@ impl AppState {
                 self.view_state.pushing = push;
                 self.view_state.stroke = self.view_state.stroke.take().filter(|_| !push);
             }
+            Command::TakeHold => (self.view_state.stroke, self.view_state.pushing) = (None, false),
             Command::Exaggerate(on) => self.view_state.exaggerates_base = on,
             Command::EndGesture => self.session.end_gesture(),
             Command::TogglePlay if self.session.is_playing() => self.session.pause(),
@@ -425,7 +427,7 @@ impl AppState {
             Command::Cancel(activity) => return Ok(Some(self.cancel(activity))),
             Command::View(view) => self.view_state.view = view,
             Command::Dexterity(shown) => self.view_state.dexterity = shown,
-            Command::Fit => *self.view_state.camera_mut() = self.views.camera(self.view_state.view),
+            Command::Fit => self.view_state.framing[self.view_state.view as usize] = Framing::Wanted,
             Command::Theme(theme) => self.view_state.theme = theme,
             Command::AskToLeave(asks) => self.saving.asks = asks,
             Command::Leave => (self.saving.asks, self.saving.leaves) = (false, true),
@@ -484,12 +486,9 @@ impl AppState {
         let key = StageKey::of(&self.session);
         if key != self.stage_of {
             let views = Views::of(self.session.run());
-            for kind in ViewKind::ALL {
-                // A camera that was not moved goes on showing everything.
-                let camera = &mut self.view_state.cameras[kind as usize];
-                if *camera == self.views.camera(kind) {
-                    *camera = views.camera(kind);
-                }
+            // A camera that was not moved goes on showing everything.
+            if key.machine != self.stage_of.machine {
+                self.view_state.framing.iter_mut().for_each(Framing::renew);
             }
             self.views = Arc::new(views);
             self.signals = signals(&self.session.scenario().machine);

@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use crate::app::theme::other;
 use crate::app::widgets::name;
-use egui::{Align, ComboBox, Frame, Layout, Margin, Panel, Response, RichText, Sense, Shape, Stroke, Ui, pos2, vec2};
+use egui::{Align, ComboBox, Frame, Layout, Margin, Panel, RichText, Ui};
 
 use super::actions::SPEEDS;
 use super::facts::Facts;
+use super::icon::{Icon, IconButton};
 use super::theme::{bold, colour, plain};
 use super::{Command, FileDialog, PlotFile, Purpose, ViewState};
 use crate::mechanics::machine::{self, Machine};
@@ -41,6 +42,11 @@ pub fn show(
     });
 }
 
+/// A narrow window keeps its room for the time line.
+fn is_narrow(ui: &Ui) -> bool {
+    ui.ctx().content_rect().width() < 1200.0
+}
+
 fn machines(ui: &mut Ui, session: &Session, changed: bool, commands: &mut Vec<Command>) {
     let present = &session.scenario().machine;
     let current = if changed { format!("{} *", present.name()) } else { present.name().to_owned() };
@@ -49,7 +55,10 @@ fn machines(ui: &mut Ui, session: &Session, changed: bool, commands: &mut Vec<Co
     } else {
         "The machine; another one of these brings a task that shows what it is for"
     };
-    let combo = ComboBox::from_id_salt("machine").selected_text(&current).width(136.0).truncate();
+    let combo = ComboBox::from_id_salt("machine")
+        .selected_text(&current)
+        .width(if is_narrow(ui) { 104.0 } else { 136.0 })
+        .truncate();
     let response = combo.show_ui(ui, |ui| {
         for machine in machine::builtins() {
             let chosen = machine == present;
@@ -72,7 +81,10 @@ fn scenarios(ui: &mut Ui, session: &Session, recent: &[PathBuf], changed: bool, 
     let current = session.scenario();
     let shown = if current.title.is_empty() { &current.name } else { &current.title };
     let shown = if changed { format!("{shown} *") } else { shown.clone() };
-    let combo = ComboBox::from_id_salt("scenario").selected_text(shown).width(196.0).truncate();
+    let combo = ComboBox::from_id_salt("scenario")
+        .selected_text(shown)
+        .width(if is_narrow(ui) { 150.0 } else { 196.0 })
+        .truncate();
     let response = combo.show_ui(ui, |ui| {
         let cases = Scenario::cases().count();
         for (i, builtin) in Scenario::builtins().enumerate() {
@@ -113,20 +125,18 @@ fn scenarios(ui: &mut Ui, session: &Session, recent: &[PathBuf], changed: bool, 
 }
 
 fn transport(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
-    let start = [Icon::Bar(-5.0), Icon::Left(-4.0)];
-    if icon(ui, view_state, "Start", "To the start (Home)", &start).clicked() {
-        commands.push(Command::Seek(0.0));
-    }
-    let (label, shape): (_, &[Icon]) = match session.is_playing() {
-        true => ("Pause", &[Icon::Bar(-3.0), Icon::Bar(3.0)]),
-        false => ("Play", &[Icon::Right(-4.0)]),
+    let p = view_state.palette();
+    let mut button = |icon: Icon, label: &str, tip: &str, command: Command| {
+        if IconButton::of(icon, label, tip).show(ui, &p).clicked() {
+            commands.push(command);
+        }
     };
-    if icon(ui, view_state, label, &format!("{label} (Space)"), shape).clicked() {
-        commands.push(Command::TogglePlay);
+    button(Icon::Start, "Start", "To the start (Home)", Command::Seek(0.0));
+    match session.is_playing() {
+        true => button(Icon::Pause, "Pause", "Pause (Space)", Command::TogglePlay),
+        false => button(Icon::Play, "Play", "Play (Space)", Command::TogglePlay),
     }
-    if icon(ui, view_state, "Step", "One step on (→)", &[Icon::Right(-6.0), Icon::Bar(5.0)]).clicked() {
-        commands.push(Command::Step(1));
-    }
+    button(Icon::Step, "Step", "One step on (→)", Command::Step(1));
     let text = |s: f64| format!("{s}×");
     let combo = ComboBox::from_id_salt("speed").selected_text(text(view_state.speed)).width(58.0);
     let response = combo.show_ui(ui, |ui| {
@@ -148,10 +158,9 @@ fn timeline(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
         false => format!("{time:.3} s"),
     };
     ui.label(RichText::new(text).font(plain(12.5)).color(colour(p.dim)));
-    let tone = if view_state.loops { p.amber } else { p.dim };
-    let words = RichText::new("loop").font(plain(12.5)).color(colour(tone));
     let tip = "Play over and over, what plots show of it if a range was chosen there (O)";
-    if ui.add(egui::Button::selectable(view_state.loops, words).frame(false)).on_hover_text(tip).clicked() {
+    let again = IconButton { on: Some(view_state.loops), ..IconButton::of(Icon::Loop, "loop", tip) };
+    if again.show(ui, &p).clicked() {
         commands.push(Command::Loop(!view_state.loops));
     }
     ui.spacing_mut().slider_width = (ui.available_width() - 16.0).max(60.0);
@@ -174,7 +183,7 @@ fn right_end(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &
         commands.push(Command::Help(!view_state.help));
     }
     // Where there is room it reads as what it is.
-    let words = if ui.ctx().content_rect().width() >= 1200.0 { "Search commands   Ctrl K" } else { "Ctrl K" };
+    let words = if is_narrow(ui) { "Ctrl K" } else { "Search commands   Ctrl K" };
     let words = RichText::new(words).font(plain(12.0)).color(colour(p.dim));
     let find = egui::Button::new(words).fill(colour(p.background)).stroke((1.0, colour(p.line))).corner_radius(8);
     let find = ui.add(find).on_hover_text("Every command, by a few letters of its name (Ctrl K)");
@@ -183,48 +192,13 @@ fn right_end(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &
         commands.push(Command::Find(true));
     }
     let word = if view_state.theme == Theme::Dark { "Light" } else { "Dark" };
-    if ui.add(egui::Button::new(dim(word)).frame(false)).on_hover_text("Light or dark (L)").clicked() {
+    if IconButton::of(Icon::Halves, word, "Light or dark (L)").show_in(ui, &p, colour(p.dim)).clicked() {
         commands.push(Command::Theme(other(view_state.theme)));
     }
-    let record = egui::Button::new(RichText::new("     Record")).frame(false);
-    let record = ui.add(record).on_hover_text("Write this run for the Rerun viewer (R)");
-    name(&record, "Record");
-    ui.painter().circle_filled(pos2(record.rect.left() + 14.0, record.rect.center().y), 4.5, colour(p.reaction));
-    if record.clicked() {
+    let record = IconButton::of(Icon::Record, "Record", "Write this run for the Rerun viewer (R)");
+    if record.show_in(ui, &p, colour(p.reaction)).clicked() {
         commands.push(Command::Dialog(Some(FileDialog::suggest(session, Purpose::Record))));
     }
-}
-
-/// A part of an icon, at a place along x.
-enum Icon {
-    Bar(f32),
-    Left(f32),
-    Right(f32),
-}
-
-fn icon(ui: &mut Ui, view_state: &ViewState, label: &str, tip: &str, parts: &[Icon]) -> Response {
-    let p = view_state.palette();
-    let (rect, response) = ui.allocate_exact_size(vec2(28.0, 26.0), Sense::click());
-    if response.hovered() || response.has_focus() {
-        ui.painter().rect_filled(rect, 6.0, colour(p.line));
-    }
-    let c = rect.center();
-    let ink = colour(p.ink);
-    for part in parts {
-        let triangle = |tip: f32, back: f32| {
-            let points = vec![pos2(tip, c.y), pos2(back, c.y - 6.0), pos2(back, c.y + 6.0)];
-            Shape::convex_polygon(points, ink, Stroke::NONE)
-        };
-        ui.painter().add(match part {
-            Icon::Bar(x) => {
-                Shape::line_segment([pos2(c.x + x, c.y - 6.0), pos2(c.x + x, c.y + 6.0)], Stroke::new(2.5, ink))
-            }
-            Icon::Left(x) => triangle(c.x + x, c.x + x + 9.5),
-            Icon::Right(x) => triangle(c.x + x + 9.5, c.x + x),
-        });
-    }
-    name(&response, label);
-    response.on_hover_text(tip)
 }
 
 /// Asks for a file name.

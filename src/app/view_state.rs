@@ -6,6 +6,7 @@ use crate::app::{FileDialog, Look};
 use crate::picture::charts::choice::Choice;
 use crate::picture::scene::Measure;
 use crate::picture::scene::camera::Camera;
+use crate::picture::scene::framing::Content;
 use crate::picture::scene::options::{Handle, Refused};
 use crate::picture::scene::palette::{Palette, Theme, palette};
 use crate::picture::scene::pick::Pick;
@@ -43,6 +44,28 @@ pub struct Finder {
     pub chosen: usize,
 }
 
+/// Whether a view shows everything.
+#[derive(Clone, Debug, Default)]
+pub enum Framing {
+    /// It is to, from the next pass on.
+    #[default]
+    Wanted,
+    /// It does, of what there was when it was asked for, in a scene of this size: a scene of another size is framed
+    /// anew, while what moves in it moves nothing else.
+    Held(Arc<Content>, [f32; 2]),
+    /// A hand has moved it.
+    Free,
+}
+
+impl Framing {
+    /// After another session was opened, or another machine taken: what was not moved by hand shows everything.
+    pub fn renew(&mut self) {
+        if matches!(self, Self::Held(..)) {
+            *self = Self::Wanted;
+        }
+    }
+}
+
 /// A panel beside the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Panel {
@@ -72,6 +95,8 @@ pub struct ViewState {
     pub view: ViewKind,
     /// From where each view is seen, in the order of [`ViewKind::ALL`].
     pub cameras: [Camera; 4],
+    /// Which of them show everything.
+    pub framing: [Framing; 4],
     /// The workspace is shaded by this measure.
     pub dexterity: Option<Measure>,
     /// Simulated seconds a second.
@@ -139,6 +164,7 @@ impl ViewState {
             plots: Panel { shown: true, width: None },
             view: ViewKind::default(),
             cameras: ViewKind::ALL.map(|kind| views.camera(kind)),
+            framing: Default::default(),
             dexterity: None,
             speed: 1.0,
             loops: false,
@@ -195,7 +221,9 @@ impl ViewState {
         }
     }
 
+    /// The camera, for a hand that moves it.
     pub(super) fn camera_mut(&mut self) -> &mut Camera {
+        self.framing[self.view as usize] = Framing::Free;
         &mut self.cameras[self.view as usize]
     }
 }

@@ -7,7 +7,7 @@ use egui::{CentralPanel, CursorIcon, Frame, PointerButton, PopupAnchor, Pos2, Re
 use super::card::Card;
 use super::intro::Intro;
 use super::widgets::name;
-use super::{Command, ViewState, place, set_b, switch};
+use super::{Command, ViewState, corner, framing, place, set_b};
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::picture::paint::{Spot, paint, words};
 use crate::picture::scene::exaggeration::exaggerated;
@@ -29,9 +29,7 @@ pub fn show(
     commands: &mut Vec<Command>,
 ) {
     CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
-        // The bar stands above the scene, so that it covers nothing of it.
         ui.spacing_mut().item_spacing.y = 0.0;
-        switch::bar(ui, view_state, commands);
         let mut room = ui.available_size();
         let intro = intro.filter(|_| view_state.view.shows_machine());
         let both = intro.filter(|intro| intro.shows_both(room.x));
@@ -43,6 +41,9 @@ pub fn show(
         let whole = ui.available_rect_before_wrap();
         let rect = Rect::from_min_max(whole.right_bottom() - room, whole.right_bottom());
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
+        let mut covered = vec![corner::strip(rect)];
+        covered.extend(intro.into_iter().flat_map(|intro| intro.covers(ui.ctx(), rect, both.is_some())));
+        framing::keep(rect, &covered, (session, views), || motion(session), view_state);
         name(&response, "Scene: the machine, its reactionless workspace and its target");
         // The pointer works on the machine as it is drawn, enlarged motion of the base included.
         let shown = exaggerated(session.frame(), view_state.base_exaggeration());
@@ -76,7 +77,7 @@ pub fn show(
         let scene = Arc::new(views.scene(view_state.view, session.frame(), &options, view_state.camera()));
         paint(ui, 0, rect, &scene, view_state.camera());
         words(ui, &Spot { rect, camera: *view_state.camera() }, &scene);
-        switch::corners(ui, rect, view_state, views, commands);
+        corner::show(ui, rect, view_state, views, commands);
         if let Some(intro) = both {
             intro.caption(ui, rect, session.frame(), view_state);
         }
@@ -94,6 +95,11 @@ const TOLD_AFTER: f64 = 0.35;
 
 /// How many snapshots stand along a motion, as in Fig. 5.
 const SNAPSHOTS: usize = 9;
+
+/// Poses of the motion, as far as there is one, to be seen with everything else.
+fn motion(session: &Session) -> Vec<DriveAngles> {
+    if session.run().waiting().is_some() { Vec::new() } else { snapshots(session) }
+}
 
 /// Poses at equal intervals of time: as planned, or as run where the machine was led by hand.
 fn snapshots(session: &Session) -> Vec<DriveAngles> {

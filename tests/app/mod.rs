@@ -5,6 +5,7 @@ mod finder;
 mod hands;
 mod intro;
 mod jobs;
+mod layout;
 mod panel;
 mod plots;
 mod pointer;
@@ -24,13 +25,14 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 12] = [
+pub const TESTS: [&[Test]; 13] = [
     saving::TESTS,
     files::TESTS,
     finder::TESTS,
     hands::TESTS,
     intro::TESTS,
     jobs::TESTS,
+    layout::TESTS,
     panel::TESTS,
     plots::TESTS,
     pointer::TESTS,

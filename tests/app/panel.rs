@@ -1,7 +1,7 @@
 //! Panels: what they show, set and take back.
 
 use egui::Key;
-use egui::accesskit::Role;
+use egui::accesskit::{Role, Toggled};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use stillbase::mechanics::planar::PerDrive;
 use stillbase::picture::scene::exaggeration::exaggerated;
@@ -25,6 +25,7 @@ pub const TESTS: &[Test] = tests![
     dots_tell_the_audit,
     tolerances_are_shown_and_set,
     the_bar_covers_nothing,
+    tools_are_named_and_reached_by_keyboard,
     the_panel_holds_still,
     lists_close_and_links_are_named,
     the_fonts_have_every_letter,
@@ -241,23 +242,61 @@ fn tolerances_are_shown_and_set() {
     assert!(h.query_by_label_contains("Pin forces over time").is_some());
 }
 
-/// The bar stands above the scene: in the default view nothing of the workspace, the machine or the target is covered.
+/// The tool bar stands beside the scene: in the default view nothing of the workspace, the machine or the target is
+/// covered.
 fn the_bar_covers_nothing() {
     for (width, height) in [(1280.0, 800.0), (960.0, 600.0), (1440.0, 900.0)] {
         let mut h = window("case-3", Theme::Dark);
         h.set_size(egui::vec2(width, height));
         h.run_steps(4);
         let scene = h.get_by_label_contains("Scene:").rect();
-        for label in ["2D", "Tower", "draw a path", "side by side"] {
+        for label in ["2D", "Tower", "draw a path", "side by side", "show everything"] {
             let rect = h.get_by_label(label).rect();
-            assert!(rect.bottom() <= scene.top() && rect.right() <= scene.right(), "{label} {rect} {scene}");
+            assert!(rect.right() <= scene.left() && rect.bottom() <= height, "{label} {rect} {scene}");
         }
         let planes = session(&h).run().planes().expect("planes").clone();
-        for p in planes.boundary().turned(planes.map().turn(2.4)).iter().flatten() {
+        for p in planes.boundary().turned(2.4).iter().flatten() {
             let at = on_screen(&h, p[0], p[1]);
             assert!(scene.contains(at), "{p:?} at {at} in {scene}, {width} by {height}");
         }
     }
+}
+
+/// Each tool says what it is, whether it is on, and its key; the keyboard alone reaches and turns it.
+fn tools_are_named_and_reached_by_keyboard() {
+    let mut h = window("case-3", Theme::Light);
+    h.run_steps(2);
+    for (label, key) in [
+        ("take hold", ""),
+        ("draw a path", "(P)"),
+        ("push", "(U)"),
+        ("dexterity", "(J)"),
+        ("snapshots", "(S)"),
+        ("pins", "(I)"),
+        ("tolerances", "(T)"),
+        ("side by side", "(C)"),
+    ] {
+        let tool = h.get_by_label(label);
+        let on = label == "take hold";
+        assert_eq!(tool.accesskit_node().toggled(), Some(if on { Toggled::True } else { Toggled::False }), "{label}");
+        let at = tool.rect().center();
+        h.hover_at(at);
+        h.run_steps(40);
+        let tip = h.query_all_by_label_contains(format!("{label} {key}").trim_end()).count();
+        assert!(tip > usize::from(key.is_empty()), "{label} shows its name and {key} under the pointer");
+    }
+    let push = |h: &Window| h.get_by_label("push").accesskit_node().toggled();
+    h.get_by_label("push").focus();
+    h.run_steps(2);
+    h.key_press(Key::Enter);
+    h.run_steps(2);
+    assert!(h.state().app_state().view_state().pushing && push(&h) == Some(Toggled::True));
+    h.get_by_label("take hold").click();
+    h.run_steps(2);
+    assert!(!h.state().app_state().view_state().pushing && push(&h) == Some(Toggled::False));
+    h.get_by_label("Tower").click();
+    h.run_steps(2);
+    assert!(h.get_by_label("push").accesskit_node().is_disabled(), "only views of the machine have it");
 }
 
 /// Choosing what the machine stands on, or what it holds, moves nothing away from under the pointer.

@@ -22,17 +22,27 @@ pub use shown::Shown;
 pub use which_b::base_plot;
 pub use written::written;
 
-/// How wide the panel is made by itself, points.
-const USUAL: f32 = 336.0;
+/// How wide the panel is made by itself, points: a share of the window, between these.
+const SHARE: f32 = 0.233;
+const NARROWEST: f32 = 272.0;
+const WIDEST: f32 = 640.0;
+
+/// How wide the panel is made by itself in a window, points.
+fn usual(ui: &Ui) -> f32 {
+    (SHARE * ui.ctx().content_rect().width()).clamp(NARROWEST, WIDEST).round()
+}
 
 /// Draws this panel; how wide it was made.
 pub fn show(ui: &mut Ui, what: &Shown<'_>, prepared: &mut Prepared, commands: &mut Vec<Command>) -> Option<f32> {
     let Shown { session, signals, view_state, .. } = *what;
     let p = view_state.palette();
     let frame = Frame::new().inner_margin(Margin { left: 14, right: 14, top: 10, bottom: 8 });
-    let most = (0.6 * ui.available_width()).max(USUAL);
-    let width = view_state.plots.width.unwrap_or(USUAL).min(most);
-    let panel = Panel::right("plots").default_size(width).size_range(260.0..=most).resizable(true);
+    let usual = usual(ui);
+    let most = (0.6 * ui.available_width()).max(usual);
+    let width = view_state.plots.width.unwrap_or(usual).min(most);
+    // By its own width: where the window changes that, what was remembered of another does not count.
+    let salt = ("plots", usual as u32);
+    let panel = Panel::right(salt).default_size(width).size_range(260.0..=most).resizable(true);
     let made = panel.frame(frame).show(ui, |ui| {
         let plots = view_state.charts.plots(session.scenario(), signals, view_state.pins);
         if prepared.is_to_look() {
@@ -66,5 +76,5 @@ pub fn show(ui: &mut Ui, what: &Shown<'_>, prepared: &mut Prepared, commands: &m
             which_b::show(ui, &p, (session, &mut prepared.which_b), view_state, height * 1.6 + BELOW, commands);
         });
     });
-    view_state.plots.made(made.response.rect.width(), USUAL)
+    view_state.plots.made(made.response.rect.width(), usual)
 }

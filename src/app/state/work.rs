@@ -6,7 +6,7 @@ use super::AppState;
 use crate::app::background::{Background, File, Opening, Slot, ended};
 use crate::app::change::{Change, NotOpened, Source};
 use crate::app::jobs::Workers;
-use crate::app::{Activity, Command, ComparisonCommand, PlotFile, RefusedEdit, plots};
+use crate::app::{Activity, Command, ComparisonCommand, Framing, PlotFile, RefusedEdit, plots};
 use crate::session::scenario::Scenario;
 use crate::session::{Edit, Refusal, Session};
 use crate::simulation::frame::Totals;
@@ -192,6 +192,7 @@ impl AppState {
         }
         let old = self.session.clone();
         self.session.take_over(next);
+        self.view_state.framing.iter_mut().for_each(Framing::renew);
         self.background.let_go(old);
         self.foresee();
         if plays {

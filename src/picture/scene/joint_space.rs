@@ -164,6 +164,12 @@ impl JointSpace {
         Camera::Orbit(Orbit { centre: [x, y, z - 0.05 * size], distance, yaw, pitch: 0.66 })
     }
 
+    /// Corners of the box that holds the prism.
+    pub fn box_corners(&self) -> Vec<[f64; 3]> {
+        let ends = self.bounds(HOME);
+        (0..8).map(|i| [0, 1, 2].map(|k| ends[k][(i >> k) & 1])).collect()
+    }
+
     /// Ends of the box along the scene's axes.
     fn bounds(&self, b: f64) -> [[f64; 2]; 3] {
         self.bounds_of(self.window(b), self.origin(b))

@@ -13,6 +13,7 @@ pub use base::PULL;
 
 use super::course::target_handle;
 use super::exaggeration::exaggerated;
+use super::framing::Content;
 use super::linkage::Linkage;
 use super::options::{Handle, ViewOptions};
 use super::palette::{Palette, faded, palette};
@@ -154,6 +155,31 @@ impl Stage {
     /// Points of the planned path that can be dragged: their numbers, A first.
     pub fn waypoints(&self) -> impl Iterator<Item = usize> + '_ {
         self.plan.iter().flat_map(|plan| plan.waypoints.iter().map(|(i, ..)| *i))
+    }
+
+    /// What is to be seen when everything is shown: the machine as it stands and in other poses, its workspace, its
+    /// task; and the workspace to compare with.
+    pub fn content(&self, frame: &Frame, poses: &[DriveAngles]) -> Content {
+        let (base, z) = (frame.base, self.handle_height());
+        let on_base = |p: Vector| base.at + unit(base.angle) * p;
+        let links = poses.iter().chain([&frame.q]).flat_map(|q| {
+            let e = q.units();
+            self.linkage.bars().iter().flat_map(move |bar| bar.ends(&e))
+        });
+        let links = links.map(|[x, y, z]| (on_base(Vector::new(x, y)), z));
+        let workspace = |b: f64| {
+            let planes = self.workspace.as_ref().map(Workspace::planes);
+            let loops = planes.map_or_else(Vec::new, |planes| planes.boundary().turned(b));
+            loops.into_iter().flatten().step_by(4).map(|[x, y]| (on_base(Vector::new(x, y)), self.linkage.floor()))
+        };
+        let waypoints = self.plan.iter().flat_map(|plan| plan.waypoints.iter().map(|(_, _, p)| (*p, z)));
+        let target = [(target_handle(frame), z), (base.at, 0.0)];
+        let points = |(p, z): (Vector, f64)| [p.re, p.im, z];
+        let compared = self.workspace.as_ref().and_then(Workspace::compared_b);
+        Content {
+            first: links.chain(workspace(frame.b_reference)).chain(waypoints).chain(target).map(points).collect(),
+            then: compared.into_iter().flat_map(workspace).map(points).collect(),
+        }
     }
 
     /// Everything there is to draw.

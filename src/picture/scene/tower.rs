@@ -156,6 +156,14 @@ impl Tower {
         Camera::Orbit(Orbit { centre, distance: near * 5.9 * self.radius, yaw: 0.5, pitch: 0.36 })
     }
 
+    /// Points around the whole tower.
+    pub fn hull(&self) -> Vec<[f64; 3]> {
+        let around = |z: f64| {
+            (0..24).map(move |i| unit(std::f64::consts::TAU * f64::from(i) / 24.0) * self.radius).map(move |p| (p, z))
+        };
+        [0.0, HEIGHT * self.radius].into_iter().flat_map(around).map(|(p, z)| [p.re, p.im, z]).collect()
+    }
+
     /// The points whose b are shown, with these as intervals within a window.
     pub fn posts(&self, frame: &Frame) -> Vec<(Post, Vec<[f64; 2]>)> {
         let window = self.window(frame.b_reference);

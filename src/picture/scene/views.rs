@@ -3,12 +3,14 @@
 
 use super::Scene;
 use super::camera::Camera;
+use super::framing::Content;
 use super::joint_space::JointSpace;
 use super::options::{Handle, ViewOptions};
 use super::pick::{Aim, NEAR, Pick};
 use super::pointer::Pointer;
 use super::stage::{PULL, Stage};
 use super::tower::Tower;
+use crate::mechanics::planar::DriveAngles;
 use crate::session::Run;
 use crate::simulation::frame::Frame;
 
@@ -127,6 +129,15 @@ impl Views {
             (ViewKind::Tower, _, Some(tower)) => tower.camera(),
             (ViewKind::Flat, ..) => Camera::flat(reach),
             _ => Camera::orbit(reach),
+        }
+    }
+
+    /// What is to be seen of a frame and of other poses of the machine when everything is shown.
+    pub fn content(&self, kind: ViewKind, frame: &Frame, poses: &[DriveAngles]) -> Content {
+        match (kind, &self.joints, &self.tower) {
+            (ViewKind::Joints, Some(joints), _) => Content { first: joints.box_corners(), then: Vec::new() },
+            (ViewKind::Tower, _, Some(tower)) => Content { first: tower.hull(), then: Vec::new() },
+            _ => self.stage.content(frame, poses),
         }
     }
 

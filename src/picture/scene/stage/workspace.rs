@@ -85,6 +85,11 @@ impl Workspace {
         *self.dexterity[measure as usize].get_or_init(|| measure.range(self.planes.map()))
     }
 
+    /// The b of the workspace to compare with, rad.
+    pub fn compared_b(&self) -> Option<f64> {
+        self.compared
+    }
+
     /// The workspace to compare with, the own one, and the one that is looked at.
     pub fn draw(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Frame, options: &ViewOptions) {
         let (floor, map) = (linkage.floor(), self.planes.map());

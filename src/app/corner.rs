@@ -1,0 +1,64 @@
+//! The scene's lower corners: what can be done or the key to the shade of the workspace, and the grid's width.
+
+use egui::epaint::{Mesh, Vertex, WHITE_UV};
+use egui::{Align2, Button, Rect, RichText, Ui, pos2, vec2};
+
+use super::theme::{colour, plain};
+use super::{Command, ViewState};
+use crate::picture::scene::palette::Palette;
+use crate::picture::scene::views::Views;
+use crate::picture::scene::{Measure, dexterity};
+
+/// Where they lie over a scene.
+pub fn strip(rect: Rect) -> Rect {
+    Rect::from_min_max(pos2(rect.left(), rect.bottom() - 28.0), rect.right_bottom())
+}
+
+/// In the scene's lower corners: what can be done or the key to the shade, and the grid's width.
+pub fn show(ui: &mut Ui, rect: Rect, view_state: &ViewState, views: &Views, commands: &mut Vec<Command>) {
+    let p = view_state.palette();
+    let low = rect.bottom() - 16.0;
+    let grid = ui.painter().text(
+        pos2(rect.right() - 14.0, low),
+        Align2::RIGHT_CENTER,
+        view_state.view.grid(),
+        plain(11.5),
+        colour(p.dim),
+    );
+    // Where there is no room, it is cut short rather than run into the grid's width.
+    let left = pos2(rect.left() + 16.0, low);
+    let room = Rect::from_min_max(left - vec2(0.0, 12.0), pos2(grid.left() - 12.0, low + 12.0));
+    let layout = egui::Layout::left_to_right(egui::Align::Center);
+    let mut corner = ui.new_child(egui::UiBuilder::new().max_rect(room).layout(layout));
+    match view_state.dexterity.filter(|_| view_state.view.shows_machine()) {
+        Some(measure) => key(&mut corner, &p, measure, views, commands),
+        None => {
+            let words = RichText::new(view_state.view.invitation()).font(plain(11.5)).color(colour(p.dim));
+            corner.add(egui::Label::new(words).truncate());
+        }
+    }
+}
+
+/// The key to the shade of the workspace.
+fn key(ui: &mut Ui, p: &Palette, measure: Measure, views: &Views, commands: &mut Vec<Command>) {
+    ui.spacing_mut().item_spacing.x = 6.0;
+    let [least, most] = views.stage().shaded(measure);
+    let words = RichText::new(measure.symbol()).font(plain(11.5)).color(colour(p.ink));
+    let help = format!("{} (click for another)", measure.explanation());
+    if ui.add(Button::new(words)).on_hover_text(help).clicked() {
+        commands.push(Command::Dexterity(Measure::after(Some(measure)).or(Some(Measure::Det))));
+    }
+    let least = if least == 0.0 { "0".into() } else { format!("{least:.3}") };
+    ui.label(RichText::new(least).font(plain(11.5)).color(colour(p.dim)));
+    let (bar, _) = ui.allocate_exact_size(vec2(56.0, 8.0), egui::Sense::hover());
+    let [low, high] = dexterity::colours(p).map(colour);
+    let mut mesh = Mesh::default();
+    for (pos, color) in
+        [(bar.left_top(), low), (bar.right_top(), high), (bar.right_bottom(), high), (bar.left_bottom(), low)]
+    {
+        mesh.vertices.push(Vertex { pos, uv: WHITE_UV, color });
+    }
+    mesh.indices = vec![0, 1, 2, 0, 2, 3];
+    ui.painter().add(mesh);
+    ui.label(RichText::new(format!("{most:.3} {}", measure.unit())).font(plain(11.5)).color(colour(p.dim)));
+}

@@ -1,0 +1,36 @@
+//! "Show everything": it holds until a hand moves the view, and keeps clear of what lies over the scene.
+
+use std::sync::Arc;
+
+use egui::Rect;
+
+use super::{Framing, ViewState};
+use crate::mechanics::planar::DriveAngles;
+use crate::picture::scene::framing::Room;
+use crate::picture::scene::views::Views;
+use crate::session::Session;
+
+/// Points the camera of the present view, if it is to show everything, in a part of the screen with these parts covered.
+pub fn keep(
+    rect: Rect,
+    covered: &[Rect],
+    (session, views): (&Session, &Views),
+    poses: impl FnOnce() -> Vec<DriveAngles>,
+    view_state: &mut ViewState,
+) {
+    let view = view_state.view;
+    let size = [rect.width(), rect.height()];
+    let content = match &view_state.framing[view as usize] {
+        Framing::Free => return,
+        Framing::Held(_, last) if *last == size => return,
+        Framing::Held(content, _) => content.clone(),
+        Framing::Wanted => Arc::new(views.content(view, session.frame(), &poses())),
+    };
+    let part = |part: &Rect| {
+        let part = part.intersect(rect).translate(-rect.min.to_vec2());
+        part.is_positive().then(|| [part.left(), part.top(), part.right(), part.bottom()].map(f64::from))
+    };
+    let room = Room { size: size.map(f64::from), covered: covered.iter().filter_map(part).collect() };
+    view_state.cameras[view as usize] = content.framed(views.camera(view), &room);
+    view_state.framing[view as usize] = Framing::Held(content, size);
+}
