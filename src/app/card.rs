@@ -22,6 +22,9 @@ pub struct Card {
     pub hint: String,
 }
 
+/// An angle nearer to its limit counts as at it, rad.
+const AT_LIMIT: f64 = 1e-3;
+
 const SUBSCRIPTS: [char; 8] = ['₁', '₂', '₃', '₄', '₅', '₆', '₇', '₈'];
 
 impl Card {
@@ -90,6 +93,22 @@ impl Card {
         })
     }
 
+    /// Of a link that is being turned.
+    pub fn turned(i: usize, session: &Session) -> Option<Self> {
+        let (machine, frame) = (&session.scenario().machine, session.frame());
+        let drive = machine.resolved_links().get(i)?.drive;
+        let title = format!("drive {}, q{} = {}°", drive + 1, SUBSCRIPTS.get(drive)?, degrees(frame.q[drive]));
+        let mut rows = vec![format!("the others follow: b stays {} rad", signed(frame.b_reference, 3))];
+        for (k, angle) in machine.angles().iter().enumerate() {
+            let ends = [*angle.limits.start(), *angle.limits.end()];
+            if let Some(end) = ends.into_iter().find(|end| (frame.a[k] - end).abs() < AT_LIMIT) {
+                rows.push(format!("a{} stands at its limit, {}°", SUBSCRIPTS[k], degrees(end)));
+            }
+        }
+        let hint = if frame.peaks.is_reactionless() { "the base feels nothing" } else { "" };
+        Some(Self::new(title, rows, hint))
+    }
+
     /// Draws what stands in it.
     pub fn show(&self, ui: &mut Ui, p: &Palette) {
         ui.spacing_mut().item_spacing.y = 3.0;
@@ -116,7 +135,13 @@ fn link(i: usize, session: &Session) -> Option<Card> {
     if scenario.plant.link.contains_key(&link.name) {
         rows.push("the plant differs from this".into());
     }
-    Some(Card::new(title, rows, "click: its rows in the panel"))
+    let hint = match session.run().planes() {
+        Some(_) => {
+            format!("drag: turns drive {}, the others follow so that b stays\nclick: its rows in the panel", drive + 1)
+        }
+        None => "click: its rows in the panel".to_owned(),
+    };
+    Some(Card::new(title, rows, hint))
 }
 
 fn joint(i: usize, session: &Session, views: &Views) -> Option<Card> {

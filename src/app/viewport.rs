@@ -12,7 +12,7 @@ use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::picture::paint::{Spot, paint, words};
 use crate::picture::scene::exaggeration::exaggerated;
 use crate::picture::scene::options::{Handle, Other, ViewOptions};
-use crate::picture::scene::pick::Aim;
+use crate::picture::scene::pick::{Aim, Pick};
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::session::scenario::Task;
 use crate::session::{Edit, Session};
@@ -163,6 +163,7 @@ fn point_at(
                 view_state.held = Some([x, y]);
                 Edit::DragTarget { x, y }
             }
+            Aim::Angles([a1, a2]) => Edit::DragAngles { a1, a2 },
             Aim::B(b) => set_b(session, view_state, b),
             Aim::Push([x, y]) => {
                 let [now_x, now_y] = session.scenario().plant.force;
@@ -206,6 +207,8 @@ fn point_at(
             view_state.dragged = false;
         }
     } else if let Some(hot) = view_state.hot {
+        let turns = session.run().planes().is_some();
+        let hot = if matches!(hot, Handle::Link(_)) && !turns { Handle::Base } else { hot };
         ui.ctx().set_cursor_icon(cursor(hot, false));
     }
     // A bar needs no dragging: a click chooses.
@@ -246,6 +249,13 @@ fn point_at(
 /// Says what is under the pointer, once that has been so for a while.
 fn tell(response: &egui::Response, session: &Session, views: &Views, view_state: &ViewState) {
     let (ctx, id) = (&response.ctx, response.id.with("told of"));
+    let tooltip = || Tooltip::always_open(ctx.clone(), response.layer_id, id, PopupAnchor::Pointer).gap(18.0);
+    if let Some(Pick { handle: Handle::Link(i), .. }) = view_state.grabbed {
+        if let Some(card) = Card::turned(i, session) {
+            tooltip().show(|ui| card.show(ui, &view_state.palette()));
+        }
+        return;
+    }
     let quiet = view_state.grabbed.is_none() && response.hovered() && !response.dragged();
     let Some(thing) = view_state.hot.filter(|_| quiet) else {
         ctx.data_mut(|data| data.remove_temp::<Option<(Handle, f64)>>(id));
@@ -261,8 +271,7 @@ fn tell(response: &egui::Response, session: &Session, views: &Views, view_state:
         ctx.request_repaint_after_secs(waits as f32);
     } else if let Some(card) = Card::of(thing, session, views) {
         let p = view_state.palette();
-        let tooltip = Tooltip::always_open(ctx.clone(), response.layer_id, id, PopupAnchor::Pointer).gap(18.0);
-        tooltip.show(|ui| card.show(ui, &p));
+        tooltip().show(|ui| card.show(ui, &p));
     }
 }
 
@@ -299,8 +308,8 @@ fn cursor(handle: Handle, held: bool) -> CursorIcon {
     match (handle, held) {
         (Handle::Bar, _) => CursorIcon::PointingHand,
         (Handle::Plane, _) => CursorIcon::ResizeVertical,
-        (Handle::Target | Handle::EndEffector | Handle::Ring | Handle::Waypoint(_), true) => CursorIcon::Grabbing,
-        (Handle::Target | Handle::EndEffector | Handle::Ring | Handle::Waypoint(_), false) => CursorIcon::Grab,
+        (thing, true) if thing.can_be_dragged() => CursorIcon::Grabbing,
+        (thing, false) if thing.can_be_dragged() => CursorIcon::Grab,
         (thing, _) if place::is_in_panel(thing) => CursorIcon::PointingHand,
         _ => CursorIcon::Default,
     }

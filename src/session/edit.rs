@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use super::older;
-use crate::mechanics::machine::{PARTS, is_of_machine};
+use crate::mechanics::machine::{ANGLE, PARTS, is_of_machine};
 use crate::session::scenario::{MAX_STEPS, PLACE, POSE_CONSTANT};
 use crate::settings::change;
 use crate::settings::range::{Check, shortened};
@@ -21,6 +21,13 @@ pub enum Edit {
         x: f64,
         /// m.
         y: f64,
+    },
+    /// Sends the relative joint angles to (a₁, a₂), rad: a hand that turns a link; the machine stays on its plane.
+    DragAngles {
+        /// rad.
+        a1: f64,
+        /// rad.
+        a2: f64,
     },
     /// Sends the pose constant to b, rad, in motion: the base feels n_B = −D_1 b̈.
     SlideB {
@@ -171,6 +178,7 @@ impl Edit {
     pub fn check(&self) -> Result<(), Check> {
         let found: Vec<Check> = match self {
             Self::DragTarget { x, y } => vec![PLACE.check("x", *x), PLACE.check("y", *y)],
+            Self::DragAngles { a1, a2 } => vec![ANGLE.check("a1", *a1), ANGLE.check("a2", *a2)],
             Self::SlideB { b } | Self::PoseB { b } => vec![POSE_CONSTANT.check("b", *b)],
             _ => Vec::new(),
         };
@@ -203,6 +211,7 @@ impl Edit {
     pub(super) fn name(&self) -> &str {
         match self {
             Self::DragTarget { .. } => "target",
+            Self::DragAngles { .. } => "angles",
             Self::SlideB { .. } | Self::PoseB { .. } => "b",
             Self::Push { .. } => "push",
             Self::Set { change } => match change.keys().next() {
@@ -215,7 +224,7 @@ impl Edit {
 
     /// Whether it sends the machine somewhere: the pointer or the slider.
     pub fn leads(&self) -> bool {
-        matches!(self, Self::DragTarget { .. } | Self::SlideB { .. })
+        matches!(self, Self::DragTarget { .. } | Self::DragAngles { .. } | Self::SlideB { .. })
     }
 
     /// Whether it sets limits of joints.
@@ -241,6 +250,9 @@ impl Edit {
     pub fn title(&self) -> String {
         match self {
             Self::DragTarget { x, y } => format!("drag target to {x:.3}, {y:.3} m"),
+            Self::DragAngles { a1, a2 } => {
+                format!("turn links to a₁ {:.1}°, a₂ {:.1}°", a1.to_degrees(), a2.to_degrees())
+            }
             Self::SlideB { b } => format!("slide b to {b:.3} rad"),
             Self::PoseB { b } => format!("pose at b = {b:.3} rad"),
             Self::Push { x: 0.0, y: 0.0 } => "let go".into(),

@@ -350,7 +350,8 @@ impl Session {
     /// Whether an edit applies at the present step rather than to the run as a whole.
     fn concerns_now(&self, edit: &Edit) -> bool {
         match edit {
-            Edit::DragTarget { .. } | Edit::SlideB { .. } | Edit::Push { .. } => true,
+            edit if edit.leads() => true,
+            Edit::Push { .. } => true,
             Edit::PoseB { .. } => self.is_led(),
             // A machine that is led by hand has the new limits from the present step on.
             edit if edit.sets_limits() && self.is_led() && self.run.waiting().is_none() => true,

@@ -199,6 +199,11 @@ impl Run {
                 follower.set_target(Vector::new(*x, *y));
                 self.simulation.lead(Guide::Follow(follower));
             }
+            Edit::DragAngles { a1, a2 } => {
+                let mut follower = self.follower()?;
+                follower.set_angles([*a1, *a2]);
+                self.simulation.lead(Guide::Follow(follower));
+            }
             Edit::SlideB { b } => {
                 let mut follower = self.follower()?;
                 follower.set_b(*b);
@@ -296,6 +301,13 @@ impl Run {
         };
         Some(match edit {
             Edit::DragTarget { .. } => Edit::DragTarget { x: frame.target.at.re, y: frame.target.at.im },
+            Edit::DragAngles { .. } => {
+                let [a1, a2] = match self.simulation.guide() {
+                    Guide::Follow(follower) => follower.aim(),
+                    Guide::Motion { .. } => self.planes.as_ref()?.map().project(&self.simulation.reference().q).a,
+                };
+                Edit::DragAngles { a1, a2 }
+            }
             Edit::SlideB { .. } => Edit::SlideB { b: b_aim() },
             Edit::PoseB { .. } => Edit::PoseB { b: b_aim() },
             Edit::Push { .. } => Edit::Push { x: scenario.plant.force[0], y: scenario.plant.force[1] },

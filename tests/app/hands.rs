@@ -1,6 +1,6 @@
 //! Everything that is seen in the scene is a handle: it says what it is, shows its place in the panel, and turns.
 
-use egui::Pos2;
+use egui::{Key, Pos2};
 use egui_kittest::kittest::Queryable as _;
 use stillbase::app::Command;
 use stillbase::picture::scene::options::Handle;
@@ -9,11 +9,16 @@ use stillbase::picture::scene::pointer::Pointer;
 use stillbase::picture::scene::views::ViewKind;
 use stillbase::session::Edit;
 
-use super::{Window, hold, on_screen, seen, session, window};
+use super::{Window, drag, hold, on_screen, pull, seen, session, window};
 use crate::Test;
 
-pub const TESTS: &[Test] =
-    tests![things_say_what_they_are, a_click_shows_the_place_in_the_panel, a_row_of_the_panel_lights_up_its_thing,];
+pub const TESTS: &[Test] = tests![
+    things_say_what_they_are,
+    a_click_shows_the_place_in_the_panel,
+    a_row_of_the_panel_lights_up_its_thing,
+    a_link_that_is_dragged_turns_its_drive,
+    a_link_stops_at_the_limits_and_escape_takes_it_back,
+];
 
 /// What is under a place on the screen.
 fn under(h: &Window, at: Pos2) -> Option<Handle> {
@@ -107,4 +112,71 @@ fn a_row_of_the_panel_lights_up_its_thing() {
     h.get_by_label("A x m").focus();
     h.run_steps(2);
     assert_eq!(lit(&h), Some(Handle::Waypoint(0)));
+}
+
+/// Where a point at a distance from the root of a link, m, comes to when the link turns by an angle, rad.
+fn swung(h: &Window, link: usize, at: Pos2, by: f64) -> Pos2 {
+    let frame = *session(h).frame();
+    let bar = &h.state().app_state().stage().linkage().bars()[link];
+    let (root, ..) = bar.pose(&frame.q.units());
+    let middle = on_screen(h, root.re, root.im);
+    // On the screen y points down.
+    middle + egui::emath::Rot2::from_angle(-by as f32) * (at - middle)
+}
+
+fn a_link_that_is_dragged_turns_its_drive() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    for (name, drive) in [("1", 0), ("5", 1), ("9", 2)] {
+        let (i, from) = link(&h, name);
+        assert_eq!(h.state().app_state().stage().linkage().bars()[i].drive, drive);
+        let before = session(&h).frame().q[drive];
+        let undos = session(&h).undo_count();
+        let to = swung(&h, i, from, 0.15);
+        pull(&mut h, from, to);
+        h.run_steps(60);
+
+        let card = format!("drive {}, q", drive + 1);
+        assert!(h.query_by_label_contains(&card).is_some(), "{card}");
+        let f = session(&h).frame();
+        assert!((f.b - 2.4).abs() < 1e-9, "b stays: {}", f.b);
+        assert!(f.peaks.is_reactionless(), "the base feels nothing: {:?}", f.peaks);
+        assert!((f.q[drive] - before).abs() > 0.02, "link {name} turned by {} rad", f.q[drive] - before);
+        h.drop_at(to);
+        h.run_steps(3);
+        assert_eq!(session(&h).undo_count(), undos + 1, "one undo for link {name}");
+        assert!(session(&h).undo_title().expect("a title").starts_with("turn links to"));
+    }
+    // Link 1 is rooted in B, which stands still: its drive follows the pointer to the pixel.
+    let (i, from) = link(&h, "1");
+    let before = session(&h).frame().q[0];
+    let to = swung(&h, i, from, 0.2);
+    drag(&mut h, from, to);
+    h.run_steps(80);
+    assert!((session(&h).frame().q[0] - before - 0.2).abs() < 5e-3, "{}", session(&h).frame().q[0] - before);
+    let again = stillbase::session::replay(&session(&h).to_scenario(), |_, _| {}).expect("it runs");
+    assert_eq!(again.frame(), session(&h).run().frame(), "the drags are in the script");
+}
+
+fn a_link_stops_at_the_limits_and_escape_takes_it_back() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let (i, from) = link(&h, "2");
+    let before = *session(&h).frame();
+    let to = swung(&h, i, from, 2.8);
+    pull(&mut h, from, to);
+    h.run_steps(150);
+    let f = *session(&h).frame();
+    let machine = &session(&h).scenario().machine;
+    for (k, angle) in machine.angles().iter().enumerate() {
+        assert!(f.a[k] > angle.limits.start() - 1e-6 && f.a[k] < angle.limits.end() + 1e-6, "a{}: {}", k + 1, f.a[k]);
+    }
+    assert!(h.query_all_by_label_contains("stands at its limit").next().is_some());
+    assert!((f.b - before.b).abs() < 1e-9 && f.peaks.is_reactionless());
+    h.key_press(Key::Escape);
+    h.step();
+    h.drop_at(to);
+    h.run_steps(150);
+    let back = session(&h).frame();
+    assert!((back.end_effector - before.end_effector).norm() < 1e-6, "{} {}", back.end_effector, before.end_effector);
 }

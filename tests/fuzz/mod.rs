@@ -68,6 +68,11 @@ do = "drag-target"
 x = 0.6
 y = 0.7
 [[edit]]
+step = 4
+do = "drag-angles"
+a1 = 1.2
+a2 = 2.0
+[[edit]]
 step = 5
 do = "slide-b"
 b = 2.45

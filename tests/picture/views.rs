@@ -380,11 +380,11 @@ fn the_machines_handles_are_found_in_both_views() {
         for handle in [Handle::Target, Handle::Ring] {
             let at = views.stage().handle(handle, frame).expect("three drives");
             let here = pointer(camera, at);
-            assert_eq!(views.pick(kind, frame, &here), Some(Pick { handle, at }));
-            match views.aim(kind, &Pick { handle, at }, frame, &here, 2.4) {
+            assert_eq!(views.pick(kind, frame, &here), Some(Pick::of(handle, at)));
+            match views.aim(kind, &Pick::of(handle, at), frame, &here, 2.4) {
                 Some(Aim::Target([x, y])) => assert!((x - 0.5).hypot(y - 0.5) < 1e-6),
                 Some(Aim::B(b)) => assert!((b - 2.4).abs() < 1e-6),
-                Some(Aim::Waypoint(..) | Aim::Push(_)) => panic!("not asked for"),
+                Some(Aim::Waypoint(..) | Aim::Push(_) | Aim::Angles(_)) => panic!("not asked for"),
                 None => panic!("{handle:?} asks for nothing"),
             }
         }

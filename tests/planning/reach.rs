@@ -533,3 +533,35 @@ fn windings_count_as_sheets() {
     assert!(many.len() > few.len());
     assert!(many.iter().all(|f| holds(&wide, *f, p)));
 }
+
+proptest! {
+    /// Of all poses of a plane with a drive at an angle, the one that is found is within the limits, has that angle or
+    /// comes as near as the limits let it, and moves the least by kinetic energy.
+    #[test]
+    fn a_drive_is_turned_on_its_plane(
+        (k, share, b) in (0..3usize, -0.3..1.3_f64, -7.0..7.0_f64),
+        from in [0.0..PI, 0.0..PI],
+    ) {
+        let map = nine_link();
+        let [low, high] = map.range_of(k, b);
+        let angle = low + share * (high - low);
+        let a = map.turned(k, angle, b, from);
+        let limits = map.limits();
+        prop_assert!((0..2).all(|i| limits[i].contains(a[i], 0.0)), "{a:?}");
+        let of = |a: [f64; 2]| map.lift(PlanePoint { a, b });
+        prop_assert!((of(a)[k] - angle.clamp(low, high)).abs() < 1e-9, "{} for {angle}", of(a)[k]);
+        let energy = |a: [f64; 2]| -> f64 {
+            let (to, from, lambda) = (of(a), of(from), map.lambda());
+            (0..3).map(|l| lambda[l] * (to[l] - from[l]).powi(2)).sum()
+        };
+        // Along the line of equal angle nothing within the limits is nearer.
+        let w = map.u()[k];
+        for s in [-0.3, -0.01, 0.01, 0.3] {
+            let other = [a[0] - s * w[1], a[1] + s * w[0]];
+            if (0..2).all(|i| limits[i].contains(other[i], 0.0)) {
+                prop_assert!(energy(other) >= energy(a) - 1e-9, "{other:?} is nearer than {a:?}");
+            }
+        }
+        prop_assert!(map.lambda().iter().zip(of(a)).map(|(l, q)| l * q).sum::<f64>() - b < 1e-9, "b stays");
+    }
+}

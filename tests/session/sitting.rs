@@ -32,6 +32,7 @@ enum Act {
 fn name(edit: &Edit) -> String {
     match edit {
         Edit::DragTarget { .. } => "drag-target".into(),
+        Edit::DragAngles { .. } => "drag-angles".into(),
         Edit::SlideB { .. } => "slide-b".into(),
         Edit::PoseB { .. } => "pose-b".into(),
         Edit::Push { .. } => "push".into(),
@@ -114,6 +115,7 @@ fn any_edit() -> impl Strategy<Value = Edit> {
     let spread = |key: &str, value: toml::Value| Edit::at(&["tolerance", key], value);
     prop_oneof![
         6 => (-0.2..1.0, -0.2..1.2).prop_map(|(x, y)| drag(x, y)),
+        3 => (-0.5..3.5, -0.5..3.5).prop_map(|(a1, a2)| Edit::DragAngles { a1, a2 }),
         3 => (1.8..3.2).prop_map(slide),
         2 => (2.2..2.7).prop_map(|b| Edit::PoseB { b }),
         2 => (-5.0..5.0, -5.0..5.0).prop_map(|(x, y)| Edit::Push { x, y }),

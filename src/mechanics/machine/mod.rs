@@ -34,6 +34,6 @@ pub(crate) use inertia::Turning;
 pub use inertia::{BALANCED, Inertia};
 pub use model::{Machine, RelativeAngle, ResolvedClosure, ResolvedLink};
 pub use motors::Motors;
-pub use ranges::MAX_ANGLE;
+pub use ranges::{ANGLE, MAX_ANGLE};
 pub use set::{PARTS, is_of_machine};
 pub use spec::{Angle, Attach, Closure, Drive, Length, Link, MachineSpec, Payload, PlaceOnLink, Point, Rotor};

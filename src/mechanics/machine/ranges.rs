@@ -26,7 +26,8 @@ const JERK_LIMIT: Range = Range::new(LEAST, 1e9, "rad/s³");
 
 /// The largest joint limit either way, rad: each further turn is one more winding of the same workspace.
 pub const MAX_ANGLE: f64 = 25.2;
-const ANGLE: Range = Range::either_way(MAX_ANGLE, "rad, four turns");
+/// Where a relative angle and its limits may lie.
+pub const ANGLE: Range = Range::either_way(MAX_ANGLE, "rad, four turns");
 
 const UNLIMITED: &str = "no limit";
 

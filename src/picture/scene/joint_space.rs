@@ -212,13 +212,13 @@ impl JointSpace {
     pub fn pick(&self, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
         let (b, dot) = (frame.b_reference, self.pose(frame));
         if pointer.distance(dot).is_some_and(|d| d < NEAR) {
-            return Some(Pick { handle: Handle::Target, at: dot });
+            return Some(Pick::of(Handle::Target, dot));
         }
         let at = self.on_plane(b, pointer)?;
         let a = self.planes.map().project(&self.angles(at, b)).a;
         let limits = self.planes.map().limits();
         let inside = (0..2).all(|i| limits[i].contains(a[i], 0.0));
-        inside.then_some(Pick { handle: Handle::Plane, at })
+        inside.then_some(Pick::of(Handle::Plane, at))
     }
 
     /// What pulling at something asks for: the dot within its plane, the plane along its normal.

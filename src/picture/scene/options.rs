@@ -100,14 +100,14 @@ impl Handle {
     /// Whether the pointer can pull at it.
     pub fn can_be_dragged(self) -> bool {
         match self {
-            Self::Target | Self::EndEffector | Self::Ring | Self::Plane | Self::Bar | Self::Waypoint(_) => true,
-            Self::Link(_)
-            | Self::Joint(_)
-            | Self::Base
-            | Self::Payload
-            | Self::Boundary
-            | Self::Force
-            | Self::Moment => false,
+            Self::Target
+            | Self::EndEffector
+            | Self::Ring
+            | Self::Plane
+            | Self::Bar
+            | Self::Waypoint(_)
+            | Self::Link(_) => true,
+            Self::Joint(_) | Self::Base | Self::Payload | Self::Boundary | Self::Force | Self::Moment => false,
         }
     }
 }

@@ -6,6 +6,7 @@ mod pins;
 mod reaction;
 mod snapshots;
 mod target;
+mod turning;
 mod under;
 mod workspace;
 
@@ -17,6 +18,7 @@ use super::framing::Content;
 use super::linkage::Linkage;
 use super::options::{Handle, ViewOptions};
 use super::palette::{Palette, faded, palette};
+use super::pick::{Grip, Pick};
 use super::pointer::Pointer;
 use super::{Line, Measure, Scene, Strips, point};
 use crate::mechanics::planar::{DriveAngles, Vector, unit};
@@ -129,6 +131,19 @@ impl Stage {
     /// The number of the link under the pointer; the uppermost of several.
     pub fn link_at(&self, frame: &Frame, pointer: &Pointer) -> Option<usize> {
         under::link(&self.linkage, frame, pointer)
+    }
+
+    /// The link under the pointer, taken hold of, on a machine that has planes to turn it on.
+    pub fn grip(&self, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
+        let (i, map) = (self.link_at(frame, pointer)?, self.workspace.as_ref()?.planes().map());
+        turning::grip(i, self.linkage.bars().get(i)?, map, frame, pointer)
+    }
+
+    /// The angles (a_1, a_2), rad, at which a link points where the pointer pulls it, on the plane b; as near to that as
+    /// the joint limits let it.
+    pub fn turned(&self, link: usize, grip: &Grip, frame: &Frame, pointer: &Pointer, b: f64) -> Option<[f64; 2]> {
+        let map = self.workspace.as_ref()?.planes().map();
+        turning::turned(self.linkage.bars().get(link)?, grip, map, frame, pointer, b)
     }
 
     /// What is under the pointer that cannot be pulled at; the uppermost of several.

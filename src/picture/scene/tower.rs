@@ -181,20 +181,20 @@ impl Tower {
         let tip = target_handle(frame);
         let dot = [tip.re, tip.im, height(frame.b_reference)];
         if pointer.distance(dot).is_some_and(|d| d < NEAR) {
-            return Some(Pick { handle: Handle::Target, at: dot });
+            return Some(Pick::of(Handle::Target, dot));
         }
         let ray = pointer.ray()?;
         for (post, bars) in self.posts(frame) {
             for [from, to] in bars {
                 let ends = [from, to].map(|b| [post.at.re, post.at.im, height(b)]);
                 if pointer.distance_to_segment(ends).is_some_and(|d| d < NEAR_BAR) {
-                    return Some(Pick { handle: Handle::Bar, at: ends[0] });
+                    return Some(Pick::of(Handle::Bar, ends[0]));
                 }
             }
         }
         let [x, y] = ray.at_height(dot[2])?;
         let inside = self.planes.boundary().contains(Vector::new(x, y), frame.b_reference);
-        inside.then_some(Pick { handle: Handle::Plane, at: [x, y, dot[2]] })
+        inside.then_some(Pick::of(Handle::Plane, [x, y, dot[2]]))
     }
 
     /// What pulling at something asks for.

@@ -153,7 +153,7 @@ impl Views {
     /// The end effector, if it is under the pointer.
     pub fn pick_tip(&self, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
         let at = self.stage.handle(Handle::EndEffector, frame)?;
-        (pointer.distance(at)? < 1.5 * NEAR).then_some(Pick { handle: Handle::EndEffector, at })
+        (pointer.distance(at)? < 1.5 * NEAR).then_some(Pick::of(Handle::EndEffector, at))
     }
 
     /// The number of the link under the pointer in the machine's view, in a frame as shown; the uppermost of several.
@@ -163,7 +163,8 @@ impl Views {
 
     /// What is under the pointer, to be pulled at or not, in a frame as shown.
     pub fn under(&self, kind: ViewKind, frame: &Frame, pointer: &Pointer) -> Option<Handle> {
-        let pulled = self.pick(kind, frame, pointer).map(|pick| pick.handle);
+        // What lies on a link comes before it.
+        let pulled = self.pick(kind, frame, pointer).filter(|pick| pick.grip.is_none()).map(|pick| pick.handle);
         pulled.or_else(|| kind.shows_machine().then(|| self.stage.under(frame, pointer)).flatten())
     }
 
@@ -175,7 +176,7 @@ impl Views {
             _ => {
                 let picks = [Handle::Target, Handle::Ring].into_iter().filter_map(|handle| {
                     let at = self.stage.handle(handle, frame)?;
-                    Some((Pick { handle, at }, pointer.distance(at)?))
+                    Some((Pick::of(handle, at), pointer.distance(at)?))
                 });
                 let near = picks.filter(|(_, d)| *d < NEAR);
                 let first = near.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick);
@@ -187,15 +188,19 @@ impl Views {
                     let name = (pointer.at[0] - x + NAME).hypot(pointer.at[1] - y);
                     let own = (pointer.at[0] - x).hypot(pointer.at[1] - y);
                     let off = if first.is_some() { name } else { own.min(name) };
-                    (off < NEAR_POINT).then_some((Pick { handle, at }, off))
+                    (off < NEAR_POINT).then_some((Pick::of(handle, at), off))
                 });
-                points.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick).or(first)
+                let point = points.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick);
+                point.or(first).or_else(|| self.stage.grip(frame, pointer))
             }
         }
     }
 
     /// What pulling at something asks for; `b` is the pose constant that the machine is sent to, rad.
     pub fn aim(&self, kind: ViewKind, pick: &Pick, frame: &Frame, pointer: &Pointer, b: f64) -> Option<Aim> {
+        if let (Handle::Link(i), Some(grip)) = (pick.handle, &pick.grip) {
+            return self.stage.turned(i, grip, frame, pointer, b).map(Aim::Angles);
+        }
         match (kind, &self.joints, &self.tower) {
             (ViewKind::Joints, Some(joints), _) => joints.aim(pick, frame, pointer),
             (ViewKind::Tower, _, Some(tower)) => tower.aim(pick, frame, pointer),

@@ -96,6 +96,31 @@ impl Follower {
         self.steer();
     }
 
+    /// Sends the relative angles to (a_1, a_2), rad, as far as their limits and folds on the straight way let them.
+    pub fn set_angles(&mut self, a: [f64; 2]) {
+        let from = self.a.map(|c| c.x);
+        let to = self.planes.map().clamp(a);
+        let at = |t: f64| [0, 1].map(|i| from[i] + t * (to[i] - from[i]));
+        self.aim = to;
+        if !self.planes.is_open_way(from, to) {
+            // The last pose before what bars the way.
+            let (mut open, mut barred) = (0.0, 1.0);
+            for _ in 0..20 {
+                let middle = 0.5 * (open + barred);
+                if self.planes.is_open_way(from, at(middle)) { open = middle } else { barred = middle }
+            }
+            self.aim = at(open);
+        }
+        self.target = Target { at: self.aim_point(), reach: Reach::Inside };
+        self.aim_rate = [0.0; 2];
+        self.steer();
+    }
+
+    /// The relative angles that the reference goes to, rad.
+    pub fn aim(&self) -> [f64; 2] {
+        self.aim
+    }
+
     /// Sends the pose constant to b, rad.
     pub fn set_b(&mut self, b: f64) {
         self.b_aim = b;

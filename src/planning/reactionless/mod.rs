@@ -21,6 +21,7 @@ mod plane;
 mod poses;
 mod quadrilateral;
 mod reach;
+mod turned;
 
 pub use b_set::BSet;
 pub use boundary::{Boundary, BoundaryCurve, BoundaryLine, BoundaryLoop, ChangeCurve, Extent, Nearest, Vertex};
