@@ -18,6 +18,7 @@ mod program;
 #[cfg(feature = "record")]
 mod recording;
 mod session;
+mod settings;
 mod simulation;
 mod study;
 mod support;

@@ -37,6 +37,8 @@ pub enum Command {
     Undo,
     /// Undo what has been done since there were so many changes to undo: what a drag did that is given up.
     TakeBack(usize),
+    /// Take back what the drag under way has done.
+    GiveUp,
     /// Redo what was undone last.
     Redo,
     /// Show one of the linked views.
@@ -128,6 +130,7 @@ impl Command {
             | Self::WritePlot(..)
             | Self::Undo
             | Self::TakeBack(_)
+            | Self::GiveUp
             | Self::Redo
             | Self::Comparison(ComparisonCommand::Keep | ComparisonCommand::Open(_))
             | Self::Case(_)

@@ -16,6 +16,7 @@ pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: 
     let taken = |key: &KeyboardShortcut| ctx.input_mut(|i| i.consume_shortcut(key));
     // While something is dragged or a list is open, Esc ends that and nothing else.
     let busy = view_state.grabbed.is_some()
+        || ctx.input(|i| i.pointer.any_down())
         || (view_state.finder.is_none() && egui::Popup::is_any_open(ctx))
         || super::plots::is_looking(ctx);
     if !busy && taken(&KeyboardShortcut::new(Modifiers::NONE, Key::Escape)) {

@@ -327,6 +327,10 @@ impl AppState {
         finder::show(ui.ctx(), &self.session, &mut self.view_state, &mut commands);
         top::dialog(ui.ctx(), &mut self.view_state, &mut commands);
         commands.extend(widgets::refused_entry(ui.ctx()).map(Command::Refuse));
+        if widgets::gave_up(ui.ctx()) {
+            // Before its gesture ends.
+            commands.insert(0, Command::GiveUp);
+        }
         if commands.iter().any(|c| !matches!(c, Command::EndGesture | Command::Preview(_))) {
             self.view_state.message = None;
             self.view_state.refused = None;
@@ -423,6 +427,8 @@ impl AppState {
             Command::Undo => self.change(Change::Undo),
             Command::TakeBack(since) if self.session.undo_count() > since => self.change(Change::Undo),
             Command::TakeBack(_) => {}
+            Command::GiveUp if self.session.is_in_gesture() => self.change(Change::Undo),
+            Command::GiveUp => {}
             Command::Redo => self.change(Change::Redo),
             Command::Cancel(activity) => return Ok(Some(self.cancel(activity))),
             Command::View(view) => self.view_state.view = view,

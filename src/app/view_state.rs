@@ -111,6 +111,9 @@ pub struct ViewState {
     pub revealed: Option<Handle>,
     /// What is being dragged.
     pub grabbed: Option<Pick>,
+    /// Where the pointer was last in this drag, and by how much what is dragged stays behind it since Shift was held,
+    /// points of the screen.
+    pub fine: [egui::Vec2; 2],
     /// Where the pointer holds the target, m.
     pub held: Option<[f64; 2]>,
     /// The force at the end effector before a hand pushes, N.
@@ -172,6 +175,7 @@ impl ViewState {
             lit: None,
             revealed: None,
             grabbed: None,
+            fine: [egui::Vec2::ZERO; 2],
             held: None,
             force: None,
             compare: false,

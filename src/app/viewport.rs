@@ -6,13 +6,13 @@ use egui::{CentralPanel, CursorIcon, Frame, PointerButton, PopupAnchor, Pos2, Re
 
 use super::card::Card;
 use super::intro::Intro;
-use super::widgets::name;
+use super::widgets::{FINE, name};
 use super::{Command, ViewState, corner, framing, place, set_b};
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::picture::paint::{Spot, paint, words};
 use crate::picture::scene::exaggeration::exaggerated;
 use crate::picture::scene::options::{Handle, Other, ViewOptions};
-use crate::picture::scene::pick::{Aim, Pick};
+use crate::picture::scene::pick::{Aim, Grip, Pick};
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::session::scenario::Task;
 use crate::session::{Edit, Session};
@@ -153,12 +153,17 @@ fn point_at(
     }
     if response.drag_started_by(PointerButton::Primary) {
         // A drag begins where the button went down, not where it was noticed.
-        view_state.grabbed = ui.input(|i| i.pointer.press_origin()).and_then(under);
+        let origin = ui.input(|i| i.pointer.press_origin());
+        view_state.grabbed = origin.and_then(under);
+        view_state.fine = [origin.unwrap_or_default().to_vec2(), Vec2::ZERO];
         view_state.force = Some(session.scenario().plant.force);
         view_state.undone_to = session.undo_count();
     }
-    let ask = |pick, pos: Pos2, view_state: &mut ViewState| {
-        let edit = match views.aim(view, &pick, frame, &spot.pointer(pos), session.b_aim())? {
+    let (shift, snaps) = ui.input(|i| (i.modifiers.shift, i.modifiers.ctrl || i.modifiers.command));
+    let ask = |pick: Pick, pos: Pos2, view_state: &mut ViewState| {
+        let pick = Pick { grip: pick.grip.map(|grip| Grip { snaps, ..grip }), ..pick };
+        let aim = views.aim(view, &pick, frame, &spot.pointer(pos), session.b_aim())?;
+        let edit = match if snaps { aim.snapped() } else { aim } {
             Aim::Target([x, y]) => {
                 view_state.held = Some([x, y]);
                 Edit::DragTarget { x, y }
@@ -187,7 +192,13 @@ fn point_at(
         let pulls = pushes && session.is_moving();
         let moved = response.drag_delta() != Vec2::ZERO || (view_state.dragged && response.drag_stopped()) || pulls;
         if let Some(pos) = response.interact_pointer_pos().filter(|_| moved) {
-            commands.extend(ask(pick, pos, view_state));
+            let [last, behind] = &mut view_state.fine;
+            if shift {
+                *behind += (1.0 - FINE) * (pos.to_vec2() - *last);
+            }
+            *last = pos.to_vec2();
+            let at = pos - *behind;
+            commands.extend(ask(pick, at, view_state));
             if pushes && !session.is_playing() {
                 commands.push(Command::TogglePlay);
             }

@@ -3,7 +3,8 @@
 use std::cell::Cell;
 use std::ops::RangeInclusive;
 
-use egui::{Align, DragValue, Layout, Response, RichText, Slider, SliderClamping, Ui};
+use egui::response::Flags;
+use egui::{Align, DragValue, Key, Layout, Response, RichText, Slider, SliderClamping, Ui};
 
 use super::command::Command;
 use super::theme::{bold, colour, plain};
@@ -11,7 +12,9 @@ use crate::picture::numbers::signed;
 use crate::picture::scene::palette::Palette;
 use crate::session::Edit;
 use crate::session::scenario::key_of;
-use crate::settings::key::Key;
+use crate::settings::key;
+use crate::settings::quantity;
+use crate::settings::range::shortened;
 
 /// Tells a screen reader what a widget is.
 pub fn name(response: &Response, label: &str) {
@@ -47,7 +50,7 @@ impl<'a> Row<'a> {
     /// The row of a setting, by its path: unit, range and tip are those of its key.
     pub fn of(label: &'a str, path: &str) -> Self {
         let key = key_of(path);
-        let range = key.and_then(Key::range).map_or(f64::MIN..=f64::MAX, |range| range.low()..=range.high());
+        let range = key.and_then(key::Key::range).map_or(f64::MIN..=f64::MAX, |range| range.low()..=range.high());
         let (unit, tip) = key.map_or(("", ""), |key| (key.unit(), key.words));
         Self { label, unit, tip, decimals: 2, speed: 0.01, slide: range.clone(), range }
     }
@@ -78,13 +81,14 @@ impl Row<'_> {
 
     pub fn number(&self, ui: &mut Ui, value: &mut f64) -> Response {
         let shown = ui.style().number_formatter.format(*value, self.decimals..=self.decimals);
+        let before = *value;
         let refused = Cell::new(None);
         let read = |text: &str| {
             // Nothing was typed: the value of the file stays exact.
             if text == shown {
                 return None;
             }
-            self.read(text).inspect_err(|_| refused.set(Some(text.to_owned()))).ok()
+            self.read(text).map_err(|why| refused.set(Some(self.why_not(text, &why)))).ok()
         };
         let drag = DragValue::new(value)
             .custom_parser(read)
@@ -94,26 +98,40 @@ impl Row<'_> {
             .clamp_existing_to_range(false)
             .fixed_decimals(self.decimals)
             .update_while_editing(false);
-        let response = ui.add(drag).on_hover_text(self.tip);
-        if let Some(text) = refused.take() {
-            ui.data_mut(|data| data.insert_temp(refused_id(), self.why_not(&text)));
+        let mut response = ui.add(drag).on_hover_text(self.tip);
+        // Shift it knows itself.
+        held(&mut response, value, before, &self.range, 1.0, self.round());
+        if let Some(why) = refused.take() {
+            ui.data_mut(|data| data.insert_temp(refused_id(), why));
         }
         name(&response, &format!("{} {}", self.label, self.unit));
         response
     }
 
-    /// A number that was typed, if it is one and in range.
-    fn read(&self, text: &str) -> Result<f64, ()> {
-        let number: f64 = text.trim().replace('−', "-").parse().map_err(|_| ())?;
-        if self.range.contains(&number) { Ok(number) } else { Err(()) }
-    }
-
-    fn why_not(&self, text: &str) -> String {
-        let text: String = text.trim().chars().take(24).collect();
+    /// A number that was typed, with units and arithmetic, if it is one and in range; what is wrong with it.
+    fn read(&self, text: &str) -> Result<f64, String> {
+        let number = quantity::read(text, self.unit).map_err(|why| why.to_string())?;
+        if self.range.contains(&number) {
+            return Ok(number);
+        }
         let end = |x: f64| signed(x, self.decimals);
         let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
         let (low, high) = (end(*self.range.start()), end(*self.range.end()));
-        format!("{}: \"{text}\" changes nothing: want a number from {low} to {high}{unit}", self.label)
+        Err(format!("want a number from {low} to {high}{unit}"))
+    }
+
+    fn why_not(&self, text: &str, why: &str) -> String {
+        format!("{}: \"{}\" changes nothing: {why}", self.label, shortened(text.trim(), 24))
+    }
+
+    /// What a drag with Ctrl goes by.
+    fn round(&self) -> f64 {
+        match self.unit {
+            "rad" => 0.05,
+            "°" => 5.0,
+            "m" => 0.01,
+            _ => 10.0 * 0.1_f64.powi(self.decimals as i32),
+        }
     }
 
     /// The same with a slider below.
@@ -127,13 +145,74 @@ impl Row<'_> {
         ui.spacing_mut().slider_width = ui.available_width();
         // The field's size follows the row's height.
         ui.spacing_mut().interact_size.y = 15.0;
+        let before = *value;
         let slider = Slider::new(value, self.slide.clone()).clamping(SliderClamping::Edits).show_value(false);
-        let slider = ui.add(slider.smart_aim(false).logarithmic(logarithmic));
+        let mut slider = ui.add(slider.smart_aim(false).logarithmic(logarithmic));
+        held(&mut slider, value, before, &self.slide, f64::from(FINE), self.round());
         ui.spacing_mut().interact_size.y = 22.0;
         name(&slider, &format!("{} slider", self.label));
         // In a drag it would cover what the drag is about.
         if slider.dragged() { slider } else { slider.on_hover_text(self.tip) }
     }
+}
+
+/// How much of its movement a drag with Shift makes.
+pub(super) const FINE: f32 = 0.1;
+
+/// A number that is being dragged.
+#[derive(Clone, Copy)]
+struct Held {
+    /// Where the pointer has it.
+    asked: f64,
+    /// By how much it stays behind, since Shift was held.
+    behind: f64,
+    /// Given up with Esc: nothing changes until the button comes up.
+    given_up: bool,
+}
+
+/// What a drag makes of a number: with Shift a part of the movement, with Ctrl round numbers, after Esc nothing.
+fn held(response: &mut Response, value: &mut f64, before: f64, range: &RangeInclusive<f64>, fine: f64, round: f64) {
+    let (ctx, id) = (response.ctx.clone(), response.id.with("held"));
+    // With Esc egui itself ends a drag, and yet a slider goes on after the pointer.
+    if !response.is_pointer_button_down_on() && !response.drag_stopped() {
+        ctx.data_mut(|data| data.remove_temp::<Option<Held>>(id));
+        return;
+    }
+    let asked = *value;
+    let now = ctx.data(|data| data.get_temp::<Option<Held>>(id)).flatten();
+    let mut now = now.unwrap_or(Held { asked, behind: 0.0, given_up: false });
+    let (shift, ctrl, esc) =
+        ctx.input(|i| (i.modifiers.shift, i.modifiers.ctrl || i.modifiers.command, i.key_pressed(Key::Escape)));
+    if shift {
+        now.behind += (1.0 - fine) * (asked - now.asked);
+    }
+    now.asked = asked;
+    if esc && !now.given_up {
+        now.given_up = true;
+        ctx.data_mut(|data| data.insert_temp(given_up_id(), true));
+    }
+    if now.behind != 0.0 {
+        *value = (asked - now.behind).clamp(*range.start(), *range.end());
+    }
+    if ctrl {
+        *value = ((*value / round).round() * round).clamp(*range.start(), *range.end());
+    }
+    if now.given_up {
+        *value = before;
+    }
+    // A slider asks anew in every frame.
+    response.flags.set(Flags::CHANGED, *value != before);
+    ctx.data_mut(|data| data.insert_temp(id, Some(now)));
+}
+
+/// Where it waits for the end of the pass that a drag was given up.
+fn given_up_id() -> egui::Id {
+    egui::Id::unique("given up")
+}
+
+/// Whether a drag of a number was given up in this pass.
+pub(super) fn gave_up(ctx: &egui::Context) -> bool {
+    ctx.data_mut(|data| data.remove_temp::<bool>(given_up_id())).unwrap_or_default()
 }
 
 /// Where what was typed and cannot be taken waits for the end of the pass.

@@ -494,6 +494,11 @@ impl Session {
         self.unedited = None;
     }
 
+    /// Whether the last change is of a drag that goes on.
+    pub fn is_in_gesture(&self) -> bool {
+        self.gesture
+    }
+
     /// How many changes can be undone.
     pub fn undo_count(&self) -> usize {
         self.undo.len()

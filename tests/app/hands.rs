@@ -1,6 +1,7 @@
 //! Everything that is seen in the scene is a handle: it says what it is, shows its place in the panel, and turns.
 
-use egui::{Key, Pos2};
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::kittest::Queryable as _;
 use stillbase::app::Command;
 use stillbase::picture::scene::options::Handle;
@@ -9,7 +10,7 @@ use stillbase::picture::scene::pointer::Pointer;
 use stillbase::picture::scene::views::ViewKind;
 use stillbase::session::Edit;
 
-use super::{Window, drag, hold, on_screen, pull, seen, session, window};
+use super::{Window, drag, hold, on_screen, pull, seen, session, type_into, window};
 use crate::Test;
 
 pub const TESTS: &[Test] = tests![
@@ -18,6 +19,9 @@ pub const TESTS: &[Test] = tests![
     a_row_of_the_panel_lights_up_its_thing,
     a_link_that_is_dragged_turns_its_drive,
     a_link_stops_at_the_limits_and_escape_takes_it_back,
+    shift_drags_fine_and_ctrl_to_round_numbers,
+    numbers_of_the_panel_are_dragged_fine_round_and_not_at_all,
+    numbers_are_typed_with_units_and_arithmetic,
 ];
 
 /// What is under a place on the screen.
@@ -179,4 +183,120 @@ fn a_link_stops_at_the_limits_and_escape_takes_it_back() {
     h.run_steps(150);
     let back = session(&h).frame();
     assert!((back.end_effector - before.end_effector).norm() < 1e-6, "{} {}", back.end_effector, before.end_effector);
+}
+
+/// The pointer moves with keys held, and stays down.
+fn move_with(h: &mut Window, [from, to]: [Pos2; 2], modifiers: Modifiers) {
+    h.event(egui::Event::ModifiersChanged(modifiers));
+    let moved = |h: &mut Window, at: Pos2| {
+        h.input_mut().events.push(egui::Event::PointerMoved(at));
+        h.step();
+    };
+    moved(h, from);
+    let pos = from;
+    h.input_mut().events.push(egui::Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed: true,
+        modifiers,
+    });
+    h.step();
+    for i in 1..=10 {
+        moved(h, from + (to - from) * (i as f32 / 10.0));
+    }
+}
+
+/// The button comes up with the keys still held, then they are let go.
+fn release(h: &mut Window, at: Pos2) {
+    h.input_mut().events.push(egui::Event::PointerButton {
+        pos: at,
+        button: PointerButton::Primary,
+        pressed: false,
+        modifiers: Modifiers::NONE,
+    });
+    h.step();
+    h.event(egui::Event::ModifiersChanged(Modifiers::NONE));
+    h.run_steps(2);
+}
+
+fn shift_drags_fine_and_ctrl_to_round_numbers() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let end = |h: &Window| session(h).scenario().task.to;
+    // B by 0.1 m with Shift: a tenth of that.
+    let way = [on_screen(&h, 0.55, 0.90), on_screen(&h, 0.55, 0.80)];
+    move_with(&mut h, way, Modifiers::SHIFT);
+    release(&mut h, way[1]);
+    let [x, y] = end(&h);
+    assert!((x - 0.55).abs() < 2e-3 && (y - 0.89).abs() < 2e-3, "{x} {y}");
+    // With Ctrl to whole centimetres.
+    let way = [on_screen(&h, x, y), on_screen(&h, 0.5832, 0.7619)];
+    move_with(&mut h, way, Modifiers::CTRL);
+    release(&mut h, way[1]);
+    let [x, y] = end(&h);
+    assert!((x - 0.58).abs() < 1e-12 && (y - 0.76).abs() < 1e-12, "{x} {y}");
+    // A link to round angles of its drive, with b as it was.
+    let (i, from) = link(&h, "1");
+    let to = swung(&h, i, from, 0.3);
+    move_with(&mut h, [from, to], Modifiers::CTRL);
+    h.run_steps(60);
+    let angle = session(&h).frame().q[0].to_degrees();
+    assert!((angle / 5.0 - (angle / 5.0).round()).abs() < 1e-4, "{angle}");
+    assert!((session(&h).frame().b - 2.4).abs() < 1e-9);
+    release(&mut h, to);
+}
+
+fn numbers_of_the_panel_are_dragged_fine_round_and_not_at_all() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let b = |h: &Window| session(h).frame().b;
+    let slider = h.get_by_role_and_label(Role::Slider, "b slider").rect();
+    let period = session(&h).run().planes().expect("planes").map().period();
+    let per_point = period / f64::from(slider.width() - slider.height());
+    // From its knob, so that pressing does not move it.
+    let knob = pos2(slider.left() + 0.5 * slider.height() + (2.4 / per_point) as f32, slider.center().y);
+    let way = [knob, knob + vec2(8.0, 0.0)];
+    let start = b(&h);
+    move_with(&mut h, way, Modifiers::SHIFT);
+    let fine = b(&h) - start;
+    release(&mut h, way[1]);
+    let full = 8.0 * per_point;
+    assert!(fine > 0.03 * full && fine < 0.3 * full, "{fine} of {full}");
+    let undos = session(&h).undo_count();
+    let way = [way[0], way[0] + vec2(6.0, 0.0)];
+    move_with(&mut h, way, Modifiers::CTRL);
+    release(&mut h, way[1]);
+    let round = b(&h) / 0.05;
+    assert!((round - round.round()).abs() < 1e-9, "{}", b(&h));
+    assert_eq!(session(&h).undo_count(), undos + 1);
+    // Esc gives a drag up, and the pointer moves nothing any more.
+    let (before, undos) = (b(&h), session(&h).undo_count());
+    let way = [way[1], way[1] + vec2(-12.0, 0.0)];
+    move_with(&mut h, way, Modifiers::NONE);
+    assert!((b(&h) - before).abs() > 1e-3, "{}", b(&h));
+    h.key_press(Key::Escape);
+    h.run_steps(2);
+    h.hover_at(way[0] + vec2(-30.0, 0.0));
+    h.run_steps(2);
+    assert_eq!(b(&h), before);
+    release(&mut h, way[0]);
+    assert_eq!((b(&h), session(&h).undo_count()), (before, undos));
+}
+
+fn numbers_are_typed_with_units_and_arithmetic() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let task = |h: &Window| session(h).scenario().task.clone();
+    type_into(&mut h, "time T s", "1500 ms");
+    assert_eq!(task(&h).time, 1.5);
+    type_into(&mut h, "B x m", "1.1/2 + 0.5 cm / 1 cm");
+    assert_eq!(task(&h).to[0], 0.55, "different kinds are not added");
+    let (said, bad) = h.state().app_state().view_state().message.clone().expect("it is said");
+    assert!(bad && said.contains("B x") && said.contains("different kinds"), "{said}");
+    type_into(&mut h, "B x m", "56 cm");
+    assert!((task(&h).to[0] - 0.56).abs() < 1e-12);
+    type_into(&mut h, "b rad", "135 deg + 2 deg");
+    assert!((session(&h).frame().b - 137_f64.to_radians()).abs() < 1e-9, "{}", session(&h).frame().b);
+    type_into(&mut h, "a₁ greatest °", "pi rad");
+    assert!((session(&h).scenario().machine.angles()[0].limits.end() - std::f64::consts::PI).abs() < 1e-12);
 }

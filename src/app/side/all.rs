@@ -9,8 +9,11 @@ use crate::app::theme::{colour, plain};
 use crate::app::widgets::{name, note};
 use crate::picture::scene::palette::Palette;
 use crate::session::Edit;
-use crate::session::scenario::KEYS;
+use crate::session::scenario::{KEYS, Value};
 use crate::settings::change::{self, DEFAULT};
+use crate::settings::key::{Holds, Key};
+use crate::settings::quantity::{self, Misread};
+use crate::settings::range::shortened;
 
 /// What the title above a part says already.
 const HEADED: [&str; 6] = ["task.", "control.", "plant.", "base.wheel.", "base.", "tolerance."];
@@ -49,6 +52,25 @@ pub fn show(ui: &mut Ui, facts: &Facts, p: &Palette, commands: &mut Vec<Command>
     });
 }
 
+/// What was typed for a key: numbers with units and arithmetic in the unit of the key, anything else as in a file.
+fn typed(text: &str, key: &Key) -> Result<Value, Misread> {
+    if text.trim().is_empty() {
+        return Ok(DEFAULT.into());
+    }
+    let value = change::value(text);
+    let numbers = matches!(key.holds, Holds::Number(_) | Holds::Whole(_) | Holds::PerDrive(_) | Holds::List(..));
+    // Words, such as none, are for the key to take or not.
+    if !numbers || key.holds.takes(&value) || !text.contains(|c: char| c.is_ascii_digit() || c == 'π') {
+        return Ok(value);
+    }
+    let all: Vec<f64> = text.split(',').map(|part| quantity::read(part, key.unit())).collect::<Result<_, _>>()?;
+    Ok(match (key.holds, all.as_slice()) {
+        (Holds::Whole(_), [one]) if one.fract() == 0.0 && one.abs() < 1e15 => Value::Integer(*one as i64),
+        (_, [one]) => Value::Float(*one),
+        (_, several) => several.to_vec().into(),
+    })
+}
+
 fn row(ui: &mut Ui, p: &Palette, setting: &Setting, commands: &mut Vec<Command>) {
     let Setting { path, key, typed: shown, usual, wants, .. } = setting;
     let wants = wants.map_or_else(String::new, |wants| format!("\nNo effect as things are: that takes {wants}."));
@@ -74,8 +96,13 @@ fn row(ui: &mut Ui, p: &Palette, setting: &Setting, commands: &mut Vec<Command>)
                 ui.data_mut(|d| d.remove_temp::<String>(id));
                 let cancelled = ui.input(|i| i.key_pressed(egui::Key::Escape));
                 if text.trim() != shown.as_str() && !cancelled {
-                    let typed = if text.trim().is_empty() { DEFAULT.into() } else { change::value(&text) };
-                    once(commands, Edit::set(path, typed));
+                    match typed(&text, key) {
+                        Ok(value) => once(commands, Edit::set(path, value)),
+                        Err(why) => {
+                            let text = shortened(text.trim(), 24);
+                            commands.push(Command::Refuse(format!("{path}: \"{text}\" changes nothing: {why}")));
+                        }
+                    }
                 }
             }
             if !usual && undo(ui, p, &format!("{path} back to normal"), &format!("Back to normal: {}", key.default)) {

@@ -23,6 +23,32 @@ pub struct Grip {
     pub angle: f64,
     /// (a_1, a_2) when it was taken hold of, rad.
     pub from: [f64; 2],
+    /// Whether its drive stops at round angles only.
+    pub snaps: bool,
+}
+
+/// Round places, m, pose constants, rad, forces, N, and angles of drives, rad.
+const ROUND_PLACE: f64 = 0.01;
+const ROUND_B: f64 = 0.05;
+const ROUND_FORCE: f64 = 0.5;
+/// Of drives that a hand turns.
+pub const ROUND_ANGLE: f64 = 5.0 * std::f64::consts::PI / 180.0;
+
+impl Aim {
+    /// The same at the nearest round numbers.
+    #[must_use]
+    pub fn snapped(self) -> Self {
+        let round = |x: f64, step: f64| (x / step).round() * step;
+        let both = |at: [f64; 2], step| at.map(|x| round(x, step));
+        match self {
+            Self::Target(at) => Self::Target(both(at, ROUND_PLACE)),
+            Self::Waypoint(i, at) => Self::Waypoint(i, both(at, ROUND_PLACE)),
+            Self::Push(force) => Self::Push(both(force, ROUND_FORCE)),
+            Self::B(b) => Self::B(round(b, ROUND_B)),
+            // Where its drive is at a round angle: its grip says so.
+            Self::Angles(a) => Self::Angles(a),
+        }
+    }
 }
 
 impl Pick {

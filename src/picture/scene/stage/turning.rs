@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use crate::picture::scene::linkage::Bar;
 use crate::picture::scene::options::Handle;
-use crate::picture::scene::pick::{Grip, Pick};
+use crate::picture::scene::pick::{Grip, Pick, ROUND_ANGLE};
 use crate::picture::scene::pointer::Pointer;
 use crate::planning::reactionless::{PlaneMap, PlanePoint};
 use crate::simulation::frame::Frame;
@@ -34,7 +34,7 @@ pub fn grip(link: usize, bar: &Bar, map: &PlaneMap, frame: &Frame, pointer: &Poi
     let angle = off(bar, &DriveAngles(PerDrive::from_fn(frame.q.len(), |k| frame.relative(k))), at);
     let from = map.project(&frame.q_reference).a;
     let (.., z) = bar.pose(&frame.q.units());
-    Some(Pick { handle: Handle::Link(link), at: [at.re, at.im, z], grip: Some(Grip { angle, from }) })
+    Some(Pick { handle: Handle::Link(link), at: [at.re, at.im, z], grip: Some(Grip { angle, from, snaps: false }) })
 }
 
 /// The angles (a_1, a_2), rad, at which the link points to the pointer, on the plane b: sought from the present angle of
@@ -42,6 +42,10 @@ pub fn grip(link: usize, bar: &Bar, map: &PlaneMap, frame: &Frame, pointer: &Poi
 pub fn turned(bar: &Bar, grip: &Grip, map: &PlaneMap, frame: &Frame, pointer: &Pointer, b: f64) -> Option<[f64; 2]> {
     let at = place(bar, frame, pointer)?;
     let pose = |angle: f64| map.turned(bar.drive, angle, b, grip.from);
+    let stops = |angle: f64| match grip.snaps {
+        true => pose((angle / ROUND_ANGLE).round() * ROUND_ANGLE),
+        false => pose(angle),
+    };
     let misses = |angle: f64| {
         let q = DriveAngles::from(map.lift(PlanePoint { a: pose(angle), b }));
         let miss = off(bar, &q, at) - grip.angle;
@@ -55,14 +59,14 @@ pub fn turned(bar: &Bar, grip: &Grip, map: &PlaneMap, frame: &Frame, pointer: &P
         let next = (now + step).clamp(low, high);
         let miss = misses(next);
         if miss * first <= 0.0 && miss.abs() < 1.0 {
-            return Some(pose(bisected(&misses, now, next)));
+            return Some(stops(bisected(&misses, now, next)));
         }
         if next == now {
             break;
         }
         now = next;
     }
-    Some(pose(now))
+    Some(stops(now))
 }
 
 /// Where a function changes its sign between two places.

@@ -1,0 +1,3 @@
+//! How values are typed.
+
+mod quantity;
