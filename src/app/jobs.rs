@@ -20,6 +20,7 @@ impl Workers for Threads {
         // A thread that cannot start takes the work with it, so the work waits here for whoever can do it.
         let (hand, take) = channel::<Box<dyn FnOnce() + Send>>();
         let thread = std::thread::Builder::new().name("job".into()).spawn(move || {
+            step_back();
             if let Ok(work) = take.recv() {
                 work();
             }
@@ -29,6 +30,14 @@ impl Workers for Threads {
             Err(_) => work(),
         }
     }
+}
+
+/// Lets the window go first where there are fewer processors than work.
+fn step_back() {
+    // On Linux a thread has a priority of its own, which the threads that it starts take over; elsewhere this would set
+    // back the whole program. A refusal changes nothing that matters.
+    #[cfg(all(target_os = "linux", feature = "window"))]
+    let _ = rustix::process::setpriority_process(Some(rustix::thread::gettid()), 10);
 }
 
 /// No threads: every job is done when it starts, as in a browser and in tests.

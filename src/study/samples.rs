@@ -27,12 +27,19 @@ impl Samples {
     /// Takes what the frames have more than before; what has changed is taken again. Signals that are not wanted
     /// any more are let go.
     pub fn follow(&mut self, made: &Made, frames: &[Frame], wanted: &[&Signal]) {
+        self.follow_some(made, frames, wanted, usize::MAX);
+    }
+
+    /// The same with so many more frames at most; whether that was all of them. A long run that is new takes longer
+    /// than a repaint may.
+    pub fn follow_some(&mut self, made: &Made, frames: &[Frame], wanted: &[&Signal], most: usize) -> bool {
         let kept = self.made.as_ref().map_or(0, |known| made.kept_of(known));
         self.made = Some(made.clone());
         self.series.retain(|(path, _)| wanted.iter().any(|signal| signal.path == *path));
         let known = kept.min(self.times.len()).min(frames.len());
         self.times.truncate(known);
-        self.times.extend(frames[known..].iter().map(|frame| frame.time));
+        let until = frames.len().min(known.saturating_add(most));
+        self.times.extend(frames[known..until].iter().map(|frame| frame.time));
         for signal in wanted {
             let place = self.series.iter().position(|(path, _)| *path == signal.path).unwrap_or_else(|| {
                 self.series.push((signal.path.clone(), Series::default()));
@@ -40,10 +47,11 @@ impl Samples {
             });
             let series = &mut self.series[place].1;
             series.truncate(known);
-            for frame in &frames[series.values().len()..] {
+            for frame in &frames[series.values().len()..until] {
                 series.push(signal.value(frame));
             }
         }
+        until == frames.len()
     }
 
     /// The samples of a signal.

@@ -42,6 +42,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("directories", &["files/journal", "files/preferences"]),
     ("sha2", &["recording/hash"]),
     ("libloading", &["app/window"]),
+    ("rustix", &["app/jobs"]),
     ("rerun", &["recording"]),
     ("clap", &["commands", "main"]),
     ("indicatif", &["commands"]),

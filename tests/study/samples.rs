@@ -92,7 +92,7 @@ fn wanted(table: &[Signal]) -> Vec<&Signal> {
 fn samples_follow_a_session() {
     let mut session = Session::open(Scenario::builtin("case-3").expect("built in")).expect("it starts");
     let table = signals(&session.scenario().machine);
-    let mut samples = Samples::default();
+    let (mut samples, mut bit_by_bit) = (Samples::default(), Samples::default());
     let mut known: Option<Made> = None;
     let (mut again, mut checks) = (0, 0);
     let mut check = |session: &Session, what: &str| {
@@ -100,6 +100,8 @@ fn samples_follow_a_session() {
         let all = wanted(&table);
         let asked = if checks % 3 == 1 { &all[..2] } else { &all[..] };
         samples.follow(session.made(), session.frames(), asked);
+        let portions = (0..100).find(|_| bit_by_bit.follow_some(session.made(), session.frames(), asked, 37));
+        assert!(portions.is_some() && bit_by_bit.times() == samples.times(), "{what}");
         checks += 1;
         again +=
             usize::from(known.replace(session.made().clone()).is_none_or(|made| session.made().kept_of(&made) == 0));
@@ -108,6 +110,7 @@ fn samples_follow_a_session() {
             let got = samples.series(&signal.path).expect("asked for").values();
             let want: Vec<f64> = session.frames().iter().map(|f| signal.value(f)).collect();
             assert!(got.iter().zip(&want).all(|(a, b)| a.to_bits() == b.to_bits()), "{what}: {}", signal.path);
+            assert_eq!(bit_by_bit.series(&signal.path).map(|s| s.values()), Some(got), "{what}: {}", signal.path);
             let s = samples.statistics(&signal.path, [0.0, 1e9]).expect("numbers");
             assert_eq!(s.greatest, want.iter().fold(f64::NEG_INFINITY, |m, x| m.max(*x)), "{what}: {}", signal.path);
         }

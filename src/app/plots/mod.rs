@@ -50,7 +50,9 @@ pub fn show(ui: &mut Ui, what: &Shown<'_>, prepared: &mut Prepared, commands: &m
         }
         search::show(ui, what, &plots, commands);
         let columns = ((ui.available_width() - LEFT) * ui.ctx().pixels_per_point()).clamp(16.0, 8192.0) as usize;
-        prepared.follow(session, what.comparison, &plots, &view_state.charts, columns);
+        if !prepared.follow(session, what.comparison, &plots, &view_state.charts, columns) {
+            ui.ctx().request_repaint();
+        }
         let statistics = if view_state.charts.statistics { ROW } else { 0.0 };
         let rows: usize = plots.iter().map(|plot| plot.shown().count()).sum();
         let taken = (TITLE + BELOW + 13.0) * (plots.len() as f32 + 1.0) + statistics * rows as f32;

@@ -41,10 +41,13 @@ struct Key {
     last: Option<Frame>,
     names: Vec<String>,
     choice: Choice,
-    others: Vec<(usize, Made)>,
+    others: Vec<(usize, Made, usize)>,
     shown: [f64; 2],
     columns: usize,
 }
+
+/// Frames taken up in one repaint: of ten signals they take some 4 ms.
+const AT_ONCE: usize = 10_000;
 
 /// How much time there is to show of a session.
 pub fn extent(session: &Session) -> Extent {
@@ -53,7 +56,7 @@ pub fn extent(session: &Session) -> Extent {
 }
 
 impl Prepared {
-    /// Makes what has changed.
+    /// Makes what has changed; whether that was all of it.
     pub fn follow(
         &mut self,
         session: &Session,
@@ -61,7 +64,7 @@ impl Prepared {
         plots: &[Plot<'_>],
         choice: &Choice,
         columns: usize,
-    ) {
+    ) -> bool {
         let shown = extent(session).shown(choice.range);
         let mut wanted: Vec<&Signal> = Vec::new();
         for plot in plots {
@@ -71,28 +74,30 @@ impl Prepared {
                 }
             }
         }
-        self.samples.follow(session.made(), session.frames(), &wanted);
-        self.lay_over(comparison, &wanted);
+        let own = self.samples.follow_some(session.made(), session.frames(), &wanted, AT_ONCE);
+        let all = self.lay_over(comparison, &wanted) && own;
         let key = Key {
             made: session.made().clone(),
-            count: session.frames().len(),
-            last: session.frames().last().copied(),
+            count: self.samples.times().len(),
+            last: self.samples.times().len().checked_sub(1).and_then(|i| session.frames().get(i).copied()),
             names: plots.iter().map(|plot| plot.name.clone()).collect(),
             choice: choice.clone(),
-            others: self.others.iter().map(|other| (other.place, other.made.clone())).collect(),
+            others: self.others.iter().map(|o| (o.place, o.made.clone(), o.samples.times().len())).collect(),
             shown,
             columns,
         };
         if self.key.as_ref() == Some(&key) {
-            return;
+            return all;
         }
         let others: Vec<(usize, &Samples)> = self.others.iter().map(|other| (other.place, &other.samples)).collect();
         let of = |plot: &Plot<'_>| Drawn::of(plot, &self.samples, &others, shown, columns, choice.statistics);
         self.drawn = plots.iter().map(of).collect();
         self.key = Some(key);
+        all
     }
 
-    fn lay_over(&mut self, comparison: Option<&Comparison>, wanted: &[&Signal]) {
+    fn lay_over(&mut self, comparison: Option<&Comparison>, wanted: &[&Signal]) -> bool {
+        let mut all = true;
         let mut known = std::mem::take(&mut self.others);
         let entries = comparison.map_or(&[][..], Comparison::entries).iter().enumerate();
         for (place, run) in entries.filter(|(_, e)| e.shown).filter_map(|(i, e)| Some((i, e.outcome.as_ref().ok()?))) {
@@ -101,9 +106,10 @@ impl Prepared {
                 None => Other { place, run: run.clone(), made: Made::new(), samples: Samples::default() },
             };
             other.place = place;
-            other.samples.follow(&other.made, &other.run.frames, wanted);
+            all &= other.samples.follow_some(&other.made, &other.run.frames, wanted, AT_ONCE);
             self.others.push(other);
         }
+        all
     }
 
     /// Has a signal sought in the next pass.
