@@ -200,6 +200,7 @@ pub const ACTIONS: &[Action] = actions![
     View, "Nothing but the scene, or all panels", [on(PLAIN, Key::Num0)], "keyboard", |_, v| {
         Some(Command::Panels(!(v.side.shown || v.plots.shown)))
     };
+    View, "What a repaint takes, or no longer", [on(PLAIN, Key::F12)], "keyboard", |_, v| Some(Command::Times(!v.times));
     View, "Light or dark", [on(PLAIN, Key::L)], "top bar", |_, v| Some(Command::Theme(other(v.theme)));
 
     Analysis, "The same task done in other ways, side by side", [on(PLAIN, Key::C)], "tool bar", |_, v| {

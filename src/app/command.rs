@@ -109,6 +109,8 @@ pub enum Command {
     Find(bool),
     /// Show or hide the keys.
     Help(bool),
+    /// Shows what a repaint takes, or no longer.
+    Times(bool),
     /// Show or hide the dialog for a file.
     Dialog(Option<FileDialog>),
 }
@@ -167,6 +169,7 @@ impl Command {
             | Self::Refuse(_)
             | Self::Cancel(_)
             | Self::Help(_)
+            | Self::Times(_)
             | Self::Dialog(_) => false,
         }
     }

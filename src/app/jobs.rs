@@ -37,7 +37,7 @@ fn step_back() {
     // On Linux a thread has a priority of its own, which the threads that it starts take over; elsewhere this would set
     // back the whole program. A refusal changes nothing that matters.
     #[cfg(all(target_os = "linux", feature = "window"))]
-    let _ = rustix::process::setpriority_process(Some(rustix::thread::gettid()), 10);
+    let _ = rustix::process::setpriority_process(Some(rustix::thread::gettid()), 19);
 }
 
 /// No threads: every job is done when it starts, as in a browser and in tests.

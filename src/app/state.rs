@@ -454,6 +454,7 @@ impl AppState {
             Command::Look(look) => self.view_state.look(look),
             Command::Find(find) => self.view_state.finder = find.then(Finder::default),
             Command::Help(help) => self.view_state.help = help,
+            Command::Times(shown) => self.view_state.times = shown,
             Command::Mark(time) => self.view_state.mark = time,
             Command::Charts(change) => self.view_state.charts.change(change),
             Command::LookFor => {

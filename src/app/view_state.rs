@@ -132,6 +132,8 @@ pub struct ViewState {
     pub snapshots: bool,
     /// The keys are on display.
     pub help: bool,
+    /// What a repaint takes is on display.
+    pub times: bool,
     /// The list of commands, while it is on display.
     pub finder: Option<Finder>,
     /// A file is being asked for.
@@ -185,6 +187,7 @@ impl ViewState {
             charts: Choice::default(),
             snapshots: false,
             help: false,
+            times: false,
             finder: None,
             dialog: None,
             dragged: false,

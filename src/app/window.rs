@@ -1,6 +1,7 @@
 //! A real window around an [`AppState`].
 
 mod keeper;
+mod times;
 
 use std::cell::Cell;
 use std::path::PathBuf;
@@ -10,6 +11,7 @@ use std::time::Instant;
 use thiserror::Error;
 
 use keeper::Keeper;
+use times::Times;
 
 use crate::app::jobs::Threads;
 use crate::app::{AppState, Command, Preferences};
@@ -144,6 +146,7 @@ pub struct App {
     title: String,
     /// Whether what it draws on encodes colours by itself.
     encodes: bool,
+    times: Times,
     /// Who writes down what is to last; nobody does in tests.
     keeper: Option<Keeper>,
 }
@@ -167,7 +170,7 @@ impl App {
         let renderers = Renderers::new(&state.device, state.target_format);
         state.renderer.write().callback_resources.insert(renderers);
         let encodes = state.target_format.is_srgb();
-        Some(Self { app_state, clock, title: String::new(), encodes, keeper: None })
+        Some(Self { app_state, clock, title: String::new(), encodes, times: Times::default(), keeper: None })
     }
 
     /// The same, which writes down what is to last.
@@ -189,12 +192,11 @@ impl App {
 
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        let now = Instant::now();
+        self.times.begin(now);
         let wall = match &mut self.clock {
             Clock::Fixed(wall) => *wall,
-            Clock::Wall(last) => {
-                let now = Instant::now();
-                last.replace(now).map_or(0.0, |last| (now - last).as_secs_f64())
-            }
+            Clock::Wall(last) => last.replace(now).map_or(0.0, |last| (now - last).as_secs_f64()),
         };
         self.app_state.pass(wall);
         let dropped: Option<PathBuf> = ui.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_path_buf()));
@@ -202,6 +204,11 @@ impl eframe::App for App {
             self.app_state.carry_out(Command::OpenFile(path));
         }
         self.app_state.ui(ui);
+        let now = Instant::now();
+        self.times.end(now);
+        if self.app_state.view_state().times {
+            self.times.show(ui.ctx(), &self.app_state.view_state().palette(), now);
+        }
         if let Some(keeper) = &mut self.keeper {
             keeper.keep(ui.ctx(), &mut self.app_state);
         }

@@ -18,6 +18,7 @@ pub const TESTS: &[Test] = tests![
     nothing_is_repainted_at_rest,
     case_1_in_motion_looks_as_it_should,
     a_run_is_played_over_and_over,
+    what_a_repaint_takes_is_told_behind_a_key,
     b_leaves_the_task_as_it_is,
 ];
 
@@ -177,4 +178,18 @@ fn a_run_is_played_over_and_over() {
     h.run_steps(2);
     h.run_steps(80);
     assert!(session(&h).frame().time > 0.99, "once more to the end");
+}
+
+fn what_a_repaint_takes_is_told_behind_a_key() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(3);
+    assert!(h.query_by_label_contains("a second").is_none());
+    h.key_press(Key::F12);
+    h.run_steps(3);
+    let told = h.get_by_label_contains("for the interface").accesskit_node().value().unwrap_or_default();
+    let ms: Vec<f64> = told.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    assert!(ms.len() == 3 && ms.iter().all(|x| *x > 0.0) && ms[2] <= ms[0], "{told}");
+    h.key_press(Key::F12);
+    h.run_steps(2);
+    assert!(h.query_by_label_contains("for the interface").is_none());
 }
