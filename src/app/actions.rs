@@ -242,14 +242,18 @@ pub const FINE_ACTIONS: &[Action] = actions![
 ];
 
 /// What the pointer does.
-pub const GESTURES: [(&str, &str); 15] = [
+pub const GESTURES: [(&str, &str); 19] = [
     ("drag the target", "the machine follows on its plane"),
+    ("drag a link", "its drive turns, the others follow so that b stays"),
     ("drag A, B, 1 …", "move a point of the path; where the target covers it, drag its name"),
     ("double click", "add a point to the path"),
     ("Delete", "leave out the point under the pointer"),
     ("drag the b ring", "the workspace turns"),
     ("drag plane, slice", "change b, in joint space and in the tower"),
     ("Alt drag", "push the end effector, 20 N for each metre"),
+    ("Shift or Ctrl in a drag", "a tenth of the movement; round numbers"),
+    ("click a thing", "its rows in the panel"),
+    ("right button", "what can be done with the thing or the place there"),
     ("drag elsewhere", "pan in 2D, else orbit; Shift pans"),
     ("wheel", "zoom"),
     ("click a plot", "show that instant"),

@@ -109,7 +109,11 @@ impl Intro {
     pub fn sees(&mut self, command: &Command, session: &Session, held: bool) {
         let touches = match command {
             Command::Edit(_) | Command::Open(_) | Command::OpenFile(_) | Command::Case(_) => !held,
-            Command::Draw(_) | Command::Push(_) | Command::Compare(true) | Command::Study(true) => true,
+            Command::Draw(_)
+            | Command::Push(_)
+            | Command::Compare(true)
+            | Command::Study(true)
+            | Command::Reveal(_) => true,
             Command::View(view) => !view.shows_machine(),
             Command::EndGesture => session.is_led() || (session.b_aim() - self.b).abs() > 1e-9,
             _ => false,

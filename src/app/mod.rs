@@ -17,6 +17,7 @@ mod icon;
 mod intro;
 pub mod jobs;
 mod keys;
+mod menu;
 mod order;
 mod path;
 mod place;

@@ -7,7 +7,7 @@ use egui::{CentralPanel, CursorIcon, Frame, PointerButton, PopupAnchor, Pos2, Re
 use super::card::Card;
 use super::intro::Intro;
 use super::widgets::{FINE, name};
-use super::{Command, ViewState, corner, framing, place, set_b};
+use super::{Command, ViewState, corner, framing, menu, place, set_b};
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::picture::paint::{Spot, paint, words};
 use crate::picture::scene::exaggeration::exaggerated;
@@ -52,6 +52,9 @@ pub fn show(
             draw(ui, &response, &spot, views, view_state, commands);
         } else {
             point_at(ui, &response, &spot, (session, &shown), views, view_state, commands);
+            let place = |pos: Pos2| spot.pointer(pos).ray()?.at_height(views.stage().handle_height());
+            let at = response.interact_pointer_pos().filter(|_| view_state.view.shows_machine()).and_then(place);
+            menu::show(&response, session, (view_state.hot, at), commands);
             tell(&response, session, views, view_state);
             move_camera(ui, &response, rect, view_state);
         }
@@ -267,7 +270,8 @@ fn tell(response: &egui::Response, session: &Session, views: &Views, view_state:
         }
         return;
     }
-    let quiet = view_state.grabbed.is_none() && response.hovered() && !response.dragged();
+    let listed = egui::Popup::is_any_open(ctx);
+    let quiet = view_state.grabbed.is_none() && response.hovered() && !response.dragged() && !listed;
     let Some(thing) = view_state.hot.filter(|_| quiet) else {
         ctx.data_mut(|data| data.remove_temp::<Option<(Handle, f64)>>(id));
         return;

@@ -19,6 +19,7 @@ pub const TESTS: &[Test] = tests![
     a_row_of_the_panel_lights_up_its_thing,
     a_link_that_is_dragged_turns_its_drive,
     a_link_stops_at_the_limits_and_escape_takes_it_back,
+    the_right_button_offers_what_can_be_done_there,
     shift_drags_fine_and_ctrl_to_round_numbers,
     numbers_of_the_panel_are_dragged_fine_round_and_not_at_all,
     numbers_are_typed_with_units_and_arithmetic,
@@ -299,4 +300,39 @@ fn numbers_are_typed_with_units_and_arithmetic() {
     assert!((session(&h).frame().b - 137_f64.to_radians()).abs() < 1e-9, "{}", session(&h).frame().b);
     type_into(&mut h, "a₁ greatest °", "pi rad");
     assert!((session(&h).scenario().machine.angles()[0].limits.end() - std::f64::consts::PI).abs() < 1e-12);
+}
+
+/// A click with the right button, and one on an entry of the menu that opens.
+fn choose(h: &mut Window, at: Pos2, entry: &str) {
+    h.hover_at(at);
+    h.step();
+    for pressed in [true, false] {
+        let (button, modifiers) = (PointerButton::Secondary, Modifiers::NONE);
+        h.event(egui::Event::PointerButton { pos: at, button, pressed, modifiers });
+        h.step();
+    }
+    h.run_steps(3);
+    h.get_by_label_contains(entry).click();
+    h.run_steps(3);
+}
+
+fn the_right_button_offers_what_can_be_done_there() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let points = |h: &Window| session(h).scenario().task.points();
+    let free = on_screen(&h, 0.62, 0.70);
+    choose(&mut h, free, "Add a point of the path here");
+    assert_eq!(points(&h).len(), 3);
+    assert!((points(&h)[1].re - 0.62).abs() < 2e-3 && (points(&h)[1].im - 0.70).abs() < 2e-3, "{:?}", points(&h));
+    let at = on_screen(&h, 0.62, 0.70);
+    choose(&mut h, at, "Leave point 1 out");
+    assert_eq!(points(&h).len(), 2);
+    let (_, at) = link(&h, "5");
+    choose(&mut h, at, "Show in the panel");
+    h.run_steps(30);
+    assert!(h.query_by_label("link 5 mass kg").is_some());
+    let free = on_screen(&h, 0.60, 0.65);
+    choose(&mut h, free, "Send the target here");
+    let target = session(&h).frame().target.at;
+    assert!((target.re - 0.60).abs() < 2e-3 && (target.im - 0.65).abs() < 2e-3, "{target}");
 }

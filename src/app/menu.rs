@@ -1,0 +1,76 @@
+//! What the right button of the mouse offers in the scene, for the thing and the place that it was pressed on.
+
+use egui::{Id, PointerButton, Response, Ui};
+
+use super::{Command, place};
+use crate::mechanics::planar::Vector;
+use crate::picture::numbers::signed;
+use crate::picture::scene::options::Handle;
+use crate::session::{Edit, Session};
+
+/// What the menu is about.
+#[derive(Clone, Copy)]
+struct About {
+    thing: Option<Handle>,
+    /// In the plane of motion, m.
+    at: Option<[f64; 2]>,
+}
+
+/// Draws the menu, while it is open; `hot` is what the pointer is on, and `at` where it is in the plane of motion, m.
+pub fn show(
+    response: &Response,
+    session: &Session,
+    (hot, at): (Option<Handle>, Option<[f64; 2]>),
+    commands: &mut Vec<Command>,
+) {
+    let id = Id::unique("menu of the scene");
+    if response.clicked_by(PointerButton::Secondary) {
+        response.ctx.data_mut(|data| data.insert_temp(id, Some(About { thing: hot, at })));
+    }
+    let Some(about) = response.ctx.data(|data| data.get_temp::<Option<About>>(id)).flatten() else { return };
+    response.context_menu(|ui| entries(ui, session, about, commands));
+}
+
+fn entries(ui: &mut Ui, session: &Session, About { thing, at }: About, commands: &mut Vec<Command>) {
+    ui.set_min_width(200.0);
+    let task = &session.scenario().task;
+    let mut entry = |ui: &mut Ui, words: &str, new: Vec<Command>| {
+        if ui.button(words).clicked() {
+            commands.extend(new);
+            ui.close();
+        }
+    };
+    let once = |edit: Edit| vec![Command::Edit(edit), Command::EndGesture];
+    if let Some(thing) = thing.filter(|thing| place::is_in_panel(*thing)) {
+        entry(ui, "Show in the panel", vec![Command::Reveal(thing)]);
+    }
+    if let Some(Handle::Waypoint(i)) = thing
+        && let Some(change) = task.removing(i)
+    {
+        entry(ui, &format!("Leave point {} out", task.name_of(i)), once(Edit::of("task", change)));
+    }
+    if thing == Some(Handle::Target) && session.is_led() {
+        entry(ui, "Back to the path", vec![Command::BackToPath]);
+    }
+    if thing == Some(Handle::Payload) {
+        entry(ui, "Take the payload off", once(Edit::set("plant.payload", "default")));
+    }
+    if let Some([x, y]) = at {
+        if thing != Some(Handle::Target) && session.run().planes().is_some() {
+            entry(ui, "Send the target here", once(Edit::DragTarget { x, y }));
+        }
+        if let Some(change) = task.adding(Vector::new(x, y)) {
+            entry(ui, "Add a point of the path here", once(Edit::of("task", change)));
+        }
+        let words = format!("Copy {}, {} m", signed(x, 3), signed(y, 3));
+        if ui.button(words).clicked() {
+            ui.ctx().copy_text(format!("{x:.4}, {y:.4}"));
+            ui.close();
+        }
+    }
+    ui.separator();
+    if ui.button("Show everything").clicked() {
+        commands.push(Command::Fit);
+        ui.close();
+    }
+}
