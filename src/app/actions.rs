@@ -5,7 +5,7 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::command::Look;
 use super::theme::other;
-use super::{Command, ComparisonCommand, FileDialog, Purpose, ViewState, set_b};
+use super::{Command, ComparisonCommand, FileDialog, Layout, Purpose, ViewState, set_b};
 use crate::picture::charts::choice::Change;
 use crate::picture::scene::Measure;
 use crate::picture::scene::views::ViewKind;
@@ -191,14 +191,26 @@ pub const ACTIONS: &[Action] = actions![
     View, "Exaggerate the motion of the base, or show it as it is", [on(PLAIN, Key::X)], "left panel, base", |s, v| {
         s.scenario().base.moves().then_some(Command::Exaggerate(!v.exaggerates_base))
     };
-    View, "Panel of settings on the left, shown or hidden", [on(PLAIN, Key::Num8)], "keyboard", |_, v| {
+    View, "Panel of settings, shown or hidden", [on(PLAIN, Key::Num8)], "tool bar, layout", |_, v| {
         Some(Command::Side(!v.side.shown))
     };
-    View, "Panel of plots on the right, shown or hidden", [on(PLAIN, Key::Num9)], "keyboard", |_, v| {
+    View, "Panel of plots, shown or hidden", [on(PLAIN, Key::Num9)], "tool bar, layout", |_, v| {
         Some(Command::Plots(!v.plots.shown))
     };
     View, "Nothing but the scene, or all panels", [on(PLAIN, Key::Num0)], "keyboard", |_, v| {
         Some(Command::Panels(!(v.side.shown || v.plots.shown)))
+    };
+    View, "Settings and plots change sides", [on(PLAIN, Key::Num4)], "tool bar, layout", |_, v| {
+        Some(Command::Swap(!v.swapped))
+    };
+    View, "Explore: settings, scene and plots", [on(PLAIN, Key::Num5)], "tool bar, layout", |_, _| {
+        Some(Command::Layout(Layout::Explore))
+    };
+    View, "Compare: scene, wide plots and the runs side by side", [on(PLAIN, Key::Num6)], "tool bar, layout", |_, _| {
+        Some(Command::Layout(Layout::Compare))
+    };
+    View, "Present: the scene alone, what counts in large type", [on(PLAIN, Key::Num7)], "tool bar, layout", |_, _| {
+        Some(Command::Layout(Layout::Present))
     };
     View, "What a repaint takes, or no longer", [on(PLAIN, Key::F12)], "keyboard", |_, v| Some(Command::Times(!v.times));
     View, "Light or dark", [on(PLAIN, Key::L)], "top bar", |_, v| Some(Command::Theme(other(v.theme)));
@@ -224,6 +236,9 @@ pub const ACTIONS: &[Action] = actions![
 
     File, "Undo", [on(CTRL, Key::Z)], "keyboard", |s, _| s.undo_title().map(|_| Command::Undo);
     File, "Redo", [on(CTRL, Key::Y), on(FINE, Key::Z)], "keyboard", |s, _| s.redo_title().map(|_| Command::Redo);
+    File, "History: what was done, to go back and forth in", [on(PLAIN, Key::H)], "tool bar", |_, v| {
+        (v.layout != Layout::Present).then_some(Command::History(!v.history))
+    };
     File, "Open a session or scenario", [on(CTRL, Key::O)], "top bar, scenario", |s, _| dialog(s, Purpose::Open);
     File, "Save the session", [on(CTRL, Key::S)], "top bar, scenario", |s, _| dialog(s, Purpose::Save);
     File, "Record for the Rerun viewer", [on(PLAIN, Key::R)], "top bar", |s, _| dialog(s, Purpose::Record);
@@ -281,6 +296,11 @@ fn slower(view_state: &ViewState) -> Option<Command> {
 
 fn faster(view_state: &ViewState) -> Option<Command> {
     SPEEDS.into_iter().find(|speed| *speed > view_state.speed).map(Command::Speed)
+}
+
+/// The first key of the action of a name, if it has one.
+pub fn key_of(action: &str) -> Option<String> {
+    ACTIONS.iter().find(|known| known.name == action)?.keys.first().map(shown)
 }
 
 /// A key as it stands on the keyboard.

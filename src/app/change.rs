@@ -17,6 +17,8 @@ pub(super) enum Change {
     Undo,
     /// Brings it back.
     Redo,
+    /// Takes back or brings back up to where there are so many changes to undo.
+    GoTo(usize),
     /// Shows an instant, s.
     Seek(f64),
     /// Puts the machine back at the start of its planned path.
@@ -44,6 +46,22 @@ impl Change {
                 session.redo_while(watch)?;
                 return Ok(title);
             }
+            Self::GoTo(changes) => {
+                let before = session.undo_count();
+                while session.undo_count() > *changes {
+                    session.undo_while(watch)?;
+                }
+                while session.undo_count() < *changes && session.redo_title().is_some() {
+                    session.redo_while(watch)?;
+                }
+                let done =
+                    |word: &str, n: usize| Some(format!("{word}: {n} {}", if n == 1 { "change" } else { "changes" }));
+                return Ok(match session.undo_count() {
+                    now if now < before => done("undone", before - now),
+                    now if now > before => done("redone", now - before),
+                    _ => None,
+                });
+            }
             Self::Seek(time) => {
                 session.pause();
                 session.seek_while(*time, watch);
@@ -70,6 +88,8 @@ impl Change {
             Self::Undo => (session.steps_of_undo(), false),
             Self::Redo => (session.steps_of_redo(), false),
             Self::Seek(time) => return session.steps_of_seek(*time).is_none_or(|steps| steps <= QUICK),
+            // One of several may be refused: then nothing has changed.
+            Self::GoTo(_) => return false,
             Self::BackToPath => (Some(0), false),
         };
         steps.is_none_or(|steps| steps <= QUICK && plans_as_before && plans_quickly(session.scenario()))

@@ -1,5 +1,6 @@
 //! What a person asks for.
 
+use super::layout::Layout;
 use crate::picture::charts::choice::Change;
 use crate::picture::scene::Measure;
 use crate::picture::scene::options::Handle;
@@ -63,6 +64,14 @@ pub enum Command {
     Plots(bool),
     /// Show both panels, or nothing but the scene.
     Panels(bool),
+    /// Lay the window out for what it is for now; again: as that is at first.
+    Layout(Layout),
+    /// Put the settings on the right and the plots on the left, or the other way round.
+    Swap(bool),
+    /// Show or hide what was done.
+    History(bool),
+    /// Undo or redo up to where there are so many changes to undo.
+    GoTo(usize),
     /// Show or hide runs side by side.
     Compare(bool),
     /// Show or hide the study of tolerances.
@@ -133,6 +142,7 @@ impl Command {
             | Self::Undo
             | Self::TakeBack(_)
             | Self::GiveUp
+            | Self::GoTo(_)
             | Self::Redo
             | Self::Comparison(ComparisonCommand::Keep | ComparisonCommand::Open(_))
             | Self::Case(_)
@@ -147,6 +157,9 @@ impl Command {
             | Self::Side(_)
             | Self::Plots(_)
             | Self::Panels(_)
+            | Self::Layout(_)
+            | Self::Swap(_)
+            | Self::History(_)
             | Self::SkipHints
             | Self::AskToLeave(_)
             | Self::Leave

@@ -21,8 +21,13 @@ pub fn show(ui: &mut Ui, comparison: &Comparison, view_state: &ViewState, comman
         ui.horizontal(|ui| {
             ui.label(RichText::new("Side by side").font(bold(13.5)));
             let words = "the same task done in several ways: tick a row to draw it in plots and scene, click a column title to sort";
-            ui.add(Label::new(RichText::new(words).font(plain(11.5)).color(colour(p.dim))).truncate());
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| buttons(ui, comparison, commands));
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                buttons(ui, comparison, commands);
+                // What is left between title and buttons.
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                    ui.add(Label::new(RichText::new(words).font(plain(11.5)).color(colour(p.dim))).truncate());
+                });
+            });
         });
         ui.add_space(2.0);
         ScrollArea::both().auto_shrink([false, false]).show(ui, |ui| table(ui, &p, comparison, commands));

@@ -28,6 +28,10 @@ pub enum Icon {
     Beside,
     /// All of it.
     Corners,
+    /// The parts of a window.
+    Panes,
+    /// What was done before.
+    History,
     /// To the start.
     Start,
     /// Let time pass.
@@ -100,6 +104,17 @@ impl Icon {
                     pen.line(&[[3.0 * x, 7.0 * y], [7.0 * x, 7.0 * y], [7.0 * x, 3.0 * y]]);
                 }
                 pen.dot([0.0, 0.0], 1.8);
+            }
+            Self::Panes => {
+                pen.closed(&[[-7.5, -6.5], [7.5, -6.5], [7.5, 6.5], [-7.5, 6.5]]);
+                pen.line(&[[-3.0, -6.5], [-3.0, 6.5]]);
+                pen.line(&[[-3.0, 1.5], [7.5, 1.5]]);
+            }
+            Self::History => {
+                pen.line(&sampled(|t| round([0.5, 0.0], 6.5, 0.55 + 0.86 * t)));
+                let [x, y] = round([0.5, 0.0], 6.5, 0.55);
+                pen.line(&[[x - 2.6, y - 2.2], [x, y + 0.6], [x + 3.2, y - 1.6]]);
+                pen.line(&[[0.5, -3.5], [0.5, 0.0], [3.2, 1.8]]);
             }
             Self::Start => {
                 pen.bar(-5.0);
@@ -260,12 +275,17 @@ fn behind(ui: &Ui, p: &Palette, response: &Response, on: bool) {
         ui.painter().rect_filled(rect, 6.0, colour(if on { p.line } else { faded(p.line, 0.6) }));
     }
     if on {
-        let mark = egui::Rect::from_center_size(rect.left_center() + vec2(1.5, 0.0), vec2(3.0, 14.0));
+        let mark = egui::Rect::from_center_size(rect.left_center() - vec2(2.0, 0.0), vec2(2.5, 14.0));
         ui.painter().rect_filled(mark, 1.5, colour(p.amber));
     }
     if response.has_focus() {
         ui.painter().rect_stroke(rect, 6.0, Stroke::new(1.5, colour(p.amber)), egui::StrokeKind::Inside);
     }
+}
+
+/// Marks a line of a list as the present one.
+pub fn dot(ui: &Ui, p: &Palette, line: &Response) {
+    ui.painter().circle_filled(line.rect.left_center() + vec2(12.0, 0.0), 3.5, colour(p.amber));
 }
 
 /// A thin line between groups.

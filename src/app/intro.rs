@@ -7,7 +7,7 @@ use egui::{Align2, Area, Frame, Id, RichText, Ui, vec2};
 
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
-use super::{Command, ViewState};
+use super::{Command, Layout, ViewState};
 use crate::mechanics::planar::Vector;
 use crate::picture::numbers::signed;
 use crate::picture::paint::{Spot, paint, words};
@@ -114,6 +114,7 @@ impl Intro {
             | Command::Compare(true)
             | Command::Study(true)
             | Command::Reveal(_) => true,
+            Command::Layout(layout) => *layout != Layout::Explore,
             Command::View(view) => !view.shows_machine(),
             Command::EndGesture => session.is_led() || (session.b_aim() - self.b).abs() > 1e-9,
             _ => false,

@@ -5,7 +5,7 @@ use egui::{Context, Grid, Key, KeyboardShortcut, Modifiers, RichText, ScrollArea
 use super::actions::{ACTIONS, Action, FINE_ACTIONS, GESTURES, Group, shown};
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
-use super::{Command, ViewState, search};
+use super::{Command, Layout, ViewState, search};
 use crate::picture::scene::palette::Palette;
 use crate::session::Session;
 
@@ -16,6 +16,7 @@ pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: 
     let taken = |key: &KeyboardShortcut| ctx.input_mut(|i| i.consume_shortcut(key));
     // While something is dragged or a list is open, Esc ends that and nothing else.
     let busy = view_state.grabbed.is_some()
+        || view_state.history
         || ctx.input(|i| i.pointer.any_down())
         || (view_state.finder.is_none() && egui::Popup::is_any_open(ctx))
         || super::plots::is_looking(ctx);
@@ -57,6 +58,7 @@ fn escape(view_state: &ViewState) -> Command {
         ViewState { stroke: Some(_), .. } => Command::Draw(false),
         ViewState { mark: Some(_), .. } => Command::Mark(None),
         ViewState { pushing: true, .. } => Command::Push(false),
+        ViewState { layout: Layout::Present, .. } => Command::Layout(Layout::Explore),
         _ => Command::SkipHints,
     }
 }

@@ -4,6 +4,7 @@
 //! carries out at the end of the pass. Nothing is computed here.
 
 pub mod actions;
+mod arrangement;
 mod background;
 mod card;
 mod change;
@@ -13,16 +14,19 @@ mod corner;
 mod facts;
 mod finder;
 mod framing;
+mod history;
 mod icon;
 mod intro;
 pub mod jobs;
 mod keys;
+mod layout;
 mod menu;
 mod order;
 mod path;
 mod place;
 mod plots;
 mod preferences;
+mod present;
 mod rail;
 mod saving;
 mod search;
@@ -40,7 +44,8 @@ pub mod window;
 
 pub use command::{Activity, Command, ComparisonCommand, FileDialog, Look, PlotFile, Purpose, Recovery};
 use intro::Intro;
+pub use layout::{Layout, Panel, Panels};
 pub use preferences::Preferences;
 pub use state::AppState;
 use view_state::set_b;
-pub use view_state::{Finder, Framing, Panel, RefusedEdit, ViewState};
+pub use view_state::{Finder, Framing, RefusedEdit, ViewState};

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
+use super::layout::{Layout, Panel, Panels};
 use crate::picture::scene::palette::Theme;
 
 /// How the window is liked. A file of an older or newer program reads as far as it is understood.
@@ -16,14 +17,26 @@ pub struct Preferences {
     pub size: [f32; 2],
     /// The hints of the first minute are still to be shown.
     pub hints: bool,
-    /// The panel on the left is shown.
+    /// What the window is for.
+    pub layout: Layout,
+    /// Settings stand on the right and plots on the left.
+    pub swapped: bool,
+    /// The panel of settings is shown, to explore.
     pub side: bool,
     /// How wide it was made, points of the screen.
     pub side_width: Option<f32>,
-    /// The panel on the right is shown.
+    /// The panel of plots is shown, to explore.
     pub plots: bool,
     /// How wide it was made, points of the screen.
     pub plots_width: Option<f32>,
+    /// The panel of settings is shown, to compare.
+    pub compare_side: bool,
+    /// How wide it was made.
+    pub compare_side_width: Option<f32>,
+    /// The panel of plots is shown, to compare.
+    pub compare_plots: bool,
+    /// How wide it was made.
+    pub compare_plots_width: Option<f32>,
     /// Files that were opened and saved, newest first.
     pub recent: Vec<PathBuf>,
 }
@@ -34,16 +47,39 @@ impl Default for Preferences {
             theme: Theme::Dark,
             size: [1440.0, 900.0],
             hints: true,
+            layout: Layout::Explore,
+            swapped: false,
             side: true,
             side_width: None,
             plots: true,
             plots_width: None,
+            compare_side: false,
+            compare_side_width: None,
+            compare_plots: true,
+            compare_plots_width: None,
             recent: Vec::new(),
         }
     }
 }
 
 impl Preferences {
+    /// The panels of each layout, in their order.
+    pub(super) fn panels(&self) -> [Panels; 3] {
+        let panel = |shown, width| Panel { shown, width };
+        Layout::ALL.map(|layout| {
+            let usual = Panels::usual(layout);
+            let (side, plots) = match layout {
+                Layout::Explore => (panel(self.side, self.side_width), panel(self.plots, self.plots_width)),
+                Layout::Compare => (
+                    panel(self.compare_side, self.compare_side_width),
+                    panel(self.compare_plots, self.compare_plots_width),
+                ),
+                Layout::Present => (usual.side, usual.plots),
+            };
+            Panels { side, plots, ..usual }
+        })
+    }
+
     /// With sizes that a window can have, whatever a file said.
     #[must_use]
     pub fn sound(mut self) -> Self {
@@ -53,8 +89,11 @@ impl Preferences {
             within(self.size[0], 960.0, 16_000.0, usual.size[0]),
             within(self.size[1], 600.0, 16_000.0, usual.size[1]),
         ];
-        self.side_width = self.side_width.filter(|w| w.is_finite()).map(|w| w.clamp(220.0, 480.0));
-        self.plots_width = self.plots_width.filter(|w| w.is_finite()).map(|w| w.clamp(260.0, 1200.0));
+        let wide = |made: Option<f32>, low: f32, high: f32| made.filter(|w| w.is_finite()).map(|w| w.clamp(low, high));
+        self.side_width = wide(self.side_width, 220.0, 480.0);
+        self.plots_width = wide(self.plots_width, 260.0, 1200.0);
+        self.compare_side_width = wide(self.compare_side_width, 220.0, 480.0);
+        self.compare_plots_width = wide(self.compare_plots_width, 260.0, 2400.0);
         self.recent.truncate(32);
         self
     }

@@ -3,12 +3,13 @@
 
 use egui::{Frame, Margin, Panel, ScrollArea, Ui, vec2};
 
-use super::actions::{ACTIONS, shown};
+use super::actions::key_of;
 use super::icon::{Icon, IconButton, rule, word_button};
-use super::{Command, ViewState};
+use super::{Command, ViewState, arrangement, history};
 use crate::picture::scene::Measure;
 use crate::picture::scene::palette::Palette;
 use crate::picture::scene::views::ViewKind;
+use crate::session::Session;
 
 /// How wide it is, points.
 const WIDTH: f32 = 50.0;
@@ -115,7 +116,7 @@ const ANALYSES: [Toggle; 2] = [
 ];
 
 /// Draws it.
-pub fn show(ui: &mut Ui, view_state: &ViewState, commands: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
     let frame = Frame::new().inner_margin(Margin { left: 4, right: 4, top: 8, bottom: 6 });
     Panel::left("tools").exact_size(WIDTH).resizable(false).frame(frame).show(ui, |ui| {
@@ -142,6 +143,8 @@ pub fn show(ui: &mut Ui, view_state: &ViewState, commands: &mut Vec<Command>) {
             if fit.show_in(ui, &p, super::theme::colour(p.dim)).clicked() {
                 commands.push(Command::Fit);
             }
+            arrangement::show(ui, view_state, BUTTON, commands);
+            history::show(ui, session, view_state, BUTTON, commands);
         });
     });
 }
@@ -159,6 +162,5 @@ fn toggle(ui: &mut Ui, p: &Palette, tool: &Toggle, view_state: &ViewState, comma
 
 /// The key of an action in brackets, if it has one.
 fn key(action: &str) -> String {
-    let found = ACTIONS.iter().find(|known| known.name == action).and_then(|known| known.keys.first());
-    found.map(|key| format!(" ({})", shown(key))).unwrap_or_default()
+    key_of(action).map(|key| format!(" ({key})")).unwrap_or_default()
 }

@@ -35,10 +35,9 @@ pub fn show(
     let p = view_state.palette();
     let frame = Frame::new().inner_margin(Margin { left: 16, right: 10, top: 12, bottom: 8 });
     let usual = (SHARE * ui.ctx().content_rect().width()).clamp(NARROWEST, WIDEST).round();
-    let panel = Panel::left(("side", usual as u32))
-        .default_size(view_state.side.width.unwrap_or(usual))
-        .size_range(220.0..=480.0)
-        .resizable(true);
+    let salt = ("side", usual as u32, view_state.swapped);
+    let panel = if view_state.swapped { Panel::right(salt) } else { Panel::left(salt) };
+    let panel = panel.default_size(view_state.side.width.unwrap_or(usual)).size_range(220.0..=480.0).resizable(true);
     let shown = panel.frame(frame).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.set_width(ui.available_width() - 6.0);

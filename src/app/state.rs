@@ -10,8 +10,8 @@ use super::change::{Change, Source};
 use super::facts::Facts;
 use super::saving::{self, Saving};
 use super::{
-    Activity, Command, Finder, Framing, Intro, Panel, Preferences, Recovery, ViewState, compare, finder, keys, order,
-    place, plots, rail, side, status, study, theme, top, viewport,
+    Activity, Command, Finder, Framing, Intro, Layout, Panels, Preferences, Recovery, ViewState, compare, finder, keys,
+    order, place, plots, rail, side, status, study, theme, top, viewport,
 };
 use crate::app::widgets;
 use crate::mechanics::machine::Machine;
@@ -110,12 +110,17 @@ impl AppState {
     #[must_use]
     pub fn with_preferences(mut self, liked: &Preferences) -> Self {
         self.view_state.theme = liked.theme;
-        self.view_state.side = Panel { shown: liked.side, width: liked.side_width };
-        self.view_state.plots = Panel { shown: liked.plots, width: liked.plots_width };
+        self.view_state.kept = liked.panels();
+        let Panels { side, plots, .. } = self.view_state.kept[Layout::Explore as usize];
+        (self.view_state.side, self.view_state.plots, self.view_state.swapped) = (side, plots, liked.swapped);
+        if liked.layout != Layout::Explore {
+            self.view_state.lay_out(liked.layout);
+            self.refresh();
+        }
         self.hints = liked.hints;
         self.saving.recent.clone_from(&liked.recent);
         let usual = Scenario::builtin("case-3").is_some_and(|case| case == *self.session.scenario());
-        if liked.hints && usual {
+        if liked.hints && usual && liked.layout == Layout::Explore {
             self.intro = Intro::beside(&self.session).ok();
         }
         self
@@ -171,11 +176,19 @@ impl AppState {
 
     /// How it is liked, to be remembered; of a window so large, points.
     pub fn preferences(&self, size: [f32; 2]) -> Preferences {
-        let ViewState { theme, side, plots, .. } = self.view_state;
+        let ViewState { theme, layout, swapped, .. } = self.view_state;
+        let Panels { side, plots, .. } = self.view_state.panels(Layout::Explore);
+        let compare = self.view_state.panels(Layout::Compare);
         Preferences {
             theme,
             size,
             hints: self.hints,
+            layout,
+            swapped,
+            compare_side: compare.side.shown,
+            compare_side_width: compare.side.width,
+            compare_plots: compare.plots.shown,
+            compare_plots_width: compare.plots.width,
             side: side.shown,
             side_width: side.width,
             plots: plots.shown,
@@ -294,10 +307,13 @@ impl AppState {
         self.background.count();
         let mut commands = Vec::new();
         keys::read(ui.ctx(), &self.session, &self.view_state, &mut commands);
-        top::show(ui, &self.session, (&self.facts, &self.saving.recent), &self.view_state, &mut commands);
-        let under_way = self.background.under_way();
-        status::show(ui, &self.session, &self.facts, &self.view_state, under_way, &mut commands);
-        rail::show(ui, &self.view_state, &mut commands);
+        let presents = self.view_state.layout == Layout::Present;
+        if !presents {
+            top::show(ui, &self.session, (&self.facts, &self.saving.recent), &self.view_state, &mut commands);
+            let under_way = self.background.under_way();
+            status::show(ui, &self.session, &self.facts, &self.view_state, under_way, &mut commands);
+            rail::show(ui, &self.session, &self.view_state, &mut commands);
+        }
         if let Some(comparison) = &self.comparison {
             compare::show(ui, comparison, &self.view_state, &mut commands);
         }
@@ -319,7 +335,7 @@ impl AppState {
             let what = plots::Shown { session, signals, comparison: beside, view_state };
             self.view_state.plots.width = plots::show(ui, &what, &mut self.prepared, &mut commands);
         }
-        let both = (self.comparison.as_ref(), self.intro.as_ref());
+        let both = (self.comparison.as_ref(), self.intro.as_ref().filter(|_| !presents));
         viewport::show(ui, &self.session, &self.views, both, &mut self.view_state, &mut commands);
         status::news(ui.ctx(), &self.session, &self.view_state, &mut commands);
         keys::help(ui.ctx(), &self.view_state, &mut commands);
@@ -451,6 +467,10 @@ impl AppState {
             Command::Panels(shown) => {
                 (self.view_state.side.shown, self.view_state.plots.shown) = (shown, shown);
             }
+            Command::Layout(layout) => self.view_state.lay_out(layout),
+            Command::Swap(swapped) => self.view_state.swapped = swapped,
+            Command::History(shown) => self.view_state.history = shown,
+            Command::GoTo(changes) => self.change(Change::GoTo(changes)),
             Command::Look(look) => self.view_state.look(look),
             Command::Find(find) => self.view_state.finder = find.then(Finder::default),
             Command::Help(help) => self.view_state.help = help,

@@ -89,6 +89,20 @@ fn fault(frame: &Frame) -> Option<String> {
     ))
 }
 
+/// What the run comes to in a word, and whether that is good.
+pub fn word(session: &Session) -> (&'static str, bool) {
+    let f = session.frame();
+    let verdict = Verdict::of(session.scenario(), f);
+    let waits = session.run().waiting().is_some();
+    let word = match (verdict.word(), f.base_feels_nothing()) {
+        _ if waits => "waits",
+        ("not reactionless", false) => "reacts on its base",
+        ("not reactionless", true) => "has reacted on its base",
+        (word, _) => word,
+    };
+    (word, verdict.is_good() && !waits)
+}
+
 /// Draws this panel.
 pub fn show(
     ui: &mut Ui,
@@ -104,16 +118,10 @@ pub fn show(
         ui.horizontal_centered(|ui| {
             let f = session.frame();
             let verdict = Verdict::of(session.scenario(), f);
-            let waits = session.run().waiting().is_some();
-            let tone = colour(if verdict.is_good() && !waits { p.zero } else { p.reaction });
+            let (word, good) = word(session);
+            let tone = colour(if good { p.zero } else { p.reaction });
             let (dot, _) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), egui::Sense::hover());
             ui.painter().circle_filled(dot.center(), 4.5, tone);
-            let word = match (verdict.word(), f.base_feels_nothing()) {
-                _ if waits => "waits",
-                ("not reactionless", false) => "reacts on its base",
-                ("not reactionless", true) => "has reacted on its base",
-                (word, _) => word,
-            };
             let remarks = verdict.so_far();
             let told = ui.label(RichText::new(word).font(bold(13.0)).color(tone));
             if !remarks.is_empty() {

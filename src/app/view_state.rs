@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::app::layout::{Layout, Panel, Panels};
 use crate::app::{FileDialog, Look};
 use crate::picture::charts::choice::Choice;
 use crate::picture::scene::Measure;
@@ -66,30 +67,22 @@ impl Framing {
     }
 }
 
-/// A panel beside the scene.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Panel {
-    /// It is on display.
-    pub shown: bool,
-    /// How wide it was made, points of the screen; none as long as it was left alone.
-    pub width: Option<f32>,
-}
-
-impl Panel {
-    /// How wide it was made, given how wide it is and how wide it is made by itself.
-    pub(super) fn made(&self, now: f32, usual: f32) -> Option<f32> {
-        if self.width.is_some() || (now - usual).abs() > 1.0 { Some(now) } else { None }
-    }
-}
-
 /// How things are shown: no part of the session.
 #[derive(Clone, Debug)]
 pub struct ViewState {
     /// Light or dark.
     pub theme: Theme,
-    /// The panel of settings on the left is shown, and how wide it is liked.
+    /// What the window is for just now.
+    pub layout: Layout,
+    /// The panels of the layouts that are not on display, in their order.
+    pub(super) kept: [Panels; 3],
+    /// Settings stand on the right and plots on the left.
+    pub swapped: bool,
+    /// What was done is on display.
+    pub history: bool,
+    /// The panel of settings is shown, and how wide it is liked.
     pub side: Panel,
-    /// The panel of plots on the right.
+    /// The panel of plots.
     pub plots: Panel,
     /// Which of the linked views.
     pub view: ViewKind,
@@ -165,8 +158,12 @@ impl ViewState {
     pub fn new(theme: Theme, views: &Views) -> Self {
         Self {
             theme,
-            side: Panel { shown: true, width: None },
-            plots: Panel { shown: true, width: None },
+            layout: Layout::Explore,
+            kept: Layout::ALL.map(Panels::usual),
+            swapped: false,
+            history: false,
+            side: Panel::usual(true),
+            plots: Panel::usual(true),
             view: ViewKind::default(),
             cameras: ViewKind::ALL.map(|kind| views.camera(kind)),
             framing: Default::default(),
@@ -216,6 +213,23 @@ impl ViewState {
     /// The view in use.
     pub fn camera(&self) -> &Camera {
         &self.cameras[self.view as usize]
+    }
+
+    /// The panels of a layout, on display or not.
+    pub fn panels(&self, layout: Layout) -> Panels {
+        let now = Panels { side: self.side, plots: self.plots, compare: self.compare };
+        if layout == self.layout { now } else { self.kept[layout as usize] }
+    }
+
+    /// Lays the window out; again: as that layout is at first.
+    pub(super) fn lay_out(&mut self, layout: Layout) {
+        let again = layout == self.layout;
+        self.kept[self.layout as usize] = self.panels(self.layout);
+        let usual = Panels::usual(layout);
+        let panels = if again || layout == Layout::Present { usual } else { self.kept[layout as usize] };
+        (self.layout, self.side, self.plots, self.compare) = (layout, panels.side, panels.plots, usual.compare);
+        self.study &= layout == Layout::Explore;
+        self.history = false;
     }
 
     /// Moves the camera of the view in use.

@@ -7,7 +7,7 @@ use egui::{CentralPanel, CursorIcon, Frame, PointerButton, PopupAnchor, Pos2, Re
 use super::card::Card;
 use super::intro::Intro;
 use super::widgets::{FINE, name};
-use super::{Command, ViewState, corner, framing, menu, place, set_b};
+use super::{Command, Layout, ViewState, corner, framing, menu, place, present, set_b};
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::picture::paint::{Spot, paint, words};
 use crate::picture::scene::exaggeration::exaggerated;
@@ -43,6 +43,8 @@ pub fn show(
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         let mut covered = vec![corner::strip(rect)];
         covered.extend(intro.into_iter().flat_map(|intro| intro.covers(ui.ctx(), rect, both.is_some())));
+        let presents = view_state.layout == Layout::Present;
+        covered.extend(presents.then(|| present::covers(rect)));
         framing::keep(rect, &covered, (session, views), || motion(session), view_state);
         name(&response, "Scene: the machine, its reactionless workspace and its target");
         // The pointer works on the machine as it is drawn, enlarged motion of the base included.
@@ -81,6 +83,9 @@ pub fn show(
         paint(ui, 0, rect, &scene, view_state.camera());
         words(ui, &Spot { rect, camera: *view_state.camera() }, &scene);
         corner::show(ui, rect, view_state, views, commands);
+        if presents {
+            present::show(ui, rect, session, view_state, commands);
+        }
         if let Some(intro) = both {
             intro.caption(ui, rect, session.frame(), view_state);
         }

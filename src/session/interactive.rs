@@ -514,6 +514,11 @@ impl Session {
         self.redo.last().map(|c| c.title.as_str())
     }
 
+    /// Titles of all changes: those that can be undone from the first on, then those that can be brought back.
+    pub fn history(&self) -> impl Iterator<Item = &str> {
+        self.undo.iter().chain(self.redo.iter().rev()).map(|change| change.title.as_str())
+    }
+
     /// Takes the last edit back: in motion by its inverse at the present step, paused or at rest by restoring what was.
     ///
     /// # Errors

@@ -13,7 +13,7 @@ mod written;
 use egui::{Frame, Margin, Panel, Ui};
 
 use self::header::{ROW, TITLE};
-use super::Command;
+use super::{Command, Layout};
 use crate::picture::charts::figure::{BELOW, LEFT, Look};
 
 pub use prepared::{Prepared, extent};
@@ -27,9 +27,14 @@ const SHARE: f32 = 0.233;
 const NARROWEST: f32 = 272.0;
 const WIDEST: f32 = 640.0;
 
+/// The same where runs are compared.
+const COMPARED: f32 = 0.38;
+const COMPARED_WIDEST: f32 = 1100.0;
+
 /// How wide the panel is made by itself in a window, points.
-fn usual(ui: &Ui) -> f32 {
-    (SHARE * ui.ctx().content_rect().width()).clamp(NARROWEST, WIDEST).round()
+fn usual(ui: &Ui, layout: Layout) -> f32 {
+    let (share, widest) = if layout == Layout::Compare { (COMPARED, COMPARED_WIDEST) } else { (SHARE, WIDEST) };
+    (share * ui.ctx().content_rect().width()).clamp(NARROWEST, widest).round()
 }
 
 /// Draws this panel; how wide it was made.
@@ -37,12 +42,13 @@ pub fn show(ui: &mut Ui, what: &Shown<'_>, prepared: &mut Prepared, commands: &m
     let Shown { session, signals, view_state, .. } = *what;
     let p = view_state.palette();
     let frame = Frame::new().inner_margin(Margin { left: 14, right: 14, top: 10, bottom: 8 });
-    let usual = usual(ui);
+    let usual = usual(ui, view_state.layout);
     let most = (0.6 * ui.available_width()).max(usual);
     let width = view_state.plots.width.unwrap_or(usual).min(most);
     // By its own width: where the window changes that, what was remembered of another does not count.
-    let salt = ("plots", usual as u32);
-    let panel = Panel::right(salt).default_size(width).size_range(260.0..=most).resizable(true);
+    let salt = ("plots", usual as u32, view_state.swapped);
+    let panel = if view_state.swapped { Panel::left(salt) } else { Panel::right(salt) };
+    let panel = panel.default_size(width).size_range(260.0..=most).resizable(true);
     let made = panel.frame(frame).show(ui, |ui| {
         let plots = view_state.charts.plots(session.scenario(), signals, view_state.pins);
         if prepared.is_to_look() {

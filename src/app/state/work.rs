@@ -137,7 +137,7 @@ impl AppState {
                     self.view_state.refused = None;
                     self.foresee();
                 }
-                Change::Undo | Change::Redo | Change::BackToPath => self.foresee(),
+                Change::Undo | Change::Redo | Change::GoTo(_) | Change::BackToPath => self.foresee(),
                 Change::Seek(_) => {}
             }
         }

@@ -156,12 +156,11 @@ impl Tower {
         Camera::Orbit(Orbit { centre, distance: near * 5.9 * self.radius, yaw: 0.5, pitch: 0.36 })
     }
 
-    /// Points around the whole tower.
+    /// Corners of the box that holds the tower and its axes.
     pub fn hull(&self) -> Vec<[f64; 3]> {
-        let around = |z: f64| {
-            (0..24).map(move |i| unit(std::f64::consts::TAU * f64::from(i) / 24.0) * self.radius).map(move |p| (p, z))
-        };
-        [0.0, HEIGHT * self.radius].into_iter().flat_map(around).map(|(p, z)| [p.re, p.im, z]).collect()
+        let (side, height) = (1.05 * self.radius, HEIGHT * self.radius);
+        let corner = |i: u32| [0, 1].map(|k| if (i >> k) & 1 == 0 { -side } else { side });
+        (0..8).map(|i| [corner(i)[0], corner(i)[1], if i < 4 { 0.0 } else { height }]).collect()
     }
 
     /// The points whose b are shown, with these as intervals within a window.

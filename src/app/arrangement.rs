@@ -1,0 +1,58 @@
+//! The menu of the window's layouts and panels, at the foot of the tool bar.
+
+use egui::{Popup, PopupCloseBehavior, RectAlign, RichText, Ui, Vec2};
+
+use super::actions::key_of;
+use super::icon::{Icon, IconButton, dot};
+use super::theme::{bold, colour};
+use super::{Command, Layout, ViewState};
+
+/// Draws its button, and itself while it is open.
+pub fn show(ui: &mut Ui, view_state: &ViewState, size: Vec2, commands: &mut Vec<Command>) {
+    let p = view_state.palette();
+    let tip = "layout\nWhat the window is for: explore, compare, present; and its panels";
+    let button = IconButton { size, ..IconButton::of(Icon::Panes, "layout", tip) };
+    let button = button.show_in(ui, &p, colour(p.dim));
+    let popup = Popup::menu(&button).align(RectAlign::RIGHT_END).gap(8.0).width(250.0);
+    popup.close_behavior(PopupCloseBehavior::CloseOnClick).show(|ui| {
+        let heading = |ui: &mut Ui, text: &str| {
+            ui.label(RichText::new(text).font(bold(11.0)).color(colour(p.dim)));
+        };
+        let mut line = |ui: &mut Ui, (text, action, tip): (&str, &str, &str), on: bool, command: Command| {
+            let words = RichText::new(format!("     {text}")).color(colour(p.ink));
+            let line = egui::Button::new(words).frame_when_inactive(false).wrap_mode(egui::TextWrapMode::Extend);
+            let key = RichText::new(key_of(action).unwrap_or_default()).color(colour(p.dim));
+            let line = ui.add(line.right_text(key));
+            if on {
+                dot(ui, &p, &line);
+            }
+            line.widget_info(|| egui::WidgetInfo::selected(egui::Role::MenuItemCheckBox, true, on, text));
+            if line.on_hover_text(tip).clicked() {
+                commands.push(command);
+            }
+        };
+        heading(ui, "LAYOUT");
+        for layout in Layout::ALL {
+            let what = (layout.name(), action_of(layout), layout.words());
+            line(ui, what, view_state.layout == layout, Command::Layout(layout));
+        }
+        ui.separator();
+        heading(ui, "PANELS");
+        let (side, plots) = (view_state.side.shown, view_state.plots.shown);
+        let what = ("Settings", "Panel of settings, shown or hidden", "b, limits, path, plant, base, control");
+        line(ui, what, side, Command::Side(!side));
+        let what = ("Plots", "Panel of plots, shown or hidden", "Signals over time, and which b serves");
+        line(ui, what, plots, Command::Plots(!plots));
+        let what = ("Settings on the right", "Settings and plots change sides", "Settings and plots change sides");
+        line(ui, what, view_state.swapped, Command::Swap(!view_state.swapped));
+    });
+}
+
+/// The name of the action that brings a layout.
+fn action_of(layout: Layout) -> &'static str {
+    match layout {
+        Layout::Explore => "Explore: settings, scene and plots",
+        Layout::Compare => "Compare: scene, wide plots and the runs side by side",
+        Layout::Present => "Present: the scene alone, what counts in large type",
+    }
+}

@@ -1,0 +1,58 @@
+//! What counts, in large type over the scene, while the window is for presenting.
+
+use egui::{Align, Layout, Rect, RichText, Ui, UiBuilder, pos2, vec2};
+
+use super::icon::{Icon, IconButton};
+use super::theme::{bold, colour, plain};
+use super::{Command, Layout as WindowLayout, ViewState, status};
+use crate::picture::numbers::signed;
+use crate::session::Session;
+
+/// A smaller moment is shown as zero, N m.
+const ZERO: f64 = 0.005;
+
+/// The height of the largest digits in a scene, points.
+fn size(rect: Rect) -> f32 {
+    (0.075 * rect.height()).clamp(38.0, 110.0)
+}
+
+/// Where it lies over a scene.
+pub fn covers(rect: Rect) -> Rect {
+    Rect::from_min_size(rect.min, vec2(6.2 * size(rect), 3.6 * size(rect)))
+}
+
+/// Draws it.
+pub fn show(ui: &mut Ui, rect: Rect, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
+    let (p, f, large) = (view_state.palette(), session.frame(), size(rect));
+    let corner = covers(rect).shrink(0.4 * large);
+    let mut corner = ui.new_child(UiBuilder::new().max_rect(corner).layout(Layout::top_down(Align::Min)));
+    corner.spacing_mut().item_spacing.y = 0.08 * large;
+    let scenario = session.scenario();
+    let title = if scenario.title.is_empty() { &scenario.name } else { &scenario.title };
+    let line = |ui: &mut Ui, text: RichText| ui.add(egui::Label::new(text).extend());
+    line(&mut corner, RichText::new(title).font(bold(0.4 * large)).color(colour(p.ink)));
+    let moment = f.wrench.total().moment;
+    let tone = if moment.abs() < ZERO { p.zero } else { p.reaction };
+    let number = format!("{} N m", signed(if moment.abs() < ZERO { 0.0 } else { moment }, 2));
+    line(&mut corner, RichText::new(number).font(bold(large)).color(colour(tone)));
+    line(&mut corner, RichText::new("moment on the base, n_B").font(plain(0.32 * large)).color(colour(p.dim)));
+    let (word, good) = status::word(session);
+    let tone = if good { p.zero } else { p.reaction };
+    line(&mut corner, RichText::new(word).font(bold(0.36 * large)).color(colour(tone)));
+    let b = session.run().planes().map(|planes| f.b.rem_euclid(planes.map().period()));
+    let b = b.map_or_else(String::new, |b| format!("b = {b:.3} rad   ·   "));
+    let now = format!("{b}{:.2} s of {:.2} s", f.time, session.length());
+    line(&mut corner, RichText::new(now).font(plain(0.32 * large)).color(colour(p.dim)));
+    // How far the run is, along the lower edge.
+    let share = (f.time / session.length().max(1e-9)).clamp(0.0, 1.0) as f32;
+    let low = rect.bottom() - 4.0;
+    let done = Rect::from_min_max(pos2(rect.left(), low), pos2(rect.left() + share * rect.width(), rect.bottom()));
+    ui.painter().rect_filled(done, 0.0, colour(p.amber));
+    let at = Rect::from_min_size(rect.right_top() + vec2(-52.0, 16.0), vec2(36.0, 32.0));
+    let mut right = ui.new_child(UiBuilder::new().max_rect(at));
+    let tip = "Back to Explore (Esc or 5); Space plays";
+    let back = IconButton { size: at.size(), ..IconButton::of(Icon::Panes, "Leave the presentation", tip) };
+    if back.show_in(&mut right, &p, colour(p.dim)).clicked() {
+        commands.push(Command::Layout(WindowLayout::Explore));
+    }
+}
