@@ -243,6 +243,7 @@ pub const ACTIONS: &[Action] = actions![
     File, "Save the session", [on(CTRL, Key::S)], "top bar, scenario", |s, _| dialog(s, Purpose::Save);
     File, "Record for the Rerun viewer", [on(PLAIN, Key::R)], "top bar", |s, _| dialog(s, Purpose::Record);
     File, "Find a command", [on(CTRL, Key::K)], "top bar", |_, v| Some(Command::Find(v.finder.is_none()));
+    File, "Tour: what this is about, in seven steps", [], "?", |_, v| Some(Command::Tour(v.tour.is_none()));
     File, "Keys and gestures", [on(PLAIN, Key::F1)], "top bar, ?", |_, v| Some(Command::Help(!v.help));
 ];
 

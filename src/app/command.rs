@@ -114,6 +114,10 @@ pub enum Command {
     Recover(Recovery),
     /// Show no more hints, now and at the next start.
     SkipHints,
+    /// Begin the tour, or leave it.
+    Tour(bool),
+    /// On to its next step, or back.
+    TurnTour(bool),
     /// Show or hide the list of commands.
     Find(bool),
     /// Show or hide the keys.
@@ -182,6 +186,8 @@ impl Command {
             | Self::Refuse(_)
             | Self::Cancel(_)
             | Self::Help(_)
+            | Self::Tour(_)
+            | Self::TurnTour(_)
             | Self::Times(_)
             | Self::Dialog(_) => false,
         }

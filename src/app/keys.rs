@@ -59,6 +59,7 @@ fn escape(view_state: &ViewState) -> Command {
         ViewState { mark: Some(_), .. } => Command::Mark(None),
         ViewState { pushing: true, .. } => Command::Push(false),
         ViewState { layout: Layout::Present, .. } => Command::Layout(Layout::Explore),
+        ViewState { tour: Some(_), .. } => Command::Tour(false),
         _ => Command::SkipHints,
     }
 }
@@ -72,6 +73,13 @@ pub fn help(ctx: &Context, view_state: &ViewState, commands: &mut Vec<Command>) 
     let mut open = true;
     let window = egui::Window::new("Keys and gestures").open(&mut open).collapsible(false).resizable(false);
     window.anchor(egui::Align2::CENTER_CENTER, [0.0, 0.0]).show(ctx, |ui| {
+        ui.horizontal(|ui| {
+            if ui.button("Take the tour").clicked() {
+                commands.push(Command::Tour(true));
+            }
+            ui.label(RichText::new("what this is about, in seven steps on the machine itself").color(colour(p.dim)));
+        });
+        ui.add_space(4.0);
         let id = egui::Id::unique("keys sought");
         let mut sought = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_default();
         let field = ui.add(TextEdit::singleline(&mut sought).hint_text("search the keys").desired_width(f32::INFINITY));

@@ -36,6 +36,7 @@ mod status;
 mod study;
 mod theme;
 mod top;
+mod tour;
 mod view_state;
 mod viewport;
 mod widgets;

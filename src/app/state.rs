@@ -9,6 +9,7 @@ use super::background::{Background, File, Opening};
 use super::change::{Change, Source};
 use super::facts::Facts;
 use super::saving::{self, Saving};
+use super::tour::Tour;
 use super::{
     Activity, Command, Finder, Framing, Intro, Layout, Panels, Preferences, Recovery, ViewState, compare, finder, keys,
     order, place, plots, rail, side, status, study, theme, top, viewport,
@@ -305,6 +306,9 @@ impl AppState {
         }
         self.catch_up();
         self.background.count();
+        if let Some(tour) = &mut self.view_state.tour {
+            tour.follow(&self.session);
+        }
         let mut commands = Vec::new();
         keys::read(ui.ctx(), &self.session, &self.view_state, &mut commands);
         let presents = self.view_state.layout == Layout::Present;
@@ -474,6 +478,15 @@ impl AppState {
             Command::Look(look) => self.view_state.look(look),
             Command::Find(find) => self.view_state.finder = find.then(Finder::default),
             Command::Help(help) => self.view_state.help = help,
+            Command::Tour(begins) => {
+                // One guide at a time; what was not done of the hints may come again.
+                self.intro = self.intro.take().filter(|_| !begins);
+                self.view_state.help &= !begins;
+                self.view_state.tour = begins.then(|| Tour::begin(&self.session));
+            }
+            Command::TurnTour(forward) => {
+                self.view_state.tour = self.view_state.tour.and_then(|tour| tour.turned(forward, &self.session));
+            }
             Command::Times(shown) => self.view_state.times = shown,
             Command::Mark(time) => self.view_state.mark = time,
             Command::Charts(change) => self.view_state.charts.change(change),

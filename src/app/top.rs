@@ -177,7 +177,7 @@ fn timeline(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
 fn right_end(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
     let dim = |text: &str| RichText::new(text.to_owned()).color(colour(p.dim));
-    let help = ui.add(egui::Button::new(dim("?")).frame(false)).on_hover_text("Keys (F1)");
+    let help = ui.add(egui::Button::new(dim("?")).frame(false)).on_hover_text("Tour and keys (F1)");
     name(&help, "Help");
     if help.clicked() {
         commands.push(Command::Help(!view_state.help));

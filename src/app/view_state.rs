@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::app::layout::{Layout, Panel, Panels};
+use crate::app::tour::Tour;
 use crate::app::{FileDialog, Look};
 use crate::picture::charts::choice::Choice;
 use crate::picture::scene::Measure;
@@ -125,6 +126,8 @@ pub struct ViewState {
     pub snapshots: bool,
     /// The keys are on display.
     pub help: bool,
+    /// The tour, while it is under way.
+    pub tour: Option<Tour>,
     /// What a repaint takes is on display.
     pub times: bool,
     /// The list of commands, while it is on display.
@@ -184,6 +187,7 @@ impl ViewState {
             charts: Choice::default(),
             snapshots: false,
             help: false,
+            tour: None,
             times: false,
             finder: None,
             dialog: None,

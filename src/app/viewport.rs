@@ -6,6 +6,7 @@ use egui::{CentralPanel, CursorIcon, Frame, PointerButton, PopupAnchor, Pos2, Re
 
 use super::card::Card;
 use super::intro::Intro;
+use super::tour::Tour;
 use super::widgets::{FINE, name};
 use super::{Command, Layout, ViewState, corner, framing, menu, place, present, set_b};
 use crate::mechanics::planar::{DriveAngles, Vector};
@@ -45,6 +46,7 @@ pub fn show(
         covered.extend(intro.into_iter().flat_map(|intro| intro.covers(ui.ctx(), rect, both.is_some())));
         let presents = view_state.layout == Layout::Present;
         covered.extend(presents.then(|| present::covers(rect)));
+        covered.extend(view_state.tour.map(|_| Tour::covers(ui.ctx(), rect)));
         framing::keep(rect, &covered, (session, views), || motion(session), view_state);
         name(&response, "Scene: the machine, its reactionless workspace and its target");
         // The pointer works on the machine as it is drawn, enlarged motion of the base included.
@@ -88,6 +90,9 @@ pub fn show(
         }
         if let Some(intro) = both {
             intro.caption(ui, rect, session.frame(), view_state);
+        }
+        if let Some(tour) = view_state.tour {
+            tour.show(ui.ctx(), rect, view_state, commands);
         }
         if let Some(intro) = intro {
             intro.show_hint(ui.ctx(), rect, view_state, commands);

@@ -6,6 +6,7 @@ use egui_kittest::kittest::Queryable as _;
 use stillbase::app::window::{App, Clock};
 use stillbase::app::{AppState, Command, Preferences};
 use stillbase::picture::scene::palette::Theme;
+use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
 
 use super::screen::Screen;
@@ -18,6 +19,7 @@ pub const TESTS: &[Test] = tests![
     hints_are_skipped_for_good,
     only_the_built_in_case_has_a_first_minute,
     how_the_window_is_liked_is_remembered,
+    the_tour_is_passed_by_doing,
 ];
 
 fn window(case: &str, liked: &Preferences) -> Window {
@@ -116,4 +118,61 @@ fn how_the_window_is_liked_is_remembered() {
     let mut again = window("case-3", &now);
     again.run_steps(3);
     assert!(again.query_by_label("POSE CONSTANT").is_none());
+}
+
+/// Each step asks for one thing, sees it done on the live scene, and goes on by a button; Esc leaves.
+fn the_tour_is_passed_by_doing() {
+    let mut h = window("case-2", &Preferences { hints: false, ..Preferences::default() });
+    h.run_steps(2);
+    let is_done = |h: &Window| h.query_by_label_contains("Done: ").is_some();
+    let on = |h: &mut Window, words: &str| {
+        assert!(is_done(h), "{words}: nothing is passed without being done");
+        h.get_by_label(&format!("{words}: tour")).click();
+        h.run_steps(3);
+    };
+    h.get_by_label("Help").click();
+    h.run_steps(4);
+    h.get_by_label("Take the tour").click();
+    h.run_steps(4);
+    assert!(h.query_by_label("An arm shakes what it stands on").is_some() && !is_done(&h));
+    assert!(h.query_by_label("Skip: tour").is_some());
+    h.get_by_label("Show me").click();
+    h.run_steps(70);
+    h.snapshot("tour-dark");
+    on(&mut h, "Next");
+    h.get_by_label("Hang 0.3 kg on it").click();
+    h.run_steps(70);
+    let f = *session(&h).frame();
+    assert!(f.peaks.force > 0.5, "{} s, {} N, {} kg", f.time, f.peaks.force, session(&h).scenario().plant.payload.mass);
+    on(&mut h, "Next");
+    assert!(!is_done(&h));
+    h.get_by_label("Take it off").click();
+    h.run_steps(4);
+    on(&mut h, "Next");
+    h.get_by_label("Show me").click();
+    h.run_steps(70);
+    on(&mut h, "Next");
+    let at = session(&h).frame().end_effector;
+    let from = on_screen(&h, at.re, at.im);
+    drag(&mut h, from, from + egui::vec2(-20.0, 20.0));
+    h.run_steps(20);
+    on(&mut h, "Next");
+    let b = session(&h).b_aim();
+    h.state_mut().app_state_mut().carry_out(Command::Edit(Edit::SlideB { b: b + 0.1 }));
+    h.run_steps(3);
+    assert!(!is_done(&h), "half of it");
+    h.state_mut().app_state_mut().carry_out(Command::Edit(Edit::SlideB { b: b + 0.21 }));
+    h.run_steps(3);
+    on(&mut h, "Next");
+    h.get_by_label("Start time").click();
+    h.run_steps(15);
+    assert!(session(&h).is_moving() && !is_done(&h));
+    h.state_mut().app_state_mut().carry_out(Command::Edit(Edit::SlideB { b: 2.6 }));
+    h.run_steps(30);
+    h.get_by_label("Back: tour").click();
+    h.run_steps(3);
+    assert!(h.query_by_label("b only turns it").is_some());
+    h.key_press(Key::Escape);
+    h.run_steps(3);
+    assert!(h.query_by_label("b only turns it").is_none());
 }

@@ -1,0 +1,92 @@
+//! The card of a [`Tour`]'s step, over the lower left corner of the scene.
+
+use egui::{Align2, Area, Button, Frame, Id, RichText, Ui, vec2};
+
+use super::{STEPS, Step, Tour};
+use crate::app::theme::{bold, colour, plain};
+use crate::app::widgets::name;
+use crate::app::{Command, ViewState};
+use crate::picture::scene::palette::Palette;
+use crate::picture::scene::views::ViewKind;
+
+impl Tour {
+    /// Its card, over the lower left corner of the scene.
+    pub fn show(&self, ctx: &egui::Context, rect: egui::Rect, view_state: &ViewState, commands: &mut Vec<Command>) {
+        let (p, step) = (view_state.palette(), &STEPS[self.step]);
+        let frame = Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.line))).corner_radius(10).inner_margin(14);
+        let width = 430.0_f32.min(rect.width() - 32.0);
+        let area = Area::new(id()).pivot(Align2::LEFT_BOTTOM).fixed_pos(rect.left_bottom() + vec2(16.0, -16.0));
+        area.show(ctx, |ui| {
+            frame.show(ui, |ui| {
+                ui.set_width(width - 28.0);
+                ui.horizontal(|ui| {
+                    ui.label(RichText::new(step.title).font(bold(15.0)).color(colour(p.ink)));
+                    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                        let count = format!("{} of {}", self.step + 1, STEPS.len());
+                        ui.label(RichText::new(count).font(plain(12.0)).color(colour(p.dim)));
+                    });
+                });
+                ui.add(egui::Label::new(RichText::new(step.words).font(plain(12.5)).color(colour(p.ink))).wrap());
+                ui.add_space(4.0);
+                self.asked(ui, step, &p);
+                ui.add_space(4.0);
+                self.buttons(ui, step, view_state, &p, commands);
+            });
+        });
+    }
+
+    fn asked(&self, ui: &mut Ui, step: &Step, p: &Palette) {
+        let (words, tone) =
+            if self.done { (format!("Done: {}", step.asks), p.zero) } else { (step.asks.to_owned(), p.amber) };
+        ui.add(egui::Label::new(RichText::new(words).font(bold(12.5)).color(colour(tone))).wrap());
+    }
+
+    fn buttons(&self, ui: &mut Ui, step: &Step, view_state: &ViewState, p: &Palette, commands: &mut Vec<Command>) {
+        ui.horizontal(|ui| {
+            if let Some((words, what)) = step.shows.filter(|_| !self.done)
+                && ui.button(words).clicked()
+            {
+                if !view_state.view.shows_machine() {
+                    commands.push(Command::View(ViewKind::Flat));
+                }
+                commands.extend(what());
+            }
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                let words = match (self.step + 1 == STEPS.len(), self.done) {
+                    (true, _) => "End",
+                    (false, true) => "Next",
+                    (false, false) => "Skip",
+                };
+                let mut on = Button::new(RichText::new(words).color(colour(p.ink)));
+                if self.done {
+                    on = Button::new(RichText::new(words).color(colour(p.background))).fill(colour(p.amber));
+                }
+                let on = ui.add(on);
+                name(&on, &format!("{words}: tour"));
+                if on.clicked() {
+                    commands.push(Command::TurnTour(true));
+                }
+                let back = ui.add_enabled(self.step > 0, Button::new("Back"));
+                name(&back, "Back: tour");
+                if back.clicked() {
+                    commands.push(Command::TurnTour(false));
+                }
+                let leave = ui.add(Button::new(RichText::new("Leave").color(colour(p.dim))).frame(false));
+                name(&leave, "Leave the tour");
+                if leave.on_hover_text("Esc").clicked() {
+                    commands.push(Command::Tour(false));
+                }
+            });
+        });
+    }
+
+    /// What of a scene it lies over.
+    pub fn covers(ctx: &egui::Context, rect: egui::Rect) -> egui::Rect {
+        let usual = egui::Rect::from_min_size(rect.left_bottom() + vec2(0.0, -190.0), vec2(446.0, 190.0));
+        ctx.memory(|m| m.area_rect(id())).unwrap_or(usual)
+    }
+}
+
+fn id() -> Id {
+    Id::unique("tour")
+}
