@@ -157,8 +157,7 @@ impl Intro {
         paint(ui, 1, rect, &scene, camera);
         words(ui, &Spot { rect, camera: *camera }, &scene);
         let turn = SOFT.to_degrees();
-        let words =
-            format!("Straight from A to B. The arm shakes its base (drawn as giving way {turn:.0}° for 1 N m).");
+        let words = format!("From A to B along a line. The arm shakes its base, drawn {turn:.0}° for 1 N m.");
         caption(ui, rect, &p, "Straight line", &words, frame.wrench.total().moment, p.reaction);
         ui.painter().vline(rect.right(), rect.y_range(), egui::Stroke::new(1.0, colour(p.line)));
     }

@@ -47,7 +47,7 @@ const STEPS: [Step; 7] = [
         words: "To speed up its links it pushes against its base, and twists it. Here it takes its end effector from A to \
                 B along a straight line: the red arc is the moment on the base, n_B.",
         asks: "Run the straight line to its end.",
-        shows: Some(("Show me", || vec![Command::Case("case-1".into())])),
+        shows: Some(("Show me", || vec![Command::Case("case-1")])),
         done: |session, _| has_run(session) && session.frame().peaks.moment > FELT,
     },
     Step {
@@ -73,7 +73,7 @@ const STEPS: [Step; 7] = [
         words: "So the drives only have to move together: as long as q₁ + λ₂ q₂ + λ₃ q₃ keeps one value, the pose constant \
                 b, the sum is zero. That is a plane in the space of the three angles. (Eq. 13)",
         asks: "Run the same task on its plane.",
-        shows: Some(("Show me", || vec![Command::Case("case-3".into())])),
+        shows: Some(("Show me", || vec![Command::Case("case-3")])),
         done: |session, _| has_run(session) && session.frame().peaks.moment < NONE,
     },
     Step {
@@ -99,7 +99,7 @@ const STEPS: [Step; 7] = [
         words: "To go from one plane to another the arm must turn as a whole, and the base feels it: the faster, the more. \
                 n_B = −D₁ b̈.",
         asks: "Turn b while time runs.",
-        shows: Some(("Start time", || vec![Command::Case("case-3".into())])),
+        shows: Some(("Start time", || vec![Command::Case("case-3")])),
         done: |session, b| {
             session.is_led() && session.frame().peaks.moment > FELT && (session.b_aim() - b).abs() > 0.05
         },

@@ -15,6 +15,7 @@ pub struct Times {
     /// What the program takes to say what is to be drawn, s.
     interface: f64,
     begun: Option<Instant>,
+    follows: bool,
     /// What is shown, and since when: figures that change at every repaint cannot be read.
     shown: Option<(String, Instant)>,
 }
@@ -28,15 +29,18 @@ const NEWEST: f64 = 0.1;
 impl Times {
     /// A repaint begins.
     pub fn begin(&mut self, now: Instant) {
-        if let Some(apart) = self.begun.map(|begun| now - begun).filter(|apart| *apart < REST) {
+        let apart = self.begun.map(|begun| now - begun).filter(|apart| *apart < REST);
+        if let Some(apart) = apart {
             blend(&mut self.apart, apart.as_secs_f64());
         }
+        self.follows = apart.is_some();
         self.begun = Some(now);
     }
 
     /// All is said that is to be drawn.
     pub fn end(&mut self, now: Instant) {
-        if let Some(begun) = self.begun {
+        // The first one reads the fonts.
+        if let Some(begun) = self.begun.filter(|_| self.follows) {
             blend(&mut self.interface, (now - begun).as_secs_f64());
         }
     }
