@@ -39,7 +39,7 @@ impl Samples {
         let known = kept.min(self.times.len()).min(frames.len());
         self.times.truncate(known);
         let until = frames.len().min(known.saturating_add(most));
-        self.times.extend(frames[known..until].iter().map(|frame| frame.time));
+        let mut places = Vec::with_capacity(wanted.len());
         for signal in wanted {
             let place = self.series.iter().position(|(path, _)| *path == signal.path).unwrap_or_else(|| {
                 self.series.push((signal.path.clone(), Series::default()));
@@ -47,8 +47,16 @@ impl Samples {
             });
             let series = &mut self.series[place].1;
             series.truncate(known);
-            for frame in &frames[series.values().len()..until] {
+            for frame in &frames[series.values().len()..known] {
                 series.push(signal.value(frame));
+            }
+            places.push((place, signal));
+        }
+        // A frame is large: it is read once for all signals.
+        for frame in &frames[known..until] {
+            self.times.push(frame.time);
+            for (place, signal) in &places {
+                self.series[*place].1.push(signal.value(frame));
             }
         }
         until == frames.len()

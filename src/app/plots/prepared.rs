@@ -46,8 +46,8 @@ struct Key {
     columns: usize,
 }
 
-/// Frames taken up in one repaint: of ten signals they take some 4 ms.
-const AT_ONCE: usize = 10_000;
+/// Frames taken up in one repaint: of ten signals they take a few milliseconds.
+const AT_ONCE: usize = 4_000;
 
 /// How much time there is to show of a session.
 pub fn extent(session: &Session) -> Extent {
