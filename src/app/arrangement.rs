@@ -33,7 +33,9 @@ pub fn show(ui: &mut Ui, view_state: &ViewState, size: Vec2, commands: &mut Vec<
         };
         heading(ui, "LAYOUT");
         for layout in Layout::ALL {
-            let what = (layout.name(), action_of(layout), layout.words());
+            // As the table of actions calls it.
+            let action = format!("{}: {}", layout.name(), layout.words());
+            let what = (layout.name(), action.as_str(), layout.words());
             line(ui, what, view_state.layout == layout, Command::Layout(layout));
         }
         ui.separator();
@@ -46,13 +48,4 @@ pub fn show(ui: &mut Ui, view_state: &ViewState, size: Vec2, commands: &mut Vec<
         let what = ("Settings on the right", "Settings and plots change sides", "Settings and plots change sides");
         line(ui, what, view_state.swapped, Command::Swap(!view_state.swapped));
     });
-}
-
-/// The name of the action that brings a layout.
-fn action_of(layout: Layout) -> &'static str {
-    match layout {
-        Layout::Explore => "Explore: settings, scene and plots",
-        Layout::Compare => "Compare: scene, wide plots and the runs side by side",
-        Layout::Present => "Present: the scene alone, what counts in large type",
-    }
 }

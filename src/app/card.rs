@@ -9,6 +9,7 @@ use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Palette;
 use crate::picture::scene::views::Views;
 use crate::session::Session;
+use crate::settings::number::subscript;
 use crate::simulation::frame::Reach;
 use crate::simulation::plant::BaseKind;
 
@@ -24,8 +25,6 @@ pub struct Card {
 
 /// An angle nearer to its limit counts as at it, rad.
 const AT_LIMIT: f64 = 1e-3;
-
-const SUBSCRIPTS: [char; 8] = ['₁', '₂', '₃', '₄', '₅', '₆', '₇', '₈'];
 
 impl Card {
     fn new(title: impl Into<String>, rows: impl Into<Vec<String>>, hint: impl Into<String>) -> Self {
@@ -97,12 +96,12 @@ impl Card {
     pub fn turned(i: usize, session: &Session) -> Option<Self> {
         let (machine, frame) = (&session.scenario().machine, session.frame());
         let drive = machine.resolved_links().get(i)?.drive;
-        let title = format!("drive {}, q{} = {}°", drive + 1, SUBSCRIPTS.get(drive)?, degrees(frame.q[drive]));
+        let title = format!("drive {}, q{} = {}°", drive + 1, subscript(drive + 1), degrees(frame.q[drive]));
         let mut rows = vec![format!("the others follow: b stays {} rad", signed(frame.b_reference, 3))];
         for (k, angle) in machine.angles().iter().enumerate() {
             let ends = [*angle.limits.start(), *angle.limits.end()];
             if let Some(end) = ends.into_iter().find(|end| (frame.a[k] - end).abs() < AT_LIMIT) {
-                rows.push(format!("a{} stands at its limit, {}°", SUBSCRIPTS[k], degrees(end)));
+                rows.push(format!("a{} stands at its limit, {}°", subscript(k + 1), degrees(end)));
             }
         }
         let hint = if frame.peaks.is_reactionless() { "the base feels nothing" } else { "" };
@@ -130,7 +129,7 @@ fn link(i: usize, session: &Session) -> Option<Card> {
     let title = format!("link {}, turned by drive {}, {} kg", link.name, drive + 1, signed(link.mass, 2));
     let mut rows = vec![
         format!("{} m long, centre of mass at {} m", signed(part.length, 3), signed(link.com, 3)),
-        format!("q{} = {}°", SUBSCRIPTS.get(drive)?, degrees(frame.q[drive])),
+        format!("q{} = {}°", subscript(drive + 1), degrees(frame.q[drive])),
     ];
     if scenario.plant.link.contains_key(&link.name) {
         rows.push("the plant differs from this".into());
@@ -161,8 +160,8 @@ fn joint(i: usize, session: &Session, views: &Views) -> Option<Card> {
         let now = degrees(frame.a[k]);
         let [low, high] = [*angle.limits.start(), *angle.limits.end()];
         match low.is_finite() && high.is_finite() {
-            true => format!("a{} = {now}°, may be {}° to {}°", SUBSCRIPTS[k], degrees(low), degrees(high)),
-            false => format!("a{} = {now}°, turns freely", SUBSCRIPTS[k]),
+            true => format!("a{} = {now}°, may be {}° to {}°", subscript(k + 1), degrees(low), degrees(high)),
+            false => format!("a{} = {now}°, turns freely", subscript(k + 1)),
         }
     };
     let rows: Vec<String> = meets.map(row).collect();

@@ -3,9 +3,9 @@
 
 use std::sync::Arc;
 
-use egui::{Align2, Area, Frame, Id, RichText, Ui, vec2};
+use egui::{Align2, Area, Id, RichText, Ui, vec2};
 
-use super::theme::{bold, colour, plain};
+use super::theme::{bold, card, colour, plain};
 use super::widgets::name;
 use super::{Command, Layout, ViewState};
 use crate::mechanics::planar::Vector;
@@ -187,11 +187,10 @@ impl Intro {
     ) {
         let Some((title, why)) = HINTS.get(self.hint) else { return };
         let p = view_state.palette();
-        let frame = Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.line))).corner_radius(10).inner_margin(14);
         let width = 390.0_f32.min(rect.width() - 32.0);
         let area = Area::new(Id::unique("hint")).pivot(Align2::RIGHT_BOTTOM);
         area.fixed_pos(rect.right_bottom() - vec2(16.0, 40.0)).show(ctx, |ui| {
-            frame.show(ui, |ui| {
+            card(&p).show(ui, |ui| {
                 ui.set_width(width - 28.0);
                 ui.horizontal(|ui| {
                     ui.label(RichText::new(*title).font(bold(14.0)).color(colour(p.ink)));

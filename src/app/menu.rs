@@ -69,8 +69,5 @@ fn entries(ui: &mut Ui, session: &Session, About { thing, at }: About, commands:
         }
     }
     ui.separator();
-    if ui.button("Show everything").clicked() {
-        commands.push(Command::Fit);
-        ui.close();
-    }
+    entry(ui, "Show everything", vec![Command::Fit]);
 }

@@ -18,6 +18,7 @@ use crate::picture::scene::palette::Palette;
 use crate::session::scenario::Value;
 use crate::session::{Edit, Session};
 use crate::settings::change::DEFAULT;
+use crate::settings::number::subscript;
 
 /// How wide it is made by itself, points: a share of the window, between these.
 const SHARE: f32 = 0.17;
@@ -225,7 +226,7 @@ fn balance(ui: &mut Ui, session: &Session, facts: &Facts, p: &Palette) {
     }
     for (k, inertia) in balance.inertia.iter().enumerate() {
         let tip = "What the angular momentum has of the drive: D in Eq. (11), without what gears only add to H";
-        let label = format!("D{}", ['₁', '₂', '₃', '₄', '₅', '₆', '₇', '₈'][k]);
+        let label = format!("D{}", subscript(k + 1));
         fact(ui, p, &label, &format!("{inertia:.4}"), "kg m²", p.drive(k), tip);
     }
     fact(

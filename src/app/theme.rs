@@ -1,6 +1,6 @@
 //! The palette as egui's visuals.
 
-use egui::{Color32, CornerRadius, Margin, Stroke, TextStyle, vec2};
+use egui::{Color32, CornerRadius, Frame, Margin, Stroke, TextStyle, vec2};
 
 pub use crate::picture::paint::{bold, colour, install_fonts, plain};
 use crate::picture::scene::palette::{Palette, Theme, faded, palette};
@@ -66,6 +66,11 @@ pub fn apply(ctx: &egui::Context, theme: Theme) {
     style.spacing.scroll.floating = true;
     style.interaction.selectable_labels = false;
     ctx.set_style_of(egui_theme, style);
+}
+
+/// A card that lies over the scene.
+pub fn card(p: &Palette) -> Frame {
+    Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.line))).corner_radius(10).inner_margin(14)
 }
 
 /// The other theme.

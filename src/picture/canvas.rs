@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::paint;
-use super::render::offscreen::{Gpu, NoAdapter, NoPicture, Picture};
+use super::render::offscreen::{Gpu, NoAdapter, NoPicture, Picture, surface};
 use super::scene::Scene;
 use super::scene::camera::Camera;
 
@@ -90,20 +90,6 @@ impl Canvas {
             self.egui.free_texture(&id);
         }
     }
-}
-
-/// A texture of a size in pixels that can be drawn on and read back.
-pub fn surface(device: &wgpu::Device, [width, height]: [u32; 2], format: wgpu::TextureFormat) -> wgpu::Texture {
-    device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("canvas"),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-        view_formats: &[],
-    })
 }
 
 /// Draws what egui has made over a whole [`surface`] of one colour.

@@ -63,3 +63,8 @@ pub fn nine_digits(x: f64) -> String {
     let rounded = format!("{x:.8e}").parse().unwrap_or(x);
     Short(rounded).to_string()
 }
+
+/// A number as an index: 12 as ₁₂.
+pub fn subscript(number: usize) -> String {
+    number.to_string().chars().filter_map(|c| char::from_u32(c as u32 - '0' as u32 + '₀' as u32)).collect()
+}

@@ -148,18 +148,12 @@ impl Reader<'_> {
     fn product(&mut self) -> Result<Quantity, Misread> {
         let mut product = self.signed()?;
         loop {
-            product = match self.peek() {
-                Some('*' | '·' | '×') => {
-                    self.takes(&['*', '·', '×']);
-                    product.times(self.signed()?, 1)
-                }
-                Some('/' | '÷') => {
-                    self.takes(&['/', '÷']);
-                    product.times(self.signed()?, -1)
-                }
+            product = match () {
+                () if self.takes(&['*', '·', '×']) => product.times(self.signed()?, 1),
+                () if self.takes(&['/', '÷']) => product.times(self.signed()?, -1),
                 // What stands beside it multiplies: a unit, pi, something in parentheses.
-                Some(c) if c == '(' || is_of_word(c) => product.times(self.power()?, 1),
-                _ => return Ok(product),
+                () if self.peek().is_some_and(|c| c == '(' || is_of_word(c)) => product.times(self.power()?, 1),
+                () => return Ok(product),
             };
         }
     }

@@ -3,6 +3,7 @@
 use crate::mechanics::joint_forces::{self, Joints, KEPT};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::MAX_DRIVES;
+use crate::settings::number::subscript;
 use crate::simulation::frame::Frame;
 
 /// A number that a [`Frame`] holds, with its name and unit.
@@ -197,8 +198,4 @@ fn inside(machine: &Machine) -> Vec<Signal> {
         add("change_point/distance".into(), "Δq".into(), label, "rad", None, value);
     }
     table
-}
-
-fn subscript(number: usize) -> String {
-    number.to_string().chars().filter_map(|c| char::from_u32(c as u32 - '0' as u32 + '₀' as u32)).collect()
 }

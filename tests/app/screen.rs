@@ -5,8 +5,8 @@ use std::sync::Arc;
 use egui::mutex::RwLock;
 use egui_kittest::TestRenderer;
 use egui_wgpu::{RenderState, Renderer, RendererOptions, ScreenDescriptor};
-use stillbase::picture::canvas::{draw_shapes, surface};
-use stillbase::picture::render::offscreen::Gpu;
+use stillbase::picture::canvas::draw_shapes;
+use stillbase::picture::render::offscreen::{Gpu, surface};
 
 /// A GPU of its own for each window: a renderer keeps what was drawn on it.
 pub struct Screen {

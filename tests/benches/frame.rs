@@ -11,9 +11,9 @@ use std::time::{Duration, Instant};
 use egui::epaint::Primitive;
 use egui_wgpu::{RendererOptions, ScreenDescriptor};
 use stillbase::app::{AppState, Command};
-use stillbase::picture::canvas::surface;
+use stillbase::picture::canvas::draw_shapes;
 use stillbase::picture::paint::{Renderers, draw_drafts, install_fonts};
-use stillbase::picture::render::offscreen::Gpu;
+use stillbase::picture::render::offscreen::{Gpu, surface};
 use stillbase::picture::render::{Renderer, View};
 use stillbase::picture::scene::options::ViewOptions;
 use stillbase::picture::scene::palette::Theme;
@@ -166,27 +166,8 @@ impl<'a> Screen<'a> {
         for (id, deltas) in output.textures_delta.set.drain() {
             deltas.iter().for_each(|delta| self.egui.update_texture(device, queue, id, delta));
         }
-        let mut encoder = device.create_command_encoder(&Default::default());
-        let mut buffers = self.egui.update_buffers(device, queue, &mut encoder, &shapes, &self.screen);
-        let target = self.texture.create_view(&Default::default());
-        let mut pass = encoder
-            .begin_render_pass(&wgpu::RenderPassDescriptor {
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &target,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(wgpu::Color::WHITE),
-                        store: wgpu::StoreOp::Store,
-                    },
-                })],
-                ..Default::default()
-            })
-            .forget_lifetime();
-        self.egui.render(&mut pass, &shapes, &self.screen);
-        drop(pass);
-        buffers.push(encoder.finish());
-        queue.submit(buffers);
+        let behind = self.ctx.global_style().visuals.panel_fill;
+        draw_shapes(&mut self.egui, (device, queue), (&self.texture, behind), &shapes, &self.screen);
         let upload = begun.elapsed();
 
         let begun = Instant::now();

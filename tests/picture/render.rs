@@ -2,7 +2,7 @@
 
 use std::f32::consts::PI;
 use std::sync::Arc;
-use stillbase::picture::render::offscreen::{NoPicture, Picture};
+use stillbase::picture::render::offscreen::{NoPicture, Picture, surface};
 use stillbase::picture::render::{Quality, Renderer, View};
 use stillbase::picture::scene::palette::{Theme, faded, palette};
 use stillbase::picture::scene::{Area, Changes, Line, Marker, Mesh, Model, Rgba, Scene, Solid, mesh};
@@ -458,17 +458,7 @@ fn the_picture_reaches_any_target_unchanged() {
     for format in [Rgba8Unorm, Bgra8Unorm, Rgba8UnormSrgb, Bgra8UnormSrgb] {
         let (device, queue) = (gpu.device().clone(), gpu.queue().clone());
         let mut renderer = Renderer::new(&device, format);
-        let [width, height] = view.size_px;
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: None,
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
+        let texture = surface(&device, view.size_px, format);
         let mut encoder = device.create_command_encoder(&Default::default());
         renderer.prepare(&device, &queue, &mut encoder, &scene, &view);
         let mut pass = encoder

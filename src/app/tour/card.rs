@@ -1,9 +1,9 @@
 //! The card of a [`Tour`]'s step, over the lower left corner of the scene.
 
-use egui::{Align2, Area, Button, Frame, Id, RichText, Ui, vec2};
+use egui::{Align2, Area, Button, Id, RichText, Ui, vec2};
 
 use super::{STEPS, Step, Tour};
-use crate::app::theme::{bold, colour, plain};
+use crate::app::theme::{bold, card, colour, plain};
 use crate::app::widgets::name;
 use crate::app::{Command, ViewState};
 use crate::picture::scene::palette::Palette;
@@ -13,11 +13,10 @@ impl Tour {
     /// Its card, over the lower left corner of the scene.
     pub fn show(&self, ctx: &egui::Context, rect: egui::Rect, view_state: &ViewState, commands: &mut Vec<Command>) {
         let (p, step) = (view_state.palette(), &STEPS[self.step]);
-        let frame = Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.line))).corner_radius(10).inner_margin(14);
         let width = 430.0_f32.min(rect.width() - 32.0);
         let area = Area::new(id()).pivot(Align2::LEFT_BOTTOM).fixed_pos(rect.left_bottom() + vec2(16.0, -16.0));
         area.show(ctx, |ui| {
-            frame.show(ui, |ui| {
+            card(&p).show(ui, |ui| {
                 ui.set_width(width - 28.0);
                 ui.horizontal(|ui| {
                     ui.label(RichText::new(step.title).font(bold(15.0)).color(colour(p.ink)));

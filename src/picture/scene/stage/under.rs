@@ -6,7 +6,7 @@ use crate::picture::scene::linkage::{Linkage, PLATE};
 use crate::picture::scene::options::{Handle, ViewOptions};
 use crate::picture::scene::palette::{Palette, Theme, mix, palette};
 use crate::picture::scene::pointer::Pointer;
-use crate::picture::scene::{Line, Scene, Solid};
+use crate::picture::scene::{Line, Scene, Solid, place};
 use crate::simulation::frame::Frame;
 
 /// How near the pointer has to be, px: to a link, a line, a pin and a payload.
@@ -64,11 +64,9 @@ pub fn reaction(linkage: &Linkage, frame: &Frame, pointer: &Pointer) -> Option<H
 
 /// Whether a line is under the pointer.
 pub fn line(line: &Line, pointer: &Pointer) -> bool {
-    let m = line.world_from_item;
-    let placed =
-        |p: &[f32; 3]| [0, 1, 2].map(|i| f64::from(m[0][i] * p[0] + m[1][i] * p[1] + m[2][i] * p[2] + m[3][i]));
+    let placed = |p: [f32; 3]| place(&line.world_from_item, p).map(f64::from);
     let near = |ends: [[f64; 3]; 2]| pointer.distance_to_segment(ends).is_some_and(|d| d < NEAR_LINE);
-    line.strips.iter().any(|strip| strip.windows(2).any(|pair| near([placed(&pair[0]), placed(&pair[1])])))
+    line.strips.iter().any(|strip| strip.windows(2).any(|pair| near([placed(pair[0]), placed(pair[1])])))
 }
 
 /// Lights up what the pointer is on.
