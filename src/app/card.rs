@@ -38,6 +38,7 @@ impl Card {
         Some(match thing {
             Handle::Link(i) => link(i, session)?,
             Handle::Joint(i) => joint(i, session, views)?,
+            Handle::Limit(k, end) => limit(k, end, session)?,
             Handle::Base => base(session),
             Handle::Target => {
                 let at = target_handle(frame);
@@ -64,7 +65,7 @@ impl Card {
                     rows.push(format!("{} m along, {} m across the last link", signed(along, 3), signed(across, 3)));
                 }
                 let title = format!("payload, {} kg", three_digits(load.mass));
-                Self::new(title, rows, "click: its rows in the panel")
+                Self::new(title, rows, "drag: hangs it aside or back\nclick: its rows in the panel")
             }
             Handle::Ring => {
                 let rows = vec![format!("moment on the base while it changes: {} N m", signed(frame.felt_moment(), 3))];
@@ -166,6 +167,17 @@ fn joint(i: usize, session: &Session, views: &Views) -> Option<Card> {
     };
     let rows: Vec<String> = meets.map(row).collect();
     Some(Card::new(title, rows, "click: joint limits in the panel"))
+}
+
+fn limit(k: usize, end: usize, session: &Session) -> Option<Card> {
+    let angle = session.scenario().machine.angles().get(k)?;
+    let (word, value) = match end {
+        0 => ("least", *angle.limits.start()),
+        _ => ("greatest", *angle.limits.end()),
+    };
+    let title = format!("joint limit: {word} a{}, {}°", subscript(k + 1), degrees(value));
+    let rows = [format!("a{} = {}° now", subscript(k + 1), degrees(session.frame().a[k]))];
+    Some(Card::new(title, rows, "drag: the workspace changes with it\nclick: joint limits in the panel"))
 }
 
 fn base(session: &Session) -> Card {

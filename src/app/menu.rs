@@ -2,6 +2,7 @@
 
 use egui::{Id, PointerButton, Response, Ui};
 
+use super::widgets::HELD;
 use super::{Command, place};
 use crate::mechanics::planar::Vector;
 use crate::picture::numbers::signed;
@@ -54,6 +55,12 @@ fn entries(ui: &mut Ui, session: &Session, About { thing, at }: About, commands:
     }
     if thing == Some(Handle::Payload) {
         entry(ui, "Take the payload off", once(Edit::set("plant.payload", "default")));
+    }
+    let machine = &session.scenario().machine;
+    let on_tip = thing == Some(Handle::Target) || thing == Some(Handle::Link(machine.end_link()));
+    if on_tip && session.scenario().plant.payload.mass == 0.0 {
+        let words = format!("Hang a payload of {HELD} kg on it");
+        entry(ui, &words, once(Edit::set("plant.payload.mass", HELD)));
     }
     if let Some([x, y]) = at {
         if thing != Some(Handle::Target) && session.run().planes().is_some() {

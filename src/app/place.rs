@@ -39,15 +39,15 @@ pub const LINKS: &str = "a link differs";
 
 /// Whether a thing has a place in the panel.
 pub fn is_in_panel(thing: Handle) -> bool {
-    use Handle::{Base, Boundary, Joint, Link, Payload, Ring, Waypoint};
-    matches!(thing, Link(_) | Joint(_) | Base | Payload | Waypoint(_) | Ring | Boundary)
+    use Handle::{Base, Boundary, Joint, Limit, Link, Payload, Ring, Target, Waypoint};
+    matches!(thing, Target | Link(_) | Joint(_) | Limit(..) | Base | Payload | Waypoint(_) | Ring | Boundary)
 }
 
 /// The thing whose place stands for it.
 fn standing_for(thing: Handle) -> Handle {
     match thing {
         Handle::Boundary => Handle::Ring,
-        Handle::Joint(_) => Handle::Joint(0),
+        Handle::Joint(_) | Handle::Limit(..) => Handle::Joint(0),
         thing => thing,
     }
 }

@@ -13,9 +13,10 @@ use super::theme::{bold, colour, plain};
 use super::widgets::{Row, name, note, section, send, unit};
 use super::{Command, ViewState, path, place, set_b};
 use crate::mechanics::machine::MAX_ANGLE;
+use crate::picture::scene::course::target_handle;
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Palette;
-use crate::session::scenario::Value;
+use crate::session::scenario::{PLACE, Value};
 use crate::session::{Edit, Session};
 use crate::settings::change::DEFAULT;
 use crate::settings::number::subscript;
@@ -43,6 +44,9 @@ pub fn show(
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.set_width(ui.available_width() - 6.0);
             place::of(ui, Handle::Ring, &p, |ui| pose_constant(ui, session, facts, view_state, commands));
+            if session.run().planes().is_some() {
+                place::of(ui, Handle::Target, &p, |ui| target(ui, session, &p, commands));
+            }
             place::of(ui, Handle::Joint(0), &p, |ui| limits(ui, session, &p, commands));
             gravity(ui, session, &p, commands);
             path::show(ui, session, &p, commands);
@@ -138,6 +142,30 @@ fn pose_constant(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &Vie
                 let response = row.number(ui, &mut other);
                 send(commands, &[response], || Edit::set("compare_b", other));
             }
+        });
+    });
+}
+
+/// Where the end effector is sent: to be typed, or dragged like any number.
+fn target(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
+    let frame = session.frame();
+    // Led by hand, where it was sent, so that the number that is not typed keeps what it was.
+    let at = if session.is_led() { frame.target.at } else { target_handle(frame) };
+    let mut place = [at.re, at.im];
+    ui.horizontal(|ui| {
+        let tip = "Where the end effector is sent; typed or dragged, here or in the scene, the machine follows with b as \
+                   it is";
+        ui.label("target").on_hover_text(tip);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            unit(ui, p, "m");
+            let mut changed = Vec::new();
+            for (i, label) in [(1, "target y"), (0, "target x")] {
+                let range = PLACE.low()..=PLACE.high();
+                let row = Row { label, unit: "m", tip, decimals: 3, speed: 0.002, slide: range.clone(), range };
+                changed.push(row.number(ui, &mut place[i]));
+            }
+            let [x, y] = place;
+            send(commands, &changed, || Edit::DragTarget { x, y });
         });
     });
 }

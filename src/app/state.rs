@@ -526,8 +526,10 @@ impl AppState {
         let key = StageKey::of(&self.session);
         if key != self.stage_of {
             let views = Views::of(self.session.run());
-            // A camera that was not moved goes on showing everything.
-            if key.machine != self.stage_of.machine {
+            // A camera that was not moved goes on showing everything; limits that are pulled at move nothing under the
+            // hand.
+            let (new, old) = (&key.machine, &self.stage_of.machine);
+            if new.links() != old.links() || new.resolved_links() != old.resolved_links() {
                 self.view_state.framing.iter_mut().for_each(Framing::renew);
             }
             self.views = Arc::new(views);

@@ -1,12 +1,12 @@
 //! The study of tolerances at the bottom: what varies, what the bases of many machines feel, which tolerance is to
 //! blame, and the motion's frequencies.
 
-use egui::{Align, Color32, DragValue, Frame, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui, vec2};
+use egui::{Align, Color32, Frame, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui, vec2};
 use egui_plot::{Bar, BarChart, FilledArea, GridMark, Line, LineStyle, Plot, PlotPoints, VLine};
 
-use super::plots::base_plot;
+use super::plots::{base_plot, small_axes};
 use super::theme::{bold, colour, plain};
-use super::widgets::{name, send};
+use super::widgets::{Row, name, send};
 use super::{Command, ViewState};
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::{Palette, faded};
@@ -169,10 +169,9 @@ fn row(ui: &mut Ui, p: &Palette, label: &str, unit: &str, tip: &str, value: &mut
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let text = RichText::new(unit).font(plain(11.5)).color(colour(p.dim));
             ui.add_sized([42.0, 18.0], Label::new(text).halign(Align::LEFT));
-            let drag = DragValue::new(value).range(0.0..=1e3).speed(0.01).fixed_decimals(3);
-            let response = ui.add(drag.update_while_editing(false)).on_hover_text(tip);
-            name(&response, &format!("Spread of {label}, {unit}"));
-            response
+            let called = format!("Spread of {label}");
+            let row = Row { label: &called, unit, tip, decimals: 3, speed: 0.01, range: 0.0..=1e3, slide: 0.0..=1e3 };
+            row.number(ui, value)
         })
         .inner
     })
@@ -191,6 +190,7 @@ fn band(ui: &mut Ui, p: &Palette, study: &Study, time: f64) {
     let (x, band) = (&study.bands.time, &study.bands.moment);
     let tone = colour(p.reaction);
     let end = x.last().copied().unwrap_or(1.0) + x.first().copied().unwrap_or(0.0);
+    small_axes(ui);
     let response = bare("bands", p, ui.available_height()).show_axes([true, true]).show(ui, |plot| {
         plot.set_plot_bounds_x(0.0..=end);
         for (i, strength) in [(0, 0.16), (1, 0.28)] {
@@ -227,6 +227,7 @@ fn peaks(ui: &mut Ui, p: &Palette, study: &Study) {
         Bar::new(middle, *count as f64).width(0.92 * (w[1] - w[0])).fill(colour(faded(tone, 0.7)))
     });
     let bars: Vec<Bar> = bars.collect();
+    small_axes(ui);
     let response = bare("peaks", p, ui.available_height()).show_axes([true, false]).include_x(0.0).include_y(0.0).show(
         ui,
         |plot| {
@@ -285,6 +286,7 @@ fn spectrum(ui: &mut Ui, p: &Palette, study: &Study) {
         let marks = (from..=to).filter(|i| i.rem_euclid(step) == 0);
         marks.map(|i| GridMark { value: f64::from(i), step_size: 4.0 }).collect()
     };
+    small_axes(ui);
     let response = bare("spectrum", p, ui.available_height())
         .show_axes([true, true])
         .x_grid_spacer(move |g| whole(g.bounds.0, g.bounds.1, 1))

@@ -13,7 +13,7 @@ use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::picture::paint::{Spot, paint, words};
 use crate::picture::scene::exaggeration::exaggerated;
 use crate::picture::scene::options::{Handle, Other, ViewOptions};
-use crate::picture::scene::pick::{Aim, Grip, Pick};
+use crate::picture::scene::pick::{Aim, Pick};
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::session::scenario::Task;
 use crate::session::{Edit, Session};
@@ -77,6 +77,8 @@ pub fn show(
             exaggeration: view_state.base_exaggeration(),
             push: force(session),
             pin_forces: view_state.pins,
+            limits: true,
+            shadows: view_state.view == ViewKind::Space,
             invites: session.run().planes().is_some(),
             compares: both.is_none(),
             scale: None,
@@ -174,7 +176,7 @@ fn point_at(
     }
     let (shift, snaps) = ui.input(|i| (i.modifiers.shift, i.modifiers.ctrl || i.modifiers.command));
     let ask = |pick: Pick, pos: Pos2, view_state: &mut ViewState| {
-        let pick = Pick { grip: pick.grip.map(|grip| Grip { snaps, ..grip }), ..pick };
+        let pick = Pick { grip: pick.grip.map(|grip| grip.snapping(snaps)), ..pick };
         let aim = views.aim(view, &pick, frame, &spot.pointer(pos), session.b_aim())?;
         let edit = match if snaps { aim.snapped() } else { aim } {
             Aim::Target([x, y]) => {
@@ -190,6 +192,11 @@ fn point_at(
                 }
                 Edit::Push { x, y }
             }
+            Aim::Limit { angle, ends, .. } => {
+                let name = &session.scenario().machine.angles().get(angle)?.name;
+                Edit::at(&["limits", name], ends.to_vec())
+            }
+            Aim::Payload(offset) => Edit::set("plant.payload.offset", offset.to_vec()),
             Aim::Waypoint(i, [x, y]) => {
                 view_state.held = Some([x, y]);
                 Edit::of("task", session.scenario().task.moving(i, Vector::new(x, y))?)

@@ -16,6 +16,9 @@ use crate::settings::key;
 use crate::settings::quantity;
 use crate::settings::range::shortened;
 
+/// A payload that is hung on with a click, kg.
+pub(super) const HELD: f64 = 0.3;
+
 /// Tells a screen reader what a widget is.
 pub fn name(response: &Response, label: &str) {
     let label = label.to_owned();

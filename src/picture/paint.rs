@@ -30,19 +30,22 @@ pub fn plain(size: f32) -> FontId {
     FontId::new(size, FontFamily::Proportional)
 }
 
-/// DejaVu Sans: figures of one width, and every letter of the paper.
+/// Inter, with figures of one width; signs that it lacks come from DejaVu Sans.
 pub fn install_fonts(ctx: &egui::Context) {
     let mut fonts = FontDefinitions::default();
-    let files: [(&str, &[u8]); 2] = [
-        ("sans", include_bytes!("../../assets/fonts/DejaVuSans.ttf")),
-        ("sans-bold", include_bytes!("../../assets/fonts/DejaVuSans-Bold.ttf")),
+    let files: [(&str, &[u8]); 3] = [
+        ("sans", include_bytes!("../../assets/fonts/Inter-Regular.ttf")),
+        ("sans-bold", include_bytes!("../../assets/fonts/Inter-SemiBold.ttf")),
+        ("signs", include_bytes!("../../assets/fonts/DejaVuSans-signs.ttf")),
     ];
     for (name, bytes) in files {
         fonts.font_data.insert(name.into(), Arc::new(FontData::from_static(bytes)));
     }
-    fonts.families.entry(FontFamily::Proportional).or_default().insert(0, "sans".into());
-    fonts.families.entry(FontFamily::Monospace).or_default().insert(0, "sans".into());
-    fonts.families.insert(FontFamily::Name("bold".into()), vec!["sans-bold".into(), "sans".into()]);
+    let first = |own: &str| [own.into(), "signs".into()];
+    for family in [FontFamily::Proportional, FontFamily::Monospace] {
+        fonts.families.entry(family).or_default().splice(0..0, first("sans"));
+    }
+    fonts.families.insert(FontFamily::Name("bold".into()), first("sans-bold").to_vec());
     ctx.set_fonts(fonts);
 }
 

@@ -18,6 +18,9 @@ pub const TESTS: &[Test] = tests![
     a_click_shows_the_place_in_the_panel,
     a_row_of_the_panel_lights_up_its_thing,
     a_link_that_is_dragged_turns_its_drive,
+    limits_are_arcs_with_ends_to_drag,
+    a_payload_is_hung_on_and_aside,
+    the_target_is_typed,
     a_link_stops_at_the_limits_and_escape_takes_it_back,
     the_right_button_offers_what_can_be_done_there,
     shift_drags_fine_and_ctrl_to_round_numbers,
@@ -184,6 +187,84 @@ fn a_link_stops_at_the_limits_and_escape_takes_it_back() {
     h.run_steps(150);
     let back = session(&h).frame();
     assert!((back.end_effector - before.end_effector).norm() < 1e-6, "{} {}", back.end_effector, before.end_effector);
+}
+
+fn limits_are_arcs_with_ends_to_drag() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let limits = |h: &Window| session(h).scenario().machine.angles()[0].limits.clone();
+    let end = |h: &Window| {
+        let mut ends = h.state().app_state().stage().limits(session(h).frame());
+        ends.find(|end| end.handle == Handle::Limit(0, 1)).expect("a₁ has an arc").at
+    };
+    let at = end(&h);
+    let from = seen(&h, at);
+    rest_on(&mut h, from);
+    assert!(h.query_by_label_contains("joint limit: greatest a₁, 180°").is_some());
+    let area = |h: &Window| session(h).run().planes().expect("planes").boundary().area();
+    let before = area(&h);
+    // From straight to 40° less.
+    let frame = *session(&h).frame();
+    // The outer arm is link 5, which the tip hangs on: it points along drive 2 from the pin that it is rooted in.
+    let pin = {
+        let stage = h.state().app_state().stage();
+        let bar = stage.linkage().bars().iter().find(|bar| bar.name == "5").expect("a link");
+        let (root, _, z) = bar.pose(&frame.q.units());
+        [root.re, root.im, z]
+    };
+    let middle = seen(&h, pin);
+    let to = middle + egui::emath::Rot2::from_angle(40_f32.to_radians()) * (from - middle);
+    drag(&mut h, from, to);
+    h.run_steps(30);
+    let greatest = limits(&h).end().to_degrees();
+    assert!((greatest - 140.0).abs() < 3.0, "{greatest}");
+    assert_eq!(*limits(&h).start(), 0.0, "the other end stays");
+    assert!(area(&h) < before - 1e-3, "the workspace is smaller: {} of {before}", area(&h));
+    assert!(session(&h).undo_title().expect("one undo").contains("a1"), "{:?}", session(&h).undo_title());
+    // Turned on to its limit, link 5 would lie on the end of the arc.
+    let (pin, along, on) = {
+        let (f, stage) = (session(&h).frame(), h.state().app_state().stage());
+        let bar = stage.linkage().bars().iter().find(|bar| bar.name == "5").expect("a link");
+        let (root, along, _) = bar.pose(&f.q.units());
+        (root, along, limits(&h).end() - f.a[0])
+    };
+    let [x, y, _] = end(&h);
+    let way = stillbase::mechanics::planar::Vector::new(x - pin.re, y - pin.im) * along.conj();
+    assert!((way.arg() - on).abs() < 1e-6, "{way} {on}");
+}
+
+fn a_payload_is_hung_on_and_aside() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let load = |h: &Window| session(h).scenario().plant.payload;
+    let tip = on_screen(&h, 0.5, 0.5);
+    choose(&mut h, tip, "Hang a payload of 0.3 kg on it");
+    assert_eq!((load(&h).mass, load(&h).offset), (0.3, [0.0; 2]));
+    // Under the target it is held by its mass.
+    let name = on_screen(&h, 0.5, 0.5) - vec2(0.0, 22.0);
+    let side = on_screen(&h, 0.5 + 0.08, 0.5 + 0.06);
+    drag(&mut h, name, side);
+    h.run_steps(3);
+    let at = h.state().app_state().stage().payload(session(&h).frame()).expect("it hangs");
+    assert!((at.re - 0.58).abs() < 3e-3 && (at.im - 0.56).abs() < 3e-3, "{at}");
+    assert!((load(&h).offset[0].hypot(load(&h).offset[1]) - 0.1).abs() < 4e-3, "{:?}", load(&h).offset);
+    let back = on_screen(&h, 0.503, 0.502);
+    drag(&mut h, side, back);
+    h.run_steps(3);
+    assert_eq!(load(&h).offset, [0.0; 2], "back at the end effector");
+}
+
+fn the_target_is_typed() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    type_into(&mut h, "target x m", "55 cm");
+    type_into(&mut h, "target y m", "0.5 + 0.1");
+    h.run_steps(150);
+    let f = session(&h).frame();
+    assert!((f.end_effector.re - 0.55).abs() < 1e-4 && (f.end_effector.im - 0.6).abs() < 1e-4, "{}", f.end_effector);
+    assert!((f.b - 2.4).abs() < 1e-9 && f.peaks.is_reactionless());
+    type_into(&mut h, "target x m", "nan");
+    assert!(h.state().app_state().view_state().message.as_ref().is_some_and(|(_, bad)| *bad));
 }
 
 /// The pointer moves with keys held, and stays down.

@@ -13,7 +13,7 @@ use stillbase::session::scenario::Scenario;
 use stillbase::simulation::control::Control;
 use stillbase::simulation::plant::{Base, BaseKind, Each, PlantDifferences};
 
-use super::{Window, hold, on_screen, seen, session, window, window_of};
+use super::{Window, hold, on_screen, seen, session, type_into, window, window_of};
 use crate::Test;
 
 pub const TESTS: &[Test] = tests![
@@ -230,10 +230,12 @@ fn tolerances_are_shown_and_set() {
     h.run_steps(2);
     assert!(h.query_by_label("Histogram of peaks of the base moment over machines, N m").is_some());
     assert!(h.query_by_label_contains("20000 machines, varied in 41 numbers each").is_some());
-    h.get_by_label("Spread of limit on |n_B|, N m").set_value_accesskit(0.01);
+    h.get_by_label("Spread of limit on |n_B| N m").set_value_accesskit(0.01);
     h.run_steps(3);
     assert_eq!(session(&h).scenario().tolerance.moment_limit, Some(0.01));
     assert!(h.query_by_label_contains("keep within limits").is_some());
+    type_into(&mut h, "Spread of limit on |n_B| N m", "5 N cm");
+    assert_eq!(session(&h).scenario().tolerance.moment_limit, Some(0.05));
     h.key_press(Key::C);
     h.run_steps(2);
     assert!(h.query_by_label_contains("Histogram").is_none() && h.state().app_state().comparison().is_some());

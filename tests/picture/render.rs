@@ -46,8 +46,7 @@ const BLACK: Rgba = [0.0, 0.0, 0.0, 1.0];
 const RED: Rgba = [0.8, 0.2, 0.1, 1.0];
 
 fn empty(background: Rgba) -> Scene {
-    let (model, areas, solids, lines, markers, labels) = Default::default();
-    Scene { background, model, areas, solids, lines, markers, labels }
+    Scene::new(background, Default::default())
 }
 
 /// From above: a square of half a side `half` metres around `centre`, x right and y up, depth over z from 10 to -10.

@@ -29,7 +29,7 @@ fn shaders() -> Vec<(String, naga::Module)> {
 fn shaders_are_valid() {
     let shaders = shaders();
     let names: Vec<_> = shaders.iter().map(|(name, _)| name.as_str()).collect();
-    assert_eq!(names, ["blit", "lines", "markers", "solids", "workspace"]);
+    assert_eq!(names, ["blit", "lines", "markers", "shadows", "solids", "workspace"]);
     for (name, module) in &shaders {
         valid::Validator::new(valid::ValidationFlags::all(), valid::Capabilities::default())
             .validate(module)

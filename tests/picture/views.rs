@@ -384,9 +384,20 @@ fn the_machines_handles_are_found_in_both_views() {
             match views.aim(kind, &Pick::of(handle, at), frame, &here, 2.4) {
                 Some(Aim::Target([x, y])) => assert!((x - 0.5).hypot(y - 0.5) < 1e-6),
                 Some(Aim::B(b)) => assert!((b - 2.4).abs() < 1e-6),
-                Some(Aim::Waypoint(..) | Aim::Push(_) | Aim::Angles(_)) => panic!("not asked for"),
-                None => panic!("{handle:?} asks for nothing"),
+                other => panic!("{handle:?} asks for {other:?}"),
             }
+        }
+        // The ends of the joint limits stand where they are.
+        let ends: Vec<Pick> = views.stage().limits(frame).collect();
+        assert_eq!(ends.len(), 4, "two angles with two ends each");
+        for pick in ends {
+            let here = pointer(camera, pick.at);
+            let Some(Aim::Limit { angle, end, ends }) = views.aim(kind, &pick, frame, &here, 2.4) else {
+                panic!("{pick:?} is pulled")
+            };
+            assert_eq!(pick.handle, Handle::Limit(angle, end));
+            let limits = &session.scenario().machine.angles()[angle].limits;
+            assert!((ends[0] - limits.start()).abs() + (ends[1] - limits.end()).abs() < 1e-5, "{ends:?} {limits:?}");
         }
     }
     // Around, all views come by.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use egui::{RichText, Ui};
+use egui::{RichText, TextStyle, Ui};
 use egui_plot::{GridMark, Line, LineStyle, Plot, PlotPoint, PlotPoints, Points, Span, VLine};
 
 use crate::app::theme::{bold, colour, plain};
@@ -14,6 +14,9 @@ use crate::picture::scene::palette::{Palette, faded};
 use crate::planning::pose_constant::Planes;
 use crate::planning::reactionless::{BSet, PlanePoint};
 use crate::session::Session;
+
+/// Size of the figures at axes.
+const FIGURES: f32 = 10.5;
 
 /// What is known of points on planes; found when these change, not whenever it is drawn.
 pub struct Known {
@@ -98,6 +101,7 @@ pub fn show(
     let [b_low, b_high] = [bounds[0].min(b_now) - 0.15, bounds[1].max(b_now) + 0.15];
     let room = 0.18 * (bounds[3] - bounds[2]).max(0.5);
     let [q_low, q_high] = [bounds[2] - room, bounds[3] + room];
+    small_axes(ui);
     let response = base_plot("which b", p, height - 16.0)
         .show_axes([true, true])
         .y_grid_spacer(move |_| marks(&spaced(q_low, q_high), q_high - q_low))
@@ -173,6 +177,11 @@ pub fn base_plot<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
         .sense(egui::Sense::click_and_drag())
         .y_axis_min_width(46.0)
         .set_margin_fraction(egui::Vec2::ZERO)
+}
+
+/// The axes of the plots that follow have figures as small as those of the signals.
+pub fn small_axes(ui: &mut Ui) {
+    ui.style_mut().text_styles.insert(TextStyle::Body, plain(FIGURES));
 }
 
 fn marks(values: &[f64], step: f64) -> Vec<GridMark> {

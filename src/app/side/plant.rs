@@ -4,7 +4,7 @@
 use egui::Ui;
 
 use super::fold::{NumberField, Section, Slide, choose, fold, once, switch, switch_nonzero};
-use crate::app::widgets::{Row, note, tip_of, unit};
+use crate::app::widgets::{HELD, Row, note, tip_of, unit};
 use crate::app::{Command, place};
 use crate::mechanics::machine::{Link, Machine};
 use crate::picture::scene::options::Handle;
@@ -40,7 +40,6 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
 }
 
 fn payload(ui: &mut Ui, plant: &PlantDifferences, p: &Palette, commands: &mut Vec<Command>) {
-    const HELD: f64 = 0.3;
     let load = &plant.payload;
     let on = switch_nonzero(ui, ("payload", tip_of("plant.payload.mass")), load.is_some(), commands, |on| match on {
         true => Section::Plant.set(&["payload", "mass"], HELD),

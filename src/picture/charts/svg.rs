@@ -12,7 +12,7 @@ pub fn svg(figure: &Figure) -> String {
     let _ = writeln!(
         text,
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} \
-         {height}\" font-family=\"DejaVu Sans, Verdana, sans-serif\">"
+         {height}\" font-family=\"Inter, DejaVu Sans, Verdana, sans-serif\">"
     );
     let [left, top, right, bottom] = figure.axes.sides;
     let _ = writeln!(text, "<clipPath id=\"axes\">{}</clipPath>", rect([left, top, right, bottom + 4.0], ""));

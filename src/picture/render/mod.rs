@@ -2,7 +2,7 @@
 //!
 //! The renderer knows scenes and no mechanics. It draws into its own multisampled target and hands the result on pixel
 //! for pixel, so a window, a test and a recording show the same picture. Order: background, opaque solids,
-//! areas, depth-tested lines, shells, translucent solids, lines on top, markers. Labels are drawn by egui, which has
+//! areas, shadows, depth-tested lines, shells, translucent solids, lines on top, markers. Labels are drawn by egui, which has
 //! the fonts.
 //!
 //! Depth runs from 0 (near) to 1; colours are sRGB values with straight alpha, blended as they are.
@@ -14,6 +14,7 @@ mod markers;
 pub mod offscreen;
 mod quality;
 mod shader;
+mod shadows;
 mod solids;
 mod view;
 mod workspace;
@@ -32,6 +33,7 @@ pub struct Renderer {
     belt: StagingBelt,
     solids: solids::Solids,
     workspace: workspace::Workspace,
+    shadows: shadows::Shadows,
     lines: lines::Lines,
     markers: markers::Markers,
     blit: blit::Blit,
@@ -51,6 +53,7 @@ impl Renderer {
             belt: StagingBelt::new(device.clone(), 1 << 18),
             solids: solids::Solids::new(device, &kit),
             workspace: workspace::Workspace::new(device, &kit),
+            shadows: shadows::Shadows::new(device, &kit),
             lines: lines::Lines::new(device, &kit),
             markers: markers::Markers::new(device, &kit),
             blit: blit::Blit::new(device, target_format),
@@ -82,6 +85,7 @@ impl Renderer {
         self.kit.write_frame(upload, view, scene.background);
         self.solids.prepare(queue, &self.kit, upload, scene);
         self.workspace.prepare(&self.kit, upload, scene);
+        self.shadows.prepare(&self.kit, upload, scene);
         self.lines.prepare(&self.kit, upload, scene, view);
         self.markers.prepare(&self.kit, upload, scene);
 
@@ -107,6 +111,7 @@ impl Renderer {
         pass.set_bind_group(0, &self.kit.frame_group, &[]);
         self.solids.draw_opaque(&mut pass);
         self.workspace.draw(&mut pass);
+        self.shadows.draw(&mut pass);
         self.lines.draw_tested(&mut pass);
         self.solids.draw_shells(&mut pass);
         self.solids.draw_translucent(&mut pass);
@@ -130,11 +135,12 @@ impl Renderer {
 }
 
 /// The layouts of all structs that Rust and WGSL share.
-pub const TWINS: [Twin; 6] = [
+pub const TWINS: [Twin; 7] = [
     kit::Frame::TWIN,
     solids::Vertex::TWIN,
     solids::Instance::TWIN,
     lines::Segment::TWIN,
     workspace::Area::TWIN,
+    shadows::Shadow::TWIN,
     markers::Marker::TWIN,
 ];

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::mesh::{bar, cylinder};
 use super::palette::{Palette, faded, mix};
-use super::{Changes, Mesh, Model, Name, Rgba, Solid, posed};
+use super::{Changes, Mesh, Model, Name, Rgba, Shadow, Solid, posed};
 use crate::mechanics::machine::{Chain, Machine, place_of};
 use crate::mechanics::planar::{Pose2, Units, Vector, unit};
 
@@ -78,6 +78,10 @@ const BAR_HEIGHT: f64 = 0.016;
 const GAP: f64 = 0.004;
 const WEIGHT_RADIUS: f64 = 0.05;
 const DRIVE_RADIUS: f64 = 0.042;
+
+/// How far a shadow is from what is a metre above it, and how dark it is under what lies on the floor.
+const SHADE: Vector = Vector::new(0.45, -0.6);
+const SHADOW: f64 = 0.5;
 
 impl Linkage {
     /// The body of a machine.
@@ -236,6 +240,29 @@ impl Linkage {
         solids
     }
 
+    /// The shadows of the links on the floor, in the light from above left, on a base in a place.
+    pub fn shadows(&self, e: &Units, base: Vector) -> impl Iterator<Item = Shadow> {
+        let (e, floor) = (*e, self.floor());
+        self.bars.iter().map(move |bar| {
+            let [width, height] =
+                [if bar.carries_tip { BAR_RADIUS } else { THIN_BAR_RADIUS }, BAR_HEIGHT].map(|part| part * self.reach);
+            let ends = bar.ends(&e).map(|[x, y, z]| {
+                let away = base + Vector::new(x, y) + SHADE * (z + 0.5 * height - floor);
+                [away.re as f32, away.im as f32]
+            });
+            // The higher, the softer and paler.
+            let above = bar.z - floor;
+            let soft = width + 0.8 * above;
+            Shadow {
+                ends,
+                z: floor as f32,
+                core: (0.5 * width) as f32,
+                reach: (width + soft) as f32,
+                strength: (SHADOW * width / (width + 0.5 * above)) as f32,
+            }
+        })
+    }
+
     /// The links that carry the end effector as lines from root to tip, from B outwards, with their drives.
     pub fn skeleton(&self, e: &Units) -> Vec<(usize, [Vector; 2])> {
         let carriers = self.bars.iter().filter(|b| b.carries_tip);
@@ -275,6 +302,11 @@ impl Bar {
     /// The name of its item in a picture.
     pub fn item(&self) -> &Name {
         &self.item
+    }
+
+    /// 1 where it points as its drive does, −1 where against it.
+    pub fn sign(&self) -> f64 {
+        self.sign
     }
 
     /// The line along it as drawn on a base that stands still, from end to end, m.

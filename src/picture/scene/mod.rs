@@ -315,6 +315,21 @@ impl Label {
     }
 }
 
+/// The soft shadow of a bar on a plane below it, seen in space; no thing of its own, so it has no name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shadow {
+    /// The ends of its middle line, m.
+    pub ends: [[f32; 2]; 2],
+    /// Height of the plane, m.
+    pub z: f32,
+    /// Half the width of what is fully dark, m.
+    pub core: f32,
+    /// From the middle to where it ends, m.
+    pub reach: f32,
+    /// How dark, from 0 to 1.
+    pub strength: f32,
+}
+
 /// Everything there is to draw at one instant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
@@ -324,6 +339,8 @@ pub struct Scene {
     pub model: Arc<Model>,
     /// Fills, under all lines; solids in front of them hide them. Later ones blend over earlier ones.
     pub areas: Vec<Area>,
+    /// Of bars, over the fills.
+    pub shadows: Vec<Shadow>,
     /// Bars, joints, base.
     pub solids: Vec<Solid>,
     /// Grid, boundaries, paths, arrows.
@@ -341,6 +358,7 @@ impl Scene {
             background,
             model,
             areas: Vec::new(),
+            shadows: Vec::new(),
             solids: Vec::new(),
             lines: Vec::new(),
             markers: Vec::new(),
@@ -350,9 +368,9 @@ impl Scene {
 
     /// Whether another one looks the same but for its words.
     pub fn looks_like(&self, other: &Self) -> bool {
-        let Self { background, model, areas, solids, lines, markers, labels: _ } = self;
+        let Self { background, model, areas, shadows, solids, lines, markers, labels: _ } = self;
         Arc::ptr_eq(model, &other.model)
             && (background, areas, solids, markers) == (&other.background, &other.areas, &other.solids, &other.markers)
-            && *lines == other.lines
+            && (shadows, lines) == (&other.shadows, &other.lines)
     }
 }

@@ -35,6 +35,10 @@ pub struct ViewOptions {
     pub others: Vec<Other>,
     /// Arrows show what the pins carry.
     pub pin_forces: bool,
+    /// Arcs show the joint limits.
+    pub limits: bool,
+    /// Links throw shadows on the floor.
+    pub shadows: bool,
     /// How many times as far as it moves the base is shown to move.
     pub exaggeration: f64,
     /// A force at the end effector, N.
@@ -58,6 +62,8 @@ impl Default for ViewOptions {
             snapshots: Vec::new(),
             others: Vec::new(),
             pin_forces: false,
+            limits: false,
+            shadows: false,
             exaggeration: 1.0,
             push: None,
             scale: None,
@@ -84,6 +90,8 @@ pub enum Handle {
     Link(usize),
     /// A pin that joins links, by its number in the [`Linkage`](super::linkage::Linkage).
     Joint(usize),
+    /// An end of the joint limits of a relative angle: both counted from 0.
+    Limit(usize, usize),
     /// What the machine stands on, with its drives.
     Base,
     /// What the plant holds and the model does not know of.
@@ -106,8 +114,10 @@ impl Handle {
             | Self::Plane
             | Self::Bar
             | Self::Waypoint(_)
+            | Self::Limit(..)
+            | Self::Payload
             | Self::Link(_) => true,
-            Self::Joint(_) | Self::Base | Self::Payload | Self::Boundary | Self::Force | Self::Moment => false,
+            Self::Joint(_) | Self::Base | Self::Boundary | Self::Force | Self::Moment => false,
         }
     }
 }

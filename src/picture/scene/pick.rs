@@ -12,13 +12,42 @@ pub struct Pick {
     pub handle: Handle,
     /// In the scene.
     pub at: [f64; 3],
-    /// How a link is held.
+    /// How a link or a joint limit is held.
     pub grip: Option<Grip>,
+}
+
+/// How something that turns is held.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Grip {
+    /// A link.
+    Link(Hold),
+    /// A joint limit.
+    Limit(Pivot),
+}
+
+impl Grip {
+    /// The same, with a link that stops at round angles of its drive only, or does not.
+    #[must_use]
+    pub fn snapping(self, snaps: bool) -> Self {
+        match self {
+            Self::Link(hold) => Self::Link(Hold { snaps, ..hold }),
+            Self::Limit(pivot) => Self::Limit(pivot),
+        }
+    }
+}
+
+/// What a joint limit turned about when it was taken hold of; the machine may move under the hand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pivot {
+    /// The pin, m.
+    pub at: [f64; 2],
+    /// Angle of the inner drive, rad.
+    pub inner: f64,
 }
 
 /// How a link is held.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Grip {
+pub struct Hold {
     /// From the link's direction to the pointer about its root, rad.
     pub angle: f64,
     /// (a_1, a_2) when it was taken hold of, rad.
@@ -43,6 +72,11 @@ impl Aim {
         match self {
             Self::Target(at) => Self::Target(both(at, ROUND_PLACE)),
             Self::Waypoint(i, at) => Self::Waypoint(i, both(at, ROUND_PLACE)),
+            Self::Payload(offset) => Self::Payload(both(offset, ROUND_PLACE)),
+            Self::Limit { angle, end, mut ends } => {
+                ends[end] = round(ends[end], ROUND_ANGLE);
+                Self::Limit { angle, end, ends }
+            }
             Self::Push(force) => Self::Push(both(force, ROUND_FORCE)),
             Self::B(b) => Self::B(round(b, ROUND_B)),
             // Where its drive is at a round angle: its grip says so.
@@ -52,7 +86,7 @@ impl Aim {
 }
 
 impl Pick {
-    /// Anything but a link.
+    /// What does not turn.
     pub fn of(handle: Handle, at: [f64; 3]) -> Self {
         Self { handle, at, grip: None }
     }
@@ -69,6 +103,17 @@ pub enum Aim {
     Waypoint(usize, [f64; 2]),
     /// The relative joint angles (a_1, a_2), rad.
     Angles([f64; 2]),
+    /// Least and greatest value of a relative angle.
+    Limit {
+        /// Counted from 0.
+        angle: usize,
+        /// Which of the two is pulled.
+        end: usize,
+        /// rad.
+        ends: [f64; 2],
+    },
+    /// The payload's centre of mass, along and across the link that holds it, m.
+    Payload([f64; 2]),
     /// A force at the end effector, N.
     Push([f64; 2]),
 }

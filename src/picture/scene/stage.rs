@@ -1,6 +1,7 @@
 //! From a run and a frame to a [`Scene`]. A [`Stage`] holds what does not change from frame to frame.
 
 mod base;
+mod limits;
 mod path;
 mod pins;
 mod reaction;
@@ -18,13 +19,14 @@ use super::framing::Content;
 use super::linkage::Linkage;
 use super::options::{Handle, ViewOptions};
 use super::palette::{Palette, faded, palette};
-use super::pick::{Grip, Pick};
+use super::pick::{Hold, Pick, Pivot};
 use super::pointer::Pointer;
 use super::{Line, Measure, Scene, Strips, point};
 use crate::mechanics::planar::{DriveAngles, Vector, unit};
 use crate::session::Run;
 use crate::simulation::frame::Frame;
 use base::BaseStage;
+use limits::Limits;
 use path::Plan;
 use pins::Pins;
 use workspace::Workspace;
@@ -40,6 +42,7 @@ pub struct Stage {
     workspace: Option<Workspace>,
     plan: Option<Plan>,
     pins: Pins,
+    limits: Limits,
     /// The grid's lines, and those through the origin.
     grid: [Strips; 2],
 }
@@ -57,6 +60,7 @@ impl Stage {
             workspace: run.planes().map(|planes| Workspace::of(planes, compared, ring_radius(&linkage))),
             plan: Plan::of(run, linkage.top()),
             pins: Pins::of(&plant),
+            limits: Limits::of(model, &linkage),
             grid: grid(&linkage),
             linkage,
         }
@@ -119,8 +123,25 @@ impl Stage {
                 let (.., p) = self.plan.as_ref()?.waypoints.iter().find(|(number, ..)| *number == i)?;
                 Some([p.re, p.im, z])
             }
+            Handle::Payload => self.payload(frame).map(|p| [p.re, p.im, z]),
             _ => None,
         }
+    }
+
+    /// The ends of the joint limits in a frame as shown, to be taken hold of.
+    pub fn limits<'a>(&'a self, frame: &'a Frame) -> impl Iterator<Item = Pick> + 'a {
+        self.limits.ends(&self.linkage, frame)
+    }
+
+    /// Both limits of a relative angle, rad, with one end (0 or 1) pulled to the pointer.
+    pub fn limit_pulled(&self, limit: (usize, usize), pivot: &Pivot, pointer: &Pointer) -> Option<[f64; 2]> {
+        self.limits.pulled(limit, pivot, self.handle_height(), pointer)
+    }
+
+    /// Where the payload's centre of mass is, seen along and across the link that holds it, m, if it is brought to a
+    /// place.
+    pub fn load_offset(&self, frame: &Frame, at: [f64; 2]) -> [f64; 2] {
+        self.base.offset_at(frame, Vector::new(at[0], at[1]))
     }
 
     /// Where the payload is, m, while it is held.
@@ -141,7 +162,7 @@ impl Stage {
 
     /// The angles (a_1, a_2), rad, at which a link points where the pointer pulls it, on the plane b; as near to that as
     /// the joint limits let it.
-    pub fn turned(&self, link: usize, grip: &Grip, frame: &Frame, pointer: &Pointer, b: f64) -> Option<[f64; 2]> {
+    pub fn turned(&self, link: usize, grip: &Hold, frame: &Frame, pointer: &Pointer, b: f64) -> Option<[f64; 2]> {
         let map = self.workspace.as_ref()?.planes().map();
         turning::turned(self.linkage.bars().get(link)?, grip, map, frame, pointer, b)
     }
@@ -223,6 +244,9 @@ impl Stage {
         if options.pin_forces {
             self.pins.draw(&mut scene, linkage, &palette, frame);
         }
+        if options.limits {
+            self.limits.draw(&mut scene, linkage, &palette, frame, options.hot);
+        }
         target::draw(&mut scene, &palette, frame, options, true_tip, z);
         self.base.load(&mut scene, linkage, &palette, frame, options);
         scene
@@ -245,6 +269,9 @@ impl Stage {
         let mut solids = self.linkage.solids(&units, frame.base, self.base.moves(), palette);
         under::light(&mut solids, &self.linkage, options.hot, palette);
         scene.solids.extend(solids);
+        if options.shadows {
+            scene.shadows.extend(self.linkage.shadows(&units, frame.base.at));
+        }
     }
 
     fn draw_grid(&self, scene: &mut Scene, palette: &Palette) {

@@ -6,7 +6,7 @@ use super::camera::Camera;
 use super::framing::Content;
 use super::joint_space::JointSpace;
 use super::options::{Handle, ViewOptions};
-use super::pick::{Aim, NEAR, Pick};
+use super::pick::{Aim, Grip, NEAR, Pick};
 use super::pointer::Pointer;
 use super::stage::{PULL, Stage};
 use super::tower::Tower;
@@ -14,11 +14,16 @@ use crate::mechanics::planar::DriveAngles;
 use crate::session::Run;
 use crate::simulation::frame::Frame;
 
-/// How near to a handle the pointer takes hold of it, px: a point of the path.
+/// How near to a handle the pointer takes hold of it, px: a point of the path or the end of a limit, and a payload.
 const NEAR_POINT: f64 = 9.0;
+const NEAR_LOAD: f64 = 12.0;
 
-/// How far to the left of a point its name stands, px.
+/// How far to the left of a point its name stands, px, and how far above a payload its mass.
 const NAME: f64 = 17.0;
+const MASS: f64 = 22.0;
+
+/// A payload nearer to the end effector than this part of the reach hangs at it.
+const AT_TIP: f64 = 0.015;
 
 /// One of the views.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -164,7 +169,10 @@ impl Views {
     /// What is under the pointer, to be pulled at or not, in a frame as shown.
     pub fn under(&self, kind: ViewKind, frame: &Frame, pointer: &Pointer) -> Option<Handle> {
         // What lies on a link comes before it.
-        let pulled = self.pick(kind, frame, pointer).filter(|pick| pick.grip.is_none()).map(|pick| pick.handle);
+        let pulled = self
+            .pick(kind, frame, pointer)
+            .filter(|pick| !matches!(pick.handle, Handle::Link(_)))
+            .map(|pick| pick.handle);
         pulled.or_else(|| kind.shows_machine().then(|| self.stage.under(frame, pointer)).flatten())
     }
 
@@ -191,14 +199,27 @@ impl Views {
                     (off < NEAR_POINT).then_some((Pick::of(handle, at), off))
                 });
                 let point = points.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick);
-                point.or(first).or_else(|| self.stage.grip(frame, pointer))
+                // A payload under the target is held by its mass, above it.
+                let load = self.stage.handle(Handle::Payload, frame).filter(|at| {
+                    let Some([x, y]) = pointer.seen(*at) else { return false };
+                    let [px, py] = pointer.at;
+                    let on = first.is_none() && (px - x).hypot(py - y) < NEAR_LOAD;
+                    on || (px - x).hypot(py - y + MASS) < NEAR_POINT
+                });
+                let load = load.map(|at| Pick::of(Handle::Payload, at));
+                let ends = self.stage.limits(frame).filter_map(|end| {
+                    let off = pointer.distance(end.at).filter(|off| *off < NEAR_POINT)?;
+                    Some((end, off))
+                });
+                let end = || ends.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick);
+                point.or(load).or(first).or_else(end).or_else(|| self.stage.grip(frame, pointer))
             }
         }
     }
 
     /// What pulling at something asks for; `b` is the pose constant that the machine is sent to, rad.
     pub fn aim(&self, kind: ViewKind, pick: &Pick, frame: &Frame, pointer: &Pointer, b: f64) -> Option<Aim> {
-        if let (Handle::Link(i), Some(grip)) = (pick.handle, &pick.grip) {
+        if let (Handle::Link(i), Some(Grip::Link(grip))) = (pick.handle, &pick.grip) {
             return self.stage.turned(i, grip, frame, pointer, b).map(Aim::Angles);
         }
         match (kind, &self.joints, &self.tower) {
@@ -214,6 +235,16 @@ impl Views {
                         PULL * (at[1] - frame.end_effector.im),
                     ])),
                     Handle::Waypoint(i) => Some(Aim::Waypoint(i, at)),
+                    Handle::Limit(angle, end) => {
+                        let Some(Grip::Limit(pivot)) = &pick.grip else { return None };
+                        let ends = self.stage.limit_pulled((angle, end), pivot, pointer)?;
+                        Some(Aim::Limit { angle, end, ends })
+                    }
+                    Handle::Payload => {
+                        let offset = self.stage.load_offset(frame, at);
+                        let far = offset[0].hypot(offset[1]) > AT_TIP * self.stage.linkage().reach();
+                        Some(Aim::Payload(if far { offset } else { [0.0; 2] }))
+                    }
                     _ => None,
                 }
             }

@@ -147,6 +147,13 @@ impl BaseStage {
         frame.loaded.then(|| frame.end_effector + frame.q.units()[drive] * Vector::new(x, y) * sign)
     }
 
+    /// Along and across the link that holds it, m, where the payload is if it is brought to a place.
+    pub fn offset_at(&self, frame: &Frame, at: Vector) -> [f64; 2] {
+        let (drive, sign) = self.holder;
+        let off = (at - frame.end_effector) * frame.q.units()[drive].conj() * sign;
+        [off.re, off.im]
+    }
+
     /// What the plant holds and the model does not know of, and what pushes.
     pub fn load(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Frame, options: &ViewOptions) {
         let z = linkage.top();

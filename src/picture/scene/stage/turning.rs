@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use crate::picture::scene::linkage::Bar;
 use crate::picture::scene::options::Handle;
-use crate::picture::scene::pick::{Grip, Pick, ROUND_ANGLE};
+use crate::picture::scene::pick::{Grip, Hold, Pick, ROUND_ANGLE};
 use crate::picture::scene::pointer::Pointer;
 use crate::planning::reactionless::{PlaneMap, PlanePoint};
 use crate::simulation::frame::Frame;
@@ -34,12 +34,13 @@ pub fn grip(link: usize, bar: &Bar, map: &PlaneMap, frame: &Frame, pointer: &Poi
     let angle = off(bar, &DriveAngles(PerDrive::from_fn(frame.q.len(), |k| frame.relative(k))), at);
     let from = map.project(&frame.q_reference).a;
     let (.., z) = bar.pose(&frame.q.units());
-    Some(Pick { handle: Handle::Link(link), at: [at.re, at.im, z], grip: Some(Grip { angle, from, snaps: false }) })
+    let grip = Some(Grip::Link(Hold { angle, from, snaps: false }));
+    Some(Pick { handle: Handle::Link(link), at: [at.re, at.im, z], grip })
 }
 
 /// The angles (a_1, a_2), rad, at which the link points to the pointer, on the plane b: sought from the present angle of
 /// its drive the way that the pointer pulls, as far as the joint limits let it.
-pub fn turned(bar: &Bar, grip: &Grip, map: &PlaneMap, frame: &Frame, pointer: &Pointer, b: f64) -> Option<[f64; 2]> {
+pub fn turned(bar: &Bar, grip: &Hold, map: &PlaneMap, frame: &Frame, pointer: &Pointer, b: f64) -> Option<[f64; 2]> {
     let at = place(bar, frame, pointer)?;
     let pose = |angle: f64| map.turned(bar.drive, angle, b, grip.from);
     let stops = |angle: f64| match grip.snaps {
