@@ -30,7 +30,7 @@ impl Plugin for Order {
 }
 
 /// Takes events off the front up to the first press, or up to before the first release; a release that comes first is
-/// taken alone.
+/// taken alone, and so are keys before a press: an Esc that closed something must not give up the drag after it.
 fn first_part(events: &mut Vec<Event>) -> Vec<Event> {
     let turn = |event: &Event| match event {
         Event::PointerButton { pressed, .. } => Some(*pressed),
@@ -38,6 +38,7 @@ fn first_part(events: &mut Vec<Event>) -> Vec<Event> {
     };
     let cut = match events.iter().enumerate().find_map(|(i, event)| Some((i, turn(event)?))) {
         None => events.len(),
+        Some((at, true)) if events[..at].iter().any(|event| matches!(event, Event::Key { .. })) => at,
         Some((at, true)) => at + 1,
         // A drag has to be seen as one before it ends.
         Some((at, false)) if events[..at].iter().any(|event| matches!(event, Event::PointerMoved(_))) => at,

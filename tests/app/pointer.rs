@@ -21,6 +21,7 @@ pub const TESTS: &[Test] = tests![
     a_hand_pushes_the_end_effector,
     a_hand_is_named_and_let_go,
     a_release_counts_where_the_button_came_up,
+    a_key_before_a_press_does_not_give_up_the_drag,
 ];
 
 fn dragging_the_target_moves_the_machine_on_its_plane() {
@@ -320,4 +321,22 @@ fn a_release_counts_where_the_button_came_up() {
             assert!((x - y).abs() < 1e-9, "number {i}: {x} slowly, {y} {}", how == Arrival::AtOnce);
         }
     }
+}
+
+/// Esc closes what is open; in one slow frame with the press that follows it must not take back the drag.
+fn a_key_before_a_press_does_not_give_up_the_drag() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let slider = h.get_by_role_and_label(Role::Slider, "b slider").rect();
+    let at = |share: f32| pos2(slider.left() + 8.0 + share * (slider.width() - 16.0), slider.center().y);
+    let key = |pressed| egui::Event::Key {
+        key: Key::Escape,
+        physical_key: None,
+        pressed,
+        repeat: false,
+        modifiers: Modifiers::NONE,
+    };
+    h.input_mut().events.extend([key(true), key(false)]);
+    arrive(&mut h, Arrival::AtOnce, [at(0.307), at(0.35), at(0.35)]);
+    assert!(session(&h).frame().b > 2.6, "{}", session(&h).frame().b);
 }
