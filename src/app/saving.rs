@@ -105,6 +105,8 @@ fn card<const N: usize>(
     let p = view_state.palette();
     let frame = Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.amber))).corner_radius(10).inner_margin(16);
     let area = Area::new(Id::unique("question")).order(Order::Foreground).anchor(Align2::CENTER_TOP, [0.0, 96.0]);
+    // A question that appears takes the keys.
+    let mut appears = !ctx.memory(|m| m.areas().visible_last_frame(&area.layer()));
     area.show(ctx, |ui| {
         frame.show(ui, |ui| {
             ui.set_width(430.0);
@@ -113,7 +115,11 @@ fn card<const N: usize>(
             ui.add_space(6.0);
             ui.horizontal(|ui| {
                 for (answer, asked) in answers {
-                    if ui.button(answer).clicked() {
+                    let button = ui.button(answer);
+                    if std::mem::take(&mut appears) {
+                        button.request_focus();
+                    }
+                    if button.clicked() {
                         commands.extend(asked);
                     }
                 }
