@@ -389,6 +389,11 @@ impl AppState {
         }
     }
 
+    /// Says something that the person did not ask for.
+    pub(super) fn announce(&mut self, news: &str) {
+        self.view_state.message = Some((news.into(), false));
+    }
+
     /// Carries out one command, after those before it. A command that cannot be carried out changes nothing; a message
     /// says why.
     pub fn carry_out(&mut self, command: Command) {

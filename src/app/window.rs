@@ -1,15 +1,18 @@
 //! A real window around an [`AppState`].
 
+mod device;
 mod keeper;
 mod times;
 
 use std::cell::Cell;
-use std::path::PathBuf;
-use std::rc::Rc;
-use std::time::Instant;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
+use egui::{Key, KeyboardShortcut, Modifiers};
 use thiserror::Error;
 
+use device::{Device, Left};
 use keeper::Keeper;
 use times::Times;
 
@@ -45,6 +48,21 @@ pub enum WindowError {
     /// The window system failed.
     #[error("the window could not be opened: {0}")]
     Failed(String),
+    /// The graphics device went away while the window was open, and none could be had in its place.
+    #[error("the graphics device was lost: {why}; {}", kept_in(.kept.as_deref()))]
+    DeviceLost {
+        /// Why there is no other.
+        why: String,
+        /// Where the session is kept, if something was done to it.
+        kept: Option<PathBuf>,
+    },
+}
+
+fn kept_in(kept: Option<&Path>) -> String {
+    match kept {
+        Some(file) => format!("what was done is in {}, and the next start offers it", file.display()),
+        None => "nothing was done that is in no file".into(),
+    }
 }
 
 /// Opens a window on a scenario and returns when it is closed.
@@ -62,27 +80,57 @@ pub fn run(scenario: Scenario, theme: Option<Theme>) -> Result<(), WindowError> 
     if app_state.view_state().message.is_none() && app_state.session().run().waiting().is_none() {
         app_state.carry_out(Command::TogglePlay);
     }
-    let options = eframe::NativeOptions {
-        viewport: egui::ViewportBuilder::default()
-            .with_title("Stillbase")
-            .with_app_id("stillbase")
-            .with_inner_size(liked.size)
-            .with_min_inner_size([960.0, 600.0]),
-        renderer: eframe::Renderer::Wgpu,
-        ..Default::default()
-    };
-    let opened = Rc::new(Cell::new(false));
-    let seen = opened.clone();
-    let create: eframe::AppCreator<'_> = Box::new(move |cc| {
-        let app = App::new(cc, app_state, Clock::Wall(None)).ok_or("no graphics adapter")?.kept(liked);
+    let place = egui::ViewportBuilder::default().with_inner_size(liked.size);
+    let mut app = App::of(app_state, Clock::Wall(None)).kept(liked);
+    app.may_break = std::env::var_os("STILLBASE_BREAK_DEVICE").is_some();
+    let mut ended = open_soundly(&mut app, place, None);
+    while let Some(lost) = app.device.take_if(|device| device.is_lost()) {
+        let begun = Instant::now();
+        if ended.is_ok() {
+            let Left { ctx, place, events } = lost.left();
+            app.events = events;
+            app.app_state.announce("the graphics device was lost, and another one took over: all is as it was");
+            ended = open_soundly(&mut app, place, Some(ctx));
+        }
+        let lost_again = |device: &Device| device.is_lost() && (ended.is_err() || begun.elapsed() < LASTS);
+        if app.device.as_ref().is_none_or(lost_again) {
+            let why = ended.err().map_or("so was the one that took over".into(), |why| why.to_string());
+            let kept = app.keep_now();
+            app.end();
+            return Err(WindowError::DeviceLost { why, kept });
+        }
+    }
+    ended
+}
+
+/// A device that is lost again sooner would be lost for ever.
+const LASTS: Duration = Duration::from_secs(10);
+
+/// Shows the application in a window as [`open`] does, whatever drivers do once their device is lost.
+fn open_soundly(app: &mut App, place: egui::ViewportBuilder, ctx: Option<egui::Context>) -> Result<(), WindowError> {
+    catch_unwind(AssertUnwindSafe(|| open(app, place, ctx))).unwrap_or_else(|panic| {
+        if !app.device.as_ref().is_some_and(Device::is_lost) {
+            resume_unwind(panic);
+        }
+        Err(WindowError::Failed("the window broke off when its device was lost".into()))
+    })
+}
+
+/// Shows the application in a window at a place until that is closed or its device is lost.
+fn open(app: &mut App, place: egui::ViewportBuilder, ctx: Option<egui::Context>) -> Result<(), WindowError> {
+    let viewport = place.with_title("Stillbase").with_app_id("stillbase").with_min_inner_size([960.0, 600.0]);
+    let options = eframe::NativeOptions { viewport, renderer: eframe::Renderer::Wgpu, ..Default::default() };
+    let opened = Cell::new(false);
+    let create: eframe::AppCreator<'_> = Box::new(|cc| {
+        app.draw_on(cc).ok_or("no graphics adapter")?;
         let adapter = cc.wgpu_render_state.as_ref().map(|state| state.adapter.get_info().device_type);
         if adapter == Some(wgpu::DeviceType::Cpu) {
             draw_drafts(&cc.egui_ctx);
         }
-        seen.set(true);
-        Ok(Box::new(app))
+        opened.set(true);
+        Ok(Box::new(Guest(app)))
     });
-    match eframe::run_native("stillbase", options, create) {
+    match eframe::run_native_ext("stillbase", options, ctx, create) {
         Err(eframe::Error::WinitEventLoop(why)) if !opened.get() => {
             Err(WindowError::NoDisplay(last_clause(&why.to_string())))
         }
@@ -147,6 +195,12 @@ pub struct App {
     /// Whether what it draws on encodes colours by itself.
     encodes: bool,
     times: Times,
+    /// What it draws on.
+    device: Option<Device>,
+    /// A key takes the device away: for tests.
+    may_break: bool,
+    /// What the next window gets to know first.
+    events: Vec<egui::Event>,
     /// Who writes down what is to last; nobody does in tests.
     keeper: Option<Keeper>,
 }
@@ -161,22 +215,49 @@ pub enum Clock {
 }
 
 impl App {
+    fn of(app_state: AppState, clock: Clock) -> Self {
+        let (title, times) = (String::new(), Times::default());
+        let (device, events, keeper) = (None, Vec::new(), None);
+        Self { app_state, clock, title, encodes: false, times, device, may_break: false, events, keeper }
+    }
+
     /// Around a state; `None` if eframe has no graphics adapter, or one whose shaders read no lists.
     pub fn new(cc: &eframe::CreationContext<'_>, app_state: AppState, clock: Clock) -> Option<Self> {
+        let mut app = Self::of(app_state, clock);
+        app.draw_on(cc)?;
+        Some(app)
+    }
+
+    /// Draws from now on what eframe has, be it the first or after another was lost; `None` as [`Self::new`].
+    pub fn draw_on(&mut self, cc: &eframe::CreationContext<'_>) -> Option<()> {
         let state = cc.wgpu_render_state.as_ref()?;
         if state.device.limits().max_storage_buffers_per_shader_stage == 0 {
             return None;
         }
         let renderers = Renderers::new(&state.device, state.target_format);
         state.renderer.write().callback_resources.insert(renderers);
-        let encodes = state.target_format.is_srgb();
-        Some(Self { app_state, clock, title: String::new(), encodes, times: Times::default(), keeper: None })
+        self.encodes = state.target_format.is_srgb();
+        self.device = Some(Device::watched(&state.device, &cc.egui_ctx));
+        self.title.clear();
+        Some(())
     }
 
     /// The same, which writes down what is to last.
     fn kept(self, liked: Preferences) -> Self {
         let keeper = Keeper::new(liked, &self.app_state);
         Self { keeper: Some(keeper), ..self }
+    }
+
+    /// Stops what is under way.
+    fn end(&mut self) {
+        self.app_state.close();
+        // A recording that is not there yet leaves nothing half written.
+        drop(crate::files::abandon());
+    }
+
+    /// Writes down what was done, at once; where.
+    fn keep_now(&mut self) -> Option<PathBuf> {
+        self.keeper.as_mut()?.keep_now(&self.app_state)
     }
 
     /// What it shows.
@@ -190,8 +271,43 @@ impl App {
     }
 }
 
+/// The keys that take the device away where that is allowed.
+const BREAK: KeyboardShortcut = KeyboardShortcut::new(Modifiers::CTRL.plus(Modifiers::SHIFT), Key::F12);
+
+/// The application as a guest of a window, which it outlives.
+struct Guest<'a>(&'a mut App);
+
+impl eframe::App for Guest<'_> {
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        self.0.ui(ui, frame);
+    }
+
+    fn raw_input_hook(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
+        self.0.raw_input_hook(ctx, input);
+    }
+
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        self.0.clear_color(visuals)
+    }
+
+    fn on_exit(&mut self) {
+        self.0.on_exit();
+    }
+}
+
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        if let Some(device) = &mut self.device {
+            let broken = self.may_break && ui.input_mut(|i| i.consume_shortcut(&BREAK));
+            if broken {
+                device.destroy();
+            }
+            // Nothing can be drawn on it any more, nor should anything be asked: the window closes to be opened again.
+            if device.is_lost() {
+                device.leave();
+                return;
+            }
+        }
         let now = Instant::now();
         self.times.begin(now);
         let wall = match &mut self.clock {
@@ -225,6 +341,10 @@ impl eframe::App for App {
         }
     }
 
+    fn raw_input_hook(&mut self, _: &egui::Context, input: &mut egui::RawInput) {
+        input.events.splice(0..0, self.events.drain(..));
+    }
+
     /// Panels lie on it: what is cleared need not be filled.
     fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
         match self.encodes {
@@ -234,11 +354,12 @@ impl eframe::App for App {
     }
 
     fn on_exit(&mut self) {
+        if self.device.as_ref().is_some_and(Device::is_lost) {
+            return;
+        }
         if let Some(keeper) = &mut self.keeper {
             keeper.end();
         }
-        self.app_state.close();
-        // A recording that is not there yet leaves nothing half written.
-        drop(crate::files::abandon());
+        self.end();
     }
 }

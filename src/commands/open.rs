@@ -55,6 +55,7 @@ impl Open {
         let why = match stillbase::app::window::run(scenario.clone(), self.theme.map(Theme::from)) {
             Ok(()) => return Ok(()),
             Err(WindowError::Refused(refusal)) => return Err(Failure::from(refusal).of(&scenario.name)),
+            Err(lost @ WindowError::DeviceLost { .. }) => return Err(Failure::no_answer(lost)),
             // The window system says where in its source it gave up before it says why.
             Err(error) => error.to_string(),
         };

@@ -93,9 +93,8 @@ impl Keeper {
         self.writing = Some((changes, job));
     }
 
-    /// The window closes in order: nothing is to be offered at the next start.
-    pub fn end(&mut self) {
-        // What is being written would come back after it was removed. A disk that hangs is not waited for.
+    /// Waits for what is being written. A disk that hangs is not waited for.
+    fn settle(&mut self) {
         let busy = |job: &Job<bool>| matches!(job.poll(), Poll::Working);
         for _ in 0..LOOKS {
             if !self.writing.as_ref().is_some_and(|(_, job)| busy(job)) {
@@ -103,6 +102,23 @@ impl Keeper {
             }
             std::thread::sleep(LOOK);
         }
+    }
+
+    /// The window ends out of order: what was done is written at once, to be offered at the next start; where.
+    pub fn keep_now(&mut self, app_state: &AppState) -> Option<PathBuf> {
+        self.settle();
+        if app_state.changes().0 != self.held && self.journal.is_none() {
+            self.journal = journal::folder().and_then(|folder| Journal::begin(&folder));
+        }
+        let file = self.journal.as_ref()?.file();
+        journal::write(file, &app_state.session().to_scenario().to_toml()).ok()?;
+        Some(file.to_owned())
+    }
+
+    /// The window closes in order: nothing is to be offered at the next start.
+    pub fn end(&mut self) {
+        // What is being written would come back after it was removed.
+        self.settle();
         if let Some(journal) = self.journal.take() {
             journal.end();
         }
