@@ -6,7 +6,7 @@ use std::process::{Child, Command};
 use std::sync::mpsc::channel;
 use std::time::Duration;
 
-use rustix::process::{Pid, Signal, kill_process_group};
+use rustix::process::{Pid, Signal, kill_process_group, set_parent_process_death_signal};
 
 /// A process with all that it starts, which goes when this goes.
 pub struct Owned(pub Child);
@@ -14,7 +14,10 @@ pub struct Owned(pub Child);
 impl Owned {
     pub fn start(command: &mut Command) -> Self {
         let program = command.get_program().to_owned();
-        Self(command.process_group(0).spawn().unwrap_or_else(|why| panic!("{}: {why}", program.display())))
+        let leave_with_test = || Ok(set_parent_process_death_signal(Some(Signal::TERM))?);
+        // SAFETY: between fork and exec it only asks the kernel to end this process with the one that starts it.
+        unsafe { command.process_group(0).pre_exec(leave_with_test) };
+        Self(command.spawn().unwrap_or_else(|why| panic!("{}: {why}", program.display())))
     }
 
     fn signal(&self, signal: Signal) {

@@ -1,7 +1,9 @@
 //! A screen reader: what the running program says of itself on the accessibility bus.
 
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 
 use pollster::block_on;
@@ -19,6 +21,26 @@ pub struct Bus {
     accessible: Connection,
     _launcher: Owned,
     _session: Owned,
+    _sockets: Sockets,
+}
+
+/// A folder of its own for sockets, whose names must be short.
+struct Sockets(PathBuf);
+
+impl Sockets {
+    fn new() -> Self {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let name = format!("stillbase-{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
+        let path = std::env::temp_dir().join(name);
+        fs::create_dir_all(&path).expect("a folder");
+        Self(path)
+    }
+}
+
+impl Drop for Sockets {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
 }
 
 /// Whoever looks for services on it finds none: no dialog of the system opens by itself.
@@ -34,7 +56,7 @@ pub fn launcher() -> Option<&'static str> {
     LAUNCHERS.into_iter().find(|launcher| Path::new(launcher).exists())
 }
 
-fn connect(address: &str) -> Option<Connection> {
+pub fn connect(address: &str) -> Option<Connection> {
     let builder = Builder::address(address).ok()?.method_timeout(Duration::from_secs(20));
     block_on(builder.build()).ok()
 }
@@ -42,14 +64,14 @@ fn connect(address: &str) -> Option<Connection> {
 impl Bus {
     /// Both, with their files in a folder.
     pub fn start(folder: &Folder) -> Self {
-        let config = folder.file("session.conf", SESSION);
+        let (config, sockets) = (folder.file("session.conf", SESSION), Sockets::new());
         let mut command = Command::new("dbus-daemon");
         command.args(["--nofork", "--nopidfile", "--print-address=1", "--config-file"]).arg(config);
         let mut session = Owned::start(command.stdout(Stdio::piped()).stderr(Stdio::null()));
         let address = first_line(&mut session, "the address of the bus");
         let mut command = Command::new(launcher().expect("looked for before"));
         command.args(["--launch-immediately", "--a11y=1"]).env("DBUS_SESSION_BUS_ADDRESS", &address);
-        command.env("XDG_RUNTIME_DIR", "/nonexistent").env("XDG_CACHE_HOME", &folder.0).env_remove("DISPLAY");
+        command.env("XDG_RUNTIME_DIR", &sockets.0).env("XDG_CACHE_HOME", &sockets.0).env_remove("DISPLAY");
         let launcher = Owned::start(command.stdout(Stdio::null()).stderr(Stdio::null()));
         let accessible = wait_for("the accessibility bus", 20, || {
             let session = connect(&address)?;
@@ -57,7 +79,7 @@ impl Bus {
             let reply = block_on(session.call_method(to, at, Some("org.a11y.Bus"), "GetAddress", &())).ok()?;
             connect(&reply.body().deserialize::<String>().ok()?)
         });
-        Self { address, accessible, _launcher: launcher, _session: session }
+        Self { address, accessible, _launcher: launcher, _session: session, _sockets: sockets }
     }
 
     fn ask<B, R>(&self, of: (&str, &str), interface: &str, what: &str, body: &B) -> Option<R>
