@@ -62,7 +62,8 @@
 //! # Ok::<(), stillbase::session::Refusal>(())
 //! ```
 //! A [`Session`](session::Session) is a run that a person changes while it goes on: every change is an
-//! [`Edit`](session::Edit), so it can be saved, undone and replayed to the very same frames.
+//! [`Edit`](session::Edit), so it can be saved, undone and replayed to the very same frames. Bookmarks, and branches that it
+//! left, are kept beside the edits, saved and undone with them.
 //!
 //! # What flows
 //! ```text

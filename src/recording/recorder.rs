@@ -197,7 +197,7 @@ impl<'a> Recorder<'a> {
             self.events.plan(at, &run.scenario().task, run.planned_time());
         }
         let redrawn = (self.edited(at) || self.views.is_none()) && self.prepare(run, frame);
-        self.events.note(at, frame);
+        self.events.note(at, frame, run.scenario());
         self.clock.push(at);
         self.topics.iter_mut().for_each(|topic| topic.push(frame));
         // What is drawn anew stands in its place from then on.
@@ -216,10 +216,7 @@ impl<'a> Recorder<'a> {
     /// Whether edits have applied just now.
     fn edited(&mut self, at: Instant) -> bool {
         let before = self.edits;
-        while let Some(timed) = self.scenario.edits.get(self.edits).filter(|e| e.step <= at.step) {
-            self.events.edit(at, &timed.edit);
-            self.edits += 1;
-        }
+        self.edits += self.scenario.edits[before..].iter().take_while(|timed| timed.step <= at.step).count();
         self.edits > before
     }
 
@@ -286,7 +283,8 @@ impl<'a> Recorder<'a> {
         let trail = lines([self.trail.take()], 1.8, mix(self.palette.ink, self.palette.dim, 0.5));
         self.store.fixed(&under(self.root, "end_effector/path"), &trail)?;
         let verdict = Verdict::of(run.scenario(), frame);
-        self.events.write(self.store, self.root, (Instant::of(frame), &frame.peaks, &verdict))?;
+        let (of, end) = ((self.scenario, run.simulation().dt()), (Instant::of(frame), &frame.peaks, &verdict));
+        self.events.write(self.store, self.root, of, end)?;
         let path = EntityPath::properties() / EntityPathPart::new(self.scenario.name.as_str());
         self.store.fixed(&path, &properties(self.scenario, (&frame.peaks, &verdict), run.plan()))?;
         Ok((frame.peaks, verdict))

@@ -7,7 +7,7 @@ use super::edit::{Edit, TimedEdit};
 use super::replay;
 use super::run::Run;
 use super::script::Script;
-use crate::session::scenario::Scenario;
+use crate::session::scenario::{Bookmark, Scenario};
 use crate::simulation::frame::Frame;
 
 /// Hears how much is done, from 0 to 1, and says whether the rest is still wanted.
@@ -16,18 +16,43 @@ pub type Watch<'a> = &'a mut dyn FnMut(f64) -> bool;
 /// Frames between two words to whoever watches.
 pub(super) const WORD: usize = 256;
 
-/// Everything that makes a run: what undo restores and what is saved.
+/// Everything that makes a run, and what is kept beside it: what undo restores and what is saved.
 #[derive(Clone, Debug)]
 pub(super) struct Document {
-    /// Its edits are empty; they stand in `script`.
+    /// Without edits and what is kept; they stand below.
     pub scenario: Arc<Scenario>,
     /// None beyond `end`.
     pub script: Script,
     /// Steps done.
     pub end: u64,
+    /// Instants to find again, by time.
+    pub bookmarks: Arc<Vec<Bookmark>>,
+    /// How it went on before somebody went back, the oldest first.
+    pub branches: Arc<Vec<Left>>,
+}
+
+/// A branch that was left: the same scenario with another script.
+#[derive(Clone, Debug)]
+pub(super) struct Left {
+    pub script: Script,
+    /// Steps to its end.
+    pub end: u64,
+    /// How long a step lasts in it, s.
+    pub step: f64,
 }
 
 impl Document {
+    /// One beside which nothing is kept.
+    pub fn new(scenario: Scenario, script: Script, end: u64) -> Self {
+        Self { scenario: Arc::new(scenario), script, end, bookmarks: Arc::default(), branches: Arc::default() }
+    }
+
+    /// Keeps beside the run what another one does.
+    pub fn keep_as(&mut self, other: &Self) {
+        self.bookmarks.clone_from(&other.bookmarks);
+        self.branches.clone_from(&other.branches);
+    }
+
     /// Runs it from its start to its end.
     pub fn perform(
         &self,

@@ -4,6 +4,9 @@
 //! the same edits without a window. Because a run is a function of scenario and edits, undo, scrubbing and saving need
 //! no snapshots of state: the run is made again.
 
+mod bookmarks;
+mod branches;
+
 use std::sync::Arc;
 
 use super::changes::{Failed, in_order};
@@ -24,6 +27,8 @@ struct Change {
     /// What takes it back while the machine moves.
     inverse: Option<Edit>,
     title: String,
+    /// Only what is kept beside the run has changed.
+    beside: bool,
 }
 
 impl Change {
@@ -86,7 +91,11 @@ impl Session {
 
     fn opened(mut scenario: Scenario, patient: bool, watch: Watch<'_>) -> Result<Self, Refusal> {
         let edits = std::mem::take(&mut scenario.edits);
-        Self::replayed(scenario, in_order(&edits), patient, watch).map_err(|failed| failed.named(&edits))
+        let (bookmarks, branches) = (std::mem::take(&mut scenario.bookmarks), std::mem::take(&mut scenario.branches));
+        let opened = Self::replayed(scenario, in_order(&edits), patient, watch);
+        let mut session = opened.map_err(|failed| failed.named(&edits))?;
+        session.keep_beside(bookmarks, &branches);
+        Ok(session)
     }
 
     fn replayed(scenario: Scenario, script: Vec<TimedEdit>, patient: bool, watch: Watch<'_>) -> Result<Self, Failed> {
@@ -110,7 +119,7 @@ impl Session {
             }
             false => 0,
         };
-        let mut session = Self::of(Document { scenario: Arc::new(scenario), script: known, end }, patient, watch)?;
+        let mut session = Self::of(Document::new(scenario, known, end), patient, watch)?;
         session.cursor = 0;
         Ok(session)
     }
@@ -382,7 +391,8 @@ impl Session {
     }
 
     fn steps_of(&self, change: &Change, appends: bool) -> Option<u64> {
-        (!(appends && self.is_running() && !change.plans())).then_some(change.before.end)
+        let quick = change.beside || (appends && self.is_running() && !change.plans());
+        (!quick).then_some(change.before.end)
     }
 
     /// The same for showing an instant, s.
@@ -404,6 +414,7 @@ impl Session {
         let mut document = before.clone();
         let mut remade = None;
         if !self.is_at_end() {
+            document.branches = self.with_left();
             document.end = self.cursor as u64;
             document.script.cut(document.end);
             remade = Some(document.perform(Some(&self.run), false, watch).map_err(Failed::refusal)?);
@@ -445,7 +456,11 @@ impl Session {
     fn amend(&mut self, edit: Edit, watch: Watch<'_>) -> Result<(), Refusal> {
         let (before, inverse) = (self.document.clone(), self.run.inverse_of(&edit));
         let timed = TimedEdit { step: 0, edit };
-        let document = self.document.amended(&timed);
+        let mut document = self.document.amended(&timed);
+        // What was led by hand would be gone.
+        if self.is_led() && timed.edit.part("task").is_some_and(toml::Table::is_empty) {
+            document.branches = self.with_left();
+        }
         match &timed.edit {
             edit if edit.is_aside() => {
                 self.run.apply(&timed.edit)?;
@@ -481,7 +496,7 @@ impl Session {
             }
             _ => {
                 let title = timed.edit.title();
-                self.undo.push(Arc::new(Change { before, edit: Some(timed), inverse, title }));
+                self.undo.push(Arc::new(Change { before, edit: Some(timed), inverse, title, beside: false }));
             }
         }
         self.gesture = true;
@@ -536,6 +551,10 @@ impl Session {
         let Some(change) = self.undo.last().cloned() else { return Ok(()) };
         let after = self.document.clone();
         let done = match &change.inverse {
+            _ if change.beside => {
+                self.document.keep_as(&change.before);
+                Ok(())
+            }
             Some(inverse) if self.is_running() && !change.plans() => {
                 self.append(inverse.clone(), watch).or_else(|why| self.instead(why, &change.before, watch))
             }
@@ -564,6 +583,10 @@ impl Session {
         let Some(change) = self.redo.last().cloned() else { return Ok(()) };
         let before = self.document.clone();
         let done = match &change.edit {
+            _ if change.beside => {
+                self.document.keep_as(&change.before);
+                Ok(())
+            }
             Some(timed) if self.is_running() && !change.plans() => {
                 self.append(timed.edit.clone(), watch).or_else(|why| self.instead(why, &change.before, watch))
             }
@@ -628,7 +651,13 @@ impl Session {
     pub fn take_over(&mut self, mut next: Self) {
         let title = format!("open {}", next.document.scenario.title);
         next.undo = std::mem::take(&mut self.undo);
-        next.undo.push(Arc::new(Change { before: self.document.clone(), edit: None, inverse: None, title }));
+        next.undo.push(Arc::new(Change {
+            before: self.document.clone(),
+            edit: None,
+            inverse: None,
+            title,
+            beside: false,
+        }));
         *self = next;
     }
 
@@ -637,6 +666,8 @@ impl Session {
     pub fn to_scenario(&self) -> Scenario {
         let mut scenario = Scenario::clone(&self.document.scenario);
         scenario.edits.clone_from(&*self.edits);
+        scenario.bookmarks.clone_from(&self.document.bookmarks);
+        scenario.branches = self.kept_branches();
         scenario.duration = match self.document.end {
             0 => self.scenario().duration,
             end => Some(end as f64 * self.scenario().step),

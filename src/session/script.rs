@@ -52,6 +52,14 @@ impl Script {
         self.last.as_ref().map(|entry| &entry.timed)
     }
 
+    /// Whether it holds the same edits as another.
+    pub fn is(&self, other: &Self) -> bool {
+        let mut pairs = self.entries().zip(other.entries());
+        // What is shared is the same as a whole.
+        let same = pairs.find(|(own, other)| Arc::ptr_eq(own, other) || own.timed != other.timed);
+        self.count == other.count && same.is_none_or(|(own, other)| Arc::ptr_eq(own, other))
+    }
+
     /// How many there are.
     pub fn len(&self) -> usize {
         self.count
@@ -71,7 +79,12 @@ impl Script {
 
     /// All of them, one after the other.
     pub fn to_vec(&self) -> Vec<TimedEdit> {
-        let mut all: Vec<TimedEdit> = self.entries().map(|entry| entry.timed.clone()).collect();
+        self.in_order().into_iter().cloned().collect()
+    }
+
+    /// The same where they stand.
+    pub fn in_order(&self) -> Vec<&TimedEdit> {
+        let mut all: Vec<&TimedEdit> = self.entries().map(|entry| &entry.timed).collect();
         all.reverse();
         all
     }

@@ -139,3 +139,49 @@ fn edits_on_the_way_are_recorded() {
     assert!(moved.windows(2).all(|w| w[0] < w[1]) && moved[4..7] == [20, 22, 25], "{moved:?}");
     assert_eq!(contents.texts("/case-3/phase", "StateChange:state"), ["motion", "follow"]);
 }
+
+/// A recording tells what the time line of the window has marks for, in the same words.
+#[test]
+fn the_window_and_a_recording_tell_the_same() {
+    use stillbase::session::Session;
+    use stillbase::session::events::{Watched, bookmarked, gestures};
+    use stillbase::session::scenario::Bookmark;
+
+    let folder = Folder::new("same");
+    let mut scenario = Scenario { duration: Some(0.6), ..Scenario::builtin("case-1").expect("built in") };
+    scenario.edits = vec![
+        TimedEdit { step: 100, edit: Edit::Push { x: 90.0, y: 0.0 } },
+        TimedEdit { step: 120, edit: Edit::Push { x: 0.0, y: 0.0 } },
+        TimedEdit { step: 300, edit: Edit::DragTarget { x: 3.0, y: 0.0 } },
+    ];
+    scenario.bookmarks = vec![Bookmark { time: 0.2, name: "look here".into() }];
+    record_in(&folder, "one.rrd", std::slice::from_ref(&scenario)).expect("an edited case");
+    let told = Contents::of(&folder.path("one.rrd")).texts("/case-1/events", "TextLog:text");
+    let session = Session::open(scenario).expect("it opens");
+    let mut watched = Watched::default();
+    assert!(watched.follow(session.made(), session.frames(), session.scenario(), usize::MAX));
+    let mut all = gestures(session.script(), 0.001);
+    all.extend_from_slice(watched.events());
+    all.extend(bookmarked(session.bookmarks(), 0.001));
+    all.push(watched.peak());
+    all.sort_by_key(|event| event.step);
+    let words: Vec<&str> = all.iter().map(|event| event.words.as_str()).collect();
+    let own =
+        |text: &&String| !["start:", "plan:", "peak |τ|", "not reactionless:"].iter().any(|w| text.starts_with(w));
+    assert_eq!(told.iter().filter(own).map(String::as_str).collect::<Vec<_>>(), words);
+    for part in [
+        "the base begins to feel the arm",
+        "push with 90.00, 0.00 N",
+        "drive 2 comes to its torque limit, 5 N m",
+        "bookmark: look here",
+        "the target is outside",
+    ] {
+        assert!(words.iter().any(|told| told.starts_with(part)), "{part} in {words:?}");
+    }
+    // Read in portions, and once more after a frame has changed, they are the same.
+    let mut portions = Watched::default();
+    while !portions.follow(session.made(), session.frames(), session.scenario(), 7) {}
+    let changed = session.made().changed_after(session.frames().len() - 1);
+    assert!(portions.follow(&changed, session.frames(), session.scenario(), 1), "only the last is read again");
+    assert_eq!((portions.events(), portions.peak()), (watched.events(), watched.peak()));
+}

@@ -1,6 +1,7 @@
 //! Tests of `src/session`: scenarios, edits, undo, replay and the verdict.
 
 mod bounds;
+mod branches;
 mod cases;
 mod hand;
 mod limits;

@@ -37,11 +37,11 @@ fn every_key_of_a_file_is_in_the_table() {
         }
         assert_eq!(known, table, "{path}: {message}");
     }
-    // At the top, what is no setting: a name, a title, the machine as a whole, and what was done.
+    // At the top, what is no setting: a name, a title, the machine as a whole, what was done and what is kept beside it.
     let text = format!("{}\nnonsense = 1", "name = \"x\"");
     let message = Scenario::parse(&text, "a.toml", None).expect_err("there is no such key").to_string();
     let mut known = expected(&message);
-    for other in ["name", "title", "machine", "set", "edit"] {
+    for other in ["name", "title", "machine", "set", "edit", "bookmark", "branch"] {
         assert!(known.remove(other), "{other}: {message}");
     }
     let machine = ["link", "length", "payload", "gravity", "limits", "drive"];

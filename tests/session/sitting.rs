@@ -25,6 +25,9 @@ enum Act {
     Redo,
     Seek(f64),
     StepBy(i64),
+    Bookmark(f64, bool),
+    Branch(usize),
+    DropBranch(usize),
 }
 
 /// What an edit is of: its kind, and for settings the part they stand in. A kind that is new does not compile until it has
@@ -179,6 +182,9 @@ fn any_act() -> impl Strategy<Value = Act> {
         1 => Just(Act::Redo),
         1 => (0.0..0.5).prop_map(Act::Seek),
         1 => (-20i64..20).prop_map(Act::StepBy),
+        1 => ((0..6u8), any::<bool>()).prop_map(|(tenths, on)| Act::Bookmark(0.1 * f64::from(tenths), on)),
+        1 => (0usize..3).prop_map(Act::Branch),
+        1 => (0usize..9).prop_map(Act::DropBranch),
     ]
 }
 
@@ -214,6 +220,15 @@ impl Act {
                 session.step_by(*n);
                 Ok(())
             }
+            Self::Bookmark(time, on) => {
+                session.bookmark(*time, if *on { "here" } else { "" });
+                Ok(())
+            }
+            Self::Branch(branch) => session.switch_branch_while(*branch, &mut |_| true),
+            Self::DropBranch(branch) => {
+                session.drop_branch(*branch);
+                Ok(())
+            }
         };
         if let Err(refusal) = done {
             assert!(!refusal.to_string().is_empty());
@@ -231,6 +246,8 @@ fn sit(start: Scenario, acts: &[Act]) -> Result<(), TestCaseError> {
         prop_assert!(waits || session.script().iter().all(|e| e.step < session.frames().len() as u64));
     }
     one_path(&session);
+    let again = open(session.to_scenario());
+    prop_assert_eq!((again.forks(), again.bookmarks()), (session.forks(), session.bookmarks()));
     Ok(())
 }
 

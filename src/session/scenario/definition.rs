@@ -1,6 +1,7 @@
 //! [`Scenario`]: what a run starts from.
 
 use super::error::ScenarioError;
+use super::kept::{Bookmark, Branch};
 use super::task::Task;
 use super::tolerance::Tolerance;
 use crate::mechanics::machine::{Machine, MachineError};
@@ -39,6 +40,10 @@ pub struct Scenario {
     pub tolerance: Tolerance,
     /// What was done, in the order of steps.
     pub edits: Vec<TimedEdit>,
+    /// Instants to find again, by time; no motion depends on them.
+    pub bookmarks: Vec<Bookmark>,
+    /// How it went on before somebody went back and did something else.
+    pub branches: Vec<Branch>,
 }
 
 impl Scenario {
@@ -81,6 +86,8 @@ impl Scenario {
             duration: *duration,
             tolerance: tolerance.clone(),
             edits: Vec::new(),
+            bookmarks: Vec::new(),
+            branches: Vec::new(),
         }
     }
 

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::bounds::{USUAL_POSE_ACCELERATION, USUAL_STEP};
 use super::definition::Scenario;
 use super::error::ScenarioError;
+use super::kept::{Bookmark, StatedBranch, branches, check_bookmarks};
 use super::task::StatedTask;
 use super::tolerance::Tolerance;
 use crate::mechanics::machine::{self, FileError, Machine, MachineSpec, Place, PlaceStep};
@@ -44,6 +45,10 @@ struct File<T> {
     /// As they stand there, so that a wrong one can be named.
     #[serde(default, rename = "edit", skip_serializing_if = "Vec::is_empty")]
     edits: Vec<toml::Table>,
+    #[serde(default, rename = "bookmark", skip_serializing_if = "Vec::is_empty")]
+    bookmarks: Vec<Bookmark>,
+    #[serde(default, rename = "branch", skip_serializing_if = "Vec::is_empty")]
+    branches: Vec<StatedBranch>,
 }
 
 const fn usual_step() -> f64 {
@@ -142,7 +147,7 @@ impl Scenario {
         for (i, entry) in file.edits.into_iter().enumerate() {
             edits.push(TimedEdit::from_table(entry).map_err(|why| wrong_edit((i, why)))?);
         }
-        let scenario = Self {
+        let mut scenario = Self {
             name: file.name.unwrap_or(stem),
             title: file.title,
             machine,
@@ -156,9 +161,20 @@ impl Scenario {
             task,
             tolerance: file.tolerance,
             edits,
+            bookmarks: file.bookmarks,
+            branches: Vec::new(),
         };
         scenario.check(label).map_err(|error| scenario.with_line(error, text))?;
         check_edits(&scenario).map_err(wrong_edit)?;
+        let wrong_entry = |of: &str, (i, message): (usize, String)| {
+            let line = machine::line_of_place(text, &Place::new(&[&of, &i]));
+            let message = format!("{of} {}: {}", i + 1, shortened(&message, MOST_WORDS));
+            ScenarioError::Syntax { file: label.into(), line, message }
+        };
+        let sound = |edits: &[TimedEdit]| check_edits(&Self { edits: edits.to_vec(), ..scenario.without_edits() });
+        check_bookmarks(&scenario.bookmarks).map_err(|wrong| wrong_entry("bookmark", wrong))?;
+        let branches = branches(file.branches, sound).map_err(|wrong| wrong_entry("branch", wrong))?;
+        scenario.branches = branches;
         Ok(scenario)
     }
 
@@ -214,6 +230,8 @@ impl Scenario {
             duration,
             tolerance,
             edits,
+            bookmarks,
+            branches,
         } = self.clone();
         let file = File {
             name: Some(name),
@@ -230,6 +248,8 @@ impl Scenario {
             base,
             tolerance,
             edits: edits.iter().map(TimedEdit::to_table).collect(),
+            bookmarks,
+            branches: branches.into_iter().map(StatedBranch::from).collect(),
         };
         toml::to_string(&file).expect("a scenario is plain data")
     }

@@ -1,12 +1,14 @@
 //! Scenarios: a machine, what it is to do, and what is done to it meanwhile; TOML files.
 //!
-//! A saved session is a scenario with `[[edit]]` entries, each with the step at which it applies.
+//! A saved session is a scenario with `[[edit]]` entries, each with the step at which it applies, with its bookmarks and
+//! with the branches that it left.
 
 mod bounds;
 mod catalog;
 mod definition;
 mod error;
 mod file;
+mod kept;
 mod settings;
 mod task;
 mod tolerance;
@@ -16,6 +18,7 @@ pub use bounds::{MAX_STEPS, MAX_TIME, STEP};
 pub use definition::Scenario;
 pub use error::ScenarioError;
 pub use file::{Content, FindMachine, content};
+pub use kept::{Bookmark, Branch, MAX_BOOKMARKS, MAX_BRANCHES, MAX_NAME};
 pub use settings::{KEYS, SettingError, key_of, keys};
 pub use task::{Change, Corners, Least, MAX_POINTS, PLACE, POSE_CONSTANT, Shape, TIME, Task, TaskKind, Value};
 pub use tolerance::{Amount, MAX_SAMPLES, Spread, Tolerance, default_spreads};

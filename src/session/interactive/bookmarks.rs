@@ -1,0 +1,62 @@
+//! Bookmarks of a session: set, renamed and taken away, each of it a change that can be undone.
+
+use std::sync::Arc;
+
+use super::{Change, Session};
+use crate::session::scenario::{Bookmark, MAX_BOOKMARKS, MAX_NAME};
+use crate::settings::range::shortened;
+
+impl Session {
+    /// Instants to find again, by time.
+    pub fn bookmarks(&self) -> &[Bookmark] {
+        &self.document.bookmarks
+    }
+
+    /// The bookmark at an instant, s.
+    pub fn bookmark_at(&self, time: f64) -> Option<&Bookmark> {
+        let near = 0.5 * self.scenario().step;
+        self.bookmarks().iter().find(|mark| (mark.time - time).abs() < near)
+    }
+
+    /// A name that no bookmark has: `bookmark 1`.
+    pub fn free_name(&self) -> String {
+        let name = |n: usize| format!("bookmark {n}");
+        let free = |n: &usize| self.bookmarks().iter().all(|mark| mark.name != name(*n));
+        name((1..).find(free).unwrap_or_default())
+    }
+
+    /// Puts a bookmark at an instant, s, or gives the one there another name; without a name it is taken away. What
+    /// became of it.
+    pub fn bookmark(&mut self, time: f64, name: &str) -> Option<String> {
+        let known = self.bookmark_at(time).cloned();
+        let name = shortened(name.trim(), MAX_NAME - 1);
+        let mut bookmarks = self.document.bookmarks.to_vec();
+        bookmarks.retain(|mark| Some(mark) != known.as_ref());
+        let title = match (&known, name.is_empty()) {
+            (None, true) => return None,
+            (Some(known), false) if known.name == name => return None,
+            (None, false) if bookmarks.len() >= MAX_BOOKMARKS => {
+                return Some(format!("there are {MAX_BOOKMARKS} bookmarks: take one away first"));
+            }
+            (Some(known), true) => format!("remove {}", known.name),
+            (Some(known), false) => format!("rename {} to {name}", known.name),
+            (None, false) => format!("{name} at {time:.3} s"),
+        };
+        if !name.is_empty() {
+            let time = known.map_or(time, |known| known.time);
+            let at = bookmarks.partition_point(|mark| mark.time <= time);
+            bookmarks.insert(at, Bookmark { time, name });
+        }
+        self.change_beside(title.clone(), |document| document.bookmarks = Arc::new(bookmarks));
+        Some(title)
+    }
+
+    /// Changes what is kept beside the run; the run stays as it is.
+    pub(super) fn change_beside(&mut self, title: String, change: impl FnOnce(&mut super::Document)) {
+        self.end_gesture();
+        let before = self.document.clone();
+        change(&mut self.document);
+        self.redo.clear();
+        self.undo.push(Arc::new(Change { before, edit: None, inverse: None, title, beside: true }));
+    }
+}

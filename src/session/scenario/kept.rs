@@ -1,0 +1,102 @@
+//! What is kept beside a run: bookmarks on its time line, and branches that it left.
+
+use serde::{Deserialize, Serialize};
+
+use super::bounds::MAX_TIME;
+use crate::session::TimedEdit;
+
+/// An instant that somebody wants to find again.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Bookmark {
+    /// s.
+    pub time: f64,
+    /// What is to be found there.
+    pub name: String,
+}
+
+/// How a run went on before somebody went back and did something else.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Branch {
+    /// How long it takes, s.
+    pub duration: f64,
+    /// All that was done in it, also before it was left.
+    pub edits: Vec<TimedEdit>,
+}
+
+/// The most bookmarks of a session.
+pub const MAX_BOOKMARKS: usize = 100;
+
+/// The most branches that are kept.
+pub const MAX_BRANCHES: usize = 8;
+
+/// The most characters of a bookmark's name.
+pub const MAX_NAME: usize = 60;
+
+/// A branch as a file has it.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct StatedBranch {
+    duration: f64,
+    #[serde(default, rename = "edit", skip_serializing_if = "Vec::is_empty")]
+    edits: Vec<toml::Table>,
+}
+
+impl From<Branch> for StatedBranch {
+    fn from(branch: Branch) -> Self {
+        Self { duration: branch.duration, edits: branch.edits.iter().map(TimedEdit::to_table).collect() }
+    }
+}
+
+impl Bookmark {
+    fn check(&self) -> Result<(), String> {
+        let count = self.name.chars().count();
+        match self {
+            _ if !(0.0..=MAX_TIME).contains(&self.time) => {
+                Err(format!("time is {}: want a number from 0 to {MAX_TIME} s", self.time))
+            }
+            _ if self.name.trim().is_empty() || count > MAX_NAME => {
+                Err(format!("name has {count} characters: want 1 to {MAX_NAME}, not all of them spaces"))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Whether bookmarks may stand in a file.
+///
+/// # Errors
+/// The first that may not, counted from 0, and why.
+pub(super) fn check_bookmarks(bookmarks: &[Bookmark]) -> Result<(), (usize, String)> {
+    if bookmarks.len() > MAX_BOOKMARKS {
+        return Err((MAX_BOOKMARKS, format!("want at most {MAX_BOOKMARKS} bookmarks")));
+    }
+    let wrong = |(i, mark): (usize, &Bookmark)| mark.check().err().map(|why| (i, why));
+    bookmarks.iter().enumerate().find_map(wrong).map_or(Ok(()), Err)
+}
+
+/// Branches from what stands in a file; `check` looks at the edits of one and says which is wrong.
+///
+/// # Errors
+/// The first that cannot be one, counted from 0, and why.
+pub(super) fn branches(
+    stated: Vec<StatedBranch>,
+    check: impl Fn(&[TimedEdit]) -> Result<(), (usize, String)>,
+) -> Result<Vec<Branch>, (usize, String)> {
+    if stated.len() > MAX_BRANCHES {
+        return Err((MAX_BRANCHES, format!("want at most {MAX_BRANCHES} branches")));
+    }
+    let read = |(i, branch): (usize, StatedBranch)| {
+        let StatedBranch { duration, edits } = branch;
+        if !(0.0..=MAX_TIME).contains(&duration) {
+            return Err((i, format!("duration is {duration}: want a number from 0 to {MAX_TIME} s")));
+        }
+        let of_edit = |(entry, why): (usize, String)| (i, format!("edit {}: {why}", entry + 1));
+        let edits: Result<Vec<TimedEdit>, (usize, String)> =
+            edits.into_iter().enumerate().map(|(k, e)| TimedEdit::from_table(e).map_err(|why| (k, why))).collect();
+        let edits = edits.map_err(of_edit)?;
+        check(&edits).map_err(of_edit)?;
+        Ok(Branch { duration, edits })
+    };
+    stated.into_iter().enumerate().map(read).collect()
+}
