@@ -127,6 +127,24 @@ pub const ACTIONS: &[Action] = actions![
     Run, "Ten steps back", [on(SHIFT, Key::ArrowLeft)], "keyboard", |_, _| Some(Command::Step(-10));
     Run, "To the start", [on(PLAIN, Key::Home)], "top bar", |_, _| Some(Command::Seek(0.0));
     Run, "To the newest instant", [on(PLAIN, Key::End)], "keyboard", |s, _| Some(Command::Seek(s.length()));
+    Run, "Bookmark here, or away", [on(PLAIN, Key::K)], "time line", |s, _| {
+        let time = s.frame().time;
+        let name = if s.bookmark_at(time).is_some() { String::new() } else { s.free_name() };
+        Some(Command::Bookmark(time, name))
+    };
+    Run, "Name the bookmark here", [on(SHIFT, Key::K)], "time line, right button", |s, v| {
+        (v.layout != Layout::Present).then(|| Command::NameBookmark(Some(s.frame().time)))
+    };
+    Run, "To the next mark: bookmark, event, branch", [on(PLAIN, Key::N)], "time line", |_, _| {
+        Some(Command::ToMark(true))
+    };
+    Run, "To the mark before", [on(SHIFT, Key::N)], "time line", |_, _| Some(Command::ToMark(false));
+    Run, "The newest branch; again: back", [on(PLAIN, Key::G)], "history", |s, _| {
+        s.branch_count().checked_sub(1).map(Command::Branch)
+    };
+    Run, "Compare with the newest branch", [on(SHIFT, Key::G)], "history", |s, _| {
+        s.branch_count().checked_sub(1).map(Command::CompareBranch)
+    };
     Run, "Play over and over, what plots show of it if a range was chosen", [on(PLAIN, Key::O)], "top bar, loop",
         |_, v| Some(Command::Loop(!v.loops));
     Run, "Twice as slow", [on(PLAIN, Key::Comma)], "top bar, speed", |_, v| slower(v);
@@ -258,7 +276,7 @@ pub const FINE_ACTIONS: &[Action] = actions![
 ];
 
 /// What the pointer does.
-pub const GESTURES: [(&str, &str); 19] = [
+pub const GESTURES: [(&str, &str); 20] = [
     ("drag the target", "the machine follows on its plane"),
     ("drag a link", "its drive turns, the others follow so that b stays"),
     ("drag A, B, 1 …", "move a point of the path; where the target covers it, drag its name"),
@@ -272,6 +290,7 @@ pub const GESTURES: [(&str, &str); 19] = [
     ("right button", "what can be done with the thing or the place there"),
     ("drag elsewhere", "pan in 2D, else orbit; Shift pans"),
     ("wheel", "zoom"),
+    ("click a mark of the time line", "show that instant; right button: name a bookmark, or take it away"),
     ("click a plot", "show that instant"),
     ("Ctrl wheel, drag on a plot", "closer to a time, and along; a double click shows all"),
     ("Shift drag on a plot", "plots show this time"),

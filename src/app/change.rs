@@ -21,6 +21,8 @@ pub(super) enum Change {
     GoTo(usize),
     /// Shows an instant, s.
     Seek(f64),
+    /// Shows a branch.
+    Branch(usize),
     /// Puts the machine back at the start of its planned path.
     BackToPath,
 }
@@ -66,6 +68,10 @@ impl Change {
                 session.pause();
                 session.seek_while(*time, watch);
             }
+            Self::Branch(branch) => {
+                session.switch_branch_while(*branch, watch)?;
+                return Ok(session.undo_title().map(String::from));
+            }
             Self::BackToPath => {
                 session.apply_while(Edit::of("task", Default::default()), watch)?;
                 session.end_gesture();
@@ -90,6 +96,7 @@ impl Change {
             Self::Seek(time) => return session.steps_of_seek(*time).is_none_or(|steps| steps <= QUICK),
             // One of several may be refused: then nothing has changed.
             Self::GoTo(_) => return false,
+            Self::Branch(branch) => (session.steps_of_branch(*branch), true),
             Self::BackToPath => (Some(0), false),
         };
         steps.is_none_or(|steps| steps <= QUICK && plans_as_before && plans_quickly(session.scenario()))

@@ -20,6 +20,18 @@ pub enum Command {
     TogglePlay,
     /// Show an instant, s.
     Seek(f64),
+    /// Put a bookmark at an instant, s, or give the one there this name; without a name it is taken away.
+    Bookmark(f64, String),
+    /// Ask for the name of the bookmark at an instant, s, or no longer; where there is none it is put there.
+    NameBookmark(Option<f64>),
+    /// Show the next mark of the time line, or the one before.
+    ToMark(bool),
+    /// Show a branch, by its place among them; the run on display becomes one.
+    Branch(usize),
+    /// Add a branch to the runs side by side.
+    CompareBranch(usize),
+    /// Let go of a branch.
+    DropBranch(usize),
     /// Move by steps; time stops.
     Step(i64),
     /// Play faster or slower: simulated seconds a second.
@@ -136,6 +148,12 @@ impl Command {
             | Self::EndGesture
             | Self::TogglePlay
             | Self::Seek(_)
+            | Self::Bookmark(..)
+            | Self::NameBookmark(Some(_))
+            | Self::ToMark(_)
+            | Self::Branch(_)
+            | Self::CompareBranch(_)
+            | Self::DropBranch(_)
             | Self::Step(_)
             | Self::Open(_)
             | Self::OpenFile(_)
@@ -157,6 +175,7 @@ impl Command {
             | Self::Dexterity(_)
             | Self::Fit
             | Self::Look(_)
+            | Self::NameBookmark(None)
             | Self::Reveal(_)
             | Self::Side(_)
             | Self::Plots(_)

@@ -1,6 +1,6 @@
 //! Everything that was done, as a list to go back and forth in.
 
-use egui::{Popup, PopupCloseBehavior, RectAlign, RichText, ScrollArea, Ui, Vec2};
+use egui::{Popup, PopupCloseBehavior, RectAlign, RichText, ScrollArea, Ui, Vec2, vec2};
 
 use super::actions::key_of;
 use super::icon::{Icon, IconButton, dot};
@@ -8,13 +8,21 @@ use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::{Command, ViewState};
 use crate::picture::scene::palette::Palette;
-use crate::session::Session;
+use crate::session::{Fork, Session};
 
 /// How high the list grows before it scrolls, points.
 const HIGHEST: f32 = 380.0;
+/// A branch in its list.
+const BRANCH: f32 = 38.0;
 
 /// Draws its button, and the list while it is open.
-pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, size: Vec2, commands: &mut Vec<Command>) {
+pub fn show(
+    ui: &mut Ui,
+    (session, branches): (&Session, &[Fork]),
+    view_state: &ViewState,
+    size: Vec2,
+    commands: &mut Vec<Command>,
+) {
     let p = view_state.palette();
     let key = key_of("History: what was done, to go back and forth in").unwrap_or_default();
     let tip = format!("history ({key})\nWhat was done, to go back and forth in; Ctrl Z undoes, Ctrl Y redoes");
@@ -27,7 +35,15 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, size: Vec2, 
     let popup = Popup::from_response(&button).open_bool(&mut open).align(RectAlign::RIGHT_END).gap(8.0).width(270.0);
     popup.close_behavior(PopupCloseBehavior::CloseOnClickOutside).show(|ui| {
         ui.label(RichText::new("HISTORY").font(bold(11.0)).color(colour(p.dim)));
-        ScrollArea::vertical().max_height(HIGHEST).show(ui, |ui| list(ui, session, &p, commands));
+        let room = HIGHEST - if branches.is_empty() { 0.0 } else { 30.0 + BRANCH * branches.len().min(4) as f32 };
+        ScrollArea::vertical().max_height(room).show(ui, |ui| list(ui, session, &p, commands));
+        if !branches.is_empty() {
+            ui.add_space(6.0);
+            let tip = "How the run went on before you went back and did something else";
+            ui.label(RichText::new("BRANCHES").font(bold(11.0)).color(colour(p.dim))).on_hover_text(tip);
+            let area = ScrollArea::vertical().id_salt("branches").max_height(4.0 * BRANCH);
+            area.show(ui, |ui| list_branches(ui, branches, &p, commands));
+        }
     });
     if view_state.history && !open && !button.clicked() {
         commands.push(Command::History(false));
@@ -62,6 +78,39 @@ fn list(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>
         if line.clicked() && i != present {
             commands.push(Command::GoTo(i));
         }
+    }
+}
+
+/// Each with what was done in it first, the newest on top: a click shows it, and what is shown now takes its place.
+fn list_branches(ui: &mut Ui, branches: &[Fork], p: &Palette, commands: &mut Vec<Command>) {
+    ui.spacing_mut().item_spacing = vec2(2.0, 1.0);
+    for (i, branch) in branches.iter().enumerate().rev() {
+        ui.horizontal(|ui| {
+            let when = format!("parts at {:.3} s, to {:.3} s", branch.from, branch.to);
+            let dim = colour(p.dim);
+            let line = egui::Button::new("").frame_when_inactive(false).min_size(vec2(196.0, BRANCH - 2.0));
+            let line = ui.add(line);
+            let corner = line.rect.left_top() + vec2(8.0, 4.0);
+            for (words, font, tone, y) in
+                [(&branch.title, plain(12.5), colour(p.ink), 0.0), (&when, plain(11.0), dim, 16.0)]
+            {
+                let words = egui::WidgetText::from(RichText::new(words).color(tone));
+                let words = words.into_galley(ui, Some(egui::TextWrapMode::Truncate), 182.0, font);
+                ui.painter().galley(corner + vec2(0.0, y), words, tone);
+            }
+            name(&line, &format!("Branch {}: {}, {when}", i + 1, branch.title));
+            if line.on_hover_text("Shows it; what is shown now becomes a branch").clicked() {
+                commands.push(Command::Branch(i));
+            }
+            let beside = IconButton::of(Icon::Beside, "compare branch", "Adds it to the runs side by side");
+            if beside.show_in(ui, p, dim).clicked() {
+                commands.push(Command::CompareBranch(i));
+            }
+            let away = IconButton::of(Icon::Cross, "remove branch", "Removes it; Ctrl Z brings it back");
+            if away.show_in(ui, p, dim).clicked() {
+                commands.push(Command::DropBranch(i));
+            }
+        });
     }
 }
 

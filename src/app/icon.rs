@@ -44,6 +44,8 @@ pub enum Icon {
     Loop,
     /// Light and dark.
     Halves,
+    /// Take away.
+    Cross,
     /// Record.
     Record,
 }
@@ -139,6 +141,10 @@ impl Icon {
                 pen.ring([0.0, 0.0], 6.5);
                 let half: Vec<[f32; 2]> = sampled(|t| round([0.0, 0.0], 6.5, 0.25 + 0.5 * t));
                 pen.solid(&half);
+            }
+            Self::Cross => {
+                pen.line(&[[-4.0, -4.0], [4.0, 4.0]]);
+                pen.line(&[[-4.0, 4.0], [4.0, -4.0]]);
             }
             Self::Record => pen.dot([0.0, 0.0], 5.0),
         }

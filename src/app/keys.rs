@@ -17,6 +17,7 @@ pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: 
     // While something is dragged or a list is open, Esc ends that and nothing else.
     let busy = view_state.grabbed.is_some()
         || view_state.history
+        || view_state.naming.is_some()
         || ctx.input(|i| i.pointer.any_down())
         || (view_state.finder.is_none() && egui::Popup::is_any_open(ctx))
         || super::plots::is_looking(ctx);

@@ -9,7 +9,7 @@ use super::{Command, ViewState, arrangement, history};
 use crate::picture::scene::Measure;
 use crate::picture::scene::palette::Palette;
 use crate::picture::scene::views::ViewKind;
-use crate::session::Session;
+use crate::session::{Fork, Session};
 
 /// How wide it is, points.
 const WIDTH: f32 = 50.0;
@@ -116,7 +116,7 @@ const ANALYSES: [Toggle; 2] = [
 ];
 
 /// Draws it.
-pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, session: &Session, branches: &[Fork], view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
     let frame = Frame::new().inner_margin(Margin { left: 4, right: 4, top: 8, bottom: 6 });
     Panel::left("tools").exact_size(WIDTH).resizable(false).frame(frame).show(ui, |ui| {
@@ -144,7 +144,7 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
                 commands.push(Command::Fit);
             }
             arrangement::show(ui, view_state, BUTTON, commands);
-            history::show(ui, session, view_state, BUTTON, commands);
+            history::show(ui, (session, branches), view_state, BUTTON, commands);
         });
     });
 }

@@ -8,6 +8,8 @@ use std::sync::Arc;
 use super::background::{Background, File, Opening};
 use super::change::{Change, Source};
 use super::facts::Facts;
+use super::marks::Marks;
+use super::pace::Pace;
 use super::saving::{self, Saving};
 use super::tour::Tour;
 use super::{
@@ -54,6 +56,9 @@ pub struct AppState {
     foreseen: Totals,
     /// Wall time not yet turned into steps, s.
     owed: f64,
+    pace: Pace,
+    /// What stands on the time line.
+    marks: Marks,
     dressed: Option<Theme>,
     fonts: bool,
     /// What plots show of the runs on display.
@@ -65,9 +70,6 @@ const SHOWN_AGAIN: f32 = 0.1;
 
 /// The most wall time that one repaint makes up for, s: after a pause of the program time does not jump.
 const MOST_OWED: f64 = 0.1;
-
-/// The most steps that are done between two repaints: very short ones take longer than they last.
-const MOST_STEPS: f64 = 2000.0;
 
 impl AppState {
     /// Opens a scenario.
@@ -97,6 +99,8 @@ impl AppState {
             declined: None,
             background: Background::default(),
             owed: 0.0,
+            pace: Pace::default(),
+            marks: Marks::default(),
             dressed: None,
             fonts: false,
             prepared: plots::Prepared::default(),
@@ -257,6 +261,7 @@ impl AppState {
         // While the session is being changed, time stands: what is made has to fit what is shown.
         if self.background.is_changing() {
             self.owed = 0.0;
+            self.pace.rest();
             return;
         }
         if let Some(from) = self.starts_over(wall) {
@@ -265,15 +270,35 @@ impl AppState {
         }
         if !self.session.is_moving() {
             self.owed = 0.0;
+            self.pace.rest();
             return;
         }
         let dt = self.session.scenario().step;
         self.owed += wall.clamp(0.0, MOST_OWED) * self.view_state.speed;
-        let steps = (self.owed / dt).floor();
-        self.owed -= steps * dt;
-        self.session.tick(steps.min(MOST_STEPS) as u64);
+        let wanted = (self.owed / dt).floor();
+        self.owed -= wanted * dt;
+        let (steps, before) = (wanted.min(self.pace.most_steps()), self.session.frame().step);
+        self.session.tick(steps as u64);
+        let done = self.session.frame().step.abs_diff(before) as f64;
+        // What ends on the way is not slow.
+        if self.session.is_moving() {
+            self.pace.count(wall, done * dt, done, self.view_state.speed);
+        } else {
+            self.pace.rest();
+        }
         self.adjust();
         self.find();
+    }
+
+    /// What the last [`pass`](Self::pass) has taken, s, from who reads a clock: steps that take long are done in smaller
+    /// portions, so that the picture stays smooth.
+    pub fn took(&mut self, seconds: f64) {
+        self.pace.took(seconds);
+    }
+
+    /// Simulated seconds a second, where that is less than asked for.
+    pub fn behind(&self) -> Option<f64> {
+        self.pace.behind()
     }
 
     /// Where time goes back to, if it does, s: to the start in the first minute; while the run is played over and over to
@@ -309,14 +334,18 @@ impl AppState {
         if let Some(tour) = &mut self.view_state.tour {
             tour.follow(&self.session);
         }
+        if !self.marks.follow(&self.session) {
+            ui.ctx().request_repaint();
+        }
         let mut commands = Vec::new();
         keys::read(ui.ctx(), &self.session, &self.view_state, &mut commands);
         let presents = self.view_state.layout == Layout::Present;
         if !presents {
-            top::show(ui, &self.session, (&self.facts, &self.saving.recent), &self.view_state, &mut commands);
+            let (facts, line) = ((&self.facts, &self.saving.recent[..]), (&mut self.marks, self.pace.behind()));
+            top::show(ui, &self.session, facts, line, &self.view_state, &mut commands);
             let under_way = self.background.under_way();
             status::show(ui, &self.session, &self.facts, &self.view_state, under_way, &mut commands);
-            rail::show(ui, &self.session, &self.view_state, &mut commands);
+            rail::show(ui, &self.session, self.marks.forks(), &self.view_state, &mut commands);
         }
         if let Some(comparison) = &self.comparison {
             compare::show(ui, comparison, &self.view_state, &mut commands);
@@ -435,6 +464,25 @@ impl AppState {
             Command::TogglePlay if self.session.is_playing() => self.session.pause(),
             Command::TogglePlay => self.session.play(),
             Command::Seek(time) => self.change(Change::Seek(time)),
+            Command::Bookmark(time, name) => {
+                let done = self.session.bookmark(time, &name);
+                self.saving.changes += u64::from(done.is_some());
+                return Ok(done);
+            }
+            Command::NameBookmark(time) => self.name_bookmark(time),
+            Command::ToMark(on) => {
+                let (now, step) = (self.session.frame().time, self.session.scenario().step);
+                if let Some(time) = self.marks.beside(now, step, on) {
+                    self.change(Change::Seek(time));
+                }
+            }
+            Command::Branch(branch) => self.change(Change::Branch(branch)),
+            Command::CompareBranch(branch) => self.compare_branch(branch),
+            Command::DropBranch(branch) => {
+                let done = self.session.drop_branch(branch);
+                self.saving.changes += u64::from(done.is_some());
+                return Ok(done);
+            }
             Command::Step(steps) => self.session.step_by(steps),
             Command::Speed(speed) => self.view_state.speed = speed,
             Command::Loop(loops) => self.view_state.loops = loops,
@@ -513,6 +561,15 @@ impl AppState {
             Command::Dialog(dialog) => self.view_state.dialog = dialog,
         }
         Ok(None)
+    }
+
+    /// Asks for the name of a bookmark; where there is none it is put there.
+    fn name_bookmark(&mut self, time: Option<f64>) {
+        if let Some(time) = time.filter(|time| self.session.bookmark_at(*time).is_none()) {
+            let name = self.session.free_name();
+            self.saving.changes += u64::from(self.session.bookmark(time, &name).is_some());
+        }
+        self.view_state.naming = time;
     }
 
     /// Finds how many times the motion of the base has to be enlarged to be seen, from as much of the run as is known.

@@ -9,18 +9,20 @@ use egui::{Align, ComboBox, Frame, Layout, Margin, Panel, RichText, Ui};
 use super::actions::SPEEDS;
 use super::facts::Facts;
 use super::icon::{Icon, IconButton};
+use super::marks::Marks;
 use super::theme::{bold, colour, plain};
-use super::{Command, FileDialog, PlotFile, Purpose, ViewState};
+use super::{Command, FileDialog, PlotFile, Purpose, ViewState, timeline};
 use crate::mechanics::machine::{self, Machine};
 use crate::picture::scene::palette::Theme;
 use crate::session::Session;
 use crate::session::scenario::Scenario;
 
-/// Draws this panel.
+/// Draws this panel; `line` is what stands on the time line, and how fast time passes if that is slower than asked for.
 pub fn show(
     ui: &mut Ui,
     session: &Session,
     (facts, recent): (&Facts, &[PathBuf]),
+    line: (&mut Marks, Option<f64>),
     view_state: &ViewState,
     commands: &mut Vec<Command>,
 ) {
@@ -36,7 +38,7 @@ pub fn show(
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 right_end(ui, session, view_state, commands);
                 ui.add_space(10.0);
-                timeline(ui, session, view_state, commands);
+                timeline::show(ui, session, line, view_state, commands);
             });
         });
     });
@@ -147,30 +149,6 @@ fn transport(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &
         }
     });
     name(&response.response.on_hover_text("Simulated seconds a second"), "Speed");
-}
-
-fn timeline(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
-    let p = view_state.palette();
-    let (mut time, length) = (session.frame().time, session.length().max(1e-3));
-    // A narrow window keeps its room for the slider.
-    let text = match ui.available_width() > 200.0 {
-        true => format!("{time:.3} / {length:.3} s"),
-        false => format!("{time:.3} s"),
-    };
-    ui.label(RichText::new(text).font(plain(12.5)).color(colour(p.dim)));
-    let tip = "Play over and over, what plots show of it if a range was chosen there (O)";
-    let again = IconButton { on: Some(view_state.loops), ..IconButton::of(Icon::Loop, "loop", tip) };
-    if again.show(ui, &p).clicked() {
-        commands.push(Command::Loop(!view_state.loops));
-    }
-    ui.spacing_mut().slider_width = (ui.available_width() - 16.0).max(60.0);
-    ui.spacing_mut().interact_size.y = 15.0;
-    let slider = egui::Slider::new(&mut time, 0.0..=length).show_value(false).step_by(session.scenario().step);
-    let response = ui.add(slider).on_hover_text("Time, s");
-    name(&response, "Time");
-    if response.changed() {
-        commands.push(Command::Seek(time));
-    }
 }
 
 /// Laid out from the right.

@@ -118,6 +118,8 @@ pub struct ViewState {
     pub study: bool,
     /// What pins carry is on display.
     pub pins: bool,
+    /// The instant of the bookmark whose name is asked for, s.
+    pub naming: Option<f64>,
     /// The second cursor, s.
     pub mark: Option<f64>,
     /// What plots show.
@@ -183,6 +185,7 @@ impl ViewState {
             compare: false,
             study: false,
             pins: false,
+            naming: None,
             mark: None,
             charts: Choice::default(),
             snapshots: false,
@@ -233,7 +236,7 @@ impl ViewState {
         let panels = if again || layout == Layout::Present { usual } else { self.kept[layout as usize] };
         (self.layout, self.side, self.plots, self.compare) = (layout, panels.side, panels.plots, usual.compare);
         self.study &= layout == Layout::Explore;
-        self.history = false;
+        (self.history, self.naming) = (false, None);
     }
 
     /// Moves the camera of the view in use.

@@ -315,6 +315,9 @@ impl eframe::App for App {
             Clock::Wall(last) => last.replace(now).map_or(0.0, |last| (now - last).as_secs_f64()),
         };
         self.app_state.pass(wall);
+        if let Clock::Wall(_) = self.clock {
+            self.app_state.took(now.elapsed().as_secs_f64());
+        }
         let dropped: Option<PathBuf> = ui.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_path_buf()));
         if let Some(path) = dropped {
             self.app_state.carry_out(Command::OpenFile(path));

@@ -13,6 +13,7 @@ mod refusal;
 mod run;
 mod saving;
 mod screen;
+mod time;
 mod view;
 
 use egui::Key;
@@ -25,7 +26,7 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 13] = [
+pub const TESTS: [&[Test]; 14] = [
     saving::TESTS,
     files::TESTS,
     finder::TESTS,
@@ -38,6 +39,7 @@ pub const TESTS: [&[Test]; 13] = [
     pointer::TESTS,
     refusal::TESTS,
     run::TESTS,
+    time::TESTS,
     view::TESTS,
 ];
 

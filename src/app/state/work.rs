@@ -137,7 +137,9 @@ impl AppState {
                     self.view_state.refused = None;
                     self.foresee();
                 }
-                Change::Undo | Change::Redo | Change::GoTo(_) | Change::BackToPath => self.foresee(),
+                Change::Undo | Change::Redo | Change::GoTo(_) | Change::Branch(_) | Change::BackToPath => {
+                    self.foresee()
+                }
                 Change::Seek(_) => {}
             }
         }
@@ -396,6 +398,17 @@ impl AppState {
                 }
             }
         }
+    }
+
+    /// Runs a branch to be kept beside the ways of the task.
+    pub(super) fn compare_branch(&mut self, branch: usize) {
+        let Some(mut scenario) = self.session.branch(branch) else { return };
+        if let Some(fork) = self.session.forks().get(branch) {
+            scenario.name = format!("branch at {:.3} s", fork.from);
+        }
+        (self.view_state.compare, self.view_state.study) = (true, false);
+        self.refresh_comparison();
+        self.keep(scenario, Some("added the branch to the runs side by side"));
     }
 
     /// Runs a scenario to be kept beside the ways of the task.

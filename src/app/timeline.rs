@@ -1,0 +1,173 @@
+//! The time line: the clock, a slider over the run, and above it marks for bookmarks, events and branches.
+
+use egui::{
+    Key, Popup, PopupCloseBehavior, Rect, Response, RichText, Sense, Shape, Stroke, TextEdit, Tooltip, Ui, pos2, vec2,
+};
+
+use super::icon::{Icon, IconButton};
+use super::marks::{Group, Marks, Tone};
+use super::theme::{bold, colour, plain};
+use super::widgets::name;
+use super::{Command, ViewState};
+use crate::picture::scene::palette::Palette;
+use crate::session::Session;
+
+/// How far below its mark hangs what belongs to it: clear of the bar.
+const BELOW: f32 = 32.0;
+
+/// Laid out from the right; `behind` is how fast time passes if that is slower than asked for.
+pub fn show(
+    ui: &mut Ui,
+    session: &Session,
+    (marks, behind): (&mut Marks, Option<f64>),
+    view_state: &ViewState,
+    commands: &mut Vec<Command>,
+) {
+    let p = view_state.palette();
+    let (mut time, length) = (session.frame().time, session.length().max(1e-3));
+    clock(ui, &p, (time, length), behind);
+    let tip = "Play over and over, what plots show of it if a range was chosen there (O)";
+    let again = IconButton { on: Some(view_state.loops), ..IconButton::of(Icon::Loop, "loop", tip) };
+    if again.show(ui, &p).clicked() {
+        commands.push(Command::Loop(!view_state.loops));
+    }
+    ui.spacing_mut().slider_width = (ui.available_width() - 16.0).max(60.0);
+    ui.spacing_mut().interact_size.y = 15.0;
+    let slider = egui::Slider::new(&mut time, 0.0..=length).show_value(false).step_by(session.scenario().step);
+    let response = ui.add(slider).on_hover_text("Time, s");
+    name(&response, "Time");
+    if response.changed() {
+        commands.push(Command::Seek(time));
+    }
+    // The middle of the handle goes from end to end less its radius.
+    let line = response.rect.shrink2(vec2(response.rect.height() / 2.5, 0.0));
+    let asked = view_state.naming.filter(|time| session.bookmark_at(*time).is_some());
+    let mut named = false;
+    for group in marks.on_line(length, f64::from(line.width())) {
+        let x = line.left() + line.width() * (group.time / length) as f32;
+        let response = mark(ui, &p, group, [x, line.top()], commands);
+        let near = 0.5 * session.scenario().step;
+        let within = |time: &f64| (group.span[0] - near..=group.span[1] + near).contains(time);
+        if let Some(time) = asked.filter(within).filter(|_| !named) {
+            naming(&response, &p, session, time, commands);
+            named = true;
+        }
+    }
+    // It has gone meanwhile.
+    if view_state.naming.is_some() && !named {
+        commands.push(Command::NameBookmark(None));
+    }
+}
+
+/// What the clock says; below it, if it is slow, how fast it goes.
+fn clock(ui: &mut Ui, p: &Palette, (time, length): (f64, f64), behind: Option<f64>) {
+    // A narrow window keeps its room for the slider.
+    let text = match ui.available_width() > 290.0 {
+        true => format!("{time:.3} / {length:.3} s"),
+        false => format!("{time:.3} s"),
+    };
+    let clock = ui.label(RichText::new(text).font(plain(12.5)).color(colour(p.dim)));
+    let Some(rate) = behind else { return };
+    // It takes no room, so that nothing beside it moves.
+    let below =
+        Rect::from_min_max(clock.rect.left_bottom() - vec2(30.0, 1.0), clock.rect.right_bottom() + vec2(0.0, 12.0));
+    let words = RichText::new(pace(rate)).font(plain(10.5)).color(colour(p.ink));
+    let layout = egui::Layout::right_to_left(egui::Align::Center);
+    let mut below = ui.new_child(egui::UiBuilder::new().max_rect(below).layout(layout));
+    below
+        .label(words)
+        .on_hover_text("The run takes longer to compute than it lasts: time passes so fast, and no frame is left out");
+}
+
+/// `0.6× real time`.
+fn pace(rate: f64) -> String {
+    match rate {
+        rate if rate < 0.095 => format!("{rate:.2}× real time"),
+        rate => format!("{rate:.1}× real time"),
+    }
+}
+
+/// One mark: a triangle that stands on the line; a click goes there, the right button names a bookmark or takes it away.
+fn mark(ui: &Ui, p: &Palette, group: &Group, [x, top]: [f32; 2], commands: &mut Vec<Command>) -> Response {
+    let tone = match group.tone {
+        Tone::Own => p.amber,
+        Tone::Peak => p.reaction,
+        Tone::Event | Tone::Fork => p.dim,
+    };
+    let rect = Rect::from_min_max(pos2(x - 6.0, top - 10.0), pos2(x + 6.0, top + 2.0));
+    let response = ui.interact(rect, ui.scope_id().with(("mark", (group.time * 1e6) as i64)), Sense::click());
+    let [low, high] = [top, top - if response.hovered() { 7.5 } else { 6.0 }];
+    let corners = vec![pos2(x - 4.0, low), pos2(x, high), pos2(x + 4.0, low)];
+    ui.painter().add(match group.tone {
+        Tone::Fork => Shape::closed_line(corners, Stroke::new(1.0, colour(tone))),
+        _ => Shape::convex_polygon(corners, colour(tone), Stroke::NONE),
+    });
+    if response.has_focus() {
+        ui.painter().rect_stroke(rect, 3.0, Stroke::new(1.5, colour(p.amber)), egui::StrokeKind::Inside);
+    }
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &group.words));
+    Tooltip::for_enabled(&response).gap(BELOW).show(|ui| told(ui, p, group));
+    if response.clicked() {
+        commands.push(Command::Seek(group.time));
+    }
+    if group.tone == Tone::Own && response.secondary_clicked() {
+        commands.push(Command::NameBookmark(Some(group.time)));
+    }
+    response
+}
+
+/// When and what, a line for each mark of a group.
+fn told(ui: &mut Ui, p: &Palette, group: &Group) {
+    let dim = |text: String| RichText::new(text).font(plain(12.5)).color(colour(p.dim));
+    egui::Grid::new("mark told").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
+        for (when, what) in &group.lines {
+            ui.label(dim(when.clone()));
+            ui.add(egui::Label::new(RichText::new(what).font(plain(12.5))).extend());
+            ui.end_row();
+        }
+        if group.more > 0 {
+            ui.label("");
+            ui.label(dim(format!("and {} more", group.more)));
+            ui.end_row();
+        }
+    });
+}
+
+/// The name of a bookmark to be changed, in a card below its mark.
+fn naming(mark: &Response, p: &Palette, session: &Session, time: f64, commands: &mut Vec<Command>) {
+    let Some(known) = session.bookmark_at(time) else { return };
+    let id = egui::Id::unique(("bookmark name", (time * 1e6) as i64));
+    let mut open = true;
+    let popup = Popup::from_response(mark).open_bool(&mut open).gap(BELOW).width(220.0);
+    popup.close_behavior(PopupCloseBehavior::CloseOnClickOutside).show(|ui| {
+        ui.label(RichText::new(format!("BOOKMARK AT {time:.3} s")).font(bold(11.0)).color(colour(p.dim)));
+        let typed = ui.data(|data| data.get_temp::<String>(id));
+        let begins = typed.is_none();
+        let mut typed = typed.unwrap_or_else(|| known.name.clone());
+        let field = ui.add(TextEdit::singleline(&mut typed).desired_width(f32::INFINITY).char_limit(59));
+        name(&field, "Name of the bookmark");
+        if begins {
+            field.request_focus();
+        }
+        let enter = field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
+        ui.horizontal(|ui| {
+            if enter || ui.button("Rename").clicked() {
+                let new = if typed.trim().is_empty() { known.name.clone() } else { typed.clone() };
+                commands.push(Command::Bookmark(time, new));
+                commands.push(Command::NameBookmark(None));
+            }
+            if ui.button("Remove").clicked() {
+                commands.push(Command::Bookmark(time, String::new()));
+                commands.push(Command::NameBookmark(None));
+            }
+        });
+        ui.data_mut(|data| data.insert_temp(id, typed));
+    });
+    let done = commands.iter().any(|command| matches!(command, Command::NameBookmark(None)));
+    if !open && !done {
+        commands.push(Command::NameBookmark(None));
+    }
+    if !open || done {
+        mark.ctx.data_mut(|data| data.remove_temp::<String>(id));
+    }
+}
