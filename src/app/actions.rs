@@ -290,7 +290,7 @@ pub const GESTURES: [(&str, &str); 20] = [
     ("right button", "what can be done with the thing or the place there"),
     ("drag elsewhere", "pan in 2D, else orbit; Shift pans"),
     ("wheel", "zoom"),
-    ("click a mark of the time line", "show that instant; right button: name a bookmark, or take it away"),
+    ("click a mark of the time line", "show that instant; right button: a bookmark's name, the list of branches"),
     ("click a plot", "show that instant"),
     ("Ctrl wheel, drag on a plot", "closer to a time, and along; a double click shows all"),
     ("Shift drag on a plot", "plots show this time"),

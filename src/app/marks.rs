@@ -18,10 +18,10 @@ pub(super) struct Mark {
 /// What a mark is about, what matters most last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Tone {
-    /// A branch parts.
-    Fork,
     /// Something happens.
     Event,
+    /// A branch parts.
+    Fork,
     /// The base feels most, or an audit fails.
     Peak,
     /// A bookmark.
@@ -125,33 +125,38 @@ impl Marks {
         &self.forks
     }
 
-    /// The first mark after an instant, s, or the last before it.
-    pub fn beside(&self, time: f64, step: f64, on: bool) -> Option<f64> {
-        let mut times = self.marks.iter().map(|mark| mark.time);
+    /// The first mark after the instant on display, or the last before it, s.
+    pub fn beside(&self, session: &Session, on: bool) -> Option<f64> {
+        let (time, step) = (session.frame().time, session.scenario().step);
+        let mut times = self.seen(session.length()).iter().map(|mark| mark.time);
         match on {
             true => times.find(|mark| *mark > time + 0.5 * step),
             false => times.rfind(|mark| *mark < time - 0.5 * step),
         }
     }
 
+    /// Those on a time line so long, s: a bookmark may stand beyond it.
+    fn seen(&self, length: f64) -> &[Mark] {
+        &self.marks[..self.marks.partition_point(|mark| mark.time <= length + 1e-9)]
+    }
+
     /// Marks on a time line so long, s, and so wide, points.
     pub fn on_line(&mut self, length: f64, width: f64) -> &[Group] {
         if self.line != [length, width] {
             self.line = [length, width];
-            let seen: Vec<&Mark> = self.marks.iter().take_while(|mark| mark.time <= length + 1e-9).collect();
             let near = APART / width.max(1.0) * length;
-            self.groups = parted(&seen, near);
+            self.groups = parted(self.seen(length), near);
         }
         &self.groups
     }
 }
 
 /// Marks by time in groups, so that none is drawn closer to the next than so much, s.
-fn parted(marks: &[&Mark], near: f64) -> Vec<Group> {
+fn parted(marks: &[Mark], near: f64) -> Vec<Group> {
     // Where each begins, and its mark that matters most, the first of equals: there it is drawn.
     let mut groups: Vec<(usize, &Mark)> = Vec::new();
     for (i, mark) in marks.iter().enumerate() {
-        let (mut start, mut best) = (i, *mark);
+        let (mut start, mut best) = (i, mark);
         // Joined to the group before, it may be drawn too close to the one before that.
         while let Some((before, other)) = groups.pop_if(|(_, other)| best.time - other.time < near) {
             (start, best) = (before, if other.tone >= best.tone { other } else { best });
@@ -163,8 +168,8 @@ fn parted(marks: &[&Mark], near: f64) -> Vec<Group> {
 }
 
 impl Group {
-    fn of(marks: &[&Mark], best: &Mark) -> Self {
-        let line = |mark: &&Mark| (format!("{:.3} s", mark.time), mark.words.clone());
+    fn of(marks: &[Mark], best: &Mark) -> Self {
+        let line = |mark: &Mark| (format!("{:.3} s", mark.time), mark.words.clone());
         let lines: Vec<(String, String)> = marks.iter().take(LINES).map(line).collect();
         let more = marks.len() - lines.len();
         let mut words: Vec<String> = lines.iter().map(|(when, what)| format!("{what} at {when}")).collect();

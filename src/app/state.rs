@@ -471,8 +471,7 @@ impl AppState {
             }
             Command::NameBookmark(time) => self.name_bookmark(time),
             Command::ToMark(on) => {
-                let (now, step) = (self.session.frame().time, self.session.scenario().step);
-                if let Some(time) = self.marks.beside(now, step, on) {
+                if let Some(time) = self.marks.beside(&self.session, on) {
                     self.change(Change::Seek(time));
                 }
             }

@@ -87,12 +87,14 @@ fn pace(rate: f64) -> String {
     }
 }
 
-/// One mark: a triangle that stands on the line; a click goes there, the right button names a bookmark or takes it away.
+/// One mark: a triangle that stands on the line; a click goes there, the right button names a bookmark or
+/// takes it away, and lists branches.
 fn mark(ui: &Ui, p: &Palette, group: &Group, [x, top]: [f32; 2], commands: &mut Vec<Command>) -> Response {
     let tone = match group.tone {
         Tone::Own => p.amber,
         Tone::Peak => p.reaction,
-        Tone::Event | Tone::Fork => p.dim,
+        Tone::Event => p.dim,
+        Tone::Fork => p.ink,
     };
     let rect = Rect::from_min_max(pos2(x - 6.0, top - 10.0), pos2(x + 6.0, top + 2.0));
     let response = ui.interact(rect, ui.scope_id().with(("mark", (group.time * 1e6) as i64)), Sense::click());
@@ -110,8 +112,11 @@ fn mark(ui: &Ui, p: &Palette, group: &Group, [x, top]: [f32; 2], commands: &mut 
     if response.clicked() {
         commands.push(Command::Seek(group.time));
     }
-    if group.tone == Tone::Own && response.secondary_clicked() {
-        commands.push(Command::NameBookmark(Some(group.time)));
+    match group.tone {
+        Tone::Own if response.secondary_clicked() => commands.push(Command::NameBookmark(Some(group.time))),
+        // The list has its branches.
+        Tone::Fork if response.secondary_clicked() => commands.push(Command::History(true)),
+        _ => {}
     }
     response
 }

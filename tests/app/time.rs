@@ -4,12 +4,14 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use stillbase::app::Command;
+use stillbase::files::journal::{self, Journal};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
 
 use super::{Window, session, window};
 use crate::Test;
+use crate::folder::Folder;
 
 pub const TESTS: &[Test] = tests![
     bookmarks_are_found_again,
@@ -17,6 +19,7 @@ pub const TESTS: &[Test] = tests![
     events_stand_on_the_time_line,
     marks_that_are_close_are_one,
     a_branch_is_shown_compared_and_removed,
+    what_is_kept_outlives_a_crash,
     slow_time_is_said_and_stays_smooth,
 ];
 
@@ -27,6 +30,16 @@ fn press(h: &mut Window, modifiers: Modifiers, key: Key) {
 
 fn time(h: &Window) -> f64 {
     session(h).frame().time
+}
+
+fn right_click(h: &mut Window, pos: egui::Pos2) {
+    h.hover_at(pos);
+    h.step();
+    for pressed in [true, false] {
+        h.event(egui::Event::PointerButton { pos, button: PointerButton::Secondary, pressed, modifiers: PLAIN });
+        h.step();
+    }
+    h.run_steps(3);
 }
 
 /// A mark of the time line: a message may say the same.
@@ -60,6 +73,11 @@ fn bookmarks_are_found_again() {
     }
     press(&mut h, SHIFT, Key::N);
     assert!((time(&h) - 0.4).abs() < 1e-9, "there is none before");
+    tell(&mut h, Command::Bookmark(5.0, "beyond the end".into()));
+    press(&mut h, PLAIN, Key::N);
+    press(&mut h, PLAIN, Key::N);
+    assert!((time(&h) - 0.7).abs() < 1e-9 && mark(&h, "beyond").is_none(), "{}", time(&h));
+    tell(&mut h, Command::Undo);
     h.get_by_label("bookmark 2 at 0.700 s").click();
     h.run_steps(3);
     assert!((time(&h) - 0.7).abs() < 1e-9, "a click goes there");
@@ -90,13 +108,7 @@ fn a_bookmark_is_named_and_taken_away() {
     assert_eq!(session(&h).bookmarks()[0].name, "the worst");
     assert!(h.query_by_label("Name of the bookmark").is_none());
     let at = h.get_by_label("the worst at 0.400 s").rect().center();
-    h.hover_at(at);
-    h.step();
-    for pressed in [true, false] {
-        h.event(egui::Event::PointerButton { pos: at, button: PointerButton::Secondary, pressed, modifiers: PLAIN });
-        h.step();
-    }
-    h.run_steps(3);
+    right_click(&mut h, at);
     h.snapshot("bookmark-name-dark");
     h.get_by_label("Remove").click();
     h.run_steps(3);
@@ -169,8 +181,9 @@ fn a_branch_is_shown_compared_and_removed() {
     h.run_steps(40);
     press(&mut h, PLAIN, Key::Space);
     let here = session(&h).frames().to_vec();
-    h.get_by_label_contains("a branch parts: as planned");
-    press(&mut h, PLAIN, Key::H);
+    let at = h.get_by_label_contains("a branch parts: as planned").rect().center();
+    right_click(&mut h, at);
+    assert!(h.state().app_state().view_state().history, "the right button lists the branches");
     h.snapshot("branches-dark");
     h.get_by_label("Branch 1: as planned, parts at 0.500 s, to 1.000 s").click();
     h.run_steps(4);
@@ -195,6 +208,30 @@ fn a_branch_is_shown_compared_and_removed() {
     press(&mut h, PLAIN, Key::Escape);
     press(&mut h, Modifiers::COMMAND, Key::Z);
     assert_eq!(session(&h).branch_count(), 1, "it comes back");
+}
+
+/// The journal holds bookmarks and branches, and the next start has them.
+fn what_is_kept_outlives_a_crash() {
+    let folder = Folder::new("kept");
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    tell(&mut h, Command::Seek(0.6));
+    tell(&mut h, Command::Seek(0.4));
+    let before = h.state().app_state().changes().0;
+    press(&mut h, PLAIN, Key::K);
+    assert!(h.state().app_state().changes().0 > before, "the journal is told");
+    tell(&mut h, Command::Edit(Edit::DragTarget { x: 0.5, y: 0.62 }));
+    press(&mut h, PLAIN, Key::Space);
+    let journal = Journal::begin(&folder.0).expect("the folder can be written");
+    journal::write(journal.file(), &session(&h).to_scenario().to_toml()).expect("written");
+    let (kept, forks) = (session(&h).bookmarks().to_vec(), session(&h).forks());
+    assert_eq!((kept.len(), forks.len()), (1, 1));
+    let file = journal.file().to_owned();
+    drop(journal);
+    let mut next = window("case-1", Theme::Dark);
+    tell(&mut next, Command::OpenFile(file));
+    assert_eq!((session(&next).bookmarks(), session(&next).forks()), (&kept[..], forks));
+    assert!(mark(&next, "bookmark 1 at 0.400 s").is_some() && mark(&next, "a branch parts: as planned").is_some());
 }
 
 /// Where a step takes longer than it lasts, repaints do fewer of them, and the clock says how fast time passes.
