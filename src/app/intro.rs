@@ -10,7 +10,8 @@ use super::widgets::name;
 use super::{Command, Layout, ViewState};
 use crate::mechanics::planar::Vector;
 use crate::picture::numbers::signed;
-use crate::picture::paint::{Spot, paint, words};
+use crate::picture::paint::words::words;
+use crate::picture::paint::{Spot, paint};
 use crate::picture::scene::camera::Camera;
 use crate::picture::scene::options::ViewOptions;
 use crate::picture::scene::palette::Palette;
@@ -155,7 +156,7 @@ impl Intro {
         let options = ViewOptions { theme: view_state.theme, invites: false, ..Default::default() };
         let scene: Arc<Scene> = Arc::new(straight.stage.scene(&shown, &options));
         paint(ui, 1, rect, &scene, camera);
-        words(ui, &Spot { rect, camera: *camera }, &scene);
+        words(ui, &Spot { rect, camera: *camera }, &scene, &[]);
         let turn = SOFT.to_degrees();
         let words = format!("From A to B along a line. The arm shakes its base, drawn {turn:.0}° for 1 N m.");
         caption(ui, rect, &p, "Straight line", &words, frame.wrench.total().moment, p.reaction);

@@ -10,7 +10,8 @@ use super::tour::Tour;
 use super::widgets::{FINE, name};
 use super::{Command, Layout, ViewState, corner, framing, menu, place, present, set_b};
 use crate::mechanics::planar::{DriveAngles, Vector};
-use crate::picture::paint::{Spot, paint, words};
+use crate::picture::paint::words::words;
+use crate::picture::paint::{Spot, paint};
 use crate::picture::scene::exaggeration::exaggerated;
 use crate::picture::scene::options::{Handle, Other, ViewOptions};
 use crate::picture::scene::pick::{Aim, Pick};
@@ -85,7 +86,7 @@ pub fn show(
         };
         let scene = Arc::new(views.scene(view_state.view, session.frame(), &options, view_state.camera()));
         paint(ui, 0, rect, &scene, view_state.camera());
-        words(ui, &Spot { rect, camera: *view_state.camera() }, &scene);
+        words(ui, &Spot { rect, camera: *view_state.camera() }, &scene, &covered);
         corner::show(ui, rect, view_state, views, commands);
         if presents {
             present::show(ui, rect, session, view_state, commands);

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::paint;
+use super::paint::{self, words};
 use super::render::offscreen::{Gpu, NoAdapter, NoPicture, Picture, surface};
 use super::scene::Scene;
 use super::scene::camera::Camera;
@@ -55,9 +55,9 @@ impl Canvas {
         if !self.fonts {
             paint::install_fonts(&self.ctx);
             self.fonts = true;
-            self.pass(|ui| paint::still(ui, scene, camera));
+            self.pass(|ui| words::still(ui, scene, camera));
         }
-        self.pass(|ui| paint::still(ui, scene, camera));
+        self.pass(|ui| words::still(ui, scene, camera));
         self.read()
     }
 

@@ -1,18 +1,16 @@
 //! A scene and its words painted by egui: in the window, in figures and in the pictures of recordings alike.
 
 pub mod figure;
+pub mod words;
 
 use std::sync::Arc;
 
-use egui::{
-    Align2, CentralPanel, Color32, FontData, FontDefinitions, FontFamily, FontId, Frame, Pos2, Rect, Ui, Vec2, vec2,
-};
+use egui::{Color32, FontData, FontDefinitions, FontFamily, FontId, Pos2, Rect, Ui, Vec2, vec2};
 
 use super::render::{Quality, Renderer, View};
 use super::scene::camera::Camera;
-use super::scene::palette::faded;
 use super::scene::pointer::Pointer;
-use super::scene::{Anchor, Label, Rgba, Scene};
+use super::scene::{Rgba, Scene};
 
 /// A colour of the palette for egui.
 pub fn colour([r, g, b, a]: Rgba) -> Color32 {
@@ -216,46 +214,4 @@ pub fn paint(ui: &Ui, number: usize, rect: Rect, scene: &Arc<Scene>, camera: &Ca
     let (scene, quality) = settle(ui.ctx(), number, scene, &view);
     let paint = Paint { number, scene, view, quality };
     ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, paint));
-}
-
-/// A scene with its words over the whole surface, without input.
-pub fn still(ui: &mut Ui, scene: &Arc<Scene>, camera: &Camera) {
-    CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
-        let rect = ui.max_rect();
-        paint(ui, 0, rect, scene, camera);
-        words(ui, &Spot { rect, camera: *camera }, scene);
-    });
-}
-
-/// The scene's labels.
-pub fn words(ui: &Ui, spot: &Spot, scene: &Scene) {
-    let painter = ui.painter().with_clip_rect(spot.rect);
-    let galley = |l: &Label| painter.layout_no_wrap(l.text.clone(), plain(l.size), colour(l.colour));
-    for label in &scene.labels {
-        let Some(at) = spot.screen(label.at.map(f64::from)) else { continue };
-        // Words about one point stay together.
-        let together = scene.labels.iter().filter(|l| l.at == label.at);
-        let widest = together.map(|l| galley(l).size().x).fold(0.0, f32::max);
-        let galley = galley(label);
-        let [x, y] = label.offset;
-        let over = at.x + x + widest - (spot.rect.right() - 10.0);
-        let (align, shift) = match label.anchor {
-            // Words that would be cut off move back into view, below what they would cover.
-            Anchor::Left if over > 0.0 && spot.rect.contains(at) => {
-                (Align2::LEFT_CENTER, vec2(x - over, if over > x { y + 30.0 } else { y }))
-            }
-            Anchor::Left => (Align2::LEFT_CENTER, vec2(x, y)),
-            Anchor::Centre => (Align2::CENTER_CENTER, vec2(x, y)),
-            Anchor::Right => (Align2::RIGHT_CENTER, vec2(x, y)),
-        };
-        let mut place = align.anchor_size(at + shift, galley.size());
-        if label.anchor == Anchor::Centre && spot.rect.contains(at) {
-            let room = spot.rect.shrink(8.0);
-            let over = (place.right() - room.right()).max(0.0) - (room.left() - place.left()).max(0.0);
-            place = place.translate(vec2(-over, 0.0));
-        }
-        // A faint plate keeps words legible over bars and curves.
-        painter.rect_filled(place.expand2(vec2(3.0, 0.0)), 3.0, colour(faded(scene.background, 0.55)));
-        painter.galley(place.min, galley, colour(label.colour));
-    }
 }

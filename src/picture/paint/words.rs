@@ -1,0 +1,136 @@
+//! The words of a scene: beside their points, in view, and clear of each other.
+
+use std::sync::Arc;
+
+use egui::{Align2, CentralPanel, Frame, Galley, Painter, Pos2, Rect, Ui, vec2};
+
+use super::{Spot, colour, paint, plain};
+use crate::picture::scene::camera::Camera;
+use crate::picture::scene::palette::faded;
+use crate::picture::scene::{Anchor, Label, Scene};
+
+/// How far words give way to others, up or down, points.
+const MOST: f32 = 36.0;
+/// Words that would go this little past the edge move back without going below, points.
+const SLIGHT: f32 = 4.0;
+/// How near words come to an edge of the view to the left or right.
+const EDGE: f32 = 8.0;
+
+/// Words about one point; they stay together.
+struct Group<'a> {
+    /// Who gives way to whom: the higher to the lower.
+    rank: u8,
+    words: Vec<(&'a Label, Arc<Galley>, Rect)>,
+}
+
+/// The higher ones give way to the lower ones, and those of the highest rank are left out where there is no room.
+fn rank(name: &str) -> u8 {
+    match name {
+        // The pointer takes hold of points by their names.
+        "plan/names" | "b_ring/name" | "payload/mass" => 0,
+        "target/words" => 1,
+        "reaction/words" => 2,
+        "axes/titles" | "axes/now/words" => 4,
+        "axes/words" => LEFT_OUT,
+        _ => 3,
+    }
+}
+
+const LEFT_OUT: u8 = 5;
+
+/// A scene with its words over the whole surface, without input.
+pub fn still(ui: &mut Ui, scene: &Arc<Scene>, camera: &Camera) {
+    CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+        let rect = ui.max_rect();
+        paint(ui, 0, rect, scene, camera);
+        words(ui, &Spot { rect, camera: *camera }, scene, &[]);
+    });
+}
+
+/// The scene's labels, clear of what is taken already.
+pub fn words(ui: &Ui, spot: &Spot, scene: &Scene, taken: &[Rect]) {
+    let painter = ui.painter().with_clip_rect(spot.rect);
+    let mut groups: Vec<(Pos2, Group<'_>)> = Vec::new();
+    for label in &scene.labels {
+        let Some(at) = spot.screen(label.at.map(f64::from)) else { continue };
+        let galley = painter.layout_no_wrap(label.text.clone(), plain(label.size), colour(label.colour));
+        let word = (label, galley, Rect::NOTHING);
+        let same = groups.iter_mut().find(|(_, group)| group.words.first().is_some_and(|(l, ..)| l.at == label.at));
+        match same {
+            Some((_, group)) => {
+                group.rank = group.rank.min(rank(&label.name));
+                group.words.push(word);
+            }
+            None => groups.push((at, Group { rank: rank(&label.name), words: vec![word] })),
+        }
+    }
+    groups.sort_by_key(|(_, group)| group.rank);
+    let mut taken = taken.to_vec();
+    for (at, group) in &mut groups {
+        group.place(*at, spot.rect);
+        let boxes: Vec<Rect> = group.words.iter().map(|(.., place)| *place).collect();
+        let free = clear(&boxes, &taken, spot.rect);
+        let shift = match free {
+            Some(shift) => shift,
+            None if group.rank == LEFT_OUT => continue,
+            None => 0.0,
+        };
+        for (label, galley, place) in &group.words {
+            let place = place.translate(vec2(0.0, shift));
+            taken.push(place);
+            write(&painter, scene, label, galley, place);
+        }
+    }
+}
+
+fn write(painter: &Painter, scene: &Scene, label: &Label, galley: &Arc<Galley>, place: Rect) {
+    // A faint plate keeps words legible over bars and curves.
+    painter.rect_filled(place.expand2(vec2(3.0, 0.0)), 3.0, colour(faded(scene.background, 0.55)));
+    painter.galley(place.min, galley.clone(), colour(label.colour));
+}
+
+impl Group<'_> {
+    /// Beside their point, moved back into view where they would be cut off.
+    fn place(&mut self, at: Pos2, view: Rect) {
+        let widest = self.words.iter().map(|(_, galley, _)| galley.size().x).fold(0.0, f32::max);
+        for (label, galley, place) in &mut self.words {
+            let [x, y] = label.offset;
+            let over = at.x + x + widest - (view.right() - 10.0);
+            let (align, shift) = match label.anchor {
+                // Below what they would cover.
+                Anchor::Left if over > 0.0 && view.contains(at) => {
+                    (Align2::LEFT_CENTER, vec2(x - over, if over > SLIGHT { y + 30.0 } else { y }))
+                }
+                Anchor::Left => (Align2::LEFT_CENTER, vec2(x, y)),
+                Anchor::Centre => (Align2::CENTER_CENTER, vec2(x, y)),
+                Anchor::Right => (Align2::RIGHT_CENTER, vec2(x, y)),
+            };
+            *place = align.anchor_size(at + shift, galley.size());
+            if label.anchor == Anchor::Centre && view.contains(at) {
+                let over =
+                    (place.right() - view.right() + EDGE).max(0.0) - (view.left() + EDGE - place.left()).max(0.0);
+                *place = place.translate(vec2(-over, 0.0));
+            }
+        }
+    }
+}
+
+/// By how much boxes have to go up or down, at least, to be clear of what is taken and in view; none if there is no way.
+fn clear(boxes: &[Rect], taken: &[Rect], view: Rect) -> Option<f32> {
+    let moved = |shift: f32| boxes.iter().map(move |place| place.translate(vec2(0.0, shift)));
+    let is_free = |shift: f32| {
+        let in_view = |place: Rect| place.top() >= view.top() && place.bottom() <= view.bottom();
+        moved(shift).all(|place| taken.iter().all(|other| !place.intersects(*other)))
+            && (shift == 0.0 || moved(shift).all(in_view))
+    };
+    if is_free(0.0) {
+        return Some(0.0);
+    }
+    let pairs = boxes.iter().flat_map(|place| taken.iter().map(move |other| (place, other)));
+    let beside = pairs.filter(|(place, other)| place.x_range().intersects(other.x_range()));
+    let shifts =
+        beside.flat_map(|(place, other)| [other.bottom() - place.top() + 1.0, other.top() - place.bottom() - 1.0]);
+    let mut shifts: Vec<f32> = shifts.filter(|shift| shift.abs() <= MOST).collect();
+    shifts.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
+    shifts.into_iter().find(|shift| is_free(*shift))
+}
