@@ -1,5 +1,7 @@
 //! What a person asks for.
 
+use std::path::PathBuf;
+
 use super::layout::Layout;
 use crate::picture::charts::choice::Change;
 use crate::picture::scene::Measure;
@@ -41,11 +43,11 @@ pub enum Command {
     /// Replace everything by another scenario.
     Open(Box<Scenario>),
     /// Open a saved session or scenario.
-    OpenFile(std::path::PathBuf),
+    OpenFile(PathBuf),
     /// Save the session.
-    SaveFile(std::path::PathBuf),
+    SaveFile(PathBuf),
     /// Write a recording for the Rerun viewer.
-    Record(std::path::PathBuf),
+    Record(PathBuf),
     /// Undo the last edit.
     Undo,
     /// Undo what has been done since there were so many changes to undo: what a drag did that is given up.
@@ -99,7 +101,7 @@ pub enum Command {
     /// Put the cursor where a signal to plot is sought.
     LookFor,
     /// Write the plot of a name to a file.
-    WritePlot(std::path::PathBuf, String, PlotFile),
+    WritePlot(PathBuf, String, PlotFile),
     /// Show or hide snapshots along the motion.
     Snapshots(bool),
     /// The pointer neither draws nor pushes.
@@ -120,6 +122,8 @@ pub enum Command {
     Cancel(Activity),
     /// Ask whether the window may close with changes that are in no file, or ask no more.
     AskToLeave(bool),
+    /// Close the window, after a question if changes are in no file.
+    Quit,
     /// Close the window as it is.
     Leave,
     /// What becomes of a session that was left behind.
@@ -138,6 +142,8 @@ pub enum Command {
     Times(bool),
     /// Show or hide the dialog for a file.
     Dialog(Option<FileDialog>),
+    /// The next file that is written may take the place of this one: the person has agreed to that.
+    Replace(PathBuf),
 }
 
 impl Command {
@@ -159,6 +165,7 @@ impl Command {
             | Self::OpenFile(_)
             | Self::Recover(_)
             | Self::SaveFile(_)
+            | Self::Replace(_)
             | Self::Record(_)
             | Self::WritePlot(..)
             | Self::Undo
@@ -185,6 +192,7 @@ impl Command {
             | Self::History(_)
             | Self::SkipHints
             | Self::AskToLeave(_)
+            | Self::Quit
             | Self::Leave
             | Self::Find(_)
             | Self::Theme(_)
@@ -349,7 +357,31 @@ impl PlotFile {
     }
 }
 
+impl Purpose {
+    /// What a dialog asks, what its button says, and how such a file may be called.
+    pub(super) fn words(&self) -> [&'static str; 3] {
+        match self {
+            Self::Open => ["Open a session", "Open", "session.toml"],
+            Self::Save => ["Save the session", "Save", "session.toml"],
+            Self::Record => ["Record for the Rerun viewer", "Record", "run.rrd"],
+            Self::Plot(_, PlotFile::Csv) => ["Save the values of the time shown", "Save", "plot.csv"],
+            Self::Plot(_, PlotFile::Svg) => ["Save the plot as a drawing", "Save", "plot.svg"],
+            Self::Plot(_, PlotFile::Png) => ["Save the plot as a picture", "Save", "plot.png"],
+        }
+    }
+}
+
 impl FileDialog {
+    /// What to do with a file that was named.
+    pub fn named(self, file: PathBuf) -> Command {
+        match self.purpose {
+            Purpose::Open => Command::OpenFile(file),
+            Purpose::Save => Command::SaveFile(file),
+            Purpose::Record => Command::Record(file),
+            Purpose::Plot(plot, kind) => Command::WritePlot(file, plot, kind),
+        }
+    }
+
     /// A file name that is free, for a dialog to start from.
     pub fn suggest(session: &Session, purpose: Purpose) -> Self {
         let own = &session.scenario().name;

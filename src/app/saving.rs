@@ -25,6 +25,8 @@ pub(super) struct Saving {
     pub recovered: Option<PathBuf>,
     /// Files that were opened and saved, newest first.
     pub recent: Vec<PathBuf>,
+    /// The file that may be replaced, as the person has agreed.
+    pub replaces: Option<PathBuf>,
 }
 
 /// How many files are remembered.

@@ -162,6 +162,11 @@ impl AppState {
         format!("{}{mark} – Stillbase", crate::settings::text::brief(name))
     }
 
+    /// Files that were opened and saved, newest first.
+    pub fn recent(&self) -> &[PathBuf] {
+        &self.saving.recent
+    }
+
     /// The file of a session that was left behind, once it is not needed any more.
     pub fn take_recovered(&mut self) -> Option<PathBuf> {
         self.saving.recovered.take()
@@ -508,7 +513,8 @@ impl AppState {
             Command::Fit => self.view_state.framing[self.view_state.view as usize] = Framing::Wanted,
             Command::Theme(theme) => self.view_state.theme = theme,
             Command::AskToLeave(asks) => self.saving.asks = asks,
-            Command::Leave => (self.saving.asks, self.saving.leaves) = (false, true),
+            Command::Quit if self.saving.is_unsaved() => self.saving.asks = true,
+            Command::Quit | Command::Leave => (self.saving.asks, self.saving.leaves) = (false, true),
             Command::Recover(what) => self.recover(what),
             Command::SkipHints => {
                 self.hints &= self.intro.is_none();
@@ -558,6 +564,7 @@ impl AppState {
             Command::Pins(shown) => self.view_state.pins = shown,
             Command::Comparison(on) => self.change_comparison(on),
             Command::Dialog(dialog) => self.view_state.dialog = dialog,
+            Command::Replace(file) => self.saving.replaces = Some(file),
         }
         Ok(None)
     }

@@ -11,7 +11,7 @@ use super::facts::Facts;
 use super::icon::{Icon, IconButton};
 use super::marks::Marks;
 use super::theme::{bold, colour, plain};
-use super::{Command, FileDialog, PlotFile, Purpose, ViewState, timeline};
+use super::{Command, FileDialog, Purpose, ViewState, timeline};
 use crate::mechanics::machine::{self, Machine};
 use crate::picture::scene::palette::Theme;
 use crate::session::Session;
@@ -182,14 +182,7 @@ fn right_end(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &
 /// Asks for a file name.
 pub fn dialog(ctx: &egui::Context, view_state: &mut ViewState, commands: &mut Vec<Command>) {
     let Some(mut dialog) = view_state.dialog.clone() else { return };
-    let (title, verb, hint) = match &dialog.purpose {
-        Purpose::Open => ("Open a session", "Open", "session.toml"),
-        Purpose::Save => ("Save the session", "Save", "session.toml"),
-        Purpose::Record => ("Record for the Rerun viewer", "Record", "run.rrd"),
-        Purpose::Plot(_, PlotFile::Csv) => ("Save the values of the time shown", "Save", "plot.csv"),
-        Purpose::Plot(_, PlotFile::Svg) => ("Save the plot as a drawing", "Save", "plot.svg"),
-        Purpose::Plot(_, PlotFile::Png) => ("Save the plot as a picture", "Save", "plot.png"),
-    };
+    let [title, verb, hint] = dialog.purpose.words();
     let mut open = true;
     egui::Window::new(title)
         .open(&mut open)
@@ -208,12 +201,7 @@ pub fn dialog(ctx: &egui::Context, view_state: &mut ViewState, commands: &mut Ve
                 let ready = !dialog.path.trim().is_empty();
                 if ui.add_enabled(ready, egui::Button::new(verb)).clicked() || (enter && ready) {
                     let path = dialog.path.trim().into();
-                    commands.push(match dialog.purpose.clone() {
-                        Purpose::Open => Command::OpenFile(path),
-                        Purpose::Save => Command::SaveFile(path),
-                        Purpose::Record => Command::Record(path),
-                        Purpose::Plot(plot, file) => Command::WritePlot(path, plot, file),
-                    });
+                    commands.push(dialog.clone().named(path));
                 }
                 if ui.button("Cancel").clicked() {
                     commands.push(Command::Dialog(None));

@@ -1,5 +1,6 @@
 //! A real window around an [`AppState`].
 
+mod chooser;
 mod device;
 mod keeper;
 mod times;
@@ -12,6 +13,7 @@ use std::time::{Duration, Instant};
 use egui::{Key, KeyboardShortcut, Modifiers};
 use thiserror::Error;
 
+use chooser::Chooser;
 use device::{Device, Left};
 use keeper::Keeper;
 use times::Times;
@@ -203,6 +205,8 @@ pub struct App {
     events: Vec<egui::Event>,
     /// Who writes down what is to last; nobody does in tests.
     keeper: Option<Keeper>,
+    /// Who asks for files; the window itself does in tests.
+    chooser: Option<Chooser>,
 }
 
 /// Where wall time comes from.
@@ -217,8 +221,8 @@ pub enum Clock {
 impl App {
     fn of(app_state: AppState, clock: Clock) -> Self {
         let (title, times) = (String::new(), Times::default());
-        let (device, events, keeper) = (None, Vec::new(), None);
-        Self { app_state, clock, title, encodes: false, times, device, may_break: false, events, keeper }
+        let (device, events, keeper, chooser) = (None, Vec::new(), None, None);
+        Self { app_state, clock, title, encodes: false, times, device, may_break: false, events, keeper, chooser }
     }
 
     /// Around a state; `None` if eframe has no graphics adapter, or one whose shaders read no lists.
@@ -242,10 +246,10 @@ impl App {
         Some(())
     }
 
-    /// The same, which writes down what is to last.
+    /// The same, which writes down what is to last, and asks for files as the system does.
     fn kept(self, liked: Preferences) -> Self {
         let keeper = Keeper::new(liked, &self.app_state);
-        Self { keeper: Some(keeper), ..self }
+        Self { keeper: Some(keeper), chooser: Some(Chooser::default()), ..self }
     }
 
     /// Stops what is under way.
@@ -296,7 +300,7 @@ impl eframe::App for Guest<'_> {
 }
 
 impl eframe::App for App {
-    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
         if let Some(device) = &mut self.device {
             let broken = self.may_break && ui.input_mut(|i| i.consume_shortcut(&BREAK));
             if broken {
@@ -327,6 +331,9 @@ impl eframe::App for App {
         self.times.end(now);
         if self.app_state.view_state().times {
             self.times.show(ui.ctx(), &self.app_state.view_state().palette(), now);
+        }
+        if let Some(chooser) = &mut self.chooser {
+            chooser.follow(ui.ctx(), frame, &mut self.app_state);
         }
         if let Some(keeper) = &mut self.keeper {
             keeper.keep(ui.ctx(), &mut self.app_state);

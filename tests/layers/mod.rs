@@ -33,12 +33,14 @@ const CORE: &[&str] = &["settings", "mechanics", "planning", "simulation", "sess
 const CRATES: &[(&str, &[&str])] = &[
     ("wgpu", &["picture/render", "picture/canvas", "picture/paint", "app"]),
     ("bytemuck", &["picture/render"]),
-    ("pollster", &["picture/render"]),
+    ("pollster", &["picture/render", "app/window"]),
     ("png", &["picture/render"]),
     ("egui", &["picture/canvas", "picture/paint", "app"]),
     ("egui_wgpu", &["picture/canvas", "picture/paint", "app"]),
     ("egui_plot", &["app"]),
     ("eframe", &["app/window"]),
+    ("rfd", &["app/window"]),
+    ("zbus", &["app/window"]),
     ("directories", &["files/journal", "files/preferences"]),
     ("sha2", &["recording/hash"]),
     ("libloading", &["app/window"]),
@@ -64,12 +66,13 @@ const EDGES: &[(&str, &[&str])] = &[
         &[
             "picture/render/shader.rs",
             "app/window.rs",
+            "app/window/chooser/portal.rs",
             "app/window/keeper.rs",
             "app/window/times.rs",
             "files/journal.rs",
         ],
     ),
-    ("std::env", &["main.rs", "app/window.rs"]),
+    ("std::env", &["main.rs", "app/window.rs", "app/window/chooser/portal.rs"]),
     (
         "std::thread",
         &[

@@ -4,6 +4,7 @@ mod display;
 mod hands;
 mod keyboard;
 mod loss;
+mod portal;
 mod process;
 mod program;
 mod reader;
@@ -22,7 +23,7 @@ macro_rules! tests {
 }
 use tests;
 
-pub const TESTS: [&[Test]; 3] = [hands::TESTS, keyboard::TESTS, loss::TESTS];
+pub const TESTS: [&[Test]; 4] = [hands::TESTS, keyboard::TESTS, loss::TESTS, portal::TESTS];
 
 /// Those that are asked for only.
 pub const LONG: &[Test] = wander::TESTS;

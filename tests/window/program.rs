@@ -43,7 +43,8 @@ impl Desk {
         command.stdout(log.try_clone().expect("a file")).stderr(log);
         command.env("DISPLAY", &self.display.name).env_remove("WAYLAND_DISPLAY");
         command.env("DBUS_SESSION_BUS_ADDRESS", &self.bus.address);
-        command.env("HOME", &self.home.0).env("RUST_BACKTRACE", "1");
+        // No dialog of this machine opens beside the window.
+        command.env("HOME", &self.home.0).env("RUST_BACKTRACE", "1").env("PATH", "/nonexistent");
         for folder in ["XDG_CONFIG_HOME", "XDG_STATE_HOME", "XDG_CACHE_HOME", "XDG_DATA_HOME", "XDG_RUNTIME_DIR"] {
             command.env(folder, &self.home.0);
         }

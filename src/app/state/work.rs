@@ -223,6 +223,15 @@ impl AppState {
         self.open(Source::File(path), Opening { plays: false, closes: true, news, file });
     }
 
+    /// Whether a file is replaced where it is there; it may not be without the person's word for that.
+    fn may_replace(&mut self, file: &Path) -> Result<bool, String> {
+        let agreed = self.saving.replaces.take().is_some_and(|agreed| agreed == file);
+        match file.exists() && !agreed {
+            true => Err(format!("{} exists: want another name", file.display())),
+            false => Ok(agreed),
+        }
+    }
+
     /// Starts to write a file; what is done at once says at once how it went, with the dialog still open where it failed.
     fn write<K>(
         &mut self,
@@ -240,7 +249,7 @@ impl AppState {
 
     /// Saves the session.
     pub(super) fn save(&mut self, path: &Path) -> Result<(), String> {
-        check_name(path)?;
+        let replaces = self.may_replace(path)?;
         if self.background.saving.is_some() {
             return Err("one session is being saved: want that to end first".into());
         }
@@ -248,7 +257,7 @@ impl AppState {
         let of = Some((self.saving.changes, path.clone()));
         let job = self.background.start(move |_| {
             let text = scenario.to_toml();
-            crate::files::write_new(&path, text.as_bytes(), false).map_err(|e| e.to_string())?;
+            crate::files::write_new(&path, text.as_bytes(), replaces).map_err(|e| e.to_string())?;
             Ok(format!("saved {}", whole(&path)))
         });
         self.write(|app_state| &mut app_state.background.saving, of, job);
@@ -257,7 +266,7 @@ impl AppState {
 
     /// Writes a plot to a file.
     pub(super) fn write_plot(&mut self, path: &Path, plot: &str, file: PlotFile) -> Result<(), String> {
-        check_name(path)?;
+        let replaces = self.may_replace(path)?;
         if self.background.saving.is_some() {
             return Err("one file is being saved: want that to end first".into());
         }
@@ -265,7 +274,7 @@ impl AppState {
         let what = plots::Shown { session, signals, comparison: self.comparison.as_ref(), view_state };
         let (content, path) = (plots::written(&what, &self.prepared, plot, file)?, path.to_owned());
         let job = self.background.start(move |_| {
-            crate::files::write_new(&path, &content()?, false).map_err(|e| e.to_string())?;
+            crate::files::write_new(&path, &content()?, replaces).map_err(|e| e.to_string())?;
             Ok(format!("saved {}", whole(&path)))
         });
         self.write(|app_state| &mut app_state.background.saving, None, job);
@@ -275,11 +284,11 @@ impl AppState {
     /// Records the run.
     #[cfg(feature = "record")]
     pub(super) fn record(&mut self, path: &Path) -> Result<(), String> {
-        check_name(path)?;
+        let force = self.may_replace(path)?;
         if self.background.recording.is_some() {
             return Err("one recording is under way: want it to end first".into());
         }
-        let options = crate::recording::Options { pictures: None, force: false };
+        let options = crate::recording::Options { pictures: None, force };
         let mut scenario = self.session.to_scenario();
         scenario.duration = Some(self.session.length());
         let path = path.to_owned();
@@ -457,14 +466,6 @@ impl AppState {
     /// What waits while the session is being changed.
     pub(super) fn waits(&self, command: &Command) -> bool {
         self.background.is_changing() && command.is_of_session()
-    }
-}
-
-/// A file that exists is not replaced from a window.
-fn check_name(path: &Path) -> Result<(), String> {
-    match path.exists() {
-        true => Err(format!("{} exists: want another name", path.display())),
-        false => Ok(()),
     }
 }
 

@@ -1,0 +1,105 @@
+//! [`Chooser`]: the system's own dialogs for files, where there are some.
+
+mod portal;
+
+use std::path::{Path, PathBuf};
+
+use rfd::{AsyncFileDialog, FileHandle};
+
+use crate::app::jobs::{Job, Poll, Threads};
+use crate::app::{AppState, Command, FileDialog, PlotFile, Purpose};
+
+/// Asks for files by a dialog of the system, beside the window.
+#[derive(Default)]
+pub struct Chooser {
+    /// The system has none.
+    none: bool,
+    asked: Option<(FileDialog, Job<Answer>)>,
+    /// Where a file was chosen last.
+    folder: Option<PathBuf>,
+}
+
+/// What comes of a dialog of the system.
+enum Answer {
+    /// A file was chosen.
+    Chosen(PathBuf),
+    /// It was closed without.
+    Closed,
+    /// There is none.
+    NoDialog,
+}
+
+impl Chooser {
+    /// Takes over the dialog that the window would show. Where the system has none the window's own is shown, as it is
+    /// when a file is asked for once more while a dialog of the system hides somewhere.
+    pub fn follow(&mut self, ctx: &egui::Context, frame: &eframe::Frame, app_state: &mut AppState) {
+        let Some((dialog, job)) = self.asked.take() else {
+            if let Some(dialog) = app_state.view_state().dialog.clone().filter(|_| !self.none) {
+                app_state.carry_out(Command::Dialog(None));
+                let last = app_state.recent().first().and_then(|file| file.parent());
+                let folder = self.folder.as_deref().or(last).filter(|folder| folder.is_dir());
+                let (answer, wake) = (asked(&dialog, folder, frame), ctx.clone());
+                let wait = move |_: &_| match portal::is_there() {
+                    true => pollster::block_on(answer)
+                        .map_or(Answer::Closed, |file| Answer::Chosen(file.path().to_path_buf())),
+                    false => Answer::NoDialog,
+                };
+                self.asked = Some((dialog, Job::start(&Threads, move || wake.request_repaint(), wait)));
+            }
+            return;
+        };
+        match job.poll() {
+            Poll::Working => self.asked = Some((dialog, job)),
+            Poll::Done(Answer::Chosen(file)) => {
+                self.folder = file.parent().map(Path::to_path_buf);
+                // It has asked, too, whether a file that is there is to be replaced.
+                app_state.carry_out(Command::Replace(file.clone()));
+                let file = with_ending(file, ending(&dialog.purpose));
+                app_state.carry_out(dialog.named(file));
+                ctx.request_repaint();
+            }
+            Poll::Done(Answer::NoDialog) => {
+                self.none = true;
+                app_state.carry_out(Command::Dialog(Some(dialog)));
+                ctx.request_repaint();
+            }
+            Poll::Done(Answer::Closed) | Poll::Broken => {}
+        }
+    }
+}
+
+fn ending(purpose: &Purpose) -> &'static str {
+    match purpose {
+        Purpose::Open | Purpose::Save => "toml",
+        Purpose::Record => "rrd",
+        Purpose::Plot(_, PlotFile::Csv) => "csv",
+        Purpose::Plot(_, PlotFile::Svg) => "svg",
+        Purpose::Plot(_, PlotFile::Png) => "png",
+    }
+}
+
+/// A name without an ending gets the usual one.
+fn with_ending(file: PathBuf, ending: &str) -> PathBuf {
+    if file.extension().is_some() { file } else { file.with_extension(ending) }
+}
+
+type Asked = std::pin::Pin<Box<dyn Future<Output = Option<FileHandle>> + Send>>;
+
+/// The dialog of the system, in front of the window.
+fn asked(dialog: &FileDialog, folder: Option<&Path>, frame: &eframe::Frame) -> Asked {
+    let ([title, ..], ending) = (dialog.purpose.words(), ending(&dialog.purpose));
+    let kind = match dialog.purpose {
+        Purpose::Open | Purpose::Save => "Sessions",
+        Purpose::Record => "Recordings",
+        Purpose::Plot(..) => "Plots",
+    };
+    let mut asks = AsyncFileDialog::new().set_parent(frame).set_title(title).add_filter(kind, &[ending]);
+    if let Some(folder) = folder {
+        asks = asks.set_directory(folder);
+    }
+    match (&dialog.purpose, Path::new(&dialog.path).file_name()) {
+        (Purpose::Open, _) => Box::pin(asks.add_filter("All files", &["*"]).pick_file()),
+        (_, Some(name)) => Box::pin(asks.set_file_name(name.to_string_lossy()).save_file()),
+        (_, None) => Box::pin(asks.save_file()),
+    }
+}
