@@ -120,8 +120,9 @@ fn changes_in_no_file_are_marked_and_asked_for() {
     assert_eq!(state(&h), (true, "Case 3 · reactionless – Stillbase".into()));
     tell(&mut h, heavier());
     assert_eq!(state(&h), (false, "Case 3 · reactionless * – Stillbase".into()));
-    tell(&mut h, Command::AskToLeave(true));
+    tell(&mut h, Command::Quit);
     assert!(h.query_by_label("One change of this session is in no file.").is_some());
+    assert!(!h.state().app_state().wants_to_leave());
     h.get_by_label("Cancel").click();
     h.run_steps(3);
     assert!(h.query_by_label("Save before closing?").is_none() && !h.state().app_state().wants_to_leave());
@@ -133,5 +134,10 @@ fn changes_in_no_file_are_marked_and_asked_for() {
     tell(&mut h, Command::AskToLeave(true));
     h.get_by_label("Close without saving").click();
     h.run_steps(3);
+    assert!(h.state().app_state().wants_to_leave());
+    // With nothing to lose there is no question.
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    tell(&mut h, Command::Quit);
     assert!(h.state().app_state().wants_to_leave());
 }
