@@ -1,9 +1,13 @@
 //! [`Marks`]: what stands on the time line: bookmarks, events, and where branches part. It is made when the run changes;
 //! what lies too close to be told apart is one mark.
 
+use std::sync::Arc;
+
 use crate::session::events::{Event, Kind, Watched, gestures};
 use crate::session::scenario::Bookmark;
 use crate::session::{Fork, Made, Session};
+use crate::settings::number::significant;
+use crate::study::comparison::{Compared, Comparison};
 
 /// An instant worth to be found again.
 #[derive(Clone, Debug)]
@@ -59,13 +63,14 @@ pub(super) struct Marks {
 }
 
 /// What the marks depend on.
-#[derive(PartialEq)]
 struct Key {
     made: Made,
     events: usize,
     peak: Option<Event>,
     bookmarks: Vec<Bookmark>,
     branches: usize,
+    /// Runs that are laid over.
+    others: Vec<Arc<Compared>>,
 }
 
 /// Marks closer than this are one, points.
@@ -78,8 +83,8 @@ const LINES: usize = 6;
 const AT_ONCE: usize = 20_000;
 
 impl Marks {
-    /// Finds what has changed; whether that was all of it.
-    pub fn follow(&mut self, session: &Session) -> bool {
+    /// Finds what has changed, of the session and of the runs beside it; whether that was all.
+    pub fn follow(&mut self, session: &Session, beside: Option<&Comparison>) -> bool {
         let made = session.made();
         let all = self.watched.follow(made, session.frames(), session.scenario(), AT_ONCE);
         let shakes = session.frames().last().is_some_and(|newest| !newest.peaks.is_reactionless());
@@ -89,6 +94,7 @@ impl Marks {
                 && key.peak.as_ref().map(|peak| peak.step) == shakes.then(|| self.watched.peak_step())
                 && key.bookmarks == session.bookmarks()
                 && key.branches == session.branch_count()
+                && key.others.iter().map(Arc::as_ptr).eq(laid_over(beside).map(|(_, run)| Arc::as_ptr(run)))
         });
         if same {
             return all;
@@ -103,6 +109,7 @@ impl Marks {
             peak: shakes.then(|| self.watched.peak()),
             bookmarks: session.bookmarks().to_vec(),
             branches: session.branch_count(),
+            others: laid_over(beside).map(|(_, run)| run.clone()).collect(),
         };
         self.forks = session.forks();
         let told = self.hands.1.iter().chain(self.watched.events()).chain(&key.peak).filter(|event| event.step > 0);
@@ -113,7 +120,13 @@ impl Marks {
         let own = |mark: &Bookmark| Mark { time: mark.time, words: mark.name.clone(), tone: Tone::Own };
         let fork =
             |fork: &Fork| Mark { time: fork.from, words: format!("a branch parts: {}", fork.title), tone: Tone::Fork };
-        self.marks = told.map(event).chain(key.bookmarks.iter().map(own)).chain(self.forks.iter().map(fork)).collect();
+        let worst = laid_over(beside).filter_map(|(title, run)| worst(title, run));
+        self.marks = told
+            .map(event)
+            .chain(worst)
+            .chain(key.bookmarks.iter().map(own))
+            .chain(self.forks.iter().map(fork))
+            .collect();
         self.marks.sort_by(|a, b| a.time.total_cmp(&b.time).then(b.tone.cmp(&a.tone)));
         self.key = Some(key);
         self.line = [0.0; 2];
@@ -149,6 +162,20 @@ impl Marks {
         }
         &self.groups
     }
+}
+
+/// Runs that are laid over plots and scene, with their titles.
+fn laid_over(beside: Option<&Comparison>) -> impl Iterator<Item = (&str, &Arc<Compared>)> {
+    let shown = beside.map_or(&[][..], Comparison::entries).iter().filter(|entry| entry.shown);
+    shown.filter_map(|entry| Some((entry.title.as_str(), entry.outcome.as_ref().ok()?)))
+}
+
+/// The worst moment of such a run, if its base feels the arm.
+fn worst(title: &str, run: &Compared) -> Option<Mark> {
+    let peaks = run.frames.last().map(|last| &last.peaks).filter(|peaks| !peaks.is_reactionless())?;
+    let first = run.frames.iter().find(|frame| frame.peaks.arm_moment >= peaks.arm_moment)?;
+    let words = format!("{title}: peak |n_B| {} N m", significant(peaks.arm_moment));
+    Some(Mark { time: first.time, words, tone: Tone::Peak })
 }
 
 /// Marks by time in groups, so that none is drawn closer to the next than so much, s.

@@ -59,6 +59,8 @@ pub struct AppState {
     pace: Pace,
     /// What stands on the time line.
     marks: Marks,
+    /// Where the gesture under way has left a branch, s.
+    parted: Option<f64>,
     dressed: Option<Theme>,
     fonts: bool,
     /// What plots show of the runs on display.
@@ -101,6 +103,7 @@ impl AppState {
             owed: 0.0,
             pace: Pace::default(),
             marks: Marks::default(),
+            parted: None,
             dressed: None,
             fonts: false,
             prepared: plots::Prepared::default(),
@@ -339,7 +342,9 @@ impl AppState {
         if let Some(tour) = &mut self.view_state.tour {
             tour.follow(&self.session);
         }
-        if !self.marks.follow(&self.session) {
+        let beside = self.intro.as_ref().filter(|intro| intro.contrasts_in(ui.ctx().content_rect().width()));
+        let beside = beside.and_then(Intro::beside_it).or(self.comparison.as_ref());
+        if !self.marks.follow(&self.session, beside) {
             ui.ctx().request_repaint();
         }
         let mut commands = Vec::new();
@@ -465,7 +470,10 @@ impl AppState {
             }
             Command::TakeHold => (self.view_state.stroke, self.view_state.pushing) = (None, false),
             Command::Exaggerate(on) => self.view_state.exaggerates_base = on,
-            Command::EndGesture => self.session.end_gesture(),
+            Command::EndGesture => {
+                self.session.end_gesture();
+                return Ok(self.tell_branch());
+            }
             Command::TogglePlay if self.session.is_playing() => self.session.pause(),
             Command::TogglePlay => self.session.play(),
             Command::Seek(time) => self.change(Change::Seek(time)),
@@ -567,6 +575,11 @@ impl AppState {
             Command::Replace(file) => self.saving.replaces = Some(file),
         }
         Ok(None)
+    }
+
+    /// What there is to say of a branch that the last gesture has left.
+    fn tell_branch(&mut self) -> Option<String> {
+        self.parted.take().map(|time| format!("what came after {time:.3} s is kept as a branch (H)"))
     }
 
     /// Asks for the name of a bookmark; where there is none it is put there.

@@ -143,6 +143,14 @@ fn events_stand_on_the_time_line() {
     assert_eq!(time(&h), at);
     h.get_by_label_contains("end of motion at 1.000 s");
     h.get_by_label_contains("the base begins to feel the arm at 0.00");
+    // A run that is laid over has its worst moment there too.
+    press(&mut h, PLAIN, Key::C);
+    assert!(mark(&h, "Other pose: peak").is_none());
+    h.get_by_label("Lay over: Other pose").click();
+    h.run_steps(3);
+    assert!(mark(&h, "Other pose: peak |n_B| 0.4851 N m at").is_some());
+    press(&mut h, PLAIN, Key::C);
+    assert!(mark(&h, "Other pose: peak").is_none());
     // A change in the run.
     press(&mut h, PLAIN, Key::Home);
     tell(&mut h, Command::Seek(0.6));
@@ -178,6 +186,7 @@ fn a_branch_is_shown_compared_and_removed() {
     tell(&mut h, Command::Seek(0.5));
     tell(&mut h, Command::Edit(Edit::DragTarget { x: 0.5, y: 0.62 }));
     tell(&mut h, Command::EndGesture);
+    assert!(h.query_by_label("what came after 0.500 s is kept as a branch (H)").is_some());
     h.run_steps(40);
     press(&mut h, PLAIN, Key::Space);
     let here = session(&h).frames().to_vec();

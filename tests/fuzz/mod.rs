@@ -102,6 +102,15 @@ b = 2.0
 step = 14
 do = "set-tolerance"
 change = { moment_limit = 0.01, "link.*.com" = { normal = 0.0005 } }
+[[bookmark]]
+time = 0.1
+name = "here"
+[[branch]]
+duration = 0.2
+[[branch.edit]]
+step = 4
+do = "slide-b"
+b = 2.5
 "#;
 
 /// How long one input may take.
@@ -328,6 +337,11 @@ fn sessions() {
             session.tick(dice.below(4) as u64);
             if dice.one_in(6)
                 && let Err(refusal) = session.undo()
+            {
+                is_short(&refusal.to_string())?;
+            }
+            if dice.one_in(6)
+                && let Err(refusal) = session.switch_branch_while(dice.below(3), &mut |_| true)
             {
                 is_short(&refusal.to_string())?;
             }

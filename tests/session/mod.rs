@@ -3,6 +3,7 @@
 mod bounds;
 mod branches;
 mod cases;
+mod events;
 mod hand;
 mod limits;
 mod replay;

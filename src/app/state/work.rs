@@ -91,8 +91,10 @@ impl AppState {
 
     /// Changes the session: at once if that is quick, else beside the window, and what was shown stays until then.
     pub(super) fn change(&mut self, change: Change) {
+        let (branches, shown) = (self.session.branch_count(), self.session.frame().time);
         if change.is_quick(&self.session) {
             let done = change.make(&mut self.session, &mut |_| true);
+            self.parts(&change, branches, shown);
             self.changed(&change, done);
             return;
         }
@@ -114,6 +116,7 @@ impl AppState {
             Some((next, done)) => {
                 if done.is_ok() {
                     let old = std::mem::replace(&mut self.session, next);
+                    self.parts(&change, old.branch_count(), old.frame().time);
                     self.background.let_go(old);
                 }
                 self.changed(&change, done);
@@ -121,6 +124,13 @@ impl AppState {
             None => self.tell(Err("the change broke off: this is a fault of the program; nothing has changed".into())),
         }
         true
+    }
+
+    /// Remembers that an edit of the instant shown has left a branch, where there were so many before.
+    fn parts(&mut self, change: &Change, branches: usize, shown: f64) {
+        if matches!(change, Change::Edit(_)) && self.session.branch_count() > branches {
+            self.parted = Some(shown);
+        }
     }
 
     /// After a change of the session, or its refusal.
