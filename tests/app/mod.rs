@@ -13,6 +13,7 @@ mod refusal;
 mod run;
 mod saving;
 mod screen;
+mod sizes;
 mod time;
 mod view;
 
@@ -26,7 +27,7 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 14] = [
+pub const TESTS: [&[Test]; 15] = [
     saving::TESTS,
     files::TESTS,
     finder::TESTS,
@@ -39,6 +40,7 @@ pub const TESTS: [&[Test]; 14] = [
     pointer::TESTS,
     refusal::TESTS,
     run::TESTS,
+    sizes::TESTS,
     time::TESTS,
     view::TESTS,
 ];
