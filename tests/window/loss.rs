@@ -45,7 +45,7 @@ fn another_device_takes_over_with_everything_in_place() {
         names
     };
     let read = names(&desk);
-    for _ in 0..3 {
+    for _ in 0..2 {
         let window = desk.display.window();
         let begun = Instant::now();
         break_it(&desk);
