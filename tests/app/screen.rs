@@ -30,6 +30,11 @@ impl Screen {
         };
         Self { gpu, state }
     }
+
+    /// What it draws with.
+    pub fn device(&self) -> &wgpu::Device {
+        &self.state.device
+    }
 }
 
 impl TestRenderer for Screen {

@@ -114,7 +114,7 @@ fn the_main_job_is_done_by_keyboard() {
     command(&desk, "record");
     let recording = desk.name_file("keys.rrd");
     wait_for("the recording", 60, || recording.exists().then_some(()));
-    desk.display.close();
+    desk.display.keys(&[CTRL], u32::from('q'));
     desk.reads("Save before closing?");
     // The question has the keys at once.
     wait_for("the keys to go to the question", 10, || focused(&desk).filter(|name| name == "Save…"));
@@ -122,13 +122,13 @@ fn the_main_job_is_done_by_keyboard() {
     assert_eq!(next(&desk).as_deref(), Some("Cancel"));
     desk.display.tap(ENTER);
     desk.reads_no("Save before closing?");
-    desk.display.close();
+    desk.display.keys(&[CTRL], u32::from('q'));
     wait_for("the keys to go to the question", 10, || focused(&desk).filter(|name| name == "Save…"));
     desk.display.tap(ENTER);
     let file = desk.name_file("keys.toml");
     wait_for("the file", 20, || file.exists().then_some(()));
     wait_for("no mark in the title", 20, || (!desk.display.title().contains('*')).then_some(()));
-    desk.display.close();
+    desk.display.keys(&[CTRL], u32::from('q'));
     assert_eq!(desk.ended(), Some(0), "{}", desk.log());
     let saved = Scenario::parse(&fs::read_to_string(&file).expect("readable"), "keys", None).expect("a session");
     assert_eq!(drags(&saved), 1);

@@ -117,11 +117,17 @@ fn settled(desk: &Desk) -> f64 {
     memory(desk.id())
 }
 
+/// Opens the program so that all that is large goes back to the system when it is let go: what grows is held.
+fn open(desk: &mut Desk) {
+    const LARGE: &str = "65536";
+    desk.open_with(&[], |command| command.env("MALLOC_MMAP_THRESHOLD_", LARGE).env("MALLOC_TRIM_THRESHOLD_", LARGE));
+}
+
 fn random_hands_and_keys_do_no_harm() {
     let (seconds, seed) = (setting("STILLBASE_WANDER_SECONDS", 3600), setting("STILLBASE_WANDER_SEED", 1));
     println!("random hands and keys for {seconds} s from seed {seed}");
     let mut desk = Desk::new("wander", [1440, 900]);
-    desk.open(&[]);
+    open(&mut desk);
     let mut noise = Noise(seed);
     let (begun, all) = (Instant::now(), Duration::from_secs(seconds));
     let (mut done, mut last, mut resident) = (0_u64, Vec::new(), Vec::new());
@@ -136,7 +142,7 @@ fn random_hands_and_keys_do_no_harm() {
             let (code, log) = (desk.ended(), desk.log());
             assert_eq!(code, Some(0), "ended after {done} doings, the last {last:#?}\n{log}");
             println!("closed after {done} doings; opened again");
-            desk.open(&[]);
+            open(&mut desk);
             resident.clear();
         }
         if looked.elapsed() > Duration::from_secs(20) || done == 100 {
