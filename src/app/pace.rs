@@ -26,6 +26,8 @@ const SLOW: [f64; 2] = [0.9, 0.97];
 const BUDGET: f64 = 0.012;
 /// The most steps of a repaint, while it is not known what they take and where they take next to nothing.
 const MOST: [f64; 2] = [2000.0, 20_000.0];
+/// What they are believed to have taken at most, s.
+const LONGEST: f64 = 0.2;
 /// Share of the newest measure in what a step takes.
 const NEWEST: f64 = 0.3;
 
@@ -53,7 +55,8 @@ impl Pace {
     /// What the steps of the last repaint have taken, s.
     pub fn took(&mut self, seconds: f64) {
         if self.steps >= 1.0 {
-            let now = seconds / self.steps;
+            // A program that was held up has learnt nothing of its steps.
+            let now = seconds.min(LONGEST) / self.steps;
             self.cost = Some(self.cost.map_or(now, |cost| cost + NEWEST * (now - cost)));
         }
     }
