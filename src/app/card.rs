@@ -46,9 +46,9 @@ impl Card {
                     Reach::Inside | Reach::Carried => Vec::new(),
                     Reach::Outside { nearest, .. } => vec![format!("waits at {}", place(nearest.re, nearest.im))],
                 };
-                let hint = match session.run().planes() {
-                    Some(_) => "drag: the machine follows, b stays",
-                    None => "",
+                let hint = match session.run().pose_map() {
+                    Ok(_) => "drag: the machine follows, b stays",
+                    Err(_) => "",
                 };
                 Self::new(format!("target at {}", place(at.re, at.im)), rows, hint)
             }

@@ -39,7 +39,7 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &Session, view_state: &ViewState, 
     let (word, good) = status::word(session);
     let tone = if good { p.zero } else { p.reaction };
     line(&mut corner, RichText::new(word).font(bold(0.36 * large)).color(colour(tone)));
-    let b = session.run().planes().map(|planes| f.b.rem_euclid(planes.map().period()));
+    let b = session.run().pose_map().ok().map(|map| f.b.rem_euclid(map.period()));
     let b = b.map_or_else(String::new, |b| format!("b = {b:.3} rad   ·   "));
     let now = format!("{b}{:.2} s of {:.2} s", f.time, session.length());
     line(&mut corner, RichText::new(now).font(plain(0.32 * large)).color(colour(p.dim)));

@@ -44,7 +44,7 @@ pub fn show(
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.set_width(ui.available_width() - 6.0);
             place::of(ui, Handle::Ring, &p, |ui| pose_constant(ui, session, facts, view_state, commands));
-            if session.run().planes().is_some() {
+            if session.run().pose_map().is_ok() {
                 place::of(ui, Handle::Target, &p, |ui| target(ui, session, &p, commands));
             }
             place::of(ui, Handle::Joint(0), &p, |ui| limits(ui, session, &p, commands));
@@ -63,20 +63,18 @@ pub fn show(
 fn pose_constant(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewState, commands: &mut Vec<Command>) {
     let (scenario, p) = (session.scenario(), &view_state.palette());
     ui.label(RichText::new("POSE CONSTANT").font(bold(11.0)).color(colour(p.dim)));
-    if session.run().planes().is_none() {
-        let drives = scenario.machine.drives();
-        let many = if drives == 1 { "one drive".to_owned() } else { format!("{drives} drives") };
-        note(ui, p, &format!("{many}: b is chosen in the task; its slider, the workspace and dragging are for three"));
-        return;
-    }
-    let period = session.run().planes().map_or(std::f64::consts::TAU, |p| p.map().period());
+    let map = match session.run().pose_map() {
+        Ok(map) => map,
+        Err(why) => return note(ui, p, &why.to_string()),
+    };
+    let period = map.period();
     // Shown is b within one period; the turns of the machine stay as they are.
     let b = session.b_aim();
     let turns = (b / period).floor() * period;
     let mut shown = b - turns;
     let tip = format!(
-        "b = q₁ + λ₂ q₂ + λ₃ q₃, Eq. (13), give or take whole periods of {period:.3} rad; {b:.3} rad as it is. Changing \
-         it turns the reactionless workspace."
+        "b = Σ λ q, Eq. (13), give or take whole periods of {period:.3} rad; {b:.3} rad as it is. Changing it turns what \
+         can be reached without a reaction."
     );
     let row =
         Row { label: "b", unit: "rad", tip: &tip, decimals: 3, speed: 0.005, range: 0.0..=period, slide: 0.0..=period };
@@ -120,11 +118,12 @@ fn pose_constant(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &Vie
             commands.push(Command::TurnTask(turn));
         }
     }
-    if session.run().planes().is_some() {
-        // One line whatever the base, so that nothing below jumps.
-        let words = RichText::new(format!("in motion it costs up to {:.2} N m", facts.price)).font(plain(11.0));
-        let tip = "The moment of D₁ b̈ on a fixed base; one that moves gives way";
-        ui.add(egui::Label::new(words.color(colour(p.dim))).truncate()).on_hover_text(tip);
+    // One line whatever the base, so that nothing below jumps.
+    let words = RichText::new(format!("in motion it costs up to {:.2} N m", facts.price)).font(plain(11.0));
+    let tip = "The moment of D₁ b̈ on a fixed base; one that moves gives way";
+    ui.add(egui::Label::new(words.color(colour(p.dim))).truncate()).on_hover_text(tip);
+    if session.run().planes().is_none() {
+        return;
     }
     let mut shown = scenario.compare_b.is_some();
     let mut other = scenario.compare_b.unwrap_or(b + 0.5 * period);

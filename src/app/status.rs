@@ -137,7 +137,7 @@ pub fn show(
             for remark in remarks.iter().filter(|_| ui.available_width() > 460.0) {
                 facts += &format!("  ·  {}", remark.short);
             }
-            let b = session.run().planes().map_or(f.b, |planes| f.b.rem_euclid(planes.map().period()));
+            let b = session.run().pose_map().map_or(f.b, |map| f.b.rem_euclid(map.period()));
             facts += &format!("  ·  b {b:.3} rad");
             let bad_news = matches!(view_state.message, Some((_, true)));
             if let Some((poses, distance)) = found.standing().filter(|_| !bad_news && ui.available_width() > 460.0) {
@@ -196,6 +196,9 @@ pub fn show(
                     }
                     (None, _) if view_state.view.shows_machine() && session.run().planes().is_some() => {
                         ("drag the target, a point or the b ring  ·  Space plays  ·  F1 keys".into(), p.dim)
+                    }
+                    (None, _) if view_state.view.shows_machine() && session.run().pose_map().is_ok() => {
+                        ("drag the target or a point  ·  Space plays  ·  F1 keys".into(), p.dim)
                     }
                     (None, _) => ("Space plays  ·  F1 keys".into(), p.dim),
                 };

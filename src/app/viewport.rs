@@ -80,7 +80,7 @@ pub fn show(
             pin_forces: view_state.pins,
             limits: true,
             shadows: view_state.view == ViewKind::Space,
-            invites: session.run().planes().is_some(),
+            invites: session.run().pose_map().is_ok(),
             compares: both.is_none(),
             scale: None,
         };

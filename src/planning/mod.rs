@@ -15,6 +15,7 @@ pub mod forecast;
 pub mod motion;
 pub mod off_plane;
 pub mod pose_constant;
+pub mod pose_map;
 pub mod pose_space;
 pub mod reactionless;
 mod reference;

@@ -6,7 +6,9 @@ use super::edit::{Edit, TimedEdit};
 use super::refusal::Refusal;
 use super::scenario::{Scenario, Task};
 use crate::mechanics::machine::Machine;
+use crate::mechanics::planar::{Vector, unit};
 use crate::planning::pose_constant::Planes;
+use crate::planning::pose_space::PoseSpace;
 use crate::planning::reactionless::PlanePoint;
 use crate::settings::range::shortened;
 
@@ -46,7 +48,7 @@ pub(super) fn amended(
     let Edit::PoseB { b } = edit else { return changed(scenario, edit) };
     if scenario.machine.drives() != 3 {
         let posed = scenario.task.posed(&scenario.machine, *b);
-        let task = posed.unwrap_or_else(|| Task { b: *b, ..scenario.task.clone() });
+        let task = posed.unwrap_or_else(|| turned(scenario, *b));
         return Ok(Scenario { task, ..scenario.clone() });
     }
     let known = planes.take().filter(|(machine, _)| *machine == scenario.machine);
@@ -55,6 +57,24 @@ pub(super) fn amended(
         None => planes.insert((scenario.machine.clone(), Arc::new(Planes::of(&scenario.machine)?))),
     };
     Ok(posed(scenario, &planes.1, *b))
+}
+
+/// The task of other than three drives at another b: where that does not reach all its points, they turn with what it
+/// reaches.
+fn turned(scenario: &Scenario, b: f64) -> Task {
+    let task = Task { b, ..scenario.task.clone() };
+    let Ok(space) = PoseSpace::of(&scenario.machine) else { return task };
+    let middle = space.middle();
+    if task.points().iter().all(|p| !space.poses(*p, b, &middle).is_empty()) {
+        return task;
+    }
+    let turn = unit(space.turn(b - scenario.task.b));
+    let place = |[x, y]: [f64; 2]| {
+        let p = turn * Vector::new(x, y);
+        [p.re, p.im]
+    };
+    let via = task.via.iter().copied().map(place).collect();
+    Task { from: place(task.from), to: place(task.to), via, ..task }
 }
 
 /// The task on another plane: its points keep their places while one plane serves all; beyond that they turn with the

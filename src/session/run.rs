@@ -11,6 +11,8 @@ use crate::planning::Motion;
 use crate::planning::following::Follower;
 use crate::planning::following::follow::Bounds;
 use crate::planning::pose_constant::Planes;
+use crate::planning::pose_map::PoseMap;
+use crate::planning::pose_space::NoPoseSpace;
 use crate::planning::reactionless::{BSet, Decimal};
 use crate::session::changes::{amended, changed, checked};
 use crate::session::scenario::{MAX_STEPS, Scenario};
@@ -53,6 +55,8 @@ pub struct Run {
     simulation: Simulation,
     /// The b that serve all points of the task, found when they are first asked for.
     common: OnceLock<Option<BSet>>,
+    /// What a hand leads it in, or why it cannot; found when it is first asked for.
+    pose_map: OnceLock<Result<PoseMap, NoPoseSpace>>,
 }
 
 impl Run {
@@ -109,7 +113,7 @@ impl Run {
         let guide = Guide::Motion { motion: plan.motion.clone(), start: 0.0 };
         let simulation = Simulation::new(&scenario.setup(), guide)?;
         let (scenario, plan) = (scenario.clone(), Arc::new(plan));
-        Ok(Self { scenario, planes, plan, waiting, simulation, common: OnceLock::new() })
+        Ok(Self { scenario, planes, plan, waiting, simulation, common: OnceLock::new(), pose_map: OnceLock::new() })
     }
 
     /// Why it waits, if its task does not fit its machine.
@@ -125,6 +129,15 @@ impl Run {
     /// The machine's reactionless planes.
     pub fn planes(&self) -> Option<&Arc<Planes>> {
         self.planes.as_ref()
+    }
+
+    /// The coordinates in which a hand can lead the machine while b is held.
+    ///
+    /// # Errors
+    /// Why it has none.
+    pub fn pose_map(&self) -> Result<&PoseMap, NoPoseSpace> {
+        let find = || PoseMap::of(&self.scenario.machine, self.planes.as_ref());
+        self.pose_map.get_or_init(find).as_ref().map_err(Clone::clone)
     }
 
     /// The b that serve all points of the task, if any do.
@@ -201,7 +214,10 @@ impl Run {
             }
             Edit::DragAngles { a1, a2 } => {
                 let mut follower = self.follower()?;
-                follower.set_angles([*a1, *a2]);
+                if follower.aim().len() != 2 {
+                    return Err(Refusal::Task(ANGLES_OF_THREE.into()));
+                }
+                follower.set_angles(&PerDrive::from([*a1, *a2]));
                 self.simulation.lead(Guide::Follow(follower));
             }
             Edit::SlideB { b } => {
@@ -238,20 +254,25 @@ impl Run {
         let mut simulation = self.simulation.clone();
         simulation.change(&scenario.setup())?;
         let bound = scenario.pose_acceleration != self.scenario.pose_acceleration;
-        if self.planes.is_some() && (scenario.machine != self.scenario.machine || bound) {
+        if scenario.machine != self.scenario.machine || bound {
             let keep_off = scenario.task.keep_off_change_points;
-            let planes = Arc::new(Planes::of(&scenario.machine)?.keeping_off_change_points(keep_off));
+            let planes = match &self.planes {
+                Some(_) => Some(Arc::new(Planes::of(&scenario.machine)?.keeping_off_change_points(keep_off))),
+                None => None,
+            };
             if let Guide::Follow(old) = self.simulation.guide() {
-                let bounds = bounds(&scenario, &planes);
-                let mut follower = Follower::new(planes.clone(), bounds, scenario.step, self.simulation.reference());
+                let map = PoseMap::of(&scenario.machine, planes.as_ref())?;
+                let bounds = bounds(&scenario, &map);
+                let lambda = map.lambda();
+                let mut follower = Follower::new(map, bounds, scenario.step, self.simulation.reference());
                 follower.set_target(old.target().at);
                 // Another λ makes b another quantity.
-                if planes.map().lambda() == old.planes().map().lambda() {
+                if lambda == old.map().lambda() {
                     follower.set_b(old.b_aim());
                 }
                 simulation.lead(Guide::Follow(follower));
             }
-            (self.planes, self.common) = (Some(planes), OnceLock::new());
+            (self.planes, self.common, self.pose_map) = (planes, OnceLock::new(), OnceLock::new());
         }
         self.simulation = simulation;
         self.scenario = scenario;
@@ -279,12 +300,9 @@ impl Run {
         match self.simulation.guide() {
             Guide::Follow(follower) => Ok(follower.clone()),
             Guide::Motion { .. } => {
-                let planes = match &self.planes {
-                    Some(planes) => planes.clone(),
-                    None => Arc::new(Planes::of(&self.scenario.machine)?),
-                };
-                let bounds = bounds(&self.scenario, &planes);
-                Ok(Follower::new(planes, bounds, self.scenario.step, self.simulation.reference()))
+                let map = self.pose_map()?.clone();
+                let bounds = bounds(&self.scenario, &map);
+                Ok(Follower::new(map, bounds, self.scenario.step, self.simulation.reference()))
             }
         }
     }
@@ -303,7 +321,7 @@ impl Run {
             Edit::DragTarget { .. } => Edit::DragTarget { x: frame.target.at.re, y: frame.target.at.im },
             Edit::DragAngles { .. } => {
                 let [a1, a2] = match self.simulation.guide() {
-                    Guide::Follow(follower) => follower.aim(),
+                    Guide::Follow(follower) => [follower.aim()[0], follower.aim()[1]],
                     Guide::Motion { .. } => self.planes.as_ref()?.map().project(&self.simulation.reference().q).a,
                 };
                 Edit::DragAngles { a1, a2 }
@@ -316,21 +334,27 @@ impl Run {
     }
 }
 
-/// Bounds of the follower: no torque limit of any drive is passed in any direction of (ä_1, ä_2).
-fn bounds(scenario: &Scenario, planes: &Planes) -> Bounds {
+/// Why relative angles of other machines are not dragged.
+const ANGLES_OF_THREE: &str =
+    "two relative angles are set for machines of three drives: want the target dragged instead";
+
+/// Bounds of the follower: no torque limit of any drive is passed in any direction of ä.
+fn bounds(scenario: &Scenario, map: &PoseMap) -> Bounds {
     const UNLIMITED: f64 = 30.0;
     let machine = &scenario.machine;
     let inertia = crate::mechanics::machine::Inertia::of(machine);
     let asked = |of: usize| {
+        let one = PerDrive::from_fn(map.angles(), |i| f64::from(u8::from(i == of)));
+        let u = map.lift_rates(&one, 0.0);
         // Of what each motor turns, also through gears, where all couplings vanish.
-        let h = PerDrive::from_fn(machine.drives(), |k| {
-            (0..machine.drives()).map(|l| inertia.constant(k, l) * planes.map().u()[l][of]).sum()
-        });
+        let h =
+            PerDrive::from_fn(machine.drives(), |k| (0..machine.drives()).map(|l| inertia.constant(k, l) * u[l]).sum());
         inertia.motors().torques(&h)
     };
-    let [first, second] = [asked(0), asked(1)];
+    let all: Vec<PerDrive> = (0..map.angles()).map(asked).collect();
+    let most = |k: usize| all.iter().fold(0.0, |sum: f64, torque| sum.hypot(torque[k]));
     let joint = (0..machine.drives())
-        .filter_map(|k| Some(machine.spec().drives[k].torque_limit? / first[k].hypot(second[k]).max(1e-9)))
+        .filter_map(|k| Some(machine.spec().drives[k].torque_limit? / most(k).max(1e-9)))
         .fold(UNLIMITED, f64::min);
     Bounds { joint, pose: scenario.pose_acceleration }
 }

@@ -1,5 +1,6 @@
 //! Tests of `src/session`: scenarios, edits, undo, replay and the verdict.
 
+mod any_drives;
 mod bounds;
 mod branches;
 mod cases;

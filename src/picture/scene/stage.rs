@@ -2,6 +2,7 @@
 
 mod base;
 mod limits;
+mod outline;
 mod path;
 mod pins;
 mod reaction;
@@ -23,10 +24,12 @@ use super::pick::{Hold, Pick, Pivot};
 use super::pointer::Pointer;
 use super::{Line, Measure, Scene, Strips, point};
 use crate::mechanics::planar::{DriveAngles, Vector, unit};
+use crate::planning::pose_map::PoseMap;
 use crate::session::Run;
 use crate::simulation::frame::Frame;
 use base::BaseStage;
 use limits::Limits;
+use outline::Outlined;
 use path::Plan;
 use pins::Pins;
 use workspace::Workspace;
@@ -40,6 +43,8 @@ pub struct Stage {
     linkage: Linkage,
     base: BaseStage,
     workspace: Option<Workspace>,
+    /// The same of other than three drives.
+    outline: Option<Outlined>,
     plan: Option<Plan>,
     pins: Pins,
     limits: Limits,
@@ -58,6 +63,10 @@ impl Stage {
         Self {
             base: BaseStage::of(run, &plant, &linkage),
             workspace: run.planes().map(|planes| Workspace::of(planes, compared, ring_radius(&linkage))),
+            outline: match run.pose_map() {
+                Ok(PoseMap::Space(space)) => Outlined::of((**space).clone()),
+                _ => None,
+            },
             plan: Plan::of(run, linkage.top()),
             pins: Pins::of(&plant),
             limits: Limits::of(model, &linkage),
@@ -69,7 +78,7 @@ impl Stage {
     /// The same without a workspace, for a run that is led otherwise.
     #[must_use]
     pub fn without_workspace(self) -> Self {
-        Self { workspace: None, ..self }
+        Self { workspace: None, outline: None, ..self }
     }
 
     /// Takes over what has changed of base and payload.
@@ -208,12 +217,20 @@ impl Stage {
             let loops = planes.map_or_else(Vec::new, |planes| planes.boundary().turned(b));
             loops.into_iter().flatten().step_by(4).map(|[x, y]| (on_base(Vector::new(x, y)), self.linkage.floor()))
         };
+        let outline = self.outline.iter().flat_map(|outline| outline.points(frame));
+        let outline = outline.map(|p| (p, self.linkage.floor()));
         let waypoints = self.plan.iter().flat_map(|plan| plan.waypoints.iter().map(|(_, _, p)| (*p, z)));
         let target = [(target_handle(frame), z), (base.at, 0.0)];
         let points = |(p, z): (Vector, f64)| [p.re, p.im, z];
         let compared = self.workspace.as_ref().and_then(Workspace::compared_b);
         Content {
-            first: links.chain(workspace(frame.b_reference)).chain(waypoints).chain(target).map(points).collect(),
+            first: links
+                .chain(workspace(frame.b_reference))
+                .chain(outline)
+                .chain(waypoints)
+                .chain(target)
+                .map(points)
+                .collect(),
             then: compared.into_iter().flat_map(workspace).map(points).collect(),
         }
     }
@@ -232,6 +249,9 @@ impl Stage {
         if let Some(workspace) = &self.workspace {
             workspace.draw(&mut scene, linkage, &palette, frame, options);
             workspace.ring(&mut scene, &palette, frame, options, z);
+        }
+        if let Some(outline) = &self.outline {
+            outline.draw(&mut scene, linkage, &palette, frame);
         }
         if let Some(plan) = &self.plan {
             plan.draw(&mut scene, &palette, options);

@@ -1,15 +1,13 @@
 //! Following the pointer and the slider: a smooth reference that stays on its plane.
 //!
-//! The reference moves in plane coordinates (a_1, a_2, b). Acceleration is constant over a step and bounded: the
-//! vector (ä_1, ä_2) as a whole, never component by component, and b̈ on its own. While b is not slid it is not
+//! The reference moves in the coordinates (a, b) of a [`PoseMap`]. Acceleration is constant over a step and bounded: the
+//! vector ä as a whole, never component by component, and b̈ on its own. While b is not slid it is not
 //! touched at all, so the motion is reactionless to the last bit of b.
 
-use std::sync::Arc;
-
-use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
+use crate::mechanics::planar::{PerDrive, Vector};
 use crate::planning::Reference;
-use crate::planning::pose_constant::{Planes, Reach};
-use crate::planning::reactionless::PlanePoint;
+use crate::planning::pose_constant::Reach;
+use crate::planning::pose_map::PoseMap;
 
 /// Where the end effector is sent, and whether it can go there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +21,7 @@ pub struct Target {
 /// Bounds on how fast the reference may change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// |(ä_1, ä_2)|, rad/s².
+    /// |ä|, rad/s².
     pub joint: f64,
     /// |b̈|, rad/s²; the base feels at most D_1 times this.
     pub pose: f64,
@@ -37,13 +35,13 @@ const ARRIVED: f64 = 1e-11;
 /// A reference that runs after a target on the plane of a pose constant.
 #[derive(Clone, Debug)]
 pub struct Follower {
-    planes: Arc<Planes>,
+    map: PoseMap,
     bounds: Bounds,
     step: f64,
-    a: [Course; 2],
+    a: Courses,
     b: Course,
-    aim: [f64; 2],
-    aim_rate: [f64; 2],
+    aim: PerDrive,
+    aim_rate: PerDrive,
     b_aim: f64,
     target: Target,
 }
@@ -62,27 +60,51 @@ impl Course {
     }
 }
 
+/// The relative angles with their derivatives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Courses {
+    x: PerDrive,
+    v: PerDrive,
+    acc: PerDrive,
+}
+
+impl Courses {
+    fn after(&self, dt: f64) -> Self {
+        let at = |i: usize| Course { x: self.x[i], v: self.v[i], acc: self.acc[i] }.after(dt);
+        let n = self.x.len();
+        Self { x: PerDrive::from_fn(n, |i| at(i).x), v: PerDrive::from_fn(n, |i| at(i).v), acc: self.acc }
+    }
+
+    fn resting(x: PerDrive) -> Self {
+        let still = PerDrive::zeros(x.len());
+        Self { x, v: still, acc: still }
+    }
+}
+
+fn norm(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |sum: f64, x| sum.hypot(*x))
+}
+
 impl Follower {
-    /// Takes over from a reference: keeps its pose and rates, then slows to rest on the plane it is on. `step` is the
-    /// time between calls of [`advance`](Self::advance), s.
-    pub fn new(planes: Arc<Planes>, bounds: Bounds, step: f64, from: &Reference) -> Self {
-        let map = planes.map();
-        let at = map.project(&from.q);
-        let (ad, bd) = map.project_rates(&from.qd);
+    /// Takes over from a reference: keeps its pose and rates, then slows to rest at the b it is on. `step` is the time
+    /// between calls of [`advance`](Self::advance), s.
+    pub fn new(map: PoseMap, bounds: Bounds, step: f64, from: &Reference) -> Self {
+        let (x, b) = map.project(&from.q);
+        let (v, bd) = map.project_rates(&from.qd);
         let mut follower = Self {
             bounds,
             step,
-            a: [0, 1].map(|i| Course { x: at.a[i], v: ad[i], acc: 0.0 }),
-            b: Course { x: at.b, v: bd, acc: 0.0 },
-            aim: at.a,
-            aim_rate: [0.0; 2],
+            a: Courses { x, v, acc: PerDrive::zeros(x.len()) },
+            b: Course { x: b, v: bd, acc: 0.0 },
+            aim: x,
+            aim_rate: PerDrive::zeros(x.len()),
             // The nearest b at which it can stop.
-            b_aim: at.b + 0.5 * bd * bd.abs() / bounds.pose,
-            target: Target { at: map.forward(at.a, at.b), reach: Reach::Inside },
-            planes,
+            b_aim: b + 0.5 * bd * bd.abs() / bounds.pose,
+            target: Target { at: map.forward(&x, b), reach: Reach::Inside },
+            map,
         };
-        let stop = ad[0].hypot(ad[1]) / bounds.joint;
-        follower.aim = follower.planes.map().clamp([0, 1].map(|i| at.a[i] + 0.5 * stop * ad[i]));
+        let stop = norm(&v) / bounds.joint;
+        follower.aim = follower.map.clamped(&x.plus(0.5 * stop, &v));
         follower.target.at = follower.aim_point();
         follower.steer();
         follower
@@ -91,34 +113,34 @@ impl Follower {
     /// Sends the end effector to a point, m.
     pub fn set_target(&mut self, at: Vector) {
         self.target.at = at;
-        self.aim_at_target();
-        self.aim_rate = [0.0; 2];
+        self.aim_at_target(true);
+        self.aim_rate = PerDrive::zeros(self.aim.len());
         self.steer();
     }
 
-    /// Sends the relative angles to (a_1, a_2), rad, as far as their limits and folds on the straight way let them.
-    pub fn set_angles(&mut self, a: [f64; 2]) {
-        let from = self.a.map(|c| c.x);
-        let to = self.planes.map().clamp(a);
-        let at = |t: f64| [0, 1].map(|i| from[i] + t * (to[i] - from[i]));
+    /// Sends the relative angles somewhere, rad, as far as their limits and folds on the straight way let them.
+    pub fn set_angles(&mut self, a: &PerDrive) {
+        let from = self.a.x;
+        let to = self.map.clamped(a);
+        let at = |t: f64| from.plus(t, &to.minus(&from));
         self.aim = to;
-        if !self.planes.is_open_way(from, to) {
+        if !self.map.is_open_way(&from, &to) {
             // The last pose before what bars the way.
             let (mut open, mut barred) = (0.0, 1.0);
             for _ in 0..20 {
                 let middle = 0.5 * (open + barred);
-                if self.planes.is_open_way(from, at(middle)) { open = middle } else { barred = middle }
+                if self.map.is_open_way(&from, &at(middle)) { open = middle } else { barred = middle }
             }
             self.aim = at(open);
         }
         self.target = Target { at: self.aim_point(), reach: Reach::Inside };
-        self.aim_rate = [0.0; 2];
+        self.aim_rate = PerDrive::zeros(self.aim.len());
         self.steer();
     }
 
     /// The relative angles that the reference goes to, rad.
-    pub fn aim(&self) -> [f64; 2] {
-        self.aim
+    pub fn aim(&self) -> &PerDrive {
+        &self.aim
     }
 
     /// Sends the pose constant to b, rad.
@@ -142,9 +164,9 @@ impl Follower {
         self.b_aim
     }
 
-    /// The planes it moves on.
-    pub fn planes(&self) -> &Planes {
-        &self.planes
+    /// What it moves in.
+    pub fn map(&self) -> &PoseMap {
+        &self.map
     }
 
     /// The bounds it keeps.
@@ -154,17 +176,16 @@ impl Follower {
 
     /// Whether the reference has arrived and stands still.
     pub fn is_at_rest(&self) -> bool {
-        self.a.iter().all(|c| c.v == 0.0 && c.acc == 0.0) && self.b.v == 0.0 && self.b.acc == 0.0
+        self.a.v.iter().chain(self.a.acc.iter()).all(|x| *x == 0.0) && self.b.v == 0.0 && self.b.acc == 0.0
     }
 
     /// The reference dt seconds into the present step.
     pub fn reference(&self, dt: f64) -> Reference {
-        let (a, b) = (self.a.map(|c| c.after(dt)), self.b.after(dt));
-        let map = self.planes.map();
+        let (a, b) = (self.a.after(dt), self.b.after(dt));
         Reference {
-            q: DriveAngles::from(map.lift(PlanePoint { a: a.map(|c| c.x), b: b.x })),
-            qd: PerDrive::from(map.lift_rates(a.map(|c| c.v), b.v)),
-            qdd: PerDrive::from(map.lift_rates(a.map(|c| c.acc), b.acc)),
+            q: self.map.lift(&a.x, b.x),
+            qd: self.map.lift_rates(&a.v, b.v),
+            qdd: self.map.lift_rates(&a.acc, b.acc),
         }
     }
 
@@ -172,14 +193,14 @@ impl Follower {
     pub fn advance(&mut self) {
         let h = self.step;
         let turning = self.b.v != 0.0 || self.b.acc != 0.0;
-        self.a = self.a.map(|c| c.after(h));
+        self.a = self.a.after(h);
         self.b = self.b.after(h);
         if turning {
             let before = self.aim;
             self.turn_aim();
-            self.aim_rate = [0, 1].map(|i| (self.aim[i] - before[i]) / h);
+            self.aim_rate = PerDrive::from_fn(before.len(), |i| (self.aim[i] - before[i]) / h);
         } else {
-            self.aim_rate = [0.0; 2];
+            self.aim_rate = PerDrive::zeros(self.aim.len());
         }
         self.steer();
     }
@@ -187,7 +208,7 @@ impl Follower {
     /// b has changed: the end effector keeps its place while it can; when it cannot, it turns with the workspace.
     fn turn_aim(&mut self) {
         match self.target.reach {
-            Reach::Inside => match self.planes.follow(self.target.at, self.b.x, self.aim) {
+            Reach::Inside => match self.map.follow(self.target.at, self.b.x, &self.aim) {
                 Some(a) => self.aim = a,
                 None => {
                     self.target.reach = Reach::Carried;
@@ -195,54 +216,60 @@ impl Follower {
                 }
             },
             Reach::Carried => self.target.at = self.aim_point(),
-            Reach::Outside { .. } => self.aim_at_target(),
+            Reach::Outside { .. } => self.aim_at_target(false),
         }
     }
 
     fn aim_point(&self) -> Vector {
-        self.planes.map().forward(self.aim, self.b.x)
+        self.map.forward(&self.aim, self.b.x)
     }
 
-    /// Puts the reference at rest on the plane b: the end effector keeps its place if it can.
+    /// Puts the reference at rest at b: the end effector keeps its place if it can.
     pub fn pose_at(&mut self, b: f64) {
         self.b = Course { x: b, v: 0.0, acc: 0.0 };
         self.b_aim = b;
         self.turn_aim();
-        self.aim_rate = [0.0; 2];
-        self.a = self.aim.map(|x| Course { x, v: 0.0, acc: 0.0 });
+        self.aim_rate = PerDrive::zeros(self.aim.len());
+        self.a = Courses::resting(self.aim);
     }
 
-    /// Finds the pose for the target on the present plane and sheet, or the nearest one.
-    fn aim_at_target(&mut self) {
+    /// Finds the pose for the target at the present b and on the present sheet, or the nearest one; a hand's target all
+    /// over the limits, one that b moves away from beside where it is.
+    fn aim_at_target(&mut self, all_over: bool) {
         // From where it is, not from where it was going: what it can go to straight.
-        let (aim, reach) = self.planes.reach(self.target.at, self.b.x, self.a.map(|c| c.x));
+        let (aim, reach) = self.map.reach(self.target.at, self.b.x, &self.a.x, all_over);
         self.aim = aim;
         self.target.reach = reach;
     }
 
-    /// The accelerations nearest to the wanted ones after which either angle can still stop before its limit, with
-    /// half of the bound's square each, so that stopping both at once is within the bound.
-    fn within_limits(&self, want: [f64; 2]) -> [f64; 2] {
-        let (h, brake) = (self.step, self.bounds.joint * std::f64::consts::FRAC_1_SQRT_2);
-        let limits = self.planes.map().limits();
-        let mut acc = [0, 1].map(|i| {
-            let Course { x, v, .. } = self.a[i];
+    /// The accelerations nearest to the wanted ones after which each angle can still stop before its limit, with an
+    /// equal share of the bound's square each, so that stopping all at once is within the bound.
+    fn within_limits(&self, want: &PerDrive) -> PerDrive {
+        let n = want.len();
+        let (h, brake) = (self.step, self.bounds.joint / (n as f64).sqrt());
+        let mut acc = PerDrive::from_fn(n, |i| {
+            let (x, v) = (self.a.x[i], self.a.v[i]);
             // The greatest acceleration towards a wall at distance d, nearing it at v. The speed s after this step has
             // h (v + s)/2 + s²/(2 brake) = d; nearer than that, the rest of the way just stops it.
             let most = |d: f64, v: f64| {
+                if d == f64::INFINITY {
+                    return d;
+                }
                 let room = d - 0.5 * h * v;
                 let s = 0.5 * (((brake * h).powi(2) + 8.0 * brake * room.max(0.0)).sqrt() - brake * h);
                 let most = if room < 0.0 && d > 0.0 { -0.5 * v * v / d } else { (s - v) / h };
                 most.max(-brake)
             };
-            let (up, down) = (most(limits[i].max - x, v), most(x - limits[i].min, -v));
+            let [low, high] = self.map.limits(i);
+            let (up, down) = (most(high - x, v), most(x - low, -v));
             want[i].min(up).max(-down)
         });
-        // Where one angle must brake harder than wanted, the other one leaves it the share it needs.
-        for (i, j) in [(0, 1), (1, 0)] {
+        // Where one angle must brake harder than wanted, the others leave it the share it needs.
+        for i in 0..n {
             let left = (self.bounds.joint.powi(2) - acc[i] * acc[i]).max(0.0).sqrt();
-            if acc[i].abs() > want[i].abs() && acc[j].abs() > left {
-                acc[j] = left.copysign(acc[j]);
+            let others = (0..n).filter(|j| *j != i).fold(0.0, |sum: f64, j| sum.hypot(acc[j]));
+            if acc[i].abs() > want[i].abs() && others > left {
+                (0..n).filter(|j| *j != i).for_each(|j| acc[j] *= left / others);
             }
         }
         acc
@@ -250,38 +277,34 @@ impl Follower {
 
     /// The wanted accelerations, or full braking where after them a fold could not be avoided any more. So there is
     /// always a straight way on which to stop that keeps to the sheet.
-    fn before_folds(&self, want: [f64; 2]) -> [f64; 2] {
-        if !self.planes.has_bars() {
+    fn before_folds(&self, want: PerDrive) -> PerDrive {
+        if !self.map.has_bars() {
             return want;
         }
-        let [x, y] = [0, 1].map(|i| Course { acc: want[i], ..self.a[i] }.after(self.step));
-        let speed = x.v.hypot(y.v);
-        let stop = [x, y].map(|c| c.x + 0.5 * speed * c.v / self.bounds.joint);
-        let (now, next) = (self.a.map(|c| c.x), [x.x, y.x]);
-        if self.planes.is_open_way(now, next) && self.planes.is_open_way(next, stop) {
+        let next = Courses { acc: want, ..self.a }.after(self.step);
+        let stop = next.x.plus(0.5 * norm(&next.v) / self.bounds.joint, &next.v);
+        if self.map.is_open_way(&self.a.x, &next.x) && self.map.is_open_way(&next.x, &stop) {
             return want;
         }
-        let speed = self.a[0].v.hypot(self.a[1].v);
+        let speed = norm(&self.a.v);
         let brake = self.bounds.joint.min(speed / self.step);
-        self.a.map(|c| if speed > 0.0 { -brake * c.v / speed } else { 0.0 })
+        self.a.v.scaled(if speed > 0.0 { -brake / speed } else { 0.0 })
     }
 
     /// Chooses the accelerations of the coming step.
     fn steer(&mut self) {
-        let [x, y] = [0, 1].map(|i| self.aim[i] - self.a[i].x);
-        let v = [0, 1].map(|i| self.a[i].v - self.aim_rate[i]);
-        let distance = x.hypot(y);
-        if self.aim_rate == [0.0; 2] && distance < ARRIVED && v[0].hypot(v[1]) < ARRIVED {
-            for i in 0..2 {
-                self.a[i] = Course { x: self.aim[i], v: 0.0, acc: 0.0 };
-            }
+        let n = self.aim.len();
+        let way = self.aim.minus(&self.a.x);
+        let v = self.a.v.minus(&self.aim_rate);
+        let distance = norm(&way);
+        if self.aim_rate.iter().all(|rate| *rate == 0.0) && distance < ARRIVED && norm(&v) < ARRIVED {
+            self.a = Courses::resting(self.aim);
         } else {
             let speed = approach(distance, self.bounds.joint);
             let gain = if distance > 0.0 { speed / distance } else { 0.0 };
-            let want = [(gain * x - v[0]) / LAG, (gain * y - v[1]) / LAG];
-            let scale = (self.bounds.joint / want[0].hypot(want[1])).min(1.0);
-            let acc = self.within_limits(self.before_folds(want.map(|w| w * scale)));
-            self.a.iter_mut().zip(acc).for_each(|(a, acc)| a.acc = acc);
+            let want = PerDrive::from_fn(n, |i| (gain * way[i] - v[i]) / LAG);
+            let scale = (self.bounds.joint / norm(&want)).min(1.0);
+            self.a.acc = self.within_limits(&self.before_folds(want.scaled(scale)));
         }
         let left = self.b_aim - self.b.x;
         if left.abs() < ARRIVED && self.b.v.abs() < ARRIVED {

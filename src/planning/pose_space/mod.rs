@@ -25,6 +25,7 @@ mod outline;
 mod poses;
 mod reach;
 mod space;
+mod toward;
 
 pub use outline::Outline;
 pub use space::{Joint, NoPoseSpace, PoseSpace};

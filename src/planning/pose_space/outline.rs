@@ -25,6 +25,8 @@ pub struct Outline {
 
 /// Chords are as near to the boundary as this, m for an arm of a metre.
 const CHORD: f64 = 1e-5;
+/// Between two distances it runs along the circle by no more than this, as a share of the reach.
+const RUN: f64 = 0.05;
 /// Where the boundary turns back it is found to this, as a share of the reach.
 const FOUND: f64 = 1e-9;
 /// Distances to begin with.
@@ -49,6 +51,11 @@ impl Ring {
 impl PoseSpace {
     /// The workspace of b.
     pub fn outline(&self, b: f64) -> Outline {
+        self.outline_within(b, CHORD)
+    }
+
+    /// The same, with chords as near to the boundary as this, m for an arm of a metre; two drives have what they have.
+    pub fn outline_within(&self, b: f64, chord: f64) -> Outline {
         match self.drives() {
             1 => {
                 let place = self.place(&self.lift(&[], b));
@@ -56,7 +63,7 @@ impl PoseSpace {
                 Outline { curve: vec![at], extent: [at[0], at[0], at[1], at[1]], ..Outline::default() }
             }
             2 => self.curve(b),
-            _ => self.region(b),
+            _ => self.region(b, chord),
         }
     }
 
@@ -99,7 +106,7 @@ impl PoseSpace {
         Ring { r, arcs, whole }
     }
 
-    fn region(&self, b: f64) -> Outline {
+    fn region(&self, b: f64, chord: f64) -> Outline {
         let (near, far) = (self.nearest(), self.farthest());
         let span = far - near;
         let at = |i: usize| near + span * (i as f64 + if i == 0 { FOUND } else { 0.0 }) / FIRST as f64;
@@ -111,7 +118,7 @@ impl PoseSpace {
             let r = if i == FIRST { far * (1.0 - FOUND) } else { at(i) };
             let to = self.ring(r, b);
             rings.push(from.clone());
-            self.refine(&from, &to, b, &mut rings, &mut area, &mut budget);
+            self.refine(&from, &to, (b, chord), &mut rings, &mut area, &mut budget);
             from = to;
         }
         rings.push(from);
@@ -121,7 +128,15 @@ impl PoseSpace {
     }
 
     /// Rings between two, so close that straight lines join them.
-    fn refine(&self, from: &Ring, to: &Ring, b: f64, rings: &mut Vec<Ring>, area: &mut f64, budget: &mut usize) {
+    fn refine(
+        &self,
+        from: &Ring,
+        to: &Ring,
+        (b, chord): (f64, f64),
+        rings: &mut Vec<Ring>,
+        area: &mut f64,
+        budget: &mut usize,
+    ) {
         let middle = self.ring(0.5 * (from.r + to.r), b);
         *budget = budget.saturating_sub(1);
         let far = self.farthest();
@@ -130,12 +145,11 @@ impl PoseSpace {
         let smooth = alike(from, &middle) && alike(&middle, to) && {
             let bent = |i: usize, end: usize| {
                 let [a, m, c] = [from, &middle, to].map(|ring| ring.arcs[i][end]);
-                let chord = (turned(a, m) + turned(c, m)) * 0.5;
-                let off = chord * middle.r;
+                let off = (turned(a, m) + turned(c, m)) * 0.5 * middle.r;
                 // Across the chord: an edge that runs along the circle hardly bends.
                 let run = (turned(c, a) * middle.r).hypot(width);
-                off.abs() * width / run <= CHORD * 0.8
-                    && (turned(a, m).abs() + turned(c, m).abs()) * middle.r < 0.3 * far
+                off.abs() * width / run <= chord * 0.8
+                    && (turned(a, m).abs() + turned(c, m).abs()) * middle.r < RUN * far
             };
             (0..from.arcs.len()).all(|i| !(!bent(i, 0) || !bent(i, 1)))
         };
@@ -144,9 +158,9 @@ impl PoseSpace {
             rings.push(middle);
             return;
         }
-        self.refine(from, &middle, b, rings, area, budget);
+        self.refine(from, &middle, (b, chord), rings, area, budget);
         rings.push(middle.clone());
-        self.refine(&middle, to, b, rings, area, budget);
+        self.refine(&middle, to, (b, chord), rings, area, budget);
     }
 }
 

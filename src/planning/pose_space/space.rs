@@ -20,6 +20,8 @@ pub struct Joint {
     pub(super) offset: f64,
     /// Least and greatest angle, rad; one turn where there are no limits.
     pub(super) limits: [f64; 2],
+    /// Whether there are none.
+    pub(super) free: bool,
     /// Its place among the machine's angles; none where the file names no angle that joins these drives.
     pub(super) angle: Option<usize>,
 }
@@ -28,6 +30,11 @@ impl Joint {
     /// Least and greatest angle, rad.
     pub fn limits(&self) -> [f64; 2] {
         self.limits
+    }
+
+    /// The same, without end where there are no limits.
+    pub fn bounds(&self) -> [f64; 2] {
+        if self.free { [f64::NEG_INFINITY, f64::INFINITY] } else { self.limits }
     }
 
     /// Its place among the machine's angles; none where the file has no angle between these drives.
@@ -194,6 +201,30 @@ impl PoseSpace {
         DriveAngles(q)
     }
 
+    /// Rates of the drives for rates of the relative angles and ḃ.
+    pub fn lift_rates(&self, ad: &[f64], bd: f64) -> PerDrive {
+        let mut qd = PerDrive::zeros(self.drives());
+        for (joint, ad) in self.joints.iter().zip(ad) {
+            qd[joint.ends[1]] = qd[joint.ends[0]] + joint.sense * ad;
+        }
+        let turn = (bd - self.lambda.dot(&qd)) / self.sum;
+        qd.iter_mut().for_each(|qd| *qd += turn);
+        qd
+    }
+
+    /// Rates of the relative angles for rates of the drives.
+    pub fn angle_rates(&self, qd: &[f64]) -> PerDrive {
+        PerDrive::from_fn(self.joints.len(), |i| {
+            let Joint { ends, sense, .. } = self.joints[i];
+            sense * (qd[ends[1]] - qd[ends[0]])
+        })
+    }
+
+    /// How far the workspace is turned at b, rad.
+    pub fn turn(&self, b: f64) -> f64 {
+        b / self.sum
+    }
+
     /// Drive angles with drive 1 at 0.
     pub(super) fn unturned(&self, a: &[f64]) -> PerDrive {
         let mut q = PerDrive::zeros(self.drives());
@@ -242,10 +273,11 @@ fn joints(machine: &Machine) -> Result<Vec<Joint>, NoPoseSpace> {
             }
             known[ends[1]] = true;
             used[i] = true;
-            joints.push(Joint { ends, sense, offset: a.offset, limits, angle: Some(i) });
+            let free = !(a.limits.start().is_finite() && a.limits.end().is_finite());
+            joints.push(Joint { ends, sense, offset: a.offset, limits, free, angle: Some(i) });
         } else if let Some(k) = (0..n).find(|k| !known[*k]) {
             known[k] = true;
-            joints.push(Joint { ends: [0, k], sense: 1.0, offset: 0.0, limits: [-PI, PI], angle: None });
+            joints.push(Joint { ends: [0, k], sense: 1.0, offset: 0.0, limits: [-PI, PI], free: true, angle: None });
         } else {
             break;
         }

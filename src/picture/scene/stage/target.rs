@@ -44,9 +44,10 @@ pub fn draw(scene: &mut Scene, palette: &Palette, frame: &Frame, options: &ViewO
                 None if other_sheet => "drag it round, or change b".into(),
                 None => "no b reaches it".into(),
             };
-            let title = match other_sheet {
-                true => "beyond a fold or a change point",
-                false => "outside the reactionless workspace",
+            let title = match (other_sheet, frame.q.len()) {
+                (true, _) => "beyond a fold or a change point",
+                (_, 2) => "beside the reactionless curve",
+                _ => "outside the reactionless workspace",
             };
             rows.push((title.into(), ink, 13.0));
             rows.push((format!("nearest point {} m", place(nearest)), dim, 11.5));

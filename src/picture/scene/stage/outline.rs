@@ -1,0 +1,112 @@
+//! What a machine of other than three drives reaches while b is held: the curve of two, the boundary of more.
+
+use crate::mechanics::planar::{Vector, unit};
+use crate::picture::scene::linkage::Linkage;
+use crate::picture::scene::palette::Palette;
+use crate::picture::scene::{Anchor, Label, Line, Marker, Scene, Strips, point, posed};
+use crate::planning::pose_space::PoseSpace;
+use crate::simulation::frame::Frame;
+
+/// Chords are as near to the boundary as this, m for an arm of a metre: less than a pixel.
+const CHORD: f64 = 5e-4;
+
+/// A workspace before it is turned.
+#[derive(Clone, Debug)]
+pub struct Outlined {
+    space: PoseSpace,
+    strips: Strips,
+    /// What it is, and its length or area.
+    words: [String; 2],
+    /// Where the words stand, m.
+    middle: Vector,
+    /// Where a curve ends, m, and at which angle.
+    ends: Vec<(Vector, String)>,
+}
+
+/// The point inside the loops that is farthest from them, m, of those of a coarse grid that the arm's root does not
+/// cover.
+fn roomiest(loops: &[Vec<[f64; 2]>], [x_min, x_max, y_min, y_max]: [f64; 4], root: f64) -> Vector {
+    const GRID: i32 = 16;
+    let at = |i: i32, low: f64, high: f64| low + (high - low) * (f64::from(i) + 0.5) / f64::from(GRID);
+    let points = (0..GRID * GRID).map(|k| Vector::new(at(k % GRID, x_min, x_max), at(k / GRID, y_min, y_max)));
+    let winds = |p: &Vector| {
+        let turn = |line: &Vec<[f64; 2]>| {
+            let to = |[x, y]: [f64; 2]| Vector::new(x, y) - p;
+            (0..line.len()).map(|i| (to(line[(i + 1) % line.len()]) * to(line[i]).conj()).arg()).sum::<f64>()
+        };
+        loops.iter().map(turn).sum::<f64>() > 1.0
+    };
+    let room = |p: &Vector| {
+        let all = loops.iter().flatten().step_by(4);
+        all.fold(f64::INFINITY, |least, [x, y]| least.min((Vector::new(*x, *y) - p).norm_sqr()))
+    };
+    points.filter(|p| p.norm() > root).filter(winds).max_by(|p, q| room(p).total_cmp(&room(q))).unwrap_or_default()
+}
+
+impl Outlined {
+    /// Of a machine with a pose constant; nothing of one that stays on a point.
+    pub fn of(space: PoseSpace) -> Option<Self> {
+        let outline = space.outline_within(0.0, CHORD);
+        let vectors =
+            |points: &[[f64; 2]]| -> Vec<Vector> { points.iter().map(|[x, y]| Vector::new(*x, *y)).collect() };
+        let flat = |points: &[Vector]| -> Vec<[f32; 3]> { points.iter().map(|p| point(*p, 0.0)).collect() };
+        let curve = vectors(&outline.curve);
+        let (lines, words, middle) = if curve.len() > 1 {
+            let words = ["reactionless curve".to_owned(), format!("{:.3} m", outline.length)];
+            (vec![flat(&curve)], words, curve[curve.len() / 2])
+        } else {
+            let closed = |line: &Vec<[f64; 2]>| {
+                let mut points = flat(&vectors(line));
+                points.extend(points.first().copied());
+                points
+            };
+            let [x_min, x_max, y_min, y_max] = outline.extent;
+            let words = ["reactionless workspace".to_owned(), format!("{:.3} m²", outline.area)];
+            let middle = roomiest(&outline.loops, [x_min, x_max, y_min, y_max], 0.35 * space.farthest());
+            (outline.loops.iter().map(closed).collect(), words, middle)
+        };
+        let named = |(end, at): (usize, &Vector)| {
+            let joint = space.joints().first()?;
+            let angle = joint.bounds()[end];
+            angle.is_finite().then(|| (*at, format!("a₁ = {:.1}°", angle.to_degrees())))
+        };
+        let ends = [curve.first(), curve.last()].into_iter().flatten().filter(|_| curve.len() > 1);
+        let ends = ends.enumerate().filter_map(named).collect();
+        (!lines.is_empty()).then(|| Self { strips: lines.into(), words, middle, ends, space })
+    }
+
+    /// How far it is turned in a frame, rad.
+    fn turn(&self, frame: &Frame) -> f64 {
+        self.space.turn(frame.b_reference) + frame.base.angle
+    }
+
+    /// Its points in a frame, m.
+    pub fn points(&self, frame: &Frame) -> Vec<Vector> {
+        let turn = unit(self.turn(frame));
+        let all = self.strips.iter().flatten();
+        all.map(|[x, y, _]| frame.base.at + turn * Vector::new(f64::from(*x), f64::from(*y))).collect()
+    }
+
+    /// Draws it where it is in a frame.
+    pub fn draw(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Frame) {
+        let (turn, z) = (self.turn(frame), linkage.floor());
+        let pose = posed(frame.base.at, unit(turn), z);
+        scene.lines.push(Line::new("workspace/boundary", self.strips.clone(), 1.8, palette.amber).moving(pose));
+        let there = |p: Vector| point(frame.base.at + p * unit(turn), z);
+        for (end, words) in &self.ends {
+            scene.markers.push(Marker::disc("workspace/ends", there(*end), 3.5, palette.amber));
+            let offset = [0.0, 14.0];
+            let label =
+                Label::new("workspace/ends/names", there(*end), offset, words, palette.dim, 11.5, Anchor::Centre);
+            scene.labels.push(label);
+        }
+        let within = frame.b_reference.rem_euclid(self.space.period());
+        let [what, size] = &self.words;
+        let rows = [(what.clone(), palette.amber, 12.5), (format!("b = {within:.3} rad · {size}"), palette.dim, 11.5)];
+        for (i, (text, colour, size)) in rows.into_iter().enumerate() {
+            let offset = [0.0, -26.0 + 17.0 * i as f32];
+            let name = "workspace/label";
+            scene.labels.push(Label::new(name, there(self.middle), offset, text, colour, size, Anchor::Centre));
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! [`PoseMap`]: coordinates (a, b) of the poses of a machine whose b can be held, for any number of drives, and where a
+//! hand can lead it in them.
+
+use std::sync::Arc;
+
+use super::pose_constant::{Planes, Reach};
+use super::pose_space::{NoPoseSpace, PoseSpace};
+use super::reactionless::PlanePoint;
+use crate::mechanics::kinematics::closest_turn;
+use crate::mechanics::machine::Machine;
+use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector};
+
+/// A point that a pose misses by less than this share of the reach is reached.
+const REACHED: f64 = 1e-9;
+/// From how many poses the nearest one is sought, and by how much of the reach another has to be nearer.
+const STARTS: usize = 24;
+const CLEARLY: f64 = 1e-4;
+const PRIMES: [f64; MAX_DRIVES - 1] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0];
+/// Looks along the curve of two drives, and halvings between two of them.
+const LOOKS: usize = 240;
+const HALVINGS: usize = 60;
+
+/// Coordinates of the poses of a machine: relative angles a, one fewer than drives, and b.
+#[derive(Clone, Debug)]
+pub enum PoseMap {
+    /// Three drives and two angles: planes, with everything in closed form.
+    Planes(Arc<Planes>),
+    /// Any other number.
+    Space(Arc<PoseSpace>),
+}
+
+impl PoseMap {
+    /// Of a machine, with its planes if it has some.
+    ///
+    /// # Errors
+    /// Why its b cannot be held.
+    pub fn of(machine: &Machine, planes: Option<&Arc<Planes>>) -> Result<Self, NoPoseSpace> {
+        match planes {
+            Some(planes) => Ok(Self::Planes(planes.clone())),
+            None => Ok(Self::Space(Arc::new(PoseSpace::of(machine)?))),
+        }
+    }
+
+    /// How many relative angles there are.
+    pub fn angles(&self) -> usize {
+        match self {
+            Self::Planes(_) => 2,
+            Self::Space(space) => space.joints().len(),
+        }
+    }
+
+    /// λ of the drives.
+    pub fn lambda(&self) -> PerDrive {
+        match self {
+            Self::Planes(planes) => PerDrive::from(planes.map().lambda()),
+            Self::Space(space) => *space.lambda(),
+        }
+    }
+
+    /// Turning all drives once adds this to b and changes nothing else, rad.
+    pub fn period(&self) -> f64 {
+        match self {
+            Self::Planes(planes) => planes.map().period(),
+            Self::Space(space) => space.period(),
+        }
+    }
+
+    /// Relative angles and b of a pose, rad.
+    pub fn project(&self, q: &DriveAngles) -> (PerDrive, f64) {
+        match self {
+            Self::Planes(planes) => {
+                let at = planes.map().project(q);
+                (PerDrive::from(at.a), at.b)
+            }
+            Self::Space(space) => (space.angles(q), space.b(q)),
+        }
+    }
+
+    /// Rates of the relative angles and ḃ for rates of the drives.
+    pub fn project_rates(&self, qd: &PerDrive) -> (PerDrive, f64) {
+        match self {
+            Self::Planes(planes) => {
+                let (ad, bd) = planes.map().project_rates(qd);
+                (PerDrive::from(ad), bd)
+            }
+            Self::Space(space) => (space.angle_rates(qd), space.b(qd)),
+        }
+    }
+
+    /// Drive angles, never wrapped.
+    pub fn lift(&self, a: &PerDrive, b: f64) -> DriveAngles {
+        match self {
+            Self::Planes(planes) => DriveAngles::from(planes.map().lift(PlanePoint { a: [a[0], a[1]], b })),
+            Self::Space(space) => space.lift(a, b),
+        }
+    }
+
+    /// Rates of the drives.
+    pub fn lift_rates(&self, ad: &PerDrive, bd: f64) -> PerDrive {
+        match self {
+            Self::Planes(planes) => PerDrive::from(planes.map().lift_rates([ad[0], ad[1]], bd)),
+            Self::Space(space) => space.lift_rates(ad, bd),
+        }
+    }
+
+    /// The end effector, m.
+    pub fn forward(&self, a: &PerDrive, b: f64) -> Vector {
+        match self {
+            Self::Planes(planes) => planes.map().forward([a[0], a[1]], b),
+            Self::Space(space) => space.place(&space.lift(a, b)),
+        }
+    }
+
+    /// Least and greatest value of a relative angle, rad; infinite where it turns freely.
+    pub fn limits(&self, i: usize) -> [f64; 2] {
+        match self {
+            Self::Planes(planes) => {
+                let limit = planes.map().limits()[i];
+                [limit.min, limit.max]
+            }
+            Self::Space(space) => space.joints()[i].bounds(),
+        }
+    }
+
+    /// Relative angles within their limits.
+    pub fn clamped(&self, a: &PerDrive) -> PerDrive {
+        match self {
+            Self::Planes(planes) => PerDrive::from(planes.map().clamp([a[0], a[1]])),
+            Self::Space(space) => space.clamped(a),
+        }
+    }
+
+    /// Whether something inside the limits can bar a straight way of joint space.
+    pub fn has_bars(&self) -> bool {
+        matches!(self, Self::Planes(planes) if planes.has_bars())
+    }
+
+    /// Whether nothing bars the straight way of joint space between two poses of one b.
+    pub fn is_open_way(&self, from: &PerDrive, to: &PerDrive) -> bool {
+        match self {
+            Self::Planes(planes) => planes.is_open_way([from[0], from[1]], [to[0], to[1]]),
+            Self::Space(_) => true,
+        }
+    }
+
+    /// The pose that puts the end effector on p, m, at b, continuously from another.
+    pub fn follow(&self, p: Vector, b: f64, from: &PerDrive) -> Option<PerDrive> {
+        match self {
+            Self::Planes(planes) => planes.follow(p, b, [from[0], from[1]]).map(PerDrive::from),
+            Self::Space(space) => {
+                let (a, off) = space.toward(p, b, from);
+                (off <= REACHED * space.farthest()).then_some(a)
+            }
+        }
+    }
+
+    /// Where to go for a target, m, at b: its pose, or the nearest that can be reached from another; sought all over the
+    /// limits, or only beside that other one.
+    pub fn reach(&self, p: Vector, b: f64, from: &PerDrive, all_over: bool) -> (PerDrive, Reach) {
+        match self {
+            Self::Planes(planes) => {
+                let (a, reach) = planes.reach(p, b, [from[0], from[1]]);
+                (PerDrive::from(a), reach)
+            }
+            Self::Space(space) => reach(space, p, b, from, all_over),
+        }
+    }
+}
+
+fn reach(space: &PoseSpace, p: Vector, b: f64, from: &PerDrive, all_over: bool) -> (PerDrive, Reach) {
+    let (mut a, mut off) = match space.drives() {
+        2 => along_curve(space, p, b, from[0]),
+        _ => space.toward(p, b, from),
+    };
+    let is_at = |off: f64| off <= REACHED * space.farthest();
+    if !is_at(off) && space.drives() > 3 && all_over {
+        // Another elbow may reach it; nothing bars the way there.
+        let poses = space.poses(p, b, from);
+        match poses.first() {
+            Some(q) => (a, off) = (space.angles(q), 0.0),
+            None => (a, off) = nearest_of_all(space, p, b, (a, off)),
+        }
+    }
+    if is_at(off) {
+        return (a, Reach::Inside);
+    }
+    let set = space.reach(p).ok();
+    let mending_b = set.as_ref().and_then(|set| set.nearest(b));
+    let shown_b = set.zip(mending_b).and_then(|(set, b)| set.decimal(b, 3));
+    let nearest = space.place(&space.lift(&a, b));
+    (a, Reach::Outside { nearest, mending_b, shown_b, other_sheet: false })
+}
+
+/// The pose that is nearest to p, m, of those gone to from all over the limits; the one there is, unless another is clearly
+/// nearer.
+fn nearest_of_all(space: &PoseSpace, p: Vector, b: f64, (a, off): (PerDrive, f64)) -> (PerDrive, f64) {
+    let start = |i: usize| {
+        PerDrive::from_fn(space.joints().len(), |j| {
+            let [low, high] = space.joints()[j].limits();
+            // Evenly spread: multiples of the square roots of primes.
+            let share = ((i as f64 + 0.5) * PRIMES[j].sqrt()).fract();
+            low + share * (high - low)
+        })
+    };
+    let others = (0..STARTS).map(|i| space.toward(p, b, &start(i)));
+    let best = others.min_by(|x, y| x.1.total_cmp(&y.1));
+    best.filter(|(_, other)| *other < off - CLEARLY * space.farthest()).unwrap_or((a, off))
+}
+
+/// Two drives: the point of their curve that is nearest to p, and how far that is, m; where the curve goes round, on the
+/// turn of an angle.
+fn along_curve(space: &PoseSpace, p: Vector, b: f64, turn: f64) -> (PerDrive, f64) {
+    let [low, high] = space.joints()[0].limits();
+    let off = |a: f64| (space.place(&space.lift(&[a], b)) - p).norm();
+    let step = (high - low) / LOOKS as f64;
+    let looks = (0..=LOOKS).map(|i| low + step * i as f64);
+    let near = looks.min_by(|x, y| off(*x).total_cmp(&off(*y))).unwrap_or(low);
+    let [mut from, mut to] = [(near - step).max(low), (near + step).min(high)];
+    for _ in 0..HALVINGS {
+        let thirds = [(2.0 * from + to) / 3.0, (from + 2.0 * to) / 3.0];
+        if off(thirds[0]) < off(thirds[1]) { to = thirds[1] } else { from = thirds[0] }
+    }
+    let a = 0.5 * (from + to);
+    let a = if space.joints()[0].bounds()[0].is_finite() { a } else { closest_turn(a, turn) };
+    (PerDrive::from([a]), off(a))
+}

@@ -1,0 +1,163 @@
+//! A hand leads machines of any number of drives: b stays, the base feels nothing, limits hold; b is slid at its price.
+
+use proptest::prelude::*;
+use stillbase::mechanics::machine::builtin;
+use stillbase::mechanics::planar::Vector;
+use stillbase::planning::pose_space::PoseSpace;
+use stillbase::session::scenario::Scenario;
+use stillbase::session::{Session, replay};
+use stillbase::simulation::frame::{Frame, Reach};
+
+use super::{drag, open, slide};
+
+fn scenario(name: &str) -> Scenario {
+    Scenario::builtin(name).expect("built in")
+}
+
+fn space(session: &Session) -> PoseSpace {
+    PoseSpace::of(&session.scenario().machine).expect("it has a pose constant")
+}
+
+/// Steps of a session, each looked at.
+fn step(session: &mut Session, steps: usize, mut see: impl FnMut(&Frame)) {
+    for _ in 0..steps {
+        session.step_by(1);
+        see(session.frame());
+    }
+}
+
+/// The largest moment and the largest torque of some steps.
+fn led(session: &mut Session, steps: usize) -> [f64; 2] {
+    let mut most = [0.0_f64; 2];
+    let limits: Vec<[f64; 2]> =
+        session.scenario().machine.angles().iter().map(|a| [*a.limits.start(), *a.limits.end()]).collect();
+    step(session, steps, |f| {
+        most[0] = most[0].max(f.base_moment().abs());
+        most[1] = most[1].max(f.torque.iter().map(|t| t.abs()).sum());
+        for (a, [low, high]) in f.a.iter().zip(&limits) {
+            assert!(*a > low - 1e-6 && *a < high + 1e-6, "{a} of {low} to {high}");
+        }
+    });
+    most
+}
+
+#[test]
+fn two_drives_go_along_their_curve() {
+    let mut session = open(scenario("two-drive"));
+    let (b, space) = (session.frame().b_reference, space(&session));
+    let curve: Vec<Vector> = space.outline(b).curve.iter().map(|[x, y]| Vector::new(*x, *y)).collect();
+    for at in [[0.5, 0.1], [0.7, 0.0], [0.3, -0.3], [0.9, 0.2]] {
+        session.apply(drag(at[0], at[1])).expect("it follows");
+        let [moment, torque] = led(&mut session, 2500);
+        assert!(moment < 1e-9 * torque, "{moment} of {torque}");
+        let f = session.frame();
+        assert!((f.b - b).abs() < 1e-9);
+        let p = Vector::new(at[0], at[1]);
+        let nearest = curve.iter().map(|q| (q - p).norm()).fold(f64::INFINITY, f64::min);
+        assert!((f.end_effector - p).norm() < nearest + 1e-5, "{} from {p}, {nearest} would do", f.end_effector);
+        let Reach::Outside { nearest, mending_b, .. } = f.target.reach else { panic!("{p} is beside the curve") };
+        assert!((nearest - f.end_effector).norm() < 1e-6);
+        // The b that is named reaches it.
+        if let Some(mending) = mending_b {
+            assert!(!space.poses(p, mending, &space.middle()).is_empty(), "{p} at {mending}");
+        }
+    }
+    // A point of the curve is reached.
+    let on = curve[curve.len() / 3];
+    session.apply(drag(on.re, on.im)).expect("it follows");
+    led(&mut session, 2500);
+    assert!((session.frame().end_effector - on).norm() < 1e-6);
+}
+
+#[test]
+fn four_drives_are_led_anywhere_in_their_workspace() {
+    let mut session = open(scenario("four-drive"));
+    let (b, space) = (session.frame().b_reference, space(&session));
+    for at in [[0.5, 0.6], [0.2, 0.9], [-0.1, 0.7], [0.6, 0.2]] {
+        let p = Vector::new(at[0], at[1]);
+        let is_in = !space.poses(p, b, &space.middle()).is_empty();
+        session.apply(drag(at[0], at[1])).expect("it follows");
+        let [moment, torque] = led(&mut session, 3000);
+        assert!(moment < 1e-9 * torque, "{moment} of {torque}");
+        let f = session.frame();
+        assert!((f.b - b).abs() < 1e-9);
+        assert_eq!(f.target.reach == Reach::Inside, is_in, "{p}");
+        assert!(!is_in || (f.end_effector - p).norm() < 1e-6, "{} instead of {p}", f.end_effector);
+    }
+    // Far outside it waits where it is nearest.
+    session.apply(drag(2.0, 1.5)).expect("it waits");
+    led(&mut session, 3000);
+    let f = session.frame();
+    let p = Vector::new(2.0, 1.5);
+    let boundary = space.outline(b).loops;
+    let nearest =
+        boundary.iter().flatten().map(|[x, y]| (Vector::new(*x, *y) - p).norm()).fold(f64::INFINITY, f64::min);
+    assert!((f.end_effector - p).norm() < nearest + 1e-3, "{} m, {nearest} m would do", (f.end_effector - p).norm());
+    let again = replay(&session.to_scenario(), |_, _| {}).expect("it runs");
+    assert_eq!(again.frame(), session.run().frame(), "the drags are in the script");
+}
+
+#[test]
+fn b_is_slid_at_its_price() {
+    for name in ["two-drive", "four-drive"] {
+        let mut session = open(scenario(name));
+        let (space, p) = (space(&session), session.frame().end_effector);
+        session.apply(drag(p.re, p.im)).expect("it stays");
+        led(&mut session, 10);
+        let b = session.frame().b;
+        session.apply(slide(b + 0.2)).expect("it slides");
+        let mut price = 0.0_f64;
+        let mut before: Option<Frame> = None;
+        step(&mut session, 1500, |f| {
+            // n_B = −D_1 b̈, by the b that it has.
+            let bdd = space.lambda().dot(&f.qdd);
+            assert!((f.base_moment() + space.inertia() * bdd).abs() < 1e-9, "{} {bdd}", f.base_moment());
+            price = price.max(f.base_moment().abs());
+            before = Some(*f);
+        });
+        let f = session.frame();
+        assert!((f.b - b - 0.2).abs() < 1e-6, "{name}: {} of {}", f.b - b, 0.2);
+        assert!(price > 1e-3, "{name}: it costs a moment");
+        let moved = (f.end_effector - p).norm();
+        match name {
+            // A curve that turns takes the end effector along.
+            "two-drive" => assert!(moved > 0.01, "{moved}"),
+            _ => assert!(moved < 1e-5, "{moved}: it keeps its place"),
+        }
+    }
+}
+
+#[test]
+fn what_has_no_pose_constant_says_why_it_is_not_led() {
+    let mut session = open(scenario("scara"));
+    let why = session.apply(drag(0.3, 0.3)).expect_err("its b cannot be held").to_string();
+    assert!(why.contains("depends on the pose") || why.contains("b"), "{why}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    /// Gone to from anywhere, a pose keeps b and the limits, and comes nearer; a point that some pose is on is reached.
+    #[test]
+    fn a_hand_comes_as_near_as_can_be(from in prop::array::uniform3(0.05..0.95), to in prop::array::uniform3(0.05..0.95), b in -3.0..3.0) {
+        let machine = builtin("four-drive").expect("built in");
+        let space = PoseSpace::of(machine).expect("it is balanced");
+        let at = |share: [f64; 3]| -> Vec<f64> {
+            space.joints().iter().zip(share).map(|(joint, t)| joint.limits()[0] + t * (joint.limits()[1] - joint.limits()[0])).collect()
+        };
+        let (from, there) = (at(from), space.place(&space.lift(&at(to), b)));
+        let (a, off) = space.toward(there, b, &from);
+        let q = space.lift(&a, b);
+        prop_assert!((space.b(&q) - b).abs() < 1e-12);
+        prop_assert!((space.place(&q) - there).norm() <= off + 1e-12);
+        for (a, joint) in a.iter().zip(space.joints()) {
+            prop_assert!(*a >= joint.limits()[0] && *a <= joint.limits()[1]);
+        }
+        let start = (space.place(&space.lift(&from, b)) - there).norm();
+        prop_assert!(off <= start);
+        // From a neighbour of the pose that is on it, it is reached.
+        let near: Vec<f64> = at(to).iter().map(|a| a + 0.02).collect();
+        let (_, off) = space.toward(there, b, &space.clamped(&near));
+        prop_assert!(off < 1e-9 * space.farthest(), "{off}");
+    }
+}
