@@ -9,12 +9,14 @@ use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
 use stillbase::simulation::frame::Reach;
 
-use super::{Window, drag, on_screen, pull, session, window};
+use super::{Window, drag, on_screen, pull, session, type_into, window};
 use crate::Test;
 
 pub const TESTS: &[Test] = tests![
     dragging_the_target_moves_the_machine_on_its_plane,
     a_target_outside_says_why_and_what_b_would_do,
+    machines_of_two_and_four_drives_are_dragged,
+    a_machine_that_shakes_says_why_it_has_no_b,
     escape_cancels_a_drag_and_takes_it_back,
     waypoints_are_handles,
     a_path_is_drawn_by_hand,
@@ -37,6 +39,46 @@ fn dragging_the_target_moves_the_machine_on_its_plane() {
     assert!((f.end_effector.re - 0.62).abs() < 2e-3 && (f.end_effector.im - 0.55).abs() < 2e-3, "{:?}", f.end_effector);
     assert!(f.peaks.is_reactionless(), "n_B stays at zero: {:?}", f.peaks);
     assert!((f.b - 2.4).abs() < 1e-11);
+}
+
+fn machines_of_two_and_four_drives_are_dragged() {
+    for (name, to) in [("two-drive", [0.5, 0.2]), ("four-drive", [0.5, 0.6])] {
+        let mut h = window(name, Theme::Dark);
+        h.run_steps(2);
+        let (b, at) = (session(&h).frame().b, session(&h).frame().end_effector);
+        let (from, there) = (on_screen(&h, at.re, at.im), on_screen(&h, to[0], to[1]));
+        drag(&mut h, from, there);
+        h.run_steps(150);
+        let f = *session(&h).frame();
+        assert!((f.end_effector - at).norm() > 0.05, "{name} follows");
+        assert!(f.peaks.is_reactionless() && (f.b - b).abs() < 1e-9, "{name}: {:?}", f.peaks);
+        match f.target.reach {
+            Reach::Outside { nearest, .. } if name == "two-drive" => {
+                assert!((nearest - f.end_effector).norm() < 1e-6, "it waits on its curve");
+            }
+            Reach::Inside if name == "four-drive" => {
+                assert!((f.end_effector.re - to[0]).hypot(f.end_effector.im - to[1]) < 3e-3, "{}", f.end_effector);
+            }
+            reach => panic!("{name}: {reach:?}"),
+        }
+        // The curve or the boundary is drawn, and turns with b.
+        let edge = |h: &Window| {
+            let scene = h.state().app_state().stage().scene(session(h).frame(), &Default::default());
+            scene.lines.iter().find(|line| line.name == "workspace/boundary").expect("it is drawn").world_from_item
+        };
+        let before = edge(&h);
+        type_into(&mut h, "b rad", "3");
+        h.run_steps(150);
+        assert!((session(&h).frame().b - 3.0).abs() < 1e-6, "{name}: {}", session(&h).frame().b);
+        assert_ne!(edge(&h), before);
+    }
+}
+
+fn a_machine_that_shakes_says_why_it_has_no_b() {
+    let mut h = window("scara", Theme::Dark);
+    h.run_steps(2);
+    assert!(h.query_all_by_label_contains("no pose constant b").next().is_some());
+    assert!(h.query_by_label("b rad").is_none() && h.query_by_label("target x m").is_none());
 }
 
 fn a_target_outside_says_why_and_what_b_would_do() {
