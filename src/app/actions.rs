@@ -106,6 +106,19 @@ fn charts(session: &Session, view_state: &ViewState, factor: Option<f64>) -> Opt
 }
 
 /// What only a view of the machine has.
+/// The next view that the machine has.
+fn next_view(session: &Session, view_state: &ViewState) -> Option<Command> {
+    let next = view_state.view.next();
+    let has = next.shows_machine() || session.run().planes().is_some();
+    Some(Command::View(if has { next } else { ViewKind::Flat }))
+}
+
+/// A view of planes, if there are some.
+fn view_of_planes(session: &Session, view_state: &ViewState, kind: ViewKind) -> Option<Command> {
+    session.run().planes()?;
+    view(view_state, kind)
+}
+
 fn of_machine(view_state: &ViewState, command: Command) -> Option<Command> {
     view_state.view.shows_machine().then_some(command)
 }
@@ -180,13 +193,13 @@ pub const ACTIONS: &[Action] = actions![
         of_machine(v, Command::Push(!v.pushing))
     };
 
-    View, "The next view: 2D, 3D, joint space, tower", [on(PLAIN, Key::V)], "tool bar", |_, v| {
-        Some(Command::View(v.view.next()))
+    View, "The next view: 2D, 3D, joint space, tower", [on(PLAIN, Key::V)], "tool bar", |s, v| {
+        next_view(s, v)
     };
     View, "2D: the machine from above", [], "tool bar", |_, v| view(v, ViewKind::Flat);
     View, "3D: the machine in space", [], "tool bar", |_, v| view(v, ViewKind::Space);
-    View, "Joint space", [], "tool bar", |_, v| view(v, ViewKind::Joints);
-    View, "Tower of workspaces", [], "tool bar", |_, v| view(v, ViewKind::Tower);
+    View, "Joint space", [], "tool bar", |s, v| view_of_planes(s, v, ViewKind::Joints);
+    View, "Tower of workspaces", [], "tool bar", |s, v| view_of_planes(s, v, ViewKind::Tower);
     View, "Show everything", [on(PLAIN, Key::F)], "tool bar", |_, _| Some(Command::Fit);
     View, "Zoom in", [on(PLAIN, Key::Plus), on(PLAIN, Key::Equals)], "scene, wheel", |_, _| {
         Some(Command::Look(Look::Zoom(ZOOM)))

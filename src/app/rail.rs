@@ -124,7 +124,8 @@ pub fn show(ui: &mut Ui, session: &Session, branches: &[Fork], view_state: &View
         let bars = egui::scroll_area::ScrollBarVisibility::AlwaysHidden;
         ScrollArea::vertical().auto_shrink(false).scroll_bar_visibility(bars).show(ui, |ui| {
             ui.spacing_mut().item_spacing = vec2(0.0, 2.0);
-            for view in ViewKind::ALL {
+            let has_planes = session.run().planes().is_some();
+            for view in ViewKind::ALL.into_iter().filter(|view| has_planes || view.shows_machine()) {
                 let tip = format!("{}{}", view.explanation(), key("The next view: 2D, 3D, joint space, tower"));
                 let word = (view.name(), tip.as_str());
                 if word_button(ui, &p, word, view_state.view == view, vec2(BUTTON.x, 25.0)).clicked() {

@@ -184,7 +184,9 @@ fn limits(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comman
         let old = ends;
         ui.horizontal(|ui| {
             let symbol = ["a₁", "a₂", "a₃", "a₄", "a₅", "a₆", "a₇"].get(i).copied().unwrap_or("a");
-            ui.label(symbol).on_hover_text("Relative joint angle: a₁ = q₂ − q₁, a₂ = q₃ − q₂ + π");
+            let [to, from] = [angle.to, angle.from].map(|k| subscript(k + 1));
+            let by = if angle.offset == 0.0 { String::new() } else { format!(" {} rad", signed_by(angle.offset)) };
+            ui.label(symbol).on_hover_text(format!("Relative joint angle: {symbol} = q{to} − q{from}{by}"));
             if !ends.iter().all(|end| end.is_finite()) {
                 ui.label(RichText::new("turns freely").color(colour(p.dim)));
                 return;
@@ -218,6 +220,11 @@ fn limits(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comman
             });
         });
     }
+}
+
+/// A number that is added.
+fn signed_by(x: f64) -> String {
+    format!("{} {:.3}", if x < 0.0 { '−' } else { '+' }, x.abs())
 }
 
 fn gravity(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {

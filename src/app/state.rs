@@ -21,7 +21,7 @@ use crate::mechanics::machine::Machine;
 use crate::picture::scene::exaggeration::exaggeration;
 use crate::picture::scene::palette::Theme;
 use crate::picture::scene::stage::Stage;
-use crate::picture::scene::views::Views;
+use crate::picture::scene::views::{ViewKind, Views};
 use crate::session::scenario::{Scenario, Task};
 use crate::session::{Edit, Refusal, Session};
 use crate::simulation::frame::Totals;
@@ -612,6 +612,9 @@ impl AppState {
             let (new, old) = (&key.machine, &self.stage_of.machine);
             if new.links() != old.links() || new.resolved_links() != old.resolved_links() {
                 self.view_state.framing.iter_mut().for_each(Framing::renew);
+            }
+            if !self.view_state.view.shows_machine() && self.session.run().planes().is_none() {
+                self.view_state.view = ViewKind::Flat;
             }
             self.views = Arc::new(views);
             self.signals = signals(&self.session.scenario().machine);

@@ -1,12 +1,12 @@
 //! [`PoseMap`]: coordinates (a, b) of the poses of a machine whose b can be held, for any number of drives, and where a
 //! hand can lead it in them.
 
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::pose_constant::{Planes, Reach};
 use super::pose_space::{NoPoseSpace, PoseSpace};
-use super::reactionless::PlanePoint;
-use crate::mechanics::kinematics::closest_turn;
+use super::reactionless::{BSet, Decimal, PlanePoint};
 use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector};
 
@@ -186,7 +186,10 @@ fn reach(space: &PoseSpace, p: Vector, b: f64, from: &PerDrive, all_over: bool) 
     }
     let set = space.reach(p).ok();
     let mending_b = set.as_ref().and_then(|set| set.nearest(b));
-    let shown_b = set.zip(mending_b).and_then(|(set, b)| set.decimal(b, 3));
+    // One b alone is printed with as many figures as it takes.
+    let serves = |b: f64| !space.poses(p, b, from).is_empty();
+    let printed = |set: &BSet, b: f64| set.decimal(b, 3).or_else(|| Decimal::that(b, 3, serves));
+    let shown_b = set.as_ref().zip(mending_b).and_then(|(set, b)| printed(set, b));
     let nearest = space.place(&space.lift(&a, b));
     (a, Reach::Outside { nearest, mending_b, shown_b, other_sheet: false })
 }
@@ -207,10 +210,12 @@ fn nearest_of_all(space: &PoseSpace, p: Vector, b: f64, (a, off): (PerDrive, f64
     best.filter(|(_, other)| *other < off - CLEARLY * space.farthest()).unwrap_or((a, off))
 }
 
-/// Two drives: the point of their curve that is nearest to p, and how far that is, m; where the curve goes round, on the
-/// turn of an angle.
+/// Two drives: the point of their curve that is nearest to p, and how far that is, m; where it turns
+/// freely, within half a turn of an angle.
 fn along_curve(space: &PoseSpace, p: Vector, b: f64, turn: f64) -> (PerDrive, f64) {
-    let [low, high] = space.joints()[0].limits();
+    // Where it turns freely, within half a turn: the curve goes on from there.
+    let is_free = space.joints()[0].bounds()[0].is_infinite();
+    let [low, high] = if is_free { [turn - PI, turn + PI] } else { space.joints()[0].limits() };
     let off = |a: f64| (space.place(&space.lift(&[a], b)) - p).norm();
     let step = (high - low) / LOOKS as f64;
     let looks = (0..=LOOKS).map(|i| low + step * i as f64);
@@ -221,6 +226,5 @@ fn along_curve(space: &PoseSpace, p: Vector, b: f64, turn: f64) -> (PerDrive, f6
         if off(thirds[0]) < off(thirds[1]) { to = thirds[1] } else { from = thirds[0] }
     }
     let a = 0.5 * (from + to);
-    let a = if space.joints()[0].bounds()[0].is_finite() { a } else { closest_turn(a, turn) };
     (PerDrive::from([a]), off(a))
 }

@@ -16,6 +16,15 @@ pub type Watch<'a> = &'a mut dyn FnMut(f64) -> bool;
 /// Frames between two words to whoever watches.
 pub(super) const WORD: usize = 256;
 
+/// What is kept beside a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kept {
+    /// Names of instants.
+    Bookmarks,
+    /// Runs that it left.
+    Branches,
+}
+
 /// Everything that makes a run, and what is kept beside it: what undo restores and what is saved.
 #[derive(Clone, Debug)]
 pub(super) struct Document {
@@ -47,10 +56,12 @@ impl Document {
         Self { scenario: Arc::new(scenario), script, end, bookmarks: Arc::default(), branches: Arc::default() }
     }
 
-    /// Keeps beside the run what another one does.
-    pub fn keep_as(&mut self, other: &Self) {
-        self.bookmarks.clone_from(&other.bookmarks);
-        self.branches.clone_from(&other.branches);
+    /// Keeps this beside the run as another one does.
+    pub fn keep_as(&mut self, other: &Self, kept: Kept) {
+        match kept {
+            Kept::Bookmarks => self.bookmarks.clone_from(&other.bookmarks),
+            Kept::Branches => self.branches.clone_from(&other.branches),
+        }
     }
 
     /// Runs it from its start to its end.

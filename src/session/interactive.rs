@@ -10,7 +10,7 @@ mod branches;
 use std::sync::Arc;
 
 use super::changes::{Failed, in_order};
-use super::document::{Document, WORD, Watch};
+use super::document::{Document, Kept, WORD, Watch};
 use super::edit::{Edit, TimedEdit};
 use super::made::Made;
 use super::refusal::Refusal;
@@ -27,8 +27,8 @@ struct Change {
     /// What takes it back while the machine moves.
     inverse: Option<Edit>,
     title: String,
-    /// Only what is kept beside the run has changed.
-    beside: bool,
+    /// Only this of what is kept beside the run has changed.
+    beside: Option<Kept>,
 }
 
 impl Change {
@@ -391,7 +391,7 @@ impl Session {
     }
 
     fn steps_of(&self, change: &Change, appends: bool) -> Option<u64> {
-        let quick = change.beside || (appends && self.is_running() && !change.plans());
+        let quick = change.beside.is_some() || (appends && self.is_running() && !change.plans());
         (!quick).then_some(change.before.end)
     }
 
@@ -496,7 +496,7 @@ impl Session {
             }
             _ => {
                 let title = timed.edit.title();
-                self.undo.push(Arc::new(Change { before, edit: Some(timed), inverse, title, beside: false }));
+                self.undo.push(Arc::new(Change { before, edit: Some(timed), inverse, title, beside: None }));
             }
         }
         self.gesture = true;
@@ -550,12 +550,12 @@ impl Session {
         self.end_gesture();
         let Some(change) = self.undo.last().cloned() else { return Ok(()) };
         let after = self.document.clone();
-        let done = match &change.inverse {
-            _ if change.beside => {
-                self.document.keep_as(&change.before);
+        let done = match (&change.inverse, change.beside) {
+            (_, Some(kept)) => {
+                self.document.keep_as(&change.before, kept);
                 Ok(())
             }
-            Some(inverse) if self.is_running() && !change.plans() => {
+            (Some(inverse), None) if self.is_running() && !change.plans() => {
                 self.append(inverse.clone(), watch).or_else(|why| self.instead(why, &change.before, watch))
             }
             _ => self.return_to(&change.before, watch),
@@ -582,12 +582,12 @@ impl Session {
         self.end_gesture();
         let Some(change) = self.redo.last().cloned() else { return Ok(()) };
         let before = self.document.clone();
-        let done = match &change.edit {
-            _ if change.beside => {
-                self.document.keep_as(&change.before);
+        let done = match (&change.edit, change.beside) {
+            (_, Some(kept)) => {
+                self.document.keep_as(&change.before, kept);
                 Ok(())
             }
-            Some(timed) if self.is_running() && !change.plans() => {
+            (Some(timed), None) if self.is_running() && !change.plans() => {
                 self.append(timed.edit.clone(), watch).or_else(|why| self.instead(why, &change.before, watch))
             }
             _ => self.return_to(&change.before, watch),
@@ -656,7 +656,7 @@ impl Session {
             edit: None,
             inverse: None,
             title,
-            beside: false,
+            beside: None,
         }));
         *self = next;
     }

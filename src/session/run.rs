@@ -320,6 +320,7 @@ impl Run {
         Some(match edit {
             Edit::DragTarget { .. } => Edit::DragTarget { x: frame.target.at.re, y: frame.target.at.im },
             Edit::DragAngles { .. } => {
+                self.planes.as_ref()?;
                 let [a1, a2] = match self.simulation.guide() {
                     Guide::Follow(follower) => [follower.aim()[0], follower.aim()[1]],
                     Guide::Motion { .. } => self.planes.as_ref()?.map().project(&self.simulation.reference().q).a,

@@ -2,7 +2,9 @@
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use stillbase::picture::paint::draw_drafts;
+use stillbase::picture::paint::words::placed;
+use stillbase::picture::paint::{Spot, draw_drafts};
+use stillbase::picture::scene::framing::Room;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::views::ViewKind;
 use stillbase::planning::reactionless::PlanePoint;
@@ -13,9 +15,39 @@ use crate::Test;
 pub const TESTS: &[Test] = tests![
     what_moves_is_drawn_in_draft_and_finely_once_it_rests,
     views_are_linked,
+    words_of_a_scene_stand_clear_of_each_other,
     dexterity_is_shown_with_its_key_where_there_is_a_workspace,
     runs_stand_side_by_side,
 ];
+
+/// In every view, wide and narrow: no words lie over others or over what covers the scene, and none are cut off.
+fn words_of_a_scene_stand_clear_of_each_other() {
+    let mut h = window("case-1", Theme::Dark);
+    h.run_steps(2);
+    for view in ViewKind::ALL {
+        for size in [egui::vec2(900.0, 800.0), egui::vec2(380.0, 520.0)] {
+            let state = h.state().app_state();
+            let (views, frame) = (state.views(), session(&h).frame());
+            let rect = egui::Rect::from_min_size(egui::pos2(40.0, 30.0), size);
+            let content = views.content(view, frame, &[]);
+            let room = Room { size: [f64::from(size.x), f64::from(size.y)], covered: Vec::new() };
+            let camera = content.framed(views.camera(view), &room);
+            let scene = views.scene(view, frame, &Default::default(), &camera);
+            let painter = egui::Painter::new(h.ctx.clone(), egui::LayerId::background(), rect);
+            let grid = egui::Rect::from_min_max(rect.right_bottom() - egui::vec2(90.0, 28.0), rect.right_bottom());
+            let all = placed(&painter, &Spot { rect, camera }, &scene, &[grid]);
+            assert!(!all.is_empty() && all.len() <= scene.labels.len());
+            for (i, (label, _, place)) in all.iter().enumerate() {
+                let words = (&label.text, view, size);
+                assert!(!place.intersects(grid), "{words:?} lies over the grid's width");
+                assert!(rect.expand(1.0).contains_rect(*place), "{words:?} is cut off at {place}");
+                for (other, _, there) in &all[..i] {
+                    assert!(other.at == label.at || !place.intersects(*there), "{words:?} lies over {}", other.text);
+                }
+            }
+        }
+    }
+}
 
 /// Where the processor draws, a repaint is asked for once it rests, and then the picture is what it is elsewhere.
 fn what_moves_is_drawn_in_draft_and_finely_once_it_rests() {

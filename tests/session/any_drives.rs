@@ -55,11 +55,15 @@ fn two_drives_go_along_their_curve() {
         let p = Vector::new(at[0], at[1]);
         let nearest = curve.iter().map(|q| (q - p).norm()).fold(f64::INFINITY, f64::min);
         assert!((f.end_effector - p).norm() < nearest + 1e-5, "{} from {p}, {nearest} would do", f.end_effector);
-        let Reach::Outside { nearest, mending_b, .. } = f.target.reach else { panic!("{p} is beside the curve") };
+        let Reach::Outside { nearest, mending_b, shown_b, .. } = f.target.reach else {
+            panic!("{p} is beside the curve")
+        };
         assert!((nearest - f.end_effector).norm() < 1e-6);
         // The b that is named reaches it.
         if let Some(mending) = mending_b {
             assert!(!space.poses(p, mending, &space.middle()).is_empty(), "{p} at {mending}");
+            let printed: f64 = shown_b.expect("it is printed").to_string().parse().expect("a number");
+            assert!(!space.poses(p, printed, &space.middle()).is_empty(), "{p} at {printed} as printed");
         }
     }
     // A point of the curve is reached.
@@ -67,6 +71,25 @@ fn two_drives_go_along_their_curve() {
     session.apply(drag(on.re, on.im)).expect("it follows");
     led(&mut session, 2500);
     assert!((session.frame().end_effector - on).norm() < 1e-6);
+}
+
+/// Without limits the curve goes on from where a hand has led it.
+#[test]
+fn a_joint_that_turns_freely_is_led_on() {
+    let named = scenario("two-drive");
+    let mut spec = named.machine.spec().clone();
+    (spec.angles[0].min, spec.angles[0].max) = (None, None);
+    let machine = stillbase::mechanics::machine::Machine::new(spec).expect("it turns freely");
+    let mut session = open(Scenario { machine, ..named });
+    let (b, space) = (session.frame().b_reference, space(&session));
+    for i in 1..=30 {
+        let on = space.place(&space.lift(&[session.frame().a[0] + 0.25], b));
+        session.apply(drag(on.re, on.im)).expect("it follows");
+        led(&mut session, 700);
+        let off = (session.frame().end_effector - on).norm();
+        assert!(off < 1e-6, "{off} m at {} rad, drag {i}", session.frame().a[0]);
+    }
+    assert!(session.frame().a[0] > 7.0, "more than a turn: {}", session.frame().a[0]);
 }
 
 #[test]
@@ -95,6 +118,24 @@ fn four_drives_are_led_anywhere_in_their_workspace() {
     assert!((f.end_effector - p).norm() < nearest + 1e-3, "{} m, {nearest} m would do", (f.end_effector - p).norm());
     let again = replay(&session.to_scenario(), |_, _| {}).expect("it runs");
     assert_eq!(again.frame(), session.run().frame(), "the drags are in the script");
+}
+
+/// A b that is said to reach a target does, once it is slid there.
+#[test]
+fn the_b_that_is_named_reaches_the_target() {
+    for at in [[-0.6393, -0.483], [-1.036, 0.117], [0.9, -0.4]] {
+        let mut session = open(scenario("four-drive"));
+        session.apply(drag(at[0], at[1])).expect("it waits or goes");
+        led(&mut session, 2000);
+        let Reach::Outside { shown_b: Some(b), .. } = session.frame().target.reach else { continue };
+        let b: f64 = b.to_string().parse().expect("a number");
+        // A hair inside, where rounding does not matter.
+        let inside = b + 1e-3 * (b - session.frame().b).signum();
+        session.apply(slide(inside)).expect("it slides");
+        step(&mut session, 9000, |_| {});
+        let off = (session.frame().end_effector - Vector::new(at[0], at[1])).norm();
+        assert!(off < 1e-4, "{at:?} at b = {inside}: {off} m");
+    }
 }
 
 #[test]

@@ -29,6 +29,30 @@ fn forked() -> Session {
     session
 }
 
+/// Undone while time runs, edits leave their branch; the bookmark before them takes only itself back.
+#[test]
+fn undo_of_a_bookmark_leaves_branches_alone() {
+    let mut session = open(coarse());
+    session.bookmark(0.0, "start");
+    do_it(&mut session, drag(0.52, 0.62));
+    session.end_gesture();
+    session.tick(60);
+    session.pause();
+    session.step_by(-40);
+    session.play();
+    do_it(&mut session, drag(0.45, 0.7));
+    session.end_gesture();
+    session.tick(50);
+    assert_eq!((session.branch_count(), session.undo_count()), (1, 3));
+    session.undo().expect("appended");
+    session.undo().expect("appended");
+    assert_eq!((session.branch_count(), session.bookmarks().len()), (1, 1));
+    session.undo().expect("the bookmark");
+    assert_eq!((session.branch_count(), session.bookmarks().len()), (1, 0));
+    session.redo().expect("the bookmark again");
+    assert_eq!((session.branch_count(), session.bookmarks().len()), (1, 1));
+}
+
 #[test]
 fn bookmarks_are_undone_saved_and_found_again() {
     let mut session = open(coarse());

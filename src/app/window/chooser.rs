@@ -54,7 +54,11 @@ impl Chooser {
                 self.folder = file.parent().map(Path::to_path_buf);
                 // It has asked, too, whether a file that is there is to be replaced.
                 app_state.carry_out(Command::Replace(file.clone()));
-                let file = with_ending(file, ending(&dialog.purpose));
+                // What is opened has the name that it has.
+                let file = match dialog.purpose {
+                    Purpose::Open => file,
+                    _ => with_ending(file, ending(&dialog.purpose)),
+                };
                 app_state.carry_out(dialog.named(file));
                 ctx.request_repaint();
             }

@@ -47,9 +47,21 @@ pub fn still(ui: &mut Ui, scene: &Arc<Scene>, camera: &Camera) {
     });
 }
 
-/// The scene's labels, clear of what is taken already.
+/// Paints the scene's labels, clear of what is taken already.
 pub fn words(ui: &Ui, spot: &Spot, scene: &Scene, taken: &[Rect]) {
     let painter = ui.painter().with_clip_rect(spot.rect);
+    for (label, galley, place) in placed(&painter, spot, scene, taken) {
+        write(&painter, scene, label, galley, place);
+    }
+}
+
+/// Where the scene's labels stand: those that have room.
+pub fn placed<'a>(
+    painter: &Painter,
+    spot: &Spot,
+    scene: &'a Scene,
+    taken: &[Rect],
+) -> Vec<(&'a Label, Arc<Galley>, Rect)> {
     let mut groups: Vec<(Pos2, Group<'_>)> = Vec::new();
     for label in &scene.labels {
         let Some(at) = spot.screen(label.at.map(f64::from)) else { continue };
@@ -66,27 +78,32 @@ pub fn words(ui: &Ui, spot: &Spot, scene: &Scene, taken: &[Rect]) {
     }
     groups.sort_by_key(|(_, group)| group.rank);
     let mut taken = taken.to_vec();
-    for (at, group) in &mut groups {
-        group.place(*at, spot.rect);
+    let mut all = Vec::with_capacity(scene.labels.len());
+    for (at, mut group) in groups {
+        group.place(at, spot.rect);
         let boxes: Vec<Rect> = group.words.iter().map(|(.., place)| *place).collect();
-        let free = clear(&boxes, &taken, spot.rect);
-        let shift = match free {
+        // Of what is out of view nothing is said, rather than half of it.
+        if !spot.rect.contains(at) && !boxes.iter().all(|place| spot.rect.contains_rect(*place)) {
+            continue;
+        }
+        let shift = match clear(&boxes, &taken, spot.rect) {
             Some(shift) => shift,
             None if group.rank == LEFT_OUT => continue,
             None => 0.0,
         };
-        for (label, galley, place) in &group.words {
+        for (label, galley, place) in group.words {
             let place = place.translate(vec2(0.0, shift));
             taken.push(place);
-            write(&painter, scene, label, galley, place);
+            all.push((label, galley, place));
         }
     }
+    all
 }
 
-fn write(painter: &Painter, scene: &Scene, label: &Label, galley: &Arc<Galley>, place: Rect) {
+fn write(painter: &Painter, scene: &Scene, label: &Label, galley: Arc<Galley>, place: Rect) {
     // A faint plate keeps words legible over bars and curves.
     painter.rect_filled(place.expand2(vec2(3.0, 0.0)), 3.0, colour(faded(scene.background, 0.55)));
-    painter.galley(place.min, galley.clone(), colour(label.colour));
+    painter.galley(place.min, galley, colour(label.colour));
 }
 
 impl Group<'_> {

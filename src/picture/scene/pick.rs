@@ -74,7 +74,10 @@ impl Aim {
             Self::Waypoint(i, at) => Self::Waypoint(i, both(at, ROUND_PLACE)),
             Self::Payload(offset) => Self::Payload(both(offset, ROUND_PLACE)),
             Self::Limit { angle, end, mut ends } => {
-                ends[end] = round(ends[end], ROUND_ANGLE);
+                // Round, unless that is beyond the other end.
+                let rounded = round(ends[end], ROUND_ANGLE);
+                let fits = if end == 0 { rounded < ends[1] } else { rounded > ends[0] };
+                ends[end] = if fits { rounded } else { ends[end] };
                 Self::Limit { angle, end, ends }
             }
             Self::Push(force) => Self::Push(both(force, ROUND_FORCE)),

@@ -203,6 +203,13 @@ impl Follower {
             self.aim_rate = PerDrive::zeros(self.aim.len());
         }
         self.steer();
+        let came_to_rest = turning && self.b.v == 0.0 && self.b.acc == 0.0;
+        if came_to_rest && matches!(self.target.reach, Reach::Outside { .. }) {
+            // At this b another pose may reach it.
+            self.aim_at_target(true);
+            self.aim_rate = PerDrive::zeros(self.aim.len());
+            self.steer();
+        }
     }
 
     /// b has changed: the end effector keeps its place while it can; when it cannot, it turns with the workspace.
@@ -264,13 +271,13 @@ impl Follower {
             let (up, down) = (most(high - x, v), most(x - low, -v));
             want[i].min(up).max(-down)
         });
-        // Where one angle must brake harder than wanted, the others leave it the share it needs.
-        for i in 0..n {
-            let left = (self.bounds.joint.powi(2) - acc[i] * acc[i]).max(0.0).sqrt();
-            let others = (0..n).filter(|j| *j != i).fold(0.0, |sum: f64, j| sum.hypot(acc[j]));
-            if acc[i].abs() > want[i].abs() && others > left {
-                (0..n).filter(|j| *j != i).for_each(|j| acc[j] *= left / others);
-            }
+        // Where some must brake harder than wanted, the others leave them the share that they need.
+        let brakes = PerDrive::from_fn(n, |i| f64::from(u8::from(acc[i].abs() > want[i].abs())));
+        let size = |which: f64| (0..n).filter(|i| brakes[*i] == which).fold(0.0, |sum: f64, i| sum.hypot(acc[i]));
+        let (braking, others) = (size(1.0), size(0.0));
+        let left = (self.bounds.joint.powi(2) - braking * braking).max(0.0).sqrt();
+        if braking > 0.0 && others > left {
+            (0..n).filter(|i| brakes[*i] == 0.0).for_each(|i| acc[i] *= left / others);
         }
         acc
     }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::{Change, Session};
+use crate::session::document::Kept;
 use crate::session::scenario::{Bookmark, MAX_BOOKMARKS, MAX_NAME};
 use crate::settings::range::shortened;
 
@@ -47,16 +48,16 @@ impl Session {
             let at = bookmarks.partition_point(|mark| mark.time <= time);
             bookmarks.insert(at, Bookmark { time, name });
         }
-        self.change_beside(title.clone(), |document| document.bookmarks = Arc::new(bookmarks));
+        self.change_beside(title.clone(), Kept::Bookmarks, |document| document.bookmarks = Arc::new(bookmarks));
         Some(title)
     }
 
     /// Changes what is kept beside the run; the run stays as it is.
-    pub(super) fn change_beside(&mut self, title: String, change: impl FnOnce(&mut super::Document)) {
+    pub(super) fn change_beside(&mut self, title: String, kept: Kept, change: impl FnOnce(&mut super::Document)) {
         self.end_gesture();
         let before = self.document.clone();
         change(&mut self.document);
         self.redo.clear();
-        self.undo.push(Arc::new(Change { before, edit: None, inverse: None, title, beside: true }));
+        self.undo.push(Arc::new(Change { before, edit: None, inverse: None, title, beside: Some(kept) }));
     }
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::{Change, Session};
 use crate::session::Refusal;
 use crate::session::changes::in_order;
-use crate::session::document::{Document, Left, Watch};
+use crate::session::document::{Document, Kept, Left, Watch};
 use crate::session::fork::Fork;
 use crate::session::scenario::{Bookmark, Branch, MAX_BRANCHES, MAX_FRAMES, Scenario};
 
@@ -63,7 +63,7 @@ impl Session {
         self.restore(Document { script, end, branches: Arc::new(branches), ..before.clone() }, true, watch)?;
         self.playing = false;
         self.redo.clear();
-        self.undo.push(Arc::new(Change { before, edit: None, inverse: None, title, beside: false }));
+        self.undo.push(Arc::new(Change { before, edit: None, inverse: None, title, beside: None }));
         Ok(())
     }
 
@@ -75,7 +75,7 @@ impl Session {
     /// Lets go of a branch; what became of it.
     pub fn drop_branch(&mut self, branch: usize) -> Option<String> {
         let title = format!("remove branch: {}", self.fork(self.document.branches.get(branch)?).title);
-        self.change_beside(title.clone(), |document| {
+        self.change_beside(title.clone(), Kept::Branches, |document| {
             Arc::make_mut(&mut document.branches).remove(branch);
         });
         Some(title)
