@@ -70,6 +70,29 @@ pub(super) struct Recipe<'a> {
     pub(super) blend: Option<wgpu::BlendState>,
 }
 
+impl<'a> Recipe<'a> {
+    /// Four corners an instance, which the shader finds by itself; they write no depth.
+    pub(super) fn quads(
+        label: &'a str,
+        module: &'a wgpu::ShaderModule,
+        depth_compare: wgpu::CompareFunction,
+        blend: wgpu::BlendState,
+    ) -> Self {
+        Self {
+            label,
+            module,
+            entries: ENTRIES,
+            constants: &[],
+            vertices: None,
+            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            cull: None,
+            depth_write: false,
+            depth_compare,
+            blend: Some(blend),
+        }
+    }
+}
+
 impl Kit {
     pub(super) fn new(device: &wgpu::Device, quality: Quality) -> Self {
         let layout = |label, visibility, ty| {

@@ -1,6 +1,6 @@
 //! Polylines as antialiased ribbons of constant width on the screen.
 
-use super::kit::{ENTRIES, Kit, List, Recipe, Upload};
+use super::kit::{Kit, List, Recipe, Upload};
 use super::shader::{Shader, embedded, twin};
 use super::view::View;
 use crate::picture::scene::{IN_PLACE, Line, Scene, place};
@@ -38,20 +38,8 @@ impl Lines {
     pub(super) fn new(device: &wgpu::Device, kit: &Kit) -> Self {
         let pipeline = kit.pipelines();
         let build = move |device: &wgpu::Device, module: &wgpu::ShaderModule| {
-            let recipe = |label, depth_compare| {
-                let recipe = Recipe {
-                    label,
-                    module,
-                    entries: ENTRIES,
-                    constants: &[],
-                    vertices: None,
-                    topology: wgpu::PrimitiveTopology::TriangleStrip,
-                    cull: None,
-                    depth_write: false,
-                    depth_compare,
-                    blend: Some(wgpu::BlendState::ALPHA_BLENDING),
-                };
-                pipeline(device, recipe)
+            let recipe = |label, compare| {
+                pipeline(device, Recipe::quads(label, module, compare, wgpu::BlendState::ALPHA_BLENDING))
             };
             Pipelines {
                 tested: recipe("lines", wgpu::CompareFunction::LessEqual),

@@ -1,6 +1,6 @@
 //! Discs and rings of constant size on the screen, over everything.
 
-use super::kit::{ENTRIES, Kit, List, Recipe, Upload};
+use super::kit::{Kit, List, Recipe, Upload};
 use super::shader::{Shader, embedded, twin};
 use crate::picture::scene::{self, Scene};
 use bytemuck::Zeroable as _;
@@ -26,19 +26,9 @@ impl Markers {
     pub(super) fn new(device: &wgpu::Device, kit: &Kit) -> Self {
         let pipeline = kit.pipelines();
         let build = move |device: &wgpu::Device, module: &wgpu::ShaderModule| {
-            let recipe = Recipe {
-                label: "markers",
-                module,
-                entries: ENTRIES,
-                constants: &[],
-                vertices: None,
-                topology: wgpu::PrimitiveTopology::TriangleStrip,
-                cull: None,
-                depth_write: false,
-                depth_compare: wgpu::CompareFunction::Always,
-                blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-            };
-            pipeline(device, recipe)
+            use wgpu::{BlendState, CompareFunction};
+            let (compare, blend) = (CompareFunction::Always, BlendState::PREMULTIPLIED_ALPHA_BLENDING);
+            pipeline(device, Recipe::quads("markers", module, compare, blend))
         };
         Self {
             shader: Shader::new(device, embedded!("markers"), Box::new(build)),

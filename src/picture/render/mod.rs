@@ -2,8 +2,8 @@
 //!
 //! The renderer knows scenes and no mechanics. It draws into its own multisampled target and hands the result on pixel
 //! for pixel, so a window, a test and a recording show the same picture. Order: background, opaque solids,
-//! areas, shadows, depth-tested lines, shells, translucent solids, lines on top, markers. Labels are drawn by egui, which has
-//! the fonts.
+//! areas, shadows, depth-tested lines, shells, translucent solids, lines on top, markers. Labels are drawn by egui,
+//! which has the fonts.
 //!
 //! Depth runs from 0 (near) to 1; colours are sRGB values with straight alpha, blended as they are.
 

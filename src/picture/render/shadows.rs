@@ -1,6 +1,6 @@
 //! Soft shadows of bars on the plane below them.
 
-use super::kit::{ENTRIES, Kit, List, Recipe, Upload};
+use super::kit::{Kit, List, Recipe, Upload};
 use super::shader::{Shader, embedded, twin};
 use crate::picture::scene::{self, Scene};
 
@@ -25,19 +25,9 @@ impl Shadows {
     pub(super) fn new(device: &wgpu::Device, kit: &Kit) -> Self {
         let pipeline = kit.pipelines();
         let build = move |device: &wgpu::Device, module: &wgpu::ShaderModule| {
-            let recipe = Recipe {
-                label: "shadows",
-                module,
-                entries: ENTRIES,
-                constants: &[],
-                vertices: None,
-                topology: wgpu::PrimitiveTopology::TriangleStrip,
-                cull: None,
-                depth_write: false,
-                depth_compare: wgpu::CompareFunction::LessEqual,
-                blend: Some(wgpu::BlendState::ALPHA_BLENDING),
-            };
-            pipeline(device, recipe)
+            use wgpu::{BlendState, CompareFunction};
+            let (compare, blend) = (CompareFunction::LessEqual, BlendState::ALPHA_BLENDING);
+            pipeline(device, Recipe::quads("shadows", module, compare, blend))
         };
         Self {
             shader: Shader::new(device, embedded!("shadows"), Box::new(build)),
