@@ -183,10 +183,10 @@ fn limits(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comman
         let mut ends = [angle.limits.start().to_degrees(), angle.limits.end().to_degrees()];
         let old = ends;
         ui.horizontal(|ui| {
-            let symbol = ["a₁", "a₂", "a₃", "a₄", "a₅", "a₆", "a₇"].get(i).copied().unwrap_or("a");
+            let symbol = format!("a{}", subscript(i + 1));
             let [to, from] = [angle.to, angle.from].map(|k| subscript(k + 1));
             let by = if angle.offset == 0.0 { String::new() } else { format!(" {} rad", signed_by(angle.offset)) };
-            ui.label(symbol).on_hover_text(format!("Relative joint angle: {symbol} = q{to} − q{from}{by}"));
+            ui.label(&symbol).on_hover_text(format!("Relative joint angle: {symbol} = q{to} − q{from}{by}"));
             if !ends.iter().all(|end| end.is_finite()) {
                 ui.label(RichText::new("turns freely").color(colour(p.dim)));
                 return;

@@ -135,9 +135,9 @@ impl Run {
     ///
     /// # Errors
     /// Why it has none.
-    pub fn pose_map(&self) -> Result<&PoseMap, NoPoseSpace> {
+    pub fn pose_map(&self) -> Result<&PoseMap, &NoPoseSpace> {
         let find = || PoseMap::of(&self.scenario.machine, self.planes.as_ref());
-        self.pose_map.get_or_init(find).as_ref().map_err(Clone::clone)
+        self.pose_map.get_or_init(find).as_ref()
     }
 
     /// The b that serve all points of the task, if any do.
@@ -300,7 +300,7 @@ impl Run {
         match self.simulation.guide() {
             Guide::Follow(follower) => Ok(follower.clone()),
             Guide::Motion { .. } => {
-                let map = self.pose_map()?.clone();
+                let map = self.pose_map().map_err(Clone::clone)?.clone();
                 let bounds = bounds(&self.scenario, &map);
                 Ok(Follower::new(map, bounds, self.scenario.step, self.simulation.reference()))
             }
