@@ -155,25 +155,50 @@ impl PoseMap {
     }
 
     /// Where to go for a target, m, at b: its pose, or the nearest that can be reached from another; sought all over the
-    /// limits, or only beside that other one.
-    pub fn reach(&self, p: Vector, b: f64, from: &PerDrive, all_over: bool) -> (PerDrive, Reach) {
+    /// limits.
+    pub fn reach(&self, p: Vector, b: f64, from: &PerDrive) -> (PerDrive, Reach) {
         match self {
             Self::Planes(planes) => {
                 let (a, reach) = planes.reach(p, b, [from[0], from[1]]);
                 (PerDrive::from(a), reach)
             }
-            Self::Space(space) => reach(space, p, b, from, all_over),
+            Self::Space(space) => reach(space, p, b, from),
+        }
+    }
+
+    /// The same beside another pose, for a target out of reach from which b moves on: which b would do is as it was.
+    pub fn reach_beside(&self, p: Vector, b: f64, from: &PerDrive, known: Reach) -> (PerDrive, Reach) {
+        match self {
+            Self::Planes(_) => self.reach(p, b, from),
+            Self::Space(space) => {
+                let (a, off) = match space.drives() {
+                    2 => along_curve(space, p, b, from[0]),
+                    _ => space.toward_beside(p, b, from),
+                };
+                let reach = match known {
+                    _ if is_at(space, off) => Reach::Inside,
+                    Reach::Outside { mending_b, shown_b, other_sheet, .. } => {
+                        let nearest = space.place(&space.lift(&a, b));
+                        Reach::Outside { nearest, mending_b, shown_b, other_sheet }
+                    }
+                    known => known,
+                };
+                (a, reach)
+            }
         }
     }
 }
 
-fn reach(space: &PoseSpace, p: Vector, b: f64, from: &PerDrive, all_over: bool) -> (PerDrive, Reach) {
+fn is_at(space: &PoseSpace, off: f64) -> bool {
+    off <= REACHED * space.farthest()
+}
+
+fn reach(space: &PoseSpace, p: Vector, b: f64, from: &PerDrive) -> (PerDrive, Reach) {
     let (mut a, mut off) = match space.drives() {
         2 => along_curve(space, p, b, from[0]),
         _ => space.toward(p, b, from),
     };
-    let is_at = |off: f64| off <= REACHED * space.farthest();
-    if !is_at(off) && space.drives() > 3 && all_over {
+    if !is_at(space, off) && space.drives() > 3 {
         // Another elbow may reach it; nothing bars the way there.
         let poses = space.poses(p, b, from);
         match poses.first() {
@@ -181,7 +206,7 @@ fn reach(space: &PoseSpace, p: Vector, b: f64, from: &PerDrive, all_over: bool) 
             None => (a, off) = nearest_of_all(space, p, b, (a, off)),
         }
     }
-    if is_at(off) {
+    if is_at(space, off) {
         return (a, Reach::Inside);
     }
     let set = space.reach(p).ok();

@@ -6,6 +6,7 @@ use super::changes::{Failed, folded};
 use super::edit::{Edit, TimedEdit};
 use super::planner::{Plan, plan};
 use super::refusal::Refusal;
+use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use crate::planning::Motion;
 use crate::planning::following::Follower;
@@ -339,25 +340,28 @@ impl Run {
 const ANGLES_OF_THREE: &str =
     "two relative angles are set for machines of three drives: want the target dragged instead";
 
-/// Bounds of the follower: no torque limit of any drive is passed in any direction of ä.
+/// Bounds of the follower: no torque limit of any drive is passed in any direction of ä, also while b is slid.
 fn bounds(scenario: &Scenario, map: &PoseMap) -> Bounds {
     const UNLIMITED: f64 = 30.0;
+    // The most of a limit that sliding b takes from the arm's own motion.
+    const SHARE: f64 = 0.5;
     let machine = &scenario.machine;
-    let inertia = crate::mechanics::machine::Inertia::of(machine);
-    let asked = |of: usize| {
-        let one = PerDrive::from_fn(map.angles(), |i| f64::from(u8::from(i == of)));
-        let u = map.lift_rates(&one, 0.0);
-        // Of what each motor turns, also through gears, where all couplings vanish.
-        let h =
-            PerDrive::from_fn(machine.drives(), |k| (0..machine.drives()).map(|l| inertia.constant(k, l) * u[l]).sum());
+    let inertia = Inertia::of(machine);
+    // What each motor turns, also through gears, by rates of the relative angles and of b; couplings that a machine
+    // with a pose constant has are rounding, of either sign.
+    let asked = |of: &PerDrive, bdd: f64| {
+        let (n, u) = (machine.drives(), map.lift_rates(of, bdd));
+        let h = PerDrive::from_fn(n, |k| (0..n).map(|l| inertia.constant(k, l) * u[l]).sum());
         inertia.motors().torques(&h)
     };
-    let all: Vec<PerDrive> = (0..map.angles()).map(asked).collect();
+    let one = |of: usize| PerDrive::from_fn(map.angles(), |i| f64::from(u8::from(i == of)));
+    let all: Vec<PerDrive> = (0..map.angles()).map(|of| asked(&one(of), 0.0)).collect();
+    let sliding = asked(&PerDrive::zeros(map.angles()), 1.0);
+    let limits = || machine.spec().drives.iter().enumerate().filter_map(|(k, drive)| Some((k, drive.torque_limit?)));
+    let pose = limits().map(|(k, limit)| SHARE * limit / sliding[k].abs()).fold(scenario.pose_acceleration, f64::min);
     let most = |k: usize| all.iter().fold(0.0, |sum: f64, torque| sum.hypot(torque[k]));
-    let joint = (0..machine.drives())
-        .filter_map(|k| Some(machine.spec().drives[k].torque_limit? / most(k).max(1e-9)))
-        .fold(UNLIMITED, f64::min);
-    Bounds { joint, pose: scenario.pose_acceleration }
+    let left = |(k, limit): (usize, f64)| (limit - pose * sliding[k].abs()) / most(k).max(1e-9);
+    Bounds { joint: limits().map(left).fold(UNLIMITED, f64::min), pose }
 }
 
 impl Run {

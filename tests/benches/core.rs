@@ -20,10 +20,11 @@ use stillbase::planning::following::{Rule, trace};
 use stillbase::planning::off_plane::LeastReaction;
 use stillbase::planning::off_plane::least_reaction::Goal;
 use stillbase::planning::pose_constant::plane_map;
+use stillbase::planning::pose_space::PoseSpace;
 use stillbase::planning::reactionless::{AngleDefinition, AngleLimit, Boundary, PlaneMap};
 use stillbase::planning::timing::{Limits, Profile, TimeLaw, fastest};
 use stillbase::session::scenario::{Scenario, default_spreads};
-use stillbase::session::{Run, Session, replay};
+use stillbase::session::{Edit, Run, Session, replay};
 use stillbase::study::tolerance::{CHUNK, Ensemble};
 
 fn main() {
@@ -178,6 +179,33 @@ fn range_of_b(bencher: Bencher) {
 fn workspace_boundary(bencher: Bencher) {
     let map = plane_map(builtin("nine-link").expect("built in")).expect("three drives");
     bencher.bench_local(|| Boundary::of(black_box(&map)));
+}
+
+/// The boundary of the workspace of four drives.
+#[divan::bench]
+fn four_drives_boundary(bencher: Bencher) {
+    let space = four_drives();
+    bencher.bench_local(|| space.outline(black_box(2.4)).area);
+}
+
+/// Which b of four drives reach a point.
+#[divan::bench]
+fn four_drives_range_of_b(bencher: Bencher) {
+    let space = four_drives();
+    bencher.bench_local(|| space.reach(black_box(Vector::new(0.050, -0.539))));
+}
+
+/// A step of four drives that are led to a target out of reach while b is slid.
+#[divan::bench]
+fn four_drives_led_beside_a_target(bencher: Bencher) {
+    let mut run = Run::new(&Scenario::builtin("four-drive").expect("built in")).expect("it starts");
+    run.apply(&Edit::DragTarget { x: -0.9, y: -0.9 }).expect("it is led");
+    run.apply(&Edit::SlideB { b: 900.0 }).expect("it is slid");
+    bencher.bench_local(|| run.advance());
+}
+
+fn four_drives() -> PoseSpace {
+    PoseSpace::of(builtin("four-drive").expect("built in")).expect("it is balanced")
 }
 
 /// The three cases in one recording, without pictures, file closed.

@@ -10,6 +10,7 @@ mod limits;
 mod replay;
 mod settings;
 mod sitting;
+mod smooth;
 mod undo;
 mod verdict;
 

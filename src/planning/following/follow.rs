@@ -113,26 +113,14 @@ impl Follower {
     /// Sends the end effector to a point, m.
     pub fn set_target(&mut self, at: Vector) {
         self.target.at = at;
-        self.aim_at_target(true);
+        self.aim_at_target();
         self.aim_rate = PerDrive::zeros(self.aim.len());
         self.steer();
     }
 
     /// Sends the relative angles somewhere, rad, as far as their limits and folds on the straight way let them.
     pub fn set_angles(&mut self, a: &PerDrive) {
-        let from = self.a.x;
-        let to = self.map.clamped(a);
-        let at = |t: f64| from.plus(t, &to.minus(&from));
-        self.aim = to;
-        if !self.map.is_open_way(&from, &to) {
-            // The last pose before what bars the way.
-            let (mut open, mut barred) = (0.0, 1.0);
-            for _ in 0..20 {
-                let middle = 0.5 * (open + barred);
-                if self.map.is_open_way(&from, &at(middle)) { open = middle } else { barred = middle }
-            }
-            self.aim = at(open);
-        }
+        self.aim = self.as_far_as_open(self.map.clamped(a));
         self.target = Target { at: self.aim_point(), reach: Reach::Inside };
         self.aim_rate = PerDrive::zeros(self.aim.len());
         self.steer();
@@ -195,18 +183,20 @@ impl Follower {
         let turning = self.b.v != 0.0 || self.b.acc != 0.0;
         self.a = self.a.after(h);
         self.b = self.b.after(h);
+        self.aim_rate = PerDrive::zeros(self.aim.len());
         if turning {
             let before = self.aim;
             self.turn_aim();
-            self.aim_rate = PerDrive::from_fn(before.len(), |i| (self.aim[i] - before[i]) / h);
-        } else {
-            self.aim_rate = PerDrive::zeros(self.aim.len());
+            // A nearest pose may leap as b changes; it is gone to, not kept up with.
+            if self.target.reach == Reach::Inside {
+                self.aim_rate = self.aim.minus(&before).scaled(1.0 / h);
+            }
         }
         self.steer();
         let came_to_rest = turning && self.b.v == 0.0 && self.b.acc == 0.0;
         if came_to_rest && matches!(self.target.reach, Reach::Outside { .. }) {
             // At this b another pose may reach it.
-            self.aim_at_target(true);
+            self.aim_at_target();
             self.aim_rate = PerDrive::zeros(self.aim.len());
             self.steer();
         }
@@ -223,8 +213,22 @@ impl Follower {
                 }
             },
             Reach::Carried => self.target.at = self.aim_point(),
-            Reach::Outside { .. } => self.aim_at_target(false),
+            // From where it was going, so that it does not depend on how far behind the reference is.
+            Reach::Outside { .. } => {
+                let (aim, reach) = self.map.reach_beside(self.target.at, self.b.x, &self.aim, self.target.reach);
+                (self.aim, self.target.reach) = (self.as_far_as_open(aim), reach);
+            }
         }
+    }
+
+    /// A pose to go to straight, or the last one before what bars the way there.
+    fn as_far_as_open(&self, to: PerDrive) -> PerDrive {
+        let from = self.a.x;
+        if !self.map.has_bars() || self.map.is_open_way(&from, &to) {
+            return to;
+        }
+        let at = |t: f64| from.plus(t, &to.minus(&from));
+        at(last_open(|t| self.map.is_open_way(&from, &at(t))))
     }
 
     fn aim_point(&self) -> Vector {
@@ -240,13 +244,10 @@ impl Follower {
         self.a = Courses::resting(self.aim);
     }
 
-    /// Finds the pose for the target at the present b and on the present sheet, or the nearest one; a hand's target all
-    /// over the limits, one that b moves away from beside where it is.
-    fn aim_at_target(&mut self, all_over: bool) {
+    /// Finds the pose for the target at the present b and on the present sheet, or the nearest one.
+    fn aim_at_target(&mut self) {
         // From where it is, not from where it was going: what it can go to straight.
-        let (aim, reach) = self.map.reach(self.target.at, self.b.x, &self.a.x, all_over);
-        self.aim = aim;
-        self.target.reach = reach;
+        (self.aim, self.target.reach) = self.map.reach(self.target.at, self.b.x, &self.a.x);
     }
 
     /// The accelerations nearest to the wanted ones after which each angle can still stop before its limit, with an
@@ -256,14 +257,16 @@ impl Follower {
         let (h, brake) = (self.step, self.bounds.joint / (n as f64).sqrt());
         let mut acc = PerDrive::from_fn(n, |i| {
             let (x, v) = (self.a.x[i], self.a.v[i]);
-            // The greatest acceleration towards a wall at distance d, nearing it at v. The speed s after this step has
-            // h (v + s)/2 + s²/(2 brake) = d; nearer than that, the rest of the way just stops it.
+            // The greatest acceleration towards a wall at distance d, nearing it at v: after this step it can brake
+            // step by step and stand at the wall. Too near for that, it turns back there.
             let most = |d: f64, v: f64| {
                 if d == f64::INFINITY {
                     return d;
                 }
                 let room = d - 0.5 * h * v;
-                let s = 0.5 * (((brake * h).powi(2) + 8.0 * brake * room.max(0.0)).sqrt() - brake * h);
+                // Of speeds between n and n + 1 steps of braking, the way to a stop is linear in the speed.
+                let n = (0.5 * (1.0 + 8.0 * room.max(0.0) / (brake * h * h)).sqrt() - 0.5).floor();
+                let s = room.max(0.0) / (h * (n + 1.0)) + 0.5 * brake * h * n;
                 let most = if room < 0.0 && d > 0.0 { -0.5 * v * v / d } else { (s - v) / h };
                 most.max(-brake)
             };
@@ -282,20 +285,31 @@ impl Follower {
         acc
     }
 
-    /// The wanted accelerations, or full braking where after them a fold could not be avoided any more. So there is
-    /// always a straight way on which to stop that keeps to the sheet.
-    fn before_folds(&self, want: PerDrive) -> PerDrive {
-        if !self.map.has_bars() {
-            return want;
-        }
-        let next = Courses { acc: want, ..self.a }.after(self.step);
-        let stop = next.x.plus(0.5 * norm(&next.v) / self.bounds.joint, &next.v);
-        if self.map.is_open_way(&self.a.x, &next.x) && self.map.is_open_way(&next.x, &stop) {
-            return want;
+    /// The accelerations nearest to the wanted ones, on the way from these to full braking, after which there is a
+    /// straight way on which to stop that keeps to the sheet.
+    fn before_folds(&self, want: &PerDrive) -> PerDrive {
+        let wanted = self.within_limits(want);
+        if !self.map.has_bars() || self.can_stop_after(&wanted) {
+            return wanted;
         }
         let speed = norm(&self.a.v);
         let brake = self.bounds.joint.min(speed / self.step);
-        self.a.v.scaled(if speed > 0.0 { -brake / speed } else { 0.0 })
+        let braking = self.a.v.scaled(if speed > 0.0 { -brake / speed } else { 0.0 });
+        // Full braking keeps the place at which it stops, so it is always there.
+        let at = |t: f64| self.within_limits(&braking.plus(t, &want.minus(&braking)));
+        at(last_open(|t| self.can_stop_after(&at(t))))
+    }
+
+    /// Whether nothing bars the way of the coming step with these accelerations, and then straight on to a stop.
+    fn can_stop_after(&self, acc: &PerDrive) -> bool {
+        let next = Courses { acc: *acc, ..self.a }.after(self.step);
+        let speed = norm(&next.v);
+        // Braked fully step by step, in the last one only as much as it takes.
+        let whole = (speed / (self.bounds.joint * self.step)).floor();
+        let rest = speed - whole * self.bounds.joint * self.step;
+        let far = self.step * (0.5 * whole * (speed + rest) + 0.5 * rest);
+        let stop = next.x.plus(if speed > 0.0 { far / speed } else { 0.0 }, &next.v);
+        self.map.is_open_way(&self.a.x, &next.x) && self.map.is_open_way(&next.x, &stop)
     }
 
     /// Chooses the accelerations of the coming step.
@@ -311,7 +325,7 @@ impl Follower {
             let gain = if distance > 0.0 { speed / distance } else { 0.0 };
             let want = PerDrive::from_fn(n, |i| (gain * way[i] - v[i]) / LAG);
             let scale = (self.bounds.joint / norm(&want)).min(1.0);
-            self.a.acc = self.within_limits(&self.before_folds(want.scaled(scale)));
+            self.a.acc = self.before_folds(&want.scaled(scale));
         }
         let left = self.b_aim - self.b.x;
         if left.abs() < ARRIVED && self.b.v.abs() < ARRIVED {
@@ -321,6 +335,16 @@ impl Follower {
             self.b.acc = want.clamp(-self.bounds.pose, self.bounds.pose);
         }
     }
+}
+
+/// The greatest share that is open, of those between 0, which is, and 1, which is not.
+fn last_open(is_open: impl Fn(f64) -> bool) -> f64 {
+    let (mut open, mut barred) = (0.0, 1.0);
+    for _ in 0..20 {
+        let middle = 0.5 * (open + barred);
+        if is_open(middle) { open = middle } else { barred = middle }
+    }
+    open
 }
 
 /// Speed at which a distance is closed so that four fifths of the bound can still stop it.

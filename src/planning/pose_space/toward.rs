@@ -4,10 +4,12 @@
 //! Of all small motions that bring the end effector nearer to a point and leave b as it is, the one with the least kinetic
 //! energy by the λ of the drives: Δq = Λ⁻¹Cᵀ(CΛ⁻¹Cᵀ + μ)⁻¹ r. The rows of C are ∂p/∂q, λ, and one for each relative
 //! angle that stands at a limit and would pass it; μ (Levenberg, Marquardt) acts on the point only and grows while a
-//! step brings nothing. Where the point cannot be reached this ends at a pose that is as near as can be.
+//! step brings nothing. Where the point cannot be reached, how the ends of the arms curve counts too: Newton's
+//! iteration for the least |p − Σ c_k e^{iq_k}|², whose second derivatives are CᵀC and (p − Σ c e)·c_k e_k on the diagonal,
+//! ends at a pose that is as near as can be.
 
 use super::space::PoseSpace;
-use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
+use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, dot, unit};
 use nalgebra::{SMatrix, SVector};
 
 /// Rows of C: two of the point, one of b, one a relative angle.
@@ -23,7 +25,15 @@ const LAST: f64 = 1e4;
 /// A step that brings less than this share is the last.
 const LITTLE: f64 = 1e-12;
 
+/// Steps of Newton's iteration at most, and the shortest, rad.
+const CURVED: usize = 60;
+const SHORTEST: f64 = 1e-10;
+/// Nearer than this share of the reach, a point that was out of it may be in it.
+const ALMOST: f64 = 0.01;
+
 type Rows = SMatrix<f64, ROWS, MAX_DRIVES>;
+/// Δq, and a multiplier for b and each relative angle.
+const KKT: usize = 2 * MAX_DRIVES;
 
 impl PoseSpace {
     /// Relative angles at b that put the end effector on p, m, or as near as can be from there, gone to from others; and
@@ -42,11 +52,7 @@ impl PoseSpace {
             let Some(step) = self.step(p, &q, &locked, mu) else { break };
             let next = self.angles(&q.0.plus(1.0, &step));
             // An angle that would pass its limit stays there, and the others do without it.
-            let passes = |i: usize| {
-                let [low, high] = self.joints[i].bounds();
-                !locked[i] && ((a[i] <= low && next[i] < a[i]) || (a[i] >= high && next[i] > a[i]))
-            };
-            if let Some(i) = (0..self.joints.len()).find(|i| passes(*i)) {
+            if let Some(i) = self.passed(&a, &next, &locked) {
                 locked[i] = true;
                 continue;
             }
@@ -67,7 +73,92 @@ impl PoseSpace {
                 }
             }
         }
+        if off <= AT * reach { (a, off) } else { self.settled(p, b, (a, off)) }
+    }
+
+    /// The same for a point that was out of reach of the pose beside it, at a b near to this one.
+    pub fn toward_beside(&self, p: Vector, b: f64, from: &[f64]) -> (PerDrive, f64) {
+        let a = self.clamped(from);
+        let off = (self.place(&self.lift(&a, b)) - p).norm();
+        let settled = self.settled(p, b, (a, off));
+        if settled.1 > ALMOST * self.farthest() {
+            return settled;
+        }
+        let gone = self.toward(p, b, from);
+        if gone.1 < settled.1 { gone } else { settled }
+    }
+
+    /// The pose beside another one that is as near to p as can be, and how far that is, m.
+    fn settled(&self, p: Vector, b: f64, (mut a, mut off): (PerDrive, f64)) -> (PerDrive, f64) {
+        let mut q = self.lift(&a, b);
+        let mut mu = FIRST;
+        let mut locked = [false; MAX_DRIVES];
+        for _ in 0..CURVED {
+            let step = self.curved_step(p, &q, &locked, mu);
+            let size = step.map_or(f64::INFINITY, |step| step.max_abs());
+            let next = step.map(|step| self.angles(&q.0.plus(1.0, &step)));
+            if let Some(next) = next {
+                if let Some(i) = self.passed(&a, &next, &locked) {
+                    locked[i] = true;
+                    continue;
+                }
+                let next = self.clamped(&next);
+                let there = self.lift(&next, b);
+                let left = (self.place(&there) - p).norm();
+                if left < off {
+                    (a, q, off) = (next, there, left);
+                    (mu, locked) = (0.1 * mu, [false; MAX_DRIVES]);
+                    if size < SHORTEST {
+                        break;
+                    }
+                    continue;
+                }
+            }
+            mu *= 8.0;
+            if size < SHORTEST || mu > LAST {
+                break;
+            }
+        }
         (a, off)
+    }
+
+    /// The first angle that stands at a limit and would pass it.
+    fn passed(&self, a: &PerDrive, next: &PerDrive, locked: &[bool; MAX_DRIVES]) -> Option<usize> {
+        let passes = |i: &usize| {
+            let [low, high] = self.joints[*i].bounds();
+            !locked[*i] && ((a[*i] <= low && next[*i] < a[*i]) || (a[*i] >= high && next[*i] > a[*i]))
+        };
+        (0..self.joints.len()).find(passes)
+    }
+
+    /// Δq of Newton's step, as long as is allowed at most.
+    fn curved_step(&self, p: Vector, q: &DriveAngles, locked: &[bool; MAX_DRIVES], mu: f64) -> Option<PerDrive> {
+        let (n, reach) = (self.drives(), self.farthest());
+        let arm = |k: usize| unit(q[k]) * (self.tip[k] / reach);
+        let gap = (p - self.place(q)) / reach;
+        let mut square = SMatrix::<f64, KKT, KKT>::zeros();
+        let mut r = SVector::<f64, KKT>::zeros();
+        for k in 0..n {
+            let along = Vector::new(0.0, 1.0) * arm(k);
+            r[k] = dot(gap, along);
+            (0..n).for_each(|l| square[(k, l)] = dot(along, Vector::new(0.0, 1.0) * arm(l)));
+            square[(k, k)] += dot(gap, arm(k)) + mu * self.lambda[k].abs().max(1e-6);
+            (square[(k, n)], square[(n, k)]) = (self.lambda[k], self.lambda[k]);
+        }
+        for i in n + 1..KKT {
+            match self.joints.get(i - n - 1).filter(|_| locked[i - n - 1]) {
+                Some(joint) => {
+                    for (end, sign) in joint.ends.into_iter().zip([-1.0, 1.0]) {
+                        (square[(end, i)], square[(i, end)]) = (sign, sign);
+                    }
+                }
+                None => square[(i, i)] = 1.0,
+            }
+        }
+        let step = square.lu().solve(&r)?;
+        let size = step.rows(0, n).amax();
+        let short = if size > LONGEST { LONGEST / size } else { 1.0 };
+        size.is_finite().then(|| PerDrive::from_fn(n, |k| short * step[k]))
     }
 
     /// Δq of one step, as long as is allowed at most.
