@@ -290,7 +290,7 @@ pub const FINE_ACTIONS: &[Action] = actions![
 ];
 
 /// What the pointer does.
-pub const GESTURES: [(&str, &str); 20] = [
+pub const GESTURES: [(&str, &str); 21] = [
     ("drag the target", "the machine follows on its plane"),
     ("drag a link", "its drive turns, the others follow so that b stays"),
     ("drag A, B, 1 …", "move a point of the path; where the target covers it, drag its name"),
@@ -307,6 +307,7 @@ pub const GESTURES: [(&str, &str); 20] = [
     ("click a mark of the time line", "show that instant; right button: a bookmark's name, the list of branches"),
     ("click a plot", "show that instant"),
     ("Ctrl wheel, drag on a plot", "closer to a time, and along; a double click shows all"),
+    ("drag the numbers of a plot", "along its values; there Ctrl wheel, or Alt wheel on the plot: closer"),
     ("Shift drag on a plot", "plots show this time"),
     ("right button on a plot", "its menu: curves, statistics, CSV, SVG, PNG"),
     ("Shift click a plot", "a second cursor: plots show differences; Esc takes it away"),

@@ -30,6 +30,8 @@ pub(super) struct Opening {
     pub news: Option<String>,
     /// Where it comes from.
     pub file: Option<File>,
+    /// What is opened where this cannot be, and what to say then.
+    pub instead: Option<Box<(Scenario, String)>>,
 }
 
 /// A file that a session comes from.

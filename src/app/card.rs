@@ -23,6 +23,9 @@ pub struct Card {
     pub hint: String,
 }
 
+/// What a target does while the run waits.
+const WAITS: &str = "the run waits: nothing follows until its task can be done";
+
 /// An angle nearer to its limit counts as at it, rad.
 const AT_LIMIT: f64 = 1e-3;
 
@@ -47,6 +50,7 @@ impl Card {
                     Reach::Outside { nearest, .. } => vec![format!("waits at {}", place(nearest.re, nearest.im))],
                 };
                 let hint = match session.run().pose_map() {
+                    _ if session.run().waiting().is_some() => WAITS,
                     Ok(_) => "drag: the machine follows, b stays",
                     Err(_) => "",
                 };
@@ -54,7 +58,14 @@ impl Card {
             }
             Handle::Waypoint(i) => {
                 let at = *scenario.task.points().get(i)?;
-                let title = format!("point {} of the path, {}", scenario.task.name_of(i), place(at.re, at.im));
+                let name = scenario.task.name_of(i);
+                let role = match i {
+                    0 => "start",
+                    i if i > scenario.task.via.len() => "end",
+                    _ => "",
+                };
+                let title = format!("{role} point {name} of the path, {}", place(at.re, at.im));
+                let title = title.trim_start().to_owned();
                 Self::new(title, [], "drag to move it; Delete leaves it out\nclick: its row in the panel")
             }
             Handle::Payload => {
@@ -135,7 +146,7 @@ fn link(i: usize, session: &Session) -> Option<Card> {
     if scenario.plant.link.contains_key(&link.name) {
         rows.push("the plant differs from this".into());
     }
-    let hint = match session.run().planes() {
+    let hint = match session.run().planes().filter(|_| session.follows_hands()) {
         Some(_) => {
             format!("drag: turns drive {}, the others follow so that b stays\nclick: its rows in the panel", drive + 1)
         }

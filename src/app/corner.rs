@@ -39,6 +39,20 @@ pub fn show(ui: &mut Ui, rect: Rect, view_state: &ViewState, views: &Views, comm
     }
 }
 
+/// A way back where a part of the machine or its target is out of view, at the upper edge.
+pub fn way_back(ui: &mut Ui, rect: Rect, view_state: &ViewState, commands: &mut Vec<Command>) {
+    let p = view_state.palette();
+    let words = RichText::new("show everything (F)").font(plain(11.5)).color(colour(p.ink));
+    let size = vec2(140.0, 24.0);
+    let at = Rect::from_min_size(pos2(rect.center().x - 0.5 * size.x, rect.top() + 10.0), size);
+    let button = Button::new(words).fill(colour(p.panel)).stroke((1.0, colour(p.line))).corner_radius(8);
+    let button = ui.put(at, button).on_hover_text("A part of the machine, or its target, is out of view");
+    super::widgets::name(&button, "Show everything: a part is out of view");
+    if button.clicked() {
+        commands.push(Command::Fit);
+    }
+}
+
 /// The key to the shade of the workspace.
 fn key(ui: &mut Ui, p: &Palette, measure: Measure, views: &Views, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.x = 6.0;

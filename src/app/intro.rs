@@ -90,9 +90,18 @@ impl Intro {
         self.straight.as_ref().map(|straight| &straight.run)
     }
 
+    /// Whether the demonstration goes on: the machine was not touched yet.
+    pub fn demonstrates(&self) -> bool {
+        self.straight.is_some()
+    }
+
     /// Wall time, s, passes while the session rests; whether the run is to start over.
     pub fn rests(&mut self, session: &Session, wall: f64) -> bool {
-        let waits = self.straight.is_some() && session.is_at_end() && !session.is_moving() && self.rounds < ROUNDS;
+        let waits = self.straight.is_some()
+            && session.is_playing()
+            && session.is_at_end()
+            && !session.is_moving()
+            && self.rounds < ROUNDS;
         self.rested = if waits && session.frame().time >= session.length() { self.rested + wall } else { 0.0 };
         let over = self.rested > REST;
         if over {

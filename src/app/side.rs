@@ -16,6 +16,7 @@ use crate::mechanics::machine::MAX_ANGLE;
 use crate::picture::scene::course::target_handle;
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Palette;
+use crate::planning::pose_space::NoPoseSpace;
 use crate::session::scenario::{PLACE, Value};
 use crate::session::{Edit, Session};
 use crate::settings::change::DEFAULT;
@@ -26,6 +27,9 @@ const SHARE: f32 = 0.17;
 const NARROWEST: f32 = 262.0;
 const WIDEST: f32 = 320.0;
 
+/// Room for the scroll bar, which grows where the pointer is near, points.
+pub(super) const BAR: f32 = 14.0;
+
 /// Draws this panel; how wide it was made.
 pub fn show(
     ui: &mut Ui,
@@ -35,14 +39,14 @@ pub fn show(
     commands: &mut Vec<Command>,
 ) -> Option<f32> {
     let p = view_state.palette();
-    let frame = Frame::new().inner_margin(Margin { left: 16, right: 10, top: 12, bottom: 8 });
+    let frame = Frame::new().inner_margin(Margin { left: 16, right: 2, top: 12, bottom: 8 });
     let usual = (SHARE * ui.ctx().content_rect().width()).clamp(NARROWEST, WIDEST).round();
     let salt = ("side", usual as u32, view_state.swapped);
     let panel = if view_state.swapped { Panel::right(salt) } else { Panel::left(salt) };
     let panel = panel.default_size(view_state.side.width.unwrap_or(usual)).size_range(220.0..=480.0).resizable(true);
     let shown = panel.frame(frame).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            ui.set_width(ui.available_width() - 6.0);
+            ui.set_width(ui.available_width() - BAR);
             place::of(ui, Handle::Ring, &p, |ui| pose_constant(ui, session, facts, view_state, commands));
             if session.run().pose_map().is_ok() {
                 place::of(ui, Handle::Target, &p, |ui| target(ui, session, &p, commands));
@@ -65,7 +69,13 @@ fn pose_constant(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &Vie
     ui.label(RichText::new("POSE CONSTANT").font(bold(11.0)).color(colour(p.dim)));
     let map = match session.run().pose_map() {
         Ok(map) => map,
-        Err(why) => return note(ui, p, &why.to_string()),
+        Err(why) => {
+            note(ui, p, &why.to_string());
+            if *why == NoPoseSpace::Free {
+                note(ui, p, "any path will do: drag A or B and the arm follows, or draw a path (P)");
+            }
+            return;
+        }
     };
     let period = map.period();
     // Shown is b within one period; the turns of the machine stay as they are.

@@ -59,8 +59,8 @@ pub struct AppState {
     pace: Pace,
     /// What stands on the time line.
     marks: Marks,
-    /// Where the gesture under way has left a branch, s.
-    parted: Option<f64>,
+    /// What there is to say of a branch that the gesture under way has left.
+    parted: Option<String>,
     dressed: Option<Theme>,
     fonts: bool,
     /// What plots show of the runs on display.
@@ -180,7 +180,7 @@ impl AppState {
         match what {
             Recovery::Open => {
                 let (from, news) = (Some(File::LeftBehind(file.clone())), Some("here is where you were".into()));
-                self.open(Source::File(file), Opening { plays: false, closes: false, news, file: from });
+                self.open(Source::File(file), Opening { plays: false, closes: false, news, file: from, instead: None });
             }
             Recovery::Forget => self.saving.recovered = Some(file),
             Recovery::Later => {}
@@ -392,6 +392,7 @@ impl AppState {
         }
         if commands.iter().any(|c| !matches!(c, Command::EndGesture | Command::Preview(_))) {
             self.view_state.message = None;
+            self.view_state.left_branch = false;
             self.view_state.refused = None;
         }
         if !commands.is_empty() {
@@ -472,17 +473,19 @@ impl AppState {
             Command::Exaggerate(on) => self.view_state.exaggerates_base = on,
             Command::EndGesture => {
                 self.session.end_gesture();
-                return Ok(self.tell_branch());
+                let said = self.parted.take();
+                self.view_state.left_branch |= said.is_some();
+                return Ok(said);
             }
             Command::TogglePlay if self.session.is_playing() => self.session.pause(),
             Command::TogglePlay => self.session.play(),
             Command::Seek(time) => self.change(Change::Seek(time)),
             Command::Bookmark(time, name) => {
-                let done = self.session.bookmark(time, &name);
+                let done = self.session.bookmark(time, &name)?;
                 self.saving.changes += u64::from(done.is_some());
                 return Ok(done);
             }
-            Command::NameBookmark(time) => self.name_bookmark(time),
+            Command::NameBookmark(time) => self.name_bookmark(time)?,
             Command::ToMark(on) => {
                 if let Some(time) = self.marks.beside(&self.session, on) {
                     self.change(Change::Seek(time));
@@ -499,7 +502,10 @@ impl AppState {
             Command::Speed(speed) => self.view_state.speed = speed,
             Command::Loop(loops) => self.view_state.loops = loops,
             Command::Open(scenario) => {
-                self.open(Source::Scenario(scenario), Opening { plays: true, closes: false, news: None, file: None });
+                self.open(
+                    Source::Scenario(scenario),
+                    Opening { plays: true, closes: false, news: None, file: None, instead: None },
+                );
             }
             Command::Case(name) => self.open_case(name),
             Command::BackToPath if self.session.is_led() => self.change(Change::BackToPath),
@@ -577,18 +583,14 @@ impl AppState {
         Ok(None)
     }
 
-    /// What there is to say of a branch that the last gesture has left.
-    fn tell_branch(&mut self) -> Option<String> {
-        self.parted.take().map(|time| format!("what came after {time:.3} s is kept as a branch (H)"))
-    }
-
     /// Asks for the name of a bookmark; where there is none it is put there.
-    fn name_bookmark(&mut self, time: Option<f64>) {
+    fn name_bookmark(&mut self, time: Option<f64>) -> Result<(), String> {
         if let Some(time) = time.filter(|time| self.session.bookmark_at(*time).is_none()) {
             let name = self.session.free_name();
-            self.saving.changes += u64::from(self.session.bookmark(time, &name).is_some());
+            self.saving.changes += u64::from(self.session.bookmark(time, &name)?.is_some());
         }
         self.view_state.naming = time;
+        Ok(())
     }
 
     /// Finds how many times the motion of the base has to be enlarged to be seen, from as much of the run as is known.
@@ -642,6 +644,7 @@ struct StageKey {
     task: Task,
     compare_b: Option<f64>,
     on_path: bool,
+    waits: bool,
     plant: PlantDifferences,
 }
 
@@ -654,6 +657,7 @@ impl StageKey {
             task: scenario.task.clone(),
             compare_b: scenario.compare_b,
             on_path: session.run().motion().is_some(),
+            waits: session.run().waiting().is_some(),
             plant: PlantDifferences { length, link, ..PlantDifferences::default() },
         }
     }

@@ -8,9 +8,21 @@ use super::widgets::name;
 use super::{Activity, Command, ViewState};
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::{Palette, faded};
+use crate::planning::pose_space::NoPoseSpace;
 use crate::session::verdict::Verdict;
 use crate::session::{Edit, Session};
 use crate::simulation::frame::{Frame, Reach};
+
+/// Whether there is bad news.
+pub fn tells(session: &Session, view_state: &ViewState) -> bool {
+    let bad = matches!(view_state.message, Some((_, true))) || session.run().waiting().is_some();
+    (bad || fault(session.frame()).is_some()) && view_state.dialog.is_none()
+}
+
+/// Where it stood last.
+pub fn news_rect(ctx: &egui::Context) -> Option<egui::Rect> {
+    ctx.memory(|memory| memory.area_rect(egui::Id::unique("news")))
+}
 
 /// Bad news, in full, over the lower edge of the viewport, with the way out if there is one.
 pub fn news(ctx: &egui::Context, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
@@ -21,6 +33,12 @@ pub fn news(ctx: &egui::Context, session: &Session, view_state: &ViewState, comm
         (Some((text, true)), _, _, None) | (_, Some(text), _, None) | (_, _, Some(text), None) => text,
         _ => return,
     };
+    // What is refused meanwhile does not hide why the run waits, nor the way out.
+    let also = waits.zip(waiting.as_ref()).filter(|(waits, said)| text != *said && *text != waits.why.to_string());
+    let text = match (&also, &waiting) {
+        (None, Some(said)) if waits.is_some_and(|waits| *text == waits.why.to_string()) => said,
+        _ => text,
+    };
     let p = view_state.palette();
     let frame =
         egui::Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.reaction))).corner_radius(8).inner_margin(10);
@@ -28,9 +46,11 @@ pub fn news(ctx: &egui::Context, session: &Session, view_state: &ViewState, comm
         frame.show(ui, |ui| {
             ui.set_max_width((0.42 * ctx.content_rect().width()).max(320.0));
             ui.add(egui::Label::new(RichText::new(text).font(plain(12.0)).color(colour(p.ink))).wrap());
+            if let Some((_, said)) = also {
+                ui.add(egui::Label::new(RichText::new(said).font(plain(12.0)).color(colour(p.dim))).wrap());
+            }
             let remedy = view_state.refused.as_ref().and_then(|refused| refused.remedy.clone());
-            let mends = waits.filter(|_| waiting.as_ref() == Some(text));
-            let mends = mends.and_then(|waiting| waiting.why.mending_b().zip(waiting.why.shown_b()));
+            let mends = waits.and_then(|waiting| waiting.why.mending_b().zip(waiting.why.shown_b()));
             let mends = mends.map(|(b, shown)| (Edit::set("task.b", b), shown));
             if let Some((edit, b)) = remedy.or(mends) {
                 let way_out = ui.button(format!("take b = {b} rad"));
@@ -137,8 +157,9 @@ pub fn show(
             for remark in remarks.iter().filter(|_| ui.available_width() > 460.0) {
                 facts += &format!("  ·  {}", remark.short);
             }
-            let b = session.run().pose_map().map_or(f.b, |map| f.b.rem_euclid(map.period()));
-            facts += &format!("  ·  b {b:.3} rad");
+            if let Ok(map) = session.run().pose_map() {
+                facts += &format!("  ·  b {:.3} rad", f.b.rem_euclid(map.period()));
+            }
             let bad_news = matches!(view_state.message, Some((_, true)));
             if let Some((poses, distance)) = found.standing().filter(|_| !bad_news && ui.available_width() > 460.0) {
                 let many = if poses == 1 { "one pose".into() } else { format!("{poses} poses") };
@@ -164,7 +185,17 @@ pub fn show(
                 }
                 let (text, tone) = match (&view_state.message, f.target.reach) {
                     (Some((_, true)), _) => (String::new(), p.reaction),
-                    (Some((text, false)), _) => (text.clone(), p.ink),
+                    (Some((text, false)), _) => {
+                        let newest = session.branch_count().checked_sub(1).filter(|_| view_state.left_branch);
+                        if let Some(branch) = newest {
+                            let back = ui.button("show it").on_hover_text("Shows the branch; G leads there and back");
+                            name(&back, "Show the branch");
+                            if back.clicked() {
+                                commands.push(Command::Branch(branch));
+                            }
+                        }
+                        (text.clone(), p.ink)
+                    }
                     (None, _) if session.is_full() => {
                         ("this session is full: save or record it, then start over".into(), p.reaction)
                     }
@@ -191,14 +222,20 @@ pub fn show(
                     (None, _) if view_state.pushing => {
                         ("drag the end effector to push it, 20 N for each metre  ·  U lets go".into(), p.ink)
                     }
+                    (None, _) if session.run().waiting().is_some() => {
+                        ("the run waits: change points, limits or b  ·  F1 keys".into(), p.ink)
+                    }
                     (None, _) if session.is_led() => {
-                        ("led by hand  ·  B goes back to the path  ·  F1 keys".into(), p.dim)
+                        ("led by hand  ·  key B: back to the path  ·  F1 keys".into(), p.dim)
                     }
                     (None, _) if view_state.view.shows_machine() && session.run().planes().is_some() => {
                         ("drag the target, a point or the b ring  ·  Space plays  ·  F1 keys".into(), p.dim)
                     }
                     (None, _) if view_state.view.shows_machine() && session.run().pose_map().is_ok() => {
                         ("drag the target or a point  ·  Space plays  ·  F1 keys".into(), p.dim)
+                    }
+                    (None, _) if matches!(session.run().pose_map(), Err(NoPoseSpace::Free)) => {
+                        ("any path is reactionless: drag A, B, or draw one (P)  ·  F1 keys".into(), p.dim)
                     }
                     (None, _) => ("Space plays  ·  F1 keys".into(), p.dim),
                 };

@@ -88,9 +88,9 @@ const STEPS: [Step; 7] = [
     },
     Step {
         title: "b only turns it",
-        words: "Another plane, another b: the area is the same, turned about B. What one b leaves out another one \
-                reaches. (Eq. 16)",
-        asks: "Turn b by 0.2 rad: slider on the left, keys [ and ], or the amber ring at B.",
+        words: "Another plane, another b: the area is the same, turned about the base. What one b leaves out another \
+                one reaches. (Eq. 16)",
+        asks: "Turn b by 0.2 rad: slider on the left, keys [ and ], or the amber ring at the base.",
         shows: None,
         done: |session, b| (session.b_aim() - b).abs() >= 0.2,
     },

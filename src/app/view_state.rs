@@ -105,6 +105,8 @@ pub struct ViewState {
     pub revealed: Option<Handle>,
     /// What is being dragged.
     pub grabbed: Option<Pick>,
+    /// What was under the pointer when its button went down: it may have moved on before the drag is noticed.
+    pub pressed: Option<Pick>,
     /// Where the pointer was last in this drag, and by how much what is dragged stays behind it since Shift was held,
     /// points of the screen.
     pub fine: [egui::Vec2; 2],
@@ -156,6 +158,8 @@ pub struct ViewState {
     pub refused: Option<RefusedEdit>,
     /// The last thing to say, and whether it is bad news.
     pub message: Option<(String, bool)>,
+    /// The message is of a branch that was left: a button leads back to it.
+    pub left_branch: bool,
 }
 
 impl ViewState {
@@ -179,6 +183,7 @@ impl ViewState {
             lit: None,
             revealed: None,
             grabbed: None,
+            pressed: None,
             fine: [egui::Vec2::ZERO; 2],
             held: None,
             force: None,
@@ -204,6 +209,7 @@ impl ViewState {
             preview: None,
             refused: None,
             message: None,
+            left_branch: false,
         }
     }
 

@@ -8,7 +8,7 @@ use super::card::Card;
 use super::intro::Intro;
 use super::tour::Tour;
 use super::widgets::{FINE, name};
-use super::{Command, Layout, ViewState, corner, framing, menu, place, present, set_b};
+use super::{Command, Layout, ViewState, corner, framing, menu, place, present, set_b, status};
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::picture::paint::words::words;
 use crate::picture::paint::{Spot, paint};
@@ -56,12 +56,17 @@ pub fn show(
         if view_state.stroke.is_some() && view_state.view.shows_machine() {
             draw(ui, &response, &spot, views, view_state, commands);
         } else {
-            point_at(ui, &response, &spot, (session, &shown), views, view_state, commands);
+            let demonstrates = intro.is_some_and(Intro::demonstrates);
+            let how = (views, demonstrates);
+            point_at(ui, &response, &spot, (session, &shown), how, view_state, commands);
             let place = |pos: Pos2| spot.pointer(pos).ray()?.at_height(views.stage().handle_height());
             let at = response.interact_pointer_pos().filter(|_| view_state.view.shows_machine()).and_then(place);
             menu::show(&response, session, (view_state.hot, at), commands);
             tell(&response, session, views, view_state);
-            move_camera(ui, &response, rect, view_state);
+            // What misses the machine in the demonstration moves nothing.
+            if !(demonstrates && response.dragged_by(PointerButton::Primary)) {
+                move_camera(ui, &response, rect, view_state);
+            }
         }
         let options = ViewOptions {
             theme: view_state.theme,
@@ -80,14 +85,21 @@ pub fn show(
             pin_forces: view_state.pins,
             limits: true,
             shadows: view_state.view == ViewKind::Space,
-            invites: session.run().pose_map().is_ok(),
+            invites: session.follows_hands(),
             compares: both.is_none(),
             scale: None,
         };
         let scene = Arc::new(views.scene(view_state.view, session.frame(), &options, view_state.camera()));
         paint(ui, 0, rect, &scene, view_state.camera());
-        words(ui, &Spot { rect, camera: *view_state.camera() }, &scene, &covered);
+        let spot = Spot { rect, camera: *view_state.camera() };
+        // Bad news lies over the scene for as long as it lasts.
+        covered.extend(status::tells(session, view_state).then(|| status::news_rect(ui.ctx())).flatten());
+        words(ui, &spot, &scene, &covered);
         corner::show(ui, rect, view_state, views, commands);
+        let seen = |at: [f64; 3]| spot.screen(at).is_some_and(|at| rect.contains(at));
+        if view_state.view.shows_machine() && !views.stage().outline(&shown).all(seen) {
+            corner::way_back(ui, rect, view_state, commands);
+        }
         if presents {
             present::show(ui, rect, session, view_state, commands);
         }
@@ -108,6 +120,9 @@ const LEAST_PUSH: f64 = 0.02;
 
 /// How long the pointer is on a thing before it is told what that is, s.
 const TOLD_AFTER: f64 = 0.35;
+
+/// From how far away the tip can be taken hold of while the demonstration goes on, points.
+const GENEROUS: f64 = 60.0;
 
 /// How many snapshots stand along a motion, as in Fig. 5.
 const SNAPSHOTS: usize = 9;
@@ -149,28 +164,44 @@ fn point_at(
     response: &egui::Response,
     spot: &Spot,
     (session, frame): (&Session, &Instant),
-    views: &Views,
+    (views, demonstrates): (&Views, bool),
     view_state: &mut ViewState,
     commands: &mut Vec<Command>,
 ) {
     let view = view_state.view;
     // Dragging pushes with Alt held, or after U.
     let pushes = view.shows_machine() && (view_state.pushing || ui.input(|i| i.modifiers.alt));
+    // The demonstration's arm moves, so that its tip is hard to catch: any part of it will do.
+    let arm = |pos: Pos2| {
+        let near = demonstrates && view.shows_machine() && !pushes;
+        near.then(|| views.pick_arm(frame, &spot.pointer(pos), GENEROUS)).flatten()
+    };
     let under = |pos: Pos2| match pushes {
         true => views.pick_tip(frame, &spot.pointer(pos)),
-        false => views.pick(view, frame, &spot.pointer(pos)),
+        false => arm(pos).or_else(|| views.pick(view, frame, &spot.pointer(pos))),
     };
+    // Nothing follows while the run waits, in joint space and tower either.
+    let follows = |pick: &Pick| pick.handle != Handle::Target || session.follows_hands();
+    let under = |pos: Pos2| under(pos).filter(follows);
     if view_state.grabbed.is_none() {
         let seen = |pos: Pos2| match pushes {
             true => under(pos).map(|pick| pick.handle),
-            false => views.under(view, frame, &spot.pointer(pos)),
+            false => arm(pos).map(|pick| pick.handle).or_else(|| views.under(view, frame, &spot.pointer(pos))),
         };
         view_state.hot = response.hover_pos().and_then(seen);
+    }
+    if response.is_pointer_button_down_on() && ui.input(|i| i.pointer.primary_pressed()) {
+        // What is held is what was there when the button went down: it may move on.
+        let origin = ui.input(|i| i.pointer.press_origin());
+        view_state.pressed = origin.and_then(under);
+        if session.is_playing() && origin.and_then(arm).is_some() {
+            commands.push(Command::TogglePlay);
+        }
     }
     if response.drag_started_by(PointerButton::Primary) {
         // A drag begins where the button went down, not where it was noticed.
         let origin = ui.input(|i| i.pointer.press_origin());
-        view_state.grabbed = origin.and_then(under);
+        view_state.grabbed = view_state.pressed.take().or_else(|| origin.and_then(under));
         view_state.fine = [origin.unwrap_or_default().to_vec2(), Vec2::ZERO];
         view_state.force = Some(session.scenario().plant.force);
         view_state.undone_to = session.undo_count();
@@ -239,7 +270,7 @@ fn point_at(
             view_state.dragged = false;
         }
     } else if let Some(hot) = view_state.hot {
-        let turns = session.run().planes().is_some();
+        let turns = session.run().planes().is_some() && session.follows_hands();
         let hot = if matches!(hot, Handle::Link(_)) && !turns { Handle::Base } else { hot };
         ui.ctx().set_cursor_icon(cursor(hot, false));
     }

@@ -12,6 +12,7 @@ pub mod thin;
 use super::numbers::round_up;
 use super::scene::Rgba;
 use super::scene::palette::{Palette, mix};
+use crate::mechanics::machine::Inertia;
 use crate::session::scenario::Scenario;
 use crate::simulation::frame::{Peaks, REACTIONLESS};
 use crate::simulation::signals::Signal;
@@ -98,7 +99,10 @@ pub fn charts(scenario: &Scenario) -> Vec<Chart> {
     let mut list = vec![TORQUE, if wheel { MOMENT_PAST_WHEEL } else { MOMENT }, FORCE];
     list.extend(Some(BASE).filter(|_| scenario.base.moves()));
     list.extend(Some(FRICTION).filter(|_| rubs));
-    list.extend([PINS, ANGLES, POSE, EACH_PIN, TILT, TRANSMISSION, CHANGE_POINT]);
+    list.extend([PINS, ANGLES]);
+    // Where no drive turns the base there is no b.
+    list.extend(Some(POSE).filter(|_| Inertia::of(&scenario.machine).pose_inertia() != 0.0));
+    list.extend([EACH_PIN, TILT, TRANSMISSION, CHANGE_POINT]);
     list
 }
 

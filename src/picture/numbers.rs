@@ -46,6 +46,40 @@ pub fn spaced(low: f64, high: f64, count: f64) -> (Vec<f64>, f64) {
     ((0..=count).map(|i| (first + i as f64) * step).collect(), step)
 }
 
+/// Characters that fit beside a small plot.
+const BRIEF: usize = 7;
+
+/// The numbers of an axis so short that they fit beside a small plot: as they are, else in thousands (k), millions (M) or
+/// billions (G), else with a power of ten.
+pub fn ticks(values: &[f64], step: f64) -> Vec<String> {
+    let fits = |texts: &[String]| texts.iter().all(|text| text.chars().count() <= BRIEF);
+    let whole: Vec<String> = values.iter().map(|x| at_step(*x, step)).collect();
+    let wide = |text: &String| text.contains('e') || text.chars().filter(char::is_ascii_digit).count() >= BRIEF;
+    if fits(&whole) && !whole.iter().any(wide) {
+        return whole;
+    }
+    let most = values.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    for (unit, letter) in [(1e9, "G"), (1e6, "M"), (1e3, "k")] {
+        if most >= unit && most < 1e3 * unit {
+            let brief = |x: &f64| if *x == 0.0 { "0".into() } else { at_step(x / unit, step / unit) + letter };
+            let texts: Vec<String> = values.iter().map(brief).collect();
+            if fits(&texts) {
+                return texts;
+            }
+        }
+    }
+    values.iter().map(|x| power(*x, step)).collect()
+}
+
+/// With a power of ten, as many digits as tell steps apart and have room.
+fn power(x: f64, step: f64) -> String {
+    if x.abs() < 0.5 * step.abs() || !x.is_finite() {
+        return if x.is_finite() { "0".into() } else { "–".into() };
+    }
+    let digits = (x.abs().log10().floor() - (step.abs().log10() + 1e-9).floor()).clamp(0.0, 2.0) as usize;
+    format!("{x:.digits$e}").replace('-', "−")
+}
+
 /// A number of which steps of a size can be told apart: with as many decimals as that takes, and with a power of ten
 /// where the step is far from 1.
 pub fn at_step(x: f64, step: f64) -> String {

@@ -63,6 +63,11 @@ pub(super) fn first_gesture(edits: &[&TimedEdit], step: f64) -> Option<Event> {
     Some(grouped(edits, step).first()?.told(step))
 }
 
+/// The last of them.
+pub(super) fn last_gesture(edits: &[&TimedEdit], step: f64) -> Option<Event> {
+    Some(grouped(edits, step).last()?.told(step))
+}
+
 fn grouped<'a>(edits: &[&'a TimedEdit], step: f64) -> Vec<Gesture<'a>> {
     let mut all: Vec<Gesture<'_>> = Vec::new();
     for timed in edits {

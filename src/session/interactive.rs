@@ -60,6 +60,8 @@ pub struct Session {
     /// The run as it was before the last edit of the script, until the next step: where the gesture's next edit in
     /// the same step starts from.
     unedited: Option<Run>,
+    /// How many branches were left, and the title of the one that the last has displaced.
+    partings: (u64, Option<String>),
 }
 
 impl Session {
@@ -140,6 +142,7 @@ impl Session {
             gesture: false,
             gesture_now: None,
             unedited: None,
+            partings: (0, None),
         })
     }
 
@@ -232,6 +235,11 @@ impl Session {
     /// Whether somebody has led the machine off its planned motion.
     pub fn is_led(&self) -> bool {
         self.document.script.is_led()
+    }
+
+    /// Whether a hand can lead the machine: it has a b to hold, and the run does not wait.
+    pub fn follows_hands(&self) -> bool {
+        self.run.waiting().is_none() && self.run.pose_map().is_ok()
     }
 
     /// Lets time pass. At the end of a finished motion it starts over.
@@ -412,9 +420,9 @@ impl Session {
         }
         let before = self.document.clone();
         let mut document = before.clone();
-        let mut remade = None;
+        let (mut remade, mut partings) = (None, self.partings.clone());
         if !self.is_at_end() {
-            document.branches = self.with_left();
+            (document.branches, partings) = self.with_left();
             document.end = self.cursor as u64;
             document.script.cut(document.end);
             remade = Some(document.perform(Some(&self.run), false, watch).map_err(Failed::refusal)?);
@@ -442,7 +450,7 @@ impl Session {
         if let Some((_, frames)) = remade {
             (self.frames, self.made) = (frames, Made::new());
         }
-        (self.document, self.run, self.unedited) = (document, run, Some(unedited));
+        (self.document, self.run, self.unedited, self.partings) = (document, run, Some(unedited), partings);
         self.show_present();
         self.cursor = self.frames.len() - 1;
         if timed.edit.leads() {
@@ -457,9 +465,10 @@ impl Session {
         let (before, inverse) = (self.document.clone(), self.run.inverse_of(&edit));
         let timed = TimedEdit { step: 0, edit };
         let mut document = self.document.amended(&timed);
+        let mut partings = self.partings.clone();
         // What was led by hand would be gone.
-        if self.is_led() && timed.edit.part("task").is_some_and(toml::Table::is_empty) {
-            document.branches = self.with_left();
+        if self.is_led() && !document.script.is_led() {
+            (document.branches, partings) = self.with_left();
         }
         match &timed.edit {
             edit if edit.is_aside() => {
@@ -472,6 +481,7 @@ impl Session {
                 self.restore(document, patient, watch)?;
             }
         }
+        self.partings = partings;
         self.remember(before, timed, inverse);
         Ok(())
     }
@@ -651,6 +661,7 @@ impl Session {
     pub fn take_over(&mut self, mut next: Self) {
         let title = format!("open {}", next.document.scenario.title);
         next.undo = std::mem::take(&mut self.undo);
+        next.partings.0 = self.partings.0;
         next.undo.push(Arc::new(Change {
             before: self.document.clone(),
             edit: None,

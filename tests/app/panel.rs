@@ -3,12 +3,14 @@
 use egui::Key;
 use egui::accesskit::{Role, Toggled};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use stillbase::app::Command;
 use stillbase::mechanics::planar::PerDrive;
 use stillbase::picture::scene::exaggeration::exaggerated;
 use stillbase::picture::scene::options::Handle;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::pointer::Pointer;
 use stillbase::picture::scene::views::ViewKind;
+use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
 use stillbase::simulation::control::Control;
 use stillbase::simulation::plant::{Base, BaseKind, Each, PlantDifferences};
@@ -25,6 +27,9 @@ pub const TESTS: &[Test] = tests![
     dots_tell_the_audit,
     tolerances_are_shown_and_set,
     the_bar_covers_nothing,
+    a_part_out_of_view_offers_the_way_back,
+    scroll_bars_have_room_of_their_own,
+    what_can_be_done_is_said_whole,
     tools_are_named_and_reached_by_keyboard,
     the_panel_holds_still,
     lists_close_and_links_are_named,
@@ -261,6 +266,70 @@ fn the_bar_covers_nothing() {
             let at = on_screen(&h, p[0], p[1]);
             assert!(scene.contains(at), "{p:?} at {at} in {scene}, {width} by {height}");
         }
+    }
+}
+
+/// A window of another size.
+fn sized(size: [f32; 2]) -> Window {
+    let mut h = window("case-3", Theme::Dark);
+    h.set_size(size.into());
+    h
+}
+
+fn scene(h: &Window) -> egui::Rect {
+    h.get_by_label_contains("Scene:").rect()
+}
+
+/// Where b turns the machine out of view nothing moves by itself; a button at the edge shows everything again.
+fn a_part_out_of_view_offers_the_way_back() {
+    let mut h = sized([1440.0, 900.0]);
+    h.run_steps(3);
+    let offered = |h: &Window| h.query_by_label_contains("Show everything:").is_some();
+    let camera = |h: &Window| *h.state().app_state().view_state().camera();
+    assert!(!offered(&h));
+    let before = camera(&h);
+    for b in [3.4, 4.4, 5.4] {
+        h.state_mut().app_state_mut().carry_out(Command::Edit(Edit::SlideB { b }));
+        h.run_steps(120);
+    }
+    h.state_mut().app_state_mut().carry_out(Command::EndGesture);
+    h.run_steps(3);
+    let out = |h: &Window| {
+        let ends = h.state().app_state().stage().outline(session(h).frame()).collect::<Vec<_>>();
+        ends.into_iter().any(|at| !scene(h).contains(seen(h, at)))
+    };
+    assert!(out(&h) && offered(&h) && camera(&h) == before);
+    h.snapshot("out-of-view-dark");
+    h.get_by_label_contains("Show everything:").click();
+    h.run_steps(3);
+    assert!(!out(&h) && !offered(&h));
+}
+
+/// What stands in a panel that scrolls ends before its bar, also while that is wide.
+fn scroll_bars_have_room_of_their_own() {
+    let mut h = sized([1440.0, 700.0]);
+    h.run_steps(3);
+    let bar = 10.0;
+    let plot = h.get_by_label_contains("Torque over time").rect();
+    assert!(plot.right() <= 1440.0 - bar, "{plot}");
+    let edge = scene(&h).left();
+    for label in ["b slider", "gravity slider", "compare b rad", "B y m"] {
+        let rect = h.get_by_label(label).rect();
+        assert!(rect.right() <= edge - bar, "{label} {rect} before {edge}");
+    }
+}
+
+/// In the smallest window too.
+fn what_can_be_done_is_said_whole() {
+    let mut h = sized([960.0, 600.0]);
+    h.run_steps(3);
+    for view in ViewKind::ALL {
+        h.state_mut().app_state_mut().carry_out(Command::View(view));
+        h.run_steps(3);
+        let font = egui::FontId::new(11.5, egui::FontFamily::Proportional);
+        let words = h.ctx.fonts_mut(|f| f.layout_no_wrap(view.invitation().into(), font, egui::Color32::WHITE));
+        let room = scene(&h).width() - 42.0;
+        assert!(words.size().x <= room, "{:?}: {} in {room}", view, words.size().x);
     }
 }
 

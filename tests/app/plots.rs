@@ -15,6 +15,7 @@ use crate::folder::Folder;
 pub const TESTS: &[Test] = tests![
     hands_move_the_time_that_plots_show,
     the_plain_wheel_scrolls_the_panel,
+    hands_move_the_values_that_a_plot_shows,
     keys_zoom_mark_and_show_all,
     a_curve_goes_and_comes_by_its_name,
     a_signal_is_sought_and_plotted_by_keys_alone,
@@ -128,6 +129,55 @@ fn the_plain_wheel_scrolls_the_panel() {
     wheel(&mut h, at, -60.0, Modifiers::NONE);
     assert!(place(&h) < before - 20.0, "from {before} to {}", place(&h));
     assert_eq!(range(&h), None);
+}
+
+/// The numbers beside a plot are dragged along and gone closer to; the plain wheel scrolls there too.
+fn hands_move_the_values_that_a_plot_shows() {
+    let mut h = after_case("case-1", Theme::Dark, 600.0);
+    let name = "Base moment";
+    let values = |h: &Window| h.state().app_state().view_state().charts.changes.get(name).and_then(|c| c.values);
+    let numbers = |h: &Window| h.get_by_label_contains("Base moment over time").rect().left_center() + vec2(12.0, -8.0);
+    let (at, time) = (numbers(&h), session(&h).frame().time);
+    h.hover_at(at);
+    h.run_steps(40);
+    assert!(h.query_by_label_contains("Drag: along the values").is_some(), "it is said on hover");
+    wheel(&mut h, at, 120.0, Modifiers::COMMAND);
+    let [low, high] = values(&h).expect("closer");
+    assert!(high - low > 0.1 && range(&h).is_none(), "{low} to {high}; time stays");
+    let inside = at_share(&h, "Base moment over time", 0.5);
+    wheel(&mut h, inside, 120.0, Modifiers::ALT);
+    let [from, to] = values(&h).expect("closer still");
+    assert!(to - from < 0.8 * (high - low) && range(&h).is_none(), "{from} to {to}");
+    assert_eq!(h.get_by_label_contains("Base moment over time").rect().left_center() + vec2(12.0, -8.0), at);
+    drag(&mut h, at, at + vec2(0.0, 20.0));
+    let [moved, end] = values(&h).expect("moved along");
+    assert!(moved > from + 0.05 * (to - from) && (end - moved - (to - from)).abs() < 1e-9, "{moved} to {end}");
+    assert_eq!(session(&h).frame().time, time, "no instant is shown by that");
+    // Esc gives a drag up.
+    h.drag_at(at);
+    h.step();
+    h.hover_at(at + vec2(0.0, 12.0));
+    h.run_steps(2);
+    h.key_press(Key::Escape);
+    h.run_steps(2);
+    h.drop_at(at + vec2(0.0, 12.0));
+    h.run_steps(2);
+    assert_eq!(values(&h), Some([moved, end]));
+    for place in [at, inside] {
+        h.state_mut().app_state_mut().carry_out(Command::Charts(Change::Values(name.into(), Some([-0.1, 0.1]))));
+        h.run_steps(20);
+        for _ in 0..2 {
+            h.drag_at(place);
+            h.step();
+            h.drop_at(place);
+            h.step();
+        }
+        h.run_steps(2);
+        assert_eq!(values(&h), None, "a double click shows all of them");
+    }
+    let before = at.y;
+    wheel(&mut h, at, -60.0, Modifiers::NONE);
+    assert!(numbers(&h).y < before - 20.0 && values(&h).is_none(), "the plain wheel scrolls");
 }
 
 fn keys_zoom_mark_and_show_all() {

@@ -3,7 +3,9 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, pos2};
 use egui_kittest::kittest::Queryable as _;
+use stillbase::app::{AppState, Command, Preferences};
 use stillbase::mechanics::planar::unit;
+use stillbase::picture::scene::options::Handle;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
@@ -17,8 +19,12 @@ pub const TESTS: &[Test] = tests![
     a_target_outside_says_why_and_what_b_would_do,
     machines_of_two_and_four_drives_are_dragged,
     a_machine_that_shakes_says_why_it_has_no_b,
+    where_every_path_is_reactionless_the_tip_is_dragged_with_its_point,
     escape_cancels_a_drag_and_takes_it_back,
+    the_moving_arm_is_caught_at_the_first_press,
     waypoints_are_handles,
+    the_target_comes_before_the_point_that_it_covers,
+    a_case_that_another_machine_cannot_do_brings_its_own,
     a_path_is_drawn_by_hand,
     a_hand_pushes_the_end_effector,
     a_hand_is_named_and_let_go,
@@ -79,6 +85,26 @@ fn a_machine_that_shakes_says_why_it_has_no_b() {
     h.run_steps(2);
     assert!(h.query_all_by_label_contains("no pose constant b").next().is_some());
     assert!(h.query_by_label("b rad").is_none() && h.query_by_label("target x m").is_none());
+}
+
+/// No b is shown where there is none; the tip takes the end of the path along, which stays reactionless.
+fn where_every_path_is_reactionless_the_tip_is_dragged_with_its_point() {
+    let mut h = window("counter-rotating", Theme::Dark);
+    h.get_by_label("Play").click();
+    h.run_steps(70);
+    assert!(h.query_all_by_label_contains("every motion of this machine is reactionless").next().is_some());
+    assert!(h.query_by_label_contains("any path will do").is_some());
+    assert!(h.query_by_label_contains("b 0.000").is_none() && h.query_by_label_contains("Pose constant").is_none());
+    let at = session(&h).frame().end_effector;
+    let from = on_screen(&h, at.re, at.im);
+    let to = on_screen(&h, 0.3, 0.45);
+    drag(&mut h, from, to);
+    h.run_steps(4);
+    let f = session(&h).frame();
+    let [x, y] = session(&h).scenario().task.to;
+    assert!((x - 0.3).abs() < 2e-3 && (y - 0.45).abs() < 2e-3, "{x}, {y}");
+    assert!((f.end_effector.re - x).hypot(f.end_effector.im - y) < 1e-3, "the arm follows: {}", f.end_effector);
+    assert!(f.peaks.is_reactionless());
 }
 
 fn a_target_outside_says_why_and_what_b_would_do() {
@@ -166,6 +192,83 @@ fn waypoints_are_handles() {
 }
 
 /// Drawn with the pencil, a path is followed.
+/// Within its ring the target is held; the name of the point beside it moves the point, and hovering says which.
+fn the_target_comes_before_the_point_that_it_covers() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let ring = on_screen(&h, 0.5, 0.5);
+    let hot = |h: &mut Window, left: f32| {
+        h.hover_at(ring - egui::vec2(left, 0.0));
+        h.run_steps(40);
+        h.state().app_state().view_state().hot
+    };
+    for left in [0.0, 9.0, 13.0, -13.0] {
+        assert_eq!(hot(&mut h, left), Some(Handle::Target), "{left} px left");
+    }
+    assert!(h.query_by_label_contains("target at 0.500, 0.500 m").is_some());
+    assert_eq!(hot(&mut h, 19.0), Some(Handle::Waypoint(0)));
+    assert!(h.query_by_label_contains("start point A of the path").is_some());
+    drag(&mut h, ring - egui::vec2(11.0, 0.0), ring + egui::vec2(-40.0, 0.0));
+    assert!(session(&h).is_led() && session(&h).scenario().task.from == [0.5, 0.5]);
+}
+
+/// On two drives there is no case 3: it comes with the paper's machine, says so, and is undone.
+fn a_case_that_another_machine_cannot_do_brings_its_own() {
+    let mut h = window("two-drive", Theme::Dark);
+    h.run_steps(2);
+    h.key_press(Key::Num3);
+    h.run_steps(4);
+    assert_eq!((session(&h).scenario().name.as_str(), session(&h).scenario().machine.name()), ("case-3", "nine-link"));
+    let (said, bad) = h.state().app_state().view_state().message.clone().expect("it is said");
+    assert!(!bad && said.contains("the paper's machine") && said.contains("two-drive cannot"), "{said}");
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    h.run_steps(4);
+    assert_eq!(session(&h).scenario().machine.name(), "two-drive");
+}
+
+/// A window at its very first start.
+fn first_minute() -> Window {
+    let mut h = window("case-3", Theme::Dark);
+    let first = AppState::new(Scenario::builtin("case-3").expect("built in"), Theme::Dark).expect("it starts");
+    *h.state_mut().app_state_mut() = first.with_preferences(&Preferences::default());
+    h.set_size(egui::vec2(1440.0, 900.0));
+    h.run_steps(3);
+    h
+}
+
+/// A press near the tip, or anywhere on the arm, stops the demonstration and takes hold; one that misses moves nothing.
+fn the_moving_arm_is_caught_at_the_first_press() {
+    for aside in [egui::vec2(35.0, -30.0), egui::vec2(-45.0, 3.0)] {
+        let mut h = first_minute();
+        h.state_mut().app_state_mut().carry_out(Command::TogglePlay);
+        h.run_steps(24);
+        assert!(session(&h).is_moving());
+        let camera = *h.state().app_state().view_state().camera();
+        let scene = h.get_by_label_contains("Scene:").rect();
+        drag(&mut h, scene.left_bottom() + egui::vec2(60.0, -200.0), scene.left_bottom() + egui::vec2(160.0, -90.0));
+        assert_eq!(*h.state().app_state().view_state().camera(), camera, "a miss moves nothing");
+        assert!(session(&h).is_moving() && !session(&h).is_led());
+        h.run_steps(2);
+        let at = session(&h).frame().end_effector;
+        let from = on_screen(&h, at.re, at.im) + aside;
+        h.hover_at(from);
+        h.step();
+        h.drag_at(from);
+        h.run_steps(3);
+        let stopped = session(&h).frame().step;
+        h.run_steps(5);
+        assert_eq!(session(&h).frame().step, stopped, "the loop has stopped");
+        for i in 1..=10 {
+            h.hover_at(from + egui::vec2(-3.0, 3.0) * i as f32);
+            h.step();
+        }
+        h.drop_at(from + egui::vec2(-30.0, 30.0));
+        h.run_steps(3);
+        assert!(session(&h).is_led(), "and it follows");
+        assert!(h.query_by_label("Now drag it out of the amber area.").is_some());
+    }
+}
+
 fn a_path_is_drawn_by_hand() {
     let mut h = window("case-3", Theme::Dark);
     h.step();

@@ -2,7 +2,8 @@
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
-use stillbase::app::AppState;
+use stillbase::app::{AppState, Command};
+use stillbase::picture::scene::options::{Handle, ViewOptions};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
@@ -15,6 +16,7 @@ pub const TESTS: &[Test] = tests![
     a_refused_path_shows_where_and_what_b_would_do,
     a_scenario_that_cannot_be_planned_is_explained,
     limits_apply_and_the_run_waits,
+    a_run_that_waits_says_so_and_keeps_its_way_out,
 ];
 
 fn opening_an_odd_scenario_changes_nothing_in_it() {
@@ -113,4 +115,42 @@ fn limits_apply_and_the_run_waits() {
         h.key_press(Key::Home);
         h.run_steps(2);
     }
+}
+
+/// While it waits nothing invites to drag, a drag of the tip does nothing, and what is refused hides no way out.
+fn a_run_that_waits_says_so_and_keeps_its_way_out() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let words = |h: &Window| {
+        let app_state = h.state().app_state();
+        let options = ViewOptions { invites: session(h).follows_hands(), ..Default::default() };
+        let scene = app_state.stage().scene(session(h).frame(), &options);
+        scene.labels.iter().any(|label| label.text == "drag me")
+    };
+    assert!(words(&h) && session(&h).follows_hands());
+    type_into(&mut h, "a₁ greatest °", "150");
+    assert!(session(&h).run().waiting().is_some() && !session(&h).follows_hands() && !words(&h));
+    assert!(h.query_by_label_contains("the run waits: change points, limits or b").is_some());
+    let tip = session(&h).frame().end_effector;
+    let from = on_screen(&h, tip.re, tip.im);
+    h.hover_at(from + egui::vec2(14.0, 10.0));
+    h.run_steps(3);
+    assert_ne!(h.state().app_state().view_state().hot, Some(Handle::Target));
+    drag(&mut h, from + egui::vec2(14.0, 10.0), from + egui::vec2(60.0, 40.0));
+    h.run_steps(3);
+    let has_way_out = |h: &Window| {
+        h.query_by_label_contains("The run waits: B").is_some() && h.query_by_label_contains("take b").is_some()
+    };
+    assert!(has_way_out(&h), "{:?}", h.state().app_state().view_state().message);
+    // What is refused meanwhile stands above it.
+    h.state_mut().app_state_mut().carry_out(Command::Edit(Edit::DragTarget { x: 0.5, y: 0.6 }));
+    h.run_steps(3);
+    assert!(has_way_out(&h), "the same reason is said once");
+    h.state_mut().app_state_mut().carry_out(Command::Refuse("no such number".into()));
+    h.run_steps(3);
+    assert!(has_way_out(&h) && h.query_by_label("no such number").is_some());
+    h.snapshot("waits-refused-dark");
+    h.get_by_label_contains("take b").click();
+    h.run_steps(3);
+    assert!(session(&h).run().waiting().is_none() && session(&h).follows_hands());
 }

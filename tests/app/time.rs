@@ -7,9 +7,9 @@ use stillbase::app::Command;
 use stillbase::files::journal::{self, Journal};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::Edit;
-use stillbase::session::scenario::Scenario;
+use stillbase::session::scenario::{MAX_BOOKMARKS, Scenario};
 
-use super::{Window, session, window};
+use super::{Window, session, window, window_of};
 use crate::Test;
 use crate::folder::Folder;
 
@@ -19,6 +19,8 @@ pub const TESTS: &[Test] = tests![
     events_stand_on_the_time_line,
     marks_that_are_close_are_one,
     a_branch_is_shown_compared_and_removed,
+    another_path_keeps_what_a_hand_did,
+    a_refused_bookmark_is_no_change,
     what_is_kept_outlives_a_crash,
     slow_time_is_said_and_stays_smooth,
 ];
@@ -217,6 +219,42 @@ fn a_branch_is_shown_compared_and_removed() {
     press(&mut h, PLAIN, Key::Escape);
     press(&mut h, Modifiers::COMMAND, Key::Z);
     assert_eq!(session(&h).branch_count(), 1, "it comes back");
+}
+
+/// Another end point after a drag keeps what was led by hand, says so, and a button leads back.
+fn another_path_keeps_what_a_hand_did() {
+    let mut h = window_of(Scenario::builtin("case-3").expect("built in"), Theme::Dark, 1000.0);
+    h.run_steps(2);
+    tell(&mut h, Command::Edit(Edit::DragTarget { x: 0.5, y: 0.62 }));
+    tell(&mut h, Command::EndGesture);
+    h.run_steps(20);
+    press(&mut h, PLAIN, Key::Space);
+    let led = session(&h).frames().to_vec();
+    super::type_into(&mut h, "B y m", "0.88");
+    assert!(!session(&h).is_led() && session(&h).branch_count() == 1, "{:?}", session(&h).forks());
+    assert!(h.query_by_label("what you led by hand is kept as a branch (H)").is_some());
+    h.snapshot("kept-by-hand-dark");
+    h.get_by_label("Show the branch").click();
+    h.run_steps(4);
+    assert!(session(&h).is_led() && session(&h).frames() == led, "here it is again");
+    assert!(h.query_by_label("Show the branch").is_none());
+}
+
+/// What is refused is no change: nothing is to be saved.
+fn a_refused_bookmark_is_no_change() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    for i in 0..MAX_BOOKMARKS {
+        tell(&mut h, Command::Bookmark(0.009 * i as f64, format!("mark {i}")));
+    }
+    let before = h.state().app_state().changes();
+    for command in [Command::Bookmark(0.9995, "more".into()), Command::NameBookmark(Some(0.9995))] {
+        tell(&mut h, command);
+        let app_state = h.state().app_state();
+        assert_eq!((app_state.changes(), app_state.view_state().naming), (before, None));
+        let (said, bad) = app_state.view_state().message.clone().expect("it is said");
+        assert!(bad && said.contains("take one away"), "{said}");
+    }
 }
 
 /// The journal holds bookmarks and branches, and the next start has them.

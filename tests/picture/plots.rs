@@ -9,7 +9,7 @@ use stillbase::picture::charts::range::Extent;
 use stillbase::picture::charts::search::search;
 use stillbase::picture::charts::svg::svg;
 use stillbase::picture::charts::thin::thinned;
-use stillbase::picture::numbers::{at_step, spaced};
+use stillbase::picture::numbers::{at_step, spaced, ticks};
 use stillbase::picture::scene::palette::{Theme, palette};
 use stillbase::session::Session;
 use stillbase::session::scenario::Scenario;
@@ -241,4 +241,25 @@ fn a_thinned_line_is_as_long_as_its_shape_needs() {
     let hair: Vec<[f32; 2]> = (0..1000).map(|i| [0.3 * i as f32, if i % 2 == 0 { 0.0 } else { 30.0 }]).collect();
     assert_eq!(thinned(&hair, 0.1), hair);
     assert_eq!(thinned(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [1.0, 1.0]], 0.1), [[0.0, 0.0], [2.0, 2.0], [1.0, 1.0]]);
+}
+
+/// The numbers of an axis fit beside a small plot, however large or small they are, and differ.
+#[test]
+fn ticks_are_short() {
+    let of = |values: &[f64]| ticks(values, values[1] - values[0]);
+    assert_eq!(of(&[0.0, 500_000.0, 1_000_000.0]), ["0", "0.5M", "1.0M"]);
+    assert_eq!(of(&[-20_000_000.0, 0.0, 20_000_000.0]), ["−20M", "0", "20M"]);
+    assert_eq!(of(&[-200_000.0, 0.0, 200_000.0]), ["−200000", "0", "200000"]);
+    assert_eq!(of(&[-0.5, 0.0, 0.5]), ["−0.5", "0.0", "0.5"]);
+    assert_eq!(of(&[0.0, 2e12, 4e12]), ["0", "2e12", "4e12"]);
+    for decade in -12..14 {
+        for times in [1.0, 2.0, 5.0] {
+            let step = times * 10f64.powi(decade);
+            let texts = ticks(&[-step, 0.0, step, 2.0 * step, 3.0 * step], step);
+            for (i, text) in texts.iter().enumerate() {
+                assert!(text.chars().count() <= 8, "{text} in steps of {step}");
+                assert!(!texts[..i].contains(text), "{texts:?}");
+            }
+        }
+    }
 }

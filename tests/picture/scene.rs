@@ -122,7 +122,7 @@ label "A" at (0.500, 0.500)
 label "B" at (0.550, 0.900)
 label "f_B 0.000 N" at (0.252, -0.139)
 label "n_B 0.000 N m" at (0.252, -0.139)
-label "centre of mass at rest in B" at (0.252, -0.139)
+label "centre of mass at rest on the base pin" at (0.252, -0.139)
 label "0.500, 0.500 m" at (0.500, 0.500)
 label "drag me" at (0.500, 0.500)
 "#;
@@ -142,7 +142,7 @@ label "b = 2.400 rad · 0.845 m²" at (0.329, 0.386)
 label "b" at (-0.067, 0.178)
 label "f_B 0.000 N" at (0.252, -0.139)
 label "n_B 0.000 N m" at (0.252, -0.139)
-label "centre of mass at rest in B" at (0.252, -0.139)
+label "centre of mass at rest on the base pin" at (0.252, -0.139)
 label "outside the reactionless workspace" at (0.200, 1.150)
 label "nearest point 0.324, 1.218 m" at (0.200, 1.150)
 label "b = 2.648 rad would reach it" at (0.200, 1.150)
@@ -257,7 +257,7 @@ fn reactions_are_said() {
         let drawn = |name: &str| scene.lines.iter().any(|l| l.name == name && !l.strips.is_empty());
         assert_eq!(drawn("reaction/moment"), !still);
         assert!(!drawn("reaction/force"), "balanced: no force");
-        assert!(scene.labels.iter().any(|l| l.text == "centre of mass at rest in B"));
+        assert!(scene.labels.iter().any(|l| l.text == "centre of mass at rest on the base pin"));
     }
 }
 

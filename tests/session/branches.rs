@@ -1,6 +1,6 @@
 //! What is kept beside a run: bookmarks and branches, through undo, saving and reopening.
 
-use stillbase::session::scenario::{Bookmark, MAX_BRANCHES, Scenario};
+use stillbase::session::scenario::{Bookmark, MAX_BOOKMARKS, MAX_BRANCHES, Scenario};
 use stillbase::session::{Edit, Session, replay};
 
 use super::{coarse, do_it, drag, open, same};
@@ -33,7 +33,7 @@ fn forked() -> Session {
 #[test]
 fn undo_of_a_bookmark_leaves_branches_alone() {
     let mut session = open(coarse());
-    session.bookmark(0.0, "start");
+    session.bookmark(0.0, "start").expect("room");
     do_it(&mut session, drag(0.52, 0.62));
     session.end_gesture();
     session.tick(60);
@@ -57,18 +57,18 @@ fn undo_of_a_bookmark_leaves_branches_alone() {
 fn bookmarks_are_undone_saved_and_found_again() {
     let mut session = open(coarse());
     session.seek(0.3);
-    assert_eq!(session.bookmark(0.3, " here ").as_deref(), Some("here at 0.300 s"));
+    assert_eq!(session.bookmark(0.3, " here "), Ok(Some("here at 0.300 s".into())));
     session.seek(0.1);
     let name = session.free_name();
-    session.bookmark(0.1, &name);
+    session.bookmark(0.1, &name).expect("room");
     let marks = |session: &Session| session.bookmarks().to_vec();
     let mark = |time: f64, name: &str| Bookmark { time, name: name.into() };
     assert_eq!(marks(&session), [mark(0.1, "bookmark 1"), mark(0.3, "here")]);
     let frames = session.frames().to_vec();
-    session.bookmark(0.3, "the worst");
-    session.bookmark(0.1, "");
+    session.bookmark(0.3, "the worst").expect("room");
+    session.bookmark(0.1, "").expect("room");
     assert_eq!(marks(&session), [mark(0.3, "the worst")]);
-    assert_eq!(session.bookmark(0.2, ""), None, "there is none to take away");
+    assert_eq!(session.bookmark(0.2, ""), Ok(None), "there is none to take away");
     let titles: Vec<String> = session.history().map(String::from).collect();
     assert_eq!(titles, ["here at 0.300 s", "bookmark 1 at 0.100 s", "rename here to the worst", "remove bookmark 1"]);
     assert_eq!(marks(&again(&session)), marks(&session));
@@ -82,7 +82,7 @@ fn bookmarks_are_undone_saved_and_found_again() {
     // With an edit between, each change takes back its own.
     session.apply(Edit::set("plant.payload.mass", 0.2)).expect("a payload");
     session.end_gesture();
-    session.bookmark(0.2, "later");
+    session.bookmark(0.2, "later").expect("room");
     for _ in 0..5 {
         session.undo().expect("it was so before");
     }
@@ -101,7 +101,7 @@ fn what_is_left_is_a_branch() {
     let mut session = forked();
     let [fork] = &session.forks()[..] else { panic!("one branch: {:?}", session.forks()) };
     let dt = session.scenario().step;
-    assert_eq!(fork.title, "nothing more was done");
+    assert_eq!(fork.title, "drag target to 0.520, 0.620 m at 0.000 s, then left alone");
     assert!((fork.from - 20.0 * dt).abs() < 1e-9 && (fork.to - 60.0 * dt).abs() < 1e-9, "{fork:?}");
     let (left, here) = (session.branch(0).expect("a branch"), session.frames().to_vec());
     let mut frames = Vec::new();
@@ -156,6 +156,52 @@ fn plans_and_hands_are_left_whole() {
     assert!(session.forks()[1].title.starts_with("drag target"), "{:?}", session.forks());
 }
 
+/// What was led by hand is kept where another path takes its place, once for each gesture; undo brings it back.
+#[test]
+fn another_path_keeps_what_was_led_by_hand() {
+    let task = |keys: &str| Edit::of("task", toml::from_str(keys).expect("keys"));
+    for keys in ["to = [0.54, 0.88]", "from = [0.5, 0.52]", "b = 2.45"] {
+        let mut session = open(coarse());
+        do_it(&mut session, drag(0.52, 0.62));
+        session.end_gesture();
+        session.tick(30);
+        do_it(&mut session, Edit::SlideB { b: 2.5 });
+        session.end_gesture();
+        session.tick(30);
+        session.pause();
+        let led = session.frames().to_vec();
+        session.apply(task(keys)).expect("another path");
+        session.apply(task(keys)).expect("the same gesture");
+        session.end_gesture();
+        assert!(!session.is_led());
+        let [fork] = &session.forks()[..] else { panic!("{keys}: {:?}", session.forks()) };
+        assert!(fork.title.starts_with("drag target to 0.520, 0.620 m"), "{fork:?}");
+        session.apply(task("time = 1.2")).expect("what is not led leaves nothing");
+        session.end_gesture();
+        assert_eq!((session.branch_count(), session.partings()), (1, (1, None)));
+        session.undo().expect("the time");
+        session.switch_branch_while(0, &mut |_| true).expect("it is made again");
+        same(keys, session.frames(), &led);
+        session.undo().expect("from the branch");
+        session.undo().expect("the path");
+        same("undone", session.frames(), &led);
+        assert_eq!(session.branch_count(), 0);
+    }
+}
+
+/// One more bookmark than there may be is refused, and nothing has changed.
+#[test]
+fn a_bookmark_too_many_is_refused() {
+    let mut session = open(coarse());
+    for i in 0..MAX_BOOKMARKS {
+        session.bookmark(0.01 * i as f64, &format!("mark {i}")).expect("room");
+    }
+    let undone = session.undo_count();
+    let why = session.bookmark(9.0, "more").expect_err("one too many");
+    assert!(why.contains("take one away"), "{why}");
+    assert_eq!((session.bookmarks().len(), session.undo_count()), (MAX_BOOKMARKS, undone));
+}
+
 #[test]
 fn the_oldest_branch_goes_and_equal_ones_are_one() {
     let mut session = open(coarse());
@@ -169,7 +215,14 @@ fn the_oldest_branch_goes_and_equal_ones_are_one() {
         let count = session.branch_count();
         assert_eq!(count, i.min(MAX_BRANCHES));
     }
-    assert!(session.forks().iter().all(|fork| fork.title != "as planned"), "{:?}", session.forks());
+    let forks = session.forks();
+    for (i, fork) in forks.iter().enumerate() {
+        assert!(fork.title.starts_with("drag target to 0."), "{fork:?}");
+        assert!(forks[..i].iter().all(|other| other.title != fork.title), "{forks:?}");
+    }
+    let (left, gone) = session.partings();
+    assert_eq!(left as usize, MAX_BRANCHES + 2, "each is counted");
+    assert!(gone.is_some_and(|title| title.starts_with("drag target to 0.50")), "the one that went is named: {gone:?}");
     let known = session.branch_count();
     session.undo().expect("one back");
     assert!(session.branch_count() <= known);

@@ -221,7 +221,8 @@ impl Act {
                 Ok(())
             }
             Self::Bookmark(time, on) => {
-                session.bookmark(*time, if *on { "here" } else { "" });
+                // There may be as many as there can be.
+                let _ = session.bookmark(*time, if *on { "here" } else { "" });
                 Ok(())
             }
             Self::Branch(branch) => session.switch_branch_while(*branch, &mut |_| true),

@@ -5,7 +5,7 @@ use egui::{CursorIcon, Id, PointerButton, Response, Sense, Ui, vec2};
 
 use super::prepared::{Prepared, extent};
 use super::shown::Shown;
-use super::{hover, menu};
+use super::{hover, menu, values};
 use crate::app::Command;
 use crate::app::theme::colour;
 use crate::picture::charts::choice::{Change, Plot};
@@ -49,7 +49,7 @@ pub fn show(
     };
     describe(&response, plot, look);
     if ui.is_rect_visible(rect) {
-        let painter = ui.painter_at(rect.expand2(vec2(2.0, 2.0)));
+        let painter = ui.painter_at(rect.expand2(vec2(10.0, 2.0)));
         if let Some(Hold::Range(from)) = held(ui, &response)
             && let Some(pos) = response.interact_pointer_pos()
         {
@@ -63,12 +63,20 @@ pub fn show(
             painter.rect_stroke(rect.shrink(0.5), 4.0, stroke, egui::StrokeKind::Inside);
         }
     }
-    if plot.against.is_none() {
-        drag(ui, shown, &response, &axes, time_at, commands);
+    // The numbers beside it are handles of its values, all else of time.
+    let on_values = held(ui, &response).is_none() && values::hands(ui, (plot, drawn, &axes), &response, commands);
+    if !on_values {
+        if plot.against.is_none() {
+            drag(ui, shown, &response, &axes, time_at, commands);
+        }
+        zoom(ui, shown, &response, time_at, commands);
+        if plot.values.is_some() && response.double_clicked_by(PointerButton::Primary) {
+            commands.push(Command::Charts(Change::Values(plot.name.clone(), None)));
+        }
     }
-    zoom(ui, shown, &response, time_at, commands);
     menu::show(ui, shown, (plot, prepared), &response, commands);
     let over = response.hover_pos().filter(|_| plot.against.is_none() && !response.context_menu_opened());
+    let over = over.filter(|pos| !values::are_at(&response, *pos));
     if let (Some(_), Some(frame)) = (over, look.hover)
         && !response.dragged()
     {

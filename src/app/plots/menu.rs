@@ -80,6 +80,10 @@ fn entries(ui: &mut Ui, shown: &Shown<'_>, (plot, prepared): (&Plot<'_>, &Prepar
         commands.push(Command::Charts(Change::Range(extent.all(chosen.range))));
         ui.close();
     }
+    if ui.add_enabled(plot.values.is_some(), Button::new("Show all values")).clicked() {
+        commands.push(Command::Charts(Change::Values(plot.name.clone(), None)));
+        ui.close();
+    }
     if ui.button("Put this plot away").clicked() {
         commands.push(Command::Charts(Change::Close(plot.name.clone())));
         ui.close();

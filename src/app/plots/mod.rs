@@ -7,6 +7,7 @@ mod menu;
 mod prepared;
 mod search;
 mod shown;
+mod values;
 mod which_b;
 mod written;
 
@@ -31,6 +32,9 @@ const WIDEST: f32 = 640.0;
 const COMPARED: f32 = 0.38;
 const COMPARED_WIDEST: f32 = 1100.0;
 
+/// Room for the scroll bar, which grows where the pointer is near, points.
+const BAR: f32 = 12.0;
+
 /// How wide the panel is made by itself in a window, points.
 fn usual(ui: &Ui, layout: Layout) -> f32 {
     let (share, widest) = if layout == Layout::Compare { (COMPARED, COMPARED_WIDEST) } else { (SHARE, WIDEST) };
@@ -41,7 +45,7 @@ fn usual(ui: &Ui, layout: Layout) -> f32 {
 pub fn show(ui: &mut Ui, what: &Shown<'_>, prepared: &mut Prepared, commands: &mut Vec<Command>) -> Option<f32> {
     let Shown { session, signals, view_state, .. } = *what;
     let p = view_state.palette();
-    let frame = Frame::new().inner_margin(Margin { left: 14, right: 14, top: 10, bottom: 8 });
+    let frame = Frame::new().inner_margin(Margin { left: 14, right: 2, top: 10, bottom: 8 });
     let usual = usual(ui, view_state.layout);
     let most = (0.6 * ui.available_width()).max(usual);
     let width = view_state.plots.width.unwrap_or(usual).min(most);
@@ -54,8 +58,8 @@ pub fn show(ui: &mut Ui, what: &Shown<'_>, prepared: &mut Prepared, commands: &m
         if prepared.is_to_look() {
             search::focus(ui.ctx());
         }
-        search::show(ui, what, &plots, commands);
-        let columns = ((ui.available_width() - LEFT) * ui.ctx().pixels_per_point()).clamp(16.0, 8192.0) as usize;
+        search::show(ui, what, &plots, BAR as i8, commands);
+        let columns = ((ui.available_width() - BAR - LEFT) * ui.ctx().pixels_per_point()).clamp(16.0, 8192.0) as usize;
         if !prepared.follow(session, what.comparison, &plots, &view_state.charts, columns) {
             ui.ctx().request_repaint();
         }
@@ -66,6 +70,7 @@ pub fn show(ui: &mut Ui, what: &Shown<'_>, prepared: &mut Prepared, commands: &m
         let seen = hover::instant(ui, session);
         // Where there is no room for all of them, they scroll.
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            ui.set_width(ui.available_width() - BAR);
             ui.spacing_mut().item_spacing.y = 3.0;
             let mut over = None;
             for (plot, drawn) in plots.iter().zip(prepared.drawn()) {

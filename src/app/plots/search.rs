@@ -59,9 +59,9 @@ pub fn start(ctx: &Context, sought: Sought) {
     ctx.memory_mut(|memory| memory.request_focus(id()));
 }
 
-/// Draws the row.
-pub fn show(ui: &mut Ui, shown: &Shown<'_>, plots: &[Plot<'_>], commands: &mut Vec<Command>) {
-    let frame = egui::Frame::new().inner_margin(egui::Margin { left: 0, right: 0, top: 6, bottom: 0 });
+/// Draws the row, so far from the right edge.
+pub fn show(ui: &mut Ui, shown: &Shown<'_>, plots: &[Plot<'_>], right: i8, commands: &mut Vec<Command>) {
+    let frame = egui::Frame::new().inner_margin(egui::Margin { left: 0, right, top: 6, bottom: 0 });
     Panel::bottom("find a signal").resizable(false).show_separator_line(false).frame(frame).show(ui, |ui| {
         ui.horizontal(|ui| {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

@@ -7,7 +7,8 @@ use crate::app::background::{Background, File, Opening, Slot, ended};
 use crate::app::change::{Change, NotOpened, Source};
 use crate::app::jobs::Workers;
 use crate::app::{Activity, Command, ComparisonCommand, Framing, PlotFile, RefusedEdit, plots};
-use crate::session::scenario::Scenario;
+use crate::mechanics::machine::Machine;
+use crate::session::scenario::{MAX_BRANCHES, Scenario};
 use crate::session::{Edit, Refusal, Session};
 use crate::simulation::frame::Totals;
 use crate::study::comparison::{Compared, Comparison, run_ways};
@@ -91,10 +92,10 @@ impl AppState {
 
     /// Changes the session: at once if that is quick, else beside the window, and what was shown stays until then.
     pub(super) fn change(&mut self, change: Change) {
-        let (branches, shown) = (self.session.branch_count(), self.session.frame().time);
+        let before = (self.session.partings().0, self.session.frame().time, self.session.is_led());
         if change.is_quick(&self.session) {
             let done = change.make(&mut self.session, &mut |_| true);
-            self.parts(&change, branches, shown);
+            self.parts(&change, before);
             self.changed(&change, done);
             return;
         }
@@ -116,7 +117,7 @@ impl AppState {
             Some((next, done)) => {
                 if done.is_ok() {
                     let old = std::mem::replace(&mut self.session, next);
-                    self.parts(&change, old.branch_count(), old.frame().time);
+                    self.parts(&change, (old.partings().0, old.frame().time, old.is_led()));
                     self.background.let_go(old);
                 }
                 self.changed(&change, done);
@@ -126,11 +127,21 @@ impl AppState {
         true
     }
 
-    /// Remembers that an edit of the instant shown has left a branch, where there were so many before.
-    fn parts(&mut self, change: &Change, branches: usize, shown: f64) {
-        if matches!(change, Change::Edit(_)) && self.session.branch_count() > branches {
-            self.parted = Some(shown);
+    /// Remembers that a change has left a branch, where so many had been left before, at the instant then shown, s, and
+    /// of a run that had been led by hand or not.
+    fn parts(&mut self, change: &Change, (partings, shown, led): (u64, f64, bool)) {
+        let (now, gone) = self.session.partings();
+        if !matches!(change, Change::Edit(_)) || now == partings {
+            return;
         }
+        let kept = match led && !self.session.is_led() {
+            true => "what you led by hand is kept as a branch".into(),
+            false => format!("what came after {shown:.3} s is kept as a branch"),
+        };
+        self.parted = Some(match gone {
+            Some(gone) => format!("{kept} (H); the oldest of {MAX_BRANCHES} is gone: {gone}"),
+            None => format!("{kept} (H)"),
+        });
     }
 
     /// After a change of the session, or its refusal.
@@ -182,6 +193,12 @@ impl AppState {
         let broken = || NotOpened { why: "opening broke off: this is a fault of the program".into(), refused: None };
         match opened.unwrap_or_else(|| Err(broken())) {
             Ok(next) => self.take_over(next, opening),
+            Err(_) if opening.instead.is_some() => {
+                if let Some((scenario, said)) = opening.instead.map(|instead| *instead) {
+                    let opening = Opening { news: Some(said), instead: None, ..opening };
+                    self.open(Source::Scenario(Box::new(scenario)), opening);
+                }
+            }
             Err(NotOpened { why, refused }) => {
                 self.view_state.refused = refused;
                 self.tell(Err(why));
@@ -191,7 +208,7 @@ impl AppState {
         true
     }
 
-    fn take_over(&mut self, next: Session, Opening { plays, closes, news, file }: Opening) {
+    fn take_over(&mut self, next: Session, Opening { plays, closes, news, file, .. }: Opening) {
         self.saving.opened();
         match file {
             Some(File::Own(file)) => self.saving.uses(file),
@@ -221,16 +238,29 @@ impl AppState {
         let Some(case) = Scenario::builtin(name) else { return };
         let present = &self.session.scenario().machine;
         let other = (present.name() != case.machine.name()).then(|| present.clone());
-        let news = other.as_ref().map(|machine| format!("{}, with the machine {}", case.title, machine.name()));
+        let own = case.machine.name();
+        let news = |machine: &Machine| {
+            format!("{}, with {}; the paper's machine is {own}, top left", case.title, machine.name())
+        };
+        let instead = |machine: &Machine| {
+            let said = format!(
+                "{}, with the paper's machine, as {} cannot do it; Ctrl Z goes back",
+                case.title,
+                machine.name()
+            );
+            Box::new((case.clone(), said))
+        };
+        let (news, instead) = (other.as_ref().map(news), other.as_ref().map(instead));
         let scenario = Scenario { machine: other.unwrap_or_else(|| case.machine.clone()), ..case };
-        self.open(Source::Scenario(Box::new(scenario)), Opening { plays: true, closes: false, news, file: None });
+        let opening = Opening { plays: true, closes: false, news, file: None, instead };
+        self.open(Source::Scenario(Box::new(scenario)), opening);
     }
 
     /// Opens a file.
     pub(super) fn open_file(&mut self, path: PathBuf) {
         let news = Some(format!("opened {}", path.display()));
         let file = Some(File::Own(path.clone()));
-        self.open(Source::File(path), Opening { plays: false, closes: true, news, file });
+        self.open(Source::File(path), Opening { plays: false, closes: true, news, file, instead: None });
     }
 
     /// Whether a file is replaced where it is there; it may not be without the person's word for that.
@@ -412,7 +442,7 @@ impl AppState {
             ComparisonCommand::Open(entry) => {
                 let run = comparison.entries().get(entry).and_then(|e| e.outcome.as_ref().ok()).cloned();
                 if let Some(run) = run {
-                    let opening = Opening { plays: false, closes: false, news: None, file: None };
+                    let opening = Opening { plays: false, closes: false, news: None, file: None, instead: None };
                     self.open(Source::Scenario(Box::new(run.scenario.clone())), opening);
                 }
             }

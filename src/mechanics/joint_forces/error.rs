@@ -16,7 +16,7 @@ pub enum JointsError {
     },
     /// A drive without a link at B, and several that follow it.
     #[error(
-        "drive {drive} has no link at B, and links {links} follow it: want one link on \"base\", or one link only, so \
+        "drive {drive} has no link at the base, and links {links} follow it: want one link on \"base\", or one link only, so \
          that it is known which one it turns"
     )]
     Unattached {

@@ -35,6 +35,8 @@ pub struct Changes {
     pub off: BTreeSet<String>,
     /// The path of the signal that it is drawn over in place of time.
     pub against: Option<String>,
+    /// The values that it shows; none shows all of them.
+    pub values: Option<[f64; 2]>,
     /// It is put away.
     pub closed: bool,
 }
@@ -52,6 +54,8 @@ pub enum Change {
     Remove(String, String),
     /// Draws a plot over a signal, or over time.
     Against(String, Option<String>),
+    /// The values that a plot shows; none shows all of them.
+    Values(String, Option<[f64; 2]>),
     /// Puts a plot away: one of one's own for good.
     Close(String),
     /// Brings all plots back that were put away.
@@ -95,6 +99,10 @@ impl Choice {
                 changes.off.remove(&path);
             }
             Change::Against(plot, path) => self.changes.entry(plot).or_default().against = path,
+            Change::Values(plot, values) => {
+                let sound = values.filter(|[low, high]| low.is_finite() && high.is_finite() && low < high);
+                self.changes.entry(plot).or_default().values = sound;
+            }
             Change::Close(plot) => {
                 let own = self.own.iter().position(|name| *name == plot);
                 match own {
@@ -151,6 +159,8 @@ pub struct Plot<'a> {
     pub curves: Vec<Curve<'a>>,
     /// What it is drawn over in place of time.
     pub against: Option<&'a Signal>,
+    /// The values that it shows; none shows all of them.
+    pub values: Option<[f64; 2]>,
 }
 
 /// A curve of a plot.
@@ -199,7 +209,7 @@ impl<'a> Plot<'a> {
         if own && curves.len() > 1 {
             title += " …";
         }
-        Self { name: name.into(), title, chart, own, curves, against }
+        Self { name: name.into(), title, chart, own, curves, against, values: changes.values }
     }
 
     /// What stands above it.

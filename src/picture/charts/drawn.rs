@@ -24,6 +24,8 @@ pub struct Drawn {
     pub x: [f64; 2],
     /// What its values span.
     pub y: [f64; 2],
+    /// What they span where all of them are shown.
+    pub all: [f64; 2],
     /// What each curve comes to, if that is asked for; as many as the plot has curves.
     pub statistics: Vec<Option<Statistics>>,
 }
@@ -39,8 +41,7 @@ impl Drawn {
         statistics: bool,
     ) -> Self {
         let runs = others.iter().map(|(i, run)| (Some(*i), *run)).chain([(None, samples)]);
-        let mut drawn =
-            Self { lines: Vec::new(), x: shown, y: [f64::INFINITY, f64::NEG_INFINITY], statistics: Vec::new() };
+        let mut drawn = Self { lines: Vec::new(), x: shown, y: NONE, all: NONE, statistics: Vec::new() };
         let mut across = [f64::INFINITY, f64::NEG_INFINITY];
         for (run, samples) in runs {
             for (i, curve) in plot.curves.iter().enumerate().filter(|(_, curve)| curve.on) {
@@ -73,7 +74,8 @@ impl Drawn {
             let curves = plot.curves.iter();
             drawn.statistics = curves.map(|c| of(&c.signal.path).map(|s| scaled(s, c.times))).collect();
         }
-        drawn.y = room(plot, drawn.y);
+        drawn.all = room(plot, drawn.y);
+        drawn.y = plot.values.unwrap_or(drawn.all);
         if plot.against.is_some() {
             drawn.x = apart(across);
         }
@@ -85,6 +87,9 @@ impl Drawn {
         2e-4 * (self.y[1] - self.y[0])
     }
 }
+
+/// Of no values.
+const NONE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 
 fn widen(bounds: &mut [f64; 2], [low, high]: [f64; 2]) {
     *bounds = [bounds[0].min(low), bounds[1].max(high)];

@@ -5,7 +5,7 @@ use super::choice::Plot;
 use super::colour;
 use super::drawn::Drawn;
 use super::thin::thinned;
-use crate::picture::numbers::{at_step, spaced};
+use crate::picture::numbers::{at_step, spaced, ticks};
 use crate::picture::scene::Rgba;
 use crate::picture::scene::palette::{Palette, faded};
 use crate::simulation::frame::{Frame, Peaks};
@@ -97,6 +97,12 @@ impl Axes {
         [left + across * (right - left), bottom + up * (top - bottom)].map(|p| p.clamp(-1e5, 1e5) as f32)
     }
 
+    /// The value of y at a place.
+    pub fn y_at(&self, place: f32) -> f64 {
+        let [_, top, _, bottom] = self.sides;
+        self.y[0] + f64::from((place - bottom) / (top - bottom)) * (self.y[1] - self.y[0])
+    }
+
     /// The value of x at a place.
     pub fn x_at(&self, place: f32) -> f64 {
         let [left, _, right, _] = self.sides;
@@ -146,14 +152,13 @@ pub fn body(plot: &Plot<'_>, drawn: &Drawn, axes: &Axes, look: &Look<'_>) -> Vec
     let line = |points: Vec<[f32; 2]>, width, colour, dash| Item::Line { points, width, colour, dash, inside: true };
     // As many values as have room, and two at least.
     let room = ((bottom - top) / 24.0).clamp(2.0, 9.0).floor() as u8;
-    let ticks = |count: u8| spaced(axes.y[0], axes.y[1], f64::from(count));
+    let round = |count: u8| spaced(axes.y[0], axes.y[1], f64::from(count));
     let (values, step) =
-        (room..room + 4).map(ticks).find(|(values, _)| values.len() >= 2).unwrap_or_else(|| ticks(room));
-    for value in values {
-        let y = axes.place([axes.x[0], value])[1];
+        (room..room + 4).map(round).find(|(values, _)| values.len() >= 2).unwrap_or_else(|| round(room));
+    for (value, text) in values.iter().zip(ticks(&values, step)) {
+        let y = axes.place([axes.x[0], *value])[1];
         items.push(line(vec![[left, y], [right, y]], 1.0, faded(p.line, 0.9), None));
-        let text = small(at_step(value, step));
-        words.push(Item::Text { at: [left - 6.0, y], anchor: [1.0, 0.5], words: text });
+        words.push(Item::Text { at: [left - 6.0, y], anchor: [1.0, 0.5], words: small(text) });
     }
     let (values, step) = spaced(axes.x[0], axes.x[1], f64::from(((right - left) / 52.0).clamp(2.0, 12.0)));
     let last = values.len().saturating_sub(1);
@@ -210,8 +215,9 @@ fn cursors(plot: &Plot<'_>, axes: &Axes, look: &Look<'_>) -> Vec<Item> {
             }
             Some(against) => items.extend(plot.shown().filter_map(|curve| {
                 let at = [against.value(frame), curve.times * curve.signal.value(frame)];
-                let finite = at.iter().all(|x| x.is_finite());
-                finite.then(|| Item::Dot { at: axes.place(at), radius: 3.5, colour: tone })
+                // Of values that are not shown there is no dot.
+                let seen = at.iter().all(|x| x.is_finite()) && (axes.y[0]..=axes.y[1]).contains(&at[1]);
+                seen.then(|| Item::Dot { at: axes.place(at), radius: 3.5, colour: tone })
             })),
         }
     }

@@ -349,6 +349,8 @@ pub struct Scene {
     pub markers: Vec<Marker>,
     /// Words, over everything; drawn by egui, which has the fonts.
     pub labels: Vec<Label>,
+    /// The middle lines of the machine's bars, which words keep off.
+    pub bars: Vec<[[f32; 3]; 2]>,
 }
 
 impl Scene {
@@ -363,12 +365,13 @@ impl Scene {
             lines: Vec::new(),
             markers: Vec::new(),
             labels: Vec::new(),
+            bars: Vec::new(),
         }
     }
 
     /// Whether another one looks the same but for its words.
     pub fn looks_like(&self, other: &Self) -> bool {
-        let Self { background, model, areas, shadows, solids, lines, markers, labels: _ } = self;
+        let Self { background, model, areas, shadows, solids, lines, markers, labels: _, bars: _ } = self;
         Arc::ptr_eq(model, &other.model)
             && (background, areas, solids, markers) == (&other.background, &other.areas, &other.solids, &other.markers)
             && (shadows, lines) == (&other.shadows, &other.lines)

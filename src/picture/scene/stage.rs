@@ -46,6 +46,9 @@ pub struct Stage {
     /// The same of other than three drives.
     outline: Option<Outlined>,
     plan: Option<Plan>,
+    /// Whether the run waits, and whether a hand can lead the machine.
+    waits: bool,
+    follows: bool,
     pins: Pins,
     limits: Limits,
     /// The grid's lines, and those through the origin.
@@ -68,6 +71,8 @@ impl Stage {
                 _ => None,
             },
             plan: Plan::of(run, linkage.top()),
+            waits: run.waiting().is_some(),
+            follows: run.waiting().is_none() && run.pose_map().is_ok(),
             pins: Pins::of(&plant),
             limits: Limits::of(model, &linkage),
             grid: grid(&linkage),
@@ -118,6 +123,9 @@ impl Stage {
     pub fn handle(&self, handle: Handle, frame: &Frame) -> Option<[f64; 3]> {
         let z = self.handle_height();
         match handle {
+            Handle::EndEffector if self.waits => None,
+            // The point of the path under it is held instead.
+            Handle::Target if !self.follows => None,
             Handle::Target => {
                 let p = target_handle(frame);
                 Some([p.re, p.im, z])
@@ -165,7 +173,8 @@ impl Stage {
 
     /// The link under the pointer, taken hold of, on a machine that has planes to turn it on.
     pub fn grip(&self, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
-        let (i, map) = (self.link_at(frame, pointer)?, self.workspace.as_ref()?.planes().map());
+        let workspace = self.workspace.as_ref().filter(|_| self.follows)?;
+        let (i, map) = (self.link_at(frame, pointer)?, workspace.planes().map());
         turning::grip(i, self.linkage.bars().get(i)?, map, frame, pointer)
     }
 
@@ -195,6 +204,14 @@ impl Stage {
         let at = frame.in_base(Vector::new(at[0], at[1]));
         let turn = crate::mechanics::kinematics::closest_turn(at.arg(), map.turn(near));
         Some(turn * map.lambda_sum())
+    }
+
+    /// The ends of all links in a frame as shown, and the target: what a hand wants to see.
+    pub fn outline<'a>(&'a self, frame: &'a Frame) -> impl Iterator<Item = [f64; 3]> + 'a {
+        let (units, at, target) = (frame.q.units(), frame.base.at, target_handle(frame));
+        let ends = self.linkage.bars().iter().flat_map(move |bar| bar.ends(&units));
+        let target = [target.re, target.im, self.handle_height()];
+        ends.map(move |[x, y, z]| [at.re + x, at.im + y, z]).chain([target])
     }
 
     /// Points of the planned path that can be dragged: their numbers, A first.
@@ -286,6 +303,8 @@ impl Stage {
             }
         }
         let units = frame.q.units();
+        let seen = |[x, y, z]: [f64; 3]| point(frame.base.at + Vector::new(x, y), z);
+        scene.bars.extend(self.linkage.bars().iter().map(|bar| bar.ends(&units).map(seen)));
         let mut solids = self.linkage.solids(&units, frame.base, self.base.moves(), palette);
         under::light(&mut solids, &self.linkage, options.hot, palette);
         scene.solids.extend(solids);

@@ -22,6 +22,9 @@ const NEAR_LOAD: f64 = 12.0;
 const NAME: f64 = 17.0;
 const MASS: f64 = 22.0;
 
+/// Radius of the target's ring, px.
+const RING: f64 = 14.0;
+
 /// A payload nearer to the end effector than this part of the reach hangs at it.
 const AT_TIP: f64 = 0.015;
 
@@ -74,7 +77,7 @@ impl ViewKind {
         match self {
             Self::Flat | Self::Space => "",
             Self::Joints => "drag the dot in its plane  ·  drag the plane to change b",
-            Self::Tower => "drag the dot  ·  drag the slice to change b  ·  click a green bar to choose b",
+            Self::Tower => "drag the dot or the slice  ·  click a green bar: its b",
         }
     }
 
@@ -161,6 +164,13 @@ impl Views {
         (pointer.distance(at)? < 1.5 * NEAR).then_some(Pick::of(Handle::EndEffector, at))
     }
 
+    /// The target, where the pointer is on the arm or no farther from it than so many px.
+    pub fn pick_arm(&self, frame: &Frame, pointer: &Pointer, near: f64) -> Option<Pick> {
+        let at = self.stage.handle(Handle::Target, frame)?;
+        let on = pointer.distance(at)? < near || self.link_at(frame, pointer).is_some();
+        on.then(|| Pick::of(Handle::Target, at))
+    }
+
     /// The number of the link under the pointer in the machine's view, in a frame as shown; the uppermost of several.
     pub fn link_at(&self, frame: &Frame, pointer: &Pointer) -> Option<usize> {
         self.stage.link_at(frame, pointer)
@@ -196,7 +206,8 @@ impl Views {
                     let name = (pointer.at[0] - x + NAME).hypot(pointer.at[1] - y);
                     let own = (pointer.at[0] - x).hypot(pointer.at[1] - y);
                     let off = if first.is_some() { name } else { own.min(name) };
-                    (off < NEAR_POINT).then_some((Pick::of(handle, at), off))
+                    // Within its ring the target comes first.
+                    (off < NEAR_POINT && !(first.is_some() && own < RING)).then_some((Pick::of(handle, at), off))
                 });
                 let point = points.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick);
                 // A payload under the target is held by its mass, above it.

@@ -27,17 +27,20 @@ impl Session {
     }
 
     /// Puts a bookmark at an instant, s, or gives the one there another name; without a name it is taken away. What
-    /// became of it.
-    pub fn bookmark(&mut self, time: f64, name: &str) -> Option<String> {
+    /// became of it, if anything did.
+    ///
+    /// # Errors
+    /// If there are as many as there may be; then nothing has changed.
+    pub fn bookmark(&mut self, time: f64, name: &str) -> Result<Option<String>, String> {
         let known = self.bookmark_at(time).cloned();
         let name = shortened(name.trim(), MAX_NAME - 1);
         let mut bookmarks = self.document.bookmarks.to_vec();
         bookmarks.retain(|mark| Some(mark) != known.as_ref());
         let title = match (&known, name.is_empty()) {
-            (None, true) => return None,
-            (Some(known), false) if known.name == name => return None,
+            (None, true) => return Ok(None),
+            (Some(known), false) if known.name == name => return Ok(None),
             (None, false) if bookmarks.len() >= MAX_BOOKMARKS => {
-                return Some(format!("there are {MAX_BOOKMARKS} bookmarks: take one away first"));
+                return Err(format!("there are {MAX_BOOKMARKS} bookmarks: take one away first"));
             }
             (Some(known), true) => format!("remove {}", known.name),
             (Some(known), false) => format!("rename {} to {name}", known.name),
@@ -49,7 +52,7 @@ impl Session {
             bookmarks.insert(at, Bookmark { time, name });
         }
         self.change_beside(title.clone(), Kept::Bookmarks, |document| document.bookmarks = Arc::new(bookmarks));
-        Some(title)
+        Ok(Some(title))
     }
 
     /// Changes what is kept beside the run; the run stays as it is.

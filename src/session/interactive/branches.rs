@@ -16,9 +16,23 @@ impl Session {
         self.document.branches.len()
     }
 
-    /// What tells each of them from the run on display, the oldest first.
+    /// How many were left so far, and the title of the one that went because the last was one too many.
+    pub fn partings(&self) -> (u64, Option<&str>) {
+        (self.partings.0, self.partings.1.as_deref())
+    }
+
+    /// What tells each of them from the run on display, the oldest first; no two have the same title.
     pub fn forks(&self) -> Vec<Fork> {
-        self.document.branches.iter().map(|left| self.fork(left)).collect()
+        let mut forks: Vec<Fork> = self.document.branches.iter().map(|left| self.fork(left)).collect();
+        for i in 1..forks.len() {
+            let title = forks[i].title.clone();
+            let taken = |name: &String| forks[..i].iter().any(|fork| fork.title == *name);
+            let another = (2..).map(|n| format!("{title} ({n})")).find(|name| !taken(name));
+            if taken(&title) {
+                forks[i].title = another.unwrap_or(title);
+            }
+        }
+        forks
     }
 
     fn fork(&self, left: &Left) -> Fork {
@@ -34,18 +48,22 @@ impl Session {
         Left { script, end: end.min(MAX_FRAMES as u64 - 1).max(self.document.end), step }
     }
 
-    /// The branches with the run as it goes on after the instant on display.
-    pub(super) fn with_left(&self) -> Arc<Vec<Left>> {
+    /// The branches with the run as it goes on after the instant on display, and the partings then.
+    pub(super) fn with_left(&self) -> (Arc<Vec<Left>>, (u64, Option<String>)) {
         let left = self.as_left();
         let mut all = self.document.branches.to_vec();
+        let mut partings = (self.partings.0, None);
         match all.iter_mut().find(|known| known.script.is(&left.script)) {
             Some(known) => known.end = known.end.max(left.end),
-            None => all.push(left),
+            None => {
+                all.push(left);
+                partings.0 += 1;
+            }
         }
         if all.len() > MAX_BRANCHES {
-            all.remove(0);
+            partings.1 = Some(self.fork(&all.remove(0)).title);
         }
-        Arc::new(all)
+        (Arc::new(all), partings)
     }
 
     /// Shows a branch; the run on display becomes one in its place.

@@ -28,7 +28,7 @@ pub struct Branch {
 pub const MAX_BOOKMARKS: usize = 100;
 
 /// The most branches that are kept.
-pub const MAX_BRANCHES: usize = 8;
+pub const MAX_BRANCHES: usize = 32;
 
 /// The most characters of a bookmark's name.
 pub const MAX_NAME: usize = 60;

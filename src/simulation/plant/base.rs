@@ -26,7 +26,7 @@ pub const KEYS: [Key; 6] = [
         "base.com",
         Holds::List(2, Range::either_way(1e3, "m")),
         "0,0",
-        "Centre of mass ρ of the base, seen from B along the base's own axes.",
+        "Centre of mass ρ of the base, seen from the base pin along the base's own axes.",
     )
     .when(MOVES),
     Key::new(

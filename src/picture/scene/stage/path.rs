@@ -64,14 +64,14 @@ impl Plan {
             let ink = if unserved.is_some() { palette.reaction } else { palette.ink };
             let disc = Marker::disc("plan/waypoints", at, if hot { 6.5 } else { 4.5 }, palette.background);
             scene.markers.push(disc.edged(ink, if hot { 2.2 } else { 1.6 }));
-            let mut words = |text: &str, down: f32, colour, size| {
-                let label = Label::new("plan/names", at, [-12.0, down], text, colour, size, Anchor::Right);
-                scene.labels.push(label);
+            let mut words = |own: &'static str, text: &str, down: f32, colour, size| {
+                scene.labels.push(Label::new(own, at, [-12.0, down], text, colour, size, Anchor::Right));
             };
-            words(name, 0.0, ink, 13.0);
+            words("plan/names", name, 0.0, ink, 13.0);
+            let mut way_out = |text: &str| words("plan/unserved", text, 15.0, palette.reaction, 11.5);
             match unserved {
-                Some((_, Some(b))) => words(&format!("b = {b} rad would reach it"), 15.0, palette.reaction, 11.5),
-                Some((_, None)) => words("no b reaches it", 15.0, palette.reaction, 11.5),
+                Some((_, Some(b))) => way_out(&format!("b = {b} rad would reach it")),
+                Some((_, None)) => way_out("no b reaches it"),
                 None => {}
             }
         }

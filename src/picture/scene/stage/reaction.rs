@@ -54,8 +54,10 @@ pub fn draw(scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Fra
     scene.lines.push(Line::new("com", cross, 1.8, palette.ink).on_top().moving(at_com));
     let off = (com - b).norm();
     let still = off < 1e-6 * reach;
-    let com_words =
-        if still { "centre of mass at rest in B".into() } else { format!("centre of mass {:.2} mm off B", 1e3 * off) };
+    let com_words = match still {
+        true => "centre of mass at rest on the base pin".into(),
+        false => format!("centre of mass {:.2} mm off the base pin", 1e3 * off),
+    };
     let scale: Vec<String> = [
         arrow.map(|_| format!("arrow: {:.3} m = {} N", ARROW * reach, round_number(newtons))),
         sweep.map(|_| format!("arc: 135° = {} N m", round_number(newton_metres))),

@@ -1,0 +1,98 @@
+//! Hands on the numbers beside a plot: they go closer to its values, and along them.
+
+use egui::{CursorIcon, Key, PointerButton, Pos2, Rect, Response, Sense, Ui, pos2};
+
+use crate::app::Command;
+use crate::picture::charts::choice::{Change, Plot};
+use crate::picture::charts::drawn::Drawn;
+use crate::picture::charts::figure::{Axes, LEFT};
+
+/// The least and the most that is shown, beside what shows all values.
+const SPAN: [f64; 2] = [1e-3, 30.0];
+/// How much closer a notch of the wheel goes.
+const CLOSER: f64 = 0.004;
+
+const TIP: &str = "Drag: along the values\nCtrl wheel, or Alt wheel on the plot: closer\nDouble click: all of them";
+
+/// Reads them; whether they have the pointer.
+pub fn hands(
+    ui: &Ui,
+    (plot, drawn, axes): (&Plot<'_>, &Drawn, &Axes),
+    response: &Response,
+    commands: &mut Vec<Command>,
+) -> bool {
+    let rect = response.rect;
+    let numbers = Rect::from_min_max(rect.min, pos2(rect.left() + LEFT - 2.0, rect.bottom()));
+    let id = response.id.with("values");
+    let mut ask = |values: Option<[f64; 2]>| {
+        commands.push(Command::Charts(Change::Values(plot.name.clone(), values)));
+    };
+    let [low, high] = drawn.y;
+    let [_, top, _, bottom] = axes.sides;
+    // What it was when the drag began.
+    let mut held: Option<Option<[f64; 2]>> = ui.data(|data| data.get_temp(id));
+    let origin = ui.input(|i| i.pointer.press_origin());
+    if response.drag_started_by(PointerButton::Primary) && origin.is_some_and(|at| numbers.contains(at)) {
+        held = Some(plot.values);
+        ui.data_mut(|data| data.insert_temp(id, plot.values));
+    }
+    if let Some(before) = held {
+        ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
+        let by = f64::from(response.drag_delta().y / (bottom - top).max(1.0)) * (high - low);
+        if by != 0.0 {
+            ask(Some([low + by, high + by]));
+        }
+        let let_go = ui.input(|i| i.key_pressed(Key::Escape));
+        if let_go {
+            ask(before);
+        }
+        if let_go || response.drag_stopped() || !response.dragged() {
+            ui.data_mut(|data| data.remove::<Option<[f64; 2]>>(id));
+        }
+        return true;
+    }
+    let Some(pos) = response.hover_pos() else { return false };
+    let on = numbers.contains(pos);
+    let factor = closer(ui, on);
+    if (factor - 1.0).abs() > 1e-6 {
+        ask(zoomed(drawn, axes.y_at(pos.y - rect.top()), factor));
+    }
+    if on {
+        ui.interact(numbers, id.with("numbers"), Sense::hover()).on_hover_text(TIP);
+        ui.ctx().set_cursor_icon(CursorIcon::ResizeVertical);
+        if response.double_clicked_by(PointerButton::Primary) {
+            ask(None);
+        }
+    }
+    on
+}
+
+/// How many times as close the wheel asks to go. The plain wheel scrolls the panel.
+fn closer(ui: &Ui, on_numbers: bool) -> f64 {
+    ui.input_mut(|i| {
+        if on_numbers && i.zoom_delta() != 1.0 {
+            return f64::from(i.zoom_delta());
+        }
+        if !i.modifiers.alt {
+            return 1.0;
+        }
+        let by = f64::from(std::mem::take(&mut i.smooth_scroll_delta.y));
+        (CLOSER * by).exp()
+    })
+}
+
+/// The values so many times as close about one that stays where it is; none where that shows all of them.
+fn zoomed(drawn: &Drawn, about: f64, factor: f64) -> Option<[f64; 2]> {
+    let [low, high] = drawn.y;
+    let all = drawn.all[1] - drawn.all[0];
+    let span = ((high - low) / factor.max(1e-6)).clamp(SPAN[0] * all, SPAN[1] * all);
+    let share = ((about - low) / (high - low)).clamp(0.0, 1.0);
+    let from = about.clamp(low, high) - share * span;
+    let values = [from, from + span];
+    values.iter().all(|x| x.is_finite()).then_some(values)
+}
+
+/// Whether a place is on the numbers of a plot.
+pub fn are_at(response: &Response, pos: Pos2) -> bool {
+    pos.x < response.rect.left() + LEFT - 2.0
+}
