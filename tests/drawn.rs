@@ -26,12 +26,16 @@ mod picture {
     #[cfg(all(feature = "window", feature = "cli"))]
     pub mod committed;
     pub mod drawn;
+    #[cfg(feature = "ui")]
+    pub mod gui;
     pub mod render;
 }
 
 fn main() -> ExitCode {
     let required = std::env::var_os("STILLBASE_REQUIRE_GPU").is_some_and(|value| value == "1");
     let mut tests = [picture::drawn::TESTS, picture::render::TESTS].concat();
+    #[cfg(feature = "ui")]
+    tests.extend(picture::gui::TESTS);
     #[cfg(feature = "window")]
     tests.extend(app::TESTS.concat());
     #[cfg(all(feature = "window", feature = "cli"))]

@@ -3,6 +3,8 @@
 #[cfg(feature = "ui")]
 pub mod canvas;
 pub mod charts;
+#[cfg(feature = "ui")]
+pub mod gui;
 pub mod numbers;
 #[cfg(feature = "ui")]
 pub mod paint;

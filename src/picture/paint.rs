@@ -5,7 +5,7 @@ pub mod words;
 
 use std::sync::Arc;
 
-use egui::{Color32, FontData, FontDefinitions, FontFamily, FontId, Pos2, Rect, Ui, Vec2, vec2};
+use egui::{Color32, FontData, FontDefinitions, FontFamily, FontId, PaintCallback, Pos2, Rect, Ui, Vec2, vec2};
 
 use super::render::{Quality, Renderer, View};
 use super::scene::camera::Camera;
@@ -70,8 +70,8 @@ impl Spot {
     }
 }
 
-/// The renderers of each scene of a window; to stand among egui's callback resources.
-pub struct Renderers {
+/// The renderers of each scene of a window.
+pub(super) struct Renderers {
     device: wgpu::Device,
     format: wgpu::TextureFormat,
     all: Vec<Place>,
@@ -88,12 +88,12 @@ struct Place {
 
 impl Renderers {
     /// `format` is that of the pass they draw in.
-    pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
+    pub(super) fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
         Self { device: device.clone(), format, all: Vec::new() }
     }
 
     /// Draws a scene where it is not the one that was drawn last. Renderers are made when they are first needed.
-    fn prepare(&mut self, queue: &wgpu::Queue, encoder: &mut wgpu::CommandEncoder, asked: &Paint) {
+    pub(super) fn prepare(&mut self, queue: &wgpu::Queue, encoder: &mut wgpu::CommandEncoder, asked: &Paint) {
         while self.all.len() <= asked.number {
             self.all.push(Place::default());
         }
@@ -118,49 +118,25 @@ impl Renderers {
         place.last = Some((asked.scene.clone(), asked.view, asked.quality));
     }
 
-    /// What was drawn last of a scene.
-    fn drawn(&self, number: usize) -> Option<&Renderer> {
-        let place = self.all.get(number)?;
-        match place.last.as_ref()?.2 {
-            Quality::Fine => place.fine.as_ref(),
-            Quality::Draft => place.draft.as_ref(),
+    /// Copies what was drawn last of a scene into a pass's viewport.
+    pub(super) fn paint(&self, pass: &mut wgpu::RenderPass, asked: &Paint) {
+        let Some(Place { fine, draft, last: Some((.., quality)) }) = self.all.get(asked.number) else { return };
+        let renderer = match quality {
+            Quality::Fine => fine.as_ref(),
+            Quality::Draft => draft.as_ref(),
+        };
+        if let Some(renderer) = renderer {
+            renderer.paint(pass);
         }
     }
 }
 
-/// The scene as a callback that egui's renderer runs.
-struct Paint {
+/// A scene that stands among egui's shapes.
+pub(super) struct Paint {
     number: usize,
     scene: Arc<Scene>,
     view: View,
     quality: Quality,
-}
-
-impl egui_wgpu::CallbackTrait for Paint {
-    fn prepare(
-        &self,
-        _device: &wgpu::Device,
-        queue: &wgpu::Queue,
-        _screen: &egui_wgpu::ScreenDescriptor,
-        encoder: &mut wgpu::CommandEncoder,
-        resources: &mut egui_wgpu::CallbackResources,
-    ) -> Vec<wgpu::CommandBuffer> {
-        if let Some(renderers) = resources.get_mut::<Renderers>() {
-            renderers.prepare(queue, encoder, self);
-        }
-        Vec::new()
-    }
-
-    fn paint(
-        &self,
-        _info: egui::PaintCallbackInfo,
-        pass: &mut wgpu::RenderPass<'static>,
-        resources: &egui_wgpu::CallbackResources,
-    ) {
-        if let Some(renderer) = resources.get::<Renderers>().and_then(|renderers| renderers.drawn(self.number)) {
-            renderer.paint(pass);
-        }
-    }
 }
 
 /// From now on what moves is drawn in draft, and finely once it rests: for windows that the processor draws.
@@ -200,8 +176,7 @@ fn settle(ctx: &egui::Context, number: usize, scene: &Arc<Scene>, view: &View) -
     (scene, quality)
 }
 
-/// Draws a scene into a rectangle; [`Renderers`] must be among egui's callback resources. Scenes of one window are
-/// numbered from 0.
+/// Draws a scene into a rectangle. Scenes of one window are numbered from 0.
 pub fn paint(ui: &Ui, number: usize, rect: Rect, scene: &Arc<Scene>, camera: &Camera) {
     let pixels = ui.ctx().pixels_per_point();
     let aspect = f64::from(rect.width() / rect.height().max(1.0));
@@ -213,5 +188,5 @@ pub fn paint(ui: &Ui, number: usize, rect: Rect, scene: &Arc<Scene>, camera: &Ca
     };
     let (scene, quality) = settle(ui.ctx(), number, scene, &view);
     let paint = Paint { number, scene, view, quality };
-    ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, paint));
+    ui.painter().add(PaintCallback { rect, callback: Arc::new(paint) });
 }

@@ -9,7 +9,7 @@ use stillbase::picture::scene::palette::Theme;
 use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
 
-use super::screen::Screen;
+use super::screen::{Screen, whole};
 use super::{Window, drag, on_screen, session};
 use crate::Test;
 
@@ -29,7 +29,7 @@ fn window(case: &str, liked: &Preferences) -> Window {
         .with_size([1440.0, 900.0])
         .with_step_dt(0.02)
         .renderer(Screen::new())
-        .build_eframe(move |cc| App::new(cc, app_state, Clock::Fixed(0.02)).expect("kittest draws with wgpu"))
+        .build_ui_state(whole, App::new(app_state, Clock::Fixed(0.02)))
 }
 
 fn liked(h: &Window) -> Preferences {

@@ -16,7 +16,7 @@ use stillbase::picture::scene::palette::Theme;
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Session};
 
-use super::screen::Screen;
+use super::screen::{Screen, whole};
 use super::{Window, pull, seen, session};
 use crate::Test;
 use crate::folder::Folder;
@@ -62,7 +62,7 @@ fn window(case: &str, workers: &Waiting) -> Window {
         .with_size([1280.0, 800.0])
         .with_step_dt(0.02)
         .renderer(Screen::new())
-        .build_eframe(move |cc| App::new(cc, app_state, Clock::Fixed(0.02)).expect("kittest draws with wgpu"))
+        .build_ui_state(whole, App::new(app_state, Clock::Fixed(0.02)))
 }
 
 fn tell(h: &mut Window, command: Command) {

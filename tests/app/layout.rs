@@ -10,7 +10,7 @@ use stillbase::picture::scene::views::ViewKind;
 use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
 
-use super::screen::Screen;
+use super::screen::{Screen, whole};
 use super::{Window, drag, seen, session};
 use crate::Test;
 
@@ -29,7 +29,7 @@ fn window(size: [f32; 2], liked: &Preferences) -> Window {
         .with_size(size)
         .with_step_dt(0.02)
         .renderer(Screen::new())
-        .build_eframe(move |cc| App::new(cc, app_state, Clock::Fixed(0.02)).expect("kittest draws with wgpu"))
+        .build_ui_state(whole, App::new(app_state, Clock::Fixed(0.02)))
 }
 
 fn scene(h: &Window) -> Rect {

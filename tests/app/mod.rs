@@ -45,7 +45,7 @@ pub const TESTS: [&[Test]; 15] = [
     view::TESTS,
 ];
 
-use screen::Screen;
+use screen::{Screen, whole};
 
 type Window = Harness<'static, App>;
 
@@ -61,7 +61,7 @@ fn window_of(scenario: Scenario, theme: Theme, height: f32) -> Window {
         .with_size([1280.0, height])
         .with_step_dt(0.02)
         .renderer(Screen::new())
-        .build_eframe(move |cc| App::new(cc, app_state, Clock::Fixed(0.02)).expect("kittest draws with wgpu"))
+        .build_ui_state(whole, App::new(app_state, Clock::Fixed(0.02)))
 }
 
 fn session(h: &Window) -> &stillbase::session::Session {

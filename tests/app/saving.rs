@@ -9,7 +9,7 @@ use stillbase::picture::scene::palette::Theme;
 use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
 
-use super::screen::Screen;
+use super::screen::{Screen, whole};
 use super::{Window, session, window};
 use crate::Test;
 use crate::folder::Folder;
@@ -20,7 +20,6 @@ pub const TESTS: &[Test] = tests![
     a_session_that_was_left_behind_is_offered_and_opened,
     one_that_is_not_wanted_goes,
     changes_in_no_file_are_marked_and_asked_for,
-    a_lost_device_closes_the_window_and_nothing_else,
 ];
 
 fn tell(h: &mut Window, command: Command) {
@@ -77,7 +76,7 @@ fn found(file: &std::path::Path) -> Window {
         .with_size([1280.0, 800.0])
         .with_step_dt(0.02)
         .renderer(Screen::new())
-        .build_eframe(move |cc| App::new(cc, app_state, Clock::Fixed(0.02)).expect("kittest draws with wgpu"))
+        .build_ui_state(whole, App::new(app_state, Clock::Fixed(0.02)))
 }
 
 fn a_session_that_was_left_behind_is_offered_and_opened() {
@@ -141,32 +140,4 @@ fn changes_in_no_file_are_marked_and_asked_for() {
     h.run_steps(2);
     tell(&mut h, Command::Quit);
     assert!(h.state().app_state().wants_to_leave());
-}
-
-/// It is opened again around the same session: `tests/window/loss.rs`. Nothing is drawn, asked or given up before.
-fn a_lost_device_closes_the_window_and_nothing_else() {
-    let scenario = Scenario::builtin("case-3").expect("built in");
-    let app_state = AppState::new(scenario, Theme::Dark).expect("it starts");
-    let screen = Screen::new();
-    let device = screen.device().clone();
-    let mut h: Window = Harness::builder()
-        .with_size([1280.0, 800.0])
-        .with_step_dt(0.02)
-        .renderer(screen)
-        .build_eframe(move |cc| App::new(cc, app_state, Clock::Fixed(0.02)).expect("kittest draws with wgpu"));
-    h.run_steps(2);
-    tell(&mut h, heavier());
-    h.key_press(egui::Key::Space);
-    h.step();
-    let (kept, time) = (session(&h).to_scenario(), session(&h).frame().time);
-    device.destroy();
-    let _ = device.poll(wgpu::PollType::wait_indefinitely());
-    h.step();
-    let commands = &h.output().viewport_output[&egui::ViewportId::ROOT].commands;
-    assert!(commands.contains(&egui::ViewportCommand::Close), "{commands:?}");
-    assert!(h.query_by_label("Play").is_none() && h.query_by_label("Save before closing?").is_none());
-    h.key_press(egui::Key::Home);
-    h.run_steps(5);
-    assert_eq!((session(&h).to_scenario(), session(&h).frame().time), (kept, time), "time and keys wait");
-    assert!(!h.state().app_state().may_leave(), "the change is in no file yet");
 }

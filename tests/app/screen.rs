@@ -1,71 +1,55 @@
 //! What a window draws on where there is none.
 
-use std::sync::Arc;
-
-use egui::mutex::RwLock;
+use egui::TexturesDelta;
 use egui_kittest::TestRenderer;
-use egui_wgpu::{RenderState, Renderer, RendererOptions, ScreenDescriptor};
-use stillbase::picture::canvas::draw_shapes;
+use stillbase::app::window::App;
+use stillbase::picture::gui::{GuiRenderer, Sheet};
 use stillbase::picture::render::offscreen::{Gpu, surface};
+
+/// Shows an application over the whole window; kittest would leave a margin around it.
+pub fn whole(ui: &mut egui::Ui, app: &mut App) {
+    let rect = ui.ctx().content_rect();
+    let mut ui = ui.new_child(egui::UiBuilder::new().max_rect(rect));
+    ui.set_clip_rect(rect);
+    app.ui(&mut ui);
+}
 
 /// A GPU of its own for each window: a renderer keeps what was drawn on it.
 pub struct Screen {
     gpu: Gpu,
-    state: RenderState,
+    gui: GuiRenderer,
+    textures: TexturesDelta,
 }
 
 impl Screen {
     pub fn new() -> Self {
-        let (gpu, target_format) = (crate::gpu::fresh(), wgpu::TextureFormat::Rgba8Unorm);
-        let (device, queue) = (gpu.device().clone(), gpu.queue().clone());
-        let renderer = Renderer::new(&device, target_format, RendererOptions::PREDICTABLE);
-        let state = RenderState {
-            adapter: gpu.adapter().clone(),
-            available_adapters: Vec::new(),
-            instance: wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle()),
-            device,
-            queue,
-            target_format,
-            renderer: Arc::new(RwLock::new(renderer)),
-        };
-        Self { gpu, state }
-    }
-
-    /// What it draws with.
-    pub fn device(&self) -> &wgpu::Device {
-        &self.state.device
+        let gpu = crate::gpu::fresh();
+        let gui = GuiRenderer::new(gpu.device(), gpu.queue(), wgpu::TextureFormat::Rgba8Unorm);
+        Self { gpu, gui, textures: TexturesDelta::default() }
     }
 }
 
 impl TestRenderer for Screen {
-    fn setup_eframe(&self, cc: &mut eframe::CreationContext<'_>, frame: &mut eframe::Frame) {
-        cc.wgpu_render_state = Some(self.state.clone());
-        frame.wgpu_render_state = Some(self.state.clone());
-    }
-
-    fn handle_delta(&mut self, delta: &mut egui::TexturesDelta) {
-        let mut renderer = self.state.renderer.write();
-        for (id, images) in delta.set.drain() {
-            images.iter().for_each(|image| renderer.update_texture(&self.state.device, &self.state.queue, id, image));
-        }
-        delta.free.drain().for_each(|id| renderer.free_texture(&id));
+    fn handle_delta(&mut self, delta: &mut TexturesDelta) {
+        self.textures.append(std::mem::take(delta));
     }
 
     fn render(&mut self, ctx: &egui::Context, output: &egui::FullOutput) -> Result<image::RgbaImage, String> {
-        let RenderState { device, queue, target_format, renderer, .. } = &self.state;
         let size = ctx.content_rect().size() * ctx.pixels_per_point();
-        let [width, height] = [size.x.round() as u32, size.y.round() as u32];
-        let screen = ScreenDescriptor { size_in_pixels: [width, height], pixels_per_point: ctx.pixels_per_point() };
-        let texture = surface(device, [width, height], *target_format);
+        let size_px = [size.x.round() as u32, size.y.round() as u32];
+        let texture = surface(self.gpu.device(), size_px, wgpu::TextureFormat::Rgba8Unorm);
         let shapes = ctx.tessellate(output.shapes.clone(), ctx.pixels_per_point());
-        draw_shapes(
-            &mut renderer.write(),
-            (device, queue),
-            (&texture, ctx.global_style().visuals.panel_fill),
-            &shapes,
-            &screen,
-        );
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let behind = ctx.global_style().visuals.panel_fill;
+        let sheet = Sheet { view: &view, size_px, pixels_per_point: ctx.pixels_per_point(), behind };
+        self.gui.draw(&sheet, &mut self.textures, &shapes);
         let picture = self.gpu.readback(&texture).map_err(|why| why.to_string())?;
         image::RgbaImage::from_raw(picture.width, picture.height, picture.rgba).ok_or_else(|| "no pixels".into())
+    }
+}
+
+impl Drop for Screen {
+    fn drop(&mut self) {
+        self.textures.clear();
     }
 }

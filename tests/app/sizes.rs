@@ -9,7 +9,7 @@ use stillbase::picture::scene::palette::Theme;
 use stillbase::session::scenario::Scenario;
 
 use super::Window;
-use super::screen::Screen;
+use super::screen::{Screen, whole};
 use crate::Test;
 
 pub const TESTS: &[Test] = tests![the_smallest_window, a_usual_window, a_sharp_screen, a_large_screen];
@@ -38,7 +38,7 @@ fn window(size: [u16; 2], scale: u8, theme: Theme) -> Window {
         .with_pixels_per_point(f32::from(scale))
         .with_step_dt(0.02)
         .renderer(Screen::new())
-        .build_eframe(move |cc| App::new(cc, app_state, Clock::Fixed(0.02)).expect("kittest draws with wgpu"))
+        .build_ui_state(whole, App::new(app_state, Clock::Fixed(0.02)))
 }
 
 /// Every so many pixels along and across become one: what is compared is small, and one stray pixel is no difference.

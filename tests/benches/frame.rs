@@ -9,10 +9,9 @@
 use std::time::{Duration, Instant};
 
 use egui::epaint::Primitive;
-use egui_wgpu::{RendererOptions, ScreenDescriptor};
 use stillbase::app::{AppState, Command};
-use stillbase::picture::canvas::draw_shapes;
-use stillbase::picture::paint::{Renderers, draw_drafts, install_fonts};
+use stillbase::picture::gui::{GuiRenderer, Sheet};
+use stillbase::picture::paint::{draw_drafts, install_fonts};
 use stillbase::picture::render::offscreen::{Gpu, surface};
 use stillbase::picture::render::{Renderer, View};
 use stillbase::picture::scene::options::ViewOptions;
@@ -97,10 +96,11 @@ fn processor_time() -> Option<f64> {
 
 struct Screen<'a> {
     gpu: &'a Gpu,
-    egui: egui_wgpu::Renderer,
+    gui: GuiRenderer,
     ctx: egui::Context,
     texture: wgpu::Texture,
-    screen: ScreenDescriptor,
+    size_px: [u32; 2],
+    pixels_per_point: f32,
     alone: Renderer,
     viewport: egui::Rect,
     now: f64,
@@ -109,8 +109,6 @@ struct Screen<'a> {
 impl<'a> Screen<'a> {
     fn new(gpu: &'a Gpu, size: [u32; 2], scale: f32) -> Self {
         let format = wgpu::TextureFormat::Rgba8Unorm;
-        let mut egui = egui_wgpu::Renderer::new(gpu.device(), format, RendererOptions::default());
-        egui.callback_resources.insert(Renderers::new(gpu.device(), format));
         let ctx = egui::Context::default();
         install_fonts(&ctx);
         // As the window does.
@@ -119,10 +117,11 @@ impl<'a> Screen<'a> {
         }
         Self {
             gpu,
-            egui,
+            gui: GuiRenderer::new(gpu.device(), gpu.queue(), format),
             ctx,
             texture: surface(gpu.device(), size, format),
-            screen: ScreenDescriptor { size_in_pixels: size, pixels_per_point: scale },
+            size_px: size,
+            pixels_per_point: scale,
             alone: Renderer::new(gpu.device(), format),
             viewport: egui::Rect::NOTHING,
             now: 0.0,
@@ -137,7 +136,7 @@ impl<'a> Screen<'a> {
     fn frame(&mut self, app_state: &mut AppState, i: usize) -> [Duration; 4] {
         let begun = Instant::now();
         app_state.pass(PACE);
-        let [width, height] = self.screen.size_in_pixels.map(|n| n as f32 / self.screen.pixels_per_point);
+        let [width, height] = self.size_px.map(|n| n as f32 / self.pixels_per_point);
         let mut input = egui::RawInput {
             screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(width, height))),
             time: Some(self.now),
@@ -147,7 +146,7 @@ impl<'a> Screen<'a> {
         // Over the plots, where nothing is under it that a click would change.
         input.events.push(egui::Event::PointerMoved(egui::pos2(0.3 * width + i as f32, 0.95 * height)));
         if let Some(root) = input.viewports.get_mut(&egui::ViewportId::ROOT) {
-            root.native_pixels_per_point = Some(self.screen.pixels_per_point);
+            root.native_pixels_per_point = Some(self.pixels_per_point);
         }
         let mut output = self.ctx.run_ui(input, |ui| app_state.ui(ui));
         let interface = begun.elapsed();
@@ -162,20 +161,15 @@ impl<'a> Screen<'a> {
         }
 
         let begun = Instant::now();
-        let (device, queue) = (self.gpu.device(), self.gpu.queue());
-        for (id, deltas) in output.textures_delta.set.drain() {
-            deltas.iter().for_each(|delta| self.egui.update_texture(device, queue, id, delta));
-        }
         let behind = self.ctx.global_style().visuals.panel_fill;
-        draw_shapes(&mut self.egui, (device, queue), (&self.texture, behind), &shapes, &self.screen);
+        let view = self.texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let sheet = Sheet { view: &view, size_px: self.size_px, pixels_per_point: self.pixels_per_point, behind };
+        self.gui.draw(&sheet, &mut output.textures_delta, &shapes);
         let upload = begun.elapsed();
 
         let begun = Instant::now();
         self.wait();
         let drawn = begun.elapsed();
-        for id in output.textures_delta.free.drain() {
-            self.egui.free_texture(&id);
-        }
         [interface, took, upload, drawn]
     }
 
@@ -186,7 +180,7 @@ impl<'a> Screen<'a> {
         let options = ViewOptions { theme: Theme::Dark, ..ViewOptions::default() };
         let camera = view_state.camera();
         let scene = views.scene(view_state.view, session.frame(), &options, camera);
-        let (size, scale) = (self.viewport.size(), self.screen.pixels_per_point);
+        let (size, scale) = (self.viewport.size(), self.pixels_per_point);
         let view = View {
             clip_from_world: camera.clip_from_world(f64::from(size.x / size.y)),
             eye_direction: camera.eye_direction(),

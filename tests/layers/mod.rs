@@ -31,14 +31,14 @@ const CORE: &[&str] = &["settings", "mechanics", "planning", "simulation", "sess
 
 /// Outside crates and the modules that may know them.
 const CRATES: &[(&str, &[&str])] = &[
-    ("wgpu", &["picture/render", "picture/canvas", "picture/paint", "app"]),
-    ("bytemuck", &["picture/render"]),
+    ("wgpu", &["picture/render", "picture/canvas", "picture/gui", "picture/paint", "app/window"]),
+    ("bytemuck", &["picture/render", "picture/gui"]),
     ("pollster", &["picture/render", "app/window"]),
     ("png", &["picture/render"]),
-    ("egui", &["picture/canvas", "picture/paint", "app"]),
-    ("egui_wgpu", &["picture/canvas", "picture/paint", "app"]),
+    ("egui", &["picture/canvas", "picture/gui", "picture/paint", "app"]),
+    ("egui_winit", &["app/window"]),
+    ("winit", &["app/window"]),
     ("egui_plot", &["app"]),
-    ("eframe", &["app/window"]),
     ("rfd", &["app/window"]),
     ("zbus", &["app/window"]),
     ("directories", &["files/journal", "files/preferences"]),
@@ -65,14 +65,15 @@ const EDGES: &[(&str, &[&str])] = &[
         "std::time",
         &[
             "picture/render/shader.rs",
-            "app/window.rs",
             "app/window/chooser/portal.rs",
+            "app/window/guest.rs",
             "app/window/keeper.rs",
+            "app/window/shell.rs",
             "app/window/times.rs",
             "files/journal.rs",
         ],
     ),
-    ("std::env", &["main.rs", "app/window.rs", "app/window/chooser/portal.rs"]),
+    ("std::env", &["main.rs", "app/window.rs", "app/window/error.rs", "app/window/chooser/portal.rs"]),
     (
         "std::thread",
         &[

@@ -4,7 +4,12 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use naga::{AddressSpace, TypeInner, valid};
-use stillbase::picture::render::TWINS;
+use stillbase::picture::{gui, render};
+
+/// All structs that Rust shares with a shader.
+fn twins() -> Vec<render::Twin> {
+    render::TWINS.into_iter().chain(gui::TWINS).collect()
+}
 
 /// Names and modules of all shaders in the repository.
 fn shaders() -> Vec<(String, naga::Module)> {
@@ -29,7 +34,7 @@ fn shaders() -> Vec<(String, naga::Module)> {
 fn shaders_are_valid() {
     let shaders = shaders();
     let names: Vec<_> = shaders.iter().map(|(name, _)| name.as_str()).collect();
-    assert_eq!(names, ["blit", "lines", "markers", "shadows", "solids", "workspace"]);
+    assert_eq!(names, ["blit", "gui", "lines", "markers", "shadows", "solids", "workspace"]);
     for (name, module) in &shaders {
         valid::Validator::new(valid::ValidationFlags::all(), valid::Capabilities::default())
             .validate(module)
@@ -39,11 +44,11 @@ fn shaders_are_valid() {
 
 #[test]
 fn twins_lie_alike_in_rust_and_wgsl() {
-    let mut seen = BTreeSet::new();
+    let (twins, mut seen) = (twins(), BTreeSet::new());
     for (shader, module) in &shaders() {
         for (_, ty) in module.types.iter() {
             let (Some(name), TypeInner::Struct { members, span }) = (&ty.name, &ty.inner) else { continue };
-            let Some(twin) = TWINS.iter().find(|twin| twin.name == name) else { continue };
+            let Some(twin) = twins.iter().find(|twin| twin.name == name) else { continue };
             let wgsl: Vec<_> =
                 members.iter().map(|member| (member.name.as_deref().unwrap(), member.offset as usize)).collect();
             let rust: Vec<_> = twin.fields.iter().copied().filter(|(field, _)| !field.starts_with('_')).collect();
@@ -52,11 +57,12 @@ fn twins_lie_alike_in_rust_and_wgsl() {
             seen.insert(twin.name);
         }
     }
-    assert_eq!(seen, TWINS.iter().map(|twin| twin.name).collect(), "a twin that no shader has");
+    assert_eq!(seen, twins.iter().map(|twin| twin.name).collect(), "a twin that no shader has");
 }
 
 #[test]
 fn every_struct_in_a_buffer_has_a_twin() {
+    let twins = twins();
     for (shader, module) in &shaders() {
         for (_, variable) in module.global_variables.iter() {
             if !matches!(variable.space, AddressSpace::Uniform | AddressSpace::Storage { .. }) {
@@ -67,7 +73,7 @@ fn every_struct_in_a_buffer_has_a_twin() {
                 ty = &module.types[base];
             }
             let name = ty.name.as_deref().unwrap_or("without a name");
-            assert!(TWINS.iter().any(|twin| twin.name == name), "{shader}.wgsl: struct {name} has no twin in Rust");
+            assert!(twins.iter().any(|twin| twin.name == name), "{shader}.wgsl: struct {name} has no twin in Rust");
         }
     }
 }

@@ -180,7 +180,7 @@ impl Drop for Desk {
         if std::thread::panicking() {
             let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("window-{}.png", self.of));
             self.display.picture().save(&file);
-            eprintln!("what was seen is in {}", file.display());
+            eprintln!("what was seen is in {}; the program said:\n{}", file.display(), self.log());
         }
     }
 }

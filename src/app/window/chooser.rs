@@ -5,6 +5,7 @@ mod portal;
 use std::path::{Path, PathBuf};
 
 use rfd::{AsyncFileDialog, FileHandle};
+use winit::window::Window;
 
 use crate::app::jobs::{Job, Poll, Threads};
 use crate::app::{AppState, Command, FileDialog, PlotFile, Purpose};
@@ -32,13 +33,13 @@ enum Answer {
 impl Chooser {
     /// Takes over the dialog that the window would show. Where the system has none the window's own is shown, as it is
     /// when a file is asked for once more while a dialog of the system hides somewhere.
-    pub fn follow(&mut self, ctx: &egui::Context, frame: &eframe::Frame, app_state: &mut AppState) {
+    pub fn follow(&mut self, ctx: &egui::Context, window: &Window, app_state: &mut AppState) {
         let Some((dialog, job)) = self.asked.take() else {
             if let Some(dialog) = app_state.view_state().dialog.clone().filter(|_| !self.none) {
                 app_state.carry_out(Command::Dialog(None));
                 let last = app_state.recent().first().and_then(|file| file.parent());
                 let folder = self.folder.as_deref().or(last).filter(|folder| folder.is_dir());
-                let (answer, wake) = (asked(&dialog, folder, frame), ctx.clone());
+                let (answer, wake) = (asked(&dialog, folder, window), ctx.clone());
                 let wait = move |_: &_| match portal::is_there() {
                     true => pollster::block_on(answer)
                         .map_or(Answer::Closed, |file| Answer::Chosen(file.path().to_path_buf())),
@@ -90,14 +91,14 @@ fn with_ending(file: PathBuf, ending: &str) -> PathBuf {
 type Asked = std::pin::Pin<Box<dyn Future<Output = Option<FileHandle>> + Send>>;
 
 /// The dialog of the system, in front of the window.
-fn asked(dialog: &FileDialog, folder: Option<&Path>, frame: &eframe::Frame) -> Asked {
+fn asked(dialog: &FileDialog, folder: Option<&Path>, window: &Window) -> Asked {
     let ([title, ..], ending) = (dialog.purpose.words(), ending(&dialog.purpose));
     let kind = match dialog.purpose {
         Purpose::Open | Purpose::Save => "Sessions",
         Purpose::Record => "Recordings",
         Purpose::Plot(..) => "Plots",
     };
-    let mut asks = AsyncFileDialog::new().set_parent(frame).set_title(title).add_filter(kind, &[ending]);
+    let mut asks = AsyncFileDialog::new().set_parent(window).set_title(title).add_filter(kind, &[ending]);
     if let Some(folder) = folder {
         asks = asks.set_directory(folder);
     }

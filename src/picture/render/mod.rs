@@ -13,7 +13,7 @@ mod lines;
 mod markers;
 pub mod offscreen;
 mod quality;
-mod shader;
+pub(super) mod shader;
 mod shadows;
 mod solids;
 mod view;
@@ -122,7 +122,7 @@ impl Renderer {
     }
 
     /// Copies the picture into a pass's viewport, pixel for pixel where the sizes agree.
-    pub fn paint(&self, pass: &mut wgpu::RenderPass<'static>) {
+    pub fn paint(&self, pass: &mut wgpu::RenderPass) {
         if let Some(target) = &self.target {
             self.blit.paint(pass, target);
         }

@@ -19,11 +19,11 @@ impl Quality {
         }
     }
 
-    /// Cells a side of an area's grid: in draft an edge of half a turn is a third of a pixel off at most.
+    /// Cells a side of an area's grid: in draft an edge of half a turn is half a pixel off.
     pub(super) fn cells(self) -> u16 {
         match self {
             Self::Fine => 64,
-            Self::Draft => 32,
+            Self::Draft => 24,
         }
     }
 }

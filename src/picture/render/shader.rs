@@ -29,7 +29,7 @@ macro_rules! twin {
         }
     };
 }
-pub(super) use twin;
+pub(crate) use twin;
 
 /// The text of `shaders/NAME.wgsl`, as it was at build time.
 macro_rules! embedded {
@@ -37,12 +37,12 @@ macro_rules! embedded {
         ($name, include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $name, ".wgsl")))
     };
 }
-pub(super) use embedded;
+pub(crate) use embedded;
 
 type Build<P> = Box<dyn Fn(&wgpu::Device, &wgpu::ShaderModule) -> P + Send + Sync>;
 
 /// The pipelines `P` built from one shader.
-pub(super) struct Shader<P> {
+pub(crate) struct Shader<P> {
     pipelines: P,
     #[cfg(debug_assertions)]
     build: Build<P>,
@@ -51,7 +51,7 @@ pub(super) struct Shader<P> {
 }
 
 impl<P> Shader<P> {
-    pub(super) fn new(device: &wgpu::Device, (name, text): (&'static str, &'static str), build: Build<P>) -> Self {
+    pub(crate) fn new(device: &wgpu::Device, (name, text): (&'static str, &'static str), build: Build<P>) -> Self {
         let pipelines = build(device, &module(device, name, text));
         #[cfg(debug_assertions)]
         return Self { pipelines, build, watch: watch::Watch::new(name, text) };
@@ -61,7 +61,7 @@ impl<P> Shader<P> {
 
     /// Takes up a changed file; where it does not validate, the last good pipelines stay and one line says why.
     #[cfg(debug_assertions)]
-    pub(super) fn reload(&mut self, device: &wgpu::Device) {
+    pub(crate) fn reload(&mut self, device: &wgpu::Device) {
         let Some(text) = self.watch.changed() else { return };
         let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
         let pipelines = (self.build)(device, &module(device, self.watch.name, &text));
@@ -75,7 +75,7 @@ impl<P> Shader<P> {
     }
 
     #[cfg(not(debug_assertions))]
-    pub(super) fn reload(&mut self, _: &wgpu::Device) {}
+    pub(crate) fn reload(&mut self, _: &wgpu::Device) {}
 }
 
 impl<P> Deref for Shader<P> {

@@ -1,0 +1,87 @@
+//! [`WindowError`]: why there is no window, and what to install.
+
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::picture::render::offscreen::{Gpu, NoAdapter};
+use crate::session::Refusal;
+
+/// Why there is no window.
+#[derive(Debug, Error)]
+pub enum WindowError {
+    /// No display server answers.
+    #[error("no display: {0}")]
+    NoDisplay(String),
+    /// A library that the window system needs.
+    #[error("the window needs {library}: install it with `{install}`")]
+    MissingLibrary {
+        /// File name of the library.
+        library: &'static str,
+        /// What installs it on Debian.
+        install: &'static str,
+    },
+    /// The scenario cannot start.
+    #[error(transparent)]
+    Refused(#[from] Refusal),
+    /// Nothing can draw on the display.
+    #[error("the window cannot be drawn: {0}")]
+    NoAdapter(String),
+    /// The window system failed.
+    #[error("the window could not be opened: {0}")]
+    Failed(String),
+    /// The graphics device went away while the window was open, and none could be had in its place.
+    #[error("the graphics device was lost: {why}; {}", kept_in(.kept.as_deref()))]
+    DeviceLost {
+        /// Why there is no other.
+        why: String,
+        /// Where the session is kept, if something was done to it.
+        kept: Option<PathBuf>,
+    },
+}
+
+fn kept_in(kept: Option<&Path>) -> String {
+    match kept {
+        Some(file) => format!("what was done is in {}, and the next start offers it", file.display()),
+        None => "nothing was done that is in no file".into(),
+    }
+}
+
+/// Why nothing could be drawn on a display that is there.
+pub(super) fn what_is_missing() -> String {
+    // SAFETY: the loader of the graphics drivers, which has been tried a moment ago in the same way; its initialisers
+    // do nothing but set up its own state.
+    if cfg!(target_os = "linux") && unsafe { libloading::Library::new("libvulkan.so.1") }.is_err() {
+        return "libvulkan.so.1 is missing: install it with `apt-get install libvulkan1`".into();
+    }
+    match Gpu::new() {
+        // The list of drivers that were tried would not help a reader.
+        Err(NoAdapter::Missing(_)) => "no graphics driver answers; on Debian and its kin one in software comes with \
+                                       `apt-get install mesa-vulkan-drivers`"
+            .into(),
+        Err(other) => other.to_string(),
+        Ok(gpu) => format!("the GPU adapter {} cannot draw on this display", gpu.name()),
+    }
+}
+
+/// On X11 a missing library would end the program deep inside; name it before.
+pub(super) fn check_libraries() -> Result<(), WindowError> {
+    let x11 = cfg!(target_os = "linux")
+        && std::env::var_os("WAYLAND_DISPLAY").is_none()
+        && std::env::var_os("DISPLAY").is_some();
+    if !x11 {
+        return Ok(());
+    }
+    for (library, install) in [
+        ("libxkbcommon-x11.so.0", "apt-get install libxkbcommon-x11-0"),
+        ("libXcursor.so.1", "apt-get install libxcursor1"),
+        ("libXi.so.6", "apt-get install libxi6"),
+    ] {
+        // SAFETY: these are system libraries that the window system loads a moment later in the same way; their
+        // initialisers do nothing but set up their own state.
+        if unsafe { libloading::Library::new(library) }.is_err() {
+            return Err(WindowError::MissingLibrary { library, install });
+        }
+    }
+    Ok(())
+}

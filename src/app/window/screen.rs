@@ -1,0 +1,199 @@
+//! [`Screen`]: what a window is drawn on.
+
+use std::num::NonZeroU32;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use egui::TexturesDelta;
+use egui::epaint::{ClippedPrimitive, ImageDelta, TextureAtlas};
+use winit::event_loop::OwnedDisplayHandle;
+use winit::window::Window;
+
+use crate::picture::gui::{GuiRenderer, Sheet};
+use crate::picture::render::offscreen::NoAdapter;
+
+/// A window's surface and the device that draws on it. A device may go away at any time, with the card, its driver or a
+/// remote display.
+pub struct Screen {
+    surface: wgpu::Surface<'static>,
+    config: wgpu::SurfaceConfiguration,
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    gui: GuiRenderer,
+    is_software: bool,
+    lost: Arc<AtomicBool>,
+    /// What is to become of egui's textures in the next picture.
+    textures: TexturesDelta,
+}
+
+/// What came of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// It is on its way, or nobody would see it.
+    Done,
+    /// Not there: the surface has changed, and the next one will do.
+    Again,
+}
+
+impl Screen {
+    /// Of a window; `changed` is called from any thread when the device is lost.
+    ///
+    /// # Errors
+    /// If no adapter can draw in the window.
+    pub fn new(
+        window: &Arc<Window>,
+        display: OwnedDisplayHandle,
+        changed: impl Fn() + Send + Sync + 'static,
+    ) -> Result<Self, NoAdapter> {
+        // The environment may choose the driver, as for any program that draws with wgpu.
+        let instance = wgpu::Instance::new(
+            wgpu::InstanceDescriptor {
+                backends: wgpu::Backends::PRIMARY,
+                ..wgpu::InstanceDescriptor::new_with_display_handle(Box::new(display))
+            }
+            .with_env(),
+        );
+        let missing = |why: String| NoAdapter::Missing(why);
+        let surface = instance.create_surface(window.clone()).map_err(|why| missing(why.to_string()))?;
+        let asked = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            compatible_surface: Some(&surface),
+            ..Default::default()
+        };
+        let adapter = pollster::block_on(instance.request_adapter(&asked)).map_err(|why| missing(why.to_string()))?;
+        let info = adapter.get_info();
+        let unfit = |why: String| NoAdapter::Unfit { name: info.name.clone(), why };
+        // As large as the adapter's textures: screens grow.
+        let required_limits = wgpu::Limits::default().using_resolution(adapter.limits());
+        let asked = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
+        let (device, queue) =
+            pollster::block_on(adapter.request_device(&asked)).map_err(|why| unfit(why.to_string()))?;
+
+        let lost = Arc::new(AtomicBool::new(false));
+        let tells = lost.clone();
+        device.set_device_lost_callback(move |_, _| {
+            tells.store(true, Ordering::Release);
+            changed();
+        });
+        let knows = lost.clone();
+        // What is asked of a lost device fails in many ways, and none of them matters.
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            assert!(knows.load(Ordering::Acquire), "wgpu error: {error}");
+        }));
+
+        let size = window.inner_size();
+        let config = surface
+            .get_default_config(&adapter, size.width.max(1), size.height.max(1))
+            .ok_or_else(|| unfit("it cannot draw in this window".into()))?;
+        // Colours are blended as sRGB values: best on a target that takes them as they are.
+        let plain = |format: &wgpu::TextureFormat| {
+            matches!(format, wgpu::TextureFormat::Rgba8Unorm | wgpu::TextureFormat::Bgra8Unorm)
+        };
+        let format = surface.get_capabilities(&adapter).formats.into_iter().find(plain).unwrap_or(config.format);
+        let present_mode = wgpu::PresentMode::AutoVsync;
+        let config = wgpu::SurfaceConfiguration { format, present_mode, view_formats: Vec::new(), ..config };
+        surface.configure(&device, &config);
+        let gui = GuiRenderer::new(&device, &queue, format);
+        let is_software = info.device_type == wgpu::DeviceType::Cpu;
+        Ok(Self { surface, config, gui, device, queue, is_software, lost, textures: TexturesDelta::default() })
+    }
+
+    /// Whether the processor draws.
+    pub fn is_software(&self) -> bool {
+        self.is_software
+    }
+
+    /// The longest side of a texture.
+    pub fn longest_side(&self) -> usize {
+        self.device.limits().max_texture_dimension_2d as usize
+    }
+
+    /// Whether the device is gone.
+    pub fn is_lost(&self) -> bool {
+        self.lost.load(Ordering::Acquire)
+    }
+
+    /// Takes the device away, as a driver would: for tests.
+    pub fn destroy(&self) {
+        self.device.destroy();
+        // It is lost when all that was asked of it before is done.
+        let _ = self.device.poll(wgpu::PollType::wait_indefinitely());
+    }
+
+    /// Follows the window to a size, pixels; a window without any, as one that is minimised, is not followed.
+    pub fn resize(&mut self, [width, height]: [u32; 2]) {
+        let (Some(width), Some(height)) = (NonZeroU32::new(width), NonZeroU32::new(height)) else { return };
+        let most = self.device.limits().max_texture_dimension_2d;
+        (self.config.width, self.config.height) = (width.get().min(most), height.get().min(most));
+        self.configure();
+    }
+
+    fn configure(&self) {
+        if !self.is_lost() {
+            self.surface.configure(&self.device, &self.config);
+        }
+    }
+
+    /// All letters are to be sent again: to a device that is new.
+    pub fn send_letters(&mut self, ctx: &egui::Context) {
+        let letters = ctx.fonts(|fonts| fonts.image());
+        self.textures.push(egui::TextureId::default(), ImageDelta::full(letters, TextureAtlas::texture_options()));
+    }
+
+    /// Takes note of what has become of egui's textures, drawn or not.
+    pub fn take_textures(&mut self, textures: TexturesDelta) {
+        self.textures.append(textures);
+    }
+
+    /// Draws what egui has made and shows it.
+    pub fn draw(
+        &mut self,
+        window: &Window,
+        (shapes, pixels_per_point): (&[ClippedPrimitive], f32),
+        behind: egui::Color32,
+    ) -> Outcome {
+        // A driver whose device goes away just now may break off in the middle.
+        let drawn = catch_unwind(AssertUnwindSafe(|| self.draw_on(window, (shapes, pixels_per_point), behind)));
+        drawn.unwrap_or_else(|panic| match self.is_lost() {
+            true => Outcome::Again,
+            false => resume_unwind(panic),
+        })
+    }
+
+    fn draw_on(
+        &mut self,
+        window: &Window,
+        (shapes, pixels_per_point): (&[ClippedPrimitive], f32),
+        behind: egui::Color32,
+    ) -> Outcome {
+        use wgpu::CurrentSurfaceTexture::{Lost, Occluded, Outdated, Suboptimal, Success, Timeout, Validation};
+        let (frame, fits) = match self.surface.get_current_texture() {
+            Success(frame) => (frame, true),
+            Suboptimal(frame) => (frame, false),
+            Outdated | Lost => {
+                self.configure();
+                return Outcome::Again;
+            }
+            Timeout => return Outcome::Again,
+            Occluded | Validation => return Outcome::Done,
+        };
+        let view = frame.texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let size_px = [frame.texture.width(), frame.texture.height()];
+        let sheet = Sheet { view: &view, size_px, pixels_per_point, behind };
+        self.gui.draw(&sheet, &mut self.textures, shapes);
+        window.pre_present_notify();
+        self.queue.present(frame);
+        if !fits {
+            self.configure();
+        }
+        Outcome::Done
+    }
+}
+
+impl Drop for Screen {
+    fn drop(&mut self) {
+        // egui insists that nothing of it is forgotten; here it is meant to be.
+        self.textures.clear();
+    }
+}
