@@ -7,6 +7,8 @@ use std::sync::Arc;
 use super::change::{Change, NotOpened};
 use super::jobs::{AtOnce, Job, Poll, Ticket, Workers};
 use super::{Activity, Command};
+use crate::picture::scene::stage::Outlined;
+use crate::planning::pose_space::PoseSpace;
 use crate::session::scenario::Scenario;
 use crate::session::{Refusal, Session};
 use crate::simulation::frame::Totals;
@@ -75,6 +77,8 @@ pub(super) struct Background {
     pub saving: Slot<Option<(u64, PathBuf)>, Result<String, String>>,
     /// How far the base will move.
     pub foreseen: Slot<(), Totals>,
+    /// How far the machine reaches while b is held; nothing if that is a point.
+    pub outline: Slot<Arc<PoseSpace>, Option<Outlined>>,
 }
 
 impl Default for Background {
@@ -91,6 +95,7 @@ impl Default for Background {
             recording: None,
             saving: None,
             foreseen: None,
+            outline: None,
         }
     }
 }
@@ -170,7 +175,7 @@ impl Background {
 
     /// Whether anything at all is under way.
     pub fn is_busy(&self) -> bool {
-        self.is_changing() || self.foreseen.is_some() || self.under_way().is_some()
+        self.is_changing() || self.foreseen.is_some() || self.outline.is_some() || self.under_way().is_some()
     }
 }
 

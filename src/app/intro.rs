@@ -65,7 +65,7 @@ impl Intro {
         let straight = match Scenario::builtin("case-1") {
             Some(case) => {
                 let scenario = Scenario { compare_b: None, ..case };
-                let stage = Stage::of(&Run::new(&scenario)?).without_workspace();
+                let stage = Stage::begun(&Run::new(&scenario)?).without_workspace();
                 let mut run = Comparison::empty(&scenario);
                 run.keep(scenario)?;
                 Some(Straight { run, stage })

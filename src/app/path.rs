@@ -10,6 +10,7 @@ use crate::picture::numbers::signed;
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Palette;
 use crate::planning::off_plane::least_reaction::FixedB;
+use crate::planning::posture::Posture;
 use crate::planning::timing::TimeLaw;
 use crate::session::scenario::{Change, Corners, Least, Shape, Task, TaskKind, Value};
 use crate::session::{Edit, Session};
@@ -39,6 +40,13 @@ const SHAPES: [Choice<Shape>; 5] = [
     (Shape::Arc, "arc", "Arc", "One arc through three points"),
     (Shape::Spline, "spline", "Spline", "A smooth curve through all points"),
     (Shape::Freehand, "freehand", "Freehand", "As drawn with the pointer: P, then drag"),
+];
+
+const POSTURES: [Choice<Posture>; 4] = [
+    (Posture::LeastRates, "least-rates", "Drives turn least", "The drives turn as little as they can"),
+    (Posture::Orientation, "orientation", "Keep the hand's orientation", "The last link does not turn"),
+    (Posture::LeastTorque, "least-torque", "Least motor torque", "What the motors need to set the motion up is least"),
+    (Posture::MidRange, "mid-range", "Far from limits", "Joints stay as near to the middle of their ranges as can be"),
 ];
 
 /// The most points that are listed.
@@ -245,6 +253,10 @@ fn corners(ui: &mut Ui, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
 fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
     let plan = session.run().plan();
     match task.kind {
+        TaskKind::Reactionless if session.scenario().idle("task.posture").is_none() => {
+            let width = ui.available_width() - 10.0;
+            choose(ui, session, ("Freedoms left", "posture"), &POSTURES, task.posture, width, commands);
+        }
         TaskKind::ChangeB => {
             let mut b_to = plan.forecast.b_end;
             let row = Row::of("b at B", "task.b_to").with(3, 0.005);

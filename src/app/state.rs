@@ -83,7 +83,7 @@ impl AppState {
     }
 
     fn around(session: Session, theme: Theme) -> Self {
-        let views = Views::of(session.run());
+        let views = Views::begun(session.run());
         let view_state = ViewState::new(theme, &views);
         let mut app_state = Self {
             signals: signals(&session.scenario().machine),
@@ -334,7 +334,7 @@ impl AppState {
     }
 
     fn panels(&mut self, ui: &mut egui::Ui) {
-        if self.collect() {
+        if self.collect() | self.outline() {
             ui.ctx().request_repaint();
         }
         self.catch_up();
@@ -608,7 +608,8 @@ impl AppState {
     fn refresh(&mut self) {
         let key = StageKey::of(&self.session);
         if key != self.stage_of {
-            let views = Views::of(self.session.run());
+            let mut views = Views::begun(self.session.run());
+            views.keep_outline(&self.views);
             // A camera that was not moved goes on showing everything; limits that are pulled at move nothing under the
             // hand.
             let (new, old) = (&key.machine, &self.stage_of.machine);

@@ -11,8 +11,9 @@ use proptest::test_runner::{Config, TestRunner};
 use stillbase::app::jobs::{AtOnce, Job, Poll, Threads, Workers};
 use stillbase::app::window::{App, Clock};
 use stillbase::app::{AppState, Command, ComparisonCommand};
-use stillbase::picture::scene::options::Handle;
+use stillbase::picture::scene::options::{Handle, ViewOptions};
 use stillbase::picture::scene::palette::Theme;
+use stillbase::picture::scene::views::ViewKind;
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Session};
 
@@ -32,6 +33,7 @@ pub const TESTS: &[Test] = tests![
     a_file_is_opened_beside_the_window,
     what_is_done_beside_equals_what_is_done_at_once,
     jobs_end_break_off_and_are_stopped,
+    what_a_machine_reaches_is_outlined_beside_the_window,
 ];
 
 /// Does nothing until it is told to.
@@ -92,6 +94,46 @@ fn studies_run_beside_the_window() {
     h.run_steps(3);
     assert!(h.query_by_label("drawing machines, 0 %").is_none());
     assert_eq!(workers.work(), 0, "nothing is left to do");
+}
+
+/// The scene is drawn without it until then; another machine's is found anew, and only that.
+fn what_a_machine_reaches_is_outlined_beside_the_window() {
+    let workers = Waiting::default();
+    let mut h = window("four-drive", &workers);
+    h.run_steps(2);
+    let outlined = |h: &Window| {
+        let app_state = h.state().app_state();
+        let scene = app_state.views().scene(
+            ViewKind::Flat,
+            session(h).frame(),
+            &ViewOptions::default(),
+            app_state.view_state().camera(),
+        );
+        let lines = scene.lines.iter().filter(|line| line.name == "workspace/boundary").count();
+        assert_eq!(app_state.views().unoutlined().is_none(), lines > 0, "what is found is drawn");
+        lines > 0
+    };
+    assert!(!outlined(&h), "the window is there before the outline");
+    assert_eq!(workers.work(), 1);
+    h.run_steps(2);
+    assert!(outlined(&h), "it comes when it is found");
+    // What does not change the machine does not ask for it again.
+    tell(&mut h, Command::Edit(Edit::set("task.time", 2.0)));
+    tell(&mut h, Command::EndGesture);
+    workers.work();
+    h.run_steps(2);
+    assert!(outlined(&h) && workers.work() == 0);
+    assert_eq!(session(&h).scenario().task.time, 2.0);
+    for limit in [1.2, 1.3] {
+        tell(&mut h, Command::Edit(Edit::set("limits.a3", vec![-limit, limit])));
+        tell(&mut h, Command::EndGesture);
+        workers.work();
+        h.run_steps(2);
+        assert!(!outlined(&h), "of a machine with other limits it is found anew");
+    }
+    assert_eq!(workers.work(), 1, "what was found for the limits before is wanted no more");
+    h.run_steps(2);
+    assert!(outlined(&h) && workers.work() == 0);
 }
 
 fn the_ways_of_a_task_run_beside_the_window() {

@@ -10,6 +10,7 @@ use stillbase::picture::scene::options::Handle;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::pointer::Pointer;
 use stillbase::picture::scene::views::ViewKind;
+use stillbase::planning::posture::Posture;
 use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
 use stillbase::simulation::control::Control;
@@ -34,7 +35,27 @@ pub const TESTS: &[Test] = tests![
     the_panel_holds_still,
     lists_close_and_links_are_named,
     the_fonts_have_every_letter,
+    what_becomes_of_freedoms_is_chosen,
 ];
+
+/// Of machines that have some left at each point of their path; others have no such choice.
+fn what_becomes_of_freedoms_is_chosen() {
+    let mut h = window_of(Scenario::builtin("four-drive").expect("built in"), Theme::Dark, 1700.0);
+    h.run_steps(2);
+    let turned = |h: &Window| {
+        let motion = &session(h).run().plan().motion;
+        (motion.path.at(1.0).q[3] - motion.path.at(0.0).q[3]).abs()
+    };
+    assert!(turned(&h) > 0.01, "turning least turns the hand too");
+    h.get_by_label("Freedoms left").click();
+    h.run_steps(2);
+    h.get_by_label("Keep the hand's orientation").click();
+    h.run_steps(4);
+    assert_eq!(session(&h).scenario().task.posture, Posture::Orientation);
+    assert!(turned(&h) < 1e-9, "{}", turned(&h));
+    let h = window_of(Scenario::builtin("circle").expect("built in"), Theme::Dark, 1700.0);
+    assert!(h.query_by_label("Freedoms left").is_none(), "three drives have none");
+}
 
 /// Whatever differs in the plant is switched on, set and taken back in its section.
 fn what_differs_is_set_and_taken_back() {

@@ -1,6 +1,7 @@
 //! What the application starts beside the window, and what it does with what comes back.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::AppState;
 use crate::app::background::{Background, File, Opening, Slot, ended};
@@ -8,6 +9,8 @@ use crate::app::change::{Change, NotOpened, Source};
 use crate::app::jobs::Workers;
 use crate::app::{Activity, Command, ComparisonCommand, Framing, PlotFile, RefusedEdit, plots};
 use crate::mechanics::machine::Machine;
+use crate::picture::scene::stage::Outlined;
+use crate::planning::pose_space::PoseSpace;
 use crate::session::scenario::{MAX_BRANCHES, Scenario};
 use crate::session::{Edit, Refusal, Session};
 use crate::simulation::frame::Totals;
@@ -88,6 +91,28 @@ impl AppState {
             any = true;
         }
         any
+    }
+
+    /// Has what the machine reaches outlined, where that is yet to be found and takes long; whether it has come.
+    pub(super) fn outline(&mut self) -> bool {
+        let slot = &mut self.background.outline;
+        let Some(space) = self.views.unoutlined() else {
+            *slot = None;
+            return false;
+        };
+        if slot.as_ref().is_none_or(|(of, _)| *of != space) {
+            // What was being outlined is wanted no more.
+            *slot = None;
+            let of = PoseSpace::clone(&space);
+            let job = self.background.start(move |ticket| Outlined::of(of, &mut |done| ticket.goes_on(done)));
+            self.background.outline = Some((space, job));
+        }
+        let Some((space, outline)) = ended(&mut self.background.outline) else { return false };
+        Arc::make_mut(&mut self.views).set_outline(&space, outline.flatten());
+        if self.view_state.grabbed.is_none() {
+            self.view_state.framing.iter_mut().for_each(Framing::renew);
+        }
+        true
     }
 
     /// Changes the session: at once if that is quick, else beside the window, and what was shown stays until then.

@@ -13,6 +13,9 @@ mod under;
 mod workspace;
 
 pub use base::PULL;
+pub use outline::Outlined;
+
+use std::sync::Arc;
 
 use super::course::target_handle;
 use super::exaggeration::exaggerated;
@@ -25,11 +28,11 @@ use super::pointer::Pointer;
 use super::{Line, Measure, Scene, Strips, point};
 use crate::mechanics::planar::{DriveAngles, Vector, unit};
 use crate::planning::pose_map::PoseMap;
+use crate::planning::pose_space::PoseSpace;
 use crate::session::Run;
 use crate::simulation::frame::Frame;
 use base::BaseStage;
 use limits::Limits;
-use outline::Outlined;
 use path::Plan;
 use pins::Pins;
 use workspace::Workspace;
@@ -44,7 +47,7 @@ pub struct Stage {
     base: BaseStage,
     workspace: Option<Workspace>,
     /// The same of other than three drives.
-    outline: Option<Outlined>,
+    outline: Outlining,
     plan: Option<Plan>,
     /// Whether the run waits, and whether a hand can lead the machine.
     waits: bool,
@@ -55,9 +58,38 @@ pub struct Stage {
     grid: [Strips; 2],
 }
 
+/// The outline of what other than three drives reach while b is held.
+#[derive(Clone, Debug)]
+enum Outlining {
+    /// There is none.
+    None,
+    /// It is yet to be found.
+    Wanted(Arc<PoseSpace>),
+    /// Here it is.
+    Done(Arc<Outlined>),
+}
+
+impl Outlining {
+    fn done(&self) -> Option<&Outlined> {
+        match self {
+            Self::Done(outline) => Some(outline),
+            _ => None,
+        }
+    }
+}
+
 impl Stage {
     /// Prepares a run for drawing; to be made again when its machine or plan changes.
     pub fn of(run: &Run) -> Self {
+        let mut stage = Self::begun(run);
+        if let Some(space) = stage.unoutlined() {
+            stage.set_outline(&space, Outlined::of((*space).clone(), &mut |_| true));
+        }
+        stage
+    }
+
+    /// The same but for the outline of what other than three drives reach, which takes longer.
+    pub fn begun(run: &Run) -> Self {
         let model = &run.scenario().machine;
         // A machine with other lengths is drawn as it is.
         let plant = run.scenario().plant.machine(model).unwrap_or_else(|_| model.clone());
@@ -67,8 +99,8 @@ impl Stage {
             base: BaseStage::of(run, &plant, &linkage),
             workspace: run.planes().map(|planes| Workspace::of(planes, compared, ring_radius(&linkage))),
             outline: match run.pose_map() {
-                Ok(PoseMap::Space(space)) => Outlined::of((**space).clone()),
-                _ => None,
+                Ok(PoseMap::Space(space)) => Outlining::Wanted(space.clone()),
+                _ => Outlining::None,
             },
             plan: Plan::of(run, linkage.top()),
             waits: run.waiting().is_some(),
@@ -83,7 +115,31 @@ impl Stage {
     /// The same without a workspace, for a run that is led otherwise.
     #[must_use]
     pub fn without_workspace(self) -> Self {
-        Self { workspace: None, outline: None, ..self }
+        Self { workspace: None, outline: Outlining::None, ..self }
+    }
+
+    /// What is yet to be outlined.
+    pub fn unoutlined(&self) -> Option<Arc<PoseSpace>> {
+        match &self.outline {
+            Outlining::Wanted(space) => Some(space.clone()),
+            _ => None,
+        }
+    }
+
+    /// Takes an outline, if it is of what was yet to be outlined.
+    pub fn set_outline(&mut self, of: &PoseSpace, outline: Option<Outlined>) {
+        if matches!(&self.outline, Outlining::Wanted(space) if **space == *of) {
+            self.outline = outline.map_or(Outlining::None, |outline| Outlining::Done(Arc::new(outline)));
+        }
+    }
+
+    /// Takes the outline over from another stage, if it is the same.
+    pub fn keep_outline(&mut self, other: &Self) {
+        if let (Outlining::Wanted(space), Outlining::Done(outline)) = (&self.outline, &other.outline)
+            && outline.space() == &**space
+        {
+            self.outline = Outlining::Done(outline.clone());
+        }
     }
 
     /// Takes over what has changed of base and payload.
@@ -234,7 +290,7 @@ impl Stage {
             let loops = planes.map_or_else(Vec::new, |planes| planes.boundary().turned(b));
             loops.into_iter().flatten().step_by(4).map(|[x, y]| (on_base(Vector::new(x, y)), self.linkage.floor()))
         };
-        let outline = self.outline.iter().flat_map(|outline| outline.points(frame));
+        let outline = self.outline.done().into_iter().flat_map(|outline| outline.points(frame));
         let outline = outline.map(|p| (p, self.linkage.floor()));
         let waypoints = self.plan.iter().flat_map(|plan| plan.waypoints.iter().map(|(_, _, p)| (*p, z)));
         let target = [(target_handle(frame), z), (base.at, 0.0)];
@@ -267,7 +323,7 @@ impl Stage {
             workspace.draw(&mut scene, linkage, &palette, frame, options);
             workspace.ring(&mut scene, &palette, frame, options, z);
         }
-        if let Some(outline) = &self.outline {
+        if let Some(outline) = self.outline.done() {
             outline.draw(&mut scene, linkage, &palette, frame);
         }
         if let Some(plan) = &self.plan {

@@ -1,6 +1,8 @@
 //! The linked views of one run: the machine from above and in space, joint space, and the tower of workspaces. What is
 //! pulled at in one of them is asked of the session, so all of them follow.
 
+use std::sync::Arc;
+
 use super::Scene;
 use super::camera::Camera;
 use super::framing::Content;
@@ -8,9 +10,10 @@ use super::joint_space::JointSpace;
 use super::options::{Handle, ViewOptions};
 use super::pick::{Aim, Grip, NEAR, Pick};
 use super::pointer::Pointer;
-use super::stage::{PULL, Stage};
+use super::stage::{Outlined, PULL, Stage};
 use super::tower::Tower;
 use crate::mechanics::planar::DriveAngles;
+use crate::planning::pose_space::PoseSpace;
 use crate::session::Run;
 use crate::simulation::frame::Frame;
 
@@ -107,6 +110,26 @@ impl Views {
     /// Prepares a run for drawing; to be made again when its machine or plan changes.
     pub fn of(run: &Run) -> Self {
         Self { stage: Stage::of(run), joints: JointSpace::of(run), tower: Tower::of(run) }
+    }
+
+    /// The same but for the outline of what other than three drives reach, which takes longer.
+    pub fn begun(run: &Run) -> Self {
+        Self { stage: Stage::begun(run), joints: JointSpace::of(run), tower: Tower::of(run) }
+    }
+
+    /// What is yet to be outlined.
+    pub fn unoutlined(&self) -> Option<Arc<PoseSpace>> {
+        self.stage.unoutlined()
+    }
+
+    /// Takes an outline, if it is of what was yet to be outlined.
+    pub fn set_outline(&mut self, of: &PoseSpace, outline: Option<Outlined>) {
+        self.stage.set_outline(of, outline);
+    }
+
+    /// Takes the outline over from other views, if it is the same.
+    pub fn keep_outline(&mut self, other: &Self) {
+        self.stage.keep_outline(&other.stage);
     }
 
     /// Takes over what has changed of base and payload.

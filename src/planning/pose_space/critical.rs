@@ -31,6 +31,28 @@ const SLACK: f64 = 1e-9;
 /// Spaces in which a change of sign is looked for.
 const SPACES: usize = 24;
 
+/// |p|² of what stationary poses reach, for each choice of limits and signs, at every place where a change of sign is
+/// looked for: the same for all distances, so that many are asked for at the cost of few.
+#[derive(Default)]
+pub(super) struct Scan {
+    values: Vec<[f64; SPACES + 1]>,
+    next: usize,
+}
+
+impl Scan {
+    fn next(&mut self, square: impl Fn(f64) -> f64) -> [f64; SPACES + 1] {
+        if self.next == self.values.len() {
+            self.values.push(std::array::from_fn(|i| square(place(i))));
+        }
+        self.next += 1;
+        self.values[self.next - 1]
+    }
+}
+
+fn place(i: usize) -> f64 {
+    FRAC_PI_2 * i as f64 / SPACES as f64
+}
+
 /// The drives as compounds, with some joints held at a limit.
 struct Compounds {
     count: usize,
@@ -43,11 +65,12 @@ struct Compounds {
 
 impl PoseSpace {
     /// Every critical value of b for points at a distance from B, m, above 0; whether all of them can be told apart.
-    pub(super) fn criticals(&self, distance: f64, mut found: impl FnMut(Critical)) -> bool {
+    pub(super) fn criticals(&self, distance: f64, scan: &mut Scan, mut found: impl FnMut(Critical)) -> bool {
+        scan.next = 0;
         let mut at = [At::Free; MAX_DRIVES];
         let mut regular = true;
         loop {
-            regular &= self.of_pattern(&at[..self.joints.len()], distance, &mut found);
+            regular &= self.of_pattern(&at[..self.joints.len()], distance, scan, &mut found);
             // The next pattern, counting in threes.
             let Some(i) = (0..self.joints.len()).find(|i| at[*i] != At::Greatest) else {
                 return regular;
@@ -88,7 +111,7 @@ impl PoseSpace {
         c
     }
 
-    fn of_pattern(&self, at: &[At], distance: f64, found: &mut impl FnMut(Critical)) -> bool {
+    fn of_pattern(&self, at: &[At], distance: f64, scan: &mut Scan, found: &mut impl FnMut(Critical)) -> bool {
         let twice = |(at, joint): (&At, &super::Joint)| *at == At::Greatest && joint.limits[0] == joint.limits[1];
         if at.iter().zip(&self.joints).any(twice) {
             return true;
@@ -100,7 +123,7 @@ impl PoseSpace {
                 self.triangle(at, &c, distance, found);
                 true
             }
-            _ => self.stationary(at, &c, distance, found),
+            _ => self.stationary(at, &c, distance, scan, found),
         }
     }
 
@@ -134,7 +157,7 @@ impl PoseSpace {
 
     /// Three compounds and more: one equation in ν for each choice of signs. False where a solution is at ν = 0, all
     /// arms on one line, to rounding.
-    fn stationary(&self, at: &[At], c: &Compounds, r: f64, found: &mut impl FnMut(Critical)) -> bool {
+    fn stationary(&self, at: &[At], c: &Compounds, r: f64, scan: &mut Scan, found: &mut impl FnMut(Critical)) -> bool {
         let n = c.count;
         let most = (0..n).map(|i| c.length[i] / c.lambda[i].abs()).fold(f64::INFINITY, f64::min);
         let all: f64 = c.lambda[..n].iter().sum();
@@ -148,13 +171,15 @@ impl PoseSpace {
             let x = |nu: f64| -> f64 {
                 (0..n).map(|i| sign(i) * (c.length[i].powi(2) - (nu * c.lambda[i]).powi(2)).max(0.0).sqrt()).sum()
             };
-            let miss = |t: f64| {
+            let square = |t: f64| {
                 let nu = most * t.sin();
                 let (x, y) = (x(nu), nu * all);
-                x * x + y * y - r * r
+                x * x + y * y
             };
-            regular &= miss(0.0).abs() > 1e-11 * r * r;
-            roots(&miss, |t| {
+            let miss = |t: f64| square(t) - r * r;
+            let values = scan.next(square).map(|square| square - r * r);
+            regular &= values[0].abs() > 1e-11 * r * r;
+            roots(&miss, &values, |t| {
                 let nu = most * t.sin();
                 if nu < 1e-9 * most {
                     return;
@@ -275,12 +300,10 @@ fn ways(n: usize, nu: f64, cos: &impl Fn(usize) -> f64, lambda: &[f64; MAX_DRIVE
     [values.iter().any(|v| *v > least), values.iter().any(|v| *v < -least)]
 }
 
-/// Zeros of a function of t from 0 to π/2, each once.
-fn roots(f: &impl Fn(f64) -> f64, mut found: impl FnMut(f64)) {
-    let at = |i: usize| FRAC_PI_2 * i as f64 / SPACES as f64;
-    let values: [f64; SPACES + 1] = std::array::from_fn(|i| f(at(i)));
+/// Zeros of a function of t from 0 to π/2, each once, by its values at the places where it is looked at.
+fn roots(f: &impl Fn(f64) -> f64, values: &[f64; SPACES + 1], mut found: impl FnMut(f64)) {
     for i in 0..SPACES {
-        let (from, to) = (at(i), at(i + 1));
+        let (from, to) = (place(i), place(i + 1));
         if values[i] == 0.0 {
             found(from);
         } else if values[i] * values[i + 1] < 0.0 {
@@ -291,9 +314,9 @@ fn roots(f: &impl Fn(f64) -> f64, mut found: impl FnMut(f64)) {
             let [a, b, c] = [values[i - 1], values[i], values[i + 1]].map(f64::abs);
             let bend = a - 2.0 * b + c;
             if b <= a && b <= c && bend > 0.0 && b - 0.125 * (a - c).powi(2) / bend < 0.05 * b {
-                let (low, value) = lowest(f, [at(i - 1), to], values[i].signum());
+                let (low, value) = lowest(f, [place(i - 1), to], values[i].signum());
                 if value * values[i] < 0.0 {
-                    found(bracketed(f, [at(i - 1), low], [values[i - 1], value]));
+                    found(bracketed(f, [place(i - 1), low], [values[i - 1], value]));
                     found(bracketed(f, [low, to], [value, values[i + 1]]));
                 }
             }

@@ -5,6 +5,8 @@
 
 use std::f64::consts::{PI, TAU};
 
+use super::critical::Scan;
+use super::reach::Seen;
 use super::space::PoseSpace;
 use crate::mechanics::planar::{Vector, unit};
 
@@ -40,6 +42,7 @@ struct Ring {
     r: f64,
     arcs: Vec<[f64; 2]>,
     whole: bool,
+    seen: Seen,
 }
 
 impl Ring {
@@ -51,20 +54,21 @@ impl Ring {
 impl PoseSpace {
     /// The workspace of b.
     pub fn outline(&self, b: f64) -> Outline {
-        self.outline_within(b, CHORD)
+        self.outline_within(b, CHORD, &mut |_| true).unwrap_or_default()
     }
 
     /// The same, with chords as near to the boundary as this, m for an arm of a metre; two drives have what they have.
-    pub fn outline_within(&self, b: f64, chord: f64) -> Outline {
-        match self.drives() {
+    /// Told how much is done, from 0 to 1, the caller says whether the rest is still wanted; `None` if it is not.
+    pub fn outline_within(&self, b: f64, chord: f64, goes_on: &mut dyn FnMut(f64) -> bool) -> Option<Outline> {
+        Some(match self.drives() {
             1 => {
                 let place = self.place(&self.lift(&[], b));
                 let at = [place.re, place.im];
                 Outline { curve: vec![at], extent: [at[0], at[0], at[1], at[1]], ..Outline::default() }
             }
             2 => self.curve(b),
-            _ => self.region(b, chord),
-        }
+            _ => self.region(b, chord, goes_on)?,
+        })
     }
 
     /// Two drives: where the end effector goes as the angle between them runs from limit to limit.
@@ -95,51 +99,62 @@ impl PoseSpace {
         Outline { length, extent: extent(curve.iter()), curve, ..Outline::default() }
     }
 
-    fn ring(&self, r: f64, b: f64) -> Ring {
-        let set = self.reach_of(r);
-        let whole = matches!(set.intervals[..], [[_, to]] if to >= set.period && set.intervals[0][0] == 0.0);
-        let mut arcs: Vec<[f64; 2]> =
-            set.intervals.iter().rev().map(|[low, high]| [(b - high) / self.sum, (b - low) / self.sum]).collect();
-        if whole {
-            arcs.clear();
-        }
-        Ring { r, arcs, whole }
-    }
-
-    fn region(&self, b: f64, chord: f64) -> Outline {
+    fn region(&self, b: f64, chord: f64, goes_on: &mut dyn FnMut(f64) -> bool) -> Option<Outline> {
         let (near, far) = (self.nearest(), self.farthest());
         let span = far - near;
         let at = |i: usize| near + span * (i as f64 + if i == 0 { FOUND } else { 0.0 }) / FIRST as f64;
-        let mut rings: Vec<Ring> = Vec::new();
-        let mut area = 0.0;
-        let mut budget = MOST;
-        let mut from = self.ring(at(0), b);
+        let mut sweep =
+            Sweep { space: self, b, chord, scan: Scan::default(), rings: Vec::new(), area: 0.0, budget: MOST };
+        let mut from = sweep.ring(at(0), Seen::default());
         for i in 1..=FIRST {
+            if !goes_on((i - 1) as f64 / FIRST as f64) {
+                return None;
+            }
             let r = if i == FIRST { far * (1.0 - FOUND) } else { at(i) };
-            let to = self.ring(r, b);
-            rings.push(from.clone());
-            self.refine(&from, &to, (b, chord), &mut rings, &mut area, &mut budget);
+            let to = sweep.ring(r, Seen::default());
+            sweep.rings.push(from.clone());
+            sweep.refine(&from, &to);
             from = to;
         }
-        rings.push(from);
-        let loops = chained(&rings);
+        sweep.rings.push(from);
+        let loops = chained(&sweep.rings);
         let extent = extent(loops.iter().flatten());
-        Outline { area, extent, loops, ..Outline::default() }
+        Some(Outline { area: sweep.area, extent, loops, ..Outline::default() })
+    }
+}
+
+/// Rings of a workspace from the inside outwards.
+struct Sweep<'a> {
+    space: &'a PoseSpace,
+    b: f64,
+    chord: f64,
+    scan: Scan,
+    rings: Vec<Ring>,
+    /// m².
+    area: f64,
+    /// How many rings may still be looked at.
+    budget: usize,
+}
+
+impl Sweep<'_> {
+    fn ring(&mut self, r: f64, mut seen: Seen) -> Ring {
+        let set = self.space.reach_of(r, &mut self.scan, &mut seen);
+        let whole = matches!(set.intervals[..], [[_, to]] if to >= set.period && set.intervals[0][0] == 0.0);
+        let turned = |b: f64| (self.b - b) / self.space.sum;
+        let mut arcs: Vec<[f64; 2]> =
+            set.intervals.iter().rev().map(|[low, high]| [turned(*high), turned(*low)]).collect();
+        if whole {
+            arcs.clear();
+        }
+        Ring { r, arcs, whole, seen }
     }
 
     /// Rings between two, so close that straight lines join them.
-    fn refine(
-        &self,
-        from: &Ring,
-        to: &Ring,
-        (b, chord): (f64, f64),
-        rings: &mut Vec<Ring>,
-        area: &mut f64,
-        budget: &mut usize,
-    ) {
-        let middle = self.ring(0.5 * (from.r + to.r), b);
-        *budget = budget.saturating_sub(1);
-        let far = self.farthest();
+    fn refine(&mut self, from: &Ring, to: &Ring) {
+        let seen = if from.seen == to.seen { from.seen.clone() } else { Seen::default() };
+        let middle = self.ring(0.5 * (from.r + to.r), seen);
+        self.budget = self.budget.saturating_sub(1);
+        let far = self.space.farthest();
         let alike = |x: &Ring, y: &Ring| x.whole == y.whole && x.arcs.len() == y.arcs.len();
         let width = to.r - from.r;
         let smooth = alike(from, &middle) && alike(&middle, to) && {
@@ -148,19 +163,19 @@ impl PoseSpace {
                 let off = (turned(a, m) + turned(c, m)) * 0.5 * middle.r;
                 // Across the chord: an edge that runs along the circle hardly bends.
                 let run = (turned(c, a) * middle.r).hypot(width);
-                off.abs() * width / run <= chord * 0.8
+                off.abs() * width / run <= self.chord * 0.8
                     && (turned(a, m).abs() + turned(c, m).abs()) * middle.r < RUN * far
             };
             (0..from.arcs.len()).all(|i| !(!bent(i, 0) || !bent(i, 1)))
         };
-        if smooth || width <= FOUND * far || *budget == 0 {
-            *area += width / 6.0 * (from.r * from.angle() + 4.0 * middle.r * middle.angle() + to.r * to.angle());
-            rings.push(middle);
+        if smooth || width <= FOUND * far || self.budget == 0 {
+            self.area += width / 6.0 * (from.r * from.angle() + 4.0 * middle.r * middle.angle() + to.r * to.angle());
+            self.rings.push(middle);
             return;
         }
-        self.refine(from, &middle, (b, chord), rings, area, budget);
-        rings.push(middle.clone());
-        self.refine(&middle, to, (b, chord), rings, area, budget);
+        self.refine(from, &middle);
+        self.rings.push(middle.clone());
+        self.refine(&middle, to);
     }
 }
 

@@ -78,9 +78,18 @@ impl PoseSpace {
             }
             seen.push((off, held));
         }
-        // Where it is much farther than the looks are apart, it does not come near between them.
+        // Where it is much farther than the looks are apart, it does not come near between them. Along a single joint
+        // only looks that are nearer than those beside them lead anywhere.
         let apart = (first..n).map(|i| at(i, 1) - at(i, 0)).fold(0.0, f64::max);
-        seen.retain(|(off, _)| *off <= FAR * apart);
+        let offs: Vec<f64> = seen.iter().map(|(off, _)| *off).collect();
+        let beside = |i: usize, j: Option<usize>| j.and_then(|j| offs.get(j)).is_none_or(|other| offs[i] <= *other);
+        let leads = |i: usize| n - first > 1 || (beside(i, i.checked_sub(1)) && beside(i, Some(i + 1)));
+        let mut seen: Vec<(f64, PerDrive)> = seen
+            .into_iter()
+            .enumerate()
+            .filter(|(i, (off, _))| *off <= FAR * apart && leads(*i))
+            .map(|(_, x)| x)
+            .collect();
         seen.sort_by(|x, y| x.0.total_cmp(&y.0));
         for (mut best, mut held) in seen.into_iter().take(STARTS) {
             for _ in 0..if n - first > 1 { SWEEPS } else { 1 } {
@@ -245,13 +254,15 @@ impl PoseSpace {
     }
 }
 
-/// The least of a function between two places by golden sections, or the first place at which it is 0.
+/// The least of a function between two places by golden sections, or the first place at which it is 0; only as near as
+/// it takes to know that it does not come to 0.
 fn lowest<T: Copy>(f: impl Fn(f64) -> (f64, T), [mut low, mut high]: [f64; 2]) -> (f64, T) {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let (mut x, mut y) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
     let (mut fx, mut fy) = (f(x), f(y));
     for _ in 0..16 {
-        if fx.0 == 0.0 || fy.0 == 0.0 {
+        // Nor does it come to 0 from farther than this.
+        if fx.0 == 0.0 || fy.0 == 0.0 || fx.0.min(fy.0) > FAR * (high - low) {
             break;
         }
         if fx.0 < fy.0 {

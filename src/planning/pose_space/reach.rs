@@ -1,6 +1,6 @@
 //! Which b reach a point.
 
-use super::critical::Critical;
+use super::critical::{Critical, Scan};
 use super::space::PoseSpace;
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::reactionless::{BSet, NoReach};
@@ -26,7 +26,7 @@ impl PoseSpace {
         if distance < nearest - 1e-12 * farthest {
             return Err(NoReach::TooNear { distance, nearest });
         }
-        let set = self.reach_of(distance);
+        let set = self.reach_of(distance, &mut Scan::default(), &mut Seen::default());
         if set.is_empty() {
             return Err(NoReach::Limits);
         }
@@ -45,7 +45,8 @@ impl PoseSpace {
     }
 
     /// The b of points at a distance from B, on the x axis.
-    pub(super) fn reach_of(&self, distance: f64) -> BSet {
+    /// What was seen at distances before saves looks where it is seen again.
+    pub(super) fn reach_of(&self, distance: f64, scan: &mut Scan, seen: &mut Seen) -> BSet {
         let period = self.period();
         if self.drives() == 1 {
             // One arm goes round on its circle.
@@ -58,20 +59,21 @@ impl PoseSpace {
             return BSet { intervals: if any { vec![[0.0, period]] } else { Vec::new() }, period };
         }
         let mut ends: Vec<Critical> = Vec::with_capacity(64);
-        if self.criticals(distance, |c| ends.push(c)) {
-            return self.set_of(ends, distance);
+        if self.criticals(distance, scan, |c| ends.push(c)) {
+            return self.set_of(ends, distance, seen);
         }
+        *seen = Seen::default();
         // At distances to which straight arms just reach, ends meet and none is told from another: as beside it.
         let parts = [1.0 - BESIDE, 1.0 + BESIDE].map(|by| {
             ends.clear();
-            self.criticals(distance * by, |c| ends.push(c));
-            self.set_of(std::mem::take(&mut ends), distance * by).intervals
+            self.criticals(distance * by, scan, |c| ends.push(c));
+            self.set_of(std::mem::take(&mut ends), distance * by, &mut Seen::default()).intervals
         });
         BSet::union(parts.concat(), period)
     }
 
     /// Joins the critical values: what lies between two is covered where a pose beside it goes there, or goes on.
-    fn set_of(&self, mut ends: Vec<Critical>, distance: f64) -> BSet {
+    fn set_of(&self, mut ends: Vec<Critical>, distance: f64, seen: &mut Seen) -> BSet {
         let period = self.period();
         for c in &mut ends {
             c.b = c.b.rem_euclid(period);
@@ -88,6 +90,8 @@ impl PoseSpace {
             }
         }
         let n = merged.len();
+        let kinds: Vec<[bool; 2]> = merged.iter().map(|c| [c.up, c.down]).collect();
+        let known = std::mem::take(seen);
         if n == 0 {
             // b may go round and round without an end: near B the machine turns as a whole.
             let whole = self.drives() > 2 && self.any_pose(distance);
@@ -109,7 +113,9 @@ impl PoseSpace {
             }
         };
         spread(&mut covered);
-        if self.drives() > 2 {
+        if known.kinds == kinds {
+            covered.clone_from(&known.covered);
+        } else if self.drives() > 2 {
             for i in 0..n {
                 let width = if i + 1 < n { merged[i + 1].b - merged[i].b } else { merged[0].b + period - merged[i].b };
                 // Several sheets may lie over one b: whether another one goes on here is asked of a pose, anywhere between,
@@ -128,6 +134,15 @@ impl PoseSpace {
                 parts.push([merged[i].b, to]);
             }
         }
+        *seen = Seen { kinds, covered };
         BSet::union(parts, period)
     }
+}
+
+/// Which values ended what at a distance, in order, and what was covered between them. Until the order of kinds changes
+/// no set begins or ends between two values, so at a distance near by the same is covered.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Seen {
+    kinds: Vec<[bool; 2]>,
+    covered: Vec<bool>,
 }

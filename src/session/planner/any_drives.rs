@@ -8,6 +8,7 @@ use crate::planning::curves::Path;
 use crate::planning::curves::path::{least_rate_curve, minimum_norm_curve};
 use crate::planning::pose_constant::Unreachable;
 use crate::planning::pose_space::{NoPoseSpace, PoseSpace};
+use crate::planning::posture::{Posture, Postures};
 use crate::session::refusal::Refusal;
 use crate::session::scenario::{Corners, Scenario, Shape, Task, TaskKind};
 
@@ -47,7 +48,10 @@ fn reactionless(scenario: &Scenario) -> Result<Parts, Refusal> {
         ))),
         _ => {
             let start = posed(task, &space, 0, points[0], &space.middle())?;
-            by_least_rates(scenario, start, Some(&space))
+            if task.posture == Posture::LeastRates {
+                return by_least_rates(scenario, start, Some(&space));
+            }
+            in_posture(scenario, &Postures::of(&scenario.machine, &space, task.posture), start)
         }
     }
 }
@@ -93,6 +97,19 @@ fn by_least_rates(scenario: &Scenario, start: DriveAngles, held: Option<&PoseSpa
             Some(space) => least_rate_curve(tip, Some(space.lambda()), q, &curve)?,
             None => minimum_norm_curve(tip, q, &curve)?,
         };
+        q = table.nodes().last().map_or(q, |last| last.q);
+        parts.push((Path::Table(table), curve.length()));
+    }
+    Ok(parts)
+}
+
+/// Along the curves of a task from a pose at its start, with b held and the freedoms that are left used as it says.
+fn in_posture(scenario: &Scenario, postures: &Postures<'_>, start: DriveAngles) -> Result<Parts, Refusal> {
+    let task = &scenario.task;
+    let mut q = postures.settled(start, task.points()[0], task.b).unwrap_or(start);
+    let mut parts = Vec::new();
+    for curve in curves(task, &task.points())? {
+        let table = postures.path(q, &curve)?;
         q = table.nodes().last().map_or(q, |last| last.q);
         parts.push((Path::Table(table), curve.length()));
     }

@@ -6,6 +6,7 @@ use crate::mechanics::kinematics::end_effector;
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use crate::planning::curves::Samples;
+use crate::planning::posture::Posture;
 use crate::planning::timing::TimeLaw;
 use crate::settings::change;
 use crate::settings::key::{Holds, Key};
@@ -71,6 +72,9 @@ pub struct Keys<P, X> {
     /// What to keep small; for `least-reaction`.
     #[serde(default, skip_serializing_if = "is_default")]
     pub least: Least,
+    /// How four drives and more use the freedoms that a point leaves.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub posture: Posture,
     /// Where drive 1 ends, rad; for `same-tip`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_drive_to: Option<f64>,
@@ -185,12 +189,13 @@ pub const TIME: Range = Range::new(1e-5, super::bounds::MAX_TIME, "s");
 
 const SAMPLED: &str = "no samples, which say where to go";
 const CURVED: &str = "points, and the kind reactionless, minimum-norm, least-reaction or zero-momentum";
+const FREE: &str = "four drives or more, and the kind reactionless in the shape line, arc, spline or freehand";
 const CORNERED: &str =
     "three points or more, or a closed path, in the shape line or joint-line: others have no corners";
 const BLENDED: &str = "corners = blend, and three points or more, or a closed path, in the shape line or joint-line: others have no corners";
 
 /// Every key of `[task]`.
-pub const KEYS: [Key; 19] = [
+pub const KEYS: [Key; 20] = [
     Key::new(
         "task.kind",
         Holds::Choice(&[
@@ -270,6 +275,14 @@ pub const KEYS: [Key; 19] = [
         "What to keep small: the root of the mean square of n_B, or its peak.",
     )
     .when("the kind least-reaction"),
+    Key::new(
+        "task.posture",
+        Holds::Choice(&["least-rates", "orientation", "least-torque", "mid-range"]),
+        "least-rates",
+        "How four drives and more use the freedoms that a point leaves while b is held: they turn least, the last link keeps \
+         its orientation, the motors need the least torques, or joints stay near the middle of their ranges.",
+    )
+    .when(FREE),
     Key::number("task.first_drive_to", ANGLE, Key::NONE, "Where drive 1 ends.")
         .when("the kind same-tip")
         .instead("where it began"),
@@ -298,7 +311,19 @@ impl StatedTask {
     /// Which key is missing.
     pub(super) fn completed(self, machine: &Machine) -> Result<Task, &'static str> {
         let Self { kind, shape, samples, turn, from, via, to, closed, corners, blend, .. } = self;
-        let Self { keep_off_change_points, b, b_to, moment_limit, cycles, least, first_drive_to, time, law, .. } = self;
+        let Self {
+            keep_off_change_points,
+            b,
+            b_to,
+            moment_limit,
+            cycles,
+            least,
+            posture,
+            first_drive_to,
+            time,
+            law,
+            ..
+        } = self;
         let ends = samples.as_ref().and_then(|samples| ends_of(samples, turn, machine));
         let [first, last] = ends.map_or([None; 2], |ends| ends.places.map(Some));
         Ok(Task {
@@ -320,6 +345,7 @@ impl StatedTask {
             moment_limit,
             cycles,
             least,
+            posture,
             first_drive_to,
             law,
         })
@@ -376,6 +402,7 @@ impl Task {
             moment_limit: None,
             cycles: once(),
             least: Least::default(),
+            posture: Posture::default(),
             first_drive_to: None,
             time: None,
             law: TimeLaw::default(),
@@ -422,7 +449,7 @@ impl Task {
     /// All keys, so that another task can be made this one.
     pub fn whole(&self) -> Change {
         let optional = ["shape", "via", "closed", "corners", "blend", "keep_off_change_points", "b_to", "moment_limit"];
-        let others = ["cycles", "least", "first_drive_to", "samples", "turn"];
+        let others = ["cycles", "least", "posture", "first_drive_to", "samples", "turn"];
         let absent = optional.into_iter().chain(others).map(|key| (key.to_owned(), Value::from("default")));
         absent.chain(Change::try_from(self).unwrap_or_default()).collect()
     }
@@ -520,6 +547,7 @@ impl Task {
             "moment_limit" => kind(&[ChangeB]),
             "cycles" => kind(&[ZeroMomentum]),
             "least" => kind(&[LeastReaction]),
+            "posture" => kind(&[Reactionless]) && samples.is_none() && self.shape() != Shape::JointLine,
             "first_drive_to" => kind(&[SameTip]),
             "turn" => samples.is_some_and(|columns| columns != 2),
             "time" => !self.law.is_fastest(),

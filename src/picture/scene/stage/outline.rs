@@ -27,26 +27,38 @@ pub struct Outlined {
 /// cover.
 fn roomiest(loops: &[Vec<[f64; 2]>], [x_min, x_max, y_min, y_max]: [f64; 4], root: f64) -> Vector {
     const GRID: i32 = 16;
+    /// Vertices of a loop that are looked at.
+    const THINNED: usize = 240;
+    let thin = |line: &Vec<[f64; 2]>| -> Vec<[f64; 2]> {
+        line.iter().step_by(line.len().div_ceil(THINNED).max(1)).copied().collect()
+    };
+    let loops: Vec<Vec<[f64; 2]>> = loops.iter().map(thin).collect();
     let at = |i: i32, low: f64, high: f64| low + (high - low) * (f64::from(i) + 0.5) / f64::from(GRID);
     let points = (0..GRID * GRID).map(|k| Vector::new(at(k % GRID, x_min, x_max), at(k / GRID, y_min, y_max)));
-    let winds = |p: &Vector| {
-        let turn = |line: &Vec<[f64; 2]>| {
-            let to = |[x, y]: [f64; 2]| Vector::new(x, y) - p;
-            (0..line.len()).map(|i| (to(line[(i + 1) % line.len()]) * to(line[i]).conj()).arg()).sum::<f64>()
+    // Edges above or below a point, counted: inside of an odd number.
+    let is_inside = |p: &Vector| {
+        let crossed = |line: &Vec<[f64; 2]>| {
+            let crosses = |i: &usize| {
+                let ([ax, ay], [bx, by]) = (line[*i], line[(*i + 1) % line.len()]);
+                (ay > p.im) != (by > p.im) && p.re < ax + (p.im - ay) / (by - ay) * (bx - ax)
+            };
+            (0..line.len()).filter(crosses).count()
         };
-        loops.iter().map(turn).sum::<f64>() > 1.0
+        loops.iter().map(crossed).sum::<usize>() % 2 == 1
     };
     let room = |p: &Vector| {
-        let all = loops.iter().flatten().step_by(4);
+        let all = loops.iter().flatten();
         all.fold(f64::INFINITY, |least, [x, y]| least.min((Vector::new(*x, *y) - p).norm_sqr()))
     };
-    points.filter(|p| p.norm() > root).filter(winds).max_by(|p, q| room(p).total_cmp(&room(q))).unwrap_or_default()
+    let roomy = points.filter(|p| p.norm() > root && is_inside(p)).map(|p| (room(&p), p));
+    roomy.max_by(|p, q| p.0.total_cmp(&q.0)).map(|(_, p)| p).unwrap_or_default()
 }
 
 impl Outlined {
-    /// Of a machine with a pose constant; nothing of one that stays on a point.
-    pub fn of(space: PoseSpace) -> Option<Self> {
-        let outline = space.outline_within(0.0, CHORD);
+    /// Of a machine with a pose constant; nothing of one that stays on a point, or if, told how much is done, the caller
+    /// wants the rest no more.
+    pub fn of(space: PoseSpace, goes_on: &mut dyn FnMut(f64) -> bool) -> Option<Self> {
+        let outline = space.outline_within(0.0, CHORD, goes_on)?;
         let vectors =
             |points: &[[f64; 2]]| -> Vec<Vector> { points.iter().map(|[x, y]| Vector::new(*x, *y)).collect() };
         let flat = |points: &[Vector]| -> Vec<[f32; 3]> { points.iter().map(|p| point(*p, 0.0)).collect() };
@@ -73,6 +85,11 @@ impl Outlined {
         let ends = [curve.first(), curve.last()].into_iter().flatten().filter(|_| curve.len() > 1);
         let ends = ends.enumerate().filter_map(named).collect();
         (!lines.is_empty()).then(|| Self { strips: lines.into(), words, middle, ends, space })
+    }
+
+    /// What it is of.
+    pub fn space(&self) -> &PoseSpace {
+        &self.space
     }
 
     /// How far it is turned in a frame, rad.
