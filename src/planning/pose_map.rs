@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::pose_constant::{Planes, Reach};
 use super::pose_space::{NoPoseSpace, PoseSpace};
+use super::posture::Posture;
 use super::reactionless::{BSet, Decimal, PlanePoint};
 use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector};
@@ -30,15 +31,19 @@ pub enum PoseMap {
 }
 
 impl PoseMap {
-    /// Of a machine, with its planes if it has some.
+    /// Of a machine, with its planes if it has some; with four drives and more it is led as a posture has it, where that
+    /// keeps the last link's orientation.
     ///
     /// # Errors
     /// Why its b cannot be held.
-    pub fn of(machine: &Machine, planes: Option<&Arc<Planes>>) -> Result<Self, NoPoseSpace> {
-        match planes {
-            Some(planes) => Ok(Self::Planes(planes.clone())),
-            None => Ok(Self::Space(Arc::new(PoseSpace::of(machine)?))),
+    pub fn of(machine: &Machine, planes: Option<&Arc<Planes>>, posture: Posture) -> Result<Self, NoPoseSpace> {
+        if let Some(planes) = planes {
+            return Ok(Self::Planes(planes.clone()));
         }
+        let space = PoseSpace::of(machine)?;
+        let keeps = machine.drives() > 3 && posture == Posture::Orientation;
+        let hand = machine.resolved_links()[machine.end_link()].drive;
+        Ok(Self::Space(Arc::new(if keeps { space.keeping(hand) } else { space })))
     }
 
     /// How many relative angles there are.
@@ -148,8 +153,9 @@ impl PoseMap {
         match self {
             Self::Planes(planes) => planes.follow(p, b, [from[0], from[1]]).map(PerDrive::from),
             Self::Space(space) => {
-                let (a, off) = space.toward(p, b, from);
-                (off <= REACHED * space.farthest()).then_some(a)
+                let keeping = space.toward_keeping(p, b, from).filter(|(_, off)| is_at(space, *off));
+                let (a, off) = keeping.unwrap_or_else(|| space.toward(p, b, from));
+                is_at(space, off).then_some(a)
             }
         }
     }
@@ -194,6 +200,9 @@ fn is_at(space: &PoseSpace, off: f64) -> bool {
 }
 
 fn reach(space: &PoseSpace, p: Vector, b: f64, from: &PerDrive) -> (PerDrive, Reach) {
+    if let Some((a, _)) = space.toward_keeping(p, b, from).filter(|(_, off)| is_at(space, *off)) {
+        return (a, Reach::Inside);
+    }
     let (mut a, mut off) = match space.drives() {
         2 => along_curve(space, p, b, from[0]),
         _ => space.toward(p, b, from),

@@ -137,7 +137,7 @@ impl Run {
     /// # Errors
     /// Why it has none.
     pub fn pose_map(&self) -> Result<&PoseMap, &NoPoseSpace> {
-        let find = || PoseMap::of(&self.scenario.machine, self.planes.as_ref());
+        let find = || PoseMap::of(&self.scenario.machine, self.planes.as_ref(), self.scenario.task.posture);
         self.pose_map.get_or_init(find).as_ref()
     }
 
@@ -262,7 +262,7 @@ impl Run {
                 None => None,
             };
             if let Guide::Follow(old) = self.simulation.guide() {
-                let map = PoseMap::of(&scenario.machine, planes.as_ref())?;
+                let map = PoseMap::of(&scenario.machine, planes.as_ref(), scenario.task.posture)?;
                 let bounds = bounds(&scenario, &map);
                 let lambda = map.lambda();
                 let mut follower = Follower::new(map, bounds, scenario.step, self.simulation.reference());

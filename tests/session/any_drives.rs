@@ -4,6 +4,7 @@ use proptest::prelude::*;
 use stillbase::mechanics::machine::builtin;
 use stillbase::mechanics::planar::Vector;
 use stillbase::planning::pose_space::PoseSpace;
+use stillbase::planning::posture::Posture;
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Session, replay};
 use stillbase::simulation::frame::{Frame, Reach};
@@ -118,6 +119,30 @@ fn four_drives_are_led_anywhere_in_their_workspace() {
     assert!((f.end_effector - p).norm() < nearest + 1e-3, "{} m, {nearest} m would do", (f.end_effector - p).norm());
     let again = replay(&session.to_scenario(), |_, _| {}).expect("it runs");
     assert_eq!(again.frame(), session.run().frame(), "the drags are in the script");
+}
+
+/// A hand that leads keeps the last link's orientation where the task does, and lets it go only where it has to.
+#[test]
+fn a_hand_keeps_the_orientation_while_it_can() {
+    let led_to = |posture: Posture, at: [f64; 2]| {
+        let mut scenario = scenario("four-drive");
+        scenario.task.posture = posture;
+        let mut session = open(scenario);
+        let (before, mut most) = (session.frame().q[3], 0.0_f64);
+        session.apply(drag(at[0], at[1])).expect("it follows");
+        step(&mut session, 2500, |f| most = most.max((f.q[3] - before).abs()));
+        let f = session.frame();
+        assert!((f.end_effector - Vector::new(at[0], at[1])).norm() < 1e-6, "{posture:?}: {}", f.end_effector);
+        assert!(f.peaks.is_reactionless(), "{posture:?}");
+        most
+    };
+    for at in [[0.55, 0.55], [0.62, 0.42], [0.5, 0.6]] {
+        let [kept, free] = [Posture::Orientation, Posture::LeastRates].map(|posture| led_to(posture, at));
+        assert!(kept < 1e-9, "{at:?}: it turns by {kept} rad on the way");
+        assert!(free > 1e-3, "{at:?}: it would turn: {free}");
+    }
+    // Where no pose has it, the place matters more.
+    assert!(led_to(Posture::Orientation, [0.2, 0.9]) > 1e-3);
 }
 
 /// A b that is said to reach a target does, once it is slid there.

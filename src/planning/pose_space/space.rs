@@ -56,6 +56,8 @@ pub struct PoseSpace {
     pub(super) sum: f64,
     /// Each after the joint that leads to its nearer drive.
     pub(super) joints: Vec<Joint>,
+    /// A drive that a hand leads to places without turning it, while it can.
+    pub(super) kept: Option<usize>,
     inertia: f64,
 }
 
@@ -155,7 +157,14 @@ impl PoseSpace {
             return Err(NoPoseSpace::Size { reach });
         }
         let joints = joints(machine)?;
-        Ok(Self { tip, lambda, sum, joints, inertia })
+        Ok(Self { tip, lambda, sum, joints, kept: None, inertia })
+    }
+
+    /// The same, with a drive that keeps its angle, and so its links their orientation, while a hand leads the end effector
+    /// and there is a way to.
+    #[must_use]
+    pub fn keeping(self, drive: usize) -> Self {
+        Self { kept: Some(drive), ..self }
     }
 
     /// Number of drives.

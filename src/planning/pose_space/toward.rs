@@ -12,8 +12,9 @@ use super::space::PoseSpace;
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, dot, unit};
 use nalgebra::{SMatrix, SVector};
 
-/// Rows of C: two of the point, one of b, one a relative angle.
-const ROWS: usize = 3 + MAX_DRIVES - 1;
+/// Rows of C: two of the point, one of b, one a relative angle, and one of a drive that does not turn.
+const ROWS: usize = KEPT + 1;
+const KEPT: usize = 3 + MAX_DRIVES - 1;
 /// The most steps, and the longest, rad.
 const STEPS: usize = 80;
 const LONGEST: f64 = 0.3;
@@ -39,6 +40,16 @@ impl PoseSpace {
     /// Relative angles at b that put the end effector on p, m, or as near as can be from there, gone to from others; and
     /// how far that is, m.
     pub fn toward(&self, p: Vector, b: f64, from: &[f64]) -> (PerDrive, f64) {
+        let gone = self.gone(p, b, from, None);
+        if gone.1 <= AT * self.farthest() { gone } else { self.settled(p, b, gone) }
+    }
+
+    /// The same with the drive that is to [keep](Self::keeping) its angle at that angle, if there is one.
+    pub fn toward_keeping(&self, p: Vector, b: f64, from: &[f64]) -> Option<(PerDrive, f64)> {
+        self.kept.map(|kept| self.gone(p, b, from, Some(kept)))
+    }
+
+    fn gone(&self, p: Vector, b: f64, from: &[f64], kept: Option<usize>) -> (PerDrive, f64) {
         let reach = self.farthest();
         let mut a = self.clamped(from);
         let mut q = self.lift(&a, b);
@@ -49,7 +60,7 @@ impl PoseSpace {
             if off <= AT * reach {
                 break;
             }
-            let Some(step) = self.step(p, &q, &locked, mu) else { break };
+            let Some(step) = self.step(p, &q, &locked, kept, mu) else { break };
             let next = self.angles(&q.0.plus(1.0, &step));
             // An angle that would pass its limit stays there, and the others do without it.
             if let Some(i) = self.passed(&a, &next, &locked) {
@@ -73,7 +84,7 @@ impl PoseSpace {
                 }
             }
         }
-        if off <= AT * reach { (a, off) } else { self.settled(p, b, (a, off)) }
+        (a, off)
     }
 
     /// The same for a point that was out of reach of the pose beside it, at a b near to this one.
@@ -162,7 +173,14 @@ impl PoseSpace {
     }
 
     /// Δq of one step, as long as is allowed at most.
-    fn step(&self, p: Vector, q: &DriveAngles, locked: &[bool; MAX_DRIVES], mu: f64) -> Option<PerDrive> {
+    fn step(
+        &self,
+        p: Vector,
+        q: &DriveAngles,
+        locked: &[bool; MAX_DRIVES],
+        kept: Option<usize>,
+        mu: f64,
+    ) -> Option<PerDrive> {
         let (n, reach) = (self.drives(), self.farthest());
         let mut c = Rows::zeros();
         let mut r = SVector::<f64, ROWS>::zeros();
@@ -175,6 +193,9 @@ impl PoseSpace {
         for (i, joint) in self.joints.iter().enumerate().filter(|(i, _)| locked[*i]) {
             (c[(3 + i, joint.ends[0])], c[(3 + i, joint.ends[1])]) = (-1.0, 1.0);
         }
+        if let Some(kept) = kept {
+            c[(KEPT, kept)] = 1.0;
+        }
         // A drive that turns nothing costs nothing: a little keeps the step finite.
         let cost = |k: usize| self.lambda[k].abs().max(1e-6);
         let mut light = c.transpose();
@@ -183,7 +204,7 @@ impl PoseSpace {
         for i in 0..ROWS {
             if i < 2 {
                 square[(i, i)] += mu;
-            } else if i >= 3 && !locked[i - 3] {
+            } else if (i == KEPT && kept.is_none()) || (3..KEPT).contains(&i) && !locked[i - 3] {
                 square[(i, i)] = 1.0;
             }
         }
