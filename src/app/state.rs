@@ -379,8 +379,8 @@ impl AppState {
             self.view_state.plots.width = plots::show(ui, &what, &mut self.prepared, &mut commands);
         }
         let both = (self.comparison.as_ref(), self.intro.as_ref().filter(|_| !presents));
-        viewport::show(ui, &self.session, &self.views, both, &mut self.view_state, &mut commands);
-        status::news(ui.ctx(), &self.session, &self.view_state, &mut commands);
+        let scene = viewport::show(ui, &self.session, &self.views, both, &mut self.view_state, &mut commands);
+        status::news(ui.ctx(), scene, &self.session, &self.view_state, &mut commands);
         keys::help(ui.ctx(), &self.view_state, &mut commands);
         saving::show(ui.ctx(), &self.saving, &self.session, &self.view_state, &mut commands);
         finder::show(ui.ctx(), &self.session, &mut self.view_state, &mut commands);

@@ -24,8 +24,14 @@ pub fn news_rect(ctx: &egui::Context) -> Option<egui::Rect> {
     ctx.memory(|memory| memory.area_rect(egui::Id::unique("news")))
 }
 
-/// Bad news, in full, over the lower edge of the viewport, with the way out if there is one.
-pub fn news(ctx: &egui::Context, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
+/// Bad news, in full, over the lower edge of a scene, with the way out if there is one.
+pub fn news(
+    ctx: &egui::Context,
+    scene: egui::Rect,
+    session: &Session,
+    view_state: &ViewState,
+    commands: &mut Vec<Command>,
+) {
     let fault = fault(session.frame());
     let waits = session.run().waiting();
     let waiting = waits.map(|waiting| format!("The run waits: {}", waiting.why));
@@ -42,9 +48,12 @@ pub fn news(ctx: &egui::Context, session: &Session, view_state: &ViewState, comm
     let p = view_state.palette();
     let frame =
         egui::Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.reaction))).corner_radius(8).inner_margin(10);
-    egui::Area::new(egui::Id::unique("news")).anchor(egui::Align2::CENTER_BOTTOM, [-40.0, -42.0]).show(ctx, |ui| {
+    // It leaves the panels free.
+    let width = (0.42 * ctx.content_rect().width()).clamp(320.0, (scene.width() - 40.0).max(320.0));
+    let area = egui::Area::new(egui::Id::unique("news")).pivot(egui::Align2::CENTER_BOTTOM);
+    area.fixed_pos(scene.center_bottom() - vec2(0.0, 34.0)).show(ctx, |ui| {
         frame.show(ui, |ui| {
-            ui.set_max_width((0.42 * ctx.content_rect().width()).max(320.0));
+            ui.set_max_width(width);
             ui.add(egui::Label::new(RichText::new(text).font(plain(12.0)).color(colour(p.ink))).wrap());
             if let Some((_, said)) = also {
                 ui.add(egui::Label::new(RichText::new(said).font(plain(12.0)).color(colour(p.dim))).wrap());

@@ -21,7 +21,7 @@ use crate::session::{Edit, Session};
 use crate::simulation::frame::Frame as Instant;
 use crate::study::comparison::Comparison;
 
-/// Draws it and reads the pointer.
+/// Draws it and reads the pointer; where it is.
 pub fn show(
     ui: &mut Ui,
     session: &Session,
@@ -29,8 +29,8 @@ pub fn show(
     (comparison, intro): (Option<&Comparison>, Option<&Intro>),
     view_state: &mut ViewState,
     commands: &mut Vec<Command>,
-) {
-    CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+) -> Rect {
+    let shown = CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         let mut room = ui.available_size();
         let intro = intro.filter(|_| view_state.view.shows_machine());
@@ -112,7 +112,9 @@ pub fn show(
         if let Some(intro) = intro {
             intro.show_hint(ui.ctx(), rect, view_state, commands);
         }
+        rect
     });
+    shown.inner
 }
 
 /// Smaller changes of the pulling force send no new edit, N.

@@ -150,6 +150,9 @@ fn a_run_that_waits_says_so_and_keeps_its_way_out() {
     h.run_steps(3);
     assert!(has_way_out(&h) && h.query_by_label("no such number").is_some());
     h.snapshot("waits-refused-dark");
+    let scene = h.get_by_label_contains("Scene:").rect();
+    let card = h.get_by_label("no such number").rect().union(h.get_by_label_contains("The run waits: B").rect());
+    assert!(scene.contains_rect(card.expand(8.0)), "{card} covers no panel: {scene}");
     h.get_by_label_contains("take b").click();
     h.run_steps(3);
     assert!(session(&h).run().waiting().is_none() && session(&h).follows_hands());

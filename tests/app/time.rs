@@ -7,7 +7,7 @@ use stillbase::app::Command;
 use stillbase::files::journal::{self, Journal};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::Edit;
-use stillbase::session::scenario::{MAX_BOOKMARKS, Scenario};
+use stillbase::session::scenario::{MAX_BOOKMARKS, MAX_BRANCHES, Scenario};
 
 use super::{Window, session, window, window_of};
 use crate::Test;
@@ -20,6 +20,7 @@ pub const TESTS: &[Test] = tests![
     marks_that_are_close_are_one,
     a_branch_is_shown_compared_and_removed,
     another_path_keeps_what_a_hand_did,
+    the_branch_that_goes_is_named,
     a_refused_bookmark_is_no_change,
     what_is_kept_outlives_a_crash,
     slow_time_is_said_and_stays_smooth,
@@ -238,6 +239,25 @@ fn another_path_keeps_what_a_hand_did() {
     h.run_steps(4);
     assert!(session(&h).is_led() && session(&h).frames() == led, "here it is again");
     assert!(h.query_by_label("Show the branch").is_none());
+}
+
+/// One more branch than there may be takes the place of the oldest, and that is said.
+fn the_branch_that_goes_is_named() {
+    let mut h = window("case-3", Theme::Dark);
+    h.get_by_label("Play").click();
+    h.run_steps(20);
+    let said =
+        |h: &Window| h.state().app_state().view_state().message.clone().map_or_else(String::new, |(text, _)| text);
+    for i in 0..=MAX_BRANCHES {
+        assert!(!said(&h).contains("is gone"), "{}", said(&h));
+        let app_state = h.state_mut().app_state_mut();
+        app_state.carry_out(Command::Seek(0.1));
+        app_state.carry_out(Command::Edit(Edit::DragTarget { x: 0.48 + 0.001 * i as f64, y: 0.6 }));
+        app_state.carry_out(Command::EndGesture);
+        h.run_steps(2);
+    }
+    assert_eq!(session(&h).branch_count(), MAX_BRANCHES);
+    assert!(said(&h).contains("the oldest of 32 is gone: as planned"), "{}", said(&h));
 }
 
 /// What is refused is no change: nothing is to be saved.
