@@ -83,6 +83,7 @@
 //! | [`guide`] | how the program is used, page by page; no code |
 //! | [`settings`] | how a value is named, bounded and shown: keys, changes by key, ranges, text from outside |
 //! | [`mechanics`] | what a machine is: planar algebra, links and drives, kinematics, dynamics, pin forces, balance |
+//! | [`exchange`] | machines for other programs: MuJoCo |
 //! | [`planning`] | where it may go, and when: reactionless planes and workspaces, curves, timing, ways off the plane |
 //! | [`simulation`] | what then happens: plant, control, the step, frames, the audit, signals |
 //! | [`session`] | what a person did: scenarios, edits, runs, undo, replay, the verdict |
@@ -117,6 +118,7 @@
 
 #[cfg(feature = "ui")]
 pub mod app;
+pub mod exchange;
 pub mod files;
 pub mod guide;
 pub mod mechanics;

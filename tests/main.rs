@@ -5,6 +5,7 @@
 #[allow(dead_code, unused_imports, reason = "the tests use a few of them")]
 #[path = "../src/commands/mod.rs"]
 mod commands;
+mod exchange;
 #[cfg(any(feature = "cli", feature = "record"))]
 mod folder;
 mod fuzz;

@@ -11,6 +11,7 @@ mod design;
 pub(crate) mod dynamics;
 mod exit;
 mod export;
+mod export_model;
 pub(crate) mod failure;
 #[cfg(feature = "ui")]
 mod figures;
@@ -77,6 +78,7 @@ subcommands! {
     Workspace: workspace::Workspace,
     Import: import::Import,
     Export: export::Export,
+    ExportModel: export_model::ExportModel,
     Tolerance: tolerance::Tolerance,
     Spectrum: spectrum::SpectrumOf,
     #[cfg(feature = "ui")]

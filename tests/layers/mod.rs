@@ -13,6 +13,7 @@ const WINGS: &[&str] = &[
     "guide",
     "settings",
     "mechanics",
+    "exchange",
     "planning",
     "simulation",
     "session",
@@ -27,7 +28,8 @@ const WINGS: &[&str] = &[
 ];
 
 /// Wings that neither draw, nor talk to a person, nor keep files.
-const CORE: &[&str] = &["settings", "mechanics", "planning", "simulation", "session", "study", "picture/scene"];
+const CORE: &[&str] =
+    &["settings", "mechanics", "exchange", "planning", "simulation", "session", "study", "picture/scene"];
 
 /// Outside crates and the modules that may know them.
 const CRATES: &[(&str, &[&str])] = &[

@@ -1,0 +1,414 @@
+//! A machine as MJCF, the format of MuJoCo: links as bodies in the plane z = 0, pins as hinges, pins that close loops
+//! as equalities, motors with their gears and rotors, and sensors of force and moment at the base. The sensors read what
+//! holds the machine: f_B and n_B are the opposite.
+//!
+//! Every rotor is a body of its own: what a gear adds to the momentum (D) is not what it adds to the inertia (H), and
+//! an armature would only add to the latter. Inertias about axes that a plane motion does not ask are made up.
+
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+
+use super::turn::Turn;
+use crate::mechanics::machine::Machine;
+
+/// Why there is no model.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MjcfError {
+    /// MuJoCo moves no body without mass.
+    #[error("link {link:?} has {what} 0: MuJoCo moves only what has mass and inertia; want both above 1e-12")]
+    Massless {
+        /// The link.
+        link: String,
+        /// What it lacks.
+        what: &'static str,
+    },
+    /// A pose has one angle a drive.
+    #[error("a pose of {given} angles: want {wanted}, one for each drive")]
+    Pose {
+        /// How many were given.
+        given: usize,
+        /// How many there are.
+        wanted: usize,
+    },
+    /// No link follows a drive.
+    #[error("no link has the orientation of drive {drive:?}: MuJoCo has nothing to turn; want a link of it")]
+    Idle {
+        /// The drive.
+        drive: String,
+    },
+}
+
+/// Masses and inertias below are none to MuJoCo.
+const LEAST: f64 = 1e-12;
+/// What stands for the mass of a rotor, which belongs to the link that carries it, kg.
+const ROTOR: f64 = 1e-9;
+/// Half the width of a bar as it is drawn, m.
+const RADIUS: f64 = 0.012;
+/// Colours of the drives: sky blue, vermilion and bluish green, and so on (Okabe and Ito).
+const COLOURS: [&str; 8] = [
+    "0.34 0.71 0.91 1",
+    "0.84 0.37 0 1",
+    "0 0.62 0.45 1",
+    "0.90 0.62 0 1",
+    "0.80 0.47 0.65 1",
+    "0.94 0.89 0.26 1",
+    "0 0.45 0.70 1",
+    "0.6 0.6 0.6 1",
+];
+
+/// Text that may stand in an attribute.
+fn quoted(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            c if c.is_control() => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+/// The model of a machine as text; its keyframe `start` is the pose `q`, rad, with motors at rest.
+///
+/// # Errors
+/// If MuJoCo could not move it, or the pose is of another machine.
+pub fn mjcf(machine: &Machine, q: &[f64]) -> Result<String, MjcfError> {
+    let model = Model::of(machine, q)?;
+    let massless = |link: &str, what| MjcfError::Massless { link: link.into(), what };
+    for link in machine.links() {
+        if link.mass < LEAST {
+            return Err(massless(&link.name, "mass"));
+        }
+        if link.inertia < LEAST {
+            return Err(massless(&link.name, "inertia"));
+        }
+    }
+    Ok(model.text(q))
+}
+
+/// Angles of all hinges of the model in a pose, rad, in the order of its `qpos`: those of links and rotors, depth first.
+///
+/// # Errors
+/// As [`mjcf`].
+pub fn hinges(machine: &Machine, q: &[f64]) -> Result<Vec<f64>, MjcfError> {
+    Ok(Model::of(machine, q)?.pose(q))
+}
+
+struct Model<'a> {
+    machine: &'a Machine,
+    /// The angle of each motor.
+    motors: Vec<Turn>,
+    out: String,
+}
+
+/// Writes a line; a `String` takes everything.
+macro_rules! line {
+    ($model:expr, $depth:expr, $($text:tt)*) => {{
+        let _ = write!($model.out, "{:1$}", "", 2 * $depth);
+        let _ = writeln!($model.out, $($text)*);
+    }};
+}
+
+impl<'a> Model<'a> {
+    fn of(machine: &'a Machine, q: &[f64]) -> Result<Self, MjcfError> {
+        if q.len() != machine.drives() {
+            return Err(MjcfError::Pose { given: q.len(), wanted: machine.drives() });
+        }
+        let motor = |k: usize| {
+            let idle = || MjcfError::Idle { drive: machine.spec().drives[k].name.clone() };
+            Turn::of_drives(machine, machine.motors().on(k), k).ok_or_else(idle)
+        };
+        let motors = (0..machine.drives()).map(motor).collect::<Result<_, _>>()?;
+        Ok(Self { machine, motors, out: String::new() })
+    }
+
+    fn text(mut self, q: &[f64]) -> String {
+        let spec = self.machine.spec();
+        let [gx, gy] = spec.gravity;
+        line!(self, 0, "<mujoco model=\"{}\">", quoted(&spec.name));
+        line!(self, 1, "<compiler angle=\"radian\" autolimits=\"true\" inertiafromgeom=\"false\"/>");
+        line!(self, 1, "<option gravity=\"{gx} {gy} 0\" timestep=\"0.0005\" integrator=\"implicitfast\"/>");
+        line!(self, 1, "<default>");
+        line!(self, 2, "<geom type=\"capsule\" size=\"{RADIUS}\" contype=\"0\" conaffinity=\"0\" mass=\"0\"/>");
+        line!(self, 2, "<joint type=\"hinge\" axis=\"0 0 1\"/>");
+        line!(self, 2, "<equality solref=\"0.002 1\" solimp=\"0.99 0.9999 0.001\"/>");
+        line!(self, 1, "</default>");
+        line!(self, 1, "<worldbody>");
+        line!(self, 2, "<light pos=\"0 0 3\" dir=\"0 0 -1\"/>");
+        line!(self, 2, "<body name=\"base\">");
+        line!(self, 3, "<site name=\"base\" size=\"0.02\"/>");
+        self.rotors(3, None);
+        for j in self.children(None) {
+            self.body(3, j);
+        }
+        line!(self, 2, "</body>");
+        line!(self, 1, "</worldbody>");
+        self.tendons();
+        self.equalities();
+        self.actuators();
+        line!(self, 1, "<sensor>");
+        line!(self, 2, "<force name=\"base force\" site=\"base\"/>");
+        line!(self, 2, "<torque name=\"base moment\" site=\"base\"/>");
+        line!(self, 2, "<framepos name=\"end effector\" objtype=\"site\" objname=\"end effector\"/>");
+        line!(self, 1, "</sensor>");
+        line!(self, 1, "<keyframe>");
+        let pose = self.pose(q).iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
+        line!(self, 2, "<key name=\"start\" qpos=\"{pose}\"/>");
+        line!(self, 1, "</keyframe>");
+        line!(self, 0, "</mujoco>");
+        self.out
+    }
+
+    fn children(&self, parent: Option<usize>) -> Vec<usize> {
+        let parts = self.machine.resolved_links();
+        (0..parts.len()).filter(|j| parts[*j].parent == parent).collect()
+    }
+
+    /// A link with what hangs on it.
+    fn body(&mut self, depth: usize, j: usize) {
+        let (link, part) = (&self.machine.links()[j], &self.machine.resolved_links()[j]);
+        let (name, drive) = (quoted(&link.name), part.drive);
+        let colour = COLOURS[drive % COLOURS.len()];
+        line!(self, depth, "<body name=\"link {name}\" pos=\"{} 0 0\">", part.at);
+        let limits = self.limited().into_iter().find(|(_, turn, _)| turn.pin() == Some(j));
+        let range = limits.map_or(String::new(), |(.., [least, most])| format!(" range=\"{least} {most}\""));
+        line!(self, depth + 1, "<joint name=\"link {name}\"{range}/>");
+        let (com, normal, axial) = (link.com, link.com_normal, link.axial);
+        self.inertial(depth + 1, [com, normal, axial], link.mass, link.inertia);
+        let (from, to) = reach(part.length, &part.pins);
+        if to > from {
+            line!(self, depth + 1, "<geom fromto=\"{from} 0 0 {to} 0 0\" rgba=\"{colour}\"/>");
+        }
+        for (number, pinned) in self.machine.loops().iter().enumerate() {
+            for (side, of, at) in [("a", pinned.a, pinned.at_a), ("b", pinned.b, pinned.at_b)] {
+                if of == j {
+                    line!(self, depth + 1, "<site name=\"loop {} {side}\" pos=\"{at} 0 0\"/>", number + 1);
+                }
+            }
+        }
+        if self.machine.end_link() == j {
+            self.end_effector(depth + 1, j);
+        }
+        self.rotors(depth + 1, Some(j));
+        for child in self.children(Some(j)) {
+            self.body(depth + 1, child);
+        }
+        line!(self, depth, "</body>");
+    }
+
+    fn inertial(&mut self, depth: usize, [x, y, z]: [f64; 3], mass: f64, inertia: f64) {
+        // Of a thin bar; a plane motion asks for the last one only.
+        let other = 0.6 * inertia;
+        line!(self, depth, "<inertial pos=\"{x} {y} {z}\" mass=\"{mass}\" diaginertia=\"{other} {other} {inertia}\"/>");
+    }
+
+    /// The tip, and what it holds.
+    fn end_effector(&mut self, depth: usize, j: usize) {
+        let at = self.tip(j);
+        line!(self, depth, "<site name=\"end effector\" pos=\"{at} 0 0\"/>");
+        let payload = self.machine.spec().payload;
+        if payload.mass > 0.0 || payload.inertia > 0.0 {
+            let [along, left] = payload.offset;
+            line!(self, depth, "<body name=\"payload\" pos=\"{at} 0 0\">");
+            self.inertial(depth + 1, [along, left, payload.axial], payload.mass, payload.inertia);
+            line!(self, depth, "</body>");
+        }
+    }
+
+    /// Where the end effector sits on its link, m from the root.
+    fn tip(&self, j: usize) -> f64 {
+        let part = &self.machine.resolved_links()[j];
+        part.sign * (self.machine.end_effector()[part.drive] - part.root[part.drive])
+    }
+
+    /// The link that carries the motor of a drive; none: the base.
+    fn carrier(&self, k: usize) -> Option<usize> {
+        let parts = self.machine.resolved_links();
+        let on = self.machine.motors().on(k)?;
+        let pin = self.motors[k].pin().and_then(|j| parts[j].parent);
+        pin.or_else(|| parts.iter().position(|part| part.drive == on))
+    }
+
+    /// The rotors of the motors that a link carries.
+    fn rotors(&mut self, depth: usize, on: Option<usize>) {
+        for k in 0..self.machine.drives() {
+            let drive = &self.machine.spec().drives[k];
+            let Some(rotor) = drive.rotor.filter(|_| self.has_rotor(k) && self.carrier(k) == on) else { continue };
+            let name = quoted(&drive.name);
+            let at = self.motors[k].pin().map_or(0.0, |j| self.machine.resolved_links()[j].at);
+            line!(self, depth, "<body name=\"rotor {name}\" pos=\"{at} 0 0\">");
+            line!(self, depth + 1, "<joint name=\"rotor {name}\"/>");
+            self.inertial(depth + 1, [0.0; 3], ROTOR, rotor.inertia);
+            line!(self, depth, "</body>");
+        }
+    }
+
+    /// Whether a rotor of a drive is a body.
+    fn has_rotor(&self, k: usize) -> bool {
+        self.machine.spec().drives[k].rotor.is_some_and(|rotor| rotor.inertia >= LEAST)
+    }
+
+    /// Sums of angles that have a name.
+    fn tendons(&mut self) {
+        let drives = &self.machine.spec().drives;
+        let mut all: Vec<(String, Turn)> = Vec::new();
+        for (k, turn) in self.motors.iter().enumerate().filter(|(_, turn)| turn.pin().is_none()) {
+            all.push((format!("motor {}", quoted(&drives[k].name)), turn.clone()));
+        }
+        let limited: Vec<_> = self.limited().into_iter().filter(|(_, turn, _)| turn.pin().is_none()).collect();
+        let parallel = self.parallel();
+        if all.is_empty() && limited.is_empty() && parallel.is_empty() {
+            return;
+        }
+        line!(self, 1, "<tendon>");
+        for (name, turn) in all {
+            self.tendon(&name, "", &turn);
+        }
+        for (k, drive) in drives.iter().enumerate() {
+            if !self.has_rotor(k) || self.motors[k].pin().is_some() {
+                continue;
+            }
+            let name = quoted(&drive.name);
+            line!(self, 2, "<fixed name=\"rotor {name}\">");
+            line!(self, 3, "<joint joint=\"rotor {name}\" coef=\"1\"/>");
+            line!(self, 2, "</fixed>");
+        }
+        for (name, turn, [least, most]) in limited {
+            self.tendon(&name, &format!(" range=\"{least} {most}\""), &turn);
+        }
+        for (j, turn) in parallel {
+            let name = format!("direction of link {}", quoted(&self.machine.links()[j].name));
+            self.tendon(&name, "", &turn);
+        }
+        line!(self, 1, "</tendon>");
+    }
+
+    fn tendon(&mut self, name: &str, more: &str, turn: &Turn) {
+        line!(self, 2, "<fixed name=\"{name}\"{more}>");
+        for (j, coefficient) in &turn.pins {
+            let link = quoted(&self.machine.links()[*j].name);
+            line!(self, 3, "<joint joint=\"link {link}\" coef=\"{coefficient}\"/>");
+        }
+        line!(self, 2, "</fixed>");
+    }
+
+    /// Relative angles with limits, as sums of angles in pins and their bounds.
+    fn limited(&self) -> Vec<(String, Turn, [f64; 2])> {
+        let angles = self.machine.angles().iter().filter(|a| a.limits.end() - a.limits.start() < TAU - 1e-9);
+        angles
+            .filter_map(|a| {
+                let turn = Turn::of_drives(self.machine, Some(a.from), a.to)?;
+                let shift = turn.constant + a.offset;
+                Some((quoted(&a.name), turn, [a.limits.start() - shift, a.limits.end() - shift]))
+            })
+            .collect()
+    }
+
+    /// Links that nothing keeps parallel to the first link of their drive, where pins that close loops are too few.
+    fn parallel(&self) -> Vec<(usize, Turn)> {
+        let parts = self.machine.resolved_links();
+        if parts.len() == self.machine.drives() + 2 * self.machine.loops().len() {
+            return Vec::new();
+        }
+        let first = |k: usize| parts.iter().position(|part| part.drive == k);
+        let of = |j: usize| {
+            let first = first(parts[j].drive).filter(|first| *first != j)?;
+            let turn = Turn::between(self.machine, Some(first), j);
+            Some((j, Turn { constant: if parts[first].sign == parts[j].sign { 0.0 } else { TAU / 2.0 }, ..turn }))
+        };
+        (0..parts.len()).filter_map(of).collect()
+    }
+
+    fn equalities(&mut self) {
+        let drives = &self.machine.spec().drives;
+        let (parallel, loops) = (self.parallel(), self.machine.loops().len());
+        let geared: Vec<usize> = (0..drives.len()).filter(|k| self.has_rotor(*k)).collect();
+        if parallel.is_empty() && loops == 0 && geared.is_empty() {
+            return;
+        }
+        line!(self, 1, "<equality>");
+        // Where each link is kept parallel, the pins close by themselves.
+        if parallel.is_empty() {
+            for number in 1..=loops {
+                line!(self, 2, "<connect name=\"loop {number}\" site1=\"loop {number} a\" site2=\"loop {number} b\"/>");
+            }
+        }
+        for (j, turn) in parallel {
+            let name = quoted(&self.machine.links()[j].name);
+            let constant = turn.constant;
+            line!(self, 2, "<tendon tendon1=\"direction of link {name}\" polycoef=\"{constant} 0 0 0 0\"/>");
+        }
+        for k in geared {
+            let (name, ratio) = (quoted(&drives[k].name), drives[k].rotor.map_or(1.0, |rotor| rotor.ratio));
+            let pair = match self.motors[k].pin() {
+                Some(j) => {
+                    let link = quoted(&self.machine.links()[j].name);
+                    format!("<joint name=\"gear {name}\" joint1=\"rotor {name}\" joint2=\"link {link}\"")
+                }
+                None => format!("<tendon name=\"gear {name}\" tendon1=\"rotor {name}\" tendon2=\"motor {name}\""),
+            };
+            line!(self, 2, "{pair} polycoef=\"0 {ratio} 0 0 0\"/>");
+        }
+        line!(self, 1, "</equality>");
+    }
+
+    fn actuators(&mut self) {
+        line!(self, 1, "<actuator>");
+        for (k, drive) in self.machine.spec().drives.iter().enumerate() {
+            let name = quoted(&drive.name);
+            let on = match self.motors[k].pin() {
+                Some(j) => format!("joint=\"link {}\"", quoted(&self.machine.links()[j].name)),
+                None => format!("tendon=\"motor {name}\""),
+            };
+            let range = drive.torque_limit.map_or(String::new(), |most| format!(" ctrlrange=\"{} {most}\"", -most));
+            line!(self, 2, "<motor name=\"drive {name}\" {on}{range}/>");
+        }
+        line!(self, 1, "</actuator>");
+    }
+
+    /// Angles of all hinges in the order of the bodies.
+    fn pose(&self, q: &[f64]) -> Vec<f64> {
+        let mut all = Vec::new();
+        self.pose_of(None, q, &mut all);
+        all
+    }
+
+    fn direction(&self, j: Option<usize>, q: &[f64]) -> f64 {
+        j.map_or(0.0, |j| {
+            let part = &self.machine.resolved_links()[j];
+            q[part.drive] + if part.sign < 0.0 { TAU / 2.0 } else { 0.0 }
+        })
+    }
+
+    fn pose_of(&self, parent: Option<usize>, q: &[f64], all: &mut Vec<f64>) {
+        let spec = self.machine.spec();
+        for k in (0..self.machine.drives()).filter(|k| self.has_rotor(*k) && self.carrier(*k) == parent) {
+            let on = self.machine.motors().on(k).map_or(0.0, |on| q[on]);
+            let ratio = spec.drives[k].rotor.map_or(1.0, |rotor| rotor.ratio);
+            all.push(ratio * (q[k] - on - self.motors[k].constant));
+        }
+        for j in self.children(parent) {
+            all.push(self.direction(Some(j), q) - self.direction(parent, q));
+            self.pose_of(Some(j), q, all);
+        }
+    }
+}
+
+/// A pose amid the limits of the machine's relative angles, with its first drive upright, rad.
+pub fn middle(machine: &Machine) -> Vec<f64> {
+    let mut q = vec![TAU / 4.0; machine.drives()];
+    for angle in machine.angles() {
+        let middle = 0.5 * (angle.limits.start() + angle.limits.end());
+        q[angle.to] = q[angle.from] + middle - angle.offset;
+    }
+    q
+}
+
+/// How far a bar goes along its axis: over its length and all its pins.
+fn reach(length: f64, pins: &[f64]) -> (f64, f64) {
+    pins.iter().fold((0.0_f64.min(length), 0.0_f64.max(length)), |(least, most), at| (least.min(*at), most.max(*at)))
+}

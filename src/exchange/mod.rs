@@ -1,0 +1,4 @@
+//! Machines for other programs.
+
+pub mod mjcf;
+mod turn;

@@ -1,0 +1,39 @@
+//! Held against programs of others. They are Python packages; where one is missing, its tests count as ignored, with the
+//! reason. `STILLBASE_PYTHON` names the Python to ask, `python3` if it is not set.
+
+use std::process::ExitCode;
+
+use libtest_mimic::{Arguments, Completion, Trial, run};
+
+/// A test: its name with its module, and what it does. It passes unless it panics.
+pub type Test = (&'static str, fn());
+
+/// Lists the tests of a module.
+macro_rules! tests {
+    ($($name:ident),+ $(,)?) => {
+        &[$((concat!(module_path!(), "::", stringify!($name)), $name)),+]
+    };
+}
+
+#[path = "outside/mujoco.rs"]
+mod mujoco;
+#[path = "outside/python.rs"]
+mod python;
+
+fn main() -> ExitCode {
+    let packages: [(&str, &[Test]); 1] = [("mujoco", mujoco::TESTS)];
+    let trials = packages.into_iter().flat_map(|(package, tests)| {
+        let missing = python::missing(package);
+        tests.iter().map(move |(name, test)| {
+            let (missing, name, test) = (missing.clone(), name.split_once("::").map_or(*name, |(_, rest)| rest), *test);
+            Trial::ignorable_test(name, move || match missing {
+                Some(why) => Ok(Completion::ignored_with(why)),
+                None => {
+                    test();
+                    Ok(Completion::Completed)
+                }
+            })
+        })
+    });
+    run(&Arguments::from_args(), trials.collect()).exit_code()
+}
