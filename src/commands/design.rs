@@ -8,7 +8,8 @@ use clap::builder::PossibleValue;
 use serde::Serialize;
 use stillbase::files::write_new;
 use stillbase::mechanics::balance::{self, Preset};
-use stillbase::mechanics::machine::{Inertia, Machine, to_toml};
+use stillbase::mechanics::counterweights::{Disc, NoWeights, Objective, Placed, Sites, Weighing, front, place};
+use stillbase::mechanics::machine::{Counterweight, Inertia, Machine, to_toml};
 
 use super::check::Balance;
 use super::exit::say;
@@ -21,12 +22,18 @@ use stillbase::settings::number::fixed;
 ///
 /// Of all balanced designs, the one with the least Σ (p_j l_cj)² is taken: a link with a large penalty p_j keeps its
 /// centre of mass near its attachment.
+///
+/// With --counterweights the links stay as they are, and discs on them do it: the lightest, or those of the least
+/// inertia, as a cone program proves. "gap" is the most by which the best may lie below what was found.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   stillbase design nine-link-table-1
   stillbase design nine-link-table-1 --preset minimum-norm -o light.toml
-  stillbase design nine-link --set link.9.mass=0.4 --penalty 1,2,1,1,1,1,1,1,1")]
+  stillbase design nine-link --set link.9.mass=0.4 --penalty 1,2,1,1,1,1,1,1,1
+  stillbase design two-drive --counterweights --objective inertia --thickness 0.02
+  stillbase design nine-link --set link.9.mass=0.5 --counterweights --range 1=-0.3,0.2 --range 2=-0.3,0 \\
+    --range 3=-0.3,0 --front 9")]
 pub struct Design {
     #[command(flatten)]
     machine: MachineArgument,
@@ -37,6 +44,36 @@ pub struct Design {
     /// beside Eq. (10); minimum-norm: 1 for every link (the default otherwise)
     #[arg(long, value_enum, conflicts_with = "penalty")]
     preset: Option<PresetName>,
+    /// Balance it by counterweights, discs on the axes of the links; those that it has are taken off first
+    #[arg(long, conflicts_with_all = ["penalty", "preset"])]
+    counterweights: bool,
+    /// A link that may carry one, and where, m from its root towards its tip; every link, from its length behind the
+    /// root to the tip, where none is given
+    #[arg(long, value_name = "LINK=LO,HI", requires = "counterweights", value_parser = range, allow_hyphen_values = true)]
+    range: Vec<(String, [f64; 2])>,
+    /// Density of the discs, kg/m³: steel where it is left out
+    #[arg(
+        long,
+        value_name = "DENSITY",
+        requires = "counterweights",
+        default_value_if("counterweights", "true", "7850")
+    )]
+    material: Option<f64>,
+    /// Thickness of the discs, m: 0.03 where it is left out
+    #[arg(long, value_name = "T", requires = "counterweights", default_value_if("counterweights", "true", "0.03"))]
+    thickness: Option<f64>,
+    /// The most that a counterweight may weigh, kg: of every link, or LINK=M of one
+    #[arg(long, value_name = "[LINK=]M", requires = "counterweights")]
+    max_mass: Vec<String>,
+    /// What is to be least: mass (added), inertia (Σ D_k), or a mixture as mass=1,inertia=5
+    #[arg(long, value_name = "mass|inertia|WEIGHTS", requires = "counterweights", value_parser = objective)]
+    objective: Option<Objective>,
+    /// The most that Σ D_k may be, kg m²
+    #[arg(long, value_name = "D", requires = "counterweights")]
+    max_inertia: Option<f64>,
+    /// Show what less inertia costs in mass, in so many steps from the least mass to the least inertia
+    #[arg(long, value_name = "N", requires = "counterweights", value_parser = clap::value_parser!(u16).range(2..=1000))]
+    front: Option<u16>,
     /// Write the new machine to this file
     #[arg(short, long, value_name = "NEW.toml")]
     output: Option<PathBuf>,
@@ -80,6 +117,9 @@ impl Design {
     /// Prints the new centres of mass and what they achieve, and writes the machine.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
+        if self.counterweights {
+            return self.weigh(&machine);
+        }
         let (penalty, by) = self.penalty(machine.links().len())?;
         if let Some(file) = &self.output {
             check_output(file, self.force, &["toml"])?;
@@ -101,6 +141,57 @@ impl Design {
         })
     }
 
+    /// Prints counterweights and what they come to, and writes the machine that carries them.
+    fn weigh(&self, machine: &Machine) -> Result<(), Failure> {
+        if let Some(file) = &self.output {
+            check_output(file, self.force, &["toml"])?;
+        }
+        let asked = self.asked(machine)?;
+        let placed = place(machine, &asked).map_err(unweighed)?;
+        let front = match self.front {
+            Some(count) => front(machine, &asked, count.into()).map_err(unweighed)?.measures(),
+            None => Vec::new(),
+        };
+        let answer = Weighed::of(&placed, front);
+        if let Some(file) = &self.output {
+            save(&placed.machine, file, self.force, format!("{}, balanced by counterweights", machine.name()))?;
+        }
+        self.format.print(&answer, |answer| answer.text(machine))
+    }
+
+    fn asked(&self, machine: &Machine) -> Result<Weighing, Failure> {
+        let links = machine.links();
+        let find = |name: &str| {
+            links.iter().position(|link| link.name == name).ok_or_else(|| {
+                let known: Vec<_> = links.iter().map(|link| link.name.as_str()).collect();
+                Failure::wrong_input(format!("no link {name}: want one of {}", known.join(", ")))
+            })
+        };
+        let mut sites = Vec::new();
+        for (name, [from, to]) in &self.range {
+            sites.push(Sites { link: find(name)?, from: *from, to: *to, most: f64::INFINITY });
+        }
+        if sites.is_empty() {
+            let all = machine.resolved_links().iter().enumerate();
+            sites = all
+                .map(|(link, part)| Sites { link, from: -part.length, to: part.length, most: f64::INFINITY })
+                .collect();
+        }
+        for word in &self.max_mass {
+            let (name, most) = word.split_once('=').map_or((None, word.as_str()), |(name, most)| (Some(name), most));
+            let want = || Failure::wrong_input(format!("--max-mass {word}: want a mass above 0 in kg, or LINK=M"));
+            let most: f64 = most.trim().parse().ok().filter(|most| *most > 0.0).ok_or_else(want)?;
+            let only = name.map(|name| find(name.trim())).transpose()?;
+            for site in sites.iter_mut().filter(|site| only.is_none_or(|only| only == site.link)) {
+                site.most = site.most.min(most);
+            }
+        }
+        let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
+        let disc = Disc { density: number(self.material), thickness: number(self.thickness) };
+        let objective = self.objective.clone().unwrap_or_else(Objective::mass);
+        Ok(Weighing { sites, disc, objective, most_inertia: self.max_inertia })
+    }
+
     fn penalty(&self, links: usize) -> Result<(Vec<f64>, String), Failure> {
         if !self.penalty.is_empty() {
             return Ok((self.penalty.clone(), "the given penalties".into()));
@@ -108,6 +199,97 @@ impl Design {
         let usual = if links == 9 { Preset::Table1 } else { Preset::MinimumNorm };
         let preset = self.preset.map_or(usual, |p| p.0);
         Ok((preset.penalty(links)?, format!("preset {}", name_of(preset))))
+    }
+}
+
+/// What is asked for is wrong, or has no answer.
+fn unweighed(why: NoWeights) -> Failure {
+    match why {
+        NoWeights::OutOfRange { .. } | NoWeights::Twice(_) => Failure::wrong_input(why),
+        why => Failure::no_answer(why),
+    }
+}
+
+fn range(text: &str) -> Result<(String, [f64; 2]), String> {
+    let want = || "want LINK=LO,HI in m, as 1=-0.3,0.5".to_owned();
+    let (link, places) = text.split_once('=').ok_or_else(want)?;
+    let (from, to) = places.split_once(',').ok_or_else(want)?;
+    let place = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(want);
+    Ok((link.trim().into(), [place(from)?, place(to)?]))
+}
+
+fn objective(text: &str) -> Result<Objective, String> {
+    let want = || "want mass, inertia, or both with their weights, as mass=1,inertia=5".to_owned();
+    let mut objective = Objective { mass: 0.0, ..Objective::mass() };
+    for part in text.split(',') {
+        let (word, weight) = part.split_once('=').map_or((part, "1"), |(word, weight)| (word, weight));
+        let weight: f64 = weight.trim().parse().ok().filter(|w| (0.0..=1e6).contains(w)).ok_or_else(want)?;
+        match word.trim() {
+            "mass" => objective.mass = weight,
+            "inertia" => objective.inertia = weight,
+            _ => return Err(want()),
+        }
+    }
+    match objective.mass + objective.inertia > 0.0 {
+        true => Ok(objective),
+        false => Err(want()),
+    }
+}
+
+/// What counterweights come to.
+#[derive(Serialize)]
+struct Weighed {
+    /// kg.
+    added_mass: f64,
+    weights: Vec<Weight>,
+    /// The most by which the best may lie below what was found.
+    gap: f64,
+    /// Added mass, kg, and Σ D_k, kg m².
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    front: Vec<[f64; 2]>,
+    #[serde(flatten)]
+    balance: Balance,
+}
+
+#[derive(Serialize)]
+struct Weight {
+    link: String,
+    mass: f64,
+    at: f64,
+    radius: f64,
+}
+
+impl Weighed {
+    fn of(placed: &Placed, front: Vec<[f64; 2]>) -> Self {
+        let (machine, inertia) = (&placed.machine, Inertia::of(&placed.machine));
+        let weight = |w: &Counterweight| Weight { link: w.link.clone(), mass: w.mass, at: w.at, radius: w.radius };
+        Self {
+            added_mass: placed.added_mass,
+            weights: machine.spec().counterweights.iter().map(weight).collect(),
+            gap: placed.gap,
+            front,
+            balance: Balance::of(&inertia),
+        }
+    }
+
+    fn text(&self, machine: &Machine) -> String {
+        let mut table = Table::new(["counterweight on link", "kg", "at m", "radius m"]);
+        for w in &self.weights {
+            table.row([w.link.clone(), fixed(w.mass, 6), fixed(w.at, 6), fixed(w.radius, 6)]);
+        }
+        let mut text = format!(
+            "{} · {} kg added · within {:.1e} of the best\n\n{table}\n{}",
+            machine.name(),
+            fixed(self.added_mass, 6),
+            self.gap,
+            self.balance.tables(machine)
+        );
+        if !self.front.is_empty() {
+            let mut table = Table::new(["added kg", "Σ D_k kg m²"]);
+            self.front.iter().for_each(|[mass, inertia]| table.row([fixed(*mass, 6), fixed(*inertia, 6)]));
+            text.push_str(&format!("\n{table}"));
+        }
+        text
     }
 }
 

@@ -133,7 +133,12 @@ pub fn design(machine: &Machine, penalty: &[f64]) -> Result<Machine, DesignError
     x += solve(&(&k - &weighted * &x));
     let mut spec = machine.spec().clone();
     for (j, link) in spec.links.iter_mut().enumerate() {
-        link.com = x[j] / penalty[j];
+        let (body, wanted) = (&links[j], x[j] / penalty[j]);
+        // Where a link carries counterweights it is the link alone that is shifted.
+        link.com = match body.mass > link.mass {
+            true => link.com + body.mass * (wanted - body.com) / link.mass,
+            false => wanted,
+        };
     }
     let designed = Machine::new(spec)?;
     let inertia = Inertia::of(&designed);

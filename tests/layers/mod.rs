@@ -58,7 +58,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("rand_chacha", &["study/tolerance"]),
     ("libm", &["study/tolerance"]),
     ("realfft", &["study/spectrum"]),
-    ("clarabel", &["planning"]),
+    ("clarabel", &["mechanics/counterweights", "planning"]),
 ];
 
 /// Parts of the standard library that reach outside, and the files that are edges.

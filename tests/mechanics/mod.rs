@@ -2,6 +2,7 @@
 
 mod balance;
 mod bodies;
+mod counterweights;
 mod dynamics;
 mod family;
 pub mod inside;

@@ -220,3 +220,51 @@ com = 0.15
 link = "forearm"
 at = "tip"
 "#;
+
+const BARE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reference/family/nine-link-bare.toml");
+
+/// Every link from 0.30 m behind its root to its tip.
+fn anywhere() -> Vec<String> {
+    let tips = [0.5, 0.18, 0.2, 0.5, 0.46, 0.5, 0.2, 0.46, 0.3];
+    tips.iter().enumerate().map(|(j, tip)| format!("--range={}=-0.3,{tip}", j + 1)).collect()
+}
+
+#[test]
+fn counterweights_are_placed_written_and_counted_in() {
+    let (folder, ranges) = (Folder::new("counterweights"), anywhere());
+    let file = word(folder.path("balanced.toml"));
+    let mut args = vec!["design", BARE, "--counterweights", "-o", &file];
+    args.extend(ranges.iter().map(String::as_str));
+    let light = object(&args);
+    assert!((light["added_mass"].as_f64().expect("kg") - 9.572_666_7).abs() < 1e-6);
+    assert!(light["gap"].as_f64().expect("a gap") < 1e-6);
+    let weights = light["weights"].as_array().expect("a list");
+    let mass: f64 = weights.iter().map(|w| w["mass"].as_f64().expect("kg")).sum();
+    assert!((mass - 9.572_666_7).abs() < 1e-6);
+    // Another command reads the file and finds the same, in balance.
+    let checked = object(&["check", &file]);
+    assert_eq!((&checked["force_balanced"], &checked["invariant"]), (&true.into(), &true.into()));
+    assert_eq!(numbers(&checked["d"]), numbers(&light["d"]));
+    let mut words = vec!["design", BARE, "--counterweights", "--objective", "inertia", "--front", "3"];
+    words.extend(ranges.iter().map(String::as_str));
+    let quick = object(&words);
+    assert!((numbers(&quick["d"]).iter().sum::<f64>() - 1.798_401_1).abs() < 1e-6);
+    assert_eq!(quick["front"].as_array().expect("a front").len(), 3);
+}
+
+#[test]
+fn counterweights_that_cannot_be_are_refused() {
+    let ask = |more: &[&str], status: i32, words: &[&str]| {
+        fails(&[&["design", BARE, "--counterweights"], more].concat(), status, words);
+    };
+    ask(&["--max-mass", "1"], 1, &["no heavier", "kg on each of them would do"]);
+    ask(&["--range", "10=-0.3,0"], 2, &["no link 10", "want one of 1, 2"]);
+    ask(&["--range", "1=-0.3"], 2, &["LINK=LO,HI"]);
+    ask(&["--range", "1=0.3,-0.3"], 2, &["link 1", "an end not below its start"]);
+    ask(&["--range", "1=-0.3,0", "--range", "1=-0.2,0"], 2, &["link 1", "want one a link"]);
+    ask(&["--max-mass", "1=-2"], 2, &["--max-mass 1=-2", "want a mass above 0"]);
+    ask(&["--thickness", "0"], 2, &["thickness", "above 0"]);
+    ask(&["--objective", "speed"], 2, &["want mass, inertia"]);
+    ask(&["--objective", "mass=0"], 2, &["want mass, inertia"]);
+    fails(&["design", BARE, "--range", "1=-0.3,0"], 2, &["--counterweights"]);
+}

@@ -6,7 +6,7 @@ use super::inertia::Inertia;
 use super::model::{Machine, RelativeAngle, ResolvedClosure, ResolvedLink};
 use super::motors::Motors;
 use super::ranges::{LENGTH, PLACE, check_numbers, within};
-use super::spec::{Angle, Attach, Closure, Length, MachineSpec, PlaceOnLink, Point, Rotor};
+use super::spec::{Angle, Attach, Closure, Length, Link, MachineSpec, PlaceOnLink, Point, Rotor};
 use crate::mechanics::planar::MAX_DRIVES;
 use crate::settings::number::Short;
 use crate::settings::range::{clipped, shortened};
@@ -24,9 +24,9 @@ impl Machine {
         for drive in &mut spec.drives {
             drive.rotor = drive.rotor.filter(|rotor| *rotor != Rotor::default());
         }
-        let Parts { links, end_effector, end_link, angles, loops, motors } =
+        let Parts { links, bodies, end_effector, end_link, angles, loops, motors } =
             Parts::of(&spec).map_err(|error| error.named(&spec))?;
-        let machine = Self { spec, parts: links, end_effector, end_link, angles, loops, motors };
+        let machine = Self { spec, bodies, parts: links, end_effector, end_link, angles, loops, motors };
         machine.check_inertia()?;
         Ok(machine)
     }
@@ -43,6 +43,7 @@ impl Machine {
 /// What a description comes to.
 struct Parts {
     links: Vec<ResolvedLink>,
+    bodies: Vec<Link>,
     end_effector: Chain,
     end_link: usize,
     angles: Vec<RelativeAngle>,
@@ -63,7 +64,8 @@ impl Parts {
         let angles = resolve_angles(spec, &names)?;
         let motors = resolve_motors(spec, &names)?;
         add_pins(spec, &names, &mut links)?;
-        Ok(Self { links, end_effector, end_link, angles, loops, motors })
+        let bodies = bodies(spec, &names)?;
+        Ok(Self { links, bodies, end_effector, end_link, angles, loops, motors })
     }
 }
 
@@ -245,6 +247,16 @@ fn resolve_angles(spec: &MachineSpec, names: &Names) -> Result<Vec<RelativeAngle
         })
     };
     spec.angles.iter().enumerate().map(angle).collect()
+}
+
+/// Each link with what it carries.
+fn bodies(spec: &MachineSpec, names: &Names) -> Result<Vec<Link>, MachineError> {
+    let mut bodies = spec.links.clone();
+    for (i, weight) in spec.counterweights.iter().enumerate() {
+        let j = names.link(&weight.link, || Place::new(&[&"counterweight", &i, &"link"]))?;
+        bodies[j] = bodies[j].with(weight);
+    }
+    Ok(bodies)
 }
 
 /// What each motor's stator sits on; a walk longer than the number of drives runs in a circle.

@@ -36,4 +36,6 @@ pub use model::{Machine, RelativeAngle, ResolvedClosure, ResolvedLink};
 pub use motors::Motors;
 pub use ranges::{ANGLE, MAX_ANGLE};
 pub use set::{PARTS, is_of_machine};
-pub use spec::{Angle, Attach, Closure, Drive, Length, Link, MachineSpec, Payload, PlaceOnLink, Point, Rotor};
+pub use spec::{
+    Angle, Attach, Closure, Counterweight, Drive, Length, Link, MachineSpec, Payload, PlaceOnLink, Point, Rotor,
+};

@@ -11,6 +11,7 @@ use crate::mechanics::planar::{MAX_DRIVES, Vector};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Machine {
     pub(super) spec: MachineSpec,
+    pub(super) bodies: Vec<Link>,
     pub(super) parts: Vec<ResolvedLink>,
     pub(super) end_effector: Chain,
     pub(super) end_link: usize,
@@ -91,9 +92,9 @@ impl Machine {
         self.spec.drives.len()
     }
 
-    /// Its links as described.
+    /// Its links, each with the counterweights that it carries as one body; as described where it carries none.
     pub fn links(&self) -> &[Link] {
-        &self.spec.links
+        &self.bodies
     }
 
     /// Its links as resolved, in the same order.
@@ -133,12 +134,12 @@ impl Machine {
 
     /// Total mass with payload, kg.
     pub fn mass(&self) -> f64 {
-        self.spec.links.iter().map(|l| l.mass).sum::<f64>() + self.spec.payload.mass
+        self.bodies.iter().map(|l| l.mass).sum::<f64>() + self.spec.payload.mass
     }
 
     /// The CM of link j as Σ_k a_jk e(q_k), complex where the CM lies off the link's axis.
     pub fn com_chain(&self, j: usize) -> [Vector; MAX_DRIVES] {
-        let (link, part) = (&self.spec.links[j], &self.parts[j]);
+        let (link, part) = (&self.bodies[j], &self.parts[j]);
         let mut a = part.root.map(|w| Vector::new(w, 0.0));
         a[part.drive] += part.sign * Vector::new(link.com, link.com_normal);
         a

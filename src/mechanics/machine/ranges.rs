@@ -16,6 +16,7 @@ pub(crate) const PLACE: Range = Range::either_way(MOST, "m");
 /// Links may be all but without mass.
 pub(crate) const MASS: Range = Range::new(1e-15, MOST, "kg");
 const LOAD: Range = Range::new(0.0, MOST, "kg");
+const RADIUS: Range = Range::new(0.0, MOST, "m");
 pub(crate) const INERTIA: Range = Range::new(0.0, MOST, "kg m²");
 const TORQUE_LIMIT: Range = Range::new(LEAST, MOST, "N m");
 /// A gear is no lever of any length, and none of none.
@@ -158,6 +159,13 @@ pub(super) fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {
         if !matches!(link.direction, -1 | 1) {
             let place = Place::new(&[&"link", &i, &"direction"]);
             return Err(MachineError::OutOfRange { place, value: link.direction.into(), want: Want::Words("1 or -1") });
+        }
+    }
+    for (i, weight) in spec.counterweights.iter().enumerate() {
+        for (key, value, range) in
+            [("mass", weight.mass, MASS), ("at", weight.at, PLACE), ("radius", weight.radius, RADIUS)]
+        {
+            within(range, value, || Place::new(&[&"counterweight", &i, &key]))?;
         }
     }
     for (i, angle) in spec.angles.iter().enumerate() {

@@ -26,6 +26,9 @@ pub struct MachineSpec {
     /// The bars.
     #[serde(default, rename = "link")]
     pub links: Vec<Link>,
+    /// Discs on links, which balance them.
+    #[serde(default, rename = "counterweight", skip_serializing_if = "Vec::is_empty")]
+    pub counterweights: Vec<Counterweight>,
     /// Pins that close loops.
     #[serde(default, rename = "closure", skip_serializing_if = "Vec::is_empty")]
     pub closures: Vec<Closure>,
@@ -154,6 +157,45 @@ pub struct Link {
     /// plane; the offsets decide which moments tilt the base.
     #[serde(default, skip_serializing_if = "is_nought")]
     pub axial: f64,
+}
+
+/// A disc on a link's axis, in the plane of the link's own centre of mass. It moves with the link, and its mass is not
+/// in that of the link.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Counterweight {
+    /// The link that carries it.
+    pub link: String,
+    /// kg.
+    pub mass: f64,
+    /// Its centre along the link, from the root towards the tip, m.
+    pub at: f64,
+    /// m; 0: a point. Its inertia about its own centre is half of mass times radius squared.
+    #[serde(default, skip_serializing_if = "is_nought")]
+    pub radius: f64,
+}
+
+impl Counterweight {
+    /// About its own centre, kg m².
+    pub fn inertia(&self) -> f64 {
+        0.5 * self.mass * self.radius * self.radius
+    }
+}
+
+impl Link {
+    /// The link and something fixed to its axis as one body: masses together, about their common centre.
+    #[must_use]
+    pub(super) fn with(&self, weight: &Counterweight) -> Self {
+        let mass = self.mass + weight.mass;
+        let com = (self.mass * self.com + weight.mass * weight.at) / mass;
+        let com_normal = self.mass * self.com_normal / mass;
+        let away = |x: f64, y: f64| (x - com).powi(2) + (y - com_normal).powi(2);
+        let inertia = self.inertia
+            + weight.inertia()
+            + self.mass * away(self.com, self.com_normal)
+            + weight.mass * away(weight.at, 0.0);
+        Self { mass, com, com_normal, inertia, ..self.clone() }
+    }
 }
 
 fn forwards() -> i8 {

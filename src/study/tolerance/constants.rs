@@ -106,13 +106,32 @@ pub(super) fn bodies(machine: &Machine, parameters: &[Parameter]) -> Result<Vec<
         on: Vec::new(),
         stretch: Vec::new(),
     });
+    // Counterweights vary in nothing but where their link is.
+    let carrier = |link: &str| spec.links.iter().position(|l| l.name == link);
+    let carriers: Vec<usize> = spec.counterweights.iter().filter_map(|weight| carrier(&weight.link)).collect();
+    bodies.extend(spec.counterweights.iter().zip(&carriers).map(|(weight, j)| {
+        let (part, fixed) = (&machine.resolved_links()[*j], |nominal| Term { nominal, parameter: None });
+        LinkConstants {
+            drive: part.drive,
+            sign: part.sign,
+            mass: fixed(weight.mass),
+            inertia: fixed(weight.inertia()),
+            com: fixed(weight.at),
+            com_normal: nothing,
+            root: part.root,
+            on: Vec::new(),
+            stretch: Vec::new(),
+        }
+    }));
     for (p, parameter) in parameters.iter().enumerate() {
         if !matches!(parameter.quantity, VariedQuantity::Length(_)) {
             continue;
         }
         // A root is affine in every length, so a length twice as long shows how, to rounding.
         let longer = parameter.changed(machine, 2.0 * parameter.nominal)?;
-        let roots = longer.resolved_links().iter().map(|part| &part.root).chain([longer.end_effector()]);
+        let parts = longer.resolved_links();
+        let roots = parts.iter().map(|part| &part.root).chain([longer.end_effector()]);
+        let roots = roots.chain(carriers.iter().map(|j| &parts[*j].root));
         for (body, root) in bodies.iter_mut().zip(roots) {
             for (k, (far, near)) in root.iter().zip(&body.root).enumerate() {
                 // Whole bars, forwards or backwards: nothing is lost by rounding the quotient, but its noise.

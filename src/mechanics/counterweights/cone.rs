@@ -1,0 +1,122 @@
+//! Cone programs: least q · x under linear equalities, inequalities and second-order cones of three rows, by an
+//! interior-point method (Clarabel). The same program always has the same answer, and the solver's dual says how far
+//! from the best it may be.
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{
+    DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT, SolverStatus, ZeroConeT,
+};
+
+/// Σ value x_j and what stands on the other side.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Row {
+    pub terms: Vec<(usize, f64)>,
+    pub right: f64,
+}
+
+impl Row {
+    pub fn new(terms: impl Into<Vec<(usize, f64)>>, right: f64) -> Self {
+        Self { terms: terms.into(), right }
+    }
+}
+
+/// A program, row by row.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Program {
+    /// q.
+    pub linear: Vec<f64>,
+    /// Σ = right.
+    pub equal: Vec<Row>,
+    /// Σ ≤ right.
+    pub at_most: Vec<Row>,
+    /// Rows a, b, c with a ≥ |(b, c)|; the right side of a row is added to its sum.
+    pub cones: Vec<[Row; 3]>,
+}
+
+/// Where it is least.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Least {
+    pub x: Vec<f64>,
+    /// What is least, q · x.
+    pub value: f64,
+    /// The most by which the best may lie below, from the dual.
+    pub gap: f64,
+}
+
+/// Why there is no x.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum NoX {
+    /// The rows contradict each other; how much each inequality has to do with it.
+    Contradiction(Vec<f64>),
+    /// The solver's own word.
+    Failed(String),
+}
+
+impl Program {
+    /// Nothing to be least yet, over `n` unknowns.
+    pub fn over(n: usize) -> Self {
+        Self { linear: vec![0.0; n], ..Self::default() }
+    }
+
+    /// Wants x_u x_w ≥ x_s², both not below 0.
+    pub fn above_quotient(&mut self, u: usize, w: usize, s: usize) {
+        self.cones.push([
+            Row::new([(u, 1.0), (w, 1.0)], 0.0),
+            Row::new([(s, 2.0)], 0.0),
+            Row::new([(u, 1.0), (w, -1.0)], 0.0),
+        ]);
+    }
+
+    /// Wants x_v ≥ factor x_w².
+    pub fn above_square(&mut self, v: usize, factor: f64, w: usize) {
+        self.cones.push([
+            Row::new([(v, 1.0)], 1.0),
+            Row::new([(w, 2.0 * factor.sqrt())], 0.0),
+            Row::new([(v, 1.0)], -1.0),
+        ]);
+    }
+
+    /// The x at which it is least.
+    pub fn solve(&self) -> Result<Least, NoX> {
+        let n = self.linear.len();
+        let (mut entries, mut right) = (Vec::new(), Vec::new());
+        // Clarabel wants right − Σ in the cone.
+        let linear = self.equal.iter().chain(&self.at_most).map(|row| (row, 1.0));
+        for (i, (row, sign)) in linear.chain(self.cones.iter().flatten().map(|row| (row, -1.0))).enumerate() {
+            entries.extend(row.terms.iter().map(|&(j, value)| (i, j, sign * value)));
+            right.push(row.right);
+        }
+        let mut cones = vec![ZeroConeT(self.equal.len()), NonnegativeConeT(self.at_most.len())];
+        cones.retain(|cone| !matches!(cone, ZeroConeT(0) | NonnegativeConeT(0)));
+        cones.extend(self.cones.iter().map(|_| SecondOrderConeT(3)));
+        let (a, p) = (sparse(right.len(), n, &entries), sparse(n, n, &[]));
+        let settings = DefaultSettings {
+            verbose: false,
+            max_iter: 200,
+            tol_gap_abs: 1e-10,
+            tol_gap_rel: 1e-10,
+            tol_feas: 1e-10,
+            ..DefaultSettings::default()
+        };
+        let mut solver = DefaultSolver::new(&p, &self.linear, &a, &right, &cones, settings)
+            .map_err(|why| NoX::Failed(why.to_string()))?;
+        solver.solve();
+        let found = solver.solution;
+        match found.status {
+            SolverStatus::Solved | SolverStatus::AlmostSolved => {
+                let gap = (found.obj_val - found.obj_val_dual).abs();
+                Ok(Least { x: found.x, value: found.obj_val, gap })
+            }
+            SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
+                let from = self.equal.len();
+                Err(NoX::Contradiction(found.z[from..from + self.at_most.len()].to_vec()))
+            }
+            status => Err(NoX::Failed(status.to_string())),
+        }
+    }
+}
+
+fn sparse(m: usize, n: usize, entries: &[(usize, usize, f64)]) -> CscMatrix<f64> {
+    let part = |pick: fn(&(usize, usize, f64)) -> usize| entries.iter().map(pick).collect();
+    CscMatrix::new_from_triplets(m, n, part(|e| e.0), part(|e| e.1), entries.iter().map(|e| e.2).collect())
+}

@@ -1,0 +1,19 @@
+//! Counterweights as hardware: the lightest, or those of least inertia, that balance a machine, with a certificate.
+//!
+//! A disc of mass w on link j at x along its axis enters balance (7), (8) by w and s = w x, linearly; where it may sit
+//! is lo w ≤ s ≤ hi w. To the inertia it adds s²/w, and of its own w²/(2 π ρ t): both convex. So the best is a cone
+//! program with one optimum, which the solver proves, and not a search that stops somewhere.
+//!
+//! # Symbols
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | w, s | mass of a counterweight; w x | kg, kg m |
+//! | ρ, t | density and thickness of the discs | kg/m³, m |
+//! | D_k | momentum of a drive, (6) | kg m² |
+
+mod cone;
+mod front;
+mod problem;
+
+pub use front::{Front, front};
+pub use problem::{Bound, Disc, NoWeights, Objective, Placed, Sites, Weighing, place};
