@@ -183,6 +183,14 @@ impl<'a> Model<'a> {
         if to > from {
             line!(self, depth + 1, "<geom fromto=\"{from} 0 0 {to} 0 0\" rgba=\"{colour}\"/>");
         }
+        for weight in self.machine.spec().counterweights.iter().filter(|weight| weight.link == link.name) {
+            let (at, radius) = (weight.at, weight.radius.max(RADIUS));
+            line!(
+                self,
+                depth + 1,
+                "<geom type=\"cylinder\" pos=\"{at} 0 0\" size=\"{radius} {RADIUS}\" rgba=\"{colour}\"/>"
+            );
+        }
         for (number, pinned) in self.machine.loops().iter().enumerate() {
             for (side, of, at) in [("a", pinned.a, pinned.at_a), ("b", pinned.b, pinned.at_b)] {
                 if of == j {

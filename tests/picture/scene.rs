@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use proptest::prelude::*;
 use stillbase::mechanics::joint_forces::Joints;
-use stillbase::mechanics::machine::{builtins, place_of};
+use stillbase::mechanics::machine::{Machine, builtin, builtins, parse, place_of, to_toml};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector, unit};
 use stillbase::picture::numbers::round_up;
 use stillbase::picture::scene::camera::{Camera, Flat, Orbit};
@@ -184,6 +184,27 @@ fn a_picture_has_every_part_of_the_machine() {
 }
 
 /// Handles are where their markers are, in every state of the target.
+/// A counterweight is drawn where it sits, as large as it is, in place of the disc that stands for one.
+#[test]
+fn counterweights_are_drawn_to_scale() {
+    let bare = builtin("nine-link").expect("built in");
+    let [at, radius] = [-0.35, 0.08];
+    let weight = format!("\n[[counterweight]]\nlink = \"1\"\nmass = 4.0\nat = {at}\nradius = {radius}\n");
+    let with = parse(&(to_toml(bare) + &weight), "with.toml").expect("a machine");
+    // How far the mesh of link 1 goes, along its axis and beside it, m.
+    let extent = |machine: &Machine| {
+        let case_1 = Scenario::builtin("case-1").expect("built in");
+        let session = Session::open(Scenario { machine: machine.clone(), ..case_1 }).expect("it runs");
+        let scene = scene_of(&session);
+        let mesh = &scene.model.meshes[Linkage::of(machine).bars()[0].mesh];
+        let least = mesh.positions.iter().map(|p| f64::from(p[0])).fold(f64::MAX, f64::min);
+        [least, mesh.positions.iter().map(|p| f64::from(p[1])).fold(0.0, f64::max)]
+    };
+    let [least, wide] = extent(&with);
+    assert!((least - (at - radius)).abs() < 1e-6 && (wide - radius).abs() < 1e-6, "{least} {wide}");
+    assert!((extent(bare)[0] - least).abs() > 0.01);
+}
+
 #[test]
 fn handles_are_under_their_markers() {
     let mut moving = open("case-3");

@@ -101,11 +101,16 @@ impl Linkage {
             let radius = reach * if carries[j] { BAR_RADIUS } else { THIN_BAR_RADIUS };
             let ends = part.pins.iter().copied().chain([part.length]);
             let (from, to) = ends.fold((0.0_f64, 0.0_f64), |(a, b), s| (a.min(s), b.max(s)));
-            let mut mesh = bar(from.min(link.com), to.max(link.com), radius, height, 0.2 * height);
-            if link.com < from || link.com > to {
+            let weights = machine.spec().counterweights.iter().filter(|weight| weight.link == link.name);
+            let mut discs: Vec<[f64; 2]> = weights.map(|w| [w.at, w.radius.max(1.5 * radius)]).collect();
+            if discs.is_empty() && (link.com < from || link.com > to) {
                 // A disc of the CM's side suggests the counterweight; its area goes with the link's mass.
-                let size = (reach * WEIGHT_RADIUS * (link.mass / heaviest).sqrt()).max(1.5 * radius);
-                append(&mut mesh, &cylinder(size, 1.6 * height, 0.2 * height), [link.com, 0.0, -0.3 * height]);
+                discs.push([link.com, (reach * WEIGHT_RADIUS * (link.mass / heaviest).sqrt()).max(1.5 * radius)]);
+            }
+            let span = discs.iter().fold([from, to], |[from, to], [at, _]| [from.min(*at), to.max(*at)]);
+            let mut mesh = bar(span[0], span[1], radius, height, 0.2 * height);
+            for [at, size] in discs {
+                append(&mut mesh, &cylinder(size, 1.6 * height, 0.2 * height), [at, 0.0, -0.3 * height]);
             }
             bars.push(Bar {
                 name: link.name.clone(),
@@ -116,7 +121,7 @@ impl Linkage {
                 root: part.root,
                 sign: part.sign,
                 length: part.length,
-                span: [from.min(link.com), to.max(link.com)],
+                span,
                 z: layer(part.drive),
             });
         }
