@@ -7,10 +7,11 @@
 mod nine_body;
 
 use divan::{Bencher, black_box};
+use stillbase::mechanics::counterweights::{Disc, Objective, Sites, Weighing, front, place};
 use stillbase::mechanics::dynamics::{Surroundings, base_wrench, inverse_with_wrench};
 use stillbase::mechanics::joint_forces::Joints;
 use stillbase::mechanics::kinematics::end_effector;
-use stillbase::mechanics::machine::{Inertia, builtin};
+use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::picture::scene::options::ViewOptions;
 use stillbase::picture::scene::views::{ViewKind, Views};
@@ -445,4 +446,27 @@ fn plot_of_three_million_samples(bencher: Bencher) {
 fn pyramid_of_a_million_samples(bencher: Bencher) {
     let values: Vec<f64> = (0..1_000_000).map(|i| (1e-4 * f64::from(i)).sin()).collect();
     bencher.bench_local(|| black_box(&values).iter().copied().collect::<stillbase::study::series::Series>());
+}
+
+/// The nine-link machine as bare bars, with discs of steel allowed on each link.
+fn bare() -> (Machine, Weighing) {
+    let machine = parse(include_str!("../reference/family/nine-link-bare.toml"), "bare").expect("a machine");
+    let parts = machine.resolved_links().iter().enumerate();
+    let sites = parts.map(|(link, part)| Sites { link, from: -0.3, to: part.length, most: f64::INFINITY }).collect();
+    let disc = Disc { density: 7850.0, thickness: 0.03 };
+    (machine, Weighing { sites, disc, objective: Objective::inertia(), most_inertia: None })
+}
+
+/// The counterweights of least inertia.
+#[divan::bench(sample_count = 20, sample_size = 1)]
+fn counterweights_of_least_inertia(bencher: Bencher) {
+    let (machine, asked) = bare();
+    bencher.bench_local(|| place(black_box(&machine), &asked).expect("it can be balanced"));
+}
+
+/// From the least mass to the least inertia in 25 steps.
+#[divan::bench(sample_count = 20, sample_size = 1)]
+fn front_of_25_counterweights(bencher: Bencher) {
+    let (machine, asked) = bare();
+    bencher.bench_local(|| front(black_box(&machine), &asked, 25).expect("it can be balanced"));
 }
