@@ -8,7 +8,7 @@ use super::theme::other;
 use super::{Command, ComparisonCommand, FileDialog, Layout, Purpose, ViewState, set_b};
 use crate::picture::charts::choice::Change;
 use crate::picture::scene::Measure;
-use crate::picture::scene::views::ViewKind;
+use crate::picture::scene::views::{ViewKind, Views};
 use crate::session::scenario::Scenario;
 use crate::session::{Edit, Session};
 
@@ -105,20 +105,20 @@ fn charts(session: &Session, view_state: &ViewState, factor: Option<f64>) -> Opt
     Some(Command::Charts(Change::Range(range)))
 }
 
-/// What only a view of the machine has.
 /// The next view that the machine has.
 fn next_view(session: &Session, view_state: &ViewState) -> Option<Command> {
     let next = view_state.view.next();
-    let has = next.shows_machine() || session.run().planes().is_some();
+    let has = Views::has(next, session.run()).is_ok();
     Some(Command::View(if has { next } else { ViewKind::Flat }))
 }
 
-/// A view of planes, if there are some.
+/// A view of joint space or of all workspaces, if the machine has one.
 fn view_of_planes(session: &Session, view_state: &ViewState, kind: ViewKind) -> Option<Command> {
-    session.run().planes()?;
+    Views::has(kind, session.run()).ok()?;
     view(view_state, kind)
 }
 
+/// What only a view of the machine has.
 fn of_machine(view_state: &ViewState, command: Command) -> Option<Command> {
     view_state.view.shows_machine().then_some(command)
 }

@@ -92,6 +92,8 @@ pub enum Command {
     Study(bool),
     /// Show or hide what pins carry.
     Pins(bool),
+    /// Put these drives, counted from 0, along the axes of joint space, where there are more than three.
+    Drives([usize; 3]),
     /// Change the table of runs.
     Comparison(ComparisonCommand),
     /// Put the second cursor at a time, s, or away.
@@ -216,6 +218,7 @@ impl Command {
             | Self::Tour(_)
             | Self::TurnTour(_)
             | Self::Times(_)
+            | Self::Drives(_)
             | Self::Dialog(_) => false,
         }
     }

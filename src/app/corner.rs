@@ -6,7 +6,8 @@ use egui::{Align2, Button, Rect, RichText, Ui, pos2, vec2};
 use super::theme::{colour, plain};
 use super::{Command, ViewState};
 use crate::picture::scene::palette::Palette;
-use crate::picture::scene::views::Views;
+use crate::picture::scene::section::Section;
+use crate::picture::scene::views::{ViewKind, Views};
 use crate::picture::scene::{Measure, dexterity};
 
 /// Where they lie over a scene.
@@ -33,7 +34,9 @@ pub fn show(ui: &mut Ui, rect: Rect, view_state: &ViewState, views: &Views, comm
     match view_state.dexterity.filter(|_| view_state.view.shows_machine()) {
         Some(measure) => key(&mut corner, &p, measure, views, commands),
         None => {
-            let words = RichText::new(view_state.view.invitation()).font(plain(11.5)).color(colour(p.dim));
+            let section = views.section().filter(|_| view_state.view == ViewKind::Joints);
+            let words = section.map_or(view_state.view.invitation(), Section::invitation);
+            let words = RichText::new(words).font(plain(11.5)).color(colour(p.dim));
             corner.add(egui::Label::new(words).truncate());
         }
     }

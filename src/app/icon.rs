@@ -289,6 +289,14 @@ fn behind(ui: &Ui, p: &Palette, response: &Response, on: bool) {
     }
 }
 
+/// The same where it can do nothing, which its tip tells.
+pub fn word_without(ui: &mut Ui, p: &Palette, (word, tip): (&str, &str), size: Vec2) -> Response {
+    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+    ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, word, bold(11.0), colour(faded(p.dim, 0.45)));
+    response.widget_info(|| told(word, false, Some(false)));
+    response.on_hover_text(tip)
+}
+
 /// Marks a line of a list as the present one.
 pub fn dot(ui: &Ui, p: &Palette, line: &Response) {
     ui.painter().circle_filled(line.rect.left_center() + vec2(12.0, 0.0), 3.5, colour(p.amber));

@@ -4,11 +4,11 @@
 use egui::{Frame, Margin, Panel, ScrollArea, Ui, vec2};
 
 use super::actions::key_of;
-use super::icon::{Icon, IconButton, rule, word_button};
+use super::icon::{Icon, IconButton, rule, word_button, word_without};
 use super::{Command, ViewState, arrangement, history};
 use crate::picture::scene::Measure;
 use crate::picture::scene::palette::Palette;
-use crate::picture::scene::views::ViewKind;
+use crate::picture::scene::views::{ViewKind, Views};
 use crate::session::{Fork, Session};
 
 /// How wide it is, points.
@@ -124,11 +124,16 @@ pub fn show(ui: &mut Ui, session: &Session, branches: &[Fork], view_state: &View
         let bars = egui::scroll_area::ScrollBarVisibility::AlwaysHidden;
         ScrollArea::vertical().auto_shrink(false).scroll_bar_visibility(bars).show(ui, |ui| {
             ui.spacing_mut().item_spacing = vec2(0.0, 2.0);
-            let has_planes = session.run().planes().is_some();
-            for view in ViewKind::ALL.into_iter().filter(|view| has_planes || view.shows_machine()) {
+            for view in ViewKind::ALL {
+                let size = vec2(BUTTON.x, 25.0);
+                if let Err(why) = Views::has(view, session.run()) {
+                    let tip = format!("Not of this machine: {why}");
+                    word_without(ui, &p, (view.name(), &tip), size);
+                    continue;
+                }
                 let tip = format!("{}{}", view.explanation(), key("The next view: 2D, 3D, joint space, tower"));
                 let word = (view.name(), tip.as_str());
-                if word_button(ui, &p, word, view_state.view == view, vec2(BUTTON.x, 25.0)).clicked() {
+                if word_button(ui, &p, word, view_state.view == view, size).clicked() {
                     commands.push(Command::View(view));
                 }
             }

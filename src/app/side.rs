@@ -114,13 +114,22 @@ fn pose_constant(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &Vie
                 }
             });
         });
-    } else if session.run().planes().is_some() {
+    } else {
         let who = all_points(session);
-        let text = match &serving {
+        let text = match session.run().bands() {
+            // Two drives reach a point at one b alone.
+            Some(common) if map.angles() == 1 => {
+                let all: Vec<String> =
+                    common.intervals.iter().map(|[low, high]| format!("{:.3}", 0.5 * (low + high))).collect();
+                format!("{who}: b {} rad alone; past it they turn along", all.join(" or "))
+            }
             Some(common) => format!("{who}: {}", common.near(shown).in_words()),
             None => format!("{who} share no b"),
         };
         note(ui, p, &text);
+    }
+    if !session.is_led() && session.run().planes().is_some() {
+        let who = all_points(session);
         let mut turn = view_state.turn_task;
         let words = RichText::new("turn the task too").font(plain(11.0)).color(colour(p.dim));
         let tip = format!("Past the b that serve {who}, where b stops: turn the points along with their workspace");

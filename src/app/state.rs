@@ -576,6 +576,10 @@ impl AppState {
                 (self.view_state.study, self.view_state.compare) = (study, self.view_state.compare && !study)
             }
             Command::Pins(shown) => self.view_state.pins = shown,
+            Command::Drives(drives) => {
+                self.view_state.drives = drives;
+                self.view_state.framing[ViewKind::Joints as usize].renew();
+            }
             Command::Comparison(on) => self.change_comparison(on),
             Command::Dialog(dialog) => self.view_state.dialog = dialog,
             Command::Replace(file) => self.saving.replaces = Some(file),
@@ -616,14 +620,16 @@ impl AppState {
             if new.links() != old.links() || new.resolved_links() != old.resolved_links() {
                 self.view_state.framing.iter_mut().for_each(Framing::renew);
             }
-            if !self.view_state.view.shows_machine() && self.session.run().planes().is_none() {
+            if Views::has(self.view_state.view, self.session.run()).is_err() {
                 self.view_state.view = ViewKind::Flat;
             }
             self.views = Arc::new(views);
             self.signals = signals(&self.session.scenario().machine);
             self.stage_of = key;
         }
-        Arc::make_mut(&mut self.views).refresh(self.session.run());
+        let views = Arc::make_mut(&mut self.views);
+        views.refresh(self.session.run());
+        views.show_drives(self.view_state.drives);
         self.adjust();
         self.find();
         self.refresh_study();

@@ -61,6 +61,8 @@ pub fn apply(ctx: &egui::Context, theme: Theme) {
     style.spacing.button_padding = vec2(9.0, 4.0);
     style.spacing.slider_rail_height = 3.0;
     style.spacing.interact_size = vec2(28.0, 22.0);
+    // A list is as high as it says itself, where the window has room for it.
+    style.spacing.default_area_size.y = 1200.0;
     style.spacing.menu_margin = Margin::same(6);
     style.spacing.window_margin = Margin::same(14);
     style.spacing.scroll.floating = true;

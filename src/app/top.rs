@@ -11,8 +11,8 @@ use super::facts::Facts;
 use super::icon::{Icon, IconButton};
 use super::marks::Marks;
 use super::theme::{bold, colour, plain};
-use super::{Command, FileDialog, Purpose, ViewState, timeline};
-use crate::mechanics::machine::{self, Machine};
+use super::{Command, FileDialog, Purpose, ViewState, gallery, timeline};
+use crate::mechanics::machine::Machine;
 use crate::picture::scene::palette::Theme;
 use crate::session::Session;
 use crate::session::scenario::Scenario;
@@ -31,7 +31,7 @@ pub fn show(
         ui.horizontal_centered(|ui| {
             ui.label(RichText::new("Stillbase").font(bold(17.0)));
             ui.add_space(6.0);
-            machines(ui, session, facts.machine_differs, commands);
+            machines(ui, session, facts.machine_differs, view_state, commands);
             scenarios(ui, session, recent, facts.work_differs, commands);
             ui.add_space(8.0);
             transport(ui, session, view_state, commands);
@@ -49,7 +49,7 @@ fn is_narrow(ui: &Ui) -> bool {
     ui.ctx().content_rect().width() < 1200.0
 }
 
-fn machines(ui: &mut Ui, session: &Session, changed: bool, commands: &mut Vec<Command>) {
+fn machines(ui: &mut Ui, session: &Session, changed: bool, view_state: &ViewState, commands: &mut Vec<Command>) {
     let present = &session.scenario().machine;
     let current = if changed { format!("{} *", present.name()) } else { present.name().to_owned() };
     let tip = if changed {
@@ -60,13 +60,11 @@ fn machines(ui: &mut Ui, session: &Session, changed: bool, commands: &mut Vec<Co
     let combo = ComboBox::from_id_salt("machine")
         .selected_text(&current)
         .width(if is_narrow(ui) { 104.0 } else { 136.0 })
+        .height(gallery::room(ui))
         .truncate();
     let response = combo.show_ui(ui, |ui| {
-        for machine in machine::builtins() {
-            let chosen = machine == present;
-            if ui.selectable_label(chosen, machine.name()).on_hover_text(&machine.spec().summary).clicked() && !chosen {
-                commands.push(Command::Open(Box::new(with_machine(session, machine))));
-            }
+        if let Some(machine) = gallery::show(ui, present, &view_state.palette()) {
+            commands.push(Command::Open(Box::new(with_machine(session, machine))));
         }
     });
     name(&response.response.on_hover_text(tip), "Machine");

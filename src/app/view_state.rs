@@ -120,6 +120,8 @@ pub struct ViewState {
     pub study: bool,
     /// What pins carry is on display.
     pub pins: bool,
+    /// The drives along the axes of joint space, counted from 0, where there are more than three.
+    pub drives: [usize; 3],
     /// The instant of the bookmark whose name is asked for, s.
     pub naming: Option<f64>,
     /// The second cursor, s.
@@ -190,6 +192,7 @@ impl ViewState {
             compare: false,
             study: false,
             pins: false,
+            drives: [0, 1, 2],
             naming: None,
             mark: None,
             charts: Choice::default(),

@@ -8,7 +8,7 @@ use super::card::Card;
 use super::intro::Intro;
 use super::tour::Tour;
 use super::widgets::{FINE, name};
-use super::{Command, Layout, ViewState, corner, framing, menu, place, present, set_b, status};
+use super::{Command, Layout, ViewState, coordinates, corner, framing, menu, place, present, set_b, status};
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::picture::paint::words::words;
 use crate::picture::paint::{Spot, paint};
@@ -45,6 +45,7 @@ pub fn show(
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         let mut covered = vec![corner::strip(rect)];
         covered.extend(intro.into_iter().flat_map(|intro| intro.covers(ui.ctx(), rect, both.is_some())));
+        covered.extend(coordinates::covers(rect, views, view_state));
         let presents = view_state.layout == Layout::Present;
         covered.extend(presents.then(|| present::covers(rect)));
         covered.extend(view_state.tour.map(|_| Tour::covers(ui.ctx(), rect)));
@@ -96,6 +97,7 @@ pub fn show(
         covered.extend(status::tells(session, view_state).then(|| status::news_rect(ui.ctx())).flatten());
         words(ui, &spot, &scene, &covered);
         corner::show(ui, rect, view_state, views, commands);
+        coordinates::show(ui, rect, (session, views), view_state, commands);
         let seen = |at: [f64; 3]| spot.screen(at).is_some_and(|at| rect.contains(at));
         if view_state.view.shows_machine() && !views.stage().outline(&shown).all(seen) {
             corner::way_back(ui, rect, view_state, commands);

@@ -13,6 +13,8 @@ use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector};
 
 /// A point that a pose misses by less than this share of the reach is reached.
 const REACHED: f64 = 1e-9;
+/// Single b as near as this are the same, rad.
+const ONE_B: f64 = 1e-6;
 /// From how many poses the nearest one is sought, and by how much of the reach another has to be nearer.
 const STARTS: usize = 24;
 const CLEARLY: f64 = 1e-4;
@@ -68,6 +70,37 @@ impl PoseMap {
             Self::Planes(planes) => planes.map().period(),
             Self::Space(space) => space.period(),
         }
+    }
+
+    /// How far b turns what can be reached, rad.
+    pub fn turn(&self, b: f64) -> f64 {
+        match self {
+            Self::Planes(planes) => planes.map().turn(b),
+            Self::Space(space) => space.turn(b),
+        }
+    }
+
+    /// All b at which the end effector can be on a point, m, within the limits; none if there is none.
+    pub fn b_of(&self, p: Vector) -> Option<BSet> {
+        match self {
+            Self::Planes(planes) => planes.map().reach(p).ok(),
+            Self::Space(space) => space.reach(p).ok(),
+        }
+    }
+
+    /// The b that serve all of several points, m; none if there is none.
+    pub fn common(&self, points: &[Vector]) -> Option<BSet> {
+        // Two drives reach a point at single b, which points share up to rounding.
+        let slack = if self.angles() == 1 { ONE_B } else { 0.0 };
+        let sets: Option<Vec<BSet>> = points
+            .iter()
+            .map(|p| {
+                let mut set = self.b_of(*p)?;
+                set.intervals.iter_mut().for_each(|[low, high]| (*low, *high) = (*low - slack, *high + slack));
+                Some(set)
+            })
+            .collect();
+        Some(BSet::overlap(&sets?)).filter(|common| !common.is_empty())
     }
 
     /// Relative angles and b of a pose, rad.

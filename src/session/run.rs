@@ -56,6 +56,7 @@ pub struct Run {
     simulation: Simulation,
     /// The b that serve all points of the task, found when they are first asked for.
     common: OnceLock<Option<BSet>>,
+    bands: OnceLock<Option<BSet>>,
     /// What a hand leads it in, or why it cannot; found when it is first asked for.
     pose_map: OnceLock<Result<PoseMap, NoPoseSpace>>,
 }
@@ -114,7 +115,16 @@ impl Run {
         let guide = Guide::Motion { motion: plan.motion.clone(), start: 0.0 };
         let simulation = Simulation::new(&scenario.setup(), guide)?;
         let (scenario, plan) = (scenario.clone(), Arc::new(plan));
-        Ok(Self { scenario, planes, plan, waiting, simulation, common: OnceLock::new(), pose_map: OnceLock::new() })
+        Ok(Self {
+            scenario,
+            planes,
+            plan,
+            waiting,
+            simulation,
+            common: OnceLock::new(),
+            bands: OnceLock::new(),
+            pose_map: OnceLock::new(),
+        })
     }
 
     /// Why it waits, if its task does not fit its machine.
@@ -145,6 +155,12 @@ impl Run {
     pub fn common(&self) -> Option<&BSet> {
         let find = || self.planes.as_ref()?.common(&self.scenario.task.points());
         self.common.get_or_init(find).as_ref()
+    }
+
+    /// The same of any number of drives.
+    pub fn bands(&self) -> Option<&BSet> {
+        let find = || self.pose_map().ok()?.common(&self.scenario.task.points());
+        self.bands.get_or_init(find).as_ref()
     }
 
     /// The simulation.
@@ -273,7 +289,8 @@ impl Run {
                 }
                 simulation.lead(Guide::Follow(follower));
             }
-            (self.planes, self.common, self.pose_map) = (planes, OnceLock::new(), OnceLock::new());
+            (self.planes, self.pose_map) = (planes, OnceLock::new());
+            (self.common, self.bands) = (OnceLock::new(), OnceLock::new());
         }
         self.simulation = simulation;
         self.scenario = scenario;

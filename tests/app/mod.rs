@@ -1,7 +1,9 @@
 //! The window, driven as a person does: widgets by label, the pointer in the scene, keys; and pictures of it.
 
+mod family;
 mod files;
 mod finder;
+mod gallery;
 mod hands;
 mod intro;
 mod jobs;
@@ -27,10 +29,12 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 15] = [
+pub const TESTS: [&[Test]; 17] = [
     saving::TESTS,
+    family::TESTS,
     files::TESTS,
     finder::TESTS,
+    gallery::TESTS,
     hands::TESTS,
     intro::TESTS,
     jobs::TESTS,

@@ -1,5 +1,6 @@
 //! The panel on the right: signals over time with one cursor, and which b serves a target.
 
+mod bands;
 mod curve;
 mod header;
 mod hover;
@@ -86,6 +87,7 @@ pub fn show(ui: &mut Ui, what: &Shown<'_>, prepared: &mut Prepared, commands: &m
                 ui.add_space(4.0);
             }
             hover::remember(ui, over);
+            bands::show(ui, &p, (session, &mut prepared.bands), view_state, height + BELOW, commands);
             which_b::show(ui, &p, (session, &mut prepared.which_b), view_state, height * 1.6 + BELOW, commands);
         });
     });

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::bands::Bands;
 use super::which_b::Known;
 use crate::picture::charts::choice::{Choice, Plot};
 use crate::picture::charts::drawn::Drawn;
@@ -23,6 +24,7 @@ pub struct Prepared {
     looks: bool,
     /// Which b serves the points on display.
     pub(super) which_b: Option<Known>,
+    pub(super) bands: Option<Bands>,
 }
 
 /// A run that is laid over.

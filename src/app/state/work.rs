@@ -108,7 +108,9 @@ impl AppState {
             self.background.outline = Some((space, job));
         }
         let Some((space, outline)) = ended(&mut self.background.outline) else { return false };
-        Arc::make_mut(&mut self.views).set_outline(&space, outline.flatten());
+        let views = Arc::make_mut(&mut self.views);
+        views.set_outline(&space, outline.flatten());
+        views.raise_tower(self.session.run());
         if self.view_state.grabbed.is_none() {
             self.view_state.framing.iter_mut().for_each(Framing::renew);
         }

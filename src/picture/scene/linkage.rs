@@ -46,7 +46,23 @@ pub struct Bar {
     length: f64,
     /// From where to where it is drawn, m along it.
     span: [f64; 2],
+    /// Half its width, m.
+    radius: f64,
+    /// Where its counterweights are, m along it, and their radii, m.
+    weights: Vec<[f64; 2]>,
     z: f64,
+}
+
+/// A link from straight above.
+pub struct Flat {
+    /// Its ends as drawn, m.
+    pub ends: [Vector; 2],
+    /// Half its width, m.
+    pub radius: f64,
+    /// Its counterweights: where, m, and their radii, m.
+    pub weights: Vec<(Vector, f64)>,
+    /// Drive it follows, counted from 0.
+    pub drive: usize,
 }
 
 #[derive(Clone, Debug)]
@@ -109,8 +125,8 @@ impl Linkage {
             }
             let span = discs.iter().fold([from, to], |[from, to], [at, _]| [from.min(*at), to.max(*at)]);
             let mut mesh = bar(span[0], span[1], radius, height, 0.2 * height);
-            for [at, size] in discs {
-                append(&mut mesh, &cylinder(size, 1.6 * height, 0.2 * height), [at, 0.0, -0.3 * height]);
+            for [at, size] in &discs {
+                append(&mut mesh, &cylinder(*size, 1.6 * height, 0.2 * height), [*at, 0.0, -0.3 * height]);
             }
             bars.push(Bar {
                 name: link.name.clone(),
@@ -122,6 +138,8 @@ impl Linkage {
                 sign: part.sign,
                 length: part.length,
                 span,
+                radius,
+                weights: discs,
                 z: layer(part.drive),
             });
         }
@@ -204,6 +222,22 @@ impl Linkage {
             let at = place_of(&pin.at, &e);
             ([at.re, at.im, pin.z[1]], pin.links.as_slice())
         })
+    }
+
+    /// The links from straight above on a base that stands still, the lowest first.
+    pub fn flat(&self, e: &Units) -> Vec<Flat> {
+        let mut bars: Vec<&Bar> = self.bars.iter().collect();
+        bars.sort_by(|a, b| a.z.total_cmp(&b.z));
+        let flat = |bar: &Bar| {
+            let (root, along, _) = bar.pose(e);
+            Flat {
+                ends: bar.span.map(|s| root + along * s),
+                radius: bar.radius,
+                weights: bar.weights.iter().map(|[s, radius]| (root + along * *s, *radius)).collect(),
+                drive: bar.drive,
+            }
+        };
+        bars.into_iter().map(flat).collect()
     }
 
     /// Everything, in the colours of the palette, on a base in a pose.

@@ -21,6 +21,7 @@ pub mod palette;
 pub mod pick;
 pub mod pointer;
 pub mod reaction;
+pub mod section;
 pub mod stage;
 pub mod tower;
 pub mod views;

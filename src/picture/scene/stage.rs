@@ -118,6 +118,11 @@ impl Stage {
         Self { workspace: None, outline: Outlining::None, ..self }
     }
 
+    /// The outline of what other than three drives reach, once it is found.
+    pub fn outlined(&self) -> Option<&Outlined> {
+        self.outline.done()
+    }
+
     /// What is yet to be outlined.
     pub fn unoutlined(&self) -> Option<Arc<PoseSpace>> {
         match &self.outline {

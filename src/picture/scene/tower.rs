@@ -1,6 +1,8 @@
 //! All reactionless workspaces at once: over the plane of motion, the pose constant b as height. Each slice of the
 //! tower is the workspace of its b, turned by b* = b/Σλ, (15); a point's vertical line lies in it where b reaches it.
 //!
+//! Of two drives a slice is a curve, and the tower a surface of curves; of four and more it is their outline.
+//!
 //! In the scene x and y are metres, and z is b from the lowest that is shown, times [`Tower::rise`].
 
 use std::sync::Arc;
@@ -12,12 +14,13 @@ use super::options::{Handle, ViewOptions};
 use super::palette::{Palette, faded, palette};
 use super::pick::{Aim, NEAR, Pick};
 use super::pointer::Pointer;
+use super::stage::Outlined;
 use super::wall::Wall;
 use super::{Anchor, Changes, Label, Line, Marker, Mesh, Model, Scene, Solid, Strips, point, posed};
 use crate::mechanics::machine::place_of;
 use crate::mechanics::planar::{Vector, unit};
 use crate::picture::numbers::round_up;
-use crate::planning::pose_constant::Planes;
+use crate::planning::pose_map::PoseMap;
 use crate::planning::reactionless::{AngleLimit, BSet, PlaneMap};
 use crate::session::Run;
 use crate::simulation::frame::{Frame, Reach};
@@ -46,7 +49,7 @@ const NEAR_BAR: f64 = 9.0;
 /// What stays the same from frame to frame.
 #[derive(Clone, Debug)]
 pub struct Tower {
-    planes: Arc<Planes>,
+    map: PoseMap,
     /// The boundary of the workspace.
     outline: Strips,
     wall: Wall,
@@ -88,35 +91,45 @@ impl Tower {
         Self::showing(run, span, Some(axes::covering(b, 0.5 * span, span, MARGIN * SPAN)))
     }
 
+    /// Of a machine of other than three drives, whose workspace is outlined, over [`SPAN`].
+    pub fn outlined(run: &Run, outline: &Outlined) -> Option<Self> {
+        let map = run.pose_map().ok()?.clone();
+        Self::rising(run, map, outline.shape(), SPAN, None)
+    }
+
     fn showing(run: &Run, span: f64, fixed: Option<[f64; 2]>) -> Option<Self> {
         let planes = run.planes()?.clone();
         let loops = planes.boundary().turned(0.0);
-        let outlines: Vec<Vec<Vector>> =
-            loops.into_iter().map(|l| l.into_iter().map(|[x, y]| Vector::new(x, y)).collect()).collect();
+        let outlines = loops.into_iter().map(|l| l.into_iter().map(|[x, y]| Vector::new(x, y)).collect()).collect();
+        Self::rising(run, PoseMap::Planes(planes), outlines, span, fixed)
+    }
+
+    /// Above outlines at b = 0: closed ones, with the inside on their left.
+    fn rising(run: &Run, map: PoseMap, outlines: Vec<Vec<Vector>>, span: f64, fixed: Option<[f64; 2]>) -> Option<Self> {
         let radius = outlines.iter().flatten().fold(0.0_f64, |m, p| m.max(p.norm()));
         if !(radius > 0.0 && span.is_finite() && span > 0.0) {
             return None;
         }
         let rise = HEIGHT * radius / span;
         let grain = if fixed.is_some() { GRAIN } else { 1.0 };
-        let wall = Wall::with_grain(&outlines, 1.0 / (rise * planes.map().lambda_sum()), grain);
-        let model = Arc::new(Model {
-            meshes: vec![
-                sheet(planes.map(), if fixed.is_some() { FEWER_CELLS } else { CELLS }),
-                wall.mesh(HEIGHT * radius),
-            ],
-        });
+        let wall = Wall::with_grain(&outlines, map.turn(1.0) / rise, grain);
+        // The fill of a slice is known of planes alone.
+        let slice = match &map {
+            PoseMap::Planes(planes) => sheet(planes.map(), if fixed.is_some() { FEWER_CELLS } else { CELLS }),
+            PoseMap::Space(_) => Mesh { shell: true, ..Mesh::default() },
+        };
+        let model = Arc::new(Model { meshes: vec![slice, wall.mesh(HEIGHT * radius)] });
         let tip = *run.scenario().machine.end_effector();
         let course: Vec<(Vector, f64)> = run.motion().map_or_else(Vec::new, |motion| {
             let at = |s: f64| motion.path.at(s).q;
-            stations(motion).map(at).map(|q| (place_of(&tip, &q.units()), planes.map().project(&q).b)).collect()
+            stations(motion).map(at).map(|q| (place_of(&tip, &q.units()), map.project(&q).1)).collect()
         });
         let ends = run.motion().map(|_| {
             let mut points = waypoints(run);
             if points.len() > POSTS {
                 points.drain(1..points.len() - 1);
             }
-            points.into_iter().map(|(_, name, at)| Post { name, at, reach: planes.map().reach(at).ok() }).collect()
+            points.into_iter().map(|(_, name, at)| Post { name, at, reach: map.b_of(at) }).collect()
         });
         let closed = |outline: &Vec<Vector>| {
             let mut points: Vec<_> = outline.iter().map(|p| point(*p, 0.0)).collect();
@@ -124,11 +137,11 @@ impl Tower {
             points
         };
         let outline = outlines.iter().map(closed).collect();
-        let mut tower = Self { planes, outline, wall, model, ends, course, radius, span, fixed, contours: [].into() };
+        let mut tower = Self { map, outline, wall, model, ends, course, radius, span, fixed, contours: [].into() };
         if let Some([low, high]) = fixed {
             let level = |b: f64| {
                 let z = (b - low) * tower.rise();
-                let pieces = tower.wall.level(tower.planes.map().turn(b));
+                let pieces = tower.wall.level(tower.map.turn(b));
                 pieces.into_iter().map(move |piece| piece.into_iter().map(|p| point(p, z)).collect::<Vec<_>>())
             };
             tower.contours = contours([low, high]).flat_map(level).collect();
@@ -170,7 +183,7 @@ impl Tower {
             return ends.iter().map(|post| barred(post, window)).collect();
         }
         let at = frame.target.at;
-        vec![barred(&Post { name: "target".into(), at, reach: self.planes.map().reach(at).ok() }, window)]
+        vec![barred(&Post { name: "target".into(), at, reach: self.map.b_of(at) }, window)]
     }
 
     /// What the pointer can take hold of: the end effector's dot, a bar, the slice.
@@ -192,8 +205,22 @@ impl Tower {
             }
         }
         let [x, y] = ray.at_height(dot[2])?;
-        let inside = self.planes.boundary().contains(Vector::new(x, y), frame.b_reference);
+        let at = Vector::new(x, y);
+        let inside = match &self.map {
+            PoseMap::Planes(planes) => planes.boundary().contains(at, frame.b_reference),
+            PoseMap::Space(space) if space.drives() == 2 => self.is_on_curve(frame, pointer, dot[2]),
+            PoseMap::Space(space) => space.reach(at).is_ok_and(|set| set.contains(frame.b_reference)),
+        };
         inside.then_some(Pick::of(Handle::Plane, [x, y, dot[2]]))
+    }
+
+    /// Whether the pointer is on the present slice, which is a curve at a height.
+    fn is_on_curve(&self, frame: &Frame, pointer: &Pointer, height: f64) -> bool {
+        let pose = posed(Vector::default(), unit(self.map.turn(frame.b_reference)), height);
+        let seen = |p: &[f32; 3]| super::place(&pose, *p).map(f64::from);
+        let near =
+            |w: &[[f32; 3]]| pointer.distance_to_segment([seen(&w[0]), seen(&w[1])]).is_some_and(|d| d < NEAR_BAR);
+        self.outline.iter().any(|line| line.windows(2).any(near))
     }
 
     /// What pulling at something asks for.
@@ -227,7 +254,7 @@ impl Tower {
         let [low, high] = self.window(b);
         let z = |b: f64| (b - low) * self.rise();
         let hot = options.hot == Some(Handle::Plane);
-        let turned = |b: f64| posed(Vector::default(), unit(self.planes.map().turn(b)), z(b));
+        let turned = |b: f64| posed(Vector::default(), unit(self.map.turn(b)), z(b));
         let stands = if self.fixed.is_some() { Changes::Nothing } else { Changes::Shape };
         let solid = |name: &'static str, mesh, b, colour, changes| Solid {
             name: name.into(),
@@ -291,7 +318,7 @@ impl Tower {
         let (mut near_ones, mut far_ones) = (Vec::new(), Vec::new());
         for b in contours([low, high]) {
             let z = (b - low) * self.rise();
-            for (piece, near) in self.wall.contour(self.planes.map().turn(b), eye) {
+            for (piece, near) in self.wall.contour(self.map.turn(b), eye) {
                 let side = if near { &mut near_ones } else { &mut far_ones };
                 side.push(piece.into_iter().map(|p| point(p, z)).collect());
             }
@@ -315,6 +342,11 @@ impl Tower {
             posts.iter().map(|(post, _)| vec![point(post.at, floor), point(post.at, head)]).collect();
         scene.lines.push(Line::new("points", uprights, 1.3, faded(palette.ink, 0.6)).dashed(1.5, 3.5).on_top());
         for (post, bars) in posts {
+            // One b alone is a dot.
+            for [from, to] in bars.iter().filter(|[from, to]| (to - from) * self.rise() < 1e-3 * self.radius) {
+                let at = point(post.at, z(0.5 * (from + to)));
+                scene.markers.push(Marker::disc("reach/alone", at, 5.0, palette.zero));
+            }
             let bars: Vec<_> = bars.iter().map(|ends| ends.map(|b| point(post.at, z(b))).to_vec()).collect();
             let name = format!("reach/{}", post.name);
             scene.lines.push(Line::new(name, bars, 6.0, faded(palette.zero, 0.85)).on_top());

@@ -10,9 +10,11 @@ use super::joint_space::JointSpace;
 use super::options::{Handle, ViewOptions};
 use super::pick::{Aim, Grip, NEAR, Pick};
 use super::pointer::Pointer;
+use super::section::Section;
 use super::stage::{Outlined, PULL, Stage};
 use super::tower::Tower;
 use crate::mechanics::planar::DriveAngles;
+use crate::planning::pose_map::PoseMap;
 use crate::planning::pose_space::PoseSpace;
 use crate::session::Run;
 use crate::simulation::frame::Frame;
@@ -70,7 +72,9 @@ impl ViewKind {
         match self {
             Self::Flat => "The machine and its reactionless workspace from above",
             Self::Space => "The machine and its reactionless workspace in perspective",
-            Self::Joints => "Joint space: drive angles q₁, q₂, q₃, and the plane Σ λq = b within the joint limits",
+            Self::Joints => {
+                "Joint space: the drive angles q, and the plane Σ λq = b within the joint limits; a line of two drives"
+            }
             Self::Tower => "All reactionless workspaces: b as height over the plane of motion",
         }
     }
@@ -103,18 +107,44 @@ impl ViewKind {
 pub struct Views {
     stage: Stage,
     joints: Option<JointSpace>,
+    section: Option<Section>,
     tower: Option<Tower>,
 }
 
 impl Views {
     /// Prepares a run for drawing; to be made again when its machine or plan changes.
     pub fn of(run: &Run) -> Self {
-        Self { stage: Stage::of(run), joints: JointSpace::of(run), tower: Tower::of(run) }
+        let mut views = Self::with(Stage::of(run), run);
+        views.refresh(run);
+        views
     }
 
-    /// The same but for the outline of what other than three drives reach, which takes longer.
+    /// The same but for the outline of what other than three drives reach, which takes longer, and their tower.
     pub fn begun(run: &Run) -> Self {
-        Self { stage: Stage::begun(run), joints: JointSpace::of(run), tower: Tower::of(run) }
+        Self::with(Stage::begun(run), run)
+    }
+
+    fn with(stage: Stage, run: &Run) -> Self {
+        let section = match run.pose_map() {
+            Ok(PoseMap::Space(space)) => Section::of(run, space),
+            _ => None,
+        };
+        Self { stage, joints: JointSpace::of(run), section, tower: Tower::of(run) }
+    }
+
+    /// Why a machine has no such view, in words.
+    ///
+    /// # Errors
+    /// If it has none.
+    pub fn has(kind: ViewKind, run: &Run) -> Result<(), String> {
+        if kind.shows_machine() {
+            return Ok(());
+        }
+        match run.pose_map() {
+            Ok(map) if map.angles() == 0 => Err("one drive alone has no freedom left while b is held".into()),
+            Ok(_) => Ok(()),
+            Err(why) => Err(why.to_string()),
+        }
     }
 
     /// What is yet to be outlined.
@@ -135,6 +165,26 @@ impl Views {
     /// Takes over what has changed of base and payload.
     pub fn refresh(&mut self, run: &Run) {
         self.stage.refresh(run);
+        self.raise_tower(run);
+    }
+
+    /// Makes the tower of other than three drives, once their workspace is outlined.
+    pub fn raise_tower(&mut self, run: &Run) {
+        if let (None, Some(outline)) = (&self.tower, self.stage.outlined()) {
+            self.tower = Tower::outlined(run, outline);
+        }
+    }
+
+    /// Puts drives along the axes of joint space, counted from 0, where there are more than three.
+    pub fn show_drives(&mut self, drives: [usize; 3]) {
+        if let Some(section) = &mut self.section {
+            section.show(drives);
+        }
+    }
+
+    /// Joint space of other than three drives, if they have a b.
+    pub fn section(&self) -> Option<&Section> {
+        self.section.as_ref()
     }
 
     /// The machine's view.
@@ -147,7 +197,7 @@ impl Views {
         self.joints.as_ref()
     }
 
-    /// The tower, if the machine has planes.
+    /// The tower, if the machine has a b and its workspace is known.
     pub fn tower(&self) -> Option<&Tower> {
         self.tower.as_ref()
     }
@@ -155,6 +205,9 @@ impl Views {
     /// The camera that shows everything.
     pub fn camera(&self, kind: ViewKind) -> Camera {
         let reach = self.stage.linkage().reach();
+        if let (ViewKind::Joints, Some(section)) = (kind, &self.section) {
+            return section.camera();
+        }
         match (kind, &self.joints, &self.tower) {
             (ViewKind::Joints, Some(joints), _) => joints.camera(),
             (ViewKind::Tower, _, Some(tower)) => tower.camera(),
@@ -165,6 +218,9 @@ impl Views {
 
     /// What is to be seen of a frame and of other poses of the machine when everything is shown.
     pub fn content(&self, kind: ViewKind, frame: &Frame, poses: &[DriveAngles]) -> Content {
+        if let (ViewKind::Joints, Some(section)) = (kind, &self.section) {
+            return Content { first: section.corners(), then: Vec::new() };
+        }
         match (kind, &self.joints, &self.tower) {
             (ViewKind::Joints, Some(joints), _) => Content { first: joints.box_corners(), then: Vec::new() },
             (ViewKind::Tower, _, Some(tower)) => Content { first: tower.hull(), then: Vec::new() },
@@ -174,6 +230,9 @@ impl Views {
 
     /// Everything there is to draw.
     pub fn scene(&self, kind: ViewKind, frame: &Frame, options: &ViewOptions, camera: &Camera) -> Scene {
+        if let (ViewKind::Joints, Some(section)) = (kind, &self.section) {
+            return section.scene(frame, options, camera);
+        }
         match (kind, &self.joints, &self.tower) {
             (ViewKind::Joints, Some(joints), _) => joints.scene(frame, options, camera),
             (ViewKind::Tower, _, Some(tower)) => tower.scene(frame, options, camera),
@@ -211,6 +270,9 @@ impl Views {
 
     /// What is under the pointer and can be pulled at, in a frame as shown.
     pub fn pick(&self, kind: ViewKind, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
+        if let (ViewKind::Joints, Some(section)) = (kind, &self.section) {
+            return section.pick(frame, pointer);
+        }
         match (kind, &self.joints, &self.tower) {
             (ViewKind::Joints, Some(joints), _) => joints.pick(frame, pointer),
             (ViewKind::Tower, _, Some(tower)) => tower.pick(frame, pointer),
@@ -255,6 +317,9 @@ impl Views {
     pub fn aim(&self, kind: ViewKind, pick: &Pick, frame: &Frame, pointer: &Pointer, b: f64) -> Option<Aim> {
         if let (Handle::Link(i), Some(Grip::Link(grip))) = (pick.handle, &pick.grip) {
             return self.stage.turned(i, grip, frame, pointer, b).map(Aim::Angles);
+        }
+        if let (ViewKind::Joints, Some(section)) = (kind, &self.section) {
+            return section.aim(pick, frame, pointer);
         }
         match (kind, &self.joints, &self.tower) {
             (ViewKind::Joints, Some(joints), _) => joints.aim(pick, frame, pointer),

@@ -87,6 +87,21 @@ impl Outlined {
         (!lines.is_empty()).then(|| Self { strips: lines.into(), words, middle, ends, space })
     }
 
+    /// It at b = 0 as closed lines, m: a curve there and back.
+    pub fn shape(&self) -> Vec<Vec<Vector>> {
+        let flat = |line: &Vec<[f32; 3]>| -> Vec<Vector> {
+            line.iter().map(|[x, y, _]| Vector::new(f64::from(*x), f64::from(*y))).collect()
+        };
+        let mut lines: Vec<_> = self.strips.iter().map(flat).collect();
+        if self.space.drives() == 2 {
+            for line in &mut lines {
+                let back: Vec<_> = line.iter().rev().skip(1).copied().collect();
+                line.extend(back);
+            }
+        }
+        lines
+    }
+
     /// What it is of.
     pub fn space(&self) -> &PoseSpace {
         &self.space

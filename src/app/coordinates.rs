@@ -1,0 +1,76 @@
+//! Over joint space of more than three drives: which three have an axis, and where the others stand.
+
+use egui::{Align2, Area, Id, Order, Rect, RichText, vec2};
+
+use super::theme::{bold, card, colour, plain};
+use super::widgets::name;
+use super::{Command, ViewState};
+use crate::picture::numbers::signed;
+use crate::picture::scene::views::{ViewKind, Views};
+use crate::session::Session;
+
+/// Drives by their angles.
+const SYMBOLS: [&str; 8] = ["q₁", "q₂", "q₃", "q₄", "q₅", "q₆", "q₇", "q₈"];
+
+/// Where it lies over a scene.
+pub fn covers(rect: Rect, views: &Views, view_state: &ViewState) -> Option<Rect> {
+    let several = views.section().is_some_and(|section| section.shown().len() > 2);
+    let joints = view_state.view == ViewKind::Joints && several;
+    joints.then(|| Rect::from_min_size(rect.min, vec2(rect.width().min(260.0), 56.0)))
+}
+
+/// Draws it in the upper left corner of a scene; a tower that is not known yet says so.
+pub fn show(
+    ui: &egui::Ui,
+    rect: Rect,
+    (session, views): (&Session, &Views),
+    view_state: &ViewState,
+    commands: &mut Vec<Command>,
+) {
+    let p = view_state.palette();
+    if view_state.view == ViewKind::Tower && views.tower().is_none() {
+        let words = "The workspace is being outlined; its tower follows in a moment.";
+        let at = rect.center_top() + vec2(0.0, 24.0);
+        ui.painter().text(at, Align2::CENTER_TOP, words, plain(13.0), colour(p.ink));
+    }
+    let Some(section) = views.section().filter(|_| view_state.view == ViewKind::Joints) else { return };
+    let (shown, frame) = (section.shown(), session.frame());
+    if frame.q.len() < 4 {
+        return;
+    }
+    let area = Area::new(Id::unique("drives with an axis")).order(Order::Middle).fixed_pos(rect.min + vec2(14.0, 12.0));
+    area.show(ui.ctx(), |ui| {
+        card(&p).inner_margin(8).show(ui, |ui| {
+            ui.set_max_width((rect.width() - 44.0).max(120.0));
+            ui.horizontal_wrapped(|ui| {
+                ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
+                ui.label(RichText::new("axes").font(plain(11.5)).color(colour(p.dim)));
+                for (k, symbol) in SYMBOLS.iter().enumerate().take(frame.q.len()) {
+                    let on = shown.contains(&k);
+                    let words = if on { (*symbol).to_owned() } else { held(symbol, frame.relative(k)) };
+                    let ink = if on { p.drive(k) } else { p.dim };
+                    let words = RichText::new(words).font(bold(12.0)).color(colour(ink));
+                    let button = egui::Button::new(words).selected(false).frame(on);
+                    let tip = match on {
+                        true => "This drive has an axis",
+                        false => {
+                            "The section is where this drive stands; click to give it an axis, in place of the first"
+                        }
+                    };
+                    let button = ui.add(button).on_hover_text(tip);
+                    name(
+                        &button,
+                        &format!("{symbol} {}", if on { "has an axis" } else { "stands still: give it an axis" }),
+                    );
+                    if let (true, false, [_, second, third]) = (button.clicked(), on, shown) {
+                        commands.push(Command::Drives([*second, *third, k]));
+                    }
+                }
+            });
+        });
+    });
+}
+
+fn held(symbol: &str, angle: f64) -> String {
+    format!("{symbol} = {} rad", signed(angle, 3))
+}

@@ -1,0 +1,127 @@
+//! A small picture of a machine from straight above, in a pose that shows its links apart. Kinematics alone makes it, so
+//! it costs next to nothing.
+
+use std::f64::consts::PI;
+
+use egui::{Painter, Pos2, Rect, Stroke};
+
+use super::paint::colour;
+use super::scene::linkage::{Flat, Linkage};
+use super::scene::palette::{Palette, mix};
+use crate::mechanics::machine::{Machine, place_of};
+use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
+
+/// How far into its limits each relative angle is bent: not half, where arms with limits on both sides are straight.
+const BENT: f64 = 0.62;
+/// An angle that no limit bounds, and that between drives that no angle joins, rad.
+const FREE: f64 = 1.0;
+/// Into how many parts a half turn is divided to find how the machine fills the picture best.
+const TURNS: usize = 24;
+/// Width over height that it is turned for.
+const SHAPE: f64 = 2.2;
+
+/// What is painted, m.
+pub struct Portrait {
+    links: Vec<Flat>,
+    pins: Vec<Vector>,
+    tip: Vector,
+    foot: f64,
+    /// Least and greatest coordinates.
+    bounds: [Vector; 2],
+}
+
+impl Portrait {
+    /// Of a machine.
+    pub fn of(machine: &Machine) -> Self {
+        let linkage = Linkage::of(machine);
+        let bent = bent(machine);
+        let turned = |i: usize| {
+            let turn = PI * i as f64 / TURNS as f64;
+            let q: Vec<f64> = bent.iter().map(|q| q + turn).collect();
+            Self::posed(machine, &linkage, &q)
+        };
+        let first = turned(0);
+        (1..TURNS).map(turned).fold(first, |best, other| if other.size() < best.size() { other } else { best })
+    }
+
+    fn posed(machine: &Machine, linkage: &Linkage, q: &[f64]) -> Self {
+        let e = DriveAngles(PerDrive::from_fn(q.len(), |k| q[k])).units();
+        let (links, foot) = (linkage.flat(&e), linkage.foot());
+        let tip = place_of(machine.end_effector(), &e);
+        let mut bounds = [Vector::new(-foot, -foot), Vector::new(foot, foot)];
+        let discs = links.iter().flat_map(|link| {
+            let ends = link.ends.map(|at| (at, link.radius));
+            ends.into_iter().chain(link.weights.iter().copied())
+        });
+        for (at, radius) in discs.chain([(tip, 0.03 * linkage.reach())]) {
+            bounds[0] = Vector::new(bounds[0].re.min(at.re - radius), bounds[0].im.min(at.im - radius));
+            bounds[1] = Vector::new(bounds[1].re.max(at.re + radius), bounds[1].im.max(at.im + radius));
+        }
+        let pins = linkage.joints(&e).map(|([x, y, _], _)| Vector::new(x, y)).collect();
+        Self { links, pins, tip, foot, bounds }
+    }
+
+    /// The height of the picture that holds it, m.
+    fn size(&self) -> f64 {
+        let size = self.bounds[1] - self.bounds[0];
+        size.im.max(size.re / SHAPE)
+    }
+
+    /// Paints it into a rectangle.
+    pub fn paint(&self, painter: &Painter, rect: Rect, p: &Palette) {
+        let size = self.bounds[1] - self.bounds[0];
+        let scale = (f64::from(rect.width()) / size.re).min(f64::from(rect.height()) / size.im) as f32;
+        let middle = (self.bounds[0] + self.bounds[1]) * 0.5;
+        let spot = |at: Vector| {
+            let off = at - middle;
+            rect.center() + egui::vec2(off.re as f32 * scale, -off.im as f32 * scale)
+        };
+        let grey = mix(p.dim, p.line, 0.65);
+        let long = |m: f64| m as f32 * scale;
+        let disc = |at: Pos2, radius: f32, tone| {
+            painter.circle_filled(at, radius, colour(tone));
+        };
+        disc(spot(Vector::default()), long(self.foot), grey);
+        for link in &self.links {
+            let tone = p.drive(link.drive);
+            let ends = link.ends.map(spot);
+            let radius = long(link.radius).max(1.4);
+            // An edge in the colour of the ground keeps links apart that cross.
+            painter.line_segment(ends, Stroke::new(2.0 * radius + 1.6, colour(p.background)));
+            painter.line_segment(ends, Stroke::new(2.0 * radius, colour(tone)));
+            ends.into_iter().for_each(|end| disc(end, radius, tone));
+            for (at, size) in &link.weights {
+                disc(spot(*at), long(*size), tone);
+            }
+        }
+        for pin in &self.pins {
+            disc(spot(*pin), 1.5, p.background);
+        }
+        disc(spot(Vector::default()), 0.3 * long(self.foot), p.ink);
+        painter.circle_stroke(spot(self.tip), 5.0, Stroke::new(1.6, colour(p.ink)));
+    }
+}
+
+/// Drive angles, rad, with every relative angle well within its limits.
+fn bent(machine: &Machine) -> Vec<f64> {
+    let mut q = vec![None; machine.drives()];
+    for start in 0..q.len() {
+        if q[start].is_none() {
+            q[start] = Some(if start == 0 { 0.0 } else { q[start - 1].unwrap_or_default() + FREE });
+        }
+        // Each round fixes what hangs on what is known.
+        for _ in 0..q.len() {
+            for angle in machine.angles() {
+                let (low, high) = (*angle.limits.start(), *angle.limits.end());
+                let bounded = low.is_finite() && high.is_finite();
+                let by = if bounded { low + BENT * (high - low) } else { FREE } - angle.offset;
+                match (q[angle.from], q[angle.to]) {
+                    (Some(from), None) => q[angle.to] = Some(from + by),
+                    (None, Some(to)) => q[angle.from] = Some(to - by),
+                    _ => {}
+                }
+            }
+        }
+    }
+    q.into_iter().map(Option::unwrap_or_default).collect()
+}

@@ -1,0 +1,453 @@
+//! Joint space of other than three drives. Of two it is a plane, in which a b is a line. Of four and more it is cut
+//! where the drives that have no axis stand now, and three are left: in these a b is a plane again.
+//!
+//! In the scene a unit is a radian, along x, y and z lie the drives that were chosen, and the origin moves with b.
+
+use std::sync::Arc;
+
+use super::axes::{self, Axis};
+use super::camera::{Camera, Flat, Orbit};
+use super::course::stations;
+use super::options::{Handle, ViewOptions};
+use super::palette::{Palette, faded, palette};
+use super::pick::{Aim, NEAR, Pick};
+use super::pointer::{Pointer, dot};
+use super::{Anchor, Changes, IN_PLACE, Label, Line, Marker, Mesh, Model, Scene, Solid};
+use crate::mechanics::planar::DriveAngles;
+use crate::picture::numbers::{degrees, round_up, signed};
+use crate::planning::pose_space::PoseSpace;
+use crate::session::Run;
+use crate::simulation::frame::Frame;
+
+/// How much of b is shown, rad, where that lies, and how near to its ends the present one comes.
+const SPAN: f64 = 3.0;
+const HOME: f64 = 1.5;
+const MARGIN: f64 = 0.4;
+/// Neighbouring lines or planes lie at multiples of this, rad.
+const NEIGHBOURS: f64 = 0.5;
+/// Room around what is shown, rad.
+const ROOM: f64 = 0.2;
+/// Names of the axes, with the unit.
+const TITLES: [&str; 8] = ["q₁, rad", "q₂, rad", "q₃, rad", "q₄, rad", "q₅, rad", "q₆, rad", "q₇, rad", "q₈, rad"];
+
+/// What stays the same from frame to frame.
+#[derive(Clone, Debug)]
+pub struct Section {
+    space: Arc<PoseSpace>,
+    /// The drives along the axes, counted from 0: two or three.
+    shown: Vec<usize>,
+    /// The planned motion; none without a plan.
+    course: Vec<DriveAngles>,
+    /// Ends of the box along the scene's axes.
+    bounds: [[f64; 2]; 3],
+}
+
+impl Section {
+    /// Of a run with other than three drives and a b.
+    pub fn of(run: &Run, space: &Arc<PoseSpace>) -> Option<Self> {
+        let n = space.drives();
+        let course = run.motion().map(|motion| stations(motion).map(|s| motion.path.at(s).q).collect());
+        let shown = (0..n.min(3)).collect();
+        let (space, course, bounds) = (space.clone(), course.unwrap_or_default(), [[0.0; 2]; 3]);
+        (n > 1).then(|| Self { space, shown, course, bounds }.bounded())
+    }
+
+    /// Puts other drives along the axes, counted from 0; those that the machine lacks change nothing.
+    pub fn show(&mut self, drives: [usize; 3]) {
+        let fits = drives.iter().all(|k| *k < self.space.drives());
+        if self.space.drives() > 2 && fits && self.shown != drives {
+            self.shown = drives.to_vec();
+            *self = self.clone().bounded();
+        }
+    }
+
+    /// The drives along the axes, counted from 0.
+    pub fn shown(&self) -> &[usize] {
+        &self.shown
+    }
+
+    /// What can be done in it with the pointer.
+    pub fn invitation(&self) -> &'static str {
+        match self.is_flat() {
+            true => "drag the dot along its line  ·  drag the line to change b",
+            false => "drag the dot in its plane  ·  drag the plane to change b",
+        }
+    }
+
+    fn is_flat(&self) -> bool {
+        self.shown.len() < 3
+    }
+
+    fn window(b: f64) -> [f64; 2] {
+        axes::sliding(b, HOME, SPAN, MARGIN)
+    }
+
+    /// q at the scene's origin while the present pose constant is b, rad.
+    fn origin(&self, b: f64) -> DriveAngles {
+        let [low, high] = Self::window(b);
+        self.space.lift(&self.space.middle(), 0.5 * (low + high))
+    }
+
+    /// Where q lies in the scene while the present pose constant is b.
+    pub fn point(&self, q: &[f64], b: f64) -> [f64; 3] {
+        let origin = self.origin(b);
+        let mut at = [0.0; 3];
+        for (x, k) in at.iter_mut().zip(&self.shown) {
+            *x = q[*k] - origin[*k];
+        }
+        at
+    }
+
+    /// q of a point of the scene, the drives without an axis as in a frame.
+    fn angles(&self, point: [f64; 3], frame: &Frame) -> Vec<f64> {
+        let origin = self.origin(frame.b_reference);
+        let mut q = now(frame);
+        for (x, k) in point.iter().zip(&self.shown) {
+            q[*k] = origin[*k] + x;
+        }
+        q
+    }
+
+    /// With a box that holds all poses within the limits, over the b that are shown.
+    fn bounded(self) -> Self {
+        let joints = self.space.joints();
+        let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+        for i in 0..1_usize << joints.len() {
+            let a: Vec<f64> = joints.iter().enumerate().map(|(j, joint)| joint.limits()[(i >> j) & 1]).collect();
+            for b in Self::window(HOME) {
+                let at = self.point(&self.space.lift(&a, b), HOME);
+                for (bound, x) in bounds.iter_mut().zip(at) {
+                    *bound = [bound[0].min(x - ROOM), bound[1].max(x + ROOM)];
+                }
+            }
+        }
+        if self.is_flat() {
+            bounds[2] = [0.0, 0.0];
+        }
+        Self { bounds, ..self }
+    }
+
+    /// Corners of what is shown.
+    pub fn corners(&self) -> Vec<[f64; 3]> {
+        let ends = self.bounds;
+        (0..8).map(|i| [0, 1, 2].map(|k| ends[k][(i >> k) & 1])).collect()
+    }
+
+    /// A view of it: a plane from straight above, three axes in perspective.
+    pub fn camera(&self) -> Camera {
+        let ends = self.bounds;
+        let size = ends.iter().map(|[from, to]| (to - from) * (to - from)).sum::<f64>().sqrt();
+        if self.is_flat() {
+            return Camera::Flat(Flat { centre: [0.0; 2], half_height: 0.5 * size });
+        }
+        Camera::Orbit(Orbit { centre: [0.0, 0.0, -0.06 * size], distance: 1.85 * size, yaw: 1.85, pitch: 0.5 })
+    }
+
+    /// λ along the axes.
+    fn normal(&self) -> [f64; 3] {
+        let mut normal = [0.0; 3];
+        normal.iter_mut().zip(&self.shown).for_each(|(x, k)| *x = self.space.lambda()[*k]);
+        normal
+    }
+
+    /// The part of b's line or plane within the limits, the other drives as in a frame: its ends or corners, in order.
+    pub fn part(&self, b: f64, frame: &Frame) -> Vec<[f64; 3]> {
+        let normal = self.normal();
+        let size = dot(normal, normal);
+        if size < 1e-12 {
+            return Vec::new();
+        }
+        let bounds = self.bounds;
+        let far = bounds.iter().map(|[from, to]| to - from).sum::<f64>();
+        // The foot of the origin, and ways along the line or plane.
+        let off = (b - self.space.b(&self.angles([0.0; 3], frame))) / size;
+        let foot = normal.map(|x| off * x);
+        let mut part: Vec<[f64; 3]> = if self.is_flat() {
+            let along = [-normal[1], normal[0], 0.0].map(|x| far * x / size.sqrt());
+            [1.0, -1.0].map(|s| [0, 1, 2].map(|i| foot[i] + s * along[i])).to_vec()
+        } else {
+            let least = (0..3).min_by(|i, j| normal[*i].abs().total_cmp(&normal[*j].abs())).unwrap_or(0);
+            let mut other = [0.0; 3];
+            other[least] = 1.0;
+            let [u, v] = {
+                let u = unit(cross(normal, other));
+                [u, unit(cross(normal, u))]
+            };
+            let corners = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
+            corners.map(|[s, t]| [0, 1, 2].map(|i| foot[i] + far * (s * u[i] + t * v[i]))).to_vec()
+        };
+        for (i, [from, to]) in bounds.iter().enumerate().take(self.shown.len()) {
+            part = clipped(&part, |p| p[i] - from);
+            part = clipped(&part, |p| to - p[i]);
+        }
+        for joint in self.space.joints() {
+            let [low, high] = joint.bounds();
+            if low.is_finite() && high.is_finite() {
+                part = clipped(&part, |p| joint.of(&self.angles(*p, frame)) - low);
+                part = clipped(&part, |p| high - joint.of(&self.angles(*p, frame)));
+            }
+        }
+        part.dedup_by(|p, q| distance(*p, *q) < 1e-9);
+        part
+    }
+
+    fn pose(&self, frame: &Frame) -> [f64; 3] {
+        self.point(&now(frame), frame.b_reference)
+    }
+
+    /// The point of the scene under the pointer, of b's plane or of the plane of two drives.
+    fn under(&self, frame: &Frame, pointer: &Pointer) -> Option<[f64; 3]> {
+        if self.is_flat() {
+            let [x, y] = pointer.ray()?.at_height(0.0)?;
+            return Some([x, y, 0.0]);
+        }
+        let off = frame.b_reference - self.space.b(&self.angles([0.0; 3], frame));
+        pointer.ray()?.at_plane(self.normal(), off)
+    }
+
+    /// What the pointer can take hold of: the pose's dot, the line or plane.
+    pub fn pick(&self, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
+        let dot = self.pose(frame);
+        if pointer.distance(dot).is_some_and(|d| d < NEAR) {
+            return Some(Pick::of(Handle::Target, dot));
+        }
+        let at = self.under(frame, pointer)?;
+        let part = self.part(frame.b_reference, frame);
+        let on = match (self.is_flat(), part.as_slice()) {
+            (true, [from, to, ..]) => pointer.distance_to_segment([*from, *to]).is_some_and(|d| d < 0.5 * NEAR),
+            (true, _) => false,
+            _ => {
+                let within = |joint: &crate::planning::pose_space::Joint| {
+                    let ([low, high], a) = (joint.bounds(), joint.of(&self.angles(at, frame)));
+                    (low..=high).contains(&a)
+                };
+                let bounds = self.bounds;
+                self.space.joints().iter().all(within) && (0..3).all(|i| (bounds[i][0]..=bounds[i][1]).contains(&at[i]))
+            }
+        };
+        on.then_some(Pick::of(Handle::Plane, at))
+    }
+
+    /// What pulling at something asks for: the dot within its b, the line or plane across.
+    pub fn aim(&self, pick: &Pick, frame: &Frame, pointer: &Pointer) -> Option<Aim> {
+        let (b, space) = (frame.b_reference, &self.space);
+        match pick.handle {
+            Handle::Target => {
+                let a = space.clamped(&space.angles(&self.angles(self.under(frame, pointer)?, frame)));
+                let p = space.place(&space.lift(&a, b));
+                Some(Aim::Target([p.re, p.im]))
+            }
+            Handle::Plane => {
+                let at = if self.is_flat() {
+                    self.under(frame, pointer)?
+                } else {
+                    let normal = self.normal();
+                    let s = pointer.ray()?.along_line(pick.at, normal)?;
+                    [0, 1, 2].map(|i| pick.at[i] + s * normal[i])
+                };
+                let [low, high] = Self::window(b);
+                Some(Aim::B(space.b(&self.angles(at, frame)).clamp(low, high)))
+            }
+            _ => None,
+        }
+    }
+
+    /// Everything there is to draw.
+    pub fn scene(&self, frame: &Frame, options: &ViewOptions, camera: &Camera) -> Scene {
+        let palette = palette(options.theme);
+        let b = frame.b_reference;
+        let hot = options.hot == Some(Handle::Plane);
+        let part = self.part(b, frame);
+        let mut scene = Scene::new(palette.background, Arc::new(Model { meshes: vec![fan(&part)] }));
+        if self.is_flat() {
+            self.grid(&mut scene, &palette, frame);
+            self.limits(&mut scene, &palette, frame);
+        } else {
+            let colour = faded(palette.amber, if hot { 0.42 } else { 0.34 });
+            let (name, changes) = ("plane".into(), Changes::Shape);
+            scene.solids.push(Solid { name, mesh: 0, world_from_item: IN_PLACE, colour, changes });
+            let eye = camera.eye_direction().map(f64::from);
+            axes::draw(&mut scene, &palette, &self.axes(&palette, frame), eye, Changes::Shape);
+        }
+        self.neighbours(&mut scene, &palette, frame);
+        let width = if hot { 3.4 } else { 2.2 };
+        scene.lines.push(Line::new("plane/boundary", [closed(&part)], width, palette.amber).on_top());
+        if let Some(at) = self.label(&part, self.pose(frame)) {
+            let text = format!("b = {b:.3} rad");
+            let label = Label::new("plane/label", at, [0.0, -14.0], text, palette.amber, 12.5, Anchor::Centre);
+            scene.labels.push(label);
+        }
+        self.course(&mut scene, &palette, b);
+        let hot = options.hot == Some(Handle::Target);
+        let at = self.pose(frame).map(|x| x as f32);
+        scene.markers.push(Marker::disc("pose", at, 4.5, palette.ink));
+        let ring = Marker::disc("target", at, if hot { 12.0 } else { 10.0 }, faded(palette.ink, 0.0));
+        scene.markers.push(ring.edged(palette.ink, 2.0));
+        scene
+    }
+
+    /// Beyond the end or corner that is farthest from the pose.
+    fn label(&self, part: &[[f64; 3]], pose: [f64; 3]) -> Option<[f32; 3]> {
+        let far = part.iter().max_by(|p, q| distance(**p, pose).total_cmp(&distance(**q, pose)))?;
+        let middle = [0, 1, 2].map(|i| part.iter().map(|p| p[i]).sum::<f64>() / part.len() as f64);
+        Some([0, 1, 2].map(|i| (far[i] + 0.06 * (far[i] - middle[i])) as f32))
+    }
+
+    fn axes(&self, palette: &Palette, frame: &Frame) -> [Axis; 3] {
+        let (bounds, origin) = (self.bounds, self.origin(frame.b_reference));
+        let longest = bounds.iter().map(|[from, to]| to - from).fold(0.0, f64::max);
+        [0, 1, 2].map(|i| {
+            let (k, [from, to]) = (self.shown[i], bounds[i]);
+            Axis {
+                title: TITLES[k],
+                colour: palette.drive(k),
+                ends: [from, to],
+                values: [from + origin[k], to + origin[k]],
+                step: round_up(longest / 8.0),
+                decimals: 0,
+                now: Some((frame.relative(k), palette.drive(k))),
+            }
+        })
+    }
+
+    /// The plane of two drives, ruled at round angles, with the present ones at its edges.
+    fn grid(&self, scene: &mut Scene, palette: &Palette, frame: &Frame) {
+        let (bounds, origin, pose) = (self.bounds, self.origin(frame.b_reference), self.pose(frame));
+        let longest = (0..2).map(|i| bounds[i][1] - bounds[i][0]).fold(0.0, f64::max);
+        let step = round_up(longest / 8.0);
+        let decimals = usize::from(step < 1.0);
+        let at = |i: usize, x: f64, y: f64| if i == 0 { [x, y] } else { [y, x] }.map(|x| x as f32);
+        let flat = |[x, y]: [f32; 2]| [x, y, 0.0_f32];
+        let mut lines = Vec::new();
+        for i in 0..2 {
+            let (k, [from, to], [low, high]) = (self.shown[i], bounds[i], bounds[1 - i]);
+            let offset = if i == 0 { [0.0, 13.0] } else { [-8.0, 0.0] };
+            let anchor = if i == 0 { Anchor::Centre } else { Anchor::Right };
+            let mut value = ((from + origin[k]) / step).ceil() * step;
+            while value <= to + origin[k] {
+                let x = value - origin[k];
+                lines.push([low, high].map(|y| flat(at(i, x, y))).to_vec());
+                // The present value takes the place of a mark.
+                if (x - pose[i]).abs() > 0.05 * (to - from) {
+                    let text = signed(value + 0.0, decimals);
+                    let label = Label::new("axes/words", flat(at(i, x, low)), offset, text, palette.dim, 11.5, anchor);
+                    scene.labels.push(label);
+                }
+                value += step;
+            }
+            let tone = palette.drive(k);
+            let text = signed(frame.relative(k), 3);
+            let foot = flat(at(i, pose[i], low));
+            let label = Label::new("axes/now/words", foot, offset, text, tone, 12.5, anchor);
+            scene.labels.push(label);
+            let drop = vec![pose.map(|x| x as f32), foot];
+            let name = ["pose/drop/1", "pose/drop/2"][i];
+            scene.lines.push(Line::new(name, [drop], 1.3, faded(tone, 0.75)).dashed(3.0, 3.0));
+            let end = flat(at(i, to, low));
+            let offset = if i == 0 { [12.0, 13.0] } else { [-8.0, -14.0] };
+            let anchor = if i == 0 { Anchor::Left } else { Anchor::Right };
+            scene.labels.push(Label::new("axes/titles", end, offset, TITLES[k], tone, 12.5, anchor));
+        }
+        scene.lines.insert(0, Line::new("axes/grid", lines, 1.0, faded(palette.line, 0.7)));
+    }
+
+    /// The lines of two drives along which the relative angle is at a limit.
+    fn limits(&self, scene: &mut Scene, palette: &Palette, frame: &Frame) {
+        let Some(joint) = self.space.joints().first().filter(|joint| joint.bounds()[0].is_finite()) else { return };
+        let bounds = self.bounds;
+        for limit in joint.limits() {
+            // Along (1, 1) from one edge of the grid to the other.
+            let off = limit - joint.of(&self.angles([0.0; 3], frame));
+            let rise = joint.of(&self.angles([0.0, 1.0, 0.0], frame)) - joint.of(&self.angles([0.0; 3], frame));
+            let lift = off / rise;
+            let from = bounds[0][0].max(bounds[1][0] - lift);
+            let to = bounds[0][1].min(bounds[1][1] - lift);
+            if from >= to {
+                continue;
+            }
+            let ends = [from, to].map(|x| [x as f32, (x + lift) as f32, 0.0]);
+            scene.lines.push(Line::new("limits", [ends.to_vec()], 1.2, faded(palette.dim, 0.8)));
+            let (text, offset) = (format!("a₁ = {}°", degrees(limit)), [10.0, 0.0]);
+            let label = Label::new("plane/limits", ends[1], offset, text, palette.dim, 10.5, Anchor::Left);
+            scene.labels.push(label);
+        }
+    }
+
+    fn neighbours(&self, scene: &mut Scene, palette: &Palette, frame: &Frame) {
+        let [low, high] = Self::window(frame.b_reference);
+        let first = (low / NEIGHBOURS).ceil();
+        let others = (0..80).map(|i| (first + f64::from(i)) * NEIGHBOURS).take_while(|of| *of <= high);
+        let outlines: Vec<_> = others.map(|of| closed(&self.part(of, frame))).filter(|o| o.len() > 1).collect();
+        scene.lines.push(Line::new("planes", outlines, 1.0, faded(palette.amber, 0.3)).on_top());
+    }
+
+    /// The planned motion as the axes show it.
+    fn course(&self, scene: &mut Scene, palette: &Palette, b: f64) {
+        let points: Vec<_> = self.course.iter().map(|q| self.point(q, b).map(|x| x as f32)).collect();
+        let [first, .., last] = points[..] else { return };
+        scene.lines.push(Line::new("path", [points.clone()], 2.0, palette.ink).dashed(2.0, 3.5).on_top());
+        let ends = [("A", first, Anchor::Right, -11.0), ("B", last, Anchor::Left, 11.0)];
+        // A closed path has one end.
+        let is_closed = first.iter().zip(last).all(|(s, t)| (s - t).abs() < 1e-3);
+        for (name, at, anchor, aside) in ends.into_iter().take(if is_closed { 1 } else { 2 }) {
+            scene.markers.push(Marker::disc("path/ends", at, 4.5, palette.background).edged(palette.ink, 1.6));
+            scene.labels.push(Label::new("path/names", at, [aside, -10.0], name, palette.ink, 13.0, anchor));
+        }
+    }
+}
+
+/// Angles of the drives against the base, rad.
+fn now(frame: &Frame) -> Vec<f64> {
+    (0..frame.q.len()).map(|k| frame.relative(k)).collect()
+}
+
+/// What of a convex polygon, or of a segment, lies where a linear function is not below 0.
+fn clipped(part: &[[f64; 3]], of: impl Fn(&[f64; 3]) -> f64) -> Vec<[f64; 3]> {
+    let mut kept = Vec::with_capacity(part.len() + 1);
+    for (i, p) in part.iter().enumerate() {
+        let q = &part[(i + 1) % part.len()];
+        let (here, there) = (of(p), of(q));
+        if here >= 0.0 {
+            kept.push(*p);
+        }
+        if (here >= 0.0) != (there >= 0.0) {
+            let share = here / (here - there);
+            kept.push([0, 1, 2].map(|k| p[k] + share * (q[k] - p[k])));
+        }
+    }
+    kept.dedup_by(|p, q| distance(*p, *q) < 1e-12);
+    if kept.len() > 2 && distance(kept[0], kept[kept.len() - 1]) < 1e-12 {
+        kept.pop();
+    }
+    kept
+}
+
+fn distance(p: [f64; 3], q: [f64; 3]) -> f64 {
+    let d = [0, 1, 2].map(|i| p[i] - q[i]);
+    dot(d, d).sqrt()
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn unit(a: [f64; 3]) -> [f64; 3] {
+    let size = dot(a, a).sqrt().max(1e-300);
+    a.map(|x| x / size)
+}
+
+/// A closed outline as a line.
+fn closed(part: &[[f64; 3]]) -> Vec<[f32; 3]> {
+    part.iter().chain(part.first()).map(|p| p.map(|x| x as f32)).collect()
+}
+
+/// A convex polygon as an open shell.
+fn fan(part: &[[f64; 3]]) -> Mesh {
+    let mut mesh = Mesh { shell: true, ..Mesh::default() };
+    let [a, b, c, ..] = *part else { return mesh };
+    let normal = unit(cross([0, 1, 2].map(|i| b[i] - a[i]), [0, 1, 2].map(|i| c[i] - a[i])));
+    mesh.positions.extend(part.iter().map(|p| p.map(|x| x as f32)));
+    mesh.normals.extend(part.iter().map(|_| normal.map(|x| x as f32)));
+    mesh.triangles.extend((1..part.len() as u32 - 1).map(|i| [0, i, i + 1]));
+    mesh
+}
