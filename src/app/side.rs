@@ -121,7 +121,7 @@ fn pose_constant(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &Vie
             Some(common) if map.angles() == 1 => {
                 let all: Vec<String> =
                     common.intervals.iter().map(|[low, high]| format!("{:.3}", 0.5 * (low + high))).collect();
-                format!("{who}: b {} rad alone; past it they turn along", all.join(" or "))
+                format!("{who}: b {} rad alone", all.join(" or "))
             }
             Some(common) => format!("{who}: {}", common.near(shown).in_words()),
             None => format!("{who} share no b"),

@@ -3,7 +3,7 @@
 use egui::{RichText, Ui};
 use egui_plot::{Line, PlotPoint, PlotPoints, Points, VLine};
 
-use super::which_b::{base_plot, small_axes};
+use super::which_b::{base_plot, marks, small_axes, spaced};
 use crate::app::theme::{bold, colour, plain};
 use crate::app::widgets::name;
 use crate::app::{Command, ViewState, set_b};
@@ -61,7 +61,7 @@ pub fn show(
     ui.horizontal(|ui| {
         ui.set_height(16.0);
         ui.label(RichText::new("Which b?").font(bold(12.5)));
-        let words = "b that reach each point, rad; click to choose";
+        let words = "of each point, rad; click to choose";
         ui.add(egui::Label::new(RichText::new(words).font(plain(11.5)).color(colour(p.dim))).truncate());
     });
     let b_now = now.b_reference;
@@ -71,6 +71,7 @@ pub fn show(
     let response = base_plot("which b of points", p, height - 16.0)
         .show_axes([true, false])
         .show_grid([false, false])
+        .x_grid_spacer(move |_| marks(&spaced(b_now - half, b_now + half), half))
         .x_axis_formatter(|mark, _| signed(mark.value, 1))
         .show(ui, |plot| {
             plot.set_plot_bounds_x(b_now - half..=b_now + half);

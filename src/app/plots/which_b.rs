@@ -184,12 +184,13 @@ pub fn small_axes(ui: &mut Ui) {
     ui.style_mut().text_styles.insert(TextStyle::Body, plain(FIGURES));
 }
 
-fn marks(values: &[f64], step: f64) -> Vec<GridMark> {
+/// Values to mark on an axis.
+pub fn marks(values: &[f64], step: f64) -> Vec<GridMark> {
     values.iter().map(|v| GridMark { value: *v, step_size: step }).collect()
 }
 
 /// Some three to five round values between bounds.
-fn spaced(low: f64, high: f64) -> Vec<f64> {
+pub fn spaced(low: f64, high: f64) -> Vec<f64> {
     let step = round_up((high - low) / 5.0);
     let first = (low / step).ceil() as i64;
     (first..first + 12).map(|i| i as f64 * step).take_while(|v| *v <= high).collect()
