@@ -7,7 +7,7 @@ use egui::{Align2, Key, RichText, Sense, Stroke, TextStyle, TextWrapMode, Ui, Wi
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use crate::mechanics::machine::{self, Machine};
-use crate::picture::portrait::Portrait;
+use crate::picture::paint::portrait::Portrait;
 use crate::picture::scene::palette::Palette;
 
 /// Of the built-in machines, in their order; made when the list is first opened.

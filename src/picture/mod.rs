@@ -8,8 +8,6 @@ pub mod gui;
 pub mod numbers;
 #[cfg(feature = "ui")]
 pub mod paint;
-#[cfg(feature = "ui")]
-pub mod portrait;
 #[cfg(feature = "render")]
 pub mod render;
 pub mod scene;

@@ -1,6 +1,7 @@
 //! A scene and its words painted by egui: in the window, in figures and in the pictures of recordings alike.
 
 pub mod figure;
+pub mod portrait;
 pub mod words;
 
 use std::sync::Arc;

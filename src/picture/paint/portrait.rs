@@ -5,11 +5,11 @@ use std::f64::consts::PI;
 
 use egui::{Painter, Pos2, Rect, Stroke};
 
-use super::paint::colour;
-use super::scene::linkage::{Flat, Linkage};
-use super::scene::palette::{Palette, mix};
+use super::colour;
 use crate::mechanics::machine::{Machine, place_of};
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
+use crate::picture::scene::linkage::{Flat, Linkage};
+use crate::picture::scene::palette::{Palette, mix};
 
 /// How far into its limits each relative angle is bent: not half, where arms with limits on both sides are straight.
 const BENT: f64 = 0.62;
