@@ -290,9 +290,10 @@ pub const FINE_ACTIONS: &[Action] = actions![
 ];
 
 /// What the pointer does.
-pub const GESTURES: [(&str, &str); 21] = [
+pub const GESTURES: [(&str, &str); 22] = [
     ("drag the target", "the machine follows on its plane"),
     ("drag a link", "its drive turns, the others follow so that b stays"),
+    ("drag a link of four drives or more", "it goes along, the tip and b stay"),
     ("drag A, B, 1 …", "move a point of the path; where the target covers it, drag its name"),
     ("double click", "add a point to the path"),
     ("Delete", "leave out the point under the pointer"),

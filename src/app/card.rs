@@ -8,6 +8,7 @@ use crate::picture::scene::course::target_handle;
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Palette;
 use crate::picture::scene::views::Views;
+use crate::planning::pose_map::PoseMap;
 use crate::session::Session;
 use crate::settings::number::subscript;
 use crate::simulation::frame::Reach;
@@ -109,7 +110,9 @@ impl Card {
         let (machine, frame) = (&session.scenario().machine, session.frame());
         let drive = machine.resolved_links().get(i)?.drive;
         let title = format!("drive {}, q{} = {}°", drive + 1, subscript(drive + 1), degrees(frame.q[drive]));
-        let mut rows = vec![format!("the others follow: b stays {} rad", signed(frame.b_reference, 3))];
+        let held = session.run().pose_map().is_ok_and(PoseMap::holds);
+        let others = if held { "the tip stays, and" } else { "the others follow:" };
+        let mut rows = vec![format!("{others} b stays {} rad", signed(frame.b_reference, 3))];
         for (k, angle) in machine.angles().iter().enumerate() {
             let ends = [*angle.limits.start(), *angle.limits.end()];
             if let Some(end) = ends.into_iter().find(|end| (frame.a[k] - end).abs() < AT_LIMIT) {
@@ -146,11 +149,13 @@ fn link(i: usize, session: &Session) -> Option<Card> {
     if scenario.plant.link.contains_key(&link.name) {
         rows.push("the plant differs from this".into());
     }
-    let hint = match session.run().planes().filter(|_| session.follows_hands()) {
-        Some(_) => {
+    let map = session.run().pose_map().ok().filter(|_| session.follows_hands());
+    let hint = match map {
+        Some(PoseMap::Planes(_)) => {
             format!("drag: turns drive {}, the others follow so that b stays\nclick: its rows in the panel", drive + 1)
         }
-        None => "click: its rows in the panel".to_owned(),
+        Some(map) if map.holds() => "drag: it goes along, the tip and b stay\nclick: its rows in the panel".to_owned(),
+        _ => "click: its rows in the panel".to_owned(),
     };
     Some(Card::new(title, rows, hint))
 }

@@ -16,6 +16,7 @@ use crate::picture::scene::exaggeration::exaggerated;
 use crate::picture::scene::options::{Handle, Other, ViewOptions};
 use crate::picture::scene::pick::{Aim, Pick};
 use crate::picture::scene::views::{ViewKind, Views};
+use crate::planning::pose_map::PoseMap;
 use crate::session::scenario::Task;
 use crate::session::{Edit, Session};
 use crate::simulation::frame::Frame as Instant;
@@ -220,6 +221,10 @@ fn point_at(
                 Edit::DragTarget { x, y }
             }
             Aim::Angles([a1, a2]) => Edit::DragAngles { a1, a2 },
+            Aim::Pull { link, along, at: [x, y] } => {
+                let link = session.scenario().machine.links().get(link)?.name.clone();
+                Edit::PullLink { link, along, x, y }
+            }
             Aim::B(b) => set_b(session, view_state, b),
             Aim::Push([x, y]) => {
                 let [now_x, now_y] = session.scenario().plant.force;
@@ -274,7 +279,8 @@ fn point_at(
             view_state.dragged = false;
         }
     } else if let Some(hot) = view_state.hot {
-        let turns = session.run().planes().is_some() && session.follows_hands();
+        let turns = session.follows_hands()
+            && session.run().pose_map().is_ok_and(|map| map.holds() || matches!(map, PoseMap::Planes(_)));
         let hot = if matches!(hot, Handle::Link(_)) && !turns { Handle::Base } else { hot };
         ui.ctx().set_cursor_icon(cursor(hot, false));
     }

@@ -56,6 +56,11 @@ impl PoseMap {
         }
     }
 
+    /// Whether a point and a b leave freedoms, so that a link can be pulled while the end effector stays.
+    pub fn holds(&self) -> bool {
+        matches!(self, Self::Space(space) if space.drives() > 3)
+    }
+
     /// λ of the drives.
     pub fn lambda(&self) -> PerDrive {
         match self {

@@ -20,7 +20,11 @@ pub(super) fn changed(scenario: &Scenario, edit: &Edit) -> Result<Scenario, Refu
             scenario.plant.force = [*x, *y];
         }
         Edit::Set { change } => scenario = scenario.with(change)?,
-        Edit::PoseB { .. } | Edit::DragTarget { .. } | Edit::DragAngles { .. } | Edit::SlideB { .. } => {}
+        Edit::PoseB { .. }
+        | Edit::DragTarget { .. }
+        | Edit::DragAngles { .. }
+        | Edit::PullLink { .. }
+        | Edit::SlideB { .. } => {}
     }
     Ok(scenario)
 }

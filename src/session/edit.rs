@@ -29,6 +29,17 @@ pub enum Edit {
         /// rad.
         a2: f64,
     },
+    /// Pulls a point of a link to a place, m, while the end effector and b stay: what four drives and more have left.
+    PullLink {
+        /// Its name.
+        link: String,
+        /// m from its root.
+        along: f64,
+        /// m.
+        x: f64,
+        /// m.
+        y: f64,
+    },
     /// Sends the pose constant to b, rad, in motion: the base feels n_B = −D_1 b̈.
     SlideB {
         /// rad.
@@ -179,6 +190,9 @@ impl Edit {
         let found: Vec<Check> = match self {
             Self::DragTarget { x, y } => vec![PLACE.check("x", *x), PLACE.check("y", *y)],
             Self::DragAngles { a1, a2 } => vec![ANGLE.check("a1", *a1), ANGLE.check("a2", *a2)],
+            Self::PullLink { along, x, y, .. } => {
+                vec![PLACE.check("along", *along), PLACE.check("x", *x), PLACE.check("y", *y)]
+            }
             Self::SlideB { b } | Self::PoseB { b } => vec![POSE_CONSTANT.check("b", *b)],
             _ => Vec::new(),
         };
@@ -212,6 +226,7 @@ impl Edit {
         match self {
             Self::DragTarget { .. } => "target",
             Self::DragAngles { .. } => "angles",
+            Self::PullLink { .. } => "link",
             Self::SlideB { .. } | Self::PoseB { .. } => "b",
             Self::Push { .. } => "push",
             Self::Set { change } => match change.keys().next() {
@@ -224,7 +239,7 @@ impl Edit {
 
     /// Whether it sends the machine somewhere: the pointer or the slider.
     pub fn leads(&self) -> bool {
-        matches!(self, Self::DragTarget { .. } | Self::DragAngles { .. } | Self::SlideB { .. })
+        matches!(self, Self::DragTarget { .. } | Self::DragAngles { .. } | Self::PullLink { .. } | Self::SlideB { .. })
     }
 
     /// Whether it sets limits of joints.
@@ -253,6 +268,7 @@ impl Edit {
             Self::DragAngles { a1, a2 } => {
                 format!("turn links to a₁ {:.1}°, a₂ {:.1}°", a1.to_degrees(), a2.to_degrees())
             }
+            Self::PullLink { link, x, y, .. } => format!("pull link {link} to {x:.3}, {y:.3} m, the tip held"),
             Self::SlideB { b } => format!("slide b to {b:.3} rad"),
             Self::PoseB { b } => format!("pose at b = {b:.3} rad"),
             Self::Push { x: 0.0, y: 0.0 } => "let go".into(),

@@ -6,11 +6,11 @@ use super::changes::{Failed, folded};
 use super::edit::{Edit, TimedEdit};
 use super::planner::{Plan, plan};
 use super::refusal::Refusal;
-use crate::mechanics::machine::Inertia;
+use crate::mechanics::machine::{Chain, Inertia};
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use crate::planning::Motion;
-use crate::planning::following::Follower;
 use crate::planning::following::follow::Bounds;
+use crate::planning::following::{Follower, Pull};
 use crate::planning::pose_constant::Planes;
 use crate::planning::pose_map::PoseMap;
 use crate::planning::pose_space::NoPoseSpace;
@@ -237,6 +237,15 @@ impl Run {
                 follower.set_angles(&PerDrive::from([*a1, *a2]));
                 self.simulation.lead(Guide::Follow(follower));
             }
+            Edit::PullLink { link, along, x, y } => {
+                let chain = self.point_of(link, *along)?;
+                let mut follower = self.follower()?;
+                if !follower.map().holds() {
+                    return Err(Refusal::Task(NOTHING_LEFT.into()));
+                }
+                follower.set_pull(Pull { chain, at: Vector::new(*x, *y) });
+                self.simulation.lead(Guide::Follow(follower));
+            }
             Edit::SlideB { b } => {
                 let mut follower = self.follower()?;
                 follower.set_b(*b);
@@ -313,6 +322,15 @@ impl Run {
         })
     }
 
+    /// A point of a link, m from its root.
+    fn point_of(&self, link: &str, along: f64) -> Result<Chain, Refusal> {
+        let machine = &self.scenario.machine;
+        let found = machine.links().iter().position(|own| own.name == link);
+        let names = || machine.links().iter().map(|own| own.name.as_str()).collect::<Vec<_>>().join(", ");
+        let found = found.ok_or_else(|| Refusal::Task(format!("no link {link:?}: want one of {}", names())))?;
+        Ok(machine.resolved_links()[found].point(along))
+    }
+
     /// The follower that leads, or one that takes over from the motion.
     fn follower(&self) -> Result<Follower, Refusal> {
         match self.simulation.guide() {
@@ -345,6 +363,11 @@ impl Run {
                 };
                 Edit::DragAngles { a1, a2 }
             }
+            Edit::PullLink { link, along, .. } => {
+                let chain = self.point_of(link, *along).ok()?;
+                let at = crate::mechanics::kinematics::end_effector(&chain, &self.simulation.reference().q.units());
+                Edit::PullLink { link: link.clone(), along: *along, x: at.re, y: at.im }
+            }
             Edit::SlideB { .. } => Edit::SlideB { b: b_aim() },
             Edit::PoseB { .. } => Edit::PoseB { b: b_aim() },
             Edit::Push { .. } => Edit::Push { x: scenario.plant.force[0], y: scenario.plant.force[1] },
@@ -356,6 +379,10 @@ impl Run {
 /// Why relative angles of other machines are not dragged.
 const ANGLES_OF_THREE: &str =
     "two relative angles are set for machines of three drives: want the target dragged instead";
+
+/// Why a link of other machines is not pulled while the tip stays.
+const NOTHING_LEFT: &str =
+    "with the end effector and b held, fewer than four drives cannot move: want the target dragged instead";
 
 /// Bounds of the follower: no torque limit of any drive is passed in any direction of ä, also while b is slid.
 fn bounds(scenario: &Scenario, map: &PoseMap) -> Bounds {

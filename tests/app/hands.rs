@@ -18,6 +18,7 @@ pub const TESTS: &[Test] = tests![
     a_click_shows_the_place_in_the_panel,
     a_row_of_the_panel_lights_up_its_thing,
     a_link_that_is_dragged_turns_its_drive,
+    a_link_of_four_drives_is_pulled_while_the_tip_stays,
     limits_are_arcs_with_ends_to_drag,
     a_payload_is_hung_on_and_aside,
     the_target_is_typed,
@@ -164,6 +165,34 @@ fn a_link_that_is_dragged_turns_its_drive() {
     assert!((session(&h).frame().q[0] - before - 0.2).abs() < 5e-3, "{}", session(&h).frame().q[0] - before);
     let again = stillbase::session::replay(&session(&h).to_scenario(), |_, _| {}).expect("it runs");
     assert_eq!(again.frame(), session(&h).run().frame(), "the drags are in the script");
+}
+
+fn a_link_of_four_drives_is_pulled_while_the_tip_stays() {
+    let mut h = window("four-drive", Theme::Dark);
+    h.run_steps(2);
+    let (i, from) = link(&h, "1");
+    rest_on(&mut h, from);
+    assert!(h.query_by_label_contains("the tip and b stay").is_some(), "the card says so");
+    let (before, undos) = (*session(&h).frame(), session(&h).undo_count());
+    // One way or the other is free.
+    for by in [0.3, -0.3] {
+        let from = link(&h, "1").1;
+        let to = swung(&h, i, from, by);
+        pull(&mut h, from, to);
+        h.run_steps(90);
+        assert!(h.query_by_label_contains("the tip stays, and b stays").is_some(), "the card says so");
+        h.drop_at(to);
+        h.run_steps(3);
+        let f = session(&h).frame();
+        assert!((f.end_effector - before.end_effector).norm() < 1e-9, "the tip stays: {}", f.end_effector);
+        assert!((f.b - before.b).abs() < 1e-9);
+        assert!(session(&h).undo_title().expect("a title").starts_with("pull link 1 to"));
+    }
+    assert_eq!(session(&h).undo_count(), undos + 2);
+    let f = session(&h).frame();
+    assert!(f.peaks.is_reactionless() && f.peaks.torque.iter().any(|most| *most > 0.01), "{:?}", f.peaks);
+    let again = stillbase::session::replay(&session(&h).to_scenario(), |_, _| {}).expect("it runs");
+    assert_eq!(again.frame(), session(&h).run().frame(), "the pulls are in the script");
 }
 
 fn a_link_stops_at_the_limits_and_escape_takes_it_back() {

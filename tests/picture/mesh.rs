@@ -2,8 +2,16 @@
 
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
+
+use stillbase::mechanics::machine::builtin;
 use stillbase::picture::scene::Mesh;
+use stillbase::picture::scene::fill;
 use stillbase::picture::scene::mesh::{SEGMENTS, bar, cylinder, ring};
+use stillbase::picture::scene::options::ViewOptions;
+use stillbase::picture::scene::stage::Stage;
+use stillbase::planning::pose_space::PoseSpace;
+use stillbase::session::Run;
+use stillbase::session::scenario::Scenario;
 
 /// Area of a regular polygon of [`SEGMENTS`] chords over that of its circle, N/(2π) sin(2π/N).
 pub fn polygon_factor() -> f64 {
@@ -128,4 +136,47 @@ fn no_size_no_solid() {
     }
     assert_closed(&bar(f64::NAN, 1.0, 0.1, 0.1, f64::NAN));
     assert_closed(&ring(0.1, 0.0, 0.1));
+}
+
+/// Area of a filled outline, m², whose triangles all face upwards.
+fn filled(loops: &[Vec<[f64; 2]>]) -> f64 {
+    let mesh = fill::mesh(loops);
+    let corner = |i: u32| mesh.positions[i as usize].map(f64::from);
+    let of = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(corner);
+        0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+    };
+    let all: Vec<f64> = mesh.triangles.iter().map(of).collect();
+    assert!(all.iter().all(|area| *area > -1e-9), "counter-clockwise");
+    all.iter().sum()
+}
+
+#[test]
+fn holes_of_a_fill_are_left_out() {
+    let circle = |x: f64, r: f64, way: f64| -> Vec<[f64; 2]> {
+        let at = |i: u32| way * std::f64::consts::TAU * (f64::from(i) + 0.3) / 200.0;
+        (0..200).map(|i| [x + r * at(i).cos(), r * at(i).sin()]).collect()
+    };
+    let polygon = |r: f64| 100.0 * r * r * (std::f64::consts::TAU / 200.0).sin();
+    let square = vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]];
+    assert!((filled(&square) - 1.0).abs() < 1e-6);
+    let ring = [circle(0.0, 1.0, 1.0), circle(0.2, 0.5, -1.0)];
+    assert!((filled(&ring) - polygon(1.0) + polygon(0.5)).abs() < 1e-5);
+    let apart = [circle(0.0, 1.0, 1.0), circle(3.0, 0.5, 1.0)];
+    assert!((filled(&apart) - polygon(1.0) - polygon(0.5)).abs() < 1e-5);
+    assert_eq!(filled(&[]), 0.0);
+}
+
+/// Where four drives reach while b is held is filled by its area, as where three do.
+#[test]
+fn the_workspace_of_four_drives_is_filled() {
+    let machine = builtin("four-drive").expect("built in");
+    let space = PoseSpace::of(machine).expect("it is balanced");
+    let outline = space.outline(0.0);
+    let area = filled(&outline.loops);
+    assert!((area - outline.area).abs() < 2e-3 * outline.area, "{area} of {}", outline.area);
+    let run = Run::new(&Scenario::builtin("four-drive").expect("built in")).expect("it runs");
+    let scene = Stage::of(&run).scene(&run.frame(), &ViewOptions::default());
+    let fill = scene.solids.iter().find(|solid| solid.name == "workspace").expect("it is filled");
+    assert!(scene.model.meshes[fill.mesh].triangles.len() > 100);
 }

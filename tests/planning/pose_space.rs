@@ -278,4 +278,10 @@ fn without_b_it_says_why() {
     let why = PoseSpace::of(&family_machine("four-drive")).expect_err("not balanced");
     assert!(matches!(why, NoPoseSpace::Varies { .. }), "{why}");
     assert!(why.to_string().contains("link") && why.to_string().contains("design"), "{why}");
+    assert!(!why.to_string().contains("integral"), "{why}");
+    // Two drives have a quantity of their own, and are told why it is not offered.
+    let two = PoseSpace::of(stillbase::mechanics::machine::builtin("scara").expect("built in"))
+        .expect_err("not balanced")
+        .to_string();
+    assert!(two.contains("integral over q₂ − q₁") && two.contains("not offered as b, because"), "{two}");
 }

@@ -1,12 +1,13 @@
 //! A hand leads machines of any number of drives: b stays, the base feels nothing, limits hold; b is slid at its price.
 
 use proptest::prelude::*;
+use stillbase::mechanics::kinematics::end_effector;
 use stillbase::mechanics::machine::builtin;
 use stillbase::mechanics::planar::Vector;
 use stillbase::planning::pose_space::PoseSpace;
 use stillbase::planning::posture::Posture;
 use stillbase::session::scenario::Scenario;
-use stillbase::session::{Session, replay};
+use stillbase::session::{Edit, Session, replay};
 use stillbase::simulation::frame::{Frame, Reach};
 
 use super::{drag, open, slide};
@@ -143,6 +144,66 @@ fn a_hand_keeps_the_orientation_while_it_can() {
     }
     // Where no pose has it, the place matters more.
     assert!(led_to(Posture::Orientation, [0.2, 0.9]) > 1e-3);
+}
+
+fn pull(session: &Session, link: &str, along: f64, [x, y]: [f64; 2]) -> Edit {
+    assert!(session.scenario().machine.links().iter().any(|own| own.name == link), "{link}");
+    Edit::PullLink { link: link.into(), along, x, y }
+}
+
+/// Where a point of a link is, m.
+fn point_of(session: &Session, link: &str, along: f64) -> Vector {
+    let machine = &session.scenario().machine;
+    let i = machine.links().iter().position(|own| own.name == link).expect("a link");
+    end_effector(&machine.resolved_links()[i].point(along), &session.frame().q.units())
+}
+
+/// Held by its tip, a machine of four drives moves in what is left: no farther than its limits, without a reaction, with
+/// smooth torques, and the tip stays to rounding.
+#[test]
+fn a_link_is_pulled_while_the_tip_stays() {
+    let mut session = open(scenario("four-drive"));
+    let link = session.scenario().machine.links()[0].name.clone();
+    let (tip, b, space) = (session.frame().end_effector, session.frame().b, space(&session));
+    let start = point_of(&session, &link, 0.2);
+    let mut nearer = 0;
+    for turn in [0.6_f64, -0.6, 2.0, -2.0, 0.0] {
+        let to = start * Vector::from_polar(1.0, turn);
+        let before = (point_of(&session, &link, 0.2) - to).norm();
+        session.apply(pull(&session, &link, 0.2, [to.re, to.im])).expect("it is pulled");
+        let (mut off, mut swung, q) = (0.0_f64, 0.0_f64, session.frame().q);
+        let mut sent = 0.0_f64;
+        let [moment, torque] = {
+            let mut most = [0.0_f64; 2];
+            let machine = session.scenario().machine.clone();
+            step(&mut session, 3000, |f| {
+                most = [most[0].max(f.base_moment().abs()), most[1].max(f.torque.iter().map(|t| t.abs()).sum())];
+                off = off.max((f.end_effector - tip).norm());
+                swung = swung.max(f.q.0.minus(&q.0).max_abs());
+                for (a, angle) in f.a.iter().zip(machine.angles()) {
+                    let limits = &angle.limits;
+                    assert!(*a > limits.start() - 1e-9 && *a < limits.end() + 1e-9, "{a} of {limits:?}");
+                }
+                sent = sent.max((space.place(&f.q_reference) - tip).norm());
+            });
+            most
+        };
+        assert!(off < 1e-10, "{turn}: the tip goes {off} m");
+        assert!(sent < 1e-14, "{turn}: the reference goes {sent} m");
+        assert!(moment < 1e-9 * torque.max(1e-3), "{turn}: {moment} of {torque}");
+        let f = session.frame();
+        assert!((f.b - b).abs() < 1e-12 && (swung == 0.0 || f.peaks.is_reactionless()));
+        assert!(f.qd.max_abs() < 1e-6, "{turn}: it comes to rest: {:?}", f.qd);
+        let now = (point_of(&session, &link, 0.2) - to).norm();
+        assert!(now < before + 1e-9, "{turn}: it goes nearer: {now} m of {before}");
+        nearer += u32::from(swung > 0.05 && now < 0.9 * before);
+    }
+    assert!(nearer >= 3, "it is moved by {nearer} pulls of five");
+    let again = replay(&session.to_scenario(), |_, _| {}).expect("it runs");
+    assert_eq!(again.frame(), session.run().frame(), "the pulls are in the script");
+    let three = open(Scenario { step: 0.002, ..Scenario::builtin("case-3").expect("built in") });
+    let why = three.clone().apply(pull(&three, "5", 0.1, [0.3, 0.3])).expect_err("nothing is left").to_string();
+    assert!(why.contains("fewer than four drives"), "{why}");
 }
 
 /// A b that is said to reach a target does, once it is slid there.

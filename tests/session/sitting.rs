@@ -36,6 +36,7 @@ fn name(edit: &Edit) -> String {
     match edit {
         Edit::DragTarget { .. } => "drag-target".into(),
         Edit::DragAngles { .. } => "drag-angles".into(),
+        Edit::PullLink { .. } => "pull-link".into(),
         Edit::SlideB { .. } => "slide-b".into(),
         Edit::PoseB { .. } => "pose-b".into(),
         Edit::Push { .. } => "push".into(),
@@ -119,6 +120,7 @@ fn any_edit() -> impl Strategy<Value = Edit> {
     prop_oneof![
         6 => (-0.2..1.0, -0.2..1.2).prop_map(|(x, y)| drag(x, y)),
         3 => (-0.5..3.5, -0.5..3.5).prop_map(|(a1, a2)| Edit::DragAngles { a1, a2 }),
+        1 => (0.0..1.0, 0.0..1.0).prop_map(|(x, y)| Edit::PullLink { link: "5".into(), along: 0.1, x, y }),
         3 => (1.8..3.2).prop_map(slide),
         2 => (2.2..2.7).prop_map(|b| Edit::PoseB { b }),
         2 => (-5.0..5.0, -5.0..5.0).prop_map(|(x, y)| Edit::Push { x, y }),

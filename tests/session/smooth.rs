@@ -108,6 +108,24 @@ fn torques_do_not_chatter_and_keep_their_limits() {
     }
 }
 
+/// Links pulled while the tip is held, one after the other and out of a drag.
+#[test]
+fn a_pulled_link_moves_smoothly() {
+    for seed in 1..5 {
+        let scenario = Scenario { step: 0.002, ..Scenario::builtin("four-drive").expect("built in") };
+        let mut share = shares(seed);
+        let names: Vec<String> = scenario.machine.links().iter().map(|link| link.name.clone()).collect();
+        let mut edits = vec![(0, drag(0.5, 0.6))];
+        for i in 0..6 {
+            let link = names[(share() * names.len() as f64) as usize].clone();
+            let (x, y) = (2.0 * share() - 1.0, 2.0 * share() - 1.0);
+            edits.push((200 + 300 * i, Edit::PullLink { link, along: 0.2, x, y }));
+        }
+        let courses = led(scenario, &edits, 2200);
+        is_smooth(&format!("seed {seed}, {edits:?}"), &courses, edits.len());
+    }
+}
+
 /// Slid along folds, where the way ahead is barred again and again.
 #[test]
 fn folds_are_gone_along_smoothly() {

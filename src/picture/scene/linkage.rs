@@ -210,6 +210,13 @@ impl Linkage {
         2.0 * DRIVE_RADIUS * self.reach
     }
 
+    /// Takes one more mesh; which it is.
+    pub fn add(&mut self, mesh: Mesh) -> usize {
+        let meshes = &mut Arc::make_mut(&mut self.model).meshes;
+        meshes.push(mesh);
+        meshes.len() - 1
+    }
+
     /// The links.
     pub fn bars(&self) -> &[Bar] {
         &self.bars
@@ -355,6 +362,11 @@ impl Bar {
             let p = root + along * s;
             [p.re, p.im, z]
         })
+    }
+
+    /// How long it is, m.
+    pub fn length(&self) -> f64 {
+        self.length
     }
 
     /// Where its root is and which way it points, and its height.

@@ -12,6 +12,7 @@ pub mod camera;
 pub mod course;
 pub mod dexterity;
 pub mod exaggeration;
+pub mod fill;
 pub mod framing;
 pub mod joint_space;
 pub mod linkage;

@@ -21,6 +21,8 @@ pub struct Pick {
 pub enum Grip {
     /// A link.
     Link(Hold),
+    /// A link that is pulled while the end effector stays.
+    Pull(Hook),
     /// A joint limit.
     Limit(Pivot),
 }
@@ -31,7 +33,7 @@ impl Grip {
     pub fn snapping(self, snaps: bool) -> Self {
         match self {
             Self::Link(hold) => Self::Link(Hold { snaps, ..hold }),
-            Self::Limit(pivot) => Self::Limit(pivot),
+            other => other,
         }
     }
 }
@@ -43,6 +45,15 @@ pub struct Pivot {
     pub at: [f64; 2],
     /// Angle of the inner drive, rad.
     pub inner: f64,
+}
+
+/// Where on a link it is pulled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hook {
+    /// m from its root.
+    pub along: f64,
+    /// From the pointer to there, m.
+    pub off: [f64; 2],
 }
 
 /// How a link is held.
@@ -82,6 +93,7 @@ impl Aim {
             }
             Self::Push(force) => Self::Push(both(force, ROUND_FORCE)),
             Self::B(b) => Self::B(round(b, ROUND_B)),
+            Self::Pull { link, along, at } => Self::Pull { link, along, at: both(at, ROUND_PLACE) },
             // Where its drive is at a round angle: its grip says so.
             Self::Angles(a) => Self::Angles(a),
         }
@@ -106,6 +118,15 @@ pub enum Aim {
     Waypoint(usize, [f64; 2]),
     /// The relative joint angles (a_1, a_2), rad.
     Angles([f64; 2]),
+    /// A point of a link, while the end effector stays.
+    Pull {
+        /// Counted from 0.
+        link: usize,
+        /// m from its root.
+        along: f64,
+        /// m.
+        at: [f64; 2],
+    },
     /// Least and greatest value of a relative angle.
     Limit {
         /// Counted from 0.

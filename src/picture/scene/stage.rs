@@ -23,7 +23,7 @@ use super::framing::Content;
 use super::linkage::Linkage;
 use super::options::{Handle, ViewOptions};
 use super::palette::{Palette, faded, palette};
-use super::pick::{Hold, Pick, Pivot};
+use super::pick::{Aim, Hold, Hook, Pick, Pivot};
 use super::pointer::Pointer;
 use super::{Line, Measure, Scene, Strips, point};
 use crate::mechanics::planar::{DriveAngles, Vector, unit};
@@ -48,10 +48,14 @@ pub struct Stage {
     workspace: Option<Workspace>,
     /// The same of other than three drives.
     outline: Outlining,
+    /// The mesh that fills it.
+    fill: Option<usize>,
     plan: Option<Plan>,
     /// Whether the run waits, and whether a hand can lead the machine.
     waits: bool,
     follows: bool,
+    /// Whether links are pulled while the end effector stays.
+    holds: bool,
     pins: Pins,
     limits: Limits,
     /// The grid's lines, and those through the origin.
@@ -102,9 +106,11 @@ impl Stage {
                 Ok(PoseMap::Space(space)) => Outlining::Wanted(space.clone()),
                 _ => Outlining::None,
             },
+            fill: None,
             plan: Plan::of(run, linkage.top()),
             waits: run.waiting().is_some(),
             follows: run.waiting().is_none() && run.pose_map().is_ok(),
+            holds: run.waiting().is_none() && run.pose_map().is_ok_and(PoseMap::holds),
             pins: Pins::of(&plant),
             limits: Limits::of(model, &linkage),
             grid: grid(&linkage),
@@ -134,7 +140,10 @@ impl Stage {
     /// Takes an outline, if it is of what was yet to be outlined.
     pub fn set_outline(&mut self, of: &PoseSpace, outline: Option<Outlined>) {
         if matches!(&self.outline, Outlining::Wanted(space) if **space == *of) {
-            self.outline = outline.map_or(Outlining::None, |outline| Outlining::Done(Arc::new(outline)));
+            match outline {
+                Some(outline) => self.take(Arc::new(outline)),
+                None => self.outline = Outlining::None,
+            }
         }
     }
 
@@ -143,8 +152,15 @@ impl Stage {
         if let (Outlining::Wanted(space), Outlining::Done(outline)) = (&self.outline, &other.outline)
             && outline.space() == &**space
         {
-            self.outline = Outlining::Done(outline.clone());
+            self.take(outline.clone());
         }
+    }
+
+    fn take(&mut self, outline: Arc<Outlined>) {
+        if !outline.fill().triangles.is_empty() {
+            self.fill = Some(self.linkage.add(outline.fill().clone()));
+        }
+        self.outline = Outlining::Done(outline);
     }
 
     /// Takes over what has changed of base and payload.
@@ -232,8 +248,12 @@ impl Stage {
         under::link(&self.linkage, frame, pointer)
     }
 
-    /// The link under the pointer, taken hold of, on a machine that has planes to turn it on.
+    /// The link under the pointer, taken hold of, on a machine that has planes to turn it on, or freedoms to pull it in.
     pub fn grip(&self, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
+        if self.holds {
+            let i = self.link_at(frame, pointer)?;
+            return turning::hook(i, self.linkage.bars().get(i)?, frame, pointer);
+        }
         let workspace = self.workspace.as_ref().filter(|_| self.follows)?;
         let (i, map) = (self.link_at(frame, pointer)?, workspace.planes().map());
         turning::grip(i, self.linkage.bars().get(i)?, map, frame, pointer)
@@ -244,6 +264,11 @@ impl Stage {
     pub fn turned(&self, link: usize, grip: &Hold, frame: &Frame, pointer: &Pointer, b: f64) -> Option<[f64; 2]> {
         let map = self.workspace.as_ref()?.planes().map();
         turning::turned(self.linkage.bars().get(link)?, grip, map, frame, pointer, b)
+    }
+
+    /// Where the pointer pulls a link while the end effector stays.
+    pub fn pulled(&self, link: usize, hook: &Hook, frame: &Frame, pointer: &Pointer) -> Option<Aim> {
+        turning::pulled(link, self.linkage.bars().get(link)?, hook, frame, pointer)
     }
 
     /// What is under the pointer that cannot be pulled at; the uppermost of several.
@@ -329,7 +354,7 @@ impl Stage {
             workspace.ring(&mut scene, &palette, frame, options, z);
         }
         if let Some(outline) = self.outline.done() {
-            outline.draw(&mut scene, linkage, &palette, frame);
+            outline.draw(&mut scene, (linkage, self.fill), &palette, frame);
         }
         if let Some(plan) = &self.plan {
             plan.draw(&mut scene, &palette, options);

@@ -321,6 +321,9 @@ impl Views {
         if let (ViewKind::Joints, Some(section)) = (kind, &self.section) {
             return section.aim(pick, frame, pointer);
         }
+        if let (Handle::Link(i), Some(Grip::Pull(hook))) = (pick.handle, &pick.grip) {
+            return self.stage.pulled(i, hook, frame, pointer);
+        }
         match (kind, &self.joints, &self.tower) {
             (ViewKind::Joints, Some(joints), _) => joints.aim(pick, frame, pointer),
             (ViewKind::Tower, _, Some(tower)) => tower.aim(pick, frame, pointer),

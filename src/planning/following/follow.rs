@@ -4,6 +4,8 @@
 //! vector ä as a whole, never component by component, and b̈ on its own. While b is not slid it is not
 //! touched at all, so the motion is reactionless to the last bit of b.
 
+use super::braking::{LAG, approach, last_open, norm};
+use super::held::{Held, Pull};
 use crate::mechanics::planar::{PerDrive, Vector};
 use crate::planning::Reference;
 use crate::planning::pose_constant::Reach;
@@ -27,8 +29,6 @@ pub struct Bounds {
     pub pose: f64,
 }
 
-/// Time constant of the reference behind its aim, s.
-const LAG: f64 = 0.02;
 /// The aim counts as reached when the reference is nearer than this, rad and rad/s.
 const ARRIVED: f64 = 1e-11;
 
@@ -44,6 +44,9 @@ pub struct Follower {
     aim_rate: PerDrive,
     b_aim: f64,
     target: Target,
+    /// A link is to be pulled while the end effector stays, once this is at rest; and how that goes.
+    pull: Option<Pull>,
+    held: Option<Held>,
 }
 
 /// A coordinate with its derivatives; the second holds over the present step.
@@ -81,10 +84,6 @@ impl Courses {
     }
 }
 
-fn norm(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |sum: f64, x| sum.hypot(*x))
-}
-
 impl Follower {
     /// Takes over from a reference: keeps its pose and rates, then slows to rest at the b it is on. `step` is the time
     /// between calls of [`advance`](Self::advance), s.
@@ -102,16 +101,64 @@ impl Follower {
             b_aim: b + 0.5 * bd * bd.abs() / bounds.pose,
             target: Target { at: map.forward(&x, b), reach: Reach::Inside },
             map,
+            pull: None,
+            held: None,
         };
-        let stop = norm(&v) / bounds.joint;
-        follower.aim = follower.map.clamped(&x.plus(0.5 * stop, &v));
-        follower.target.at = follower.aim_point();
+        follower.aim_at_stop();
         follower.steer();
         follower
     }
 
+    /// Sends it to where it can stop soonest.
+    fn aim_at_stop(&mut self) {
+        let stop = norm(&self.a.v) / self.bounds.joint;
+        self.aim = self.map.clamped(&self.a.x.plus(0.5 * stop, &self.a.v));
+        self.aim_rate = PerDrive::zeros(self.aim.len());
+        self.target = Target { at: self.aim_point(), reach: Reach::Inside };
+    }
+
+    /// Pulls a point of a link while the end effector stays where it is, or where it comes to rest. Nothing moves on
+    /// machines of less than [four drives](PoseMap::holds).
+    pub fn set_pull(&mut self, pull: Pull) {
+        if let Some(held) = &mut self.held {
+            held.pull(pull);
+            return;
+        }
+        if self.pull.is_none() && !self.is_at_rest() {
+            let (x, v) = (self.b.x, self.b.v);
+            self.b_aim = x + 0.5 * v * v.abs() / self.bounds.pose;
+            self.aim_at_stop();
+            self.steer();
+        }
+        self.pull = Some(pull);
+        self.hold();
+    }
+
+    /// Begins to pull, once it is at rest.
+    fn hold(&mut self) {
+        if let (Some(pull), true, PoseMap::Space(space)) = (self.pull, self.is_at_rest(), &self.map) {
+            let bounds = (self.bounds.joint, self.step);
+            self.held = Some(Held::new(space.clone(), self.a.x, self.b.x, bounds, pull));
+            self.pull = None;
+            self.b_aim = self.b.x;
+            self.target = Target { at: self.map.forward(&self.a.x, self.b.x), reach: Reach::Inside };
+        }
+    }
+
+    /// No link is pulled any more; the end effector is where it was held.
+    fn let_go(&mut self) {
+        self.pull = None;
+        if let Some((x, v)) = self.held.take().map(|held| held.angles()) {
+            self.a = Courses { v, ..Courses::resting(x) };
+            self.aim = x;
+            self.aim_at_target();
+            self.aim_rate = PerDrive::zeros(self.aim.len());
+        }
+    }
+
     /// Sends the end effector to a point, m.
     pub fn set_target(&mut self, at: Vector) {
+        self.let_go();
         self.target.at = at;
         self.aim_at_target();
         self.aim_rate = PerDrive::zeros(self.aim.len());
@@ -120,6 +167,7 @@ impl Follower {
 
     /// Sends the relative angles somewhere, rad, as far as their limits and folds on the straight way let them.
     pub fn set_angles(&mut self, a: &PerDrive) {
+        self.let_go();
         self.aim = self.as_far_as_open(self.map.clamped(a));
         self.target = Target { at: self.aim_point(), reach: Reach::Inside };
         self.aim_rate = PerDrive::zeros(self.aim.len());
@@ -133,6 +181,7 @@ impl Follower {
 
     /// Sends the pose constant to b, rad.
     pub fn set_b(&mut self, b: f64) {
+        self.let_go();
         self.b_aim = b;
         self.steer();
     }
@@ -164,11 +213,17 @@ impl Follower {
 
     /// Whether the reference has arrived and stands still.
     pub fn is_at_rest(&self) -> bool {
+        if let Some(held) = &self.held {
+            return held.is_at_rest();
+        }
         self.a.v.iter().chain(self.a.acc.iter()).all(|x| *x == 0.0) && self.b.v == 0.0 && self.b.acc == 0.0
     }
 
     /// The reference dt seconds into the present step.
     pub fn reference(&self, dt: f64) -> Reference {
+        if let Some(held) = &self.held {
+            return held.reference(dt);
+        }
         let (a, b) = (self.a.after(dt), self.b.after(dt));
         Reference {
             q: self.map.lift(&a.x, b.x),
@@ -179,6 +234,10 @@ impl Follower {
 
     /// Ends the present step and begins the next.
     pub fn advance(&mut self) {
+        if let Some(held) = &mut self.held {
+            held.advance();
+            return;
+        }
         let h = self.step;
         let turning = self.b.v != 0.0 || self.b.acc != 0.0;
         self.a = self.a.after(h);
@@ -200,6 +259,7 @@ impl Follower {
             self.aim_rate = PerDrive::zeros(self.aim.len());
             self.steer();
         }
+        self.hold();
     }
 
     /// b has changed: the end effector keeps its place while it can; when it cannot, it turns with the workspace.
@@ -237,6 +297,7 @@ impl Follower {
 
     /// Puts the reference at rest at b: the end effector keeps its place if it can.
     pub fn pose_at(&mut self, b: f64) {
+        self.let_go();
         self.b = Course { x: b, v: 0.0, acc: 0.0 };
         self.b_aim = b;
         self.turn_aim();
@@ -335,19 +396,4 @@ impl Follower {
             self.b.acc = want.clamp(-self.bounds.pose, self.bounds.pose);
         }
     }
-}
-
-/// The greatest share that is open, of those between 0, which is, and 1, which is not.
-fn last_open(is_open: impl Fn(f64) -> bool) -> f64 {
-    let (mut open, mut barred) = (0.0, 1.0);
-    for _ in 0..20 {
-        let middle = 0.5 * (open + barred);
-        if is_open(middle) { open = middle } else { barred = middle }
-    }
-    open
-}
-
-/// Speed at which a distance is closed so that four fifths of the bound can still stop it.
-fn approach(distance: f64, bound: f64) -> f64 {
-    (distance / (4.0 * LAG)).min((1.6 * bound * distance).sqrt())
 }

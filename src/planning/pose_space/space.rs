@@ -67,8 +67,8 @@ pub enum NoPoseSpace {
     /// D depends on the pose.
     #[error(
         "this machine has no pose constant b: its angular momentum depends on the pose, because drives {} and {} are \
-         coupled by {} kg m², most of it through link {link}; `stillbase design` finds centres of mass that undo it",
-        .pair[0], .pair[1], Short(*residual)
+         coupled by {} kg m², most of it through link {link}; `stillbase design` finds centres of mass that undo it{}",
+        .pair[0], .pair[1], Short(*residual), if *.only { ONLY_TWO } else { "" }
     )]
     Varies {
         /// The drives that are coupled most, counted from 1.
@@ -77,6 +77,8 @@ pub enum NoPoseSpace {
         residual: f64,
         /// The link that contributes most.
         link: String,
+        /// Whether there are only these two drives.
+        only: bool,
     },
     /// Every D_k is 0.
     #[error("every motion of this machine is reactionless, as no drive turns the base: there is no b to hold")]
@@ -114,6 +116,10 @@ pub enum NoPoseSpace {
         reach: f64,
     },
 }
+
+/// Two drives keep something even so: see [`b_integral`](crate::planning::off_plane::b_integral).
+const ONLY_TWO: &str = "; without a moment its two drives keep q₁ plus an integral over q₂ − q₁, which is not offered as \
+                        b, because its λ changes with the pose";
 
 /// Couplings up to this share of the inertia of all are rounding of a table, not a machine that shakes.
 const ROUNDED: f64 = 1e-3;
@@ -170,6 +176,11 @@ impl PoseSpace {
     /// Number of drives.
     pub fn drives(&self) -> usize {
         self.tip.len()
+    }
+
+    /// c_k, m: the end effector is Σ_k c_k e^{iq_k}.
+    pub fn tip(&self) -> &PerDrive {
+        &self.tip
     }
 
     /// λ_k.
@@ -315,5 +326,5 @@ fn varies(machine: &Machine, inertia: &Inertia) -> NoPoseSpace {
     };
     let most = (0..machine.links().len()).max_by(|i, j| part(i).total_cmp(&part(j))).unwrap_or(0);
     let link = machine.links()[most].name.clone();
-    NoPoseSpace::Varies { pair: [k + 1, l + 1], residual: whole.norm(), link }
+    NoPoseSpace::Varies { pair: [k + 1, l + 1], residual: whole.norm(), link, only: n == 2 }
 }

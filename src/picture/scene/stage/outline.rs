@@ -1,20 +1,28 @@
 //! What a machine of other than three drives reaches while b is held: the curve of two, the boundary of more.
 
+use std::sync::Arc;
+
 use crate::mechanics::planar::{Vector, unit};
 use crate::picture::scene::linkage::Linkage;
-use crate::picture::scene::palette::Palette;
-use crate::picture::scene::{Anchor, Label, Line, Marker, Scene, Strips, point, posed};
+use crate::picture::scene::palette::{Palette, faded};
+use crate::picture::scene::{Anchor, Changes, Label, Line, Marker, Mesh, Scene, Solid, Strips, fill, point, posed};
 use crate::planning::pose_space::PoseSpace;
 use crate::simulation::frame::Frame;
 
 /// Chords are as near to the boundary as this, m for an arm of a metre: less than a pixel.
 const CHORD: f64 = 5e-4;
 
+/// How much of the colour fills it, as of three drives, and how far below the boundary, as a share of the reach.
+const FILL: f32 = 0.13;
+const BELOW: f64 = 1e-3;
+
 /// A workspace before it is turned.
 #[derive(Clone, Debug)]
 pub struct Outlined {
     space: PoseSpace,
     strips: Strips,
+    /// What lies inside of it; nothing of a curve.
+    fill: Arc<Mesh>,
     /// What it is, and its length or area.
     words: [String; 2],
     /// Where the words stand, m.
@@ -84,7 +92,8 @@ impl Outlined {
         };
         let ends = [curve.first(), curve.last()].into_iter().flatten().filter(|_| curve.len() > 1);
         let ends = ends.enumerate().filter_map(named).collect();
-        (!lines.is_empty()).then(|| Self { strips: lines.into(), words, middle, ends, space })
+        let fill = Arc::new(fill::mesh(&outline.loops));
+        (!lines.is_empty()).then(|| Self { strips: lines.into(), fill, words, middle, ends, space })
     }
 
     /// It at b = 0 as closed lines, m: a curve there and back.
@@ -107,6 +116,11 @@ impl Outlined {
         &self.space
     }
 
+    /// What lies inside of it, before it is turned; no triangles of a curve.
+    pub fn fill(&self) -> &Mesh {
+        &self.fill
+    }
+
     /// How far it is turned in a frame, rad.
     fn turn(&self, frame: &Frame) -> f64 {
         self.space.turn(frame.b_reference) + frame.base.angle
@@ -119,9 +133,24 @@ impl Outlined {
         all.map(|[x, y, _]| frame.base.at + turn * Vector::new(f64::from(*x), f64::from(*y))).collect()
     }
 
-    /// Draws it where it is in a frame.
-    pub fn draw(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Frame) {
+    /// Draws it where it is in a frame, filled with a mesh.
+    pub fn draw(
+        &self,
+        scene: &mut Scene,
+        (linkage, fill): (&Linkage, Option<usize>),
+        palette: &Palette,
+        frame: &Frame,
+    ) {
         let (turn, z) = (self.turn(frame), linkage.floor());
+        // Under all lines.
+        let below = posed(frame.base.at, unit(turn), z - BELOW * linkage.reach());
+        scene.solids.extend(fill.map(|mesh| Solid {
+            name: "workspace".into(),
+            mesh,
+            world_from_item: below,
+            colour: faded(palette.amber, FILL),
+            changes: Changes::Pose,
+        }));
         let pose = posed(frame.base.at, unit(turn), z);
         scene.lines.push(Line::new("workspace/boundary", self.strips.clone(), 1.8, palette.amber).moving(pose));
         let there = |p: Vector| point(frame.base.at + p * unit(turn), z);

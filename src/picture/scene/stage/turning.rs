@@ -3,10 +3,10 @@
 
 use std::f64::consts::PI;
 
-use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
+use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, dot};
 use crate::picture::scene::linkage::Bar;
 use crate::picture::scene::options::Handle;
-use crate::picture::scene::pick::{Grip, Hold, Pick, ROUND_ANGLE};
+use crate::picture::scene::pick::{Aim, Grip, Hold, Hook, Pick, ROUND_ANGLE};
 use crate::picture::scene::pointer::Pointer;
 use crate::planning::reactionless::{PlaneMap, PlanePoint};
 use crate::simulation::frame::Frame;
@@ -36,6 +36,23 @@ pub fn grip(link: usize, bar: &Bar, map: &PlaneMap, frame: &Frame, pointer: &Poi
     let (.., z) = bar.pose(&frame.q.units());
     let grip = Some(Grip::Link(Hold { angle, from, snaps: false }));
     Some(Pick { handle: Handle::Link(link), at: [at.re, at.im, z], grip })
+}
+
+/// A link, taken hold of to be pulled while the end effector stays.
+pub fn hook(link: usize, bar: &Bar, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
+    let at = place(bar, frame, pointer)?;
+    let q = DriveAngles(PerDrive::from_fn(frame.q.len(), |k| frame.relative(k)));
+    let (root, direction, z) = bar.pose(&q.units());
+    let along = dot(at - root, direction).clamp(0.0, bar.length());
+    let off = root + direction * along - at;
+    let grip = Some(Grip::Pull(Hook { along, off: [off.re, off.im] }));
+    Some(Pick { handle: Handle::Link(link), at: [at.re, at.im, z], grip })
+}
+
+/// Where the pointer pulls it.
+pub fn pulled(link: usize, bar: &Bar, hook: &Hook, frame: &Frame, pointer: &Pointer) -> Option<Aim> {
+    let at = place(bar, frame, pointer)?;
+    Some(Aim::Pull { link, along: hook.along, at: [at.re + hook.off[0], at.im + hook.off[1]] })
 }
 
 /// The angles (a_1, a_2), rad, at which the link points to the pointer, on the plane b: sought from the present angle of

@@ -1,0 +1,294 @@
+//! A link that is pulled while the end effector is held: what four drives and more have left at one point and one b.
+//!
+//! # Method
+//! With b as it is, the poses of a point are where p(a) stays: n − 3 freedoms of the n − 1 relative angles a. Over a step
+//! the way along the tangents of that set, w, is a parabola of time, and a = a₀ + w + J₀ᵀμ with the μ that leaves the point
+//! where it is, found by Newton's iteration; rates and accelerations follow from J ȧ = 0. So point and b are kept to
+//! rounding at every instant, at whatever speed.
+
+use std::sync::Arc;
+
+use super::braking::{LAG, approach, last_open, norm};
+use crate::mechanics::machine::Chain;
+use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Vector, dot, unit};
+use crate::planning::Reference;
+use crate::planning::pose_space::PoseSpace;
+
+/// A point of a link, and where it is pulled to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pull {
+    /// The point is Σ_k chain_k e^{iq_k}, m.
+    pub chain: Chain,
+    /// m.
+    pub at: Vector,
+}
+
+/// Shares of the bound on |ä| for changing the speed, and for turning with the curve at most.
+const ALONG: f64 = 0.65;
+const ACROSS: f64 = 0.7;
+/// The speed that is wanted leaves the curve this share.
+const TURNING: f64 = 0.4;
+/// A pull from farther away than this share of the reach is as strong as from there.
+const FAR: f64 = 0.15;
+/// A point that moves less than this share of the reach for a radian is pulled along less than it could be.
+const STIFF: f64 = 0.05;
+/// Slower and nearer than this it stands still, rad/s and rad.
+const STILL: f64 = 1e-8;
+/// The point is kept as near as this, a share of the reach.
+const KEPT: f64 = 1e-15;
+
+/// A reference at which the end effector stays while a link is pulled.
+#[derive(Clone, Debug)]
+pub struct Held {
+    space: Arc<PoseSpace>,
+    pull: Pull,
+    point: Vector,
+    b: f64,
+    bound: f64,
+    step: f64,
+    a: PerDrive,
+    v: PerDrive,
+    /// Along the tangents, for the present step, rad/s².
+    acc: PerDrive,
+}
+
+/// ∂p/∂a of a pose, m.
+type Columns = [Vector; MAX_DRIVES];
+
+/// Relative angles with their derivatives.
+struct State {
+    a: PerDrive,
+    v: PerDrive,
+    acc: PerDrive,
+}
+
+/// J x.
+fn along(columns: &Columns, x: &PerDrive) -> Vector {
+    columns.iter().zip(x.iter()).map(|(c, x)| *c * *x).sum()
+}
+
+/// Jᵀ μ.
+fn across(columns: &Columns, mu: Vector, n: usize) -> PerDrive {
+    PerDrive::from_fn(n, |i| dot(columns[i], mu))
+}
+
+/// The μ with J J₀ᵀ μ = r.
+fn solved(j: &Columns, j0: &Columns, n: usize, r: Vector) -> Option<Vector> {
+    let x = along(j, &across(j0, Vector::new(1.0, 0.0), n));
+    let y = along(j, &across(j0, Vector::new(0.0, 1.0), n));
+    let det = x.re * y.im - x.im * y.re;
+    let size = x.norm() * y.norm();
+    (det.abs() > 1e-12 * size).then(|| Vector::new(r.re * y.im - r.im * y.re, x.re * r.im - x.im * r.re) / det)
+}
+
+impl Held {
+    /// Holds the end effector where a pose at rest has it, and pulls.
+    pub fn new(space: Arc<PoseSpace>, a: PerDrive, b: f64, (bound, step): (f64, f64), pull: Pull) -> Self {
+        let (point, still) = (space.place(&space.lift(&a, b)), PerDrive::zeros(a.len()));
+        let mut held = Self { space, pull, point, b, bound, step, a, v: still, acc: still };
+        held.steer();
+        held
+    }
+
+    /// Pulls elsewhere.
+    pub fn pull(&mut self, pull: Pull) {
+        self.pull = pull;
+        self.steer();
+    }
+
+    /// Relative angles and their rates.
+    pub fn angles(&self) -> (PerDrive, PerDrive) {
+        (self.a, self.v)
+    }
+
+    /// Whether it stands still.
+    pub fn is_at_rest(&self) -> bool {
+        self.v.iter().chain(self.acc.iter()).all(|x| *x == 0.0)
+    }
+
+    /// The reference dt seconds into the present step.
+    pub fn reference(&self, dt: f64) -> Reference {
+        let at = self.after(&self.acc, dt).unwrap_or(State { a: self.a, v: self.v, acc: self.acc });
+        let rates = |x: &PerDrive| self.space.lift_rates(x, 0.0);
+        Reference { q: self.space.lift(&at.a, self.b), qd: rates(&at.v), qdd: rates(&at.acc) }
+    }
+
+    /// Ends the present step and begins the next.
+    pub fn advance(&mut self) {
+        match self.after(&self.acc, self.step) {
+            Some(next) => (self.a, self.v) = (self.space.clamped(&next.a), next.v),
+            None => self.v = PerDrive::zeros(self.a.len()),
+        }
+        self.steer();
+    }
+
+    /// How a point of a chain moves with the relative angles.
+    fn columns(&self, chain: &[f64], a: &PerDrive) -> Columns {
+        let (q, n) = (self.space.lift(a, self.b), a.len());
+        let mut columns = Columns::default();
+        for (i, column) in columns.iter_mut().enumerate().take(n) {
+            let rates = self.space.lift_rates(&PerDrive::from_fn(n, |j| f64::from(u8::from(i == j))), 0.0);
+            let turns = (0..n + 1).map(|k| unit(q[k]) * (chain[k] * rates[k])).sum::<Vector>();
+            *column = Vector::new(0.0, 1.0) * turns;
+        }
+        columns
+    }
+
+    fn tip(&self, a: &PerDrive) -> Columns {
+        self.columns(self.space.tip(), a)
+    }
+
+    /// What of x leaves the end effector where it is.
+    fn tangent(&self, j: &Columns, x: &PerDrive) -> Option<PerDrive> {
+        let n = x.len();
+        Some(x.minus(&across(j, solved(j, j, n, along(j, x))?, n)))
+    }
+
+    /// The pose beside a + w at which the end effector is where it stays.
+    fn beside(&self, j0: &Columns, w: &PerDrive) -> Option<PerDrive> {
+        let n = w.len();
+        let mut a = self.a.plus(1.0, w);
+        let gap = |a: &PerDrive| self.point - self.space.place(&self.space.lift(a, self.b));
+        let mut off = gap(&a);
+        for _ in 0..12 {
+            if off.norm() <= KEPT * self.space.farthest() {
+                break;
+            }
+            let next = a.plus(1.0, &across(j0, solved(&self.tip(&a), j0, n, off)?, n));
+            let left = gap(&next);
+            // As near as rounding lets it.
+            if left.norm() >= off.norm() {
+                break;
+            }
+            (a, off) = (next, left);
+        }
+        (off.norm() < 1e-9 * self.space.farthest()).then_some(a)
+    }
+
+    /// What keeps to the curve at rates: the part across of ä.
+    fn turning(&self, j: &Columns, j0: &Columns, a: &PerDrive, v: &PerDrive, along_it: Vector) -> Option<PerDrive> {
+        let (q, qd) = (self.space.lift(a, self.b), self.space.lift_rates(v, 0.0));
+        let inwards: Vector = (0..q.len()).map(|k| unit(q[k]) * (self.space.tip()[k] * qd[k] * qd[k])).sum();
+        Some(across(j0, solved(j, j0, a.len(), inwards - along_it)?, a.len()))
+    }
+
+    /// Some time after, with accelerations along the tangents; `None` beyond where the curve turns off.
+    fn after(&self, acc: &PerDrive, dt: f64) -> Option<State> {
+        let n = self.a.len();
+        if self.is_still(acc) {
+            return Some(State { a: self.a, v: self.v, acc: *acc });
+        }
+        let j0 = self.tip(&self.a);
+        let a = self.beside(&j0, &self.v.scaled(dt).plus(0.5 * dt * dt, acc))?;
+        let (j, w) = (self.tip(&a), self.v.plus(dt, acc));
+        let v = w.minus(&across(&j0, solved(&j, &j0, n, along(&j, &w))?, n));
+        let turning = self.turning(&j, &j0, &a, &v, along(&j, acc))?;
+        Some(State { a, v, acc: acc.plus(1.0, &turning) })
+    }
+
+    fn is_still(&self, acc: &PerDrive) -> bool {
+        self.v.iter().chain(acc.iter()).all(|x| *x == 0.0)
+    }
+
+    fn is_within(&self, a: &PerDrive) -> bool {
+        self.space.joints().iter().zip(a.iter()).all(|(joint, a)| {
+            let [low, high] = joint.bounds();
+            *a >= low && *a <= high
+        })
+    }
+
+    /// Whether the coming step leaves a way on which to stop within limits and bound.
+    fn can_stop_after(&self, acc: &PerDrive) -> bool {
+        let Some(next) = self.after(acc, self.step) else { return false };
+        if !self.is_within(&next.a) {
+            return false;
+        }
+        let (speed, brake) = (norm(&next.v), ALONG * self.bound);
+        if speed == 0.0 {
+            return true;
+        }
+        // Braked fully step by step, in the last one only as much as it takes.
+        let whole = (speed / (brake * self.step)).floor();
+        let rest = speed - whole * brake * self.step;
+        let far = self.step * (0.5 * whole * (speed + rest) + 0.5 * rest);
+        let there = Self { a: next.a, v: next.v, ..self.clone() };
+        let j0 = there.tip(&next.a);
+        let fits = |share: f64| {
+            let way = next.v.scaled(share * far / speed);
+            let Some(a) = there.beside(&j0, &way) else { return false };
+            let (j, v) = (there.tip(&a), next.v.scaled((1.0 - share).sqrt()));
+            let Some(v) = there.tangent(&j, &v) else { return false };
+            let turning = there.turning(&j, &j, &a, &v, Vector::default());
+            self.is_within(&a) && turning.is_some_and(|turning| norm(&turning) <= ACROSS * self.bound)
+        };
+        [0.0, 0.5, 1.0].into_iter().all(fits)
+    }
+
+    /// The rates that are wanted: to where the link is pulled, no faster than it can stop at limits and turn with the curve.
+    fn wanted(&self, j: &Columns) -> Option<PerDrive> {
+        let (n, reach) = (self.a.len(), self.space.farthest());
+        let q = self.space.lift(&self.a, self.b);
+        let pulled: Vector = (0..n + 1).map(|k| unit(q[k]) * self.pull.chain[k]).sum();
+        let err = self.pull.at - pulled;
+        let err = err * (FAR * reach / err.norm().max(FAR * reach));
+        let g = self.columns(&self.pull.chain, &self.a);
+        let row = |of: fn(&Vector) -> f64| self.tangent(j, &PerDrive::from_fn(n, |i| of(&g[i])));
+        let (x, y) = (row(|g| g.re)?, row(|g| g.im)?);
+        let stiff = (STIFF * reach).powi(2);
+        let (xx, xy, yy) = (x.dot(&x) + stiff, x.dot(&y), y.dot(&y) + stiff);
+        let det = xx * yy - xy * xy;
+        let way = x.scaled((yy * err.re - xy * err.im) / det).plus((xx * err.im - xy * err.re) / det, &y);
+        let far = norm(&way);
+        if far == 0.0 {
+            return Some(way);
+        }
+        let brake = ALONG * self.bound;
+        let turning = norm(&self.turning(j, j, &self.a, &way.scaled(1.0 / far), Vector::default())?);
+        let most = (TURNING * self.bound / turning.max(1e-9)).sqrt();
+        let mut w = way.scaled(approach(far, brake).min(most) / far);
+        // As fast as each angle can stop at its limit, by the least change.
+        let passes = |w: &PerDrive, i: usize| {
+            let ([low, high], a) = (self.space.joints()[i].bounds(), self.a[i]);
+            let [up, down] = [high - a, a - low].map(|room| approach(room.max(0.0), brake));
+            let fits = w[i].min(up).max(-down);
+            (fits != w[i]).then_some(fits)
+        };
+        for _ in 0..4 {
+            for i in 0..n {
+                let Some(fits) = passes(&w, i) else { continue };
+                let one = self.tangent(j, &PerDrive::from_fn(n, |k| f64::from(u8::from(i == k))))?;
+                if one[i] > 1e-9 {
+                    w = w.plus((fits - w[i]) / one[i], &one);
+                }
+            }
+        }
+        let share = |i: usize| passes(&w, i).map_or(1.0, |fits| (fits / w[i]).max(0.0));
+        Some(w.scaled((0..n).map(share).fold(1.0, f64::min)))
+    }
+
+    /// Chooses the accelerations of the coming step.
+    fn steer(&mut self) {
+        let (n, brake) = (self.a.len(), ALONG * self.bound);
+        let speed = norm(&self.v);
+        let braking = self.v.scaled(if speed > 0.0 { -brake.min(speed / self.step) / speed } else { 0.0 });
+        let j = self.tip(&self.a);
+        let wish = || {
+            let wanted = self.wanted(&j)?;
+            if norm(&wanted) < STILL && speed < STILL {
+                return None;
+            }
+            let want = self.tangent(&j, &wanted.minus(&self.v).scaled(1.0 / LAG))?;
+            Some(want.scaled((brake / norm(&want)).min(1.0)))
+        };
+        let Some(want) = wish() else {
+            if speed < STILL {
+                (self.v, self.acc) = (PerDrive::zeros(n), PerDrive::zeros(n));
+            } else {
+                self.acc = braking;
+            }
+            return;
+        };
+        let at = |t: f64| braking.plus(t, &want.minus(&braking));
+        self.acc = if self.can_stop_after(&want) { want } else { at(last_open(|t| self.can_stop_after(&at(t)))) };
+    }
+}
