@@ -3,13 +3,15 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use stillbase::exchange::mjcf::{middle, mjcf};
+use serde::Serialize;
+use stillbase::exchange::mjcf::{hinges, middle, mjcf};
 use stillbase::files::write_new;
+use stillbase::settings::number::fixed;
 
 use super::exit::say;
 use super::failure::Failure;
 use super::input::MachineArgument;
-use super::output::check_output;
+use super::output::{Format, Table, check_output};
 
 /// Write a machine as a model for MuJoCo: links, pins, loops, motors with their gears and rotors
 ///
@@ -32,6 +34,17 @@ pub struct ExportModel {
     /// Replace the file if it exists
     #[arg(long)]
     force: bool,
+    #[command(flatten)]
+    format: Format,
+}
+
+#[derive(Serialize)]
+struct Answer {
+    file: String,
+    /// Angles of the drives in the keyframe, rad.
+    pose: Vec<f64>,
+    /// The same as MuJoCo has it: of each hinge, rad.
+    qpos: Vec<f64>,
 }
 
 impl ExportModel {
@@ -46,6 +59,14 @@ impl ExportModel {
         let model = mjcf(&machine, &pose).map_err(Failure::wrong_input)?;
         write_new(&self.output, model.as_bytes(), self.force)?;
         say(format!("wrote {}", self.output.display()));
-        Ok(())
+        let qpos = hinges(&machine, &pose).map_err(Failure::wrong_input)?;
+        let answer = Answer { file: self.output.display().to_string(), pose, qpos };
+        self.format.print(&answer, |answer| {
+            let mut table = Table::new(["drive", "q rad at the start"]);
+            for (drive, q) in machine.spec().drives.iter().zip(&answer.pose) {
+                table.row([drive.name.clone(), fixed(*q, 6)]);
+            }
+            format!("{} · {} hinges\n\n{table}", machine.name(), answer.qpos.len())
+        })
     }
 }

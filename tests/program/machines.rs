@@ -268,3 +268,20 @@ fn counterweights_that_cannot_be_are_refused() {
     ask(&["--objective", "mass=0"], 2, &["want mass, inertia"]);
     fails(&["design", BARE, "--range", "1=-0.3,0"], 2, &["--counterweights"]);
 }
+
+#[test]
+fn a_model_is_written_and_not_overwritten() {
+    let folder = Folder::new("model");
+    let file = word(folder.path("arm.xml"));
+    let answer = object(&["export-model", "serial-3r", "--pose", "1.2,0.1,-0.8", "-o", &file]);
+    assert_eq!(keys(&answer), ["file", "pose", "qpos"]);
+    assert_eq!(numbers(&answer["pose"]), [1.2, 0.1, -0.8]);
+    assert_eq!(numbers(&answer["qpos"]).len(), 6, "three links, three rotors");
+    let model = fs::read_to_string(&file).expect("a file");
+    assert!(model.starts_with("<mujoco model=\"serial-3r\">") && model.trim_end().ends_with("</mujoco>"));
+    fails(&["export-model", "serial-3r", "-o", &file], 2, &[&file, "--force"]);
+    assert!(prints(&["export-model", "nine-link", "-o", &file, "--force"]).contains("9 hinges"));
+    fails(&["export-model", "nine-link", "--pose", "1,2", "-o", &file, "--force"], 2, &["want 3"]);
+    fails(&["export-model", "nine-link", "--pose", "1,2,nan", "-o", &file, "--force"], 2, &["finite"]);
+    fails(&["export-model", "nine-link", "-o", "arm.mjcf"], 2, &[".xml"]);
+}
