@@ -63,6 +63,7 @@ pub(super) fn show(
     if saving.asks {
         let changes = saving.changes - saving.saved;
         let words = match changes {
+            0 => "A change of this session is being made.".to_owned(),
             1 => "One change of this session is in no file.".to_owned(),
             n => format!("{n} changes of this session are in no file."),
         };

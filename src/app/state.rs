@@ -149,7 +149,13 @@ impl AppState {
 
     /// Whether the window may close as it is.
     pub fn may_leave(&self) -> bool {
-        self.saving.leaves || !self.saving.is_unsaved()
+        self.saving.leaves || !(self.saving.is_unsaved() || self.is_making())
+    }
+
+    /// Whether a change is being made beside the window, and is in no count yet.
+    fn is_making(&self) -> bool {
+        let change = self.background.change.as_ref().map(|((change, _), _)| change);
+        change.is_some_and(|change| !matches!(change, Change::Seek(_))) || !self.background.later.is_empty()
     }
 
     /// Whether the window is to close.
@@ -527,7 +533,7 @@ impl AppState {
             Command::Fit => self.view_state.framing[self.view_state.view as usize] = Framing::Wanted,
             Command::Theme(theme) => self.view_state.theme = theme,
             Command::AskToLeave(asks) => self.saving.asks = asks,
-            Command::Quit if self.saving.is_unsaved() => self.saving.asks = true,
+            Command::Quit if !self.may_leave() => self.saving.asks = true,
             Command::Quit | Command::Leave => (self.saving.asks, self.saving.leaves) = (false, true),
             Command::Recover(what) => self.recover(what),
             Command::SkipHints => {

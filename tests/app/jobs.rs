@@ -28,6 +28,7 @@ pub const TESTS: &[Test] = tests![
     a_recording_is_written_beside_the_window,
     what_is_cancelled_is_stopped,
     a_change_that_takes_long_is_made_beside_the_window,
+    a_change_that_is_being_made_is_asked_for,
     of_a_drag_the_newest_edit_counts,
     a_drag_that_is_given_up_takes_back_what_it_did,
     a_file_is_opened_beside_the_window,
@@ -238,6 +239,23 @@ fn work_all(h: &mut Window, workers: &Waiting) {
         h.run_steps(2);
     }
     assert!(!h.state().app_state().is_working());
+}
+
+/// A window that closes meanwhile would lose it.
+fn a_change_that_is_being_made_is_asked_for() {
+    let workers = Waiting::default();
+    let mut h = window("least-reaction", &workers);
+    h.run_steps(2);
+    assert!(h.state().app_state().may_leave());
+    tell(&mut h, Command::Edit(Edit::set("task.time", 1.7)));
+    tell(&mut h, Command::EndGesture);
+    assert!(!h.state().app_state().may_leave(), "it is in no count yet");
+    tell(&mut h, Command::Quit);
+    assert!(!h.state().app_state().wants_to_leave());
+    assert!(h.query_by_label("A change of this session is being made.").is_some());
+    workers.work();
+    h.run_steps(2);
+    assert!(h.query_by_label("One change of this session is in no file.").is_some());
 }
 
 fn a_change_that_takes_long_is_made_beside_the_window() {
