@@ -2,6 +2,7 @@
 
 mod balance;
 mod bodies;
+mod breakdown;
 mod counterweights;
 mod dynamics;
 mod family;

@@ -248,12 +248,22 @@ impl Inertia {
 
     /// Whether no force reaches the base: every |g_k| below 1e-9 of what the mass and size make possible.
     pub fn is_force_balanced(&self) -> bool {
-        self.force_residual() <= BALANCED * self.mass * self.size()
+        self.force_residual() <= self.least_first_moment()
     }
 
     /// Whether the mass matrix is the same in every pose.
     pub fn is_invariant(&self) -> bool {
-        self.invariance_residual() <= BALANCED * self.mass * self.size().powi(2)
+        self.invariance_residual() <= self.least_coupling()
+    }
+
+    /// A |g_k| up to this counts as none, kg m.
+    pub(crate) fn least_first_moment(&self) -> f64 {
+        BALANCED * self.mass * self.size()
+    }
+
+    /// A |C_kl| up to this counts as none, kg m².
+    pub(crate) fn least_coupling(&self) -> f64 {
+        BALANCED * self.mass * self.size().powi(2)
     }
 
     fn size(&self) -> f64 {

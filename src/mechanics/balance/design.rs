@@ -1,7 +1,6 @@
 //! Balance as a linear problem: where the links' centres of mass must lie, (7)–(10).
 //!
-//! Force balance g_k = 0 and invariance C_kl = 0 (k ≠ l) are linear in the l_cj, so for any machine they are
-//! A l_c = k with n + n(n−1)/2 rows. [`design`] finds the solution that minimises Σ (p_j l_cj)².
+//! The conditions are linear in the l_cj, so for any machine they are A l_c = k with n + n(n−1)/2 rows. [`design`] finds the solution that minimises Σ (p_j l_cj)².
 //!
 //! # Symbols
 //! | letter | meaning | shape, unit |
@@ -16,6 +15,7 @@
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
+use super::condition::Condition;
 use crate::mechanics::machine::{Inertia, Machine, MachineError};
 use crate::settings::number::counted;
 
@@ -89,25 +89,13 @@ pub enum DesignError {
 
 /// A and k of (9).
 pub fn conditions(machine: &Machine) -> (DMatrix<f64>, DVector<f64>) {
-    let (n, links) = (machine.drives(), machine.links());
-    let pairs: Vec<_> = Inertia::pairs(n).collect();
-    let mut a = DMatrix::zeros(n + pairs.len(), links.len());
-    for (j, (link, part)) in links.iter().zip(machine.resolved_links()).enumerate() {
-        let moment = link.mass * part.sign;
-        a[(part.drive, j)] = moment;
-        for (row, &(k, l)) in pairs.iter().enumerate() {
-            a[(n + row, j)] = match part.drive {
-                d if d == k => moment * part.root[l],
-                d if d == l => moment * part.root[k],
-                _ => 0.0,
-            };
-        }
-    }
+    let (all, links) = (Condition::all(machine.drives()).collect::<Vec<_>>(), machine.links());
+    let parts = machine.resolved_links();
+    let a = DMatrix::from_fn(all.len(), links.len(), |row, j| links[j].mass * all[row].by_moment(&parts[j]));
     // What the present l_c leave is A l_c − k.
     let inertia = Inertia::of(machine);
-    let left = (0..n).map(|k| inertia.first_moment(k)).chain(pairs.iter().map(|&(k, l)| inertia.coupling(k, l)));
     let com = DVector::from_iterator(links.len(), links.iter().map(|l| l.com));
-    let k = &a * com - DVector::from_iterator(a.nrows(), left.map(|z| z.re));
+    let k = &a * com - DVector::from_iterator(all.len(), all.iter().map(|condition| condition.left(&inertia).re));
     (a, k)
 }
 
@@ -145,22 +133,16 @@ pub fn design(machine: &Machine, penalty: &[f64]) -> Result<Machine, DesignError
     if inertia.is_force_balanced() && inertia.is_invariant() {
         return Ok(designed);
     }
-    Err(inconsistent(machine.drives(), &inertia))
+    let (condition, left) = furthest_off(&designed);
+    Err(DesignError::Inconsistent { condition, left })
 }
 
-fn inconsistent(n: usize, inertia: &Inertia) -> DesignError {
-    let force = (0..n).max_by(|a, b| inertia.first_moment(*a).norm().total_cmp(&inertia.first_moment(*b).norm()));
-    if let (false, Some(k)) = (inertia.is_force_balanced(), force) {
-        return DesignError::Inconsistent {
-            condition: format!("the force balance of drive {}, (7)", k + 1),
-            left: format!("{:.3e} kg m", inertia.first_moment(k).norm()),
-        };
-    }
-    let worst = Inertia::pairs(n)
-        .max_by(|a, b| inertia.coupling(a.0, a.1).norm().total_cmp(&inertia.coupling(b.0, b.1).norm()))
-        .unwrap_or((0, 0));
-    DesignError::Inconsistent {
-        condition: format!("the coupling of drives {} and {}, (8)", worst.0 + 1, worst.1 + 1),
-        left: format!("{:.3e} kg m²", inertia.coupling(worst.0, worst.1).norm()),
-    }
+/// The condition that is furthest from met, and what is left of it with its unit: one of (7) as long as there is one.
+fn furthest_off(machine: &Machine) -> (String, String) {
+    let inertia = Inertia::of(machine);
+    let force = !inertia.is_force_balanced();
+    let asked = Condition::all(machine.drives()).filter(|condition| matches!(condition, Condition::Force(_)) == force);
+    let size = |condition: &Condition| condition.left(&inertia).norm();
+    let worst = asked.max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(Condition::Force(0));
+    (worst.name(machine), format!("{:.3e} {}", size(&worst), worst.unit()))
 }

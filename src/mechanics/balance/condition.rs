@@ -1,0 +1,78 @@
+//! [`Condition`]: one line of (7) or (8), and how a mass on a link enters it.
+//!
+//! # Symbols
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | a_k | the mass sits at Σ_k a_k e(q_k) | complex, m |
+//! | m a_k | what it brings to g_k | complex, kg m |
+//! | m conj(a_k) a_l | what it brings to C_kl | complex, kg m² |
+
+use crate::mechanics::machine::{Inertia, Machine, ResolvedLink};
+use crate::mechanics::planar::{MAX_DRIVES, Vector};
+
+/// What has to vanish for a machine to be balanced and invariant. Drives are counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Condition {
+    /// Force balance (7): the first moment g_k.
+    Force(usize),
+    /// Invariance (8): the coupling C_kl, k < l.
+    Coupling(usize, usize),
+}
+
+impl Condition {
+    /// Those of n drives: first all of (7), then (8) by pairs.
+    pub fn all(n: usize) -> impl Iterator<Item = Self> {
+        (0..n).map(Self::Force).chain(Inertia::pairs(n).map(|(k, l)| Self::Coupling(k, l)))
+    }
+
+    /// In words, with its drives by name.
+    pub fn name(self, machine: &Machine) -> String {
+        let drive = |k: usize| &machine.spec().drives[k].name;
+        match self {
+            Self::Force(k) => format!("the force balance of drive {}, (7)", drive(k)),
+            Self::Coupling(k, l) => format!("the coupling of drives {} and {}, (8)", drive(k), drive(l)),
+        }
+    }
+
+    /// Of its numbers.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Force(_) => "kg m",
+            Self::Coupling(..) => "kg m²",
+        }
+    }
+
+    /// What a machine leaves of it.
+    pub fn left(self, inertia: &Inertia) -> Vector {
+        match self {
+            Self::Force(k) => inertia.first_moment(k),
+            Self::Coupling(k, l) => inertia.coupling(k, l),
+        }
+    }
+
+    /// What a mass at Σ_k a_k e(q_k) brings to it.
+    pub fn of(self, mass: f64, a: &[Vector; MAX_DRIVES]) -> Vector {
+        match self {
+            Self::Force(k) => mass * a[k],
+            Self::Coupling(k, l) => mass * a[k].conj() * a[l],
+        }
+    }
+
+    /// What each kilogram in the root of a link brings to it.
+    pub fn by_mass(self, part: &ResolvedLink) -> f64 {
+        match self {
+            Self::Force(k) => part.root[k],
+            Self::Coupling(k, l) => part.root[k] * part.root[l],
+        }
+    }
+
+    /// What each kg m along a link brings to it.
+    pub fn by_moment(self, part: &ResolvedLink) -> f64 {
+        match self {
+            Self::Force(k) if k == part.drive => part.sign,
+            Self::Coupling(k, l) if k == part.drive => part.sign * part.root[l],
+            Self::Coupling(k, l) if l == part.drive => part.sign * part.root[k],
+            _ => 0.0,
+        }
+    }
+}

@@ -1,0 +1,13 @@
+//! Balance: what of it a machine lacks, and where its masses must lie for it to have it, (7)–(10).
+//!
+//! Force balance g_k = 0 and invariance C_kl = 0 (k ≠ l) are n + n(n−1)/2 conditions, each a sum over what the machine
+//! is made of: [`Breakdown`] says who brings what. They are linear in the mass m of a body and its first moment m l_c,
+//! so [`design`] solves them in one step for all centres of mass.
+
+mod breakdown;
+mod condition;
+mod design;
+
+pub use breakdown::{Body, Breakdown, Source, Term};
+pub use condition::Condition;
+pub use design::{DesignError, Preset, conditions, design};
