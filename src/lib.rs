@@ -82,6 +82,7 @@
 //! |---|---|
 //! | [`guide`] | how the program is used, page by page; no code |
 //! | [`settings`] | how a value is named, bounded and shown: keys, changes by key, ranges, text from outside |
+//! | `convex` | convex programs, and how far from the best an answer may be |
 //! | [`mechanics`] | what a machine is: planar algebra, links and drives, kinematics, dynamics, pin forces, balance |
 //! | [`exchange`] | machines for other programs: MuJoCo |
 //! | [`planning`] | where it may go, and when: reactionless planes and workspaces, curves, timing, ways off the plane |
@@ -118,6 +119,7 @@
 
 #[cfg(feature = "ui")]
 pub mod app;
+mod convex;
 pub mod exchange;
 pub mod files;
 pub mod guide;

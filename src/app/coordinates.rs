@@ -6,11 +6,9 @@ use super::theme::{bold, card, colour, plain};
 use super::widgets::name;
 use super::{Command, ViewState};
 use crate::picture::numbers::signed;
+use crate::picture::scene::joint_items::SYMBOLS;
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::session::Session;
-
-/// Drives by their angles.
-const SYMBOLS: [&str; 8] = ["q₁", "q₂", "q₃", "q₄", "q₅", "q₆", "q₇", "q₈"];
 
 /// Where it lies over a scene.
 pub fn covers(rect: Rect, views: &Views, view_state: &ViewState) -> Option<Rect> {

@@ -77,6 +77,9 @@ fn pose_constant(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &Vie
             return;
         }
     };
+    if !map.is_reactionless() {
+        note(ui, p, "its drives are coupled, so that holding b does not quite keep the moment from the base");
+    }
     let period = map.period();
     // Shown is b within one period; the turns of the machine stay as they are.
     let b = session.b_aim();

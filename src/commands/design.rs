@@ -51,17 +51,12 @@ pub struct Design {
     /// root to the tip, where none is given
     #[arg(long, value_name = "LINK=LO,HI", requires = "counterweights", value_parser = range, allow_hyphen_values = true)]
     range: Vec<(String, [f64; 2])>,
-    /// Density of the discs, kg/m³: steel where it is left out
-    #[arg(
-        long,
-        value_name = "DENSITY",
-        requires = "counterweights",
-        default_value_if("counterweights", "true", "7850")
-    )]
-    material: Option<f64>,
-    /// Thickness of the discs, m: 0.03 where it is left out
-    #[arg(long, value_name = "T", requires = "counterweights", default_value_if("counterweights", "true", "0.03"))]
-    thickness: Option<f64>,
+    /// Density of the discs, kg/m³; steel has 7850
+    #[arg(long, value_name = "DENSITY", requires = "counterweights", default_value_t = Disc::STEEL.density)]
+    material: f64,
+    /// Thickness of the discs, m
+    #[arg(long, value_name = "T", requires = "counterweights", default_value_t = Disc::STEEL.thickness)]
+    thickness: f64,
     /// The most that a counterweight may weigh, kg: of every link, or LINK=M of one
     #[arg(long, value_name = "[LINK=]M", requires = "counterweights")]
     max_mass: Vec<String>,
@@ -186,8 +181,7 @@ impl Design {
                 site.most = site.most.min(most);
             }
         }
-        let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
-        let disc = Disc { density: number(self.material), thickness: number(self.thickness) };
+        let disc = Disc { density: self.material, thickness: self.thickness };
         let objective = self.objective.clone().unwrap_or_else(Objective::mass);
         Ok(Weighing { sites, disc, objective, most_inertia: self.max_inertia })
     }
@@ -241,7 +235,7 @@ fn objective(text: &str) -> Result<Objective, String> {
 struct Weighed {
     /// kg.
     added_mass: f64,
-    weights: Vec<Weight>,
+    weights: Vec<Counterweight>,
     /// The most by which the best may lie below what was found.
     gap: f64,
     /// Added mass, kg, and Σ D_k, kg m².
@@ -251,21 +245,12 @@ struct Weighed {
     balance: Balance,
 }
 
-#[derive(Serialize)]
-struct Weight {
-    link: String,
-    mass: f64,
-    at: f64,
-    radius: f64,
-}
-
 impl Weighed {
     fn of(placed: &Placed, front: Vec<[f64; 2]>) -> Self {
         let (machine, inertia) = (&placed.machine, Inertia::of(&placed.machine));
-        let weight = |w: &Counterweight| Weight { link: w.link.clone(), mass: w.mass, at: w.at, radius: w.radius };
         Self {
             added_mass: placed.added_mass,
-            weights: machine.spec().counterweights.iter().map(weight).collect(),
+            weights: machine.spec().counterweights.clone(),
             gap: placed.gap,
             front,
             balance: Balance::of(&inertia),

@@ -102,6 +102,10 @@ struct Model<'a> {
     machine: &'a Machine,
     /// The angle of each motor.
     motors: Vec<Turn>,
+    /// Names of relative angles with limits, as sums of angles in pins, and their bounds, rad.
+    limited: Vec<(String, Turn, [f64; 2])>,
+    /// Links that nothing else keeps parallel to the first link of their drive.
+    parallel: Vec<(usize, Turn)>,
     out: String,
 }
 
@@ -123,7 +127,7 @@ impl<'a> Model<'a> {
             Turn::of_drives(machine, machine.motors().on(k), k).ok_or_else(idle)
         };
         let motors = (0..machine.drives()).map(motor).collect::<Result<_, _>>()?;
-        Ok(Self { machine, motors, out: String::new() })
+        Ok(Self { machine, motors, limited: limited(machine), parallel: parallel(machine), out: String::new() })
     }
 
     fn text(mut self, q: &[f64]) -> String {
@@ -174,7 +178,7 @@ impl<'a> Model<'a> {
         let (name, drive) = (quoted(&link.name), part.drive);
         let colour = COLOURS[drive % COLOURS.len()];
         line!(self, depth, "<body name=\"link {name}\" pos=\"{} 0 0\">", part.at);
-        let limits = self.limited().into_iter().find(|(_, turn, _)| turn.pin() == Some(j));
+        let limits = self.limited.iter().find(|(_, turn, _)| turn.pin() == Some(j));
         let range = limits.map_or(String::new(), |(.., [least, most])| format!(" range=\"{least} {most}\""));
         line!(self, depth + 1, "<joint name=\"link {name}\"{range}/>");
         let (com, normal, axial) = (link.com, link.com_normal, link.axial);
@@ -267,8 +271,8 @@ impl<'a> Model<'a> {
         for (k, turn) in self.motors.iter().enumerate().filter(|(_, turn)| turn.pin().is_none()) {
             all.push((format!("motor {}", quoted(&drives[k].name)), turn.clone()));
         }
-        let limited: Vec<_> = self.limited().into_iter().filter(|(_, turn, _)| turn.pin().is_none()).collect();
-        let parallel = self.parallel();
+        let limited: Vec<_> = self.limited.iter().filter(|(_, turn, _)| turn.pin().is_none()).cloned().collect();
+        let parallel = self.parallel.clone();
         if all.is_empty() && limited.is_empty() && parallel.is_empty() {
             return;
         }
@@ -304,36 +308,9 @@ impl<'a> Model<'a> {
         line!(self, 2, "</fixed>");
     }
 
-    /// Relative angles with limits, as sums of angles in pins and their bounds.
-    fn limited(&self) -> Vec<(String, Turn, [f64; 2])> {
-        let angles = self.machine.angles().iter().filter(|a| a.limits.end() - a.limits.start() < TAU - 1e-9);
-        angles
-            .filter_map(|a| {
-                let turn = Turn::of_drives(self.machine, Some(a.from), a.to)?;
-                let shift = turn.constant + a.offset;
-                Some((quoted(&a.name), turn, [a.limits.start() - shift, a.limits.end() - shift]))
-            })
-            .collect()
-    }
-
-    /// Links that nothing keeps parallel to the first link of their drive, where pins that close loops are too few.
-    fn parallel(&self) -> Vec<(usize, Turn)> {
-        let parts = self.machine.resolved_links();
-        if parts.len() == self.machine.drives() + 2 * self.machine.loops().len() {
-            return Vec::new();
-        }
-        let first = |k: usize| parts.iter().position(|part| part.drive == k);
-        let of = |j: usize| {
-            let first = first(parts[j].drive).filter(|first| *first != j)?;
-            let turn = Turn::between(self.machine, Some(first), j);
-            Some((j, Turn { constant: if parts[first].sign == parts[j].sign { 0.0 } else { TAU / 2.0 }, ..turn }))
-        };
-        (0..parts.len()).filter_map(of).collect()
-    }
-
     fn equalities(&mut self) {
         let drives = &self.machine.spec().drives;
-        let (parallel, loops) = (self.parallel(), self.machine.loops().len());
+        let (parallel, loops) = (self.parallel.clone(), self.machine.loops().len());
         let geared: Vec<usize> = (0..drives.len()).filter(|k| self.has_rotor(*k)).collect();
         if parallel.is_empty() && loops == 0 && geared.is_empty() {
             return;
@@ -404,6 +381,33 @@ impl<'a> Model<'a> {
             self.pose_of(Some(j), q, all);
         }
     }
+}
+
+/// Relative angles with limits, as sums of angles in pins and their bounds.
+fn limited(machine: &Machine) -> Vec<(String, Turn, [f64; 2])> {
+    let angles = machine.angles().iter().filter(|a| a.limits.end() - a.limits.start() < TAU - 1e-9);
+    angles
+        .filter_map(|a| {
+            let turn = Turn::of_drives(machine, Some(a.from), a.to)?;
+            let shift = turn.constant + a.offset;
+            Some((quoted(&a.name), turn, [a.limits.start() - shift, a.limits.end() - shift]))
+        })
+        .collect()
+}
+
+/// Links that nothing keeps parallel to the first link of their drive, where pins that close loops are too few.
+fn parallel(machine: &Machine) -> Vec<(usize, Turn)> {
+    let parts = machine.resolved_links();
+    if parts.len() == machine.drives() + 2 * machine.loops().len() {
+        return Vec::new();
+    }
+    let first = |k: usize| parts.iter().position(|part| part.drive == k);
+    let of = |j: usize| {
+        let first = first(parts[j].drive).filter(|first| *first != j)?;
+        let turn = Turn::between(machine, Some(first), j);
+        Some((j, Turn { constant: if parts[first].sign == parts[j].sign { 0.0 } else { TAU / 2.0 }, ..turn }))
+    };
+    (0..parts.len()).filter_map(of).collect()
 }
 
 /// A pose amid the limits of the machine's relative angles, with its first drive upright, rad.

@@ -2,8 +2,9 @@
 
 use thiserror::Error;
 
-use crate::mechanics::machine::{Inertia, Machine, RelativeAngle};
+use crate::mechanics::machine::{Machine, RelativeAngle};
 use crate::mechanics::planar::Vector;
+use crate::planning::pose_space::{NoPoseSpace, held, is_reactionless};
 use crate::planning::reactionless::{
     AngleDefinition, AngleLimit, BSet, Boundary, Decimal, NoReach, NotAPlaneMap, PlaneMap, PlanePoint, Poses, metres,
 };
@@ -15,6 +16,7 @@ pub struct Planes {
     map: PlaneMap,
     boundary: Boundary,
     keep_off_change_points: bool,
+    is_reactionless: bool,
 }
 
 /// Whether a target can be reached on the present plane.
@@ -59,6 +61,9 @@ pub enum PlaneError {
          limits.{0}=0,3.1416"
     )]
     Unlimited(String),
+    /// λ depends on the pose, or is nothing.
+    #[error(transparent)]
+    NoPoseConstant(NoPoseSpace),
     /// The lengths, λ or limits give no plane coordinates.
     #[error(transparent)]
     Map(#[from] NotAPlaneMap),
@@ -176,10 +181,27 @@ impl Planes {
     /// The planes of a machine, by the λ of its constant diagonal D_k = H_kk.
     ///
     /// # Errors
-    /// If it has not three drives and two relative angles.
+    /// If it has not three drives and two relative angles, or no b.
     pub fn of(machine: &Machine) -> Result<Self, PlaneError> {
         let map = plane_map(machine)?;
-        Ok(Self { boundary: Boundary::of(&map), map, keep_off_change_points: false })
+        let (boundary, is_reactionless) = (Boundary::of(&map), is_reactionless(machine));
+        Ok(Self { boundary, map, keep_off_change_points: false, is_reactionless })
+    }
+
+    /// Those of a machine of three drives; none if it has no b.
+    ///
+    /// # Errors
+    /// If it has a b, but not two relative angles.
+    pub fn if_any(machine: &Machine) -> Result<Option<Self>, PlaneError> {
+        match Self::of(machine) {
+            Err(PlaneError::NoPoseConstant(_)) => Ok(None),
+            planes => planes.map(Some),
+        }
+    }
+
+    /// Whether holding b keeps the moment from the base, but for the rounding of a table.
+    pub fn is_reactionless(&self) -> bool {
+        self.is_reactionless
     }
 
     /// The same planes, on which ways lead across change points or keep off them.
@@ -434,7 +456,7 @@ impl Planes {
 /// Eqs (13)–(16) of a machine.
 ///
 /// # Errors
-/// If it has not three drives and two relative angles.
+/// If it has not three drives and two relative angles, or no b.
 pub fn plane_map(machine: &Machine) -> Result<PlaneMap, PlaneError> {
     let shape = || PlaneError::Shape { drives: machine.drives(), angles: machine.angles().len() };
     let [first, second] = machine.angles() else { return Err(shape()) };
@@ -446,7 +468,7 @@ pub fn plane_map(machine: &Machine) -> Result<PlaneMap, PlaneError> {
         return Err(PlaneError::Unlimited(free.name.clone()));
     }
     let tip = machine.end_effector();
-    let lambda = Inertia::of(machine).lambda();
+    let lambda = held(machine).map_err(PlaneError::NoPoseConstant)?.lambda();
     let angle = |a: &RelativeAngle| AngleDefinition { to: a.to, from: a.from, offset: a.offset };
     let limit = |a: &RelativeAngle| AngleLimit { min: *a.limits.start(), max: *a.limits.end() };
     Ok(PlaneMap::new(

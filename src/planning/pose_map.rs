@@ -61,6 +61,14 @@ impl PoseMap {
         matches!(self, Self::Space(space) if space.drives() > 3)
     }
 
+    /// Whether holding b keeps the moment from the base, but for the rounding of a table.
+    pub fn is_reactionless(&self) -> bool {
+        match self {
+            Self::Planes(planes) => planes.is_reactionless(),
+            Self::Space(space) => space.is_reactionless(),
+        }
+    }
+
     /// λ of the drives.
     pub fn lambda(&self) -> PerDrive {
         match self {

@@ -50,17 +50,19 @@ pub(super) fn amended(
 ) -> Result<Scenario, Refusal> {
     edit.check()?;
     let Edit::PoseB { b } = edit else { return changed(scenario, edit) };
-    if scenario.machine.drives() != 3 {
+    let known = planes.take().filter(|(machine, _)| *machine == scenario.machine);
+    let known = match known {
+        None if scenario.machine.drives() == 3 => {
+            Planes::if_any(&scenario.machine)?.map(|planes| (scenario.machine.clone(), Arc::new(planes)))
+        }
+        known => known,
+    };
+    let Some(known) = known else {
         let posed = scenario.task.posed(&scenario.machine, *b);
         let task = posed.unwrap_or_else(|| turned(scenario, *b));
         return Ok(Scenario { task, ..scenario.clone() });
-    }
-    let known = planes.take().filter(|(machine, _)| *machine == scenario.machine);
-    let planes = match known {
-        Some(known) => planes.insert(known),
-        None => planes.insert((scenario.machine.clone(), Arc::new(Planes::of(&scenario.machine)?))),
     };
-    Ok(posed(scenario, &planes.1, *b))
+    Ok(posed(scenario, &planes.insert(known).1, *b))
 }
 
 /// The task of other than three drives at another b: where that does not reach all its points, they turn with what it

@@ -99,7 +99,7 @@ impl Run {
         let planes = match known {
             Some(planes) => Some(planes),
             // A machine of three drives that lacks them says why; of others only some tasks want them.
-            None if scenario.machine.drives() == 3 => Some(Arc::new(Planes::of(&scenario.machine)?)),
+            None if scenario.machine.drives() == 3 => Planes::if_any(&scenario.machine)?.map(Arc::new),
             None => None,
         };
         let keep_off = scenario.task.keep_off_change_points;
@@ -282,10 +282,11 @@ impl Run {
         let bound = scenario.pose_acceleration != self.scenario.pose_acceleration;
         if scenario.machine != self.scenario.machine || bound {
             let keep_off = scenario.task.keep_off_change_points;
-            let planes = match &self.planes {
-                Some(_) => Some(Arc::new(Planes::of(&scenario.machine)?.keeping_off_change_points(keep_off))),
-                None => None,
+            let planes = match scenario.machine.drives() {
+                3 => Planes::if_any(&scenario.machine)?,
+                _ => None,
             };
+            let planes = planes.map(|planes| Arc::new(planes.keeping_off_change_points(keep_off)));
             if let Guide::Follow(old) = self.simulation.guide() {
                 let map = PoseMap::of(&scenario.machine, planes.as_ref(), scenario.task.posture)?;
                 let bounds = bounds(&scenario, &map);

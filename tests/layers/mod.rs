@@ -12,6 +12,7 @@ const WINGS: &[&str] = &[
     // Pages for people; no code.
     "guide",
     "settings",
+    "convex",
     "mechanics",
     "exchange",
     "planning",
@@ -29,7 +30,7 @@ const WINGS: &[&str] = &[
 
 /// Wings that neither draw, nor talk to a person, nor keep files.
 const CORE: &[&str] =
-    &["settings", "mechanics", "exchange", "planning", "simulation", "session", "study", "picture/scene"];
+    &["settings", "convex", "mechanics", "exchange", "planning", "simulation", "session", "study", "picture/scene"];
 
 /// Outside crates and the modules that may know them.
 const CRATES: &[(&str, &[&str])] = &[
@@ -58,7 +59,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("rand_chacha", &["study/tolerance"]),
     ("libm", &["study/tolerance"]),
     ("realfft", &["study/spectrum"]),
-    ("clarabel", &["mechanics/counterweights", "planning"]),
+    ("clarabel", &["convex"]),
 ];
 
 /// Parts of the standard library that reach outside, and the files that are edges.

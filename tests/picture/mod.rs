@@ -1,6 +1,7 @@
 //! Tests of `src/picture`: scenes, charts, meshes, and what the renderer draws.
 
 mod mesh;
+mod palette;
 mod plots;
 mod scene;
 #[cfg(feature = "render")]

@@ -553,7 +553,7 @@ fn demo() -> Vec<(Scene, View)> {
         let p3 = e(q3, 0.19);
         let p7 = add(p1, p3);
         let p8 = add(p7, e(q2, -0.46));
-        let [blue, orange, green] = colours.drives;
+        let [blue, orange, green, ..] = colours.drives;
         let mut scene = empty(colours.background);
         scene.model = model.clone();
         let ghost =

@@ -27,6 +27,8 @@ const UNSEEN: Duration = Duration::from_millis(250);
 enum Wake {
     /// egui wants a pass at a time; the count of passes when it said so.
     Pass(Instant, u64),
+    /// The device that draws is gone.
+    Lost,
     /// A screen reader begins, acts or ends.
     Reader(accesskit_winit::Event),
 }
@@ -72,7 +74,8 @@ struct Open {
     ctx: egui::Context,
     input: egui_winit::State,
     info: ViewportInfo,
-    screen: Screen,
+    /// None only while one takes over from another.
+    screen: Option<Screen>,
     /// When the screen was last replaced.
     replaced: Option<Instant>,
     is_shown: bool,
@@ -110,6 +113,7 @@ impl Open {
             draw_drafts(&ctx);
         }
         let info = ViewportInfo::default();
+        let screen = Some(screen);
         Ok(Self { ctx, input, info, screen, replaced: None, is_shown: false, passed: Instant::now(), window })
     }
 
@@ -122,8 +126,11 @@ impl Open {
         if self.replaced.is_some_and(|last| last.elapsed() < LASTS) {
             return Err("so was the one that took over".into());
         }
-        self.screen = screen(&self.window, events, wakes).map_err(|why| why.to_string())?;
-        self.screen.send_letters(&self.ctx);
+        // Two surfaces may not share a window.
+        self.screen = None;
+        let mut screen = screen(&self.window, events, wakes).map_err(|why| why.to_string())?;
+        screen.send_letters(&self.ctx);
+        self.screen = Some(screen);
         self.replaced = Some(Instant::now());
         Ok(())
     }
@@ -132,7 +139,7 @@ impl Open {
 fn screen(window: &Arc<Window>, events: &ActiveEventLoop, wakes: &EventLoopProxy<Wake>) -> Result<Screen, NoAdapter> {
     let wake = wakes.clone();
     Screen::new(window, events.owned_display_handle(), move || {
-        let _ = wake.send_event(Wake::Pass(Instant::now(), u64::MAX));
+        let _ = wake.send_event(Wake::Lost);
     })
 }
 
@@ -161,10 +168,10 @@ impl Shell<'_> {
         if events.exiting() {
             return;
         }
-        if self.app.breaks() {
-            open.screen.destroy();
+        if let Some(screen) = open.screen.as_ref().filter(|_| self.app.breaks()) {
+            screen.destroy();
         }
-        if open.screen.is_lost() {
+        if open.screen.as_ref().is_none_or(Screen::is_lost) {
             match open.replace(events, &self.wakes) {
                 Ok(()) => self.app.was_replaced(),
                 Err(why) => {
@@ -175,7 +182,7 @@ impl Shell<'_> {
         }
         open.passed = Instant::now();
         let is_unseen = open.is_unseen();
-        let Open { ctx, input, info, screen, window, is_shown, passed, .. } = open;
+        let Open { ctx, input, info, screen: Some(screen), window, is_shown, passed, .. } = open else { return };
         info.native_pixels_per_point = Some(window.scale_factor() as f32);
         info.focused = Some(window.has_focus());
         let mut raw = input.take_egui_input(window);
@@ -242,10 +249,11 @@ impl ApplicationHandler<Wake> for Shell<'_> {
             // What was asked for in an older pass has been done since.
             Wake::Pass(when, asked) => {
                 let passes = open.ctx.cumulative_pass_nr_for(ViewportId::ROOT);
-                if asked == u64::MAX || passes <= asked.saturating_add(1) {
+                if passes <= asked + 1 {
                     self.wants_pass(when);
                 }
             }
+            Wake::Lost => self.wants_pass(Instant::now()),
             Wake::Reader(event) => {
                 match event.window_event {
                     accesskit_winit::WindowEvent::InitialTreeRequested => open.ctx.enable_accesskit(),
@@ -269,7 +277,9 @@ impl ApplicationHandler<Wake> for Shell<'_> {
             // What the event says may be older than what the window has become since.
             WindowEvent::Resized(_) => {
                 let size = open.window.inner_size();
-                open.screen.resize([size.width, size.height]);
+                if let Some(screen) = &mut open.screen {
+                    screen.resize([size.width, size.height]);
+                }
                 open.window.request_redraw();
             }
             WindowEvent::Occluded(occluded) => {

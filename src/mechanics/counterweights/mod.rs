@@ -11,7 +11,6 @@
 //! | ρ, t | density and thickness of the discs | kg/m³, m |
 //! | D_k | momentum of a drive, (6) | kg m² |
 
-mod cone;
 mod front;
 mod problem;
 

@@ -6,7 +6,7 @@ use std::fmt;
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
-use super::cone::{Least, NoX, Program, Row};
+use crate::convex::{Least, NoX, Program, Row};
 use crate::mechanics::machine::{Counterweight, Inertia, Machine, MachineError};
 
 /// Where a link may carry a counterweight.
@@ -14,7 +14,7 @@ use crate::mechanics::machine::{Counterweight, Inertia, Machine, MachineError};
 pub struct Sites {
     /// The link, counted from 0.
     pub link: usize,
-    /// Nearest to the tip backwards: m from the root along the axis.
+    /// Furthest back: m from the root along the axis, towards the tip above 0.
     pub from: f64,
     /// Furthest towards the tip, m.
     pub to: f64,
@@ -32,6 +32,9 @@ pub struct Disc {
 }
 
 impl Disc {
+    /// Steel, 30 mm thick.
+    pub const STEEL: Self = Self { density: 7850.0, thickness: 0.03 };
+
     /// Radius of a disc of a mass, m.
     pub fn radius(&self, mass: f64) -> f64 {
         (mass / (PI * self.density * self.thickness)).sqrt()
@@ -159,7 +162,7 @@ pub enum NoWeights {
     Conflict {
         /// The bounds that contradict each other: with any of them away there is a way.
         bounds: Vec<Bound>,
-        /// What the masses may be at most for there to be a way, kg, if the bounds on masses alone stand in it.
+        /// The least bound on every mass, kg, with which there is a way, if bounds on masses are among them.
         relief: Option<f64>,
     },
     /// Whatever they weigh and wherever they sit.

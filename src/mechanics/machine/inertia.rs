@@ -246,6 +246,11 @@ impl Inertia {
         Self::pairs(self.drives).fold(0.0, |m, (k, l)| m.max(self.c[k][l].norm()))
     }
 
+    /// How far the mass matrix and D depend on the pose: the largest |C_kl| as a share of Σ H_kk.
+    pub fn pose_dependence(&self) -> f64 {
+        self.invariance_residual() / self.diagonals().iter().sum::<f64>().max(f64::MIN_POSITIVE)
+    }
+
     /// Whether no force reaches the base: every |g_k| below 1e-9 of what the mass and size make possible.
     pub fn is_force_balanced(&self) -> bool {
         self.force_residual() <= self.least_first_moment()

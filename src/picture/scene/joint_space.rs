@@ -7,15 +7,16 @@
 
 use std::sync::Arc;
 
-use super::axes::{self, Axis};
+use super::axes;
 use super::camera::{Camera, Orbit};
 use super::course::stations;
+use super::joint_items;
 use super::options::{Handle, ViewOptions};
 use super::palette::{Palette, faded, palette};
 use super::pick::{Aim, NEAR, Pick};
 use super::pointer::{Pointer, dot};
 use super::{Anchor, Changes, IN_PLACE, Label, Line, Marker, Mesh, Model, Pose, Scene, Solid, Strips};
-use crate::picture::numbers::{degrees, round_up};
+use crate::picture::numbers::degrees;
 use crate::planning::pose_constant::Planes;
 use crate::planning::reactionless::PlanePoint;
 use crate::session::Run;
@@ -32,9 +33,6 @@ const BESIDE: f64 = 0.3;
 const NEIGHBOURS: f64 = 0.5;
 /// Room around the prism, rad.
 const ROOM: f64 = 0.25;
-
-/// Names of the axes, with the unit.
-const TITLES: [&str; 3] = ["q₁, rad", "q₂, rad", "q₃, rad"];
 
 /// What stays the same from frame to frame.
 #[derive(Clone, Debug)]
@@ -261,41 +259,20 @@ impl JointSpace {
             solid("plane", 0, plane, faded(palette.amber, if hot { 0.42 } else { 0.34 }), Changes::Pose),
         ];
         let eye = camera.eye_direction().map(f64::from);
-        let axes = self.axes(&palette, frame);
+        let axes = joint_items::axes(&palette, frame, self.drives, self.bounds(b), &self.origin(b));
         axes::draw(&mut scene, &palette, &axes, eye, self.stands());
         self.prism(&mut scene, &palette, b);
         self.neighbours(&mut scene, &palette, b);
         self.plane(&mut scene, &palette, frame, plane, hot);
         self.drops(&mut scene, &palette, frame, eye);
         self.course(&mut scene, &palette, b);
-        let hot = options.hot == Some(Handle::Target);
-        let at = self.pose(frame).map(|x| x as f32);
-        scene.markers.push(Marker::disc("pose", at, 4.5, palette.ink));
-        let ring = Marker::disc("target", at, if hot { 12.0 } else { 10.0 }, faded(palette.ink, 0.0));
-        scene.markers.push(ring.edged(palette.ink, 2.0));
+        joint_items::draw_pose(&mut scene, &palette, self.pose(frame), options.hot == Some(Handle::Target));
         scene
     }
 
     /// What may change of what stands about the present plane.
     fn stands(&self) -> Changes {
         if self.fixed.is_some() { Changes::Nothing } else { Changes::Shape }
-    }
-
-    fn axes(&self, palette: &Palette, frame: &Frame) -> [Axis; 3] {
-        let (bounds, origin) = (self.bounds(frame.b_reference), self.origin(frame.b_reference));
-        let longest = bounds.iter().map(|[from, to]| to - from).fold(0.0, f64::max);
-        [0, 1, 2].map(|i| {
-            let (k, [from, to]) = (self.drives[i], bounds[i]);
-            Axis {
-                title: TITLES[k],
-                colour: palette.drive(k),
-                ends: [from, to],
-                values: [from + origin[k], to + origin[k]],
-                step: round_up(longest / 10.0),
-                decimals: 0,
-                now: Some((frame.relative(k), palette.drive(k))),
-            }
-        })
     }
 
     /// Corners of the plane of a pose constant, in the scene of the present one.
@@ -369,13 +346,7 @@ impl JointSpace {
         let changes = if self.fixed.is_some() { Changes::Nothing } else { Changes::Pose };
         scene.lines.push(Line { world_from_item: pose, changes, ..path });
         let [first, last] = [points[0], points[points.len() - 1]].map(|p| super::place(&pose, p));
-        let ends = [("A", first, Anchor::Right, -11.0), ("B", last, Anchor::Left, 11.0)];
-        // A closed path has one end.
-        let closed = first.iter().zip(last).all(|(s, t)| (s - t).abs() < 1e-3);
-        for (name, at, anchor, aside) in ends.into_iter().take(if closed { 1 } else { 2 }) {
-            scene.markers.push(Marker::disc("path/ends", at, 4.5, palette.background).edged(palette.ink, 1.6));
-            scene.labels.push(Label::new("path/names", at, [aside, -10.0], name, palette.ink, 13.0, anchor));
-        }
+        joint_items::draw_ends(scene, palette, [first, last]);
     }
 
     /// q at the middle of a plane, rad.

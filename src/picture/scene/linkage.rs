@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::mesh::{bar, cylinder};
 use super::palette::{Palette, faded, mix};
 use super::{Changes, Mesh, Model, Name, Rgba, Shadow, Solid, posed};
-use crate::mechanics::machine::{Chain, Machine, place_of};
+use crate::mechanics::machine::{Chain, Machine, ResolvedLink, place_of};
 use crate::mechanics::planar::{Pose2, Units, Vector, unit};
 
 /// A machine's meshes, and how a pose places them.
@@ -81,6 +81,8 @@ struct Motor {
     name: Name,
     mesh: usize,
     drive: usize,
+    /// The pin that it turns; none: it stands on the base.
+    at: Option<Chain>,
     z: f64,
 }
 
@@ -156,14 +158,26 @@ impl Linkage {
         }
         let n = machine.drives();
         let (drive_height, drive_radius) = (0.05 * reach, DRIVE_RADIUS * reach);
-        let motors = (0..n)
-            .map(|k| Motor {
-                name: format!("machine/base/drive/{}", k + 1).into(),
-                mesh: add(cylinder(drive_radius * (1.0 + 0.12 * k as f64), 0.92 * drive_height, 0.1 * drive_height)),
-                drive: k,
-                z: -gap - (k + 1) as f64 * drive_height,
-            })
-            .collect();
+        let mut on_base = 0;
+        let motor = |k: usize| {
+            let at = joint_of(machine, k);
+            let size = match at {
+                Some(_) => 0.75,
+                None => 1.0 + 0.12 * f64::from(on_base),
+            };
+            let below = match at {
+                // Under the link that carries it.
+                Some(_) => machine.motors().on(k).map_or(0.0, layer) - 0.92 * drive_height,
+                None => {
+                    on_base += 1;
+                    -f64::from(on_base) * drive_height
+                }
+            };
+            let mesh = add(cylinder(size * drive_radius, 0.92 * drive_height, 0.1 * drive_height));
+            let on = if at.is_some() { "machine" } else { "machine/base" };
+            Motor { name: format!("{on}/drive/{}", k + 1).into(), mesh, drive: k, at, z: below - gap }
+        };
+        let motors: Vec<Motor> = (0..n).map(motor).collect();
         let plate = add(cylinder(2.0 * drive_radius, 0.3 * drive_height, 0.05 * drive_height));
         // Of a base that moves.
         let [length, width] = PLATE.map(|part| part * reach);
@@ -202,7 +216,8 @@ impl Linkage {
 
     /// Height of what the drives stand on, m.
     pub fn bottom(&self) -> f64 {
-        self.motors.iter().fold(0.0_f64, |m, motor| m.min(motor.z)) - 0.015 * self.reach
+        let on_base = self.motors.iter().filter(|motor| motor.at.is_none());
+        on_base.fold(0.0_f64, |m, motor| m.min(motor.z)) - 0.015 * self.reach
     }
 
     /// Radius of the plate under the drives, m.
@@ -271,7 +286,11 @@ impl Linkage {
         }
         for motor in &self.motors {
             let colour = mix(palette.drive(motor.drive), grey, 0.45);
-            solids.push(turned(motor.name.clone(), motor.mesh, motor.z, colour));
+            let name = motor.name.clone();
+            solids.push(match &motor.at {
+                Some(at) => upright(name, motor.mesh, place_of(at, e), motor.z, colour, Changes::Pose),
+                None => turned(name, motor.mesh, motor.z, colour),
+            });
         }
         solids.extend(self.bars.iter().map(|bar| bar.solid(e, base.at, palette.drive(bar.drive))));
         for pin in &self.pins {
@@ -395,6 +414,13 @@ fn carriers(machine: &Machine) -> Vec<bool> {
         at = machine.resolved_links()[j].parent;
     }
     carries
+}
+
+/// The pin in which a motor sits between the links of two drives.
+fn joint_of(machine: &Machine, k: usize) -> Option<Chain> {
+    let (parts, on) = (machine.resolved_links(), machine.motors().on(k)?);
+    let on_its_drive = |part: &&ResolvedLink| part.parent.is_some_and(|parent| parts[parent].drive == on);
+    parts.iter().filter(|part| part.drive == k).find(on_its_drive).map(|part| part.root)
 }
 
 /// Distinct pins: where they are, and the links that they join.

@@ -14,6 +14,7 @@ pub mod dexterity;
 pub mod exaggeration;
 pub mod fill;
 pub mod framing;
+pub mod joint_items;
 pub mod joint_space;
 pub mod linkage;
 pub mod mesh;

@@ -26,8 +26,8 @@ pub struct Palette {
     pub ink: Rgba,
     /// Text of less weight.
     pub dim: Rgba,
-    /// Drives 1, 2, 3; further drives repeat them.
-    pub drives: [Rgba; 3],
+    /// Drives 1 to 8.
+    pub drives: [Rgba; 8],
     /// b, its workspace, the time cursor.
     pub amber: Rgba,
     /// A reaction that is zero.
@@ -45,7 +45,16 @@ pub const fn palette(theme: Theme) -> Palette {
             line: hex(0x2a2e38),
             ink: hex(0xe6e8ec),
             dim: hex(0x8b93a1),
-            drives: [hex(0x5cb3ea), hex(0xf08a5d), hex(0x4cc9a0)],
+            drives: [
+                hex(0x5cb3ea),
+                hex(0xf08a5d),
+                hex(0x4cc9a0),
+                hex(0xa873f5),
+                hex(0xbde85a),
+                hex(0x7b8fa3),
+                hex(0xf5e3bf),
+                hex(0xa3faf5),
+            ],
             amber: hex(0xe8b84a),
             zero: hex(0x4cc9a0),
             reaction: hex(0xff5d5d),
@@ -56,7 +65,16 @@ pub const fn palette(theme: Theme) -> Palette {
             line: hex(0xdfe2e7),
             ink: hex(0x1d2129),
             dim: hex(0x6b7280),
-            drives: [hex(0x0072b2), hex(0xc2410c), hex(0x047857)],
+            drives: [
+                hex(0x0072b2),
+                hex(0xc2410c),
+                hex(0x047857),
+                hex(0x8b2bd9),
+                hex(0x5e2a0c),
+                hex(0x4a5b6e),
+                hex(0x4a0f5c),
+                hex(0xa0578f),
+            ],
             amber: hex(0xa86d00),
             zero: hex(0x047857),
             reaction: hex(0xc81e1e),

@@ -5,14 +5,15 @@
 
 use std::sync::Arc;
 
-use super::axes::{self, Axis};
+use super::axes;
 use super::camera::{Camera, Flat, Orbit};
 use super::course::stations;
+use super::joint_items::{self, TITLES};
 use super::options::{Handle, ViewOptions};
 use super::palette::{Palette, faded, palette};
 use super::pick::{Aim, NEAR, Pick};
 use super::pointer::{Pointer, dot};
-use super::{Anchor, Changes, IN_PLACE, Label, Line, Marker, Mesh, Model, Scene, Solid};
+use super::{Anchor, Changes, IN_PLACE, Label, Line, Mesh, Model, Scene, Solid};
 use crate::mechanics::planar::DriveAngles;
 use crate::picture::numbers::{degrees, round_up, signed};
 use crate::planning::pose_space::PoseSpace;
@@ -27,8 +28,6 @@ const MARGIN: f64 = 0.4;
 const NEIGHBOURS: f64 = 0.5;
 /// Room around what is shown, rad.
 const ROOM: f64 = 0.2;
-/// Names of the axes, with the unit.
-const TITLES: [&str; 8] = ["q₁, rad", "q₂, rad", "q₃, rad", "q₄, rad", "q₅, rad", "q₆, rad", "q₇, rad", "q₈, rad"];
 
 /// What stays the same from frame to frame.
 #[derive(Clone, Debug)]
@@ -267,7 +266,9 @@ impl Section {
             let (name, changes) = ("plane".into(), Changes::Shape);
             scene.solids.push(Solid { name, mesh: 0, world_from_item: IN_PLACE, colour, changes });
             let eye = camera.eye_direction().map(f64::from);
-            axes::draw(&mut scene, &palette, &self.axes(&palette, frame), eye, Changes::Shape);
+            let drives = [0, 1, 2].map(|i| self.shown[i]);
+            let axes = joint_items::axes(&palette, frame, drives, self.bounds, &self.origin(b));
+            axes::draw(&mut scene, &palette, &axes, eye, Changes::Shape);
         }
         self.neighbours(&mut scene, &palette, frame);
         let width = if hot { 3.4 } else { 2.2 };
@@ -278,11 +279,7 @@ impl Section {
             scene.labels.push(label);
         }
         self.course(&mut scene, &palette, b);
-        let hot = options.hot == Some(Handle::Target);
-        let at = self.pose(frame).map(|x| x as f32);
-        scene.markers.push(Marker::disc("pose", at, 4.5, palette.ink));
-        let ring = Marker::disc("target", at, if hot { 12.0 } else { 10.0 }, faded(palette.ink, 0.0));
-        scene.markers.push(ring.edged(palette.ink, 2.0));
+        joint_items::draw_pose(&mut scene, &palette, self.pose(frame), options.hot == Some(Handle::Target));
         scene
     }
 
@@ -291,23 +288,6 @@ impl Section {
         let far = part.iter().max_by(|p, q| distance(**p, pose).total_cmp(&distance(**q, pose)))?;
         let middle = [0, 1, 2].map(|i| part.iter().map(|p| p[i]).sum::<f64>() / part.len() as f64);
         Some([0, 1, 2].map(|i| (far[i] + 0.06 * (far[i] - middle[i])) as f32))
-    }
-
-    fn axes(&self, palette: &Palette, frame: &Frame) -> [Axis; 3] {
-        let (bounds, origin) = (self.bounds, self.origin(frame.b_reference));
-        let longest = bounds.iter().map(|[from, to]| to - from).fold(0.0, f64::max);
-        [0, 1, 2].map(|i| {
-            let (k, [from, to]) = (self.shown[i], bounds[i]);
-            Axis {
-                title: TITLES[k],
-                colour: palette.drive(k),
-                ends: [from, to],
-                values: [from + origin[k], to + origin[k]],
-                step: round_up(longest / 8.0),
-                decimals: 0,
-                now: Some((frame.relative(k), palette.drive(k))),
-            }
-        })
     }
 
     /// The plane of two drives, ruled at round angles, with the present ones at its edges.
@@ -386,13 +366,7 @@ impl Section {
         let points: Vec<_> = self.course.iter().map(|q| self.point(q, b).map(|x| x as f32)).collect();
         let [first, .., last] = points[..] else { return };
         scene.lines.push(Line::new("path", [points.clone()], 2.0, palette.ink).dashed(2.0, 3.5).on_top());
-        let ends = [("A", first, Anchor::Right, -11.0), ("B", last, Anchor::Left, 11.0)];
-        // A closed path has one end.
-        let is_closed = first.iter().zip(last).all(|(s, t)| (s - t).abs() < 1e-3);
-        for (name, at, anchor, aside) in ends.into_iter().take(if is_closed { 1 } else { 2 }) {
-            scene.markers.push(Marker::disc("path/ends", at, 4.5, palette.background).edged(palette.ink, 1.6));
-            scene.labels.push(Label::new("path/names", at, [aside, -10.0], name, palette.ink, 13.0, anchor));
-        }
+        joint_items::draw_ends(scene, palette, [first, last]);
     }
 }
 

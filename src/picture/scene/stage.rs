@@ -27,6 +27,7 @@ use super::pick::{Aim, Hold, Hook, Pick, Pivot};
 use super::pointer::Pointer;
 use super::{Line, Measure, Scene, Strips, point};
 use crate::mechanics::planar::{DriveAngles, Vector, unit};
+use crate::picture::numbers::round_up;
 use crate::planning::pose_map::PoseMap;
 use crate::planning::pose_space::PoseSpace;
 use crate::session::Run;
@@ -37,8 +38,8 @@ use path::Plan;
 use pins::Pins;
 use workspace::Workspace;
 
-/// Width of the grid, m.
-const GRID: f64 = 0.1;
+/// The most squares of the grid over the reach of a machine.
+const SQUARES: f64 = 15.0;
 
 /// What stays the same from frame to frame.
 #[derive(Clone, Debug)]
@@ -166,6 +167,11 @@ impl Stage {
     /// Takes over what has changed of base and payload.
     pub fn refresh(&mut self, run: &Run) {
         self.base.refresh(run);
+    }
+
+    /// Width of the grid under the machine, m.
+    pub fn grid_width(&self) -> f64 {
+        grid_width(&self.linkage)
     }
 
     /// The machine's body.
@@ -411,13 +417,19 @@ fn ring_radius(linkage: &Linkage) -> f64 {
     0.118 * linkage.reach()
 }
 
+/// Width of the grid under a machine, m.
+fn grid_width(linkage: &Linkage) -> f64 {
+    round_up(linkage.reach() / SQUARES)
+}
+
 /// Lines of the grid under a machine, and those through the origin.
 fn grid(linkage: &Linkage) -> [Strips; 2] {
     let z = linkage.floor() - 0.004 * linkage.reach();
-    let n = (1.7 * linkage.reach() / GRID).ceil().min(60.0) as i32;
-    let far = f64::from(n) * GRID;
+    let width = grid_width(linkage);
+    let n = (1.7 * linkage.reach() / width).ceil() as i32;
+    let far = f64::from(n) * width;
     let at = |i: i32| {
-        let at = f64::from(i) * GRID;
+        let at = f64::from(i) * width;
         [[[at, -far], [at, far]], [[-far, at], [far, at]]]
             .map(|ends| ends.map(|[x, y]| point(Vector::new(x, y), z)).to_vec())
     };

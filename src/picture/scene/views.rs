@@ -17,6 +17,7 @@ use crate::mechanics::planar::DriveAngles;
 use crate::planning::pose_map::PoseMap;
 use crate::planning::pose_space::PoseSpace;
 use crate::session::Run;
+use crate::settings::number::Short;
 use crate::simulation::frame::Frame;
 
 /// How near to a handle the pointer takes hold of it, px: a point of the path or the end of a limit, and a payload.
@@ -85,14 +86,6 @@ impl ViewKind {
             Self::Flat | Self::Space => "",
             Self::Joints => "drag the dot in its plane  ·  drag the plane to change b",
             Self::Tower => "drag the dot or the slice  ·  click a green bar: its b",
-        }
-    }
-
-    /// The grid's width.
-    pub fn grid(self) -> &'static str {
-        match self {
-            Self::Flat | Self::Space => "0.1 m grid",
-            Self::Joints | Self::Tower => "",
         }
     }
 
@@ -166,6 +159,14 @@ impl Views {
     pub fn refresh(&mut self, run: &Run) {
         self.stage.refresh(run);
         self.raise_tower(run);
+    }
+
+    /// The width of the grid under the machine, in words.
+    pub fn grid(&self, kind: ViewKind) -> String {
+        match kind {
+            ViewKind::Flat | ViewKind::Space => format!("{} m grid", Short(self.stage.grid_width())),
+            ViewKind::Joints | ViewKind::Tower => String::new(),
+        }
     }
 
     /// Makes the tower of other than three drives, once their workspace is outlined.

@@ -3,8 +3,8 @@
 //!
 //! b″ is linear between even nodes; b and b′ of the nodes are unknowns too, bound together by exact integration.
 
+use crate::convex::{Program, Row};
 use crate::planning::off_plane::b_course::BCourse;
-use crate::planning::off_plane::convex::Program;
 use crate::planning::off_plane::corridor::{Corridor, Station};
 use crate::planning::reactionless::SLACK;
 
@@ -124,11 +124,11 @@ fn solved(corridor: &Corridor, walls: &Walls, end: Option<f64>, peak: bool, spac
         // First the peak alone; then of all courses with that peak the smoothest.
         let bound = least_peak(corridor, walls, end, spaces, 1)? * (1.0 + SPARE);
         for i in 0..=spaces {
-            least.at_most([(3 * i + 2, 1.0)], bound);
-            least.at_most([(3 * i + 2, -1.0)], bound);
+            least.at_most.push(Row::new([(3 * i + 2, 1.0)], bound));
+            least.at_most.push(Row::new([(3 * i + 2, -1.0)], bound));
         }
     }
-    let x = squared(least, spaces).solve()?;
+    let x = solution(&squared(least, spaces))?;
     let second = (0..=spaces).map(|i| x[3 * i + 2]).collect();
     Ok(BCourse::integrated(corridor.start().b, second, end))
 }
@@ -138,7 +138,7 @@ fn value(corridor: &Corridor, walls: &Walls, end: Option<f64>, peak: bool, space
     if peak {
         return least_peak(corridor, walls, end, spaces, EVERY_SECOND);
     }
-    let x = squared(program(corridor, walls, end, spaces, EVERY_SECOND, 0), spaces).solve()?;
+    let x = solution(&squared(program(corridor, walls, end, spaces, EVERY_SECOND, 0), spaces))?;
     let square = |i: usize| {
         let (x, y) = (x[3 * i + 2], x[3 * i + 5]);
         (x * x + x * y + y * y) / (3.0 * spaces as f64)
@@ -156,12 +156,16 @@ fn least_peak(
 ) -> Result<f64, String> {
     let top = 3 * (spaces + 1);
     let mut linear = program(corridor, walls, end, spaces, every, 1);
-    linear.add_linear(top, 1.0);
+    linear.linear[top] = 1.0;
     for i in 0..=spaces {
-        linear.at_most([(3 * i + 2, 1.0), (top, -1.0)], 0.0);
-        linear.at_most([(3 * i + 2, -1.0), (top, -1.0)], 0.0);
+        linear.at_most.push(Row::new([(3 * i + 2, 1.0), (top, -1.0)], 0.0));
+        linear.at_most.push(Row::new([(3 * i + 2, -1.0), (top, -1.0)], 0.0));
     }
-    Ok(linear.solve()?[top].max(0.0))
+    Ok(solution(&linear)?[top].max(0.0))
+}
+
+fn solution(program: &Program) -> Result<Vec<f64>, String> {
+    program.solve().map(|least| least.x).map_err(|why| why.to_string())
 }
 
 /// ∫ b″² du.
@@ -182,16 +186,16 @@ fn program(corridor: &Corridor, walls: &Walls, end: Option<f64>, spaces: usize, 
     let start = corridor.start().b;
     let h = 1.0 / spaces as f64;
     let mut program = Program::over(3 * (spaces + 1) + more);
-    program.equal([(0, 1.0)], 0.0);
-    program.equal([(1, 1.0)], 0.0);
-    program.equal([(3 * spaces + 1, 1.0)], 0.0);
+    program.equal.push(Row::new([(0, 1.0)], 0.0));
+    program.equal.push(Row::new([(1, 1.0)], 0.0));
+    program.equal.push(Row::new([(3 * spaces + 1, 1.0)], 0.0));
     if let Some(end) = end {
-        program.equal([(3 * spaces, 1.0)], end - start);
+        program.equal.push(Row::new([(3 * spaces, 1.0)], end - start));
     }
     for i in 0..spaces {
         let [b, v, w] = [3 * i, 3 * i + 1, 3 * i + 2];
-        program.equal([(v + 3, 1.0), (v, -1.0), (w, -h / 2.0), (w + 3, -h / 2.0)], 0.0);
-        program.equal([(b + 3, 1.0), (b, -1.0), (v, -h), (w, -h * h / 3.0), (w + 3, -h * h / 6.0)], 0.0);
+        program.equal.push(Row::new([(v + 3, 1.0), (v, -1.0), (w, -h / 2.0), (w + 3, -h / 2.0)], 0.0));
+        program.equal.push(Row::new([(b + 3, 1.0), (b, -1.0), (v, -h), (w, -h * h / 3.0), (w + 3, -h * h / 6.0)], 0.0));
     }
     let even = corridor.stations().len();
     let besides = corridor.between().iter().map(|s| s.u * (even - 1) as f64).zip(&walls[even..]);
@@ -204,8 +208,8 @@ fn program(corridor: &Corridor, walls: &Walls, end: Option<f64>, spaces: usize, 
         let [b, v, w] = [3 * i, 3 * i + 1, 3 * i + 2];
         let row = |s: f64| [(b, s), (v, s * d), (w, s * (d * d / 2.0 - cubic)), (w + 3, s * cubic)];
         if k + 1.0 < even as f64 || end.is_none() {
-            program.at_most(row(1.0), *high);
-            program.at_most(row(-1.0), -low);
+            let walls = [(1.0, *high), (-1.0, -low)].into_iter().filter(|(_, right)| right.is_finite());
+            program.at_most.extend(walls.map(|(s, right)| Row::new(row(s), right)));
         }
     }
     program

@@ -3,7 +3,6 @@
 pub mod b_course;
 pub mod b_integral;
 mod b_program;
-mod convex;
 pub mod corridor;
 pub mod drift;
 pub mod inverse;

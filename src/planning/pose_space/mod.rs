@@ -29,3 +29,4 @@ mod toward;
 
 pub use outline::Outline;
 pub use space::{Joint, NoPoseSpace, PoseSpace};
+pub(crate) use space::{held, is_reactionless};

@@ -59,6 +59,7 @@ pub struct PoseSpace {
     /// A drive that a hand leads to places without turning it, while it can.
     pub(super) kept: Option<usize>,
     inertia: f64,
+    is_reactionless: bool,
 }
 
 /// Why a machine has no pose constant, in words.
@@ -123,20 +124,36 @@ const ONLY_TWO: &str = "; without a moment its two drives keep q₁ plus an inte
 
 /// Couplings up to this share of the inertia of all are rounding of a table, not a machine that shakes.
 const ROUNDED: f64 = 1e-3;
+/// Up to this share λ changes so little that to hold b keeps most of the moment from the base.
+const NEARLY: f64 = 0.1;
+
+/// Whether holding Σ λ_k q_k keeps the moment from the base, but for the rounding of a table.
+pub(crate) fn is_reactionless(machine: &Machine) -> bool {
+    Inertia::of(machine).pose_dependence() <= ROUNDED
+}
+
+/// The inertia of a machine with λ that are constant, or nearly.
+///
+/// # Errors
+/// Why it has none.
+pub(crate) fn held(machine: &Machine) -> Result<Inertia, NoPoseSpace> {
+    let inertia = Inertia::of(machine);
+    if inertia.pose_dependence() > NEARLY {
+        return Err(varies(machine, &inertia));
+    }
+    if inertia.pose_inertia() == 0.0 {
+        return Err(NoPoseSpace::Free);
+    }
+    Ok(inertia)
+}
 
 impl PoseSpace {
-    /// Of a machine whose D is constant.
+    /// Of a machine whose D is constant, or nearly.
     ///
     /// # Errors
     /// Why it has no b.
     pub fn of(machine: &Machine) -> Result<Self, NoPoseSpace> {
-        let inertia = Inertia::of(machine);
-        if inertia.invariance_residual() > ROUNDED * inertia.diagonals().iter().sum::<f64>() {
-            return Err(varies(machine, &inertia));
-        }
-        if inertia.pose_inertia() == 0.0 {
-            return Err(NoPoseSpace::Free);
-        }
+        let inertia = held(machine)?;
         Self::with(machine, inertia.lambda(), inertia.pose_inertia())
     }
 
@@ -163,7 +180,7 @@ impl PoseSpace {
             return Err(NoPoseSpace::Size { reach });
         }
         let joints = joints(machine)?;
-        Ok(Self { tip, lambda, sum, joints, kept: None, inertia })
+        Ok(Self { tip, lambda, sum, joints, kept: None, inertia, is_reactionless: is_reactionless(machine) })
     }
 
     /// The same, with a drive that keeps its angle, and so its links their orientation, while a hand leads the end effector
@@ -191,6 +208,11 @@ impl PoseSpace {
     /// n_B = −D_1 b̈, kg m².
     pub fn inertia(&self) -> f64 {
         self.inertia
+    }
+
+    /// Whether holding b keeps the moment from the base, but for the rounding of a table.
+    pub fn is_reactionless(&self) -> bool {
+        self.is_reactionless
     }
 
     /// The relative angles, n − 1 of them.

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::workspace::held;
 use crate::mechanics::planar::{Vector, unit};
 use crate::picture::scene::linkage::Linkage;
 use crate::picture::scene::palette::{Palette, faded};
@@ -72,7 +73,7 @@ impl Outlined {
         let flat = |points: &[Vector]| -> Vec<[f32; 3]> { points.iter().map(|p| point(*p, 0.0)).collect() };
         let curve = vectors(&outline.curve);
         let (lines, words, middle) = if curve.len() > 1 {
-            let words = ["reactionless curve".to_owned(), format!("{:.3} m", outline.length)];
+            let words = [held("curve", space.is_reactionless()), format!("{:.3} m", outline.length)];
             (vec![flat(&curve)], words, curve[curve.len() / 2])
         } else {
             let closed = |line: &Vec<[f64; 2]>| {
@@ -81,7 +82,7 @@ impl Outlined {
                 points
             };
             let [x_min, x_max, y_min, y_max] = outline.extent;
-            let words = ["reactionless workspace".to_owned(), format!("{:.3} m²", outline.area)];
+            let words = [held("workspace", space.is_reactionless()), format!("{:.3} m²", outline.area)];
             let middle = roomiest(&outline.loops, [x_min, x_max, y_min, y_max], 0.35 * space.farthest());
             (outline.loops.iter().map(closed).collect(), words, middle)
         };

@@ -34,6 +34,14 @@ pub struct Workspace {
     dexterity: [OnceLock<[f64; 2]>; 3],
 }
 
+/// What is reached while b is held, in words that promise no more than is true.
+pub(super) fn held(noun: &str, is_reactionless: bool) -> String {
+    match is_reactionless {
+        true => format!("reactionless {noun}"),
+        false => format!("{noun} of b, not reactionless"),
+    }
+}
+
 impl Workspace {
     /// Of planes, with a b to compare with and a ring of a radius, m.
     pub fn of(planes: &Arc<Planes>, compared: Option<f64>, radius: f64) -> Self {
@@ -148,7 +156,7 @@ impl Workspace {
         // Whole turns of the machine make no other workspace.
         let within = b.rem_euclid(map.period());
         let rows = [
-            ("reactionless workspace".to_owned(), palette.amber, 12.5),
+            (held("workspace", self.planes.is_reactionless()), palette.amber, 12.5),
             (format!("b = {within:.3} rad · {:.3} m²", self.planes.boundary().area()), palette.dim, 11.5),
         ];
         for (i, (text, colour, size)) in rows.into_iter().enumerate() {

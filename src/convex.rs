@@ -1,15 +1,17 @@
-//! Cone programs: least q · x under linear equalities, inequalities and second-order cones of three rows, by an
-//! interior-point method (Clarabel). The same program always has the same answer, and the solver's dual says how far
-//! from the best it may be.
+//! Convex programs: least ½ xᵀ P x + q · x under linear equalities, inequalities and second-order cones of three rows,
+//! by an interior-point method (Clarabel). The same program always has the same answer, and the solver's dual says how
+//! far from the best it may be.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT, SolverStatus, ZeroConeT,
 };
+use thiserror::Error;
 
 /// Σ value x_j and what stands on the other side.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Row {
+pub(crate) struct Row {
+    /// j and the value; repeated places add up.
     pub terms: Vec<(usize, f64)>,
     pub right: f64,
 }
@@ -22,12 +24,14 @@ impl Row {
 
 /// A program, row by row.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Program {
+pub(crate) struct Program {
+    /// P above and on its diagonal: row, column, value; repeated places add up.
+    quadratic: Vec<(usize, usize, f64)>,
     /// q.
     pub linear: Vec<f64>,
     /// Σ = right.
     pub equal: Vec<Row>,
-    /// Σ ≤ right.
+    /// Σ ≤ right, which is finite.
     pub at_most: Vec<Row>,
     /// Rows a, b, c with a ≥ |(b, c)|; the right side of a row is added to its sum.
     pub cones: Vec<[Row; 3]>,
@@ -35,20 +39,22 @@ pub(super) struct Program {
 
 /// Where it is least.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Least {
+pub(crate) struct Least {
     pub x: Vec<f64>,
-    /// What is least, q · x.
+    /// What is least.
     pub value: f64,
     /// The most by which the best may lie below, from the dual.
     pub gap: f64,
 }
 
 /// Why there is no x.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum NoX {
-    /// The rows contradict each other; how much each inequality has to do with it.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub(crate) enum NoX {
+    /// How much each inequality has to do with it.
+    #[error("what is wanted contradicts itself")]
     Contradiction(Vec<f64>),
     /// The solver's own word.
+    #[error("the solver found no answer: {0}")]
     Failed(String),
 }
 
@@ -56,6 +62,12 @@ impl Program {
     /// Nothing to be least yet, over `n` unknowns.
     pub fn over(n: usize) -> Self {
         Self { linear: vec![0.0; n], ..Self::default() }
+    }
+
+    /// Adds factor · x_i x_j to what is to be least.
+    pub fn add_product(&mut self, i: usize, j: usize, factor: f64) {
+        // Twice the square on the diagonal, half of the sum of both halves beside it.
+        self.quadratic.push((i.min(j), i.max(j), if i == j { 2.0 * factor } else { factor }));
     }
 
     /// Wants x_u x_w ≥ x_s², both not below 0.
@@ -89,13 +101,13 @@ impl Program {
         let mut cones = vec![ZeroConeT(self.equal.len()), NonnegativeConeT(self.at_most.len())];
         cones.retain(|cone| !matches!(cone, ZeroConeT(0) | NonnegativeConeT(0)));
         cones.extend(self.cones.iter().map(|_| SecondOrderConeT(3)));
-        let (a, p) = (sparse(right.len(), n, &entries), sparse(n, n, &[]));
+        let (a, p) = (sparse(right.len(), n, &entries), sparse(n, n, &self.quadratic));
         let settings = DefaultSettings {
             verbose: false,
             max_iter: 200,
             tol_gap_abs: 1e-10,
             tol_gap_rel: 1e-10,
-            tol_feas: 1e-10,
+            tol_feas: 1e-11,
             ..DefaultSettings::default()
         };
         let mut solver = DefaultSolver::new(&p, &self.linear, &a, &right, &cones, settings)
@@ -117,6 +129,7 @@ impl Program {
 }
 
 fn sparse(m: usize, n: usize, entries: &[(usize, usize, f64)]) -> CscMatrix<f64> {
-    let part = |pick: fn(&(usize, usize, f64)) -> usize| entries.iter().map(pick).collect();
-    CscMatrix::new_from_triplets(m, n, part(|e| e.0), part(|e| e.1), entries.iter().map(|e| e.2).collect())
+    let entries = entries.iter().filter(|entry| entry.2 != 0.0);
+    let part = |pick: fn(&(usize, usize, f64)) -> usize| entries.clone().map(pick).collect();
+    CscMatrix::new_from_triplets(m, n, part(|e| e.0), part(|e| e.1), entries.clone().map(|e| e.2).collect())
 }

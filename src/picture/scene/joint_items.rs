@@ -1,0 +1,58 @@
+//! What joint space shows alike for any number of drives: its axes, the pose, the ends of the planned path.
+
+use super::axes::Axis;
+use super::palette::{Palette, faded};
+use super::{Anchor, Label, Marker, Scene};
+use crate::picture::numbers::round_up;
+use crate::simulation::frame::Frame;
+
+/// Drives by their angles.
+pub const SYMBOLS: [&str; 8] = ["q₁", "q₂", "q₃", "q₄", "q₅", "q₆", "q₇", "q₈"];
+/// Names of the axes, with the unit.
+pub(super) const TITLES: [&str; 8] =
+    ["q₁, rad", "q₂, rad", "q₃, rad", "q₄, rad", "q₅, rad", "q₆, rad", "q₇, rad", "q₈, rad"];
+
+/// The most marks on the longest axis.
+const MARKS: f64 = 10.0;
+
+/// Axes for three drives, over their bounds in the scene, with the value of now on each; `origin` is q of all drives
+/// at the scene's origin, rad.
+pub(super) fn axes(
+    palette: &Palette,
+    frame: &Frame,
+    drives: [usize; 3],
+    bounds: [[f64; 2]; 3],
+    origin: &[f64],
+) -> [Axis; 3] {
+    let longest = bounds.iter().map(|[from, to]| to - from).fold(0.0, f64::max);
+    [0, 1, 2].map(|i| {
+        let (k, [from, to]) = (drives[i], bounds[i]);
+        Axis {
+            title: TITLES[k],
+            colour: palette.drive(k),
+            ends: [from, to],
+            values: [from + origin[k], to + origin[k]],
+            step: round_up(longest / MARKS),
+            decimals: 0,
+            now: Some((frame.relative(k), palette.drive(k))),
+        }
+    })
+}
+
+/// A dot where the pose is, and the ring to pull it by.
+pub(super) fn draw_pose(scene: &mut Scene, palette: &Palette, pose: [f64; 3], hot: bool) {
+    let at = pose.map(|x| x as f32);
+    scene.markers.push(Marker::disc("pose", at, 4.5, palette.ink));
+    let ring = Marker::disc("target", at, if hot { 12.0 } else { 10.0 }, faded(palette.ink, 0.0));
+    scene.markers.push(ring.edged(palette.ink, 2.0));
+}
+
+/// The named ends of a path; a closed one has one.
+pub(super) fn draw_ends(scene: &mut Scene, palette: &Palette, [first, last]: [[f32; 3]; 2]) {
+    let ends = [("A", first, Anchor::Right, -11.0), ("B", last, Anchor::Left, 11.0)];
+    let is_closed = first.iter().zip(last).all(|(s, t)| (s - t).abs() < 1e-3);
+    for (name, at, anchor, aside) in ends.into_iter().take(if is_closed { 1 } else { 2 }) {
+        scene.markers.push(Marker::disc("path/ends", at, 4.5, palette.background).edged(palette.ink, 1.6));
+        scene.labels.push(Label::new("path/names", at, [aside, -10.0], name, palette.ink, 13.0, anchor));
+    }
+}
