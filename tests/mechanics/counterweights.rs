@@ -250,3 +250,28 @@ fn the_greatest_torque_is_least() {
         assert!(torque(&other.machine) >= torque(&least.machine) - 1e-9);
     }
 }
+
+/// Each is set by its number, as links are by their names.
+#[test]
+fn counterweights_are_set_by_key() {
+    let text = to_toml(builtin("nine-link").expect("built in"))
+        + "\n[[counterweight]]\nlink = \"2\"\nmass = 0.8\nat = -0.1\n[[counterweight]]\nlink = \"5\"\nmass = 1.5\nat = -0.12\nradius = 0.05\n";
+    let machine = parse(&text, "with.toml").expect("a machine");
+    let changed =
+        machine.set_all([("counterweight.2.mass", "1.25"), ("counterweight.2.at", "-0.2")]).expect("in range");
+    let changed = changed.set("counterweight.1.radius", "0.04").expect("in range");
+    let mut spec = machine.spec().clone();
+    (spec.counterweights[1].mass, spec.counterweights[1].at, spec.counterweights[0].radius) = (1.25, -0.2, 0.04);
+    assert_eq!(changed.spec(), &spec);
+    assert!((changed.mass() - machine.mass() + 0.25).abs() < 1e-14);
+    assert_eq!(changed.value("counterweight.2.at").and_then(|at| at.as_float()), Some(-0.2));
+    let point = changed.set("counterweight.2.radius", "default").expect("it may be left out");
+    assert_eq!(point.spec().counterweights[1].radius, 0.0);
+    let words = |key: &str, value: &str| machine.set(key, value).expect_err("no such setting").to_string();
+    for number in ["0", "3", "01", "x"] {
+        assert!(words(&format!("counterweight.{number}.mass"), "1").contains("want one of \"1\", \"2\""), "{number}");
+        assert_eq!(machine.value(&format!("counterweight.{number}.mass")), None);
+    }
+    assert!(words("counterweight.1.mass", "0").contains("1e-15"), "{}", words("counterweight.1.mass", "0"));
+    assert!(words("counterweight.1.colour", "1").contains("counterweight.NUMBER.(mass|at|radius)"));
+}

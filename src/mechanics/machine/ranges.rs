@@ -32,8 +32,9 @@ pub const ANGLE: Range = Range::either_way(MAX_ANGLE, "rad, four turns");
 
 const UNLIMITED: &str = "no limit";
 
-/// Every key of a machine that can be set by itself; its links, drives and angles go by their names.
-pub const KEYS: [Key; 19] = [
+/// Every key of a machine that can be set by itself; its links, drives and angles go by their names, its
+/// counterweights by their numbers, from 1.
+pub const KEYS: [Key; 22] = [
     Key::number(
         "link.*.com",
         PLACE,
@@ -55,6 +56,19 @@ pub const KEYS: [Key; 19] = [
         "0",
         "Height of a link's centre of mass along the drives' axis; it decides which moments tilt the base.",
     ),
+    Key::number(
+        "counterweight.*.mass",
+        MASS,
+        Key::REQUIRED,
+        "Mass of a counterweight: 1 is the first that the machine has.",
+    ),
+    Key::number(
+        "counterweight.*.at",
+        PLACE,
+        Key::REQUIRED,
+        "Place of a counterweight along the link that carries it, from that link's root.",
+    ),
+    Key::number("counterweight.*.radius", RADIUS, "0", "Radius of a counterweight, a disc; 0 for a point."),
     Key::number("length.*", LENGTH, Key::REQUIRED, "A named length, of all bars that share it."),
     Key::number("payload.mass", LOAD, "0", "Mass held at the end effector, known to control."),
     Key::number("payload.inertia", INERTIA, "0", "Inertia of the payload about its own centre of mass."),

@@ -9,14 +9,15 @@ use crate::settings::key::Key;
 use crate::settings::range::{clipped, shortened};
 
 /// The tables and keys of a scenario that set its machine.
-pub const PARTS: [&str; 6] = ["link", "length", "payload", "gravity", "limits", "drive"];
+pub const PARTS: [&str; 7] = ["link", "counterweight", "length", "payload", "gravity", "limits", "drive"];
 
 /// Whether a setting, such as `link.5.com`, is of the machine.
 pub fn is_of_machine(path: &str) -> bool {
     PARTS.contains(&path.split('.').next().unwrap_or_default())
 }
 
-const KEYS: &str = "link.NAME.(com|com_normal|mass|inertia|length|axial), length.NAME, \
+const KEYS: &str = "link.NAME.(com|com_normal|mass|inertia|length|axial), counterweight.NUMBER.(mass|at|radius), \
+                    length.NAME, \
                     payload.(mass|inertia|offset|axial), gravity, limits.ANGLE, \
                     drive.NAME.(torque|speed|acceleration|jerk)_limit, drive.NAME.rotor.(inertia|ratio)";
 
@@ -88,6 +89,15 @@ impl Machine {
                     _ => return None,
                 })
             }
+            ["counterweight", number, field] => {
+                let weight = spec.counterweights.get(place_of(number)?)?;
+                Value::from(match field {
+                    "mass" => weight.mass,
+                    "at" => weight.at,
+                    "radius" => weight.radius,
+                    _ => return None,
+                })
+            }
             ["length", name] => (*spec.lengths.get(name)?).into(),
             ["payload", "mass"] => spec.payload.mass.into(),
             ["payload", "inertia"] => spec.payload.inertia.into(),
@@ -151,6 +161,18 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &Value) -> Result<(), Machin
                 _ => return Err(unknown()),
             }
         }
+        ["counterweight", number, field] => {
+            let known: Vec<String> = (1..=spec.counterweights.len()).map(|i| i.to_string()).collect();
+            let missing = nobody("counterweight", number, known.iter().map(String::as_str).collect());
+            let place = place_of(number).filter(|i| *i < spec.counterweights.len()).ok_or(missing)?;
+            let weight = &mut spec.counterweights[place];
+            match field {
+                "mass" => weight.mass = one()?,
+                "at" => weight.at = one()?,
+                "radius" => weight.radius = one_or_zero()?,
+                _ => return Err(unknown()),
+            }
+        }
         ["length", name] => {
             let known = spec.lengths.keys().map(String::as_str).collect();
             let missing = nobody("length", name, known);
@@ -193,6 +215,11 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &Value) -> Result<(), Machin
         _ => return Err(unknown()),
     }
     Ok(())
+}
+
+/// Of a number that counts from 1, written as such.
+fn place_of(number: &str) -> Option<usize> {
+    number.parse::<usize>().ok().filter(|i| i.to_string() == number)?.checked_sub(1)
 }
 
 /// A length may be set through its only bar; one that others share, or that a point is named by, may not.

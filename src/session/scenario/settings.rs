@@ -235,18 +235,19 @@ impl Scenario {
     /// Every setting that this scenario has, with its key and what it holds: `*` becomes each name of its machine.
     pub fn settings(&self) -> Vec<(String, &'static Key, Value)> {
         let spec = self.machine.spec();
-        let names = |pattern: &str| -> Vec<&str> {
+        let names = |pattern: &str| -> Vec<String> {
             match pattern.split(".*").next().unwrap_or_default() {
-                "link" | "plant.link" => spec.links.iter().map(|link| link.name.as_str()).collect(),
-                "length" | "plant.length" => spec.lengths.keys().map(String::as_str).collect(),
-                "limits" => spec.angles.iter().map(|angle| angle.name.as_str()).collect(),
-                "drive" => spec.drives.iter().map(|drive| drive.name.as_str()).collect(),
-                _ => vec!["*"],
+                "link" | "plant.link" => spec.links.iter().map(|link| link.name.clone()).collect(),
+                "counterweight" => (1..=spec.counterweights.len()).map(|number| number.to_string()).collect(),
+                "length" | "plant.length" => spec.lengths.keys().cloned().collect(),
+                "limits" => spec.angles.iter().map(|angle| angle.name.clone()).collect(),
+                "drive" => spec.drives.iter().map(|drive| drive.name.clone()).collect(),
+                _ => vec!["*".into()],
             }
         };
         let stated = self.stated();
         let paths = keys().flat_map(|key| match key.path.contains('*') {
-            true => names(key.path).into_iter().map(|name| (key.path.replacen('*', name, 1), key)).collect(),
+            true => names(key.path).into_iter().map(|name| (key.path.replacen('*', &name, 1), key)).collect(),
             false => vec![(key.path.to_owned(), key)],
         });
         paths.filter_map(|(path, key)| Some((path.clone(), key, self.value_in(&stated, &path)?))).collect()
