@@ -133,3 +133,28 @@ fn sparse(m: usize, n: usize, entries: &[(usize, usize, f64)]) -> CscMatrix<f64>
     let part = |pick: fn(&(usize, usize, f64)) -> usize| entries.clone().map(pick).collect();
     CscMatrix::new_from_triplets(m, n, part(|e| e.0), part(|e| e.1), entries.clone().map(|e| e.2).collect())
 }
+
+/// Of bounds that contradict each other those without any of which the others do not: what the solver's proof uses, as
+/// far as its weights tell, less all that can be done without.
+pub(crate) fn conflict<B: Clone>(
+    bounds: Vec<(B, Row)>,
+    weights: &[f64],
+    contradicts: impl Fn(&[(B, Row)]) -> bool,
+) -> Vec<B> {
+    let most = weights.iter().fold(0.0_f64, |most, z| most.max(z.abs()));
+    let used = bounds.iter().zip(weights).filter(|(_, z)| z.abs() > 1e-7 * most).map(|(bound, _)| bound.clone());
+    let mut kept: Vec<(B, Row)> = used.collect();
+    if !contradicts(&kept) {
+        kept = bounds;
+    }
+    let mut i = 0;
+    while i < kept.len() {
+        let mut without = kept.clone();
+        without.remove(i);
+        match contradicts(&without) {
+            true => kept = without,
+            false => i += 1,
+        }
+    }
+    kept.into_iter().map(|(bound, _)| bound).collect()
+}

@@ -7,6 +7,7 @@
 mod nine_body;
 
 use divan::{Bencher, black_box};
+use stillbase::mechanics::balance::{Body, Breakdown, Hold, Keep, Parameter, Preset, Quantity, keep};
 use stillbase::mechanics::counterweights::{Disc, Objective, Sites, Weighing, front, place};
 use stillbase::mechanics::dynamics::{Surroundings, base_wrench, inverse_with_wrench};
 use stillbase::mechanics::joint_forces::Joints;
@@ -455,6 +456,49 @@ fn bare() -> (Machine, Weighing) {
     let sites = parts.map(|(link, part)| Sites { link, from: -0.3, to: part.length, most: f64::INFINITY }).collect();
     let disc = Disc { density: 7850.0, thickness: 0.03 };
     (machine, Weighing { sites, disc, objective: Objective::inertia(), most_inertia: None })
+}
+
+/// Who brings what to (7) and (8).
+#[divan::bench]
+fn breakdown_of_nine_links(bencher: Bencher) {
+    let machine = builtin("nine-link").expect("built in");
+    bencher.bench_local(|| Breakdown::of(black_box(machine)));
+}
+
+/// A link has been dragged, and one that would follow may not: the least change of all others.
+#[divan::bench]
+fn nine_links_kept_balanced(bencher: Bencher) {
+    let machine = builtin("nine-link").expect("built in").set("link.5.com", "-0.05").expect("in range");
+    let mut asked = Keep::coms(&machine, &Preset::Table1.penalty(9).expect("nine links"));
+    asked.hold(&machine, Parameter::com(4), Hold::Fixed);
+    let at = machine.links()[1].com;
+    asked.hold(&machine, Parameter::com(1), Hold::Within([at - 1e-4, at + 1e-4]));
+    bencher.bench_local(|| keep(black_box(&machine), &asked).expect("it can be balanced"));
+}
+
+/// The same with all masses free, too.
+#[divan::bench]
+fn nine_links_and_masses_kept_balanced(bencher: Bencher) {
+    let machine = builtin("nine-link").expect("built in").set("link.5.com", "-0.05").expect("in range");
+    let mut asked = Keep::coms(&machine, &Preset::Table1.penalty(9).expect("nine links"));
+    for (j, link) in machine.links().iter().enumerate() {
+        let mass = Parameter::new(Body::Link(j), Quantity::Mass);
+        asked.hold(&machine, mass, Hold::Within([0.9 * link.mass, 1.1 * link.mass]));
+        asked.hold(&machine, Parameter::com(j), Hold::Within([link.com - 0.01, link.com + 0.01]));
+    }
+    asked.hold(&machine, Parameter::com(4), Hold::Fixed);
+    bencher.bench_local(|| keep(black_box(&machine), &asked).expect("it can be balanced"));
+}
+
+/// Bounds that leave no way, named with what would do.
+#[divan::bench]
+fn conflict_of_nine_links(bencher: Bencher) {
+    let machine = builtin("nine-link").expect("built in").set("payload.mass", "0.3").expect("in range");
+    let mut asked = Keep::coms(&machine, &[1.0; 9]);
+    for (j, link) in machine.links().iter().enumerate() {
+        asked.hold(&machine, Parameter::com(j), Hold::Within([link.com - 0.01, link.com + 0.01]));
+    }
+    bencher.bench_local(|| keep(black_box(&machine), &asked).expect_err("they are tight"));
 }
 
 /// The counterweights of least inertia.

@@ -8,6 +8,7 @@ mod dynamics;
 mod family;
 pub mod inside;
 mod joint_forces;
+mod keep;
 mod machine_file;
 pub mod nine_body;
 mod pin_friction;

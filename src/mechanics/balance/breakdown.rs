@@ -61,10 +61,7 @@ impl Breakdown {
         let inertia = Inertia::of(machine);
         let terms = Condition::all(machine.drives()).map(|condition| {
             let left = condition.left(&inertia);
-            let balanced = match condition {
-                Condition::Force(_) => left.norm() <= inertia.least_first_moment(),
-                Condition::Coupling(..) => left.norm() <= inertia.least_coupling(),
-            };
+            let balanced = left.norm() <= condition.nothing(&inertia);
             let parts = masses.iter().map(|(_, mass, a)| condition.of(*mass, a)).collect();
             Term { condition, left, parts, balanced }
         });

@@ -50,6 +50,14 @@ impl Condition {
         }
     }
 
+    /// What is left of it counts as none up to this.
+    pub(crate) fn nothing(self, inertia: &Inertia) -> f64 {
+        match self {
+            Self::Force(_) => inertia.least_first_moment(),
+            Self::Coupling(..) => inertia.least_coupling(),
+        }
+    }
+
     /// What a mass at Σ_k a_k e(q_k) brings to it.
     pub fn of(self, mass: f64, a: &[Vector; MAX_DRIVES]) -> Vector {
         match self {
@@ -73,6 +81,15 @@ impl Condition {
             Self::Coupling(k, l) if k == part.drive => part.sign * part.root[l],
             Self::Coupling(k, l) if l == part.drive => part.sign * part.root[k],
             _ => 0.0,
+        }
+    }
+
+    /// What each kg m across a link, to the left of its axis, brings to its imaginary part.
+    pub fn by_cross_moment(self, part: &ResolvedLink) -> f64 {
+        match self {
+            // conj(a_k)
+            Self::Coupling(k, _) if k == part.drive => -self.by_moment(part),
+            _ => self.by_moment(part),
         }
     }
 }

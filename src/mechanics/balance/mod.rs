@@ -2,12 +2,17 @@
 //!
 //! Force balance g_k = 0 and invariance C_kl = 0 (k ≠ l) are n + n(n−1)/2 conditions, each a sum over what the machine
 //! is made of: [`Breakdown`] says who brings what. They are linear in the mass m of a body and its first moment m l_c,
-//! so [`design`] solves them in one step for all centres of mass.
+//! so [`design`](design()) solves them in one step for all centres of mass, and [`keep`](keep()) for whatever may change,
+//! as little as it can and within bounds.
 
 mod breakdown;
 mod condition;
 mod design;
+mod keep;
+mod parameter;
 
 pub use breakdown::{Body, Breakdown, Source, Term};
 pub use condition::Condition;
 pub use design::{DesignError, Preset, conditions, design};
+pub use keep::{Adjusted, Hold, Keep, Kept, Limit, NotKept, Relief, Side, keep};
+pub use parameter::{Parameter, Quantity};

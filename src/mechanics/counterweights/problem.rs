@@ -6,7 +6,8 @@ use std::fmt;
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
-use crate::convex::{Least, NoX, Program, Row};
+use crate::convex::{Least, NoX, Program, Row, conflict};
+use crate::mechanics::balance::Condition;
 use crate::mechanics::machine::{Counterweight, Inertia, Machine, MachineError};
 
 /// Where a link may carry a counterweight.
@@ -142,7 +143,7 @@ pub enum NoWeights {
     #[error("link {0} may carry its counterweight in two ranges: want one a link")]
     Twice(String),
     /// The masses of the links lie off their axes, where nothing on an axis balances them.
-    #[error("{condition} has {left} that no counterweight on an axis takes away: want com_normal 0")]
+    #[error("{condition}, has {left} that no counterweight on an axis takes away: want com_normal 0")]
     OffAxis {
         /// The condition.
         condition: String,
@@ -150,7 +151,7 @@ pub enum NoWeights {
         left: String,
     },
     /// No counterweight on these links changes a condition that is not met.
-    #[error("{condition} stays at {left}: want a counterweight on a link that follows that drive")]
+    #[error("{condition}, stays at {left}: want a counterweight on a link that follows that drive")]
     Untouched {
         /// The condition.
         condition: String,
@@ -264,32 +265,23 @@ impl Problem {
         self.bare.drives()
     }
 
-    /// Names of the conditions (7) and (8), what is left of each, and how a counterweight of w and s at each site changes
-    /// it.
-    fn conditions(&self, sites: &[Sites]) -> Vec<Condition> {
-        let n = self.drives();
+    /// What is left of each condition, and how a counterweight of w and s at each site changes it.
+    fn conditions(&self, sites: &[Sites]) -> Vec<Left> {
         let parts = self.bare.resolved_links();
-        let of = |k: usize| {
+        let left = |condition: Condition| {
             let changes = sites.iter().map(|site| {
                 let part = &parts[site.link];
-                [part.root[k], if part.drive == k { part.sign } else { 0.0 }]
+                [condition.by_mass(part), condition.by_moment(part)]
             });
-            let left = self.inertia.first_moment(k);
-            let name = format!("the force balance of drive {}, (7),", self.bare.spec().drives[k].name);
-            Condition { name, left: [left.re, left.im], unit: "kg m", changes: changes.collect() }
+            let left = condition.left(&self.inertia);
+            Left {
+                name: condition.name(&self.bare),
+                left: [left.re, left.im],
+                unit: condition.unit(),
+                changes: changes.collect(),
+            }
         };
-        let between = |(k, l): (usize, usize)| {
-            let changes = sites.iter().map(|site| {
-                let (root, sign, drive) = (&parts[site.link].root, parts[site.link].sign, parts[site.link].drive);
-                let along = |own: usize, other: usize| if drive == own { sign * root[other] } else { 0.0 };
-                [root[k] * root[l], along(k, l) + along(l, k)]
-            });
-            let left = self.inertia.coupling(k, l);
-            let drives = &self.bare.spec().drives;
-            let name = format!("the coupling of drives {} and {}, (8),", drives[k].name, drives[l].name);
-            Condition { name, left: [left.re, left.im], unit: "kg m²", changes: changes.collect() }
-        };
-        (0..n).map(of).chain(Inertia::pairs(n).map(between)).collect()
+        Condition::all(self.drives()).map(left).collect()
     }
 
     /// Σ D_k but for what counterweights add to the diagonal of H.
@@ -376,23 +368,8 @@ impl Problem {
         let contradicts = |bounds: &[(Bound, Row)]| {
             self.program(&any, bounds).is_ok_and(|program| matches!(program.solve(), Err(NoX::Contradiction(_))))
         };
-        let weights = &weights[weights.len() - bounds.len()..];
-        let most = weights.iter().fold(0.0_f64, |most, z| most.max(z.abs()));
-        let used = bounds.iter().zip(weights).filter(|(_, z)| z.abs() > 1e-7 * most).map(|(bound, _)| bound.clone());
-        let mut kept: Vec<(Bound, Row)> = used.collect();
-        if !contradicts(&kept) {
-            kept = bounds;
-        }
-        let mut i = 0;
-        while i < kept.len() {
-            let mut without = kept.clone();
-            without.remove(i);
-            match contradicts(&without) {
-                true => kept = without,
-                false => i += 1,
-            }
-        }
-        let bounds: Vec<Bound> = kept.into_iter().map(|(bound, _)| bound).collect();
+        let of_bounds = &weights[weights.len() - bounds.len()..];
+        let bounds = conflict(bounds, of_bounds, contradicts);
         if bounds.is_empty() {
             return NoWeights::TooFew;
         }
@@ -472,7 +449,7 @@ fn of_machine(why: MachineError) -> NoWeights {
 }
 
 /// One line of (7) or (8).
-struct Condition {
+struct Left {
     name: String,
     /// What the bare machine leaves, along and across the axes.
     left: [f64; 2],
@@ -481,7 +458,7 @@ struct Condition {
     changes: Vec<[f64; 2]>,
 }
 
-impl Condition {
+impl Left {
     fn enter(&self, unknowns: &Unknowns, program: &mut Program) -> Result<(), NoWeights> {
         let [along, across] = self.left;
         let left = |x: f64| format!("{x:.3e} {}", self.unit);

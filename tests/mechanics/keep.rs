@@ -1,0 +1,294 @@
+//! Kept balanced: against `design`, against other machines that are balanced too, and what stands in the way.
+
+use stillbase::mechanics::balance::{
+    Adjusted, Hold, Keep, Kept, NotKept, Parameter, Preset, Quantity, Side, design, keep,
+};
+use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse, to_toml};
+
+use super::breakdown::with_counterweights;
+use crate::support::{Noise, family_machine};
+
+fn nine_link() -> &'static Machine {
+    builtin("nine-link").expect("built in")
+}
+
+fn balanced(machine: &Machine) -> bool {
+    let inertia = Inertia::of(machine);
+    inertia.is_force_balanced() && inertia.is_invariant()
+}
+
+fn find(machine: &Machine, key: &str) -> Parameter {
+    Parameter::all(machine).into_iter().find(|p| p.key(machine) == key).unwrap_or_else(|| panic!("no {key}"))
+}
+
+/// Measured from zero it is what `design` finds, for any penalties and masses.
+#[test]
+fn from_zero_it_is_the_design() {
+    let mut noise = Noise::of(21);
+    let table_1 = builtin("nine-link-table-1").expect("built in");
+    for i in 0..60 {
+        let masses: Vec<(String, String)> =
+            (1..10).map(|j| (format!("link.{j}.mass"), noise.between(0.2, 6.0).to_string())).collect();
+        let machine = table_1.set_all(masses.iter().map(|(k, v)| (k.as_str(), v.as_str()))).expect("valid");
+        let penalty = match Preset::ALL.get(i) {
+            Some((preset, _)) => preset.penalty(9).expect("nine links"),
+            None => (0..9).map(|_| noise.between(0.2, 5.0)).collect(),
+        };
+        let mut asked = Keep::coms(&machine, &penalty);
+        asked.parameters.iter_mut().for_each(|one| one.from = 0.0);
+        let designed = design(&machine, &penalty).expect("it can be balanced");
+        let kept = keep(&machine, &asked).expect("it can be balanced");
+        let mut cost = 0.0;
+        for (j, link) in designed.links().iter().enumerate() {
+            assert!((link.com - kept.values[j]).abs() < 1e-13, "{} and {}", link.com, kept.values[j]);
+            cost += (penalty[j] * link.com).powi(2);
+        }
+        assert!((cost - kept.cost).abs() < 1e-12 * cost);
+    }
+}
+
+/// What is balanced stays as it is, to the last digits.
+#[test]
+fn nothing_changes_where_nothing_has_to() {
+    for name in ["two-drive-balanced", "four-drive-balanced", "nine-link-geared-balanced", "serial-3r-balanced"] {
+        let machine = family_machine(name);
+        let mut asked = Keep::coms(&machine, &vec![1.0; machine.links().len()]);
+        for parameter in Parameter::all(&machine) {
+            asked.hold(&machine, parameter, Hold::Free);
+        }
+        let kept = keep(&machine, &asked).expect("it is balanced");
+        assert!(kept.cost < 1e-16, "{name}: {}", kept.cost);
+        let again = keep(&kept.machine, &asked.clone().measured_from(&kept.machine)).expect("it is balanced");
+        for (a, b) in kept.values.iter().zip(&again.values) {
+            assert!((a - b).abs() < 1e-14, "{name}");
+        }
+    }
+}
+
+/// Some parameters of a machine, each held somehow.
+fn anything(noise: &mut Noise, machine: &Machine, reach: f64) -> Keep {
+    let mut asked = Keep::default();
+    for parameter in Parameter::all(machine) {
+        let value = parameter.value(machine.spec()).expect("one of its own");
+        let (low, high) = (reach * noise.between(0.0, 1.0), reach * noise.between(0.0, 1.0));
+        let (least, most) = match parameter.quantity {
+            Quantity::Mass => (value * (1.0 - low.min(0.99)), value * (1.0 + 4.0 * high)),
+            Quantity::Along | Quantity::Across => (value - low, value + high),
+        };
+        let hold = match noise.between(0.0, 10.0) as usize {
+            0 => continue,
+            1 => Hold::Fixed,
+            2..6 => Hold::Within([least, most]),
+            _ => Hold::Free,
+        };
+        let from = value + if noise.between(0.0, 1.0) < 0.3 { noise.between(0.0, 0.05) } else { 0.0 };
+        asked.parameters.push(Adjusted { parameter, hold, penalty: noise.between(0.3, 3.0), from });
+    }
+    asked
+}
+
+/// Σ (p x)² of values, with x as it is documented.
+fn cost(asked: &Keep, machine: &Machine, values: &[f64]) -> f64 {
+    let ratio = |body| {
+        let mass = Parameter::new(body, Quantity::Mass);
+        let i = asked.parameters.iter().position(|one| one.parameter == mass);
+        i.map_or(1.0, |i| values[i] / asked.parameters[i].from)
+    };
+    assert_eq!(asked.parameters.len(), values.len());
+    let all = asked.parameters.iter().zip(values).filter(|(one, _)| one.hold != Hold::Fixed);
+    all.map(|(one, value)| {
+        assert!(one.parameter.value(machine.spec()).is_some());
+        let heavier = if one.parameter.quantity == Quantity::Mass { 1.0 } else { ratio(one.parameter.body) };
+        (one.penalty * heavier * (value - one.from)).powi(2)
+    })
+    .sum()
+}
+
+#[track_caller]
+fn within_what_is_asked(machine: &Machine, asked: &Keep, kept: &Kept) {
+    assert!(balanced(&kept.machine), "{:?}", Inertia::of(&kept.machine).force_residual());
+    let mut same = machine.spec().clone();
+    for (one, value) in asked.parameters.iter().zip(&kept.values) {
+        let now = one.parameter.value(kept.machine.spec()).expect("still there");
+        assert_eq!(now, *value);
+        match one.hold {
+            Hold::Fixed => assert_eq!(one.parameter.value(machine.spec()), Some(now)),
+            Hold::Within([low, high]) => assert!((low..=high).contains(&now), "{low} {now} {high}"),
+            Hold::Free => {}
+        }
+        // What may change as it has, all else must be as it was.
+        match (one.parameter.body, one.parameter.quantity) {
+            (stillbase::mechanics::balance::Body::Link(j), Quantity::Mass) => same.links[j].mass = now,
+            (stillbase::mechanics::balance::Body::Link(j), Quantity::Along) => same.links[j].com = now,
+            (stillbase::mechanics::balance::Body::Link(j), Quantity::Across) => same.links[j].com_normal = now,
+            (stillbase::mechanics::balance::Body::Counterweight(i), Quantity::Mass) => {
+                let (disc, was) = (kept.machine.spec().counterweights[i].radius, same.counterweights[i].radius);
+                let grown = (now / same.counterweights[i].mass).sqrt();
+                assert!((disc - was * grown).abs() < 1e-12, "the plate keeps its thickness");
+                same.counterweights[i].mass = now;
+                same.counterweights[i].radius = disc;
+            }
+            (stillbase::mechanics::balance::Body::Counterweight(i), _) => same.counterweights[i].at = now,
+            _ => panic!("a payload is given"),
+        }
+    }
+    assert_eq!(kept.machine.spec(), &same);
+    // What it takes by key makes the same machine.
+    let settings = kept.settings(machine);
+    let typed: Vec<(String, String)> = settings.iter().map(|(key, value)| (key.clone(), value.to_string())).collect();
+    let again = machine.set_all(typed.iter().map(|(key, value)| (key.as_str(), value.as_str()))).expect("valid");
+    assert_eq!(again, kept.machine);
+}
+
+/// Random machines, parameters, bounds: balanced, within bounds, and dearer wherever else it is balanced.
+#[test]
+fn nothing_else_that_is_asked_for_is_cheaper() {
+    let mut noise = Noise::of(22);
+    let (mut found, mut refused, mut others) = (0, 0, 0);
+    for _ in 0..100 {
+        let machine = with_counterweights(&mut noise);
+        let asked = anything(&mut noise, &machine, 1.5);
+        let kept = match keep(&machine, &asked) {
+            Ok(kept) => kept,
+            Err(NotKept::Conflict { .. } | NotKept::Inconsistent { .. } | NotKept::NoMass) => {
+                refused += 1;
+                continue;
+            }
+            Err(why) => panic!("{why}\n{}\n{asked:?}", to_toml(&machine)),
+        };
+        found += 1;
+        within_what_is_asked(&machine, &asked, &kept);
+        assert!((cost(&asked, &machine, &kept.values) - kept.cost).abs() < 1e-9 * (1e-3 + kept.cost));
+        for _ in 0..4 {
+            // The answer to another question is balanced within the same bounds.
+            let mut other = asked.clone();
+            for one in &mut other.parameters {
+                one.penalty = noise.between(0.1, 10.0);
+                if one.parameter.quantity != Quantity::Mass {
+                    one.from += noise.between(-0.1, 0.1);
+                }
+            }
+            let Ok(elsewhere) = keep(&machine, &other) else { continue };
+            others += 1;
+            let dearer = cost(&asked, &machine, &elsewhere.values);
+            assert!(dearer > kept.cost - 1e-9 * (1e-3 + kept.cost), "{dearer} and {}", kept.cost);
+        }
+    }
+    assert!(found > 30 && refused > 8 && others > 120, "{found} {refused} {others}");
+}
+
+/// A question with only these limits left; every other parameter that is listed is free.
+fn only(asked: &Keep, limits: &[(Parameter, Side, f64)]) -> Keep {
+    let mut only = asked.clone();
+    for one in &mut only.parameters {
+        let end = |side| limits.iter().find(|l| l.0 == one.parameter && l.1 == side).map(|l| l.2);
+        let least = if one.parameter.quantity == Quantity::Mass { 0.0 } else { -1e3 };
+        one.hold = match (end(Side::Least), end(Side::Most)) {
+            (None, None) => Hold::Free,
+            (low, high) => Hold::Within([low.unwrap_or(least), high.unwrap_or(1e3)]),
+        };
+    }
+    only
+}
+
+/// What is named as in the way contradicts itself, without any one of it does not, and what would do does.
+#[track_caller]
+fn check_conflict(machine: &Machine, asked: &Keep) -> Option<(usize, usize)> {
+    let NotKept::Conflict { limits, relief } = keep(machine, asked).expect_err("a conflict") else { return None };
+    let named: Vec<_> = limits.iter().map(|limit| (limit.parameter, limit.side, limit.value)).collect();
+    assert!(!named.is_empty());
+    let why = keep(machine, &only(asked, &named)).expect_err("they contradict each other");
+    assert!(matches!(why, NotKept::Conflict { .. }), "{why}");
+    for i in 0..named.len() {
+        let mut rest = named.clone();
+        rest.remove(i);
+        if let Err(why) = keep(machine, &only(asked, &rest)) {
+            panic!("{why}\nwithout {} of {limits:?}", limits[i]);
+        }
+    }
+    assert!(!relief.is_empty(), "{limits:?}");
+    let mut relieved = asked.clone();
+    for one in &mut relieved.parameters {
+        let to = |side| relief.iter().find(|r| r.limit.parameter == one.parameter && r.limit.side == side);
+        let [low, high] = match one.hold {
+            Hold::Within(ends) => ends,
+            Hold::Fixed => [one.parameter.value(machine.spec()).expect("one of its own"); 2],
+            Hold::Free => continue,
+        };
+        let ends = [to(Side::Least).map_or(low, |r| r.to), to(Side::Most).map_or(high, |r| r.to)];
+        if ends != [low, high] {
+            assert!(ends[0] <= low && ends[1] >= high);
+            one.hold = Hold::Within(ends);
+        }
+    }
+    let kept = keep(machine, &relieved).unwrap_or_else(|why| panic!("{why}\n{relief:?}"));
+    assert!(balanced(&kept.machine));
+    Some((limits.len(), relief.len()))
+}
+
+#[test]
+fn limits_that_leave_no_way_are_named_and_how_far_they_would_have_to_give() {
+    let mut noise = Noise::of(23);
+    let (mut conflicts, mut of_several) = (0, 0);
+    for i in 0..120 {
+        let machine = if i % 2 == 0 { with_counterweights(&mut noise) } else { nine_link().clone() };
+        let mut asked = anything(&mut noise, &machine, 0.2);
+        if i % 2 == 1 {
+            asked.parameters.retain(|one| one.parameter.quantity != Quantity::Across);
+            let drop = noise.between(0.0, asked.parameters.len() as f64 - 1e-9) as usize;
+            let off = noise.between(-0.6, 0.6);
+            let one = &mut asked.parameters[drop];
+            let value = one.parameter.value(machine.spec()).expect("one of its own");
+            if one.parameter.quantity == Quantity::Along {
+                one.hold = Hold::Within([value + off, value + off + 0.02]);
+            }
+        }
+        if !matches!(keep(&machine, &asked), Err(NotKept::Conflict { .. })) {
+            continue;
+        }
+        let Some((limits, _)) = check_conflict(&machine, &asked) else { continue };
+        conflicts += 1;
+        of_several += usize::from(limits > 1);
+    }
+    assert!(conflicts > 20 && of_several > 8, "{conflicts} {of_several}");
+}
+
+/// A drag of one link: the others follow, within bounds, and the file that is written is balanced.
+#[test]
+fn a_dragged_link_is_followed_by_the_others() {
+    let dragged = nine_link().set("link.5.com", "-0.05").expect("in range");
+    assert!(!balanced(&dragged));
+    let mut asked = Keep::coms(&dragged, &Preset::Table1.penalty(9).expect("nine links"));
+    asked.hold(&dragged, find(&dragged, "link.5.com"), Hold::Fixed);
+    let free = keep(&dragged, &asked).expect("it can be balanced");
+    within_what_is_asked(&dragged, &asked, &free);
+    let com = find(&dragged, "link.2.com");
+    let [was, moved] = [&dragged, &free.machine].map(|machine| com.value(machine.spec()).expect("a link"));
+    assert!((moved - was).abs() > 1e-3, "{was} {moved}");
+    asked.hold(&dragged, com, Hold::Within([was - 1e-4, was + 1e-4]));
+    let bounded = keep(&dragged, &asked).expect("it can be balanced");
+    within_what_is_asked(&dragged, &asked, &bounded);
+    assert!(bounded.cost > free.cost);
+    let again = parse(&to_toml(&bounded.machine), "again").expect("a machine");
+    assert!(balanced(&again) && again == bounded.machine);
+}
+
+#[test]
+fn what_cannot_be_is_refused() {
+    let machine = nine_link();
+    let words = |change: &dyn Fn(&mut Keep)| {
+        let mut asked = Keep::coms(machine, &[1.0; 9]);
+        change(&mut asked);
+        keep(machine, &asked).expect_err("it cannot be").to_string()
+    };
+    let heavy = machine.set("payload.mass", "0.3").expect("in range");
+    assert!(matches!(keep(&heavy, &Keep::default()), Err(NotKept::Inconsistent { .. })));
+    assert!(words(&|a| a.parameters[3].penalty = 0.0).starts_with("link.4.com: a penalty of 0: want"));
+    assert!(words(&|a| a.parameters[3].from = f64::NAN).contains("link.4.com: a change measured from NaN"));
+    assert!(words(&|a| a.parameters[3].hold = Hold::Within([0.2, 0.1])).contains("no less than 0.2"));
+    assert!(words(&|a| a.parameters[3].hold = Hold::Within([f64::NAN, 0.1])).contains("bounds from NaN"));
+    assert!(words(&|a| a.parameters.push(a.parameters[3])).contains("link.4.com is listed twice"));
+    let payload = Parameter::new(stillbase::mechanics::balance::Body::Payload, Quantity::Mass);
+    assert!(words(&|a| a.parameters[0].parameter = payload).contains("payload.mass cannot be changed"));
+    assert!(words(&|a| a.parameters[0].parameter = Parameter::com(9)).contains("link 9 (counted from 0)"));
+}
