@@ -61,7 +61,11 @@ fn design_gives_the_known_centres_of_mass() {
     let known = planning()["design"].clone();
     for (preset, i) in [("as-printed", 0), ("table-1", 1), ("minimum-norm", 2)] {
         let by_name = object(&["design", "nine-link-table-1", "--preset", preset]);
-        assert_eq!(keys(&by_name), ["com", "coupling_coefficients", "d", "gamma_coefficients", "h", "lambda"]);
+        let measures = ["added_inertia", "added_mass", "mass_inertia_factor"];
+        let mut all =
+            [&["com", "coupling_coefficients", "d", "gamma_coefficients", "h", "lambda"], &measures[..]].concat();
+        all.sort_unstable();
+        assert_eq!(keys(&by_name), all);
         near(&by_name["com"], &known[i]["com"], 5e-9, preset);
         let penalty = joined(&known[i]["penalty"]);
         near(&object(&["design", "nine-link-table-1", "--penalty", &penalty])["com"], &known[i]["com"], 5e-9, preset);
@@ -265,8 +269,88 @@ fn counterweights_that_cannot_be_are_refused() {
     ask(&["--max-mass", "1=-2"], 2, &["--max-mass 1=-2", "want a mass above 0"]);
     ask(&["--thickness", "0"], 2, &["thickness", "above 0"]);
     ask(&["--objective", "speed"], 2, &["want mass, inertia"]);
+    ask(&["--objective", "torque"], 2, &["the torque depends on the motion", "--task"]);
+    ask(&["--objective", "torque", "--task", "nowhere"], 2, &["nowhere"]);
+    ask(&["--task", "two-drive"], 2, &["--task two-drive: its machine has 2 drives: want one of 3"]);
     ask(&["--objective", "mass=0"], 2, &["want mass, inertia"]);
     fails(&["design", BARE, "--range", "1=-0.3,0"], 2, &["--counterweights"]);
+}
+
+/// Least torque of a task is less than with the least mass, and as the solver says; β measures both beside bare links.
+#[test]
+fn torque_of_a_task_is_least_and_beta_says_what_is_left() {
+    let ranges = anywhere();
+    let ask = |objective: &str| {
+        let mut words = vec!["design", BARE, "--counterweights", "--objective", objective, "--task", "case-3"];
+        words.extend(ranges.iter().map(String::as_str));
+        object(&words)
+    };
+    let (light, quick) = (ask("mass"), ask("torque"));
+    // Quintic along a straight joint line in 1 s: |q̈_k| = 5.7735 |Δq_k|, and H_kk = D_k without gears.
+    let turned =
+        [1.507_474_369_2 - 1.687_518_217_9, 4.217_709_207_3 - 3.714_622_368_2, 3.128_747_376_0 - 2.180_176_989_7];
+    let torque = |of: &Value| {
+        let all = numbers(&of["h"]).into_iter().zip(turned).map(|(h, turn): (f64, f64)| h * 5.773_502_692 * turn.abs());
+        all.fold(0.0_f64, f64::max)
+    };
+    assert!(torque(&quick) < 0.99 * torque(&light), "{} {}", torque(&quick), torque(&light));
+    for of in [&light, &quick] {
+        let beta = &of["beta"];
+        let [force, moment] = ["force", "moment"].map(|what| beta[what].as_f64().expect("a ratio"));
+        assert!(force < 1e-9 && moment > 0.0 && beta["torque"].as_f64().expect("a ratio") > 0.0, "{beta}");
+        // M/M_bare + ΣD/ΣD_bare, with 3.68 kg bare.
+        let (mass, inertia) = (of["added_mass"].as_f64().expect("kg"), of["added_inertia"].as_f64().expect("kg m²"));
+        let now: f64 = numbers(&of["d"]).iter().sum();
+        let want = (3.68 + mass) / 3.68 + now / (now - inertia);
+        assert!((of["mass_inertia_factor"].as_f64().expect("a number") - want).abs() < 1e-9);
+    }
+    let same = object(&["design", "nine-link", "--keep", "--task", "case-3"]);
+    let factor = same["mass_inertia_factor"].as_f64().expect("a number");
+    assert!((factor - 2.0).abs() < 1e-9 && (same["beta"]["torque"].as_f64().expect("a ratio") - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_machine_is_kept_balanced_and_written() {
+    let folder = Folder::new("kept");
+    let file = word(folder.path("kept.toml"));
+    let mut words = vec!["design", "nine-link", "--set", "link.5.com=-0.05", "--keep", "--fix", "5.com"];
+    words.extend(["--bound", "2.com=-0.3,0.1", "--free", "link.2.mass", "-o", &file]);
+    let kept = object(&words);
+    let checked = object(&["check", &file]);
+    assert_eq!((&checked["force_balanced"], &checked["invariant"]), (&true.into(), &true.into()));
+    assert_eq!(numbers(&checked["d"]), numbers(&kept["d"]));
+    let changes = kept["changes"].as_array().expect("a list");
+    let of = |key: &str| changes.iter().find(|c| c["key"] == key).unwrap_or_else(|| panic!("no {key}: {kept}"));
+    assert_eq!((of("link.5.com")["to"].as_f64(), changes.len()), (Some(-0.05), 10));
+    assert!((-0.3..=0.1).contains(&of("link.2.com")["to"].as_f64().expect("m")));
+    assert!(of("link.2.mass")["unit"] == "kg" && kept["cost"].as_f64().expect("a number") > 0.0);
+    let text = prints(&words[..words.len() - 2]);
+    assert!(text.contains("the least change, preset table-1") && text.contains("link.2.mass"), "{text}");
+    // A counterweight takes part by its number.
+    let carried =
+        fs::read_to_string(&file).expect("a file") + "[[counterweight]]\nlink = \"1\"\nmass = 0.5\nat = -0.2\n";
+    let heavy = word(folder.path("carried.toml"));
+    fs::write(&heavy, carried).expect("written");
+    let kept = object(&["design", &heavy, "--keep", "--free", "counterweight.1.mass,counterweight.1.at"]);
+    assert_eq!(kept["changes"].as_array().expect("a list").len(), 11);
+    let ask = |more: &[&str], status: i32, words: &[&str]| {
+        fails(&[&["design", "nine-link", "--set", "payload.mass=0.3"], more].concat(), status, words);
+    };
+    ask(
+        &["--keep", "--fix", "2.com,4.com,5.com,8.com"],
+        1,
+        &["no balance within these limits: link.2.com stays", "would do"],
+    );
+    ask(
+        &["--keep", "--bound", "8.com=-0.1,0.1", "--bound", "9.com=-0.02,0.1"],
+        1,
+        &["link.8.com at most 0.1; link.9.com"],
+    );
+    ask(&["--keep", "--fix", "10.com"], 2, &["\"10.com\"", "want mass, com"]);
+    ask(&["--keep", "--fix", "1.com", "--free", "1.com"], 2, &["1.com is held in two ways"]);
+    ask(&["--keep", "--bound", "1.com=0.3,0.2"], 2, &["link.1.com", "no less than 0.3"]);
+    ask(&["--keep", "--bound", "1.com=0.3"], 2, &["KEY=LO,HI"]);
+    ask(&["--fix", "1.com"], 2, &["--keep"]);
 }
 
 #[test]

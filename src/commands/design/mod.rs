@@ -1,5 +1,8 @@
 //! `stillbase design`
 
+mod kept;
+mod measures;
+
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
@@ -11,17 +14,25 @@ use stillbase::mechanics::balance::{self, Preset};
 use stillbase::mechanics::counterweights::{Disc, NoWeights, Objective, Placed, Sites, Weighing, front, place};
 use stillbase::mechanics::machine::{Counterweight, Inertia, Machine, to_toml};
 
+use stillbase::study::measures::{Measures, greatest_accelerations};
+
 use super::check::Balance;
 use super::exit::say;
 use super::failure::Failure;
-use super::input::MachineArgument;
+use super::input::{MachineArgument, Settings, scenario};
 use super::output::{Format, Table, check_output};
-use stillbase::settings::number::fixed;
+use kept::KeepArguments;
+use stillbase::planning::Motion;
+use stillbase::session::{Run, settled};
+use stillbase::settings::number::{counted, fixed};
 
 /// Place the links' centres of mass so that the base feels no force and the mass matrix is invariant, Eq. (10)
 ///
 /// Of all balanced designs, the one with the least Σ (p_j l_cj)² is taken: a link with a large penalty p_j keeps its
 /// centre of mass near its attachment.
+///
+/// With --keep the machine changes as little as it can instead: only what may, within bounds. Where that is too little,
+/// the answer names what stands in the way, and how far it would have to give.
 ///
 /// With --counterweights the links stay as they are, and discs on them do it: the lightest, or those of the least
 /// inertia, as a cone program proves. "gap" is the most by which the best may lie below what was found.
@@ -31,6 +42,9 @@ Examples:
   stillbase design nine-link-table-1
   stillbase design nine-link-table-1 --preset minimum-norm -o light.toml
   stillbase design nine-link --set link.9.mass=0.4 --penalty 1,2,1,1,1,1,1,1,1
+  stillbase design nine-link --set link.5.com=-0.05 --keep --fix 5.com --bound 2.com=-0.3,0.1
+  stillbase design nine-link --set payload.mass=0.2 --keep --free 1.mass,2.mass,3.mass -o loaded.toml
+  stillbase design nine-link --counterweights --objective torque --task case-3
   stillbase design two-drive --counterweights --objective inertia --thickness 0.02
   stillbase design nine-link --set link.9.mass=0.5 --counterweights --range 1=-0.3,0.2 --range 2=-0.3,0 \\
     --range 3=-0.3,0 --front 9")]
@@ -44,8 +58,10 @@ pub struct Design {
     /// beside Eq. (10); minimum-norm: 1 for every link (the default otherwise)
     #[arg(long, value_enum, conflicts_with = "penalty")]
     preset: Option<PresetName>,
+    #[command(flatten)]
+    kept: KeepArguments,
     /// Balance it by counterweights, discs on the axes of the links; those that it has are taken off first
-    #[arg(long, conflicts_with_all = ["penalty", "preset"])]
+    #[arg(long, conflicts_with_all = ["penalty", "preset", "keep"])]
     counterweights: bool,
     /// A link that may carry one, and where, m from its root towards its tip; every link, from its length behind the
     /// root to the tip, where none is given
@@ -60,9 +76,14 @@ pub struct Design {
     /// The most that a counterweight may weigh, kg: of every link, or LINK=M of one
     #[arg(long, value_name = "[LINK=]M", requires = "counterweights")]
     max_mass: Vec<String>,
-    /// What is to be least: mass (added), inertia (Σ D_k), or a mixture as mass=1,inertia=5
-    #[arg(long, value_name = "mass|inertia|WEIGHTS", requires = "counterweights", value_parser = objective)]
+    /// What is to be least: mass (added), inertia (Σ D_k), torque (the greatest of a --task), or a mixture as
+    /// mass=1,inertia=5
+    #[arg(long, value_name = "mass|inertia|torque|WEIGHTS", requires = "counterweights", value_parser = objective)]
     objective: Option<Objective>,
+    /// A scenario or a TOML file of one: its motion, as planned for its own machine, counts for torque, and β says what
+    /// is left of force, moment and torque on it
+    #[arg(long, value_name = "SCENARIO")]
+    task: Option<String>,
     /// The most that Σ D_k may be, kg m²
     #[arg(long, value_name = "D", requires = "counterweights")]
     max_inertia: Option<f64>,
@@ -105,6 +126,8 @@ fn name_of(preset: Preset) -> &'static str {
 struct Answer {
     com: Vec<f64>,
     #[serde(flatten)]
+    measures: Measures,
+    #[serde(flatten)]
     balance: Balance,
 }
 
@@ -112,16 +135,22 @@ impl Design {
     /// Prints the new centres of mass and what they achieve, and writes the machine.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
+        let task = self.task(&machine)?;
+        let motion = task.as_ref().map(|run| &*run.plan().motion);
         if self.counterweights {
-            return self.weigh(&machine);
+            return self.weigh(&machine, motion);
         }
         let (penalty, by) = self.penalty(machine.links().len())?;
+        if self.kept.keep {
+            return self.keep(&machine, motion, &penalty, &by);
+        }
         if let Some(file) = &self.output {
             check_output(file, self.force, &["toml"])?;
         }
         let designed = balance::design(&machine, &penalty)?;
         let answer = Answer {
             com: designed.links().iter().map(|l| l.com).collect(),
+            measures: Measures::of(&machine, &designed, motion),
             balance: Balance::of(&Inertia::of(&designed)),
         };
         if let Some(file) = &self.output {
@@ -132,29 +161,56 @@ impl Design {
             for (j, link) in machine.links().iter().enumerate() {
                 table.row([link.name.clone(), fixed(penalty[j], 6), fixed(link.com, 9), fixed(answer.com[j], 9)]);
             }
-            format!("{} · {by}\n\n{table}\n{}", machine.name(), answer.balance.tables(&machine))
+            let (measured, balance) = (measures::text(&answer.measures), answer.balance.tables(&machine));
+            format!("{} · {by}\n\n{table}\n{measured}\n{balance}", machine.name())
         })
     }
 
-    /// Prints counterweights and what they come to, and writes the machine that carries them.
-    fn weigh(&self, machine: &Machine) -> Result<(), Failure> {
+    /// Prints the least change, and writes the machine.
+    fn keep(&self, machine: &Machine, motion: Option<&Motion>, penalty: &[f64], by: &str) -> Result<(), Failure> {
         if let Some(file) = &self.output {
             check_output(file, self.force, &["toml"])?;
         }
-        let asked = self.asked(machine)?;
+        let (machine_now, answer) = self.kept.run(machine, motion, penalty)?;
+        if let Some(file) = &self.output {
+            save(&machine_now, file, self.force, format!("{}, kept balanced with {by}", machine.name()))?;
+        }
+        self.format.print(&answer, |answer| answer.text(machine, by))
+    }
+
+    /// The task whose motion counts.
+    fn task(&self, machine: &Machine) -> Result<Option<Run>, Failure> {
+        let Some(name) = &self.task else { return Ok(None) };
+        let run = Run::new(&settled(&scenario(name, &Settings::default())?)?.0)?;
+        let (has, want) = (run.scenario().machine.drives(), machine.drives());
+        match has == want {
+            true => Ok(Some(run)),
+            false => Err(Failure::wrong_input(format!(
+                "--task {name}: its machine has {}: want one of {want}",
+                counted(has, "drive")
+            ))),
+        }
+    }
+
+    /// Prints counterweights and what they come to, and writes the machine that carries them.
+    fn weigh(&self, machine: &Machine, motion: Option<&Motion>) -> Result<(), Failure> {
+        if let Some(file) = &self.output {
+            check_output(file, self.force, &["toml"])?;
+        }
+        let asked = self.asked(machine, motion)?;
         let placed = place(machine, &asked).map_err(unweighed)?;
         let front = match self.front {
             Some(count) => front(machine, &asked, count.into()).map_err(unweighed)?.measures(),
             None => Vec::new(),
         };
-        let answer = Weighed::of(&placed, front);
+        let answer = Weighed::of(machine, &placed, front, motion)?;
         if let Some(file) = &self.output {
             save(&placed.machine, file, self.force, format!("{}, balanced by counterweights", machine.name()))?;
         }
         self.format.print(&answer, |answer| answer.text(machine))
     }
 
-    fn asked(&self, machine: &Machine) -> Result<Weighing, Failure> {
+    fn asked(&self, machine: &Machine, motion: Option<&Motion>) -> Result<Weighing, Failure> {
         let links = machine.links();
         let find = |name: &str| {
             links.iter().position(|link| link.name == name).ok_or_else(|| {
@@ -182,7 +238,16 @@ impl Design {
             }
         }
         let disc = Disc { density: self.material, thickness: self.thickness };
-        let objective = self.objective.clone().unwrap_or_else(Objective::mass);
+        let mut objective = self.objective.clone().unwrap_or_else(Objective::mass);
+        match motion {
+            Some(motion) => objective.accelerations = greatest_accelerations(motion).to_vec(),
+            None if objective.torque > 0.0 => {
+                let why =
+                    "--objective torque: the torque depends on the motion: want --task SCENARIO, as --task case-3";
+                return Err(Failure::wrong_input(why));
+            }
+            None => {}
+        }
         Ok(Weighing { sites, disc, objective, most_inertia: self.max_inertia })
     }
 
@@ -213,7 +278,7 @@ fn range(text: &str) -> Result<(String, [f64; 2]), String> {
 }
 
 fn objective(text: &str) -> Result<Objective, String> {
-    let want = || "want mass, inertia, or both with their weights, as mass=1,inertia=5".to_owned();
+    let want = || "want mass, inertia, torque, or several with their weights, as mass=1,inertia=5".to_owned();
     let mut objective = Objective { mass: 0.0, ..Objective::mass() };
     for part in text.split(',') {
         let (word, weight) = part.split_once('=').map_or((part, "1"), |(word, weight)| (word, weight));
@@ -221,10 +286,11 @@ fn objective(text: &str) -> Result<Objective, String> {
         match word.trim() {
             "mass" => objective.mass = weight,
             "inertia" => objective.inertia = weight,
+            "torque" => objective.torque = weight,
             _ => return Err(want()),
         }
     }
-    match objective.mass + objective.inertia > 0.0 {
+    match objective.mass + objective.inertia + objective.torque > 0.0 {
         true => Ok(objective),
         false => Err(want()),
     }
@@ -233,8 +299,9 @@ fn objective(text: &str) -> Result<Objective, String> {
 /// What counterweights come to.
 #[derive(Serialize)]
 struct Weighed {
-    /// kg.
-    added_mass: f64,
+    /// Beside the machine without counterweights.
+    #[serde(flatten)]
+    measures: Measures,
     weights: Vec<Counterweight>,
     /// The most by which the best may lie below what was found.
     gap: f64,
@@ -246,15 +313,18 @@ struct Weighed {
 }
 
 impl Weighed {
-    fn of(placed: &Placed, front: Vec<[f64; 2]>) -> Self {
+    fn of(machine: &Machine, placed: &Placed, front: Vec<[f64; 2]>, motion: Option<&Motion>) -> Result<Self, Failure> {
+        let mut bare = machine.spec().clone();
+        bare.counterweights.clear();
+        let bare = Machine::new(bare)?;
         let (machine, inertia) = (&placed.machine, Inertia::of(&placed.machine));
-        Self {
-            added_mass: placed.added_mass,
+        Ok(Self {
+            measures: Measures::of(&bare, machine, motion),
             weights: machine.spec().counterweights.clone(),
             gap: placed.gap,
             front,
             balance: Balance::of(&inertia),
-        }
+        })
     }
 
     fn text(&self, machine: &Machine) -> String {
@@ -263,10 +333,11 @@ impl Weighed {
             table.row([w.link.clone(), fixed(w.mass, 6), fixed(w.at, 6), fixed(w.radius, 6)]);
         }
         let mut text = format!(
-            "{} · {} kg added · within {:.1e} of the best\n\n{table}\n{}",
+            "{} · {} kg added · within {:.1e} of the best\n\n{table}\n{}\n{}",
             machine.name(),
-            fixed(self.added_mass, 6),
+            fixed(self.measures.added_mass, 6),
             self.gap,
+            measures::text(&self.measures),
             self.balance.tables(machine)
         );
         if !self.front.is_empty() {

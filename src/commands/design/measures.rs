@@ -1,0 +1,22 @@
+//! What a design has cost and brought, in words.
+
+use stillbase::settings::number::fixed;
+use stillbase::study::measures::Measures;
+
+/// A line for each.
+pub fn text(measures: &Measures) -> String {
+    let mut text = format!(
+        "added mass       {} kg\nadded inertia    {} kg m², Σ D_k\n",
+        fixed(measures.added_mass, 6),
+        fixed(measures.added_inertia, 6)
+    );
+    if let Some(factor) = measures.mass_inertia_factor {
+        text.push_str(&format!("mass–inertia     {}, the sum of both ratios to before\n", fixed(factor, 4)));
+    }
+    if let Some(beta) = measures.beta {
+        let [force, moment, torque] =
+            [beta.force, beta.moment, beta.torque].map(|ratio| ratio.map_or_else(|| "–".into(), |x| fixed(x, 4)));
+        text.push_str(&format!("β                force {force}, moment {moment}, torque {torque} of before\n"));
+    }
+    text
+}
