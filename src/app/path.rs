@@ -253,7 +253,7 @@ fn corners(ui: &mut Ui, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
 fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
     let plan = session.run().plan();
     match task.kind {
-        TaskKind::Reactionless if session.scenario().idle("task.posture").is_none() => {
+        TaskKind::Reactionless | TaskKind::Given if session.scenario().idle("task.posture").is_none() => {
             let width = ui.available_width() - 10.0;
             choose(ui, session, ("Freedoms left", "posture"), &POSTURES, task.posture, width, commands);
         }

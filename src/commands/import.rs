@@ -1,6 +1,7 @@
 //! `stillbase import`
 
 mod answer;
+mod freedoms;
 mod judge;
 mod table;
 mod ways;
@@ -15,7 +16,6 @@ use stillbase::mechanics::machine::{Inertia, Machine};
 use stillbase::mechanics::planar::Vector;
 use stillbase::planning::Motion;
 use stillbase::planning::curves::Samples;
-use stillbase::planning::pose_constant::Planes;
 use stillbase::session::scenario::{Scenario, Task, TaskKind};
 
 use super::columns::{Content, Read, samples};
@@ -24,7 +24,7 @@ use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, above_zero, pose_constant, read};
 use super::output::{Format, check_output};
 use answer::Answer;
-use judge::Judge;
+use judge::{Judge, Poses};
 use stillbase::settings::number::fixed;
 use table::table;
 use ways::{Asked, Keep, Ways, of_drives, of_tip};
@@ -106,14 +106,18 @@ impl Import {
         let judge = Judge {
             model: Inertia::of(&machine),
             around: Surroundings { gravity: machine.gravity(), force: Vector::default() },
-            planes: Planes::of(&machine)?,
+            poses: Poses::of(&machine)?,
             instants: (8 * samples.count()).clamp(4000, 200_000),
             machine,
         };
         let asked = Asked { b: self.b, keep: self.keep };
-        let Ways { given: motion, candidates } = match found.content {
-            Content::Drives => of_drives(&asked, &judge, &samples)?,
-            Content::Tip => of_tip(&asked, &judge, &samples)?,
+        let drives = found.content == Content::Drives;
+        let Ways { given: motion, candidates } = match &judge.poses {
+            Poses::Planes(planes) if drives => of_drives(&asked, &judge, planes, &samples)?,
+            Poses::Planes(planes) => of_tip(&asked, &judge, planes, &samples)?,
+            Poses::Space(space) if drives => freedoms::of_drives(&asked, &judge, space, &samples)?,
+            Poses::Space(space) => freedoms::of_tip(&asked, &judge, space, &samples)?,
+            Poses::Free => freedoms::as_given(&judge, &samples, drives)?,
         };
         let changed = |i: usize| samples.values(i).iter().zip(raw.values(i)).map(|(a, b)| (a - b).abs());
         let mut answer = Answer {

@@ -71,22 +71,36 @@ pub fn minimum_norm_held(
     v: Vector,
     vd: Vector,
 ) -> Option<(PerDrive, PerDrive)> {
-    let n = lambda.len();
+    minimum_norm_with(tip, (lambda, 0.0), |_| PerDrive::zeros(lambda.len()), e, v, vd)
+}
+
+/// The same with another row beside the Jacobian, and what it makes of the rates: a constant. `changes` is how the row
+/// changes with rates.
+pub fn minimum_norm_with(
+    tip: &Chain,
+    (beside, rate): (&PerDrive, f64),
+    changes: impl Fn(&PerDrive) -> PerDrive,
+    e: &Units,
+    v: Vector,
+    vd: Vector,
+) -> Option<(PerDrive, PerDrive)> {
+    let n = beside.len();
     if n < 3 {
         return None;
     }
-    // λ as long as the arms, so that all rows are of one size.
+    // That row as long as the arms, so that all rows are of one size.
     let reach = tip.iter().map(|c| c.abs()).sum::<f64>();
-    let scale = reach / lambda.max_abs();
-    let row = |j: Vector, k: usize| Vector3::new(j.re, j.im, scale * lambda[k]);
+    let scale = reach / beside.max_abs();
+    let row = |j: Vector, k: usize| Vector3::new(j.re, j.im, scale * beside[k]);
     let a = |k: usize| row(column(tip, e, k), k);
     let gram = (0..n).fold(Matrix3::zeros(), |g, k| g + a(k) * a(k).transpose());
     let inverse = gram.try_inverse().filter(|_| gram.determinant() > 1e-14 * gram.trace().powi(3))?;
-    let y = inverse * Vector3::new(v.re, v.im, 0.0);
+    let y = inverse * Vector3::new(v.re, v.im, scale * rate);
     let qd = PerDrive::from_fn(n, |k| a(k).dot(&y));
+    let changed = changes(&qd);
     let ad = |k: usize| {
         let jd = I * column(tip, e, k) * qd[k];
-        Vector3::new(jd.re, jd.im, 0.0)
+        Vector3::new(jd.re, jd.im, scale * changed[k])
     };
     let change = (0..n).fold(Matrix3::zeros(), |m, k| m + ad(k) * a(k).transpose());
     let yd = inverse * (Vector3::new(vd.re, vd.im, 0.0) - (change + change.transpose()) * y);

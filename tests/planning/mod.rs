@@ -6,6 +6,7 @@ mod curve;
 mod given;
 mod least_reaction;
 mod null_space;
+mod off_space;
 mod pose_space;
 mod posture;
 mod price;

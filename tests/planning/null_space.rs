@@ -367,9 +367,14 @@ fn what_cannot_be_followed_is_refused() {
     // A circle that leaves the arm's reach.
     let error = drift(&model, Q.into(), round(1.0), 1).expect_err("too large").to_string();
     assert!(error.contains("no rates of zero momentum follow it") && error.contains("time 1 round"), "{error}");
-    // Of more drives than three, the basis still spans all that D leaves.
+    // Of more drives than three, the basis still spans all that D leaves, and the rates are the least of those.
     let (four, q) = (serial(4, 0.02), angles(&[0.1, 1.4, 2.9, 4.0]));
-    assert_eq!(rates(&four, &q, Vector::default(), 0.0), None);
+    let own = rates(&four, &q, Vector::new(0.3, -0.1), 0.0).expect("four drives can");
+    let (e, lengths) = (q.units(), [0.1, 0.2, 0.3, 0.4]);
+    let moved: Vector = (0..4).map(|k| Vector::new(0.0, lengths[k] * own[k]) * e[k]).sum();
+    assert!((moved - Vector::new(0.3, -0.1)).norm() < 1e-12);
+    assert!(momentum_row(&four, &q.units()).dot(&own).abs() < 1e-12);
+    assert_eq!(rates(&serial(2, 0.0), &angles(&[0.1, 1.4]), Vector::default(), 0.0), None);
     let space = NullSpace::of(&four, &q);
     let columns: Vec<DVector<f64>> = space.basis().iter().map(|x| DVector::from_row_slice(x)).collect();
     assert_eq!(DMatrix::from_columns(&columns).rank(1e-9), 3);

@@ -198,3 +198,112 @@ fn what_would_never_end_is_refused() {
     assert_eq!(folder.names(), ["fine.toml", "long.toml"]);
     assert!(began.elapsed().as_secs() < 60, "{:?}", began.elapsed());
 }
+
+/// A quintic from rest to rest.
+fn eased(s: f64) -> f64 {
+    s * s * s * (10.0 - 15.0 * s + 6.0 * s * s)
+}
+
+/// Rows of forty spaces over a second.
+fn table(head: &str, row: impl Fn(f64) -> Vec<f64>) -> String {
+    let mut text = format!("{head}\n");
+    for i in 0..=40 {
+        let s = f64::from(i) / 40.0;
+        let numbers: Vec<String> = [vec![s], row(eased(s))].concat().iter().map(|x| format!("{x:.9}")).collect();
+        text += &(numbers.join(",") + "\n");
+    }
+    text
+}
+
+/// Two drives and four: what keeps the end effector's motion does, what cannot is turned as a whole, and what has no
+/// answer says so.
+#[test]
+fn import_proposes_for_any_number_of_drives() {
+    let folder = Folder::new("cli");
+    let files = [
+        ("tip4.csv", table("t,x,y", |u| vec![0.60 - 0.25 * u, 0.50 + 0.35 * u])),
+        ("q4.csv", table("t,q1,q2,q3,q4", |u| vec![1.7 - 0.2 * u, 3.9 + 0.3 * u, 2.6 + 0.4 * u, 2.7 - 0.3 * u])),
+        ("q2.csv", table("t,q1,q2", |u| vec![0.5 + 0.3 * u, 1.6 + 0.4 * u])),
+        ("tip2.csv", table("t,x,y", |u| vec![0.45 + 0.15 * u, 0.30 - 0.1 * u])),
+    ];
+    let [tip4, q4, q2, tip2] = files.map(|(name, text)| word(folder.file(name, &text)));
+    for (file, machine, way) in [
+        (&tip4, "four-drive", "on-plane"),
+        (&q4, "four-drive", "same-tip"),
+        (&q2, "two-drive", "turned"),
+        (&q2, "counter-rotating", "as-given"),
+        (&tip2, "counter-rotating", "as-given"),
+    ] {
+        let quiet = folder.0.join(format!("{machine}-{way}.toml"));
+        let quiet = quiet.to_str().expect("UTF-8");
+        let got = object(&["import", file, "--machine", machine, "-o", quiet, "--force"]);
+        let proposal = &got["proposal"];
+        assert_eq!((&got["feasible"], &proposal["way"]), (&json!(true), &json!(way)), "{machine}");
+        assert_eq!(proposal["reactionless"], json!(true), "{machine}");
+        let moved = proposal["tip_deviation"].as_f64().expect("a distance");
+        assert_eq!(moved < 1e-7, way != "turned", "{machine}, {way}: {moved}");
+        assert!(machine == "counter-rotating" || got["given"]["peak_base_moment"].as_f64().expect("a moment") > 0.1);
+        // What is written does what was said, and the other is what was given.
+        let done = object(&["simulate", quiet]);
+        assert_eq!(done["verdict"]["reactionless"], json!(true), "{machine}, {way}");
+        let given = object(&["simulate", &quiet.replace(".toml", "-given.toml")]);
+        assert_eq!(given["verdict"]["reactionless"], json!(machine == "counter-rotating"), "{machine}, {way}");
+    }
+    for (args, said) in [
+        (
+            &["import", &tip2, "--machine", "two-drive"][..],
+            "b goes from 1.861 to 2.321 rad: want a path along such a curve",
+        ),
+        (
+            &["import", &q2, "--machine", "two-drive", "--keep", "tip"],
+            "2 drives held to a b move the end effector along one curve",
+        ),
+    ] {
+        let out = stillbase(args);
+        assert!(out.status.code() == Some(1) && text(&out.stderr).contains(said), "{}", text(&out.stderr));
+    }
+    fails(&["import", &q2, "--machine", "scara"], 1, &["no pose constant b", "stillbase design"]);
+    let out = stillbase(&["import", &tip2, "--machine", "two-drive", "--json"]);
+    let got: Value = serde_json::from_str(text(&out.stdout)).expect("an object");
+    assert!(got["feasible"] == json!(false) && got["given"]["peak_base_moment"].as_f64().expect("a moment") > 0.1);
+    // A path of the end effector that lies along the curve of a b.
+    let curve = object(&["workspace", "two-drive", "--b", "1.2"]);
+    let curve: Vec<Vec<f64>> = curve["curve"].as_array().expect("a curve").iter().map(numbers).collect();
+    let along = table("t,x,y", |u| {
+        let place = (0.3 + 0.3 * u) * (curve.len() - 1) as f64;
+        let (i, part) = (place as usize, place.fract());
+        (0..2).map(|j| curve[i][j] + part * (curve[i + 1][j] - curve[i][j])).collect()
+    });
+    let along = word(folder.file("along.csv", &along));
+    let got = object(&["import", &along, "--machine", "two-drive", "--smooth", "8"]);
+    assert!(got["proposal"]["tip_deviation"].as_f64().expect("a distance") < 1e-3);
+    near(&got["proposal"]["b"], &json!(1.2), 1e-3, "b");
+}
+
+/// Kinds of tasks of two drives and of four, as the command has them.
+#[test]
+fn plan_has_every_kind_for_other_numbers_of_drives() {
+    let line = ["four-drive", "0.6,0.5", "0.35,0.85", "--b", "2.9", "--kind"];
+    let kinds = ["reactionless", "minimum-norm", "least-reaction", "zero-momentum", "change-b"];
+    for kind in kinds {
+        let got = object(&[&["plan"], &line[..], &[kind]].concat());
+        assert_eq!(got["feasible"], json!(true), "{kind}");
+        assert_eq!(got["peak_base_moment"].as_f64().expect("a moment") < 1e-5, kind != "minimum-norm", "{kind}");
+    }
+    let price =
+        object(&["plan", "four-drive", "0.6,0.5", "-0.55,-0.25", "--kind", "change-b", "--b", "2.9", "--base", "40,3"]);
+    let (delta, peak) = (price["price"]["delta_b"].as_f64().expect("Δb"), &price["peak_base_moment"]);
+    assert!(delta.abs() > 0.1 && price["price"]["base_turn"].as_f64().expect("a turn") != 0.0);
+    near(
+        &json!(price["price"]["least_peak"].as_f64().expect("a moment") * 10.0 / 3f64.sqrt() / 4.0),
+        peak,
+        1e-3,
+        "n_B",
+    );
+    fails(
+        &["plan", "scara", "0.6,0.1", "0.2,0.55", "--kind", "zero-momentum"],
+        1,
+        &["along one curve, and B lies 0.413 m beside it: want it at (0.278797726, 0.144864307) m"],
+    );
+    fails(&["plan", "two-drive", "0.5,0.2", "0.6,0.1", "--kind", "least-reaction"], 2, &["no b to choose"]);
+}

@@ -7,9 +7,13 @@ use stillbase::planning::Motion;
 use stillbase::planning::following::nearest::Deviation;
 use stillbase::planning::forecast::Forecast;
 use stillbase::planning::pose_constant::Planes;
+use stillbase::planning::pose_space::{NoPoseSpace, PoseSpace};
 use stillbase::planning::timing::Limits;
-use stillbase::session::replay;
 use stillbase::session::scenario::{Scenario, Task};
+use stillbase::session::{Run, replay};
+
+use crate::commands::failure::Failure;
+use crate::commands::input::DEFAULT_SCENARIO;
 
 /// What a motion does, if it is followed exactly.
 #[derive(Serialize)]
@@ -36,7 +40,7 @@ pub struct Account {
 
 #[derive(Serialize)]
 pub struct Proposal {
-    /// `same-tip`, `turned` or `on-plane`.
+    /// `same-tip`, `turned`, `on-plane` or `as-given`.
     pub way: &'static str,
     pub why: String,
     pub b: f64,
@@ -65,8 +69,34 @@ pub struct Judge {
     pub machine: Machine,
     pub model: Inertia,
     pub around: Surroundings,
-    pub planes: Planes,
+    pub poses: Poses,
     pub instants: usize,
+}
+
+/// What the machine can hold.
+pub enum Poses {
+    /// Three drives: planes.
+    Planes(Box<Planes>),
+    /// Any other number.
+    Space(PoseSpace),
+    /// Every motion is reactionless.
+    Free,
+}
+
+impl Poses {
+    /// Of a machine.
+    ///
+    /// # Errors
+    /// Why it can hold nothing.
+    pub fn of(machine: &Machine) -> Result<Self, Failure> {
+        if machine.drives() == 3 {
+            return Ok(Self::Planes(Box::new(Planes::of(machine)?)));
+        }
+        match PoseSpace::of(machine) {
+            Err(NoPoseSpace::Free) => Ok(Self::Free),
+            space => Ok(Self::Space(space?)),
+        }
+    }
 }
 
 impl Judge {
@@ -108,6 +138,16 @@ impl Judge {
 }
 
 impl Judge {
+    /// Whether a task can be planned.
+    ///
+    /// Errors say why it cannot.
+    pub fn plans(&self, task: &Task) -> Result<(), String> {
+        let base = Scenario::builtin(DEFAULT_SCENARIO).ok_or("the built-in scenarios are gone")?;
+        let own =
+            Scenario { machine: self.machine.clone(), task: task.clone(), compare_b: None, edits: Vec::new(), ..base };
+        Run::new(&own).map(|_| ()).map_err(|refusal| refusal.to_string())
+    }
+
     /// A candidate, planned and simulated.
     ///
     /// Errors say why it cannot be carried out.

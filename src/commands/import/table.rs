@@ -56,6 +56,7 @@ pub fn table(answer: &Answer) -> String {
         let kept = match p.way {
             "turned" => "the relative joint angles kept, the arm turned as a whole",
             "same-tip" => "the end effector's motion kept",
+            "as-given" => "the motion as it is",
             _ => "the end effector's motion on one plane",
         };
         format!("\nproposed: b = {} rad, {kept}: {}\nreactionless: {}\n", fixed(p.b, 6), p.why, yes(p.reactionless))

@@ -7,6 +7,7 @@ use stillbase::planning::curves::path::minimum_norm_curve;
 use stillbase::planning::curves::{Path, Samples};
 use stillbase::planning::following::nearest::{nearest_b, same_tip, turned};
 use stillbase::planning::following::{Rule, trace};
+use stillbase::planning::pose_constant::Planes;
 use stillbase::planning::reactionless::{BSet, between};
 use stillbase::planning::timing::Profile;
 use stillbase::session::scenario::{Task, TaskKind};
@@ -37,12 +38,12 @@ pub struct Ways {
 }
 
 /// The motion given by drive angles, and what might be proposed, the best first.
-pub fn of_drives(asked: &Asked, judge: &Judge, samples: &Samples) -> Result<Ways, Failure> {
+pub fn of_drives(asked: &Asked, judge: &Judge, planes: &Planes, samples: &Samples) -> Result<Ways, Failure> {
     let path = samples.path(0.0).ok_or_else(|| Failure::wrong_input("want times further apart"))?;
     let motion = Motion { path: Path::Table(path), profile: Profile::running(samples.duration()) };
     let lambda = judge.model.lambda();
     let mean = judge.account(&motion).b_mean;
-    let map = judge.planes.map();
+    let map = planes.map();
     // Whole turns of all drives are nothing: the one nearest to where the motion is.
     let wanted = asked.b.map_or(mean, |b| b + map.period() * ((mean - b) / map.period()).round());
     let which = if asked.b.is_some() { "the b asked for" } else { "the mean b" };
@@ -94,8 +95,8 @@ pub fn of_drives(asked: &Asked, judge: &Judge, samples: &Samples) -> Result<Ways
 }
 
 /// The usual inverse of a motion given by the end effector, and the one on a plane.
-pub fn of_tip(asked: &Asked, judge: &Judge, samples: &Samples) -> Result<Ways, Failure> {
-    let (planes, map) = (&judge.planes, judge.planes.map());
+pub fn of_tip(asked: &Asked, judge: &Judge, planes: &Planes, samples: &Samples) -> Result<Ways, Failure> {
+    let map = planes.map();
     let curve = samples.curve().ok_or_else(|| Failure::wrong_input("want times further apart"))?;
     let curves = [curve];
     let (b, why) = match asked.b {

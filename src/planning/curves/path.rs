@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use crate::mechanics::kinematics::{
-    acceleration, closest_turn, end_effector, minimum_norm, minimum_norm_held, two_link_rates, velocity,
+    acceleration, closest_turn, end_effector, minimum_norm, minimum_norm_with, two_link_rates, velocity,
 };
 use crate::mechanics::machine::Chain;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
@@ -272,7 +272,7 @@ pub fn least_rate_curve(
     curve: &Curve,
 ) -> Result<PathTable, PathError> {
     let piece = |q: DriveAngles, [from, to]: [f64; 2], at: &dyn Fn(f64) -> CurvePoint, spaces: usize| {
-        least_rate_nodes(tip, held, q, &at, spaces).map_err(|error| match error {
+        least_rate_nodes(tip, held.map(|row| (row, 0.0)), q, &at, spaces).map_err(|error| match error {
             PathError::Singular { s } => PathError::Singular { s: from + s * (to - from) },
             other => other,
         })
@@ -313,22 +313,23 @@ pub(in crate::planning) fn by_pieces<E>(
     Ok(PathTable::new(stations, nodes))
 }
 
+/// With a row beside the Jacobian, and what it makes of the rates, if one is `held`.
 fn least_rate_nodes(
     tip: &Chain,
-    held: Option<&PerDrive>,
+    held: Option<(&PerDrive, f64)>,
     start: DriveAngles,
     curve: &impl Fn(f64) -> CurvePoint,
     spaces: usize,
 ) -> Result<Vec<PathPoint>, PathError> {
     let off_curve = OFF_CURVE * tip.iter().map(|c| c.abs()).sum::<f64>();
     let n = start.len();
-    let rates = |q: &DriveAngles, v: Vector, vd: Vector| match held {
-        Some(lambda) => minimum_norm_held(tip, lambda, &q.units(), v, vd),
+    let rates = |q: &DriveAngles, v: Vector, vd: Vector, share: f64| match held {
+        Some((row, rate)) => minimum_norm_with(tip, (row, share * rate), |_| PerDrive::zeros(n), &q.units(), v, vd),
         None => minimum_norm(tip, &q.units(), n, v, vd),
     };
     let slope = |q: &DriveAngles, s: f64| {
         let way = curve(s);
-        rates(q, way.first, way.second).ok_or(PathError::Singular { s })
+        rates(q, way.first, way.second, 1.0).ok_or(PathError::Singular { s })
     };
     // Each space takes several steps, so that the integration is as exact as the quintics.
     const STEPS: usize = 4;
@@ -342,7 +343,7 @@ fn least_rate_nodes(
         if gap.is_nan() || gap.norm() > off_curve {
             return Err(PathError::Singular { s });
         }
-        let (back, _) = rates(&q, gap, Vector::default()).ok_or(PathError::Singular { s })?;
+        let (back, _) = rates(&q, gap, Vector::default(), 0.0).ok_or(PathError::Singular { s })?;
         q = DriveAngles(q.0.plus(1.0, &back));
         let (first, second) = slope(&q, s)?;
         nodes.push(PathPoint { q, first, second });
@@ -359,6 +360,23 @@ fn least_rate_nodes(
         }
     }
     Ok(nodes)
+}
+
+/// The same of four drives and more: while drive 1 goes straight to `first_to`, rad, the others follow the end effector
+/// of the joint line with the least rates.
+///
+/// # Errors
+/// If they lose it on the way.
+pub fn same_tip_path(tip: &Chain, from: DriveAngles, to: DriveAngles, first_to: f64) -> Result<PathTable, PathError> {
+    let curve = |s: f64| {
+        let line = joint_line(&from, &to, s);
+        let e = line.q.units();
+        let (first, second) = (velocity(tip, &e, &line.first), acceleration(tip, &e, &line.first, &line.second));
+        CurvePoint { p: end_effector(tip, &e), first, second }
+    };
+    let own = PerDrive::from_fn(from.len(), |k| f64::from(u8::from(k == 0)));
+    let nodes = least_rate_nodes(tip, Some((&own, first_to - from[0])), from, &curve, SPACES)?;
+    PathTable::even(nodes).ok_or(PathError::Singular { s: 0.0 })
 }
 
 /// The end effector of a joint line, reached with drive 1 elsewhere and drives 2 and 3 following on one elbow.

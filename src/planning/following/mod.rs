@@ -2,6 +2,7 @@
 //! slider.
 
 mod braking;
+pub mod closest;
 pub mod follow;
 pub mod held;
 pub mod nearest;

@@ -129,7 +129,7 @@ pub fn nearest_b(map: &PlaneMap, tip: &Chain, model: &Inertia, samples: &Samples
 const JUDGED: usize = 201;
 
 /// ‖Δq‖ of samples at the same times, by the trapezoidal rule, rad.
-fn apart(model: &Inertia, one: &Samples, other: &Samples) -> f64 {
+pub(super) fn apart(model: &Inertia, one: &Samples, other: &Samples) -> f64 {
     let n = model.drives();
     let whole: f64 = (0..n).map(|k| model.diagonal(k)).sum();
     let square = |i: usize| -> f64 {

@@ -12,7 +12,8 @@
 //! depends on δ alone. So b = q_1 + ∫_0^δ D_2/(D_1 + D_2) dδ, and angular momentum is (D_1 + D_2) ḃ.
 
 use crate::mechanics::machine::Inertia;
-use crate::mechanics::planar::{Vector, unit};
+use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
+use crate::planning::curves::{PathPoint, PathTable};
 
 /// b(q) of a machine with two drives, whatever its couplings: constant exactly along motions of zero momentum.
 ///
@@ -25,8 +26,13 @@ pub struct BIntegral {
     k: f64,
     phase: f64,
     sum: f64,
+    /// H_22 − H_11.
+    difference: f64,
     coupling: Vector,
 }
+
+/// Spaces between the nodes of a motion.
+const SPACES: usize = 256;
 
 impl BIntegral {
     /// Of a machine; `None` unless it has two drives and a positive definite mass matrix.
@@ -43,6 +49,7 @@ impl BIntegral {
             k: ((sum - most) / (sum + most)).sqrt(),
             phase: coupling.im.atan2(coupling.re),
             sum,
+            difference: second - first,
             coupling,
         })
     }
@@ -56,6 +63,33 @@ impl BIntegral {
     /// D_1 + D_2 at q, kg m²: what a machine turned as a whole has.
     pub fn inertia(&self, q: [f64; 2]) -> f64 {
         self.sum + 2.0 * (self.coupling * unit(q[1] - q[0])).re
+    }
+
+    /// The pose of a b at δ, rad: of one motion of zero momentum all have the same b.
+    pub fn pose(&self, b: f64, delta: f64) -> DriveAngles {
+        let first = -self.b([0.0, delta]);
+        DriveAngles::from([b + first, b + first + delta])
+    }
+
+    /// The motion of zero momentum from a pose to another δ, rad, straight in δ.
+    pub fn motion(&self, from: &DriveAngles, to: f64) -> Option<PathTable> {
+        let (b, start) = (self.b([from[0], from[1]]), from[1] - from[0]);
+        let way = to - start;
+        let node = |i: usize| {
+            let delta = start + way * i as f64 / SPACES as f64;
+            let z = self.coupling * unit(delta);
+            let whole = self.sum + 2.0 * z.re;
+            // D_2/(D_1 + D_2), and how it changes with δ.
+            let share = 0.5 + 0.5 * self.difference / whole;
+            let change = self.difference * z.im / (whole * whole);
+            let second = -change * way * way;
+            PathPoint {
+                q: self.pose(b, delta),
+                first: PerDrive::from([-share * way, (1.0 - share) * way]),
+                second: PerDrive::from([second, second]),
+            }
+        };
+        PathTable::even((0..=SPACES).map(node).collect())
     }
 
     /// √(S² − 4R²) ∫ dψ/(S + 2R cos ψ) = 2 arctan(k tan(ψ/2)) from 0, continued over whole turns.

@@ -12,14 +12,14 @@ use crate::planning::curves::PathPoint;
 use crate::planning::curves::curve::{Curve, CurvePoint};
 use crate::planning::curves::path::by_pieces;
 use crate::planning::curves::table::PathTable;
-use crate::planning::off_plane::null_space::{lines, momentum_row_rate, rates, solve};
+use crate::planning::off_plane::null_space::{least, lines, momentum_row_rate, rates, solve, turns_nothing};
 use crate::settings::number::counted;
 
 /// Why a motion of zero momentum does not follow a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum DriftError {
-    /// The machine has not three drives.
-    #[error("{}: a curve in the plane at zero momentum takes three", counted(drives, "drive"))]
+    /// The machine has fewer than three drives.
+    #[error("{}: a curve in the plane at zero momentum takes three or more", counted(drives, "drive"))]
     Drives {
         /// Drives of the machine.
         drives: usize,
@@ -70,10 +70,10 @@ const OFF_CURVE: f64 = 1e-4;
 
 /// Follows a curve of the end effector at zero angular momentum, [J; D] q′ = [p′; 0], by the fourth-order rule; after
 /// each step the end effector is put back onto the curve by rates of zero momentum. Any time law, from rest to rest,
-/// keeps the moment at zero.
+/// keeps the moment at zero. Four drives and more take the least rates of these.
 ///
 /// # Errors
-/// If there are not three drives, the start is not on the curve, or [J; D] loses rank.
+/// If there are fewer than three drives, the start is not on the curve, or [J; D] loses rank.
 pub fn zero_momentum_path(
     model: &Inertia,
     start: DriveAngles,
@@ -109,7 +109,7 @@ fn round(
     cycle: usize,
 ) -> Result<Vec<PathPoint>, DriftError> {
     let drives = model.drives();
-    if drives != 3 || start.len() != 3 {
+    if start.len() != drives || (drives < 3 && !turns_nothing(model)) {
         return Err(DriftError::Drives { drives });
     }
     let reach = model.end_effector.iter().map(|c| c.abs()).sum::<f64>();
@@ -153,6 +153,10 @@ fn round(
 
 /// q, q′ and q″ with D q′ = 0 and D q″ + D′ q′ = 0.
 fn node(model: &Inertia, q: &DriveAngles, point: &CurvePoint) -> Option<PathPoint> {
+    if model.drives() != 3 || turns_nothing(model) {
+        let (first, second) = least(model, q, point.first, point.second, 0.0)?;
+        return Some(PathPoint { q: *q, first, second });
+    }
     let e = q.units();
     let (lines, scale) = lines(model, &e)?;
     let first = solve(&lines, point.first, 0.0)?;

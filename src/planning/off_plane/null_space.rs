@@ -21,7 +21,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::mechanics::dynamics::mass_matrix;
-use crate::mechanics::kinematics::column;
+use crate::mechanics::kinematics::{column, minimum_norm, minimum_norm_with};
 use crate::mechanics::machine::{BALANCED, Inertia};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Units, Vector};
 use crate::planning::curves::PathPoint;
@@ -135,11 +135,33 @@ fn node(model: &Inertia, q: DriveAngles, w: &PerDrive) -> PathPoint {
     PathPoint { q, first, second: d.scaled(-sigma_rate).plus(-sigma, &rate) }
 }
 
-/// The rates of three drives that give the end effector the velocity v, m/s, at angular momentum h, kg m²/s about B:
-/// [J; D] q̇ = [v; h]. `None` for other numbers of drives, or where the matrix has lost rank.
+/// The rates that give the end effector the velocity v, m/s, at angular momentum h, kg m²/s about B: [J; D] q̇ = [v; h];
+/// of more than three drives, or where no drive has angular momentum, the least. `None` for other numbers of drives, or
+/// where the matrix has lost rank.
 pub fn rates(model: &Inertia, q: &DriveAngles, v: Vector, h: f64) -> Option<PerDrive> {
+    if model.drives() > 3 || turns_nothing(model) {
+        return least(model, q, v, Vector::default(), h).map(|(rates, _)| rates);
+    }
     let (lines, scale) = lines(model, &q.units())?;
     solve(&lines, v, h / scale)
+}
+
+/// Whether no motion has any angular momentum.
+pub fn turns_nothing(model: &Inertia) -> bool {
+    let (n, whole) = (model.drives(), model.diagonals().iter().sum::<f64>());
+    let most = model.momenta().max_abs();
+    most <= BALANCED * whole && Inertia::pairs(n).all(|(k, l)| model.coupling(k, l).norm() <= BALANCED * whole)
+}
+
+/// Of all rates that give the end effector the velocity v, m/s, at angular momentum h, kg m²/s, the least, and their
+/// exact derivative for v̇ and the same h.
+pub(super) fn least(model: &Inertia, q: &DriveAngles, v: Vector, vd: Vector, h: f64) -> Option<(PerDrive, PerDrive)> {
+    let e = q.units();
+    if turns_nothing(model) {
+        return minimum_norm(&model.end_effector, &e, model.drives(), v, vd);
+    }
+    let d = momentum_row(model, &e);
+    minimum_norm_with(&model.end_effector, (&d, h), |qd| momentum_row_rate(model, &e, qd), &e, v, vd)
 }
 
 /// J and D of three drives, D divided by its length so that both are of one size for an arm of a metre.

@@ -272,13 +272,23 @@ pub fn joint_line(map: &PlaneMap, [from, to]: [PlanePoint; 2]) -> Path {
 ///
 /// b″ jumps at u = 0, ½ and 1. At ½ it is that of the first half; the next number after ½ begins the second.
 pub fn bang_bang_in_b(map: &PlaneMap, [from, to]: [PlanePoint; 2]) -> Option<PathTable> {
-    let step = [to.a[0] - from.a[0], to.a[1] - from.a[1]];
-    let delta_b = to.b - from.b;
+    let lift = |a: &PerDrive, b: f64| DriveAngles::from(map.lift(PlanePoint { a: [a[0], a[1]], b }));
+    let rates = |a: &PerDrive, b: f64| PerDrive::from(map.lift_rates([a[0], a[1]], b));
+    bang_bang(&lift, &rates, [from, to].map(|x| (PerDrive::from(x.a), x.b)))
+}
+
+/// The same of any number of drives, by what lifts relative angles and b to drive angles, and their rates.
+pub fn bang_bang(
+    lift: &dyn Fn(&PerDrive, f64) -> DriveAngles,
+    lift_rates: &dyn Fn(&PerDrive, f64) -> PerDrive,
+    [from, to]: [(PerDrive, f64); 2],
+) -> Option<PathTable> {
+    let step = to.0.minus(&from.0);
+    let delta_b = to.1 - from.1;
     let point = |share: [f64; 3], turn: [f64; 3]| {
-        let a = [from.a[0] + share[0] * step[0], from.a[1] + share[0] * step[1]];
-        let q = map.lift(PlanePoint { a, b: from.b + turn[0] * delta_b });
-        let rates = |i: usize| PerDrive::from(map.lift_rates(step.map(|x| share[i] * x), turn[i] * delta_b));
-        PathPoint { q: DriveAngles::from(q), first: rates(1), second: rates(2) }
+        let rates = |i: usize| lift_rates(&step.scaled(share[i]), turn[i] * delta_b);
+        let q = lift(&from.0.plus(share[0], &step), from.1 + turn[0] * delta_b);
+        PathPoint { q, first: rates(1), second: rates(2) }
     };
     let middle = [0.5, 1.875, 0.0];
     let nodes = vec![

@@ -1,34 +1,119 @@
 //! Tasks of machines that have no plane of three drives: with one, two, four and more.
 
-use super::along::{Parts, along_parts, curves};
-use super::given;
-use super::plan::Plan;
+use super::along::{Parts, along_parts, curves, timed};
+use super::off_plane::smooth;
+use super::plan::{Plan, dynamics_of, keeps_rules};
+use super::pose::{posed, reached, start};
+use super::{given, off_space};
 use crate::mechanics::planar::{DriveAngles, Vector};
+use crate::planning::Forecast;
 use crate::planning::curves::Path;
 use crate::planning::curves::path::{least_rate_curve, minimum_norm_curve};
-use crate::planning::pose_constant::Unreachable;
+use crate::planning::off_plane::b_course::Reaction;
+use crate::planning::off_plane::least_reaction::{FixedB, MinimumNorm, Verdicts};
 use crate::planning::pose_space::{NoPoseSpace, PoseSpace};
 use crate::planning::posture::{Posture, Postures};
+use crate::planning::reactionless::BSet;
+use crate::planning::timing::Limits;
 use crate::session::refusal::Refusal;
 use crate::session::scenario::{Corners, Scenario, Shape, Task, TaskKind};
+use crate::settings::number::Short;
 
 /// Plans the task of such a machine.
 ///
 /// # Errors
 /// Which point, part of the path or setting is in the way, and what would do.
 pub(super) fn plan(scenario: &Scenario) -> Result<Plan, Refusal> {
-    let (task, drives) = (&scenario.task, scenario.machine.drives());
-    if task.samples.is_some() || task.kind == TaskKind::Given {
+    let task = &scenario.task;
+    if task.samples.is_some() {
         return given::given(scenario, None);
     }
     match task.kind {
         TaskKind::Reactionless => along_parts(scenario, &|scenario| reactionless(scenario)),
         TaskKind::MinimumNorm => along_parts(scenario, &|scenario| minimum_norm(scenario)),
-        _ => Err(Refusal::Task(format!(
-            "this kind of task is for machines of three drives, here are {drives}: want reactionless, minimum-norm or \
-             given"
-        ))),
+        TaskKind::SameTip => along_parts(scenario, &|scenario| off_space::same_tip(scenario)),
+        TaskKind::ChangeB => off_space::change_b(scenario),
+        TaskKind::ZeroMomentum => off_space::zero_momentum(scenario),
+        TaskKind::LeastReaction => least_reaction(scenario),
+        TaskKind::Given => given::given(scenario, None),
     }
+}
+
+/// Along the end effector's curves with b held, where it can be: then nothing reaches the base. Between which b a path
+/// could choose is known for three drives only.
+fn least_reaction(scenario: &Scenario) -> Result<Plan, Refusal> {
+    let (task, drives) = (&scenario.task, scenario.machine.drives());
+    if drives < 3 {
+        let why = "along a path of the end effector one or two drives have no b to choose: want minimum-norm, which is the \
+                   only motion along it, or reactionless in the shape joint-line";
+        return Err(Refusal::Task(why.into()));
+    }
+    smooth(task)?;
+    let space = PoseSpace::of(&scenario.machine)?;
+    if let Some(b_to) = task.b_to.filter(|b_to| *b_to != task.b) {
+        return Err(Refusal::Task(format!(
+            "with {drives} drives the least reaction holds b, here to end at {b_to} rad: want change-b, or b_to = default"
+        )));
+    }
+    // With any use of the freedoms that are left.
+    let held = |b: f64| {
+        let all = [Posture::LeastRates, Posture::MidRange, Posture::Orientation, Posture::LeastTorque];
+        let mut refused = None;
+        for posture in all {
+            let task = Task {
+                kind: TaskKind::Reactionless,
+                shape: Some(task.shape()),
+                b,
+                b_to: None,
+                posture,
+                ..task.clone()
+            };
+            let own = Scenario { task, ..scenario.clone() };
+            match along_parts(&own, &|scenario| reactionless(scenario)) {
+                Ok(plan) => return Ok(plan),
+                Err(why) => refused = refused.or(Some(why)),
+            }
+        }
+        Err(refused.unwrap_or_else(|| Refusal::NoWay("A has no pose".into())))
+    };
+    let why = match held(task.b) {
+        Ok(plan) => return Ok(Plan { verdicts: Some(nothing(scenario, &plan)?), ..plan }),
+        Err(why @ Refusal::Unreachable { .. }) => return Err(why),
+        Err(why) => why,
+    };
+    let sets: Option<Vec<BSet>> = task.points().iter().map(|p| space.reach(*p).ok()).collect();
+    let common = BSet::overlap(&sets.unwrap_or_default());
+    let tries =
+        common.nearest(task.b).into_iter().flat_map(|b| [0.1, 0.4, 0.7, 1.0, 1.3, 1.6].map(|to| common.inwards(b, to)));
+    let does = tries.filter_map(|b| common.decimal(b, 4)).find(|b| held(b.value()).is_ok());
+    let would_do = match does {
+        Some(b) => format!("at b = {b} rad it can: want that"),
+        None => "want minimum-norm, or change-b from point to point".into(),
+    };
+    let why = why.to_string();
+    Err(Refusal::Task(format!(
+        "b = {} rad cannot be held along this path ({}), and with other than three drives it does not change on the way; \
+         {would_do}",
+        Short(task.b),
+        why.split(": want").next().unwrap_or(&why)
+    )))
+}
+
+/// The verdicts on a motion that holds b.
+fn nothing(scenario: &Scenario, plan: &Plan) -> Result<Verdicts, Refusal> {
+    let usual =
+        by_least_rates(scenario, plan.motion.path.at(0.0).q, None).and_then(|parts| Ok(timed(scenario, parts)?.0));
+    let minimum_norm = match usual {
+        Ok(motion) => {
+            let (model, around) = dynamics_of(scenario);
+            let forecast = Forecast::of(&motion, &model, &around, &Limits::of(&scenario.machine));
+            let reaction = Reaction { peak: forecast.moment, rms: forecast.moment_rms };
+            Ok(MinimumNorm { reaction, end_b: forecast.b_end, keeps_limits: keeps_rules(scenario, &motion).is_ok() })
+        }
+        Err(Refusal::Path(why)) => Err(why),
+        Err(why) => return Err(why),
+    };
+    Ok(Verdicts { fixed: FixedB::Serves, minimum_norm, least: Reaction { peak: 0.0, rms: 0.0 } })
 }
 
 /// A path that holds b.
@@ -78,13 +163,7 @@ fn joint_lines(task: &Task, space: &PoseSpace, points: &[Vector], free: bool) ->
 
 /// Least rates along the end effector's curves, from a pose of A.
 fn minimum_norm(scenario: &Scenario) -> Result<Parts, Refusal> {
-    let (task, machine) = (&scenario.task, &scenario.machine);
-    let points = task.points();
-    let start = match PoseSpace::of(machine) {
-        Ok(space) if space.drives() > 3 => posed(task, &space, 0, points[0], &space.middle())?,
-        _ => reached(task, &PoseSpace::nominal(machine)?, 0, points[0])?,
-    };
-    by_least_rates(scenario, start, None)
+    by_least_rates(scenario, start(scenario)?, None)
 }
 
 /// Least rates along the curves of a task from a start, with b held on a space of poses, if there is one.
@@ -114,30 +193,4 @@ fn in_posture(scenario: &Scenario, postures: &Postures<'_>, start: DriveAngles) 
         parts.push((Path::Table(table), curve.length()));
     }
     Ok(parts)
-}
-
-/// A pose of a point at the b of the task, as near as can be to given relative angles.
-fn posed(task: &Task, space: &PoseSpace, i: usize, p: Vector, near: &[f64]) -> Result<DriveAngles, Refusal> {
-    space.poses(p, task.b, near).first().copied().ok_or_else(|| {
-        let unreachable = match space.reach(p) {
-            Err(reason) => Unreachable::Anywhere { x: p.re, y: p.im, reason },
-            Ok(set) => {
-                let nearest_b = set.nearest(task.b);
-                let shown_b = nearest_b.and_then(|b| set.decimal(b, 4));
-                Unreachable::OnThisPlane { x: p.re, y: p.im, b: task.b, would_do: set.in_words(), nearest_b, shown_b }
-            }
-        };
-        Refusal::Unreachable { point: task.name_of(i), unreachable }
-    })
-}
-
-/// A pose of a point at the b nearest to that of the task: of machines on which b says nothing, or leaves no choice.
-fn reached(task: &Task, space: &PoseSpace, i: usize, p: Vector) -> Result<DriveAngles, Refusal> {
-    let anywhere = |reason| Refusal::Unreachable {
-        point: task.name_of(i),
-        unreachable: Unreachable::Anywhere { x: p.re, y: p.im, reason },
-    };
-    space.reach(p).map_err(anywhere)?;
-    let none = || Refusal::Task(format!("no pose was found for {}: want another point", task.name_of(i)));
-    space.near(p, task.b).ok_or_else(none)
 }

@@ -2,15 +2,19 @@
 
 use super::along::start;
 use super::plan::{Plan, dynamics_of, keeps_rules};
+use super::pose::{posed, start as start_of};
 use crate::planning::Motion;
-use crate::planning::curves::Path;
-use crate::planning::curves::path::minimum_norm_curve;
+use crate::planning::curves::path::{least_rate_curve, minimum_norm_curve};
+use crate::planning::curves::{Curve, Path, PathTable};
 use crate::planning::following::{Rule, trace};
 use crate::planning::forecast::Forecast;
 use crate::planning::pose_constant::Planes;
+use crate::planning::pose_space::{NoPoseSpace, PoseSpace};
+use crate::planning::posture::{Posture, Postures};
 use crate::planning::timing::{Limits, Profile};
 use crate::session::refusal::Refusal;
 use crate::session::scenario::{Scenario, TaskKind};
+use crate::settings::number::counted;
 
 /// Instants at which a motion is looked at for each of its samples, at least, and at most in all.
 const A_SAMPLE: usize = 8;
@@ -34,24 +38,29 @@ pub fn given(scenario: &Scenario, planes: Option<&Planes>) -> Result<Plan, Refus
         return refuse("samples say when to be where: want the law quintic, which has no say, or no samples".into());
     }
     let columns = samples.columns();
-    let only_drives = || {
-        let why = format!("samples of x and y are for three drives: want samples of the {drives} drive angles");
-        Refusal::Task(why)
-    };
     let unsound = || Refusal::Task("the samples give no spline: want times further apart".into());
     let table = match (task.kind, columns) {
         (TaskKind::Given, n) if n == drives => samples.path(task.turn).ok_or_else(unsound)?,
         (TaskKind::Given | TaskKind::Reactionless, 2) => {
             let curve = samples.curve().ok_or_else(unsound)?;
             let rule = Rule { keep_off_change_points: task.keep_off_change_points };
-            let planes = planes.ok_or_else(only_drives)?;
-            let mut tables = trace::follow(planes.map(), &[curve], task.b, None, rule)?;
-            tables.pop().ok_or_else(unsound)?
+            match planes {
+                Some(planes) => {
+                    let mut tables = trace::follow(planes.map(), &[curve], task.b, None, rule)?;
+                    tables.pop().ok_or_else(unsound)?
+                }
+                None => sampled(scenario, &curve)?,
+            }
         }
         (TaskKind::MinimumNorm, 2) => {
-            let ends = [samples.point(0), samples.point(samples.count() - 1)];
-            let q = start(task, planes.ok_or_else(only_drives)?, &ends)?;
-            minimum_norm_curve(scenario.machine.end_effector(), q, &samples.curve().ok_or_else(unsound)?)?
+            let curve = samples.curve().ok_or_else(unsound)?;
+            match planes {
+                Some(planes) => {
+                    let ends = [samples.point(0), samples.point(samples.count() - 1)];
+                    minimum_norm_curve(scenario.machine.end_effector(), start(task, planes, &ends)?, &curve)?
+                }
+                None => sampled(scenario, &curve)?,
+            }
         }
         (TaskKind::Given, _) => {
             return refuse(format!(
@@ -67,4 +76,31 @@ pub fn given(scenario: &Scenario, planes: Option<&Planes>) -> Result<Plan, Refus
     let instants = (A_SAMPLE * samples.count()).clamp(INSTANTS.0, INSTANTS.1);
     let forecast = Forecast::at(&motion, &model, &around, &Limits::of(&scenario.machine), instants);
     Ok(Plan::foreseen(motion, forecast))
+}
+
+/// The motion of the end effector by samples, with b held, or by least rates where the task says so or no b matters.
+///
+/// # Errors
+/// If it cannot be followed.
+fn sampled(scenario: &Scenario, curve: &Curve) -> Result<PathTable, Refusal> {
+    let (task, tip) = (&scenario.task, scenario.machine.end_effector());
+    let space = match PoseSpace::of(&scenario.machine) {
+        _ if task.kind == TaskKind::MinimumNorm => return Ok(minimum_norm_curve(tip, start_of(scenario)?, curve)?),
+        Err(NoPoseSpace::Free) => return Ok(minimum_norm_curve(tip, start_of(scenario)?, curve)?),
+        space => space?,
+    };
+    if space.drives() < 4 {
+        return Err(Refusal::Task(format!(
+            "while b is held the end effector of a machine with {} has its own way: want minimum-norm, or samples of \
+             the drive angles",
+            counted(space.drives(), "drive")
+        )));
+    }
+    let start = posed(task, &space, 0, task.points()[0], &space.middle())?;
+    if task.posture == Posture::LeastRates {
+        return Ok(least_rate_curve(tip, Some(space.lambda()), start, curve)?);
+    }
+    let postures = Postures::of(&scenario.machine, &space, task.posture);
+    let start = postures.settled(start, task.points()[0], task.b).unwrap_or(start);
+    Ok(postures.path(start, curve)?)
 }

@@ -5,7 +5,9 @@ mod any_drives;
 mod choose;
 mod given;
 mod off_plane;
+mod off_space;
 mod plan;
+mod pose;
 
 pub use along::curves;
 pub(super) use choose::plan;

@@ -1,11 +1,11 @@
 //! Motions that leave their plane knowingly: a change of b, the least reaction, and zero momentum on any machine.
 
-use super::along::{curves, refusal, serve, slowed, timed};
+use super::along::{Parts, curves, refusal, serve, slowed, timed};
 use super::plan::{Plan, dynamics_of, keeps_rules};
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::Motion;
 use crate::planning::curves::path::Chained;
-use crate::planning::curves::{Curve, CurvePoint, Path};
+use crate::planning::curves::{Curve, CurvePoint, Path, PathTable};
 use crate::planning::following::trace;
 use crate::planning::forecast::Forecast;
 use crate::planning::off_plane::drift::zero_momentum_curve;
@@ -16,27 +16,42 @@ use crate::planning::pose_constant::{Planes, Unreachable};
 use crate::planning::reactionless::PlanePoint;
 use crate::planning::timing::{Limits, Profile, TimeLaw};
 use crate::session::refusal::Refusal;
-use crate::session::scenario::{Least, Scenario};
+use crate::session::scenario::{Least, Scenario, Task};
 
 /// From A on the plane of the task to B on another, along a straight joint line; a limit on |n_B| sets the time.
 pub fn change_b(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
-    let task = &scenario.task;
-    if !task.via.is_empty() || task.closed {
-        return Err(Refusal::Task(
-            "change-b goes straight from A to B: want no points between and an open path".into(),
-        ));
-    }
+    goes_straight(&scenario.task)?;
     let ends = ends(scenario, planes)?;
-    let (model, around) = dynamics_of(scenario);
-    let price = Price::of(&model, ends[1].b - ends[0].b)?;
     let line = joint_line(planes.map(), ends);
+    changed(scenario, line, ends[1].b - ends[0].b, &|| bang_bang_in_b(planes.map(), ends))
+}
+
+/// Refuses points between A and B.
+pub(super) fn goes_straight(task: &Task) -> Result<(), Refusal> {
+    if task.via.is_empty() && !task.closed {
+        return Ok(());
+    }
+    Err(Refusal::Task("change-b goes straight from A to B: want no points between and an open path".into()))
+}
+
+/// Along a line by which b changes so much, rad, or where a limit on |n_B| is to be met as fast as can be, by a table in
+/// which b is bang-bang.
+pub(super) fn changed(
+    scenario: &Scenario,
+    line: Path,
+    delta_b: f64,
+    bang_bang: &dyn Fn() -> Option<PathTable>,
+) -> Result<Plan, Refusal> {
+    let task = &scenario.task;
+    let (model, around) = dynamics_of(scenario);
+    let price = Price::of(&model, delta_b)?;
     // T² times the peak of n_B over |s̈|'s, for a b that moves.
     let moves = price.delta_b().abs() > 1e-9;
     let square = task.moment_limit.filter(|_| moves).map(|limit| price.inertia() * price.delta_b().abs() / limit);
     let limits = Limits::of(&scenario.machine);
     let motion = match (task.law, square) {
         (TimeLaw::Fastest, Some(square)) => {
-            let table = bang_bang_in_b(planes.map(), ends);
+            let table = bang_bang();
             let table = table.ok_or_else(|| Refusal::NoWay("A and B are too far apart".into()))?;
             let motion = Motion { path: Path::Table(table), profile: Profile::even(2.0 * square.sqrt()) };
             // A short change of b leaves the joints little time.
@@ -94,15 +109,7 @@ fn ends(scenario: &Scenario, planes: &Planes) -> Result<[PlanePoint; 2], Refusal
 /// The end effector's curves with b changing as little as its corridor allows.
 pub fn least_reaction(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
     let (task, map) = (&scenario.task, planes.map());
-    let law = match task.law {
-        TimeLaw::Fastest | TimeLaw::FastestSmooth => {
-            return Err(Refusal::Task("least-reaction wants a law over a given time: quintic or septic".into()));
-        }
-        TimeLaw::Trapezoidal => {
-            return Err(Refusal::Task("least-reaction wants a smooth law: quintic or septic".into()));
-        }
-        law @ (TimeLaw::Quintic | TimeLaw::Septic) => law,
-    };
+    let law = smooth(task)?;
     let curves = curves(task, &task.points())?;
     let curve = whole(&curves, law);
     let goal = match task.least {
@@ -131,6 +138,17 @@ pub fn least_reaction(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refu
     }
 }
 
+/// The law of a motion whose moment is to be least.
+pub(super) fn smooth(task: &Task) -> Result<TimeLaw, Refusal> {
+    match task.law {
+        TimeLaw::Fastest | TimeLaw::FastestSmooth => {
+            Err(Refusal::Task("least-reaction wants a law over a given time: quintic or septic".into()))
+        }
+        TimeLaw::Trapezoidal => Err(Refusal::Task("least-reaction wants a smooth law: quintic or septic".into())),
+        law @ (TimeLaw::Quintic | TimeLaw::Septic) => Ok(law),
+    }
+}
+
 /// All curves one after another over u = t/T, each by the law in its share of the time.
 fn whole(curves: &[Curve], law: TimeLaw) -> impl Fn(f64) -> CurvePoint {
     let total: f64 = curves.iter().map(Curve::length).sum();
@@ -153,30 +171,46 @@ fn whole(curves: &[Curve], law: TimeLaw) -> impl Fn(f64) -> CurvePoint {
 /// The end effector's curves at zero momentum, a closed path as often as asked.
 pub fn zero_momentum(scenario: &Scenario, planes: &Planes) -> Result<Plan, Refusal> {
     let task = &scenario.task;
-    if task.cycles > 1 && !task.closed {
-        return Err(Refusal::Task("an open path is run through once: want closed = true, or cycles = 1".into()));
-    }
-    let (model, _) = dynamics_of(scenario);
     let start = serve(task, planes, &task.points()[..1])?;
-    let mut q = DriveAngles::from(planes.map().lift(start[0]));
+    followed(scenario, DriveAngles::from(planes.map().lift(start[0])))
+}
+
+/// The end effector's curves at zero momentum from a pose of A.
+pub(super) fn followed(scenario: &Scenario, start: DriveAngles) -> Result<Plan, Refusal> {
+    let task = &scenario.task;
+    let (model, _) = dynamics_of(scenario);
     let curves = curves(task, &task.points())?;
-    let mut parts = Vec::new();
-    let mut cycles = vec![q];
-    for cycle in 1..=task.cycles as usize {
+    in_rounds(scenario, start, &|mut q, cycle| {
+        let mut parts = Vec::new();
         for curve in &curves {
             let table = zero_momentum_curve(&model, q, curve, cycle)?;
             q = table.nodes().last().map_or(q, |last| last.q);
             parts.push((Path::Table(table), curve.length()));
         }
-        cycles.push(q);
+        Ok((parts, q))
+    })
+}
+
+/// A closed path as often as asked, an open one once; `round` gives what it is made of, from a pose in a cycle, and where
+/// it ends.
+pub(super) fn in_rounds(
+    scenario: &Scenario,
+    start: DriveAngles,
+    round: &dyn Fn(DriveAngles, usize) -> Result<(Parts, DriveAngles), Refusal>,
+) -> Result<Plan, Refusal> {
+    let task = &scenario.task;
+    if task.cycles > 1 && !task.closed {
+        return Err(Refusal::Task("an open path is run through once: want closed = true, or cycles = 1".into()));
     }
-    // Each cycle takes the whole time of the task.
-    let once = parts.len() / task.cycles as usize;
+    let mut q = start;
+    let mut cycles = vec![q];
     let mut legs = Vec::with_capacity(task.cycles as usize);
-    let mut rest = parts.into_iter();
-    for _ in 0..task.cycles {
-        let (motion, _) = timed(scenario, rest.by_ref().take(once).collect())?;
-        legs.push(motion);
+    for cycle in 1..=task.cycles as usize {
+        let (parts, end) = round(q, cycle)?;
+        // Each cycle takes the whole time of the task.
+        legs.push(timed(scenario, parts)?.0);
+        q = end;
+        cycles.push(q);
     }
     let motion = match legs.len() {
         1 => legs.remove(0),

@@ -6,9 +6,10 @@ use toml::{Table, Value};
 
 use super::bounds::{DURATION, POSE_ACCELERATION, STEP, USUAL_POSE_ACCELERATION, USUAL_STEP};
 use super::definition::Scenario;
-use super::task::{self, POSE_CONSTANT};
+use super::task::{self, POSE_CONSTANT, TaskKind};
 use super::tolerance::{self, Tolerance};
 use crate::mechanics::machine::{self, PARTS, is_of_machine, ranges};
+use crate::planning::curves::Samples;
 use crate::settings::change::{self, DEFAULT};
 use crate::settings::key::{self, Holds, Key};
 use crate::settings::range::{Check, Range, clipped};
@@ -257,6 +258,7 @@ impl Scenario {
     pub fn idle(&self, path: &str) -> Option<&'static str> {
         let used = match path.split_once('.') {
             Some(("task", "posture")) => self.machine.drives() > 3 && self.task.uses("posture"),
+            Some(("task", key @ ("b" | "turn"))) if self.gives_two_drives() => key == "turn",
             Some(("task", key)) => self.task.uses(key),
             Some(("base", key)) => self.base.uses(key),
             Some(("control", "knows_base")) => self.base.moves(),
@@ -265,6 +267,12 @@ impl Scenario {
             _ => true,
         };
         if used { None } else { key_of(path).map(|key| key.when) }
+    }
+
+    /// Whether samples of two values are the angles of two drives.
+    fn gives_two_drives(&self) -> bool {
+        let samples = self.task.samples.as_ref().map(Samples::columns);
+        self.machine.drives() == 2 && self.task.kind == TaskKind::Given && samples == Some(2)
     }
 
     /// Whether a force is held at the end effector at any time.

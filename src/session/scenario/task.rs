@@ -29,7 +29,8 @@ pub struct Keys<P, X> {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shape: Option<Shape>,
     /// The motion over time: rows of t, s, and all drive angles, rad, for `given`; or of t, x, y, m, for `given`,
-    /// `reactionless` and `minimum-norm`. Points, shape and law have no say then.
+    /// `reactionless` and `minimum-norm`. Points, shape and law have no say then. Of two drives `given` takes their
+    /// angles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub samples: Option<Samples>,
     /// By how much samples of drive angles are turned as a whole, rad.
@@ -189,7 +190,8 @@ pub const TIME: Range = Range::new(1e-5, super::bounds::MAX_TIME, "s");
 
 const SAMPLED: &str = "no samples, which say where to go";
 const CURVED: &str = "points, and the kind reactionless, minimum-norm, least-reaction or zero-momentum";
-const FREE: &str = "four drives or more, and the kind reactionless in the shape line, arc, spline or freehand";
+const FREE: &str =
+    "four drives or more, and the kind reactionless in the shape line, arc, spline or freehand, or samples of x and y";
 const CORNERED: &str =
     "three points or more, or a closed path, in the shape line or joint-line: others have no corners";
 const BLENDED: &str = "corners = blend, and three points or more, or a closed path, in the shape line or joint-line: others have no corners";
@@ -324,7 +326,7 @@ impl StatedTask {
             law,
             ..
         } = self;
-        let ends = samples.as_ref().and_then(|samples| ends_of(samples, turn, machine));
+        let ends = samples.as_ref().and_then(|samples| ends_of((kind, samples), turn, machine));
         let [first, last] = ends.map_or([None; 2], |ends| ends.places.map(Some));
         Ok(Task {
             from: from.or(first).ok_or("from")?,
@@ -363,9 +365,9 @@ struct Ends {
 
 /// The ends of samples of the end effector, or of the drives, turned as a whole, rad; `None` if there are none for this
 /// machine.
-fn ends_of(samples: &Samples, turn: f64, machine: &Machine) -> Option<Ends> {
+fn ends_of((kind, samples): (TaskKind, &Samples), turn: f64, machine: &Machine) -> Option<Ends> {
     let last = samples.count() - 1;
-    if samples.columns() == 2 {
+    if samples.columns() == 2 && !(machine.drives() == 2 && kind == TaskKind::Given) {
         return Some(Ends { places: [0, last].map(|i| [samples.point(i).re, samples.point(i).im]), b: None });
     }
     let pose = |i: usize| DriveAngles(PerDrive::from_fn(samples.columns(), |k| samples.values(i)[k] + turn));
@@ -415,9 +417,9 @@ impl Task {
     pub(crate) fn posed(&self, machine: &Machine, b: f64) -> Option<Self> {
         let samples = self.samples.as_ref()?;
         let mut task = Self { b, ..self.clone() };
-        if let Some(Ends { b: Some(own), .. }) = ends_of(samples, self.turn, machine) {
+        if let Some(Ends { b: Some(own), .. }) = ends_of((self.kind, samples), self.turn, machine) {
             task.turn += (b - own) / Inertia::of(machine).lambda().iter().sum::<f64>();
-            [task.from, task.to] = ends_of(samples, task.turn, machine)?.places;
+            [task.from, task.to] = ends_of((self.kind, samples), task.turn, machine)?.places;
         }
         Some(task)
     }
@@ -531,7 +533,7 @@ impl Task {
 
     /// Whether a key of this part has an effect as things are.
     pub fn uses(&self, key: &str) -> bool {
-        use TaskKind::{ChangeB, LeastReaction, MinimumNorm, Reactionless, SameTip, ZeroMomentum};
+        use TaskKind::{ChangeB, Given, LeastReaction, MinimumNorm, Reactionless, SameTip, ZeroMomentum};
         let kind = |kinds: &[TaskKind]| kinds.contains(&self.kind);
         let samples = self.samples.as_ref().map(Samples::columns);
         let curved = kind(&[Reactionless, MinimumNorm, LeastReaction, ZeroMomentum]) && samples.is_none();
@@ -547,7 +549,10 @@ impl Task {
             "moment_limit" => kind(&[ChangeB]),
             "cycles" => kind(&[ZeroMomentum]),
             "least" => kind(&[LeastReaction]),
-            "posture" => kind(&[Reactionless]) && samples.is_none() && self.shape() != Shape::JointLine,
+            "posture" => match samples {
+                None => kind(&[Reactionless]) && self.shape() != Shape::JointLine,
+                Some(columns) => kind(&[Reactionless, Given]) && columns == 2,
+            },
             "first_drive_to" => kind(&[SameTip]),
             "turn" => samples.is_some_and(|columns| columns != 2),
             "time" => !self.law.is_fastest(),
