@@ -12,8 +12,8 @@ use stillbase::planning::pose_space::PoseSpace;
 use stillbase::session::scenario::{Change, Scenario};
 use stillbase::session::{Run, replay};
 
-use super::pose_space::{any_pose, any_space};
 use crate::support::Noise;
+use crate::support::random::{a_pose, a_space};
 
 /// A scenario of a machine with a task as it stands in a file.
 fn scenario(machine: &Machine, task: &str) -> Scenario {
@@ -60,7 +60,7 @@ fn spaces() -> Vec<(Machine, PoseSpace)> {
         (machine, space)
     });
     let mut noise = Noise::of(31);
-    gallery.into_iter().chain([2, 2, 4, 4, 5, 6].map(|n| any_space(&mut noise, n))).collect()
+    gallery.into_iter().chain([2, 2, 4, 4, 5, 6].map(|n| a_space(&mut noise, n))).collect()
 }
 
 /// From one b to another: the base feels −D₁ b̈, by momentum differentiated and by b differentiated.
@@ -71,7 +71,7 @@ fn a_change_of_b_costs_what_it_says() {
         let n = machine.drives();
         for _ in 0..3 {
             let b = [noise.between(-2.0, 2.0), noise.between(-2.0, 2.0)];
-            let poses = b.map(|b| space.lift(&any_pose(&mut noise, &space), b));
+            let poses = b.map(|b| space.lift(&a_pose(&mut noise, &space), b));
             let [from, to] = poses.map(|q| space.place(&q));
             let ends = point("from", from) + &point("to", to);
             let text = format!("kind = 'change-b'\n{ends}b = {:?}\nb_to = {:?}\ntime = 0.8\n", b[0], b[1]);
@@ -151,7 +151,7 @@ fn the_end_effector_goes_as_it_was_with_drive_1_elsewhere() {
             let b = noise.between(-2.0, 2.0);
             let middle = space.middle();
             let near = |noise: &mut Noise| {
-                let a = any_pose(noise, &space);
+                let a = a_pose(noise, &space);
                 space.lift(&PerDrive::from_fn(a.len(), |i| middle[i] + 0.15 * (a[i] - middle[i])), b)
             };
             let [from, to] = [near(&mut noise), near(&mut noise)].map(|q| space.place(&q));
@@ -185,7 +185,7 @@ fn four_drives_and_more_follow_curves_at_zero_momentum() {
     let four = builtin("four-drive").expect("built in");
     let mut machines = vec![four.clone(), four.set("payload.mass", "0.5").expect("it carries")];
     for n in [4, 5, 6] {
-        let (machine, _) = any_space(&mut noise, n);
+        let (machine, _) = a_space(&mut noise, n);
         machines.push(machine.set("payload.mass", "0.4").expect("it carries"));
         machines.push(machine);
     }
@@ -341,7 +341,7 @@ fn the_closest_motion_of_a_b_is_found() {
     let mut moved_some = 0;
     for (machine, space) in spaces().into_iter().filter(|(machine, _)| machine.drives() > 3) {
         let (model, n) = (Inertia::of(&machine), machine.drives());
-        let (middle, a) = (space.middle(), any_pose(&mut noise, &space));
+        let (middle, a) = (space.middle(), a_pose(&mut noise, &space));
         let pose = |s: f64| {
             let a = PerDrive::from_fn(a.len(), |i| middle[i] + 0.2 * s * (a[i] - middle[i]));
             space.lift(&a, 1.0 + 0.05 * s)

@@ -17,7 +17,7 @@ fn space(machine: &Machine) -> PoseSpace {
 }
 
 /// A balanced chain of n drives with motors and rotors anywhere, of which Σλ is above 0.
-pub(super) fn any_space(noise: &mut Noise, n: usize) -> (Machine, PoseSpace) {
+fn any_space(noise: &mut Noise, n: usize) -> (Machine, PoseSpace) {
     loop {
         let chain = a_chain(noise, n);
         let machine = design(&chain, &vec![1.0; n]).expect("a chain can be balanced");
@@ -29,7 +29,7 @@ pub(super) fn any_space(noise: &mut Noise, n: usize) -> (Machine, PoseSpace) {
     }
 }
 
-pub(super) fn any_pose(noise: &mut Noise, space: &PoseSpace) -> PerDrive {
+fn any_pose(noise: &mut Noise, space: &PoseSpace) -> PerDrive {
     PerDrive::from_fn(space.joints().len(), |i| {
         let [low, high] = space.joints()[i].limits();
         noise.between(low, high)

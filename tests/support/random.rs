@@ -2,7 +2,10 @@
 
 use std::fmt::Write;
 
+use stillbase::mechanics::balance::design;
 use stillbase::mechanics::machine::{Machine, parse};
+use stillbase::mechanics::planar::PerDrive;
+use stillbase::planning::pose_space::{NoPoseSpace, PoseSpace};
 
 use super::Noise;
 
@@ -113,4 +116,24 @@ pub fn a_chain(noise: &mut Noise, n: usize) -> Machine {
         .unwrap();
     }
     parse(&text, "chain").unwrap_or_else(|why| panic!("{why}\n{text}"))
+}
+
+/// A balanced chain of n drives with motors and rotors anywhere, of which Σλ is above 0, and its poses.
+pub fn a_space(noise: &mut Noise, n: usize) -> (Machine, PoseSpace) {
+    loop {
+        let machine = design(&a_chain(noise, n), &vec![1.0; n]).expect("a chain can be balanced");
+        match PoseSpace::of(&machine) {
+            Ok(space) => return (machine, space),
+            Err(NoPoseSpace::Sum { .. }) => {}
+            Err(why) => panic!("{why}"),
+        }
+    }
+}
+
+/// Relative angles within their limits.
+pub fn a_pose(noise: &mut Noise, space: &PoseSpace) -> PerDrive {
+    PerDrive::from_fn(space.joints().len(), |i| {
+        let [low, high] = space.joints()[i].limits();
+        noise.between(low, high)
+    })
 }

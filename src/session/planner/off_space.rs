@@ -90,7 +90,7 @@ fn apart(task: &Task) -> Result<(), Refusal> {
 /// The end effector as on the joint line from A to B, drive 1 on a course of its own, the others after it.
 pub(super) fn same_tip(scenario: &Scenario) -> Result<Parts, Refusal> {
     let (task, machine) = (&scenario.task, &scenario.machine);
-    if machine.drives() < 4 {
+    if machine.drives() < 3 {
         return Err(Refusal::Task(
             "with one or two drives the end effector's motion leaves drive 1 no course of its own: want minimum-norm, \
              which follows a path of the end effector, or change-b, which goes to another b"
