@@ -6,7 +6,7 @@ use stillbase::mechanics::balance::{DesignError, Preset, conditions, design};
 use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse};
 
 use crate::mechanics::nine_body::NineBody;
-use crate::support::{array, close, machine_of, numbers, planning};
+use crate::support::{Noise, array, close, family_machine, machine_of, numbers, planning};
 
 fn table_1() -> &'static Machine {
     builtin("nine-link-table-1").expect("built in")
@@ -255,4 +255,21 @@ fn wrong_penalties_are_refused_by_name() {
     let error = Preset::Table1.penalty(2).expect_err("nine links only").to_string();
     assert_eq!(error, "9 penalties for 2 links: want one a link");
     assert_eq!(Preset::MinimumNorm.penalty(2).expect("any number of links"), [1.0, 1.0]);
+}
+
+/// Repeated conditions and links of any mass: four drives and two, of which no penalties leave any without a design.
+#[test]
+fn no_masses_or_penalties_leave_a_machine_without_a_design() {
+    let mut noise = Noise::of(31);
+    for name in ["serial-3r", "four-drive", "two-drive", "nine-link-geared"] {
+        for _ in 0..60 {
+            let mut spec = family_machine(name).spec().clone();
+            spec.links.iter_mut().for_each(|link| link.mass = noise.between(0.1, 4.0));
+            let machine = Machine::new(spec).expect("valid");
+            let penalty: Vec<f64> = machine.links().iter().map(|_| noise.between(0.1, 8.0)).collect();
+            let designed = design(&machine, &penalty).unwrap_or_else(|why| panic!("{name}: {why}"));
+            let inertia = Inertia::of(&designed);
+            assert!(inertia.is_force_balanced() && inertia.is_invariant(), "{name}");
+        }
+    }
 }

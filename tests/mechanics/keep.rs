@@ -292,3 +292,20 @@ fn what_cannot_be_is_refused() {
     assert!(words(&|a| a.parameters[0].parameter = payload).contains("payload.mass cannot be changed"));
     assert!(words(&|a| a.parameters[0].parameter = Parameter::com(9)).contains("link 9 (counted from 0)"));
 }
+
+/// Conditions that repeat each other, and one body with mass and place free: no rank is lost to rounding.
+#[test]
+fn conditions_that_repeat_each_other_are_met() {
+    let machine = family_machine("serial-3r");
+    let mut asked = Keep::coms(&machine, &[2.671_951_150_901_641_4, 1.790_993_585_894_174_1, 1.911_344_430_482_619_3]);
+    for (key, ends) in [
+        ("link.2.com", [-0.516_924_654_921_075_6, 0.793_733_761_095_477_1]),
+        ("link.2.mass", [1.101_810_977_846_388, 2.748_076_038_392_712_3]),
+        ("link.3.com", [-0.096_612_439_897_767_63, 0.764_257_831_020_413_7]),
+    ] {
+        asked.hold(&machine, find(&machine, key), Hold::Within(ends));
+    }
+    asked.hold(&machine, find(&machine, "link.3.mass"), Hold::Free);
+    let kept = keep(&machine, &asked).expect("it can be balanced");
+    within_what_is_asked(&machine, &asked, &kept);
+}

@@ -16,6 +16,7 @@ use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
 use super::condition::Condition;
+use super::plane::{Equation, Plane};
 use crate::mechanics::machine::{Inertia, Machine, MachineError};
 use crate::settings::number::counted;
 
@@ -112,13 +113,13 @@ pub fn design(machine: &Machine, penalty: &[f64]) -> Result<Machine, DesignError
         return Err(DesignError::Penalty { value: penalty[j], link: links[j].name.clone() });
     }
     let (a, k) = conditions(machine);
-    let weighted = DMatrix::from_fn(a.nrows(), a.ncols(), |r, c| a[(r, c)] / penalty[c]);
-    let svd = weighted.clone().svd(true, true);
-    let cut = svd.singular_values.max() * 1e-12;
-    let solve = |rhs: &DVector<f64>| svd.solve(rhs, cut).unwrap_or_else(|_| DVector::zeros(penalty.len()));
-    let mut x = solve(&k);
-    // One step of refinement brings the residual to rounding.
-    x += solve(&(&k - &weighted * &x));
+    // Whether what comes closest is close enough, the machine that is made of it says.
+    let equation = |row: usize| Equation {
+        a: penalty.iter().enumerate().map(|(j, p)| a[(row, j)] / p).collect(),
+        right: k[row],
+        tolerance: f64::INFINITY,
+    };
+    let x = Plane::of(&(0..a.nrows()).map(equation).collect::<Vec<_>>(), penalty.len()).start;
     let mut spec = machine.spec().clone();
     for (j, link) in spec.links.iter_mut().enumerate() {
         let (body, wanted) = (&links[j], x[j] / penalty[j]);

@@ -5,14 +5,18 @@
 //! so [`design`](design()) solves them in one step for all centres of mass, and [`keep`](keep()) for whatever may change,
 //! as little as it can and within bounds.
 
+mod basis;
 mod breakdown;
 mod condition;
 mod design;
+mod distance;
 mod keep;
 mod parameter;
+mod plane;
 
 pub use breakdown::{Body, Breakdown, Source, Term};
 pub use condition::Condition;
 pub use design::{DesignError, Preset, conditions, design};
 pub use keep::{Adjusted, Hold, Keep, Kept, Limit, NotKept, Relief, Side, keep};
 pub use parameter::{Parameter, Quantity};
+pub(crate) use plane::{Equation, Plane};

@@ -3,11 +3,10 @@
 use std::f64::consts::PI;
 use std::fmt;
 
-use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
 use crate::convex::{Least, NoX, Program, Row, conflict};
-use crate::mechanics::balance::Condition;
+use crate::mechanics::balance::{Condition, Equation, Plane};
 use crate::mechanics::machine::{Counterweight, Inertia, Machine, MachineError};
 
 /// Where a link may carry a counterweight.
@@ -429,14 +428,14 @@ impl Problem {
             let changed = condition.changes.iter().zip(found.iter());
             condition.left[0] + changed.map(|(by, (_, [w, s]))| by[0] * w + by[1] * s).sum::<f64>()
         });
-        let residual = DVector::from_iterator(conditions.len(), residual);
         // In proportion to what is there, so that light ones stay where they may sit.
-        let a = DMatrix::from_fn(conditions.len(), 2 * sites.len(), |i, j| {
-            conditions[i].changes[j / 2][j % 2] * found[j / 2].1[0]
-        });
-        let svd = a.svd(true, true);
-        let cut = svd.singular_values.max() * 1e-12;
-        let Ok(change) = svd.solve(&residual, cut) else { return };
+        let equation = |(condition, right): (&Left, f64)| Equation {
+            a: (0..2 * sites.len()).map(|j| condition.changes[j / 2][j % 2] * found[j / 2].1[0]).collect(),
+            right,
+            tolerance: f64::INFINITY,
+        };
+        let equations: Vec<Equation> = conditions.iter().zip(residual).map(equation).collect();
+        let change = Plane::of(&equations, 2 * sites.len()).start;
         for (j, (_, [w, s])) in found.iter_mut().enumerate() {
             let by = *w;
             (*w, *s) = (*w - by * change[2 * j], *s - by * change[2 * j + 1]);

@@ -21,8 +21,6 @@
 //! | z | y = y₀ + N z fulfils (7) and (8) for every z; N has orthonormal columns | |
 
 mod asked;
-mod distance;
-mod plane;
 mod problem;
 mod refusal;
 

@@ -13,6 +13,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::basis;
+
 /// Part of the scale of c by which a half space may be missed.
 const MISSED: f64 = 1e-11;
 /// Rows shorter than this part of the longest leave z free.
@@ -36,7 +38,7 @@ pub(super) fn nearest(m: &DMatrix<f64>, c: &DVector<f64>) -> Result<DVector<f64>
     }
     let of = |i: usize, j: usize| size(i).map_or(0.0, |size| m[(i, j)] / size);
     let e = DMatrix::from_fn(k + 1, rows, |j, i| if j < k { -of(i, j) } else { missed[i] / scale - MISSED });
-    let u = least_squares(&e);
+    let u = held_back(&e);
     let mut left = &e * &u;
     left[k] -= 1.0;
     if left.norm() <= NONE {
@@ -48,7 +50,7 @@ pub(super) fn nearest(m: &DMatrix<f64>, c: &DVector<f64>) -> Result<DVector<f64>
 }
 
 /// The u ≥ 0 with the least |E u − (0, …, 0, 1)|.
-fn least_squares(e: &DMatrix<f64>) -> DVector<f64> {
+fn held_back(e: &DMatrix<f64>) -> DVector<f64> {
     let (k, rows) = (e.nrows() - 1, e.ncols());
     let mut f = DVector::zeros(k + 1);
     f[k] = 1.0;
@@ -62,15 +64,15 @@ fn least_squares(e: &DMatrix<f64>) -> DVector<f64> {
         // As far towards the least of those in use as none of them turns below 0.
         while !used.is_empty() {
             let some = e.select_columns(&used);
-            let svd = some.svd(true, true);
-            let cut = svd.singular_values.amax() * 1e-13;
-            let Ok(best) = svd.solve(&f, cut) else { return u };
-            if used.last() == Some(&next) && u[next] == 0.0 && best[used.len() - 1] <= 0.0 {
+            let best = basis::least_squares(&some, &f);
+            let fresh = used.last() == Some(&next) && u[next] == 0.0;
+            let Some(best) = best.filter(|best| !(fresh && best[used.len() - 1] <= 0.0)) else {
                 // Rounding alone asked for it.
-                used.pop();
-                barred.push(next);
+                let last = used.pop().unwrap_or(next);
+                u[last] = 0.0;
+                barred.push(last);
                 break;
-            }
+            };
             let step = used.iter().zip(best.iter()).filter(|(_, to)| **to <= 0.0);
             let step = step.map(|(i, to)| u[*i] / (u[*i] - to)).fold(1.0_f64, f64::min);
             used.iter().zip(best.iter()).for_each(|(i, to)| u[*i] += step * (to - u[*i]));
@@ -92,9 +94,9 @@ fn settled(m: &DMatrix<f64>, c: &DVector<f64>, held: &[usize], scale: f64) -> Op
         return None;
     }
     let (a, right) = (m.select_rows(held), c.select_rows(held));
-    let svd = a.clone().svd(true, true);
-    let cut = svd.singular_values.amax() * 1e-11;
-    let mut z = svd.solve(&right, cut).ok()?;
-    z += svd.solve(&(&right - &a * &z), cut).ok()?;
+    // z = aᵀ x, which is the shortest of all with a z = right.
+    let z = a.tr_mul(&basis::least_squares(&(&a * a.transpose()), &right)?);
+    let more = basis::least_squares(&(&a * a.transpose()), &(&right - &a * &z))?;
+    let z = z + a.tr_mul(&more);
     ((m * &z - c).max() <= 10.0 * MISSED * scale).then_some(z)
 }

@@ -2,22 +2,23 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::basis::{extended, least_squares};
 use super::distance::nearest;
 use crate::convex::Row;
 
-/// Part of the greatest singular value below which one counts as none.
+/// What is left of a row counts as none up to this part of it.
 const RANK: f64 = 1e-11;
 
 /// One equation a · y = right, and by how much it may be missed.
 #[derive(Clone, Debug)]
-pub(super) struct Equation {
+pub(crate) struct Equation {
     pub a: Vec<f64>,
     pub right: f64,
     pub tolerance: f64,
 }
 
 /// y = start + free z for any z.
-pub(super) struct Plane {
+pub(crate) struct Plane {
     /// Its point nearest to 0.
     pub start: DVector<f64>,
     /// Orthonormal columns.
@@ -36,26 +37,24 @@ impl Plane {
             let exists = equations.iter().all(|row| row.right.abs() <= row.tolerance);
             return Self { start: DVector::zeros(0), free: DMatrix::zeros(0, 0), missed, exists };
         }
-        // Of one size each, so that kg m and kg m² weigh alike; square at least, so that the free part is there whole.
+        // Of one size each, so that kg m and kg m² weigh alike.
         let size = |row: &Equation| row.a.iter().map(|a| a * a).sum::<f64>().sqrt();
-        let scale = |row: &Equation| if size(row) > 0.0 { size(row).recip() } else { 0.0 };
-        let scales: Vec<f64> = equations.iter().map(scale).collect();
-        let rows = equations.len().max(n);
-        let a = DMatrix::from_fn(rows, n, |i, j| equations.get(i).map_or(0.0, |row| row.a[j] * scales[i]));
-        let right = DVector::from_fn(rows, |i, _| equations.get(i).map_or(0.0, |row| row.right * scales[i]));
-        let svd = a.clone().svd(true, true);
-        let cut = svd.singular_values.iter().fold(0.0_f64, |most, s| most.max(*s)) * RANK;
-        let solve = |right: &DVector<f64>| svd.solve(right, cut).unwrap_or_else(|_| DVector::zeros(n));
-        let mut start = solve(&right);
-        // Steps of refinement bring the residual to rounding.
-        for _ in 0..2 {
-            start += solve(&(&right - &a * &start));
-        }
+        let sized: Vec<_> = equations.iter().map(|row| (row, size(row))).filter(|(_, size)| *size > 0.0).collect();
+        let rows: Vec<DVector<f64>> =
+            sized.iter().map(|(row, size)| DVector::from_vec(row.a.clone()) / *size).collect();
+        let span = extended(Vec::new(), rows.clone(), RANK);
+        let rank = span.len();
+        let units = (0..n).map(|i| DVector::from_fn(n, |j, _| f64::from(u8::from(i == j)))).collect();
+        let all = extended(span, units, RANK);
+        // In what the rows span every solution is one, and the nearest to 0.
+        let within = DMatrix::from_fn(rows.len(), rank, |i, j| rows[i].dot(&all[j]));
+        let right = DVector::from_fn(rows.len(), |i, _| sized[i].0.right / sized[i].1);
+        let by = least_squares(&within, &right).unwrap_or_else(|| DVector::zeros(rank));
+        let start = (0..rank).fold(DVector::zeros(n), |sum, j| sum + &all[j] * by[j]);
         let missed = |row: &Equation| row.a.iter().zip(start.iter()).map(|(a, y)| a * y).sum::<f64>() - row.right;
         let missed: Vec<f64> = equations.iter().map(missed).collect();
         let exists = equations.iter().zip(&missed).all(|(row, missed)| missed.abs() <= row.tolerance);
-        let none: Vec<usize> = (0..n).filter(|i| svd.singular_values[*i] <= cut).collect();
-        let free = svd.v_t.map_or_else(|| DMatrix::zeros(n, 0), |v| v.select_rows(&none).transpose());
+        let free = DMatrix::from_fn(n, n - rank, |i, j| all[rank + j][i]);
         Self { start, free, missed, exists }
     }
 
