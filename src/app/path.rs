@@ -1,5 +1,7 @@
 //! The task in the panel on the left: what becomes of the redundancy, which points, along what, and when.
 
+use std::f64::consts::{PI, TAU};
+
 use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 
 use super::theme::{colour, plain};
@@ -256,6 +258,16 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
         TaskKind::Reactionless | TaskKind::Given if session.scenario().idle("task.posture").is_none() => {
             let width = ui.available_width() - 10.0;
             choose(ui, session, ("Freedoms left", "posture"), &POSTURES, task.posture, width, commands);
+            if session.scenario().idle("task.orientation").is_none() {
+                let machine = &session.scenario().machine;
+                let link = &machine.resolved_links()[machine.end_link()];
+                let turned = plan.motion.path.at(0.0).q[link.drive] + if link.sign < 0.0 { PI } else { 0.0 };
+                let mut angle = task.orientation.unwrap_or(turned - TAU * (turned / TAU).round());
+                let tip = "Which way the last link points, counted from the x axis; the path keeps it";
+                let row = Row { tip, ..Row::of("hand points to", "task.orientation").with(3, 0.005) };
+                let response = row.show(ui, p, &mut angle);
+                send(commands, &[response], || Edit::set("task.orientation", angle));
+            }
         }
         TaskKind::ChangeB => {
             let mut b_to = plan.forecast.b_end;

@@ -4,7 +4,7 @@ use clap::Args;
 use serde::Serialize;
 use stillbase::mechanics::kinematics::least_transmission;
 use stillbase::mechanics::machine::Machine;
-use stillbase::mechanics::planar::Vector;
+use stillbase::mechanics::planar::{DriveAngles, Vector};
 use stillbase::planning::pose_constant::Unreachable;
 use stillbase::planning::pose_space::PoseSpace;
 use stillbase::planning::reactionless::{BSet, NoReach, PlaneMap, PlanePoint};
@@ -19,7 +19,7 @@ use stillbase::settings::number::fixed;
 /// Drive angles q are absolute and unwrapped: Σ λ_k q_k is b exactly as given. With --json each pose also has
 /// det = |det ∂(x, y)/∂(a_1, a_2)| (m²), 0 on a fold; manipulability = √det(J Jᵀ) of the Jacobian in absolute drive
 /// angles (m²); worst_torque_per_force, the largest singular value of J (N m/N); transmission = min |sin(q_k − q_l)|,
-/// 0 at a change point; and side, the signs of sin(q_2 − q_1), sin(q_3 − q_2) and sin(q_3 − q_1). These are of three
+/// 0 at a change point; and side, the signs of sin(q_2 − q_1), sin(q_3 − q_2) and sin(q_3 − q_1). det and side are of three
 /// drives; of four and more, which can take a point in many ways, it is the pose nearest to the middle of the limits.
 #[derive(Args)]
 #[command(after_help = "\
@@ -50,10 +50,32 @@ struct AnswerOfSpace {
 
 /// A pose of a machine without a plane of three drives.
 #[derive(Serialize)]
-struct OfSpace {
+pub struct OfSpace {
     q: Vec<f64>,
-    a: Vec<f64>,
-    transmission: f64,
+    pub a: Vec<f64>,
+    pub manipulability: f64,
+    pub worst_torque_per_force: f64,
+    pub transmission: f64,
+}
+
+impl OfSpace {
+    /// With two drives every pose of a point, with four and more the one nearest to the middle of the limits.
+    pub fn all(machine: &Machine, space: &PoseSpace, p: Vector, b: f64) -> Vec<Self> {
+        let pose = |q: &DriveAngles| {
+            let arms: Vec<Vector> = q.units().iter().zip(space.tip().iter()).map(|(e, c)| e * *c).collect();
+            let squares: Vector = arms.iter().map(|j| j * j).sum();
+            let lengths: f64 = arms.iter().map(|j| j.norm_sqr()).sum();
+            // The two eigenvalues of J Jᵀ: half of (lengths ± |squares|).
+            Self {
+                q: q.to_vec(),
+                a: machine.angles().iter().map(|a| q[a.to] - q[a.from] + a.offset).collect(),
+                manipulability: 0.5 * (lengths * lengths - squares.norm_sqr()).max(0.0).sqrt(),
+                worst_torque_per_force: (0.5 * (lengths + squares.norm())).sqrt(),
+                transmission: least_transmission(&q.units(), q.len()),
+            }
+        };
+        space.poses(p, b, &space.middle()).iter().map(pose).collect()
+    }
 }
 
 /// A pose and its measures.
@@ -118,15 +140,7 @@ impl Pose {
 
     /// With two drives every pose, with four and more the one nearest to the middle of the limits.
     fn of_space(&self, machine: &Machine, space: &PoseSpace) -> Result<(), Failure> {
-        let poses: Vec<OfSpace> = space
-            .poses(self.point, self.b, &space.middle())
-            .iter()
-            .map(|q| OfSpace {
-                q: q.to_vec(),
-                a: machine.angles().iter().map(|a| q[a.to] - q[a.from] + a.offset).collect(),
-                transmission: least_transmission(&q.units(), q.len()),
-            })
-            .collect();
+        let poses = OfSpace::all(machine, space, self.point, self.b);
         if poses.is_empty() {
             return Err(self.no_pose(space.reach(self.point)).into());
         }

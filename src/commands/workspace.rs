@@ -2,6 +2,7 @@
 
 use clap::Args;
 use serde::Serialize;
+use stillbase::mechanics::machine::Machine;
 use stillbase::mechanics::planar::{Vector, unit};
 use stillbase::planning::pose_space::{Outline, PoseSpace};
 use stillbase::planning::reactionless::{Boundary, ChangeCurve, PAIRS, PlaneMap};
@@ -9,14 +10,15 @@ use stillbase::planning::reactionless::{Boundary, ChangeCurve, PAIRS, PlaneMap};
 use super::failure::Failure;
 use super::input::{MachineArgument, PoseConstants, point, pose_constant};
 use super::output::{Format, Table, yes};
-use super::pose::Row;
+use super::pose::{OfSpace as PoseOfSpace, Row};
 use stillbase::settings::number::fixed;
 
 /// The reactionless workspace of b: its exact boundary and area, what lies inside, Eqs (15), (16)
 ///
 /// It is the region that the end effector reaches while b is held; b only turns it. Vertices lie on the boundary to
 /// 1e-9 m and chords to 1e-5 m; outer loops run counter-clockwise. The area of all sheets, ∫|det|, exceeds the region's
-/// where several poses reach one point. With two drives it is a curve, and --json has `curve` and `length`. Folds, where two poses meet, turn back at cusps; at change points sin(q_k −
+/// where several poses reach one point. With two drives it is a curve, and --json has `curve` and `length`; --at tells how
+/// far a point is from it. Folds, where two poses meet, turn back at cusps; at change points sin(q_k −
 /// q_l) = 0 and the linkage goes flat.
 #[derive(Args)]
 #[command(after_help = "\
@@ -70,6 +72,15 @@ struct OfSpace {
     y_max: f64,
     loops: Vec<Vec<[f64; 2]>>,
     curve: Vec<[f64; 2]>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    points: Vec<PointOfSpace>,
+}
+
+#[derive(Serialize)]
+struct PointOfSpace {
+    point: [f64; 2],
+    distance: f64,
+    poses: Vec<PoseOfSpace>,
 }
 
 /// Change points of two drives, counted from 1.
@@ -107,7 +118,7 @@ impl Workspace {
         let machine = self.machine.load()?;
         let map = match PoseConstants::of(&machine)? {
             PoseConstants::Plane(map) => map,
-            PoseConstants::Space(space) => return self.of_space(&space),
+            PoseConstants::Space(space) => return self.of_space(&machine, &space),
         };
         let answer = self.answer(&map);
         self.format.print(&answer, |a| {
@@ -121,16 +132,19 @@ impl Workspace {
     }
 
     /// Of any other number of drives: with two a curve.
-    fn of_space(&self, space: &PoseSpace) -> Result<(), Failure> {
-        if !self.at.is_empty() {
-            let why = "--at is for three drives: want `stillbase reach` and `stillbase pose` for a point";
-            return Err(Failure::wrong_input(why));
-        }
-        let Outline { area, length, extent: [x_min, x_max, y_min, y_max], loops, curve } = space.outline(self.b);
+    fn of_space(&self, machine: &Machine, space: &PoseSpace) -> Result<(), Failure> {
+        let outline = space.outline(self.b);
+        let point = |p: &Vector| PointOfSpace {
+            point: [p.re, p.im],
+            distance: outline.distance(*p),
+            poses: PoseOfSpace::all(machine, space, *p, self.b),
+        };
+        let points = self.at.iter().map(point).collect();
+        let Outline { area, length, extent: [x_min, x_max, y_min, y_max], loops, curve } = outline;
         if loops.is_empty() && curve.is_empty() {
             return Err(Failure::no_answer("the joint limits leave no pose: want wider ones"));
         }
-        let answer = OfSpace { area, length, x_min, x_max, y_min, y_max, loops, curve };
+        let answer = OfSpace { area, length, x_min, x_max, y_min, y_max, loops, curve, points };
         self.format.print(&answer, |a| {
             let mut table = Table::new(["", "", ""]).with_words(2);
             let size =
@@ -139,7 +153,12 @@ impl Workspace {
             for (name, value, unit) in [size].into_iter().chain(rest.map(|(name, x)| (name, x, "m"))) {
                 table.row([name.into(), fixed(value, 6), unit.into()]);
             }
-            table.to_string().trim_start().to_owned()
+            let mut text = table.to_string().trim_start().to_owned();
+            if !a.points.is_empty() {
+                let names = machine.angles().iter().map(|a| format!("{} rad", a.name));
+                text.push_str(&format!("\n\n{}", of_space(a, names)));
+            }
+            text
         })
     }
 
@@ -270,6 +289,25 @@ fn points(a: &Answer, angles: &[String]) -> Table {
             let numbers =
                 [pose.a[0], pose.a[1], pose.det, pose.manipulability, pose.worst_torque_per_force, pose.transmission];
             table.row(std::mem::take(&mut first).into_iter().chain(numbers.map(|x| fixed(x, 6))));
+        }
+    }
+    table
+}
+
+fn of_space(a: &OfSpace, angles: impl Iterator<Item = String>) -> Table {
+    let from = if a.curve.is_empty() { "from boundary m" } else { "from curve m" };
+    let head = ["point m", from].map(String::from).into_iter().chain(angles);
+    let measures = ["√det(J Jᵀ) m²", "worst N m/N", "least |sin|"].map(String::from);
+    let mut table = Table::new(head.chain(measures));
+    for p in &a.points {
+        let mut first = [format!("{}, {}", p.point[0], p.point[1]), fixed(p.distance, 9)];
+        if p.poses.is_empty() {
+            table.row(first.clone().into_iter().chain(["no pose".into()]));
+        }
+        for pose in &p.poses {
+            let measures = [pose.manipulability, pose.worst_torque_per_force, pose.transmission];
+            let numbers = pose.a.iter().copied().chain(measures).map(|x| fixed(x, 6));
+            table.row(std::mem::take(&mut first).into_iter().chain(numbers));
         }
     }
     table

@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::pose_constant::{Planes, Reach};
-use super::pose_space::{NoPoseSpace, PoseSpace};
-use super::posture::Posture;
+use super::pose_space::{Lead, NoPoseSpace, PoseSpace};
+use super::posture::{Posture, Postures};
 use super::reactionless::{BSet, Decimal, PlanePoint};
 use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector};
@@ -33,8 +33,7 @@ pub enum PoseMap {
 }
 
 impl PoseMap {
-    /// Of a machine, with its planes if it has some; with four drives and more it is led as a posture has it, where that
-    /// keeps the last link's orientation.
+    /// Of a machine, with its planes if it has some; with four drives and more it is led as a posture has it.
     ///
     /// # Errors
     /// Why its b cannot be held.
@@ -43,9 +42,16 @@ impl PoseMap {
             return Ok(Self::Planes(planes.clone()));
         }
         let space = PoseSpace::of(machine)?;
-        let keeps = machine.drives() > 3 && posture == Posture::Orientation;
-        let hand = machine.resolved_links()[machine.end_link()].drive;
-        Ok(Self::Space(Arc::new(if keeps { space.keeping(hand) } else { space })))
+        let lead = match posture {
+            _ if machine.drives() < 4 => Lead::LeastEnergy,
+            Posture::LeastRates => Lead::LeastEnergy,
+            Posture::Orientation => Lead::Keep(machine.resolved_links()[machine.end_link()].drive),
+            Posture::LeastTorque => Postures::of(machine, &space, posture)
+                .least_torque()
+                .map_or(Lead::LeastEnergy, |inverse| Lead::Weighed(Box::new(inverse))),
+            Posture::MidRange => Lead::Middle,
+        };
+        Ok(Self::Space(Arc::new(space.led(lead))))
     }
 
     /// How many relative angles there are.
@@ -199,7 +205,7 @@ impl PoseMap {
         match self {
             Self::Planes(planes) => planes.follow(p, b, [from[0], from[1]]).map(PerDrive::from),
             Self::Space(space) => {
-                let keeping = space.toward_keeping(p, b, from).filter(|(_, off)| is_at(space, *off));
+                let keeping = space.toward_led(p, b, from).filter(|(_, off)| is_at(space, *off));
                 let (a, off) = keeping.unwrap_or_else(|| space.toward(p, b, from));
                 is_at(space, off).then_some(a)
             }
@@ -246,7 +252,7 @@ fn is_at(space: &PoseSpace, off: f64) -> bool {
 }
 
 fn reach(space: &PoseSpace, p: Vector, b: f64, from: &PerDrive) -> (PerDrive, Reach) {
-    if let Some((a, _)) = space.toward_keeping(p, b, from).filter(|(_, off)| is_at(space, *off)) {
+    if let Some((a, _)) = space.toward_led(p, b, from).filter(|(_, off)| is_at(space, *off)) {
         return (a, Reach::Inside);
     }
     let (mut a, mut off) = match space.drives() {

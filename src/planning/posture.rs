@@ -101,6 +101,17 @@ impl<'a> Postures<'a> {
         Self { space, posture, tip, hand: machine.resolved_links()[machine.end_link()].drive, torque, shares }
     }
 
+    /// The inverse of what weighs rates by the torques that they take, TᵀT as a share of its trace.
+    pub fn least_torque(&self) -> Option<[[f64; MAX_DRIVES]; MAX_DRIVES]> {
+        let n = self.drives();
+        let weigh = |k: usize, l: usize| if k < n && l < n { self.torque[k][l] } else { f64::from(u8::from(k == l)) };
+        let inverse = SMatrix::<f64, MAX_DRIVES, MAX_DRIVES>::from_fn(weigh).try_inverse()?;
+        let sound = inverse.iter().all(|x| x.is_finite());
+        sound.then(|| {
+            std::array::from_fn(|k| std::array::from_fn(|l| if k < n && l < n { inverse[(k, l)] } else { 0.0 }))
+        })
+    }
+
     /// ½ Σ x_i²: how far relative angles are from the middle of their ranges.
     pub fn off_middle(&self, q: &DriveAngles) -> f64 {
         self.x(q).iter().map(|x| 0.5 * x * x).sum()

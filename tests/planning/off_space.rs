@@ -392,3 +392,70 @@ fn the_closest_motion_of_a_b_is_found() {
     }
     assert!(moved_some >= 3, "{moved_some}");
 }
+
+/// The last link points where it is told to, all along a curve or a joint line; where it cannot, it is said where it can.
+#[test]
+fn the_last_link_points_where_it_is_told() {
+    let four = builtin("four-drive").expect("built in");
+    let space = PoseSpace::of(four).expect("balanced");
+    let ends = "kind = 'reactionless'\nfrom = [0.60, 0.50]\nto = [0.35, 0.85]\nb = 2.9\n";
+    let points_to = |q: &DriveAngles| q[3] + std::f64::consts::PI;
+    let free = run(four, &format!("{ends}shape = 'line'\nposture = 'orientation'\n"));
+    let own = points_to(&free.plan().motion.path.at(0.0).q);
+    let mut done = 0;
+    for way in ["shape = 'line'\nposture = 'orientation'\n", "shape = 'joint-line'\n"] {
+        for turn in [-0.3, -0.1, 0.05, 0.2] {
+            let angle = own + turn + std::f64::consts::TAU;
+            let Ok(run) = Run::new(&scenario(four, &format!("{ends}{way}orientation = {angle:?}\n"))) else { continue };
+            done += 1;
+            for i in 0..=50 {
+                let q = run.plan().motion.path.at(f64::from(i) / 50.0).q;
+                let off = points_to(&q) - angle;
+                assert!(
+                    (off - std::f64::consts::TAU * (off / std::f64::consts::TAU).round()).abs() < 1e-9,
+                    "{way}: {off}"
+                );
+                assert!((space.b(&q) - 2.9).abs() < 1e-9 && keeps_limits(four, &q), "{way}");
+            }
+            let [a, b] = [0.0, 1.0].map(|s| tip(four, &run.plan().motion.path.at(s).q));
+            assert!((a - Vector::new(0.6, 0.5)).norm() < 1e-9 && (b - Vector::new(0.35, 0.85)).norm() < 1e-9);
+            assert!(run.plan().forecast.moment < 1e-5);
+        }
+    }
+    assert!(done >= 4, "{done}");
+    let why = refused(four, &format!("{ends}posture = 'orientation'\nshape = 'line'\norientation = {:?}\n", own + 2.5));
+    assert!(why.contains("has the last link point to") && why.contains("want it from"), "{why}");
+    // What it is said to be, does, at A.
+    let words: Vec<&str> = why.split("want it from ").nth(1).expect("a range").split(' ').collect();
+    let [low, high] = [words[0], words[2]].map(|word| word.parse::<f64>().expect("a number"));
+    for angle in [low, 0.5 * (low + high), high] {
+        let poses = space.facing(Vector::new(0.6, 0.5), 2.9, (3, angle - std::f64::consts::PI), &space.middle());
+        assert!(!poses.is_empty(), "{angle} of {low} to {high}");
+    }
+    // Random machines: every pose that is given is one.
+    let mut noise = Noise::of(41);
+    for n in [4, 4, 5, 5, 6] {
+        let (_, space) = a_space(&mut noise, n);
+        for _ in 0..5 {
+            let q = space.lift(&a_pose(&mut noise, &space), noise.between(-3.0, 3.0));
+            let (p, b) = (space.place(&q), space.b(&q));
+            let found = space.facing(p, b, (n - 1, q[n - 1] + std::f64::consts::TAU), &space.angles(&q));
+            assert!(n > 4 || !found.is_empty(), "the pose it was made of");
+            for other in found {
+                assert!(
+                    (space.place(&other) - p).norm() < 1e-6 * space.farthest() && (space.b(&other) - b).abs() < 1e-9
+                );
+                assert!(
+                    ((other[n - 1] - q[n - 1]) / std::f64::consts::TAU)
+                        .fract()
+                        .abs()
+                        .min(1.0 - ((other[n - 1] - q[n - 1]) / std::f64::consts::TAU).fract().abs())
+                        < 1e-9
+                );
+                for (joint, a) in space.joints().iter().zip(space.angles(&other).iter()) {
+                    assert!(*a >= joint.limits()[0] - 1e-8 && *a <= joint.limits()[1] + 1e-8);
+                }
+            }
+        }
+    }
+}

@@ -307,3 +307,22 @@ fn plan_has_every_kind_for_other_numbers_of_drives() {
     );
     fails(&["plan", "two-drive", "0.5,0.2", "0.6,0.1", "--kind", "least-reaction"], 2, &["no b to choose"]);
 }
+
+/// The ways of a task that a machine has, as many as it has.
+#[test]
+fn compare_has_the_ways_of_any_number_of_drives() {
+    for (name, ways) in [("four-drive", 5), ("two-drive", 4), ("scara", 4)] {
+        let got = object(&["compare", name]);
+        let runs = got["runs"].as_array().expect("runs");
+        assert_eq!(runs.len(), ways, "{name}");
+        let refused: Vec<&Value> =
+            runs.iter().filter(|run| run.get("refused").is_some()).map(|run| &run["way"]).collect();
+        // An arm that nobody has balanced has no reactionless way.
+        let want = if name == "scara" { vec![json!("reactionless")] } else { Vec::new() };
+        assert_eq!(refused, want.iter().collect::<Vec<_>>(), "{name}");
+        let peak = |way: &str| runs.iter().find(|run| run["way"] == way).and_then(|run| run["peak_moment"].as_f64());
+        assert!(peak("straight-line").expect("it runs") > 0.1, "{name}");
+        assert!(name == "scara" || peak("reactionless").expect("it runs") < 1e-6, "{name}");
+        assert!(name != "four-drive" || peak("other-pose").expect("it runs") > 0.1);
+    }
+}

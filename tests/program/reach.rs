@@ -199,3 +199,35 @@ fn workspace_answers_about_points() {
         assert_eq!((&got["area"], &got["sheets"]), (&json!(0.0), &json!(1)));
     }
 }
+
+/// Points of machines of two and four drives: their poses, how far they are from the curve or boundary, and how well the
+/// poses do.
+#[test]
+fn workspace_tells_of_points_for_any_number_of_drives() {
+    let four = object(&["workspace", "four-drive", "--b", "2.9", "--at", "0.6,0.5", "--at", "2,2"]);
+    let points = four["points"].as_array().expect("points");
+    assert!(
+        points[0]["distance"].as_f64().expect("a distance") > 0.0
+            && points[1]["distance"].as_f64().expect("one") < -1.0
+    );
+    let pose = &points[0]["poses"][0];
+    let own = object(&["pose", "four-drive", "0.6,0.5", "--b", "2.9"]);
+    assert_eq!(pose, &own["poses"][0]);
+    assert_eq!(points[1]["poses"], json!([]));
+    // J by differences: its singular values are what is told.
+    let q = numbers(&pose["q"]);
+    let arms = [0.5, -0.46, -0.3, -0.15];
+    let columns: Vec<[f64; 2]> = (0..4).map(|k| [-arms[k] * q[k].sin(), arms[k] * q[k].cos()]).collect();
+    let sum = |i: usize, j: usize| columns.iter().map(|c| c[i] * c[j]).sum::<f64>();
+    let (xx, xy, yy) = (sum(0, 0), sum(0, 1), sum(1, 1));
+    near(&pose["manipulability"], &json!((xx * yy - xy * xy).sqrt()), 1e-9, "√det(J Jᵀ)");
+    let worst = (0.5 * (xx + yy) + (0.25 * (xx - yy).powi(2) + xy * xy).sqrt()).sqrt();
+    near(&pose["worst_torque_per_force"], &json!(worst), 1e-9, "its largest singular value");
+    let at = "0.24662476548459572,-0.0867203125571595";
+    let two = object(&["workspace", "two-drive", "--b", "1.2", "--at", at, "--at", "0.5,0.5"]);
+    let distance = |i: usize| two["points"][i]["distance"].as_f64().expect("a distance");
+    assert!(distance(0) < 1e-5 && distance(1) > 0.1, "{} {}", distance(0), distance(1));
+    assert!(two["points"][0]["poses"] != json!([]) && two["points"][1]["poses"] == json!([]));
+    let table = stillbase(&["workspace", "two-drive", "--b", "1.2", "--at", at]);
+    assert!(text(&table.stdout).contains("from curve m"));
+}

@@ -2,10 +2,10 @@
 
 use proptest::prelude::*;
 use stillbase::mechanics::kinematics::end_effector;
-use stillbase::mechanics::machine::builtin;
-use stillbase::mechanics::planar::Vector;
+use stillbase::mechanics::machine::{Inertia, builtin};
+use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::planning::pose_space::PoseSpace;
-use stillbase::planning::posture::Posture;
+use stillbase::planning::posture::{Posture, Postures};
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Session, replay};
 use stillbase::simulation::frame::{Frame, Reach};
@@ -144,6 +144,47 @@ fn a_hand_keeps_the_orientation_while_it_can() {
     }
     // Where no pose has it, the place matters more.
     assert!(led_to(Posture::Orientation, [0.2, 0.9]) > 1e-3);
+}
+
+/// A hand leads by the least torques, or to the middle of all ranges, where the task does.
+#[test]
+fn a_hand_leads_as_the_task_uses_its_freedoms() {
+    let led_to = |posture: Posture, at: [f64; 2]| {
+        let mut scenario = scenario("four-drive");
+        scenario.task.posture = posture;
+        let mut session = open(scenario);
+        let before = session.frame().q;
+        session.apply(drag(at[0], at[1])).expect("it follows");
+        let [moment, torque] = led(&mut session, 3000);
+        assert!(moment < 1e-9 * torque, "{posture:?}: {moment} of {torque}");
+        let f = session.frame();
+        assert!((f.end_effector - Vector::new(at[0], at[1])).norm() < 1e-6, "{posture:?}: {}", f.end_effector);
+        assert!((f.b - session.scenario().task.b).abs() < 1e-9 && f.peaks.is_reactionless(), "{posture:?}");
+        (before, f.q)
+    };
+    let machine = builtin("four-drive").expect("built in");
+    let inertia = Inertia::of(machine);
+    let space = PoseSpace::of(machine).expect("balanced");
+    let middle = Postures::of(machine, &space, Posture::MidRange);
+    for at in [[0.57, 0.53], [0.62, 0.42], [0.45, 0.65]] {
+        let others = [Posture::LeastRates, Posture::Orientation].map(|posture| led_to(posture, at));
+        // What the motors turn from pose to pose is what they need for the straight way there.
+        let turned = |(from, to): &(DriveAngles, DriveAngles)| {
+            let q = to.0.minus(&from.0);
+            let h = PerDrive::from_fn(4, |k| (0..4).map(|l| inertia.constant(k, l) * q[l]).sum());
+            inertia.motors().torques(&h).iter().map(|x| x * x).sum::<f64>().sqrt()
+        };
+        let least = turned(&led_to(Posture::LeastTorque, at));
+        let (_, centred) = led_to(Posture::MidRange, at);
+        for other in &others {
+            assert!(least < turned(other) * 1.005, "{at:?}: {least} of {}", turned(other));
+            let [own, other] = [centred, other.1].map(|q| middle.off_middle(&q));
+            assert!(own < other, "{at:?}: {own} of {other}");
+        }
+        // No pose beside it with the same point and b is nearer to the middle.
+        let settled = middle.settled(centred, Vector::new(at[0], at[1]), space.b(&centred)).expect("a pose");
+        assert!((middle.off_middle(&settled) - middle.off_middle(&centred)).abs() < 1e-7);
+    }
 }
 
 fn pull(session: &Session, link: &str, along: f64, [x, y]: [f64; 2]) -> Edit {

@@ -21,6 +21,8 @@
 //! there upwards, downwards, both or neither.
 
 mod critical;
+mod facing;
+mod middle;
 mod outline;
 mod poses;
 mod reach;
@@ -28,5 +30,5 @@ mod space;
 mod toward;
 
 pub use outline::Outline;
-pub use space::{Joint, NoPoseSpace, PoseSpace};
+pub use space::{Joint, Lead, NoPoseSpace, PoseSpace};
 pub(crate) use space::{held, is_reactionless};

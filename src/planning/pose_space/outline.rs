@@ -8,7 +8,7 @@ use std::f64::consts::{PI, TAU};
 use super::critical::Scan;
 use super::reach::Seen;
 use super::space::PoseSpace;
-use crate::mechanics::planar::{Vector, unit};
+use crate::mechanics::planar::{Vector, dot, unit};
 
 /// A workspace of b: a region, or with two drives a curve.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -35,6 +35,34 @@ const FOUND: f64 = 1e-9;
 const FIRST: usize = 48;
 /// The most distances that are looked at.
 const MOST: usize = 6000;
+
+impl Outline {
+    /// How far a point, m, is from the boundary, negative outside; of two drives how far from their curve.
+    pub fn distance(&self, p: Vector) -> f64 {
+        let at = |[x, y]: [f64; 2]| Vector::new(x, y);
+        let beside = |line: &[[f64; 2]]| {
+            let spaces = line.windows(2).map(|w| {
+                let (from, way) = (at(w[0]), at(w[1]) - at(w[0]));
+                let share = dot(p - from, way) / way.norm_sqr();
+                (p - from - way * if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }).norm()
+            });
+            spaces.chain(line.first().map(|x| (p - at(*x)).norm())).fold(f64::INFINITY, f64::min)
+        };
+        if self.loops.is_empty() {
+            return beside(&self.curve);
+        }
+        let closed = |line: &Vec<[f64; 2]>| line.iter().chain(line.first()).copied().collect::<Vec<_>>();
+        let loops: Vec<Vec<[f64; 2]>> = self.loops.iter().map(closed).collect();
+        let far = loops.iter().map(|line| beside(line)).fold(f64::INFINITY, f64::min);
+        // A ray to the right crosses the boundary an odd number of times from inside.
+        let crosses = |w: &&[[f64; 2]]| {
+            let ([ax, ay], [bx, by]) = (w[0], w[1]);
+            (ay > p.im) != (by > p.im) && p.re < ax + (p.im - ay) / (by - ay) * (bx - ax)
+        };
+        let inside = loops.iter().flat_map(|line| line.windows(2)).filter(crosses).count() % 2 == 1;
+        if inside { far } else { -far }
+    }
+}
 
 /// What of a circle about B belongs to the workspace: angles [from, to], rad.
 #[derive(Clone, Debug)]

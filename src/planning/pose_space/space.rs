@@ -56,10 +56,23 @@ pub struct PoseSpace {
     pub(super) sum: f64,
     /// Each after the joint that leads to its nearer drive.
     pub(super) joints: Vec<Joint>,
-    /// A drive that a hand leads to places without turning it, while it can.
-    pub(super) kept: Option<usize>,
+    pub(super) lead: Lead,
     inertia: f64,
     is_reactionless: bool,
+}
+
+/// What a hand that leads the end effector makes of the freedoms that are left.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Lead {
+    /// Every step takes the least kinetic energy.
+    #[default]
+    LeastEnergy,
+    /// A drive keeps its angle, and so its links their orientation, while there is a way to.
+    Keep(usize),
+    /// Every step is the least by a weight; here its inverse, row by row.
+    Weighed(Box<[[f64; MAX_DRIVES]; MAX_DRIVES]>),
+    /// The pose that is nearest to the middle of all ranges is gone to.
+    Middle,
 }
 
 /// Why a machine has no pose constant, in words.
@@ -180,14 +193,21 @@ impl PoseSpace {
             return Err(NoPoseSpace::Size { reach });
         }
         let joints = joints(machine)?;
-        Ok(Self { tip, lambda, sum, joints, kept: None, inertia, is_reactionless: is_reactionless(machine) })
+        Ok(Self {
+            tip,
+            lambda,
+            sum,
+            joints,
+            lead: Lead::LeastEnergy,
+            inertia,
+            is_reactionless: is_reactionless(machine),
+        })
     }
 
-    /// The same, with a drive that keeps its angle, and so its links their orientation, while a hand leads the end effector
-    /// and there is a way to.
+    /// The same, led otherwise.
     #[must_use]
-    pub fn keeping(self, drive: usize) -> Self {
-        Self { kept: Some(drive), ..self }
+    pub fn led(self, lead: Lead) -> Self {
+        Self { lead, ..self }
     }
 
     /// Number of drives.

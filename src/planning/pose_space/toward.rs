@@ -8,7 +8,7 @@
 //! iteration for the least |p − Σ c_k e^{iq_k}|², whose second derivatives are CᵀC and (p − Σ c e)·c_k e_k on the diagonal,
 //! ends at a pose that is as near as can be.
 
-use super::space::PoseSpace;
+use super::space::{Lead, PoseSpace};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, dot, unit};
 use nalgebra::{SMatrix, SVector};
 
@@ -44,9 +44,17 @@ impl PoseSpace {
         if gone.1 <= AT * self.farthest() { gone } else { self.settled(p, b, gone) }
     }
 
-    /// The same with the drive that is to [keep](Self::keeping) its angle at that angle, if there is one.
-    pub fn toward_keeping(&self, p: Vector, b: f64, from: &[f64]) -> Option<(PerDrive, f64)> {
-        self.kept.map(|kept| self.gone(p, b, from, Some(kept)))
+    /// The same with the drive that is to [keep](Lead::Keep) its angle at that angle, or gone on to the
+    /// [middle](Lead::Middle) of all ranges, where it is [led](Self::led) so.
+    pub fn toward_led(&self, p: Vector, b: f64, from: &[f64]) -> Option<(PerDrive, f64)> {
+        match self.lead {
+            Lead::Keep(kept) => Some(self.gone(p, b, from, Some(kept))),
+            Lead::Middle => {
+                let (a, off) = self.gone(p, b, from, None);
+                Some((self.centred(p, b, &a), off))
+            }
+            Lead::LeastEnergy | Lead::Weighed(_) => None,
+        }
     }
 
     fn gone(&self, p: Vector, b: f64, from: &[f64], kept: Option<usize>) -> (PerDrive, f64) {
@@ -198,8 +206,16 @@ impl PoseSpace {
         }
         // A drive that turns nothing costs nothing: a little keeps the step finite.
         let cost = |k: usize| self.lambda[k].abs().max(1e-6);
-        let mut light = c.transpose();
-        (0..n).for_each(|k| light.row_mut(k).scale_mut(1.0 / cost(k)));
+        let light = match &self.lead {
+            Lead::Weighed(inverse) => {
+                SMatrix::<f64, MAX_DRIVES, MAX_DRIVES>::from_fn(|k, l| inverse[k][l]) * c.transpose()
+            }
+            _ => {
+                let mut light = c.transpose();
+                (0..n).for_each(|k| light.row_mut(k).scale_mut(1.0 / cost(k)));
+                light
+            }
+        };
         let mut square = c * light;
         for i in 0..ROWS {
             if i < 2 {

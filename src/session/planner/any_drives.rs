@@ -3,7 +3,7 @@
 use super::along::{Parts, along_parts, curves, timed};
 use super::off_plane::smooth;
 use super::plan::{Plan, dynamics_of, keeps_rules};
-use super::pose::{posed, reached, start};
+use super::pose::{faced, reached, start};
 use super::{given, off_space};
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::Forecast;
@@ -125,14 +125,14 @@ fn reactionless(scenario: &Scenario) -> Result<Parts, Refusal> {
     };
     let points = task.points();
     match task.shape() {
-        Shape::JointLine => joint_lines(task, &space, &points, free),
+        Shape::JointLine => joint_lines(scenario, &space, &points, free),
         _ if free => by_least_rates(scenario, reached(task, &space, 0, points[0])?, None),
         _ if space.drives() < 4 => Err(Refusal::Task(format!(
             "while b is held the end effector of a machine with {} drives has its own way: want the shape joint-line",
             space.drives()
         ))),
         _ => {
-            let start = posed(task, &space, 0, points[0], &space.middle())?;
+            let start = faced(scenario, &space, 0, points[0], (&space.middle(), None))?;
             if task.posture == Posture::LeastRates {
                 return by_least_rates(scenario, start, Some(&space));
             }
@@ -142,7 +142,9 @@ fn reactionless(scenario: &Scenario) -> Result<Parts, Refusal> {
 }
 
 /// Straight lines of joint space from pose to pose.
-fn joint_lines(task: &Task, space: &PoseSpace, points: &[Vector], free: bool) -> Result<Parts, Refusal> {
+fn joint_lines(scenario: &Scenario, space: &PoseSpace, points: &[Vector], free: bool) -> Result<Parts, Refusal> {
+    let (task, machine) = (&scenario.task, &scenario.machine);
+    let hand = machine.resolved_links()[machine.end_link()].drive;
     if task.corners == Corners::Blend && (points.len() > 2 || task.closed) {
         let why = "corners of joint lines are rounded off for three drives only: want corners = stop";
         return Err(Refusal::Task(why.into()));
@@ -150,7 +152,8 @@ fn joint_lines(task: &Task, space: &PoseSpace, points: &[Vector], free: bool) ->
     let mut near = space.middle();
     let mut q: Vec<DriveAngles> = Vec::with_capacity(points.len() + 1);
     for (i, p) in points.iter().enumerate() {
-        let pose = if free { reached(task, space, i, *p)? } else { posed(task, space, i, *p, &near)? };
+        let kept = q.first().map(|q| q[hand]);
+        let pose = if free { reached(task, space, i, *p)? } else { faced(scenario, space, i, *p, (&near, kept))? };
         near = space.angles(&pose);
         q.push(pose);
     }

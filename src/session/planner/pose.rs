@@ -1,11 +1,14 @@
 //! Poses of the points of a task, of machines without planes.
 
+use std::f64::consts::{PI, TAU};
+
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::pose_constant::Unreachable;
 use crate::planning::pose_space::PoseSpace;
 use crate::planning::reactionless::NoReach;
 use crate::session::refusal::Refusal;
 use crate::session::scenario::{Scenario, Task};
+use crate::settings::number::{Short, fixed};
 
 /// A pose of A: at the b of the task where that leaves a choice.
 pub(super) fn start(scenario: &Scenario) -> Result<DriveAngles, Refusal> {
@@ -30,6 +33,49 @@ pub(super) fn posed(task: &Task, space: &PoseSpace, i: usize, p: Vector, near: &
         };
         Refusal::Unreachable { point: task.name_of(i), unreachable }
     })
+}
+
+/// The same with the last link as the task has it, if it says so; `kept` is the drive's angle at the first of several
+/// points, which it then keeps.
+pub(super) fn faced(
+    scenario: &Scenario,
+    space: &PoseSpace,
+    i: usize,
+    p: Vector,
+    (near, kept): (&[f64], Option<f64>),
+) -> Result<DriveAngles, Refusal> {
+    let (task, machine) = (&scenario.task, &scenario.machine);
+    let Some(angle) = task.orientation.filter(|_| scenario.idle("task.orientation").is_none()) else {
+        return posed(task, space, i, p, near);
+    };
+    let link = &machine.resolved_links()[machine.end_link()];
+    let of_drive = |angle: f64| if link.sign < 0.0 { angle - PI } else { angle };
+    let poses = |angle: f64| space.facing(p, task.b, (link.drive, of_drive(angle)), near);
+    let goes = |q: &DriveAngles| kept.is_none_or(|kept| (q[link.drive] - kept).abs() < 1e-6);
+    if let Some(q) = poses(angle).into_iter().find(goes) {
+        return Ok(q);
+    }
+    // The point itself may be out of reach.
+    posed(task, space, i, p, near)?;
+    let steps = 180;
+    let does: Vec<bool> =
+        (0..steps).map(|k| !poses(angle + TAU * f64::from(k) / f64::from(steps)).is_empty()).collect();
+    let at = |k: i32| does[k.rem_euclid(steps) as usize];
+    let would_do = match (0..=steps / 2).flat_map(|k| [k, -k]).find(|k| at(*k)) {
+        None => "another b, or no orientation".into(),
+        Some(k) => {
+            let low = (0..steps).map(|j| k - j).find(|k| !at(*k)).map_or(k, |k| k + 1);
+            let high = (0..steps).map(|j| k + j).find(|k| !at(*k)).map_or(k, |k| k - 1);
+            let turned = |k: i32| fixed(angle + TAU * f64::from(k) / f64::from(steps), 2);
+            format!("it from {} to {} rad, another b, or no orientation", turned(low), turned(high))
+        }
+    };
+    Err(Refusal::NoWay(format!(
+        "at {} no pose of b = {} rad has the last link point to {} rad: want {would_do}",
+        task.name_of(i),
+        Short(task.b),
+        Short(angle)
+    )))
 }
 
 /// A point that no b reaches.

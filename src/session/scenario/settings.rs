@@ -257,7 +257,7 @@ impl Scenario {
     /// What a key would want to have an effect, if it has none as things are.
     pub fn idle(&self, path: &str) -> Option<&'static str> {
         let used = match path.split_once('.') {
-            Some(("task", "posture")) => self.machine.drives() > 3 && self.task.uses("posture"),
+            Some(("task", key @ ("posture" | "orientation"))) => self.machine.drives() > 3 && self.task.uses(key),
             Some(("task", key @ ("b" | "turn"))) if self.gives_two_drives() => key == "turn",
             Some(("task", key)) => self.task.uses(key),
             Some(("base", key)) => self.base.uses(key),

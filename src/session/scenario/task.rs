@@ -76,6 +76,9 @@ pub struct Keys<P, X> {
     /// How four drives and more use the freedoms that a point leaves.
     #[serde(default, skip_serializing_if = "is_default")]
     pub posture: Posture,
+    /// Which way the last link points, rad; for the posture `orientation`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub orientation: Option<f64>,
     /// Where drive 1 ends, rad; for `same-tip`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_drive_to: Option<f64>,
@@ -197,7 +200,7 @@ const CORNERED: &str =
 const BLENDED: &str = "corners = blend, and three points or more, or a closed path, in the shape line or joint-line: others have no corners";
 
 /// Every key of `[task]`.
-pub const KEYS: [Key; 20] = [
+pub const KEYS: [Key; 21] = [
     Key::new(
         "task.kind",
         Holds::Choice(&[
@@ -285,6 +288,14 @@ pub const KEYS: [Key; 20] = [
          its orientation, the motors need the least torques, or joints stay near the middle of their ranges.",
     )
     .when(FREE),
+    Key::number(
+        "task.orientation",
+        ANGLE,
+        Key::NONE,
+        "Which way the last link points all along the path, from root to tip, counted from the x axis.",
+    )
+    .when("four drives or more, the kind reactionless, and the posture orientation or the shape joint-line")
+    .instead("with the posture orientation as it does at A"),
     Key::number("task.first_drive_to", ANGLE, Key::NONE, "Where drive 1 ends.")
         .when("the kind same-tip")
         .instead("where it began"),
@@ -321,6 +332,7 @@ impl StatedTask {
             cycles,
             least,
             posture,
+            orientation,
             first_drive_to,
             time,
             law,
@@ -348,6 +360,7 @@ impl StatedTask {
             cycles,
             least,
             posture,
+            orientation,
             first_drive_to,
             law,
         })
@@ -405,6 +418,7 @@ impl Task {
             cycles: once(),
             least: Least::default(),
             posture: Posture::default(),
+            orientation: None,
             first_drive_to: None,
             time: None,
             law: TimeLaw::default(),
@@ -451,7 +465,7 @@ impl Task {
     /// All keys, so that another task can be made this one.
     pub fn whole(&self) -> Change {
         let optional = ["shape", "via", "closed", "corners", "blend", "keep_off_change_points", "b_to", "moment_limit"];
-        let others = ["cycles", "least", "posture", "first_drive_to", "samples", "turn"];
+        let others = ["cycles", "least", "posture", "orientation", "first_drive_to", "samples", "turn"];
         let absent = optional.into_iter().chain(others).map(|key| (key.to_owned(), Value::from("default")));
         absent.chain(Change::try_from(self).unwrap_or_default()).collect()
     }
@@ -553,6 +567,11 @@ impl Task {
                 None => kind(&[Reactionless]) && self.shape() != Shape::JointLine,
                 Some(columns) => kind(&[Reactionless, Given]) && columns == 2,
             },
+            "orientation" => {
+                kind(&[Reactionless])
+                    && samples.is_none()
+                    && (self.posture == Posture::Orientation || self.shape() == Shape::JointLine)
+            }
             "first_drive_to" => kind(&[SameTip]),
             "turn" => samples.is_some_and(|columns| columns != 2),
             "time" => !self.law.is_fastest(),

@@ -1,5 +1,6 @@
 //! [`Alternative`]: other ways to do the same task.
 
+use crate::planning::pose_space::PoseSpace;
 use crate::planning::timing::TimeLaw;
 use crate::session::scenario::{Change, Scenario, Shape, TaskKind, Value};
 use crate::session::settled;
@@ -36,6 +37,11 @@ impl Alternative {
     /// All of them.
     pub const ALL: [Self; 6] =
         [Self::AsGiven, Self::Reactionless, Self::StraightLine, Self::OtherPose, Self::Wheel, Self::Slowly];
+
+    /// Whether a machine has such a way: with one or two drives the end effector's motion leaves drive 1 none of its own.
+    pub fn is_of(self, scenario: &Scenario) -> bool {
+        self != Self::OtherPose || scenario.machine.drives() > 2
+    }
 
     /// Short name, as in file names and on the command line.
     pub fn name(self) -> &'static str {
@@ -131,8 +137,12 @@ impl Alternative {
 
 /// Where drive 1 is at A on the plane of the task, rad.
 fn start_of_first_drive(scenario: &Scenario) -> Option<f64> {
-    let planes = crate::planning::pose_constant::Planes::of(&scenario.machine).ok()?;
     let points = scenario.task.points();
+    if scenario.machine.drives() > 3 {
+        let space = PoseSpace::of(&scenario.machine).ok()?;
+        return space.poses(*points.first()?, scenario.task.b, &space.middle()).first().map(|q| q[0]);
+    }
+    let planes = crate::planning::pose_constant::Planes::of(&scenario.machine).ok()?;
     let ends = [*points.first()?, *points.last()?];
     let poses = planes.serve(&ends, scenario.task.b).or_else(|_| planes.serve(&ends[..1], scenario.task.b)).ok()?;
     Some(planes.map().lift(*poses.first()?)[0])

@@ -85,7 +85,7 @@ impl Compared {
 /// The ways to do a scenario's task, each with its scenario; as it is given only if that is none of the others.
 pub fn alternatives(scenario: &Scenario) -> Vec<(Alternative, Scenario)> {
     let mut all: Vec<(Alternative, Scenario)> =
-        Alternative::ALL.into_iter().map(|way| (way, way.of(scenario))).collect();
+        Alternative::ALL.into_iter().filter(|way| way.is_of(scenario)).map(|way| (way, way.of(scenario))).collect();
     // A wheel makes no other way of the task, but for the one that is about it.
     let given = |s: &Scenario| s.task == scenario.task && s.base.kind == scenario.base.kind;
     if scenario.edits.is_empty() && all.iter().skip(1).any(|(_, s)| given(s)) {
