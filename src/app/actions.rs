@@ -193,13 +193,16 @@ pub const ACTIONS: &[Action] = actions![
         of_machine(v, Command::Push(!v.pushing))
     };
 
-    View, "The next view: 2D, 3D, joint space, tower", [on(PLAIN, Key::V)], "tool bar", |s, v| {
+    View, "The next view: 2D, 3D, joint space, tower, design", [on(PLAIN, Key::V)], "tool bar", |s, v| {
         next_view(s, v)
     };
     View, "2D: the machine from above", [], "tool bar", |_, v| view(v, ViewKind::Flat);
     View, "3D: the machine in space", [], "tool bar", |_, v| view(v, ViewKind::Space);
     View, "Joint space", [], "tool bar", |s, v| view_of_planes(s, v, ViewKind::Joints);
     View, "Tower of workspaces", [], "tool bar", |s, v| view_of_planes(s, v, ViewKind::Tower);
+    View, "Design: masses, centres of mass, lengths and counterweights", [on(PLAIN, Key::D)], "tool bar", |_, v| {
+        Some(Command::View(if v.view == ViewKind::Design { ViewKind::Flat } else { ViewKind::Design }))
+    };
     View, "Show everything", [on(PLAIN, Key::F)], "tool bar", |_, _| Some(Command::Fit);
     View, "Zoom in", [on(PLAIN, Key::Plus), on(PLAIN, Key::Equals)], "scene, wheel", |_, _| {
         Some(Command::Look(Look::Zoom(ZOOM)))

@@ -101,6 +101,25 @@ impl Card {
                 let title = format!("moment on the base, n_B = {} N m", signed(frame.felt_moment(), 3));
                 Self::new(title, rows, "")
             }
+            Handle::Mass(i) => {
+                let link = scenario.machine.spec().links.get(i)?;
+                let rows = vec![format!("{} kg, {} m from its root", three_digits(link.mass), signed(link.com, 4))];
+                Self::new(format!("centre of mass of link {}", link.name), rows, "drag: along its link")
+            }
+            Handle::Weight(i) => {
+                let weight = scenario.machine.spec().counterweights.get(i)?;
+                let rows = vec![
+                    format!("{} kg, {} m from its root", three_digits(weight.mass), signed(weight.at, 4)),
+                    format!("radius {} m", signed(weight.radius, 4)),
+                ];
+                Self::new(format!("counterweight of link {}", weight.link), rows, "drag: along its link")
+            }
+            Handle::End(i) => {
+                let part = scenario.machine.resolved_links().get(i)?;
+                let name = &scenario.machine.links().get(i)?.name;
+                let rows = vec![format!("{} m long", signed(part.length, 4))];
+                Self::new(format!("end of link {name}"), rows, "drag: its length, with those that share it")
+            }
             Handle::EndEffector | Handle::Plane | Handle::Bar => return None,
         })
     }

@@ -8,6 +8,7 @@ use crate::picture::scene::Measure;
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Theme;
 use crate::picture::scene::views::ViewKind;
+use crate::session::design::Brief;
 use crate::session::scenario::Scenario;
 use crate::session::{Edit, Session};
 
@@ -94,6 +95,8 @@ pub enum Command {
     Pins(bool),
     /// Put these drives, counted from 0, along the axes of joint space, where there are more than three.
     Drives([usize; 3]),
+    /// Change what is asked of the machine that is designed.
+    Design(DesignCommand),
     /// Change the table of runs.
     Comparison(ComparisonCommand),
     /// Put the second cursor at a time, s, or away.
@@ -175,6 +178,7 @@ impl Command {
             | Self::GiveUp
             | Self::GoTo(_)
             | Self::Redo
+            | Self::Design(DesignCommand::Brief(_) | DesignCommand::Take(_))
             | Self::Comparison(ComparisonCommand::Keep | ComparisonCommand::Open(_))
             | Self::Case(_)
             | Self::BackToPath => true,
@@ -203,6 +207,7 @@ impl Command {
             | Self::Compare(_)
             | Self::Study(_)
             | Self::Pins(_)
+            | Self::Design(_)
             | Self::Comparison(_)
             | Self::Mark(_)
             | Self::Charts(_)
@@ -397,4 +402,15 @@ impl FileDialog {
         };
         Self { purpose, path: name }
     }
+}
+
+/// What a person asks of the machine that is designed.
+#[derive(Clone, Debug)]
+pub enum DesignCommand {
+    /// Ask for something else; a balance that is kept from now on is found at once.
+    Brief(Box<Brief>),
+    /// Show the counterweights of a machine of the front, by its place, or none.
+    Ghost(Option<usize>),
+    /// Take them.
+    Take(usize),
 }

@@ -37,6 +37,7 @@ mod search;
 mod side;
 mod state;
 mod status;
+mod studio;
 mod study;
 mod theme;
 mod timeline;

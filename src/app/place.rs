@@ -78,6 +78,11 @@ pub fn lit(ctx: &Context) -> Option<Handle> {
     ctx.data_mut(|data| data.get_temp_mut_or_default::<Places>(id()).lit.take())
 }
 
+/// Lights a thing up that is spoken of.
+pub fn light(ctx: &Context, thing: Handle) {
+    ctx.data_mut(|data| data.get_temp_mut_or_default::<Places>(id()).lit = Some(thing));
+}
+
 /// The place of a thing.
 pub fn of<R>(ui: &mut Ui, thing: Handle, p: &Palette, add: impl FnOnce(&mut Ui) -> R) -> R {
     let behind = ui.painter().add(Shape::Noop);

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use super::background::{Background, File, Opening};
 use super::change::{Change, Source};
+use super::command::DesignCommand;
 use super::facts::Facts;
 use super::marks::Marks;
 use super::pace::Pace;
@@ -14,7 +15,7 @@ use super::saving::{self, Saving};
 use super::tour::Tour;
 use super::{
     Activity, Command, Finder, Framing, Intro, Layout, Panels, Preferences, Recovery, ViewState, compare, finder, keys,
-    order, place, plots, rail, side, status, study, theme, top, viewport,
+    order, place, plots, rail, side, status, studio, study, theme, top, viewport,
 };
 use crate::app::widgets;
 use crate::mechanics::machine::Machine;
@@ -22,6 +23,7 @@ use crate::picture::scene::exaggeration::exaggeration;
 use crate::picture::scene::palette::Theme;
 use crate::picture::scene::stage::Stage;
 use crate::picture::scene::views::{ViewKind, Views};
+use crate::session::design::weights_of;
 use crate::session::scenario::{Scenario, Task};
 use crate::session::{Edit, Refusal, Session};
 use crate::simulation::frame::Totals;
@@ -38,6 +40,10 @@ pub struct AppState {
     stage_of: StageKey,
     /// What panels say of the run that has to be found first.
     facts: Facts,
+    /// What the design view says of the machine.
+    studio: studio::Facts,
+    /// The machine before the change under way in that view.
+    designed_from: Option<Machine>,
     view_state: ViewState,
     /// What is left of the first minute, and whether it is to be shown at the next start.
     intro: Option<Intro>,
@@ -89,6 +95,8 @@ impl AppState {
             signals: signals(&session.scenario().machine),
             stage_of: StageKey::of(&session),
             facts: Facts::default(),
+            studio: studio::Facts::default(),
+            designed_from: None,
             views: Arc::new(views),
             foreseen: Totals::default(),
             session,
@@ -371,20 +379,26 @@ impl AppState {
             study::show(ui, study, self.session.frame().time, &self.view_state, &mut commands);
         }
         let contrast = self.intro.as_ref().filter(|intro| intro.contrasts_in(ui.ctx().content_rect().width()));
-        if contrast.is_none() && self.view_state.side.shown {
+        let designs = self.view_state.view == ViewKind::Design && !presents;
+        if designs {
+            self.studio.follow(&self.session.scenario().machine, &self.view_state.brief);
+            studio::show(ui, &self.session, &self.studio, &self.view_state, &mut commands);
+        }
+        if contrast.is_none() && self.view_state.side.shown && !designs {
             if let Some(thing) = self.view_state.revealed.take() {
                 place::open(ui.ctx(), thing, &self.session);
             }
             self.view_state.side.width = side::show(ui, &self.session, &self.facts, &self.view_state, &mut commands);
         }
         self.view_state.lit = place::lit(ui.ctx());
-        if self.view_state.plots.shown {
+        if self.view_state.plots.shown && !designs {
             let beside = contrast.and_then(Intro::beside_it).or(self.comparison.as_ref());
             let (session, signals, view_state) = (&self.session, &self.signals, &self.view_state);
             let what = plots::Shown { session, signals, comparison: beside, view_state };
             self.view_state.plots.width = plots::show(ui, &what, &mut self.prepared, &mut commands);
         }
-        let both = (self.comparison.as_ref(), self.intro.as_ref().filter(|_| !presents));
+        let chosen = self.view_state.ghost.map_or_else(Vec::new, |i| self.studio.weights(i));
+        let both = (self.comparison.as_ref(), self.intro.as_ref().filter(|_| !presents), &chosen[..]);
         let scene = viewport::show(ui, &self.session, &self.views, both, &mut self.view_state, &mut commands);
         status::news(ui.ctx(), scene, &self.session, &self.view_state, &mut commands);
         keys::help(ui.ctx(), &self.view_state, &mut commands);
@@ -459,9 +473,44 @@ impl AppState {
         self.refresh();
     }
 
+    /// An edit with what follows from it where a machine that is designed is kept balanced.
+    fn designed(&mut self, edit: Edit) -> Result<Edit, String> {
+        let designs = self.view_state.view == ViewKind::Design;
+        let Edit::Set { change } = &edit else { return Ok(edit) };
+        if !(designs && edit.sets_machine()) {
+            return Ok(edit);
+        }
+        let now = &self.session.scenario().machine;
+        let start = self.designed_from.get_or_insert_with(|| now.clone());
+        self.view_state.brief.edit(now, start, change)
+    }
+
+    fn design(&mut self, command: DesignCommand) -> Result<(), String> {
+        match command {
+            DesignCommand::Brief(brief) => {
+                let begins = brief.keeps_balance && !self.view_state.brief.keeps_balance;
+                let machine = &self.session.scenario().machine;
+                let edit = begins.then(|| brief.edit(machine, machine, &Default::default())).transpose()?;
+                self.view_state.brief = *brief;
+                if let Some(edit) = edit {
+                    self.change(Change::Edit(edit));
+                    self.session.end_gesture();
+                }
+            }
+            DesignCommand::Ghost(i) => self.view_state.ghost = i,
+            DesignCommand::Take(i) => {
+                if let Some(machine) = self.studio.of_front(i) {
+                    self.change(Change::Edit(weights_of(machine)));
+                }
+            }
+        }
+        Ok(())
+    }
+
     fn attempt(&mut self, command: Command) -> Result<Option<String>, String> {
         match command {
             Command::Edit(edit) => {
+                let edit = self.designed(edit)?;
                 self.view_state.refused = None;
                 self.change(Change::Edit(edit));
                 self.view_state.dragged |= self.view_state.grabbed.is_some() && self.view_state.refused.is_none();
@@ -479,10 +528,12 @@ impl AppState {
             Command::Exaggerate(on) => self.view_state.exaggerates_base = on,
             Command::EndGesture => {
                 self.session.end_gesture();
+                self.designed_from = None;
                 let said = self.parted.take();
                 self.view_state.left_branch |= said.is_some();
                 return Ok(said);
             }
+            Command::Design(command) => self.design(command)?,
             Command::TogglePlay if self.session.is_playing() => self.session.pause(),
             Command::TogglePlay => self.session.play(),
             Command::Seek(time) => self.change(Change::Seek(time)),
@@ -528,7 +579,13 @@ impl AppState {
             Command::GiveUp => {}
             Command::Redo => self.change(Change::Redo),
             Command::Cancel(activity) => return Ok(Some(self.cancel(activity))),
-            Command::View(view) => self.view_state.view = view,
+            Command::View(view) => {
+                if view == ViewKind::Design {
+                    // What is designed stands still.
+                    self.session.pause();
+                }
+                self.view_state.view = view;
+            }
             Command::Dexterity(shown) => self.view_state.dexterity = shown,
             Command::Fit => self.view_state.framing[self.view_state.view as usize] = Framing::Wanted,
             Command::Theme(theme) => self.view_state.theme = theme,

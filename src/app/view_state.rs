@@ -14,6 +14,7 @@ use crate::picture::scene::palette::{Palette, Theme, palette};
 use crate::picture::scene::pick::Pick;
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::planning::reactionless::Decimal;
+use crate::session::design::Brief;
 use crate::session::{Edit, Refusal, Session};
 
 /// An edit that was refused.
@@ -88,9 +89,9 @@ pub struct ViewState {
     /// Which of the linked views.
     pub view: ViewKind,
     /// From where each view is seen, in the order of [`ViewKind::ALL`].
-    pub cameras: [Camera; 4],
+    pub cameras: [Camera; ViewKind::ALL.len()],
     /// Which of them show everything.
-    pub framing: [Framing; 4],
+    pub framing: [Framing; ViewKind::ALL.len()],
     /// The workspace is shaded by this measure.
     pub dexterity: Option<Measure>,
     /// Simulated seconds a second.
@@ -118,6 +119,10 @@ pub struct ViewState {
     pub compare: bool,
     /// The study of tolerances is on display.
     pub study: bool,
+    /// What is asked of the machine that is designed.
+    pub brief: Brief,
+    /// The machine of the front whose counterweights are shown, by its place.
+    pub ghost: Option<usize>,
     /// What pins carry is on display.
     pub pins: bool,
     /// The drives along the axes of joint space, counted from 0, where there are more than three.
@@ -191,6 +196,8 @@ impl ViewState {
             force: None,
             compare: false,
             study: false,
+            brief: Brief::default(),
+            ghost: None,
             pins: false,
             drives: [0, 1, 2],
             naming: None,

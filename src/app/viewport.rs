@@ -9,11 +9,12 @@ use super::intro::Intro;
 use super::tour::Tour;
 use super::widgets::{FINE, name};
 use super::{Command, Layout, ViewState, coordinates, corner, framing, menu, place, present, set_b, status};
+use crate::mechanics::machine::Length;
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::picture::paint::words::words;
 use crate::picture::paint::{Spot, paint};
 use crate::picture::scene::exaggeration::exaggerated;
-use crate::picture::scene::options::{Handle, Other, ViewOptions};
+use crate::picture::scene::options::{Handle, Offered, Other, ViewOptions};
 use crate::picture::scene::pick::{Aim, Pick};
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::planning::pose_map::PoseMap;
@@ -27,7 +28,7 @@ pub fn show(
     ui: &mut Ui,
     session: &Session,
     views: &Views,
-    (comparison, intro): (Option<&Comparison>, Option<&Intro>),
+    (comparison, intro, chosen): (Option<&Comparison>, Option<&Intro>, &[Offered]),
     view_state: &mut ViewState,
     commands: &mut Vec<Command>,
 ) -> Rect {
@@ -89,6 +90,7 @@ pub fn show(
             shadows: view_state.view == ViewKind::Space,
             invites: session.follows_hands(),
             compares: both.is_none(),
+            weights: chosen.to_vec(),
             scale: None,
         };
         let scene = Arc::new(views.scene(view_state.view, session.frame(), &options, view_state.camera()));
@@ -236,6 +238,17 @@ fn point_at(
             Aim::Limit { angle, ends, .. } => {
                 let name = &session.scenario().machine.angles().get(angle)?.name;
                 Edit::at(&["limits", name], ends.to_vec())
+            }
+            Aim::Mass { link, to } => {
+                Edit::at(&["link", &session.scenario().machine.links().get(link)?.name, "com"], to)
+            }
+            Aim::Weight { weight, to } => Edit::at(&["counterweight", &(weight + 1).to_string(), "at"], to),
+            Aim::Length { link, to } => {
+                let link = session.scenario().machine.spec().links.get(link)?;
+                match &link.length {
+                    Length::Named(name) => Edit::at(&["length", name], to),
+                    Length::Metres(_) => Edit::at(&["link", &link.name, "length"], to),
+                }
             }
             Aim::Payload(offset) => Edit::set("plant.payload.offset", offset.to_vec()),
             Aim::Waypoint(i, [x, y]) => {
@@ -395,7 +408,7 @@ fn move_camera(ui: &Ui, response: &egui::Response, rect: Rect, view_state: &mut 
     if view_state.grabbed.is_none() && delta != Vec2::ZERO {
         let (x, y) = (f64::from(delta.x) / height, f64::from(delta.y) / height);
         let aspect = f64::from(rect.width()) / height;
-        let pans = view_state.view == ViewKind::Flat
+        let pans = matches!(view_state.view, ViewKind::Flat | ViewKind::Design)
             || !response.dragged_by(PointerButton::Primary)
             || ui.input(|i| i.modifiers.shift);
         let camera = view_state.camera_mut();

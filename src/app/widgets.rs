@@ -30,6 +30,15 @@ pub(super) fn section(ui: &mut Ui, p: &Palette, title: &str) {
     ui.label(RichText::new(title.to_uppercase()).font(bold(11.0)).color(colour(p.dim)));
 }
 
+/// A heading, and what can be done below it.
+pub(super) fn heading(ui: &mut Ui, p: &Palette, title: &str, words: &str) {
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(title).font(bold(13.5)).color(colour(p.ink)));
+        ui.label(RichText::new(words).font(plain(11.5)).color(colour(p.dim)));
+    });
+    ui.add_space(2.0);
+}
+
 /// A name on the left, a number that can be dragged or typed and its unit on the right.
 pub(super) struct Row<'a> {
     pub label: &'a str,

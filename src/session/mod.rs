@@ -1,6 +1,7 @@
 //! What a person did: a scenario, edits and what became of them, step by step; undo, replay, the verdict.
 
 mod changes;
+pub mod design;
 mod document;
 mod edit;
 mod edit_check;

@@ -40,7 +40,8 @@ pub fn only<T: Serialize>(value: &T, change: &Table) -> Table {
 pub fn covers(later: &Table, earlier: &Table) -> bool {
     earlier.iter().all(|(key, value)| match (value, later.get(key)) {
         (Value::Table(earlier), Some(Value::Table(later))) => covers(later, earlier),
-        (_, found) => found.is_some(),
+        // Keys of what a whole value has brought do not stand for it.
+        (_, found) => found.is_some_and(|found| !found.is_table()),
     })
 }
 

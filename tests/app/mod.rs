@@ -16,6 +16,7 @@ mod run;
 mod saving;
 mod screen;
 mod sizes;
+mod studio;
 mod time;
 mod view;
 
@@ -29,7 +30,7 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 17] = [
+pub const TESTS: [&[Test]; 18] = [
     saving::TESTS,
     family::TESTS,
     files::TESTS,
@@ -45,6 +46,7 @@ pub const TESTS: [&[Test]; 17] = [
     refusal::TESTS,
     run::TESTS,
     sizes::TESTS,
+    studio::TESTS,
     time::TESTS,
     view::TESTS,
 ];

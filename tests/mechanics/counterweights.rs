@@ -275,3 +275,15 @@ fn counterweights_are_set_by_key() {
     assert!(words("counterweight.1.mass", "0").contains("1e-15"), "{}", words("counterweight.1.mass", "0"));
     assert!(words("counterweight.1.colour", "1").contains("counterweight.NUMBER.(mass|at|radius)"));
 }
+
+/// What balances itself is given nothing.
+#[test]
+fn a_balanced_machine_is_left_alone() {
+    let machine = builtin("nine-link").expect("built in");
+    for objective in [Objective::mass(), Objective::inertia()] {
+        let placed = place(machine, &weighing(machine, objective)).expect("nothing to do");
+        assert!(placed.added_mass < 1e-6 && placed.machine.spec().counterweights.is_empty(), "{}", placed.added_mass);
+    }
+    let points = front(machine, &weighing(machine, Objective::mass()), 5).expect("one point").points;
+    assert!(points.iter().all(|placed| placed.added_mass < 1e-6));
+}

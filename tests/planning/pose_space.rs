@@ -6,8 +6,10 @@ use std::f64::consts::TAU;
 use stillbase::mechanics::balance::design;
 use stillbase::mechanics::machine::Machine;
 use stillbase::mechanics::planar::{PerDrive, Vector};
-use stillbase::planning::pose_constant::plane_map;
+use stillbase::planning::pose_constant::{Planes, plane_map};
 use stillbase::planning::pose_space::{NoPoseSpace, PoseSpace};
+use stillbase::session::Run;
+use stillbase::session::scenario::Scenario;
 
 use crate::support::random::a_chain;
 use crate::support::{Noise, close, family_machine};
@@ -275,13 +277,28 @@ fn winding(line: &[[f64; 2]], p: Vector) -> f64 {
 /// A machine that has no b says so, and why.
 #[test]
 fn without_b_it_says_why() {
-    let why = PoseSpace::of(&family_machine("four-drive")).expect_err("not balanced");
+    let builtin = |name| stillbase::mechanics::machine::builtin(name).expect("built in");
+    let why = PoseSpace::of(builtin("space-arm")).expect_err("not balanced");
     assert!(matches!(why, NoPoseSpace::Varies { .. }), "{why}");
     assert!(why.to_string().contains("link") && why.to_string().contains("design"), "{why}");
     assert!(!why.to_string().contains("integral"), "{why}");
     // Two drives have a quantity of their own, and are told why it is not offered.
-    let two = PoseSpace::of(stillbase::mechanics::machine::builtin("scara").expect("built in"))
-        .expect_err("not balanced")
-        .to_string();
+    let two = PoseSpace::of(builtin("scara")).expect_err("not balanced").to_string();
     assert!(two.contains("integral over q₂ − q₁") && two.contains("not offered as b, because"), "{two}");
+    // Three drives are no exception: they run, without planes.
+    let planes = Planes::of(builtin("space-arm")).expect_err("not balanced");
+    assert_eq!(planes.to_string(), why.to_string());
+    let run = Run::new(&Scenario::builtin("space-arm").expect("built in")).expect("it runs");
+    assert!(run.planes().is_none() && run.waiting().is_none());
+}
+
+#[test]
+fn what_is_nearly_balanced_has_a_b_and_is_not_called_reactionless() {
+    let exact = stillbase::mechanics::machine::builtin("nine-link").expect("built in");
+    let heavier = exact.set("link.9.mass", "0.5").expect("a machine");
+    let rounded = stillbase::mechanics::machine::builtin("nine-link-table-1").expect("built in");
+    let is_reactionless = |machine| Planes::of(machine).expect("it has a b").is_reactionless();
+    assert!(is_reactionless(exact) && is_reactionless(rounded) && !is_reactionless(&heavier));
+    let four = PoseSpace::of(&family_machine("four-drive")).expect("it has a b");
+    assert!(!four.is_reactionless());
 }

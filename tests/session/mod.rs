@@ -4,6 +4,7 @@ mod any_drives;
 mod bounds;
 mod branches;
 mod cases;
+mod design;
 mod events;
 mod hand;
 mod limits;

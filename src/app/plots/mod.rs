@@ -21,7 +21,7 @@ use crate::picture::charts::figure::{BELOW, LEFT, Look};
 pub use prepared::{Prepared, extent};
 pub use search::is_looking;
 pub use shown::Shown;
-pub use which_b::{base_plot, small_axes};
+pub use which_b::{base_plot, marks, small_axes, spaced};
 pub use written::written;
 
 /// How wide the panel is made by itself, points: a share of the window, between these.

@@ -195,6 +195,9 @@ const NOTHING: f64 = 1e-7;
 /// If what is asked for cannot be, or cannot be together.
 pub fn place(machine: &Machine, asked: &Weighing) -> Result<Placed, NoWeights> {
     let problem = Problem::new(machine, asked)?;
+    if let Some(placed) = problem.unneeded(asked) {
+        return Ok(placed);
+    }
     let least = problem.solve(asked)?;
     problem.placed(asked, &least)
 }
@@ -258,6 +261,20 @@ impl Problem {
             return Err(NoWeights::Coupled);
         }
         Ok(Self { bare, inertia })
+    }
+
+    /// The machine as it is, if nothing has to be added: whatever is added makes mass and inertia more.
+    fn unneeded(&self, asked: &Weighing) -> Option<Placed> {
+        let (inertia, objective) = (&self.inertia, &asked.objective);
+        let total: f64 = inertia.momenta().iter().sum();
+        let balanced = inertia.is_force_balanced() && inertia.is_invariant();
+        if !balanced || asked.most_inertia.is_some_and(|most| total > most) {
+            return None;
+        }
+        let diagonal = inertia.diagonals();
+        let torques = diagonal.iter().zip(&objective.accelerations).map(|(h, acceleration)| h * acceleration);
+        let value = objective.inertia * diagonal.iter().sum::<f64>() + objective.torque * torques.fold(0.0, f64::max);
+        Some(Placed { machine: self.bare.clone(), added_mass: 0.0, value, gap: 0.0 })
     }
 
     fn drives(&self) -> usize {
@@ -422,6 +439,10 @@ impl Problem {
     }
 
     fn refine(&self, found: &mut [(Sites, [f64; 2])]) {
+        // The links balance each other.
+        if found.is_empty() {
+            return;
+        }
         let sites: Vec<Sites> = found.iter().map(|(site, _)| *site).collect();
         let conditions = self.conditions(&sites);
         let residual = conditions.iter().map(|condition| {

@@ -89,6 +89,10 @@ impl Machine {
                     _ => return None,
                 })
             }
+            ["counterweight"] if spec.counterweights.is_empty() => DEFAULT.into(),
+            ["counterweight"] => {
+                Value::Array(spec.counterweights.iter().map(Value::try_from).collect::<Result<_, _>>().ok()?)
+            }
             ["counterweight", number, field] => {
                 let weight = spec.counterweights.get(place_of(number)?)?;
                 Value::from(match field {
@@ -160,6 +164,12 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &Value) -> Result<(), Machin
                 "axial" => link.axial = one_or_zero()?,
                 _ => return Err(unknown()),
             }
+        }
+        // All of them, as a file lists them.
+        ["counterweight"] if is_default(value) => spec.counterweights.clear(),
+        ["counterweight"] => {
+            let want = "a list of { link, mass, at, radius }, or the word default for none";
+            spec.counterweights = value.clone().try_into().map_err(|_| bad(key, value, want))?;
         }
         ["counterweight", number, field] => {
             let known: Vec<String> = (1..=spec.counterweights.len()).map(|i| i.to_string()).collect();

@@ -11,6 +11,7 @@ pub mod axes;
 pub mod camera;
 pub mod course;
 pub mod dexterity;
+pub mod draft;
 pub mod exaggeration;
 pub mod fill;
 pub mod framing;

@@ -43,6 +43,8 @@ pub struct ViewOptions {
     pub exaggeration: f64,
     /// A force at the end effector, N.
     pub push: Option<[f64; 2]>,
+    /// Counterweights to choose from.
+    pub weights: Vec<Offered>,
     /// What a full arrow and arc of a reaction stand for; none goes by the largest so far.
     pub scale: Option<Scale>,
 }
@@ -66,6 +68,7 @@ impl Default for ViewOptions {
             shadows: false,
             exaggeration: 1.0,
             push: None,
+            weights: Vec::new(),
             scale: None,
         }
     }
@@ -88,6 +91,12 @@ pub enum Handle {
     Waypoint(usize),
     /// A link, by its number in the machine.
     Link(usize),
+    /// The centre of mass of a link, by its number, where the machine is designed.
+    Mass(usize),
+    /// A counterweight, by its number in the machine.
+    Weight(usize),
+    /// The end of a link, by its number.
+    End(usize),
     /// A pin that joins links, by its number in the [`Linkage`](super::linkage::Linkage).
     Joint(usize),
     /// An end of the joint limits of a relative angle: both counted from 0.
@@ -116,10 +125,24 @@ impl Handle {
             | Self::Waypoint(_)
             | Self::Limit(..)
             | Self::Payload
+            | Self::Mass(_)
+            | Self::Weight(_)
+            | Self::End(_)
             | Self::Link(_) => true,
             Self::Joint(_) | Self::Base | Self::Boundary | Self::Force | Self::Moment => false,
         }
     }
+}
+
+/// A counterweight to choose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Offered {
+    /// Its link, counted from 0.
+    pub link: usize,
+    /// Where along that, m.
+    pub at: f64,
+    /// m.
+    pub radius: f64,
 }
 
 /// Another run at the present instant.

@@ -94,6 +94,9 @@ impl Aim {
             Self::Push(force) => Self::Push(both(force, ROUND_FORCE)),
             Self::B(b) => Self::B(round(b, ROUND_B)),
             Self::Pull { link, along, at } => Self::Pull { link, along, at: both(at, ROUND_PLACE) },
+            Self::Mass { link, to } => Self::Mass { link, to: round(to, ROUND_PLACE) },
+            Self::Weight { weight, to } => Self::Weight { weight, to: round(to, ROUND_PLACE) },
+            Self::Length { link, to } => Self::Length { link, to: round(to, ROUND_PLACE).max(ROUND_PLACE) },
             // Where its drive is at a round angle: its grip says so.
             Self::Angles(a) => Self::Angles(a),
         }
@@ -140,4 +143,25 @@ pub enum Aim {
     Payload([f64; 2]),
     /// A force at the end effector, N.
     Push([f64; 2]),
+    /// The centre of mass of a link.
+    Mass {
+        /// Counted from 0.
+        link: usize,
+        /// m from its root.
+        to: f64,
+    },
+    /// A counterweight.
+    Weight {
+        /// Counted from 0.
+        weight: usize,
+        /// m from the root of its link.
+        to: f64,
+    },
+    /// The length of a link.
+    Length {
+        /// Counted from 0.
+        link: usize,
+        /// m.
+        to: f64,
+    },
 }

@@ -18,6 +18,7 @@ pub use outline::Outlined;
 use std::sync::Arc;
 
 use super::course::target_handle;
+use super::draft::Draft;
 use super::exaggeration::exaggerated;
 use super::framing::Content;
 use super::linkage::Linkage;
@@ -344,6 +345,17 @@ impl Stage {
         }
     }
 
+    /// What is to be seen of the machine alone.
+    pub fn body(&self, frame: &Frame) -> Content {
+        let (e, at) = (frame.q.units(), frame.base.at);
+        let ends = self.linkage.bars().iter().flat_map(|bar| bar.ends(&e));
+        let ends = ends.map(|[x, y, z]| [x + at.re, y + at.im, z]);
+        let discs = self.linkage.flat(&e).into_iter().flat_map(|flat| flat.weights);
+        let discs = discs.flat_map(|(p, radius)| [1.0, -1.0].map(|s| (p + at, s * radius)));
+        let discs = discs.flat_map(|(p, r)| [[p.re + r, p.im, 0.0], [p.re, p.im + r, 0.0]]);
+        Content { first: ends.chain(discs).collect(), then: Vec::new() }
+    }
+
     /// Everything there is to draw.
     pub fn scene(&self, frame: &Frame, options: &ViewOptions) -> Scene {
         let palette = palette(options.theme);
@@ -403,6 +415,15 @@ impl Stage {
         if options.shadows {
             scene.shadows.extend(self.linkage.shadows(&units, frame.base.at));
         }
+    }
+
+    /// The machine as it is designed.
+    pub fn drafted(&self, draft: &Draft, frame: &Frame, options: &ViewOptions) -> Scene {
+        let palette = palette(options.theme);
+        let mut scene = Scene::new(palette.background, self.linkage.model.clone());
+        self.draw_grid(&mut scene, &palette);
+        draft.draw(&mut scene, &self.linkage, frame, options);
+        scene
     }
 
     fn draw_grid(&self, scene: &mut Scene, palette: &Palette) {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::Scene;
 use super::camera::Camera;
+use super::draft::Draft;
 use super::framing::Content;
 use super::joint_space::JointSpace;
 use super::options::{Handle, ViewOptions};
@@ -46,11 +47,13 @@ pub enum ViewKind {
     Joints,
     /// All reactionless workspaces, b as height.
     Tower,
+    /// The machine's masses and lengths, to be changed.
+    Design,
 }
 
 impl ViewKind {
     /// In the order of the switch.
-    pub const ALL: [Self; 4] = [Self::Flat, Self::Space, Self::Joints, Self::Tower];
+    pub const ALL: [Self; 5] = [Self::Flat, Self::Space, Self::Joints, Self::Tower, Self::Design];
 
     /// What the switch says.
     pub fn name(self) -> &'static str {
@@ -59,6 +62,7 @@ impl ViewKind {
             Self::Space => "3D",
             Self::Joints => "Joints",
             Self::Tower => "Tower",
+            Self::Design => "Design",
         }
     }
 
@@ -77,6 +81,9 @@ impl ViewKind {
                 "Joint space: the drive angles q, and the plane Σ λq = b within the joint limits; a line of two drives"
             }
             Self::Tower => "All reactionless workspaces: b as height over the plane of motion",
+            Self::Design => {
+                "The machine itself: masses, centres of mass, lengths and counterweights, and what they balance"
+            }
         }
     }
 
@@ -86,6 +93,7 @@ impl ViewKind {
             Self::Flat | Self::Space => "",
             Self::Joints => "drag the dot in its plane  ·  drag the plane to change b",
             Self::Tower => "drag the dot or the slice  ·  click a green bar: its b",
+            Self::Design => "drag a centre of mass, a counterweight or the end of a link along it",
         }
     }
 
@@ -102,6 +110,7 @@ pub struct Views {
     joints: Option<JointSpace>,
     section: Option<Section>,
     tower: Option<Tower>,
+    draft: Draft,
 }
 
 impl Views {
@@ -122,7 +131,8 @@ impl Views {
             Ok(PoseMap::Space(space)) => Section::of(run, space),
             _ => None,
         };
-        Self { stage, joints: JointSpace::of(run), section, tower: Tower::of(run) }
+        let draft = Draft::of(&run.scenario().machine);
+        Self { stage, joints: JointSpace::of(run), section, tower: Tower::of(run), draft }
     }
 
     /// Why a machine has no such view, in words.
@@ -130,7 +140,7 @@ impl Views {
     /// # Errors
     /// If it has none.
     pub fn has(kind: ViewKind, run: &Run) -> Result<(), String> {
-        if kind.shows_machine() {
+        if kind.shows_machine() || kind == ViewKind::Design {
             return Ok(());
         }
         match run.pose_map() {
@@ -164,7 +174,7 @@ impl Views {
     /// The width of the grid under the machine, in words.
     pub fn grid(&self, kind: ViewKind) -> String {
         match kind {
-            ViewKind::Flat | ViewKind::Space => format!("{} m grid", Short(self.stage.grid_width())),
+            ViewKind::Flat | ViewKind::Space | ViewKind::Design => format!("{} m grid", Short(self.stage.grid_width())),
             ViewKind::Joints | ViewKind::Tower => String::new(),
         }
     }
@@ -212,7 +222,7 @@ impl Views {
         match (kind, &self.joints, &self.tower) {
             (ViewKind::Joints, Some(joints), _) => joints.camera(),
             (ViewKind::Tower, _, Some(tower)) => tower.camera(),
-            (ViewKind::Flat, ..) => Camera::flat(reach),
+            (ViewKind::Flat | ViewKind::Design, ..) => Camera::flat(reach),
             _ => Camera::orbit(reach),
         }
     }
@@ -225,6 +235,7 @@ impl Views {
         match (kind, &self.joints, &self.tower) {
             (ViewKind::Joints, Some(joints), _) => Content { first: joints.box_corners(), then: Vec::new() },
             (ViewKind::Tower, _, Some(tower)) => Content { first: tower.hull(), then: Vec::new() },
+            (ViewKind::Design, ..) => self.stage.body(frame),
             _ => self.stage.content(frame, poses),
         }
     }
@@ -237,6 +248,7 @@ impl Views {
         match (kind, &self.joints, &self.tower) {
             (ViewKind::Joints, Some(joints), _) => joints.scene(frame, options, camera),
             (ViewKind::Tower, _, Some(tower)) => tower.scene(frame, options, camera),
+            (ViewKind::Design, ..) => self.stage.drafted(&self.draft, frame, options),
             _ => self.stage.scene(frame, options),
         }
     }
@@ -266,7 +278,10 @@ impl Views {
             .pick(kind, frame, pointer)
             .filter(|pick| !matches!(pick.handle, Handle::Link(_)))
             .map(|pick| pick.handle);
-        pulled.or_else(|| kind.shows_machine().then(|| self.stage.under(frame, pointer)).flatten())
+        pulled.or_else(|| match kind {
+            ViewKind::Design => self.link_at(frame, pointer).map(Handle::Link),
+            kind => kind.shows_machine().then(|| self.stage.under(frame, pointer)).flatten(),
+        })
     }
 
     /// What is under the pointer and can be pulled at, in a frame as shown.
@@ -277,6 +292,7 @@ impl Views {
         match (kind, &self.joints, &self.tower) {
             (ViewKind::Joints, Some(joints), _) => joints.pick(frame, pointer),
             (ViewKind::Tower, _, Some(tower)) => tower.pick(frame, pointer),
+            (ViewKind::Design, ..) => self.draft.pick(self.stage.linkage(), frame, pointer),
             _ => {
                 let picks = [Handle::Target, Handle::Ring].into_iter().filter_map(|handle| {
                     let at = self.stage.handle(handle, frame)?;
@@ -328,6 +344,7 @@ impl Views {
         match (kind, &self.joints, &self.tower) {
             (ViewKind::Joints, Some(joints), _) => joints.aim(pick, frame, pointer),
             (ViewKind::Tower, _, Some(tower)) => tower.aim(pick, frame, pointer),
+            (ViewKind::Design, ..) => self.draft.aim(pick, self.stage.linkage(), frame, pointer),
             _ => {
                 let at = pointer.ray()?.at_height(self.stage.handle_height())?;
                 match pick.handle {

@@ -1,0 +1,98 @@
+//! What a designer asks for: whether the balance is kept, and what counterweights are made of.
+
+use egui::{Align, Layout, RichText, Ui};
+
+use crate::app::command::DesignCommand;
+use crate::app::theme::{bold, colour, plain};
+use crate::app::widgets::{Row, heading, name, unit};
+use crate::app::{Command, ViewState};
+use crate::picture::scene::palette::Palette;
+use crate::session::design::Brief;
+
+/// Densities of what discs are made of, kg/m³.
+const MATERIALS: [(&str, f64); 5] =
+    [("aluminium", 2700.0), ("steel", 7850.0), ("brass", 8500.0), ("lead", 11_340.0), ("tungsten", 19_300.0)];
+
+/// Draws it.
+pub fn show(ui: &mut Ui, has_weights: bool, view_state: &ViewState, commands: &mut Vec<Command>) {
+    let p = &view_state.palette();
+    let mut brief = view_state.brief.clone();
+    ui.add_space(10.0);
+    keeping(ui, p, &mut brief, has_weights);
+    ui.add_space(8.0);
+    heading(ui, p, "Counterweights are discs", "");
+    ui.horizontal(|ui| {
+        ui.label("material");
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let known = MATERIALS.iter().find(|(_, density)| *density == brief.disc.density);
+            let shown =
+                known.map_or_else(|| "another".to_owned(), |(name, density)| format!("{name}, {density} kg/m³"));
+            let list = egui::ComboBox::from_id_salt("material").selected_text(shown).width(172.0).show_ui(ui, |ui| {
+                for (words, density) in MATERIALS {
+                    ui.selectable_value(&mut brief.disc.density, density, format!("{words}, {density} kg/m³"));
+                }
+            });
+            name(&list.response, "material of the counterweights");
+        });
+    });
+    let number = |label, unit, tip, decimals, range: std::ops::RangeInclusive<f64>| Row {
+        label,
+        unit,
+        tip,
+        decimals,
+        speed: 0.1,
+        slide: range.clone(),
+        range,
+    };
+    let mut millimetres = 1e3 * brief.disc.thickness;
+    let row = number("thickness", "mm", "Of the plate that the discs are cut from", 1, 0.5..=1000.0);
+    if row.show(ui, p, &mut millimetres).changed() {
+        brief.disc.thickness = 1e-3 * millimetres;
+    }
+    let tip = "How far behind the root of its link a counterweight may sit; otherwise as far as the link is long";
+    let row = Row { speed: 0.002, ..number("behind the root", "m", tip, 3, 0.0..=100.0) };
+    bounded(ui, p, &row, &mut brief.back, 0.3);
+    let row = Row { speed: 0.02, ..number("heaviest", "kg", "How heavy one may be", 2, 1e-3..=1e5) };
+    bounded(ui, p, &row, &mut brief.most, 5.0);
+    if brief != view_state.brief {
+        commands.push(Command::Design(DesignCommand::Brief(Box::new(brief))));
+    }
+}
+
+/// The lock on the balance.
+fn keeping(ui: &mut Ui, p: &Palette, brief: &mut Brief, has_weights: bool) {
+    let tone = if brief.keeps_balance { p.zero } else { p.dim };
+    let what = if has_weights { "the counterweights follow" } else { "the centres of mass follow" };
+    let tip = "Whatever is changed, what is free follows so that (7) and (8) hold, each as little as it can; a ticked \
+               link stays";
+    ui.horizontal(|ui| {
+        let words = RichText::new("Keep balanced").font(bold(13.5)).color(colour(p.ink));
+        let ticked = ui.checkbox(&mut brief.keeps_balance, words).on_hover_text(tip);
+        name(&ticked, "Keep balanced");
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let words = if brief.keeps_balance { what } else { "off" };
+            ui.label(RichText::new(words).font(plain(11.5)).color(colour(tone)));
+        });
+    });
+}
+
+/// A bound that may be left out.
+fn bounded(ui: &mut Ui, p: &Palette, row: &Row<'_>, bound: &mut Option<f64>, usual: f64) {
+    ui.horizontal(|ui| {
+        let mut is_set = bound.is_some();
+        if ui.checkbox(&mut is_set, row.label).on_hover_text(row.tip).changed() {
+            *bound = is_set.then_some(usual);
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            unit(ui, p, row.unit);
+            match bound {
+                Some(value) => {
+                    row.number(ui, value);
+                }
+                None => {
+                    ui.label(RichText::new("any").font(plain(12.0)).color(colour(p.dim)));
+                }
+            }
+        });
+    });
+}

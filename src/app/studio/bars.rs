@@ -1,0 +1,131 @@
+//! What is out of balance: every line of (7) and (8) as a bar, with the links that it comes from.
+
+use egui::{Align2, CornerRadius, Rect, RichText, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
+
+use super::facts::{Facts, Term};
+use crate::app::theme::{bold, colour, plain};
+use crate::app::widgets::{heading, name};
+use crate::app::{ViewState, place};
+use crate::picture::numbers::signed;
+use crate::picture::scene::options::Handle;
+use crate::picture::scene::palette::{Palette, mix};
+use crate::session::Session;
+
+/// Heights of a row and of its bar, and the room on the left for its symbol and on the right for what is left, points.
+const ROW: f32 = 38.0;
+const HEIGHT: f32 = 18.0;
+const SYMBOL: f32 = 50.0;
+const LEFT: f32 = 76.0;
+
+/// Draws it.
+pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewState) {
+    let p = &view_state.palette();
+    heading(ui, p, "Balance", "which link gives what; white: what is left");
+    let hot = view_state.grabbed.map(|pick| pick.handle).or(view_state.hot).or(view_state.lit);
+    let hot = hot.and_then(|handle| link_of(handle, session));
+    for term in &facts.terms {
+        row(ui, p, session, term, hot);
+    }
+    if facts.terms.iter().any(|term| term.left[1].abs() > 1e-9) {
+        let words = "Some masses lie off the axes of their links; the bars show what they do along them.";
+        ui.label(RichText::new(words).font(plain(11.0)).color(colour(p.dim)));
+    }
+}
+
+/// The link that a thing of the scene belongs to, by its number.
+fn link_of(handle: Handle, session: &Session) -> Option<usize> {
+    let spec = session.scenario().machine.spec();
+    match handle {
+        Handle::Link(i) | Handle::Mass(i) | Handle::End(i) => Some(i),
+        Handle::Weight(i) => {
+            let weight = spec.counterweights.get(i)?;
+            spec.links.iter().position(|link| link.name == weight.link)
+        }
+        _ => None,
+    }
+}
+
+fn row(ui: &mut Ui, p: &Palette, session: &Session, term: &Term, hot: Option<usize>) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
+    let painter = ui.painter();
+    let top = rect.top() + 3.0;
+    let middle = top + 0.5 * HEIGHT;
+    painter.text(pos2(rect.left(), middle), Align2::LEFT_CENTER, &term.symbol, bold(13.0), colour(p.ink));
+    let below = rect.top() + HEIGHT + 12.0;
+    painter.text(pos2(rect.left(), below), Align2::LEFT_CENTER, term.meaning, plain(10.5), colour(p.dim));
+    let tone = colour(if term.is_balanced { p.zero } else { p.reaction });
+    let size = term.left[0].hypot(term.left[1]);
+    let text = match (term.is_balanced, term.left[1] == 0.0) {
+        (true, _) => "0".to_owned(),
+        (false, true) => signed(term.left[0], 4),
+        (false, false) => format!("|{}|", signed(size, 4)),
+    };
+    painter.text(pos2(rect.right(), middle), Align2::RIGHT_CENTER, &text, bold(12.5), tone);
+    painter.text(pos2(rect.right(), below), Align2::RIGHT_CENTER, term.unit, plain(10.5), colour(p.dim));
+    let bar = Rect::from_min_max(pos2(rect.left() + SYMBOL, top), pos2(rect.right() - LEFT, top + HEIGHT));
+    let zero = bar.center().x;
+    let greatest = term.greatest();
+    if greatest > 0.0 {
+        let per = f64::from(0.5 * bar.width()) / greatest;
+        let mut ends = [zero, zero];
+        for (link, part) in &term.parts {
+            let side = usize::from(*part > 0.0);
+            let next = ends[side] + (part * per) as f32;
+            let segment = Rect::from_x_y_ranges(ends[side].min(next)..=ends[side].max(next), bar.y_range());
+            ends[side] = next;
+            draw(ui, p, session, segment, (*link, *part), (term, hot));
+        }
+        // What is left stands where one side outweighs the other.
+        if !term.is_balanced {
+            let outweighed = zero - (term.left[0] * per) as f32;
+            let from = if term.left[0] > 0.0 { ends[1] + (outweighed - zero) } else { ends[0] + (outweighed - zero) };
+            let to = if term.left[0] > 0.0 { ends[1] } else { ends[0] };
+            let left = Rect::from_x_y_ranges(from.min(to)..=from.max(to), bar.bottom() + 2.0..=bar.bottom() + 5.0);
+            ui.painter().rect_filled(left, 1.0, colour(p.ink));
+        }
+    }
+    let centre = [pos2(zero, bar.top() - 3.0), pos2(zero, bar.bottom() + 3.0)];
+    ui.painter().line_segment(centre, Stroke::new(1.5, colour(p.ink)));
+    let of: Vec<String> = term
+        .parts
+        .iter()
+        .map(|(link, part)| format!("link {} {}", session.scenario().machine.links()[*link].name, signed(*part, 4)))
+        .collect();
+    let words = format!("{}, {}: {} {} left; {}", term.symbol, term.meaning, text, term.unit, of.join(", "));
+    name(&response, &words);
+}
+
+/// What one link brings.
+fn draw(
+    ui: &Ui,
+    p: &Palette,
+    session: &Session,
+    rect: Rect,
+    (link, part): (usize, f64),
+    (term, hot): (&Term, Option<usize>),
+) {
+    let machine = &session.scenario().machine;
+    let tone = p.drive(machine.resolved_links()[link].drive);
+    let tone = if hot == Some(link) { tone } else { mix(tone, p.panel, 0.38) };
+    let inner = rect.shrink2(vec2(if rect.width() > 3.0 { 0.75 } else { 0.0 }, 0.0));
+    ui.painter().rect_filled(inner, CornerRadius::same(2), colour(tone));
+    if hot == Some(link) {
+        ui.painter().rect_stroke(inner, CornerRadius::same(2), Stroke::new(1.5, colour(p.ink)), StrokeKind::Inside);
+    }
+    let words = &machine.links()[link].name;
+    if rect.width() > 9.0 + 6.0 * words.chars().count() as f32 {
+        ui.painter().text(rect.center(), Align2::CENTER_CENTER, words, bold(10.5), colour(p.background));
+    }
+    if ui.rect_contains_pointer(rect) {
+        place::light(ui.ctx(), Handle::Link(link));
+        let tip = format!("link {words}: {} {}", signed(part, 6), term.unit);
+        egui::Tooltip::always_open(
+            ui.ctx().clone(),
+            ui.layer_id(),
+            ui.scope_id().with("bar"),
+            egui::PopupAnchor::Pointer,
+        )
+        .gap(14.0)
+        .show(|ui| ui.label(RichText::new(tip).font(plain(12.0))));
+    }
+}

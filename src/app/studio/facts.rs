@@ -1,0 +1,130 @@
+//! [`Facts`]: what the panels say of a machine that has to be found first. It is found when the machine changes.
+
+use crate::mechanics::balance::{Breakdown, Condition};
+use crate::mechanics::counterweights::Placed;
+use crate::mechanics::machine::{Inertia, Machine};
+use crate::picture::scene::options::Offered;
+use crate::session::design::Brief;
+use crate::settings::number::subscript;
+
+/// How many machines the front has.
+const POINTS: usize = 25;
+
+/// Of the machine on display.
+#[derive(Default)]
+pub struct Facts {
+    of: Option<Machine>,
+    /// One of each line of (7) and (8).
+    pub(super) terms: Vec<Term>,
+    /// λ of the drives, or why there are none.
+    pub(super) lambda: Vec<f64>,
+    /// What the counterweights weigh together, kg, and Σ D_k, kg m².
+    pub(super) now: [f64; 2],
+    weighed: Option<(Machine, Brief)>,
+    front: Option<Result<Vec<Point>, String>>,
+}
+
+/// A machine of the front.
+pub(super) struct Point {
+    /// With its counterweights.
+    pub placed: Placed,
+    /// Σ D_k, kg m².
+    pub inertia: f64,
+}
+
+/// One line of (7) or (8), as bars.
+pub(super) struct Term {
+    /// Its symbol.
+    pub symbol: String,
+    /// What it means that nothing is left of it.
+    pub meaning: &'static str,
+    pub unit: &'static str,
+    /// What is left of it along the axes, and across them.
+    pub left: [f64; 2],
+    pub is_balanced: bool,
+    /// What the links bring with all that they carry, by number, the largest first; nothing of those that bring nothing.
+    pub parts: Vec<(usize, f64)>,
+}
+
+impl Term {
+    /// The larger of the two sums of what pulls one way.
+    pub fn greatest(&self) -> f64 {
+        let sum = |sign: f64| self.parts.iter().map(|(_, part)| (sign * part).max(0.0)).sum::<f64>();
+        sum(1.0).max(sum(-1.0))
+    }
+}
+
+/// Below this share of a line's largest part a link brings nothing to it.
+const NOTHING: f64 = 1e-9;
+
+impl Facts {
+    /// Finds what has to be said, if the machine or what is asked for has changed.
+    pub fn follow(&mut self, machine: &Machine, brief: &Brief) {
+        if self.of.as_ref() != Some(machine) {
+            self.terms = terms(machine);
+            let inertia = Inertia::of(machine);
+            self.lambda = inertia.lambda().to_vec();
+            let added = machine.spec().counterweights.iter().map(|weight| weight.mass).sum();
+            self.now = [added, inertia.momenta().iter().sum()];
+            self.of = Some(machine.clone());
+        }
+        let mut spec = machine.spec().clone();
+        spec.counterweights.clear();
+        // Whether the balance is kept does not matter to it.
+        let asked = Brief { keeps_balance: false, ..brief.clone() };
+        let Ok(bare) = Machine::new(spec) else { return };
+        if !self.weighed.as_ref().is_some_and(|(known, brief)| *known == bare && *brief == asked) {
+            let found = asked.front(&bare, POINTS).map_err(|why| why.to_string());
+            self.front = Some(found.map(|front| {
+                let measures = front.measures();
+                let both = front.points.into_iter().zip(measures);
+                both.map(|(placed, [_, inertia])| Point { placed, inertia }).collect()
+            }));
+            self.weighed = Some((bare, asked));
+        }
+    }
+
+    /// The machines of the front, from light to quick.
+    pub(super) fn front(&self) -> Result<&[Point], &str> {
+        match &self.front {
+            Some(Ok(points)) => Ok(points),
+            Some(Err(why)) => Err(why),
+            None => Ok(&[]),
+        }
+    }
+
+    /// The counterweights of one of them.
+    pub fn weights(&self, i: usize) -> Vec<Offered> {
+        let spec = self.of_front(i).map(Machine::spec);
+        let weights = spec.iter().flat_map(|spec| {
+            spec.counterweights.iter().filter_map(|weight| {
+                let link = spec.links.iter().position(|link| link.name == weight.link)?;
+                Some(Offered { link, at: weight.at, radius: weight.radius })
+            })
+        });
+        weights.collect()
+    }
+
+    /// One of them.
+    pub fn of_front(&self, i: usize) -> Option<&Machine> {
+        Some(&self.front().ok()?.get(i)?.placed.machine)
+    }
+}
+
+fn terms(machine: &Machine) -> Vec<Term> {
+    let breakdown = Breakdown::of(machine);
+    let term = |term: &crate::mechanics::balance::Term| {
+        let links = (0..machine.links().len()).map(|link| (link, breakdown.of_link(term, link).re));
+        let mut parts: Vec<(usize, f64)> = links.collect();
+        let most = parts.iter().fold(0.0_f64, |most, (_, part)| most.max(part.abs()));
+        parts.retain(|(_, part)| part.abs() > NOTHING * most);
+        parts.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+        let (symbol, meaning, unit) = match term.condition {
+            Condition::Force(k) => (format!("g{}", subscript(k + 1)), "no force", "kg m"),
+            Condition::Coupling(k, l) => (format!("C{}{}", subscript(k + 1), subscript(l + 1)), "no coupling", "kg m²"),
+        };
+        let left = [term.left.re, term.left.im];
+        Term { symbol, meaning, unit, left, is_balanced: term.balanced, parts }
+    };
+    breakdown.terms.iter().map(term).collect()
+}

@@ -1,0 +1,46 @@
+//! What the machine comes to: mass, λ, workspace, and what its task costs.
+
+use egui::{Align, Layout, RichText, Ui};
+
+use super::facts::Facts;
+use crate::app::theme::{colour, plain};
+use crate::app::widgets::heading;
+use crate::picture::numbers::signed;
+use crate::picture::scene::palette::Palette;
+use crate::session::Session;
+
+/// Draws it.
+pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, p: &Palette) {
+    ui.add_space(8.0);
+    heading(ui, p, "What it comes to", "");
+    let (machine, run) = (&session.scenario().machine, session.run());
+    let lambda: Vec<String> = facts.lambda.iter().map(|lambda| signed(*lambda, 3)).collect();
+    let mut rows = vec![
+        ("mass of all", format!("{} kg", signed(machine.mass(), 2))),
+        ("inertia of all drives, Σ D", format!("{} kg m²", signed(facts.now[1], 3))),
+        ("λ", lambda.join("  ")),
+    ];
+    if let Some(planes) = run.planes() {
+        let noun = if planes.is_reactionless() { "reactionless workspace" } else { "workspace of b" };
+        rows.push((noun, format!("{} m²", signed(planes.boundary().area(), 3))));
+    }
+    let forecast = &run.plan().forecast;
+    if run.waiting().is_none() {
+        rows.extend([
+            ("the task: greatest torque", format!("{} N m", signed(forecast.torque.max_abs(), 3))),
+            ("moment on the base, n_B", format!("{} N m", signed(forecast.moment, 3))),
+            ("force on the base, f_B", format!("{} N", signed(forecast.force, 3))),
+        ]);
+    }
+    for (words, value) in rows {
+        ui.horizontal(|ui| {
+            ui.label(RichText::new(words).font(plain(12.0)).color(colour(p.dim)));
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                ui.label(RichText::new(value).font(plain(12.5)).color(colour(p.ink)));
+            });
+        });
+    }
+    if let Some(waiting) = run.waiting() {
+        ui.label(RichText::new(waiting.why.to_string()).font(plain(11.5)).color(colour(p.reaction)));
+    }
+}

@@ -1,0 +1,236 @@
+//! The machine as it is designed: its links with their centres of mass and ends to take hold of, and its counterweights
+//! with what they weigh.
+
+use std::f64::consts::TAU;
+
+use super::linkage::Linkage;
+use super::options::{Handle, Offered, ViewOptions};
+use super::palette::{Palette, faded, mix, palette};
+use super::pick::{Aim, NEAR, Pick};
+use super::pointer::Pointer;
+use super::{Anchor, Label, Line, Marker, Scene, point};
+use crate::mechanics::machine::{Length, Machine};
+use crate::mechanics::planar::{Units, Vector, unit};
+use crate::simulation::frame::Frame;
+
+/// Half of the cross in a centre of mass, as a part of the reach.
+const CROSS: f64 = 0.0105;
+/// Corners of a circle.
+const CORNERS: u32 = 64;
+/// How much paler a link is drawn that the pointer is not on.
+const PALE: f32 = 0.42;
+/// How near to a handle the pointer takes hold of it, px.
+const NEAR_END: f64 = 11.0;
+/// How far beyond the end of a link its length is written, px.
+const BESIDE: f32 = 14.0;
+
+/// What stays the same from frame to frame.
+#[derive(Clone, Debug)]
+pub struct Draft {
+    /// Of each link.
+    links: Vec<Link>,
+    weights: Vec<Weight>,
+}
+
+#[derive(Clone, Debug)]
+struct Link {
+    /// Its centre of mass, m along and across it.
+    com: Vector,
+    /// m.
+    length: f64,
+    /// The name of its length, if others share it.
+    shared: Option<String>,
+    mass: f64,
+}
+
+#[derive(Clone, Debug)]
+struct Weight {
+    /// Its link, counted from 0.
+    link: usize,
+    /// m along it.
+    at: f64,
+    mass: f64,
+}
+
+impl Draft {
+    /// Of a machine.
+    pub fn of(machine: &Machine) -> Self {
+        let spec = machine.spec();
+        let links = spec.links.iter().zip(machine.resolved_links()).map(|(link, part)| Link {
+            com: Vector::new(link.com, link.com_normal),
+            length: part.length,
+            shared: match &link.length {
+                Length::Named(name) => Some(name.clone()),
+                Length::Metres(_) => None,
+            },
+            mass: link.mass,
+        });
+        let weights = spec.counterweights.iter().filter_map(|weight| {
+            let link = spec.links.iter().position(|link| link.name == weight.link)?;
+            Some(Weight { link, at: weight.at, mass: weight.mass })
+        });
+        Self { links: links.collect(), weights: weights.collect() }
+    }
+
+    /// Everything there is to draw but the grid.
+    pub fn draw(&self, scene: &mut Scene, linkage: &Linkage, frame: &Frame, options: &ViewOptions) {
+        let palette = palette(options.theme);
+        let e = frame.q.units();
+        let hot = options.hot.and_then(|handle| self.link_of(handle));
+        let mut solids = linkage.solids(&e, frame.base, false, &palette);
+        for (i, bar) in linkage.bars().iter().enumerate() {
+            for solid in solids.iter_mut().filter(|solid| solid.name == *bar.item() && hot != Some(i)) {
+                solid.colour = mix(solid.colour, palette.background, PALE);
+            }
+        }
+        scene.solids.extend(solids);
+        for handle in self.handles() {
+            let Some(at) = self.place(handle, linkage, frame) else { continue };
+            let arm = (CROSS * linkage.reach()) as f32;
+            draw_handle(scene, &palette, (handle, self.kilograms(handle)), (at, arm), options.hot == Some(handle));
+        }
+        self.draw_choice(scene, linkage, &palette, frame, &options.weights);
+        if let Some(i) = hot {
+            self.draw_length(scene, linkage, &palette, (i, &e), frame);
+        }
+    }
+
+    /// What a counterweight weighs.
+    fn kilograms(&self, handle: Handle) -> f64 {
+        match handle {
+            Handle::Weight(i) => self.weights.get(i).map_or(0.0, |weight| weight.mass),
+            _ => 0.0,
+        }
+    }
+
+    /// Counterweights to choose from, as circles.
+    fn draw_choice(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Frame, weights: &[Offered]) {
+        let e = frame.q.units();
+        let circle = |Offered { link, at, radius }: &Offered| {
+            let (root, along, _) = linkage.bars().get(*link)?.pose(&e);
+            let middle = frame.base.at + root + along * *at;
+            let corner = |i: u32| middle + unit(TAU * f64::from(i) / f64::from(CORNERS)) * *radius;
+            Some((0..=CORNERS).map(|i| point(corner(i), linkage.top())).collect::<Vec<_>>())
+        };
+        let circles: Vec<_> = weights.iter().filter_map(circle).collect();
+        if !circles.is_empty() {
+            scene.lines.push(Line::new("design/choice", circles, 2.2, palette.amber).on_top());
+        }
+    }
+
+    /// How long a link is, beyond its end, with a line along it.
+    fn draw_length(
+        &self,
+        scene: &mut Scene,
+        linkage: &Linkage,
+        palette: &Palette,
+        (i, e): (usize, &Units),
+        frame: &Frame,
+    ) {
+        let link = &self.links[i];
+        let (root, along, _) = linkage.bars()[i].pose(e);
+        let z = linkage.top();
+        let [from, to] = [root, root + along * link.length].map(|p| point(frame.base.at + p, z));
+        scene.lines.push(Line::new("design/length", [vec![from, to]], 1.2, palette.ink).dashed(2.0, 3.0).on_top());
+        let name = link.shared.as_deref().map_or(String::new(), |name| format!("{name} "));
+        let text = format!("{name}{:.3} m", link.length);
+        let way = [along.re as f32, -along.im as f32].map(|x| x * BESIDE);
+        let anchor = if way[0] >= 0.0 { Anchor::Left } else { Anchor::Right };
+        scene.labels.push(Label::new("design/length/m", to, way, text, palette.ink, 12.0, anchor));
+    }
+
+    /// The link that a handle belongs to.
+    pub fn link_of(&self, handle: Handle) -> Option<usize> {
+        match handle {
+            Handle::Link(i) | Handle::Mass(i) | Handle::End(i) => (i < self.links.len()).then_some(i),
+            Handle::Weight(i) => self.weights.get(i).map(|weight| weight.link),
+            _ => None,
+        }
+    }
+
+    /// Mass of a link without its counterweight, kg.
+    pub fn mass(&self, link: usize) -> Option<f64> {
+        self.links.get(link).map(|link| link.mass)
+    }
+
+    fn handles(&self) -> impl Iterator<Item = Handle> + use<> {
+        let (links, weights) = (self.links.len(), self.weights.len());
+        let ends = (0..links).map(Handle::End);
+        ends.chain((0..links).map(Handle::Mass)).chain((0..weights).map(Handle::Weight))
+    }
+
+    /// Where a handle is in the scene.
+    fn place(&self, handle: Handle, linkage: &Linkage, frame: &Frame) -> Option<[f64; 3]> {
+        let on = match handle {
+            Handle::Mass(i) => self.links.get(i)?.com,
+            Handle::End(i) => Vector::new(self.links.get(i)?.length, 0.0),
+            Handle::Weight(i) => Vector::new(self.weights.get(i)?.at, 0.0),
+            _ => return None,
+        };
+        let (root, along, _) = linkage.bars().get(self.link_of(handle)?)?.pose(&frame.q.units());
+        let at = frame.base.at + root + along * on;
+        Some([at.re, at.im, linkage.top()])
+    }
+
+    /// The handle under the pointer: of centres of mass and counterweights the nearest, then ends of links.
+    pub fn pick(&self, linkage: &Linkage, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
+        let near = |handle: Handle| {
+            let at = self.place(handle, linkage, frame)?;
+            let most = if matches!(handle, Handle::End(_)) { NEAR_END } else { 0.6 * NEAR };
+            // What lies on an end comes before it.
+            let behind = if matches!(handle, Handle::End(_)) { NEAR } else { 0.0 };
+            pointer.distance(at).filter(|d| *d < most).map(|d| (Pick::of(handle, at), d + behind))
+        };
+        self.handles().filter_map(near).min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick)
+    }
+
+    /// What pulling at a handle asks for: it stays on the axis of its link.
+    pub fn aim(&self, pick: &Pick, linkage: &Linkage, frame: &Frame, pointer: &Pointer) -> Option<Aim> {
+        let link = self.link_of(pick.handle)?;
+        let [x, y] = pointer.ray()?.at_height(linkage.top())?;
+        let (root, along, _) = linkage.bars().get(link)?.pose(&frame.q.units());
+        let to = ((Vector::new(x, y) - frame.base.at - root) * along.conj()).re;
+        match pick.handle {
+            Handle::Mass(_) => Some(Aim::Mass { link, to }),
+            Handle::Weight(weight) => Some(Aim::Weight { weight, to }),
+            Handle::End(_) => Some(Aim::Length { link, to: to.max(SHORTEST) }),
+            _ => None,
+        }
+    }
+}
+
+/// No link is pulled shorter than this, m.
+const SHORTEST: f64 = 1e-3;
+
+fn draw_handle(
+    scene: &mut Scene,
+    palette: &Palette,
+    (handle, kilograms): (Handle, f64),
+    (at, arm): ([f64; 3], f32),
+    hot: bool,
+) {
+    let at = at.map(|x| x as f32);
+    let edge = if hot { palette.amber } else { palette.ink };
+    match handle {
+        Handle::Mass(_) => {
+            // A cross in a ring, as drawings mark a centre of mass.
+            let (size, arm) = if hot { (9.0, 1.4 * arm) } else { (7.0, arm) };
+            let ring = Marker::disc("design/masses", at, size, faded(edge, 0.0)).edged(edge, 1.8);
+            scene.markers.push(ring);
+            let [x, y, z] = at;
+            let cross = [[[x - arm, y, z], [x + arm, y, z]], [[x, y - arm, z], [x, y + arm, z]]];
+            scene.lines.push(Line::new("design/masses/crosses", cross.map(Vec::from), 1.4, edge).on_top());
+        }
+        Handle::Weight(_) => {
+            let text = format!("{:.2}", kilograms);
+            let size = if hot { 9.0 } else { 4.0 };
+            scene.markers.push(Marker::disc("design/weights", at, size, palette.background).edged(edge, 1.6));
+            let label = Label::new("design/weights/kg", at, [0.0, -13.0], text, palette.ink, 11.5, Anchor::Centre);
+            scene.labels.push(label);
+        }
+        Handle::End(_) if hot => {
+            scene.markers.push(Marker::disc("design/ends", at, 7.0, palette.background).edged(edge, 2.0));
+        }
+        _ => {}
+    }
+}

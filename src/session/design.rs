@@ -1,0 +1,107 @@
+//! [`Brief`]: what a designer asks of a machine whose masses and lengths are changed by hand, and the edits that follow.
+
+use std::collections::BTreeSet;
+
+use toml::{Table, Value};
+
+use super::edit::Edit;
+use crate::mechanics::balance::{Adjusted, Body, Hold, Keep, Parameter, Quantity, keep};
+use crate::mechanics::counterweights::{Disc, Front, NoWeights, Objective, Sites, Weighing, front};
+use crate::mechanics::machine::Machine;
+use crate::settings::change::{join, leaves, one};
+
+/// What is dear: a kilogram more or less of a counterweight, 1/kg, and a metre that one or a centre of mass moves, 1/m.
+const MASS: f64 = 1.0;
+const PLACE: f64 = 5.0;
+
+/// What a designer asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Brief {
+    /// Whatever is changed, the rest follows so that the machine is balanced, (7) and (8).
+    pub keeps_balance: bool,
+    /// Names of links that stay as they are, with their counterweights.
+    pub fixed: BTreeSet<String>,
+    /// What counterweights are made of.
+    pub disc: Disc,
+    /// How far behind the root of its link a counterweight may sit at most, m; none: as far as the link is long.
+    pub back: Option<f64>,
+    /// How heavy one may be, kg; none: any mass.
+    pub most: Option<f64>,
+}
+
+impl Default for Brief {
+    fn default() -> Self {
+        Self { keeps_balance: false, fixed: BTreeSet::new(), disc: Disc::STEEL, back: None, most: None }
+    }
+}
+
+impl Brief {
+    /// A change of a machine as an edit; one that is kept balanced with all that follows from it, each number as little
+    /// as it can from where it was in `start`.
+    ///
+    /// # Errors
+    /// If there is no such machine, or none that is balanced: what stands in the way, and what would do.
+    pub fn edit(&self, machine: &Machine, start: &Machine, change: &Table) -> Result<Edit, String> {
+        let plain = || Edit::Set { change: change.clone() };
+        if !self.keeps_balance {
+            return Ok(plain());
+        }
+        let changed = machine.with(change).map_err(|why| why.to_string())?;
+        let named: Vec<String> = leaves(change).into_iter().map(|(key, _)| key).collect();
+        let kept = keep(&changed, &self.asked(&changed, start, &named)).map_err(|why| why.to_string())?;
+        let follows = kept.settings(&changed);
+        let whole = follows.into_iter().fold(change.clone(), |whole, (key, value)| join(whole, &one(&key, value)));
+        Ok(Edit::Set { change: whole })
+    }
+
+    /// What may change: the counterweights of a machine that has some, else the centres of mass of its links.
+    fn asked(&self, machine: &Machine, start: &Machine, named: &[String]) -> Keep {
+        let spec = machine.spec();
+        let free: Vec<(Parameter, &str)> = match spec.counterweights.is_empty() {
+            true => spec.links.iter().enumerate().map(|(j, link)| (Parameter::com(j), link.name.as_str())).collect(),
+            false => {
+                let weights = spec.counterweights.iter().enumerate();
+                let both = [Quantity::Mass, Quantity::Along];
+                weights
+                    .flat_map(|(i, weight)| {
+                        both.map(|what| (Parameter::new(Body::Counterweight(i), what), weight.link.as_str()))
+                    })
+                    .collect()
+            }
+        };
+        let adjusted = |(parameter, link): (Parameter, &str)| {
+            let stays = self.fixed.contains(link) || named.contains(&parameter.key(machine));
+            Adjusted {
+                parameter,
+                hold: if stays { Hold::Fixed } else { Hold::Free },
+                penalty: if parameter.quantity == Quantity::Mass { MASS } else { PLACE },
+                from: parameter.value(spec).unwrap_or_default(),
+            }
+        };
+        Keep { parameters: free.into_iter().map(adjusted).collect() }.measured_from(start)
+    }
+
+    /// Counterweights that balance the links alone: what less inertia costs in mass, in so many machines.
+    ///
+    /// # Errors
+    /// If nothing within the bounds balances it.
+    pub fn front(&self, machine: &Machine, count: usize) -> Result<Front, NoWeights> {
+        let spec = machine.spec();
+        let free = machine.resolved_links().iter().enumerate();
+        let sites = free.filter(|(link, _)| !self.fixed.contains(&spec.links[*link].name)).map(|(link, part)| Sites {
+            link,
+            from: -self.back.unwrap_or(part.length),
+            to: part.length,
+            most: self.most.unwrap_or(f64::INFINITY),
+        });
+        let asked =
+            Weighing { sites: sites.collect(), disc: self.disc, objective: Objective::mass(), most_inertia: None };
+        front(machine, &asked, count)
+    }
+}
+
+/// The edit that gives a machine the counterweights of another.
+pub fn weights_of(machine: &Machine) -> Edit {
+    let weights = machine.spec().counterweights.iter().filter_map(|weight| Value::try_from(weight).ok());
+    Edit::Set { change: Table::from_iter([("counterweight".to_owned(), Value::Array(weights.collect()))]) }
+}

@@ -1,0 +1,183 @@
+//! The design view: what is out of balance and where it comes from, what follows when it is kept, counterweights to take.
+
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable as _;
+use stillbase::app::Command;
+use stillbase::mechanics::machine::{Inertia, Machine, parse};
+use stillbase::picture::scene::options::Handle;
+use stillbase::picture::scene::palette::Theme;
+use stillbase::picture::scene::pointer::Pointer;
+use stillbase::picture::scene::views::ViewKind;
+use stillbase::session::scenario::{Scenario, TaskKind};
+use stillbase::session::{Edit, Session};
+
+use super::{Window, drag, session, type_into, window, window_of};
+use crate::Test;
+
+pub const TESTS: &[Test] = tests![
+    bars_say_which_link_brings_what,
+    a_centre_of_mass_is_dragged_and_the_others_follow,
+    counterweights_are_taken_and_follow_a_length,
+    what_cannot_be_balanced_is_told_and_changes_nothing,
+    numbers_of_links_are_typed,
+];
+
+/// A window in which the bare bars of the reference are designed.
+fn bare() -> Window {
+    let machine: Machine =
+        parse(include_str!("../reference/family/nine-link-bare.toml"), "nine-link-bare.toml").expect("a machine");
+    let mut case = Scenario { machine, ..Scenario::builtin("case-1").expect("built in") };
+    case.task.kind = TaskKind::MinimumNorm;
+    let mut h = window_of(case, Theme::Dark, 900.0);
+    h.key_press(Key::D);
+    h.run_steps(4);
+    h
+}
+
+fn machine(h: &Window) -> &Machine {
+    &session(h).scenario().machine
+}
+
+fn is_balanced(machine: &Machine) -> bool {
+    let inertia = Inertia::of(machine);
+    inertia.is_force_balanced() && inertia.is_invariant()
+}
+
+/// Where a handle of the design view is on the screen.
+fn place(h: &Window, handle: Handle) -> egui::Pos2 {
+    let scene = h.get_by_label_contains("Scene:").rect();
+    let camera = *h.state().app_state().view_state().camera();
+    let at = |x: usize, y: usize| scene.min + egui::vec2(x as f32, y as f32);
+    let under = |pos: egui::Pos2| {
+        let pair = |v: egui::Vec2| [f64::from(v.x), f64::from(v.y)];
+        let pointer = Pointer { camera, size: pair(scene.size()), at: pair(pos - scene.min) };
+        h.state().app_state().views().under(ViewKind::Design, session(h).frame(), &pointer)
+    };
+    let (width, height) = (scene.width() as usize, scene.height() as usize);
+    let all = (0..height).step_by(3).flat_map(|y| (0..width).step_by(3).map(move |x| at(x, y)));
+    let found: Vec<_> = all.filter(|pos| under(*pos) == Some(handle)).collect();
+    let sum = found.iter().fold(egui::Vec2::ZERO, |sum, pos| sum + pos.to_vec2());
+    assert!(!found.is_empty(), "{handle:?} is nowhere");
+    (sum / found.len() as f32).to_pos2()
+}
+
+fn bars_say_which_link_brings_what() {
+    let mut h = window("case-3", Theme::Light);
+    h.run_steps(2);
+    h.key_press(Key::D);
+    h.run_steps(3);
+    assert_eq!(h.state().app_state().view_state().view, ViewKind::Design);
+    for words in ["g₁, no force: 0 kg m left", "C₁₂, no coupling: 0 kg m² left"] {
+        assert!(h.query_by_label_contains(words).is_some(), "{words}");
+    }
+    // Link 5 alone is made to weigh on drive 2.
+    h.state_mut().app_state_mut().carry_out(Command::Edit(Edit::at(&["link", "5", "com"], 0.05)));
+    h.run_steps(3);
+    let inertia = Inertia::of(machine(&h));
+    let left = inertia.first_moment(1).re;
+    let words = format!("g₂, no force: {left:.4} kg m left").replace('-', "−");
+    // Drive 2 is where link 5 brings most of what pulls its way; the pointer on it lights it up.
+    let rect = h.get_by_label_contains(&words).rect();
+    let mut lit = Vec::new();
+    for x in (rect.left() as i32..rect.right() as i32).step_by(4) {
+        h.hover_at(egui::pos2(x as f32, rect.top() + 12.0));
+        h.run_steps(2);
+        lit.extend(h.state().app_state().view_state().lit);
+    }
+    let links: Vec<usize> = [4, 3, 8].into_iter().filter(|i| lit.contains(&Handle::Link(*i))).collect();
+    assert_eq!(links, [4, 3, 8], "links 5, 4 and 9 are in the bar: {lit:?}");
+    h.key_press(Key::D);
+    h.run_steps(2);
+    assert_eq!(h.state().app_state().view_state().view, ViewKind::Flat);
+}
+
+fn a_centre_of_mass_is_dragged_and_the_others_follow() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    h.key_press(Key::D);
+    h.run_steps(3);
+    let before = machine(&h).clone();
+    h.get_by_label("Keep balanced").click();
+    h.run_steps(3);
+    h.get_by_label("link 9 stays").click();
+    h.run_steps(2);
+    let from = place(&h, Handle::Mass(0));
+    let undone = session(&h).undo_count();
+    drag(&mut h, from, from - egui::vec2(0.0, 12.0));
+    h.run_steps(3);
+    let after = machine(&h).clone();
+    let moved = after.links()[0].com - before.links()[0].com;
+    assert!(moved.abs() > 0.01, "link 1 by {moved} m");
+    assert!(is_balanced(&after), "the others follow");
+    assert_eq!(after.links()[8].com, before.links()[8].com, "link 9 stays");
+    let others = before.links().iter().zip(after.links()).filter(|(a, b)| a.com != b.com).count();
+    assert!(others > 1, "{others} centres of mass have moved");
+    // One drag is one change, saved and made again like any other.
+    assert_eq!(session(&h).undo_count(), undone + 1);
+    let again = Session::open(session(&h).to_scenario()).expect("it opens");
+    assert_eq!(again.scenario().machine, after);
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    h.run_steps(3);
+    assert_eq!(machine(&h).spec(), before.spec());
+}
+
+fn counterweights_are_taken_and_follow_a_length() {
+    let mut h = bare();
+    assert!(h.query_by_label_contains("g₁, no force: 1.2750 kg m left").is_some());
+    h.get_by_label("behind the root").click();
+    h.run_steps(3);
+    h.get_by_label("least mass").click();
+    h.run_steps(4);
+    let added = |h: &Window| machine(h).spec().counterweights.iter().map(|weight| weight.mass).sum::<f64>();
+    // The known least of these bars.
+    assert!((added(&h) - 9.572_666_7).abs() < 1e-5, "{} kg", added(&h));
+    assert!(is_balanced(machine(&h)));
+    h.get_by_label("least inertia").click();
+    h.run_steps(4);
+    let inertia: f64 = Inertia::of(machine(&h)).momenta().iter().sum();
+    assert!((inertia - 1.798_401_1).abs() < 1e-5, "{inertia} kg m²");
+    h.get_by_label("Keep balanced").click();
+    h.run_steps(3);
+    let (links, weighed) = (machine(&h).spec().links.clone(), added(&h));
+    let end = place(&h, Handle::End(0));
+    drag(&mut h, end, end + egui::vec2(-4.0, 60.0));
+    h.run_steps(4);
+    assert!(is_balanced(machine(&h)), "the counterweights follow");
+    assert!((added(&h) - weighed).abs() > 1e-3, "they weigh {} kg", added(&h));
+    let length = |h: &Window| machine(h).resolved_links()[0].length;
+    assert!((length(&h) - 0.5).abs() > 0.02, "link 1 is {} m long", length(&h));
+    let now = &machine(&h).spec().links;
+    assert!(links.iter().zip(now).all(|(a, b)| (a.mass, a.com) == (b.mass, b.com)), "the links stay");
+}
+
+fn what_cannot_be_balanced_is_told_and_changes_nothing() {
+    let mut h = bare();
+    h.get_by_label("heaviest").click();
+    h.run_steps(3);
+    type_into(&mut h, "heaviest kg", "0.5");
+    assert!(h.query_by_label_contains("no counterweights balance this machine within these bounds").is_some());
+    assert!(h.query_by_label_contains("would do").is_some());
+    // Nor does the centre of mass of one link alone.
+    for link in 2..=9 {
+        h.get_by_label(&format!("link {link} stays")).click();
+        h.run_steps(1);
+    }
+    let before = machine(&h).clone();
+    h.get_by_label("Keep balanced").click();
+    h.run_steps(3);
+    assert!(h.query_all_by_label_contains("no balance within these limits").next().is_some());
+    assert!(!h.state().app_state().view_state().brief.keeps_balance);
+    assert_eq!(*machine(&h), before);
+}
+
+fn numbers_of_links_are_typed() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    h.key_press(Key::D);
+    h.run_steps(3);
+    type_into(&mut h, "mass of link 5 kg", "800 g");
+    assert_eq!(machine(&h).links()[4].mass, 0.8);
+    type_into(&mut h, "centre of mass of link 5 m", "-2 cm");
+    assert_eq!(machine(&h).links()[4].com, -0.02);
+    assert!(!is_balanced(machine(&h)));
+}
