@@ -4,8 +4,9 @@ use egui::Key;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::views::ViewKind;
+use stillbase::session::scenario::TaskKind;
 
-use super::{Window, drag, seen, session, window};
+use super::{Window, drag, seen, session, type_into, window};
 use crate::Test;
 
 pub const TESTS: &[Test] = tests![
@@ -14,6 +15,8 @@ pub const TESTS: &[Test] = tests![
     other_numbers_of_drives_have_a_tower,
     other_numbers_of_drives_are_told_which_b_serves,
     a_view_that_a_machine_lacks_says_why,
+    the_hand_is_told_where_to_point,
+    other_kinds_of_tasks_are_chosen_for_four_drives,
 ];
 
 fn themes(name: &str, case: &str, mut at: impl FnMut(&mut Window)) {
@@ -163,5 +166,54 @@ fn other_numbers_of_drives_are_told_which_b_serves() {
         h.drop_at(plot.center() + egui::vec2(30.0, 0.0));
         h.run_steps(3);
         assert_ne!(session(&h).b_aim(), before, "{case}");
+    }
+}
+
+/// Four drives leave a freedom: kept to the hand's orientation, it can be told which.
+fn the_hand_is_told_where_to_point() {
+    let mut h = window("four-drive", Theme::Dark);
+    h.run_steps(2);
+    assert!(h.query_by_label("hand points to rad").is_none(), "not while the drives turn least");
+    h.get_by_label("Freedoms left").click();
+    h.run_steps(3);
+    h.get_by_label("Keep the hand's orientation").click();
+    h.run_steps(4);
+    let own = session(&h).run().plan().motion.path.at(0.0).q[3];
+    type_into(&mut h, "hand points to rad", "0.3");
+    h.run_steps(4);
+    let run = session(&h).run();
+    assert_eq!((run.scenario().task.orientation, run.waiting()), (Some(0.3), None));
+    for s in [0.0, 0.5, 1.0] {
+        // The hand runs against the angle of its drive.
+        let points_to = run.plan().motion.path.at(s).q[3] - std::f64::consts::PI;
+        assert!(
+            (points_to - 0.3).abs() < 1e-9 && (run.plan().motion.path.at(s).q[3] - own).abs() > 1e-3,
+            "{points_to}"
+        );
+    }
+    // Where no pose has it so, it is said where the hand can point.
+    type_into(&mut h, "hand points to rad", "2.5");
+    h.run_steps(4);
+    assert_eq!(session(&h).scenario().task.orientation, Some(0.3), "it stays as it was");
+    assert!(h.query_all_by_label_contains("want it from").next().is_some(), "the reason is shown");
+}
+
+/// What becomes of the freedoms is chosen as for three drives, and what cannot be done says why.
+fn other_kinds_of_tasks_are_chosen_for_four_drives() {
+    let mut h = window("four-drive", Theme::Dark);
+    h.run_steps(2);
+    for (words, kind) in [
+        ("Change b, at a price", TaskKind::ChangeB),
+        ("Zero momentum", TaskKind::ZeroMomentum),
+        ("Drive 1 apart", TaskKind::SameTip),
+        ("Least reaction", TaskKind::LeastReaction),
+    ] {
+        h.get_by_label("Redundancy").click();
+        h.run_steps(3);
+        h.get_by_label(words).click();
+        h.run_steps(4);
+        let run = session(&h).run();
+        assert_eq!((run.scenario().task.kind, run.waiting()), (kind, None), "{words}");
+        assert!(run.planned_time() > 0.0);
     }
 }
