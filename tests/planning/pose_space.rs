@@ -263,6 +263,27 @@ fn the_workspace_of_four_drives() {
     }
 }
 
+/// Boundaries carry over what is covered from one distance to the next: for machines at random with four drives, the
+/// area is that of what is reached at many distances, each asked for alone.
+#[test]
+fn areas_of_any_four_drives_are_what_is_reached() {
+    const RINGS: u32 = 300;
+    let mut noise = Noise::of(41);
+    for i in 0..8 {
+        let (_, space) = any_space(&mut noise, 4);
+        let outline = space.outline_within(0.4, 1e-3, &mut |_| true).expect("wanted to its end");
+        let (near, far) = (space.nearest(), space.farthest());
+        let width = (far - near) / f64::from(RINGS);
+        let ring = |j: u32| {
+            let r = near + width * (f64::from(j) + 0.5);
+            let Ok(set) = space.reach(Vector::new(r, 0.0)) else { return 0.0 };
+            set.intervals.iter().map(|[low, high]| high - low).sum::<f64>() / set.period * TAU * r * width
+        };
+        let area = (0..RINGS).map(ring).sum::<f64>();
+        assert!((outline.area - area).abs() < 5e-3 * area, "{i}: {} by the boundary, {area} by rings", outline.area);
+    }
+}
+
 fn signed(line: &[[f64; 2]]) -> f64 {
     let pairs = line.iter().zip(line.iter().cycle().skip(1));
     pairs.map(|(a, b)| 0.5 * (a[0] * b[1] - a[1] * b[0])).sum()

@@ -2,7 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use super::space::{Joint, PoseSpace};
+use super::joint::Joint;
+use super::pattern::Patterns;
+use super::space::PoseSpace;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 
 /// Whole turns of that drive either way from the middle of its range.
@@ -53,6 +55,7 @@ impl PoseSpace {
         let joints = kept.map(|(_, joint)| Joint { ends: joint.ends.map(place), ..*joint }).collect();
         let mut rest = self.clone();
         (rest.tip, rest.lambda, rest.sum, rest.joints) = (others(&self.tip), others(&self.lambda), sum, joints);
+        rest.patterns = Patterns::default();
         Some((rest, joint))
     }
 }

@@ -22,13 +22,16 @@
 
 mod critical;
 mod facing;
+mod joint;
 mod middle;
 mod outline;
+mod pattern;
 mod poses;
 mod reach;
 mod space;
 mod toward;
 
+pub use joint::Joint;
 pub use outline::Outline;
-pub use space::{Joint, Lead, NoPoseSpace, PoseSpace};
+pub use space::{Lead, NoPoseSpace, PoseSpace};
 pub(crate) use space::{held, is_reactionless};

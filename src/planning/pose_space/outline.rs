@@ -5,8 +5,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::critical::Scan;
-use super::reach::Seen;
+use super::reach::{Seen, Work};
 use super::space::PoseSpace;
 use crate::mechanics::planar::{Vector, dot, unit};
 
@@ -132,14 +131,14 @@ impl PoseSpace {
         let span = far - near;
         let at = |i: usize| near + span * (i as f64 + if i == 0 { FOUND } else { 0.0 }) / FIRST as f64;
         let mut sweep =
-            Sweep { space: self, b, chord, scan: Scan::default(), rings: Vec::new(), area: 0.0, budget: MOST };
-        let mut from = sweep.ring(at(0), Seen::default());
+            Sweep { space: self, b, chord, work: Work::default(), rings: Vec::new(), area: 0.0, budget: MOST };
+        let mut from = sweep.ring(at(0), &[]);
         for i in 1..=FIRST {
             if !goes_on((i - 1) as f64 / FIRST as f64) {
                 return None;
             }
             let r = if i == FIRST { far * (1.0 - FOUND) } else { at(i) };
-            let to = sweep.ring(r, Seen::default());
+            let to = sweep.ring(r, &[]);
             sweep.rings.push(from.clone());
             sweep.refine(&from, &to);
             from = to;
@@ -156,7 +155,7 @@ struct Sweep<'a> {
     space: &'a PoseSpace,
     b: f64,
     chord: f64,
-    scan: Scan,
+    work: Work,
     rings: Vec<Ring>,
     /// m².
     area: f64,
@@ -165,8 +164,8 @@ struct Sweep<'a> {
 }
 
 impl Sweep<'_> {
-    fn ring(&mut self, r: f64, mut seen: Seen) -> Ring {
-        let set = self.space.reach_of(r, &mut self.scan, &mut seen);
+    fn ring(&mut self, r: f64, beside: &[&Seen]) -> Ring {
+        let (set, seen) = self.space.reach_of(r, beside, &mut self.work);
         let whole = matches!(set.intervals[..], [[_, to]] if to >= set.period && set.intervals[0][0] == 0.0);
         let turned = |b: f64| (self.b - b) / self.space.sum;
         let mut arcs: Vec<[f64; 2]> =
@@ -179,8 +178,7 @@ impl Sweep<'_> {
 
     /// Rings between two, so close that straight lines join them.
     fn refine(&mut self, from: &Ring, to: &Ring) {
-        let seen = if from.seen == to.seen { from.seen.clone() } else { Seen::default() };
-        let middle = self.ring(0.5 * (from.r + to.r), seen);
+        let middle = self.ring(0.5 * (from.r + to.r), &[&from.seen, &to.seen]);
         self.budget = self.budget.saturating_sub(1);
         let far = self.space.farthest();
         let alike = |x: &Ring, y: &Ring| x.whole == y.whole && x.arcs.len() == y.arcs.len();
@@ -209,8 +207,8 @@ impl Sweep<'_> {
 
 /// x − y by the shorter way round, rad.
 fn turned(x: f64, y: f64) -> f64 {
-    let by = (x - y).rem_euclid(TAU);
-    if by > PI { by - TAU } else { by }
+    let by = x - y;
+    by - TAU * (by / TAU).round()
 }
 
 fn extent<'a>(points: impl Iterator<Item = &'a [f64; 2]>) -> [f64; 4] {
@@ -227,8 +225,14 @@ fn chained(rings: &[Ring]) -> Vec<Vec<[f64; 2]>> {
     let ends = |j: usize| (0..rings[j].arcs.len()).flat_map(move |i| [(j, i, 0), (j, i, 1)]);
     let angle = |(j, i, end): End| rings[j].arcs[i][end];
     // Links to the ring after, and to the one before.
-    let index: std::collections::HashMap<End, usize> =
-        (0..rings.len()).flat_map(ends).enumerate().map(|(i, end)| (end, i)).collect();
+    let first: Vec<usize> = rings
+        .iter()
+        .scan(0, |ends, ring| {
+            *ends += 2 * ring.arcs.len();
+            Some(*ends - 2 * ring.arcs.len())
+        })
+        .collect();
+    let index = |(j, i, end): End| first[j] + 2 * i + end;
     let all: Vec<End> = (0..rings.len()).flat_map(ends).collect();
     let mut links: Vec<[Option<usize>; 2]> = vec![[None; 2]; all.len()];
     for j in 0..rings.len().saturating_sub(1) {
@@ -239,14 +243,14 @@ fn chained(rings: &[Ring]) -> Vec<Vec<[f64; 2]>> {
         for from in ends(j) {
             let Some(to) = nearest(from, j + 1) else { continue };
             if nearest(to, j) == Some(from) && turned(angle(to), angle(from)).abs() < 0.5 {
-                links[index[&from]][0] = Some(index[&to]);
-                links[index[&to]][1] = Some(index[&from]);
+                links[index(from)][0] = Some(index(to));
+                links[index(to)][1] = Some(index(from));
             }
         }
     }
     for j in 0..rings.len() {
         for side in 0..2 {
-            let mut open: Vec<End> = ends(j).filter(|e| links[index[e]].get(side) == Some(&None)).collect();
+            let mut open: Vec<End> = ends(j).filter(|e| links[index(*e)].get(side) == Some(&None)).collect();
             open.sort_by(|x, y| angle(*x).rem_euclid(TAU).total_cmp(&angle(*y).rem_euclid(TAU)));
             // The nearest two of different kind, until none is left.
             while open.len() > 1 {
@@ -255,8 +259,8 @@ fn chained(rings: &[Ring]) -> Vec<Vec<[f64; 2]>> {
                 let fits = |i: &usize| open[*i].2 != open[(*i + 1) % n].2;
                 let Some(i) = (0..n).filter(fits).min_by(|x, y| gap(*x).total_cmp(&gap(*y))) else { break };
                 let (a, b) = (open[i], open[(i + 1) % n]);
-                links[index[&a]][side] = Some(index[&b]);
-                links[index[&b]][side] = Some(index[&a]);
+                links[index(a)][side] = Some(index(b));
+                links[index(b)][side] = Some(index(a));
                 open.retain(|e| *e != a && *e != b);
             }
         }

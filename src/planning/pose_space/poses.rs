@@ -14,6 +14,25 @@ const SWEEPS: usize = 3;
 /// How fast b's ends go with an angle at most, for a look to be worth it.
 const FAR: f64 = 4.0;
 
+/// What reaches a point with the last joints held at each place of a grid: the same for every b, so it is looked up once.
+#[derive(Default)]
+pub(super) struct Looks {
+    /// Spans of b, rad, and where those of each look end.
+    spans: Vec<[f64; 2]>,
+    ends: Vec<usize>,
+    /// Of the b that are asked for: how far each look is off them, rad, and which lead anywhere.
+    offs: Vec<f64>,
+    order: Vec<usize>,
+}
+
+impl Looks {
+    /// For another point.
+    pub fn clear(&mut self) {
+        self.spans.clear();
+        self.ends.clear();
+    }
+}
+
 impl PoseSpace {
     /// Poses within the limits that put the end effector on `p`, m, at `b`, rad, which is not wrapped: with two and
     /// three drives all of them, with more the ones nearest to the given relative angles on each elbow.
@@ -26,7 +45,7 @@ impl PoseSpace {
         });
         poses.sort_by(|x, y| x.0.total_cmp(&y.0));
         if poses.is_empty() && self.drives() > 3 {
-            let held = self.held_for(p, &[b]);
+            let held = self.held_for(p, &[b], &mut Looks::default());
             held.map(|held| {
                 self.of_three(p, b, &held, &mut |a| {
                     poses.push((0.0, self.lift(a, b)));
@@ -39,10 +58,10 @@ impl PoseSpace {
     }
 
     /// Whether some pose is on the x axis at a distance from B, m, at one of these b.
-    pub(super) fn has_pose(&self, distance: f64, b: &[f64]) -> bool {
+    pub(super) fn has_pose(&self, distance: f64, b: &[f64], looks: &mut Looks) -> bool {
         let p = Vector::new(distance, 0.0);
         if self.drives() > 3 {
-            return self.held_for(p, b).is_some();
+            return self.held_for(p, b, looks).is_some();
         }
         let mut any = false;
         for b in b {
@@ -56,47 +75,53 @@ impl PoseSpace {
 
     /// Angles of the joints that are held, more than three drives, with which the three arms that are left reach p at b:
     /// where no look finds any, by going to where they come nearest. What lies at the first two joints is not used.
-    fn held_for(&self, p: Vector, b: &[f64]) -> Option<PerDrive> {
+    fn held_for(&self, p: Vector, b: &[f64], looks: &mut Looks) -> Option<PerDrive> {
         let (n, first) = (self.joints.len(), 2);
-        let looks = LOOKS[(self.drives() - 4).min(LOOKS.len() - 1)];
+        let each = LOOKS[(self.drives() - 4).min(LOOKS.len() - 1)];
         let at = |i: usize, j: usize| {
             let [low, high] = self.joints[i].limits;
-            low + (high - low) * (j as f64 + 0.5) / looks as f64
+            low + (high - low) * (j as f64 + 0.5) / each as f64
         };
-        let count = looks.pow((n - first) as u32);
-        let mut seen: Vec<(f64, PerDrive)> = Vec::with_capacity(count);
-        for code in 0..count {
-            let mut held = self.middle();
-            let mut rest = code;
+        let middle = self.middle();
+        let look = |code: usize| {
+            let (mut held, mut rest) = (middle, code);
             for i in first..n {
-                held[i] = at(i, rest % looks);
-                rest /= looks;
+                held[i] = at(i, rest % each);
+                rest /= each;
             }
-            let off = self.off(p, b, &held);
+            held
+        };
+        let count = each.pow((n - first) as u32);
+        looks.offs.clear();
+        for code in 0..count {
+            if code == looks.ends.len() {
+                self.spans(p, &look(code), |span| looks.spans.push(span));
+                looks.ends.push(looks.spans.len());
+            }
+            let from = if code > 0 { looks.ends[code - 1] } else { 0 };
+            let of = &looks.spans[from..looks.ends[code]];
+            let off = of.iter().fold(f64::INFINITY, |off, span| off.min(self.gap(*span, b)));
             if off == 0.0 {
-                return Some(held);
+                return Some(look(code));
             }
-            seen.push((off, held));
+            looks.offs.push(off);
         }
         // Where it is much farther than the looks are apart, it does not come near between them. Along a single joint
         // only looks that are nearer than those beside them lead anywhere.
         let apart = (first..n).map(|i| at(i, 1) - at(i, 0)).fold(0.0, f64::max);
-        let offs: Vec<f64> = seen.iter().map(|(off, _)| *off).collect();
+        let Looks { offs, order, .. } = looks;
         let beside = |i: usize, j: Option<usize>| j.and_then(|j| offs.get(j)).is_none_or(|other| offs[i] <= *other);
         let leads = |i: usize| n - first > 1 || (beside(i, i.checked_sub(1)) && beside(i, Some(i + 1)));
-        let mut seen: Vec<(f64, PerDrive)> = seen
-            .into_iter()
-            .enumerate()
-            .filter(|(i, (off, _))| *off <= FAR * apart && leads(*i))
-            .map(|(_, x)| x)
-            .collect();
-        seen.sort_by(|x, y| x.0.total_cmp(&y.0));
-        for (mut best, mut held) in seen.into_iter().take(STARTS) {
+        order.clear();
+        order.extend((0..count).filter(|i| offs[*i] <= FAR * apart && leads(*i)));
+        order.sort_unstable_by(|x, y| offs[*x].total_cmp(&offs[*y]).then(x.cmp(y)));
+        for code in order.iter().take(STARTS) {
+            let (mut best, mut held) = (offs[*code], look(*code));
             for _ in 0..if n - first > 1 { SWEEPS } else { 1 } {
                 let before = best;
                 for i in first..n {
                     let [low, high] = self.joints[i].limits;
-                    let step = (high - low) / looks as f64;
+                    let step = (high - low) / each as f64;
                     let on = |x: f64| {
                         let mut there = held;
                         there[i] = x;
@@ -120,15 +145,31 @@ impl PoseSpace {
 
     /// How far the nearest b is from what reaches p with these joints held, rad; infinite where nothing does.
     fn off(&self, p: Vector, b: &[f64], held: &PerDrive) -> f64 {
-        let Some((map, shift)) = self.three(held) else { return f64::INFINITY };
-        let Ok(set) = map.reach(p) else { return f64::INFINITY };
-        let off = |b: &f64| set.nearest(b - shift).map_or(f64::INFINITY, |nearest| (nearest - (b - shift)).abs());
-        b.iter().map(off).fold(f64::INFINITY, f64::min)
+        let mut off = f64::INFINITY;
+        self.spans(p, held, |span| off = off.min(self.gap(span, b)));
+        off
+    }
+
+    /// How far the nearest b is from a span, by the shorter way round, rad.
+    fn gap(&self, [low, high]: [f64; 2], b: &[f64]) -> f64 {
+        let period = self.period();
+        let gap = |b: &f64| {
+            let past = (b - low) - period * ((b - low) / period).floor();
+            (past - (high - low)).max(0.0).min(period - past)
+        };
+        b.iter().map(gap).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The spans of b that reach p with these joints held.
+    fn spans(&self, p: Vector, held: &PerDrive, mut take: impl FnMut([f64; 2])) {
+        if let Some((map, shift)) = self.three(held) {
+            map.spans(p, |[low, high]| take([low + shift, high + shift]));
+        }
     }
 
     /// Whether any pose is at a distance from B, m.
     pub(super) fn any_pose(&self, distance: f64) -> bool {
-        self.has_pose(distance, &[0.0])
+        self.has_pose(distance, &[0.0], &mut Looks::default())
     }
 
     /// Relative angles of poses, while more are wanted.

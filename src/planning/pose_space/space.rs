@@ -4,49 +4,12 @@ use std::f64::consts::{PI, TAU};
 
 use thiserror::Error;
 
+use super::joint::Joint;
+use super::pattern::{Pattern, Patterns};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
 use crate::planning::reactionless::WIDEST;
 use crate::settings::number::Short;
-
-/// A relative joint angle between the drive that is nearer to drive 1 and the other.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Joint {
-    /// The drive nearer to drive 1, and the other, counted from 0.
-    pub(super) ends: [usize; 2],
-    /// 1 where the other one's angle is added.
-    pub(super) sense: f64,
-    /// rad.
-    pub(super) offset: f64,
-    /// Least and greatest angle, rad; one turn where there are no limits.
-    pub(super) limits: [f64; 2],
-    /// Whether there are none.
-    pub(super) free: bool,
-    /// Its place among the machine's angles; none where the file names no angle that joins these drives.
-    pub(super) angle: Option<usize>,
-}
-
-impl Joint {
-    /// Least and greatest angle, rad.
-    pub fn limits(&self) -> [f64; 2] {
-        self.limits
-    }
-
-    /// The same, without end where there are no limits.
-    pub fn bounds(&self) -> [f64; 2] {
-        if self.free { [f64::NEG_INFINITY, f64::INFINITY] } else { self.limits }
-    }
-
-    /// Its place among the machine's angles; none where the file has no angle between these drives.
-    pub fn angle(&self) -> Option<usize> {
-        self.angle
-    }
-
-    /// The angle of a pose, rad.
-    pub fn of(&self, q: &[f64]) -> f64 {
-        self.sense * (q[self.ends[1]] - q[self.ends[0]]) + self.offset
-    }
-}
 
 /// The poses of a machine by its relative angles and b.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,10 +18,12 @@ pub struct PoseSpace {
     pub(super) lambda: PerDrive,
     pub(super) sum: f64,
     /// Each after the joint that leads to its nearer drive.
-    pub(super) joints: Vec<Joint>,
+    pub(super) joints: Box<[Joint]>,
     pub(super) lead: Lead,
     inertia: f64,
     is_reactionless: bool,
+    /// Of these arms and joints: a space of others has its own.
+    pub(super) patterns: Patterns,
 }
 
 /// What a hand that leads the end effector makes of the freedoms that are left.
@@ -192,7 +157,7 @@ impl PoseSpace {
         if !(1e-9..=1e9).contains(&reach) {
             return Err(NoPoseSpace::Size { reach });
         }
-        let joints = joints(machine)?;
+        let joints = joints(machine)?.into();
         Ok(Self {
             tip,
             lambda,
@@ -201,6 +166,7 @@ impl PoseSpace {
             lead: Lead::LeastEnergy,
             inertia,
             is_reactionless: is_reactionless(machine),
+            patterns: Patterns::default(),
         })
     }
 
@@ -208,6 +174,11 @@ impl PoseSpace {
     #[must_use]
     pub fn led(self, lead: Lead) -> Self {
         Self { lead, ..self }
+    }
+
+    /// Every choice of limits and signs for which b can be stationary: made once, at the first point that is asked for.
+    pub(super) fn patterns(&self) -> &[Pattern] {
+        self.patterns.of(&self.tip, &self.lambda, &self.joints)
     }
 
     /// Number of drives.

@@ -21,7 +21,7 @@ mod folds;
 use std::f64::consts::{PI, TAU};
 
 use super::plane::{AngleLimit, PlaneMap};
-use crate::mechanics::planar::{Vector, unit};
+use crate::mechanics::planar::{Vector, cross, unit};
 
 /// A point whose distance misses the reach of the arms by less than this share of it counts as reached: rounding.
 pub(super) const ROUNDING: f64 = 1e-12;
@@ -121,6 +121,8 @@ impl<T: Copy, const N: usize> Few<T, N> {
     }
 }
 
+/// Folds that pass a bound by less than this count as within, rad.
+const NEAR_BOUND: f64 = 1e-3;
 /// 4 crossings of limits, 2 flat poses, 6 folds; each of these may be found several times where some merge.
 const CUTS: usize = 36;
 
@@ -273,11 +275,17 @@ impl Quadrilateral {
         }
     }
 
+    /// z where arm x points along e.
+    #[inline]
+    fn side(&self, e: Vector) -> Vector {
+        Vector::new(self.m + self.x * e.re, self.x * e.im)
+    }
+
     /// z and its argument, without jumps in α unless z passes through 0.
     #[inline]
     fn z(&self, alpha: f64) -> (Vector, f64) {
         let e = unit(alpha);
-        let z = Vector::new(self.m + self.x * e.re, self.x * e.im);
+        let z = self.side(e);
         let arg =
             if self.x > self.m { alpha + f64::atan2(-self.m * e.im, self.x + self.m * e.re) } else { z.im.atan2(z.re) };
         (z, arg)
@@ -286,28 +294,39 @@ impl Quadrilateral {
     /// The point of a graph at α; `cos_gamma` where it is known to be ±1.
     #[inline]
     fn at(&self, alpha: f64, sigma: f64, cos_gamma: Option<f64>) -> Site {
-        let (y, r) = (self.y, self.r);
         let (z, arg_z) = self.z(alpha);
-        let rho = z.norm();
+        let rho = z.norm_sqr().sqrt();
         let (gamma, sin, cos) = match cos_gamma {
             Some(cos) => (if cos > 0.0 { 0.0 } else { PI }, 0.0, cos),
-            None => {
-                // Half-angle form of the law of cosines: keeps its digits where the quadrilateral is nearly flat.
-                let open = ((rho + y - r) * (rho + y + r)).max(0.0);
-                let closed = ((r - rho + y) * (r + rho - y)).max(0.0);
-                let sum = open + closed;
-                if sum > 0.0 {
-                    let gamma = 2.0 * open.sqrt().atan2(closed.sqrt());
-                    (gamma, 2.0 * (open * closed).sqrt() / sum, (closed - open) / sum)
-                } else {
-                    (0.5 * PI, 1.0, 0.0)
-                }
-            }
+            None => self.gamma(rho),
         };
-        let eta = (y * sin).atan2(rho + y * cos);
+        let eta = (self.y * sin).atan2(rho + self.y * cos);
         let beta = arg_z + sigma * gamma;
         let b = self.b_0 - self.lambda_sum * (arg_z + sigma * eta) + self.lambda[1] * alpha + self.lambda[2] * beta;
         Site { alpha, beta, b }
+    }
+
+    /// γ where z is so long, and its sine and cosine.
+    #[inline]
+    fn gamma(&self, rho: f64) -> (f64, f64, f64) {
+        let (y, r) = (self.y, self.r);
+        // Half-angle form of the law of cosines: keeps its digits where the quadrilateral is nearly flat.
+        let open = ((rho + y - r) * (rho + y + r)).max(0.0);
+        let closed = ((r - rho + y) * (r + rho - y)).max(0.0);
+        let sum = open + closed;
+        if sum > 0.0 {
+            let gamma = 2.0 * open.sqrt().atan2(closed.sqrt());
+            (gamma, 2.0 * (open * closed).sqrt() / sum, (closed - open) / sum)
+        } else {
+            (0.5 * PI, 1.0, 0.0)
+        }
+    }
+
+    /// β of the point of a graph at α, where its b is not asked for.
+    #[inline]
+    fn beta(&self, alpha: f64, sigma: f64) -> f64 {
+        let (z, arg_z) = self.z(alpha);
+        arg_z + sigma * self.gamma(z.norm_sqr().sqrt()).0
     }
 
     /// The point of a graph where it passes through (α, β), b from both and therefore to full precision.
@@ -429,45 +448,56 @@ impl Quadrilateral {
 
     fn arcs_over(&self, graph: Graph, span: [f64; 2], cuts: &[Cut], visit: &mut impl FnMut(&Arc)) {
         let Graph { sigma, piece } = graph;
-        let ends = span.map(|alpha| self.at(alpha, sigma, piece.turning_at(alpha)));
-        let mut sites = Few::<(Site, Option<f64>), { CUTS + 2 }>::new((ends[0], None));
-        sites.push((ends[0], None));
+        // β and b of a place are worked out where the limits let an arc begin or end there.
+        let end = |alpha: f64| Cut { alpha, beta: None, edge: false };
+        let mut places = Few::<Cut, { CUTS + 2 }>::new(end(span[0]));
+        places.push(end(span[0]));
         for cut in cuts {
             let alpha = cut.alpha + TAU * ((span[0] - cut.alpha) / TAU).ceil();
             if !(alpha > span[0] && alpha < span[1]) {
                 continue;
             }
-            let site = match cut.beta {
-                None => (self.at(alpha, sigma, None), None),
-                Some(beta) => {
-                    let side = (beta - self.z(alpha).1).sin() * sigma;
-                    if side < -1e-7 {
-                        continue;
-                    }
-                    (self.through(alpha, beta, sigma), cut.edge.then_some(beta))
-                }
+            let other_elbow = |beta: f64| {
+                let z = self.side(unit(alpha));
+                sigma * cross(z, unit(beta)) < -1e-7 * z.norm()
             };
-            sites.push(site);
+            if cut.beta.is_some_and(other_elbow) {
+                continue;
+            }
+            places.push(Cut { alpha, ..*cut });
         }
-        sites.items[1..sites.len].sort_unstable_by(|a, b| a.0.alpha.total_cmp(&b.0.alpha));
-        sites.push((ends[1], None));
-        let sites = sites.as_slice();
+        places.items[1..places.len].sort_unstable_by(|a, b| a.alpha.total_cmp(&b.alpha));
+        places.push(end(span[1]));
+        let places = places.as_slice();
+        let site = |i: usize| {
+            let Cut { alpha, beta, .. } = places[i];
+            match beta {
+                _ if i == 0 || i + 1 == places.len() => self.at(alpha, sigma, piece.turning_at(alpha)),
+                None => self.at(alpha, sigma, None),
+                Some(beta) => self.through(alpha, beta, sigma),
+            }
+        };
 
         let bound = self.limits[1];
         let mut before: Option<f64> = None;
-        for (i, pair) in sites.windows(2).enumerate() {
-            let [from, to] = [pair[0].0, pair[1].0];
-            let s = [from, to].map(|site| piece.s(site.alpha));
+        let mut known: Option<Site> = None;
+        let mut next = piece.s(span[0]);
+        for i in 0..places.len() - 1 {
+            let s = [next, piece.s(places[i + 1].alpha)];
+            next = s[1];
+            let mut from = known.take();
             let middle = match i {
                 // A limit may leave a single point of the graph.
-                0 if span[0] == span[1] => from.beta,
-                _ => self.at(piece.alpha(0.5 * (s[0] + s[1])), sigma, None).beta,
+                0 if span[0] == span[1] => from.get_or_insert_with(|| site(i)).beta,
+                _ => self.beta(piece.alpha(0.5 * (s[0] + s[1])), sigma),
             };
             for beta in lifts(middle, bound) {
-                visit(&self.arc([from, to], s, graph, beta - middle));
+                let ends = [*from.get_or_insert_with(|| site(i)), *known.get_or_insert_with(|| site(i + 1))];
+                visit(&self.arc(ends, s, graph, beta - middle));
             }
             // A bound that the curve touches from outside, or that leaves no room, is met in a point.
-            if let Some(edge) = pair[0].1 {
+            if let Cut { edge: true, beta: Some(edge), .. } = places[i] {
+                let from = *from.get_or_insert_with(|| site(i));
                 let turns = TAU * ((edge - from.beta) / TAU).round();
                 let misses = |middle: f64| !bound.contains(middle + turns, 0.0);
                 if before.is_none_or(misses) && misses(middle) {
@@ -522,7 +552,14 @@ impl Quadrilateral {
         if near((self.r - self.y).abs(), (self.m - self.x).abs()) {
             cuts.push(Cut { alpha: PI, beta: None, edge: false });
         }
-        self.folds(|alpha, beta| cuts.push(Cut { alpha, beta, edge: false }));
+        // Where the limits leave nothing of the graph, it need not be cut.
+        let AngleLimit { min, max } = self.limits[1];
+        let wide = AngleLimit { min: min - NEAR_BOUND, max: max + NEAR_BOUND };
+        self.folds(|alpha, beta| {
+            if beta.is_none_or(|beta| lifts(beta, wide).next().is_some()) {
+                cuts.push(Cut { alpha, beta, edge: false });
+            }
+        });
         cuts
     }
 

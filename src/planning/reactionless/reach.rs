@@ -73,6 +73,31 @@ impl PlaneMap {
         })
     }
 
+    /// Each stretch of the b that reach `p`, m, from least to greatest, in no order, some within others, less what rounding
+    /// may have cut off: for those who ask whether b is among them often, of many points.
+    pub(in crate::planning) fn spans(&self, p: Vector, mut take: impl FnMut([f64; 2])) {
+        if self.within_reach(p).is_err() {
+            return;
+        }
+        for slack in [0.0, SLACK] {
+            let (curve, mut any) = (Quadrilateral::new(self, p, slack), false);
+            if curve.is_at_base() {
+                curve.triangles(|_| any = true);
+                if any {
+                    return take([0.0, self.period()]);
+                }
+                continue;
+            }
+            curve.arcs(|arc| {
+                any = true;
+                take([arc.from.b.min(arc.to.b), arc.from.b.max(arc.to.b)]);
+            });
+            if any {
+                return;
+            }
+        }
+    }
+
     /// The self-motion that holds the end effector on `p`, m: each connected branch as a polyline, closed if its first
     /// and last poses are the same; Fig. 3 is q_1 over b of it. Empty if no b reaches the point.
     ///
@@ -106,7 +131,8 @@ impl PlaneMap {
         self.lambda_sum() * (p * self.forward_unturned(a).conj()).arg()
     }
 
-    fn curve(&self, p: Vector) -> Result<SelfMotion, NoReach> {
+    /// Whether the arms are long enough for `p`, and not too long.
+    fn within_reach(&self, p: Vector) -> Result<(), NoReach> {
         let lengths = self.c().map(f64::abs);
         let (distance, farthest) = (p.norm(), lengths.iter().sum::<f64>());
         let nearest = (2.0 * lengths.into_iter().fold(0.0, f64::max) - farthest).max(0.0);
@@ -117,6 +143,11 @@ impl PlaneMap {
         if distance < nearest - ROUNDING * farthest {
             return Err(NoReach::TooNear { distance, nearest });
         }
+        Ok(())
+    }
+
+    fn curve(&self, p: Vector) -> Result<SelfMotion, NoReach> {
+        self.within_reach(p)?;
         // A point on the edge of the workspace may miss the limits by rounding.
         for slack in [0.0, SLACK] {
             let curve = Quadrilateral::new(self, p, slack);

@@ -122,11 +122,14 @@ fn cubic_roots(c: [f64; 4], near: f64) -> Few<f64, 7> {
                 low = x
             }
             let newton = x - v / slope(x);
-            let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-            if (next - x).abs() <= 1e-15 {
+            let inside = newton > low && newton < high;
+            let next = if inside { newton } else { 0.5 * (low + high) };
+            // What Newton's step leaves is its square.
+            let there = (next - x).abs() <= if inside { 1e-9 } else { 1e-15 };
+            x = next;
+            if there {
                 break;
             }
-            x = next;
         }
         roots.push(x);
     }
