@@ -49,7 +49,7 @@ mod widgets;
 #[cfg(feature = "window")]
 pub mod window;
 
-pub use command::{Activity, Command, ComparisonCommand, FileDialog, Look, PlotFile, Purpose, Recovery};
+pub use command::{Activity, Command, ComparisonCommand, DesignCommand, FileDialog, Look, PlotFile, Purpose, Recovery};
 use intro::Intro;
 pub use layout::{Layout, Panel, Panels};
 pub use preferences::Preferences;

@@ -499,6 +499,7 @@ impl AppState {
             }
             DesignCommand::Ghost(i) => self.view_state.ghost = i,
             DesignCommand::Take(i) => {
+                self.studio.follow(&self.session.scenario().machine, &self.view_state.brief);
                 if let Some(machine) = self.studio.of_front(i) {
                     self.change(Change::Edit(weights_of(machine)));
                 }

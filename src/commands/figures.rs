@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use stillbase::app::{AppState, Command, ComparisonCommand};
+use stillbase::app::{AppState, Command, ComparisonCommand, DesignCommand};
 use stillbase::files::write_new;
 use stillbase::picture::canvas::Canvas;
 use stillbase::picture::render::offscreen::{NoAdapter, NoPicture, Picture};
@@ -42,11 +42,12 @@ enum Shown {
 }
 
 /// A picture: name, scenario, instant in s, what of it is shown.
-const PICTURES: [(&str, &str, f64, Shown); 6] = [
+const PICTURES: [(&str, &str, f64, Shown); 7] = [
     ("window", "case-3", 0.62, Shown::Window(Vec::new)),
     ("spacecraft", "spacecraft", 0.75, Shown::Window(Vec::new)),
     ("compare", "case-1", 0.62, Shown::Window(side_by_side)),
     ("tolerances", "case-3", 0.62, Shown::Window(study)),
+    ("design", "nine-link-bare", 0.62, Shown::Window(designed)),
     ("tower", "case-3", 0.62, Shown::Scene(ViewKind::Tower)),
     ("joints", "case-1", 0.5, Shown::Scene(ViewKind::Joints)),
 ];
@@ -106,6 +107,11 @@ impl Shown {
 fn side_by_side() -> Vec<Command> {
     let show = |row| Command::Comparison(ComparisonCommand::Show(row, true));
     vec![Command::Compare(true), Command::Snapshots(true), show(0), show(2)]
+}
+
+/// The bare bars with counterweights between the lightest and the quickest.
+fn designed() -> Vec<Command> {
+    vec![Command::View(ViewKind::Design), Command::Design(DesignCommand::Take(16)), Command::EndGesture]
 }
 
 /// Tolerances against a limit on |n_B| of 10 mN m.

@@ -21,6 +21,7 @@ pages! {
     planning: "planning.md",
     plants: "plants.md",
     inside: "inside.md",
+    design: "design.md",
     tolerances: "tolerances.md",
     own_motion: "own_motion.md",
     files: "files.md",

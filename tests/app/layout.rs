@@ -65,6 +65,9 @@ fn everything_is_seen_beside_what_lies_over_it() {
             let fills = (all.width() / scene_rect.width()).max(all.height() / scene_rect.height());
             assert!(fills > 0.7, "{}: {fills} of {scene_rect}", view.name());
         }
+        // The design view has panels of its own.
+        h.get_by_label(ViewKind::Flat.name()).click();
+        h.run_steps(3);
         let plots = h.get_by_label_contains("Torque over time").rect().width();
         let share = plots / size[0];
         assert!((0.17..0.29).contains(&share), "plots grow with the window: {share} of {}", size[0]);

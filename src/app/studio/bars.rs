@@ -4,7 +4,7 @@ use egui::{Align2, CornerRadius, Rect, RichText, Sense, Stroke, StrokeKind, Ui, 
 
 use super::facts::{Facts, Term};
 use crate::app::theme::{bold, colour, plain};
-use crate::app::widgets::{heading, name};
+use crate::app::widgets::heading;
 use crate::app::{ViewState, place};
 use crate::picture::numbers::signed;
 use crate::picture::scene::options::Handle;
@@ -92,7 +92,7 @@ fn row(ui: &mut Ui, p: &Palette, session: &Session, term: &Term, hot: Option<usi
         .map(|(link, part)| format!("link {} {}", session.scenario().machine.links()[*link].name, signed(*part, 4)))
         .collect();
     let words = format!("{}, {}: {} {} left; {}", term.symbol, term.meaning, text, term.unit, of.join(", "));
-    name(&response, &words);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &words));
 }
 
 /// What one link brings.

@@ -18,20 +18,21 @@ pub use facts::Facts;
 /// How wide the panels are made by themselves, points.
 const TABLE: f32 = 336.0;
 const BALANCE: f32 = 372.0;
+/// What the scene has at least, and the narrower one of them.
+const SCENE: f32 = 250.0;
+const LEAST: f32 = 280.0;
 
 /// Draws both panels.
 pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
-    // Where there is no room for both and the machine, they make room for it.
-    let room = ui.available_width();
-    let share = ((room - 280.0) / (TABLE + BALANCE)).clamp(0.6, 1.0);
+    let balance = (ui.available_width() - TABLE - SCENE).clamp(LEAST, BALANCE);
     let frame = Frame::new().inner_margin(Margin { left: 14, right: 2, top: 12, bottom: 8 });
     let (one, other) = match view_state.swapped {
         true => (Panel::right("links"), Panel::left("balance")),
         false => (Panel::left("links"), Panel::right("balance")),
     };
     if view_state.side.shown {
-        one.exact_size(share * TABLE).frame(frame).show(ui, |ui| {
+        one.exact_size(TABLE).frame(frame).show(ui, |ui| {
             scrolled(ui, |ui| {
                 table::show(ui, session, view_state, commands);
                 asked::show(ui, !session.scenario().machine.spec().counterweights.is_empty(), view_state, commands);
@@ -39,7 +40,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewStat
         });
     }
     if view_state.plots.shown {
-        other.exact_size(share * BALANCE).frame(frame).show(ui, |ui| {
+        other.exact_size(balance).frame(frame).show(ui, |ui| {
             scrolled(ui, |ui| {
                 bars::show(ui, session, facts, view_state);
                 front::show(ui, facts, view_state, commands);

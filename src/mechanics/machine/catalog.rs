@@ -18,6 +18,7 @@ static BUILTINS: LazyLock<Vec<Machine>> = LazyLock::new(|| {
         ("counter-rotating", include_str!("../../../assets/machines/counter-rotating.toml")),
         ("scara", include_str!("../../../assets/machines/scara.toml")),
         ("space-arm", include_str!("../../../assets/machines/space-arm.toml")),
+        ("nine-link-bare", include_str!("../../../assets/machines/nine-link-bare.toml")),
     ]
     .into_iter()
     .map(|(name, text)| parse(text, name).expect("the machines that come along are valid"))

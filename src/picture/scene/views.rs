@@ -93,7 +93,7 @@ impl ViewKind {
             Self::Flat | Self::Space => "",
             Self::Joints => "drag the dot in its plane  ·  drag the plane to change b",
             Self::Tower => "drag the dot or the slice  ·  click a green bar: its b",
-            Self::Design => "drag a centre of mass, a counterweight or the end of a link along it",
+            Self::Design => "drag masses and ends of links",
         }
     }
 

@@ -9,7 +9,7 @@ const CASES: usize = 3;
 
 /// The scenarios that come along: the paper's three cases, what planning can do besides, plants and bases that are not
 /// ideal, and what each of the other machines shows, under the machine's name.
-const BUILTIN: [(&str, &str); 19] = [
+const BUILTIN: [(&str, &str); 20] = [
     ("case-1", include_str!("../../../assets/scenarios/case-1.toml")),
     ("case-2", include_str!("../../../assets/scenarios/case-2.toml")),
     ("case-3", include_str!("../../../assets/scenarios/case-3.toml")),
@@ -29,6 +29,7 @@ const BUILTIN: [(&str, &str); 19] = [
     ("counter-rotating", include_str!("../../../assets/scenarios/counter-rotating.toml")),
     ("scara", include_str!("../../../assets/scenarios/scara.toml")),
     ("space-arm", include_str!("../../../assets/scenarios/space-arm.toml")),
+    ("nine-link-bare", include_str!("../../../assets/scenarios/nine-link-bare.toml")),
 ];
 
 /// Each is read when it is first asked for.
