@@ -381,7 +381,7 @@ impl AppState {
         let contrast = self.intro.as_ref().filter(|intro| intro.contrasts_in(ui.ctx().content_rect().width()));
         let designs = self.view_state.view == ViewKind::Design && !presents;
         if designs {
-            self.studio.follow(&self.session.scenario().machine, &self.view_state.brief);
+            self.studio.follow(&self.session, &self.view_state.brief);
             studio::show(ui, &self.session, &self.studio, &self.view_state, &mut commands);
         }
         if contrast.is_none() && self.view_state.side.shown && !designs {
@@ -499,7 +499,7 @@ impl AppState {
             }
             DesignCommand::Ghost(i) => self.view_state.ghost = i,
             DesignCommand::Take(i) => {
-                self.studio.follow(&self.session.scenario().machine, &self.view_state.brief);
+                self.studio.follow(&self.session, &self.view_state.brief);
                 if let Some(machine) = self.studio.of_front(i) {
                     self.change(Change::Edit(weights_of(machine)));
                 }

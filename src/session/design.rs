@@ -48,10 +48,15 @@ impl Brief {
         }
         let changed = machine.with(change).map_err(|why| why.to_string())?;
         let named: Vec<String> = leaves(change).into_iter().map(|(key, _)| key).collect();
-        let kept = keep(&changed, &self.asked(&changed, start, &named)).map_err(|why| why.to_string())?;
-        let follows = kept.settings(&changed);
-        let whole = follows.into_iter().fold(change.clone(), |whole, (key, value)| join(whole, &one(&key, value)));
-        Ok(Edit::Set { change: whole })
+        let asked = self.asked(&changed, start, &named);
+        let kept = keep(&changed, &asked).map_err(|why| why.to_string())?;
+        // All that may follow, whether it has or not: so the next edit of a drag replaces this one.
+        let follows = asked.parameters.iter().zip(&kept.values).filter(|(one, _)| one.hold != Hold::Fixed);
+        let follows = follows.map(|(one, value)| (one.parameter.key(&changed), *value));
+        let discs = kept.machine.spec().counterweights.iter().enumerate();
+        let discs = discs.map(|(i, weight)| (format!("counterweight.{}.radius", i + 1), weight.radius));
+        let all = follows.chain(discs).fold(change.clone(), |all, (key, value)| join(all, &one(&key, value)));
+        Ok(Edit::Set { change: all })
     }
 
     /// What may change: the counterweights of a machine that has some, else the centres of mass of its links.

@@ -16,6 +16,7 @@ pub const TESTS: &[Test] = tests![
     tolerances_is_current,
     tower_is_current,
     joints_is_current,
+    design_is_current,
     no_picture_is_left_over,
 ];
 
@@ -69,6 +70,10 @@ fn tolerances_is_current() {
 
 fn tower_is_current() {
     is_current("tower");
+}
+
+fn design_is_current() {
+    is_current("design");
 }
 
 fn joints_is_current() {

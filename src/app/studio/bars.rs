@@ -20,7 +20,7 @@ const LEFT: f32 = 76.0;
 /// Draws it.
 pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewState) {
     let p = &view_state.palette();
-    heading(ui, p, "Balance", "which link gives what; white: what is left");
+    heading(ui, p, "Balance", "which link gives what; below: what is left");
     let hot = view_state.grabbed.map(|pick| pick.handle).or(view_state.hot).or(view_state.lit);
     let hot = hot.and_then(|handle| link_of(handle, session));
     for term in &facts.terms {

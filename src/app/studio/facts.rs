@@ -4,8 +4,11 @@ use crate::mechanics::balance::{Breakdown, Condition};
 use crate::mechanics::counterweights::Placed;
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::picture::scene::options::Offered;
+use crate::planning::forecast::Forecast;
+use crate::session::Session;
 use crate::session::design::Brief;
 use crate::settings::number::subscript;
+use crate::study::measures::Measures;
 
 /// How many machines the front has.
 const POINTS: usize = 25;
@@ -20,6 +23,8 @@ pub struct Facts {
     pub(super) lambda: Vec<f64>,
     /// What the counterweights weigh together, kg, and Σ D_k, kg m².
     pub(super) now: [f64; 2],
+    /// What balance has cost beside the machine without its counterweights, with the forecast of the task that it is of.
+    pub(super) measures: Option<(Forecast, Measures)>,
     weighed: Option<(Machine, Brief)>,
     front: Option<Result<Vec<Point>, String>>,
 }
@@ -59,8 +64,10 @@ const NOTHING: f64 = 1e-9;
 
 impl Facts {
     /// Finds what has to be said, if the machine or what is asked for has changed.
-    pub fn follow(&mut self, machine: &Machine, brief: &Brief) {
-        if self.of.as_ref() != Some(machine) {
+    pub fn follow(&mut self, session: &Session, brief: &Brief) {
+        let (machine, plan) = (&session.scenario().machine, session.run().plan());
+        let is_new = self.of.as_ref() != Some(machine);
+        if is_new {
             self.terms = terms(machine);
             let inertia = Inertia::of(machine);
             self.lambda = inertia.lambda().to_vec();
@@ -73,6 +80,10 @@ impl Facts {
         // Whether the balance is kept does not matter to it.
         let asked = Brief { keeps_balance: false, ..brief.clone() };
         let Ok(bare) = Machine::new(spec) else { return };
+        if is_new || self.measures.as_ref().is_none_or(|(forecast, _)| *forecast != plan.forecast) {
+            let measures = Measures::of(&bare, machine, session.run().motion());
+            self.measures = Some((plan.forecast, measures));
+        }
         if !self.weighed.as_ref().is_some_and(|(known, brief)| *known == bare && *brief == asked) {
             let found = asked.front(&bare, POINTS).map_err(|why| why.to_string());
             self.front = Some(found.map(|front| {

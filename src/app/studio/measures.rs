@@ -9,6 +9,9 @@ use crate::picture::numbers::signed;
 use crate::picture::scene::palette::Palette;
 use crate::session::Session;
 
+const BETA: &str = "What is left of what the machine without counterweights does in the same motion of its drives: \
+                    0 is nothing, 1 as much";
+
 /// Draws it.
 pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, p: &Palette) {
     ui.add_space(8.0);
@@ -24,6 +27,15 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, p: &Palette) {
         let noun = if planes.is_reactionless() { "reactionless workspace" } else { "workspace of b" };
         rows.push((noun, format!("{} m²", signed(planes.boundary().area(), 3))));
     }
+    if let Some((_, measures)) = &facts.measures
+        && measures.added_mass > 1e-9
+    {
+        let of = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), |x| signed(x, 3));
+        rows.push(("mass–inertia factor, 2 is bare", of(measures.mass_inertia_factor)));
+        if let Some(beta) = &measures.beta {
+            rows.push(("β of force · moment · torque", [beta.force, beta.moment, beta.torque].map(of).join(" · ")));
+        }
+    }
     let forecast = &run.plan().forecast;
     if run.waiting().is_none() {
         rows.extend([
@@ -34,7 +46,10 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, p: &Palette) {
     }
     for (words, value) in rows {
         ui.horizontal(|ui| {
-            ui.label(RichText::new(words).font(plain(12.0)).color(colour(p.dim)));
+            let label = ui.label(RichText::new(words).font(plain(12.0)).color(colour(p.dim)));
+            if words.starts_with('β') {
+                label.on_hover_text(BETA);
+            }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 ui.label(RichText::new(value).font(plain(12.5)).color(colour(p.ink)));
             });

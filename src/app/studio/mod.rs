@@ -36,6 +36,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewStat
             scrolled(ui, |ui| {
                 table::show(ui, session, view_state, commands);
                 asked::show(ui, !session.scenario().machine.spec().counterweights.is_empty(), view_state, commands);
+                measures::show(ui, session, facts, &p);
             });
         });
     }
@@ -44,7 +45,6 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewStat
             scrolled(ui, |ui| {
                 bars::show(ui, session, facts, view_state);
                 front::show(ui, facts, view_state, commands);
-                measures::show(ui, session, facts, &p);
             });
         });
     }
