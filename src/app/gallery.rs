@@ -18,7 +18,7 @@ const PICTURE: f32 = 112.0;
 const GAP: f32 = 8.0;
 const MARGIN: f32 = 12.0;
 /// Columns in a window that has room for them.
-const MOST: f32 = 3.0;
+const MOST: f32 = 4.0;
 
 /// How high the list may be in a window, px.
 pub fn room(ui: &Ui) -> f32 {

@@ -237,11 +237,8 @@ pub fn show(
                     (None, _) if session.is_led() => {
                         ("led by hand  ·  key B: back to the path  ·  F1 keys".into(), p.dim)
                     }
-                    (None, _) if view_state.view.shows_machine() && session.run().planes().is_some() => {
-                        ("drag the target, a point or the b ring  ·  Space plays  ·  F1 keys".into(), p.dim)
-                    }
                     (None, _) if view_state.view.shows_machine() && session.run().pose_map().is_ok() => {
-                        ("drag the target or a point  ·  Space plays  ·  F1 keys".into(), p.dim)
+                        ("drag the target, a point or the b ring  ·  Space plays  ·  F1 keys".into(), p.dim)
                     }
                     (None, _) if matches!(session.run().pose_map(), Err(NoPoseSpace::Free)) => {
                         ("any path is reactionless: drag A, B, or draw one (P)  ·  F1 keys".into(), p.dim)

@@ -12,7 +12,7 @@ pub mod thin;
 use super::numbers::round_up;
 use super::scene::Rgba;
 use super::scene::palette::{Palette, mix};
-use crate::mechanics::machine::Inertia;
+use crate::planning::pose_space::held;
 use crate::session::scenario::Scenario;
 use crate::simulation::frame::{Peaks, REACTIONLESS};
 use crate::simulation::signals::Signal;
@@ -100,8 +100,8 @@ pub fn charts(scenario: &Scenario) -> Vec<Chart> {
     list.extend(Some(BASE).filter(|_| scenario.base.moves()));
     list.extend(Some(FRICTION).filter(|_| rubs));
     list.extend([PINS, ANGLES]);
-    // Where no drive turns the base there is no b.
-    list.extend(Some(POSE).filter(|_| Inertia::of(&scenario.machine).pose_inertia() != 0.0));
+    // Where no drive turns the base, or how much depends on the pose, there is no b.
+    list.extend(Some(POSE).filter(|_| held(&scenario.machine).is_ok()));
     list.extend([EACH_PIN, TILT, TRANSMISSION, CHANGE_POINT]);
     list
 }

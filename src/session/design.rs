@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use toml::{Table, Value};
 
 use super::edit::Edit;
-use crate::mechanics::balance::{Adjusted, Body, Hold, Keep, Parameter, Quantity, keep};
+use crate::mechanics::balance::{Adjusted, Body, Hold, Keep, Parameter, Preset, Quantity, keep};
 use crate::mechanics::counterweights::{Disc, Front, NoWeights, Objective, Sites, Weighing, front};
 use crate::mechanics::machine::Machine;
 use crate::settings::change::{join, leaves, one};
@@ -21,6 +21,8 @@ pub struct Brief {
     pub keeps_balance: bool,
     /// Names of links that stay as they are, with their counterweights.
     pub fixed: BTreeSet<String>,
+    /// How dear it is to move the centre of mass of each link, (10), where these follow.
+    pub preset: Preset,
     /// What counterweights are made of.
     pub disc: Disc,
     /// How far behind the root of its link a counterweight may sit at most, m; none: as far as the link is long.
@@ -31,7 +33,8 @@ pub struct Brief {
 
 impl Default for Brief {
     fn default() -> Self {
-        Self { keeps_balance: false, fixed: BTreeSet::new(), disc: Disc::STEEL, back: None, most: None }
+        let (fixed, preset) = (BTreeSet::new(), Preset::MinimumNorm);
+        Self { keeps_balance: false, fixed, preset, disc: Disc::STEEL, back: None, most: None }
     }
 }
 
@@ -74,12 +77,18 @@ impl Brief {
                     .collect()
             }
         };
+        // Those of the paper are for nine links.
+        let penalties = self.preset.penalty(spec.links.len()).unwrap_or_default();
         let adjusted = |(parameter, link): (Parameter, &str)| {
             let stays = self.fixed.contains(link) || named.contains(&parameter.key(machine));
             Adjusted {
                 parameter,
                 hold: if stays { Hold::Fixed } else { Hold::Free },
-                penalty: if parameter.quantity == Quantity::Mass { MASS } else { PLACE },
+                penalty: match (parameter.quantity, parameter.body) {
+                    (Quantity::Mass, _) => MASS,
+                    (_, Body::Link(j)) => penalties.get(j).copied().unwrap_or(1.0),
+                    _ => PLACE,
+                },
                 from: parameter.value(spec).unwrap_or_default(),
             }
         };

@@ -34,6 +34,16 @@ impl Bodies {
             turns[k] = 1.0;
             all.push(Body { mass: link.mass, inertia: link.inertia, centre, turns });
         }
+        for weight in &spec.counterweights {
+            let link = spec.links.iter().find(|l| l.name == weight.link).expect("a link");
+            let k = drive(&link.drive);
+            let mut centre = root(spec, &link.name);
+            centre[k] += f64::from(link.direction) * Vector::new(weight.at, 0.0);
+            let mut turns = vec![0.0; n];
+            turns[k] = 1.0;
+            let inertia = 0.5 * weight.mass * weight.radius * weight.radius;
+            all.push(Body { mass: weight.mass, inertia, centre, turns });
+        }
         let end = spec.end_effector.as_ref().expect("an end effector");
         let tip = point(spec, end);
         if spec.payload.mass > 0.0 {

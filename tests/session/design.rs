@@ -1,6 +1,6 @@
 //! What follows when a machine is changed by hand and kept balanced; counterweights as edits.
 
-use stillbase::mechanics::balance::design;
+use stillbase::mechanics::balance::{Preset, design};
 use stillbase::mechanics::machine::{Inertia, Machine};
 use stillbase::session::design::{Brief, weights_of};
 use stillbase::session::scenario::Scenario;
@@ -76,6 +76,12 @@ fn what_follows_does_not_depend_on_the_way() {
     for (a, b) in straight.links().iter().zip(round.links()) {
         assert!((a.com - b.com).abs() < 1e-12, "link {}: {} and {}", a.name, a.com, b.com);
     }
+    // Where other links are dear, others move: balanced all the same.
+    let dear = Brief { preset: Preset::Table1, ..brief.clone() };
+    let other = changed(start, &dear.edit(start, start, &of("link.1.com", -0.24)).expect("it is kept"));
+    assert!(
+        is_balanced(&other) && straight.links().iter().zip(other.links()).any(|(a, b)| (a.com - b.com).abs() > 1e-4)
+    );
 }
 
 /// Taken, followed by what is dragged, saved, opened and undone.

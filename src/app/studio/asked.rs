@@ -6,6 +6,7 @@ use crate::app::command::DesignCommand;
 use crate::app::theme::{bold, colour, plain};
 use crate::app::widgets::{Row, heading, name, unit};
 use crate::app::{Command, ViewState};
+use crate::mechanics::balance::Preset;
 use crate::picture::scene::palette::Palette;
 use crate::session::design::Brief;
 
@@ -14,11 +15,14 @@ const MATERIALS: [(&str, f64); 5] =
     [("aluminium", 2700.0), ("steel", 7850.0), ("brass", 8500.0), ("lead", 11_340.0), ("tungsten", 19_300.0)];
 
 /// Draws it.
-pub fn show(ui: &mut Ui, has_weights: bool, view_state: &ViewState, commands: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, (links, has_weights): (usize, bool), view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = &view_state.palette();
     let mut brief = view_state.brief.clone();
     ui.add_space(10.0);
     keeping(ui, p, &mut brief, has_weights);
+    if !has_weights && links == 9 {
+        penalties(ui, &mut brief);
+    }
     ui.add_space(8.0);
     heading(ui, p, "Counterweights are discs", "");
     ui.horizontal(|ui| {
@@ -72,6 +76,25 @@ fn keeping(ui: &mut Ui, p: &Palette, brief: &mut Brief, has_weights: bool) {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let words = if brief.keeps_balance { what } else { "off" };
             ui.label(RichText::new(words).font(plain(11.5)).color(colour(tone)));
+        });
+    });
+}
+
+/// What it costs to move the centre of mass of each link, as the paper has it.
+fn penalties(ui: &mut Ui, brief: &mut Brief) {
+    const PRESETS: [(Preset, &str); 3] =
+        [(Preset::MinimumNorm, "all alike"), (Preset::Table1, "those of Table I"), (Preset::AsPrinted, "as printed")];
+    ui.horizontal(|ui| {
+        let tip = "How dear it is to move each centre of mass, Eq. (10)";
+        ui.label("penalties p").on_hover_text(tip);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let shown = PRESETS.iter().find(|(preset, _)| *preset == brief.preset).map_or("", |(_, words)| *words);
+            let list = egui::ComboBox::from_id_salt("penalties").selected_text(shown).width(172.0).show_ui(ui, |ui| {
+                for (preset, words) in PRESETS {
+                    ui.selectable_value(&mut brief.preset, preset, words);
+                }
+            });
+            name(&list.response, "penalties on centres of mass");
         });
     });
 }

@@ -35,7 +35,9 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewStat
         one.exact_size(TABLE).frame(frame).show(ui, |ui| {
             scrolled(ui, |ui| {
                 table::show(ui, session, view_state, commands);
-                asked::show(ui, !session.scenario().machine.spec().counterweights.is_empty(), view_state, commands);
+                let spec = session.scenario().machine.spec();
+                let has = (spec.links.len(), !spec.counterweights.is_empty());
+                asked::show(ui, has, view_state, commands);
                 measures::show(ui, session, facts, &p);
             });
         });

@@ -6,6 +6,7 @@ mod outline;
 mod path;
 mod pins;
 mod reaction;
+mod ring;
 mod snapshots;
 mod target;
 mod turning;
@@ -37,6 +38,7 @@ use base::BaseStage;
 use limits::Limits;
 use path::Plan;
 use pins::Pins;
+use ring::Ring;
 use workspace::Workspace;
 
 /// The most squares of the grid over the reach of a machine.
@@ -48,6 +50,8 @@ pub struct Stage {
     linkage: Linkage,
     base: BaseStage,
     workspace: Option<Workspace>,
+    /// Of a machine with a b to turn.
+    ring: Option<Ring>,
     /// The same of other than three drives.
     outline: Outlining,
     /// The mesh that fills it.
@@ -103,7 +107,8 @@ impl Stage {
         let compared = run.scenario().compare_b;
         Self {
             base: BaseStage::of(run, &plant, &linkage),
-            workspace: run.planes().map(|planes| Workspace::of(planes, compared, ring_radius(&linkage))),
+            workspace: run.planes().map(|planes| Workspace::of(planes, compared)),
+            ring: run.pose_map().ok().filter(|map| map.angles() > 0).map(|map| Ring::of(map, ring_radius(&linkage))),
             outline: match run.pose_map() {
                 Ok(PoseMap::Space(space)) => Outlining::Wanted(space.clone()),
                 _ => Outlining::None,
@@ -123,7 +128,7 @@ impl Stage {
     /// The same without a workspace, for a run that is led otherwise.
     #[must_use]
     pub fn without_workspace(self) -> Self {
-        Self { workspace: None, outline: Outlining::None, ..self }
+        Self { workspace: None, ring: None, outline: Outlining::None, ..self }
     }
 
     /// The outline of what other than three drives reach, once it is found.
@@ -215,8 +220,7 @@ impl Stage {
                 Some([p.re, p.im, z])
             }
             Handle::Ring => {
-                let turn = self.workspace.as_ref()?.planes().map().turn(frame.b_reference) + frame.base.angle;
-                let p = frame.base.at + unit(turn) * self.ring_radius();
+                let p = self.ring.as_ref()?.knob(frame);
                 Some([p.re, p.im, z])
             }
             Handle::EndEffector => Some([frame.end_effector.re, frame.end_effector.im, z]),
@@ -293,10 +297,7 @@ impl Stage {
 
     /// The b that a place of the ring's knob stands for in a frame as shown, nearest to the present one, rad.
     pub fn ring_b(&self, at: [f64; 2], near: f64, frame: &Frame) -> Option<f64> {
-        let map = self.workspace.as_ref()?.planes().map();
-        let at = frame.in_base(Vector::new(at[0], at[1]));
-        let turn = crate::mechanics::kinematics::closest_turn(at.arg(), map.turn(near));
-        Some(turn * map.lambda_sum())
+        Some(self.ring.as_ref()?.b(Vector::new(at[0], at[1]), near, frame))
     }
 
     /// The ends of all links in a frame as shown, and the target: what a hand wants to see.
@@ -369,7 +370,9 @@ impl Stage {
         self.base.draw(&mut scene, linkage, &palette, frame);
         if let Some(workspace) = &self.workspace {
             workspace.draw(&mut scene, linkage, &palette, frame, options);
-            workspace.ring(&mut scene, &palette, frame, options, z);
+        }
+        if let Some(ring) = &self.ring {
+            ring.draw(&mut scene, &palette, frame, options, z);
         }
         if let Some(outline) = self.outline.done() {
             outline.draw(&mut scene, (linkage, self.fill), &palette, frame);

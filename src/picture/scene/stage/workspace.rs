@@ -1,4 +1,4 @@
-//! The reactionless workspaces, what runs inside them, and the ring that turns them.
+//! The reactionless workspaces, and what runs inside them.
 
 use std::f64::consts::TAU;
 use std::sync::{Arc, OnceLock};
@@ -27,9 +27,6 @@ pub struct Workspace {
     change_points: Strips,
     /// Where folds turn back, m.
     cusps: Vec<Vector>,
-    /// The b ring about B, and its radius, m.
-    circle: Strips,
-    radius: f64,
     /// Least and greatest of each measure of dexterity within the limits, found when first shown.
     dexterity: [OnceLock<[f64; 2]>; 3],
 }
@@ -43,8 +40,8 @@ pub(super) fn held(noun: &str, is_reactionless: bool) -> String {
 }
 
 impl Workspace {
-    /// Of planes, with a b to compare with and a ring of a radius, m.
-    pub fn of(planes: &Arc<Planes>, compared: Option<f64>, radius: f64) -> Self {
+    /// Of planes, with a b to compare with.
+    pub fn of(planes: &Arc<Planes>, compared: Option<f64>) -> Self {
         let boundary = planes.boundary();
         let loops: Vec<Vec<Vector>> = boundary.turned(0.0).into_iter().map(vectors).collect();
         let drawn = |lines: &mut dyn Iterator<Item = &reactionless::BoundaryLine>| -> Strips {
@@ -69,8 +66,6 @@ impl Workspace {
             limits: drawn(&mut boundary.inner_limits().iter()),
             change_points: drawn(&mut boundary.change_curves().iter().map(|curve| &curve.line)),
             cusps: boundary.cusps().iter().map(|v| v.at).collect(),
-            circle: [flat(&(0..=96).map(|i| unit(TAU * f64::from(i) / 96.0) * radius).collect::<Vec<_>>())].into(),
-            radius,
             dexterity: Default::default(),
             planes: planes.clone(),
         }
@@ -164,26 +159,6 @@ impl Workspace {
             let name = "workspace/label";
             scene.labels.push(Label::new(name, there(middle), offset, text, colour, size, Anchor::Centre));
         }
-    }
-
-    /// The ring whose knob turns the workspace.
-    pub fn ring(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, options: &ViewOptions, z: f64) {
-        let radius = self.radius;
-        let (b, base) = (frame.base.at, frame.base.angle);
-        let turn = self.planes.map().turn(frame.b_reference) + base;
-        let pose = posed(b, unit(base), z);
-        let ring = Line::new("b_ring", self.circle.clone(), 3.0, faded(palette.line, 0.9)).on_top();
-        scene.lines.push(ring.moving(pose));
-        let shown = (turn - base).rem_euclid(TAU);
-        let n = ((shown / TAU * 48.0).ceil() as usize).max(2);
-        let arc = (0..=n).map(|i| point(b + unit(base + shown * i as f64 / n as f64) * radius, z)).collect();
-        scene.lines.push(Line::new("b_ring/b", [arc], 3.5, palette.amber).on_top());
-        let hot = options.hot == Some(Handle::Ring);
-        let knob = point(b + unit(turn) * radius, z);
-        let disc = Marker::disc("b_ring/knob", knob, if hot { 9.0 } else { 7.0 }, palette.amber);
-        scene.markers.push(disc.edged(palette.background, 2.0));
-        let beside = point(b + unit(turn) * (radius * 1.28), z);
-        scene.labels.push(Label::new("b_ring/name", beside, [0.0; 2], "b", palette.amber, 14.0, Anchor::Centre));
     }
 }
 

@@ -1,0 +1,66 @@
+//! The ring about the base whose knob turns what is reached while b is held, for any number of drives.
+
+use std::f64::consts::TAU;
+
+use crate::mechanics::kinematics::closest_turn;
+use crate::mechanics::planar::{Vector, unit};
+use crate::picture::scene::options::{Handle, ViewOptions};
+use crate::picture::scene::palette::{Palette, faded};
+use crate::picture::scene::{Anchor, Label, Line, Marker, Scene, Strips, point, posed};
+use crate::planning::pose_map::PoseMap;
+use crate::simulation::frame::Frame;
+
+/// Corners of the circle.
+const CORNERS: u32 = 96;
+
+/// The ring before the base moves.
+#[derive(Clone, Debug)]
+pub struct Ring {
+    circle: Strips,
+    /// m.
+    radius: f64,
+    /// Σλ: b over this is how far it turns, rad.
+    sum: f64,
+}
+
+impl Ring {
+    /// Of a machine with a b, of a radius, m.
+    pub fn of(map: &PoseMap, radius: f64) -> Self {
+        let corner = |i: u32| point(unit(TAU * f64::from(i) / f64::from(CORNERS)) * radius, 0.0);
+        let circle = vec![(0..=CORNERS).map(corner).collect::<Vec<_>>()];
+        Self { circle: circle.into(), radius, sum: map.period() / TAU }
+    }
+
+    /// Direction of the knob at the present b, rad.
+    fn turn(&self, frame: &Frame) -> f64 {
+        frame.b_reference / self.sum + frame.base.angle
+    }
+
+    /// Where the knob is, m.
+    pub fn knob(&self, frame: &Frame) -> Vector {
+        frame.base.at + unit(self.turn(frame)) * self.radius
+    }
+
+    /// The b that a place of the knob stands for, nearest to another, rad.
+    pub fn b(&self, at: Vector, near: f64, frame: &Frame) -> f64 {
+        closest_turn(frame.in_base(at).arg(), near / self.sum) * self.sum
+    }
+
+    /// Draws it at a height, m.
+    pub fn draw(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, options: &ViewOptions, z: f64) {
+        let (at, base, turn) = (frame.base.at, frame.base.angle, self.turn(frame));
+        let pose = posed(at, unit(base), z);
+        let ring = Line::new("b_ring", self.circle.clone(), 3.0, faded(palette.line, 0.9)).on_top();
+        scene.lines.push(ring.moving(pose));
+        let shown = (turn - base).rem_euclid(TAU);
+        let n = ((shown / TAU * 48.0).ceil() as usize).max(2);
+        let along = |i: usize| point(at + unit(base + shown * i as f64 / n as f64) * self.radius, z);
+        let arc = (0..=n).map(along).collect();
+        scene.lines.push(Line::new("b_ring/b", [arc], 3.5, palette.amber).on_top());
+        let hot = options.hot == Some(Handle::Ring);
+        let disc = Marker::disc("b_ring/knob", point(self.knob(frame), z), if hot { 9.0 } else { 7.0 }, palette.amber);
+        scene.markers.push(disc.edged(palette.background, 2.0));
+        let beside = point(at + unit(turn) * (self.radius * 1.28), z);
+        scene.labels.push(Label::new("b_ring/name", beside, [0.0; 2], "b", palette.amber, 14.0, Anchor::Centre));
+    }
+}
