@@ -96,7 +96,7 @@ fn pose_constant(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &Vie
     let edit = set_b(session, view_state, asked);
     let typed = responses[0].changed() && !responses[0].dragged();
     let stops = matches!(edit, Edit::PoseB { b } if b != asked);
-    let serving = session.run().common();
+    let serving = session.run().bands();
     if typed && stops {
         let band = serving.map_or_else(String::new, |common| common.near(shown).in_words());
         let who = all_points(session);
@@ -131,7 +131,7 @@ fn pose_constant(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &Vie
         };
         note(ui, p, &text);
     }
-    if !session.is_led() && session.run().planes().is_some() {
+    if !session.is_led() && map.angles() > 1 {
         let who = all_points(session);
         let mut turn = view_state.turn_task;
         let words = RichText::new("turn the task too").font(plain(11.0)).color(colour(p.dim));
@@ -144,9 +144,6 @@ fn pose_constant(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &Vie
     let words = RichText::new(format!("in motion it costs up to {:.2} N m", facts.price)).font(plain(11.0));
     let tip = "The moment of D₁ b̈ on a fixed base; one that moves gives way";
     ui.add(egui::Label::new(words.color(colour(p.dim))).truncate()).on_hover_text(tip);
-    if session.run().planes().is_none() {
-        return;
-    }
     let mut shown = scenario.compare_b.is_some();
     let mut other = scenario.compare_b.unwrap_or(b + 0.5 * period);
     ui.horizontal(|ui| {

@@ -227,7 +227,9 @@ impl Session {
             // Samples of the drives have a b of their own.
             return Some(task.b);
         }
-        let common = self.run.common()?;
+        // Two drives reach a point at one b alone: their points turn with it.
+        let several = self.run.pose_map().is_ok_and(|map| map.angles() > 1);
+        let common = if several { self.run.bands()? } else { return None };
         let nearest = common.nearest(b)?;
         Some(if nearest == b { b } else { common.inwards(nearest, 1e-6) })
     }

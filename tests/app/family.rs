@@ -1,7 +1,9 @@
 //! Joint space and tower of machines of two and of four drives, and why others have none.
 
-use egui::Key;
+use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use stillbase::mechanics::planar::{Vector, unit};
+use stillbase::picture::scene::options::{Handle, ViewOptions};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::views::ViewKind;
 use stillbase::session::scenario::TaskKind;
@@ -14,6 +16,7 @@ pub const TESTS: &[Test] = tests![
     joint_space_of_four_drives_shows_three_of_them,
     other_numbers_of_drives_have_a_tower,
     other_numbers_of_drives_are_told_which_b_serves,
+    the_ring_turns_and_another_b_is_compared,
     a_view_that_a_machine_lacks_says_why,
     the_hand_is_told_where_to_point,
     other_kinds_of_tasks_are_chosen_for_four_drives,
@@ -25,6 +28,50 @@ fn themes(name: &str, case: &str, mut at: impl FnMut(&mut Window)) {
         h.run_steps(2);
         at(&mut h);
         egui_kittest::image_snapshot(&h.render().expect("drawn"), format!("{name}-{word}"));
+    }
+}
+
+/// As with three drives: the knob about the base turns b, and a second outline is drawn to compare with.
+fn the_ring_turns_and_another_b_is_compared() {
+    for case in ["two-drive", "four-drive"] {
+        let mut h = window(case, Theme::Dark);
+        for _ in 0..600 {
+            h.run_steps(1);
+            if h.state().app_state().stage().outlined().is_some() {
+                break;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(20));
+        }
+        let frame = *session(&h).frame();
+        let stage = h.state().app_state().stage();
+        let knob = stage.handle(Handle::Ring, &frame).expect("it has a b");
+        let away = unit(0.4) * Vector::new(knob[0], knob[1]);
+        let (from, to) = (seen(&h, knob), seen(&h, [away.re, away.im, knob[2]]));
+        if case == "four-drive" {
+            // It stops where A or B would be out of reach.
+            drag(&mut h, from, to);
+            h.run_steps(4);
+            let end = session(&h).run().bands().expect("b that serve both").near(frame.b_reference).intervals[0][1];
+            assert!((session(&h).b_aim() - end).abs() < 1e-4, "{} of {end}", session(&h).b_aim());
+            h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+            h.run_steps(4);
+            h.get_by_label("turn the task too").click();
+            h.run_steps(2);
+        }
+        drag(&mut h, from, to);
+        h.run_steps(4);
+        let sum = session(&h).run().pose_map().expect("it has a b").period() / std::f64::consts::TAU;
+        let turned = (session(&h).b_aim() - frame.b_reference) / sum;
+        assert!((turned - 0.4).abs() < 0.03, "{case}: by {turned} rad");
+        let lines = |h: &Window| {
+            let state = h.state().app_state();
+            let scene = state.stage().scene(session(h).frame(), &ViewOptions::default());
+            scene.lines.iter().filter(|line| line.name == "workspace/compared/boundary").count()
+        };
+        assert_eq!(lines(&h), 0);
+        h.get_by_label("compare").click();
+        h.run_steps(4);
+        assert_eq!(lines(&h), 1, "{case}");
     }
 }
 

@@ -402,7 +402,7 @@ fn the_machines_handles_are_found_in_both_views() {
     }
     // Around, all views come by.
     let mut kind = ViewKind::default();
-    for want in [ViewKind::Space, ViewKind::Joints, ViewKind::Tower, ViewKind::Flat] {
+    for want in [ViewKind::Space, ViewKind::Joints, ViewKind::Tower, ViewKind::Design, ViewKind::Flat] {
         kind = kind.next();
         assert_eq!(kind, want);
     }

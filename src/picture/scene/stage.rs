@@ -50,6 +50,8 @@ pub struct Stage {
     linkage: Linkage,
     base: BaseStage,
     workspace: Option<Workspace>,
+    /// The b to compare with, rad.
+    compared: Option<f64>,
     /// Of a machine with a b to turn.
     ring: Option<Ring>,
     /// The same of other than three drives.
@@ -108,6 +110,7 @@ impl Stage {
         Self {
             base: BaseStage::of(run, &plant, &linkage),
             workspace: run.planes().map(|planes| Workspace::of(planes, compared)),
+            compared,
             ring: run.pose_map().ok().filter(|map| map.angles() > 0).map(|map| Ring::of(map, ring_radius(&linkage))),
             outline: match run.pose_map() {
                 Ok(PoseMap::Space(space)) => Outlining::Wanted(space.clone()),
@@ -328,12 +331,14 @@ impl Stage {
             let loops = planes.map_or_else(Vec::new, |planes| planes.boundary().turned(b));
             loops.into_iter().flatten().step_by(4).map(|[x, y]| (on_base(Vector::new(x, y)), self.linkage.floor()))
         };
-        let outline = self.outline.done().into_iter().flat_map(|outline| outline.points(frame));
+        let outline = self.outline.done().into_iter().flat_map(|outline| outline.points(frame.b_reference, frame));
         let outline = outline.map(|p| (p, self.linkage.floor()));
         let waypoints = self.plan.iter().flat_map(|plan| plan.waypoints.iter().map(|(_, _, p)| (*p, z)));
         let target = [(target_handle(frame), z), (base.at, 0.0)];
         let points = |(p, z): (Vector, f64)| [p.re, p.im, z];
         let compared = self.workspace.as_ref().and_then(Workspace::compared_b);
+        let other = self.compared.zip(self.outline.done()).map(|(b, outline)| outline.points(b, frame));
+        let other = other.into_iter().flatten().map(|p| (p, self.linkage.floor()));
         Content {
             first: links
                 .chain(workspace(frame.b_reference))
@@ -342,7 +347,7 @@ impl Stage {
                 .chain(target)
                 .map(points)
                 .collect(),
-            then: compared.into_iter().flat_map(workspace).map(points).collect(),
+            then: compared.into_iter().flat_map(workspace).chain(other).map(points).collect(),
         }
     }
 
@@ -375,6 +380,9 @@ impl Stage {
             ring.draw(&mut scene, &palette, frame, options, z);
         }
         if let Some(outline) = self.outline.done() {
+            if let Some(b) = self.compared.filter(|_| options.compares) {
+                outline.draw_compared(&mut scene, linkage, &palette, b, frame.base);
+            }
             outline.draw(&mut scene, (linkage, self.fill), &palette, frame);
         }
         if let Some(plan) = &self.plan {

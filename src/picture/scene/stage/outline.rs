@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::workspace::held;
-use crate::mechanics::planar::{Vector, unit};
+use crate::mechanics::planar::{Pose2, Vector, unit};
 use crate::picture::scene::linkage::Linkage;
 use crate::picture::scene::palette::{Palette, faded};
 use crate::picture::scene::{Anchor, Changes, Label, Line, Marker, Mesh, Scene, Solid, Strips, fill, point, posed};
@@ -127,11 +127,23 @@ impl Outlined {
         self.space.turn(frame.b_reference) + frame.base.angle
     }
 
-    /// Its points in a frame, m.
-    pub fn points(&self, frame: &Frame) -> Vec<Vector> {
-        let turn = unit(self.turn(frame));
+    /// Its points at a b on the base of a frame, m.
+    pub fn points(&self, b: f64, frame: &Frame) -> Vec<Vector> {
+        let turn = unit(self.space.turn(b) + frame.base.angle);
         let all = self.strips.iter().flatten();
         all.map(|[x, y, _]| frame.base.at + turn * Vector::new(f64::from(*x), f64::from(*y))).collect()
+    }
+
+    /// The same at another b, to compare with.
+    pub fn draw_compared(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, b: f64, base: Pose2) {
+        let turn = unit(self.space.turn(b) + base.angle);
+        let z = linkage.floor() - 2.0 * BELOW * linkage.reach();
+        let line = Line::new("workspace/compared/boundary", self.strips.clone(), 1.2, faded(palette.dim, 0.55));
+        scene.lines.push(line.dashed(5.0, 4.0).moving(posed(base.at, turn, z)));
+        let at = point(base.at + self.middle * turn, z);
+        let text = format!("b = {:.3} rad", b.rem_euclid(self.space.period()));
+        let name = "workspace/compared/label";
+        scene.labels.push(Label::new(name, at, [0.0, 0.0], text, palette.dim, 11.5, Anchor::Centre));
     }
 
     /// Draws it where it is in a frame, filled with a mesh.
