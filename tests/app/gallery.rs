@@ -59,7 +59,7 @@ fn arrows_lead_from_machine_to_machine() {
     let focused = |h: &Window, label: &str| h.get_by_label_contains(label).accesskit_node().is_focused();
     assert!(focused(&h, "nine-link, 3 drives"));
     let at = session(&h).frame().target.at;
-    for (key, label) in [(Key::ArrowDown, "four-drive, 4"), (Key::ArrowRight, "serial-3r, 3")] {
+    for (key, label) in [(Key::ArrowDown, "serial-3r, 3"), (Key::ArrowRight, "nine-link-geared, 3")] {
         h.key_press(key);
         h.run_steps(3);
         assert!(focused(&h, label), "{key:?}: {label}");
@@ -67,7 +67,7 @@ fn arrows_lead_from_machine_to_machine() {
     assert_eq!(session(&h).frame().target.at, at, "arrows were for the list");
     h.key_press_modifiers(Modifiers::NONE, Key::Enter);
     h.run_steps(4);
-    assert_eq!(session(&h).scenario().name, "serial-3r");
+    assert_eq!(session(&h).scenario().name, "nine-link-geared");
 }
 
 /// What a small window has no room for is scrolled into view, not cut off at its edges.

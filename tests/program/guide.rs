@@ -171,6 +171,7 @@ pages! {
     planning: "src/guide/planning.md", 6;
     plants: "src/guide/plants.md", 5;
     inside: "src/guide/inside.md", 3;
+    design: "src/guide/design.md", 4;
     tolerances: "src/guide/tolerances.md", 3;
     own_motion: "src/guide/own_motion.md", 4;
     files: "src/guide/files.md", 4;

@@ -112,7 +112,18 @@ fn any_machine() -> impl Strategy<Value = Edit> {
         1 => (1..4usize, 5.0..40.0).prop_map(|(k, most): (usize, f64)| set(&format!("drive.{k}.torque_limit"), &most.to_string())),
         1 => (1..4usize).prop_map(|k| Edit::set(&format!("drive.{k}.speed_limit"), "default")),
         1 => Just(set("limits.a1", "3,1")),
+        1 => (0.05..2.0, -0.3..0.3).prop_map(|(mass, at)| weight(mass, at)),
+        1 => Just(Edit::set("counterweight", "default")),
+        1 => (-0.3..0.3).prop_map(|at| Edit::set("counterweight.1.at", at)),
     ]
+}
+
+/// One counterweight, on link 1.
+fn weight(mass: f64, at: f64) -> Edit {
+    let numbers = [("mass", mass), ("at", at), ("radius", 0.03)].map(|(key, x)| (key.to_owned(), x.into()));
+    let link = [("link".to_owned(), "1".into())];
+    let one = toml::Table::from_iter(numbers.into_iter().chain(link));
+    Edit::set("counterweight", toml::Value::Array(vec![one.into()]))
 }
 
 fn any_edit() -> impl Strategy<Value = Edit> {
