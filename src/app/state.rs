@@ -18,7 +18,7 @@ use super::{
     order, place, plots, rail, side, status, studio, study, theme, top, viewport,
 };
 use crate::app::widgets;
-use crate::mechanics::machine::Machine;
+use crate::mechanics::machine::{Inertia, Machine};
 use crate::picture::scene::exaggeration::exaggeration;
 use crate::picture::scene::palette::Theme;
 use crate::picture::scene::stage::Stage;
@@ -488,8 +488,10 @@ impl AppState {
     fn design(&mut self, command: DesignCommand) -> Result<(), String> {
         match command {
             DesignCommand::Brief(brief) => {
-                let begins = brief.keeps_balance && !self.view_state.brief.keeps_balance;
                 let machine = &self.session.scenario().machine;
+                let inertia = Inertia::of(machine);
+                let is_balanced = inertia.is_force_balanced() && inertia.is_invariant();
+                let begins = brief.keeps_balance && !self.view_state.brief.keeps_balance && !is_balanced;
                 let edit = begins.then(|| brief.edit(machine, machine, &Default::default())).transpose()?;
                 self.view_state.brief = *brief;
                 if let Some(edit) = edit {

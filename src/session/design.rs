@@ -83,7 +83,11 @@ impl Brief {
             let stays = self.fixed.contains(link) || named.contains(&parameter.key(machine));
             Adjusted {
                 parameter,
-                hold: if stays { Hold::Fixed } else { Hold::Free },
+                hold: match (parameter.quantity, parameter.body) {
+                    _ if stays => Hold::Fixed,
+                    (Quantity::Along, Body::Counterweight(i)) => self.along(machine, start, i),
+                    _ => Hold::Free,
+                },
                 penalty: match (parameter.quantity, parameter.body) {
                     (Quantity::Mass, _) => MASS,
                     (_, Body::Link(j)) => penalties.get(j).copied().unwrap_or(1.0),
@@ -93,6 +97,17 @@ impl Brief {
             }
         };
         Keep { parameters: free.into_iter().map(adjusted).collect() }.measured_from(start)
+    }
+
+    /// Where a counterweight may go: as far as on the front, and no nearer than where it is.
+    fn along(&self, machine: &Machine, start: &Machine, i: usize) -> Hold {
+        let weights = [machine, start].map(|machine| machine.spec().counterweights.get(i));
+        let link = weights[0].and_then(|weight| machine.links().iter().position(|link| link.name == weight.link));
+        let Some(link) = link else { return Hold::Free };
+        let length = machine.resolved_links()[link].length;
+        let ends = [-self.back.unwrap_or(length), length];
+        let within = |[low, high]: [f64; 2], at: f64| [low.min(at), high.max(at)];
+        Hold::Within(weights.into_iter().flatten().map(|weight| weight.at).fold(ends, within))
     }
 
     /// Counterweights that balance the links alone: what less inertia costs in mass, in so many machines.

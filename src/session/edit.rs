@@ -278,6 +278,15 @@ impl Edit {
     }
 }
 
+/// All of them at once, in words.
+fn counterweights(value: &Value) -> String {
+    let mass = |weight: &Value| weight.get("mass").and_then(change::number).unwrap_or_default();
+    match value.as_array() {
+        Some(all) => format!("counterweights to {:.2} kg on {} links", all.iter().map(mass).sum::<f64>(), all.len()),
+        None => "counterweights to none".into(),
+    }
+}
+
 /// What settings do.
 fn title_of(change: &Table) -> String {
     let task = change.get("task").and_then(Value::as_table).filter(|_| change.len() == 1);
@@ -305,6 +314,7 @@ fn title_of(change: &Table) -> String {
                     false => path.strip_prefix("task.").unwrap_or(path).replace(['_', '.'], " "),
                 };
                 match number {
+                    _ if path == "counterweight" => counterweights(value),
                     _ if back => format!("{words} back to normal"),
                     Some(x) => format!("{words} to {}", (x * 1e6).round() / 1e6),
                     None => format!("{words} to {}", shortened(&change::typed(value), 60)),

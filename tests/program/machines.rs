@@ -261,7 +261,7 @@ fn counterweights_that_cannot_be_are_refused() {
     let ask = |more: &[&str], status: i32, words: &[&str]| {
         fails(&[&["design", BARE, "--counterweights"], more].concat(), status, words);
     };
-    ask(&["--max-mass", "1"], 1, &["no heavier", "kg on each of them would do"]);
+    ask(&["--max-mass", "1"], 1, &["no heavier", "kg on every link would do"]);
     ask(&["--range", "10=-0.3,0"], 2, &["no link 10", "want one of 1, 2"]);
     ask(&["--range", "1=-0.3"], 2, &["LINK=LO,HI"]);
     ask(&["--range", "1=0.3,-0.3"], 2, &["link 1", "an end not below its start"]);

@@ -113,3 +113,28 @@ fn counterweights_are_edits_like_all_others() {
     session.apply(Edit::set("counterweight", "default")).expect("none were there");
     assert_eq!(session.scenario().machine, bare);
 }
+
+/// However far a counterweight is dragged, the others stay where they can be: or what is in the way is named.
+#[test]
+fn what_follows_stays_at_its_link() {
+    let bare = stillbase::mechanics::machine::builtin("space-arm").expect("built in");
+    let brief = Brief { keeps_balance: true, ..Brief::default() };
+    let start = brief.front(bare, 3).expect("it can be balanced").points[0].machine.clone();
+    let (mut machine, mut kept) = (start.clone(), 0);
+    for step in 0..40 {
+        let at = -3.0 + 0.1 * f64::from(step);
+        match brief.edit(&machine, &start, &of("counterweight.2.at", at)) {
+            Ok(edit) => {
+                machine = changed(&machine, &edit);
+                kept += 1;
+                assert!(is_balanced(&machine), "{at} m");
+                for weight in &machine.spec().counterweights {
+                    assert!(weight.at.abs() < 3.0 + 1e-6, "{at} m puts one at {} m", weight.at);
+                    assert!(weight.mass > 1e-3, "{at} m leaves {} kg", weight.mass);
+                }
+            }
+            Err(why) => assert!(why.contains("no balance within these limits: "), "{why}"),
+        }
+    }
+    assert!(kept > 3, "{kept}");
+}

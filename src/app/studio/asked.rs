@@ -15,11 +15,16 @@ const MATERIALS: [(&str, f64); 5] =
     [("aluminium", 2700.0), ("steel", 7850.0), ("brass", 8500.0), ("lead", 11_340.0), ("tungsten", 19_300.0)];
 
 /// Draws it.
-pub fn show(ui: &mut Ui, (links, has_weights): (usize, bool), view_state: &ViewState, commands: &mut Vec<Command>) {
+pub fn show(
+    ui: &mut Ui,
+    (links, has_weights, is_balanced): (usize, bool, bool),
+    view_state: &ViewState,
+    commands: &mut Vec<Command>,
+) {
     let p = &view_state.palette();
     let mut brief = view_state.brief.clone();
     ui.add_space(10.0);
-    keeping(ui, p, &mut brief, has_weights);
+    keeping(ui, p, &mut brief, has_weights, is_balanced);
     if !has_weights && links == 9 {
         penalties(ui, &mut brief);
     }
@@ -64,9 +69,14 @@ pub fn show(ui: &mut Ui, (links, has_weights): (usize, bool), view_state: &ViewS
 }
 
 /// The lock on the balance.
-fn keeping(ui: &mut Ui, p: &Palette, brief: &mut Brief, has_weights: bool) {
-    let tone = if brief.keeps_balance { p.zero } else { p.dim };
-    let what = if has_weights { "the counterweights follow" } else { "the centres of mass follow" };
+fn keeping(ui: &mut Ui, p: &Palette, brief: &mut Brief, has_weights: bool, is_balanced: bool) {
+    let (what, tone) = match (brief.keeps_balance, is_balanced) {
+        (false, _) => ("off", p.dim),
+        // As after an undo.
+        (true, false) => ("from the next change on", p.reaction),
+        (true, true) if has_weights => ("the counterweights follow", p.zero),
+        (true, true) => ("the centres of mass follow", p.zero),
+    };
     let tip = "Whatever is changed, what is free follows so that (7) and (8) hold, each as little as it can; a ticked \
                link stays";
     ui.horizontal(|ui| {
@@ -74,8 +84,7 @@ fn keeping(ui: &mut Ui, p: &Palette, brief: &mut Brief, has_weights: bool) {
         let ticked = ui.checkbox(&mut brief.keeps_balance, words).on_hover_text(tip);
         name(&ticked, "Keep balanced");
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let words = if brief.keeps_balance { what } else { "off" };
-            ui.label(RichText::new(words).font(plain(11.5)).color(colour(tone)));
+            ui.label(RichText::new(what).font(plain(11.5)).color(colour(tone)));
         });
     });
 }

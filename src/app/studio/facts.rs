@@ -137,5 +137,14 @@ fn terms(machine: &Machine) -> Vec<Term> {
         let left = [term.left.re, term.left.im];
         Term { symbol, meaning, unit, left, is_balanced: term.balanced, parts }
     };
-    breakdown.terms.iter().map(term).collect()
+    let mut terms: Vec<Term> = breakdown.terms.iter().map(term).collect();
+    // What is rounding beside the other lines is no bar.
+    for unit in ["kg m", "kg m²"] {
+        let alike = || terms.iter().filter(|term| term.unit == unit);
+        let most = alike().map(Term::greatest).fold(0.0, f64::max);
+        for term in terms.iter_mut().filter(|term| term.unit == unit && term.greatest() < NOTHING * most) {
+            term.parts.clear();
+        }
+    }
+    terms
 }

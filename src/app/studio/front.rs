@@ -127,11 +127,14 @@ fn told(
         Some(point) => (point.placed.added_mass, point.inertia),
         None => (facts.now[0], facts.now[1]),
     };
-    let text = format!("{} kg added, Σ D {} kg m²", signed(mass, 2), signed(inertia, 3));
+    let text = match at.is_none() && mass < NOTHING {
+        true => "no counterweights yet".to_owned(),
+        false => format!("{} kg added, Σ D {} kg m²", signed(mass, 2), signed(inertia, 3)),
+    };
     let tone = if at.is_some() { p.ink } else { p.amber };
     ui.label(RichText::new(text).font(bold(13.0)).color(colour(tone)));
     let gap = points.iter().map(|point| point.placed.gap).fold(0.0, f64::max);
-    let proof = format!("proved: within these bounds nothing is better by more than {gap:.0e} kg or kg m²");
+    let proof = format!("proved: below the curve there is nothing, give or take {gap:.0e} kg or kg m²");
     note(ui, p, &proof);
     ui.horizontal(|ui| {
         let last = points.len() - 1;

@@ -36,7 +36,8 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewStat
             scrolled(ui, |ui| {
                 table::show(ui, session, view_state, commands);
                 let spec = session.scenario().machine.spec();
-                let has = (spec.links.len(), !spec.counterweights.is_empty());
+                let is_balanced = facts.terms.iter().all(|term| term.is_balanced);
+                let has = (spec.links.len(), !spec.counterweights.is_empty(), is_balanced);
                 asked::show(ui, has, view_state, commands);
                 measures::show(ui, session, facts, &p);
             });

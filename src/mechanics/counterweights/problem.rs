@@ -182,7 +182,7 @@ pub enum NoWeights {
 }
 
 fn would_do(relief: &Option<f64>) -> String {
-    relief.map_or(String::new(), |most| format!("; up to {most:.6} kg on each of them would do"))
+    relief.map_or(String::new(), |most| format!("; up to {most:.6} kg on every link would do"))
 }
 
 /// Weights below these are none, kg.
