@@ -489,9 +489,8 @@ impl AppState {
         match command {
             DesignCommand::Brief(brief) => {
                 let machine = &self.session.scenario().machine;
-                let inertia = Inertia::of(machine);
-                let is_balanced = inertia.is_force_balanced() && inertia.is_invariant();
-                let begins = brief.keeps_balance && !self.view_state.brief.keeps_balance && !is_balanced;
+                let begins =
+                    brief.keeps_balance && !self.view_state.brief.keeps_balance && !Inertia::of(machine).is_balanced();
                 let edit = begins.then(|| brief.edit(machine, machine, &Default::default())).transpose()?;
                 self.view_state.brief = *brief;
                 if let Some(edit) = edit {

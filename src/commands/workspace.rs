@@ -155,8 +155,8 @@ impl Workspace {
             }
             let mut text = table.to_string().trim_start().to_owned();
             if !a.points.is_empty() {
-                let names = machine.angles().iter().map(|a| format!("{} rad", a.name));
-                text.push_str(&format!("\n\n{}", of_space(a, names)));
+                let names: Vec<String> = machine.angles().iter().map(|a| format!("{} rad", a.name)).collect();
+                text.push_str(&format!("\n\n{}", of_space(a, &names)));
             }
             text
         })
@@ -277,38 +277,43 @@ fn remarks(a: &Answer) -> String {
 }
 
 fn points(a: &Answer, angles: &[String]) -> Table {
-    let head = ["point m", "from boundary m"].map(String::from).into_iter().chain(angles.iter().cloned());
-    let measures = ["det m²", "√det(J Jᵀ) m²", "worst N m/N", "least |sin|"].map(String::from);
-    let mut table = Table::new(head.chain(measures));
+    let mut table = poses("from boundary m", angles, &["det m²", "√det(J Jᵀ) m²", "worst N m/N", "least |sin|"]);
     for p in &a.points {
-        let mut first = [format!("{}, {}", p.point[0], p.point[1]), fixed(p.distance, 9)];
-        if p.poses.is_empty() {
-            table.row(first.clone().into_iter().chain(["no pose".into()]));
-        }
-        for pose in &p.poses {
-            let numbers =
-                [pose.a[0], pose.a[1], pose.det, pose.manipulability, pose.worst_torque_per_force, pose.transmission];
-            table.row(std::mem::take(&mut first).into_iter().chain(numbers.map(|x| fixed(x, 6))));
-        }
+        let numbers = p.poses.iter().map(|pose| {
+            let measures = [pose.det, pose.manipulability, pose.worst_torque_per_force, pose.transmission];
+            pose.a.iter().copied().chain(measures).collect()
+        });
+        add_point(&mut table, p.point, p.distance, numbers.collect());
     }
     table
 }
 
-fn of_space(a: &OfSpace, angles: impl Iterator<Item = String>) -> Table {
+fn of_space(a: &OfSpace, angles: &[String]) -> Table {
     let from = if a.curve.is_empty() { "from boundary m" } else { "from curve m" };
-    let head = ["point m", from].map(String::from).into_iter().chain(angles);
-    let measures = ["√det(J Jᵀ) m²", "worst N m/N", "least |sin|"].map(String::from);
-    let mut table = Table::new(head.chain(measures));
+    let mut table = poses(from, angles, &["√det(J Jᵀ) m²", "worst N m/N", "least |sin|"]);
     for p in &a.points {
-        let mut first = [format!("{}, {}", p.point[0], p.point[1]), fixed(p.distance, 9)];
-        if p.poses.is_empty() {
-            table.row(first.clone().into_iter().chain(["no pose".into()]));
-        }
-        for pose in &p.poses {
+        let numbers = p.poses.iter().map(|pose| {
             let measures = [pose.manipulability, pose.worst_torque_per_force, pose.transmission];
-            let numbers = pose.a.iter().copied().chain(measures).map(|x| fixed(x, 6));
-            table.row(std::mem::take(&mut first).into_iter().chain(numbers));
-        }
+            pose.a.iter().copied().chain(measures).collect()
+        });
+        add_point(&mut table, p.point, p.distance, numbers.collect());
     }
     table
+}
+
+/// A table of points with their poses: angles and measures of each.
+fn poses(from: &str, angles: &[String], measures: &[&str]) -> Table {
+    let head = ["point m", from].map(String::from).into_iter().chain(angles.iter().cloned());
+    Table::new(head.chain(measures.iter().map(|words| (*words).to_owned())))
+}
+
+/// The rows of a point: one for each pose, the first with its place.
+fn add_point(table: &mut Table, [x, y]: [f64; 2], distance: f64, poses: Vec<Vec<f64>>) {
+    let mut first = [format!("{x}, {y}"), fixed(distance, 9)];
+    if poses.is_empty() {
+        table.row(first.clone().into_iter().chain(["no pose".into()]));
+    }
+    for numbers in poses {
+        table.row(std::mem::take(&mut first).into_iter().chain(numbers.into_iter().map(|x| fixed(x, 6))));
+    }
 }

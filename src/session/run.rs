@@ -55,7 +55,6 @@ pub struct Run {
     waiting: Option<Waiting>,
     simulation: Simulation,
     /// The b that serve all points of the task, found when they are first asked for.
-    common: OnceLock<Option<BSet>>,
     bands: OnceLock<Option<BSet>>,
     /// What a hand leads it in, or why it cannot; found when it is first asked for.
     pose_map: OnceLock<Result<PoseMap, NoPoseSpace>>,
@@ -115,16 +114,7 @@ impl Run {
         let guide = Guide::Motion { motion: plan.motion.clone(), start: 0.0 };
         let simulation = Simulation::new(&scenario.setup(), guide)?;
         let (scenario, plan) = (scenario.clone(), Arc::new(plan));
-        Ok(Self {
-            scenario,
-            planes,
-            plan,
-            waiting,
-            simulation,
-            common: OnceLock::new(),
-            bands: OnceLock::new(),
-            pose_map: OnceLock::new(),
-        })
+        Ok(Self { scenario, planes, plan, waiting, simulation, bands: OnceLock::new(), pose_map: OnceLock::new() })
     }
 
     /// Why it waits, if its task does not fit its machine.
@@ -152,12 +142,6 @@ impl Run {
     }
 
     /// The b that serve all points of the task, if any do.
-    pub fn common(&self) -> Option<&BSet> {
-        let find = || self.planes.as_ref()?.common(&self.scenario.task.points());
-        self.common.get_or_init(find).as_ref()
-    }
-
-    /// The same of any number of drives.
     pub fn bands(&self) -> Option<&BSet> {
         let find = || self.pose_map().ok()?.common(&self.scenario.task.points());
         self.bands.get_or_init(find).as_ref()
@@ -300,7 +284,7 @@ impl Run {
                 simulation.lead(Guide::Follow(follower));
             }
             (self.planes, self.pose_map) = (planes, OnceLock::new());
-            (self.common, self.bands) = (OnceLock::new(), OnceLock::new());
+            self.bands = OnceLock::new();
         }
         self.simulation = simulation;
         self.scenario = scenario;

@@ -187,7 +187,7 @@ impl Judge {
             "with b held the machine still transmits up to {:.2e} N m and {:.2e} N",
             proposal.simulated_peak_base_moment, proposal.simulated_peak_base_force
         );
-        let balanced = self.model.is_force_balanced() && self.model.is_invariant();
+        let balanced = self.model.is_balanced();
         match balanced {
             false => format!("{what}: it is not balanced; `stillbase design` mends that, `stillbase check` says where"),
             true => format!("{what}: the samples are too rough or too dense for their digits; want --smooth, or fewer"),

@@ -131,7 +131,7 @@ pub fn design(machine: &Machine, penalty: &[f64]) -> Result<Machine, DesignError
     }
     let designed = Machine::new(spec)?;
     let inertia = Inertia::of(&designed);
-    if inertia.is_force_balanced() && inertia.is_invariant() {
+    if inertia.is_balanced() {
         return Ok(designed);
     }
     let (condition, left) = furthest_off(&designed);

@@ -267,8 +267,7 @@ impl Problem {
     fn unneeded(&self, asked: &Weighing) -> Option<Placed> {
         let (inertia, objective) = (&self.inertia, &asked.objective);
         let total: f64 = inertia.momenta().iter().sum();
-        let balanced = inertia.is_force_balanced() && inertia.is_invariant();
-        if !balanced || asked.most_inertia.is_some_and(|most| total > most) {
+        if !inertia.is_balanced() || asked.most_inertia.is_some_and(|most| total > most) {
             return None;
         }
         let diagonal = inertia.diagonals();

@@ -261,6 +261,11 @@ impl Inertia {
         self.invariance_residual() <= self.least_coupling()
     }
 
+    /// Whether neither force nor coupling is left, (7) and (8).
+    pub fn is_balanced(&self) -> bool {
+        self.is_force_balanced() && self.is_invariant()
+    }
+
     /// A |g_k| up to this counts as none, kg m.
     pub(crate) fn least_first_moment(&self) -> f64 {
         BALANCED * self.mass * self.size()

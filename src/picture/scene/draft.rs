@@ -40,7 +40,6 @@ struct Link {
     length: f64,
     /// The name of its length, if others share it.
     shared: Option<String>,
-    mass: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -63,7 +62,6 @@ impl Draft {
                 Length::Named(name) => Some(name.clone()),
                 Length::Metres(_) => None,
             },
-            mass: link.mass,
         });
         let weights = spec.counterweights.iter().filter_map(|weight| {
             let link = spec.links.iter().position(|link| link.name == weight.link)?;
@@ -146,11 +144,6 @@ impl Draft {
             Handle::Weight(i) => self.weights.get(i).map(|weight| weight.link),
             _ => None,
         }
-    }
-
-    /// Mass of a link without its counterweight, kg.
-    pub fn mass(&self, link: usize) -> Option<f64> {
-        self.links.get(link).map(|link| link.mass)
     }
 
     fn handles(&self) -> impl Iterator<Item = Handle> + use<> {

@@ -8,7 +8,7 @@
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
-use super::nearest::apart;
+use super::nearest::{apart, least};
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 use crate::planning::curves::given::Samples;
@@ -89,29 +89,7 @@ pub fn nearest_b(space: &PoseSpace, model: &Inertia, samples: &Samples) -> Optio
     let mean = (0..thin.count()).map(|i| space.b(thin.values(i))).sum::<f64>() / thin.count() as f64;
     let asked = samples.thinned(ASKED);
     let sets: Option<Vec<BSet>> = (0..asked.count()).map(|i| space.reach(space.place(asked.values(i))).ok()).collect();
-    let mut best: Option<(f64, f64, [f64; 2])> = None;
-    for [low, high] in BSet::overlap(&sets?).near(mean).intervals {
-        let step = (high - low) / TRIES as f64;
-        let tries = (0..TRIES).map(|i| low + (i as f64 + 0.5) * step);
-        for b in tries.chain((low..=high).contains(&mean).then_some(mean)) {
-            let distance = far(b);
-            if distance.is_finite() && best.is_none_or(|(_, least, _)| distance < least) {
-                best = Some((b, distance, [(b - step).max(low), (b + step).min(high)]));
-            }
-        }
-    }
-    let (mut b, mut least, [mut from, mut to]) = best?;
-    for _ in 0..SECTIONS {
-        let (s, t) = (from + 0.381_966 * (to - from), from + 0.618_034 * (to - from));
-        let [x, y] = [far(s), far(t)];
-        for (at, distance) in [(s, x), (t, y)] {
-            if distance < least {
-                (b, least) = (at, distance);
-            }
-        }
-        if x < y { to = t } else { from = s }
-    }
-    Some((b, least))
+    least(&BSet::overlap(&sets?), mean, [TRIES, SECTIONS], far)
 }
 
 /// The pose at b with the end effector of a given one that is closest to it, from a first guess; `pull` holds what

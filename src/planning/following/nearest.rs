@@ -88,7 +88,6 @@ pub fn tip_curve(tip: &Chain, path: &PathTable) -> Option<Curve> {
 /// The constant b whose motion with the same end effector is nearest to the given one, rad, and its ‖Δq‖, rad; `None`
 /// if none can be followed. Judged by some two hundred of the samples.
 pub fn nearest_b(map: &PlaneMap, tip: &Chain, model: &Inertia, samples: &Samples, rule: Rule) -> Option<(f64, f64)> {
-    const TRIES: usize = 32;
     let thin = samples.thinned(JUDGED);
     let curve = tip_curve(tip, &thin.path(0.0)?)?;
     let far = |b: f64| {
@@ -96,14 +95,23 @@ pub fn nearest_b(map: &PlaneMap, tip: &Chain, model: &Inertia, samples: &Samples
         moved.map_or(f64::INFINITY, |moved| apart(model, &thin, &moved))
     };
     let mean = (0..thin.count()).map(|i| map.project(thin.values(i)).b).sum::<f64>() / thin.count() as f64;
-    let common: BSet = trace::common_b(map, std::slice::from_ref(&curve), JUDGED).near(mean);
+    // A little inside: at the very ends a relative angle grazes its limit, or two poses meet.
+    least(&trace::common_b(map, std::slice::from_ref(&curve), JUDGED), mean, [TRIES, SECTIONS], far)
+}
+
+/// The b of a set at which a distance is least, rad, and that: tried at equal steps inside each interval and at a mean, then
+/// searched about the best by golden section, each so many times; `None` if it is finite nowhere.
+pub(super) fn least(
+    set: &BSet,
+    mean: f64,
+    [tries, sections]: [usize; 2],
+    far: impl Fn(f64) -> f64,
+) -> Option<(f64, f64)> {
     let mut best: Option<(f64, f64, [f64; 2])> = None;
-    for [low, high] in common.intervals {
-        let step = (high - low) / TRIES as f64;
-        // A little inside: at the very ends a relative angle grazes its limit, or two poses meet.
-        let tries =
-            (0..TRIES).map(|i| low + (i as f64 + 0.5) * step).chain((low..=high).contains(&mean).then_some(mean));
-        for b in tries {
+    for [low, high] in set.near(mean).intervals {
+        let step = (high - low) / tries as f64;
+        let inside = (0..tries).map(|i| low + (i as f64 + 0.5) * step);
+        for b in inside.chain((low..=high).contains(&mean).then_some(mean)) {
             let distance = far(b);
             if distance.is_finite() && best.is_none_or(|(_, least, _)| distance < least) {
                 best = Some((b, distance, [(b - step).max(low), (b + step).min(high)]));
@@ -111,8 +119,7 @@ pub fn nearest_b(map: &PlaneMap, tip: &Chain, model: &Inertia, samples: &Samples
         }
     }
     let (mut b, mut least, [mut from, mut to]) = best?;
-    // Golden section.
-    for _ in 0..24 {
+    for _ in 0..sections {
         let (s, t) = (from + 0.381_966 * (to - from), from + 0.618_034 * (to - from));
         let [x, y] = [far(s), far(t)];
         for (at, distance) in [(s, x), (t, y)] {
@@ -124,6 +131,10 @@ pub fn nearest_b(map: &PlaneMap, tip: &Chain, model: &Inertia, samples: &Samples
     }
     Some((b, least))
 }
+
+/// b that are tried in each interval, and golden sections after that.
+const TRIES: usize = 32;
+const SECTIONS: usize = 24;
 
 /// Samples that judge a plane.
 const JUDGED: usize = 201;

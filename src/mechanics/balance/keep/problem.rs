@@ -215,7 +215,7 @@ impl<'a> Problem<'a> {
         }
         let machine = Machine::new(spec).map_err(of_machine)?;
         let inertia = Inertia::of(&machine);
-        match inertia.is_force_balanced() && inertia.is_invariant() {
+        match inertia.is_balanced() {
             true => Ok(Kept { machine, values, cost }),
             false => Err(NotKept::Failed("what it found is not balanced to rounding".into())),
         }
