@@ -29,12 +29,17 @@ pub struct Brief {
     pub back: Option<f64>,
     /// How heavy one may be, kg; none: any mass.
     pub most: Option<f64>,
+    /// How far the edge of a disc stays from the middle of every pin of its link, m; none: discs may cover pins.
+    pub clearance: Option<f64>,
+    /// The least and the greatest mass that the end effector will hold, kg; none: it holds what it holds.
+    pub payload: Option<[f64; 2]>,
 }
 
 impl Default for Brief {
     fn default() -> Self {
         let (fixed, preset) = (BTreeSet::new(), Preset::MinimumNorm);
-        Self { keeps_balance: false, fixed, preset, disc: Disc::STEEL, back: None, most: None }
+        let (back, most, clearance, payload) = (None, None, None, None);
+        Self { keeps_balance: false, fixed, preset, disc: Disc::STEEL, back, most, clearance, payload }
     }
 }
 
@@ -123,8 +128,11 @@ impl Brief {
             to: part.length,
             most: self.most.unwrap_or(f64::INFINITY),
         });
-        let asked =
-            Weighing { sites: sites.collect(), disc: self.disc, objective: Objective::mass(), most_inertia: None };
+        let asked = Weighing {
+            clearance: self.clearance,
+            payload: self.payload,
+            ..Weighing::least(Objective::mass(), sites.collect(), self.disc)
+        };
         front(machine, &asked, count)
     }
 }

@@ -63,7 +63,7 @@ fn beta(gravity: Vector, [bare, machine]: [&Inertia; 2], motion: &Motion) -> Bet
     let around = Surroundings { gravity, force: Vector::default() };
     let squares = |inertia: &Inertia| {
         let mut sum = [0.0; 3];
-        for r in references(motion) {
+        for r in instants(motion) {
             let (torque, wrench) = inverse_with_wrench(inertia, &r.q.units(), &r.qd, &r.qdd, &around);
             let torque = inertia.motors().torques(&torque);
             sum[0] += wrench.dynamic.force.norm_sqr();
@@ -78,7 +78,7 @@ fn beta(gravity: Vector, [bare, machine]: [&Inertia; 2], motion: &Motion) -> Bet
 }
 
 /// Between the instants, so that no step of the acceleration is looked at from the wrong side.
-fn references(motion: &Motion) -> impl Iterator<Item = crate::planning::Reference> {
+pub(super) fn instants(motion: &Motion) -> impl Iterator<Item = crate::planning::Reference> {
     let dt = motion.duration() / INSTANTS as f64;
     (0..INSTANTS).map(move |i| motion.at((i as f64 + 0.5) * dt))
 }
@@ -86,7 +86,7 @@ fn references(motion: &Motion) -> impl Iterator<Item = crate::planning::Referenc
 /// Greatest |q̈_k| of a motion, rad/s².
 pub fn greatest_accelerations(motion: &Motion) -> PerDrive {
     let mut most = PerDrive::zeros(motion.at(0.0).q.len());
-    for r in references(motion) {
+    for r in instants(motion) {
         most.iter_mut().zip(r.qdd.iter()).for_each(|(most, x)| *most = most.max(x.abs()));
     }
     most

@@ -455,7 +455,7 @@ fn bare() -> (Machine, Weighing) {
     let parts = machine.resolved_links().iter().enumerate();
     let sites = parts.map(|(link, part)| Sites { link, from: -0.3, to: part.length, most: f64::INFINITY }).collect();
     let disc = Disc { density: 7850.0, thickness: 0.03 };
-    (machine, Weighing { sites, disc, objective: Objective::inertia(), most_inertia: None })
+    (machine, Weighing::least(Objective::inertia(), sites, disc))
 }
 
 /// Who brings what to (7) and (8).

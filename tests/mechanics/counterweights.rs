@@ -1,6 +1,9 @@
 //! Counterweights: against a conic solver of others, against the laws, and what is refused.
 
-use stillbase::mechanics::counterweights::{Bound, Disc, NoWeights, Objective, Sites, Weighing, front, place};
+use stillbase::mechanics::counterweights::{
+    Bound, Disc, Free, FreeRotor, NoWeights, Objective, Relief, Sites, Tolerance, Weighing, front, off_by,
+    over_payloads, place,
+};
 use stillbase::mechanics::dynamics::mass_matrix;
 use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse, to_toml};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive};
@@ -17,7 +20,7 @@ fn anywhere(machine: &Machine) -> Vec<Sites> {
 }
 
 fn weighing(machine: &Machine, objective: Objective) -> Weighing {
-    Weighing { sites: anywhere(machine), disc: STEEL, objective, most_inertia: None }
+    Weighing::least(objective, anywhere(machine), STEEL)
 }
 
 fn momenta(machine: &Machine) -> f64 {
@@ -163,7 +166,7 @@ fn bounds_that_leave_no_way_are_named() {
     let mut asked = weighing(&bare, Objective::mass());
     asked.sites.iter_mut().for_each(|site| site.most = 1.0);
     let why = place(&bare, &asked).expect_err("too little");
-    let NoWeights::Conflict { bounds, relief: Some(relief) } = why else { panic!("{why:?}") };
+    let NoWeights::Conflict { bounds, relief: Some(Relief::Most(relief)) } = why else { panic!("{why:?}") };
     assert!(!bounds.is_empty() && bounds.iter().any(|bound| matches!(bound, Bound::Most(_))), "{bounds:?}");
     // With any of them away there is a way, and so there is with the masses that are proposed.
     let without = |bound: &Bound| {
@@ -237,7 +240,7 @@ fn the_greatest_torque_is_least() {
         let inertia = Inertia::of(machine);
         (0..3).map(|k| inertia.diagonal(k) * accelerations[k]).fold(0.0_f64, f64::max)
     };
-    let objective = Objective { torque: 1.0, mass: 0.0, inertia: 0.0, accelerations: accelerations.clone() };
+    let objective = Objective { torque: 1.0, mass: 0.0, accelerations: accelerations.clone(), ..Objective::mass() };
     let least = place(&bare, &weighing(&bare, objective)).expect("it can be balanced");
     assert!(
         (torque(&least.machine) - least.value).abs() < 1e-6 * least.value,
@@ -286,4 +289,270 @@ fn a_balanced_machine_is_left_alone() {
     }
     let points = front(machine, &weighing(machine, Objective::mass()), 5).expect("one point").points;
     assert!(points.iter().all(|placed| placed.added_mass < 1e-6));
+}
+
+/// How near the edge of a disc is to the middle of a pin of its link, m.
+fn clear_of_pins(machine: &Machine) -> f64 {
+    let of = |weight: &stillbase::mechanics::machine::Counterweight| {
+        let j = machine.links().iter().position(|link| link.name == weight.link).expect("a link");
+        let pins = machine.resolved_links()[j].pins.iter();
+        pins.map(|pin| (pin - weight.at).abs() - weight.radius).fold(f64::INFINITY, f64::min)
+    };
+    machine.spec().counterweights.iter().map(of).fold(f64::INFINITY, f64::min)
+}
+
+/// Discs keep clear of pins; nearer pins never cost more, and of all choices between pins none is better.
+#[test]
+fn discs_keep_clear_of_pins_at_the_least_cost() {
+    let bare = family_machine("nine-link-bare");
+    for objective in [Objective::mass(), Objective::inertia(), Objective { mass: 0.05, ..Objective::inertia() }] {
+        let free = place(&bare, &weighing(&bare, objective.clone())).expect("it can be balanced");
+        let mut last = free.value;
+        for clearance in [0.0, 0.01, 0.03] {
+            let asked = Weighing { clearance: Some(clearance), ..weighing(&bare, objective.clone()) };
+            let found = place(&bare, &asked).expect("it can be balanced");
+            assert!(clear_of_pins(&found.machine) > clearance - 1e-6, "{}", clear_of_pins(&found.machine));
+            assert!(Inertia::of(&found.machine).is_balanced() && found.gap < 1e-6, "{}", found.gap);
+            assert!(found.value > last - 1e-7, "{} after {last}", found.value);
+            last = found.value;
+        }
+        // Where no disc of the free answer covers a pin, nothing changes.
+        let clear = clear_of_pins(&free.machine);
+        if clear > 0.0 {
+            let asked = Weighing { clearance: Some(0.99 * clear), ..weighing(&bare, objective) };
+            assert!((place(&bare, &asked).expect("the same").value - free.value).abs() < 1e-7);
+        }
+    }
+}
+
+/// All ways round the pins, one by one as bounds on the places, against those that the search looks at. A disc of a
+/// known mass has a known radius, so masses are bounded by what their radius may be at most.
+#[test]
+fn a_search_round_the_pins_finds_what_trying_all_ways_finds() {
+    let bare = family_machine("two-drive");
+    let links = bare.links().len();
+    let objective = Objective { mass: 0.1, ..Objective::inertia() };
+    let mut noise = Noise::of(11);
+    let mut compared = 0;
+    for _ in 0..12 {
+        let clearance = noise.between(0.0, 0.03);
+        let asked = Weighing { clearance: Some(clearance), ..weighing(&bare, objective.clone()) };
+        let found = place(&bare, &asked).ok();
+        // In every room of every link the widest disc that fits in with its centre on a grid of places.
+        let rooms: Vec<Vec<[f64; 2]>> = (0..links)
+            .map(|j| {
+                let mut ends = vec![-10.0];
+                ends.extend(&bare.resolved_links()[j].pins);
+                ends.push(10.0);
+                ends.windows(2).map(|pair| [pair[0], pair[1]]).collect()
+            })
+            .collect();
+        let mut best = f64::INFINITY;
+        let ways: usize = rooms.iter().map(Vec::len).product();
+        for way in 0..ways {
+            let mut rest = way;
+            let room: Vec<[f64; 2]> = rooms
+                .iter()
+                .map(|of| {
+                    let at = rest % of.len();
+                    rest /= of.len();
+                    of[at]
+                })
+                .collect();
+            // Radii are not known before: they are found by going round, from none.
+            let mut radii = vec![0.0; links];
+            for _ in 0..60 {
+                let mut tried = Weighing { clearance: None, ..asked.clone() };
+                for (site, radius) in tried.sites.iter_mut().zip(&radii) {
+                    let [from, to] = room[site.link];
+                    site.from = site.from.max(from + clearance + radius);
+                    site.to = site.to.min(to - clearance - radius);
+                }
+                tried.sites.retain(|site| site.from <= site.to);
+                let Ok(placed) = place(&bare, &tried) else { break };
+                for radius in &mut radii {
+                    *radius *= 0.5;
+                }
+                for weight in &placed.machine.spec().counterweights {
+                    let j = bare.links().iter().position(|link| link.name == weight.link).expect("a link");
+                    radii[j] += 0.5 * weight.radius;
+                }
+                if clear_of_pins(&placed.machine) > clearance - 1e-7 {
+                    best = best.min(placed.value);
+                }
+            }
+        }
+        let Some(found) = found else {
+            assert!(best.is_infinite(), "a way was missed: {best}");
+            continue;
+        };
+        if best.is_finite() {
+            compared += 1;
+            assert!(found.value < best + 1e-6, "{} against {best}", found.value);
+            assert!(found.value > best * (1.0 - 0.02), "{} against {best}", found.value);
+        }
+    }
+    assert!(compared > 3, "{compared}");
+}
+
+#[test]
+fn a_clearance_that_leaves_no_way_says_which_would_do() {
+    let bare = family_machine("nine-link-bare");
+    let asked = Weighing { clearance: Some(0.25), ..weighing(&bare, Objective::mass()) };
+    let why = place(&bare, &asked).expect_err("too far");
+    let NoWeights::Reaches { would: Some(would), .. } = why else { panic!("{why}") };
+    let with = |clearance| place(&bare, &Weighing { clearance: Some(clearance), ..asked.clone() });
+    assert!(with(would).is_ok() && with(would + 1e-4).is_err(), "{would}");
+}
+
+/// Over a range of payloads the middle is balanced, where it can be; else nothing within the bounds has a smaller worst
+/// residual.
+#[test]
+fn a_range_of_payloads_leaves_the_least_worst_residual() {
+    let bare = family_machine("nine-link-bare");
+    let range = [0.0, 0.3];
+    let asked = Weighing { payload: Some(range), ..weighing(&bare, Objective::mass()) };
+    let found = place(&bare, &asked).expect("it can be balanced");
+    let curve = over_payloads(&found.machine, range, 7).expect("it holds them");
+    assert!(curve[3].force < 1e-12 && curve[3].coupling < 1e-12, "{curve:?}");
+    // A payload of half the range on links of lengths L_k: half the range times the longest, and the two longest.
+    let lengths: Vec<f64> = bare.end_effector().iter().take(3).map(|length| length.abs()).collect();
+    let longest = lengths.iter().fold(0.0_f64, |most, x| most.max(*x));
+    for end in [curve[0], curve[6]] {
+        assert!((end.force - 0.15 * longest).abs() < 1e-12, "{end:?}");
+    }
+    let alone = place(&bare.set("payload.mass", "0.15").expect("in range"), &weighing(&bare, Objective::mass()));
+    assert!((alone.expect("it can be balanced").added_mass - found.added_mass).abs() < 1e-7);
+
+    // Too little mass to balance it: worse residuals with less mass, and exact again from what would do on.
+    let mut last = f64::INFINITY;
+    for most in [0.4, 0.8, 1.6, 3.2, 20.0] {
+        let mut tight = asked.clone();
+        tight.sites.iter_mut().for_each(|site| site.most = most);
+        let found = place(&bare, &tight).expect("as near as it can be");
+        let reach: f64 = lengths.iter().sum();
+        let worst = over_payloads(&found.machine, range, 2).expect("it holds them");
+        let worst = worst.iter().map(|at| at.force.max(at.coupling / reach)).fold(0.0, f64::max);
+        assert!(worst < last + 1e-9, "{most} kg: {worst} after {last}");
+        last = worst;
+        // Random changes within the bounds do no better.
+        let mut noise = Noise::of(3);
+        for _ in 0..200 {
+            let mut spec = found.machine.spec().clone();
+            for weight in &mut spec.counterweights {
+                weight.mass = (weight.mass * noise.between(0.9, 1.1)).min(most);
+                let j = bare.links().iter().position(|link| link.name == weight.link).expect("a link");
+                weight.at = (weight.at + noise.between(-0.01, 0.01)).clamp(-0.3, bare.resolved_links()[j].length);
+            }
+            let changed = Machine::new(spec).expect("in range");
+            let changed = over_payloads(&changed, range, 2).expect("it holds them");
+            assert!(changed.iter().map(|at| at.force.max(at.coupling / reach)).fold(0.0, f64::max) > worst - 1e-6);
+        }
+    }
+    assert!((last - 0.15 * longest).abs() < 1e-6, "{last}");
+}
+
+/// A rotor that turns the other way takes what its drive gives to the base; a bound on it leaves the rest.
+#[test]
+fn rotors_that_turn_the_other_way_take_momentum_away() {
+    let bare = family_machine("nine-link-bare");
+    let with = bare.set("drive.1.rotor.inertia", "0.01").and_then(|m| m.set("drive.1.rotor.ratio", "-20"));
+    let geared = with.expect("in range");
+    let objective = || Objective { momentum: 1.0, mass: 1e-3, ..Objective::mass() };
+    let free = |free| Weighing { rotors: vec![FreeRotor { drive: 0, free }], ..weighing(&geared, objective()) };
+    let alone = place(&bare, &weighing(&bare, objective())).expect("it can be balanced");
+    for freedom in [Free::Inertia([0.0, 1.0]), Free::Ratio([-1000.0, 0.0])] {
+        let found = place(&geared, &free(freedom)).expect("it can be balanced");
+        let inertia = Inertia::of(&found.machine);
+        assert!(inertia.is_balanced() && found.gap < 1e-6, "{}", found.gap);
+        assert!(inertia.momentum(0).abs() < 1e-6, "{:?}: {}", freedom, inertia.momentum(0));
+        let rotor = found.machine.spec().drives[0].rotor.expect("one");
+        match freedom {
+            Free::Inertia(_) => assert!(rotor.ratio == -20.0),
+            Free::Ratio(_) => assert!(rotor.inertia == 0.01),
+        }
+        assert!(found.value < alone.value);
+    }
+    // At its bound, and no further.
+    let found = place(&geared, &free(Free::Inertia([0.0, 0.004]))).expect("it can be balanced");
+    assert!((found.machine.spec().drives[0].rotor.expect("one").inertia - 0.004).abs() < 1e-7);
+    // What only its gear makes heavy is not wanted: the least that drives turn is none of it.
+    let least = Weighing { objective: Objective::inertia(), ..free(Free::Inertia([0.0, 1.0])) };
+    let found = place(&geared, &least).expect("it can be balanced");
+    assert!(found.machine.spec().drives[0].rotor.is_none_or(|rotor| rotor.inertia < 1e-8));
+    // One with its stator on another drive.
+    let serial = family_machine("serial-3r");
+    let asked = Weighing {
+        rotors: vec![FreeRotor { drive: 1, free: Free::Ratio([-300.0, 300.0]) }],
+        ..weighing(&serial, objective())
+    };
+    let found = place(&serial, &asked).expect("it can be balanced");
+    assert!(Inertia::of(&found.machine).is_balanced() && found.gap < 1e-6, "{}", found.gap);
+    for ratio in [-290.0, -50.0, -1.0, 50.0, 290.0] {
+        let fixed = Weighing {
+            rotors: vec![FreeRotor { drive: 1, free: Free::Ratio([ratio, ratio]) }],
+            ..weighing(&serial, objective())
+        };
+        assert!(place(&serial, &fixed).expect("it can be balanced").value > found.value - 1e-6);
+    }
+    let none = Weighing {
+        rotors: vec![FreeRotor { drive: 1, free: Free::Ratio([-3.0, 3.0]) }],
+        ..weighing(&bare, Objective::mass())
+    };
+    assert_eq!(place(&bare, &none).expect_err("it has none"), NoWeights::NoRotor("2".into()));
+}
+
+/// What is said to do does, and a little less does not: Σ D_k, and all masses together.
+#[test]
+fn what_would_do_does() {
+    let bare = family_machine("nine-link-bare");
+    let with = |most_mass, most_inertia| {
+        place(&bare, &Weighing { most_mass, most_inertia, ..weighing(&bare, Objective::mass()) })
+    };
+    let relief = |why| match why {
+        Err(NoWeights::Conflict { relief: Some(relief), .. }) => relief,
+        other => panic!("{other:?}"),
+    };
+    let Relief::Inertia(least) = relief(with(None, Some(1.5))) else { panic!("not of inertia") };
+    assert!((least - 1.798_401_1).abs() < 1e-6);
+    let Relief::Mass(least) = relief(with(Some(5.0), None)) else { panic!("not of mass") };
+    assert!((least - 9.572_666_7).abs() < 1e-6);
+    let words = Relief::Inertia(1.798_401_12).to_string();
+    assert!(words.contains("1.798402"), "upwards: {words}");
+}
+
+/// To first order what is left at worst is what the worst of all corners leaves.
+#[test]
+fn counterweights_that_are_off_leave_at_worst_what_the_worst_corner_leaves() {
+    let bare = family_machine("two-drive");
+    let machine = place(&bare, &weighing(&bare, Objective::inertia())).expect("it can be balanced").machine;
+    let tolerance = Tolerance { mass: 1e-5, place: 1e-7 };
+    let said = off_by(&machine, &tolerance);
+    let n = machine.spec().counterweights.len();
+    let (mut force, mut coupling) = (0.0_f64, 0.0_f64);
+    for corner in 0..1_usize << (2 * n) {
+        let sign = |bit: usize| if corner >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        let mut spec = machine.spec().clone();
+        for (i, weight) in spec.counterweights.iter_mut().enumerate() {
+            weight.mass *= 1.0 + sign(2 * i) * tolerance.mass;
+            weight.at += sign(2 * i + 1) * tolerance.place;
+        }
+        let inertia = Inertia::of(&Machine::new(spec).expect("in range"));
+        force = (0..2).map(|k| inertia.first_moment(k).norm()).fold(force, f64::max);
+        coupling = coupling.max(inertia.coupling(0, 1).norm());
+    }
+    assert!((said.force / force - 1.0).abs() < 1e-4, "{} against {force}", said.force);
+    assert!((said.coupling / coupling - 1.0).abs() < 1e-4, "{} against {coupling}", said.coupling);
+}
+
+/// Equal steps along the curve: no part of it is left out.
+#[test]
+fn the_points_of_a_front_are_spread() {
+    let bare = family_machine("nine-link-bare");
+    let points = front(&bare, &weighing(&bare, Objective::mass()), 25).expect("it can be balanced").measures();
+    let size = [0, 1].map(|i| (points[24][i] - points[0][i]).abs());
+    for pair in points.windows(2) {
+        let apart = [0, 1].map(|i| (pair[1][i] - pair[0][i]) / size[i]);
+        assert!(apart[0].hypot(apart[1]) < 2.5 / 24.0, "{pair:?}");
+    }
 }

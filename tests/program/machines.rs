@@ -263,11 +263,21 @@ fn counterweights_that_cannot_be_are_refused() {
     };
     ask(&["--max-mass", "1"], 1, &["no heavier", "kg on every link would do"]);
     ask(&["--range", "10=-0.3,0"], 2, &["no link 10", "want one of 1, 2"]);
-    ask(&["--range", "1=-0.3"], 2, &["LINK=LO,HI"]);
+    ask(&["--range", "1=-0.3"], 2, &["NAME=LO,HI"]);
     ask(&["--range", "1=0.3,-0.3"], 2, &["link 1", "an end not below its start"]);
     ask(&["--range", "1=-0.3,0", "--range", "1=-0.2,0"], 2, &["link 1", "want one a link"]);
     ask(&["--max-mass", "1=-2"], 2, &["--max-mass 1=-2", "want a mass above 0"]);
-    ask(&["--thickness", "0"], 2, &["thickness", "above 0"]);
+    ask(&["--thickness", "0"], 2, &["thickness 0: want 0.0001 to 1 m"]);
+    ask(&["--max-inertia", "1.5"], 1, &["Σ D_k up to 1.681167 kg m² would do"]);
+    // As printed it does.
+    object(&["design", BARE, "--counterweights", "--max-inertia", "1.681167"]);
+    ask(&["--max-added", "5"], 1, &["kg in all would do"]);
+    ask(&["--clearance", "0.25"], 1, &["250.0 mm clear of every pin", "mm would do"]);
+    ask(&["--clearance=-1"], 2, &["clearance -1: want 0 to 1000 m"]);
+    ask(&["--max-radius", "0"], 2, &["want a radius above 0"]);
+    ask(&["--payload", "0.3,0.1"], 2, &["a payload up to 0.1", "not below its start"]);
+    ask(&["--rotor-ratio", "1=-30,0"], 2, &["drive 1 has no rotor", "drive.1.rotor.inertia"]);
+    ask(&["--rotor-inertia", "7=0,1"], 2, &["no drive 7: want one of 1, 2, 3"]);
     ask(&["--objective", "speed"], 2, &["want mass, inertia"]);
     ask(&["--objective", "torque"], 2, &["the torque depends on the motion", "--task"]);
     ask(&["--objective", "torque", "--task", "nowhere"], 2, &["nowhere"]);

@@ -1,6 +1,8 @@
 //! [`front`]: what less inertia costs in mass.
 
-use super::problem::{NoWeights, Objective, Placed, Weighing, place};
+use super::asked::{Objective, Weighing};
+use super::place::{Placed, place};
+use super::refusal::NoWeights;
 use crate::mechanics::machine::{Inertia, Machine};
 
 /// Machines from the least added mass to the least inertia: none is better than another in both.
@@ -13,32 +15,42 @@ pub struct Front {
 impl Front {
     /// Added mass, kg, and Σ D_k, kg m², of each point.
     pub fn measures(&self) -> Vec<[f64; 2]> {
-        self.points.iter().map(|placed| [placed.added_mass, total(&placed.machine)]).collect()
+        self.points.iter().map(measures).collect()
     }
 }
 
-/// Σ D_k, kg m².
-fn total(machine: &Machine) -> f64 {
-    Inertia::of(machine).momenta().iter().sum()
+fn measures(placed: &Placed) -> [f64; 2] {
+    [placed.added_mass, Inertia::of(&placed.machine).momenta().iter().sum()]
 }
 
-/// `count` machines, at least two, at equal steps of Σ D_k between those of least mass and of least inertia.
+/// `count` machines, at least two: those of least mass and of least inertia, and between them always one more where two
+/// lie furthest apart, halfway in what they differ in most.
 ///
 /// # Errors
 /// As [`place`].
 pub fn front(machine: &Machine, asked: &Weighing, count: usize) -> Result<Front, NoWeights> {
-    let quick = place(machine, &Weighing { objective: Objective::inertia(), ..asked.clone() })?;
     let mass = Weighing { objective: Objective::mass(), ..asked.clone() };
+    let inertia = Weighing { objective: Objective::inertia(), ..asked.clone() };
+    let quick = place(machine, &inertia)?;
     // Of those of least mass the one of least inertia: a gram is worth it.
-    let light =
-        place(machine, &Weighing { objective: Objective { inertia: 1e-6, ..Objective::mass() }, ..asked.clone() })?;
-    let (least, most) = (total(&quick.machine), total(&light.machine));
-    let steps = count.max(2) - 1;
-    let mut points = vec![light];
-    for i in 1..steps {
-        let level = most + (least - most) * i as f64 / steps as f64;
-        points.push(place(machine, &Weighing { most_inertia: Some(level), ..mass.clone() })?);
+    let light = Objective { inertia: 1e-6, ..Objective::mass() };
+    let light = place(machine, &Weighing { objective: light, ..asked.clone() })?;
+    let mut points: Vec<([f64; 2], Placed)> = [light, quick].map(|placed| (measures(&placed), placed)).into();
+    let size = [0, 1].map(|i| (points[1].0[i] - points[0].0[i]).abs().max(f64::MIN_POSITIVE));
+    while points.len() < count {
+        let apart = |i: usize| [0, 1].map(|axis| (points[i + 1].0[axis] - points[i].0[axis]).abs() / size[axis]);
+        let furthest = (0..points.len() - 1).map(|i| (i, apart(i)));
+        let Some((i, [by_mass, by_inertia])) =
+            furthest.max_by(|a, b| a.1[0].hypot(a.1[1]).total_cmp(&b.1[0].hypot(b.1[1])))
+        else {
+            break;
+        };
+        let halfway = |axis: usize| Some(0.5 * (points[i].0[axis] + points[i + 1].0[axis]));
+        let between = match by_mass > by_inertia {
+            true => place(machine, &Weighing { most_mass: halfway(0), ..inertia.clone() }),
+            false => place(machine, &Weighing { most_inertia: halfway(1), ..mass.clone() }),
+        }?;
+        points.insert(i + 1, (measures(&between), between));
     }
-    points.push(quick);
-    Ok(Front { points })
+    Ok(Front { points: points.into_iter().map(|(_, placed)| placed).collect() })
 }

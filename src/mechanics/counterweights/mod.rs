@@ -11,8 +11,19 @@
 //! | ρ, t | density and thickness of the discs | kg/m³, m |
 //! | D_k | momentum of a drive, (6) | kg m² |
 
+mod asked;
 mod front;
+mod payload;
+mod place;
 mod problem;
+mod refusal;
+mod room;
+mod search;
+mod tolerance;
 
+pub use asked::{Disc, Free, FreeRotor, Objective, Sites, Weighing};
 pub use front::{Front, front};
-pub use problem::{Bound, Disc, NoWeights, Objective, Placed, Sites, Weighing, place};
+pub use payload::{Residual, over_payloads};
+pub use place::{Placed, place};
+pub use refusal::{Bound, NoWeights, Relief};
+pub use tolerance::{OffBy, Tolerance, off_by};

@@ -1,220 +1,58 @@
-//! [`place`]: counterweights that balance a machine at the least cost.
+//! [`Problem`]: a machine without counterweights, what they change in it, and the cone program that follows.
 
-use std::f64::consts::PI;
-use std::fmt;
-
-use thiserror::Error;
-
+use super::asked::{Free, Objective, Sites, Weighing};
+use super::refusal::{Bound, NoWeights, Relief};
+use super::room::Room;
 use crate::convex::{Least, NoX, Program, Row, conflict};
 use crate::mechanics::balance::{Condition, Equation, Plane};
-use crate::mechanics::machine::{Counterweight, Inertia, Machine, MachineError};
+use crate::mechanics::machine::{Counterweight, Inertia, Machine, Rotor};
 
-/// Where a link may carry a counterweight.
+/// Whether (7) and (8) hold, or how near they come over a range of payloads.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sites {
-    /// The link, counted from 0.
-    pub link: usize,
-    /// Furthest back: m from the root along the axis, towards the tip above 0.
-    pub from: f64,
-    /// Furthest towards the tip, m.
-    pub to: f64,
-    /// The most it may weigh, kg; infinite for no bound.
-    pub most: f64,
+pub(super) enum Balance {
+    /// They hold.
+    Exact,
+    /// Their worst residual is to be least, and nothing else.
+    Nearest,
+    /// It is no more than this, kg m.
+    Within(f64),
 }
 
-/// What the counterweights are made of: discs of one plate.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Disc {
-    /// ρ, kg/m³.
-    pub density: f64,
-    /// t, m.
-    pub thickness: f64,
+/// One way to look for counterweights: in which room between pins each site has to stay, if it is known, how near balance
+/// comes, and the most that the objective may be, where the least added mass and Σ H_kk
+/// are wanted and no longer the objective.
+#[derive(Clone, Debug)]
+pub(super) struct Way {
+    pub rooms: Vec<Option<Room>>,
+    pub balance: Balance,
+    pub most: Option<f64>,
 }
 
-impl Disc {
-    /// Steel, 30 mm thick.
-    pub const STEEL: Self = Self { density: 7850.0, thickness: 0.03 };
-
-    /// Radius of a disc of a mass, m.
-    pub fn radius(&self, mass: f64) -> f64 {
-        (mass / (PI * self.density * self.thickness)).sqrt()
-    }
-
-    /// Its inertia for its mass squared, 1/(2 π ρ t), m²/kg.
-    fn own(&self) -> f64 {
-        1.0 / (2.0 * PI * self.density * self.thickness)
+impl Way {
+    /// Past all pins.
+    pub fn free(asked: &Weighing, balance: Balance) -> Self {
+        Self { rooms: vec![None; asked.sites.len()], balance, most: None }
     }
 }
 
-/// What is to be least: a sum of these.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Objective {
-    /// For each kilogram added.
-    pub mass: f64,
-    /// For each kg m² of Σ D_k.
-    pub inertia: f64,
-    /// For each N m of the greatest torque.
-    pub torque: f64,
-    /// Greatest |q̈_k| of the motion whose torque counts, rad/s².
-    pub accelerations: Vec<f64>,
-}
-
-impl Objective {
-    /// The least added mass.
-    pub fn mass() -> Self {
-        Self { mass: 1.0, inertia: 0.0, torque: 0.0, accelerations: Vec::new() }
-    }
-
-    /// The least Σ D_k.
-    pub fn inertia() -> Self {
-        Self { inertia: 1.0, mass: 0.0, ..Self::mass() }
-    }
-}
-
-/// What is asked for.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Weighing {
-    /// Links that may carry a counterweight.
-    pub sites: Vec<Sites>,
-    /// What these are made of.
-    pub disc: Disc,
-    /// What is to be least.
-    pub objective: Objective,
-    /// The most that Σ D_k may be, kg m².
-    pub most_inertia: Option<f64>,
-}
-
-/// Counterweights, and the machine that carries them.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Placed {
-    /// It is balanced to rounding.
-    pub machine: Machine,
-    /// What they weigh, kg.
-    pub added_mass: f64,
-    /// What was least, as the solver found it.
-    pub value: f64,
-    /// The most by which the best may lie below that.
-    pub gap: f64,
-}
-
-/// A bound that may stand in the way.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Bound {
-    /// How far back a link may carry its counterweight.
-    From(String),
-    /// How far towards its tip.
-    To(String),
-    /// How much it may weigh.
-    Most(String),
-    /// Σ D_k.
-    Inertia,
-}
-
-impl fmt::Display for Bound {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::From(link) => write!(f, "link {link}: no further back"),
-            Self::To(link) => write!(f, "link {link}: no further out"),
-            Self::Most(link) => write!(f, "link {link}: no heavier"),
-            Self::Inertia => write!(f, "Σ D_k: no more"),
-        }
-    }
-}
-
-fn listed(bounds: &[Bound]) -> String {
-    bounds.iter().map(Bound::to_string).collect::<Vec<_>>().join("; ")
-}
-
-/// Why there are no counterweights.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum NoWeights {
-    /// A number that cannot be.
-    #[error("{what} {value}: want {want}")]
-    OutOfRange {
-        /// What it is of.
-        what: String,
-        /// What was given.
-        value: f64,
-        /// What would be right.
-        want: &'static str,
-    },
-    /// One link is named twice.
-    #[error("link {0} may carry its counterweight in two ranges: want one a link")]
-    Twice(String),
-    /// The masses of the links lie off their axes, where nothing on an axis balances them.
-    #[error("{condition}, has {left} that no counterweight on an axis takes away: want com_normal 0")]
-    OffAxis {
-        /// The condition.
-        condition: String,
-        /// What remains, with unit.
-        left: String,
-    },
-    /// No counterweight on these links changes a condition that is not met.
-    #[error("{condition}, stays at {left}: want a counterweight on a link that follows that drive")]
-    Untouched {
-        /// The condition.
-        condition: String,
-        /// What remains, with unit.
-        left: String,
-    },
-    /// These bounds, and no fewer of them, leave no way.
-    #[error("no counterweights balance this machine within these bounds: {}{}", listed(.bounds), would_do(.relief))]
-    Conflict {
-        /// The bounds that contradict each other: with any of them away there is a way.
-        bounds: Vec<Bound>,
-        /// The least bound on every mass, kg, with which there is a way, if bounds on masses are among them.
-        relief: Option<f64>,
-    },
-    /// Whatever they weigh and wherever they sit.
-    #[error("no counterweights on these links alone balance this machine: want more links that may carry one")]
-    TooFew,
-    /// Torque is D_k q̈_k only where each motor turns its drive alone.
-    #[error(
-        "the torque of a motor in a joint or behind a gear depends on more than its drive: want mass or inertia to be least"
-    )]
-    Coupled,
-    /// The solver gave up.
-    #[error("the solver found no answer: {0}")]
-    Failed(String),
-    /// The result is no machine.
-    #[error("the machine with them: {0}")]
-    Machine(String),
-}
-
-fn would_do(relief: &Option<f64>) -> String {
-    relief.map_or(String::new(), |most| format!("; up to {most:.6} kg on every link would do"))
-}
-
-/// Weights below these are none, kg.
-const NOTHING: f64 = 1e-7;
-
-/// The counterweights that make a machine balanced and invariant, (7) and (8), and an objective least. Those that the
-/// machine has already are taken off first.
-///
-/// # Errors
-/// If what is asked for cannot be, or cannot be together.
-pub fn place(machine: &Machine, asked: &Weighing) -> Result<Placed, NoWeights> {
-    let problem = Problem::new(machine, asked)?;
-    if let Some(placed) = problem.unneeded(asked) {
-        return Ok(placed);
-    }
-    let least = problem.solve(asked)?;
-    problem.placed(asked, &least)
-}
-
-/// Where the unknowns stand: w and s of each site, what its inertia needs if that counts, H_kk of each drive, and the
-/// greatest torque.
+/// Where the unknowns stand: w and s of each site, what its inertia needs if that counts, H_kk of each drive but for
+/// free rotors, two of each free rotor, |D_k| of each drive if it counts, and the greatest torque.
 #[derive(Clone, Copy)]
 struct Unknowns {
     sites: usize,
     /// Whether the inertia counts.
     inertia: bool,
+    drives: usize,
+    rotors: usize,
+    /// Whether |D_k| counts.
+    momentum: bool,
 }
 
 impl Unknowns {
-    fn of(asked: &Weighing) -> Self {
-        let inertia = asked.objective.inertia > 0.0 || asked.objective.torque > 0.0 || asked.most_inertia.is_some();
-        Self { sites: asked.sites.len(), inertia }
+    fn of(asked: &Weighing, drives: usize) -> Self {
+        let inertia = asked.objective.turns() || asked.most_inertia.is_some();
+        let (rotors, momentum) = (asked.rotors.len(), asked.objective.momentum > 0.0);
+        Self { sites: asked.sites.len(), inertia, drives, rotors, momentum }
     }
 
     fn w(self, j: usize) -> usize {
@@ -239,96 +77,211 @@ impl Unknowns {
         4 * self.sites + k
     }
 
-    fn torque(self, drives: usize) -> usize {
-        if self.inertia { self.h(drives) } else { 2 * self.sites }
+    /// Inertia or ratio of a free rotor.
+    fn rotor(self, i: usize) -> usize {
+        let before = if self.inertia { 4 * self.sites + self.drives } else { 2 * self.sites };
+        before + 2 * i
+    }
+
+    /// At least J N² of one whose ratio is free.
+    fn turned(self, i: usize) -> usize {
+        self.rotor(i) + 1
+    }
+
+    /// At least |D_k|.
+    fn momentum(self, k: usize) -> usize {
+        self.rotor(self.rotors) + k
+    }
+
+    fn torque(self) -> usize {
+        if self.momentum { self.momentum(self.drives) } else { self.rotor(self.rotors) }
     }
 }
 
-/// A machine without counterweights, and what they change in it.
-pub(super) struct Problem {
-    bare: Machine,
-    inertia: Inertia,
+/// Linear in the unknowns.
+struct Sum {
+    terms: Vec<(usize, f64)>,
+    constant: f64,
 }
+
+/// A machine without counterweights and without what is free of its rotors.
+pub(super) struct Problem {
+    pub bare: Machine,
+    inertia: Inertia,
+    conditions: Vec<Left>,
+    /// The furthest that the end effector can be from B, m.
+    reach: f64,
+}
+
+/// What is found at every site, or at those that are left.
+type Found = Vec<(Sites, [f64; 2])>;
+
+/// Weights below these are none, kg.
+pub(super) const NOTHING: f64 = 1e-7;
+
+const LEAST_RATIO: f64 = 1e-9;
 
 impl Problem {
     pub fn new(machine: &Machine, asked: &Weighing) -> Result<Self, NoWeights> {
-        check(machine, asked)?;
+        asked.check(machine)?;
         let mut spec = machine.spec().clone();
         spec.counterweights.clear();
-        let bare = Machine::new(spec).map_err(of_machine)?;
+        asked.rotors.iter().for_each(|rotor| spec.drives[rotor.drive].rotor = None);
+        if let Some([low, high]) = asked.payload {
+            spec.payload.mass = 0.5 * (low + high);
+        }
+        let bare = Machine::new(spec)?;
         let inertia = Inertia::of(&bare);
-        if asked.objective.torque > 0.0 && !inertia.is_decoupled() {
+        let of_rotors = asked.rotors.iter().any(|rotor| bare.motors().on(rotor.drive).is_some());
+        if asked.objective.torque > 0.0 && (!inertia.is_decoupled() || of_rotors) {
             return Err(NoWeights::Coupled);
         }
-        Ok(Self { bare, inertia })
+        let reach = bare.end_effector().iter().take(bare.drives()).map(|length| length.abs()).sum();
+        let conditions = conditions(&bare, &inertia, asked)?;
+        Ok(Self { bare, inertia, conditions, reach })
     }
 
-    /// The machine as it is, if nothing has to be added: whatever is added makes mass and inertia more.
-    fn unneeded(&self, asked: &Weighing) -> Option<Placed> {
-        let (inertia, objective) = (&self.inertia, &asked.objective);
-        let total: f64 = inertia.momenta().iter().sum();
-        if !inertia.is_balanced() || asked.most_inertia.is_some_and(|most| total > most) {
-            return None;
-        }
-        let diagonal = inertia.diagonals();
-        let torques = diagonal.iter().zip(&objective.accelerations).map(|(h, acceleration)| h * acceleration);
-        let value = objective.inertia * diagonal.iter().sum::<f64>() + objective.torque * torques.fold(0.0, f64::max);
-        Some(Placed { machine: self.bare.clone(), added_mass: 0.0, value, gap: 0.0 })
+    /// Counterweights of no mass, if nothing has to be added: whatever is added makes mass and inertia more.
+    pub fn needs_nothing(&self, asked: &Weighing) -> bool {
+        let total: f64 = self.inertia.momenta().iter().sum();
+        asked.rotors.is_empty()
+            && asked.objective.momentum == 0.0
+            && self.inertia.is_balanced()
+            && asked.most_inertia.is_none_or(|most| total <= most)
     }
 
     fn drives(&self) -> usize {
         self.bare.drives()
     }
 
-    /// What is left of each condition, and how a counterweight of w and s at each site changes it.
-    fn conditions(&self, sites: &[Sites]) -> Vec<Left> {
-        let parts = self.bare.resolved_links();
-        let left = |condition: Condition| {
-            let changes = sites.iter().map(|site| {
-                let part = &parts[site.link];
-                [condition.by_mass(part), condition.by_moment(part)]
-            });
-            let left = condition.left(&self.inertia);
-            Left {
-                name: condition.name(&self.bare),
-                left: [left.re, left.im],
-                unit: condition.unit(),
-                changes: changes.collect(),
-            }
-        };
-        Condition::all(self.drives()).map(left).collect()
-    }
-
-    /// Σ D_k but for what counterweights add to the diagonal of H.
-    fn constant(&self) -> f64 {
-        (0..self.drives()).map(|k| self.inertia.momentum(k) - self.inertia.diagonal(k)).sum()
-    }
-
-    fn program(&self, asked: &Weighing, bounds: &[(Bound, Row)]) -> Result<Program, NoWeights> {
-        let (n, sites, unknowns) = (self.drives(), &asked.sites, Unknowns::of(asked));
-        let mut program = Program::over(unknowns.torque(n) + usize::from(asked.objective.torque > 0.0));
-        for condition in self.conditions(sites) {
-            condition.enter(&unknowns, &mut program)?;
+    /// How a free rotor turns with drive k for one turn of the drive that it is of: what its ratio N adds to, and N's
+    /// factor.
+    fn rates(&self, drive: usize, k: usize) -> [f64; 2] {
+        match self.bare.motors().on(drive) {
+            _ if k == drive => [0.0, 1.0],
+            Some(on) if k == on => [1.0, -1.0],
+            _ => [0.0, 0.0],
         }
-        for j in 0..sites.len() {
+    }
+
+    /// What free rotors bring to D_k and to H_kk.
+    fn of_rotors(&self, asked: &Weighing, machine: &Machine, k: usize) -> [Sum; 2] {
+        let unknowns = Unknowns::of(asked, self.drives());
+        let mut sums = [(); 2].map(|()| Sum { terms: Vec::new(), constant: 0.0 });
+        for (i, rotor) in asked.rotors.iter().enumerate() {
+            let [plain, by_ratio] = self.rates(rotor.drive, k);
+            let present = machine.spec().drives[rotor.drive].rotor.unwrap_or_default();
+            let (x, turned, inertia) = (unknowns.rotor(i), unknowns.turned(i), present.inertia);
+            match rotor.free {
+                Free::Inertia(_) => {
+                    let rate = plain + by_ratio * present.ratio;
+                    sums[0].terms.push((x, rate));
+                    sums[1].terms.push((x, rate * rate));
+                }
+                Free::Ratio(_) => {
+                    sums[0].terms.push((x, by_ratio * inertia));
+                    sums[0].constant += plain * inertia;
+                    sums[1].terms.extend([(x, 2.0 * plain * by_ratio * inertia), (turned, by_ratio * by_ratio)]);
+                    sums[1].constant += plain * plain * inertia;
+                }
+            }
+        }
+        sums
+    }
+
+    /// D_k but for what counterweights add to the diagonal of H, and for free rotors.
+    fn constant(&self, k: usize) -> f64 {
+        self.inertia.momentum(k) - self.inertia.diagonal(k)
+    }
+
+    fn program(&self, machine: &Machine, asked: &Weighing, bounds: &[(Bound, Row)], way: &Way) -> Program {
+        let unknowns = Unknowns::of(asked, self.drives());
+        let mut program = Program::over(unknowns.torque() + usize::from(asked.objective.torque > 0.0));
+        for j in 0..asked.sites.len() {
             program.linear[unknowns.w(j)] += asked.objective.mass;
             program.at_most.push(Row::new([(unknowns.w(j), -1.0)], 0.0));
         }
+        self.enter_rotors(machine, asked, &unknowns, &mut program);
         if unknowns.inertia {
             self.enter_inertia(asked, &unknowns, &mut program);
+            self.cost(machine, asked, &unknowns, &mut program);
+            self.enter_motion(machine, asked, &unknowns, &mut program);
+        }
+        if let Some(most) = way.most {
+            let terms: Vec<_> = program.linear.iter().copied().enumerate().filter(|(_, by)| *by != 0.0).collect();
+            program.at_most.push(Row::new(terms, most));
+            program.linear.fill(0.0);
+            let turned = Weighing { objective: Objective::inertia(), ..asked.clone() };
+            (0..asked.sites.len()).for_each(|j| program.linear[unknowns.w(j)] = 1.0);
+            self.cost(machine, &turned, &unknowns, &mut program);
+        }
+        self.enter_balance(&unknowns, way.balance, &mut program);
+        for (j, room) in way.rooms.iter().enumerate() {
+            if let Some(room) = room {
+                room.enter(asked, [unknowns.w(j), unknowns.s(j)], &mut program);
+            }
         }
         program.at_most.extend(bounds.iter().map(|(_, row)| row.clone()));
-        Ok(program)
+        program
     }
 
-    /// The diagonal of H, and what it costs.
+    /// (7) and (8).
+    fn enter_balance(&self, unknowns: &Unknowns, balance: Balance, program: &mut Program) {
+        let terms = |condition: &Left, sign: f64| {
+            let each = condition.changes.iter().enumerate();
+            let both = each.flat_map(|(j, by)| [(unknowns.w(j), sign * by[0]), (unknowns.s(j), sign * by[1])]);
+            both.filter(|(_, by)| *by != 0.0).collect::<Vec<_>>()
+        };
+        if balance == Balance::Exact {
+            let touched = self.conditions.iter().filter(|condition| condition.is_touched());
+            program.equal.extend(touched.map(|condition| Row::new(terms(condition, 1.0), -condition.left)));
+            return;
+        }
+        let worst = program.linear.len();
+        if balance == Balance::Nearest {
+            program.linear.fill(0.0);
+        }
+        program.linear.push(if balance == Balance::Nearest { 1.0 } else { 0.0 });
+        for condition in &self.conditions {
+            let per = if condition.of_moments { 1.0 } else { self.reach };
+            for (sign, end) in [-1.0, 1.0].into_iter().flat_map(|sign| condition.ends.map(|end| (sign, end))) {
+                let mut terms = terms(condition, sign);
+                terms.push((worst, -per));
+                program.at_most.push(Row::new(terms, -sign * end));
+            }
+        }
+        if let Balance::Within(most) = balance {
+            program.at_most.push(Row::new([(worst, 1.0)], most));
+        }
+    }
+
+    fn enter_rotors(&self, machine: &Machine, asked: &Weighing, unknowns: &Unknowns, program: &mut Program) {
+        for (i, rotor) in asked.rotors.iter().enumerate() {
+            let (x, turned) = (unknowns.rotor(i), unknowns.turned(i));
+            let ends = match rotor.free {
+                Free::Inertia(ends) => {
+                    program.equal.push(Row::new([(turned, 1.0)], 0.0));
+                    ends
+                }
+                Free::Ratio(ends) => {
+                    let inertia = machine.spec().drives[rotor.drive].rotor.unwrap_or_default().inertia;
+                    program.above_square(turned, inertia, x);
+                    ends
+                }
+            };
+            program.at_most.push(Row::new([(x, -1.0)], -ends[0]));
+            program.at_most.push(Row::new([(x, 1.0)], ends[1]));
+        }
+    }
+
+    /// The diagonal of H but for free rotors.
     fn enter_inertia(&self, asked: &Weighing, unknowns: &Unknowns, program: &mut Program) {
-        let (n, parts, objective) = (self.drives(), self.bare.resolved_links(), &asked.objective);
+        let parts = self.bare.resolved_links();
         for j in 0..asked.sites.len() {
             program.above_quotient(unknowns.u(j), unknowns.w(j), unknowns.s(j));
             program.above_square(unknowns.v(j), asked.disc.own(), unknowns.w(j));
         }
-        for k in 0..n {
+        for k in 0..self.drives() {
             let mut terms = vec![(unknowns.h(k), 1.0)];
             for (j, site) in asked.sites.iter().enumerate() {
                 let (root, part) = (parts[site.link].root[k], &parts[site.link]);
@@ -340,18 +293,51 @@ impl Problem {
             }
             terms.retain(|(_, value)| *value != 0.0);
             program.equal.push(Row::new(terms, self.inertia.diagonal(k)));
-            program.linear[unknowns.h(k)] += objective.inertia;
+        }
+    }
+
+    /// What it costs to turn the drives.
+    fn cost(&self, machine: &Machine, asked: &Weighing, unknowns: &Unknowns, program: &mut Program) {
+        for k in 0..self.drives() {
+            let [_, turned] = self.of_rotors(asked, machine, k);
+            for (x, by) in std::iter::once((unknowns.h(k), 1.0)).chain(turned.terms) {
+                program.linear[x] += asked.objective.inertia * by;
+            }
+        }
+    }
+
+    /// What the drives give to the base, the greatest torque, and what these cost.
+    fn enter_motion(&self, machine: &Machine, asked: &Weighing, unknowns: &Unknowns, program: &mut Program) {
+        let objective = &asked.objective;
+        for k in 0..self.drives() {
+            let [momentum, turned] = self.of_rotors(asked, machine, k);
+            let with = |sum: &Sum, sign: f64| {
+                let mut terms = vec![(unknowns.h(k), sign)];
+                terms.extend(sum.terms.iter().map(|(x, by)| (*x, sign * by)));
+                terms
+            };
+            if unknowns.momentum {
+                program.linear[unknowns.momentum(k)] = objective.momentum;
+                let constant = self.constant(k) + momentum.constant;
+                for sign in [1.0, -1.0] {
+                    let mut terms = with(&momentum, sign);
+                    terms.push((unknowns.momentum(k), -1.0));
+                    program.at_most.push(Row::new(terms, -sign * constant));
+                }
+            }
             if objective.torque > 0.0 {
                 let acceleration = objective.accelerations.get(k).copied().unwrap_or_default();
-                program.at_most.push(Row::new([(unknowns.h(k), acceleration), (unknowns.torque(n), -1.0)], 0.0));
-                program.linear[unknowns.torque(n)] = objective.torque;
+                let mut terms: Vec<_> = with(&turned, acceleration);
+                terms.push((unknowns.torque(), -1.0));
+                program.at_most.push(Row::new(terms, -acceleration * turned.constant));
+                program.linear[unknowns.torque()] = objective.torque;
             }
         }
     }
 
     /// The bounds that a person has set, with their rows.
-    fn bounds(&self, asked: &Weighing) -> Vec<(Bound, Row)> {
-        let (mut all, unknowns) = (Vec::new(), Unknowns::of(asked));
+    fn bounds(&self, machine: &Machine, asked: &Weighing) -> Vec<(Bound, Row)> {
+        let (mut all, unknowns) = (Vec::new(), Unknowns::of(asked, self.drives()));
         for (j, site) in asked.sites.iter().enumerate() {
             let (w, s, link) = (unknowns.w(j), unknowns.s(j), self.bare.links()[site.link].name.clone());
             all.push((Bound::From(link.clone()), Row::new([(w, site.from), (s, -1.0)], 0.0)));
@@ -360,101 +346,139 @@ impl Problem {
                 all.push((Bound::Most(link), Row::new([(w, 1.0)], site.most)));
             }
         }
+        if let Some(most) = asked.most_mass {
+            let sum = (0..asked.sites.len()).map(|j| (unknowns.w(j), 1.0)).collect::<Vec<_>>();
+            all.push((Bound::Mass, Row::new(sum, most)));
+        }
         if let Some(most) = asked.most_inertia {
-            let sum = (0..self.drives()).map(|k| (unknowns.h(k), 1.0)).collect::<Vec<_>>();
-            all.push((Bound::Inertia, Row::new(sum, most - self.constant())));
+            let mut row = Row::new([], most);
+            for k in 0..self.drives() {
+                let [momentum, _] = self.of_rotors(asked, machine, k);
+                row.terms.push((unknowns.h(k), 1.0));
+                row.terms.extend(momentum.terms);
+                row.right -= self.constant(k) + momentum.constant;
+            }
+            all.push((Bound::Inertia, row));
         }
         all
     }
 
-    pub fn solve(&self, asked: &Weighing) -> Result<Least, NoWeights> {
-        let bounds = self.bounds(asked);
-        match self.program(asked, &bounds)?.solve() {
-            Ok(least) => Ok(least),
-            Err(NoX::Failed(why)) => Err(NoWeights::Failed(why)),
-            Err(NoX::Contradiction(weights)) => Err(self.conflict(asked, bounds, &weights)),
-        }
+    /// The least of what is asked for on one way.
+    pub fn least(&self, machine: &Machine, asked: &Weighing, way: &Way) -> Result<Least, NoX> {
+        self.program(machine, asked, &self.bounds(machine, asked), way).solve()
     }
 
-    /// The bounds without any of which there would be a way: those that the solver's proof uses, less all that it can do
-    /// without.
-    fn conflict(&self, asked: &Weighing, bounds: Vec<(Bound, Row)>, weights: &[f64]) -> NoWeights {
+    /// Why there is none past all pins: the bounds without any of which there would be a way, which are those that the
+    /// solver's proof uses, less all that it can do without.
+    pub fn conflict(&self, machine: &Machine, asked: &Weighing, weights: &[f64]) -> NoWeights {
+        let (bounds, way) = (self.bounds(machine, asked), Way::free(asked, Balance::Exact));
         let any = Weighing { objective: Objective::mass(), ..asked.clone() };
         let contradicts = |bounds: &[(Bound, Row)]| {
-            self.program(&any, bounds).is_ok_and(|program| matches!(program.solve(), Err(NoX::Contradiction(_))))
+            matches!(self.program(machine, &any, bounds, &way).solve(), Err(NoX::Contradiction(_)))
         };
         let of_bounds = &weights[weights.len() - bounds.len()..];
         let bounds = conflict(bounds, of_bounds, contradicts);
         if bounds.is_empty() {
             return NoWeights::TooFew;
         }
-        let relief = bounds.iter().any(|bound| matches!(bound, Bound::Most(_))).then(|| self.relief(asked)).flatten();
+        let relief = self.relief(machine, asked, &bounds);
         NoWeights::Conflict { bounds, relief }
     }
 
-    /// The least bound on all masses alike with which there is a way, kg.
-    fn relief(&self, asked: &Weighing) -> Option<f64> {
-        let free = Weighing {
-            sites: asked.sites.iter().map(|site| Sites { most: f64::INFINITY, ..*site }).collect(),
-            objective: Objective { mass: 0.0, ..Objective::mass() },
-            ..asked.clone()
+    /// What would do instead of one kind of the bounds that contradict each other.
+    fn relief(&self, machine: &Machine, asked: &Weighing, bounds: &[Bound]) -> Option<Relief> {
+        let none = Objective { mass: 0.0, ..Objective::mass() };
+        let solve = |free: Weighing, objective: Objective| {
+            let free = Weighing { objective, ..free };
+            self.least(machine, &free, &Way::free(&free, Balance::Exact)).ok()
         };
-        let mut program = self.program(&free, &self.bounds(&free)).ok()?;
-        let most = program.linear.len();
+        if bounds.contains(&Bound::Inertia) {
+            let free = Weighing { most_inertia: None, ..asked.clone() };
+            // As Σ D_k counts rotors in their own way, what is found is measured.
+            let least = solve(free, Objective::inertia())?;
+            let (_, found) = self.machine(machine, asked, &least.x, Balance::Exact).ok()?;
+            return Some(Relief::Inertia(Inertia::of(&found).momenta().iter().sum()));
+        }
+        if bounds.contains(&Bound::Mass) {
+            return solve(Weighing { most_mass: None, ..asked.clone() }, Objective::mass())
+                .map(|least| Relief::Mass(least.value));
+        }
+        if !bounds.iter().any(|bound| matches!(bound, Bound::Most(_))) {
+            return None;
+        }
+        let sites = asked.sites.iter().map(|site| Sites { most: f64::INFINITY, ..*site }).collect();
+        let free = Weighing { sites, objective: none, ..asked.clone() };
+        let way = Way::free(&free, Balance::Exact);
+        let mut program = self.program(machine, &free, &self.bounds(machine, &free), &way);
+        let (most, unknowns) = (program.linear.len(), Unknowns::of(&free, self.drives()));
         program.linear.push(1.0);
-        let unknowns = Unknowns::of(&free);
         let heaviest = (0..asked.sites.len()).map(|j| Row::new([(unknowns.w(j), 1.0), (most, -1.0)], 0.0));
         program.at_most.extend(heaviest);
-        program.solve().ok().map(|least| least.value)
+        program.solve().ok().map(|least| Relief::Most(least.value))
     }
 
-    /// The machine with what was found, balanced to rounding.
-    pub fn placed(&self, asked: &Weighing, least: &Least) -> Result<Placed, NoWeights> {
-        let unknowns = Unknowns::of(asked);
-        let mut found: Vec<(Sites, [f64; 2])> = asked
-            .sites
-            .iter()
-            .enumerate()
-            .map(|(j, site)| (*site, [least.x[unknowns.w(j)], least.x[unknowns.s(j)]]))
-            .filter(|(_, [w, _])| *w > NOTHING)
-            .collect();
+    /// What stands at a site: its mass, kg, and mass times place, kg m.
+    pub fn at(&self, asked: &Weighing, x: &[f64], j: usize) -> [f64; 2] {
+        let unknowns = Unknowns::of(asked, self.drives());
+        [x[unknowns.w(j)], x[unknowns.s(j)]]
+    }
+
+    /// The mass that is added, kg, and the machine with what was found: balanced to rounding, if that is asked for.
+    pub fn machine(
+        &self,
+        machine: &Machine,
+        asked: &Weighing,
+        x: &[f64],
+        balance: Balance,
+    ) -> Result<(f64, Machine), NoWeights> {
+        let unknowns = Unknowns::of(asked, self.drives());
+        let sites = asked.sites.iter().enumerate();
+        let all = sites.map(|(j, site)| (*site, self.at(asked, x, j)));
+        let mut found: Found = all.filter(|(_, [w, _])| *w > NOTHING).collect();
         // The solver's rounding, and what was too light to count, are made up for by the least change of the others.
-        for _ in 0..3 {
-            self.refine(&mut found);
+        for _ in 0..if balance == Balance::Exact { 3 } else { 0 } {
+            self.refine(asked, &mut found);
         }
         let mut spec = self.bare.spec().clone();
-        spec.counterweights = found
-            .iter()
-            .map(|(site, [w, s])| Counterweight {
-                link: self.bare.links()[site.link].name.clone(),
-                mass: *w,
-                at: s / w,
-                radius: asked.disc.radius(*w),
-            })
-            .collect();
-        let machine = Machine::new(spec).map_err(of_machine)?;
-        let added_mass = found.iter().map(|(_, [w, _])| w).sum();
-        Ok(Placed { machine, added_mass, value: least.value, gap: least.gap })
+        let weight = |(site, [w, s]): &(Sites, [f64; 2])| Counterweight {
+            link: self.bare.links()[site.link].name.clone(),
+            mass: *w,
+            at: s / w,
+            radius: asked.disc.radius(*w),
+        };
+        spec.counterweights = found.iter().map(weight).collect();
+        for (i, rotor) in asked.rotors.iter().enumerate() {
+            let (present, value) = (machine.spec().drives[rotor.drive].rotor.unwrap_or_default(), x[unknowns.rotor(i)]);
+            let found = match rotor.free {
+                Free::Inertia([low, high]) => Rotor { inertia: value.clamp(low, high), ..present },
+                Free::Ratio([low, high]) => Rotor { ratio: other_than_zero(value.clamp(low, high)), ..present },
+            };
+            spec.drives[rotor.drive].rotor = (found.inertia > 0.0).then_some(found);
+        }
+        Ok((found.iter().map(|(_, [w, _])| w).sum(), Machine::new(spec)?))
     }
 
-    fn refine(&self, found: &mut [(Sites, [f64; 2])]) {
+    fn refine(&self, asked: &Weighing, found: &mut Found) {
         // The links balance each other.
         if found.is_empty() {
             return;
         }
-        let sites: Vec<Sites> = found.iter().map(|(site, _)| *site).collect();
-        let conditions = self.conditions(&sites);
-        let residual = conditions.iter().map(|condition| {
-            let changed = condition.changes.iter().zip(found.iter());
-            condition.left[0] + changed.map(|(by, (_, [w, s]))| by[0] * w + by[1] * s).sum::<f64>()
+        let place = |site: &Sites| asked.sites.iter().position(|other| other.link == site.link).unwrap_or_default();
+        let sites: Vec<usize> = found.iter().map(|(site, _)| place(site)).collect();
+        let residual = self.conditions.iter().map(|condition| {
+            let changed = sites.iter().zip(found.iter()).map(|(j, (_, [w, s]))| {
+                let [by_w, by_s] = condition.changes[*j];
+                by_w * w + by_s * s
+            });
+            condition.left + changed.sum::<f64>()
         });
         // In proportion to what is there, so that light ones stay where they may sit.
         let equation = |(condition, right): (&Left, f64)| Equation {
-            a: (0..2 * sites.len()).map(|j| condition.changes[j / 2][j % 2] * found[j / 2].1[0]).collect(),
+            a: (0..2 * sites.len()).map(|j| condition.changes[sites[j / 2]][j % 2] * found[j / 2].1[0]).collect(),
             right,
             tolerance: f64::INFINITY,
         };
-        let equations: Vec<Equation> = conditions.iter().zip(residual).map(equation).collect();
+        let equations: Vec<Equation> = self.conditions.iter().zip(residual).map(equation).collect();
         let change = Plane::of(&equations, 2 * sites.len()).start;
         for (j, (_, [w, s])) in found.iter_mut().enumerate() {
             let by = *w;
@@ -463,84 +487,58 @@ impl Problem {
     }
 }
 
-fn of_machine(why: MachineError) -> NoWeights {
-    NoWeights::Machine(why.to_string())
+/// A rotor that stands still is no gear's.
+fn other_than_zero(ratio: f64) -> f64 {
+    if ratio.abs() < LEAST_RATIO { LEAST_RATIO.copysign(ratio) } else { ratio }
 }
 
 /// One line of (7) or (8).
 struct Left {
-    name: String,
-    /// What the bare machine leaves, along and across the axes.
-    left: [f64; 2],
-    unit: &'static str,
+    /// Whether it is one of (8).
+    of_moments: bool,
+    /// What the bare machine leaves along the axes, kg m or kg m²; with the middle of what it may hold.
+    left: f64,
+    /// With the least and with the most that it may hold.
+    ends: [f64; 2],
     /// What w and s of each site add.
     changes: Vec<[f64; 2]>,
 }
 
 impl Left {
-    fn enter(&self, unknowns: &Unknowns, program: &mut Program) -> Result<(), NoWeights> {
-        let [along, across] = self.left;
-        let left = |x: f64| format!("{x:.3e} {}", self.unit);
-        if across.abs() > 1e-9 {
-            return Err(NoWeights::OffAxis { condition: self.name.clone(), left: left(across) });
-        }
-        let mut terms = Vec::new();
-        for (j, change) in self.changes.iter().enumerate() {
-            let each = [(unknowns.w(j), change[0]), (unknowns.s(j), change[1])];
-            terms.extend(each.into_iter().filter(|(_, by)| *by != 0.0));
-        }
-        match terms.is_empty() {
-            true if along.abs() > 1e-9 => Err(NoWeights::Untouched { condition: self.name.clone(), left: left(along) }),
-            true => Ok(()),
-            false => {
-                program.equal.push(Row::new(terms, -along));
-                Ok(())
-            }
-        }
+    fn is_touched(&self) -> bool {
+        self.changes.iter().flatten().any(|by| *by != 0.0)
     }
 }
 
-fn check(machine: &Machine, asked: &Weighing) -> Result<(), NoWeights> {
-    let positive = |what: &str, value: f64| match value.is_finite() && value > 0.0 {
-        true => Ok(()),
-        false => Err(NoWeights::OutOfRange { what: what.into(), value, want: "a number above 0" }),
+/// What is left of each condition, and how a counterweight of w and s at each site changes it.
+fn conditions(bare: &Machine, inertia: &Inertia, asked: &Weighing) -> Result<Vec<Left>, NoWeights> {
+    let parts = bare.resolved_links();
+    let holding = |mass: f64| -> Result<Inertia, NoWeights> {
+        let mut spec = bare.spec().clone();
+        spec.payload.mass = mass;
+        Ok(Inertia::of(&Machine::new(spec)?))
     };
-    positive("density, kg/m³,", asked.disc.density)?;
-    positive("thickness, m,", asked.disc.thickness)?;
-    if let Some(most) = asked.most_inertia {
-        positive("the most Σ D_k may be, kg m²,", most)?;
-    }
-    let objective = &asked.objective;
-    for (what, value) in [("mass", objective.mass), ("inertia", objective.inertia), ("torque", objective.torque)] {
-        if !(value.is_finite() && value >= 0.0) {
-            let what = format!("the weight of {what}");
-            return Err(NoWeights::OutOfRange { what, value, want: "a number not below 0" });
+    let ends = match asked.payload {
+        Some([low, high]) => [holding(low)?, holding(high)?],
+        None => [inertia.clone(), inertia.clone()],
+    };
+    let of = |condition: Condition| {
+        let change = |site: &Sites| [condition.by_mass(&parts[site.link]), condition.by_moment(&parts[site.link])];
+        let left = condition.left(inertia);
+        let words = |x: f64| format!("{x:.3e} {}", condition.unit());
+        if left.im.abs() > 1e-9 {
+            return Err(NoWeights::OffAxis { condition: condition.name(bare), left: words(left.im) });
         }
-    }
-    for (j, site) in asked.sites.iter().enumerate() {
-        let Some(link) = machine.links().get(site.link) else {
-            let (what, value) = ("link number".into(), site.link as f64);
-            return Err(NoWeights::OutOfRange { what, value, want: "one of the machine's links, counted from 0" });
+        let one = Left {
+            of_moments: matches!(condition, Condition::Force(_)),
+            left: left.re,
+            ends: [0, 1].map(|i| condition.left(&ends[i]).re),
+            changes: asked.sites.iter().map(change).collect(),
         };
-        let bad = |what: &str, value: f64, want| {
-            Err(NoWeights::OutOfRange { what: format!("link {}: {what}", link.name), value, want })
-        };
-        if !site.from.is_finite() || !site.to.is_finite() {
-            return bad(
-                "a range that ends at",
-                if site.from.is_finite() { site.to } else { site.from },
-                "finite places, m",
-            );
+        match !one.is_touched() && left.re.abs() > 1e-9 {
+            true => Err(NoWeights::Untouched { condition: condition.name(bare), left: words(left.re) }),
+            false => Ok(one),
         }
-        if site.from > site.to {
-            return bad("a range up to", site.to, "an end not below its start");
-        }
-        if site.most.is_nan() || site.most <= 0.0 {
-            return bad("at most, kg,", site.most, "a mass above 0");
-        }
-        if asked.sites[..j].iter().any(|other| other.link == site.link) {
-            return Err(NoWeights::Twice(link.name.clone()));
-        }
-    }
-    Ok(())
+    };
+    Condition::all(bare.drives()).map(of).collect()
 }

@@ -1,0 +1,301 @@
+//! `stillbase design --counterweights`
+
+use clap::Args;
+use serde::Serialize;
+use stillbase::mechanics::counterweights::{
+    Disc, Free, FreeRotor, NoWeights, Objective, Placed, Residual, Sites, Weighing, front, over_payloads, place,
+};
+use stillbase::mechanics::machine::{Counterweight, Inertia, Machine};
+use stillbase::planning::Motion;
+use stillbase::settings::number::fixed;
+use stillbase::study::front_point::FrontPoint;
+use stillbase::study::measures::{Measures, greatest_accelerations};
+
+use super::super::check::Balance;
+use super::super::failure::Failure;
+use super::super::output::Table;
+use super::measures;
+
+/// What counterweights may be, and what is to be least.
+#[derive(Args)]
+pub struct WeighArguments {
+    /// Balance it by counterweights, discs on the axes of the links; those that it has are taken off first
+    #[arg(long, conflicts_with_all = ["penalty", "preset", "keep"])]
+    pub counterweights: bool,
+    /// A link that may carry one, and where, m from its root towards its tip; every link, from its length behind the
+    /// root to the tip, where none is given
+    #[arg(long, value_name = "LINK=LO,HI", requires = "counterweights", value_parser = range, allow_hyphen_values = true)]
+    range: Vec<(String, [f64; 2])>,
+    /// Density of the discs, kg/m³; steel has 7850
+    #[arg(long, value_name = "DENSITY", requires = "counterweights", default_value_t = Disc::STEEL.density)]
+    material: f64,
+    /// Thickness of the discs, m
+    #[arg(long, value_name = "T", requires = "counterweights", default_value_t = Disc::STEEL.thickness)]
+    thickness: f64,
+    /// The most that a counterweight may weigh, kg: of every link, or LINK=M of one
+    #[arg(long, value_name = "[LINK=]M", requires = "counterweights")]
+    max_mass: Vec<String>,
+    /// The largest radius of a disc, m
+    #[arg(long, value_name = "R", requires = "counterweights")]
+    max_radius: Option<f64>,
+    /// How far the edge of a disc stays from the middle of every pin of its link, m; without it discs may cover pins
+    #[arg(long, value_name = "C", requires = "counterweights")]
+    clearance: Option<f64>,
+    /// What the end effector holds, at least and at most, kg: the worst residual of (7) and (8) over all between is made
+    /// least, then the objective
+    #[arg(long, value_name = "LO,HI", requires = "counterweights", value_parser = ends)]
+    payload: Option<[f64; 2]>,
+    /// Choose the inertia of the rotor of a drive, kg m², at the ratio that the machine has
+    #[arg(long, value_name = "DRIVE=LO,HI", requires = "counterweights", value_parser = range)]
+    rotor_inertia: Vec<(String, [f64; 2])>,
+    /// Choose the ratio of the rotor of a drive, below 0 to counter-rotate, at the inertia that the machine has
+    #[arg(long, value_name = "DRIVE=LO,HI", requires = "counterweights", value_parser = range, allow_hyphen_values = true)]
+    rotor_ratio: Vec<(String, [f64; 2])>,
+    /// What is to be least: mass (added), inertia (what the drives turn: Σ D_k where there are no gears), momentum (what
+    /// they give to the base, Σ |D_k|; counter-rotating rotors take from it), torque (the greatest |τ| of a --task at its
+    /// worst instant, where β of torque is a mean), or a mixture as mass=1,inertia=5
+    #[arg(long, value_name = "mass|inertia|momentum|torque|WEIGHTS", requires = "counterweights", value_parser = objective)]
+    objective: Option<Objective>,
+    /// The most that all may weigh together, kg
+    #[arg(long, value_name = "M", requires = "counterweights")]
+    max_added: Option<f64>,
+    /// The most that Σ D_k may be, kg m²
+    #[arg(long, value_name = "D", requires = "counterweights")]
+    max_inertia: Option<f64>,
+    /// Show what less inertia costs in mass, in so many machines from the least mass to the least inertia, and what each
+    /// comes to: torque (with --task), workspace, and the greatest |g_k| if masses are 1 % and places 0.5 mm off
+    #[arg(long, value_name = "N", requires = "counterweights", value_parser = clap::value_parser!(u16).range(2..=1000))]
+    front: Option<u16>,
+}
+
+impl WeighArguments {
+    /// What is asked for.
+    pub fn asked(&self, machine: &Machine, motion: Option<&Motion>) -> Result<Weighing, Failure> {
+        let links = machine.links();
+        let find = |name: &str| {
+            links.iter().position(|link| link.name == name).ok_or_else(|| {
+                let known: Vec<_> = links.iter().map(|link| link.name.as_str()).collect();
+                Failure::wrong_input(format!("no link {name}: want one of {}", known.join(", ")))
+            })
+        };
+        let ranged = |(name, [from, to]): &(String, [f64; 2])| {
+            Ok(Sites { link: find(name)?, from: *from, to: *to, most: f64::INFINITY })
+        };
+        let mut sites = self.range.iter().map(ranged).collect::<Result<Vec<_>, Failure>>()?;
+        if sites.is_empty() {
+            sites = Sites::anywhere(machine);
+        }
+        for word in &self.max_mass {
+            let (name, most) = word.split_once('=').map_or((None, word.as_str()), |(name, most)| (Some(name), most));
+            let want = || Failure::wrong_input(format!("--max-mass {word}: want a mass above 0 in kg, or LINK=M"));
+            let most: f64 = most.trim().parse().ok().filter(|most| *most > 0.0).ok_or_else(want)?;
+            let only = name.map(|name| find(name.trim())).transpose()?;
+            for site in sites.iter_mut().filter(|site| only.is_none_or(|only| only == site.link)) {
+                site.most = site.most.min(most);
+            }
+        }
+        let disc = Disc { density: self.material, thickness: self.thickness };
+        if let Some(radius) = self.max_radius {
+            if !(radius.is_finite() && radius > 0.0) {
+                return Err(Failure::wrong_input(format!("--max-radius {radius}: want a radius above 0 in m")));
+            }
+            sites.iter_mut().for_each(|site| site.most = site.most.min(disc.mass(radius)));
+        }
+        let mut objective = self.objective.clone().unwrap_or_else(Objective::mass);
+        match motion {
+            Some(motion) => objective.accelerations = greatest_accelerations(motion).to_vec(),
+            None if objective.torque > 0.0 => {
+                let why =
+                    "--objective torque: the torque depends on the motion: want --task SCENARIO, as --task case-3";
+                return Err(Failure::wrong_input(why));
+            }
+            None => {}
+        }
+        Ok(Weighing {
+            most_mass: self.max_added,
+            most_inertia: self.max_inertia,
+            clearance: self.clearance,
+            rotors: self.rotors(machine)?,
+            payload: self.payload,
+            ..Weighing::least(objective, sites, disc)
+        })
+    }
+
+    fn rotors(&self, machine: &Machine) -> Result<Vec<FreeRotor>, Failure> {
+        let drives = &machine.spec().drives;
+        let find = |name: &str| {
+            drives.iter().position(|drive| drive.name == name).ok_or_else(|| {
+                let known: Vec<_> = drives.iter().map(|drive| drive.name.as_str()).collect();
+                Failure::wrong_input(format!("no drive {name}: want one of {}", known.join(", ")))
+            })
+        };
+        let inertia = self.rotor_inertia.iter().map(|(name, ends)| (name, Free::Inertia(*ends)));
+        let ratio = self.rotor_ratio.iter().map(|(name, ends)| (name, Free::Ratio(*ends)));
+        inertia.chain(ratio).map(|(name, free)| Ok(FreeRotor { drive: find(name)?, free })).collect()
+    }
+
+    /// Finds them, and what they come to.
+    pub fn run(&self, machine: &Machine, motion: Option<&Motion>) -> Result<(Machine, Weighed), Failure> {
+        let asked = self.asked(machine, motion)?;
+        let placed = place(machine, &asked).map_err(unweighed)?;
+        let front = match self.front {
+            Some(count) => front(machine, &asked, count.into()).map_err(unweighed)?.points,
+            None => Vec::new(),
+        };
+        let front = front.iter().map(|placed| FrontPoint::of(placed, motion, true)).collect();
+        let answer = Weighed::of(machine, &placed, front, motion, &asked)?;
+        Ok((placed.machine, answer))
+    }
+}
+
+/// What is asked for is wrong, or has no answer.
+fn unweighed(why: NoWeights) -> Failure {
+    match why {
+        NoWeights::OutOfRange { .. } | NoWeights::Twice(_) | NoWeights::RotorTwice(_) | NoWeights::NoRotor(_) => {
+            Failure::wrong_input(why)
+        }
+        why => Failure::no_answer(why),
+    }
+}
+
+fn range(text: &str) -> Result<(String, [f64; 2]), String> {
+    let want = || "want NAME=LO,HI, as 1=-0.3,0.5".to_owned();
+    let (name, places) = text.split_once('=').ok_or_else(want)?;
+    Ok((name.trim().into(), ends(places).map_err(|_| want())?))
+}
+
+fn ends(text: &str) -> Result<[f64; 2], String> {
+    let want = || "want two numbers, as 0.1,0.5".to_owned();
+    let (low, high) = text.split_once(',').ok_or_else(want)?;
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(want);
+    Ok([number(low)?, number(high)?])
+}
+
+fn objective(text: &str) -> Result<Objective, String> {
+    let want = || "want mass, inertia, momentum, torque, or several with their weights, as mass=1,inertia=5".to_owned();
+    let mut objective = Objective { mass: 0.0, ..Objective::mass() };
+    for part in text.split(',') {
+        let (word, weight) = part.split_once('=').map_or((part, "1"), |(word, weight)| (word, weight));
+        let weight: f64 = weight.trim().parse().ok().filter(|w| (0.0..=1e6).contains(w)).ok_or_else(want)?;
+        match word.trim() {
+            "mass" => objective.mass = weight,
+            "inertia" => objective.inertia = weight,
+            "momentum" => objective.momentum = weight,
+            "torque" => objective.torque = weight,
+            _ => return Err(want()),
+        }
+    }
+    match objective.mass + objective.inertia + objective.momentum + objective.torque > 0.0 {
+        true => Ok(objective),
+        false => Err(want()),
+    }
+}
+
+/// What counterweights come to.
+#[derive(Serialize)]
+pub struct Weighed {
+    /// Beside the machine without counterweights.
+    #[serde(flatten)]
+    measures: Measures,
+    weights: Vec<Counterweight>,
+    /// The most by which the best may lie below what was found.
+    gap: f64,
+    /// Added mass, kg, and Σ D_k, kg m².
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    front: Vec<[f64; 2]>,
+    /// The same machines, and what else they come to.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    front_points: Vec<FrontPoint>,
+    /// Rotors that were chosen.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    rotors: Vec<Chosen>,
+    /// What is left of balance over the payloads.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    payload: Vec<Residual>,
+    #[serde(flatten)]
+    balance: Balance,
+}
+
+/// A rotor that was chosen.
+#[derive(Serialize)]
+struct Chosen {
+    drive: String,
+    /// kg m².
+    inertia: f64,
+    ratio: f64,
+}
+
+/// Payloads at which the residual is said.
+const PAYLOADS: usize = 11;
+
+impl Weighed {
+    fn of(
+        machine: &Machine,
+        placed: &Placed,
+        front_points: Vec<FrontPoint>,
+        motion: Option<&Motion>,
+        asked: &Weighing,
+    ) -> Result<Self, Failure> {
+        let mut bare = machine.spec().clone();
+        bare.counterweights.clear();
+        let bare = Machine::new(bare)?;
+        let (machine, inertia) = (&placed.machine, Inertia::of(&placed.machine));
+        let chosen = |rotor: &FreeRotor| {
+            let drive = &machine.spec().drives[rotor.drive];
+            let found = drive.rotor.unwrap_or_default();
+            Chosen { drive: drive.name.clone(), inertia: found.inertia, ratio: found.ratio }
+        };
+        let payload = asked.payload.map(|ends| over_payloads(machine, ends, PAYLOADS)).transpose()?;
+        Ok(Self {
+            measures: Measures::of(&bare, machine, motion),
+            weights: machine.spec().counterweights.clone(),
+            gap: placed.gap,
+            front: front_points.iter().map(|point| [point.added_mass, point.inertia]).collect(),
+            front_points,
+            rotors: asked.rotors.iter().map(chosen).collect(),
+            payload: payload.unwrap_or_default(),
+            balance: Balance::of(&inertia),
+        })
+    }
+
+    /// As a person reads it.
+    pub fn text(&self, machine: &Machine) -> String {
+        let mut table = Table::new(["counterweight on link", "kg", "at m", "radius m"]);
+        for w in &self.weights {
+            table.row([w.link.clone(), fixed(w.mass, 6), fixed(w.at, 6), fixed(w.radius, 6)]);
+        }
+        let mut text = format!(
+            "{} · {} kg added · within {:.1e} of the best\n\n{table}\n{}\n{}",
+            machine.name(),
+            fixed(self.measures.added_mass, 6),
+            self.gap,
+            measures::text(&self.measures),
+            self.balance.tables(machine)
+        );
+        if !self.rotors.is_empty() {
+            let mut table = Table::new(["rotor of drive", "inertia kg m²", "ratio"]);
+            for rotor in &self.rotors {
+                table.row([rotor.drive.clone(), fixed(rotor.inertia, 9), fixed(rotor.ratio, 6)]);
+            }
+            text.push_str(&format!("\n{table}"));
+        }
+        if let Some((first, last)) = self.payload.first().zip(self.payload.last()) {
+            let mut table = Table::new(["payload kg", "left of (7) kg m", "left of (8) kg m²"]);
+            for at in &self.payload {
+                table.row([fixed(at.payload, 4), fixed(at.force, 6), fixed(at.coupling, 6)]);
+            }
+            let middle = fixed(0.5 * (first.payload + last.payload), 6);
+            text.push_str(&format!("\nholding {middle} kg, the middle, here and in the new file\n\n{table}"));
+        }
+        if !self.front_points.is_empty() {
+            let mut table = Table::new(["added kg", "Σ D_k kg m²", "torque N m", "workspace m²", "off by kg m"]);
+            let or_none = |x: Option<f64>| x.map_or_else(|| "–".into(), |x| fixed(x, 6));
+            for point in &self.front_points {
+                let known = [fixed(point.added_mass, 6), fixed(point.inertia, 6), or_none(point.torque)];
+                table.row(known.into_iter().chain([or_none(point.workspace), fixed(point.off_by, 6)]));
+            }
+            text.push_str(&format!("\n{table}"));
+        }
+        text
+    }
+}

@@ -1,0 +1,38 @@
+//! [`over_payloads`]: what is left of balance over a range of what the end effector holds.
+
+use serde::Serialize;
+
+use crate::mechanics::balance::Condition;
+use crate::mechanics::machine::{Inertia, Machine, MachineError};
+
+/// What is left of (7) and of (8) with one payload.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Residual {
+    /// What the end effector holds, kg.
+    pub payload: f64,
+    /// Of (7): the greatest |g_k|, kg m.
+    pub force: f64,
+    /// Of (8): the greatest |C_kl|, kg m².
+    pub coupling: f64,
+}
+
+/// What is left at `count` payloads, at least two, at equal steps from the least to the greatest, kg.
+///
+/// # Errors
+/// If the machine cannot hold one of them.
+pub fn over_payloads(machine: &Machine, [low, high]: [f64; 2], count: usize) -> Result<Vec<Residual>, MachineError> {
+    let steps = count.max(2) - 1;
+    let at = |i: usize| {
+        let mut spec = machine.spec().clone();
+        spec.payload.mass = low + (high - low) * i as f64 / steps as f64;
+        let payload = spec.payload.mass;
+        let inertia = Inertia::of(&Machine::new(spec)?);
+        let greatest = |of_moments: bool| {
+            let all = Condition::all(machine.drives());
+            let alike = all.filter(|condition| matches!(condition, Condition::Force(_)) == of_moments);
+            alike.map(|condition| condition.left(&inertia).norm()).fold(0.0, f64::max)
+        };
+        Ok(Residual { payload, force: greatest(true), coupling: greatest(false) })
+    };
+    (0..=steps).map(at).collect()
+}

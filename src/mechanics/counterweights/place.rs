@@ -1,0 +1,139 @@
+//! [`place`]: counterweights that balance a machine at the least cost.
+
+use super::asked::{Objective, Weighing};
+use super::problem::{Balance, Problem, Way};
+use super::refusal::NoWeights;
+use super::search::search;
+use crate::convex::{Least, NoX};
+use crate::mechanics::machine::{Inertia, Machine};
+
+/// Counterweights, and the machine that carries them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Placed {
+    /// It is balanced to rounding; over a range of payloads in its middle, or as nearly as can be.
+    pub machine: Machine,
+    /// What they weigh, kg.
+    pub added_mass: f64,
+    /// What was least.
+    pub value: f64,
+    /// The most by which the best may lie below that.
+    pub gap: f64,
+}
+
+/// Steps in which a clearance that would do is looked for.
+const STEPS: usize = 20;
+
+/// How much worse than the least the first of two wishes may be for the sake of the second, of itself and in its unit:
+/// the solver's rounding.
+const ROUNDING: [f64; 2] = [1e-7, 1e-10];
+
+/// The counterweights that make a machine balanced and invariant, (7) and (8), and an objective least. Those that the
+/// machine has already are taken off first.
+///
+/// Over a range of payloads the worst residual is least where the middle is balanced; where that cannot be within the
+/// bounds, the worst residual is made as small as it can be, and then the objective.
+///
+/// # Errors
+/// If what is asked for cannot be, or cannot be together.
+pub fn place(machine: &Machine, asked: &Weighing) -> Result<Placed, NoWeights> {
+    let problem = Problem::new(machine, asked)?;
+    if problem.needs_nothing(asked) {
+        let inertia = Inertia::of(&problem.bare);
+        let value = asked.objective.of(0.0, &inertia);
+        return Ok(Placed { machine: problem.bare, added_mass: 0.0, value, gap: 0.0 });
+    }
+    let one = One { problem: &problem, machine, asked };
+    match one.least(Balance::Exact)? {
+        Ok(least) => one.placed(&least, Balance::Exact),
+        Err(NoX::Failed(why)) => Err(NoWeights::Failed(why)),
+        Err(NoX::Contradiction(_)) if asked.payload.is_some() => one.nearest(),
+        Err(NoX::Contradiction(weights)) => Err(one.refusal(&weights)),
+    }
+}
+
+struct One<'a> {
+    problem: &'a Problem,
+    machine: &'a Machine,
+    asked: &'a Weighing,
+}
+
+impl One<'_> {
+    fn least(&self, balance: Balance) -> Result<Result<Least, NoX>, NoWeights> {
+        let way = Way::free(self.asked, balance);
+        let first = self.on(&way)?;
+        // A rotor may take more from the base than there is, if what there is counts as more: so of all that are as good
+        // the one that turns least is taken, which counts everything as what it is.
+        match first {
+            Ok(least) if self.asked.objective.momentum > 0.0 && balance != Balance::Nearest => {
+                let most = least.value + ROUNDING[0] * least.value.abs() + ROUNDING[1];
+                let second = self.on(&Way { most: Some(most), ..way })?;
+                Ok(second.map(|second| Least { x: second.x, ..least }))
+            }
+            first => Ok(first),
+        }
+    }
+
+    fn on(&self, way: &Way) -> Result<Result<Least, NoX>, NoWeights> {
+        match self.asked.clearance {
+            Some(_) => search(self.problem, self.machine, self.asked, way),
+            None => Ok(self.problem.least(self.machine, self.asked, way)),
+        }
+    }
+
+    /// As near to balance as the bounds allow over all payloads, and of those the least.
+    fn nearest(&self) -> Result<Placed, NoWeights> {
+        let found = |balance| {
+            self.least(balance)?.map_err(|why| match why {
+                NoX::Contradiction(weights) => self.refusal(&weights),
+                NoX::Failed(why) => NoWeights::Failed(why),
+            })
+        };
+        let worst = found(Balance::Nearest)?.value;
+        let balance = Balance::Within(worst * (1.0 + ROUNDING[0]) + ROUNDING[1]);
+        self.placed(&found(balance)?, balance)
+    }
+
+    fn placed(&self, least: &Least, balance: Balance) -> Result<Placed, NoWeights> {
+        let (added_mass, machine) = self.problem.machine(self.machine, self.asked, &least.x, balance)?;
+        let value = self.asked.objective.of(added_mass, &Inertia::of(&machine));
+        // Of what was made of it, and not only of what the solver has: the dual says what nothing goes below.
+        Ok(Placed { machine, added_mass, value, gap: (value - (least.value - least.gap)).max(least.gap) })
+    }
+
+    /// Why there is none; weights are of the proof past all pins, empty if it is the pins.
+    fn refusal(&self, weights: &[f64]) -> NoWeights {
+        match self.asked.clearance {
+            Some(asked) if weights.is_empty() => NoWeights::Reaches { asked, would: self.would_clear(asked) },
+            _ => self.problem.conflict(self.machine, self.asked, weights),
+        }
+    }
+
+    /// The furthest from all pins with which there is a way, m.
+    fn would_clear(&self, asked: f64) -> Option<f64> {
+        let is_clear = |clearance: f64| {
+            let nearer = Weighing { clearance: Some(clearance), ..self.asked.clone() };
+            let way = Way::free(&nearer, Balance::Exact);
+            matches!(search(self.problem, self.machine, &nearer, &way), Ok(Ok(_)))
+        };
+        if !is_clear(0.0) {
+            return None;
+        }
+        let halved = |[low, high]: [f64; 2], _| {
+            let middle = 0.5 * (low + high);
+            if is_clear(middle) { [middle, high] } else { [low, middle] }
+        };
+        Some((0..STEPS).fold([0.0, asked], halved)[0])
+    }
+}
+
+impl Objective {
+    /// What it comes to.
+    fn of(&self, added_mass: f64, inertia: &Inertia) -> f64 {
+        let diagonal = inertia.diagonals();
+        let torques = diagonal.iter().zip(&self.accelerations).map(|(h, acceleration)| h * acceleration);
+        self.mass * added_mass
+            + self.inertia * diagonal.iter().sum::<f64>()
+            + self.momentum * inertia.momenta().iter().map(|d| d.abs()).sum::<f64>()
+            + self.torque * torques.fold(0.0, f64::max)
+    }
+}

@@ -1,0 +1,55 @@
+//! [`FrontPoint`]: what a machine of the front comes to beside its mass and inertia.
+
+use serde::Serialize;
+
+use crate::mechanics::counterweights::{Placed, Tolerance, off_by};
+use crate::mechanics::dynamics::{Surroundings, inverse_with_wrench};
+use crate::mechanics::machine::{Inertia, Machine};
+use crate::mechanics::planar::Vector;
+use crate::planning::Motion;
+use crate::planning::pose_constant::Planes;
+
+use super::measures::instants;
+
+/// A machine of the front, in numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct FrontPoint {
+    /// kg.
+    pub added_mass: f64,
+    /// Σ D_k, kg m².
+    pub inertia: f64,
+    /// The greatest |torque| of a motor in a motion, weight included, N m; none without a motion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub torque: Option<f64>,
+    /// Area of the reactionless workspace, m²; none without a b that three drives hold.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub workspace: Option<f64>,
+    /// The greatest |g_k| if every counterweight is as far off as is usual ([`Tolerance::USUAL`]), kg m.
+    pub off_by: f64,
+}
+
+impl FrontPoint {
+    /// Of a machine of the front; a motion is one of as many drives. The workspace is found if it is asked for: it takes
+    /// longer than all else.
+    pub fn of(placed: &Placed, motion: Option<&Motion>, workspace: bool) -> Self {
+        let machine = &placed.machine;
+        Self {
+            added_mass: placed.added_mass,
+            inertia: Inertia::of(machine).momenta().iter().sum(),
+            torque: motion.map(|motion| greatest_torque(machine, motion)),
+            workspace: workspace.then(|| Planes::of(machine).ok()).flatten().map(|planes| planes.boundary().area()),
+            off_by: off_by(machine, &Tolerance::USUAL).force,
+        }
+    }
+}
+
+/// Of all motors, N m.
+fn greatest_torque(machine: &Machine, motion: &Motion) -> f64 {
+    let inertia = Inertia::of(machine);
+    let around = Surroundings { gravity: machine.gravity(), force: Vector::default() };
+    let at = |r: crate::planning::Reference| {
+        let (torque, _) = inverse_with_wrench(&inertia, &r.q.units(), &r.qd, &r.qdd, &around);
+        inertia.motors().torques(&torque).iter().fold(0.0_f64, |most, x| most.max(x.abs()))
+    };
+    instants(motion).map(at).fold(0.0, f64::max)
+}
