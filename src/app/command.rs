@@ -11,6 +11,7 @@ use crate::picture::scene::views::ViewKind;
 use crate::session::design::Brief;
 use crate::session::scenario::Scenario;
 use crate::session::{Edit, Session};
+use crate::study::front_point::FrontMeasure;
 
 /// What a person can ask for.
 #[derive(Clone, Debug)]
@@ -413,4 +414,6 @@ pub enum DesignCommand {
     Ghost(Option<usize>),
     /// Take them.
     Take(usize),
+    /// Tell the machines of the front apart by this, or by nothing more.
+    FrontBy(Option<FrontMeasure>),
 }

@@ -381,7 +381,7 @@ impl AppState {
         let contrast = self.intro.as_ref().filter(|intro| intro.contrasts_in(ui.ctx().content_rect().width()));
         let designs = self.view_state.view == ViewKind::Design && !presents;
         if designs {
-            self.studio.follow(&self.session, &self.view_state.brief);
+            self.studio.follow(&self.session, &self.view_state.brief, self.view_state.front_by);
             studio::show(ui, &self.session, &self.studio, &self.view_state, &mut commands);
         }
         if contrast.is_none() && self.view_state.side.shown && !designs {
@@ -499,10 +499,14 @@ impl AppState {
                 }
             }
             DesignCommand::Ghost(i) => self.view_state.ghost = i,
+            DesignCommand::FrontBy(by) => self.view_state.front_by = by,
             DesignCommand::Take(i) => {
-                self.studio.follow(&self.session, &self.view_state.brief);
+                self.studio.follow(&self.session, &self.view_state.brief, self.view_state.front_by);
                 if let Some(machine) = self.studio.of_front(i) {
-                    self.change(Change::Edit(weights_of(machine)));
+                    let edit = weights_of(&self.session.scenario().machine, machine);
+                    // What is held of those before is said of others now.
+                    self.view_state.brief.holds.retain(|key, _| !key.starts_with("counterweight."));
+                    self.change(Change::Edit(edit));
                 }
             }
         }

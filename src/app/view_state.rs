@@ -16,6 +16,7 @@ use crate::picture::scene::views::{ViewKind, Views};
 use crate::planning::reactionless::Decimal;
 use crate::session::design::Brief;
 use crate::session::{Edit, Refusal, Session};
+use crate::study::front_point::FrontMeasure;
 
 /// An edit that was refused.
 #[derive(Clone, Debug)]
@@ -123,6 +124,8 @@ pub struct ViewState {
     pub brief: Brief,
     /// The machine of the front whose counterweights are shown, by its place.
     pub ghost: Option<usize>,
+    /// What its machines are told apart by beside mass and inertia.
+    pub front_by: Option<FrontMeasure>,
     /// What pins carry is on display.
     pub pins: bool,
     /// The drives along the axes of joint space, counted from 0, where there are more than three.
@@ -198,6 +201,7 @@ impl ViewState {
             study: false,
             brief: Brief::default(),
             ghost: None,
+            front_by: None,
             pins: false,
             drives: [0, 1, 2],
             naming: None,

@@ -1,13 +1,13 @@
 //! [`Brief`]: what a designer asks of a machine whose masses and lengths are changed by hand, and the edits that follow.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use toml::{Table, Value};
 
 use super::edit::Edit;
 use crate::mechanics::balance::{Adjusted, Body, Hold, Keep, Parameter, Preset, Quantity, keep};
 use crate::mechanics::counterweights::{Disc, Front, NoWeights, Objective, Sites, Weighing, front};
-use crate::mechanics::machine::Machine;
+use crate::mechanics::machine::{Counterweight, Machine};
 use crate::settings::change::{join, leaves, one};
 
 /// What is dear: a kilogram more or less of a counterweight, 1/kg, and a metre that one or a centre of mass moves, 1/m.
@@ -21,6 +21,9 @@ pub struct Brief {
     pub keeps_balance: bool,
     /// Names of links that stay as they are, with their counterweights.
     pub fixed: BTreeSet<String>,
+    /// Single numbers that stay, may change, or may change so far, by key: `link.5.mass`. They come before what is said of
+    /// their links.
+    pub holds: BTreeMap<String, Hold>,
     /// How dear it is to move the centre of mass of each link, (10), where these follow.
     pub preset: Preset,
     /// What counterweights are made of.
@@ -37,9 +40,9 @@ pub struct Brief {
 
 impl Default for Brief {
     fn default() -> Self {
-        let (fixed, preset) = (BTreeSet::new(), Preset::MinimumNorm);
+        let (fixed, holds, preset) = (BTreeSet::new(), BTreeMap::new(), Preset::MinimumNorm);
         let (back, most, clearance, payload) = (None, None, None, None);
-        Self { keeps_balance: false, fixed, preset, disc: Disc::STEEL, back, most, clearance, payload }
+        Self { keeps_balance: false, fixed, holds, preset, disc: Disc::STEEL, back, most, clearance, payload }
     }
 }
 
@@ -101,7 +104,14 @@ impl Brief {
                 from: parameter.value(spec).unwrap_or_default(),
             }
         };
-        Keep { parameters: free.into_iter().map(adjusted).collect() }.measured_from(start)
+        let mut keep = Keep { parameters: free.into_iter().map(adjusted).collect() };
+        for parameter in Parameter::all(machine) {
+            let key = parameter.key(machine);
+            if let Some(hold) = self.holds.get(&key).filter(|_| !named.contains(&key)) {
+                keep.hold(machine, parameter, *hold);
+            }
+        }
+        keep.measured_from(start)
     }
 
     /// Where a counterweight may go: as far as on the front, and no nearer than where it is.
@@ -112,7 +122,19 @@ impl Brief {
         let length = machine.resolved_links()[link].length;
         let ends = [-self.back.unwrap_or(length), length];
         let within = |[low, high]: [f64; 2], at: f64| [low.min(at), high.max(at)];
-        Hold::Within(weights.into_iter().flatten().map(|weight| weight.at).fold(ends, within))
+        let [low, high] = weights.into_iter().flatten().map(|weight| weight.at).fold(ends, within);
+        let clear = weights[0].and_then(|weight| self.clear_of_pins(&machine.resolved_links()[link].pins, weight));
+        Hold::Within(clear.map_or([low, high], |[from, to]| [low.max(from), high.min(to)]))
+    }
+
+    /// Between which places a counterweight of its present radius stays clear of the pins that it is between, m; none if
+    /// it is not clear of them now.
+    fn clear_of_pins(&self, pins: &[f64], weight: &Counterweight) -> Option<[f64; 2]> {
+        let away = self.clearance? + weight.radius;
+        let behind = pins.iter().filter(|pin| **pin <= weight.at).fold(f64::NEG_INFINITY, |most, pin| most.max(*pin));
+        let ahead = pins.iter().filter(|pin| **pin > weight.at).fold(f64::INFINITY, |least, pin| least.min(*pin));
+        let [from, to] = [behind + away, ahead - away];
+        (from..=to).contains(&weight.at).then_some([from, to])
     }
 
     /// Counterweights that balance the links alone: what less inertia costs in mass, in so many machines.
@@ -137,8 +159,11 @@ impl Brief {
     }
 }
 
-/// The edit that gives a machine the counterweights of another.
-pub fn weights_of(machine: &Machine) -> Edit {
-    let weights = machine.spec().counterweights.iter().filter_map(|weight| Value::try_from(weight).ok());
-    Edit::Set { change: Table::from_iter([("counterweight".to_owned(), Value::Array(weights.collect()))]) }
+/// The edit that gives a machine the counterweights of another, and what that holds: they balance it with that.
+pub fn weights_of(machine: &Machine, of: &Machine) -> Edit {
+    let weights = of.spec().counterweights.iter().filter_map(|weight| Value::try_from(weight).ok());
+    let change = Table::from_iter([("counterweight".to_owned(), Value::Array(weights.collect()))]);
+    let [has, holds] = [machine, of].map(|machine| machine.spec().payload.mass);
+    let change = if has == holds { change } else { join(change, &one("payload.mass", holds)) };
+    Edit::Set { change }
 }

@@ -28,6 +28,41 @@ pub struct FrontPoint {
     pub off_by: f64,
 }
 
+/// What the machines of a front may be told apart by beside mass and inertia.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrontMeasure {
+    /// The greatest torque of the motion.
+    Torque,
+    /// The area of the reactionless workspace.
+    Workspace,
+    /// The greatest |g_k| with counterweights that are a little off.
+    OffBy,
+}
+
+impl FrontMeasure {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Torque, Self::Workspace, Self::OffBy];
+
+    /// In words, and its unit.
+    pub const fn words(self) -> [&'static str; 2] {
+        match self {
+            Self::Torque => ["greatest torque", "N m"],
+            Self::Workspace => ["workspace", "m²"],
+            Self::OffBy => ["left if 1 % and 0.5 mm off", "kg m"],
+        }
+    }
+
+    /// Of each machine of a front; none where a machine has none. A motion is one of as many drives.
+    pub fn of(self, placed: &Placed, motion: Option<&Motion>) -> Option<f64> {
+        let point = FrontPoint::of(placed, motion.filter(|_| self == Self::Torque), self == Self::Workspace);
+        match self {
+            Self::Torque => point.torque,
+            Self::Workspace => point.workspace,
+            Self::OffBy => Some(point.off_by),
+        }
+    }
+}
+
 impl FrontPoint {
     /// Of a machine of the front; a motion is one of as many drives. The workspace is found if it is asked for: it takes
     /// longer than all else.

@@ -20,6 +20,9 @@ pub const TESTS: &[Test] = tests![
     counterweights_are_taken_and_follow_a_length,
     what_cannot_be_balanced_is_told_and_changes_nothing,
     numbers_of_links_are_typed,
+    single_numbers_are_held,
+    discs_keep_clear_and_serve_a_range_of_payloads,
+    colours_tell_the_machines_of_the_front_apart,
 ];
 
 /// A window in which the bare bars of the reference are designed.
@@ -179,4 +182,68 @@ fn numbers_of_links_are_typed() {
     type_into(&mut h, "centre of mass of link 5 m", "-2 cm");
     assert_eq!(machine(&h).links()[4].com, -0.02);
     assert!(!is_balanced(machine(&h)));
+}
+
+/// A number that stays while others of its kind follow, and one that may go only so far.
+fn single_numbers_are_held() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    h.key_press(Key::D);
+    h.run_steps(3);
+    h.get_by_label("Keep balanced").click();
+    h.run_steps(3);
+    let before = machine(&h).clone();
+    h.get_by_label("centre of mass of link 9 m").click_secondary();
+    h.run_steps(3);
+    h.get_by_label("stays").click();
+    h.run_steps(3);
+    h.key_press(Key::Escape);
+    h.run_steps(3);
+    h.get_by_label("mass of link 2 kg").click_secondary();
+    h.run_steps(3);
+    h.get_by_label("may change").click();
+    h.run_steps(3);
+    let holds = &h.state().app_state().view_state().brief.holds;
+    assert_eq!(holds.keys().collect::<Vec<_>>(), ["link.2.mass", "link.9.com"]);
+    h.state_mut()
+        .app_state_mut()
+        .carry_out(Command::Edit(Edit::at(&["link", "1", "com"], before.links()[0].com - 0.01)));
+    h.run_steps(3);
+    let after = machine(&h);
+    assert!(is_balanced(after));
+    assert_eq!(after.links()[8].com, before.links()[8].com, "it stays");
+    assert!(after.links()[1].mass != before.links()[1].mass, "it may change");
+    assert!(after.links()[2].mass == before.links()[2].mass, "nobody said that it may");
+}
+
+/// What is asked of counterweights is typed, and those that are taken keep to it.
+fn discs_keep_clear_and_serve_a_range_of_payloads() {
+    let mut h = bare();
+    h.get_by_label("clear of pins").click();
+    h.run_steps(3);
+    h.get_by_label("payload from, to").click();
+    h.run_steps(3);
+    let brief = &h.state().app_state().view_state().brief;
+    assert_eq!((brief.clearance, brief.payload), (Some(0.005), Some([0.0, 0.2])));
+    h.get_by_label("least inertia").click();
+    h.run_steps(4);
+    let taken = machine(&h);
+    assert!(is_balanced(taken) && taken.spec().payload.mass == 0.1, "balanced for the middle");
+    for weight in &taken.spec().counterweights {
+        let link = taken.links().iter().position(|link| link.name == weight.link).expect("a link");
+        let nearest = taken.resolved_links()[link].pins.iter().map(|pin| (pin - weight.at).abs());
+        assert!(nearest.fold(f64::INFINITY, f64::min) > weight.radius + 0.005 - 1e-6, "link {}", weight.link);
+    }
+    assert!(h.query_by_label_contains("What is left over the payloads: at worst 0.05").is_some());
+}
+
+fn colours_tell_the_machines_of_the_front_apart() {
+    let mut h = bare();
+    for words in ["greatest torque", "workspace", "left if 1 % and 0.5 mm off"] {
+        h.get_by_label("what the colours of the front tell").click();
+        h.run_steps(3);
+        h.get_by_label(words).click();
+        h.run_steps(3);
+        assert_eq!(h.state().app_state().view_state().front_by.map(|by| by.words()[0]), Some(words));
+    }
 }

@@ -93,7 +93,7 @@ fn counterweights_are_edits_like_all_others() {
     let case = Scenario::builtin("case-1").expect("built in");
     let mut session = Session::open(Scenario { machine: bare.clone(), ..case }).expect("it opens");
     for placed in [&front.points[0], &front.points[2]] {
-        session.apply(weights_of(&placed.machine)).expect("they are taken");
+        session.apply(weights_of(&session.scenario().machine.clone(), &placed.machine)).expect("they are taken");
         session.end_gesture();
         assert_eq!(session.scenario().machine.spec().counterweights, placed.machine.spec().counterweights);
     }

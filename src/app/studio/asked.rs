@@ -17,7 +17,7 @@ const MATERIALS: [(&str, f64); 5] =
 /// Draws it.
 pub fn show(
     ui: &mut Ui,
-    (links, has_weights, is_balanced): (usize, bool, bool),
+    (links, has_weights, is_balanced, held): (usize, bool, bool, f64),
     view_state: &ViewState,
     commands: &mut Vec<Command>,
 ) {
@@ -63,9 +63,46 @@ pub fn show(
     bounded(ui, p, &row, &mut brief.back, 0.3);
     let row = Row { speed: 0.02, ..number("heaviest", "kg", "How heavy one may be", 2, 1e-3..=1e5) };
     bounded(ui, p, &row, &mut brief.most, 5.0);
+    let mut millimetres = brief.clearance.map(|clearance| 1e3 * clearance);
+    let tip =
+        "How far the edge of a disc stays from the middle of every pin of its link; otherwise discs may cover pins";
+    let row = number("clear of pins", "mm", tip, 1, 0.0..=1000.0);
+    bounded(ui, p, &row, &mut millimetres, 5.0);
+    brief.clearance = millimetres.map(|x| 1e-3 * x);
+    payloads(ui, p, &mut brief, held);
     if brief != view_state.brief {
         commands.push(Command::Design(DesignCommand::Brief(Box::new(brief))));
     }
+}
+
+/// From which payload to which the balance is to serve.
+fn payloads(ui: &mut Ui, p: &Palette, brief: &mut Brief, held: f64) {
+    let tip = "Counterweights leave the least worst residual over all that the end effector may hold, from the first to \
+               the second; they are balanced for the middle";
+    ui.horizontal(|ui| {
+        let mut is_set = brief.payload.is_some();
+        if ui.checkbox(&mut is_set, "payload from, to").on_hover_text(tip).changed() {
+            brief.payload = is_set.then_some([0.0, if held > 0.0 { 2.0 * held } else { 0.2 }]);
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            unit(ui, p, "kg");
+            let Some([low, high]) = &mut brief.payload else {
+                ui.label(RichText::new("as it is").font(plain(12.0)).color(colour(p.dim)));
+                return;
+            };
+            let row = |label, range: std::ops::RangeInclusive<f64>| Row {
+                label,
+                unit: "kg",
+                tip,
+                decimals: 3,
+                speed: 0.005,
+                slide: range.clone(),
+                range,
+            };
+            row("greatest payload", *low..=1e5).number(ui, high);
+            row("least payload", 0.0..=*high).number(ui, low);
+        });
+    });
 }
 
 /// The lock on the balance.

@@ -1,13 +1,14 @@
 //! [`Facts`]: what the panels say of a machine that has to be found first. It is found when the machine changes.
 
 use crate::mechanics::balance::{Breakdown, Condition};
-use crate::mechanics::counterweights::Placed;
+use crate::mechanics::counterweights::{Placed, Residual, over_payloads};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::picture::scene::options::Offered;
 use crate::planning::forecast::Forecast;
 use crate::session::Session;
 use crate::session::design::Brief;
 use crate::settings::number::subscript;
+use crate::study::front_point::FrontMeasure;
 use crate::study::measures::Measures;
 
 /// How many machines the front has.
@@ -27,7 +28,15 @@ pub struct Facts {
     pub(super) measures: Option<(Forecast, Measures)>,
     weighed: Option<(Machine, Brief)>,
     front: Option<Result<Vec<Point>, String>>,
+    /// What tells the machines of the front apart, of each of them, with the forecast of the task that it is of.
+    pub(super) told: Option<(FrontMeasure, Forecast, Vec<Option<f64>>)>,
+    /// What is left of balance over the payloads that are asked for.
+    pub(super) payloads: Vec<Residual>,
+    held: Option<[f64; 2]>,
 }
+
+/// Payloads at which that is looked at.
+const PAYLOADS: usize = 41;
 
 /// A machine of the front.
 pub(super) struct Point {
@@ -64,7 +73,7 @@ const NOTHING: f64 = 1e-9;
 
 impl Facts {
     /// Finds what has to be said, if the machine or what is asked for has changed.
-    pub fn follow(&mut self, session: &Session, brief: &Brief) {
+    pub fn follow(&mut self, session: &Session, brief: &Brief, by: Option<FrontMeasure>) {
         let (machine, plan) = (&session.scenario().machine, session.run().plan());
         let is_new = self.of.as_ref() != Some(machine);
         if is_new {
@@ -92,7 +101,29 @@ impl Facts {
                 both.map(|(placed, [_, inertia])| Point { placed, inertia }).collect()
             }));
             self.weighed = Some((bare, asked));
+            self.told = None;
         }
+        if is_new || self.held != brief.payload {
+            let payloads = brief.payload.and_then(|ends| over_payloads(machine, ends, PAYLOADS).ok());
+            (self.payloads, self.held) = (payloads.unwrap_or_default(), brief.payload);
+        }
+        self.tell(session, by);
+    }
+
+    /// Finds what tells the machines of the front apart.
+    fn tell(&mut self, session: &Session, by: Option<FrontMeasure>) {
+        let forecast = session.run().plan().forecast;
+        if by == self.told.as_ref().map(|(known, ..)| *known)
+            && self.told.as_ref().is_none_or(|(_, known, _)| *known == forecast)
+        {
+            return;
+        }
+        let motion = session.run().motion();
+        let of = |by: FrontMeasure| {
+            let points = self.front().unwrap_or_default().iter();
+            (by, forecast, points.map(|point| by.of(&point.placed, motion)).collect())
+        };
+        self.told = by.map(of);
     }
 
     /// The machines of the front, from light to quick.

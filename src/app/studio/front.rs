@@ -1,6 +1,6 @@
 //! What less inertia costs in mass: counterweights to choose from, each as light as its inertia lets it be.
 
-use egui::{RichText, Ui};
+use egui::{Rect, RichText, Sense, Ui, vec2};
 use egui_plot::{HLine, Line, LineStyle, PlotPoint, PlotPoints, Points, VLine};
 
 use super::facts::{Facts, Point};
@@ -10,7 +10,9 @@ use crate::app::theme::{bold, colour, plain};
 use crate::app::widgets::{heading, name, note};
 use crate::app::{Command, ViewState};
 use crate::picture::numbers::signed;
-use crate::picture::scene::palette::{Palette, faded};
+use crate::picture::scene::Rgba;
+use crate::picture::scene::palette::{Palette, faded, mix};
+use crate::study::front_point::FrontMeasure;
 
 const HEIGHT: f32 = 210.0;
 /// A point is chosen from so near, points of the screen.
@@ -43,7 +45,11 @@ pub fn show(ui: &mut Ui, facts: &Facts, view_state: &ViewState, commands: &mut V
         [low - room, high + room]
     };
     let ([left, right], [low, high]) = (ends(0, mass), ends(1, inertia));
-    ui.label(RichText::new("Σ D, kg m²").font(plain(11.0)).color(colour(p.dim)));
+    let told = facts.told.as_ref().and_then(|(by, _, values)| Told::of(*by, values));
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("Σ D, kg m²").font(plain(11.0)).color(colour(p.dim)));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| by(ui, view_state, commands));
+    });
     small_axes(ui);
     let response = base_plot("front", p, HEIGHT)
         .show_axes([true, true])
@@ -63,8 +69,11 @@ pub fn show(ui: &mut Ui, facts: &Facts, view_state: &ViewState, commands: &mut V
             }
             let line = Line::new("front", PlotPoints::from(all.clone())).width(1.8).color(colour(p.zero));
             plot.line(line.allow_hover(false));
-            let dots = Points::new("machines", PlotPoints::from(all.clone())).radius(3.5).color(colour(p.zero));
-            plot.points(dots.allow_hover(false));
+            for (i, at) in all.iter().enumerate() {
+                let (radius, tone) = told.as_ref().and_then(|told| told.tone(i, p)).map_or((3.5, p.zero), |t| (5.0, t));
+                let dot = Points::new("machines", PlotPoints::from(vec![*at])).radius(radius).color(colour(tone));
+                plot.points(dot.allow_hover(false));
+            }
             if let Some(at) = view_state.ghost.and_then(|i| all.get(i)) {
                 let dot =
                     Points::new("under the pointer", PlotPoints::from(vec![*at])).radius(6.0).color(colour(p.ink));
@@ -91,11 +100,17 @@ pub fn show(ui: &mut Ui, facts: &Facts, view_state: &ViewState, commands: &mut V
     }
     name(&response.response, &words(&all));
     ui.horizontal(|ui| {
+        if let Some(told) = &told {
+            told.scale(ui, p);
+        }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.label(RichText::new("added mass, kg").font(plain(11.0)).color(colour(p.dim)));
         });
     });
-    told(ui, p, points, near, view_state, facts, commands);
+    if let (Some(by), None) = (view_state.front_by, &told) {
+        note(ui, p, &format!("No machine of these has a {}.", by.words()[0]));
+    }
+    say(ui, points, (near, told.as_ref()), view_state, facts, commands);
 }
 
 /// Digits that tell the marks of an axis of a length apart.
@@ -112,25 +127,94 @@ fn words(all: &[[f64; 2]]) -> String {
     format!("Counterweights to choose from, added mass against Σ D: from {} to {}", end(all.first()), end(all.last()))
 }
 
+/// What tells the machines apart beside mass and inertia.
+struct Told<'a> {
+    by: FrontMeasure,
+    values: &'a [Option<f64>],
+    /// From the least to the greatest.
+    ends: [f64; 2],
+}
+
+impl<'a> Told<'a> {
+    /// None if no machine has it.
+    fn of(by: FrontMeasure, values: &'a [Option<f64>]) -> Option<Self> {
+        let least = values.iter().flatten().fold(f64::INFINITY, |least, x| least.min(*x));
+        let most = values.iter().flatten().fold(f64::NEG_INFINITY, |most, x| most.max(*x));
+        (least <= most).then_some(Self { by, values, ends: [least, most] })
+    }
+
+    /// The colour of a machine.
+    fn tone(&self, i: usize, p: &Palette) -> Option<Rgba> {
+        let [least, most] = self.ends;
+        let value = (*self.values.get(i)?)?;
+        let share = if most > least { (value - least) / (most - least) } else { 0.5 };
+        Some(tone(p, share as f32))
+    }
+
+    fn words(&self, value: f64) -> String {
+        let decimals = decimals((self.ends[1] - self.ends[0]).max(1e-3 * self.ends[1].abs()));
+        format!("{} {}", signed(value, decimals), self.by.words()[1])
+    }
+
+    /// What the colours mean.
+    fn scale(&self, ui: &mut Ui, p: &Palette) {
+        let text = |ui: &mut Ui, words: String| ui.label(RichText::new(words).font(plain(11.0)).color(colour(p.dim)));
+        text(ui, self.words(self.ends[0]));
+        let (rect, _) = ui.allocate_exact_size(vec2(60.0, 8.0), Sense::hover());
+        const STEPS: usize = 24;
+        let width = rect.width() / STEPS as f32;
+        for i in 0..STEPS {
+            let left = rect.left() + width * i as f32;
+            let step = Rect::from_x_y_ranges(left..=left + width + 0.5, rect.y_range());
+            ui.painter().rect_filled(step, 0.0, colour(tone(p, i as f32 / (STEPS - 1) as f32)));
+        }
+        text(ui, self.words(self.ends[1]));
+    }
+}
+
+/// From blue to amber, which every kind of eye tells apart.
+fn tone(p: &Palette, share: f32) -> Rgba {
+    mix(p.drives[0], p.amber, share)
+}
+
+/// What colours tell.
+fn by(ui: &mut Ui, view_state: &ViewState, commands: &mut Vec<Command>) {
+    let mut by = view_state.front_by;
+    let words = |by: Option<FrontMeasure>| by.map_or("nothing more", |by| by.words()[0]);
+    let list = egui::ComboBox::from_id_salt("front-by").selected_text(words(by)).width(150.0).show_ui(ui, |ui| {
+        for one in std::iter::once(None).chain(FrontMeasure::ALL.map(Some)) {
+            ui.selectable_value(&mut by, one, words(one));
+        }
+    });
+    name(&list.response, "what the colours of the front tell");
+    ui.label(RichText::new("colours tell").font(plain(11.0)).color(colour(view_state.palette().dim)));
+    if by != view_state.front_by {
+        commands.push(Command::Design(DesignCommand::FrontBy(by)));
+    }
+}
+
 /// What the machine under the pointer, or on display, comes to, and the two ends of the front to take.
-fn told(
+fn say(
     ui: &mut Ui,
-    p: &Palette,
     points: &[Point],
-    near: Option<usize>,
+    (near, told): (Option<usize>, Option<&Told<'_>>),
     view_state: &ViewState,
     facts: &Facts,
     commands: &mut Vec<Command>,
 ) {
-    let at = near.or(view_state.ghost).and_then(|i| points.get(i));
-    let (mass, inertia) = match at {
+    let p = &view_state.palette();
+    let at = near.or(view_state.ghost).filter(|i| *i < points.len());
+    let (mass, inertia) = match at.map(|i| &points[i]) {
         Some(point) => (point.placed.added_mass, point.inertia),
         None => (facts.now[0], facts.now[1]),
     };
-    let text = match at.is_none() && mass < NOTHING {
+    let mut text = match at.is_none() && mass < NOTHING {
         true => "no counterweights yet".to_owned(),
         false => format!("{} kg added, Σ D {} kg m²", signed(mass, 2), signed(inertia, 3)),
     };
+    if let Some((told, value)) = told.zip(at).and_then(|(told, i)| Some((told, (*told.values.get(i)?)?))) {
+        text.push_str(&format!(", {}", told.words(value)));
+    }
     let tone = if at.is_some() { p.ink } else { p.amber };
     ui.label(RichText::new(text).font(bold(13.0)).color(colour(tone)));
     let gap = points.iter().map(|point| point.placed.gap).fold(0.0, f64::max);

@@ -5,6 +5,7 @@ mod bars;
 mod facts;
 mod front;
 mod measures;
+mod payload;
 mod table;
 
 use egui::{Frame, Margin, Panel, ScrollArea, Ui};
@@ -37,7 +38,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewStat
                 table::show(ui, session, view_state, commands);
                 let spec = session.scenario().machine.spec();
                 let is_balanced = facts.terms.iter().all(|term| term.is_balanced);
-                let has = (spec.links.len(), !spec.counterweights.is_empty(), is_balanced);
+                let has = (spec.links.len(), !spec.counterweights.is_empty(), is_balanced, spec.payload.mass);
                 asked::show(ui, has, view_state, commands);
                 measures::show(ui, session, facts, &p);
             });
@@ -48,6 +49,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewStat
             scrolled(ui, |ui| {
                 bars::show(ui, session, facts, view_state);
                 front::show(ui, facts, view_state, commands);
+                payload::show(ui, facts, session.scenario().machine.spec().payload.mass, &p);
             });
         });
     }

@@ -1,11 +1,12 @@
 //! The table of links: what they weigh, where their centres of mass are, and their counterweights.
 
-use egui::{Align, Layout, RichText, Sense, Ui, vec2};
+use egui::{Align, Layout, Response, RichText, Sense, Stroke, Ui, vec2};
 
 use crate::app::command::DesignCommand;
 use crate::app::theme::{bold, colour, plain};
 use crate::app::widgets::{Row, heading, name, send};
 use crate::app::{Command, ViewState, place};
+use crate::mechanics::balance::Hold;
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Palette;
 use crate::session::scenario::{Change, Value};
@@ -20,7 +21,7 @@ const HEIGHT: f32 = 24.0;
 /// Draws it.
 pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = &view_state.palette();
-    heading(ui, p, "Links", "drag a number, or type it; tick a link to fix it");
+    heading(ui, p, "Links", "drag or type a number; right-click to bound it; tick to fix");
     ui.spacing_mut().item_spacing = vec2(GAP, 2.0);
     ui.spacing_mut().button_padding.x = 4.0;
     ui.horizontal(|ui| {
@@ -41,11 +42,15 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
                     ui.add(egui::Label::new(RichText::new(&link.name).font(bold(12.5))).truncate());
                 });
                 let path = |key: &str| format!("link.{}.{key}", link.name);
-                number(ui, (&format!("mass of link {}", link.name), &path("mass"), 3), link.mass, commands, |x| {
-                    Edit::at(&["link", &link.name, "mass"], x)
-                });
+                number(
+                    ui,
+                    (&format!("mass of link {}", link.name), &path("mass"), 3),
+                    link.mass,
+                    (view_state, &mut *commands),
+                    |x| Edit::at(&["link", &link.name, "mass"], x),
+                );
                 let label = format!("centre of mass of link {}", link.name);
-                number(ui, (&label, &path("com"), 4), link.com, commands, |x| {
+                number(ui, (&label, &path("com"), 4), link.com, (view_state, &mut *commands), |x| {
                     Edit::at(&["link", &link.name, "com"], x)
                 });
                 let Some((n, weight)) = weight.map(|n| (n, &spec.counterweights[n])) else {
@@ -57,14 +62,14 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
                 let place = (n + 1).to_string();
                 let path = |key: &str| format!("counterweight.{place}.{key}");
                 let label = format!("mass of the counterweight of link {}", link.name);
-                number(ui, (&label, &path("mass"), 3), weight.mass, commands, |mass| {
+                number(ui, (&label, &path("mass"), 3), weight.mass, (view_state, &mut *commands), |mass| {
                     // A disc of the same plate.
                     let radius = weight.radius * (mass / weight.mass).max(0.0).sqrt();
                     let both = Change::from_iter([("mass".into(), mass.into()), ("radius".into(), radius.into())]);
                     Edit::of("counterweight", Change::from_iter([(place.clone(), Value::from(both))]))
                 });
                 let label = format!("place of the counterweight of link {}", link.name);
-                number(ui, (&label, &path("at"), 4), weight.at, commands, |x| {
+                number(ui, (&label, &path("at"), 4), weight.at, (view_state, &mut *commands), |x| {
                     Edit::at(&["counterweight", &place, "at"], x)
                 });
                 fixed(ui, &link.name, view_state, commands);
@@ -108,13 +113,75 @@ fn number(
     ui: &mut Ui,
     (label, path, decimals): (&str, &str, usize),
     now: f64,
-    commands: &mut Vec<Command>,
+    (view_state, commands): (&ViewState, &mut Vec<Command>),
     edit: impl Fn(f64) -> Edit,
 ) {
     cell(ui, NUMBER, Align::Max, |ui| {
         let mut value = now;
         let row = Row::of(label, path).with(decimals, 0.002);
         let response = row.number(ui, &mut value);
+        holding(ui, &response, (label, path, decimals), now, view_state, commands);
         send(commands, &[response], || edit(value));
     });
+}
+
+/// Whether a number stays, may change, or may change so far while the balance is kept: a line under it, and a menu.
+fn holding(
+    ui: &Ui,
+    response: &Response,
+    (label, path, decimals): (&str, &str, usize),
+    now: f64,
+    view_state: &ViewState,
+    commands: &mut Vec<Command>,
+) {
+    let p = &view_state.palette();
+    let hold = view_state.brief.holds.get(path).copied();
+    let tone = match hold {
+        None => None,
+        Some(Hold::Fixed) => Some(p.ink),
+        Some(Hold::Free) => Some(p.zero),
+        Some(Hold::Within(_)) => Some(p.amber),
+    };
+    if let Some(tone) = tone {
+        let (rect, y) = (response.rect, response.rect.bottom() - 2.0);
+        ui.painter().hline(rect.x_range().shrink(3.0), y, Stroke::new(1.5, colour(tone)));
+    }
+    let mut chosen = hold;
+    response.context_menu(|ui| {
+        ui.set_min_width(190.0);
+        ui.label(RichText::new(format!("{label}, while the balance is kept")).font(plain(11.0)).color(colour(p.dim)));
+        let around = match hold {
+            Some(Hold::Within(ends)) => ends,
+            _ => [now - 0.1 * now.abs().max(0.1), now + 0.1 * now.abs().max(0.1)],
+        };
+        let within = matches!(hold, Some(Hold::Within(_)));
+        for (words, one, is) in [
+            ("follows if its kind does", None, hold.is_none()),
+            ("stays", Some(Hold::Fixed), hold == Some(Hold::Fixed)),
+            ("may change", Some(Hold::Free), hold == Some(Hold::Free)),
+            ("may change within", Some(Hold::Within(around)), within),
+        ] {
+            if ui.radio(is, words).clicked() {
+                chosen = one;
+            }
+        }
+        if let Some(Hold::Within([low, high])) = &mut chosen {
+            ui.horizontal(|ui| {
+                let end = |label: &str, ui: &mut Ui, value: &mut f64| {
+                    Row::of(label, path).with(decimals, 0.002).number(ui, value);
+                };
+                end(&format!("least {label}"), ui, low);
+                ui.label("to");
+                end(&format!("greatest {label}"), ui, high);
+            });
+        }
+    });
+    if chosen != hold {
+        let mut brief = view_state.brief.clone();
+        match chosen {
+            Some(hold) => brief.holds.insert(path.to_owned(), hold),
+            None => brief.holds.remove(path),
+        };
+        commands.push(Command::Design(DesignCommand::Brief(Box::new(brief))));
+    }
 }

@@ -157,7 +157,12 @@ impl<'a> Problem<'a> {
             };
             for (side, value) in [Side::Least, Side::Most].into_iter().zip(ends.into_iter().flatten()) {
                 let (key, fixed) = (one.parameter.key(self.machine), one.hold == Hold::Fixed);
-                all.push((Limit { parameter: one.parameter, key, side, fixed, value }, self.limit(i, side, value)));
+                let carrier = match one.parameter.body {
+                    Body::Counterweight(i) => Some(self.from.counterweights[i].link.clone()),
+                    _ => None,
+                };
+                let limit = Limit { parameter: one.parameter, key, carrier, side, fixed, value };
+                all.push((limit, self.limit(i, side, value)));
             }
         }
         all

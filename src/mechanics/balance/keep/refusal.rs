@@ -23,6 +23,8 @@ pub struct Limit {
     pub parameter: Parameter,
     /// Its key.
     pub key: String,
+    /// The link that carries it, of a counterweight: its key says only its number.
+    pub carrier: Option<String>,
     /// Which end.
     pub side: Side,
     /// Whether it is fixed.
@@ -31,9 +33,16 @@ pub struct Limit {
     pub value: f64,
 }
 
+impl Limit {
+    fn named(&self) -> String {
+        let Some(link) = &self.carrier else { return self.key.clone() };
+        format!("{} (on link {link})", self.key)
+    }
+}
+
 impl fmt::Display for Limit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (key, value) = (&self.key, nine_digits(self.value));
+        let (key, value) = (self.named(), nine_digits(self.value));
         match (self.fixed, self.side) {
             (true, _) => write!(f, "{key} stays {value}"),
             (false, Side::Least) => write!(f, "{key} at least {value}"),
@@ -53,7 +62,7 @@ pub struct Relief {
 
 impl fmt::Display for Relief {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (key, to) = (&self.limit.key, nine_digits(self.to));
+        let (key, to) = (self.limit.named(), nine_digits(self.to));
         match (self.limit.fixed, self.limit.side) {
             (true, _) => write!(f, "{key} free as far as {to}"),
             (false, Side::Least) => write!(f, "{key} at least {to}"),

@@ -1,0 +1,52 @@
+//! What is left of balance over what the end effector may hold.
+
+use egui::{RichText, Ui};
+use egui_plot::{Line, PlotPoints, VLine};
+
+use super::facts::Facts;
+use crate::app::plots::{base_plot, marks, small_axes, spaced};
+use crate::app::theme::{colour, plain};
+use crate::app::widgets::{heading, name, note};
+use crate::picture::numbers::signed;
+use crate::picture::scene::palette::{Palette, faded};
+
+const HEIGHT: f32 = 96.0;
+
+/// Draws it, if a range of payloads is asked for; `held` is what the end effector holds now, kg.
+pub fn show(ui: &mut Ui, facts: &Facts, held: f64, p: &Palette) {
+    let Some((first, last)) = facts.payloads.first().zip(facts.payloads.last()) else { return };
+    ui.add_space(8.0);
+    heading(ui, p, "Over the payloads", "what is left of this machine's balance");
+    let worst = facts.payloads.iter().fold([0.0_f64; 2], |most, at| [most[0].max(at.force), most[1].max(at.coupling)]);
+    let ([left, right], top) = ([first.payload, last.payload], (1.1 * worst[0]).max(1e-6));
+    ui.label(RichText::new("greatest |g|, kg m").font(plain(11.0)).color(colour(p.dim)));
+    small_axes(ui);
+    let response = base_plot("payloads", p, HEIGHT)
+        .show_axes([true, true])
+        .show_grid([true, true])
+        .x_grid_spacer(move |_| marks(&spaced(left, right), right - left))
+        .y_grid_spacer(move |_| marks(&spaced(0.0, top), top))
+        .x_axis_formatter(|mark, _| signed(mark.value, 2))
+        .y_axis_formatter(|mark, _| signed(mark.value, 3))
+        .show(ui, |plot| {
+            plot.set_plot_bounds_x(left..=right);
+            plot.set_plot_bounds_y(0.0..=top);
+            plot.vline(VLine::new("held", held).color(colour(faded(p.amber, 0.7))).width(1.0).allow_hover(false));
+            let points: Vec<[f64; 2]> = facts.payloads.iter().map(|at| [at.payload, at.force]).collect();
+            let line = Line::new("left", PlotPoints::from(points)).width(1.8).color(colour(p.reaction));
+            plot.line(line.allow_hover(false));
+        });
+    let words = format!(
+        "at worst {} kg m of (7) and {} kg m² of (8); it holds {} kg now",
+        signed(worst[0], 4),
+        signed(worst[1], 4),
+        signed(held, 3)
+    );
+    name(&response.response, &format!("What is left over the payloads: {words}"));
+    ui.horizontal(|ui| {
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.label(RichText::new("payload, kg").font(plain(11.0)).color(colour(p.dim)));
+        });
+    });
+    note(ui, p, &words);
+}
