@@ -20,7 +20,7 @@ use crate::planning::pose_space::NoPoseSpace;
 use crate::session::scenario::{PLACE, Value};
 use crate::session::{Edit, Session};
 use crate::settings::change::DEFAULT;
-use crate::settings::number::subscript;
+use crate::settings::number::{significant, subscript};
 
 /// How wide it is made by itself, points: a share of the window, between these.
 const SHARE: f32 = 0.17;
@@ -275,7 +275,7 @@ fn balance(ui: &mut Ui, session: &Session, facts: &Facts, p: &Palette) {
     ];
     for (label, in_unit, (value, good), tip) in rows {
         let tone = if good { p.zero } else { p.reaction };
-        fact(ui, p, label, &format!("{value:.1e}"), in_unit, tone, tip);
+        fact(ui, p, label, &significant(value), in_unit, tone, tip);
     }
     for (k, inertia) in balance.inertia.iter().enumerate() {
         let tip = "What the angular momentum has of the drive: D in Eq. (11), without what gears only add to H";

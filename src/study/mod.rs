@@ -2,6 +2,7 @@
 
 pub mod comparison;
 pub mod front_point;
+pub mod lengths;
 pub mod measures;
 pub mod samples;
 pub mod series;

@@ -56,7 +56,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("parquet", &["commands"]),
     ("signal_hook", &["commands"]),
     ("toml", &["settings", "mechanics/machine", "simulation/plant", "session", "files/preferences", "commands"]),
-    ("rand_chacha", &["study/tolerance"]),
+    ("rand_chacha", &["study/lengths", "study/tolerance"]),
     ("libm", &["study/tolerance"]),
     ("realfft", &["study/spectrum"]),
     ("clarabel", &["convex"]),

@@ -21,7 +21,7 @@ const HEIGHT: f32 = 24.0;
 /// Draws it.
 pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = &view_state.palette();
-    heading(ui, p, "Links", "drag or type a number; right-click to bound it; tick to fix");
+    heading(ui, p, "Links", "drag, type, right-click to bound; tick to fix");
     ui.spacing_mut().item_spacing = vec2(GAP, 2.0);
     ui.spacing_mut().button_padding.x = 4.0;
     ui.horizontal(|ui| {

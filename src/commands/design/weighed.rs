@@ -9,6 +9,7 @@ use stillbase::mechanics::machine::{Counterweight, Inertia, Machine};
 use stillbase::planning::Motion;
 use stillbase::settings::number::fixed;
 use stillbase::study::front_point::FrontPoint;
+use stillbase::study::lengths::{Found, FreeLength, LengthSearch, NoLengths, search};
 use stillbase::study::measures::{Measures, greatest_accelerations};
 
 use super::super::check::Balance;
@@ -62,6 +63,22 @@ pub struct WeighArguments {
     /// The most that Σ D_k may be, kg m²
     #[arg(long, value_name = "D", requires = "counterweights")]
     max_inertia: Option<f64>,
+    /// Seek a length, too, m: a name under [lengths] or a link. Links keep their mass per metre. Not certified: the best
+    /// of several searches, each with certified counterweights
+    #[arg(long, value_name = "NAME=LO,HI", requires = "counterweights", value_parser = range)]
+    length: Vec<(String, [f64; 2])>,
+    /// How far the arms have to reach together at least, m
+    #[arg(long, value_name = "R", requires = "length")]
+    min_reach: Option<f64>,
+    /// How large the reactionless workspace has to be at least, m²
+    #[arg(long, value_name = "A", requires = "length")]
+    min_workspace: Option<f64>,
+    /// From how many places lengths are sought
+    #[arg(long, value_name = "N", requires = "length", default_value_t = 6, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    starts: u16,
+    /// Where these are drawn from: the same seed finds the same lengths
+    #[arg(long, value_name = "S", requires = "length", default_value_t = 1)]
+    seed: u64,
     /// Show what less inertia costs in mass, in so many machines from the least mass to the least inertia, and what each
     /// comes to: torque (with --task), workspace, and the greatest |g_k| if masses are 1 % and places 0.5 mm off
     #[arg(long, value_name = "N", requires = "counterweights", value_parser = clap::value_parser!(u16).range(2..=1000))]
@@ -134,17 +151,59 @@ impl WeighArguments {
         inertia.chain(ratio).map(|(name, free)| Ok(FreeRotor { drive: find(name)?, free })).collect()
     }
 
+    /// The best lengths, and where their links may carry counterweights.
+    fn seek(&self, machine: &Machine, asked: &Weighing) -> Result<(Found, Vec<Sites>), Failure> {
+        let lengths = self.length.iter().map(|(name, ends)| FreeLength { name: name.clone(), ends: *ends });
+        let asked = LengthSearch {
+            lengths: lengths.collect(),
+            weighing: asked.clone(),
+            anywhere: self.range.is_empty(),
+            least_reach: self.min_reach,
+            least_workspace: self.min_workspace,
+            starts: self.starts.into(),
+            seed: self.seed,
+        };
+        let found = search(machine, &asked, &mut |_| true).map_err(unsought)?;
+        let sites = if asked.anywhere { Sites::anywhere(&found.placed.machine) } else { asked.weighing.sites };
+        Ok((found, sites))
+    }
+
     /// Finds them, and what they come to.
     pub fn run(&self, machine: &Machine, motion: Option<&Motion>) -> Result<(Machine, Weighed), Failure> {
         let asked = self.asked(machine, motion)?;
-        let placed = place(machine, &asked).map_err(unweighed)?;
+        let found = match self.length.is_empty() {
+            true => None,
+            false => Some(self.seek(machine, &asked)?),
+        };
+        let placed = match &found {
+            Some((found, _)) => found.placed.clone(),
+            None => place(machine, &asked).map_err(unweighed)?,
+        };
+        // With other lengths the links are others, too.
+        let machine = if found.is_some() { &placed.machine } else { machine };
+        let asked = match &found {
+            Some((_, sites)) => Weighing { sites: sites.clone(), ..asked },
+            None => asked,
+        };
         let front = match self.front {
             Some(count) => front(machine, &asked, count.into()).map_err(unweighed)?.points,
             None => Vec::new(),
         };
         let front = front.iter().map(|placed| FrontPoint::of(placed, motion, true)).collect();
-        let answer = Weighed::of(machine, &placed, front, motion, &asked)?;
+        let mut answer = Weighed::of(machine, &placed, front, motion, &asked)?;
+        if let Some((found, _)) = found {
+            answer.sought(self, found);
+        }
         Ok((placed.machine, answer))
+    }
+}
+
+/// What is asked for is wrong, or has no answer.
+fn unsought(why: NoLengths) -> Failure {
+    match why {
+        NoLengths::None { .. } => Failure::no_answer(why),
+        NoLengths::Weights(why) => unweighed(why),
+        why => Failure::wrong_input(why),
     }
 }
 
@@ -206,6 +265,9 @@ pub struct Weighed {
     /// The same machines, and what else they come to.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     front_points: Vec<FrontPoint>,
+    /// Lengths that were sought.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sought: Option<Sought>,
     /// Rotors that were chosen.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     rotors: Vec<Chosen>,
@@ -214,6 +276,20 @@ pub struct Weighed {
     payload: Vec<Residual>,
     #[serde(flatten)]
     balance: Balance,
+}
+
+/// Lengths, and how sure they are.
+#[derive(Serialize)]
+struct Sought {
+    /// Name and length, m.
+    lengths: Vec<(String, f64)>,
+    /// A search proves nothing.
+    certified: bool,
+    starts: usize,
+    /// Starts that ended within a thousandth of the best.
+    agreeing: usize,
+    /// Machines that were looked at.
+    machines: usize,
 }
 
 /// A rotor that was chosen.
@@ -252,10 +328,18 @@ impl Weighed {
             gap: placed.gap,
             front: front_points.iter().map(|point| [point.added_mass, point.inertia]).collect(),
             front_points,
+            sought: None,
             rotors: asked.rotors.iter().map(chosen).collect(),
             payload: payload.unwrap_or_default(),
             balance: Balance::of(&inertia),
         })
+    }
+
+    fn sought(&mut self, asked: &WeighArguments, found: Found) {
+        let names = asked.length.iter().map(|(name, _)| name.clone());
+        let [starts, agreeing] = found.starts;
+        let lengths = names.zip(found.lengths).collect();
+        self.sought = Some(Sought { lengths, certified: false, starts, agreeing, machines: found.machines });
     }
 
     /// As a person reads it.
@@ -272,6 +356,14 @@ impl Weighed {
             measures::text(&self.measures),
             self.balance.tables(machine)
         );
+        if let Some(sought) = &self.sought {
+            let mut table = Table::new(["length", "m"]);
+            sought.lengths.iter().for_each(|(name, length)| table.row([name.clone(), fixed(*length, 6)]));
+            let Sought { starts, agreeing, machines, .. } = sought;
+            text.push_str(&format!(
+                "\nlengths, not certified: the best of {machines} machines; {agreeing} of {starts} starts ended there\n\n{table}"
+            ));
+        }
         if !self.rotors.is_empty() {
             let mut table = Table::new(["rotor of drive", "inertia kg m²", "ratio"]);
             for rotor in &self.rotors {

@@ -9,7 +9,7 @@ use super::pattern::{Pattern, Patterns};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
 use crate::planning::reactionless::WIDEST;
-use crate::settings::number::Short;
+use crate::settings::number::{Short, significant};
 
 /// The poses of a machine by its relative angles and b.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,7 +47,7 @@ pub enum NoPoseSpace {
     #[error(
         "this machine has no pose constant b: its angular momentum depends on the pose, because drives {} and {} are \
          coupled by {} kg m², most of it through link {link}; `stillbase design` finds centres of mass that undo it{}",
-        .pair[0], .pair[1], Short(*residual), if *.only { ONLY_TWO } else { "" }
+        .pair[0], .pair[1], significant(*residual), if *.only { ONLY_TWO } else { "" }
     )]
     Varies {
         /// The drives that are coupled most, counted from 1.

@@ -1,0 +1,335 @@
+//! [`search`]: lengths of the links with which counterweights are least.
+//!
+//! For given lengths the counterweights are a cone program, and certified. Over the lengths nothing is convex, so the
+//! search starts at several places that a seed draws (Nelder–Mead from each) and says how many of them ended alike. What it
+//! finds is the best of what it has seen, and no proof.
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{RngCore, SeedableRng};
+use serde::Serialize;
+use thiserror::Error;
+
+use crate::mechanics::counterweights::{NoWeights, Placed, Sites, Weighing, place};
+use crate::mechanics::machine::{Length, Link, Machine, MachineSpec};
+use crate::planning::pose_constant::Planes;
+
+/// A length that is sought: one under `[lengths]`, which several links may share, or that of one link.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FreeLength {
+    /// Its name, or the link's.
+    pub name: String,
+    /// From, to, m.
+    pub ends: [f64; 2],
+}
+
+/// What is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LengthSearch {
+    /// Lengths that are sought. Links keep their mass per metre: centre of mass and inertia follow the length.
+    pub lengths: Vec<FreeLength>,
+    /// Counterweights, and what is to be least.
+    pub weighing: Weighing,
+    /// Whether every link may carry one, from its length behind the root to the tip, whatever its length is then.
+    pub anywhere: bool,
+    /// How far the arms have to reach together at least, Σ |L_k|, m.
+    pub least_reach: Option<f64>,
+    /// How large the reactionless workspace has to be at least, m².
+    pub least_workspace: Option<f64>,
+    /// From how many places it starts: first from the lengths that the machine has.
+    pub starts: usize,
+    /// For the others.
+    pub seed: u64,
+}
+
+/// What was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// The machine with its counterweights; certified for these lengths.
+    pub placed: Placed,
+    /// m, in the order of what was sought.
+    pub lengths: Vec<f64>,
+    /// How many starts were made, and how many of them ended within a thousandth of the best.
+    pub starts: [usize; 2],
+    /// How many machines were looked at.
+    pub machines: usize,
+}
+
+/// How far a search has come.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Progress {
+    /// Starts that have ended.
+    pub starts: usize,
+    /// Machines looked at.
+    pub machines: usize,
+    /// The least so far; infinite if there is none.
+    pub best: f64,
+}
+
+/// Why nothing was found.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum NoLengths {
+    /// There is no such length.
+    #[error("no length {name}: want one of {known}")]
+    Unknown {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: String,
+    },
+    /// A range that cannot be.
+    #[error("length {name} from {from} to {to}: want two lengths above 0 in m, the first below the second")]
+    Range {
+        /// Of what.
+        name: String,
+        /// m.
+        from: f64,
+        /// m.
+        to: f64,
+    },
+    /// One length is named twice.
+    #[error("length {0} is sought in two ranges: want one")]
+    Twice(String),
+    /// Nothing to seek, or from nowhere.
+    #[error("{0}")]
+    Nothing(&'static str),
+    /// No machine that was looked at does.
+    #[error("none of {machines} machines with such lengths does: {why}")]
+    None {
+        /// How many.
+        machines: usize,
+        /// Why the present lengths do not.
+        why: String,
+    },
+    /// The counterweights themselves.
+    #[error(transparent)]
+    Weights(#[from] NoWeights),
+}
+
+/// What a machine that is no answer counts at least: more than any that is one. Less of what is missing is better.
+const NO_ANSWER: f64 = 1e30;
+
+/// Steps of one start for each length.
+const STEPS: usize = 70;
+
+/// A start has ended where its machines differ by less than this, of their range.
+const ALIKE: f64 = 1e-5;
+
+/// The best lengths that it comes across. `go_on` is asked after every machine; the best so far is the answer where it
+/// says no.
+///
+/// # Errors
+/// If what is asked for cannot be, or nothing is found.
+pub fn search(
+    machine: &Machine,
+    asked: &LengthSearch,
+    go_on: &mut dyn FnMut(Progress) -> bool,
+) -> Result<Found, NoLengths> {
+    check(machine, asked)?;
+    let mut seen = Seen { machine, asked, go_on, stopped: false, machines: 0, ended: 0, best: None };
+    let present = asked.lengths.iter().map(|free| share(free.ends, length(machine.spec(), &free.name)));
+    let present: Vec<f64> = present.collect();
+    let mut draws = ChaCha8Rng::seed_from_u64(asked.seed);
+    let mut ends = Vec::new();
+    for start in 0..asked.starts {
+        let drawn = present.iter().map(|_| (draws.next_u64() >> 11) as f64 / (1_u64 << 53) as f64).collect();
+        let from = if start == 0 { present.clone() } else { drawn };
+        ends.push(downhill(&mut seen, from));
+        seen.ended += 1;
+        if seen.stopped {
+            break;
+        }
+    }
+    let machines = seen.machines;
+    let Some((value, lengths, placed)) = seen.best else {
+        let why = match seen.asked.at(machine, &present) {
+            Err(why) => why,
+            Ok(_) => "stopped".into(),
+        };
+        return Err(NoLengths::None { machines, why });
+    };
+    let alike = ends.iter().filter(|end| (**end - value).abs() <= 1e-3 * value.abs()).count();
+    Ok(Found { placed, lengths, starts: [ends.len(), alike], machines })
+}
+
+fn check(machine: &Machine, asked: &LengthSearch) -> Result<(), NoLengths> {
+    if asked.lengths.is_empty() || asked.starts == 0 {
+        return Err(NoLengths::Nothing("nothing to seek: want at least one length and one start"));
+    }
+    let known = known(machine.spec());
+    for (i, FreeLength { name, ends: [from, to] }) in asked.lengths.iter().enumerate() {
+        if !known.contains(name) {
+            return Err(NoLengths::Unknown { name: name.clone(), known: known.join(", ") });
+        }
+        if !(*from > 0.0 && from < to && *to < 1e6) {
+            return Err(NoLengths::Range { name: name.clone(), from: *from, to: *to });
+        }
+        if asked.lengths[..i].iter().any(|other| other.name == *name) {
+            return Err(NoLengths::Twice(name.clone()));
+        }
+    }
+    Ok(())
+}
+
+/// Named lengths, and links whose length has no name.
+fn known(spec: &MachineSpec) -> Vec<String> {
+    let alone = spec.links.iter().filter(|link| matches!(link.length, Length::Metres(_)));
+    spec.lengths.keys().cloned().chain(alone.map(|link| link.name.clone())).collect()
+}
+
+fn is_of(link: &Link, name: &str) -> bool {
+    match &link.length {
+        Length::Named(shared) => shared == name,
+        Length::Metres(_) => link.name == name,
+    }
+}
+
+fn length(spec: &MachineSpec, name: &str) -> f64 {
+    let alone = || {
+        spec.links.iter().find(|link| is_of(link, name)).and_then(|link| match link.length {
+            Length::Metres(x) => Some(x),
+            Length::Named(_) => None,
+        })
+    };
+    spec.lengths.get(name).copied().or_else(alone).unwrap_or_default()
+}
+
+fn share([from, to]: [f64; 2], x: f64) -> f64 {
+    ((x - from) / (to - from)).clamp(0.0, 1.0)
+}
+
+impl LengthSearch {
+    /// A machine with other lengths, as shares of their ranges; its links keep their mass per metre.
+    fn changed(&self, machine: &Machine, shares: &[f64]) -> Result<(Vec<f64>, Machine), String> {
+        let mut spec = machine.spec().clone();
+        let mut lengths = Vec::with_capacity(shares.len());
+        for (FreeLength { name, ends: [from, to] }, share) in self.lengths.iter().zip(shares) {
+            let (was, now) = (length(&spec, name), from + (to - from) * share);
+            let scale = now / was;
+            for link in spec.links.iter_mut().filter(|link| is_of(link, name)) {
+                link.mass *= scale;
+                link.com *= scale;
+                link.com_normal *= scale;
+                link.inertia *= scale.powi(3);
+                if let Length::Metres(x) = &mut link.length {
+                    *x = now;
+                }
+            }
+            if let Some(x) = spec.lengths.get_mut(name) {
+                *x = now;
+            }
+            lengths.push(now);
+        }
+        Ok((lengths, Machine::new(spec).map_err(|why| why.to_string())?))
+    }
+
+    /// Counterweights for other lengths, and what misses; or why there are none.
+    fn at(&self, machine: &Machine, shares: &[f64]) -> Result<(Vec<f64>, Placed, f64), String> {
+        let (lengths, changed) = self.changed(machine, shares)?;
+        let reach: f64 = changed.end_effector().iter().take(changed.drives()).map(|length| length.abs()).sum();
+        let mut misses = (self.least_reach.unwrap_or(0.0) - reach).max(0.0);
+        let weighing = match self.anywhere {
+            true => Weighing {
+                sites: with_bounds(Sites::anywhere(&changed), &self.weighing.sites),
+                ..self.weighing.clone()
+            },
+            false => self.weighing.clone(),
+        };
+        let placed = place(&changed, &weighing).map_err(|why| why.to_string())?;
+        if let Some(least) = self.least_workspace {
+            let area = Planes::of(&placed.machine).map_or(0.0, |planes| planes.boundary().area());
+            misses += (least - area).max(0.0);
+        }
+        Ok((lengths, placed, misses))
+    }
+}
+
+/// The bounds on masses stay those of the links.
+fn with_bounds(mut sites: Vec<Sites>, bounds: &[Sites]) -> Vec<Sites> {
+    for site in &mut sites {
+        let most = bounds.iter().find(|bound| bound.link == site.link).map(|bound| bound.most);
+        site.most = most.unwrap_or(f64::INFINITY);
+    }
+    sites
+}
+
+/// What a search has seen.
+struct Seen<'a> {
+    machine: &'a Machine,
+    asked: &'a LengthSearch,
+    go_on: &'a mut dyn FnMut(Progress) -> bool,
+    stopped: bool,
+    machines: usize,
+    ended: usize,
+    best: Option<(f64, Vec<f64>, Placed)>,
+}
+
+impl Seen<'_> {
+    fn value(&mut self, shares: &[f64]) -> f64 {
+        self.machines += 1;
+        let value = match self.asked.at(self.machine, shares) {
+            Ok((lengths, placed, 0.0)) => {
+                let value = placed.value;
+                if self.best.as_ref().is_none_or(|(best, ..)| value < *best) {
+                    self.best = Some((value, lengths, placed));
+                }
+                value
+            }
+            Ok((.., misses)) => NO_ANSWER * (1.0 + misses),
+            Err(_) => f64::INFINITY,
+        };
+        let best = self.best.as_ref().map_or(f64::INFINITY, |(best, ..)| *best);
+        self.stopped |= !(self.go_on)(Progress { starts: self.ended, machines: self.machines, best });
+        value
+    }
+}
+
+/// Nelder–Mead within the box of all shares; the least value that it comes to.
+fn downhill(seen: &mut Seen<'_>, from: Vec<f64>) -> f64 {
+    let n = from.len();
+    let mut corners: Vec<(f64, Vec<f64>)> = vec![(seen.value(&from), from.clone())];
+    for i in 0..n {
+        let mut corner = from.clone();
+        corner[i] += if corner[i] > 0.5 { -0.25 } else { 0.25 };
+        corners.push((seen.value(&corner), corner));
+    }
+    for _ in 0..STEPS * n {
+        corners.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let wide = |i: usize| corners.iter().map(|(_, at)| (at[i] - corners[0].1[i]).abs()).fold(0.0, f64::max);
+        if seen.stopped || (0..n).all(|i| wide(i) < ALIKE) {
+            break;
+        }
+        let worst = corners[n].clone();
+        let middle: Vec<f64> =
+            (0..n).map(|i| corners[..n].iter().map(|(_, at)| at[i]).sum::<f64>() / n as f64).collect();
+        // The worst corner, thrown over the middle of the others by so much.
+        let thrown = |by: f64| -> Vec<f64> {
+            middle.iter().zip(&worst.1).map(|(m, w)| (m + by * (m - w)).clamp(0.0, 1.0)).collect()
+        };
+        let over = thrown(1.0);
+        let value = seen.value(&over);
+        let better = match value {
+            _ if value < corners[0].0 => {
+                let far = thrown(2.0);
+                let further = seen.value(&far);
+                Some(if further < value { (further, far) } else { (value, over) })
+            }
+            _ if value < corners[n - 1].0 || (n == 1 && value < worst.0) => Some((value, over)),
+            _ => {
+                let near = thrown(if value < worst.0 { 0.5 } else { -0.5 });
+                let nearer = seen.value(&near);
+                (nearer < worst.0.min(value)).then_some((nearer, near))
+            }
+        };
+        match better {
+            Some(corner) => corners[n] = corner,
+            None => {
+                let best = corners[0].1.clone();
+                for (value, at) in &mut corners[1..] {
+                    at.iter_mut().zip(&best).for_each(|(x, best)| *x = 0.5 * (*x + best));
+                    *value = seen.value(at);
+                }
+            }
+        }
+    }
+    corners.iter().map(|(value, _)| *value).fold(f64::INFINITY, f64::min)
+}
