@@ -112,13 +112,15 @@ impl Facts {
 
     /// Finds what tells the machines of the front apart.
     fn tell(&mut self, session: &Session, by: Option<FrontMeasure>) {
-        let forecast = session.run().plan().forecast;
+        let run = session.run();
+        let forecast = run.plan().forecast;
         if by == self.told.as_ref().map(|(known, ..)| *known)
             && self.told.as_ref().is_none_or(|(_, known, _)| *known == forecast)
         {
             return;
         }
-        let motion = session.run().motion();
+        // One that waits does not move.
+        let motion = run.motion().filter(|_| run.waiting().is_none());
         let of = |by: FrontMeasure| {
             let points = self.front().unwrap_or_default().iter();
             (by, forecast, points.map(|point| by.of(&point.placed, motion)).collect())

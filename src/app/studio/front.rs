@@ -108,7 +108,8 @@ pub fn show(ui: &mut Ui, facts: &Facts, view_state: &ViewState, commands: &mut V
         });
     });
     if let (Some(by), None) = (view_state.front_by, &told) {
-        note(ui, p, &format!("No machine of these has a {}.", by.words()[0]));
+        let why = if by == FrontMeasure::Torque { "the run waits, or there is none" } else { "none of these has one" };
+        note(ui, p, &format!("{}: {why}.", by.words()[0]));
     }
     say(ui, points, (near, told.as_ref()), view_state, facts, commands);
 }

@@ -1,8 +1,8 @@
 //! [`place`]: counterweights that balance a machine at the least cost.
 
-use super::asked::{Objective, Weighing};
+use super::asked::{Objective, Sites, Weighing};
 use super::problem::{Balance, Problem, Way};
-use super::refusal::NoWeights;
+use super::refusal::{Bound, NoWeights, Relief};
 use super::search::search;
 use crate::convex::{Least, NoX};
 use crate::mechanics::machine::{Inertia, Machine};
@@ -19,6 +19,9 @@ pub struct Placed {
     /// The most by which the best may lie below that.
     pub gap: f64,
 }
+
+/// Bounds on masses that are tried, each a tenth above the one before.
+const TRIES: i32 = 24;
 
 /// Steps in which a clearance that would do is looked for.
 const STEPS: usize = 20;
@@ -104,8 +107,38 @@ impl One<'_> {
     fn refusal(&self, weights: &[f64]) -> NoWeights {
         match self.asked.clearance {
             Some(asked) if weights.is_empty() => NoWeights::Reaches { asked, would: self.would_clear(asked) },
-            _ => self.problem.conflict(self.machine, self.asked, weights),
+            _ => {
+                let bounds = self.problem.conflict(self.machine, self.asked, weights);
+                if bounds.is_empty() {
+                    return NoWeights::TooFew;
+                }
+                let relief = self.relief(&bounds);
+                NoWeights::Conflict { bounds, relief }
+            }
         }
+    }
+
+    /// What would do instead of one kind of the bounds that contradict each other.
+    fn relief(&self, bounds: &[Bound]) -> Option<Relief> {
+        let with = |asked: Weighing| place(self.machine, &asked).ok();
+        if bounds.contains(&Bound::Inertia) {
+            let free = Weighing { most_inertia: None, objective: Objective::inertia(), ..self.asked.clone() };
+            return with(free).map(|placed| Relief::Inertia(Inertia::of(&placed.machine).momenta().iter().sum()));
+        }
+        if bounds.contains(&Bound::Mass) {
+            let free = Weighing { most_mass: None, objective: Objective::mass(), ..self.asked.clone() };
+            return with(free).map(|placed| Relief::Mass(placed.added_mass));
+        }
+        if !bounds.iter().any(|bound| matches!(bound, Bound::Most(_))) {
+            return None;
+        }
+        // Round the pins it may take more.
+        let least = self.problem.least_most(self.machine, self.asked)?;
+        let does = |most: &f64| {
+            let sites = self.asked.sites.iter().map(|site| Sites { most: most * (1.0 + 1e-6), ..*site }).collect();
+            self.asked.clearance.is_none() || with(Weighing { sites, ..self.asked.clone() }).is_some()
+        };
+        (0..TRIES).map(|i| least * 1.1_f64.powi(i)).find(does).map(Relief::Most)
     }
 
     /// The furthest from all pins with which there is a way, m.

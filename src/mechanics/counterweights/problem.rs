@@ -1,7 +1,7 @@
 //! [`Problem`]: a machine without counterweights, what they change in it, and the cone program that follows.
 
 use super::asked::{Free, Objective, Sites, Weighing};
-use super::refusal::{Bound, NoWeights, Relief};
+use super::refusal::{Bound, NoWeights};
 use super::room::Room;
 use crate::convex::{Least, NoX, Program, Row, conflict};
 use crate::mechanics::balance::{Condition, Equation, Plane};
@@ -369,52 +369,29 @@ impl Problem {
     }
 
     /// Why there is none past all pins: the bounds without any of which there would be a way, which are those that the
-    /// solver's proof uses, less all that it can do without.
-    pub fn conflict(&self, machine: &Machine, asked: &Weighing, weights: &[f64]) -> NoWeights {
+    /// solver's proof uses, less all that it can do without. Empty if there is none without bounds either.
+    pub fn conflict(&self, machine: &Machine, asked: &Weighing, weights: &[f64]) -> Vec<Bound> {
         let (bounds, way) = (self.bounds(machine, asked), Way::free(asked, Balance::Exact));
         let any = Weighing { objective: Objective::mass(), ..asked.clone() };
         let contradicts = |bounds: &[(Bound, Row)]| {
             matches!(self.program(machine, &any, bounds, &way).solve(), Err(NoX::Contradiction(_)))
         };
         let of_bounds = &weights[weights.len() - bounds.len()..];
-        let bounds = conflict(bounds, of_bounds, contradicts);
-        if bounds.is_empty() {
-            return NoWeights::TooFew;
-        }
-        let relief = self.relief(machine, asked, &bounds);
-        NoWeights::Conflict { bounds, relief }
+        conflict(bounds, of_bounds, contradicts)
     }
 
-    /// What would do instead of one kind of the bounds that contradict each other.
-    fn relief(&self, machine: &Machine, asked: &Weighing, bounds: &[Bound]) -> Option<Relief> {
-        let none = Objective { mass: 0.0, ..Objective::mass() };
-        let solve = |free: Weighing, objective: Objective| {
-            let free = Weighing { objective, ..free };
-            self.least(machine, &free, &Way::free(&free, Balance::Exact)).ok()
-        };
-        if bounds.contains(&Bound::Inertia) {
-            let free = Weighing { most_inertia: None, ..asked.clone() };
-            // As Σ D_k counts rotors in their own way, what is found is measured.
-            let least = solve(free, Objective::inertia())?;
-            let (_, found) = self.machine(machine, asked, &least.x, Balance::Exact).ok()?;
-            return Some(Relief::Inertia(Inertia::of(&found).momenta().iter().sum()));
-        }
-        if bounds.contains(&Bound::Mass) {
-            return solve(Weighing { most_mass: None, ..asked.clone() }, Objective::mass())
-                .map(|least| Relief::Mass(least.value));
-        }
-        if !bounds.iter().any(|bound| matches!(bound, Bound::Most(_))) {
-            return None;
-        }
+    /// The least bound on the mass of every counterweight with which there is a way past all pins, kg.
+    pub fn least_most(&self, machine: &Machine, asked: &Weighing) -> Option<f64> {
         let sites = asked.sites.iter().map(|site| Sites { most: f64::INFINITY, ..*site }).collect();
-        let free = Weighing { sites, objective: none, ..asked.clone() };
+        let objective = Objective { mass: 0.0, ..Objective::mass() };
+        let free = Weighing { sites, objective, ..asked.clone() };
         let way = Way::free(&free, Balance::Exact);
         let mut program = self.program(machine, &free, &self.bounds(machine, &free), &way);
         let (most, unknowns) = (program.linear.len(), Unknowns::of(&free, self.drives()));
         program.linear.push(1.0);
         let heaviest = (0..asked.sites.len()).map(|j| Row::new([(unknowns.w(j), 1.0), (most, -1.0)], 0.0));
         program.at_most.extend(heaviest);
-        program.solve().ok().map(|least| Relief::Most(least.value))
+        program.solve().ok().map(|least| least.value)
     }
 
     /// What stands at a site: its mass, kg, and mass times place, kg m.
