@@ -203,6 +203,8 @@ pub const ACTIONS: &[Action] = actions![
     View, "Design: masses, centres of mass, lengths and counterweights", [on(PLAIN, Key::D)], "tool bar", |_, v| {
         Some(Command::View(if v.view == ViewKind::Design { ViewKind::Flat } else { ViewKind::Design }))
     };
+    View, "Equations of the paper with today's numbers, beside the design view", [on(PLAIN, Key::E)], "design view, tab",
+        |_, v| learn(v);
     View, "Show everything", [on(PLAIN, Key::F)], "tool bar", |_, _| Some(Command::Fit);
     View, "Zoom in", [on(PLAIN, Key::Plus), on(PLAIN, Key::Equals)], "scene, wheel", |_, _| {
         Some(Command::Look(Look::Zoom(ZOOM)))
@@ -317,6 +319,12 @@ pub const GESTURES: [(&str, &str); 22] = [
     ("Shift click a plot", "a second cursor: plots show differences; Esc takes it away"),
     ("Esc", "close what is open, cancel a drag"),
 ];
+
+/// The equations, or the balance again where they are on display.
+fn learn(view_state: &ViewState) -> Option<Command> {
+    let is_shown = view_state.view == ViewKind::Design && view_state.plots.shown && view_state.learns;
+    Some(Command::Learn(!is_shown))
+}
 
 fn view(view_state: &ViewState, kind: ViewKind) -> Option<Command> {
     (view_state.view != kind).then_some(Command::View(kind))

@@ -60,6 +60,8 @@ pub enum Command {
     Redo,
     /// Show one of the linked views.
     View(ViewKind),
+    /// Show the equations beside the machine that is designed, or its balance.
+    Learn(bool),
     /// Shade the workspace by a measure of dexterity, or not.
     Dexterity(Option<Measure>),
     /// Point the camera so that everything is seen.
@@ -186,6 +188,7 @@ impl Command {
             Self::Speed(_)
             | Self::Loop(_)
             | Self::View(_)
+            | Self::Learn(_)
             | Self::Dexterity(_)
             | Self::Fit
             | Self::Look(_)

@@ -78,6 +78,21 @@ pub fn lit(ctx: &Context) -> Option<Handle> {
     ctx.data_mut(|data| data.get_temp_mut_or_default::<Places>(id()).lit.take())
 }
 
+/// Where the links that are spoken of wait for the end of the panels.
+fn links_id() -> Id {
+    Id::unique("links that are spoken of")
+}
+
+/// Lights links up that are spoken of.
+pub fn light_links(ctx: &Context, links: Vec<usize>) {
+    ctx.data_mut(|data| data.insert_temp(links_id(), links));
+}
+
+/// The links that are spoken of; to be asked once all panels have been drawn.
+pub fn lit_links(ctx: &Context) -> Vec<usize> {
+    ctx.data_mut(|data| data.remove_temp::<Vec<usize>>(links_id())).unwrap_or_default()
+}
+
 /// Lights a thing up that is spoken of.
 pub fn light(ctx: &Context, thing: Handle) {
     ctx.data_mut(|data| data.get_temp_mut_or_default::<Places>(id()).lit = Some(thing));

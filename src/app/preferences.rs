@@ -21,6 +21,8 @@ pub struct Preferences {
     pub layout: Layout,
     /// Settings stand on the right and plots on the left.
     pub swapped: bool,
+    /// The equations stand beside the machine that is designed.
+    pub learns: bool,
     /// The panel of settings is shown, to explore.
     pub side: bool,
     /// How wide it was made, points of the screen.
@@ -49,6 +51,7 @@ impl Default for Preferences {
             hints: true,
             layout: Layout::Explore,
             swapped: false,
+            learns: false,
             side: true,
             side_width: None,
             plots: true,

@@ -129,6 +129,7 @@ impl AppState {
         self.view_state.kept = liked.panels();
         let Panels { side, plots, .. } = self.view_state.kept[Layout::Explore as usize];
         (self.view_state.side, self.view_state.plots, self.view_state.swapped) = (side, plots, liked.swapped);
+        self.view_state.learns = liked.learns;
         if liked.layout != Layout::Explore {
             self.view_state.lay_out(liked.layout);
             self.refresh();
@@ -203,7 +204,7 @@ impl AppState {
 
     /// How it is liked, to be remembered; of a window so large, points.
     pub fn preferences(&self, size: [f32; 2]) -> Preferences {
-        let ViewState { theme, layout, swapped, .. } = self.view_state;
+        let ViewState { theme, layout, swapped, learns, .. } = self.view_state;
         let Panels { side, plots, .. } = self.view_state.panels(Layout::Explore);
         let compare = self.view_state.panels(Layout::Compare);
         Preferences {
@@ -212,6 +213,7 @@ impl AppState {
             hints: self.hints,
             layout,
             swapped,
+            learns,
             compare_side: compare.side.shown,
             compare_side_width: compare.side.width,
             compare_plots: compare.plots.shown,
@@ -382,6 +384,9 @@ impl AppState {
         let designs = self.view_state.view == ViewKind::Design && !presents;
         if designs {
             self.studio.follow(&self.session, &self.view_state.brief, self.view_state.front_by);
+            if self.view_state.learns {
+                self.studio.learn(&self.session, &self.view_state.brief);
+            }
             studio::show(ui, &self.session, &self.studio, &self.view_state, &mut commands);
         }
         if contrast.is_none() && self.view_state.side.shown && !designs {
@@ -391,6 +396,7 @@ impl AppState {
             self.view_state.side.width = side::show(ui, &self.session, &self.facts, &self.view_state, &mut commands);
         }
         self.view_state.lit = place::lit(ui.ctx());
+        self.view_state.lit_links = place::lit_links(ui.ctx());
         if self.view_state.plots.shown && !designs {
             let beside = contrast.and_then(Intro::beside_it).or(self.comparison.as_ref());
             let (session, signals, view_state) = (&self.session, &self.signals, &self.view_state);
@@ -585,12 +591,13 @@ impl AppState {
             Command::GiveUp => {}
             Command::Redo => self.change(Change::Redo),
             Command::Cancel(activity) => return Ok(Some(self.cancel(activity))),
-            Command::View(view) => {
-                if view == ViewKind::Design {
-                    // What is designed stands still.
-                    self.session.pause();
+            Command::View(view) => self.show_view(view),
+            Command::Learn(learns) => {
+                self.view_state.learns = learns;
+                if learns {
+                    self.view_state.plots.shown = true;
+                    self.show_view(ViewKind::Design);
                 }
-                self.view_state.view = view;
             }
             Command::Dexterity(shown) => self.view_state.dexterity = shown,
             Command::Fit => self.view_state.framing[self.view_state.view as usize] = Framing::Wanted,
@@ -654,6 +661,14 @@ impl AppState {
             Command::Replace(file) => self.saving.replaces = Some(file),
         }
         Ok(None)
+    }
+
+    fn show_view(&mut self, view: ViewKind) {
+        if view == ViewKind::Design {
+            // What is designed stands still.
+            self.session.pause();
+        }
+        self.view_state.view = view;
     }
 
     /// Asks for the name of a bookmark; where there is none it is put there.

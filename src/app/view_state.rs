@@ -103,6 +103,8 @@ pub struct ViewState {
     pub hot: Option<Handle>,
     /// What has its place in the panel under the pointer or the keyboard.
     pub lit: Option<Handle>,
+    /// The links that a term under the pointer comes from.
+    pub lit_links: Vec<usize>,
     /// What is to be shown in the panel.
     pub revealed: Option<Handle>,
     /// What is being dragged.
@@ -126,6 +128,8 @@ pub struct ViewState {
     pub ghost: Option<usize>,
     /// What its machines are told apart by beside mass and inertia.
     pub front_by: Option<FrontMeasure>,
+    /// The equations stand beside the machine that is designed, and not its balance.
+    pub learns: bool,
     /// What pins carry is on display.
     pub pins: bool,
     /// The drives along the axes of joint space, counted from 0, where there are more than three.
@@ -191,6 +195,7 @@ impl ViewState {
             loops: false,
             hot: None,
             lit: None,
+            lit_links: Vec::new(),
             revealed: None,
             grabbed: None,
             pressed: None,
@@ -202,6 +207,7 @@ impl ViewState {
             brief: Brief::default(),
             ghost: None,
             front_by: None,
+            learns: false,
             pins: false,
             drives: [0, 1, 2],
             naming: None,

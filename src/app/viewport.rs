@@ -91,6 +91,7 @@ pub fn show(
             invites: session.follows_hands(),
             compares: both.is_none(),
             weights: chosen.to_vec(),
+            links: view_state.lit_links.clone(),
             scale: None,
         };
         let scene = Arc::new(views.scene(view_state.view, session.frame(), &options, view_state.camera()));

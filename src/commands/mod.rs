@@ -22,6 +22,7 @@ pub(crate) mod input;
 mod interrupt;
 mod joints;
 mod keys;
+mod learn;
 mod machines;
 mod open;
 mod output;
@@ -70,6 +71,7 @@ subcommands! {
     Machines: machines::Machines,
     Keys: keys::Keys,
     Check: check::Check,
+    Learn: learn::Learn,
     Design: design::Design,
     Dynamics: dynamics::Dynamics,
     Reach: reach::Reach,

@@ -1,6 +1,8 @@
-//! Many runs: side by side, around a nominal machine, by frequency; one run over time; and a machine beside another.
+//! Many runs: side by side, around a nominal machine, by frequency; one run over time; a machine beside another; and the
+//! equations of the paper with today's numbers in them.
 
 pub mod comparison;
+pub mod equations;
 pub mod front_point;
 pub mod lengths;
 pub mod measures;

@@ -1,7 +1,7 @@
 //! The design view: what is out of balance and where it comes from, what follows when it is kept, counterweights to take.
 
 use egui::{Key, Modifiers};
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use stillbase::app::Command;
 use stillbase::mechanics::machine::{Inertia, Link, Machine};
 use stillbase::picture::scene::options::Handle;
@@ -23,6 +23,8 @@ pub const TESTS: &[Test] = tests![
     single_numbers_are_held,
     discs_keep_clear_and_serve_a_range_of_payloads,
     colours_tell_the_machines_of_the_front_apart,
+    equations_light_up_their_links,
+    equations_follow_the_machine_and_are_remembered,
 ];
 
 /// A window in which the bare bars of the reference are designed.
@@ -182,6 +184,79 @@ fn numbers_of_links_are_typed() {
     type_into(&mut h, "centre of mass of link 5 m", "-2 cm");
     assert_eq!(machine(&h).links()[4].com, -0.02);
     assert!(!is_balanced(machine(&h)));
+}
+
+/// What a label that begins so says.
+fn said(h: &Window, begins: &str) -> String {
+    let label = |node: &egui_kittest::Node<'_>| {
+        let node = node.accesskit_node();
+        node.label().or_else(|| node.value()).unwrap_or_default()
+    };
+    let found = h.query_all_by_label_contains(begins).map(|node| label(&node)).next();
+    found.unwrap_or_else(|| panic!("nothing says {begins}"))
+}
+
+fn equations_light_up_their_links() {
+    let mut h = window("case-3", Theme::Light);
+    h.run_steps(2);
+    h.key_press(Key::E);
+    h.run_steps(4);
+    let view_state = |h: &Window| h.state().app_state().view_state().clone();
+    assert!(view_state(&h).view == ViewKind::Design && view_state(&h).learns);
+    h.get_by_label("Equation 7").click();
+    h.run_steps(6);
+    let line = "(7) g₁: m₁ l_c1 + m₄ l_c4 + m₆ l_c6 + (m₅ + m₇ + m₈ + m₉) l₁ = 0";
+    let rect = h.get_by_label_contains(line).rect();
+    let mut lit = Vec::new();
+    for y in (rect.top() as i32..rect.bottom() as i32).step_by(6) {
+        for x in (rect.left() as i32..rect.right() as i32).step_by(8) {
+            h.hover_at(egui::pos2(x as f32, y as f32));
+            h.run_steps(1);
+            let links = view_state(&h).lit_links;
+            if !links.is_empty() && !lit.contains(&links) {
+                lit.push(links);
+            }
+        }
+    }
+    lit.sort();
+    assert_eq!(lit, [vec![0], vec![3], vec![4, 6, 7, 8], vec![5]]);
+    // Beside it nothing is lit any more.
+    h.hover_at(egui::pos2(500.0, 300.0));
+    h.run_steps(2);
+    assert!(view_state(&h).lit_links.is_empty());
+    // The key leads back.
+    h.key_press(Key::E);
+    h.run_steps(3);
+    assert!(!view_state(&h).learns && h.query_by_label_contains("g₁, no force: 0 kg m left").is_some());
+}
+
+fn equations_follow_the_machine_and_are_remembered() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    h.key_press(Key::D);
+    h.run_steps(3);
+    h.get_by_label("Equations tab").click();
+    h.run_steps(3);
+    h.get_by_label("Equation 8").click();
+    h.run_steps(6);
+    assert!(said(&h, "(8) No coupling").ends_with("holds"));
+    h.state_mut().app_state_mut().carry_out(Command::Edit(Edit::at(&["link", "5", "com"], 0.05)));
+    h.run_steps(3);
+    let left = Inertia::of(machine(&h)).coupling(0, 1).re;
+    assert!(said(&h, "(8) No coupling").contains("off by 0.0214"), "{left}");
+    let words = format!("= {left:.4} kg m²").replace('-', "− ");
+    assert!(said(&h, "(8) C₁₂: ").ends_with(&words), "{words} in {}", said(&h, "(8) C₁₂: "));
+    // What has no meaning any more says so.
+    h.get_by_label("Equation 11").click();
+    h.run_steps(6);
+    assert!(h.query_by_label_contains("(11) Motion of a balanced machine: not for this machine").is_some());
+    let liked = h.state().app_state().preferences([1280.0, 800.0]);
+    assert!(liked.learns);
+    let again = stillbase::app::AppState::new(Scenario::builtin("case-3").expect("built in"), Theme::Dark);
+    assert!(again.expect("it starts").with_preferences(&liked).view_state().learns);
+    h.get_by_label("Balance tab").click();
+    h.run_steps(3);
+    assert!(!h.state().app_state().preferences([1280.0, 800.0]).learns);
 }
 
 /// A number that stays while others of its kind follow, and one that may go only so far.

@@ -8,6 +8,7 @@ mod headless;
 mod help;
 mod input;
 mod joints;
+mod learn;
 mod machines;
 mod plan;
 mod reach;

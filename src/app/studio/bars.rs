@@ -21,8 +21,7 @@ const LEFT: f32 = 76.0;
 pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewState) {
     let p = &view_state.palette();
     heading(ui, p, "Balance", "which link gives what; below: what is left");
-    let hot = view_state.grabbed.map(|pick| pick.handle).or(view_state.hot).or(view_state.lit);
-    let hot = hot.and_then(|handle| link_of(handle, session));
+    let hot = hot_link(view_state, session);
     for term in &facts.terms {
         row(ui, p, session, term, hot);
     }
@@ -30,6 +29,12 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewStat
         let words = "Some masses lie off the axes of their links; the bars show what they do along them.";
         ui.label(RichText::new(words).font(plain(11.0)).color(colour(p.dim)));
     }
+}
+
+/// The link in hand, under the pointer or spoken of, by its number.
+pub(super) fn hot_link(view_state: &ViewState, session: &Session) -> Option<usize> {
+    let hot = view_state.grabbed.map(|pick| pick.handle).or(view_state.hot).or(view_state.lit);
+    hot.and_then(|handle| link_of(handle, session))
 }
 
 /// The link that a thing of the scene belongs to, by its number.

@@ -1,5 +1,6 @@
 //! [`Facts`]: what the panels say of a machine that has to be found first. It is found when the machine changes.
 
+use super::lesson::Lesson;
 use crate::mechanics::balance::{Breakdown, Condition};
 use crate::mechanics::counterweights::{Placed, Residual, over_payloads};
 use crate::mechanics::machine::{Inertia, Machine};
@@ -33,6 +34,8 @@ pub struct Facts {
     /// What is left of balance over the payloads that are asked for.
     pub(super) payloads: Vec<Residual>,
     held: Option<[f64; 2]>,
+    /// Its equations, as far as they were asked for.
+    pub(super) lesson: Lesson,
 }
 
 /// Payloads at which that is looked at.
@@ -72,6 +75,11 @@ impl Term {
 const NOTHING: f64 = 1e-9;
 
 impl Facts {
+    /// Finds the equations, if what they depend on has changed.
+    pub fn learn(&mut self, session: &Session, brief: &Brief) {
+        self.lesson.follow(session, brief.preset);
+    }
+
     /// Finds what has to be said, if the machine or what is asked for has changed.
     pub fn follow(&mut self, session: &Session, brief: &Brief, by: Option<FrontMeasure>) {
         let (machine, plan) = (&session.scenario().machine, session.run().plan());

@@ -1,12 +1,18 @@
-//! The panels of the design view: the table of links on the left, what they do to the balance on the right.
+//! The panels of the design view: the table of links on the left, what they do to the balance on
+//! the right, or the equations of the paper.
 
 mod asked;
 mod bars;
+mod equations;
 mod facts;
 mod front;
+mod lesson;
 mod measures;
 mod payload;
 mod table;
+mod tabs;
+mod terms;
+mod typeset;
 
 use egui::{Frame, Margin, Panel, ScrollArea, Ui};
 
@@ -46,11 +52,16 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewStat
     }
     if view_state.plots.shown {
         other.exact_size(balance).frame(frame).show(ui, |ui| {
-            scrolled(ui, |ui| {
-                bars::show(ui, session, facts, view_state);
-                front::show(ui, facts, view_state, commands);
-                payload::show(ui, facts, session.scenario().machine.spec().payload.mass, &p);
-            });
+            tabs::show(ui, view_state, commands);
+            if view_state.learns {
+                equations::show(ui, session, &facts.lesson, view_state);
+            } else {
+                scrolled(ui, |ui| {
+                    bars::show(ui, session, facts, view_state);
+                    front::show(ui, facts, view_state, commands);
+                    payload::show(ui, facts, session.scenario().machine.spec().payload.mass, &p);
+                });
+            }
         });
     }
 }

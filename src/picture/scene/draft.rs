@@ -75,9 +75,10 @@ impl Draft {
         let palette = palette(options.theme);
         let e = frame.q.units();
         let hot = options.hot.and_then(|handle| self.link_of(handle));
+        let is_lit = |i: usize| hot == Some(i) || options.links.contains(&i);
         let mut solids = linkage.solids(&e, frame.base, false, &palette);
         for (i, bar) in linkage.bars().iter().enumerate() {
-            for solid in solids.iter_mut().filter(|solid| solid.name == *bar.item() && hot != Some(i)) {
+            for solid in solids.iter_mut().filter(|solid| solid.name == *bar.item() && !is_lit(i)) {
                 solid.colour = mix(solid.colour, palette.background, PALE);
             }
         }

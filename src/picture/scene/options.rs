@@ -45,6 +45,8 @@ pub struct ViewOptions {
     pub push: Option<[f64; 2]>,
     /// Counterweights to choose from.
     pub weights: Vec<Offered>,
+    /// Links that are spoken of, by number, where the machine is designed.
+    pub links: Vec<usize>,
     /// What a full arrow and arc of a reaction stand for; none goes by the largest so far.
     pub scale: Option<Scale>,
 }
@@ -69,6 +71,7 @@ impl Default for ViewOptions {
             exaggeration: 1.0,
             push: None,
             weights: Vec::new(),
+            links: Vec::new(),
             scale: None,
         }
     }

@@ -1,0 +1,195 @@
+//! The equations of the paper, with today's numbers in them.
+
+use egui::style::ScrollAnimation;
+use egui::{Align, Label, Rect, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
+
+use super::bars::hot_link;
+use super::lesson::Lesson;
+use super::terms::{self, Pen};
+use super::typeset::set;
+use crate::app::ViewState;
+use crate::app::side::BAR;
+use crate::app::theme::{bold, colour, plain};
+use crate::app::widgets::{name, note};
+use crate::picture::numbers::{at_step, signed};
+use crate::picture::scene::Rgba;
+use crate::picture::scene::palette::Palette;
+use crate::session::Session;
+use crate::study::equations::{Equation, Line, When};
+
+/// The most room for names of lines, points.
+const GUTTER: f32 = 48.0;
+
+/// Draws them: numbers to go to on top, and below all of them to scroll through.
+pub fn show(ui: &mut Ui, session: &Session, lesson: &Lesson, view_state: &ViewState) {
+    let p = &view_state.palette();
+    note(ui, p, &when(lesson, session));
+    let wanted = ui.scope(|ui| index(ui, p, lesson.equations())).inner;
+    ui.add_space(2.0);
+    let machine = &session.scenario().machine;
+    let pen = Pen { p, machine, hot: hot_link(view_state, session), gutter: 0.0 };
+    ScrollArea::vertical().id_salt("equations").auto_shrink(false).show(ui, |ui| {
+        ui.set_width(ui.available_width() - BAR);
+        ui.spacing_mut().item_spacing.y = 2.0;
+        let mut heights = Heights::of(ui);
+        for (i, equation) in lesson.equations().iter().enumerate() {
+            let top = ui.cursor().min;
+            // What is out of sight only takes its room.
+            let known = heights.known(i);
+            let there = known.map(|height| Rect::from_min_size(top, vec2(ui.available_width(), height)));
+            match there {
+                Some(rect) if !ui.is_rect_visible(rect) => {
+                    ui.allocate_rect(rect, Sense::hover());
+                }
+                _ => {
+                    ui.push_id(equation.number, |ui| block(ui, equation, &pen));
+                    heights.is(i, ui.min_rect().bottom() - top.y);
+                }
+            }
+            if wanted == Some(i) {
+                let rect = Rect::from_min_max(top, pos2(top.x + 1.0, top.y + 1.0));
+                ui.scroll_to_rect_animation(rect, Some(Align::TOP), ScrollAnimation::none());
+            }
+        }
+        heights.keep(ui);
+        // The last one can be brought to the top too.
+        ui.add_space(0.5 * ui.clip_rect().height());
+    });
+}
+
+/// How high each equation was when it was drawn last in a panel of this width.
+struct Heights {
+    width: f32,
+    all: Vec<f32>,
+}
+
+impl Heights {
+    fn id() -> egui::Id {
+        egui::Id::unique("heights of equations")
+    }
+
+    fn of(ui: &Ui) -> Self {
+        let width = ui.available_width();
+        let kept = ui.data(|data| data.get_temp::<(f32, Vec<f32>)>(Self::id()));
+        let all = kept.filter(|(then, _)| *then == width).map_or_else(Vec::new, |(_, all)| all);
+        Self { width, all }
+    }
+
+    fn known(&self, i: usize) -> Option<f32> {
+        self.all.get(i).copied()
+    }
+
+    fn is(&mut self, i: usize, height: f32) {
+        if i == self.all.len() {
+            self.all.push(height);
+        } else if let Some(known) = self.all.get_mut(i) {
+            *known = height;
+        }
+    }
+
+    fn keep(self, ui: &Ui) {
+        ui.data_mut(|data| data.insert_temp(Self::id(), (self.width, self.all)));
+    }
+}
+
+/// The instant in words.
+fn when(lesson: &Lesson, session: &Session) -> String {
+    let instant = match lesson.when() {
+        Some(When::Plan(time)) => format!("Numbers of the plan at {} s, because the machine rests.", signed(time, 3)),
+        Some(When::Run(time)) => format!("Numbers at {} s.", signed(time, 3)),
+        Some(When::Given) | None => String::new(),
+    };
+    match session.scenario().base.moves() {
+        true => format!("{instant} As on a base that stands still."),
+        false => format!("{instant} The pointer on a term lights up its links."),
+    }
+}
+
+/// What an equation's state looks like.
+fn tone(equation: &Equation, p: &Palette) -> Rgba {
+    match equation.holds() {
+        Some(true) => p.zero,
+        Some(false) if !equation.is_choice() => p.reaction,
+        _ => p.dim,
+    }
+}
+
+/// Numbers of all equations; the one that is clicked is gone to.
+fn index(ui: &mut Ui, p: &Palette, all: &[Equation]) -> Option<usize> {
+    let mut wanted = None;
+    ui.set_max_width(ui.available_width() - BAR);
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(3.0, 1.0);
+        ui.spacing_mut().button_padding = vec2(3.0, 1.0);
+        for (i, equation) in all.iter().enumerate() {
+            let text = RichText::new(equation.number).font(bold(11.5)).color(colour(tone(equation, p)));
+            let button = ui.add(egui::Button::new(text).frame(false).min_size(vec2(15.0, 18.0)));
+            name(&button, &format!("Equation {}", equation.number));
+            let button =
+                button.on_hover_text(format!("({}) {}: {}", equation.number, equation.title, verdict(equation)));
+            wanted = if button.clicked() { Some(i) } else { wanted };
+        }
+    });
+    wanted
+}
+
+/// Whether both sides are alike, in a few words.
+fn verdict(equation: &Equation) -> String {
+    let Some(worst) = equation.worst() else { return "not for this machine".into() };
+    match equation.holds() {
+        Some(true) => "holds".into(),
+        _ if equation.is_choice() => "another choice".into(),
+        _ => {
+            let off = worst.off().abs();
+            let size = if off > 0.0 { 10f64.powf(off.log10().floor() - 2.0) } else { 1.0 };
+            format!("off by {} {}", at_step(off, size), worst.unit).trim_end().to_owned()
+        }
+    }
+}
+
+fn block(ui: &mut Ui, equation: &Equation, pen: &Pen<'_>) {
+    let p = pen.p;
+    ui.add_space(9.0);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        ui.label(RichText::new(format!("({})", equation.number)).font(bold(13.0)).color(colour(p.amber)));
+        let state = RichText::new(verdict(equation)).font(plain(11.5)).color(colour(tone(equation, p)));
+        let title = ui.label(RichText::new(equation.title).font(bold(13.0)).color(colour(p.ink)));
+        let said = format!("({}) {}: {}", equation.number, equation.title, verdict(equation));
+        title.widget_info(|| WidgetInfo::labeled(Role::Label, true, &said));
+        ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| ui.add(Label::new(state).truncate()));
+    });
+    symbols(ui, equation.says, (11.0, colour(p.dim)));
+    if !equation.form.is_empty() {
+        symbols(ui, equation.form, (13.0, colour(p.ink)));
+    }
+    match &equation.lines {
+        Ok(lines) => {
+            let pen = Pen { gutter: gutter(ui, lines), ..*pen };
+            ui.add_space(2.0);
+            for line in lines {
+                terms::show(ui, &pen, equation.number, line);
+            }
+        }
+        Err(why) => {
+            let words = format!("Not for this machine: {why}.");
+            ui.add(Label::new(RichText::new(words).font(plain(11.5)).color(colour(p.ink))).wrap());
+        }
+    }
+    for words in &equation.notes {
+        symbols(ui, words, (10.5, colour(p.dim)));
+    }
+}
+
+/// Room for the names of lines.
+fn gutter(ui: &Ui, lines: &[Line]) -> f32 {
+    let names = lines.iter().filter(|line| !line.name.is_empty());
+    names.map(|line| terms::label(ui, line) + 4.0).fold(0.0, f32::max).min(GUTTER)
+}
+
+/// A symbol or a sentence with symbols as a row of its own.
+fn symbols(ui: &mut Ui, text: &str, (size, tone): (f32, egui::Color32)) {
+    let galley = set(ui, text, (size, tone), ui.available_width());
+    let (rect, _) = ui.allocate_exact_size(galley.size(), Sense::hover());
+    ui.painter().galley(rect.min, galley, tone);
+}

@@ -1,0 +1,33 @@
+//! What the panel beside the machine shows: its balance, or the equations of the paper.
+
+use egui::{Button, RichText, Ui, vec2};
+
+use crate::app::theme::{bold, colour};
+use crate::app::widgets::name;
+use crate::app::{Command, ViewState};
+
+const TABS: [(bool, &str, &str); 2] = [
+    (false, "Balance", "What is out of balance, and counterweights to take"),
+    (true, "Equations", "Every equation of the paper with today's numbers in it"),
+];
+
+/// Draws the choice.
+pub fn show(ui: &mut Ui, view_state: &ViewState, commands: &mut Vec<Command>) {
+    let p = &view_state.palette();
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
+        let width = 0.5 * (ui.available_width() - 3.0 - crate::app::side::BAR);
+        for (learns, words, tip) in TABS {
+            let chosen = learns == view_state.learns;
+            let text = RichText::new(words).font(bold(12.5)).color(colour(if chosen { p.ink } else { p.dim }));
+            let fill = if chosen { colour(p.line) } else { egui::Color32::TRANSPARENT };
+            let button = Button::new(text).fill(fill).stroke((1.0, colour(p.line))).min_size(vec2(width, 24.0));
+            let tab = ui.add(button).on_hover_text(tip);
+            name(&tab, &format!("{words} tab"));
+            if tab.clicked() && !chosen {
+                commands.push(Command::Learn(learns));
+            }
+        }
+    });
+    ui.add_space(4.0);
+}

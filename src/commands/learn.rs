@@ -1,0 +1,357 @@
+//! `stillbase learn`
+
+use clap::Args;
+use serde::Serialize;
+use stillbase::exchange::mjcf::middle;
+use stillbase::mechanics::balance::Preset;
+use stillbase::mechanics::machine::Machine;
+use stillbase::mechanics::planar::{DriveAngles, PerDrive};
+use stillbase::planning::Reference;
+use stillbase::session::scenario::Scenario;
+use stillbase::session::{Refusal, Session, replay_while};
+use stillbase::study::equations::{Cell, Equation, Line, NUMBERS, Origin, State, Term, When, cells, equations, plain};
+
+use super::failure::Failure;
+use super::input::{DEFAULT_SCENARIO, Settings, no_use, set};
+use super::output::Format;
+use stillbase::settings::number::{counted, fixed, shown};
+
+/// Say every equation of the paper, and below it the same with today's numbers
+///
+/// Both sides of an equation are found on ways of their own: one link by link, the other by the closed forms that the
+/// program computes with. Numbers are of an instant of the run, of a quarter of its planned time unless another is given;
+/// or of a pose.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  stillbase learn --equation 7
+  stillbase learn case-1 --at 0.3 --equation 5 --equation 12
+  stillbase learn serial-3r --set link.2.com=-0.1 --json
+  stillbase learn nine-link-table-1 --pose 1.7,3.7,2.2 --rates 0.1,0,-0.5")]
+pub struct Learn {
+    /// A built-in scenario or machine (case-1, four-drive …), or a TOML file of either
+    #[arg(value_name = "SCENARIO|MACHINE", default_value = DEFAULT_SCENARIO)]
+    what: String,
+    /// Only this equation, as often as needed: 1 to 16, A1 to A3
+    #[arg(long, value_name = "N", value_parser = number)]
+    equation: Vec<&'static str>,
+    /// The instant of the run, s
+    #[arg(long, value_name = "T", value_parser = instant)]
+    at: Option<f64>,
+    /// Angles of all drives instead of a run, rad
+    #[arg(long, value_name = "Q1,Q2,…", value_delimiter = ',', allow_hyphen_values = true, value_parser = figure, conflicts_with = "at")]
+    pose: Vec<f64>,
+    /// Their rates, rad/s; 0 without
+    #[arg(long, value_name = "QD1,QD2,…", value_delimiter = ',', allow_hyphen_values = true, value_parser = figure, requires = "pose")]
+    rates: Vec<f64>,
+    /// Their accelerations, rad/s²; 0 without
+    #[arg(long, value_name = "QDD1,…", value_delimiter = ',', allow_hyphen_values = true, value_parser = figure, requires = "pose")]
+    accelerations: Vec<f64>,
+    #[command(flatten)]
+    settings: Settings,
+    #[command(flatten)]
+    format: Format,
+}
+
+fn number(text: &str) -> Result<&'static str, String> {
+    let bare = text.trim().trim_start_matches('(').trim_end_matches(')');
+    let known = NUMBERS.into_iter().find(|known| known.eq_ignore_ascii_case(bare));
+    known.ok_or_else(|| "want the number of an equation, 1 to 16 or A1 to A3".into())
+}
+
+fn instant(text: &str) -> Result<f64, String> {
+    text.trim()
+        .parse()
+        .ok()
+        .filter(|t: &f64| *t >= 0.0 && t.is_finite())
+        .ok_or_else(|| "want a time in s, 0 or more".into())
+}
+
+fn figure(text: &str) -> Result<f64, String> {
+    text.trim().parse().map_err(|_| "want numbers, such as 1.7,-0.5,2.2".into())
+}
+
+/// What is asked about.
+enum Asked {
+    Scenario(Box<Scenario>),
+    Machine(Box<Machine>),
+}
+
+#[derive(Serialize)]
+struct Answer {
+    machine: String,
+    #[serde(flatten)]
+    when: Moment,
+    q: Vec<f64>,
+    qd: Vec<f64>,
+    qdd: Vec<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    b: Option<f64>,
+    equations: Vec<OfEquation>,
+}
+
+/// The instant, s: of the run, or of the planned motion.
+#[derive(Serialize)]
+struct Moment {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    time: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    planned_time: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct OfEquation {
+    number: &'static str,
+    title: &'static str,
+    says: String,
+    form: String,
+    notes: Vec<String>,
+    /// Why it has no meaning for this machine.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    why_not: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    holds: Option<bool>,
+    lines: Vec<OfLine>,
+}
+
+#[derive(Serialize)]
+struct OfLine {
+    name: String,
+    unit: &'static str,
+    left: f64,
+    right: f64,
+    holds: bool,
+    left_terms: Vec<OfTerm>,
+    right_terms: Vec<OfTerm>,
+}
+
+#[derive(Serialize)]
+struct OfTerm {
+    /// With its sign.
+    symbol: String,
+    value: f64,
+    parts: Vec<OfPart>,
+}
+
+#[derive(Serialize)]
+struct OfPart {
+    from: String,
+    value: f64,
+}
+
+impl Learn {
+    /// Prints the equations.
+    pub fn run(&self) -> Result<(), Failure> {
+        let (machine, state) = self.asked()?;
+        let all = equations(&machine, &state, Preset::Table1);
+        let asked = |equation: &&Equation| self.equation.is_empty() || self.equation.contains(&equation.number);
+        let chosen: Vec<&Equation> = all.iter().filter(asked).collect();
+        let answer = Answer {
+            machine: machine.name().into(),
+            when: match state.when {
+                When::Run(time) => Moment { time: Some(time), planned_time: None },
+                When::Plan(time) => Moment { time: None, planned_time: Some(time) },
+                When::Given => Moment { time: None, planned_time: None },
+            },
+            q: state.q.to_vec(),
+            qd: state.qd.to_vec(),
+            qdd: state.qdd.to_vec(),
+            b: state.b,
+            equations: chosen.iter().map(|equation| of_equation(&machine, equation)).collect(),
+        };
+        self.format.print(&answer, |_| {
+            let texts: Vec<String> = chosen.iter().map(|equation| text(equation)).collect();
+            format!("{}\n\n{}", head(&machine, &state), texts.join("\n"))
+        })
+    }
+
+    /// The machine, and the instant.
+    fn asked(&self) -> Result<(Machine, State), Failure> {
+        let machine = match self.find()? {
+            Asked::Scenario(scenario) if self.pose.is_empty() => {
+                let state = self.state(&scenario)?;
+                return Ok((scenario.machine, state));
+            }
+            Asked::Machine(_) if self.at.is_some() => return Err(no_use("--at", "a scenario, or --pose")),
+            Asked::Scenario(scenario) => scenario.machine,
+            Asked::Machine(machine) => *machine,
+        };
+        let n = machine.drives();
+        let pose = if self.pose.is_empty() { middle(&machine) } else { self.pose.clone() };
+        let given = |option: &str, values: &[f64]| {
+            let all = if values.is_empty() { vec![0.0; n] } else { values.to_vec() };
+            let fits = all.len() == n && all.iter().all(|x| x.is_finite() && x.abs() <= MOST);
+            let wrong = || {
+                let drives = counted(n, "drive");
+                Failure::wrong_input(format!("{option}: want a number from −{MOST} to {MOST} for each of {drives}"))
+            };
+            PerDrive::from_slice(&all).filter(|_| fits).ok_or_else(wrong)
+        };
+        let q = DriveAngles(given("--pose", &pose)?);
+        let (qd, qdd) = (given("--rates", &self.rates)?, given("--accelerations", &self.accelerations)?);
+        Ok((machine, State::given(Reference { q, qd, qdd })))
+    }
+
+    /// The scenario or machine of the name.
+    fn find(&self) -> Result<Asked, Failure> {
+        let why = match stillbase::files::scenario(&self.what) {
+            Ok(scenario) => {
+                let scenario = set(scenario, &self.settings)?;
+                self.settings.none_of_tolerance()?;
+                return Ok(Asked::Scenario(Box::new(scenario)));
+            }
+            Err(why) => why,
+        };
+        match stillbase::files::machine(&self.what, None) {
+            Ok(machine) => Ok(Asked::Machine(Box::new(self.settings.apply(machine)?))),
+            // A file of a machine with a mistake in it.
+            Err(mistake) if why.to_string().contains("this is a machine") => Err(mistake.into()),
+            Err(_) => Err(why.into()),
+        }
+    }
+
+    fn state(&self, scenario: &Scenario) -> Result<State, Failure> {
+        let Some(at) = self.at else {
+            let session = Session::open(scenario.clone())?;
+            return Ok(State::of(session.run(), session.frame()));
+        };
+        let (mut found, mut end) = (None, 0.0);
+        let done = replay_while(scenario, |_, frame| {
+            end = frame.time;
+            let is_there = frame.time >= at - 0.5 * scenario.step;
+            found = is_there.then(|| State::now(frame));
+            !is_there
+        });
+        match (found, done) {
+            (Some(state), _) => Ok(state),
+            (None, Err(why)) if !matches!(why, Refusal::Stopped) => Err(why.into()),
+            _ => Err(Failure::wrong_input(format!(
+                "--at {at}: want a time up to the end of the run, {} s",
+                fixed(end, 3)
+            ))),
+        }
+    }
+}
+
+/// The largest angle, rate or acceleration that is taken.
+const MOST: f64 = 1e6;
+
+fn head(machine: &Machine, state: &State) -> String {
+    let when = match state.when {
+        When::Run(time) => format!("at {} s", fixed(time, 3)),
+        When::Plan(time) => format!("{} s into the planned motion", fixed(time, 3)),
+        When::Given => "in a pose that was given".to_owned(),
+    };
+    let all = |values: &[f64]| values.iter().map(|x| fixed(*x, 4)).collect::<Vec<_>>().join(", ");
+    let motion =
+        format!("q {} rad · rates {} rad/s · accelerations {} rad/s²", all(&state.q), all(&state.qd), all(&state.qdd));
+    format!("{}, {when}\n{motion}", machine.name())
+}
+
+/// How wide lines of terms are at most, characters.
+const WIDTH: usize = 100;
+const INDENT: usize = 4;
+/// Decimals of numbers.
+const DECIMALS: usize = 6;
+
+/// An equation in lines.
+fn text(equation: &Equation) -> String {
+    let colon = if equation.form.is_empty() { "" } else { ": " };
+    let mut text = format!("({}) {}{colon}{}\n", equation.number, equation.title, plain(equation.form));
+    let mut say = |words: &str| text.push_str(&format!("{:INDENT$}{words}\n", ""));
+    say(&plain(equation.says));
+    equation.notes.iter().for_each(|note| say(&plain(note)));
+    match &equation.lines {
+        Err(why) => say(&format!("Not for this machine: {why}.")),
+        Ok(lines) => {
+            lines.iter().for_each(|line| text.push_str(&of_terms(line)));
+            text.push_str(&format!("{:INDENT$}{}\n", "", verdict(equation)));
+        }
+    }
+    text
+}
+
+/// Whether both sides are alike.
+fn verdict(equation: &Equation) -> String {
+    let Some(worst) = equation.worst() else { return String::new() };
+    let off = worst.off().abs();
+    let unit = if worst.unit.is_empty() { String::new() } else { format!(" {}", worst.unit) };
+    let name = if worst.name.is_empty() { String::new() } else { format!(" in {}", worst.name) };
+    match equation.holds() {
+        Some(true) => format!("holds: both sides differ by {off:.0e}{unit} at most"),
+        _ if equation.is_choice() => "the centres of mass of this machine lie elsewhere, which is no fault".into(),
+        _ => format!("does not hold: off by {}{unit}{name}", shown(off, DECIMALS)),
+    }
+}
+
+/// Symbols, and below each its number.
+fn of_terms(line: &Line) -> String {
+    let mut rows: Vec<[String; 2]> = Vec::new();
+    let mut width = WIDTH;
+    let cells = cells(line, DECIMALS);
+    for (i, cell) in cells.iter().enumerate() {
+        let [mut symbol, mut number] = both(cell);
+        if i + 1 == cells.len() && !line.unit.is_empty() {
+            number += &format!(" {}", line.unit);
+        }
+        let wide = symbol.chars().count().max(number.chars().count());
+        for text in [&mut symbol, &mut number] {
+            *text += &" ".repeat(wide - text.chars().count());
+        }
+        if width + wide + 1 > WIDTH {
+            rows.push(Default::default());
+            width = 0;
+        }
+        width += wide + 1;
+        if let Some([symbols, numbers]) = rows.last_mut() {
+            *symbols += &format!("{symbol} ");
+            *numbers += &format!("{number} ");
+        }
+    }
+    let label = |i: usize| if i == 0 { line.name.as_str() } else { "" };
+    let both = rows.iter().enumerate().flat_map(|(i, [symbols, numbers])| [(label(i), symbols), ("", numbers)]);
+    both.map(|(label, text)| format!("{:INDENT$}{label:<9}{}\n", "", text.trim_end())).collect()
+}
+
+fn both(cell: &Cell<'_>) -> [String; 2] {
+    let joined = |sign: &str, text: &str| match (sign, text) {
+        ("", text) => format!("  {text}"),
+        (sign, "") => sign.to_owned(),
+        (sign, text) => format!("{sign} {text}"),
+    };
+    [joined(cell.sign, &plain(cell.symbol)), joined(cell.number_sign, &cell.number)]
+}
+
+fn of_equation(machine: &Machine, equation: &Equation) -> OfEquation {
+    OfEquation {
+        number: equation.number,
+        title: equation.title,
+        says: plain(equation.says),
+        form: plain(equation.form),
+        notes: equation.notes.iter().map(|note| plain(note)).collect(),
+        why_not: equation.lines.as_ref().err().cloned(),
+        holds: equation.holds(),
+        lines: equation.lines.iter().flatten().map(|line| of_line(machine, line)).collect(),
+    }
+}
+
+fn of_line(machine: &Machine, line: &Line) -> OfLine {
+    let [left, right] = line.sides();
+    let terms = |terms: &[Term]| terms.iter().map(|term| of_term(machine, term)).collect();
+    OfLine {
+        name: line.name.clone(),
+        unit: line.unit,
+        left,
+        right,
+        holds: line.holds(),
+        left_terms: terms(&line.left),
+        right_terms: terms(&line.right),
+    }
+}
+
+fn of_term(machine: &Machine, term: &Term) -> OfTerm {
+    let sign = if term.is_negative { "−" } else { "" };
+    let parts = term.parts.iter().filter(|(_, value)| *value != 0.0);
+    let part = |(origin, value): &(Origin, f64)| OfPart { from: origin.words(machine), value: *value };
+    OfTerm { symbol: format!("{sign}{}", plain(&term.symbol)), value: term.value, parts: parts.map(part).collect() }
+}

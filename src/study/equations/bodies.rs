@@ -1,0 +1,259 @@
+//! [`Bodies`]: a machine link by link, with symbols. What is summed here over links, counterweights and payload meets
+//! the closed forms of [`Inertia`](crate::mechanics::machine::Inertia) in the equations.
+//!
+//! # Symbols
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | m_j, l_cj, I_j | mass, centre of mass along it, and inertia of link j without what it carries | kg, m, kg m² |
+//! | w_j, x_j | mass and place of a counterweight of link j | kg, m |
+//! | m_p, x_p | the payload, and how far beyond the end effector it is | kg, m |
+//! | r_cj | Σ_k a_jk e(q_k) | m |
+
+use super::equation::Origin;
+use super::state::State;
+use super::symbol::{named, of};
+use crate::mechanics::balance::Body;
+use crate::mechanics::machine::{Attach, Length, Machine, PlaceOnLink, Point};
+use crate::mechanics::planar::{MAX_DRIVES, Vector, cross, dot};
+
+/// A step along the links of a drive.
+#[derive(Clone, Debug)]
+pub(super) struct Arm {
+    pub drive: usize,
+    /// ±1.
+    pub sign: f64,
+    pub symbol: String,
+    /// m.
+    pub value: f64,
+    /// Whether it is the body's own l_c, and not a length.
+    pub is_own: bool,
+}
+
+/// What has a mass.
+#[derive(Clone, Debug)]
+pub(super) struct Mass {
+    pub origin: Origin,
+    /// The drive whose orientation it has.
+    pub drive: usize,
+    pub kilograms: f64,
+    /// kg m².
+    pub inertia: f64,
+    pub mass_symbol: String,
+    /// None where it has no inertia of its own.
+    pub inertia_symbol: String,
+    pub arms: Vec<Arm>,
+    /// Off its link's axis, m.
+    pub normal: f64,
+    /// a_k, m.
+    pub a: [Vector; MAX_DRIVES],
+}
+
+/// A rotor: of which drive, J in kg m², and how it turns with the drives.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rotor {
+    pub drive: usize,
+    pub inertia: f64,
+    pub rates: [f64; MAX_DRIVES],
+}
+
+/// All of a machine.
+pub(super) struct Bodies {
+    pub masses: Vec<Mass>,
+    pub rotors: Vec<Rotor>,
+    /// The end effector.
+    pub tip: Vec<Arm>,
+}
+
+impl Bodies {
+    pub fn of(machine: &Machine) -> Self {
+        let (spec, walk) = (machine.spec(), Walk { machine });
+        let links = spec.links.iter().enumerate().map(|(j, link)| {
+            let symbols = [of("m", &link.name), of("I", &link.name), of("l", format!("c{}", link.name))];
+            let origin = Origin::Body(Body::Link(j), j);
+            mass(machine, origin, j, [link.mass, link.inertia, link.com, link.com_normal], symbols, &walk.root(j))
+        });
+        let weights = spec.counterweights.iter().enumerate().filter_map(|(i, weight)| {
+            let j = spec.links.iter().position(|link| link.name == weight.link)?;
+            let before = spec.counterweights[..i].iter().filter(|other| other.link == weight.link).count();
+            let name = format!("{}{}", weight.link, "′".repeat(before));
+            let symbols = [of("w", &name), of("I", format!("w{name}")), of("x", &name)];
+            let origin = Origin::Body(Body::Counterweight(i), j);
+            let figures = [weight.mass, weight.inertia(), weight.at, 0.0];
+            Some(mass(machine, origin, j, figures, symbols, &walk.root(j)))
+        });
+        let end = machine.end_link();
+        let tip = spec.end_effector.as_ref().map_or_else(Vec::new, |point| walk.point(point, end));
+        let payload = (spec.payload.mass > 0.0).then(|| {
+            let held = spec.payload;
+            let symbols = [of("m", "p"), of("I", "p"), of("x", "p")];
+            let figures = [held.mass, held.inertia, held.offset[0], held.offset[1]];
+            let mut payload = mass(machine, Origin::Body(Body::Payload, end), end, figures, symbols, &tip);
+            if held.offset[0] == 0.0 {
+                payload.arms.pop();
+            }
+            payload
+        });
+        let rotors = spec.drives.iter().enumerate().filter_map(|(k, drive)| {
+            let rotor = drive.rotor.filter(|rotor| rotor.inertia > 0.0)?;
+            let mut rates = [0.0; MAX_DRIVES];
+            rates[k] = rotor.ratio;
+            if let Some(on) = drive.on.as_ref().and_then(|on| spec.drives.iter().position(|d| d.name == *on)) {
+                rates[on] += 1.0 - rotor.ratio;
+            }
+            Some(Rotor { drive: k, inertia: rotor.inertia, rates })
+        });
+        Self { masses: links.chain(weights).chain(payload).collect(), rotors: rotors.collect(), tip }
+    }
+
+    /// A number of each body.
+    pub fn each(&self, value: impl Fn(&Mass) -> f64) -> Vec<(Origin, f64)> {
+        self.masses.iter().map(|mass| (mass.origin, value(mass))).collect()
+    }
+
+    /// A number of each rotor.
+    pub fn each_rotor(&self, value: impl Fn(&Rotor) -> f64) -> Vec<(Origin, f64)> {
+        self.rotors.iter().map(|rotor| (Origin::Rotor(rotor.drive), rotor.inertia * value(rotor))).collect()
+    }
+
+    /// Whether a mass lies off the axis of its link.
+    pub fn has_normals(&self) -> bool {
+        self.masses.iter().any(|mass| mass.normal != 0.0)
+    }
+}
+
+fn mass(
+    machine: &Machine,
+    origin: Origin,
+    link: usize,
+    [kilograms, inertia, along, normal]: [f64; 4],
+    [mass_symbol, inertia_symbol, own]: [String; 3],
+    root: &[Arm],
+) -> Mass {
+    let part = &machine.resolved_links()[link];
+    let mut arms = root.to_vec();
+    arms.push(Arm { drive: part.drive, sign: part.sign, symbol: own, value: along, is_own: true });
+    let mut a = [Vector::default(); MAX_DRIVES];
+    for arm in &arms {
+        a[arm.drive] += arm.sign * arm.value;
+    }
+    a[part.drive] += Vector::new(0.0, part.sign * normal);
+    let inertia_symbol = if inertia == 0.0 { String::new() } else { inertia_symbol };
+    Mass { origin, drive: part.drive, kilograms, inertia, mass_symbol, inertia_symbol, arms, normal, a }
+}
+
+/// Ways along links, with the names of the lengths that are gone.
+struct Walk<'a> {
+    machine: &'a Machine,
+}
+
+impl Walk<'_> {
+    /// The root of a link.
+    fn root(&self, link: usize) -> Vec<Arm> {
+        let (spec, part) = (self.machine.spec(), &self.machine.resolved_links()[link]);
+        match (part.parent, &spec.links[link].attach) {
+            (Some(parent), Attach::On(point)) => self.point(point, parent),
+            _ => Vec::new(),
+        }
+    }
+
+    /// A point of a link.
+    fn point(&self, point: &Point, link: usize) -> Vec<Arm> {
+        let (spec, part) = (self.machine.spec(), &self.machine.resolved_links()[link]);
+        let mut arms = self.root(link);
+        let own = &spec.links[link];
+        let length = || match &own.length {
+            Length::Named(name) => named(name),
+            Length::Metres(_) => of("l", &own.name),
+        };
+        let (sign, symbol, value) = match &point.at {
+            PlaceOnLink::Named(word) if word == "root" => return arms,
+            PlaceOnLink::Named(word) if word == "tip" => (1.0, length(), part.length),
+            PlaceOnLink::Named(word) => {
+                let (sign, name) = word.strip_prefix('-').map_or((1.0, word.as_str()), |name| (-1.0, name));
+                (sign, named(name), spec.lengths.get(name).copied().unwrap_or_default())
+            }
+            PlaceOnLink::Metres(at) => (1.0, of("s", &own.name), *at),
+        };
+        arms.push(Arm { drive: part.drive, sign: sign * part.sign, symbol, value, is_own: false });
+        arms
+    }
+}
+
+/// How bodies move at an instant.
+pub(super) struct Motion {
+    n: usize,
+    e: [Vector; MAX_DRIVES],
+    qd: [f64; MAX_DRIVES],
+    qdd: [f64; MAX_DRIVES],
+}
+
+const I: Vector = Vector::new(0.0, 1.0);
+
+impl Motion {
+    pub fn of(state: &State) -> Self {
+        let mut e = [Vector::default(); MAX_DRIVES];
+        // Not the unit vectors of the closed forms, so that both are found apart.
+        e.iter_mut().zip(state.q.iter()).for_each(|(e, q)| *e = Vector::new(q.cos(), q.sin()));
+        Self { n: state.q.len(), e, qd: *state.qd.padded(), qdd: *state.qdd.padded() }
+    }
+
+    fn sum(&self, of: impl Fn(usize) -> Vector) -> Vector {
+        (0..self.n).map(of).sum()
+    }
+
+    /// e(q_k).
+    pub fn unit(&self, k: usize) -> Vector {
+        self.e[k]
+    }
+
+    /// r_c, m.
+    pub fn place(&self, mass: &Mass) -> Vector {
+        self.sum(|k| mass.a[k] * self.e[k])
+    }
+
+    /// ∂r_c/∂q_k, m.
+    pub fn column(&self, mass: &Mass, k: usize) -> Vector {
+        I * mass.a[k] * self.e[k]
+    }
+
+    /// ṙ_c, m/s.
+    pub fn velocity(&self, mass: &Mass) -> Vector {
+        self.sum(|k| self.column(mass, k) * self.qd[k])
+    }
+
+    /// r̈_c, m/s².
+    pub fn acceleration(&self, mass: &Mass) -> Vector {
+        self.sum(|k| self.column(mass, k) * self.qdd[k]) + self.turning(mass)
+    }
+
+    /// What of that comes from rates alone, m/s².
+    pub fn turning(&self, mass: &Mass) -> Vector {
+        -self.sum(|k| mass.a[k] * self.e[k] * self.qd[k] * self.qd[k])
+    }
+
+    /// Rate of a rotor, rad/s.
+    pub fn rotor_rate(&self, rotor: &Rotor) -> f64 {
+        (0..self.n).map(|k| rotor.rates[k] * self.qd[k]).sum()
+    }
+
+    /// Acceleration of a rotor, rad/s².
+    pub fn rotor_acceleration(&self, rotor: &Rotor) -> f64 {
+        (0..self.n).map(|k| rotor.rates[k] * self.qdd[k]).sum()
+    }
+
+    /// τ_k by the work of all bodies in a turn of drive k alone, N m.
+    pub fn torque(&self, bodies: &Bodies, k: usize, gravity: Vector) -> f64 {
+        let body = |mass: &Mass| {
+            let turns = if mass.drive == k { mass.inertia * self.qdd[k] } else { 0.0 };
+            mass.kilograms * dot(self.acceleration(mass) - gravity, self.column(mass, k)) + turns
+        };
+        let rotor = |rotor: &Rotor| rotor.inertia * rotor.rates[k] * self.rotor_acceleration(rotor);
+        bodies.masses.iter().map(body).sum::<f64>() + bodies.rotors.iter().map(rotor).sum::<f64>()
+    }
+
+    /// What a body brings to D_k, kg m².
+    pub fn momentum(&self, mass: &Mass, k: usize) -> f64 {
+        let turns = if mass.drive == k { mass.inertia } else { 0.0 };
+        mass.kilograms * cross(self.place(mass), self.column(mass, k)) + turns
+    }
+}

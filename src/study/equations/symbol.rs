@@ -1,0 +1,50 @@
+//! Symbols with indices. They are kept as text in which `_{…}` holds an index, `l_{c1}`, and a transpose is `ᵀ`.
+
+/// How high a piece of a symbol stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Level {
+    /// On the line.
+    Line,
+    /// Below it, and smaller.
+    Index,
+    /// Above it, and smaller.
+    Raised,
+}
+
+/// The pieces of a symbol. The T of a transpose is one of them, because few fonts have it raised.
+pub fn pieces(symbol: &str) -> impl Iterator<Item = (&str, Level)> {
+    symbol.split("_{").enumerate().flat_map(|(i, piece)| {
+        let (index, rest) = if i == 0 { ("", piece) } else { piece.split_once('}').unwrap_or((piece, "")) };
+        let transposes = rest.split('ᵀ').enumerate().flat_map(|(i, text)| {
+            let raised = if i == 0 { "" } else { "T" };
+            [(raised, Level::Raised), (text, Level::Line)]
+        });
+        [(index, Level::Index)].into_iter().chain(transposes).filter(|(text, _)| !text.is_empty())
+    })
+}
+
+/// A symbol as plain text: indices of digits as small digits, m₁, others behind a low line, l_c1.
+pub fn plain(symbol: &str) -> String {
+    let small = |c: char| c.to_digit(10).and_then(|digit| char::from_u32('₀' as u32 + digit));
+    let digits = |text: &str| text.chars().map(small).collect::<Option<String>>();
+    let piece = |(text, level): (&str, Level)| match level {
+        Level::Line => text.to_owned(),
+        Level::Raised => "ᵀ".to_owned(),
+        Level::Index => digits(text).unwrap_or_else(|| format!("_{text}")),
+    };
+    pieces(symbol).map(piece).collect()
+}
+
+/// A name of a machine file as a symbol: `l12` is l with the index 12.
+pub(super) fn named(name: &str) -> String {
+    let letters = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    match letters.len() < name.len() && !letters.is_empty() {
+        true => format!("{letters}_{{{}}}", &name[letters.len()..]),
+        false => name.to_owned(),
+    }
+}
+
+/// A letter with an index.
+pub(super) fn of(letter: &str, index: impl std::fmt::Display) -> String {
+    format!("{letter}_{{{index}}}")
+}

@@ -1,0 +1,272 @@
+//! Equations with numbers in them: both sides of every law agree for machines and states at random, and what the paper
+//! gives of its own machine stands where the paper has it.
+
+use stillbase::mechanics::balance::{Condition, Preset};
+use stillbase::mechanics::machine::{Counterweight, Inertia, Machine, builtin};
+use stillbase::mechanics::planar::{DriveAngles, PerDrive};
+use stillbase::planning::Reference;
+use stillbase::session::Session;
+use stillbase::session::scenario::Scenario;
+use stillbase::study::equations::{Equation, Line, NUMBERS, State, Term, When, cells, equations, plain};
+
+use crate::support::{Noise, close, random};
+
+fn a_state(noise: &mut Noise, n: usize) -> State {
+    let mut some = |size: f64| PerDrive::from_fn(n, |_| noise.between(-size, size));
+    let (q, qd, qdd) = (DriveAngles(some(6.0)), some(3.0), some(20.0));
+    State::given(Reference { q, qd, qdd })
+}
+
+fn of(machine: &Machine, state: &State) -> Vec<Equation> {
+    equations(machine, state, Preset::Table1)
+}
+
+fn numbered<'a>(all: &'a [Equation], number: &str) -> &'a Equation {
+    all.iter().find(|equation| equation.number == number).expect("a number of the paper")
+}
+
+fn lines<'a>(all: &'a [Equation], number: &str) -> &'a [Line] {
+    numbered(all, number).lines.as_ref().unwrap_or_else(|why| panic!("({number}): {why}"))
+}
+
+fn table_1() -> Machine {
+    builtin("nine-link-table-1").expect("built in").clone()
+}
+
+/// A side as the paper writes it.
+fn written(terms: &[Term]) -> String {
+    let sign = |(i, term): (usize, &Term)| match (i, term.is_negative) {
+        (0, false) => "",
+        (0, true) => "−",
+        (_, false) => " + ",
+        (_, true) => " − ",
+    };
+    terms.iter().enumerate().map(|one| format!("{}{}", sign(one), plain(&one.1.symbol))).collect()
+}
+
+fn with_counterweights(noise: &mut Noise) -> Machine {
+    let mut spec = random::a_machine(noise).spec().clone();
+    for _ in 0..(noise.between(0.0, 4.0) as usize) {
+        let j = noise.between(0.0, spec.links.len() as f64 - 1e-9) as usize;
+        let (mass, at, radius) = (noise.between(0.1, 3.0), noise.between(-0.3, 0.3), noise.between(0.0, 0.1));
+        spec.counterweights.push(Counterweight { link: spec.links[j].name.clone(), mass, at, radius });
+    }
+    Machine::new(spec).expect("still a machine")
+}
+
+#[test]
+fn both_sides_of_every_law_agree() {
+    let mut noise = Noise::of(71);
+    let (mut lines, mut worst) = (0, 0.0_f64);
+    for _ in 0..200 {
+        let machine = with_counterweights(&mut noise);
+        let state = a_state(&mut noise, machine.drives());
+        let all = of(&machine, &state);
+        let numbers: Vec<&str> = all.iter().map(|equation| equation.number).collect();
+        assert_eq!(numbers, NUMBERS);
+        for number in ["1", "2", "3", "4", "5", "6", "14", "A1", "A2", "A3"] {
+            for line in self::lines(&all, number) {
+                assert!(line.tolerance > 0.0 && line.sides().iter().all(|side| side.is_finite()));
+                assert!(line.holds(), "({number}) {}: off by {:e}, {:?}", line.name, line.off(), line.sides());
+                worst = worst.max(line.off().abs() / line.tolerance);
+                lines += 1;
+            }
+        }
+    }
+    assert!(lines > 5000, "{lines} lines");
+    // Not so wide that anything would pass.
+    assert!(worst > 1e-4, "{worst}");
+}
+
+#[test]
+fn a_term_is_the_sum_of_what_bodies_bring() {
+    let mut noise = Noise::of(72);
+    let mut found = 0;
+    for _ in 0..100 {
+        let machine = with_counterweights(&mut noise);
+        let state = a_state(&mut noise, machine.drives());
+        for equation in of(&machine, &state) {
+            for line in equation.lines.iter().flatten() {
+                for term in line.left.iter().chain(&line.right).filter(|term| !term.parts.is_empty()) {
+                    let sum: f64 = term.parts.iter().map(|(_, part)| part).sum();
+                    let size: f64 = term.parts.iter().map(|(_, part)| part.abs()).sum();
+                    let words =
+                        format!("({}) {}: {} is {} and {sum}", equation.number, line.name, term.symbol, term.value);
+                    assert!((sum - term.value).abs() <= 1e-10 * size.max(1e-3), "{words}");
+                    assert!(term.links().iter().all(|link| *link < machine.links().len()));
+                    found += 1;
+                }
+            }
+        }
+    }
+    assert!(found > 10_000, "{found}");
+}
+
+#[test]
+fn what_is_left_of_balance_is_what_the_constants_have() {
+    let mut noise = Noise::of(73);
+    for _ in 0..100 {
+        let machine = with_counterweights(&mut noise);
+        let inertia = Inertia::of(&machine);
+        let all = of(&machine, &a_state(&mut noise, machine.drives()));
+        let eighth = numbered(&all, "8").lines.as_ref().map_or(&[][..], |lines| lines);
+        let both: Vec<&Line> = lines(&all, "7").iter().chain(eighth).collect();
+        let conditions: Vec<Condition> = Condition::all(machine.drives()).collect();
+        assert_eq!(both.len(), conditions.len());
+        for (i, (line, condition)) in both.into_iter().zip(conditions).enumerate() {
+            let size: f64 = line.left.iter().map(|term| term.value.abs()).sum();
+            let left = condition.left(&inertia).re;
+            assert!((line.off() - left).abs() <= 1e-13 * size.max(1e-3), "{condition:?}: {} and {left}", line.off());
+            // (9) is the same in two heaps.
+            let ninth = &lines(&all, "9")[i];
+            assert!((ninth.off() - left).abs() <= 1e-12 * size.max(1e-3), "{condition:?}: {} and {left}", ninth.off());
+        }
+    }
+}
+
+#[test]
+fn on_a_plane_of_any_number_of_drives() {
+    let mut noise = Noise::of(74);
+    for i in 0..60 {
+        let (machine, space) = random::a_space(&mut noise, 1 + i % 6);
+        let state = a_state(&mut noise, machine.drives());
+        let all = of(&machine, &state);
+        let b: f64 = space.lambda().iter().zip(state.q.iter()).map(|(lambda, q)| lambda * q).sum();
+        assert!((lines(&all, "13")[0].sides()[0] - b).abs() < 1e-9 * (1.0 + b.abs()));
+        for number in ["13", "15", "16"] {
+            for line in lines(&all, number) {
+                assert!(line.holds(), "({number}) off by {:e}", line.off());
+            }
+        }
+        let [zero, ratios @ ..] = lines(&all, "12") else { panic!("no line") };
+        assert!(ratios.iter().all(Line::holds));
+        // What is left of (12) is what the angular momentum of (6) has of D_1.
+        let momentum = lines(&all, "6")[0].sides()[0];
+        let inertia = Inertia::of(&machine);
+        let size: f64 = inertia.diagonals().iter().sum();
+        assert!((zero.off() * inertia.pose_inertia() - momentum).abs() < 1e-9 * size * 10.0);
+        // Another b than that of the pose is found out.
+        let other = of(&machine, &State { b: Some(b + 0.1), ..state });
+        assert!(!lines(&other, "13")[0].holds());
+    }
+}
+
+/// As they stand in the paper, but that masses of one length are taken together in all three.
+#[test]
+fn the_paper_s_machine_is_written_as_in_the_paper() {
+    let all = of(&table_1(), &State::at_rest(DriveAngles::from([1.7, 3.7, 2.2])));
+    let sides = |number| lines(&all, number).iter().map(|line| written(&line.left)).collect::<Vec<_>>();
+    assert_eq!(
+        sides("7"),
+        [
+            "m₁ l_c1 + m₄ l_c4 + m₆ l_c6 + (m₅ + m₇ + m₈ + m₉) l₁",
+            "m₂ l_c2 + m₄ l₂ − m₅ l_c5 − m₈ l_c8 − m₉ l₅",
+            "m₃ l_c3 + (m₆ + m₈) l₃ + m₇ l_c7 − m₉ l_c9",
+        ]
+    );
+    assert_eq!(
+        sides("8"),
+        [
+            "m₄ l₂ l_c4 − m₅ l₁ l_c5 − m₈ l₁ l_c8 − m₉ l₁ l₅",
+            "m₆ l₃ l_c6 + m₇ l₁ l_c7 + m₈ l₁ l₃ − m₉ l₁ l_c9",
+            "−m₈ l₃ l_c8 + m₉ l₅ l_c9",
+        ]
+    );
+    let right = |number| lines(&all, number).iter().map(|line| written(&line.right)).collect::<Vec<_>>();
+    assert_eq!(right("14"), ["l₁ cos q₁ − l₅ cos q₂ − l₉ cos q₃", "l₁ sin q₁ − l₅ sin q₂ − l₉ sin q₃"]);
+    assert_eq!(right("15"), ["b/Σλ − a₁ (λ₂ + λ₃)/Σλ + (π − a₂) λ₃/Σλ"]);
+    assert_eq!(right("16")[..2], ["l₁ − l₅ cos(a₁) + l₉ cos(a₁ + a₂)", "−l₅ sin(a₁) + l₉ sin(a₁ + a₂)"]);
+    assert_eq!(sides("12")[0], "q\u{307}₁ + λ₂ q\u{307}₂ + λ₃ q\u{307}₃");
+    assert_eq!(sides("13"), ["q₁ + λ₂ q₂ + λ₃ q₃"]);
+    assert_eq!(
+        right("A3")[0],
+        "(I₁ + I₄ + I₆) + m₁ l_c1² + m₄ l_c4² + m₆ l_c6² + (m₅ + m₇ + m₈ + m₉) l₁² + C₁₂ cos(q₁ − q₂) + C₁₃ cos(q₁ − q₃)"
+    );
+}
+
+#[test]
+fn the_paper_s_numbers_stand_in_them() {
+    let machine = table_1();
+    // Where both cosines of (A3) vanish with what couples drives 1 and 2, and 1 and 3.
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let all = of(&machine, &State::at_rest(DriveAngles::from([0.0, quarter, quarter])));
+    let left = |number: &str| lines(&all, number).iter().map(|line| line.sides()[0]).collect::<Vec<_>>();
+    let first = lines(&all, "A3")[0].sides();
+    close("d_1", &[first[0]], &[1.367816575], 1e-9);
+    let seventh: Vec<f64> = lines(&all, "7")[0].left.iter().map(|term| term.value).collect();
+    close("(7)", &seventh, &[7.0 * -0.2214, 1.5 * 0.2016, 1.5 * -0.0349, 2.6 * 0.5], 1e-12);
+    // Table I is rounded: 2.5e-4 kg m and 2.3e-5 kg m² are left.
+    let most = |number| left(number).into_iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    assert!((most("7") - 2.5e-4).abs() < 0.06e-4, "{}", most("7"));
+    assert!((most("8") - 2.3e-5).abs() < 0.06e-5, "{}", most("8"));
+    assert_eq!((numbered(&all, "7").holds(), numbered(&all, "8").holds()), (Some(false), Some(false)));
+    close("λ", &left("12")[1..], &[0.116746264, 0.127920111], 1e-8);
+    // (10) gives Table I to its last digit, and (9) holds for it.
+    let least = lines(&all, "10");
+    for line in &least[1..] {
+        assert!(line.off().abs() < 5e-5, "{:?}", line.sides());
+    }
+    let [now, best] = least[0].sides();
+    assert!((now - best).abs() < 1e-3 * best, "{now} and {best}");
+    let solved = of(builtin("nine-link").expect("built in"), &State::at_rest(DriveAngles::from([1.7, 3.7, 2.2])));
+    for number in ["7", "8", "9", "10"] {
+        assert_eq!(numbered(&solved, number).holds(), Some(true), "({number})");
+    }
+}
+
+/// Case 3 halfway: no force, no moment, b = 2.4, A and B of (14).
+#[test]
+fn case_3_has_its_numbers() {
+    let session = Session::open(Scenario::builtin("case-3").expect("built in")).expect("it opens");
+    let (run, motion) = (session.run(), session.run().motion().expect("a motion"));
+    let of_case = |at: f64| {
+        let state = State { b: Some(2.4), ..State::given(motion.at(at)) };
+        of(&run.scenario().machine, &state)
+    };
+    for (at, place) in [(0.0, [0.5, 0.5]), (1.0, [0.55, 0.9])] {
+        let all = of_case(at);
+        let tip: Vec<f64> = lines(&all, "14").iter().map(|line| line.sides()[0]).collect();
+        close("(14)", &tip, &place, 1e-9);
+    }
+    let all = of_case(0.3);
+    for number in NUMBERS {
+        assert_eq!(numbered(&all, number).holds(), Some(true), "({number}): {:?}", numbered(&all, number).worst());
+    }
+    assert!((lines(&all, "13")[0].sides()[0] - 2.4).abs() < 1e-9);
+    assert!(lines(&all, "5")[0].sides()[0].abs() < 1e-9, "no moment");
+    assert!(lines(&all, "1").iter().all(|line| line.sides()[0].abs() < 1e-9), "no force");
+    let torque = lines(&all, "11").iter().map(|line| line.sides()[0].abs()).fold(0.0, f64::max);
+    assert!(torque > 0.5, "{torque} N m");
+    // At rest the window shows the plan instead, because a pose at rest has nothing to show.
+    let state = State::of(run, session.frame());
+    assert_eq!(state.when, When::Plan(0.25));
+    assert_eq!(State::now(session.frame()).when, When::Run(0.0));
+    let case_1 = Session::open(Scenario::builtin("case-1").expect("built in")).expect("it opens");
+    let all = of(&case_1.scenario().machine, &State::of(case_1.run(), case_1.frame()));
+    assert_eq!((numbered(&all, "12").holds(), numbered(&all, "5").holds()), (Some(false), Some(true)));
+}
+
+#[test]
+fn what_has_no_meaning_says_why() {
+    let bare = builtin("nine-link-bare").expect("built in");
+    let all = of(bare, &State::at_rest(DriveAngles::from([1.7, 3.7, 2.2])));
+    for number in ["11", "12", "13", "15", "16"] {
+        let why = numbered(&all, number).lines.as_ref().expect_err("not balanced");
+        assert!(why.contains("kg m²"), "({number}) {why}");
+    }
+    let mut noise = Noise::of(75);
+    let (one, _) = random::a_space(&mut noise, 1);
+    let all = of(&one, &a_state(&mut noise, 1));
+    assert!(numbered(&all, "8").lines.as_ref().expect_err("one drive").contains("one drive"));
+}
+
+#[test]
+fn numbers_stand_below_their_symbols() {
+    let all = of(&table_1(), &State::at_rest(DriveAngles::from([1.7, 3.7, 2.2])));
+    let line = &lines(&all, "8")[2];
+    let cells = cells(line, 4);
+    let symbols: Vec<String> = cells.iter().map(|cell| format!("{}{}", cell.sign, plain(cell.symbol))).collect();
+    assert_eq!(symbols, ["−m₈ l₃ l_c8", "+m₉ l₅ l_c9", "=", "0"]);
+    let numbers: Vec<String> = cells.iter().map(|cell| format!("{}{}", cell.number_sign, cell.number)).collect();
+    assert_eq!(numbers, ["−0.0003", "+0.0003", "=", "0.0000"]);
+}
