@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::change::{Change, NotOpened};
+use super::change::{Change, NotOpened, Opened};
 use super::jobs::{AtOnce, Job, Poll, Ticket, Workers};
 use super::{Activity, Command};
 use crate::picture::scene::stage::Outlined;
@@ -64,7 +64,7 @@ pub(super) struct Background {
     /// What is to be done after that.
     pub later: VecDeque<Command>,
     /// A session that takes the place of the present one.
-    pub opening: Slot<Opening, Result<Session, NotOpened>>,
+    pub opening: Slot<Opening, Result<Opened, NotOpened>>,
     /// A study, or why there is none; nothing if it was stopped.
     pub study: Slot<Scenario, Option<Result<Study, String>>>,
     /// Runs side by side.

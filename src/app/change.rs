@@ -4,6 +4,7 @@
 use std::path::PathBuf;
 
 use super::RefusedEdit;
+use crate::files::Found;
 use crate::session::scenario::{Scenario, TaskKind};
 use crate::session::{Edit, Refusal, Session, Watch};
 use crate::settings::text::brief;
@@ -124,6 +125,9 @@ pub(super) enum Source {
     File(PathBuf),
 }
 
+/// What was opened, and what is to be said of where it comes from.
+pub(super) type Opened = (Session, Option<String>);
+
 /// Why something was not opened.
 #[derive(Debug)]
 pub(super) struct NotOpened {
@@ -133,9 +137,9 @@ pub(super) struct NotOpened {
 
 impl Source {
     /// Reads, plans and replays it.
-    pub fn open(self, watch: Watch<'_>) -> Result<Session, NotOpened> {
-        let (scenario, from_file) = match self {
-            Self::Scenario(scenario) => (*scenario, false),
+    pub fn open(self, watch: Watch<'_>) -> Result<Opened, NotOpened> {
+        let (Found { scenario, made }, from_file) = match self {
+            Self::Scenario(scenario) => (Found { scenario: *scenario, made: None }, false),
             Self::File(path) => {
                 let found = crate::files::scenario(&path.display().to_string());
                 let scenario =
@@ -144,9 +148,10 @@ impl Source {
             }
         };
         let change = scenario.task.whole();
-        Session::open_while(scenario, watch).map_err(|refusal| NotOpened {
+        let session = Session::open_while(scenario, watch).map_err(|refusal| NotOpened {
             why: refusal.to_string(),
             refused: from_file.then(|| RefusedEdit::of(&Edit::of("task", change), &refusal)),
-        })
+        })?;
+        Ok((session, made))
     }
 }

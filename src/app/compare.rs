@@ -7,7 +7,7 @@ use crate::picture::charts::figure::dashes;
 use crate::picture::numbers::signed;
 use crate::picture::scene::palette::{Palette, faded};
 use crate::session::scenario::Scenario;
-use crate::study::comparison::{COLUMNS, Column, Comparison, Entry};
+use crate::study::comparison::{COLUMNS, Column, Comparison, DESIGN, Entry};
 use egui::{Align, Button, CursorIcon, Frame, Grid, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui};
 
 /// Draws this panel.
@@ -59,13 +59,33 @@ fn buttons(ui: &mut Ui, comparison: &Comparison, commands: &mut Vec<Command>) {
     name(&add.response.on_hover_text("Another scenario to compare with"), "Add a run");
 }
 
-/// Columns in which something stands.
-fn columns(comparison: &Comparison) -> Vec<(usize, &'static Column)> {
+/// What stands over a column.
+struct Head {
+    /// Its place among all columns.
+    at: usize,
+    head: &'static str,
+    meaning: &'static str,
+    unit: &'static str,
+    decimals: usize,
+}
+
+impl Head {
+    fn of<T>(at: usize, column: &Column<T>) -> Self {
+        let Column { head, meaning, unit, decimals, .. } = *column;
+        Self { at, head, meaning, unit, decimals }
+    }
+}
+
+/// Columns in which something stands; of designs where there are several.
+fn columns(comparison: &Comparison) -> Vec<Head> {
     let runs = || comparison.entries().iter().filter_map(|e| e.outcome.as_ref().ok());
     let moves = runs().any(|r| r.summary.base_shift > 0.0 || r.summary.base_tilt > 0.0);
     let stands = |c: &Column| runs().any(|r| (c.value)(&r.summary).is_some());
     let all = COLUMNS.iter().enumerate();
-    all.filter(|(_, c)| stands(c) && (moves || !matches!(c.key, "base_shift" | "base_tilt"))).collect()
+    let of_runs = all.filter(|(_, c)| stands(c) && (moves || !matches!(c.key, "base_shift" | "base_tilt")));
+    let designs = if comparison.has_designs() { &DESIGN[..] } else { &[] };
+    let of_designs = designs.iter().enumerate().map(|(i, c)| Head::of(COLUMNS.len() + i, c));
+    of_runs.map(|(i, c)| Head::of(i, c)).chain(of_designs).collect()
 }
 
 fn table(ui: &mut Ui, p: &Palette, comparison: &Comparison, commands: &mut Vec<Command>) {
@@ -74,8 +94,8 @@ fn table(ui: &mut Ui, p: &Palette, comparison: &Comparison, commands: &mut Vec<C
     Grid::new("runs").num_columns(columns.len() + 3).spacing([14.0, 5.0]).min_col_width(0.0).show(ui, |ui| {
         ui.label("");
         ui.label(RichText::new("run").font(plain(11.5)).color(colour(p.dim)));
-        for (i, column) in &columns {
-            head(ui, p, comparison, *i, column, commands);
+        for column in &columns {
+            head(ui, p, comparison, column, commands);
         }
         ui.end_row();
         for i in comparison.order() {
@@ -85,7 +105,8 @@ fn table(ui: &mut Ui, p: &Palette, comparison: &Comparison, commands: &mut Vec<C
     });
 }
 
-fn head(ui: &mut Ui, p: &Palette, comparison: &Comparison, i: usize, column: &Column, commands: &mut Vec<Command>) {
+fn head(ui: &mut Ui, p: &Palette, comparison: &Comparison, column: &Head, commands: &mut Vec<Command>) {
+    let i = column.at;
     let arrow = match comparison.sorted() {
         Some((sorted, down)) if sorted == i => [" ↑", " ↓"][usize::from(down)],
         _ => "",
@@ -103,7 +124,7 @@ fn head(ui: &mut Ui, p: &Palette, comparison: &Comparison, i: usize, column: &Co
     });
 }
 
-fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &Entry, columns: &[(usize, &Column)], commands: &mut Vec<Command>) {
+fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &Entry, columns: &[Head], commands: &mut Vec<Command>) {
     let mut shown = entry.shown;
     ui.horizontal(|ui| {
         let tick = ui.add_enabled(entry.outcome.is_ok(), egui::Checkbox::without_text(&mut shown));
@@ -126,7 +147,9 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &Entry, columns: &[(usize, &Co
         let label = ui.add(Button::new(title).frame(false));
         name(&label, &format!("Open {}", entry.title));
         let label = label.on_hover_cursor(CursorIcon::PointingHand);
-        if label.on_hover_text("Open this run in place of the present one").clicked() {
+        let apart = entry.design.as_ref().and_then(|design| design.apart.as_ref());
+        let apart = apart.map_or_else(String::new, |why| format!(". Its machine: {why}"));
+        if label.on_hover_text(format!("Open this run in place of the present one{apart}")).clicked() {
             commands.push(Command::Comparison(ComparisonCommand::Open(i)));
         }
         if entry.kept {
@@ -138,9 +161,9 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &Entry, columns: &[(usize, &Co
         }
     });
     match &entry.outcome {
-        Ok(run) => {
-            for (_, column) in columns {
-                let text = match (column.value)(&run.summary) {
+        Ok(_) => {
+            for column in columns {
+                let text = match entry.value(column.at) {
                     Some(x) => signed(x, column.decimals),
                     None => "–".into(),
                 };

@@ -6,7 +6,7 @@ use clap::Args;
 use serde::{Serialize, Serializer};
 use stillbase::files::{NewFile, WriteError};
 use stillbase::session::scenario::Scenario;
-use stillbase::study::comparison::{COLUMNS, Compared, Summary, alternatives};
+use stillbase::study::comparison::{COLUMNS, Candidate, Compared, DESIGN, Design, Summary, alternatives};
 
 use super::exit::say;
 use super::failure::Failure;
@@ -17,13 +17,15 @@ use stillbase::settings::number::{fixed, nine_digits};
 /// Compare runs: one task done in several ways, or any scenarios, by what reaches the base and what it costs
 ///
 /// One scenario: its task on a reactionless path, on a straight line (case 1), with another pose at the end (case 2),
-/// on a straight line with a reaction wheel, and slowly. Several: just these.
+/// on a straight line with a reaction wheel, and slowly. Several: just these, and where their machines differ, what
+/// each weighs, how far it is balanced, and what that has cost and brought beside the first.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   stillbase compare case-3                                        five ways from A to B
   stillbase compare case-3 --set base.kind=free                   and what each does to a spacecraft
   stillbase compare case-3 --set base.wheel.torque_limit=0.5      when does the wheel saturate?
+  stillbase compare nine-link-bare case-3                         what balance costs, and what it brings
   stillbase compare case-1 case-3 my.toml -o table.csv")]
 pub struct Compare {
     /// One scenario to do in several ways, or several to compare
@@ -44,12 +46,36 @@ pub struct Compare {
 #[derive(Serialize)]
 struct Answer {
     runs: Vec<Row>,
+    /// The runs have different machines.
+    #[serde(skip)]
+    differ: bool,
 }
 
 struct Row {
     name: String,
     way: Option<&'static str>,
     outcome: Result<Summary, String>,
+    /// Its machine beside that of the first run.
+    design: Option<Design>,
+}
+
+/// The figures of a design, and why some are not given.
+struct Figures<'a>(&'a Design);
+
+impl Serialize for Figures<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        use serde::ser::SerializeMap;
+        let mut map = serializer.serialize_map(None)?;
+        for column in DESIGN {
+            if let Some(value) = (column.value)(self.0) {
+                map.serialize_entry(column.key, &value)?;
+            }
+        }
+        if let Some(why) = &self.0.apart {
+            map.serialize_entry("apart", why)?;
+        }
+        map.end()
+    }
 }
 
 impl Serialize for Row {
@@ -69,6 +95,9 @@ impl Serialize for Row {
                 }
                 map.serialize_entry("reactionless", &summary.reactionless)?;
                 map.serialize_entry("verdict", &summary.verdict.sentence())?;
+                if let Some(design) = &self.design {
+                    map.serialize_entry("design", &Figures(design))?;
+                }
                 if let Some(fault) = &summary.fault {
                     map.serialize_entry("audit", fault)?;
                 }
@@ -88,16 +117,22 @@ impl Compare {
         };
         let scenarios = self.scenarios()?;
         let (mut runs, mut good) = (Vec::new(), Vec::new());
+        let (mut first, mut differ) = (None::<Candidate>, false);
         for (way, scenario) in scenarios {
-            let outcome = Compared::of(scenario.clone());
-            let outcome = outcome.map(|run| run.summary).map_err(|why| why.to_string());
+            let outcome = Compared::of(scenario.clone()).map_err(|why| why.to_string());
+            let design = outcome.as_ref().ok().map(|run| {
+                let first = first.get_or_insert_with(|| run.candidate.clone());
+                differ |= !run.candidate.is_alike(first);
+                run.candidate.beside(first)
+            });
+            let outcome = outcome.map(|run| run.summary);
             if let Ok(summary) = &outcome {
                 if let Some(fault) = &summary.fault {
                     say(format!("{}: audit failed: {fault}", scenario.name));
                 }
                 good.push(scenario.clone());
             }
-            runs.push(Row { name: scenario.name, way, outcome });
+            runs.push(Row { name: scenario.name, way, outcome, design });
         }
         if let [Row { name, outcome: Err(why), .. }] = &runs[..] {
             return Err(Failure::NoAnswer(format!("{name}: {why}")));
@@ -112,7 +147,10 @@ impl Compare {
             None => {}
         }
         let fault = runs.iter().find_map(|r| Some((r.name.clone(), r.outcome.as_ref().ok()?.fault.clone()?)));
-        self.format.print(&Answer { runs }, table)?;
+        self.format.print(&Answer { runs, differ }, |answer| match answer.differ {
+            true => format!("{}\n{}", table(answer), designs(answer)),
+            false => table(answer),
+        })?;
         fault.map_or(Ok(()), |(name, why)| Err(Failure::untrusted(&name, why)))
     }
 
@@ -154,7 +192,10 @@ impl Compare {
             other => Failure::wrong_input(format!("CSV: {other:?}")),
         };
         let heads = COLUMNS.iter().map(|c| format!("{} {}", c.name(), c.unit));
+        let machines =
+            DESIGN.iter().map(|c| if c.unit == "1" { c.key.into() } else { format!("{} {}", c.key, c.unit) });
         let head = ["scenario".to_owned()].into_iter().chain(heads).chain(["reactionless".into(), "refused".into()]);
+        let head = head.chain(machines);
         writer.write_record(head).map_err(failed)?;
         for row in runs {
             let values = COLUMNS.iter().map(|c| match &row.outcome {
@@ -165,7 +206,11 @@ impl Compare {
                 Ok(summary) => (summary.verdict.answer(), String::new()),
                 Err(why) => (String::new(), why.clone()),
             };
-            let cells = [row.name.clone()].into_iter().chain(values).chain([verdict, why]);
+            let machine = DESIGN.iter().map(|c| {
+                let value = row.design.as_ref().and_then(|design| (c.value)(design));
+                value.map_or_else(String::new, nine_digits)
+            });
+            let cells = [row.name.clone()].into_iter().chain(values).chain([verdict, why]).chain(machine);
             writer.write_record(cells).map_err(failed)?;
         }
         match writer.into_inner() {
@@ -175,6 +220,24 @@ impl Compare {
         say(format!("wrote {}", file.display()));
         Ok(())
     }
+}
+
+/// The machines of the runs, each beside that of the first; columns that hold nothing are left out.
+fn designs(answer: &Answer) -> String {
+    let all = || answer.runs.iter().filter_map(|row| Some((row, row.design.as_ref()?)));
+    let columns: Vec<_> = DESIGN.iter().filter(|c| all().any(|(_, design)| (c.value)(design).is_some())).collect();
+    let heads = columns.iter().map(|c| if c.unit == "1" { c.head.into() } else { format!("{} {}", c.head, c.unit) });
+    let mut table = Table::new(["machine of".to_owned()].into_iter().chain(heads));
+    let mut apart = String::new();
+    for (row, design) in all() {
+        let cells = columns.iter().map(|c| (c.value)(design).map_or_else(|| "–".into(), |x| fixed(x, c.decimals)));
+        let name = row.way.unwrap_or(&row.name);
+        table.row([name.to_owned()].into_iter().chain(cells));
+        if let Some(why) = &design.apart {
+            apart += &format!("{name}: {why}\n");
+        }
+    }
+    format!("{table}{apart}")
 }
 
 /// Runs downwards, figures across; columns that hold nothing are left out.

@@ -122,7 +122,7 @@ fn study() -> Vec<Command> {
 
 /// A scenario run through once, shown at an instant.
 fn opened(scenario: &str, time: f64) -> Result<AppState, Failure> {
-    let scenario = stillbase::files::scenario(scenario)?;
+    let scenario = stillbase::files::scenario(scenario)?.scenario;
     let mut app_state = AppState::new(scenario, Theme::Dark)?;
     let task_time = app_state.session().length();
     [Command::Seek(task_time), Command::Seek(time)].into_iter().for_each(|command| app_state.carry_out(command));

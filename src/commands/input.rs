@@ -125,7 +125,11 @@ const STUDY: &str = "the command tolerance, or the window";
 /// # Errors
 /// If there is no such scenario or setting, or what comes out is not valid.
 pub fn studied(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
-    let scenario = set(stillbase::files::scenario(name)?, settings)?;
+    let found = stillbase::files::scenario(name)?;
+    if let Some(made) = &found.made {
+        say(format!("note: {made}"));
+    }
+    let scenario = set(found.scenario, settings)?;
     for (path, want) in scenario.idle_keys() {
         say(format!("note: {}: {path} has no use there: want {want}", scenario.name));
     }

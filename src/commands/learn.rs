@@ -194,19 +194,17 @@ impl Learn {
 
     /// The scenario or machine of the name.
     fn find(&self) -> Result<Asked, Failure> {
-        let why = match stillbase::files::scenario(&self.what) {
-            Ok(scenario) => {
-                let scenario = set(scenario, &self.settings)?;
+        let machine = || self.settings.apply(stillbase::files::machine(&self.what, None)?);
+        match stillbase::files::scenario(&self.what) {
+            // A task that is made up for a machine is not what is asked for.
+            Ok(found) if found.made.is_some() => Ok(Asked::Machine(Box::new(machine()?))),
+            Ok(found) => {
+                let scenario = set(found.scenario, &self.settings)?;
                 self.settings.none_of_tolerance()?;
-                return Ok(Asked::Scenario(Box::new(scenario)));
+                Ok(Asked::Scenario(Box::new(scenario)))
             }
-            Err(why) => why,
-        };
-        match stillbase::files::machine(&self.what, None) {
-            Ok(machine) => Ok(Asked::Machine(Box::new(self.settings.apply(machine)?))),
-            // A file of a machine with a mistake in it.
-            Err(mistake) if why.to_string().contains("this is a machine") => Err(mistake.into()),
-            Err(_) => Err(why.into()),
+            // Of a machine for which no task can be made, too.
+            Err(why) => Ok(Asked::Machine(Box::new(machine().map_err(|_| why)?))),
         }
     }
 

@@ -5,11 +5,11 @@ use std::path::Path;
 
 use super::text::read;
 use crate::mechanics::machine::{self, FileError, Machine, MachineError};
-use crate::session::scenario::{Content, Scenario, ScenarioError, content};
+use crate::session::around;
+use crate::session::scenario::{Content, Scenario, ScenarioError, TaskKind, content};
+use crate::settings::number::Short;
 use crate::settings::range::shortened;
 
-const IS_MACHINE: &str = "this is a machine, not a scenario: want a file that names it, as machine = \"…\", beside a \
-                          [task]; check, design, dynamics, reach, pose, workspace and plan take a MACHINE";
 const IS_SCENARIO: &str = "this is a scenario, not a machine: want the machine that it names; simulate, headless, \
                            compare, joints, export, tolerance, spectrum and plan take a SCENARIO";
 
@@ -41,26 +41,59 @@ pub fn machine(name: &str, folder: Option<&Path>) -> Result<Machine, FileError> 
     }
 }
 
-/// A scenario by built-in name or by file; a machine file that it names is looked up beside it.
+/// A scenario, and what has to be said of where it comes from.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// It.
+    pub scenario: Scenario,
+    /// That it was made around a machine, in a line.
+    pub made: Option<String>,
+}
+
+/// A scenario by built-in name or by file; a machine file that it names is looked up beside it. A machine in its place
+/// gets a task made for it.
 ///
 /// # Errors
-/// If it is neither, or the file is not a scenario.
-pub fn scenario(name: &str) -> Result<Scenario, ScenarioError> {
+/// If it is neither, or the file is not a scenario, nor a machine.
+pub fn scenario(name: &str) -> Result<Found, ScenarioError> {
     if let Some(scenario) = Scenario::builtin(name) {
-        return Ok(scenario);
+        return Ok(Found { scenario, made: None });
     }
     let file = Path::new(name);
     let said = |message: String| ScenarioError::Syntax { file: shortened(name, 300), line: None, message };
-    let text = read(file).map_err(|source| match source.kind() {
-        ErrorKind::NotFound if machine::builtin(name).is_some() => said(IS_MACHINE.into()),
-        ErrorKind::NotFound if !name.ends_with(".toml") => {
-            let known = Scenario::builtin_names().collect::<Vec<_>>().join(", ");
-            said(format!("no such scenario: want {known}, or a TOML file"))
+    let text = match read(file) {
+        Ok(text) => text,
+        Err(source) if source.kind() == ErrorKind::NotFound && !name.ends_with(".toml") => {
+            return match machine::builtin(name) {
+                Some(machine) => made(name, machine),
+                None => {
+                    let known = Scenario::builtin_names().collect::<Vec<_>>().join(", ");
+                    Err(said(format!("no such scenario: want {known}, or a TOML file")))
+                }
+            };
         }
-        _ => ScenarioError::Unreadable { file: shortened(name, 300), source },
-    })?;
-    Scenario::parse(&text, name, Some(&|name| machine(name, file.parent()))).map_err(|why| match content(&text) {
-        Some(Content::Machine) => said(IS_MACHINE.into()),
-        _ => why,
-    })
+        Err(source) => return Err(ScenarioError::Unreadable { file: shortened(name, 300), source }),
+    };
+    if content(&text) == Some(Content::Machine) {
+        return made(name, &machine::parse(&text, &shortened(name, 300))?);
+    }
+    let scenario = Scenario::parse(&text, name, Some(&|name| machine(name, file.parent())))?;
+    Ok(Found { scenario, made: None })
+}
+
+/// A scenario around a machine that was found by a name.
+fn made(name: &str, machine: &Machine) -> Result<Found, ScenarioError> {
+    let scenario = around(machine)?;
+    let task = &scenario.task;
+    let made = format!(
+        "{} is a machine, so a task was made for it: {} from {:.3}, {:.3} to {:.3}, {:.3} m in {} s",
+        shortened(name, 300),
+        if task.kind == TaskKind::Reactionless { "reactionless" } else { "a straight line" },
+        task.from[0],
+        task.from[1],
+        task.to[0],
+        task.to[1],
+        Short(task.time)
+    );
+    Ok(Found { scenario, made: Some(made) })
 }

@@ -9,5 +9,5 @@ mod new_file;
 pub mod preferences;
 pub mod text;
 
-pub use find::{machine, scenario};
+pub use find::{Found, machine, scenario};
 pub use new_file::{Abandoned, NewFile, WriteError, abandon, check_new, finish_all, free_name, made, write_new};

@@ -4,23 +4,27 @@
 //! Views are rows of a store of their own. The SDK's builders reach neither the eye of a 3D view, nor axis ranges, nor
 //! backgrounds, so the rows are written here.
 
+use rerun::blueprint::components::VisualBounds2D;
 use rerun::blueprint::components::{
     ActiveTab, BackgroundKind, ColumnShare, ContainerKind, Corner2D, IncludedContent, LinkAxis, LoopMode, PanelState,
     PlayState, QueryExpression, RootContainer, RowShare, ViewClass,
 };
 use rerun::blueprint::datatypes::{TextLogColumn, TextLogColumnKind, TimelineColumn};
 use rerun::components::Range1D;
+use rerun::datatypes::Range2D;
 use rerun::external::re_sdk_types::blueprint::archetypes as view;
 use rerun::external::re_sdk_types::blueprint::components::VisualizerInstructionId;
 use rerun::external::uuid::Uuid;
 use rerun::{AsComponents, EntityPath, SeriesLines};
 
+use super::design::SEEN;
 use super::eye::Eye;
 use super::hash::Hash;
-use super::preview::Preview;
+use super::preview::{DESIGNS, Preview, have_designs};
 use super::store::{Store, StoreError, TIME};
 use super::style::{Together, colour, series_name, under};
 use super::topic::Topic;
+use crate::mechanics::balance::Condition;
 use crate::picture::charts::{Chart, Place};
 use crate::picture::scene::Rgba;
 use crate::picture::scene::palette::{Palette, Theme, mix, palette};
@@ -32,15 +36,20 @@ use crate::picture::scene::palette::{Palette, Theme, mix, palette};
 pub fn lay_out(store: &mut Store, cases: &[Preview], pictured: bool) -> Result<(), StoreError> {
     let mut layout =
         Layout { store, palette: palette(Theme::Dark), tab: String::new(), charts: shared(cases), pictured };
-    let mut tabs = Vec::new();
+    let (mut tabs, mut active) = (Vec::new(), 0);
     if cases.len() > 1 {
         tabs.push(layout.comparison(cases)?);
     }
     for case in cases {
-        tabs.push(layout.case(case)?);
+        let (parts, front) = (layout.case(case, cases.len() == 1)?, usize::from(case.design.leads));
+        match cases {
+            // Alone it needs no tab around its own.
+            [_] => (tabs, active) = (Vec::from(parts), front),
+            _ => tabs.push(layout.tabs(&case.title, &parts, front)?),
+        }
     }
     layout.tab.clear();
-    let root = layout.container(ContainerKind::Tabs, "", &tabs, &[])?;
+    let root = layout.tabs("", &tabs, active)?;
     let viewport = view::ViewportBlueprint::new()
         .with_root_container(RootContainer(root.id.into()))
         .with_auto_layout(false)
@@ -95,6 +104,9 @@ struct Layout<'a> {
 const VERSION: u128 = 0x0000_0000_0000_8000_8000_0000_0000_0000;
 const VERSION_BITS: u128 = 0x0000_0000_0000_f000_c000_0000_0000_0000;
 
+/// How many lines of (7) or (8) a title names.
+const LINES: usize = 6;
+
 /// How many cases a legend names; it has room for no more.
 const LEGEND: usize = 5;
 
@@ -108,12 +120,28 @@ impl Layout<'_> {
         Uuid::from_u128(hash.number() & !VERSION_BITS | VERSION)
     }
 
+    /// Parts behind each other, with one of them in front.
+    fn tabs(&mut self, name: &str, parts: &[Part], front: usize) -> Result<Part, StoreError> {
+        self.parted(ContainerKind::Tabs, name, parts, (&[], front))
+    }
+
     fn container(
         &mut self,
         kind: ContainerKind,
         name: &str,
         parts: &[Part],
         shares: &[f32],
+    ) -> Result<Part, StoreError> {
+        self.parted(kind, name, parts, (shares, 0))
+    }
+
+    /// A container whose parts have shares of it, or one of which is in front.
+    fn parted(
+        &mut self,
+        kind: ContainerKind,
+        name: &str,
+        parts: &[Part],
+        (shares, front): (&[f32], usize),
     ) -> Result<Part, StoreError> {
         let parted: Vec<String> = parts.iter().map(|part| part.id.to_string()).collect();
         let words: Vec<&str> = parted.iter().map(String::as_str).collect();
@@ -127,8 +155,8 @@ impl Layout<'_> {
         container = match kind {
             ContainerKind::Horizontal => container.with_col_shares(shares.iter().map(|s| ColumnShare((*s).into()))),
             ContainerKind::Vertical => container.with_row_shares(shares.iter().map(|s| RowShare((*s).into()))),
-            ContainerKind::Tabs | ContainerKind::Grid => match parts.first() {
-                Some(first) => container.with_active_tab(ActiveTab(first.path.to_string().into())),
+            ContainerKind::Tabs | ContainerKind::Grid => match parts.get(front) {
+                Some(front) => container.with_active_tab(ActiveTab(front.path.to_string().into())),
                 None => container,
             },
         };
@@ -175,13 +203,16 @@ impl Layout<'_> {
         for (chart, range) in compared {
             below.push(self.compared(cases, &chart, range)?);
         }
+        if have_designs(cases) {
+            below.push(self.document("Machines side by side", &EntityPath::from(DESIGNS))?);
+        }
         below.push(self.events(cases)?);
         let bottom = self.container(ContainerKind::Horizontal, "", &below, &vec![1.0; below.len()])?;
         self.container(ContainerKind::Vertical, "All cases", &[top, bottom], &[1.25, 1.0])
     }
 
-    /// One case: scene left, plots right, events below.
-    fn case(&mut self, case: &Preview) -> Result<Part, StoreError> {
+    /// One case: scene left, plots right, events below; and its design.
+    fn case(&mut self, case: &Preview, alone: bool) -> Result<[Part; 2], StoreError> {
         self.tab.clone_from(&case.name);
         let mut scenes = vec![self.scene(case, "Scene")?];
         if self.pictured {
@@ -201,7 +232,61 @@ impl Layout<'_> {
         let events = self.events(std::slice::from_ref(case))?;
         let phase = self.view("StateTimeline", "Phase", &under(&case.root, "phase"), &["$origin/**".into()], &[])?;
         let bottom = self.container(ContainerKind::Horizontal, "", &[events, phase], &[1.6, 1.0])?;
-        self.container(ContainerKind::Vertical, &case.title, &[top, bottom], &[3.0, 1.0])
+        let name = if alone { &case.title } else { "Motion" };
+        let motion = self.container(ContainerKind::Vertical, name, &[top, bottom], &[3.0, 1.0])?;
+        Ok([motion, self.design(case)?])
+    }
+
+    /// The machine as it is designed: a drawing to scale, what it weighs and comes to, and what that leaves of (7) and
+    /// (8).
+    fn design(&mut self, case: &Preview) -> Result<Part, StoreError> {
+        let (root, design) = (under(&case.root, "design"), &case.design);
+        let shown = ["machine", "marks", "grid"].map(|part| format!("$origin/{part}/**"));
+        let mut left = vec![self.space("Machine to scale, discs in kg", &root, &shown, &design.eye)?];
+        if design.fronts.is_some() {
+            left.push(self.front(&under(&root, "front"))?);
+        }
+        let left = self.container(ContainerKind::Vertical, "", &left, &[1.6, 1.0][..left.len()])?;
+        let state = self.document("What it comes to", &under(&root, "state"))?;
+        let links = self.document("Links and counterweights", &under(&root, "links"))?;
+        let top = self.container(ContainerKind::Horizontal, "", &[state, links], &[1.0, 1.08])?;
+        let table = self.document("Balance: what each link brings to (7) and (8)", &under(&root, "balance"))?;
+        let mut bars = vec![self.bars("(7)  force", design.drives(), true, &under(&root, "bars/force"))?];
+        if design.drives() > 1 {
+            bars.push(self.bars("(8)  coupling", design.drives(), false, &under(&root, "bars/coupling"))?);
+        }
+        let bars = self.container(ContainerKind::Horizontal, "", &bars, &vec![1.0; bars.len()])?;
+        let right = self.container(ContainerKind::Vertical, "", &[top, table, bars], &[1.25, 1.0, 0.62])?;
+        self.container(ContainerKind::Horizontal, "Design", &[left, right], &[1.0, 1.3])
+    }
+
+    fn document(&mut self, name: &str, origin: &EntityPath) -> Result<Part, StoreError> {
+        self.view("TextDocument", name, origin, &["$origin/**".into()], &[])
+    }
+
+    /// The bars of (7), or of (8).
+    fn bars(&mut self, name: &str, drives: usize, force: bool, origin: &EntityPath) -> Result<Part, StoreError> {
+        let of = Condition::all(drives).filter(|c| matches!(c, Condition::Force(_)) == force);
+        let lines: Vec<_> = of.collect();
+        let symbols: Vec<String> = lines.iter().take(LINES).map(|line| line.symbol()).collect();
+        let more = if lines.len() > LINES { " …" } else { "" };
+        let unit = lines.first().map_or("", |line| line.unit());
+        let name = format!("{name}  {}{more}  {unit}, white: left", symbols.join(" "));
+        let legend = view::PlotLegend::new().with_visible(false);
+        self.view("BarChart", &name, origin, &["$origin/**".into()], &[("PlotLegend", &legend)])
+    }
+
+    /// What less inertia costs in mass.
+    fn front(&mut self, origin: &EntityPath) -> Result<Part, StoreError> {
+        let background = view::Background::new(BackgroundKind::SolidColor).with_color(colour(self.palette.background));
+        let [left, top, right, bottom] = SEEN;
+        let bounds = view::VisualBounds2D::new(VisualBounds2D(Range2D {
+            x_range: Range1D::new(left, right).0,
+            y_range: Range1D::new(top, bottom).0,
+        }));
+        let name = "Counterweights; amber: this machine; below the curve none is balanced";
+        let properties: [(&str, &dyn AsComponents); 2] = [("Background", &background), ("VisualBounds2D", &bounds)];
+        self.view("2D", name, origin, &["$origin/**".into()], &properties)
     }
 
     /// The charts of a case that stand in some places, one below the other.
@@ -225,7 +310,7 @@ impl Layout<'_> {
         let properties: [(&str, &dyn AsComponents); 3] =
             [("Background", &background), ("LineGrid3D", &grid), ("EyeControls3D", &eye)];
         // Everything of the case but what has a view of its own.
-        let others = ["signals", "events", "phase", "view", "joint_space", "tower"];
+        let others = ["signals", "events", "phase", "view", "joint_space", "tower", "design"];
         let without = others.iter().map(|part| format!("- $origin/{part}/**"));
         let contents: Vec<_> = ["$origin/**".to_owned()].into_iter().chain(without).collect();
         self.view("3D", name, &case.root, &contents, &properties)
@@ -238,12 +323,17 @@ impl Layout<'_> {
 
     /// A space with axes of its own.
     fn drawing(&mut self, name: &str, origin: &EntityPath, eye: &Eye) -> Result<Part, StoreError> {
+        self.space(name, origin, &["$origin/**".into()], eye)
+    }
+
+    /// Some of what stands under an origin, seen from an eye.
+    fn space(&mut self, name: &str, origin: &EntityPath, contents: &[String], eye: &Eye) -> Result<Part, StoreError> {
         let background = view::Background::new(BackgroundKind::SolidColor).with_color(colour(self.palette.background));
         let grid = view::LineGrid3D::new().with_visible(false);
         let eye = eye.controls();
         let properties: [(&str, &dyn AsComponents); 3] =
             [("Background", &background), ("LineGrid3D", &grid), ("EyeControls3D", &eye)];
-        self.view("3D", name, origin, &["$origin/**".into()], &properties)
+        self.view("3D", name, origin, contents, &properties)
     }
 
     /// The series of a chart; those that share an entity with them are hidden.

@@ -143,6 +143,8 @@ pub struct Entity {
     pub pose: Option<(Rigid, Changes)>,
     /// Where each of several of one name is, and how many times as high as its mesh.
     pub placed: Vec<(Rigid, f32)>,
+    /// The middles of hollow discs of one name, and their radius.
+    pub rings: (Vec<[f32; 3]>, f32),
     pub is_there: bool,
     /// What has been written, and the rows that gather.
     pub written: Option<Lasting>,
@@ -162,6 +164,7 @@ impl Entity {
             shape: None,
             pose: None,
             placed: Vec::new(),
+            rings: (Vec::new(), 0.0),
             is_there: false,
             written: None,
             stands: false,
@@ -173,6 +176,17 @@ impl Entity {
     pub fn begin(&mut self) {
         (self.lasting, self.shape, self.pose, self.is_there) = (None, None, None, false);
         self.placed.clear();
+        self.rings.0.clear();
+    }
+
+    /// Lines of one name and look are one shape.
+    pub fn strokes(&mut self, strokes: Strokes) {
+        match &mut self.shape {
+            Some(Shape::Strokes(all)) if all.is_alike(&strokes) => {
+                all.strips = all.strips.iter().chain(strokes.strips.iter()).cloned().collect();
+            }
+            _ => self.shape = Some(Shape::Strokes(strokes)),
+        }
     }
 
     pub fn dot(&mut self, dot: Dot) {
@@ -182,8 +196,16 @@ impl Entity {
         }
     }
 
-    /// Several of one name share a mesh, and none of their poses is the entity's.
+    /// Several of one name share a mesh, and none of their poses is the entity's; several rings are one shape.
     pub fn share(&mut self) {
+        if let (Some(Lasting::Ring { width, rgba, .. }), (middles, radius)) = (&self.lasting, &self.rings)
+            && middles.len() > 1
+        {
+            let ring = |[x, y, z]: &[f32; 3]| circle(*radius).map(|[u, v, _]| [x + u, y + v, *z]).collect();
+            let strips = middles.iter().map(ring).collect();
+            self.shape = Some(Shape::Strokes(Strokes { strips, width: *width, rgba: *rgba, dash: None }));
+            (self.lasting, self.pose) = (None, None);
+        }
         if self.placed.len() > 1 || self.placed.iter().any(|(_, stretch)| *stretch != 1.0) {
             self.shape = Some(Shape::Instances(self.placed.iter().map(|(pose, _)| pose.at).collect()));
             self.pose = None;
@@ -269,15 +291,11 @@ impl Entity {
                     .with_radii([Radius::new_ui_points(0.5 * strokes.width)])
                     .with_colors([colour(strokes.rgba)]),
             ),
-            Lasting::Ring { radius, width, rgba } => {
-                let on = |i: u8| TAU * f32::from(i) / 48.0;
-                let ring = (0..=48).map(on).map(|a| [radius * a.cos(), radius * a.sin(), 0.0]);
-                Box::new(
-                    LineStrips3D::new([ring.map(|p| eye.place(p)).collect::<Vec<_>>()])
-                        .with_radii([Radius::new_ui_points(0.5 * width)])
-                        .with_colors([colour(*rgba)]),
-                )
-            }
+            Lasting::Ring { radius, width, rgba } => Box::new(
+                LineStrips3D::new([circle(*radius).map(|p| eye.place(p)).collect::<Vec<_>>()])
+                    .with_radii([Radius::new_ui_points(0.5 * width)])
+                    .with_colors([colour(*rgba)]),
+            ),
         };
         let mut all = vec![&*looks];
         all.extend(stands.map(|stands| stands as &dyn AsComponents));
@@ -358,7 +376,18 @@ impl Entity {
     }
 }
 
+/// Around the origin.
+fn circle(radius: f32) -> impl Iterator<Item = [f32; 3]> {
+    let on = |i: u8| TAU * f32::from(i) / 48.0;
+    (0..=48).map(on).map(move |a| [radius * a.cos(), radius * a.sin(), 0.0])
+}
+
 impl Strokes {
+    /// Whether both look alike but for where they run.
+    fn is_alike(&self, other: &Self) -> bool {
+        (self.width, self.rgba, self.dash) == (other.width, other.rgba, other.dash)
+    }
+
     /// In dashes where it has some: the viewer knows none.
     pub fn drawn(&self, eye: &Eye, most: f32) -> Vec<Vec<[f32; 3]>> {
         let strips = self.strips.iter().filter(|strip| strip.len() > 1);

@@ -67,7 +67,7 @@ impl Events {
             Kind::Warning | Kind::Peak => (TextLogLevel::WARN, self.palette.reaction),
             Kind::Fault => (TextLogLevel::ERROR, self.palette.reaction),
         };
-        let at = Instant { step: event.step, nanos: (1e9 * (event.step as f64 * dt)).round() as i64 };
+        let at = Instant::at(event.step, event.step as f64 * dt);
         self.add(at, event.words.clone(), level, rgba);
     }
 

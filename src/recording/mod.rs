@@ -12,6 +12,9 @@
 //! | `workspace/<b>/folds`, `…/cusps`, `…/inner_limits`, `…/change_points` | curves inside, where there are any |
 //! | `joint_space` | q as coordinates: the plane of b within the limits, the planned path, the pose |
 //! | `tower` | all workspaces, b as height: the wall, the present slice, and which b reach the task's points |
+//! | `design/machine`, `design/marks` | the machine from above, to scale: links, centres of mass, discs |
+//! | `design/state`, `design/links`, `design/balance` | what it comes to, weighs, and leaves of (7) and (8), as tables |
+//! | `design/bars`, `design/front` | (7) and (8) as bars; of counterweights, what less inertia costs in mass |
 //! | `reaction/force`, `reaction/moment` | what reaches the base, in proportion; the scale stands beside it |
 //! | `signals/<topic>` | every row of the table of [`signals`](crate::simulation::signals), at every step, as a series |
 //! | `events`, `phase` | what happened |
@@ -23,12 +26,16 @@
 //! arm, and the forces of the pins, of which pictures can show the latter (`pin_forces`). Nor are the marks that invite a
 //! person to drag something.
 //!
+//! Each change of the machine that a session holds is a row of the design, on the time line `edit`, which only such
+//! recordings have, and at the step at which it was made.
+//!
 //! What an item says never changes is written once; what moves has at most 200 rows a second, and a signal has a row at
 //! every step. Machine, scenario, version and verdict are properties of the recording. The same scenarios give the same
 //! recording, whenever and wherever it is made.
 
 mod blueprint;
 mod dashes;
+mod design;
 mod entity;
 mod events;
 mod eye;
@@ -48,7 +55,7 @@ pub use options::{Options, Pictures};
 
 use std::path::{Path, PathBuf};
 
-use rerun::{EntityPath, RecordingInfo};
+use rerun::{EntityPath, RecordingInfo, TextDocument};
 use thiserror::Error;
 
 use crate::files::{NewFile, WriteError};
@@ -250,6 +257,12 @@ fn write(
     // The layout stands first, so that no viewer begins with one of its own.
     let laid_out = blueprint::lay_out(set.store, &cases, pictured).map_err(Stop::from);
     let done = laid_out.and_then(|()| {
+        if preview::have_designs(&cases) {
+            let designs: Vec<_> =
+                cases.iter().map(|c| (c.name.as_str(), c.candidate.beside(&cases[0].candidate))).collect();
+            let table = TextDocument::from_markdown(design::beside(&designs));
+            set.store.fixed(&EntityPath::from(preview::DESIGNS), &table)?;
+        }
         let names: Vec<_> = scenarios.iter().map(|s| s.name.as_str()).collect();
         let info = RecordingInfo::update_fields().with_name(names.join(", "));
         set.store.fixed(&EntityPath::properties(), &info)?;

@@ -4,6 +4,7 @@
 use rerun::EntityPath;
 use rerun::external::re_log_types::EntityPathPart;
 
+use super::design::Design;
 use super::eye::Eye;
 use super::topic::Topic;
 use crate::picture::charts::{Chart, charts};
@@ -16,6 +17,7 @@ use crate::session::scenario::Scenario;
 use crate::session::{Refusal, replay_while};
 use crate::simulation::frame::Peaks;
 use crate::simulation::signals::{Signal, signals};
+use crate::study::comparison::Candidate;
 
 /// What a run will come to.
 #[derive(Debug)]
@@ -42,6 +44,10 @@ pub struct Preview {
     pub joints: Option<Eye>,
     /// From where the tower is seen.
     pub tower: Option<Eye>,
+    /// The machine as it is designed.
+    pub design: Design,
+    /// The same, to be set beside those of others.
+    pub candidate: Candidate,
 }
 
 impl Preview {
@@ -59,8 +65,9 @@ impl Preview {
         charts.retain(|(chart, _)| signals.iter().any(|signal| chart.holds(signal)));
         let held = |signal: &Signal| charts.iter().position(|(chart, _)| chart.holds(signal));
         let drawn: Vec<_> = signals.iter().filter_map(|signal| Some((held(signal)?, signal.clone()))).collect();
-        let mut b = none;
+        let (mut b, mut first) = (none, None);
         let run = replay_while(scenario, |_, frame| {
+            first.get_or_insert(*frame);
             wider(&mut b, frame.b);
             drawn.iter().for_each(|(i, signal)| wider(&mut charts[*i].1, signal.value(frame)));
             !frame.step.is_multiple_of(1024) || tick(frame.step)
@@ -71,8 +78,8 @@ impl Preview {
             Camera::Orbit(orbit) => Some(orbit),
             Camera::Flat(_) => None,
         };
-        let joints = JointSpace::over(&run, b)
-            .and_then(|space| Some(Eye { orbit: orbit(space.camera())?, axes: space.drives() }));
+        let joints =
+            JointSpace::over(&run, b).and_then(|space| Some(Eye::along(orbit(space.camera())?, space.drives())));
         Ok(Self {
             name: scenario.name.clone(),
             title: if scenario.title.is_empty() { scenario.name.clone() } else { scenario.title.clone() },
@@ -84,9 +91,19 @@ impl Preview {
             charts,
             scene: near(reach),
             joints,
+            candidate: Candidate::of(&run),
+            design: Design::of(scenario, &run, first.unwrap_or(last))?,
             tower: Tower::over(&run, b).and_then(|tower| orbit(tower.camera())).map(Eye::upright),
         })
     }
+}
+
+/// Where the machines of several cases are set side by side.
+pub const DESIGNS: &str = "comparison/designs";
+
+/// Whether the machines of several cases differ.
+pub fn have_designs(cases: &[Preview]) -> bool {
+    cases.iter().any(|case| !case.candidate.is_alike(&cases[0].candidate))
 }
 
 /// What full arrows and arcs stand for in all of them, so that they can be compared.

@@ -144,7 +144,7 @@ impl Views {
 
 impl Instant {
     fn of(frame: &Frame) -> Self {
-        Self { step: frame.step, nanos: (1e9 * frame.time).round() as i64 }
+        Self::at(frame.step, frame.time)
     }
 }
 
@@ -153,6 +153,7 @@ impl<'a> Recorder<'a> {
         let Set { store, pictures, scale, several } = set;
         let (palette, root) = (palette(Theme::Dark), &forecast.root);
         store.fixed(root, &ViewCoordinates::RIGHT_HAND_Z_UP())?;
+        forecast.design.write(store, root)?;
         for topic in &forecast.topics {
             topic.style(store, root, &palette, &forecast.peaks)?;
         }

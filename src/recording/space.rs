@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use rerun::EntityPath;
 
-use super::entity::{Dot, Entity, Kind, Lasting, Rigid, Shape, Strokes};
+use super::entity::{Dot, Entity, Kind, Lasting, Rigid, Strokes};
 use super::eye::Eye;
 use super::store::{Instant, Store, StoreError};
 use super::style::under;
@@ -139,7 +139,7 @@ impl Space {
         pose.at[2] += lift;
         entity.pose = Some((pose, line.changes));
         match line.changes {
-            Changes::Shape => entity.shape = Some(Shape::Strokes(strokes)),
+            Changes::Shape => entity.strokes(strokes),
             _ => entity.lasting = Some(Lasting::Strokes(strokes)),
         }
     }
@@ -153,6 +153,8 @@ impl Space {
             let radius = px * (marker.radius - 0.5 * marker.stroke_width);
             let rgba = over(background, marker.stroke);
             entity.lasting = Some(Lasting::Ring { radius, width: marker.stroke_width, rgba });
+            entity.rings.0.push(marker.at);
+            entity.rings.1 = radius;
             entity.pose = Some((Rigid::shifted(marker.at), Changes::Pose));
             return;
         }

@@ -27,6 +27,9 @@ pub const TIME: &str = "sim_time";
 /// Time line of steps.
 pub const STEP: &str = "step";
 
+/// Time line of changes of the machine, where there are any.
+pub const EDIT: &str = "edit";
+
 /// Why a row was not written.
 #[derive(Debug, Error)]
 pub enum StoreError {
@@ -59,13 +62,22 @@ impl From<rerun::SerializationError> for StoreError {
     }
 }
 
-/// One instant on both time lines.
+/// One instant on the time lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Instant {
     /// Steps since the start.
     pub step: u64,
     /// Time since the start, ns.
     pub nanos: i64,
+    /// Changes of the machine up to then; none of what does not tell of them.
+    pub edit: Option<usize>,
+}
+
+impl Instant {
+    /// After so many steps, and so much time, s.
+    pub fn at(step: u64, time: f64) -> Self {
+        Self { step, nanos: (1e9 * time).round() as i64, edit: None }
+    }
 }
 
 /// Instants of the rows of some columns.
@@ -73,6 +85,8 @@ pub struct Instant {
 pub struct Clock {
     steps: Vec<i64>,
     nanos: Vec<i64>,
+    /// Of rows that tell of changes of the machine, which no others stand between.
+    edits: Vec<i64>,
 }
 
 impl Clock {
@@ -80,6 +94,14 @@ impl Clock {
     pub fn push(&mut self, at: Instant) {
         self.steps.push(at.step as i64);
         self.nanos.push(at.nanos);
+        self.edits.extend(at.edit.map(|edit| edit as i64));
+    }
+
+    /// Of each row.
+    pub fn instants(&self) -> impl Iterator<Item = Instant> + '_ {
+        let edit = |i: usize| self.edits.get(i).map(|edit| *edit as usize);
+        let both = self.steps.iter().zip(&self.nanos).enumerate();
+        both.map(move |(i, (step, nanos))| Instant { step: *step as u64, nanos: *nanos, edit: edit(i) })
     }
 
     /// Rows.
@@ -91,15 +113,20 @@ impl Clock {
     pub fn clear(&mut self) {
         self.steps.clear();
         self.nanos.clear();
+        self.edits.clear();
     }
 
-    /// Both time lines; to be cloned for each entity, which costs nothing.
-    pub fn columns(&self) -> [TimeColumn; 2] {
+    /// The time lines; to be cloned for each entity, which costs nothing.
+    pub fn columns(&self) -> Vec<TimeColumn> {
         let sorted = Some(true);
-        [
+        let mut columns = vec![
             TimeColumn::new(sorted, Timeline::new_sequence(STEP), self.steps.clone().into()),
             TimeColumn::new(sorted, Timeline::new_duration(TIME), self.nanos.clone().into()),
-        ]
+        ];
+        if !self.edits.is_empty() {
+            columns.push(TimeColumn::new(sorted, Timeline::new_sequence(EDIT), self.edits.clone().into()));
+        }
+        columns
     }
 }
 
@@ -193,11 +220,14 @@ impl Store {
     }
 
     fn since(&mut self, at: Instant, path: &EntityPath, what: &dyn AsComponents) -> Result<(), StoreError> {
-        let at = [
+        let mut point = TimePoint::from([
             (Timeline::new_sequence(STEP), TimeInt::new_temporal(at.step as i64)),
             (Timeline::new_duration(TIME), TimeInt::new_temporal(at.nanos)),
-        ];
-        let chunk = self.row(TimePoint::from(at), path, what)?;
+        ]);
+        if let Some(edit) = at.edit {
+            point.insert(Timeline::new_sequence(EDIT), TimeInt::new_temporal(edit as i64));
+        }
+        let chunk = self.row(point, path, what)?;
         self.append(self.recording.clone(), &chunk)
     }
 
@@ -217,7 +247,7 @@ impl Store {
     /// Many rows at once.
     pub fn columns(
         &mut self,
-        clock: &[TimeColumn; 2],
+        clock: &[TimeColumn],
         path: &EntityPath,
         columns: impl IntoIterator<Item = SerializedComponentColumn>,
     ) -> Result<(), StoreError> {

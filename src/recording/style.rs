@@ -36,12 +36,31 @@ pub fn brief(x: f64) -> String {
     }
 }
 
-/// A mesh in one colour, in the axes of an eye.
+/// A mesh in one colour, in the axes of an eye; of a drawing what is seen from above, without light and shade.
 pub fn solid(mesh: &Mesh, rgba: Rgba, eye: &Eye) -> Mesh3D {
+    if eye.is_above() {
+        return drawn(mesh, rgba, eye);
+    }
     Mesh3D::new(mesh.positions.iter().map(|p| eye.place(*p)))
-        .with_vertex_normals(mesh.normals.iter().map(|n| eye.place(*n)))
+        .with_vertex_normals(mesh.normals.iter().map(|n| eye.turn(*n)))
         .with_triangle_indices(mesh.triangles.iter().copied())
         .with_albedo_factor(colour(rgba).0)
+}
+
+/// What of a mesh faces up.
+fn drawn(mesh: &Mesh, rgba: Rgba, eye: &Eye) -> Mesh3D {
+    let is_up = |triangle: &&[u32; 3]| triangle.iter().all(|v| mesh.normals[*v as usize][2] > 0.05);
+    let mut places = vec![None; mesh.positions.len()];
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for triangle in mesh.triangles.iter().filter(is_up) {
+        triangles.push(triangle.map(|v| {
+            *places[v as usize].get_or_insert_with(|| {
+                positions.push(eye.place(mesh.positions[v as usize]));
+                positions.len() as u32 - 1
+            })
+        }));
+    }
+    Mesh3D::new(positions).with_triangle_indices(triangles).with_albedo_factor(colour(rgba).0)
 }
 
 /// Lines of a width, points on the screen.

@@ -1,6 +1,7 @@
 //! [`Brief`]: what a designer asks of a machine whose masses and lengths are changed by hand, and the edits that follow.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::PI;
 
 use toml::{Table, Value};
 
@@ -47,6 +48,29 @@ impl Default for Brief {
 }
 
 impl Brief {
+    /// Counterweights like those that a machine has: of a plate of their density, as far back as the farthest of them.
+    pub fn of(machine: &Machine) -> Self {
+        let weights = &machine.spec().counterweights;
+        let plates = weights.iter().filter(|weight| weight.radius > 0.0);
+        // What each square metre weighs is all that is known of it: thickness, of steel.
+        let disc = plates
+            .map(|weight| weight.mass / (PI * weight.radius.powi(2) * Disc::STEEL.density))
+            .fold(None, |thickest: Option<f64>, thickness| {
+                Some(thickest.map_or(thickness, |known| known.max(thickness)))
+            });
+        let length = |link: &str| {
+            let place = machine.links().iter().position(|own| own.name == link)?;
+            Some(machine.resolved_links()[place].length)
+        };
+        let is_usual = |weight: &Counterweight| length(&weight.link).is_some_and(|length| weight.at >= -length);
+        let back = weights.iter().fold(0.0_f64, |back, weight| back.max(-weight.at));
+        Self {
+            disc: disc.map_or(Disc::STEEL, |thickness| Disc { thickness, ..Disc::STEEL }),
+            back: (!weights.iter().all(is_usual)).then_some(back),
+            ..Self::default()
+        }
+    }
+
     /// A change of a machine as an edit; one that is kept balanced with all that follows from it, each number as little
     /// as it can from where it was in `start`.
     ///

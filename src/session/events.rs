@@ -43,7 +43,7 @@ pub struct Event {
 }
 
 /// Changes go on as one gesture while they come so close, s: a screen brings one a frame.
-const GESTURE: f64 = 0.25;
+pub(super) const GESTURE: f64 = 0.25;
 
 /// The base has to feel nothing for so long, s, before it is said that it does: a moment also passes zero.
 const QUIET: f64 = 0.05;

@@ -1,7 +1,9 @@
 //! What a person did: a scenario, edits and what became of them, step by step; undo, replay, the verdict.
 
+mod around;
 mod changes;
 pub mod design;
+mod designs;
 mod document;
 mod edit;
 mod edit_check;
@@ -18,6 +20,8 @@ pub mod scenario;
 mod script;
 pub mod verdict;
 
+pub use around::around;
+pub use designs::{Designed, designs};
 pub use document::Watch;
 pub use edit::{Edit, TimedEdit};
 pub(crate) use edit_check::check_edits;

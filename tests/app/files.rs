@@ -19,6 +19,7 @@ pub const TESTS: &[Test] = tests![
     a_session_is_saved_and_opened_as_it_was,
     what_is_no_scenario_is_refused_and_changes_nothing,
     a_file_that_is_dropped_is_opened,
+    a_machine_that_is_dropped_gets_a_task,
     nothing_is_written_over,
     what_cannot_be_written_is_said,
     a_run_is_recorded_whole_or_not,
@@ -157,6 +158,26 @@ fn what_is_no_scenario_is_refused_and_changes_nothing() {
     drop_on(&mut h, &folder.file("good.toml", include_bytes!("../../assets/scenarios/case-1.toml")));
     done(&h, "opened");
     assert_eq!(session(&h).scenario().name, "case-1");
+}
+
+fn a_machine_that_is_dropped_gets_a_task() {
+    let folder = Folder::new("window");
+    let mut h = window("case-3", Theme::Dark);
+    h.step();
+    hold(&mut h);
+    let file = folder.file("serial.toml", include_bytes!("../../assets/machines/serial-3r.toml"));
+    drop_on(&mut h, &file);
+    done(&h, "is a machine, so a task was made for it: reactionless");
+    assert_eq!(session(&h).scenario().name, "serial-3r");
+    h.key_press(Key::Num1);
+    h.run_steps(3);
+    name_file(&mut h, Ask::Open, &file);
+    done(&h, "is a machine, so a task was made for it");
+    // What is wrong with one is said with its line.
+    let broken = include_str!("../../assets/machines/serial-3r.toml").replacen("mass = ", "mass = -", 1);
+    drop_on(&mut h, &folder.file("broken.toml", broken.as_bytes()));
+    refused(&h, "broken.toml:", false);
+    assert_eq!(session(&h).scenario().name, "serial-3r");
 }
 
 fn a_file_that_is_dropped_is_opened() {

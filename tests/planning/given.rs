@@ -507,7 +507,7 @@ mod commands {
             folder.ends(0, &["import", "out.csv", "-o", "in.toml", "--force"]);
             let read =
                 stillbase::files::scenario(&folder.0.join("in-given.toml").display().to_string()).expect("a scenario");
-            let again = Run::new(&read).expect("it can start").plan().motion.clone();
+            let again = Run::new(&read.scenario).expect("it can start").plan().motion.clone();
             let mut worst = [0.0_f64; 3];
             for i in 0..=2000 {
                 let [x, y] = [exact, &again].map(|m| m.at(f64::from(i) / 2000.0 * m.duration().min(1.0 - 1e-12)));

@@ -2,18 +2,27 @@
 
 use super::*;
 
-/// A machine where a scenario is wanted is called one, and the other way round; by file and by name.
+/// A machine where a scenario is wanted gets a task, and it is said so; a scenario where a machine is wanted is called
+/// one; by file and by name.
 #[test]
 fn machines_and_scenarios_are_told_apart() {
     let folder = Folder::new("cli");
     let machine = word(folder.file("arm.toml", NINE_LINK));
     let case = include_str!("../../assets/scenarios/case-3.toml");
     let scenario = word(folder.file("task.toml", case));
-    for command in ["simulate", "joints", "compare", "spectrum", "tolerance", "export"] {
-        for name in [machine.as_str(), "nine-link"] {
-            fails(&[command, name], 2, &[name, "this is a machine, not a scenario", "machine = ", "take a MACHINE"]);
-        }
+    for name in [machine.as_str(), "nine-link"] {
+        let output = stillbase(&["simulate", name, "--every", "1000"]);
+        let said = text(&output.stderr);
+        assert!(output.status.success(), "{said}");
+        assert!(said.contains(&format!("{name} is a machine, so a task was made for it: reactionless from")), "{said}");
+        assert!(said.contains("reactionless: yes"), "{said}");
+        let got = object(&["simulate", name, "--every", "1000", "--set", "task.time=1.5"]);
+        let last = got["time"].as_array().and_then(|time| time.last()?.as_f64());
+        assert!(got["scenario"] == json!("nine-link") && last == Some(1.5), "{last:?}");
     }
+    // The scenario of that name comes first.
+    let out = stillbase(&["simulate", "scara", "--every", "1000"]);
+    assert!(out.status.success() && !text(&out.stderr).contains("was made for it"));
     for command in [&["check"][..], &["design"], &["reach", "0.5,0.5"], &["workspace", "--b", "2.4"]] {
         for name in [scenario.as_str(), "case-3"] {
             let args = [&command[..1], &[name], &command[1..]].concat();
@@ -25,10 +34,14 @@ fn machines_and_scenarios_are_told_apart() {
     fails(&["simulate", &odd], 2, &["task.toml", "this is a scenario, not a machine"]);
     // What is wrong within one is still said, also by the command that takes both.
     let broken = word(folder.file("broken.toml", NINE_LINK.replacen("mass = 1.45", "mass = -1.45", 1)));
-    for args in [&["check", &broken][..], &["plan", &broken, "0.5,0.5", "0.55,0.9"]] {
+    for args in [&["check", &broken][..], &["plan", &broken, "0.5,0.5", "0.55,0.9"], &["simulate", &broken]] {
         fails(args, 2, &["broken.toml:", "link.2.mass is -1.45"]);
     }
     fails(&["plan", "nine-link"], 2, &["a machine alone is no task"]);
+    // What is neither is said to lack what a scenario has.
+    let neither = word(folder.file("neither.toml", "name = \"x\"\n"));
+    fails(&["simulate", &neither], 2, &["neither.toml", "missing field `machine`"]);
+    fails(&["simulate", &neither.replace(".toml", "")], 2, &["no such scenario: want case-1"]);
 }
 
 /// A bound that the step decides is said as a number, and what is said to be right is taken.

@@ -131,6 +131,27 @@ fn compare_tells_ways_apart() {
     fails(&["compare", "case-3", "-o", "table.txt"], 2, &[".csv or .rrd"]);
 }
 
+/// Machines side by side: what balance costs and brings, and nothing where that makes no sense.
+#[test]
+fn compare_sets_machines_side_by_side() {
+    let got = object(&["compare", "nine-link-bare", "case-1", "two-drive"]);
+    let design = |i: usize| &got["runs"][i]["design"];
+    let number = |i: usize, key: &str| design(i)[key].as_f64();
+    assert_eq!((number(0, "added_mass"), number(0, "beta_force")), (Some(0.0), None));
+    assert!(number(0, "force_left").is_some_and(|left| left > 1.0));
+    assert!(number(1, "force_left").is_some_and(|left| left < 1e-9), "case 1 is of the balanced machine");
+    let mass = number(1, "mass").zip(number(0, "mass")).map(|(own, first)| own - first);
+    assert!(mass.zip(number(1, "added_mass")).is_some_and(|(a, b)| (a - b).abs() < 1e-12));
+    assert!(number(1, "beta_force").is_some_and(|beta| beta < 1e-9), "no force is left");
+    assert!(number(1, "beta_torque").is_some_and(|beta| beta > 0.0));
+    assert!(number(2, "mass").is_some() && number(2, "added_mass").is_none());
+    assert!(design(2)["apart"].as_str().is_some_and(|why| why.contains("2 drives")));
+    let table = prints(&["compare", "nine-link-bare", "case-1", "two-drive"]);
+    assert!(table.contains("machine of") && table.contains("β moment") && table.contains("two-drive: it has 2 drives"));
+    // One machine needs no table of its own.
+    assert!(!prints(&["compare", "case-1", "case-3"]).contains("machine of"));
+}
+
 /// What a kind of task or base passes over is refused where it is asked for, and told where it stands in a file.
 #[test]
 fn what_a_kind_ignores_is_refused_or_told() {

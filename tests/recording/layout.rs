@@ -12,8 +12,8 @@ fn the_layout_comes_along_and_is_activated() {
     let [(_, chunks)] = layouts[..] else { panic!("one layout") };
     let views = chunks.iter().filter(|c| c.components().contains_component("ViewBlueprint:class_identifier".into()));
     // Side by side: two scenes, two plots, events; each case: scene, joint space, tower, five plots, five of
-    // the inside, events, phase.
-    assert_eq!(views.count(), 5 + 2 * 15);
+    // the inside, events, phase; of the design the machine, three tables, two kinds of bars.
+    assert_eq!(views.count(), 5 + 2 * 21);
     assert!(chunks.iter().any(|c| *c.entity_path() == EntityPath::from("/viewport")));
 }
 

@@ -1,5 +1,6 @@
 //! Recordings, read back with Rerun's own decoder and compared with the frames of the run.
 
+mod design;
 mod events;
 mod file;
 mod geometry;

@@ -97,16 +97,23 @@ fn all_that_the_window_draws_is_recorded_in_its_colour() {
         let views = Views::of(&run);
         let options = ViewOptions { invites: false, ..ViewOptions::default() };
         let root = format!("/{}", scenario.name);
-        for (kind, space) in [(ViewKind::Flat, ""), (ViewKind::Joints, "/joint_space"), (ViewKind::Tower, "/tower")] {
+        let spaces = [
+            (ViewKind::Flat, ""),
+            (ViewKind::Joints, "/joint_space"),
+            (ViewKind::Tower, "/tower"),
+            (ViewKind::Design, "/design"),
+        ];
+        for (kind, space) in spaces {
             for frame in [frames.len() / 2, frames.len() - 1].map(|i| &frames[i / 5 * 5]) {
                 let scene = views.scene(kind, frame, &options, &views.camera(kind));
                 let path = |name: &str| {
+                    let name = name.replacen("design/", "marks/", 1);
                     let name = match name.strip_prefix("workspace") {
                         Some(rest) => match rest.strip_prefix("/compared") {
                             Some(rest) => format!("workspace/{:.3}{rest}", scenario.compare_b.expect("compared")),
                             None => format!("workspace/{:.3}{rest}", frames[0].b_reference),
                         },
-                        None => name.to_owned(),
+                        None => name,
                     };
                     format!("{root}{space}/{name}")
                 };

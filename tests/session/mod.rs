@@ -1,6 +1,7 @@
 //! Tests of `src/session`: scenarios, edits, undo, replay and the verdict.
 
 mod any_drives;
+mod around;
 mod bounds;
 mod branches;
 mod cases;

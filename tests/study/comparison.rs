@@ -211,3 +211,65 @@ fn a_comparison_follows_sorts_and_keeps() {
     comparison.remove(6);
     assert_eq!(comparison.entries().len(), 6);
 }
+
+/// Figures of a design agree with what the machines are, and what cannot be set side by side is not.
+#[test]
+fn designs_stand_beside_the_first() {
+    use stillbase::mechanics::machine::Inertia;
+    use stillbase::study::comparison::{Comparison, DESIGN};
+    let compared = |scenario: Scenario| Compared::of(scenario).expect("it runs");
+    let value = |design: &stillbase::study::comparison::Design, key: &str| {
+        (DESIGN.iter().find(|c| c.key == key).expect("a column").value)(design)
+    };
+    // The same task on a machine whose links all weigh twice as much, so that every force and torque doubles.
+    let bare = compared(scenario("nine-link-bare"));
+    let mut heavy = scenario("nine-link-bare");
+    let mut spec = heavy.machine.spec().clone();
+    for link in &mut spec.links {
+        (link.mass, link.inertia) = (2.0 * link.mass, 2.0 * link.inertia);
+    }
+    heavy.machine = stillbase::mechanics::machine::Machine::new(spec).expect("a machine");
+    let design = compared(heavy.clone()).candidate.beside(&bare.candidate);
+    let mass = bare.machine().mass();
+    assert!((value(&design, "added_mass").expect("a mass") - mass).abs() < 1e-12 * mass);
+    assert!((value(&design, "mass_inertia_factor").expect("a factor") - 4.0).abs() < 1e-12);
+    for key in ["beta_force", "beta_moment", "beta_torque"] {
+        assert!((value(&design, key).expect("a ratio") - 2.0).abs() < 1e-9, "{key}");
+    }
+    let left = Inertia::of(&heavy.machine);
+    assert_eq!(value(&design, "force_left"), Some(left.force_residual()));
+    // An edit of the session counts; β of another task or of another arm would be of nothing.
+    let mut edited = scenario("nine-link-bare");
+    edited.edits = vec![TimedEdit { step: 0, edit: Edit::set("link.9.mass", 0.9) }];
+    let design = compared(edited).candidate.beside(&bare.candidate);
+    let added = value(&design, "added_mass").expect("a mass");
+    assert!((added - (0.9 - bare.machine().links()[8].mass)).abs() < 1e-12 && design.apart.is_none());
+    let mut elsewhere = heavy.clone();
+    elsewhere.task.to = [0.52, 0.80];
+    let mut longer = scenario("nine-link-bare");
+    longer.machine = longer.machine.set("length.l9", "0.31").expect("a machine");
+    for (other, word) in [(elsewhere, "task"), (longer, "length")] {
+        let design = compared(other).candidate.beside(&bare.candidate);
+        assert!(value(&design, "added_mass").is_some() && value(&design, "beta_force").is_none());
+        assert!(design.apart.as_ref().is_some_and(|why| why.contains(word)), "{:?}", design.apart);
+    }
+    let design = compared(scenario("two-drive")).candidate.beside(&bare.candidate);
+    assert!(value(&design, "mass").is_some() && value(&design, "added_mass").is_none());
+    assert!(design.apart.as_ref().is_some_and(|why| why.contains("2 drives")), "{:?}", design.apart);
+    // In a table they have columns of their own as soon as there are two machines.
+    let mut comparison = Comparison::empty(&scenario("nine-link-bare"));
+    comparison.keep(scenario("nine-link-bare")).expect("it runs");
+    assert!(!comparison.has_designs());
+    let columns = |comparison: &Comparison| comparison.to_text().lines().next().map(|line| line.split('\t').count());
+    assert_eq!(columns(&comparison), Some(COLUMNS.len() + 1));
+    comparison.keep_run(compared(heavy));
+    assert!(comparison.has_designs());
+    assert_eq!(columns(&comparison), Some(COLUMNS.len() + DESIGN.len() + 1));
+    let of = COLUMNS.len() + DESIGN.iter().position(|c| c.key == "mass").expect("a column");
+    comparison.sort_by(of);
+    comparison.sort_by(of);
+    assert_eq!(comparison.order(), [1, 0], "the heavier first");
+    // Without the first, the second is the one that all are set beside.
+    comparison.remove(0);
+    assert_eq!(comparison.entries()[0].value(of + 4), Some(0.0));
+}

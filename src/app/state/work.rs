@@ -219,7 +219,10 @@ impl AppState {
         let Some((opening, opened)) = ended(&mut self.background.opening) else { return false };
         let broken = || NotOpened { why: "opening broke off: this is a fault of the program".into(), refused: None };
         match opened.unwrap_or_else(|| Err(broken())) {
-            Ok(next) => self.take_over(next, opening),
+            Ok((next, said)) => {
+                let news = said.or_else(|| opening.news.clone());
+                self.take_over(next, Opening { news, ..opening });
+            }
             Err(_) if opening.instead.is_some() => {
                 if let Some((scenario, said)) = opening.instead.map(|instead| *instead) {
                     let opening = Opening { news: Some(said), instead: None, ..opening };

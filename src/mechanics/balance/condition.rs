@@ -9,6 +9,7 @@
 
 use crate::mechanics::machine::{Inertia, Machine, ResolvedLink};
 use crate::mechanics::planar::{MAX_DRIVES, Vector};
+use crate::settings::number::subscript;
 
 /// What has to vanish for a machine to be balanced and invariant. Drives are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -23,6 +24,14 @@ impl Condition {
     /// Those of n drives: first all of (7), then (8) by pairs.
     pub fn all(n: usize) -> impl Iterator<Item = Self> {
         (0..n).map(Self::Force).chain(Inertia::pairs(n).map(|(k, l)| Self::Coupling(k, l)))
+    }
+
+    /// Its letter with the numbers of its drives, from 1.
+    pub fn symbol(self) -> String {
+        match self {
+            Self::Force(k) => format!("g{}", subscript(k + 1)),
+            Self::Coupling(k, l) => format!("C{}{}", subscript(k + 1), subscript(l + 1)),
+        }
     }
 
     /// In words, with its drives by name.

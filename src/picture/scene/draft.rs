@@ -3,6 +3,7 @@
 
 use std::f64::consts::TAU;
 
+use super::grid::Grid;
 use super::linkage::Linkage;
 use super::options::{Handle, Offered, ViewOptions};
 use super::palette::{Palette, faded, mix, palette};
@@ -70,8 +71,17 @@ impl Draft {
         Self { links: links.collect(), weights: weights.collect() }
     }
 
-    /// Everything there is to draw but the grid.
-    pub fn draw(&self, scene: &mut Scene, linkage: &Linkage, frame: &Frame, options: &ViewOptions) {
+    /// Everything there is to draw.
+    pub fn scene(&self, (linkage, grid): (&Linkage, &Grid), frame: &Frame, options: &ViewOptions) -> Scene {
+        let palette = palette(options.theme);
+        let mut scene = Scene::new(palette.background, linkage.model.clone());
+        grid.draw(&mut scene, &palette);
+        self.draw(&mut scene, linkage, frame, options);
+        scene
+    }
+
+    /// The same but for the grid.
+    fn draw(&self, scene: &mut Scene, linkage: &Linkage, frame: &Frame, options: &ViewOptions) {
         let palette = palette(options.theme);
         let e = frame.q.units();
         let hot = options.hot.and_then(|handle| self.link_of(handle));

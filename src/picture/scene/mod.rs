@@ -15,6 +15,7 @@ pub mod draft;
 pub mod exaggeration;
 pub mod fill;
 pub mod framing;
+pub mod grid;
 pub mod joint_items;
 pub mod joint_space;
 pub mod linkage;

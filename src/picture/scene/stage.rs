@@ -22,14 +22,14 @@ use super::course::target_handle;
 use super::draft::Draft;
 use super::exaggeration::exaggerated;
 use super::framing::Content;
+use super::grid::Grid;
 use super::linkage::Linkage;
 use super::options::{Handle, ViewOptions};
-use super::palette::{Palette, faded, palette};
+use super::palette::{Palette, palette};
 use super::pick::{Aim, Hold, Hook, Pick, Pivot};
 use super::pointer::Pointer;
-use super::{Line, Measure, Scene, Strips, point};
+use super::{Measure, Scene, point};
 use crate::mechanics::planar::{DriveAngles, Vector, unit};
-use crate::picture::numbers::round_up;
 use crate::planning::pose_map::PoseMap;
 use crate::planning::pose_space::PoseSpace;
 use crate::session::Run;
@@ -40,9 +40,6 @@ use path::Plan;
 use pins::Pins;
 use ring::Ring;
 use workspace::Workspace;
-
-/// The most squares of the grid over the reach of a machine.
-const SQUARES: f64 = 15.0;
 
 /// What stays the same from frame to frame.
 #[derive(Clone, Debug)]
@@ -66,8 +63,7 @@ pub struct Stage {
     holds: bool,
     pins: Pins,
     limits: Limits,
-    /// The grid's lines, and those through the origin.
-    grid: [Strips; 2],
+    grid: Grid,
 }
 
 /// The outline of what other than three drives reach while b is held.
@@ -123,7 +119,7 @@ impl Stage {
             holds: run.waiting().is_none() && run.pose_map().is_ok_and(PoseMap::holds),
             pins: Pins::of(&plant),
             limits: Limits::of(model, &linkage),
-            grid: grid(&linkage),
+            grid: Grid::of(&linkage),
             linkage,
         }
     }
@@ -180,7 +176,7 @@ impl Stage {
 
     /// Width of the grid under the machine, m.
     pub fn grid_width(&self) -> f64 {
-        grid_width(&self.linkage)
+        self.grid.width()
     }
 
     /// The machine's body.
@@ -370,7 +366,7 @@ impl Stage {
         let (linkage, z) = (&self.linkage, self.handle_height());
         let mut scene = Scene::new(palette.background, linkage.model.clone());
         self.bodies(&mut scene, &palette, frame, options);
-        self.draw_grid(&mut scene, &palette);
+        self.grid.draw(&mut scene, &palette);
         self.base.unmoved(&mut scene, linkage, &palette, frame, options.exaggeration);
         self.base.draw(&mut scene, linkage, &palette, frame);
         if let Some(workspace) = &self.workspace {
@@ -430,40 +426,11 @@ impl Stage {
 
     /// The machine as it is designed.
     pub fn drafted(&self, draft: &Draft, frame: &Frame, options: &ViewOptions) -> Scene {
-        let palette = palette(options.theme);
-        let mut scene = Scene::new(palette.background, self.linkage.model.clone());
-        self.draw_grid(&mut scene, &palette);
-        draft.draw(&mut scene, &self.linkage, frame, options);
-        scene
-    }
-
-    fn draw_grid(&self, scene: &mut Scene, palette: &Palette) {
-        let [lines, axes] = self.grid.clone();
-        scene.lines.push(Line::new("grid", lines, 1.0, faded(palette.line, 0.55)).still());
-        scene.lines.push(Line::new("grid/axes", axes, 1.0, palette.line).still());
+        draft.scene((&self.linkage, &self.grid), frame, options)
     }
 }
 
 /// Radius of the b ring, m.
 fn ring_radius(linkage: &Linkage) -> f64 {
     0.118 * linkage.reach()
-}
-
-/// Width of the grid under a machine, m.
-fn grid_width(linkage: &Linkage) -> f64 {
-    round_up(linkage.reach() / SQUARES)
-}
-
-/// Lines of the grid under a machine, and those through the origin.
-fn grid(linkage: &Linkage) -> [Strips; 2] {
-    let z = linkage.floor() - 0.004 * linkage.reach();
-    let width = grid_width(linkage);
-    let n = (1.7 * linkage.reach() / width).ceil() as i32;
-    let far = f64::from(n) * width;
-    let at = |i: i32| {
-        let at = f64::from(i) * width;
-        [[[at, -far], [at, far]], [[-far, at], [far, at]]]
-            .map(|ends| ends.map(|[x, y]| point(Vector::new(x, y), z)).to_vec())
-    };
-    [(-n..=n).filter(|i| *i != 0).flat_map(at).collect(), at(0).into()]
 }

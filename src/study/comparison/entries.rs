@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{COLUMNS, Compared, alternatives};
+use super::{COLUMNS, Compared, DESIGN, Design, alternatives};
 use crate::session::scenario::Scenario;
 use crate::session::{Refusal, Watch};
 use crate::settings::number::nine_digits;
@@ -18,6 +18,18 @@ pub struct Entry {
     pub shown: bool,
     /// Added by a person: it stays when the task changes.
     pub kept: bool,
+    /// Its machine beside that of the first run of the table.
+    pub design: Option<Design>,
+}
+
+impl Entry {
+    /// What stands in a column: those of runs come first, then those of designs.
+    pub fn value(&self, column: usize) -> Option<f64> {
+        match column.checked_sub(COLUMNS.len()) {
+            None => (COLUMNS.get(column)?.value)(&self.outcome.as_ref().ok()?.summary),
+            Some(own) => (DESIGN.get(own)?.value)(self.design.as_ref()?),
+        }
+    }
 }
 
 /// Runs side by side: the ways of one task, and what was kept.
@@ -63,9 +75,10 @@ impl Comparison {
         let kept: Vec<Entry> = self.entries.drain(..).filter(|e| e.kept).collect();
         let own = ways.into_iter().map(|(title, outcome)| {
             let shown = outcome.is_ok() && shown.contains(&title);
-            Entry { title, outcome, shown, kept: false }
+            Entry { title, outcome, shown, kept: false, design: None }
         });
         self.entries = own.chain(kept).collect();
+        self.set_beside();
     }
 
     /// The scenario whose ways stand there.
@@ -96,13 +109,31 @@ impl Comparison {
         }
         run.scenario.name.clone_from(&title);
         run.summary.name.clone_from(&title);
-        self.entries.push(Entry { title, outcome: Ok(Arc::new(run)), shown: true, kept: true });
+        self.entries.push(Entry { title, outcome: Ok(Arc::new(run)), shown: true, kept: true, design: None });
+        self.set_beside();
+    }
+
+    /// Sets every machine beside that of the first run.
+    fn set_beside(&mut self) {
+        let first = self.entries.iter().find_map(|e| e.outcome.as_ref().ok()).cloned();
+        for entry in &mut self.entries {
+            let both = entry.outcome.as_ref().ok().zip(first.as_ref());
+            entry.design = both.map(|(run, first)| run.candidate.beside(&first.candidate));
+        }
+    }
+
+    /// Whether the machines of the runs differ, so that there are designs to compare.
+    pub fn has_designs(&self) -> bool {
+        let mut all = self.entries.iter().filter_map(|e| e.outcome.as_ref().ok());
+        let first = all.next();
+        all.any(|run| first.is_some_and(|first| !run.candidate.is_alike(&first.candidate)))
     }
 
     /// Takes a kept run away.
     pub fn remove(&mut self, entry: usize) {
         if self.entries.get(entry).is_some_and(|e| e.kept) {
             self.entries.remove(entry);
+            self.set_beside();
         }
     }
 
@@ -136,7 +167,7 @@ impl Comparison {
     pub fn order(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.entries.len()).collect();
         let Some((column, down)) = self.sort else { return order };
-        let value = |i: usize| self.entries[i].outcome.as_ref().ok().and_then(|r| (COLUMNS[column].value)(&r.summary));
+        let value = |i: usize| self.entries[i].value(column);
         order.sort_by(|a, b| match (value(*a), value(*b)) {
             (Some(a), Some(b)) if down => b.total_cmp(&a),
             (Some(a), Some(b)) => a.total_cmp(&b),
@@ -153,14 +184,14 @@ impl Comparison {
 
     /// The table as text, its cells parted by tabs, in the order shown: for a spreadsheet.
     pub fn to_text(&self) -> String {
+        let designs = if self.has_designs() { &DESIGN[..] } else { &[] };
         let heads = COLUMNS.iter().map(|c| format!("{} {}", c.head, c.unit));
+        let heads = heads.chain(designs.iter().map(|c| format!("{} {}", c.head, c.unit)));
         let mut text = ["run".to_owned()].into_iter().chain(heads).collect::<Vec<_>>().join("\t") + "\n";
         for i in self.order() {
             let entry = &self.entries[i];
-            let cells = COLUMNS.iter().map(|c| match &entry.outcome {
-                Ok(run) => (c.value)(&run.summary).map_or_else(String::new, nine_digits),
-                Err(_) => String::new(),
-            });
+            let columns = 0..COLUMNS.len() + designs.len();
+            let cells = columns.map(|column| entry.value(column).map_or_else(String::new, nine_digits));
             text += &([entry.title.clone()].into_iter().chain(cells).collect::<Vec<_>>().join("\t") + "\n");
         }
         text

@@ -1,11 +1,13 @@
 //! Runs side by side: the same task done in other ways, or any scenarios, on one time axis.
 
 mod alternative;
+mod design;
 mod difference;
 mod entries;
 mod summary;
 
 pub use alternative::{Alternative, SLOWER};
+pub use design::{Candidate, DESIGN, Design};
 pub use difference::Difference;
 pub use entries::{Comparison, Entry, Outcome, run_ways};
 pub use summary::{COLUMNS, Column, Summary};
@@ -27,6 +29,8 @@ pub struct Compared {
     pub frames: Vec<Frame>,
     /// What it came to.
     pub summary: Summary,
+    /// Its machine as edits have left it, and its task.
+    pub candidate: Candidate,
 }
 
 impl Compared {
@@ -62,7 +66,7 @@ impl Compared {
             frames.push(last);
         }
         let summary = Summary::of(&scenario, &last);
-        Ok(Self { scenario, frames, summary })
+        Ok(Self { scenario, frames, summary, candidate: Candidate::of(&run) })
     }
 
     /// The machine that control believes in.

@@ -49,9 +49,9 @@ pub struct Summary {
     pub verdict: Verdict,
 }
 
-/// A column of the table.
+/// A column of a table.
 #[derive(Clone, Copy, Debug)]
-pub struct Column {
+pub struct Column<T = Summary> {
     /// Key in JSON.
     pub key: &'static str,
     /// Head of the column.
@@ -63,7 +63,7 @@ pub struct Column {
     /// Decimals that are shown.
     pub decimals: usize,
     /// Its value; `None` where there is none.
-    pub value: fn(&Summary) -> Option<f64>,
+    pub value: fn(&T) -> Option<f64>,
 }
 
 /// The table's columns, in order.

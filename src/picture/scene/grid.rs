@@ -1,0 +1,48 @@
+//! [`Grid`]: squares under a machine that tell its size.
+
+use super::linkage::Linkage;
+use super::palette::{Palette, faded};
+use super::{Line, Scene, Strips, point};
+use crate::mechanics::planar::Vector;
+use crate::picture::numbers::round_up;
+
+/// The most squares over the reach of a machine.
+const SQUARES: f64 = 15.0;
+
+/// What stays the same from frame to frame.
+#[derive(Clone, Debug)]
+pub struct Grid {
+    width: f64,
+    lines: Strips,
+    /// Those through the origin.
+    axes: Strips,
+}
+
+impl Grid {
+    /// Under a machine.
+    pub fn of(linkage: &Linkage) -> Self {
+        let z = linkage.floor() - 0.004 * linkage.reach();
+        let width = round_up(linkage.reach() / SQUARES);
+        let n = (1.7 * linkage.reach() / width).ceil() as i32;
+        let far = f64::from(n) * width;
+        let at = |i: i32| {
+            let at = f64::from(i) * width;
+            [[[at, -far], [at, far]], [[-far, at], [far, at]]]
+                .map(|ends| ends.map(|[x, y]| point(Vector::new(x, y), z)).to_vec())
+        };
+        let lines = (-n..=n).filter(|i| *i != 0).flat_map(at).collect();
+        Self { width, lines, axes: at(0).into() }
+    }
+
+    /// Width of a square, m.
+    pub fn width(&self) -> f64 {
+        self.width
+    }
+
+    /// Draws it.
+    pub fn draw(&self, scene: &mut Scene, palette: &Palette) {
+        let lines = Line::new("grid", self.lines.clone(), 1.0, faded(palette.line, 0.55));
+        let axes = Line::new("grid/axes", self.axes.clone(), 1.0, palette.line);
+        scene.lines.extend([lines.still(), axes.still()]);
+    }
+}

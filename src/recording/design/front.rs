@@ -1,0 +1,166 @@
+//! [`Fronts`]: what less inertia costs in mass, as the window's design view has it, with the machine's own point.
+
+use rerun::{EntityPath, LineStrips2D, Points2D, Radius};
+
+use super::state::bare;
+use crate::mechanics::machine::{Inertia, Machine};
+use crate::picture::numbers::{at_step, signed, spaced};
+use crate::picture::scene::palette::{Theme, mix, palette};
+use crate::recording::rows::Track;
+use crate::recording::store::{Instant, Store, StoreError};
+use crate::recording::style::{colour, under};
+use crate::session::design::Brief;
+
+/// Machines of a front.
+const POINTS: usize = 13;
+
+/// Sizes of the drawing: it has no unit, and y points down, as the viewer has it.
+const SIDES: [f64; 2] = [2.2, 1.0];
+/// What of it is left free around all points.
+const FREE: f64 = 0.07;
+/// Left, top, right and bottom of what is seen: numbers stand beside the axes.
+pub const SEEN: [f64; 4] = [-0.3, -0.16, 2.36, 1.4];
+
+/// The fronts of the states of a design.
+#[derive(Debug)]
+pub struct Fronts {
+    /// By the machines without counterweights that they are of: added mass, kg, and Σ D, kg m².
+    all: Vec<(Machine, Vec<[f64; 2]>)>,
+    /// From where to where the axes go, kg and kg m².
+    ranges: [[f64; 2]; 2],
+}
+
+impl Fronts {
+    /// Of machines, as far as they have counterweights; none where nothing within the usual bounds balances any.
+    pub fn of<'a>(machines: impl Iterator<Item = &'a Machine>) -> Option<Self> {
+        let mut all: Vec<(Machine, Vec<[f64; 2]>)> = Vec::new();
+        let mut seen: Vec<[f64; 2]> = Vec::new();
+        for machine in machines {
+            let Some(bare) = bare(machine) else { continue };
+            if !all.iter().any(|(known, _)| *known == bare) {
+                let found = Brief::of(machine).front(&bare, POINTS);
+                let points = found.map_or_else(|_| Vec::new(), |front| front.measures());
+                seen.extend(&points);
+                all.push((bare, points));
+            }
+            seen.push(own(machine));
+        }
+        if all.iter().all(|(_, points)| points.is_empty()) {
+            return None;
+        }
+        let range = |i: usize| {
+            let ends = (f64::INFINITY, f64::NEG_INFINITY);
+            let (low, high) = seen.iter().fold(ends, |(low, high), at| (low.min(at[i]), high.max(at[i])));
+            let room = FREE * (high - low).max(1e-3 * high.abs()).max(1e-9);
+            [low - room, high + room]
+        };
+        Some(Self { ranges: [range(0), range(1)], all })
+    }
+
+    fn place(&self, at: [f64; 2]) -> [f32; 2] {
+        let share = |i: usize| (at[i] - self.ranges[i][0]) / (self.ranges[i][1] - self.ranges[i][0]);
+        [SIDES[0] * share(0), SIDES[1] * (1.0 - share(1))].map(|x| x as f32)
+    }
+
+    /// Writes those of each state.
+    ///
+    /// # Errors
+    /// If they cannot be written.
+    pub fn write<'a>(
+        &self,
+        store: &mut Store,
+        root: &EntityPath,
+        states: impl Iterator<Item = (Instant, &'a Machine)>,
+    ) -> Result<(), StoreError> {
+        let root = &under(root, "front");
+        self.axes(store, root)?;
+        let (mut curves, mut points) = (Track::new(), Track::new());
+        for (at, machine) in states {
+            let known = bare(machine).and_then(|bare| self.all.iter().find(|(known, _)| *known == bare));
+            curves.push(at, known.map(|(_, points)| points.iter().map(|at| self.place(*at)).collect::<Vec<_>>()));
+            points.push(at, known.map(|_| own(machine)));
+        }
+        let palette = palette(Theme::Dark);
+        let (clock, rows) = curves.take();
+        let curve = |row: &Option<Vec<[f32; 2]>>| row.clone().unwrap_or_default();
+        for (i, at) in clock.instants().enumerate() {
+            let since = Some(at).filter(|at| at.edit.is_some());
+            let line = curve(&rows[i]);
+            let strips = LineStrips2D::new((line.len() > 1).then_some(line.clone()))
+                .with_radii([Radius::new_ui_points(0.9)])
+                .with_colors([colour(palette.zero)])
+                .with_draw_order(1.0);
+            store.shape(since, &under(root, "curve"), &strips)?;
+            let dots = Points2D::new(line)
+                .with_radii([Radius::new_ui_points(3.5)])
+                .with_colors([colour(palette.zero)])
+                .with_draw_order(2.0);
+            store.shape(since, &under(root, "machines"), &dots)?;
+        }
+        let (clock, rows) = points.take();
+        for (i, at) in clock.instants().enumerate() {
+            let since = Some(at).filter(|at| at.edit.is_some());
+            let dot = Points2D::new(rows[i].map(|at| self.place(at)))
+                .with_radii([Radius::new_ui_points(6.0)])
+                .with_colors([colour(palette.amber)])
+                .with_draw_order(3.0);
+            store.shape(since, &under(root, "now"), &dot)?;
+            let words = |[mass, inertia]: [f64; 2]| format!("{} kg · {} kg m²", signed(mass, 2), signed(inertia, 3));
+            let aside = |at: [f64; 2]| {
+                let [x, y] = self.place(at);
+                [x.clamp(0.42, SIDES[0] as f32 - 0.42), if y < 0.2 { y + 0.13 } else { y - 0.13 }]
+            };
+            let label = Points2D::new(rows[i].map(aside))
+                .with_radii([Radius::ZERO])
+                .with_colors([colour(palette.amber)])
+                .with_labels(rows[i].map(words));
+            store.shape(since, &under(root, "now/words"), &label)?;
+        }
+        Ok(())
+    }
+
+    /// The frame with its grid and numbers.
+    fn axes(&self, store: &mut Store, root: &EntityPath) -> Result<(), StoreError> {
+        let palette = palette(Theme::Dark);
+        let (mut grid, mut places, mut words) = (Vec::new(), Vec::new(), Vec::new());
+        let [wide, high] = SIDES.map(|x| x as f32);
+        for (i, [from, to]) in self.ranges.into_iter().enumerate() {
+            let (marks, step) = spaced(from, to, if i == 0 { 7.0 } else { 5.0 });
+            for mark in marks.into_iter().filter(|mark| (from..=to).contains(mark)) {
+                let mut at = [self.ranges[0][0], self.ranges[1][0]];
+                at[i] = mark;
+                let [x, y] = self.place(at);
+                let (end, beside) = match i {
+                    0 => ([x, 0.0], [x, high + 0.09]),
+                    _ => ([wide, y], [-0.13, y]),
+                };
+                grid.push([[x, y], end]);
+                places.push(beside);
+                words.push(at_step(mark, step));
+            }
+        }
+        places.extend([[wide - 0.26, high + 0.24], [0.02, -0.09]]);
+        words.extend(["added mass, kg", "Σ D, kg m²"].map(String::from));
+        let lines = LineStrips2D::new(grid)
+            .with_radii([Radius::new_ui_points(0.5)])
+            .with_colors([colour(palette.line)])
+            .with_draw_order(-1.0);
+        store.fixed(&under(root, "grid"), &lines)?;
+        let frame = LineStrips2D::new([[[0.0, 0.0], [0.0, high], [wide, high]]])
+            .with_radii([Radius::new_ui_points(0.7)])
+            .with_colors([colour(mix(palette.line, palette.dim, 0.5))]);
+        store.fixed(&under(root, "axes"), &frame)?;
+        let numbers = Points2D::new(places)
+            .with_radii([Radius::ZERO])
+            .with_colors([colour(palette.dim)])
+            .with_labels(words)
+            .with_show_labels(true);
+        store.fixed(&under(root, "axes/numbers"), &numbers)
+    }
+}
+
+/// What the counterweights of a machine weigh, kg, and its Σ D, kg m².
+fn own(machine: &Machine) -> [f64; 2] {
+    let added = machine.spec().counterweights.iter().map(|weight| weight.mass).sum();
+    [added, Inertia::of(machine).momenta().iter().sum()]
+}

@@ -1,0 +1,148 @@
+//! The design of a machine: what it weighs and where, what that leaves of (7) and (8), and what balance has cost. Each
+//! state that edits of a session have left is a row of the time line `edit`, and stands on the others where it holds.
+
+mod bars;
+mod front;
+mod state;
+mod words;
+
+use rerun::{EntityPath, TextDocument};
+
+use super::eye::Eye;
+use super::rows::Track;
+use super::space::Space;
+use super::store::{Instant, Store, StoreError};
+use super::style::under;
+use crate::mechanics::machine::Machine;
+use crate::mechanics::planar::Units;
+use crate::picture::scene::Changes;
+use crate::picture::scene::draft::Draft;
+use crate::picture::scene::grid::Grid;
+use crate::picture::scene::linkage::Linkage;
+use crate::picture::scene::options::ViewOptions;
+use crate::picture::scene::palette::{Theme, palette};
+use crate::session::scenario::Scenario;
+use crate::session::{Refusal, Run, designs};
+use crate::simulation::frame::Frame;
+use bars::Bars;
+use front::Fronts;
+use state::State;
+
+pub use front::SEEN;
+pub use words::beside;
+
+/// What of the height and width of its view the machine fills.
+const FILLS: f64 = 0.8;
+
+/// A design as it is recorded.
+#[derive(Debug)]
+pub struct Design {
+    states: Vec<State>,
+    /// The run before its first step: every state is drawn in its pose.
+    start: Frame,
+    /// From where the machine is seen.
+    pub eye: Eye,
+    /// Where its machine has counterweights: what else these could be.
+    pub fronts: Option<Fronts>,
+    /// It is what the scenario is about: its machine has counterweights, or was changed in its session.
+    pub leads: bool,
+}
+
+impl Design {
+    /// Of a run that began with a frame, made of a scenario with all its edits.
+    ///
+    /// # Errors
+    /// If an edit cannot be made of the machine.
+    pub fn of(scenario: &Scenario, run: &Run, start: Frame) -> Result<Self, Refusal> {
+        let (all, dt) = (designs(scenario)?, run.simulation().dt());
+        let several = all.len() > 1;
+        let first = all[0].machine.clone();
+        let states = all.into_iter().map(|of| {
+            let at = Instant { edit: several.then_some(of.changes), ..Instant::at(of.step, of.step as f64 * dt) };
+            State::of(at, of, &first, &run.plan().motion)
+        });
+        let states: Vec<State> = states.collect();
+        let has_weights = states.iter().any(|state| !state.of.machine.spec().counterweights.is_empty());
+        Ok(Self {
+            eye: above(states.iter().map(|state| &state.of.machine), &start.q.units()),
+            fronts: has_weights.then(|| Fronts::of(states.iter().map(|state| &state.of.machine))).flatten(),
+            leads: several || has_weights,
+            states,
+            start,
+        })
+    }
+
+    /// Drives of the machine.
+    pub fn drives(&self) -> usize {
+        self.states[0].of.machine.drives()
+    }
+
+    /// Writes all states under a root.
+    ///
+    /// # Errors
+    /// If they cannot be written.
+    pub fn write(&self, store: &mut Store, root: &EntityPath) -> Result<(), StoreError> {
+        let root = &under(root, "design");
+        self.draw(store, root)?;
+        let count = self.states.last().map_or(0, |state| state.of.changes);
+        self.document(store, &under(root, "state"), |state| words::state(state, count))?;
+        self.document(store, &under(root, "links"), |state| words::links(&state.of.machine))?;
+        self.document(store, &under(root, "balance"), |state| words::balance(&state.of.machine, &state.breakdown))?;
+        for bars in Bars::all(&self.states[0].of.machine) {
+            bars.write(store, root, self.states.iter().map(|state| (state.at, &state.breakdown)))?;
+        }
+        match &self.fronts {
+            Some(fronts) => fronts.write(store, root, self.states.iter().map(|state| (state.at, &state.of.machine))),
+            None => Ok(()),
+        }
+    }
+
+    /// The machine from straight above.
+    fn draw(&self, store: &mut Store, root: &EntityPath) -> Result<(), StoreError> {
+        let palette = palette(Theme::Dark);
+        let mut space = Space::new(root.clone(), self.eye, palette.background);
+        space.rename(vec![("design", "marks".into())]);
+        let options = ViewOptions { invites: false, ..ViewOptions::default() };
+        for state in &self.states {
+            let machine = &state.of.machine;
+            let linkage = Linkage::of(machine);
+            let mut scene = Draft::of(machine).scene((&linkage, &Grid::of(&linkage)), &self.start, &options);
+            if state.at.edit.is_none() {
+                // There is one state of it: it stands.
+                scene.solids.iter_mut().for_each(|solid| solid.changes = Changes::Nothing);
+            }
+            space.draw(store, (state.at, state.at.edit.map(|_| state.at)), &scene)?;
+        }
+        space.write(store)
+    }
+
+    /// Writes what is to be read of each state.
+    fn document(&self, store: &mut Store, path: &EntityPath, of: impl Fn(&State) -> String) -> Result<(), StoreError> {
+        let mut track = Track::new();
+        self.states.iter().for_each(|state| track.push(state.at, of(state)));
+        let (clock, texts) = track.take();
+        if let ([text], None) = (&texts[..], self.states[0].at.edit) {
+            return store.fixed(path, &TextDocument::from_markdown(text.as_str()));
+        }
+        let rows = TextDocument::update_fields()
+            .with_many_media_type(texts.iter().map(|_| rerun::MediaType::markdown()))
+            .with_many_text(texts);
+        store.columns(&clock.columns(), path, rows.columns_of_unit_batches()?)
+    }
+}
+
+/// From where all of these machines are seen as a whole.
+fn above<'a>(machines: impl Iterator<Item = &'a Machine>, e: &Units) -> Eye {
+    let none = [f64::INFINITY, f64::NEG_INFINITY];
+    let wider = |[low, high]: [f64; 2], x: f64, r: f64| [low.min(x - r), high.max(x + r)];
+    let mut seen = [wider(none, 0.0, 0.0); 2];
+    for machine in machines {
+        for bar in Linkage::of(machine).flat(e) {
+            for (p, r) in bar.ends.map(|end| (end, bar.radius)).into_iter().chain(bar.weights) {
+                seen = [wider(seen[0], p.re, r), wider(seen[1], p.im, r)];
+            }
+        }
+    }
+    let side = seen.iter().fold(0.0_f64, |side, [low, high]| side.max(high - low));
+    Eye::above(seen.map(|[low, high]| 0.5 * (low + high)), side / FILLS)
+}

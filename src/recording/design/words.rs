@@ -1,0 +1,177 @@
+//! What is to be read of a state of a design, as Markdown.
+
+use super::state::State;
+use crate::mechanics::balance::Breakdown;
+use crate::mechanics::machine::{Inertia, Machine};
+use crate::mechanics::planar::Vector;
+use crate::picture::numbers::signed;
+use crate::settings::number::counted;
+use crate::settings::range::shortened;
+use crate::study::comparison::{DESIGN, Design};
+
+/// Across a table of what links bring to lines, at most; of more lines the links stand across.
+const ACROSS: usize = 10;
+
+/// Characters of a name, or of what an edit does.
+const NAME: usize = 24;
+const SAID: usize = 300;
+
+/// What the machine comes to, after so many of `count` changes.
+pub(super) fn state(state: &State, count: usize) -> String {
+    let machine = &state.of.machine;
+    let inertia = Inertia::of(machine);
+    let mut text = String::new();
+    match state.of.changes {
+        0 if count == 0 => {}
+        0 => {
+            text += &format!("Before {}, to be stepped through on the time line *edit*.\n\n", counted(count, "change"))
+        }
+        changes => text += &format!("Change {changes} of {count}: {}\n\n", cell(&state.of.words, SAID)),
+    }
+    let all = |values: &mut dyn Iterator<Item = f64>| values.map(|x| signed(x, 3)).collect::<Vec<_>>().join(" · ");
+    let [force, coupling] = [inertia.force_residual(), inertia.invariance_residual()];
+    let mut rows = vec![
+        ["mass of all, kg".to_owned(), signed(machine.mass(), 3)],
+        ["Dₖ, kg m²".into(), all(&mut inertia.momenta().iter().copied())],
+        ["Σ D, kg m²".into(), signed(inertia.momenta().iter().sum(), 4)],
+        ["λₖ = Dₖ / D₁".into(), all(&mut inertia.lambda().iter().copied())],
+        ["worst of (7), kg m".into(), left(force, inertia.is_force_balanced())],
+        ["worst of (8), kg m²".into(), left(coupling, inertia.is_invariant())],
+    ];
+    if let Some((beside, measures)) = &state.measures {
+        let ratio = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), |x| signed(x, 3));
+        rows.extend([
+            [format!("**{beside}**"), String::new()],
+            ["added mass, kg".into(), signed(measures.added_mass, 3)],
+            ["added Σ D, kg m²".into(), signed(measures.added_inertia, 4)],
+            ["mass–inertia factor".into(), ratio(measures.mass_inertia_factor)],
+        ]);
+        if let Some(beta) = &measures.beta {
+            let beta = [beta.force, beta.moment, beta.torque].map(ratio).join(" · ");
+            rows.push(["β: force · moment · torque".into(), beta]);
+        }
+    }
+    text + &table(
+        &[format!("machine {}", cell(machine.name(), NAME)), String::new()],
+        &rows.into_iter().map(Vec::from).collect::<Vec<_>>(),
+    )
+}
+
+/// What is left of one kind of conditions.
+fn left(most: f64, is_none: bool) -> String {
+    if is_none { "nothing".into() } else { signed(most, 4) }
+}
+
+/// The links with what they weigh, and their counterweights.
+pub(super) fn links(machine: &Machine) -> String {
+    let spec = machine.spec();
+    let has_weights = !spec.counterweights.is_empty();
+    let mut heads = vec!["link", "drive", "mass kg", "CM m"];
+    if spec.links.iter().any(|link| link.com_normal != 0.0) {
+        heads.push("across m");
+    }
+    if has_weights {
+        heads.extend(["disc kg", "at m", "radius m"]);
+    }
+    let mut rows = Vec::new();
+    for (link, part) in spec.links.iter().zip(machine.resolved_links()) {
+        let drive = &spec.drives[part.drive].name;
+        let mut own = vec![cell(&link.name, NAME), cell(drive, NAME), signed(link.mass, 3), signed(link.com, 4)];
+        if heads.contains(&"across m") {
+            own.push(signed(link.com_normal, 4));
+        }
+        let mut weights = spec.counterweights.iter().filter(|weight| weight.link == link.name).peekable();
+        if weights.peek().is_none() {
+            own.resize(heads.len(), "–".into());
+            rows.push(own);
+            continue;
+        }
+        for (i, weight) in weights.enumerate() {
+            // A second one on the same link stands alone.
+            let mut row = if i == 0 { own.clone() } else { vec![String::new(); own.len()] };
+            row.extend([signed(weight.mass, 3), signed(weight.at, 4), signed(weight.radius, 4)]);
+            rows.push(row);
+        }
+    }
+    let heads: Vec<String> = heads.into_iter().map(String::from).collect();
+    let added: f64 = spec.counterweights.iter().map(|weight| weight.mass).sum();
+    let sum = match has_weights {
+        true => format!("\n{} of {} kg in all", counted(spec.counterweights.len(), "counterweight"), signed(added, 3)),
+        false => "\nNo counterweights.".into(),
+    };
+    table(&heads, &rows) + &sum
+}
+
+/// Every line of (7) and (8): what each link brings to it with all that it carries, and what is left.
+pub(super) fn balance(machine: &Machine, breakdown: &Breakdown) -> String {
+    let terms = &breakdown.terms;
+    let heads = terms.iter().map(|term| format!("{} {}", term.condition.symbol(), term.condition.unit()));
+    let heads: Vec<String> = ["link".to_owned()].into_iter().chain(heads).collect();
+    let row = |(link, own): (usize, &crate::mechanics::machine::Link)| {
+        let parts = terms.iter().map(|term| match complex(breakdown.of_link(term, link)) {
+            none if none == "0.0000" => "·".to_owned(),
+            part => part,
+        });
+        [cell(&own.name, NAME)].into_iter().chain(parts).collect::<Vec<_>>()
+    };
+    let of_term = terms.iter().map(|term| match term.balanced {
+        true => "**0**".to_owned(),
+        false => format!("**{}**", complex(term.left)),
+    });
+    let left = ["**left**".to_owned()].into_iter().chain(of_term).collect::<Vec<_>>();
+    let rows = [left].into_iter().chain(machine.links().iter().enumerate().map(row)).collect::<Vec<_>>();
+    if terms.len() <= ACROSS {
+        return table(&heads, &rows);
+    }
+    let across: Vec<Vec<String>> = [heads].into_iter().chain(rows).collect();
+    let turned = (0..across[0].len()).map(|i| across.iter().map(|row| row[i].clone()).collect::<Vec<_>>());
+    let turned: Vec<Vec<String>> = turned.collect();
+    table(&turned[0], &turned[1..])
+}
+
+/// The machines of several cases, by their names, beside the first.
+pub fn beside(cases: &[(&str, Design)]) -> String {
+    let heads = cases.iter().map(|(name, _)| cell(name, NAME));
+    let heads: Vec<String> = [String::new()].into_iter().chain(heads).collect();
+    let rows = DESIGN.iter().map(|column| {
+        let cells = cases.iter().map(|(_, design)| match (column.value)(design) {
+            Some(x) => signed(x, column.decimals),
+            None => "–".into(),
+        });
+        let head =
+            if column.unit == "1" { column.head.to_owned() } else { format!("{}, {}", column.head, column.unit) };
+        [head].into_iter().chain(cells).collect::<Vec<_>>()
+    });
+    let apart = cases.iter().filter_map(|(name, design)| Some((name, design.apart.as_ref()?)));
+    let apart = apart.map(|(name, why)| format!("\n{}: {}\n", cell(name, NAME), cell(why, SAID)));
+    table(&heads, &rows.collect::<Vec<_>>()) + &apart.collect::<String>()
+}
+
+/// Along the axes of links, and across them where there is something.
+fn complex(x: Vector) -> String {
+    match signed(x.im, 4) {
+        none if none == "0.0000" => signed(x.re, 4),
+        across if x.im > 0.0 => format!("{} + {across} i", signed(x.re, 4)),
+        _ => format!("{} − {} i", signed(x.re, 4), signed(-x.im, 4)),
+    }
+}
+
+/// Text that is shown as it stands, in one line.
+fn cell(text: &str, most: usize) -> String {
+    let mut cell = String::new();
+    for c in shortened(text, most).chars() {
+        match c {
+            '\\' | '|' | '*' | '_' | '`' | '[' | ']' | '<' | '>' | '#' | '~' | '!' | '$' => cell.extend(['\\', c]),
+            c if c.is_control() => cell.push(' '),
+            c => cell.push(c),
+        }
+    }
+    cell
+}
+
+/// Columns after the first are numbers.
+fn table(heads: &[String], rows: &[Vec<String>]) -> String {
+    let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+    let rule: Vec<String> = (0..heads.len()).map(|i| if i == 0 { "---" } else { "---:" }.to_owned()).collect();
+    line(heads) + &line(&rule) + &rows.iter().map(|row| line(row)).collect::<String>()
+}

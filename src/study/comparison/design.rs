@@ -1,0 +1,143 @@
+//! [`Design`]: a machine beside that of another run, by what it weighs, how far it is balanced and what that has cost.
+
+use std::sync::Arc;
+
+use super::summary::Column;
+use crate::mechanics::machine::{Inertia, Machine};
+use crate::planning::Motion;
+use crate::session::Run;
+use crate::session::scenario::Task;
+use crate::settings::number::counted;
+use crate::study::measures::{Beta, Measures};
+
+/// A machine with the task that it does.
+#[derive(Clone, Debug)]
+pub struct Candidate {
+    machine: Machine,
+    task: Task,
+    motion: Arc<Motion>,
+}
+
+/// A machine by itself, and beside another one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Design {
+    /// kg.
+    pub mass: f64,
+    /// Σ D_k, kg m².
+    pub inertia: f64,
+    /// What is left of (7), largest |g_k|, kg m, and of (8), largest |C_kl|, kg m².
+    pub left: [f64; 2],
+    /// Beside the machine of the first run, in the motion of that; without β where that says nothing.
+    pub beside: Option<Measures>,
+    /// Why something is not set beside it.
+    pub apart: Option<String>,
+}
+
+/// Columns of designs, in order.
+pub const DESIGN: [Column<Design>; 10] = [
+    column("mass", "mass", "mass of the machine", "kg", 3, |d| Some(d.mass)),
+    column("inertia", "Σ D", "inertia of all drives, Σ D", "kg m²", 4, |d| Some(d.inertia)),
+    column("force_left", "worst (7)", "largest |g|, what is left of force balance (7)", "kg m", 5, |d| Some(d.left[0])),
+    column("coupling_left", "worst (8)", "largest |C|, what is left of invariance (8)", "kg m²", 5, |d| {
+        Some(d.left[1])
+    }),
+    column("added_mass", "added", "mass less that of the first run's machine", "kg", 3, |d| Some(d.beside?.added_mass)),
+    column("added_inertia", "added Σ D", "Σ D less that of the first run's machine", "kg m²", 4, |d| {
+        Some(d.beside?.added_inertia)
+    }),
+    column(
+        "mass_inertia_factor",
+        "factor",
+        "mass–inertia factor: both as ratios to the first, summed",
+        "1",
+        3,
+        |d| d.beside?.mass_inertia_factor,
+    ),
+    column(
+        "beta_force",
+        "β force",
+        "force on the base in the first run's motion, of what the first does",
+        "1",
+        4,
+        |d| d.beta()?.force,
+    ),
+    column(
+        "beta_moment",
+        "β moment",
+        "moment on the base in the first run's motion, of what the first does",
+        "1",
+        4,
+        |d| d.beta()?.moment,
+    ),
+    column("beta_torque", "β torque", "torques in the first run's motion, of what the first takes", "1", 4, |d| {
+        d.beta()?.torque
+    }),
+];
+
+const fn column(
+    key: &'static str,
+    head: &'static str,
+    meaning: &'static str,
+    unit: &'static str,
+    decimals: usize,
+    value: fn(&Design) -> Option<f64>,
+) -> Column<Design> {
+    Column { key, head, meaning, unit, decimals, value }
+}
+
+impl Candidate {
+    /// Of a run at its end: with what edits have made of its machine.
+    pub fn of(run: &Run) -> Self {
+        let scenario = run.scenario();
+        Self { machine: scenario.machine.clone(), task: scenario.task.clone(), motion: run.plan().motion.clone() }
+    }
+
+    /// Beside the first of several.
+    pub fn beside(&self, first: &Self) -> Design {
+        let inertia = Inertia::of(&self.machine);
+        let mut design = Design {
+            mass: self.machine.mass(),
+            inertia: inertia.momenta().iter().sum(),
+            left: [inertia.force_residual(), inertia.invariance_residual()],
+            beside: None,
+            apart: None,
+        };
+        let [own, other] = [self, first].map(|one| one.machine.drives());
+        if own != other {
+            let [own, other] = [own, other].map(|count| counted(count, "drive"));
+            design.apart = Some(format!("it has {own} and the first {other}: it is not set beside that"));
+            return design;
+        }
+        let motion = match (self.is_alike(first), self.differs(first)) {
+            // To itself everything is as 1.
+            (true, _) => None,
+            (_, Some(what)) => {
+                design.apart = Some(format!("{what} differs from that of the first: no β of the same motion"));
+                None
+            }
+            _ => Some(&*first.motion),
+        };
+        design.beside = Some(Measures::of(&first.machine, &self.machine, motion));
+        design
+    }
+
+    /// Whether it is the same machine.
+    pub fn is_alike(&self, other: &Self) -> bool {
+        self.machine == other.machine
+    }
+
+    /// What keeps one motion of the drives from doing the task of both.
+    fn differs(&self, first: &Self) -> Option<&'static str> {
+        if self.machine.end_effector() != first.machine.end_effector() {
+            return Some("the arm's length");
+        }
+        let same = self.task.points() == first.task.points() && self.task.closed == first.task.closed;
+        (!same).then_some("its task")
+    }
+}
+
+impl Design {
+    fn beta(&self) -> Option<Beta> {
+        self.beside?.beta
+    }
+}
