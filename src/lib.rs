@@ -88,7 +88,7 @@
 //! | [`planning`] | where it may go, and when: reactionless planes and workspaces, curves, timing, ways off the plane |
 //! | [`simulation`] | what then happens: plant, control, the step, frames, the audit, signals |
 //! | [`session`] | what a person did: scenarios, edits, runs, undo, replay, the verdict |
-//! | [`study`] | many runs: side by side, around a nominal machine, by frequency; the paper's equations with numbers |
+//! | [`study`] | many runs side by side and around a nominal machine; equations with numbers; a built machine, measured |
 //! | [`picture`] | scenes as plain data, the table of charts, and what paints them (features `render`, `ui`) |
 //! | [`files`] | files that appear whole or not at all |
 //! | `recording` | the same picture for Rerun (feature `record`) |

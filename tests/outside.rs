@@ -19,9 +19,11 @@ macro_rules! tests {
 mod mujoco;
 #[path = "outside/python.rs"]
 mod python;
+#[path = "outside/trim.rs"]
+mod trim;
 
 fn main() -> ExitCode {
-    let packages: [(&str, &[Test]); 1] = [("mujoco", mujoco::TESTS)];
+    let packages: [(&str, &[Test]); 2] = [("mujoco", mujoco::TESTS), ("scipy", trim::TESTS)];
     let trials = packages.into_iter().flat_map(|(package, tests)| {
         let missing = python::missing(package);
         tests.iter().map(move |(name, test)| {

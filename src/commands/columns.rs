@@ -42,9 +42,9 @@ const LARGEST_STEP: f64 = 0.5 * PI;
 const JUMP: f64 = 10.0;
 const VISIBLE: [f64; 2] = [0.1, 0.02];
 /// The largest number, in SI units.
-const MOST: f64 = 1e11;
+pub(super) const MOST: f64 = 1e11;
 /// A time between samples so many times as long as the usual one is a gap.
-const GAP: f64 = 10.0;
+pub(super) const GAP: f64 = 10.0;
 
 /// Reads samples; gaps in time are let pass if asked to.
 ///
@@ -112,39 +112,66 @@ pub fn samples(
     }
     let mut unwrapped = vec![0; columns.all.len() - 1];
     for (k, column) in columns.all.iter().enumerate().skip(1) {
-        if columns.content == Content::Drives {
-            if !column.has_unit
-                && let Some(i) = rows.iter().position(|row| row[k].abs() > TURNS)
-            {
-                let name = &column.name;
-                let why = format!(
-                    "column {name}: {} rad is more than two turns: want radians; if these are degrees, name the column \
-                     \"{name} (deg)\", if they are radians, \"{name} (rad)\"",
-                    Short(rows[i][k])
-                );
-                return Err(at(places[i], &why));
-            }
-            unwrapped[k - 1] = unwrap(&mut rows, k);
-        }
-        if let Some((i, step)) = jump(&rows, k, columns.content) {
-            let unit = if columns.content == Content::Drives { "rad" } else { "m" };
-            let turns = if unit == "rad" { ", which no whole turn explains" } else { "" };
-            let why = format!(
-                "column {}: a jump of {step:.3} {unit} from line {}{turns}: want a continuous motion, sampled more often \
-                 if it is that fast",
-                column.name,
-                places[i - 1]
-            );
-            return Err(at(places[i], &why));
-        }
+        let (name, drives) = (&column.name, columns.content == Content::Drives);
+        let whole = match drives {
+            true => continuous_angle(&mut rows, k, name, column.has_unit),
+            false => jump(&rows, k, columns.content).map_or(Ok(0), |(i, step)| Err(Broken::jump(name, i, step, "m"))),
+        };
+        let broken = |broken: Broken| at(places[broken.row], &broken.why(|row| places[row]));
+        unwrapped[k - 1] = whole.map_err(broken)?;
     }
     let names = columns.all[1..].iter().map(|c| c.name.clone()).collect();
     let samples = Samples::new(&rows).map_err(|e| Failure::wrong_input(e).of(file))?;
     Ok(Read { content: columns.content, samples, names, unwrapped })
 }
 
+/// What keeps a column from being a continuous motion.
+pub(super) struct Broken {
+    /// At which row.
+    pub row: usize,
+    what: String,
+    /// Whether it is a jump from the row before.
+    jump: Option<String>,
+}
+
+impl Broken {
+    fn jump(name: &str, row: usize, step: f64, unit: &str) -> Self {
+        let turns = if unit == "rad" { ", which no whole turn explains" } else { "" };
+        let rest = format!("{turns}: want a continuous motion, sampled more often if it is that fast");
+        Self { row, what: format!("column {name}: a jump of {step:.3} {unit} from line "), jump: Some(rest) }
+    }
+
+    /// In words, by the lines of rows.
+    pub fn why(&self, line: impl Fn(usize) -> u64) -> String {
+        match &self.jump {
+            Some(rest) => format!("{}{}{rest}", self.what, line(self.row - 1)),
+            None => self.what.clone(),
+        }
+    }
+}
+
+/// Takes whole turns out of the steps of a column of angles, rad; how many there were.
+///
+/// # Errors
+/// If these are no angles in rad, or jump.
+pub(super) fn continuous_angle(rows: &mut [Vec<f64>], k: usize, name: &str, has_unit: bool) -> Result<usize, Broken> {
+    if let Some(row) = rows.iter().position(|row| !has_unit && row[k].abs() > TURNS) {
+        let what = format!(
+            "column {name}: {} rad is more than two turns: want radians; if these are degrees, name the column \
+             \"{name} (deg)\", if they are radians, \"{name} (rad)\"",
+            Short(rows[row][k])
+        );
+        return Err(Broken { row, what, jump: None });
+    }
+    let turns = unwrap(rows, k);
+    match jump(rows, k, Content::Drives) {
+        Some((row, step)) => Err(Broken::jump(name, row, step, "rad")),
+        None => Ok(turns),
+    }
+}
+
 /// By the first line that tells: semicolons, tabs or commas.
-fn reader(text: &str) -> csv::Reader<&[u8]> {
+pub(super) fn reader(text: &str) -> csv::Reader<&[u8]> {
     let head = text.lines().find(|line| !line.trim().is_empty() && !line.starts_with('#')).unwrap_or_default();
     let delimiter = [b';', b'\t'].into_iter().find(|d| head.bytes().any(|b| b == *d)).unwrap_or(b',');
     csv::ReaderBuilder::new()
@@ -175,8 +202,8 @@ struct Columns {
     all: Vec<Column>,
 }
 
-const TIME: &[(&str, f64)] = &[("s", 1.0), ("sec", 1.0), ("ms", 1e-3), ("us", 1e-6), ("µs", 1e-6)];
-const ANGLE: &[(&str, f64)] =
+pub(super) const TIME: &[(&str, f64)] = &[("s", 1.0), ("sec", 1.0), ("ms", 1e-3), ("us", 1e-6), ("µs", 1e-6)];
+pub(super) const ANGLE: &[(&str, f64)] =
     &[("rad", 1.0), ("radians", 1.0), ("deg", PI / 180.0), ("degrees", PI / 180.0), ("°", PI / 180.0)];
 const LENGTH: &[(&str, f64)] = &[("m", 1.0), ("cm", 1e-2), ("mm", 1e-3)];
 

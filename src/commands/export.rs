@@ -22,7 +22,8 @@ use stillbase::settings::number::{counted, fixed};
 ///
 /// Columns are t, q, qd, qdd, tau_ff of each drive, x, y of the end effector, and b; SI and radians, every digit. What
 /// is simulated on a base that moves has base_x, base_y, theta and their rates base_xd, base_yd, thetad besides: q is
-/// absolute, an encoder reads q - theta. The first row is the start and the last one the end, also where the rate does
+/// absolute, an encoder reads q - theta. What is simulated ends with fx, fy, nz: what the machine transmits to its base,
+/// weight included, as a force plate would read it (`stillbase trim`). The first row is the start and the last one the end, also where the rate does
 /// not divide the duration.
 #[derive(Args)]
 #[command(after_help = "\
@@ -60,6 +61,9 @@ enum What {
 
 /// Columns of a base that moves: where B is, how the base is turned, and the rates of both.
 const OF_BASE: [&str; 6] = ["base_x", "base_y", "theta", "base_xd", "base_yd", "thetad"];
+
+/// Columns of what reaches the base, force and moment about B.
+const TO_BASE: [&str; 3] = ["fx", "fy", "nz"];
 
 /// The most rows: more are asked for by a slip of the hand.
 const MOST_ROWS: f64 = 2e6;
@@ -115,6 +119,7 @@ impl Export {
             .chain(per_drive.flat_map(|word| (1..=drives).map(move |k| format!("{word}{k}"))))
             .chain(["x", "y", "b"].map(String::from))
             .chain(OF_BASE.map(String::from).into_iter().filter(|_| based))
+            .chain(TO_BASE.map(String::from).into_iter().filter(|_| self.what == What::Simulated))
             .collect();
         let last_interval = match rows.as_slice() {
             [.., before, last] => last[0] - before[0],
@@ -182,19 +187,21 @@ impl Export {
         }
         self.check_rows(scenario.duration.unwrap_or(scenario.task.time))?;
         let mut rows = Vec::new();
-        let columns = 4 * scenario.machine.drives() + 4;
+        let columns = 4 * scenario.machine.drives() + 4 + TO_BASE.len();
         let fits = |last: u64| check_size(last / every as u64 + 1, columns, true);
         let run = replay_if(scenario, fits, |run, f| {
             if f.step % every as u64 == 0 || f.step == run.last_step() {
                 let all = f.q.iter().chain(f.qd.iter()).chain(f.qdd.iter()).chain(f.torque.iter()).map(|x| x + 0.0);
                 let place = [f.base.at.re, f.base.at.im, f.base.angle];
                 let rates = [f.base_velocity.re, f.base_velocity.im, f.base_rate];
+                let wrench = f.wrench.total();
                 let base = place.into_iter().chain(rates).map(|x| x + 0.0).filter(|_| scenario.base.moves());
                 rows.push(
                     std::iter::once(f.time)
                         .chain(all)
                         .chain([f.end_effector.re, f.end_effector.im, f.b])
                         .chain(base)
+                        .chain([wrench.force.re, wrench.force.im, wrench.moment].map(|x| x + 0.0))
                         .collect(),
                 );
             }

@@ -17,6 +17,7 @@ pub(crate) mod failure;
 mod figures;
 #[cfg(feature = "record")]
 mod headless;
+mod holds;
 mod import;
 pub(crate) mod input;
 mod interrupt;
@@ -30,8 +31,10 @@ mod plan;
 mod pose;
 mod reach;
 mod simulate;
+mod sites;
 mod spectrum;
 pub(crate) mod tolerance;
+pub(crate) mod trim;
 mod workspace;
 
 pub use exit::{exit_code, usage};
@@ -83,6 +86,7 @@ subcommands! {
     ExportModel: export_model::ExportModel,
     Tolerance: tolerance::Tolerance,
     Spectrum: spectrum::SpectrumOf,
+    Trim: trim::Trim,
     #[cfg(feature = "ui")]
     Figures: figures::Figures,
 }

@@ -23,6 +23,7 @@ pages! {
     inside: "inside.md",
     design: "design.md",
     tolerances: "tolerances.md",
+    trim: "trim.md",
     own_motion: "own_motion.md",
     files: "files.md",
     keys: "keys.md",

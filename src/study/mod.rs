@@ -1,5 +1,5 @@
-//! Many runs: side by side, around a nominal machine, by frequency; one run over time; a machine beside another; and the
-//! equations of the paper with today's numbers in them.
+//! Many runs: side by side, around a nominal machine, by frequency; one run over time; a machine beside another; the
+//! equations of the paper with today's numbers in them; and a machine that is built, from what its base felt.
 
 pub mod comparison;
 pub mod equations;
@@ -10,3 +10,4 @@ pub mod samples;
 pub mod series;
 pub mod spectrum;
 pub mod tolerance;
+pub mod trim;

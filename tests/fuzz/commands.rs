@@ -3,10 +3,12 @@
 use clap::Parser;
 use stillbase::mechanics::machine::builtin;
 use stillbase::session::scenario::Scenario;
+use stillbase::study::trim::{Recording, Rows, fit, identified, next, taken};
 
 use crate::commands::failure::Failure;
 use crate::commands::input::{Settings, set};
 use crate::commands::tolerance::{merge, rows};
+use crate::commands::trim::measured;
 use crate::commands::{columns, dynamics};
 use crate::fuzz::{bytes, fuzz, is_short};
 
@@ -79,6 +81,55 @@ fn samples_as_csv() {
             },
             Err(failure) => said(&failure),
         }
+    });
+}
+
+/// What was measured: whatever can be read is fitted, mended and asked on, or refused.
+#[test]
+fn measurements_as_csv() {
+    let table = |head: &str, row: &dyn Fn(f64) -> String| {
+        let rows: String = (0..60).map(|i| row(0.02 * f64::from(i)) + "\n").collect();
+        format!("{head}\n{rows}").into_bytes()
+    };
+    let force = |t: f64| (0.3 * (5.0 * t).sin(), 0.2 * (7.0 * t).cos(), 0.1 * (6.0 * t).sin());
+    let row = |t: f64| {
+        let (fx, fy, nz) = force(t);
+        format!("{t},{},{},{fx},{fy},{nz}", 0.5 * (5.0 * t).sin(), 1.0 + 0.4 * (7.0 * t).cos())
+    };
+    let rates = |t: f64| {
+        let (a, b) = (5.0 * t, 7.0 * t);
+        let q = format!("{};{};{};{}", 0.5 * a.sin(), 0.4 * b.cos(), 2.5 * a.cos(), -2.8 * b.sin());
+        format!("{t};{q};{};{};{};{};{}", -12.5 * a.sin(), -19.6 * b.cos(), force(t).0, force(t).1, force(t).2)
+    };
+    let good = [
+        table("t,q1,q2,fx,fy,nz", &row),
+        table("t;q1;q2;qd1;qd2;qdd1;qdd2;fx (mN);fy [kN];nz N m", &rates),
+        table("t (ms),q1 (deg),q2,fx,fy,nz,motion", &|t| format!("{},{}", row(t), if t < 0.6 { "a" } else { "b" })),
+    ];
+    let machine = builtin("two-drive").expect("built in");
+    fuzz("measured", &good, 200, |bytes, dice| {
+        let text = String::from_utf8_lossy(bytes);
+        let recording = match measured::motions(&text, "in.csv", machine) {
+            Ok(motions) => Recording { motions },
+            Err(failure) => return said(&failure),
+        };
+        let rows = match Rows::of(machine, &recording, dice.one_in(2)) {
+            Ok(rows) => rows,
+            Err(why) => return is_short(&why.to_string()),
+        };
+        let fit = match fit(machine, &rows) {
+            Ok(fit) => fit,
+            Err(why) => return is_short(&why.to_string()),
+        };
+        if !fit.measured.iter().all(|x| x.is_finite()) || !(0..fit.unknowns.count()).all(|i| fit.half_width(i) >= 0.0) {
+            return Err("a number that is none".into());
+        }
+        let taken = taken(&fit);
+        if let Err(why) = identified(machine, &taken) {
+            is_short(&why.to_string())?;
+        }
+        let told = next(machine, &recording, &rows, &fit, None);
+        if told.candidates.is_empty() { Err("no next motion".into()) } else { Ok(()) }
     });
 }
 

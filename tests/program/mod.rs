@@ -14,6 +14,7 @@ mod plan;
 mod reach;
 mod simulate;
 mod study;
+mod trim;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -7,3 +7,4 @@ mod samples;
 mod series;
 mod spectrum;
 mod tolerance;
+mod trim;

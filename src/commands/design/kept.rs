@@ -2,7 +2,7 @@
 
 use clap::Args;
 use serde::Serialize;
-use stillbase::mechanics::balance::{Adjusted, Hold, Keep, NotKept, Parameter, Quantity, keep};
+use stillbase::mechanics::balance::{Adjusted, Keep, NotKept, Quantity, keep};
 use stillbase::mechanics::machine::{Inertia, Machine};
 use stillbase::planning::Motion;
 use stillbase::settings::number::{fixed, significant};
@@ -10,6 +10,7 @@ use stillbase::study::measures::Measures;
 
 use super::super::check::Balance;
 use super::super::failure::Failure;
+use super::super::holds::{bound, hold};
 use super::super::output::Table;
 use super::measures;
 
@@ -32,14 +33,6 @@ pub struct KeepArguments {
     bound: Vec<(String, [f64; 2])>,
 }
 
-fn bound(text: &str) -> Result<(String, [f64; 2]), String> {
-    let want = || "want KEY=LO,HI in m or kg, as 2.com=-0.3,0.1".to_owned();
-    let (key, ends) = text.split_once('=').ok_or_else(want)?;
-    let (low, high) = ends.split_once(',').ok_or_else(want)?;
-    let end = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(want);
-    Ok((key.trim().into(), [end(low)?, end(high)?]))
-}
-
 impl KeepArguments {
     /// The machine with the least change, and what has changed.
     pub fn run(
@@ -49,20 +42,7 @@ impl KeepArguments {
         penalty: &[f64],
     ) -> Result<(Machine, Answer), Failure> {
         let mut asked = Keep::coms(machine, penalty);
-        let (fixed, free) =
-            (self.fix.iter().map(|key| (key, Hold::Fixed)), self.free.iter().map(|key| (key, Hold::Free)));
-        let bounds = self.bound.iter().map(|(key, ends)| (key, Hold::Within(*ends)));
-        let mut seen = Vec::new();
-        for (key, hold) in fixed.chain(free).chain(bounds) {
-            let parameter = find(machine, key)?;
-            if seen.contains(&parameter) {
-                return Err(Failure::wrong_input(format!(
-                    "{key} is held in two ways: want one of --fix, --free, --bound"
-                )));
-            }
-            seen.push(parameter);
-            asked.hold(machine, parameter, hold);
-        }
+        hold(&mut asked, machine, &self.fix, &self.free, &self.bound)?;
         let kept = keep(machine, &asked).map_err(unkept)?;
         let change = |(one, value): (&Adjusted, &f64)| Change {
             key: one.parameter.key(machine),
@@ -79,17 +59,6 @@ impl KeepArguments {
         };
         Ok((kept.machine, answer))
     }
-}
-
-fn find(machine: &Machine, key: &str) -> Result<Parameter, Failure> {
-    let (key, link) = (key.trim(), format!("link.{}", key.trim()));
-    let mut all = Parameter::all(machine).into_iter();
-    let found = all.find(|parameter| [key, link.as_str()].contains(&parameter.key(machine).as_str()));
-    found.ok_or_else(|| {
-        let why =
-            "want mass, com or com_normal of a link, as 3.com, or mass or at of a counterweight, as counterweight.1.at";
-        Failure::wrong_input(format!("nothing of this machine that balance depends on is called {key:?}: {why}"))
-    })
 }
 
 /// What is asked for is wrong, or has no answer.

@@ -15,6 +15,7 @@ use stillbase::study::measures::{Measures, greatest_accelerations};
 use super::super::check::Balance;
 use super::super::failure::Failure;
 use super::super::output::Table;
+use super::super::sites::{link, range, sites};
 use super::measures;
 
 /// What counterweights may be, and what is to be least.
@@ -88,25 +89,12 @@ pub struct WeighArguments {
 impl WeighArguments {
     /// What is asked for.
     pub fn asked(&self, machine: &Machine, motion: Option<&Motion>) -> Result<Weighing, Failure> {
-        let links = machine.links();
-        let find = |name: &str| {
-            links.iter().position(|link| link.name == name).ok_or_else(|| {
-                let known: Vec<_> = links.iter().map(|link| link.name.as_str()).collect();
-                Failure::wrong_input(format!("no link {name}: want one of {}", known.join(", ")))
-            })
-        };
-        let ranged = |(name, [from, to]): &(String, [f64; 2])| {
-            Ok(Sites { link: find(name)?, from: *from, to: *to, most: f64::INFINITY })
-        };
-        let mut sites = self.range.iter().map(ranged).collect::<Result<Vec<_>, Failure>>()?;
-        if sites.is_empty() {
-            sites = Sites::anywhere(machine);
-        }
+        let mut sites = sites(machine, &self.range)?;
         for word in &self.max_mass {
             let (name, most) = word.split_once('=').map_or((None, word.as_str()), |(name, most)| (Some(name), most));
             let want = || Failure::wrong_input(format!("--max-mass {word}: want a mass above 0 in kg, or LINK=M"));
             let most: f64 = most.trim().parse().ok().filter(|most| *most > 0.0).ok_or_else(want)?;
-            let only = name.map(|name| find(name.trim())).transpose()?;
+            let only = name.map(|name| link(machine, name.trim())).transpose()?;
             for site in sites.iter_mut().filter(|site| only.is_none_or(|only| only == site.link)) {
                 site.most = site.most.min(most);
             }
@@ -215,12 +203,6 @@ fn unweighed(why: NoWeights) -> Failure {
         }
         why => Failure::no_answer(why),
     }
-}
-
-fn range(text: &str) -> Result<(String, [f64; 2]), String> {
-    let want = || "want NAME=LO,HI, as 1=-0.3,0.5".to_owned();
-    let (name, places) = text.split_once('=').ok_or_else(want)?;
-    Ok((name.trim().into(), ends(places).map_err(|_| want())?))
 }
 
 fn ends(text: &str) -> Result<[f64; 2], String> {

@@ -17,6 +17,6 @@ mod plane;
 pub use breakdown::{Body, Breakdown, Source, Term};
 pub use condition::Condition;
 pub use design::{DesignError, Preset, conditions, design};
-pub use keep::{Adjusted, Hold, Keep, Kept, Limit, NotKept, Relief, Side, keep};
+pub use keep::{Adjusted, Hold, Keep, Kept, Limit, NotKept, Relief, Side, keep, keep_with, unreachable_by_changes};
 pub use parameter::{Parameter, Quantity};
 pub(crate) use plane::{Equation, Plane};

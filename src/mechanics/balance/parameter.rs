@@ -95,7 +95,7 @@ impl Parameter {
 
     /// Changes it. The disc of a counterweight keeps its thickness: its radius follows its mass. The inertia of a link
     /// about its own centre of mass stays.
-    pub(super) fn set(self, spec: &mut MachineSpec, value: f64) {
+    pub(crate) fn set(self, spec: &mut MachineSpec, value: f64) {
         match (self.body, self.quantity) {
             (Body::Link(j), Quantity::Mass) => spec.links[j].mass = value,
             (Body::Link(j), Quantity::Along) => spec.links[j].com = value,

@@ -24,6 +24,6 @@ mod tolerance;
 pub use asked::{Disc, Free, FreeRotor, Objective, Sites, Weighing};
 pub use front::{Front, front};
 pub use payload::{Residual, over_payloads};
-pub use place::{Placed, place};
+pub use place::{Placed, place, place_with, unreachable_by_weights};
 pub use refusal::{Bound, NoWeights, Relief};
 pub use tolerance::{OffBy, Tolerance, off_by};

@@ -6,6 +6,7 @@ use super::refusal::{Bound, NoWeights, Relief};
 use super::search::search;
 use crate::convex::{Least, NoX};
 use crate::mechanics::machine::{Inertia, Machine};
+use crate::mechanics::planar::Vector;
 
 /// Counterweights, and the machine that carries them.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,13 +40,23 @@ const ROUNDING: [f64; 2] = [1e-7, 1e-10];
 /// # Errors
 /// If what is asked for cannot be, or cannot be together.
 pub fn place(machine: &Machine, asked: &Weighing) -> Result<Placed, NoWeights> {
-    let problem = Problem::new(machine, asked)?;
+    place_with(machine, asked, &[])
+}
+
+/// The same for a machine that is known to have more of each line of (7) and (8), in their order, than its numbers say:
+/// balance is where both together are nothing. What a counterweight that it has already adds is not in it.
+///
+/// # Errors
+/// As [`place`].
+pub fn place_with(machine: &Machine, asked: &Weighing, beyond: &[Vector]) -> Result<Placed, NoWeights> {
+    let problem = Problem::new(machine, asked, beyond)?;
+    problem.check()?;
     if problem.needs_nothing(asked) {
         let inertia = Inertia::of(&problem.bare);
         let value = asked.objective.of(0.0, &inertia);
         return Ok(Placed { machine: problem.bare, added_mass: 0.0, value, gap: 0.0 });
     }
-    let one = One { problem: &problem, machine, asked };
+    let one = One { problem: &problem, machine, asked, beyond };
     match one.least(Balance::Exact)? {
         Ok(least) => one.placed(&least, Balance::Exact),
         Err(NoX::Failed(why)) => Err(NoWeights::Failed(why)),
@@ -58,6 +69,20 @@ struct One<'a> {
     problem: &'a Problem,
     machine: &'a Machine,
     asked: &'a Weighing,
+    beyond: &'a [Vector],
+}
+
+/// What is left of each line of (7) and (8), whatever counterweights of any sign sit on the links that may carry one:
+/// as little as can be, with all lines of one size. What lies across the axes is always left.
+///
+/// # Errors
+/// If what is asked for cannot be.
+pub fn unreachable_by_weights(
+    machine: &Machine,
+    asked: &Weighing,
+    beyond: &[Vector],
+) -> Result<Vec<Vector>, NoWeights> {
+    Ok(Problem::new(machine, asked, beyond)?.unreachable(asked.sites.len()))
 }
 
 impl One<'_> {
@@ -120,7 +145,7 @@ impl One<'_> {
 
     /// What would do instead of one kind of the bounds that contradict each other.
     fn relief(&self, bounds: &[Bound]) -> Option<Relief> {
-        let with = |asked: Weighing| place(self.machine, &asked).ok();
+        let with = |asked: Weighing| place_with(self.machine, &asked, self.beyond).ok();
         if bounds.contains(&Bound::Inertia) {
             let free = Weighing { most_inertia: None, objective: Objective::inertia(), ..self.asked.clone() };
             return with(free).map(|placed| Relief::Inertia(Inertia::of(&placed.machine).momenta().iter().sum()));

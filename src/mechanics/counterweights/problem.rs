@@ -6,6 +6,7 @@ use super::room::Room;
 use crate::convex::{Least, NoX, Program, Row, conflict};
 use crate::mechanics::balance::{Condition, Equation, Plane};
 use crate::mechanics::machine::{Counterweight, Inertia, Machine, Rotor};
+use crate::mechanics::planar::Vector;
 
 /// Whether (7) and (8) hold, or how near they come over a range of payloads.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -122,7 +123,8 @@ pub(super) const NOTHING: f64 = 1e-7;
 const LEAST_RATIO: f64 = 1e-9;
 
 impl Problem {
-    pub fn new(machine: &Machine, asked: &Weighing) -> Result<Self, NoWeights> {
+    /// `beyond` is what the machine has of each line of (7) and (8), in their order, beyond what its numbers say.
+    pub fn new(machine: &Machine, asked: &Weighing, beyond: &[Vector]) -> Result<Self, NoWeights> {
         asked.check(machine)?;
         let mut spec = machine.spec().clone();
         spec.counterweights.clear();
@@ -137,8 +139,41 @@ impl Problem {
             return Err(NoWeights::Coupled);
         }
         let reach = bare.end_effector().iter().take(bare.drives()).map(|length| length.abs()).sum();
-        let conditions = conditions(&bare, &inertia, asked)?;
+        let conditions = conditions(&bare, &inertia, asked, beyond)?;
         Ok(Self { bare, inertia, conditions, reach })
+    }
+
+    /// Whether counterweights on the axes of these links can do anything about every condition that is not met.
+    ///
+    /// # Errors
+    /// If not.
+    pub fn check(&self) -> Result<(), NoWeights> {
+        for Left { of, left, .. } in &self.conditions {
+            if left.im.abs() > 1e-9 {
+                let left = format!("{:.3e} {}", left.im, of.unit());
+                return Err(NoWeights::OffAxis { condition: of.name(&self.bare), left });
+            }
+        }
+        for condition in self.conditions.iter().filter(|condition| !condition.is_touched()) {
+            if condition.left.re.abs() > 1e-9 {
+                let left = format!("{:.3e} {}", condition.left.re, condition.of.unit());
+                return Err(NoWeights::Untouched { condition: condition.of.name(&self.bare), left });
+            }
+        }
+        Ok(())
+    }
+
+    /// What is left of each condition, whatever stands at the sites, of any sign: as little as can be, with all of them of
+    /// one size.
+    pub fn unreachable(&self, sites: usize) -> Vec<Vector> {
+        let equation = |condition: &Left| Equation {
+            a: condition.changes.iter().flatten().copied().collect(),
+            right: -condition.left.re,
+            tolerance: f64::INFINITY,
+        };
+        let equations: Vec<Equation> = self.conditions.iter().map(equation).collect();
+        let along = Plane::of(&equations, 2 * sites).missed;
+        along.iter().zip(&self.conditions).map(|(along, of)| Vector::new(*along, of.left.im)).collect()
     }
 
     /// Counterweights of no mass, if nothing has to be added: whatever is added makes mass and inertia more.
@@ -146,7 +181,7 @@ impl Problem {
         let total: f64 = self.inertia.momenta().iter().sum();
         asked.rotors.is_empty()
             && asked.objective.momentum == 0.0
-            && self.inertia.is_balanced()
+            && self.conditions.iter().all(|condition| condition.left.norm() <= condition.of.nothing(&self.inertia))
             && asked.most_inertia.is_none_or(|most| total <= most)
     }
 
@@ -234,7 +269,7 @@ impl Problem {
         };
         if balance == Balance::Exact {
             let touched = self.conditions.iter().filter(|condition| condition.is_touched());
-            program.equal.extend(touched.map(|condition| Row::new(terms(condition, 1.0), -condition.left)));
+            program.equal.extend(touched.map(|condition| Row::new(terms(condition, 1.0), -condition.left.re)));
             return;
         }
         let worst = program.linear.len();
@@ -243,7 +278,7 @@ impl Problem {
         }
         program.linear.push(if balance == Balance::Nearest { 1.0 } else { 0.0 });
         for condition in &self.conditions {
-            let per = if condition.of_moments { 1.0 } else { self.reach };
+            let per = if matches!(condition.of, Condition::Force(_)) { 1.0 } else { self.reach };
             for (sign, end) in [-1.0, 1.0].into_iter().flat_map(|sign| condition.ends.map(|end| (sign, end))) {
                 let mut terms = terms(condition, sign);
                 terms.push((worst, -per));
@@ -447,7 +482,7 @@ impl Problem {
                 let [by_w, by_s] = condition.changes[*j];
                 by_w * w + by_s * s
             });
-            condition.left + changed.sum::<f64>()
+            condition.left.re + changed.sum::<f64>()
         });
         // In proportion to what is there, so that light ones stay where they may sit.
         let equation = |(condition, right): (&Left, f64)| Equation {
@@ -471,11 +506,10 @@ fn other_than_zero(ratio: f64) -> f64 {
 
 /// One line of (7) or (8).
 struct Left {
-    /// Whether it is one of (8).
-    of_moments: bool,
-    /// What the bare machine leaves along the axes, kg m or kg m²; with the middle of what it may hold.
-    left: f64,
-    /// With the least and with the most that it may hold.
+    of: Condition,
+    /// What the bare machine leaves along and across the axes, kg m or kg m²; with the middle of what it may hold.
+    left: Vector,
+    /// Along them, with the least and with the most that it may hold.
     ends: [f64; 2],
     /// What w and s of each site add.
     changes: Vec<[f64; 2]>,
@@ -488,7 +522,7 @@ impl Left {
 }
 
 /// What is left of each condition, and how a counterweight of w and s at each site changes it.
-fn conditions(bare: &Machine, inertia: &Inertia, asked: &Weighing) -> Result<Vec<Left>, NoWeights> {
+fn conditions(bare: &Machine, inertia: &Inertia, asked: &Weighing, beyond: &[Vector]) -> Result<Vec<Left>, NoWeights> {
     let parts = bare.resolved_links();
     let holding = |mass: f64| -> Result<Inertia, NoWeights> {
         let mut spec = bare.spec().clone();
@@ -499,23 +533,15 @@ fn conditions(bare: &Machine, inertia: &Inertia, asked: &Weighing) -> Result<Vec
         Some([low, high]) => [holding(low)?, holding(high)?],
         None => [inertia.clone(), inertia.clone()],
     };
-    let of = |condition: Condition| {
+    let of = |(i, condition): (usize, Condition)| {
         let change = |site: &Sites| [condition.by_mass(&parts[site.link]), condition.by_moment(&parts[site.link])];
-        let left = condition.left(inertia);
-        let words = |x: f64| format!("{x:.3e} {}", condition.unit());
-        if left.im.abs() > 1e-9 {
-            return Err(NoWeights::OffAxis { condition: condition.name(bare), left: words(left.im) });
-        }
-        let one = Left {
-            of_moments: matches!(condition, Condition::Force(_)),
-            left: left.re,
-            ends: [0, 1].map(|i| condition.left(&ends[i]).re),
+        let more = beyond.get(i).copied().unwrap_or_default();
+        Left {
+            of: condition,
+            left: condition.left(inertia) + more,
+            ends: [0, 1].map(|i| (condition.left(&ends[i]) + more).re),
             changes: asked.sites.iter().map(change).collect(),
-        };
-        match !one.is_touched() && left.re.abs() > 1e-9 {
-            true => Err(NoWeights::Untouched { condition: condition.name(bare), left: words(left.re) }),
-            false => Ok(one),
         }
     };
-    Condition::all(bare.drives()).map(of).collect()
+    Ok(Condition::all(bare.drives()).enumerate().map(of).collect())
 }

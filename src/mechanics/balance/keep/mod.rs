@@ -25,5 +25,5 @@ mod problem;
 mod refusal;
 
 pub use asked::{Adjusted, Hold, Keep};
-pub use problem::{Kept, keep};
+pub use problem::{Kept, keep, keep_with, unreachable_by_changes};
 pub use refusal::{Limit, NotKept, Relief, Side};

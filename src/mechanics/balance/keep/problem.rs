@@ -10,6 +10,7 @@ use super::asked::{Adjusted, Hold, Keep, LEAST_MASS};
 use super::refusal::{Limit, NotKept, Relief, Side};
 use crate::convex::{Program, Row, conflict};
 use crate::mechanics::machine::{BALANCED, Inertia, Machine, MachineError, MachineSpec};
+use crate::mechanics::planar::Vector;
 
 /// A machine that is kept balanced.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,8 +43,17 @@ impl Kept {
 /// If what is asked for cannot be, or there is no such machine: then which limits leave no way, and how far they would
 /// have to give.
 pub fn keep(machine: &Machine, asked: &Keep) -> Result<Kept, NotKept> {
+    keep_with(machine, asked, &[])
+}
+
+/// The same for a machine that is known to have more of each condition, in their order, than its numbers say: balance is
+/// where both together are nothing.
+///
+/// # Errors
+/// As [`keep`].
+pub fn keep_with(machine: &Machine, asked: &Keep, beyond: &[Vector]) -> Result<Kept, NotKept> {
     asked.check(machine)?;
-    let problem = Problem::of(machine, asked)?;
+    let problem = Problem::of(machine, asked, beyond)?;
     let n = asked.parameters.len();
     let mut equations = problem.balance.clone();
     equations.extend((0..n).filter_map(|i| problem.fixed(i)));
@@ -54,6 +64,22 @@ pub fn keep(machine: &Machine, asked: &Keep) -> Result<Kept, NotKept> {
     }
 }
 
+/// What is left of each condition, however far all that may change goes, of a machine that has more of them than its
+/// numbers say: as little as can be, with all of them of one size.
+///
+/// # Errors
+/// If what is asked for cannot be.
+pub fn unreachable_by_changes(machine: &Machine, asked: &Keep, beyond: &[Vector]) -> Result<Vec<Vector>, NotKept> {
+    asked.check(machine)?;
+    let problem = Problem::of(machine, asked, beyond)?;
+    let n = asked.parameters.len();
+    let fixed = (0..n).filter_map(|i| problem.fixed(i));
+    let equations: Vec<Equation> = problem.balance.iter().cloned().chain(fixed).collect();
+    let missed = Plane::of(&equations, n).missed;
+    let count = problem.conditions.len();
+    Ok((0..count).map(|i| Vector::new(missed[i], missed[count + i])).collect())
+}
+
 /// The conditions over y, and what limits it.
 struct Problem<'a> {
     machine: &'a Machine,
@@ -61,23 +87,27 @@ struct Problem<'a> {
     /// The machine with every parameter where its change is measured from.
     from: MachineSpec,
     conditions: Vec<Condition>,
+    /// What the machine has of each condition beyond what its numbers say.
+    beyond: Vec<Vector>,
     /// The real parts of all conditions, then the imaginary ones.
     balance: Vec<Equation>,
 }
 
 impl<'a> Problem<'a> {
-    fn of(machine: &'a Machine, asked: &'a Keep) -> Result<Self, NotKept> {
+    fn of(machine: &'a Machine, asked: &'a Keep, beyond: &[Vector]) -> Result<Self, NotKept> {
         let mut from = machine.spec().clone();
         for one in &asked.parameters {
             one.parameter.set(&mut from, one.from);
         }
         let (start, scale) = (Inertia::of(&Machine::new(from.clone()).map_err(of_machine)?), Inertia::of(machine));
-        let mut problem =
-            Self { machine, asked, from, conditions: Condition::all(machine.drives()).collect(), balance: Vec::new() };
+        let conditions: Vec<Condition> = Condition::all(machine.drives()).collect();
+        let more = |i: usize| beyond.get(i).copied().unwrap_or_default();
+        let beyond = (0..conditions.len()).map(more).collect();
+        let mut problem = Self { machine, asked, from, conditions, beyond, balance: Vec::new() };
         for across in [false, true] {
-            for &condition in &problem.conditions {
+            for (&condition, beyond) in problem.conditions.iter().zip(&problem.beyond) {
                 let a = asked.parameters.iter().map(|one| problem.by(condition, one.parameter, across) / one.penalty);
-                let left = condition.left(&start);
+                let left = condition.left(&start) + beyond;
                 // A tenth of what counts as none.
                 let tolerance = 0.1 * condition.nothing(&scale).max(condition.nothing(&start));
                 let equation = Equation { a: a.collect(), right: if across { -left.im } else { -left.re }, tolerance };
@@ -220,7 +250,12 @@ impl<'a> Problem<'a> {
         }
         let machine = Machine::new(spec).map_err(of_machine)?;
         let inertia = Inertia::of(&machine);
-        match inertia.is_balanced() {
+        let left = self.conditions.iter().zip(&self.beyond);
+        let nothing = |condition: &Condition| condition.nothing(&inertia);
+        let balanced = |(condition, beyond): (&Condition, &Vector)| {
+            (condition.left(&inertia) + beyond).norm() <= nothing(condition)
+        };
+        match left.into_iter().all(balanced) {
             true => Ok(Kept { machine, values, cost }),
             false => Err(NotKept::Failed("what it found is not balanced to rounding".into())),
         }

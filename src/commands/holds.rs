@@ -1,0 +1,51 @@
+//! `--fix`, `--free` and `--bound`: what may change for the sake of balance, and how far.
+
+use stillbase::mechanics::balance::{Hold, Keep, Parameter};
+use stillbase::mechanics::machine::Machine;
+
+use super::failure::Failure;
+
+/// KEY=LO,HI, m or kg.
+pub fn bound(text: &str) -> Result<(String, [f64; 2]), String> {
+    let want = || "want KEY=LO,HI in m or kg, as 2.com=-0.3,0.1".to_owned();
+    let (key, ends) = text.split_once('=').ok_or_else(want)?;
+    let (low, high) = ends.split_once(',').ok_or_else(want)?;
+    let end = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(want);
+    Ok((key.trim().into(), [end(low)?, end(high)?]))
+}
+
+/// Says in `asked` what is fixed, free and bounded.
+///
+/// # Errors
+/// If there is no such number, or one is held in two ways.
+pub fn hold(
+    asked: &mut Keep,
+    machine: &Machine,
+    fix: &[String],
+    free: &[String],
+    bound: &[(String, [f64; 2])],
+) -> Result<(), Failure> {
+    let (fixed, free) = (fix.iter().map(|key| (key, Hold::Fixed)), free.iter().map(|key| (key, Hold::Free)));
+    let bounds = bound.iter().map(|(key, ends)| (key, Hold::Within(*ends)));
+    let mut seen = Vec::new();
+    for (key, hold) in fixed.chain(free).chain(bounds) {
+        let parameter = find(machine, key)?;
+        if seen.contains(&parameter) {
+            return Err(Failure::wrong_input(format!("{key} is held in two ways: want one of --fix, --free, --bound")));
+        }
+        seen.push(parameter);
+        asked.hold(machine, parameter, hold);
+    }
+    Ok(())
+}
+
+fn find(machine: &Machine, key: &str) -> Result<Parameter, Failure> {
+    let (key, link) = (key.trim(), format!("link.{}", key.trim()));
+    let mut all = Parameter::all(machine).into_iter();
+    let found = all.find(|parameter| [key, link.as_str()].contains(&parameter.key(machine).as_str()));
+    found.ok_or_else(|| {
+        let why =
+            "want mass, com or com_normal of a link, as 3.com, or mass or at of a counterweight, as counterweight.1.at";
+        Failure::wrong_input(format!("nothing of this machine that balance depends on is called {key:?}: {why}"))
+    })
+}

@@ -1,0 +1,41 @@
+//! `--range`: links that may carry a counterweight, and where.
+
+use stillbase::mechanics::counterweights::Sites;
+use stillbase::mechanics::machine::Machine;
+
+use super::failure::Failure;
+
+/// NAME=LO,HI: of a link, m, or of something else.
+pub fn range(text: &str) -> Result<(String, [f64; 2]), String> {
+    let want = || "want NAME=LO,HI, as 1=-0.3,0.5".to_owned();
+    let (link, places) = text.split_once('=').ok_or_else(want)?;
+    let (from, to) = places.split_once(',').ok_or_else(want)?;
+    let place = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(want);
+    Ok((link.trim().into(), [place(from)?, place(to)?]))
+}
+
+/// The place of a link by its name.
+///
+/// # Errors
+/// If there is none.
+pub fn link(machine: &Machine, name: &str) -> Result<usize, Failure> {
+    let links = machine.links();
+    links.iter().position(|link| link.name == name).ok_or_else(|| {
+        let known: Vec<_> = links.iter().map(|link| link.name.as_str()).collect();
+        Failure::wrong_input(format!("no link {name}: want one of {}", known.join(", ")))
+    })
+}
+
+/// The links that are named; every link, from its length behind the root to the tip, where none is.
+///
+/// # Errors
+/// If there is no such link.
+pub fn sites(machine: &Machine, ranges: &[(String, [f64; 2])]) -> Result<Vec<Sites>, Failure> {
+    if ranges.is_empty() {
+        return Ok(Sites::anywhere(machine));
+    }
+    let site = |(name, [from, to]): &(String, [f64; 2])| {
+        Ok(Sites { link: link(machine, name)?, from: *from, to: *to, most: f64::INFINITY })
+    };
+    ranges.iter().map(site).collect()
+}

@@ -1,0 +1,298 @@
+//! Measured motions from a CSV file: columns are found by name and unit, and whatever is wrong is named with its file,
+//! line and column.
+
+use std::f64::consts::PI;
+use std::fmt::Display;
+
+use stillbase::mechanics::machine::Machine;
+use stillbase::mechanics::planar::{PerDrive, Vector};
+use stillbase::settings::number::Short;
+use stillbase::settings::range::{clipped, shortened};
+use stillbase::study::trim::Motion;
+
+use super::super::columns::{ANGLE, GAP, MOST, TIME, continuous_angle, reader};
+use super::super::failure::Failure;
+
+/// The most rows of a file.
+pub const MOST_ROWS: usize = 100_000;
+
+type Units = &'static [(&'static str, f64)];
+
+const DEGREE: f64 = PI / 180.0;
+const RATE: Units = &[("rad/s", 1.0), ("deg/s", DEGREE), ("°/s", DEGREE)];
+const ACCELERATION: Units = &[
+    ("rad/s²", 1.0),
+    ("rad/s^2", 1.0),
+    ("rad/s2", 1.0),
+    ("deg/s²", DEGREE),
+    ("deg/s^2", DEGREE),
+    ("deg/s2", DEGREE),
+    ("°/s²", DEGREE),
+];
+const FORCE: Units = &[("n", 1.0), ("mn", 1e-3), ("kn", 1e3)];
+const MOMENT: Units = &[
+    ("n m", 1.0),
+    ("nm", 1.0),
+    ("n·m", 1.0),
+    ("n*m", 1.0),
+    ("mn m", 1e-3),
+    ("mnm", 1e-3),
+    ("n mm", 1e-3),
+    ("nmm", 1e-3),
+    ("kn m", 1e3),
+];
+const LENGTH: Units = &[("m", 1.0)];
+/// A base that moves by more than this, m or rad, is no fixed one.
+const FIXED: f64 = 1e-9;
+
+/// A column of numbers.
+struct Column {
+    place: usize,
+    name: String,
+    scale: f64,
+    has_unit: bool,
+}
+
+/// Where everything stands.
+struct Columns {
+    time: Column,
+    q: Vec<Column>,
+    qd: Vec<Column>,
+    qdd: Vec<Column>,
+    force: [Column; 2],
+    moment: Column,
+    /// Where the base is, if the file says so.
+    base: Vec<Column>,
+    /// Where a motion is named.
+    motion: Option<usize>,
+}
+
+/// Motions of a file.
+///
+/// # Errors
+/// Where what is wrong, and what was expected.
+pub fn motions(text: &str, file: &str, machine: &Machine) -> Result<Vec<Motion>, Failure> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let at = |line: u64, why: &dyn Display| Failure::wrong_input(format!("{file}:{line}: {why}"));
+    let mut lines = reader(text).into_records();
+    let mut next =
+        || lines.next().map(|r| r.map_err(|e| Failure::wrong_input(format!("{file}: {e}: want a CSV file"))));
+    let line_of = |record: &csv::StringRecord| record.position().map_or(0, csv::Position::line);
+    let want = head_wanted(machine);
+    let Some(head) = next().transpose()? else { return Err(at(1, &format!("nothing here: want {want}"))) };
+    if head.iter().all(|cell| cell.parse::<f64>().is_ok()) {
+        return Err(at(line_of(&head), &format!("no header: want {want}")));
+    }
+    let columns = Columns::of(&head, machine).map_err(|why| at(line_of(&head), &why))?;
+    let all = columns.all();
+    let (mut read, mut names) = (Split::default(), Vec::new());
+    while let Some(record) = next().transpose()? {
+        let line = line_of(&record);
+        let number = |column: &&Column| match record.get(column.place).filter(|cell| !cell.is_empty()) {
+            None => Err(at(line, &format!("column {}: nothing there: want a number", column.name))),
+            Some(cell) => {
+                cell.parse().ok().map(|x: f64| x * column.scale).filter(|x| x.abs() <= MOST).ok_or_else(|| {
+                    let (name, cell) = (&column.name, clipped(cell));
+                    at(line, &format!("column {name}: {cell:?}: want a finite number, such as 0.25, of at most 1e11"))
+                })
+            }
+        };
+        let row: Vec<f64> = all.iter().map(number).collect::<Result<_, _>>()?;
+        let name = columns.motion.and_then(|place| record.get(place)).unwrap_or_default().to_owned();
+        let fresh = names.last().is_some_and(|last| *last != name);
+        names.push(name);
+        if names.len() > MOST_ROWS {
+            return Err(at(line, &format!("more than {MOST_ROWS} rows: want fewer, such as every second one")));
+        }
+        read.take(row, line, fresh).map_err(|why| at(line, &format!("column {}: {why}", columns.time.name)))?;
+    }
+    let mut parts = read.parts();
+    if let Some((column, line)) = columns.moving(&parts) {
+        let why = format!("column {column}: the base moves: want a measurement on a base that stands still");
+        return Err(at(line, &why));
+    }
+    for Part { rows, lines } in &mut parts {
+        for (k, column) in columns.q.iter().enumerate() {
+            let broken = continuous_angle(rows, 1 + k, &column.name, column.has_unit);
+            broken.map_err(|broken| at(lines[broken.row], &broken.why(|row| lines[row])))?;
+        }
+    }
+    if parts.is_empty() {
+        return Err(Failure::wrong_input(format!("{file}: no rows of numbers: want motions that were measured")));
+    }
+    Ok(parts.iter().map(|part| columns.motion_of(&part.rows)).collect())
+}
+
+fn head_wanted(machine: &Machine) -> String {
+    let drives: Vec<String> = (1..=machine.drives()).map(|k| format!("q{k}")).collect();
+    format!("a header t,{},fx,fy,nz (s, rad, N, N m)", drives.join(","))
+}
+
+/// Rows of one motion, and the lines that they stand in.
+#[derive(Default)]
+struct Part {
+    rows: Vec<Vec<f64>>,
+    lines: Vec<u64>,
+}
+
+/// Rows while they are read.
+#[derive(Default)]
+struct Split {
+    named: Vec<Part>,
+}
+
+impl Split {
+    /// One more row; time that goes back to before the start of its motion begins another one.
+    fn take(&mut self, row: Vec<f64>, line: u64, fresh: bool) -> Result<(), String> {
+        let now = self.named.last().filter(|_| !fresh);
+        let (first, last) = (now.and_then(|part| part.rows.first()), now.and_then(|part| part.rows.last()));
+        let again = first.zip(last).is_some_and(|(first, last)| row[0] <= first[0] && row[0] < last[0]);
+        if let Some(last) = last.filter(|last| !again && row[0] <= last[0]) {
+            let (now, before) = (Short(row[0]), Short(last[0]));
+            return Err(format!("{now} s after {before} s: want times that rise, or begin anew with each motion"));
+        }
+        if fresh || again || self.named.is_empty() {
+            self.named.push(Part::default());
+        }
+        if let Some(part) = self.named.last_mut() {
+            part.rows.push(row);
+            part.lines.push(line);
+        }
+        Ok(())
+    }
+
+    /// Each motion by itself: they part where time makes a leap, too.
+    fn parts(self) -> Vec<Part> {
+        let mut parts = Vec::new();
+        for part in self.named {
+            let mut steps: Vec<f64> = part.rows.windows(2).map(|w| w[1][0] - w[0][0]).collect();
+            steps.sort_by(f64::total_cmp);
+            let usual = steps.get(steps.len() / 2).copied().unwrap_or(f64::INFINITY);
+            let mut own = Part::default();
+            for (row, line) in part.rows.into_iter().zip(part.lines) {
+                if own.rows.last().is_some_and(|last| row[0] - last[0] > GAP * usual) {
+                    parts.push(std::mem::take(&mut own));
+                }
+                own.rows.push(row);
+                own.lines.push(line);
+            }
+            parts.push(own);
+        }
+        parts
+    }
+}
+
+impl Columns {
+    fn of(head: &csv::StringRecord, machine: &Machine) -> Result<Self, String> {
+        let find = |names: &[String], units: Units| -> Result<Option<Column>, String> {
+            let named = head.iter().enumerate().filter_map(|(place, cell)| {
+                let (name, unit) = name_and_unit(cell, units);
+                names.contains(&name).then_some((place, name, unit))
+            });
+            let named: Vec<_> = named.collect();
+            let Some((place, name, unit)) = named.first().cloned() else { return Ok(None) };
+            if let Some((other, ..)) = named.get(1) {
+                return Err(format!("columns {} and {} are both {name}: want one", place + 1, other + 1));
+            }
+            let scale = match &unit {
+                None => 1.0,
+                Some(unit) => units.iter().find(|(known, _)| known == unit).map(|known| known.1).ok_or_else(|| {
+                    let all: Vec<&str> = units.iter().map(|u| u.0).collect();
+                    format!("column {name}: unit {:?}: want one of {}", clipped(unit), all.join(", "))
+                })?,
+            };
+            Ok(Some(Column { place, name, scale, has_unit: unit.is_some() }))
+        };
+        let named = |all: &[&str]| all.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
+        let missing = |name: &str| {
+            let have: Vec<String> = head.iter().map(|word| format!("{:?}", clipped(word))).collect();
+            let want = head_wanted(machine);
+            format!("no column {name} among {}: want {want}", shortened(&have.join(", "), 300))
+        };
+        let drives = machine.drives();
+        let each = |short: [&str; 2], long: &str, units: Units| -> Result<Vec<Option<Column>>, String> {
+            let of = |k: usize| {
+                let own = machine.spec().drives[k].name.to_lowercase();
+                let [a, b] = short.map(|word| format!("{word}{}", k + 1));
+                find(&[a, b, format!("{}_{}", short[0], k + 1), format!("{long}/{own}")], units)
+            };
+            (0..drives).map(of).collect()
+        };
+        // Of some drives only they are of no use.
+        let all = |of: Vec<Option<Column>>| of.into_iter().collect::<Option<Vec<Column>>>().unwrap_or_default();
+        let want = |found: Option<Column>, name: &str| found.ok_or_else(|| missing(name));
+        let q = each(["q", "q"], "angle", ANGLE)?.into_iter().enumerate();
+        Ok(Self {
+            time: want(find(&named(&["t", "time"]), TIME)?, "t")?,
+            q: q.map(|(k, column)| want(column, &format!("q{}", k + 1))).collect::<Result<_, _>>()?,
+            qd: all(each(["qd", "dq"], "rate", RATE)?),
+            qdd: all(each(["qdd", "ddq"], "acceleration", ACCELERATION)?),
+            force: [
+                want(find(&named(&["fx", "f_x", "force/x", "force/dynamic_x"]), FORCE)?, "fx")?,
+                want(find(&named(&["fy", "f_y", "force/y", "force/dynamic_y"]), FORCE)?, "fy")?,
+            ],
+            moment: want(find(&named(&["nz", "n_z", "mz", "m_z", "moment/total"]), MOMENT)?, "nz")?,
+            base: [
+                find(&named(&["base_x", "base/x"]), LENGTH)?,
+                find(&named(&["base_y", "base/y"]), LENGTH)?,
+                find(&named(&["theta", "attitude/base"]), ANGLE)?,
+            ]
+            .into_iter()
+            .flatten()
+            .collect(),
+            motion: head.iter().position(|cell| cell.eq_ignore_ascii_case("motion")),
+        })
+    }
+
+    /// Every column of numbers, in the order of the numbers of a row.
+    fn all(&self) -> Vec<&Column> {
+        let angles = self.q.iter().chain(&self.qd).chain(&self.qdd);
+        [&self.time].into_iter().chain(angles).chain(&self.force).chain([&self.moment]).chain(&self.base).collect()
+    }
+
+    /// A column in which the base moves, and the line where it is seen.
+    fn moving(&self, parts: &[Part]) -> Option<(String, u64)> {
+        let from = self.all().len() - self.base.len();
+        let rows = || parts.iter().flat_map(|part| part.rows.iter().zip(&part.lines));
+        let (first, _) = rows().next()?;
+        self.base.iter().enumerate().find_map(|(i, column)| {
+            let (_, line) = rows().find(|(row, _)| (row[from + i] - first[from + i]).abs() > FIXED)?;
+            Some((column.name.clone(), *line))
+        })
+    }
+
+    fn motion_of(&self, rows: &[Vec<f64>]) -> Motion {
+        let n = self.q.len();
+        let list = |from: usize, columns: &[Column]| match columns.is_empty() {
+            true => Vec::new(),
+            false => rows.iter().map(|row| PerDrive::from_fn(n, |k| row[from + k])).collect(),
+        };
+        let force = 1 + n + self.qd.len() + self.qdd.len();
+        Motion {
+            t: rows.iter().map(|row| row[0]).collect(),
+            q: list(1, &self.q),
+            qd: list(1 + n, &self.qd),
+            qdd: list(1 + n + self.qd.len(), &self.qdd),
+            force: rows.iter().map(|row| Vector::new(row[force], row[force + 1])).collect(),
+            moment: rows.iter().map(|row| row[force + 2]).collect(),
+        }
+    }
+}
+
+/// `fx (N)`, `fx [N]`, `force/dynamic_x N`, `q1_deg` or a name alone; of units without brackets only those that fit.
+fn name_and_unit(cell: &str, units: Units) -> (String, Option<String>) {
+    let cell = cell.trim().to_lowercase();
+    let bracketed = |open: char, close: char| {
+        let (name, rest) = cell.split_once(open)?;
+        Some((name.trim().to_owned(), rest.trim().strip_suffix(close)?.trim().to_owned()))
+    };
+    if let Some((name, unit)) = bracketed('(', ')').or_else(|| bracketed('[', ']')) {
+        return (name, Some(unit).filter(|unit| !unit.is_empty()));
+    }
+    let ends = units.iter().filter_map(|(unit, _)| {
+        let name = cell.strip_suffix(unit)?.strip_suffix([' ', '_', '/'])?;
+        Some((name.trim().to_owned(), (*unit).to_owned()))
+    });
+    // The longest unit: `n m` is no `m`.
+    ends.max_by_key(|(_, unit)| unit.len()).map_or((cell.clone(), None), |(name, unit)| (name, Some(unit)))
+}

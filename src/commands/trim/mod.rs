@@ -1,0 +1,194 @@
+//! `stillbase trim`
+
+mod answer;
+pub(crate) mod measured;
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use stillbase::files::{finish_all, made};
+use stillbase::mechanics::balance::{Body, Hold, Keep, Parameter, Quantity};
+use stillbase::mechanics::counterweights::{Disc, Objective, Weighing};
+use stillbase::mechanics::machine::{Machine, MachineSpec, to_toml};
+use stillbase::mechanics::planar::Vector;
+use stillbase::settings::number::counted;
+use stillbase::study::trim::{Made, Recording, Rows, Way, fit, identified, mend, next, taken};
+
+use super::exit::say;
+use super::failure::Failure;
+use super::holds::{bound, hold};
+use super::input::{Settings, read};
+use super::output::{Format, check_output};
+use super::sites::{range, sites};
+use answer::{Answer, Asked};
+
+/// Find from measured base forces what a built machine lacks of balance, and the least change that mends it
+///
+/// Each file is CSV with a header: t, the absolute drive angles q1, q2 …, and what a sensor under the machine reads of
+/// the force and the moment on the base about B: fx, fy, nz (s, rad, N, N m, or with units as "q1 (deg)", "nz (mN m)").
+/// Rates qd1 … and accelerations qdd1 … are used where both are there. A column `motion`, a leap in time or a time that
+/// begins anew parts motions; each motion has sensor offsets of its own. What `simulate` and `export --what simulated`
+/// write is read as it is.
+///
+/// Least squares give every line of (7) and (8) with its interval of 95 %. What the data cannot tell is named. Lines that
+/// differ from the machine's file by more than their interval are mended: by its counterweights, mass and place, or by
+/// new ones where it has none. Last comes the motion that would tell most of what is least known.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  stillbase trim measured.csv nine-link
+  stillbase trim slow.csv fast.csv arm.toml -o trimmed.toml --identified as-built.toml
+  stillbase trim measured.csv arm.toml --fix counterweight.2.at --bound counterweight.1.mass=1.9,2.1
+  stillbase trim measured.csv nine-link --range 1=-0.3,0.1 --range 2=-0.2,0.1 --range 3=-0.2,0.1 \\
+    --range 8=-0.3,0.3 --range 9=-0.3,0.3 --json")]
+pub struct Trim {
+    /// CSV files of measured motions, and last a built-in machine (`stillbase machines` lists them) or a TOML file
+    #[arg(value_name = "MEASURED.csv... MACHINE", required = true, num_args = 1..)]
+    words: Vec<String>,
+    #[command(flatten)]
+    settings: Settings,
+    /// Leave these as they are: counterweight.1.mass, counterweight.2.at, 3.com
+    #[arg(long, value_name = "KEY,…", value_delimiter = ',')]
+    fix: Vec<String>,
+    /// Change these, too: 4.com, 4.mass; a gram weighs as much as a millimetre
+    #[arg(long, value_name = "KEY,…", value_delimiter = ',')]
+    free: Vec<String>,
+    /// Change this one only from one value to another, m or kg
+    #[arg(long, value_name = "KEY=LO,HI", value_parser = bound, allow_hyphen_values = true)]
+    bound: Vec<(String, [f64; 2])>,
+    /// On a machine without counterweights: a link that may carry a new one, and where, m from its root towards its tip; every link where none is given
+    #[arg(long, value_name = "LINK=LO,HI", value_parser = range, allow_hyphen_values = true)]
+    range: Vec<(String, [f64; 2])>,
+    /// Leave measured rates and accelerations alone, and find them from the angles
+    #[arg(long)]
+    angles_only: bool,
+    /// How fast a next motion may accelerate each drive, rad/s²; by default as fast as seen in the files
+    #[arg(long, value_name = "A1,A2,…", value_delimiter = ',', value_parser = super::input::above_zero)]
+    accelerations: Vec<f64>,
+    /// Write the machine as trimmed to this file: as measured, with what was changed
+    #[arg(short, long, value_name = "NEW.toml")]
+    output: Option<PathBuf>,
+    /// Write the machine as measured, before anything is changed: its links' centres of mass explain what was found
+    #[arg(long, value_name = "FILE.toml")]
+    identified: Option<PathBuf>,
+    /// Replace files that exist
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    format: Format,
+}
+
+impl Trim {
+    /// Reads what was measured, prints what it says, and writes the machine.
+    pub fn run(&self) -> Result<(), Failure> {
+        for file in self.output.iter().chain(&self.identified) {
+            check_output(file, self.force, &["toml"])?;
+        }
+        let (name, files) = match self.words.as_slice() {
+            [files @ .., name] if !files.is_empty() => (name, files),
+            _ => return Err(Failure::wrong_input("want files and a machine, as in trim measured.csv nine-link")),
+        };
+        let machine = self.settings.apply(stillbase::files::machine(name, None)?)?;
+        let drives = machine.drives();
+        if !(self.accelerations.is_empty() || self.accelerations.len() == drives) {
+            return Err(Failure::wrong_input(format!(
+                "--accelerations has {}: want {drives}, one for each drive",
+                counted(self.accelerations.len(), "number")
+            )));
+        }
+        let way = self.way(&machine)?;
+        let mut recording = Recording::default();
+        for file in files {
+            recording.motions.extend(measured::motions(&read(Path::new(file))?, file, &machine)?);
+        }
+        let rows = Rows::of(&machine, &recording, self.angles_only).map_err(Failure::wrong_input)?;
+        if let Made::Windows { noise, .. } = rows.made
+            && noise > 0.02
+        {
+            say(format!(
+                "note: noise of the angles is {:.0} % of their accelerations, or samples are too far apart: what is found \
+                 may be off; want faster motions or finer encoders",
+                100.0 * noise
+            ));
+        }
+        let fit = fit(&machine, &rows).map_err(Failure::no_answer)?;
+        let taken = taken(&fit);
+        let accelerations = (!self.accelerations.is_empty()).then_some(self.accelerations.as_slice());
+        let next = next(&machine, &recording, &rows, &fit, accelerations);
+        let mended = mend(&machine, &taken, &way);
+        let asked = Asked { machine: &machine, rows: &rows, fit: &fit, taken: &taken, next: &next };
+        let answer = Answer::of(&asked, mended.as_ref().ok());
+        self.format.print(&answer, |answer| answer.text(&machine))?;
+        let mended = mended.map_err(Failure::no_answer)?;
+        if self.output.is_none() && self.identified.is_none() {
+            return Ok(());
+        }
+        let (built, misses) = identified(&machine, &taken).map_err(Failure::no_answer)?;
+        let scale = |miss: &Vector| miss.norm();
+        if misses.iter().map(scale).fold(0.0, f64::max) > 1e-6 {
+            say("note: centres of mass of the links do not explain all that was measured: the file comes close");
+        }
+        let mut files = Vec::new();
+        if let Some(file) = &self.identified {
+            files.push((file, named(&built, file, format!("{}, as measured", machine.name()))?));
+        }
+        if let Some(file) = &self.output {
+            let mut spec = built.spec().clone();
+            spec.counterweights = mended.machine.spec().counterweights.clone();
+            moved(&mut spec, machine.spec(), mended.machine.spec());
+            files.push((file, named(&Machine::new(spec)?, file, format!("{}, trimmed as measured", machine.name()))?));
+        }
+        let written = |(file, text): &(&PathBuf, String)| made(file, text.as_bytes(), self.force);
+        match files.as_slice() {
+            [one, other] => finish_all([written(one)?, written(other)?])?,
+            [one] => finish_all([written(one)?])?,
+            _ => {}
+        }
+        files.iter().for_each(|(file, _)| say(format!("wrote {}", file.display())));
+        Ok(())
+    }
+
+    /// What may change: the counterweights that there are, else new ones, or the links where these are named.
+    fn way(&self, machine: &Machine) -> Result<Way, Failure> {
+        let weights = machine.spec().counterweights.len();
+        let named = !(self.fix.is_empty() && self.free.is_empty() && self.bound.is_empty());
+        if weights == 0 && !named {
+            let sites = sites(machine, &self.range)?;
+            return Ok(Way::Add(Weighing::least(Objective::mass(), sites, Disc::STEEL)));
+        }
+        if !self.range.is_empty() {
+            let why =
+                "--range is for new counterweights on a machine that has none: want --fix, --free or --bound alone";
+            return Err(Failure::wrong_input(why));
+        }
+        let mut asked = match weights {
+            0 => Keep::coms(machine, &vec![1.0; machine.links().len()]),
+            _ => Keep::default(),
+        };
+        for (i, quantity) in (0..weights).flat_map(|i| [(i, Quantity::Mass), (i, Quantity::Along)]) {
+            asked.hold(machine, Parameter::new(Body::Counterweight(i), quantity), Hold::Free);
+        }
+        hold(&mut asked, machine, &self.fix, &self.free, &self.bound)?;
+        Ok(Way::Change(asked))
+    }
+}
+
+/// What changed from one machine to another in masses and centres of mass of links, changed in a third.
+fn moved(spec: &mut MachineSpec, from: &MachineSpec, to: &MachineSpec) {
+    for ((own, from), to) in spec.links.iter_mut().zip(&from.links).zip(&to.links) {
+        let mass = own.mass + to.mass - from.mass;
+        // First moments add up.
+        let moment =
+            |own_at: f64, from_at: f64, to_at: f64| (own.mass * own_at + to.mass * to_at - from.mass * from_at) / mass;
+        let (com, normal) = (moment(own.com, from.com, to.com), moment(own.com_normal, from.com_normal, to.com_normal));
+        (own.mass, own.com, own.com_normal) = (mass, com, normal);
+    }
+}
+
+/// A machine under the name of its file, as TOML.
+fn named(machine: &Machine, file: &Path, summary: String) -> Result<String, Failure> {
+    let mut spec = machine.spec().clone();
+    spec.name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    spec.summary = summary;
+    Ok(to_toml(&Machine::new(spec)?))
+}

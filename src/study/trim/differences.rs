@@ -1,0 +1,41 @@
+//! Rates from neighbouring samples, and how noisy samples are.
+//!
+//! # Source
+//! Lagrange's polynomials through neighbours, at times that need not be evenly spaced.
+
+/// Samples whose polynomial gives a rate: its error falls with the fourth power of their distance.
+const AROUND: usize = 5;
+
+/// The samples that a rate is made of, and with which weights, 1/s: the first place, and the weights.
+pub(super) fn stencil(t: &[f64], i: usize) -> (usize, Vec<f64>) {
+    let count = AROUND.min(t.len());
+    let from = i.saturating_sub(count / 2).min(t.len() - count);
+    let near = &t[from..from + count];
+    (from, (0..count).map(|j| slope(near, j, t[i])).collect())
+}
+
+/// The derivative of Lagrange's polynomial of node j at a time.
+fn slope(t: &[f64], j: usize, at: f64) -> f64 {
+    let others = |skip: usize| (0..t.len()).filter(move |m| *m != j && *m != skip);
+    let scale: f64 = others(j).map(|m| t[j] - t[m]).product();
+    let sum: f64 = others(j).map(|out| others(out).map(|m| at - t[m]).product::<f64>()).sum();
+    sum / scale
+}
+
+/// Standard deviation of independent errors of samples: what the polynomial through three neighbours on either side
+/// misses of each. `None` of fewer than seven.
+pub(super) fn noise(t: &[f64], y: impl Fn(usize) -> f64) -> Option<f64> {
+    let around = |i: usize| (i - 3..i).chain(i + 1..i + 4);
+    let places = 3..t.len().checked_sub(3).filter(|end| *end > 3)?;
+    let count = places.len() as f64;
+    let missed = |i: usize| {
+        let (mut value, mut gain) = (y(i), 1.0);
+        for j in around(i) {
+            let weight: f64 = around(i).filter(|m| *m != j).map(|m| (t[i] - t[m]) / (t[j] - t[m])).product();
+            value -= weight * y(j);
+            gain += weight * weight;
+        }
+        value * value / gain
+    };
+    Some((places.map(missed).sum::<f64>() / count).sqrt())
+}

@@ -1,0 +1,62 @@
+//! The variance of sums of what is correlated over time.
+//!
+//! # Source
+//! Newey and West (1987): Bartlett's window over the autocovariances, here by sums of L neighbours, which is the same.
+//! Andrews (1991), equation (6.2) with the first-order plug-in (6.4), for L. Kiefer and Vogelsang (2005), table 1, for the
+//! critical value of two-sided 95 %.
+
+use nalgebra::DMatrix;
+
+/// Σ over lags of Bartlett's weight times Σ_i s_i s_{i+lag}ᵀ, rows of scores, motion by motion.
+pub(super) fn long_run(scores: &DMatrix<f64>, motions: &[usize], lags: usize) -> DMatrix<f64> {
+    let p = scores.ncols();
+    let mut sum = DMatrix::zeros(p, p);
+    let mut from = 0;
+    for &count in motions {
+        let mut blocks = DMatrix::zeros(count + lags - 1, p);
+        for (j, column) in scores.column_iter().enumerate() {
+            let mut running = 0.0;
+            for i in 0..count + lags - 1 {
+                running += if i < count { column[from + i] } else { 0.0 };
+                running -= if i >= lags { column[from + i - lags] } else { 0.0 };
+                blocks[(i, j)] = running;
+            }
+        }
+        // What the mean of the motion, taken out, hides.
+        let share = (lags as f64 / count as f64).min(1.0);
+        sum += blocks.tr_mul(&blocks) / (lags as f64 * (1.0 - share + share * share / 3.0));
+        from += count;
+    }
+    sum
+}
+
+/// Wider than what makes the mean square error of the variance least: intervals that are too narrow are worse than
+/// intervals that are a little too wide.
+const GENEROUS: f64 = 2.0;
+
+/// How many lags Bartlett's window takes for residuals, at least some.
+pub(super) fn lags(residuals: &[&[f64]], motions: &[usize], least: usize) -> usize {
+    let count: usize = motions.iter().sum();
+    let first = |y: &[f64]| {
+        let (mut own, mut next, mut from) = (0.0, 0.0, 0);
+        for &n in motions {
+            let y = &y[from..from + n];
+            own += y.iter().map(|x| x * x).sum::<f64>();
+            next += y.windows(2).map(|w| w[0] * w[1]).sum::<f64>();
+            from += n;
+        }
+        if own > 0.0 { (next / own).abs().min(0.97) } else { 0.0 }
+    };
+    let rho = residuals.iter().map(|y| first(y)).fold(0.0, f64::max);
+    let alpha = 4.0 * rho * rho / ((1.0 - rho) * (1.0 + rho)).powi(2);
+    let wanted = (GENEROUS * 1.1447 * (alpha * count as f64).cbrt()).ceil() as usize;
+    let longest = motions.iter().copied().max().unwrap_or(1);
+    wanted.max(least).clamp(1, longest.div_ceil(2))
+}
+
+/// By how many standard deviations an interval of 95 % reaches to either side, where the window takes this share of the
+/// data.
+pub(super) fn critical(share: f64) -> f64 {
+    let b = share.clamp(0.0, 1.0);
+    1.96 + b * (2.9694 + b * (0.4160 - 0.5324 * b))
+}

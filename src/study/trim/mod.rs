@@ -1,0 +1,50 @@
+//! Trim balancing: what a built machine leaves of (7) and (8), found from measured base forces, and what mends it.
+//!
+//! With known drive angles the force and the moment on the base are linear in the first moments g_k, the couplings C_kl
+//! and the momenta D_k. So a few measured motions and least squares say which of them are off, how well that is known,
+//! the least change of counterweights that mends it, and which motion would say more.
+//!
+//! # Symbols
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | f, n | measured force and moment on the base, as in [`dynamics`](crate::mechanics::dynamics) | N, N m |
+//! | p | Σ i g_k q̇_k e_k, linear momentum: f = −ṗ + a constant | kg m/s |
+//! | h | Σ D_k q̇_k + Σ_{k<l} Re(C_kl e^{i(q_l − q_k)}) (q̇_k + q̇_l): n = −ḣ + Σ g_k e_k × gravity + a constant | kg m²/s |
+//! | x | g_k and C_kl, along and across, then D_k: the unknowns | kg m, kg m² |
+//! | X | rows of f_x, f_y, n for unit x, each motion less its mean: sensors may have an offset in each | |
+//! | φ, w | window (1 − u²)⁴ over which rows are averaged where accelerations are not given; its half width | , s |
+//! | σ | standard deviation of what the model leaves of a row of force or moment | N, N m |
+//!
+//! # How
+//! Where rates and accelerations are given, each sample is a row. Else nothing is differentiated twice: with a window φ,
+//! ∫ φ f = ∫ φ̇ p + const and ∫ φ n = ∫ φ̇ h + ∫ φ (Σ g e × gravity) + const. Both sides pass through the same window, so
+//! its width costs information but brings no bias. p and h need q̇, taken from five neighbouring samples (error h⁴); what
+//! noise in the angles makes of the least squares, a pull towards 0, is taken out to first order.
+//!
+//! Intervals are of 95 %. Their covariance is the sandwich (XᵀX)⁻¹ S (XᵀX)⁻¹ with Bartlett's window over the
+//! autocorrelation of the scores, and the critical value grows with that window's share of the data.
+//!
+//! # Source
+//! Newey and West (1987) for S; Andrews (1991) for the width of its window; Kiefer and Vogelsang (2005) for critical
+//! values; modulating functions after Shinbrot (1957).
+
+mod differences;
+mod error;
+mod fit;
+mod long_run;
+mod mend;
+mod next;
+mod recording;
+mod rows;
+mod taken;
+mod unknowns;
+mod window;
+
+pub use error::TrimError;
+pub use fit::{Fit, fit};
+pub use mend::{Change, Mended, NoMend, Way, identified, mend};
+pub use next::{Candidate, Next, next};
+pub use recording::{Motion, Recording};
+pub use rows::{Made, Rows};
+pub use taken::{Taken, taken};
+pub use unknowns::{Part, Unknown, Unknowns};

@@ -1,0 +1,240 @@
+//! [`next`]: which motion would say most of what is least known.
+
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+use super::fit::Fit;
+use super::recording::{Motion, Recording};
+use super::rows::Rows;
+use super::unknowns::Unknowns;
+use crate::mechanics::machine::{Inertia, Machine};
+use crate::mechanics::planar::{DriveAngles, PerDrive};
+
+/// A motion that could be driven next: each drive as a sine about the middle of what it did.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Candidate {
+    /// Drives that move and in which sense, counted from 0.
+    pub drives: Vec<(usize, f64)>,
+    /// Amplitude of each drive, rad, and its frequency, Hz; drives that move against each other share a frequency.
+    pub amplitude: Vec<f64>,
+    /// Hz.
+    pub frequency: Vec<f64>,
+    /// Half the interval of the worst number with it; infinite if it is not told yet.
+    pub half_width: f64,
+    /// By what factor intervals of all numbers become narrower in the mean (geometric).
+    pub all: f64,
+}
+
+/// What to measure next.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Next {
+    /// The number of (7) or (8) that is least known, by its place among the unknowns.
+    pub worst: usize,
+    /// Half its interval now; infinite if nothing is known of it.
+    pub half_width: f64,
+    /// How long each candidate takes, s.
+    pub duration: f64,
+    /// The best first.
+    pub candidates: Vec<Candidate>,
+}
+
+/// Instants at which a candidate is looked at.
+const INSTANTS: usize = 160;
+/// Steps of the eigenvalue solver.
+const MOST_STEPS: usize = 10_000;
+/// What is taken where a range or an acceleration is not seen.
+const USUAL: [f64; 2] = [0.5, 5.0];
+
+/// Candidates are each drive alone, every pair in step and against each other, and all drives in step and each at a
+/// frequency of its own; as far as the drives went and at the greatest accelerations seen, unless these are given, rad/s².
+/// How well numbers are known after each is by the information that its rows add at the noise that was found.
+pub fn next(machine: &Machine, recording: &Recording, rows: &Rows, fit: &Fit, accelerations: Option<&[f64]>) -> Next {
+    let limits = Limits::of(machine, recording, rows, accelerations);
+    let scales = rows.unknowns.scales(&Inertia::of(machine));
+    let balance = rows.unknowns.of_balance();
+    let size = |i: usize| if fit.told[i] { fit.half_width(i) / scales[i] } else { f64::INFINITY };
+    let worst = (0..balance).max_by(|a, b| size(*a).total_cmp(&size(*b))).unwrap_or_default();
+    let half_width = if fit.told[worst] { fit.half_width(worst) } else { f64::INFINITY };
+    let duration = recording.motions.iter().map(Motion::duration).sum::<f64>() / recording.motions.len() as f64;
+    let now = Known::of(&fit.information, &scales);
+    let judged = |drives: Vec<(usize, f64)>, apart: bool| {
+        let motion = limits.motion(machine, &drives, apart);
+        let more = motion.information(machine, &rows.unknowns, duration, fit);
+        let then = Known::of(&(&fit.information + more), &scales);
+        let half_width = match (fit.told[worst], then.variance(worst)) {
+            (_, None) => f64::INFINITY,
+            (true, Some(after)) => half_width * now.variance(worst).map_or(1.0, |now| (after / now).sqrt()),
+            (false, Some(after)) => fit.critical * after.sqrt() * scales[worst],
+        };
+        let all = (0.5 * (then.log_volume(balance) - now.log_volume(balance)) / balance as f64).exp();
+        let amplitude = drives.iter().map(|(k, _)| motion.amplitude[*k]).collect();
+        let frequency = drives.iter().map(|(k, _)| motion.rate[*k] / std::f64::consts::TAU).collect();
+        Candidate { drives, amplitude, frequency, half_width, all: 1.0 / all.max(f64::MIN_POSITIVE) }
+    };
+    let n = machine.drives();
+    let mut candidates: Vec<Candidate> = (0..n).map(|k| judged(vec![(k, 1.0)], false)).collect();
+    for (k, l) in Inertia::pairs(n) {
+        candidates.push(judged(vec![(k, 1.0), (l, 1.0)], false));
+        candidates.push(judged(vec![(k, 1.0), (l, -1.0)], false));
+    }
+    let every = || (0..n).map(|k| (k, 1.0)).collect::<Vec<_>>();
+    if n > 2 {
+        candidates.push(judged(every(), false));
+    }
+    if n > 1 {
+        candidates.push(judged(every(), true));
+    }
+    candidates.sort_by(|a, b| a.half_width.total_cmp(&b.half_width));
+    Next { worst, half_width, duration, candidates }
+}
+
+/// Where drives may go, and how fast.
+struct Limits {
+    middle: Vec<f64>,
+    reach: Vec<f64>,
+    acceleration: Vec<f64>,
+}
+
+impl Limits {
+    fn of(machine: &Machine, recording: &Recording, rows: &Rows, given: Option<&[f64]>) -> Self {
+        let n = machine.drives();
+        let samples = || recording.motions.iter().flat_map(|m| &m.q);
+        let ends = |k: usize| {
+            let start = [f64::INFINITY, f64::NEG_INFINITY];
+            samples().fold(start, |[low, high], q| [low.min(q[k]), high.max(q[k])])
+        };
+        let ends: Vec<[f64; 2]> = (0..n).map(ends).collect();
+        let moving = |k: &usize| rows.moves[*k];
+        let widest = (0..n).filter(moving).map(|k| 0.5 * (ends[k][1] - ends[k][0])).fold(0.0, f64::max);
+        let reach = |k: usize| if rows.moves[k] { 0.5 * (ends[k][1] - ends[k][0]) } else { widest.min(USUAL[0]) };
+        // Rows of D_k hold −q̈_k, less its mean.
+        let place = rows.unknowns.of_balance();
+        let seen = |k: usize| rows.channels[2].x.column(place + k).amax();
+        let most = (0..n).filter(moving).map(seen).fold(0.0, f64::max);
+        let usual = if most > 0.0 { most } else { USUAL[1] };
+        let own = |k: usize| if rows.moves[k] && seen(k) > 0.0 { seen(k) } else { usual };
+        let acceleration = (0..n).map(|k| given.and_then(|all| all.get(k)).copied().unwrap_or_else(|| own(k)));
+        Self {
+            middle: ends.iter().map(|[low, high]| 0.5 * (low + high)).collect(),
+            reach: (0..n).map(|k| reach(k).max(1e-6)).collect(),
+            acceleration: acceleration.collect(),
+        }
+    }
+
+    /// Sines of some drives, as large as joint limits let them be.
+    fn motion(&self, machine: &Machine, drives: &[(usize, f64)], apart: bool) -> Sines {
+        let n = machine.drives();
+        let signs: Vec<f64> =
+            (0..n).map(|k| drives.iter().find(|(own, _)| *own == k).map_or(0.0, |(_, sign)| *sign)).collect();
+        let mut smaller = 1.0;
+        let mut sines = self.sines(&signs, apart, smaller);
+        while smaller > 0.02 && !sines.keeps_limits(machine) {
+            smaller *= 0.8;
+            sines = self.sines(&signs, apart, smaller);
+        }
+        sines
+    }
+
+    fn sines(&self, signs: &[f64], apart: bool, smaller: f64) -> Sines {
+        let moving = || (0..signs.len()).filter(|k| signs[*k] != 0.0);
+        let amplitude: Vec<f64> = (0..signs.len()).map(|k| smaller * self.reach[k]).collect();
+        let own = |k: usize| (self.acceleration[k] / amplitude[k]).sqrt();
+        // In step at the frequency of the slowest.
+        let slowest = moving().map(own).fold(f64::INFINITY, f64::min);
+        let rate = |k: usize| if apart { own(k) * (1.0 - 0.13 * k as f64) } else { slowest };
+        Sines {
+            middle: self.middle.clone(),
+            rate: (0..signs.len()).map(rate).collect(),
+            signed: amplitude.iter().zip(signs).map(|(a, sign)| a * sign).collect(),
+            amplitude,
+        }
+    }
+}
+
+struct Sines {
+    middle: Vec<f64>,
+    amplitude: Vec<f64>,
+    signed: Vec<f64>,
+    rate: Vec<f64>,
+}
+
+impl Sines {
+    fn at(&self, t: f64) -> [PerDrive; 3] {
+        let n = self.middle.len();
+        let each = |f: &dyn Fn(usize) -> f64| PerDrive::from_fn(n, f);
+        [
+            each(&|k| self.middle[k] + self.signed[k] * (self.rate[k] * t).sin()),
+            each(&|k| self.signed[k] * self.rate[k] * (self.rate[k] * t).cos()),
+            each(&|k| -self.signed[k] * self.rate[k].powi(2) * (self.rate[k] * t).sin()),
+        ]
+    }
+
+    fn keeps_limits(&self, machine: &Machine) -> bool {
+        machine.angles().iter().all(|angle| {
+            let middle = self.middle[angle.to] - self.middle[angle.from] + angle.offset;
+            let together = self.rate[angle.to] == self.rate[angle.from];
+            let (to, from) = (self.signed[angle.to], self.signed[angle.from]);
+            let most = if together { (to - from).abs() } else { to.abs() + from.abs() };
+            // Where the middle itself is outside, limits were not kept in the measurement either.
+            !angle.limits.contains(&middle)
+                || (angle.limits.contains(&(middle - most)) && angle.limits.contains(&(middle + most)))
+        })
+    }
+
+    /// Σ xᵀ x over time by the densities of the noise.
+    fn information(&self, machine: &Machine, unknowns: &Unknowns, duration: f64, fit: &Fit) -> DMatrix<f64> {
+        let p = unknowns.count();
+        let mut rows = [0, 1, 2].map(|_| DMatrix::zeros(INSTANTS, p));
+        let mut one = [0, 1, 2].map(|_| vec![0.0; p]);
+        for i in 0..INSTANTS {
+            let [q, qd, qdd] = self.at(duration * (i as f64 + 0.5) / INSTANTS as f64);
+            let [fx, fy, n] = &mut one;
+            unknowns.reaction(&DriveAngles(q).units(), &qd, &qdd, machine.gravity(), [fx, fy, n]);
+            for (rows, one) in rows.iter_mut().zip(&one) {
+                one.iter().enumerate().for_each(|(j, x)| rows[(i, j)] = *x);
+            }
+        }
+        let dt = duration / INSTANTS as f64;
+        let mut sum = DMatrix::zeros(p, p);
+        for (mut rows, density) in rows.into_iter().zip([fit.density[0], fit.density[0], fit.density[1]]) {
+            for mut column in rows.column_iter_mut() {
+                let mean = column.mean();
+                column.add_scalar_mut(-mean);
+            }
+            sum += rows.tr_mul(&rows) * (dt / density.max(f64::MIN_POSITIVE));
+        }
+        sum
+    }
+}
+
+/// What an information matrix says, in numbers divided by their scales.
+struct Known {
+    values: DVector<f64>,
+    vectors: DMatrix<f64>,
+    cut: f64,
+}
+
+impl Known {
+    fn of(information: &DMatrix<f64>, scales: &[f64]) -> Self {
+        let scaled = DMatrix::from_fn(scales.len(), scales.len(), |i, j| information[(i, j)] * scales[i] * scales[j]);
+        let nothing = || SymmetricEigen {
+            eigenvalues: DVector::zeros(scales.len()),
+            eigenvectors: DMatrix::identity(scales.len(), scales.len()),
+        };
+        let eigen = SymmetricEigen::try_new(scaled, f64::EPSILON, MOST_STEPS).unwrap_or_else(nothing);
+        let cut = 1e-12 * eigen.eigenvalues.amax();
+        Self { values: eigen.eigenvalues, vectors: eigen.eigenvectors, cut }
+    }
+
+    /// Of a number; `None` if nothing is known of it.
+    fn variance(&self, place: usize) -> Option<f64> {
+        let part = |i: usize| self.vectors[(place, i)].powi(2);
+        let known = |i: &usize| self.values[*i] > self.cut;
+        let told = (0..self.values.len()).all(|i| known(&i) || part(i) < 1e-6);
+        told.then(|| (0..self.values.len()).filter(known).map(|i| part(i) / self.values[i]).sum())
+    }
+
+    /// Log of the product of variances of the first numbers as if each were alone; what is not known counts as 1.
+    fn log_volume(&self, count: usize) -> f64 {
+        (0..count).map(|i| self.variance(i).unwrap_or(1.0).max(f64::MIN_POSITIVE).ln()).sum()
+    }
+}

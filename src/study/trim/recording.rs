@@ -1,0 +1,85 @@
+//! [`Recording`]: what was measured.
+
+use super::error::TrimError;
+use crate::mechanics::planar::{PerDrive, Vector};
+
+/// One motion, sampled. All lists are as long as the times.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Motion {
+    /// s, rising.
+    pub t: Vec<f64>,
+    /// Absolute drive angles, unwrapped, rad.
+    pub q: Vec<PerDrive>,
+    /// Rates, rad/s; empty where not measured.
+    pub qd: Vec<PerDrive>,
+    /// Accelerations, rad/s²; empty where not measured.
+    pub qdd: Vec<PerDrive>,
+    /// Force on the base, N.
+    pub force: Vec<Vector>,
+    /// Moment on the base about B, N m.
+    pub moment: Vec<f64>,
+}
+
+impl Motion {
+    /// From the first sample to the last, s.
+    pub fn duration(&self) -> f64 {
+        self.t.last().unwrap_or(&0.0) - self.t.first().unwrap_or(&0.0)
+    }
+
+    fn wrong(&self, drives: usize) -> Option<&'static str> {
+        let n = self.t.len();
+        let optional = |list: &[PerDrive]| list.is_empty() || list.len() == n;
+        let lengths = [self.q.len(), self.force.len(), self.moment.len()].iter().all(|own| *own == n);
+        if n == 0 || !lengths || !optional(&self.qd) || !optional(&self.qdd) {
+            return Some("lists of different lengths, or none: want one entry for each time");
+        }
+        let lists = || self.q.iter().chain(&self.qd).chain(&self.qdd);
+        if lists().any(|x| x.len() != drives) {
+            return Some("angles of another number of drives: want one for each drive of the machine");
+        }
+        let numbers = lists().flat_map(|x| x.iter()).chain(&self.t).chain(&self.moment);
+        if !numbers.chain(self.force.iter().flat_map(|f| [&f.re, &f.im])).all(|x| x.is_finite()) {
+            return Some("what is no finite number: want numbers throughout");
+        }
+        let rising = self.t.windows(2).all(|w| w[1] > w[0]);
+        (!rising).then_some("times that do not rise: want each later than the one before")
+    }
+}
+
+/// Motions of one machine on a fixed base.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Recording {
+    /// Each with sensor offsets of its own.
+    pub motions: Vec<Motion>,
+}
+
+impl Recording {
+    /// Whether every motion has its accelerations, and its rates.
+    pub fn has_accelerations(&self) -> bool {
+        self.motions.iter().all(|motion| !motion.qdd.is_empty() && !motion.qd.is_empty())
+    }
+
+    /// Whether it can be used for a machine of so many drives.
+    ///
+    /// # Errors
+    /// What is wrong.
+    pub fn check(&self, drives: usize) -> Result<(), TrimError> {
+        for (motion, of) in self.motions.iter().enumerate() {
+            if let Some(got) = of.q.first().map(|q| q.len()).filter(|got| *got != drives) {
+                return Err(TrimError::Drives { got, want: drives });
+            }
+            if let Some(what) = of.wrong(drives) {
+                return Err(TrimError::Motion { motion, what });
+            }
+        }
+        match self.motions.is_empty() {
+            true => Err(TrimError::TooFew { rows: 0, unknowns: Self::unknowns(drives) }),
+            false => Ok(()),
+        }
+    }
+
+    /// How many numbers a machine of n drives has: 2n first moments, n(n − 1) of couplings, n momenta.
+    fn unknowns(drives: usize) -> usize {
+        drives * (drives + 2)
+    }
+}

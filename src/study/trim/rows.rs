@@ -1,0 +1,366 @@
+//! [`Rows`]: the linear equations that a recording makes.
+
+use nalgebra::DMatrix;
+
+use super::differences::{noise, stencil};
+use super::error::TrimError;
+use super::recording::{Motion, Recording};
+use super::unknowns::Unknowns;
+use super::window::Window;
+use crate::mechanics::machine::Machine;
+use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
+
+/// What rows are made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Made {
+    /// Samples with their rates and accelerations.
+    Samples,
+    /// Averages over windows.
+    Windows {
+        /// Half their width, s.
+        half: f64,
+        /// Root mean square of what noise makes of accelerations, as a share of these: the worst drive.
+        noise: f64,
+    },
+}
+
+/// Force along x and y and moment by the unknowns, instant by instant; each motion less its mean.
+#[derive(Clone, Debug)]
+pub struct Rows {
+    /// What is to be found.
+    pub unknowns: Unknowns,
+    /// What they are made of.
+    pub made: Made,
+    /// Whether each drive moves.
+    pub moves: Vec<bool>,
+    /// Mean time between rows, s.
+    pub spacing: f64,
+    /// Rows of each motion.
+    pub motions: Vec<usize>,
+    pub(super) channels: [Channel; 3],
+}
+
+/// Of f_x, f_y or n.
+#[derive(Clone, Debug)]
+pub(super) struct Channel {
+    /// Rows by unknowns.
+    pub x: DMatrix<f64>,
+    pub y: Vec<f64>,
+    /// What noise in the angles is expected to add to xᵀ x.
+    pub noise: DMatrix<f64>,
+}
+
+/// A window is at least so many times as wide to either side as samples are apart, and at most this part of the shortest
+/// motion.
+const NARROWEST: f64 = 10.0;
+const WIDEST: f64 = 0.2;
+/// Rows in half a window.
+const STEPS: f64 = 4.0;
+/// Noise may make this part of the accelerations.
+const QUIET: f64 = 2e-3;
+/// A drive of whose acceleration noise is more than this holds still.
+const STILL: f64 = 0.2;
+/// So does one that turns by less, rad.
+const TURNS: f64 = 1e-9;
+/// With measured accelerations: a drive that turns by less, rad, and accelerates less than this part of the fastest.
+const STANDS: [f64; 2] = [1e-3, 1e-2];
+
+impl Rows {
+    /// Of a recording, for a machine's drives and gravity. Measured rates and accelerations count unless only the angles
+    /// are to.
+    ///
+    /// # Errors
+    /// If the recording cannot be used.
+    pub fn of(machine: &Machine, recording: &Recording, angles_only: bool) -> Result<Self, TrimError> {
+        recording.check(machine.drives())?;
+        let mut rows = match recording.has_accelerations() && !angles_only {
+            true => Self::of_samples(machine, recording),
+            false => Self::of_windows(machine, recording, angles_only)?,
+        };
+        if !rows.moves.contains(&true) {
+            return Err(TrimError::Still);
+        }
+        let (own, unknowns) = (rows.count().saturating_sub(rows.motions.len()), rows.unknowns.count());
+        if 3 * own <= unknowns {
+            return Err(TrimError::TooFew { rows: rows.count(), unknowns });
+        }
+        rows.centre();
+        let finite = |channel: &Channel| channel.x.iter().chain(&channel.y).all(|x| x.is_finite());
+        if rows.channels.iter().all(finite) { Ok(rows) } else { Err(TrimError::NotFinite) }
+    }
+
+    /// How many.
+    pub fn count(&self) -> usize {
+        self.motions.iter().sum()
+    }
+
+    fn of_samples(machine: &Machine, recording: &Recording) -> Self {
+        let all = || recording.motions.iter();
+        let squares = |k: usize| all().flat_map(|m| &m.qdd).map(|a| a[k] * a[k]).sum::<f64>();
+        let fastest = (0..machine.drives()).map(squares).fold(0.0, f64::max);
+        let stands = |k: usize| {
+            let turns = |m: &Motion| spread(m.q.iter().map(|q| q[k]));
+            all().map(turns).fold(0.0, f64::max) <= STANDS[0] && squares(k) <= STANDS[1].powi(2) * fastest
+        };
+        let moves: Vec<bool> = (0..machine.drives()).map(|k| !stands(k)).collect();
+        let mut made = Making::of(machine);
+        for motion in all().map(|motion| held(motion, &moves)) {
+            for i in 0..motion.t.len() {
+                let e = DriveAngles(motion.q[i]).units();
+                made.next(motion.force[i], motion.moment[i]);
+                let [fx, fy, n] = &mut made.rows;
+                made.unknowns.reaction(&e, &motion.qd[i], &motion.qdd[i], made.gravity, [fx, fy, n]);
+                made.push();
+            }
+            made.end_of_motion();
+        }
+        let time: f64 = all().map(Motion::duration).sum();
+        made.rows(Made::Samples, moves, time)
+    }
+
+    fn of_windows(machine: &Machine, recording: &Recording, angles_only: bool) -> Result<Self, TrimError> {
+        let smooth: Vec<Smooth> = recording.motions.iter().map(|motion| Smooth::of(motion, angles_only)).collect();
+        let widths = widths(&smooth)?;
+        let drives = machine.drives();
+        let shares: Vec<Vec<f64>> = widths.iter().map(|half| shares(&smooth, *half, drives)).collect();
+        let best = |k: usize| shares.iter().map(|of| of[k]).fold(f64::INFINITY, f64::min);
+        let turns = |m: &Motion, k: usize| spread(m.q.iter().map(|q| q[k])) > TURNS;
+        let turns = |k: usize| recording.motions.iter().any(|motion| turns(motion, k));
+        let moves: Vec<bool> = (0..drives).map(|k| turns(k) && best(k) < STILL).collect();
+        let worst = |of: &Vec<f64>| of.iter().zip(&moves).filter(|(_, m)| **m).map(|(x, _)| *x).fold(0.0, f64::max);
+        let worst: Vec<f64> = shares.iter().map(worst).collect();
+        let least = (0..widths.len()).min_by(|a, b| worst[*a].total_cmp(&worst[*b])).unwrap_or_default();
+        let chosen = worst.iter().position(|share| *share <= QUIET).unwrap_or(least);
+        let half = widths[chosen];
+        let mut made = Making::of(machine);
+        for own in &smooth {
+            own.rows(half, &moves, &mut made);
+        }
+        let time = smooth.iter().map(|own| own.motion.duration() - 2.0 * half).sum();
+        Ok(made.rows(Made::Windows { half, noise: worst[chosen] }, moves, time))
+    }
+
+    /// Takes the mean of each motion out of it: what an offset of a sensor would be.
+    fn centre(&mut self) {
+        for Channel { x, y, .. } in &mut self.channels {
+            let mut from = 0;
+            for &count in &self.motions {
+                let per = 1.0 / count as f64;
+                for mut column in x.column_iter_mut() {
+                    let mut own = column.rows_mut(from, count);
+                    let mean = own.sum() * per;
+                    own.add_scalar_mut(-mean);
+                }
+                let own = &mut y[from..from + count];
+                let mean = own.iter().sum::<f64>() * per;
+                own.iter_mut().for_each(|y| *y -= mean);
+                from += count;
+            }
+        }
+    }
+}
+
+fn spread(values: impl Iterator<Item = f64>) -> f64 {
+    let ends = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+    ends[1] - ends[0]
+}
+
+/// The motion with drives that hold still held still.
+fn held(motion: &Motion, moves: &[bool]) -> Motion {
+    let mut motion = motion.clone();
+    for k in (0..moves.len()).filter(|k| !moves[*k]) {
+        let mean = motion.q.iter().map(|q| q[k]).sum::<f64>() / motion.q.len() as f64;
+        motion.q.iter_mut().for_each(|q| q[k] = mean);
+        motion.qd.iter_mut().chain(&mut motion.qdd).for_each(|x| x[k] = 0.0);
+    }
+    motion
+}
+
+/// Half widths of windows that motions have room for, s, the narrowest first.
+fn widths(smooth: &[Smooth]) -> Result<Vec<f64>, TrimError> {
+    let narrowest = smooth.iter().map(|own| NARROWEST * own.spacing).fold(0.0, f64::max);
+    let enough = |own: &Smooth| WIDEST * own.motion.duration() >= narrowest && own.motion.t.len() > 1;
+    if let Some(motion) = smooth.iter().position(|own| !enough(own)) {
+        let own = &smooth[motion];
+        let want = (NARROWEST / WIDEST) as usize + 1;
+        return Err(TrimError::Short { motion, rows: own.motion.t.len(), time: own.motion.duration(), want });
+    }
+    let widest = smooth.iter().map(|own| WIDEST * own.motion.duration()).fold(f64::INFINITY, f64::min);
+    let steps = (2.0 * (widest / narrowest).log2()).floor().max(0.0) as i32;
+    Ok((0..=steps).map(|i| narrowest * 2_f64.powf(0.5 * f64::from(i))).collect())
+}
+
+/// For each drive what noise makes of its acceleration, as a share of that.
+fn shares(smooth: &[Smooth], half: f64, drives: usize) -> Vec<f64> {
+    let (mut noises, mut sizes) = (vec![0.0; drives], vec![f64::MIN_POSITIVE; drives]);
+    for own in smooth {
+        let mut centres = own.centres(half, 0.5 * half).peekable();
+        while let Some(centre) = centres.next() {
+            let Some(window) = Window::about(&own.motion.t, centre, half) else { continue };
+            for k in 0..drives {
+                let mean: f64 = window.samples.clone().zip(&window.rate).map(|(j, d)| d * own.qd[j][k]).sum();
+                sizes[k] += mean * mean;
+                if centres.peek().is_none() {
+                    noises[k] +=
+                        own.gain(&window).powi(2) * own.noise[k].powi(2) * own.centres(half, 0.5 * half).count() as f64;
+                }
+            }
+        }
+    }
+    noises.iter().zip(&sizes).map(|(noise, size)| (noise / size).sqrt()).collect()
+}
+
+/// A motion with its rates.
+struct Smooth<'a> {
+    motion: &'a Motion,
+    qd: Vec<PerDrive>,
+    /// Whether the rates are measured.
+    measured: bool,
+    /// σ of the rates if they are measured, else of the angles, for each drive.
+    noise: Vec<f64>,
+    /// The usual time between samples, s.
+    spacing: f64,
+}
+
+impl<'a> Smooth<'a> {
+    fn of(motion: &'a Motion, angles_only: bool) -> Self {
+        let (t, drives) = (&motion.t, motion.q.first().map_or(0, |q| q.len()));
+        let measured = !motion.qd.is_empty() && !angles_only;
+        let rate = |i: usize| {
+            let (from, weights) = stencil(t, i);
+            PerDrive::from_fn(drives, |k| weights.iter().enumerate().map(|(j, w)| w * motion.q[from + j][k]).sum())
+        };
+        let qd = if measured { motion.qd.clone() } else { (0..t.len()).map(rate).collect() };
+        let source = if measured { &motion.qd } else { &motion.q };
+        let noise = (0..drives).map(|k| noise(t, |i| source[i][k]).unwrap_or(f64::INFINITY)).collect();
+        let mut steps: Vec<f64> = t.windows(2).map(|w| w[1] - w[0]).collect();
+        steps.sort_by(f64::total_cmp);
+        let spacing = steps.get(steps.len() / 2).copied().unwrap_or(f64::INFINITY);
+        Self { motion, qd, measured, noise, spacing }
+    }
+
+    /// Centres of windows that lie within the motion.
+    fn centres(&self, half: f64, step: f64) -> impl Iterator<Item = f64> + use<> {
+        let (start, room) = (self.motion.t[0] + half, self.motion.duration() - 2.0 * half);
+        let count = (room / step).max(0.0).floor() as usize;
+        let step = if count > 0 { room / count as f64 } else { 0.0 };
+        (0..=count).map(move |i| start + step * i as f64)
+    }
+
+    /// σ of an averaged acceleration where the samples that it is made of have σ = 1.
+    fn gain(&self, window: &Window) -> f64 {
+        if self.measured {
+            return window.rate.iter().map(|d| d * d).sum::<f64>().sqrt();
+        }
+        let from = window.samples.start.saturating_sub(2);
+        let mut weights = vec![0.0; window.samples.end + 3 - from];
+        for (i, d) in window.samples.clone().zip(&window.rate) {
+            let (first, stencil) = stencil(&self.motion.t, i);
+            stencil.iter().enumerate().for_each(|(j, w)| weights[(first + j).saturating_sub(from)] += d * w);
+        }
+        weights.iter().map(|w| w * w).sum::<f64>().sqrt()
+    }
+
+    /// One row for each window.
+    fn rows(&self, half: f64, moves: &[bool], made: &mut Making) {
+        let mean = |k: usize| self.motion.q.iter().map(|q| q[k]).sum::<f64>() / self.motion.q.len() as f64;
+        let still: Vec<f64> = (0..moves.len()).map(mean).collect();
+        let n = moves.len();
+        let angle = |j: usize| PerDrive::from_fn(n, |k| if moves[k] { self.motion.q[j][k] } else { still[k] });
+        let rate = |j: usize| PerDrive::from_fn(n, |k| if moves[k] { self.qd[j][k] } else { 0.0 });
+        let mut one = made.rows.clone();
+        let mut noise = None;
+        for centre in self.centres(half, half / STEPS) {
+            let Some(window) = Window::about(&self.motion.t, centre, half) else { continue };
+            let (mut force, mut moment) = (Vector::default(), 0.0);
+            made.rows.iter_mut().for_each(|row| row.fill(0.0));
+            for ((j, a), d) in window.samples.clone().zip(&window.mean).zip(&window.rate) {
+                let (e, [px, py, h]) = (DriveAngles(angle(j)).units(), &mut one);
+                made.unknowns.momentum(&e, &rate(j), [px, py, h]);
+                made.rows.iter_mut().zip(&one).for_each(|(sum, one)| add(sum, *d, one));
+                if made.gravity != Vector::default() {
+                    made.unknowns.still(&e, made.gravity, &mut one[2]);
+                    add(&mut made.rows[2], *a, &one[2]);
+                }
+                force += self.motion.force[j] * *a;
+                moment += self.motion.moment[j] * a;
+            }
+            made.next(force, moment);
+            made.push();
+            let gain = *noise.get_or_insert_with(|| self.gain(&window));
+            let middle = DriveAngles(angle(window.samples.start + window.samples.len() / 2)).units();
+            for k in (0..n).filter(|k| moves[*k] && self.noise[*k].is_finite()) {
+                let unit = PerDrive::from_fn(n, |l| if l == k { 1.0 } else { 0.0 });
+                let [fx, fy, m] = &mut one;
+                made.unknowns.reaction(&middle, &PerDrive::zeros(n), &unit, Vector::default(), [fx, fy, m]);
+                made.noisy(&one, (gain * self.noise[k]).powi(2));
+            }
+        }
+        made.end_of_motion();
+    }
+}
+
+fn add(sum: &mut [f64], by: f64, one: &[f64]) {
+    sum.iter_mut().zip(one).for_each(|(sum, one)| *sum += by * one);
+}
+
+/// Rows while they are made.
+struct Making {
+    unknowns: Unknowns,
+    gravity: Vector,
+    /// The row that is next, of each channel.
+    rows: [Vec<f64>; 3],
+    x: [Vec<f64>; 3],
+    y: [Vec<f64>; 3],
+    noise: [DMatrix<f64>; 3],
+    motions: Vec<usize>,
+}
+
+impl Making {
+    fn of(machine: &Machine) -> Self {
+        let unknowns = Unknowns::of(machine.drives());
+        let p = unknowns.count();
+        let empty = || [Vec::new(), Vec::new(), Vec::new()];
+        let noise = std::array::from_fn(|_| DMatrix::zeros(p, p));
+        let rows = std::array::from_fn(|_| vec![0.0; p]);
+        Self { unknowns, gravity: machine.gravity(), rows, x: empty(), y: empty(), noise, motions: Vec::new() }
+    }
+
+    /// What is measured at the next row.
+    fn next(&mut self, force: Vector, moment: f64) {
+        self.y.iter_mut().zip([force.re, force.im, moment]).for_each(|(y, value)| y.push(value));
+    }
+
+    fn push(&mut self) {
+        self.x.iter_mut().zip(&self.rows).for_each(|(x, row)| x.extend_from_slice(row));
+    }
+
+    fn noisy(&mut self, by: &[Vec<f64>; 3], variance: f64) {
+        for (noise, by) in self.noise.iter_mut().zip(by) {
+            let used: Vec<usize> = (0..by.len()).filter(|i| by[*i] != 0.0).collect();
+            for &i in &used {
+                used.iter().for_each(|&j| noise[(i, j)] += variance * by[i] * by[j]);
+            }
+        }
+    }
+
+    fn end_of_motion(&mut self) {
+        let before: usize = self.motions.iter().sum();
+        self.motions.push(self.y[0].len() - before);
+    }
+
+    fn rows(mut self, made: Made, moves: Vec<bool>, time: f64) -> Rows {
+        let (count, p) = (self.y[0].len(), self.unknowns.count());
+        self.motions.retain(|rows| *rows > 0);
+        let spaces = count.saturating_sub(self.motions.len()).max(1);
+        let mut y = self.y.into_iter();
+        let mut noise = self.noise.into_iter();
+        let channels = self.x.map(|x| Channel {
+            x: DMatrix::from_row_slice(count, p, &x),
+            y: y.next().unwrap_or_default(),
+            noise: noise.next().unwrap_or_else(|| DMatrix::zeros(p, p)),
+        });
+        let spacing = time / spaces as f64;
+        Rows { unknowns: self.unknowns, made, moves, spacing, motions: self.motions, channels }
+    }
+}

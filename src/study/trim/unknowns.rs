@@ -1,0 +1,159 @@
+//! [`Unknowns`]: what the measurement is to find, and how force, moment and momentum depend on it.
+
+use crate::mechanics::balance::Condition;
+use crate::mechanics::machine::{Inertia, Machine};
+use crate::mechanics::planar::{PerDrive, Units, Vector, cross};
+
+/// Of a complex number of (7) or (8).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Part {
+    /// Its real part: masses on the axes of the links.
+    Along,
+    /// Its imaginary part: masses beside them.
+    Across,
+}
+
+/// One of the numbers that are to be found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Unknown {
+    /// A part of a line of (7), kg m, or of (8), kg m².
+    Of(Condition, Part),
+    /// D_k, kg m².
+    Momentum(usize),
+}
+
+impl Unknown {
+    /// In words, with its drives by name.
+    pub fn name(self, machine: &Machine) -> String {
+        let drive = |k: usize| &machine.spec().drives[k].name;
+        let part = |part: Part| if part == Part::Along { "along" } else { "across" };
+        match self {
+            Self::Of(Condition::Force(k), of) => format!("g {} {}", drive(k), part(of)),
+            Self::Of(Condition::Coupling(k, l), of) => format!("C {},{} {}", drive(k), drive(l), part(of)),
+            Self::Momentum(k) => format!("D {}", drive(k)),
+        }
+    }
+
+    /// Of its number.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Of(condition, _) => condition.unit(),
+            Self::Momentum(_) => "kg m²",
+        }
+    }
+}
+
+/// Those of n drives: along and across of each line of (7), then of (8), then every D_k.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unknowns {
+    drives: usize,
+    conditions: Vec<Condition>,
+}
+
+impl Unknowns {
+    /// Of a machine with so many drives.
+    pub fn of(drives: usize) -> Self {
+        Self { drives, conditions: Condition::all(drives).collect() }
+    }
+
+    /// Number of drives.
+    pub fn drives(&self) -> usize {
+        self.drives
+    }
+
+    /// The lines of (7) and (8), in order.
+    pub fn conditions(&self) -> &[Condition] {
+        &self.conditions
+    }
+
+    /// How many unknowns.
+    pub fn count(&self) -> usize {
+        2 * self.conditions.len() + self.drives
+    }
+
+    /// How many of them are of (7) and (8): the first ones.
+    pub fn of_balance(&self) -> usize {
+        2 * self.conditions.len()
+    }
+
+    /// Which one stands at a place.
+    pub fn at(&self, place: usize) -> Unknown {
+        let part = if place.is_multiple_of(2) { Part::Along } else { Part::Across };
+        match self.conditions.get(place / 2) {
+            Some(condition) => Unknown::Of(*condition, part),
+            None => Unknown::Momentum(place - self.of_balance()),
+        }
+    }
+
+    /// What a machine has of each.
+    pub fn nominal(&self, inertia: &Inertia) -> Vec<f64> {
+        let parts = self.conditions.iter().map(|condition| condition.left(inertia)).flat_map(|left| [left.re, left.im]);
+        parts.chain((0..self.drives).map(|k| inertia.momentum(k))).collect()
+    }
+
+    /// A size to measure each by: mass times size of the machine, and that times its size.
+    pub fn scales(&self, inertia: &Inertia) -> Vec<f64> {
+        let turning = (0..self.drives).map(|k| inertia.diagonal(k)).sum::<f64>().max(f64::MIN_POSITIVE);
+        let moment = (turning * inertia.mass()).sqrt();
+        let of = |i: usize| match self.at(i) {
+            Unknown::Of(Condition::Force(_), _) => moment,
+            _ => turning,
+        };
+        (0..self.count()).map(of).collect()
+    }
+
+    /// Force (x, y) and moment for each unknown at a state, dynamic, with the moment of weight.
+    pub fn reaction(&self, e: &Units, qd: &PerDrive, qdd: &PerDrive, gravity: Vector, out: [&mut [f64]; 3]) {
+        let [fx, fy, n] = out;
+        self.still(e, gravity, n);
+        for (i, condition) in self.conditions.iter().enumerate() {
+            match *condition {
+                Condition::Force(k) => {
+                    let v = -e[k] * Vector::new(-qd[k] * qd[k], qdd[k]);
+                    complex(v, i, fx, fy);
+                }
+                Condition::Coupling(k, l) => {
+                    let z = e[k].conj() * e[l];
+                    let (sum, squares) = (qdd[k] + qdd[l], qd[k] * qd[k] - qd[l] * qd[l]);
+                    n[2 * i] = -(z.re * sum + z.im * squares);
+                    n[2 * i + 1] = z.im * sum - z.re * squares;
+                }
+            }
+        }
+        let from = self.of_balance();
+        (0..self.drives).for_each(|k| n[from + k] = -qdd[k]);
+    }
+
+    /// Linear (x, y) and angular momentum for each unknown.
+    pub fn momentum(&self, e: &Units, qd: &PerDrive, out: [&mut [f64]; 3]) {
+        let [px, py, h] = out;
+        h.fill(0.0);
+        for (i, condition) in self.conditions.iter().enumerate() {
+            match *condition {
+                Condition::Force(k) => complex(e[k] * Vector::new(0.0, qd[k]), i, px, py),
+                Condition::Coupling(k, l) => {
+                    let z = e[k].conj() * e[l] * (qd[k] + qd[l]);
+                    h[2 * i] = z.re;
+                    h[2 * i + 1] = -z.im;
+                }
+            }
+        }
+        let from = self.of_balance();
+        (0..self.drives).for_each(|k| h[from + k] = qd[k]);
+    }
+
+    /// The moment of weight for each unknown.
+    pub fn still(&self, e: &Units, gravity: Vector, n: &mut [f64]) {
+        n.fill(0.0);
+        for k in 0..self.drives {
+            n[2 * k] = cross(e[k], gravity);
+            n[2 * k + 1] = cross(e[k] * Vector::i(), gravity);
+        }
+    }
+}
+
+/// A vector times the real and the imaginary unit.
+fn complex(v: Vector, i: usize, x: &mut [f64], y: &mut [f64]) {
+    (x[2 * i], x[2 * i + 1]) = (v.re, -v.im);
+    (y[2 * i], y[2 * i + 1]) = (v.im, v.re);
+}

@@ -1,0 +1,57 @@
+//! [`Window`]: an average over time and its derivative, without differentiating what is averaged.
+//!
+//! # Symbols
+//! | letter | meaning |
+//! |---|---|
+//! | u | (t − centre)/w, from −1 to 1 |
+//! | φ | (1 − u²)⁴ |
+//! | a_j | weights of the average: Σ a_j y_j ≈ ∫ φ y / ∫ φ |
+//! | d_j | weights with Σ d_j y_j = −Σ a_j ẏ_j for cubics, ≈ ∫ φ̇ y / ∫ φ |
+
+use std::ops::Range;
+
+use nalgebra::{Matrix4, Vector4};
+
+/// The fewest samples in a window.
+pub(super) const FEWEST: usize = 7;
+
+/// Weights of the samples in a window.
+pub(super) struct Window {
+    /// Which samples.
+    pub samples: Range<usize>,
+    /// a.
+    pub mean: Vec<f64>,
+    /// d, 1/s.
+    pub rate: Vec<f64>,
+}
+
+impl Window {
+    /// Of a half width, s, about a time; `None` where too few samples are in it.
+    pub fn about(t: &[f64], centre: f64, half: f64) -> Option<Self> {
+        let from = t.partition_point(|t| *t <= centre - half);
+        let samples = from..t.partition_point(|t| *t < centre + half);
+        if samples.len() < FEWEST {
+            return None;
+        }
+        let u: Vec<f64> = samples.clone().map(|j| (t[j] - centre) / half).collect();
+        // Half of the way to both neighbours, which are in the record at least at its ends.
+        let place = |j: usize| t[j.min(t.len() - 1)];
+        let space = |j: usize| 0.5 * (place(j + 1) - place(j.saturating_sub(1))) / half;
+        let phi: Vec<f64> = samples.clone().zip(&u).map(|(j, u)| space(j) * (1.0 - u * u).powi(4)).collect();
+        let whole: f64 = phi.iter().sum();
+        let mean: Vec<f64> = phi.iter().map(|phi| phi / whole).collect();
+        let slope = |(j, u): (usize, &f64)| -8.0 * u * (1.0 - u * u).powi(3) * space(j) / whole;
+        let mut rate: Vec<f64> = samples.clone().zip(&u).map(slope).collect();
+        // What the sum misses of the integral, on times that are not evenly spaced, is taken out for cubics.
+        let moment = |weights: &[f64], power: i32| weights.iter().zip(&u).map(|(w, u)| w * u.powi(power)).sum::<f64>();
+        let gram = Matrix4::from_fn(|i, j| moment(&mean, (i + j) as i32));
+        let wanted = Vector4::from_fn(|i, _| if i == 0 { 0.0 } else { -(i as f64) * moment(&mean, i as i32 - 1) });
+        let missed = Vector4::from_fn(|i, _| wanted[i] - moment(&rate, i as i32));
+        let by = gram.lu().solve(&missed)?;
+        for ((rate, mean), u) in rate.iter_mut().zip(&mean).zip(&u) {
+            *rate += mean * (by[0] + u * (by[1] + u * (by[2] + u * by[3])));
+            *rate /= half;
+        }
+        Some(Self { samples, mean, rate })
+    }
+}

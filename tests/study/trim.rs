@@ -1,0 +1,459 @@
+//! Trim balancing: machines with hidden errors are found from what their bases feel, within what is said of it.
+
+use stillbase::mechanics::balance::{Body, Condition, Hold, Keep, Parameter, Quantity};
+use stillbase::mechanics::counterweights::{Disc, Objective, Sites, Weighing, place};
+use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
+use stillbase::mechanics::machine::{Inertia, Machine, builtin};
+use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
+use stillbase::study::trim::{
+    Fit, Made, Motion, Part, Recording, Rows, TrimError, Unknown, Way, fit, identified, mend, next, taken,
+};
+
+use crate::support::Noise;
+use crate::support::random::a_machine;
+
+/// Each drive as a sum of three sines.
+struct Sines(Vec<[[f64; 3]; 3]>, Vec<f64>);
+
+impl Sines {
+    fn of(noise: &mut Noise, drives: usize, moving: &[bool]) -> Self {
+        let one = |noise: &mut Noise, moves: bool| {
+            let size = if moves { 1.0 } else { 0.0 };
+            [0.0, 1.0, 2.0].map(|i| {
+                [
+                    size * noise.between(0.2, 0.6) / (1.0 + i),
+                    noise.between(2.0, 4.0) * (1.0 + i),
+                    noise.between(0.0, 6.0),
+                ]
+            })
+        };
+        let parts = (0..drives).map(|k| one(noise, moving[k])).collect();
+        Self(parts, (0..drives).map(|_| noise.between(-3.0, 3.0)).collect())
+    }
+
+    fn at(&self, t: f64) -> [PerDrive; 3] {
+        let sum = |f: &dyn Fn(&[f64; 3]) -> f64| PerDrive::from_fn(self.0.len(), |k| self.0[k].iter().map(f).sum());
+        let mut q = sum(&|[a, w, p]| a * (w * t + p).sin());
+        q.iter_mut().zip(&self.1).for_each(|(q, middle)| *q += middle);
+        [q, sum(&|[a, w, p]| a * w * (w * t + p).cos()), sum(&|[a, w, p]| -a * w * w * (w * t + p).sin())]
+    }
+}
+
+/// How a machine is measured.
+#[derive(Clone, Copy)]
+struct Measuring {
+    motions: usize,
+    rows: usize,
+    step: f64,
+    /// σ of angles, force, moment.
+    sigma: [f64; 3],
+    /// Correlation of force and moment from row to row.
+    slow: f64,
+    /// Whether times are uneven.
+    uneven: bool,
+    /// Whether rates and accelerations are measured, too.
+    rates: bool,
+}
+
+const EXACT: Measuring =
+    Measuring { motions: 3, rows: 150, step: 0.01, sigma: [0.0; 3], slow: 0.0, uneven: false, rates: true };
+
+fn normal(noise: &mut Noise) -> f64 {
+    let (u, v) = (noise.between(1e-12, 1.0), noise.between(0.0, std::f64::consts::TAU));
+    (-2.0 * u.ln()).sqrt() * v.cos()
+}
+
+fn measured(machine: &Machine, noise: &mut Noise, how: Measuring, moving: &[bool]) -> Recording {
+    let (inertia, n) = (Inertia::of(machine), machine.drives());
+    let around = Surroundings { gravity: machine.gravity(), force: Vector::default() };
+    let mut motions = Vec::new();
+    for _ in 0..how.motions {
+        let sines = Sines::of(noise, n, moving);
+        let offset = [(); 3].map(|()| noise.between(-5.0, 5.0));
+        let (mut motion, mut t) = (Motion::default(), noise.between(-3.0, 9.0));
+        let mut error = [0.0; 3].map(|_: f64| normal(noise));
+        for _ in 0..how.rows {
+            let [q, qd, qdd] = sines.at(t);
+            let wrench = base_wrench(&inertia, &DriveAngles(q).units(), &qd, &qdd, &around).total();
+            let fresh = (1.0 - how.slow * how.slow).sqrt();
+            error.iter_mut().for_each(|e| *e = how.slow * *e + fresh * normal(noise));
+            motion.t.push(t);
+            motion.q.push(PerDrive::from_fn(n, |k| q[k] + how.sigma[0] * normal(noise)));
+            if how.rates {
+                motion.qd.push(qd);
+                motion.qdd.push(qdd);
+            }
+            let read = Vector::new(offset[0] + how.sigma[1] * error[0], offset[1] + how.sigma[1] * error[1]);
+            motion.force.push(wrench.force + read);
+            motion.moment.push(wrench.moment + offset[2] + how.sigma[2] * error[2]);
+            t += how.step * if how.uneven { noise.between(0.6, 1.4) } else { 1.0 };
+        }
+        motions.push(motion);
+    }
+    Recording { motions }
+}
+
+/// The machine as it was really built: centres of mass and masses are off.
+fn built(machine: &Machine, noise: &mut Noise, size: f64) -> Machine {
+    let mut spec = machine.spec().clone();
+    for link in &mut spec.links {
+        link.com += size * noise.between(-1.0, 1.0);
+        link.com_normal += 0.5 * size * noise.between(-1.0, 1.0);
+        link.mass *= 1.0 + size * noise.between(-1.0, 1.0);
+    }
+    for weight in &mut spec.counterweights {
+        weight.at += size * noise.between(-1.0, 1.0);
+        weight.mass *= 1.0 + size * noise.between(-1.0, 1.0);
+    }
+    Machine::new(spec).expect("a machine")
+}
+
+fn truth(fit: &Fit, machine: &Machine) -> Vec<f64> {
+    fit.unknowns.nominal(&Inertia::of(machine))
+}
+
+fn fitted(machine: &Machine, recording: &Recording, angles_only: bool) -> Fit {
+    fit(machine, &Rows::of(machine, recording, angles_only).expect("rows")).expect("a fit")
+}
+
+/// The largest error by the scale of the machine.
+fn furthest(fit: &Fit, hidden: &Machine) -> f64 {
+    let scales = fit.unknowns.scales(&Inertia::of(hidden));
+    let all = truth(fit, hidden).into_iter().zip(fit.measured.iter()).zip(scales);
+    all.map(|((want, got), scale)| (want - got).abs() / scale).fold(0.0, f64::max)
+}
+
+#[test]
+fn without_noise_every_number_is_found() {
+    let mut noise = Noise::of(1);
+    let mut drives = [0; 5];
+    while drives[1..].iter().any(|count| *count < 3) {
+        let machine = a_machine(&mut noise);
+        let n = machine.drives();
+        if n > 4 || drives[n] >= 3 {
+            continue;
+        }
+        let hidden = built(&machine, &mut noise, 0.05);
+        let recording = measured(&hidden, &mut noise, EXACT, &vec![true; n]);
+        let fit = fitted(&machine, &recording, false);
+        assert!(fit.told.iter().all(|told| *told), "{:?}", fit.confused);
+        let off = furthest(&fit, &hidden);
+        assert!(off < 1e-9, "{n} drives: {off:e}");
+        drives[n] += 1;
+    }
+}
+
+/// From angles alone, at even times and at others; what is left falls with the fourth power of the step.
+#[test]
+fn without_noise_angles_alone_will_do() {
+    let machine = builtin("nine-link").expect("built in");
+    let mut noise = Noise::of(2);
+    let hidden = built(machine, &mut noise, 0.02);
+    for uneven in [false, true] {
+        let errors = [1.0, 2.0].map(|coarser: f64| {
+            let how =
+                Measuring { rates: false, uneven, step: 0.004 * coarser, rows: (600.0 / coarser) as usize, ..EXACT };
+            let recording = measured(&hidden, &mut Noise::of(3), how, &[true; 3]);
+            furthest(&fitted(machine, &recording, false), &hidden)
+        });
+        assert!(errors[0] < 1e-6 && errors[1] > 4.0 * errors[0], "{uneven}: {errors:?}");
+    }
+}
+
+/// Of all intervals of 95 % about as many hold what is true, whatever the noise.
+#[test]
+fn intervals_are_honest() {
+    let cases = [
+        ("white", Measuring { sigma: [0.0, 0.3, 0.05], rows: 200, motions: 2, ..EXACT }, 200, 0.005),
+        ("slow", Measuring { sigma: [0.0, 0.3, 0.05], slow: 0.8, rows: 300, motions: 2, ..EXACT }, 200, 0.005),
+        (
+            "angles",
+            Measuring { sigma: [2e-5, 0.3, 0.05], rates: false, rows: 400, step: 0.005, motions: 2, ..EXACT },
+            100,
+            0.02,
+        ),
+    ];
+    for (name, how, count, most) in cases {
+        let machine = builtin("two-drive").expect("built in");
+        let (mut held, mut all, mut wide) = (0, 0, 0.0_f64);
+        for seed in 0..count {
+            let mut noise = Noise::of(1000 + seed);
+            let hidden = built(machine, &mut noise, 0.02);
+            let fit = fitted(machine, &measured(&hidden, &mut noise, how, &[true; 2]), false);
+            for (i, want) in truth(&fit, &hidden).into_iter().enumerate().filter(|(i, _)| fit.told[*i]) {
+                held += usize::from((fit.measured[i] - want).abs() <= fit.half_width(i));
+                all += 1;
+                wide = wide.max(fit.half_width(i));
+            }
+        }
+        let share = held as f64 / all as f64;
+        println!("{name}: {share:.4} of {all}, widest {wide:.5}");
+        assert!((0.92..=0.992).contains(&share), "{name}: {share} of {all}");
+        assert!(wide < 50.0 * most, "{name}: {wide}");
+    }
+}
+
+/// Offsets of sensors, in each motion of its own, change nothing; heavier machines are found heavier.
+#[test]
+fn laws_of_scale() {
+    let machine = builtin("two-drive").expect("built in");
+    let mut noise = Noise::of(4);
+    let hidden = built(machine, &mut noise, 0.05);
+    let how = Measuring { sigma: [0.0, 0.2, 0.1], ..EXACT };
+    let recording = measured(&hidden, &mut noise, how, &[true; 2]);
+    let fit = fitted(machine, &recording, false);
+    let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (a.abs() + b.abs() + 1e-3);
+    let mut shifted = recording.clone();
+    for (i, motion) in shifted.motions.iter_mut().enumerate() {
+        motion.force.iter_mut().for_each(|f| *f += Vector::new(7.0, -3.0 * i as f64));
+        motion.moment.iter_mut().for_each(|n| *n -= 11.0);
+        motion.t.iter_mut().for_each(|t| *t += 1e3);
+    }
+    let same = fitted(machine, &shifted, false);
+    let mut heavier = recording.clone();
+    for motion in &mut heavier.motions {
+        motion.force.iter_mut().for_each(|f| *f *= 3.0);
+        motion.moment.iter_mut().for_each(|n| *n *= 3.0);
+    }
+    let heavier = fitted(machine, &heavier, false);
+    for i in 0..fit.unknowns.count() {
+        assert!(near(fit.measured[i], same.measured[i]) && near(fit.half_width(i), same.half_width(i)), "{i}");
+        assert!(near(3.0 * fit.measured[i], heavier.measured[i]), "{i}");
+        assert!(near(3.0 * fit.half_width(i), heavier.half_width(i)), "{i}");
+    }
+}
+
+/// Of a drive that held still exactly what depends on it is not told, and the rest is.
+#[test]
+fn what_data_cannot_tell_is_named() {
+    let machine = builtin("nine-link").expect("built in");
+    let mut noise = Noise::of(5);
+    let hidden = built(machine, &mut noise, 0.02);
+    let exact = Measuring { rates: true, ..EXACT };
+    let angles = Measuring { sigma: [1e-5, 0.1, 0.02], rates: false, rows: 500, step: 0.004, ..EXACT };
+    for how in [exact, angles] {
+        let recording = measured(&hidden, &mut noise, how, &[true, false, true]);
+        let rows = Rows::of(machine, &recording, false).expect("rows");
+        assert_eq!(rows.moves, [true, false, true]);
+        let fit = fit(machine, &rows).expect("a fit");
+        for i in 0..fit.unknowns.count() {
+            // At fixed q₂ its couplings still show in the moment of the others.
+            let lost = match fit.unknowns.at(i) {
+                Unknown::Of(Condition::Force(1), _) | Unknown::Momentum(1) => true,
+                Unknown::Of(Condition::Force(_), _) | Unknown::Momentum(_) => false,
+                Unknown::Of(Condition::Coupling(0, 2), Part::Along | Part::Across) => false,
+                Unknown::Of(..) => continue,
+            };
+            assert_eq!(!fit.told[i], lost, "{}: {:?}", fit.unknowns.at(i).name(machine), fit.confused);
+            assert!(!lost || fit.measured[i] == fit.nominal[i]);
+        }
+        let alone: Vec<_> = fit.confused.iter().filter(|group| group.len() == 1).flatten().collect();
+        for (i, lost) in [(2, true), (3, true), (13, true), (0, false), (12, false)] {
+            assert_eq!(alone.contains(&&i), lost, "{i}: {:?}", fit.confused);
+        }
+    }
+    // What is taken of the rest is what was measured, or the file's.
+    let recording = measured(&hidden, &mut noise, angles, &[true, false, true]);
+    let fit = fitted(machine, &recording, false);
+    let taken = taken(&fit);
+    for i in 0..fit.unknowns.of_balance() {
+        let near = [fit.measured[i], fit.nominal[i]].map(|of| (taken.values[i] - of).abs());
+        assert!(near[0] <= 2.0 * fit.half_width(i) || near[1] == 0.0, "{i}: {near:?}");
+        assert!(fit.told[i] || near[1] == 0.0);
+    }
+    let none = measured(&hidden, &mut noise, exact, &[false; 3]);
+    assert_eq!(Rows::of(machine, &none, false).unwrap_err(), TrimError::Still);
+}
+
+/// The nine-link bars with counterweights.
+fn weighed() -> Machine {
+    let bare = builtin("nine-link-bare").expect("built in");
+    let sites = bare.resolved_links().iter().enumerate();
+    let sites = sites.map(|(link, part)| Sites { link, from: -0.3, to: part.length, most: f64::INFINITY }).collect();
+    let asked = Weighing::least(Objective::inertia(), sites, Disc::STEEL);
+    place(bare, &asked).expect("counterweights").machine
+}
+
+fn of_weights(machine: &Machine) -> Way {
+    let mut asked = Keep::default();
+    for i in 0..machine.spec().counterweights.len() {
+        for quantity in [Quantity::Mass, Quantity::Along] {
+            asked.hold(machine, Parameter::new(Body::Counterweight(i), quantity), Hold::Free);
+        }
+    }
+    Way::Change(asked)
+}
+
+/// The dynamic force, root mean square, over motions that were measured.
+fn shaking(machine: &Machine, recording: &Recording) -> f64 {
+    let inertia = Inertia::of(machine);
+    let (mut sum, mut count) = (0.0, 0);
+    for motion in &recording.motions {
+        for i in 0..motion.t.len() {
+            let e = DriveAngles(motion.q[i]).units();
+            let wrench = base_wrench(&inertia, &e, &motion.qd[i], &motion.qdd[i], &Surroundings::default());
+            sum += wrench.dynamic.force.norm_sqr();
+            count += 1;
+        }
+    }
+    (sum / f64::from(count)).sqrt()
+}
+
+/// The change that is proposed is made on the machine that was measured, whose errors nobody knows: what shook it before
+/// is gone but for the noise, and what is across the axes.
+#[test]
+fn the_real_machine_is_mended() {
+    let machine = weighed();
+    let mut noise = Noise::of(6);
+    for _ in 0..3 {
+        let mut spec = machine.spec().clone();
+        for link in &mut spec.links {
+            link.com += noise.between(-0.02, 0.02);
+            link.mass *= 1.0 + noise.between(-0.05, 0.05);
+        }
+        for weight in &mut spec.counterweights {
+            weight.at += noise.between(-0.004, 0.004);
+            weight.mass *= 1.0 + noise.between(-0.01, 0.01);
+        }
+        let hidden = Machine::new(spec).expect("a machine");
+        let how = Measuring { sigma: [0.0, 0.02, 0.005], rows: 300, ..EXACT };
+        let recording = measured(&hidden, &mut noise, how, &[true; 3]);
+        let fit = fitted(&machine, &recording, false);
+        let taken = taken(&fit);
+        let mended = mend(&machine, &taken, &of_weights(&machine)).expect("a change");
+        let mut after = hidden.spec().clone();
+        for change in &mended.changes {
+            let tenths = (change.to - change.from) / 1e-4;
+            assert!((tenths - tenths.round()).abs() < 1e-6, "{change:?} is not to be set by hand");
+            let (_, rest) = change.key.split_once('.').expect("a key");
+            let (number, what) = rest.split_once('.').expect("a key");
+            let weight = &mut after.counterweights[number.parse::<usize>().expect("a number") - 1];
+            match what {
+                "mass" => weight.mass += change.to - change.from,
+                _ => weight.at += change.to - change.from,
+            }
+        }
+        let after = Machine::new(after).expect("a machine");
+        let (before, now) = (shaking(&hidden, &recording), shaking(&after, &recording));
+        assert!(now < 0.5 * how.sigma[1] && now < 0.15 * before, "{before} N to {now} N");
+        // And each number stays within what was said of it, with room for what is taken from the file and for rounding.
+        let left = fit.unknowns.nominal(&Inertia::of(&after));
+        let scales = fit.unknowns.scales(&Inertia::of(&after));
+        for (i, left) in left.iter().enumerate().take(fit.unknowns.of_balance()) {
+            assert!(left.abs() < 2.0 * fit.half_width(i) + 1e-3 * scales[i], "{i}: {left}, {}", fit.half_width(i));
+        }
+    }
+}
+
+/// A machine without counterweights gets new ones; the machine that is written has what was measured.
+#[test]
+fn new_counterweights_mend_what_has_none() {
+    let machine = builtin("nine-link").expect("built in");
+    let mut noise = Noise::of(7);
+    let mut spec = machine.spec().clone();
+    spec.links.iter_mut().for_each(|link| link.com += noise.between(-0.01, 0.01));
+    let hidden = Machine::new(spec).expect("a machine");
+    let recording = measured(&hidden, &mut noise, EXACT, &[true; 3]);
+    let taken = taken(&fitted(machine, &recording, false));
+    let sites = machine.resolved_links().iter().enumerate();
+    let sites = sites.map(|(link, p)| Sites { link, from: -p.length, to: p.length, most: f64::INFINITY }).collect();
+    let asked = Weighing::least(Objective::mass(), sites, Disc::STEEL);
+    let mended = mend(machine, &taken, &Way::Add(asked)).expect("new ones");
+    let mut after = hidden.spec().clone();
+    after.counterweights = mended.machine.spec().counterweights.clone();
+    let after = Machine::new(after).expect("a machine");
+    assert!(shaking(&after, &recording) < 0.02 * shaking(&hidden, &recording));
+    let (written, misses) = identified(machine, &taken).expect("one");
+    assert!(misses.iter().all(|miss| miss.norm() < 1e-9), "{misses:?}");
+    let (got, want) = (Inertia::of(&written), Inertia::of(&hidden));
+    for condition in Condition::all(3) {
+        assert!((condition.left(&got) - condition.left(&want)).norm() < 1e-7, "{condition:?}");
+    }
+    assert!((0..3).all(|k| (got.momentum(k) - want.momentum(k)).abs() < 1e-8), "{:?}", got.momenta());
+}
+
+/// What a next motion is said to tell, it tells.
+#[test]
+fn the_next_motion_keeps_its_promise() {
+    let machine = builtin("two-drive").expect("built in");
+    let mut noise = Noise::of(8);
+    let hidden = built(machine, &mut noise, 0.02);
+    let how = Measuring { sigma: [0.0, 0.2, 0.05], motions: 1, rows: 300, ..EXACT };
+    let recording = measured(&hidden, &mut noise, how, &[true; 2]);
+    let rows = Rows::of(machine, &recording, false).expect("rows");
+    let before = fit(machine, &rows).expect("a fit");
+    let told = next(machine, &recording, &rows, &before, None);
+    let best = &told.candidates[0];
+    let last = told.candidates.last().expect("several");
+    assert!(best.half_width < told.half_width && best.half_width <= last.half_width);
+    let middle = |k: usize| {
+        let all = recording.motions[0].q.iter().map(|q| q[k]);
+        let ends = all.fold([f64::MAX, f64::MIN], |[low, high]: [f64; 2], q| [low.min(q), high.max(q)]);
+        0.5 * (ends[0] + ends[1])
+    };
+    let mut parts = vec![[[0.0; 3]; 3]; 2];
+    for ((k, sign), (a, f)) in best.drives.iter().zip(best.amplitude.iter().zip(&best.frequency)) {
+        parts[*k][0] = [sign * a, std::f64::consts::TAU * f, 0.0];
+    }
+    let sines = Sines(parts, vec![middle(0), middle(1)]);
+    let (inertia, mut more) = (Inertia::of(&hidden), Motion::default());
+    for i in 0..how.rows {
+        let t = i as f64 * how.step;
+        let [q, qd, qdd] = sines.at(t);
+        let wrench = base_wrench(&inertia, &DriveAngles(q).units(), &qd, &qdd, &Surroundings::default()).total();
+        let read = Vector::new(normal(&mut noise), normal(&mut noise)) * how.sigma[1];
+        more.t.push(t);
+        more.q.push(q);
+        more.qd.push(qd);
+        more.qdd.push(qdd);
+        more.force.push(wrench.force + read);
+        more.moment.push(wrench.moment + how.sigma[2] * normal(&mut noise));
+    }
+    let mut both = recording.clone();
+    both.motions.push(more);
+    let after = fitted(machine, &both, false);
+    let ratio = after.half_width(told.worst) / best.half_width;
+    assert!((0.6..1.6).contains(&ratio), "{} said, {} found", best.half_width, after.half_width(told.worst));
+}
+
+#[test]
+fn what_is_no_recording_is_refused() {
+    let machine = builtin("two-drive").expect("built in");
+    let mut noise = Noise::of(9);
+    let good = measured(machine, &mut noise, EXACT, &[true; 2]);
+    let refused = |change: &dyn Fn(&mut Motion)| {
+        let mut bad = good.clone();
+        change(&mut bad.motions[1]);
+        Rows::of(machine, &bad, false).expect_err("refused").to_string()
+    };
+    assert!(refused(&|m| m.moment[3] = f64::NAN).starts_with("motion 2: what is no finite number"));
+    assert!(refused(&|m| m.t[4] = m.t[3]).contains("times that do not rise"));
+    assert!(refused(&|m| _ = m.force.pop()).contains("lists of different lengths"));
+    assert!(refused(&|m| m.q.iter_mut().for_each(|q| *q = PerDrive::zeros(3))).contains("3 drives"));
+    let short = |rows: usize| {
+        let own = Motion {
+            t: good.motions[0].t[..rows].to_vec(),
+            q: good.motions[0].q[..rows].to_vec(),
+            qd: good.motions[0].qd[..rows].to_vec(),
+            qdd: good.motions[0].qdd[..rows].to_vec(),
+            force: good.motions[0].force[..rows].to_vec(),
+            moment: good.motions[0].moment[..rows].to_vec(),
+        };
+        Recording { motions: vec![own] }
+    };
+    let few = Rows::of(machine, &short(3), false).expect_err("too few");
+    assert_eq!(few, TrimError::TooFew { rows: 3, unknowns: 8 });
+    assert!(matches!(Rows::of(machine, &short(20), true), Err(TrimError::Short { motion: 0, rows: 20, want: 51, .. })));
+    let huge = {
+        let mut huge = good.clone();
+        huge.motions.iter_mut().for_each(|m| m.t.iter_mut().enumerate().for_each(|(i, t)| *t = 1e-9 * i as f64));
+        huge
+    };
+    // At a gigahertz nothing but noise moves, or what is found is finite.
+    if let Ok(rows) = Rows::of(machine, &huge, true) {
+        assert!(matches!(rows.made, Made::Windows { .. }));
+        if let Ok(fit) = fit(machine, &rows) {
+            assert!(fit.measured.iter().all(|x| x.is_finite()));
+        }
+    }
+}
