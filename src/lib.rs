@@ -84,7 +84,7 @@
 //! | [`settings`] | how a value is named, bounded and shown: keys, changes by key, ranges, text from outside |
 //! | `convex` | convex programs, and how far from the best an answer may be |
 //! | [`mechanics`] | what a machine is: planar algebra, links and drives, kinematics, dynamics, pin forces, balance |
-//! | [`exchange`] | machines for other programs: MuJoCo |
+//! | [`exchange`] | machines for other programs and for who builds them: models, drawings, lists of parts; and from them |
 //! | [`planning`] | where it may go, and when: reactionless planes and workspaces, curves, timing, ways off the plane |
 //! | [`simulation`] | what then happens: plant, control, the step, frames, the audit, signals |
 //! | [`session`] | what a person did: scenarios, edits, runs, undo, replay, the verdict |

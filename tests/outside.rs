@@ -15,15 +15,30 @@ macro_rules! tests {
     };
 }
 
+#[path = "exchange/arms.rs"]
+mod arms;
+#[path = "outside/ezdxf.rs"]
+mod ezdxf;
 #[path = "outside/mujoco.rs"]
 mod mujoco;
+#[path = "support/noise.rs"]
+mod noise;
+#[path = "outside/pinocchio.rs"]
+mod pinocchio;
 #[path = "outside/python.rs"]
 mod python;
+#[allow(dead_code, reason = "the tests use a few of them")]
+#[path = "support/random.rs"]
+mod random;
+
 #[path = "outside/trim.rs"]
 mod trim;
 
+use noise::Noise;
+
 fn main() -> ExitCode {
-    let packages: [(&str, &[Test]); 2] = [("mujoco", mujoco::TESTS), ("scipy", trim::TESTS)];
+    let packages: [(&str, &[Test]); 4] =
+        [("ezdxf", ezdxf::TESTS), ("mujoco", mujoco::TESTS), ("pinocchio", pinocchio::TESTS), ("scipy", trim::TESTS)];
     let trials = packages.into_iter().flat_map(|(package, tests)| {
         let missing = python::missing(package);
         tests.iter().map(move |(name, test)| {

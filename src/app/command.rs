@@ -110,6 +110,8 @@ pub enum Command {
     LookFor,
     /// Write the plot of a name to a file.
     WritePlot(PathBuf, String, PlotFile),
+    /// Write the machine to a file for another program, which its ending names.
+    TakeElsewhere(PathBuf),
     /// Show or hide snapshots along the motion.
     Snapshots(bool),
     /// The pointer neither draws nor pushes.
@@ -176,6 +178,7 @@ impl Command {
             | Self::Replace(_)
             | Self::Record(_)
             | Self::WritePlot(..)
+            | Self::TakeElsewhere(_)
             | Self::Undo
             | Self::TakeBack(_)
             | Self::GiveUp
@@ -342,6 +345,8 @@ pub enum Purpose {
     Record,
     /// Write the plot of a name.
     Plot(String, PlotFile),
+    /// Write the machine for another program.
+    Machine,
 }
 
 /// How a plot is written to a file.
@@ -376,6 +381,7 @@ impl Purpose {
             Self::Open => ["Open a session", "Open", "session.toml"],
             Self::Save => ["Save the session", "Save", "session.toml"],
             Self::Record => ["Record for the Rerun viewer", "Record", "run.rrd"],
+            Self::Machine => ["Take the machine elsewhere: .xml .urdf .svg .dxf .csv .md", "Save", "machine.urdf"],
             Self::Plot(_, PlotFile::Csv) => ["Save the values of the time shown", "Save", "plot.csv"],
             Self::Plot(_, PlotFile::Svg) => ["Save the plot as a drawing", "Save", "plot.svg"],
             Self::Plot(_, PlotFile::Png) => ["Save the plot as a picture", "Save", "plot.png"],
@@ -391,6 +397,7 @@ impl FileDialog {
             Purpose::Save => Command::SaveFile(file),
             Purpose::Record => Command::Record(file),
             Purpose::Plot(plot, kind) => Command::WritePlot(file, plot, kind),
+            Purpose::Machine => Command::TakeElsewhere(file),
         }
     }
 
@@ -402,6 +409,7 @@ impl FileDialog {
             Purpose::Open => String::new(),
             Purpose::Save => free(own, "toml"),
             Purpose::Record => free(own, "rrd"),
+            Purpose::Machine => free(session.scenario().machine.name(), "urdf"),
             Purpose::Plot(plot, file) => free(&format!("{own} {}", plot.to_lowercase()), &file.words().to_lowercase()),
         };
         Self { purpose, path: name }

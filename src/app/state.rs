@@ -643,6 +643,7 @@ impl AppState {
                 self.prepared.look_for();
             }
             Command::WritePlot(path, plot, file) => self.write_plot(&path, &plot, file)?,
+            Command::TakeElsewhere(path) => self.take_elsewhere(&path)?,
             Command::Snapshots(shown) => self.view_state.snapshots = shown,
             // The window has room for one of the two panels.
             Command::Compare(compare) => {

@@ -4,32 +4,54 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::Serialize;
-use stillbase::exchange::mjcf::{hinges, middle, mjcf};
+use stillbase::exchange::cut::Cut;
+use stillbase::exchange::drawing::Sheet;
+use stillbase::exchange::form::Form;
+use stillbase::exchange::mjcf::{hinges, middle};
+use stillbase::exchange::urdf::joint;
 use stillbase::files::write_new;
-use stillbase::settings::number::fixed;
+use stillbase::mechanics::machine::Machine;
+use stillbase::settings::number::{counted, fixed};
 
 use super::exit::say;
 use super::failure::Failure;
 use super::input::MachineArgument;
 use super::output::{Format, Table, check_output};
 
-/// Write a machine as a model for MuJoCo: links, pins, loops, motors with their gears and rotors
+/// Take a machine elsewhere: a model for MuJoCo (.xml) or for ROS and Pinocchio (.urdf), its links drawn to be cut
+/// (.svg, .dxf), a list of its parts (.csv, .md)
 ///
-/// Sensors at the base read the force and moment that hold the machine: the reaction is the opposite. The pose is the
-/// keyframe "start". What a plane motion does not ask, as inertias about other axes, is made up.
+/// MJCF: sensors at the base read the force and moment that hold the machine, the reaction is the opposite; the pose is
+/// the keyframe "start". URDF: joints drive_… are the motors, all others follow them; what it cannot say stands in its
+/// remarks. Of both, what a plane motion does not ask, as inertias about other axes, is made up.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   stillbase export-model nine-link -o nine-link.xml
-  stillbase export-model serial-3r --pose 1.2,0.1,-0.8 -o arm.xml")]
+  stillbase export-model nine-link -o nine-link.urdf
+  stillbase export-model serial-3r --pose 1.2,0.1,-0.8 -o arm.xml
+  stillbase export-model two-drive --bar-width 0.025 --pin-diameter 0.006 -o links.svg
+  stillbase export-model scara --material 2700 -o parts.csv")]
 pub struct ExportModel {
     #[command(flatten)]
     machine: MachineArgument,
-    /// Angles of the drives in the keyframe, rad; amid the limits where it is left out
+    /// Angles of the drives in the keyframe of .xml, rad; amid the limits where it is left out
     #[arg(long, value_name = "Q1,Q2,…", value_delimiter = ',', allow_hyphen_values = true)]
     pose: Vec<f64>,
-    /// Write the model to this file
-    #[arg(short, long, value_name = "FILE.xml")]
+    /// How wide bars are, with round ends, m: of .svg and .dxf; 0.03 where it is left out
+    #[arg(long, value_name = "W")]
+    bar_width: Option<f64>,
+    /// Diameter of the holes for pins, m: of .svg and .dxf; 0.008 where it is left out
+    #[arg(long, value_name = "D")]
+    pin_diameter: Option<f64>,
+    /// Density of the counterweights, kg/m³: of drawings and lists; that of steel, 7850, where it is left out
+    #[arg(long, value_name = "DENSITY")]
+    material: Option<f64>,
+    /// Thickness of the counterweights, m: of drawings and lists; what the mass of each takes where it is left out
+    #[arg(long, value_name = "T")]
+    thickness: Option<f64>,
+    /// Write it to this file; what is written goes by the ending: xml, urdf, svg, dxf, csv, md
+    #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Replace the file if it exists
     #[arg(long)]
@@ -38,35 +60,135 @@ pub struct ExportModel {
     format: Format,
 }
 
+/// What was written.
 #[derive(Serialize)]
 struct Answer {
     file: String,
-    /// Angles of the drives in the keyframe, rad.
-    pose: Vec<f64>,
-    /// The same as MuJoCo has it: of each hinge, rad.
-    qpos: Vec<f64>,
+    #[serde(flatten)]
+    of: Written,
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Written {
+    Mjcf {
+        /// Angles of the drives in the keyframe, rad.
+        pose: Vec<f64>,
+        /// The same as MuJoCo has it: of each hinge, rad.
+        qpos: Vec<f64>,
+    },
+    Urdf {
+        /// The joint of each drive's motor.
+        joints: Vec<String>,
+    },
+    Drawing {
+        /// Of the sheet, m.
+        size: [f64; 2],
+        links: usize,
+    },
+    List {
+        links: usize,
+        counterweights: usize,
+        /// Of the machine, kg.
+        mass: f64,
+    },
 }
 
 impl ExportModel {
-    /// Writes the model.
+    /// Writes the file.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
-        check_output(&self.output, self.force, &["xml"])?;
+        let form = Form::of(check_output(&self.output, self.force, &Form::ENDINGS)?).map_err(Failure::wrong_input)?;
+        self.check_options(form)?;
         if let Some(bad) = self.pose.iter().find(|q| !q.is_finite()) {
             return Err(Failure::wrong_input(format!("--pose {bad}: want finite angles in rad")));
         }
         let pose = if self.pose.is_empty() { middle(&machine) } else { self.pose.clone() };
-        let model = mjcf(&machine, &pose).map_err(Failure::wrong_input)?;
-        write_new(&self.output, model.as_bytes(), self.force)?;
+        let cut = self.cut();
+        let text = form.written(&machine, &pose, &cut).map_err(Failure::wrong_input)?;
+        let of = told(&machine, form, pose, &cut)?;
+        write_new(&self.output, text.as_bytes(), self.force)?;
         say(format!("wrote {}", self.output.display()));
-        let qpos = hinges(&machine, &pose).map_err(Failure::wrong_input)?;
-        let answer = Answer { file: self.output.display().to_string(), pose, qpos };
-        self.format.print(&answer, |answer| {
-            let mut table = Table::new(["drive", "q rad at the start"]);
-            for (drive, q) in machine.spec().drives.iter().zip(&answer.pose) {
-                table.row([drive.name.clone(), fixed(*q, 6)]);
+        let answer = Answer { file: self.output.display().to_string(), of };
+        self.format.print(&answer, |answer| answer.of.words(&machine))
+    }
+
+    fn cut(&self) -> Cut {
+        let usual = Cut::default();
+        Cut {
+            bar_width: self.bar_width.unwrap_or(usual.bar_width),
+            pin_diameter: self.pin_diameter.unwrap_or(usual.pin_diameter),
+            density: self.material.unwrap_or(usual.density),
+            thickness: self.thickness,
+        }
+    }
+
+    /// Refuses what has no effect on the file.
+    fn check_options(&self, form: Form) -> Result<(), Failure> {
+        let is_drawing = matches!(form, Form::Svg | Form::Dxf);
+        let has_discs = is_drawing || matches!(form, Form::Csv | Form::Markdown);
+        let all = [
+            ("--pose", self.pose.is_empty(), form == Form::Mjcf, ".xml"),
+            ("--bar-width", self.bar_width.is_none(), is_drawing, ".svg or .dxf"),
+            ("--pin-diameter", self.pin_diameter.is_none(), is_drawing, ".svg or .dxf"),
+            ("--material", self.material.is_none(), has_discs, ".svg, .dxf, .csv or .md"),
+            ("--thickness", self.thickness.is_none(), has_discs, ".svg, .dxf, .csv or .md"),
+        ];
+        match all.into_iter().find(|(_, is_left_out, counts, _)| !is_left_out && !counts) {
+            Some((option, .., endings)) => {
+                let what = format!("{option} has no effect on such a file: want one that ends in {endings}");
+                Err(Failure::wrong_input(what).of(self.output.display()))
             }
-            format!("{} · {} hinges\n\n{table}", machine.name(), answer.qpos.len())
-        })
+            None => Ok(()),
+        }
+    }
+}
+
+fn told(machine: &Machine, form: Form, pose: Vec<f64>, cut: &Cut) -> Result<Written, Failure> {
+    let links = machine.links().len();
+    Ok(match form {
+        Form::Mjcf => {
+            let qpos = hinges(machine, &pose).map_err(Failure::wrong_input)?;
+            Written::Mjcf { pose, qpos }
+        }
+        Form::Urdf => Written::Urdf { joints: (0..machine.drives()).map(|k| joint(machine, k)).collect() },
+        Form::Svg | Form::Dxf => {
+            let size = Sheet::of(machine, cut).map_err(Failure::wrong_input)?.size;
+            Written::Drawing { size: size.map(|mm| 1e-3 * mm), links }
+        }
+        Form::Csv | Form::Markdown => {
+            Written::List { links, counterweights: machine.spec().counterweights.len(), mass: machine.mass() }
+        }
+    })
+}
+
+impl Written {
+    fn words(&self, machine: &Machine) -> String {
+        let name = machine.name();
+        let drives = machine.spec().drives.iter().map(|drive| drive.name.clone());
+        match self {
+            Self::Mjcf { pose, qpos } => {
+                let mut table = Table::new(["drive", "q rad at the start"]);
+                for (drive, q) in drives.zip(pose) {
+                    table.row([drive, fixed(*q, 6)]);
+                }
+                format!("{name} · {} hinges\n\n{table}", qpos.len())
+            }
+            Self::Urdf { joints } => {
+                let mut table = Table::new(["drive", "joint of its motor"]);
+                for (drive, joint) in drives.zip(joints) {
+                    table.row([drive, joint.clone()]);
+                }
+                format!("{name} · {}\n\n{table}", counted(joints.len(), "motor"))
+            }
+            Self::Drawing { size: [width, height], links } => {
+                let [width, height] = [width, height].map(|x| fixed(1e3 * x, 0));
+                format!("{name} · {} on a sheet of {width} x {height} mm, scale 1 : 1\n", counted(links, "link"))
+            }
+            Self::List { links, counterweights, mass } => {
+                let [links, discs] = [counted(links, "link"), counted(counterweights, "counterweight")];
+                format!("{name} · {links} · {discs} · {} kg in all\n", fixed(*mass, 3))
+            }
+        }
     }
 }

@@ -19,6 +19,7 @@ mod figures;
 mod headless;
 mod holds;
 mod import;
+mod import_model;
 pub(crate) mod input;
 mod interrupt;
 mod joints;
@@ -84,6 +85,7 @@ subcommands! {
     Import: import::Import,
     Export: export::Export,
     ExportModel: export_model::ExportModel,
+    ImportModel: import_model::ImportModel,
     Tolerance: tolerance::Tolerance,
     Spectrum: spectrum::SpectrumOf,
     Trim: trim::Trim,

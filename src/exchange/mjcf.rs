@@ -9,6 +9,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use super::turn::Turn;
+use super::xml::quoted;
 use crate::mechanics::machine::Machine;
 
 /// Why there is no model.
@@ -41,7 +42,7 @@ pub enum MjcfError {
 /// Masses and inertias below are none to MuJoCo.
 const LEAST: f64 = 1e-12;
 /// What stands for the mass of a rotor, which belongs to the link that carries it, kg.
-const ROTOR: f64 = 1e-9;
+const ROTOR: f64 = 1e-11;
 /// Half the width of a bar as it is drawn, m.
 const RADIUS: f64 = 0.012;
 /// Colours of the drives: sky blue, vermilion and bluish green, and so on (Okabe and Ito).
@@ -55,22 +56,6 @@ const COLOURS: [&str; 8] = [
     "0 0.45 0.70 1",
     "0.6 0.6 0.6 1",
 ];
-
-/// Text that may stand in an attribute.
-fn quoted(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            c if c.is_control() => out.push(' '),
-            c => out.push(c),
-        }
-    }
-    out
-}
 
 /// The model of a machine as text; its keyframe `start` is the pose `q`, rad, with motors at rest.
 ///
@@ -414,7 +399,8 @@ fn parallel(machine: &Machine) -> Vec<(usize, Turn)> {
 pub fn middle(machine: &Machine) -> Vec<f64> {
     let mut q = vec![TAU / 4.0; machine.drives()];
     for angle in machine.angles() {
-        let middle = 0.5 * (angle.limits.start() + angle.limits.end());
+        let (least, most) = (angle.limits.start(), angle.limits.end());
+        let middle = if least.is_finite() && most.is_finite() { 0.5 * (least + most) } else { 0.0 };
         q[angle.to] = q[angle.from] + middle - angle.offset;
     }
     q

@@ -1,4 +1,11 @@
-//! Machines for other programs.
+//! Machines for other programs, and for the people who build them.
 
+pub mod cut;
+pub mod drawing;
+pub mod form;
+pub mod import;
 pub mod mjcf;
+pub mod parts;
 mod turn;
+pub mod urdf;
+mod xml;

@@ -22,6 +22,7 @@ pages! {
     plants: "plants.md",
     inside: "inside.md",
     design: "design.md",
+    elsewhere: "elsewhere.md",
     tolerances: "tolerances.md",
     trim: "trim.md",
     own_motion: "own_motion.md",

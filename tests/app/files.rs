@@ -24,6 +24,7 @@ pub const TESTS: &[Test] = tests![
     what_cannot_be_written_is_said,
     a_run_is_recorded_whole_or_not,
     a_dialog_that_is_left_does_nothing,
+    a_machine_goes_elsewhere_from_the_design_view,
 ];
 
 /// A file that is dropped: its name.
@@ -77,6 +78,37 @@ fn answer(h: &mut Window, path: &Path) {
 fn name_file(h: &mut Window, what: Ask, path: &Path) {
     ask(h, what);
     answer(h, path);
+}
+
+/// From the foot of the design view; the ending of the name says what is written.
+fn a_machine_goes_elsewhere_from_the_design_view() {
+    let folder = Folder::new("elsewhere-window");
+    let mut h = window("nine-link-geared", Theme::Dark);
+    h.run_steps(2);
+    h.key_press(Key::D);
+    h.run_steps(3);
+    let mut take = |name: &str| {
+        let path = folder.path(name);
+        h.get_by_label("take it along →").click();
+        h.run_steps(3);
+        assert!(h.query_by_label("File name").is_some(), "{name}: the name is asked for");
+        answer(&mut h, &path);
+        match name.rsplit('.').next() {
+            Some("txt") => refused(&h, "want one that ends in .xml, .urdf", true),
+            _ => done(&h, "saved"),
+        }
+        fs::read_to_string(path).unwrap_or_default()
+    };
+    assert!(take("arm.urdf").contains("<robot name=\"nine-link-geared\">"));
+    assert!(take("arm.xml").contains("<mujoco model=\"nine-link-geared\">"));
+    assert!(take("arm.svg").contains("<svg "));
+    assert!(take("arm.dxf").contains("AC1009"));
+    assert!(take("arm.csv").contains("\r\nmotor,"));
+    assert!(take("arm.md").contains("# Parts of nine-link-geared"));
+    assert!(take("arm.txt").is_empty());
+    answer(&mut h, &folder.path("arm.svg"));
+    refused(&h, "exists", true);
+    assert_eq!(folder.names().len(), 6);
 }
 
 /// What the window says, if it is good news.

@@ -16,12 +16,16 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
+use stillbase::exchange::import::import;
+use stillbase::exchange::mjcf::{middle, mjcf};
+use stillbase::exchange::urdf::urdf;
 use stillbase::mechanics::machine::{self, Inertia};
 use stillbase::mechanics::planar::Vector;
 use stillbase::planning::pose_constant::{Planes, plane_map};
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Session, replay};
 
+use crate::exchange::arms::{THREE, TWO};
 use mutation::{Dice, mutated};
 
 const MACHINES: [&str; 2] = [
@@ -278,6 +282,67 @@ fn machines() {
         }
         Ok(())
     });
+}
+
+/// Models of other programs.
+#[test]
+fn models() {
+    let machines = ["nine-link-geared", "serial-3r", "two-drive"].map(|name| machine::builtin(name).expect("built in"));
+    let good: Vec<Vec<u8>> = machines
+        .iter()
+        .flat_map(|machine| [urdf(machine), mjcf(machine, &middle(machine)).expect("a model")])
+        .chain([TWO.to_owned(), THREE.to_owned()])
+        .map(String::into_bytes)
+        .collect();
+    fuzz("model", &good, 300, |bytes, _| match import(&String::from_utf8_lossy(bytes)) {
+        Err(error) => is_short(&error.to_string()),
+        Ok(found) => {
+            let machine = found.machine;
+            let again =
+                machine::parse(&machine::to_toml(&machine), "again.toml").map_err(|e| format!("not read back: {e}"))?;
+            match again == machine && found.pose.iter().all(|q| q.is_finite()) {
+                true => found.notes.iter().try_for_each(|note| is_short(note)),
+                false => Err("read back as another".into()),
+            }
+        }
+    });
+}
+
+/// What is made to hurt: it ends at once, in a short error.
+#[test]
+fn hostile_models() {
+    let deep = |element: &str| element.repeat(200_000);
+    let many = |text: &dyn Fn(usize) -> String| (0..60_000).map(text).collect::<String>();
+    let bomb = "<!DOCTYPE r [<!ENTITY a \"aaaaaaaaaa\"><!ENTITY b \"&a;&a;&a;&a;&a;&a;&a;&a;&a;&a;\"><!ENTITY c \
+                \"&b;&b;&b;&b;&b;&b;&b;&b;&b;&b;\">]><robot name=\"&c;\"/>";
+    let link = |i: usize| format!("<link name=\"l{i}\"/>");
+    let joint = |i: usize| {
+        let next = i + 1;
+        format!("<joint name=\"j{i}\" type=\"continuous\"><parent link=\"l{i}\"/><child link=\"l{next}\"/></joint>")
+    };
+    let body = "<body><joint/><inertial mass=\"1\" diaginertia=\"1 1 1\"/>";
+    let connect = |i: usize| format!("<connect site1=\"a{i}\" site2=\"b\"/>");
+    let motor = |_: usize| "<motor joint=\"a\"/>".to_owned();
+    let one = "<worldbody><body><joint name=\"a\"/><inertial mass=\"1\" diaginertia=\"1 1 1\"/></body></worldbody>";
+    for text in [
+        deep("<robot>"),
+        format!("<robot>{}", deep("<link>")),
+        format!("<robot>{}{}</robot>", deep("<a>"), deep("</a>")),
+        bomb.to_owned(),
+        format!("<robot>{}{}</robot>", many(&link), many(&joint)),
+        format!("<mujoco><worldbody>{}{}</worldbody></mujoco>", body.repeat(30_000), "</body>".repeat(30_000)),
+        format!("<mujoco>{one}<equality>{}</equality></mujoco>", many(&connect)),
+        format!("<mujoco>{one}<actuator>{}</actuator></mujoco>", many(&motor)),
+        format!("<mujoco>{one}<keyframe><key qpos=\"{}\"/></keyframe></mujoco>", "1 ".repeat(1_000_000)),
+        format!("<robot name=\"{}\"/>", "x".repeat(1_000_000)),
+        "\u{feff}<robot/>".to_owned(),
+        String::new(),
+    ] {
+        let begun = Instant::now();
+        let why = import(&text).map(|_| ()).expect_err("no machine").to_string();
+        is_short(&why).unwrap_or_else(|why| panic!("{why}"));
+        assert!(begun.elapsed() < PATIENCE, "{}", &text[..60.min(text.len())]);
+    }
 }
 
 #[test]

@@ -59,6 +59,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("rand_chacha", &["study/lengths", "study/tolerance"]),
     ("libm", &["study/tolerance"]),
     ("realfft", &["study/spectrum"]),
+    ("roxmltree", &["exchange/import"]),
     ("clarabel", &["convex"]),
 ];
 

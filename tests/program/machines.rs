@@ -379,3 +379,67 @@ fn a_model_is_written_and_not_overwritten() {
     fails(&["export-model", "nine-link", "--pose", "1,2,nan", "-o", &file, "--force"], 2, &["finite"]);
     fails(&["export-model", "nine-link", "-o", "arm.mjcf"], 2, &[".xml"]);
 }
+
+#[test]
+fn a_machine_comes_from_elsewhere() {
+    let folder = Folder::new("from-elsewhere");
+    let file = |name: &str| word(folder.path(name));
+    for model in ["arm.urdf", "arm.xml"] {
+        prints(&["export-model", "serial-3r", "-o", &file(model)]);
+        let out = file("arm.toml");
+        let answer = object(&["import-model", &file(model), "-o", &out, "--force"]);
+        let known = ["drives", "file", "force_balanced", "invariant", "links", "mass", "notes", "pose"];
+        assert_eq!(keys(&answer), known, "{model}");
+        assert_eq!(answer["drives"], serde_json::json!(["1", "2", "3"]));
+        assert_eq!(answer["invariant"], true, "{model}: balance survives the way there and back");
+        let [own, other] = ["serial-3r", &out].map(|machine| numbers(&object(&["check", machine])["lambda"]));
+        assert!(own.iter().zip(&other).all(|(a, b)| (a - b).abs() < 1e-9), "{own:?} {other:?}");
+    }
+    let table = prints(&["import-model", &file("arm.xml"), "--set", "link.2.mass=2.5"]);
+    assert!(table.contains("3 drives · 3 links") && table.contains("force balanced: no"), "{table}");
+    fails(&["import-model", &file("arm.xml"), "-o", &file("arm.toml")], 2, &["arm.toml", "--force"]);
+    fails(&["import-model", &file("arm.xml"), "-o", &file("b.txt")], 2, &[".toml"]);
+    fails(&["import-model", &file("nowhere.urdf")], 2, &["nowhere.urdf", "can be read"]);
+    let broken = fs::read_to_string(file("arm.urdf")).expect("a file").replacen("continuous", "prismatic", 1);
+    fs::write(file("broken.urdf"), broken).expect("written");
+    fails(&["import-model", &file("broken.urdf")], 2, &["broken.urdf: line ", "prismatic", "want revolute"]);
+}
+
+#[test]
+fn a_machine_goes_elsewhere_by_the_ending_of_the_file() {
+    let folder = Folder::new("elsewhere");
+    let file = |name: &str| word(folder.path(name));
+    let read = |name: &str| fs::read_to_string(file(name)).expect("a file");
+    let answer = object(&["export-model", "nine-link", "-o", &file("arm.urdf")]);
+    assert_eq!(answer["joints"], serde_json::json!(["drive_1", "drive_2", "drive_3"]));
+    assert!(read("arm.urdf").contains("<robot name=\"nine-link\">"));
+    let wide = ["--bar-width", "0.04", "--pin-diameter", "0.01"];
+    let answer = object(&[&["export-model", "nine-link", "-o", &file("arm.svg")], &wide[..]].concat());
+    assert_eq!((keys(&answer), answer["links"].as_u64()), (vec!["file", "links", "size"], Some(9)));
+    assert!(read("arm.svg").contains("bars 40.0 wide with round ends · holes Ø 10.0"));
+    assert!(prints(&["export-model", "nine-link", "-o", &file("arm.dxf")]).contains("9 links on a sheet"));
+    assert!(read("arm.dxf").contains("AC1009"));
+    let answer = object(&["export-model", "scara", "-o", &file("arm.csv")]);
+    assert_eq!(keys(&answer), ["counterweights", "file", "links", "mass"]);
+    assert!(read("arm.csv").starts_with("part,name,drive,length m,mass kg,"));
+    assert!(prints(&["export-model", "scara", "-o", &file("arm.md")]).contains("10.000 kg in all"));
+    fails(&["export-model", "scara", "-o", &file("arm.md")], 2, &["arm.md", "--force"]);
+    for (name, option) in [
+        ("b.urdf", ["--pose", "1,2"]),
+        ("b.xml", ["--bar-width", "0.04"]),
+        ("b.csv", ["--pin-diameter", "0.01"]),
+        ("b.urdf", ["--thickness", "0.01"]),
+    ] {
+        fails(&[&["export-model", "scara", "-o", &file(name)], &option[..]].concat(), 2, &[option[0], "has no effect"]);
+    }
+    for (option, words) in [
+        (["--bar-width", "0.008"], "want bars wider"),
+        (["--pin-diameter", "nan"], "pin diameter"),
+        (["--material", "0"], "material 0 kg/m³"),
+        (["--thickness", "-1"], "thickness"),
+    ] {
+        let command = ["export-model", "scara", "-o", &file("b.svg")];
+        fails(&[&command[..], &[&option.join("=")]].concat(), 2, &[words]);
+    }
+    assert!(!folder.path("b.svg").exists());
+}

@@ -8,6 +8,8 @@ use crate::app::background::{Background, File, Opening, Slot, ended};
 use crate::app::change::{Change, NotOpened, Source};
 use crate::app::jobs::Workers;
 use crate::app::{Activity, Command, ComparisonCommand, Framing, PlotFile, RefusedEdit, plots};
+use crate::exchange::cut::Cut;
+use crate::exchange::form::Form;
 use crate::mechanics::machine::Machine;
 use crate::picture::scene::stage::Outlined;
 use crate::planning::pose_space::PoseSpace;
@@ -345,6 +347,28 @@ impl AppState {
         let (content, path) = (plots::written(&what, &self.prepared, plot, file)?, path.to_owned());
         let job = self.background.start(move |_| {
             crate::files::write_new(&path, &content()?, replaces).map_err(|e| e.to_string())?;
+            Ok(format!("saved {}", whole(&path)))
+        });
+        self.write(|app_state| &mut app_state.background.saving, None, job);
+        Ok(())
+    }
+
+    /// Writes the machine for another program, in the pose on display.
+    pub(super) fn take_elsewhere(&mut self, path: &Path) -> Result<(), String> {
+        let ending = path.extension().unwrap_or_default().to_string_lossy();
+        let form = Form::of(&ending).map_err(|e| format!("{}: {e}", path.display()))?;
+        let replaces = self.may_replace(path)?;
+        if self.background.saving.is_some() {
+            return Err("one file is being saved: want that to end first".into());
+        }
+        let machine = &self.session.scenario().machine;
+        let pose = &self.session.frame().q.0[..machine.drives()];
+        // Of the material that the design view has counterweights of.
+        let cut = Cut { density: self.view_state.brief.disc.density, ..Cut::default() };
+        let text = form.written(machine, pose, &cut).map_err(|e| e.to_string())?;
+        let path = path.to_owned();
+        let job = self.background.start(move |_| {
+            crate::files::write_new(&path, text.as_bytes(), replaces).map_err(|e| e.to_string())?;
             Ok(format!("saved {}", whole(&path)))
         });
         self.write(|app_state| &mut app_state.background.saving, None, job);

@@ -14,10 +14,11 @@ mod tabs;
 mod terms;
 mod typeset;
 
-use egui::{Frame, Margin, Panel, ScrollArea, Ui};
+use egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Ui};
 
 use super::side::BAR;
-use super::{Command, ViewState};
+use super::theme::{colour, plain};
+use super::{Command, FileDialog, Purpose, ViewState};
 use crate::session::Session;
 
 pub use facts::Facts;
@@ -60,10 +61,27 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewStat
                     bars::show(ui, session, facts, view_state);
                     front::show(ui, facts, view_state, commands);
                     payload::show(ui, facts, session.scenario().machine.spec().payload.mass, &p);
+                    elsewhere(ui, session, view_state, commands);
                 });
             }
         });
     }
+}
+
+/// The way out of the program for the machine.
+fn elsewhere(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
+    let p = view_state.palette();
+    ui.add_space(8.0);
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("MJCF, URDF, drawings, parts list").font(plain(12.0)).color(colour(p.dim)));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let link = ui.link(RichText::new("take it along →").font(plain(12.5)).color(colour(p.amber)));
+            if link.on_hover_text("Write the machine for another program or a workshop: the ending says what").clicked()
+            {
+                commands.push(Command::Dialog(Some(FileDialog::suggest(session, Purpose::Machine))));
+            }
+        });
+    });
 }
 
 fn scrolled(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {

@@ -58,7 +58,7 @@ impl Chooser {
                 // What is opened has the name that it has.
                 let file = match dialog.purpose {
                     Purpose::Open => file,
-                    _ => with_ending(file, ending(&dialog.purpose)),
+                    _ => with_ending(file, endings(&dialog.purpose)[0]),
                 };
                 app_state.carry_out(dialog.named(file));
                 ctx.request_repaint();
@@ -73,13 +73,15 @@ impl Chooser {
     }
 }
 
-fn ending(purpose: &Purpose) -> &'static str {
+/// How names of such files end, the usual one first.
+fn endings(purpose: &Purpose) -> &'static [&'static str] {
     match purpose {
-        Purpose::Open | Purpose::Save => "toml",
-        Purpose::Record => "rrd",
-        Purpose::Plot(_, PlotFile::Csv) => "csv",
-        Purpose::Plot(_, PlotFile::Svg) => "svg",
-        Purpose::Plot(_, PlotFile::Png) => "png",
+        Purpose::Open | Purpose::Save => &["toml"],
+        Purpose::Record => &["rrd"],
+        Purpose::Plot(_, PlotFile::Csv) => &["csv"],
+        Purpose::Plot(_, PlotFile::Svg) => &["svg"],
+        Purpose::Plot(_, PlotFile::Png) => &["png"],
+        Purpose::Machine => &["urdf", "xml", "svg", "dxf", "csv", "md"],
     }
 }
 
@@ -92,13 +94,14 @@ type Asked = std::pin::Pin<Box<dyn Future<Output = Option<FileHandle>> + Send>>;
 
 /// The dialog of the system, in front of the window.
 fn asked(dialog: &FileDialog, folder: Option<&Path>, window: &Window) -> Asked {
-    let ([title, ..], ending) = (dialog.purpose.words(), ending(&dialog.purpose));
+    let ([title, ..], endings) = (dialog.purpose.words(), endings(&dialog.purpose));
     let kind = match dialog.purpose {
         Purpose::Open | Purpose::Save => "Sessions",
         Purpose::Record => "Recordings",
         Purpose::Plot(..) => "Plots",
+        Purpose::Machine => "Models, drawings and lists",
     };
-    let mut asks = AsyncFileDialog::new().set_parent(window).set_title(title).add_filter(kind, &[ending]);
+    let mut asks = AsyncFileDialog::new().set_parent(window).set_title(title).add_filter(kind, endings);
     if let Some(folder) = folder {
         asks = asks.set_directory(folder);
     }

@@ -1,0 +1,177 @@
+//! A sheet as DXF of release 12, which every program for cutting reads: lines, circles, closed polylines and text on
+//! layers by what they are; a unit of the drawing is a millimetre.
+
+use std::fmt::Write as _;
+
+use super::sheet::{Anchor, Shape, Sheet};
+use crate::settings::number::fixed;
+
+/// Layers and their colours by number: what is cut, what is drilled, discs, and what is only read.
+const LAYERS: [(&str, u8); 4] = [("OUTLINE", 7), ("HOLES", 5), ("COUNTERWEIGHT", 1), ("TEXT", 8)];
+
+/// The file's text, of ASCII only.
+pub fn dxf(sheet: &Sheet) -> String {
+    let mut out = Tags::default();
+    out.header(sheet.size);
+    out.tables();
+    out.text(0, "SECTION");
+    out.text(2, "ENTITIES");
+    for shape in &sheet.shapes {
+        out.shape(shape);
+    }
+    out.text(0, "ENDSEC");
+    out.text(0, "EOF");
+    out.out
+}
+
+/// Pairs of a code and a value, a line each.
+#[derive(Default)]
+struct Tags {
+    out: String,
+}
+
+impl Tags {
+    fn text(&mut self, code: u16, value: &str) {
+        // A `String` takes everything.
+        let _ = writeln!(self.out, "{code}\n{value}");
+    }
+
+    fn number(&mut self, code: u16, value: f64) {
+        self.text(code, &fixed(value, 6));
+    }
+
+    fn count(&mut self, code: u16, value: u8) {
+        self.text(code, &value.to_string());
+    }
+
+    fn point(&mut self, code: u16, [x, y]: [f64; 2]) {
+        self.number(code, x);
+        self.number(code + 10, y);
+        self.number(code + 20, 0.0);
+    }
+
+    fn header(&mut self, size: [f64; 2]) {
+        self.text(0, "SECTION");
+        self.text(2, "HEADER");
+        self.text(9, "$ACADVER");
+        self.text(1, "AC1009");
+        // Millimetres.
+        self.text(9, "$INSUNITS");
+        self.count(70, 4);
+        self.text(9, "$EXTMIN");
+        self.point(10, [0.0; 2]);
+        self.text(9, "$EXTMAX");
+        self.point(10, size);
+        self.text(0, "ENDSEC");
+    }
+
+    fn tables(&mut self) {
+        self.text(0, "SECTION");
+        self.text(2, "TABLES");
+        self.table("LTYPE", 1);
+        self.text(0, "LTYPE");
+        self.text(2, "CONTINUOUS");
+        self.count(70, 0);
+        self.text(3, "Solid line");
+        self.count(72, 65);
+        self.count(73, 0);
+        self.number(40, 0.0);
+        self.text(0, "ENDTAB");
+        self.table("LAYER", LAYERS.len() as u8);
+        for (name, colour) in LAYERS {
+            self.text(0, "LAYER");
+            self.text(2, name);
+            self.count(70, 0);
+            self.count(62, colour);
+            self.text(6, "CONTINUOUS");
+        }
+        self.text(0, "ENDTAB");
+        self.text(0, "ENDSEC");
+    }
+
+    fn table(&mut self, name: &str, count: u8) {
+        self.text(0, "TABLE");
+        self.text(2, name);
+        self.count(70, count);
+    }
+
+    fn entity(&mut self, kind: &str, layer: &str) {
+        self.text(0, kind);
+        self.text(8, layer);
+    }
+
+    fn circle(&mut self, layer: &str, at: [f64; 2], radius: f64) {
+        self.entity("CIRCLE", layer);
+        self.point(10, at);
+        self.number(40, radius);
+    }
+
+    fn line(&mut self, [from, to]: [[f64; 2]; 2]) {
+        self.entity("LINE", "TEXT");
+        self.point(10, from);
+        self.point(11, to);
+    }
+
+    /// Two straight sides and two half circles, closed.
+    fn bar(&mut self, [x, y]: [f64; 2], length: f64, radius: f64) {
+        self.entity("POLYLINE", "OUTLINE");
+        self.count(66, 1);
+        self.point(10, [0.0; 2]);
+        self.count(70, 1);
+        let (right, low, high) = (x + length, y - radius, y + radius);
+        for (corner, bulge) in [([x, low], 0.0), ([right, low], 1.0), ([right, high], 0.0), ([x, high], 1.0)] {
+            self.entity("VERTEX", "OUTLINE");
+            self.point(10, corner);
+            self.number(42, bulge);
+        }
+        self.entity("SEQEND", "OUTLINE");
+    }
+
+    fn shape(&mut self, shape: &Shape) {
+        match shape {
+            Shape::Bar { from, length, radius, .. } => self.bar(*from, *length, *radius),
+            Shape::Hole { at, radius } => self.circle("HOLES", *at, *radius),
+            Shape::Disc { at, radius, .. } => self.circle("COUNTERWEIGHT", *at, *radius),
+            Shape::Line(ends) => self.line(*ends),
+            Shape::Mark { at: [x, y], radius: r } => {
+                self.line([[x - r, *y], [x + r, *y]]);
+                self.line([[*x, y - r], [*x, y + r]]);
+            }
+            Shape::Words { at, height, anchor, text, .. } => {
+                self.entity("TEXT", "TEXT");
+                self.point(10, *at);
+                self.number(40, *height);
+                self.text(1, &ascii(text));
+                // Letters of the plain type are wide.
+                self.number(41, 0.75);
+                if *anchor == Anchor::Middle {
+                    self.count(72, 1);
+                    self.point(11, *at);
+                }
+            }
+        }
+    }
+}
+
+/// Text as a line of the file can hold it.
+fn ascii(text: &str) -> String {
+    let mut out = String::new();
+    for c in text.chars() {
+        match c {
+            'Ø' => out.push_str("%%c"),
+            '\u{2212}' => out.push('-'),
+            '·' => out.push(','),
+            '²' => out.push('2'),
+            '³' => out.push('3'),
+            c if c.is_control() => out.push(' '),
+            c if c.is_ascii() => out.push(c),
+            c => {
+                let mut units = [0; 2];
+                for unit in c.encode_utf16(&mut units) {
+                    let _ = write!(out, "\\U+{unit:04X}");
+                }
+            }
+        }
+    }
+    out
+}

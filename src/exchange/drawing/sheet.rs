@@ -1,0 +1,364 @@
+//! [`Sheet`]: every link of a machine laid out flat, in rows, none over another.
+//!
+//! Lengths are mm, x to the right and y up from the lower left corner of the sheet. A link lies with its axis along x,
+//! its root to the left of its tip.
+
+use std::f64::consts::PI;
+
+use crate::exchange::cut::{Cut, CutError, SAME, ends, holes};
+use crate::mechanics::machine::{Counterweight, Machine};
+use crate::settings::number::{counted, fixed};
+
+/// What is drawn, as plain shapes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sheet {
+    /// What it is called.
+    pub title: String,
+    /// Across and up, mm.
+    pub size: [f64; 2],
+    /// In the order in which they are painted.
+    pub shapes: Vec<Shape>,
+}
+
+/// A shape on the sheet, mm.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// The outline of a link: a bar with round ends around two points at one height.
+    Bar {
+        /// The left centre.
+        from: [f64; 2],
+        /// How far from there to the right one.
+        length: f64,
+        /// Of its ends, half its width.
+        radius: f64,
+        /// The drive that it follows, counted from 0.
+        drive: usize,
+    },
+    /// A hole for a pin.
+    Hole {
+        /// Its centre.
+        at: [f64; 2],
+        /// Its radius.
+        radius: f64,
+    },
+    /// The outline of a counterweight.
+    Disc {
+        /// Its centre.
+        at: [f64; 2],
+        /// Its radius.
+        radius: f64,
+        /// The drive that it follows, counted from 0.
+        drive: usize,
+    },
+    /// A thin line.
+    Line([[f64; 2]; 2]),
+    /// A centre of mass.
+    Mark {
+        /// Where.
+        at: [f64; 2],
+        /// Half its size.
+        radius: f64,
+    },
+    /// A line of text.
+    Words {
+        /// Its base line.
+        at: [f64; 2],
+        /// Of its capitals, about.
+        height: f64,
+        /// Which end is there.
+        anchor: Anchor,
+        /// How it stands out.
+        paint: Paint,
+        /// What it says.
+        text: String,
+    },
+}
+
+/// Which end of a text is where it is put.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Anchor {
+    /// Its left end.
+    Start,
+    /// Its middle.
+    Middle,
+}
+
+/// How a text stands out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Paint {
+    /// A name.
+    Strong,
+    /// All else.
+    Plain,
+}
+
+/// How wide a letter is at most, as a share of its height.
+const LETTER: f64 = 0.78;
+/// A line of text after another, as a share of its height.
+const LEADING: f64 = 1.7;
+
+impl Sheet {
+    /// All links of a machine.
+    ///
+    /// # Errors
+    /// What cannot be cut.
+    pub fn of(machine: &Machine, cut: &Cut) -> Result<Self, CutError> {
+        cut.check(machine)?;
+        let longest = machine.resolved_links().iter().map(|part| part.length).fold(0.0, f64::max);
+        let height = (1e3 * longest / 140.0).clamp(3.5, 10.0);
+        let pieces = (0..machine.links().len()).map(|j| Piece::of(machine, cut, j, height)).collect();
+        Ok(laid_out(machine, cut, pieces, height))
+    }
+}
+
+fn mm(metres: f64) -> String {
+    fixed(1e3 * metres, 1)
+}
+
+/// A text with a sign that is as long as a plus.
+fn signed(metres: f64) -> String {
+    mm(metres).replace('-', "\u{2212}")
+}
+
+fn width_of(text: &str, height: f64) -> f64 {
+    text.chars().count() as f64 * LETTER * height
+}
+
+/// A link with what is written about it, around its own root.
+struct Piece {
+    shapes: Vec<Shape>,
+    /// How far it goes to the left, down, right and up.
+    reach: [f64; 4],
+}
+
+impl Piece {
+    fn of(machine: &Machine, cut: &Cut, j: usize, height: f64) -> Self {
+        let mut piece = Self { shapes: Vec::new(), reach: [0.0; 4] };
+        let (link, part) = (&machine.links()[j], &machine.resolved_links()[j]);
+        let weights = machine.spec().counterweights.iter().filter(|weight| weight.link == link.name);
+        let weights: Vec<&Counterweight> = weights.collect();
+        let holes = holes(machine, j);
+        piece.bar(cut, part.drive, ends(machine, j));
+        for weight in weights.iter().filter(|weight| weight.radius > 0.0) {
+            let (at, radius) = ([1e3 * weight.at, 0.0], 1e3 * weight.radius);
+            piece.covers([at[0] - radius, -radius, at[0] + radius, radius]);
+            piece.shapes.push(Shape::Disc { at, radius, drive: part.drive });
+        }
+        for at in &holes {
+            piece.shapes.push(Shape::Hole { at: [1e3 * at, 0.0], radius: 500.0 * cut.pin_diameter });
+        }
+        let com = [1e3 * link.com, 1e3 * link.com_normal];
+        let radius = 0.55 * height;
+        piece.covers([com[0] - radius, com[1] - radius, com[0] + radius, com[1] + radius]);
+        if piece.shapes.first().is_some_and(|bar| !bar.is_around(com)) {
+            // Which link it belongs to.
+            piece.shapes.push(Shape::Line([[0.0, 0.0], com]));
+        }
+        piece.shapes.push(Shape::Mark { at: com, radius });
+        piece.stations(&holes, part.length, height);
+        piece.told(machine, cut, j, &weights, height);
+        piece
+    }
+
+    fn covers(&mut self, [left, down, right, up]: [f64; 4]) {
+        let [l, d, r, u] = self.reach;
+        self.reach = [l.min(left), d.min(down), r.max(right), u.max(up)];
+    }
+
+    fn bar(&mut self, cut: &Cut, drive: usize, [from, to]: [f64; 2]) {
+        let radius = 500.0 * cut.bar_width;
+        self.covers([1e3 * from - radius, -radius, 1e3 * to + radius, radius]);
+        self.shapes.push(Shape::Bar { from: [1e3 * from, 0.0], length: 1e3 * (to - from), radius, drive });
+    }
+
+    /// How far holes are from each other, and from the tip.
+    fn stations(&mut self, holes: &[f64], tip: f64, height: f64) {
+        let mut stations = holes.to_vec();
+        if stations.iter().all(|at| (at - tip).abs() > SAME) {
+            stations.push(tip);
+            stations.sort_by(f64::total_cmp);
+        }
+        let line = self.reach[1] - 2.6 * height;
+        for at in &stations {
+            let x = 1e3 * at;
+            self.shapes.push(Shape::Line([[x, line - 0.5 * height], [x, line + 0.5 * height]]));
+        }
+        for pair in stations.windows(2) {
+            let [from, to] = [1e3 * pair[0], 1e3 * pair[1]];
+            self.shapes.push(Shape::Line([[from, line], [to, line]]));
+            let text = mm(pair[1] - pair[0]);
+            if width_of(&text, height) < to - from {
+                self.words([0.5 * (from + to), line + 0.45 * height], height, Anchor::Middle, Paint::Plain, text);
+            }
+        }
+        self.covers([0.0, line - 0.5 * height, 0.0, 0.0]);
+    }
+
+    fn words(&mut self, at: [f64; 2], height: f64, anchor: Anchor, paint: Paint, text: String) {
+        self.shapes.push(Shape::Words { at, height, anchor, paint, text });
+    }
+
+    /// Its name above it, and what it is like below.
+    fn told(&mut self, machine: &Machine, cut: &Cut, j: usize, weights: &[&Counterweight], height: f64) {
+        let (link, part) = (&machine.spec().links[j], &machine.resolved_links()[j]);
+        let drive = &machine.spec().drives[part.drive].name;
+        let (left, top) = (self.reach[0], self.reach[3] + 1.1 * height);
+        let name = format!("link {}", link.name);
+        let about = format!("follows drive {drive} · {} kg · {} kg m²", fixed(link.mass, 3), fixed(link.inertia, 6));
+        let shift = width_of(&name, 1.3 * height) + height;
+        self.words([left, top], 1.3 * height, Anchor::Start, Paint::Strong, name);
+        self.words([left + shift, top], height, Anchor::Start, Paint::Plain, about.clone());
+        self.covers([left, 0.0, left + shift + width_of(&about, height), top + 1.3 * height]);
+        for line in below(machine, cut, j, weights) {
+            let at = [left, self.reach[1] - LEADING * height];
+            self.covers([left, at[1] - 0.3 * height, left + width_of(&line, height), 0.0]);
+            self.words(at, height, Anchor::Start, Paint::Plain, line);
+        }
+    }
+}
+
+/// What stands below a link.
+fn below(machine: &Machine, cut: &Cut, j: usize, weights: &[&Counterweight]) -> Vec<String> {
+    let (link, part) = (&machine.links()[j], &machine.resolved_links()[j]);
+    let holes = holes(machine, j);
+    let mut lines = Vec::new();
+    let places: Vec<String> =
+        holes.iter().map(|at| if at.abs() <= SAME { "0 (root)".into() } else { signed(*at) }).collect();
+    lines.push(format!("holes at {} mm", places.join(", ")));
+    if machine.end_link() == j {
+        let at = part.sign * (machine.end_effector()[part.drive] - part.root[part.drive]);
+        lines.push(format!("end effector at {} mm", signed(at)));
+    }
+    let off = match link.com_normal {
+        0.0 => String::new(),
+        y => format!(", {} mm to the left of the axis", signed(y)),
+    };
+    let with = if weights.is_empty() { "" } else { " with its counterweights" };
+    lines.push(format!("centre of mass{with} at {} mm{off}", signed(link.com)));
+    let area = outline_area(machine, cut, j);
+    lines.push(format!("area {} cm²", fixed(1e4 * area, 2)));
+    lines.extend(weights.iter().map(|weight| disc(cut, weight)));
+    lines
+}
+
+/// Of the bar less its holes, m².
+fn outline_area(machine: &Machine, cut: &Cut, j: usize) -> f64 {
+    let (holes, [from, to]) = (holes(machine, j), ends(machine, j));
+    let round = |diameter: f64| 0.25 * PI * diameter * diameter;
+    (to - from) * cut.bar_width + round(cut.bar_width) - holes.len() as f64 * round(cut.pin_diameter)
+}
+
+/// What is said of a counterweight.
+fn disc(cut: &Cut, weight: &Counterweight) -> String {
+    let (mass, at) = (fixed(weight.mass, 3), signed(weight.at));
+    let Some(thickness) = cut.thickness_of(weight.mass, weight.radius) else {
+        return format!("counterweight at {at} mm: a point of {mass} kg");
+    };
+    let across = mm(2.0 * weight.radius);
+    let own = cut.weighs(weight.radius, thickness);
+    let wanted = match (own - weight.mass).abs() <= 5e-4 {
+        true => String::new(),
+        false => format!(", not {mass} kg"),
+    };
+    format!("counterweight Ø {across} mm at {at} mm: {} mm thick {} kg{wanted}", mm(thickness), fixed(own, 3))
+}
+
+/// Rows from the top down, as wide as makes the sheet a little wider than high.
+fn laid_out(machine: &Machine, cut: &Cut, pieces: Vec<Piece>, height: f64) -> Sheet {
+    let margin = 3.0 * height;
+    let extent = |piece: &Piece| [piece.reach[2] - piece.reach[0], piece.reach[3] - piece.reach[1]];
+    let gap = 2.5 * height;
+    let area: f64 = pieces.iter().map(extent).map(|[across, up]| (across + gap) * (up + gap)).sum();
+    let widest = pieces.iter().map(|piece| extent(piece)[0]).fold(0.0, f64::max);
+    let title = title(machine, cut);
+    let titled = title.iter().enumerate().map(|(i, line)| width_of(line, title_height(i, height))).fold(0.0, f64::max);
+    let room = widest.max((1.5 * area).sqrt()).max(titled);
+    let (mut shapes, mut y) = (Vec::new(), 0.0);
+    for (i, text) in title.iter().enumerate() {
+        let height = title_height(i, height);
+        y -= if i == 0 { height } else { 1.9 * height };
+        let paint = if i == 0 { Paint::Strong } else { Paint::Plain };
+        shapes.push(Shape::Words { at: [0.0, y], height, anchor: Anchor::Start, paint, text: text.clone() });
+    }
+    y -= height;
+    let (mut across, mut row) = (0.0_f64, Vec::new());
+    let mut right = titled;
+    for piece in pieces {
+        let width = extent(&piece)[0];
+        if !row.is_empty() && across + width > room {
+            y = put(&mut shapes, std::mem::take(&mut row), y - gap);
+            across = 0.0;
+        }
+        row.push((across, piece));
+        right = right.max(across + width);
+        across += width + gap;
+    }
+    y = put(&mut shapes, row, y - gap);
+    let size = [right + 2.0 * margin, 2.0 * margin - y];
+    for shape in &mut shapes {
+        shape.shift([margin, size[1] - margin]);
+    }
+    Sheet { title: machine.name().into(), size, shapes }
+}
+
+fn title_height(line: usize, height: f64) -> f64 {
+    if line == 0 { 2.2 * height } else { height }
+}
+
+/// What the sheet is.
+fn title(machine: &Machine, cut: &Cut) -> [String; 3] {
+    let links = counted(machine.links().len(), "link");
+    let discs = match machine.spec().counterweights.len() {
+        0 => String::new(),
+        count => {
+            let material = format!("{} kg/m³", fixed(cut.density, 0));
+            format!(" · {} of {material}", counted(count, "counterweight"))
+        }
+    };
+    let (bars, pins) = (mm(cut.bar_width), mm(cut.pin_diameter));
+    [
+        machine.name().into(),
+        format!("{links}{discs} · scale 1 : 1 · all lengths in mm"),
+        format!(
+            "bars {bars} wide with round ends · holes Ø {pins} · places along a link from its root towards its tip"
+        ),
+    ]
+}
+
+/// Puts pieces side by side, their tops at a height, and says how far down they go.
+fn put(shapes: &mut Vec<Shape>, row: Vec<(f64, Piece)>, top: f64) -> f64 {
+    // Axes of a row lie at one height.
+    let up = row.iter().map(|(_, piece)| piece.reach[3]).fold(0.0, f64::max);
+    let down = row.iter().map(|(_, piece)| piece.reach[1]).fold(0.0, f64::min);
+    for (x, piece) in row {
+        let by = [x - piece.reach[0], top - up];
+        shapes.extend(piece.shapes.into_iter().map(|mut shape| {
+            shape.shift(by);
+            shape
+        }));
+    }
+    top - up + down
+}
+
+impl Shape {
+    /// Whether it is a bar that goes as far as a point.
+    fn is_around(&self, [x, y]: [f64; 2]) -> bool {
+        match self {
+            Self::Bar { from, length, radius, .. } => {
+                (from[0]..=from[0] + length).contains(&x) && (y - from[1]).abs() <= *radius
+            }
+            _ => false,
+        }
+    }
+
+    fn shift(&mut self, [x, y]: [f64; 2]) {
+        let move_it = |p: &mut [f64; 2]| *p = [p[0] + x, p[1] + y];
+        match self {
+            Self::Bar { from, .. } => move_it(from),
+            Self::Hole { at, .. } | Self::Disc { at, .. } | Self::Mark { at, .. } | Self::Words { at, .. } => {
+                move_it(at)
+            }
+            Self::Line(ends) => ends.iter_mut().for_each(move_it),
+        }
+    }
+}

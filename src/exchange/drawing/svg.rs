@@ -1,0 +1,114 @@
+//! A sheet as SVG in real size: a unit of the drawing is a millimetre.
+
+use super::sheet::{Anchor, Paint, Shape, Sheet};
+use crate::exchange::xml::{Lines, quoted};
+use crate::settings::number::fixed;
+
+/// Colours of the drives, as the window has them on white.
+const COLOURS: [&str; 8] = ["#0072b2", "#c2410c", "#047857", "#a86d00", "#9c4f86", "#7a7100", "#1d4f91", "#5b6270"];
+const INK: &str = "#1d2129";
+const DIM: &str = "#6b7280";
+
+/// The file's text.
+pub fn svg(sheet: &Sheet) -> String {
+    let [width, height] = sheet.size.map(|x| fixed(x, 2));
+    let mut lines = Lines::default();
+    lines.add(0, format_args!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>"));
+    lines.add(
+        0,
+        format_args!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}mm\" height=\"{height}mm\" viewBox=\"0 0 {width} \
+             {height}\" font-family=\"Inter, DejaVu Sans, Verdana, sans-serif\" stroke-linecap=\"round\">"
+        ),
+    );
+    lines.add(1, format_args!("<title>{}</title>", quoted(&sheet.title)));
+    lines.add(1, format_args!("<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>"));
+    for shape in &sheet.shapes {
+        element(&mut lines, shape, sheet.size[1]);
+    }
+    lines.add(0, format_args!("</svg>"));
+    lines.into_text()
+}
+
+/// Micrometres are enough.
+fn n(x: f64) -> String {
+    fixed(x, 3)
+}
+
+fn element(lines: &mut Lines, shape: &Shape, top: f64) {
+    let at = |[x, y]: [f64; 2]| [n(x), n(top - y)];
+    match shape {
+        Shape::Bar { from, length, radius, drive } => {
+            let [x, y] = at([from[0] - radius, from[1] + radius]);
+            let (width, height, r, colour) =
+                (n(length + 2.0 * radius), n(2.0 * radius), n(*radius), COLOURS[drive % COLOURS.len()]);
+            lines.add(
+                1,
+                format_args!(
+                    "<rect class=\"outline\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" rx=\"{r}\" \
+                     fill=\"{colour}\" fill-opacity=\"0.14\" stroke=\"{colour}\" stroke-width=\"0.5\"/>"
+                ),
+            );
+        }
+        Shape::Hole { at: centre, radius } => {
+            let ([x, y], r) = (at(*centre), n(*radius));
+            let round = format!("cx=\"{x}\" cy=\"{y}\" r=\"{r}\"");
+            lines.add(
+                1,
+                format_args!(
+                    "<circle class=\"hole\" {round} fill=\"#ffffff\" stroke=\"{INK}\" stroke-width=\"0.35\"/>"
+                ),
+            );
+        }
+        Shape::Disc { at: centre, radius, drive } => {
+            let ([x, y], r, colour) = (at(*centre), n(*radius), COLOURS[drive % COLOURS.len()]);
+            let round = format!("cx=\"{x}\" cy=\"{y}\" r=\"{r}\"");
+            lines.add(
+                1,
+                format_args!(
+                    "<circle class=\"counterweight\" {round} fill=\"{colour}\" fill-opacity=\"0.08\" \
+                     stroke=\"{colour}\" stroke-width=\"0.5\"/>"
+                ),
+            );
+        }
+        Shape::Line([from, to]) => {
+            let ([x1, y1], [x2, y2]) = (at(*from), at(*to));
+            lines.add(
+                1,
+                format_args!(
+                    "<line x1=\"{x1}\" y1=\"{y1}\" x2=\"{x2}\" y2=\"{y2}\" stroke=\"{DIM}\" stroke-width=\"0.25\"/>"
+                ),
+            );
+        }
+        Shape::Mark { at: centre, radius } => mark(lines, at(*centre), *radius),
+        Shape::Words { at: place, height, anchor, paint, text } => {
+            let ([x, y], text) = (at(*place), quoted(text));
+            let (weight, fill) = match paint {
+                Paint::Strong => (" font-weight=\"600\"", INK),
+                Paint::Plain => ("", DIM),
+            };
+            let anchor = match anchor {
+                Anchor::Start => "",
+                Anchor::Middle => " text-anchor=\"middle\"",
+            };
+            // Capitals are some seven tenths of the size of a type.
+            let size = n(height / 0.72);
+            lines.add(
+                1,
+                format_args!(
+                    "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\"{weight}{anchor} fill=\"{fill}\">{text}</text>"
+                ),
+            );
+        }
+    }
+}
+
+/// A ring with two quarters filled, as draughtsmen mark a centre of mass.
+fn mark(lines: &mut Lines, [x, y]: [String; 2], radius: f64) {
+    let r = n(radius);
+    let quarter = format!("M0 0V-{r}A{r} {r} 0 0 1 {r} 0ZM0 0V{r}A{r} {r} 0 0 1 -{r} 0Z");
+    lines.add(1, format_args!("<g class=\"centre-of-mass\" transform=\"translate({x} {y})\">"));
+    lines.add(2, format_args!("<circle r=\"{r}\" fill=\"#ffffff\" stroke=\"{INK}\" stroke-width=\"0.35\"/>"));
+    lines.add(2, format_args!("<path d=\"{quarter}\" fill=\"{INK}\"/>"));
+    lines.add(1, format_args!("</g>"));
+}

@@ -1,0 +1,423 @@
+//! A linkage laid into the plane of motion, as a machine of the family.
+//!
+//! # Symbols
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | n | the axis that all hinges are parallel to; x and y of the plane are two axes of the file's base | |
+//! | ψ_k | direction of drive k in the reference pose, q_k there: that of its first link that reaches anywhere | rad |
+//! | s | a place on a link's axis, from its root | m |
+
+use nalgebra::Vector3;
+
+use super::linkage::{Limit, Linkage, Motor, Part, common_axis, owners, plane};
+use super::refusal::ImportError;
+use crate::mechanics::machine::{
+    Angle, Attach, Closure, Drive, Length, Link, Machine, MachineSpec, PlaceOnLink, Point, Rotor,
+};
+use crate::mechanics::planar::{MAX_DRIVES, Vector};
+use crate::settings::number::Short;
+use crate::settings::range::clipped;
+
+/// A mass below this share of all is none.
+pub const NOTHING: f64 = 1e-9;
+/// Lengths below this share of the machine's are none.
+const NO_LENGTH: f64 = 1e-9;
+/// The length of a link that carries nothing and has its centre of mass at its root, m.
+const SHORT: f64 = 0.01;
+
+/// A machine from another program.
+#[derive(Clone, Debug)]
+pub struct Imported {
+    /// The machine.
+    pub machine: Machine,
+    /// Angles of its drives in the pose of the file, rad: where all joints of URDF are at 0, in the keyframe of MJCF.
+    pub pose: Vec<f64>,
+    /// What was left out or taken for granted.
+    pub notes: Vec<String>,
+}
+
+/// The machine of a linkage.
+///
+/// # Errors
+/// What is outside of the family.
+pub fn imported(linkage: &Linkage) -> Result<Imported, ImportError> {
+    let flat = Flat::of(linkage)?;
+    let mut notes = linkage.notes.clone();
+    let (spec, pose) = Builder { linkage, flat: &flat, notes: &mut notes }.spec()?;
+    let machine = Machine::new(spec).map_err(|why| ImportError::whole(why.to_string(), "a machine of the family"))?;
+    Ok(Imported { machine, pose, notes })
+}
+
+/// A part with all that is fixed to it, in the plane.
+#[derive(Clone, Copy, Debug)]
+struct Body {
+    mass: f64,
+    /// m.
+    com: Vector,
+    /// Along n, m.
+    height: f64,
+    /// About n through the centre of mass, kg m².
+    inertia: f64,
+}
+
+impl Body {
+    const NONE: Self = Self { mass: 0.0, com: Vector::new(0.0, 0.0), height: 0.0, inertia: 0.0 };
+
+    fn and(self, other: Self) -> Self {
+        let mass = self.mass + other.mass;
+        if mass <= 0.0 {
+            return Self { inertia: self.inertia + other.inertia, ..self };
+        }
+        let share = other.mass / mass;
+        let com = self.com + share * (other.com - self.com);
+        let away = self.mass * (self.com - com).norm_sqr() + other.mass * (other.com - com).norm_sqr();
+        let height = self.height + share * (other.height - self.height);
+        Self { mass, com, height, inertia: self.inertia + other.inertia + away }
+    }
+}
+
+/// The linkage in its plane, in the reference pose.
+struct Flat {
+    axes: [Vector3<f64>; 3],
+    /// Of each part that turns, with what is fixed to it.
+    bodies: Vec<Body>,
+    /// Where each part turns.
+    roots: Vec<Vector>,
+    owners: Vec<Option<usize>>,
+    /// Parts that are links.
+    links: Vec<usize>,
+    /// How large the machine is, m.
+    size: f64,
+}
+
+impl Flat {
+    fn of(linkage: &Linkage) -> Result<Self, ImportError> {
+        let parts = &linkage.parts;
+        let (normal, _) = common_axis(parts)?;
+        let axes = plane(&normal);
+        let flat = |p: &Vector3<f64>| Vector::new(axes[0].dot(p), axes[1].dot(p));
+        let owners = owners(parts);
+        let roots: Vec<Vector> =
+            parts.iter().map(|part| part.hinge.map_or(Vector::default(), |(_, on)| flat(&on))).collect();
+        let own = |part: &Part| Body {
+            mass: part.mass,
+            com: flat(&part.com),
+            height: axes[2].dot(&part.com),
+            inertia: axes[2].dot(&(part.inertia * axes[2])),
+        };
+        let mut bodies = vec![Body::NONE; parts.len()];
+        let total: f64 = parts.iter().map(|part| part.mass).sum();
+        for (i, part) in parts.iter().enumerate() {
+            let body = own(part);
+            if body.inertia < 0.0 {
+                return Err(
+                    part.wrong(format!("an inertia of {} kg m²", Short(body.inertia)), "one that is not below 0")
+                );
+            }
+            let rotor = linkage.rotors.iter().find(|(rotor, ..)| *rotor == i);
+            let to = if rotor.is_some() { part.parent.and_then(|parent| owners[parent]) } else { owners[i] };
+            if let Some(to) = to {
+                // Of a rotor only its mass belongs to what carries it.
+                match rotor {
+                    Some(_) if body.mass <= NOTHING * total => {}
+                    Some(_) => bodies[to] = bodies[to].and(Body { inertia: 0.0, ..body }),
+                    None => bodies[to] = bodies[to].and(body),
+                }
+            }
+        }
+        check_rotors(linkage, &roots, &flat)?;
+        let places = roots.iter().chain(bodies.iter().map(|body| &body.com));
+        let ends = linkage.end.iter().map(|(_, at)| flat(at));
+        let size = places.copied().chain(ends).fold(0.0_f64, |most, at| most.max((at - roots[0]).norm()));
+        let inertia: f64 =
+            bodies.iter().map(|body| body.inertia + body.mass * (body.com - roots[0]).norm_sqr()).sum::<f64>();
+        let is_link = |i: &usize| {
+            let is_rotor = linkage.rotors.iter().any(|(rotor, ..)| rotor == i);
+            let counts = bodies[*i].mass > NOTHING * total || bodies[*i].inertia > NOTHING * inertia;
+            parts[*i].hinge.is_some() && !is_rotor && counts
+        };
+        let links = (0..parts.len()).filter(is_link).collect();
+        Ok(Self { axes, bodies, roots, owners, links, size: size.max(f64::MIN_POSITIVE) })
+    }
+
+    fn flat(&self, p: &Vector3<f64>) -> Vector {
+        Vector::new(self.axes[0].dot(p), self.axes[1].dot(p))
+    }
+
+    fn is_none(&self, v: Vector) -> bool {
+        v.norm() <= NO_LENGTH * self.size
+    }
+
+    /// The link that holds a part that turns, and whether what is between them reaches anywhere.
+    fn carrier(&self, parts: &[Part], i: usize) -> Result<Option<usize>, ImportError> {
+        let mut at = i;
+        loop {
+            let Some(next) = parts[at].parent.and_then(|parent| self.owners[parent]) else { return Ok(None) };
+            if self.links.contains(&next) {
+                return Ok(Some(next));
+            }
+            if !self.is_none(self.roots[i] - self.roots[next]) {
+                return Err(parts[next].wrong("it has length and no mass", "a mass, and an inertia"));
+            }
+            at = next;
+        }
+    }
+}
+
+/// One rotor for a motor, and its mass on its axis.
+fn check_rotors(
+    linkage: &Linkage,
+    roots: &[Vector],
+    flat: &impl Fn(&Vector3<f64>) -> Vector,
+) -> Result<(), ImportError> {
+    let total: f64 = linkage.parts.iter().map(|part| part.mass).sum();
+    for (number, (i, k, _)) in linkage.rotors.iter().enumerate() {
+        let part = &linkage.parts[*i];
+        if linkage.rotors[..number].iter().any(|(_, other, _)| other == k) {
+            let name = clipped(&linkage.motors[*k].name);
+            return Err(part.wrong(format!("a second rotor of \"{name}\""), "one rotor for a motor"));
+        }
+        let off = (flat(&part.com) - roots[*i]).norm();
+        if part.mass > NOTHING * total && off > NO_LENGTH * (1.0 + roots[*i].norm()) {
+            return Err(
+                part.wrong(format!("a rotor with its mass {} m off its axis", Short(off)), "a rotor that is balanced")
+            );
+        }
+    }
+    Ok(())
+}
+
+struct Builder<'a> {
+    linkage: &'a Linkage,
+    flat: &'a Flat,
+    notes: &'a mut Vec<String>,
+}
+
+/// A link's axis: which way it runs from its root, 1 along its drive, and the places on it.
+struct Axis {
+    sign: f64,
+    places: Vec<f64>,
+}
+
+impl Builder<'_> {
+    fn spec(&mut self) -> Result<(MachineSpec, Vec<f64>), ImportError> {
+        let (linkage, flat) = (self.linkage, self.flat);
+        let motors = &linkage.motors;
+        if motors.len() > MAX_DRIVES {
+            let what = format!("{} motors", motors.len());
+            return Err(ImportError::whole(what, format!("at most {MAX_DRIVES}")));
+        }
+        let end = linkage.end.filter(|(end, _)| flat.links.contains(end)).ok_or_else(|| {
+            let want = "a link end_effector fixed where the machine works, or in MJCF a site of that name";
+            ImportError::whole("nothing says where the end effector is", want)
+        })?;
+        let mut points = vec![Vec::new(); linkage.parts.len()];
+        let mut carriers = vec![None; linkage.parts.len()];
+        let base = self.base()?;
+        for i in &flat.links {
+            carriers[*i] = flat.carrier(&linkage.parts, *i)?;
+            match carriers[*i] {
+                Some(carrier) => points[carrier].push(flat.roots[*i]),
+                None if flat.is_none(flat.roots[*i] - base) => {}
+                None => {
+                    let want = "all links on the base on one axis, that of the drives";
+                    return Err(linkage.parts[*i].wrong("it turns elsewhere on the base than others", want));
+                }
+            }
+        }
+        let ends: Vec<[(usize, Vector); 2]> =
+            linkage.loops.iter().map(|ends| ends.map(|(i, at)| (i, flat.flat(&at)))).collect();
+        for (i, at) in ends.iter().flatten().copied().chain([(end.0, flat.flat(&end.1))]) {
+            match flat.links.contains(&i) {
+                true => points[i].push(at),
+                false => return Err(linkage.parts[i].wrong("a pin on what has no mass", "pins on links")),
+            }
+        }
+        let psi = (0..motors.len()).map(|k| self.direction(k, &points)).collect::<Result<Vec<f64>, _>>()?;
+        let names = self.names();
+        let mut axes: Vec<Option<Axis>> = (0..linkage.parts.len()).map(|_| None).collect();
+        for i in &flat.links {
+            axes[*i] = Some(self.axis(*i, &points[*i], &psi)?);
+        }
+        let place = |i: usize, at: Vector| {
+            let set = linkage.sets[i].unwrap_or(0);
+            let sign = axes[i].as_ref().map_or(1.0, |axis| axis.sign);
+            let s = sign * ((at - flat.roots[i]) * Vector::from_polar(1.0, -psi[set])).re;
+            Point { link: names[i].clone(), at: PlaceOnLink::Metres(s) }
+        };
+        let links = flat.links.iter().map(|i| {
+            let attach = match carriers[*i] {
+                Some(carrier) => Attach::On(place(carrier, flat.roots[*i])),
+                None => Attach::Base("base".into()),
+            };
+            self.link(*i, axes[*i].as_ref(), &psi, attach, &names)
+        });
+        let links = links.collect::<Result<_, _>>()?;
+        let closures = ends.iter().map(|[a, b]| Closure { a: place(a.0, a.1), b: place(b.0, b.1) }).collect();
+        let gravity = flat.flat(&linkage.gravity);
+        let end_effector = Some(place(end.0, flat.flat(&end.1)));
+        let (drives, angles) = (self.drives(), self.angles(&psi));
+        let spec = MachineSpec {
+            name: linkage.name.clone(),
+            summary: String::new(),
+            gravity: [gravity.re, gravity.im],
+            lengths: std::collections::BTreeMap::new(),
+            payload: crate::mechanics::machine::Payload::default(),
+            drives,
+            links,
+            counterweights: Vec::new(),
+            closures,
+            end_effector,
+            angles,
+        };
+        Ok((spec, psi))
+    }
+
+    /// Where the drives are: where the first link turns on the base.
+    fn base(&self) -> Result<Vector, ImportError> {
+        let flat = self.flat;
+        for i in &flat.links {
+            if flat.carrier(&self.linkage.parts, *i)?.is_none() {
+                return Ok(flat.roots[*i]);
+            }
+        }
+        Err(ImportError::whole("no link with mass turns on the base", "at least one"))
+    }
+
+    /// ψ of a drive.
+    fn direction(&self, k: usize, points: &[Vec<Vector>]) -> Result<f64, ImportError> {
+        let flat = self.flat;
+        let own: Vec<usize> = flat.links.iter().copied().filter(|i| self.linkage.sets[*i] == Some(k)).collect();
+        let Some(first) = own.first() else {
+            let what = format!("\"{}\" turns no link that has mass", clipped(&self.linkage.motors[k].name));
+            return Err(ImportError::whole(what, "a link for every motor"));
+        };
+        let farthest = |i: &usize| {
+            let all = points[*i].iter().map(|at| at - flat.roots[*i]);
+            all.reduce(|a, b| if b.norm() > a.norm() * (1.0 + 1e-9) { b } else { a }).filter(|v| !flat.is_none(*v))
+        };
+        let com = flat.bodies[*first].com - flat.roots[*first];
+        let com = (!flat.is_none(com)).then_some(com);
+        Ok(own.iter().find_map(farthest).or(com).map_or(0.0, |v| v.arg()))
+    }
+
+    fn axis(&self, i: usize, points: &[Vector], psi: &[f64]) -> Result<Axis, ImportError> {
+        let (flat, part) = (self.flat, &self.linkage.parts[i]);
+        let Some(k) = self.linkage.sets[i] else {
+            return Err(part.wrong("it does not turn with any drive", "links that each follow one drive"));
+        };
+        let mut places = Vec::new();
+        for at in points {
+            let local = (at - flat.roots[i]) * Vector::from_polar(1.0, -psi[k]);
+            if local.im.abs() > NO_LENGTH * flat.size {
+                let off = Short(local.im);
+                let what = format!("a pin {off} m beside the line that links of its drive run along");
+                return Err(part.wrong(what, "bars whose pins lie on one line, parallel for links of one drive"));
+            }
+            places.push(local.re);
+        }
+        let (least, most) = places.iter().fold((0.0_f64, 0.0_f64), |(a, b), s| (a.min(*s), b.max(*s)));
+        let sign = if -least > most * (1.0 + 1e-9) { -1.0 } else { 1.0 };
+        places.iter_mut().for_each(|s| *s *= sign);
+        Ok(Axis { sign, places })
+    }
+
+    fn link(
+        &self,
+        i: usize,
+        axis: Option<&Axis>,
+        psi: &[f64],
+        attach: Attach,
+        names: &[String],
+    ) -> Result<Link, ImportError> {
+        let (flat, part) = (self.flat, &self.linkage.parts[i]);
+        let (Some(axis), Some(k)) = (axis, self.linkage.sets[i]) else {
+            return Err(part.wrong("it follows no drive", "links that each follow one"));
+        };
+        let body = flat.bodies[i];
+        let com = axis.sign * (body.com - flat.roots[i]) * Vector::from_polar(1.0, -psi[k]);
+        let reach = axis.places.iter().fold(0.0_f64, |most, s| most.max(*s));
+        // What carries nothing shows no length.
+        let length = if reach > NO_LENGTH * flat.size { reach } else { (2.0 * com.re.abs()).max(SHORT) };
+        let rounded = |x: f64| if x.abs() <= 1e-15 * flat.size { 0.0 } else { x };
+        Ok(Link {
+            name: names[i].clone(),
+            drive: self.drive_name(k),
+            attach,
+            direction: if axis.sign < 0.0 { -1 } else { 1 },
+            length: Length::Metres(length),
+            mass: body.mass,
+            inertia: body.inertia,
+            com: rounded(com.re),
+            com_normal: rounded(com.im),
+            axial: rounded(body.height),
+        })
+    }
+
+    /// Names of parts, without what this program puts before them, where they are still told apart.
+    fn names(&self) -> Vec<String> {
+        let parts = &self.linkage.parts;
+        let short = |name: &str| name.strip_prefix("link_").or(name.strip_prefix("link ")).unwrap_or(name).to_owned();
+        let all: Vec<String> = parts.iter().map(|part| short(&part.name)).collect();
+        let links: std::collections::BTreeSet<&String> = self.flat.links.iter().map(|i| &all[*i]).collect();
+        match links.len() == self.flat.links.len() {
+            true => all,
+            false => parts.iter().map(|part| part.name.clone()).collect(),
+        }
+    }
+
+    fn drive_name(&self, k: usize) -> String {
+        let motors = &self.linkage.motors;
+        let short = |motor: &Motor| {
+            let name = motor.name.as_str();
+            name.strip_prefix("drive_").or(name.strip_prefix("drive ")).unwrap_or(name).to_owned()
+        };
+        let own = short(&motors[k]);
+        let is_clear = motors.iter().filter(|motor| short(motor) == own).count() == 1;
+        if is_clear { own } else { motors[k].name.clone() }
+    }
+
+    fn drives(&self) -> Vec<Drive> {
+        let motors = self.linkage.motors.iter().enumerate();
+        let drive = |(k, motor): (usize, &Motor)| {
+            let own = self.linkage.rotors.iter().find(|(_, of, _)| *of == k);
+            let rotor = own.map(|(i, _, ratio)| {
+                let part = &self.linkage.parts[*i];
+                let normal = self.flat.axes[2];
+                Rotor { inertia: normal.dot(&(part.inertia * normal)), ratio: *ratio }
+            });
+            Drive {
+                name: self.drive_name(k),
+                on: motor.from.map(|from| self.drive_name(from)),
+                rotor,
+                torque_limit: motor.torque_limit,
+                speed_limit: motor.speed_limit,
+                acceleration_limit: None,
+                jerk_limit: None,
+            }
+        };
+        motors.map(drive).collect()
+    }
+
+    /// Limits of motors as those of angles between drives.
+    fn angles(&mut self, psi: &[f64]) -> Vec<Angle> {
+        let mut angles = Vec::new();
+        for Limit { to, from, now, range: [min, max] } in &self.linkage.limits {
+            match from {
+                Some(from) => angles.push(Angle {
+                    name: format!("a{}", angles.len() + 1),
+                    to: self.drive_name(*to),
+                    from: self.drive_name(*from),
+                    offset: now - (psi[*to] - psi[*from]),
+                    min: Some(*min),
+                    max: Some(*max),
+                }),
+                None => self.notes.push(format!(
+                    "limits of \"{}\" are left out: here only angles between two drives have limits",
+                    clipped(&self.linkage.motors[*to].name)
+                )),
+            }
+        }
+        angles
+    }
+}

@@ -1,0 +1,37 @@
+//! Machines from other programs: planar URDF and MJCF whose links each follow one drive.
+//!
+//! A reader for each format (`urdf`, `mjcf`) gives a `linkage` in space: parts, their hinges in a reference pose,
+//! which of them turn together, motors and rotors. `family` lays it into the plane of motion and makes a machine of
+//! it, or says what is outside of the family.
+
+mod bodies;
+mod family;
+mod linkage;
+mod mjcf;
+mod read;
+mod refusal;
+mod urdf;
+
+pub use family::Imported;
+pub use refusal::ImportError;
+
+use roxmltree::{Document, ParsingOptions};
+
+/// The most nodes of a file: more take gigabytes.
+const MOST_NODES: u32 = 400_000;
+
+/// Reads a machine from the text of a URDF or MJCF file, whichever it is.
+///
+/// # Errors
+/// The first thing that is no machine of the family: which element, in which line, and what would be right.
+pub fn import(text: &str) -> Result<Imported, ImportError> {
+    let options = ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+    let document = Document::parse_with_options(text, options).map_err(|why| refusal::syntax(&why.to_string()))?;
+    let root = document.root_element();
+    let linkage = match root.tag_name().name() {
+        "robot" => urdf::linkage(root),
+        "mujoco" => mjcf::linkage(root),
+        _ => Err(refusal::wrong(root, "neither a robot nor a model", "<robot> of URDF or <mujoco> of MJCF")),
+    };
+    linkage.and_then(|linkage| family::imported(&linkage)).map_err(|error| error.located(text))
+}

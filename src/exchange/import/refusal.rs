@@ -1,0 +1,53 @@
+//! [`ImportError`]: why a file is no machine of the family.
+
+use roxmltree::Node;
+
+use crate::settings::range::{clipped, shortened};
+
+/// What is wrong with a file, and where.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}{element}{what}: want {want}", line.map(|line| format!("line {line}: ")).unwrap_or_default())]
+pub struct ImportError {
+    /// Where the element begins, bytes.
+    at: Option<usize>,
+    line: Option<usize>,
+    element: String,
+    what: String,
+    want: String,
+}
+
+impl ImportError {
+    /// Of an element by its name and where it begins.
+    pub fn of(at: usize, element: &str, what: impl Into<String>, want: impl Into<String>) -> Self {
+        let element = format!("{}: ", shortened(element, 100));
+        Self { at: Some(at), line: None, element, what: what.into(), want: want.into() }
+    }
+
+    /// Of the whole file.
+    pub fn whole(what: impl Into<String>, want: impl Into<String>) -> Self {
+        Self { at: None, line: None, element: String::new(), what: what.into(), want: want.into() }
+    }
+
+    /// With the line of the element.
+    #[must_use]
+    pub fn located(self, text: &str) -> Self {
+        let line = |at: usize| text.bytes().take(at).filter(|byte| *byte == b'\n').count() + 1;
+        Self { line: self.at.map(line), ..self }
+    }
+}
+
+/// What is wrong with an element.
+pub fn wrong(node: Node<'_, '_>, what: impl Into<String>, want: impl Into<String>) -> ImportError {
+    ImportError::of(node.range().start, &called(node), what, want)
+}
+
+/// An element as a message calls it: `link "arm"`.
+pub fn called(node: Node<'_, '_>) -> String {
+    let kind = clipped(node.tag_name().name());
+    node.attribute("name").map_or_else(|| format!("<{kind}>"), |name| format!("{kind} \"{}\"", clipped(name)))
+}
+
+/// What the reader of XML says.
+pub fn syntax(why: &str) -> ImportError {
+    ImportError::whole(shortened(why, 300), "XML without document types, as URDF and MJCF are")
+}

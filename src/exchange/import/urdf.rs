@@ -1,0 +1,342 @@
+//! URDF: a tree of links; joints that mimic others say what turns together.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
+use roxmltree::Node;
+
+use super::linkage::{Limit, Linkage, MOST_PARTS, Motor, Part, common_axis, owners};
+use super::read::{child, each, given, inertia, mass, number, vector, word};
+use super::refusal::{ImportError, called, wrong};
+use crate::settings::number::{Short, fixed};
+use crate::settings::range::{clipped, shortened};
+
+/// Rates that differ by less are the same.
+const SAME: f64 = 1e-9;
+/// A limit as large as this, or 0, is none.
+const UNLIMITED: f64 = 1e9;
+/// Names by which others know the point that works.
+const ENDS: [&str; 8] = ["end_effector", "ee", "ee_link", "tool", "tool0", "tcp", "tip", "gripper"];
+
+/// Of a `<robot>`.
+pub fn linkage(robot: Node<'_, '_>) -> Result<Linkage, ImportError> {
+    let file = File::of(robot)?;
+    let mut parts = Vec::new();
+    let mut joints = Vec::new();
+    file.walk(&mut parts, &mut joints)?;
+    let (_, signs) = common_axis(&parts)?;
+    let (free, rates) = file.rates(&parts, &joints, &signs)?;
+    let (sets, motors, rotors) = turning(&parts, &joints, &free, &rates)?;
+    let mut limits = Vec::new();
+    for (k, i) in free.iter().enumerate() {
+        if let Some(range) = range(joints[*i], signs[*i])? {
+            limits.push(Limit { to: k, from: motors[k].from, now: 0.0, range });
+        }
+    }
+    let end = end(&parts, &owners(&parts));
+    let meshes = robot.descendants().any(|node| node.has_tag_name("mesh"));
+    let mut notes = Vec::new();
+    if meshes {
+        notes.push("meshes are left out: a machine here is made of bars".to_owned());
+    }
+    Ok(Linkage {
+        name: robot.attribute("name").unwrap_or("robot").into(),
+        gravity: Vector3::zeros(),
+        parts,
+        sets,
+        motors,
+        limits,
+        rotors,
+        loops: Vec::new(),
+        end,
+        notes,
+    })
+}
+
+/// Links and joints by name.
+struct File<'a> {
+    links: BTreeMap<&'a str, Node<'a, 'a>>,
+    /// Joints by the link that they carry.
+    joints: Vec<(Node<'a, 'a>, &'a str, &'a str)>,
+    root: &'a str,
+}
+
+impl<'a> File<'a> {
+    fn of(robot: Node<'a, 'a>) -> Result<Self, ImportError> {
+        if let Some(other) = robot.descendants().find(|node| node.is_element() && node.tag_name().namespace().is_some())
+        {
+            return Err(wrong(other, "an element of xacro or another language", "plain URDF, as xacro makes it"));
+        }
+        if let Some(node) = robot.children().filter(|node| node.has_tag_name("joint")).nth(MOST_PARTS) {
+            return Err(wrong(node, "too many joints", format!("at most {MOST_PARTS}")));
+        }
+        let mut links = BTreeMap::new();
+        for link in each(robot, "link") {
+            let name = word(link, "name")?;
+            if links.insert(name, link).is_some() {
+                return Err(wrong(link, "a second link of this name", "names that stand once"));
+            }
+        }
+        let mut joints = Vec::new();
+        for joint in each(robot, "joint") {
+            let end = |what: &'static str| {
+                let node = child(joint, what).ok_or_else(|| wrong(joint, format!("it has no <{what}>"), "one"))?;
+                let name = word(node, "link")?;
+                match links.contains_key(name) {
+                    true => Ok(name),
+                    false => {
+                        Err(wrong(node, format!("no link \"{}\"", clipped(name)), "the name of a link of this file"))
+                    }
+                }
+            };
+            joints.push((joint, end("parent")?, end("child")?));
+        }
+        let held = |name: &str| joints.iter().filter(|(.., child)| *child == name).count();
+        for (i, (joint, _, child)) in joints.iter().enumerate() {
+            if joints[..i].iter().any(|(.., other)| other == child) {
+                let what = format!("a second joint that carries \"{}\"", clipped(child));
+                return Err(wrong(*joint, what, "a tree: one for each link"));
+            }
+        }
+        let roots: Vec<&str> = links.keys().copied().filter(|name| held(name) == 0).collect();
+        let carries = |name: &&&str| joints.iter().any(|(_, parent, _)| parent == *name);
+        let root = *roots.iter().find(carries).ok_or_else(|| wrong(robot, "no link is the base", "a tree of links"))?;
+        if let Some(other) = roots.iter().find(|other| **other != root) {
+            let what = format!("it hangs on nothing, as \"{}\" does", clipped(root));
+            return Err(wrong(links[other], what, "one link that is the base"));
+        }
+        Ok(Self { links, joints, root })
+    }
+
+    /// Parts from the base on, each with its joint.
+    fn walk(&self, parts: &mut Vec<Part>, joints: &mut Vec<Node<'a, 'a>>) -> Result<(), ImportError> {
+        let mut open = vec![(self.root, None, Isometry3::identity())];
+        let mut next = 0;
+        while next < open.len() {
+            let (name, place, frame) = open[next];
+            next += 1;
+            for (joint, _, link) in self.joints.iter().filter(|(_, parent, _)| *parent == name) {
+                if parts.len() == MOST_PARTS {
+                    return Err(wrong(*joint, "too many links", format!("at most {MOST_PARTS}")));
+                }
+                parts.push(part(*joint, self.links[link], place, &frame)?);
+                joints.push(*joint);
+                let own = parts.len() - 1;
+                open.push((*link, Some(own), parts[own].frame));
+            }
+        }
+        // Links that carry each other in a circle hang on no base.
+        match self.joints.iter().find(|(joint, ..)| !joints.contains(joint)) {
+            Some((joint, ..)) => Err(wrong(*joint, "links that carry each other", "a tree that begins at the base")),
+            None => Ok(()),
+        }
+    }
+
+    /// The joints that move by themselves, and how each part turns with them, about the common axis.
+    fn rates(
+        &self,
+        parts: &[Part],
+        joints: &[Node<'a, 'a>],
+        signs: &[f64],
+    ) -> Result<(Vec<usize>, Vec<Vec<f64>>), ImportError> {
+        let turns = |i: usize| parts[i].hinge.is_some();
+        let is_free = |i: &usize| turns(*i) && child(joints[*i], "mimic").is_none();
+        let mut free: Vec<usize> = (0..parts.len()).filter(is_free).collect();
+        // In the order in which the file has them.
+        free.sort_by_key(|i| joints[*i].range().start);
+        let mut rates: Vec<Vec<f64>> = Vec::with_capacity(parts.len());
+        for (i, part) in parts.iter().enumerate() {
+            let mut own = part.parent.map_or_else(|| vec![0.0; free.len()], |parent| rates[parent].clone());
+            if turns(i) {
+                let (driver, times) = followed(joints, i)?;
+                let k = free.iter().position(|k| *k == driver).ok_or_else(|| {
+                    wrong(joints[i], "it mimics a joint that does not turn", "a revolute or continuous joint")
+                })?;
+                own[k] += signs[i] * times * signs[driver];
+            }
+            rates.push(own);
+        }
+        Ok((free, rates))
+    }
+}
+
+/// The joint that one follows in the end, and how often it turns for one turn of that; itself where it mimics none.
+fn followed(joints: &[Node<'_, '_>], i: usize) -> Result<(usize, f64), ImportError> {
+    let (mut at, mut times) = (i, 1.0);
+    for _ in 0..=joints.len() {
+        let Some(mimic) = child(joints[at], "mimic") else { return Ok((at, times)) };
+        times *= number(mimic, "multiplier")?.unwrap_or(1.0);
+        let name = word(mimic, "joint")?;
+        let of = joints.iter().position(|joint| joint.attribute("name") == Some(name));
+        at = of.ok_or_else(|| {
+            wrong(joints[i], format!("it mimics \"{}\", which is no joint", clipped(name)), "the name of one")
+        })?;
+    }
+    Err(wrong(joints[i], "joints that mimic each other", "one in the end that mimics none"))
+}
+
+fn origin(node: Node<'_, '_>) -> Result<Isometry3<f64>, ImportError> {
+    let Some(origin) = child(node, "origin") else { return Ok(Isometry3::identity()) };
+    let place = vector(origin, "xyz")?.unwrap_or_default();
+    let turn = vector(origin, "rpy")?.unwrap_or_default();
+    let turn = UnitQuaternion::from_euler_angles(turn.x, turn.y, turn.z);
+    Ok(Isometry3::from_parts(Translation3::from(place), turn))
+}
+
+/// A link with the joint that carries it.
+fn part(
+    joint: Node<'_, '_>,
+    link: Node<'_, '_>,
+    parent: Option<usize>,
+    on: &Isometry3<f64>,
+) -> Result<Part, ImportError> {
+    let turns = match word(joint, "type")? {
+        "revolute" | "continuous" => true,
+        "fixed" => false,
+        kind => {
+            let kind = clipped(kind);
+            return Err(wrong(joint, format!("a joint of type \"{kind}\""), "revolute, continuous or fixed joints"));
+        }
+    };
+    let mut frame = on * origin(joint)?;
+    let mut hinge = None;
+    if turns {
+        let axis = child(joint, "axis").map(|axis| vector(axis, "xyz")).transpose()?.flatten();
+        let axis = Unit::try_new(axis.unwrap_or(Vector3::x()), 1e-6)
+            .ok_or_else(|| wrong(joint, "an axis without direction", "three numbers that are not all 0"))?;
+        // What only follows may stand at an angle where what it follows is at 0.
+        let offset = child(joint, "mimic").map(|mimic| number(mimic, "offset")).transpose()?.flatten().unwrap_or(0.0);
+        frame *= UnitQuaternion::from_axis_angle(&axis, offset);
+        hinge = Some((frame.rotation * axis, frame.translation.vector));
+    }
+    let (mass, com, inertia) = body(link, &frame, turns)?;
+    let name = word(link, "name")?.to_owned();
+    Ok(Part { name, called: called(link), at: link.range().start, parent, frame, hinge, mass, com, inertia })
+}
+
+/// Mass, centre of mass and inertia in the axes of the base.
+fn body(
+    link: Node<'_, '_>,
+    frame: &Isometry3<f64>,
+    turns: bool,
+) -> Result<(f64, Vector3<f64>, Matrix3<f64>), ImportError> {
+    let Some(inertial) = child(link, "inertial") else {
+        return match turns {
+            true => Err(wrong(link, "it turns and has no <inertial>", "its mass, centre of mass and inertia")),
+            false => Ok((0.0, frame.translation.vector, Matrix3::zeros())),
+        };
+    };
+    let place = frame * origin(inertial)?;
+    let part =
+        |name| child(inertial, name).ok_or_else(|| wrong(link, format!("its <inertial> has no <{name}>"), "one"));
+    let mass = mass(part("mass")?, "value")?;
+    let node = part("inertia")?;
+    let [xx, yy, zz] = [given(node, "ixx")?, given(node, "iyy")?, given(node, "izz")?];
+    let pair = |name| number(node, name).map(|x| x.unwrap_or(0.0));
+    let all = [xx, yy, zz, pair("ixy")?, pair("ixz")?, pair("iyz")?];
+    Ok((mass, place.translation.vector, inertia(all, &Rotation3::from(place.rotation))))
+}
+
+type Turning = (Vec<Option<usize>>, Vec<Motor>, Vec<(usize, usize, f64)>);
+
+/// Which parts turn together, what turns them, and which are rotors.
+fn turning(
+    parts: &[Part],
+    joints: &[Node<'_, '_>],
+    free: &[usize],
+    rates: &[Vec<f64>],
+) -> Result<Turning, ImportError> {
+    let is_same = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= SAME);
+    let none = vec![0.0; free.len()];
+    let is_still = |a: &[f64]| is_same(a, &none);
+    // The set of a motor's number is what it turns.
+    let set = |own: &[f64]| free.iter().position(|i| is_same(&rates[*i], own));
+    let of_parent = |i: usize| parts[i].parent.map_or(&none, |parent| &rates[parent]);
+    let mut motors = Vec::new();
+    for (k, i) in free.iter().enumerate() {
+        let (joint, from) = (joints[*i], of_parent(*i));
+        let from = match is_still(from) {
+            true => None,
+            false => Some(set(from).ok_or_else(|| {
+                wrong(joint, "it sits on what turns as no driven joint does", "motors on the base or on links")
+            })?),
+        };
+        if set(&rates[*i]) != Some(k) {
+            return Err(wrong(joint, "it turns as another joint does", "joints that move by themselves or mimic"));
+        }
+        motors.push(motor(joint, from)?);
+    }
+    let mut rotors = Vec::new();
+    let mut sets = Vec::new();
+    for (i, part) in parts.iter().enumerate() {
+        let own = if is_still(&rates[i]) { None } else { set(&rates[i]) };
+        let is_leaf = !parts.iter().any(|other| other.parent == Some(i));
+        if is_leaf && part.hinge.is_some() && child(joints[i], "mimic").is_some() {
+            let relative: Vec<f64> = rates[i].iter().zip(of_parent(i)).map(|(a, b)| a - b).collect();
+            let only = relative.iter().position(|x| x.abs() > SAME);
+            let k = only.filter(|k| relative.iter().enumerate().all(|(l, x)| l == *k || x.abs() <= SAME));
+            // It sits where the motor does.
+            let k = k.filter(|k| is_same(of_parent(i), of_parent(free[*k])));
+            if let Some(k) = k.filter(|_| own.is_none() || part.mass <= light(parts)) {
+                rotors.push((i, k, relative[k]));
+            }
+        }
+        sets.push(own);
+    }
+    for (i, part) in parts.iter().enumerate() {
+        let is_rotor = rotors.iter().any(|(rotor, ..)| *rotor == i);
+        if sets[i].is_none() && !is_still(&rates[i]) && !is_rotor && part.mass > light(parts) {
+            let all: Vec<String> = rates[i].iter().map(|x| fixed(*x, 3)).collect();
+            let what = format!("it turns by {} times the driven joints", shortened(&all.join(", "), 100));
+            return Err(part.wrong(what, "links that each turn as one motor's drive does"));
+        }
+    }
+    Ok((sets, motors, rotors))
+}
+
+/// What is no mass beside that of all.
+fn light(parts: &[Part]) -> f64 {
+    super::family::NOTHING * parts.iter().map(|part| part.mass).sum::<f64>()
+}
+
+fn motor(joint: Node<'_, '_>, from: Option<usize>) -> Result<Motor, ImportError> {
+    let limit = child(joint, "limit");
+    let bound = |name: &'static str| -> Result<Option<f64>, ImportError> {
+        let most = limit.map(|limit| number(limit, name)).transpose()?.flatten();
+        Ok(most.filter(|most| *most > 0.0 && *most < UNLIMITED))
+    };
+    let name = joint.attribute("name").unwrap_or("joint").into();
+    Ok(Motor { name, from, torque_limit: bound("effort")?, speed_limit: bound("velocity")? })
+}
+
+/// Limits of a joint, rad about the common axis.
+fn range(joint: Node<'_, '_>, sign: f64) -> Result<Option<[f64; 2]>, ImportError> {
+    let Some(limit) = child(joint, "limit").filter(|_| joint.attribute("type") == Some("revolute")) else {
+        return Ok(None);
+    };
+    match (number(limit, "lower")?, number(limit, "upper")?) {
+        (None, None) => Ok(None),
+        (least, most) => {
+            let (least, most) = (least.unwrap_or(0.0), most.unwrap_or(0.0));
+            match least > most {
+                true => Err(wrong(
+                    joint,
+                    format!("limits from {} to {}", Short(least), Short(most)),
+                    "lower not above upper",
+                )),
+                false if sign < 0.0 => Ok(Some([-most, -least])),
+                false => Ok(Some([least, most])),
+            }
+        }
+    }
+}
+
+/// The part that works: one with a name that says so, else the only one that is fixed, weighs nothing and carries nothing.
+fn end(parts: &[Part], owners: &[Option<usize>]) -> Option<(usize, Vector3<f64>)> {
+    let named = parts.iter().position(|part| ENDS.contains(&part.name.to_lowercase().as_str()));
+    let is_leaf = |i: usize| !parts.iter().any(|other| other.parent == Some(i));
+    let mut bare = (0..parts.len()).filter(|i| parts[*i].hinge.is_none() && parts[*i].mass == 0.0 && is_leaf(*i));
+    let only = bare.next().filter(|_| bare.next().is_none());
+    let end = named.or(only)?;
+    Some((owners[end]?, parts[end].frame.translation.vector))
+}

@@ -1,0 +1,315 @@
+//! [`Parts`]: what a machine is built of, as a list: CSV for a spreadsheet, Markdown to read.
+
+use super::cut::{Cut, CutError, SAME};
+use crate::mechanics::machine::{Chain, Counterweight, Drive, Link, Machine};
+use crate::settings::number::fixed;
+
+/// What a machine is built of, kind by kind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parts {
+    /// The machine's name.
+    pub machine: String,
+    /// A table for each kind of part that it has, and the totals.
+    pub tables: Vec<PartTable>,
+}
+
+/// The parts of one kind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PartTable {
+    /// What one of them is: `link`.
+    pub kind: &'static str,
+    /// What all of them are: `Links`.
+    pub title: &'static str,
+    /// What each column holds, with its unit.
+    pub head: Vec<&'static str>,
+    /// A row for each part.
+    pub rows: Vec<Vec<Cell>>,
+}
+
+/// What is said of a part.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cell {
+    /// In words.
+    Words(String),
+    /// As a number, with so many decimals where it is read.
+    Number(f64, usize),
+    /// Nothing.
+    None,
+}
+
+impl Parts {
+    /// The list of a machine; discs are as thick as `cut` says.
+    ///
+    /// # Errors
+    /// If what discs are made of is no measure.
+    pub fn of(machine: &Machine, cut: &Cut) -> Result<Self, CutError> {
+        cut.check_discs()?;
+        let tables = [
+            Some(links(machine)),
+            Some(counterweights(machine, cut)),
+            payload(machine),
+            Some(motors(machine)),
+            Some(pins(machine)),
+            Some(totals(machine)),
+        ];
+        let tables = tables.into_iter().flatten().filter(|table| !table.rows.is_empty()).collect();
+        Ok(Self { machine: machine.name().into(), tables })
+    }
+
+    /// As CSV (RFC 4180): one table with a column for each that any kind of part has, numbers in full.
+    pub fn csv(&self) -> String {
+        let mut head: Vec<&str> = Vec::new();
+        for name in self.tables.iter().flat_map(|table| &table.head) {
+            if !head.contains(name) {
+                head.push(name);
+            }
+        }
+        let line = |cells: Vec<String>| cells.iter().map(|cell| field(cell)).collect::<Vec<_>>().join(",") + "\r\n";
+        let names = std::iter::once("part").chain(head.iter().copied()).map(String::from).collect();
+        let mut text = line(names);
+        for table in &self.tables {
+            for row in &table.rows {
+                let of = |name: &&str| {
+                    let cell = table.head.iter().position(|own| own == name).and_then(|i| row.get(i));
+                    cell.map_or(String::new(), Cell::whole)
+                };
+                text += &line(std::iter::once(table.kind.to_owned()).chain(head.iter().map(of)).collect());
+            }
+        }
+        text
+    }
+
+    /// As Markdown: a table for each kind, its columns aligned.
+    pub fn markdown(&self) -> String {
+        let mut text = format!("# Parts of {}\n", plain(&self.machine));
+        for table in &self.tables {
+            text += &format!("\n## {}\n\n{}", table.title, table.markdown());
+        }
+        text
+    }
+}
+
+impl PartTable {
+    fn markdown(&self) -> String {
+        let is_number = |c: usize| self.rows.iter().any(|row| matches!(row.get(c), Some(Cell::Number(..))));
+        let mut rows: Vec<Vec<String>> = vec![self.head.iter().map(|name| (*name).to_owned()).collect()];
+        rows.extend(self.rows.iter().map(|row| row.iter().map(Cell::read).collect()));
+        let width = |c: usize| rows.iter().map(|row| row[c].chars().count()).fold(3, usize::max);
+        let widths: Vec<usize> = (0..self.head.len()).map(width).collect();
+        let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+        let padded = |row: &Vec<String>| {
+            let cell = |(c, cell): (usize, &String)| match is_number(c) {
+                true => format!("{cell:>0$}", widths[c]),
+                false => format!("{cell:<0$}", widths[c]),
+            };
+            line(row.iter().enumerate().map(cell).collect())
+        };
+        let rule = |(c, width): (usize, &usize)| match is_number(c) {
+            true => format!("{}:", "-".repeat(width - 1)),
+            false => "-".repeat(*width),
+        };
+        let mut text = padded(&rows[0]) + &line(widths.iter().enumerate().map(rule).collect());
+        text.extend(rows[1..].iter().map(padded));
+        text
+    }
+}
+
+impl Cell {
+    fn words(text: impl Into<String>) -> Self {
+        Self::Words(text.into())
+    }
+
+    fn some(value: Option<f64>, decimals: usize) -> Self {
+        value.map_or(Self::None, |value| Self::Number(value, decimals))
+    }
+
+    /// With every digit.
+    fn whole(&self) -> String {
+        match self {
+            Self::Words(text) => text.clone(),
+            Self::Number(value, _) => value.to_string(),
+            Self::None => String::new(),
+        }
+    }
+
+    /// As it is read.
+    fn read(&self) -> String {
+        match self {
+            Self::Words(text) => plain(text),
+            Self::Number(value, decimals) => fixed(*value, *decimals),
+            Self::None => "–".into(),
+        }
+    }
+}
+
+/// A field of CSV: quoted where a comma, quote or line end is in it.
+fn field(text: &str) -> String {
+    match text.contains([',', '"', '\n', '\r']) {
+        true => format!("\"{}\"", text.replace('"', "\"\"")),
+        false => text.to_owned(),
+    }
+}
+
+/// A name as a line of a Markdown table can hold it.
+fn plain(text: &str) -> String {
+    let text: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    text.replace('\\', "\\\\").replace('|', "\\|").replace('<', "&lt;")
+}
+
+fn links(machine: &Machine) -> PartTable {
+    let parts = machine.resolved_links();
+    let row = |(j, link): (usize, &Link)| {
+        let pinned = parts[j].parent.map_or("base".into(), |p| on(machine, p, parts[j].at));
+        vec![
+            Cell::words(&link.name),
+            Cell::words(&link.drive),
+            Cell::Number(parts[j].length, 4),
+            Cell::Number(link.mass, 3),
+            Cell::Number(link.com, 4),
+            Cell::Number(link.com_normal, 4),
+            Cell::Number(link.inertia, 6),
+            Cell::words(pinned),
+        ]
+    };
+    PartTable {
+        kind: "link",
+        title: "Links",
+        head: vec![
+            "name",
+            "drive",
+            "length m",
+            "mass kg",
+            "centre of mass m",
+            "left of axis m",
+            "inertia kg m²",
+            "root pinned to",
+        ],
+        rows: machine.spec().links.iter().enumerate().map(row).collect(),
+    }
+}
+
+fn counterweights(machine: &Machine, cut: &Cut) -> PartTable {
+    let row = |(i, weight): (usize, &Counterweight)| {
+        let thickness = cut.thickness_of(weight.mass, weight.radius);
+        vec![
+            Cell::words((i + 1).to_string()),
+            Cell::words(&weight.link),
+            Cell::Number(weight.mass, 3),
+            Cell::Number(weight.at, 4),
+            Cell::Number(weight.radius, 4),
+            Cell::some(thickness, 4),
+            Cell::some(thickness.map(|_| cut.density), 0),
+            Cell::some(thickness.map(|thickness| cut.weighs(weight.radius, thickness)), 3),
+        ]
+    };
+    PartTable {
+        kind: "counterweight",
+        title: "Counterweights",
+        head: vec![
+            "name",
+            "on link",
+            "mass kg",
+            "place m",
+            "radius m",
+            "thickness m",
+            "density kg/m³",
+            "mass of the disc kg",
+        ],
+        rows: machine.spec().counterweights.iter().enumerate().map(row).collect(),
+    }
+}
+
+fn payload(machine: &Machine) -> Option<PartTable> {
+    let payload = machine.spec().payload;
+    let [along, left] = payload.offset;
+    (payload.mass > 0.0 || payload.inertia > 0.0).then(|| PartTable {
+        kind: "payload",
+        title: "Payload",
+        head: vec!["on link", "mass kg", "centre of mass m", "left of axis m", "inertia kg m²"],
+        rows: vec![vec![
+            Cell::words(&machine.links()[machine.end_link()].name),
+            Cell::Number(payload.mass, 3),
+            Cell::Number(along, 4),
+            Cell::Number(left, 4),
+            Cell::Number(payload.inertia, 6),
+        ]],
+    })
+}
+
+fn motors(machine: &Machine) -> PartTable {
+    let row = |drive: &Drive| {
+        let stator = drive.on.as_ref().map_or("base".into(), |on| format!("links of drive {on}"));
+        vec![
+            Cell::words(&drive.name),
+            Cell::words(stator),
+            Cell::some(drive.rotor.map(|rotor| rotor.ratio), 3),
+            Cell::some(drive.rotor.map(|rotor| rotor.inertia), 9),
+            Cell::some(drive.torque_limit, 2),
+            Cell::some(drive.speed_limit, 2),
+        ]
+    };
+    PartTable {
+        kind: "motor",
+        title: "Motors",
+        head: vec!["name", "stator on", "gear ratio", "rotor inertia kg m²", "torque limit N m", "speed limit rad/s"],
+        rows: machine.spec().drives.iter().map(row).collect(),
+    }
+}
+
+/// A place on a link, in words.
+fn on(machine: &Machine, j: usize, at: f64) -> String {
+    format!("link {} at {} m", machine.links()[j].name, fixed(at, 4))
+}
+
+/// What meets in one point in every pose is held by one pin.
+fn pins(machine: &Machine) -> PartTable {
+    let mut pins: Vec<(Chain, Vec<String>)> = Vec::new();
+    let mut join = |point: Chain, words: String| {
+        let is_there = |pin: &Chain| pin.iter().zip(&point).all(|(a, b)| (a - b).abs() <= SAME);
+        match pins.iter_mut().find(|(pin, _)| is_there(pin)) {
+            Some((_, joined)) if joined.contains(&words) => {}
+            Some((_, joined)) => joined.push(words),
+            None => pins.push((point, vec![words])),
+        }
+    };
+    let parts = machine.resolved_links();
+    for (j, part) in parts.iter().enumerate() {
+        let carrier = part.parent.map_or("base".into(), |parent| on(machine, parent, part.at));
+        join(part.root, carrier);
+        join(part.root, on(machine, j, 0.0));
+    }
+    for closing in machine.loops() {
+        join(parts[closing.a].point(closing.at_a), on(machine, closing.a, closing.at_a));
+        join(parts[closing.b].point(closing.at_b), on(machine, closing.b, closing.at_b));
+    }
+    let row = |(i, (_, joined)): (usize, (Chain, Vec<String>))| {
+        vec![Cell::words((i + 1).to_string()), Cell::words(joined.join(" · "))]
+    };
+    PartTable {
+        kind: "pin",
+        title: "Pins",
+        head: vec!["name", "connects"],
+        rows: pins.into_iter().enumerate().map(row).collect(),
+    }
+}
+
+fn totals(machine: &Machine) -> PartTable {
+    let spec = machine.spec();
+    let links = spec.links.iter().map(|link| link.mass).sum::<f64>();
+    let discs = spec.counterweights.iter().map(|weight| weight.mass).sum::<f64>();
+    let row = |name: &str, count: Option<usize>, mass: f64| {
+        let count = count.map_or(Cell::None, |count| Cell::Number(count as f64, 0));
+        vec![Cell::words(name), count, Cell::Number(mass, 3)]
+    };
+    PartTable {
+        kind: "total",
+        title: "Totals",
+        head: vec!["name", "count", "mass kg"],
+        rows: vec![
+            row("links", Some(spec.links.len()), links),
+            row("counterweights", Some(spec.counterweights.len()), discs),
+            row("payload", None, spec.payload.mass),
+            row("all", None, machine.mass()),
+        ],
+    }
+}

@@ -1,0 +1,93 @@
+//! Lists of parts.
+
+use stillbase::exchange::cut::Cut;
+use stillbase::exchange::parts::Parts;
+use stillbase::mechanics::machine::{Counterweight, Machine, builtin, builtins};
+
+fn parts(machine: &Machine) -> Parts {
+    Parts::of(machine, &Cut::default()).expect("a list")
+}
+
+/// What the csv crate reads of it.
+#[cfg(feature = "cli")]
+fn rows(text: &str) -> Vec<std::collections::HashMap<String, String>> {
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    reader.deserialize().collect::<Result<_, _>>().expect("as many fields in each line")
+}
+
+/// Another reader finds every part, and masses that add up to the machine's.
+#[cfg(feature = "cli")]
+#[test]
+fn another_reader_finds_every_part() {
+    for machine in builtins() {
+        let mut spec = machine.spec().clone();
+        spec.payload.mass = 0.25;
+        spec.links.iter_mut().for_each(|link| link.com_normal = 0.01);
+        let link = spec.links[0].name.clone();
+        spec.counterweights.push(Counterweight { link, mass: 1.5, at: -0.1, radius: 0.05 });
+        let machine = Machine::new(spec).expect("a machine");
+        let text = parts(&machine).csv();
+        assert!(text.lines().count() > 8 && text.ends_with("\r\n"));
+        let rows = rows(&text);
+        let of = |kind: &str| rows.iter().filter(|row| row["part"] == kind).collect::<Vec<_>>();
+        let mass =
+            |kind: &str| of(kind).iter().map(|row| row["mass kg"].parse::<f64>().expect("a number")).sum::<f64>();
+        assert_eq!(of("link").len(), machine.links().len());
+        assert_eq!(of("motor").len(), machine.drives());
+        let all = mass("link") + mass("counterweight") + mass("payload");
+        assert!((all - machine.mass()).abs() < 1e-12 * all, "{}", machine.name());
+        let total = of("total").iter().find(|row| row["name"] == "all").map(|row| row["mass kg"].clone());
+        assert_eq!(total, Some(machine.mass().to_string()));
+        let disc = of("counterweight").pop().expect("one");
+        let [area, thickness, density] = [
+            std::f64::consts::PI * disc["radius m"].parse::<f64>().expect("a number").powi(2),
+            disc["thickness m"].parse().expect("a number"),
+            disc["density kg/m³"].parse().expect("a number"),
+        ];
+        assert!((area * thickness * density - 1.5).abs() < 1e-12);
+    }
+}
+
+/// The nine-link machine has a pin at B, one where links 5 and 7 hang on 1, and those that close its loops.
+#[test]
+fn a_pin_joins_all_that_meets_there() {
+    let list = parts(builtin("nine-link").expect("built in"));
+    let text = list.markdown();
+    let pins: Vec<&str> =
+        text.lines().skip_while(|line| *line != "## Pins").skip(4).take_while(|l| !l.is_empty()).collect();
+    assert_eq!(pins.len(), 8, "{pins:#?}");
+    assert!(pins[0].contains("base · link 1 at 0.0000 m · link 2 at 0.0000 m · link 3 at 0.0000 m"), "{}", pins[0]);
+    let elbow = "link 1 at 0.5000 m · link 5 at 0.0000 m · link 7 at 0.0000 m";
+    assert_eq!(pins.iter().filter(|pin| pin.contains(elbow)).count(), 1, "{pins:#?}");
+    assert!(
+        pins.iter().any(|pin| pin.contains("link 5 at -0.1800 m") && pin.contains("link 4 at 0.5000 m")),
+        "{pins:#?}"
+    );
+}
+
+/// Columns stand under each other.
+#[test]
+fn a_table_to_read_is_aligned() {
+    let text = parts(builtin("serial-3r").expect("built in")).markdown();
+    let mut tables = 0;
+    for table in text.split("\n\n").filter(|block| block.starts_with('|')) {
+        let bars = |line: &str| line.chars().enumerate().filter(|(_, c)| *c == '|').map(|(i, _)| i).collect::<Vec<_>>();
+        let first = bars(table.lines().next().expect("a head"));
+        assert!(table.lines().all(|line| bars(line) == first), "{table}");
+        tables += 1;
+    }
+    assert_eq!(tables, 4, "links, motors, pins, totals");
+    assert!(text.contains("| 2    |") && text.contains("-30.000"), "{text}");
+}
+
+/// Names may hold what separates fields.
+#[test]
+fn names_of_a_stranger_stay_in_their_field() {
+    let mut spec = builtin("scara").expect("built in").spec().clone();
+    let name = "a,\"b\"\r\nc|d";
+    spec.links[1].name = name.into();
+    spec.end_effector.as_mut().expect("an end").link = name.into();
+    let list = parts(&Machine::new(spec).expect("a machine"));
+    assert!(list.csv().contains("\r\nlink,\"a,\"\"b\"\"\r\nc|d\",2,0.35,4,"), "{}", list.csv());
+    assert!(list.markdown().contains("| a,\"b\"  c\\|d |"), "{}", list.markdown());
+}
