@@ -9,7 +9,6 @@ use super::intro::Intro;
 use super::tour::Tour;
 use super::widgets::{FINE, name};
 use super::{Command, Layout, ViewState, coordinates, corner, framing, menu, place, present, set_b, status};
-use crate::mechanics::machine::Length;
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::picture::paint::words::words;
 use crate::picture::paint::{Spot, paint};
@@ -18,6 +17,7 @@ use crate::picture::scene::options::{Handle, Offered, Other, ViewOptions};
 use crate::picture::scene::pick::{Aim, Pick};
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::planning::pose_map::PoseMap;
+use crate::session::design::length_of;
 use crate::session::scenario::Task;
 use crate::session::{Edit, Session};
 use crate::simulation::frame::Frame as Instant;
@@ -244,13 +244,7 @@ fn point_at(
                 Edit::at(&["link", &session.scenario().machine.links().get(link)?.name, "com"], to)
             }
             Aim::Weight { weight, to } => Edit::at(&["counterweight", &(weight + 1).to_string(), "at"], to),
-            Aim::Length { link, to } => {
-                let link = session.scenario().machine.spec().links.get(link)?;
-                match &link.length {
-                    Length::Named(name) => Edit::at(&["length", name], to),
-                    Length::Metres(_) => Edit::at(&["link", &link.name, "length"], to),
-                }
-            }
+            Aim::Length { link, to } => length_of(session.scenario().machine.spec().links.get(link)?, to),
             Aim::Payload(offset) => Edit::set("plant.payload.offset", offset.to_vec()),
             Aim::Waypoint(i, [x, y]) => {
                 view_state.held = Some([x, y]);

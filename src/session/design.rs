@@ -8,7 +8,7 @@ use toml::{Table, Value};
 use super::edit::Edit;
 use crate::mechanics::balance::{Adjusted, Body, Hold, Keep, Parameter, Preset, Quantity, keep};
 use crate::mechanics::counterweights::{Disc, Front, NoWeights, Objective, Sites, Weighing, front};
-use crate::mechanics::machine::{Counterweight, Machine};
+use crate::mechanics::machine::{Counterweight, Length, Link, Machine};
 use crate::settings::change::{join, leaves, one};
 
 /// What is dear: a kilogram more or less of a counterweight, 1/kg, and a metre that one or a centre of mass moves, 1/m.
@@ -180,6 +180,14 @@ impl Brief {
             ..Weighing::least(Objective::mass(), sites.collect(), self.disc)
         };
         front(machine, &asked, count)
+    }
+}
+
+/// The edit that makes a link so long, m; with it all that share its length.
+pub fn length_of(link: &Link, to: f64) -> Edit {
+    match &link.length {
+        Length::Named(name) => Edit::at(&["length", name], to),
+        Length::Metres(_) => Edit::at(&["link", &link.name, "length"], to),
     }
 }
 

@@ -21,6 +21,7 @@ pub const TESTS: &[Test] = tests![
     what_cannot_be_balanced_is_told_and_changes_nothing,
     numbers_of_links_are_typed,
     single_numbers_are_held,
+    inertia_and_length_of_a_link_are_typed,
     discs_keep_clear_and_serve_a_range_of_payloads,
     colours_tell_the_machines_of_the_front_apart,
     equations_light_up_their_links,
@@ -320,5 +321,21 @@ fn colours_tell_the_machines_of_the_front_apart() {
         h.get_by_label(words).click();
         h.run_steps(3);
         assert_eq!(h.state().app_state().view_state().front_by.map(|by| by.words()[0]), Some(words));
+    }
+}
+
+/// Of the link that is chosen; a length that several links share changes for all of them.
+fn inertia_and_length_of_a_link_are_typed() {
+    let mut h = bare();
+    h.get_by_label("link in detail").click();
+    h.run_steps(3);
+    h.get_by_label("link 4").click();
+    h.run_steps(3);
+    type_into(&mut h, "inertia of link 4 kg m²", "0.02");
+    type_into(&mut h, "length of link 4 m", "0.52");
+    let machine = machine(&h);
+    assert_eq!(machine.links()[3].inertia, 0.02);
+    for link in [0, 3, 5] {
+        assert_eq!(machine.resolved_links()[link].length, 0.52);
     }
 }

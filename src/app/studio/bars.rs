@@ -14,13 +14,13 @@ use crate::session::Session;
 /// Heights of a row and of its bar, and the room on the left for its symbol and on the right for what is left, points.
 const ROW: f32 = 38.0;
 const HEIGHT: f32 = 18.0;
-const SYMBOL: f32 = 50.0;
+const SYMBOL: f32 = 62.0;
 const LEFT: f32 = 76.0;
 
 /// Draws it.
 pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewState) {
     let p = &view_state.palette();
-    heading(ui, p, "Balance", "which link gives what; below: what is left");
+    heading(ui, p, "(7) and (8)", "which link gives what; below: what is left");
     let hot = hot_link(view_state, session);
     for term in &facts.terms {
         row(ui, p, session, term, hot);

@@ -24,7 +24,7 @@ const NOTHING: f64 = 1e-6;
 pub fn show(ui: &mut Ui, facts: &Facts, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = &view_state.palette();
     ui.add_space(8.0);
-    heading(ui, p, "Counterweights", "hover shows them, click takes them");
+    heading(ui, p, "Counterweights", "hover shows, click takes");
     let points = match facts.front() {
         Ok([]) => return,
         Ok(points) => points,

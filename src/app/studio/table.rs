@@ -9,6 +9,7 @@ use crate::app::{Command, ViewState, place};
 use crate::mechanics::balance::Hold;
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::Palette;
+use crate::session::design::length_of;
 use crate::session::scenario::{Change, Value};
 use crate::session::{Edit, Session};
 
@@ -76,6 +77,42 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
             });
         });
     }
+    ui.add_space(4.0);
+    details(ui, session, p, commands);
+}
+
+/// What else one link has: inertia and length. Which link is chosen here.
+fn details(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
+    let links = &session.scenario().machine.spec().links;
+    let id = ui.scope_id().with("link in detail");
+    let mut at = ui.data(|data| data.get_temp::<usize>(id)).unwrap_or_default().min(links.len() - 1);
+    ui.horizontal(|ui| {
+        let words = |i: usize| format!("link {}", links[i].name);
+        let list = egui::ComboBox::from_id_salt("detail").selected_text(words(at)).width(62.0).show_ui(ui, |ui| {
+            for i in 0..links.len() {
+                ui.selectable_value(&mut at, i, words(i));
+            }
+        });
+        name(&list.response, "link in detail");
+        let link = &links[at];
+        let of = |what: &str| format!("{what} of link {}", link.name);
+        head(ui, p, "length");
+        let mut length = session.scenario().machine.resolved_links()[at].length;
+        let label = of("length");
+        let response = Row::of(&label, "length.any").with(3, 1e-3).number(ui, &mut length);
+        send(commands, &[response], || length_of(link, length));
+        head(ui, p, "m");
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            head(ui, p, "kg m²");
+            let mut inertia = link.inertia;
+            let label = of("inertia");
+            let path = format!("link.{}.inertia", link.name);
+            let response = Row::of(&label, &path).with(5, 1e-4).number(ui, &mut inertia);
+            send(commands, &[response], || Edit::at(&["link", &link.name, "inertia"], inertia));
+            head(ui, p, "inertia");
+        });
+    });
+    ui.data_mut(|data| data.insert_temp(id, at));
 }
 
 /// Whether a link stays as it is while the balance is kept.

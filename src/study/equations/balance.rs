@@ -158,7 +158,7 @@ impl Balance<'_> {
             number: "10",
             title: "The least shift that balances",
             says: "Of all places l_{c} that meet (9), these have the least Σ (p_{j} l_{cj})².",
-            form: "l_{c} = W⁻¹ W⁻ᵀ Aᵀ (A W⁻¹ W⁻ᵀ Aᵀ)⁻¹ k",
+            form: "l_{c} = W⁻¹ W⁻\u{1d40} A\u{1d40} (A W⁻¹ W⁻\u{1d40} A\u{1d40})⁻¹ k",
             notes,
             lines,
         }

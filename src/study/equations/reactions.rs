@@ -158,7 +158,8 @@ impl<'a> Reactions<'a> {
             let scale = total(&self.scale_of_torque(k));
             Line::new(self.drive(k), "N m", vec![Term::plain(of("τ", self.name(k)), own)], right, scale)
         };
-        let mut notes = vec!["The paper prints + γᵀg; with g the acceleration of (1) it is − γᵀg.".to_owned()];
+        let mut notes =
+            vec!["The paper prints the last term with +; with g the acceleration of (1) it is −.".to_owned()];
         if self.machine.motors().in_joints() {
             notes.push("τ is of absolute angles; a motor in a joint gives the sum of those that it carries.".into());
         }
@@ -166,7 +167,7 @@ impl<'a> Reactions<'a> {
             number: "4",
             title: "Torques",
             says: "Drives turn what is inert (H), what rates bend off (V), and hold what gravity pulls at.",
-            form: "τ = H(q) q\u{308} + V(q, q\u{307}) − γᵀ g",
+            form: "τ = H(q) q\u{308} + V(q, q\u{307}) − γ\u{1d40} g",
             notes,
             lines: Ok((0..n).map(line).collect()),
         }

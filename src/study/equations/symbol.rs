@@ -15,7 +15,7 @@ pub enum Level {
 pub fn pieces(symbol: &str) -> impl Iterator<Item = (&str, Level)> {
     symbol.split("_{").enumerate().flat_map(|(i, piece)| {
         let (index, rest) = if i == 0 { ("", piece) } else { piece.split_once('}').unwrap_or((piece, "")) };
-        let transposes = rest.split('ᵀ').enumerate().flat_map(|(i, text)| {
+        let transposes = rest.split('\u{1d40}').enumerate().flat_map(|(i, text)| {
             let raised = if i == 0 { "" } else { "T" };
             [(raised, Level::Raised), (text, Level::Line)]
         });
@@ -29,7 +29,7 @@ pub fn plain(symbol: &str) -> String {
     let digits = |text: &str| text.chars().map(small).collect::<Option<String>>();
     let piece = |(text, level): (&str, Level)| match level {
         Level::Line => text.to_owned(),
-        Level::Raised => "ᵀ".to_owned(),
+        Level::Raised => "\u{1d40}".to_owned(),
         Level::Index => digits(text).unwrap_or_else(|| format!("_{text}")),
     };
     pieces(symbol).map(piece).collect()
