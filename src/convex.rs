@@ -102,29 +102,34 @@ impl Program {
         cones.retain(|cone| !matches!(cone, ZeroConeT(0) | NonnegativeConeT(0)));
         cones.extend(self.cones.iter().map(|_| SecondOrderConeT(3)));
         let (a, p) = (sparse(right.len(), n, &entries), sparse(n, n, &self.quadratic));
-        let settings = DefaultSettings {
-            verbose: false,
-            max_iter: 200,
-            tol_gap_abs: 1e-10,
-            tol_gap_rel: 1e-10,
-            tol_feas: 1e-11,
-            ..DefaultSettings::default()
-        };
-        let mut solver = DefaultSolver::new(&p, &self.linear, &a, &right, &cones, settings)
-            .map_err(|why| NoX::Failed(why.to_string()))?;
-        solver.solve();
-        let found = solver.solution;
-        match found.status {
-            SolverStatus::Solved | SolverStatus::AlmostSolved => {
-                let gap = (found.obj_val - found.obj_val_dual).abs();
-                Ok(Least { x: found.x, value: found.obj_val, gap })
+        let mut failed = String::new();
+        // Where what is wanted just exists or just does not, less exactness may still tell.
+        for [gap, feasible] in [[1e-10, 1e-11], [1e-8, 1e-9]] {
+            let settings = DefaultSettings {
+                verbose: false,
+                max_iter: 200,
+                tol_gap_abs: gap,
+                tol_gap_rel: gap,
+                tol_feas: feasible,
+                ..DefaultSettings::default()
+            };
+            let mut solver = DefaultSolver::new(&p, &self.linear, &a, &right, &cones, settings)
+                .map_err(|why| NoX::Failed(why.to_string()))?;
+            solver.solve();
+            let found = solver.solution;
+            match found.status {
+                SolverStatus::Solved | SolverStatus::AlmostSolved => {
+                    let gap = (found.obj_val - found.obj_val_dual).abs();
+                    return Ok(Least { x: found.x, value: found.obj_val, gap });
+                }
+                SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
+                    let from = self.equal.len();
+                    return Err(NoX::Contradiction(found.z[from..from + self.at_most.len()].to_vec()));
+                }
+                status => failed = status.to_string(),
             }
-            SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
-                let from = self.equal.len();
-                Err(NoX::Contradiction(found.z[from..from + self.at_most.len()].to_vec()))
-            }
-            status => Err(NoX::Failed(status.to_string())),
         }
+        Err(NoX::Failed(failed))
     }
 }
 

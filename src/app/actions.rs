@@ -278,7 +278,7 @@ pub const ACTIONS: &[Action] = actions![
     File, "Open a session or scenario", [on(CTRL, Key::O)], "top bar, scenario", |s, _| dialog(s, Purpose::Open);
     File, "Save the session", [on(CTRL, Key::S)], "top bar, scenario", |s, _| dialog(s, Purpose::Save);
     File, "Quit; asks first if changes are in no file", [on(CTRL, Key::Q)], "window frame", |_, _| Some(Command::Quit);
-    File, "Take the machine elsewhere: MJCF, URDF, drawings, parts list", [], "design", |s, _| dialog(s, Purpose::Machine);
+    File, "Take the machine elsewhere: MJCF, URDF, DXF…", [], "design", |s, _| dialog(s, Purpose::Machine);
     File, "Record for the Rerun viewer", [on(PLAIN, Key::R)], "top bar", |s, _| dialog(s, Purpose::Record);
     File, "Find a command", [on(CTRL, Key::K)], "top bar", |_, v| Some(Command::Find(v.finder.is_none()));
     File, "Tour: what this is about, in seven steps", [], "?", |_, v| Some(Command::Tour(v.tour.is_none()));

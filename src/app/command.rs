@@ -381,7 +381,7 @@ impl Purpose {
             Self::Open => ["Open a session", "Open", "session.toml"],
             Self::Save => ["Save the session", "Save", "session.toml"],
             Self::Record => ["Record for the Rerun viewer", "Record", "run.rrd"],
-            Self::Machine => ["Take the machine elsewhere: .xml .urdf .svg .dxf .csv .md", "Save", "machine.urdf"],
+            Self::Machine => ["Take along: .xml .urdf .svg .dxf .csv .md", "Save", "machine.urdf"],
             Self::Plot(_, PlotFile::Csv) => ["Save the values of the time shown", "Save", "plot.csv"],
             Self::Plot(_, PlotFile::Svg) => ["Save the plot as a drawing", "Save", "plot.svg"],
             Self::Plot(_, PlotFile::Png) => ["Save the plot as a picture", "Save", "plot.png"],

@@ -238,7 +238,7 @@ fn head(machine: &Machine, state: &State) -> String {
     let when = match state.when {
         When::Run(time) => format!("at {} s", fixed(time, 3)),
         When::Plan(time) => format!("{} s into the planned motion", fixed(time, 3)),
-        When::Given => "in a pose that was given".to_owned(),
+        When::Given => "in one pose".to_owned(),
     };
     let all = |values: &[f64]| values.iter().map(|x| fixed(*x, 4)).collect::<Vec<_>>().join(", ");
     let motion =

@@ -15,6 +15,9 @@ use crate::settings::change::{join, leaves, one};
 const MASS: f64 = 1.0;
 const PLACE: f64 = 5.0;
 
+/// A counterweight may be so much further back, m: what found it has rounded.
+const ROUNDING: f64 = 1e-6;
+
 /// What a designer asks for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Brief {
@@ -62,7 +65,8 @@ impl Brief {
             let place = machine.links().iter().position(|own| own.name == link)?;
             Some(machine.resolved_links()[place].length)
         };
-        let is_usual = |weight: &Counterweight| length(&weight.link).is_some_and(|length| weight.at >= -length);
+        let is_usual =
+            |weight: &Counterweight| length(&weight.link).is_some_and(|length| weight.at >= -length - ROUNDING);
         let back = weights.iter().fold(0.0_f64, |back, weight| back.max(-weight.at));
         Self {
             disc: disc.map_or(Disc::STEEL, |thickness| Disc { thickness, ..Disc::STEEL }),

@@ -125,7 +125,8 @@ pub fn search(
     go_on: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<Found, NoLengths> {
     check(machine, asked)?;
-    let mut seen = Seen { machine, asked, go_on, stopped: false, machines: 0, ended: 0, best: None };
+    let mut seen =
+        Seen { machine, asked, go_on, stopped: false, machines: 0, ended: 0, best: None, nearest: f64::INFINITY };
     let present = asked.lengths.iter().map(|free| share(free.ends, length(machine.spec(), &free.name)));
     let present: Vec<f64> = present.collect();
     let mut draws = ChaCha8Rng::seed_from_u64(asked.seed);
@@ -143,7 +144,7 @@ pub fn search(
     let Some((value, lengths, placed)) = seen.best else {
         let why = match seen.asked.at(machine, &present) {
             Err(why) => why,
-            Ok(_) => "stopped".into(),
+            Ok(_) => format!("the nearest is {:.4} m of reach or m² of workspace short", seen.nearest),
         };
         return Err(NoLengths::None { machines, why });
     };
@@ -154,6 +155,16 @@ pub fn search(
 fn check(machine: &Machine, asked: &LengthSearch) -> Result<(), NoLengths> {
     if asked.lengths.is_empty() || asked.starts == 0 {
         return Err(NoLengths::Nothing("nothing to seek: want at least one length and one start"));
+    }
+    for (what, least) in [("reach", asked.least_reach), ("workspace", asked.least_workspace)] {
+        if let Some(least) = least.filter(|least| !(least.is_finite() && *least >= 0.0)) {
+            return Err(NoWeights::OutOfRange {
+                what: format!("a {what} of at least"),
+                value: least,
+                want: "a number not below 0".into(),
+            }
+            .into());
+        }
     }
     let known = known(machine.spec());
     for (i, FreeLength { name, ends: [from, to] }) in asked.lengths.iter().enumerate() {
@@ -261,6 +272,8 @@ struct Seen<'a> {
     machines: usize,
     ended: usize,
     best: Option<(f64, Vec<f64>, Placed)>,
+    /// The least that any misses of reach and workspace together.
+    nearest: f64,
 }
 
 impl Seen<'_> {
@@ -274,7 +287,10 @@ impl Seen<'_> {
                 }
                 value
             }
-            Ok((.., misses)) => NO_ANSWER * (1.0 + misses),
+            Ok((.., misses)) => {
+                self.nearest = self.nearest.min(misses);
+                NO_ANSWER * (1.0 + misses)
+            }
             Err(_) => f64::INFINITY,
         };
         let best = self.best.as_ref().map_or(f64::INFINITY, |(best, ..)| *best);

@@ -261,7 +261,7 @@ fn counterweights_that_cannot_be_are_refused() {
     let ask = |more: &[&str], status: i32, words: &[&str]| {
         fails(&[&["design", BARE, "--counterweights"], more].concat(), status, words);
     };
-    ask(&["--max-mass", "1"], 1, &["no heavier", "kg on every link would do"]);
+    ask(&["--max-mass", "1"], 1, &["no heavier", "kg on each link that is bounded would do"]);
     ask(&["--range", "10=-0.3,0"], 2, &["no link 10", "want one of 1, 2"]);
     ask(&["--range", "1=-0.3"], 2, &["NAME=LO,HI"]);
     ask(&["--range", "1=0.3,-0.3"], 2, &["link 1", "an end not below its start"]);
@@ -272,7 +272,7 @@ fn counterweights_that_cannot_be_are_refused() {
     // As printed it does.
     object(&["design", BARE, "--counterweights", "--max-inertia", "1.681167"]);
     ask(&["--max-added", "5"], 1, &["kg in all would do"]);
-    ask(&["--clearance", "0.25"], 1, &["250.0 mm clear of every pin", "mm would do"]);
+    ask(&["--clearance", "0.25"], 1, &["0.25 m clear of every pin", "m would do"]);
     ask(&["--clearance=-1"], 2, &["clearance -1: want 0 to 1000 m"]);
     ask(&["--max-radius", "0"], 2, &["want a radius above 0"]);
     ask(&["--payload", "0.3,0.1"], 2, &["a payload up to 0.1", "not below its start"]);

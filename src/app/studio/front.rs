@@ -219,7 +219,7 @@ fn say(
     let tone = if at.is_some() { p.ink } else { p.amber };
     ui.label(RichText::new(text).font(bold(13.0)).color(colour(tone)));
     let gap = points.iter().map(|point| point.placed.gap).fold(0.0, f64::max);
-    let proof = format!("proved: below the curve there is nothing, give or take {gap:.0e} kg or kg m²");
+    let proof = format!("proved: nothing lies below the curve, to {gap:.0e} of what is least");
     note(ui, p, &proof);
     ui.horizontal(|ui| {
         let last = points.len() - 1;

@@ -18,10 +18,11 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, p: &Palette) {
     heading(ui, p, "What it comes to", "");
     let (machine, run) = (&session.scenario().machine, session.run());
     let lambda: Vec<String> = facts.lambda.iter().map(|lambda| signed(*lambda, 3)).collect();
+    let is_balanced = facts.terms.iter().all(|term| term.is_balanced);
     let mut rows = vec![
         ("mass of all", format!("{} kg", signed(machine.mass(), 2))),
         ("inertia of all drives, Σ D", format!("{} kg m²", signed(facts.now[1], 3))),
-        ("λ", lambda.join("  ")),
+        (if is_balanced { "λ" } else { "λ if no C were left" }, lambda.join("  ")),
     ];
     if let Some(planes) = run.planes() {
         let noun = if planes.is_reactionless() { "reactionless workspace" } else { "workspace of b" };

@@ -27,7 +27,7 @@ pub fn show(ui: &mut Ui, facts: &Facts, held: f64, p: &Palette) {
         .x_grid_spacer(move |_| marks(&spaced(left, right), right - left))
         .y_grid_spacer(move |_| marks(&spaced(0.0, top), top))
         .x_axis_formatter(|mark, _| signed(mark.value, 2))
-        .y_axis_formatter(|mark, _| signed(mark.value, 3))
+        .y_axis_formatter(|mark, _| if mark.value > 0.0 { signed(mark.value, 3) } else { String::new() })
         .show(ui, |plot| {
             plot.set_plot_bounds_x(left..=right);
             plot.set_plot_bounds_y(0.0..=top);

@@ -47,8 +47,7 @@ Examples:
   stillbase design nine-link --set payload.mass=0.2 --keep --free 1.mass,2.mass,3.mass -o loaded.toml
   stillbase design nine-link --counterweights --objective torque --task case-3
   stillbase design two-drive --counterweights --objective inertia --thickness 0.02
-  stillbase design nine-link --set link.9.mass=0.5 --counterweights --range 1=-0.3,0.2 --range 2=-0.3,0 \\
-    --range 3=-0.3,0 --front 9
+  stillbase design nine-link-bare --counterweights --objective mass=1,inertia=5 --max-mass 1=8 --front 9
   stillbase design nine-link-bare --counterweights --clearance 0.01 --max-radius 0.12
   stillbase design nine-link-bare --counterweights --payload 0,0.2
   stillbase design nine-link-bare --counterweights --length l5=0.3,0.6 --length l9=0.2,0.5 --min-reach 1.26

@@ -3,7 +3,7 @@
 use clap::Args;
 use serde::Serialize;
 use stillbase::mechanics::counterweights::{
-    Disc, Free, FreeRotor, NoWeights, Objective, Placed, Residual, Sites, Weighing, front, over_payloads, place,
+    Disc, Free, FreeRotor, NoWeights, Objective, Placed, Relief, Residual, Sites, Weighing, front, over_payloads, place,
 };
 use stillbase::mechanics::machine::{Counterweight, Inertia, Machine};
 use stillbase::planning::Motion;
@@ -29,19 +29,19 @@ pub struct WeighArguments {
     #[arg(long, value_name = "LINK=LO,HI", requires = "counterweights", value_parser = range, allow_hyphen_values = true)]
     range: Vec<(String, [f64; 2])>,
     /// Density of the discs, kg/m³; steel has 7850
-    #[arg(long, value_name = "DENSITY", requires = "counterweights", default_value_t = Disc::STEEL.density)]
+    #[arg(long, value_parser = number, value_name = "DENSITY", requires = "counterweights", default_value_t = Disc::STEEL.density)]
     material: f64,
     /// Thickness of the discs, m
-    #[arg(long, value_name = "T", requires = "counterweights", default_value_t = Disc::STEEL.thickness)]
+    #[arg(long, value_parser = number, value_name = "T", requires = "counterweights", default_value_t = Disc::STEEL.thickness)]
     thickness: f64,
     /// The most that a counterweight may weigh, kg: of every link, or LINK=M of one
     #[arg(long, value_name = "[LINK=]M", requires = "counterweights")]
     max_mass: Vec<String>,
     /// The largest radius of a disc, m
-    #[arg(long, value_name = "R", requires = "counterweights")]
+    #[arg(long, value_parser = number, value_name = "R", requires = "counterweights")]
     max_radius: Option<f64>,
     /// How far the edge of a disc stays from the middle of every pin of its link, m; without it discs may cover pins
-    #[arg(long, value_name = "C", requires = "counterweights")]
+    #[arg(long, value_parser = number, value_name = "C", requires = "counterweights")]
     clearance: Option<f64>,
     /// What the end effector holds, at least and at most, kg: the worst residual of (7) and (8) over all between is made
     /// least, then the objective
@@ -59,20 +59,20 @@ pub struct WeighArguments {
     #[arg(long, value_name = "mass|inertia|momentum|torque|WEIGHTS", requires = "counterweights", value_parser = objective)]
     objective: Option<Objective>,
     /// The most that all may weigh together, kg
-    #[arg(long, value_name = "M", requires = "counterweights")]
+    #[arg(long, value_parser = number, value_name = "M", requires = "counterweights")]
     max_added: Option<f64>,
     /// The most that Σ D_k may be, kg m²
-    #[arg(long, value_name = "D", requires = "counterweights")]
+    #[arg(long, value_parser = number, value_name = "D", requires = "counterweights")]
     max_inertia: Option<f64>,
     /// Seek a length, too, m: a name under [lengths] or a link. Links keep their mass per metre. Not certified: the best
     /// of several searches, each with certified counterweights
     #[arg(long, value_name = "NAME=LO,HI", requires = "counterweights", value_parser = range)]
     length: Vec<(String, [f64; 2])>,
     /// How far the arms have to reach together at least, m
-    #[arg(long, value_name = "R", requires = "length")]
+    #[arg(long, value_parser = number, value_name = "R", requires = "length")]
     min_reach: Option<f64>,
     /// How large the reactionless workspace has to be at least, m²
-    #[arg(long, value_name = "A", requires = "length")]
+    #[arg(long, value_parser = number, value_name = "A", requires = "length")]
     min_workspace: Option<f64>,
     /// From how many places lengths are sought
     #[arg(long, value_name = "N", requires = "length", default_value_t = 6, value_parser = clap::value_parser!(u16).range(1..=1000))]
@@ -139,6 +139,17 @@ impl WeighArguments {
         inertia.chain(ratio).map(|(name, free)| Ok(FreeRotor { drive: find(name)?, free })).collect()
     }
 
+    /// Why there are none; a mass that would do as a radius where radii are bounded.
+    fn refusal(&self, why: NoWeights, disc: &Disc) -> Failure {
+        match (&why, self.max_radius) {
+            (NoWeights::Conflict { relief: Some(Relief::Most(most)), .. }, Some(_)) => {
+                let radius = (disc.radius(*most) * 1e6 * (1.0 + 1e-9)).ceil() * 1e-6;
+                Failure::no_answer(format!("{why}, which takes a radius of {radius:.6} m"))
+            }
+            _ => unweighed(why),
+        }
+    }
+
     /// The best lengths, and where their links may carry counterweights.
     fn seek(&self, machine: &Machine, asked: &Weighing) -> Result<(Found, Vec<Sites>), Failure> {
         let lengths = self.length.iter().map(|(name, ends)| FreeLength { name: name.clone(), ends: *ends });
@@ -165,7 +176,7 @@ impl WeighArguments {
         };
         let placed = match &found {
             Some((found, _)) => found.placed.clone(),
-            None => place(machine, &asked).map_err(unweighed)?,
+            None => place(machine, &asked).map_err(|why| self.refusal(why, &asked.disc))?,
         };
         // With other lengths the links are others, too.
         let machine = if found.is_some() { &placed.machine } else { machine };
@@ -178,7 +189,7 @@ impl WeighArguments {
             None => Vec::new(),
         };
         let front = front.iter().map(|placed| FrontPoint::of(placed, motion, true)).collect();
-        let mut answer = Weighed::of(machine, &placed, front, motion, &asked)?;
+        let mut answer = Weighed::of(&placed, front, motion, &asked)?;
         if let Some((found, _)) = found {
             answer.sought(self, found);
         }
@@ -203,6 +214,11 @@ fn unweighed(why: NoWeights) -> Failure {
         }
         why => Failure::no_answer(why),
     }
+}
+
+/// One number; whether it may be so is said where it is used.
+fn number(text: &str) -> Result<f64, String> {
+    text.trim().parse().map_err(|_| "want a number, as 0.05".to_owned())
 }
 
 fn ends(text: &str) -> Result<[f64; 2], String> {
@@ -238,6 +254,9 @@ pub struct Weighed {
     /// Beside the machine without counterweights.
     #[serde(flatten)]
     measures: Measures,
+    /// The greatest |torque| of a motor in the task's motion, N m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    torque: Option<f64>,
     weights: Vec<Counterweight>,
     /// The most by which the best may lie below what was found.
     gap: f64,
@@ -256,6 +275,8 @@ pub struct Weighed {
     /// What is left of balance over the payloads.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     payload: Vec<Residual>,
+    /// Whether (7) and (8) hold: over a range of payloads they may not within bounds.
+    is_balanced: bool,
     #[serde(flatten)]
     balance: Balance,
 }
@@ -272,6 +293,11 @@ struct Sought {
     agreeing: usize,
     /// Machines that were looked at.
     machines: usize,
+    /// How far the arms reach together, m.
+    reach: f64,
+    /// The reactionless workspace, m², of a machine that has one b of three drives.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    workspace: Option<f64>,
 }
 
 /// A rotor that was chosen.
@@ -288,13 +314,13 @@ const PAYLOADS: usize = 11;
 
 impl Weighed {
     fn of(
-        machine: &Machine,
         placed: &Placed,
         front_points: Vec<FrontPoint>,
         motion: Option<&Motion>,
         asked: &Weighing,
     ) -> Result<Self, Failure> {
-        let mut bare = machine.spec().clone();
+        // With what it holds now, which is no part of what was added.
+        let mut bare = placed.machine.spec().clone();
         bare.counterweights.clear();
         let bare = Machine::new(bare)?;
         let (machine, inertia) = (&placed.machine, Inertia::of(&placed.machine));
@@ -306,6 +332,7 @@ impl Weighed {
         let payload = asked.payload.map(|ends| over_payloads(machine, ends, PAYLOADS)).transpose()?;
         Ok(Self {
             measures: Measures::of(&bare, machine, motion),
+            torque: motion.and_then(|motion| FrontPoint::of(placed, Some(motion), false).torque),
             weights: machine.spec().counterweights.clone(),
             gap: placed.gap,
             front: front_points.iter().map(|point| [point.added_mass, point.inertia]).collect(),
@@ -313,6 +340,7 @@ impl Weighed {
             sought: None,
             rotors: asked.rotors.iter().map(chosen).collect(),
             payload: payload.unwrap_or_default(),
+            is_balanced: inertia.is_balanced(),
             balance: Balance::of(&inertia),
         })
     }
@@ -321,7 +349,11 @@ impl Weighed {
         let names = asked.length.iter().map(|(name, _)| name.clone());
         let [starts, agreeing] = found.starts;
         let lengths = names.zip(found.lengths).collect();
-        self.sought = Some(Sought { lengths, certified: false, starts, agreeing, machines: found.machines });
+        let machine = &found.placed.machine;
+        let reach = machine.end_effector().iter().take(machine.drives()).map(|length| length.abs()).sum();
+        let workspace = FrontPoint::of(&found.placed, None, true).workspace;
+        let machines = found.machines;
+        self.sought = Some(Sought { lengths, certified: false, starts, agreeing, machines, reach, workspace });
     }
 
     /// As a person reads it.
@@ -338,12 +370,17 @@ impl Weighed {
             measures::text(&self.measures),
             self.balance.tables(machine)
         );
+        if let Some(torque) = self.torque {
+            text.push_str(&format!("\ngreatest torque of the task {} N m\n", fixed(torque, 6)));
+        }
         if let Some(sought) = &self.sought {
             let mut table = Table::new(["length", "m"]);
             sought.lengths.iter().for_each(|(name, length)| table.row([name.clone(), fixed(*length, 6)]));
-            let Sought { starts, agreeing, machines, .. } = sought;
+            let Sought { starts, agreeing, machines, reach, .. } = sought;
+            let workspace = sought.workspace.map_or(String::new(), |x| format!(", workspace {} m²", fixed(x, 6)));
             text.push_str(&format!(
-                "\nlengths, not certified: the best of {machines} machines; {agreeing} of {starts} starts ended there\n\n{table}"
+                "\nlengths, not certified: the best of {machines} machines; {agreeing} of {starts} starts ended there\n\n{table}\nreach {} m{workspace}\n",
+                fixed(*reach, 6)
             ));
         }
         if !self.rotors.is_empty() {
@@ -359,7 +396,14 @@ impl Weighed {
                 table.row([fixed(at.payload, 4), fixed(at.force, 6), fixed(at.coupling, 6)]);
             }
             let middle = fixed(0.5 * (first.payload + last.payload), 6);
-            text.push_str(&format!("\nholding {middle} kg, the middle, here and in the new file\n\n{table}"));
+            let bounds = match self.is_balanced {
+                true => "",
+                false => {
+                    "within these bounds nothing balances it: the worst |g_k|, or |C_kl| divided by the reach, over all \
+                     payloads is as small as can be\n"
+                }
+            };
+            text.push_str(&format!("\n{bounds}holding {middle} kg, the middle, here and in the new file\n\n{table}"));
         }
         if !self.front_points.is_empty() {
             let mut table = Table::new(["added kg", "Σ D_k kg m²", "torque N m", "workspace m²", "off by kg m"]);

@@ -6,7 +6,7 @@ use std::fmt::Display;
 
 use stillbase::mechanics::machine::Machine;
 use stillbase::mechanics::planar::{PerDrive, Vector};
-use stillbase::settings::number::Short;
+use stillbase::settings::number::{Short, counted};
 use stillbase::settings::range::{clipped, shortened};
 use stillbase::study::trim::Motion;
 
@@ -221,6 +221,14 @@ impl Columns {
         // Of some drives only they are of no use.
         let all = |of: Vec<Option<Column>>| of.into_iter().collect::<Option<Vec<Column>>>().unwrap_or_default();
         let want = |found: Option<Column>, name: &str| found.ok_or_else(|| missing(name));
+        // A file of a machine with more drives is of another machine.
+        let number = |cell: &str| {
+            cell.to_lowercase().strip_prefix('q').and_then(|rest| rest.trim_start_matches('_').parse::<usize>().ok())
+        };
+        if let Some(other) = head.iter().find(|cell| number(cell).is_some_and(|k| k > drives)) {
+            let has = counted(drives, "drive");
+            return Err(format!("column {} is of no drive: {} has {has}", clipped(other), machine.name()));
+        }
         let q = each(["q", "q"], "angle", ANGLE)?.into_iter().enumerate();
         Ok(Self {
             time: want(find(&named(&["t", "time"]), TIME)?, "t")?,

@@ -84,7 +84,13 @@ impl Trim {
         for file in self.output.iter().chain(&self.identified) {
             check_output(file, self.force, &["toml"])?;
         }
+        let is_table = |word: &String| Path::new(word).extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
         let (name, files) = match self.words.as_slice() {
+            all if all.last().is_some_and(is_table) => {
+                return Err(Failure::wrong_input(
+                    "no machine: want one after the files, as in trim measured.csv nine-link",
+                ));
+            }
             [files @ .., name] if !files.is_empty() => (name, files),
             _ => return Err(Failure::wrong_input("want files and a machine, as in trim measured.csv nine-link")),
         };
@@ -161,8 +167,11 @@ impl Trim {
                 "--range is for new counterweights on a machine that has none: want --fix, --free or --bound alone";
             return Err(Failure::wrong_input(why));
         }
+        // What is named alone may change; where only what stays is named, the other centres of mass may.
         let mut asked = match weights {
-            0 => Keep::coms(machine, &vec![1.0; machine.links().len()]),
+            0 if self.free.is_empty() && self.bound.is_empty() => {
+                Keep::coms(machine, &vec![1.0; machine.links().len()])
+            }
             _ => Keep::default(),
         };
         for (i, quantity) in (0..weights).flat_map(|i| [(i, Quantity::Mass), (i, Quantity::Along)]) {

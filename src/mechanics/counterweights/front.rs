@@ -32,9 +32,7 @@ pub fn front(machine: &Machine, asked: &Weighing, count: usize) -> Result<Front,
     let mass = Weighing { objective: Objective::mass(), ..asked.clone() };
     let inertia = Weighing { objective: Objective::inertia(), ..asked.clone() };
     let quick = place(machine, &inertia)?;
-    // Of those of least mass the one of least inertia: a gram is worth it.
-    let light = Objective { inertia: 1e-6, ..Objective::mass() };
-    let light = place(machine, &Weighing { objective: light, ..asked.clone() })?;
+    let light = place(machine, &mass)?;
     let mut points: Vec<([f64; 2], Placed)> = [light, quick].map(|placed| (measures(&placed), placed)).into();
     let size = [0, 1].map(|i| (points[1].0[i] - points[0].0[i]).abs().max(f64::MIN_POSITIVE));
     while points.len() < count {

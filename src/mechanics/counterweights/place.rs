@@ -21,6 +21,15 @@ pub struct Placed {
     pub gap: f64,
 }
 
+/// What a kg m² counts beside a kilogram where only mass is to be least: enough to choose among equals.
+const TIE: f64 = 1e-7;
+
+/// A counterweight that is lighter than this part of all together is done without, if that can be.
+const LIGHT: f64 = 1e-4;
+
+/// As far from the best as this an answer may be for the sake of simplicity, in what is least.
+const CERTIFIED: f64 = 5e-7;
+
 /// Bounds on masses that are tried, each a tenth above the one before.
 const TRIES: i32 = 24;
 
@@ -58,7 +67,10 @@ pub fn place_with(machine: &Machine, asked: &Weighing, beyond: &[Vector]) -> Res
     }
     let one = One { problem: &problem, machine, asked, beyond };
     match one.least(Balance::Exact)? {
-        Ok(least) => one.placed(&least, Balance::Exact),
+        Ok(least) => {
+            let best = one.placed(&least, Balance::Exact)?;
+            Ok(one.simpler(one.quicker(best, &least)))
+        }
         Err(NoX::Failed(why)) => Err(NoWeights::Failed(why)),
         Err(NoX::Contradiction(_)) if asked.payload.is_some() => one.nearest(),
         Err(NoX::Contradiction(weights)) => Err(one.refusal(&weights)),
@@ -108,6 +120,44 @@ impl One<'_> {
         }
     }
 
+    /// Of all that weigh the same the one that turns least.
+    fn quicker(&self, best: Placed, least: &Least) -> Placed {
+        let Weighing { objective, most_inertia, .. } = self.asked;
+        if objective.turns() || objective.mass == 0.0 || most_inertia.is_some() {
+            return best;
+        }
+        let objective = Objective { inertia: TIE * objective.mass, ..objective.clone() };
+        let tied = Weighing { objective, ..self.asked.clone() };
+        let one = One { asked: &tied, ..*self };
+        let found = one.least(Balance::Exact).ok().and_then(Result::ok);
+        let found = found.and_then(|tied| one.placed(&tied, Balance::Exact).ok());
+        found.and_then(|found| self.as_good(found, least.value - least.gap)).unwrap_or(best)
+    }
+
+    /// The same without counterweights that weigh next to nothing, if it does without them.
+    fn simpler(&self, best: Placed) -> Placed {
+        let weights = &best.machine.spec().counterweights;
+        let is_light = |mass: f64| mass < LIGHT * best.added_mass;
+        if !weights.iter().any(|weight| is_light(weight.mass)) {
+            return best;
+        }
+        let carries = |site: &Sites| {
+            let link = &self.machine.links()[site.link].name;
+            weights.iter().any(|weight| weight.link == *link && !is_light(weight.mass))
+        };
+        let sites: Vec<Sites> = self.asked.sites.iter().copied().filter(carries).collect();
+        let fewer = Weighing { sites, ..self.asked.clone() };
+        let found = place_with(self.machine, &fewer, self.beyond).ok();
+        found.and_then(|found| self.as_good(found, best.value - best.gap)).unwrap_or(best)
+    }
+
+    /// A machine that is certified as well: nothing has less than `bound`.
+    fn as_good(&self, found: Placed, bound: f64) -> Option<Placed> {
+        let value = self.asked.objective.of(found.added_mass, &Inertia::of(&found.machine));
+        let gap = (value - bound).max(found.gap);
+        (gap < CERTIFIED).then_some(Placed { value, gap, ..found })
+    }
+
     /// As near to balance as the bounds allow over all payloads, and of those the least.
     fn nearest(&self) -> Result<Placed, NoWeights> {
         let found = |balance| {
@@ -137,33 +187,42 @@ impl One<'_> {
                 if bounds.is_empty() {
                     return NoWeights::TooFew;
                 }
-                let relief = self.relief(&bounds);
-                NoWeights::Conflict { bounds, relief }
+                match self.relief(&bounds) {
+                    Ok(relief) => NoWeights::Conflict { bounds, relief },
+                    Err(deeper) => deeper,
+                }
             }
         }
     }
 
     /// What would do instead of one kind of the bounds that contradict each other.
-    fn relief(&self, bounds: &[Bound]) -> Option<Relief> {
-        let with = |asked: Weighing| place_with(self.machine, &asked, self.beyond).ok();
+    ///
+    /// # Errors
+    /// If the other bounds leave no way either, and why.
+    fn relief(&self, bounds: &[Bound]) -> Result<Option<Relief>, NoWeights> {
+        let with = |asked: Weighing| place_with(self.machine, &asked, self.beyond);
         if bounds.contains(&Bound::Inertia) {
             let free = Weighing { most_inertia: None, objective: Objective::inertia(), ..self.asked.clone() };
-            return with(free).map(|placed| Relief::Inertia(Inertia::of(&placed.machine).momenta().iter().sum()));
+            let total = |placed: Placed| Inertia::of(&placed.machine).momenta().iter().sum();
+            return Ok(Some(Relief::Inertia(total(with(free)?))));
         }
         if bounds.contains(&Bound::Mass) {
             let free = Weighing { most_mass: None, objective: Objective::mass(), ..self.asked.clone() };
-            return with(free).map(|placed| Relief::Mass(placed.added_mass));
+            return Ok(Some(Relief::Mass(with(free)?.added_mass)));
         }
         if !bounds.iter().any(|bound| matches!(bound, Bound::Most(_))) {
-            return None;
+            return Ok(None);
         }
         // Round the pins it may take more.
-        let least = self.problem.least_most(self.machine, self.asked)?;
         let does = |most: &f64| {
-            let sites = self.asked.sites.iter().map(|site| Sites { most: most * (1.0 + 1e-6), ..*site }).collect();
-            self.asked.clearance.is_none() || with(Weighing { sites, ..self.asked.clone() }).is_some()
+            let up = |most: f64| most * (1.0 + 1e-6);
+            let raised =
+                |site: &Sites| Sites { most: if site.most.is_finite() { up(*most) } else { site.most }, ..*site };
+            let sites = self.asked.sites.iter().map(raised).collect();
+            self.asked.clearance.is_none() || with(Weighing { sites, ..self.asked.clone() }).is_ok()
         };
-        (0..TRIES).map(|i| least * 1.1_f64.powi(i)).find(does).map(Relief::Most)
+        let least = self.problem.least_most(self.machine, self.asked);
+        Ok(least.and_then(|least| (0..TRIES).map(|i| least * 1.1_f64.powi(i)).find(does)).map(Relief::Most))
     }
 
     /// The furthest from all pins with which there is a way, m.

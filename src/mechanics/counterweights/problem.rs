@@ -157,7 +157,11 @@ impl Problem {
         for condition in self.conditions.iter().filter(|condition| !condition.is_touched()) {
             if condition.left.re.abs() > 1e-9 {
                 let left = format!("{:.3e} {}", condition.left.re, condition.of.unit());
-                return Err(NoWeights::Untouched { condition: condition.of.name(&self.bare), left });
+                let parts = self.bare.links().iter().zip(self.bare.resolved_links());
+                let of = |part| condition.of.by_mass(part) != 0.0 || condition.of.by_moment(part) != 0.0;
+                let would: Vec<&str> = parts.filter(|(_, part)| of(part)).map(|(link, _)| link.name.as_str()).collect();
+                let want = format!("one of {}", would.join(", "));
+                return Err(NoWeights::Untouched { condition: condition.of.name(&self.bare), left, want });
             }
         }
         Ok(())
@@ -415,7 +419,7 @@ impl Problem {
         conflict(bounds, of_bounds, contradicts)
     }
 
-    /// The least bound on the mass of every counterweight with which there is a way past all pins, kg.
+    /// The least bound on the masses of counterweights that have one with which there is a way past all pins, kg.
     pub fn least_most(&self, machine: &Machine, asked: &Weighing) -> Option<f64> {
         let sites = asked.sites.iter().map(|site| Sites { most: f64::INFINITY, ..*site }).collect();
         let objective = Objective { mass: 0.0, ..Objective::mass() };
@@ -424,7 +428,8 @@ impl Problem {
         let mut program = self.program(machine, &free, &self.bounds(machine, &free), &way);
         let (most, unknowns) = (program.linear.len(), Unknowns::of(&free, self.drives()));
         program.linear.push(1.0);
-        let heaviest = (0..asked.sites.len()).map(|j| Row::new([(unknowns.w(j), 1.0), (most, -1.0)], 0.0));
+        let bounded = (0..asked.sites.len()).filter(|j| asked.sites[*j].most.is_finite());
+        let heaviest = bounded.map(|j| Row::new([(unknowns.w(j), 1.0), (most, -1.0)], 0.0));
         program.at_most.extend(heaviest);
         program.solve().ok().map(|least| least.value)
     }

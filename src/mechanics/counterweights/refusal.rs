@@ -40,7 +40,7 @@ fn listed(bounds: &[Bound]) -> String {
 /// What would do instead of the bounds of one kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Relief {
-    /// The least bound on the mass of every counterweight, kg.
+    /// The least bound on the masses that have one, kg.
     Most(f64),
     /// The least bound on what all weigh together, kg.
     Mass(f64),
@@ -53,7 +53,7 @@ impl fmt::Display for Relief {
         // Upwards, so that what is said does.
         let up = |x: &f64| format!("{:.6}", (x * 1e6 * (1.0 + 1e-9)).ceil() * 1e-6);
         match self {
-            Self::Most(x) => write!(f, "; up to {} kg on every link would do", up(x)),
+            Self::Most(x) => write!(f, "; up to {} kg on each link that is bounded would do", up(x)),
             Self::Mass(x) => write!(f, "; up to {} kg in all would do", up(x)),
             Self::Inertia(x) => write!(f, "; Σ D_k up to {} kg m² would do", up(x)),
         }
@@ -67,7 +67,7 @@ fn would_do(relief: &Option<Relief>) -> String {
 fn would_clear(would: &Option<f64>) -> String {
     match would {
         // Downwards, so that what is said does.
-        Some(x) => format!("; {:.1} mm would do", (x * 1e4).floor() * 0.1),
+        Some(x) => format!("; {:.4} m would do", (x * 1e4).floor() * 1e-4),
         None => "; not even that they touch would do".into(),
     }
 }
@@ -103,12 +103,14 @@ pub enum NoWeights {
         left: String,
     },
     /// No counterweight on these links changes a condition that is not met.
-    #[error("{condition}, stays at {left}: want a counterweight on a link that follows that drive")]
+    #[error("{condition}, stays at {left}: want a counterweight on another link, too: {want}")]
     Untouched {
         /// The condition.
         condition: String,
         /// What remains, with unit.
         left: String,
+        /// Links on which one would change it.
+        want: String,
     },
     /// These bounds, and no fewer of them, leave no way.
     #[error("no counterweights balance this machine within these bounds: {}{}", listed(.bounds), would_do(.relief))]
@@ -122,7 +124,7 @@ pub enum NoWeights {
     #[error("no counterweights on these links alone balance this machine: want more links that may carry one")]
     TooFew,
     /// They would reach a pin.
-    #[error("no counterweights balance this machine and stay {:.1} mm clear of every pin{}", asked * 1e3, would_clear(.would))]
+    #[error("no counterweights balance this machine and stay {} m clear of every pin{}", asked, would_clear(.would))]
     Reaches {
         /// How far they were to stay away, m.
         asked: f64,
@@ -140,7 +142,9 @@ pub enum NoWeights {
     )]
     Coupled,
     /// The solver gave up.
-    #[error("the solver found no answer: {0}")]
+    #[error(
+        "whether there are such counterweights is closer than the solver can tell ({0}): want bounds a little wider, or tighter"
+    )]
     Failed(String),
     /// The result is no machine.
     #[error("the machine with them: {0}")]

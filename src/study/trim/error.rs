@@ -25,9 +25,9 @@ pub enum TrimError {
     },
     /// Fewer rows than numbers to be found.
     #[error(
-        "{} for {}: want more, ten for each or better",
+        "{} for {} that have to be found: want more, ten for each or better",
         counted(rows, "row"),
-        counted(unknowns, "number to be found")
+        counted(unknowns, "number")
     )]
     TooFew {
         /// Rows, less one for each motion.
@@ -55,8 +55,8 @@ pub enum TrimError {
     Still,
     /// What the model leaves is so correlated that nothing can be said of it.
     #[error(
-        "what the machine does not explain is as slow as the motions themselves: it counts as {} independent rows for {}; \
-         want more or longer motions", fixed(*effective, 1), counted(unknowns, "number to be found")
+        "what the machine does not explain is as slow as the motions themselves: it counts as {} independent rows for {} \
+         that have to be found; want more or longer motions", fixed(*effective, 1), counted(unknowns, "number")
     )]
     Correlated {
         /// Effective number of independent rows.
