@@ -425,6 +425,8 @@ pub enum DesignCommand {
     Ghost(Option<usize>),
     /// Take them.
     Take(usize),
+    /// Take the counterweights and ratios of rotors with which the drives give least to the base.
+    TakeStillest,
     /// Tell the machines of the front apart by this, or by nothing more.
     FrontBy(Option<FrontMeasure>),
 }

@@ -505,6 +505,13 @@ impl AppState {
                 }
             }
             DesignCommand::Ghost(i) => self.view_state.ghost = i,
+            DesignCommand::TakeStillest => {
+                let machine = &self.session.scenario().machine;
+                let placed = self.view_state.brief.stillest(machine).map_err(|why| why.to_string())?;
+                let edit = weights_of(machine, &placed.machine);
+                self.view_state.brief.holds.retain(|key, _| !key.starts_with("counterweight."));
+                self.change(Change::Edit(edit));
+            }
             DesignCommand::FrontBy(by) => self.view_state.front_by = by,
             DesignCommand::Take(i) => {
                 self.studio.follow(&self.session, &self.view_state.brief, self.view_state.front_by);

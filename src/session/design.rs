@@ -7,13 +7,18 @@ use toml::{Table, Value};
 
 use super::edit::Edit;
 use crate::mechanics::balance::{Adjusted, Body, Hold, Keep, Parameter, Preset, Quantity, keep};
-use crate::mechanics::counterweights::{Disc, Front, NoWeights, Objective, Sites, Weighing, front};
-use crate::mechanics::machine::{Counterweight, Length, Link, Machine};
+use crate::mechanics::counterweights::{
+    Disc, Free, FreeRotor, Front, NoWeights, Objective, Placed, Sites, Weighing, front, place,
+};
+use crate::mechanics::machine::{Counterweight, Drive, Length, Link, Machine};
 use crate::settings::change::{join, leaves, one};
 
 /// What is dear: a kilogram more or less of a counterweight, 1/kg, and a metre that one or a centre of mass moves, 1/m.
 const MASS: f64 = 1.0;
 const PLACE: f64 = 5.0;
+
+/// What a kilogram counts beside a kg m² of momentum: enough that none is added for nothing.
+const GRAM: f64 = 1e-3;
 
 /// A counterweight may be so much further back, m: what found it has rounded.
 const ROUNDING: f64 = 1e-6;
@@ -40,13 +45,24 @@ pub struct Brief {
     pub clearance: Option<f64>,
     /// The least and the greatest mass that the end effector will hold, kg; none: it holds what it holds.
     pub payload: Option<[f64; 2]>,
+    /// Between which ratios the rotors of drives may be chosen, by the drive's name, where the least momentum is wanted.
+    pub ratios: BTreeMap<String, [f64; 2]>,
 }
 
 impl Default for Brief {
     fn default() -> Self {
-        let (fixed, holds, preset) = (BTreeSet::new(), BTreeMap::new(), Preset::MinimumNorm);
-        let (back, most, clearance, payload) = (None, None, None, None);
-        Self { keeps_balance: false, fixed, holds, preset, disc: Disc::STEEL, back, most, clearance, payload }
+        Self {
+            keeps_balance: false,
+            fixed: BTreeSet::new(),
+            holds: BTreeMap::new(),
+            preset: Preset::MinimumNorm,
+            disc: Disc::STEEL,
+            back: None,
+            most: None,
+            clearance: None,
+            payload: None,
+            ratios: BTreeMap::new(),
+        }
     }
 }
 
@@ -170,6 +186,24 @@ impl Brief {
     /// # Errors
     /// If nothing within the bounds balances it.
     pub fn front(&self, machine: &Machine, count: usize) -> Result<Front, NoWeights> {
+        front(machine, &self.weighing(machine, Objective::mass()), count)
+    }
+
+    /// Counterweights, and ratios of rotors, with which what the drives give to the base, Σ |D_k|, is least.
+    ///
+    /// # Errors
+    /// If nothing within the bounds balances the machine.
+    pub fn stillest(&self, machine: &Machine) -> Result<Placed, NoWeights> {
+        let objective = Objective { momentum: 1.0, mass: GRAM, ..Objective::mass() };
+        let drives = machine.spec().drives.iter().enumerate();
+        let rotors = drives.filter_map(|(drive, of)| {
+            let ends = *self.ratios.get(&of.name)?;
+            Some(FreeRotor { drive, free: Free::Ratio(ends) })
+        });
+        place(machine, &Weighing { rotors: rotors.collect(), ..self.weighing(machine, objective) })
+    }
+
+    fn weighing(&self, machine: &Machine, objective: Objective) -> Weighing {
         let spec = machine.spec();
         let free = machine.resolved_links().iter().enumerate();
         let sites = free.filter(|(link, _)| !self.fixed.contains(&spec.links[*link].name)).map(|(link, part)| Sites {
@@ -178,12 +212,11 @@ impl Brief {
             to: part.length,
             most: self.most.unwrap_or(f64::INFINITY),
         });
-        let asked = Weighing {
+        Weighing {
             clearance: self.clearance,
             payload: self.payload,
-            ..Weighing::least(Objective::mass(), sites.collect(), self.disc)
-        };
-        front(machine, &asked, count)
+            ..Weighing::least(objective, sites.collect(), self.disc)
+        }
     }
 }
 
@@ -195,11 +228,21 @@ pub fn length_of(link: &Link, to: f64) -> Edit {
     }
 }
 
-/// The edit that gives a machine the counterweights of another, and what that holds: they balance it with that.
+/// The edit that gives a machine the counterweights of another, what that holds, with which they balance it, and the
+/// ratios of its rotors.
 pub fn weights_of(machine: &Machine, of: &Machine) -> Edit {
     let weights = of.spec().counterweights.iter().filter_map(|weight| Value::try_from(weight).ok());
     let change = Table::from_iter([("counterweight".to_owned(), Value::Array(weights.collect()))]);
     let [has, holds] = [machine, of].map(|machine| machine.spec().payload.mass);
     let change = if has == holds { change } else { join(change, &one("payload.mass", holds)) };
+    let ratio = |drive: &Drive| drive.rotor.map(|rotor| rotor.ratio);
+    let both = machine.spec().drives.iter().zip(&of.spec().drives);
+    let others = both.filter_map(|(was, is)| Some((&is.name, ratio(is).filter(|now| ratio(was) != Some(*now))?)));
+    let change = others.fold(change, |all, (name, ratio)| {
+        let rotor = Table::from_iter([("ratio".to_owned(), Value::from(ratio))]);
+        let drive = Table::from_iter([("rotor".to_owned(), Value::from(rotor))]);
+        let named = Table::from_iter([(name.clone(), Value::from(drive))]);
+        join(all, &Table::from_iter([("drive".to_owned(), Value::from(named))]))
+    });
     Edit::Set { change }
 }

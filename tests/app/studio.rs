@@ -21,6 +21,7 @@ pub const TESTS: &[Test] = tests![
     what_cannot_be_balanced_is_told_and_changes_nothing,
     numbers_of_links_are_typed,
     single_numbers_are_held,
+    rotors_take_what_drives_give_to_the_base,
     inertia_and_length_of_a_link_are_typed,
     discs_keep_clear_and_serve_a_range_of_payloads,
     colours_tell_the_machines_of_the_front_apart,
@@ -338,4 +339,25 @@ fn inertia_and_length_of_a_link_are_typed() {
     for link in [0, 3, 5] {
         assert_eq!(machine.resolved_links()[link].length, 0.52);
     }
+}
+
+/// A ratio that may be chosen is, and the change is one step that is undone.
+fn rotors_take_what_drives_give_to_the_base() {
+    let case = Scenario::builtin("nine-link-bare").expect("built in");
+    let geared = case.machine.set("drive.1.rotor.inertia", "0.02").and_then(|m| m.set("drive.1.rotor.ratio", "20"));
+    let machine_of = geared.expect("in range");
+    let mut h = window_of(Scenario { machine: machine_of.clone(), ..case }, Theme::Dark, 900.0);
+    h.key_press(Key::D);
+    h.run_steps(4);
+    h.get_by_label("ratio of drive 1").click();
+    h.run_steps(3);
+    h.get_by_label("least momentum").click();
+    h.run_steps(4);
+    let taken = machine(&h);
+    assert!(is_balanced(taken));
+    assert!(Inertia::of(taken).momentum(0).abs() < 1e-5, "{}", Inertia::of(taken).momentum(0));
+    assert!(taken.spec().drives[0].rotor.is_some_and(|rotor| rotor.ratio < -1.0 && rotor.inertia == 0.02));
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    h.run_steps(3);
+    assert_eq!(*machine(&h), machine_of);
 }

@@ -274,6 +274,11 @@ fn counterweights_that_cannot_be_are_refused() {
     ask(&["--max-added", "5"], 1, &["kg in all would do"]);
     ask(&["--clearance", "0.25"], 1, &["0.25 m clear of every pin", "m would do"]);
     ask(&["--clearance=-1"], 2, &["clearance -1: want 0 to 1000 m"]);
+    ask(&["--material", "cheese"], 2, &["want a density in kg/m³, or aluminium, steel"]);
+    ask(&["--material", "-1"], 2, &["density -1: want 1 to 100000 kg/m³"]);
+    let weights =
+        |material: &str| object(&["design", BARE, "--counterweights", "--material", material])["weights"].clone();
+    assert_eq!(weights("Lead"), weights("11340"));
     ask(&["--max-radius", "0"], 2, &["want a radius above 0"]);
     ask(&["--payload", "0.3,0.1"], 2, &["a payload up to 0.1", "not below its start"]);
     ask(&["--rotor-ratio", "1=-30,0"], 2, &["drive 1 has no rotor", "drive.1.rotor.inertia"]);

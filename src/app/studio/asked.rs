@@ -7,20 +7,16 @@ use crate::app::theme::{bold, colour, plain};
 use crate::app::widgets::{Row, heading, name, unit};
 use crate::app::{Command, ViewState};
 use crate::mechanics::balance::Preset;
+use crate::mechanics::counterweights::MATERIALS;
+use crate::mechanics::machine::{Drive, MachineSpec};
+use crate::picture::numbers::signed;
 use crate::picture::scene::palette::Palette;
 use crate::session::design::Brief;
 
-/// Densities of what discs are made of, kg/m³.
-const MATERIALS: [(&str, f64); 5] =
-    [("aluminium", 2700.0), ("steel", 7850.0), ("brass", 8500.0), ("lead", 11_340.0), ("tungsten", 19_300.0)];
-
 /// Draws it.
-pub fn show(
-    ui: &mut Ui,
-    (links, has_weights, is_balanced, held): (usize, bool, bool, f64),
-    view_state: &ViewState,
-    commands: &mut Vec<Command>,
-) {
+pub fn show(ui: &mut Ui, spec: &MachineSpec, is_balanced: bool, view_state: &ViewState, commands: &mut Vec<Command>) {
+    let (links, has_weights) = (spec.links.len(), !spec.counterweights.is_empty());
+    let (held, drives) = (spec.payload.mass, &spec.drives);
     let p = &view_state.palette();
     let mut brief = view_state.brief.clone();
     ui.add_space(10.0);
@@ -70,8 +66,50 @@ pub fn show(
     bounded(ui, p, &row, &mut millimetres, 5.0);
     brief.clearance = millimetres.map(|x| 1e-3 * x);
     payloads(ui, p, &mut brief, held);
+    rotors(ui, p, drives, &mut brief, commands);
     if brief != view_state.brief {
         commands.push(Command::Design(DesignCommand::Brief(Box::new(brief))));
+    }
+}
+
+/// Ratios of rotors that may be chosen, so that those that turn the other way take what the drives give to the base.
+fn rotors(ui: &mut Ui, p: &Palette, drives: &[Drive], brief: &mut Brief, commands: &mut Vec<Command>) {
+    let geared = drives.iter().filter_map(|drive| Some((drive, drive.rotor.filter(|rotor| rotor.inertia > 0.0)?)));
+    let mut any = false;
+    for (drive, rotor) in geared {
+        any = true;
+        ui.horizontal(|ui| {
+            let tip = "The rotor's ratio may be chosen from the first to the second; below 0 it turns the other way";
+            let mut is_free = brief.ratios.contains_key(&drive.name);
+            let words = format!("ratio of drive {}", drive.name);
+            if ui.checkbox(&mut is_free, words).on_hover_text(tip).changed() {
+                match is_free {
+                    true => brief.ratios.insert(drive.name.clone(), [-4.0 * rotor.ratio.abs().max(1.0), -1.0]),
+                    false => brief.ratios.remove(&drive.name),
+                };
+            }
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                unit(ui, p, "");
+                let Some([low, high]) = brief.ratios.get_mut(&drive.name) else {
+                    ui.label(RichText::new(signed(rotor.ratio, 1)).font(plain(12.0)).color(colour(p.dim)));
+                    return;
+                };
+                let mut end = |what: &str, range: std::ops::RangeInclusive<f64>, value: &mut f64| {
+                    let label = format!("{what} ratio of drive {}", drive.name);
+                    let (slide, decimals, speed) = (range.clone(), 1, 0.5);
+                    Row { label: &label, unit: "", tip, decimals, speed, slide, range }.number(ui, value);
+                };
+                end("greatest", *low..=1e4, high);
+                end("least", -1e4..=*high, low);
+            });
+        });
+    }
+    if any {
+        let tip = "Take the counterweights, and the ratios that may be chosen, with which Σ |D| is least: a drive whose D \
+                   is 0 moves without a moment on the base";
+        if ui.button(RichText::new("least momentum").font(plain(12.0))).on_hover_text(tip).clicked() {
+            commands.extend([Command::Design(DesignCommand::TakeStillest), Command::EndGesture]);
+        }
     }
 }
 

@@ -45,8 +45,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewStat
                 table::show(ui, session, view_state, commands);
                 let spec = session.scenario().machine.spec();
                 let is_balanced = facts.terms.iter().all(|term| term.is_balanced);
-                let has = (spec.links.len(), !spec.counterweights.is_empty(), is_balanced, spec.payload.mass);
-                asked::show(ui, has, view_state, commands);
+                asked::show(ui, spec, is_balanced, view_state, commands);
                 measures::show(ui, session, facts, &p);
             });
         });

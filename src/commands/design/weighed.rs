@@ -3,7 +3,8 @@
 use clap::Args;
 use serde::Serialize;
 use stillbase::mechanics::counterweights::{
-    Disc, Free, FreeRotor, NoWeights, Objective, Placed, Relief, Residual, Sites, Weighing, front, over_payloads, place,
+    Disc, Free, FreeRotor, MATERIALS, NoWeights, Objective, Placed, Relief, Residual, Sites, Weighing, front,
+    over_payloads, place,
 };
 use stillbase::mechanics::machine::{Counterweight, Inertia, Machine};
 use stillbase::planning::Motion;
@@ -28,8 +29,8 @@ pub struct WeighArguments {
     /// root to the tip, where none is given
     #[arg(long, value_name = "LINK=LO,HI", requires = "counterweights", value_parser = range, allow_hyphen_values = true)]
     range: Vec<(String, [f64; 2])>,
-    /// Density of the discs, kg/m³; steel has 7850
-    #[arg(long, value_parser = number, value_name = "DENSITY", requires = "counterweights", default_value_t = Disc::STEEL.density)]
+    /// What the discs are made of: aluminium, steel, brass, lead, tungsten, or a density, kg/m³
+    #[arg(long, value_parser = density, value_name = "MATERIAL", requires = "counterweights", default_value = "steel")]
     material: f64,
     /// Thickness of the discs, m
     #[arg(long, value_parser = number, value_name = "T", requires = "counterweights", default_value_t = Disc::STEEL.thickness)]
@@ -214,6 +215,13 @@ fn unweighed(why: NoWeights) -> Failure {
         }
         why => Failure::no_answer(why),
     }
+}
+
+/// Of a material by name, or as it is given, kg/m³.
+fn density(text: &str) -> Result<f64, String> {
+    let known = MATERIALS.iter().find(|(name, _)| name.eq_ignore_ascii_case(text.trim()));
+    let want = || format!("want a density in kg/m³, or {}", MATERIALS.map(|(name, _)| name).join(", "));
+    known.map_or_else(|| text.trim().parse().map_err(|_| want()), |(_, density)| Ok(*density))
 }
 
 /// One number; whether it may be so is said where it is used.

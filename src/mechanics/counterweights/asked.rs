@@ -36,6 +36,10 @@ pub struct Disc {
     pub thickness: f64,
 }
 
+/// Densities of what discs are usually made of, kg/m³.
+pub const MATERIALS: [(&str, f64); 5] =
+    [("aluminium", 2700.0), ("steel", 7850.0), ("brass", 8500.0), ("lead", 11_340.0), ("tungsten", 19_300.0)];
+
 /// What a plate may be: no gas, and no foil from which a gram would be as wide as a room.
 const DENSITY: Range = Range::new(1.0, 1e5, "kg/m³");
 const THICKNESS: Range = Range::new(1e-4, 1.0, "m");

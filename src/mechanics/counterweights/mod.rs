@@ -21,7 +21,7 @@ mod room;
 mod search;
 mod tolerance;
 
-pub use asked::{Disc, Free, FreeRotor, Objective, Sites, Weighing};
+pub use asked::{Disc, Free, FreeRotor, MATERIALS, Objective, Sites, Weighing};
 pub use front::{Front, front};
 pub use payload::{Residual, over_payloads};
 pub use place::{Placed, place, place_with, unreachable_by_weights};
