@@ -20,7 +20,7 @@ const LEFT: f32 = 76.0;
 /// Draws it.
 pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &ViewState) {
     let p = &view_state.palette();
-    heading(ui, p, "(7) and (8)", "which link gives what; below: what is left");
+    heading(ui, p, "(7) and (8)", "part of each link; below: what is left");
     let hot = hot_link(view_state, session);
     for term in &facts.terms {
         row(ui, p, session, term, hot);
