@@ -74,6 +74,7 @@ const EDGES: &[(&str, &[&str])] = &[
             "app/window/keeper.rs",
             "app/window/shell.rs",
             "app/window/times.rs",
+            "commands/design/weighed.rs",
             "files/journal.rs",
         ],
     ),

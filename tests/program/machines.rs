@@ -279,6 +279,22 @@ fn counterweights_that_cannot_be_are_refused() {
     let weights =
         |material: &str| object(&["design", BARE, "--counterweights", "--material", material])["weights"].clone();
     assert_eq!(weights("Lead"), weights("11340"));
+    ask(&["--length", "l9=0.2,0.4", "--seconds", "0"], 2, &["--seconds 0: want a time above 0"]);
+    ask(&["--length", "l0=0.2,0.4"], 2, &["no length l0: want one of l1, l2, l3, l5, l9"]);
+    let sought = object(&[
+        "design",
+        BARE,
+        "--counterweights",
+        "--length",
+        "l9=0.2,0.4",
+        "--min-reach",
+        "1.2",
+        "--seconds",
+        "0.2",
+        "--starts",
+        "1000",
+    ]);
+    assert!(sought["sought"]["starts"].as_u64().expect("a number") < 1000 && sought["sought"]["certified"] == false);
     ask(&["--max-radius", "0"], 2, &["want a radius above 0"]);
     ask(&["--payload", "0.3,0.1"], 2, &["a payload up to 0.1", "not below its start"]);
     ask(&["--rotor-ratio", "1=-30,0"], 2, &["drive 1 has no rotor", "drive.1.rotor.inertia"]);

@@ -1,5 +1,7 @@
 //! `stillbase design --counterweights`
 
+use std::time::Instant;
+
 use clap::Args;
 use serde::Serialize;
 use stillbase::mechanics::counterweights::{
@@ -81,6 +83,9 @@ pub struct WeighArguments {
     /// Where these are drawn from: the same seed finds the same lengths
     #[arg(long, value_name = "S", requires = "length", default_value_t = 1)]
     seed: u64,
+    /// Stop seeking lengths after so many seconds, with the best so far
+    #[arg(long, value_name = "S", requires = "length", value_parser = number)]
+    seconds: Option<f64>,
     /// Show what less inertia costs in mass, in so many machines from the least mass to the least inertia, and what each
     /// comes to: torque (with --task), workspace, and the greatest |g_k| if masses are 1 % and places 0.5 mm off
     #[arg(long, value_name = "N", requires = "counterweights", value_parser = clap::value_parser!(u16).range(2..=1000))]
@@ -163,7 +168,15 @@ impl WeighArguments {
             starts: self.starts.into(),
             seed: self.seed,
         };
-        let found = search(machine, &asked, &mut |_| true).map_err(unsought)?;
+        let within = match self.seconds {
+            Some(seconds) if !(seconds.is_finite() && seconds > 0.0) => {
+                return Err(Failure::wrong_input(format!("--seconds {seconds}: want a time above 0 in s")));
+            }
+            seconds => seconds.unwrap_or(f64::INFINITY),
+        };
+        let begun = Instant::now();
+        let mut go_on = |_| begun.elapsed().as_secs_f64() < within;
+        let found = search(machine, &asked, &mut go_on).map_err(unsought)?;
         let sites = if asked.anywhere { Sites::anywhere(&found.placed.machine) } else { asked.weighing.sites };
         Ok((found, sites))
     }
