@@ -115,7 +115,6 @@ impl Answer {
             let (told, half) = (fit.told[i], fit.half_width(i));
             let part = |left: &Vector| if i.is_multiple_of(2) { left.re } else { left.im };
             let balance = i < unknowns.of_balance();
-            let centre = if balance { 0.0 } else { fit.nominal[i] };
             Number {
                 name: what.name(machine),
                 unit: what.unit(),
@@ -123,7 +122,7 @@ impl Answer {
                 told,
                 measured: told.then_some(fit.measured[i] + 0.0),
                 half_width: told.then_some(half),
-                off: told && (fit.measured[i] - centre).abs() > half,
+                off: fit.is_off(i),
                 taken: taken.values[i] + 0.0,
                 left: mended.filter(|_| balance).and_then(|m| m.left.get(i / 2)).map(|left| part(left) + 0.0),
                 balance,

@@ -51,6 +51,8 @@ const LEAST_LAGS: usize = 48;
 const MOST_STEPS: usize = 10_000;
 /// Rounding, as a part of the largest force and moment that a machine could have.
 const ROUNDING: f64 = 1e-14;
+/// A number below this part of the largest is rounding.
+const LEAST: f64 = 1e-10;
 /// What is left below this part of what was measured is rounding.
 const EXACT: f64 = 1e-9;
 
@@ -147,9 +149,12 @@ impl Fit {
         self.critical * self.covariance[(place, place)].max(0.0).sqrt()
     }
 
-    /// Whether a number is told, and its interval leaves 0 out.
+    /// Whether a number is told, its interval leaves out what it should be (nothing, of balance; else what the file says),
+    /// and that is more than rounding beside the other numbers.
     pub fn is_off(&self, place: usize) -> bool {
-        self.told[place] && self.measured[place].abs() > self.half_width(place)
+        let should = if place < self.unknowns.of_balance() { 0.0 } else { self.nominal[place] };
+        let least = self.half_width(place).max(LEAST * self.measured.amax());
+        self.told[place] && (self.measured[place] - should).abs() > least
     }
 }
 
