@@ -8,6 +8,7 @@
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
+use super::look::{COLOURS, RADIUS};
 use super::turn::Turn;
 use super::xml::quoted;
 use crate::mechanics::machine::Machine;
@@ -43,20 +44,6 @@ pub enum MjcfError {
 const LEAST: f64 = 1e-12;
 /// What stands for the mass of a rotor, which belongs to the link that carries it, kg.
 const ROTOR: f64 = 1e-11;
-/// Half the width of a bar as it is drawn, m.
-const RADIUS: f64 = 0.012;
-/// Colours of the drives: sky blue, vermilion and bluish green, and so on (Okabe and Ito).
-const COLOURS: [&str; 8] = [
-    "0.34 0.71 0.91 1",
-    "0.84 0.37 0 1",
-    "0 0.62 0.45 1",
-    "0.90 0.62 0 1",
-    "0.80 0.47 0.65 1",
-    "0.94 0.89 0.26 1",
-    "0 0.45 0.70 1",
-    "0.6 0.6 0.6 1",
-];
-
 /// The model of a machine as text; its keyframe `start` is the pose `q`, rad, with motors at rest.
 ///
 /// # Errors

@@ -4,6 +4,7 @@ pub mod cut;
 pub mod drawing;
 pub mod form;
 pub mod import;
+mod look;
 pub mod mjcf;
 pub mod parts;
 mod turn;

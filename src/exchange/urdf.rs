@@ -18,28 +18,15 @@
 //! Friction, springs and the base's own motion belong to a scenario. Inertias about axes that a plane motion does not
 //! ask are made up.
 
+use super::look::{COLOURS, RADIUS};
 use super::xml::{Lines, quoted, remark};
 use crate::mechanics::machine::{Machine, Payload, RelativeAngle};
 
 /// What counts for nothing beside the machine, as a share of its mass: some programs take a link without mass for one
 /// of 1 kg.
 const NOTHING: f64 = 1e-13;
-/// Half the width of a bar as it is drawn, m.
-const RADIUS: f64 = 0.012;
 /// What a joint has to have and the machine does not limit: torque in N m and rate in rad/s.
 const UNLIMITED: f64 = 1e9;
-/// Colours of the drives (Okabe and Ito).
-const COLOURS: [&str; 8] = [
-    "0.34 0.71 0.91 1",
-    "0.84 0.37 0 1",
-    "0 0.62 0.45 1",
-    "0.90 0.62 0 1",
-    "0.80 0.47 0.65 1",
-    "0.94 0.89 0.26 1",
-    "0 0.45 0.70 1",
-    "0.6 0.6 0.6 1",
-];
-
 /// The model of a machine as text.
 pub fn urdf(machine: &Machine) -> String {
     Model::of(machine).text()

@@ -70,7 +70,7 @@ impl FrontPoint {
         let machine = &placed.machine;
         Self {
             added_mass: placed.added_mass,
-            inertia: Inertia::of(machine).momenta().iter().sum(),
+            inertia: Inertia::of(machine).total_momentum(),
             torque: motion.map(|motion| greatest_torque(machine, motion)),
             workspace: workspace.then(|| Planes::of(machine).ok()).flatten().map(|planes| planes.boundary().area()),
             off_by: off_by(machine, &Tolerance::USUAL).force,

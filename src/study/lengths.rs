@@ -236,8 +236,7 @@ impl LengthSearch {
     /// Counterweights for other lengths, and what misses; or why there are none.
     fn at(&self, machine: &Machine, shares: &[f64]) -> Result<(Vec<f64>, Placed, f64), String> {
         let (lengths, changed) = self.changed(machine, shares)?;
-        let reach: f64 = changed.end_effector().iter().take(changed.drives()).map(|length| length.abs()).sum();
-        let mut misses = (self.least_reach.unwrap_or(0.0) - reach).max(0.0);
+        let mut misses = (self.least_reach.unwrap_or(0.0) - changed.reach()).max(0.0);
         let weighing = match self.anywhere {
             true => Weighing {
                 sites: with_bounds(Sites::anywhere(&changed), &self.weighing.sites),

@@ -48,7 +48,7 @@ impl Measures {
     /// Of a machine beside the bare one; a motion is one of as many drives.
     pub fn of(bare: &Machine, machine: &Machine, motion: Option<&Motion>) -> Self {
         let (before, after) = (Inertia::of(bare), Inertia::of(machine));
-        let [was, is] = [&before, &after].map(|inertia| inertia.momenta().iter().sum::<f64>());
+        let [was, is] = [&before, &after].map(|inertia| inertia.total_momentum());
         let (light, heavy) = (before.mass(), after.mass());
         Self {
             added_mass: heavy - light,

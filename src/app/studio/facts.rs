@@ -89,14 +89,12 @@ impl Facts {
             let inertia = Inertia::of(machine);
             self.lambda = inertia.lambda().to_vec();
             let added = machine.spec().counterweights.iter().map(|weight| weight.mass).sum();
-            self.now = [added, inertia.momenta().iter().sum()];
+            self.now = [added, inertia.total_momentum()];
             self.of = Some(machine.clone());
         }
-        let mut spec = machine.spec().clone();
-        spec.counterweights.clear();
         // Whether the balance is kept does not matter to it.
         let asked = Brief { keeps_balance: false, ..brief.clone() };
-        let Ok(bare) = Machine::new(spec) else { return };
+        let Ok(bare) = machine.without_counterweights() else { return };
         if is_new || self.measures.as_ref().is_none_or(|(forecast, _)| *forecast != plan.forecast) {
             let measures = Measures::of(&bare, machine, session.run().motion());
             self.measures = Some((plan.forecast, measures));

@@ -341,9 +341,7 @@ impl Weighed {
         asked: &Weighing,
     ) -> Result<Self, Failure> {
         // With what it holds now, which is no part of what was added.
-        let mut bare = placed.machine.spec().clone();
-        bare.counterweights.clear();
-        let bare = Machine::new(bare)?;
+        let bare = placed.machine.without_counterweights()?;
         let (machine, inertia) = (&placed.machine, Inertia::of(&placed.machine));
         let chosen = |rotor: &FreeRotor| {
             let drive = &machine.spec().drives[rotor.drive];
@@ -371,7 +369,7 @@ impl Weighed {
         let [starts, agreeing] = found.starts;
         let lengths = names.zip(found.lengths).collect();
         let machine = &found.placed.machine;
-        let reach = machine.end_effector().iter().take(machine.drives()).map(|length| length.abs()).sum();
+        let reach = machine.reach();
         let workspace = FrontPoint::of(&found.placed, None, true).workspace;
         let machines = found.machines;
         self.sought = Some(Sought { lengths, certified: false, starts, agreeing, machines, reach, workspace });

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::refusal::NoWeights;
-use crate::mechanics::machine::Machine;
+use crate::mechanics::machine::{Machine, ranges};
 use crate::settings::range::Range;
 
 /// Where a link may carry a counterweight.
@@ -141,10 +141,6 @@ pub struct Weighing {
     pub payload: Option<[f64; 2]>,
 }
 
-/// From, to and what they are of.
-const PAYLOAD: Range = Range::new(0.0, 1e6, "kg");
-const RATIO: Range = Range::either_way(1e4, "");
-const INERTIA: Range = Range::new(0.0, 1e6, "kg m²");
 const CLEARANCE: Range = Range::new(0.0, 1e3, "m");
 
 impl Weighing {
@@ -178,7 +174,7 @@ impl Weighing {
             }
         }
         if let Some(ends) = self.payload {
-            rising("a payload", ends, PAYLOAD)?;
+            rising("a payload", ends, ranges::LOAD)?;
         }
         for (j, site) in self.sites.iter().enumerate() {
             let Some(link) = machine.links().get(site.link) else {
@@ -215,8 +211,8 @@ impl Weighing {
             }
             let what = format!("the rotor of drive {}:", of.name);
             match free {
-                Free::Inertia(ends) => rising(&format!("{what} inertia"), *ends, INERTIA)?,
-                Free::Ratio(ends) => rising(&format!("{what} ratio"), *ends, RATIO)?,
+                Free::Inertia(ends) => rising(&format!("{what} inertia"), *ends, ranges::INERTIA)?,
+                Free::Ratio(ends) => rising(&format!("{what} ratio"), *ends, ranges::RATIO)?,
             }
             if matches!(free, Free::Ratio(_)) && of.rotor.is_none_or(|rotor| rotor.inertia == 0.0) {
                 return Err(NoWeights::NoRotor(of.name.clone()));

@@ -20,7 +20,7 @@ impl Front {
 }
 
 fn measures(placed: &Placed) -> [f64; 2] {
-    [placed.added_mass, Inertia::of(&placed.machine).momenta().iter().sum()]
+    [placed.added_mass, Inertia::of(&placed.machine).total_momentum()]
 }
 
 /// `count` machines, at least two: those of least mass and of least inertia, and between them always one more where two

@@ -203,7 +203,7 @@ impl One<'_> {
         let with = |asked: Weighing| place_with(self.machine, &asked, self.beyond);
         if bounds.contains(&Bound::Inertia) {
             let free = Weighing { most_inertia: None, objective: Objective::inertia(), ..self.asked.clone() };
-            let total = |placed: Placed| Inertia::of(&placed.machine).momenta().iter().sum();
+            let total = |placed: Placed| Inertia::of(&placed.machine).total_momentum();
             return Ok(Some(Relief::Inertia(total(with(free)?))));
         }
         if bounds.contains(&Bound::Mass) {

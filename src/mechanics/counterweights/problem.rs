@@ -138,7 +138,7 @@ impl Problem {
         if asked.objective.torque > 0.0 && (!inertia.is_decoupled() || of_rotors) {
             return Err(NoWeights::Coupled);
         }
-        let reach = bare.end_effector().iter().take(bare.drives()).map(|length| length.abs()).sum();
+        let reach = bare.reach();
         let conditions = conditions(&bare, &inertia, asked, beyond)?;
         Ok(Self { bare, inertia, conditions, reach })
     }
@@ -182,7 +182,7 @@ impl Problem {
 
     /// Counterweights of no mass, if nothing has to be added: whatever is added makes mass and inertia more.
     pub fn needs_nothing(&self, asked: &Weighing) -> bool {
-        let total: f64 = self.inertia.momenta().iter().sum();
+        let total: f64 = self.inertia.total_momentum();
         asked.rotors.is_empty()
             && asked.objective.momentum == 0.0
             && self.conditions.iter().all(|condition| condition.left.norm() <= condition.of.nothing(&self.inertia))

@@ -179,6 +179,11 @@ impl Inertia {
         PerDrive::from_fn(self.drives, |k| self.momentum(k))
     }
 
+    /// Σ D_k where all C_kl vanish, kg m².
+    pub fn total_momentum(&self) -> f64 {
+        (0..self.drives).map(|k| self.momentum(k)).sum()
+    }
+
     /// D_1, or of the first drive that has one, kg m²: n_B is −b̈ times it. 0 where every motion is reactionless.
     pub fn pose_inertia(&self) -> f64 {
         (0..self.drives).map(|k| self.momentum(k)).find(|d| *d != 0.0).unwrap_or(0.0)

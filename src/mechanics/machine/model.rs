@@ -107,6 +107,11 @@ impl Machine {
         &self.end_effector
     }
 
+    /// How far the end effector can be from B at most, Σ |L_k|, m.
+    pub fn reach(&self) -> f64 {
+        self.end_effector.iter().map(|length| length.abs()).sum()
+    }
+
     /// The link that carries the end effector.
     pub fn end_link(&self) -> usize {
         self.end_link

@@ -15,12 +15,12 @@ pub(crate) const LENGTH: Range = Range::new(1e-6, MOST, "m");
 pub(crate) const PLACE: Range = Range::either_way(MOST, "m");
 /// Links may be all but without mass.
 pub(crate) const MASS: Range = Range::new(1e-15, MOST, "kg");
-const LOAD: Range = Range::new(0.0, MOST, "kg");
+pub(crate) const LOAD: Range = Range::new(0.0, MOST, "kg");
 const RADIUS: Range = Range::new(0.0, MOST, "m");
 pub(crate) const INERTIA: Range = Range::new(0.0, MOST, "kg m²");
 const TORQUE_LIMIT: Range = Range::new(LEAST, MOST, "N m");
 /// A gear is no lever of any length, and none of none.
-const RATIO: Range = Range::either_way(1e4, "");
+pub(crate) const RATIO: Range = Range::either_way(1e4, "");
 const SPEED_LIMIT: Range = Range::new(LEAST, MOST, "rad/s");
 const ACCELERATION_LIMIT: Range = Range::new(LEAST, MOST, "rad/s²");
 const JERK_LIMIT: Range = Range::new(LEAST, 1e9, "rad/s³");

@@ -22,6 +22,15 @@ const KEYS: &str = "link.NAME.(com|com_normal|mass|inertia|length|axial), counte
                     drive.NAME.(torque|speed|acceleration|jerk)_limit, drive.NAME.rotor.(inertia|ratio)";
 
 impl Machine {
+    /// The same without its counterweights.
+    ///
+    /// # Errors
+    /// If only they make it a machine.
+    pub fn without_counterweights(&self) -> Result<Self, MachineError> {
+        let spec = MachineSpec { counterweights: Vec::new(), ..self.spec.clone() };
+        Self::new(spec)
+    }
+
     /// A machine with one setting changed; `value` is one number, two parted by a comma, or the word `default`.
     ///
     /// # Errors

@@ -443,7 +443,7 @@ fn joints(machine: &Machine) -> Vec<(Chain, Vec<usize>)> {
 }
 
 fn reach_of(machine: &Machine) -> f64 {
-    machine.end_effector().iter().map(|w| w.abs()).sum::<f64>().max(1e-6)
+    machine.reach().max(1e-6)
 }
 
 fn append(to: &mut Mesh, other: &Mesh, shift: [f64; 3]) {

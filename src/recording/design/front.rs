@@ -162,5 +162,5 @@ impl Fronts {
 /// What the counterweights of a machine weigh, kg, and its Σ D, kg m².
 fn own(machine: &Machine) -> [f64; 2] {
     let added = machine.spec().counterweights.iter().map(|weight| weight.mass).sum();
-    [added, Inertia::of(machine).momenta().iter().sum()]
+    [added, Inertia::of(machine).total_momentum()]
 }

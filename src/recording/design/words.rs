@@ -33,7 +33,7 @@ pub(super) fn state(state: &State, count: usize) -> String {
     let mut rows = vec![
         ["mass of all, kg".to_owned(), signed(machine.mass(), 3)],
         ["Dₖ, kg m²".into(), all(&mut inertia.momenta().iter().copied())],
-        ["Σ D, kg m²".into(), signed(inertia.momenta().iter().sum(), 4)],
+        ["Σ D, kg m²".into(), signed(inertia.total_momentum(), 4)],
         ["λₖ = Dₖ / D₁".into(), all(&mut inertia.lambda().iter().copied())],
         ["worst of (7), kg m".into(), left(force, inertia.is_force_balanced())],
         ["worst of (8), kg m²".into(), left(coupling, inertia.is_invariant())],

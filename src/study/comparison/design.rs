@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::summary::Column;
+use super::summary::{Column, column};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::planning::Motion;
 use crate::session::Run;
@@ -74,17 +74,6 @@ pub const DESIGN: [Column<Design>; 10] = [
     }),
 ];
 
-const fn column(
-    key: &'static str,
-    head: &'static str,
-    meaning: &'static str,
-    unit: &'static str,
-    decimals: usize,
-    value: fn(&Design) -> Option<f64>,
-) -> Column<Design> {
-    Column { key, head, meaning, unit, decimals, value }
-}
-
 impl Candidate {
     /// Of a run at its end: with what edits have made of its machine.
     pub fn of(run: &Run) -> Self {
@@ -97,7 +86,7 @@ impl Candidate {
         let inertia = Inertia::of(&self.machine);
         let mut design = Design {
             mass: self.machine.mass(),
-            inertia: inertia.momenta().iter().sum(),
+            inertia: inertia.total_momentum(),
             left: [inertia.force_residual(), inertia.invariance_residual()],
             beside: None,
             apart: None,

@@ -94,14 +94,14 @@ impl Column {
     }
 }
 
-const fn column(
+pub(super) const fn column<T>(
     key: &'static str,
     head: &'static str,
     meaning: &'static str,
     unit: &'static str,
     decimals: usize,
-    value: fn(&Summary) -> Option<f64>,
-) -> Column {
+    value: fn(&T) -> Option<f64>,
+) -> Column<T> {
     Column { key, head, meaning, unit, decimals, value }
 }
 
