@@ -383,9 +383,10 @@ impl AppState {
         let contrast = self.intro.as_ref().filter(|intro| intro.contrasts_in(ui.ctx().content_rect().width()));
         let designs = self.view_state.view == ViewKind::Design && !presents;
         if designs {
-            self.studio.follow(&self.session, &self.view_state.brief, self.view_state.front_by);
-            if self.view_state.learns {
-                self.studio.learn(&self.session, &self.view_state.brief);
+            let ViewState { brief, learns, front_by, .. } = &self.view_state;
+            match learns {
+                true => self.studio.learn(&self.session, brief),
+                false => self.studio.weigh(&self.session, brief, *front_by),
             }
             studio::show(ui, &self.session, &self.studio, &self.view_state, &mut commands);
         }
@@ -506,24 +507,26 @@ impl AppState {
             }
             DesignCommand::Ghost(i) => self.view_state.ghost = i,
             DesignCommand::TakeStillest => {
-                let machine = &self.session.scenario().machine;
-                let placed = self.view_state.brief.stillest(machine).map_err(|why| why.to_string())?;
-                let edit = weights_of(machine, &placed.machine);
-                self.view_state.brief.holds.retain(|key, _| !key.starts_with("counterweight."));
-                self.change(Change::Edit(edit));
+                let placed = self.view_state.brief.stillest(&self.session.scenario().machine);
+                self.take_weights(&placed.map_err(|why| why.to_string())?.machine);
             }
             DesignCommand::FrontBy(by) => self.view_state.front_by = by,
             DesignCommand::Take(i) => {
-                self.studio.follow(&self.session, &self.view_state.brief, self.view_state.front_by);
-                if let Some(machine) = self.studio.of_front(i) {
-                    let edit = weights_of(&self.session.scenario().machine, machine);
-                    // What is held of those before is said of others now.
-                    self.view_state.brief.holds.retain(|key, _| !key.starts_with("counterweight."));
-                    self.change(Change::Edit(edit));
+                self.studio.weigh(&self.session, &self.view_state.brief, self.view_state.front_by);
+                if let Some(machine) = self.studio.of_front(i).cloned() {
+                    self.take_weights(&machine);
                 }
             }
         }
         Ok(())
+    }
+
+    /// Takes the counterweights of another machine.
+    fn take_weights(&mut self, of: &Machine) {
+        let edit = weights_of(&self.session.scenario().machine, of);
+        // What is held of those before would be said of others now.
+        self.view_state.brief.holds.retain(|key, _| !key.starts_with("counterweight."));
+        self.change(Change::Edit(edit));
     }
 
     fn attempt(&mut self, command: Command) -> Result<Option<String>, String> {
@@ -601,6 +604,8 @@ impl AppState {
             Command::View(view) => self.show_view(view),
             Command::Learn(learns) => {
                 self.view_state.learns = learns;
+                // The front is out of sight.
+                self.view_state.ghost = None;
                 if learns {
                     self.view_state.plots.shown = true;
                     self.show_view(ViewKind::Design);

@@ -188,12 +188,49 @@ fn head_wanted(machine: &Machine) -> String {
     format!("a header t,{} (rad) or t,x,y (m)", drives.join(","))
 }
 
-/// A column of the file.
-struct Column {
-    place: usize,
-    name: String,
-    scale: f64,
-    has_unit: bool,
+/// A column of a file.
+pub(super) struct Column {
+    pub place: usize,
+    pub name: String,
+    /// What a number of it is in SI units.
+    pub scale: f64,
+    /// Whether its head says its unit.
+    pub has_unit: bool,
+}
+
+impl Column {
+    /// The one of these names among heads with their units; none if there is none.
+    ///
+    /// # Errors
+    /// If there are two, or its unit is none of those known.
+    pub fn find(
+        cells: &[(String, Option<String>)],
+        names: &[String],
+        units: &[(&str, f64)],
+    ) -> Result<Option<Self>, String> {
+        let mut found = cells.iter().enumerate().filter(|(_, (name, _))| names.contains(name));
+        let Some((place, (name, unit))) = found.next() else { return Ok(None) };
+        if let Some((other, _)) = found.next() {
+            return Err(format!("columns {} and {} are both {name}: want one", place + 1, other + 1));
+        }
+        let scale = match unit {
+            None => 1.0,
+            Some(unit) => {
+                let known = units.iter().find(|(known, _)| known == unit);
+                known.map(|known| known.1).ok_or_else(|| {
+                    let all: Vec<&str> = units.iter().map(|u| u.0).collect();
+                    format!("column {name}: unit {:?}: want one of {}", clipped(unit), all.join(", "))
+                })?
+            }
+        };
+        Ok(Some(Self { place, name: name.clone(), scale, has_unit: unit.is_some() }))
+    }
+}
+
+/// That a column is missing among those of a file.
+pub(super) fn no_column(name: &str, head: &csv::StringRecord, want: &str) -> String {
+    let have: Vec<String> = head.iter().map(|word| format!("{:?}", clipped(word))).collect();
+    format!("no column {name} among {}: want {want}", shortened(&have.join(", "), 300))
 }
 
 struct Columns {
@@ -210,30 +247,10 @@ const LENGTH: &[(&str, f64)] = &[("m", 1.0), ("cm", 1e-2), ("mm", 1e-3)];
 impl Columns {
     fn of(head: &csv::StringRecord, machine: &Machine, wanted: Option<Content>) -> Result<Self, String> {
         let cells: Vec<(String, Option<String>)> = head.iter().map(name_and_unit).collect();
-        let find = |names: &[String], units: &[(&str, f64)]| -> Result<Option<Column>, String> {
-            let mut found = cells.iter().enumerate().filter(|(_, (name, _))| names.contains(name));
-            let Some((place, (name, unit))) = found.next() else { return Ok(None) };
-            if let Some((other, _)) = found.next() {
-                return Err(format!("columns {} and {} are both {name}: want one", place + 1, other + 1));
-            }
-            let scale = match unit {
-                None => 1.0,
-                Some(unit) => {
-                    let known = units.iter().find(|(known, _)| known == unit);
-                    known.map(|known| known.1).ok_or_else(|| {
-                        let all: Vec<&str> = units.iter().map(|u| u.0).collect();
-                        format!("column {name}: unit {:?}: want one of {}", clipped(unit), all.join(", "))
-                    })?
-                }
-            };
-            Ok(Some(Column { place, name: name.clone(), scale, has_unit: unit.is_some() }))
-        };
+        let find = |names: &[String], units: &[(&str, f64)]| Column::find(&cells, names, units);
         let named = |all: &[&str]| all.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
         let want = head_wanted(machine);
-        let missing = |name: &str| {
-            let have: Vec<String> = head.iter().map(|word| format!("{:?}", clipped(word))).collect();
-            format!("no column {name} among {}: want {want}", shortened(&have.join(", "), 300))
-        };
+        let missing = |name: &str| no_column(name, head, &want);
         let time = find(&named(&["t", "time"]), TIME)?.ok_or_else(|| missing("t"))?;
         let drive = |k: usize| {
             let own = &machine.spec().drives[k].name;
@@ -262,15 +279,21 @@ impl Columns {
     }
 }
 
-/// `q1 (deg)`, `q1 [deg]`, `time s`, `q1_deg` or a name alone.
-fn name_and_unit(cell: &str) -> (String, Option<String>) {
-    let cell = cell.trim().to_lowercase();
+/// `q1 (deg)` or `q1 [deg]`, trimmed and in small letters.
+pub(super) fn unit_in_brackets(cell: &str) -> Option<(String, Option<String>)> {
     let bracketed = |open: char, close: char| {
         let (name, rest) = cell.split_once(open)?;
         Some((name.trim().to_owned(), rest.trim().strip_suffix(close)?.trim().to_owned()))
     };
-    if let Some((name, unit)) = bracketed('(', ')').or_else(|| bracketed('[', ']')) {
-        return (name, Some(unit).filter(|unit| !unit.is_empty()));
+    let (name, unit) = bracketed('(', ')').or_else(|| bracketed('[', ']'))?;
+    Some((name, Some(unit).filter(|unit| !unit.is_empty())))
+}
+
+/// `q1 (deg)`, `q1 [deg]`, `time s`, `q1_deg` or a name alone.
+fn name_and_unit(cell: &str) -> (String, Option<String>) {
+    let cell = cell.trim().to_lowercase();
+    if let Some(both) = unit_in_brackets(&cell) {
+        return both;
     }
     let known = |unit: &str| [TIME, ANGLE, LENGTH].iter().any(|units| units.iter().any(|(known, _)| *known == unit));
     for separator in [' ', '_', '/'] {

@@ -3,15 +3,12 @@
 use stillbase::mechanics::balance::{Hold, Keep, Parameter};
 use stillbase::mechanics::machine::Machine;
 
+use super::ends::named;
 use super::failure::Failure;
 
 /// KEY=LO,HI, m or kg.
 pub fn bound(text: &str) -> Result<(String, [f64; 2]), String> {
-    let want = || "want KEY=LO,HI in m or kg, as 2.com=-0.3,0.1".to_owned();
-    let (key, ends) = text.split_once('=').ok_or_else(want)?;
-    let (low, high) = ends.split_once(',').ok_or_else(want)?;
-    let end = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(want);
-    Ok((key.trim().into(), [end(low)?, end(high)?]))
+    named(text).ok_or_else(|| "want KEY=LO,HI in m or kg, as 2.com=-0.3,0.1".to_owned())
 }
 
 /// Says in `asked` what is fixed, free and bounded.

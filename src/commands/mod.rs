@@ -9,6 +9,7 @@ mod compare;
 mod csv_file;
 mod design;
 pub(crate) mod dynamics;
+mod ends;
 mod exit;
 mod export;
 mod export_model;

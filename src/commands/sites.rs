@@ -3,15 +3,12 @@
 use stillbase::mechanics::counterweights::Sites;
 use stillbase::mechanics::machine::Machine;
 
+use super::ends::named;
 use super::failure::Failure;
 
 /// NAME=LO,HI: of a link, m, or of something else.
 pub fn range(text: &str) -> Result<(String, [f64; 2]), String> {
-    let want = || "want NAME=LO,HI, as 1=-0.3,0.5".to_owned();
-    let (link, places) = text.split_once('=').ok_or_else(want)?;
-    let (from, to) = places.split_once(',').ok_or_else(want)?;
-    let place = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(want);
-    Ok((link.trim().into(), [place(from)?, place(to)?]))
+    named(text).ok_or_else(|| "want NAME=LO,HI, as 1=-0.3,0.5".to_owned())
 }
 
 /// The place of a link by its name.

@@ -186,7 +186,7 @@ impl Brief {
     /// # Errors
     /// If nothing within the bounds balances it.
     pub fn front(&self, machine: &Machine, count: usize) -> Result<Front, NoWeights> {
-        front(machine, &self.weighing(machine, Objective::mass()), count)
+        front(machine, &self.weighing(machine), count)
     }
 
     /// Counterweights, and ratios of rotors, with which what the drives give to the base, Σ |D_k|, is least.
@@ -200,10 +200,11 @@ impl Brief {
             let ends = *self.ratios.get(&of.name)?;
             Some(FreeRotor { drive, free: Free::Ratio(ends) })
         });
-        place(machine, &Weighing { rotors: rotors.collect(), ..self.weighing(machine, objective) })
+        place(machine, &Weighing { objective, rotors: rotors.collect(), ..self.weighing(machine) })
     }
 
-    fn weighing(&self, machine: &Machine, objective: Objective) -> Weighing {
+    /// What is asked of counterweights of a machine: the lightest.
+    pub fn weighing(&self, machine: &Machine) -> Weighing {
         let spec = machine.spec();
         let free = machine.resolved_links().iter().enumerate();
         let sites = free.filter(|(link, _)| !self.fixed.contains(&spec.links[*link].name)).map(|(link, part)| Sites {
@@ -215,7 +216,7 @@ impl Brief {
         Weighing {
             clearance: self.clearance,
             payload: self.payload,
-            ..Weighing::least(objective, sites.collect(), self.disc)
+            ..Weighing::least(Objective::mass(), sites.collect(), self.disc)
         }
     }
 }

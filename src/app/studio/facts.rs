@@ -2,7 +2,7 @@
 
 use super::lesson::Lesson;
 use crate::mechanics::balance::{Breakdown, Condition};
-use crate::mechanics::counterweights::{Placed, Residual, over_payloads};
+use crate::mechanics::counterweights::{Placed, Residual, Weighing, over_payloads};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::picture::scene::options::Offered;
 use crate::planning::forecast::Forecast;
@@ -27,7 +27,9 @@ pub struct Facts {
     pub(super) now: [f64; 2],
     /// What balance has cost beside the machine without its counterweights, with the forecast of the task that it is of.
     pub(super) measures: Option<(Forecast, Measures)>,
-    weighed: Option<(Machine, Brief)>,
+    /// It without its counterweights.
+    bare: Option<Machine>,
+    weighed: Option<(Machine, Weighing)>,
     front: Option<Result<Vec<Point>, String>>,
     /// What tells the machines of the front apart, of each of them, with the forecast of the task that it is of.
     pub(super) told: Option<(FrontMeasure, Forecast, Vec<Option<f64>>)>,
@@ -77,11 +79,12 @@ const NOTHING: f64 = 1e-9;
 impl Facts {
     /// Finds the equations, if what they depend on has changed.
     pub fn learn(&mut self, session: &Session, brief: &Brief) {
+        self.follow(session, brief);
         self.lesson.follow(session, brief.preset);
     }
 
     /// Finds what has to be said, if the machine or what is asked for has changed.
-    pub fn follow(&mut self, session: &Session, brief: &Brief, by: Option<FrontMeasure>) {
+    fn follow(&mut self, session: &Session, brief: &Brief) {
         let (machine, plan) = (&session.scenario().machine, session.run().plan());
         let is_new = self.of.as_ref() != Some(machine);
         if is_new {
@@ -90,28 +93,34 @@ impl Facts {
             self.lambda = inertia.lambda().to_vec();
             let added = machine.spec().counterweights.iter().map(|weight| weight.mass).sum();
             self.now = [added, inertia.total_momentum()];
+            self.bare = machine.without_counterweights().ok();
             self.of = Some(machine.clone());
         }
-        // Whether the balance is kept does not matter to it.
-        let asked = Brief { keeps_balance: false, ..brief.clone() };
-        let Ok(bare) = machine.without_counterweights() else { return };
-        if is_new || self.measures.as_ref().is_none_or(|(forecast, _)| *forecast != plan.forecast) {
-            let measures = Measures::of(&bare, machine, session.run().motion());
-            self.measures = Some((plan.forecast, measures));
+        let is_measured = || self.measures.as_ref().is_some_and(|(forecast, _)| *forecast == plan.forecast);
+        if is_new || !is_measured() {
+            let of = |bare| (plan.forecast, Measures::of(bare, machine, session.run().motion()));
+            self.measures = self.bare.as_ref().map(of);
         }
-        if !self.weighed.as_ref().is_some_and(|(known, brief)| *known == bare && *brief == asked) {
-            let found = asked.front(&bare, POINTS).map_err(|why| why.to_string());
+        if is_new || self.held != brief.payload {
+            let payloads = brief.payload.and_then(|ends| over_payloads(machine, ends, PAYLOADS).ok());
+            (self.payloads, self.held) = (payloads.unwrap_or_default(), brief.payload);
+        }
+    }
+
+    /// Finds the front, too, and what tells its machines apart.
+    pub fn weigh(&mut self, session: &Session, brief: &Brief, by: Option<FrontMeasure>) {
+        self.follow(session, brief);
+        let Some(bare) = &self.bare else { return };
+        let asked = brief.weighing(bare);
+        if !self.weighed.as_ref().is_some_and(|(known, what)| known == bare && *what == asked) {
+            let found = brief.front(bare, POINTS).map_err(|why| why.to_string());
             self.front = Some(found.map(|front| {
                 let measures = front.measures();
                 let both = front.points.into_iter().zip(measures);
                 both.map(|(placed, [_, inertia])| Point { placed, inertia }).collect()
             }));
-            self.weighed = Some((bare, asked));
+            self.weighed = Some((bare.clone(), asked));
             self.told = None;
-        }
-        if is_new || self.held != brief.payload {
-            let payloads = brief.payload.and_then(|ends| over_payloads(machine, ends, PAYLOADS).ok());
-            (self.payloads, self.held) = (payloads.unwrap_or_default(), brief.payload);
         }
         self.tell(session, by);
     }

@@ -16,6 +16,7 @@ use stillbase::study::lengths::{Found, FreeLength, LengthSearch, NoLengths, sear
 use stillbase::study::measures::{Measures, greatest_accelerations};
 
 use super::super::check::Balance;
+use super::super::ends::ends;
 use super::super::failure::Failure;
 use super::super::output::Table;
 use super::super::sites::{link, range, sites};
@@ -48,7 +49,7 @@ pub struct WeighArguments {
     clearance: Option<f64>,
     /// What the end effector holds, at least and at most, kg: the worst residual of (7) and (8) over all between is made
     /// least, then the objective
-    #[arg(long, value_name = "LO,HI", requires = "counterweights", value_parser = ends)]
+    #[arg(long, value_name = "LO,HI", requires = "counterweights", value_parser = payload)]
     payload: Option<[f64; 2]>,
     /// Choose the inertia of the rotor of a drive, kg m², at the ratio that the machine has
     #[arg(long, value_name = "DRIVE=LO,HI", requires = "counterweights", value_parser = range)]
@@ -242,11 +243,9 @@ fn number(text: &str) -> Result<f64, String> {
     text.trim().parse().map_err(|_| "want a number, as 0.05".to_owned())
 }
 
-fn ends(text: &str) -> Result<[f64; 2], String> {
-    let want = || "want two numbers, as 0.1,0.5".to_owned();
-    let (low, high) = text.split_once(',').ok_or_else(want)?;
-    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(want);
-    Ok([number(low)?, number(high)?])
+/// LO,HI, kg.
+fn payload(text: &str) -> Result<[f64; 2], String> {
+    ends(text).ok_or_else(|| "want two numbers, as 0.1,0.5".to_owned())
 }
 
 fn objective(text: &str) -> Result<Objective, String> {

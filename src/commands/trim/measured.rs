@@ -7,10 +7,10 @@ use std::fmt::Display;
 use stillbase::mechanics::machine::Machine;
 use stillbase::mechanics::planar::{PerDrive, Vector};
 use stillbase::settings::number::{Short, counted};
-use stillbase::settings::range::{clipped, shortened};
+use stillbase::settings::range::clipped;
 use stillbase::study::trim::Motion;
 
-use super::super::columns::{ANGLE, GAP, MOST, TIME, continuous_angle, reader};
+use super::super::columns::{ANGLE, Column, GAP, MOST, TIME, continuous_angle, no_column, reader, unit_in_brackets};
 use super::super::failure::Failure;
 
 /// The most rows of a file.
@@ -44,14 +44,6 @@ const MOMENT: Units = &[
 const LENGTH: Units = &[("m", 1.0)];
 /// A base that moves by more than this, m or rad, is no fixed one.
 const FIXED: f64 = 1e-9;
-
-/// A column of numbers.
-struct Column {
-    place: usize,
-    name: String,
-    scale: f64,
-    has_unit: bool,
-}
 
 /// Where everything stands.
 struct Columns {
@@ -184,31 +176,12 @@ impl Split {
 
 impl Columns {
     fn of(head: &csv::StringRecord, machine: &Machine) -> Result<Self, String> {
-        let find = |names: &[String], units: Units| -> Result<Option<Column>, String> {
-            let named = head.iter().enumerate().filter_map(|(place, cell)| {
-                let (name, unit) = name_and_unit(cell, units);
-                names.contains(&name).then_some((place, name, unit))
-            });
-            let named: Vec<_> = named.collect();
-            let Some((place, name, unit)) = named.first().cloned() else { return Ok(None) };
-            if let Some((other, ..)) = named.get(1) {
-                return Err(format!("columns {} and {} are both {name}: want one", place + 1, other + 1));
-            }
-            let scale = match &unit {
-                None => 1.0,
-                Some(unit) => units.iter().find(|(known, _)| known == unit).map(|known| known.1).ok_or_else(|| {
-                    let all: Vec<&str> = units.iter().map(|u| u.0).collect();
-                    format!("column {name}: unit {:?}: want one of {}", clipped(unit), all.join(", "))
-                })?,
-            };
-            Ok(Some(Column { place, name, scale, has_unit: unit.is_some() }))
+        let find = |names: &[String], units: Units| {
+            let cells: Vec<_> = head.iter().map(|cell| name_and_unit(cell, units)).collect();
+            Column::find(&cells, names, units)
         };
         let named = |all: &[&str]| all.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
-        let missing = |name: &str| {
-            let have: Vec<String> = head.iter().map(|word| format!("{:?}", clipped(word))).collect();
-            let want = head_wanted(machine);
-            format!("no column {name} among {}: want {want}", shortened(&have.join(", "), 300))
-        };
+        let missing = |name: &str| no_column(name, head, &head_wanted(machine));
         let drives = machine.drives();
         let each = |short: [&str; 2], long: &str, units: Units| -> Result<Vec<Option<Column>>, String> {
             let of = |k: usize| {
@@ -290,12 +263,8 @@ impl Columns {
 /// `fx (N)`, `fx [N]`, `force/dynamic_x N`, `q1_deg` or a name alone; of units without brackets only those that fit.
 fn name_and_unit(cell: &str, units: Units) -> (String, Option<String>) {
     let cell = cell.trim().to_lowercase();
-    let bracketed = |open: char, close: char| {
-        let (name, rest) = cell.split_once(open)?;
-        Some((name.trim().to_owned(), rest.trim().strip_suffix(close)?.trim().to_owned()))
-    };
-    if let Some((name, unit)) = bracketed('(', ')').or_else(|| bracketed('[', ']')) {
-        return (name, Some(unit).filter(|unit| !unit.is_empty()));
+    if let Some(both) = unit_in_brackets(&cell) {
+        return both;
     }
     let ends = units.iter().filter_map(|(unit, _)| {
         let name = cell.strip_suffix(unit)?.strip_suffix([' ', '_', '/'])?;

@@ -1,0 +1,15 @@
+//! How models for other programs look.
+
+/// Half the width of a bar as it is drawn, m.
+pub const RADIUS: f64 = 0.012;
+/// Colours of the drives: sky blue, vermilion and bluish green, and so on (Okabe and Ito).
+pub const COLOURS: [&str; 8] = [
+    "0.34 0.71 0.91 1",
+    "0.84 0.37 0 1",
+    "0 0.62 0.45 1",
+    "0.90 0.62 0 1",
+    "0.80 0.47 0.65 1",
+    "0.94 0.89 0.26 1",
+    "0 0.45 0.70 1",
+    "0.6 0.6 0.6 1",
+];
