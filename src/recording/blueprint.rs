@@ -421,14 +421,15 @@ fn name_of(chart: &Chart) -> String {
 fn titled(chart: &Chart, case: &Preview) -> String {
     let signals = case.topics.iter().flat_map(|topic| &topic.signals);
     let all: Vec<_> = signals.filter(|signal| chart.holds(signal)).collect();
-    let of_drives = all.len() == COLOURS.len() && all.iter().enumerate().all(|(k, signal)| signal.drive == Some(k));
+    let of_drives = all.len() > 1 && all.iter().enumerate().all(|(k, signal)| signal.drive == Some(k));
+    let of_drives = of_drives && all.len() <= COLOURS.len();
     let words = all.iter().zip(COLOURS).map(|(signal, colour)| format!("{} {colour}", signal.symbol));
     let words: Vec<String> = if of_drives { words.collect() } else { Vec::new() };
     [name_of(chart)].into_iter().chain(words).collect::<Vec<_>>().join("  ·  ")
 }
 
 /// What the colours of the first drives are called.
-const COLOURS: [&str; 3] = ["blue", "orange", "green"];
+const COLOURS: [&str; 4] = ["blue", "orange", "green", "violet"];
 
 /// A range with room below for a legend of so many lines.
 fn with_room([low, high]: [f64; 2], lines: usize) -> [f64; 2] {

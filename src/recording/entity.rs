@@ -10,9 +10,9 @@ use rerun::{
 use super::dashes::dashed;
 use super::eye::Eye;
 use super::rows::Track;
-use super::store::{Instant, Store, StoreError};
+use super::store::{Clock, Instant, Store, StoreError};
 use super::style::{Together, colour, solid};
-use crate::picture::scene::{Area, Changes, Model, Pose, Rgba, Strips};
+use crate::picture::scene::{Area, Changes, Mesh, Model, Pose, Rgba, Strips};
 
 /// Cells of a workspace along each angle.
 const CELLS: u32 = 40;
@@ -100,11 +100,24 @@ impl PartialEq for Strokes {
 }
 
 /// What an entity shows that can change at any instant.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub enum Shape {
     Strokes(Strokes),
     Dots(Vec<Dot>),
     Instances(Vec<[f32; 3]>),
+    Mesh(Arc<Model>, usize),
+}
+
+impl PartialEq for Shape {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Strokes(a), Self::Strokes(b)) => a == b,
+            (Self::Dots(a), Self::Dots(b)) => a == b,
+            (Self::Instances(a), Self::Instances(b)) => a == b,
+            (Self::Mesh(a, i), Self::Mesh(b, k)) => i == k && Arc::ptr_eq(a, b) || a.meshes[*i] == b.meshes[*k],
+            _ => false,
+        }
+    }
 }
 
 /// What an entity shows until somebody says otherwise.
@@ -113,7 +126,13 @@ pub enum Lasting {
     Mesh(Arc<Model>, usize, Rgba),
     Sheet(Area),
     Strokes(Strokes),
-    Ring { radius: f32, width: f32, rgba: Rgba },
+    Ring {
+        radius: f32,
+        width: f32,
+        rgba: Rgba,
+    },
+    /// The colour of meshes that change.
+    Tint(Rgba),
 }
 
 impl PartialEq for Lasting {
@@ -125,6 +144,7 @@ impl PartialEq for Lasting {
             (Self::Sheet(a), Self::Sheet(b)) => a == b,
             (Self::Strokes(a), Self::Strokes(b)) => a == b,
             (Self::Ring { radius: a, .. }, Self::Ring { radius: b, .. }) => a == b,
+            (Self::Tint(a), Self::Tint(b)) => a == b,
             _ => false,
         }
     }
@@ -263,7 +283,7 @@ impl Entity {
             match &mut shape {
                 Shape::Dots(dots) => dots.iter_mut().for_each(|dot| dot.at = eye.place(outer.inside(dot.at))),
                 Shape::Instances(places) => places.iter_mut().for_each(|p| *p = eye.place(outer.inside(*p))),
-                Shape::Strokes(_) => {}
+                Shape::Strokes(_) | Shape::Mesh(..) => {}
             }
             self.shapes.push(at, Some(shape));
         }
@@ -286,6 +306,7 @@ impl Entity {
         let looks: Box<dyn AsComponents> = match lasting {
             Lasting::Mesh(model, mesh, rgba) => Box::new(solid(&model.meshes[*mesh], *rgba, eye)),
             Lasting::Sheet(area) => Box::new(sheet(area)),
+            Lasting::Tint(rgba) => Box::new(Mesh3D::update_fields().with_albedo_factor(colour(*rgba).0)),
             Lasting::Strokes(strokes) => Box::new(
                 LineStrips3D::new(strokes.drawn(eye, LASTING))
                     .with_radii([Radius::new_ui_points(0.5 * strokes.width)])
@@ -320,6 +341,9 @@ impl Entity {
             return Ok(());
         }
         let (mut strokes, mut dots, mut places) = (Vec::new(), Vec::new(), Vec::<[f32; 3]>::new());
+        if rows.iter().flatten().any(|row| matches!(row, Shape::Mesh(..))) {
+            return self.write_meshes(store, &clock, &rows, eye);
+        }
         let mut lengths = Vec::with_capacity(rows.len());
         for row in &rows {
             lengths.push(match row {
@@ -337,7 +361,7 @@ impl Entity {
                     places.extend(row);
                     row.len()
                 }
-                None => 0,
+                Some(Shape::Mesh(..)) | None => 0,
             });
         }
         let clock = clock.columns();
@@ -373,6 +397,32 @@ impl Entity {
                 store.columns(&clock, &self.path, points.columns(lengths)?)
             }
         }
+    }
+}
+
+impl Entity {
+    /// Writes meshes that are drawn anew, a row each; one that is not there has no triangles.
+    fn write_meshes(
+        &self,
+        store: &mut Store,
+        clock: &Clock,
+        rows: &[Option<Shape>],
+        eye: &Eye,
+    ) -> Result<(), StoreError> {
+        let none = Mesh::default();
+        let mesh = |row: &Option<Shape>| match row {
+            Some(Shape::Mesh(model, i)) => model.meshes[*i].clone(),
+            _ => none.clone(),
+        };
+        let all: Vec<Mesh> = rows.iter().map(mesh).collect();
+        let vertices = Mesh3D::update_fields()
+            .with_vertex_positions(all.iter().flat_map(|mesh| mesh.positions.iter().map(|p| eye.place(*p))))
+            .with_vertex_normals(all.iter().flat_map(|mesh| mesh.normals.iter().map(|n| eye.turn(*n))));
+        let triangles =
+            Mesh3D::update_fields().with_triangle_indices(all.iter().flat_map(|mesh| mesh.triangles.iter().copied()));
+        let columns = vertices.columns(all.iter().map(|mesh| mesh.positions.len()))?;
+        let columns = columns.chain(triangles.columns(all.iter().map(|mesh| mesh.triangles.len()))?);
+        store.columns(&clock.columns(), &self.path, columns)
     }
 }
 

@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use rerun::blueprint::components::Eye3DKind;
 use rerun::external::re_sdk_types::blueprint::archetypes::EyeControls3D;
 
-use crate::picture::scene::camera::{Camera, Orbit};
+use crate::picture::scene::camera::{Camera, Flat, Orbit};
 
 /// Half the height of the picture at a distance of 1: the viewer looks through 55°.
 const HALF_HEIGHT: f64 = 0.5206;
@@ -44,6 +44,14 @@ impl Eye {
         let distance = 0.5 * side / HALF_HEIGHT;
         let orbit = Orbit { centre: [x, y, 0.0], distance, yaw: 0.0, pitch: FRAC_PI_2 };
         Self { orbit, axes: [0, 1, 2], thickness: FLAT }
+    }
+
+    /// Where a camera is, in a space with these axes.
+    pub fn of(camera: &Camera, axes: [usize; 3]) -> Self {
+        match camera {
+            Camera::Orbit(orbit) => Self::along(*orbit, axes),
+            Camera::Flat(Flat { centre, half_height }) => Self::above(*centre, 2.0 * half_height),
+        }
     }
 
     /// Whether it looks at a drawing from straight above.

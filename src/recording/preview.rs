@@ -8,11 +8,10 @@ use super::design::Design;
 use super::eye::Eye;
 use super::topic::Topic;
 use crate::picture::charts::{Chart, charts};
-use crate::picture::scene::camera::{Camera, Orbit};
-use crate::picture::scene::joint_space::JointSpace;
+use crate::picture::scene::camera::Orbit;
 use crate::picture::scene::linkage::Linkage;
 use crate::picture::scene::reaction::Scale;
-use crate::picture::scene::tower::Tower;
+use crate::picture::scene::views::{ViewKind, Views};
 use crate::session::scenario::Scenario;
 use crate::session::{Refusal, replay_while};
 use crate::simulation::frame::Peaks;
@@ -40,9 +39,11 @@ pub struct Preview {
     pub charts: Vec<(Chart, [f64; 2])>,
     /// From where the machine is seen.
     pub scene: Eye,
-    /// From where joint space is seen, if there are planes.
+    /// The views of its machine as it is at the end.
+    pub views: Views,
+    /// From where joint space is seen, if there is one.
     pub joints: Option<Eye>,
-    /// From where the tower is seen.
+    /// From where the tower is seen, if there is one.
     pub tower: Option<Eye>,
     /// The machine as it is designed.
     pub design: Design,
@@ -74,12 +75,9 @@ impl Preview {
         })?;
         let last = run.frame();
         let reach = Linkage::of(&run.scenario().machine).reach();
-        let orbit = |camera: Camera| match camera {
-            Camera::Orbit(orbit) => Some(orbit),
-            Camera::Flat(_) => None,
-        };
-        let joints =
-            JointSpace::over(&run, b).and_then(|space| Some(Eye::along(orbit(space.camera())?, space.drives())));
+        let views = Views::over(&run, b, None);
+        let eye = |kind: ViewKind, axes| views.shows(kind).then(|| Eye::of(&views.camera(kind), axes));
+        let (joints, tower) = (eye(ViewKind::Joints, views.joint_axes()), eye(ViewKind::Tower, [0, 1, 2]));
         Ok(Self {
             name: scenario.name.clone(),
             title: if scenario.title.is_empty() { scenario.name.clone() } else { scenario.title.clone() },
@@ -93,7 +91,8 @@ impl Preview {
             joints,
             candidate: Candidate::of(&run),
             design: Design::of(scenario, &run, first.unwrap_or(last))?,
-            tower: Tower::over(&run, b).and_then(|tower| orbit(tower.camera())).map(Eye::upright),
+            tower,
+            views,
         })
     }
 }

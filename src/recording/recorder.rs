@@ -7,6 +7,7 @@ use rerun::external::re_log_types::EntityPathPart;
 use rerun::{AnyValues, EntityPath, ViewCoordinates};
 
 use super::events::Events;
+use super::eye::Eye;
 use super::pictures::Series;
 use super::preview::Preview;
 use super::rows::Thinned;
@@ -16,12 +17,11 @@ use super::store::{Clock, Instant, Store};
 use super::style::{lines, under};
 use super::topic::Topic;
 use crate::mechanics::machine::Machine;
-use crate::picture::scene::joint_space::JointSpace;
+use crate::mechanics::planar::MAX_DRIVES;
 use crate::picture::scene::options::ViewOptions;
 use crate::picture::scene::palette::{Palette, Theme, mix, palette};
 use crate::picture::scene::reaction::Scale;
-use crate::picture::scene::stage::Stage;
-use crate::picture::scene::tower::Tower;
+use crate::picture::scene::views::{ViewKind, Views};
 use crate::picture::scene::{Scene, point};
 use crate::planning::pose_constant::Planes;
 use crate::session::scenario::Scenario;
@@ -90,7 +90,7 @@ struct Recorder<'a> {
     clock: Clock,
     topics: Vec<Topic>,
     row_every: u64,
-    views: Option<Views>,
+    drawn: Option<Drawn>,
     /// The b that the run begins with, rad.
     first_b: f64,
     machine: Space,
@@ -101,10 +101,8 @@ struct Recorder<'a> {
 }
 
 /// What is drawn from, and of what it was made.
-struct Views {
-    stage: Stage,
-    joints: Option<JointSpace>,
-    tower: Option<Tower>,
+struct Drawn {
+    views: Views,
     machine: Machine,
     plant: Option<Machine>,
     planes: Option<Arc<Planes>>,
@@ -112,13 +110,11 @@ struct Views {
     compared: Option<f64>,
 }
 
-impl Views {
-    fn of(run: &Run, b: [f64; 2]) -> Self {
+impl Drawn {
+    fn of(run: &Run, b: [f64; 2], known: &Views) -> Self {
         let scenario = run.scenario();
         Self {
-            stage: Stage::of(run),
-            joints: JointSpace::over(run, b),
-            tower: Tower::over(run, b),
+            views: Views::over(run, b, Some(known)),
             machine: scenario.machine.clone(),
             plant: scenario.plant.machine(&scenario.machine).ok(),
             planes: run.planes().cloned(),
@@ -127,7 +123,7 @@ impl Views {
         }
     }
 
-    fn are_of(&self, run: &Run) -> bool {
+    fn is_of(&self, run: &Run) -> bool {
         let scenario = run.scenario();
         let planes = match (&self.planes, run.planes()) {
             (Some(known), Some(now)) => Arc::ptr_eq(known, now),
@@ -185,7 +181,7 @@ impl<'a> Recorder<'a> {
             clock: Clock::default(),
             topics: forecast.topics.clone(),
             row_every: (ROW_TIME / scenario.step).round().max(1.0) as u64,
-            views: None,
+            drawn: None,
             first_b: 0.0,
         })
     }
@@ -197,7 +193,7 @@ impl<'a> Recorder<'a> {
             self.events.start(at, &self.forecast.title, self.scenario.machine.name());
             self.events.plan(at, &run.scenario().task, run.planned_time());
         }
-        let redrawn = (self.edited(at) || self.views.is_none()) && self.prepare(run, frame);
+        let redrawn = (self.edited(at) || self.drawn.is_none()) && self.prepare(run, frame);
         self.events.note(at, frame, run.scenario());
         self.clock.push(at);
         self.topics.iter_mut().for_each(|topic| topic.push(frame));
@@ -205,8 +201,8 @@ impl<'a> Recorder<'a> {
         if last || redrawn || frame.step.is_multiple_of(self.row_every) {
             self.draw(at, frame, last)?;
         }
-        if let Some(views) = self.views.as_ref().filter(|_| self.pictures.is_due(frame, self.scenario.step)) {
-            self.pictures.take(at, &views.stage, frame, &self.options)?;
+        if let Some(drawn) = self.drawn.as_ref().filter(|_| self.pictures.is_due(frame, self.scenario.step)) {
+            self.pictures.take(at, drawn.views.stage(), frame, &self.options)?;
         }
         if self.clock.len() >= BATCH || self.pictures.is_full() {
             self.flush()?;
@@ -225,9 +221,9 @@ impl<'a> Recorder<'a> {
     fn prepare(&mut self, run: &Run, frame: &Frame) -> bool {
         let force = run.scenario().plant.force;
         self.options.push = Some(force).filter(|force| *force != [0.0; 2]);
-        match &mut self.views {
-            Some(views) if views.are_of(run) => {
-                views.stage.refresh(run);
+        match &mut self.drawn {
+            Some(drawn) if drawn.is_of(run) => {
+                drawn.views.refresh(run);
                 return false;
             }
             Some(_) => {}
@@ -242,25 +238,26 @@ impl<'a> Recorder<'a> {
         let other = other.map(|other| if other == own { format!("{other} compared") } else { other });
         let names = other.map(|other| ("workspace/compared", other)).into_iter().chain([("workspace", own)]);
         self.machine.rename(names.collect());
-        self.views = Some(Views::of(run, self.forecast.b));
+        self.drawn = Some(Drawn::of(run, self.forecast.b, &self.forecast.views));
         true
     }
 
     /// Everything that is to be seen at an instant.
     fn draw(&mut self, at: Instant, frame: &Frame, last: bool) -> Result<(), Stop> {
-        let Some(views) = &self.views else { return Ok(()) };
+        let Some(Drawn { views, .. }) = &self.drawn else { return Ok(()) };
         let when = (at, if self.lasting { None } else { Some(at) });
-        let tip = point(frame.end_effector, views.stage.handle_height());
+        let tip = point(frame.end_effector, views.stage().handle_height());
         self.trail.push(|| tip, last);
-        self.machine.draw(self.store, when, &views.stage.scene(frame, &self.options))?;
-        let scene = |view: Option<Scene>| view.unwrap_or_else(|| Scene::new(self.palette.background, Arc::default()));
+        self.machine.draw(self.store, when, &views.stage().scene(frame, &self.options))?;
+        let scene = |kind: ViewKind, eye: &Eye| match views.shows(kind) {
+            true => views.scene(kind, frame, &self.options, &eye.camera()),
+            false => Scene::new(self.palette.background, Arc::default()),
+        };
         if let (Some(space), Some(eye)) = (&mut self.joints, self.forecast.joints) {
-            let view = views.joints.as_ref().map(|view| view.scene(frame, &self.options, &eye.camera()));
-            space.draw(self.store, when, &scene(view))?;
+            space.draw(self.store, when, &scene(ViewKind::Joints, &eye))?;
         }
         if let (Some(space), Some(eye)) = (&mut self.tower, self.forecast.tower) {
-            let view = views.tower.as_ref().map(|view| view.scene(frame, &self.options, &eye.camera()));
-            space.draw(self.store, when, &scene(view))?;
+            space.draw(self.store, when, &scene(ViewKind::Tower, &eye))?;
         }
         Ok(())
     }
@@ -291,6 +288,10 @@ impl<'a> Recorder<'a> {
         Ok((frame.peaks, verdict))
     }
 }
+
+/// Properties that hold the drift of each drive.
+const DRIFTS: [&str; MAX_DRIVES] =
+    ["drift_1", "drift_2", "drift_3", "drift_4", "drift_5", "drift_6", "drift_7", "drift_8"];
 
 /// All that the run can be made of again, what was foreseen, and what came of it.
 fn properties(scenario: &Scenario, (peaks, verdict): (&Peaks, &Verdict), plan: &Plan) -> AnyValues {
@@ -328,7 +329,7 @@ fn properties(scenario: &Scenario, (peaks, verdict): (&Peaks, &Verdict), plan: &
     }
     // By drive, a number for each cycle: so far it has drifted in all.
     if let [start, ends @ ..] = &cycles[..] {
-        for (k, name) in ["drift_1", "drift_2", "drift_3"].into_iter().enumerate() {
+        for (k, name) in DRIFTS.into_iter().enumerate().take(start.len()) {
             let drift: Vec<f64> = ends.iter().map(|end| end[k] - start[k]).collect();
             all = all.with_component::<Scalar>(name, numbers(&drift));
         }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use rerun::EntityPath;
 
-use super::entity::{Dot, Entity, Kind, Lasting, Rigid, Strokes};
+use super::entity::{Dot, Entity, Kind, Lasting, Rigid, Shape, Strokes};
 use super::eye::Eye;
 use super::store::{Instant, Store, StoreError};
 use super::style::under;
@@ -124,6 +124,11 @@ impl Space {
 
     fn solid(&mut self, solid: &Solid, model: &Arc<Model>) {
         let entity = self.entity(Kind::Solid, &solid.name);
+        if solid.changes == Changes::Shape {
+            (entity.lasting, entity.shape) =
+                (Some(Lasting::Tint(solid.colour)), Some(Shape::Mesh(model.clone(), solid.mesh)));
+            return;
+        }
         entity.placed.push((Rigid::of(&solid.world_from_item), solid.world_from_item[2][2]));
         if entity.lasting.is_none() {
             entity.lasting = Some(Lasting::Mesh(model.clone(), solid.mesh, solid.colour));

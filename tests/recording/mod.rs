@@ -2,6 +2,7 @@
 
 mod design;
 mod events;
+mod family;
 mod file;
 mod geometry;
 mod layout;

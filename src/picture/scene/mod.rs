@@ -18,6 +18,7 @@ pub mod framing;
 pub mod grid;
 pub mod joint_items;
 pub mod joint_space;
+pub mod joints;
 pub mod linkage;
 pub mod mesh;
 pub mod options;

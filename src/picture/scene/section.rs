@@ -14,7 +14,7 @@ use super::palette::{Palette, faded, palette};
 use super::pick::{Aim, NEAR, Pick};
 use super::pointer::{Pointer, dot};
 use super::{Anchor, Changes, IN_PLACE, Label, Line, Mesh, Model, Scene, Solid};
-use crate::mechanics::planar::DriveAngles;
+use crate::mechanics::planar::{DriveAngles, PerDrive};
 use crate::picture::numbers::{degrees, round_up, signed};
 use crate::planning::pose_space::PoseSpace;
 use crate::session::Run;
@@ -39,16 +39,29 @@ pub struct Section {
     course: Vec<DriveAngles>,
     /// Ends of the box along the scene's axes.
     bounds: [[f64; 2]; 3],
+    /// The b that are shown, rad, where they do not slide along with the present one.
+    fixed: Option<[f64; 2]>,
 }
 
 impl Section {
-    /// Of a run with other than three drives and a b.
+    /// Of a run without planes that has a b.
     pub fn of(run: &Run, space: &Arc<PoseSpace>) -> Option<Self> {
+        Self::showing(run, space, None)
+    }
+
+    /// For a whole run, whose b lie in a range, rad: it shows all of them and stands still, with q itself as
+    /// coordinates.
+    pub fn over(run: &Run, space: &Arc<PoseSpace>, [low, high]: [f64; 2]) -> Option<Self> {
+        let width = SPAN.max(high - low + 2.0 * MARGIN);
+        Self::showing(run, space, Some(axes::covering([low, high], HOME, width, MARGIN)))
+    }
+
+    fn showing(run: &Run, space: &Arc<PoseSpace>, fixed: Option<[f64; 2]>) -> Option<Self> {
         let n = space.drives();
         let course = run.motion().map(|motion| stations(motion).map(|s| motion.path.at(s).q).collect());
         let shown = (0..n.min(3)).collect();
         let (space, course, bounds) = (space.clone(), course.unwrap_or_default(), [[0.0; 2]; 3]);
-        (n > 1).then(|| Self { space, shown, course, bounds }.bounded())
+        (n > 1).then(|| Self { space, shown, course, bounds, fixed }.bounded())
     }
 
     /// Puts other drives along the axes, counted from 0; those that the machine lacks change nothing.
@@ -77,13 +90,16 @@ impl Section {
         self.shown.len() < 3
     }
 
-    fn window(b: f64) -> [f64; 2] {
-        axes::sliding(b, HOME, SPAN, MARGIN)
+    fn window(&self, b: f64) -> [f64; 2] {
+        self.fixed.unwrap_or_else(|| axes::sliding(b, HOME, SPAN, MARGIN))
     }
 
     /// q at the scene's origin while the present pose constant is b, rad.
     fn origin(&self, b: f64) -> DriveAngles {
-        let [low, high] = Self::window(b);
+        if self.fixed.is_some() {
+            return DriveAngles(PerDrive::zeros(self.space.drives()));
+        }
+        let [low, high] = self.window(b);
         self.space.lift(&self.space.middle(), 0.5 * (low + high))
     }
 
@@ -113,7 +129,7 @@ impl Section {
         let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
         for i in 0..1_usize << joints.len() {
             let a: Vec<f64> = joints.iter().enumerate().map(|(j, joint)| joint.limits()[(i >> j) & 1]).collect();
-            for b in Self::window(HOME) {
+            for b in self.window(HOME) {
                 let at = self.point(&self.space.lift(&a, b), HOME);
                 for (bound, x) in bounds.iter_mut().zip(at) {
                     *bound = [bound[0].min(x - ROOM), bound[1].max(x + ROOM)];
@@ -136,10 +152,13 @@ impl Section {
     pub fn camera(&self) -> Camera {
         let ends = self.bounds;
         let size = ends.iter().map(|[from, to]| (to - from) * (to - from)).sum::<f64>().sqrt();
+        let [x, y, z] = ends.map(|[from, to]| if self.fixed.is_some() { 0.5 * (from + to) } else { 0.0 });
         if self.is_flat() {
-            return Camera::Flat(Flat { centre: [0.0; 2], half_height: 0.5 * size });
+            return Camera::Flat(Flat { centre: [x, y], half_height: 0.5 * size });
         }
-        Camera::Orbit(Orbit { centre: [0.0, 0.0, -0.06 * size], distance: 1.85 * size, yaw: 1.85, pitch: 0.5 })
+        // What stands still is seen from nearer.
+        let near = if self.fixed.is_some() { 1.05 } else { 1.85 };
+        Camera::Orbit(Orbit { centre: [x, y, z - 0.06 * size], distance: near * size, yaw: 1.85, pitch: 0.5 })
     }
 
     /// λ along the axes.
@@ -244,7 +263,7 @@ impl Section {
                     let s = pointer.ray()?.along_line(pick.at, normal)?;
                     [0, 1, 2].map(|i| pick.at[i] + s * normal[i])
                 };
-                let [low, high] = Self::window(b);
+                let [low, high] = self.window(b);
                 Some(Aim::B(space.b(&self.angles(at, frame)).clamp(low, high)))
             }
             _ => None,
@@ -268,7 +287,8 @@ impl Section {
             let eye = camera.eye_direction().map(f64::from);
             let drives = [0, 1, 2].map(|i| self.shown[i]);
             let axes = joint_items::axes(&palette, frame, drives, self.bounds, &self.origin(b));
-            axes::draw(&mut scene, &palette, &axes, eye, Changes::Shape);
+            let stands = if self.fixed.is_some() { Changes::Nothing } else { Changes::Shape };
+            axes::draw(&mut scene, &palette, &axes, eye, stands);
         }
         self.neighbours(&mut scene, &palette, frame);
         let width = if hot { 3.4 } else { 2.2 };
@@ -354,7 +374,7 @@ impl Section {
     }
 
     fn neighbours(&self, scene: &mut Scene, palette: &Palette, frame: &Frame) {
-        let [low, high] = Self::window(frame.b_reference);
+        let [low, high] = self.window(frame.b_reference);
         let first = (low / NEIGHBOURS).ceil();
         let others = (0..80).map(|i| (first + f64::from(i)) * NEIGHBOURS).take_while(|of| *of <= high);
         let outlines: Vec<_> = others.map(|of| closed(&self.part(of, frame))).filter(|o| o.len() > 1).collect();
@@ -365,7 +385,8 @@ impl Section {
     fn course(&self, scene: &mut Scene, palette: &Palette, b: f64) {
         let points: Vec<_> = self.course.iter().map(|q| self.point(q, b).map(|x| x as f32)).collect();
         let [first, .., last] = points[..] else { return };
-        scene.lines.push(Line::new("path", [points.clone()], 2.0, palette.ink).dashed(2.0, 3.5).on_top());
+        let path = Line::new("path", [points.clone()], 2.0, palette.ink).dashed(2.0, 3.5).on_top();
+        scene.lines.push(if self.fixed.is_some() { path.still() } else { path });
         joint_items::draw_ends(scene, palette, [first, last]);
     }
 }

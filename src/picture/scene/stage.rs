@@ -90,10 +90,15 @@ impl Stage {
     /// Prepares a run for drawing; to be made again when its machine or plan changes.
     pub fn of(run: &Run) -> Self {
         let mut stage = Self::begun(run);
-        if let Some(space) = stage.unoutlined() {
-            stage.set_outline(&space, Outlined::of((*space).clone(), &mut |_| true));
-        }
+        stage.finish();
         stage
+    }
+
+    /// Finds the outline, where it is still wanted.
+    pub fn finish(&mut self) {
+        if let Some(space) = self.unoutlined() {
+            self.set_outline(&space, Outlined::of((*space).clone(), &mut |_| true));
+        }
     }
 
     /// The same but for the outline of what other than three drives reach, which takes longer.

@@ -85,10 +85,14 @@ impl Tower {
     }
 
     /// For a whole run, whose b lie in a range: it shows [`SPAN`] or more, up to [`MOST`], and stands still. Its wall
-    /// is a few thousand triangles.
-    pub fn over(run: &Run, b: [f64; 2]) -> Option<Self> {
+    /// is a few thousand triangles. Without planes it stands over an outline.
+    pub fn over(run: &Run, outline: Option<&Outlined>, b: [f64; 2]) -> Option<Self> {
         let span = (b[1] - b[0] + 2.0 * MARGIN * SPAN).clamp(SPAN, MOST);
-        Self::showing(run, span, Some(axes::covering(b, 0.5 * span, span, MARGIN * SPAN)))
+        let fixed = Some(axes::covering(b, 0.5 * span, span, MARGIN * SPAN));
+        match outline {
+            Some(outline) => Self::rising(run, run.pose_map().ok()?.clone(), outline.shape(), span, fixed),
+            None => Self::showing(run, span, fixed),
+        }
     }
 
     /// Of a machine of other than three drives, whose workspace is outlined, over [`SPAN`].

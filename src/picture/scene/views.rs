@@ -8,6 +8,7 @@ use super::camera::Camera;
 use super::draft::Draft;
 use super::framing::Content;
 use super::joint_space::JointSpace;
+use super::joints::Joints;
 use super::options::{Handle, ViewOptions};
 use super::pick::{Aim, Grip, NEAR, Pick};
 use super::pointer::Pointer;
@@ -15,7 +16,6 @@ use super::section::Section;
 use super::stage::{Outlined, PULL, Stage};
 use super::tower::Tower;
 use crate::mechanics::planar::DriveAngles;
-use crate::planning::pose_map::PoseMap;
 use crate::planning::pose_space::PoseSpace;
 use crate::session::Run;
 use crate::settings::number::Short;
@@ -107,8 +107,7 @@ impl ViewKind {
 #[derive(Clone, Debug)]
 pub struct Views {
     stage: Stage,
-    joints: Option<JointSpace>,
-    section: Option<Section>,
+    joints: Option<Joints>,
     tower: Option<Tower>,
     draft: Draft,
 }
@@ -121,18 +120,26 @@ impl Views {
         views
     }
 
+    /// For a whole run, whose b lie in a range, rad: joint space and tower show all of them and stand still. An outline
+    /// is taken over from other views, if it is the same.
+    pub fn over(run: &Run, b: [f64; 2], known: Option<&Self>) -> Self {
+        let mut stage = Stage::begun(run);
+        if let Some(known) = known {
+            stage.keep_outline(&known.stage);
+        }
+        stage.finish();
+        let (joints, tower) = (Joints::over(run, b), Tower::over(run, stage.outlined(), b));
+        Self { joints, tower, draft: Draft::of(&run.scenario().machine), stage }
+    }
+
     /// The same but for the outline of what other than three drives reach, which takes longer, and their tower.
     pub fn begun(run: &Run) -> Self {
         Self::with(Stage::begun(run), run)
     }
 
     fn with(stage: Stage, run: &Run) -> Self {
-        let section = match run.pose_map() {
-            Ok(PoseMap::Space(space)) => Section::of(run, space),
-            _ => None,
-        };
         let draft = Draft::of(&run.scenario().machine);
-        Self { stage, joints: JointSpace::of(run), section, tower: Tower::of(run), draft }
+        Self { stage, joints: Joints::of(run), tower: Tower::of(run), draft }
     }
 
     /// Why a machine has no such view, in words.
@@ -188,14 +195,14 @@ impl Views {
 
     /// Puts drives along the axes of joint space, counted from 0, where there are more than three.
     pub fn show_drives(&mut self, drives: [usize; 3]) {
-        if let Some(section) = &mut self.section {
-            section.show(drives);
+        if let Some(joints) = &mut self.joints {
+            joints.show(drives);
         }
     }
 
     /// Joint space of other than three drives, if they have a b.
     pub fn section(&self) -> Option<&Section> {
-        self.section.as_ref()
+        self.joints.as_ref()?.section()
     }
 
     /// The machine's view.
@@ -205,7 +212,21 @@ impl Views {
 
     /// Joint space, if the machine has planes.
     pub fn joints(&self) -> Option<&JointSpace> {
-        self.joints.as_ref()
+        self.joints.as_ref()?.planes()
+    }
+
+    /// Whether there is such a view.
+    pub fn shows(&self, kind: ViewKind) -> bool {
+        match kind {
+            ViewKind::Flat | ViewKind::Space | ViewKind::Design => true,
+            ViewKind::Joints => self.joints.is_some(),
+            ViewKind::Tower => self.tower.is_some(),
+        }
+    }
+
+    /// Which axis of (q_1, q_2, q_3) each axis of joint space stands for.
+    pub fn joint_axes(&self) -> [usize; 3] {
+        self.joints.as_ref().map_or([0, 1, 2], Joints::axes)
     }
 
     /// The tower, if the machine has a b and its workspace is known.
@@ -216,9 +237,6 @@ impl Views {
     /// The camera that shows everything.
     pub fn camera(&self, kind: ViewKind) -> Camera {
         let reach = self.stage.linkage().reach();
-        if let (ViewKind::Joints, Some(section)) = (kind, &self.section) {
-            return section.camera();
-        }
         match (kind, &self.joints, &self.tower) {
             (ViewKind::Joints, Some(joints), _) => joints.camera(),
             (ViewKind::Tower, _, Some(tower)) => tower.camera(),
@@ -229,11 +247,8 @@ impl Views {
 
     /// What is to be seen of a frame and of other poses of the machine when everything is shown.
     pub fn content(&self, kind: ViewKind, frame: &Frame, poses: &[DriveAngles]) -> Content {
-        if let (ViewKind::Joints, Some(section)) = (kind, &self.section) {
-            return Content { first: section.corners(), then: Vec::new() };
-        }
         match (kind, &self.joints, &self.tower) {
-            (ViewKind::Joints, Some(joints), _) => Content { first: joints.box_corners(), then: Vec::new() },
+            (ViewKind::Joints, Some(joints), _) => Content { first: joints.corners(), then: Vec::new() },
             (ViewKind::Tower, _, Some(tower)) => Content { first: tower.hull(), then: Vec::new() },
             (ViewKind::Design, ..) => self.stage.body(frame),
             _ => self.stage.content(frame, poses),
@@ -242,9 +257,6 @@ impl Views {
 
     /// Everything there is to draw.
     pub fn scene(&self, kind: ViewKind, frame: &Frame, options: &ViewOptions, camera: &Camera) -> Scene {
-        if let (ViewKind::Joints, Some(section)) = (kind, &self.section) {
-            return section.scene(frame, options, camera);
-        }
         match (kind, &self.joints, &self.tower) {
             (ViewKind::Joints, Some(joints), _) => joints.scene(frame, options, camera),
             (ViewKind::Tower, _, Some(tower)) => tower.scene(frame, options, camera),
@@ -286,9 +298,6 @@ impl Views {
 
     /// What is under the pointer and can be pulled at, in a frame as shown.
     pub fn pick(&self, kind: ViewKind, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
-        if let (ViewKind::Joints, Some(section)) = (kind, &self.section) {
-            return section.pick(frame, pointer);
-        }
         match (kind, &self.joints, &self.tower) {
             (ViewKind::Joints, Some(joints), _) => joints.pick(frame, pointer),
             (ViewKind::Tower, _, Some(tower)) => tower.pick(frame, pointer),
@@ -335,10 +344,8 @@ impl Views {
         if let (Handle::Link(i), Some(Grip::Link(grip))) = (pick.handle, &pick.grip) {
             return self.stage.turned(i, grip, frame, pointer, b).map(Aim::Angles);
         }
-        if let (ViewKind::Joints, Some(section)) = (kind, &self.section) {
-            return section.aim(pick, frame, pointer);
-        }
-        if let (Handle::Link(i), Some(Grip::Pull(hook))) = (pick.handle, &pick.grip) {
+        let in_joints = kind == ViewKind::Joints && self.joints.is_some();
+        if let (false, Handle::Link(i), Some(Grip::Pull(hook))) = (in_joints, pick.handle, &pick.grip) {
             return self.stage.pulled(i, hook, frame, pointer);
         }
         match (kind, &self.joints, &self.tower) {
