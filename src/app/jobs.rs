@@ -12,15 +12,23 @@ pub trait Workers {
 }
 
 /// Each job on a thread of its own; where none can be had, at once.
-#[derive(Clone, Copy, Debug)]
-pub struct Threads;
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Threads {
+    /// The window goes first where there are fewer processors than work.
+    Background,
+    /// The job runs like the window: short work that must not wait, such as keeping a change.
+    Prompt,
+}
 
 impl Workers for Threads {
     fn start(&self, work: Box<dyn FnOnce() + Send>) {
         // A thread that cannot start takes the work with it, so the work waits here for whoever can do it.
         let (hand, take) = channel::<Box<dyn FnOnce() + Send>>();
+        let steps_back = *self == Self::Background;
         let thread = std::thread::Builder::new().name("job".into()).spawn(move || {
-            step_back();
+            if steps_back {
+                step_back();
+            }
             if let Ok(work) = take.recv() {
                 work();
             }

@@ -26,7 +26,7 @@ pub fn run(scenario: Scenario, theme: Option<Theme>) -> Result<(), WindowError> 
     let liked: Preferences = preferences::load();
     let liked = Preferences { theme: theme.unwrap_or(liked.theme), ..liked }.sound();
     let mut app_state = AppState::open_or_explain(scenario, liked.theme)?
-        .with_workers(Threads)
+        .with_workers(Threads::Background)
         .with_preferences(&liked)
         .finding(keeper::found());
     if app_state.view_state().message.is_none() && app_state.session().run().waiting().is_none() {

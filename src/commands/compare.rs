@@ -13,6 +13,7 @@ use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, Table, check_output};
 use stillbase::settings::number::{fixed, nine_digits};
+use stillbase::settings::text::sheet_cell;
 
 /// Compare runs: one task done in several ways, or any scenarios, by what reaches the base and what it costs
 ///
@@ -210,7 +211,8 @@ impl Compare {
                 let value = row.design.as_ref().and_then(|design| (c.value)(design));
                 value.map_or_else(String::new, nine_digits)
             });
-            let cells = [row.name.clone()].into_iter().chain(values).chain([verdict, why]).chain(machine);
+            let cells =
+                [sheet_cell(&row.name).into_owned()].into_iter().chain(values).chain([verdict, why]).chain(machine);
             writer.write_record(cells).map_err(failed)?;
         }
         match writer.into_inner() {

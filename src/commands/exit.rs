@@ -36,9 +36,8 @@ pub fn exit_code(done: Result<(), Failure>) -> ExitCode {
 /// Answers a command line that asks for help or cannot be read.
 pub fn usage(error: &clap::Error) -> ExitCode {
     if !error.use_stderr() {
-        // When help cannot be printed, there is no place for a message.
-        let _ = error.print();
-        return ExitCode::SUCCESS;
+        let printed = error.print().and_then(|()| io::stdout().flush());
+        return exit_code(printed.map_err(|e| Failure::standard_output(&e)));
     }
     exit_code(Err(Failure::WrongInput(in_one_line(&error.render().to_string()))))
 }

@@ -1,14 +1,17 @@
-//! On interrupt, hang-up and termination: half-written files are removed before the program ends.
+//! On every signal that ends the program and can be heard: half-written files are removed before it ends.
 
 /// Watches for signals that end the program, in a thread of its own.
 #[cfg(unix)]
 pub fn watch() {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGALRM, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGXCPU, SIGXFSZ};
     use signal_hook::iterator::Signals;
     use signal_hook::low_level::emulate_default_handler;
 
     let ignored = ignored();
-    let heard = [SIGINT, SIGHUP, SIGTERM].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
+    let ends = [SIGINT, SIGHUP, SIGTERM, SIGQUIT, SIGXCPU, SIGALRM, SIGUSR1, SIGUSR2];
+    let heard = ends.into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
+    // A file beyond the size limit is then an error of its writing, which is reported with its name.
+    let _ = signal_hook::flag::register(SIGXFSZ, std::sync::Arc::default());
     // Without it, half-written files stay until the next run that writes to their folder.
     let Ok(mut signals) = Signals::new(heard) else { return };
     let wait = move || {

@@ -3,6 +3,7 @@
 use super::cut::{Cut, CutError, SAME};
 use crate::mechanics::machine::{Chain, Counterweight, Drive, Link, Machine};
 use crate::settings::number::fixed;
+use crate::settings::text::sheet_cell;
 
 /// What a machine is built of, kind by kind.
 #[derive(Clone, Debug, PartialEq)]
@@ -123,10 +124,10 @@ impl Cell {
         value.map_or(Self::None, |value| Self::Number(value, decimals))
     }
 
-    /// With every digit.
+    /// With every digit; words that a spreadsheet would compute are kept from it.
     fn whole(&self) -> String {
         match self {
-            Self::Words(text) => text.clone(),
+            Self::Words(text) => sheet_cell(text).into_owned(),
             Self::Number(value, _) => value.to_string(),
             Self::None => String::new(),
         }

@@ -130,8 +130,39 @@ pub struct NewFile {
     /// What errors call it.
     asked: PathBuf,
     force: bool,
+    /// The file that it replaces has further names (hard links), which are to show the new content, too.
+    has_other_names: bool,
     out: BufWriter<Checked>,
     draft: Draft,
+}
+
+/// The file that another one replaces.
+struct Before {
+    metadata: fs::Metadata,
+    has_other_names: bool,
+}
+
+impl Before {
+    fn of(file: &Path) -> Option<Self> {
+        let metadata = fs::symlink_metadata(file).ok().filter(fs::Metadata::is_file)?;
+        #[cfg(unix)]
+        let has_other_names = std::os::unix::fs::MetadataExt::nlink(&metadata) > 1;
+        #[cfg(not(unix))]
+        let has_other_names = false;
+        Some(Self { metadata, has_other_names })
+    }
+
+    /// Gives a file its owner, as far as the system allows, and its permissions: who could not read the old content
+    /// cannot read the new one.
+    fn lend_access(&self, file: &File) -> io::Result<()> {
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::{MetadataExt, fchown};
+            // Only the superuser may give files away; the owner is then who writes.
+            let _ = fchown(file, Some(self.metadata.uid()), Some(self.metadata.gid()));
+        }
+        file.set_permissions(self.metadata.permissions())
+    }
 }
 
 /// A file beside the one that it is to become.
@@ -205,9 +236,14 @@ impl NewFile {
         check_new(file, force)?;
         // Through a link, so that the link stays.
         let target = fs::canonicalize(file).unwrap_or_else(|_| file.into());
-        let begun = Draft::create(target).map_err(|source| WriteError::Failed { file: file.into(), source })?;
-        let (draft, out) = begun;
-        Ok(Self { asked: file.into(), force, out: BufWriter::new(Checked(out)), draft })
+        let failed = |source| WriteError::Failed { file: file.into(), source };
+        let before = Before::of(&target);
+        let (draft, out) = Draft::create(target).map_err(failed)?;
+        if let Some(before) = &before {
+            before.lend_access(&out).map_err(failed)?;
+        }
+        let has_other_names = before.is_some_and(|before| before.has_other_names);
+        Ok(Self { asked: file.into(), force, has_other_names, out: BufWriter::new(Checked(out)), draft })
     }
 
     /// What was asked for.
@@ -265,10 +301,16 @@ impl NewFile {
     fn take_name(&self, keep: bool) -> Result<Taken, WriteError> {
         let Draft { part, file } = &self.draft;
         check_new(&self.asked, self.force)?;
-        let before = if keep && self.force { aside(part, file) } else { None };
-        let named = |()| if self.force { fs::rename(part, file) } else { link(part, file) };
+        let in_place = self.has_other_names;
+        let before = if self.force && (keep || in_place) { aside(part, file, in_place) } else { None };
+        let named = |()| match (self.force, in_place, &before) {
+            (false, ..) => link(part, file),
+            (true, false, _) => fs::rename(part, file),
+            (true, true, Some(before)) => copy_into(part, file).inspect_err(|_| _ = copy_into(before, file)),
+            (true, true, None) => Err(io::Error::other("no room for a copy of what it replaces")),
+        };
         match super::fault::at(Step::Fallible).and_then(named) {
-            Ok(()) => Ok(Taken { file: file.clone(), before }),
+            Ok(()) => Ok(Taken { file: file.clone(), before, in_place }),
             Err(error) => {
                 before.map(fs::remove_file);
                 Err(match error.kind() {
@@ -299,10 +341,27 @@ fn link(part: &Path, file: &Path) -> io::Result<()> {
     }
 }
 
-/// A second name for a file that is about to be replaced, if the file system has such; a sweep takes it for left over.
-fn aside(part: &Path, file: &Path) -> Option<PathBuf> {
+/// Writes the content of a file into another one, which keeps all its names, and has it on the disk. Other than a name,
+/// content does not change at once: ended in between, both versions are left beside it until the next file is written.
+fn copy_into(from: &Path, to: &Path) -> io::Result<()> {
+    let (mut from, mut to) = (File::open(from)?, OpenOptions::new().write(true).truncate(true).open(to)?);
+    super::fault::at(Step::Tidy)?;
+    io::copy(&mut from, &mut to)?;
+    to.sync_all()
+}
+
+/// What a file holds that is about to be replaced, under another name, if the file system has room for that: a copy
+/// where the file is written over. A sweep takes it for left over.
+fn aside(part: &Path, file: &Path, copied: bool) -> Option<PathBuf> {
     let aside = part.with_file_name(format!("{}0{PART}", part.file_name()?.to_str()?.strip_suffix(PART)?));
-    fs::hard_link(file, &aside).ok().map(|()| aside)
+    let made = if copied { fs::copy(file, &aside).map(|_| ()) } else { fs::hard_link(file, &aside) };
+    made.inspect_err(|_| {
+        if copied {
+            _ = fs::remove_file(&aside)
+        }
+    })
+    .ok()
+    .map(|()| aside)
 }
 
 /// A name that was taken.
@@ -310,6 +369,8 @@ struct Taken {
     file: PathBuf,
     /// What had the name before.
     before: Option<PathBuf>,
+    /// Its content was replaced, not its name.
+    in_place: bool,
 }
 
 impl Taken {
@@ -317,6 +378,7 @@ impl Taken {
     fn give_back(self, force: bool) {
         // What was kept aside comes back; a name that was free is free again.
         let _ = match &self.before {
+            Some(before) if self.in_place => copy_into(before, &self.file).and_then(|()| fs::remove_file(before)),
             Some(before) => fs::rename(before, &self.file),
             None if !force => fs::remove_file(&self.file),
             None => Ok(()),

@@ -17,6 +17,17 @@ pub fn plain(text: &str) -> Cow<'_, str> {
     plain.into()
 }
 
+/// The first character of a text that would steer a terminal or turn the order of its letters; line ends may stand.
+pub fn steering(text: &str) -> Option<char> {
+    text.chars().find(|c| steers(*c))
+}
+
+/// A text as a cell of a spreadsheet: one that a spreadsheet would compute as a formula begins with an apostrophe.
+pub fn sheet_cell(text: &str) -> Cow<'_, str> {
+    let is_formula = text.trim_start().starts_with(['=', '+', '-', '@']);
+    if is_formula { format!("'{text}").into() } else { text.into() }
+}
+
 fn steers(c: char) -> bool {
     let turns = matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     turns || c == '\u{feff}' || (c.is_control() && c != '\n')

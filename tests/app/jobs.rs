@@ -425,7 +425,7 @@ fn what_is_done_beside_equals_what_is_done_at_once() {
     let mut runner = TestRunner::new(Config { cases: 60, failure_persistence: None, ..Config::default() });
     let sitting = (any_commands(), prop::collection::vec(any::<bool>(), 12));
     let result = runner.run(&sitting, |(commands, waits)| {
-        let (mut at_once, mut beside) = (start(), start().with_workers(Threads));
+        let (mut at_once, mut beside) = (start(), start().with_workers(Threads::Background));
         for (command, wait) in commands.into_iter().zip(waits) {
             for app_state in [&mut at_once, &mut beside] {
                 app_state.carry_out(command.clone());
@@ -464,19 +464,21 @@ fn jobs_end_break_off_and_are_stopped() {
     assert!(matches!(job.poll(), Poll::Done(true)));
     assert!(matches!(job.poll(), Poll::Broken), "a result is given once");
     // On a thread, until it is there.
-    let job = Job::start(&Threads, wake(), |_| 7);
-    let mut found = None;
-    for _ in 0..2000 {
-        match job.poll() {
-            Poll::Done(result) => {
-                found = Some(result);
-                break;
+    for threads in [Threads::Background, Threads::Prompt] {
+        let job = Job::start(&threads, wake(), |_| 7);
+        let mut found = None;
+        for _ in 0..2000 {
+            match job.poll() {
+                Poll::Done(result) => {
+                    found = Some(result);
+                    break;
+                }
+                Poll::Working => std::thread::sleep(std::time::Duration::from_millis(5)),
+                Poll::Broken => panic!("it ended without a result"),
             }
-            Poll::Working => std::thread::sleep(std::time::Duration::from_millis(5)),
-            Poll::Broken => panic!("it ended without a result"),
         }
+        assert_eq!(found, Some(7));
     }
-    assert_eq!(found, Some(7));
     // Dropped, it hears that nobody waits.
     let waiting = Waiting::default();
     let heard = Arc::new(Mutex::new(None));

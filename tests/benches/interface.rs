@@ -56,7 +56,7 @@ fn main() {
     // A hand has led the machine for two minutes and a half: what is changed before that makes all of it again.
     let mut scenario = led(15_000, 10);
     scenario.tolerance.samples = Some(1_000_000);
-    let mut app_state = AppState::new(scenario, Theme::Dark).expect("it starts").with_workers(Threads);
+    let mut app_state = AppState::new(scenario, Theme::Dark).expect("it starts").with_workers(Threads::Background);
     // A hand at an instant further back would cut off what comes after.
     app_state.carry_out(Command::Seek(1e9));
     let ctx = egui::Context::default();

@@ -84,10 +84,27 @@ fn a_table_to_read_is_aligned() {
 #[test]
 fn names_of_a_stranger_stay_in_their_field() {
     let mut spec = builtin("scara").expect("built in").spec().clone();
-    let name = "a,\"b\"\r\nc|d";
+    let name = "a,\"b\"\nc|d";
     spec.links[1].name = name.into();
     spec.end_effector.as_mut().expect("an end").link = name.into();
     let list = parts(&Machine::new(spec).expect("a machine"));
-    assert!(list.csv().contains("\r\nlink,\"a,\"\"b\"\"\r\nc|d\",2,0.35,4,"), "{}", list.csv());
-    assert!(list.markdown().contains("| a,\"b\"  c\\|d |"), "{}", list.markdown());
+    assert!(list.csv().contains("\r\nlink,\"a,\"\"b\"\"\nc|d\",2,0.35,4,"), "{}", list.csv());
+    assert!(list.markdown().contains("| a,\"b\" c\\|d |"), "{}", list.markdown());
+}
+
+/// A spreadsheet computes no name; numbers stay numbers.
+#[test]
+fn names_are_no_formulas() {
+    for name in ["=HYPERLINK(\"x\")", "+1", "-1+2", "@SUM(A1)", " =1"] {
+        let mut spec = builtin("scara").expect("built in").spec().clone();
+        spec.links[1].name = name.into();
+        spec.end_effector.as_mut().expect("an end").link = name.into();
+        let list = parts(&Machine::new(spec).expect("a machine"));
+        let rows = list.csv().lines().filter(|line| line.contains(&name.replace('"', "\"\""))).count();
+        assert!(rows >= 1, "{}", list.csv());
+        for cell in list.csv().replace("\r\n", ",").split(',') {
+            let is_formula = cell.trim_start_matches(['"', ' ']).starts_with(['=', '+', '-', '@']);
+            assert!(!is_formula || cell.parse::<f64>().is_ok(), "{cell} in {}", list.csv());
+        }
+    }
 }

@@ -147,6 +147,23 @@ fn a_name_that_nothing_has_is_named() {
 }
 
 #[test]
+fn a_name_that_steers_a_terminal_is_refused() {
+    for (from, to) in [
+        ("[[drive]]\nname = \"2\"", "[[drive]]\nname = \"2\u{9b}31m\""),
+        ("[[link]]\nname = \"7\"", "[[link]]\nname = \"\u{202e}7\""),
+        ("[[link]]\nname = \"7\"", "[[link]]\nname = \"7\\u2066\""),
+        ("name = \"a2\"", "name = \"a\\u001b2\""),
+        ("name = \"nine-link\"", "name = \"nine\u{2069}link\""),
+    ] {
+        let error = damaged(from, to);
+        assert!(matches!(error, MachineError::Unprintable { .. }), "{to}: {error}");
+        let said = error.to_string();
+        assert!(said.contains("U+") && said.contains("want"), "{said}");
+        assert_eq!(stillbase::settings::text::steering(&said), None);
+    }
+}
+
+#[test]
 fn a_name_taken_twice_is_named() {
     for (from, to) in [
         ("[[drive]]\nname = \"2\"", "[[drive]]\nname = \"1\""),

@@ -45,7 +45,7 @@ impl Chooser {
                         .map_or(Answer::Closed, |file| Answer::Chosen(file.path().to_path_buf())),
                     false => Answer::NoDialog,
                 };
-                self.asked = Some((dialog, Job::start(&Threads, move || wake.request_repaint(), wait)));
+                self.asked = Some((dialog, Job::start(&Threads::Background, move || wake.request_repaint(), wait)));
             }
             return;
         };

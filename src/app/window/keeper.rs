@@ -8,7 +8,7 @@ use crate::app::{AppState, Preferences};
 use crate::files::journal::{self, Journal, Left};
 use crate::files::preferences;
 
-/// Writes what changes, beside the window and no more than once a second.
+/// Writes what changes, beside the window: the first change at once, later ones within a second.
 pub struct Keeper {
     liked: (Preferences, Instant),
     journal: Option<Journal>,
@@ -20,13 +20,17 @@ pub struct Keeper {
     going: Option<PathBuf>,
 }
 
-/// The least time between two writes.
-const EVERY: Duration = Duration::from_secs(1);
+/// The least time between two writes of preferences.
+const PREFERENCES_INTERVAL: Duration = Duration::from_secs(1);
+/// The least time between two writes of the journal: half of the second within which it holds a change.
+const JOURNAL_INTERVAL: Duration = Duration::from_millis(500);
+/// The most that copying a long session adds to this time.
+const MAX_COPY_PAUSE: Duration = Duration::from_millis(250);
 /// How often and how long a write is waited for when the window closes.
 const LOOKS: u32 = 1000;
 const LOOK: Duration = Duration::from_millis(2);
-/// A long session is copied so many times as seldom as that takes.
-const SELDOM: u32 = 50;
+/// Copying a session takes at most this fraction of the time between two copies, as far as the pause allows.
+const COPY_SHARE: u32 = 50;
 
 impl Keeper {
     /// What is liked is in its file already.
@@ -50,11 +54,11 @@ impl Keeper {
             return;
         }
         // While an edge is dragged it is not written at every step.
-        if when.elapsed() >= EVERY {
+        if when.elapsed() >= PREFERENCES_INTERVAL {
             preferences::save(&now);
             self.liked = (now, Instant::now());
         } else {
-            ctx.request_repaint_after(EVERY);
+            ctx.request_repaint_after(PREFERENCES_INTERVAL - when.elapsed());
         }
     }
 
@@ -72,21 +76,25 @@ impl Keeper {
             self.going.take().iter().for_each(|file| journal::forget(file));
             return;
         }
+        // What is being written wakes the window when it is done.
+        if self.writing.is_some() {
+            return;
+        }
         let now = Instant::now();
-        if self.writing.is_some() || now < self.next {
-            ctx.request_repaint_after(EVERY);
+        if now < self.next {
+            ctx.request_repaint_after(self.next - now);
             return;
         }
         if self.journal.is_none() {
             self.journal = journal::folder().and_then(|folder| Journal::begin(&folder));
         }
-        self.next = now + EVERY;
+        self.next = now + JOURNAL_INTERVAL;
         let Some(file) = self.journal.as_ref().map(|journal| journal.file().to_owned()) else { return };
         let scenario = app_state.session().to_scenario();
-        self.next += SELDOM * now.elapsed();
+        self.next += (COPY_SHARE * now.elapsed()).min(MAX_COPY_PAUSE);
         let wake = ctx.clone();
         let job = Job::start(
-            &Threads,
+            &Threads::Prompt,
             move || wake.request_repaint(),
             move |_| journal::write(&file, &scenario.to_toml()).is_ok(),
         );

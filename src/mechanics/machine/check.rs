@@ -10,6 +10,7 @@ use super::spec::{Angle, Attach, Closure, Length, Link, MachineSpec, PlaceOnLink
 use crate::mechanics::planar::MAX_DRIVES;
 use crate::settings::number::Short;
 use crate::settings::range::{clipped, shortened};
+use crate::settings::text::steering;
 
 /// How far, m, the two points of a closure may lie apart.
 pub const CLOSURE_TOLERANCE: f64 = 1e-9;
@@ -83,6 +84,9 @@ impl<'a> Names<'a> {
         if spec.links.is_empty() {
             return Err(MachineError::Count { what: "links", count: 0, want: "at least one".into() });
         }
+        printable(&spec.name, || Place::new(&[&"name"]))?;
+        printable(&spec.summary, || Place::new(&[&"summary"]))?;
+        spec.lengths.keys().try_for_each(|name| printable(name, || Place::new(&[&"lengths"])))?;
         let drives = unique("drive", spec.drives.iter().map(|d| d.name.as_str()))?;
         let links = unique("link", spec.links.iter().map(|l| l.name.as_str()))?;
         unique("angle", spec.angles.iter().map(|a| a.name.as_str()))?;
@@ -101,12 +105,19 @@ impl<'a> Names<'a> {
 fn unique<'a>(what: &'static str, names: impl Iterator<Item = &'a str>) -> Result<Vec<&'a str>, MachineError> {
     let mut seen: Vec<&str> = Vec::new();
     for (i, name) in names.enumerate() {
+        printable(name, || Place::new(&[&what, &i, &"name"]))?;
         if seen.contains(&name) {
             return Err(MachineError::Duplicate { place: Place::new(&[&what, &i, &"name"]), name: name.into() });
         }
         seen.push(name);
     }
     Ok(seen)
+}
+
+/// Refuses what would steer a terminal, on which names are shown, or turn the order of its letters.
+fn printable(text: &str, place: impl Fn() -> Place) -> Result<(), MachineError> {
+    let refused = |character| Err(MachineError::Unprintable { place: place(), character });
+    steering(text).map_or(Ok(()), refused)
 }
 
 fn look_up(what: &'static str, names: &[&str], name: &str, place: impl Fn() -> Place) -> Result<usize, MachineError> {

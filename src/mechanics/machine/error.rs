@@ -131,6 +131,14 @@ pub enum MachineError {
         /// The name.
         name: String,
     },
+    /// A name with a character that steers terminals.
+    #[error("{place} holds the control character U+{:04X}: want a name of printable characters", u32::from(*character))]
+    Unprintable {
+        /// Where in the machine file.
+        place: Place,
+        /// The first such character.
+        character: char,
+    },
     /// The number of things.
     #[error("{count} {what}: want {want}")]
     Count {
@@ -267,6 +275,7 @@ impl MachineError {
             | Self::OutOfRange { place, .. }
             | Self::Unknown { place, .. }
             | Self::Duplicate { place, .. }
+            | Self::Unprintable { place, .. }
             | Self::Cycle { place, .. }
             | Self::StatorCycle { place, .. }
             | Self::OpenLoop { place, .. } => Some(place),

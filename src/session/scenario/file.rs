@@ -14,6 +14,7 @@ use crate::mechanics::machine::{self, FileError, Machine, MachineSpec, Place, Pl
 use crate::session::{TimedEdit, check_edits};
 use crate::settings::change;
 use crate::settings::range::{clipped, shortened};
+use crate::settings::text::{plain, steering};
 use crate::simulation::control::Control;
 use crate::simulation::plant::{Base, PlantDifferences, is_default};
 
@@ -66,6 +67,9 @@ enum MachineRef {
     Inline(Box<MachineSpec>),
 }
 
+/// What names and titles must be.
+const PRINTABLE: &str = "want printable characters";
+
 /// The most characters of an error of the TOML reader.
 const MOST_WORDS: usize = 300;
 
@@ -112,6 +116,12 @@ impl Scenario {
             let message = format!("{key} is not a finite number: want one");
             return Err(ScenarioError::Syntax { file: label.into(), line: line_of(&key), message });
         }
+        for (key, text) in [("name", file.name.as_deref().unwrap_or_default()), ("title", &file.title)] {
+            if let Some(c) = steering(text) {
+                let message = format!("{key} holds the control character U+{:04X}: {PRINTABLE}", u32::from(c));
+                return Err(ScenarioError::Syntax { file: label.into(), line: line_of(key), message });
+            }
+        }
         let machine = match file.machine {
             MachineRef::Name(name) => find.map_or_else(|| machine::named(&name), |find| find(&name))?,
             MachineRef::Inline(spec) => Machine::new(*spec).map_err(|error| {
@@ -132,7 +142,8 @@ impl Scenario {
                 ScenarioError::Machine { file, line, error }
             })?,
         };
-        let stem = Path::new(label).file_stem().map_or_else(|| label.into(), |s| s.to_string_lossy().into_owned());
+        let stem = Path::new(label).file_stem().map_or_else(|| label.into(), |s| s.to_string_lossy());
+        let stem = plain(&stem).into_owned();
         let task = file.task.completed(&machine).map_err(|key| ScenarioError::Syntax {
             file: label.into(),
             line: line_of("task"),

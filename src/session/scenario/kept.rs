@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::bounds::MAX_TIME;
 use crate::session::TimedEdit;
+use crate::settings::text::steering;
 
 /// An instant that somebody wants to find again.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -58,7 +59,9 @@ impl Bookmark {
             _ if self.name.trim().is_empty() || count > MAX_NAME => {
                 Err(format!("name has {count} characters: want 1 to {MAX_NAME}, not all of them spaces"))
             }
-            _ => Ok(()),
+            _ => steering(&self.name).map_or(Ok(()), |c| {
+                Err(format!("name holds the control character U+{:04X}: want printable characters", u32::from(c)))
+            }),
         }
     }
 }
