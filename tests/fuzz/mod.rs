@@ -117,6 +117,57 @@ do = "slide-b"
 b = 2.5
 "#;
 
+/// Four drives: what only they have, by every edit that three do not take.
+const SESSION_OF_FOUR: &str = r#"
+machine = "four-drive"
+step = 0.01
+duration = 0.3
+[task]
+kind = "reactionless"
+shape = "line"
+from = [0.6, 0.5]
+to = [0.55, 0.55]
+b = 2.9
+time = 0.3
+posture = "mid-range"
+[[edit]]
+step = 2
+do = "pull-link"
+link = "2"
+along = 0.2
+x = 0.1
+y = 0.3
+[[edit]]
+step = 4
+do = "drag-target"
+x = 0.5
+y = 0.6
+[[edit]]
+step = 6
+do = "slide-b"
+b = 3.0
+[[edit]]
+step = 8
+do = "set"
+change = { task = { posture = "orientation" }, base = { kind = "free" } }
+[[edit]]
+step = 9
+do = "set"
+change = { link = { 2 = { mass = 1.5 } }, limits = { a3 = [0.2, 2.9] } }
+[[bookmark]]
+time = 0.05
+name = "pulled"
+[[branch]]
+duration = 0.2
+[[branch.edit]]
+step = 1
+do = "pull-link"
+link = "3"
+along = 0.1
+x = 0.2
+y = 0.2
+"#;
+
 /// How long one input may take.
 const PATIENCE: Duration = Duration::from_secs(if cfg!(debug_assertions) { 60 } else { 10 });
 /// How much one input may add to what the process holds, bytes.
@@ -373,7 +424,7 @@ fn scenarios() {
 
 #[test]
 fn sessions() {
-    fuzz("session", &bytes(&[SESSION]), 60, |bytes, dice| {
+    fuzz("session", &bytes(&[SESSION, SESSION_OF_FOUR]), 60, |bytes, dice| {
         let text = String::from_utf8_lossy(bytes);
         let scenario = match Scenario::parse(&text, "in.toml", None) {
             Ok(scenario) => scenario,
@@ -424,6 +475,55 @@ fn sessions() {
             }
             Ok(_) => Ok(()),
             Err(refusal) => is_short(&refusal.to_string()),
+        }
+    });
+}
+
+/// What a program that was killed has left behind, whatever became of its bytes.
+#[cfg(feature = "window")]
+#[test]
+fn journals() {
+    use stillbase::files::{journal, scenario};
+    let folder = crate::folder::Folder::new("fuzz-journals");
+    let file = folder.path("session-0.toml");
+    fuzz("journal", &bytes(&[SESSION, SESSION_OF_FOUR]), 40, |bytes, dice| {
+        let cut = if dice.one_in(2) { dice.below(bytes.len() + 1) } else { bytes.len() };
+        std::fs::write(&file, &bytes[..cut]).map_err(|e| e.to_string())?;
+        let left = journal::left(&folder.0);
+        let [found] = &left[..] else { return Err(format!("{} sessions were left behind", left.len())) };
+        match scenario(&found.file.to_string_lossy()) {
+            Err(error) => is_short(&error.to_string()),
+            Ok(found) => {
+                let duration = found.scenario.duration.map(|d| d.min(20.0 * found.scenario.step));
+                match Session::open(Scenario { duration, ..found.scenario }) {
+                    Ok(_) => Ok(()),
+                    Err(refusal) => is_short(&refusal.to_string()),
+                }
+            }
+        }
+    });
+}
+
+/// How a person likes the window, as any program or hand may have changed it.
+#[cfg(feature = "ui")]
+#[test]
+fn preferences() {
+    use stillbase::app::Preferences;
+    const CHANGED: &str = "theme = \"light\"\nsize = [1300.0, 820.0]\nhints = false\nlayout = \"compare\"\nswapped = true\n\
+                           side_width = 300.0\nplots = false\nplots_width = 500.5\nrecent = [\"a.toml\", \"b/c.toml\"]\n";
+    let usual = toml::to_string(&Preferences::default()).expect("plain data");
+    fuzz("preferences", &bytes(&[&usual, CHANGED]), 300, |bytes, _| {
+        let Ok(read) = toml::from_str::<Preferences>(&String::from_utf8_lossy(bytes)) else { return Ok(()) };
+        let sound = read.sound();
+        let widths = [sound.side_width, sound.plots_width, sound.compare_side_width, sound.compare_plots_width];
+        let is_sane = |x: f32| (100.0..=16_000.0).contains(&x);
+        if !sound.size.into_iter().chain(widths.into_iter().flatten()).all(is_sane) || sound.recent.len() > 32 {
+            return Err(format!("a window that cannot be: {sound:?}"));
+        }
+        let text = toml::to_string(&sound).map_err(|e| e.to_string())?;
+        match toml::from_str::<Preferences>(&text) {
+            Ok(again) if again == sound => Ok(()),
+            _ => Err("read back as other preferences".into()),
         }
     });
 }

@@ -83,14 +83,6 @@ proptest! {
     }
 }
 
-#[test]
-#[ignore = "long: a hundred thousand cases, in release"]
-fn any_of_a_hundred_thousand_stretches_is_what_a_scan_finds() {
-    let config = ProptestConfig { cases: 100_000, failure_persistence: None, ..ProptestConfig::default() };
-    let mut runner = proptest::test_runner::TestRunner::new(config);
-    runner.run(&case(5000), |(values, cuts, kept)| held(&values, &cuts, kept)).expect("it agrees");
-}
-
 /// A small wave on a large offset, where the difference of running sums would have no digits left.
 #[test]
 fn a_mean_far_from_zero_keeps_its_digits() {

@@ -8,7 +8,7 @@ use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::PerDrive;
 use crate::planning::curves::path::Path;
-use crate::planning::timing::keep::{greatest, kept};
+use crate::planning::timing::keep::{Glance, greatest_of, kept};
 use crate::planning::timing::law::Progress;
 use crate::planning::timing::limits::{ConstraintRow, Constraints, DriveLimit, LimitedQuantity, Limits};
 use crate::planning::timing::outcome::{Fastest, TimeError};
@@ -98,21 +98,25 @@ fn planned(
     let stretches = |at: &Progress| constraints.stretches(path, at);
     let (mut grid, found) = Grid::new(path, &constraints, dense(path)).fastest_refined(path, &constraints);
     let mut bound = curved(path, &constraints, &grid, found);
-    for _ in 0..MENDINGS {
-        let Ok(found) = &bound else { break };
-        let past: Vec<f64> = found.profile.phases().map(|phase| greatest(std::iter::once(phase), stretches)).collect();
-        if past.len() + 1 != grid.s.len() || past.iter().all(|past| *past <= 1.0 + PAST) {
-            break;
+    let mut mendings = 0..MENDINGS;
+    let glances = loop {
+        let Ok(found) = &bound else { break Vec::new() };
+        let glances: Vec<Glance> = found.profile.phases().map(|phase| Glance::of(phase, stretches)).collect();
+        let closer = |glance: &Glance| if glance.bound > 1.0 + PAST { glance.closer(stretches) } else { glance.seen };
+        let past: Vec<f64> = glances.iter().map(closer).collect();
+        let is_kept = past.iter().all(|past| *past <= 1.0 + PAST);
+        if is_kept || past.len() + 1 != grid.s.len() || mendings.next().is_none() {
+            break glances;
         }
         let found;
         (grid, found) = grid.mended(path, &constraints, &past);
         bound = curved(path, &constraints, &grid, found);
-    }
+    };
     if smooth {
         return smooth::smooth(path, model, around, &constraints, &grid, bound);
     }
     let found = bound?;
-    let profile = kept(&found.profile, stretches).ok_or(TimeError::Stuck { s: 0.0 })?;
+    let profile = kept(&found.profile, greatest_of(glances, stretches)).ok_or(TimeError::Stuck { s: 0.0 })?;
     Ok(Fastest { profile, ..found })
 }
 

@@ -16,35 +16,64 @@ const INSIDE: f64 = 1e-6;
 /// What rounding may need.
 const SPARE: f64 = 1e-9;
 
-/// The greatest of several quantities that are each smooth within every phase, over all phases. The greatest of them is
-/// not smooth where one takes over from another, so each is looked at by itself.
-///
-/// A peak between three instants is taken to be that of the parabola through them; phases in which one could be the
-/// greatest of all are looked at closely.
+/// Several quantities that are each smooth within a phase, seen at three instants of it. The greatest of them is not
+/// smooth where one takes over from another, so each is looked at by itself.
+pub(super) struct Glance {
+    phase: (Progress, f64),
+    /// The greatest value at the three instants.
+    pub(super) seen: f64,
+    /// What a closer look may find at most: the tops of the parabolas through three values, and a quarter of the spread.
+    pub(super) bound: f64,
+}
+
+impl Glance {
+    /// At both ends of a phase and in its middle.
+    pub(super) fn of<const N: usize>(phase: (Progress, f64), of: impl Fn(&Progress) -> [f64; N]) -> Self {
+        let three = [0.0, 0.5, 1.0].map(|u| within(&phase, u, &of));
+        let (mut seen, mut bound): (f64, f64) = (0.0, 0.0);
+        for k in 0..N {
+            let own = three.map(|values| values[k]);
+            let greatest = own.into_iter().fold(0.0, f64::max);
+            let spread = greatest - own.into_iter().fold(f64::INFINITY, f64::min);
+            seen = seen.max(greatest);
+            if spread > SPARE * greatest {
+                bound = bound.max(crest(own).max(greatest) + 0.25 * spread);
+            }
+        }
+        Self { phase, seen, bound: bound.max(seen) }
+    }
+
+    /// The greatest value in the phase: the highest top of the parabolas through three of many instants.
+    pub(super) fn closer<const N: usize>(&self, of: impl Fn(&Progress) -> [f64; N]) -> f64 {
+        let near: [[f64; N]; CLOSE + 1] = std::array::from_fn(|i| within(&self.phase, i as f64 / CLOSE as f64, &of));
+        let tops = |w: &[[f64; N]]| (0..N).map(|k| crest([w[0][k], w[1][k], w[2][k]])).fold(0.0, f64::max);
+        near.windows(3).map(tops).fold(self.seen, f64::max)
+    }
+}
+
+/// The quantities at a part of a phase.
+fn within<const N: usize>((from, time): &(Progress, f64), u: f64, of: impl Fn(&Progress) -> [f64; N]) -> [f64; N] {
+    of(&after(from, u.clamp(INSIDE, 1.0 - INSIDE) * time))
+}
+
+/// The greatest of all quantities over all phases.
 pub(super) fn greatest<const N: usize>(
     phases: impl Iterator<Item = (Progress, f64)>,
     of: impl Fn(&Progress) -> [f64; N],
 ) -> f64 {
-    let mut most: f64 = 0.0;
-    for (from, time) in phases {
-        let at = |u: f64| of(&after(&from, u.clamp(INSIDE, 1.0 - INSIDE) * time));
-        let three = [at(0.0), at(0.5), at(1.0)];
-        let before = most;
-        let mut close = false;
-        for k in 0..N {
-            let own = three.map(|values| values[k]);
-            let seen = own.into_iter().fold(0.0, f64::max);
-            let spread = seen - own.into_iter().fold(f64::INFINITY, f64::min);
-            most = most.max(seen);
-            close |= spread > SPARE * seen && crest(own).max(seen) + 0.25 * spread > before;
+    greatest_of(phases.map(|phase| Glance::of(phase, &of)).collect(), of)
+}
+
+/// The same of phases that have been glanced at: those in which it may be are looked at closely, the likeliest first.
+pub(super) fn greatest_of<const N: usize>(mut glances: Vec<Glance>, of: impl Fn(&Progress) -> [f64; N]) -> f64 {
+    let mut most = glances.iter().map(|glance| glance.seen).fold(0.0, f64::max);
+    glances.retain(|glance| glance.bound > most);
+    glances.sort_unstable_by(|x, y| y.bound.total_cmp(&x.bound));
+    for glance in glances {
+        if glance.bound <= most {
+            break;
         }
-        if close {
-            let near: [[f64; N]; CLOSE + 1] = std::array::from_fn(|i| at(i as f64 / CLOSE as f64));
-            for w in near.windows(3) {
-                let tops = (0..N).map(|k| crest([w[0][k], w[1][k], w[2][k]]));
-                most = tops.fold(most, f64::max);
-            }
-        }
+        most = most.max(glance.closer(&of));
     }
     most
 }
@@ -56,10 +85,8 @@ fn crest([a, b, c]: [f64; 3]) -> f64 {
     if bend < 0.0 && slope.abs() <= -bend { b - 0.5 * slope * slope / bend } else { a.max(b).max(c) }
 }
 
-/// A profile slowed down by the least factor with which every limit is kept; `stretches` are those factors at one
-/// instant, one a limit. `None` if no time is enough.
-pub(super) fn kept<const N: usize>(profile: &Profile, stretches: impl Fn(&Progress) -> [f64; N]) -> Option<Profile> {
-    let factor = greatest(profile.phases(), stretches);
+/// A profile slowed down by a factor on time with which every limit is kept. `None` if no time is enough.
+pub(super) fn kept(profile: &Profile, factor: f64) -> Option<Profile> {
     // Rounding is not worth another profile.
     let needed = factor > 1.0 + SPARE;
     factor.is_finite().then(|| if needed { profile.stretched(factor * (1.0 + SPARE)) } else { profile.clone() })
@@ -84,9 +111,7 @@ impl Motion {
             (0..parts).map(move |i| (after(&from, i as f64 * time), time))
         };
         let stretches = |at: &Progress| Demand::of(&self.path, model, around, &limits, at).stretches(&limits);
-        let factor = greatest(self.profile.phases().flat_map(cut), stretches);
-        let by = if factor > 1.0 + SPARE { factor * (1.0 + SPARE) } else { 1.0 };
-        let profile = if by > 1.0 { self.profile.stretched(by) } else { self.profile.clone() };
-        factor.is_finite().then(|| Self { path: self.path.clone(), profile })
+        let profile = kept(&self.profile, greatest(self.profile.phases().flat_map(cut), stretches))?;
+        Some(Self { path: self.path.clone(), profile })
     }
 }
