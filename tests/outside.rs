@@ -1,5 +1,6 @@
 //! Held against programs of others. They are Python packages; where one is missing, its tests count as ignored, with the
-//! reason. `STILLBASE_PYTHON` names the Python to ask, `python3` if it is not set.
+//! reason, or fail where `STILLBASE_REQUIRE_PYTHON` is 1. `STILLBASE_PYTHON` names the Python to ask, `python3` if it is
+//! not set.
 
 use std::process::ExitCode;
 
@@ -25,6 +26,8 @@ mod mujoco;
 mod noise;
 #[path = "outside/pinocchio.rs"]
 mod pinocchio;
+#[path = "outside/planar.rs"]
+mod planar;
 #[path = "outside/python.rs"]
 mod python;
 #[allow(dead_code, reason = "the tests use a few of them")]
@@ -37,13 +40,19 @@ mod trim;
 use noise::Noise;
 
 fn main() -> ExitCode {
-    let packages: [(&str, &[Test]); 4] =
-        [("ezdxf", ezdxf::TESTS), ("mujoco", mujoco::TESTS), ("pinocchio", pinocchio::TESTS), ("scipy", trim::TESTS)];
+    let packages: [(&str, &[Test]); 5] = [
+        ("ezdxf", ezdxf::TESTS),
+        ("mujoco", mujoco::TESTS),
+        ("mujoco", planar::TESTS),
+        ("pinocchio", pinocchio::TESTS),
+        ("scipy", trim::TESTS),
+    ];
     let trials = packages.into_iter().flat_map(|(package, tests)| {
         let missing = python::missing(package);
         tests.iter().map(move |(name, test)| {
             let (missing, name, test) = (missing.clone(), name.split_once("::").map_or(*name, |(_, rest)| rest), *test);
             Trial::ignorable_test(name, move || match missing {
+                Some(why) if python::is_required() => Err(format!("a package is required: {why}").into()),
                 Some(why) => Ok(Completion::ignored_with(why)),
                 None => {
                     test();

@@ -43,6 +43,8 @@ const JUMP: f64 = 10.0;
 const VISIBLE: [f64; 2] = [0.1, 0.02];
 /// The largest number, in SI units.
 pub(super) const MOST: f64 = 1e11;
+/// The most columns of a file.
+const MAX_COLUMNS: usize = 1000;
 /// A time between samples so many times as long as the usual one is a gap.
 pub(super) const GAP: f64 = 10.0;
 
@@ -59,7 +61,7 @@ pub fn samples(
 ) -> Result<Read, Failure> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let at = |line: u64, why: &dyn Display| Failure::wrong_input(format!("{file}:{line}: {why}"));
-    let mut lines = reader(text).into_records();
+    let mut lines = reader(text, file)?.into_records();
     let mut next =
         || lines.next().map(|r| r.map_err(|e| Failure::wrong_input(format!("{file}: {e}: want a CSV file"))));
     let want = head_wanted(machine);
@@ -171,16 +173,64 @@ pub(super) fn continuous_angle(rows: &mut [Vec<f64>], k: usize, name: &str, has_
 }
 
 /// By the first line that tells: semicolons, tabs or commas.
-pub(super) fn reader(text: &str) -> csv::Reader<&[u8]> {
+///
+/// # Errors
+/// If a row has too many columns, before any of them takes memory.
+pub(super) fn reader<'a>(text: &'a str, file: &str) -> Result<csv::Reader<&'a [u8]>, Failure> {
     let head = text.lines().find(|line| !line.trim().is_empty() && !line.starts_with('#')).unwrap_or_default();
     let delimiter = [b';', b'\t'].into_iter().find(|d| head.bytes().any(|b| b == *d)).unwrap_or(b',');
-    csv::ReaderBuilder::new()
+    if let Some(line) = too_wide(text, delimiter) {
+        let what = format!("{file}:{line}: more than {MAX_COLUMNS} columns: want at most {MAX_COLUMNS}");
+        return Err(Failure::wrong_input(what));
+    }
+    Ok(csv::ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)
         .trim(csv::Trim::All)
         .comment(Some(b'#'))
         .delimiter(delimiter)
-        .from_reader(text.as_bytes())
+        .from_reader(text.as_bytes()))
+}
+
+/// Where a cell is while it is read.
+#[derive(Clone, Copy, PartialEq)]
+enum Cell {
+    /// At its first byte, that of a row too or not.
+    Fresh {
+        of_row: bool,
+    },
+    Bare,
+    Quoted,
+    /// After a quote in quotes: two are one, one ends them.
+    Closed,
+    Comment,
+}
+
+/// The line in which a row ends that has too many columns, by the rules of the reader.
+fn too_wide(text: &str, delimiter: u8) -> Option<usize> {
+    let (mut cell, mut columns, mut line) = (Cell::Fresh { of_row: true }, 1, 1);
+    for byte in text.bytes() {
+        line += usize::from(byte == b'\n');
+        cell = match (cell, byte) {
+            (Cell::Quoted, b'"') => Cell::Closed,
+            (Cell::Quoted, _) | (Cell::Closed, b'"') => Cell::Quoted,
+            (_, b'\n' | b'\r') => {
+                columns = 1;
+                Cell::Fresh { of_row: true }
+            }
+            (Cell::Comment, _) | (Cell::Fresh { of_row: true }, b'#') => Cell::Comment,
+            (Cell::Fresh { .. }, b'"') => Cell::Quoted,
+            (_, byte) if byte == delimiter => {
+                columns += 1;
+                if columns > MAX_COLUMNS {
+                    return Some(line);
+                }
+                Cell::Fresh { of_row: false }
+            }
+            _ => Cell::Bare,
+        };
+    }
+    None
 }
 
 fn head_wanted(machine: &Machine) -> String {

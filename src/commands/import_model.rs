@@ -4,10 +4,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::Serialize;
-use stillbase::exchange::import::{Imported, import};
+use stillbase::exchange::import::{BaseBody, Imported, import};
 use stillbase::files::write_new;
-use stillbase::mechanics::machine::{Inertia, to_toml};
+use stillbase::mechanics::machine::{Inertia, Machine, to_toml};
+use stillbase::session::around;
+use stillbase::session::scenario::Scenario;
 use stillbase::settings::number::{counted, fixed, shown};
+use stillbase::simulation::plant::{Base, BaseKind};
 
 use super::exit::say;
 use super::failure::Failure;
@@ -18,15 +21,18 @@ use super::output::{Format, Table, check_output, yes};
 ///
 /// All axes have to be parallel and all links bars. What turns together is read from mimic joints (URDF), from loops that
 /// are parallelograms and from equalities (MJCF); motors, gears with their rotors, masses, limits and the end effector
-/// come along. What lies outside of the family is refused with its element and line.
+/// come along. What lies outside of the family is refused with its element and line. Mass, inertia and mount of the base
+/// are of a scenario: --scenario writes one around the machine, on a base that floats.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   stillbase import-model arm.urdf -o arm.toml
   stillbase import-model arm.xml --json
   stillbase import-model arm.urdf --set gravity=0,-9.81 -o arm.toml --force
+  stillbase import-model satellite.urdf --scenario satellite.toml
 
-Keys of --json: file (where one is written), drives, links, mass, pose, notes, force_balanced, invariant")]
+Keys of --json: file and scenario (where they are written), drives, links, mass, pose, base (mass, inertia, com; where the
+file has one), notes, force_balanced, invariant")]
 pub struct ImportModel {
     /// A URDF or MJCF file
     #[arg(value_name = "FILE")]
@@ -36,7 +42,10 @@ pub struct ImportModel {
     /// Write the machine to this file
     #[arg(short, long, value_name = "MACHINE.toml")]
     output: Option<PathBuf>,
-    /// Replace the file if it exists
+    /// Write a scenario to this file: a task for the machine, on the base of the file if it has one
+    #[arg(long, value_name = "SCENARIO.toml")]
+    scenario: Option<PathBuf>,
+    /// Replace files that exist
     #[arg(long)]
     force: bool,
     #[command(flatten)]
@@ -47,27 +56,53 @@ pub struct ImportModel {
 struct Answer {
     #[serde(skip_serializing_if = "Option::is_none")]
     file: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    scenario: Option<String>,
     drives: Vec<String>,
     links: usize,
     /// kg.
     mass: f64,
     /// Of the drives, where all joints of URDF are at 0, or in the keyframe of MJCF, rad.
     pose: Vec<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    base: Option<OfBase>,
     notes: Vec<String>,
     force_balanced: bool,
     invariant: bool,
 }
 
+/// What the machine stands on.
+#[derive(Serialize)]
+struct OfBase {
+    /// kg.
+    mass: f64,
+    /// About its centre of mass, kg m².
+    inertia: f64,
+    /// Its centre of mass, seen from the axis of the drives, m.
+    com: [f64; 2],
+}
+
 impl ImportModel {
     /// Reads the model, says what it is, and writes the machine if asked.
     pub fn run(&self) -> Result<(), Failure> {
-        if let Some(file) = &self.output {
+        for file in [&self.output, &self.scenario].into_iter().flatten() {
             check_output(file, self.force, &["toml"])?;
+        }
+        if self.output.is_some() && self.output == self.scenario {
+            return Err(Failure::wrong_input("-o and --scenario name one file: want two"));
         }
         let name = self.file.display();
         let found = import(&read(&self.file)?).map_err(|e| Failure::wrong_input(e).of(&name))?;
-        let Imported { machine, pose, notes } = found;
+        let Imported { machine, pose, base, mut notes } = found;
         let machine = self.settings.apply(machine)?;
+        if let Some(base) = base.filter(|_| self.scenario.is_none()) {
+            let (mass, inertia) = (shown(base.mass, 6), shown(base.inertia, 6));
+            notes.push(format!(
+                "the base, {mass} kg and {inertia} kg m², is no part of a machine: --scenario FILE.toml writes it into \
+                 [base] of a scenario"
+            ));
+        }
+        let scenario = self.scenario.as_ref().map(|_| scenario(&machine, base)).transpose()?;
         for note in &notes {
             say(format!("note: {name}: {note}"));
         }
@@ -75,13 +110,19 @@ impl ImportModel {
             write_new(file, to_toml(&machine).as_bytes(), self.force)?;
             say(format!("wrote {}", file.display()));
         }
+        if let (Some(file), Some(scenario)) = (&self.scenario, &scenario) {
+            write_new(file, scenario.to_toml().as_bytes(), self.force)?;
+            say(format!("wrote {}", file.display()));
+        }
         let inertia = Inertia::of(&machine);
         let answer = Answer {
             file: self.output.as_ref().map(|file| file.display().to_string()),
+            scenario: self.scenario.as_ref().map(|file| file.display().to_string()),
             drives: machine.spec().drives.iter().map(|drive| drive.name.clone()).collect(),
             links: machine.links().len(),
             mass: machine.mass(),
             pose,
+            base: base.map(|base| OfBase { mass: base.mass, inertia: base.inertia, com: [base.com.re, base.com.im] }),
             notes,
             force_balanced: inertia.is_force_balanced(),
             invariant: inertia.is_invariant(),
@@ -100,4 +141,13 @@ impl ImportModel {
             )
         })
     }
+}
+
+/// A task for a machine, on the base that it came with.
+fn scenario(machine: &Machine, base: Option<BaseBody>) -> Result<Scenario, Failure> {
+    let scenario = around(machine)?;
+    let Some(BaseBody { mass, inertia, com }) = base else { return Ok(scenario) };
+    let base = Base { kind: BaseKind::Free, mass, inertia, com: [com.re, com.im], ..Base::default() };
+    // What a file may hold is asked of what is written.
+    Ok(Scenario::parse(&Scenario { base, ..scenario }.to_toml(), "[base] of the file", None)?)
 }

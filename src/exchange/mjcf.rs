@@ -1,6 +1,7 @@
 //! A machine as MJCF, the format of MuJoCo: links as bodies in the plane z = 0, pins as hinges, pins that close loops
 //! as equalities, motors with their gears and rotors, and sensors of force and moment at the base. The sensors read what
-//! holds the machine: f_B and n_B are the opposite.
+//! holds the machine: f_B and n_B are the opposite. The frame of a link has x along e(q_k) of its drive, so a link that
+//! runs against its drive lies along −x; bodies and hinges have the names that they have in URDF.
 //!
 //! Every rotor is a body of its own: what a gear adds to the momentum (D) is not what it adds to the inertia (H), and
 //! an armature would only add to the latter. Inertias about axes that a plane motion does not ask are made up.
@@ -9,6 +10,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use super::look::{COLOURS, RADIUS};
+use super::tree::{Part, Tree};
 use super::turn::Turn;
 use super::xml::quoted;
 use crate::mechanics::machine::Machine;
@@ -72,6 +74,8 @@ pub fn hinges(machine: &Machine, q: &[f64]) -> Result<Vec<f64>, MjcfError> {
 
 struct Model<'a> {
     machine: &'a Machine,
+    /// Whose names bodies and hinges have.
+    tree: Tree<'a>,
     /// The angle of each motor.
     motors: Vec<Turn>,
     /// Names of relative angles with limits, as sums of angles in pins, and their bounds, rad.
@@ -99,7 +103,14 @@ impl<'a> Model<'a> {
             Turn::of_drives(machine, machine.motors().on(k), k).ok_or_else(idle)
         };
         let motors = (0..machine.drives()).map(motor).collect::<Result<_, _>>()?;
-        Ok(Self { machine, motors, limited: limited(machine), parallel: parallel(machine), out: String::new() })
+        Ok(Self {
+            machine,
+            tree: Tree::of(machine),
+            motors,
+            limited: limited(machine),
+            parallel: parallel(machine),
+            out: String::new(),
+        })
     }
 
     fn text(mut self, q: &[f64]) -> String {
@@ -129,7 +140,7 @@ impl<'a> Model<'a> {
         line!(self, 1, "<sensor>");
         line!(self, 2, "<force name=\"base force\" site=\"base\"/>");
         line!(self, 2, "<torque name=\"base moment\" site=\"base\"/>");
-        line!(self, 2, "<framepos name=\"end effector\" objtype=\"site\" objname=\"end effector\"/>");
+        line!(self, 2, "<framepos name=\"end effector\" objtype=\"site\" objname=\"end_effector\"/>");
         line!(self, 1, "</sensor>");
         line!(self, 1, "<keyframe>");
         let pose = self.pose(q).iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
@@ -147,20 +158,21 @@ impl<'a> Model<'a> {
     /// A link with what hangs on it.
     fn body(&mut self, depth: usize, j: usize) {
         let (link, part) = (&self.machine.links()[j], &self.machine.resolved_links()[j]);
-        let (name, drive) = (quoted(&link.name), part.drive);
-        let colour = COLOURS[drive % COLOURS.len()];
-        line!(self, depth, "<body name=\"link {name}\" pos=\"{} 0 0\">", part.at);
+        let (name, colour) = (self.tree.name(Part::Link(j)), COLOURS[part.drive % COLOURS.len()]);
+        let on = part.parent.map_or(1.0, |on| self.machine.resolved_links()[on].sign);
+        line!(self, depth, "<body name=\"{name}\" pos=\"{} 0 0\">", on * part.at);
         let limits = self.limited.iter().find(|(_, turn, _)| turn.pin() == Some(j));
         let range = limits.map_or(String::new(), |(.., [least, most])| format!(" range=\"{least} {most}\""));
-        line!(self, depth + 1, "<joint name=\"link {name}\"{range}/>");
-        let (com, normal, axial) = (link.com, link.com_normal, link.axial);
+        line!(self, depth + 1, "<joint name=\"{}\"{range}/>", self.hinge(j));
+        let (com, normal, axial) = (part.sign * link.com, part.sign * link.com_normal, link.axial);
         self.inertial(depth + 1, [com, normal, axial], link.mass, link.inertia);
         let (from, to) = reach(part.length, &part.pins);
         if to > from {
+            let (from, to) = (part.sign * from, part.sign * to);
             line!(self, depth + 1, "<geom fromto=\"{from} 0 0 {to} 0 0\" rgba=\"{colour}\"/>");
         }
         for weight in self.machine.spec().counterweights.iter().filter(|weight| weight.link == link.name) {
-            let (at, radius) = (weight.at, weight.radius.max(RADIUS));
+            let (at, radius) = (part.sign * weight.at, weight.radius.max(RADIUS));
             line!(
                 self,
                 depth + 1,
@@ -170,6 +182,7 @@ impl<'a> Model<'a> {
         for (number, pinned) in self.machine.loops().iter().enumerate() {
             for (side, of, at) in [("a", pinned.a, pinned.at_a), ("b", pinned.b, pinned.at_b)] {
                 if of == j {
+                    let at = part.sign * at;
                     line!(self, depth + 1, "<site name=\"loop {} {side}\" pos=\"{at} 0 0\"/>", number + 1);
                 }
             }
@@ -192,21 +205,21 @@ impl<'a> Model<'a> {
 
     /// The tip, and what it holds.
     fn end_effector(&mut self, depth: usize, j: usize) {
-        let at = self.tip(j);
-        line!(self, depth, "<site name=\"end effector\" pos=\"{at} 0 0\"/>");
+        let part = &self.machine.resolved_links()[j];
+        let at = self.machine.end_effector()[part.drive] - part.root[part.drive];
+        line!(self, depth, "<site name=\"end_effector\" pos=\"{at} 0 0\"/>");
         let payload = self.machine.spec().payload;
         if payload.mass > 0.0 || payload.inertia > 0.0 {
-            let [along, left] = payload.offset;
+            let [along, left] = payload.offset.map(|x| part.sign * x);
             line!(self, depth, "<body name=\"payload\" pos=\"{at} 0 0\">");
             self.inertial(depth + 1, [along, left, payload.axial], payload.mass, payload.inertia);
             line!(self, depth, "</body>");
         }
     }
 
-    /// Where the end effector sits on its link, m from the root.
-    fn tip(&self, j: usize) -> f64 {
-        let part = &self.machine.resolved_links()[j];
-        part.sign * (self.machine.end_effector()[part.drive] - part.root[part.drive])
+    /// The hinge of a link.
+    fn hinge(&self, j: usize) -> String {
+        self.tree.holder(Part::Link(j))
     }
 
     /// The link that carries the motor of a drive; none: the base.
@@ -222,13 +235,19 @@ impl<'a> Model<'a> {
         for k in 0..self.machine.drives() {
             let drive = &self.machine.spec().drives[k];
             let Some(rotor) = drive.rotor.filter(|_| self.has_rotor(k) && self.carrier(k) == on) else { continue };
-            let name = quoted(&drive.name);
-            let at = self.motors[k].pin().map_or(0.0, |j| self.machine.resolved_links()[j].at);
-            line!(self, depth, "<body name=\"rotor {name}\" pos=\"{at} 0 0\">");
-            line!(self, depth + 1, "<joint name=\"rotor {name}\"/>");
+            let parts = self.machine.resolved_links();
+            let sign = on.map_or(1.0, |on| parts[on].sign);
+            let at = self.motors[k].pin().map_or(0.0, |j| sign * parts[j].at);
+            let (name, hinge) = (self.tree.name(Part::Rotor(k)), self.rotor_hinge(k));
+            line!(self, depth, "<body name=\"{name}\" pos=\"{at} 0 0\">");
+            line!(self, depth + 1, "<joint name=\"{hinge}\"/>");
             self.inertial(depth + 1, [0.0; 3], ROTOR, rotor.inertia);
             line!(self, depth, "</body>");
         }
+    }
+
+    fn rotor_hinge(&self, k: usize) -> String {
+        self.tree.holder(Part::Rotor(k))
     }
 
     /// Whether a rotor of a drive is a body.
@@ -241,9 +260,15 @@ impl<'a> Model<'a> {
         let drives = &self.machine.spec().drives;
         let mut all: Vec<(String, Turn)> = Vec::new();
         for (k, turn) in self.motors.iter().enumerate().filter(|(_, turn)| turn.pin().is_none()) {
-            all.push((format!("motor {}", quoted(&drives[k].name)), turn.clone()));
+            all.push((format!("drive_{}", quoted(&drives[k].name)), turn.clone()));
         }
-        let limited: Vec<_> = self.limited.iter().filter(|(_, turn, _)| turn.pin().is_none()).cloned().collect();
+        // A hinge has one range.
+        let on_hinge = |i: usize| {
+            let pin = self.limited[i].1.pin();
+            pin.is_some() && self.limited[..i].iter().all(|(_, turn, _)| turn.pin() != pin)
+        };
+        let limited: Vec<_> = (0..self.limited.len()).filter(|i| !on_hinge(*i)).collect();
+        let limited: Vec<_> = limited.into_iter().map(|i| self.limited[i].clone()).collect();
         let parallel = self.parallel.clone();
         if all.is_empty() && limited.is_empty() && parallel.is_empty() {
             return;
@@ -256,16 +281,16 @@ impl<'a> Model<'a> {
             if !self.has_rotor(k) || self.motors[k].pin().is_some() {
                 continue;
             }
-            let name = quoted(&drive.name);
-            line!(self, 2, "<fixed name=\"rotor {name}\">");
-            line!(self, 3, "<joint joint=\"rotor {name}\" coef=\"1\"/>");
+            let (name, hinge) = (quoted(&drive.name), self.rotor_hinge(k));
+            line!(self, 2, "<fixed name=\"rotor_{name}\">");
+            line!(self, 3, "<joint joint=\"{hinge}\" coef=\"1\"/>");
             line!(self, 2, "</fixed>");
         }
         for (name, turn, [least, most]) in limited {
             self.tendon(&name, &format!(" range=\"{least} {most}\""), &turn);
         }
         for (j, turn) in parallel {
-            let name = format!("direction of link {}", quoted(&self.machine.links()[j].name));
+            let name = format!("direction of link_{}", quoted(&self.machine.links()[j].name));
             self.tendon(&name, "", &turn);
         }
         line!(self, 1, "</tendon>");
@@ -274,8 +299,8 @@ impl<'a> Model<'a> {
     fn tendon(&mut self, name: &str, more: &str, turn: &Turn) {
         line!(self, 2, "<fixed name=\"{name}\"{more}>");
         for (j, coefficient) in &turn.pins {
-            let link = quoted(&self.machine.links()[*j].name);
-            line!(self, 3, "<joint joint=\"link {link}\" coef=\"{coefficient}\"/>");
+            let hinge = self.hinge(*j);
+            line!(self, 3, "<joint joint=\"{hinge}\" coef=\"{coefficient}\"/>");
         }
         line!(self, 2, "</fixed>");
     }
@@ -294,19 +319,18 @@ impl<'a> Model<'a> {
                 line!(self, 2, "<connect name=\"loop {number}\" site1=\"loop {number} a\" site2=\"loop {number} b\"/>");
             }
         }
-        for (j, turn) in parallel {
-            let name = quoted(&self.machine.links()[j].name);
-            let constant = turn.constant;
-            line!(self, 2, "<tendon tendon1=\"direction of link {name}\" polycoef=\"{constant} 0 0 0 0\"/>");
+        for (j, _) in parallel {
+            let name = self.tree.name(Part::Link(j));
+            line!(self, 2, "<tendon tendon1=\"direction of {name}\" polycoef=\"0 0 0 0 0\"/>");
         }
         for k in geared {
             let (name, ratio) = (quoted(&drives[k].name), drives[k].rotor.map_or(1.0, |rotor| rotor.ratio));
             let pair = match self.motors[k].pin() {
                 Some(j) => {
-                    let link = quoted(&self.machine.links()[j].name);
-                    format!("<joint name=\"gear {name}\" joint1=\"rotor {name}\" joint2=\"link {link}\"")
+                    let (rotor, hinge) = (self.rotor_hinge(k), self.hinge(j));
+                    format!("<joint name=\"gear_{name}\" joint1=\"{rotor}\" joint2=\"{hinge}\"")
                 }
-                None => format!("<tendon name=\"gear {name}\" tendon1=\"rotor {name}\" tendon2=\"motor {name}\""),
+                None => format!("<tendon name=\"gear_{name}\" tendon1=\"rotor_{name}\" tendon2=\"drive_{name}\""),
             };
             line!(self, 2, "{pair} polycoef=\"0 {ratio} 0 0 0\"/>");
         }
@@ -318,11 +342,11 @@ impl<'a> Model<'a> {
         for (k, drive) in self.machine.spec().drives.iter().enumerate() {
             let name = quoted(&drive.name);
             let on = match self.motors[k].pin() {
-                Some(j) => format!("joint=\"link {}\"", quoted(&self.machine.links()[j].name)),
-                None => format!("tendon=\"motor {name}\""),
+                Some(j) => format!("joint=\"{}\"", self.hinge(j)),
+                None => format!("tendon=\"drive_{name}\""),
             };
             let range = drive.torque_limit.map_or(String::new(), |most| format!(" ctrlrange=\"{} {most}\"", -most));
-            line!(self, 2, "<motor name=\"drive {name}\" {on}{range}/>");
+            line!(self, 2, "<motor name=\"drive_{name}\" {on}{range}/>");
         }
         line!(self, 1, "</actuator>");
     }
@@ -335,10 +359,7 @@ impl<'a> Model<'a> {
     }
 
     fn direction(&self, j: Option<usize>, q: &[f64]) -> f64 {
-        j.map_or(0.0, |j| {
-            let part = &self.machine.resolved_links()[j];
-            q[part.drive] + if part.sign < 0.0 { TAU / 2.0 } else { 0.0 }
-        })
+        j.map_or(0.0, |j| q[self.machine.resolved_links()[j].drive])
     }
 
     fn pose_of(&self, parent: Option<usize>, q: &[f64], all: &mut Vec<f64>) {
@@ -346,7 +367,7 @@ impl<'a> Model<'a> {
         for k in (0..self.machine.drives()).filter(|k| self.has_rotor(*k) && self.carrier(*k) == parent) {
             let on = self.machine.motors().on(k).map_or(0.0, |on| q[on]);
             let ratio = spec.drives[k].rotor.map_or(1.0, |rotor| rotor.ratio);
-            all.push(ratio * (q[k] - on - self.motors[k].constant));
+            all.push(ratio * (q[k] - on));
         }
         for j in self.children(parent) {
             all.push(self.direction(Some(j), q) - self.direction(parent, q));
@@ -357,12 +378,11 @@ impl<'a> Model<'a> {
 
 /// Relative angles with limits, as sums of angles in pins and their bounds.
 fn limited(machine: &Machine) -> Vec<(String, Turn, [f64; 2])> {
-    let angles = machine.angles().iter().filter(|a| a.limits.end() - a.limits.start() < TAU - 1e-9);
+    let angles = machine.angles().iter().filter(|a| a.limits.start().is_finite() && a.limits.end().is_finite());
     angles
         .filter_map(|a| {
             let turn = Turn::of_drives(machine, Some(a.from), a.to)?;
-            let shift = turn.constant + a.offset;
-            Some((quoted(&a.name), turn, [a.limits.start() - shift, a.limits.end() - shift]))
+            Some((format!("angle_{}", quoted(&a.name)), turn, [a.limits.start() - a.offset, a.limits.end() - a.offset]))
         })
         .collect()
 }
@@ -376,8 +396,7 @@ fn parallel(machine: &Machine) -> Vec<(usize, Turn)> {
     let first = |k: usize| parts.iter().position(|part| part.drive == k);
     let of = |j: usize| {
         let first = first(parts[j].drive).filter(|first| *first != j)?;
-        let turn = Turn::between(machine, Some(first), j);
-        Some((j, Turn { constant: if parts[first].sign == parts[j].sign { 0.0 } else { TAU / 2.0 }, ..turn }))
+        Some((j, Turn::between(machine, Some(first), j)))
     };
     (0..parts.len()).filter_map(of).collect()
 }

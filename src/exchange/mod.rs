@@ -7,6 +7,7 @@ pub mod import;
 mod look;
 pub mod mjcf;
 pub mod parts;
+mod tree;
 mod turn;
 pub mod urdf;
 mod xml;

@@ -1,21 +1,17 @@
 //! [`Turn`]: an angle of a machine as a sum of the angles in its pins.
 
-use std::f64::consts::PI;
-
 use crate::mechanics::machine::Machine;
 
-/// Σ ± the angles in the pins that hold links, plus a constant. The angle in the pin at the root of a link is that from
-/// the direction of the link it hangs on to its own, each from root to tip; on the base, from its x axis.
+/// Σ ± the angles in the pins that hold links. The angle in the pin at the root of a link is that from the drive of the
+/// link it hangs on to its own; on the base, from its x axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Turn {
     /// Links by number, each with 1 or −1.
     pub pins: Vec<(usize, f64)>,
-    /// rad.
-    pub constant: f64,
 }
 
 impl Turn {
-    /// From the direction of one link to that of another; none: from the x axis of the base.
+    /// From the drive of one link to that of another; none: from the x axis of the base.
     pub fn between(machine: &Machine, from: Option<usize>, to: usize) -> Self {
         let (down, up) = (pins(machine, Some(to)), pins(machine, from));
         // What holds both turns neither against the other.
@@ -23,11 +19,11 @@ impl Turn {
         let kept = |list: &[usize]| list[..list.len() - shared].to_vec();
         let down = kept(&down).into_iter().rev().map(|j| (j, 1.0));
         let up = kept(&up).into_iter().map(|j| (j, -1.0));
-        Self { pins: down.chain(up).collect(), constant: 0.0 }
+        Self { pins: down.chain(up).collect() }
     }
 
-    /// Of a drive against another, q_to − q_from; none: against the base, q_to. A drive has the direction of its links,
-    /// those that run against it half a turn off; a link of the one on a link of the other is preferred.
+    /// Of a drive against another, q_to − q_from; none: against the base, q_to. A link of the one on a link of the other is
+    /// preferred.
     pub fn of_drives(machine: &Machine, from: Option<usize>, to: usize) -> Option<Self> {
         let parts = machine.resolved_links();
         let first = |k: usize| parts.iter().position(|part| part.drive == k);
@@ -38,9 +34,7 @@ impl Turn {
             Some(k) => Some(there.and_then(|j| parts[j].parent).map_or_else(|| first(k), Some)?),
             None => None,
         };
-        let half = |j: usize| if parts[j].sign < 0.0 { PI } else { 0.0 };
-        let constant = from.map_or(0.0, half) - half(to);
-        Some(Self { constant, ..Self::between(machine, from, to) })
+        Some(Self::between(machine, from, to))
     }
 
     /// The one pin that turns by just this, if there is one.

@@ -54,6 +54,12 @@ fn com(machine: &Machine, j: usize, e: &Units) -> Vector {
 fn same(machine: &Machine, found: &Imported, at: &[f64], noise: &mut Noise, is_urdf: bool) {
     let (n, other, name) = (machine.drives(), &found.machine, machine.name());
     assert_eq!(other.drives(), n, "{name}");
+    for k in 0..n {
+        assert_eq!(same_drive(machine, k, other), k, "{name}: the order of the drives");
+        // Up to whole turns.
+        let off = Vector::from_polar(1.0, found.pose[k]) - Vector::from_polar(1.0, at[k]);
+        assert!(off.norm() < 1e-9, "{name}: drive {k} is at {} rad, was at {}", found.pose[k], at[k]);
+    }
     let parts = machine.resolved_links();
     // Of two links of one drive that are pinned together URDF makes one.
     let on = |j: usize| parts[j].parent.filter(|parent| is_urdf && parts[*parent].drive == parts[j].drive);
@@ -151,6 +157,134 @@ fn limits_come_back() {
     }
 }
 
+#[test]
+#[ignore = "a thousand machines there and back take a minute"]
+fn a_thousand_machines_go_out_and_come_back() {
+    let mut noise = Noise::of(16);
+    for i in 0..1000 {
+        let machine = if i % 2 == 0 { a_machine(&mut noise) } else { a_chain(&mut noise, 1 + i / 2 % 8) };
+        let at: Vec<f64> = (0..machine.drives()).map(|_| noise.between(-3.0, 3.0)).collect();
+        let found = import(&urdf(&machine)).unwrap_or_else(|why| panic!("{i}: {why}"));
+        same(&machine, &found, &vec![0.0; machine.drives()], &mut noise, true);
+        let found = import(&mjcf(&machine, &at).expect("a model")).unwrap_or_else(|why| panic!("{i}: {why}"));
+        same(&machine, &found, &at, &mut noise, false);
+    }
+}
+
+/// What all limits leave on either side in a pose, in rising order.
+fn room(machine: &Machine, q: &[f64]) -> Vec<f64> {
+    let of = |angle: &stillbase::mechanics::machine::RelativeAngle| {
+        let a = q[angle.to] - q[angle.from] + angle.offset;
+        [a - angle.limits.start(), angle.limits.end() - a]
+    };
+    let mut all: Vec<f64> = machine.angles().iter().flat_map(of).filter(|x| x.is_finite()).collect();
+    all.sort_by(f64::total_cmp);
+    all
+}
+
+/// Limits between any two drives, of accelerations and jerk, and names and offsets of angles as far as a format goes.
+#[test]
+fn all_limits_come_back() {
+    let mut noise = Noise::of(15);
+    for number in 0..40 {
+        let machine = if number % 2 == 0 { a_machine(&mut noise) } else { a_chain(&mut noise, 2 + number / 2 % 7) };
+        let (mut spec, n) = (machine.spec().clone(), machine.drives());
+        for i in 0..(if n > 1 { 5 } else { 0 }) {
+            let [to, from] = [0; 2].map(|_| noise.between(0.0, n as f64 - 1e-9) as usize);
+            let (low, width) = (noise.between(-6.0, 2.0), noise.between(0.5, 9.0));
+            let name = |k: usize| spec.drives[k].name.clone();
+            let angle = stillbase::mechanics::machine::Angle {
+                name: format!("of pair {i}"),
+                to: name(to),
+                from: name(if from == to { (from + 1) % n } else { from }),
+                offset: noise.between(-3.0, 3.0),
+                min: Some(low),
+                max: Some(low + width),
+            };
+            spec.angles.push(angle);
+        }
+        spec.drives[0].acceleration_limit = Some(30.0);
+        spec.drives[n - 1].jerk_limit = Some(400.0);
+        spec.drives[n - 1].torque_limit = Some(7.0);
+        let machine = Machine::new(spec).expect("a machine");
+        let at: Vec<f64> = (0..n).map(|_| noise.between(-3.0, 3.0)).collect();
+        for is_urdf in [true, false] {
+            let text = if is_urdf { urdf(&machine) } else { mjcf(&machine, &at).expect("a model") };
+            let found = import(&text).unwrap_or_else(|why| panic!("{why}\n{text}"));
+            let from = if is_urdf { vec![0.0; n] } else { at.clone() };
+            for _ in 0..3 {
+                let q: Vec<f64> = (0..n).map(|_| noise.between(-3.0, 3.0)).collect();
+                let turned: Vec<f64> = (0..n).map(|k| found.pose[k] + q[k] - from[k]).collect();
+                let (want, got) = (room(&machine, &q), room(&found.machine, &turned));
+                let is_near = want.len() == got.len() && want.iter().zip(&got).all(|(a, b)| (a - b).abs() < 1e-9);
+                assert!(is_near, "{got:?}, want {want:?}\n{text}");
+            }
+            if is_urdf {
+                assert_eq!(found.machine.spec().drives, machine.spec().drives, "{text}");
+                let named = |machine: &Machine| {
+                    let mut all: Vec<_> = machine.spec().angles.iter().map(|angle| angle.name.clone()).collect();
+                    all.sort();
+                    all
+                };
+                let names = named(&machine);
+                assert!(names.iter().all(|name| named(&found.machine).contains(name)), "{text}");
+            }
+        }
+    }
+}
+
+/// Joints have one name in both formats, and so have bodies and motors.
+#[test]
+fn joints_have_one_name() {
+    for machine in machines() {
+        let at = middle(&machine);
+        let texts = [urdf(&machine), mjcf(&machine, &at).expect("a model")];
+        let documents = texts.each_ref().map(|text| roxmltree::Document::parse(text).expect("XML"));
+        let joints = documents[0].root_element().children().filter(|node| node.has_tag_name("joint"));
+        let names: Vec<&str> = joints.filter_map(|node| node.attribute("name")).collect();
+        let hinges = documents[1].descendants().filter(|node| node.has_tag_name("body"));
+        for body in hinges {
+            let Some(hinge) = body.children().find(|node| node.has_tag_name("joint")) else { continue };
+            let (hinge, body) = (hinge.attribute("name").expect("a name"), body.attribute("name").expect("a name"));
+            assert!(names.contains(&hinge), "{}: {hinge} of {body}\n{}", machine.name(), texts[0]);
+            assert!(texts[0].contains(&format!("<link name=\"{}\">", body.replace('"', "&quot;"))), "{body}");
+        }
+        let motors = documents[1].descendants().filter(|node| node.has_tag_name("motor"));
+        for motor in motors {
+            assert!(names.contains(&motor.attribute("name").expect("a name")), "{}", machine.name());
+        }
+    }
+}
+
+/// A URDF with a base that weighs something: that is no part of a machine, and goes into a scenario.
+#[test]
+fn the_base_comes_along_beside_the_machine() {
+    let bare = import(TWO).expect("an arm");
+    assert_eq!(bare.base, None);
+    let inertial = |at: &str, mass: f64, izz: f64| {
+        let inertia = format!("<inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"{izz}\"/>");
+        format!("<inertial><origin xyz=\"{at}\"/><mass value=\"{mass}\"/>{inertia}</inertial>")
+    };
+    let base = format!("<link name=\"world\">{}</link>", inertial("0.1 -0.2 0.5", 30.0, 2.0));
+    let box_of = format!(
+        "{base}<link name=\"box\">{}</link><joint name=\"holds\" type=\"fixed\"><parent link=\"world\"/>\
+         <child link=\"box\"/><origin xyz=\"1 0 0\"/></joint>",
+        inertial("0 0.4 0", 10.0, 0.5)
+    );
+    let text = TWO.replacen("<link name=\"world\"/>", &box_of, 1);
+    // The shoulder is at 0.2, 0.05 of the base.
+    let text = text.replacen("<origin xyz=\"0 0 0.1\" rpy=\"0 0 0\"/>", "<origin xyz=\"0.2 0.05 0.1\"/>", 1);
+    let found = import(&text).expect("an arm");
+    let base = found.base.expect("a base");
+    near("the machine is the same", found.machine.reach(), bare.machine.reach(), 1.0);
+    assert_eq!(found.machine.spec().drives, bare.machine.spec().drives);
+    near("mass", base.mass, 40.0, 1.0);
+    let com = Vector::new((30.0 * 0.1 + 10.0 * 1.0) / 40.0, (30.0 * -0.2 + 10.0 * 0.4) / 40.0);
+    near_point("centre of mass", base.com, com - Vector::new(0.2, 0.05));
+    let away = 30.0 * (Vector::new(0.1, -0.2) - com).norm_sqr() + 10.0 * (Vector::new(1.0, 0.4) - com).norm_sqr();
+    near("inertia", base.inertia, 2.5 + away, 1.0);
+}
+
 /// The mass matrix of every textbook, in relative angles, of two links that someone else has written down.
 #[test]
 fn an_arm_of_two_links_is_that_of_the_textbook() {
@@ -240,14 +374,22 @@ fn what_mjcf_has_besides_is_refused_by_name() {
     let machine = builtin("nine-link").expect("built in");
     let text = mjcf(machine, &middle(machine)).expect("a model");
     for (from, to, words) in [
-        ("<joint name=\"link 1\"/>", "<joint name=\"link 1\" type=\"slide\"/>", ["joint \"link 1\"", "want hinges"]),
-        ("<joint name=\"link 1\"/>", "<freejoint/>", ["<freejoint>", "on a base"]),
         (
-            "<joint name=\"link 1\"/>",
-            "<joint name=\"link 1\" armature=\"0.1\"/>",
-            ["joint \"link 1\"", "a rotor as a body"],
+            "<joint name=\"joint_link_1\"/>",
+            "<joint name=\"joint_link_1\" type=\"slide\"/>",
+            ["joint \"joint_link_1\"", "want hinges"],
         ),
-        ("<joint name=\"link 1\"/>", "<joint name=\"link 1\" axis=\"1 0 0\"/>", ["turns about", "parallel"]),
+        ("<joint name=\"joint_link_1\"/>", "<freejoint/>", ["<freejoint>", "on a base"]),
+        (
+            "<joint name=\"joint_link_4\"/>",
+            "<joint name=\"joint_link_4\" armature=\"0.1\"/>",
+            ["joint \"joint_link_4\": an armature of 0.1 kg m²", "a hinge that a motor without a rotor turns"],
+        ),
+        (
+            "<joint name=\"joint_link_1\"/>",
+            "<joint name=\"joint_link_1\" axis=\"1 0 0\"/>",
+            ["turns about", "parallel"],
+        ),
         ("<worldbody>", "<include file=\"a.xml\"/><worldbody>", ["<include>", "one file"]),
         (
             "<key name=\"start\" qpos=\"1.5",
@@ -255,7 +397,14 @@ fn what_mjcf_has_besides_is_refused_by_name() {
             ["connect \"loop", "every loop is closed"],
         ),
         ("site2=\"loop 1 b\"", "site2=\"loop 1 c\"", ["connect \"loop 1\"", "no site \"loop 1 c\""]),
-        ("<motor name=\"drive 2\" joint=\"link 2\"", "<motor name=\"drive 2\" joint=\"link 4\"", ["\"drive", "motor"]),
+        (
+            "<motor name=\"drive_2\" joint=\"joint_link_2\"",
+            "<motor name=\"drive_2\" joint=\"joint_link_4\"",
+            ["\"drive", "motor"],
+        ),
+        ("<connect name=\"loop 1\"", "<weld name=\"loop 1\"", ["an equality of kind \"weld\"", "connect, joint"]),
+        ("<default>", "<default><default/>", ["<default>: a class without a name", "class="]),
+        ("<worldbody>", "<worldbody><body childclass=\"x\"/>", ["no class \"x\"", "name of a <default>"]),
     ] {
         assert!(text.contains(from), "{from}\n{text}");
         let why = import(&text.replacen(from, to, 1)).expect_err(to).to_string();
@@ -268,4 +417,34 @@ fn what_mjcf_has_besides_is_refused_by_name() {
 fn meshes_are_left_out_with_a_note() {
     let found = import(TWO).expect("an arm");
     assert!(found.notes.iter().any(|note| note.contains("meshes")), "{:?}", found.notes);
+}
+
+/// What would cost the parser a time that grows with the square of the file is refused before it is parsed, by number.
+#[test]
+fn xml_that_is_dear_to_parse_is_refused_before() {
+    let nested = |count: usize, space: &str| {
+        let open: String = (0..count).map(|i| format!("<a xmlns:n{i}{space}=\"u{i}\">")).collect();
+        format!("<robot name=\"x\">\n{open}{}</robot>", "</a>".repeat(count))
+    };
+    let many = |count: usize| {
+        let all: String = (0..count).map(|i| format!(" a{i}='<>=\"'")).collect();
+        format!("<robot>\n\n<link{all}/></robot>")
+    };
+    let deep = |count: usize| format!("<robot>{}{}</robot>", "<b c=\"/>\">".repeat(count), "</b>".repeat(count));
+    for (text, words) in [
+        (nested(33, ""), "line 2: <a>: 33 declarations of namespaces in the file so far: want at most 32"),
+        (nested(3000, " "), "line 2: <a>: 33 declarations of namespaces in the file so far: want at most 32"),
+        (many(101), "line 3: <link>: 101 attributes: want at most 100"),
+        (many(40_000), "line 3: <link>: 40000 attributes: want at most 100"),
+        (deep(250), "line 1: <b>: 251 elements around each other: want at most 250"),
+        (deep(200_000), "line 1: <b>: 251 elements around each other: want at most 250"),
+    ] {
+        assert_eq!(import(&text).expect_err(words).to_string(), words);
+    }
+    // Up to there it is the reader of machines that refuses, and remarks and quotes hide nothing and count for nothing.
+    let remark = format!("<!-- {} --><![CDATA[ {0} ]]>", "<a x=\"1\">".repeat(500));
+    for text in [nested(32, ""), many(100), deep(248), format!("<robot>{remark}{}</robot>", "<b/>".repeat(1000))] {
+        let why = import(&text).expect_err("no machine").to_string();
+        assert!(!why.contains("at most"), "{why}");
+    }
 }

@@ -4,5 +4,6 @@ pub mod arms;
 mod drawing;
 mod import;
 mod mjcf;
+pub mod ordinary;
 mod parts;
 mod urdf;

@@ -129,18 +129,55 @@ fn a_serial_arm_needs_nothing_between_its_links() {
     assert_eq!(element(rotor, "mimic").and_then(|e| e.attribute("multiplier")), Some("50"));
 }
 
-/// What the format has no word for is not lost.
+/// What the format has no word for stands in an element that others pass over.
 #[test]
-fn what_urdf_cannot_say_stands_in_remarks() {
+fn what_urdf_cannot_say_stands_beside_it() {
     let machine = builtin("nine-link").expect("built in").set("gravity", "0,-9.81").expect("in range");
+    let machine = machine.set("drive.2.jerk_limit", "900").expect("in range");
     let text = urdf(&machine);
     let document = Document::parse(&text).expect("XML");
-    let remarks: Vec<&str> =
-        document.root_element().children().filter(Node::is_comment).filter_map(|node| node.text()).collect();
-    let count = |what: &str| remarks.iter().filter(|remark| remark.contains(what)).count();
-    assert_eq!(count("pin that closes a loop"), machine.loops().len());
-    assert_eq!(count("limit that no joint has"), 2, "a1 and a2 are between motors of the base");
-    assert_eq!(count("0, -9.81"), 1, "{remarks:?}");
+    let own = element(document.root_element(), "stillbase").expect("an element of its own");
+    let count = |name: &str| own.children().filter(|node| node.has_tag_name(name)).count();
+    assert_eq!((count("pin"), count("angle"), count("limit")), (machine.loops().len(), 2, 1), "{text}");
+    let gravity = element(own, "gravity").expect("gravity");
+    assert_eq!((gravity.attribute("x"), gravity.attribute("y")), (Some("0"), Some("-9.81")));
+    let second = own.children().filter(|node| node.has_tag_name("angle")).nth(1).expect("a2");
+    assert_eq!(["to", "from"].map(|what| second.attribute(what)), [Some("drive_3"), Some("drive_2")]);
+}
+
+/// Readers that build a tree from its root want what is followed before what follows, in the order of names or of the file.
+#[test]
+fn what_is_followed_comes_before_what_follows() {
+    fn is_ordered(text: &str, by_name: bool) -> bool {
+        let document = Document::parse(text).expect("XML");
+        let mut all: Vec<Node> = document.root_element().children().filter(|node| node.has_tag_name("joint")).collect();
+        if by_name {
+            all.sort_by_key(|joint| joint.attribute("name").map(str::to_owned));
+        }
+        let link = |joint: &Node, what: &str| {
+            let node = joint.children().find(|child| child.has_tag_name(what)).expect("an end");
+            node.attribute("link").expect("a link").to_owned()
+        };
+        let (mut open, mut seen) = (vec!["base".to_owned()], Vec::new());
+        while let Some(at) = open.pop() {
+            // A joint is met when its child is.
+            if let Some(joint) = all.iter().find(|joint| link(joint, "child") == at) {
+                if let Some(mimic) = joint.children().find(|child| child.has_tag_name("mimic"))
+                    && !seen.contains(&mimic.attribute("joint").expect("a joint").to_owned())
+                {
+                    return false;
+                }
+                seen.push(joint.attribute("name").expect("a name").to_owned());
+            }
+            let below = all.iter().rev().filter(|joint| link(joint, "parent") == at);
+            open.extend(below.map(|joint| link(joint, "child")));
+        }
+        true
+    }
+    for machine in machines() {
+        let text = urdf(&machine);
+        assert!(is_ordered(&text, true) && is_ordered(&text, false), "{}\n{text}", machine.name());
+    }
 }
 
 #[test]

@@ -52,6 +52,35 @@ fn settings() {
     });
 }
 
+/// What is made to take memory: rows of more columns than any table has end before a cell is kept, wherever they are.
+#[test]
+fn a_row_of_too_many_columns_is_refused() {
+    let machine = builtin("nine-link").expect("built in");
+    let commas = ",".repeat(2_000_000);
+    let quoted = "\"a,\n\",".repeat(2000);
+    for (text, line) in [
+        (commas.clone(), 1),
+        (commas.replace(',', ";"), 1),
+        (format!("t,q1,q2,q3\n0,1,2,3\n0.1,1,2,3{commas}\n"), 3),
+        (format!("t,q1,q2,q3\n0,1,2,3\n\"a\"\"b\n\"{commas}"), 4),
+        (format!("t,q1,q2,q3\n# it's \"\n0,1,2,3{commas}"), 3),
+        (format!("t,q1,q2,q3\n0,a\"b,2,3{commas}"), 2),
+        (quoted, 1001),
+    ] {
+        let said = |failure: Failure| match failure {
+            Failure::WrongInput(why) => why,
+            _ => panic!("no wrong input"),
+        };
+        let why = said(columns::samples(&text, "wide.csv", machine, None, false).expect_err("too wide"));
+        assert_eq!(why, format!("wide.csv:{line}: more than 1000 columns: want at most 1000"));
+        assert_eq!(said(measured::motions(&text, "wide.csv", machine).expect_err("too wide")), why);
+    }
+    // As many are read.
+    let head = format!("t,q1,q2,q3{}", ",u".repeat(996));
+    let rows: String = (0..20).map(|i| format!("\n{i},1,2,3{}", ",\",\"".repeat(996))).collect();
+    assert!(columns::samples(&(head + &rows), "wide.csv", machine, None, false).is_ok());
+}
+
 /// Found by chance: keys within keys once went as deep as the stack.
 #[test]
 fn a_key_of_many_parts_is_refused() {

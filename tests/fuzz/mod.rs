@@ -26,6 +26,7 @@ use stillbase::session::scenario::Scenario;
 use stillbase::session::{Session, replay};
 
 use crate::exchange::arms::{THREE, TWO};
+use crate::exchange::ordinary::ARM;
 use mutation::{Dice, mutated};
 
 const MACHINES: [&str; 2] = [
@@ -342,7 +343,7 @@ fn models() {
     let good: Vec<Vec<u8>> = machines
         .iter()
         .flat_map(|machine| [urdf(machine), mjcf(machine, &middle(machine)).expect("a model")])
-        .chain([TWO.to_owned(), THREE.to_owned()])
+        .chain([TWO.to_owned(), THREE.to_owned(), ARM.to_owned()])
         .map(String::into_bytes)
         .collect();
     fuzz("model", &good, 300, |bytes, _| match import(&String::from_utf8_lossy(bytes)) {
@@ -374,6 +375,12 @@ fn hostile_models() {
     let body = "<body><joint/><inertial mass=\"1\" diaginertia=\"1 1 1\"/>";
     let connect = |i: usize| format!("<connect site1=\"a{i}\" site2=\"b\"/>");
     let motor = |_: usize| "<motor joint=\"a\"/>".to_owned();
+    let space = |i: usize| format!("<a xmlns:n{i}=\"u\">");
+    let attribute = |i: usize| format!(" a{i}=\"1\"");
+    let class = |i: usize| format!("<default class=\"c{i}\"><geom a{i}=\"1\"/></default>");
+    let value = |i: usize| format!("<geom a{i}=\"1\"/>");
+    let keeps = |_: usize| "<joint joint1=\"a\" joint2=\"a\"/>".to_owned();
+    let tendon = |i: usize| format!("<fixed name=\"t{i}\"><joint joint=\"a\" coef=\"1\"/></fixed>");
     let one = "<worldbody><body><joint name=\"a\"/><inertial mass=\"1\" diaginertia=\"1 1 1\"/></body></worldbody>";
     for text in [
         deep("<robot>"),
@@ -386,6 +393,16 @@ fn hostile_models() {
         format!("<mujoco>{one}<actuator>{}</actuator></mujoco>", many(&motor)),
         format!("<mujoco>{one}<keyframe><key qpos=\"{}\"/></keyframe></mujoco>", "1 ".repeat(1_000_000)),
         format!("<robot name=\"{}\"/>", "x".repeat(1_000_000)),
+        format!("<robot>{}", many(&space)),
+        format!("<robot><link{}/></robot>", many(&attribute)),
+        format!("<mujoco><default>{}</default>{one}</mujoco>", many(&class)),
+        format!("<mujoco><default>{}</default>{one}</mujoco>", many(&value)),
+        format!("<mujoco>{one}<equality>{}</equality></mujoco>", many(&keeps)),
+        format!("<mujoco>{one}<tendon>{}</tendon></mujoco>", many(&tendon)),
+        format!(
+            "<mujoco>{one}<tendon><fixed name=\"t\">{}</fixed></tendon></mujoco>",
+            "<joint joint=\"a\"/>".repeat(60_000)
+        ),
         "\u{feff}<robot/>".to_owned(),
         String::new(),
     ] {

@@ -227,6 +227,48 @@ fn more_drives_than_can_be_are_refused() {
     assert!(matches!(error, MachineError::Count { what: "drives", count: 9, .. }), "{error}");
 }
 
+/// Work on a machine grows with what it holds, so that each list has an end, and the message says which.
+#[test]
+fn what_a_machine_holds_too_many_of_is_refused() {
+    let refused = |text: &str| match wrong(text) {
+        (MachineError::Count { what, count, want }, _) => (what, count, want),
+        (error, _) => panic!("{error}"),
+    };
+    let appended = |one: &dyn Fn(usize) -> String, count: usize| {
+        NINE_LINK.to_owned() + &(0..count).map(one).collect::<Vec<_>>().concat()
+    };
+    let weight = |_: usize| "[[counterweight]]\nlink = \"1\"\nmass = 0.1\nat = -0.1\n".to_owned();
+    assert!(parse(&appended(&weight, 200), "m.toml").is_ok(), "so many are right");
+    for count in [201, 20_000] {
+        assert_eq!(refused(&appended(&weight, count)), ("counterweights", count, "at most 200".into()));
+    }
+    let link = |i: usize| {
+        let attach = "attach = \"base\"\nlength = 0.1\nmass = 0.1\ninertia = 0.001\ncom = 0.05\n";
+        format!("[[link]]\nname = \"x{i}\"\ndrive = \"1\"\n{attach}")
+    };
+    assert!(parse(&appended(&link, 191), "m.toml").is_ok(), "so many are right");
+    assert_eq!(refused(&appended(&link, 192)), ("links", 201, "1 to 200".into()));
+    assert_eq!(refused(&appended(&link, 30_000)), ("links", 30_009, "1 to 200".into()));
+    let in_a_row = |i: usize| {
+        let on = if i == 0 { "\"base\"".to_owned() } else { format!("{{ link = \"x{}\", at = \"tip\" }}", i - 1) };
+        link(i).replace("\"base\"", &on)
+    };
+    assert!(parse(&appended(&in_a_row, 32), "m.toml").is_ok(), "so many are right");
+    assert_eq!(refused(&appended(&in_a_row, 33)), ("links in a row, each on the one before", 33, "at most 32".into()));
+    let angle = |i: usize| format!("[[angle]]\nname = \"x{i}\"\nto = \"1\"\nfrom = \"2\"\n");
+    assert_eq!(refused(&appended(&angle, 70)).0, "angles");
+    let closure = |_: usize| "[[closure]]\na = { link = \"1\" }\nb = { link = \"1\" }\n".to_owned();
+    assert_eq!(refused(&appended(&closure, 400)).0, "closures");
+    let length = |i: usize| format!("x{i} = 0.3\n");
+    let lengths = "[lengths]\n".to_owned() + &(0..400).map(length).collect::<Vec<_>>().concat();
+    assert_eq!(refused(&NINE_LINK.replacen("[lengths]\n", &lengths, 1)).0, "named lengths");
+    let long = NINE_LINK.replace("link = \"9\"", &format!("link = \"{}\"", "9x".repeat(60)));
+    let long = long.replace("[[link]]\nname = \"9\"", &format!("[[link]]\nname = \"{}\"", "9x".repeat(60)));
+    let (error, line) = wrong(&long);
+    assert!(matches!(error, MachineError::TooLong { most: 100, .. }) && line.is_some(), "{error}");
+    assert!(error.to_string().contains("want at most 100 characters"), "{error}");
+}
+
 #[test]
 fn what_is_no_machine_file_is_named() {
     for (from, to) in [

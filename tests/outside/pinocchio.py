@@ -1,6 +1,7 @@
 """What Pinocchio finds of the models and motions on standard input, one JSON object a line; answers in the same way.
 
-It opens a model as a tree in which all joints are free; how they follow the driven ones is read from the file here.
+It opens a model as a tree in which all joints are free; how they follow the driven ones is read from the file here. Where
+it is asked to, it opens it again with followers that it knows by itself.
 """
 
 import json
@@ -40,6 +41,12 @@ for line in sys.stdin:
     assert len(joints) == model.nv
     # Angles of the motors from those of the drives.
     turns = turns @ np.array(asked["motors_from_drives"])
+    knows = None
+    if asked["knows_followers"]:
+        knows = pin.buildModelFromXML(asked["model"], mimic=True)
+        known = knows.createData()
+        places = [knows.joints[knows.getJointId(name)].idx_v for name in motors]
+        assert knows.nv == len(motors)
     answers = []
     for motion in asked["motions"]:
         angles = turns @ np.array(motion["q"]) + shift
@@ -47,6 +54,14 @@ for line in sys.stdin:
         v, a = turns @ np.array(motion["qd"]), turns @ np.array(motion["qdd"])
         mass = pin.crba(model, data, q)
         mass = np.triu(mass) + np.triu(mass, 1).T
+        reduced = None
+        if knows is not None:
+            from_drives = np.array(asked["motors_from_drives"])
+            own = np.zeros(knows.nv)
+            own[places] = from_drives @ np.array(motion["q"])
+            own = pin.crba(knows, known, pin.integrate(knows, pin.neutral(knows), own))
+            own = (np.triu(own) + np.triu(own, 1).T)[np.ix_(places, places)]
+            reduced = (from_drives.T @ own @ from_drives).ravel().tolist()
         weight = pin.computeGeneralizedGravity(model, data, q)
         com = pin.centerOfMass(model, data, q)
         torque = pin.rnea(model, data, q, v, a)
@@ -61,6 +76,7 @@ for line in sys.stdin:
                 links[link.get("name")] = data.oMf[model.getFrameId(link.get("name"))].act(at)[:2].tolist()
         answers.append({
             "mass_matrix": (turns.T @ mass @ turns).ravel().tolist(),
+            "reduced": reduced,
             "weight": (turns.T @ weight).tolist(),
             "torque": (turns.T @ torque).tolist(),
             "com": com[:2].tolist(),

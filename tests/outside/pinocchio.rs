@@ -49,6 +49,7 @@ fn asked(machine: &Machine, model: &str, motors: &[(String, f64)], pose: &[f64],
         "gravity": machine.spec().gravity,
         "motors": motors.iter().map(|(joint, _)| joint).collect::<Vec<_>>(),
         "motors_from_drives": from_drives,
+        "knows_followers": model.contains("name=\"end_effector\"") && model.contains("drive_"),
         "motions": motions,
     })
     .to_string()
@@ -81,6 +82,9 @@ fn compare(machine: &Machine, motion: &Motion, found: &Value) {
     let (name, total) = (machine.name(), wrench.total());
     let size = machine.resolved_links().iter().map(|part| part.length).sum::<f64>();
     near(&format!("{name}: H"), &rows, &found["mass_matrix"], largest(&rows));
+    if !found["reduced"].is_null() {
+        near(&format!("{name}: H with its own followers"), &rows, &found["reduced"], largest(&rows));
+    }
     near(&format!("{name}: M"), &[machine.mass()], &found["mass"], machine.mass());
     let heavy = machine.mass() * machine.gravity().norm() * size;
     near(&format!("{name}: weight"), &weight[..n], &found["weight"], heavy.max(1e-3));

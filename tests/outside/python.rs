@@ -7,6 +7,11 @@ fn python() -> Command {
     Command::new(std::env::var_os("STILLBASE_PYTHON").unwrap_or_else(|| "python3".into()))
 }
 
+/// Whether every package has to be there.
+pub fn is_required() -> bool {
+    std::env::var_os("STILLBASE_REQUIRE_PYTHON").is_some_and(|word| word == "1")
+}
+
 /// Why a package cannot be asked.
 pub fn missing(package: &str) -> Option<String> {
     let asked = python().args(["-c", &format!("import {package}, numpy")]).stdin(Stdio::null()).output();

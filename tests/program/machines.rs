@@ -426,6 +426,34 @@ fn a_machine_comes_from_elsewhere() {
     fails(&["import-model", &file("broken.urdf")], 2, &["broken.urdf: line ", "prismatic", "want revolute"]);
 }
 
+/// A base that weighs something is no part of a machine: it is said, and goes into a scenario that runs.
+#[test]
+fn a_base_from_elsewhere_goes_into_a_scenario() {
+    let folder = Folder::new("base-from-elsewhere");
+    let file = |name: &str| word(folder.path(name));
+    prints(&["export-model", "serial-3r", "-o", &file("arm.urdf")]);
+    let inertia = "<inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"3.5\"/>";
+    let base = format!(
+        "<link name=\"base\"><inertial><origin xyz=\"0.2 -0.1 0\"/><mass value=\"75\"/>{inertia}</inertial></link>"
+    );
+    let text = fs::read_to_string(file("arm.urdf")).expect("a file").replacen("<link name=\"base\"/>", &base, 1);
+    fs::write(file("afloat.urdf"), text).expect("written");
+    let answer = object(&["import-model", &file("afloat.urdf")]);
+    assert_eq!(answer["base"], json!({ "mass": 75.0, "inertia": 3.5, "com": [0.2, -0.1] }));
+    let notes = answer["notes"].as_array().expect("a list");
+    let offered = |note: &Value| note.as_str().is_some_and(|note| note.contains("75") && note.contains("--scenario"));
+    assert!(notes.iter().any(offered), "{notes:?}");
+    let (machine, scenario) = (file("arm.toml"), file("afloat.toml"));
+    let answer = object(&["import-model", &file("afloat.urdf"), "-o", &machine, "--scenario", &scenario]);
+    assert_eq!((&answer["scenario"], answer["notes"].as_array().map(Vec::len)), (&json!(scenario), Some(0)));
+    let written = fs::read_to_string(&scenario).expect("a file");
+    let want = "[base]\nkind = \"free\"\nmass = 75.0\ninertia = 3.5\ncom = [0.2, -0.1]\n";
+    assert!(written.contains(want), "{written}");
+    prints(&["simulate", &scenario, "--every", "500"]);
+    fails(&["import-model", &file("afloat.urdf"), "--scenario", &scenario], 2, &["afloat.toml", "--force"]);
+    fails(&["import-model", &file("afloat.urdf"), "-o", &file("x.toml"), "--scenario", &file("x.toml")], 2, &["two"]);
+}
+
 #[test]
 fn a_machine_goes_elsewhere_by_the_ending_of_the_file() {
     let folder = Folder::new("elsewhere");

@@ -66,7 +66,7 @@ struct Columns {
 pub fn motions(text: &str, file: &str, machine: &Machine) -> Result<Vec<Motion>, Failure> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let at = |line: u64, why: &dyn Display| Failure::wrong_input(format!("{file}:{line}: {why}"));
-    let mut lines = reader(text).into_records();
+    let mut lines = reader(text, file)?.into_records();
     let mut next =
         || lines.next().map(|r| r.map_err(|e| Failure::wrong_input(format!("{file}: {e}: want a CSV file"))));
     let line_of = |record: &csv::StringRecord| record.position().map_or(0, csv::Position::line);

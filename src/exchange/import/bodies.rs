@@ -2,40 +2,62 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::{Isometry3, Quaternion, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Point3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
 use roxmltree::Node;
 
-use super::linkage::{MOST_PARTS, Part};
-use super::read::{child, each, inertia, mass, number, numbers, several, vector, word};
+use super::compiler::{Compiler, Weighing};
+use super::defaults::{Class, Defaults, Element};
+use super::linkage::{MOST_PARTS, Part, end_rank};
+use super::read::{Source, child, each, inertia, mass, number, numbers, several, vector, word};
 use super::refusal::{ImportError, called, wrong};
+use super::shapes::{Solid, solid};
 use crate::settings::range::clipped;
 
 /// A point: the part that has it, none for the base, and where it is on the axes of the base.
 pub type End = (Option<usize>, Vector3<f64>);
-
-/// A body on the way down: its element, and what carries it.
-type Open<'a> = (Node<'a, 'a>, Option<usize>);
+/// Angles that differ by less are equal, rad.
+const SAME: f64 = 1e-9;
 
 /// Bodies, hinges and sites of a model.
 pub struct Bodies<'a> {
     /// The root.
     pub model: Node<'a, 'a>,
-    /// A degree or 1, rad.
-    unit: f64,
-    /// What a joint has that does not say so.
-    axis: Vector3<f64>,
-    /// Angles of the reference pose, rad, hinge by hinge.
-    pose: Vec<f64>,
+    pub defaults: Defaults<'a>,
+    compiler: Compiler,
     /// Depth first.
     pub parts: Vec<Part>,
     bodies: Vec<Node<'a, 'a>>,
+    hinges: Hinges<'a>,
+    /// Where parts are before the keyframe turns their hinges.
+    drawn: Vec<Isometry3<f64>>,
+    /// Sites: their names, a part, and where on the axes of the base.
+    pub sites: Vec<(&'a str, End)>,
+    /// The end of the last shape of the last part that has one, a capsule, cylinder or box.
+    pub last_end: Option<End>,
+    pub notes: Vec<String>,
+}
+
+/// The hinges of a model, in the order in which a pose lists them.
+struct Hinges<'a> {
     /// The part of each hinge, by name.
-    hinges: BTreeMap<&'a str, usize>,
-    /// In the reference pose, rad, and the least and greatest that the hinge allows.
-    angles: Vec<f64>,
-    limits: Vec<Option<[f64; 2]>>,
-    /// Sites by name: a part, and where on the axes of the base.
-    pub sites: BTreeMap<&'a str, End>,
+    named: BTreeMap<&'a str, usize>,
+    /// By part: its hinge, what its angle is as drawn and in the pose of the file, rad, and what limits it.
+    of: Vec<Option<Hinge<'a>>>,
+}
+
+#[derive(Clone)]
+struct Hinge<'a> {
+    element: Element<'a>,
+    drawn: f64,
+    now: f64,
+    limits: Option<[f64; 2]>,
+}
+
+/// A body with what carries it and the class of all in it that names none.
+struct Open<'a> {
+    body: Node<'a, 'a>,
+    parent: Option<usize>,
+    class: Class<'a>,
 }
 
 impl<'a> Bodies<'a> {
@@ -44,222 +66,341 @@ impl<'a> Bodies<'a> {
     /// # Errors
     /// What is no body with a hinge or fixed.
     pub fn of(model: Node<'a, 'a>) -> Result<Self, ImportError> {
-        let mut bodies = Self::none(model)?;
-        bodies.walk()?;
-        Ok(bodies)
-    }
-
-    /// Before its bodies are read.
-    fn none(model: Node<'a, 'a>) -> Result<Self, ImportError> {
         let other = |node: &Node| ["include", "replicate", "attach", "frame"].contains(&node.tag_name().name());
         if let Some(node) = model.descendants().find(other) {
             return Err(wrong(node, "what it brings is not read", "one file, with all bodies in it"));
         }
-        let compiler = child(model, "compiler");
-        let of = |name| compiler.and_then(|node| node.attribute(name));
-        let unit = if of("angle") == Some("radian") { 1.0 } else { 1.0_f64.to_radians() };
-        if let Some(node) = compiler.filter(|_| of("eulerseq").is_some_and(|seq| seq != "xyz")) {
-            return Err(wrong(node, "another order of angles", "eulerseq=\"xyz\""));
-        }
-        let defaults = child(model, "default");
-        let of_class = |node: &Node| node.has_tag_name("joint") && node.parent() != defaults;
-        if let Some(node) = defaults.and_then(|node| node.descendants().find(of_class)) {
-            return Err(wrong(node, "defaults of classes are not read", "what they say at each joint"));
-        }
-        let usual = defaults.and_then(|node| child(node, "joint"));
-        if let Some(node) = usual {
-            is_plain_hinge(node)?;
-        }
-        let axis = usual.map(|node| vector(node, "axis")).transpose()?.flatten().unwrap_or(Vector3::z());
-        let key = child(model, "keyframe").and_then(|node| child(node, "key"));
-        let pose = key.map(|node| numbers(node, "qpos")).transpose()?.flatten().unwrap_or_default();
-        Ok(Self {
+        let (compiler, defaults) = (Compiler::of(model)?, Defaults::of(model)?);
+        let open = listed(model, &defaults)?;
+        let hinges = Hinges::of(model, &open, &compiler, &defaults)?;
+        let mut bodies = Self {
             model,
-            unit,
-            axis,
-            pose,
+            defaults,
+            compiler,
             parts: Vec::new(),
-            bodies: Vec::new(),
-            hinges: BTreeMap::new(),
-            angles: Vec::new(),
-            limits: Vec::new(),
-            sites: BTreeMap::new(),
-        })
+            bodies: open.iter().map(|open| open.body).collect(),
+            hinges,
+            drawn: Vec::new(),
+            sites: Vec::new(),
+            last_end: None,
+            notes: Vec::new(),
+        };
+        open.iter().enumerate().try_for_each(|(i, open)| bodies.body(i, open))?;
+        bodies.scale();
+        Ok(bodies)
     }
 
-    /// Bodies depth first, as the angles of a pose are listed.
-    fn walk(&mut self) -> Result<(), ImportError> {
-        let world = child(self.model, "worldbody");
-        let world = world.ok_or_else(|| wrong(self.model, "it has no <worldbody>", "one, with the machine in it"))?;
-        let mut open: Vec<Open> = each(world, "body").map(|body| (body, None)).collect();
-        open.reverse();
-        while let Some((body, parent)) = open.pop() {
-            if self.parts.len() == MOST_PARTS {
-                return Err(wrong(body, "too many bodies", format!("at most {MOST_PARTS}")));
-            }
-            self.body(body, parent)?;
-            let own = self.parts.len() - 1;
-            let children: Vec<Open> = each(body, "body").map(|child| (child, Some(own))).collect();
-            open.extend(children.into_iter().rev());
-        }
-        Ok(())
-    }
-
-    fn body(&mut self, body: Node<'a, 'a>, parent: Option<usize>) -> Result<(), ImportError> {
-        let on = parent.map_or(Isometry3::identity(), |parent| self.parts[parent].frame);
-        let mut frame = on * self.place(body)?;
-        let mut hinge = None;
-        if let Some(node) = body.children().find(|node| node.has_tag_name("freejoint")) {
-            return Err(wrong(node, "a body that floats", "a machine on a base: let the base move in a scenario"));
-        }
-        let mut joints = each(body, "joint");
-        if let Some(joint) = joints.next() {
-            if let Some(second) = joints.next() {
-                return Err(wrong(second, "a second joint of one body", "one hinge for each"));
-            }
-            is_plain_hinge(joint)?;
-            let axis = Unit::try_new(vector(joint, "axis")?.unwrap_or(self.axis), 1e-6)
-                .ok_or_else(|| wrong(joint, "an axis without direction", "three numbers that are not all 0"))?;
-            let at = vector(joint, "pos")?.unwrap_or_default();
-            let count = self.angles.len();
-            let angle = self.pose.get(count).copied().unwrap_or(0.0);
-            self.angles.push(angle);
-            let turn = UnitQuaternion::from_axis_angle(&axis, angle);
+    fn body(&mut self, own: usize, open: &Open<'a>) -> Result<(), ImportError> {
+        let (body, parent) = (open.body, open.parent);
+        let own_place = self.compiler.place(&body)?;
+        let on = |frames: &dyn Fn(usize) -> Isometry3<f64>| parent.map_or(Isometry3::identity(), frames) * own_place;
+        let drawn = on(&|parent| self.drawn[parent]);
+        let mut frame = on(&|parent| self.parts[parent].frame);
+        let mut axis_and_place = None;
+        if let Some(Hinge { element, drawn, now, .. }) = &self.hinges.of[own] {
+            let axis = Unit::try_new(vector(element, "axis")?.unwrap_or(Vector3::z()), 1e-6).ok_or_else(|| {
+                wrong(element.node(), "an axis without direction", "three numbers that are not all 0")
+            })?;
+            let at = vector(element, "pos")?.unwrap_or_default();
             let about = Translation3::from(at);
+            let turn = UnitQuaternion::from_axis_angle(&axis, now - drawn);
             frame = frame * about * turn * about.inverse();
-            hinge = Some((frame.rotation * axis, (frame * nalgebra::Point3::from(at)).coords));
-            if let Some(name) = joint.attribute("name") {
-                self.hinges.insert(name, self.parts.len());
-            }
-            let limited = joint.attribute("limited") != Some("false");
-            let range = several::<2>(joint, "range")?.filter(|_| limited);
-            self.limits.push(range.map(|range| range.map(|x| self.unit * x)));
-        } else {
-            self.limits.push(None);
+            axis_and_place = Some((frame.rotation * axis, (frame * Point3::from(at)).coords));
         }
-        let own = self.parts.len();
         for site in each(body, "site") {
-            let at = frame * nalgebra::Point3::from(vector(site, "pos")?.unwrap_or_default());
-            if let Some(name) = site.attribute("name") {
-                self.sites.insert(name, (Some(own), at.coords));
-            }
+            let element = self.defaults.element(site, &open.class)?;
+            let at = frame * Point3::from(vector(&element, "pos")?.unwrap_or_default());
+            self.sites.push((site.attribute("name").unwrap_or_default(), (Some(own), at.coords)));
         }
         let carriers = std::iter::successors(parent, |i| self.parts[*i].parent);
-        let moves = hinge.is_some() || carriers.into_iter().any(|i| self.parts[i].hinge.is_some());
-        let (mass, com, inertia) = self.weight(body, &frame, hinge.is_some(), moves)?;
+        let moves = axis_and_place.is_some() || carriers.into_iter().any(|i| self.parts[i].hinge.is_some());
+        let Solid { mass, com, inertia } =
+            if moves { self.weight(open, &frame)? } else { Solid::none(frame.translation.vector) };
         let name = body.attribute("name").map_or_else(|| format!("body {}", own + 1), Into::into);
         let at = body.range().start;
+        let hinge = axis_and_place;
         self.parts.push(Part { name, called: called(body), at, parent, frame, hinge, mass, com, inertia });
-        self.bodies.push(body);
+        self.drawn.push(drawn);
         Ok(())
     }
 
-    /// Where an element is and how it is turned.
-    fn place(&self, node: Node<'_, '_>) -> Result<Isometry3<f64>, ImportError> {
-        let at = vector(node, "pos")?.unwrap_or_default();
-        if let Some(other) = ["axisangle", "xyaxes", "zaxis"].into_iter().find(|name| node.has_attribute(*name)) {
-            return Err(wrong(node, format!("it is turned by {other}"), "quat or euler"));
-        }
-        let turn = match (several::<4>(node, "quat")?, vector(node, "euler")?) {
-            (Some([w, x, y, z]), _) => UnitQuaternion::try_new(Quaternion::new(w, x, y, z), 1e-9)
-                .ok_or_else(|| wrong(node, "a quat of length 0", "four numbers that are not all 0"))?,
-            (None, Some(angles)) => {
-                let angles = self.unit * angles;
-                let about = |axis, angle| UnitQuaternion::from_axis_angle(&axis, angle);
-                about(Vector3::x_axis(), angles.x)
-                    * about(Vector3::y_axis(), angles.y)
-                    * about(Vector3::z_axis(), angles.z)
-            }
-            (None, None) => UnitQuaternion::identity(),
+    /// Mass, centre of mass and inertia of a body on the axes of the base.
+    fn weight(&mut self, open: &Open<'a>, frame: &Isometry3<f64>) -> Result<Solid, ImportError> {
+        let (body, none) = (open.body, Solid::none(frame.translation.vector));
+        let inertial = child(body, "inertial");
+        let mut shapes = none;
+        let is_weighed = match self.compiler.weighing {
+            Weighing::Auto => inertial.is_none(),
+            Weighing::Shapes => true,
+            Weighing::Written => false,
         };
-        Ok(Isometry3::from_parts(Translation3::from(at), turn))
+        for shape in each(body, "geom") {
+            let element = self.defaults.element(shape, &open.class)?;
+            if let Some(ends) = several::<6>(&element, "fromto")? {
+                let at = frame * Point3::new(ends[3], ends[4], ends[5]);
+                self.last_end = Some((Some(self.parts.len()), at.coords));
+            }
+            if is_weighed && let Some(one) = solid(&element, &self.compiler, frame)? {
+                shapes = shapes.and(one);
+            }
+        }
+        // Where no shape has a mass what is written counts all the same.
+        let written = inertial.filter(|_| shapes.mass <= 0.0);
+        let mut all = shapes;
+        if let Some(node) = written {
+            let place = frame * self.compiler.place(&node)?;
+            let principal = match (several::<3>(node, "diaginertia")?, several::<6>(node, "fullinertia")?) {
+                (Some([xx, yy, zz]), _) => [xx, yy, zz, 0.0, 0.0, 0.0],
+                (None, Some(all)) => all,
+                (None, None) => return Err(wrong(node, "it has no inertia", "diaginertia or fullinertia")),
+            };
+            let inertia = inertia(principal, &Rotation3::from(place.rotation));
+            all = Solid { mass: mass(node, "mass")?, com: place.translation.vector, inertia };
+        }
+        (all.mass, all.inertia) = self.compiler.bounded(all.mass, all.inertia);
+        let turns = self.hinges.of[self.parts.len()].is_some();
+        if written.is_none() && all.mass <= 0.0 && turns && child(body, "body").is_none() {
+            let want = "<inertial> with its mass and inertia, or shapes that have mass";
+            return Err(wrong(body, "it turns and nothing gives it a mass", want));
+        }
+        Ok(all)
     }
 
-    fn weight(
-        &self,
-        body: Node<'_, '_>,
-        frame: &Isometry3<f64>,
-        turns: bool,
-        moves: bool,
-    ) -> Result<(f64, Vector3<f64>, nalgebra::Matrix3<f64>), ImportError> {
-        let Some(node) = child(body, "inertial") else {
-            // A body that is a place only has neither.
-            return match turns || (child(body, "geom").is_some() && moves) {
-                true => Err(wrong(body, "it has no <inertial>", "its mass and inertia: shapes are not weighed")),
-                false => Ok((0.0, frame.translation.vector, nalgebra::Matrix3::zeros())),
-            };
-        };
-        let place = frame * self.place(node)?;
-        let mass = mass(node, "mass")?;
-        let all = match (several::<3>(node, "diaginertia")?, several::<6>(node, "fullinertia")?) {
-            (Some([xx, yy, zz]), _) => [xx, yy, zz, 0.0, 0.0, 0.0],
-            (None, Some(all)) => all,
-            (None, None) => return Err(wrong(node, "it has no inertia", "diaginertia or fullinertia")),
-        };
-        Ok((mass, place.translation.vector, inertia(all, &Rotation3::from(place.rotation))))
+    /// Masses and inertias brought to what the file says all weigh together.
+    fn scale(&mut self) {
+        let now: f64 = self.parts.iter().map(|part| part.mass).sum();
+        let Some(total) = self.compiler.total.filter(|_| now > 0.0) else { return };
+        for part in &mut self.parts {
+            part.mass *= total / now;
+            part.inertia *= total / now;
+        }
+    }
+
+    /// An element outside of all bodies.
+    ///
+    /// # Errors
+    /// If its class is none.
+    pub fn element(&self, node: Node<'a, 'a>) -> Result<Element<'a>, ImportError> {
+        self.defaults.element(node, &self.defaults.main())
+    }
+
+    /// Whether a range of an element is a limit.
+    pub fn is_limit(&self, element: &Element<'a>, attribute: &str) -> bool {
+        self.compiler.is_limit(element, attribute)
+    }
+
+    /// The hinge of a part.
+    pub fn hinge(&self, i: usize) -> Option<&Element<'a>> {
+        self.hinges.of.get(i).and_then(Option::as_ref).map(|hinge| &hinge.element)
     }
 
     /// The part of the hinge that an attribute names.
     ///
     /// # Errors
     /// If there is none.
-    pub fn part_of(&self, node: Node<'_, '_>, attribute: &'static str) -> Result<usize, ImportError> {
-        let name = word(node, attribute)?;
-        let known = self.hinges.get(name).copied();
-        known.ok_or_else(|| wrong(node, format!("{attribute} \"{}\" is no hinge", clipped(name)), "the name of one"))
+    pub fn part_of(&self, node: impl Source<'a>, attribute: &'static str) -> Result<usize, ImportError> {
+        self.hinges.part_of(node, attribute)
     }
 
     /// What the angle of a hinge is in the pose of the file, rad.
     pub fn angle(&self, i: usize) -> f64 {
-        let before = (0..i).filter(|j| self.parts[*j].hinge.is_some()).count();
-        self.angles.get(before).copied().unwrap_or(0.0)
+        self.hinges.of.get(i).and_then(Option::as_ref).map_or(0.0, |hinge| hinge.now)
+    }
+
+    /// The same as it is drawn.
+    pub fn drawn_angle(&self, i: usize) -> f64 {
+        self.hinges.of.get(i).and_then(Option::as_ref).map_or(0.0, |hinge| hinge.drawn)
     }
 
     /// Least and greatest angle of a hinge, rad.
     pub fn range(&self, i: usize) -> Option<[f64; 2]> {
-        self.limits.get(i).copied().flatten()
+        self.hinges.of.get(i)?.as_ref()?.limits
+    }
+
+    /// The point that works: a site or body with a name that says so, else the only site, else where the last shape of
+    /// the last body ends.
+    pub fn end(&mut self) -> Option<End> {
+        let sites = self.sites.iter().filter_map(|(name, end)| Some((end_rank(name)?, *end)));
+        let bodies = self.parts.iter().enumerate();
+        let bodies =
+            bodies.filter_map(|(i, part)| Some((end_rank(&part.name)?, (Some(i), part.frame.translation.vector))));
+        if let Some((_, end)) = sites.chain(bodies).min_by_key(|(rank, _)| *rank) {
+            return Some(end);
+        }
+        let pins: Vec<&str> = each(self.model, "equality")
+            .flat_map(|node| each(node, "connect"))
+            .flat_map(|node| ["site1", "site2"].map(|name| node.attribute(name).unwrap_or_default()))
+            .collect();
+        let mut others = self.sites.iter().filter(|(name, _)| name.is_empty() || !pins.contains(name));
+        if let (Some((_, end)), None) = (others.next(), others.next()) {
+            return Some(*end);
+        }
+        let end = self.last_end?;
+        let name = end.0.map_or("the base", |i| self.parts[i].name.as_str());
+        self.notes.push(format!(
+            "no site says where the end effector is: it was put where the last shape of \"{}\" ends; a site end_effector \
+             says otherwise",
+            clipped(name)
+        ));
+        Some(end)
     }
 
     /// Both ends of a connect.
     ///
     /// # Errors
-    /// If a site or body is not there, or the place not told.
-    pub fn ends(&self, node: Node<'_, '_>) -> Result<[End; 2], ImportError> {
+    /// If a site or body is not there.
+    pub fn ends(&self, node: Node<'a, 'a>) -> Result<[End; 2], ImportError> {
         if node.has_attribute("site1") {
             let end = |attribute: &'static str| {
                 let name = word(node, attribute)?;
-                let known = self.sites.get(name).copied();
+                let known = self.sites.iter().find(|(own, _)| *own == name).map(|(_, end)| *end);
                 known.ok_or_else(|| wrong(node, format!("no site \"{}\"", clipped(name)), "the name of one in a body"))
             };
             return Ok([end("site1")?, end("site2")?]);
         }
         let body = |attribute: &'static str| -> Result<Option<usize>, ImportError> {
-            let Some(name) = node.attribute(attribute) else { return Ok(None) };
+            let Some(name) = node.attribute(attribute).filter(|name| *name != "world") else { return Ok(None) };
             let known = self.bodies.iter().position(|body| body.attribute("name") == Some(name));
             known.map(Some).ok_or_else(|| wrong(node, format!("no body \"{}\"", clipped(name)), "the name of one"))
         };
         let (a, b) = (body("body1")?, body("body2")?);
-        let anchor = vector(node, "anchor")?.unwrap_or_default();
-        // It is given in the first body, and the same point of the other in the pose of the file; here in the keyframe.
-        let frame = a.map_or(Isometry3::identity(), |a| self.parts[a].frame);
-        let at = (frame * nalgebra::Point3::from(anchor)).coords;
-        match self.pose.is_empty() {
-            true => Ok([(a, at), (b, at)]),
-            false => Err(wrong(node, "an anchor beside a keyframe", "site1 and site2")),
-        }
+        let anchor = Point3::from(vector(node, "anchor")?.unwrap_or_default());
+        // It is given in the first body, and the same point of the other as both are drawn.
+        let drawn = |part: Option<usize>| part.map_or(Isometry3::identity(), |i| self.drawn[i]);
+        let now = |part: Option<usize>| part.map_or(Isometry3::identity(), |i| self.parts[i].frame);
+        let in_b = drawn(b).inverse() * drawn(a) * anchor;
+        Ok([(a, (now(a) * anchor).coords), (b, (now(b) * in_b).coords)])
     }
 }
 
-/// Refuses what moves otherwise.
-fn is_plain_hinge(joint: Node<'_, '_>) -> Result<(), ImportError> {
-    if let Some(kind) = joint.attribute("type").filter(|kind| *kind != "hinge") {
-        let kind = clipped(kind);
-        return Err(wrong(joint, format!("a joint of type \"{kind}\""), "hinges"));
+/// Bodies depth first, as the angles of a pose are listed.
+fn listed<'a>(model: Node<'a, 'a>, defaults: &Defaults<'a>) -> Result<Vec<Open<'a>>, ImportError> {
+    if child(model, "worldbody").is_none() {
+        return Err(wrong(model, "it has no <worldbody>", "one, with the machine in it"));
     }
-    match number(joint, "armature")? {
-        Some(armature) if armature != 0.0 => {
-            Err(wrong(joint, "an armature", "a rotor as a body of its own, coupled by an equality"))
+    let below = |node: Node<'a, 'a>, parent: Option<usize>, class: &Class<'a>| {
+        let open = |body| {
+            let class = defaults.class(body, "childclass", class)?;
+            Ok::<_, ImportError>(Open { body, parent, class })
+        };
+        each(node, "body").map(open).collect::<Result<Vec<_>, _>>()
+    };
+    let mut all = Vec::new();
+    let mut open = Vec::new();
+    for world in each(model, "worldbody") {
+        open.extend(below(world, None, &defaults.main())?);
+    }
+    open.reverse();
+    while let Some(next) = open.pop() {
+        if all.len() == MOST_PARTS {
+            return Err(wrong(next.body, "too many bodies", format!("at most {MOST_PARTS}")));
         }
-        _ => Ok(()),
+        let children = below(next.body, Some(all.len()), &next.class)?;
+        open.extend(children.into_iter().rev());
+        all.push(next);
     }
+    Ok(all)
+}
+
+impl<'a> Hinges<'a> {
+    fn of(
+        model: Node<'a, 'a>,
+        bodies: &[Open<'a>],
+        compiler: &Compiler,
+        defaults: &Defaults<'a>,
+    ) -> Result<Self, ImportError> {
+        let mut hinges = Self { named: BTreeMap::new(), of: Vec::with_capacity(bodies.len()) };
+        let key = each(model, "keyframe").flat_map(|node| each(node, "key")).find(|key| key.has_attribute("qpos"));
+        let pose = key.map(|key| numbers(key, "qpos")).transpose()?.flatten();
+        let mut count = 0;
+        for (i, open) in bodies.iter().enumerate() {
+            let Some(element) = hinge(open, defaults)? else {
+                hinges.of.push(None);
+                continue;
+            };
+            let drawn = number(&element, "ref")?.unwrap_or(0.0) * compiler.unit;
+            let now = pose.as_ref().and_then(|pose| pose.get(count)).copied().unwrap_or(drawn);
+            count += 1;
+            let range = several::<2>(&element, "range")?.filter(|_| compiler.is_limit(&element, "limited"));
+            let limits = range.map(|range| range.map(|x| compiler.unit * x));
+            if let Some(name) = element.node().attribute("name") {
+                hinges.named.insert(name, i);
+            }
+            hinges.of.push(Some(Hinge { element, drawn, now, limits }));
+        }
+        match (key, pose) {
+            (Some(key), Some(pose)) if pose.len() != count => {
+                Err(wrong(key, format!("qpos has {} numbers", pose.len()), format!("{count}, one for each hinge")))
+            }
+            _ => hinges.coupled(model, defaults).map(|()| hinges),
+        }
+    }
+
+    fn part_of(&self, node: impl Source<'a>, attribute: &'static str) -> Result<usize, ImportError> {
+        let name = word(&node, attribute)?;
+        let known = self.named.get(name).copied();
+        known.ok_or_else(|| {
+            wrong(node.node(), format!("{attribute} \"{}\" is no hinge", clipped(name)), "the name of one")
+        })
+    }
+
+    /// Turns hinges to where equalities hold them, as MuJoCo does when it runs.
+    fn coupled(&mut self, model: Node<'a, 'a>, defaults: &Defaults<'a>) -> Result<(), ImportError> {
+        let all = each(model, "equality").flat_map(|node| each(node, "joint"));
+        let mut couplings = Vec::new();
+        for node in all.take(MOST_PARTS) {
+            let element = defaults.element(node, &defaults.main())?;
+            if is_active(&element) {
+                let other = node.has_attribute("joint2").then(|| self.part_of(node, "joint2")).transpose()?;
+                couplings.push((self.part_of(node, "joint1")?, other, polynomial(&element)?));
+            }
+        }
+        let off = |hinge: &Option<Hinge>| hinge.as_ref().map_or(0.0, |hinge| hinge.now - hinge.drawn);
+        // One of them may hang on another, in any order.
+        for _ in 0..couplings.len() {
+            let mut is_done = true;
+            for (part, other, factors) in &couplings {
+                let x = other.map_or(0.0, |other| off(&self.of[other]));
+                let want = factors.iter().rev().fold(0.0, |sum, factor| sum * x + factor);
+                if let Some(hinge) = self.of[*part].as_mut().filter(|hinge| {
+                    let size = 1.0 + want.abs();
+                    (hinge.now - hinge.drawn - want).abs() > SAME * size && want.is_finite()
+                }) {
+                    hinge.now = hinge.drawn + want;
+                    is_done = false;
+                }
+            }
+            if is_done {
+                break;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The hinge of a body, if it has one.
+fn hinge<'a>(open: &Open<'a>, defaults: &Defaults<'a>) -> Result<Option<Element<'a>>, ImportError> {
+    if let Some(node) = child(open.body, "freejoint") {
+        return Err(wrong(node, "a body that floats", "a machine on a base: let the base move in a scenario"));
+    }
+    let mut joints = each(open.body, "joint");
+    let Some(joint) = joints.next() else { return Ok(None) };
+    if let Some(second) = joints.next() {
+        return Err(wrong(second, "a second joint of one body", "one hinge for each"));
+    }
+    let element = defaults.element(joint, &open.class)?;
+    match element.get("type") {
+        None | Some("hinge") => Ok(Some(element)),
+        Some(kind) => Err(wrong(joint, format!("a joint of type \"{}\"", clipped(kind)), "hinges")),
+    }
+}
+
+/// Whether an equality holds.
+pub fn is_active<'a>(element: &Element<'a>) -> bool {
+    element.get("active") != Some("false")
+}
+
+/// Factors of a coupling by rising power.
+pub fn polynomial<'a>(element: &Element<'a>) -> Result<Vec<f64>, ImportError> {
+    Ok(numbers(element, "polycoef")?.unwrap_or_else(|| vec![0.0, 1.0]))
 }

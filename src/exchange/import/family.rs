@@ -7,12 +7,12 @@
 //! | ψ_k | direction of drive k in the reference pose, q_k there: that of its first link that reaches anywhere | rad |
 //! | s | a place on a link's axis, from its root | m |
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::linkage::{Limit, Linkage, Motor, Part, common_axis, owners, plane};
 use super::refusal::ImportError;
 use crate::mechanics::machine::{
-    Angle, Attach, Closure, Drive, Length, Link, Machine, MachineSpec, PlaceOnLink, Point, Rotor,
+    Angle, Attach, Closure, Drive, Length, Link, MAX_LINKS, Machine, MachineSpec, PlaceOnLink, Point, Rotor,
 };
 use crate::mechanics::planar::{MAX_DRIVES, Vector};
 use crate::settings::number::Short;
@@ -22,6 +22,10 @@ use crate::settings::range::clipped;
 pub const NOTHING: f64 = 1e-9;
 /// Lengths below this share of the machine's are none.
 const NO_LENGTH: f64 = 1e-9;
+/// Directions whose sine is below this are one.
+const ALONG: f64 = 1e-9;
+/// The gear of a rotor that stands for an armature: the largest there is, for an armature adds nothing to the momentum.
+const ARMATURE_RATIO: f64 = 1e4;
 /// The length of a link that carries nothing and has its centre of mass at its root, m.
 const SHORT: f64 = 0.01;
 
@@ -32,8 +36,21 @@ pub struct Imported {
     pub machine: Machine,
     /// Angles of its drives in the pose of the file, rad: where all joints of URDF are at 0, in the keyframe of MJCF.
     pub pose: Vec<f64>,
+    /// What the machine stands on, where the file says so: a base that moves is of a scenario.
+    pub base: Option<BaseBody>,
     /// What was left out or taken for granted.
     pub notes: Vec<String>,
+}
+
+/// A base with all that is fixed to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BaseBody {
+    /// kg.
+    pub mass: f64,
+    /// About its centre of mass, around the axis of the drives, kg m².
+    pub inertia: f64,
+    /// Its centre of mass as seen from the axis of the drives, m.
+    pub com: Vector,
 }
 
 /// The machine of a linkage.
@@ -44,8 +61,9 @@ pub fn imported(linkage: &Linkage) -> Result<Imported, ImportError> {
     let flat = Flat::of(linkage)?;
     let mut notes = linkage.notes.clone();
     let (spec, pose) = Builder { linkage, flat: &flat, notes: &mut notes }.spec()?;
+    let base = flat.ground(linkage)?;
     let machine = Machine::new(spec).map_err(|why| ImportError::whole(why.to_string(), "a machine of the family"))?;
-    Ok(Imported { machine, pose, notes })
+    Ok(Imported { machine, pose, base, notes })
 }
 
 /// A part with all that is fixed to it, in the plane.
@@ -136,12 +154,51 @@ impl Flat {
             let counts = bodies[*i].mass > NOTHING * total || bodies[*i].inertia > NOTHING * inertia;
             parts[*i].hinge.is_some() && !is_rotor && counts
         };
-        let links = (0..parts.len()).filter(is_link).collect();
+        let links: Vec<usize> = (0..parts.len()).filter(is_link).collect();
+        if links.len() > MAX_LINKS {
+            let what = format!("{} links that turn and have mass", links.len());
+            return Err(ImportError::whole(what, format!("at most {MAX_LINKS}")));
+        }
         Ok(Self { axes, bodies, roots, owners, links, size: size.max(f64::MIN_POSITIVE) })
     }
 
     fn flat(&self, p: &Vector3<f64>) -> Vector {
         Vector::new(self.axes[0].dot(p), self.axes[1].dot(p))
+    }
+
+    /// Where the drives are: where the first link turns on the base.
+    fn base(&self, parts: &[Part]) -> Result<Vector, ImportError> {
+        for i in &self.links {
+            if self.carrier(parts, *i)?.is_none() {
+                return Ok(self.roots[*i]);
+            }
+        }
+        Err(ImportError::whole("no link with mass turns on the base", "at least one"))
+    }
+
+    /// The base with all that is fixed to it, if it weighs anything.
+    fn ground(&self, linkage: &Linkage) -> Result<Option<BaseBody>, ImportError> {
+        let Some(ground) = &linkage.ground else { return Ok(None) };
+        let normal = self.axes[2];
+        let own = |mass: f64, com: &Vector3<f64>, inertia: &Matrix3<f64>| Body {
+            mass,
+            com: self.flat(com),
+            height: 0.0,
+            inertia: normal.dot(&(inertia * normal)),
+        };
+        let total: f64 = linkage.parts.iter().map(|part| part.mass).sum();
+        let is_still = |part: &Part| part.parent.is_none_or(|parent| self.owners[parent].is_none());
+        let parts = linkage.parts.iter().enumerate().filter_map(|(i, part)| {
+            // Of a rotor in the base only its mass belongs to it.
+            let is_rotor = linkage.rotors.iter().any(|(rotor, ..)| *rotor == i) && is_still(part);
+            let inertia = if is_rotor { Matrix3::zeros() } else { part.inertia };
+            let counts = self.owners[i].is_none() || (is_rotor && part.mass > NOTHING * total);
+            counts.then(|| own(part.mass, &part.com, &inertia))
+        });
+        let all = parts.fold(own(ground.mass, &ground.com, &ground.inertia), Body::and);
+        let com = all.com - self.base(&linkage.parts)?;
+        let is_any = all.mass > 0.0 && all.inertia > 0.0;
+        Ok(is_any.then_some(BaseBody { mass: all.mass, inertia: all.inertia, com }))
     }
 
     fn is_none(&self, v: Vector) -> bool {
@@ -213,7 +270,7 @@ impl Builder<'_> {
         })?;
         let mut points = vec![Vec::new(); linkage.parts.len()];
         let mut carriers = vec![None; linkage.parts.len()];
-        let base = self.base()?;
+        let base = flat.base(&linkage.parts)?;
         for i in &flat.links {
             carriers[*i] = flat.carrier(&linkage.parts, *i)?;
             match carriers[*i] {
@@ -273,17 +330,6 @@ impl Builder<'_> {
         Ok((spec, psi))
     }
 
-    /// Where the drives are: where the first link turns on the base.
-    fn base(&self) -> Result<Vector, ImportError> {
-        let flat = self.flat;
-        for i in &flat.links {
-            if flat.carrier(&self.linkage.parts, *i)?.is_none() {
-                return Ok(flat.roots[*i]);
-            }
-        }
-        Err(ImportError::whole("no link with mass turns on the base", "at least one"))
-    }
-
     /// ψ of a drive.
     fn direction(&self, k: usize, points: &[Vec<Vector>]) -> Result<f64, ImportError> {
         let flat = self.flat;
@@ -296,9 +342,17 @@ impl Builder<'_> {
             let all = points[*i].iter().map(|at| at - flat.roots[*i]);
             all.reduce(|a, b| if b.norm() > a.norm() * (1.0 + 1e-9) { b } else { a }).filter(|v| !flat.is_none(*v))
         };
+        // Where a link lies along the x axis of its own file, or nowhere, that is its drive's, whichever way it runs.
+        let x = |i: usize| flat.flat(&(self.linkage.parts[i].frame.rotation * Vector3::x()));
+        let is_along = |x: Vector, v: Vector| (v * x.conj()).im.abs() <= ALONG * v.norm();
+        let far = own.iter().find_map(|i| Some((*i, farthest(i)?)));
         let com = flat.bodies[*first].com - flat.roots[*first];
-        let com = (!flat.is_none(com)).then_some(com);
-        Ok(own.iter().find_map(farthest).or(com).map_or(0.0, |v| v.arg()))
+        Ok(match far {
+            _ if x(*first).norm() < 1.0 - ALONG => far.map_or(com, |(_, v)| v).arg(),
+            Some((i, v)) if !is_along(x(i), v) => v.arg(),
+            Some((i, _)) => x(i).arg(),
+            None => x(*first).arg(),
+        })
     }
 
     fn axis(&self, i: usize, points: &[Vector], psi: &[f64]) -> Result<Axis, ImportError> {
@@ -362,7 +416,7 @@ impl Builder<'_> {
         let links: std::collections::BTreeSet<&String> = self.flat.links.iter().map(|i| &all[*i]).collect();
         match links.len() == self.flat.links.len() {
             true => all,
-            false => parts.iter().map(|part| part.name.clone()).collect(),
+            false => told_apart(parts.iter().map(|part| part.name.clone()).collect()),
         }
     }
 
@@ -372,15 +426,29 @@ impl Builder<'_> {
             let name = motor.name.as_str();
             name.strip_prefix("drive_").or(name.strip_prefix("drive ")).unwrap_or(name).to_owned()
         };
-        let own = short(&motors[k]);
-        let is_clear = motors.iter().filter(|motor| short(motor) == own).count() == 1;
-        if is_clear { own } else { motors[k].name.clone() }
+        let all: Vec<String> = motors.iter().map(short).collect();
+        match all.iter().filter(|own| **own == all[k]).count() {
+            1 => all[k].clone(),
+            _ => told_apart(motors.iter().map(|motor| motor.name.clone()).collect())[k].clone(),
+        }
     }
 
-    fn drives(&self) -> Vec<Drive> {
+    fn drives(&mut self) -> Vec<Drive> {
         let motors = self.linkage.motors.iter().enumerate();
+        for (k, motor) in motors.clone().filter(|(_, motor)| motor.armature > 0.0) {
+            let name = self.drive_name(k);
+            let (armature, inertia) = (Short(motor.armature), Short(motor.armature / ARMATURE_RATIO.powi(2)));
+            self.notes.push(format!(
+                "the armature of \"{0}\", {armature} kg m², became a rotor of {inertia} kg m² behind a gear of \
+                 {ARMATURE_RATIO}, which adds next to nothing to the momentum: --set drive.{0}.rotor.inertia and .ratio \
+                 say what it is",
+                clipped(&name)
+            ));
+        }
         let drive = |(k, motor): (usize, &Motor)| {
             let own = self.linkage.rotors.iter().find(|(_, of, _)| *of == k);
+            let of_armature = Rotor { inertia: motor.armature / ARMATURE_RATIO.powi(2), ratio: ARMATURE_RATIO };
+            let of_armature = (motor.armature > 0.0).then_some(of_armature);
             let rotor = own.map(|(i, _, ratio)| {
                 let part = &self.linkage.parts[*i];
                 let normal = self.flat.axes[2];
@@ -389,11 +457,11 @@ impl Builder<'_> {
             Drive {
                 name: self.drive_name(k),
                 on: motor.from.map(|from| self.drive_name(from)),
-                rotor,
+                rotor: rotor.or(of_armature),
                 torque_limit: motor.torque_limit,
                 speed_limit: motor.speed_limit,
-                acceleration_limit: None,
-                jerk_limit: None,
+                acceleration_limit: motor.acceleration_limit,
+                jerk_limit: motor.jerk_limit,
             }
         };
         motors.map(drive).collect()
@@ -401,23 +469,43 @@ impl Builder<'_> {
 
     /// Limits of motors as those of angles between drives.
     fn angles(&mut self, psi: &[f64]) -> Vec<Angle> {
-        let mut angles = Vec::new();
-        for Limit { to, from, now, range: [min, max] } in &self.linkage.limits {
-            match from {
-                Some(from) => angles.push(Angle {
-                    name: format!("a{}", angles.len() + 1),
-                    to: self.drive_name(*to),
-                    from: self.drive_name(*from),
-                    offset: now - (psi[*to] - psi[*from]),
-                    min: Some(*min),
-                    max: Some(*max),
-                }),
-                None => self.notes.push(format!(
+        let mut angles: Vec<Angle> = Vec::new();
+        for Limit { name, to, from, now, range } in &self.linkage.limits {
+            let Some(from) = from else {
+                self.notes.push(format!(
                     "limits of \"{}\" are left out: here only angles between two drives have limits",
                     clipped(&self.linkage.motors[*to].name)
-                )),
-            }
+                ));
+                continue;
+            };
+            let taken = |name: &String| angles.iter().any(|angle: &Angle| angle.name == *name);
+            let own = name.clone().filter(|name| !taken(name));
+            let name = own.or_else(|| (1..).map(|i| format!("a{i}")).find(|name| !taken(name)));
+            angles.push(Angle {
+                name: name.unwrap_or_default(),
+                to: self.drive_name(*to),
+                from: self.drive_name(*from),
+                offset: now - (psi[*to] - psi[*from]),
+                min: range.map(|[least, _]| least),
+                max: range.map(|[_, most]| most),
+            });
         }
         angles
     }
+}
+
+/// Names of which those that stand before get a number.
+fn told_apart(names: Vec<String>) -> Vec<String> {
+    let mut taken: std::collections::BTreeSet<String> = names.iter().cloned().collect();
+    let mut seen = std::collections::BTreeSet::new();
+    let mut told = Vec::with_capacity(names.len());
+    for name in names {
+        let mut own = name.clone();
+        if !seen.insert(name.clone()) {
+            own = (2..).map(|n| format!("{name} {n}")).find(|own| !taken.contains(own)).unwrap_or(own);
+            taken.insert(own.clone());
+        }
+        told.push(own);
+    }
+    told
 }

@@ -9,6 +9,32 @@ const PARALLEL: f64 = 1e-9;
 /// The most parts: more are no machine of the family, and take long.
 pub const MOST_PARTS: usize = 400;
 
+/// Names by which others know the point that works, in small letters without what joins words; the surest first.
+const ENDS: [&str; 16] = [
+    "endeffector",
+    "endeffectorsite",
+    "ee",
+    "eelink",
+    "eesite",
+    "tcp",
+    "tool",
+    "tool0",
+    "tooltip",
+    "toolsite",
+    "tip",
+    "fingertip",
+    "attachmentsite",
+    "flange",
+    "hand",
+    "gripper",
+];
+
+/// How sure a name is one of the point that works, 0 the surest; none: it is not.
+pub fn end_rank(name: &str) -> Option<usize> {
+    let bare = name.chars().filter(|c| c.is_alphanumeric()).take(40).flat_map(char::to_lowercase).collect::<String>();
+    ENDS.iter().position(|own| *own == bare)
+}
+
 /// Parts in a reference pose.
 #[derive(Debug)]
 pub struct Linkage {
@@ -27,9 +53,11 @@ pub struct Linkage {
     /// Parts that are rotors, the motor that turns each, and how often it turns for one turn of that.
     pub rotors: Vec<(usize, usize, f64)>,
     /// Points of two parts that are one.
-    pub loops: Vec<[(usize, Vector3<f64>); 2]>,
+    pub loops: Vec<[Point; 2]>,
     /// The point that works: a part, and where on the base's axes it is in the reference pose, m.
-    pub end: Option<(usize, Vector3<f64>)>,
+    pub end: Option<Point>,
+    /// What the base weighs, where the file says so.
+    pub ground: Option<Ground>,
     /// What was left out.
     pub notes: Vec<String>,
 }
@@ -58,29 +86,53 @@ pub struct Part {
 }
 
 /// What turns a set of parts against another.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Motor {
     /// Its name.
     pub name: String,
+    /// The part whose hinge it turns, if it is one.
+    pub hinge: Option<usize>,
     /// The set that carries it; none: the base.
     pub from: Option<usize>,
     /// N m.
     pub torque_limit: Option<f64>,
     /// rad/s.
     pub speed_limit: Option<f64>,
+    /// rad/s².
+    pub acceleration_limit: Option<f64>,
+    /// rad/s³.
+    pub jerk_limit: Option<f64>,
+    /// What it adds to the inertia of its angle, and nothing to the momentum, kg m².
+    pub armature: f64,
 }
 
 /// How far a set may turn against another.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Limit {
+    /// What the angle is called, if it has a name.
+    pub name: Option<String>,
     /// A set.
     pub to: usize,
     /// Another; none: the base.
     pub from: Option<usize>,
     /// What the angle is in the reference pose, rad about the common axis.
     pub now: f64,
-    /// Least and greatest, rad.
-    pub range: [f64; 2],
+    /// Least and greatest, rad; none: it turns freely.
+    pub range: Option<[f64; 2]>,
+}
+
+/// A point of a part: where it is on the axes of the base in the reference pose, m.
+pub type Point = (usize, Vector3<f64>);
+
+/// What all stands on, with all that is fixed to it.
+#[derive(Clone, Copy, Debug)]
+pub struct Ground {
+    /// kg.
+    pub mass: f64,
+    /// Centre of mass in the axes of the base, m.
+    pub com: Vector3<f64>,
+    /// About it, kg m².
+    pub inertia: Matrix3<f64>,
 }
 
 impl Part {

@@ -5,19 +5,27 @@ use std::collections::BTreeMap;
 use nalgebra::Vector3;
 use roxmltree::Node;
 
-use super::bodies::{Bodies, End};
+use super::bodies::{Bodies, End, is_active, polynomial};
+use super::defaults::Element;
 use super::linkage::{Limit, Linkage, MOST_PARTS, Motor, common_axis, owners, plane};
-use super::read::{child, each, number, numbers, several, vector, word};
+use super::read::{Source, child, each, number, numbers, several, vector, word};
 use super::refusal::{ImportError, wrong};
 use crate::mechanics::planar::{MAX_DRIVES, Vector};
+use crate::settings::number::Short;
 use crate::settings::range::clipped;
 
 /// Vectors of a loop whose sum is below this share of the largest cancel.
 const CLOSED: f64 = 1e-9;
 /// The most parts in one loop.
 const MOST_IN_LOOP: usize = 12;
-/// Names by which others know the point that works.
-const ENDS: [&str; 6] = ["end effector", "end_effector", "ee", "tool", "tcp", "tip"];
+/// A tendon is where an equality wants it if it is off by less, rad.
+const HELD: f64 = 1e-6;
+/// A centre of mass is on an axis if it is off by less than this share of the distance, or of a metre.
+const ON_AXIS: f64 = 1e-9;
+
+/// What couplings may do.
+const PARALLEL_WANTED: &str = "a rotor on what carries its motor, coupled to what that turns, or hinges whose coupling by \
+                               1 or -1 keeps two bodies parallel";
 
 /// Of a `<mujoco>`.
 ///
@@ -64,6 +72,14 @@ type Sum = Vec<(usize, f64)>;
 /// A sum, what it is in the reference pose, and its least and greatest, rad.
 type Limited = (Sum, f64, [f64; 2]);
 
+/// Two sums of hinges, one so many times the other.
+struct Coupling<'a> {
+    node: Node<'a, 'a>,
+    one: Sum,
+    other: Sum,
+    ratio: f64,
+}
+
 /// A part that is coupled to a sum of hinges, and how often it turns for one turn of that.
 struct Geared<'a> {
     part: usize,
@@ -109,58 +125,134 @@ impl<'a> Coupled<'a> {
 
     /// Reads the equalities; loops come last, for they are seen better the more is known to be parallel.
     fn couple(&mut self) -> Result<(), ImportError> {
-        let equality = child(self.bodies.model, "equality");
-        let all: Vec<Node<'a, 'a>> =
-            equality.into_iter().flat_map(|node| node.children()).filter(Node::is_element).collect();
-        let (loops, others): (Vec<_>, Vec<_>) = all.into_iter().partition(|node| node.has_tag_name("connect"));
-        for node in others {
+        let all = each(self.bodies.model, "equality").flat_map(|node| node.children()).filter(Node::is_element);
+        let (mut loops, mut couplings) = (Vec::new(), Vec::new());
+        for (count, node) in all.enumerate() {
+            if count == MOST_PARTS {
+                return Err(wrong(node, "too many equalities", format!("at most {MOST_PARTS}")));
+            }
+            let element = self.bodies.element(node)?;
+            if !is_active(&element) {
+                continue;
+            }
             match node.tag_name().name() {
-                "joint" => self.gear_of_joint(node)?,
-                "tendon" => self.tendon_equality(node)?,
+                "connect" => loops.push(node),
+                "joint" => couplings.extend(self.joint_equality(&element)?),
+                "tendon" => couplings.extend(self.tendon_equality(&element)?),
                 kind => {
                     let what = format!("an equality of kind \"{}\"", clipped(kind));
                     return Err(wrong(node, what, "connect, joint or tendon"));
                 }
             }
         }
+        let driven = self.driven()?;
+        let (rotors, mut others): (Vec<_>, Vec<_>) =
+            couplings.into_iter().partition(|coupling| self.is_rotor(coupling, &driven));
+        self.join_parallel(&mut others);
         for node in loops {
             let ends = self.bodies.ends(node)?;
             self.close(node, &ends)?;
             self.loops.push(ends);
         }
+        self.join_parallel(&mut others);
+        for Coupling { node, one, other, ratio } in rotors.into_iter().chain(others) {
+            let [(part, times)] = one[..] else {
+                return Err(wrong(node, "it couples sums of hinges that keep no bodies parallel", PARALLEL_WANTED));
+            };
+            self.geared.push(Geared { part, node, to: other, ratio: ratio * times });
+        }
         Ok(())
     }
 
-    fn gear_of_joint(&mut self, node: Node<'a, 'a>) -> Result<(), ImportError> {
+    /// Joins what couplings keep parallel, and drops these: of A − B = ±(C − D), one side of which is among the other.
+    fn join_parallel(&mut self, couplings: &mut Vec<Coupling<'a>>) {
+        let mut count = usize::MAX;
+        while couplings.len() < count {
+            count = couplings.len();
+            couplings.retain(|coupling| !self.is_parallel(coupling));
+        }
+    }
+
+    fn is_parallel(&mut self, coupling: &Coupling<'a>) -> bool {
+        let (Some((a, b)), Some((c, d))) = (self.against(&coupling.one), self.against(&coupling.other)) else {
+            return false;
+        };
+        let (more, less) = match coupling.ratio {
+            1.0 => ([a, d], [b, c]),
+            -1.0 => ([a, c], [b, d]),
+            _ => return false,
+        };
+        let pairs = (0..4).map(|i| (i / 2, i % 2));
+        let same = pairs.into_iter().find(|(i, j)| self.set(more[*i]) == self.set(less[*j]));
+        if let Some((i, j)) = same {
+            self.together.join(more[1 - i], less[1 - j]);
+        }
+        same.is_some()
+    }
+
+    /// Whether it is of a rotor: a body that carries nothing, balanced about its hinge, coupled to what a motor turns.
+    fn is_rotor(&self, coupling: &Coupling<'a>, driven: &[Sum]) -> bool {
+        let [(part, _)] = coupling.one[..] else { return false };
+        let parts = &self.bodies.parts;
+        let carries = parts.iter().any(|other| other.parent == Some(part))
+            || self.bodies.sites.iter().any(|(_, (own, _))| *own == Some(part));
+        let off = parts[part].hinge.map_or(0.0, |(axis, on)| {
+            let away = parts[part].com - on;
+            (away - axis.into_inner() * axis.dot(&away)).norm() / away.norm().max(1.0)
+        });
+        !carries && off <= ON_AXIS && driven.contains(&unsigned(&coupling.other))
+    }
+
+    /// Sums that motors turn.
+    fn driven(&self) -> Result<Vec<Sum>, ImportError> {
+        self.actuators()?.into_iter().map(|(element, _)| Ok(unsigned(&self.moved(&element)?))).collect()
+    }
+
+    fn joint_equality(&mut self, element: &Element<'a>) -> Result<Option<Coupling<'a>>, ImportError> {
+        let node = element.node();
         let part = self.bodies.part_of(node, "joint1")?;
         if !node.has_attribute("joint2") {
-            return Err(wrong(node, "a joint that is held", "a rotor coupled to a hinge that moves"));
+            self.together.join(self.owner(Some(part)), self.on(part));
+            return Ok(None);
         }
         let of = self.bodies.part_of(node, "joint2")?;
-        let ratio = linear(node)? * self.signs[part] * self.signs[of];
-        self.geared.push(Geared { part, node, to: vec![(of, 1.0)], ratio });
-        Ok(())
+        let ratio = linear(element)? * self.signs[part] * self.signs[of];
+        Ok(Some(Coupling { node, one: vec![(part, 1.0)], other: vec![(of, 1.0)], ratio }))
     }
 
-    fn tendon_equality(&mut self, node: Node<'a, 'a>) -> Result<(), ImportError> {
+    fn tendon_equality(&mut self, element: &Element<'a>) -> Result<Option<Coupling<'a>>, ImportError> {
+        let node = element.node();
         let one = self.tendon(node, "tendon1")?;
-        if !node.has_attribute("tendon2") {
-            let (to, from) = self.turned(node, &one)?;
-            self.together.join(to, from);
-            return Ok(());
+        let factors = polynomial(element)?;
+        let other = node.has_attribute("tendon2").then(|| self.tendon(node, "tendon2")).transpose()?;
+        let x = other.as_ref().map_or(0.0, |other| self.stretch(other));
+        let off = self.stretch(&one) - factors.iter().rev().fold(0.0, |sum, factor| sum * x + factor);
+        match other {
+            // A gear may have any angle.
+            None if off.abs() > HELD => {
+                let what = format!("its tendon is off by {} rad in the pose of the file", Short(off));
+                Err(wrong(node, what, "a keyframe in which every equality holds"))
+            }
+            None => {
+                let (to, from) = self.turned(node, &one)?;
+                self.together.join(to, from);
+                Ok(None)
+            }
+            Some(other) => Ok(Some(Coupling { node, one, other, ratio: linear(element)? })),
         }
-        let [(part, times)] = one[..] else {
-            return Err(wrong(node, "tendon1 is of several hinges", "that of a rotor alone"));
-        };
-        let ratio = linear(node)? * times;
-        self.geared.push(Geared { part, node, to: self.tendon(node, "tendon2")?, ratio });
-        Ok(())
     }
 
-    fn tendon(&self, node: Node<'_, '_>, attribute: &'static str) -> Result<Sum, ImportError> {
-        let name = word(node, attribute)?;
+    /// How far a sum of hinges is from where it is drawn, rad.
+    fn stretch(&self, sum: &[(usize, f64)]) -> f64 {
+        sum.iter()
+            .map(|(i, times)| times * self.signs[*i] * (self.bodies.angle(*i) - self.bodies.drawn_angle(*i)))
+            .sum()
+    }
+
+    fn tendon(&self, element: impl Source<'a>, attribute: &'static str) -> Result<Sum, ImportError> {
+        let name = word(&element, attribute)?;
         let what = || format!("{attribute} \"{}\" is no fixed tendon", clipped(name));
-        self.tendons.get(name).cloned().ok_or_else(|| wrong(node, what(), "the name of one"))
+        self.tendons.get(name).cloned().ok_or_else(|| wrong(element.node(), what(), "the name of one"))
     }
 
     /// What moves with a part: itself or what it is fixed to.
@@ -255,22 +347,64 @@ impl<'a> Coupled<'a> {
         sides
     }
 
+    /// Actuators with their names; of several that turn the same the first, with all their torques.
+    fn actuators(&self) -> Result<Vec<(Element<'a>, Motor)>, ImportError> {
+        let all = each(self.bodies.model, "actuator").flat_map(|node| node.children()).filter(Node::is_element);
+        let mut found: Vec<(Element, Motor)> = Vec::new();
+        for (count, node) in all.enumerate() {
+            if count == MOST_PARTS {
+                return Err(wrong(node, "too many actuators", format!("at most {MOST_PARTS}")));
+            }
+            let element = self.bodies.element(node)?;
+            let (own, sum) = (self.motor(&element)?, unsigned(&self.moved(&element)?));
+            let mut known = None;
+            for (i, (element, _)) in found.iter().enumerate() {
+                if unsigned(&self.moved(element)?) == sum {
+                    known = Some(i);
+                }
+            }
+            match known {
+                Some(i) => {
+                    let motor = &mut found[i].1;
+                    motor.torque_limit = motor.torque_limit.zip(own.torque_limit).map(|(a, b)| a + b);
+                }
+                None if found.len() == MAX_DRIVES => {
+                    return Err(wrong(node, "too many motors", format!("at most {MAX_DRIVES}")));
+                }
+                None => found.push((element, own)),
+            }
+        }
+        for (_, motor) in &mut found {
+            if let Some(hinge) = motor.hinge.and_then(|i| self.bodies.hinge(i)) {
+                // What the hinge bears at most is a limit, too.
+                let bears = self.largest(hinge, "actuatorfrcrange", "actuatorfrclimited")?;
+                motor.torque_limit = motor.torque_limit.into_iter().chain(bears).reduce(f64::min);
+            }
+        }
+        Ok(found)
+    }
+
+    /// The hinges that an actuator turns.
+    fn moved(&self, element: &Element<'a>) -> Result<Sum, ImportError> {
+        for attribute in ["joint", "jointinparent"] {
+            if element.get(attribute).is_some() {
+                return Ok(vec![(self.bodies.part_of(element, attribute)?, 1.0)]);
+            }
+        }
+        match element.get("tendon") {
+            Some(_) => self.tendon(element, "tendon"),
+            None => Err(wrong(element.node(), "an actuator of no joint or tendon", "joint=\"…\" or tendon=\"…\"")),
+        }
+    }
+
     /// Motors with what they turn, as sets.
     fn motors(&self) -> Result<Vec<(Motor, Against)>, ImportError> {
         let mut motors = Vec::new();
-        let actuators = child(self.bodies.model, "actuator");
-        for node in actuators.into_iter().flat_map(|node| node.children()).filter(Node::is_element) {
-            if motors.len() == MAX_DRIVES {
-                return Err(wrong(node, "too many motors", format!("at most {MAX_DRIVES}")));
-            }
-            let sum = match node.attribute("joint") {
-                Some(_) => vec![(self.bodies.part_of(node, "joint")?, 1.0)],
-                None => self.tendon(node, "tendon")?,
-            };
-            let (to, from) = self.turned(node, &sum)?;
+        for (element, motor) in self.actuators()? {
+            let (to, from) = self.turned(element.node(), &self.moved(&element)?)?;
             // The base is turned by no motor.
             let (to, from) = if to == self.base { (from, to) } else { (to, from) };
-            motors.push((motor(node)?, (self.set(to), self.set(from))));
+            motors.push((motor, (self.set(to), self.set(from))));
         }
         Ok(if motors.is_empty() { self.usual_motors() } else { motors })
     }
@@ -282,7 +416,9 @@ impl<'a> Coupled<'a> {
             let is_geared = self.geared.iter().any(|geared| geared.part == i);
             if !seen.contains(&self.set(i)) && !is_geared {
                 seen.push(self.set(i));
-                let motor = Motor { name: part.name.clone(), from: None, torque_limit: None, speed_limit: None };
+                let of_hinge = self.bodies.hinge(i).and_then(|hinge| hinge.node().attribute("name"));
+                let name = of_hinge.map_or_else(|| part.name.clone(), Into::into);
+                let motor = Motor { name, hinge: Some(i), ..Motor::default() };
                 motors.push((motor, (self.set(i), self.set(self.on(i)))));
             }
         }
@@ -316,10 +452,9 @@ impl<'a> Coupled<'a> {
             let k = motors.iter().position(|(_, against)| Some(*against) == turned);
             let is_leaf = !self.bodies.parts.iter().any(|part| part.parent == Some(geared.part));
             let sits = |k: &usize| motors[*k].1.1 == self.set(self.on(geared.part));
-            k.filter(|k| is_leaf && sits(k)).map(|k| (geared.part, k, geared.ratio)).ok_or_else(|| {
-                let want = "a rotor on what carries its motor, coupled to what the motor turns";
-                wrong(geared.node, "it couples what is no rotor and motor", want)
-            })
+            k.filter(|k| is_leaf && sits(k))
+                .map(|k| (geared.part, k, geared.ratio))
+                .ok_or_else(|| wrong(geared.node, "it couples what is no rotor and motor", PARALLEL_WANTED))
         };
         self.geared.iter().map(rotor).collect()
     }
@@ -354,7 +489,7 @@ impl<'a> Coupled<'a> {
         let limit = |(sum, now, range): Limited| {
             let (to, from) = self.against(&sum)?;
             let from = if self.set(from) == self.base { None } else { Some(number_of(self.set(from))?) };
-            Some(Limit { to: number_of(self.set(to))?, from, now, range })
+            Some(Limit { name: None, to: number_of(self.set(to))?, from, now, range: Some(range) })
         };
         Ok(limited.into_iter().filter_map(limit).collect())
     }
@@ -370,7 +505,9 @@ impl<'a> Coupled<'a> {
     fn limits_of_tendons(&self) -> Result<Vec<Limited>, ImportError> {
         let mut all = Vec::new();
         for node in each(self.bodies.model, "tendon").flat_map(|node| each(node, "fixed")) {
-            if let Some(range) = several::<2>(node, "range")? {
+            let element = self.bodies.element(node)?;
+            if let Some(range) = several::<2>(&element, "range")?.filter(|_| self.bodies.is_limit(&element, "limited"))
+            {
                 let sum = self.tendon(node, "name")?;
                 let now = sum.iter().map(|(i, times)| times * self.signs[*i] * self.bodies.angle(*i)).sum();
                 all.push((sum, now, range));
@@ -379,16 +516,52 @@ impl<'a> Coupled<'a> {
         Ok(all)
     }
 
-    fn linkage(self) -> Result<Linkage, ImportError> {
+    /// What of a model belongs elsewhere or is left out.
+    fn notes(&self) -> Result<Vec<String>, ImportError> {
+        let model = self.bodies.model;
+        let mut notes = Vec::new();
+        if model.descendants().any(|node| node.has_tag_name("mesh")) {
+            notes.push("meshes are left out: a machine here is made of bars".to_owned());
+        }
+        for (name, what) in [("damping", "damping"), ("frictionloss", "friction"), ("stiffness", "stiffness")] {
+            let hinges = (0..self.base).filter_map(|i| self.bodies.hinge(i));
+            let mut values = hinges.map(|hinge| Ok(numbers(hinge, name)?.unwrap_or_default()));
+            if values.try_fold(false, |any, all: Result<Vec<f64>, ImportError>| {
+                Ok::<_, ImportError>(any || all?.iter().any(|x| *x != 0.0))
+            })? {
+                notes.push(format!("{what} of joints is left out: friction belongs into the plant of a scenario"));
+            }
+        }
+        Ok(notes)
+    }
+
+    /// What hinges add to the inertia of their angles, kg m²: that of a motor is taken along.
+    fn armatures(&self, motors: &mut [Motor], rotors: &[(usize, usize, f64)]) -> Result<(), ImportError> {
+        for i in 0..self.base {
+            let Some(hinge) = self.bodies.hinge(i) else { continue };
+            let armature = number(hinge, "armature")?.filter(|x| *x != 0.0);
+            let Some(armature) = armature.filter(|_| !rotors.iter().any(|(rotor, ..)| *rotor == i)) else { continue };
+            let k = motors.iter().position(|motor| motor.hinge == Some(i));
+            let k = k.filter(|k| armature > 0.0 && !rotors.iter().any(|(_, of, _)| of == k));
+            let Some(k) = k else {
+                let want = "one that is above 0, of a hinge that a motor without a rotor turns";
+                return Err(wrong(hinge.node(), format!("an armature of {} kg m²", Short(armature)), want));
+            };
+            motors[k].armature = armature;
+        }
+        Ok(())
+    }
+
+    fn linkage(mut self) -> Result<Linkage, ImportError> {
         let motors = self.motors()?;
-        let (numbered, rotors) = (self.numbered(&motors)?, self.rotors(&motors)?);
+        let (mut numbered, rotors) = (self.numbered(&motors)?, self.rotors(&motors)?);
+        self.armatures(&mut numbered, &rotors)?;
         let (sets, limits) = (self.sets(&motors, &rotors)?, self.limits(&motors, &rotors)?);
         let model = self.bodies.model;
         let gravity = child(model, "option").map(|node| vector(node, "gravity")).transpose()?.flatten();
-        let end = ENDS.iter().find_map(|name| self.bodies.sites.get(name));
-        let end = end.and_then(|(part, at)| Some((self.owners[(*part)?]?, *at)));
-        let has_meshes = model.descendants().any(|node| node.has_tag_name("mesh"));
-        let meshes = "meshes are left out: a machine here is made of bars".to_owned();
+        let mut notes = self.notes()?;
+        let end = self.bodies.end().and_then(|(part, at)| Some((self.owners[part?]?, at)));
+        notes.append(&mut self.bodies.notes);
         let pins = self.loops.iter().map(|ends| ends.map(|(i, at)| (self.owner(i), at)));
         let loops = pins.filter(|ends| ends.iter().all(|(i, _)| *i != self.base)).collect();
         Ok(Linkage {
@@ -400,18 +573,60 @@ impl<'a> Coupled<'a> {
             rotors,
             loops,
             end,
-            notes: if has_meshes { vec![meshes] } else { Vec::new() },
+            ground: None,
+            notes,
             parts: self.bodies.parts,
         })
     }
+
+    /// A motor by its own name, else by that of what it turns.
+    fn motor(&self, element: &Element<'a>) -> Result<Motor, ImportError> {
+        let own = ["name", "joint", "jointinparent", "tendon"].into_iter().find_map(|name| element.get(name));
+        let name = own.unwrap_or("motor").to_owned();
+        let gear = numbers(element, "gear")?.and_then(|gear| gear.first().copied()).unwrap_or(1.0).abs();
+        let is_motor = element.node().has_tag_name("motor");
+        let of_control = if is_motor { self.largest(element, "ctrlrange", "ctrllimited")? } else { None };
+        let of_force = self.largest(element, "forcerange", "forcelimited")?;
+        let limit = of_control.into_iter().chain(of_force).reduce(f64::min);
+        let hinge = match self.moved(element)?[..] {
+            [(part, _)] => Some(part),
+            _ => None,
+        };
+        Ok(Motor { name, hinge, torque_limit: limit.map(|x| gear * x).filter(|x| *x > 0.0), ..Motor::default() })
+    }
+
+    /// The largest number of a range that is a limit, either way.
+    fn largest(
+        &self,
+        element: &Element<'a>,
+        range: &'static str,
+        limited: &'static str,
+    ) -> Result<Option<f64>, ImportError> {
+        let range = several::<2>(element, range)?.filter(|_| self.bodies.is_limit(element, limited));
+        Ok(range.map(|[least, most]| least.abs().max(most.abs())).filter(|most| *most > 0.0))
+    }
+}
+
+/// A sum whose first hinge counts once or more, in the order of its hinges.
+fn unsigned(sum: &[(usize, f64)]) -> Sum {
+    let mut sum = sum.to_vec();
+    sum.sort_by_key(|(part, _)| *part);
+    if sum.first().is_some_and(|(_, times)| *times < 0.0) {
+        sum.iter_mut().for_each(|(_, times)| *times = -*times);
+    }
+    sum
 }
 
 /// Fixed tendons by name.
 fn tendons<'a>(bodies: &Bodies<'a>, signs: &[f64]) -> Result<BTreeMap<&'a str, Sum>, ImportError> {
     let mut all = BTreeMap::new();
-    for node in each(bodies.model, "tendon").flat_map(|node| each(node, "fixed")) {
+    let fixed = each(bodies.model, "tendon").flat_map(|node| each(node, "fixed"));
+    for (count, node) in fixed.enumerate() {
+        if count == MOST_PARTS || each(node, "joint").nth(MOST_PARTS).is_some() {
+            return Err(wrong(node, "too many tendons, or hinges of one", format!("at most {MOST_PARTS}")));
+        }
         let mut sum = Vec::new();
-        for joint in each(node, "joint").take(MOST_PARTS) {
+        for joint in each(node, "joint") {
             let part = bodies.part_of(joint, "joint")?;
             sum.push((part, signs[part] * number(joint, "coef")?.unwrap_or(1.0)));
         }
@@ -420,19 +635,10 @@ fn tendons<'a>(bodies: &Bodies<'a>, signs: &[f64]) -> Result<BTreeMap<&'a str, S
     Ok(all)
 }
 
-fn motor(node: Node<'_, '_>) -> Result<Motor, ImportError> {
-    let name = node.attribute("name").unwrap_or("motor").to_owned();
-    let gear = numbers(node, "gear")?.and_then(|gear| gear.first().copied()).unwrap_or(1.0);
-    let range = several::<2>(node, "ctrlrange")?.filter(|_| node.has_tag_name("motor"));
-    let torque = range.map(|[least, most]| gear.abs() * least.abs().max(most.abs()));
-    Ok(Motor { name, from: None, torque_limit: torque.filter(|x| *x > 0.0), speed_limit: None })
-}
-
 /// N of a coupling that is linear.
-fn linear(node: Node<'_, '_>) -> Result<f64, ImportError> {
-    let all = numbers(node, "polycoef")?.unwrap_or_else(|| vec![0.0, 1.0]);
-    match all[..] {
+fn linear(element: &Element<'_>) -> Result<f64, ImportError> {
+    match polynomial(element)?[..] {
         [_, ratio, ref rest @ ..] if rest.iter().all(|x| *x == 0.0) => Ok(ratio),
-        _ => Err(wrong(node, "a coupling that is not linear", "polycoef=\"0 N 0 0 0\"")),
+        _ => Err(wrong(element.node(), "a coupling that is not linear", "polycoef=\"0 N 0 0 0\"")),
     }
 }

@@ -5,14 +5,18 @@
 //! it, or says what is outside of the family.
 
 mod bodies;
+mod compiler;
+mod defaults;
 mod family;
 mod linkage;
 mod mjcf;
 mod read;
 mod refusal;
+mod scan;
+mod shapes;
 mod urdf;
 
-pub use family::Imported;
+pub use family::{BaseBody, Imported};
 pub use refusal::ImportError;
 
 use roxmltree::{Document, ParsingOptions};
@@ -26,6 +30,7 @@ const MOST_NODES: u32 = 400_000;
 /// The first thing that is no machine of the family: which element, in which line, and what would be right.
 pub fn import(text: &str) -> Result<Imported, ImportError> {
     let options = ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+    scan::check_bounds(text).map_err(|error| error.located(text))?;
     let document = Document::parse_with_options(text, options).map_err(|why| refusal::syntax(&why.to_string()))?;
     let root = document.root_element();
     let linkage = match root.tag_name().name() {

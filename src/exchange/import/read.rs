@@ -10,6 +10,37 @@ use crate::settings::range::clipped;
 /// The largest number that is read, either way: beyond it, products would not be finite.
 const MOST: f64 = 1e9;
 
+/// The most numbers of an attribute: a pose has one for each hinge.
+const MAX_NUMBERS: usize = 1000;
+
+/// Where attributes come from: an element, or one with what its class says.
+pub trait Source<'a> {
+    /// An attribute.
+    fn get(&self, name: &str) -> Option<&'a str>;
+    /// The element.
+    fn node(&self) -> Node<'a, 'a>;
+}
+
+impl<'a> Source<'a> for Node<'a, 'a> {
+    fn get(&self, name: &str) -> Option<&'a str> {
+        self.attribute(name)
+    }
+
+    fn node(&self) -> Node<'a, 'a> {
+        *self
+    }
+}
+
+impl<'a, S: Source<'a>> Source<'a> for &S {
+    fn get(&self, name: &str) -> Option<&'a str> {
+        (**self).get(name)
+    }
+
+    fn node(&self) -> Node<'a, 'a> {
+        (**self).node()
+    }
+}
+
 /// Children that are elements of a name.
 pub fn each<'a>(node: Node<'a, 'a>, name: &'static str) -> impl Iterator<Item = Node<'a, 'a>> {
     node.children().filter(move |child| child.has_tag_name(name))
@@ -21,51 +52,56 @@ pub fn child<'a>(node: Node<'a, 'a>, name: &'static str) -> Option<Node<'a, 'a>>
 }
 
 /// An attribute that has to be there.
-pub fn word<'a>(node: Node<'a, 'a>, name: &'static str) -> Result<&'a str, ImportError> {
-    node.attribute(name).ok_or_else(|| wrong(node, format!("it has no {name}"), format!("{name}=\"…\"")))
+pub fn word<'a>(node: impl Source<'a>, name: &'static str) -> Result<&'a str, ImportError> {
+    node.get(name).ok_or_else(|| wrong(node.node(), format!("it has no {name}"), format!("{name}=\"…\"")))
 }
 
 /// The numbers of an attribute, none where it is left out.
-pub fn numbers(node: Node<'_, '_>, name: &'static str) -> Result<Option<Vec<f64>>, ImportError> {
-    let Some(text) = node.attribute(name) else { return Ok(None) };
+pub fn numbers<'a>(node: impl Source<'a>, name: &'static str) -> Result<Option<Vec<f64>>, ImportError> {
+    let Some(text) = node.get(name) else { return Ok(None) };
     let number = |word: &str| {
         let value = word.parse::<f64>().ok().filter(|x| x.is_finite() && x.abs() <= MOST);
         value.ok_or_else(|| {
             let what = format!("{name} has \"{}\"", clipped(word));
-            wrong(node, what, "numbers from -1e9 to 1e9")
+            wrong(node.node(), what, "numbers from -1e9 to 1e9")
         })
     };
-    text.split_whitespace().take(100_000).map(number).collect::<Result<_, _>>().map(Some)
+    let words = text.split_whitespace().take(MAX_NUMBERS + 1);
+    let all: Vec<f64> = words.map(number).collect::<Result<_, _>>()?;
+    match all.len() > MAX_NUMBERS {
+        true => Err(wrong(node.node(), format!("{name} goes on and on"), format!("at most {MAX_NUMBERS} numbers"))),
+        false => Ok(Some(all)),
+    }
 }
 
 /// So many numbers of an attribute, none where it is left out.
-pub fn several<const N: usize>(node: Node<'_, '_>, name: &'static str) -> Result<Option<[f64; N]>, ImportError> {
-    let Some(all) = numbers(node, name)? else { return Ok(None) };
+pub fn several<'a, const N: usize>(node: impl Source<'a>, name: &'static str) -> Result<Option<[f64; N]>, ImportError> {
+    let Some(all) = numbers(&node, name)? else { return Ok(None) };
     let count = all.len();
-    all.try_into().map(Some).map_err(|_| wrong(node, format!("{name} has {count} numbers"), format!("{N}")))
+    all.try_into().map(Some).map_err(|_| wrong(node.node(), format!("{name} has {count} numbers"), format!("{N}")))
 }
 
 /// One number, none where it is left out.
-pub fn number(node: Node<'_, '_>, name: &'static str) -> Result<Option<f64>, ImportError> {
+pub fn number<'a>(node: impl Source<'a>, name: &'static str) -> Result<Option<f64>, ImportError> {
     Ok(several::<1>(node, name)?.map(|[x]| x))
 }
 
 /// One number that has to be there.
-pub fn given(node: Node<'_, '_>, name: &'static str) -> Result<f64, ImportError> {
-    word(node, name)?;
+pub fn given<'a>(node: impl Source<'a>, name: &'static str) -> Result<f64, ImportError> {
+    word(&node, name)?;
     number(node, name).map(|x| x.unwrap_or(0.0))
 }
 
 /// A point or direction.
-pub fn vector(node: Node<'_, '_>, name: &'static str) -> Result<Option<Vector3<f64>>, ImportError> {
+pub fn vector<'a>(node: impl Source<'a>, name: &'static str) -> Result<Option<Vector3<f64>>, ImportError> {
     Ok(several::<3>(node, name)?.map(Vector3::from))
 }
 
 /// A mass, kg, not below 0.
-pub fn mass(node: Node<'_, '_>, name: &'static str) -> Result<f64, ImportError> {
-    match given(node, name)? {
+pub fn mass<'a>(node: impl Source<'a>, name: &'static str) -> Result<f64, ImportError> {
+    match given(&node, name)? {
         mass if mass >= 0.0 => Ok(mass),
-        mass => Err(wrong(node, format!("a mass of {} kg", Short(mass)), "one that is not below 0")),
+        mass => Err(wrong(node.node(), format!("a mass of {} kg", Short(mass)), "one that is not below 0")),
     }
 }
 

@@ -1,13 +1,15 @@
 //! URDF: a tree of links; joints that mimic others say what turns together.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
 use roxmltree::Node;
 
-use super::linkage::{Limit, Linkage, MOST_PARTS, Motor, Part, common_axis, owners};
+use super::linkage::{Ground, Limit, Linkage, Motor, Part, Point, common_axis, end_rank, owners};
 use super::read::{child, each, given, inertia, mass, number, vector, word};
 use super::refusal::{ImportError, called, wrong};
+use crate::exchange::urdf::meet;
+use crate::mechanics::planar::MAX_DRIVES;
 use crate::settings::number::{Short, fixed};
 use crate::settings::range::{clipped, shortened};
 
@@ -15,8 +17,12 @@ use crate::settings::range::{clipped, shortened};
 const SAME: f64 = 1e-9;
 /// A limit as large as this, or 0, is none.
 const UNLIMITED: f64 = 1e9;
-/// Names by which others know the point that works.
-const ENDS: [&str; 8] = ["end_effector", "ee", "ee_link", "tool", "tool0", "tcp", "tip", "gripper"];
+
+/// The most joints: what this program writes of the largest machine has fewer.
+const MAX_JOINTS: usize = 4000;
+
+/// The most joints that mimic each other in a row.
+const MAX_FOLLOWED: usize = 100;
 
 /// Of a `<robot>`.
 pub fn linkage(robot: Node<'_, '_>) -> Result<Linkage, ImportError> {
@@ -26,31 +32,125 @@ pub fn linkage(robot: Node<'_, '_>) -> Result<Linkage, ImportError> {
     file.walk(&mut parts, &mut joints)?;
     let (_, signs) = common_axis(&parts)?;
     let (free, rates) = file.rates(&parts, &joints, &signs)?;
-    let (sets, motors, rotors) = turning(&parts, &joints, &free, &rates)?;
+    let (sets, mut motors, rotors) = turning(&parts, &joints, &free, &rates)?;
     let mut limits = Vec::new();
     for (k, i) in free.iter().enumerate() {
         if let Some(range) = range(joints[*i], signs[*i])? {
-            limits.push(Limit { to: k, from: motors[k].from, now: 0.0, range });
+            limits.push(Limit { name: None, to: k, from: motors[k].from, now: 0.0, range: Some(range) });
         }
     }
+    let besides = Besides { robot, joints: free.iter().map(|i| joints[*i]).collect(), links: file.numbers(&parts) };
+    besides.limits(&mut limits)?;
+    besides.motors(&mut motors)?;
     let end = end(&parts, &owners(&parts));
     let meshes = robot.descendants().any(|node| node.has_tag_name("mesh"));
     let mut notes = Vec::new();
     if meshes {
         notes.push("meshes are left out: a machine here is made of bars".to_owned());
     }
+    let root = file.links[file.root];
+    let ground = child(root, "inertial").map(|_| body(root, &Isometry3::identity(), false)).transpose()?;
+    let ground = ground.or(Some((0.0, Vector3::zeros(), Matrix3::zeros())));
     Ok(Linkage {
         name: robot.attribute("name").unwrap_or("robot").into(),
-        gravity: Vector3::zeros(),
+        gravity: besides.gravity()?,
+        loops: besides.loops(&parts)?,
         parts,
         sets,
         motors,
         limits,
         rotors,
-        loops: Vec::new(),
         end,
+        ground: ground.map(|(mass, com, inertia)| Ground { mass, com, inertia }),
         notes,
     })
+}
+
+/// What this program writes beside URDF: `<stillbase>`.
+struct Besides<'a> {
+    robot: Node<'a, 'a>,
+    /// Joints that move by themselves, as motors are counted.
+    joints: Vec<Node<'a, 'a>>,
+    /// Parts by the names of their links.
+    links: BTreeMap<&'a str, usize>,
+}
+
+impl<'a> Besides<'a> {
+    fn each(&self, name: &'static str) -> impl Iterator<Item = Node<'a, 'a>> + use<'a> {
+        each(self.robot, "stillbase").flat_map(move |node| each(node, name))
+    }
+
+    /// The motor of the joint that an attribute names.
+    fn motor(&self, node: Node<'a, 'a>, attribute: &'static str) -> Result<usize, ImportError> {
+        let name = word(node, attribute)?;
+        let known = self.joints.iter().position(|joint| joint.attribute("name") == Some(name));
+        let what = || format!("no joint \"{}\" moves by itself", clipped(name));
+        known.ok_or_else(|| wrong(node, what(), "the name of one that does"))
+    }
+
+    fn gravity(&self) -> Result<Vector3<f64>, ImportError> {
+        let Some(node) = self.each("gravity").next() else { return Ok(Vector3::zeros()) };
+        Ok(Vector3::new(number(node, "x")?.unwrap_or(0.0), number(node, "y")?.unwrap_or(0.0), 0.0))
+    }
+
+    /// Adds limits of angles between what two joints turn; what says the same as a joint takes its place.
+    fn limits(&self, limits: &mut Vec<Limit>) -> Result<(), ImportError> {
+        let mut own = Vec::new();
+        for node in self.each("angle").take(MAX_JOINTS) {
+            let (to, from) = (self.motor(node, "to")?, self.motor(node, "from")?);
+            let now = number(node, "offset")?.unwrap_or(0.0);
+            let range = number(node, "lower")?.zip(number(node, "upper")?).map(|(least, most)| [least, most]);
+            let name = node.attribute("name").map(Into::into);
+            own.push(Limit { name, to, from: Some(from), now, range });
+        }
+        // What all angles of the pair leave, as the joint between them turns.
+        let left = |joint: &Limit| {
+            let of = |own: &Limit| {
+                let [least, most] = own.range?.map(|x| x - own.now);
+                match (own.to, own.from) {
+                    (to, from) if to == joint.to && from == joint.from => Some([least, most]),
+                    (to, from) if Some(to) == joint.from && from == Some(joint.to) => Some([-most, -least]),
+                    _ => None,
+                }
+            };
+            own.iter().filter_map(of).reduce(meet)
+        };
+        let is_near = |a: f64, b: f64| (a - b).abs() <= SAME * (1.0 + b.abs());
+        let is_said = |joint: &Limit| {
+            let (said, own) = (left(joint), joint.range);
+            said.zip(own).is_some_and(|(said, own)| (0..2).all(|i| is_near(said[i], own[i])))
+        };
+        limits.retain(|joint| !is_said(joint));
+        own.append(limits);
+        *limits = own;
+        Ok(())
+    }
+
+    /// Adds limits that URDF has no word for.
+    fn motors(&self, motors: &mut [Motor]) -> Result<(), ImportError> {
+        for node in self.each("limit").take(MAX_JOINTS) {
+            let k = self.motor(node, "joint")?;
+            motors[k].acceleration_limit = number(node, "acceleration")?;
+            motors[k].jerk_limit = number(node, "jerk")?;
+        }
+        Ok(())
+    }
+
+    /// Pins that close loops.
+    fn loops(&self, parts: &[Part]) -> Result<Vec<[Point; 2]>, ImportError> {
+        let owners = owners(parts);
+        let end = |node: Node<'a, 'a>, link: &'static str, at: &'static str| {
+            let name = word(node, link)?;
+            let known = self.links.get(name).copied();
+            let i = known.ok_or_else(|| wrong(node, format!("no link \"{}\"", clipped(name)), "the name of one"))?;
+            let at = parts[i].frame * nalgebra::Point3::new(given(node, at)?, 0.0, 0.0);
+            let owner =
+                owners[i].ok_or_else(|| wrong(node, "a pin on what does not turn", "pins on links that turn"))?;
+            Ok::<_, ImportError>((owner, at.coords))
+        };
+        let pin = |node| Ok([end(node, "a", "at_a")?, end(node, "b", "at_b")?]);
+        self.each("pin").take(MAX_JOINTS).map(pin).collect()
+    }
 }
 
 /// Links and joints by name.
@@ -67,8 +167,8 @@ impl<'a> File<'a> {
         {
             return Err(wrong(other, "an element of xacro or another language", "plain URDF, as xacro makes it"));
         }
-        if let Some(node) = robot.children().filter(|node| node.has_tag_name("joint")).nth(MOST_PARTS) {
-            return Err(wrong(node, "too many joints", format!("at most {MOST_PARTS}")));
+        if let Some(node) = robot.children().filter(|node| node.has_tag_name("joint")).nth(MAX_JOINTS) {
+            return Err(wrong(node, "too many joints", format!("at most {MAX_JOINTS}")));
         }
         let mut links = BTreeMap::new();
         for link in each(robot, "link") {
@@ -91,16 +191,17 @@ impl<'a> File<'a> {
             };
             joints.push((joint, end("parent")?, end("child")?));
         }
-        let held = |name: &str| joints.iter().filter(|(.., child)| *child == name).count();
-        for (i, (joint, _, child)) in joints.iter().enumerate() {
-            if joints[..i].iter().any(|(.., other)| other == child) {
+        let mut held = BTreeSet::new();
+        for (joint, _, child) in &joints {
+            if !held.insert(*child) {
                 let what = format!("a second joint that carries \"{}\"", clipped(child));
                 return Err(wrong(*joint, what, "a tree: one for each link"));
             }
         }
-        let roots: Vec<&str> = links.keys().copied().filter(|name| held(name) == 0).collect();
-        let carries = |name: &&&str| joints.iter().any(|(_, parent, _)| parent == *name);
-        let root = *roots.iter().find(carries).ok_or_else(|| wrong(robot, "no link is the base", "a tree of links"))?;
+        let roots: Vec<&str> = links.keys().copied().filter(|name| !held.contains(name)).collect();
+        let carriers: BTreeSet<&str> = joints.iter().map(|(_, parent, _)| *parent).collect();
+        let root = roots.iter().find(|name| carriers.contains(*name));
+        let root = *root.ok_or_else(|| wrong(robot, "no link is the base", "a tree of links"))?;
         if let Some(other) = roots.iter().find(|other| **other != root) {
             let what = format!("it hangs on nothing, as \"{}\" does", clipped(root));
             return Err(wrong(links[other], what, "one link that is the base"));
@@ -110,26 +211,35 @@ impl<'a> File<'a> {
 
     /// Parts from the base on, each with its joint.
     fn walk(&self, parts: &mut Vec<Part>, joints: &mut Vec<Node<'a, 'a>>) -> Result<(), ImportError> {
+        let mut below: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+        for (i, (_, parent, _)) in self.joints.iter().enumerate() {
+            below.entry(parent).or_default().push(i);
+        }
         let mut open = vec![(self.root, None, Isometry3::identity())];
         let mut next = 0;
         while next < open.len() {
             let (name, place, frame) = open[next];
             next += 1;
-            for (joint, _, link) in self.joints.iter().filter(|(_, parent, _)| *parent == name) {
-                if parts.len() == MOST_PARTS {
-                    return Err(wrong(*joint, "too many links", format!("at most {MOST_PARTS}")));
-                }
-                parts.push(part(*joint, self.links[link], place, &frame)?);
-                joints.push(*joint);
+            for i in below.remove(name).unwrap_or_default() {
+                let (joint, _, link) = self.joints[i];
+                parts.push(part(joint, self.links[link], place, &frame)?);
+                joints.push(joint);
                 let own = parts.len() - 1;
-                open.push((*link, Some(own), parts[own].frame));
+                open.push((link, Some(own), parts[own].frame));
             }
         }
         // Links that carry each other in a circle hang on no base.
-        match self.joints.iter().find(|(joint, ..)| !joints.contains(joint)) {
-            Some((joint, ..)) => Err(wrong(*joint, "links that carry each other", "a tree that begins at the base")),
+        match below.into_values().flatten().next() {
+            Some(i) => Err(wrong(self.joints[i].0, "links that carry each other", "a tree that begins at the base")),
             None => Ok(()),
         }
+    }
+
+    /// Parts by the names of their links.
+    fn numbers(&self, parts: &[Part]) -> BTreeMap<&'a str, usize> {
+        let by_name: BTreeMap<&str, usize> =
+            parts.iter().enumerate().map(|(i, part)| (part.name.as_str(), i)).collect();
+        self.links.keys().filter_map(|name| Some((*name, *by_name.get(name)?))).collect()
     }
 
     /// The joints that move by themselves, and how each part turns with them, about the common axis.
@@ -142,13 +252,19 @@ impl<'a> File<'a> {
         let turns = |i: usize| parts[i].hinge.is_some();
         let is_free = |i: &usize| turns(*i) && child(joints[*i], "mimic").is_none();
         let mut free: Vec<usize> = (0..parts.len()).filter(is_free).collect();
+        if free.len() > MAX_DRIVES {
+            let want = format!("at most {MAX_DRIVES}");
+            return Err(ImportError::whole(format!("{} joints that move by themselves", free.len()), want));
+        }
         // In the order in which the file has them.
         free.sort_by_key(|i| joints[*i].range().start);
+        let named = joints.iter().enumerate().rev();
+        let named = named.filter_map(|(i, joint)| Some((joint.attribute("name")?, i))).collect();
         let mut rates: Vec<Vec<f64>> = Vec::with_capacity(parts.len());
         for (i, part) in parts.iter().enumerate() {
             let mut own = part.parent.map_or_else(|| vec![0.0; free.len()], |parent| rates[parent].clone());
             if turns(i) {
-                let (driver, times) = followed(joints, i)?;
+                let (driver, times) = followed(joints, &named, i)?;
                 let k = free.iter().position(|k| *k == driver).ok_or_else(|| {
                     wrong(joints[i], "it mimics a joint that does not turn", "a revolute or continuous joint")
                 })?;
@@ -161,14 +277,14 @@ impl<'a> File<'a> {
 }
 
 /// The joint that one follows in the end, and how often it turns for one turn of that; itself where it mimics none.
-fn followed(joints: &[Node<'_, '_>], i: usize) -> Result<(usize, f64), ImportError> {
+fn followed(joints: &[Node<'_, '_>], named: &BTreeMap<&str, usize>, i: usize) -> Result<(usize, f64), ImportError> {
     let (mut at, mut times) = (i, 1.0);
-    for _ in 0..=joints.len() {
+    // None is followed through more than a few others.
+    for _ in 0..=joints.len().min(MAX_FOLLOWED) {
         let Some(mimic) = child(joints[at], "mimic") else { return Ok((at, times)) };
         times *= number(mimic, "multiplier")?.unwrap_or(1.0);
         let name = word(mimic, "joint")?;
-        let of = joints.iter().position(|joint| joint.attribute("name") == Some(name));
-        at = of.ok_or_else(|| {
+        at = named.get(name).copied().ok_or_else(|| {
             wrong(joints[i], format!("it mimics \"{}\", which is no joint", clipped(name)), "the name of one")
         })?;
     }
@@ -266,26 +382,26 @@ fn turning(
         }
         motors.push(motor(joint, from)?);
     }
-    let mut rotors = Vec::new();
-    let mut sets = Vec::new();
+    let carriers: BTreeSet<usize> = parts.iter().filter_map(|part| part.parent).collect();
+    let (mut rotors, mut sets) = (Vec::new(), Vec::new());
+    let light = light(parts);
     for (i, part) in parts.iter().enumerate() {
         let own = if is_still(&rates[i]) { None } else { set(&rates[i]) };
-        let is_leaf = !parts.iter().any(|other| other.parent == Some(i));
-        if is_leaf && part.hinge.is_some() && child(joints[i], "mimic").is_some() {
+        if !carriers.contains(&i) && part.hinge.is_some() && child(joints[i], "mimic").is_some() {
             let relative: Vec<f64> = rates[i].iter().zip(of_parent(i)).map(|(a, b)| a - b).collect();
             let only = relative.iter().position(|x| x.abs() > SAME);
             let k = only.filter(|k| relative.iter().enumerate().all(|(l, x)| l == *k || x.abs() <= SAME));
             // It sits where the motor does.
             let k = k.filter(|k| is_same(of_parent(i), of_parent(free[*k])));
-            if let Some(k) = k.filter(|_| own.is_none() || part.mass <= light(parts)) {
+            if let Some(k) = k.filter(|_| own.is_none() || part.mass <= light) {
                 rotors.push((i, k, relative[k]));
             }
         }
         sets.push(own);
     }
     for (i, part) in parts.iter().enumerate() {
-        let is_rotor = rotors.iter().any(|(rotor, ..)| *rotor == i);
-        if sets[i].is_none() && !is_still(&rates[i]) && !is_rotor && part.mass > light(parts) {
+        let is_rotor = || rotors.iter().any(|(rotor, ..)| *rotor == i);
+        if sets[i].is_none() && !is_still(&rates[i]) && !is_rotor() && part.mass > light {
             let all: Vec<String> = rates[i].iter().map(|x| fixed(*x, 3)).collect();
             let what = format!("it turns by {} times the driven joints", shortened(&all.join(", "), 100));
             return Err(part.wrong(what, "links that each turn as one motor's drive does"));
@@ -306,7 +422,7 @@ fn motor(joint: Node<'_, '_>, from: Option<usize>) -> Result<Motor, ImportError>
         Ok(most.filter(|most| *most > 0.0 && *most < UNLIMITED))
     };
     let name = joint.attribute("name").unwrap_or("joint").into();
-    Ok(Motor { name, from, torque_limit: bound("effort")?, speed_limit: bound("velocity")? })
+    Ok(Motor { name, from, torque_limit: bound("effort")?, speed_limit: bound("velocity")?, ..Motor::default() })
 }
 
 /// Limits of a joint, rad about the common axis.
@@ -333,7 +449,8 @@ fn range(joint: Node<'_, '_>, sign: f64) -> Result<Option<[f64; 2]>, ImportError
 
 /// The part that works: one with a name that says so, else the only one that is fixed, weighs nothing and carries nothing.
 fn end(parts: &[Part], owners: &[Option<usize>]) -> Option<(usize, Vector3<f64>)> {
-    let named = parts.iter().position(|part| ENDS.contains(&part.name.to_lowercase().as_str()));
+    let ranked = parts.iter().enumerate().filter_map(|(i, part)| Some((end_rank(&part.name)?, i)));
+    let named = ranked.min().map(|(_, i)| i);
     let is_leaf = |i: usize| !parts.iter().any(|other| other.parent == Some(i));
     let mut bare = (0..parts.len()).filter(|i| parts[*i].hinge.is_none() && parts[*i].mass == 0.0 && is_leaf(*i));
     let only = bare.next().filter(|_| bare.next().is_none());

@@ -1,6 +1,7 @@
 //! From a description to a [`Machine`]: names looked up, roots and loops resolved, or what is wrong.
 
 use super::Chain;
+use super::caps::{MAX_IN_A_ROW, check_counts};
 use super::error::{MachineError, Place, PlaceStep, quoted};
 use super::inertia::Inertia;
 use super::model::{Machine, RelativeAngle, ResolvedClosure, ResolvedLink};
@@ -54,6 +55,7 @@ struct Parts {
 
 impl Parts {
     fn of(spec: &MachineSpec) -> Result<Self, MachineError> {
+        check_counts(spec)?;
         let names = Names::of(spec)?;
         check_numbers(spec)?;
         let mut links = resolve(spec, &names)?;
@@ -77,13 +79,6 @@ struct Names<'a> {
 
 impl<'a> Names<'a> {
     fn of(spec: &'a MachineSpec) -> Result<Self, MachineError> {
-        let n = spec.drives.len();
-        if n == 0 || n > MAX_DRIVES {
-            return Err(MachineError::Count { what: "drives", count: n, want: format!("1 to {MAX_DRIVES}") });
-        }
-        if spec.links.is_empty() {
-            return Err(MachineError::Count { what: "links", count: 0, want: "at least one".into() });
-        }
         printable(&spec.name, || Place::new(&[&"name"]))?;
         printable(&spec.summary, || Place::new(&[&"summary"]))?;
         spec.lengths.keys().try_for_each(|name| printable(name, || Place::new(&[&"lengths"])))?;
@@ -204,6 +199,10 @@ fn resolve(spec: &MachineSpec, names: &Names) -> Result<Vec<ResolvedLink>, Machi
             let drive = names.drive(&on.drive, || Place::new(&[&"link", &parent, &"drive"]))?;
             root[drive] += f64::from(on.direction) * s;
             at = parent;
+        }
+        if chain.len() > MAX_IN_A_ROW {
+            let (what, want) = ("links in a row, each on the one before", format!("at most {MAX_IN_A_ROW}"));
+            return Err(MachineError::Count { what, count: chain.len(), want });
         }
         parts.push(ResolvedLink {
             drive: names.drive(&link.drive, || Place::new(&[&"link", &i, &"drive"]))?,

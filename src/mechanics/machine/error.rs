@@ -149,6 +149,16 @@ pub enum MachineError {
         /// How many would be right.
         want: String,
     },
+    /// A text that goes on and on.
+    #[error("{place} is {:?}: want at most {most} characters", clipped(text))]
+    TooLong {
+        /// Where in the machine file.
+        place: Place,
+        /// The text.
+        text: String,
+        /// The most characters.
+        most: usize,
+    },
     /// Links that hang on each other in a circle.
     #[error("{place}: link {link:?} hangs on itself ({chain}): want a chain that ends at \"base\"")]
     Cycle {
@@ -276,6 +286,7 @@ impl MachineError {
             | Self::Unknown { place, .. }
             | Self::Duplicate { place, .. }
             | Self::Unprintable { place, .. }
+            | Self::TooLong { place, .. }
             | Self::Cycle { place, .. }
             | Self::StatorCycle { place, .. }
             | Self::OpenLoop { place, .. } => Some(place),

@@ -12,6 +12,7 @@
 //! | r_j | a point of link j, Σ_k w_k e(q_k): its [`Chain`] w | m |
 //! | l_cj | CM of link j along the link, from its root | m |
 
+mod caps;
 mod catalog;
 mod chain;
 mod check;
@@ -24,6 +25,7 @@ pub mod ranges;
 mod set;
 mod spec;
 
+pub use caps::{MAX_COUNTERWEIGHTS, MAX_IN_A_ROW, MAX_LINKS};
 pub use catalog::{builtin, builtins, named, unknown};
 pub use chain::{Chain, place_of};
 pub use check::CLOSURE_TOLERANCE;

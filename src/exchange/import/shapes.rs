@@ -1,0 +1,147 @@
+//! Masses and inertias of shapes of MJCF by their density.
+//!
+//! # Symbols
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | r, h | radius and half of the length along z | m |
+//! | a, b, c | halves of the lengths along x, y and z | m |
+//! | V | volume | m³ |
+//! | i | principal inertias about the centre over the mass | m² |
+
+use std::f64::consts::PI;
+
+use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, Unit, Vector3};
+
+use super::compiler::{Compiler, to_axis};
+use super::defaults::Element;
+use super::read::{Source, number, numbers, several};
+use super::refusal::{ImportError, wrong};
+use crate::settings::number::Short;
+use crate::settings::range::clipped;
+
+/// That of what says nothing, kg/m³: water.
+const USUAL_DENSITY: f64 = 1000.0;
+
+/// A rigid body: mass, kg, centre of mass, m, and inertia about it, kg m², in the same axes.
+#[derive(Clone, Copy, Debug)]
+pub struct Solid {
+    pub mass: f64,
+    pub com: Vector3<f64>,
+    pub inertia: Matrix3<f64>,
+}
+
+impl Solid {
+    /// Nothing at a place.
+    pub fn none(com: Vector3<f64>) -> Self {
+        Self { mass: 0.0, com, inertia: Matrix3::zeros() }
+    }
+
+    /// Both as one.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        let mass = self.mass + other.mass;
+        if mass <= 0.0 {
+            return Self { inertia: self.inertia + other.inertia, ..self };
+        }
+        let com = self.com + (other.mass / mass) * (other.com - self.com);
+        let about = |one: &Self| one.inertia + one.mass * of_point(one.com - com);
+        Self { mass, com, inertia: about(&self) + about(&other) }
+    }
+}
+
+/// Inertia of 1 kg at a place.
+fn of_point(at: Vector3<f64>) -> Matrix3<f64> {
+    Matrix3::identity() * at.norm_squared() - at * at.transpose()
+}
+
+/// What a shape weighs on the axes that `frame` gives those of its body; none where its mass does not count.
+///
+/// # Errors
+/// If its mass or inertia cannot be told.
+pub fn solid(shape: &Element<'_>, compiler: &Compiler, frame: &Isometry3<f64>) -> Result<Option<Solid>, ImportError> {
+    let group = number(shape, "group")?.unwrap_or(0.0);
+    let [first, last] = compiler.groups;
+    let mass = number(shape, "mass")?;
+    if mass == Some(0.0) || group < first || group > last {
+        return Ok(None);
+    }
+    let kind = shape.get("type").unwrap_or(if shape.get("mesh").is_some() { "mesh" } else { "sphere" });
+    if shape.get("shellinertia") == Some("true") {
+        return Err(wrong(shape.node(), "a hollow shape", "<inertial>, or a shape that is solid"));
+    }
+    let (place, size) = placed(shape, kind, compiler)?;
+    let Some((volume, i)) = measured(kind, &size) else {
+        let what = format!("a shape of type \"{}\", which is not weighed", clipped(kind));
+        return Err(wrong(shape.node(), what, "<inertial> in its body, or mass=\"0\" here"));
+    };
+    if let Some(bad) = size.iter().find(|x| **x <= 0.0) {
+        return Err(wrong(shape.node(), format!("a size of {} m", Short(*bad)), "sizes above 0"));
+    }
+    let density = number(shape, "density")?.unwrap_or(USUAL_DENSITY);
+    let mass = mass.unwrap_or(density * volume);
+    if mass < 0.0 {
+        return Err(wrong(shape.node(), format!("a mass of {} kg", Short(mass)), "one that is not below 0"));
+    }
+    let place = frame * place;
+    let axes = Rotation3::from(place.rotation);
+    let inertia = axes * Matrix3::from_diagonal(&(mass * i)) * axes.transpose();
+    Ok(Some(Solid { mass, com: place.translation.vector, inertia }))
+}
+
+/// Where a shape is on its body, and as many sizes as its kind has, m.
+fn placed(shape: &Element<'_>, kind: &str, compiler: &Compiler) -> Result<(Isometry3<f64>, Vec<f64>), ImportError> {
+    // What is no number is said so.
+    numbers(shape, "size")?;
+    let mut size: Vec<f64> = shape.sizes().into_iter().map_while(|word| word.parse().ok()).collect();
+    let count = match kind {
+        "sphere" => 1,
+        "capsule" | "cylinder" => 2,
+        "box" | "ellipsoid" => 3,
+        _ => return Ok((Isometry3::identity(), Vec::new())),
+    };
+    let ends = several::<6>(shape, "fromto")?.filter(|_| count > 1);
+    let given = if ends.is_some() { 1 } else { count };
+    if size.len() < given {
+        let what = format!("{kind} with {} sizes", size.len());
+        return Err(wrong(shape.node(), what, format!("{given}")));
+    }
+    let Some(ends) = ends else {
+        size.truncate(count);
+        return Ok((compiler.place(shape)?, size));
+    };
+    // Along z from the first point to the second, and as wide along x as along y.
+    let [from, to] = [0, 3].map(|i| Vector3::new(ends[i], ends[i + 1], ends[i + 2]));
+    let axis = Unit::try_new(to - from, 1e-12)
+        .ok_or_else(|| wrong(shape.node(), "its ends are one point", "fromto with two points"))?;
+    let (across, half) = (size[0], 0.5 * (to - from).norm());
+    let size = if count == 2 { vec![across, half] } else { vec![across, across, half] };
+    Ok((Isometry3::from_parts(Translation3::from(0.5 * (from + to)), to_axis(&axis)), size))
+}
+
+/// V and i of a kind that has them.
+fn measured(kind: &str, size: &[f64]) -> Option<(f64, Vector3<f64>)> {
+    Some(match (kind, size) {
+        ("sphere", [r]) => (4.0 / 3.0 * PI * r.powi(3), Vector3::repeat(0.4 * r * r)),
+        ("cylinder", [r, h]) => {
+            let across = (3.0 * r * r + 4.0 * h * h) / 12.0;
+            (2.0 * PI * r * r * h, Vector3::new(across, across, 0.5 * r * r))
+        }
+        ("capsule", [r, h]) => {
+            let [cylinder, ball] = [2.0 * PI * r * r * h, 4.0 / 3.0 * PI * r.powi(3)];
+            let volume = cylinder + ball;
+            // Half a ball has its centre of mass 3/8 r beyond its cut.
+            let across = cylinder * (3.0 * r * r + 4.0 * h * h) / 12.0 + ball * (0.4 * r * r + h * h + 0.75 * h * r);
+            let along = cylinder * 0.5 * r * r + ball * 0.4 * r * r;
+            (volume, Vector3::new(across, across, along) / volume)
+        }
+        ("box", [a, b, c]) => (8.0 * a * b * c, squares(*a, *b, *c) / 3.0),
+        ("ellipsoid", [a, b, c]) => (4.0 / 3.0 * PI * a * b * c, squares(*a, *b, *c) / 5.0),
+        _ => return None,
+    })
+}
+
+/// Sums of two squares.
+fn squares(a: f64, b: f64, c: f64) -> Vector3<f64> {
+    let [a, b, c] = [a, b, c].map(|x| x * x);
+    Vector3::new(b + c, a + c, a + b)
+}

@@ -1,0 +1,193 @@
+//! [`Tree`]: a machine as a tree of parts and joints, as URDF wants it, and the names that both formats give them.
+//!
+//! # Symbols
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | θ_k | angle of motor k: q_k − q_on, or q_k for a motor on the base | rad |
+//!
+//! A pin between links of two drives turns by a sum of motor angles, but a joint of URDF follows one other: a sum is
+//! several joints in series, with parts of no account between them. Readers that build a tree from its root want the
+//! joint that is followed before those that follow it. A serial arm has it so where its motors turn its links; elsewhere
+//! each motor turns a shaft, and all links follow.
+
+use std::collections::BTreeMap;
+
+use super::xml::quoted;
+use crate::mechanics::machine::Machine;
+
+/// A part of the tree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Part {
+    Base,
+    /// A link of the machine, by number.
+    Link(usize),
+    /// What a motor turns beside the links.
+    Shaft(usize),
+    /// What turns in a motor before its gear.
+    Rotor(usize),
+    /// Before a link, the number of a joint of those in series.
+    Between(usize, usize),
+    /// The point that works.
+    End,
+    Payload,
+}
+
+/// How a joint turns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Turns {
+    /// By θ_k, as motor k does.
+    Motor(usize),
+    /// By so many times θ_k.
+    Follows(usize, f64),
+    Not,
+}
+
+/// What joins a part to another, so far along its x axis, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Joint {
+    pub parent: Part,
+    pub at: f64,
+    pub child: Part,
+    pub turns: Turns,
+}
+
+/// All joints: those of motors first, in the order of the drives.
+pub struct Tree<'a> {
+    machine: &'a Machine,
+    pub joints: Vec<Joint>,
+}
+
+impl<'a> Tree<'a> {
+    /// Of a machine.
+    pub fn of(machine: &'a Machine) -> Self {
+        let parts = machine.resolved_links();
+        let turned = |k: usize| {
+            let on = machine.motors().on(k);
+            let is_turned = |j: &usize| parts[*j].drive == k && parts[*j].parent.map(|p| parts[p].drive) == on;
+            (0..parts.len()).find(is_turned)
+        };
+        let links = (0..machine.drives()).map(turned).collect::<Vec<_>>();
+        let direct = Self { machine, joints: joints(machine, &links) };
+        match direct.is_readable() {
+            true => direct,
+            false => Self { machine, joints: joints(machine, &vec![None; machine.drives()]) },
+        }
+    }
+
+    /// What a part is called.
+    pub fn name(&self, part: Part) -> String {
+        let spec = self.machine.spec();
+        let link = |j: usize| quoted(&self.machine.links()[j].name);
+        let drive = |k: usize| quoted(&spec.drives[k].name);
+        match part {
+            Part::Base => "base".into(),
+            Part::Link(j) => format!("link_{}", link(j)),
+            Part::Shaft(k) => format!("shaft_{}", drive(k)),
+            Part::Rotor(k) => format!("rotor_{}", drive(k)),
+            Part::Between(j, number) => format!("pin_{number}_of_link_{}", link(j)),
+            Part::End => "end_effector".into(),
+            Part::Payload => "payload".into(),
+        }
+    }
+
+    /// What a joint is called.
+    pub fn joint_name(&self, joint: &Joint) -> String {
+        match joint.turns {
+            Turns::Motor(k) => format!("drive_{}", quoted(&self.machine.spec().drives[k].name)),
+            _ => format!("joint_{}", self.name(joint.child)),
+        }
+    }
+
+    /// What the joint is called that holds a part.
+    pub fn holder(&self, part: Part) -> String {
+        let joint = self.joints.iter().find(|joint| joint.child == part);
+        joint.map_or_else(|| format!("joint_{}", self.name(part)), |joint| self.joint_name(joint))
+    }
+
+    /// Whether joints come after what they follow, from the root to the tips: in the order of the file, and in that of
+    /// their names, as others keep them.
+    fn is_readable(&self) -> bool {
+        let mut by_name: Vec<(String, &Joint)> =
+            self.joints.iter().map(|joint| (self.joint_name(joint), joint)).collect();
+        by_name.sort_by(|(a, _), (b, _)| a.cmp(b));
+        let by_name: Vec<&Joint> = by_name.into_iter().map(|(_, joint)| joint).collect();
+        is_ordered(&self.joints.iter().collect::<Vec<_>>()) && is_ordered(&by_name)
+    }
+}
+
+/// Whether joints that follow come after those that they follow, depth first.
+fn is_ordered(joints: &[&Joint]) -> bool {
+    let mut below: BTreeMap<Part, Vec<&Joint>> = BTreeMap::new();
+    for joint in joints.iter().rev() {
+        below.entry(joint.parent).or_default().push(joint);
+    }
+    let (mut open, mut seen) = (below.remove(&Part::Base).unwrap_or_default(), Vec::new());
+    while let Some(joint) = open.pop() {
+        match joint.turns {
+            Turns::Motor(k) => seen.push(k),
+            Turns::Follows(k, _) if !seen.contains(&k) => return false,
+            Turns::Follows(..) | Turns::Not => {}
+        }
+        open.extend(below.remove(&joint.child).unwrap_or_default());
+    }
+    true
+}
+
+/// The joints of a machine whose motors turn these links; none: a shaft.
+fn joints(machine: &Machine, turned: &[Option<usize>]) -> Vec<Joint> {
+    let parts = machine.resolved_links();
+    let motors = machine.motors();
+    let root = |j: usize| match parts[j].parent {
+        None => (Part::Base, 0.0),
+        Some(parent) => (Part::Link(parent), parts[parent].sign * parts[j].at),
+    };
+    let driven = |k: usize| turned[k].map_or(Part::Shaft(k), Part::Link);
+    // A shaft sits on what turns with the drive that carries its motor, at its root.
+    let seat = |k: usize| match (turned[k], motors.on(k)) {
+        (Some(j), _) => root(j),
+        (None, Some(on)) => (driven(on), 0.0),
+        (None, None) => (Part::Base, 0.0),
+    };
+    let mut joints = Vec::new();
+    for k in 0..machine.drives() {
+        let (parent, at) = seat(k);
+        joints.push(Joint { parent, at, child: driven(k), turns: Turns::Motor(k) });
+    }
+    for (k, drive) in machine.spec().drives.iter().enumerate() {
+        if let Some(rotor) = drive.rotor {
+            let (parent, at) = seat(k);
+            joints.push(Joint { parent, at, child: Part::Rotor(k), turns: Turns::Follows(k, rotor.ratio) });
+        }
+    }
+    for j in (0..parts.len()).filter(|j| !turned.contains(&Some(*j))) {
+        let (mut parent, mut at) = root(j);
+        let turns = turns(machine, parts[j].parent.map(|p| parts[p].drive), Some(parts[j].drive));
+        let (last, first) = match turns.split_last() {
+            Some((last, first)) => (Turns::Follows(last.0, last.1), first),
+            None => (Turns::Not, &[][..]),
+        };
+        for (number, (k, sign)) in first.iter().enumerate() {
+            let child = Part::Between(j, number + 1);
+            joints.push(Joint { parent, at, child, turns: Turns::Follows(*k, *sign) });
+            (parent, at) = (child, 0.0);
+        }
+        joints.push(Joint { parent, at, child: Part::Link(j), turns: last });
+    }
+    let (j, payload) = (machine.end_link(), machine.spec().payload);
+    let at = machine.end_effector()[parts[j].drive] - parts[j].root[parts[j].drive];
+    joints.push(Joint { parent: Part::Link(j), at, child: Part::End, turns: Turns::Not });
+    if payload.mass > 0.0 || payload.inertia > 0.0 {
+        joints.push(Joint { parent: Part::End, at: 0.0, child: Part::Payload, turns: Turns::Not });
+    }
+    joints
+}
+
+/// q_to − q_from as a sum of motor angles, each with 1 or −1, in an order in which none is far from the next.
+fn turns(machine: &Machine, from: Option<usize>, to: Option<usize>) -> Vec<(usize, f64)> {
+    let motors = machine.motors();
+    let carriers = |k: Option<usize>| std::iter::successors(k, |k| motors.on(*k)).collect::<Vec<_>>();
+    let (up, down) = (carriers(from), carriers(to));
+    let shared = down.iter().rev().zip(up.iter().rev()).take_while(|(a, b)| a == b).count();
+    let back = up[..up.len() - shared].iter().map(|k| (*k, -1.0));
+    back.chain(down[..down.len() - shared].iter().rev().map(|k| (*k, 1.0))).collect()
+}

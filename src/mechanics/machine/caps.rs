@@ -1,0 +1,64 @@
+//! How much a machine may hold: all work on a machine grows with what it holds, so each list has an end.
+
+use super::error::{MachineError, Place};
+use super::spec::MachineSpec;
+use crate::mechanics::planar::MAX_DRIVES;
+
+/// The most links.
+pub const MAX_LINKS: usize = 200;
+/// The most links in a row from the base to a tip, each on the one before: products of their lengths, which the
+/// equations of balance list one by one, grow with the square of it.
+pub const MAX_IN_A_ROW: usize = 32;
+/// The most counterweights: as many as design puts on links, one on each.
+pub const MAX_COUNTERWEIGHTS: usize = MAX_LINKS;
+/// The most pins that close loops.
+const MAX_CLOSURES: usize = 200;
+/// The most relative angles: two for each pair of drives, with some to spare.
+const MAX_ANGLES: usize = 64;
+/// The most named lengths: one for each link.
+const MAX_LENGTHS: usize = MAX_LINKS;
+/// The most characters of a name.
+const MAX_NAME: usize = 100;
+/// The most characters of a summary.
+const MAX_SUMMARY: usize = 1000;
+
+/// What a machine holds several of: its name, how many there are, and the fewest and most.
+type Cap = (&'static str, fn(&MachineSpec) -> usize, usize, usize);
+
+const CAPS: [Cap; 6] = [
+    ("drives", |spec| spec.drives.len(), 1, MAX_DRIVES),
+    ("links", |spec| spec.links.len(), 1, MAX_LINKS),
+    ("counterweights", |spec| spec.counterweights.len(), 0, MAX_COUNTERWEIGHTS),
+    ("closures", |spec| spec.closures.len(), 0, MAX_CLOSURES),
+    ("angles", |spec| spec.angles.len(), 0, MAX_ANGLES),
+    ("named lengths", |spec| spec.lengths.len(), 0, MAX_LENGTHS),
+];
+
+/// Refuses a description that holds too much or too little.
+pub(super) fn check_counts(spec: &MachineSpec) -> Result<(), MachineError> {
+    for (what, count, fewest, most) in CAPS {
+        let count = count(spec);
+        if !(fewest..=most).contains(&count) {
+            let want = if fewest == 0 { format!("at most {most}") } else { format!("{fewest} to {most}") };
+            return Err(MachineError::Count { what, count, want });
+        }
+    }
+    for (i, drive) in spec.drives.iter().enumerate() {
+        brief(&drive.name, MAX_NAME, || Place::new(&[&"drive", &i, &"name"]))?;
+    }
+    for (i, link) in spec.links.iter().enumerate() {
+        brief(&link.name, MAX_NAME, || Place::new(&[&"link", &i, &"name"]))?;
+    }
+    for (i, angle) in spec.angles.iter().enumerate() {
+        brief(&angle.name, MAX_NAME, || Place::new(&[&"angle", &i, &"name"]))?;
+    }
+    brief(&spec.name, MAX_NAME, || Place::new(&[&"name"]))?;
+    brief(&spec.summary, MAX_SUMMARY, || Place::new(&[&"summary"]))?;
+    spec.lengths.keys().try_for_each(|name| brief(name, MAX_NAME, || Place::new(&[&"lengths", name])))
+}
+
+/// Refuses text that is too long.
+fn brief(text: &str, most: usize, place: impl Fn() -> Place) -> Result<(), MachineError> {
+    let is_brief = text.chars().nth(most).is_none();
+    is_brief.then_some(()).ok_or_else(|| MachineError::TooLong { place: place(), text: text.into(), most })
+}
