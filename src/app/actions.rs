@@ -5,12 +5,13 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::command::Look;
 use super::theme::other;
-use super::{Command, ComparisonCommand, FileDialog, Layout, Purpose, ViewState, set_b};
+use super::{Command, ComparisonCommand, FileDialog, Layout, PlotFile, Purpose, ViewState, set_b};
 use crate::picture::charts::choice::Change;
 use crate::picture::scene::Measure;
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::session::scenario::Scenario;
 use crate::session::{Edit, Session};
+use crate::simulation::signals::signals;
 
 /// One thing that can be asked for.
 pub struct Action {
@@ -18,6 +19,8 @@ pub struct Action {
     pub group: Group,
     /// What it does.
     pub name: &'static str,
+    /// Other words that it is sought by.
+    pub also: &'static str,
     /// The keys that ask for it; the first is shown.
     pub keys: &'static [KeyboardShortcut],
     /// Where it is found in the window.
@@ -95,6 +98,18 @@ fn dialog(session: &Session, purpose: Purpose) -> Option<Command> {
     Some(Command::Dialog(Some(FileDialog::suggest(session, purpose))))
 }
 
+/// The machine and the task as they stand, with nothing done to them.
+fn new_session(session: &Session) -> Option<Command> {
+    Some(Command::Open(Box::new(session.scenario().without_edits())))
+}
+
+/// The plot that stands first, in a file.
+fn plot_file(session: &Session, view_state: &ViewState, file: PlotFile) -> Option<Command> {
+    let signals = signals(&session.scenario().machine);
+    let plots = view_state.charts.plots(session.scenario(), &signals, view_state.pins);
+    dialog(session, Purpose::Plot(plots.first()?.name.clone(), file))
+}
+
 /// The time that plots show, so many times as close about the instant on display; all of it without a number.
 fn charts(session: &Session, view_state: &ViewState, factor: Option<f64>) -> Option<Command> {
     let (extent, chosen) = (super::plots::extent(session), view_state.charts.range);
@@ -124,23 +139,24 @@ fn of_machine(view_state: &ViewState, command: Command) -> Option<Command> {
 }
 
 macro_rules! actions {
-    ($($group:ident, $name:literal, [$($key:expr),*], $place:literal, $command:expr;)+) => {
+    ($($group:ident, $name:literal $(= $also:literal)?, [$($key:expr),*], $place:literal, $command:expr;)+) => {
         &[$(Action {
-            group: Group::$group, name: $name, keys: &[$($key),*], place: $place, command: $command,
+            group: Group::$group, name: $name, also: concat!($($also)?), keys: &[$($key),*], place: $place,
+            command: $command,
         }),+]
     };
 }
 
 /// Every action.
 pub const ACTIONS: &[Action] = actions![
-    Run, "Play, pause, start over", [on(PLAIN, Key::Space)], "top bar", |_, _| Some(Command::TogglePlay);
+    Run, "Play, pause, start over" = "run start stop animate", [on(PLAIN, Key::Space)], "top bar", |_, _| Some(Command::TogglePlay);
     Run, "One step on", [on(PLAIN, Key::ArrowRight)], "top bar", |_, _| Some(Command::Step(1));
     Run, "One step back", [on(PLAIN, Key::ArrowLeft)], "keyboard", |_, _| Some(Command::Step(-1));
     Run, "Ten steps on", [on(SHIFT, Key::ArrowRight)], "keyboard", |_, _| Some(Command::Step(10));
     Run, "Ten steps back", [on(SHIFT, Key::ArrowLeft)], "keyboard", |_, _| Some(Command::Step(-10));
-    Run, "To the start", [on(PLAIN, Key::Home)], "top bar", |_, _| Some(Command::Seek(0.0));
-    Run, "To the newest instant", [on(PLAIN, Key::End)], "keyboard", |s, _| Some(Command::Seek(s.length()));
-    Run, "Bookmark here, or away", [on(PLAIN, Key::K)], "time line", |s, _| {
+    Run, "To the start" = "rewind reset beginning", [on(PLAIN, Key::Home)], "top bar", |_, _| Some(Command::Seek(0.0));
+    Run, "To the newest instant" = "end last", [on(PLAIN, Key::End)], "keyboard", |s, _| Some(Command::Seek(s.length()));
+    Run, "Bookmark here, or away" = "remember mark pin", [on(PLAIN, Key::K)], "time line", |s, _| {
         let time = s.frame().time;
         let name = if s.bookmark_at(time).is_some() { String::new() } else { s.free_name() };
         Some(Command::Bookmark(time, name))
@@ -158,15 +174,15 @@ pub const ACTIONS: &[Action] = actions![
     Run, "Compare with the newest branch", [on(SHIFT, Key::G)], "history", |s, _| {
         s.branch_count().checked_sub(1).map(Command::CompareBranch)
     };
-    Run, "Play over and over, what plots show of it if a range was chosen", [on(PLAIN, Key::O)], "top bar, loop",
+    Run, "Play over and over, what plots show of it if a range was chosen" = "loop repeat cycle", [on(PLAIN, Key::O)], "top bar, loop",
         |_, v| Some(Command::Loop(!v.loops));
-    Run, "Twice as slow", [on(PLAIN, Key::Comma)], "top bar, speed", |_, v| slower(v);
-    Run, "Twice as fast", [on(PLAIN, Key::Period)], "top bar, speed", |_, v| faster(v);
+    Run, "Twice as slow" = "speed slow motion", [on(PLAIN, Key::Comma)], "top bar, speed", |_, v| slower(v);
+    Run, "Twice as fast" = "speed faster", [on(PLAIN, Key::Period)], "top bar, speed", |_, v| faster(v);
 
-    Task, "The paper's case 1, as it is in the paper", [on(PLAIN, Key::Num1)], "top bar, scenario", |_, _| case(0);
-    Task, "The paper's case 2, as it is in the paper", [on(PLAIN, Key::Num2)], "top bar, scenario", |_, _| case(1);
-    Task, "The paper's case 3, as it is in the paper", [on(PLAIN, Key::Num3)], "top bar, scenario", |_, _| case(2);
-    Task, "Put the machine back on its planned path", [on(PLAIN, Key::B)], "left panel", |s, _| {
+    Task, "The paper's case 1, as it is in the paper" = "example demo straight line", [on(PLAIN, Key::Num1)], "top bar, scenario", |_, _| case(0);
+    Task, "The paper's case 2, as it is in the paper" = "example demo", [on(PLAIN, Key::Num2)], "top bar, scenario", |_, _| case(1);
+    Task, "The paper's case 3, as it is in the paper" = "example demo reactionless", [on(PLAIN, Key::Num3)], "top bar, scenario", |_, _| case(2);
+    Task, "Put the machine back on its planned path" = "reset return stop leading by hand", [on(PLAIN, Key::B)], "left panel", |s, _| {
         s.is_led().then_some(Command::BackToPath)
     };
     Task, "Target to the right by 10 mm; Shift: by 1 mm", [on(CTRL, Key::ArrowRight)], "scene", |s, _| {
@@ -179,33 +195,33 @@ pub const ACTIONS: &[Action] = actions![
     Task, "Target down by 10 mm; Shift: by 1 mm", [on(CTRL, Key::ArrowDown)], "scene", |s, _| {
         nudge(s, [0.0, -NUDGE[0]])
     };
-    Task, "Turn b on by 0.01 rad; Shift: by 0.001 rad", [on(PLAIN, Key::CloseBracket)], "left panel", |s, v| {
+    Task, "Turn b on by 0.01 rad; Shift: by 0.001 rad" = "pose constant plane", [on(PLAIN, Key::CloseBracket)], "left panel", |s, v| {
         turn(s, v, TURN[0])
     };
-    Task, "Turn b back by 0.01 rad; Shift: by 0.001 rad", [on(PLAIN, Key::OpenBracket)], "left panel", |s, v| {
+    Task, "Turn b back by 0.01 rad; Shift: by 0.001 rad" = "pose constant plane", [on(PLAIN, Key::OpenBracket)], "left panel", |s, v| {
         turn(s, v, -TURN[0])
     };
     Task, "Turn the task along with b", [], "left panel", |_, v| Some(Command::TurnTask(!v.turn_task));
-    Task, "Draw a path with the pointer", [on(PLAIN, Key::P)], "tool bar", |_, v| {
+    Task, "Draw a path with the pointer" = "curve freehand sketch trajectory", [on(PLAIN, Key::P)], "tool bar", |_, v| {
         of_machine(v, Command::Draw(v.stroke.is_none()))
     };
-    Task, "Push the end effector with the pointer", [on(PLAIN, Key::U)], "tool bar", |_, v| {
+    Task, "Push the end effector with the pointer" = "force disturb", [on(PLAIN, Key::U)], "tool bar", |_, v| {
         of_machine(v, Command::Push(!v.pushing))
     };
 
     View, "The next view: 2D, 3D, joint space, tower, design", [on(PLAIN, Key::V)], "tool bar", |s, v| {
         next_view(s, v)
     };
-    View, "2D: the machine from above", [], "tool bar", |_, v| view(v, ViewKind::Flat);
-    View, "3D: the machine in space", [], "tool bar", |_, v| view(v, ViewKind::Space);
-    View, "Joint space", [], "tool bar", |s, v| view_of_planes(s, v, ViewKind::Joints);
-    View, "Tower of workspaces", [], "tool bar", |s, v| view_of_planes(s, v, ViewKind::Tower);
-    View, "Design: masses, centres of mass, lengths and counterweights", [on(PLAIN, Key::D)], "tool bar", |_, v| {
+    View, "2D: the machine from above" = "flat top", [], "tool bar", |_, v| view(v, ViewKind::Flat);
+    View, "3D: the machine in space" = "perspective orbit", [], "tool bar", |_, v| view(v, ViewKind::Space);
+    View, "Joint space" = "configuration plane q", [], "tool bar", |s, v| view_of_planes(s, v, ViewKind::Joints);
+    View, "Tower of workspaces" = "b height stack", [], "tool bar", |s, v| view_of_planes(s, v, ViewKind::Tower);
+    View, "Design: masses, centres of mass, lengths and counterweights" = "balance edit machine links trim", [on(PLAIN, Key::D)], "tool bar", |_, v| {
         Some(Command::View(if v.view == ViewKind::Design { ViewKind::Flat } else { ViewKind::Design }))
     };
-    View, "Equations of the paper with today's numbers, beside the design view", [on(PLAIN, Key::E)], "design view, tab",
+    View, "Equations of the paper with today's numbers, beside the design view" = "learn formulas theory", [on(PLAIN, Key::E)], "design view, tab",
         |_, v| learn(v);
-    View, "Show everything", [on(PLAIN, Key::F)], "tool bar", |_, _| Some(Command::Fit);
+    View, "Show everything" = "fit frame zoom home centre", [on(PLAIN, Key::F)], "tool bar", |_, _| Some(Command::Fit);
     View, "Zoom in", [on(PLAIN, Key::Plus), on(PLAIN, Key::Equals)], "scene, wheel", |_, _| {
         Some(Command::Look(Look::Zoom(ZOOM)))
     };
@@ -219,21 +235,21 @@ pub const ACTIONS: &[Action] = actions![
     View, "Turn or pan the view right", [on(ALT, Key::ArrowRight)], "scene, drag", |_, _| look(ORBIT, 0.0);
     View, "Turn or pan the view up", [on(ALT, Key::ArrowUp)], "scene, drag", |_, _| look(0.0, ORBIT);
     View, "Turn or pan the view down", [on(ALT, Key::ArrowDown)], "scene, drag", |_, _| look(0.0, -ORBIT);
-    View, "Shade the workspace by dexterity, one measure after the other", [on(PLAIN, Key::J)], "tool bar",
+    View, "Shade the workspace by dexterity, one measure after the other" = "manipulability heat map colour", [on(PLAIN, Key::J)], "tool bar",
         |_, v| of_machine(v, Command::Dexterity(Measure::after(v.dexterity)));
-    View, "Snapshots along the motion", [on(PLAIN, Key::S)], "tool bar", |_, v| {
+    View, "Snapshots along the motion" = "ghost poses strobe", [on(PLAIN, Key::S)], "tool bar", |_, v| {
         of_machine(v, Command::Snapshots(!v.snapshots))
     };
-    View, "Exaggerate the motion of the base, or show it as it is", [on(PLAIN, Key::X)], "left panel, base", |s, v| {
+    View, "Exaggerate the motion of the base, or show it as it is" = "enlarge magnify shake", [on(PLAIN, Key::X)], "left panel, base", |s, v| {
         s.scenario().base.moves().then_some(Command::Exaggerate(!v.exaggerates_base))
     };
-    View, "Panel of settings, shown or hidden", [on(PLAIN, Key::Num8)], "tool bar, layout", |_, v| {
+    View, "Panel of settings, shown or hidden" = "left sidebar parameters", [on(PLAIN, Key::Num8)], "tool bar, layout", |_, v| {
         Some(Command::Side(!v.side.shown))
     };
-    View, "Panel of plots, shown or hidden", [on(PLAIN, Key::Num9)], "tool bar, layout", |_, v| {
+    View, "Panel of plots, shown or hidden" = "right sidebar charts graphs", [on(PLAIN, Key::Num9)], "tool bar, layout", |_, v| {
         Some(Command::Plots(!v.plots.shown))
     };
-    View, "Nothing but the scene, or all panels", [on(PLAIN, Key::Num0)], "keyboard", |_, v| {
+    View, "Nothing but the scene, or all panels" = "full screen hide", [on(PLAIN, Key::Num0)], "keyboard", |_, v| {
         Some(Command::Panels(!(v.side.shown || v.plots.shown)))
     };
     View, "Settings and plots change sides", [on(PLAIN, Key::Num4)], "tool bar, layout", |_, v| {
@@ -245,24 +261,24 @@ pub const ACTIONS: &[Action] = actions![
     View, "Compare: scene, wide plots and the runs side by side", [on(PLAIN, Key::Num6)], "tool bar, layout", |_, _| {
         Some(Command::Layout(Layout::Compare))
     };
-    View, "Present: the scene alone, what counts in large type", [on(PLAIN, Key::Num7)], "tool bar, layout", |_, _| {
+    View, "Present: the scene alone, what counts in large type" = "presentation slides talk full screen", [on(PLAIN, Key::Num7)], "tool bar, layout", |_, _| {
         Some(Command::Layout(Layout::Present))
     };
     View, "What a repaint takes, or no longer", [on(PLAIN, Key::F12)], "keyboard", |_, v| Some(Command::Times(!v.times));
-    View, "Light or dark", [on(PLAIN, Key::L)], "top bar", |_, v| Some(Command::Theme(other(v.theme)));
+    View, "Light or dark" = "theme night mode colours", [on(PLAIN, Key::L)], "top bar", |_, v| Some(Command::Theme(other(v.theme)));
 
-    Analysis, "The same task done in other ways, side by side", [on(PLAIN, Key::C)], "tool bar", |_, v| {
+    Analysis, "The same task done in other ways, side by side" = "compare alternatives table", [on(PLAIN, Key::C)], "tool bar", |_, v| {
         Some(Command::Compare(!v.compare))
     };
     Analysis, "Add this run to the runs side by side", [], "side by side", |_, v| {
         v.compare.then_some(Command::Comparison(ComparisonCommand::Keep))
     };
-    Analysis, "Tolerances: what the bases of many machines feel, and the spectrum", [on(PLAIN, Key::T)],
+    Analysis, "Tolerances: what the bases of many machines feel, and the spectrum" = "monte carlo errors scatter", [on(PLAIN, Key::T)],
         "tool bar", |_, v| Some(Command::Study(!v.study));
-    Analysis, "Inside the machine: what the pins carry", [on(PLAIN, Key::I)], "tool bar", |_, v| {
+    Analysis, "Inside the machine: what the pins carry" = "forces joints bearings loads", [on(PLAIN, Key::I)], "tool bar", |_, v| {
         Some(Command::Pins(!v.pins))
     };
-    Analysis, "Plot any signal", [on(PLAIN, Key::A)], "below the plots", |_, _| Some(Command::LookFor);
+    Analysis, "Plot any signal" = "chart graph curve add", [on(PLAIN, Key::A)], "below the plots", |_, _| Some(Command::LookFor);
     Analysis, "Statistics of the time that plots show", [], "menu of a plot", |_, v| {
         Some(Command::Charts(Change::Statistics(!v.charts.statistics)))
     };
@@ -270,19 +286,27 @@ pub const ACTIONS: &[Action] = actions![
         Some(Command::Mark(v.mark.is_none().then(|| s.frame().time)))
     };
 
-    File, "Undo", [on(CTRL, Key::Z)], "keyboard", |s, _| s.undo_title().map(|_| Command::Undo);
+    File, "Undo" = "back revert", [on(CTRL, Key::Z)], "keyboard", |s, _| s.undo_title().map(|_| Command::Undo);
     File, "Redo", [on(CTRL, Key::Y), on(FINE, Key::Z)], "keyboard", |s, _| s.redo_title().map(|_| Command::Redo);
-    File, "History: what was done, to go back and forth in", [on(PLAIN, Key::H)], "tool bar", |_, v| {
+    File, "History: what was done, to go back and forth in" = "log changes branches undo", [on(PLAIN, Key::H)], "tool bar", |_, v| {
         (v.layout != Layout::Present).then_some(Command::History(!v.history))
     };
-    File, "Open a session or scenario", [on(CTRL, Key::O)], "top bar, scenario", |s, _| dialog(s, Purpose::Open);
-    File, "Save the session", [on(CTRL, Key::S)], "top bar, scenario", |s, _| dialog(s, Purpose::Save);
-    File, "Quit; asks first if changes are in no file", [on(CTRL, Key::Q)], "window frame", |_, _| Some(Command::Quit);
-    File, "Take the machine elsewhere: MJCF, URDF, DXF…", [], "design", |s, _| dialog(s, Purpose::Machine);
-    File, "Record for the Rerun viewer", [on(PLAIN, Key::R)], "top bar", |s, _| dialog(s, Purpose::Record);
-    File, "Find a command", [on(CTRL, Key::K)], "top bar", |_, v| Some(Command::Find(v.finder.is_none()));
-    File, "Tour: what this is about, in seven steps", [], "?", |_, v| Some(Command::Tour(v.tour.is_none()));
-    File, "Keys and gestures", [on(PLAIN, Key::F1)], "top bar, ?", |_, v| Some(Command::Help(!v.help));
+    File, "New session: this machine and its task, nothing done yet" = "start over fresh clear reset blank", [],
+        "top bar, scenario", |s, _| new_session(s);
+    File, "Open a session, scenario, machine or model" = "load file import machine model urdf mjcf xml toml recent", [on(CTRL, Key::O)], "top bar, scenario", |s, _| dialog(s, Purpose::Open);
+    File, "Save the session" = "store file export toml keep", [on(CTRL, Key::S)], "top bar, scenario", |s, _| dialog(s, Purpose::Save);
+    File, "Quit; asks first if changes are in no file" = "exit close leave", [on(CTRL, Key::Q)], "window frame", |_, _| Some(Command::Quit);
+    File, "Values of the first plot as CSV" = "export table data numbers spreadsheet excel signals save", [],
+        "menu of a plot", |s, v| plot_file(s, v, PlotFile::Csv);
+    File, "Picture of the first plot as PNG" = "image export screenshot figure save", [], "menu of a plot",
+        |s, v| plot_file(s, v, PlotFile::Png);
+    File, "Drawing of the first plot as SVG" = "picture image vector export figure save", [], "menu of a plot",
+        |s, v| plot_file(s, v, PlotFile::Svg);
+    File, "Take the machine elsewhere: MJCF, URDF, DXF…" = "export cad mujoco ros robot svg csv parts list write", [], "design", |s, _| dialog(s, Purpose::Machine);
+    File, "Record for the Rerun viewer" = "rrd video capture export movie", [on(PLAIN, Key::R)], "top bar", |s, _| dialog(s, Purpose::Record);
+    File, "Find a command" = "palette search", [on(CTRL, Key::K)], "top bar", |_, v| Some(Command::Find(v.finder.is_none()));
+    File, "Tour: what this is about, in seven steps" = "tutorial introduction learn guide start help", [], "?", |_, v| Some(Command::Tour(v.tour.is_none()));
+    File, "Keys and gestures" = "shortcuts help keyboard", [on(PLAIN, Key::F1)], "top bar, ?", |_, v| Some(Command::Help(!v.help));
 ];
 
 /// The same keys with Shift move by less.

@@ -1,9 +1,9 @@
 //! [`Change`]: what a person does to a session that may take long: it can be made of a copy of the session beside the
 //! window, and of the session itself all the same.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use super::RefusedEdit;
+use super::{LeftOff, RefusedEdit};
 use crate::files::Found;
 use crate::session::scenario::{Scenario, TaskKind};
 use crate::session::{Edit, Refusal, Session, Watch};
@@ -123,10 +123,18 @@ pub(super) enum Source {
     Scenario(Box<Scenario>),
     /// Read from a file.
     File(PathBuf),
+    /// Read from the journal of a program that did not end in order.
+    Journal(PathBuf),
 }
 
-/// What was opened, and what is to be said of where it comes from.
-pub(super) type Opened = (Session, Option<String>);
+/// What was opened.
+pub(super) struct Opened {
+    pub session: Session,
+    /// What is to be said of where it comes from.
+    pub said: Option<String>,
+    /// Where a person left off, where a journal says so.
+    pub left_off: Option<LeftOff>,
+}
 
 /// Why something was not opened.
 #[derive(Debug)]
@@ -138,20 +146,26 @@ pub(super) struct NotOpened {
 impl Source {
     /// Reads, plans and replays it.
     pub fn open(self, watch: Watch<'_>) -> Result<Opened, NotOpened> {
-        let (Found { scenario, made }, from_file) = match self {
-            Self::Scenario(scenario) => (Found { scenario: *scenario, made: None }, false),
-            Self::File(path) => {
-                let found = crate::files::scenario(&path.display().to_string());
-                let scenario =
-                    found.map_err(|why| NotOpened { why: brief(&why.to_string()).into_owned(), refused: None })?;
-                (scenario, true)
+        let read = |path: &Path| {
+            let found = crate::files::scenario(&path.display().to_string());
+            found.map_err(|why| NotOpened { why: brief(&why.to_string()).into_owned(), refused: None })
+        };
+        let (Found { scenario, made }, from_file, left_off) = match self {
+            Self::Scenario(scenario) => (Found { scenario: *scenario, made: None }, false, None),
+            Self::File(path) => (read(&path)?, true, None),
+            Self::Journal(path) => {
+                let text = crate::files::text::read(&path).unwrap_or_default();
+                (read(&path)?, true, LeftOff::of(&text))
             }
         };
         let change = scenario.task.whole();
-        let session = Session::open_while(scenario, watch).map_err(|refusal| NotOpened {
+        let mut session = Session::open_while(scenario, watch).map_err(|refusal| NotOpened {
             why: refusal.to_string(),
             refused: from_file.then(|| RefusedEdit::of(&Edit::of("task", change), &refusal)),
         })?;
-        Ok((session, made))
+        if let Some(LeftOff { time, .. }) = &left_off {
+            session.seek_while(*time, watch);
+        }
+        Ok(Opened { session, said: made, left_off })
     }
 }

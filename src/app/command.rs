@@ -76,6 +76,8 @@ pub enum Command {
     Draw(bool),
     /// Show where in the panel of settings a thing of the scene stands.
     Reveal(Handle),
+    /// Show a setting there, by its path.
+    LookUp(String),
     /// Show or hide the panel of settings on the left.
     Side(bool),
     /// Show or hide the panel of plots on the right.
@@ -197,6 +199,7 @@ impl Command {
             | Self::Look(_)
             | Self::NameBookmark(None)
             | Self::Reveal(_)
+            | Self::LookUp(_)
             | Self::Side(_)
             | Self::Plots(_)
             | Self::Panels(_)
@@ -378,7 +381,7 @@ impl Purpose {
     /// What a dialog asks, what its button says, and how such a file may be called.
     pub(super) fn words(&self) -> [&'static str; 3] {
         match self {
-            Self::Open => ["Open a session", "Open", "session.toml"],
+            Self::Open => ["Open a session, machine or model", "Open", ".toml .urdf .xml"],
             Self::Save => ["Save the session", "Save", "session.toml"],
             Self::Record => ["Record for the Rerun viewer", "Record", "run.rrd"],
             Self::Machine => ["Take along: .xml .urdf .svg .dxf .csv .md", "Save", "machine.urdf"],

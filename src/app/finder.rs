@@ -1,8 +1,11 @@
-//! The list of commands: every action, scenario and machine, found by a few letters.
+//! The list of commands: every action, scenario, machine, setting and recent file, found by a few letters.
+
+use std::path::PathBuf;
 
 use egui::{Align2, Area, Frame, Id, Key, Modifiers, Order, RichText, ScrollArea, TextEdit, Ui, vec2};
 
 use super::actions::{ACTIONS, shown};
+use super::facts::Facts;
 use super::theme::{bold, colour, plain};
 use super::top::with_machine;
 use super::widgets::name;
@@ -16,6 +19,10 @@ use crate::session::scenario::Scenario;
 struct Entry<'a> {
     title: String,
     place: &'static str,
+    /// Other words that it is sought by.
+    also: &'a str,
+    /// Shown only to who asks for it.
+    hides: bool,
     keys: String,
     /// Made for the line that is carried out alone.
     command: Box<dyn FnOnce() -> Command + 'a>,
@@ -24,18 +31,32 @@ struct Entry<'a> {
 /// The most lines that are kept.
 const MOST: usize = 60;
 
+/// How many lines are seen at once, and how high each is with the gap below, points.
+const ROWS: f32 = 10.0;
+const ROW: f32 = 27.0;
+
 /// What can be done now, in the order of the table.
-fn entries<'a>(session: &'a Session, view_state: &ViewState) -> Vec<Entry<'a>> {
+fn entries<'a>(
+    session: &'a Session,
+    (facts, recent): (&'a Facts, &'a [PathBuf]),
+    view_state: &ViewState,
+) -> Vec<Entry<'a>> {
     let actions = ACTIONS.iter().filter_map(|action| {
         let command = (action.command)(session, view_state)?;
         let keys = action.keys.first().map(shown).unwrap_or_default();
-        Some(Entry { title: action.name.into(), place: action.place, keys, command: Box::new(|| command) })
+        let (title, place, also) = (action.name.into(), action.place, action.also);
+        Some(Entry { title, place, also, hides: false, keys, command: Box::new(|| command) })
     });
-    let open = |title: String, place, scenario: Box<dyn FnOnce() -> Scenario + 'a>| Entry {
+    let entry = |title: String, place, also, command: Box<dyn FnOnce() -> Command + 'a>| Entry {
         title,
         place,
+        also,
+        hides: false,
         keys: String::new(),
-        command: Box::new(|| Command::Open(Box::new(scenario()))),
+        command,
+    };
+    let open = |title: String, place, scenario: Box<dyn FnOnce() -> Scenario + 'a>| {
+        entry(title, place, "open example demo", Box::new(|| Command::Open(Box::new(scenario()))))
     };
     let scenarios = Scenario::builtins().map(|scenario| {
         open(format!("Scenario: {}", scenario.title), "top bar, scenario", Box::new(|| scenario.clone()))
@@ -44,15 +65,28 @@ fn entries<'a>(session: &'a Session, view_state: &ViewState) -> Vec<Entry<'a>> {
     let machines = machine::builtins().iter().filter(move |machine| *machine != present).map(|machine| {
         open(format!("Machine: {}", machine.name()), "top bar, machine", Box::new(|| with_machine(session, machine)))
     });
-    actions.chain(scenarios).chain(machines).collect()
+    let recent = recent.iter().map(|file| {
+        let title = format!("Recent: {}", file.file_name().unwrap_or(file.as_os_str()).to_string_lossy());
+        entry(title, "top bar, scenario", "open file last", Box::new(|| Command::OpenFile(file.clone())))
+    });
+    let settings = facts.settings().iter().map(|setting| {
+        let title = format!("Setting: {}", setting.path);
+        let look_up = || Command::LookUp(setting.path.clone());
+        Entry { hides: true, ..entry(title, "left panel, all settings", setting.key.words, Box::new(look_up)) }
+    });
+    actions.chain(recent).chain(scenarios).chain(machines).chain(settings).collect()
 }
 
 /// Those that answer what was typed, best first.
 fn found<'a>(entries: Vec<Entry<'a>>, sought: &str) -> Vec<Entry<'a>> {
-    let place = |entry: &Entry| search::score(sought, &format!("{} {}", entry.place, entry.keys)).map(|s| s / 4);
+    let score = |entry: &Entry| {
+        let place = || search::score(sought, &format!("{} {}", entry.place, entry.keys)).map(|s| s / 4);
+        search::score_with(sought, &entry.title, entry.also).or_else(place)
+    };
     let mut scored: Vec<(i32, Entry<'a>)> = entries
         .into_iter()
-        .filter_map(|entry| Some((search::score(sought, &entry.title).or_else(|| place(&entry))?, entry)))
+        .filter(|entry| !(entry.hides && sought.trim().is_empty()))
+        .filter_map(|entry| Some((score(&entry)? - i32::from(entry.hides), entry)))
         .collect();
     // Stable: among equals the order of the table stays.
     scored.sort_by_key(|(score, _)| -score);
@@ -60,10 +94,16 @@ fn found<'a>(entries: Vec<Entry<'a>>, sought: &str) -> Vec<Entry<'a>> {
 }
 
 /// Draws it.
-pub fn show(ctx: &egui::Context, session: &Session, view_state: &mut ViewState, commands: &mut Vec<Command>) {
+pub fn show(
+    ctx: &egui::Context,
+    session: &Session,
+    known: (&Facts, &[PathBuf]),
+    view_state: &mut ViewState,
+    commands: &mut Vec<Command>,
+) {
     let p = view_state.palette();
     let Some(mut finder) = view_state.finder.clone() else { return };
-    let list = found(entries(session, view_state), &finder.sought);
+    let list = found(entries(session, known, view_state), &finder.sought);
     finder.chosen = finder.chosen.min(list.len().saturating_sub(1));
     let pressed = |key| ctx.input_mut(|i| i.consume_key(Modifiers::NONE, key));
     let (up, down, enter) = (pressed(Key::ArrowUp), pressed(Key::ArrowDown), pressed(Key::Enter));
@@ -87,8 +127,10 @@ pub fn show(ctx: &egui::Context, session: &Session, view_state: &mut ViewState, 
                 finder.chosen = 0;
             }
             ui.add_space(4.0);
-            let room = (ctx.content_rect().height() - 220.0).clamp(120.0, 420.0);
-            ScrollArea::vertical().max_height(room).auto_shrink([false, true]).show(ui, |ui| {
+            let room = (ctx.content_rect().height() - 180.0).clamp(4.0 * ROW, ROWS * ROW);
+            // Else it would stay as low as it was when fewer lines were found.
+            let list_area = ScrollArea::vertical().max_height(room).min_scrolled_height(room);
+            list_area.auto_shrink([false, true]).show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 1.0;
                 for (i, entry) in list.iter().enumerate() {
                     let chosen = i == finder.chosen;
@@ -115,7 +157,7 @@ pub fn show(ctx: &egui::Context, session: &Session, view_state: &mut ViewState, 
 }
 
 fn line(ui: &mut Ui, p: &Palette, entry: &Entry<'_>, chosen: bool) -> egui::Response {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 26.0), egui::Sense::click());
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW - 1.0), egui::Sense::click());
     if chosen || response.hovered() {
         ui.painter().rect_filled(rect, 6.0, colour(p.line));
     }

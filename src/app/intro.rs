@@ -8,13 +8,13 @@ use egui::{Align2, Area, Id, RichText, Ui, vec2};
 use super::theme::{bold, card, colour, plain};
 use super::widgets::name;
 use super::{Command, Layout, ViewState};
-use crate::mechanics::planar::Vector;
 use crate::picture::numbers::signed;
 use crate::picture::paint::words::words;
 use crate::picture::paint::{Spot, paint};
 use crate::picture::scene::camera::Camera;
+use crate::picture::scene::exaggeration::Exaggeration;
 use crate::picture::scene::options::ViewOptions;
-use crate::picture::scene::palette::Palette;
+use crate::picture::scene::palette::{Palette, Theme};
 use crate::picture::scene::stage::Stage;
 use crate::picture::scene::{Rgba, Scene};
 use crate::session::scenario::Scenario;
@@ -41,12 +41,31 @@ struct Straight {
     stage: Stage,
 }
 
-/// What a hint asks for, and why.
-const HINTS: [(&str, &str); 3] = [
-    ("Drag the white ring.", "The arm follows without a reaction, as long as the ring stays inside the amber area."),
-    ("Now drag it out of the amber area.", "The arm waits at the edge, and says which pose constant b would reach it."),
-    ("Turn b: the slider on the left.", "The amber area turns. While time runs, the base feels what that costs."),
-];
+/// How many hints there are.
+const HINTS: usize = 3;
+
+/// What a hint asks for on a machine, and why; none where there is nothing to drag or to turn.
+fn hint(i: usize, session: &Session) -> Option<(String, String)> {
+    let map = session.run().pose_map().ok().filter(|_| session.follows_hands())?;
+    // What is amber: two drives reach a curve, more of them an area.
+    let (on, off, amber) = if map.angles() > 1 { ("inside", "out of", "area") } else { ("on", "off", "curve") };
+    let (title, why) = match i {
+        0 => (
+            "Drag the white ring.".into(),
+            format!("The arm follows without a reaction, as long as the ring stays {on} the amber {amber}."),
+        ),
+        1 => (
+            format!("Now drag it {off} the amber {amber}."),
+            "The arm waits at the edge, and says which pose constant b would reach it.".into(),
+        ),
+        2 => (
+            "Turn b: the amber ring at the base, or the slider.".into(),
+            format!("The amber {amber} turns. While time runs, the base feels what that costs."),
+        ),
+        _ => return None,
+    };
+    Some((title, why))
+}
 
 /// How long the run rests at its end before it starts over, s, and how often it does.
 const REST: f64 = 1.2;
@@ -123,7 +142,8 @@ impl Intro {
             | Command::Push(_)
             | Command::Compare(true)
             | Command::Study(true)
-            | Command::Reveal(_) => true,
+            | Command::Reveal(_)
+            | Command::LookUp(_) => true,
             Command::Layout(layout) => *layout != Layout::Explore,
             Command::View(view) => !view.shows_machine(),
             Command::EndGesture => session.is_led() || (session.b_aim() - self.b).abs() > 1e-9,
@@ -146,24 +166,22 @@ impl Intro {
 
     /// Whether everything has been done.
     pub fn is_over(&self) -> bool {
-        self.straight.is_none() && self.hint >= HINTS.len()
+        self.straight.is_none() && self.hint >= HINTS
+    }
+
+    /// The straight run at the time of a frame: the frame, and how it is drawn.
+    pub fn straight(&self, now: &Instant, theme: Theme) -> Option<(&Instant, Scene)> {
+        let straight = self.straight.as_ref()?;
+        let frame = straight.run.shown().next()?.1.at(now.time)?;
+        let exaggeration = Exaggeration::Mount(SOFT);
+        let options = ViewOptions { theme, invites: false, exaggeration, ..Default::default() };
+        Some((frame, straight.stage.scene(frame, &options)))
     }
 
     /// Draws the straight run on the left of a view, with what both are about.
     pub fn show_straight(&self, ui: &Ui, rect: egui::Rect, now: &Instant, camera: &Camera, view_state: &ViewState) {
-        let Some((straight, frame)) =
-            self.straight.as_ref().and_then(|straight| Some((straight, straight.run.shown().next()?.1.at(now.time)?)))
-        else {
-            return;
-        };
-        let p = view_state.palette();
-        let mut shown = *frame;
-        shown.base.angle = -SOFT * frame.wrench.total().moment;
-        // Tip and ring turn with a base that is drawn turned.
-        let turn = Vector::from_polar(1.0, shown.base.angle);
-        (shown.end_effector, shown.target.at) = (turn * shown.end_effector, turn * shown.target.at);
-        let options = ViewOptions { theme: view_state.theme, invites: false, ..Default::default() };
-        let scene: Arc<Scene> = Arc::new(straight.stage.scene(&shown, &options));
+        let Some((frame, scene)) = self.straight(now, view_state.theme) else { return };
+        let (p, scene) = (view_state.palette(), Arc::new(scene));
         paint(ui, 1, rect, &scene, camera);
         words(ui, &Spot { rect, camera: *camera }, &scene, &[]);
         let turn = SOFT.to_degrees();
@@ -180,33 +198,41 @@ impl Intro {
     }
 
     /// What lies over a scene: the present hint, and while both runs are to be seen what they are about.
-    pub fn covers(&self, ctx: &egui::Context, rect: egui::Rect, both: bool) -> Vec<egui::Rect> {
+    pub fn covers(&self, ctx: &egui::Context, rect: egui::Rect, session: &Session, both: bool) -> Vec<egui::Rect> {
         let usual = egui::Rect::from_min_max(rect.right_bottom() - vec2(406.0, 140.0), rect.right_bottom());
-        let hint = HINTS.get(self.hint).map(|_| ctx.memory(|m| m.area_rect(Id::unique("hint"))).unwrap_or(usual));
+        let hint = hint(self.hint, session).map(|_| ctx.memory(|m| m.area_rect(Id::unique("hint"))).unwrap_or(usual));
         let caption = egui::Rect::from_min_size(rect.min, vec2(rect.width().min(420.0), 108.0));
         hint.into_iter().chain(both.then_some(caption)).collect()
     }
 
-    /// The present hint, over the lower right corner of the scene.
+    /// The present hint, over a lower corner of the scene: rather where it covers nothing that it speaks of.
     pub fn show_hint(
         &self,
         ctx: &egui::Context,
-        rect: egui::Rect,
+        (rect, spoken_of): (egui::Rect, &[egui::Rect]),
+        session: &Session,
         view_state: &ViewState,
         commands: &mut Vec<Command>,
     ) {
-        let Some((title, why)) = HINTS.get(self.hint) else { return };
+        let Some((title, why)) = hint(self.hint, session) else { return };
         let p = view_state.palette();
         let width = 390.0_f32.min(rect.width() - 32.0);
-        let area = Area::new(Id::unique("hint")).pivot(Align2::RIGHT_BOTTOM);
-        area.fixed_pos(rect.right_bottom() - vec2(16.0, 40.0)).show(ctx, |ui| {
+        let id = Id::unique("hint");
+        let size = ctx.memory(|m| m.area_rect(id)).map_or(vec2(width, 100.0), |last| last.size());
+        let stands = Id::unique("corner of the hint");
+        // What a hand holds may pass under it.
+        let corner = view_state.grabbed.and_then(|_| ctx.data(|d| d.get_temp::<Corner>(stands)));
+        let corner = corner.unwrap_or_else(|| Corner::freest(rect, size, spoken_of));
+        ctx.data_mut(|d| d.insert_temp(stands, corner));
+        let area = Area::new(id).pivot(Align2::LEFT_TOP);
+        area.fixed_pos(corner.place(rect, size).min).show(ctx, |ui| {
             card(&p).show(ui, |ui| {
                 ui.set_width(width - 28.0);
                 ui.horizontal(|ui| {
-                    ui.label(RichText::new(*title).font(bold(14.0)).color(colour(p.ink)));
+                    ui.label(RichText::new(title).font(bold(14.0)).color(colour(p.ink)));
                     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| dots(ui, &p, self.hint));
                 });
-                ui.add(egui::Label::new(RichText::new(*why).font(plain(12.0)).color(colour(p.dim))).wrap());
+                ui.add(egui::Label::new(RichText::new(why).font(plain(12.0)).color(colour(p.dim))).wrap());
                 let skip = egui::Button::new(RichText::new("Esc: never again").font(plain(11.0)).color(colour(p.dim)));
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                     let skip = ui.add(skip.frame(false)).on_hover_text("No more hints, now and at the next start");
@@ -220,8 +246,44 @@ impl Intro {
     }
 }
 
+/// Where a card stands over a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Corner {
+    RightBottom,
+    LeftBottom,
+    RightTop,
+    LeftTop,
+}
+
+impl Corner {
+    const ALL: [Self; 4] = [Self::RightBottom, Self::LeftBottom, Self::RightTop, Self::LeftTop];
+
+    /// Where a card of a size stands in it.
+    fn place(self, rect: egui::Rect, size: egui::Vec2) -> egui::Rect {
+        // Above are the numbers of the scene, below its scale.
+        let (x, [top, bottom]) = ([16.0, rect.width() - 16.0 - size.x], [64.0, rect.height() - 40.0 - size.y]);
+        let [x, y] = match self {
+            Self::RightBottom => [x[1], bottom],
+            Self::LeftBottom => [x[0], bottom],
+            Self::RightTop => [x[1], top],
+            Self::LeftTop => [x[0], top],
+        };
+        egui::Rect::from_min_size(rect.min + vec2(x, y), size)
+    }
+
+    /// The first that covers none of these, or else the one that covers the least of them.
+    fn freest(rect: egui::Rect, size: egui::Vec2, spoken_of: &[egui::Rect]) -> Self {
+        let covered = |corner: &Self| {
+            let card = corner.place(rect, size).expand(6.0);
+            let common = spoken_of.iter().map(|part| card.intersect(*part)).filter(|part| part.is_positive());
+            common.map(|part| part.area()).sum::<f32>()
+        };
+        Self::ALL.into_iter().min_by(|a, b| covered(a).total_cmp(&covered(b))).unwrap_or(Self::RightBottom)
+    }
+}
+
 fn dots(ui: &mut Ui, p: &Palette, present: usize) {
-    for i in (0..HINTS.len()).rev() {
+    for i in (0..HINTS).rev() {
         let (rect, _) = ui.allocate_exact_size(vec2(8.0, 8.0), egui::Sense::hover());
         let tone = if i == present { p.amber } else { p.line };
         ui.painter().circle_filled(rect.center(), 3.0, colour(tone));

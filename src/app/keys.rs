@@ -32,6 +32,11 @@ pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: 
         .flat_map(|action| action.keys.iter().map(move |key| (action, key)))
         .collect();
     all.sort_by_key(|(_, key)| !(key.modifiers.shift || key.modifiers.alt));
+    // What asks for text has the rest of a slow pass for itself: what is typed after it is no shortcut.
+    if let Some((action, _)) = all.iter().find(|(_, key)| asks_for_text(key) && taken(key)) {
+        commands.extend((action.command)(session, view_state));
+        return;
+    }
     for (action, key) in all.into_iter().filter(|(_, key)| at_hand(key)) {
         if taken(key) {
             commands.extend((action.command)(session, view_state));
@@ -46,8 +51,12 @@ pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: 
 
 /// Keys that no text field wants.
 fn beside_typing(key: &KeyboardShortcut) -> bool {
-    let own = [Key::S, Key::O, Key::K].contains(&key.logical_key);
-    (key.modifiers.command && own) || key.logical_key == Key::F1
+    asks_for_text(key) || key.logical_key == Key::F1
+}
+
+/// Keys that open a text field: the list of commands, and the names of files.
+fn asks_for_text(key: &KeyboardShortcut) -> bool {
+    key.modifiers.command && [Key::S, Key::O, Key::K].contains(&key.logical_key)
 }
 
 /// What Esc closes.

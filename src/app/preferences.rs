@@ -97,6 +97,8 @@ impl Preferences {
         self.plots_width = wide(self.plots_width, 260.0, 1200.0);
         self.compare_side_width = wide(self.compare_side_width, 220.0, 480.0);
         self.compare_plots_width = wide(self.compare_plots_width, 260.0, 2400.0);
+        // What is relative was said in a folder that nobody knows any more.
+        self.recent.retain(|file| file.is_absolute());
         self.recent.truncate(32);
         self
     }

@@ -36,9 +36,9 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &Session, view_state: &ViewState, 
     let number = format!("{} N m", signed(if moment.abs() < ZERO { 0.0 } else { moment }, 2));
     line(&mut corner, RichText::new(number).font(bold(large)).color(colour(tone)));
     line(&mut corner, RichText::new("moment on the base, n_B").font(plain(0.32 * large)).color(colour(p.dim)));
-    let (word, good) = status::word(session);
-    let tone = if good { p.zero } else { p.reaction };
-    line(&mut corner, RichText::new(word).font(bold(0.36 * large)).color(colour(tone)));
+    for named in status::statements(session).named() {
+        status::lamp(&mut corner, named, 0.32 * large, &p);
+    }
     let b = session.run().pose_map().ok().map(|map| f.b.rem_euclid(map.period()));
     let b = b.map_or_else(String::new, |b| format!("b = {b:.3} rad   ·   "));
     let now = format!("{b}{:.2} s of {:.2} s", f.time, session.length());

@@ -1,11 +1,12 @@
 //! [`Saving`]: which of the changes of a session are in a file, and the questions about those that are not.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use egui::{Align2, Area, Frame, Id, Order, RichText};
+use egui::{Frame, Id, Key, Modal, Modifiers, RichText};
 
 use super::theme::{bold, colour, plain};
 use super::{Command, FileDialog, Purpose, Recovery, ViewState};
+use crate::picture::scene::palette::faded;
 use crate::session::Session;
 
 /// How much of a session is in a file.
@@ -44,11 +45,22 @@ impl Saving {
         self.saved = self.changes;
     }
 
-    /// Remembers a file.
-    pub fn uses(&mut self, file: PathBuf) {
+    /// Whether a question is open: until it is answered nothing else is done.
+    pub fn has_question(&self) -> bool {
+        self.asks || self.found.is_some()
+    }
+
+    /// Remembers a file by the whole of its path; a name that is no file is not remembered.
+    pub fn uses(&mut self, file: &Path) {
+        let Some(file) = crate::files::whole(file) else { return };
         self.recent.retain(|other| *other != file);
         self.recent.insert(0, file);
         self.recent.truncate(RECENT);
+    }
+
+    /// Forgets a file that is gone.
+    pub fn misses(&mut self, file: &Path) {
+        self.recent.retain(|other| other != file || crate::files::whole(file).is_some());
     }
 }
 
@@ -107,26 +119,29 @@ fn card<const N: usize>(
 ) {
     let p = view_state.palette();
     let frame = Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.amber))).corner_radius(10).inner_margin(16);
-    let area = Area::new(Id::unique("question")).order(Order::Foreground).anchor(Align2::CENTER_TOP, [0.0, 96.0]);
+    let area = Modal::default_area(Id::unique("question"));
     // A question that appears takes the keys.
     let mut appears = !ctx.memory(|m| m.areas().visible_last_frame(&area.layer()));
-    area.show(ctx, |ui| {
-        frame.show(ui, |ui| {
-            ui.set_width(430.0);
-            ui.label(RichText::new(title).font(bold(15.0)).color(colour(p.ink)));
-            ui.add(egui::Label::new(RichText::new(words).font(plain(12.5)).color(colour(p.dim))).wrap());
-            ui.add_space(6.0);
-            ui.horizontal(|ui| {
-                for (answer, asked) in answers {
-                    let button = ui.button(answer);
-                    if std::mem::take(&mut appears) {
-                        button.request_focus();
-                    }
-                    if button.clicked() {
-                        commands.extend(asked);
-                    }
+    let shade = colour(faded(p.background, 0.6));
+    let shown = Modal::new(Id::unique("question")).area(area).frame(frame).backdrop_color(shade).show(ctx, |ui| {
+        ui.set_width(430.0);
+        ui.label(RichText::new(title).font(bold(15.0)).color(colour(p.ink)));
+        ui.add(egui::Label::new(RichText::new(words).font(plain(12.5)).color(colour(p.dim))).wrap());
+        ui.add_space(6.0);
+        let mut given = None;
+        ui.horizontal(|ui| {
+            for (i, (answer, _)) in answers.iter().enumerate() {
+                let button = ui.button(*answer);
+                if std::mem::take(&mut appears) {
+                    button.request_focus();
                 }
-            });
+                given = given.or(button.clicked().then_some(i));
+            }
         });
+        given
     });
+    // The last answer changes nothing: so does Esc.
+    let leaves_it = ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)).then_some(N - 1);
+    commands
+        .extend(shown.inner.or(leaves_it).and_then(|i| answers.into_iter().nth(i)).into_iter().flat_map(|(_, c)| c));
 }

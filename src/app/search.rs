@@ -7,14 +7,34 @@ pub fn score(sought: &str, name: &str) -> Option<i32> {
     sought.split_whitespace().map(|word| score_of(&word.to_lowercase(), &name)).sum()
 }
 
+/// The same of a name that is sought by other words too: those have to be found whole.
+pub fn score_with(sought: &str, name: &str, also: &str) -> Option<i32> {
+    let [name, also] = [name, also].map(|text| text.to_lowercase().chars().collect::<Vec<_>>());
+    let best = |word: String| {
+        let letters: Vec<char> = word.chars().collect();
+        score_of(&word, &name).max(whole(&letters, &also).map(|score| score / 2))
+    };
+    sought.split_whitespace().map(|word| best(word.to_lowercase())).sum()
+}
+
 fn score_of(word: &str, name: &[char]) -> Option<i32> {
     let word: Vec<char> = word.chars().collect();
-    let starts = |i: usize| i == 0 || !name[i - 1].is_alphanumeric();
+    whole(&word, name).or_else(|| scattered(&word, name, &|i| starts(name, i)))
+}
+
+/// Whether a word begins there.
+fn starts(name: &[char], i: usize) -> bool {
+    i == 0 || !name[i - 1].is_alphanumeric()
+}
+
+/// Letters side by side.
+fn whole(word: &[char], name: &[char]) -> Option<i32> {
+    let starts = |i: usize| starts(name, i);
     let whole = name.windows(word.len()).enumerate().filter(|(_, part)| **part == *word).map(|(i, _)| i);
     // A whole word is worth more than its beginning, and that more than its middle.
     let ends = |i: usize| name.get(i + word.len()).is_none_or(|c| !c.is_alphanumeric());
     let best = whole.map(|i| 60 + 40 * i32::from(starts(i)) + 10 * i32::from(starts(i) && ends(i)) - i.min(30) as i32);
-    best.max().or_else(|| scattered(&word, name, &starts))
+    best.max()
 }
 
 /// Letters in order, those that begin a word or follow the one before counting more.

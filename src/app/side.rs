@@ -6,6 +6,8 @@ mod control;
 mod fold;
 mod plant;
 
+pub use all::look_up;
+
 use egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Ui};
 
 use super::facts::Facts;
@@ -91,7 +93,14 @@ fn pose_constant(ui: &mut Ui, session: &Session, facts: &Facts, view_state: &Vie
     );
     let row =
         Row { label: "b", unit: "rad", tip: &tip, decimals: 3, speed: 0.005, range: 0.0..=period, slide: 0.0..=period };
-    let responses = row.with_slider(ui, p, &mut shown);
+    // Where b stops, the knob does; it does not go round to the other end.
+    let allowed = |asked: f64| match set_b(session, view_state, turns + asked) {
+        Edit::PoseB { b } if b != turns + asked => {
+            session.serving_within(turns + asked, [turns, turns + period]).unwrap_or(b) - turns
+        }
+        _ => asked,
+    };
+    let responses = row.with_stopped_slider(ui, p, &mut shown, allowed);
     let asked = turns + shown;
     let edit = set_b(session, view_state, asked);
     let typed = responses[0].changed() && !responses[0].dragged();

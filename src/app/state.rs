@@ -14,8 +14,8 @@ use super::pace::Pace;
 use super::saving::{self, Saving};
 use super::tour::Tour;
 use super::{
-    Activity, Command, Finder, Framing, Intro, Layout, Panels, Preferences, Recovery, ViewState, compare, finder, keys,
-    order, place, plots, rail, side, status, studio, study, theme, top, viewport,
+    Activity, Command, Finder, Framing, Intro, Layout, LeftOff, Panels, Preferences, Recovery, ViewState, compare,
+    finder, keys, order, place, plots, rail, side, status, studio, study, theme, top, viewport,
 };
 use crate::app::widgets;
 use crate::mechanics::machine::{Inertia, Machine};
@@ -156,6 +156,11 @@ impl AppState {
         (self.saving.changes, self.saving.is_unsaved())
     }
 
+    /// What belongs to the session and is in none of its edits.
+    pub fn left_off(&self) -> LeftOff {
+        LeftOff { time: self.session.frame().time, plots: self.view_state.charts.clone() }
+    }
+
     /// Whether the window may close as it is.
     pub fn may_leave(&self) -> bool {
         self.saving.leaves || !(self.saving.is_unsaved() || self.is_making())
@@ -195,7 +200,10 @@ impl AppState {
         match what {
             Recovery::Open => {
                 let (from, news) = (Some(File::LeftBehind(file.clone())), Some("here is where you were".into()));
-                self.open(Source::File(file), Opening { plays: false, closes: false, news, file: from, instead: None });
+                self.open(
+                    Source::Journal(file),
+                    Opening { plays: false, closes: false, news, file: from, instead: None },
+                );
             }
             Recovery::Forget => self.saving.recovered = Some(file),
             Recovery::Later => {}
@@ -364,7 +372,10 @@ impl AppState {
             ui.ctx().request_repaint();
         }
         let mut commands = Vec::new();
-        keys::read(ui.ctx(), &self.session, &self.view_state, &mut commands);
+        // A question has the keys for itself.
+        if !self.saving.has_question() {
+            keys::read(ui.ctx(), &self.session, &self.view_state, &mut commands);
+        }
         let presents = self.view_state.layout == Layout::Present;
         if !presents {
             let (facts, line) = ((&self.facts, &self.saving.recent[..]), (&mut self.marks, self.pace.behind()));
@@ -394,6 +405,9 @@ impl AppState {
             if let Some(thing) = self.view_state.revealed.take() {
                 place::open(ui.ctx(), thing, &self.session);
             }
+            if let Some(path) = self.view_state.looked_up.take() {
+                side::look_up(ui.ctx(), &path);
+            }
             self.view_state.side.width = side::show(ui, &self.session, &self.facts, &self.view_state, &mut commands);
         }
         self.view_state.lit = place::lit(ui.ctx());
@@ -410,7 +424,8 @@ impl AppState {
         status::news(ui.ctx(), scene, &self.session, &self.view_state, &mut commands);
         keys::help(ui.ctx(), &self.view_state, &mut commands);
         saving::show(ui.ctx(), &self.saving, &self.session, &self.view_state, &mut commands);
-        finder::show(ui.ctx(), &self.session, &mut self.view_state, &mut commands);
+        let known = (&self.facts, &self.saving.recent[..]);
+        finder::show(ui.ctx(), &self.session, known, &mut self.view_state, &mut commands);
         top::dialog(ui.ctx(), &mut self.view_state, &mut commands);
         commands.extend(widgets::refused_entry(ui.ctx()).map(Command::Refuse));
         if widgets::gave_up(ui.ctx()) {
@@ -626,6 +641,13 @@ impl AppState {
                 self.view_state.side.shown = true;
                 self.view_state.revealed = Some(thing);
             }
+            Command::LookUp(path) => {
+                self.view_state.side.shown = true;
+                if self.view_state.view == ViewKind::Design {
+                    self.show_view(ViewKind::Flat);
+                }
+                self.view_state.looked_up = Some(path);
+            }
             Command::Side(shown) => self.view_state.side.shown = shown,
             Command::Plots(shown) => self.view_state.plots.shown = shown,
             Command::Panels(shown) => {
@@ -645,7 +667,8 @@ impl AppState {
                 self.view_state.tour = begins.then(|| Tour::begin(&self.session));
             }
             Command::TurnTour(forward) => {
-                self.view_state.tour = self.view_state.tour.and_then(|tour| tour.turned(forward, &self.session));
+                let tour = self.view_state.tour.take();
+                self.view_state.tour = tour.and_then(|tour| tour.turned(forward, &self.session));
             }
             Command::Times(shown) => self.view_state.times = shown,
             Command::Mark(time) => self.view_state.mark = time,

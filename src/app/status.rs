@@ -3,13 +3,14 @@
 use egui::{Align, Layout, Margin, Panel, RichText, Sense, Ui, vec2};
 
 use super::facts::Facts;
-use super::theme::{bold, colour, plain};
+use super::theme::{colour, plain};
 use super::widgets::name;
 use super::{Activity, Command, ViewState};
 use crate::picture::numbers::signed;
+use crate::picture::scene::Rgba;
 use crate::picture::scene::palette::{Palette, faded};
 use crate::planning::pose_space::NoPoseSpace;
-use crate::session::verdict::Verdict;
+use crate::session::verdict::{Lamp, Statement, Statements, Verdict};
 use crate::session::{Edit, Session};
 use crate::simulation::frame::{Frame, Reach};
 
@@ -118,18 +119,51 @@ fn fault(frame: &Frame) -> Option<String> {
     ))
 }
 
-/// What the run comes to in a word, and whether that is good.
-pub fn word(session: &Session) -> (&'static str, bool) {
-    let f = session.frame();
-    let verdict = Verdict::of(session.scenario(), f);
-    let waits = session.run().waiting().is_some();
-    let word = match (verdict.word(), f.base_feels_nothing()) {
-        _ if waits => "waits",
-        ("not reactionless", false) => "reacts on its base",
-        ("not reactionless", true) => "has reacted on its base",
-        (word, _) => word,
-    };
-    (word, verdict.is_good() && !waits)
+/// What can be said of machine, plan and run, of as much of the run as there is.
+pub fn statements(session: &Session) -> Statements {
+    Statements::of(session.run(), session.frames().last().unwrap_or(session.frame()))
+}
+
+/// A statement with its lamp: a disc for good news, a triangle for bad, a ring where there is none yet.
+pub fn lamp(ui: &mut Ui, (about, statement): (&str, &Statement), size: f32, p: &Palette) {
+    let tone = tone_of(statement.lamp, p);
+    let ink = if statement.lamp == Lamp::Bad { tone } else { p.ink };
+    // Painted, so that a screen reader is told of the lamp and its words as one.
+    let words = format!("{about}: {}", statement.words);
+    let words = ui.painter().layout_no_wrap(words, plain(size), colour(ink));
+    let [disc, gap] = [0.8 * size, 0.4 * size];
+    let (rect, response) = ui.allocate_exact_size(vec2(disc + gap + words.size().x, words.size().y), Sense::hover());
+    let middle = rect.left_center() + vec2(0.5 * disc, 0.0);
+    sign(ui.painter(), egui::Rect::from_center_size(middle, vec2(disc, disc)), statement.lamp, colour(tone));
+    ui.painter().galley(rect.left_top() + vec2(disc + gap, 0.0), words, colour(ink));
+    let spoken = format!("{about}: {}, {}", statement.words, statement.lamp.name());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &spoken));
+    response.on_hover_text(&statement.why);
+}
+
+fn tone_of(lamp: Lamp, p: &Palette) -> Rgba {
+    match lamp {
+        Lamp::Good => p.zero,
+        Lamp::Bad => p.reaction,
+        Lamp::Open => p.dim,
+    }
+}
+
+/// The shape of a lamp, so that its colour says nothing alone.
+fn sign(painter: &egui::Painter, rect: egui::Rect, lamp: Lamp, tone: egui::Color32) {
+    let (middle, r) = (rect.center(), 0.5 * rect.height());
+    match lamp {
+        Lamp::Good => {
+            painter.circle_filled(middle, 0.9 * r, tone);
+        }
+        Lamp::Open => {
+            painter.circle_stroke(middle, 0.75 * r, egui::Stroke::new(0.3 * r, tone));
+        }
+        Lamp::Bad => {
+            let corners = [vec2(0.0, -1.0), vec2(1.05, 0.85), vec2(-1.05, 0.85)].map(|at| middle + at * r);
+            painter.add(egui::Shape::convex_polygon(corners.to_vec(), tone, egui::Stroke::NONE));
+        }
+    }
 }
 
 /// Draws this panel.
@@ -146,39 +180,32 @@ pub fn show(
     Panel::bottom("status").exact_size(30.0).resizable(false).frame(frame).show(ui, |ui| {
         ui.horizontal_centered(|ui| {
             let f = session.frame();
-            let verdict = Verdict::of(session.scenario(), f);
-            let (word, good) = word(session);
-            let tone = colour(if good { p.zero } else { p.reaction });
-            let (dot, _) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), egui::Sense::hover());
-            ui.painter().circle_filled(dot.center(), 4.5, tone);
-            let remarks = verdict.so_far();
-            let told = ui.label(RichText::new(word).font(bold(13.0)).color(tone));
-            if !remarks.is_empty() {
-                let long: Vec<&str> = remarks.iter().map(|r| r.long.as_str()).collect();
-                told.on_hover_text(long.join("\n"));
+            ui.spacing_mut().item_spacing.x = 14.0;
+            let statements = statements(session);
+            for named in statements.named() {
+                lamp(ui, named, 12.5, &p);
             }
             audit_dots(ui, f, &p);
-            let mut facts = format!("peak |n_B| {:.3} N m", verdict.arm_moment);
-            // Two quantities: what the arm transmits, and what a wheel leaves of it.
-            if let Some(left) = verdict.past_wheel {
-                facts += &format!(", past the wheel {left:.3} N m");
-            }
-            for remark in remarks.iter().filter(|_| ui.available_width() > 460.0) {
-                facts += &format!("  ·  {}", remark.short);
-            }
+            let mut facts: Vec<String> = Vec::new();
+            let remarks = Verdict::of(session.scenario(), f).so_far();
+            facts.extend(remarks.iter().filter(|_| ui.available_width() > 460.0).map(|remark| remark.short.clone()));
             if let Ok(map) = session.run().pose_map() {
-                facts += &format!("  ·  b {:.3} rad", f.b.rem_euclid(map.period()));
+                facts.push(format!("b {:.3} rad", f.b.rem_euclid(map.period())));
             }
             let bad_news = matches!(view_state.message, Some((_, true)));
             if let Some((poses, distance)) = found.standing().filter(|_| !bad_news && ui.available_width() > 460.0) {
                 let many = if poses == 1 { "one pose".into() } else { format!("{poses} poses") };
-                facts += &format!("  ·  {many}");
                 // A narrow window keeps its room for what to do next.
-                if ui.available_width() > 900.0 {
-                    facts += &format!(", {} m from the boundary", signed(distance.abs(), 3));
-                }
+                facts.push(match ui.available_width() > 900.0 {
+                    true => format!("{many}, {} m from the boundary", signed(distance.abs(), 3)),
+                    false => many,
+                });
             }
-            ui.label(RichText::new(facts).font(plain(12.0)).color(colour(p.dim)));
+            let told = ui.label(RichText::new(facts.join("  ·  ")).font(plain(12.0)).color(colour(p.dim)));
+            if !remarks.is_empty() {
+                let long: Vec<&str> = remarks.iter().map(|r| r.long.as_str()).collect();
+                told.on_hover_text(long.join("\n"));
+            }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 if let Some((activity, done)) = under_way.filter(|_| !bad_news) {
                     if activity.can_stop() {

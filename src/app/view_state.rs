@@ -107,6 +107,8 @@ pub struct ViewState {
     pub lit_links: Vec<usize>,
     /// What is to be shown in the panel.
     pub revealed: Option<Handle>,
+    /// The setting that is to be shown there, by its path.
+    pub looked_up: Option<String>,
     /// What is being dragged.
     pub grabbed: Option<Pick>,
     /// What was under the pointer when its button went down: it may have moved on before the drag is noticed.
@@ -197,6 +199,7 @@ impl ViewState {
             lit: None,
             lit_links: Vec::new(),
             revealed: None,
+            looked_up: None,
             grabbed: None,
             pressed: None,
             fine: [egui::Vec2::ZERO; 2],

@@ -12,15 +12,15 @@ use super::{Command, Layout, ViewState, coordinates, corner, framing, menu, plac
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::picture::paint::words::words;
 use crate::picture::paint::{Spot, paint};
-use crate::picture::scene::exaggeration::exaggerated;
+use crate::picture::scene::exaggeration::{Exaggeration, Shown};
 use crate::picture::scene::options::{Handle, Offered, Other, ViewOptions};
 use crate::picture::scene::pick::{Aim, Pick};
+use crate::picture::scene::stage::Stage;
 use crate::picture::scene::views::{ViewKind, Views};
 use crate::planning::pose_map::PoseMap;
 use crate::session::design::length_of;
 use crate::session::scenario::Task;
 use crate::session::{Edit, Session};
-use crate::simulation::frame::Frame as Instant;
 use crate::study::comparison::Comparison;
 
 /// Draws it and reads the pointer; where it is.
@@ -46,15 +46,16 @@ pub fn show(
         let rect = Rect::from_min_max(whole.right_bottom() - room, whole.right_bottom());
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         let mut covered = vec![corner::strip(rect)];
-        covered.extend(intro.into_iter().flat_map(|intro| intro.covers(ui.ctx(), rect, both.is_some())));
+        covered.extend(intro.into_iter().flat_map(|intro| intro.covers(ui.ctx(), rect, session, both.is_some())));
         covered.extend(coordinates::covers(rect, views, view_state));
         let presents = view_state.layout == Layout::Present;
         covered.extend(presents.then(|| present::covers(rect)));
-        covered.extend(view_state.tour.map(|_| Tour::covers(ui.ctx(), rect)));
+        covered.extend(view_state.tour.as_ref().map(|_| Tour::covers(ui.ctx(), rect)));
         framing::keep(rect, &covered, (session, views), || motion(session), view_state);
         name(&response, "Scene: the machine, its reactionless workspace and its target");
         // The pointer works on the machine as it is drawn, enlarged motion of the base included.
-        let shown = exaggerated(session.frame(), view_state.base_exaggeration());
+        let exaggeration = Exaggeration::Times(view_state.base_exaggeration());
+        let shown = Shown::of(session.frame(), exaggeration);
         let spot = Spot { rect, camera: *view_state.camera() };
         if view_state.stroke.is_some() && view_state.view.shows_machine() {
             draw(ui, &response, &spot, views, view_state, commands);
@@ -80,10 +81,8 @@ pub fn show(
             stroke: view_state.stroke.clone().unwrap_or_default(),
             refused: view_state.refused.as_ref().and_then(|r| r.curve.clone()),
             snapshots: if view_state.snapshots { snapshots(session) } else { Vec::new() },
-            others: comparison.map_or_else(Vec::new, |comparison| {
-                others(comparison, session.frame().time, view_state.base_exaggeration())
-            }),
-            exaggeration: view_state.base_exaggeration(),
+            others: comparison.map_or_else(Vec::new, |comparison| others(comparison, session.frame().time)),
+            exaggeration,
             push: force(session),
             pin_forces: view_state.pins,
             limits: true,
@@ -112,15 +111,29 @@ pub fn show(
         if let Some(intro) = both {
             intro.caption(ui, rect, session.frame(), view_state);
         }
-        if let Some(tour) = view_state.tour {
-            tour.show(ui.ctx(), rect, view_state, commands);
+        if let Some(tour) = &view_state.tour {
+            tour.show(ui.ctx(), rect, session, view_state, commands);
         }
         if let Some(intro) = intro {
-            intro.show_hint(ui.ctx(), rect, view_state, commands);
+            let spoken_of = spoken_of(&spot, views.stage(), &shown);
+            intro.show_hint(ui.ctx(), (rect, &spoken_of), session, view_state, commands);
         }
         rect
     });
     shown.inner
+}
+
+/// Where hints speak of something: the target, the arm's tip and the ring of b, on the screen.
+fn spoken_of(spot: &Spot, stage: &Stage, shown: &Shown<'_>) -> Vec<Rect> {
+    let ring = stage.handle(Handle::Ring, shown).and_then(|knob| {
+        let middle = spot.screen([shown.base.at.re, shown.base.at.im, knob[2]])?;
+        // Its name stands outside of it.
+        let radius = 1.4 * (spot.screen(knob)? - middle).length();
+        Some(Rect::from_center_size(middle, Vec2::splat(2.0 * radius)))
+    });
+    let target = stage.handle(Handle::Target, shown).and_then(|at| spot.screen(at));
+    let target = target.map(|at| Rect::from_center_size(at, Vec2::splat(36.0)));
+    ring.into_iter().chain(target).collect()
 }
 
 /// Smaller changes of the pulling force send no new edit, N.
@@ -152,11 +165,10 @@ fn snapshots(session: &Session) -> Vec<DriveAngles> {
     (0..SNAPSHOTS).map(|i| run.plan().motion.at(share(i) * run.planned_time()).q).collect()
 }
 
-/// The runs that are laid over, at a time, s, the motion of their bases so many times as far.
-fn others(comparison: &Comparison, time: f64, times: f64) -> Vec<Other> {
+/// The runs that are laid over, at a time, s.
+fn others(comparison: &Comparison, time: f64) -> Vec<Other> {
     let other = |(i, run): (usize, &crate::study::comparison::Compared)| {
-        let frame = exaggerated(run.at(time)?, times);
-        Some(Other { name: (i + 1).to_string(), q: frame.q, base: frame.base })
+        Some(Other { name: (i + 1).to_string(), frame: *run.at(time)? })
     };
     comparison.shown().filter_map(other).collect()
 }
@@ -171,7 +183,7 @@ fn point_at(
     ui: &Ui,
     response: &egui::Response,
     spot: &Spot,
-    (session, frame): (&Session, &Instant),
+    (session, shown): (&Session, &Shown<'_>),
     (views, demonstrates): (&Views, bool),
     view_state: &mut ViewState,
     commands: &mut Vec<Command>,
@@ -182,11 +194,11 @@ fn point_at(
     // The demonstration's arm moves, so that its tip is hard to catch: any part of it will do.
     let arm = |pos: Pos2| {
         let near = demonstrates && view.shows_machine() && !pushes;
-        near.then(|| views.pick_arm(frame, &spot.pointer(pos), GENEROUS)).flatten()
+        near.then(|| views.pick_arm(shown, &spot.pointer(pos), GENEROUS)).flatten()
     };
     let under = |pos: Pos2| match pushes {
-        true => views.pick_tip(frame, &spot.pointer(pos)),
-        false => arm(pos).or_else(|| views.pick(view, frame, &spot.pointer(pos))),
+        true => views.pick_tip(shown, &spot.pointer(pos)),
+        false => arm(pos).or_else(|| views.pick(view, shown, &spot.pointer(pos))),
     };
     // Nothing follows while the run waits, in joint space and tower either.
     let follows = |pick: &Pick| pick.handle != Handle::Target || session.follows_hands();
@@ -194,7 +206,7 @@ fn point_at(
     if view_state.grabbed.is_none() {
         let seen = |pos: Pos2| match pushes {
             true => under(pos).map(|pick| pick.handle),
-            false => arm(pos).map(|pick| pick.handle).or_else(|| views.under(view, frame, &spot.pointer(pos))),
+            false => arm(pos).map(|pick| pick.handle).or_else(|| views.under(view, shown, &spot.pointer(pos))),
         };
         view_state.hot = response.hover_pos().and_then(seen);
     }
@@ -217,7 +229,7 @@ fn point_at(
     let (shift, snaps) = ui.input(|i| (i.modifiers.shift, i.modifiers.ctrl || i.modifiers.command));
     let ask = |pick: Pick, pos: Pos2, view_state: &mut ViewState| {
         let pick = Pick { grip: pick.grip.map(|grip| grip.snapping(snaps)), ..pick };
-        let aim = views.aim(view, &pick, frame, &spot.pointer(pos), session.b_aim())?;
+        let aim = views.aim(view, &pick, shown, &spot.pointer(pos), session.b_aim())?;
         let edit = match if snaps { aim.snapped() } else { aim } {
             Aim::Target([x, y]) => {
                 view_state.held = Some([x, y]);

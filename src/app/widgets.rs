@@ -148,17 +148,39 @@ impl Row<'_> {
 
     /// The same with a slider below.
     pub fn with_slider(&self, ui: &mut Ui, p: &Palette, value: &mut f64) -> [Response; 2] {
+        self.with_stopped_slider(ui, p, value, |asked| asked)
+    }
+
+    /// The same with a slider that stops where `stops` says, whatever the pointer asks for.
+    pub fn with_stopped_slider(
+        &self,
+        ui: &mut Ui,
+        p: &Palette,
+        value: &mut f64,
+        stops: impl Fn(f64) -> f64,
+    ) -> [Response; 2] {
         let number = self.show(ui, p, value);
-        [number, self.slider(ui, value, false)]
+        [number, self.stopped_slider(ui, value, false, stops)]
     }
 
     /// A slider alone.
     pub fn slider(&self, ui: &mut Ui, value: &mut f64, logarithmic: bool) -> Response {
+        self.stopped_slider(ui, value, logarithmic, |asked| asked)
+    }
+
+    fn stopped_slider(&self, ui: &mut Ui, value: &mut f64, logarithmic: bool, stops: impl Fn(f64) -> f64) -> Response {
         ui.spacing_mut().slider_width = ui.available_width();
         // The field's size follows the row's height.
         ui.spacing_mut().interact_size.y = 15.0;
         let before = *value;
-        let slider = Slider::new(value, self.slide.clone()).clamping(SliderClamping::Edits).show_value(false);
+        let turned = |asked: Option<f64>| {
+            if let Some(asked) = asked {
+                *value = stops(asked);
+            }
+            *value
+        };
+        let slider = Slider::from_get_set(self.slide.clone(), turned);
+        let slider = slider.clamping(SliderClamping::Edits).show_value(false);
         let mut slider = ui.add(slider.smart_aim(false).logarithmic(logarithmic));
         held(&mut slider, value, before, &self.slide, f64::from(FINE), self.round());
         ui.spacing_mut().interact_size.y = 22.0;

@@ -4,6 +4,7 @@ use clap::Args;
 use serde::Serialize;
 use stillbase::mechanics::machine::{Inertia, Machine};
 use stillbase::planning::off_plane::null_space::is_integrable;
+use stillbase::session::verdict::Statement;
 
 use super::failure::Failure;
 use super::input::MachineArgument;
@@ -79,6 +80,8 @@ struct Answer {
     balance: Balance,
     force_balanced: bool,
     invariant: bool,
+    /// What window and recordings say of it.
+    machine: Statement,
     /// Whether some b(q) is kept by all motions of zero angular momentum.
     integrable: bool,
 }
@@ -93,16 +96,18 @@ impl Check {
             balance: Balance::of(&inertia),
             force_balanced: inertia.is_force_balanced(),
             invariant: inertia.is_invariant(),
+            machine: Statement::of_machine(&inertia),
             integrable: is_integrable(&inertia),
         };
         self.format.print(&answer, |answer| {
             let (force, coupling) = (inertia.force_residual(), inertia.invariance_residual());
             format!(
-                "{} · {}\n\nmass             {} kg\nforce balanced   {}, largest |g_k| {force:.1e} kg m\n\
+                "{} · {}\n\nmachine          {}\nmass             {} kg\nforce balanced   {}, largest |g_k| {force:.1e} kg m\n\
                  invariant        {}, largest |C_kl| {coupling:.1e} kg m²\n\
                  pose constant    {}\n\n{}",
                 machine.name(),
                 machine.spec().summary,
+                answer.machine.words,
                 fixed(answer.mass, 3),
                 yes(answer.force_balanced),
                 yes(answer.invariant),

@@ -7,6 +7,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use stillbase::recording::{Options, Pictures, Progress, RecordError, Recording, record};
 use stillbase::session::scenario::Scenario;
+use stillbase::session::verdict::Statements;
 use stillbase::settings::text::plain;
 
 use super::exit::say;
@@ -82,6 +83,8 @@ struct Row {
     #[serde(skip_serializing_if = "Option::is_none")]
     audit_failed: Option<String>,
     verdict: String,
+    /// What can be said of machine, plan and run.
+    statements: Statements,
     #[serde(skip)]
     answer: String,
     #[serde(skip)]
@@ -102,6 +105,7 @@ impl From<Recording> for Row {
             over: recording.verdict.over.map(|(limit, factor)| (limit.to_string(), factor)),
             audit_failed: recording.verdict.fault.as_ref().map(ToString::to_string),
             verdict: recording.verdict.sentence(),
+            statements: recording.statements,
             answer: recording.verdict.answer(),
             remarks: recording.verdict.remarks().into_iter().map(|r| r.long).collect(),
         }
@@ -119,6 +123,7 @@ impl Headless {
         say(format!("wrote {}", self.output.display()));
         let answer = Answer { recordings: recordings.into_iter().map(Row::from).collect() };
         for row in &answer.recordings {
+            say(format!("{}: {}", row.scenario, row.statements.line()));
             row.remarks.iter().for_each(|remark| say(format!("{}: {remark}", row.scenario)));
         }
         self.format.print(&answer, table)?;

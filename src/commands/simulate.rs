@@ -5,9 +5,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::{Serialize, Serializer};
-use stillbase::session::replay_if;
-use stillbase::session::scenario::Scenario;
-use stillbase::session::verdict::Verdict;
+use stillbase::session::verdict::{Statements, Verdict};
+use stillbase::session::{Run, replay_if};
 use stillbase::simulation::frame::Frame;
 use stillbase::simulation::signals::{Signal, signals};
 
@@ -76,6 +75,8 @@ struct Outcome {
     #[serde(skip)]
     answer: String,
     sentence: String,
+    /// What can be said of machine, plan and run.
+    statements: Statements,
     remarks: Vec<String>,
     audit: Columns<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -90,8 +91,9 @@ struct Past {
 }
 
 impl Outcome {
-    fn of(scenario: &Scenario, last: &Frame) -> Self {
-        let verdict = Verdict::of(scenario, last);
+    fn of(run: &Run) -> Self {
+        let last = &run.frame();
+        let verdict = Verdict::of(run.scenario(), last);
         let totals = &last.totals;
         Self {
             steps: last.step,
@@ -108,6 +110,7 @@ impl Outcome {
             miss: verdict.miss,
             answer: verdict.answer(),
             sentence: verdict.sentence(),
+            statements: Statements::of(run, last),
             remarks: verdict.remarks().into_iter().map(|r| r.long).collect(),
             past_limit: verdict.past_limit.map(|(angle, by)| Past { angle, by }),
             over: verdict.over.map(|(limit, factor)| (limit.to_string(), factor)),
@@ -171,7 +174,7 @@ impl Simulate {
         if let Some(csv) = csv {
             csv.finish()?;
         }
-        let verdict = Outcome::of(run.scenario(), &run.frame());
+        let verdict = Outcome::of(&run);
         if !self.format.json {
             let past = verdict.peak_moment_past_wheel;
             say(format!(
@@ -183,6 +186,7 @@ impl Simulate {
                 fixed(verdict.peak_base_force, 6),
                 verdict.answer,
             ));
+            say(format!("{}: {}", scenario.name, verdict.statements.line()));
             for remark in &verdict.remarks {
                 say(format!("{}: {remark}", scenario.name));
             }

@@ -4,6 +4,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use super::text::read;
+use crate::exchange::import::{Imported, import};
 use crate::mechanics::machine::{self, FileError, Machine, MachineError};
 use crate::session::around;
 use crate::session::scenario::{Content, Scenario, ScenarioError, TaskKind, content};
@@ -74,6 +75,13 @@ pub fn scenario(name: &str) -> Result<Found, ScenarioError> {
         }
         Err(source) => return Err(ScenarioError::Unreadable { file: shortened(name, 300), source }),
     };
+    // A model of another program: no TOML begins like this.
+    if text.trim_start().starts_with('<') {
+        let Imported { machine, notes, .. } = import(&text).map_err(|why| said(why.to_string()))?;
+        let Found { scenario, made } = made(name, &machine)?;
+        let made = made.into_iter().chain(notes).collect::<Vec<_>>().join("; ");
+        return Ok(Found { scenario, made: Some(made) });
+    }
     if content(&text) == Some(Content::Machine) {
         return made(name, &machine::parse(&text, &shortened(name, 300))?);
     }

@@ -2,6 +2,7 @@
 
 pub mod fault;
 mod find;
+pub mod heading;
 #[cfg(feature = "window")]
 pub mod journal;
 mod new_file;
@@ -11,3 +12,8 @@ pub mod text;
 
 pub use find::{Found, machine, scenario};
 pub use new_file::{Abandoned, NewFile, WriteError, abandon, check_new, finish_all, free_name, made, write_new};
+
+/// The whole name of a file that is there, so that it is found again from any folder.
+pub fn whole(file: &std::path::Path) -> Option<std::path::PathBuf> {
+    file.canonicalize().ok()
+}

@@ -61,7 +61,7 @@ use thiserror::Error;
 use crate::files::{NewFile, WriteError};
 use crate::session::Refusal;
 use crate::session::scenario::Scenario;
-use crate::session::verdict::Verdict;
+use crate::session::verdict::{Statements, Verdict};
 use hash::Hash;
 use pictures::Series;
 use preview::Preview;
@@ -88,6 +88,8 @@ pub struct Recording {
     pub reactionless: bool,
     /// What is to be said of it.
     pub verdict: Verdict,
+    /// What can be said of machine, plan and run.
+    pub statements: Statements,
     /// What somebody should know: why there are no pictures.
     pub notes: Vec<String>,
 }
@@ -268,7 +270,7 @@ fn write(
         set.store.fixed(&EntityPath::properties(), &info)?;
         for (scenario, case) in scenarios.iter().zip(&cases) {
             let mut tick = |step| progress(Progress { done: before + step, of: 2 * total, what: &scenario.name });
-            let (peaks, verdict) = recorder::record(&mut set, scenario, case, &mut tick)?;
+            let (peaks, verdict, statements) = recorder::record(&mut set, scenario, case, &mut tick)?;
             before += case.steps;
             recordings.push(Recording {
                 scenario: scenario.name.clone(),
@@ -279,6 +281,7 @@ fn write(
                 peak_base_moment: verdict.arm_moment,
                 reactionless: verdict.reactionless,
                 verdict,
+                statements,
                 notes: set.pictures.notes(),
             });
         }

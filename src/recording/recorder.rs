@@ -25,7 +25,7 @@ use crate::picture::scene::views::{ViewKind, Views};
 use crate::picture::scene::{Scene, point};
 use crate::planning::pose_constant::Planes;
 use crate::session::scenario::Scenario;
-use crate::session::verdict::Verdict;
+use crate::session::verdict::{Statements, Verdict};
 use crate::session::{Edit, Plan, Run, replay_while};
 use crate::simulation::frame::{Frame, Peaks};
 
@@ -60,7 +60,7 @@ pub fn record(
     scenario: &Scenario,
     forecast: &Preview,
     tick: &mut dyn FnMut(u64) -> bool,
-) -> Result<(Peaks, Verdict), Stop> {
+) -> Result<(Peaks, Verdict, Statements), Stop> {
     let mut recorder = Recorder::new(set, scenario, forecast)?;
     let mut failure = None;
     let run = replay_while(scenario, |run, frame| {
@@ -275,17 +275,17 @@ impl<'a> Recorder<'a> {
     }
 
     /// What is known only at the end.
-    fn finish(mut self, run: &Run) -> Result<(Peaks, Verdict), Stop> {
+    fn finish(mut self, run: &Run) -> Result<(Peaks, Verdict, Statements), Stop> {
         let frame = &run.frame();
         self.flush()?;
         let trail = lines([self.trail.take()], 1.8, mix(self.palette.ink, self.palette.dim, 0.5));
         self.store.fixed(&under(self.root, "end_effector/path"), &trail)?;
-        let verdict = Verdict::of(run.scenario(), frame);
+        let (verdict, statements) = (Verdict::of(run.scenario(), frame), Statements::of(run, frame));
         let (of, end) = ((self.scenario, run.simulation().dt()), (Instant::of(frame), &frame.peaks, &verdict));
         self.events.write(self.store, self.root, of, end)?;
         let path = EntityPath::properties() / EntityPathPart::new(self.scenario.name.as_str());
-        self.store.fixed(&path, &properties(self.scenario, (&frame.peaks, &verdict), run.plan()))?;
-        Ok((frame.peaks, verdict))
+        self.store.fixed(&path, &properties(self.scenario, (&frame.peaks, &verdict, &statements), run.plan()))?;
+        Ok((frame.peaks, verdict, statements))
     }
 }
 
@@ -294,7 +294,11 @@ const DRIFTS: [&str; MAX_DRIVES] =
     ["drift_1", "drift_2", "drift_3", "drift_4", "drift_5", "drift_6", "drift_7", "drift_8"];
 
 /// All that the run can be made of again, what was foreseen, and what came of it.
-fn properties(scenario: &Scenario, (peaks, verdict): (&Peaks, &Verdict), plan: &Plan) -> AnyValues {
+fn properties(
+    scenario: &Scenario,
+    (peaks, verdict, statements): (&Peaks, &Verdict, &Statements),
+    plan: &Plan,
+) -> AnyValues {
     let words = |text: &str| [Text::from(text)];
     let numbers = |values: &[f64]| values.iter().copied().map(Scalar::from).collect::<Vec<_>>();
     let number = |x: f64| [Scalar::from(x)];
@@ -311,6 +315,11 @@ fn properties(scenario: &Scenario, (peaks, verdict): (&Peaks, &Verdict), plan: &
         .with_component::<Scalar>("forecast_time", number(forecast.time))
         .with_component::<Scalar>("forecast_peak_base_moment", number(forecast.moment))
         .with_component::<Scalar>("forecast_moment_impulse", number(forecast.impulse));
+    let Statements { machine, plan: held, run } = statements;
+    for (name, statement) in [("statement_machine", machine), ("statement_plan", held), ("statement_run", run)] {
+        let text = format!("{} ({})", statement.words, statement.why);
+        all = all.with_component::<Text>(name, words(&text));
+    }
     if let Some(left) = verdict.past_wheel {
         all = all.with_component::<Scalar>("peak_moment_past_wheel", number(left));
     }

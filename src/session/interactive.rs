@@ -234,6 +234,21 @@ impl Session {
         Some(if nearest == b { b } else { common.inwards(nearest, 1e-6) })
     }
 
+    /// The b nearest to one within a range, rad, at which the points of the task stay where they are: unlike
+    /// [`serving`](Self::serving) it never goes round the circle of b.
+    pub fn serving_within(&self, b: f64, [low, high]: [f64; 2]) -> Option<f64> {
+        if self.serving(b)? == b {
+            return Some(b);
+        }
+        let common = self.run.bands()?;
+        let turns = |from: f64| [-1.0, 0.0, 1.0].map(|turn| from + turn * common.period);
+        let near = common.near(0.5 * (low + high));
+        let ends = near.intervals.iter().flatten().flat_map(|end| turns(*end));
+        let ends = ends.filter(|end| (low..=high).contains(end));
+        let nearest = ends.min_by(|x, y| (x - b).abs().total_cmp(&(y - b).abs()))?;
+        Some(common.inwards(nearest, 1e-6))
+    }
+
     /// Whether somebody has led the machine off its planned motion.
     pub fn is_led(&self) -> bool {
         self.document.script.is_led()

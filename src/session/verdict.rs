@@ -6,6 +6,10 @@
 //! | n_B, f_B | what the arm transmits to its base: by these it is called reactionless |
 //! | moment past the wheel | what a reaction wheel leaves of n_B for the base: by this the base feels nothing |
 
+mod statements;
+
+pub use statements::{Lamp, Statement, Statements};
+
 use crate::mechanics::planar::PerDrive;
 use crate::planning::timing::limits::{DriveLimit, LimitedQuantity, Limits};
 use crate::session::scenario::Scenario;

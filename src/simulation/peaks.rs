@@ -80,6 +80,16 @@ impl Peaks {
         self.arm_moment <= self.no_moment() && self.force <= self.no_force()
     }
 
+    /// Whether n_B is more than rounding.
+    pub fn transmits_moment(&self) -> bool {
+        self.arm_moment > self.no_moment()
+    }
+
+    /// Whether the dynamic f_B is more than rounding.
+    pub fn transmits_force(&self) -> bool {
+        self.force > self.no_force()
+    }
+
     /// What the base feels, past a reaction wheel if it has one, by the same measure.
     pub fn base_feels_nothing(&self) -> bool {
         self.moment <= self.no_moment() && self.force <= self.no_force()

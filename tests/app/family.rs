@@ -44,7 +44,7 @@ fn the_ring_turns_and_another_b_is_compared() {
         }
         let frame = *session(&h).frame();
         let stage = h.state().app_state().stage();
-        let knob = stage.handle(Handle::Ring, &frame).expect("it has a b");
+        let knob = stage.handle(Handle::Ring, &(&frame).into()).expect("it has a b");
         let away = unit(0.4) * Vector::new(knob[0], knob[1]);
         let (from, to) = (seen(&h, knob), seen(&h, [away.re, away.im, knob[2]]));
         if case == "four-drive" {

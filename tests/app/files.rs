@@ -20,6 +20,7 @@ pub const TESTS: &[Test] = tests![
     what_is_no_scenario_is_refused_and_changes_nothing,
     a_file_that_is_dropped_is_opened,
     a_machine_that_is_dropped_gets_a_task,
+    a_model_of_another_program_is_opened_as_a_machine,
     nothing_is_written_over,
     what_cannot_be_written_is_said,
     a_run_is_recorded_whole_or_not,
@@ -240,6 +241,28 @@ fn a_file_that_is_dropped_is_opened() {
 }
 
 /// A file that is there stays as it is, whatever it is; the dialog stays for another name.
+/// What the window writes for other programs it reads again, and a model that is none says why.
+fn a_model_of_another_program_is_opened_as_a_machine() {
+    let folder = Folder::new("model");
+    let mut h = window("two-drive", Theme::Dark);
+    for name in ["arm.urdf", "arm.xml"] {
+        let file = folder.path(name);
+        h.state_mut().app_state_mut().carry_out(Command::TakeElsewhere(file.clone()));
+        h.run_steps(3);
+        let mass = session(&h).scenario().machine.mass();
+        drop_on(&mut h, &file);
+        h.run_steps(3);
+        let machine = &session(&h).scenario().machine;
+        assert!((machine.mass() - mass).abs() < 1e-6 && machine.drives() == 2, "{name}: {} kg", machine.mass());
+        let (said, bad) = h.state().app_state().view_state().message.clone().expect("what it is");
+        assert!(!bad && said.contains("is a machine, so a task was made for it"), "{name}: {said}");
+        assert_eq!(h.state().app_state().recent()[0], file.canonicalize().expect("it is there"));
+    }
+    drop_on(&mut h, &folder.file("none.urdf", "<robot name='x'><link name='a'/></robot>"));
+    let (said, bad) = h.state().app_state().view_state().message.clone().expect("why not");
+    assert!(bad && said.contains("none.urdf"), "{said}");
+}
+
 fn nothing_is_written_over() {
     let folder = Folder::new("window");
     for (ending, what) in [("toml", Ask::Save), ("rrd", Ask::Record)] {

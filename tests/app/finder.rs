@@ -4,16 +4,21 @@ use std::collections::HashSet;
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
+use stillbase::app::Command;
 use stillbase::app::actions::{ACTIONS, FINE_ACTIONS};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::views::ViewKind;
 
 use super::{Window, session, window};
 use crate::Test;
+use crate::folder::Folder;
 
 pub const TESTS: &[Test] = tests![
     every_command_is_found_by_a_few_letters,
     the_list_of_commands_is_led_by_keys_alone,
+    the_list_of_commands_grows_again,
+    what_follows_the_key_in_one_pass_is_no_shortcut,
+    a_setting_that_is_found_is_shown_in_the_panel,
     a_machine_of_another_kind_brings_its_task,
     a_list_of_commands_types_nothing_into_the_window,
     no_key_asks_for_two_things,
@@ -34,7 +39,9 @@ fn type_text(h: &mut Window, text: &str) {
 }
 
 fn every_command_is_found_by_a_few_letters() {
+    let folder = Folder::new("recent");
     let mut h = window("case-3", Theme::Dark);
+    h.state_mut().app_state_mut().carry_out(Command::SaveFile(folder.path("mine.toml")));
     h.run_steps(2);
     for (typed, first) in [
         ("snap", "Snapshots along the motion"),
@@ -43,6 +50,13 @@ fn every_command_is_found_by_a_few_letters() {
         ("rec rerun", "Record for the Rerun viewer"),
         ("tow", "Tower of workspaces"),
         ("table 1", "Machine: nine-link-table-1"),
+        ("import", "Open a session, scenario, machine or model"),
+        ("urdf", "Take the machine elsewhere: MJCF, URDF, DXF…"),
+        ("csv", "Values of the first plot as CSV"),
+        ("picture", "Picture of the first plot as PNG"),
+        ("gravity", "Setting: gravity"),
+        ("recent", "Recent: mine.toml"),
+        ("new", "New session: this machine and its task, nothing done yet"),
     ] {
         press(&mut h, Modifiers::COMMAND, Key::K);
         type_text(&mut h, typed);
@@ -53,6 +67,56 @@ fn every_command_is_found_by_a_few_letters() {
     press(&mut h, Modifiers::COMMAND, Key::K);
     type_text(&mut h, "qqxz");
     assert!(h.query_by_label("no command answers this").is_some());
+}
+
+/// On a slow display the key and what is typed after it come in one pass: no letter is taken for a shortcut.
+fn what_follows_the_key_in_one_pass_is_no_shortcut() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let before = session(&h).to_scenario();
+    let pressed =
+        |key, modifiers| egui::Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers };
+    let mut events = vec![pressed(Key::K, Modifiers::COMMAND)];
+    events.extend([Key::L, Key::I, Key::G, Key::Num1, Key::T].map(|key| pressed(key, Modifiers::NONE)));
+    h.input_mut().events.extend(events);
+    h.run_steps(3);
+    let view_state = h.state().app_state().view_state();
+    assert!(view_state.finder.is_some() && view_state.theme == Theme::Dark && !view_state.pins && !view_state.study);
+    assert_eq!(session(&h).to_scenario(), before);
+}
+
+/// The first line answers what was typed; after two lines the list has room for ten again.
+fn the_list_of_commands_grows_again() {
+    for size in [[1280.0, 800.0], [960.0, 600.0]] {
+        let mut h = window("case-3", Theme::Dark);
+        h.set_size(size.into());
+        h.run_steps(2);
+        let height = |h: &Window| h.ctx.memory(|m| m.area_rect(egui::Id::unique("finder"))).expect("a list").height();
+        press(&mut h, Modifiers::COMMAND, Key::K);
+        h.run_steps(3);
+        assert!(height(&h) > 270.0, "{size:?}: {}", height(&h));
+        type_text(&mut h, "snapshots along");
+        h.run_steps(3);
+        let low = height(&h);
+        for _ in 0.."snapshots along".len() {
+            press(&mut h, Modifiers::NONE, Key::Backspace);
+        }
+        h.run_steps(3);
+        assert!(height(&h) > 270.0 && low < height(&h), "{size:?}: {low}, then {}", height(&h));
+    }
+}
+
+fn a_setting_that_is_found_is_shown_in_the_panel() {
+    let mut h = window("case-3", Theme::Dark);
+    h.state_mut().app_state_mut().carry_out(Command::Side(false));
+    h.run_steps(2);
+    press(&mut h, Modifiers::COMMAND, Key::K);
+    type_text(&mut h, "setting friction coulomb");
+    press(&mut h, Modifiers::NONE, Key::Enter);
+    h.run_steps(6);
+    let field = h.get_by_label("plant.friction.coulomb").rect();
+    assert!(field.top() > 40.0 && field.bottom() < 780.0, "it is seen: {field:?}");
+    assert!(session(&h).script().is_empty(), "and nothing has changed");
 }
 
 fn the_list_of_commands_is_led_by_keys_alone() {

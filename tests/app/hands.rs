@@ -35,7 +35,7 @@ fn under(h: &Window, at: Pos2) -> Option<Handle> {
     let pair = |v: egui::Vec2| [f64::from(v.x), f64::from(v.y)];
     let camera = *h.state().app_state().view_state().camera();
     let pointer = Pointer { camera, size: pair(scene.size()), at: pair(at - scene.min) };
-    h.state().app_state().views().under(ViewKind::Flat, session(h).frame(), &pointer)
+    h.state().app_state().views().under(ViewKind::Flat, &session(h).frame().into(), &pointer)
 }
 
 /// Where a link is seen alone.
@@ -76,7 +76,7 @@ fn things_say_what_they_are() {
     h.state_mut().app_state_mut().carry_out(Command::Edit(edit));
     h.run_steps(2);
     let shown = *session(&h).frame();
-    let at = h.state().app_state().stage().payload(&shown).expect("it is held");
+    let at = h.state().app_state().stage().payload(&(&shown).into()).expect("it is held");
     let at = on_screen(&h, at.re, at.im);
     rest_on(&mut h, at);
     assert!(h.query_by_label_contains("payload, 0.3 kg").is_some());
@@ -223,7 +223,8 @@ fn limits_are_arcs_with_ends_to_drag() {
     h.run_steps(2);
     let limits = |h: &Window| session(h).scenario().machine.angles()[0].limits.clone();
     let end = |h: &Window| {
-        let mut ends = h.state().app_state().stage().limits(session(h).frame());
+        let shown = session(h).frame().into();
+        let mut ends = h.state().app_state().stage().limits(&shown);
         ends.find(|end| end.handle == Handle::Limit(0, 1)).expect("a₁ has an arc").at
     };
     let at = end(&h);
@@ -274,7 +275,7 @@ fn a_payload_is_hung_on_and_aside() {
     let side = on_screen(&h, 0.5 + 0.08, 0.5 + 0.06);
     drag(&mut h, name, side);
     h.run_steps(3);
-    let at = h.state().app_state().stage().payload(session(&h).frame()).expect("it hangs");
+    let at = h.state().app_state().stage().payload(&session(&h).frame().into()).expect("it hangs");
     assert!((at.re - 0.58).abs() < 3e-3 && (at.im - 0.56).abs() < 3e-3, "{at}");
     assert!((load(&h).offset[0].hypot(load(&h).offset[1]) - 0.1).abs() < 4e-3, "{:?}", load(&h).offset);
     let back = on_screen(&h, 0.503, 0.502);

@@ -321,7 +321,7 @@ fn a_drag_that_is_given_up_takes_back_what_it_did() {
     tell(&mut h, Command::EndGesture);
     work_all(&mut h, &workers);
     let before = session(&h).to_scenario();
-    let handle = h.state().app_state().stage().handle(Handle::Waypoint(1), session(&h).frame()).expect("B");
+    let handle = h.state().app_state().stage().handle(Handle::Waypoint(1), &session(&h).frame().into()).expect("B");
     let at = seen(&h, handle);
     // B is held by its name where the target covers it.
     let name = at - egui::vec2(17.0, 0.0);

@@ -5,7 +5,7 @@ use egui::accesskit::{Role, Toggled};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use stillbase::app::Command;
 use stillbase::mechanics::planar::PerDrive;
-use stillbase::picture::scene::exaggeration::exaggerated;
+use stillbase::picture::scene::exaggeration::{Exaggeration, Shown};
 use stillbase::picture::scene::options::Handle;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::pointer::Pointer;
@@ -218,7 +218,7 @@ fn a_base_that_moves_is_seen_to_move() {
     let moved = foreseen * (f.totals.shift + f.totals.base_angle * 1.26);
     assert!((0.04..0.13).contains(&moved), "{moved} m is seen, {foreseen} times");
     // The ring's field is where it is drawn, and pulling it there asks for the same b.
-    let shown = exaggerated(&f, foreseen);
+    let shown = Shown::of(&f, Exaggeration::Times(foreseen));
     let stage = h.state().app_state().stage().clone();
     let at = stage.handle(Handle::Ring, &shown).expect("three drives");
     let b = stage.ring_b([at[0], at[1]], f.b_reference, &shown).expect("three drives");
@@ -316,7 +316,7 @@ fn a_part_out_of_view_offers_the_way_back() {
     h.state_mut().app_state_mut().carry_out(Command::EndGesture);
     h.run_steps(3);
     let out = |h: &Window| {
-        let ends = h.state().app_state().stage().outline(session(h).frame()).collect::<Vec<_>>();
+        let ends = h.state().app_state().stage().outline(&session(h).frame().into()).collect::<Vec<_>>();
         ends.into_iter().any(|at| !scene(h).contains(seen(h, at)))
     };
     assert!(out(&h) && offered(&h) && camera(&h) == before);
@@ -435,7 +435,7 @@ fn lists_close_and_links_are_named() {
             let camera = *h.state().app_state().view_state().camera();
             let pointer = Pointer { camera, size: pair(scene.size()), at: pair(*at - scene.min) };
             let views = h.state().app_state().views();
-            views.under(ViewKind::Flat, &frame, &pointer) == Some(Handle::Link(i))
+            views.under(ViewKind::Flat, &(&frame).into(), &pointer) == Some(Handle::Link(i))
         });
         h.hover_at(alone.unwrap_or_else(|| panic!("{} is seen somewhere", bar.name)));
         h.run_steps(40);

@@ -88,7 +88,9 @@ fn limits_apply_and_the_run_waits() {
         let waiting = session(&h).run().waiting().cloned().expect("B does not fit");
         let [(1, Some(b))] = waiting.points[..] else { panic!("{waiting:?}") };
         assert_eq!(red(&h), ["B".to_owned(), format!("b = {b} rad would reach it")]);
-        assert!(h.query_by_label_contains("The run waits: B").is_some() && h.query_by_label("waits").is_some());
+        assert!(
+            h.query_by_label_contains("The run waits: B").is_some() && h.query_by_label("run: waits, open").is_some()
+        );
         if way_out == "take b" {
             h.snapshot("waits-dark");
         }

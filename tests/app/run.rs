@@ -8,7 +8,7 @@ use stillbase::picture::charts;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::Edit;
 
-use super::{hold, session, type_into, window};
+use super::{Window, hold, pull, session, type_into, window};
 use crate::Test;
 
 pub const TESTS: &[Test] = tests![
@@ -20,6 +20,8 @@ pub const TESTS: &[Test] = tests![
     a_run_is_played_over_and_over,
     what_a_repaint_takes_is_told_behind_a_key,
     b_leaves_the_task_as_it_is,
+    lamps_of_a_run_to_come,
+    the_knob_of_b_stops_where_b_does,
 ];
 
 fn playing_case_3_ends_at_b_without_a_reaction() {
@@ -30,7 +32,9 @@ fn playing_case_3_ends_at_b_without_a_reaction() {
     assert_eq!(f.step, 1000, "the run stops by itself where the motion ends");
     assert!((f.end_effector.re - 0.55).abs() < 1e-6 && (f.end_effector.im - 0.9).abs() < 1e-6, "{:?}", f.end_effector);
     assert!(f.peaks.is_reactionless());
-    assert!(h.query_by_label("reactionless").is_some());
+    for lamp in ["machine: balanced, good", "plan: holds b, good", "run: transmitted nothing, good"] {
+        assert!(h.query_by_label(lamp).is_some(), "{lamp}");
+    }
     assert!(h.query_by_label("Pause").is_some(), "time still runs: sliding b now would move the machine");
     h.key_press(Key::Space);
     h.run_steps(2);
@@ -92,6 +96,20 @@ fn keys_play_step_and_take_back() {
     assert!(h.query_by_label("Play, pause, start over").is_some());
 }
 
+/// What has not run is neither praised nor blamed, and a machine off balance is told so before it moves.
+fn lamps_of_a_run_to_come() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    assert!(h.query_by_label("run: none yet, open").is_some());
+    h.state_mut().app_state_mut().carry_out(Command::Edit(Edit::set("link.5.com", -0.05)));
+    h.run_steps(3);
+    assert!(h.query_by_label_contains("machine: off balance by ").is_some());
+    assert!(
+        h.query_by_label("plan: no b to hold, open").is_some() && h.query_by_label("run: none yet, open").is_some()
+    );
+    assert!(h.query_by_label_contains("reactionless, good").is_none());
+}
+
 fn nothing_is_repainted_at_rest() {
     let mut h = window("case-3", Theme::Dark);
     // `run` fails if the window keeps asking for another repaint.
@@ -106,11 +124,36 @@ fn case_1_in_motion_looks_as_it_should() {
     h.run_steps(32);
     h.key_press(Key::Space);
     h.run_steps(4);
-    assert!(h.query_by_label("reacts on its base").is_some());
+    // The path does it, not the machine.
+    for lamp in ["machine: balanced, good", "plan: changes b by ", "run: peak |n_B| 1.0891 N m, bad"] {
+        assert!(h.query_by_label_contains(lamp).is_some(), "{lamp}");
+    }
     h.snapshot("case-1-dark");
     h.get_by_label("3D").click();
     h.run_steps(4);
     h.snapshot("case-1-dark-3d");
+}
+
+/// Paused, the slider's knob stops where b does, however far the pointer goes.
+fn the_knob_of_b_stops_where_b_does() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let points = session(&h).scenario().task.points();
+    let ends = session(&h).run().planes().expect("planes").common(&points).expect("a band").intervals[0];
+    let slider = h.get_by_role_and_label(Role::Slider, "b slider").rect();
+    let shown = |h: &Window| h.get_by_role_and_label(Role::Slider, "b slider").accesskit_node().numeric_value();
+    let period = session(&h).run().planes().expect("planes").map().period();
+    let at = |b: f64| pos2(slider.left() + 6.0 + (slider.width() - 12.0) * (b / period) as f32, slider.center().y);
+    for (to, stops) in [(slider.right() - 8.0, ends[1]), (slider.left() + 8.0, ends[0])] {
+        let from = at(session(&h).b_aim());
+        pull(&mut h, from, pos2(to, slider.center().y));
+        h.run_steps(2);
+        let knob = shown(&h).expect("a number");
+        assert!((knob - stops).abs() < 1e-4, "the knob stands at {knob}, b stops at {stops}");
+        assert!((session(&h).b_aim() - stops).abs() < 1e-4);
+        h.drop_at(pos2(to, slider.center().y));
+        h.run_steps(2);
+    }
 }
 
 /// Paused, b stops where it would move A and B, unless that is asked for; what is typed and cannot be is said.

@@ -1,16 +1,20 @@
 //! Nothing is lost: the journal of a session, what a program left behind, and changes that are in no file.
 
+use std::path::{Path, PathBuf};
+
+use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use stillbase::app::window::{App, Clock};
-use stillbase::app::{AppState, Command};
+use stillbase::app::{AppState, Command, LeftOff, Preferences};
 use stillbase::files::journal::{self, Journal};
+use stillbase::picture::charts::choice::Change;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
 
 use super::screen::{Screen, whole};
-use super::{Window, session, window};
+use super::{Window, drag, on_screen, session, window};
 use crate::Test;
 use crate::folder::Folder;
 
@@ -20,6 +24,9 @@ pub const TESTS: &[Test] = tests![
     a_session_that_was_left_behind_is_offered_and_opened,
     one_that_is_not_wanted_goes,
     changes_in_no_file_are_marked_and_asked_for,
+    a_question_has_keys_and_pointer_for_itself,
+    files_are_remembered_by_the_whole_of_their_names,
+    own_plots_and_the_instant_are_recovered,
 ];
 
 fn tell(h: &mut Window, command: Command) {
@@ -140,4 +147,104 @@ fn changes_in_no_file_are_marked_and_asked_for() {
     h.run_steps(2);
     tell(&mut h, Command::Quit);
     assert!(h.state().app_state().wants_to_leave());
+}
+
+/// Behind a question nothing happens, whatever is pressed; Esc leaves things as they are.
+fn a_question_has_keys_and_pointer_for_itself() {
+    let mut h = window("case-3", Theme::Dark);
+    tell(&mut h, heavier());
+    tell(&mut h, Command::Quit);
+    let before = session(&h).to_scenario();
+    for key in [Key::Num1, Key::Num2, Key::V, Key::L, Key::B, Key::T, Key::ArrowRight, Key::Home, Key::CloseBracket] {
+        h.key_press(key);
+        h.run_steps(2);
+    }
+    for key in [Key::Z, Key::K, Key::O] {
+        h.key_press_modifiers(Modifiers::COMMAND, key);
+        h.run_steps(2);
+    }
+    let at = session(&h).frame().end_effector;
+    let from = on_screen(&h, at.re, at.im);
+    drag(&mut h, from, from + egui::vec2(-20.0, 20.0));
+    h.run_steps(3);
+    assert!(h.query_by_label("Save before closing?").is_some());
+    assert_eq!(session(&h).to_scenario(), before);
+    let view_state = h.state().app_state().view_state();
+    assert_eq!(view_state.theme, Theme::Dark);
+    assert!(
+        view_state.finder.is_none() && view_state.dialog.is_none() && !view_state.study && !session(&h).is_playing()
+    );
+    h.key_press(Key::Escape);
+    h.run_steps(3);
+    assert!(h.query_by_label("Save before closing?").is_none() && !h.state().app_state().wants_to_leave());
+    h.key_press(Key::Num1);
+    h.run_steps(3);
+    assert_eq!(session(&h).scenario().name, "case-1", "and the keys are back");
+    // The same of a session that was left behind: Esc asks again at the next start.
+    let folder = Folder::new("asked");
+    let mut h = found(&folder.file("session-0.toml", "whatever"));
+    h.run_steps(2);
+    h.key_press(Key::Num1);
+    h.run_steps(2);
+    assert_eq!(session(&h).scenario().name, "case-3");
+    h.key_press(Key::Escape);
+    h.run_steps(2);
+    assert!(h.query_by_label("Go on where you were?").is_none());
+    assert!(h.state_mut().app_state_mut().take_recovered().is_none());
+}
+
+/// A file that was opened by a name relative to a folder is found from any other; one that is gone is forgotten.
+fn files_are_remembered_by_the_whole_of_their_names() {
+    let folder = Folder::new("relative");
+    let mut h = window("case-3", Theme::Dark);
+    let file = folder.file("mine.toml", session(&h).to_scenario().to_toml());
+    let here = std::env::current_dir().expect("a folder");
+    let up: PathBuf = here.components().skip(1).map(|_| Path::new("..")).collect();
+    let relative = up.join(file.strip_prefix("/").expect("whole"));
+    assert!(relative.is_relative() && relative.exists());
+    tell(&mut h, Command::OpenFile(relative));
+    let recent = |h: &Window| h.state().app_state().recent().to_vec();
+    assert_eq!(recent(&h), [file.canonicalize().expect("it is there")]);
+    tell(&mut h, Command::OpenFile("case-1".into()));
+    assert_eq!(recent(&h).len(), 1, "a built-in name is no file");
+    std::fs::remove_file(&file).expect("removed");
+    let gone = recent(&h)[0].clone();
+    tell(&mut h, Command::OpenFile(gone));
+    assert_eq!(recent(&h), [""; 0].map(PathBuf::from), "what is gone is forgotten");
+    // What an older program remembered by half a name cannot be found any more.
+    let liked = Preferences { recent: vec!["mine.toml".into(), file.clone()], ..Preferences::default() };
+    assert_eq!(liked.sound().recent, [file]);
+}
+
+/// A journal keeps the instant on display and the plots that a person has made.
+fn own_plots_and_the_instant_are_recovered() {
+    let folder = Folder::new("left-off");
+    let mut h = window("case-3", Theme::Dark);
+    tell(&mut h, heavier());
+    for change in [
+        Change::Plot("torque/2".into()),
+        Change::Add("Torque".into(), "drives/q1".into()),
+        Change::Show("Torque".into(), "torque/2".into(), false),
+        Change::Statistics(true),
+    ] {
+        tell(&mut h, Command::Charts(change));
+    }
+    tell(&mut h, Command::Seek(0.412));
+    let left_off = h.state().app_state().left_off();
+    assert_eq!(left_off.time, session(&h).frame().time);
+    let kept = session(&h).to_scenario();
+    let text = left_off.before(&kept.to_toml());
+    assert_eq!(LeftOff::of(&text).as_ref(), Some(&left_off));
+    assert_eq!(Scenario::parse(&text, "left", None).expect("a session all the same"), kept);
+    assert_eq!(LeftOff::of(&kept.to_toml()), None);
+    let mut h = found(&folder.file("session-0.toml", text));
+    h.run_steps(2);
+    h.get_by_label("Open that session").click();
+    h.run_steps(4);
+    assert_eq!(h.state().app_state().left_off(), left_off);
+    assert!((session(&h).frame().time - 0.412).abs() < 1e-9);
+    // What no program wrote does no harm.
+    for strange in ["#| time = nan\n", "#| time = -1.0\n", "#| plots = 3\n", "#| \u{0}\n"] {
+        assert_eq!(LeftOff::of(strange), None, "{strange}");
+    }
 }

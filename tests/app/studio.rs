@@ -55,7 +55,7 @@ fn place(h: &Window, handle: Handle) -> egui::Pos2 {
     let under = |pos: egui::Pos2| {
         let pair = |v: egui::Vec2| [f64::from(v.x), f64::from(v.y)];
         let pointer = Pointer { camera, size: pair(scene.size()), at: pair(pos - scene.min) };
-        h.state().app_state().views().under(ViewKind::Design, session(h).frame(), &pointer)
+        h.state().app_state().views().under(ViewKind::Design, &session(h).frame().into(), &pointer)
     };
     let (width, height) = (scene.width() as usize, scene.height() as usize);
     let all = (0..height).step_by(3).flat_map(|y| (0..width).step_by(3).map(move |x| at(x, y)));

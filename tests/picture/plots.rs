@@ -92,6 +92,22 @@ fn plots_are_what_was_chosen_and_remembered() {
 }
 
 proptest! {
+    /// While the clock of a run without an end goes on, as much time is shown as before: curves move, and keep their
+    /// shape.
+    #[test]
+    fn a_clock_that_runs_on_squeezes_nothing(planned in 0.05..60.0_f64, start in 0.0..3.0_f64) {
+        let width = |now: f64| {
+            let [from, to] = Extent::open_ended(planned, now, now).shown(None);
+            assert!(from >= 0.0 && from <= now && now <= to + 1e-12, "{from} to {to} at {now}");
+            to - from
+        };
+        let first = width(start);
+        prop_assert!((4.0 - 1e-12..=12.0 + 1e-12).contains(&first));
+        for i in 1..200 {
+            prop_assert!((width(start + 0.4 * f64::from(i)) - first).abs() < 1e-9);
+        }
+    }
+
     /// Whatever hands do to the range, there is something to see in it, and the time under the pointer stays there.
     #[test]
     fn a_range_stays_within_the_run(

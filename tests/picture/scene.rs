@@ -8,15 +8,16 @@ use stillbase::mechanics::machine::{Machine, builtin, builtins, parse, place_of,
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector, unit};
 use stillbase::picture::numbers::round_up;
 use stillbase::picture::scene::camera::{Camera, Flat, Orbit};
-use stillbase::picture::scene::exaggeration::{exaggerated, exaggeration};
+use stillbase::picture::scene::exaggeration::{Exaggeration, Shown, exaggeration};
 use stillbase::picture::scene::linkage::Linkage;
-use stillbase::picture::scene::options::{Handle, ViewOptions};
+use stillbase::picture::scene::options::{Handle, Other, ViewOptions};
 use stillbase::picture::scene::palette::{Theme, palette};
 use stillbase::picture::scene::stage::Stage;
-use stillbase::picture::scene::{Line, Scene, Solid, place};
+use stillbase::picture::scene::{Label, Line, Scene, Solid, place};
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Session};
 use stillbase::simulation::frame::Reach;
+use stillbase::simulation::plant::{Base, BaseKind, Load};
 
 fn open(case: &str) -> Session {
     Session::open(Scenario::builtin(case).expect("built in")).expect("it can start")
@@ -232,15 +233,15 @@ fn check_handles(session: &Session) {
     let scene = stage.scene(frame, &ViewOptions::default());
     for (handle, name) in [(Handle::Target, "target"), (Handle::Ring, "b_ring/knob")] {
         let marker = scene.markers.iter().find(|m| m.name == name).expect("a marker");
-        let at = stage.handle(handle, frame).expect("three drives");
+        let at = stage.handle(handle, &frame.into()).expect("three drives");
         assert_eq!(at.map(|x| x as f32), marker.at, "{name} at {} s", frame.time);
     }
     // The knob stands for b, and for one turn of everything more or less.
-    let [x, y, _] = stage.handle(Handle::Ring, frame).expect("three drives");
-    let b = stage.ring_b([x, y], frame.b_reference, frame).expect("three drives");
+    let [x, y, _] = stage.handle(Handle::Ring, &frame.into()).expect("three drives");
+    let b = stage.ring_b([x, y], frame.b_reference, &frame.into()).expect("three drives");
     assert!((b - frame.b_reference).abs() < 1e-12);
     let period = session.run().planes().expect("three drives").map().period();
-    let next = stage.ring_b([x, y], frame.b_reference + 1.1 * period, frame).expect("three drives");
+    let next = stage.ring_b([x, y], frame.b_reference + 1.1 * period, &frame.into()).expect("three drives");
     assert!((next - b - period).abs() < 1e-12);
     // The end effector is marked where it is.
     let marker = scene.markers.iter().find(|m| m.name == "end_effector").expect("a marker");
@@ -498,7 +499,7 @@ fn all_of_the_machine_goes_with_its_base() {
     };
     let stage = Stage::of(session.run());
     for times in [1.0, 20.0] {
-        let options = ViewOptions { exaggeration: times, ..Default::default() };
+        let options = ViewOptions { exaggeration: Exaggeration::Times(times), ..Default::default() };
         let (moved, unmoved) = (stage.scene(f, &options), stage.scene(&still, &options));
         let (at, turn) = (f.base.at * times, unit(f.base.angle * times));
         let seen = |scene: &Scene, name: &str| {
@@ -558,12 +559,13 @@ proptest! {
     fn exaggeration_moves_all_alike(times in 1.0..100.0f64) {
         let session = floating();
         let frame = session.frame();
-        prop_assert_eq!(exaggerated(frame, 1.0), *frame);
-        let more = exaggerated(frame, times);
+        let once = Shown::from(frame);
+        prop_assert_eq!((once.base, once.q, once.end_effector, once.com), (frame.base, frame.q, frame.end_effector, frame.com));
+        let more = Shown::of(frame, Exaggeration::Times(times));
         prop_assert!((more.in_base(more.end_effector) - frame.in_base(frame.end_effector)).norm() < 1e-12);
         prop_assert!((more.in_base(more.com) - frame.in_base(frame.com)).norm() < 1e-12);
         for k in 0..3 {
-            prop_assert!((more.relative(k) - frame.relative(k)).abs() < 1e-12);
+            prop_assert!((more.q[k] - more.base.angle - frame.relative(k)).abs() < 1e-12);
         }
         let tip = more.base.at + stillbase::mechanics::kinematics::end_effector(session.scenario().machine.end_effector(), &more.q.units());
         prop_assert!((more.end_effector - tip).norm() < 1e-12);
@@ -580,7 +582,7 @@ fn a_miss_is_shown_and_said() {
     assert!(miss > 1.0, "{miss} mm");
     let stage = Stage::of(session.run());
     for times in [1.0, 20.0] {
-        let scene = stage.scene(f, &ViewOptions { exaggeration: times, ..Default::default() });
+        let scene = stage.scene(f, &ViewOptions { exaggeration: Exaggeration::Times(times), ..Default::default() });
         let said = |words: &str| scene.labels.iter().any(|l| l.text == words);
         assert!(said(&format!("{:.3}, {:.3} m", goal.re, goal.im)), "the ring's own place");
         for words in [format!("end effector {:.3}, {:.3} m", tip.re, tip.im), format!("{miss:.1} mm off")] {
@@ -592,4 +594,60 @@ fn a_miss_is_shown_and_said() {
     }
     let still = scene_of(&open("case-3"));
     assert!(still.lines.iter().all(|l| l.name != "target/miss"));
+}
+
+/// What is exaggerated so that it can be seen enters no number: a scene says the same words however it is drawn, and
+/// what is pulled at as it is drawn asks for the same.
+#[test]
+fn words_are_of_the_frame_however_it_is_drawn() {
+    let bases = [None, Some(BaseKind::Free), Some(BaseKind::Compliant)];
+    let mut said = 0;
+    for case in ["case-1", "case-2", "case-3"] {
+        for base in bases {
+            let mut scenario = Scenario::builtin(case).expect("built in");
+            if let Some(kind) = base {
+                scenario.base = Base { kind, mass: 40.0, inertia: 2.0, ..scenario.base };
+                scenario.plant.payload = Load { mass: 0.3, offset: [0.05, 0.02], ..Load::default() };
+                scenario.plant.force = [0.4, -0.2];
+            }
+            let mut session = Session::open(scenario).expect("it starts");
+            session.play();
+            for step in [0, 137, 263, 400, 600] {
+                session.tick(step);
+                let (stage, frame) = (Stage::of(session.run()), session.frame());
+                let others = vec![Other { name: "1".into(), frame: *frame }];
+                let options = ViewOptions {
+                    pin_forces: true,
+                    limits: true,
+                    push: Some([0.4, -0.2]),
+                    others,
+                    ..Default::default()
+                };
+                let texts = |exaggeration| -> Vec<String> {
+                    let scene = stage.scene(frame, &ViewOptions { exaggeration, ..options.clone() });
+                    let text = |label: &Label| label.text.split(" · shown ×").next().unwrap_or_default().to_owned();
+                    scene.labels.iter().map(text).collect()
+                };
+                let plain = texts(Exaggeration::default());
+                said += plain.len();
+                for exaggeration in [
+                    Exaggeration::Times(20.0),
+                    Exaggeration::Times(500.0),
+                    Exaggeration::Mount(0.03),
+                    Exaggeration::Mount(-0.4),
+                ] {
+                    assert_eq!(texts(exaggeration), plain, "{case}, {base:?}, {} s, {exaggeration:?}", frame.time);
+                    let shown = Shown::of(frame, exaggeration);
+                    let [x, y, _] = stage.handle(Handle::Ring, &shown).expect("three drives");
+                    let b = stage.ring_b([x, y], frame.b_reference, &shown).expect("three drives");
+                    assert!((b - frame.b_reference).abs() < 1e-11, "{b} {exaggeration:?}");
+                    if let Some(at) = stage.payload(&shown) {
+                        let [along, across] = stage.load_offset(&shown, [at.re, at.im]);
+                        assert!((along - 0.05).abs() + (across - 0.02).abs() < 1e-12, "{along} {across}");
+                    }
+                }
+            }
+        }
+    }
+    assert!(said > 400, "{said} texts");
 }

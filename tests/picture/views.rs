@@ -378,21 +378,21 @@ fn the_machines_handles_are_found_in_both_views() {
     for kind in [ViewKind::Flat, ViewKind::Space] {
         let camera = views.camera(kind);
         for handle in [Handle::Target, Handle::Ring] {
-            let at = views.stage().handle(handle, frame).expect("three drives");
+            let at = views.stage().handle(handle, &frame.into()).expect("three drives");
             let here = pointer(camera, at);
-            assert_eq!(views.pick(kind, frame, &here), Some(Pick::of(handle, at)));
-            match views.aim(kind, &Pick::of(handle, at), frame, &here, 2.4) {
+            assert_eq!(views.pick(kind, &frame.into(), &here), Some(Pick::of(handle, at)));
+            match views.aim(kind, &Pick::of(handle, at), &frame.into(), &here, 2.4) {
                 Some(Aim::Target([x, y])) => assert!((x - 0.5).hypot(y - 0.5) < 1e-6),
                 Some(Aim::B(b)) => assert!((b - 2.4).abs() < 1e-6),
                 other => panic!("{handle:?} asks for {other:?}"),
             }
         }
         // The ends of the joint limits stand where they are.
-        let ends: Vec<Pick> = views.stage().limits(frame).collect();
+        let ends: Vec<Pick> = views.stage().limits(&frame.into()).collect();
         assert_eq!(ends.len(), 4, "two angles with two ends each");
         for pick in ends {
             let here = pointer(camera, pick.at);
-            let Some(Aim::Limit { angle, end, ends }) = views.aim(kind, &pick, frame, &here, 2.4) else {
+            let Some(Aim::Limit { angle, end, ends }) = views.aim(kind, &pick, &frame.into(), &here, 2.4) else {
                 panic!("{pick:?} is pulled")
             };
             assert_eq!(pick.handle, Handle::Limit(angle, end));

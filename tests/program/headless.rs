@@ -21,6 +21,7 @@ fn headless_reports_the_three_cases() {
                 "peak_torque",
                 "reactionless",
                 "scenario",
+                "statements",
                 "steps",
                 "verdict"
             ]

@@ -23,6 +23,7 @@ fn tables_show_units_and_the_same_numbers() {
     let table = prints(&["reach", "nine-link", "0.5,0.5"]);
     assert!(table.contains("b_min rad") && table.contains("0.5, 0.5"), "{table}");
     let check = prints(&["check", "nine-link-table-1"]);
+    assert!(check.contains("machine          off balance by 2."), "{check}");
     for part in ["16.050 kg", "1.367816575", "0.127920111", "-0.000105000", "force balanced   no"] {
         assert!(check.contains(part), "{part} in {check}");
     }

@@ -13,7 +13,7 @@ fn simulate_prints_every_signal() {
         .chain(peaks[..2].iter().copied())
         .chain(["peak_tilt", peaks[2], "reactionless", "remarks"])
         .chain(sums.into_iter().take(2))
-        .chain(["sentence", "steps"])
+        .chain(["sentence", "statements", "steps"])
         .collect();
     assert_eq!(keys(&got["verdict"]), all);
     assert_eq!(keys(&got["verdict"]["audit"]), ["angular", "energy", "loops", "momentum", "plane", "step"]);
@@ -120,6 +120,10 @@ fn verdicts_are_said_in_full() {
     assert!(line.contains("peak |n_B| 1.089") && line.contains("past the wheel 0.000000 N m"), "{line}");
     assert!(line.contains("reactionless: no") && line.contains("the wheel takes it up"), "{line}");
     let got = object(&wheel);
+    // Machine, plan and run are told apart, in words and in JSON.
+    assert!(line.contains("machine: balanced · plan: changes b by 0.0"), "{line}");
+    let statements = &got["verdict"]["statements"];
+    assert_eq!(["machine", "plan", "run"].map(|of| statements[of]["lamp"].clone()), ["good", "bad", "good"]);
     assert!(got["verdict"]["peak_moment_past_wheel"].as_f64() < Some(1e-9), "{}", got["verdict"]);
     assert!(got["verdict"]["peak_base_moment"].as_f64() > Some(1.0), "{}", got["verdict"]);
     let fall = object(&["simulate", "case-3", "--set", "base.kind=free", "--set", "gravity=0,-9.81"]);

@@ -15,6 +15,13 @@ fn what_happened_and_what_was_run_is_told() {
     assert_eq!(stillbase::mechanics::machine::parse(text, "recorded").expect("a machine"), scenario.machine);
     assert_eq!(property("version"), [env!("CARGO_PKG_VERSION")]);
     assert!(property("verdict")[0].starts_with("not reactionless: peak |n_B| 1.0891 N m"), "{:?}", property("verdict"));
+    for (name, words) in [
+        ("statement_machine", "balanced (force-balanced and invariant"),
+        ("statement_plan", "changes b by 0.0"),
+        ("statement_run", "peak |n_B| 1.0891 N m"),
+    ] {
+        assert!(property(name)[0].starts_with(words), "{:?}", property(name));
+    }
     let events = contents.texts("/case-1/events", "TextLog:text");
     for part in [
         "start: Case 1",

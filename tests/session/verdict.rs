@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use stillbase::session::scenario::Scenario;
-use stillbase::session::verdict::{PAST, Verdict};
+use stillbase::session::verdict::{Lamp, PAST, Statements, Verdict};
 use stillbase::session::{Edit, Session, TimedEdit, replay};
 use stillbase::settings::change;
 use stillbase::simulation::frame::Frame;
@@ -180,5 +180,104 @@ proptest! {
         prop_assert_eq!(falling.reactionless, floating.reactionless);
         prop_assert_eq!(falling.reactionless, name == "case-3" && payload == 0.0);
         prop_assert_eq!(falling.word(), floating.word());
+    }
+}
+
+fn statements(scenario: &Scenario) -> [Statements; 2] {
+    let mut frames = Vec::new();
+    let run = replay(scenario, |_, f| frames.push(*f)).expect("runs");
+    [Statements::of(&run, &frames[0]), Statements::of(&run, &run.frame())]
+}
+
+fn lamps(of: &Statements) -> [Lamp; 3] {
+    of.named().map(|(_, statement)| statement.lamp)
+}
+
+/// Three statements: what has not run is neither praised nor blamed, and a path that leaves its plane is not the
+/// machine's fault.
+#[test]
+fn machine_plan_and_run_are_told_apart() {
+    use Lamp::{Bad, Good, Open};
+    let [before, after] = statements(&case("case-3", &[], ""));
+    assert_eq!(before.line(), "machine: balanced · plan: holds b · run: none yet");
+    assert_eq!(lamps(&before), [Good, Good, Open]);
+    assert_eq!(after.line(), "machine: balanced · plan: holds b · run: transmitted nothing");
+    assert_eq!(lamps(&after), [Good; 3]);
+    // A balanced machine on a straight line: the path does it.
+    let [before, after] = statements(&case("case-1", &[], ""));
+    assert_eq!((lamps(&before), lamps(&after)), ([Good, Bad, Open], [Good, Bad, Bad]));
+    assert!(after.run.words.starts_with("peak |n_B| 1.089") && !after.run.words.contains("f_B"), "{}", after.run.words);
+    assert!(after.run.why.contains("the path does this, not the machine"), "{}", after.run.why);
+    assert!(after.plan.words.starts_with("changes b by 0.0"), "{}", after.plan.words);
+    // A machine off balance is told before it has moved, by how much, and its run is not praised for standing still.
+    let off = case("case-3", &[("link.5.com", "-0.05")], "");
+    let [before, after] = statements(&off);
+    assert_eq!((lamps(&before), lamps(&after)), ([Bad, Open, Open], [Bad, Open, Bad]));
+    assert!(before.machine.words.starts_with("off balance by 0.") && before.machine.words.ends_with(" kg m"));
+    assert!(after.run.why.contains("the machine does this"), "{}", after.run.why);
+    // Neither does it, but what the model does not know.
+    let [before, after] = statements(&case("case-3", &[], "[plant.payload]\nmass = 0.3"));
+    assert_eq!((lamps(&before), lamps(&after)), ([Good, Good, Open], [Good, Good, Bad]));
+    assert!(after.run.why.contains("payload") && after.run.words.contains("|f_B|"), "{:?}", after.run);
+    // A wheel takes the moment up; an arm that friction holds has shown nothing; a failed audit leaves no praise.
+    let mut wheel = case("case-1", &[], "");
+    wheel.base.wheel = Some(Wheel { inertia: 0.002, ..Wheel::default() });
+    assert_eq!(lamps(&statements(&wheel)[1]), [Good, Bad, Good]);
+    let [_, stuck] = statements(&case("case-3", &[], "[plant.friction]\ncoulomb = 1e4"));
+    assert_eq!((stuck.run.lamp, stuck.run.words.as_str()), (Open, "nothing moved"));
+    let run = replay(&case("case-3", &[], ""), |_, _| ()).expect("runs");
+    let mut end = run.frame();
+    end.audit.energy = 1.0;
+    let of = Statements::of(&run, &end).run;
+    assert_eq!((of.lamp, of.words.as_str()), (Bad, "cannot be trusted"));
+}
+
+/// A run that waits has no plan, and one that a hand leads holds b until the hand turns it.
+#[test]
+fn plans_that_wait_and_hands_that_lead() {
+    let mut waits = case("case-3", &[], "");
+    waits.task.b = 3.6;
+    let session = Session::open_waiting(waits).expect("it waits");
+    let of = Statements::of(session.run(), session.frame());
+    assert_eq!([of.plan.lamp, of.run.lamp], [Lamp::Open; 2], "{of:?}");
+    let mut session = Session::open(case("case-3", &[], "")).expect("begins");
+    session.apply(Edit::DragTarget { x: 0.52, y: 0.6 }).expect("inside");
+    session.play();
+    session.tick(300);
+    let of = |session: &Session| Statements::of(session.run(), session.frames().last().expect("one"));
+    assert_eq!((lamps(&of(&session)), of(&session).plan.words.as_str()), ([Lamp::Good; 3], "led by hand, holds b"));
+    session.apply(Edit::SlideB { b: 2.6 }).expect("b");
+    session.tick(20);
+    assert_eq!(of(&session).plan.lamp, Lamp::Bad, "{:?}", of(&session).plan);
+    session.tick(20_000);
+    assert_eq!(lamps(&of(&session)), [Lamp::Good, Lamp::Good, Lamp::Bad], "it holds the new b, and has transmitted");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Lamps against what frames and constants say by themselves.
+    #[test]
+    fn lamps_say_what_the_numbers_say(
+        name in prop_oneof![Just("case-1"), Just("case-2"), Just("case-3")],
+        off in prop_oneof![Just(0.0), -0.05..0.05_f64],
+        payload in prop_oneof![Just(0.0), 0.05..1.0_f64],
+    ) {
+        let com = format!("{}", off);
+        let mut scenario = case(name, &[], "");
+        if off != 0.0 {
+            scenario.machine = scenario.machine.set("link.9.com", &com).expect("valid");
+        }
+        scenario.plant.payload.mass = payload;
+        let mut frames = Vec::new();
+        let run = replay(&scenario, |_, f| frames.push(*f)).expect("runs");
+        let of = Statements::of(&run, &run.frame());
+        let most = |of: &dyn Fn(&Frame) -> f64| frames.iter().map(of).fold(0.0, f64::max);
+        let [moment, force] = [most(&|f| f.base_moment().abs()), most(&|f| f.wrench.dynamic.force.norm())];
+        let torque = most(&|f| f.torque.iter().map(|t| t.abs()).sum());
+        prop_assert_eq!(of.machine.lamp == Lamp::Good, off == 0.0);
+        prop_assert_eq!(of.plan.lamp == Lamp::Good, off == 0.0 && name == "case-3");
+        prop_assert_eq!(of.run.lamp == Lamp::Good, moment < 1e-5 * torque && force < 1e-6);
+        prop_assert_eq!(of.run.lamp == Lamp::Good, off == 0.0 && name == "case-3" && payload == 0.0);
     }
 }

@@ -94,7 +94,7 @@ fn the_main_job_is_done_by_keyboard() {
     desk.display.tap(u32::from('1'));
     desk.titled("Case 1");
     desk.bus.wait_for("the end of the run", 60, |tree| {
-        (numbers(&tree.containing("peak |n_B|")?.name)[0] > 0.5).then_some(())
+        (numbers(&tree.containing("run: peak |n_B|")?.name)[0] > 0.5).then_some(())
     });
     go_to(&desk, "Scenario", 60);
     desk.display.tap(ENTER);

@@ -53,8 +53,11 @@ const AT_ONCE: usize = 4_000;
 
 /// How much time there is to show of a session.
 pub fn extent(session: &Session) -> Extent {
-    let end = session.frames().last().map_or(0.0, |f| f.time).max(session.length());
-    Extent::of(if session.is_led() { end.max(1.0) } else { end }, session.frame().time)
+    let (now, end) = (session.frame().time, session.frames().last().map_or(0.0, |f| f.time).max(session.length()));
+    match session.is_led() {
+        true => Extent::open_ended(session.run().planned_time(), end, now),
+        false => Extent::of(end, now),
+    }
 }
 
 impl Prepared {

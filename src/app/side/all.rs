@@ -5,6 +5,7 @@ use egui::{Align, Label, Layout, RichText, TextEdit, Ui};
 use super::fold::{fold, once, undo};
 use crate::app::Command;
 use crate::app::facts::{Facts, Setting};
+use crate::app::place::fold_id;
 use crate::app::theme::{colour, plain};
 use crate::app::widgets::{name, note};
 use crate::picture::scene::palette::Palette;
@@ -15,20 +16,42 @@ use crate::settings::key::{Holds, Key};
 use crate::settings::quantity::{self, Misread};
 use crate::settings::range::shortened;
 
+/// Above the list.
+const TITLE: &str = "All settings";
+
 /// What the title above a part says already.
 const HEADED: [&str; 6] = ["task.", "control.", "plant.", "base.wheel.", "base.", "tolerance."];
 
 /// The most rows that are shown at once.
 const SHOWN: usize = 24;
 
+fn sought_id() -> egui::Id {
+    egui::Id::unique("settings sought")
+}
+
+/// Set for the one pass in which the list is scrolled to.
+fn wanted_id() -> egui::Id {
+    egui::Id::unique("settings wanted")
+}
+
+/// Unfolds the list with what contains a path.
+pub fn look_up(ctx: &egui::Context, path: &str) {
+    ctx.data_mut(|data| {
+        data.insert_temp(fold_id(TITLE), true);
+        data.insert_temp(sought_id(), path.to_owned());
+        data.insert_temp(wanted_id(), true);
+    });
+}
+
 /// Draws it.
 pub fn show(ui: &mut Ui, facts: &Facts, p: &Palette, commands: &mut Vec<Command>) {
-    fold(ui, p, ("All settings", "by key"), None, commands, |ui, commands| {
-        let id = egui::Id::unique("settings sought");
+    fold(ui, p, (TITLE, "by key"), None, commands, |ui, commands| {
+        let id = sought_id();
         let mut sought = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_default();
         let field = TextEdit::singleline(&mut sought).hint_text("search: friction, limit, link.5 …");
         let response = ui.add(field.desired_width(f32::INFINITY));
         name(&response, "Search the settings");
+        let wanted = ui.data_mut(|d| d.remove_temp::<bool>(wanted_id())).is_some();
         ui.data_mut(|d| d.insert_temp(id, sought.clone()));
         let word = sought.trim().to_lowercase();
         let (mut count, mut part) = (0, "");
@@ -43,6 +66,10 @@ pub fn show(ui: &mut Ui, facts: &Facts, p: &Palette, commands: &mut Vec<Command>
                 note(ui, p, of);
             }
             row(ui, p, setting, commands);
+        }
+        if wanted {
+            let shown = response.rect.with_max_y(ui.min_rect().bottom());
+            ui.scroll_to_rect(shown, Some(Align::Center));
         }
         match count {
             0 => note(ui, p, "no key contains this"),

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use super::AppState;
 use crate::app::background::{Background, File, Opening, Slot, ended};
-use crate::app::change::{Change, NotOpened, Source};
+use crate::app::change::{Change, NotOpened, Opened, Source};
 use crate::app::jobs::Workers;
-use crate::app::{Activity, Command, ComparisonCommand, Framing, PlotFile, RefusedEdit, plots};
+use crate::app::{Activity, Command, ComparisonCommand, Framing, LeftOff, PlotFile, RefusedEdit, plots};
 use crate::exchange::cut::Cut;
 use crate::exchange::form::Form;
 use crate::mechanics::machine::Machine;
@@ -82,7 +82,7 @@ impl AppState {
             let said = said.unwrap_or_else(|| Err(fault("saving")));
             if let (Ok(_), Some((changes, file))) = (&said, session) {
                 self.saving.saved = changes;
-                self.saving.uses(file);
+                self.saving.uses(&file);
             }
             self.tell(said.map(Some));
             any = true;
@@ -221,9 +221,12 @@ impl AppState {
         let Some((opening, opened)) = ended(&mut self.background.opening) else { return false };
         let broken = || NotOpened { why: "opening broke off: this is a fault of the program".into(), refused: None };
         match opened.unwrap_or_else(|| Err(broken())) {
-            Ok((next, said)) => {
+            Ok(Opened { session, said, left_off }) => {
                 let news = said.or_else(|| opening.news.clone());
-                self.take_over(next, Opening { news, ..opening });
+                self.take_over(session, Opening { news, ..opening });
+                if let Some(LeftOff { plots, .. }) = left_off {
+                    self.view_state.charts = plots;
+                }
             }
             Err(_) if opening.instead.is_some() => {
                 if let Some((scenario, said)) = opening.instead.map(|instead| *instead) {
@@ -232,6 +235,9 @@ impl AppState {
                 }
             }
             Err(NotOpened { why, refused }) => {
+                if let Some(File::Own(file)) = &opening.file {
+                    self.saving.misses(file);
+                }
                 self.view_state.refused = refused;
                 self.tell(Err(why));
             }
@@ -243,7 +249,7 @@ impl AppState {
     fn take_over(&mut self, next: Session, Opening { plays, closes, news, file, .. }: Opening) {
         self.saving.opened();
         match file {
-            Some(File::Own(file)) => self.saving.uses(file),
+            Some(File::Own(file)) => self.saving.uses(&file),
             // It is in no file of the person's own yet.
             Some(File::LeftBehind(file)) => {
                 self.saving.changes += 1;
@@ -565,7 +571,7 @@ impl AppState {
 
 /// The whole name of a file, so that it can be found again.
 fn whole(path: &Path) -> String {
-    path.canonicalize().unwrap_or_else(|_| path.into()).display().to_string()
+    crate::files::whole(path).unwrap_or_else(|| path.into()).display().to_string()
 }
 
 /// Whether two scenarios differ in their tasks at most.

@@ -2,16 +2,24 @@
 
 use egui::{Align2, Area, Button, Id, RichText, Ui, vec2};
 
-use super::{STEPS, Step, Tour};
+use super::{STEPS, Shows, Step, Tour};
 use crate::app::theme::{bold, card, colour, plain};
 use crate::app::widgets::name;
 use crate::app::{Command, ViewState};
 use crate::picture::scene::palette::Palette;
 use crate::picture::scene::views::ViewKind;
+use crate::session::Session;
 
 impl Tour {
     /// Its card, over the lower left corner of the scene.
-    pub fn show(&self, ctx: &egui::Context, rect: egui::Rect, view_state: &ViewState, commands: &mut Vec<Command>) {
+    pub fn show(
+        &self,
+        ctx: &egui::Context,
+        rect: egui::Rect,
+        session: &Session,
+        view_state: &ViewState,
+        commands: &mut Vec<Command>,
+    ) {
         let (p, step) = (view_state.palette(), &STEPS[self.step]);
         let width = 430.0_f32.min(rect.width() - 32.0);
         let area = Area::new(id()).pivot(Align2::LEFT_BOTTOM).fixed_pos(rect.left_bottom() + vec2(16.0, -16.0));
@@ -29,7 +37,7 @@ impl Tour {
                 ui.add_space(4.0);
                 self.asked(ui, step, &p);
                 ui.add_space(4.0);
-                self.buttons(ui, step, view_state, &p, commands);
+                self.buttons(ui, (step.shows)(session), view_state, &p, commands);
             });
         });
     }
@@ -40,15 +48,22 @@ impl Tour {
         ui.add(egui::Label::new(RichText::new(words).font(bold(12.5)).color(colour(tone))).wrap());
     }
 
-    fn buttons(&self, ui: &mut Ui, step: &Step, view_state: &ViewState, p: &Palette, commands: &mut Vec<Command>) {
+    fn buttons(
+        &self,
+        ui: &mut Ui,
+        shows: Option<Shows>,
+        view_state: &ViewState,
+        p: &Palette,
+        commands: &mut Vec<Command>,
+    ) {
         ui.horizontal(|ui| {
-            if let Some((words, what)) = step.shows.filter(|_| !self.done)
+            if let Some((words, what)) = shows.filter(|_| !self.done)
                 && ui.button(words).clicked()
             {
                 if !view_state.view.shows_machine() {
                     commands.push(Command::View(ViewKind::Flat));
                 }
-                commands.extend(what());
+                commands.extend(what);
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 let words = match (self.step + 1 == STEPS.len(), self.done) {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use crate::app::jobs::{Job, Poll, Threads};
-use crate::app::{AppState, Preferences};
+use crate::app::{AppState, LeftOff, Preferences};
 use crate::files::journal::{self, Journal, Left};
 use crate::files::preferences;
 
@@ -12,13 +12,16 @@ use crate::files::preferences;
 pub struct Keeper {
     liked: (Preferences, Instant),
     journal: Option<Journal>,
-    /// The count of changes that the journal holds, and that is being written.
-    held: u64,
-    writing: Option<(u64, Job<bool>)>,
+    /// What the journal holds, and what is being written.
+    held: Kept,
+    writing: Option<(Kept, Job<bool>)>,
     next: Instant,
     /// What was left behind and goes when the journal holds it again.
     going: Option<PathBuf>,
 }
+
+/// What of a session on display is kept: the count of its changes, and what is in none of them.
+type Kept = (u64, LeftOff);
 
 /// The least time between two writes of preferences.
 const PREFERENCES_INTERVAL: Duration = Duration::from_secs(1);
@@ -36,7 +39,7 @@ impl Keeper {
     /// What is liked is in its file already.
     pub fn new(liked: Preferences, app_state: &AppState) -> Self {
         let now = Instant::now();
-        let held = app_state.changes().0;
+        let held = (app_state.changes().0, app_state.left_off());
         Self { liked: (liked, now), journal: None, held, writing: None, next: now, going: None }
     }
 
@@ -66,13 +69,17 @@ impl Keeper {
         if let Some((of, job)) = self.writing.take() {
             match job.poll() {
                 Poll::Working => self.writing = Some((of, job)),
-                Poll::Done(written) => self.held = if written { of } else { self.held },
-                Poll::Broken => {}
+                Poll::Done(true) => self.held = of,
+                Poll::Done(false) | Poll::Broken => {}
             }
         }
         self.going = app_state.take_recovered().or(self.going.take());
-        let (changes, _) = app_state.changes();
-        if changes == self.held {
+        let now_is = (app_state.changes().0, app_state.left_off());
+        let (changes, left_off) = &now_is;
+        // An instant alone is no reason to begin a journal, and while time runs it is not followed.
+        let elsewhere =
+            self.journal.is_some() && !app_state.session().is_playing() && left_off.time != self.held.1.time;
+        if *changes == self.held.0 && left_off.plots == self.held.1.plots && !elsewhere {
             self.going.take().iter().for_each(|file| journal::forget(file));
             return;
         }
@@ -90,15 +97,15 @@ impl Keeper {
         }
         self.next = now + JOURNAL_INTERVAL;
         let Some(file) = self.journal.as_ref().map(|journal| journal.file().to_owned()) else { return };
-        let scenario = app_state.session().to_scenario();
+        let (scenario, left_off) = (app_state.session().to_scenario(), left_off.clone());
         self.next += (COPY_SHARE * now.elapsed()).min(MAX_COPY_PAUSE);
         let wake = ctx.clone();
         let job = Job::start(
             &Threads::Prompt,
             move || wake.request_repaint(),
-            move |_| journal::write(&file, &scenario.to_toml()).is_ok(),
+            move |_| journal::write(&file, &left_off.before(&scenario.to_toml())).is_ok(),
         );
-        self.writing = Some((changes, job));
+        self.writing = Some((now_is, job));
     }
 
     /// Waits for what is being written. A disk that hangs is not waited for.
@@ -115,11 +122,12 @@ impl Keeper {
     /// The window ends out of order: what was done is written at once, to be offered at the next start; where.
     pub fn keep_now(&mut self, app_state: &AppState) -> Option<PathBuf> {
         self.settle();
-        if app_state.changes().0 != self.held && self.journal.is_none() {
+        if app_state.changes().0 != self.held.0 && self.journal.is_none() {
             self.journal = journal::folder().and_then(|folder| Journal::begin(&folder));
         }
         let file = self.journal.as_ref()?.file();
-        journal::write(file, &app_state.session().to_scenario().to_toml()).ok()?;
+        let session = app_state.session().to_scenario().to_toml();
+        journal::write(file, &app_state.left_off().before(&session)).ok()?;
         Some(file.to_owned())
     }
 

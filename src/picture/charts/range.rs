@@ -4,6 +4,8 @@ use serde::{Deserialize, Serialize};
 
 /// The longest stretch of time that is shown unasked, s.
 const WINDOW: f64 = 12.0;
+/// The shortest of those of a run whose end is not known, s.
+const OPEN_WINDOW: f64 = 4.0;
 /// The shortest that is shown at all, s.
 const SHORTEST: f64 = 1e-5;
 
@@ -19,9 +21,20 @@ pub struct Extent {
 impl Extent {
     /// Of a run that ends at a time and of which an instant is shown, both s.
     pub fn of(end: f64, now: f64) -> Self {
+        Self::within(WINDOW, end, now)
+    }
+
+    /// Of a run whose end is not known, up to which a time has passed, and of which an instant is shown; `planned` is how
+    /// long it was to take; all s. Unasked a stretch of one length is shown, so that curves move on and are not squeezed.
+    pub fn open_ended(planned: f64, end: f64, now: f64) -> Self {
+        let window = planned.clamp(OPEN_WINDOW, WINDOW);
+        Self::within(window, end.max(window), now)
+    }
+
+    fn within(window: f64, end: f64, now: f64) -> Self {
         let end = end.max(SHORTEST);
-        let to = end.min((now + 0.5 * WINDOW).max(WINDOW));
-        Self { whole: [0.0, end], usual: [(to - WINDOW).max(0.0), to] }
+        let to = end.min((now + 0.5 * window).max(window));
+        Self { whole: [0.0, end], usual: [(to - window).max(0.0), to] }
     }
 
     /// What is shown where a person chose a range, or none.

@@ -3,10 +3,12 @@
 use std::sync::Arc;
 
 use super::Measure;
+use super::exaggeration::Exaggeration;
 use super::palette::Theme;
 use super::reaction::Scale;
-use crate::mechanics::planar::{DriveAngles, Pose2, Vector};
+use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::session::Refusal;
+use crate::simulation::frame::Frame;
 
 /// What a person has chosen to see.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,8 +41,8 @@ pub struct ViewOptions {
     pub limits: bool,
     /// Links throw shadows on the floor.
     pub shadows: bool,
-    /// How many times as far as it moves the base is shown to move.
-    pub exaggeration: f64,
+    /// How the motion of the base is drawn.
+    pub exaggeration: Exaggeration,
     /// A force at the end effector, N.
     pub push: Option<[f64; 2]>,
     /// Counterweights to choose from.
@@ -68,7 +70,7 @@ impl Default for ViewOptions {
             pin_forces: false,
             limits: false,
             shadows: false,
-            exaggeration: 1.0,
+            exaggeration: Exaggeration::default(),
             push: None,
             weights: Vec::new(),
             links: Vec::new(),
@@ -153,10 +155,8 @@ pub struct Offered {
 pub struct Other {
     /// Its number in the table.
     pub name: String,
-    /// Absolute drive angles, rad.
-    pub q: DriveAngles,
-    /// Its base.
-    pub base: Pose2,
+    /// What is true of it.
+    pub frame: Frame,
 }
 
 /// A curve that was asked for and refused, and where it cannot be followed.

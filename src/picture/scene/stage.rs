@@ -18,9 +18,8 @@ pub use outline::Outlined;
 
 use std::sync::Arc;
 
-use super::course::target_handle;
 use super::draft::Draft;
-use super::exaggeration::exaggerated;
+use super::exaggeration::Shown;
 use super::framing::Content;
 use super::grid::Grid;
 use super::linkage::Linkage;
@@ -212,34 +211,31 @@ impl Stage {
         self.linkage.top()
     }
 
-    /// Where a handle is in a frame as shown, m.
-    pub fn handle(&self, handle: Handle, frame: &Frame) -> Option<[f64; 3]> {
+    /// Where a handle is drawn, m.
+    pub fn handle(&self, handle: Handle, shown: &Shown<'_>) -> Option<[f64; 3]> {
         let z = self.handle_height();
         match handle {
             Handle::EndEffector if self.waits => None,
             // The point of the path under it is held instead.
             Handle::Target if !self.follows => None,
-            Handle::Target => {
-                let p = target_handle(frame);
-                Some([p.re, p.im, z])
-            }
+            Handle::Target => Some([shown.target.re, shown.target.im, z]),
             Handle::Ring => {
-                let p = self.ring.as_ref()?.knob(frame);
+                let p = self.ring.as_ref()?.knob(shown);
                 Some([p.re, p.im, z])
             }
-            Handle::EndEffector => Some([frame.end_effector.re, frame.end_effector.im, z]),
+            Handle::EndEffector => Some([shown.end_effector.re, shown.end_effector.im, z]),
             Handle::Waypoint(i) => {
                 let (.., p) = self.plan.as_ref()?.waypoints.iter().find(|(number, ..)| *number == i)?;
                 Some([p.re, p.im, z])
             }
-            Handle::Payload => self.payload(frame).map(|p| [p.re, p.im, z]),
+            Handle::Payload => self.payload(shown).map(|p| [p.re, p.im, z]),
             _ => None,
         }
     }
 
-    /// The ends of the joint limits in a frame as shown, to be taken hold of.
-    pub fn limits<'a>(&'a self, frame: &'a Frame) -> impl Iterator<Item = Pick> + 'a {
-        self.limits.ends(&self.linkage, frame)
+    /// The ends of the joint limits as they are drawn, to be taken hold of.
+    pub fn limits<'a>(&'a self, shown: &'a Shown<'a>) -> impl Iterator<Item = Pick> + 'a {
+        self.limits.ends(&self.linkage, shown)
     }
 
     /// Both limits of a relative angle, rad, with one end (0 or 1) pulled to the pointer.
@@ -249,64 +245,64 @@ impl Stage {
 
     /// Where the payload's centre of mass is, seen along and across the link that holds it, m, if it is brought to a
     /// place.
-    pub fn load_offset(&self, frame: &Frame, at: [f64; 2]) -> [f64; 2] {
-        self.base.offset_at(frame, Vector::new(at[0], at[1]))
+    pub fn load_offset(&self, shown: &Shown<'_>, at: [f64; 2]) -> [f64; 2] {
+        self.base.offset_at(shown, Vector::new(at[0], at[1]))
     }
 
-    /// Where the payload is, m, while it is held.
-    pub fn payload(&self, frame: &Frame) -> Option<Vector> {
-        self.base.load_at(frame)
+    /// Where the payload is drawn, m, while it is held.
+    pub fn payload(&self, shown: &Shown<'_>) -> Option<Vector> {
+        self.base.load_at(shown)
     }
 
     /// The number of the link under the pointer; the uppermost of several.
-    pub fn link_at(&self, frame: &Frame, pointer: &Pointer) -> Option<usize> {
-        under::link(&self.linkage, frame, pointer)
+    pub fn link_at(&self, shown: &Shown<'_>, pointer: &Pointer) -> Option<usize> {
+        under::link(&self.linkage, shown, pointer)
     }
 
     /// The link under the pointer, taken hold of, on a machine that has planes to turn it on, or freedoms to pull it in.
-    pub fn grip(&self, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
+    pub fn grip(&self, shown: &Shown<'_>, pointer: &Pointer) -> Option<Pick> {
         if self.holds {
-            let i = self.link_at(frame, pointer)?;
-            return turning::hook(i, self.linkage.bars().get(i)?, frame, pointer);
+            let i = self.link_at(shown, pointer)?;
+            return turning::hook(i, self.linkage.bars().get(i)?, shown, pointer);
         }
         let workspace = self.workspace.as_ref().filter(|_| self.follows)?;
-        let (i, map) = (self.link_at(frame, pointer)?, workspace.planes().map());
-        turning::grip(i, self.linkage.bars().get(i)?, map, frame, pointer)
+        let (i, map) = (self.link_at(shown, pointer)?, workspace.planes().map());
+        turning::grip(i, self.linkage.bars().get(i)?, map, shown, pointer)
     }
 
     /// The angles (a_1, a_2), rad, at which a link points where the pointer pulls it, on the plane b; as near to that as
     /// the joint limits let it.
-    pub fn turned(&self, link: usize, grip: &Hold, frame: &Frame, pointer: &Pointer, b: f64) -> Option<[f64; 2]> {
+    pub fn turned(&self, link: usize, grip: &Hold, shown: &Shown<'_>, pointer: &Pointer, b: f64) -> Option<[f64; 2]> {
         let map = self.workspace.as_ref()?.planes().map();
-        turning::turned(self.linkage.bars().get(link)?, grip, map, frame, pointer, b)
+        turning::turned(self.linkage.bars().get(link)?, grip, map, shown, pointer, b)
     }
 
     /// Where the pointer pulls a link while the end effector stays.
-    pub fn pulled(&self, link: usize, hook: &Hook, frame: &Frame, pointer: &Pointer) -> Option<Aim> {
-        turning::pulled(link, self.linkage.bars().get(link)?, hook, frame, pointer)
+    pub fn pulled(&self, link: usize, hook: &Hook, shown: &Shown<'_>, pointer: &Pointer) -> Option<Aim> {
+        turning::pulled(link, self.linkage.bars().get(link)?, hook, shown, pointer)
     }
 
     /// What is under the pointer that cannot be pulled at; the uppermost of several.
-    pub fn under(&self, frame: &Frame, pointer: &Pointer) -> Option<Handle> {
-        let load = || self.base.load_at(frame).filter(|at| under::payload(*at, &self.linkage, pointer));
-        let edge = || self.workspace.as_ref().filter(|w| under::line(&w.edge(frame, self.linkage.floor()), pointer));
+    pub fn under(&self, shown: &Shown<'_>, pointer: &Pointer) -> Option<Handle> {
+        let load = || self.base.load_at(shown).filter(|at| under::payload(*at, &self.linkage, pointer));
+        let edge = || self.workspace.as_ref().filter(|w| under::line(&w.edge(shown, self.linkage.floor()), pointer));
         load()
             .map(|_| Handle::Payload)
-            .or_else(|| under::reaction(&self.linkage, frame, pointer))
-            .or_else(|| under::joint(&self.linkage, frame, pointer).map(Handle::Joint))
-            .or_else(|| self.link_at(frame, pointer).map(Handle::Link))
-            .or_else(|| under::base(&self.linkage, self.base.moves(), frame, pointer).then_some(Handle::Base))
+            .or_else(|| under::reaction(&self.linkage, shown, pointer))
+            .or_else(|| under::joint(&self.linkage, shown, pointer).map(Handle::Joint))
+            .or_else(|| self.link_at(shown, pointer).map(Handle::Link))
+            .or_else(|| under::base(&self.linkage, self.base.moves(), shown, pointer).then_some(Handle::Base))
             .or_else(|| edge().map(|_| Handle::Boundary))
     }
 
-    /// The b that a place of the ring's knob stands for in a frame as shown, nearest to the present one, rad.
-    pub fn ring_b(&self, at: [f64; 2], near: f64, frame: &Frame) -> Option<f64> {
-        Some(self.ring.as_ref()?.b(Vector::new(at[0], at[1]), near, frame))
+    /// The b that a place of the ring's knob as it is drawn stands for, nearest to the present one, rad.
+    pub fn ring_b(&self, at: [f64; 2], near: f64, shown: &Shown<'_>) -> Option<f64> {
+        Some(self.ring.as_ref()?.b(Vector::new(at[0], at[1]), near, shown))
     }
 
-    /// The ends of all links in a frame as shown, and the target: what a hand wants to see.
-    pub fn outline<'a>(&'a self, frame: &'a Frame) -> impl Iterator<Item = [f64; 3]> + 'a {
-        let (units, at, target) = (frame.q.units(), frame.base.at, target_handle(frame));
+    /// The ends of all links as they are drawn, and the target: what a hand wants to see.
+    pub fn outline<'a>(&'a self, shown: &'a Shown<'a>) -> impl Iterator<Item = [f64; 3]> + 'a {
+        let (units, at, target) = (shown.q.units(), shown.base.at, shown.target);
         let ends = self.linkage.bars().iter().flat_map(move |bar| bar.ends(&units));
         let target = [target.re, target.im, self.handle_height()];
         ends.map(move |[x, y, z]| [at.re + x, at.im + y, z]).chain([target])
@@ -335,7 +331,7 @@ impl Stage {
         let outline = self.outline.done().into_iter().flat_map(|outline| outline.points(frame.b_reference, frame));
         let outline = outline.map(|p| (p, self.linkage.floor()));
         let waypoints = self.plan.iter().flat_map(|plan| plan.waypoints.iter().map(|(_, _, p)| (*p, z)));
-        let target = [(target_handle(frame), z), (base.at, 0.0)];
+        let target = [(Shown::from(frame).target, z), (base.at, 0.0)];
         let points = |(p, z): (Vector, f64)| [p.re, p.im, z];
         let compared = self.workspace.as_ref().and_then(Workspace::compared_b);
         let other = self.compared.zip(self.outline.done()).map(|(b, outline)| outline.points(b, frame));
@@ -366,25 +362,24 @@ impl Stage {
     /// Everything there is to draw.
     pub fn scene(&self, frame: &Frame, options: &ViewOptions) -> Scene {
         let palette = palette(options.theme);
-        let shown = exaggerated(frame, options.exaggeration);
-        let (frame, true_tip) = (&shown, frame.end_effector);
+        let shown = &Shown::of(frame, options.exaggeration);
         let (linkage, z) = (&self.linkage, self.handle_height());
         let mut scene = Scene::new(palette.background, linkage.model.clone());
-        self.bodies(&mut scene, &palette, frame, options);
+        self.bodies(&mut scene, &palette, shown, options);
         self.grid.draw(&mut scene, &palette);
-        self.base.unmoved(&mut scene, linkage, &palette, frame, options.exaggeration);
-        self.base.draw(&mut scene, linkage, &palette, frame);
+        self.base.unmoved(&mut scene, linkage, &palette, shown, options.exaggeration.times());
+        self.base.draw(&mut scene, linkage, &palette, shown);
         if let Some(workspace) = &self.workspace {
-            workspace.draw(&mut scene, linkage, &palette, frame, options);
+            workspace.draw(&mut scene, linkage, &palette, shown, options);
         }
         if let Some(ring) = &self.ring {
-            ring.draw(&mut scene, &palette, frame, options, z);
+            ring.draw(&mut scene, &palette, shown, options, z);
         }
         if let Some(outline) = self.outline.done() {
             if let Some(b) = self.compared.filter(|_| options.compares) {
-                outline.draw_compared(&mut scene, linkage, &palette, b, frame.base);
+                outline.draw_compared(&mut scene, linkage, &palette, b, shown.base);
             }
-            outline.draw(&mut scene, (linkage, self.fill), &palette, frame);
+            outline.draw(&mut scene, (linkage, self.fill), &palette, shown);
         }
         if let Some(plan) = &self.plan {
             plan.draw(&mut scene, &palette, options);
@@ -393,39 +388,39 @@ impl Stage {
         snapshots::others(&mut scene, linkage, &palette, options);
         let blocked = self.plan.as_ref().and_then(Plan::blocked);
         path::by_hand(&mut scene, &palette, options, blocked, z);
-        reaction::draw(&mut scene, linkage, &palette, frame, options, self.base.rest(options));
+        reaction::draw(&mut scene, linkage, &palette, shown, options, self.base.rest(options));
         if options.pin_forces {
-            self.pins.draw(&mut scene, linkage, &palette, frame);
+            self.pins.draw(&mut scene, linkage, &palette, shown);
         }
         if options.limits {
-            self.limits.draw(&mut scene, linkage, &palette, frame, options.hot);
+            self.limits.draw(&mut scene, linkage, &palette, shown, options.hot);
         }
-        target::draw(&mut scene, &palette, frame, options, true_tip, z);
-        self.base.load(&mut scene, linkage, &palette, frame, options);
+        target::draw(&mut scene, &palette, shown, options, z);
+        self.base.load(&mut scene, linkage, &palette, shown, options);
         scene
     }
 
     /// The machine, and pale where it begins and where it would be on another plane.
-    fn bodies(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, options: &ViewOptions) {
+    fn bodies(&self, scene: &mut Scene, palette: &Palette, shown: &Shown<'_>, options: &ViewOptions) {
         if let Some(plan) = self.plan.as_ref().filter(|plan| !plan.waits()) {
             scene.solids.extend(self.linkage.ghost("plan/start", &plan.start, palette, 0.16));
         }
         if let (Some(b), Some(workspace)) = (options.preview_b, &self.workspace) {
             let map = workspace.planes().map();
-            let p = self.plan.as_ref().and_then(|plan| plan.begins).unwrap_or(frame.target.at);
+            let p = self.plan.as_ref().and_then(|plan| plan.begins).unwrap_or(shown.frame.target.at);
             for pose in map.poses(p, b).iter() {
                 let q = DriveAngles::from(map.lift(*pose));
                 scene.solids.extend(self.linkage.ghost("preview", &q.units(), palette, 0.34));
             }
         }
-        let units = frame.q.units();
-        let seen = |[x, y, z]: [f64; 3]| point(frame.base.at + Vector::new(x, y), z);
+        let units = shown.q.units();
+        let seen = |[x, y, z]: [f64; 3]| point(shown.base.at + Vector::new(x, y), z);
         scene.bars.extend(self.linkage.bars().iter().map(|bar| bar.ends(&units).map(seen)));
-        let mut solids = self.linkage.solids(&units, frame.base, self.base.moves(), palette);
+        let mut solids = self.linkage.solids(&units, shown.base, self.base.moves(), palette);
         under::light(&mut solids, &self.linkage, options.hot, palette);
         scene.solids.extend(solids);
         if options.shadows {
-            scene.shadows.extend(self.linkage.shadows(&units, frame.base.at));
+            scene.shadows.extend(self.linkage.shadows(&units, shown.base.at));
         }
     }
 

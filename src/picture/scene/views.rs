@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::Scene;
 use super::camera::Camera;
 use super::draft::Draft;
+use super::exaggeration::Shown;
 use super::framing::Content;
 use super::joint_space::JointSpace;
 use super::joints::Joints;
@@ -266,45 +267,47 @@ impl Views {
     }
 
     /// The end effector, if it is under the pointer.
-    pub fn pick_tip(&self, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
-        let at = self.stage.handle(Handle::EndEffector, frame)?;
+    pub fn pick_tip(&self, shown: &Shown<'_>, pointer: &Pointer) -> Option<Pick> {
+        let at = self.stage.handle(Handle::EndEffector, shown)?;
         (pointer.distance(at)? < 1.5 * NEAR).then_some(Pick::of(Handle::EndEffector, at))
     }
 
     /// The target, where the pointer is on the arm or no farther from it than so many px.
-    pub fn pick_arm(&self, frame: &Frame, pointer: &Pointer, near: f64) -> Option<Pick> {
-        let at = self.stage.handle(Handle::Target, frame)?;
-        let on = pointer.distance(at)? < near || self.link_at(frame, pointer).is_some();
+    pub fn pick_arm(&self, shown: &Shown<'_>, pointer: &Pointer, near: f64) -> Option<Pick> {
+        let at = self.stage.handle(Handle::Target, shown)?;
+        let on = pointer.distance(at)? < near || self.link_at(shown, pointer).is_some();
         on.then(|| Pick::of(Handle::Target, at))
     }
 
-    /// The number of the link under the pointer in the machine's view, in a frame as shown; the uppermost of several.
-    pub fn link_at(&self, frame: &Frame, pointer: &Pointer) -> Option<usize> {
-        self.stage.link_at(frame, pointer)
+    /// The number of the link under the pointer in the machine's view as it is drawn; the uppermost of several.
+    pub fn link_at(&self, shown: &Shown<'_>, pointer: &Pointer) -> Option<usize> {
+        self.stage.link_at(shown, pointer)
     }
 
-    /// What is under the pointer, to be pulled at or not, in a frame as shown.
-    pub fn under(&self, kind: ViewKind, frame: &Frame, pointer: &Pointer) -> Option<Handle> {
+    /// What is under the pointer, to be pulled at or not, as it is drawn.
+    pub fn under(&self, kind: ViewKind, shown: &Shown<'_>, pointer: &Pointer) -> Option<Handle> {
         // What lies on a link comes before it.
         let pulled = self
-            .pick(kind, frame, pointer)
+            .pick(kind, shown, pointer)
             .filter(|pick| !matches!(pick.handle, Handle::Link(_)))
             .map(|pick| pick.handle);
         pulled.or_else(|| match kind {
-            ViewKind::Design => self.link_at(frame, pointer).map(Handle::Link),
-            kind => kind.shows_machine().then(|| self.stage.under(frame, pointer)).flatten(),
+            ViewKind::Design => self.link_at(&shown.frame.into(), pointer).map(Handle::Link),
+            kind => kind.shows_machine().then(|| self.stage.under(shown, pointer)).flatten(),
         })
     }
 
-    /// What is under the pointer and can be pulled at, in a frame as shown.
-    pub fn pick(&self, kind: ViewKind, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
+    /// What is under the pointer and can be pulled at, as it is drawn.
+    pub fn pick(&self, kind: ViewKind, shown: &Shown<'_>, pointer: &Pointer) -> Option<Pick> {
+        // Only the machine's own views exaggerate.
+        let frame = shown.frame;
         match (kind, &self.joints, &self.tower) {
             (ViewKind::Joints, Some(joints), _) => joints.pick(frame, pointer),
             (ViewKind::Tower, _, Some(tower)) => tower.pick(frame, pointer),
             (ViewKind::Design, ..) => self.draft.pick(self.stage.linkage(), frame, pointer),
             _ => {
                 let picks = [Handle::Target, Handle::Ring].into_iter().filter_map(|handle| {
-                    let at = self.stage.handle(handle, frame)?;
+                    let at = self.stage.handle(handle, shown)?;
                     Some((Pick::of(handle, at), pointer.distance(at)?))
                 });
                 let near = picks.filter(|(_, d)| *d < NEAR);
@@ -312,7 +315,7 @@ impl Views {
                 // Where the target covers a point of the path, the point is held by its name, to the left of it.
                 let points = self.stage.waypoints().filter_map(|i| {
                     let handle = Handle::Waypoint(i);
-                    let at = self.stage.handle(handle, frame)?;
+                    let at = self.stage.handle(handle, shown)?;
                     let [x, y] = pointer.seen(at)?;
                     let name = (pointer.at[0] - x + NAME).hypot(pointer.at[1] - y);
                     let own = (pointer.at[0] - x).hypot(pointer.at[1] - y);
@@ -322,31 +325,32 @@ impl Views {
                 });
                 let point = points.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick);
                 // A payload under the target is held by its mass, above it.
-                let load = self.stage.handle(Handle::Payload, frame).filter(|at| {
+                let load = self.stage.handle(Handle::Payload, shown).filter(|at| {
                     let Some([x, y]) = pointer.seen(*at) else { return false };
                     let [px, py] = pointer.at;
                     let on = first.is_none() && (px - x).hypot(py - y) < NEAR_LOAD;
                     on || (px - x).hypot(py - y + MASS) < NEAR_POINT
                 });
                 let load = load.map(|at| Pick::of(Handle::Payload, at));
-                let ends = self.stage.limits(frame).filter_map(|end| {
+                let ends = self.stage.limits(shown).filter_map(|end| {
                     let off = pointer.distance(end.at).filter(|off| *off < NEAR_POINT)?;
                     Some((end, off))
                 });
                 let end = || ends.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick);
-                point.or(load).or(first).or_else(end).or_else(|| self.stage.grip(frame, pointer))
+                point.or(load).or(first).or_else(end).or_else(|| self.stage.grip(shown, pointer))
             }
         }
     }
 
     /// What pulling at something asks for; `b` is the pose constant that the machine is sent to, rad.
-    pub fn aim(&self, kind: ViewKind, pick: &Pick, frame: &Frame, pointer: &Pointer, b: f64) -> Option<Aim> {
+    pub fn aim(&self, kind: ViewKind, pick: &Pick, shown: &Shown<'_>, pointer: &Pointer, b: f64) -> Option<Aim> {
+        let frame = shown.frame;
         if let (Handle::Link(i), Some(Grip::Link(grip))) = (pick.handle, &pick.grip) {
-            return self.stage.turned(i, grip, frame, pointer, b).map(Aim::Angles);
+            return self.stage.turned(i, grip, shown, pointer, b).map(Aim::Angles);
         }
         let in_joints = kind == ViewKind::Joints && self.joints.is_some();
         if let (false, Handle::Link(i), Some(Grip::Pull(hook))) = (in_joints, pick.handle, &pick.grip) {
-            return self.stage.pulled(i, hook, frame, pointer);
+            return self.stage.pulled(i, hook, shown, pointer);
         }
         match (kind, &self.joints, &self.tower) {
             (ViewKind::Joints, Some(joints), _) => joints.aim(pick, frame, pointer),
@@ -356,10 +360,10 @@ impl Views {
                 let at = pointer.ray()?.at_height(self.stage.handle_height())?;
                 match pick.handle {
                     Handle::Target => Some(Aim::Target(at)),
-                    Handle::Ring => self.stage.ring_b(at, b, frame).map(Aim::B),
+                    Handle::Ring => self.stage.ring_b(at, b, shown).map(Aim::B),
                     Handle::EndEffector => Some(Aim::Push([
-                        PULL * (at[0] - frame.end_effector.re),
-                        PULL * (at[1] - frame.end_effector.im),
+                        PULL * (at[0] - shown.end_effector.re),
+                        PULL * (at[1] - shown.end_effector.im),
                     ])),
                     Handle::Waypoint(i) => Some(Aim::Waypoint(i, at)),
                     Handle::Limit(angle, end) => {
@@ -368,7 +372,7 @@ impl Views {
                         Some(Aim::Limit { angle, end, ends })
                     }
                     Handle::Payload => {
-                        let offset = self.stage.load_offset(frame, at);
+                        let offset = self.stage.load_offset(shown, at);
                         let far = offset[0].hypot(offset[1]) > AT_TIP * self.stage.linkage().reach();
                         Some(Aim::Payload(if far { offset } else { [0.0; 2] }))
                     }

@@ -7,6 +7,7 @@ use crate::mechanics::machine::Machine;
 use crate::mechanics::planar::{Pose2, Units, Vector, unit};
 use crate::picture::numbers::{signed, three_digits};
 use crate::picture::scene::arrow::head;
+use crate::picture::scene::exaggeration::Shown;
 use crate::picture::scene::linkage::{Linkage, PLATE};
 use crate::picture::scene::options::{Handle, ViewOptions};
 use crate::picture::scene::palette::{Palette, faded, mix};
@@ -70,16 +71,16 @@ impl BaseStage {
     }
 
     /// Glyphs under the machine: panels of a spacecraft, or springs between the plate and the ground.
-    pub fn draw(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Frame) {
+    pub fn draw(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, shown: &Shown<'_>) {
         let reach = linkage.reach();
         let (z, top) = (linkage.bottom(), linkage.top());
-        let place = |p: Vector| frame.base.at + p * unit(frame.base.angle);
+        let place = |p: Vector| shown.base.at + p * unit(shown.base.angle);
         let [length, width] = PLATE.map(|part| part * reach);
         match self.base.kind {
             BaseKind::Fixed => {}
             BaseKind::Free => {
                 let edge = mix(palette.dim, palette.line, 0.4);
-                let with_base = posed(frame.base.at, unit(frame.base.angle), 0.0);
+                let with_base = posed(shown.base.at, unit(shown.base.angle), 0.0);
                 let [outlines, ribs] = &self.panels;
                 let line = |name: &'static str, strips: &[Vec<[f32; 3]>], width, colour| {
                     Line::new(name, strips, width, colour).moving(with_base)
@@ -117,15 +118,15 @@ impl BaseStage {
             scene.markers.push(disc.edged(palette.dim, 1.8));
         }
         if self.base.wheel.is_some() {
-            self.wheel(scene, linkage, palette, frame);
+            self.wheel(scene, linkage, palette, shown);
         }
     }
 
-    fn wheel(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Frame) {
-        let (z, radius) = (linkage.top(), 0.082 * linkage.reach());
+    fn wheel(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, shown: &Shown<'_>) {
+        let (z, radius, frame) = (linkage.top(), 0.082 * linkage.reach(), shown.frame);
         let colour = if frame.wheel.saturated { palette.reaction } else { palette.dim };
         let spun = unit(frame.totals.wheel_turn.rem_euclid(TAU));
-        let pose: Pose = posed(frame.base.at, spun, z);
+        let pose: Pose = posed(shown.base.at, spun, z);
         let on = |angle: f64, share: f64| point(unit(angle) * (share * radius), 0.0);
         let rim: Vec<_> = (0..=72).map(|i| on(TAU * f64::from(i) / 72.0, 1.0)).collect();
         let spokes = (0..3).map(|i| TAU * f64::from(i) / 3.0).map(|angle| vec![on(angle, 0.72), on(angle, 1.0)]);
@@ -136,30 +137,37 @@ impl BaseStage {
         };
         scene.lines.push(line("wheel", vec![rim], 2.0));
         scene.lines.push(line("wheel/spokes", spokes.collect(), 1.6));
-        let at = point(frame.base.at + spun * radius, z);
+        let at = point(shown.base.at + spun * radius, z);
         scene.markers.push(Marker::disc("wheel/mark", at, 4.0, colour).edged(palette.background, 1.0));
     }
 
     /// Where the payload is, m, while it is held.
-    pub fn load_at(&self, frame: &Frame) -> Option<Vector> {
+    pub fn load_at(&self, shown: &Shown<'_>) -> Option<Vector> {
         let (drive, sign) = self.holder;
         let [x, y] = self.load.offset;
-        frame.loaded.then(|| frame.end_effector + frame.q.units()[drive] * Vector::new(x, y) * sign)
+        shown.frame.loaded.then(|| shown.end_effector + shown.q.units()[drive] * Vector::new(x, y) * sign)
     }
 
     /// Along and across the link that holds it, m, where the payload is if it is brought to a place.
-    pub fn offset_at(&self, frame: &Frame, at: Vector) -> [f64; 2] {
+    pub fn offset_at(&self, shown: &Shown<'_>, at: Vector) -> [f64; 2] {
         let (drive, sign) = self.holder;
-        let off = (at - frame.end_effector) * frame.q.units()[drive].conj() * sign;
+        let off = (at - shown.end_effector) * shown.q.units()[drive].conj() * sign;
         [off.re, off.im]
     }
 
     /// What the plant holds and the model does not know of, and what pushes.
-    pub fn load(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Frame, options: &ViewOptions) {
+    pub fn load(
+        &self,
+        scene: &mut Scene,
+        linkage: &Linkage,
+        palette: &Palette,
+        shown: &Shown<'_>,
+        options: &ViewOptions,
+    ) {
         let z = linkage.top();
-        if let Some(at) = self.load_at(frame) {
-            if (at - frame.end_effector).norm() > 1e-9 {
-                let stem = vec![point(frame.end_effector, z), point(at, z)];
+        if let Some(at) = self.load_at(shown) {
+            if (at - shown.end_effector).norm() > 1e-9 {
+                let stem = vec![point(shown.end_effector, z), point(at, z)];
                 scene.lines.push(Line::new("payload/stem", [stem], 2.0, palette.ink).on_top());
             }
             let hot = options.hot == Some(Handle::Payload);
@@ -186,8 +194,8 @@ impl BaseStage {
         }
         let reach = linkage.reach();
         let along = force / size;
-        let to = frame.end_effector + along * (size / PULL).clamp(0.03 * reach, 0.6 * reach);
-        let arrow = [vec![point(frame.end_effector, z), point(to, z)], head(to, along, 0.025 * reach, z)];
+        let to = shown.end_effector + along * (size / PULL).clamp(0.03 * reach, 0.6 * reach);
+        let arrow = [vec![point(shown.end_effector, z), point(to, z)], head(to, along, 0.025 * reach, z)];
         scene.lines.push(Line::new("push", arrow, 2.6, palette.amber).on_top());
         let words = format!("{size:.2} N");
         let (aside, anchor) = if along.re < 0.0 { (-8.0, Anchor::Right) } else { (8.0, Anchor::Left) };
@@ -195,15 +203,15 @@ impl BaseStage {
     }
 
     /// Where base and machine would be, had the base not moved; nothing if it has not.
-    pub fn unmoved(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Frame, times: f64) {
-        let Pose2 { at, angle } = frame.base;
+    pub fn unmoved(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, shown: &Shown<'_>, times: f64) {
+        let Pose2 { at, angle } = shown.base;
         let reach = linkage.reach();
         if !self.base.moves() {
             return;
         }
         if at.norm() + angle.abs() * reach > 0.002 * reach {
             let (z, colour) = (linkage.floor(), faded(palette.dim, 0.75));
-            let mut e: Units = frame.q.units();
+            let mut e: Units = shown.q.units();
             e.iter_mut().for_each(|e| *e *= unit(-angle));
             let mut strips: Vec<_> = linkage.outlines(&e).map(|ends| ends.map(|p| point(p, z)).to_vec()).collect();
             let [length, width] = PLATE.map(|part| part * reach);
@@ -219,24 +227,26 @@ impl BaseStage {
             strips.push(outline);
             scene.lines.push(Line::new("unmoved", strips, 1.2, colour).dashed(3.0, 3.0));
         }
-        // As many digits as the peak so far has; they do not change as it comes to rest.
-        let written = |x: f64, peak: f64| match peak > SILENT {
-            true => signed(1e3 * x, (2 - (1e3 * peak).log10().floor() as i32).clamp(0, 9) as usize),
-            false => "0".into(),
-        };
-        let words = match frame.totals.shift > SILENT || frame.totals.base_angle > SILENT {
-            true => format!(
-                "base {} mm, {} mrad",
-                written(at.norm() / times, frame.totals.shift),
-                written(angle / times, frame.totals.base_angle)
-            ),
-            false => "base at rest".into(),
-        };
-        let shown = if times == 1.0 { String::new() } else { format!(" · shown ×{times}") };
-        let at = Vector::new(0.2 * reach, -0.11 * reach);
-        let text = format!("{words}{shown}");
-        let at = point(at, linkage.top());
+        let exaggerated = if times == 1.0 { String::new() } else { format!(" · shown ×{times}") };
+        let text = format!("{}{exaggerated}", motion(shown.frame));
+        let at = point(Vector::new(0.2 * reach, -0.11 * reach), linkage.top());
         scene.labels.push(Label::new("base_motion", at, [0.0, -17.0], text, palette.dim, 11.5, Anchor::Left));
+    }
+}
+
+/// How far a base has moved.
+fn motion(frame: &Frame) -> String {
+    let (Pose2 { at, angle }, totals) = (frame.base, &frame.totals);
+    // As many digits as the peak so far has; they do not change as it comes to rest.
+    let written = |x: f64, peak: f64| match peak > SILENT {
+        true => signed(1e3 * x, (2 - (1e3 * peak).log10().floor() as i32).clamp(0, 9) as usize),
+        false => "0".into(),
+    };
+    match totals.shift > SILENT || totals.base_angle > SILENT {
+        true => {
+            format!("base {} mm, {} mrad", written(at.norm(), totals.shift), written(angle, totals.base_angle))
+        }
+        false => "base at rest".into(),
     }
 }
 

@@ -5,13 +5,13 @@ use std::f64::consts::{PI, TAU};
 use crate::mechanics::kinematics::closest_turn;
 use crate::mechanics::machine::{MAX_ANGLE, Machine, RelativeAngle};
 use crate::mechanics::planar::{MAX_DRIVES, Vector, unit};
+use crate::picture::scene::exaggeration::Shown;
 use crate::picture::scene::linkage::Linkage;
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::palette::{Palette, faded};
 use crate::picture::scene::pick::{Grip, Pick, Pivot};
 use crate::picture::scene::pointer::Pointer;
 use crate::picture::scene::{Line, Marker, Name, Pose, Scene, Strips, place, point, posed};
-use crate::simulation::frame::Frame;
 
 /// Radius of the innermost arc and the step to the next, parts of the reach.
 const RADIUS: f64 = 0.062;
@@ -92,9 +92,16 @@ impl Limits {
     }
 
     /// Draws them quietly; more clearly what the pointer is on, and an end that the machine is near to.
-    pub fn draw(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Frame, hot: Option<Handle>) {
+    pub fn draw(
+        &self,
+        scene: &mut Scene,
+        linkage: &Linkage,
+        palette: &Palette,
+        shown: &Shown<'_>,
+        hot: Option<Handle>,
+    ) {
         for arc in &self.arcs {
-            let Some(pose) = arc.pose(linkage, frame) else { continue };
+            let Some(pose) = arc.pose(linkage, shown) else { continue };
             let lit = matches!(hot, Some(Handle::Limit(k, _)) if k == arc.k)
                 || matches!(hot, Some(Handle::Joint(pin)) if pin == arc.pin);
             let colour = if lit { palette.ink } else { faded(palette.dim, 0.55) };
@@ -103,7 +110,7 @@ impl Limits {
             for end in 0..2 {
                 let limit = arc.limit(end);
                 let held = hot == Some(Handle::Limit(arc.k, end));
-                let now = frame.a[arc.k];
+                let now = shown.frame.a[arc.k];
                 if held || (now - limit).abs() < NEAR_END {
                     let at = place(&pose, point(arc.direction(limit) * arc.radius, 0.0));
                     let size = if held { 5.5 } else { 3.5 };
@@ -115,9 +122,9 @@ impl Limits {
     }
 
     /// The ends of all arcs in a frame as shown, to be taken hold of.
-    pub fn ends<'a>(&'a self, linkage: &'a Linkage, frame: &'a Frame) -> impl Iterator<Item = Pick> + 'a {
+    pub fn ends<'a>(&'a self, linkage: &'a Linkage, shown: &'a Shown<'a>) -> impl Iterator<Item = Pick> + 'a {
         self.arcs.iter().flat_map(move |arc| {
-            let pivot = arc.pivot(linkage, frame);
+            let pivot = arc.pivot(linkage, shown);
             (0..2).filter_map(move |end| {
                 let (pivot, z) = pivot?;
                 let off = arc.direction(arc.limit(end)) * unit(pivot.inner) * arc.radius;
@@ -154,14 +161,14 @@ impl Arc {
     }
 
     /// Where it turns about, and at which height.
-    fn pivot(&self, linkage: &Linkage, frame: &Frame) -> Option<(Pivot, f64)> {
-        let ([x, y, _], _) = linkage.joints(&frame.q.units()).nth(self.pin)?;
-        let at = frame.base.at + Vector::new(x, y);
-        Some((Pivot { at: [at.re, at.im], inner: frame.q[self.angle.from] }, linkage.top()))
+    fn pivot(&self, linkage: &Linkage, shown: &Shown<'_>) -> Option<(Pivot, f64)> {
+        let ([x, y, _], _) = linkage.joints(&shown.q.units()).nth(self.pin)?;
+        let at = shown.base.at + Vector::new(x, y);
+        Some((Pivot { at: [at.re, at.im], inner: shown.q[self.angle.from] }, linkage.top()))
     }
 
-    fn pose(&self, linkage: &Linkage, frame: &Frame) -> Option<Pose> {
-        let (Pivot { at: [x, y], inner }, z) = self.pivot(linkage, frame)?;
+    fn pose(&self, linkage: &Linkage, shown: &Shown<'_>) -> Option<Pose> {
+        let (Pivot { at: [x, y], inner }, z) = self.pivot(linkage, shown)?;
         Some(posed(Vector::new(x, y), unit(inner), z))
     }
 }

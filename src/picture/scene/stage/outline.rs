@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::workspace::held;
 use crate::mechanics::planar::{Pose2, Vector, unit};
+use crate::picture::scene::exaggeration::Shown;
 use crate::picture::scene::linkage::Linkage;
 use crate::picture::scene::palette::{Palette, faded};
 use crate::picture::scene::{Anchor, Changes, Label, Line, Marker, Mesh, Scene, Solid, Strips, fill, point, posed};
@@ -123,8 +124,8 @@ impl Outlined {
     }
 
     /// How far it is turned in a frame, rad.
-    fn turn(&self, frame: &Frame) -> f64 {
-        self.space.turn(frame.b_reference) + frame.base.angle
+    fn turn(&self, shown: &Shown<'_>) -> f64 {
+        self.space.turn(shown.frame.b_reference) + shown.base.angle
     }
 
     /// Its points at a b on the base of a frame, m.
@@ -152,11 +153,11 @@ impl Outlined {
         scene: &mut Scene,
         (linkage, fill): (&Linkage, Option<usize>),
         palette: &Palette,
-        frame: &Frame,
+        shown: &Shown<'_>,
     ) {
-        let (turn, z) = (self.turn(frame), linkage.floor());
+        let (turn, z) = (self.turn(shown), linkage.floor());
         // Under all lines.
-        let below = posed(frame.base.at, unit(turn), z - BELOW * linkage.reach());
+        let below = posed(shown.base.at, unit(turn), z - BELOW * linkage.reach());
         scene.solids.extend(fill.map(|mesh| Solid {
             name: "workspace".into(),
             mesh,
@@ -164,9 +165,9 @@ impl Outlined {
             colour: faded(palette.amber, FILL),
             changes: Changes::Pose,
         }));
-        let pose = posed(frame.base.at, unit(turn), z);
+        let pose = posed(shown.base.at, unit(turn), z);
         scene.lines.push(Line::new("workspace/boundary", self.strips.clone(), 1.8, palette.amber).moving(pose));
-        let there = |p: Vector| point(frame.base.at + p * unit(turn), z);
+        let there = |p: Vector| point(shown.base.at + p * unit(turn), z);
         for (end, words) in &self.ends {
             scene.markers.push(Marker::disc("workspace/ends", there(*end), 3.5, palette.amber));
             let offset = [0.0, 14.0];
@@ -174,7 +175,7 @@ impl Outlined {
                 Label::new("workspace/ends/names", there(*end), offset, words, palette.dim, 11.5, Anchor::Centre);
             scene.labels.push(label);
         }
-        let within = frame.b_reference.rem_euclid(self.space.period());
+        let within = shown.frame.b_reference.rem_euclid(self.space.period());
         let [what, size] = &self.words;
         let rows = [(what.clone(), palette.amber, 12.5), (format!("b = {within:.3} rad · {size}"), palette.dim, 11.5)];
         for (i, (text, colour, size)) in rows.into_iter().enumerate() {

@@ -5,10 +5,10 @@ use crate::mechanics::machine::{Chain, Machine, place_of};
 use crate::mechanics::planar::Vector;
 use crate::picture::numbers::{round_number, round_up, signed};
 use crate::picture::scene::arrow::head;
+use crate::picture::scene::exaggeration::Shown;
 use crate::picture::scene::linkage::Linkage;
 use crate::picture::scene::palette::Palette;
 use crate::picture::scene::{Anchor, Label, Line, Name, Scene, point};
-use crate::simulation::frame::Frame;
 
 /// The pins of a machine, none where statics does not determine their forces.
 #[derive(Clone, Debug)]
@@ -31,18 +31,18 @@ impl Pins {
 
     /// Force of each pin, of its first link on its second: plain, the largest in the colour of reactions and named. The
     /// scale goes by the largest of the instant, because near a change point there is no bound to go by.
-    pub fn draw(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Frame) {
+    pub fn draw(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, shown: &Shown<'_>) {
         let Self(pins) = self;
         if pins.is_empty() {
             return;
         }
-        let (z, reach, e) = (linkage.top(), linkage.reach(), frame.q.units());
+        let (z, reach, e, frame) = (linkage.top(), linkage.reach(), shown.q.units(), shown.frame);
         let full = round_up(frame.inside.worst.max(0.05 * frame.peaks.inertial_pull).max(1e-3));
         let per_newton = 0.25 * reach / full;
         for (i, pin) in pins.iter().enumerate() {
             let Some(force) = frame.inside.pin(i) else { continue };
             let worst = frame.inside.worst_pin() == Some(i);
-            let (from, arrow) = (frame.base.at + place_of(&pin.at, &e), force * per_newton);
+            let (from, arrow) = (shown.base.at + place_of(&pin.at, &e), force * per_newton);
             if arrow.norm() <= 0.004 * reach {
                 continue;
             }

@@ -5,6 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use crate::mechanics::planar::{Vector, unit};
 use crate::picture::numbers::round_number;
 use crate::picture::scene::arrow::head;
+use crate::picture::scene::exaggeration::Shown;
 use crate::picture::scene::linkage::Linkage;
 use crate::picture::scene::options::{Handle, ViewOptions};
 use crate::picture::scene::palette::Palette;
@@ -14,9 +15,16 @@ use crate::simulation::frame::Frame;
 
 /// A force arrow and a moment arc at B, in proportion, with their scale in words; `rest` names what else the base
 /// carries.
-pub fn draw(scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Frame, options: &ViewOptions, rest: &str) {
-    let (z, reach) = (linkage.top(), linkage.reach());
-    let (b, felt) = (frame.base.at, Reaction::of(frame));
+pub fn draw(
+    scene: &mut Scene,
+    linkage: &Linkage,
+    palette: &Palette,
+    shown: &Shown<'_>,
+    options: &ViewOptions,
+    rest: &str,
+) {
+    let (z, reach, frame) = (linkage.top(), linkage.reach(), shown.frame);
+    let (b, felt) = (shown.base.at, Reaction::of(frame));
     let so_far = || Scale::of(frame.peaks.force.max(felt.force.norm()), frame.peaks.moment);
     let Scale { newtons, newton_metres } = options.scale.unwrap_or_else(so_far);
     let at_b = posed(b, Vector::new(1.0, 0.0), z);
@@ -47,17 +55,10 @@ pub fn draw(scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Fra
             vec![arc, head(on(1.0), along, 0.025 * reach, 0.0)]
         }),
     );
-    let com = frame.com;
     let arm = (0.014 * reach) as f32;
     let cross = [vec![[-arm, 0.0, 0.0], [arm, 0.0, 0.0]], vec![[0.0, -arm, 0.0], [0.0, arm, 0.0]]];
-    let at_com = posed(com, Vector::new(1.0, 0.0), z);
+    let at_com = posed(shown.com, Vector::new(1.0, 0.0), z);
     scene.lines.push(Line::new("com", cross, 1.8, palette.ink).on_top().moving(at_com));
-    let off = (com - b).norm();
-    let still = off < 1e-6 * reach;
-    let com_words = match still {
-        true => "centre of mass at rest on the base pin".into(),
-        false => format!("centre of mass {:.2} mm off the base pin", 1e3 * off),
-    };
     let scale: Vec<String> = [
         arrow.map(|_| format!("arrow: {:.3} m = {} N", ARROW * reach, round_number(newtons))),
         sweep.map(|_| format!("arc: 135° = {} N m", round_number(newton_metres))),
@@ -70,7 +71,7 @@ pub fn draw(scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Fra
         force,
         moment,
         (felt.beside(rest).unwrap_or_default(), palette.dim, 11.5),
-        (com_words, palette.dim, 11.5),
+        (centre_of_mass(frame, reach), palette.dim, 11.5),
         (scale.join(" · "), palette.dim, 11.5),
     ];
     let at = point(Vector::new(0.2 * reach, -0.11 * reach), z);
@@ -78,5 +79,14 @@ pub fn draw(scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Fra
     for (text, colour, size) in rows.into_iter().filter(|(t, ..)| !t.is_empty()) {
         scene.labels.push(Label::new("reaction/words", at, [0.0, down], text, colour, size, Anchor::Left));
         down += 17.0;
+    }
+}
+
+/// Where the centre of mass of a machine of a reach, m, is.
+fn centre_of_mass(frame: &Frame, reach: f64) -> String {
+    let off = (frame.com - frame.base.at).norm();
+    match off < 1e-6 * reach {
+        true => "centre of mass at rest on the base pin".into(),
+        false => format!("centre of mass {:.2} mm off the base pin", 1e3 * off),
     }
 }

@@ -4,11 +4,11 @@ use std::f64::consts::TAU;
 
 use crate::mechanics::kinematics::closest_turn;
 use crate::mechanics::planar::{Vector, unit};
+use crate::picture::scene::exaggeration::Shown;
 use crate::picture::scene::options::{Handle, ViewOptions};
 use crate::picture::scene::palette::{Palette, faded};
 use crate::picture::scene::{Anchor, Label, Line, Marker, Scene, Strips, point, posed};
 use crate::planning::pose_map::PoseMap;
-use crate::simulation::frame::Frame;
 
 /// Corners of the circle.
 const CORNERS: u32 = 96;
@@ -32,33 +32,33 @@ impl Ring {
     }
 
     /// Direction of the knob at the present b, rad.
-    fn turn(&self, frame: &Frame) -> f64 {
-        frame.b_reference / self.sum + frame.base.angle
+    fn turn(&self, shown: &Shown<'_>) -> f64 {
+        shown.frame.b_reference / self.sum + shown.base.angle
     }
 
     /// Where the knob is, m.
-    pub fn knob(&self, frame: &Frame) -> Vector {
-        frame.base.at + unit(self.turn(frame)) * self.radius
+    pub fn knob(&self, shown: &Shown<'_>) -> Vector {
+        shown.base.at + unit(self.turn(shown)) * self.radius
     }
 
     /// The b that a place of the knob stands for, nearest to another, rad.
-    pub fn b(&self, at: Vector, near: f64, frame: &Frame) -> f64 {
-        closest_turn(frame.in_base(at).arg(), near / self.sum) * self.sum
+    pub fn b(&self, at: Vector, near: f64, shown: &Shown<'_>) -> f64 {
+        closest_turn(shown.in_base(at).arg(), near / self.sum) * self.sum
     }
 
     /// Draws it at a height, m.
-    pub fn draw(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, options: &ViewOptions, z: f64) {
-        let (at, base, turn) = (frame.base.at, frame.base.angle, self.turn(frame));
+    pub fn draw(&self, scene: &mut Scene, palette: &Palette, shown: &Shown<'_>, options: &ViewOptions, z: f64) {
+        let (at, base, turn) = (shown.base.at, shown.base.angle, self.turn(shown));
         let pose = posed(at, unit(base), z);
         let ring = Line::new("b_ring", self.circle.clone(), 3.0, faded(palette.line, 0.9)).on_top();
         scene.lines.push(ring.moving(pose));
-        let shown = (turn - base).rem_euclid(TAU);
-        let n = ((shown / TAU * 48.0).ceil() as usize).max(2);
-        let along = |i: usize| point(at + unit(base + shown * i as f64 / n as f64) * self.radius, z);
+        let swept = (turn - base).rem_euclid(TAU);
+        let n = ((swept / TAU * 48.0).ceil() as usize).max(2);
+        let along = |i: usize| point(at + unit(base + swept * i as f64 / n as f64) * self.radius, z);
         let arc = (0..=n).map(along).collect();
         scene.lines.push(Line::new("b_ring/b", [arc], 3.5, palette.amber).on_top());
         let hot = options.hot == Some(Handle::Ring);
-        let disc = Marker::disc("b_ring/knob", point(self.knob(frame), z), if hot { 9.0 } else { 7.0 }, palette.amber);
+        let disc = Marker::disc("b_ring/knob", point(self.knob(shown), z), if hot { 9.0 } else { 7.0 }, palette.amber);
         scene.markers.push(disc.edged(palette.background, 2.0));
         let beside = point(at + unit(turn) * (self.radius * 1.28), z);
         scene.labels.push(Label::new("b_ring/name", beside, [0.0; 2], "b", palette.amber, 14.0, Anchor::Centre));

@@ -1,6 +1,7 @@
 //! Other poses beside the present one: snapshots along the motion as in Fig. 5, and other runs at the same instant.
 
 use crate::mechanics::planar::{Vector, unit};
+use crate::picture::scene::exaggeration::Shown;
 use crate::picture::scene::linkage::Linkage;
 use crate::picture::scene::options::ViewOptions;
 use crate::picture::scene::palette::{Palette, faded};
@@ -23,14 +24,15 @@ pub fn snapshots(scene: &mut Scene, linkage: &Linkage, palette: &Palette, option
 pub fn others(scene: &mut Scene, linkage: &Linkage, palette: &Palette, options: &ViewOptions) {
     let (z, colour) = (linkage.top(), faded(palette.ink, 0.8));
     for other in &options.others {
-        let base = other.base.at;
-        let skeleton = linkage.skeleton(&other.q.units());
+        let shown = Shown::of(&other.frame, options.exaggeration);
+        let base = shown.base.at;
+        let skeleton = linkage.skeleton(&shown.q.units());
         let tip = skeleton.last().map_or(base, |(_, [_, to])| base + to);
         let strips: Vec<_> =
             skeleton.iter().map(|(_, ends)| ends.map(|p: Vector| point(base + p, z)).to_vec()).collect();
         let name = format!("other/{}", other.name);
         let size = 0.03 * linkage.reach();
-        let mark = [-1.0, 1.0].map(|side| point(base + side * size * unit(other.base.angle), z)).to_vec();
+        let mark = [-1.0, 1.0].map(|side| point(base + side * size * unit(shown.base.angle), z)).to_vec();
         scene.lines.push(Line::new(format!("{name}/base"), [mark], 1.6, colour).on_top());
         scene.lines.push(Line::new(name, strips, 1.6, colour).dashed(5.0, 3.0).on_top());
         let (at, offset) = (point(tip, z), [8.0, 12.0]);

@@ -3,9 +3,10 @@
 use crate::mechanics::planar::Vector;
 use crate::picture::numbers::signed;
 use crate::picture::scene::course::target_handle;
+use crate::picture::scene::exaggeration::Shown;
 use crate::picture::scene::options::{Handle, ViewOptions};
 use crate::picture::scene::palette::{Palette, faded};
-use crate::picture::scene::{Anchor, Label, Line, Marker, Rgba, Scene, point};
+use crate::picture::scene::{Anchor, Label, Line, Marker, Scene, point};
 use crate::simulation::frame::{Frame, Reach};
 
 /// What the target's label says while it can be dragged.
@@ -18,27 +19,52 @@ fn place(p: Vector) -> String {
     format!("{}, {}", signed(p.re, 3), signed(p.im, 3))
 }
 
-/// The end effector and its target at a height, m; the end effector truly is at `true_tip`, whatever is exaggerated.
-pub fn draw(scene: &mut Scene, palette: &Palette, frame: &Frame, options: &ViewOptions, true_tip: Vector, z: f64) {
-    let tip = frame.end_effector;
+/// The end effector and its target at a height, m.
+pub fn draw(scene: &mut Scene, palette: &Palette, shown: &Shown<'_>, options: &ViewOptions, z: f64) {
+    let frame = shown.frame;
     let hot = options.hot == Some(Handle::Target);
     let outside = matches!(frame.target.reach, Reach::Outside { .. });
     let held = options.held.filter(|_| outside).map(|[x, y]| Vector::new(x, y));
-    let at = held.unwrap_or_else(|| target_handle(frame));
+    let at = held.unwrap_or(shown.target);
     let (ink, dim) = (palette.ink, palette.dim);
-    scene.markers.push(Marker::disc("end_effector", point(tip, z), 4.0, ink));
+    scene.markers.push(Marker::disc("end_effector", point(shown.end_effector, z), 4.0, ink));
     let inside = faded(ink, if hot && !outside { 0.12 } else { 0.0 });
     let ring = Marker::disc("target", point(at, z), if hot { 15.0 } else { 12.5 }, inside);
     scene.markers.push(ring.edged(ink, 2.2));
     let between = |name: &'static str, from: Vector| {
         Line::new(name, [vec![point(from, z), point(at, z)]], 1.4, dim).dashed(4.0, 4.0).on_top()
     };
-    let mut rows: Vec<(String, Rgba, f32)> = Vec::new();
     let (first, anchor) = match frame.target.reach {
-        Reach::Outside { nearest, shown_b, other_sheet, .. } => {
+        Reach::Outside { nearest, .. } => {
             scene.lines.push(between("target/gap", nearest));
             let disc = Marker::disc("target/nearest", point(nearest, z), 4.5, palette.background);
             scene.markers.push(disc.edged(palette.amber, 2.0));
+            ([0.0, 26.0], Anchor::Centre)
+        }
+        _ => {
+            if miss(frame).is_some() {
+                scene.lines.push(between("target/miss", shown.end_effector));
+            }
+            ([20.0, -7.0], Anchor::Left)
+        }
+    };
+    for (i, (text, leads)) in rows(frame, options).into_iter().enumerate() {
+        let offset = [first[0], first[1] + 16.0 * i as f32];
+        let (colour, size) = if leads { (ink, 13.0) } else { (dim, 11.5) };
+        scene.labels.push(Label::new("target/words", point(at, z), offset, text, colour, size, anchor));
+    }
+}
+
+/// How far the end effector is from its target, m, where that is to be spoken of.
+fn miss(frame: &Frame) -> Option<f64> {
+    Some((frame.end_effector - target_handle(frame)).norm()).filter(|miss| *miss > SEEN_MISS)
+}
+
+/// What is said of the target, and whether a row leads: where things are, however the picture is exaggerated.
+fn rows(frame: &Frame, options: &ViewOptions) -> Vec<(String, bool)> {
+    let mut rows: Vec<(String, bool)> = Vec::new();
+    match frame.target.reach {
+        Reach::Outside { nearest, shown_b, other_sheet, .. } => {
             let would = match shown_b {
                 Some(b) => format!("b = {b} rad would reach it"),
                 None if other_sheet => "drag it round, or change b".into(),
@@ -49,31 +75,23 @@ pub fn draw(scene: &mut Scene, palette: &Palette, frame: &Frame, options: &ViewO
                 (_, 2) => "beside the reactionless curve",
                 _ => "outside the reactionless workspace",
             };
-            rows.push((title.into(), ink, 13.0));
-            rows.push((format!("nearest point {} m", place(nearest)), dim, 11.5));
-            rows.push((would, dim, 11.5));
-            ([0.0, 26.0], Anchor::Centre)
+            rows.push((title.into(), true));
+            rows.push((format!("nearest point {} m", place(nearest)), false));
+            rows.push((would, false));
         }
         reach => {
-            // Where things are, whatever the picture exaggerates.
-            let miss = (true_tip - at).norm();
-            rows.push((format!("{} m", place(at)), ink, 13.0));
-            if miss > SEEN_MISS {
-                scene.lines.push(between("target/miss", tip));
+            rows.push((format!("{} m", place(target_handle(frame))), true));
+            if let Some(miss) = miss(frame) {
                 // Two rows: beside the target there is little room.
-                rows.push((format!("end effector {} m", place(true_tip)), dim, 11.5));
-                rows.push((format!("{} mm off", signed(1e3 * miss, 1)), dim, 11.5));
+                rows.push((format!("end effector {} m", place(frame.end_effector)), false));
+                rows.push((format!("{} mm off", signed(1e3 * miss, 1)), false));
             }
             match reach {
-                Reach::Carried => rows.push(("turns with its workspace".into(), dim, 11.5)),
-                _ if options.invites => rows.push((INVITATION.into(), dim, 11.5)),
+                Reach::Carried => rows.push(("turns with its workspace".into(), false)),
+                _ if options.invites => rows.push((INVITATION.into(), false)),
                 _ => {}
             }
-            ([20.0, -7.0], Anchor::Left)
         }
-    };
-    for (i, (text, colour, size)) in rows.into_iter().enumerate() {
-        let offset = [first[0], first[1] + 16.0 * i as f32];
-        scene.labels.push(Label::new("target/words", point(at, z), offset, text, colour, size, anchor));
     }
+    rows
 }

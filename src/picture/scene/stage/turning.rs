@@ -4,6 +4,7 @@
 use std::f64::consts::PI;
 
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector, dot};
+use crate::picture::scene::exaggeration::Shown;
 use crate::picture::scene::linkage::Bar;
 use crate::picture::scene::options::Handle;
 use crate::picture::scene::pick::{Aim, Grip, Hold, Hook, Pick, ROUND_ANGLE};
@@ -15,10 +16,15 @@ use crate::simulation::frame::Frame;
 const LOOK: f64 = 0.02;
 
 /// Where the pointer is in the plane of a link, as seen from the base, m.
-fn place(bar: &Bar, frame: &Frame, pointer: &Pointer) -> Option<Vector> {
-    let (.., z) = bar.pose(&frame.q_reference.units());
+fn place(bar: &Bar, shown: &Shown<'_>, pointer: &Pointer) -> Option<Vector> {
+    let (.., z) = bar.pose(&shown.frame.q_reference.units());
     let [x, y] = pointer.ray()?.at_height(z)?;
-    Some(frame.in_base(Vector::new(x, y)))
+    Some(shown.in_base(Vector::new(x, y)))
+}
+
+/// Angles of the drives relative to the base, rad.
+fn relative(frame: &Frame) -> DriveAngles {
+    DriveAngles(PerDrive::from_fn(frame.q.len(), |k| frame.relative(k)))
 }
 
 /// From the direction of the link to the pointer about its root, rad, from −π to π.
@@ -28,20 +34,20 @@ fn off(bar: &Bar, q: &DriveAngles, at: Vector) -> f64 {
 }
 
 /// A link, taken hold of.
-pub fn grip(link: usize, bar: &Bar, map: &PlaneMap, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
-    let at = place(bar, frame, pointer)?;
+pub fn grip(link: usize, bar: &Bar, map: &PlaneMap, shown: &Shown<'_>, pointer: &Pointer) -> Option<Pick> {
+    let at = place(bar, shown, pointer)?;
     // As the machine is, not as it should be: that is what is taken hold of.
-    let angle = off(bar, &DriveAngles(PerDrive::from_fn(frame.q.len(), |k| frame.relative(k))), at);
-    let from = map.project(&frame.q_reference).a;
-    let (.., z) = bar.pose(&frame.q.units());
+    let angle = off(bar, &relative(shown.frame), at);
+    let from = map.project(&shown.frame.q_reference).a;
+    let (.., z) = bar.pose(&shown.q.units());
     let grip = Some(Grip::Link(Hold { angle, from, snaps: false }));
     Some(Pick { handle: Handle::Link(link), at: [at.re, at.im, z], grip })
 }
 
 /// A link, taken hold of to be pulled while the end effector stays.
-pub fn hook(link: usize, bar: &Bar, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
-    let at = place(bar, frame, pointer)?;
-    let q = DriveAngles(PerDrive::from_fn(frame.q.len(), |k| frame.relative(k)));
+pub fn hook(link: usize, bar: &Bar, shown: &Shown<'_>, pointer: &Pointer) -> Option<Pick> {
+    let at = place(bar, shown, pointer)?;
+    let q = relative(shown.frame);
     let (root, direction, z) = bar.pose(&q.units());
     let along = dot(at - root, direction).clamp(0.0, bar.length());
     let off = root + direction * along - at;
@@ -50,15 +56,22 @@ pub fn hook(link: usize, bar: &Bar, frame: &Frame, pointer: &Pointer) -> Option<
 }
 
 /// Where the pointer pulls it.
-pub fn pulled(link: usize, bar: &Bar, hook: &Hook, frame: &Frame, pointer: &Pointer) -> Option<Aim> {
-    let at = place(bar, frame, pointer)?;
+pub fn pulled(link: usize, bar: &Bar, hook: &Hook, shown: &Shown<'_>, pointer: &Pointer) -> Option<Aim> {
+    let at = place(bar, shown, pointer)?;
     Some(Aim::Pull { link, along: hook.along, at: [at.re + hook.off[0], at.im + hook.off[1]] })
 }
 
 /// The angles (a_1, a_2), rad, at which the link points to the pointer, on the plane b: sought from the present angle of
 /// its drive the way that the pointer pulls, as far as the joint limits let it.
-pub fn turned(bar: &Bar, grip: &Hold, map: &PlaneMap, frame: &Frame, pointer: &Pointer, b: f64) -> Option<[f64; 2]> {
-    let at = place(bar, frame, pointer)?;
+pub fn turned(
+    bar: &Bar,
+    grip: &Hold,
+    map: &PlaneMap,
+    shown: &Shown<'_>,
+    pointer: &Pointer,
+    b: f64,
+) -> Option<[f64; 2]> {
+    let at = place(bar, shown, pointer)?;
     let pose = |angle: f64| map.turned(bar.drive, angle, b, grip.from);
     let stops = |angle: f64| match grip.snaps {
         true => pose((angle / ROUND_ANGLE).round() * ROUND_ANGLE),
@@ -70,7 +83,7 @@ pub fn turned(bar: &Bar, grip: &Hold, map: &PlaneMap, frame: &Frame, pointer: &P
         (miss + PI).rem_euclid(2.0 * PI) - PI
     };
     let [low, high] = map.range_of(bar.drive, b);
-    let mut now = frame.q_reference[bar.drive].clamp(low, high);
+    let mut now = shown.frame.q_reference[bar.drive].clamp(low, high);
     let first = misses(now);
     let step = LOOK.copysign(first);
     for _ in 0..(2.0 * PI / LOOK) as usize {

@@ -1,13 +1,13 @@
 //! What of the machine and of what is drawn about it lies under the pointer, and how it is lit up.
 
 use super::reaction;
-use crate::mechanics::planar::{Vector, unit};
+use crate::mechanics::planar::Vector;
+use crate::picture::scene::exaggeration::Shown;
 use crate::picture::scene::linkage::{Linkage, PLATE};
 use crate::picture::scene::options::{Handle, ViewOptions};
 use crate::picture::scene::palette::{Palette, Theme, mix, palette};
 use crate::picture::scene::pointer::Pointer;
 use crate::picture::scene::{Line, Scene, Solid, place};
-use crate::simulation::frame::Frame;
 
 /// How near the pointer has to be, px: to a link, a line, a pin and a payload.
 const NEAR_LINK: f64 = 6.0;
@@ -23,8 +23,8 @@ fn seen_near(pointer: &Pointer, at: [f64; 3], most: f64) -> bool {
 }
 
 /// The number of the link under the pointer; the uppermost of several.
-pub fn link(linkage: &Linkage, frame: &Frame, pointer: &Pointer) -> Option<usize> {
-    let (e, at) = (frame.q.units(), frame.base.at);
+pub fn link(linkage: &Linkage, shown: &Shown<'_>, pointer: &Pointer) -> Option<usize> {
+    let (e, at) = (shown.q.units(), shown.base.at);
     let near = |ends: [[f64; 3]; 2]| {
         let ends = ends.map(|[x, y, z]| [x + at.re, y + at.im, z]);
         pointer.distance_to_segment(ends).is_some_and(|d| d < NEAR_LINK)
@@ -34,8 +34,8 @@ pub fn link(linkage: &Linkage, frame: &Frame, pointer: &Pointer) -> Option<usize
 }
 
 /// The number of the pin under the pointer.
-pub fn joint(linkage: &Linkage, frame: &Frame, pointer: &Pointer) -> Option<usize> {
-    let (e, at) = (frame.q.units(), frame.base.at);
+pub fn joint(linkage: &Linkage, shown: &Shown<'_>, pointer: &Pointer) -> Option<usize> {
+    let (e, at) = (shown.q.units(), shown.base.at);
     linkage.joints(&e).position(|([x, y, z], _)| seen_near(pointer, [x + at.re, y + at.im, z], NEAR_PIN))
 }
 
@@ -45,18 +45,18 @@ pub fn payload(at: Vector, linkage: &Linkage, pointer: &Pointer) -> bool {
 }
 
 /// Whether what the machine stands on is.
-pub fn base(linkage: &Linkage, moves: bool, frame: &Frame, pointer: &Pointer) -> bool {
+pub fn base(linkage: &Linkage, moves: bool, shown: &Shown<'_>, pointer: &Pointer) -> bool {
     let Some([x, y]) = pointer.ray().and_then(|ray| ray.at_height(linkage.bottom())) else { return false };
-    let at = (Vector::new(x, y) - frame.base.at) * unit(-frame.base.angle);
+    let at = shown.in_base(Vector::new(x, y));
     let [length, width] = PLATE.map(|part| part * linkage.reach());
     at.norm() < linkage.foot() || (moves && at.re.abs() < length && at.im.abs() < width)
 }
 
 /// The arrow or the arc of the reaction.
-pub fn reaction(linkage: &Linkage, frame: &Frame, pointer: &Pointer) -> Option<Handle> {
+pub fn reaction(linkage: &Linkage, shown: &Shown<'_>, pointer: &Pointer) -> Option<Handle> {
     let palette = palette(Theme::Dark);
     let mut drawn = Scene::new(palette.background, linkage.model.clone());
-    reaction::draw(&mut drawn, linkage, &palette, frame, &ViewOptions::default(), "");
+    reaction::draw(&mut drawn, linkage, &palette, shown, &ViewOptions::default(), "");
     let hit = |name: &str| drawn.lines.iter().any(|l| l.name == name && line(l, pointer));
     let all = [("reaction/force", Handle::Force), ("reaction/moment", Handle::Moment)];
     all.into_iter().find(|(name, _)| hit(name)).map(|(_, handle)| handle)

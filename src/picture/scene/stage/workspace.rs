@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::{Arc, OnceLock};
 
 use crate::mechanics::planar::{Pose2, Vector, unit};
+use crate::picture::scene::exaggeration::Shown;
 use crate::picture::scene::linkage::Linkage;
 use crate::picture::scene::options::{Handle, ViewOptions};
 use crate::picture::scene::palette::{Palette, faded};
@@ -12,7 +13,6 @@ use crate::picture::scene::{
 };
 use crate::planning::pose_constant::Planes;
 use crate::planning::reactionless::{self, AngleLimit, PlaneMap};
-use crate::simulation::frame::Frame;
 
 /// The workspaces of a run before they are turned: that of its b, one to compare with, and one that is looked at.
 #[derive(Clone, Debug)]
@@ -77,10 +77,10 @@ impl Workspace {
     }
 
     /// Its boundary at a height, m, where it is in a frame.
-    pub fn edge(&self, frame: &Frame, z: f64) -> Line {
-        let turn = self.planes.map().turn(frame.b_reference) + frame.base.angle;
+    pub fn edge(&self, shown: &Shown<'_>, z: f64) -> Line {
+        let turn = self.planes.map().turn(shown.frame.b_reference) + shown.base.angle;
         let line = Line::new("workspace/boundary", self.boundary.clone(), 1.8, [0.0; 4]);
-        line.moving(posed(frame.base.at, unit(turn), z))
+        line.moving(posed(shown.base.at, unit(turn), z))
     }
 
     /// From where to where a measure of dexterity is shaded.
@@ -94,12 +94,19 @@ impl Workspace {
     }
 
     /// The workspace to compare with, the own one, and the one that is looked at.
-    pub fn draw(&self, scene: &mut Scene, linkage: &Linkage, palette: &Palette, frame: &Frame, options: &ViewOptions) {
+    pub fn draw(
+        &self,
+        scene: &mut Scene,
+        linkage: &Linkage,
+        palette: &Palette,
+        shown: &Shown<'_>,
+        options: &ViewOptions,
+    ) {
         let (floor, map) = (linkage.floor(), self.planes.map());
         if let Some(b) = self.compared.filter(|_| options.compares) {
-            self.compared(scene, palette, b, frame.base, floor - 0.002 * linkage.reach());
+            self.compared(scene, palette, b, shown.base, floor - 0.002 * linkage.reach());
         }
-        self.own(scene, palette, frame, options, floor);
+        self.own(scene, palette, shown, options, floor);
         if let Some(b) = options.preview_b {
             let pose = posed(Vector::default(), unit(map.turn(b)), floor);
             let outline = Line::new("workspace/preview", self.boundary.clone(), 1.2, faded(palette.amber, 0.8));
@@ -122,8 +129,8 @@ impl Workspace {
         }
     }
 
-    fn own(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, options: &ViewOptions, z: f64) {
-        let (map, b, base) = (self.planes.map(), frame.b_reference, frame.base);
+    fn own(&self, scene: &mut Scene, palette: &Palette, shown: &Shown<'_>, options: &ViewOptions, z: f64) {
+        let (map, b, base) = (self.planes.map(), shown.frame.b_reference, shown.base);
         let turn = map.turn(b) + base.angle;
         let mut area = area(map, (turn, base.at), "workspace", z, faded(palette.amber, 0.13));
         if let Some(measure) = options.dexterity {

@@ -1,0 +1,201 @@
+//! [`Statements`]: what can be said of a machine, of its plan and of its run, each for itself. A balanced machine reacts
+//! on its base where its path leaves the plane b = const, and a machine that has not run has shown nothing.
+//!
+//! | statement | good | bad | open |
+//! |---|---|---|---|
+//! | machine | every g_k and C_kl vanishes, (7) and (8) | one does not | |
+//! | plan | b stays constant, (13) | b changes | there is no plan, or no b |
+//! | run | f_B and n_B vanish, or a wheel took n_B up | they do not, or an audit failed | nothing has moved |
+//!
+//! Window, reports of commands and recordings show these.
+
+use serde::Serialize;
+
+use super::Verdict;
+use crate::mechanics::machine::Inertia;
+use crate::session::Run;
+use crate::settings::number::significant;
+use crate::simulation::Guide;
+use crate::simulation::frame::Frame;
+
+/// A b that stays within this range is held, rad.
+const B_TOLERANCE: f64 = 1e-6;
+
+/// What a statement comes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Lamp {
+    /// As it should be for a base that feels nothing.
+    Good,
+    /// Not so.
+    Bad,
+    /// There is nothing to be said yet.
+    Open,
+}
+
+impl Lamp {
+    /// In a word, beside a colour.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Good => "good",
+            Self::Bad => "bad",
+            Self::Open => "open",
+        }
+    }
+}
+
+/// One statement.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Statement {
+    /// What it comes to.
+    pub lamp: Lamp,
+    /// In a few words, after the name of what it is about: `holds b`.
+    pub words: String,
+    /// What is behind it, in a sentence.
+    pub why: String,
+}
+
+impl Statement {
+    fn new(lamp: Lamp, words: impl Into<String>, why: impl Into<String>) -> Self {
+        Self { lamp, words: words.into(), why: why.into() }
+    }
+
+    /// Whether a machine is balanced, by how much it is not.
+    pub fn of_machine(inertia: &Inertia) -> Self {
+        let (force, coupling) = (inertia.force_residual(), inertia.invariance_residual());
+        let figures = format!("largest |g_k| {force:.1e} kg m, largest |C_kl| {coupling:.1e} kg m²");
+        match (inertia.is_force_balanced(), inertia.is_invariant()) {
+            (true, true) => {
+                Self::new(Lamp::Good, "balanced", format!("force-balanced and invariant, (7) and (8): {figures}"))
+            }
+            (false, _) => {
+                let words = format!("off balance by {} kg m", significant(force));
+                Self::new(Lamp::Bad, words, format!("its centre of mass moves, (7) does not hold: {figures}"))
+            }
+            (true, false) => {
+                let words = format!("drives coupled by {} kg m²", significant(coupling));
+                Self::new(
+                    Lamp::Bad,
+                    words,
+                    format!("its mass matrix depends on the pose, (8) does not hold: {figures}"),
+                )
+            }
+        }
+    }
+
+    /// Whether what a run is to do holds b.
+    fn of_plan(run: &Run, inertia: &Inertia) -> Self {
+        if run.waiting().is_some() {
+            return Self::new(Lamp::Open, "none, the run waits", "the task does not fit the machine");
+        }
+        if !inertia.is_invariant() {
+            let why = "the angular momentum of this machine depends on its pose: it has no pose constant";
+            return Self::new(Lamp::Open, "no b to hold", why);
+        }
+        if inertia.pose_inertia() == 0.0 {
+            return Self::new(Lamp::Good, "needs no b", "no drive of this machine turns its base: any path will do");
+        }
+        match run.simulation().guide() {
+            Guide::Follow(follower) if (follower.b_aim() - follower.b()).abs() > B_TOLERANCE => {
+                let change = significant(follower.b_aim() - follower.b());
+                let why = format!("a hand turns b by {change} rad: the base feels −D₁ b̈");
+                Self::new(Lamp::Bad, format!("turns b by {change} rad"), why)
+            }
+            Guide::Follow(follower) => {
+                let why = format!("a hand leads the machine on the plane b = {:.3} rad", follower.b());
+                Self::new(Lamp::Good, "led by hand, holds b", why)
+            }
+            Guide::Motion { .. } => {
+                let forecast = &run.plan().forecast;
+                let [least, greatest] = forecast.b;
+                let change = greatest - least;
+                if change <= B_TOLERANCE {
+                    let why = format!("the whole path lies on the plane b = {:.3} rad", forecast.b_start);
+                    return Self::new(Lamp::Good, "holds b", why);
+                }
+                let why = format!(
+                    "b goes from {:.3} rad to {:.3} rad, within {least:.3} to {greatest:.3}; n_B = −D₁ b̈, up to {} N m \
+                     foreseen",
+                    forecast.b_start,
+                    forecast.b_end,
+                    significant(forecast.moment)
+                );
+                Self::new(Lamp::Bad, format!("changes b by {} rad", significant(change)), why)
+            }
+        }
+    }
+
+    /// What a run up to a frame has transmitted.
+    fn of_run(run: &Run, frame: &Frame, [machine, plan]: [&Self; 2]) -> Self {
+        let (verdict, peaks) = (Verdict::of(run.scenario(), frame), &frame.peaks);
+        if let Some(figure) = &verdict.fault {
+            return Self::new(Lamp::Bad, "cannot be trusted", format!("an audit has failed: {figure}"));
+        }
+        if run.waiting().is_some() {
+            return Self::new(Lamp::Open, "waits", "nothing moves until the task fits the machine");
+        }
+        if !verdict.moved {
+            let words = if frame.step == 0 { "none yet" } else { "nothing moved" };
+            return Self::new(
+                Lamp::Open,
+                words,
+                "the arm has not moved, so there is nothing to say of what it transmits",
+            );
+        }
+        let figures =
+            format!("peak |n_B| {} N m, peak |f_B| {} N", significant(verdict.arm_moment), significant(verdict.force));
+        if verdict.reactionless {
+            return Self::new(Lamp::Good, "transmitted nothing", figures);
+        }
+        if let Some(left) = verdict.past_wheel.filter(|_| verdict.base_feels_nothing) {
+            let words = format!("the wheel took up {:.3} N m", verdict.arm_moment);
+            let why = format!("{figures}; the wheel leaves the base {} N m", significant(left));
+            return Self::new(Lamp::Good, words, why);
+        }
+        let parts = [
+            peaks.transmits_moment().then(|| format!("|n_B| {} N m", significant(verdict.arm_moment))),
+            peaks.transmits_force().then(|| format!("|f_B| {} N", significant(verdict.force))),
+        ];
+        let words = format!("peak {}", parts.into_iter().flatten().collect::<Vec<_>>().join(", "));
+        let cause = match (machine.lamp, plan.lamp) {
+            (Lamp::Bad, _) => "the machine does this: it is not balanced",
+            (_, Lamp::Bad) => "the path does this, not the machine: b changes on it",
+            _ => {
+                "neither machine nor path do this, but what the model leaves out: a payload, a push, friction, unequal \
+                 gains, or a hand that turned b"
+            }
+        };
+        Self::new(Lamp::Bad, words, format!("{figures}; {cause}"))
+    }
+}
+
+/// What can be said of a session.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Statements {
+    /// Whether the machine is balanced.
+    pub machine: Statement,
+    /// Whether the plan holds b.
+    pub plan: Statement,
+    /// Whether the run has transmitted nothing.
+    pub run: Statement,
+}
+
+impl Statements {
+    /// Of a run up to a frame.
+    pub fn of(run: &Run, frame: &Frame) -> Self {
+        let inertia = Inertia::of(&run.scenario().machine);
+        let (machine, plan) = (Statement::of_machine(&inertia), Statement::of_plan(run, &inertia));
+        let run = Statement::of_run(run, frame, [&machine, &plan]);
+        Self { machine, plan, run }
+    }
+
+    /// Each with the name of what it is about.
+    pub fn named(&self) -> [(&'static str, &Statement); 3] {
+        [("machine", &self.machine), ("plan", &self.plan), ("run", &self.run)]
+    }
+
+    /// `machine: balanced · plan: holds b · run: none yet`.
+    pub fn line(&self) -> String {
+        self.named().map(|(name, statement)| format!("{name}: {}", statement.words)).join(" · ")
+    }
+}
