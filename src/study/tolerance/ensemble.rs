@@ -7,7 +7,7 @@
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | t_s | instants (s + ½) T / S: the mean over them is the midpoint rule | s |
+//! | t_s | instants (s + ½) T / S, over which means are taken (midpoint rule), and both ends, for peaks | s |
 //! | δθ | θ of a machine less θ of the nominal one | kg m; kg m² |
 //! | φ_i(t) | n_B(t) of the machine of which only θ_i = 1 | N m each |
 //! | ψ_i(t) | dynamic f_B(t) of it | N each |
@@ -73,7 +73,8 @@ struct MotionTable {
 }
 
 impl Ensemble {
-    /// Machines around `machine`, drawn by `seed`, on `instants` of a motion, at least one.
+    /// Machines around `machine`, drawn by `seed`, on `instants` of a motion, at least one, and at both of its ends, where
+    /// the weight may load the base most.
     ///
     /// # Errors
     /// If nothing varies, a key or spread is wrong, or a length cannot vary alone.
@@ -88,7 +89,8 @@ impl Ensemble {
         let bodies = constants::bodies(machine, &parameters).map_err(ToleranceError::Machine)?;
         let moments = Moments::of(n, &bodies, &parameters);
         let step = motion.duration() / instants as f64;
-        let time: Vec<f64> = (0..instants).map(|s| (s as f64 + 0.5) * step).collect();
+        let middles = (0..instants).map(|s| (s as f64 + 0.5) * step);
+        let time: Vec<f64> = [0.0].into_iter().chain(middles).chain([motion.duration()]).collect();
         let references: Vec<Reference> = time.iter().map(|t| motion.at(*t)).collect();
         let (inertia, around) = (Inertia::of(machine), surroundings(machine));
         let wrenches = |inertia: &Inertia| references.iter().map(|r| wrench(inertia, r, &around)).collect::<Vec<_>>();
@@ -119,6 +121,11 @@ impl Ensemble {
         &self.time
     }
 
+    /// The instants over which means are taken: all but both ends.
+    pub fn between(&self) -> std::ops::Range<usize> {
+        1..self.time.len() - 1
+    }
+
     /// The motion at the instants.
     pub fn references(&self) -> &[Reference] {
         &self.references
@@ -131,9 +138,9 @@ impl Ensemble {
 
     /// What the nominal machine comes to.
     pub fn nominal_outcome(&self) -> Outcome {
-        let instants = self.nominal.len() as f64;
+        let between = &self.nominal[self.between()];
         let peak = |f: fn(&(f64, Vector)) -> f64| self.nominal.iter().map(f).fold(0.0, f64::max);
-        let rms = |f: fn(&(f64, Vector)) -> f64| (self.nominal.iter().map(f).sum::<f64>() / instants).sqrt();
+        let rms = |f: fn(&(f64, Vector)) -> f64| (between.iter().map(f).sum::<f64>() / between.len() as f64).sqrt();
         Outcome {
             peak_moment: peak(|w| w.0.abs()),
             peak_force: peak(|w| w.1.norm()),
@@ -271,7 +278,7 @@ impl Sampler<'_> {
             gather(&self.theta, &table.moment, &table.offset, moment);
             gather(&self.theta, &table.force, &table.offset, force);
             let [peak_n, peak_f, sum_n, sum_f] = sweep(&table.rows, moment, force);
-            let mean = 1.0 / self.ensemble.time.len() as f64;
+            let mean = 1.0 / self.ensemble.between().len() as f64;
             for w in 0..LANES {
                 self.outcomes[block * LANES + w] = Outcome {
                     peak_moment: peak_n[w].sqrt(),
@@ -337,18 +344,21 @@ fn wrenches(row: &[f64], moment: &[Lanes], force: &[Lanes]) -> (Lanes, Lanes, La
     (n, fx, fy)
 }
 
-/// Over all instants: the largest n_B² and |f_B|², and their sums.
+/// The largest n_B² and |f_B|² over all instants, and their sums over all but the first and the last.
 fn sweep(rows: &[f64], moment: &[Lanes], force: &[Lanes]) -> [Lanes; 4] {
     let [mut peak_n, mut peak_f, mut sum_n, mut sum_f] = [[0.0; LANES]; 4];
-    for row in rows.chunks_exact(3 + moment.len() + 2 * force.len()) {
+    let width = 3 + moment.len() + 2 * force.len();
+    let last = rows.len() / width - 1;
+    for (s, row) in rows.chunks_exact(width).enumerate() {
         let (n, fx, fy) = wrenches(row, moment, force);
+        let weight = if s == 0 || s == last { 0.0 } else { 1.0 };
         for w in 0..LANES {
             let (n, f) = (n[w] * n[w], fx[w] * fx[w] + fy[w] * fy[w]);
             // Not f64::max, whose care for NaN takes longer than the rest; nothing here is NaN.
             peak_n[w] = if n > peak_n[w] { n } else { peak_n[w] };
             peak_f[w] = if f > peak_f[w] { f } else { peak_f[w] };
-            sum_n[w] += n;
-            sum_f[w] += f;
+            sum_n[w] += weight * n;
+            sum_f[w] += weight * f;
         }
     }
     [peak_n, peak_f, sum_n, sum_f]
