@@ -73,6 +73,7 @@ struct PinAnswer {
     undefined_steps: u64,
 }
 
+/// Two drives whose parallelograms, or other loops, lie flat where they line up.
 #[derive(Serialize)]
 struct Pair {
     drives: [String; 2],
@@ -235,17 +236,21 @@ fn answer(scenario: &str, last: &Frame, machine: &Machine, joints: &Joints, tota
     };
     let pins: Vec<PinAnswer> = joints.pins().iter().zip(&totals.pins).map(pin).collect();
     let none = Extreme { value: 0.0, time: 0.0 };
+    // A loop of three drives may lie flat by any pair of them.
+    let other_loops = joints.pins().len() > machine.links().len() + joints.parallelograms().len();
     let pair = |((k, l), sine): ((usize, usize), &Sine)| {
         let seen = sine.least.unwrap_or(none);
         let closures = joints.parallelograms().iter().filter(|p| p.drives == (k, l));
-        Pair {
+        let closures: Vec<String> = closures.map(|p| p.name.clone()).collect();
+        // No loop lies flat where two links in series line up.
+        (!closures.is_empty() || other_loops).then(|| Pair {
             drives: [k, l].map(|k| machine.spec().drives[k].name.clone()),
-            closures: closures.map(|p| p.name.clone()).collect(),
+            closures,
             least: seen.value,
             angle: seen.value.min(1.0).asin(),
             time: seen.time,
             passed: sine.passed,
-        }
+        })
     };
     let [x, y, motion] = totals.tilt.map(|seen| seen.unwrap_or(none));
     Answer {
@@ -253,7 +258,7 @@ fn answer(scenario: &str, last: &Frame, machine: &Machine, joints: &Joints, tota
         steps: last.step,
         worst: pins.iter().max_by(|a, b| a.peak.total_cmp(&b.peak)).map_or(String::new(), |p| p.name.clone()),
         pins,
-        transmission: Inertia::pairs(machine.drives()).zip(&totals.pairs).map(pair).collect(),
+        transmission: Inertia::pairs(machine.drives()).zip(&totals.pairs).filter_map(pair).collect(),
         tilt: TiltAnswer { flat: axial.is_flat(), x, y, motion, residual: axial.residual() },
         audit_failed: last.fault().map(|lamp| lamp.to_string()),
     }

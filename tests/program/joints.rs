@@ -47,6 +47,17 @@ fn joints_tells_that_a_change_point_is_passed() {
     assert_eq!(object(&["joints", "case-3"])["transmission"][1]["passed"], 0);
 }
 
+/// Where no loop lies flat there is no change point, though links in series line up.
+#[test]
+fn joints_speaks_of_change_points_of_loops_alone() {
+    for arm in ["serial-3r", "space-arm", "scara"] {
+        assert_eq!(object(&["joints", arm])["transmission"], json!([]), "{arm}");
+        let said = prints(&["joints", arm]);
+        assert!(!said.contains("change point") && !said.contains("|sin|"), "{said}");
+    }
+    assert_eq!(object(&["joints", "case-3"])["transmission"].as_array().map(Vec::len), Some(3));
+}
+
 #[test]
 fn joints_writes_forces_as_csv_and_says_why_there_are_none() {
     let folder = Folder::new("cli");
