@@ -87,21 +87,11 @@ fn anything(noise: &mut Noise, machine: &Machine, reach: f64) -> Keep {
     asked
 }
 
-/// Σ (p x)² of values, with x as it is documented.
-fn cost(asked: &Keep, machine: &Machine, values: &[f64]) -> f64 {
-    let ratio = |body| {
-        let mass = Parameter::new(body, Quantity::Mass);
-        let i = asked.parameters.iter().position(|one| one.parameter == mass);
-        i.map_or(1.0, |i| values[i] / asked.parameters[i].from)
-    };
+/// Σ (p Δ)² of values.
+fn cost(asked: &Keep, values: &[f64]) -> f64 {
     assert_eq!(asked.parameters.len(), values.len());
     let all = asked.parameters.iter().zip(values).filter(|(one, _)| one.hold != Hold::Fixed);
-    all.map(|(one, value)| {
-        assert!(one.parameter.value(machine.spec()).is_some());
-        let heavier = if one.parameter.quantity == Quantity::Mass { 1.0 } else { ratio(one.parameter.body) };
-        (one.penalty * heavier * (value - one.from)).powi(2)
-    })
-    .sum()
+    all.map(|(one, value)| (one.penalty * (value - one.from)).powi(2)).sum()
 }
 
 #[track_caller]
@@ -114,7 +104,17 @@ fn within_what_is_asked(machine: &Machine, asked: &Keep, kept: &Kept) {
         match one.hold {
             Hold::Fixed => assert_eq!(one.parameter.value(machine.spec()), Some(now)),
             Hold::Within([low, high]) => assert!((low..=high).contains(&now), "{low} {now} {high}"),
-            Hold::Free => {}
+            Hold::Free => {
+                let (is, was) = (one.from, one.parameter.value(machine.spec()).expect("one of its own"));
+                let usual = match one.parameter.quantity {
+                    Quantity::Mass => [was.min(is / 10.0), was.max(is * 10.0)],
+                    _ => {
+                        let way = 10.0 * machine.reach().max(1.0);
+                        [was.min(is - way), was.max(is + way)]
+                    }
+                };
+                assert!((usual[0]..=usual[1]).contains(&now), "{usual:?} {now}");
+            }
         }
         // What may change as it has, all else must be as it was.
         match (one.parameter.body, one.parameter.quantity) {
@@ -145,7 +145,7 @@ fn within_what_is_asked(machine: &Machine, asked: &Keep, kept: &Kept) {
 fn nothing_else_that_is_asked_for_is_cheaper() {
     let mut noise = Noise::of(22);
     let (mut found, mut refused, mut others) = (0, 0, 0);
-    for _ in 0..100 {
+    for _ in 0..30 {
         let machine = with_counterweights(&mut noise);
         let asked = anything(&mut noise, &machine, 1.5);
         let kept = match keep(&machine, &asked) {
@@ -158,7 +158,7 @@ fn nothing_else_that_is_asked_for_is_cheaper() {
         };
         found += 1;
         within_what_is_asked(&machine, &asked, &kept);
-        assert!((cost(&asked, &machine, &kept.values) - kept.cost).abs() < 1e-9 * (1e-3 + kept.cost));
+        assert!((cost(&asked, &kept.values) - kept.cost).abs() < 1e-9 * (1e-3 + kept.cost));
         for _ in 0..4 {
             // The answer to another question is balanced within the same bounds.
             let mut other = asked.clone();
@@ -170,23 +170,63 @@ fn nothing_else_that_is_asked_for_is_cheaper() {
             }
             let Ok(elsewhere) = keep(&machine, &other) else { continue };
             others += 1;
-            let dearer = cost(&asked, &machine, &elsewhere.values);
+            let dearer = cost(&asked, &elsewhere.values);
             assert!(dearer > kept.cost - 1e-9 * (1e-3 + kept.cost), "{dearer} and {}", kept.cost);
         }
     }
-    assert!(found > 30 && refused > 8 && others > 120, "{found} {refused} {others}");
+    assert!(found > 6 && refused > 3 && others > 20, "{found} {refused} {others}");
 }
 
-/// A question with only these limits left; every other parameter that is listed is free.
+/// To change more is never dearer, with masses and places of the same bodies, on any machine.
+#[test]
+fn a_mass_that_may_change_makes_nothing_worse() {
+    let [tried, cheaper] = masses_that_may_change(24, 24);
+    assert!(tried > 6 && cheaper > 4, "{tried} {cheaper}");
+}
+
+#[test]
+#[ignore = "takes a minute"]
+fn a_mass_that_may_change_makes_nothing_worse_of_many_machines() {
+    let [tried, cheaper] = masses_that_may_change(600, 25);
+    assert!(tried > 200 && cheaper > 160, "{tried} {cheaper}");
+}
+
+/// How many machines are balanced with their masses as they are, and how often one that may change makes it cheaper.
+fn masses_that_may_change(count: usize, seed: u64) -> [usize; 2] {
+    let mut noise = Noise::of(seed);
+    let (mut tried, mut cheaper) = (0, 0);
+    for i in 0..count {
+        let machine = if i % 3 == 0 { family_machine("nine-link-bare") } else { with_counterweights(&mut noise) };
+        let penalty: Vec<f64> = machine.links().iter().map(|_| noise.between(0.3, 3.0)).collect();
+        let asked = Keep::coms(&machine, &penalty);
+        let Ok(none) = keep(&machine, &asked) else { continue };
+        tried += 1;
+        let mut more = asked.clone();
+        for _ in 0..2 {
+            let j = noise.between(0.0, machine.links().len() as f64 - 1e-9) as usize;
+            more.hold(
+                &machine,
+                Parameter::new(stillbase::mechanics::balance::Body::Link(j), Quantity::Mass),
+                Hold::Free,
+            );
+            let kept = keep(&machine, &more).expect("nothing has to change");
+            within_what_is_asked(&machine, &more, &kept);
+            assert!(kept.cost <= none.cost * (1.0 + 1e-9) + 1e-15, "{} and {}", kept.cost, none.cost);
+            assert!((cost(&more, &kept.values) - kept.cost).abs() <= 1e-12 * kept.cost);
+            assert!(!kept.certified && none.certified);
+            cheaper += usize::from(kept.cost < 0.99 * none.cost);
+        }
+    }
+    [tried, cheaper]
+}
+
+/// A question with only these limits left; every other parameter that is listed goes anywhere.
 fn only(asked: &Keep, limits: &[(Parameter, Side, f64)]) -> Keep {
     let mut only = asked.clone();
     for one in &mut only.parameters {
         let end = |side| limits.iter().find(|l| l.0 == one.parameter && l.1 == side).map(|l| l.2);
         let least = if one.parameter.quantity == Quantity::Mass { 0.0 } else { -1e3 };
-        one.hold = match (end(Side::Least), end(Side::Most)) {
-            (None, None) => Hold::Free,
-            (low, high) => Hold::Within([low.unwrap_or(least), high.unwrap_or(1e3)]),
-        };
+        one.hold = Hold::Within([end(Side::Least).unwrap_or(least), end(Side::Most).unwrap_or(1e3)]);
     }
     only
 }
@@ -213,10 +253,14 @@ fn check_conflict(machine: &Machine, asked: &Keep) -> Option<(usize, usize)> {
         let [low, high] = match one.hold {
             Hold::Within(ends) => ends,
             Hold::Fixed => [one.parameter.value(machine.spec()).expect("one of its own"); 2],
-            Hold::Free => continue,
+            Hold::Free if relief.iter().all(|r| r.limit.parameter != one.parameter) => continue,
+            Hold::Free => [f64::MAX, f64::MIN],
         };
         let ends = [to(Side::Least).map_or(low, |r| r.to), to(Side::Most).map_or(high, |r| r.to)];
-        if ends != [low, high] {
+        if one.hold == Hold::Free {
+            let unbounded = if one.parameter.quantity == Quantity::Mass { [0.0, 1e3] } else { [-1e3, 1e3] };
+            one.hold = Hold::Within([ends[0].min(unbounded[0]), ends[1].max(unbounded[1])]);
+        } else if ends != [low, high] {
             assert!(ends[0] <= low && ends[1] >= high);
             one.hold = Hold::Within(ends);
         }
@@ -230,7 +274,7 @@ fn check_conflict(machine: &Machine, asked: &Keep) -> Option<(usize, usize)> {
 fn limits_that_leave_no_way_are_named_and_how_far_they_would_have_to_give() {
     let mut noise = Noise::of(23);
     let (mut conflicts, mut of_several) = (0, 0);
-    for i in 0..120 {
+    for i in 0..30 {
         let machine = if i % 2 == 0 { with_counterweights(&mut noise) } else { nine_link().clone() };
         let mut asked = anything(&mut noise, &machine, 0.2);
         if i % 2 == 1 {
@@ -250,7 +294,7 @@ fn limits_that_leave_no_way_are_named_and_how_far_they_would_have_to_give() {
         conflicts += 1;
         of_several += usize::from(limits > 1);
     }
-    assert!(conflicts > 20 && of_several > 8, "{conflicts} {of_several}");
+    assert!(conflicts > 4 && of_several > 1, "{conflicts} {of_several}");
 }
 
 /// A drag of one link: the others follow, within bounds, and the file that is written is balanced.

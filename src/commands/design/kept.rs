@@ -17,15 +17,15 @@ use super::measures;
 /// What may change, and how far.
 #[derive(Args)]
 pub struct KeepArguments {
-    /// Change as little as possible instead: centres of mass along the links are free, from where they are, with the
-    /// penalties as weights; everything else stays
+    /// Change as little as possible instead: the least Σ (p Δ)², Δ in m or kg. Centres of mass along the links are free,
+    /// from where they are; everything else stays
     #[arg(long)]
     pub keep: bool,
     /// Leave these where they are: 3.com is link.3.com
     #[arg(long, value_name = "KEY,…", requires = "keep", value_delimiter = ',')]
     fix: Vec<String>,
-    /// Change these, too: 4.mass, 4.com_normal, counterweight.1.mass, counterweight.1.at; a kilogram weighs as much as a
-    /// metre with penalty 1
+    /// Change these, too: 4.mass, 4.com_normal, counterweight.1.mass, counterweight.1.at, each with penalty 1 on a
+    /// kilogram or a metre; a mass goes from a tenth to ten times of what it is unless --bound says otherwise
     #[arg(long, value_name = "KEY,…", requires = "keep", value_delimiter = ',')]
     free: Vec<String>,
     /// Change this one only from one value to another, m or kg
@@ -48,12 +48,14 @@ impl KeepArguments {
             key: one.parameter.key(machine),
             from: one.parameter.value(machine.spec()).unwrap_or_default(),
             to: *value,
+            penalty: one.penalty,
             unit: if one.parameter.quantity == Quantity::Mass { "kg" } else { "m" },
         };
         let changes = asked.parameters.iter().zip(&kept.values).map(change).collect();
         let answer = Answer {
             changes,
             cost: kept.cost,
+            certified: kept.certified,
             measures: Measures::of(machine, &kept.machine, motion),
             balance: Balance::of(&Inertia::of(&kept.machine)),
         };
@@ -73,8 +75,10 @@ fn unkept(why: NotKept) -> Failure {
 #[derive(Serialize)]
 pub struct Answer {
     changes: Vec<Change>,
-    /// Σ (p x)².
+    /// Σ (p Δ)² over the changes.
     cost: f64,
+    /// Whether nothing else within the limits has less.
+    certified: bool,
     #[serde(flatten)]
     measures: Measures,
     #[serde(flatten)]
@@ -86,19 +90,26 @@ struct Change {
     key: String,
     from: f64,
     to: f64,
+    /// p, 1/m or 1/kg.
+    penalty: f64,
     unit: &'static str,
 }
 
 impl Answer {
     /// As a person reads it.
     pub fn text(&self, machine: &Machine, by: &str) -> String {
-        let mut table = Table::new(["", "before", "now", "change", "unit"]);
-        for Change { key, from, to, unit } in &self.changes {
-            table.row([key.clone(), fixed(*from, 9), fixed(*to, 9), fixed(to - from, 9), (*unit).into()]);
+        let mut table = Table::new(["", "before", "now", "change Δ", "unit", "penalty p"]);
+        for Change { key, from, to, penalty, unit } in &self.changes {
+            let [was, is, change, p] = [*from, *to, to - from, *penalty].map(|x| fixed(x, 9));
+            table.row([key.clone(), was, is, change, (*unit).into(), p]);
         }
         let (name, cost) = (machine.name(), significant(self.cost));
+        let sure = match self.certified {
+            true => "",
+            false => "not certified, the best of several searches: a mass and a place of one body may both change\n",
+        };
         format!(
-            "{name} · the least change, {by} · Σ (p x)² {cost}\n\n{table}\n{}\n{}",
+            "{name} · the least change, {by} · Σ (p Δ)² {cost}\n{sure}\n{table}\n{}\n{}",
             measures::text(&self.measures),
             self.balance.tables(machine)
         )

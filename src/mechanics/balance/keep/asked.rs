@@ -11,14 +11,21 @@ use crate::settings::number::Short;
 pub enum Hold {
     /// It stays what it is in the machine. Unlike one that is not listed, it may be named as what stands in the way.
     Fixed,
-    /// Anywhere; masses stay above a thousandth of what they are and are measured from.
+    /// As far as is usual from where its change is measured: a mass from a tenth to ten times, a place ten times as far as
+    /// the machine reaches, or 10 m where that is more.
     Free,
-    /// From one value to another.
+    /// From one value to another. A mass stays above a thousandth of what it is and is measured from.
     Within([f64; 2]),
 }
 
-/// The least that a mass which may change may become, as part of what it is or is measured from.
-pub(super) const LEAST_MASS: f64 = 1e-3;
+/// The least that a mass which may change may become, as a fraction of what it is or is measured from.
+pub(super) const MIN_MASS: f64 = 1e-3;
+
+/// How much lighter and heavier a mass may become unless it is bounded.
+const USUAL_MASS: f64 = 10.0;
+
+/// How far a place may move unless it is bounded, in what the machine reaches or in metres.
+const USUAL_WAY: f64 = 10.0;
 
 /// A parameter that is listed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,6 +38,29 @@ pub struct Adjusted {
     pub penalty: f64,
     /// Where its change is measured from, m or kg.
     pub from: f64,
+}
+
+impl Adjusted {
+    /// From where to where it may go; one that is fixed has no room.
+    pub(super) fn ends(&self, machine: &Machine) -> Option<[f64; 2]> {
+        let value = self.parameter.value(machine.spec())?;
+        Some(match (self.hold, self.parameter.quantity) {
+            (Hold::Fixed, _) => [value; 2],
+            (Hold::Within(ends), _) => ends,
+            // What it is already it may stay.
+            (Hold::Free, Quantity::Mass) => [value.min(self.from / USUAL_MASS), value.max(self.from * USUAL_MASS)],
+            (Hold::Free, Quantity::Along | Quantity::Across) => {
+                let way = USUAL_WAY * machine.reach().max(1.0);
+                [value.min(self.from - way), value.max(self.from + way)]
+            }
+        })
+    }
+
+    /// How far it may go at most if its own limits give way: as far as is usual, or as they let it.
+    pub(super) fn widest(&self, machine: &Machine) -> Option<[f64; 2]> {
+        let ([low, high], usual) = (self.ends(machine)?, Self { hold: Hold::Free, ..*self }.ends(machine)?);
+        Some([low.min(usual[0]), high.max(usual[1])])
+    }
 }
 
 /// What may change. All that is not listed stays as it is.

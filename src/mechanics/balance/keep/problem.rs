@@ -6,8 +6,9 @@ use super::super::breakdown::Body;
 use super::super::condition::Condition;
 use super::super::parameter::{Parameter, Quantity};
 use super::super::plane::{Equation, Plane};
-use super::asked::{Adjusted, Hold, Keep, LEAST_MASS};
+use super::asked::{Adjusted, Hold, Keep, MIN_MASS};
 use super::refusal::{Limit, NotKept, Relief, Side};
+use super::search::{Mass, Search};
 use crate::convex::{Program, Row, conflict};
 use crate::mechanics::machine::{BALANCED, Inertia, Machine, MachineError, MachineSpec};
 use crate::mechanics::planar::Vector;
@@ -19,8 +20,11 @@ pub struct Kept {
     pub machine: Machine,
     /// What each parameter has become, in the order in which they are listed.
     pub values: Vec<f64>,
-    /// What was least: Σ (p x)² of those that are not fixed.
+    /// What was least: Σ (p Δ)² of those that are not fixed.
     pub cost: f64,
+    /// Whether nothing else that is balanced within the limits has less. Where a body may change its mass and its place
+    /// the answer is the best of several searches.
+    pub certified: bool,
 }
 
 impl Kept {
@@ -58,8 +62,15 @@ pub fn keep_with(machine: &Machine, asked: &Keep, beyond: &[Vector]) -> Result<K
     let mut equations = problem.balance.clone();
     equations.extend((0..n).filter_map(|i| problem.fixed(i)));
     let plane = Plane::of(&equations, n);
-    match plane.exists.then(|| plane.nearest(&problem.bounds(&problem.limits(false)))) {
-        Some(Ok(y)) => problem.kept(&y),
+    let bounds = problem.bounds(&problem.limits(false));
+    match plane.exists.then(|| plane.nearest(&bounds)) {
+        Some(Ok(nearest)) => {
+            let search = problem.search(&equations, &bounds);
+            let is_coupled = search.masses.iter().any(|mass| !mass.places.is_empty());
+            let found = if is_coupled { search.least(&plane) } else { Vec::new() };
+            let exact = found.iter().find_map(|y| problem.kept(y).ok());
+            exact.map_or_else(|| problem.kept(&nearest), Ok)
+        }
         Some(Err(_)) | None => Err(problem.conflict()),
     }
 }
@@ -152,6 +163,29 @@ impl<'a> Problem<'a> {
         self.asked.parameters.iter().position(|one| one.parameter == parameter)
     }
 
+    /// What is looked for where masses and places of one body may change.
+    fn search<'b>(&self, equations: &'b [Equation], bounds: &'b [Row]) -> Search<'b> {
+        let all = || self.asked.parameters.iter().enumerate();
+        let masses = all().filter(|(_, one)| one.parameter.quantity == Quantity::Mass).map(|(at, one)| {
+            let places = all().filter(|(_, other)| {
+                other.parameter.body == one.parameter.body
+                    && other.parameter.quantity != Quantity::Mass
+                    && other.hold != Hold::Fixed
+            });
+            let ends = one.ends(self.machine).unwrap_or([one.from; 2]);
+            Mass { at, from: one.from, penalty: one.penalty, ends, places: places.map(|(i, _)| i).collect() }
+        });
+        let counts = all().map(|(_, one)| one.hold != Hold::Fixed).collect();
+        Search { equations, counts, masses: masses.collect(), bounds }
+    }
+
+    /// Whether no body may change both its mass and a place: then all is linear but for distances.
+    fn is_convex(&self) -> bool {
+        let all = || self.asked.parameters.iter().filter(|one| one.hold != Hold::Fixed).map(|one| one.parameter);
+        let mut masses = all().filter(|mass| mass.quantity == Quantity::Mass);
+        !masses.any(|mass| all().any(|other| other.body == mass.body && other != mass))
+    }
+
     /// The row that is its right side where a parameter has a value.
     fn row(&self, i: usize, value: f64) -> Row {
         let Adjusted { parameter, penalty, from, .. } = self.asked.parameters[i];
@@ -180,18 +214,15 @@ impl<'a> Problem<'a> {
     fn limits(&self, fixed: bool) -> Vec<(Limit, Row)> {
         let mut all = Vec::new();
         for (i, one) in self.asked.parameters.iter().enumerate() {
-            let ends = match one.hold {
-                Hold::Fixed => one.parameter.value(self.machine.spec()).filter(|_| fixed).map(|value| [value; 2]),
-                Hold::Within(ends) => Some(ends),
-                Hold::Free => None,
-            };
+            let ends = one.ends(self.machine).filter(|_| fixed || one.hold != Hold::Fixed);
             for (side, value) in [Side::Least, Side::Most].into_iter().zip(ends.into_iter().flatten()) {
                 let (key, fixed) = (one.parameter.key(self.machine), one.hold == Hold::Fixed);
+                let usual = one.hold == Hold::Free;
                 let carrier = match one.parameter.body {
                     Body::Counterweight(i) => Some(self.from.counterweights[i].link.clone()),
                     _ => None,
                 };
-                let limit = Limit { parameter: one.parameter, key, carrier, side, fixed, value };
+                let limit = Limit { parameter: one.parameter, key, carrier, side, fixed, usual, value };
                 all.push((limit, self.limit(i, side, value)));
             }
         }
@@ -207,7 +238,7 @@ impl<'a> Problem<'a> {
         let masses = self.asked.parameters.iter().enumerate();
         masses.filter(|(_, one)| one.parameter.quantity == Quantity::Mass).map(|(i, one)| {
             let present = one.parameter.value(self.machine.spec()).unwrap_or(one.from);
-            self.limit(i, Side::Least, LEAST_MASS * one.from.min(present))
+            self.limit(i, Side::Least, MIN_MASS * one.from.min(present))
         })
     }
 
@@ -237,14 +268,13 @@ impl<'a> Problem<'a> {
     fn kept(&self, y: &DVector<f64>) -> Result<Kept, NotKept> {
         let (mut spec, mut values, mut cost) = (self.machine.spec().clone(), Vec::new(), 0.0);
         for (i, one) in self.asked.parameters.iter().enumerate() {
-            let value = match one.hold {
-                Hold::Fixed => one.parameter.value(&spec).unwrap_or_default(),
-                Hold::Free => self.value(i, y),
-                Hold::Within([low, high]) => self.value(i, y).clamp(low, high),
+            let value = match (one.hold, one.ends(self.machine)) {
+                (Hold::Fixed, _) | (_, None) => one.parameter.value(&spec).unwrap_or_default(),
+                (_, Some([low, high])) => self.value(i, y).clamp(low, high),
             };
             if one.hold != Hold::Fixed {
                 one.parameter.set(&mut spec, value);
-                cost += y[i] * y[i];
+                cost += (one.penalty * (value - one.from)).powi(2);
             }
             values.push(value);
         }
@@ -256,7 +286,7 @@ impl<'a> Problem<'a> {
             (condition.left(&inertia) + beyond).norm() <= nothing(condition)
         };
         match left.into_iter().all(balanced) {
-            true => Ok(Kept { machine, values, cost }),
+            true => Ok(Kept { machine, values, cost, certified: self.is_convex() }),
             false => Err(NotKept::Failed("what it found is not balanced to rounding".into())),
         }
     }
@@ -292,9 +322,19 @@ impl<'a> Problem<'a> {
         NotKept::Inconsistent { condition: condition.name(self.machine), left }
     }
 
-    /// The least Σ p times how far limits give way with which there is a way; empty if the solver finds none.
+    /// The least Σ p times how far limits give way with which there is a way: as far as is usual, or any way if that is not
+    /// enough. Empty if the solver finds none.
     fn relief(&self, plane: &Plane, limits: &[(Limit, Row)]) -> Vec<Relief> {
-        let (m, c) = plane.cut(&self.bounds(limits));
+        let mut reliefs = [false, true].into_iter().map(|usual| self.relief_of(plane, limits, usual));
+        reliefs.find(|relief| !relief.is_empty()).unwrap_or_default()
+    }
+
+    fn relief_of(&self, plane: &Plane, limits: &[(Limit, Row)], usual: bool) -> Vec<Relief> {
+        let widest = self.asked.parameters.iter().enumerate().filter(|_| !usual).flat_map(|(i, one)| {
+            let ends = [Side::Least, Side::Most].into_iter().zip(one.widest(self.machine).into_iter().flatten());
+            ends.map(move |(side, value)| self.limit(i, side, value))
+        });
+        let (m, c) = plane.cut(&widest.chain(self.bounds(limits)).collect::<Vec<_>>());
         let (k, floors, scale) = (m.ncols(), c.len() - limits.len(), c.amax().max(f64::MIN_POSITIVE));
         let mut program = Program::over(k);
         program.linear.resize(k + limits.len(), 1.0);
@@ -302,8 +342,10 @@ impl<'a> Problem<'a> {
             let mut terms: Vec<(usize, f64)> = (0..k).map(|j| (j, m[(i, j)])).collect();
             if i >= floors {
                 let gives = k + i - floors;
-                terms.push((gives, -1.0));
                 program.at_most.push(Row::new([(gives, -1.0)], 0.0));
+                if usual || !limits[i - floors].0.usual {
+                    terms.push((gives, -1.0));
+                }
             }
             program.at_most.push(Row::new(terms, c[i] / scale));
         }

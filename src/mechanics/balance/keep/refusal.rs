@@ -29,6 +29,8 @@ pub struct Limit {
     pub side: Side,
     /// Whether it is fixed.
     pub fixed: bool,
+    /// Whether it is there because nothing else was said.
+    pub usual: bool,
     /// Where, m or kg.
     pub value: f64,
 }
@@ -47,7 +49,8 @@ impl fmt::Display for Limit {
             (true, _) => write!(f, "{key} stays {value}"),
             (false, Side::Least) => write!(f, "{key} at least {value}"),
             (false, Side::Most) => write!(f, "{key} at most {value}"),
-        }
+        }?;
+        if self.usual { write!(f, " unless bounded otherwise") } else { Ok(()) }
     }
 }
 
