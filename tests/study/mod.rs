@@ -1,6 +1,7 @@
 //! Tests of `src/study`: runs side by side, samples, tolerances and spectra.
 
 mod comparison;
+mod doubt;
 mod equations;
 mod lengths;
 mod samples;

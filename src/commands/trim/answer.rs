@@ -4,7 +4,7 @@ use serde::Serialize;
 use stillbase::mechanics::machine::Machine;
 use stillbase::mechanics::planar::Vector;
 use stillbase::settings::number::{counted, fixed, shown};
-use stillbase::study::trim::{Candidate, Fit, Made, Mended, Next, Rows, Taken, Unknown};
+use stillbase::study::trim::{Candidate, Fit, Made, Mended, Next, Rows, Taken, Unknown, Worth};
 
 use super::super::output::{Table, yes};
 
@@ -14,6 +14,8 @@ pub struct Asked<'a> {
     pub rows: &'a Rows,
     pub fit: &'a Fit,
     pub taken: &'a Taken,
+    /// What a change is worth, if there is one.
+    pub worth: Option<Worth>,
     pub next: &'a Next,
 }
 
@@ -38,7 +40,22 @@ pub struct Answer {
     /// Groups of numbers that the data cannot tell apart.
     untold: Vec<Vec<String>>,
     changes: Vec<Changed>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    worth: Option<Gain>,
     next: Suggestion,
+}
+
+/// What the change does over these motions, or would do where it is not shown to help.
+#[derive(Serialize)]
+struct Gain {
+    /// Root mean square before and after, N.
+    force: [f64; 2],
+    /// N m.
+    moment: [f64; 2],
+    /// Share by which the mean square becomes less, and half its interval of 95 %.
+    gain: f64,
+    half_width: f64,
+    helps: bool,
 }
 
 /// One number of (7) and (8), or a momentum.
@@ -53,10 +70,12 @@ struct Number {
     /// Half the interval of 95 %.
     #[serde(skip_serializing_if = "Option::is_none")]
     half_width: Option<f64>,
-    /// Whether the interval leaves out 0, for balance, or the machine's own value, for momenta.
+    /// Whether it is shown to differ from the machine's file, given what is taken of the others.
     off: bool,
-    /// What it is taken to be for the change.
+    /// What it is taken to be for the change: as measured where it is off, else as in the file.
     taken: f64,
+    /// Half the interval of 95 % of that; 0 of what is taken from the file.
+    taken_half_width: f64,
     /// What the change leaves of it.
     #[serde(skip_serializing_if = "Option::is_none")]
     left: Option<f64>,
@@ -108,7 +127,7 @@ fn some(x: f64) -> Option<f64> {
 impl Answer {
     /// Of what was found, and what mends it if anything does.
     pub fn of(asked: &Asked, mended: Option<&Mended>) -> Self {
-        let Asked { machine, rows, fit, taken, next } = asked;
+        let Asked { machine, rows, fit, taken, worth, next } = asked;
         let unknowns = &fit.unknowns;
         let number = |i: usize| {
             let what = unknowns.at(i);
@@ -122,8 +141,9 @@ impl Answer {
                 told,
                 measured: told.then_some(fit.measured[i] + 0.0),
                 half_width: told.then_some(half),
-                off: fit.is_off(i),
+                off: taken.off[i],
                 taken: taken.values[i] + 0.0,
+                taken_half_width: taken.half_widths[i],
                 left: mended.filter(|_| balance).and_then(|m| m.left.get(i / 2)).map(|left| part(left) + 0.0),
                 balance,
             }
@@ -148,6 +168,13 @@ impl Answer {
             numbers: (0..unknowns.count()).map(number).collect(),
             untold: fit.confused.iter().map(|group| group.iter().map(name).collect()).collect(),
             changes: changes.collect(),
+            worth: worth.map(|worth| Gain {
+                force: worth.force,
+                moment: worth.moment,
+                gain: worth.gain,
+                half_width: worth.half_width,
+                helps: worth.helps(),
+            }),
             next: suggestion(machine, unknowns.at(next.worst), next),
         }
     }
@@ -169,7 +196,7 @@ impl Answer {
             shown(self.noise[1], 4),
         );
         let mut table =
-            Table::new(["", "machine", "measured", "± 95 %", "off", "taken as", "after the change", "unit"]);
+            Table::new(["", "machine", "measured", "± 95 %", "off", "taken as", "±", "after the change", "unit"]);
         for number in &self.numbers {
             let or = |x: Option<f64>, none: &str| x.map_or_else(|| none.into(), |x| shown(x, 6));
             table.row([
@@ -178,7 +205,8 @@ impl Answer {
                 or(number.measured, "not told"),
                 or(number.half_width, "–"),
                 if number.told { yes(number.off).into() } else { "–".into() },
-                if number.balance { fixed(number.taken, 6) } else { "–".into() },
+                fixed(number.taken, 6),
+                if number.taken_half_width > 0.0 { shown(number.taken_half_width, 6) } else { "–".into() },
                 number.left.filter(|_| number.balance).map_or_else(|| "–".into(), |x| fixed(x, 6)),
                 number.unit.into(),
             ]);
@@ -201,8 +229,29 @@ impl Answer {
 
     fn change_text(&self) -> String {
         let changed: Vec<&Changed> = self.changes.iter().filter(|c| c.to != c.from).collect();
+        let worth = self.worth.as_ref().map(|worth| {
+            let pair = |[from, to]: [f64; 2], unit: &str| format!("from {} to {} {unit}", shown(from, 4), shown(to, 4));
+            let share = |x: f64| shown(100.0 * x, 1);
+            format!(
+                "force {} rms and moment {}, the mean square of both by {} ± {} %",
+                pair(worth.force, "N"),
+                pair(worth.moment, "N m"),
+                share(worth.gain),
+                share(worth.half_width)
+            )
+        });
         if changed.is_empty() {
-            return "Nothing to change: no line of (7) and (8) is shown to be off that a change could mend.\n\n".into();
+            let off = self.numbers.iter().any(|number| number.balance && number.off);
+            return match worth.filter(|_| off) {
+                Some(worth) => {
+                    format!(
+                        "No change is shown to help. What is off could be mended so over these motions: {worth}.\n\n"
+                    )
+                }
+                None => {
+                    "Nothing to change: no line of (7) and (8) is shown to be off that a change could mend.\n\n".into()
+                }
+            };
         }
         let mut table = Table::new(["change", "before", "now", "by", "unit"]);
         for Changed { key, from, to, unit, .. } in changed {
@@ -210,7 +259,8 @@ impl Answer {
             let (from, to, unit) = (1e3 * from, 1e3 * to, if grams { "g" } else { "mm" });
             table.row([key.clone(), fixed(from, 1), fixed(to, 1), format!("{:+.1}", to - from), unit.into()]);
         }
-        format!("{table}Set to 0.1 g and 0.1 mm; what that leaves stands above, beside the intervals.\n\n")
+        let worth = worth.map_or_else(String::new, |worth| format!("Over these motions it lowers {worth}.\n"));
+        format!("{table}Set to 0.1 g and 0.1 mm; what that leaves stands above, beside the intervals.\n{worth}\n")
     }
 }
 

@@ -12,7 +12,7 @@ use stillbase::mechanics::counterweights::{Disc, Objective, Weighing};
 use stillbase::mechanics::machine::{Machine, MachineSpec, to_toml};
 use stillbase::mechanics::planar::Vector;
 use stillbase::settings::number::counted;
-use stillbase::study::trim::{Made, Recording, Rows, Way, fit, identified, mend, next, taken};
+use stillbase::study::trim::{Made, Mended, Recording, Rows, Way, doubt, fit, identified, mend, next, taken, worth};
 
 use super::exit::say;
 use super::failure::Failure;
@@ -30,9 +30,11 @@ use answer::{Answer, Asked};
 /// begins anew parts motions; each motion has sensor offsets of its own. What `simulate` and `export --what simulated`
 /// write is read as it is.
 ///
-/// Least squares give every line of (7) and (8) with its interval of 95 %. What the data cannot tell is named. Lines that
-/// differ from the machine's file by more than their interval are mended: by its counterweights, mass and place, or by
-/// new ones where it has none. Last comes the motion that would tell most of what is least known.
+/// Least squares give every line of (7) and (8) with its interval of 95 %; offset and drift of each sensor are fitted, too.
+/// What the data cannot tell is named. A wrong sign, exchanged columns, relative angles and wrong units are fitted as
+/// well: where one of them explains the data far better, trim says so and stops. Lines that differ from the machine's file
+/// by more than their interval are mended, if that is shown to help: by its counterweights, mass and place, or by new ones
+/// where it has none. Last comes the motion that would tell most of what is least known.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -62,6 +64,9 @@ pub struct Trim {
     /// Leave measured rates and accelerations alone, and find them from the angles
     #[arg(long)]
     angles_only: bool,
+    /// Take the columns as they are, even where another sign, order or unit explains them far better
+    #[arg(long)]
+    as_given: bool,
     /// How fast a next motion may accelerate each drive, rad/s²; by default as fast as seen in the files
     #[arg(long, value_name = "A1,A2,…", value_delimiter = ',', value_parser = super::input::above_zero)]
     accelerations: Vec<f64>,
@@ -117,12 +122,24 @@ impl Trim {
                 100.0 * noise
             ));
         }
+        // What is wrong with the recording itself is said by the fit.
+        if let Some(doubt) = doubt(&machine, &recording, self.angles_only).ok().flatten() {
+            if !self.as_given {
+                let way_out = "If the columns are right, --as-given takes them as they are.";
+                return Err(Failure::no_answer(format!("{doubt}\n  {way_out}")));
+            }
+            say(format!("note: {doubt}"));
+        }
         let fit = fit(&machine, &rows).map_err(Failure::no_answer)?;
         let taken = taken(&fit);
         let accelerations = (!self.accelerations.is_empty()).then_some(self.accelerations.as_slice());
         let next = next(&machine, &recording, &rows, &fit, accelerations);
         let mended = mend(&machine, &taken, &way);
-        let asked = Asked { machine: &machine, rows: &rows, fit: &fit, taken: &taken, next: &next };
+        let worth = mended.as_ref().ok().map(|mended| worth(&machine, &rows, &fit, &taken, mended));
+        let helps = worth.is_some_and(|worth| worth.helps());
+        // What is not shown to help is not proposed.
+        let mended = mended.map(|mended| if helps { mended } else { Mended::not_at_all(&machine, &taken) });
+        let asked = Asked { machine: &machine, rows: &rows, fit: &fit, taken: &taken, worth, next: &next };
         let answer = Answer::of(&asked, mended.as_ref().ok());
         self.format.print(&answer, |answer| answer.text(&machine))?;
         let mended = mended.map_err(Failure::no_answer)?;

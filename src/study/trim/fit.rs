@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector, SVD};
 
 use super::error::TrimError;
 use super::long_run::{critical, lags, long_run};
-use super::rows::{Channel, Made, Rows};
+use super::rows::{Channel, LINE, Made, Rows};
 use super::unknowns::Unknowns;
 use crate::mechanics::machine::{Inertia, Machine};
 
@@ -51,8 +51,8 @@ const LEAST_LAGS: usize = 48;
 const MOST_STEPS: usize = 10_000;
 /// Rounding, as a part of the largest force and moment that a machine could have.
 const ROUNDING: f64 = 1e-14;
-/// A number below this part of the largest is rounding.
-const LEAST: f64 = 1e-10;
+/// Of the effective rows the numbers to be found have to leave this share.
+const LEAST_SHARE: f64 = 0.1;
 /// What is left below this part of what was measured is rounding.
 const EXACT: f64 = 1e-9;
 
@@ -61,6 +61,27 @@ const EXACT: f64 = 1e-9;
 /// # Errors
 /// If there is too little, or what is left is too slow.
 pub fn fit(machine: &Machine, rows: &Rows) -> Result<Fit, TrimError> {
+    let Estimate { fit, rank, share } = estimate(machine, rows)?;
+    if share < LEAST_SHARE {
+        return Err(TrimError::Correlated { effective: fit.effective.iter().sum(), unknowns: rank });
+    }
+    Ok(fit)
+}
+
+/// A fit, however much of what is left of it is correlated.
+pub(super) struct Estimate {
+    pub fit: Fit,
+    /// Numbers that the data determine, and the lines of the sensors.
+    pub rank: usize,
+    /// The share of the effective rows that these leave; below 0 where there are fewer.
+    pub share: f64,
+}
+
+/// Least squares, and how independent their residuals are.
+///
+/// # Errors
+/// If numbers are not finite.
+pub(super) fn estimate(machine: &Machine, rows: &Rows) -> Result<Estimate, TrimError> {
     let (inertia, p) = (Inertia::of(machine), rows.unknowns.count());
     let nominal = DVector::from_vec(rows.unknowns.nominal(&inertia));
     let scales = DVector::from_vec(rows.unknowns.scales(&inertia));
@@ -105,12 +126,10 @@ pub fn fit(machine: &Machine, rows: &Rows) -> Result<Fit, TrimError> {
     let channels = [2.0, 1.0];
     let effective = [0, 1].map(|of| channels[of] * (count as f64 / alike[of]));
     let all = effective[0] + effective[1];
-    // Offsets of each motion cost a row of each channel, too.
-    let rank = (p - solved.free.ncols()) as f64 + 3.0 * rows.motions.len() as f64;
-    let small = (all - rank) / all;
-    if small < 0.1 {
-        return Err(TrimError::Correlated { effective: all, unknowns: rank as usize });
-    }
+    // Offset and drift of each channel of each motion are fitted, too.
+    let nuisance = 3 * LINE * rows.motions.len();
+    let rank = p - solved.free.ncols() + nuisance;
+    let share = (all - rank as f64) / all;
     let weights = [sigma[0], sigma[0], sigma[1]].map(|sigma| 1.0 / (sigma * sigma));
     let mut scores = DMatrix::zeros(count, p);
     for ((channel, error), weight) in rows.channels.iter().zip(&errors).zip(weights) {
@@ -118,7 +137,7 @@ pub fn fit(machine: &Machine, rows: &Rows) -> Result<Fit, TrimError> {
             (0..count).for_each(|i| scores[(i, j)] += weight * column[i] * error[i]);
         }
     }
-    let middle = long_run(&scores, &rows.motions, lags) / small;
+    let middle = long_run(&scores, &rows.motions, lags) / share.max(LEAST_SHARE);
     let covariance = &solved.inverse * middle * solved.inverse.transpose();
     let gram = |of: usize| rows.channels[of].x.tr_mul(&rows.channels[of].x);
     let force = (gram(0) + gram(1)) * (weights[0] / alike[0]);
@@ -140,21 +159,13 @@ pub fn fit(machine: &Machine, rows: &Rows) -> Result<Fit, TrimError> {
         density,
     };
     let finite = fit.measured.iter().chain(fit.covariance.iter()).all(|x| x.is_finite());
-    if finite { Ok(fit) } else { Err(TrimError::NotFinite) }
+    if finite { Ok(Estimate { fit, rank, share }) } else { Err(TrimError::NotFinite) }
 }
 
 impl Fit {
     /// Half of the interval of 95 % of a number.
     pub fn half_width(&self, place: usize) -> f64 {
         self.critical * self.covariance[(place, place)].max(0.0).sqrt()
-    }
-
-    /// Whether a number is told, its interval leaves out what it should be (nothing, of balance; else what the file says),
-    /// and that is more than rounding beside the other numbers.
-    pub fn is_off(&self, place: usize) -> bool {
-        let should = if place < self.unknowns.of_balance() { 0.0 } else { self.nominal[place] };
-        let least = self.half_width(place).max(LEAST * self.measured.amax());
-        self.told[place] && (self.measured[place] - should).abs() > least
     }
 }
 

@@ -43,6 +43,16 @@ pub struct Mended {
     pub machine: Machine,
     /// What that leaves of each line of (7) and (8), if the machine is what it is taken to be.
     pub left: Vec<Vector>,
+    /// What they do to each line of (7) and (8), whatever the machine is.
+    pub by: Vec<Vector>,
+}
+
+impl Mended {
+    /// The machine as it is.
+    pub fn not_at_all(machine: &Machine, taken: &Taken) -> Self {
+        let left = taken.left();
+        Self { changes: Vec::new(), machine: machine.clone(), by: vec![Vector::default(); left.len()], left }
+    }
 }
 
 /// Why nothing mends a machine.
@@ -102,7 +112,7 @@ pub fn mend(machine: &Machine, taken: &Taken, way: &Way) -> Result<Mended, NoMen
     let machine = Machine::new(rounded).map_err(|why| NoMend::Machine(why.to_string()))?;
     let now = self::left(&machine);
     let left = now.iter().zip(&beyond).map(|(now, beyond)| now + beyond).collect();
-    Ok(Mended { changes, machine, left })
+    Ok(Mended { changes, machine, left, by: less(&now, &nominal) })
 }
 
 /// A machine whose links have what was measured of balance, by the least change of their centres of mass, along and

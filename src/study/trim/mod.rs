@@ -11,7 +11,7 @@
 //! | p | Σ i g_k q̇_k e_k, linear momentum: f = −ṗ + a constant | kg m/s |
 //! | h | Σ D_k q̇_k + Σ_{k<l} Re(C_kl e^{i(q_l − q_k)}) (q̇_k + q̇_l): n = −ḣ + Σ g_k e_k × gravity + a constant | kg m²/s |
 //! | x | g_k and C_kl, along and across, then D_k: the unknowns | kg m, kg m² |
-//! | X | rows of f_x, f_y, n for unit x, each motion less its mean: sensors may have an offset in each | |
+//! | X | rows of f_x, f_y, n for unit x, each motion less its straight line over time: sensors have an offset and a drift | |
 //! | φ, w | window (1 − u²)⁴ over which rows are averaged where accelerations are not given; its half width | , s |
 //! | σ | standard deviation of what the model leaves of a row of force or moment | N, N m |
 //!
@@ -29,6 +29,7 @@
 //! values; modulating functions after Shinbrot (1957).
 
 mod differences;
+mod doubt;
 mod error;
 mod fit;
 mod long_run;
@@ -39,7 +40,9 @@ mod rows;
 mod taken;
 mod unknowns;
 mod window;
+mod worth;
 
+pub use doubt::{Cause, Doubt, Said, doubt};
 pub use error::TrimError;
 pub use fit::{Fit, fit};
 pub use mend::{Change, Mended, NoMend, Way, identified, mend};
@@ -48,3 +51,4 @@ pub use recording::{Motion, Recording};
 pub use rows::{Made, Rows};
 pub use taken::{Taken, taken};
 pub use unknowns::{Part, Unknown, Unknowns};
+pub use worth::{Worth, worth};

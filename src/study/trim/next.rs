@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use super::fit::Fit;
 use super::recording::{Motion, Recording};
-use super::rows::Rows;
+use super::rows::{Line, Rows};
 use super::unknowns::Unknowns;
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::{DriveAngles, PerDrive};
@@ -106,9 +106,7 @@ impl Limits {
         let moving = |k: &usize| rows.moves[*k];
         let widest = (0..n).filter(moving).map(|k| 0.5 * (ends[k][1] - ends[k][0])).fold(0.0, f64::max);
         let reach = |k: usize| if rows.moves[k] { 0.5 * (ends[k][1] - ends[k][0]) } else { widest.min(USUAL[0]) };
-        // Rows of D_k hold −q̈_k, less its mean.
-        let place = rows.unknowns.of_balance();
-        let seen = |k: usize| rows.channels[2].x.column(place + k).amax();
+        let seen = |k: usize| rows.fastest[k];
         let most = (0..n).filter(moving).map(seen).fold(0.0, f64::max);
         let usual = if most > 0.0 { most } else { USUAL[1] };
         let own = |k: usize| if rows.moves[k] && seen(k) > 0.0 { seen(k) } else { usual };
@@ -194,12 +192,10 @@ impl Sines {
             }
         }
         let dt = duration / INSTANTS as f64;
+        let line = Line::through(&(0..INSTANTS).map(|i| i as f64).collect::<Vec<_>>());
         let mut sum = DMatrix::zeros(p, p);
         for (mut rows, density) in rows.into_iter().zip([fit.density[0], fit.density[0], fit.density[1]]) {
-            for mut column in rows.column_iter_mut() {
-                let mean = column.mean();
-                column.add_scalar_mut(-mean);
-            }
+            rows.column_iter_mut().for_each(|mut column| line.take_out(column.as_mut_slice()));
             sum += rows.tr_mul(&rows) * (dt / density.max(f64::MIN_POSITIVE));
         }
         sum

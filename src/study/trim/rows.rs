@@ -24,7 +24,7 @@ pub enum Made {
     },
 }
 
-/// Force along x and y and moment by the unknowns, instant by instant; each motion less its mean.
+/// Force along x and y and moment by the unknowns, instant by instant; each motion less its straight line over time.
 #[derive(Clone, Debug)]
 pub struct Rows {
     /// What is to be found.
@@ -33,10 +33,14 @@ pub struct Rows {
     pub made: Made,
     /// Whether each drive moves.
     pub moves: Vec<bool>,
+    /// The greatest acceleration of each drive, rad/s².
+    pub fastest: Vec<f64>,
     /// Mean time between rows, s.
     pub spacing: f64,
     /// Rows of each motion.
     pub motions: Vec<usize>,
+    /// The time of each, s.
+    times: Vec<f64>,
     pub(super) channels: [Channel; 3],
 }
 
@@ -64,6 +68,8 @@ const STILL: f64 = 0.2;
 const TURNS: f64 = 1e-9;
 /// With measured accelerations: a drive that turns by less, rad, and accelerates less than this part of the fastest.
 const STANDS: [f64; 2] = [1e-3, 1e-2];
+/// Parameters of the straight line that a sensor adds to each channel of a motion: its offset and its drift.
+pub(super) const LINE: usize = 2;
 
 impl Rows {
     /// Of a recording, for a machine's drives and gravity. Measured rates and accelerations count unless only the angles
@@ -72,19 +78,32 @@ impl Rows {
     /// # Errors
     /// If the recording cannot be used.
     pub fn of(machine: &Machine, recording: &Recording, angles_only: bool) -> Result<Self, TrimError> {
+        Self::at_least(0.0, machine, recording, angles_only)
+    }
+
+    /// The same with windows of at least some half width, s.
+    ///
+    /// # Errors
+    /// If the recording cannot be used.
+    pub(super) fn at_least(
+        half: f64,
+        machine: &Machine,
+        recording: &Recording,
+        angles_only: bool,
+    ) -> Result<Self, TrimError> {
         recording.check(machine.drives())?;
         let mut rows = match recording.has_accelerations() && !angles_only {
             true => Self::of_samples(machine, recording),
-            false => Self::of_windows(machine, recording, angles_only)?,
+            false => Self::of_windows(half, machine, recording, angles_only)?,
         };
         if !rows.moves.contains(&true) {
             return Err(TrimError::Still);
         }
-        let (own, unknowns) = (rows.count().saturating_sub(rows.motions.len()), rows.unknowns.count());
+        let (own, unknowns) = (rows.count().saturating_sub(LINE * rows.motions.len()), rows.unknowns.count());
         if 3 * own <= unknowns {
             return Err(TrimError::TooFew { rows: rows.count(), unknowns });
         }
-        rows.centre();
+        rows.level();
         let finite = |channel: &Channel| channel.x.iter().chain(&channel.y).all(|x| x.is_finite());
         if rows.channels.iter().all(finite) { Ok(rows) } else { Err(TrimError::NotFinite) }
     }
@@ -107,7 +126,7 @@ impl Rows {
         for motion in all().map(|motion| held(motion, &moves)) {
             for i in 0..motion.t.len() {
                 let e = DriveAngles(motion.q[i]).units();
-                made.next(motion.force[i], motion.moment[i]);
+                made.next(motion.t[i] - motion.t[0], motion.force[i], motion.moment[i]);
                 let [fx, fy, n] = &mut made.rows;
                 made.unknowns.reaction(&e, &motion.qd[i], &motion.qdd[i], made.gravity, [fx, fy, n]);
                 made.push();
@@ -118,9 +137,15 @@ impl Rows {
         made.rows(Made::Samples, moves, time)
     }
 
-    fn of_windows(machine: &Machine, recording: &Recording, angles_only: bool) -> Result<Self, TrimError> {
+    /// Half the width of the windows, s; 0 of samples.
+    pub(super) fn half(&self) -> f64 {
+        if let Made::Windows { half, .. } = self.made { half } else { 0.0 }
+    }
+
+    fn of_windows(least: f64, machine: &Machine, recording: &Recording, angles_only: bool) -> Result<Self, TrimError> {
         let smooth: Vec<Smooth> = recording.motions.iter().map(|motion| Smooth::of(motion, angles_only)).collect();
-        let widths = widths(&smooth)?;
+        let mut widths = widths(&smooth)?;
+        widths.retain(|half| *half >= least);
         let drives = machine.drives();
         let shares: Vec<Vec<f64>> = widths.iter().map(|half| shares(&smooth, *half, drives)).collect();
         let best = |k: usize| shares.iter().map(|of| of[k]).fold(f64::INFINITY, f64::min);
@@ -131,7 +156,7 @@ impl Rows {
         let worst: Vec<f64> = shares.iter().map(worst).collect();
         let least = (0..widths.len()).min_by(|a, b| worst[*a].total_cmp(&worst[*b])).unwrap_or_default();
         let chosen = worst.iter().position(|share| *share <= QUIET).unwrap_or(least);
-        let half = widths[chosen];
+        let half = *widths.get(chosen).ok_or(TrimError::Still)?;
         let mut made = Making::of(machine);
         for own in &smooth {
             own.rows(half, &moves, &mut made);
@@ -140,23 +165,42 @@ impl Rows {
         Ok(made.rows(Made::Windows { half, noise: worst[chosen] }, moves, time))
     }
 
-    /// Takes the mean of each motion out of it: what an offset of a sensor would be.
-    fn centre(&mut self) {
-        for Channel { x, y, .. } in &mut self.channels {
-            let mut from = 0;
-            for &count in &self.motions {
-                let per = 1.0 / count as f64;
-                for mut column in x.column_iter_mut() {
-                    let mut own = column.rows_mut(from, count);
-                    let mean = own.sum() * per;
-                    own.add_scalar_mut(-mean);
-                }
-                let own = &mut y[from..from + count];
-                let mean = own.iter().sum::<f64>() * per;
-                own.iter_mut().for_each(|y| *y -= mean);
-                from += count;
+    /// Takes out of each motion the straight line over time that fits it best: offset and drift of a sensor. What is left
+    /// of both sides of an equation is what a fit with an offset and a drift of its own for each would see.
+    fn level(&mut self) {
+        let mut from = 0;
+        for &count in &self.motions {
+            let line = Line::through(&self.times[from..from + count]);
+            for Channel { x, y, .. } in &mut self.channels {
+                x.column_iter_mut().for_each(|mut column| line.take_out(column.rows_mut(from, count).as_mut_slice()));
+                line.take_out(&mut y[from..from + count]);
             }
+            from += count;
         }
+    }
+}
+
+/// Straight lines over some times.
+pub(super) struct Line {
+    /// Times less their mean, of length 1; nothing where there is one time only.
+    slope: Vec<f64>,
+}
+
+impl Line {
+    /// Over these times.
+    pub fn through(times: &[f64]) -> Self {
+        let mean = times.iter().sum::<f64>() / times.len() as f64;
+        let mut slope: Vec<f64> = times.iter().map(|t| t - mean).collect();
+        let size = slope.iter().map(|t| t * t).sum::<f64>().sqrt();
+        slope.iter_mut().for_each(|t| *t /= if size > 0.0 { size } else { 1.0 });
+        Self { slope }
+    }
+
+    /// Takes the best straight line out of a series.
+    pub fn take_out(&self, series: &mut [f64]) {
+        let mean = series.iter().sum::<f64>() / series.len() as f64;
+        let by: f64 = series.iter().zip(&self.slope).map(|(y, t)| y * t).sum();
+        series.iter_mut().zip(&self.slope).for_each(|(y, t)| *y -= mean + by * t);
     }
 }
 
@@ -272,7 +316,7 @@ impl<'a> Smooth<'a> {
         let mut noise = None;
         for centre in self.centres(half, half / STEPS) {
             let Some(window) = Window::about(&self.motion.t, centre, half) else { continue };
-            let (mut force, mut moment) = (Vector::default(), 0.0);
+            let (mut force, mut moment, mut time) = (Vector::default(), 0.0, 0.0);
             made.rows.iter_mut().for_each(|row| row.fill(0.0));
             for ((j, a), d) in window.samples.clone().zip(&window.mean).zip(&window.rate) {
                 let (e, [px, py, h]) = (DriveAngles(angle(j)).units(), &mut one);
@@ -284,8 +328,9 @@ impl<'a> Smooth<'a> {
                 }
                 force += self.motion.force[j] * *a;
                 moment += self.motion.moment[j] * a;
+                time += (self.motion.t[j] - self.motion.t[0]) * a;
             }
-            made.next(force, moment);
+            made.next(time, force, moment);
             made.push();
             let gain = *noise.get_or_insert_with(|| self.gain(&window));
             let middle = DriveAngles(angle(window.samples.start + window.samples.len() / 2)).units();
@@ -314,6 +359,7 @@ struct Making {
     y: [Vec<f64>; 3],
     noise: [DMatrix<f64>; 3],
     motions: Vec<usize>,
+    times: Vec<f64>,
 }
 
 impl Making {
@@ -323,11 +369,21 @@ impl Making {
         let empty = || [Vec::new(), Vec::new(), Vec::new()];
         let noise = std::array::from_fn(|_| DMatrix::zeros(p, p));
         let rows = std::array::from_fn(|_| vec![0.0; p]);
-        Self { unknowns, gravity: machine.gravity(), rows, x: empty(), y: empty(), noise, motions: Vec::new() }
+        Self {
+            unknowns,
+            gravity: machine.gravity(),
+            rows,
+            x: empty(),
+            y: empty(),
+            noise,
+            motions: Vec::new(),
+            times: Vec::new(),
+        }
     }
 
     /// What is measured at the next row.
-    fn next(&mut self, force: Vector, moment: f64) {
+    fn next(&mut self, time: f64, force: Vector, moment: f64) {
+        self.times.push(time);
         self.y.iter_mut().zip([force.re, force.im, moment]).for_each(|(y, value)| y.push(value));
     }
 
@@ -361,6 +417,11 @@ impl Making {
             noise: noise.next().unwrap_or_else(|| DMatrix::zeros(p, p)),
         });
         let spacing = time / spaces as f64;
-        Rows { unknowns: self.unknowns, made, moves, spacing, motions: self.motions, channels }
+        // Rows of D_k hold −q̈_k.
+        let moment = &channels[2];
+        let place = self.unknowns.of_balance();
+        let fastest = (0..moves.len()).map(|k| moment.x.column(place + k).amax()).collect();
+        let Self { unknowns, motions, times, .. } = self;
+        Rows { unknowns, made, moves, fastest, spacing, motions, times, channels }
     }
 }

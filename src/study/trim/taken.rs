@@ -12,8 +12,12 @@ pub struct Taken {
     pub values: DVector<f64>,
     /// Of them, given that the others are as the file has them.
     pub covariance: DMatrix<f64>,
+    /// Half the interval of 95 % of each, given that; nothing of those that are as the file has them.
+    pub half_widths: Vec<f64>,
     /// Whether each number of (7) and (8) is as measured.
     pub measured: Vec<bool>,
+    /// Whether each number is shown to differ from the file. Of (7) and (8) those are taken as measured, and no others.
+    pub off: Vec<bool>,
     /// D_k of each drive where it is told, kg m².
     pub momenta: Vec<Option<f64>>,
 }
@@ -26,6 +30,9 @@ impl Taken {
     }
 }
 
+/// A number that differs from the file by less than this part of the largest differs by rounding.
+const ROUNDING: f64 = 1e-10;
+
 /// Numbers of (7) and (8) that the data do not show to be other than in the machine's file are taken from there, the
 /// least certain first, and the rest is found again given that; until every other one differs by more than its interval.
 /// So noise is not balanced out, and what is known of a sum is not lost because its parts are not.
@@ -34,12 +41,11 @@ pub fn taken(fit: &Fit) -> Taken {
     let (values, covariance, inverse) = (fit.measured.clone(), fit.covariance.clone(), fit.inverse.clone());
     let mut known = Known { values, covariance, inverse };
     let mut measured: Vec<bool> = fit.told[..count].to_vec();
+    let rounding = (ROUNDING * fit.measured.amax()).max(f64::MIN_POSITIVE);
+    let half_width = |covariance: &DMatrix<f64>, i: usize| fit.critical * covariance[(i, i)].max(0.0).sqrt();
     loop {
         let Known { values, covariance, .. } = &known;
-        let certainty = |i: usize| {
-            let width = fit.critical * covariance[(i, i)].max(0.0).sqrt();
-            (values[i] - fit.nominal[i]).abs() / width.max(f64::MIN_POSITIVE)
-        };
+        let certainty = |i: usize| (values[i] - fit.nominal[i]).abs() / half_width(covariance, i).max(rounding);
         let others = (0..count).filter(|i| measured[*i]);
         let Some(least) = others.min_by(|a, b| certainty(*a).total_cmp(&certainty(*b))) else { break };
         if certainty(least) > 1.0 {
@@ -57,7 +63,10 @@ pub fn taken(fit: &Fit) -> Taken {
     }
     let momentum = |i: usize| fit.told[i].then(|| values[i]);
     let momenta = (count..fit.unknowns.count()).map(momentum).collect();
-    Taken { values, covariance, measured, momenta }
+    let half_widths: Vec<f64> = (0..values.len()).map(|i| half_width(&covariance, i)).collect();
+    let differs = |i: usize| fit.told[i] && (values[i] - fit.nominal[i]).abs() > half_widths[i].max(rounding);
+    let off = (0..values.len()).map(|i| measured.get(i).copied().unwrap_or_else(|| differs(i))).collect();
+    Taken { values, covariance, half_widths, measured, off, momenta }
 }
 
 /// What least squares say while more and more is held.

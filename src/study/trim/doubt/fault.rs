@@ -1,0 +1,298 @@
+//! [`Fault`]: what a user or a sensor may have got wrong, and the measurement without it.
+//!
+//! # Symbols
+//! | letter | meaning |
+//! |---|---|
+//! | A, b | the true angles are A q + b of those given, rates A q̇, accelerations A q̈ |
+//! | u | the true force is u f, or u conj(f), of the one given as a complex number |
+//! | s | the true moment is s n |
+
+use crate::mechanics::machine::{Inertia, Machine};
+use crate::mechanics::planar::{PerDrive, Vector};
+use crate::study::trim::{Motion, Recording};
+
+/// One fault: what is wrong, what would be right, and how to undo it.
+#[derive(Clone, Debug)]
+pub(super) struct Fault {
+    /// What is wrong, as a sentence without its full stop.
+    pub what: String,
+    /// What would be right.
+    pub want: String,
+    /// Of how many independent mistakes it consists.
+    pub mistakes: usize,
+    /// Whether only the force and the moment differ.
+    pub angles: Option<Angles>,
+    /// u, and whether f is conjugated.
+    force: (Vector, bool),
+    /// s.
+    moment: f64,
+}
+
+/// A, row by row, and b.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Angles {
+    rows: Vec<PerDrive>,
+    offset: PerDrive,
+}
+
+impl Angles {
+    fn linear(n: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
+        let rows = (0..n).map(|k| PerDrive::from_fn(n, |l| entry(k, l))).collect();
+        Self { rows, offset: PerDrive::zeros(n) }
+    }
+
+    fn of(&self, x: &PerDrive) -> PerDrive {
+        PerDrive::from_fn(self.rows.len(), |k| self.rows[k].dot(x))
+    }
+
+    /// The recording with true angles.
+    pub fn undo(&self, recording: &Recording) -> Recording {
+        let motion = |motion: &Motion| {
+            let each = |all: &[PerDrive]| all.iter().map(|x| self.of(x)).collect::<Vec<_>>();
+            let mut q = each(&motion.q);
+            q.iter_mut().for_each(|q| *q = q.plus(1.0, &self.offset));
+            Motion { q, qd: each(&motion.qd), qdd: each(&motion.qdd), ..motion.clone() }
+        };
+        Recording { motions: recording.motions.iter().map(motion).collect() }
+    }
+}
+
+impl Fault {
+    /// The true force and moment.
+    pub fn undo(&self, force: Vector, moment: f64) -> (Vector, f64) {
+        let (u, mirrored) = self.force;
+        (u * if mirrored { force.conj() } else { force }, self.moment * moment)
+    }
+
+    /// Every one that is looked at: signs, order and units of the force and the moment (20), and of the angles signs,
+    /// the exchange of any two, cycles of three up to four drives, degrees for radians and the reverse, and relative
+    /// angles. Of eight drives there are 64.
+    pub fn all(machine: &Machine) -> Vec<Self> {
+        let n = machine.drives();
+        let mut all = frames();
+        all.extend(units());
+        all.extend((0..n).map(|k| reversed(n, |l| l == k, &format!("q{} counts the other way", k + 1))));
+        if n > 1 {
+            all.push(reversed(n, |_| true, "all angles count the other way"));
+        }
+        all.extend(orders(n).into_iter().map(|order| reordered(&order)));
+        all.extend([degrees(n, std::f64::consts::PI / 180.0, true), degrees(n, 180.0 / std::f64::consts::PI, false)]);
+        if n > 1 {
+            all.push(relative(n));
+            all.extend(relative_of_file(machine));
+        }
+        all
+    }
+}
+
+/// A fault of the force and the moment alone.
+fn channels(what: &str, want: &str, mistakes: usize, force: (Vector, bool), moment: f64) -> Fault {
+    Fault { what: what.into(), want: want.into(), mistakes, angles: None, force, moment }
+}
+
+/// A fault of the angles alone.
+fn of_angles(what: String, want: String, angles: Angles) -> Fault {
+    Fault { what, want, mistakes: 1, angles: Some(angles), force: (Vector::new(1.0, 0.0), false), moment: 1.0 }
+}
+
+/// All frames of the sensor whose axes lie along those of the base, in any order and sense.
+fn frames() -> Vec<Fault> {
+    let one = Vector::new(1.0, 0.0);
+    let i = Vector::i();
+    let swap = "the names fx and fy exchanged in the header";
+    let turned = "the force sensor is turned by 90°";
+    vec![
+        channels("nz has the wrong sign", "nz times −1", 1, (one, false), -1.0),
+        channels("fx has the wrong sign", "fx times −1", 1, (-one, true), 1.0),
+        channels("fy has the wrong sign", "fy times −1", 1, (one, true), 1.0),
+        channels("fx and fy are exchanged", swap, 1, (i, true), 1.0),
+        channels(
+            "fx, fy and nz have the wrong sign, as of a sensor that reads what holds the machine",
+            "fx, fy and nz times −1",
+            1,
+            (-one, false),
+            -1.0,
+        ),
+        channels("fx and fy have the wrong sign", "fx and fy times −1", 1, (-one, false), 1.0),
+        channels(turned, "the column fx as fy, and the column fy times −1 as fx", 2, (i, false), 1.0),
+        channels(turned, "the column fy as fx, and the column fx times −1 as fy", 2, (-i, false), 1.0),
+        channels(
+            "fx and fy are exchanged and have the wrong sign",
+            &format!("{swap}, both times −1"),
+            2,
+            (-i, true),
+            1.0,
+        ),
+        channels(
+            "fx and nz have the wrong sign, as of a sensor upside down",
+            "fx and nz times −1",
+            2,
+            (-one, true),
+            -1.0,
+        ),
+        channels(
+            "fy and nz have the wrong sign, as of a sensor upside down",
+            "fy and nz times −1",
+            2,
+            (one, true),
+            -1.0,
+        ),
+        channels(
+            "fx and fy are exchanged and nz has the wrong sign, as of a sensor upside down",
+            &format!("{swap}, and nz times −1"),
+            2,
+            (i, true),
+            -1.0,
+        ),
+        channels(
+            &format!("{turned} and nz has the wrong sign"),
+            "the column fx as fy, the column fy times −1 as fx, and nz times −1",
+            2,
+            (i, false),
+            -1.0,
+        ),
+        channels(
+            &format!("{turned} and nz has the wrong sign"),
+            "the column fy as fx, the column fx times −1 as fy, and nz times −1",
+            2,
+            (-i, false),
+            -1.0,
+        ),
+        channels(
+            "fx and fy are exchanged, and fx, fy and nz have the wrong sign",
+            &format!("{swap}, and fx, fy and nz times −1"),
+            2,
+            (-i, true),
+            -1.0,
+        ),
+    ]
+}
+
+fn units() -> Vec<Fault> {
+    // A force of imbalance may have any size, so that of its unit little is known.
+    let scaled = |what: &str, want: &str, force: f64, moment: f64| {
+        let mistakes = if force == 1.0 { 1 } else { 3 };
+        channels(what, want, mistakes, (Vector::new(force, 0.0), false), moment)
+    };
+    let named = |unit: &str| format!("the unit in the header, as {unit}");
+    vec![
+        scaled("nz is in N mm, not in N m", &named("nz (N mm)"), 1.0, 1e-3),
+        scaled("nz is in kN m, not in N m", &named("nz (kN m)"), 1.0, 1e3),
+        scaled("fx and fy are in mN, not in N", &named("fx (mN)"), 1e-3, 1.0),
+        scaled("fx and fy are in kN, not in N", &named("fx (kN)"), 1e3, 1.0),
+        scaled(
+            "force and moment are in mN and mN m, or masses of the machine's file in g",
+            "units in the header, as fx (mN) and nz (mN m), and kg in the machine's file",
+            1e-3,
+            1e-3,
+        ),
+        scaled("force and moment are in kN and kN m", &named("fx (kN) and nz (kN m)"), 1e3, 1e3),
+        scaled("lengths of the machine's file are in mm", "m and kg m² in the machine's file", 1e3, 1e6),
+    ]
+}
+
+fn reversed(n: usize, which: impl Fn(usize) -> bool, what: &str) -> Fault {
+    let names: Vec<String> = (0..n).filter(|k| which(*k)).map(|k| format!("q{}", k + 1)).collect();
+    let angles = Angles::linear(n, |k, l| {
+        if k != l {
+            0.0
+        } else if which(k) {
+            -1.0
+        } else {
+            1.0
+        }
+    });
+    of_angles(what.into(), format!("{} times −1, with rates and accelerations", list(&names)), angles)
+}
+
+/// In which order columns may stand: the true angle of drive k is in column `order[k]`.
+fn orders(n: usize) -> Vec<Vec<usize>> {
+    let exchanged = |moves: &[(usize, usize)]| {
+        let mut order: Vec<usize> = (0..n).collect();
+        moves.iter().for_each(|(k, l)| order.swap(*k, *l));
+        order
+    };
+    let pairs: Vec<(usize, usize)> = Inertia::pairs(n).collect();
+    let mut all: Vec<Vec<usize>> = pairs.iter().map(|pair| exchanged(&[*pair])).collect();
+    if n <= 4 {
+        for &(k, l) in &pairs {
+            (l + 1..n).for_each(|m| all.extend([exchanged(&[(k, l), (l, m)]), exchanged(&[(l, m), (k, l)])]));
+        }
+    }
+    all
+}
+
+fn reordered(order: &[usize]) -> Fault {
+    let moved: Vec<usize> = (0..order.len()).filter(|k| order[*k] != *k).collect();
+    let names =
+        |of: &dyn Fn(usize) -> usize| list(&moved.iter().map(|k| format!("q{}", of(*k) + 1)).collect::<Vec<_>>());
+    let (here, there) = (names(&|k| order[k]), names(&|k| k));
+    let what = match moved.len() {
+        2 => format!("{there} are exchanged"),
+        _ => format!("{here} stand in the place of {there}"),
+    };
+    let angles = Angles::linear(order.len(), |k, l| if order[k] == l { 1.0 } else { 0.0 });
+    of_angles(what, format!("the columns {here} named {there} in the header, with rates and accelerations"), angles)
+}
+
+fn degrees(n: usize, scale: f64, are: bool) -> Fault {
+    let [is, not, unit] = if are { ["degrees", "radians", "deg"] } else { ["radians", "degrees", "rad"] };
+    let angles = Angles::linear(n, |k, l| if k == l { scale } else { 0.0 });
+    of_angles(
+        format!("the angles are in {is}, not in {not}"),
+        format!("the unit in the header, as q1 ({unit})"),
+        angles,
+    )
+}
+
+/// Each drive seen from the one before.
+fn relative(n: usize) -> Fault {
+    let names: Vec<String> = (1..n).map(|k| format!("q{}", k + 1)).collect();
+    let what = format!("{} are relative angles, each seen from the drive before", list(&names));
+    let want = "absolute ones: to q2 the q1 of its row added, to q3 the new q2, and so on";
+    of_angles(
+        if n == 2 { "q2 is a relative angle, seen from drive 1".into() } else { what },
+        if n == 2 { "an absolute one: to q2 the q1 of its row added".into() } else { want.into() },
+        Angles::linear(n, |k, l| if l <= k { 1.0 } else { 0.0 }),
+    )
+}
+
+/// The relative angles that the machine's file defines, in its order, after the first drive; if they lead to all drives.
+fn relative_of_file(machine: &Machine) -> Option<Fault> {
+    let (n, angles) = (machine.drives(), machine.angles());
+    if angles.len() + 1 != n {
+        return None;
+    }
+    let mut known: Vec<Option<(PerDrive, f64)>> = vec![None; n];
+    known[0] = Some((PerDrive::from_fn(n, |l| if l == 0 { 1.0 } else { 0.0 }), 0.0));
+    // Each round finds one more drive at least, or there is none to be found.
+    for _ in 1..n {
+        for (i, angle) in angles.iter().enumerate() {
+            let own = |by: f64| PerDrive::from_fn(n, |l| if l == i + 1 { by } else { 0.0 });
+            match (known[angle.from], known[angle.to]) {
+                (Some((row, offset)), None) => {
+                    known[angle.to] = Some((row.plus(1.0, &own(1.0)), offset - angle.offset));
+                }
+                (None, Some((row, offset))) => {
+                    known[angle.from] = Some((row.plus(-1.0, &own(1.0)), offset + angle.offset));
+                }
+                _ => {}
+            }
+        }
+    }
+    let known: Vec<(PerDrive, f64)> = known.into_iter().collect::<Option<_>>()?;
+    let names: Vec<String> = angles.iter().map(|angle| angle.name.clone()).collect();
+    let columns: Vec<String> = (1..n).map(|k| format!("q{}", k + 1)).collect();
+    let offset = PerDrive::from_fn(n, |k| known[k].1);
+    let map = Angles { rows: known.into_iter().map(|(row, _)| row).collect(), offset };
+    let what = format!("{} hold the relative angles {} of the machine's file", list(&columns), list(&names));
+    Some(of_angles(what, "absolute drive angles".into(), map))
+}
+
+/// In words.
+fn list(names: &[String]) -> String {
+    match names {
+        [rest @ .., last] if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
+        _ => names.concat(),
+    }
+}

@@ -1,0 +1,101 @@
+//! [`impossible`]: numbers that no machine has, whatever its masses.
+//!
+//! # Symbols
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | a_j | (1, a_j1 … a_jn): mass m_j sits at Σ_k a_jk e(q_k) | m |
+//! | Z | Σ_j m_j conj(a_j) a_jᵀ + diag(0, J): M, g_k, C_kl and, on its diagonal, D_k less the rotors' part | |
+//!
+//! With masses and inertias not below zero Z has no eigenvalue below zero. D_k < 0 is the simplest way to break that,
+//! |C_kl|² > D_k D_l and |g_k|² > M D_k are others.
+
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+use crate::mechanics::balance::Condition;
+use crate::mechanics::machine::{Inertia, Machine};
+use crate::mechanics::planar::Vector;
+use crate::study::trim::{Fit, Unknown};
+
+/// M may be so many times that of the file.
+const HEAVIER: f64 = 2.0;
+/// An eigenvalue is below zero if it is by more than so many half widths of its interval.
+const INTERVALS: f64 = 3.0;
+/// And by more than this, of an eigenvalue that is 1 where the file is right.
+const ROUNDING: f64 = 1e-6;
+/// Steps of the eigenvalue solver.
+const MAX_STEPS: usize = 10_000;
+
+/// The numbers that are impossible together, most involved first; none if masses above zero explain them.
+pub(super) fn impossible(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
+    let (inertia, n) = (Inertia::of(machine), machine.drives());
+    let unknowns = &fit.unknowns;
+    let from = unknowns.of_balance();
+    let rotors = |k: usize| inertia.rotors[..n].iter().map(|rotor| rotor.inertia * rotor.rates[k]).sum::<f64>();
+    let drives: Vec<usize> = (0..n).filter(|k| fit.told[from + k]).collect();
+    let size = |k: usize| (inertia.momentum(k) - rotors(k)).abs().max(1e-9 * inertia.diagonal(k)).sqrt();
+    let whole = |of: &[usize]| {
+        let used = |condition: &Condition| match condition {
+            Condition::Force(k) => of.contains(k),
+            Condition::Coupling(k, l) => of.contains(k) && of.contains(l),
+        };
+        let conditions = unknowns.conditions().iter().enumerate();
+        conditions.filter(|(_, c)| used(c)).all(|(i, _)| fit.told[2 * i] && fit.told[2 * i + 1])
+    };
+    // Each drive alone, then all at once where all of that is told.
+    let alone = drives.iter().map(|k| (vec![*k], false));
+    let groups = alone.chain(Some((drives.clone(), true)).filter(|(of, _)| whole(of)));
+    for (of, moments) in groups {
+        let heavy = usize::from(moments);
+        let scale = |i: usize| match i.checked_sub(heavy) {
+            Some(i) => 1.0 / size(of[i]),
+            None => 1.0 / (HEAVIER * inertia.mass()).sqrt(),
+        };
+        let place = |k: &usize| of.iter().position(|own| own == k).map(|i| i + heavy);
+        let mut z = DMatrix::<Vector>::zeros(of.len() + heavy, of.len() + heavy);
+        if moments {
+            z[(0, 0)] = Vector::new(1.0, 0.0);
+        }
+        for (i, k) in of.iter().enumerate() {
+            let own = fit.measured[from + k] - rotors(*k);
+            z[(i + heavy, i + heavy)] = Vector::new(own * scale(i + heavy).powi(2), 0.0);
+        }
+        // Where each line of (7) and (8) stands in Z.
+        let places: Vec<Option<(usize, usize)>> = unknowns
+            .conditions()
+            .iter()
+            .map(|condition| match condition {
+                Condition::Force(k) => place(k).filter(|_| moments).map(|k| (0, k)),
+                Condition::Coupling(k, l) => place(k).zip(place(l)),
+            })
+            .collect();
+        for (i, at) in places.iter().enumerate() {
+            if let Some((a, b)) = *at {
+                let value = Vector::new(fit.measured[2 * i], fit.measured[2 * i + 1]) * (scale(a) * scale(b));
+                (z[(a, b)], z[(b, a)]) = (value, value.conj());
+            }
+        }
+        let Some(eigen) = SymmetricEigen::try_new(z, f64::EPSILON, MAX_STEPS) else { continue };
+        let least = eigen.eigenvalues.imin();
+        let (value, v) = (eigen.eigenvalues[least], eigen.eigenvectors.column(least));
+        // The eigenvalue is linear in the numbers for its own vector.
+        let mut slope = DVector::zeros(unknowns.count());
+        for (i, k) in of.iter().enumerate() {
+            slope[from + k] = v[i + heavy].norm_sqr() * scale(i + heavy).powi(2);
+        }
+        for (i, at) in places.iter().enumerate() {
+            if let Some((a, b)) = *at {
+                let by = v[a].conj() * v[b] * (2.0 * scale(a) * scale(b));
+                (slope[2 * i], slope[2 * i + 1]) = (by.re, -by.im);
+            }
+        }
+        let half = fit.critical * slope.dot(&(&fit.covariance * &slope)).max(0.0).sqrt();
+        if value + INTERVALS * half < -ROUNDING {
+            // By how much each pulls the eigenvalue down.
+            let pull = |i: usize| slope[i] * (fit.measured[i] - if i < from { 0.0 } else { rotors(i - from) });
+            let mut all: Vec<usize> = (0..unknowns.count()).filter(|i| pull(*i) < 0.0).collect();
+            all.sort_by(|a, b| pull(*a).total_cmp(&pull(*b)));
+            return all.into_iter().take(3).map(|i| unknowns.at(i)).collect();
+        }
+    }
+    Vec::new()
+}

@@ -1,0 +1,73 @@
+//! [`worth`]: what a change does to the imbalance that was measured, and whether it is shown to lower it.
+//!
+//! # Symbols
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | x, V | first moments and couplings as measured, and their covariance | |
+//! | Δ | what the change adds to them | |
+//! | W | mean of ℓ² (x_fᵀ x_f) + x_nᵀ x_n over the rows: J = xᵀ W x is the mean square of ℓ f and n | |
+//! | ℓ | radius of gyration of the machine, which weighs force against moment | m |
+//!
+//! The gain J(x) − J(x + Δ) = −2 Δᵀ W x − Δᵀ W Δ is linear in x, so its variance is 4 Δᵀ W V W Δ, however small x is.
+//! Δ was chosen by what x showed, in as many coordinates as are off: by Scheffé (1953) the interval that holds for any such
+//! choice takes the square root of the 95 % quantile of χ² for the normal one's 1.96.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::fit::Fit;
+use super::mend::Mended;
+use super::rows::Rows;
+use super::taken::Taken;
+use crate::mechanics::machine::{Inertia, Machine};
+
+/// What a change is worth over the motions that were measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Worth {
+    /// Root mean square of the force of imbalance as measured and after the change, N.
+    pub force: [f64; 2],
+    /// The same of its moment, N m.
+    pub moment: [f64; 2],
+    /// By which share J becomes less; below 0 where it grows.
+    pub gain: f64,
+    /// Half the interval of 95 % of that.
+    pub half_width: f64,
+}
+
+impl Worth {
+    /// Whether the interval of the gain lies above 0.
+    pub fn helps(&self) -> bool {
+        self.gain > self.half_width
+    }
+}
+
+/// What a change is worth.
+pub fn worth(machine: &Machine, rows: &Rows, fit: &Fit, taken: &Taken, mended: &Mended) -> Worth {
+    let count = fit.unknowns.of_balance();
+    let inertia = Inertia::of(machine);
+    let radius_squared = inertia.diagonals().iter().sum::<f64>() / inertia.mass();
+    let mean = |of: usize| {
+        let x = rows.channels[of].x.columns(0, count);
+        x.tr_mul(&x) / rows.count() as f64
+    };
+    let (force, moment): (DMatrix<f64>, DMatrix<f64>) = (mean(0) + mean(1), mean(2));
+    let by = DVector::from_iterator(count, mended.by.iter().flat_map(|by| [by.re, by.im]));
+    let now = fit.measured.rows(0, count).clone_owned();
+    let then = &now + &by;
+    let rms = |of: &DMatrix<f64>, x: &DVector<f64>| x.dot(&(of * x)).max(0.0).sqrt();
+    let weight = &force * radius_squared + &moment;
+    let all = now.dot(&(&weight * &now)).max(f64::MIN_POSITIVE);
+    let pull = &weight * &by;
+    let gain = -2.0 * pull.dot(&now) - pull.dot(&by);
+    let covariance = fit.covariance.view((0, 0), (count, count));
+    let deviation = 2.0 * pull.dot(&(covariance * &pull)).max(0.0).sqrt();
+    let chosen = taken.measured.iter().filter(|measured| **measured).count().max(1) as f64;
+    // Wilson and Hilferty (1931): χ² as the cube of a normal number.
+    let part = 2.0 / (9.0 * chosen);
+    let scheffe = (chosen * (1.0 - part + 1.645 * part.sqrt()).powi(3)).sqrt();
+    Worth {
+        force: [rms(&force, &now), rms(&force, &then)],
+        moment: [rms(&moment, &now), rms(&moment, &then)],
+        gain: gain / all,
+        half_width: scheffe / 1.96 * fit.critical * deviation / all,
+    }
+}

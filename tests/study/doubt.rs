@@ -1,0 +1,288 @@
+//! Measurements with a wrong sign, order, frame or unit are refused with the cause named; honest ones are not.
+//!
+//! The sensor is the nine-body twin: Newton and Euler on nine bars, which knows nothing of first moments and couplings.
+
+use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
+use stillbase::mechanics::machine::{Inertia, Machine, builtin};
+use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
+use stillbase::study::trim::{Doubt, Motion, Recording, doubt};
+
+use crate::mechanics::nine_body::NineBody;
+use crate::support::random::a_machine;
+use crate::support::{Noise, body_of};
+
+fn normal(noise: &mut Noise) -> f64 {
+    let (u, v) = (noise.between(1e-12, 1.0), noise.between(0.0, std::f64::consts::TAU));
+    (-2.0 * u.ln()).sqrt() * v.cos()
+}
+
+/// How a machine is measured.
+#[derive(Clone, Copy)]
+struct Measuring {
+    motions: usize,
+    rows: usize,
+    /// σ of angles, rad, of force, N, and of moment, N m.
+    sigma: [f64; 3],
+    /// Correlation of force and moment from row to row.
+    slow: f64,
+    /// Whether rates and accelerations are given, too.
+    rates: bool,
+    /// How far off centres of mass are, m; masses by five times that as a share.
+    off: f64,
+}
+
+const USUAL: Measuring =
+    Measuring { motions: 2, rows: 500, sigma: [2e-5, 0.2, 0.02], slow: 0.0, rates: false, off: 0.01 };
+
+/// What was built of a machine: every link is off, along its axis only, as the twin is.
+fn built(machine: &Machine, noise: &mut Noise, off: f64) -> NineBody {
+    let mut body = body_of(machine);
+    body.com.iter_mut().for_each(|com| *com += off * noise.between(-1.0, 1.0));
+    body.mass.iter_mut().for_each(|mass| *mass *= 1.0 + 5.0 * off * noise.between(-1.0, 1.0));
+    body.inertia.iter_mut().for_each(|inertia| *inertia *= 1.0 + 5.0 * off * noise.between(-1.0, 1.0));
+    body
+}
+
+/// Motions within the joint limits [0, π] of both relative angles, two sines each.
+fn recorded(body: &NineBody, noise: &mut Noise, how: Measuring) -> Recording {
+    let mut motions = Vec::new();
+    for _ in 0..how.motions {
+        let mut wave = |size: f64| [size * noise.between(0.3, 1.0), noise.between(3.0, 7.0), noise.between(0.0, 6.0)];
+        // Of q₁, a₁, a₂.
+        let waves = [[wave(0.5), wave(0.2)], [wave(0.4), wave(0.15)], [wave(0.4), wave(0.15)]];
+        let middle = [noise.between(-3.0, 3.0), noise.between(0.8, 2.3), noise.between(0.8, 2.3)];
+        let offset = [(); 3].map(|()| noise.between(-5.0, 5.0));
+        let mut error = [0.0; 3].map(|_: f64| normal(noise));
+        let mut motion = Motion::default();
+        for i in 0..how.rows {
+            let t = 0.004 * i as f64;
+            let own = |k: usize| {
+                waves[k].iter().fold([middle[k], 0.0, 0.0], |[x, v, a], [size, w, phase]| {
+                    let (sin, cos) = (w * t + phase).sin_cos();
+                    [x + size * sin, v + size * w * cos, a - size * w * w * sin]
+                })
+            };
+            let [first, second, third] = [0, 1, 2].map(own);
+            let absolute = |d: usize| {
+                let turn = if d == 0 { std::f64::consts::PI } else { 0.0 };
+                let q2 = first[d] + second[d];
+                [first[d], q2, q2 + third[d] - turn]
+            };
+            let [q, qd, qdd] = [0, 1, 2].map(absolute);
+            let (_, wrench) = body.recursive(q, qd, qdd);
+            let fresh = (1.0 - how.slow * how.slow).sqrt();
+            error.iter_mut().for_each(|e| *e = how.slow * *e + fresh * normal(noise));
+            motion.t.push(t);
+            motion.q.push(PerDrive::from(q.map(|q| q + how.sigma[0] * normal(noise))));
+            if how.rates {
+                motion.qd.push(PerDrive::from(qd));
+                motion.qdd.push(PerDrive::from(qdd));
+            }
+            let read = |i: usize, sigma: f64| wrench[i] + offset[i] + sigma * error[i];
+            motion.force.push(Vector::new(read(0, how.sigma[1]), read(1, how.sigma[1])));
+            motion.moment.push(read(2, how.sigma[2]));
+        }
+        motions.push(motion);
+    }
+    Recording { motions }
+}
+
+type Spoil = fn(&mut Motion);
+
+fn each_angle(motion: &mut Motion, change: impl Fn(&PerDrive) -> PerDrive) {
+    let Motion { q, qd, qdd, .. } = motion;
+    q.iter_mut().chain(qd).chain(qdd).for_each(|x| *x = change(x));
+}
+
+fn each_force(motion: &mut Motion, change: impl Fn(Vector) -> Vector) {
+    motion.force.iter_mut().for_each(|f| *f = change(*f));
+}
+
+fn each_moment(motion: &mut Motion, by: f64) {
+    motion.moment.iter_mut().for_each(|n| *n *= by);
+}
+
+/// Faults, and words of the cause that has to be named.
+const FAULTS: &[(&str, Spoil)] = &[
+    ("nz has the wrong sign", |m| each_moment(m, -1.0)),
+    ("fx has the wrong sign", |m| each_force(m, |f| -f.conj())),
+    ("fy has the wrong sign", |m| each_force(m, |f| f.conj())),
+    ("fx and fy are exchanged", |m| each_force(m, |f| Vector::new(f.im, f.re))),
+    ("a sensor that reads what holds the machine", |m| {
+        each_force(m, |f| -f);
+        each_moment(m, -1.0);
+    }),
+    ("q2 and q3 are exchanged", |m| each_angle(m, |q| PerDrive::from([q[0], q[2], q[1]]))),
+    ("q1 and q2 are exchanged", |m| each_angle(m, |q| PerDrive::from([q[1], q[0], q[2]]))),
+    ("q1 and q3 are exchanged", |m| each_angle(m, |q| PerDrive::from([q[2], q[1], q[0]]))),
+    ("relative angles", |m| each_angle(m, |q| PerDrive::from([q[0], q[1] - q[0], q[2] - q[1]]))),
+    ("q2 counts the other way", |m| each_angle(m, |q| PerDrive::from([q[0], -q[1], q[2]]))),
+    ("nz is in N mm", |m| each_moment(m, 1e3)),
+    ("the angles are in radians, not in degrees", |m| each_angle(m, |q| q.scaled(1.0_f64.to_radians()))),
+    ("the angles are in degrees, not in radians", |m| each_angle(m, |q| q.scaled(1.0_f64.to_degrees()))),
+];
+
+fn spoilt(recording: &Recording, spoil: Spoil) -> Recording {
+    let mut recording = recording.clone();
+    recording.motions.iter_mut().for_each(spoil);
+    recording
+}
+
+fn asked(machine: &Machine, recording: &Recording) -> Option<Doubt> {
+    doubt(machine, recording, false).expect("a recording")
+}
+
+/// Noise, drift and offset of the sensor, and whatever was built off: none of it is a fault.
+#[test]
+fn honest_measurements_are_believed() {
+    let machine = builtin("nine-link").expect("built in");
+    let mut noise = Noise::of(31);
+    for off in [0.0, 0.003, 0.01, 0.03] {
+        for slow in [0.0, 0.8] {
+            let body = built(machine, &mut noise, off);
+            let mut recording = recorded(&body, &mut noise, Measuring { off, slow, ..USUAL });
+            for motion in &mut recording.motions {
+                let [x, y, n] = [(); 3].map(|()| noise.between(-0.5, 0.5));
+                let Motion { t, force, moment, .. } = motion;
+                force.iter_mut().zip(&*t).for_each(|(f, t)| *f += Vector::new(x, y) * *t);
+                moment.iter_mut().zip(&*t).for_each(|(m, t)| *m += 0.1 * n * t);
+            }
+            assert_eq!(asked(machine, &recording), None, "off by {off}, slow {slow}");
+        }
+    }
+}
+
+/// Every fault is refused, its cause is among those named, and without it the same measurement is believed.
+#[test]
+fn every_fault_is_refused_by_its_name() {
+    let machine = builtin("nine-link").expect("built in");
+    let mut noise = Noise::of(32);
+    for (name, spoil) in FAULTS {
+        let body = built(machine, &mut noise, USUAL.off);
+        let recording = recorded(&body, &mut noise, USUAL);
+        let doubt = asked(machine, &spoilt(&recording, *spoil)).unwrap_or_else(|| panic!("{name} was believed"));
+        assert!(doubt.to_string().contains(name), "{name}: {doubt}");
+        assert!(doubt.causes[0].odds > 4.0, "{name}: {doubt}");
+    }
+}
+
+/// How often each fault is refused, named first and named at all; how often honest measurements are.
+#[test]
+#[ignore = "a campaign of thousands of recordings, a minute optimised"]
+fn campaign_of_faults() {
+    let machine = builtin("nine-link").expect("built in");
+    let count: u64 = std::env::var("COUNT").ok().and_then(|n| n.parse().ok()).unwrap_or(300);
+    let kinds = [
+        ("usual", USUAL),
+        ("exact", Measuring { sigma: [0.0; 3], rates: true, rows: 150, ..USUAL }),
+        ("balanced", Measuring { off: 0.0, ..USUAL }),
+        ("nearly", Measuring { off: 0.002, ..USUAL }),
+        ("far off", Measuring { off: 0.04, ..USUAL }),
+        ("slow", Measuring { slow: 0.9, off: 0.01, ..USUAL }),
+        ("noisy", Measuring { sigma: [1e-4, 1.0, 0.1], ..USUAL }),
+    ];
+    for (kind, how) in kinds {
+        let mut wrong = 0;
+        let mut found = vec![[0; 3]; FAULTS.len()];
+        for seed in 0..count {
+            let mut noise = Noise::of(seed + 10_000);
+            let body = built(machine, &mut noise, how.off);
+            let recording = recorded(&body, &mut noise, how);
+            if let Some(doubt) = asked(machine, &recording) {
+                wrong += 1;
+                println!("honest {kind} {seed}: {doubt}");
+            }
+            for ((name, spoil), found) in FAULTS.iter().zip(&mut found) {
+                if let Some(doubt) = asked(machine, &spoilt(&recording, *spoil)) {
+                    found[0] += 1;
+                    found[1] += usize::from(doubt.causes.first().is_some_and(|cause| cause.what.contains(name)));
+                    let named = doubt.causes.iter().any(|cause| cause.what.contains(name));
+                    found[2] += usize::from(named);
+                    if !named && found[0] - found[2] < 2 {
+                        println!("{kind} {seed} {name}: {doubt}");
+                    }
+                }
+            }
+        }
+        println!("{kind}: {wrong} honest of {count} refused");
+        for ((name, _), [refused, first, named]) in FAULTS.iter().zip(found) {
+            println!("  {name:48} refused {refused:4}  first {first:4}  named {named:4}");
+        }
+    }
+}
+
+/// Any machine of up to four drives, with rotors of either sense and gravity, built off along and across its links.
+fn any_recording(noise: &mut Noise) -> (Machine, Recording) {
+    let machine = std::iter::repeat_with(|| a_machine(noise)).find(|machine| machine.drives() <= 4).expect("endless");
+    let (n, off) = (machine.drives(), [0.0, 0.003, 0.01, 0.05][(noise.between(0.0, 4.0) as usize).min(3)]);
+    let mut spec = machine.spec().clone();
+    for link in &mut spec.links {
+        link.com += off * noise.between(-1.0, 1.0);
+        link.com_normal += 0.5 * off * noise.between(-1.0, 1.0);
+        link.mass *= 1.0 + off * noise.between(-1.0, 1.0);
+    }
+    let inertia = Inertia::of(&Machine::new(spec).expect("a machine"));
+    let around = Surroundings { gravity: machine.gravity(), force: Vector::default() };
+    let (sigma, rates) = (10.0_f64.powf(noise.between(-3.0, 0.0)), noise.between(0.0, 1.0) < 0.5);
+    let slow = noise.between(0.0, 0.9);
+    let fresh = (1.0 - slow * slow).sqrt();
+    let mut motions = Vec::new();
+    for _ in 0..2 {
+        let wave = |noise: &mut Noise| [noise.between(0.1, 0.6), noise.between(2.0, 8.0), noise.between(0.0, 6.0)];
+        let waves: Vec<[[f64; 3]; 2]> = (0..n).map(|_| [wave(noise), wave(noise)]).collect();
+        let middle = PerDrive::from_fn(n, |_| noise.between(-3.0, 3.0));
+        let mut motion = Motion::default();
+        let mut error = [0.0; 3].map(|_: f64| normal(noise));
+        for i in 0..400 {
+            let t = 0.005 * f64::from(i);
+            let sum = |f: &dyn Fn(f64, f64, f64) -> f64| {
+                PerDrive::from_fn(n, |k| waves[k].iter().map(|[a, w, p]| f(*a, *w, w * t + p)).sum())
+            };
+            let q = sum(&|a, _, p| a * p.sin()).plus(1.0, &middle);
+            let (qd, qdd) = (sum(&|a, w, p| a * w * p.cos()), sum(&|a, w, p| -a * w * w * p.sin()));
+            let wrench = base_wrench(&inertia, &DriveAngles(q).units(), &qd, &qdd, &around).total();
+            error.iter_mut().for_each(|e| *e = slow * *e + fresh * normal(noise));
+            motion.t.push(t);
+            motion.q.push(PerDrive::from_fn(n, |k| q[k] + 1e-5 * normal(noise)));
+            if rates {
+                motion.qd.push(qd);
+                motion.qdd.push(qdd);
+            }
+            motion.force.push(wrench.force + Vector::new(error[0], error[1]) * sigma);
+            motion.moment.push(wrench.moment + 0.2 * sigma * error[2]);
+        }
+        motions.push(motion);
+    }
+    (machine, Recording { motions })
+}
+
+/// Of any machine honest measurements are believed, and none whose moment is reversed where D is known.
+#[test]
+fn honest_measurements_of_any_machine_are_believed() {
+    let mut noise = Noise::of(33);
+    for i in 0..6 {
+        let (machine, recording) = any_recording(&mut noise);
+        assert_eq!(asked(&machine, &recording), None, "{i}: {} drives", machine.drives());
+    }
+}
+
+#[test]
+#[ignore = "a campaign of thousands of recordings, a minute optimised"]
+fn campaign_of_any_machine() {
+    let count: u64 = std::env::var("COUNT").ok().and_then(|n| n.parse().ok()).unwrap_or(300);
+    let (mut wrong, mut reversed, mut reading) = (0, 0, 0);
+    for seed in 0..count {
+        let (machine, recording) = any_recording(&mut Noise::of(50_000 + seed));
+        if let Some(doubt) = asked(&machine, &recording) {
+            wrong += 1;
+            println!("honest {seed}, {} drives: {doubt}", machine.drives());
+        }
+        reversed += u64::from(asked(&machine, &spoilt(&recording, |m| each_moment(m, -1.0))).is_some());
+        let all = spoilt(&recording, |m| {
+            each_moment(m, -1.0);
+            each_force(m, |f| -f);
+        });
+        reading += u64::from(asked(&machine, &all).is_some());
+    }
+    println!("{wrong} honest of {count} refused; nz reversed {reversed}, all reversed {reading}");
+}
