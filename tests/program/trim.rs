@@ -74,7 +74,8 @@ fn units_and_separators_change_nothing() {
     let head = "motion;nz (mN m);Fy [N];fx kN;q2 (deg);q1 deg;t (ms)";
     fs::write(folder.join("other.csv"), format!("\u{feff}# a stranger's\n{head}\n{other}")).expect("written");
     let measured = |file: &str| -> Value {
-        let out = stillbase_in(&folder, &["trim", file, "two-drive", "--json"]);
+        // These forces are of no machine.
+        let out = stillbase_in(&folder, &["trim", file, "two-drive", "--as-given", "--json"]);
         let said = text(&out.stderr);
         let value: Value = serde_json::from_slice(&out.stdout).unwrap_or_else(|e| panic!("{e}: {said}"));
         value["numbers"].as_array().expect("numbers").iter().map(|x| x["measured"].clone()).collect()
@@ -114,4 +115,30 @@ fn what_is_wrong_is_named_by_row_and_column() {
     fails(&["trim", &file, "two-drive", "--fix", "7.com"], 2, &["nothing of this machine", "7.com"]);
     fails(&["trim", &file, "two-drive", "--range", "9=0,1"], 2, &["no link 9"]);
     fails(&["trim", &file, "two-drive", "--fix", "1.com", "--range", "1=0,1"], 2, &["--range is for new"]);
+}
+
+/// A reversed moment is refused, what is said to be right is, and who insists has their way.
+#[test]
+fn a_reversed_sensor_is_refused_and_what_it_asks_for_works() {
+    let folder = folder("trim-reversed");
+    let hidden = ["--set", "plant.link.5.com=-0.03"];
+    let exported = ["export", "case-2", "--what", "simulated", "--rate", "250", "-o", "good.csv"];
+    said_in(&folder, &[&exported[..], &hidden].concat(), 0);
+    let good = fs::read_to_string(folder.join("good.csv")).expect("written");
+    let mut lines = good.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
+    let head = lines.find(|cells| cells.len() > 3).expect("a header");
+    let moment = head.iter().position(|cell| cell.starts_with("moment/total") || cell.starts_with("nz")).expect("one");
+    let reversed = |cells: Vec<String>| -> String {
+        let turned = |(i, cell): (usize, &String)| {
+            if i == moment { (-cell.parse::<f64>().expect("a number")).to_string() } else { cell.clone() }
+        };
+        cells.iter().enumerate().map(turned).collect::<Vec<_>>().join(",") + "\n"
+    };
+    let bad: String = lines.map(reversed).collect();
+    fs::write(folder.join("bad.csv"), head.join(",") + "\n" + &bad).expect("written");
+    let said = said_in(&folder, &["trim", "bad.csv", "nine-link"], 1);
+    assert!(said.contains("nz has the wrong sign: want nz times −1"), "{said}");
+    assert!(said.contains("which no masses above zero make") && said.contains("--as-given"), "{said}");
+    assert!(said_in(&folder, &["trim", "bad.csv", "nine-link", "--as-given"], 0).contains("note: nz"), "insisted");
+    said_in(&folder, &["trim", "good.csv", "nine-link"], 0);
 }
