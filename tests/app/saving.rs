@@ -243,6 +243,13 @@ fn own_plots_and_the_instant_are_recovered() {
     h.run_steps(4);
     assert_eq!(h.state().app_state().left_off(), left_off);
     assert!((session(&h).frame().time - 0.412).abs() < 1e-9);
+    // An instant that the run never had: no more is made than the run has.
+    let far = LeftOff { time: 1e300, ..LeftOff::default() }.before(&kept.to_toml());
+    let mut h = found(&folder.file("session-0.toml", far));
+    h.run_steps(2);
+    h.get_by_label("Open that session").click();
+    h.run_steps(4);
+    assert!((session(&h).frame().time - 1.0).abs() < 1e-9 && session(&h).frames().len() <= 1001);
     // What no program wrote does no harm.
     for strange in ["#| time = nan\n", "#| time = -1.0\n", "#| plots = 3\n", "#| \u{0}\n"] {
         assert_eq!(LeftOff::of(strange), None, "{strange}");

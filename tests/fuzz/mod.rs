@@ -500,10 +500,18 @@ fn sessions() {
 #[cfg(feature = "window")]
 #[test]
 fn journals() {
+    use stillbase::app::LeftOff;
     use stillbase::files::{journal, scenario};
+    const LEFT: &str = "#| time = 0.3\n#| [plots]\n#| statistics = true\n#| own = [\"plot 1\"]\n\
+                        #| [plots.changes.\"plot 1\"]\n#| added = [\"torque/1\"]\n#| values = [0.0, 1.0]\n";
     let folder = crate::folder::Folder::new("fuzz-journals");
     let file = folder.path("session-0.toml");
-    fuzz("journal", &bytes(&[SESSION, SESSION_OF_FOUR]), 40, |bytes, dice| {
+    let headed = format!("{LEFT}{SESSION}");
+    fuzz("journal", &bytes(&[SESSION, SESSION_OF_FOUR, &headed]), 40, |bytes, dice| {
+        let text = String::from_utf8_lossy(bytes);
+        if LeftOff::of(&text).is_some_and(|left| !(left.time >= 0.0 && left.time.is_finite())) {
+            return Err("left off at no instant".into());
+        }
         let cut = if dice.one_in(2) { dice.below(bytes.len() + 1) } else { bytes.len() };
         std::fs::write(&file, &bytes[..cut]).map_err(|e| e.to_string())?;
         let left = journal::left(&folder.0);
