@@ -20,7 +20,8 @@ use stillbase::settings::number::fixed;
 /// det = |det ∂(x, y)/∂(a_1, a_2)| (m²), 0 on a fold; manipulability = √det(J Jᵀ) of the Jacobian in absolute drive
 /// angles (m²); worst_torque_per_force, the largest singular value of J (N m/N); transmission = min |sin(q_k − q_l)|,
 /// 0 at a change point; and side, the signs of sin(q_2 − q_1), sin(q_3 − q_2) and sin(q_3 − q_1). det and side are of three
-/// drives; of four and more, which can take a point in many ways, it is the pose nearest to the middle of the limits.
+/// drives. Four and more can take a point in many ways: of these it is the pose with the least Σ (a_i − middle_i)², the
+/// relative angles' distances from the middle of their limits, rad.
 #[derive(Args)]
 #[command(after_help = "\
 Example:

@@ -9,7 +9,7 @@ use super::pose_space::{Lead, NoPoseSpace, PoseSpace};
 use super::posture::{Posture, Postures};
 use super::reactionless::{BSet, Decimal, PlanePoint};
 use crate::mechanics::machine::Machine;
-use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector};
+use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
 
 /// A point that a pose misses by less than this share of the reach is reached.
 const REACHED: f64 = 1e-9;
@@ -18,7 +18,6 @@ const ONE_B: f64 = 1e-6;
 /// From how many poses the nearest one is sought, and by how much of the reach another has to be nearer.
 const STARTS: usize = 24;
 const CLEARLY: f64 = 1e-4;
-const PRIMES: [f64; MAX_DRIVES - 1] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0];
 /// Looks along the curve of two drives, and halvings between two of them.
 const LOOKS: usize = 240;
 const HALVINGS: usize = 60;
@@ -273,7 +272,7 @@ fn reach(space: &PoseSpace, p: Vector, b: f64, from: &PerDrive) -> (PerDrive, Re
     let set = space.reach(p).ok();
     let mending_b = set.as_ref().and_then(|set| set.nearest(b));
     // One b alone is printed with as many figures as it takes.
-    let serves = |b: f64| !space.poses(p, b, from).is_empty();
+    let serves = |b: f64| space.reaches(p, b);
     let printed = |set: &BSet, b: f64| set.decimal(b, 3).or_else(|| Decimal::that(b, 3, serves));
     let shown_b = set.as_ref().zip(mending_b).and_then(|(set, b)| printed(set, b));
     let nearest = space.place(&space.lift(&a, b));
@@ -283,15 +282,7 @@ fn reach(space: &PoseSpace, p: Vector, b: f64, from: &PerDrive) -> (PerDrive, Re
 /// The pose that is nearest to p, m, of those gone to from all over the limits; the one there is, unless another is clearly
 /// nearer.
 fn nearest_of_all(space: &PoseSpace, p: Vector, b: f64, (a, off): (PerDrive, f64)) -> (PerDrive, f64) {
-    let start = |i: usize| {
-        PerDrive::from_fn(space.joints().len(), |j| {
-            let [low, high] = space.joints()[j].limits();
-            // Evenly spread: multiples of the square roots of primes.
-            let share = ((i as f64 + 0.5) * PRIMES[j].sqrt()).fract();
-            low + share * (high - low)
-        })
-    };
-    let others = (0..STARTS).map(|i| space.toward(p, b, &start(i)));
+    let others = (0..STARTS).map(|i| space.toward(p, b, &space.spread(i)));
     let best = others.min_by(|x, y| x.1.total_cmp(&y.1));
     best.filter(|(_, other)| *other < off - CLEARLY * space.farthest()).unwrap_or((a, off))
 }

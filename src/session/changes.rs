@@ -70,8 +70,7 @@ pub(super) fn amended(
 fn turned(scenario: &Scenario, b: f64) -> Task {
     let task = Task { b, ..scenario.task.clone() };
     let Ok(space) = PoseSpace::of(&scenario.machine) else { return task };
-    let middle = space.middle();
-    if task.points().iter().all(|p| !space.poses(*p, b, &middle).is_empty()) {
+    if task.points().iter().all(|p| space.reaches(*p, b)) {
         return task;
     }
     let turn = unit(space.turn(b - scenario.task.b));

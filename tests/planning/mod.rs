@@ -7,6 +7,7 @@ mod given;
 mod least_reaction;
 mod null_space;
 mod off_space;
+mod pose_ends;
 mod pose_space;
 mod posture;
 mod price;

@@ -28,8 +28,9 @@ const SLACK: f64 = 1e-9;
 const ENOUGH: f64 = 1e-11;
 
 impl PoseSpace {
-    /// Every critical value of b for points at a distance from B, m, above 0; whether all of them can be told apart.
-    pub(super) fn criticals(&self, distance: f64, mut found: impl FnMut(Critical)) -> bool {
+    /// Every critical value of b for points at a distance from B, m, above 0, each with its relative angles; whether all of
+    /// them can be told apart.
+    pub(super) fn criticals(&self, distance: f64, mut found: impl FnMut(Critical, &PerDrive)) -> bool {
         let mut regular = true;
         for (i, pattern) in self.patterns().iter().enumerate() {
             let name = (i as u64) << 44;
@@ -45,7 +46,7 @@ impl PoseSpace {
     }
 
     /// Two compounds: the point leaves no freedom, so b is where it is.
-    fn triangle(&self, c: &Pattern, name: u64, r: f64, found: &mut impl FnMut(Critical)) {
+    fn triangle(&self, c: &Pattern, name: u64, r: f64, found: &mut impl FnMut(Critical, &PerDrive)) {
         let [l, m] = [c.length[0], c.length[1]];
         let cos = (r * r + l * l - m * m) / (2.0 * r * l);
         if cos.abs() > 1.0 + 1e-12 {
@@ -75,7 +76,14 @@ impl PoseSpace {
 
     /// Three compounds and more: one equation in ν for each choice of signs. False where a solution is at ν = 0, all
     /// arms on one line, to rounding.
-    fn stationary(&self, c: &Pattern, signs: &Signs, name: u64, r: f64, found: &mut impl FnMut(Critical)) -> bool {
+    fn stationary(
+        &self,
+        c: &Pattern,
+        signs: &Signs,
+        name: u64,
+        r: f64,
+        found: &mut impl FnMut(Critical, &PerDrive),
+    ) -> bool {
         let n = c.count;
         roots(c, signs, r * r, |t, turns| {
             let (nu, cos, sum) = c.stretched(signs.bits, t);
@@ -106,7 +114,7 @@ impl PoseSpace {
         c: &Pattern,
         name: u64,
         turn: impl Fn(usize) -> f64,
-        found: &mut impl FnMut(Critical),
+        found: &mut impl FnMut(Critical, &PerDrive),
         which: impl FnOnce() -> (Option<Vector>, [bool; 2]),
     ) {
         // The least of each angle's values.
@@ -153,7 +161,7 @@ impl PoseSpace {
         let first = turn(c.of[0]) * self.sum;
         self.wound(0, c, a, name, &mut |a, name| {
             let b = first + self.b(&self.unturned(a));
-            found(Critical { b, up, down, name });
+            found(Critical { b, up, down, name }, a);
         });
     }
 

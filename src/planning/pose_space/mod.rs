@@ -18,12 +18,15 @@
 //! b of a point can end only where it is stationary within what limits leave free, so each set of limits that are
 //! active, and each sign of every cos α, gives one scalar equation in ν: (Σ ±√(L² − ν²Λ²))² + (ν ΣΛ)² = |p|². All
 //! such values of b are found in closed form; beside each, first and second derivatives say whether b goes on from
-//! there upwards, downwards, both or neither.
+//! there upwards, downwards, both or neither. Poses at a b are continued from the critical poses above and below it.
 
+mod boxed;
+mod continuation;
 mod critical;
 mod facing;
 mod joint;
-mod middle;
+mod looks;
+mod nearest;
 mod outline;
 mod pattern;
 mod poses;

@@ -1,179 +1,129 @@
-//! Poses of a point on the set of a b: all where no freedom is left but elbows, one that suits best where more is.
+//! Poses of a point on the set of a b: all where no freedom is left but elbows, the nearest one where more is.
 
+use super::continuation::{BRIEF, THOROUGH};
+use super::nearest::Wish;
 use super::space::PoseSpace;
 use crate::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
-use crate::planning::reactionless::{AngleDefinition, AngleLimit, PlaneMap};
 
 /// b of a pose of two drives may be off by this much, rad: what nine printed digits leave.
 const NEAR: f64 = 1e-6;
-/// Looks over the range of the joints that are left free, for one, two, three and more of them.
-const LOOKS: [usize; 5] = [33, 13, 7, 5, 3];
-/// From how many of these the nearest place is gone to where none will do, how often in each direction.
-const STARTS: usize = 4;
-const SWEEPS: usize = 3;
-/// How fast b's ends go with an angle at most, for a look to be worth it.
-const FAR: f64 = 4.0;
-
-/// What reaches a point with the last joints held at each place of a grid: the same for every b, so it is looked up once.
-#[derive(Default)]
-pub(super) struct Looks {
-    /// Spans of b, rad, and where those of each look end.
-    spans: Vec<[f64; 2]>,
-    ends: Vec<usize>,
-    /// Of the b that are asked for: how far each look is off them, rad, and which lead anywhere.
-    offs: Vec<f64>,
-    order: Vec<usize>,
-}
-
-impl Looks {
-    /// For another point.
-    pub fn clear(&mut self) {
-        self.spans.clear();
-        self.ends.clear();
-    }
-}
+/// Poses of four drives and more to begin with, spread evenly over all ranges, and how many are gone on from.
+const SPREAD: usize = 32;
+const GONE_ON_FROM: usize = 12;
+/// Ways from critical poses at most, once a pose is found.
+const MAX_CLIMBS: usize = 32;
+/// Poses whose angles differ by less are one, rad.
+const SAME: f64 = 1e-6;
+const PRIMES: [f64; MAX_DRIVES - 1] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0];
 
 impl PoseSpace {
     /// Poses within the limits that put the end effector on `p`, m, at `b`, rad, which is not wrapped: with two and
-    /// three drives all of them, with more the ones nearest to the given relative angles on each elbow.
+    /// three drives all of them, those nearest to the given relative angles first; with more the nearest one, by
+    /// Σ (a_i − near_i)².
     pub fn poses(&self, p: Vector, b: f64, near: &[f64]) -> Vec<DriveAngles> {
-        let mut poses: Vec<(f64, DriveAngles)> = Vec::new();
-        self.each_pose(p, b, near, |a| {
-            let far = a.iter().zip(near).map(|(a, near)| (a - near) * (a - near)).sum();
-            poses.push((far, self.lift(a, b)));
-            true
-        });
+        let far = |a: &PerDrive| a.iter().zip(near).map(|(a, near)| (a - near) * (a - near)).sum::<f64>();
+        let mut poses: Vec<(f64, PerDrive)> = match self.drives() {
+            ..4 => self.sheets(p, b).into_iter().map(|a| (far(&a), a)).collect(),
+            _ => self.nearest_pose(p, b, near).into_iter().map(|a| (0.0, a)).collect(),
+        };
         poses.sort_by(|x, y| x.0.total_cmp(&y.0));
-        if poses.is_empty() && self.drives() > 3 {
-            let held = self.held_for(p, &[b], &mut Looks::default());
-            held.map(|held| {
-                self.of_three(p, b, &held, &mut |a| {
-                    poses.push((0.0, self.lift(a, b)));
-                    true
-                })
-            });
-        }
-        let most = if self.drives() > 3 { 1 } else { poses.len() };
-        poses.into_iter().take(most).map(|(_, q)| q).collect()
+        poses.iter().map(|(_, a)| self.lift(a, b)).collect()
     }
 
-    /// Whether some pose is on the x axis at a distance from B, m, at one of these b.
-    pub(super) fn has_pose(&self, distance: f64, b: &[f64], looks: &mut Looks) -> bool {
-        let p = Vector::new(distance, 0.0);
+    /// Relative angles of poses at `p`, m, and `b`, rad: with up to three drives all of them. With more, at least one of
+    /// each piece that these poses consist of, and others that are spread over it, in no order.
+    pub fn sheets(&self, p: Vector, b: f64) -> Vec<PerDrive> {
+        let mut poses: Vec<PerDrive> = Vec::new();
+        let mut take = |a: &PerDrive| {
+            let is_new = poses.iter().all(|other| other.minus(a).max_abs() > SAME);
+            if is_new {
+                poses.push(*a);
+            }
+            true
+        };
         if self.drives() > 3 {
-            return self.held_for(p, b, looks).is_some();
+            self.each_found(p, b, &mut take);
+        } else {
+            self.each_pose(p, b, &mut take);
         }
+        poses
+    }
+
+    /// Whether some pose within the limits puts the end effector on `p`, m, at `b`, rad.
+    pub fn reaches(&self, p: Vector, b: f64) -> bool {
         let mut any = false;
-        for b in b {
-            self.each_pose(p, *b, &self.middle(), |_| {
-                any = true;
-                false
-            });
+        let mut take = |_: &PerDrive| {
+            any = true;
+            false
+        };
+        if self.drives() > 3 {
+            self.each_found(p, b, &mut take);
+        } else {
+            self.each_pose(p, b, &mut take);
         }
         any
     }
 
-    /// Angles of the joints that are held, more than three drives, with which the three arms that are left reach p at b:
-    /// where no look finds any, by going to where they come nearest. What lies at the first two joints is not used.
-    fn held_for(&self, p: Vector, b: &[f64], looks: &mut Looks) -> Option<PerDrive> {
-        let (n, first) = (self.joints.len(), 2);
-        let each = LOOKS[(self.drives() - 4).min(LOOKS.len() - 1)];
-        let at = |i: usize, j: usize| {
-            let [low, high] = self.joints[i].limits;
-            low + (high - low) * (j as f64 + 0.5) / each as f64
-        };
-        let middle = self.middle();
-        let look = |code: usize| {
-            let (mut held, mut rest) = (middle, code);
-            for i in first..n {
-                held[i] = at(i, rest % each);
-                rest /= each;
-            }
-            held
-        };
-        let count = each.pow((n - first) as u32);
-        looks.offs.clear();
-        for code in 0..count {
-            if code == looks.ends.len() {
-                self.spans(p, &look(code), |span| looks.spans.push(span));
-                looks.ends.push(looks.spans.len());
-            }
-            let from = if code > 0 { looks.ends[code - 1] } else { 0 };
-            let of = &looks.spans[from..looks.ends[code]];
-            let off = of.iter().fold(f64::INFINITY, |off, span| off.min(self.gap(*span, b)));
-            if off == 0.0 {
-                return Some(look(code));
-            }
-            looks.offs.push(off);
+    /// Poses of four drives and more, while more are wanted: by climbing from critical poses, and by going there from all
+    /// over the ranges.
+    fn each_found(&self, p: Vector, b: f64, take: &mut impl FnMut(&PerDrive) -> bool) {
+        if !self.reach(p).is_ok_and(|set| set.contains(b)) {
+            return;
         }
-        // Where it is much farther than the looks are apart, it does not come near between them. Along a single joint
-        // only looks that are nearer than those beside them lead anywhere.
-        let apart = (first..n).map(|i| at(i, 1) - at(i, 0)).fold(0.0, f64::max);
-        let Looks { offs, order, .. } = looks;
-        let beside = |i: usize, j: Option<usize>| j.and_then(|j| offs.get(j)).is_none_or(|other| offs[i] <= *other);
-        let leads = |i: usize| n - first > 1 || (beside(i, i.checked_sub(1)) && beside(i, Some(i + 1)));
-        order.clear();
-        order.extend((0..count).filter(|i| offs[*i] <= FAR * apart && leads(*i)));
-        order.sort_unstable_by(|x, y| offs[*x].total_cmp(&offs[*y]).then(x.cmp(y)));
-        for code in order.iter().take(STARTS) {
-            let (mut best, mut held) = (offs[*code], look(*code));
-            for _ in 0..if n - first > 1 { SWEEPS } else { 1 } {
-                let before = best;
-                for i in first..n {
-                    let [low, high] = self.joints[i].limits;
-                    let step = (high - low) / each as f64;
-                    let on = |x: f64| {
-                        let mut there = held;
-                        there[i] = x;
-                        (self.off(p, b, &there), there)
-                    };
-                    let found = lowest(on, [(held[i] - step).max(low), (held[i] + step).min(high)]);
-                    if found.0 < best {
-                        (best, held) = found;
-                    }
-                    if best == 0.0 {
-                        return Some(held);
-                    }
-                }
-                if best >= before {
-                    break;
+        let (p, b) = (Vector::new(p.norm(), 0.0), b - p.arg() * self.sum);
+        let starts = self.starts(p.re);
+        let mut any = false;
+        for (i, climb) in self.climbs(&starts, b).iter().enumerate() {
+            if any && i >= MAX_CLIMBS {
+                break;
+            }
+            if let Some(a) = self.climbed(p, climb, if any { BRIEF } else { THOROUGH }) {
+                any = true;
+                if !take(&a) {
+                    return;
                 }
             }
         }
-        None
+        self.each_spread(p, b, take);
     }
 
-    /// How far the nearest b is from what reaches p with these joints held, rad; infinite where nothing does.
-    fn off(&self, p: Vector, b: &[f64], held: &PerDrive) -> f64 {
-        let mut off = f64::INFINITY;
-        self.spans(p, held, |span| off = off.min(self.gap(span, b)));
-        off
-    }
-
-    /// How far the nearest b is from a span, by the shorter way round, rad.
-    fn gap(&self, [low, high]: [f64; 2], b: &[f64]) -> f64 {
-        let period = self.period();
-        let gap = |b: &f64| {
-            let past = (b - low) - period * ((b - low) / period).floor();
-            (past - (high - low)).max(0.0).min(period - past)
-        };
-        b.iter().map(gap).fold(f64::INFINITY, f64::min)
-    }
-
-    /// The spans of b that reach p with these joints held.
-    fn spans(&self, p: Vector, held: &PerDrive, mut take: impl FnMut([f64; 2])) {
-        if let Some((map, shift)) = self.three(held) {
-            map.spans(p, |[low, high]| take([low + shift, high + shift]));
+    /// The same, from all over the ranges.
+    fn each_spread(&self, p: Vector, b: f64, take: &mut impl FnMut(&PerDrive) -> bool) {
+        let windows = self.windows();
+        for a in (0..SPREAD).map(|i| self.spread(i)) {
+            if self.solved(p, b, &a, &windows).is_some_and(|a| !take(&a)) {
+                return;
+            }
         }
     }
 
-    /// Whether any pose is at a distance from B, m.
-    pub(super) fn any_pose(&self, distance: f64) -> bool {
-        self.has_pose(distance, &[0.0], &mut Looks::default())
+    /// Relative angles of an endless sequence that fills all ranges evenly.
+    pub(in crate::planning) fn spread(&self, i: usize) -> PerDrive {
+        PerDrive::from_fn(self.joints.len(), |j| {
+            let [low, high] = self.joints[j].limits;
+            // Multiples of the square roots of primes.
+            let share = ((i as f64 + 0.5) * PRIMES[j].sqrt()).fract();
+            low + share * (high - low)
+        })
     }
 
-    /// Relative angles of poses, while more are wanted.
-    fn each_pose(&self, p: Vector, b: f64, near: &[f64], mut take: impl FnMut(&PerDrive) -> bool) {
+    /// The pose of four drives and more that is nearest to given relative angles: the nearest of those to which the
+    /// nearest ones of every piece lead.
+    fn nearest_pose(&self, p: Vector, b: f64, near: &[f64]) -> Option<PerDrive> {
+        let (n, windows) = (self.joints.len(), self.windows());
+        let near = PerDrive::from_fn(n, |i| near[i]);
+        let wish = Wish { angles: near, weight: PerDrive::from_fn(n, |_| 1.0) };
+        let far = |a: &PerDrive| a.minus(&near).dot(&a.minus(&near));
+        let own = PerDrive::from_fn(n, |i| near[i].clamp(windows[i][0], windows[i][1]));
+        let mut starts = self.sheets(p, b);
+        starts.extend(self.solved(p, b, &own, &windows));
+        starts.sort_by(|x, y| far(x).total_cmp(&far(y)));
+        let drawn = starts.iter().take(GONE_ON_FROM).map(|a| self.drawn((p, b), a, &wish, &windows));
+        drawn.min_by(|x, y| far(x).total_cmp(&far(y)))
+    }
+
+    /// Relative angles of all poses of up to three drives, while more are wanted.
+    pub(super) fn each_pose(&self, p: Vector, b: f64, take: &mut impl FnMut(&PerDrive) -> bool) {
         match self.drives() {
             1 => {
                 let place = self.place(&self.lift(&[], b));
@@ -182,16 +132,19 @@ impl PoseSpace {
                 }
             }
             2 => self.elbows(p, b, take),
-            n => {
-                let held = n - 3;
-                let mut a = PerDrive::zeros(n - 1);
-                self.held(held, near, &mut a, &mut |a| self.of_three(p, b, a, &mut take));
+            _ => {
+                let Some((map, shift)) = self.three(&PerDrive::zeros(2)) else { return };
+                for pose in map.poses(p, b - shift).iter() {
+                    if !take(&PerDrive::from(pose.a)) {
+                        return;
+                    }
+                }
             }
         }
     }
 
     /// Two drives: a point leaves two elbows, each with its own b.
-    fn elbows(&self, p: Vector, b: f64, mut take: impl FnMut(&PerDrive) -> bool) {
+    fn elbows(&self, p: Vector, b: f64, take: &mut impl FnMut(&PerDrive) -> bool) {
         let [l, m] = [self.tip[0], self.tip[1]];
         let cos = (p.norm_sqr() - l * l - m * m) / (2.0 * l * m);
         if cos.is_nan() || cos.abs() > 1.0 + 1e-12 {
@@ -220,101 +173,4 @@ impl PoseSpace {
             }
         }
     }
-
-    /// Every choice on a grid of the last joints, those nearest to what is wanted first.
-    fn held(&self, count: usize, near: &[f64], a: &mut PerDrive, take: &mut impl FnMut(&PerDrive) -> bool) -> bool {
-        let Some(i) = count.checked_sub(1) else { return take(a) };
-        // The outermost joints are held, so that the three arms that are left go from B.
-        let place = self.joints.len() - 1 - i;
-        let looks = LOOKS[(self.drives() - 4).min(LOOKS.len() - 1)];
-        let [low, high] = self.joints[place].limits;
-        let wanted = near.get(place).copied().unwrap_or(0.5 * (low + high)).clamp(low, high);
-        let mut grid = [0.0; 64];
-        let grid = &mut grid[..looks + 1];
-        grid[0] = wanted;
-        for (j, x) in grid[1..].iter_mut().enumerate() {
-            *x = low + (high - low) * (j as f64 + 0.5) / looks as f64;
-        }
-        grid[1..].sort_by(|x, y| (x - wanted).abs().total_cmp(&(y - wanted).abs()));
-        for x in grid.iter() {
-            a[place] = *x;
-            if !self.held(i, near, a, take) {
-                return false;
-            }
-        }
-        true
-    }
-
-    /// The poses of the three arms that are left when the last joints are held.
-    fn of_three(&self, p: Vector, b: f64, held: &PerDrive, take: &mut impl FnMut(&PerDrive) -> bool) -> bool {
-        let Some((map, shift)) = self.three(held) else { return true };
-        for pose in map.poses(p, b - shift).iter() {
-            let mut a = *held;
-            a[0] = pose.a[0];
-            a[1] = pose.a[1];
-            if !take(&a) {
-                return false;
-            }
-        }
-        true
-    }
-
-    /// The plane of the first two joints, with all others held, and what its b lacks.
-    fn three(&self, held: &PerDrive) -> Option<(PlaneMap, f64)> {
-        let n = self.drives();
-        let (mut of, mut delta, mut count) = ([0; MAX_DRIVES], [0.0; MAX_DRIVES], 1);
-        for (i, joint) in self.joints.iter().enumerate() {
-            let [near, far] = joint.ends;
-            if i < 2 {
-                of[far] = count;
-                count += 1;
-            } else {
-                of[far] = of[near];
-                delta[far] = delta[near] + joint.sense * (held[i] - joint.offset);
-            }
-        }
-        let (mut arm, mut lambda) = ([Vector::default(); 3], [0.0; 3]);
-        for k in 0..n {
-            arm[of[k]] += self.tip[k] * unit(delta[k]);
-            lambda[of[k]] += self.lambda[k];
-        }
-        let lean = arm.map(|l| l.arg());
-        let angle = |i: usize| {
-            let joint = &self.joints[i];
-            let [near, far] = joint.ends;
-            let (to, from) = if joint.sense > 0.0 { (far, near) } else { (near, far) };
-            let at = |k: usize| delta[k] - lean[of[k]];
-            AngleDefinition { to: of[to], from: of[from], offset: joint.offset + at(to) - at(from) }
-        };
-        let limit = |i: usize| AngleLimit { min: self.joints[i].limits[0], max: self.joints[i].limits[1] };
-        let map = PlaneMap::new(arm.map(|l| l.norm()), lambda, [angle(0), angle(1)], [limit(0), limit(1)]).ok()?;
-        // b = Σ Λ (Q' − lean) + Σ λ δ.
-        let shift =
-            (0..n).map(|k| self.lambda[k] * delta[k]).sum::<f64>() - (0..3).map(|i| lambda[i] * lean[i]).sum::<f64>();
-        Some((map, shift))
-    }
-}
-
-/// The least of a function between two places by golden sections, or the first place at which it is 0; only as near as
-/// it takes to know that it does not come to 0.
-fn lowest<T: Copy>(f: impl Fn(f64) -> (f64, T), [mut low, mut high]: [f64; 2]) -> (f64, T) {
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    let (mut x, mut y) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
-    let (mut fx, mut fy) = (f(x), f(y));
-    for _ in 0..16 {
-        // Nor does it come to 0 from farther than this.
-        if fx.0 == 0.0 || fy.0 == 0.0 || fx.0.min(fy.0) > FAR * (high - low) {
-            break;
-        }
-        if fx.0 < fy.0 {
-            (high, y, fy) = (y, x, fx);
-            x = high - GOLDEN * (high - low);
-            fx = f(x);
-        } else {
-            (low, x, fx) = (x, y, fy);
-            y = low + GOLDEN * (high - low);
-            fy = f(y);
-        }
-    }
-    if fx.0 < fy.0 { fx } else { fy }
 }

@@ -1,7 +1,7 @@
 //! Which b reach a point.
 
 use super::critical::Critical;
-use super::poses::Looks;
+use super::looks::Looks;
 use super::space::PoseSpace;
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::reactionless::{BSet, NoReach};
@@ -60,13 +60,13 @@ impl PoseSpace {
             return (BSet { intervals: if any { vec![[0.0, period]] } else { Vec::new() }, period }, Seen::default());
         }
         work.ends.clear();
-        if self.criticals(distance, |c| work.ends.push(c)) {
+        if self.criticals(distance, |c, _| work.ends.push(c)) {
             return self.set_of(distance, beside, work);
         }
         // At distances to which straight arms just reach, ends meet and none is told from another: as beside it.
         let parts = [1.0 - BESIDE, 1.0 + BESIDE].map(|by| {
             work.ends.clear();
-            self.criticals(distance * by, |c| work.ends.push(c));
+            self.criticals(distance * by, |c, _| work.ends.push(c));
             self.set_of(distance * by, &[], work).0.intervals
         });
         (BSet::union(parts.concat(), period), Seen::default())

@@ -53,7 +53,7 @@ fn ends(task: &Task, space: &PoseSpace) -> Result<[DriveAngles; 2], Refusal> {
     }
     let set = |i: usize, p: Vector| space.reach(p).map_err(|reason| off(task, i, p, reason));
     let sets = [set(0, a)?, set(last, b)?];
-    let on = !space.poses(a, task.b, &middle).is_empty();
+    let on = space.reaches(a, task.b);
     // B's own b nearest to that of A, if A is at its own; else the pair with the least change.
     let pair =
         if on { sets[1].nearest(task.b).map(|b| [task.b, b]) } else { nearest_planes(&sets[0], &sets[1], task.b) };

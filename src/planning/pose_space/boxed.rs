@@ -1,0 +1,125 @@
+//! The step within a box that two linear equations ask for.
+//!
+//! # Symbols
+//! | letter | meaning |
+//! |---|---|
+//! | x | the step: least ½ Σ w_i (x_i − y_i)² with Σ c_i x_i = r and low_i ≤ x_i ≤ high_i |
+//! | ν | the multiplier of the two equations: x_i = y_i + c_i·ν / w_i, clamped |
+//!
+//! # Method
+//! The dual in ν is concave, piecewise quadratic and of two dimensions: Newton's iteration on it with an exact search along
+//! each direction ends after a few steps. Where no x in the box meets the equations, x comes as near as it can.
+
+use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Vector, dot};
+
+/// Steps of Newton's iteration at most.
+const MAX_ITERATIONS: usize = 30;
+/// What keeps the dual strictly concave, a share of Σ |c_i|² / w_i.
+const DAMPING: f64 = 1e-14;
+/// Equations are met when they miss by less than this share of what they ask for.
+const MET: f64 = 1e-13;
+
+/// A box, and what a step within it is to be like.
+pub(super) struct Boxed<'a> {
+    /// c_i.
+    pub columns: &'a [Vector; MAX_DRIVES],
+    /// w_i, above 0.
+    pub weight: &'a PerDrive,
+    /// y_i.
+    pub wish: &'a PerDrive,
+    /// low_i and high_i.
+    pub range: [[f64; 2]; MAX_DRIVES],
+}
+
+impl Boxed<'_> {
+    /// The step, and its multiplier.
+    pub fn step(&self, wanted: Vector) -> (PerDrive, Vector) {
+        let n = self.wish.len();
+        let scale: f64 = (0..n).map(|i| self.columns[i].norm_sqr() / self.weight[i]).sum();
+        let damping = DAMPING * scale;
+        let mut nu = Vector::default();
+        let mut x = self.at(nu);
+        if scale == 0.0 {
+            return (x, nu);
+        }
+        let gradient = |x: &PerDrive, nu: Vector| wanted - self.sum(x) - damping * nu;
+        let enough = MET * (wanted.norm() + self.sum(self.wish).norm());
+        for _ in 0..MAX_ITERATIONS {
+            let missing = gradient(&x, nu);
+            if missing.norm() <= enough {
+                break;
+            }
+            let mut gram = [damping, 0.0, damping];
+            for i in 0..n {
+                let [low, high] = self.range[i];
+                let own = self.wish[i] + dot(self.columns[i], nu) / self.weight[i];
+                if low < high && own >= low && own <= high {
+                    let (c, w) = (self.columns[i], 1.0 / self.weight[i]);
+                    gram = [gram[0] + w * c.re * c.re, gram[1] + w * c.re * c.im, gram[2] + w * c.im * c.im];
+                }
+            }
+            let det = gram[0] * gram[2] - gram[1] * gram[1];
+            let mut way =
+                Vector::new(gram[2] * missing.re - gram[1] * missing.im, gram[0] * missing.im - gram[1] * missing.re)
+                    / det;
+            if !way.norm_sqr().is_finite() || dot(way, missing) <= 0.0 {
+                way = missing / scale;
+            }
+            let Some(far) = self.along(nu, way, |x, nu| dot(way, gradient(x, nu))) else { break };
+            nu += far * way;
+            x = self.at(nu);
+        }
+        (x, nu)
+    }
+
+    fn at(&self, nu: Vector) -> PerDrive {
+        PerDrive::from_fn(self.wish.len(), |i| {
+            let [low, high] = self.range[i];
+            (self.wish[i] + dot(self.columns[i], nu) / self.weight[i]).clamp(low, high)
+        })
+    }
+
+    fn sum(&self, x: &PerDrive) -> Vector {
+        x.iter().zip(self.columns).map(|(x, c)| *c * *x).sum()
+    }
+
+    /// How far along a way the dual is greatest, where its slope, which falls in straight pieces, is 0.
+    fn along(&self, nu: Vector, way: Vector, slope: impl Fn(&PerDrive, Vector) -> f64) -> Option<f64> {
+        let at = |t: f64| slope(&self.at(nu + t * way), nu + t * way);
+        let first = at(0.0);
+        let whole = at(1.0);
+        if whole.abs() <= 1e-3 * first {
+            return Some(1.0);
+        }
+        let mut kinks = [f64::INFINITY; 2 * MAX_DRIVES];
+        let mut count = 0;
+        for i in 0..self.wish.len() {
+            let speed = dot(self.columns[i], way) / self.weight[i];
+            let own = self.wish[i] + dot(self.columns[i], nu) / self.weight[i];
+            for end in self.range[i] {
+                let t = (end - own) / speed;
+                if t > 0.0 && t.is_finite() {
+                    kinks[count] = t;
+                    count += 1;
+                }
+            }
+        }
+        let kinks = &mut kinks[..count];
+        kinks.sort_unstable_by(f64::total_cmp);
+        let (mut from, mut before) = (0.0, first);
+        for t in kinks.iter().copied() {
+            let here = at(t);
+            if here <= 0.0 {
+                return Some(from + (t - from) * before / (before - here));
+            }
+            (from, before) = (t, here);
+        }
+        // Past the last kink only what damps is left, or what is free all the way.
+        let beyond = from.max(1.0) * 2.0;
+        let here = at(beyond);
+        let falls = before - here;
+        let t = from + (beyond - from) * before / falls;
+        let goes_on = falls > 1e-6 * first.max(before) && t.is_finite();
+        if goes_on { Some(t) } else { (from > 0.0).then_some(from) }
+    }
+}

@@ -1,0 +1,137 @@
+//! The pose of a point and a b that is nearest to given relative angles.
+//!
+//! # Method
+//! Least ½ Σ w_i (a_i − y_i)² over the poses at (p, b) within limits: sequential quadratic programming whose every step comes
+//! back onto p by Newton's iteration. A step is first sought with the curvature of p, ∂²L/∂a² = w + ν·∂²p/∂a², among the
+//! angles that are not held at their limits; where that does not bring the pose nearer, without the curvature, and shorter.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::boxed::Boxed;
+use super::continuation::within;
+use super::space::PoseSpace;
+use crate::mechanics::planar::{MAX_DRIVES, PerDrive, Vector, dot, unit};
+
+/// Steps at most, the longest, and when they are done, rad.
+const MAX_ITERATIONS: usize = 100;
+const LONGEST: f64 = 0.5;
+const DONE: f64 = 1e-11;
+/// How often a step is halved.
+const MAX_HALVINGS: usize = 12;
+/// What an angle without a weight weighs.
+const LIGHT: f64 = 1e-3;
+/// Angles that are held at their limits count as there up to this, rad.
+const HELD: f64 = 1e-12;
+
+/// What relative angles are drawn to.
+pub(super) struct Wish {
+    /// y_i, rad.
+    pub angles: PerDrive,
+    /// w_i.
+    pub weight: PerDrive,
+}
+
+/// Relative angles, and a multiplier for p and each angle that is held.
+const KKT: usize = 2 * MAX_DRIVES + 2;
+
+impl PoseSpace {
+    /// Relative angles at b with the end effector on p, m, that have the least ½ Σ x_i², x_i the share of a range either
+    /// way from its middle; from a pose that is there.
+    pub fn centred(&self, p: Vector, b: f64, from: &PerDrive) -> PerDrive {
+        let half = |i: usize| match self.joints[i].free {
+            true => f64::INFINITY,
+            false => 0.5 * (self.joints[i].limits[1] - self.joints[i].limits[0]).max(1e-6),
+        };
+        let weight = PerDrive::from_fn(self.joints.len(), |i| half(i).powi(-2));
+        let bounds = std::array::from_fn(|i| self.joints.get(i).map_or([0.0; 2], |joint| joint.bounds()));
+        self.drawn((p, b), from, &Wish { angles: self.middle(), weight }, &bounds)
+    }
+
+    /// The pose at p, m, and b, rad, beside one that is there, to which a wish draws it.
+    pub(super) fn drawn(
+        &self,
+        (p, b): (Vector, f64),
+        from: &PerDrive,
+        wish: &Wish,
+        windows: &[[f64; 2]; MAX_DRIVES],
+    ) -> PerDrive {
+        let n = self.joints.len();
+        let far = |a: &PerDrive| (0..n).map(|i| 0.5 * wish.weight[i] * (a[i] - wish.angles[i]).powi(2)).sum::<f64>();
+        let weight = PerDrive::from_fn(n, |i| wish.weight[i] + LIGHT);
+        let moved = |a: &PerDrive, share: f64, step: &PerDrive| {
+            PerDrive::from_fn(n, |i| (a[i] + share * step[i]).clamp(windows[i][0], windows[i][1]))
+        };
+        let mut a = *from;
+        let mut now = far(&a);
+        for _ in 0..MAX_ITERATIONS {
+            let (place, columns) = self.columns(&self.lift(&a, b));
+            let down = PerDrive::from_fn(n, |i| wish.weight[i] * (wish.angles[i] - a[i]) / weight[i]);
+            let range = within(windows, &a, LONGEST);
+            let (step, nu) = Boxed { columns: &columns, weight: &weight, wish: &down, range }.step(p - place);
+            if step.max_abs() < DONE {
+                break;
+            }
+            let held = |i: usize| step[i].abs() < HELD && (range[i][0] > -HELD || range[i][1] < HELD);
+            let curved = self.curved((&a, b), wish, (nu, &columns, p - place), &held).filter(|step| {
+                let fits = |i: usize| a[i] + step[i] >= windows[i][0] && a[i] + step[i] <= windows[i][1];
+                step.max_abs() < LONGEST && (0..n).all(fits)
+            });
+            let tries = curved.iter().map(|step| (step, 1.0));
+            let shorter = (0..MAX_HALVINGS).map(|i| (&step, 0.5f64.powi(i as i32)));
+            let better = tries.chain(shorter).find_map(|(step, share)| {
+                let there = self.solved(p, b, &moved(&a, share, step), windows)?;
+                let far = far(&there);
+                (far < now).then_some((there, far))
+            });
+            let Some((there, left)) = better else { break };
+            let moved = there.minus(&a).max_abs();
+            (a, now) = (there, left);
+            if moved < DONE {
+                break;
+            }
+        }
+        a
+    }
+
+    /// The step of Newton's iteration on what has to vanish at the nearest pose, with some angles held.
+    fn curved(
+        &self,
+        (a, b): (&PerDrive, f64),
+        wish: &Wish,
+        (nu, columns, off): (Vector, &[Vector; MAX_DRIVES], Vector),
+        held: &dyn Fn(usize) -> bool,
+    ) -> Option<PerDrive> {
+        let n = self.joints.len();
+        let q = self.lift(a, b);
+        let turned: [PerDrive; MAX_DRIVES] = std::array::from_fn(|i| match i < n {
+            true => self.lift_rates(&PerDrive::from_fn(n, |j| f64::from(u8::from(i == j))), 0.0),
+            false => PerDrive::zeros(0),
+        });
+        // The multiplier pulls along c·ν, so the Lagrangian is ½ Σ w (a − y)² − ν·p, and ∂²p is −Σ c_k e_k.
+        let bends = PerDrive::from_fn(self.drives(), |k| dot(nu, self.tip[k] * unit(q[k])));
+        let mut square = SMatrix::<f64, KKT, KKT>::identity();
+        let mut side = SVector::<f64, KKT>::zeros();
+        for i in 0..n {
+            for j in 0..n {
+                let bend: f64 = (0..self.drives()).map(|k| bends[k] * turned[i][k] * turned[j][k]).sum();
+                square[(i, j)] = bend + if i == j { wish.weight[i] } else { 0.0 };
+            }
+            side[i] = wish.weight[i] * (wish.angles[i] - a[i]);
+        }
+        for (row, part) in [(MAX_DRIVES, 0), (MAX_DRIVES + 1, 1)] {
+            square[(row, row)] = 0.0;
+            side[row] = if part == 0 { off.re } else { off.im };
+            for i in 0..n {
+                let x = if part == 0 { columns[i].re } else { columns[i].im };
+                (square[(row, i)], square[(i, row)]) = (x, x);
+            }
+        }
+        for i in (0..n).filter(|i| held(*i)) {
+            let row = MAX_DRIVES + 2 + i;
+            square[(row, row)] = 0.0;
+            (square[(row, i)], square[(i, row)]) = (1.0, 1.0);
+        }
+        let step = square.lu().solve(&side)?;
+        step.iter().all(|x| x.is_finite()).then(|| PerDrive::from_fn(n, |i| step[i]))
+    }
+}
