@@ -4,6 +4,7 @@ use clap::Args;
 use serde::Serialize;
 use stillbase::mechanics::machine::{Inertia, Machine};
 use stillbase::planning::off_plane::null_space::is_integrable;
+use stillbase::planning::pose_constant::PoseConstant;
 use stillbase::session::verdict::Statement;
 
 use super::failure::Failure;
@@ -84,13 +85,15 @@ struct Answer {
     machine: Statement,
     /// Whether some b(q) is kept by all motions of zero angular momentum.
     integrable: bool,
+    /// `exact`, `nearly`, `unneeded` or `none`: whether holding b = Σ λ_k q_k keeps moments from the base.
+    pose_constant: &'static str,
 }
 
 impl Check {
     /// Prints the verdict; a valid machine that is not balanced is an answer too.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
-        let inertia = Inertia::of(&machine);
+        let (inertia, constant) = (Inertia::of(&machine), PoseConstant::of(&machine));
         let answer = Answer {
             mass: inertia.mass(),
             balance: Balance::of(&inertia),
@@ -98,6 +101,7 @@ impl Check {
             invariant: inertia.is_invariant(),
             machine: Statement::of_machine(&inertia),
             integrable: is_integrable(&inertia),
+            pose_constant: constant.word(),
         };
         self.format.print(&answer, |answer| {
             let (force, coupling) = (inertia.force_residual(), inertia.invariance_residual());
@@ -111,12 +115,7 @@ impl Check {
                 fixed(answer.mass, 3),
                 yes(answer.force_balanced),
                 yes(answer.invariant),
-                match (answer.integrable, answer.invariant) {
-                    (_, true) if inertia.pose_inertia() == 0.0 => "none is needed: every motion is reactionless",
-                    (true, true) => "b = Σ λ_k q_k",
-                    (true, false) => "exists, though the mass matrix changes with the pose",
-                    (false, _) => "none: zero momentum does not keep to surfaces of joint space",
-                },
+                constant,
                 answer.balance.tables(&machine),
             )
         })

@@ -106,7 +106,7 @@ impl Import {
         let judge = Judge {
             model: Inertia::of(&machine),
             around: Surroundings { gravity: machine.gravity(), force: Vector::default() },
-            poses: Poses::of(&machine)?,
+            poses: Poses::of(&machine),
             instants: (8 * samples.count()).clamp(4000, 200_000),
             machine,
         };
@@ -118,6 +118,10 @@ impl Import {
             Poses::Space(space) if drives => freedoms::of_drives(&asked, &judge, space, &samples)?,
             Poses::Space(space) => freedoms::of_tip(&asked, &judge, space, &samples)?,
             Poses::Free => freedoms::as_given(&judge, &samples, drives)?,
+            Poses::None(why) => {
+                let given = freedoms::as_given(&judge, &samples, drives)?;
+                Ways { candidates: Err(why.to_string()), ..given }
+            }
         };
         let changed = |i: usize| samples.values(i).iter().zip(raw.values(i)).map(|(a, b)| (a - b).abs());
         let mut answer = Answer {

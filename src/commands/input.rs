@@ -4,11 +4,12 @@ use std::ffi::OsString;
 use std::path::Path;
 
 use clap::Args;
-use stillbase::mechanics::machine::{Inertia, Machine};
+use stillbase::mechanics::machine::Machine;
 use stillbase::mechanics::planar::Vector;
-use stillbase::planning::pose_constant::plane_map;
-use stillbase::planning::pose_space::PoseSpace;
-use stillbase::planning::reactionless::{BSet, NoReach, PlaneMap};
+use stillbase::planning::common::Reaching;
+use stillbase::planning::pose_constant::{PoseConstant, plane_map};
+use stillbase::planning::pose_space::{NoPoseSpace, PoseSpace};
+use stillbase::planning::reactionless::PlaneMap;
 use stillbase::session::scenario::{Change, PLACE, POSE_CONSTANT, Scenario, key_of};
 use stillbase::settings::change;
 use stillbase::settings::key::Key;
@@ -111,10 +112,15 @@ impl MachineArgument {
 pub fn scenario(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
     let scenario = studied(name, settings)?;
     settings.none_of_tolerance()?;
+    tell_tolerance(&scenario);
+    Ok(scenario)
+}
+
+/// Says that what a scenario says of tolerances has no use, for a command that draws no machines.
+pub fn tell_tolerance(scenario: &Scenario) {
     if !scenario.tolerance.is_empty() {
         say(format!("note: {}: tolerance has no use here: want {STUDY}", scenario.name));
     }
-    Ok(scenario)
 }
 
 /// Where tolerances count.
@@ -125,15 +131,29 @@ const STUDY: &str = "the command tolerance, or the window";
 /// # Errors
 /// If there is no such scenario or setting, or what comes out is not valid.
 pub fn studied(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
+    let scenario = stated(name, settings)?;
+    none_idle(&scenario, settings)?;
+    tell_idle(&scenario);
+    Ok(scenario)
+}
+
+/// The same, whether or not all of it has an effect: what else is typed may change that.
+///
+/// # Errors
+/// As [`studied`], but for settings without an effect.
+pub fn stated(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
     let found = stillbase::files::scenario(name)?;
     if let Some(made) = &found.made {
         say(format!("note: {made}"));
     }
-    let scenario = set(found.scenario, settings)?;
+    laid(found.scenario, settings)
+}
+
+/// Says which keys of a scenario have no effect.
+pub fn tell_idle(scenario: &Scenario) {
     for (path, want) in scenario.idle_keys() {
         say(format!("note: {}: {path} has no use there: want {want}", scenario.name));
     }
-    Ok(scenario)
 }
 
 /// A scenario with settings laid over it.
@@ -141,16 +161,33 @@ pub fn studied(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
 /// # Errors
 /// If there is no such setting, it has no effect, or what comes out is not valid.
 pub fn set(scenario: Scenario, settings: &Settings) -> Result<Scenario, Failure> {
-    let change = settings.change();
-    let scenario = scenario.with(&change).map_err(|why| Failure::wrong_input(why).of("--set"))?;
+    let scenario = laid(scenario, settings)?;
+    none_idle(&scenario, settings)?;
+    Ok(scenario)
+}
+
+/// A scenario with settings laid over it, whether or not they have an effect as it is.
+///
+/// # Errors
+/// If there is no such setting, or what comes out is not valid.
+pub fn laid(scenario: Scenario, settings: &Settings) -> Result<Scenario, Failure> {
+    let scenario = scenario.with(&settings.change()).map_err(|why| Failure::wrong_input(why).of("--set"))?;
     scenario.check("--set")?;
-    for (path, value) in change::leaves(&change) {
+    Ok(scenario)
+}
+
+/// Refuses settings that have no effect on a scenario as it is.
+///
+/// # Errors
+/// If there is one, with what it would want.
+pub fn none_idle(scenario: &Scenario, settings: &Settings) -> Result<(), Failure> {
+    for (path, value) in change::leaves(&settings.change()) {
         let freed = value.as_str().is_some_and(|word| [change::DEFAULT, Key::NONE].contains(&word));
         if let Some(want) = scenario.idle(&path).filter(|_| !freed) {
             return Err(no_use(&path, want).of("--set"));
         }
     }
-    Ok(scenario)
+    Ok(())
 }
 
 /// The failure of an option that would have no effect here.
@@ -171,11 +208,11 @@ pub fn change_task(scenario: &mut Scenario, change: &Change) -> Result<(), Failu
     Ok(())
 }
 
-/// What a machine has a b by: the planes of three drives, or the pose space of any other number.
+/// What a machine has a b by: the planes of three drives in closed form, or the pose space of any other machine.
 pub enum PoseConstants {
-    /// Three drives.
+    /// Three drives with limits of both relative angles.
     Plane(PlaneMap),
-    /// One, two, four and more.
+    /// Any other machine.
     Space(PoseSpace),
 }
 
@@ -185,22 +222,29 @@ impl PoseConstants {
     /// # Errors
     /// If it has none.
     pub fn of(machine: &Machine) -> Result<Self, Failure> {
-        if machine.drives() == 3 {
-            return planes_of(machine).map(Self::Plane);
+        let constants = Self::quietly(machine)?;
+        if let nearly @ PoseConstant::Nearly { .. } = PoseConstant::of(machine) {
+            say(format!("note: {}: {nearly}", machine.name()));
         }
-        let space = PoseSpace::of(machine)?;
-        note(machine);
-        Ok(Self::Space(space))
+        Ok(constants)
     }
 
-    /// The b of a point, m.
+    /// The same without a word.
     ///
     /// # Errors
-    /// If there is none.
-    pub fn reach(&self, p: Vector) -> Result<BSet, NoReach> {
+    /// If it has none.
+    pub fn quietly(machine: &Machine) -> Result<Self, NoPoseSpace> {
+        match plane_map(machine) {
+            Ok(map) => Ok(Self::Plane(map)),
+            Err(_) => PoseSpace::of(machine).map(Self::Space),
+        }
+    }
+
+    /// What reaches points by its b.
+    pub fn reaching(&self) -> &dyn Reaching {
         match self {
-            Self::Plane(map) => map.reach(p),
-            Self::Space(space) => space.reach(p),
+            Self::Plane(map) => map,
+            Self::Space(space) => space,
         }
     }
 
@@ -210,36 +254,6 @@ impl PoseConstants {
             Self::Plane(map) => map.period(),
             Self::Space(space) => space.period(),
         }
-    }
-
-    /// The b that all points have in common; none if a point has none.
-    pub fn common(&self, points: &[Vector]) -> Option<BSet> {
-        let sets: Option<Vec<BSet>> = points.iter().map(|p| self.reach(*p).ok()).collect();
-        let common = BSet::overlap(&sets?);
-        (!common.intervals.is_empty()).then_some(common)
-    }
-}
-
-/// The reactionless planes of a machine; says so if b is only nearly constant.
-///
-/// # Errors
-/// If it has none.
-pub fn planes_of(machine: &Machine) -> Result<PlaneMap, Failure> {
-    let map = plane_map(machine)?;
-    note(machine);
-    Ok(map)
-}
-
-/// Says so if b is only nearly constant.
-fn note(machine: &Machine) {
-    let inertia = Inertia::of(machine);
-    if !inertia.is_invariant() {
-        say(format!(
-            "note: couplings of up to {:.1e} kg m² remain in {}, so holding b is not exactly reactionless; \
-             `stillbase design` removes them",
-            inertia.invariance_residual(),
-            machine.name(),
-        ));
     }
 }
 

@@ -8,9 +8,12 @@ use serde::Serialize;
 use stillbase::files::{text, write_new};
 use stillbase::mechanics::machine::Inertia;
 use stillbase::mechanics::planar::Vector;
+use stillbase::planning::common::{self, Reaching};
 use stillbase::planning::following::Blocked;
 use stillbase::planning::off_plane::least_reaction::{FixedB, Verdicts};
 use stillbase::planning::off_plane::price::FloatingBase;
+use stillbase::planning::pose_constant::PoseConstant;
+use stillbase::planning::pose_space::PoseSpace;
 use stillbase::planning::reactionless::BSet;
 use stillbase::planning::timing::TimeLaw;
 use stillbase::session::scenario::{Change, Content, Scenario, Task, TaskKind, content};
@@ -20,7 +23,8 @@ use stillbase::simulation::plant::PlantDifferences;
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{
-    DEFAULT_SCENARIO, PoseConstants, Settings, above_zero, change_task, no_use, point, pose_constant, scenario, studied,
+    DEFAULT_SCENARIO, PoseConstants, Settings, above_zero, change_task, laid, no_use, none_idle, point, pose_constant,
+    stated, tell_idle, tell_tolerance,
 };
 use super::output::{Format, Table, check_output};
 use super::reach::OfMend;
@@ -48,8 +52,8 @@ pub struct Plan {
     /// Points of the end effector in base axes, m: from the first to the last; none keeps a scenario's own
     #[arg(value_name = "X,Y", value_parser = point)]
     points: Vec<Vector>,
-    /// Pose constant at the first point, rad; by default the middle of what serves all points, or else the first point,
-    /// or the scenario's
+    /// Pose constant at the first point, rad; by default the middle of what serves all points, or else the first point;
+    /// without points the scenario's
     #[arg(long, value_name = "B", value_parser = pose_constant)]
     b: Option<f64>,
     /// How the redundancy is resolved
@@ -143,6 +147,8 @@ struct Answer {
     scenario: String,
     /// At the start.
     b: f64,
+    #[serde(skip)]
+    has_b: bool,
     b_common: Vec<[f64; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     duration: Option<f64>,
@@ -272,17 +278,16 @@ impl Plan {
             check_output(file, self.force, &["toml"])?;
         }
         let mut scenario = self.scenario()?;
-        let common = match PoseConstants::of(&scenario.machine) {
-            Ok(constants) => constants.common(&scenario.task.points()),
-            // What such a machine can do all the same, its plan says.
-            Err(_) if scenario.machine.drives() != 3 => None,
-            Err(why) => return Err(why),
-        };
+        // What a machine without a b can do all the same, its plan says.
+        let common = PoseConstants::of(&scenario.machine).ok();
+        let has_b = common.is_some();
+        let common = common.and_then(|constants| common::common(constants.reaching(), &scenario.task.points()));
         let common = common.map_or(Vec::new(), |set: BSet| set.intervals);
         let mut answer = Answer {
             feasible: true,
             scenario: scenario.name.clone(),
             b: scenario.task.b,
+            has_b,
             reason: None,
             b_common: common,
             duration: None,
@@ -396,8 +401,6 @@ impl Plan {
     fn scenario(&self) -> Result<Scenario, Failure> {
         let as_machine = stillbase::files::machine(&self.name, None);
         let known = Scenario::builtin(&self.name).is_some();
-        // What is written keeps its tolerances for others.
-        let read = if self.output.is_some() { studied } else { scenario };
         if self.output.is_none() {
             self.settings.none_of_tolerance()?;
         }
@@ -406,14 +409,19 @@ impl Plan {
                 if self.points.is_empty() {
                     return Err(Failure::wrong_input("a machine alone is no task: want points X,Y, or a scenario"));
                 }
-                let own = scenario(DEFAULT_SCENARIO, &Settings::default())?;
+                let own = stated(DEFAULT_SCENARIO, &Settings::default())?;
                 let with = Scenario { machine, name: NAMELESS.into(), title: String::new(), compare_b: None, ..own };
-                super::input::set(with, &self.settings)?
+                laid(with, &self.settings)?
             }
             // The reader of machines or of scenarios says what is wrong with the file, by what it was meant to be.
             Err(wrong) if meant(&self.name) == Some(Content::Machine) => return Err(wrong.into()),
             _ => {
-                let (start, later) = settled(&read(&self.name, &self.settings)?)?;
+                let found = stated(&self.name, &self.settings)?;
+                // What is written keeps its tolerances for others.
+                if self.output.is_none() {
+                    tell_tolerance(&found);
+                }
+                let (start, later) = settled(&found)?;
                 if later > 0 {
                     say(format!("note: the plan leaves out {} after the start", counted(later, "edit")));
                 }
@@ -453,20 +461,36 @@ impl Plan {
             change.insert("closed".into(), true.into());
         }
         change_task(&mut scenario, &change)?;
+        let points = scenario.task.points();
+        let chosen = self.kind.is_some() || self.settings.sets("task.kind") || known;
+        // What has no b to hold moves by least rates.
+        if !chosen
+            && !self.points.is_empty()
+            && let none @ PoseConstant::None(_) = PoseConstant::of(&scenario.machine)
+        {
+            say(format!(
+                "note: {}: pose constant {none}; planned as minimum-norm, with what that does to the base",
+                scenario.machine.name()
+            ));
+            scenario.task.kind = TaskKind::MinimumNorm;
+        }
         self.check_use(&scenario)?;
+        none_idle(&scenario, &self.settings)?;
+        tell_idle(&scenario);
         if self.b.is_none() && !self.settings.sets("task.b") && !self.points.is_empty() {
-            // The middle of the widest range that serves all points, as far from every edge as it gets; kinds that leave
-            // the plane can do with one that serves the first.
-            let constants = match PoseConstants::of(&scenario.machine) {
-                Err(_) if scenario.machine.drives() != 3 => None,
-                constants => Some(constants?),
+            // As far from every end as it gets; what does not serve all points begins in the middle of what serves the
+            // first.
+            let space;
+            let constants = PoseConstants::quietly(&scenario.machine).ok();
+            let reaching: Option<&dyn Reaching> = match &constants {
+                Some(constants) => Some(constants.reaching()),
+                None => {
+                    space = PoseSpace::nominal(&scenario.machine).ok();
+                    space.as_ref().map(|space| space as &dyn Reaching)
+                }
             };
-            let points = scenario.task.points();
-            let common = |points: &[Vector]| constants.as_ref()?.common(points);
-            let alone = (scenario.task.kind != TaskKind::Reactionless).then(|| common(&points[..1])).flatten();
-            let sets = common(&points).or(alone).map_or(Vec::new(), |set| set.intervals);
-            let widest = sets.into_iter().max_by(|x, y| (x[1] - x[0]).total_cmp(&(y[1] - y[0])));
-            scenario.task.b = widest.map_or(scenario.task.b, |[low, high]| 0.5 * (low + high));
+            let middle = |points: &[Vector]| common::middle(reaching?, points);
+            scenario.task.b = middle(&points).or_else(|| middle(&points[..1])).unwrap_or(0.0);
         }
         Ok(scenario)
     }
@@ -484,7 +508,7 @@ fn table(answer: &Answer) -> String {
             table.row([name, fixed(value, decimals), unit.into()]);
         }
     };
-    row("b".into(), Some(answer.b), 6, "rad");
+    row("b".into(), Some(answer.b).filter(|_| answer.has_b), 6, "rad");
     for [low, high] in &answer.b_common {
         row("all points from b".into(), Some(*low), 6, "rad");
         row("            to b".into(), Some(*high), 6, "rad");

@@ -3,7 +3,8 @@
 use clap::Args;
 use serde::Serialize;
 use stillbase::mechanics::planar::Vector;
-use stillbase::planning::pose_constant::{Mend, Planes, Unreachable};
+use stillbase::planning::common::{common, no_common};
+use stillbase::planning::pose_constant::{Mend, Unreachable};
 use stillbase::planning::reactionless::BSet;
 
 use super::failure::Failure;
@@ -69,12 +70,11 @@ impl Reach {
         let mut sets = Vec::with_capacity(self.points.len());
         for p in &self.points {
             let none = |reason| Unreachable::Anywhere { x: p.re, y: p.im, reason };
-            sets.push(map.reach(*p).map_err(none)?);
+            sets.push(map.reaching().b_of(*p).map_err(none)?);
         }
-        let overlap = BSet::overlap(&sets).intervals;
-        let three = overlap.is_empty() && matches!(map, PoseConstants::Plane(_));
-        let why = if three { Planes::of(&machine)?.no_common(&self.points) } else { None };
+        let overlap = common(map.reaching(), &self.points).map_or_else(Vec::new, |set| set.intervals);
         let apart = overlap.is_empty();
+        let why = if apart { no_common(map.reaching(), &self.points) } else { None };
         let of_point = |(p, set): (&Vector, BSet)| OfPoint { point: [p.re, p.im], intervals: set.intervals };
         let answer = Answer {
             points: self.points.iter().zip(sets).map(of_point).collect(),

@@ -1,5 +1,6 @@
 //! `stillbase simulate`
 
+use std::io::IsTerminal;
 use std::num::NonZeroU64;
 use std::path::PathBuf;
 
@@ -14,7 +15,7 @@ use super::csv_file::Csv;
 use super::exit::say;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, check_output, check_size};
+use super::output::{Format, Table, check_output, check_size};
 use stillbase::settings::number::{counted, fixed};
 
 /// Run a scenario and print every signal over time as CSV
@@ -28,7 +29,8 @@ pub struct Simulate {
     /// A built-in scenario (case-1, spacecraft …; an unknown name lists them all) or a TOML file
     #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
     scenario: String,
-    /// Write the CSV to this file instead of standard output
+    /// Write the CSV to this file; without it the CSV goes to standard output, unless that is a terminal, which gets a
+    /// summary
     #[arg(short, long, value_name = "FILE.csv")]
     output: Option<PathBuf>,
     /// Replace the file if it exists
@@ -160,7 +162,7 @@ impl Simulate {
             if frame.step % self.every != 0 && frame.step != run.last_step() {
                 return;
             }
-            if (self.output.is_some() || !self.format.json) && written.is_ok() {
+            if self.writes_csv() && written.is_ok() {
                 let values = [frame.time].into_iter().chain(table.iter().map(|s| s.value(frame)));
                 written = self.csv(&mut csv, &table).and_then(|csv| csv.row(values));
             }
@@ -175,6 +177,10 @@ impl Simulate {
             csv.finish()?;
         }
         let verdict = Outcome::of(&run);
+        if !self.format.json && !self.writes_csv() {
+            self.format.print(&verdict, |outcome| summary(outcome, &scenario.name, &table))?;
+            return trusted(&scenario.name, verdict.audit_failed);
+        }
         if !self.format.json {
             let past = verdict.peak_moment_past_wheel;
             say(format!(
@@ -205,6 +211,11 @@ impl Simulate {
         trusted(&name, fault)
     }
 
+    /// Whether every row goes anywhere: not to a terminal.
+    fn writes_csv(&self) -> bool {
+        self.output.is_some() || !(self.format.json || std::io::stdout().is_terminal())
+    }
+
     /// Where rows go; begins it with a head.
     fn csv<'a>(&self, begun: &'a mut Option<Csv>, table: &[Signal]) -> Result<&'a mut Csv, Failure> {
         match begun {
@@ -216,6 +227,32 @@ impl Simulate {
             }
         }
     }
+}
+
+/// What a terminal gets in place of every row.
+fn summary(outcome: &Outcome, name: &str, signals: &[Signal]) -> String {
+    let mut table = Table::new(["", "", ""]).with_words(2);
+    let mut row = |name: String, value: f64, decimals: usize, unit: &str| {
+        table.row([name, fixed(value, decimals), unit.into()]);
+    };
+    for (k, torque) in outcome.peak_torque.iter().enumerate() {
+        row(format!("peak |τ_{}|", k + 1), *torque, 6, "N m");
+    }
+    row("peak |n_B|".into(), outcome.peak_base_moment, 9, "N m");
+    row("root mean square of n_B".into(), outcome.rms_base_moment, 9, "N m");
+    if let Some(left) = outcome.peak_moment_past_wheel {
+        row("peak moment past the wheel".into(), left, 9, "N m");
+    }
+    row("peak |f_B|".into(), outcome.peak_base_force, 9, "N");
+    row("the base shifts by".into(), outcome.base_shift, 9, "m");
+    row("the base turns by".into(), outcome.base_tilt, 9, "rad");
+    let shown = format!(
+        "{} of {}: -o FILE.csv writes every row, a pipe gets them too\n",
+        counted(outcome.steps, "step"),
+        counted(signals.len(), "signal")
+    );
+    let lines = [outcome.sentence.clone(), outcome.statements.line()].map(|line| format!("{name}: {line}\n"));
+    format!("{}\n{}\n{shown}", lines.concat(), table.to_string().trim_start())
 }
 
 /// Fails if an audit has: the figures stand there, but they are no answer.

@@ -2,11 +2,12 @@
 
 use thiserror::Error;
 
-use crate::mechanics::machine::{Machine, RelativeAngle};
+use crate::mechanics::machine::{Inertia, Machine, RelativeAngle};
 use crate::mechanics::planar::Vector;
-use crate::planning::pose_space::{NoPoseSpace, held, is_reactionless};
+use crate::planning::common;
+use crate::planning::pose_space::{NoPoseSpace, PoseSpace, held, is_reactionless};
 use crate::planning::reactionless::{
-    AngleDefinition, AngleLimit, BSet, Boundary, Decimal, NoReach, NotAPlaneMap, PlaneMap, PlanePoint, Poses, metres,
+    AngleDefinition, AngleLimit, Boundary, Decimal, NoReach, NotAPlaneMap, PlaneMap, PlanePoint, Poses, metres,
 };
 use crate::settings::number::counted;
 
@@ -17,6 +18,52 @@ pub struct Planes {
     boundary: Boundary,
     keep_off_change_points: bool,
     is_reactionless: bool,
+}
+
+/// Whether a machine has a pose constant b = Σ λ_k q_k, asked here alone.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum PoseConstant {
+    /// Holding b keeps every moment from the base.
+    #[error("b = Σ λ_k q_k")]
+    Exact,
+    /// λ depends on the pose so little that holding b keeps most of the moment from the base.
+    #[error(
+        "b = Σ λ_k q_k, but only nearly: couplings of up to {residual:.1e} kg m² remain, so holding b is not exactly \
+         reactionless; `stillbase design` removes them"
+    )]
+    Nearly {
+        /// Largest |C_kl|, kg m².
+        residual: f64,
+    },
+    /// None, and none is needed.
+    #[error("none is needed: every motion is reactionless, as no drive turns the base")]
+    Unneeded,
+    /// None.
+    #[error("none: {0}")]
+    None(NoPoseSpace),
+}
+
+impl PoseConstant {
+    /// Of a machine.
+    pub fn of(machine: &Machine) -> Self {
+        let inertia = Inertia::of(machine);
+        match PoseSpace::of(machine) {
+            Ok(_) if inertia.is_invariant() => Self::Exact,
+            Ok(_) => Self::Nearly { residual: inertia.invariance_residual() },
+            Err(NoPoseSpace::Free) => Self::Unneeded,
+            Err(why) => Self::None(why),
+        }
+    }
+
+    /// In a word, for a key of JSON.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::Nearly { .. } => "nearly",
+            Self::Unneeded => "unneeded",
+            Self::None(_) => "none",
+        }
+    }
 }
 
 /// Whether a target can be reached on the present plane.
@@ -44,8 +91,8 @@ pub enum Reach {
 pub enum PlaneError {
     /// Not three drives.
     #[error(
-        "this machine has {} and {}: dragging on a plane, sliding b and tasks off the plane are there for three drives and \
-         two angles",
+        "this machine has {} and {}: planes want three drives and two relative angles with limits, each an [[angle]] \
+         with name, to, from, min and max",
         counted(drives, "drive"),
         counted(angles, "relative angle")
     )]
@@ -57,8 +104,7 @@ pub enum PlaneError {
     },
     /// An angle that turns freely.
     #[error(
-        "the angle {0} has no limits: the reactionless workspaces of three drives want some of both angles, such as \
-         limits.{0}=0,3.1416"
+        "the angle {0} has no limits: planes of three drives want limits of both angles, such as limits.{0}=0,3.1416"
     )]
     Unlimited(String),
     /// λ depends on the pose, or is nothing.
@@ -188,17 +234,6 @@ impl Planes {
         Ok(Self { boundary, map, keep_off_change_points: false, is_reactionless })
     }
 
-    /// Those of a machine of three drives; none if it has no b.
-    ///
-    /// # Errors
-    /// If it has a b, but not two relative angles.
-    pub fn if_any(machine: &Machine) -> Result<Option<Self>, PlaneError> {
-        match Self::of(machine) {
-            Err(PlaneError::NoPoseConstant(_)) => Ok(None),
-            planes => planes.map(Some),
-        }
-    }
-
     /// Whether holding b keeps the moment from the base, but for the rounding of a table.
     pub fn is_reactionless(&self) -> bool {
         self.is_reactionless
@@ -300,11 +335,8 @@ impl Planes {
     /// Which point (counted from 0) cannot be reached, and what b would do.
     pub fn serve(&self, points: &[Vector], b: f64) -> Result<Vec<PlanePoint>, (usize, Unreachable)> {
         let poses: Vec<Poses> = points.iter().map(|p| self.map.poses(*p, b)).collect();
-        if let Some(i) = poses.iter().position(|p| p.is_empty()) {
-            // A point that no b reaches says more than one that wants another b.
-            let nowhere = points.iter().position(|p| self.map.reach(*p).is_err());
-            let i = nowhere.unwrap_or(i);
-            return Err((i, self.why_not(points, i, b)));
+        if let Some(why) = common::unreached(&self.map, points, b) {
+            return Err(why);
         }
         let Some((first, others)) = poses.split_first() else { return Ok(Vec::new()) };
         let far = |x: &PlanePoint, y: &PlanePoint| (x.a[0] - y.a[0]).hypot(x.a[1] - y.a[1]);
@@ -326,130 +358,11 @@ impl Planes {
     /// The poses of points at the b nearest to the given one that serves all, turned rigidly to that b: the points move
     /// along with the workspace.
     pub fn serve_turned(&self, points: &[Vector], b: f64) -> Option<Vec<PlanePoint>> {
-        let common = self.common(points)?;
+        let common = common::common(&self.map, points)?;
         // A hair inside, so that rounding does not put the pose outside again.
         let nearest = common.nearest(b)?;
         let served = self.serve(points, nearest).or_else(|_| self.serve(points, common.inwards(nearest, 1e-9))).ok()?;
         Some(served.into_iter().map(|x| PlanePoint { a: x.a, b }).collect())
-    }
-
-    /// The b that serve all points; `None` if none does.
-    pub fn common(&self, points: &[Vector]) -> Option<BSet> {
-        let sets: Option<Vec<BSet>> = points.iter().map(|p| self.map.reach(*p).ok()).collect();
-        let common = BSet::overlap(&sets?);
-        (!common.intervals.is_empty()).then_some(common)
-    }
-
-    /// Why points have no b in common; `None` if some b serves all, or a point is out of every reach.
-    pub fn no_common(&self, points: &[Vector]) -> Option<NoCommon> {
-        let sets: Vec<BSet> = points.iter().map(|p| self.map.reach(*p).ok()).collect::<Option<_>>()?;
-        if !BSet::overlap(&sets).is_empty() {
-            return None;
-        }
-        let apart = |&[i, j]: &[usize; 2]| BSet::overlap(&[sets[i].clone(), sets[j].clone()]).is_empty();
-        let pair = (0..points.len()).flat_map(|i| (i + 1..points.len()).map(move |j| [i, j])).find(apart);
-        let others = |i: usize| {
-            let rest: Vec<BSet> = sets.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, s)| s.clone()).collect();
-            BSet::overlap(&rest)
-        };
-        let mends = (0..points.len()).filter_map(|i| self.mend(points[i], i, &others(i)));
-        let least = mends.min_by(|x, y| x.distance.total_cmp(&y.distance));
-        Some(NoCommon { pair, mend: least.map(|mend| self.proved(points, &others(mend.point), mend)) })
-    }
-
-    /// The nearest point to p that some b of a set reaches.
-    fn mend(&self, p: Vector, point: usize, others: &BSet) -> Option<Mend> {
-        const TRIES: usize = 48;
-        let at = |b: f64| self.boundary.nearest(p, b, p);
-        let gap = |b: f64| at(b).distance;
-        let mut best: Option<(f64, f64)> = None;
-        for [low, high] in &others.intervals {
-            let step = (high - low) / TRIES as f64;
-            let tries = (0..=TRIES).map(|i| low + step * i as f64);
-            let Some(b) = tries.min_by(|x, y| gap(*x).total_cmp(&gap(*y))) else { continue };
-            let (mut from, mut to) = ((b - step).max(*low), (b + step).min(*high));
-            // Golden section.
-            for _ in 0..40 {
-                let (s, t) = (from + 0.381_966 * (to - from), from + 0.618_034 * (to - from));
-                if gap(s) < gap(t) { to = t } else { from = s }
-            }
-            let middle = 0.5 * (from + to);
-            let b = [b, middle, from, to].into_iter().min_by(|x, y| gap(*x).total_cmp(&gap(*y))).unwrap_or(b);
-            if best.is_none_or(|(least, _)| gap(b) < least) {
-                best = Some((gap(b), b));
-            }
-        }
-        let (_, b) = best?;
-        let nearest = at(b);
-        Some(Mend { point, to: nearest.at, distance: nearest.distance, b, shown: None })
-    }
-
-    /// A move that rounding does not take away: a hair further where the end of it misses, and the same to be printed.
-    fn proved(&self, points: &[Vector], others: &BSet, mend: Mend) -> Mend {
-        let from = points[mend.point];
-        let with = |to: Vector| {
-            let mut points = points.to_vec();
-            points[mend.point] = to;
-            points
-        };
-        let common = |to: Vector| {
-            let set = BSet::overlap(&[others.clone(), self.map.reach(to).ok()?]).near(mend.b);
-            let gap = |[low, high]: &[f64; 2]| (mend.b - 0.5 * (low + high)).abs();
-            set.intervals.into_iter().min_by(|x, y| gap(x).total_cmp(&gap(y)))
-        };
-        let serves = |to: Vector, b: f64| self.serve(&with(to), b).is_ok();
-        let exact = [0.0, 1e-12, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6].into_iter().find_map(|share| {
-            let to = from + (1.0 + share) * (mend.to - from);
-            let [low, high] = common(to)?;
-            [mend.b, 0.5 * (low + high)].into_iter().find(|b| serves(to, *b)).map(|b| (to, b))
-        });
-        let shown = (3..=12).find_map(|decimals| {
-            // All numbers near by with so many decimals, the least move first.
-            let [x, y] = [mend.to.re, mend.to.im].map(|x| Decimal::nearest(x, decimals));
-            let mut around: Vec<([Decimal; 2], f64)> = (-2..=2)
-                .flat_map(|i| (-2..=2).map(move |j| [x.stepped(i), y.stepped(j)]))
-                .map(|to| (to, (Vector::new(to[0].value(), to[1].value()) - from).norm()))
-                .collect();
-            around.retain(|(_, far)| *far <= 1.02 * mend.distance || decimals > 8);
-            around.sort_by(|a, b| a.1.total_cmp(&b.1));
-            around.into_iter().find_map(|(to, far)| {
-                let at = Vector::new(to[0].value(), to[1].value());
-                let [low, high] = common(at)?;
-                let b = mend.b.clamp(low, high);
-                let inside = |x: f64| low <= x && x <= high && serves(at, x);
-                // Where the common b are few, the middle of them has more room than their end.
-                let b = [b, 0.5 * (low + high)].into_iter().filter_map(|b| Decimal::that(b, 4, inside));
-                let b = b.min_by_key(Decimal::decimals).filter(|b| b.decimals() <= decimals + 4)?;
-                Some(ShownMend { to, b, far, does: true })
-            })
-        });
-        match exact {
-            Some((to, b)) => Mend { to, distance: (to - from).norm(), b, shown, ..mend },
-            None => Mend { shown, ..mend },
-        }
-    }
-
-    fn why_not(&self, points: &[Vector], i: usize, b: f64) -> Unreachable {
-        let (x, y) = (points[i].re, points[i].im);
-        if let Err(reason) = self.map.reach(points[i]) {
-            return Unreachable::Anywhere { x, y, reason };
-        }
-        match (self.common(points), self.no_common(points)) {
-            (Some(common), _) => {
-                let serves = |b: f64| points.iter().all(|p| !self.map.poses(*p, b).is_empty());
-                let nearest = common.nearest(b);
-                let inner = [1e-6, 1e-3, 0.5].map(|share| nearest.map(|b| common.inwards(b, share)));
-                let nearest_b = inner.into_iter().flatten().find(|b| serves(*b));
-                let shown_b = nearest_b.and_then(|b| Decimal::that(b, 4, serves));
-                Unreachable::OnThisPlane { x, y, b, would_do: common.in_words(), nearest_b, shown_b }
-            }
-            (None, Some(why)) => Unreachable::NoCommonPlane(why),
-            // Another point is out of every reach.
-            (None, None) => {
-                let own = self.map.reach(points[i]).map(|set| set.in_words()).unwrap_or_default();
-                Unreachable::OnThisPlane { x, y, b, would_do: own, nearest_b: None, shown_b: None }
-            }
-        }
     }
 }
 

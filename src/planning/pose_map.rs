@@ -4,6 +4,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use super::common::{Reaching, common};
 use super::pose_constant::{Planes, Reach};
 use super::pose_space::{Lead, NoPoseSpace, PoseSpace};
 use super::posture::{Posture, Postures};
@@ -13,8 +14,6 @@ use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
 
 /// A point that a pose misses by less than this share of the reach is reached.
 const REACHED: f64 = 1e-9;
-/// Single b as near as this are the same, rad.
-const ONE_B: f64 = 1e-6;
 /// From how many poses the nearest one is sought, and by how much of the reach another has to be nearer.
 const STARTS: usize = 24;
 const CLEARLY: f64 = 1e-4;
@@ -106,19 +105,17 @@ impl PoseMap {
         }
     }
 
+    /// What reaches points by its b.
+    pub fn reaching(&self) -> &dyn Reaching {
+        match self {
+            Self::Planes(planes) => planes.map(),
+            Self::Space(space) => &**space,
+        }
+    }
+
     /// The b that serve all of several points, m; none if there is none.
     pub fn common(&self, points: &[Vector]) -> Option<BSet> {
-        // Two drives reach a point at single b, which points share up to rounding.
-        let slack = if self.angles() == 1 { ONE_B } else { 0.0 };
-        let sets: Option<Vec<BSet>> = points
-            .iter()
-            .map(|p| {
-                let mut set = self.b_of(*p)?;
-                set.intervals.iter_mut().for_each(|[low, high]| (*low, *high) = (*low - slack, *high + slack));
-                Some(set)
-            })
-            .collect();
-        Some(BSet::overlap(&sets?)).filter(|common| !common.is_empty())
+        common(self.reaching(), points)
     }
 
     /// Relative angles and b of a pose, rad.

@@ -53,7 +53,7 @@ pub(super) fn amended(
     let known = planes.take().filter(|(machine, _)| *machine == scenario.machine);
     let known = match known {
         None if scenario.machine.drives() == 3 => {
-            Planes::if_any(&scenario.machine)?.map(|planes| (scenario.machine.clone(), Arc::new(planes)))
+            Planes::of(&scenario.machine).ok().map(|planes| (scenario.machine.clone(), Arc::new(planes)))
         }
         known => known,
     };

@@ -9,11 +9,12 @@ use super::refusal::Refusal;
 use crate::mechanics::machine::{Chain, Inertia};
 use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use crate::planning::Motion;
+use crate::planning::common::Reaching;
 use crate::planning::following::follow::Bounds;
 use crate::planning::following::{Follower, Pull};
 use crate::planning::pose_constant::Planes;
 use crate::planning::pose_map::PoseMap;
-use crate::planning::pose_space::NoPoseSpace;
+use crate::planning::pose_space::{NoPoseSpace, PoseSpace};
 use crate::planning::reactionless::{BSet, Decimal};
 use crate::session::changes::{amended, changed, checked};
 use crate::session::scenario::{MAX_STEPS, Scenario};
@@ -32,14 +33,19 @@ pub struct Waiting {
 
 impl Waiting {
     fn of(scenario: &Scenario, planes: Option<&Planes>, why: Refusal) -> Self {
-        let Some(planes) = planes else { return Self { why, points: Vec::new() } };
-        let (task, map) = (&scenario.task, planes.map());
+        let task = &scenario.task;
+        let space = if planes.is_some() { None } else { PoseSpace::of(&scenario.machine).ok() };
+        let map: &dyn Reaching = match (planes, &space) {
+            (Some(planes), _) => planes.map(),
+            (None, Some(space)) => space,
+            (None, None) => return Self { why, points: Vec::new() },
+        };
         let unserved = |(i, p): (usize, Vector)| {
             let would_do = || {
-                let set = map.reach(p).ok()?;
+                let set = map.b_of(p).ok()?;
                 set.decimal(set.inwards(set.nearest(task.b)?, 1e-6), 4)
             };
-            map.poses(p, task.b).is_empty().then(|| (i, would_do()))
+            (!map.is_reached(p, task.b)).then(|| (i, would_do()))
         };
         Self { why, points: task.points().into_iter().enumerate().filter_map(unserved).collect() }
     }
@@ -97,9 +103,8 @@ impl Run {
     fn patient(scenario: &Scenario, known: Option<Arc<Planes>>) -> Result<Self, Refusal> {
         let planes = match known {
             Some(planes) => Some(planes),
-            // A machine of three drives that lacks them says why; of others only some tasks want them.
-            None if scenario.machine.drives() == 3 => Planes::if_any(&scenario.machine)?.map(Arc::new),
-            None => None,
+            // A machine that lacks them goes another way; the tasks that want them say so.
+            None => Planes::of(&scenario.machine).ok().map(Arc::new),
         };
         let keep_off = scenario.task.keep_off_change_points;
         let planes = planes.map(|planes| match planes.keep_off_change_points() == keep_off {
@@ -266,11 +271,8 @@ impl Run {
         let bound = scenario.pose_acceleration != self.scenario.pose_acceleration;
         if scenario.machine != self.scenario.machine || bound {
             let keep_off = scenario.task.keep_off_change_points;
-            let planes = match scenario.machine.drives() {
-                3 => Planes::if_any(&scenario.machine)?,
-                _ => None,
-            };
-            let planes = planes.map(|planes| Arc::new(planes.keeping_off_change_points(keep_off)));
+            let planes =
+                Planes::of(&scenario.machine).ok().map(|planes| Arc::new(planes.keeping_off_change_points(keep_off)));
             if let Guide::Follow(old) = self.simulation.guide() {
                 let map = PoseMap::of(&scenario.machine, planes.as_ref(), scenario.task.posture)?;
                 let bounds = bounds(&scenario, &map);

@@ -10,9 +10,10 @@ mod statements;
 
 pub use statements::{Lamp, Statement, Statements};
 
-use crate::mechanics::planar::PerDrive;
+use crate::mechanics::planar::{PerDrive, Vector};
+use crate::planning::curves::Samples;
 use crate::planning::timing::limits::{DriveLimit, LimitedQuantity, Limits};
-use crate::session::scenario::Scenario;
+use crate::session::scenario::{Scenario, TaskKind};
 use crate::settings::number::{Short, fixed, significant};
 use crate::simulation::audit::AuditFigure;
 use crate::simulation::frame::{Frame, Peaks, Phase, Reach};
@@ -49,8 +50,10 @@ pub struct Verdict {
     pub force: f64,
     /// Largest moment that tilts the base, from heights along the axis, N m: outside of the verdict.
     pub tilt: f64,
-    /// How far the end effector is from its target, m.
+    /// How far the end effector is from its target, m; from where the samples end, if these say where the drives go.
     pub miss: f64,
+    /// Whether it has a target: samples of drive angles say of no point that the end effector is to be there.
+    pub has_target: bool,
     /// A relative joint angle that passed its limit, and by how much at most, rad.
     pub past_limit: Option<(String, f64)>,
     /// The limit of a drive on torque or speed that was passed by most, and by what factor.
@@ -71,6 +74,15 @@ fn over(limits: &Limits, peaks: &Peaks) -> Option<(DriveLimit, f64)> {
     };
     let all = of(LimitedQuantity::Torque, peaks.torque).chain(of(LimitedQuantity::Speed, peaks.rate));
     all.filter(|(_, factor)| *factor > OVER).max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// Whether samples of drive angles lead, not a hand: then the target is only where they end.
+fn gives_drives(scenario: &Scenario, frame: &Frame) -> bool {
+    let task = &scenario.task;
+    let columns = task.samples.as_ref().map(Samples::columns);
+    let of_drives = task.kind == TaskKind::Given && columns == Some(scenario.machine.drives());
+    let [x, y] = task.to;
+    of_drives && (frame.target.at - Vector::new(x, y)).norm() <= MISS
 }
 
 /// Something to know beside a verdict: in two or three words, and in a sentence.
@@ -98,6 +110,7 @@ impl Verdict {
             force: peaks.force,
             tilt: peaks.tilt,
             miss: (frame.end_effector - frame.target.at).norm(),
+            has_target: !gives_drives(scenario, frame),
             past_limit: (by > PAST).then(|| (name(angle), by)),
             fault: frame.fault(),
             never_held: Some([frame.time, scenario.plant.payload.from]).filter(|[end, from]| {
@@ -185,7 +198,7 @@ impl Verdict {
             };
             add(short, format!("the {limit} goes up to {} times its limit", significant(factor)));
         }
-        if over && (self.miss > MISS || self.miss.is_nan()) {
+        if over && self.has_target && (self.miss > MISS || self.miss.is_nan()) {
             add("off its target", format!("ends {} m from its target", significant(self.miss)));
         }
         all

@@ -54,11 +54,11 @@ fn com(machine: &Machine, j: usize, e: &Units) -> Vector {
 fn same(machine: &Machine, found: &Imported, at: &[f64], noise: &mut Noise, is_urdf: bool) {
     let (n, other, name) = (machine.drives(), &found.machine, machine.name());
     assert_eq!(other.drives(), n, "{name}");
-    for k in 0..n {
+    for (k, at) in at.iter().enumerate().take(n) {
         assert_eq!(same_drive(machine, k, other), k, "{name}: the order of the drives");
         // Up to whole turns.
-        let off = Vector::from_polar(1.0, found.pose[k]) - Vector::from_polar(1.0, at[k]);
-        assert!(off.norm() < 1e-9, "{name}: drive {k} is at {} rad, was at {}", found.pose[k], at[k]);
+        let off = Vector::from_polar(1.0, found.pose[k]) - Vector::from_polar(1.0, *at);
+        assert!(off.norm() < 1e-9, "{name}: drive {k} is at {} rad, was at {at}", found.pose[k]);
     }
     let parts = machine.resolved_links();
     // Of two links of one drive that are pinned together URDF makes one.

@@ -8,7 +8,7 @@ use stillbase::mechanics::kinematics::end_effector;
 use stillbase::mechanics::machine::{Inertia, Machine, builtins};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 
-use super::python::{answers, models};
+use super::python::answers;
 use crate::arms::{THREE, TWO};
 use crate::random::{a_chain, a_machine};
 use crate::{Noise, Test};
@@ -125,9 +125,8 @@ fn every_machine_weighs_and_pulls_the_same() {
         }
         machines.push(Machine::new(spec).expect("a machine"));
     }
-    let count = models(64);
-    machines.extend((0..count * 5 / 8).map(|_| a_machine(&mut noise)));
-    machines.extend((0..count * 3 / 8).map(|i| a_chain(&mut noise, 1 + i % 8)));
+    machines.extend((0..40).map(|_| a_machine(&mut noise)));
+    machines.extend((0..24).map(|i| a_chain(&mut noise, 1 + i % 8)));
     let mut motions = Vec::new();
     for machine in &machines {
         let mut one = |most: f64| PerDrive::from_fn(machine.drives(), |_| noise.between(-most, most));

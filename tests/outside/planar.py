@@ -30,7 +30,6 @@ class Writer:
         self.sequence = self.r.choice(["xyz", "zyx", "XYZ", "zxz", "yZx"])
         self.weighing = self.r.choice(["auto", "auto", "auto", "true", "false"])
         self.classes = self.r.random() < 0.6
-        self.autolimits = self.r.random() < 0.8
         self.lines = []
         self.count = 0
         # Hinges in order: name, body, how it turns with u, its angle as drawn, its angle now, range, sign of its axis.
@@ -150,10 +149,8 @@ def serial(w, n):
         low, high = sorted([r.uniform(-4, 4), r.uniform(-4, 4)])
         limited = r.random() < 0.5
         extra = f'range="{text([w.unit(low), w.unit(high)])}"' if limited else ""
-        if limited and (not w.autolimits or r.random() < 0.3):
-            counts = w.autolimits or r.random() < 0.7
-            extra += f' limited="{str(counts).lower()}"'
-            limited = counts
+        if limited and r.random() < 0.3:
+            extra += ' limited="true"'
         if r.random() < 0.3:
             # A rotor before its link, on what carries it.
             ratio = r.choice([-1, 1]) * r.uniform(5, 60)
@@ -200,15 +197,11 @@ def actuators(w, n):
             most = r.uniform(1, 50)
             limits, torque = f'forcerange="{text([-most / 2, most])}"', times * most
         own = ""
-        if w.classes and r.random() < 0.3 and (w.autolimits or "force" not in limits):
+        if w.classes and r.random() < 0.3:
             # Whose range of control is no limit.
             own = 'class="arm"'
             if "ctrlrange" in limits:
                 torque = None
-        elif limits and not w.autolimits:
-            counts = r.random() < 0.7
-            limits += f' {"ctrl" if "ctrl" in limits else "force"}limited="{str(counts).lower()}"'
-            torque = torque if counts else None
         hinge["torque"] = torque
         w.actuators.append(f'<{kind} {own} {name} joint="{hinge["name"]}" {gear} {limits}/>')
 
@@ -220,7 +213,7 @@ def kept(w):
     w.hinges[upper]["drive"] = 0
     a, b, side = r.uniform(0.1, 0.3), r.uniform(0.35, 0.6), r.choice([-1, 1])
     drawn = r.uniform(-2, 2)
-    first = w.link(upper, a, [0, 1], drawn, extra='limited="true" ' + ('range="-3 3"' if w.is_radian else 'range="-170 170"'))
+    first = w.link(upper, a, [0, 1], drawn, extra='range="-3 3"' if w.is_radian else 'range="-170 170"')
     w.hinges[first]["drive"] = 1
     most = 3.0 if w.is_radian else np.radians(170.0)
     w.limits.append((first, -most, most, 1, 0))
@@ -303,8 +296,6 @@ def model(seed):
     compiler = f'<compiler angle="{"radian" if w.is_radian else "degree"}" eulerseq="{w.sequence}" inertiafromgeom="{w.weighing}"'
     if w.is_radian is False and r.random() < 0.5:
         compiler = compiler.replace('angle="degree" ', "")
-    if not w.autolimits:
-        compiler += ' autolimits="false"'
     if r.random() < 0.2:
         compiler += ' inertiagrouprange="0 3"' if w.weighing != "true" else ""
     if r.random() < 0.1:

@@ -12,12 +12,6 @@ pub fn is_required() -> bool {
     std::env::var_os("STILLBASE_REQUIRE_PYTHON").is_some_and(|word| word == "1")
 }
 
-/// How many random models a test takes; `STILLBASE_OUTSIDE_MODELS` asks for another number.
-pub fn models(usual: usize) -> usize {
-    let asked = std::env::var("STILLBASE_OUTSIDE_MODELS").ok().and_then(|count| count.parse().ok());
-    asked.unwrap_or(usual)
-}
-
 /// Why a package cannot be asked.
 pub fn missing(package: &str) -> Option<String> {
     let asked = python().args(["-c", &format!("import {package}, numpy")]).stdin(Stdio::null()).output();

@@ -2,6 +2,7 @@
 
 mod boundary;
 pub mod change_points;
+mod common;
 mod curve;
 mod given;
 mod least_reaction;

@@ -301,7 +301,8 @@ fn the_least_reaction_of_other_drives_holds_b_or_says_what_would_do() {
     let why = refused(four, &format!("kind = 'least-reaction'\n{ends}b = 2.9\n"));
     let b = why.split("; at b = ").nth(1).and_then(|rest| rest.split(' ').next()).expect("a b is named");
     assert!(
-        why.contains("a2 would pass its lower limit), and with other than three drives") && why.contains("want that"),
+        why.contains("m is outside the reactionless workspace of b = 2.900000 rad), and with other than three drives")
+            && why.contains("want that"),
         "{why}"
     );
     run(four, &format!("kind = 'least-reaction'\n{ends}b = {b}\n"));

@@ -5,6 +5,7 @@ use stillbase::session::scenario::{Change, Scenario};
 use stillbase::session::{Refusal, Run};
 
 use crate::support::Noise;
+use crate::support::random::{a_pose, a_space};
 
 /// The number that stands behind some words.
 fn number(text: &str, before: &str) -> Option<f64> {
@@ -18,6 +19,29 @@ fn with(scenario: &Scenario, change: &str) -> Scenario {
     Scenario { task: scenario.task.with(&change, &scenario.machine).expect("a task"), ..scenario.clone() }
 }
 
+/// The task as a refusal proposes it: its kind of proposal and every way to type it back; none if it proposes nothing.
+fn proposals(task: &Scenario, words: &str, is_joint_line: bool) -> (Option<usize>, Vec<Scenario>) {
+    if let Some(b) = number(words, " m would do, at b = ") {
+        let name = if words.contains("moving A by") { "from" } else { "to" };
+        let x = number(words, " m to (").expect("x");
+        let y = number(&words[words.find(" m to (").expect("a point")..], ", ").expect("y");
+        return (Some(0), vec![with(task, &format!("{name} = [{x:?}, {y:?}]\nb = {b:?}"))]);
+    }
+    if let Some(b) = number(words, "; b = ").or_else(|| number(words, "want b = ")) {
+        return (Some(1), vec![with(task, &format!("b = {b:?}"))]);
+    }
+    if words.contains("want b ") && is_joint_line {
+        let mut tries = Vec::new();
+        for range in words[words.find("want b ").expect("a range")..].split("from ").skip(1) {
+            let mut ends = range.split(' ');
+            let ends = [ends.next(), ends.nth(1)].map(|end| end.expect("an end").parse::<f64>().expect("a number"));
+            tries.extend(ends.map(|b| with(task, &format!("b = {b:?}"))));
+        }
+        return (Some(1), tries);
+    }
+    (None, Vec::new())
+}
+
 /// Refused tasks between random points, and what became of what was proposed: points, b, and how often nothing was.
 fn typed_back(shapes: &[&str], cases: usize, seed: u64) -> [usize; 3] {
     let base = Scenario { compare_b: None, ..Scenario::builtin("case-3").expect("built in") };
@@ -26,54 +50,78 @@ fn typed_back(shapes: &[&str], cases: usize, seed: u64) -> [usize; 3] {
     let mut refused = 0;
     while refused < cases {
         let mut coordinate = || (100.0 * noise.between(-1.0, 1.0)).round() / 100.0;
-        let [from, to] = [[coordinate(), coordinate()], [coordinate(), coordinate()]];
+        let ends = [[coordinate(), coordinate()], [coordinate(), coordinate()]];
         let b = (100.0 * noise.between(-3.0, 9.0)).round() / 100.0;
         let shape = shapes[refused % shapes.len()];
-        let task = with(&base, &format!("from = {from:?}\nto = {to:?}\nb = {b}\nshape = '{shape}'"));
-        let Err(refusal) = Run::new(&task) else { continue };
-        refused += 1;
-        let words = refusal.to_string();
-        let mut tries: Vec<Scenario> = Vec::new();
-        if let Some(b) = number(&words, " m would do, at b = ") {
-            let name = if words.contains("moving A by") { "from" } else { "to" };
-            let x = number(&words, " m to (").expect("x");
-            let y = number(&words[words.find(" m to (").expect("a point")..], ", ").expect("y");
-            tries.push(with(&task, &format!("{name} = [{x:?}, {y:?}]\nb = {b:?}")));
-            totals[0] += 1;
-        } else if let Some(b) = number(&words, "; b = ").or_else(|| number(&words, "want b = ")) {
-            tries.push(with(&task, &format!("b = {b:?}")));
-            totals[1] += 1;
-        } else if words.contains("want b from ") && shape == "joint-line" {
-            for range in words[words.find("want b ").expect("a range")..].split("from ").skip(1) {
-                let low = range.split(' ').next().expect("an end");
-                let high = range.split(' ').nth(2).expect("an end");
-                tries.extend([low, high].map(|b| {
-                    with(&task, &format!("b = {}", b.parse::<f64>().map(|b| format!("{b:?}")).expect("a number")))
-                }));
-            }
-            totals[1] += 1;
-        } else {
-            totals[2] += 1;
+        refused += usize::from(refused_and_typed(&base, shape, ends, b, &mut totals));
+    }
+    totals
+}
+
+/// Whether a task is refused; what is proposed then is typed back.
+fn refused_and_typed(base: &Scenario, shape: &str, [from, to]: [[f64; 2]; 2], b: f64, totals: &mut [usize; 3]) -> bool {
+    let task = with(base, &format!("from = {from:?}\nto = {to:?}\nb = {b}\nshape = '{shape}'"));
+    let Err(refusal) = Run::new(&task) else { return false };
+    let words = refusal.to_string();
+    let (kind, tries) = proposals(&task, &words, shape == "joint-line");
+    totals[kind.unwrap_or(2)] += 1;
+    for proposed in tries {
+        if let Err(again) = Run::new(&proposed) {
+            let n = base.machine.drives();
+            panic!("{n} drives, {shape} from {from:?} to {to:?} at b = {b}: {words}; typed back: {again}");
         }
-        for proposed in tries {
-            if let Err(again) = Run::new(&proposed) {
-                panic!("{shape} from {from:?} to {to:?} at b = {b}: {words}; typed back: {again}");
-            }
-        }
-        // The window's button takes the exact one.
-        if let Some(b) = refusal.mending_b() {
-            let exact = Run::new(&with(&task, &format!("b = {b:?}")));
-            assert!(exact.is_ok(), "{shape} from {from:?} to {to:?}: {words}; {b:?}");
-        }
-        if let Refusal::NoCommonPlane { why, .. } = &refusal
-            && let (Some(mend), "joint-line") = (why.mend, shape)
-        {
-            let name = if mend.point == 0 { "from" } else { "to" };
-            let exact = with(&task, &format!("{name} = [{:?}, {:?}]\nb = {:?}", mend.to.re, mend.to.im, mend.b));
-            assert!(Run::new(&exact).is_ok(), "from {from:?} to {to:?}: {mend:?}");
+    }
+    // The window's button takes the exact one.
+    if let Some(b) = refusal.mending_b() {
+        let exact = Run::new(&with(&task, &format!("b = {b:?}")));
+        assert!(exact.is_ok(), "{shape} from {from:?} to {to:?}: {words}; {b:?}");
+    }
+    if let Refusal::NoCommonPlane { why, .. } = &refusal
+        && let (Some(mend), "joint-line") = (why.mend, shape)
+    {
+        let name = if mend.point == 0 { "from" } else { "to" };
+        let exact = with(&task, &format!("{name} = [{:?}, {:?}]\nb = {:?}", mend.to.re, mend.to.im, mend.b));
+        assert!(Run::new(&exact).is_ok(), "from {from:?} to {to:?}: {mend:?}");
+    }
+    true
+}
+
+/// The same for machines of so many drives each, two points of each that some pose reaches.
+fn typed_back_on(drives: &[usize], shape: &str, tasks: usize, seed: u64) -> [usize; 3] {
+    let mut noise = Noise::of(seed);
+    let mut totals = [0; 3];
+    for n in drives {
+        let (machine, space) = a_space(&mut noise, *n);
+        let plain = Scenario::builtin("two-drive").expect("built in");
+        let base = Scenario { machine, compare_b: None, ..plain };
+        let base = with(&base, "kind = 'reactionless'\nvia = []");
+        for _ in 0..tasks {
+            let mut end = || {
+                let a = a_pose(&mut noise, &space);
+                let p = space.place(&space.lift(&a, noise.between(0.0, space.period())));
+                [p.re, p.im].map(|x| (1e3 * x).round() / 1e3)
+            };
+            let ends = [end(), end()];
+            let b = (100.0 * noise.between(-3.0, 9.0)).round() / 100.0;
+            refused_and_typed(&base, shape, ends, b, &mut totals);
         }
     }
     totals
+}
+
+#[test]
+fn what_is_proposed_for_any_number_of_drives_works_as_printed() {
+    let [points, b, nothing] = typed_back_on(&[2, 2, 2, 3, 3, 4, 4, 5], "joint-line", 8, 61);
+    assert!(points > 8 && b > 8, "{points} points, {b} b, {nothing} without");
+}
+
+#[test]
+#[ignore = "long: three thousand joint lines and three hundred lines of two to six drives"]
+fn what_is_proposed_for_any_number_of_drives_works_often() {
+    let all: Vec<usize> = (0..100).map(|i| 2 + i % 5).collect();
+    println!("{:?}", typed_back_on(&all, "joint-line", 30, 67));
+    let more: Vec<usize> = (0..60).map(|i| 3 + i % 3).collect();
+    println!("{:?}", typed_back_on(&more, "line", 5, 71));
 }
 
 #[test]

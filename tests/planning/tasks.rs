@@ -1,6 +1,7 @@
 //! Tasks: what is planned is what the machine then does, and what cannot be is refused with the reason.
 
 use stillbase::mechanics::planar::Vector;
+use stillbase::planning::common;
 use stillbase::planning::following::Stop;
 use stillbase::session::scenario::{Change, Scenario, Task};
 use stillbase::session::{Edit, Refusal, Run, Session, curves, replay};
@@ -103,7 +104,7 @@ fn the_least_move_mends() {
     let planes = run.planes().expect("it has planes");
     let points = [Vector::new(0.5, 0.5), Vector::new(-0.6, -0.2), Vector::new(0.1, 1.0)];
     for points in [&points[..2], &points[..]] {
-        let why = planes.no_common(points).expect("nothing in common");
+        let why = common::no_common(planes.map(), points).expect("nothing in common");
         assert_eq!(why.pair, Some([0, 1]));
         let Some(mend) = why.mend else {
             assert_eq!(points.len(), 3, "two can always be brought together");
@@ -113,7 +114,7 @@ fn the_least_move_mends() {
             let mut points = points.to_vec();
             let was = points[mend.point];
             points[mend.point] = was + share * (mend.to - was);
-            planes.common(&points)
+            common::common(planes.map(), &points)
         };
         assert!(moved(1.0 + 1e-6).is_some(), "{mend:?}");
         assert!(moved(0.999).is_none(), "{mend:?}");

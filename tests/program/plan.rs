@@ -283,7 +283,12 @@ fn import_proposes_for_any_number_of_drives() {
         let out = stillbase(args);
         assert!(out.status.code() == Some(1) && text(&out.stderr).contains(said), "{}", text(&out.stderr));
     }
-    fails(&["import", &q2, "--machine", "scara"], 1, &["no pose constant b", "stillbase design"]);
+    let bare = stillbase(&["import", &q2, "--machine", "scara", "--json"]);
+    let said = text(&bare.stderr);
+    assert!(bare.status.code() == Some(1) && said.contains("no pose constant b") && said.contains("stillbase design"));
+    let bare: Value = serde_json::from_slice(&bare.stdout).expect("an object");
+    assert!(bare["given"]["peak_base_moment"].as_f64().expect("a moment") > 1e-3, "what it does to the base: {bare}");
+    assert!(bare["reason"].as_str().expect("a reason").contains("no pose constant b"));
     let out = stillbase(&["import", &tip2, "--machine", "two-drive", "--json"]);
     let got: Value = serde_json::from_str(text(&out.stdout)).expect("an object");
     assert!(got["feasible"] == json!(false) && got["given"]["peak_base_moment"].as_f64().expect("a moment") > 0.1);
@@ -327,6 +332,97 @@ fn plan_has_every_kind_for_other_numbers_of_drives() {
         &["along one curve, and B lies 0.413 m beside it: want it at (0.278797726, 0.144864307) m"],
     );
     fails(&["plan", "two-drive", "0.5,0.2", "0.6,0.1", "--kind", "least-reaction"], 2, &["no b to choose"]);
+}
+
+/// What cannot hold a b is planned all the same, with what it does to the base.
+#[test]
+fn plan_has_what_unbalanced_machines_can_do() {
+    let folder = Folder::new("cli");
+    let file = word(folder.file("bare.toml", include_str!("../../assets/machines/nine-link-bare.toml")));
+    let points = ["0.5,0.5", "0.55,0.9"];
+    // The scenario of that name, and the machine alone.
+    let named = object(&[&["plan", "nine-link-bare"], &points[..]].concat());
+    assert_eq!(named["feasible"], json!(true));
+    let bare = [&["plan", &file], &points[..]].concat();
+    let got = object(&bare);
+    assert!(got["feasible"] == json!(true) && got["peak_base_moment"].as_f64().expect("a moment") > 1e-3);
+    let said = stillbase(&bare);
+    let said = text(&said.stderr).to_owned();
+    assert!(said.contains("no pose constant b") && said.contains("planned as minimum-norm"), "{said}");
+    for (kind, felt) in [("minimum-norm", true), ("zero-momentum", false)] {
+        let got = object(&[&bare[..], &["--kind", kind]].concat());
+        let peak = got["peak_base_moment"].as_f64().expect("a moment");
+        assert_eq!(peak > 1e-5, felt, "{kind}: {peak}");
+    }
+    for kind in ["reactionless", "change-b"] {
+        fails(&[&bare[..], &["--kind", kind]].concat(), 1, &["no pose constant b"]);
+    }
+}
+
+/// `check`, `reach` and `plan` say the same of whether there is a b.
+#[test]
+fn whether_there_is_a_b_is_said_in_the_same_words() {
+    for (name, word) in
+        [("nine-link", "exact"), ("nine-link-bare", "none"), ("scara", "none"), ("counter-rotating", "unneeded")]
+    {
+        assert_eq!(object(&["check", name])["pose_constant"], json!(word), "{name}");
+        let checked = prints(&["check", name]);
+        let reached = stillbase(&["reach", name, "0.4,0.3"]);
+        match word {
+            "none" => {
+                let why = text(&reached.stderr).trim().trim_start_matches("stillbase: ").to_owned();
+                assert!(reached.status.code() == Some(1) && checked.contains(&why), "{name}: {why}\n{checked}");
+            }
+            "exact" => assert!(reached.status.success() && !text(&reached.stderr).contains("note"), "{name}"),
+            _ => {}
+        }
+    }
+    let nearly = ["nine-link", "--set", "link.5.com=-0.012"];
+    assert_eq!(object(&[&["check"], &nearly[..]].concat())["pose_constant"], json!("nearly"));
+    let said = stillbase(&["reach", "nine-link", "0.5,0.5", "--set", "link.5.com=-0.012"]);
+    let note = text(&said.stderr).lines().next().expect("a note").split_once(": b = ").expect("its b").1.to_owned();
+    assert!(prints(&[&["check"], &nearly[..]].concat()).contains(&note), "{note}");
+}
+
+/// Three drives without limits: no angle, no limit.
+#[test]
+fn three_drives_without_angles_are_planned() {
+    let folder = Folder::new("cli");
+    let bare = NINE_LINK.split("[[angle]]").next().expect("a head");
+    let file = word(folder.file("free.toml", bare));
+    let points = ["0.5,0.5", "0.55,0.9"];
+    for extra in [&["--b", "2.4"][..], &["--b", "2.4", "--shape", "line"], &["--kind", "minimum-norm"]] {
+        let got = object(&[&["plan", &file], &points[..], extra].concat());
+        assert_eq!(got["feasible"], json!(true), "{extra:?}");
+        let is_held = !extra.contains(&"minimum-norm");
+        assert_eq!(got["peak_base_moment"].as_f64().expect("a moment") < 1e-8, is_held, "{extra:?}");
+    }
+    let free = object(&["reach", &file, points[0]]);
+    assert!(!free["points"][0]["intervals"].as_array().expect("a list").is_empty());
+}
+
+/// A b that is typed is never replaced.
+#[test]
+fn change_b_begins_where_it_is_told() {
+    for (name, a, b) in [("nine-link", "0.5,0.5", "-0.6,-0.2"), ("four-drive", "0.6,0.5", "-0.55,-0.25")] {
+        let base = ["plan", name, a, b, "--kind", "change-b"];
+        let out = stillbase(&[&base[..], &["--b", "0.1"]].concat());
+        let said = text(&out.stderr).to_owned();
+        assert!(out.status.code() == Some(1) && said.contains("b = 0.100000 rad: want b"), "{name}: {said}");
+        let typed = said.split("want b from ").nth(1).and_then(|rest| rest.split(' ').next()).expect("a b").to_owned();
+        let got = object(&[&base[..], &["--b", &typed]].concat());
+        near(&got["b"], &json!(typed.parse::<f64>().expect("a number")), 1e-9, name);
+    }
+}
+
+/// A posture counts with the shape that is typed beside it.
+#[test]
+fn a_posture_counts_with_what_is_typed_beside_it() {
+    let folder = Folder::new("cli");
+    let file = word(folder.file("four.toml", include_str!("../../assets/machines/four-drive.toml")));
+    let line = ["plan", &file, "0.6,0.5", "0.55,0.55", "--b", "2.9", "--set", "task.posture=mid-range"];
+    assert_eq!(object(&[&line[..], &["--shape", "line"]].concat())["feasible"], json!(true));
+    fails(&line, 2, &["task.posture has no use here", "the shape line"]);
 }
 
 /// The ways of a task that a machine has, as many as it has.

@@ -1,10 +1,8 @@
 //! Equations with numbers in them: both sides of every law agree for machines and states at random, and what the paper
 //! gives of its own machine stands where the paper has it.
 
-use std::fmt::Write as _;
-
 use stillbase::mechanics::balance::{Condition, Preset};
-use stillbase::mechanics::machine::{Counterweight, Inertia, MAX_IN_A_ROW, MAX_LINKS, Machine, builtin, parse};
+use stillbase::mechanics::machine::{Counterweight, Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive};
 use stillbase::planning::Reference;
 use stillbase::session::Session;
@@ -271,48 +269,4 @@ fn numbers_stand_below_their_symbols() {
     assert_eq!(symbols, ["−m₈ l₃ l_c8", "+m₉ l₅ l_c9", "=", "0"]);
     let numbers: Vec<String> = cells.iter().map(|cell| format!("{}{}", cell.number_sign, cell.number)).collect();
     assert_eq!(numbers, ["−0.0003", "+0.0003", "=", "0.0000"]);
-}
-
-/// A machine that holds as much as one may: a chain of as many links as may hang in a row, again and again, with a
-/// counterweight on every link.
-fn the_largest(drives: usize) -> Machine {
-    let (links, in_a_row) = (MAX_LINKS, MAX_IN_A_ROW);
-    let mut text = String::from("name = \"largest\"\n");
-    for k in 1..=drives {
-        writeln!(text, "[[drive]]\nname = \"{k}\"").expect("a string");
-    }
-    for j in 0..links {
-        let on = match j % in_a_row {
-            0 => "\"base\"".to_owned(),
-            _ => format!("{{ link = \"{}\" }}", j - 1),
-        };
-        let drive = j % drives + 1;
-        writeln!(
-            text,
-            "[[link]]\nname = \"{j}\"\ndrive = \"{drive}\"\nattach = {on}\nlength = 0.1\nmass = 0.1\ninertia = 0.001\n\
-             com = 0.05\n[[counterweight]]\nlink = \"{j}\"\nmass = 0.1\nat = -0.05"
-        )
-        .expect("a string");
-    }
-    writeln!(text, "[end_effector]\nlink = \"{}\"", in_a_row - 1).expect("a string");
-    parse(&text, "largest").expect("a machine")
-}
-
-/// What is said of it grows with the square of the links in a row, and no further: pairs of lengths of each body.
-#[test]
-fn what_is_said_of_the_largest_machine_has_an_end() {
-    let mut noise = Noise::of(91);
-    let drives = 3;
-    let machine = the_largest(drives);
-    let state = State::given(Reference {
-        q: DriveAngles(PerDrive::from_fn(drives, |_| noise.between(-3.0, 3.0))),
-        qd: PerDrive::from_fn(drives, |_| 1.0),
-        qdd: PerDrive::from_fn(drives, |_| 1.0),
-    });
-    let all = of(&machine, &state);
-    let lines = all.iter().filter_map(|equation| equation.lines.as_ref().ok()).flatten();
-    let terms = lines.flat_map(|line| line.left.iter().chain(&line.right));
-    let parts: usize = terms.map(|term| 1 + term.parts.len()).sum();
-    let bodies = 2 * MAX_LINKS;
-    assert!(parts < bodies * MAX_IN_A_ROW * MAX_IN_A_ROW, "{parts} parts");
 }

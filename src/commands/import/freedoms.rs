@@ -38,7 +38,7 @@ pub fn of_drives(asked: &Asked, judge: &Judge, space: &PoseSpace, samples: &Samp
     let mut candidates = Vec::new();
     let mut lost = None;
     if asked.keep != Some(Keep::Joints) {
-        if space.drives() < 4 {
+        if space.drives() < 3 {
             lost = Some(format!(
                 "{} held to a b move the end effector along one curve of their own",
                 counted(space.drives(), "drive")
@@ -80,7 +80,7 @@ pub fn of_tip(asked: &Asked, judge: &Judge, space: &PoseSpace, samples: &Samples
         let table = minimum_norm_curve(judge.machine.end_effector(), q, &curve).ok()?;
         Some(running(table, samples))
     };
-    if space.drives() < 4 {
+    if space.drives() < 3 {
         let given = usual(asked.b.unwrap_or(0.0));
         let candidates = on_curve(judge, space, samples, given.as_ref());
         return Ok(Ways { given, candidates });
@@ -171,7 +171,7 @@ fn on_curve(
     task.map(|task| vec![Candidate { way: "turned", why, task }]).ok_or_else(|| "the samples give no spline".into())
 }
 
-/// Where every motion is reactionless: as it is given.
+/// As it is given: where every motion is reactionless, or none can be proposed.
 pub fn as_given(judge: &Judge, samples: &Samples, drives: bool) -> Result<Ways, Failure> {
     let sparse = || Failure::wrong_input("want times further apart");
     let path = match drives {

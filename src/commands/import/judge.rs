@@ -12,7 +12,6 @@ use stillbase::planning::timing::Limits;
 use stillbase::session::scenario::{Scenario, Task};
 use stillbase::session::{Run, replay};
 
-use crate::commands::failure::Failure;
 use crate::commands::input::DEFAULT_SCENARIO;
 
 /// What a motion does, if it is followed exactly.
@@ -75,26 +74,24 @@ pub struct Judge {
 
 /// What the machine can hold.
 pub enum Poses {
-    /// Three drives: planes.
+    /// Three drives with planes.
     Planes(Box<Planes>),
-    /// Any other number.
+    /// Any other machine with a b.
     Space(PoseSpace),
     /// Every motion is reactionless.
     Free,
+    /// Nothing: motions are assessed, none is proposed.
+    None(NoPoseSpace),
 }
 
 impl Poses {
     /// Of a machine.
-    ///
-    /// # Errors
-    /// Why it can hold nothing.
-    pub fn of(machine: &Machine) -> Result<Self, Failure> {
-        if machine.drives() == 3 {
-            return Ok(Self::Planes(Box::new(Planes::of(machine)?)));
-        }
-        match PoseSpace::of(machine) {
-            Err(NoPoseSpace::Free) => Ok(Self::Free),
-            space => Ok(Self::Space(space?)),
+    pub fn of(machine: &Machine) -> Self {
+        match (Planes::of(machine), PoseSpace::of(machine)) {
+            (Ok(planes), _) => Self::Planes(Box::new(planes)),
+            (_, Ok(space)) => Self::Space(space),
+            (_, Err(NoPoseSpace::Free)) => Self::Free,
+            (_, Err(why)) => Self::None(why),
         }
     }
 }

@@ -126,10 +126,7 @@ impl<'a> Bodies<'a> {
 
     /// Mass, centre of mass and inertia of a body on the axes of the base.
     fn weight(&mut self, open: &Open<'a>, frame: &Isometry3<f64>) -> Result<Solid, ImportError> {
-        let body = open.body;
-        // Where nothing has a mass but what the file gives all: as far from its own root as that is from its parent's.
-        let at = Point3::from(vector(body, "pos")?.unwrap_or_default());
-        let none = Solid::none((frame * at).coords);
+        let (body, none) = (open.body, Solid::none(frame.translation.vector));
         let inertial = child(body, "inertial");
         let mut shapes = none;
         let is_weighed = match self.compiler.weighing {

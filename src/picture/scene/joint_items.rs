@@ -47,6 +47,11 @@ pub(super) fn draw_pose(scene: &mut Scene, palette: &Palette, pose: [f64; 3], ho
     scene.markers.push(ring.edged(palette.ink, 2.0));
 }
 
+/// What the surface of a b is called, rad: that of a machine whose λ changes with the pose keeps no moment from the base.
+pub(super) fn named(b: f64, is_reactionless: bool) -> String {
+    format!("b = {b:.3} rad{}", if is_reactionless { "" } else { ", not reactionless" })
+}
+
 /// The named ends of a path; a closed one has one.
 pub(super) fn draw_ends(scene: &mut Scene, palette: &Palette, [first, last]: [[f32; 3]; 2]) {
     let ends = [("A", first, Anchor::Right, -11.0), ("B", last, Anchor::Left, 11.0)];

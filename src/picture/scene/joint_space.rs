@@ -304,7 +304,7 @@ impl JointSpace {
         let taken = [0, 1].iter().all(|i| (frame.a[*i] - self.corners[2][*i]).abs() < 0.8);
         let (corner, other) = if taken { (polygon[0], polygon[2]) } else { (polygon[2], polygon[0]) };
         let at = [0, 1, 2].map(|k| corner[k] + 0.1 * (corner[k] - other[k]));
-        let text = format!("b = {b:.3} rad");
+        let text = joint_items::named(b, self.planes.is_reactionless());
         scene.labels.push(Label::new("plane/label", at, [0.0; 2], text, palette.amber, 12.5, Anchor::Centre));
         self.limits(scene, palette, &polygon);
         let outline = Line::new("plane/boundary", self.outline.clone(), if hot { 3.2 } else { 2.0 }, palette.amber);

@@ -294,7 +294,7 @@ impl Section {
         let width = if hot { 3.4 } else { 2.2 };
         scene.lines.push(Line::new("plane/boundary", [closed(&part)], width, palette.amber).on_top());
         if let Some(at) = self.label(&part, self.pose(frame)) {
-            let text = format!("b = {b:.3} rad");
+            let text = joint_items::named(b, self.space.is_reactionless());
             let label = Label::new("plane/label", at, [0.0, -14.0], text, palette.amber, 12.5, Anchor::Centre);
             scene.labels.push(label);
         }

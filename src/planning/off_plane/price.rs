@@ -25,7 +25,7 @@ use crate::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use crate::planning::curves::PathPoint;
 use crate::planning::curves::path::Path;
 use crate::planning::curves::table::PathTable;
-use crate::planning::reactionless::{BSet, NoReach, PlaneMap, PlanePoint};
+use crate::planning::reactionless::{BSet, PlaneMap, PlanePoint};
 use crate::planning::timing::law::TimeLaw;
 use crate::settings::number::counted;
 
@@ -233,32 +233,6 @@ pub fn nearest_poses(map: &PlaneMap, points: [Vector; 2], b: [f64; 2]) -> Option
     let apart = |[x, y]: &[PlanePoint; 2]| (x.a[0] - y.a[0]).hypot(x.a[1] - y.a[1]);
     let pairs = poses[0].iter().flat_map(|x| poses[1].iter().map(move |y| [*x, *y]));
     pairs.min_by(|p, q| apart(p).total_cmp(&apart(q)))
-}
-
-/// Poses of two points, m, at the b of each that lie nearest together: the move with the least price. Where the points
-/// share a plane it is free, at the common b nearest to `near`, rad. Of several poses the two nearest together are
-/// taken, as a straight joint line may pass from sheet to sheet.
-///
-/// # Errors
-/// Which point (0 or 1) cannot be reached, and why.
-pub fn least_change(map: &PlaneMap, points: [Vector; 2], near: f64) -> Result<[PlanePoint; 2], (usize, NoReach)> {
-    let sets = [map.reach(points[0]).map_err(|e| (0, e))?, map.reach(points[1]).map_err(|e| (1, e))?];
-    let [first, second] = nearest_planes(&sets[0], &sets[1], near).ok_or((0, NoReach::Limits))?;
-    let free = first == second;
-    let inner = |b: f64, set: &BSet, share: f64| set.inwards(b, share);
-    // An end of an interval may miss its pose by rounding: then a little further inside.
-    for share in INWARDS {
-        let b = if free {
-            let common = BSet::overlap(&sets);
-            [inner(first, &common, share); 2]
-        } else {
-            [inner(first, &sets[0], share), inner(second, &sets[1], share)]
-        };
-        if let Some(pair) = nearest_poses(map, points, b) {
-            return Ok(pair);
-        }
-    }
-    Err((usize::from(!map.poses(points[0], first).is_empty()), NoReach::Limits))
 }
 
 /// The straight joint line between two poses, whatever their b; with any law b goes as the law does. Limits on (a_1,

@@ -84,6 +84,7 @@ pub fn between(low: f64, high: f64) -> String {
         (from.value <= to.value).then_some([from, to])
     });
     match ends {
+        Some([from, to]) if from == to => format!("= {from}"),
         Some([from, to]) => format!("from {from} to {to}"),
         None => format!("= {}", Decimal::nearest(0.5 * (low + high), MOST_DECIMALS)),
     }

@@ -5,6 +5,7 @@ use crate::mechanics::dynamics::Surroundings;
 use crate::mechanics::machine::Inertia;
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::Motion;
+use crate::planning::common::Reaching;
 use crate::planning::curves::path::{Chained, SameTip, minimum_norm_curve};
 use crate::planning::curves::{Curve, Path};
 use crate::planning::following::{Rule, trace};
@@ -53,7 +54,8 @@ pub(super) fn parts(scenario: &Scenario, planes: &Planes) -> Result<Vec<(Path, f
     let task = &scenario.task;
     let points = task.points();
     match (task.kind, task.shape()) {
-        (TaskKind::Reactionless, _) => reactionless(task, planes).map_err(|refusal| proved(task, planes, refusal)),
+        (TaskKind::Reactionless, _) => reactionless(task, planes)
+            .map_err(|refusal| proved(task, planes.map(), &|task| reactionless(task, planes).map(|_| ()), refusal)),
         (TaskKind::MinimumNorm, _) => minimum_norm(scenario, planes, &points),
         _ => {
             if !task.via.is_empty() || task.closed {
@@ -78,9 +80,13 @@ pub(super) fn reactionless(task: &Task, planes: &Planes) -> Result<Vec<(Path, f6
 }
 
 /// A refusal that proposes only what has been tried: points that share a b may still be joined by no path on its plane.
-pub(super) fn proved(task: &Task, planes: &Planes, refusal: Refusal) -> Refusal {
+pub(super) fn proved(
+    task: &Task,
+    map: &dyn Reaching,
+    goes: &dyn Fn(&Task) -> Result<(), Refusal>,
+    refusal: Refusal,
+) -> Refusal {
     let at = |task: &Task, b: f64| Task { b, ..task.clone() };
-    let goes = |task: &Task| reactionless(task, planes);
     // A refusal of a path on one plane may name another plane.
     let another = |why: &Refusal| match why {
         Refusal::Blocked(blocked) => blocked.nearest_b.zip(blocked.shown_b),
@@ -105,14 +111,14 @@ pub(super) fn proved(task: &Task, planes: &Planes, refusal: Refusal) -> Refusal 
             Refusal::NoCommonPlane { said: why.in_words(&|i| task.name_of(i)), why }
         }
         Refusal::Unreachable { .. } if task.shape() != Shape::JointLine || task.keep_off_change_points => {
-            tried(planes, refusal, |b| goes(&at(task, b)).map(|_| ()))
+            tried(map, refusal, |b| goes(&at(task, b)))
         }
         other => other,
     }
 }
 
 /// A refusal for a b that does not reach a point: the b nearest to it with which the whole path goes, or what stops it.
-pub(super) fn tried(planes: &Planes, refusal: Refusal, goes: impl Fn(f64) -> Result<(), Refusal>) -> Refusal {
+pub(super) fn tried(map: &dyn Reaching, refusal: Refusal, goes: impl Fn(f64) -> Result<(), Refusal>) -> Refusal {
     let Refusal::Unreachable {
         point,
         unreachable: Unreachable::OnThisPlane { x, y, b, nearest_b: Some(nearest), shown_b: Some(shown), .. },
@@ -137,7 +143,7 @@ pub(super) fn tried(planes: &Planes, refusal: Refusal, goes: impl Fn(f64) -> Res
     {
         return made(format!("b = {shown} rad"), Some(nearest), Some(shown));
     }
-    let own = planes.map().reach(Vector::new(*x, *y)).ok();
+    let own = map.b_of(Vector::new(*x, *y)).ok();
     for share in [0.1, 0.3, 0.6, 1.0, 1.4, 1.7, 1.9] {
         let inner = own.as_ref().and_then(|set| set.decimal(set.inwards(*nearest, share), 4));
         if let Some(shown) = inner.filter(|b| goes(b.value()).is_ok()) {

@@ -1,20 +1,22 @@
 //! Tasks of machines that have no plane of three drives: with one, two, four and more.
 
-use super::along::{Parts, along_parts, curves, timed};
+use super::along::{Parts, along_parts, curves, proved, refusal, timed};
 use super::off_plane::smooth;
 use super::plan::{Plan, dynamics_of, keeps_rules};
 use super::pose::{faced, reached, start};
 use super::{given, off_space};
 use crate::mechanics::planar::{DriveAngles, Vector};
 use crate::planning::Forecast;
+use crate::planning::common::unreached;
 use crate::planning::curves::Path;
 use crate::planning::curves::path::{least_rate_curve, minimum_norm_curve};
 use crate::planning::off_plane::b_course::Reaction;
 use crate::planning::off_plane::least_reaction::{FixedB, MinimumNorm, Verdicts};
+use crate::planning::pose_constant::{Planes, Unreachable};
 use crate::planning::pose_space::{NoPoseSpace, PoseSpace};
 use crate::planning::posture::{Posture, Postures};
 use crate::planning::reactionless::BSet;
-use crate::planning::timing::Limits;
+use crate::planning::timing::{Limits, TimeLaw};
 use crate::session::refusal::Refusal;
 use crate::session::scenario::{Corners, Scenario, Shape, Task, TaskKind};
 use crate::settings::number::Short;
@@ -29,7 +31,7 @@ pub(super) fn plan(scenario: &Scenario) -> Result<Plan, Refusal> {
         return given::given(scenario, None);
     }
     match task.kind {
-        TaskKind::Reactionless => along_parts(scenario, &|scenario| reactionless(scenario)),
+        TaskKind::Reactionless => held(scenario),
         TaskKind::MinimumNorm => along_parts(scenario, &|scenario| minimum_norm(scenario)),
         TaskKind::SameTip => along_parts(scenario, &|scenario| off_space::same_tip(scenario)),
         TaskKind::ChangeB => off_space::change_b(scenario),
@@ -37,6 +39,18 @@ pub(super) fn plan(scenario: &Scenario) -> Result<Plan, Refusal> {
         TaskKind::LeastReaction => least_reaction(scenario),
         TaskKind::Given => given::given(scenario, None),
     }
+}
+
+/// With b held; a refusal proposes only what has been tried.
+fn held(scenario: &Scenario) -> Result<Plan, Refusal> {
+    let task = &scenario.task;
+    along_parts(scenario, &|scenario| reactionless(scenario)).map_err(|refusal| {
+        let Ok(space) = PoseSpace::of(&scenario.machine) else { return refusal };
+        // Where a path goes does not depend on the time law.
+        let own = |task: &Task| Scenario { task: Task { law: TimeLaw::Quintic, ..task.clone() }, ..scenario.clone() };
+        let goes = |task: &Task| along_parts(&own(task), &|scenario| reactionless(scenario)).map(|_| ());
+        proved(task, &space, &goes, refusal)
+    })
 }
 
 /// Along the end effector's curves with b held, where it can be: then nothing reaches the base. Between which b a path
@@ -56,7 +70,7 @@ fn least_reaction(scenario: &Scenario) -> Result<Plan, Refusal> {
         )));
     }
     // With any use of the freedoms that are left.
-    let held = |b: f64| {
+    let holding = |b: f64| {
         let all = [Posture::LeastRates, Posture::MidRange, Posture::Orientation, Posture::LeastTorque];
         let mut refused = None;
         for posture in all {
@@ -76,24 +90,30 @@ fn least_reaction(scenario: &Scenario) -> Result<Plan, Refusal> {
         }
         Err(refused.unwrap_or_else(|| Refusal::NoWay("A has no pose".into())))
     };
-    let why = match held(task.b) {
+    let why = match holding(task.b) {
         Ok(plan) => return Ok(Plan { verdicts: Some(nothing(scenario, &plan)?), ..plan }),
-        Err(why @ Refusal::Unreachable { .. }) => return Err(why),
+        Err(why @ Refusal::Unreachable { unreachable: Unreachable::Anywhere { .. }, .. }) => return Err(why),
+        Err(Refusal::Unreachable { point, unreachable }) if point == task.name_of(0) => {
+            return Err(Refusal::Unreachable { point, unreachable });
+        }
         Err(why) => why,
     };
     let sets: Option<Vec<BSet>> = task.points().iter().map(|p| space.reach(*p).ok()).collect();
     let common = BSet::overlap(&sets.unwrap_or_default());
     let tries =
         common.nearest(task.b).into_iter().flat_map(|b| [0.1, 0.4, 0.7, 1.0, 1.3, 1.6].map(|to| common.inwards(b, to)));
-    let does = tries.filter_map(|b| common.decimal(b, 4)).find(|b| held(b.value()).is_ok());
+    let does = tries.filter_map(|b| common.decimal(b, 4)).find(|b| holding(b.value()).is_ok());
     let would_do = match does {
         Some(b) => format!("at b = {b} rad it can: want that"),
         None => "want minimum-norm, or change-b from point to point".into(),
     };
+    let only = match Planes::of(&scenario.machine) {
+        Err(lacking) if drives == 3 => format!("it can change on the way only on planes: {lacking}"),
+        _ => "with other than three drives it does not change on the way".into(),
+    };
     let why = why.to_string();
     Err(Refusal::Task(format!(
-        "b = {} rad cannot be held along this path ({}), and with other than three drives it does not change on the way; \
-         {would_do}",
+        "b = {} rad cannot be held along this path ({}), and {only}; {would_do}",
         Short(task.b),
         why.split(": want").next().unwrap_or(&why)
     )))
@@ -124,16 +144,20 @@ fn reactionless(scenario: &Scenario) -> Result<Parts, Refusal> {
         space => (space?, false),
     };
     let points = task.points();
+    if !free && let Some((i, why)) = unreached(&space, &points, task.b) {
+        return Err(refusal(task, i, why));
+    }
     match task.shape() {
         Shape::JointLine => joint_lines(scenario, &space, &points, free),
         _ if free => by_least_rates(scenario, reached(task, &space, 0, points[0])?, None),
-        _ if space.drives() < 4 => Err(Refusal::Task(format!(
+        _ if space.drives() < 3 => Err(Refusal::Task(format!(
             "while b is held the end effector of a machine with {} drives has its own way: want the shape joint-line",
             space.drives()
         ))),
         _ => {
-            let start = faced(scenario, &space, 0, points[0], (&space.middle(), None))?;
-            if task.posture == Posture::LeastRates {
+            let start = faced(scenario, &space, (&points, 0), (&space.middle(), None))?;
+            // Three drives have one motion of each b.
+            if task.posture == Posture::LeastRates || space.drives() == 3 {
                 return by_least_rates(scenario, start, Some(&space));
             }
             in_posture(scenario, &Postures::of(&scenario.machine, &space, task.posture), start)
@@ -146,14 +170,20 @@ fn joint_lines(scenario: &Scenario, space: &PoseSpace, points: &[Vector], free: 
     let (task, machine) = (&scenario.task, &scenario.machine);
     let hand = machine.resolved_links()[machine.end_link()].drive;
     if task.corners == Corners::Blend && (points.len() > 2 || task.closed) {
-        let why = "corners of joint lines are rounded off for three drives only: want corners = stop";
-        return Err(Refusal::Task(why.into()));
+        let why = match Planes::of(machine) {
+            Err(lacking) if machine.drives() == 3 => {
+                format!("corners of joint lines are rounded off on planes only: {lacking}, or corners = stop")
+            }
+            _ => "corners of joint lines are rounded off for three drives only: want corners = stop".into(),
+        };
+        return Err(Refusal::Task(why));
     }
     let mut near = space.middle();
     let mut q: Vec<DriveAngles> = Vec::with_capacity(points.len() + 1);
     for (i, p) in points.iter().enumerate() {
         let kept = q.first().map(|q| q[hand]);
-        let pose = if free { reached(task, space, i, *p)? } else { faced(scenario, space, i, *p, (&near, kept))? };
+        let pose =
+            if free { reached(task, space, i, *p)? } else { faced(scenario, space, (points, i), (&near, kept))? };
         near = space.angles(&pose);
         q.push(pose);
     }

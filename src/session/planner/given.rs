@@ -89,15 +89,16 @@ fn sampled(scenario: &Scenario, curve: &Curve) -> Result<PathTable, Refusal> {
         Err(NoPoseSpace::Free) => return Ok(minimum_norm_curve(tip, start_of(scenario)?, curve)?),
         space => space?,
     };
-    if space.drives() < 4 {
+    if space.drives() < 3 {
         return Err(Refusal::Task(format!(
             "while b is held the end effector of a machine with {} has its own way: want minimum-norm, or samples of \
              the drive angles",
             counted(space.drives(), "drive")
         )));
     }
-    let start = posed(task, &space, 0, task.points()[0], &space.middle())?;
-    if task.posture == Posture::LeastRates {
+    let start = posed(task, &space, (&task.points()[..1], 0), &space.middle())?;
+    // Three drives have one motion of each b.
+    if task.posture == Posture::LeastRates || space.drives() == 3 {
         return Ok(least_rate_curve(tip, Some(space.lambda()), start, curve)?);
     }
     let postures = Postures::of(&scenario.machine, &space, task.posture);

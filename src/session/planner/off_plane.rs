@@ -10,7 +10,7 @@ use crate::planning::following::trace;
 use crate::planning::forecast::Forecast;
 use crate::planning::off_plane::drift::zero_momentum_curve;
 use crate::planning::off_plane::least_reaction::Goal;
-use crate::planning::off_plane::price::{INWARDS, bang_bang_in_b, joint_line, least_change, nearest_poses};
+use crate::planning::off_plane::price::{INWARDS, bang_bang_in_b, joint_line, nearest_poses};
 use crate::planning::off_plane::{LeastReaction, Price};
 use crate::planning::pose_constant::{Planes, Unreachable};
 use crate::planning::reactionless::PlanePoint;
@@ -91,18 +91,16 @@ fn ends(scenario: &Scenario, planes: &Planes) -> Result<[PlanePoint; 2], Refusal
             }
         };
     }
-    // B's own b nearest to that of A, if A is on its plane; else the pair with the least change.
-    if let (false, Ok(set)) = (map.poses(points[0], task.b).is_empty(), map.reach(points[1])) {
-        for share in INWARDS {
-            let b = set.nearest(task.b).map(|b| set.inwards(b, share));
-            if let Some(pair) = b.and_then(|b| nearest([task.b, b])) {
-                return Ok(pair);
-            }
-        }
-    }
-    least_change(map, points, task.b).map_err(|(i, reason)| {
-        let (x, y) = (points[i].re, points[i].im);
-        refusal(task, if i == 0 { 0 } else { task.via.len() + 1 }, Unreachable::Anywhere { x, y, reason })
+    // A at the b of the task, B at its own that is nearest to it.
+    serve(task, planes, &points[..1])?;
+    let last = task.via.len() + 1;
+    let set = map.reach(points[1]).map_err(|reason| {
+        let (x, y) = (points[1].re, points[1].im);
+        refusal(task, last, Unreachable::Anywhere { x, y, reason })
+    })?;
+    let mut ends = INWARDS.into_iter().filter_map(|share| Some(set.inwards(set.nearest(task.b)?, share)));
+    ends.find_map(|b| nearest([task.b, b])).ok_or_else(|| {
+        Refusal::NoWay("no poses of A and B were found to go straight between: want other points".into())
     })
 }
 

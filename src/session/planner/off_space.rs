@@ -3,11 +3,12 @@
 
 use std::f64::consts::TAU;
 
-use super::along::Parts;
+use super::along::{Parts, refusal};
 use super::off_plane::{changed, followed, goes_straight, in_rounds};
 use super::plan::{Plan, dynamics_of};
 use super::pose::{off, posed, reached, start};
 use crate::mechanics::planar::{DriveAngles, Vector};
+use crate::planning::common::why_not;
 use crate::planning::curves::Path;
 use crate::planning::curves::path::same_tip_path;
 use crate::planning::off_plane::b_integral::BIntegral;
@@ -47,13 +48,18 @@ fn ends(task: &Task, space: &PoseSpace) -> Result<[DriveAngles; 2], Refusal> {
     let last = points.len() - 1;
     let (a, b) = (points[0], points[last]);
     if let Some(b_to) = task.b_to {
-        let start = posed(task, space, 0, a, &middle)?;
-        let end = posed(&Task { b: b_to, ..task.clone() }, space, last, b, &space.angles(&start))?;
+        let start = posed(task, space, (&points[..1], 0), &middle)?;
+        let end = space.poses(b, b_to, &space.angles(&start)).first().copied();
+        let end = end.ok_or_else(|| refusal(task, last, why_not(space, &points[last..], 0, b_to)))?;
         return Ok(nearest(space, [a, b], [task.b, b_to]).unwrap_or([start, end]));
     }
     let set = |i: usize, p: Vector| space.reach(p).map_err(|reason| off(task, i, p, reason));
     let sets = [set(0, a)?, set(last, b)?];
     let on = space.reaches(a, task.b);
+    // Of one and two drives the point says which b, where the task leaves it out, which stands as 0.
+    if !on && (space.drives() > 2 || task.b != 0.0) {
+        return Err(refusal(task, 0, why_not(space, &points[..1], 0, task.b)));
+    }
     // B's own b nearest to that of A, if A is at its own; else the pair with the least change.
     let pair =
         if on { sets[1].nearest(task.b).map(|b| [task.b, b]) } else { nearest_planes(&sets[0], &sets[1], task.b) };
@@ -105,7 +111,7 @@ pub(super) fn same_tip(scenario: &Scenario) -> Result<Parts, Refusal> {
         Err(_) => (PoseSpace::nominal(machine)?, false),
     };
     let pose = |i: usize, near: &[f64]| match has_b {
-        true => posed(task, &space, i, points[i], near),
+        true => posed(task, &space, (&points, i), near),
         false => reached(task, &space, i, points[i]),
     };
     let from = pose(0, &space.middle())?;

@@ -2,7 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
+use super::along::refusal;
 use crate::mechanics::planar::{DriveAngles, Vector};
+use crate::planning::common::why_not;
 use crate::planning::pose_constant::Unreachable;
 use crate::planning::pose_space::PoseSpace;
 use crate::planning::reactionless::NoReach;
@@ -15,24 +17,20 @@ pub(super) fn start(scenario: &Scenario) -> Result<DriveAngles, Refusal> {
     let (task, machine) = (&scenario.task, &scenario.machine);
     let points = task.points();
     match PoseSpace::of(machine) {
-        Ok(space) if space.drives() > 3 => posed(task, &space, 0, points[0], &space.middle()),
+        Ok(space) if space.drives() > 2 => posed(task, &space, (&points[..1], 0), &space.middle()),
         _ => reached(task, &PoseSpace::nominal(machine)?, 0, points[0]),
     }
 }
 
-/// A pose of a point at the b of the task, as near as can be to given relative angles.
-pub(super) fn posed(task: &Task, space: &PoseSpace, i: usize, p: Vector, near: &[f64]) -> Result<DriveAngles, Refusal> {
-    space.poses(p, task.b, near).first().copied().ok_or_else(|| {
-        let unreachable = match space.reach(p) {
-            Err(reason) => Unreachable::Anywhere { x: p.re, y: p.im, reason },
-            Ok(set) => {
-                let nearest_b = set.nearest(task.b);
-                let shown_b = nearest_b.and_then(|b| set.decimal(b, 4));
-                Unreachable::OnThisPlane { x: p.re, y: p.im, b: task.b, would_do: set.in_words(), nearest_b, shown_b }
-            }
-        };
-        Refusal::Unreachable { point: task.name_of(i), unreachable }
-    })
+/// A pose of one of some points that share the b of the task, as near as can be to given relative angles.
+pub(super) fn posed(
+    task: &Task,
+    space: &PoseSpace,
+    (points, i): (&[Vector], usize),
+    near: &[f64],
+) -> Result<DriveAngles, Refusal> {
+    let none = || refusal(task, i, why_not(space, points, i, task.b));
+    space.poses(points[i], task.b, near).first().copied().ok_or_else(none)
 }
 
 /// The same with the last link as the task has it, if it says so; `kept` is the drive's angle at the first of several
@@ -40,13 +38,12 @@ pub(super) fn posed(task: &Task, space: &PoseSpace, i: usize, p: Vector, near: &
 pub(super) fn faced(
     scenario: &Scenario,
     space: &PoseSpace,
-    i: usize,
-    p: Vector,
+    (points, i): (&[Vector], usize),
     (near, kept): (&[f64], Option<f64>),
 ) -> Result<DriveAngles, Refusal> {
-    let (task, machine) = (&scenario.task, &scenario.machine);
+    let (task, machine, p) = (&scenario.task, &scenario.machine, points[i]);
     let Some(angle) = task.orientation.filter(|_| scenario.idle("task.orientation").is_none()) else {
-        return posed(task, space, i, p, near);
+        return posed(task, space, (points, i), near);
     };
     let link = &machine.resolved_links()[machine.end_link()];
     let of_drive = |angle: f64| if link.sign < 0.0 { angle - PI } else { angle };
@@ -56,7 +53,7 @@ pub(super) fn faced(
         return Ok(q);
     }
     // The point itself may be out of reach.
-    posed(task, space, i, p, near)?;
+    posed(task, space, (points, i), near)?;
     let steps = 180;
     let does: Vec<bool> =
         (0..steps).map(|k| !poses(angle + TAU * f64::from(k) / f64::from(steps)).is_empty()).collect();

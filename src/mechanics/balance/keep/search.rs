@@ -31,14 +31,9 @@ const HEAVIER: [f64; 5] = [1.0, 3.0, 0.3, 8.0, 0.12];
 /// Starts with masses that differ from each other, for each that may change.
 const MIXED_STARTS: usize = 8;
 /// No more of them than this.
-const MAX_MIXED_STARTS: usize = 48;
+const MAX_MIXED_STARTS: usize = 16;
 /// How many of the starts, the best ones, a search goes on from.
-const MAX_SEARCHES: usize = 8;
-/// How much heavier or lighter one mass is made beside the best place so far.
-const BESIDE: f64 = 4.0;
-/// How often places beside the best are tried, as long as one of them is better by this fraction.
-const MAX_ROUNDS: usize = 3;
-const GAIN: f64 = 1e-6;
+const MAX_SEARCHES: usize = 6;
 /// Exact places may cost so much more, as a fraction: rounding.
 const AS_GOOD: f64 = 1e-9;
 
@@ -75,32 +70,12 @@ impl Search<'_> {
         let unchanged = self.held(&self.masses.iter().map(|mass| mass.from).collect::<Vec<_>>());
         let mut ends: Vec<_> = starts.into_iter().chain(unchanged).map(|y| self.descend(plane, y)).collect();
         ends.sort_by(|a, b| self.value(a).total_cmp(&self.value(b)));
-        for _ in 0..MAX_ROUNDS {
-            let Some(best) = ends.first().cloned() else { break };
-            let better = self.beside(plane, &best).into_iter().min_by(|a, b| self.value(a).total_cmp(&self.value(b)));
-            match better.filter(|y| self.value(y) < self.value(&best) * (1.0 - GAIN)) {
-                Some(better) => ends.insert(0, better),
-                None => break,
-            }
-        }
         // Once more with these masses, so that places are exact.
         let exact = ends.first().and_then(|best| {
             let masses = self.masses.iter().map(|mass| mass.from + best[mass.at] / mass.penalty);
             self.held(&masses.collect::<Vec<_>>()).filter(|y| self.value(y) <= self.value(best) * (1.0 + AS_GOOD))
         });
         exact.into_iter().chain(ends).collect()
-    }
-
-    /// Where searches end that start beside a place, each with one mass much heavier or lighter.
-    fn beside(&self, plane: &Plane, y: &DVector<f64>) -> Vec<DVector<f64>> {
-        let here: Vec<f64> = self.masses.iter().map(|mass| 1.0 / self.ratio(mass, y)).collect();
-        let changed = |k: usize, by: f64| {
-            let mut heavier = here.clone();
-            heavier[k] *= by;
-            heavier
-        };
-        let all = (0..here.len()).flat_map(|k| [changed(k, BESIDE), changed(k, 1.0 / BESIDE)]);
-        all.filter_map(|heavier| self.modelled(plane, &heavier)).map(|start| self.descend(plane, start)).collect()
     }
 
     /// m₀/m of a body.

@@ -1,0 +1,128 @@
+//! Which b serve several points, and the least move where none does: against poses at random, for any number of drives.
+
+use std::f64::consts::TAU;
+
+use stillbase::mechanics::machine::builtin;
+use stillbase::mechanics::planar::{Vector, unit};
+use stillbase::planning::common::{Reaching, common, middle, no_common};
+use stillbase::planning::pose_constant::{Planes, PoseConstant};
+use stillbase::planning::pose_space::PoseSpace;
+
+use crate::support::Noise;
+use crate::support::random::{a_chain, a_pose, a_space};
+
+/// Two or three points that are within reach of some b each.
+fn points(noise: &mut Noise, space: &PoseSpace, count: usize) -> Vec<Vector> {
+    (0..count)
+        .map(|_| {
+            let a = a_pose(noise, space);
+            space.place(&space.lift(&a, noise.between(0.0, space.period())))
+        })
+        .collect()
+}
+
+/// Moves of points without a common b, checked against `poses` random poses each; how many there were.
+fn checked(noise: &mut Noise, space: &PoseSpace, planes: Option<&Planes>, poses: usize) -> usize {
+    let count = 2 + usize::from(noise.between(0.0, 1.0) < 0.3);
+    let points = points(noise, space, count);
+    let map: &dyn Reaching = planes.map_or(space as &dyn Reaching, |planes| planes.map());
+    let n = space.drives();
+    let Some(why) = no_common(map, &points) else {
+        assert!(common(map, &points).is_some(), "{n} drives: {points:?}");
+        let b = middle(map, &points).expect("some");
+        assert!(points.iter().all(|p| map.b_of(*p).expect("within reach").near(b).nearest(b).is_some()), "{n} drives");
+        return 0;
+    };
+    let Some(mend) = why.mend else {
+        assert!(count > 2, "two can always be brought together: {n} drives, {points:?}");
+        return 0;
+    };
+    let (was, others): (Vector, Vec<Vector>) =
+        (points[mend.point], points.iter().enumerate().filter(|(i, _)| *i != mend.point).map(|(_, p)| *p).collect());
+    let moved = |share: f64| {
+        let mut points = points.clone();
+        points[mend.point] = was + share * (mend.to - was);
+        common(map, &points).is_some()
+    };
+    assert!((mend.distance - (mend.to - was).norm()).abs() < 1e-9 * space.farthest(), "{n} drives: {mend:?}");
+    assert!(moved(1.0) || moved(1.0 + 1e-6), "{n} drives: {points:?} {mend:?}");
+    assert!(mend.distance < 1e-3 * space.farthest() || !moved(0.995), "{n} drives: {points:?} {mend:?}");
+    // No pose at a b of the others is nearer.
+    let shared = common(map, &others).expect("the others share some b");
+    for _ in 0..poses {
+        let a = a_pose(noise, space);
+        for [low, high] in &shared.intervals {
+            let at = space.place(&space.lift(&a, noise.between(*low, high.max(low + 1e-12))));
+            let far = (at - was).norm();
+            assert!(
+                far > mend.distance - 2e-6 * space.farthest(),
+                "{n} drives: {points:?} {mend:?}, {at} is {far} m off"
+            );
+        }
+    }
+    1
+}
+
+#[test]
+fn the_least_move_is_least_for_any_number_of_drives() {
+    let mut noise = Noise::of(211);
+    let mut mended = [0; 7];
+    for n in [2, 2, 3, 3, 4, 4, 5, 6] {
+        let (machine, space) = a_space(&mut noise, n);
+        let planes = Planes::of(&machine).ok();
+        assert_eq!(planes.is_some(), n == 3, "{n} drives");
+        for _ in 0..if n < 5 { 6 } else { 2 } {
+            mended[n] += checked(&mut noise, &space, planes.as_ref(), 400);
+        }
+    }
+    assert!(mended[2] > 3 && mended.iter().sum::<usize>() > 8, "{mended:?}");
+}
+
+#[test]
+#[ignore = "long: two thousand sets of points, ten thousand poses each"]
+fn the_least_move_is_least_often() {
+    let mut noise = Noise::of(223);
+    let mut mended = [0; 9];
+    for i in 0..200 {
+        let n = 2 + i % 5;
+        let (machine, space) = a_space(&mut noise, n);
+        let planes = Planes::of(&machine).ok();
+        for _ in 0..10 {
+            mended[n] += checked(&mut noise, &space, planes.as_ref(), 10_000);
+        }
+    }
+    println!("{mended:?}");
+}
+
+/// The planes of three drives and their pose space reach the same: two ways to one least move.
+#[test]
+fn planes_and_spaces_move_alike() {
+    let machine = builtin("nine-link").expect("built in");
+    let (planes, space) = (Planes::of(machine).expect("planes"), PoseSpace::of(machine).expect("a b"));
+    let mut noise = Noise::of(227);
+    let mut seen = 0;
+    while seen < 6 {
+        let points: Vec<Vector> = (0..2).map(|_| noise.between(0.3, 1.2) * unit(noise.between(0.0, TAU))).collect();
+        let maps: [&dyn Reaching; 2] = [planes.map(), &space];
+        let [Some(one), Some(other)] = maps.map(|map| no_common(map, &points)) else { continue };
+        let [one, other] = [one, other].map(|why| why.mend.expect("two can be brought together"));
+        assert!((one.distance - other.distance).abs() < 1e-7, "{one:?} {other:?}");
+        seen += 1;
+    }
+}
+
+/// One word for one machine, wherever it is asked.
+#[test]
+fn whether_there_is_a_b_is_said_once() {
+    let mut noise = Noise::of(229);
+    for n in 2..=6 {
+        let (balanced, _) = a_space(&mut noise, n);
+        assert_eq!(PoseConstant::of(&balanced), PoseConstant::Exact, "{n} drives");
+        let bare = a_chain(&mut noise, n);
+        let constant = PoseConstant::of(&bare);
+        match PoseSpace::of(&bare) {
+            Ok(_) => assert!(matches!(constant, PoseConstant::Nearly { .. }), "{n} drives: {constant}"),
+            Err(why) => assert!(constant.to_string().ends_with(&why.to_string()), "{n} drives: {constant}"),
+        }
+    }
+}
