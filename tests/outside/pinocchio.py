@@ -44,7 +44,6 @@ for line in sys.stdin:
     knows = None
     if asked["knows_followers"]:
         knows = pin.buildModelFromXML(asked["model"], mimic=True)
-        known = knows.createData()
         places = [knows.joints[knows.getJointId(name)].idx_v for name in motors]
         assert knows.nv == len(motors)
     answers = []
@@ -59,7 +58,8 @@ for line in sys.stdin:
             from_drives = np.array(asked["motors_from_drives"])
             own = np.zeros(knows.nv)
             own[places] = from_drives @ np.array(motion["q"])
-            own = pin.crba(knows, known, pin.integrate(knows, pin.neutral(knows), own))
+            # With data of its own: what it adds up for followers is kept from call to call.
+            own = pin.crba(knows, knows.createData(), pin.integrate(knows, pin.neutral(knows), own))
             own = (np.triu(own) + np.triu(own, 1).T)[np.ix_(places, places)]
             reduced = (from_drives.T @ own @ from_drives).ravel().tolist()
         weight = pin.computeGeneralizedGravity(model, data, q)
