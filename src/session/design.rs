@@ -114,10 +114,10 @@ impl Brief {
         Ok(Edit::Set { change: all })
     }
 
-    /// What may change: the counterweights of a machine that has some, else the centres of mass of its links.
+    /// What may change: the counterweights of a machine that has some which are not fixed, else the centres of mass of its links.
     fn asked(&self, machine: &Machine, start: &Machine, named: &[String]) -> Keep {
         let spec = machine.spec();
-        let free: Vec<(Parameter, &str)> = match spec.counterweights.is_empty() {
+        let free: Vec<(Parameter, &str)> = match spec.counterweights.iter().all(|weight| weight.fixed) {
             true => spec.links.iter().enumerate().map(|(j, link)| (Parameter::com(j), link.name.as_str())).collect(),
             false => {
                 let weights = spec.counterweights.iter().enumerate();
@@ -132,7 +132,8 @@ impl Brief {
         // Those of the paper are for nine links.
         let penalties = self.preset.penalty(spec.links.len()).unwrap_or_default();
         let adjusted = |(parameter, link): (Parameter, &str)| {
-            let stays = self.fixed.contains(link) || named.contains(&parameter.key(machine));
+            let is_fixed = matches!(parameter.body, Body::Counterweight(i) if spec.counterweights[i].fixed);
+            let stays = is_fixed || self.fixed.contains(link) || named.contains(&parameter.key(machine));
             Adjusted {
                 parameter,
                 hold: match (parameter.quantity, parameter.body) {

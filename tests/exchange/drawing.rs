@@ -12,7 +12,7 @@ fn machines() -> Vec<Machine> {
         let mut spec = machine.spec().clone();
         for (i, link) in spec.links.iter().enumerate() {
             let (link, radius) = (link.name.clone(), 0.02 * i as f64);
-            spec.counterweights.push(Counterweight { link, mass: 0.5 + i as f64, at: -0.05, radius });
+            spec.counterweights.push(Counterweight { link, mass: 0.5 + i as f64, at: -0.05, radius, fixed: false });
         }
         Machine::new(spec).expect("a machine")
     };
@@ -121,7 +121,7 @@ fn dxf_is_plain_text_with_pairs_of_lines() {
 #[test]
 fn a_disc_is_as_thick_as_its_mass_takes() {
     let mut spec = builtin("scara").expect("built in").spec().clone();
-    spec.counterweights.push(Counterweight { link: "1".into(), mass: 3.0, at: -0.2, radius: 0.08 });
+    spec.counterweights.push(Counterweight { link: "1".into(), mass: 3.0, at: -0.2, radius: 0.08, fixed: false });
     let machine = Machine::new(spec).expect("a machine");
     let told = |cut: &Cut| svg(&Sheet::of(&machine, cut).expect("a sheet"));
     // 3 kg / (7850 kg/m³ · 201.06 cm²) = 19.0 mm.

@@ -24,7 +24,7 @@ fn another_reader_finds_every_part() {
         spec.payload.mass = 0.25;
         spec.links.iter_mut().for_each(|link| link.com_normal = 0.01);
         let link = spec.links[0].name.clone();
-        spec.counterweights.push(Counterweight { link, mass: 1.5, at: -0.1, radius: 0.05 });
+        spec.counterweights.push(Counterweight { link, mass: 1.5, at: -0.1, radius: 0.05, fixed: false });
         let machine = Machine::new(spec).expect("a machine");
         let text = parts(&machine).csv();
         assert!(text.lines().count() > 8 && text.ends_with("\r\n"));

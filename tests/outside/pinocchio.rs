@@ -121,7 +121,13 @@ fn every_machine_weighs_and_pulls_the_same() {
         for link in &spec.links {
             let (mass, at, radius) = (noise.between(0.1, 3.0), noise.between(-0.3, 0.3), noise.between(0.0, 0.1));
             let link = link.name.clone();
-            spec.counterweights.push(stillbase::mechanics::machine::Counterweight { link, mass, at, radius });
+            spec.counterweights.push(stillbase::mechanics::machine::Counterweight {
+                link,
+                mass,
+                at,
+                radius,
+                fixed: false,
+            });
         }
         machines.push(Machine::new(spec).expect("a machine"));
     }

@@ -39,6 +39,7 @@ fn check_reports_table_1_as_printed_and_re_solved() {
             "integrable",
             "invariant",
             "lambda",
+            "machine",
             "mass"
         ]
     );
@@ -305,6 +306,37 @@ fn counterweights_that_cannot_be_are_refused() {
     ask(&["--task", "two-drive"], 2, &["--task two-drive: its machine has 2 drives: want one of 3"]);
     ask(&["--objective", "mass=0"], 2, &["want mass, inertia"]);
     fails(&["design", BARE, "--range", "1=-0.3,0"], 2, &["--counterweights"]);
+}
+
+/// What is taken off is said, by link; what is fixed stays, and the rest is balanced beside it.
+#[test]
+fn counterweights_that_are_fixed_stay_and_others_are_named() {
+    let folder = Folder::new("fixed");
+    let bare = fs::read_to_string(BARE).expect("a file");
+    let two = "[[counterweight]]\nlink = \"2\"\nmass = 0.8\nat = -0.1\n\
+               [[counterweight]]\nlink = \"4\"\nmass = 0.6\nat = 0.0\nradius = 0.04\nfixed = true\n";
+    let (file, out) = (word(folder.file("motor.toml", bare + two)), word(folder.path("out.toml")));
+    let run = stillbase(&["design", &file, "--counterweights", "-o", &out, "--json"]);
+    let said = String::from_utf8_lossy(&run.stderr);
+    assert!(
+        run.status.success() && said.contains("taken off") && said.contains("0.8 kg at -0.1 m of link 2"),
+        "{said}"
+    );
+    assert!(!said.contains("link 4"), "{said}");
+    let answer: Value = serde_json::from_slice(&run.stdout).expect("an object");
+    assert_eq!(answer["taken_off"], json!([{ "link": "2", "mass": 0.8, "at": -0.1 }]));
+    let added: f64 =
+        answer["weights"].as_array().expect("a list").iter().map(|w| w["mass"].as_f64().expect("kg")).sum();
+    assert!((answer["added_mass"].as_f64().expect("kg") - added).abs() < 1e-9, "what is fixed was there before");
+    let made = stillbase::files::machine(&out, None).expect("a machine");
+    let fixed: Vec<_> = made.spec().counterweights.iter().filter(|weight| weight.fixed).collect();
+    assert_eq!(fixed.len(), 1);
+    assert_eq!((fixed[0].link.as_str(), fixed[0].mass, fixed[0].at, fixed[0].radius), ("4", 0.6, 0.0, 0.04));
+    assert_eq!(object(&["check", &out])["invariant"], true);
+    // Nothing is taken off where nothing may be.
+    let again = stillbase(&["design", &file, "--set", "counterweight.1.fixed=true", "--counterweights", "--json"]);
+    assert!(!String::from_utf8_lossy(&again.stderr).contains("taken off"));
+    assert!(serde_json::from_slice::<Value>(&again.stdout).expect("an object").get("taken_off").is_none());
 }
 
 /// Least torque of a task is less than with the least mass, and as the solver says; β measures both beside bare links.

@@ -10,13 +10,14 @@ use stillbase::mechanics::counterweights::{
 };
 use stillbase::mechanics::machine::{Counterweight, Inertia, Machine};
 use stillbase::planning::Motion;
-use stillbase::settings::number::fixed;
+use stillbase::settings::number::{Short, fixed};
 use stillbase::study::front_point::FrontPoint;
 use stillbase::study::lengths::{Found, FreeLength, LengthSearch, NoLengths, search};
 use stillbase::study::measures::{Measures, greatest_accelerations};
 
 use super::super::check::Balance;
 use super::super::ends::ends;
+use super::super::exit::say;
 use super::super::failure::Failure;
 use super::super::output::Table;
 use super::super::sites::{link, range, sites};
@@ -25,7 +26,8 @@ use super::measures;
 /// What counterweights may be, and what is to be least.
 #[derive(Args)]
 pub struct WeighArguments {
-    /// Balance it by counterweights, discs on the axes of the links; those that it has are taken off first
+    /// Balance it by counterweights, discs on the axes of the links; those that it has are taken off first, but for those
+    /// with fixed = true
     #[arg(long, conflicts_with_all = ["penalty", "preset", "keep"])]
     pub counterweights: bool,
     /// A link that may carry one, and where, m from its root towards its tip; every link, from its length behind the
@@ -185,6 +187,16 @@ impl WeighArguments {
     /// Finds them, and what they come to.
     pub fn run(&self, machine: &Machine, motion: Option<&Motion>) -> Result<(Machine, Weighed), Failure> {
         let asked = self.asked(machine, motion)?;
+        let taken_off: Vec<_> = machine.spec().counterweights.iter().filter(|weight| !weight.fixed).cloned().collect();
+        if !taken_off.is_empty() {
+            let each = taken_off
+                .iter()
+                .map(|weight| format!("{} kg at {} m of link {}", Short(weight.mass), Short(weight.at), weight.link));
+            say(format!(
+                "taken off before others are sought: {}; fixed = true in a [[counterweight]] keeps it",
+                each.collect::<Vec<_>>().join("; ")
+            ));
+        }
         let found = match self.length.is_empty() {
             true => None,
             false => Some(self.seek(machine, &asked)?),
@@ -208,6 +220,7 @@ impl WeighArguments {
         if let Some((found, _)) = found {
             answer.sought(self, found);
         }
+        answer.taken_off = taken_off;
         Ok((placed.machine, answer))
     }
 }
@@ -277,7 +290,11 @@ pub struct Weighed {
     /// The greatest |torque| of a motor in the task's motion, N m.
     #[serde(skip_serializing_if = "Option::is_none")]
     torque: Option<f64>,
+    /// Those that were found; those that are fixed stay beside them.
     weights: Vec<Counterweight>,
+    /// Those that the machine had and that were taken off.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    taken_off: Vec<Counterweight>,
     /// The most by which the best may lie below what was found.
     gap: f64,
     /// Added mass, kg, and Σ D_k, kg m².
@@ -351,7 +368,8 @@ impl Weighed {
         Ok(Self {
             measures: Measures::of(&bare, machine, motion),
             torque: motion.and_then(|motion| FrontPoint::of(placed, Some(motion), false).torque),
-            weights: machine.spec().counterweights.clone(),
+            weights: machine.spec().counterweights.iter().filter(|weight| !weight.fixed).cloned().collect(),
+            taken_off: Vec::new(),
             gap: placed.gap,
             front: front_points.iter().map(|point| [point.added_mass, point.inertia]).collect(),
             front_points,

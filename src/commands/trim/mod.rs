@@ -191,7 +191,8 @@ impl Trim {
             }
             _ => Keep::default(),
         };
-        for (i, quantity) in (0..weights).flat_map(|i| [(i, Quantity::Mass), (i, Quantity::Along)]) {
+        let movable = |i: &usize| !machine.spec().counterweights[*i].fixed;
+        for (i, quantity) in (0..weights).filter(movable).flat_map(|i| [(i, Quantity::Mass), (i, Quantity::Along)]) {
             asked.hold(machine, Parameter::new(Body::Counterweight(i), quantity), Hold::Free);
         }
         hold(&mut asked, machine, &self.fix, &self.free, &self.bound)?;

@@ -1,4 +1,4 @@
-//! [`Problem`]: a machine without counterweights, what they change in it, and the cone program that follows.
+//! [`Problem`]: a machine without counterweights but for fixed ones, what they change in it, and the cone program that follows.
 
 use super::asked::{Free, Objective, Sites, Weighing};
 use super::refusal::{Bound, NoWeights};
@@ -105,7 +105,7 @@ struct Sum {
     constant: f64,
 }
 
-/// A machine without counterweights and without what is free of its rotors.
+/// A machine without counterweights, but for fixed ones, and without what is free of its rotors.
 pub(super) struct Problem {
     pub bare: Machine,
     inertia: Inertia,
@@ -126,8 +126,7 @@ impl Problem {
     /// `beyond` is what the machine has of each line of (7) and (8), in their order, beyond what its numbers say.
     pub fn new(machine: &Machine, asked: &Weighing, beyond: &[Vector]) -> Result<Self, NoWeights> {
         asked.check(machine)?;
-        let mut spec = machine.spec().clone();
-        spec.counterweights.clear();
+        let mut spec = machine.without_counterweights()?.spec().clone();
         asked.rotors.iter().for_each(|rotor| spec.drives[rotor.drive].rotor = None);
         if let Some([low, high]) = asked.payload {
             spec.payload.mass = 0.5 * (low + high);
@@ -462,8 +461,9 @@ impl Problem {
             mass: *w,
             at: s / w,
             radius: asked.disc.radius(*w),
+            fixed: false,
         };
-        spec.counterweights = found.iter().map(weight).collect();
+        spec.counterweights.extend(found.iter().map(weight));
         for (i, rotor) in asked.rotors.iter().enumerate() {
             let (present, value) = (machine.spec().drives[rotor.drive].rotor.unwrap_or_default(), x[unknowns.rotor(i)]);
             let found = match rotor.free {

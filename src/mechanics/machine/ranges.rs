@@ -34,7 +34,7 @@ const UNLIMITED: &str = "no limit";
 
 /// Every key of a machine that can be set by itself; its links, drives and angles go by their names, its
 /// counterweights by their numbers, from 1.
-pub const KEYS: [Key; 22] = [
+pub const KEYS: [Key; 23] = [
     Key::number(
         "link.*.com",
         PLACE,
@@ -69,6 +69,12 @@ pub const KEYS: [Key; 22] = [
         "Place of a counterweight along the link that carries it, from that link's root.",
     ),
     Key::number("counterweight.*.radius", RADIUS, "0", "Radius of a counterweight, a disc; 0 for a point."),
+    Key::new(
+        "counterweight.*.fixed",
+        Holds::Switch,
+        "false",
+        "Whether a counterweight stays where it is, as a motor does, when others are sought or taken off.",
+    ),
     Key::number("length.*", LENGTH, Key::REQUIRED, "A named length, of all bars that share it."),
     Key::number("payload.mass", LOAD, "0", "Mass held at the end effector, known to control."),
     Key::number("payload.inertia", INERTIA, "0", "Inertia of the payload about its own centre of mass."),

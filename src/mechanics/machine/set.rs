@@ -17,17 +17,18 @@ pub fn is_of_machine(path: &str) -> bool {
 }
 
 const KEYS: &str = "link.NAME.(com|com_normal|mass|inertia|length|axial), counterweight.NUMBER.(mass|at|radius), \
-                    length.NAME, \
+                    counterweight.NUMBER.fixed, length.NAME, \
                     payload.(mass|inertia|offset|axial), gravity, limits.ANGLE, \
                     drive.NAME.(torque|speed|acceleration|jerk)_limit, drive.NAME.rotor.(inertia|ratio)";
 
 impl Machine {
-    /// The same without its counterweights.
+    /// The same without its counterweights, but for those that are fixed.
     ///
     /// # Errors
     /// If only they make it a machine.
     pub fn without_counterweights(&self) -> Result<Self, MachineError> {
-        let spec = MachineSpec { counterweights: Vec::new(), ..self.spec.clone() };
+        let mut spec = self.spec.clone();
+        spec.counterweights.retain(|weight| weight.fixed);
         Self::new(spec)
     }
 
@@ -104,12 +105,13 @@ impl Machine {
             }
             ["counterweight", number, field] => {
                 let weight = spec.counterweights.get(place_of(number)?)?;
-                Value::from(match field {
-                    "mass" => weight.mass,
-                    "at" => weight.at,
-                    "radius" => weight.radius,
+                match field {
+                    "mass" => weight.mass.into(),
+                    "at" => weight.at.into(),
+                    "radius" => weight.radius.into(),
+                    "fixed" => weight.fixed.into(),
                     _ => return None,
-                })
+                }
             }
             ["length", name] => (*spec.lengths.get(name)?).into(),
             ["payload", "mass"] => spec.payload.mass.into(),
@@ -177,7 +179,7 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &Value) -> Result<(), Machin
         // All of them, as a file lists them.
         ["counterweight"] if is_default(value) => spec.counterweights.clear(),
         ["counterweight"] => {
-            let want = "a list of { link, mass, at, radius }, or the word default for none";
+            let want = "a list of { link, mass, at, radius, fixed }, or the word default for none";
             spec.counterweights = value.clone().try_into().map_err(|_| bad(key, value, want))?;
         }
         ["counterweight", number, field] => {
@@ -189,6 +191,7 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &Value) -> Result<(), Machin
                 "mass" => weight.mass = one()?,
                 "at" => weight.at = one()?,
                 "radius" => weight.radius = one_or_zero()?,
+                "fixed" => weight.fixed = !is_default(value) && switch(key, value)?,
                 _ => return Err(unknown()),
             }
         }
@@ -286,6 +289,10 @@ fn bad(key: &str, value: &Value, want: &'static str) -> MachineError {
 fn number(key: &str, value: &Value) -> Result<f64, MachineError> {
     let want = if is_default(value) { "one number: there is no default" } else { "one number" };
     change::number(value).ok_or_else(|| bad(key, value, want))
+}
+
+fn switch(key: &str, value: &Value) -> Result<bool, MachineError> {
+    value.as_bool().ok_or_else(|| bad(key, value, "true or false"))
 }
 
 fn pair(key: &str, value: &Value) -> Result<[f64; 2], MachineError> {

@@ -173,6 +173,14 @@ pub struct Counterweight {
     /// m; 0: a point. Its inertia about its own centre is half of mass times radius squared.
     #[serde(default, skip_serializing_if = "is_nought")]
     pub radius: f64,
+    /// Whether it is part of the machine for other reasons than its balance, as a motor is: then it is neither taken off
+    /// nor changed for the sake of balance.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub fixed: bool,
+}
+
+fn is_false(fixed: &bool) -> bool {
+    !fixed
 }
 
 impl Counterweight {
