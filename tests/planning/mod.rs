@@ -8,6 +8,7 @@ mod given;
 mod least_reaction;
 mod null_space;
 mod off_space;
+mod outline;
 mod pose_ends;
 mod pose_space;
 mod posture;

@@ -163,7 +163,7 @@ impl PoseSpace {
     pub(super) fn starts(&self, distance: f64) -> Vec<Start> {
         let mut starts = Vec::new();
         if distance > 0.0 {
-            self.criticals(distance, |critical, a| starts.push(Start { a: *a, critical }));
+            self.criticals(distance, |critical| starts.push(Start { a: critical.a, critical }));
         }
         starts
     }

@@ -19,10 +19,72 @@ pub(super) struct Critical {
     pub down: bool,
     /// The same for the same value at another distance: its pattern, signs, side and whole turns.
     pub name: u64,
+    pub spot: Spot,
+    /// Its relative angles, rad.
+    pub a: PerDrive,
+    /// How many compounds it has.
+    count: usize,
+}
+
+impl Critical {
+    /// Takes in another one at the same b. Where a curve comes to a limit two are one pose: the one with more freedoms
+    /// knows where b goes from there. Else b goes where it goes from either.
+    pub fn merge(&mut self, other: &Self) {
+        let one = self.a.iter().zip(other.a.iter()).all(|(x, y)| (x - y).abs() < SAME_POSE);
+        if one && self.count != other.count {
+            if other.count > self.count {
+                *self = *other;
+            }
+            return;
+        }
+        // Whichever comes first, it is the same one at other distances.
+        if other.spot.curve < self.spot.curve {
+            (self.spot, self.a, self.count) = (other.spot, other.a, other.count);
+        }
+        self.up |= other.up;
+        self.down |= other.down;
+        self.name = self.name.wrapping_add(other.name);
+    }
+}
+
+/// Where on the curves of critical poses a pose is: which curve, and how far along it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Spot {
+    pub curve: Curve,
+    /// Of two compounds the angle between their arms, γ from 0 to π; of more t, with ν = ν_most sin t.
+    pub t: f64,
+}
+
+/// A curve of critical poses over the distance from B.
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+pub(super) struct Curve {
+    pattern: u32,
+    bits: u32,
+    /// Whether it is mirrored at the line from B to the point.
+    mirrored: bool,
+    /// How many whole turns each relative angle is less than what the directions of the arms give.
+    turns: [i8; MAX_DRIVES],
+}
+
+impl Curve {
+    fn of(pattern: usize, bits: u32) -> Self {
+        Self { pattern: pattern as u32, bits, ..Self::default() }
+    }
+
+    fn mirrored(mut self, mirrored: bool) -> Self {
+        self.mirrored = mirrored;
+        self
+    }
 }
 
 /// Angles may miss their limits by this much, rad: rounding of an inverse.
 const SLACK: f64 = 1e-9;
+
+/// Poses with the same b are one if no angle differs by more than this, rad: b is stationary there.
+const SAME_POSE: f64 = 0.1;
+
+/// Poses of a curve may miss the limits by this much, rad: what a root that is found to 1e-11 makes of them.
+const BEYOND: f64 = 1e-6;
 
 /// A step of Newton's iteration after which it is there.
 const ENOUGH: f64 = 1e-11;
@@ -30,23 +92,59 @@ const ENOUGH: f64 = 1e-11;
 impl PoseSpace {
     /// Every critical value of b for points at a distance from B, m, above 0, each with its relative angles; whether all of
     /// them can be told apart.
-    pub(super) fn criticals(&self, distance: f64, mut found: impl FnMut(Critical, &PerDrive)) -> bool {
+    pub(super) fn criticals(&self, distance: f64, mut found: impl FnMut(Critical)) -> bool {
         let mut regular = true;
         for (i, pattern) in self.patterns().iter().enumerate() {
             let name = (i as u64) << 44;
+            let curve = Curve::of(i, 0);
             if pattern.count == 2 {
-                self.triangle(pattern, name, distance, &mut found);
+                self.triangle(pattern, (name, curve), distance, &mut found);
             } else {
                 for signs in &pattern.signs {
-                    regular &= self.stationary(pattern, signs, name, distance, &mut found);
+                    let curve = Curve::of(i, signs.bits);
+                    regular &= self.stationary(pattern, signs, (name, curve), distance, &mut found);
                 }
             }
         }
         regular
     }
 
+    /// The distance from B, m, and b for the point on the x axis, rad, of a pose of a curve; `None` beyond the limits.
+    pub(super) fn along(&self, curve: &Curve, t: f64) -> Option<(f64, f64)> {
+        let c = self.patterns().get(curve.pattern as usize)?;
+        let mut angle = [0.0; MAX_DRIVES];
+        let distance = if c.count == 2 {
+            let [l, m] = [c.length[0], c.length[1]];
+            let sum = l + m * unit(-t);
+            (angle[0], angle[1]) = (-sum.arg(), -sum.arg() - t);
+            sum.norm()
+        } else {
+            let (nu, cos, sum) = c.stretched(curve.bits, t);
+            (0..c.count).for_each(|i| angle[i] = (nu * c.lambda[i]).atan2(cos[i]) - sum.arg());
+            sum.norm()
+        };
+        let side = if curve.mirrored { -1.0 } else { 1.0 };
+        let turn = |i: usize| side * angle[i] - c.lean[i];
+        let mut a = PerDrive::zeros(self.joints.len());
+        for (i, joint) in self.joints.iter().enumerate() {
+            let [low, high] = joint.limits;
+            a[i] = match c.at[i] {
+                At::Least => low,
+                At::Greatest => high,
+                At::Free => {
+                    let [near, far] = joint.ends.map(|k| turn(c.of[k]));
+                    joint.sense * (far - near) + c.shift[i] - TAU * f64::from(curve.turns[i])
+                }
+            };
+            if a[i] < low - BEYOND || a[i] > high + BEYOND {
+                return None;
+            }
+        }
+        Some((distance, turn(c.of[0]) * self.sum + self.b(&self.unturned(&a))))
+    }
+
     /// Two compounds: the point leaves no freedom, so b is where it is.
-    fn triangle(&self, c: &Pattern, name: u64, r: f64, found: &mut impl FnMut(Critical, &PerDrive)) {
+    fn triangle(&self, c: &Pattern, (name, curve): (u64, Curve), r: f64, found: &mut impl FnMut(Critical)) {
         let [l, m] = [c.length[0], c.length[1]];
         let cos = (r * r + l * l - m * m) / (2.0 * r * l);
         if cos.abs() > 1.0 + 1e-12 {
@@ -55,10 +153,12 @@ impl PoseSpace {
         let bend = cos.clamp(-1.0, 1.0).acos();
         let first = l * unit(bend);
         let psi = [bend, (r - first).arg()];
+        let t = (psi[0] - psi[1]).abs();
         for sign in [1.0, -1.0] {
             let turn = |i: usize| sign * psi[i] - c.lean[i];
             let name = name | u64::from(sign < 0.0) << 28;
-            self.poses_of(c, name, turn, found, || {
+            let spot = Spot { curve: curve.mirrored(sign < 0.0), t };
+            self.poses_of(c, (name, spot), turn, found, || {
                 // μ with Λ = Re(μ̄ i L e^{iψ}) for both.
                 let first = Vector::new(first.re, sign * first.im);
                 let [j, k] = [first, r - first].map(|arm| Vector::new(-arm.im, arm.re));
@@ -80,9 +180,9 @@ impl PoseSpace {
         &self,
         c: &Pattern,
         signs: &Signs,
-        name: u64,
+        (name, curve): (u64, Curve),
         r: f64,
-        found: &mut impl FnMut(Critical, &PerDrive),
+        found: &mut impl FnMut(Critical),
     ) -> bool {
         let n = c.count;
         roots(c, signs, r * r, |t, turns| {
@@ -97,14 +197,15 @@ impl PoseSpace {
             for side in [1.0, -1.0] {
                 let turn = |i: usize| side * (alpha[i] - chi) - c.lean[i];
                 let name = name | u64::from(signs.bits) << 36 | (turns as u64) << 29 | u64::from(side < 0.0) << 28;
-                self.poses_of(c, name, turn, found, || {
+                let spot = Spot { curve: curve.mirrored(side < 0.0), t };
+                self.poses_of(c, (name, spot), turn, found, || {
                     let [up, down] = *ways_up.get_or_insert_with(|| ways(n, nu, &cos, &c.lambda));
                     let mu = unit(PI - side * chi) / (side * nu);
                     (Some(mu), if side > 0.0 { [up, down] } else { [down, up] })
                 });
             }
         });
-        (signs.values[0] - r * r).abs() > 1e-11 * r * r
+        signs.cells & 1 == 0 || (signs.values[0] - r * r).abs() > 1e-11 * r * r
     }
 
     /// The poses of compounds that are turned so, in every winding that the limits allow. If there are any, it is asked
@@ -112,9 +213,9 @@ impl PoseSpace {
     fn poses_of(
         &self,
         c: &Pattern,
-        name: u64,
+        (name, mut spot): (u64, Spot),
         turn: impl Fn(usize) -> f64,
-        found: &mut impl FnMut(Critical, &PerDrive),
+        found: &mut impl FnMut(Critical),
         which: impl FnOnce() -> (Option<Vector>, [bool; 2]),
     ) {
         // The least of each angle's values.
@@ -127,7 +228,9 @@ impl PoseSpace {
                 At::Free => {
                     let [near, far] = joint.ends.map(|k| turn(c.of[k]));
                     let own = joint.sense * (far - near) + c.shift[i];
-                    let angle = own - TAU * ((own - low + SLACK) / TAU).floor();
+                    let turns = ((own - low + SLACK) / TAU).floor();
+                    let angle = own - TAU * turns;
+                    spot.curve.turns[i] = turns as i8;
                     if angle > high + SLACK {
                         return;
                     }
@@ -161,7 +264,11 @@ impl PoseSpace {
         let first = turn(c.of[0]) * self.sum;
         self.wound(0, c, a, name, &mut |a, name| {
             let b = first + self.b(&self.unturned(a));
-            found(Critical { b, up, down, name }, a);
+            let mut spot = spot;
+            for (i, turns) in spot.curve.turns[..a.len()].iter_mut().enumerate() {
+                *turns -= (name >> (4 * i) & 15) as i8;
+            }
+            found(Critical { b, up, down, name, spot, a: *a, count: c.count });
         });
     }
 
@@ -263,7 +370,11 @@ fn by_basis(n: usize, nu: f64, c: &[f64; MAX_DRIVES], lambda: &[f64; MAX_DRIVES]
 
 /// Where |p|² of stationary poses is a square, each place t once, and after how many of those where it turns back.
 fn roots(c: &Pattern, signs: &Signs, square: f64, mut found: impl FnMut(f64, usize)) {
+    let alive = |cell: usize| signs.cells >> cell & 1 == 1;
     let hidden = |(i, beyond): (usize, f64)| {
+        if !alive(i - 1) && !alive(i) {
+            return false;
+        }
         let [before, here] = [signs.values[i - 1], signs.values[i]];
         // It turns back before it comes to the square, by a little.
         let gap = if before >= here { here - square } else { square - here };
@@ -292,7 +403,12 @@ fn roots(c: &Pattern, signs: &Signs, square: f64, mut found: impl FnMut(f64, usi
                 *(if value(middle) * value(from) > 0.0 { &mut low } else { &mut high }) = middle;
             }
             let ends = [value(low), value(high)];
-            found(if ends[1] == 0.0 { place(high) } else { bracketed(&miss, [place(low), place(high)], ends) }, turns);
+            if alive(low) {
+                found(
+                    if ends[1] == 0.0 { place(high) } else { bracketed(&miss, [place(low), place(high)], ends) },
+                    turns,
+                );
+            }
         }
         let Some(turn) = turn else { break };
         // Two zeros may hide where the function turns back.

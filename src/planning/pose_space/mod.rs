@@ -26,11 +26,13 @@ mod critical;
 mod facing;
 mod joint;
 mod looks;
+mod loops;
 mod nearest;
 mod outline;
 mod pattern;
 mod poses;
 mod reach;
+mod rings;
 mod space;
 mod toward;
 

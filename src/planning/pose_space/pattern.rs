@@ -1,7 +1,7 @@
 //! [`Pattern`]: which joints stand at which limit, and what of the search for stationary poses that decides, whatever the
 //! point.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::{Arc, OnceLock};
 
 use super::joint::Joint;
@@ -14,6 +14,9 @@ pub(super) const SPACES: usize = 24;
 pub(super) fn place(i: usize) -> f64 {
     FRAC_PI_2 * i as f64 / SPACES as f64
 }
+
+/// Joints that miss their limits by this much are looked at, rad.
+const SPARE: f64 = 1e-6;
 
 /// What of a joint is free.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,6 +58,8 @@ pub(super) struct Pattern {
 pub(super) struct Signs {
     /// Bit i − 1: whether the cosine of compound i is negative.
     pub bits: u32,
+    /// Bit i: whether the joints may be within their limits between place i and the next.
+    pub cells: u32,
     /// |p|² at each place, and the least and greatest of these, m².
     pub values: [f64; SPACES + 1],
     pub least: f64,
@@ -153,24 +158,62 @@ impl Pattern {
         if !(c.most.is_finite() && c.most > 0.0) {
             return None;
         }
-        c.signs = (0..1_u32 << (c.count - 1)).map(|bits| c.scanned(bits)).collect();
-        Some(c)
+        let places = std::array::from_fn(|i| c.stretched(0, place(i)));
+        let alpha = places.map(|(nu, cos, _)| std::array::from_fn(|i| (nu * c.lambda[i]).atan2(cos[i])));
+        let signs = |bits: u32| {
+            let cells = c.within(joints, bits, &alpha);
+            (cells != 0).then(|| c.scanned(bits, cells, &places))
+        };
+        c.signs = (0..1_u32 << (c.count - 1)).filter_map(signs).collect();
+        (!c.signs.is_empty()).then_some(c)
     }
 
-    fn scanned(&self, bits: u32) -> Signs {
-        let values: [f64; SPACES + 1] = std::array::from_fn(|i| self.square(bits, place(i)).0);
+    /// Between which places, of which these are the angles with all cosines above 0, all joints may be within their
+    /// limits: what is not there is not for certain.
+    fn within(&self, joints: &[Joint], bits: u32, alpha: &[[f64; MAX_DRIVES]; SPACES + 1]) -> u32 {
+        let at = |i: usize, place: usize| {
+            let own = alpha[place][i];
+            if i > 0 && bits >> (i - 1) & 1 == 1 { PI - own } else { own }
+        };
+        let free = || joints.iter().zip(self.at).enumerate().filter(|(_, (_, at))| *at == At::Free);
+        let may = |place: usize, side: f64| {
+            free().all(|(i, (joint, _))| {
+                let [near, far] = joint.ends.map(|k| self.of[k]);
+                // Each angle rises or falls from one place to the next, so their difference lies between these.
+                let [n, f] = [near, far].map(|k| [at(k, place), at(k, place + 1)]);
+                let [least, greatest] =
+                    [f[0].min(f[1]) - n[0].max(n[1]), f[0].max(f[1]) - n[0].min(n[1])].map(|d| joint.sense * side * d);
+                let shift = self.shift[i] - joint.sense * (self.lean[far] - self.lean[near]);
+                let [low, high] = [least.min(greatest) + shift - SPARE, least.max(greatest) + shift + SPARE];
+                // The least of its values above the lower limit.
+                let first = high - TAU * ((high - joint.limits[0]) / TAU).floor();
+                first - (high - low) <= joint.limits[1]
+            })
+        };
+        (0..SPACES).filter(|i| may(*i, 1.0) || may(*i, -1.0)).fold(0, |cells, i| cells | 1 << i)
+    }
+
+    fn scanned(&self, bits: u32, cells: u32, places: &[(f64, [f64; MAX_DRIVES], Vector); SPACES + 1]) -> Signs {
+        let values = std::array::from_fn(|i| {
+            let (_, cos, sum) = &places[i];
+            let along: f64 =
+                (0..self.count).map(|i| if i > 0 && bits >> (i - 1) & 1 == 1 { -cos[i] } else { cos[i] }).sum();
+            Vector::new(along, sum.im).norm_sqr()
+        });
         let mut turns = Vec::new();
         for i in 1..SPACES {
-            let [a, b, c] = [values[i - 1], values[i], values[i + 1]];
+            let [a, b, c]: [f64; 3] = [values[i - 1], values[i], values[i + 1]];
             let bend = a - 2.0 * b + c;
             // Two solutions may hide where it turns back: by a parabola through three places, and a little more.
             if (b <= a && b <= c && bend > 0.0) || (b >= a && b >= c && bend < 0.0) {
                 turns.push((i, 0.125 * (a - c).powi(2) / bend.abs() / 0.95));
             }
         }
-        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-        let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        Signs { bits, values, least, greatest, turns }
+        let within = |i: &usize| cells >> i & 1 == 1 || (*i > 0 && cells >> (i - 1) & 1 == 1);
+        let within = || (0..=SPACES).filter(within).map(|i| values[i]);
+        let least = within().fold(f64::INFINITY, f64::min);
+        let greatest = within().fold(f64::NEG_INFINITY, f64::max);
+        Signs { bits, cells, values, least, greatest, turns }
     }
 
     /// ν, |L_i| cos α_i of all compounds, and (Σ |L_i| cos α_i, ν ΣΛ) at t.

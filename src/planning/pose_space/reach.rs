@@ -27,7 +27,7 @@ impl PoseSpace {
         if distance < nearest - 1e-12 * farthest {
             return Err(NoReach::TooNear { distance, nearest });
         }
-        let set = self.reach_of(distance, &[], &mut Work::default()).0;
+        let set = self.reach_of(distance);
         if set.is_empty() {
             return Err(NoReach::Limits);
         }
@@ -45,35 +45,48 @@ impl PoseSpace {
         tries.iter().find_map(|b| self.poses(p, *b, &self.middle()).first().copied())
     }
 
-    /// The b of points at a distance from B, on the x axis, and what was seen there. What was seen at distances beside it
-    /// saves looks.
-    pub(super) fn reach_of(&self, distance: f64, beside: &[&Seen], work: &mut Work) -> (BSet, Seen) {
+    /// The b of points at a distance from B, on the x axis.
+    fn reach_of(&self, distance: f64) -> BSet {
         let period = self.period();
         if self.drives() == 1 {
             // One arm goes round on its circle.
             let on = (distance - self.farthest()).abs() <= 1e-9 * self.farthest();
             let b = if self.tip[0] < 0.0 { 0.5 * period } else { 0.0 };
-            return (BSet { intervals: if on { vec![[b, b]] } else { Vec::new() }, period }, Seen::default());
+            return BSet { intervals: if on { vec![[b, b]] } else { Vec::new() }, period };
         }
         if distance <= AT_BASE * self.farthest() {
             let any = self.any_pose(distance);
-            return (BSet { intervals: if any { vec![[0.0, period]] } else { Vec::new() }, period }, Seen::default());
+            return BSet { intervals: if any { vec![[0.0, period]] } else { Vec::new() }, period };
         }
-        work.ends.clear();
-        if self.criticals(distance, |c, _| work.ends.push(c)) {
-            return self.set_of(distance, beside, work);
+        let mut work = Work::default();
+        if self.criticals(distance, |c| work.ends.push(c)) {
+            return self.joined(distance, &[], &mut work).set(period);
         }
         // At distances to which straight arms just reach, ends meet and none is told from another: as beside it.
         let parts = [1.0 - BESIDE, 1.0 + BESIDE].map(|by| {
             work.ends.clear();
-            self.criticals(distance * by, |c, _| work.ends.push(c));
-            self.set_of(distance * by, &[], work).0.intervals
+            self.criticals(distance * by, |c| work.ends.push(c));
+            self.joined(distance * by, &[], &mut work).set(period).intervals
         });
-        (BSet::union(parts.concat(), period), Seen::default())
+        BSet::union(parts.concat(), period)
+    }
+
+    /// What of the circle of b is covered at a distance from B, m, three drives and more. What was seen at distances
+    /// beside it saves looks. Where straight arms just reach, it is moved by rounding, and says where to.
+    pub(super) fn covered(&self, distance: f64, beside: &[&Covered], work: &mut Work) -> (f64, Covered) {
+        let mut at = distance;
+        for _ in 0..4 {
+            work.ends.clear();
+            if self.criticals(at, |c| work.ends.push(c)) {
+                break;
+            }
+            at *= 1.0 + 0.1 * BESIDE;
+        }
+        (at, self.joined(at, beside, work))
     }
 
     /// Joins the critical values: what lies between two is covered where a pose beside it goes there, or goes on.
-    fn set_of(&self, distance: f64, beside: &[&Seen], work: &mut Work) -> (BSet, Seen) {
+    fn joined(&self, distance: f64, beside: &[&Covered], work: &mut Work) -> Covered {
         let period = self.period();
         work.looks.clear();
         for c in &mut work.ends {
@@ -83,9 +96,7 @@ impl PoseSpace {
         work.ends.dedup_by(|c, last| {
             let same = c.b - last.b < SAME;
             if same {
-                last.up |= c.up;
-                last.down |= c.down;
-                last.name = last.name.wrapping_add(c.name);
+                last.merge(c);
             }
             same
         });
@@ -93,53 +104,29 @@ impl PoseSpace {
         let n = merged.len();
         if n == 0 {
             // b may go round and round without an end: near B the machine turns as a whole.
-            let known = agreed(beside.iter().map(|seen| seen.whole()));
+            let known = agreed(beside.iter().map(|seen| seen.whole())).filter(|_| beside.len() > 1);
             let whole = self.drives() > 2 && known.unwrap_or_else(|| self.any_pose(distance));
-            let set = BSet { intervals: if whole { vec![[0.0, period]] } else { Vec::new() }, period };
-            return (set, Seen { names: Vec::new(), covered: vec![whole] });
+            return Covered { ends: Vec::new(), gaps: vec![whole] };
         }
-        // covered[i]: from value i to the next.
-        let mut covered: Vec<bool> = (0..n).map(|i| merged[i].up || merged[(i + 1) % n].down).collect();
-        let spread = |covered: &mut Vec<bool>| {
-            // What comes to a value at which nothing ends goes on there.
-            for _ in 0..2 {
-                for i in 0..n {
-                    let next = (i + 1) % n;
-                    covered[next] |= covered[i] && !merged[next].down;
-                }
-                for i in (0..n).rev() {
-                    let next = (i + 1) % n;
-                    covered[i] |= covered[next] && !merged[next].up;
-                }
-            }
-        };
-        spread(&mut covered);
+        let gaps = (0..n).map(|i| merged[i].up || merged[(i + 1) % n].down).collect();
+        let mut covered = Covered { ends: merged.clone(), gaps };
+        covered.spread();
         for i in 0..n {
             let to = if i + 1 < n { merged[i + 1].b } else { merged[0].b + period };
             let width = to - merged[i].b;
-            if covered[i] || width <= SAME || self.drives() < 3 {
+            if covered.gaps[i] || width <= SAME || self.drives() < 3 {
                 continue;
             }
             // Several sheets may lie over one b: whether another one goes on here is known from the same gap beside it, or
             // asked of a pose, anywhere between, as where the set is about to part few poses are left.
-            let name = |j: usize| merged[j % n].name;
-            let around = [name(i + n - 1), name(i), name(i + 1), name(i + 2)];
-            let known = agreed(beside.iter().map(|seen| seen.covers(n, i, around)));
+            let known = agreed(beside.iter().map(|seen| Some(seen.gaps[seen.gap(&covered, i, beside.len() < 2)?])));
             let between = || [0.5, 0.2, 0.8, 0.05, 0.95].map(|part| merged[i].b + part * width);
             if known.unwrap_or_else(|| self.has_pose(distance, &between(), looks)) {
-                covered[i] = true;
-                spread(&mut covered);
+                covered.gaps[i] = true;
+                covered.spread();
             }
         }
-        let mut parts: Vec<[f64; 2]> = Vec::with_capacity(2 * n);
-        parts.extend(merged.iter().map(|c| [c.b, c.b]));
-        for (i, covered) in covered.iter().enumerate() {
-            if *covered {
-                let to = if i + 1 < n { merged[i + 1].b } else { merged[0].b + period };
-                parts.push([merged[i].b, to]);
-            }
-        }
-        (BSet::union(parts, period), Seen { names: merged.iter().map(|c| c.name).collect(), covered })
+        covered
     }
 }
 
@@ -157,25 +144,81 @@ fn agreed(known: impl Iterator<Item = Option<bool>>) -> Option<bool> {
     all.all(|other| other == first).then_some(first)
 }
 
-/// Which values ended what at a distance, in order, and what was covered between them. Sets begin and end at these
-/// values only, so at a distance near by what lies between the same two is covered as well, or not, unless a third one has
-/// passed both: then they are not in the same place among all.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Seen {
-    names: Vec<u64>,
-    covered: Vec<bool>,
+/// What of the circle of b is covered at a distance. Sets begin and end at critical values only, so at a distance near by
+/// what lies between the same two is covered as well, or not, unless a third one has passed both: then there are mostly
+/// others about them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Covered {
+    /// The critical values, from the least.
+    pub ends: Vec<Critical>,
+    /// Whether what lies between each and the next is covered; one, of the whole circle, where there are no values.
+    pub gaps: Vec<bool>,
 }
 
-impl Seen {
-    /// Whether gap i of n was covered, if these values lay about it.
-    fn covers(&self, n: usize, i: usize, around: [u64; 4]) -> Option<bool> {
-        let name = |j: usize| self.names[j % n];
-        let same = self.names.len() == n && around == [name(i + n - 1), name(i), name(i + 1), name(i + 2)];
-        same.then(|| self.covered[i])
+impl Covered {
+    /// As intervals of b.
+    fn set(&self, period: f64) -> BSet {
+        let n = self.ends.len();
+        if n == 0 {
+            let whole = self.gaps.first() == Some(&true);
+            return BSet { intervals: if whole { vec![[0.0, period]] } else { Vec::new() }, period };
+        }
+        let mut parts: Vec<[f64; 2]> = Vec::with_capacity(2 * n);
+        parts.extend(self.ends.iter().map(|c| [c.b, c.b]));
+        for (i, covered) in self.gaps.iter().enumerate() {
+            if *covered {
+                let to = if i + 1 < n { self.ends[i + 1].b } else { self.ends[0].b + period };
+                parts.push([self.ends[i].b, to]);
+            }
+        }
+        BSet::union(parts, period)
+    }
+
+    /// What comes to a value at which nothing ends goes on there.
+    fn spread(&mut self) {
+        let n = self.ends.len();
+        for _ in 0..2 {
+            for i in 0..n {
+                let next = (i + 1) % n;
+                self.gaps[next] |= self.gaps[i] && !self.ends[next].down;
+            }
+            for i in (0..n).rev() {
+                let next = (i + 1) % n;
+                self.gaps[i] |= self.gaps[next] && !self.ends[next].up;
+            }
+        }
+    }
+
+    /// The names of the values about gap i, two on either side.
+    fn around(&self, i: usize) -> [u64; 4] {
+        let n = self.ends.len();
+        [n - 1, 0, 1, 2].map(|j| self.ends[(i + j) % n].name)
+    }
+
+    /// The gap between the same two values as one of another distance; with the same ones about these, too, if all have to
+    /// be. Two values that pass each other keep their order round the circle: of two, it has to be the same from 0 on.
+    fn gap(&self, of: &Self, i: usize, all: bool) -> Option<usize> {
+        let (n, around) = (self.ends.len(), of.around(i));
+        let same = |j: &usize| {
+            let own = self.around(*j);
+            own[1..3] == around[1..3] && (!all || own == around)
+        };
+        if n < 3 || of.ends.len() < 3 {
+            return (n == of.ends.len() && same(&i)).then_some(i);
+        }
+        (0..n).find(same)
+    }
+
+    /// Covers what is covered at a distance beside this one: what was found there cannot be missing here.
+    pub fn covers_too(&mut self, beside: &Self) {
+        for i in 0..self.ends.len() {
+            self.gaps[i] |= beside.gap(self, i, true).is_some_and(|j| beside.gaps[j]);
+        }
+        self.spread();
     }
 
     /// Whether all of it was covered, where there were no values.
     fn whole(&self) -> Option<bool> {
-        self.covered.first().copied().filter(|_| self.names.is_empty())
+        self.gaps.first().copied().filter(|_| self.ends.is_empty())
     }
 }

@@ -1,0 +1,230 @@
+//! The workspace of a b of four drives and more: its loops, area, box and distances against each other, against poses at
+//! random, against poses found otherwise, and against the closed form of three.
+
+use std::f64::consts::TAU;
+
+use stillbase::mechanics::machine::{Machine, builtin};
+use stillbase::mechanics::planar::Vector;
+use stillbase::planning::pose_constant::plane_map;
+use stillbase::planning::pose_space::{Outline, PoseSpace};
+use stillbase::planning::reactionless::Boundary;
+
+use crate::support::Noise;
+use crate::support::random::{a_pose, a_space};
+
+fn four() -> &'static Machine {
+    builtin("four-drive").expect("built in")
+}
+
+fn space(machine: &Machine) -> PoseSpace {
+    PoseSpace::of(machine).expect("D is constant")
+}
+
+/// Within a tolerance that is not relative: m, m².
+#[track_caller]
+fn near(what: &str, got: &[f64], want: &[f64], tolerance: f64) {
+    let off = got.iter().zip(want).fold(0.0_f64, |off, (g, w)| off.max((g - w).abs()));
+    assert!(got.len() == want.len() && off <= tolerance, "{what}: got {got:?}, want {want:?}, {off:e} apart");
+}
+
+/// The built-in machine with limits at random.
+fn limited(noise: &mut Noise) -> PoseSpace {
+    let limits = |machine: Machine, angle: &str| {
+        let low = noise.between(-2.5, 2.0);
+        let limits = format!("{low},{}", low + noise.between(0.3, 3.0));
+        machine.set(&format!("limits.{angle}"), &limits).expect("limits")
+    };
+    space(&["a1", "a2", "a3"].into_iter().fold(four().clone(), limits))
+}
+
+/// Machines with four and five drives, and the built-in one with limits at random.
+fn spaces(noise: &mut Noise, count: usize) -> Vec<PoseSpace> {
+    let any = |i: usize| if i % 3 == 2 { limited(noise) } else { a_space(noise, 4 + i % 3).1 };
+    (0..count).map(any).collect()
+}
+
+fn signed(line: &[[f64; 2]]) -> f64 {
+    let pairs = line.iter().zip(line.iter().cycle().skip(1));
+    pairs.map(|(a, b)| 0.5 * (a[0] * b[1] - a[1] * b[0])).sum()
+}
+
+fn holds(line: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
+    let pairs = line.iter().zip(line.iter().cycle().skip(1));
+    let crosses =
+        pairs.filter(|(a, b)| (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]));
+    crosses.count() % 2 == 1
+}
+
+#[test]
+fn the_limits_of_one_joint_leave_a_part_without_a_hole() {
+    let machine = four().set("limits.a2", "0,1").expect("limits");
+    let (space, b) = (space(&machine), 2.4);
+    let outline = space.outline(b);
+    near("area", &[outline.area], &[0.545_807], 1e-5);
+    near("loops", &[outline.loops.iter().map(|line| signed(line)).sum()], &[outline.area], 1e-6);
+    // What no pose at this b reaches lies outside.
+    for (p, poses) in [([0.9, -0.3], 0), ([0.3, 0.2], 1)] {
+        let p = Vector::new(p[0], p[1]);
+        let found = space.poses(p, b, &space.middle()).len();
+        assert_eq!((found, outline.distance(p) > 0.0), (poses, poses > 0), "{p}");
+    }
+}
+
+/// The loops hold the area, outer ones counter-clockwise and holes clockwise; the box is theirs.
+#[test]
+fn loops_add_up_to_the_area() {
+    let mut noise = Noise::of(3);
+    for (i, space) in spaces(&mut noise, 8).iter().enumerate() {
+        let outline = space.outline(noise.between(-4.0, 4.0));
+        let sum: f64 = outline.loops.iter().map(|line| signed(line)).sum();
+        near(&format!("{i}: loops"), &[sum], &[outline.area], 1e-6);
+        for (k, line) in outline.loops.iter().enumerate() {
+            let others = outline.loops.iter().enumerate().filter(|(l, _)| *l != k);
+            let depth = others.filter(|(_, other)| holds(other, line[0])).count();
+            assert_eq!(signed(line) > 0.0, depth % 2 == 0, "{i}: loop {k}");
+        }
+        let all = || outline.loops.iter().flatten();
+        let least = |k: usize| all().fold(f64::INFINITY, |x, p| x.min(p[k]));
+        let most = |k: usize| all().fold(f64::NEG_INFINITY, |x, p| x.max(p[k]));
+        near("box", &outline.extent, &[least(0), most(0), least(1), most(1)], 0.0);
+    }
+}
+
+/// Poses at random, some with joints at their limits, have their ends inside; what lies inside is reached by a pose that
+/// is found by small steps from poses at random.
+#[test]
+fn inside_is_what_poses_reach() {
+    let mut noise = Noise::of(29);
+    for (i, space) in spaces(&mut noise, 6).iter().enumerate() {
+        let b = noise.between(-4.0, 4.0);
+        let outline = space.outline_within(b, 1e-5, &mut |_| true).expect("wanted to its end");
+        let poses: Vec<Vec<f64>> = (0..400)
+            .map(|k| {
+                let mut a = a_pose(&mut noise, space);
+                for (a, joint) in a.iter_mut().zip(space.joints()) {
+                    let [low, high] = joint.limits();
+                    if k % 2 == 1 && noise.between(0.0, 1.0) < 0.4 {
+                        *a = if noise.sign() > 0.0 { low } else { high };
+                    }
+                }
+                a.to_vec()
+            })
+            .collect();
+        for a in &poses {
+            let p = space.place(&space.lift(a, b));
+            assert!(outline.distance(p) > -2e-5, "{i}: {p} of {a:?} is {} outside", -outline.distance(p));
+        }
+        for p in points(&mut noise, &outline, 6) {
+            if outline.distance(p) > 1e-3 {
+                assert!(approached(space, p, b, &poses) < 1e-6, "{i}: nothing reaches {p}");
+            }
+        }
+    }
+}
+
+/// Points of the box of an outline.
+fn points(noise: &mut Noise, outline: &Outline, count: usize) -> Vec<Vector> {
+    let [x_min, x_max, y_min, y_max] = outline.extent;
+    (0..count).map(|_| Vector::new(noise.between(x_min, x_max), noise.between(y_min, y_max))).collect()
+}
+
+/// How near to a point, m, steps of Gauss and Newton come from the nearest of these poses, held at limits.
+fn approached(space: &PoseSpace, p: Vector, b: f64, poses: &[Vec<f64>]) -> f64 {
+    let place = |a: &[f64]| space.place(&space.lift(a, b));
+    let mut order: Vec<&Vec<f64>> = poses.iter().collect();
+    order.sort_by(|x, y| (place(x) - p).norm().total_cmp(&(place(y) - p).norm()));
+    let mut best = f64::INFINITY;
+    for start in order.into_iter().take(40) {
+        let mut a = start.clone();
+        for _ in 0..60 {
+            let miss = p - place(&a);
+            best = best.min(miss.norm());
+            if best < 1e-6 {
+                return best;
+            }
+            let step = step(space, &a, miss, &place);
+            let size = step.iter().map(|s| s * s).sum::<f64>().sqrt();
+            for ((a, step), joint) in a.iter_mut().zip(step).zip(space.joints()) {
+                *a = (*a + step * (0.3 / size).min(1.0)).clamp(joint.limits()[0], joint.limits()[1]);
+            }
+        }
+    }
+    best
+}
+
+/// The least step of the joints that do not push against a limit that takes up a miss, to first order.
+fn step(space: &PoseSpace, a: &[f64], miss: Vector, place: &impl Fn(&[f64]) -> Vector) -> Vec<f64> {
+    let columns: Vec<Vector> = (0..a.len())
+        .map(|j| {
+            let beside =
+                |by: f64| a.iter().enumerate().map(|(i, a)| if i == j { a + by } else { *a }).collect::<Vec<_>>();
+            (place(&beside(1e-6)) - place(&beside(-1e-6))) / 2e-6
+        })
+        .collect();
+    let mut held = vec![false; a.len()];
+    loop {
+        let free = || columns.iter().zip(&held).filter(|(_, held)| !**held).map(|(c, _)| c);
+        let xx = free().map(|c| c.re * c.re).sum::<f64>() + 1e-12;
+        let yy = free().map(|c| c.im * c.im).sum::<f64>() + 1e-12;
+        let xy: f64 = free().map(|c| c.re * c.im).sum();
+        let det = xx * yy - xy * xy;
+        let by = [(yy * miss.re - xy * miss.im) / det, (xx * miss.im - xy * miss.re) / det];
+        let step: Vec<f64> =
+            columns.iter().zip(&held).map(|(c, held)| if *held { 0.0 } else { c.re * by[0] + c.im * by[1] }).collect();
+        let pushes = |j: &usize| {
+            let [low, high] = space.joints()[*j].limits();
+            (a[*j] <= low + 1e-12 && step[*j] < 0.0) || (a[*j] >= high - 1e-12 && step[*j] > 0.0)
+        };
+        match (0..a.len()).find(|j| !held[*j] && pushes(j)) {
+            Some(j) => held[j] = true,
+            None => return step,
+        }
+    }
+}
+
+/// ∫ r |B(r)| dr / Σλ, of circles that are asked for one by one.
+#[test]
+fn the_area_is_that_of_all_circles() {
+    const RINGS: u32 = 500;
+    let mut noise = Noise::of(43);
+    for (i, space) in spaces(&mut noise, 4).iter().enumerate() {
+        let outline = space.outline_within(0.7, 1e-5, &mut |_| true).expect("wanted to its end");
+        let (nearest, far) = (space.nearest(), space.farthest());
+        let width = (far - nearest) / f64::from(RINGS);
+        let ring = |j: u32| {
+            let r = nearest + width * (f64::from(j) + 0.5);
+            let Ok(set) = space.reach(Vector::new(r, 0.0)) else { return 0.0 };
+            set.intervals.iter().map(|[low, high]| high - low).sum::<f64>() / set.period * TAU * r * width
+        };
+        let area = (0..RINGS).map(ring).sum::<f64>();
+        near(&format!("{i}"), &[outline.area], &[area], 5e-4 * far * far);
+    }
+}
+
+/// Area and box of the built-in machine: the area by independent rasters, extrapolated, and then by ∫ r |B(r)| dr / Σλ.
+#[test]
+fn four_drives_have_their_area() {
+    let outline = space(four()).outline(2.4);
+    near("area", &[outline.area], &[1.352_36], 1e-5);
+    near("box", &outline.extent, &[-0.469_23, 0.982_23, -0.411_89, 1.283_28], 1e-5);
+    assert_eq!(outline.loops.len(), 1);
+}
+
+/// Three drives have a closed form.
+#[test]
+fn three_drives_have_the_workspace_of_their_plane() {
+    let mut noise = Noise::of(17);
+    for i in 0..12 {
+        let (machine, space) = a_space(&mut noise, 3);
+        let Ok(map) = plane_map(&machine) else { continue };
+        let b = noise.between(-4.0, 4.0);
+        let (outline, boundary) = (space.outline(b), Boundary::of(&map));
+        near(&format!("{i}: area"), &[outline.area], &[boundary.area()], 2e-6);
+        let extent = boundary.extent(b);
+        let want = [extent.x_min, extent.x_max, extent.y_min, extent.y_max];
+        near(&format!("{i}: box"), &outline.extent, &want, 2e-6);
+        for p in points(&mut noise, &outline, 20) {
+            near(&format!("{i}: {p}"), &[outline.distance(p)], &[boundary.distance(p, b)], 2e-5);
+        }
+    }
+}
