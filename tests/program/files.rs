@@ -545,7 +545,7 @@ fn names_from_outside_do_nothing_to_a_terminal() {
         (&["joints", "s.toml", "--json"], "U+001B"),
         (&["compare", "title.toml", "case-1"], "U+202E"),
         (&["headless", "name.toml", "-o", "x.rrd"], "U+001B"),
-        (&["check", "no\u{1b}[2Jsuch"], "u{1b}"),
+        (&["check", "no\u{1b}[2Jsuch"], "no such machine"),
         (&["design", "nine-link", "-o", "no/\u{1b}[2J.toml"], "u{1b}"),
     ] {
         if args[0] == "headless" && !cfg!(feature = "record") {
