@@ -40,7 +40,8 @@ fn check_reports_table_1_as_printed_and_re_solved() {
             "invariant",
             "lambda",
             "machine",
-            "mass"
+            "mass",
+            "pose_constant"
         ]
     );
     for (key, reference) in [
