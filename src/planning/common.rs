@@ -129,7 +129,7 @@ pub fn no_common(map: &dyn Reaching, points: &[Vector]) -> Option<NoCommon> {
     };
     let mends = (0..points.len()).filter_map(|i| least_move(map, points[i], i, &others(i)));
     let least = mends.min_by(|x, y| x.distance.total_cmp(&y.distance));
-    Some(NoCommon { pair, mend: least.map(|mend| proved(map, points, &others(mend.point), mend)) })
+    Some(NoCommon { pair, mend: least.and_then(|mend| proved(map, points, &others(mend.point), mend)) })
 }
 
 /// Which of some points that are to share a b cannot be reached at it, and why; `None` if all can. A point that no b
@@ -252,8 +252,9 @@ fn least_move(map: &dyn Reaching, p: Vector, point: usize, others: &BSet) -> Opt
     Some(Mend { point, to: at, distance: (at - p).norm(), b, shown: None })
 }
 
-/// A move that rounding does not take away: a hair further where the end of it misses, and the same to be printed.
-fn proved(map: &dyn Reaching, points: &[Vector], others: &BSet, mend: Mend) -> Mend {
+/// A move that rounding does not take away: a hair further where the end of it misses, and the same to be printed; `None`
+/// if no pose was found there.
+fn proved(map: &dyn Reaching, points: &[Vector], others: &BSet, mend: Mend) -> Option<Mend> {
     let from = points[mend.point];
     let shared = |to: Vector| {
         let set = BSet::overlap(&[others.clone(), set_of(map, to).ok()?]).near(mend.b);
@@ -291,8 +292,9 @@ fn proved(map: &dyn Reaching, points: &[Vector], others: &BSet, mend: Mend) -> M
             Some(ShownMend { to, b, far, does: true })
         })
     });
-    match exact {
-        Some((to, b)) => Mend { to, distance: (to - from).norm(), b, shown, ..mend },
-        None => Mend { shown, ..mend },
+    match (exact, shown) {
+        (Some((to, b)), shown) => Some(Mend { to, distance: (to - from).norm(), b, shown, ..mend }),
+        (None, Some(own)) => Some(Mend { to: own.point(), distance: own.far, b: own.b.value(), shown, ..mend }),
+        (None, None) => None,
     }
 }
