@@ -345,6 +345,7 @@ fn what_is_outside_of_the_family_is_refused_by_name() {
         ("<child link=\"forearm\"/>", "<child link=\"upper_arm\"/>", ["joint \"elbow\"", "a second joint"]),
         ("name=\"tool0\"", "name=\"forearm\"", ["link \"forearm\"", "names that stand once"]),
         ("<origin xyz=\"0.4 0 0\"/>", "<origin xyz=\"0.4 0 0 1\"/>", ["<origin>", "4 numbers: want 3"]),
+        ("lower=\"-2.5\"", "lower=\"9.5\"", ["joint \"elbow\"", "lower not above upper"]),
         ("izz=\"0.04\"", "izz=\"-0.04\"", ["link \"upper_arm\"", "not below 0"]),
         (
             "<robot name=\"two\">",

@@ -395,6 +395,41 @@ fn a_search_round_the_pins_finds_what_trying_all_ways_finds() {
     assert!(compared > 3, "{compared}");
 }
 
+/// One disc between two pins, as near to the one behind it as it may be: x = c + κ √(S/x), where S is what it has to
+/// balance; and, with more to balance, as near to the pin before it: x = L − c − κ √(S/x).
+#[test]
+fn a_disc_between_two_pins_touches_where_the_closed_form_says() {
+    let (length, clearance) = (0.5, 0.01);
+    // Radius of 1 kg of the disc.
+    let spread = (1.0 / (std::f64::consts::PI * 7850.0 * 0.03)).sqrt();
+    for (com, from_behind) in [(-0.4, true), (-2.7, false)] {
+        let text = format!(
+            "name = \"two\"\n[[drive]]\nname = \"1\"\n[[drive]]\nname = \"2\"\n\
+             [[link]]\nname = \"1\"\ndrive = \"1\"\nattach = \"base\"\nlength = {length}\nmass = 1.0\n\
+             inertia = 0.01\ncom = {com}\n\
+             [[link]]\nname = \"2\"\ndrive = \"2\"\nattach = {{ link = \"1\", at = \"tip\" }}\nlength = 0.3\n\
+             mass = 0.2\ninertia = 0.01\ncom = 0.0\n[end_effector]\nlink = \"2\"\n"
+        );
+        let machine = parse(&text, "two").expect("a machine");
+        let moment = -(com + 0.2 * length);
+        let mut asked = weighing(&machine, if from_behind { Objective::inertia() } else { Objective::mass() });
+        asked.sites.retain(|site| site.link == 0);
+        // In the second case no further than the pin at the tip.
+        asked.sites.iter_mut().for_each(|site| (site.from, site.to) = (-0.45, if from_behind { 1.0 } else { length }));
+        asked.clearance = Some(clearance);
+        let found = place(&machine, &asked).expect("it can be balanced");
+        let mut at = 0.25;
+        for _ in 0..200 {
+            let radius = spread * (moment / at).sqrt();
+            let touches = if from_behind { clearance + radius } else { length - clearance - radius };
+            at += 0.5 * (touches - at);
+        }
+        let weight = &found.machine.spec().counterweights[0];
+        assert!((weight.at - at).abs() < 1e-5, "com {com}: at {} instead of {at}", weight.at);
+        assert!((weight.mass - moment / at).abs() < 1e-4 * weight.mass, "com {com}: {} kg", weight.mass);
+    }
+}
+
 #[test]
 fn a_clearance_that_leaves_no_way_says_which_would_do() {
     let bare = family_machine("nine-link-bare");

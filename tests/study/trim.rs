@@ -9,8 +9,8 @@ use stillbase::study::trim::{
     Fit, Made, Motion, Part, Recording, Rows, TrimError, Unknown, Way, fit, identified, mend, next, taken,
 };
 
-use crate::support::Noise;
 use crate::support::random::a_machine;
+use crate::support::{Noise, family_machine};
 
 /// Each drive as a sum of three sines.
 struct Sines(Vec<[[f64; 3]; 3]>, Vec<f64>);
@@ -158,6 +158,40 @@ fn without_noise_angles_alone_will_do() {
         });
         assert!(errors[0] < 1e-6 && errors[1] > 4.0 * errors[0], "{uneven}: {errors:?}");
     }
+}
+
+/// Noise of the angles is said as it is: σ of white noise is found from the samples, and what φ̈ makes of it, the square
+/// root of h σ² ∫ φ̈² over ∫ φ, stands against the acceleration of a sine, A ω²/√2 times what the window leaves of it.
+#[test]
+fn noise_of_accelerations_is_that_of_the_window() {
+    let machine = family_machine("two-drive");
+    let (step, sigma, size, rate) = (0.002, 4e-5, 0.5, 6.0);
+    let mut noise = Noise::of(12);
+    let mut motion = Motion::default();
+    for i in 0..2000 {
+        let t = step * f64::from(i);
+        motion.t.push(t);
+        motion.q.push(PerDrive::from_fn(2, |k| {
+            size * (rate * t + 1.5 * k as f64).sin() + k as f64 + sigma * normal(&mut noise)
+        }));
+        motion.force.push(Vector::new(normal(&mut noise), normal(&mut noise)));
+        motion.moment.push(normal(&mut noise));
+    }
+    let rows = Rows::of(&machine, &Recording { motions: vec![motion] }, true).expect("rows");
+    let Made::Windows { half, noise: share } = rows.made else { panic!("windows") };
+    // Sums over u = (t − centre)/half.
+    let count = 20_000;
+    let sum = |f: &dyn Fn(f64) -> f64| {
+        (0..count).map(|i| f(-1.0 + 2.0 * (f64::from(i) + 0.5) / f64::from(count))).sum::<f64>() * 2.0
+            / f64::from(count)
+    };
+    let window = |u: f64| (1.0 - u * u).powi(4);
+    let bent = |u: f64| -8.0 * (1.0 - u * u).powi(3) + 48.0 * u * u * (1.0 - u * u).powi(2);
+    let whole = sum(&window);
+    let noisy = sigma * (step / half).sqrt() * sum(&|u| bent(u).powi(2)).sqrt() / (half * half * whole);
+    let left = sum(&|u| window(u) * (rate * half * u).cos()) / whole;
+    let want = noisy / (size * rate * rate / 2.0_f64.sqrt() * left);
+    assert!((share / want - 1.0).abs() < 0.1, "{share} instead of {want}, ± {half} s");
 }
 
 /// Of all intervals of 95 % about as many hold what is true, whatever the noise.

@@ -22,9 +22,10 @@ pub(super) fn long_run(scores: &DMatrix<f64>, motions: &[usize], lags: usize) ->
                 blocks[(i, j)] = running;
             }
         }
-        // What the mean of the motion, taken out, hides.
+        // What offset and slope of the motion, taken out, hide: about as much each.
         let share = (lags as f64 / count as f64).min(1.0);
-        sum += blocks.tr_mul(&blocks) / (lags as f64 * (1.0 - share + share * share / 3.0));
+        let seen = (1.0 - share + share * share / 3.0).powi(2);
+        sum += blocks.tr_mul(&blocks) / (lags as f64 * seen);
         from += count;
     }
     sum
