@@ -6,7 +6,7 @@ use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::study::trim::{
-    Fit, Made, Motion, Part, Recording, Rows, TrimError, Unknown, Way, fit, identified, mend, next, taken,
+    Fit, Made, Motion, Part, Recording, Rows, TrimError, Unknown, Way, fit, identified, mend, next, taken, worth,
 };
 
 use crate::support::random::a_machine;
@@ -227,7 +227,7 @@ fn intervals_are_honest() {
     }
 }
 
-/// Offsets of sensors, in each motion of its own, change nothing; heavier machines are found heavier.
+/// Offsets and drifts of sensors, in each motion of its own, change nothing; heavier machines are found heavier.
 #[test]
 fn laws_of_scale() {
     let machine = builtin("two-drive").expect("built in");
@@ -239,8 +239,9 @@ fn laws_of_scale() {
     let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (a.abs() + b.abs() + 1e-3);
     let mut shifted = recording.clone();
     for (i, motion) in shifted.motions.iter_mut().enumerate() {
-        motion.force.iter_mut().for_each(|f| *f += Vector::new(7.0, -3.0 * i as f64));
-        motion.moment.iter_mut().for_each(|n| *n -= 11.0);
+        let Motion { t, force, moment, .. } = motion;
+        force.iter_mut().zip(&*t).for_each(|(f, t)| *f += Vector::new(7.0 - 0.4 * t, (0.3 * t - 3.0) * i as f64));
+        moment.iter_mut().zip(&*t).for_each(|(n, t)| *n += 0.2 * t - 11.0);
         motion.t.iter_mut().for_each(|t| *t += 1e3);
     }
     let same = fitted(machine, &shifted, false);
@@ -377,6 +378,64 @@ fn the_real_machine_is_mended() {
             assert!(left.abs() < 2.0 * fit.half_width(i) + 1e-3 * scales[i], "{i}: {left}, {}", fit.half_width(i));
         }
     }
+}
+
+/// What is off is taken as measured, and nothing else is; what is taken lies within what was said of it.
+#[test]
+fn off_and_taken_agree() {
+    let machine = builtin("two-drive").expect("built in");
+    let how = Measuring { sigma: [0.0, 0.5, 0.1], rows: 200, motions: 2, ..EXACT };
+    let (mut off, mut not) = (0, 0);
+    for seed in 0..30 {
+        let mut noise = Noise::of(700 + seed);
+        let hidden = built(machine, &mut noise, 0.004);
+        let fit = fitted(machine, &measured(&hidden, &mut noise, how, &[true; 2]), false);
+        let taken = taken(&fit);
+        for i in 0..fit.unknowns.of_balance() {
+            assert_eq!(taken.off[i], taken.measured[i]);
+            assert_eq!(taken.off[i], taken.values[i] != fit.nominal[i]);
+            assert_eq!(taken.off[i], taken.half_widths[i] > 0.0);
+            assert!(!taken.off[i] || (taken.values[i] - fit.nominal[i]).abs() > taken.half_widths[i]);
+            (off, not) = (off + u32::from(taken.off[i]), not + u32::from(!taken.off[i]));
+        }
+    }
+    assert!(off > 30 && not > 30, "{off}, {not}");
+}
+
+/// A machine that is as its file says is made worse by any change: none is shown to help, however loud the sensor is.
+/// Where a change is shown to help, it does.
+#[test]
+fn a_change_is_proposed_where_it_helps() {
+    let machine = weighed();
+    let way = of_weights(&machine);
+    let (mut harmful, mut helpful) = (0, 0);
+    for seed in 0..24 {
+        let mut noise = Noise::of(800 + seed);
+        let is_off = seed % 2 == 1;
+        let mut spec = machine.spec().clone();
+        if is_off {
+            spec.counterweights.iter_mut().for_each(|weight| weight.at += noise.between(-0.01, 0.01));
+        }
+        let hidden = Machine::new(spec).expect("a machine");
+        let how = Measuring { sigma: [0.0, 0.3, 0.05], rows: 200, motions: 2, ..EXACT };
+        let recording = measured(&hidden, &mut noise, how, &[true; 3]);
+        let rows = Rows::of(&machine, &recording, false).expect("rows");
+        let fit = fit(&machine, &rows).expect("a fit");
+        let taken = taken(&fit);
+        let mended = mend(&machine, &taken, &way).expect("a change");
+        if !worth(&machine, &rows, &fit, &taken, &mended).helps() {
+            continue;
+        }
+        // The force of the true machine before and after.
+        let truth = fit.unknowns.nominal(&Inertia::of(&hidden));
+        let size = |by: f64| {
+            let left = |i: usize| Vector::new(truth[2 * i], truth[2 * i + 1]) + mended.by[i] * by;
+            (0..3).map(|i| left(i).norm_sqr()).sum::<f64>()
+        };
+        let helps = size(1.0) < size(0.0);
+        (harmful, helpful) = (harmful + u32::from(!helps), helpful + u32::from(helps));
+    }
+    assert!(harmful <= 1 && helpful >= 10, "{harmful} harmful, {helpful} helpful");
 }
 
 /// A machine without counterweights gets new ones; the machine that is written has what was measured.

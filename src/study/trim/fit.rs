@@ -111,10 +111,13 @@ pub(super) fn estimate(machine: &Machine, rows: &Rows) -> Result<Estimate, TrimE
     let least = if rows.made == Made::Samples { 1 } else { LEAST_LAGS };
     let parts: Vec<&[f64]> = errors.iter().map(|e| e.as_slice()).collect();
     let lags = lags(&parts, &rows.motions, least);
+    // Windows take more lags than they need, which makes up for the second parameter.
+    let fitted = if rows.made == Made::Samples { LINE as i32 } else { 1 };
     // How much longer errors stay alike than one row.
     let alike = |of: &[usize]| {
         let both = |f: &dyn Fn(usize) -> f64| of.iter().map(|c| f(*c)).sum::<f64>();
-        let long = both(&|c| long_run(&DMatrix::from_column_slice(count, 1, parts[c]), &rows.motions, lags)[(0, 0)]);
+        let long =
+            both(&|c| long_run(&DMatrix::from_column_slice(count, 1, parts[c]), &rows.motions, lags, fitted)[(0, 0)]);
         let own = both(&|c| errors[c].norm_squared());
         if own > 0.0 { (long / own).max(1.0) } else { 1.0 }
     };
@@ -137,7 +140,7 @@ pub(super) fn estimate(machine: &Machine, rows: &Rows) -> Result<Estimate, TrimE
             (0..count).for_each(|i| scores[(i, j)] += weight * column[i] * error[i]);
         }
     }
-    let middle = long_run(&scores, &rows.motions, lags) / share.max(LEAST_SHARE);
+    let middle = long_run(&scores, &rows.motions, lags, fitted) / share.max(LEAST_SHARE);
     let covariance = &solved.inverse * middle * solved.inverse.transpose();
     let gram = |of: usize| rows.channels[of].x.tr_mul(&rows.channels[of].x);
     let force = (gram(0) + gram(1)) * (weights[0] / alike[0]);

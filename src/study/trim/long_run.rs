@@ -7,8 +7,9 @@
 
 use nalgebra::DMatrix;
 
-/// Σ over lags of Bartlett's weight times Σ_i s_i s_{i+lag}ᵀ, rows of scores, motion by motion.
-pub(super) fn long_run(scores: &DMatrix<f64>, motions: &[usize], lags: usize) -> DMatrix<f64> {
+/// Σ over lags of Bartlett's weight times Σ_i s_i s_{i+lag}ᵀ, rows of scores, motion by motion, each less
+/// what was fitted to it with so many parameters.
+pub(super) fn long_run(scores: &DMatrix<f64>, motions: &[usize], lags: usize, fitted: i32) -> DMatrix<f64> {
     let p = scores.ncols();
     let mut sum = DMatrix::zeros(p, p);
     let mut from = 0;
@@ -22,9 +23,9 @@ pub(super) fn long_run(scores: &DMatrix<f64>, motions: &[usize], lags: usize) ->
                 blocks[(i, j)] = running;
             }
         }
-        // What offset and slope of the motion, taken out, hide: about as much each.
+        // What each parameter of a sensor's line, taken out of the motion, hides: about as much.
         let share = (lags as f64 / count as f64).min(1.0);
-        let seen = (1.0 - share + share * share / 3.0).powi(2);
+        let seen = (1.0 - share + share * share / 3.0).powi(fitted);
         sum += blocks.tr_mul(&blocks) / (lags as f64 * seen);
         from += count;
     }

@@ -207,7 +207,8 @@ fn odds(tolerances: &Tolerances, given: &Tried, other: &Tried) -> Option<[f64; 2
         CORRELATED * was.effective[of].min(now.effective[of]) * other.share * (before / after).ln()
     };
     let (before, after) = (tolerances.distance(was)?, tolerances.distance(now)?);
-    let p = before.numbers.min(after.numbers);
+    // Units change what is known; more of it speaks.
+    let p = before.numbers.max(after.numbers);
     let scale = before.balance.max(after.balance) + p;
     let limits = match [given.leaves, other.leaves] {
         [was, now] if was > LEFT && now < KEPT => LIMITS,
