@@ -14,9 +14,9 @@
 //! distance of B(r') + θ Σλ from S on the circle of b, divided by Σλ, and the move is r² + r'² − 2 r r' cos Δθ, squared.
 
 use crate::mechanics::planar::{Vector, unit};
-use crate::planning::pose_constant::{Mend, NoCommon, ShownMend, Unreachable};
 use crate::planning::pose_space::PoseSpace;
 use crate::planning::reactionless::{BSet, Decimal, NoReach, PlaneMap};
+use crate::planning::unreachable::{Mend, NoCommon, ShownMend, Unreachable};
 
 /// Distances that are tried between the least and the greatest one.
 const TRIES: usize = 96;

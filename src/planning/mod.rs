@@ -24,6 +24,7 @@ pub mod posture;
 pub mod reactionless;
 mod reference;
 pub mod timing;
+mod unreachable;
 
 pub use forecast::Forecast;
 pub use motion::Motion;
