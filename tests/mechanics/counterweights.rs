@@ -166,7 +166,8 @@ fn bounds_that_leave_no_way_are_named() {
     let mut asked = weighing(&bare, Objective::mass());
     asked.sites.iter_mut().for_each(|site| site.most = 1.0);
     let why = place(&bare, &asked).expect_err("too little");
-    let NoWeights::Conflict { bounds, relief: Some(Relief::Most(relief)) } = why else { panic!("{why:?}") };
+    let NoWeights::Conflict { bounds, would } = why else { panic!("{why:?}") };
+    let [Relief::Most(relief)] = would.concat()[..] else { panic!("{would:?}") };
     assert!(!bounds.is_empty() && bounds.iter().any(|bound| matches!(bound, Bound::Most(_))), "{bounds:?}");
     // With any of them away there is a way, and so there is with the masses that are proposed.
     let without = |bound: &Bound| {
@@ -193,7 +194,7 @@ fn bounds_that_leave_no_way_are_named() {
     for bound in &bounds {
         assert!(without(bound).is_ok(), "{bound}");
     }
-    asked.sites.iter_mut().for_each(|site| site.most = relief * (1.0 + 1e-6));
+    asked.sites.iter_mut().for_each(|site| site.most = relief);
     assert!(place(&bare, &asked).is_ok(), "up to {relief} kg");
     asked.sites.iter_mut().for_each(|site| site.most = relief * (1.0 - 1e-3));
     assert!(place(&bare, &asked).is_err());
@@ -270,13 +271,18 @@ fn counterweights_are_set_by_key() {
     assert_eq!(changed.value("counterweight.2.at").and_then(|at| at.as_float()), Some(-0.2));
     let point = changed.set("counterweight.2.radius", "default").expect("it may be left out");
     assert_eq!(point.spec().counterweights[1].radius, 0.0);
+    let fixed = machine.set("counterweight.2.fixed", "true").expect("a switch");
+    assert!(fixed.spec().counterweights[1].fixed && !machine.spec().counterweights[1].fixed);
+    assert_eq!(fixed.without_counterweights().expect("a machine").spec().counterweights.len(), 1);
+    assert_eq!(parse(&to_toml(&fixed), "fixed.toml").expect("a machine"), fixed);
     let words = |key: &str, value: &str| machine.set(key, value).expect_err("no such setting").to_string();
     for number in ["0", "3", "01", "x"] {
         assert!(words(&format!("counterweight.{number}.mass"), "1").contains("want one of \"1\", \"2\""), "{number}");
         assert_eq!(machine.value(&format!("counterweight.{number}.mass")), None);
     }
+    assert!(words("counterweight.1.fixed", "2").contains("true or false"));
     assert!(words("counterweight.1.mass", "0").contains("1e-15"), "{}", words("counterweight.1.mass", "0"));
-    assert!(words("counterweight.1.colour", "1").contains("counterweight.NUMBER.(mass|at|radius)"));
+    assert!(words("counterweight.1.colour", "1").contains("counterweight.NUMBER.(mass|at|radius|fixed)"));
 }
 
 /// What balances itself is given nothing.
@@ -435,13 +441,13 @@ fn a_clearance_that_leaves_no_way_says_which_would_do() {
     let bare = family_machine("nine-link-bare");
     let asked = Weighing { clearance: Some(0.25), ..weighing(&bare, Objective::mass()) };
     let why = place(&bare, &asked).expect_err("too far");
-    let NoWeights::Reaches { would: Some(would), .. } = why else { panic!("{why}") };
+    let NoWeights::Reaches { would, .. } = why else { panic!("{why}") };
+    let [Relief::Clearance(would)] = would.concat()[..] else { panic!("{would:?}") };
     let with = |clearance| place(&bare, &Weighing { clearance: Some(clearance), ..asked.clone() });
     assert!(with(would).is_ok() && with(would + 1e-4).is_err(), "{would}");
 }
 
-/// Over a range of payloads the middle is balanced, where it can be; else nothing within the bounds has a smaller worst
-/// residual.
+/// Over a range of payloads nothing within the bounds has a smaller worst residual, and nothing with the same is lighter.
 #[test]
 fn a_range_of_payloads_leaves_the_least_worst_residual() {
     let bare = family_machine("nine-link-bare");
@@ -449,15 +455,18 @@ fn a_range_of_payloads_leaves_the_least_worst_residual() {
     let asked = Weighing { payload: Some(range), ..weighing(&bare, Objective::mass()) };
     let found = place(&bare, &asked).expect("it can be balanced");
     let curve = over_payloads(&found.machine, range, 7).expect("it holds them");
-    assert!(curve[3].force < 1e-12 && curve[3].coupling < 1e-12, "{curve:?}");
     // A payload of half the range on links of lengths L_k: half the range times the longest, and the two longest.
     let lengths: Vec<f64> = bare.end_effector().iter().take(3).map(|length| length.abs()).collect();
     let longest = lengths.iter().fold(0.0_f64, |most, x| most.max(*x));
     for end in [curve[0], curve[6]] {
-        assert!((end.force - 0.15 * longest).abs() < 1e-12, "{end:?}");
+        assert!(end.force < 0.15 * longest + 1e-7, "{end:?}");
     }
+    // Balance in the middle has the same worst residual, and is dearer.
     let alone = place(&bare.set("payload.mass", "0.15").expect("in range"), &weighing(&bare, Objective::mass()));
-    assert!((alone.expect("it can be balanced").added_mass - found.added_mass).abs() < 1e-7);
+    let alone = alone.expect("it can be balanced");
+    assert!(found.added_mass < alone.added_mass - 0.1, "{} and {}", found.added_mass, alone.added_mass);
+    let middle = over_payloads(&alone.machine, range, 7).expect("it holds them");
+    assert!((middle[0].force - 0.15 * longest).abs() < 1e-7 && middle[3].force < 1e-12, "{middle:?}");
 
     // Too little mass to balance it: worse residuals with less mass, and exact again from what would do on.
     let mut last = f64::INFINITY;
@@ -544,16 +553,119 @@ fn what_would_do_does() {
     let with = |most_mass, most_inertia| {
         place(&bare, &Weighing { most_mass, most_inertia, ..weighing(&bare, Objective::mass()) })
     };
-    let relief = |why| match why {
-        Err(NoWeights::Conflict { relief: Some(relief), .. }) => relief,
+    let would = |why| match why {
+        Err(NoWeights::Conflict { would, .. }) => would.concat(),
         other => panic!("{other:?}"),
     };
-    let Relief::Inertia(least) = relief(with(None, Some(1.5))) else { panic!("not of inertia") };
-    assert!((least - 1.798_401_1).abs() < 1e-6);
-    let Relief::Mass(least) = relief(with(Some(5.0), None)) else { panic!("not of mass") };
-    assert!((least - 9.572_666_7).abs() < 1e-6);
-    let words = Relief::Inertia(1.798_401_12).to_string();
-    assert!(words.contains("1.798402"), "upwards: {words}");
+    let [Relief::Inertia(least)] = would(with(None, Some(1.5)))[..] else { panic!("not of inertia") };
+    assert!((least - 1.798_401_1).abs() < 2e-6 && with(None, Some(least)).is_ok());
+    let [Relief::Mass(least)] = would(with(Some(5.0), None))[..] else { panic!("not of mass") };
+    assert!((least - 9.572_666_7).abs() < 2e-6 && with(Some(least), None).is_ok());
+    assert!(Relief::Inertia(least).to_string().contains(&format!("{least:.6}")));
+}
+
+/// A question with what would do in the place of its own bounds, as it is printed.
+fn relieved(asked: &Weighing, together: &[Relief]) -> Weighing {
+    let mut asked = asked.clone();
+    for relief in together {
+        let said = relief.to_string();
+        let number = said.split(' ').find_map(|word| word.parse::<f64>().ok()).expect("a number");
+        match relief {
+            Relief::Most(_) => {
+                asked.sites.iter_mut().filter(|site| site.most.is_finite()).for_each(|site| site.most = number);
+            }
+            Relief::Mass(_) => asked.most_mass = Some(number),
+            Relief::Inertia(_) => asked.most_inertia = Some(number),
+            Relief::Clearance(_) => asked.clearance = Some(number),
+        }
+    }
+    asked
+}
+
+/// With bounds of several kinds each proposal holds with all others as they are; where none does alone, several are said
+/// together, and do, and no single one would.
+#[test]
+fn what_would_do_does_with_bounds_of_several_kinds() {
+    let [alone, several] = bounds_of_several_kinds(24, 31);
+    assert!(alone > 2 && several > 1, "{alone} {several}");
+}
+
+#[test]
+#[ignore = "takes a minute"]
+fn what_would_do_does_with_many_bounds_of_several_kinds() {
+    let [alone, several] = bounds_of_several_kinds(1300, 32);
+    assert!(alone + several > 300 && several > 60, "{alone} {several}");
+}
+
+/// How often one bound alone could give way, and how often only several together.
+fn bounds_of_several_kinds(count: usize, seed: u64) -> [usize; 2] {
+    let mut noise = Noise::of(seed);
+    let (mut alone, mut several) = (0, 0);
+    for i in 0..count {
+        let bare = family_machine(if i % 2 == 0 { "nine-link-bare" } else { "two-drive" });
+        let mut asked = weighing(&bare, Objective::mass());
+        let size = if i % 2 == 0 { 1.0 } else { 0.3 };
+        let mut is_set = || noise.between(0.0, 1.0) < 0.5;
+        let [most, mass, inertia, clearance, payload] = [(); 5].map(|()| is_set());
+        if most {
+            let to = size * noise.between(0.3, 4.0);
+            asked.sites.iter_mut().for_each(|site| site.most = to);
+        }
+        asked.most_mass = mass.then(|| size * noise.between(2.0, 14.0));
+        asked.most_inertia = inertia.then(|| size * noise.between(0.3, 2.5));
+        asked.clearance = (clearance && i % 2 == 1).then(|| noise.between(0.0, 0.2));
+        asked.payload = payload.then(|| [0.0, size * noise.between(0.1, 0.5)]);
+        let would = match place(&bare, &asked) {
+            Ok(_) => continue,
+            Err(NoWeights::Conflict { would, .. } | NoWeights::Reaches { would, .. }) => would,
+            Err(why) => panic!("{why}"),
+        };
+        assert!(!would.is_empty(), "{asked:?}");
+        for together in &would {
+            let with = relieved(&asked, together);
+            if let Err(why) = place(&bare, &with) {
+                panic!("{together:?}: {why}");
+            }
+        }
+        if would[0].len() > 1 {
+            several += 1;
+        } else {
+            alone += 1;
+        }
+    }
+    [alone, several]
+}
+
+/// A rotor that turns the other way may take more than there is: then more inertia brings D_k back to zero, and what is
+/// found is certified. Random machines that are balanced, too, give no less to the base.
+#[test]
+fn momenta_below_zero_are_the_least_there_are() {
+    let mut noise = Noise::of(33);
+    for ratio in ["-60", "-150", "-400"] {
+        let bare = family_machine("two-drive");
+        let with = [("drive.1.rotor.inertia", "0.002"), ("drive.1.rotor.ratio", ratio)];
+        let geared = bare.set_all(with).expect("in range");
+        let objective = Objective { momentum: 1.0, mass: 1e-3, ..Objective::mass() };
+        let found = place(&geared, &weighing(&geared, objective)).expect("it can be balanced");
+        assert!(found.is_certified(), "{}", found.gap);
+        let worth = |machine: &Machine, added: f64| {
+            Inertia::of(machine).momenta().iter().map(|d| d.abs()).sum::<f64>() + 1e-3 * added
+        };
+        assert!((worth(&found.machine, found.added_mass) - found.value).abs() < 1e-9);
+        let mut tried = 0;
+        for _ in 0..40 {
+            let mut asked = weighing(&geared, Objective { mass: noise.between(0.0, 1.0), ..Objective::inertia() });
+            for site in &mut asked.sites {
+                site.from = noise.between(-0.3, 0.1);
+                site.to = site.from + noise.between(0.0, site.to - site.from);
+            }
+            // More than is needed, as heavy as it comes.
+            let Ok(other) = place(&geared, &asked) else { continue };
+            tried += 1;
+            assert!(worth(&other.machine, other.added_mass) > found.value - 1e-6, "{ratio}");
+        }
+        assert!(tried > 3, "{tried}");
+    }
 }
 
 /// To first order what is left at worst is what the worst of all corners leaves.

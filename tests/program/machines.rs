@@ -340,6 +340,20 @@ fn counterweights_that_are_fixed_stay_and_others_are_named() {
     assert!(serde_json::from_slice::<Value>(&again.stdout).expect("an object").get("taken_off").is_none());
 }
 
+/// What would do with bounds of two kinds does, typed back as it is printed.
+#[test]
+fn what_would_do_with_two_bounds_does_as_printed() {
+    let refused = stillbase(&["design", BARE, "--counterweights", "--max-mass", "0.8", "--max-added", "5"]);
+    let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+    let number = |before: &str, after: &str| {
+        let end = said.find(after).unwrap_or_else(|| panic!("{said}"));
+        let start = said[..end].rfind(before).unwrap_or_else(|| panic!("{said}")) + before.len();
+        said[start..end].to_owned()
+    };
+    let (most, all) = (number("up to ", " kg on each link"), number("up to ", " kg in all would do together"));
+    object(&["design", BARE, "--counterweights", "--max-mass", &most, "--max-added", &all]);
+}
+
 /// Least torque of a task is less than with the least mass, and as the solver says; β measures both beside bare links.
 #[test]
 fn torque_of_a_task_is_least_and_beta_says_what_is_left() {

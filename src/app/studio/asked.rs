@@ -116,7 +116,7 @@ fn rotors(ui: &mut Ui, p: &Palette, drives: &[Drive], brief: &mut Brief, command
 /// From which payload to which the balance is to serve.
 fn payloads(ui: &mut Ui, p: &Palette, brief: &mut Brief, held: f64) {
     let tip = "Counterweights leave the least worst residual over all that the end effector may hold, from the first to \
-               the second; they are balanced for the middle";
+               the second; to balance one payload exactly, hold it and leave this off";
     ui.horizontal(|ui| {
         let mut is_set = brief.payload.is_some();
         if ui.checkbox(&mut is_set, "payload from, to").on_hover_text(tip).changed() {

@@ -10,7 +10,7 @@ use stillbase::mechanics::counterweights::{
 };
 use stillbase::mechanics::machine::{Counterweight, Inertia, Machine};
 use stillbase::planning::Motion;
-use stillbase::settings::number::{Short, fixed};
+use stillbase::settings::number::{Short, fixed, significant};
 use stillbase::study::front_point::FrontPoint;
 use stillbase::study::lengths::{Found, FreeLength, LengthSearch, NoLengths, search};
 use stillbase::study::measures::{Measures, greatest_accelerations};
@@ -49,8 +49,8 @@ pub struct WeighArguments {
     /// How far the edge of a disc stays from the middle of every pin of its link, m; without it discs may cover pins
     #[arg(long, value_parser = number, value_name = "C", requires = "counterweights")]
     clearance: Option<f64>,
-    /// What the end effector holds, at least and at most, kg: the worst residual of (7) and (8) over all between is made
-    /// least, then the objective
+    /// What the end effector holds, at least and at most, kg: the worst residual of (7) and (8) over all between, |g_k| or
+    /// |C_kl| divided by the reach, is made least, then the objective
     #[arg(long, value_name = "LO,HI", requires = "counterweights", value_parser = payload)]
     payload: Option<[f64; 2]>,
     /// Choose the inertia of the rotor of a drive, kg m², at the ratio that the machine has
@@ -150,13 +150,18 @@ impl WeighArguments {
 
     /// Why there are none; a mass that would do as a radius where radii are bounded.
     fn refusal(&self, why: NoWeights, disc: &Disc) -> Failure {
-        match (&why, self.max_radius) {
-            (NoWeights::Conflict { relief: Some(Relief::Most(most)), .. }, Some(_)) => {
+        let (NoWeights::Conflict { would, .. } | NoWeights::Reaches { would, .. }, Some(_)) = (&why, self.max_radius)
+        else {
+            return unweighed(why);
+        };
+        let mut said = why.to_string();
+        for relief in would.iter().flatten() {
+            if let Relief::Most(most) = relief {
                 let radius = (disc.radius(*most) * 1e6 * (1.0 + 1e-9)).ceil() * 1e-6;
-                Failure::no_answer(format!("{why}, which takes a radius of {radius:.6} m"))
+                said.push_str(&format!("; {most:.6} kg takes a radius of {radius:.6} m"));
             }
-            _ => unweighed(why),
         }
+        Failure::no_answer(said)
     }
 
     /// The best lengths, and where their links may carry counterweights.
@@ -297,6 +302,8 @@ pub struct Weighed {
     taken_off: Vec<Counterweight>,
     /// The most by which the best may lie below what was found.
     gap: f64,
+    /// Whether that is no more than rounding.
+    certified: bool,
     /// Added mass, kg, and Σ D_k, kg m².
     #[serde(skip_serializing_if = "Vec::is_empty")]
     front: Vec<[f64; 2]>,
@@ -371,6 +378,7 @@ impl Weighed {
             weights: machine.spec().counterweights.iter().filter(|weight| !weight.fixed).cloned().collect(),
             taken_off: Vec::new(),
             gap: placed.gap,
+            certified: placed.is_certified(),
             front: front_points.iter().map(|point| [point.added_mass, point.inertia]).collect(),
             front_points,
             sought: None,
@@ -398,11 +406,14 @@ impl Weighed {
         for w in &self.weights {
             table.row([w.link.clone(), fixed(w.mass, 6), fixed(w.at, 6), fixed(w.radius, 6)]);
         }
+        let sure = match self.certified {
+            true => format!("within {:.1e} of the best", self.gap),
+            false => format!("not certified: the best may lie {} below", significant(self.gap)),
+        };
         let mut text = format!(
-            "{} · {} kg added · within {:.1e} of the best\n\n{table}\n{}\n{}",
+            "{} · {} kg added · {sure}\n\n{table}\n{}\n{}",
             machine.name(),
             fixed(self.measures.added_mass, 6),
-            self.gap,
             measures::text(&self.measures),
             self.balance.tables(machine)
         );
@@ -435,8 +446,8 @@ impl Weighed {
             let bounds = match self.is_balanced {
                 true => "",
                 false => {
-                    "within these bounds nothing balances it: the worst |g_k|, or |C_kl| divided by the reach, over all \
-                     payloads is as small as can be\n"
+                    "the worst |g_k|, or |C_kl| divided by the reach, over all payloads is as small as can be; what \
+                     balances the middle: --set payload.mass instead of --payload\n"
                 }
             };
             text.push_str(&format!("\n{bounds}holding {middle} kg, the middle, here and in the new file\n\n{table}"));

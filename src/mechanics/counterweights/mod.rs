@@ -12,14 +12,19 @@
 //! | D_k | momentum of a drive, (6) | kg m² |
 
 mod asked;
+mod cell;
 mod front;
+mod left;
 mod payload;
 mod place;
 mod problem;
+mod question;
 mod refusal;
+mod relief;
 mod room;
 mod search;
 mod tolerance;
+mod unknowns;
 
 pub use asked::{Disc, Free, FreeRotor, MATERIALS, Objective, Sites, Weighing};
 pub use front::{Front, front};

@@ -1,9 +1,10 @@
 //! [`place`]: counterweights that balance a machine at the least cost.
 
 use super::asked::{Objective, Sites, Weighing};
-use super::problem::{Balance, Problem, Way};
-use super::refusal::{Bound, NoWeights, Relief};
-use super::search::search;
+use super::problem::{Balance, Problem, ROUNDING};
+use super::question::One;
+use super::refusal::NoWeights;
+use super::relief::would_do;
 use crate::convex::{Least, NoX};
 use crate::mechanics::machine::{Inertia, Machine};
 use crate::mechanics::planar::Vector;
@@ -11,7 +12,7 @@ use crate::mechanics::planar::Vector;
 /// Counterweights, and the machine that carries them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placed {
-    /// It is balanced to rounding; over a range of payloads in its middle, or as nearly as can be.
+    /// It is balanced to rounding; over a range of payloads as nearly as can be, holding its middle.
     pub machine: Machine,
     /// What they weigh, kg.
     pub added_mass: f64,
@@ -19,6 +20,13 @@ pub struct Placed {
     pub value: f64,
     /// The most by which the best may lie below that.
     pub gap: f64,
+}
+
+impl Placed {
+    /// Whether nothing better can be, but for rounding. A search may end before that is proved.
+    pub fn is_certified(&self) -> bool {
+        self.gap <= 2.0 * CERTIFIED * self.value.abs().max(1.0)
+    }
 }
 
 /// What a kg m² counts beside a kilogram where only mass is to be least: enough to choose among equals.
@@ -30,21 +38,11 @@ const LIGHT: f64 = 1e-4;
 /// As far from the best as this an answer may be for the sake of simplicity, in what is least.
 const CERTIFIED: f64 = 5e-7;
 
-/// Bounds on masses that are tried, each a tenth above the one before.
-const TRIES: i32 = 24;
-
-/// Steps in which a clearance that would do is looked for.
-const STEPS: usize = 20;
-
-/// How much worse than the least the first of two wishes may be for the sake of the second, of itself and in its unit:
-/// the solver's rounding.
-const ROUNDING: [f64; 2] = [1e-7, 1e-10];
-
 /// The counterweights that make a machine balanced and invariant, (7) and (8), and an objective least. Those that the
-/// machine has already are taken off first.
+/// machine has already are taken off first, but for fixed ones.
 ///
-/// Over a range of payloads the worst residual is least where the middle is balanced; where that cannot be within the
-/// bounds, the worst residual is made as small as it can be, and then the objective.
+/// Over a range of payloads the worst residual, |g_k| or |C_kl| divided by the reach, is made as small as it can be, and then
+/// the objective. Balance in the middle has the least worst residual, but is not alone in that.
 ///
 /// # Errors
 /// If what is asked for cannot be, or cannot be together.
@@ -66,22 +64,7 @@ pub fn place_with(machine: &Machine, asked: &Weighing, beyond: &[Vector]) -> Res
         return Ok(Placed { machine: problem.bare, added_mass: 0.0, value, gap: 0.0 });
     }
     let one = One { problem: &problem, machine, asked, beyond };
-    match one.least(Balance::Exact)? {
-        Ok(least) => {
-            let best = one.placed(&least, Balance::Exact)?;
-            Ok(one.simpler(one.quicker(best, &least)))
-        }
-        Err(NoX::Failed(why)) => Err(NoWeights::Failed(why)),
-        Err(NoX::Contradiction(_)) if asked.payload.is_some() => one.nearest(),
-        Err(NoX::Contradiction(weights)) => Err(one.refusal(&weights)),
-    }
-}
-
-struct One<'a> {
-    problem: &'a Problem,
-    machine: &'a Machine,
-    asked: &'a Weighing,
-    beyond: &'a [Vector],
+    one.found()?.map_err(|weights| one.refusal(&weights))
 }
 
 /// What is left of each line of (7) and (8), whatever counterweights of any sign sit on the links that may carry one:
@@ -98,25 +81,19 @@ pub fn unreachable_by_weights(
 }
 
 impl One<'_> {
-    fn least(&self, balance: Balance) -> Result<Result<Least, NoX>, NoWeights> {
-        let way = Way::free(self.asked, balance);
-        let first = self.on(&way)?;
-        // A rotor may take more from the base than there is, if what there is counts as more: so of all that are as good
-        // the one that turns least is taken, which counts everything as what it is.
-        match first {
-            Ok(least) if self.asked.objective.momentum > 0.0 && balance != Balance::Nearest => {
-                let most = least.value + ROUNDING[0] * least.value.abs() + ROUNDING[1];
-                let second = self.on(&Way { most: Some(most), ..way })?;
-                Ok(second.map(|second| Least { x: second.x, ..least }))
-            }
-            first => Ok(first),
+    /// The answer, or the weights of the proof that there is none past all pins, empty if it is the pins.
+    fn found(&self) -> Result<Result<Placed, Vec<f64>>, NoWeights> {
+        if self.balance() == Balance::Nearest {
+            return self.nearest();
         }
-    }
-
-    fn on(&self, way: &Way) -> Result<Result<Least, NoX>, NoWeights> {
-        match self.asked.clearance {
-            Some(_) => search(self.problem, self.machine, self.asked, way),
-            None => Ok(self.problem.least(self.machine, self.asked, way)),
+        match self.least(Balance::Exact)? {
+            Ok(least) => {
+                let best = self.placed(&least, Balance::Exact)?;
+                Ok(Ok(self.simpler(self.quicker(best, &least))))
+            }
+            Err(NoX::Failed(why)) => Err(NoWeights::Failed(why)),
+            Err(NoX::Contradiction(_)) if self.asked.payload.is_some() => self.nearest(),
+            Err(NoX::Contradiction(weights)) => Ok(Err(weights)),
         }
     }
 
@@ -136,19 +113,28 @@ impl One<'_> {
 
     /// The same without counterweights that weigh next to nothing, if it does without them.
     fn simpler(&self, best: Placed) -> Placed {
-        let weights = &best.machine.spec().counterweights;
+        let weights = || best.machine.spec().counterweights.iter().filter(|weight| !weight.fixed);
         let is_light = |mass: f64| mass < LIGHT * best.added_mass;
-        if !weights.iter().any(|weight| is_light(weight.mass)) {
+        if !weights().any(|weight| is_light(weight.mass)) {
             return best;
         }
         let carries = |site: &Sites| {
             let link = &self.machine.links()[site.link].name;
-            weights.iter().any(|weight| weight.link == *link && !is_light(weight.mass))
+            weights().any(|weight| weight.link == *link && !is_light(weight.mass))
         };
         let sites: Vec<Sites> = self.asked.sites.iter().copied().filter(carries).collect();
         let fewer = Weighing { sites, ..self.asked.clone() };
-        let found = place_with(self.machine, &fewer, self.beyond).ok();
-        found.and_then(|found| self.as_good(found, best.value - best.gap)).unwrap_or(best)
+        self.exact(&fewer).and_then(|found| self.as_good(found, best.value - best.gap)).unwrap_or(best)
+    }
+
+    /// What balances the machine and nothing less, if there is any.
+    fn exact(&self, asked: &Weighing) -> Option<Placed> {
+        let problem = Problem::new(self.machine, asked, self.beyond).ok()?;
+        problem.check().ok()?;
+        let one = One { problem: &problem, asked, ..*self };
+        let least = one.least(Balance::Exact).ok()?.ok()?;
+        let best = one.placed(&least, Balance::Exact).ok()?;
+        Some(one.quicker(best, &least))
     }
 
     /// A machine that is certified as well: nothing has less than `bound`.
@@ -158,17 +144,29 @@ impl One<'_> {
         (gap < CERTIFIED).then_some(Placed { value, gap, ..found })
     }
 
-    /// As near to balance as the bounds allow over all payloads, and of those the least.
-    fn nearest(&self) -> Result<Placed, NoWeights> {
-        let found = |balance| {
-            self.least(balance)?.map_err(|why| match why {
-                NoX::Contradiction(weights) => self.refusal(&weights),
-                NoX::Failed(why) => NoWeights::Failed(why),
-            })
+    /// As near to balance as the bounds allow over all payloads, and of those the least. Where the middle can be balanced
+    /// as cheaply, it is.
+    fn nearest(&self) -> Result<Result<Placed, Vec<f64>>, NoWeights> {
+        let found = |balance| match self.least(balance)? {
+            Ok(least) => Ok(Ok(least)),
+            Err(NoX::Contradiction(weights)) => Ok(Err(weights)),
+            Err(NoX::Failed(why)) => Err(NoWeights::Failed(why)),
         };
-        let worst = found(Balance::Nearest)?.value;
+        let worst = match found(Balance::Nearest)? {
+            Ok(least) => least.value,
+            Err(weights) => return Ok(Err(weights)),
+        };
         let balance = Balance::Within(worst * (1.0 + ROUNDING[0]) + ROUNDING[1]);
-        self.placed(&found(balance)?, balance)
+        let least = match found(balance)? {
+            Ok(least) => least,
+            Err(weights) => return Ok(Err(weights)),
+        };
+        if let Ok(Ok(exact)) = self.least(Balance::Exact)
+            && exact.value <= least.value + CERTIFIED
+        {
+            return Ok(Ok(self.placed(&exact, Balance::Exact)?));
+        }
+        Ok(Ok(self.placed(&least, balance)?))
     }
 
     fn placed(&self, least: &Least, balance: Balance) -> Result<Placed, NoWeights> {
@@ -180,66 +178,18 @@ impl One<'_> {
 
     /// Why there is none; weights are of the proof past all pins, empty if it is the pins.
     fn refusal(&self, weights: &[f64]) -> NoWeights {
+        let does = |asked: &Weighing| One { asked, ..*self }.found().is_ok_and(|found| found.is_ok());
+        let would = || would_do(self, &does);
         match self.asked.clearance {
-            Some(asked) if weights.is_empty() => NoWeights::Reaches { asked, would: self.would_clear(asked) },
+            Some(asked) if weights.is_empty() => NoWeights::Reaches { asked, would: would() },
             _ => {
-                let bounds = self.problem.conflict(self.machine, self.asked, weights);
-                if bounds.is_empty() {
-                    return NoWeights::TooFew;
-                }
-                match self.relief(&bounds) {
-                    Ok(relief) => NoWeights::Conflict { bounds, relief },
-                    Err(deeper) => deeper,
+                let bounds = self.problem.conflict(self.machine, self.asked, self.balance(), weights);
+                match bounds.is_empty() {
+                    true => NoWeights::TooFew,
+                    false => NoWeights::Conflict { bounds, would: would() },
                 }
             }
         }
-    }
-
-    /// What would do instead of one kind of the bounds that contradict each other.
-    ///
-    /// # Errors
-    /// If the other bounds leave no way either, and why.
-    fn relief(&self, bounds: &[Bound]) -> Result<Option<Relief>, NoWeights> {
-        let with = |asked: Weighing| place_with(self.machine, &asked, self.beyond);
-        if bounds.contains(&Bound::Inertia) {
-            let free = Weighing { most_inertia: None, objective: Objective::inertia(), ..self.asked.clone() };
-            let total = |placed: Placed| Inertia::of(&placed.machine).total_momentum();
-            return Ok(Some(Relief::Inertia(total(with(free)?))));
-        }
-        if bounds.contains(&Bound::Mass) {
-            let free = Weighing { most_mass: None, objective: Objective::mass(), ..self.asked.clone() };
-            return Ok(Some(Relief::Mass(with(free)?.added_mass)));
-        }
-        if !bounds.iter().any(|bound| matches!(bound, Bound::Most(_))) {
-            return Ok(None);
-        }
-        // Round the pins it may take more.
-        let does = |most: &f64| {
-            let up = |most: f64| most * (1.0 + 1e-6);
-            let raised =
-                |site: &Sites| Sites { most: if site.most.is_finite() { up(*most) } else { site.most }, ..*site };
-            let sites = self.asked.sites.iter().map(raised).collect();
-            self.asked.clearance.is_none() || with(Weighing { sites, ..self.asked.clone() }).is_ok()
-        };
-        let least = self.problem.least_most(self.machine, self.asked);
-        Ok(least.and_then(|least| (0..TRIES).map(|i| least * 1.1_f64.powi(i)).find(does)).map(Relief::Most))
-    }
-
-    /// The furthest from all pins with which there is a way, m.
-    fn would_clear(&self, asked: f64) -> Option<f64> {
-        let is_clear = |clearance: f64| {
-            let nearer = Weighing { clearance: Some(clearance), ..self.asked.clone() };
-            let way = Way::free(&nearer, Balance::Exact);
-            matches!(search(self.problem, self.machine, &nearer, &way), Ok(Ok(_)))
-        };
-        if !is_clear(0.0) {
-            return None;
-        }
-        let halved = |[low, high]: [f64; 2], _| {
-            let middle = 0.5 * (low + high);
-            if is_clear(middle) { [middle, high] } else { [low, middle] }
-        };
-        Some((0..STEPS).fold([0.0, asked], halved)[0])
     }
 }
 

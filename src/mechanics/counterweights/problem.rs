@@ -1,8 +1,11 @@
 //! [`Problem`]: a machine without counterweights but for fixed ones, what they change in it, and the cone program that follows.
 
 use super::asked::{Free, Objective, Sites, Weighing};
-use super::refusal::{Bound, NoWeights};
+use super::cell::Cell;
+use super::left::{Left, conditions};
+use super::refusal::{Bound, Kind, NoWeights};
 use super::room::Room;
+use super::unknowns::{Sum, Unknowns};
 use crate::convex::{Least, NoX, Program, Row, conflict};
 use crate::mechanics::balance::{Condition, Equation, Plane};
 use crate::mechanics::machine::{Counterweight, Inertia, Machine, Rotor};
@@ -27,82 +30,30 @@ pub(super) struct Way {
     pub rooms: Vec<Option<Room>>,
     pub balance: Balance,
     pub most: Option<f64>,
+    /// Bounds that are not there.
+    pub loose: Vec<Kind>,
+    /// A kind of bound that is to be least instead of the objective.
+    pub least: Option<Kind>,
+    /// Within what each counterweight is sought, where momenta below zero count.
+    pub cells: Vec<Cell>,
+    /// Masses, kg, and places, m, about which inertias are taken to be linear where they take from momenta below zero:
+    /// then these come out no nearer to zero than they are.
+    pub tangents: Option<Vec<[f64; 2]>>,
 }
 
 impl Way {
     /// Past all pins.
     pub fn free(asked: &Weighing, balance: Balance) -> Self {
-        Self { rooms: vec![None; asked.sites.len()], balance, most: None }
+        Self {
+            rooms: vec![None; asked.sites.len()],
+            balance,
+            most: None,
+            loose: Vec::new(),
+            least: None,
+            cells: asked.sites.iter().map(|site| Cell::of(asked, site)).collect(),
+            tangents: None,
+        }
     }
-}
-
-/// Where the unknowns stand: w and s of each site, what its inertia needs if that counts, H_kk of each drive but for
-/// free rotors, two of each free rotor, |D_k| of each drive if it counts, and the greatest torque.
-#[derive(Clone, Copy)]
-struct Unknowns {
-    sites: usize,
-    /// Whether the inertia counts.
-    inertia: bool,
-    drives: usize,
-    rotors: usize,
-    /// Whether |D_k| counts.
-    momentum: bool,
-}
-
-impl Unknowns {
-    fn of(asked: &Weighing, drives: usize) -> Self {
-        let inertia = asked.objective.turns() || asked.most_inertia.is_some();
-        let (rotors, momentum) = (asked.rotors.len(), asked.objective.momentum > 0.0);
-        Self { sites: asked.sites.len(), inertia, drives, rotors, momentum }
-    }
-
-    fn w(self, j: usize) -> usize {
-        2 * j
-    }
-
-    fn s(self, j: usize) -> usize {
-        2 * j + 1
-    }
-
-    /// At least s²/w.
-    fn u(self, j: usize) -> usize {
-        2 * (self.sites + j)
-    }
-
-    /// At least the disc's own inertia.
-    fn v(self, j: usize) -> usize {
-        2 * (self.sites + j) + 1
-    }
-
-    fn h(self, k: usize) -> usize {
-        4 * self.sites + k
-    }
-
-    /// Inertia or ratio of a free rotor.
-    fn rotor(self, i: usize) -> usize {
-        let before = if self.inertia { 4 * self.sites + self.drives } else { 2 * self.sites };
-        before + 2 * i
-    }
-
-    /// At least J N² of one whose ratio is free.
-    fn turned(self, i: usize) -> usize {
-        self.rotor(i) + 1
-    }
-
-    /// At least |D_k|.
-    fn momentum(self, k: usize) -> usize {
-        self.rotor(self.rotors) + k
-    }
-
-    fn torque(self) -> usize {
-        if self.momentum { self.momentum(self.drives) } else { self.rotor(self.rotors) }
-    }
-}
-
-/// Linear in the unknowns.
-struct Sum {
-    terms: Vec<(usize, f64)>,
-    constant: f64,
 }
 
 /// A machine without counterweights, but for fixed ones, and without what is free of its rotors.
@@ -121,6 +72,10 @@ type Found = Vec<(Sites, [f64; 2])>;
 pub(super) const NOTHING: f64 = 1e-7;
 
 const LEAST_RATIO: f64 = 1e-9;
+
+/// How much worse than the least the first of two wishes may be for the sake of the second, of itself and in its unit:
+/// the solver's rounding.
+pub(super) const ROUNDING: [f64; 2] = [1e-7, 1e-10];
 
 impl Problem {
     /// `beyond` is what the machine has of each line of (7) and (8), in their order, beyond what its numbers say.
@@ -243,7 +198,13 @@ impl Problem {
         if unknowns.inertia {
             self.enter_inertia(asked, &unknowns, &mut program);
             self.cost(machine, asked, &unknowns, &mut program);
-            self.enter_motion(machine, asked, &unknowns, &mut program);
+            self.enter_motion(machine, asked, &unknowns, way, &mut program);
+        }
+        if unknowns.momentum {
+            for (j, cell) in way.cells.iter().enumerate() {
+                let [w, s, u, v] = [unknowns.w(j), unknowns.s(j), unknowns.u(j), unknowns.v(j)];
+                cell.enter(asked, [w, s, u, v], &mut program);
+            }
         }
         if let Some(most) = way.most {
             let terms: Vec<_> = program.linear.iter().copied().enumerate().filter(|(_, by)| *by != 0.0).collect();
@@ -259,7 +220,18 @@ impl Problem {
                 room.enter(asked, [unknowns.w(j), unknowns.s(j)], &mut program);
             }
         }
-        program.at_most.extend(bounds.iter().map(|(_, row)| row.clone()));
+        let firm = bounds.iter().filter(|(bound, _)| !bound.kind().is_some_and(|kind| way.loose.contains(&kind)));
+        program.at_most.extend(firm.clone().map(|(_, row)| row.clone()));
+        if let Some(kind) = way.least {
+            // Instead of its own value the bound has one that is unknown.
+            program.linear.fill(0.0);
+            let (most, start) = (program.linear.len(), program.at_most.len() - firm.clone().count());
+            program.linear.push(1.0);
+            for ((bound, _), row) in firm.zip(&mut program.at_most[start..]).filter(|(b, _)| b.0.kind() == Some(kind)) {
+                row.right -= asked.value_of(bound, &self.bare);
+                row.terms.push((most, -1.0));
+            }
+        }
         program
     }
 
@@ -345,7 +317,7 @@ impl Problem {
     }
 
     /// What the drives give to the base, the greatest torque, and what these cost.
-    fn enter_motion(&self, machine: &Machine, asked: &Weighing, unknowns: &Unknowns, program: &mut Program) {
+    fn enter_motion(&self, machine: &Machine, asked: &Weighing, unknowns: &Unknowns, way: &Way, program: &mut Program) {
         let objective = &asked.objective;
         for k in 0..self.drives() {
             let [momentum, turned] = self.of_rotors(asked, machine, k);
@@ -358,9 +330,15 @@ impl Problem {
                 program.linear[unknowns.momentum(k)] = objective.momentum;
                 let constant = self.constant(k) + momentum.constant;
                 for sign in [1.0, -1.0] {
-                    let mut terms = with(&momentum, sign);
-                    terms.push((unknowns.momentum(k), -1.0));
-                    program.at_most.push(Row::new(terms, -sign * constant));
+                    let mut row = Row::new(with(&momentum, sign), -sign * constant);
+                    row.terms.push((unknowns.momentum(k), -1.0));
+                    if let (true, Some(tangents)) = (sign < 0.0, &way.tangents) {
+                        let linear = self.linear_diagonal(asked, unknowns, k, tangents);
+                        row.terms.retain(|(x, _)| *x != unknowns.h(k));
+                        row.terms.extend(linear.terms.iter().map(|(x, by)| (*x, -by)));
+                        row.right += linear.constant;
+                    }
+                    program.at_most.push(row);
                 }
             }
             if objective.torque > 0.0 {
@@ -371,6 +349,77 @@ impl Problem {
                 program.linear[unknowns.torque()] = objective.torque;
             }
         }
+    }
+
+    /// No more than H_kk but for free rotors: that of masses and places near those given, where it is the same.
+    fn linear_diagonal(&self, asked: &Weighing, unknowns: &Unknowns, k: usize, tangents: &[[f64; 2]]) -> Sum {
+        let parts = self.bare.resolved_links();
+        let mut sum = Sum { terms: Vec::new(), constant: self.inertia.diagonal(k) };
+        for (j, (site, [mass, at])) in asked.sites.iter().zip(tangents).enumerate() {
+            let (part, own) = (&parts[site.link], asked.disc.own());
+            let (root, (w, s)) = (part.root[k], (unknowns.w(j), unknowns.s(j)));
+            sum.terms.push((w, root * root));
+            if part.drive == k {
+                sum.terms.push((s, 2.0 * part.sign * root + 2.0 * at));
+                sum.terms.push((w, 2.0 * own * mass - at * at));
+                sum.constant -= own * mass * mass;
+            }
+        }
+        sum
+    }
+
+    /// What was found with every inertia what it is, and not more.
+    pub fn settled(&self, machine: &Machine, asked: &Weighing, x: &[f64]) -> Vec<f64> {
+        let unknowns = Unknowns::of(asked, self.drives());
+        let mut x = x.to_vec();
+        for (i, rotor) in asked.rotors.iter().enumerate() {
+            let inertia = machine.spec().drives[rotor.drive].rotor.unwrap_or_default().inertia;
+            x[unknowns.turned(i)] = match rotor.free {
+                Free::Inertia(_) => 0.0,
+                Free::Ratio(_) => inertia * x[unknowns.rotor(i)].powi(2),
+            };
+        }
+        if !unknowns.inertia {
+            return x;
+        }
+        let places = (0..asked.sites.len()).map(|j| {
+            let [w, s] = self.at(asked, &x, j);
+            if w > 0.0 { [w, s / w] } else { [0.0; 2] }
+        });
+        let places: Vec<[f64; 2]> = places.collect();
+        for (j, [w, at]) in places.iter().enumerate() {
+            x[unknowns.u(j)] = w * at * at;
+            x[unknowns.v(j)] = asked.disc.own() * w * w;
+        }
+        let of = |sum: &Sum, x: &[f64]| sum.constant + sum.terms.iter().map(|(i, by)| by * x[*i]).sum::<f64>();
+        let mut torque = 0.0_f64;
+        for k in 0..self.drives() {
+            let h = of(&self.linear_diagonal(asked, &unknowns, k, &places), &x);
+            x[unknowns.h(k)] = h;
+            let [momentum, turned] = self.of_rotors(asked, machine, k);
+            let (momentum, turned) = (h + self.constant(k) + of(&momentum, &x), h + of(&turned, &x));
+            if unknowns.momentum {
+                x[unknowns.momentum(k)] = momentum.abs();
+            }
+            torque = torque.max(asked.objective.accelerations.get(k).copied().unwrap_or_default() * turned);
+        }
+        if asked.objective.torque > 0.0 {
+            x[unknowns.torque()] = torque;
+        }
+        x
+    }
+
+    /// What the objective comes to.
+    pub fn value(&self, machine: &Machine, asked: &Weighing, x: &[f64]) -> f64 {
+        let costs = self.program(machine, asked, &[], &Way::free(asked, Balance::Exact)).linear;
+        costs.iter().zip(x).map(|(cost, x)| cost * x).sum()
+    }
+
+    /// How far the inertias that were found are from what they are: of the place and of the disc itself of each site.
+    pub fn excess(&self, machine: &Machine, asked: &Weighing, x: &[f64]) -> Vec<[f64; 2]> {
+        let (unknowns, settled) = (Unknowns::of(asked, self.drives()), self.settled(machine, asked, x));
+        let excess = |i: usize| x[i] - settled[i];
+        (0..asked.sites.len()).map(|j| [excess(unknowns.u(j)), excess(unknowns.v(j))]).collect()
     }
 
     /// The bounds that a person has set, with their rows.
@@ -403,34 +452,28 @@ impl Problem {
 
     /// The least of what is asked for on one way.
     pub fn least(&self, machine: &Machine, asked: &Weighing, way: &Way) -> Result<Least, NoX> {
-        self.program(machine, asked, &self.bounds(machine, asked), way).solve()
+        let solve = |way: &Way| self.program(machine, asked, &self.bounds(machine, asked), way).solve();
+        let first = solve(way)?;
+        if asked.objective.momentum == 0.0 || way.balance == Balance::Nearest || way.least.is_some() {
+            return Ok(first);
+        }
+        // A rotor may take more from the base than there is, if what there is counts as more: so of all that are as good
+        // the one that turns least is taken, which counts everything as what it is where that can be.
+        let most = first.value + ROUNDING[0] * first.value.abs() + ROUNDING[1];
+        let second = solve(&Way { most: Some(most), ..way.clone() });
+        Ok(second.map_or(first.clone(), |second| Least { x: second.x, ..first }))
     }
 
     /// Why there is none past all pins: the bounds without any of which there would be a way, which are those that the
     /// solver's proof uses, less all that it can do without. Empty if there is none without bounds either.
-    pub fn conflict(&self, machine: &Machine, asked: &Weighing, weights: &[f64]) -> Vec<Bound> {
-        let (bounds, way) = (self.bounds(machine, asked), Way::free(asked, Balance::Exact));
+    pub fn conflict(&self, machine: &Machine, asked: &Weighing, balance: Balance, weights: &[f64]) -> Vec<Bound> {
+        let (bounds, way) = (self.bounds(machine, asked), Way::free(asked, balance));
         let any = Weighing { objective: Objective::mass(), ..asked.clone() };
         let contradicts = |bounds: &[(Bound, Row)]| {
             matches!(self.program(machine, &any, bounds, &way).solve(), Err(NoX::Contradiction(_)))
         };
         let of_bounds = &weights[weights.len() - bounds.len()..];
         conflict(bounds, of_bounds, contradicts)
-    }
-
-    /// The least bound on the masses of counterweights that have one with which there is a way past all pins, kg.
-    pub fn least_most(&self, machine: &Machine, asked: &Weighing) -> Option<f64> {
-        let sites = asked.sites.iter().map(|site| Sites { most: f64::INFINITY, ..*site }).collect();
-        let objective = Objective { mass: 0.0, ..Objective::mass() };
-        let free = Weighing { sites, objective, ..asked.clone() };
-        let way = Way::free(&free, Balance::Exact);
-        let mut program = self.program(machine, &free, &self.bounds(machine, &free), &way);
-        let (most, unknowns) = (program.linear.len(), Unknowns::of(&free, self.drives()));
-        program.linear.push(1.0);
-        let bounded = (0..asked.sites.len()).filter(|j| asked.sites[*j].most.is_finite());
-        let heaviest = bounded.map(|j| Row::new([(unknowns.w(j), 1.0), (most, -1.0)], 0.0));
-        program.at_most.extend(heaviest);
-        program.solve().ok().map(|least| least.value)
     }
 
     /// What stands at a site: its mass, kg, and mass times place, kg m.
@@ -504,49 +547,34 @@ impl Problem {
     }
 }
 
-/// A rotor that stands still is no gear's.
-fn other_than_zero(ratio: f64) -> f64 {
-    if ratio.abs() < LEAST_RATIO { LEAST_RATIO.copysign(ratio) } else { ratio }
-}
-
-/// One line of (7) or (8).
-struct Left {
-    of: Condition,
-    /// What the bare machine leaves along and across the axes, kg m or kg m²; with the middle of what it may hold.
-    left: Vector,
-    /// Along them, with the least and with the most that it may hold.
-    ends: [f64; 2],
-    /// What w and s of each site add.
-    changes: Vec<[f64; 2]>,
-}
-
-impl Left {
-    fn is_touched(&self) -> bool {
-        self.changes.iter().flatten().any(|by| *by != 0.0)
+impl Bound {
+    /// What of its kind may give way; places may not.
+    fn kind(&self) -> Option<Kind> {
+        match self {
+            Self::From(_) | Self::To(_) => None,
+            Self::Most(_) => Some(Kind::Most),
+            Self::Mass => Some(Kind::Mass),
+            Self::Inertia => Some(Kind::Inertia),
+        }
     }
 }
 
-/// What is left of each condition, and how a counterweight of w and s at each site changes it.
-fn conditions(bare: &Machine, inertia: &Inertia, asked: &Weighing, beyond: &[Vector]) -> Result<Vec<Left>, NoWeights> {
-    let parts = bare.resolved_links();
-    let holding = |mass: f64| -> Result<Inertia, NoWeights> {
-        let mut spec = bare.spec().clone();
-        spec.payload.mass = mass;
-        Ok(Inertia::of(&Machine::new(spec)?))
-    };
-    let ends = match asked.payload {
-        Some([low, high]) => [holding(low)?, holding(high)?],
-        None => [inertia.clone(), inertia.clone()],
-    };
-    let of = |(i, condition): (usize, Condition)| {
-        let change = |site: &Sites| [condition.by_mass(&parts[site.link]), condition.by_moment(&parts[site.link])];
-        let more = beyond.get(i).copied().unwrap_or_default();
-        Left {
-            of: condition,
-            left: condition.left(inertia) + more,
-            ends: [0, 1].map(|i| (condition.left(&ends[i]) + more).re),
-            changes: asked.sites.iter().map(change).collect(),
+impl Weighing {
+    /// What a bound is that may give way.
+    fn value_of(&self, bound: &Bound, machine: &Machine) -> f64 {
+        match bound {
+            Bound::Most(link) => {
+                let own = self.sites.iter().find(|site| machine.links()[site.link].name == *link);
+                own.map_or(0.0, |site| site.most)
+            }
+            Bound::Mass => self.most_mass.unwrap_or_default(),
+            Bound::Inertia => self.most_inertia.unwrap_or_default(),
+            Bound::From(_) | Bound::To(_) => 0.0,
         }
-    };
-    Ok(Condition::all(bare.drives()).enumerate().map(of).collect())
+    }
+}
+
+/// A rotor that stands still is no gear's.
+fn other_than_zero(ratio: f64) -> f64 {
+    if ratio.abs() < LEAST_RATIO { LEAST_RATIO.copysign(ratio) } else { ratio }
 }

@@ -37,39 +37,50 @@ fn listed(bounds: &[Bound]) -> String {
     bounds.iter().map(Bound::to_string).collect::<Vec<_>>().join("; ")
 }
 
-/// What would do instead of the bounds of one kind.
+/// A kind of bound that may give way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// On the mass of each counterweight that has one.
+    Most,
+    /// On what all weigh together.
+    Mass,
+    /// On Σ D_k.
+    Inertia,
+    /// How far discs stay from pins.
+    Clearance,
+}
+
+/// What would do instead of the bounds of one kind: the least bound, or the greatest clearance, rounded so that it does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Relief {
-    /// The least bound on the masses that have one, kg.
+    /// On the masses that have a bound, kg.
     Most(f64),
-    /// The least bound on what all weigh together, kg.
+    /// On what all weigh together, kg.
     Mass(f64),
-    /// The least bound on Σ D_k, kg m².
+    /// On Σ D_k, kg m².
     Inertia(f64),
+    /// How far discs stay from pins, m.
+    Clearance(f64),
 }
 
 impl fmt::Display for Relief {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Upwards, so that what is said does.
-        let up = |x: &f64| format!("{:.6}", (x * 1e6 * (1.0 + 1e-9)).ceil() * 1e-6);
         match self {
-            Self::Most(x) => write!(f, "; up to {} kg on each link that is bounded would do", up(x)),
-            Self::Mass(x) => write!(f, "; up to {} kg in all would do", up(x)),
-            Self::Inertia(x) => write!(f, "; Σ D_k up to {} kg m² would do", up(x)),
+            Self::Most(x) => write!(f, "up to {x:.6} kg on each link that is bounded"),
+            Self::Mass(x) => write!(f, "up to {x:.6} kg in all"),
+            Self::Inertia(x) => write!(f, "Σ D_k up to {x:.6} kg m²"),
+            Self::Clearance(x) => write!(f, "a clearance of {x:.4} m"),
         }
     }
 }
 
-fn would_do(relief: &Option<Relief>) -> String {
-    relief.map_or(String::new(), |relief| relief.to_string())
-}
-
-fn would_clear(would: &Option<f64>) -> String {
-    match would {
-        // Downwards, so that what is said does.
-        Some(x) => format!("; {:.4} m would do", (x * 1e4).floor() * 1e-4),
-        None => "; not even that they touch would do".into(),
-    }
+/// Each that would do, or what would do together.
+fn would_do(would: &[Vec<Relief>]) -> String {
+    let one = |together: &Vec<Relief>| {
+        let all: Vec<String> = together.iter().map(Relief::to_string).collect();
+        format!("; {} would do{}", all.join(" and "), if all.len() > 1 { " together" } else { "" })
+    };
+    would.iter().map(one).collect()
 }
 
 /// Why there are no counterweights.
@@ -113,23 +124,23 @@ pub enum NoWeights {
         want: String,
     },
     /// These bounds, and no fewer of them, leave no way.
-    #[error("no counterweights balance this machine within these bounds: {}{}", listed(.bounds), would_do(.relief))]
+    #[error("no counterweights balance this machine within these bounds: {}{}", listed(.bounds), would_do(.would))]
     Conflict {
         /// The bounds that contradict each other: with any of them away there is a way.
         bounds: Vec<Bound>,
-        /// What would do, if bounds on masses or on inertia are among them.
-        relief: Option<Relief>,
+        /// What would do with all other bounds as they are; where nothing does alone, what does together.
+        would: Vec<Vec<Relief>>,
     },
     /// Whatever they weigh and wherever they sit.
     #[error("no counterweights on these links alone balance this machine: want more links that may carry one")]
     TooFew,
     /// They would reach a pin.
-    #[error("no counterweights balance this machine and stay {} m clear of every pin{}", asked, would_clear(.would))]
+    #[error("no counterweights balance this machine and stay {asked} m clear of every pin{}", would_do(.would))]
     Reaches {
         /// How far they were to stay away, m.
         asked: f64,
-        /// The furthest with which there is a way, m.
-        would: Option<f64>,
+        /// What would do with all other bounds as they are; where nothing does alone, what does together.
+        would: Vec<Vec<Relief>>,
     },
     /// Too many ways round the pins to look at all.
     #[error(

@@ -1,21 +1,32 @@
-//! [`search`]: discs that stay clear of the pins of their links. Between which pins each sits is a choice, and within one
-//! choice the best is a cone program. Choices are made one by one, the most promising first, so the first answer that
-//! touches no pin is the best of all.
+//! [`search`]: what is not one cone program but the best of many, by branch and bound: discs that stay clear of the pins of
+//! their links, where it is a choice between which pins each sits; and momenta below zero, of which more inertia takes
+//! away. Choices are made one by one, the most promising first, so the first answer that is what it counts as is the best.
 
 use super::asked::Weighing;
+use super::cell::Cell;
 use super::problem::{NOTHING, Problem, Way};
 use super::refusal::NoWeights;
 use super::room::Room;
 use crate::convex::{Least, NoX};
 use crate::mechanics::machine::Machine;
 
-/// The most choices that are looked at.
+/// The most choices of rooms that are looked at.
 const CHOICES: usize = 4000;
+
+/// The most cells that are looked at.
+const CELLS: usize = 300;
 
 /// A disc may be so much nearer, m: the solver's rounding.
 const ROUNDING: f64 = 1e-7;
 
-/// The best of all ways round the pins.
+/// An answer this much worse than the best is as good.
+const AS_GOOD: f64 = 2e-7;
+
+/// Linear programs on the way down from one answer.
+const MAX_STEPS: usize = 25;
+
+/// The best of all ways round the pins and of all cells. Where cells are too many, the best that was found, with the gap
+/// that is left.
 ///
 /// # Errors
 /// If there is none, or if it is not known.
@@ -25,48 +36,154 @@ pub(super) fn search(
     asked: &Weighing,
     way: &Way,
 ) -> Result<Result<Least, NoX>, NoWeights> {
+    let search = Search { problem, machine, asked };
     let rooms: Vec<Vec<Room>> =
         asked.sites.iter().map(|site| Room::all(&problem.bare.resolved_links()[site.link].pins)).collect();
     let mut open = match problem.least(machine, asked, way) {
         Ok(least) => vec![(least, way.clone())],
         Err(why) => return Ok(Err(why)),
     };
-    let mut looked_at = 1;
-    while let Some(best) = (0..open.len()).min_by(|a, b| open[*a].0.value.total_cmp(&open[*b].0.value)) {
-        let (least, way) = open.swap_remove(best);
-        let Some(j) = furthest_in(problem, asked, &least, (&rooms, &way)) else { return Ok(Ok(least)) };
-        for room in &rooms[j] {
-            looked_at += 1;
-            if looked_at > CHOICES {
-                return Err(NoWeights::TooMany(CHOICES));
+    let (mut best, mut choices, mut cells): (Option<Least>, usize, usize) = (None, 1, 1);
+    while let Some(next) = (0..open.len()).min_by(|a, b| open[*a].0.value.total_cmp(&open[*b].0.value)) {
+        let (least, way) = open.swap_remove(next);
+        let bound = least.value - least.gap;
+        if let Some(best) = best.as_ref().filter(|best| best.value <= least.value + AS_GOOD || cells > CELLS) {
+            return Ok(Ok(Least { gap: best.value - bound, ..best.clone() }));
+        }
+        let ways = match search.furthest_in(&least, &rooms, &way) {
+            Some(j) => {
+                choices += rooms[j].len();
+                if choices > CHOICES {
+                    return Err(NoWeights::TooMany(CHOICES));
+                }
+                let enter = |room: &Room| {
+                    let mut next = way.clone();
+                    next.rooms[j] = Some(*room);
+                    next
+                };
+                rooms[j].iter().map(enter).collect()
             }
-            let mut next = way.clone();
-            next.rooms[j] = Some(*room);
+            None if asked.objective.momentum == 0.0 || way.least.is_some() => return Ok(Ok(least)),
+            None => {
+                let found = search.as_it_is(&least);
+                if found.value <= least.value + AS_GOOD {
+                    return Ok(Ok(least));
+                }
+                for found in search.downhill(&found, &way, cells == 1) {
+                    if best.as_ref().is_none_or(|best| found.value < best.value) {
+                        best = Some(found);
+                    }
+                }
+                let halves = search.halves(&least, &way, best.as_ref());
+                cells += halves.len();
+                if halves.is_empty() {
+                    // Too narrow to be split: what it is counts.
+                    open.push((Least { value: found.value, ..found }, way));
+                }
+                halves
+            }
+        };
+        for next in ways {
             match problem.least(machine, asked, &next) {
                 Ok(least) => open.push((least, next)),
                 Err(NoX::Contradiction(_)) => {}
-                Err(NoX::Failed(why)) => return Err(NoWeights::Failed(why)),
+                Err(NoX::Failed(why)) if asked.objective.momentum == 0.0 => return Err(NoWeights::Failed(why)),
+                // A bound that is not known is that of the whole.
+                Err(NoX::Failed(_)) => open.push((least.clone(), next)),
             }
         }
     }
-    Ok(Err(NoX::Contradiction(Vec::new())))
+    Ok(best.ok_or(NoX::Contradiction(Vec::new())))
 }
 
-/// The site whose disc reaches furthest over a pin; none if all are clear. One that has its room is.
-fn furthest_in(
-    problem: &Problem,
-    asked: &Weighing,
-    least: &Least,
-    (rooms, way): (&[Vec<Room>], &Way),
-) -> Option<usize> {
-    let clearance = asked.clearance.unwrap_or_default();
-    let missed = |j: usize| {
-        let [w, s] = problem.at(asked, &least.x, j);
-        let (radius, at) = (asked.disc.radius(w.max(0.0)), s / w);
-        let nearest = rooms[j].iter().map(|room| room.missed(clearance, radius, at)).fold(f64::INFINITY, f64::min);
-        if w > NOTHING { nearest } else { 0.0 }
-    };
-    let free = (0..rooms.len()).filter(|j| way.rooms[*j].is_none());
-    let worst = free.map(|j| (j, missed(j))).max_by(|a, b| a.1.total_cmp(&b.1));
-    worst.filter(|(_, missed)| *missed > ROUNDING).map(|(j, _)| j)
+struct Search<'a> {
+    problem: &'a Problem,
+    machine: &'a Machine,
+    asked: &'a Weighing,
+}
+
+impl Search<'_> {
+    /// The site whose disc reaches furthest over a pin; none if all are clear, or may cover them. One that has its room
+    /// is.
+    fn furthest_in(&self, least: &Least, rooms: &[Vec<Room>], way: &Way) -> Option<usize> {
+        let clearance = self.asked.clearance?;
+        let missed = |j: usize| {
+            let [w, s] = self.problem.at(self.asked, &least.x, j);
+            let (radius, at) = (self.asked.disc.radius(w.max(0.0)), s / w);
+            let nearest = rooms[j].iter().map(|room| room.missed(clearance, radius, at)).fold(f64::INFINITY, f64::min);
+            if w > NOTHING { nearest } else { 0.0 }
+        };
+        let free = (0..rooms.len()).filter(|j| way.rooms[*j].is_none());
+        let worst = free.map(|j| (j, missed(j))).max_by(|a, b| a.1.total_cmp(&b.1));
+        worst.filter(|(_, missed)| *missed > ROUNDING).map(|(j, _)| j)
+    }
+
+    /// The same with every inertia what it is.
+    fn as_it_is(&self, least: &Least) -> Least {
+        let x = self.problem.settled(self.machine, self.asked, &least.x);
+        Least { value: self.problem.value(self.machine, self.asked, &x), x, gap: 0.0 }
+    }
+
+    /// Answers that are no worse than one, each the least where inertias take from momenta as if they were linear about
+    /// the one before; from that one, and from all at one end of their ranges if asked for.
+    fn downhill(&self, from: &Least, way: &Way, from_ends: bool) -> Vec<Least> {
+        let about = |least: &Least| {
+            let one = |j: usize| {
+                let ([w, s], [from, to]) = (self.problem.at(self.asked, &least.x, j), way.cells[j].at);
+                let far = if from.abs() > to.abs() { from } else { to };
+                if w > NOTHING { [w, s / w] } else { [0.0, far] }
+            };
+            (0..self.asked.sites.len()).map(one).collect::<Vec<_>>()
+        };
+        let mean = |all: &[[f64; 2]]| all.iter().map(|[w, _]| w).sum::<f64>() / all.len().max(1) as f64;
+        let here = about(from);
+        let mut starts = vec![here.clone()];
+        if from_ends {
+            let heavy = 3.0 * mean(&here) + 1.0;
+            let end = |i: usize, mass: f64| way.cells.iter().map(|cell| [mass, cell.at[i]]).collect::<Vec<_>>();
+            starts.extend([end(0, 0.0), end(1, 0.0), end(0, heavy), end(1, heavy)]);
+        }
+        let down = |mut tangents: Vec<[f64; 2]>| {
+            let mut best: Option<Least> = None;
+            for _ in 0..MAX_STEPS {
+                let way = Way { tangents: Some(tangents), ..way.clone() };
+                let Ok(next) = self.problem.least(self.machine, self.asked, &way) else { break };
+                let next = self.as_it_is(&next);
+                tangents = about(&next);
+                let gain = best.as_ref().map_or(f64::INFINITY, |best| best.value - next.value);
+                if gain > 0.0 {
+                    best = Some(next);
+                }
+                if gain < 0.1 * AS_GOOD {
+                    break;
+                }
+            }
+            best
+        };
+        starts.into_iter().filter_map(down).chain([from.clone()]).collect()
+    }
+
+    /// The cell in which an inertia is furthest from what it is, in halves.
+    fn halves(&self, least: &Least, way: &Way, best: Option<&Least>) -> Vec<Way> {
+        let excess = self.problem.excess(self.machine, self.asked, &least.x);
+        let each = excess.iter().enumerate().flat_map(|(j, [place, own])| [(j, true, *place), (j, false, *own)]);
+        let mut order: Vec<(usize, bool, f64)> = each.collect();
+        order.sort_by(|a, b| b.2.total_cmp(&a.2));
+        // No counterweight weighs more than what is least can be.
+        let heaviest = best.map(|best| best.value / self.asked.objective.mass).filter(|mass| mass.is_finite());
+        let halved = order.into_iter().find_map(|(j, by_place, _)| {
+            let [w, s] = self.problem.at(self.asked, &least.x, j);
+            let mut cell = way.cells[j];
+            cell.mass[1] = cell.mass[1].min(heaviest.unwrap_or(f64::INFINITY)).max(cell.mass[0]);
+            let halves = cell.halves(by_place, [w.max(0.0), if w > NOTHING { s / w } else { 0.0 }])?;
+            Some((j, halves))
+        });
+        let Some((j, halves)) = halved else { return Vec::new() };
+        let with = |cell: Cell| {
+            let mut next = way.clone();
+            next.cells[j] = cell;
+            next
+        };
+        halves.map(with).into()
+    }
 }

@@ -16,8 +16,8 @@ pub fn is_of_machine(path: &str) -> bool {
     PARTS.contains(&path.split('.').next().unwrap_or_default())
 }
 
-const KEYS: &str = "link.NAME.(com|com_normal|mass|inertia|length|axial), counterweight.NUMBER.(mass|at|radius), \
-                    counterweight.NUMBER.fixed, length.NAME, \
+const KEYS: &str = "link.NAME.(com|com_normal|mass|inertia|length|axial), counterweight.NUMBER.(mass|at|radius|fixed), \
+                    length.NAME, \
                     payload.(mass|inertia|offset|axial), gravity, limits.ANGLE, \
                     drive.NAME.(torque|speed|acceleration|jerk)_limit, drive.NAME.rotor.(inertia|ratio)";
 

@@ -1,0 +1,55 @@
+//! [`Left`]: what is left of each line of (7) and (8), and what counterweights add to it.
+
+use super::asked::{Sites, Weighing};
+use super::refusal::NoWeights;
+use crate::mechanics::balance::Condition;
+use crate::mechanics::machine::{Inertia, Machine};
+use crate::mechanics::planar::Vector;
+
+/// One line of (7) or (8).
+pub(super) struct Left {
+    pub of: Condition,
+    /// What the bare machine leaves along and across the axes, kg m or kg m²; with the middle of what it may hold.
+    pub left: Vector,
+    /// Along them, with the least and with the most that it may hold.
+    pub ends: [f64; 2],
+    /// What w and s of each site add.
+    pub changes: Vec<[f64; 2]>,
+}
+
+impl Left {
+    /// Whether any site changes it.
+    pub fn is_touched(&self) -> bool {
+        self.changes.iter().flatten().any(|by| *by != 0.0)
+    }
+}
+
+/// What is left of each condition, and how a counterweight of w and s at each site changes it.
+pub(super) fn conditions(
+    bare: &Machine,
+    inertia: &Inertia,
+    asked: &Weighing,
+    beyond: &[Vector],
+) -> Result<Vec<Left>, NoWeights> {
+    let parts = bare.resolved_links();
+    let holding = |mass: f64| -> Result<Inertia, NoWeights> {
+        let mut spec = bare.spec().clone();
+        spec.payload.mass = mass;
+        Ok(Inertia::of(&Machine::new(spec)?))
+    };
+    let ends = match asked.payload {
+        Some([low, high]) => [holding(low)?, holding(high)?],
+        None => [inertia.clone(), inertia.clone()],
+    };
+    let of = |(i, condition): (usize, Condition)| {
+        let change = |site: &Sites| [condition.by_mass(&parts[site.link]), condition.by_moment(&parts[site.link])];
+        let more = beyond.get(i).copied().unwrap_or_default();
+        Left {
+            of: condition,
+            left: condition.left(inertia) + more,
+            ends: [0, 1].map(|i| (condition.left(&ends[i]) + more).re),
+            changes: asked.sites.iter().map(change).collect(),
+        }
+    };
+    Ok(Condition::all(bare.drives()).enumerate().map(of).collect())
+}

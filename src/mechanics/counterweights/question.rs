@@ -1,0 +1,47 @@
+//! [`One`]: a question about counterweights, and the problem that follows from it.
+
+use super::asked::Weighing;
+use super::problem::{Balance, Problem, Way};
+use super::refusal::NoWeights;
+use super::search::search;
+use crate::convex::{Least, NoX};
+use crate::mechanics::machine::Machine;
+use crate::mechanics::planar::Vector;
+
+/// One question.
+#[derive(Clone, Copy)]
+pub(super) struct One<'a> {
+    pub problem: &'a Problem,
+    pub machine: &'a Machine,
+    pub asked: &'a Weighing,
+    pub beyond: &'a [Vector],
+}
+
+impl One<'_> {
+    /// Whether balance is to be exact, or as near as can be over a range of payloads.
+    pub fn balance(&self) -> Balance {
+        match self.asked.payload {
+            Some([low, high]) if low < high => Balance::Nearest,
+            _ => Balance::Exact,
+        }
+    }
+
+    /// Whether there are such counterweights.
+    pub fn is_possible(&self) -> bool {
+        matches!(self.on(&Way::free(self.asked, self.balance())), Ok(Ok(_)))
+    }
+
+    /// The best with balance as exact as that.
+    pub fn least(&self, balance: Balance) -> Result<Result<Least, NoX>, NoWeights> {
+        self.on(&Way::free(self.asked, balance))
+    }
+
+    /// The best on one way.
+    pub fn on(&self, way: &Way) -> Result<Result<Least, NoX>, NoWeights> {
+        let is_convex = self.asked.clearance.is_none() && self.asked.objective.momentum == 0.0;
+        match is_convex {
+            true => Ok(self.problem.least(self.machine, self.asked, way)),
+            false => search(self.problem, self.machine, self.asked, way),
+        }
+    }
+}
