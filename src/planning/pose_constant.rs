@@ -7,7 +7,7 @@ use crate::mechanics::planar::Vector;
 use crate::planning::common;
 use crate::planning::pose_space::{NoPoseSpace, PoseSpace, held, is_reactionless};
 use crate::planning::reactionless::{
-    AngleDefinition, AngleLimit, Boundary, Decimal, NoReach, NotAPlaneMap, PlaneMap, PlanePoint, Poses, metres,
+    AngleDefinition, AngleLimit, Boundary, Decimal, NotAPlaneMap, PlaneMap, PlanePoint, Poses,
 };
 use crate::settings::number::counted;
 

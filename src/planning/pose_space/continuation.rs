@@ -84,7 +84,7 @@ impl PoseSpace {
         for (column, joint) in columns.iter_mut().zip(&*self.joints).rev() {
             let [near, far] = joint.ends;
             *column = joint.sense * i * (arm[far] - place * (lambda[far] / self.sum));
-            arm[near] = arm[near] + arm[far];
+            arm[near] += arm[far];
             lambda[near] += lambda[far];
         }
         (place, columns)
@@ -209,10 +209,10 @@ impl PoseSpace {
         let Climb { start: Start { a, critical }, rise } = climb;
         let (b, to) = (critical.b, critical.b + rise);
         let leave = self.leaving(a, b, rise.signum());
-        if leave.gains {
-            if let Some(there) = self.continued(p, (a, b), to, (windows, effort)) {
-                return Some(there);
-            }
+        if leave.gains
+            && let Some(there) = self.continued(p, (a, b), to, (windows, effort))
+        {
+            return Some(there);
         }
         let (way, bend) = leave.along?;
         for side in [1.0, -1.0] {
