@@ -28,7 +28,8 @@ pub(super) struct Critical {
 
 impl Critical {
     /// Takes in another one at the same b. Where a curve comes to a limit two are one pose: the one with more freedoms
-    /// knows where b goes from there. Else b goes where it goes from either.
+    /// knows where b goes from there; of two compounds b ends where one of them says so. Else b goes where it goes from
+    /// either.
     pub fn merge(&mut self, other: &Self) {
         let one = self.a.iter().zip(other.a.iter()).all(|(x, y)| (x - y).abs() < SAME_POSE);
         if one && self.count != other.count {
@@ -41,8 +42,13 @@ impl Critical {
         if other.spot.curve < self.spot.curve {
             (self.spot, self.a, self.count) = (other.spot, other.a, other.count);
         }
-        self.up |= other.up;
-        self.down |= other.down;
+        if one && self.count == 2 {
+            self.up &= other.up;
+            self.down &= other.down;
+        } else {
+            self.up |= other.up;
+            self.down |= other.down;
+        }
         self.name = self.name.wrapping_add(other.name);
     }
 }
@@ -80,6 +86,14 @@ impl Curve {
 /// Angles may miss their limits by this much, rad: rounding of an inverse.
 const SLACK: f64 = 1e-9;
 
+/// Distances as near to that of a corner of the limits as this, as a share of the reach, are its own: twice as far as
+/// the slack of the limits goes. An angle is not looked at there if it misses its limit by more than the second, rad.
+const CORNER: f64 = 2e-9;
+const CORNER_ANGLE: f64 = 1e-3;
+
+/// What a joint at its limit gains in b is nothing to rounding up to this share of the largest λ.
+const NO_GAIN: f64 = 1e-12;
+
 /// Poses with the same b are one if no angle differs by more than this, rad: b is stationary there.
 const SAME_POSE: f64 = 0.1;
 
@@ -90,15 +104,15 @@ const BEYOND: f64 = 1e-6;
 const ENOUGH: f64 = 1e-11;
 
 impl PoseSpace {
-    /// Every critical value of b for points at a distance from B, m, above 0, each with its relative angles; whether all of
-    /// them can be told apart.
+    /// Every critical value of b for points at a distance from B, m, above 0, each with its relative angles. False where
+    /// rounding decides on some: all arms may be on one line, or all joints at limits.
     pub(super) fn criticals(&self, distance: f64, mut found: impl FnMut(Critical)) -> bool {
         let mut regular = true;
         for (i, pattern) in self.patterns().iter().enumerate() {
             let name = (i as u64) << 44;
             let curve = Curve::of(i, 0);
             if pattern.count == 2 {
-                self.triangle(pattern, (name, curve), distance, &mut found);
+                regular &= self.triangle(pattern, (name, curve), distance, &mut found);
             } else {
                 for signs in &pattern.signs {
                     let curve = Curve::of(i, signs.bits);
@@ -143,13 +157,14 @@ impl PoseSpace {
         Some((distance, turn(c.of[0]) * self.sum + self.b(&self.unturned(&a))))
     }
 
-    /// Two compounds: the point leaves no freedom, so b is where it is.
-    fn triangle(&self, c: &Pattern, (name, curve): (u64, Curve), r: f64, found: &mut impl FnMut(Critical)) {
+    /// Two compounds: the point leaves no freedom, so b is where it is. False where a pose is in a corner of the limits.
+    fn triangle(&self, c: &Pattern, (name, curve): (u64, Curve), r: f64, found: &mut impl FnMut(Critical)) -> bool {
         let [l, m] = [c.length[0], c.length[1]];
         let cos = (r * r + l * l - m * m) / (2.0 * r * l);
         if cos.abs() > 1.0 + 1e-12 {
-            return;
+            return true;
         }
+        let mut regular = true;
         let bend = cos.clamp(-1.0, 1.0).acos();
         let first = l * unit(bend);
         let psi = [bend, (r - first).arg()];
@@ -158,7 +173,11 @@ impl PoseSpace {
             let turn = |i: usize| sign * psi[i] - c.lean[i];
             let name = name | u64::from(sign < 0.0) << 28;
             let spot = Spot { curve: curve.mirrored(sign < 0.0), t };
-            self.poses_of(c, (name, spot), turn, found, || {
+            let mut noted = |critical: Critical| {
+                regular &= !self.in_corner(c, &critical.a, r);
+                found(critical);
+            };
+            let decided = self.poses_of(c, (name, spot), turn, &mut noted, || {
                 // μ with Λ = Re(μ̄ i L e^{iψ}) for both.
                 let first = Vector::new(first.re, sign * first.im);
                 let [j, k] = [first, r - first].map(|arm| Vector::new(-arm.im, arm.re));
@@ -168,10 +187,28 @@ impl PoseSpace {
                 });
                 (mu, [false; 2])
             });
+            regular &= decided;
             if bend == 0.0 {
                 break;
             }
         }
+        regular
+    }
+
+    /// Whether the free joint of two compounds comes to a limit as near to this distance from B, m, as the slack of the
+    /// limits lets curves go on past their ends. All curves of one corner answer alike. Two drives have one curve only.
+    fn in_corner(&self, c: &Pattern, a: &PerDrive, r: f64) -> bool {
+        let Some(i) = (0..self.joints.len()).find(|i| c.at[*i] == At::Free && self.joints.len() > 1) else {
+            return false;
+        };
+        let limits = self.joints[i].limits;
+        limits.into_iter().filter(|limit| (a[i] - limit).abs() < CORNER_ANGLE).any(|limit| {
+            let mut corner = *a;
+            corner[i] = limit;
+            let q = self.unturned(&corner);
+            let p: Vector = self.tip.iter().zip(q.iter()).map(|(tip, q)| *tip * unit(*q)).sum();
+            (p.norm() - r).abs() < CORNER * self.farthest()
+        })
     }
 
     /// Three compounds and more: one equation in ν for each choice of signs. False where a solution is at ν = 0, all
@@ -185,6 +222,7 @@ impl PoseSpace {
         found: &mut impl FnMut(Critical),
     ) -> bool {
         let n = c.count;
+        let mut regular = signs.cells & 1 == 0 || (signs.values[0] - r * r).abs() > 1e-11 * r * r;
         roots(c, signs, r * r, |t, turns| {
             let (nu, cos, sum) = c.stretched(signs.bits, t);
             if nu < 1e-9 * c.most {
@@ -198,18 +236,18 @@ impl PoseSpace {
                 let turn = |i: usize| side * (alpha[i] - chi) - c.lean[i];
                 let name = name | u64::from(signs.bits) << 36 | (turns as u64) << 29 | u64::from(side < 0.0) << 28;
                 let spot = Spot { curve: curve.mirrored(side < 0.0), t };
-                self.poses_of(c, (name, spot), turn, found, || {
+                regular &= self.poses_of(c, (name, spot), turn, found, || {
                     let [up, down] = *ways_up.get_or_insert_with(|| ways(n, nu, &cos, &c.lambda));
                     let mu = unit(PI - side * chi) / (side * nu);
                     (Some(mu), if side > 0.0 { [up, down] } else { [down, up] })
                 });
             }
         });
-        signs.cells & 1 == 0 || (signs.values[0] - r * r).abs() > 1e-11 * r * r
+        regular
     }
 
     /// The poses of compounds that are turned so, in every winding that the limits allow. If there are any, it is asked
-    /// for μ and for where b goes with no joint that is held.
+    /// for μ and for where b goes with no joint that is held. False where rounding decides what a held joint makes of b.
     fn poses_of(
         &self,
         c: &Pattern,
@@ -217,7 +255,7 @@ impl PoseSpace {
         turn: impl Fn(usize) -> f64,
         found: &mut impl FnMut(Critical),
         which: impl FnOnce() -> (Option<Vector>, [bool; 2]),
-    ) {
+    ) -> bool {
         // The least of each angle's values.
         let mut a = PerDrive::zeros(self.joints.len());
         for (i, joint) in self.joints.iter().enumerate() {
@@ -232,13 +270,14 @@ impl PoseSpace {
                     let angle = own - TAU * turns;
                     spot.curve.turns[i] = turns as i8;
                     if angle > high + SLACK {
-                        return;
+                        return true;
                     }
                     angle
                 }
             };
         }
         let (mu, [mut up, mut down]) = which();
+        let mut undecided = false;
         if let Some(mu) = mu.filter(|_| c.held) {
             // What b gains from each drive beyond what keeps the point, and of each joint from all that it turns.
             let mut gain = PerDrive::from_fn(self.drives(), |k| {
@@ -253,7 +292,12 @@ impl PoseSpace {
                     continue;
                 }
                 gain[near] += gain[far];
-                if own.abs() > 1e-9 * scale && joint.limits[0] < joint.limits[1] {
+                if joint.limits[0] == joint.limits[1] {
+                    continue;
+                }
+                if own.abs() <= NO_GAIN * scale {
+                    undecided = true;
+                } else {
                     let rises = (own > 0.0) == (at == At::Least);
                     up |= rises;
                     down |= !rises;
@@ -270,6 +314,7 @@ impl PoseSpace {
             }
             found(Critical { b, up, down, name, spot, a: *a, count: c.count });
         });
+        !undecided || (up && down)
     }
 
     /// Each choice of whole turns that puts all free angles within their limits, from the least.

@@ -8,8 +8,10 @@ use crate::planning::reactionless::{BSet, NoReach};
 
 /// Values of b that come as near as this are one, rad: rounding.
 const SAME: f64 = 1e-10;
-/// How far beside a distance, as a share of it.
-const BESIDE: f64 = 1e-9;
+/// How far beside a distance, as a share of the reach: past what rounding and the slack of limits decide.
+const BESIDE: f64 = 4.1e-9;
+/// Values as near to a gap as this, as a share of b's period, may pass it from one circle to the next.
+const NEAR_GAP: f64 = 0.125;
 /// A point as near to B as this, as a share of the reach, is B: the workspace turned about it.
 const AT_BASE: f64 = 1e-12;
 
@@ -62,25 +64,27 @@ impl PoseSpace {
         if self.criticals(distance, |c| work.ends.push(c)) {
             return self.joined(distance, &[], &mut work).set(period);
         }
-        // At distances to which straight arms just reach, ends meet and none is told from another: as beside it.
-        let parts = [1.0 - BESIDE, 1.0 + BESIDE].map(|by| {
+        // At distances to which straight arms just reach, and corners of limits, ends meet and none is told from another:
+        // as beside it.
+        let parts = [-BESIDE, BESIDE].map(|by| {
+            let beside = (distance + by * self.farthest()).abs();
             work.ends.clear();
-            self.criticals(distance * by, |c| work.ends.push(c));
-            self.joined(distance * by, &[], &mut work).set(period).intervals
+            self.criticals(beside, |c| work.ends.push(c));
+            self.joined(beside, &[], &mut work).set(period).intervals
         });
         BSet::union(parts.concat(), period)
     }
 
     /// What of the circle of b is covered at a distance from B, m, three drives and more. What was seen at distances
-    /// beside it saves looks. Where straight arms just reach, it is moved by rounding, and says where to.
+    /// beside it saves looks. Where rounding decides it is moved by up to twice [`BESIDE`], and says where to.
     pub(super) fn covered(&self, distance: f64, beside: &[&Covered], work: &mut Work) -> (f64, Covered) {
         let mut at = distance;
-        for _ in 0..4 {
+        for by in [0.0, 1.0, -1.0, 2.0, -2.0] {
+            at = distance + by * BESIDE * self.farthest();
             work.ends.clear();
             if self.criticals(at, |c| work.ends.push(c)) {
                 break;
             }
-            at *= 1.0 + 0.1 * BESIDE;
         }
         (at, self.joined(at, beside, work))
     }
@@ -93,23 +97,30 @@ impl PoseSpace {
             c.b = c.b.rem_euclid(period);
         }
         work.ends.sort_unstable_by(|x, y| x.b.total_cmp(&y.b));
-        work.ends.dedup_by(|c, last| {
-            let same = c.b - last.b < SAME;
+        let joins = |c: &Critical, last: &mut Critical, apart: f64| {
+            let same = apart < SAME;
             if same {
                 last.merge(c);
             }
             same
-        });
+        };
+        work.ends.dedup_by(|c, last| joins(c, last, c.b - last.b));
+        // b goes round: the last one may be the first.
+        if let [first, .., last] = &mut work.ends[..]
+            && joins(last, first, first.b + period - last.b)
+        {
+            work.ends.pop();
+        }
         let (merged, looks) = (&work.ends, &mut work.looks);
         let n = merged.len();
         if n == 0 {
             // b may go round and round without an end: near B the machine turns as a whole.
             let known = agreed(beside.iter().map(|seen| seen.whole())).filter(|_| beside.len() > 1);
             let whole = self.drives() > 2 && known.unwrap_or_else(|| self.any_pose(distance));
-            return Covered { ends: Vec::new(), gaps: vec![whole] };
+            return Covered { ends: Vec::new(), gaps: vec![whole], period };
         }
         let gaps = (0..n).map(|i| merged[i].up || merged[(i + 1) % n].down).collect();
-        let mut covered = Covered { ends: merged.clone(), gaps };
+        let mut covered = Covered { ends: merged.clone(), gaps, period };
         covered.spread();
         for i in 0..n {
             let to = if i + 1 < n { merged[i + 1].b } else { merged[0].b + period };
@@ -119,7 +130,9 @@ impl PoseSpace {
             }
             // Several sheets may lie over one b: whether another one goes on here is known from the same gap beside it, or
             // asked of a pose, anywhere between, as where the set is about to part few poses are left.
-            let known = agreed(beside.iter().map(|seen| Some(seen.gaps[seen.gap(&covered, i, beside.len() < 2)?])));
+            let seen = |seen: &Covered, all: bool| Some(seen.gaps[seen.gap(&covered, i, all)?]);
+            let on_both_sides = beside.len() > 1 && beside.iter().all(|beside| seen(beside, false).is_some());
+            let known = agreed(beside.iter().map(|beside| seen(beside, !on_both_sides)));
             let between = || [0.5, 0.2, 0.8, 0.05, 0.95].map(|part| merged[i].b + part * width);
             if known.unwrap_or_else(|| self.has_pose(distance, &between(), looks)) {
                 covered.gaps[i] = true;
@@ -153,6 +166,7 @@ pub(super) struct Covered {
     pub ends: Vec<Critical>,
     /// Whether what lies between each and the next is covered; one, of the whole circle, where there are no values.
     pub gaps: Vec<bool>,
+    period: f64,
 }
 
 impl Covered {
@@ -195,18 +209,44 @@ impl Covered {
         [n - 1, 0, 1, 2].map(|j| self.ends[(i + j) % n].name)
     }
 
-    /// The gap between the same two values as one of another distance; with the same ones about these, too, if all have to
-    /// be. Two values that pass each other keep their order round the circle: of two, it has to be the same from 0 on.
+    /// The gap between the same two values as one of another distance; with the same ones on either side of it, too, if
+    /// all have to be. Two values that pass each other keep their order round the circle: of two, it has to be the same
+    /// from 0 on.
     fn gap(&self, of: &Self, i: usize, all: bool) -> Option<usize> {
         let (n, around) = (self.ends.len(), of.around(i));
         let same = |j: &usize| {
             let own = self.around(*j);
-            own[1..3] == around[1..3] && (!all || own == around)
+            own[1..3] == around[1..3] && (!all || (own == around && self.has_sides(*j, of, i)))
         };
         if n < 3 || of.ends.len() < 3 {
             return (n == of.ends.len() && same(&i)).then_some(i);
         }
         (0..n).find(same)
+    }
+
+    /// Whether no value has passed gap j on its way to gap i of another distance: those near either have kept their sides,
+    /// and none is new or gone.
+    fn has_sides(&self, j: usize, of: &Self, i: usize) -> bool {
+        let near = NEAR_GAP * self.period;
+        let (here, there) = (self.middle(j), of.middle(i));
+        let off = |c: &Critical, middle: f64| {
+            let half = 0.5 * self.period;
+            (c.b - middle + half).rem_euclid(self.period) - half
+        };
+        let keeps = |one: &Self, middle: f64, other: &Self, others: f64| {
+            one.ends.iter().all(|c| {
+                let own = off(c, middle);
+                own.abs() > near || other.ends.iter().any(|d| d.name == c.name && (off(d, others) > 0.0) == (own > 0.0))
+            })
+        };
+        keeps(self, here, of, there) && keeps(of, there, self, here)
+    }
+
+    /// The b in the middle of a gap, rad.
+    fn middle(&self, i: usize) -> f64 {
+        let n = self.ends.len();
+        let to = if i + 1 < n { self.ends[i + 1].b } else { self.ends[0].b + self.period };
+        0.5 * (self.ends[i].b + to)
     }
 
     /// Covers what is covered at a distance beside this one: what was found there cannot be missing here.

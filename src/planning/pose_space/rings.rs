@@ -11,8 +11,9 @@ use crate::mechanics::planar::{Vector, unit};
 const FIRST: usize = 128;
 /// Of so many circles one is looked at without what is known of the one before.
 const AGAIN: usize = 8;
-/// Circles between which the boundary changes are found to be as near as this, as a share of the reach.
-const FOUND: f64 = 1e-9;
+/// Circles between which the boundary changes are found to be as near as this, as a share of the reach: more than twice as
+/// far as one is moved.
+const FOUND: f64 = 2e-8;
 /// The most circles that are looked at, and the most points between them.
 const MAX_RINGS: usize = 6000;
 const MAX_POINTS: usize = 400_000;
@@ -95,7 +96,7 @@ impl PoseSpace {
     pub(super) fn rings(&self, b: f64, chord: f64, goes_on: &mut dyn FnMut(f64) -> bool) -> Option<Rings> {
         let (near, far) = (self.nearest(), self.farthest());
         let span = far - near;
-        let at = |i: usize| near + span * (i as f64 + if i == 0 { FOUND } else { 0.0 }) / FIRST as f64;
+        let at = |i: usize| near + span * if i == 0 { FOUND } else { i as f64 / FIRST as f64 };
         let chord = chord * (far / LARGE).max(1.0);
         let mut sweep = Sweep {
             space: self,
