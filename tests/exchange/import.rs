@@ -449,3 +449,62 @@ fn xml_that_is_dear_to_parse_is_refused_before() {
         assert!(!why.contains("at most"), "{why}");
     }
 }
+
+/// A link is as long as its farthest pin is from its root; one without a second pin reaches to the end effector.
+#[test]
+fn links_are_as_long_as_their_pins_are_apart() {
+    let found = import(TWO).expect("an arm");
+    let lengths: Vec<f64> = found.machine.resolved_links().iter().map(|part| part.length).collect();
+    near("upper arm", lengths[0], 0.4, 1.0);
+    near("forearm", lengths[1], 0.35, 1.0);
+}
+
+/// Axes along x of the file, so that no link lies along its own x: the machine is the one whose axes are along z.
+#[test]
+fn axes_may_lie_along_the_x_of_the_file() {
+    // In the plane (y, z) instead of (x, y): x is z, and so on in a circle.
+    let turned = TWO
+        .replace("xyz=\"0.18 0 0\"", "xyz=\"0 0.18 0\"")
+        .replace("xyz=\"0 0 0.1\"", "xyz=\"0.1 0 0\"")
+        .replace("xyz=\"0 0 1\"", "xyz=\"1 0 0\"")
+        .replace("xyz=\"0.4 0 0\"", "xyz=\"0 0.24 0.32\"")
+        .replace("xyz=\"0.15 0 0\"", "xyz=\"0 0.09 0.12\"")
+        .replace("xyz=\"0.35 0 0\"", "xyz=\"0 0.21 0.28\"")
+        .replace("xyz=\"0 0.18 0\"", "xyz=\"0 0.108 0.144\"")
+        .replace(
+            "ixx=\"0.004\" ixy=\"0\" ixz=\"0\" iyy=\"0.04\" iyz=\"0\" izz=\"0.04\"",
+            "ixx=\"0.04\" ixy=\"0\" ixz=\"0\" iyy=\"0.04\" iyz=\"0\" izz=\"0.004\"",
+        )
+        .replace(
+            "ixx=\"0.002\" ixy=\"0\" ixz=\"0\" iyy=\"0.02\" iyz=\"0\" izz=\"0.02\"",
+            "ixx=\"0.02\" ixy=\"0\" ixz=\"0\" iyy=\"0.02\" iyz=\"0\" izz=\"0.002\"",
+        );
+    let (own, other) = (import(TWO).expect("an arm"), import(&turned).expect("the same arm"));
+    near("reach", other.machine.reach(), own.machine.reach(), 1.0);
+    let [own, other] = [own, other].map(|found| {
+        let q = PerDrive::from_fn(2, |k| found.pose[k] + if k == 1 { 0.7 } else { 0.0 });
+        mass_matrix(&Inertia::of(&found.machine), &DriveAngles(q).units(), &PerDrive::from_fn(2, |_| 0.0)).0
+    });
+    for (k, l) in [(0, 0), (0, 1), (1, 1)] {
+        near("H", other.get(k, l), own.get(k, l), own.get(0, 0));
+    }
+}
+
+/// A limit from somewhere to below it is refused, one of no width and one to the left of 0 are read.
+#[test]
+fn limits_may_be_anywhere() {
+    let limited =
+        |low: f64, high: f64| TWO.replace("lower=\"-2.5\" upper=\"2.5\"", &format!("lower=\"{low}\" upper=\"{high}\""));
+    for [low, high] in [[-2.0, -1.0], [0.5, 0.5], [0.3, 2.0]] {
+        let found = import(&limited(low, high)).expect("an arm");
+        let angle = &found.machine.angles()[0];
+        near("width", angle.limits.end() - angle.limits.start(), high - low, 1.0);
+        let a = found.pose[angle.to] - found.pose[angle.from] + angle.offset;
+        near("below", a - angle.limits.start(), 0.0 - low, 1.0);
+    }
+    assert!(import(&limited(0.5, 0.4)).is_err());
+    // A joint that goes round has none, whatever its file gives besides.
+    let round =
+        limited(-2.0, 1.0).replacen("name=\"elbow\" type=\"revolute\"", "name=\"elbow\" type=\"continuous\"", 1);
+    assert!(import(&round).expect("an arm").machine.spec().angles.is_empty());
+}

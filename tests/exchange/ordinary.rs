@@ -90,6 +90,36 @@ fn shapes_weigh_what_their_slices_add_up_to() {
         near(shape, link.mass, 3.0, 1e-12);
         near(shape, link.inertia, 3.0 * second / volume, 1e-6);
     }
+    // Standing upright, along the axis of the hinge: a slice of radius r adds its area and π r⁴/2, one of b by c
+    // 4/3 b c (b² + c²).
+    let upright = |half: f64, across: &dyn Fn(f64) -> ([f64; 2], bool)| {
+        const SLICES: u32 = 20_000;
+        let step = 2.0 * half / f64::from(SLICES);
+        let mut sums = [0.0; 2];
+        for i in 0..SLICES {
+            let ([b, c], is_ellipse) = across(-half + (f64::from(i) + 0.5) * step);
+            let (area, squares) = if is_ellipse { (PI * b * c, 0.25) } else { (4.0 * b * c, 1.0 / 3.0) };
+            sums[0] += area * step;
+            sums[1] += area * squares * (b * b + c * c) * step;
+        }
+        sums
+    };
+    let cap = |z: f64| ball(0.05, (z.abs() - 0.15).max(0.0));
+    let egg = |z: f64| {
+        let part = (1.0 - (z / 0.02).powi(2)).max(0.0).sqrt();
+        ([0.15 * part, 0.04 * part], true)
+    };
+    let standing: [(&str, [f64; 2]); 4] = [
+        ("<geom type=\"capsule\" size=\"0.05 0.15\" pos=\"0.2 0.1 0\"/>", upright(0.2, &cap)),
+        ("<geom type=\"cylinder\" size=\"0.03 0.15\" pos=\"0.2 0.1 0\"/>", upright(0.15, &|_| round(0.03))),
+        ("<geom type=\"box\" size=\"0.15 0.04 0.02\" pos=\"0.2 0.1 0\"/>", upright(0.02, &|_| ([0.15, 0.04], false))),
+        ("<geom type=\"ellipsoid\" size=\"0.15 0.04 0.02\" pos=\"0.2 0.1 0\"/>", upright(0.02, &egg)),
+    ];
+    for (shape, [volume, second]) in standing {
+        let link = of_shape(shape).machine.links()[0].clone();
+        near(shape, link.mass, 1000.0 * volume, 1e-6);
+        near(shape, link.inertia, 1000.0 * second, 1e-6);
+    }
     for (shape, words) in [
         ("<geom type=\"mesh\" mesh=\"x\"/>", "a shape of type \"mesh\", which is not weighed: want <inertial>"),
         ("<geom type=\"box\" size=\"0.1 0.1\"/>", "box with 2 sizes: want 3"),
@@ -210,6 +240,16 @@ fn couplings_of_hinges_keep_links_parallel() {
         near("H12", h.get(0, 1), coupling * (q[0] - q[1]).cos(), 1e-12);
         near("H11", h.get(0, 0), 0.02 + 0.01 + 0.2 * 0.2 + 0.3 * 0.3 + 0.5 * 0.5, 1e-12);
         near("H22", h.get(1, 1), 0.02 + 0.01 + 0.3 * 0.3 + 0.01, 1e-12);
+        // Bent by a keyframe, which leaves "back" where no equality has it, the machine is the same.
+        let bent = model(&equality).replace("</mujoco>", "<keyframe><key qpos=\"0.2 0.7 0 0.7\"/></keyframe></mujoco>");
+        let other = read(&bent);
+        let (g, _) = mass_matrix(&Inertia::of(&other.machine), &DriveAngles(q).units(), &still);
+        for (k, l) in [(0, 0), (0, 1), (1, 1)] {
+            near("H, bent", g.get(k, l), h.get(k, l), 1e-12);
+        }
+        // Where "first" is held to "back" instead, that says where it stands.
+        let bend = if equality.contains("joint1=\"first\"") { 0.0 } else { 0.7 };
+        assert!((other.pose[1] - other.pose[0] - bend).abs() < 1e-12, "{equality}: {:?}", other.pose);
     }
     for (equality, words) in [
         (second.to_owned(), "body \"back\": no motor turns it"),
@@ -229,7 +269,18 @@ fn an_armature_becomes_a_rotor_that_adds_no_momentum() {
     let [own, other] = [&bare, &with].map(|found| Inertia::of(&found.machine));
     near("H", other.diagonal(1) - own.diagonal(1), 0.2, 1e-3);
     near("D", other.momentum(1), own.momentum(1), 1e-2);
-    assert!(with.notes.iter().any(|note| note.contains("the armature of \"elbow\", 0.2 kg m²")), "{:?}", with.notes);
+    let note = with.notes.iter().find(|note| note.contains("the armature of \"elbow\", 0.2 kg m²"));
+    let note = note.unwrap_or_else(|| panic!("{:?}", with.notes));
+    // J N² of the rotor that the note tells of is the armature, and it is the rotor of the machine.
+    let said = |before: &str| -> f64 {
+        let rest = note.split(before).nth(1).expect(before);
+        rest.split([' ', ',']).next().and_then(|number| number.parse().ok()).unwrap_or_else(|| panic!("{note}"))
+    };
+    let (inertia, ratio) = (said("became a rotor of "), said("behind a gear of "));
+    near("J N²", inertia * ratio * ratio, 0.2, 1e-4);
+    let rotor = with.machine.spec().drives[1].rotor.expect("a rotor");
+    near("J", rotor.inertia, inertia, 1e-4);
+    near("N", rotor.ratio, ratio, 1e-12);
 }
 
 /// Hinges stand where the keyframe has them, else where equalities put them.
@@ -251,4 +302,111 @@ fn hinges_stand_where_the_file_puts_them() {
     let found =
         import(&ARM.replace("</mujoco>", held)).map(|_| ()).expect_err("a motor that turns nothing").to_string();
     assert!(found.contains("\"elbow\""), "{found}");
+}
+
+/// Angles of a file are in degrees unless it says otherwise: what an angle is where it is drawn, and its limits.
+#[test]
+fn angles_are_in_degrees_unless_the_file_says_otherwise() {
+    let elbow = |of: &str| ARM.replace("<joint name=\"elbow\"/>", &format!("<joint name=\"elbow\" {of}/>"));
+    let plain = read(&elbow("ref=\"0.5235987755982988\" range=\"-1.0471975511965976 1.5707963267948966\""));
+    let text =
+        elbow("ref=\"30\" range=\"-60 90\"").replace("<compiler angle=\"radian\"/>", "<compiler angle=\"degree\"/>");
+    let text = text.replace("euler=\"0 1.5707963267948966 0\"", "euler=\"0 90 0\"");
+    let degrees = read(&text.replace("range=\"-1.5 2\"", "").replace("range=\"-9 9\"", ""));
+    let [own, other] = [&plain, &degrees].map(|found| found.machine.spec().angles[0].clone());
+    assert!((other.offset - PI / 6.0).abs() < 1e-12, "{other:?}");
+    for (got, want) in [(other.min, -PI / 3.0), (other.max, PI / 2.0), (own.min, -PI / 3.0), (own.max, PI / 2.0)] {
+        assert!((got.expect("a limit") - want).abs() < 1e-12, "{own:?} {other:?}");
+    }
+}
+
+/// What the file says all weigh together counts: every mass and every inertia by the same factor.
+#[test]
+fn a_total_mass_scales_masses_and_inertias() {
+    let bare = read(ARM);
+    let scaled = read(&ARM.replace("<compiler angle=\"radian\"/>", "<compiler angle=\"radian\" settotalmass=\"7\"/>"));
+    near("mass", scaled.machine.mass(), 7.0, 1e-12);
+    let factor = 7.0 / bare.machine.mass();
+    assert!((factor - 1.0).abs() > 0.1);
+    for (own, other) in bare.machine.links().iter().zip(scaled.machine.links()) {
+        near("mass of a link", other.mass, factor * own.mass, 1e-12);
+        near("inertia of a link", other.inertia, factor * own.inertia, 1e-12);
+        near("its place", other.com, own.com, 1e-12);
+    }
+}
+
+/// An arm whose elbow is turned by a motor with a rotor of its own, somewhere along the axis of the hinge.
+fn with_a_rotor(height: f64, ratio: f64, com: [f64; 2]) -> String {
+    let rotor = format!(
+        "<body name=\"rotor\" pos=\"0.4 0 {height}\"><joint name=\"rotor\" axis=\"0 0 1\" range=\"-9 9\"/>\
+         <inertial pos=\"{} {} {height}\" mass=\"0.5\" diaginertia=\"0.002 0.002 0.003\"/></body>",
+        com[0], com[1]
+    );
+    let equality =
+        format!("<equality><joint joint1=\"rotor\" joint2=\"elbow\" polycoef=\"0 {ratio} 0 0 0\"/></equality>");
+    ARM.replace("<body pos=\"0.4 0 0\">", &format!("{rotor}<body pos=\"0.4 0 0\">"))
+        .replace("</worldbody>", &format!("</worldbody>{equality}"))
+}
+
+/// Wherever along its axis a rotor sits, and whether it turns once or many times, it is one: a link is not.
+#[test]
+fn a_rotor_may_sit_anywhere_along_its_axis() {
+    for ratio in [1.0, -1.0, 30.0] {
+        for height in [0.0, 0.3, -0.2] {
+            let found = read(&with_a_rotor(height, ratio, [0.0; 2]));
+            assert_eq!(found.machine.links().len(), 2, "{ratio}, {height}");
+            let rotor = found.machine.spec().drives[1].rotor.expect("a rotor");
+            near("inertia", rotor.inertia, 0.003, 1e-12);
+            near("ratio", rotor.ratio, ratio, 1e-12);
+            // Its mass hangs on what carries it, at the elbow.
+            let upper = &found.machine.links()[0];
+            let bare = read(ARM).machine.links()[0].clone();
+            near("mass", upper.mass, bare.mass + 0.5, 1e-12);
+            near("moment", upper.mass * upper.com, bare.mass * bare.com + 0.5 * 0.4, 1e-12);
+        }
+    }
+    let why = import(&with_a_rotor(0.0, 30.0, [0.01, 0.02])).map(|_| ()).expect_err("it shakes").to_string();
+    assert!(why.contains("a rotor with its mass 0.02236") && why.contains("balanced"), "{why}");
+    // Off its axis by less than a part in a million million of where the axis is, it is balanced but for rounding.
+    read(&with_a_rotor(0.0, 30.0, [1e-12, 0.0]));
+}
+
+/// Hinges that no actuator turns get a motor each; what is geared to another hinge is its rotor, and gets none.
+#[test]
+fn without_actuators_every_hinge_has_a_motor_and_rotors_have_none() {
+    let text = with_a_rotor(0.0, 30.0, [0.0; 2]);
+    let (from, to) = (text.find("<actuator>").expect("one"), text.find("</actuator>").expect("one") + 11);
+    let found = read(&(text[..from].to_owned() + &text[to..]));
+    let names: Vec<&str> = found.machine.spec().drives.iter().map(|drive| drive.name.as_str()).collect();
+    assert_eq!(names, ["shoulder", "elbow"]);
+    let rotor = found.machine.spec().drives[1].rotor.expect("a rotor");
+    near("ratio", rotor.ratio, 30.0, 1e-12);
+}
+
+/// How exact a file has to be goes with its size: what is rounding of an arm of 50 m is not of one of half a metre.
+#[test]
+fn exactness_goes_with_the_size() {
+    let bar = |name: &str, x: f64, y: f64, inner: &str| {
+        format!(
+            "<body name=\"{name}\" pos=\"{x} {y} 0\"><joint name=\"{name}\"/><inertial pos=\"0.1 0 0\" mass=\"1\" \
+             diaginertia=\"0.01 0.01 0.01\"/>{inner}</body>"
+        )
+    };
+    let model = |size: f64, off: f64| {
+        let tip = format!("<site name=\"ee\" pos=\"{} 0 0\"/>", 0.3 * size);
+        let inner = bar("first", 0.2 * size, off, "") + &bar("second", 0.5 * size, 0.0, &tip);
+        format!(
+            "<mujoco><worldbody>{}</worldbody><actuator><motor joint=\"upper\"/><motor joint=\"first\"/>\
+             <motor joint=\"second\"/></actuator></mujoco>",
+            bar("upper", 0.0, 0.0, &inner)
+        )
+    };
+    let is_read = |size: f64, off: f64| import(&model(size, off)).is_ok();
+    assert!(is_read(1.0, 1e-10) && is_read(100.0, 1e-8));
+    assert!(!is_read(1.0, 1e-8) && !is_read(100.0, 1e-6));
+    // The same for a rotor that is not quite balanced.
+    let near = |off: f64| with_a_rotor(0.0, 30.0, [off, 0.0]);
+    let far = |off: f64| near(off).replace("0.4 0", "40 0");
+    assert!(import(&near(1e-10)).is_ok() && import(&far(2e-8)).is_ok());
+    assert!(import(&near(2e-8)).is_err() && import(&far(1e-6)).is_err());
 }
