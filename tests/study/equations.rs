@@ -2,6 +2,7 @@
 //! gives of its own machine stands where the paper has it.
 
 use stillbase::mechanics::balance::{Condition, Preset};
+use stillbase::mechanics::dynamics::mass_matrix;
 use stillbase::mechanics::machine::{Counterweight, Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive};
 use stillbase::planning::Reference;
@@ -269,4 +270,136 @@ fn numbers_stand_below_their_symbols() {
     assert_eq!(symbols, ["−m₈ l₃ l_c8", "+m₉ l₅ l_c9", "=", "0"]);
     let numbers: Vec<String> = cells.iter().map(|cell| format!("{}{}", cell.number_sign, cell.number)).collect();
     assert_eq!(numbers, ["−0.0003", "+0.0003", "=", "0.0000"]);
+}
+
+/// Sides that are all 0 agree, and no side may be off by more than rounding.
+#[test]
+fn tolerances_are_those_of_rounding() {
+    let mut noise = Noise::of(76);
+    for i in 0..40 {
+        let (machine, _) = random::a_space(&mut noise, 2 + i % 5);
+        // All drives at 0, and every relative angle there, too.
+        let mut spec = machine.spec().clone();
+        spec.angles.iter_mut().for_each(|angle| angle.offset = 0.0);
+        let machine = Machine::new(spec).expect("still a machine");
+        let zero = State::at_rest(DriveAngles(PerDrive::from_fn(machine.drives(), |_| 0.0)));
+        for line in lines(&of(&machine, &zero), "15") {
+            assert!(line.holds() && line.tolerance > 0.0 && line.tolerance < 1e-5, "{line:?}");
+        }
+    }
+    for _ in 0..100 {
+        let machine = with_counterweights(&mut noise);
+        // No mass is further from the base pin than all links end to end, their own centres of mass and what they hold.
+        let far: f64 = machine.resolved_links().iter().map(|part| part.length.abs()).sum::<f64>() + 1.0;
+        for line in lines(&of(&machine, &a_state(&mut noise, machine.drives())), "2") {
+            assert!(line.tolerance <= 4e-12 * machine.mass() * far, "{}: {:e}", line.name, line.tolerance);
+        }
+    }
+}
+
+/// Each term names the drives and the axis that it is of.
+#[test]
+fn terms_name_their_drives_and_axes() {
+    let all = of(&table_1(), &a_state(&mut Noise::of(77), 3));
+    let right = |number| lines(&all, number).iter().map(|line| written(&line.right)).collect::<Vec<_>>();
+    assert_eq!(right("1"), ["−Σ m_j x\u{308}_cj + M g_x", "−Σ m_j y\u{308}_cj + M g_y"].map(composed));
+    let fourth = right("4");
+    for (k, line) in ["1", "2", "3"].iter().zip(fourth) {
+        let wanted = ["1", "2", "3"].map(|l| plain(&format!("H_{{{k}{l}}} q\u{308}_{{{l}}}")));
+        assert!(wanted.iter().all(|term| line.contains(term.as_str())), "{line}");
+    }
+    let left = |number| lines(&all, number).iter().map(|line| written(&line.left)).collect::<Vec<_>>();
+    assert_eq!(left("3"), ["M x\u{307}_CM", "M y\u{307}_CM"].map(composed));
+    for (line, axis) in right("3").into_iter().zip(["x", "y"]) {
+        assert!(["1", "2", "3"].iter().all(|k| line.contains(&format!("γ_{k}{axis} q\u{307}"))), "{line}");
+    }
+}
+
+/// The letters of the program are of one piece each.
+fn composed(text: &str) -> String {
+    [("x\u{308}", "ẍ"), ("y\u{308}", "ÿ"), ("x\u{307}", "ẋ"), ("y\u{307}", "ẏ")]
+        .iter()
+        .fold(text.to_owned(), |text, (two, one)| text.replace(two, one))
+}
+
+/// Lengths stand before the place of a centre of mass, whatever they are called.
+#[test]
+fn lengths_stand_before_centres_of_mass() {
+    let text = "name = \"named\"\n[lengths]\nupper = 0.4\n[[drive]]\nname = \"1\"\n[[drive]]\nname = \"2\"\n\
+                [[link]]\nname = \"1\"\ndrive = \"1\"\nattach = \"base\"\nlength = \"upper\"\nmass = 1.0\n\
+                inertia = 0.1\ncom = 0.1\n[[link]]\nname = \"2\"\ndrive = \"2\"\n\
+                attach = { link = \"1\", at = \"tip\" }\nlength = 0.3\nmass = 1.0\ninertia = 0.1\ncom = 0.1\n\
+                [end_effector]\nlink = \"2\"\n";
+    let machine = stillbase::mechanics::machine::parse(text, "named").expect("a machine");
+    let all = of(&machine, &State::at_rest(DriveAngles(PerDrive::from_fn(2, |_| 0.3))));
+    assert_eq!(written(&lines(&all, "8")[0].left), "m₂ upper l_c2");
+}
+
+/// What (8) leaves is the greatest coupling there is, as the mass matrix shows it over all poses.
+#[test]
+fn what_the_mass_matrix_changes_by_is_said() {
+    let mut noise = Noise::of(78);
+    for _ in 0..20 {
+        let machine = random::a_chain(&mut noise, 3);
+        let all = of(&machine, &a_state(&mut noise, 3));
+        let why = numbered(&all, "11").lines.as_ref().expect_err("not balanced");
+        let said = why.split("up to ").nth(1).and_then(|rest| rest.split(" kg m²").next()).expect("a number");
+        let said: f64 = said.replace('\u{2212}', "-").parse().expect("a number");
+        let inertia = Inertia::of(&machine);
+        let entries = |q: f64, k: usize, l: usize| {
+            let q = PerDrive::from_fn(3, |i| if i == k { q } else { 0.0 });
+            mass_matrix(&inertia, &DriveAngles(q).units(), &PerDrive::from_fn(3, |_| 0.0)).0.get(k, l)
+        };
+        // Half of how far each entry swings as one drive turns.
+        let swing = |(k, l): (usize, usize)| {
+            let all = (0..720).map(|i| entries(std::f64::consts::TAU * f64::from(i) / 720.0, k, l));
+            let [low, high] = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b]: [f64; 2], x| [a.min(x), b.max(x)]);
+            0.5 * (high - low)
+        };
+        let most = [(0, 1), (0, 2), (1, 2)].map(swing).into_iter().fold(0.0, f64::max);
+        assert!((said - most).abs() < 0.6e-4 + 1e-4 * most, "{why}: {most}");
+    }
+}
+
+/// A first drive with a counter-rotating rotor that takes all of its momentum away: λ is by the next one.
+#[test]
+fn momenta_are_counted_by_the_first_drive_that_has_one() {
+    let link = |k: u32, inertia: f64| {
+        format!(
+            "[[link]]\nname = \"{k}\"\ndrive = \"{k}\"\nattach = \"base\"\nlength = 0.5\nmass = 1.0\n\
+             inertia = {inertia}\ncom = 0.0\n"
+        )
+    };
+    let text = "name = \"two\"\n[[drive]]\nname = \"1\"\nrotor = { inertia = 0.25, ratio = -2.0 }\n[[drive]]\n\
+                name = \"2\"\n"
+        .to_owned()
+        + &link(1, 0.5)
+        + &link(2, 0.3)
+        + "[end_effector]\nlink = \"2\"\n";
+    let machine = stillbase::mechanics::machine::parse(&text, "two").expect("a machine");
+    let all = of(&machine, &a_state(&mut Noise::of(79), 2));
+    let [_, ratios @ ..] = lines(&all, "12") else { panic!("no line") };
+    assert_eq!(ratios.len(), 1);
+    assert_eq!(written(&ratios[0].left), "λ₁");
+    assert!(ratios[0].holds() && ratios[0].sides() == [0.0, 0.0], "{:?}", ratios[0]);
+    assert!(written(&ratios[0].right).ends_with("/D₂"), "{}", written(&ratios[0].right));
+}
+
+/// The b that is aimed at, where there is one.
+#[test]
+fn the_b_of_now_is_the_one_aimed_at() {
+    let session = Session::open(Scenario::builtin("case-3").expect("built in")).expect("it opens");
+    assert!((State::now(session.frame()).b.expect("held") - 2.4).abs() < 1e-12);
+    let all = of(&session.scenario().machine, &State::now(session.frame()));
+    assert_eq!(numbered(&all, "13").holds(), Some(true));
+}
+
+/// A machine of one drive has nothing to be decoupled from.
+#[test]
+fn one_drive_is_written_of_alone() {
+    let (one, _) = random::a_space(&mut Noise::of(75), 1);
+    let all = of(&one, &a_state(&mut Noise::of(80), 1));
+    assert!(numbered(&all, "11").says.starts_with("With (7) met, the drive turns"));
+    let all = of(&table_1(), &a_state(&mut Noise::of(80), 3));
+    assert!(numbered(&all, "11").says.starts_with("With (7) and (8) met, every drive turns"));
 }
