@@ -216,7 +216,9 @@ fn what_cannot_be_is_refused() {
     assert!(with(&|a| a.disc.density = 0.0).contains("density"));
     assert!(with(&|a| a.disc.thickness = f64::NAN).contains("thickness"));
     assert!(with(&|a| a.sites[2].to = -1.0).contains("link 3"));
-    assert!(with(&|a| a.sites[2].most = -1.0).contains("link 3"));
+    for most in [-1.0, 0.0, f64::NAN] {
+        assert!(with(&|a| a.sites[2].most = most).contains("link 3: at most"), "{most}");
+    }
     assert!(with(&|a| a.sites[2].link = 20).contains("link number 20"));
     let why = with(&|a| a.sites.retain(|site| site.link != 1));
     assert!(why.contains("within these bounds: link 4: no further out"), "{why}");
@@ -701,5 +703,65 @@ fn the_points_of_a_front_are_spread() {
     for pair in points.windows(2) {
         let apart = [0, 1].map(|i| (pair[1][i] - pair[0][i]) / size[i]);
         assert!(apart[0].hypot(apart[1]) < 2.5 / 24.0, "{pair:?}");
+    }
+}
+
+/// A disc of a mass has a radius, one of that radius the mass: area by thickness by density.
+#[test]
+fn discs_weigh_what_their_volume_does() {
+    let mut noise = Noise::of(91);
+    for _ in 0..20 {
+        let disc = Disc { density: noise.between(1e3, 2e4), thickness: noise.between(1e-3, 0.1) };
+        let radius = noise.between(1e-3, 0.5);
+        let mass = std::f64::consts::PI * radius * radius * disc.thickness * disc.density;
+        assert!((disc.mass(radius) - mass).abs() < 1e-12 * mass && (disc.radius(mass) - radius).abs() < 1e-12);
+    }
+}
+
+/// What an answer says it comes to is what its machine comes to: Σ H_kk from the mass matrix in a pose, |D_k|, the torques.
+#[test]
+fn the_value_is_that_of_the_machine() {
+    let bare = family_machine("nine-link-bare");
+    let accelerations = vec![12.0, 30.0, 45.0];
+    for [mass, inertia, momentum, torque] in
+        [[0.3, 0.0, 0.0, 0.0], [2.5, 0.7, 0.0, 0.0], [0.4, 0.0, 1.5, 0.0], [0.2, 0.3, 0.0, 0.05]]
+    {
+        let objective = Objective { mass, inertia, momentum, torque, accelerations: accelerations.clone() };
+        let found = place(&bare, &weighing(&bare, objective)).expect("it can be balanced");
+        let (q, still) = (PerDrive::from_fn(3, |k| 0.4 + k as f64), PerDrive::from_fn(3, |_| 0.0));
+        let (h, _) = mass_matrix(&Inertia::of(&found.machine), &DriveAngles(q).units(), &still);
+        let added: f64 = found.machine.spec().counterweights.iter().map(|weight| weight.mass).sum();
+        let turned: f64 = (0..3).map(|k| h.get(k, k)).sum();
+        // Without rotors D_k is a row sum of H.
+        let momenta: f64 = (0..3).map(|k| (0..3).map(|l| h.get(k, l)).sum::<f64>().abs()).sum();
+        let torques = (0..3).map(|k| h.get(k, k) * accelerations[k]).fold(0.0, f64::max);
+        let want = mass * added + inertia * turned + momentum * momenta + torque * torques;
+        assert!((found.value - want).abs() < 1e-9 * want, "{}, want {want}", found.value);
+        assert!((found.added_mass - added).abs() < 1e-12 * added);
+    }
+}
+
+/// The best gear is no worse than any other one, where the turning of the drives counts: a rotor whose stator is on another drive makes H of
+/// that drive heavier, too.
+#[test]
+fn no_other_gear_comes_to_less() {
+    let serial = family_machine("serial-3r");
+    let asked = |ratios: [f64; 2]| {
+        let objective = Objective { momentum: 1.0, mass: 1e-2, inertia: 0.1, ..Objective::mass() };
+        Weighing { rotors: vec![FreeRotor { drive: 1, free: Free::Ratio(ratios) }], ..weighing(&serial, objective) }
+    };
+    let found = place(&serial, &asked([-300.0, 300.0])).expect("it can be balanced");
+    let inertia = Inertia::of(&found.machine);
+    assert!(found.gap < 1e-4 && inertia.is_balanced(), "{}", found.gap);
+    let added: f64 = found.machine.spec().counterweights.iter().map(|weight| weight.mass).sum();
+    let momenta: f64 = inertia.momenta().iter().map(|d| d.abs()).sum();
+    let (q, still) = (PerDrive::from_fn(3, |k| 0.4 + k as f64), PerDrive::from_fn(3, |_| 0.0));
+    let (h, _) = mass_matrix(&inertia, &DriveAngles(q).units(), &still);
+    let want = momenta + 1e-2 * added + 0.1 * (0..3).map(|k| h.get(k, k)).sum::<f64>();
+    assert!((found.value - want).abs() < 1e-6 * want, "{}, want {want}", found.value);
+    for ratio in [-200.0, 1.0, 100.0] {
+        let other = place(&serial, &asked([ratio; 2])).expect("it can be balanced");
+        let least = found.value - found.gap - 1e-9;
+        assert!(other.value > least, "{ratio}: {} below {}", other.value, found.value);
     }
 }

@@ -353,3 +353,56 @@ fn conditions_that_repeat_each_other_are_met() {
     let kept = keep(&machine, &asked).expect("it can be balanced");
     within_what_is_asked(&machine, &asked, &kept);
 }
+
+/// With a free mass the answer is the best along a line, too: with the mass held at any value near by it is dearer, and by
+/// so little that a parabola through three neighbours has its bottom where the answer is.
+#[test]
+fn a_free_mass_comes_to_rest_at_the_bottom() {
+    let bare = family_machine("nine-link-bare");
+    let mut bottoms = 0;
+    for j in 0..9 {
+        let mut asked = Keep::coms(&bare, &[1.0; 9]);
+        let mass = Parameter::new(stillbase::mechanics::balance::Body::Link(j), Quantity::Mass);
+        asked.hold(&bare, mass, Hold::Free);
+        let kept = keep(&bare, &asked).expect("it can be balanced");
+        let (place, was) =
+            (asked.parameters.iter().position(|one| one.parameter == mass).expect("listed"), bare.links()[j].mass);
+        let found = kept.values[place];
+        let at = |mass_of: f64| {
+            let mut fixed = asked.clone();
+            fixed.hold(&bare, mass, Hold::Within([mass_of, mass_of * (1.0 + 1e-12)]));
+            keep(&bare, &fixed).expect("it can be balanced").cost
+        };
+        // At a tenth or ten times what it was there is no bottom.
+        if !(0.11 * was..9.0 * was).contains(&found) {
+            continue;
+        }
+        bottoms += 1;
+        let step = 0.02 * found;
+        let [below, here, above] = [found - step, found, found + step].map(at);
+        assert!((here - kept.cost).abs() < 1e-9 * here, "link {}: {} and {here}", j + 1, kept.cost);
+        assert!(below > here && above > here, "link {}: {below} {here} {above}", j + 1);
+        let off = 0.5 * (below - above) / (below - 2.0 * here + above);
+        assert!(off.abs() < 0.05, "link {}: its bottom is {off} steps away", j + 1);
+    }
+    assert!(bottoms > 3, "{bottoms}");
+}
+
+/// A mass that is bounded from below by less than a thousandth of what it is still stays one.
+#[test]
+fn no_mass_becomes_nothing() {
+    for name in ["nine-link-bare", "serial-3r", "two-drive"] {
+        let machine = family_machine(name);
+        for j in 0..machine.links().len() {
+            let mut asked = Keep::coms(&machine, &vec![1.0; machine.links().len()]);
+            let mass = Parameter::new(stillbase::mechanics::balance::Body::Link(j), Quantity::Mass);
+            let was = machine.links()[j].mass;
+            asked.hold(&machine, mass, Hold::Within([0.0, 1e3 * was]));
+            // Dear places and cheap masses.
+            asked.parameters.iter_mut().for_each(|one| one.penalty = if one.parameter == mass { 1e-3 } else { 10.0 });
+            let Ok(kept) = keep(&machine, &asked) else { continue };
+            let now = kept.machine.links()[j].mass;
+            assert!(now >= 0.99e-3 * was, "{name} {j}: {now} of {was}");
+        }
+    }
+}

@@ -112,6 +112,28 @@ fn planes_and_spaces_move_alike() {
     }
 }
 
+/// The move as it is printed is hardly longer than the least one, however short that is.
+#[test]
+fn a_printed_move_is_hardly_longer() {
+    let planes = Planes::of(builtin("nine-link").expect("built in")).expect("planes");
+    let mut noise = Noise::of(233);
+    let mut seen = 0;
+    while seen < 12 {
+        let mut points: Vec<Vector> = (0..2).map(|_| noise.between(0.3, 1.2) * unit(noise.between(0.0, TAU))).collect();
+        let Some(mend) = no_common(planes.map(), &points).and_then(|why| why.mend) else { continue };
+        // Most of the way is gone already: from a hundredth to a millionth of it is left.
+        let left = 10.0_f64.powf(noise.between(-6.0, -2.0));
+        let was = points[mend.point];
+        points[mend.point] = was + (1.0 - left) * (mend.to - was);
+        let Some(mend) = no_common(planes.map(), &points).and_then(|why| why.mend) else { continue };
+        let Some(shown) = mend.shown else { continue };
+        if shown.to.iter().all(|x| x.decimals() <= 8) {
+            assert!(shown.far <= 1.1001 * mend.distance, "{points:?} {mend:?}");
+            seen += 1;
+        }
+    }
+}
+
 /// One word for one machine, wherever it is asked.
 #[test]
 fn whether_there_is_a_b_is_said_once() {

@@ -323,3 +323,83 @@ fn what_is_nearly_balanced_has_a_b_and_is_not_called_reactionless() {
     let four = PoseSpace::of(&family_machine("four-drive")).expect("it has a b");
     assert!(!four.is_reactionless());
 }
+
+/// One arm, whichever way it points: b is the angle of the drive at which its end is on the point.
+#[test]
+fn one_arm_points_both_ways() {
+    let arm = |direction: i32| {
+        let text = format!(
+            "name = \"one\"\n[[drive]]\nname = \"1\"\n[[link]]\nname = \"1\"\ndrive = \"1\"\nattach = \"base\"\n\
+             direction = {direction}\nlength = 0.7\nmass = 1.0\ninertia = 0.1\ncom = 0.0\n[end_effector]\nlink = \"1\"\n"
+        );
+        stillbase::mechanics::machine::parse(&text, "one").expect("a machine")
+    };
+    for direction in [1, -1] {
+        let space = space(&arm(direction));
+        for i in 0..12 {
+            let angle = 0.3 + TAU * f64::from(i) / 12.0;
+            let p = space.place(&space.lift(&[], angle));
+            let along = f64::from(direction) * Vector::from_polar(0.7, angle);
+            assert!((p - along).norm() < 1e-12, "{direction}: {p} at {angle}");
+            let set = space.reach(p).expect("within reach");
+            assert_eq!(set.intervals.len(), 1);
+            let off = (set.intervals[0][0] - angle).rem_euclid(TAU);
+            assert!(off.min(TAU - off) < 1e-9, "{direction}: {set:?}, want {angle}");
+        }
+    }
+}
+
+/// The curve of two drives is as long as its chords add up to, however they are weighed: fine chords, and half as fine.
+#[test]
+fn the_curve_of_two_drives_is_as_long_as_its_chords() {
+    let mut noise = Noise::of(61);
+    for _ in 0..10 {
+        let (_, space) = any_space(&mut noise, 2);
+        let b = noise.between(-3.0, 3.0);
+        let [low, high] = space.joints()[0].limits();
+        let sum = |count: u32| {
+            let at = |i: u32| space.place(&space.lift(&[low + (high - low) * f64::from(i) / f64::from(count)], b));
+            (0..count).map(|i| (at(i + 1) - at(i)).norm()).sum::<f64>()
+        };
+        // What chords leave out falls with the square of their length.
+        let (coarse, fine) = (sum(4000), sum(8000));
+        let length = fine + (fine - coarse) / 3.0;
+        let found = space.outline(b).length;
+        assert!((found - length).abs() < 1e-5 * length, "{found}, want {length}");
+    }
+}
+
+/// The nearest of all poses at a point and b: no pose beside it that keeps both is nearer to the middle of the limits.
+#[test]
+fn nothing_beside_the_nearest_pose_is_nearer() {
+    let mut noise = Noise::of(67);
+    for n in [4, 5, 6] {
+        for _ in 0..8 {
+            let (_, space) = any_space(&mut noise, n);
+            let b = noise.between(-3.0, 3.0);
+            let from = any_pose(&mut noise, &space);
+            let p = space.place(&space.lift(&from, b));
+            let nearest = space.centred(p, b, &from);
+            let far = |a: &PerDrive| {
+                let share = |i: usize| {
+                    let [low, high] = space.joints()[i].limits();
+                    (a[i] - 0.5 * (low + high)) / (0.5 * (high - low))
+                };
+                (0..n - 1).map(|i| share(i).powi(2)).sum::<f64>()
+            };
+            assert!((space.place(&space.lift(&nearest, b)) - p).norm() < 1e-8 * space.farthest());
+            assert!(far(&nearest) <= far(&from) + 1e-9);
+            // Others: a step at random, led back onto the point with b held.
+            for _ in 0..20 {
+                let size = 10.0_f64.powf(noise.between(-5.0, -1.0));
+                let beside = PerDrive::from_fn(n - 1, |i| nearest[i] + size * noise.between(-1.0, 1.0));
+                let beside = space.clamped(&beside);
+                let (back, missed) = space.toward(p, b, &beside);
+                if missed < 1e-10 * space.farthest() {
+                    let (own, other) = (far(&nearest), far(&back));
+                    assert!(other > own - 1e-8, "{n} drives: {other} below {own}, step {size}");
+                }
+            }
+        }
+    }
+}
