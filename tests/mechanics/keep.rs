@@ -406,3 +406,28 @@ fn no_mass_becomes_nothing() {
         }
     }
 }
+
+/// What holds of kilograms holds of grams: a balanced machine of a thousandth of the mass stays as it is, too.
+#[test]
+fn light_machines_are_kept_as_heavy_ones_are() {
+    for name in ["two-drive-balanced", "four-drive-balanced", "serial-3r-balanced"] {
+        for scale in [1e-3, 1e-2, 10.0] {
+            let machine = family_machine(name);
+            let mut spec = machine.spec().clone();
+            for link in &mut spec.links {
+                (link.mass, link.inertia) = (scale * link.mass, scale * link.inertia);
+            }
+            spec.counterweights.iter_mut().for_each(|weight| weight.mass *= scale);
+            spec.drives.iter_mut().filter_map(|drive| drive.rotor.as_mut()).for_each(|rotor| rotor.inertia *= scale);
+            spec.payload.mass *= scale;
+            spec.payload.inertia *= scale;
+            let machine = Machine::new(spec).expect("a machine");
+            let mut asked = Keep::coms(&machine, &vec![1.0; machine.links().len()]);
+            for parameter in Parameter::all(&machine).into_iter().filter(|one| one.quantity == Quantity::Mass) {
+                asked.hold(&machine, parameter, Hold::Free);
+            }
+            let kept = keep(&machine, &asked).unwrap_or_else(|why| panic!("{name}, {scale}: {why}"));
+            assert!(kept.cost < 1e-16, "{name}, {scale}: {}", kept.cost);
+        }
+    }
+}

@@ -403,3 +403,42 @@ fn nothing_beside_the_nearest_pose_is_nearer() {
         }
     }
 }
+
+/// A machine of a thousandth of the size has the same poses, as exact for its size.
+#[test]
+fn small_machines_are_as_exact_as_large_ones() {
+    let mut noise = Noise::of(71);
+    let n = 4;
+    for scale in [1.0, 1e-3] {
+        let (machine, _) = any_space(&mut noise, n);
+        let mut spec = machine.spec().clone();
+        for link in &mut spec.links {
+            if let stillbase::mechanics::machine::Length::Metres(length) = &mut link.length {
+                *length *= scale;
+            }
+            (link.com, link.com_normal) = (scale * link.com, scale * link.com_normal);
+            link.inertia *= scale * scale;
+        }
+        spec.drives
+            .iter_mut()
+            .filter_map(|drive| drive.rotor.as_mut())
+            .for_each(|rotor| rotor.inertia *= scale * scale);
+        let space = space(&Machine::new(spec).expect("a machine"));
+        let (mut worst, mut found) = (0.0_f64, 0);
+        for _ in 0..30 {
+            let (a, from) = (any_pose(&mut noise, &space), any_pose(&mut noise, &space));
+            let b = noise.between(-3.0, 3.0);
+            let p = space.place(&space.lift(&a, b));
+            for q in space.poses(p, b, &from) {
+                worst = worst.max((space.place(&q) - p).norm() / space.farthest());
+                found += 1;
+            }
+            let (led, missed) = space.toward(p, b, &from);
+            assert!(((space.place(&space.lift(&led, b)) - p).norm() - missed).abs() < 1e-12 * space.farthest());
+            if missed < 1e-6 * space.farthest() {
+                worst = worst.max(missed / space.farthest());
+            }
+        }
+        assert!(found >= 30 && worst < 1e-12, "{n} drives, {scale}: {worst:e} of {found}");
+    }
+}

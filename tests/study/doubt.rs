@@ -177,6 +177,7 @@ fn every_fault_is_refused_by_its_name() {
 
 /// Of a long recording a part is enough, and it is one in which everything moves.
 #[test]
+#[ignore = "long: eighteen thousand rows are fitted under every hypothesis, seconds optimised"]
 fn a_fault_in_a_long_recording_is_found() {
     let machine = builtin("nine-link").expect("built in");
     let mut noise = Noise::of(36);
@@ -201,7 +202,7 @@ fn what_is_impossible_is_named_by_what_makes_it_so() {
 /// Relative angles as the machine's file has them, whichever drive it counts them from and with whatever offsets.
 #[test]
 fn relative_angles_of_the_file_are_known() {
-    let machine = builtin("nine-link").expect("built in");
+    let machine = builtin("nine-link-bare").expect("built in");
     let mut noise = Noise::of(35);
     const FIRST: f64 = 0.4;
     const SECOND: f64 = 0.7;
