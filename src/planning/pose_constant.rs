@@ -48,10 +48,9 @@ pub enum PoseConstant {
 impl PoseConstant {
     /// Of a machine.
     pub fn of(machine: &Machine) -> Self {
-        let inertia = Inertia::of(machine);
         match PoseSpace::of(machine) {
-            Ok(_) if inertia.is_invariant() => Self::Exact,
-            Ok(_) => Self::Nearly { residual: inertia.invariance_residual() },
+            Ok(_) if is_reactionless(machine) => Self::Exact,
+            Ok(_) => Self::Nearly { residual: Inertia::of(machine).invariance_residual() },
             Err(NoPoseSpace::Free) => Self::Unneeded,
             Err(why) => Self::None(why),
         }
@@ -128,7 +127,7 @@ impl Planes {
         Ok(Self { boundary, map, keep_off_change_points: false, is_reactionless })
     }
 
-    /// Whether holding b keeps the moment from the base, but for the rounding of a table.
+    /// Whether holding b keeps every moment from the base; where not, it keeps most of it.
     pub fn is_reactionless(&self) -> bool {
         self.is_reactionless
     }

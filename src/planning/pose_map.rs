@@ -65,7 +65,7 @@ impl PoseMap {
         matches!(self, Self::Space(space) if space.drives() > 3)
     }
 
-    /// Whether holding b keeps the moment from the base, but for the rounding of a table.
+    /// Whether holding b keeps every moment from the base; where not, it keeps most of it.
     pub fn is_reactionless(&self) -> bool {
         match self {
             Self::Planes(planes) => planes.is_reactionless(),

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use stillbase::mechanics::balance::design;
 use stillbase::mechanics::machine::Machine;
 use stillbase::mechanics::planar::{PerDrive, Vector};
-use stillbase::planning::pose_constant::{Planes, plane_map};
+use stillbase::planning::pose_constant::{Planes, PoseConstant, plane_map};
 use stillbase::planning::pose_space::{NoPoseSpace, PoseSpace};
 use stillbase::session::Run;
 use stillbase::session::scenario::Scenario;
@@ -319,9 +319,15 @@ fn what_is_nearly_balanced_has_a_b_and_is_not_called_reactionless() {
     let heavier = exact.set("link.9.mass", "0.5").expect("a machine");
     let rounded = stillbase::mechanics::machine::builtin("nine-link-table-1").expect("built in");
     let is_reactionless = |machine| Planes::of(machine).expect("it has a b").is_reactionless();
-    assert!(is_reactionless(exact) && is_reactionless(rounded) && !is_reactionless(&heavier));
-    let four = PoseSpace::of(&family_machine("four-drive")).expect("it has a b");
+    assert!(is_reactionless(exact) && !is_reactionless(rounded) && !is_reactionless(&heavier));
+    let bare = family_machine("four-drive");
+    let four = PoseSpace::of(&bare).expect("it has a b");
     assert!(!four.is_reactionless());
+    // The label of b in the window says what `check`, `reach` and `plan` say.
+    for machine in [exact, rounded, &heavier, &bare] {
+        let space = PoseSpace::of(machine).expect("it has a b");
+        assert_eq!(space.is_reactionless(), PoseConstant::of(machine) == PoseConstant::Exact, "{}", machine.name());
+    }
 }
 
 /// One arm, whichever way it points: b is the angle of the drive at which its end is on the point.

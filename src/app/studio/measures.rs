@@ -25,7 +25,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &Facts, p: &Palette) {
         (if is_balanced { "λ" } else { "λ if no C were left" }, lambda.join("  ")),
     ];
     if let Some(planes) = run.planes() {
-        let noun = if planes.is_reactionless() { "reactionless workspace" } else { "workspace of b" };
+        let noun = if planes.is_reactionless() { "reactionless workspace" } else { "nearly reactionless workspace" };
         rows.push((noun, format!("{} m²", signed(planes.boundary().area(), 3))));
     }
     if let Some((_, measures)) = &facts.measures

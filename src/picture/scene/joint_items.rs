@@ -47,9 +47,10 @@ pub(super) fn draw_pose(scene: &mut Scene, palette: &Palette, pose: [f64; 3], ho
     scene.markers.push(ring.edged(palette.ink, 2.0));
 }
 
-/// What the surface of a b is called, rad: that of a machine whose λ changes with the pose keeps no moment from the base.
+/// What the surface of a b is called, rad: where λ changes a little with the pose, most of the moment is kept from the
+/// base.
 pub(super) fn named(b: f64, is_reactionless: bool) -> String {
-    format!("b = {b:.3} rad{}", if is_reactionless { "" } else { ", not reactionless" })
+    format!("b = {b:.3} rad{}", if is_reactionless { "" } else { ", nearly reactionless" })
 }
 
 /// The named ends of a path; a closed one has one.

@@ -100,14 +100,12 @@ pub enum NoPoseSpace {
 const ONLY_TWO: &str = "; without a moment its two drives keep q₁ plus an integral over q₂ − q₁, which is not offered as \
                         b, because its λ changes with the pose";
 
-/// Couplings up to this share of the inertia of all are rounding of a table, not a machine that shakes.
-const ROUNDED: f64 = 1e-3;
 /// Up to this share λ changes so little that to hold b keeps most of the moment from the base.
 const NEARLY: f64 = 0.1;
 
-/// Whether holding Σ λ_k q_k keeps the moment from the base, but for the rounding of a table.
+/// Whether holding Σ λ_k q_k keeps every moment from the base.
 pub(crate) fn is_reactionless(machine: &Machine) -> bool {
-    Inertia::of(machine).pose_dependence() <= ROUNDED
+    Inertia::of(machine).is_invariant()
 }
 
 /// The inertia of a machine with λ that are constant, or nearly.
@@ -201,7 +199,7 @@ impl PoseSpace {
         self.inertia
     }
 
-    /// Whether holding b keeps the moment from the base, but for the rounding of a table.
+    /// Whether holding b keeps every moment from the base; where not, it keeps most of it.
     pub fn is_reactionless(&self) -> bool {
         self.is_reactionless
     }

@@ -19,7 +19,7 @@ mod written;
 
 use crate::mechanics::balance::Preset;
 use crate::mechanics::machine::{Inertia, Machine};
-use crate::planning::pose_space::{held, is_reactionless};
+use crate::planning::pose_space::held;
 use crate::settings::number::Short;
 
 pub use equation::{Equation, Line, Origin, Term};
@@ -51,7 +51,7 @@ pub fn equations(machine: &Machine, state: &State, penalties: Preset) -> Vec<Equ
         balance.invariance(),
         balance.linear(),
         balance.least(penalties),
-        instant.decoupled(not_constant(machine, &inertia)),
+        instant.decoupled(not_constant(&inertia)),
         plane.rates(),
         plane.pose_constant(),
         plane.end_effector(),
@@ -63,9 +63,12 @@ pub fn equations(machine: &Machine, state: &State, penalties: Preset) -> Vec<Equ
     ]
 }
 
+/// Couplings up to this share of the inertia of all are rounding of a table.
+const ROUNDED: f64 = 1e-3;
+
 /// Why the mass matrix is not constant.
-fn not_constant(machine: &Machine, inertia: &Inertia) -> Option<String> {
-    (!is_reactionless(machine)).then(|| {
+fn not_constant(inertia: &Inertia) -> Option<String> {
+    (inertia.pose_dependence() > ROUNDED).then(|| {
         let left = Short((inertia.invariance_residual() * 1e4).round() * 1e-4);
         format!("the mass matrix of this machine changes with its pose: (8) leaves up to {left} kg m²")
     })

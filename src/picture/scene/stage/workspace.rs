@@ -33,10 +33,7 @@ pub struct Workspace {
 
 /// What is reached while b is held, in words that promise no more than is true.
 pub(super) fn held(noun: &str, is_reactionless: bool) -> String {
-    match is_reactionless {
-        true => format!("reactionless {noun}"),
-        false => format!("{noun} of b, not reactionless"),
-    }
+    format!("{}reactionless {noun}", if is_reactionless { "" } else { "nearly " })
 }
 
 impl Workspace {
